@@ -1,0 +1,18 @@
+# Options that belong to the project as the top level only; a consumer keeps its own.
+if(PROJECT_IS_TOP_LEVEL)
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    # A Verilated model at -O0 is 12 times slower.
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+  endif()
+  set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+endif()
+
+option(TRAMMEL_WERROR "Warnings are errors" OFF)
+
+# Every target of the project goes through this: C++17 (Debian's SystemC links only so) and the warnings.
+function(trammel_target target)
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+                                           $<$<BOOL:${TRAMMEL_WERROR}>:-Werror>)
+endfunction()

@@ -1,0 +1,74 @@
+# Verilation of the card, of single blocks, and of copies of a block with one seeded bug.
+find_package(verilator REQUIRED HINTS $ENV{VERILATOR_ROOT})
+
+set(TRAMMEL_RTL_DIR "${PROJECT_SOURCE_DIR}/rtl")
+set(TRAMMEL_VERILATOR_ARGS -Wall "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" -O3 --x-assign fast --x-initial fast
+    --noassert)
+
+# trammel_verilate(target PREFIX Vx TOP top SOURCES a.sv b.sv [ARGS ...] [TRACE])
+# Sources are relative to rtl/ unless absolute. The package of the card map always comes first.
+function(trammel_verilate target)
+  cmake_parse_arguments(A "TRACE" "PREFIX;TOP" "SOURCES;ARGS" ${ARGN})
+  set(files "${TRAMMEL_RTL_DIR}/regs/generated/card_map_pkg.sv")
+  foreach(file IN LISTS A_SOURCES)
+    cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${TRAMMEL_RTL_DIR}" NORMALIZE)
+    list(APPEND files "${file}")
+  endforeach()
+  set(trace "")
+  if(A_TRACE)
+    set(trace TRACE_FST)
+  endif()
+  verilate(${target} PREFIX ${A_PREFIX} TOP_MODULE ${A_TOP} SOURCES ${files} ${trace}
+           DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${target}_${A_PREFIX}"
+           OPT_FAST -O3 OPT_SLOW -O1
+           VERILATOR_ARGS ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS})
+endfunction()
+
+# trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [ARGS ...])
+# Builds lockstep_<name>: the test clocks Vdut (the block) beside its golden model.
+function(trammel_add_lockstep name)
+  cmake_parse_arguments(A "" "TOP;TEST" "SOURCES;ARGS" ${ARGN})
+  add_executable(lockstep_${name} ${A_TEST})
+  trammel_lockstep_target(lockstep_${name})
+  trammel_verilate(lockstep_${name} PREFIX Vdut TOP ${A_TOP} SOURCES ${A_SOURCES} ARGS ${A_ARGS})
+  gtest_discover_tests(lockstep_${name} TEST_PREFIX "lockstep.${name}." PROPERTIES LABELS lockstep DISCOVERY_TIMEOUT 60)
+  foreach(var TOP TEST SOURCES ARGS)
+    set_property(GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_${var} "${A_${var}}")
+  endforeach()
+endfunction()
+
+# trammel_add_seeded_bug(name bug FILE f.sv FROM "text" TO "text")
+# The same lockstep over a copy of the block in which the text FROM (exactly once in FILE) reads TO.
+# The executable is compiled with TRAMMEL_SEEDED_BUG: its tests pass only when the lockstep reports a mismatch.
+function(trammel_add_seeded_bug name bug)
+  cmake_parse_arguments(PARSE_ARGV 2 A "" "FILE;FROM;TO" "")
+  foreach(var TOP TEST SOURCES ARGS)
+    get_property(L_${var} GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_${var})
+  endforeach()
+  set(target lockstep_${name}_bug_${bug})
+  set(dir "${CMAKE_CURRENT_BINARY_DIR}/seeded/${name}_${bug}")
+  file(READ "${TRAMMEL_RTL_DIR}/${A_FILE}" text)
+  string(FIND "${text}" "${A_FROM}" first)
+  string(FIND "${text}" "${A_FROM}" last REVERSE)
+  if(first EQUAL -1 OR NOT first EQUAL last)
+    message(FATAL_ERROR "seeded bug ${name}/${bug}: \"${A_FROM}\" must stand exactly once in rtl/${A_FILE}")
+  endif()
+  string(REPLACE "${A_FROM}" "${A_TO}" text "${text}")
+  cmake_path(GET A_FILE FILENAME file_name)
+  file(CONFIGURE OUTPUT "${dir}/${file_name}" CONTENT "${text}" @ONLY)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${TRAMMEL_RTL_DIR}/${A_FILE}")
+  set(sources ${L_SOURCES})
+  list(TRANSFORM sources REPLACE "^${A_FILE}$" "${dir}/${file_name}")
+  add_executable(${target} ${L_TEST})
+  trammel_lockstep_target(${target})
+  target_compile_definitions(${target} PRIVATE TRAMMEL_SEEDED_BUG)
+  trammel_verilate(${target} PREFIX Vdut TOP ${L_TOP} SOURCES ${sources} ARGS -Wno-fatal ${L_ARGS})
+  add_test(NAME seeded_bug.${name}.${bug} COMMAND ${target})
+  set_tests_properties(seeded_bug.${name}.${bug} PROPERTIES LABELS seeded_bug)
+endfunction()
+
+function(trammel_lockstep_target target)
+  trammel_target(${target})
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/verif/lockstep")
+  target_link_libraries(${target} PRIVATE trammel_lockstep trammel::model GTest::gtest_main)
+endfunction()
