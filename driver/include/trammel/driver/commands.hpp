@@ -1,0 +1,67 @@
+// The card's stream commands as values. Layouts, widths and limits: rtl/regs/commands.toml.
+// Plain data, no card access; encode() is pure and thread-safe.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+namespace trammel::driver {
+
+inline constexpr std::size_t kMaxAxes = 8;
+
+// 128-bit signed integer: deviations and gradients of the conic need more than 64 bits.
+__extension__ typedef __int128 int128;
+
+// A straight line over `ticks` feed ticks; axes outside `mask` stand still.
+struct Line {
+  std::uint64_t ticks = 0;                           // N, feed ticks, 1 .. 2^40 - 1
+  std::uint8_t mask = 0;                             // bit n: axis n moves
+  std::array<std::int64_t, kMaxAxes> increment{};    // by axis index; 2^-40 pulses a tick, |.| <= 2^40
+};
+
+// An arc on the deviation accumulator.
+struct Arc {
+  std::uint64_t ticks = 0;       // N, feed ticks
+  std::uint64_t path_ticks = 0;  // L <= N, unit steps
+  std::uint64_t prescale = 0;    // round(L * 2^40 / N), 2^-40 path ticks a feed tick
+  bool clockwise = false;        // seen with the first axis to the right and the second up
+  std::uint8_t axis_x = 0;       // index of the first axis of the plane
+  std::uint8_t axis_y = 1;       // index of the second
+  std::uint16_t quadrants = 0;   // Q, quadrant changes before the end may be taken
+  std::int32_t end_x = 0;        // displacement start to end, pulses
+  std::int32_t end_y = 0;
+  int128 deviation = 0;          // F at the start
+  int128 gradient_x = 0;         // GX, GY at the start
+  int128 gradient_y = 0;
+  std::uint64_t half_x = 0;      // CX/2, CY/2
+  std::uint64_t half_y = 0;
+};
+
+// One piece of the feed profile.
+struct Feed {
+  std::uint64_t ticks = 0;          // feed ticks of the piece
+  std::uint64_t rate = 0;           // 2^-64 ticks an enabled clock
+  std::int64_t acceleration = 0;    // the same unit an update of 32 enabled clocks
+  std::int64_t jerk = 0;            // the same unit an update, each update
+  std::uint32_t floor = 1;          // 2^-32 ticks an enabled clock, not 0
+  std::uint32_t stop_distance = 0;  // feed ticks; 0 until the under-run hold is built
+};
+
+// Barrier, then `clocks` of real time (0 .. 2^40 - 1).
+struct Dwell {
+  std::uint64_t clocks = 0;
+};
+
+// Barrier: end of the program.
+struct End {};
+
+using Command = std::variant<Line, Arc, Feed, Dwell, End>;
+
+// Appends the command's words (header first) to `words`. `number` is the command's number, mod 256.
+// Throws std::invalid_argument, naming the field, when a value is outside its layout; nothing is appended then.
+void encode(const Command& command, std::uint8_t number, std::vector<std::uint32_t>& words);
+
+}  // namespace trammel::driver
