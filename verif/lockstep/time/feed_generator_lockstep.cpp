@@ -133,7 +133,7 @@ std::uint64_t log_uniform(std::mt19937_64& random) { return random() >> (random(
 
 Piece random_piece(std::mt19937_64& random) {
   Piece p{};
-  p.rate = log_uniform(random);
+  p.rate = random() % 3 == 0 ? random() : log_uniform(random);
   p.acceleration = random() % 4 == 0 ? 0 : log_uniform(random);
   p.jerk = random() % 3 == 0 ? 0 : log_uniform(random);
   if (random() % 2 == 0) p.acceleration = 0 - p.acceleration;
@@ -151,14 +151,15 @@ void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
   Bench bench(seed, enable_of_1024);
   for (std::uint64_t i = 0; i < pieces; ++i) {
     std::uint64_t distance = kSwapDistance + random() % 80;
-    if (random() % 16 == 0) distance += random() % 3000;
+    // One piece in 16 lasts for about 50 updates, however rare the enables are.
+    if (random() % 16 == 0) distance += random() % (1 + 3'000'000 / enable_of_1024);
     bench.piece(random_piece(random), distance);
     if (random() % 8 == 0) {
       bench.idle(random() % 50);
       bench.clear();
     }
   }
-  EXPECT_GT(bench.ticks(), pieces / 200);
+  EXPECT_GT(bench.ticks(), pieces);
   bench.expect_all_compared();
 }
 
@@ -169,7 +170,7 @@ TEST(FeedGeneratorLockstep, DirectedAndRandom) {
     random_pieces(1024, 12'000);
     random_pieces(1000, 4'000);
     random_pieces(512, 4'000);
-    random_pieces(1, 2'000);
+    random_pieces(1, 300);
   });
   EXPECT_EQ(complaint, "");
 }

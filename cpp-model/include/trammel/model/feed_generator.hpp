@@ -139,9 +139,9 @@ class FeedGenerator {
   // update lies inside; the one at the end is made.
   std::uint64_t glide(std::uint64_t limit) {
     const std::uint64_t room = kOne - 1 - phase_;
-    const std::uint64_t most = limit < kUpdateClocks + 1 && limit * slope_ <= room ? limit
-                               : slope_ == 0                                       ? limit
-                                                                                   : std::min(limit, room / slope_);
+    // Within one update the product tells without a division; beyond it could exceed 64 bits.
+    const bool all = slope_ == 0 || (limit <= kUpdateClocks && limit * slope_ <= room);
+    const std::uint64_t most = all ? limit : std::min(limit, room / slope_);
     phase_ += most * slope_;
     const std::uint64_t count = count_ + most;
     count_ = static_cast<std::uint32_t>(count % kUpdateClocks);
