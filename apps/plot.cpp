@@ -27,15 +27,17 @@ std::vector<Point> ThinnedPath::points() const {
   return all;
 }
 
-void SpeedOverTime::add(std::uint64_t cycle, double millimetres) {
+void SpeedOverTime::add(std::uint64_t cycle, std::size_t axis, double millimetres) {
   while (cycle / bin_width_ >= kBins) {
-    for (std::size_t i = 0; i < kBins / 2; ++i) bins_[i] = bins_[2 * i] + bins_[2 * i + 1];
-    std::fill(bins_.begin() + kBins / 2, bins_.end(), 0.0);
+    for (std::size_t i = 0; i < kBins / 2; ++i) {
+      for (std::size_t a = 0; a < 3; ++a) bins_[i][a] = bins_[2 * i][a] + bins_[2 * i + 1][a];
+    }
+    std::fill(bins_.begin() + kBins / 2, bins_.end(), Point{});
     bin_width_ *= 2;
     used_ = (used_ + 1) / 2;
   }
   const auto bin = static_cast<std::size_t>(cycle / bin_width_);
-  bins_[bin] += millimetres;
+  bins_[bin][axis] += millimetres;
   used_ = std::max(used_, bin + 1);
 }
 
@@ -43,7 +45,7 @@ std::vector<SpeedOverTime::Sample> SpeedOverTime::samples() const {
   std::vector<Sample> result;
   const double width = static_cast<double>(bin_width_) / clock_hz_;
   for (std::size_t i = 0; i < used_; ++i) {
-    result.push_back({(static_cast<double>(i) + 0.5) * width, bins_[i] / width});
+    result.push_back({(static_cast<double>(i) + 0.5) * width, std::hypot(bins_[i][0], bins_[i][1], bins_[i][2]) / width});
   }
   return result;
 }

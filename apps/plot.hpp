@@ -30,11 +30,13 @@ class ThinnedPath {
   Point last_{};
 };
 
-// Path length over time in bins of equal width, which doubles when the run outgrows them.
+// Speed over time in bins of equal width, which doubles when the run outgrows them. A bin's speed is the root of the sum
+// of squares of what each axis travelled in it: exact while the direction does not change within the bin.
 class SpeedOverTime {
  public:
   explicit SpeedOverTime(double clock_hz) : clock_hz_(clock_hz) {}
-  void add(std::uint64_t cycle, double millimetres);
+  // `axis` is one of the first three; `millimetres` >= 0.
+  void add(std::uint64_t cycle, std::size_t axis, double millimetres);
   struct Sample {
     double seconds;
     double speed;  // mm/s, the bin's mean
@@ -45,7 +47,7 @@ class SpeedOverTime {
   static constexpr std::size_t kBins = 1024;
   double clock_hz_;
   std::uint64_t bin_width_ = 1;  // clocks
-  std::vector<double> bins_ = std::vector<double>(kBins, 0.0);
+  std::vector<Point> bins_ = std::vector<Point>(kBins, Point{});
   std::size_t used_ = 0;
 };
 
