@@ -54,8 +54,8 @@ bool walk(const Arc& arc, Visit&& visit) {
 // A real arc, and what rounding makes of it: start and end to whole pulses, the centre to 1/256.
 struct RandomArc {
   ArcGeometry geometry;
-  double radius;             // of the real arc
-  double real_x, real_y;     // its centre, from the rounded start
+  double radius;              // of the real arc
+  double real_x, real_y;      // its centre, from the rounded start
   double centre_x, centre_y;  // the rounded centre, from the rounded start
 };
 
