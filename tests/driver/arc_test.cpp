@@ -341,7 +341,7 @@ TEST(Ellipse, FullTurnReturns) {
       g.clockwise = clockwise;
       const Arc arc = make_ellipse(g, 1 << 20);
       // A needle's tip, narrower than a pulse, is cut short.
-      EXPECT_GE(arc.path_ticks, static_cast<std::uint64_t>(7 * (a + b) / 2));
+      EXPECT_GE(arc.path_ticks, static_cast<std::uint64_t>(3 * (a + b)));
       EXPECT_LE(arc.path_ticks, static_cast<std::uint64_t>(4 * (a + b) + 4));
       EXPECT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {})) << a << ' ' << b;
     }
