@@ -65,6 +65,12 @@ class FaultError : public Error {
   std::uint32_t faults_;
 };
 
+// The call makes no sense in the state that the card or the stream is in; the message says what to do first.
+class StateError : public Error {
+ public:
+  using Error::Error;
+};
+
 // A value is outside its range. Thrown before any access to the bus.
 class ArgumentError : public Error {
  public:
