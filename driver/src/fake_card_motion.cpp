@@ -82,17 +82,18 @@ void FakeCard::start_direct(std::uint32_t mask) {
     refuse(card_map::Reason::BadValue, reg::kStart, Direction::kWrite);
   }
   direct_left_ = setting64(reg::kLengthLo, reg::kLengthHi);
-  direct_mask_ = mask;
+  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+    const auto frequency = static_cast<std::int64_t>(setting64(reg::frequency_lo(axis), reg::frequency_hi(axis)));
+    const std::int64_t possible = steps_of(direct_left_, frequency);
+    const std::int64_t steps = std::min<std::int64_t>(possible, setting(reg::count(axis)));
+    const std::int64_t moving = (mask >> axis & 1U) != 0 ? steps : 0;
+    direct_steps_[axis] = setting(reg::direction(axis)) != 0 ? -moving : moving;
+  }
 }
 
 void FakeCard::end_direct() {
-  const std::uint64_t length = setting64(reg::kLengthLo, reg::kLengthHi);
-  for (unsigned axis = 0; axis < options_.axes; ++axis) {
-    if ((direct_mask_ >> axis & 1U) != 0) {
-      const auto frequency = static_cast<std::int64_t>(setting64(reg::frequency_lo(axis), reg::frequency_hi(axis)));
-      const std::int64_t steps = std::min<std::int64_t>(steps_of(length, frequency), setting(reg::count(axis)));
-      position_[axis] += setting(reg::direction(axis)) != 0 ? -steps : steps;
-    }
+  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+    position_[axis] += direct_steps_[axis];
   }
 }
 

@@ -40,14 +40,20 @@ Stream::Stream(Card& card, StreamOptions options)
   if (stall_clocks_ == 0) {
     throw ArgumentError("stream: a stall timeout of 0 ns");
   }
-  if (card.status().busy) {
+  const Status status = card.status();
+  card.throw_if_faulted(status, "stream");
+  if (status.busy) {
     throw StateError("stream: the card is busy; wait until it is idle, or abort it, before opening the stream");
   }
-  restart();
+  reset();
 }
 
 void Stream::restart() {
   card_->throw_if_faulted(card_->status(), "stream");
+  reset();
+}
+
+void Stream::reset() {
   card_->abort();
   card_->clear_refusal();
   room_ = {};

@@ -125,8 +125,8 @@ class FakeCard final : public Bus {
   Queue feed_;
   std::uint64_t dwell_left_ = 0;
   std::uint64_t direct_left_ = 0;
-  std::uint32_t direct_mask_ = 0;
-  std::uint64_t ratio_phase_ = 0;  // 2^-16 clocks
+  std::array<std::int64_t, kMaxAxes> direct_steps_{};  // of the one-shot line under way
+  std::uint64_t ratio_phase_ = 0;                      // 2^-16 clocks
   std::uint64_t time_ = 0;
   std::uint64_t accesses_ = 0;
   std::array<std::int64_t, kMaxAxes> position_{};
