@@ -90,7 +90,7 @@ module pulse_generator #(
     if (swap_late_q) open_q <= opening_q & ~nothing;
     else if (last) open_q <= 1'b0;
     step_o <= step;
-    if (step) dir_o <= backwards_q;
+    if (step & ~clear_i) dir_o <= backwards_q;
     if (rst_i | clear_i) begin
       swap_late_q <= 1'b0;
       open_q <= 1'b0;
