@@ -1,0 +1,24 @@
+// Options that every subcommand with a simulated card shares.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "trammel/sim/engine.hpp"
+
+namespace trammel::app {
+
+struct EngineChoice {
+  std::string engine = "rtl";
+  double clock_hz = 0;  // 0: not given
+  std::optional<std::string> trace;
+
+  void add_to(CLI::App& command);
+  // The engine's options; `rtl_clock` and `model_clock` are the clocks, in Hz, where none was given.
+  // Throws UsageError for what does not go together.
+  sim::EngineOptions options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const;
+};
+
+}  // namespace trammel::app

@@ -1,0 +1,16 @@
+// What a subcommand throws when it was given something unusable: exit status 2. Anything else that is thrown gives 1.
+#pragma once
+
+#include <stdexcept>
+
+namespace trammel::app {
+
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+inline constexpr int kExitFailure = 1;
+inline constexpr int kExitUsage = 2;
+
+}  // namespace trammel::app

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace trammel::app {
+
+// Registers `trammel info`.
+void add_info_command(CLI::App& app);
+
+}  // namespace trammel::app

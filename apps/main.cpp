@@ -1,0 +1,45 @@
+// The trammel command: subcommands, and what the shell sees when one fails.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "errors.hpp"
+#include "info_command.hpp"
+#include "line_command.hpp"
+#include "run_command.hpp"
+#include "trammel/driver/gcode.hpp"
+#include "trammel/driver/machine.hpp"
+
+namespace {
+
+int report(const char* message, int status) {
+  fmt::print(stderr, "trammel: error: {}\n", message);
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Trammel: an open stepper-motion card, its golden model and its driver", "trammel");
+  app.set_version_flag("--version", TRAMMEL_VERSION);
+  app.require_subcommand(1);
+  trammel::app::add_run_command(app);
+  trammel::app::add_line_command(app);
+  trammel::app::add_info_command(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int status = app.exit(error);
+    return status == 0 ? 0 : trammel::app::kExitUsage;
+  } catch (const trammel::app::UsageError& error) {
+    return report(error.what(), trammel::app::kExitUsage);
+  } catch (const trammel::driver::ProgramError& error) {
+    return report(error.what(), trammel::app::kExitUsage);
+  } catch (const trammel::driver::MachineError& error) {
+    return report(error.what(), trammel::app::kExitUsage);
+  } catch (const std::exception& error) {
+    return report(error.what(), trammel::app::kExitFailure);
+  }
+  return 0;
+}

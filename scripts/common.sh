@@ -1,0 +1,53 @@
+# Shared by the scripts: where the project lies, what it needs from the distribution, how it says what it does.
+# Sourced, not run.
+set -euo pipefail
+project_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$project_dir"
+
+say() { printf '\033[1m== %s\033[0m\n' "$*" >&2; }
+die() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+# Everything that building and testing needs; scripts/setup installs what is missing.
+debian_packages=(
+  g++ cmake ninja-build git python3-venv
+  verilator
+  libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
+  libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev
+)
+# Checks of the sources, other RTL readers, synthesis.
+debian_packages_check=(clang-format iverilog yosys)
+debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
+
+install_debian() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  command -v apt-get >/dev/null || die "this needs Debian packages: ${missing[*]}"
+  local sudo=()
+  [ "$(id -u)" -eq 0 ] || sudo=(sudo)
+  say "installing ${missing[*]}"
+  "${sudo[@]}" apt-get update -qq
+  DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# The pinned Python tools, in .venv; made again when requirements.txt changes.
+install_python() {
+  install_debian python3-venv
+  local stamp=.venv/.requirements
+  if ! cmp -s requirements.txt "$stamp" 2>/dev/null; then
+    say "installing the Python tools of requirements.txt into .venv"
+    python3 -m venv .venv
+    .venv/bin/pip install --quiet --disable-pip-version-check -r requirements.txt
+    cp requirements.txt "$stamp"
+  fi
+}
+
+build_release() {
+  install_debian "${debian_packages[@]}"
+  say "building"
+  mkdir -p build
+  cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log >&2; die "configuring failed"; }
+  cmake --build --preset release
+}

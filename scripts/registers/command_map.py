@@ -1,0 +1,152 @@
+"""The stream commands as plain data, read from TOML and checked against what the card's door can judge."""
+
+import tomllib
+from dataclasses import dataclass
+from typing import List, Optional
+
+HALFWORD = 16
+HEADER_HALFWORDS = 2
+COUNT_HALFWORDS = 3
+COUNT_BITS = 40
+MAX_AXES = 8
+# The one limit inside a halfword range that the door compares with: one pulse a tick.
+UNIT_LIMIT = 1 << 40
+UNIT_LIMIT_HALFWORDS = 3
+
+
+class CommandError(Exception):
+    """A layout that the outputs cannot express."""
+
+
+@dataclass
+class Count:
+    name: str
+    minimum: int
+    maximum: int
+    unit: str
+    brief: str
+
+
+@dataclass
+class Field:
+    name: str
+    kind: str  # unsigned, signed or zero
+    bits: int
+    per_axis: bool
+    offset: int  # in halfwords from the payload's start (for a field per axis: of the first axis)
+    halfwords: int
+    minimum: int
+    limit: Optional[int]  # largest magnitude where the bits allow more
+    bit_mask: Optional[int]  # bits that may be set, where they are not contiguous
+    at_most_count: bool
+    unit: str
+    brief: str
+    why: str
+
+
+@dataclass
+class Command:
+    name: str
+    opcode: int
+    queues: List[str]
+    mask: str  # any, plane or none
+    brief: str
+    count: Count
+    fields: List[Field]
+
+    @property
+    def fixed_halfwords(self):
+        """Payload before the part that is repeated for every axis."""
+        return sum(f.halfwords for f in self.fields if not f.per_axis)
+
+    @property
+    def axis_halfwords(self):
+        return sum(f.halfwords for f in self.fields if f.per_axis)
+
+    @property
+    def base_halfwords(self):
+        return HEADER_HALFWORDS + COUNT_HALFWORDS + self.fixed_halfwords
+
+
+@dataclass
+class CommandMap:
+    version: int
+    commands: List[Command]
+
+
+def read_command_map(path):
+    with open(path, "rb") as file:
+        data = tomllib.load(file)
+    commands = [_command(entry) for entry in data["command"]]
+    if len({c.opcode for c in commands}) != len(commands):
+        raise CommandError("two commands share an opcode")
+    return CommandMap(data["version"], commands)
+
+
+def _command(entry):
+    count = entry["count"]
+    command = Command(
+        name=entry["name"],
+        opcode=entry["opcode"],
+        queues=entry["queues"],
+        mask=entry["mask"],
+        brief=entry["brief"],
+        count=Count(
+            name=count["name"],
+            minimum=count["min"],
+            maximum=count.get("max", (1 << COUNT_BITS) - 1),
+            unit=count["unit"],
+            brief=count["brief"],
+        ),
+        fields=[],
+    )
+    offset = 0
+    for description in entry.get("field", []):
+        field = _field(description, offset)
+        offset += field.halfwords
+        command.fields.append(field)
+    _check(command)
+    return command
+
+
+def _field(entry, offset):
+    return Field(
+        name=entry["name"],
+        kind=entry["kind"],
+        bits=entry["bits"],
+        per_axis=entry.get("per_axis", False),
+        offset=offset,
+        halfwords=-(-entry["bits"] // HALFWORD),
+        minimum=entry.get("min", 0),
+        limit=entry.get("magnitude_max", entry.get("max")),
+        bit_mask=entry.get("mask"),
+        at_most_count=entry.get("at_most_count", False),
+        unit=entry.get("unit", ""),
+        brief=entry["brief"],
+        why=entry["why"],
+    )
+
+
+def _check(command):
+    def need(condition, text):
+        if not condition:
+            raise CommandError(f"{command.name}: {text}")
+
+    need(command.mask in ("any", "plane", "none"), f"mask {command.mask}")
+    need(command.count.minimum in (0, 1), "a count's minimum is 0 or 1")
+    need(command.count.maximum in (0, (1 << COUNT_BITS) - 1), "a count's maximum is 0 or all ones")
+    after_axis_part = False
+    for field in command.fields:
+        need(field.kind in ("unsigned", "signed", "zero"), f"kind {field.kind}")
+        need(field.per_axis or not after_axis_part, f"{field.name} follows a field per axis")
+        after_axis_part = field.per_axis
+        need(field.minimum in (0, 1), f"{field.name}: a minimum is 0 or 1")
+        if field.limit is not None:
+            need(field.limit == UNIT_LIMIT, f"{field.name}: only 2^40 is a limit")
+            need(field.halfwords == UNIT_LIMIT_HALFWORDS, f"{field.name}: a limited field has 3 halfwords")
+        elif field.kind == "signed":
+            need(field.bits % HALFWORD == 0, f"{field.name}: a signed field without limit fills its halfwords")
+        if field.at_most_count:
+            need(field.halfwords == COUNT_HALFWORDS, f"{field.name}: as wide as the count")
+        if field.bit_mask is not None:
+            need(field.halfwords == 1, f"{field.name}: a mask covers one halfword")

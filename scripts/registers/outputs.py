@@ -1,0 +1,27 @@
+"""All generated files: path from the repository's root -> text."""
+
+import shutil
+import subprocess
+
+from .command_map import read_command_map
+from .register_map import read_register_map
+from .write_cpp import header_text
+from .write_sv import package_text
+
+
+def generate(root):
+    registers = read_register_map(root / "rtl/regs/trammel.rdl")
+    commands = read_command_map(root / "rtl/regs/commands.toml")
+    header = "rtl/regs/generated/include/trammel/card_map.hpp"
+    return {
+        "rtl/regs/generated/card_map_pkg.sv": package_text(registers, commands),
+        header: formatted(root, header, header_text(registers, commands)),
+    }
+
+
+def formatted(root, path, text):
+    tool = shutil.which("clang-format")
+    if tool is None:
+        raise FileNotFoundError("clang-format is needed to write the C++ header")
+    command = [tool, "--style=file", f"--assume-filename={root / path}"]
+    return subprocess.run(command, input=text, capture_output=True, text=True, check=True).stdout

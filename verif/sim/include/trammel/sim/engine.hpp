@@ -1,0 +1,63 @@
+// The simulated card, in two engines with the same step lists, cycle by cycle the same numbers:
+// kRtl is the Verilated card in lockstep with the golden model, kModel the golden model alone, going from tick to tick.
+// Both take bus accesses in the same number of clocks. One engine, one thread; several engines may live side by side.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trammel/driver/bus.hpp"
+
+namespace trammel::sim {
+
+// A leading edge at a STEP pin.
+struct PinStep {
+  std::uint64_t cycle;
+  std::uint8_t axis;
+  std::int8_t direction;  // +1 or -1
+};
+
+// A step of the path, before the shapers.
+struct PathStep {
+  std::uint64_t command;  // number of the stream command, not wrapped; 0 in direct mode
+  std::uint64_t tick;     // of its path, from 1: feed ticks of a line, path ticks of an arc
+  std::uint8_t axis;
+  std::int8_t direction;
+};
+
+// Receives steps in order of time. Called from within bus accesses and idle(); must not use the engine.
+class StepSink {
+ public:
+  virtual ~StepSink() = default;
+  virtual void pin_step(const PinStep& step) = 0;
+  virtual void path_step(const PathStep& step) = 0;
+};
+
+enum class EngineKind { kRtl, kModel };
+
+struct EngineOptions {
+  EngineKind kind = EngineKind::kRtl;
+  unsigned axes = 4;                       // 1 .. 8
+  std::uint32_t clock_hz = 1'000'000;      // what the card says of itself; 1 cycle is 1 / clock_hz seconds
+  std::optional<std::string> trace;        // FST file, kRtl only
+  std::uint64_t seed = 1;                  // named in the report of a mismatch
+};
+
+// A card on a simulated bus: the driver's Bus, with wait() running clocks. A mismatch throws lockstep::Mismatch out
+// of the access during which it was found.
+class Engine : public driver::Bus {
+ public:
+  virtual void set_sink(StepSink* sink) = 0;               // nullptr: none; not owned
+  virtual std::uint64_t cycles() const = 0;                // clocks since reset
+  virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
+  virtual std::uint64_t comparisons() const = 0;           // signals compared
+  virtual std::vector<std::int64_t> positions() const = 0; // pulses, by axis, as the position counters have them
+};
+
+// Throws std::invalid_argument for options out of range.
+std::unique_ptr<Engine> make_engine(const EngineOptions& options);
+
+}  // namespace trammel::sim
