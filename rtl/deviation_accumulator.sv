@@ -122,10 +122,11 @@ module deviation_accumulator (
     if (load_i[8]) clockwise_q <= word_i[0];
   end
 
-  // Quadrants: the last one is foreseen, so that at_end_o and the next choice know of it with the sign itself.
+  // Quadrants: the last one is foreseen, so that at_end_o and the next choice know of it with the sign itself. With
+  // the upper bits 0 the change takes the last one: at 0 done_q is set already, and the count no longer matters.
   logic upper_zero_q, change, done;
   assign change = phase_q[LAST] & (g_back[15] ^ old_sign_q);
-  assign done = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q & quadrants_q[0]);
+  assign done = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
   always_ff @(posedge clk_i) begin
     if (load_i[7]) quadrants_q <= word_i;
     else quadrants_q <= quadrants_q - {15'd0, change};
