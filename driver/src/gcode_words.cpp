@@ -8,6 +8,9 @@
 namespace trammel::driver {
 namespace {
 
+// So that no sum or square of coordinates leaves the range of a double.
+constexpr double kLargest = 1e12;
+
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_printable(char c) { return c > ' ' && c < '\x7f'; }
@@ -67,7 +70,7 @@ Word parse_word(std::string_view line, std::size_t& at) {
   const std::size_t digits = line[at] == '+' ? at + 1 : at;  // from_chars knows no plus sign
   double value = 0;
   const auto result = std::from_chars(line.data() + digits, line.data() + end, value, std::chars_format::fixed);
-  if (result.ec != std::errc() || result.ptr != line.data() + end || !std::isfinite(value)) {
+  if (result.ec != std::errc() || result.ptr != line.data() + end || std::abs(value) > kLargest) {
     throw WordError{fmt::format("number out of range in '{}'", line.substr(from, end - from))};
   }
   at = end;

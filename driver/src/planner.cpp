@@ -75,7 +75,7 @@ void Planner::check(const Motion& motion, const Position& from) const {
   const ExactArc arc = exact_arc(motion, from);
   const double radius = std::max(arc.radius_start, arc.radius_end);
   const double scale = std::max(machine_.axes[motion.axis_x].steps_per_mm, machine_.axes[motion.axis_y].steps_per_mm);
-  if (radius * scale > kMaxRadius) {
+  if (!(radius * scale <= kMaxRadius)) {
     throw ProgramError(program_.file, motion.line, fmt::format("an arc of radius {} mm is too large", radius));
   }
   const double quarter = std::acos(0.0);

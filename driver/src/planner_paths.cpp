@@ -31,14 +31,14 @@ struct PathLimits {
 
 // Pulses/s that an axis may make: its own limit, and what its pulse shape allows.
 double axis_velocity(const PathContext& context, std::size_t axis) {
-  const AxisSettings& settings = context.machine.axes[axis];
+  const MachineAxis& settings = context.machine.axes[axis];
   const double clocks = std::max<double>(1, clocks_from_ns(settings.step_length_ns, context.clock_hz)) +
                         std::max<double>(1, clocks_from_ns(settings.step_space_ns, context.clock_hz));
   return std::min(settings.max_velocity * settings.steps_per_mm, kShaperShare * context.clock_hz / clocks);
 }
 
 double axis_acceleration(const PathContext& context, std::size_t axis) {
-  const AxisSettings& settings = context.machine.axes[axis];
+  const MachineAxis& settings = context.machine.axes[axis];
   return settings.max_acceleration * settings.steps_per_mm;
 }
 
@@ -83,7 +83,7 @@ Line line_command(const PulsePosition& from, const PulsePosition& to, std::uint6
 double displacement(const PathContext& context, const PlannedSegment& segment, std::string_view letters) {
   double sum = 0;
   for (std::size_t axis = 0; axis < context.machine.axes.size(); ++axis) {
-    const AxisSettings& settings = context.machine.axes[axis];
+    const MachineAxis& settings = context.machine.axes[axis];
     if (letters.find(settings.letter) != std::string_view::npos) {
       const double mm = static_cast<double>(segment.end[axis] - segment.start[axis]) / settings.steps_per_mm;
       sum += mm * mm;

@@ -144,6 +144,7 @@ TEST(Arc, RandomArcsEndExactlyWithinTheirError) {
   Extremes large;
   expect_random_arcs(2, 60000, 4, 500, large);
   expect_random_arcs(3, 10000, 500, 10000, large);
+  expect_random_arcs(4, 4, 100000, 1000000, large);
   RecordProperty("small", fmt::format("ring {:.4f} mean {:.4f} real {:.4f}", small.ring, small.mean, small.real));
   RecordProperty("large", fmt::format("ring {:.4f} mean {:.4f} real {:.4f}", large.ring, large.mean, large.real));
   EXPECT_LT(small.ring, 1.2);

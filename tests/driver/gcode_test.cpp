@@ -70,6 +70,13 @@ TEST(Gcode, RefusesMalformedWords) {
   EXPECT_EQ(refusal(std::string("G0\0X1", 5)), "1: unexpected byte 0x00");
 }
 
+TEST(Gcode, RefusesNumbersBeyondReason) {
+  EXPECT_EQ(refusal("G0 X1000000000000"), "accepted");
+  EXPECT_EQ(refusal("G0 X1000000000001"), "1: number out of range in 'X1000000000001'");
+  EXPECT_EQ(refusal("G1 X1 F0.0000001"), "1: feed is too small");
+  EXPECT_EQ(refusal("G93 G1 X1 F0.0000001"), "1: feed is too small");
+}
+
 TEST(Gcode, RefusesWordsItDoesNotKnow) {
   for (const char* word : {"G5",   "G10",   "G30", "G33", "G38.2", "G41",  "G43", "G28.1", "G59.1", "G61.1",
                            "G81",  "G92.2", "G95", "G96", "G99",   "G1.5", "M6",  "M19",   "M48",   "M98",

@@ -53,7 +53,7 @@ TEST(Machine, DefaultHasFourAxesAtEightySteps) {
   EXPECT_EQ(machine.clock_hz, 100'000'000U);
   ASSERT_EQ(machine.axes.size(), 4U);
   std::string letters;
-  for (const AxisSettings& axis : machine.axes) {
+  for (const MachineAxis& axis : machine.axes) {
     letters += axis.letter;
     EXPECT_EQ(axis.steps_per_mm, 80);
     EXPECT_EQ(axis.max_acceleration, 1000);

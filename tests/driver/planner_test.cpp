@@ -282,6 +282,37 @@ TEST(Planner, TinyAndHugeArcsEndWhereTheyShould) {
   }
 }
 
+// Whatever stands in a program, it is refused with its line or planned soundly.
+TEST(Planner, RandomTextIsRefusedOrPlanned) {
+  std::size_t planned = 0;
+  const std::vector<std::string> words = {
+      "G0",   "G1",  "G2",  "G3",  "G17",  "G18",   "G19", "G20",   "G21",        "G28",   "G53",      "G55", "G80",
+      "G90",  "G91", "G92", "G93", "G94",  "G90.1", "M82", "M83",   "X1",         "X-2.5", "Y3",       "Y0",  "Z1",
+      "E2",   "I1",  "J-1", "K1",  "R2",   "F100",  "F0",  "P0.01", "G4",         "/",     "%",        "(x)", ";",
+      "X1e9", "F1",  "I0",  "M2",  "I9e1", "X.001", "N5",  "J2",    "X999999999", "R-3",   "R99999999"};
+  EXPECT_TRUE(rc::check("random programs", [&] {
+    std::string text = "F500 G1\n";
+    const int lines = *rc::gen::inRange(1, 8);
+    for (int line = 0; line < lines; ++line) {
+      const int count = *rc::gen::inRange(1, 4);
+      for (int word = 0; word < count; ++word) {
+        text += *rc::gen::elementOf(words) + " ";
+      }
+      text += "\n";
+    }
+    try {
+      for (const PlannedSegment& segment : plan(text)) {
+        const bool moves = segment.kind != MotionKind::kEnd && segment.kind != MotionKind::kDwell;
+        RC_ASSERT(!moves || feed_ticks(segment) == path_ticks(segment));
+        planned += moves ? 1U : 0U;
+      }
+    } catch (const ProgramError& error) {
+      RC_ASSERT(error.line() >= 1U);
+    }
+  }));
+  EXPECT_GT(planned, 20U);
+}
+
 TEST(Planner, RandomLinesAreSound) {
   EXPECT_TRUE(rc::check("lines", [] {
     const auto coordinate = [] { return *rc::gen::inRange(-200000, 200000) / std::pow(10, *rc::gen::inRange(1, 5)); };
