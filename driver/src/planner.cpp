@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kMaxDwell = (std::uint64_t{1} << 40) - 1;  // clocks of one command
 constexpr double kMaxDwellTotal = 0x1p48;                          // clocks of one G4
-constexpr double kMaxRadius = 0x1p48;                              // pulses; the centre in 1/256 pulses fits 64 bits
+constexpr double kMaxRadius = 0x1p44;                              // pulses; the centre in 1/256 pulses fits 64 bits
 
 PulsePosition rounded(const Machine& machine, const Position& position) {
   PulsePosition pulses{};
