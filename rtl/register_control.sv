@@ -20,9 +20,12 @@ module register_control (
     output logic      [31:0] word_o,
     // judgement
     input  wire logic [ 2:0] kind_i,
+    input  wire logic        stream_i,
+    input  wire logic        start_i,
+    input  wire logic        good_i,
     input  wire logic [ 7:0] reason_i,
     input  wire logic        walking_i,
-    // action: high in the one clock in which it takes effect
+    // a write takes effect while act_o is high, together with its ack_o
     output logic             act_o,
     output logic             refuse_o,
     output logic      [ 7:0] refuse_reason_o,
@@ -68,12 +71,9 @@ module register_control (
     end
   end
 
-  logic good;
   logic finish;
   logic failed;
   logic word_refused_q;
-
-  assign good = reason_i == card_map_pkg::REFUSE_NONE;
 
   always_comb begin
     state_d = state_q;
@@ -84,12 +84,12 @@ module register_control (
       DECODE: state_d = WAIT;
       WAIT: if (!walking_i || kind_i == card_map_pkg::ACCESS_LIVE) state_d = ACT;
       ACT: begin
-        if (!good) begin
+        if (!good_i) begin
           finish = 1'b1;
           failed = 1'b1;
         end else if (!write_q) state_d = RESPOND;
-        else if (address_q == card_map_pkg::ADDR_STREAM) state_d = SEND;
-        else if (address_q == card_map_pkg::ADDR_START) state_d = LOAD;
+        else if (stream_i) state_d = SEND;
+        else if (start_i) state_d = LOAD;
         else finish = 1'b1;
       end
       RESPOND: finish = 1'b1;
@@ -108,6 +108,7 @@ module register_control (
     if (finish) state_d = IDLE;
   end
 
+  logic act_q;
   logic ack_q;
   logic error_q;
   logic stream_write_q;
@@ -115,6 +116,7 @@ module register_control (
 
   always_ff @(posedge clk_i) begin
     state_q <= state_d;
+    act_q <= state_q == ACT && finish && !failed;
     ack_q <= finish;
     error_q <= finish && failed;
     word_refused_q <= state_q == JUDGE && (word_refused_q || door_refuse_i);
@@ -122,6 +124,7 @@ module register_control (
     start_q <= state_q == ACT && state_d == LOAD;
     if (rst_i) begin
       state_q <= IDLE;
+      act_q <= 1'b0;
       ack_q <= 1'b0;
       error_q <= 1'b0;
       stream_write_q <= 1'b0;
@@ -136,8 +139,8 @@ module register_control (
   assign partial_o = partial_q;
   assign address_o = address_q;
   assign word_o = word_q;
-  assign act_o = state_q == ACT && good && write_q;
-  assign refuse_o = state_q == ACT ? !good : state_q == LOAD && start_done_i && start_error_i;
+  assign act_o = act_q;
+  assign refuse_o = state_q == ACT ? !good_i : state_q == LOAD && start_done_i && start_error_i;
   assign refuse_reason_o = state_q == ACT ? reason_i : start_reason_i;
   assign stream_write_o = stream_write_q;
   assign start_o = start_q;

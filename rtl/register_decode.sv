@@ -1,7 +1,7 @@
 `default_nettype none
 
-// Judges an access by the register map. The access must stand still: kind_o is valid one clock after it stands,
-// reason_o two clocks after. direct_i is looked at in the second of them.
+// Judges an access by the register map. The access must stand still: kind_o and what the access aims at are valid one
+// clock after it stands, reason_o and good_o two clocks after. direct_i is looked at in the second of them.
 module register_decode #(
     parameter int Axes = 4
 ) (
@@ -12,6 +12,12 @@ module register_decode #(
     input  wire logic [31:0] data_i,
     input  wire logic        direct_i,
     output logic      [ 2:0] kind_o,
+    output logic             control_o,
+    output logic             fault_o,
+    output logic             refusal_o,
+    output logic             stream_o,
+    output logic             start_o,
+    output logic             good_o,
     output logic      [ 7:0] reason_o
 );
 
@@ -40,14 +46,22 @@ module register_decode #(
   logic       absent_q;
   logic       stray_bits_q;
   logic       in_limits_q;
+  logic       control_q;
+  logic       fault_q;
+  logic       refusal_q;
   logic       stream_q;
+  logic       start_q;
 
   always_ff @(posedge clk_i) begin
     kind_q <= card_map_pkg::register_access(word);
     absent_q <= absent_d;
     stray_bits_q <= (data_i & ~mask) != 32'd0;
     in_limits_q <= card_map_pkg::register_in_limits(word, data_i);
+    control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
+    fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
+    refusal_q <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data_i != 32'd0;
     stream_q <= word == card_map_pkg::ADDR_STREAM[11:2];
+    start_q <= word == card_map_pkg::ADDR_START[11:2];
   end
 
   logic       read_only;
@@ -74,10 +88,20 @@ module register_decode #(
   end
 
   logic [7:0] reason_q;
+  logic       good_q;
 
-  always_ff @(posedge clk_i) reason_q <= reason_d;
+  always_ff @(posedge clk_i) begin
+    reason_q <= reason_d;
+    good_q <= reason_d == card_map_pkg::REFUSE_NONE;
+  end
 
   assign kind_o = kind_q;
+  assign control_o = control_q;
+  assign fault_o = fault_q;
+  assign refusal_o = refusal_q;
+  assign stream_o = stream_q;
+  assign start_o = start_q;
+  assign good_o = good_q;
   assign reason_o = reason_q;
 
 endmodule

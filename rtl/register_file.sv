@@ -72,6 +72,12 @@ module register_file #(
   logic [11:0] address;
   logic [31:0] word;
   logic [ 2:0] kind;
+  logic        control;
+  logic        fault_write;
+  logic        refusal_write;
+  logic        stream_write;
+  logic        start_write;
+  logic        good;
   logic [ 7:0] reason;
   logic        walking;
   logic        act;
@@ -95,6 +101,9 @@ module register_file #(
       .address_o(address),
       .word_o(word),
       .kind_i(kind),
+      .stream_i(stream_write),
+      .start_i(start_write),
+      .good_i(good),
       .reason_i(reason),
       .walking_i(walking),
       .act_o(act),
@@ -119,6 +128,12 @@ module register_file #(
       .data_i(word),
       .direct_i,
       .kind_o(kind),
+      .control_o(control),
+      .fault_o(fault_write),
+      .refusal_o(refusal_write),
+      .stream_o(stream_write),
+      .start_o(start_write),
+      .good_o(good),
       .reason_o(reason)
   );
 
@@ -127,18 +142,16 @@ module register_file #(
   assign start_mask_o = word[7:0];
 
   // CONTROL: single pulses.
-  logic control;
-  logic snapshot;
+  logic snapshot_q;
   logic abort_q;
   logic flush_q;
 
-  assign control = act && address == card_map_pkg::ADDR_CONTROL;
-  assign snapshot = control && word[card_map_pkg::BIT_CONTROL_SNAPSHOT];
-
   always_ff @(posedge clk_i) begin
-    abort_q <= control && word[card_map_pkg::BIT_CONTROL_ABORT];
-    flush_q <= control && word[card_map_pkg::BIT_CONTROL_FLUSH];
+    snapshot_q <= act && control && word[card_map_pkg::BIT_CONTROL_SNAPSHOT];
+    abort_q <= act && control && word[card_map_pkg::BIT_CONTROL_ABORT];
+    flush_q <= act && control && word[card_map_pkg::BIT_CONTROL_FLUSH];
     if (rst_i) begin
+      snapshot_q <= 1'b0;
       abort_q <= 1'b0;
       flush_q <= 1'b0;
     end
@@ -155,8 +168,8 @@ module register_file #(
       .clk_i,
       .rst_i,
       .fault_i,
-      .clear_fault_i(act && address == card_map_pkg::ADDR_FAULT ? word[9:0] : 10'd0),
-      .clear_refusal_i(act && address == card_map_pkg::ADDR_REFUSAL && word != 32'd0),
+      .clear_fault_i(act && fault_write ? word[9:0] : 10'd0),
+      .clear_refusal_i(act && refusal_write),
       .refuse_i(refuse),
       .reason_i(refuse_reason),
       .address_i(address),
@@ -243,7 +256,7 @@ module register_file #(
       .write_i(set),
       .write_address_i(address[9:2]),
       .write_data_i(word),
-      .snapshot_i(snapshot),
+      .snapshot_i(snapshot_q),
       .position_i,
       .rate_i,
       .ratio_i,

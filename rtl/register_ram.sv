@@ -53,14 +53,14 @@ module register_ram #(
     end
   end
 
-  // What the snapshot took, shifted down a word a clock.
+  // What the snapshot took, shifted down a word a clock. next_q runs on when nothing is walked, so a snapshot must go
+  // before hold_chain.
   logic [32*ChainWords-1:0] chain_q;
 
   always_ff @(posedge clk_i) begin
-    chain_q <= {32'd0, chain_q[32*ChainWords-1:32]};
-    if (snapshot_i) chain_q <= {22'd0, status_i, 16'd0, running_i, 15'd0, ratio_i, rate_i, position_i};
     // The chain shifts from the clock behind the time's high word on.
-    if (hold_chain) chain_q <= chain_q;
+    if (snapshot_i) chain_q <= {22'd0, status_i, 16'd0, running_i, 15'd0, ratio_i, rate_i, position_i};
+    else if (!hold_chain) chain_q <= {32'd0, chain_q[32*ChainWords-1:32]};
   end
 
   // The walks. next_q is the address to write next.

@@ -50,6 +50,8 @@ void RegisterFile::clock(const Inputs& in) {
   step_loader(in);
   clearing_ = {out_.clear_fault, clearing_[0]};
   clear_pulses();
+  if (snapshot_pending_) take_snapshot(in);
+  if (write_pending_) effect();
   step_access(in);
   settle_refusal(in, access_address);
   out_.fault = fault;
@@ -60,8 +62,8 @@ void RegisterFile::clock(const Inputs& in) {
 
 bool RegisterFile::quiet(const Inputs& in) const {
   const bool pulses = out_.ack || out_.stream_write || out_.abort || out_.flush || out_.start || out_.clear_fault != 0;
-  const bool underway =
-      walk_ != 0 || clearing_[0] != 0 || clearing_[1] != 0 || loading_ || loader_read_.valid || out_.loader_valid;
+  const bool underway = snapshot_pending_ || write_pending_ || walk_ != 0 || clearing_[0] != 0 || clearing_[1] != 0 ||
+                        loading_ || loader_read_.valid || out_.loader_valid;
   const bool events = in.request || in.door_refuse || (in.fault & ~out_.fault) != 0;
   return stage_ == Stage::Idle && !pulses && !underway && !events && out_.irq == interrupt(in);
 }
@@ -203,18 +205,27 @@ void RegisterFile::act(const Inputs& in) {
     stage_ = Stage::Load;
     return;
   }
-  if (access == Access::Setting) stored(address_) = word_;
-  if (address_ == reg::kControl) control(in);
-  if (address_ == reg::kFault) out_.clear_fault = word_;
-  if (address_ == reg::kRefusal) clear_refusal_ = word_ != 0;
-  show_settings();
+  write_pending_ = true;
   finish(false);
 }
 
-void RegisterFile::control(const Inputs& in) {
-  out_.abort = (word_ & field::kControlAbort) != 0;
-  out_.flush = (word_ & field::kControlFlush) != 0;
-  if ((word_ & field::kControlSnapshot) == 0) return;
+void RegisterFile::effect() {
+  write_pending_ = false;
+  if (slot_.entry->access == Access::Setting) {
+    stored(address_) = word_;
+    show_settings();
+  }
+  if (address_ == reg::kControl) {
+    out_.abort = (word_ & field::kControlAbort) != 0;
+    out_.flush = (word_ & field::kControlFlush) != 0;
+    snapshot_pending_ = (word_ & field::kControlSnapshot) != 0;
+  }
+  if (address_ == reg::kFault) out_.clear_fault = word_;
+  if (address_ == reg::kRefusal) clear_refusal_ = word_ != 0;
+}
+
+void RegisterFile::take_snapshot(const Inputs& in) {
+  snapshot_pending_ = false;
   stored(reg::kSnapTimeLo) = static_cast<std::uint32_t>(time_);
   stored(reg::kSnapTimeHi) = static_cast<std::uint32_t>(time_ >> 32);
   stored(reg::kSnapStatus) = status(in);

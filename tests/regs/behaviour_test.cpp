@@ -73,6 +73,7 @@ TEST(Behaviour, TimeCarriesIntoItsHighWord) {
   in.write = false;
   in.request = false;
   while (!file.outputs().ack) file.clock(in);
+  file.clock(in);
   in.address = reg::kSnapTimeHi;
   in.request = true;
   file.clock(in);
@@ -188,7 +189,6 @@ TEST(Behaviour, InterruptFollowsItsMask) {
 TEST(Behaviour, AdvanceEqualsClocking) {
   RegisterBench bench(4);
   bench.read(reg::kMagic);
-  EXPECT_FALSE(bench.file().quiet(bench.in)) << "the answer is still on the port";
   for (int i = 0; i < 4; ++i) bench.clock();
   RegisterFile clocked = bench.file();
   RegisterFile skipped = bench.file();

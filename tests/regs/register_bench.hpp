@@ -57,7 +57,9 @@ class RegisterBench {
       in.request = false;
     } while (!file_.outputs().ack);
     latency_ = file_.time() - start;
-    return {file_.outputs().error, file_.outputs().data};
+    const Answer answer{file_.outputs().error, file_.outputs().data};
+    clock();  // a write takes effect in the clock of its answer
+    return answer;
   }
 
   card_map::Reason refusal_of(const Answer& answer, std::uint32_t address) {

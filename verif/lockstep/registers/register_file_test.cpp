@@ -63,7 +63,9 @@ class Bench {
     clock();
     in_.request = false;
     while (!model_.outputs().ack) clock();
-    return model_.outputs().data;
+    const std::uint32_t answer = model_.outputs().data;
+    clock();
+    return answer;
   }
 
   void random_clock() {
@@ -136,8 +138,11 @@ class Bench {
   }
 
   void random_access() {
-    if (model_.outputs().ack) outstanding_ = false;
     in_.request = false;
+    if (model_.outputs().ack) {
+      outstanding_ = false;
+      return;
+    }
     if (outstanding_ || chance(3)) return;
     outstanding_ = true;
     in_.request = true;

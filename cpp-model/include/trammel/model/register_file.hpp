@@ -22,7 +22,7 @@ class RegisterFile {
   };
 
   struct Inputs {
-    // the access; `request` for one clock, the next only after `ack`
+    // the access; `request` for one clock, the next at the earliest in the clock behind `ack`
     bool request = false;
     bool write = false;
     bool partial = false;
@@ -109,7 +109,8 @@ class RegisterFile {
   void step_access(const Inputs& in);
   void begin(const Inputs& in);
   void act(const Inputs& in);
-  void control(const Inputs& in);
+  void effect();
+  void take_snapshot(const Inputs& in);
   void finish(bool error, std::uint32_t data = 0);
   void settle_refusal(const Inputs& in, std::uint32_t access_address);
   void step_loader(const Inputs& in);
@@ -133,6 +134,8 @@ class RegisterFile {
   bool word_refused_ = false;     // by the door
   std::uint8_t own_refusal_ = 0;  // reason of a refusal in this clock that is not the door's
   bool clear_refusal_ = false;
+  bool write_pending_ = false;  // a write was answered and takes effect in this clock
+  bool snapshot_pending_ = false;
 
   std::array<std::uint32_t, 256> stored_{};  // whatever reads back: constants, settings, the last snapshot
   std::uint32_t walk_ = 0;                   // clocks for which the walker still has the RAM
