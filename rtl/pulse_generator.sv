@@ -45,29 +45,30 @@ module pulse_generator #(
   assign preset_high = swap_i & mirror_i & next_q[41];
 
   always_ff @(posedge clk_i) begin
-    carry_q <= low_sum[20];
+    carry_q <= tick_i & low_sum[20];
     if (swap_i) low_increment_q <= next_q[19:0];
     if (swap_i & ~preset_high) low_q <= '0;
     else if (swap_i | tick_i) low_q <= low_sum[19:0] | {20{preset_high}};
   end
 
-  // High half, one clock later: bit 20 of its sum is a step (carry or borrow), bit 21 the sign of it.
+  // High half, one clock later. Its increment's two top bits are extension: where a carry differs from the lower, bit 20
+  // of the sum is 1, which is a step forward or back, and the sign of the sum is that of the increment.
   logic [19:0] high_q;
   logic [21:0] high_increment_q;
-  logic [21:0] high_sum;
+  logic [20:0] high_sum;
   logic        tick_q;
   logic        swap_q;
   logic        preset_high_q;
   logic        carried_q;
   logic        backwards_q;
-  assign high_sum = {2'b00, high_q} + high_increment_q + {21'b0, carry_q};
+  assign high_sum = {1'b0, high_q} + {1'b0, high_increment_q[19:0]} + {20'b0, carry_q};
 
   always_ff @(posedge clk_i) begin
     tick_q <= tick_i;
     swap_q <= swap_i;
     preset_high_q <= preset_high;
-    carried_q <= tick_q & high_sum[20];
-    backwards_q <= high_sum[21];
+    carried_q <= tick_q & (high_sum[20] ^ high_increment_q[20]);
+    backwards_q <= high_increment_q[21];
     if (swap_q) high_increment_q <= next_q[41:20];
     if (swap_q & ~preset_high_q) high_q <= 20'h80000;
     else if (swap_q) high_q <= 20'h7FFFF;

@@ -45,7 +45,7 @@ module step_count #(
   always_ff @(posedge clk_i) begin
     if (load_i | count_step) fast_q <= fast_next;
     if (load_i | borrow_q) slow_q <= slow_next;
-    slow_zero_q <= slow_full;
+    slow_zero_q <= slow_full & ~load_i;
     borrow_q <= count_step & (fast_q == 4'b1111);
 
     if (arm_i) live_o <= counted_i;

@@ -1,10 +1,10 @@
 // Step shaper of one axis: turns one-clock steps into pulses at the pins that keep the drive's times, and counts the
 // position by what the pins show.
 //
-// One timer serves all four times; a phase whose time is t lasts t + 2 clocks, of which a pulse shows max(1, t). So a
-// pulse is high for exactly max(1, length); low for space + 4 clocks between pulses at the highest rate; DIR
-// changes hold + 2 clocks or more behind the space, and is set up for setup + 2. Pins and position are one register
-// behind the phases.
+// One timer serves all four times; a phase whose time is t lasts t + 3 clocks, of which a pulse shows max(1, t), from
+// the third on. So a pulse is high for exactly max(1, length); low for space + 6 clocks between pulses at the highest
+// rate (5 for length 0); DIR changes hold + 3 clocks or more behind the space, and is set up for setup + 5. Pins and
+// position are one register behind the phases.
 `default_nettype none
 
 module step_shaper (
@@ -50,49 +50,59 @@ module step_shaper (
   logic        other_q;  // a step waits that goes the other way
   logic        go;       // a pulse begins
   logic        turn;     // DIR changes
-  logic        load;
-  logic [15:0] pulse_time_q;  // the times that may follow, chosen a clock ahead: no phase is shorter than 2 clocks
-  logic [15:0] dir_time_q;
-  logic [15:0] next_time;
-  logic [15:0] timer_q;
-  logic [15:0] timer_sum;
-  logic        run_out;
+  logic        load;     // a phase begins
   logic        expired_q;
   assign same = waiting_q[0] & (direction_q[0] == dir_q);
   assign go = (phase_q == REST && same_q) || (phase_q == SPACE && same_q && expired_q) || (phase_q == SETUP && expired_q);
   assign turn = phase_q == REST && other_q && expired_q;
-  assign load = go | turn | (phase_q[1] & expired_q);
+  assign load = (phase_q == REST) ? same_q | (other_q & expired_q) : expired_q;
 
+  // The phase behind this one, if it ends now.
   always_comb begin
-    phase_d = phase_q;
-    if (go) phase_d = HIGH;
-    else if (turn) phase_d = SETUP;
-    else if (phase_q == HIGH && expired_q) phase_d = SPACE;
-    else if (phase_q == SPACE && expired_q) phase_d = REST;
+    case (phase_q)
+      REST: phase_d = same_q ? HIGH : SETUP;
+      SETUP: phase_d = HIGH;
+      HIGH: phase_d = SPACE;
+      default: phase_d = same_q ? HIGH : REST;
+    endcase
   end
 
-  // The timer counts up from the inverted time to all ones. The added load enable changes nothing (a load overrides
-  // the sum); it lets table and carry share an input.
-  assign next_time = (phase_q == HIGH || phase_q == SETUP || same_q) ? pulse_time_q : dir_time_q;
-  assign timer_sum = timer_q + {16{load}} + 16'd1;
-  assign run_out = &timer_q;
-
   always_ff @(posedge clk_i) begin
-    phase_q <= phase_d;
-    pulse_time_q <= (phase_q == HIGH) ? step_space_i : step_length_i;
-    dir_time_q <= (phase_q == REST) ? dir_setup_i : dir_hold_i;
+    if (load | rst_i) phase_q <= phase_d;
     same_q <= same;
     other_q <= waiting_q[0] & ~same;
-    timer_q <= load ? ~next_time : timer_sum;
-    expired_q <= ~load & (expired_q | run_out);
     if (turn) dir_q <= ~dir_q;
     if (rst_i) begin
       phase_q <= REST;
-      expired_q <= 1'b1;
       same_q <= 1'b0;
       other_q <= 1'b0;
       dir_q <= 1'b0;
     end
+  end
+
+  // The timer is zeroed as the phase begins, takes the time a clock later and counts down. Zero plus a time is a load,
+  // plus ones a count: so one adder input serves both, and a second time is merged in the same 4-input table
+  // (it needs no carry: in the clock of a load there is none). The adder's carry says that the timer is not zero.
+  logic [15:0] pulse_time_q;  // all ones but in the first clock of a phase
+  logic [15:0] dir_time_q;
+  logic        take_pulse_time;
+  logic [15:0] timer_q;
+  logic [15:0] carry_sum;
+  logic        nonzero;
+  logic        loading_q;
+  assign take_pulse_time = phase_q == HIGH || phase_q == SETUP || same_q;
+  assign {nonzero, carry_sum} = {1'b0, timer_q} + {1'b0, pulse_time_q};
+
+  always_ff @(posedge clk_i) begin
+    pulse_time_q <= (phase_q == HIGH) ? step_space_i : step_length_i;
+    if (!take_pulse_time) pulse_time_q <= '0;
+    if (!load) pulse_time_q <= '1;
+    dir_time_q <= take_pulse_time ? '0 : (phase_q == REST) ? dir_setup_i : dir_hold_i;
+    timer_q <= carry_sum | (dir_time_q & ~pulse_time_q);
+    if (load) timer_q <= '0;
+    loading_q <= load;
+    expired_q <= ~load & (expired_q | (~loading_q & ~nonzero));
+    if (rst_i) expired_q <= 1'b1;
   end
 
   // A step that finds all places taken is dropped, which is the fault.
@@ -119,22 +129,30 @@ module step_shaper (
   end
 
   // Pins. In quadrature they are the position's two low bits, as they will be, in Gray code (first pin leads forwards).
+  logic       go_q;
+  logic       settled_q;
   logic       begun_q;  // first clock of the pulse
-  logic       pulse;
+  logic       pulse_q;
   logic [1:0] place;
-  assign pulse = phase_q == HIGH && (begun_q || !(run_out || expired_q));
   assign place = begun_q ? position_o[1:0] + {dir_q, 1'b1} : position_o[1:0];
 
   always_ff @(posedge clk_i) begin
-    begun_q <= go & ~rst_i;
+    go_q <= go;
+    settled_q <= go_q;
+    begun_q <= settled_q;
+    pulse_q <= settled_q | (pulse_q & nonzero & ~expired_q);
     if (begun_q) position_o <= position_o + {{31{dir_q}}, 1'b1};
     busy_o <= step_i | waiting_q[0] | (phase_q != REST) | ~expired_q;
     case (mode_i[1:0])
-      2'd0: {dir_o, step_o} <= mode_i[3:2] ^ {dir_q, pulse};
-      2'd1: {dir_o, step_o} <= mode_i[3:2] ^ {pulse & dir_q, pulse & ~dir_q};
+      2'd0: {dir_o, step_o} <= mode_i[3:2] ^ {dir_q, pulse_q};
+      2'd1: {dir_o, step_o} <= mode_i[3:2] ^ {pulse_q & dir_q, pulse_q & ~dir_q};
       default: {dir_o, step_o} <= mode_i[3:2] ^ {place[1], place[1] ^ place[0]};
     endcase
     if (rst_i) begin
+      go_q <= 1'b0;
+      settled_q <= 1'b0;
+      begun_q <= 1'b0;
+      pulse_q <= 1'b0;
       position_o <= '0;
       busy_o <= 1'b0;
       {dir_o, step_o} <= mode_i[3:2];

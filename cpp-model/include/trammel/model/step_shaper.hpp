@@ -1,9 +1,10 @@
 // Golden model of the step shaper: pulses with the drive's times at the pins, and the position that the pins show.
 //
-// Rules: a pulse is high for max(1, length) clocks. The space begins 2 clocks behind the pulse's end (1 where
-// length is 0) and lasts space + 2; then the next pulse begins, or else the direction's hold, hold + 2 clocks (a
-// waiting step in DIR's direction cuts it short). Behind the hold DIR may turn, setup + 2 clocks before the pulse it
-// turns for. Pins are one clock behind all that. Not thread-safe; faults are reported by outputs().fault.
+// Rules: the phases pulse, space, hold and setup last their time + 3 clocks. The pin is high for max(1, length) of
+// them, from the third clock of the pulse's phase on. Behind the space the next pulse's phase begins, or else the
+// direction's hold (a waiting step in DIR's direction cuts it short). Behind the hold DIR may turn, and the setup
+// begins, then the pulse it turned for. Pins are one clock behind all that. Not thread-safe; faults are reported by
+// outputs().fault.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +37,6 @@ class StepShaper {
   // One rising edge.
   void clock(const Inputs& in) {
     if (!quiet_ || in.step || in.clear_fault || in.mode != mode_) clock_busy(in);
-    times_ = {in.step_length, in.step_space, in.dir_setup, in.dir_hold};
   }
 
   const Outputs& outputs() const { return out_; }
@@ -50,7 +50,7 @@ class StepShaper {
   // changes (hold_tick may come in them unless waiting()). A lower bound; 2^63 when quiet().
   std::uint64_t idle_clocks() const {
     if (quiet_) return std::uint64_t{1} << 63;
-    if (begun_ || waiting_ != 0 || phase_ == Phase::kSetup || left_ < 4) return 0;
+    if (lead_ != 0 || waiting_ != 0 || phase_ == Phase::kSetup || left_ < 4) return 0;
     return left_ - 3;
   }
 
@@ -60,30 +60,27 @@ class StepShaper {
   }
 
  private:
-  struct Times {
-    std::uint16_t length, space, setup, hold;
-  };
   enum class Phase : std::uint8_t { kRest, kSetup, kHigh, kSpace };
 
   void clock_busy(const Inputs& in) {
     const bool expired = left_ == 0;
     show(in);
-    begun_ = false;
+    if (lead_ != 0) --lead_;
     const bool go = seen_same_ && (phase_ == Phase::kRest || (phase_ == Phase::kSpace && expired));
     const bool head_same = waiting_ != 0 && head_back() == back_;
     const bool head_other = waiting_ != 0 && !head_same;
     bool served = false;
     if (go || (phase_ == Phase::kSetup && expired)) {
-      enter(Phase::kHigh, times_.length);
-      begun_ = true;
+      enter(Phase::kHigh, in.step_length);
+      lead_ = 3;
       served = true;
     } else if (phase_ == Phase::kRest && seen_other_ && expired) {
-      enter(Phase::kSetup, times_.setup);
+      enter(Phase::kSetup, in.dir_setup);
       back_ = !back_;
     } else if (phase_ == Phase::kHigh && expired) {
-      enter(Phase::kSpace, times_.space);
+      enter(Phase::kSpace, in.step_space);
     } else if (phase_ == Phase::kSpace && expired) {
-      enter(Phase::kRest, times_.hold);
+      enter(Phase::kRest, in.dir_hold);
     } else if (left_ != 0) {
       --left_;
     }
@@ -94,10 +91,10 @@ class StepShaper {
     quiet_ = !out_.busy;
   }
 
-  // A phase of t takes t + 2 clocks.
+  // A phase of t takes t + 3 clocks.
   void enter(Phase phase, std::uint16_t time) {
     phase_ = phase;
-    left_ = std::uint32_t{time} + 1;
+    left_ = std::uint32_t{time} + 2;
   }
 
   bool head_back() const { return (backs_ >> (waiting_ - 1) & 1) != 0; }
@@ -123,9 +120,10 @@ class StepShaper {
 
   // Pins, position and busy follow the state before this clock.
   void show(const Inputs& in) {
-    if (begun_) out_.position += back_ ? ~std::uint32_t{0} : 1U;
-    // The last two clocks of the pulse's phase are low already.
-    const bool pulse = phase_ == Phase::kHigh && (begun_ || left_ >= 2);
+    const bool begins = lead_ == 1;
+    if (begins) out_.position += back_ ? ~std::uint32_t{0} : 1U;
+    // The first two clocks of the pulse's phase are low still, the last is low already.
+    const bool pulse = phase_ == Phase::kHigh && (begins || (lead_ == 0 && left_ != 0));
     bool first = pulse;
     bool second = back_;
     if ((in.mode & 3) == 1) {
@@ -144,7 +142,7 @@ class StepShaper {
   Phase phase_ = Phase::kRest;
   std::uint32_t left_ = 0;  // clocks of the phase behind this one
   bool back_ = false;       // DIR
-  bool begun_ = false;      // the pulse began with the last edge
+  unsigned lead_ = 0;       // 3 as a pulse's phase begins, 1 in the pulse's first clock
   bool seen_same_ = false;  // what was waiting a clock ago
   bool seen_other_ = false;
   bool waited_ = false;
@@ -152,7 +150,6 @@ class StepShaper {
   std::uint8_t waiting_ = 0;
   std::uint8_t backs_ = 0;
   std::uint8_t mode_ = 0;
-  Times times_{};  // the times of a clock ago: a phase takes the one that stood before it began
   Outputs out_;
 };
 
