@@ -194,7 +194,7 @@ TEST(StepShaper, AdvancingEqualsClocking) {
   StepShaper::Inputs in = times(40, 30, 20, 60);
   std::uint64_t skipped = 0;
   for (int n = 0; n < 100'000; ++n) {
-    in.step = random() % 40 == 0;
+    in.step = random() % 80 == 0;
     in.dir = random() % 2 == 0;
     in.hold_tick = random() % 20 == 0;
     in.clear_fault = random() % 8 == 0;
