@@ -51,8 +51,8 @@ module pulse_generator #(
     else if (swap_i | tick_i) low_q <= low_sum[19:0] | {20{preset_high}};
   end
 
-  // High half, one clock later. Its increment's two top bits are extension: where a carry differs from the lower, bit 20
-  // of the sum is 1, which is a step forward or back, and the sign of the sum is that of the increment.
+  // High half, one clock later. A carry that differs from bit 20 of the increment is a step (bit 20 of the whole sum), and
+  // goes the way of the increment's sign. The carries are gated by the tick: then a carry ends in a table, not in a wire.
   logic [19:0] high_q;
   logic [21:0] high_increment_q;
   logic [20:0] high_sum;

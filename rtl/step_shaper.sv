@@ -53,7 +53,7 @@ module step_shaper (
   logic        load;     // a phase begins
   logic        expired_q;
   assign same = waiting_q[0] & (direction_q[0] == dir_q);
-  assign go = (phase_q == REST && same_q) || (phase_q == SPACE && same_q && expired_q) || (phase_q == SETUP && expired_q);
+  assign go = (same_q && phase_q == REST) || (expired_q && (phase_q == SETUP || (phase_q == SPACE && same_q)));
   assign turn = phase_q == REST && other_q && expired_q;
   assign load = (phase_q == REST) ? same_q | (other_q & expired_q) : expired_q;
 
@@ -68,7 +68,7 @@ module step_shaper (
   end
 
   always_ff @(posedge clk_i) begin
-    if (load | rst_i) phase_q <= phase_d;
+    if (load) phase_q <= phase_d;
     same_q <= same;
     other_q <= waiting_q[0] & ~same;
     if (turn) dir_q <= ~dir_q;
@@ -87,18 +87,18 @@ module step_shaper (
   logic [15:0] dir_time_q;
   logic        take_pulse_time;
   logic [15:0] timer_q;
-  logic [15:0] carry_sum;
+  logic [15:0] timer_sum;
   logic        nonzero;
   logic        loading_q;
   assign take_pulse_time = phase_q == HIGH || phase_q == SETUP || same_q;
-  assign {nonzero, carry_sum} = {1'b0, timer_q} + {1'b0, pulse_time_q};
+  assign {nonzero, timer_sum} = {1'b0, timer_q} + {1'b0, pulse_time_q};
 
   always_ff @(posedge clk_i) begin
     pulse_time_q <= (phase_q == HIGH) ? step_space_i : step_length_i;
     if (!take_pulse_time) pulse_time_q <= '0;
     if (!load) pulse_time_q <= '1;
     dir_time_q <= take_pulse_time ? '0 : (phase_q == REST) ? dir_setup_i : dir_hold_i;
-    timer_q <= carry_sum | (dir_time_q & ~pulse_time_q);
+    timer_q <= timer_sum | (dir_time_q & ~pulse_time_q);
     if (load) timer_q <= '0;
     loading_q <= load;
     expired_q <= ~load & (expired_q | (~loading_q & ~nonzero));
@@ -131,7 +131,7 @@ module step_shaper (
   // Pins. In quadrature they are the position's two low bits, as they will be, in Gray code (first pin leads forwards).
   logic       go_q;
   logic       settled_q;
-  logic       begun_q;  // first clock of the pulse
+  logic       begun_q;  // first clock of the pulse, when the timer holds its time
   logic       pulse_q;
   logic [1:0] place;
   assign place = begun_q ? position_o[1:0] + {dir_q, 1'b1} : position_o[1:0];
