@@ -37,7 +37,7 @@ class DeviationMeter {
     std::array<double, driver::kMaxAxes> target{};  // line: displacement; arc: centre relative to the start (x, y)
     double inner = 0;                               // arc: radii of the annulus
     double outer = 0;
-    double length = 0;                              // line: length of the displacement
+    double length = 0;  // line: length of the displacement
   };
   void measure();
   void enter(std::uint64_t command);

@@ -7,7 +7,9 @@
 namespace trammel::app {
 
 void EngineChoice::add_to(CLI::App& command) {
-  command.add_option("--engine", engine, "rtl: the Verilated card in lockstep with the golden model; model: the model alone")
+  command
+      .add_option("--engine", engine,
+                  "rtl: the Verilated card in lockstep with the golden model; model: the model alone")
       ->check(CLI::IsMember({"rtl", "model"}))
       ->capture_default_str();
   command.add_option("--clock", clock_hz, "clock of the simulated card, Hz")

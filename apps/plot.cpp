@@ -45,7 +45,8 @@ std::vector<SpeedOverTime::Sample> SpeedOverTime::samples() const {
   std::vector<Sample> result;
   const double width = static_cast<double>(bin_width_) / clock_hz_;
   for (std::size_t i = 0; i < used_; ++i) {
-    result.push_back({(static_cast<double>(i) + 0.5) * width, std::hypot(bins_[i][0], bins_[i][1], bins_[i][2]) / width});
+    result.push_back(
+        {(static_cast<double>(i) + 0.5) * width, std::hypot(bins_[i][0], bins_[i][1], bins_[i][2]) / width});
   }
   return result;
 }
@@ -160,9 +161,8 @@ std::string speed_panel(const std::vector<SpeedOverTime::Sample>& speed, double 
         "<line x1=\"{}\" y1=\"{:.1f}\" x2=\"{}\" y2=\"{:.1f}\" class=\"grid\"/><text x=\"{}\" y=\"{:.1f}\" "
         "class=\"small\" text-anchor=\"end\">{:.3g}</text>\n",
         kMargin, y, kMargin + width, y, kMargin - 6, y + 4, fastest * i / 4);
-    text += fmt::format(
-        "<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"small\" text-anchor=\"middle\">{:.3g} s</text>\n", x,
-        top + height + 16, longest * i / 4);
+    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"small\" text-anchor=\"middle\">{:.3g} s</text>\n", x,
+                        top + height + 16, longest * i / 4);
   }
   text += "<polyline points=\"";
   for (const auto& s : speed) {
@@ -175,9 +175,12 @@ std::string speed_panel(const std::vector<SpeedOverTime::Sample>& speed, double 
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    if (c == '&') result += "&amp;";
-    else if (c == '<') result += "&lt;";
-    else result += c;
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else
+      result += c;
   }
   return result;
 }

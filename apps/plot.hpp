@@ -30,8 +30,8 @@ class ThinnedPath {
   Point last_{};
 };
 
-// Speed over time in bins of equal width, which doubles when the run outgrows them. A bin's speed is the root of the sum
-// of squares of what each axis travelled in it: exact while the direction does not change within the bin.
+// Speed over time in bins of equal width, which doubles when the run outgrows them. A bin's speed is the root of the
+// sum of squares of what each axis travelled in it: exact while the direction does not change within the bin.
 class SpeedOverTime {
  public:
   explicit SpeedOverTime(double clock_hz) : clock_hz_(clock_hz) {}

@@ -60,8 +60,8 @@ class StepRecorder final : public sim::StepSink {
   void finish();
 
   DeviationMeter& deviation() { return deviation_; }
-  const std::vector<std::uint64_t>& steps() const { return steps_; }          // at the pins, by axis
-  const std::vector<std::int64_t>& position() const { return position_; }     // sum of the pins' steps
+  const std::vector<std::uint64_t>& steps() const { return steps_; }       // at the pins, by axis
+  const std::vector<std::int64_t>& position() const { return position_; }  // sum of the pins' steps
   std::vector<Point> executed() const { return executed_.points(); }
   bool thinned() const { return executed_.thinned(); }
   const std::vector<Point>& detail() const { return detail_; }

@@ -1,0 +1,287 @@
+#include "program_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "progress_bar.hpp"
+#include "step_recorder.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/planner.hpp"
+#include "trammel/driver/stream.hpp"
+
+namespace trammel::app {
+namespace {
+
+constexpr double kCentreScale = 256.0;
+
+// The commanded path as points: of a whole segment (`step` = 0), or one a pulse up to `limit` of them.
+class CommandedPath {
+ public:
+  CommandedPath(const driver::PlannedSegment& segment, const std::vector<double>& steps_per_mm)
+      : segment_(segment), steps_per_mm_(steps_per_mm) {
+    if (segment.kind == driver::MotionKind::kArc) {
+      centre_x_ = static_cast<double>(segment.centre_x) / kCentreScale;
+      centre_y_ = static_cast<double>(segment.centre_y) / kCentreScale;
+      const double x = static_cast<double>(segment.start[segment.axis_x]) - centre_x_;
+      const double y = static_cast<double>(segment.start[segment.axis_y]) - centre_y_;
+      radius_ = std::hypot(x, y);
+      angle_ = std::atan2(y, x);
+      length_ = radius_ * segment.sweep;
+    } else {
+      double square = 0;
+      for (std::size_t a = 0; a < steps_per_mm.size(); ++a) {
+        square += std::pow(static_cast<double>(segment.end[a] - segment.start[a]), 2);
+      }
+      length_ = std::sqrt(square);
+    }
+  }
+  double length() const { return length_; }  // pulses
+
+  // The point `s` pulses along the path.
+  Point at(double s) const {
+    std::array<double, driver::kMaxAxes> pulses{};
+    const double share = length_ > 0 ? std::min(1.0, s / length_) : 1.0;
+    for (std::size_t a = 0; a < steps_per_mm_.size(); ++a) {
+      pulses[a] =
+          static_cast<double>(segment_.start[a]) + share * static_cast<double>(segment_.end[a] - segment_.start[a]);
+    }
+    if (radius_ > 0) {
+      const double angle = angle_ + (segment_.clockwise ? -1 : 1) * share * segment_.sweep;
+      pulses[segment_.axis_x] = centre_x_ + radius_ * std::cos(angle);
+      pulses[segment_.axis_y] = centre_y_ + radius_ * std::sin(angle);
+    }
+    Point point{};
+    for (std::size_t a = 0; a < std::min<std::size_t>(3, steps_per_mm_.size()); ++a) {
+      point[a] = pulses[a] / steps_per_mm_[a];
+    }
+    return point;
+  }
+
+ private:
+  const driver::PlannedSegment& segment_;
+  const std::vector<double>& steps_per_mm_;
+  double centre_x_ = 0;
+  double centre_y_ = 0;
+  double radius_ = 0;
+  double angle_ = 0;
+  double length_ = 0;
+};
+
+// What one pass over the plan, before anything moves, tells.
+struct Survey {
+  double seconds = 0;
+  std::uint64_t segments = 0;
+  std::uint64_t commands = 0;
+  std::optional<std::uint64_t> detail_command;  // the path to magnify
+  std::vector<Point> detail;                    // its commanded course
+  std::vector<Point> commanded;
+};
+
+bool is_geometry(const driver::Command& command) {
+  return std::holds_alternative<driver::Line>(command) || std::holds_alternative<driver::Arc>(command);
+}
+
+// How well a segment shows single pulses: an arc best, then a line of several axes, then any path.
+int detail_rank(const driver::PlannedSegment& segment) {
+  if (segment.kind == driver::MotionKind::kArc) return 3;
+  int moving = 0;
+  for (std::size_t a = 0; a < 3; ++a) moving += segment.end[a] != segment.start[a] ? 1 : 0;
+  return std::min(moving, 2);
+}
+
+Survey survey(const driver::Program& program, const driver::Machine& machine, std::uint32_t clock_hz,
+              const std::vector<double>& steps_per_mm) {
+  constexpr double kArcPoints = 64;
+  Survey result;
+  ThinnedPath commanded(10000);
+  int best_rank = 0;
+  driver::Planner planner(program, machine, clock_hz);
+  driver::PlannedSegment segment;
+  while (planner.next(segment)) {
+    const auto geometry = std::find_if(segment.commands.begin(), segment.commands.end(), is_geometry);
+    if (geometry != segment.commands.end()) {
+      ++result.segments;
+      const CommandedPath path(segment, steps_per_mm);
+      if (commanded.given() == 0) commanded.add(path.at(0));
+      const double points = segment.kind == driver::MotionKind::kArc ? kArcPoints : 1;
+      for (double i = 1; i <= points; ++i) commanded.add(path.at(path.length() * i / points));
+      const int rank = detail_rank(segment);
+      if (rank > best_rank) {
+        best_rank = rank;
+        result.detail_command = result.commands + static_cast<std::uint64_t>(geometry - segment.commands.begin());
+        result.detail.clear();
+        const double length = std::min(path.length(), 0.75 * static_cast<double>(StepRecorder::kDetailPoints));
+        for (double s = 0; s <= length; s += 1) result.detail.push_back(path.at(s));
+      }
+    }
+    result.commands += segment.commands.size();
+  }
+  result.seconds = planner.seconds();
+  result.commanded = commanded.points();
+  return result;
+}
+
+std::chrono::nanoseconds rounded_up(double nanoseconds) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::ceil(nanoseconds)));
+}
+
+void configure(driver::Card& card, const driver::Machine& machine) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const driver::MachineAxis& axis = machine.axes[i];
+    driver::AxisSettings settings;
+    settings.step_length = rounded_up(axis.step_length_ns);
+    settings.step_space = rounded_up(axis.step_space_ns);
+    settings.direction_setup = rounded_up(axis.direction_setup_ns);
+    settings.direction_hold = rounded_up(axis.direction_hold_ns);
+    settings.invert_second = axis.inverted;
+    card.configure_axis(static_cast<unsigned>(i), settings);
+  }
+}
+
+// Streams the plan; errors of the card get the line of the program that was being run.
+class ProgramStream {
+ public:
+  ProgramStream(const driver::Program& program, const driver::Machine& machine, sim::Engine& engine, driver::Card& card,
+                StepRecorder& recorder, const Survey& plan, bool progress)
+      : program_(program),
+        engine_(engine),
+        recorder_(recorder),
+        plan_(plan),
+        bar_(progress),
+        planner_(program, machine, card.identification().clock_hz),
+        clock_hz_(card.identification().clock_hz),
+        stream_(card, options()) {}
+
+  // Gives back where the program ends, pulses.
+  driver::PulsePosition run() {
+    driver::PulsePosition end = planner_.start();
+    try {
+      driver::PlannedSegment segment;
+      while (planner_.next(segment)) {
+        for (const driver::Command& command : segment.commands) {
+          recorder_.deviation().command(lines_.size(), command);
+          lines_.push_back(segment.line);
+        }
+        stream_.send(segment.commands);
+        if (segment.kind != driver::MotionKind::kDwell && segment.kind != driver::MotionKind::kEnd) end = segment.end;
+        show();
+      }
+      stream_.finish();
+    } catch (const driver::Error& error) {
+      throw std::runtime_error(fmt::format("{}:{}: {}", program_.file, current_line(), error.what()));
+    }
+    return end;
+  }
+
+  std::uint64_t sent() const { return stream_.sent(); }
+
+ private:
+  driver::StreamOptions options() {
+    driver::StreamOptions options;
+    options.progress = [this](const driver::StreamProgress& progress) {
+      running_ = progress.geometry_command;
+      show();
+    };
+    return options;
+  }
+  void show() {
+    const double seconds = static_cast<double>(engine_.cycles()) / clock_hz_;
+    bar_.show(plan_.seconds > 0 ? seconds / plan_.seconds : 1.0,
+              fmt::format("{:.1f} of {:.1f} s of card time", seconds, plan_.seconds));
+  }
+  // The line of the command in work: the latest one sent whose number fits what the card says.
+  std::size_t current_line() const {
+    for (std::size_t i = lines_.size(); i > 0; --i) {
+      if (((i - 1) & 0xFFU) == running_) return lines_[i - 1];
+    }
+    return 0;
+  }
+
+  const driver::Program& program_;
+  sim::Engine& engine_;
+  StepRecorder& recorder_;
+  const Survey& plan_;
+  ProgressBar bar_;
+  driver::Planner planner_;
+  double clock_hz_;
+  std::vector<std::size_t> lines_;  // of the program, by command number
+  std::uint8_t running_ = 0;
+  driver::Stream stream_;
+};
+
+void check_end(const std::vector<std::int64_t>& card, const StepRecorder& recorder, const driver::PulsePosition& start,
+               const driver::PulsePosition& end) {
+  for (std::size_t a = 0; a < card.size(); ++a) {
+    if (card[a] != recorder.position()[a]) {
+      throw std::runtime_error(fmt::format("axis {}: the card counts {} pulses, {} were seen at the pin", a, card[a],
+                                           recorder.position()[a]));
+    }
+    if (card[a] != end[a] - start[a]) {
+      throw std::runtime_error(
+          fmt::format("axis {}: the card ended at pulse {}, the program at {}", a, card[a], end[a] - start[a]));
+    }
+  }
+}
+
+}  // namespace
+
+RunResult run_program(const driver::Program& program, const driver::Machine& machine,
+                      const sim::EngineOptions& engine_options, const RunOutputs& outputs) {
+  const auto begun = std::chrono::steady_clock::now();
+  StepRecorder::Options recording;
+  recording.steps = outputs.steps;
+  recording.path_steps = outputs.path_steps;
+  recording.plot = outputs.plot.has_value();
+  recording.clock_hz = engine_options.clock_hz;
+  RunResult result;
+  for (const driver::MachineAxis& axis : machine.axes) {
+    recording.steps_per_mm.push_back(axis.steps_per_mm);
+    result.axes += axis.letter;
+  }
+  Survey plan = survey(program, machine, engine_options.clock_hz, recording.steps_per_mm);
+
+  const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);
+  StepRecorder recorder(recording);
+  if (plan.detail_command) recorder.detail_of(*plan.detail_command);
+  engine->set_sink(&recorder);
+  driver::Card card = driver::Card::open(*engine);
+  configure(card, machine);
+  ProgramStream stream(program, machine, *engine, card, recorder, plan, outputs.progress);
+  const driver::PulsePosition end = stream.run();
+  const driver::Snapshot snapshot = card.snapshot();
+  recorder.finish();
+
+  result.final_position.assign(snapshot.position.begin(),
+                               snapshot.position.begin() + static_cast<std::ptrdiff_t>(machine.axes.size()));
+  driver::Planner start(program, machine, engine_options.clock_hz);
+  check_end(result.final_position, recorder, start.start(), end);
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    result.final_position[a] += start.start()[a];
+    result.final_millimetres.push_back(static_cast<double>(result.final_position[a]) / machine.axes[a].steps_per_mm);
+  }
+  result.program = program.file;
+  result.engine = engine_options.kind == sim::EngineKind::kRtl ? "rtl" : "model";
+  result.steps = recorder.steps();
+  result.cycles = engine->cycles();
+  result.clock_hz = card.identification().clock_hz;
+  result.lockstep_cycles = engine->lockstep_cycles();
+  result.comparisons = engine->comparisons();
+  result.largest_line_deviation = recorder.deviation().largest_line();
+  result.largest_arc_deviation = recorder.deviation().largest_arc();
+  result.segments = plan.segments;
+  result.commands = stream.sent();
+  result.planned_seconds = plan.seconds;
+  result.accepted = program.accepted;
+  if (outputs.plot) {
+    result.plot = {program.file,           std::move(plan.commanded), recorder.executed(), recorder.thinned(),
+                   std::move(plan.detail), recorder.detail(),         recorder.speed()};
+  }
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  return result;
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,55 @@
+// Runs a program on a simulated card through the driver and gathers what was measured on the way.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plot.hpp"
+#include "trammel/driver/gcode.hpp"
+#include "trammel/driver/machine.hpp"
+#include "trammel/sim/engine.hpp"
+
+namespace trammel::app {
+
+// Files to write; "-" is standard output.
+struct RunOutputs {
+  std::optional<std::string> json;
+  std::optional<std::string> steps;
+  std::optional<std::string> path_steps;
+  std::optional<std::string> plot;
+  bool progress = false;
+};
+
+// Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds` and the picture's
+// commanded path.
+struct RunResult {
+  std::string program;
+  std::string engine;
+  std::string axes;                              // letters in the card's order
+  std::vector<std::int64_t> final_position;      // pulses, the card's position counters
+  std::vector<std::uint64_t> steps;              // pulses at the pins
+  std::vector<double> final_millimetres;         // of final_position
+  std::uint64_t cycles = 0;                      // clocks of the card
+  std::uint32_t clock_hz = 0;                    // Hz
+  std::optional<std::uint64_t> lockstep_cycles;  // clocks compared
+  std::uint64_t comparisons = 0;                 // signals compared
+  std::uint64_t mismatches = 0;                  // a mismatch ends the run: 0 in every result
+  double largest_line_deviation = 0;             // pulses
+  double largest_arc_deviation = 0;              // pulses outside the annulus
+  std::uint64_t segments = 0;                    // of the program
+  std::uint64_t commands = 0;                    // sent to the card
+  double planned_seconds = 0;                    // estimate
+  double wall_seconds = 0;                       // the simulation took
+  std::map<std::string, std::size_t> accepted;   // words without effect yet
+  Plot plot;                                     // filled when asked for
+};
+
+// Throws driver::ProgramError before anything moves, driver::Error with the program's line in its message while it
+// runs, lockstep::Mismatch, and std::runtime_error when the card does not end where the program says.
+RunResult run_program(const driver::Program& program, const driver::Machine& machine,
+                      const sim::EngineOptions& engine_options, const RunOutputs& outputs);
+
+}  // namespace trammel::app

@@ -1,0 +1,69 @@
+#include "run_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace trammel::app {
+
+std::string summary(const RunResult& result) {
+  const double seconds = static_cast<double>(result.cycles) / result.clock_hz;
+  std::string text = fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz\n",
+                                 result.program, result.segments, result.commands, seconds, result.clock_hz * 1e-6);
+  for (std::size_t a = 0; a < result.axes.size(); ++a) {
+    text += fmt::format("  {}: {} pulses made, ends at pulse {} ({:.4f} mm)\n", result.axes[a], result.steps[a],
+                        result.final_position[a], result.final_millimetres[a]);
+  }
+  text += fmt::format("  largest deviation: lines {:.4f} pulses, arcs {:.4f} pulses\n", result.largest_line_deviation,
+                      result.largest_arc_deviation);
+  if (result.lockstep_cycles) {
+    text += fmt::format("  lockstep: {} cycles, {} comparisons, {} mismatches\n", *result.lockstep_cycles,
+                        result.comparisons, result.mismatches);
+  } else {
+    text += "  engine: golden model alone (no lockstep)\n";
+  }
+  text += fmt::format("  simulated {} cycles in {:.1f} s, {:.2f} M cycles/s\n", result.cycles, result.wall_seconds,
+                      static_cast<double>(result.cycles) / result.wall_seconds * 1e-6);
+  if (!result.accepted.empty()) {
+    text += "  accepted, without hardware yet:";
+    for (const auto& [word, count] : result.accepted) text += fmt::format(" {} ({})", word, count);
+    text += '\n';
+  }
+  return text;
+}
+
+void write_json(const RunResult& result, const std::string& file) {
+  nlohmann::ordered_json json;
+  json["program"] = result.program;
+  json["engine"] = result.engine;
+  json["axes"] = result.axes;
+  json["final_position"] = result.final_position;
+  json["steps"] = result.steps;
+  json["cycles"] = result.cycles;
+  json["seconds"] = static_cast<double>(result.cycles) / result.clock_hz;
+  json["clock_hz"] = result.clock_hz;
+  json["lockstep_cycles"] = nullptr;
+  if (result.lockstep_cycles) json["lockstep_cycles"] = *result.lockstep_cycles;
+  json["comparisons"] = result.comparisons;
+  json["mismatches"] = result.mismatches;
+  json["max_deviation"] = {{"line", result.largest_line_deviation}, {"arc", result.largest_arc_deviation}};
+  json["segments"] = result.segments;
+  json["commands"] = result.commands;
+  json["planned_seconds"] = result.planned_seconds;
+  json["accepted_words"] = result.accepted;
+  const std::string text = json.dump(2) + "\n";
+  if (file == "-") {
+    std::cout << text;
+    return;
+  }
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", file));
+}
+
+}  // namespace trammel::app

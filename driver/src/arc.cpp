@@ -1,0 +1,219 @@
+#include "trammel/driver/arc.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace trammel::driver {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr std::uint64_t kCountLimit = std::uint64_t{1} << 40;  // ticks and path ticks have 40 bits
+constexpr std::int64_t kMaxQuadrants = 0xFFFF;
+
+// A lattice point relative to the centre, in the conic's own unit.
+struct Point {
+  std::int64_t x;
+  std::int64_t y;
+};
+
+// F = a x^2 + b y^2 - n over the points start + step * integer.
+struct Conic {
+  std::int64_t a;
+  std::int64_t b;
+  int128 n;
+  std::int64_t step;  // units a pulse
+
+  int128 deviation(const Point& p) const {
+    return static_cast<int128>(a) * p.x * p.x + static_cast<int128>(b) * p.y * p.y - n;
+  }
+};
+
+[[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument("arc: " + why); }
+
+std::int64_t square_root(int128 value) {
+  std::int64_t root = 0;
+  for (std::int64_t bit = std::int64_t{1} << 62; bit != 0; bit >>= 1) {
+    const std::int64_t trial = root | bit;
+    if (static_cast<int128>(trial) * trial <= value) root = trial;
+  }
+  return root;
+}
+
+int128 radius_squared(const Point& p) { return static_cast<int128>(p.x) * p.x + static_cast<int128>(p.y) * p.y; }
+
+// Zero counts as positive, as in the card: 0 right and up, 1 left and up, 2 left and down, 3 right and down.
+int quadrant(const Point& p) {
+  if (p.y >= 0) return p.x >= 0 ? 0 : 1;
+  return p.x >= 0 ? 3 : 2;
+}
+
+double angle(const Point& p) { return std::atan2(static_cast<double>(p.y), static_cast<double>(p.x)); }
+
+// Quadrant changes from start to end. The angle between the rounded points is known but for full turns; rounding moves
+// it by less than half a turn from the commanded sweep (radius >= 1 pulse), so the nearest number of turns is meant.
+// An end that rounding has put behind the start comes out as -1 turn and some; the card then goes straight to it.
+std::int64_t quadrant_changes(const Point& start, const Point& end, bool clockwise, double sweep, std::uint32_t turns) {
+  const int direction = clockwise ? -1 : 1;
+  double ahead = direction * (angle(end) - angle(start));
+  if (ahead < 0) ahead += 2 * kPi;
+  const std::int64_t more = std::llround((sweep - ahead) / (2 * kPi)) + turns;
+  std::int64_t changes = (direction * (quadrant(end) - quadrant(start)) + 4) % 4;
+  if (changes == 0 && ahead > kPi) changes = 4;  // the same quadrant, but behind
+  changes += 4 * more;
+  if (changes > kMaxQuadrants) refuse(fmt::format("{} quadrants, at most {} fit", changes, kMaxQuadrants));
+  return changes > 0 ? changes : 0;
+}
+
+// Where the walk enters the next quadrant, exactly. In a quadrant one coordinate u moves towards zero, in steps taken
+// while F >= 0, the other, v, away from zero, in steps taken while F < 0. The quadrant is left from u's last column
+// before the sign change, at the first v from the present one on with F >= 0 there: every earlier column, being
+// farther from zero, needs a smaller |v|, so none of them has taken v beyond it.
+Point next_entry(const Conic& conic, const Point& from, bool clockwise) {
+  const int side = quadrant(from);
+  const bool x_inward = (side % 2 == 0) != clockwise;
+  Point at = from;
+  std::int64_t& u = x_inward ? at.x : at.y;
+  std::int64_t& v = x_inward ? at.y : at.x;
+  const std::int64_t step = conic.step;
+  const std::int64_t phase = ((u % step) + step) % step;  // of the lattice, 0 .. step - 1
+  const std::int64_t last = u >= 0 ? phase : phase - step;
+  const std::int64_t entered = u >= 0 ? last - step : last + step;
+  u = last;
+  const std::int64_t outward = v >= 0 ? step : -step;
+  const std::int64_t v_first = v;
+  // Bisection over the number of v steps; 2^35 pulses reach beyond every curve that the bounds admit.
+  std::int64_t inside = -1;
+  std::int64_t outside = std::int64_t{1} << 35;
+  while (outside - inside > 1) {
+    const std::int64_t middle = inside + (outside - inside) / 2;
+    v = v_first + outward * middle;
+    (conic.deviation(at) >= 0 ? outside : inside) = middle;
+  }
+  v = v_first + outward * outside;
+  u = entered;
+  return at;
+}
+
+std::uint64_t steps_between(const Conic& conic, const Point& p, const Point& q) {
+  return static_cast<std::uint64_t>((std::llabs(p.x - q.x) + std::llabs(p.y - q.y)) / conic.step);
+}
+
+// L: both coordinates are monotone in a quadrant, and from the last entry to the end, so distances along the axes add.
+std::uint64_t path_length(const Conic& conic, const Point& start, const Point& end, bool clockwise,
+                          std::int64_t changes) {
+  std::uint64_t length = 0;
+  Point at = start;
+  for (std::int64_t i = 0; i < changes; ++i) {
+    const Point entry = next_entry(conic, at, clockwise);
+    length += steps_between(conic, at, entry);
+    at = entry;
+  }
+  length += steps_between(conic, at, end);
+  if (length == 0) refuse("start and end are the same point and the sweep is no full turn: no step to make");
+  if (length >= kCountLimit) refuse(fmt::format("{} steps, fewer than 2^40 fit", length));
+  return length;
+}
+
+template <class Geometry>
+void check_common(const Geometry& geometry) {
+  if (geometry.axis_x >= kMaxAxes || geometry.axis_y >= kMaxAxes || geometry.axis_x == geometry.axis_y) {
+    refuse(fmt::format("axes {} and {} span no plane", geometry.axis_x, geometry.axis_y));
+  }
+  // The upper bound keeps the conversion to turns within range; more than 65,535 quadrants are refused later.
+  if (!(geometry.sweep >= 0 && geometry.sweep < 1e6)) refuse(fmt::format("sweep of {} radians", geometry.sweep));
+}
+
+template <class Geometry>
+Arc fill(const Geometry& geometry, const Conic& conic, const Point& start, const Point& end) {
+  const std::int64_t changes = quadrant_changes(start, end, geometry.clockwise, geometry.sweep, geometry.turns);
+  Arc arc;
+  arc.path_ticks = path_length(conic, start, end, geometry.clockwise, changes);
+  arc.clockwise = geometry.clockwise;
+  arc.axis_x = geometry.axis_x;
+  arc.axis_y = geometry.axis_y;
+  arc.quadrants = static_cast<std::uint16_t>(changes);
+  arc.end_x = geometry.end_x;
+  arc.end_y = geometry.end_y;
+  arc.deviation = conic.deviation(start);
+  arc.gradient_x = static_cast<int128>(2) * conic.a * start.x * conic.step;
+  arc.gradient_y = static_cast<int128>(2) * conic.b * start.y * conic.step;
+  arc.half_x = static_cast<std::uint64_t>(conic.a * conic.step * conic.step);
+  arc.half_y = static_cast<std::uint64_t>(conic.b * conic.step * conic.step);
+  return arc;
+}
+
+// Square of the mean of start and end radius: halves the distance that rounding puts between them, so that both ends
+// lie equally near to the curve.
+int128 mean_radius_squared(const Point& start, const Point& end) {
+  const int128 first = radius_squared(start);
+  const int128 second = radius_squared(end);
+  if (first == second) return first;
+  constexpr int kFraction = 8;  // radii to 2^-16 pulses
+  const int128 sum =
+      static_cast<int128>(square_root(first << (2 * kFraction))) + square_root(second << (2 * kFraction));
+  const int kShift = 2 * (kFraction + 1);
+  return (sum * sum + (static_cast<int128>(1) << (kShift - 1))) >> kShift;
+}
+
+bool within(const Point& p, std::int64_t limit) { return std::llabs(p.x) <= limit && std::llabs(p.y) <= limit; }
+
+}  // namespace
+
+Arc prepare(const ArcGeometry& geometry) {
+  check_common(geometry);
+  constexpr std::int64_t kUnit = kCentreUnitsPerPulse;
+  // Compared before the negation, which the most negative value would not survive.
+  if (geometry.centre_x < -kMaxCentreDistance || geometry.centre_x > kMaxCentreDistance ||
+      geometry.centre_y < -kMaxCentreDistance || geometry.centre_y > kMaxCentreDistance) {
+    refuse("the centre is farther than 2^24 pulses from the start");
+  }
+  const Point start{-geometry.centre_x, -geometry.centre_y};
+  const Point end{geometry.end_x * kUnit - geometry.centre_x, geometry.end_y * kUnit - geometry.centre_y};
+  if (!within(end, kMaxCentreDistance)) refuse("the centre is farther than 2^24 pulses from the end");
+  const int128 mean = mean_radius_squared(start, end);
+  if (mean < kUnit * kUnit) refuse("radius below one pulse: send a line");
+  // A step to the side of the circle adds up to 1/2 to R^2 (in pulses), a step inwards takes nothing off it: half a
+  // square pulse less makes outside and inside errors alike, 1 + 1/(4 R). About a whole pulse F is then a whole number
+  // and one half, so that every sign is that of STEER's F.
+  return fill(geometry, Conic{1, 1, mean - kUnit * kUnit / 2, kUnit}, start, end);
+}
+
+Arc prepare(const EllipseGeometry& geometry) {
+  check_common(geometry);
+  const std::int64_t a = geometry.semi_x;
+  const std::int64_t b = geometry.semi_y;
+  if (a < 1 || b < 1 || a > kMaxSemiAxis || b > kMaxSemiAxis) {
+    refuse(fmt::format("semi-axes {} and {} are not within 1 .. 2^20 pulses", a, b));
+  }
+  const Point start{geometry.start_x, geometry.start_y};
+  // A point rounded from the curve is at most one pulse outside its bounding box. Looked at before any arithmetic.
+  const auto in_box = [&](const Point& p) { return -a - 1 <= p.x && p.x <= a + 1 && -b - 1 <= p.y && p.y <= b + 1; };
+  if (!in_box(start)) refuse("the start is outside the ellipse's bounding box");
+  const Point end{start.x + geometry.end_x, start.y + geometry.end_y};
+  if (!in_box(end)) refuse("the end is outside the ellipse's bounding box");
+  const Conic conic{b * b, a * a, static_cast<int128>(a * a) * (b * b), 1};
+  // Rounding moves a point by half a pulse in each coordinate, which changes F by at most ab(a+b) + (a^2+b^2)/4.
+  const int128 limit = static_cast<int128>(4) * a * b * (a > b ? a : b);
+  const auto on_curve = [&](const Point& p) { return -limit < conic.deviation(p) && conic.deviation(p) < limit; };
+  if (!on_curve(start)) refuse("the start is not on the ellipse");
+  if (!on_curve(end)) refuse("the end is not on the ellipse");
+  return fill(geometry, conic, start, end);
+}
+
+Arc with_ticks(Arc arc, std::uint64_t ticks) {
+  if (ticks < arc.path_ticks) refuse(fmt::format("{} feed ticks for {} steps", ticks, arc.path_ticks));
+  if (ticks >= kCountLimit) refuse(fmt::format("{} feed ticks, fewer than 2^40 fit", ticks));
+  arc.ticks = ticks;
+  const int128 scaled = (static_cast<int128>(arc.path_ticks) << 40) + ticks / 2;
+  arc.prescale = static_cast<std::uint64_t>(scaled / ticks);
+  return arc;
+}
+
+Arc make_arc(const ArcGeometry& geometry, std::uint64_t ticks) { return with_ticks(prepare(geometry), ticks); }
+
+Arc make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks) { return with_ticks(prepare(geometry), ticks); }
+
+}  // namespace trammel::driver

@@ -1,0 +1,70 @@
+// The time base: a clock enable with a programmable ratio of all clocks, slewed linearly towards its target.
+//
+// Every 4th clock the ratio moves by at most the slew towards its goal and never past it. An update takes 4 clocks:
+//   0  the last update's result becomes the ratio; the goal of this one is sampled (hold, target)
+//   1  direction: goal against ratio
+//   2  candidate: ratio + or - slew (the slew is sampled here)
+//   3  whether the candidate reached or passed the goal
+// The goal is a sampled copy because direction and arrival must be judged against the same one: otherwise a hold that
+// comes in between would let the ratio jump.
+`default_nettype none
+
+module time_base (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic [16:0] target_i,
+    input  wire logic [27:0] slew_i,
+    input  wire logic        hold_i,
+    output logic             enable_o,
+    output logic      [16:0] ratio_o
+);
+  // Q1.28: 1 is 2^28. The candidate lies between -2^28 and 2^29 - 1.
+  localparam logic [28:0] ONE = 29'h1000_0000;
+
+  logic [1:0] turn_q;
+  logic [28:0] ratio_q;
+  logic [16:0] goal_q;
+  logic up_q, arrived_q;
+  logic [29:0] candidate_q;
+
+  logic [28:0] goal;
+  logic at_least;
+  logic at_most;
+  assign goal = {goal_q, 12'd0};
+  assign at_least = $signed(candidate_q) >= $signed({1'b0, goal});
+  assign at_most = $signed(candidate_q) <= $signed({1'b0, goal});
+
+  always_ff @(posedge clk_i) begin
+    if (rst_i) begin
+      turn_q <= 2'd0;
+      ratio_q <= ONE;
+      goal_q <= 17'h1_0000;
+      up_q <= 1'b0;
+      arrived_q <= 1'b0;
+      candidate_q <= {1'b0, ONE};
+    end else begin
+      turn_q <= turn_q + 2'd1;
+      if (turn_q == 2'd0) begin
+        ratio_q <= arrived_q ? goal : candidate_q[28:0];
+        goal_q <= hold_i ? 17'd0 : target_i;
+      end
+      if (turn_q == 2'd1) up_q <= goal >= ratio_q;
+      if (turn_q == 2'd2) begin
+        candidate_q <= {1'b0, ratio_q} + ({2'b00, slew_i} ^ {30{!up_q}}) + {29'd0, !up_q};
+      end
+      if (turn_q == 2'd3) arrived_q <= up_q ? at_least : at_most;
+    end
+  end
+
+  logic [15:0] phase_q;
+  logic enable_q;
+  always_ff @(posedge clk_i) begin
+    if (rst_i) {enable_q, phase_q} <= '0;
+    else {enable_q, phase_q} <= {1'b0, phase_q} + ratio_q[28:12];
+  end
+
+  assign enable_o = enable_q;
+  assign ratio_o = ratio_q[28:12];
+endmodule
+
+`default_nettype wire

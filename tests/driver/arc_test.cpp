@@ -1,0 +1,419 @@
+// Arcs from the driver's mathematics, walked by the golden model: the end point, the number of steps, the distance to
+// the curve. Distances are measured after every step, at the lattice point reached.
+#include "trammel/driver/arc.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trammel/model/deviation_accumulator.hpp"
+
+namespace trammel::driver {
+namespace {
+
+using model::DeviationPath;
+
+constexpr double kPi = 3.14159265358979323846;
+
+DeviationPath path_of(const Arc& arc) {
+  const auto aligned = [](int128 value) { return static_cast<DeviationPath::Word>(value) << DeviationPath::kAlign; };
+  DeviationPath path;
+  path.state.deviation = aligned(arc.deviation);
+  path.state.gradient_x = aligned(arc.gradient_x);
+  path.state.gradient_y = aligned(arc.gradient_y);
+  path.state.half_x = arc.half_x;
+  path.state.half_y = arc.half_y;
+  path.state.left_x = static_cast<std::uint32_t>(arc.end_x);
+  path.state.left_y = static_cast<std::uint32_t>(arc.end_y);
+  path.state.quadrants = arc.quadrants;
+  path.state.clockwise = arc.clockwise;
+  path.begin();
+  return path;
+}
+
+// Walks the arc and shows `visit(x, y)` every point after a step, relative to the start. Expects the end point after
+// exactly L steps, and not before.
+template <class Visit>
+bool walk(const Arc& arc, Visit&& visit) {
+  DeviationPath path = path_of(arc);
+  std::int64_t x = 0;
+  std::int64_t y = 0;
+  for (std::uint64_t i = 0; i < arc.path_ticks; ++i) {
+    if (path.at_end()) return false;
+    const auto step = path.step();
+    (step.in_x ? x : y) += step.negative ? -1 : 1;
+    visit(x, y);
+  }
+  return path.at_end() && x == arc.end_x && y == arc.end_y;
+}
+
+// A real arc, and what rounding makes of it: start and end to whole pulses, the centre to 1/256.
+struct RandomArc {
+  ArcGeometry geometry;
+  double radius;              // of the real arc
+  double real_x, real_y;      // its centre, from the rounded start
+  double centre_x, centre_y;  // the rounded centre, from the rounded start
+};
+
+RandomArc random_arc(std::mt19937_64& random, double smallest, double largest) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  RandomArc made{};
+  made.radius = smallest * std::exp(std::log(largest / smallest) * uniform(random));
+  const double from = 2 * kPi * uniform(random);
+  const bool clockwise = uniform(random) < 0.5;
+  const double sweep = 2 * kPi * uniform(random);
+  const double x = uniform(random);  // the centre's place between lattice points
+  const double y = uniform(random);
+  const double to = from + (clockwise ? -sweep : sweep);
+  const double start_x = std::round(x + made.radius * std::cos(from));
+  const double start_y = std::round(y + made.radius * std::sin(from));
+  made.real_x = x - start_x;
+  made.real_y = y - start_y;
+  ArcGeometry& g = made.geometry;
+  g.centre_x = std::llround(256 * made.real_x);
+  g.centre_y = std::llround(256 * made.real_y);
+  made.centre_x = static_cast<double>(g.centre_x) / 256;
+  made.centre_y = static_cast<double>(g.centre_y) / 256;
+  g.end_x = static_cast<std::int32_t>(std::lround(x + made.radius * std::cos(to)) - std::lround(start_x));
+  g.end_y = static_cast<std::int32_t>(std::lround(y + made.radius * std::sin(to)) - std::lround(start_y));
+  g.clockwise = clockwise;
+  g.sweep = sweep;
+  return made;
+}
+
+// Largest radial distances found, pulses.
+struct Extremes {
+  double ring = 0;  // outside the ring between the rounded start's and end's distances from the rounded centre
+  double mean = 0;  // from the circle about the rounded centre with the mean of the two as its radius
+  double real = 0;  // from the circle before any rounding
+};
+
+void expect_random_arcs(std::uint64_t seed, int count, double smallest, double largest, Extremes& worst) {
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < count; ++i) {
+    const RandomArc made = random_arc(random, smallest, largest);
+    const ArcGeometry& g = made.geometry;
+    Arc arc;
+    try {
+      arc = prepare(g);
+    } catch (const std::invalid_argument&) {
+      // Rounding left nothing to walk, or a circle smaller than a pulse.
+      ASSERT_TRUE((g.end_x == 0 && g.end_y == 0) || made.radius < 2) << "arc " << i;
+      continue;
+    }
+    const double first = std::hypot(made.centre_x, made.centre_y);
+    const double last = std::hypot(g.end_x - made.centre_x, g.end_y - made.centre_y);
+    double least = first;
+    double most = first;
+    double real_least = made.radius;
+    double real_most = made.radius;
+    const bool ended = walk(arc, [&](std::int64_t x, std::int64_t y) {
+      const double px = static_cast<double>(x);
+      const double py = static_cast<double>(y);
+      const double r2 = (px - made.centre_x) * (px - made.centre_x) + (py - made.centre_y) * (py - made.centre_y);
+      const double d = std::sqrt(r2);
+      least = std::min(least, d);
+      most = std::max(most, d);
+      const double q2 = (px - made.real_x) * (px - made.real_x) + (py - made.real_y) * (py - made.real_y);
+      const double q = std::sqrt(q2);
+      real_least = std::min(real_least, q);
+      real_most = std::max(real_most, q);
+    });
+    ASSERT_TRUE(ended) << "arc " << i << " of seed " << seed << ": radius " << made.radius << " sweep " << g.sweep;
+    const double mean = (first + last) / 2;
+    // One pulse, and what a step to the side of a small circle adds.
+    ASSERT_LT(std::max(most - mean, mean - least), 1 + 0.3 / mean) << "arc " << i << " of seed " << seed;
+    worst.ring = std::max({worst.ring, most - std::max(first, last), std::min(first, last) - least});
+    worst.mean = std::max({worst.mean, most - mean, mean - least});
+    worst.real = std::max({worst.real, real_most - made.radius, made.radius - real_least});
+  }
+}
+
+TEST(Arc, RandomArcsEndExactlyWithinTheirError) {
+  Extremes small;
+  expect_random_arcs(1, 30000, 2, 4, small);
+  Extremes large;
+  expect_random_arcs(2, 60000, 4, 500, large);
+  expect_random_arcs(3, 10000, 500, 10000, large);
+  expect_random_arcs(4, 4, 100000, 1000000, large);
+  RecordProperty("small", fmt::format("ring {:.4f} mean {:.4f} real {:.4f}", small.ring, small.mean, small.real));
+  RecordProperty("large", fmt::format("ring {:.4f} mean {:.4f} real {:.4f}", large.ring, large.mean, large.real));
+  EXPECT_LT(small.ring, 1.13);
+  EXPECT_LT(large.ring, 1.1);
+  EXPECT_LT(large.mean, 1.1);
+  // Rounding moves start and end by up to 0.71 pulse, and the circle through them with them.
+  EXPECT_LT(large.real, 1.1 + 0.71);
+}
+
+// The angle from start to end in the given direction, 0 .. 2 pi.
+double sweep_between(double from, double to, bool clockwise) {
+  const double sweep = std::remainder(clockwise ? from - to : to - from, 2 * kPi);
+  return sweep < 0 ? sweep + 2 * kPi : sweep;
+}
+
+// Every start and end on the rounded circles of 1 to 20 pulses about a whole-pulse centre, both directions, and the
+// same with a full turn more.
+TEST(Arc, EverySmallArcEndsExactly) {
+  std::uint64_t arcs = 0;
+  for (int r = 1; r <= 20; ++r) {
+    std::vector<std::pair<int, int>> points;
+    for (int x = -r - 1; x <= r + 1; ++x) {
+      for (int y = -r - 1; y <= r + 1; ++y) {
+        if (std::abs(std::hypot(x, y) - r) < 0.7072) points.emplace_back(x, y);
+      }
+    }
+    for (const auto& [sx, sy] : points) {
+      for (const auto& [ex, ey] : points) {
+        for (const bool clockwise : {false, true}) {
+          ArcGeometry g;
+          g.centre_x = -256 * sx;
+          g.centre_y = -256 * sy;
+          g.end_x = ex - sx;
+          g.end_y = ey - sy;
+          g.clockwise = clockwise;
+          g.sweep = sweep_between(std::atan2(sy, sx), std::atan2(ey, ex), clockwise);
+          g.turns = sx == ex && sy == ey ? 1 : 0;
+          if (std::hypot(sx, sy) + std::hypot(ex, ey) < 2) continue;  // below a pulse: refused
+          for (int more = 0; more < 2; ++more, ++g.turns) {
+            const Arc arc = prepare(g);
+            ASSERT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {}))
+                << "r " << r << " from " << sx << ',' << sy << " to " << ex << ',' << ey << " clockwise " << clockwise;
+            ++arcs;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(arcs, 500000u);
+}
+
+ArcGeometry full_circle(std::int64_t r, bool clockwise) {
+  ArcGeometry g;
+  g.centre_x = -256 * r;
+  g.clockwise = clockwise;
+  g.sweep = 2 * kPi;
+  return g;
+}
+
+TEST(Arc, FullCirclesHaveEightRadiiSteps) {
+  for (std::int64_t r = 2; r <= 2000; ++r) {
+    EXPECT_EQ(prepare(full_circle(r, false)).path_ticks, static_cast<std::uint64_t>(8 * r));
+    EXPECT_EQ(prepare(full_circle(r, true)).path_ticks, static_cast<std::uint64_t>(8 * r));
+  }
+  const Arc largest = prepare(full_circle(std::int64_t{1} << 24, true));
+  EXPECT_EQ(largest.path_ticks, std::uint64_t{1} << 27);
+}
+
+TEST(Arc, FieldsOfGoldbergsCircle) {
+  const Arc arc = make_arc(full_circle(25, false), 1000);
+  EXPECT_EQ(arc.ticks, 1000u);
+  EXPECT_EQ(arc.path_ticks, 200u);
+  EXPECT_EQ(arc.prescale, (std::uint64_t{200} << 40) / 1000);
+  EXPECT_EQ(arc.quadrants, 4);
+  EXPECT_FALSE(arc.clockwise);
+  EXPECT_TRUE(arc.deviation == 65536 / 2);    // Table 3's 0, and the half that leaves its signs alone
+  EXPECT_TRUE(arc.gradient_x == 50 * 65536);  // Table 3's 50, in squares of 1/256 pulse
+  EXPECT_TRUE(arc.gradient_y == 0);
+  EXPECT_EQ(arc.half_x, 65536u);
+  EXPECT_EQ(arc.half_y, 65536u);
+}
+
+// A nearly full and a nearly empty arc between the same rounded points differ only in their sweep.
+TEST(Arc, SweepTellsShortFromFull) {
+  ArcGeometry g = full_circle(100, false);
+  g.end_y = 1;
+  g.sweep = 0.01;
+  EXPECT_EQ(prepare(g).path_ticks, 1u);
+  g.sweep = 2 * kPi - 0.01;  // the end is rounded past the start: one turn and a step
+  EXPECT_EQ(prepare(g).quadrants, 4);
+  g.end_y = -1;  // behind the start
+  // The mean radius is a little over 100, so the walk may turn at 101 on each axis crossing.
+  EXPECT_NEAR(static_cast<double>(prepare(g).path_ticks), 800, 4);
+  EXPECT_TRUE(walk(prepare(g), [](std::int64_t, std::int64_t) {}));
+  g.sweep = 0.01;
+  const Arc back = prepare(g);
+  EXPECT_EQ(back.path_ticks, 1u);
+  EXPECT_EQ(back.quadrants, 0);
+  EXPECT_TRUE(walk(back, [](std::int64_t, std::int64_t) {}));
+}
+
+TEST(Arc, TurnsAdd) {
+  ArcGeometry g = full_circle(30, true);
+  for (g.turns = 0; g.turns < 20; ++g.turns) {
+    const Arc arc = prepare(g);
+    EXPECT_EQ(arc.quadrants, 4 * (g.turns + 1));
+    EXPECT_EQ(arc.path_ticks, 240u * (g.turns + 1));
+    EXPECT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {}));
+  }
+  g.turns = 16382;
+  EXPECT_EQ(prepare(g).quadrants, 65532);
+  g.turns = 16383;
+  EXPECT_THROW(prepare(g), std::invalid_argument);
+}
+
+// Distance of a point to the ellipse, by bisection for the foot point's parameter in the first quadrant.
+double distance_to_ellipse(double a, double b, double x, double y) {
+  x = std::abs(x);
+  y = std::abs(y);
+  double low = 0;
+  double high = kPi / 2;
+  for (int i = 0; i < 40; ++i) {
+    const double t = (low + high) / 2;
+    // Derivative of the squared distance; one sign change when the point is near the curve of a rounded ellipse.
+    const double slope = -a * std::sin(t) * (a * std::cos(t) - x) + b * std::cos(t) * (b * std::sin(t) - y);
+    (slope < 0 ? low : high) = t;
+  }
+  return std::hypot(a * std::cos(low) - x, b * std::sin(low) - y);
+}
+
+EllipseGeometry random_ellipse_arc(std::mt19937_64& random, std::int64_t a, std::int64_t b) {
+  std::uniform_real_distribution<double> uniform(0, 2 * kPi);
+  const double from = uniform(random);
+  const double to = uniform(random);
+  EllipseGeometry g;
+  g.semi_x = a;
+  g.semi_y = b;
+  const auto da = static_cast<double>(a);
+  const auto db = static_cast<double>(b);
+  g.start_x = std::llround(da * std::cos(from));
+  g.start_y = std::llround(db * std::sin(from));
+  g.end_x = static_cast<std::int32_t>(std::llround(da * std::cos(to)) - g.start_x);
+  g.end_y = static_cast<std::int32_t>(std::llround(db * std::sin(to)) - g.start_y);
+  g.clockwise = random() % 2 != 0;
+  const double ray_from = std::atan2(db * std::sin(from), da * std::cos(from));
+  const double ray_to = std::atan2(db * std::sin(to), da * std::cos(to));
+  g.sweep = sweep_between(ray_from, ray_to, g.clockwise);
+  return g;
+}
+
+TEST(Ellipse, ArcsEndExactlyWithinTheirError) {
+  std::mt19937_64 random(11);
+  double worst = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto a = static_cast<std::int64_t>(20 + random() % 100);
+    const auto b = static_cast<std::int64_t>(20 + random() % 100);
+    const EllipseGeometry g = random_ellipse_arc(random, a, b);
+    if (g.end_x == 0 && g.end_y == 0) continue;
+    const bool ended = walk(prepare(g), [&](std::int64_t x, std::int64_t y) {
+      const double distance =
+          distance_to_ellipse(static_cast<double>(a), static_cast<double>(b), static_cast<double>(g.start_x + x),
+                              static_cast<double>(g.start_y + y));
+      worst = std::max(worst, distance);
+    });
+    ASSERT_TRUE(ended) << "ellipse " << a << ' ' << b << ", arc " << i;
+  }
+  RecordProperty("worst", fmt::format("{:.4f}", worst));
+  EXPECT_LT(worst, 1.1);
+}
+
+// Needles and semi-axes up to the bound: the end and the count hold whatever the shape.
+TEST(Ellipse, EveryShapeEndsExactly) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int i = 0; i < 3000; ++i) {
+    const auto a = std::llround(std::pow(2.0, 12 * uniform(random)));
+    const auto b = std::llround(std::pow(2.0, 12 * uniform(random)));
+    EllipseGeometry g = random_ellipse_arc(random, a, b);
+    g.turns = static_cast<std::uint32_t>(random() % 2);
+    if (g.end_x == 0 && g.end_y == 0) g.turns = 1;
+    ASSERT_TRUE(walk(prepare(g), [](std::int64_t, std::int64_t) {})) << "ellipse " << a << ' ' << b << ", arc " << i;
+  }
+  ASSERT_TRUE(
+      walk(prepare(random_ellipse_arc(random, kMaxSemiAxis, kMaxSemiAxis - 3)), [](std::int64_t, std::int64_t) {}));
+}
+
+TEST(Ellipse, FullTurnReturns) {
+  for (const auto& [a, b] : {std::pair<int, int>{40, 25}, {25, 40}, {1000, 3}, {1, 1}, {7, 7}}) {
+    EllipseGeometry g;
+    g.semi_x = a;
+    g.semi_y = b;
+    g.start_x = a;
+    g.sweep = 2 * kPi;
+    for (const bool clockwise : {false, true}) {
+      g.clockwise = clockwise;
+      const Arc arc = make_ellipse(g, 1 << 20);
+      // A needle's tip, narrower than a pulse, is cut short.
+      EXPECT_GE(arc.path_ticks, static_cast<std::uint64_t>(3 * (a + b)));
+      EXPECT_LE(arc.path_ticks, static_cast<std::uint64_t>(4 * (a + b) + 4));
+      EXPECT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {})) << a << ' ' << b;
+    }
+  }
+}
+
+std::string refusal(const ArcGeometry& geometry) {
+  try {
+    prepare(geometry);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Arc, RefusesWhatTheCardCannotDo) {
+  using ::testing::HasSubstr;
+  ArcGeometry g = full_circle(0, false);
+  EXPECT_THAT(refusal(g), HasSubstr("radius below one pulse"));
+  g = full_circle((std::int64_t{1} << 24) + 1, false);
+  EXPECT_THAT(refusal(g), HasSubstr("from the start"));
+  g.centre_x = INT64_MIN;
+  EXPECT_THAT(refusal(g), HasSubstr("from the start"));
+  g = full_circle(10, false);
+  g.end_x = INT32_MAX;
+  EXPECT_THAT(refusal(g), HasSubstr("from the end"));
+  g = full_circle(10, false);
+  g.sweep = 0;
+  EXPECT_THAT(refusal(g), HasSubstr("no step"));
+  g.sweep = -1;
+  EXPECT_THAT(refusal(g), HasSubstr("sweep"));
+  g.sweep = std::nan("");
+  EXPECT_THAT(refusal(g), HasSubstr("sweep"));
+  g = full_circle(10, false);
+  g.axis_y = 0;
+  EXPECT_THAT(refusal(g), HasSubstr("plane"));
+  g.axis_y = 8;
+  EXPECT_THAT(refusal(g), HasSubstr("plane"));
+  g = full_circle(10, false);
+  g.turns = UINT32_MAX;
+  EXPECT_THAT(refusal(g), HasSubstr("quadrants"));
+  g = full_circle(std::int64_t{1} << 24, false);
+  g.turns = 8192;
+  EXPECT_THAT(refusal(g), HasSubstr("2^40"));
+}
+
+TEST(Ellipse, RefusesWhatTheCardCannotDo) {
+  EllipseGeometry g;
+  g.semi_x = 10;
+  g.semi_y = 5;
+  g.start_x = 10;
+  g.sweep = 2 * kPi;
+  EXPECT_NO_THROW(prepare(g));
+  g.semi_y = 0;
+  EXPECT_THROW(prepare(g), std::invalid_argument);
+  g.semi_y = kMaxSemiAxis + 1;
+  EXPECT_THROW(prepare(g), std::invalid_argument);
+  g.semi_y = 5;
+  g.start_x = 3;  // well inside
+  EXPECT_THROW(prepare(g), std::invalid_argument);
+  g.start_x = INT64_MAX;
+  EXPECT_THROW(prepare(g), std::invalid_argument);
+}
+
+TEST(Arc, TicksBoundThePath) {
+  const Arc arc = prepare(full_circle(25, false));
+  EXPECT_THROW(with_ticks(arc, 199), std::invalid_argument);
+  EXPECT_THROW(with_ticks(arc, std::uint64_t{1} << 40), std::invalid_argument);
+  EXPECT_EQ(with_ticks(arc, 200).prescale, std::uint64_t{1} << 40);
+  EXPECT_EQ(with_ticks(arc, 300).prescale, 733007751851u);  // 2/3 * 2^40 = ...850.67
+}
+
+}  // namespace
+}  // namespace trammel::driver
