@@ -40,7 +40,7 @@ struct MachineAxis {
 };
 
 struct Machine {
-  std::uint32_t clock_hz = 0;      // > 0
+  std::uint32_t clock_hz = 0;     // > 0
   std::vector<MachineAxis> axes;  // in the card's order
 
   // Index of the axis on the card; `letter` in upper case.
