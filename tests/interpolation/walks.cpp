@@ -23,10 +23,11 @@ double from_ellipse(double semi_x, double semi_y, const Position& p) {
   double low = z1 - 1;
   double high = std::hypot(r * z0, z1) - 1;
   if (high < low) high = low;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 60; ++i) {
     const double s = (low + high) / 2;
-    const double g = std::pow(r * z0 / (s + r), 2) + std::pow(z1 / (s + 1), 2) - 1;
-    (g > 0 ? low : high) = s;
+    const double u = r * z0 / (s + r);
+    const double v = z1 / (s + 1);
+    (u * u + v * v > 1 ? low : high) = s;
   }
   const double s = (low + high) / 2;
   return std::hypot(r * x / (s + r) - x, y / (s + 1) - y);
