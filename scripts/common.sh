@@ -45,10 +45,11 @@ install_python() {
   fi
 }
 
+# build_release [arguments of cmake --build ...]
 build_release() {
   install_debian "${debian_packages[@]}"
   say "building"
   mkdir -p build
   cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log >&2; die "configuring failed"; }
-  cmake --build --preset release
+  cmake --build --preset release "$@"
 }
