@@ -13,6 +13,7 @@ debian_packages=(
   verilator
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
   libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev
+  clang-14 libclang-rt-14-dev  # libFuzzer
 )
 # Checks of the sources, other RTL readers, synthesis.
 debian_packages_check=(clang-format iverilog yosys)
