@@ -22,6 +22,10 @@ function(trammel_verilate target)
            DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${target}_${A_PREFIX}"
            OPT_FAST -O3 OPT_SLOW -O1
            VERILATOR_ARGS ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS})
+  # What Verilator writes and brings along is not the project's: no warnings from it.
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "/${target}_${A_PREFIX}/|/verilated[a-z_]*\\.cpp$")
+  set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS -w)
 endfunction()
 
 # trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [ARGS ...])

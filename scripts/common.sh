@@ -32,15 +32,15 @@ install_debian() {
   DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# The pinned Python tools, in .venv; made again when requirements.txt changes.
+# install_python FILE: the pinned Python tools of a requirements file, in .venv; again when the file changes.
 install_python() {
   install_debian python3-venv
-  local stamp=.venv/.requirements
-  if ! cmp -s requirements.txt "$stamp" 2>/dev/null; then
-    say "installing the Python tools of requirements.txt into .venv"
-    python3 -m venv .venv
-    .venv/bin/pip install --quiet --disable-pip-version-check -r requirements.txt
-    cp requirements.txt "$stamp"
+  local stamp=.venv/.$1
+  if ! cmp -s "$1" "$stamp" 2>/dev/null; then
+    say "installing the Python tools of $1 into .venv"
+    [ -x .venv/bin/pip ] || python3 -m venv .venv
+    .venv/bin/pip install --quiet --disable-pip-version-check -r "$1"
+    cp "$1" "$stamp"
   fi
 }
 

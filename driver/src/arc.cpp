@@ -173,9 +173,12 @@ Arc prepare(const ArcGeometry& geometry) {
   const Point start{-geometry.centre_x, -geometry.centre_y};
   const Point end{geometry.end_x * kUnit - geometry.centre_x, geometry.end_y * kUnit - geometry.centre_y};
   if (!within(end, kMaxCentreDistance)) refuse("the centre is farther than 2^24 pulses from the end");
-  const int128 n = mean_radius_squared(start, end);
-  if (n < kUnit * kUnit) refuse("radius below one pulse: send a line");
-  return fill(geometry, Conic{1, 1, n, kUnit}, start, end);
+  const int128 mean = mean_radius_squared(start, end);
+  if (mean < kUnit * kUnit) refuse("radius below one pulse: send a line");
+  // A step to the side of the circle adds up to 1/2 to R^2 (in pulses), a step inwards takes nothing off it: half a
+  // square pulse less makes outside and inside errors alike, 1 + 1/(4 R). About a whole pulse F is then a whole number
+  // and one half, so that every sign is that of STEER's F.
+  return fill(geometry, Conic{1, 1, mean - kUnit * kUnit / 2, kUnit}, start, end);
 }
 
 Arc prepare(const EllipseGeometry& geometry) {

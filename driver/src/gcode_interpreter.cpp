@@ -12,6 +12,8 @@ namespace {
 constexpr double kMmPerInch = 25.4;
 constexpr double kStill = 1e-9;  // mm: what is left of a sum that should be 0
 
+constexpr double kLeastFeed = 1e-6;  // a minute; a millimetre in two years
+
 constexpr int kTraverse = 0;
 constexpr int kLine = 10;
 constexpr int kArcClockwise = 20;
@@ -299,6 +301,9 @@ void Interpreter::set_speed(const Block& block, Motion& motion) const {
   }
   if (!feed_ || *feed_ <= 0) {
     throw WordError{feed_ ? "feed is 0" : "motion with feed, but no F word before"};
+  }
+  if (*feed_ < kLeastFeed) {
+    throw WordError{"feed is too small"};
   }
   if (feed_mode_ == FeedMode::kInverseTime) {
     motion.seconds = 60 / *feed_;

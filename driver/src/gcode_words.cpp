@@ -8,8 +8,12 @@
 namespace trammel::driver {
 namespace {
 
+// So that no sum or square of coordinates leaves the range of a double.
+constexpr double kLargest = 1e12;
+
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_printable(char c) { return c > ' ' && c < '\x7f'; }
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
@@ -44,7 +48,7 @@ std::size_t number_end(std::string_view line, std::size_t at) {
 
 // The text of the malformed word, for the message: up to the next space or letter.
 std::string_view malformed(std::string_view line, std::size_t from, std::size_t at) {
-  while (at < line.size() && !is_space(line[at]) && !is_letter(line[at])) {
+  while (at < line.size() && is_printable(line[at]) && !is_letter(line[at])) {
     ++at;
   }
   return line.substr(from, at - from);
@@ -57,15 +61,16 @@ Word parse_word(std::string_view line, std::size_t& at) {
     ++at;
   }
   const std::size_t end = number_end(line, at);
-  const bool followed = end < line.size() && !is_space(line[end]) && !is_letter(line[end]) && line[end] != '(' &&
-                        line[end] != ';' && line[end] != '%';
+  constexpr std::string_view kMayFollow = "(;%";
+  const bool followed = end < line.size() && is_printable(line[end]) && !is_letter(line[end]) &&
+                        kMayFollow.find(line[end]) == std::string_view::npos;
   if (end == std::string_view::npos || followed) {
     throw WordError{fmt::format("malformed number in '{}'", malformed(line, from, at))};
   }
   const std::size_t digits = line[at] == '+' ? at + 1 : at;  // from_chars knows no plus sign
   double value = 0;
   const auto result = std::from_chars(line.data() + digits, line.data() + end, value, std::chars_format::fixed);
-  if (result.ec != std::errc() || result.ptr != line.data() + end || !std::isfinite(value)) {
+  if (result.ec != std::errc() || result.ptr != line.data() + end || std::abs(value) > kLargest) {
     throw WordError{fmt::format("number out of range in '{}'", line.substr(from, end - from))};
   }
   at = end;
@@ -88,9 +93,8 @@ void split_words(std::string_view line, std::vector<Word>& words) {
     } else if (is_letter(c)) {
       words.push_back(parse_word(line, at));
     } else {
-      const bool printable = c > ' ' && c < '\x7f';
-      throw WordError{printable ? fmt::format("unexpected '{}'", malformed(line, at, at + 1))
-                                : fmt::format("unexpected byte 0x{:02x}", static_cast<unsigned char>(c))};
+      throw WordError{is_printable(c) ? fmt::format("unexpected '{}'", malformed(line, at, at + 1))
+                                      : fmt::format("unexpected byte 0x{:02x}", static_cast<unsigned char>(c))};
     }
   }
 }

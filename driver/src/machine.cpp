@@ -21,21 +21,21 @@ enum class Range { kAny, kNotNegative, kPositive };
 
 struct Entry {
   const char* name;
-  double AxisSettings::*member;
+  double MachineAxis::*member;
   Range range;
   bool required;
 };
 
 constexpr std::array<Entry, 9> kEntries = {{
-    {"steps_per_mm", &AxisSettings::steps_per_mm, Range::kPositive, true},
-    {"max_velocity", &AxisSettings::max_velocity, Range::kPositive, true},
-    {"max_acceleration", &AxisSettings::max_acceleration, Range::kPositive, true},
-    {"max_jerk", &AxisSettings::max_jerk, Range::kPositive, true},
-    {"step_length_ns", &AxisSettings::step_length_ns, Range::kPositive, true},
-    {"step_space_ns", &AxisSettings::step_space_ns, Range::kPositive, true},
-    {"direction_setup_ns", &AxisSettings::direction_setup_ns, Range::kNotNegative, true},
-    {"direction_hold_ns", &AxisSettings::direction_hold_ns, Range::kNotNegative, true},
-    {"home", &AxisSettings::home, Range::kAny, false},
+    {"steps_per_mm", &MachineAxis::steps_per_mm, Range::kPositive, true},
+    {"max_velocity", &MachineAxis::max_velocity, Range::kPositive, true},
+    {"max_acceleration", &MachineAxis::max_acceleration, Range::kPositive, true},
+    {"max_jerk", &MachineAxis::max_jerk, Range::kPositive, true},
+    {"step_length_ns", &MachineAxis::step_length_ns, Range::kPositive, true},
+    {"step_space_ns", &MachineAxis::step_space_ns, Range::kPositive, true},
+    {"direction_setup_ns", &MachineAxis::direction_setup_ns, Range::kNotNegative, true},
+    {"direction_hold_ns", &MachineAxis::direction_hold_ns, Range::kNotNegative, true},
+    {"home", &MachineAxis::home, Range::kAny, false},
 }};
 
 // Where a text came from, for messages: a file (with line numbers), or one override.
@@ -77,7 +77,7 @@ std::optional<std::size_t> coordinate_system(const std::string& key) {
   return static_cast<std::size_t>(key[2] - '4');
 }
 
-void set_axis_entry(const Source& source, AxisSettings& axis, const std::string& path, const std::string& key,
+void set_axis_entry(const Source& source, MachineAxis& axis, const std::string& path, const std::string& key,
                     const toml::value& value) {
   if (key == "inverted") {
     if (!value.is_boolean()) {
@@ -125,7 +125,7 @@ char axis_letter(const Source& source, const std::string& key, const toml::value
 
 // Fits the 16-bit registers at this clock?
 void check_times(const std::string& where, const Machine& machine) {
-  for (const AxisSettings& axis : machine.axes) {
+  for (const MachineAxis& axis : machine.axes) {
     for (const double time :
          {axis.step_length_ns, axis.step_space_ns, axis.direction_setup_ns, axis.direction_hold_ns}) {
       try {
@@ -137,8 +137,8 @@ void check_times(const std::string& where, const Machine& machine) {
   }
 }
 
-AxisSettings read_axis(const Source& source, const std::string& name, const toml::value& value) {
-  AxisSettings axis;
+MachineAxis read_axis(const Source& source, const std::string& name, const toml::value& value) {
+  MachineAxis axis;
   const std::string path = "axis." + name;
   const toml::table& table = table_of(source, path, value);
   axis.letter = axis_letter(source, name, value);
@@ -229,7 +229,7 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
     throw MachineError(fmt::format("{}:1: {} axes, the card has at most {}", name, machine.axes.size(), kMaxAxes));
   }
   std::sort(machine.axes.begin(), machine.axes.end(),
-            [](const AxisSettings& a, const AxisSettings& b) { return card_order(a.letter) < card_order(b.letter); });
+            [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
   check_times(name + ":1", machine);
   return machine;
 }

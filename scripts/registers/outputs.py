@@ -6,6 +6,7 @@ import subprocess
 from .command_map import read_command_map
 from .register_map import read_register_map
 from .write_cpp import header_text
+from .write_docs import commands_text, registers_text
 from .write_sv import package_text
 
 
@@ -16,6 +17,8 @@ def generate(root):
     return {
         "rtl/regs/generated/card_map_pkg.sv": package_text(registers, commands),
         header: formatted(root, header, header_text(registers, commands)),
+        "docs/reference/registers.md": registers_text(registers, commands),
+        "docs/reference/commands.md": commands_text(commands),
     }
 
 

@@ -131,7 +131,7 @@ void expect_random_arcs(std::uint64_t seed, int count, double smallest, double l
     ASSERT_TRUE(ended) << "arc " << i << " of seed " << seed << ": radius " << made.radius << " sweep " << g.sweep;
     const double mean = (first + last) / 2;
     // One pulse, and what a step to the side of a small circle adds.
-    ASSERT_LT(std::max(most - mean, mean - least), 1 + 0.5 / mean) << "arc " << i << " of seed " << seed;
+    ASSERT_LT(std::max(most - mean, mean - least), 1 + 0.3 / mean) << "arc " << i << " of seed " << seed;
     worst.ring = std::max({worst.ring, most - std::max(first, last), std::min(first, last) - least});
     worst.mean = std::max({worst.mean, most - mean, mean - least});
     worst.real = std::max({worst.real, real_most - made.radius, made.radius - real_least});
@@ -144,9 +144,10 @@ TEST(Arc, RandomArcsEndExactlyWithinTheirError) {
   Extremes large;
   expect_random_arcs(2, 60000, 4, 500, large);
   expect_random_arcs(3, 10000, 500, 10000, large);
+  expect_random_arcs(4, 4, 100000, 1000000, large);
   RecordProperty("small", fmt::format("ring {:.4f} mean {:.4f} real {:.4f}", small.ring, small.mean, small.real));
   RecordProperty("large", fmt::format("ring {:.4f} mean {:.4f} real {:.4f}", large.ring, large.mean, large.real));
-  EXPECT_LT(small.ring, 1.2);
+  EXPECT_LT(small.ring, 1.13);
   EXPECT_LT(large.ring, 1.1);
   EXPECT_LT(large.mean, 1.1);
   // Rounding moves start and end by up to 0.71 pulse, and the circle through them with them.
@@ -219,7 +220,7 @@ TEST(Arc, FieldsOfGoldbergsCircle) {
   EXPECT_EQ(arc.prescale, (std::uint64_t{200} << 40) / 1000);
   EXPECT_EQ(arc.quadrants, 4);
   EXPECT_FALSE(arc.clockwise);
-  EXPECT_TRUE(arc.deviation == 0);
+  EXPECT_TRUE(arc.deviation == 65536 / 2);    // Table 3's 0, and the half that leaves its signs alone
   EXPECT_TRUE(arc.gradient_x == 50 * 65536);  // Table 3's 50, in squares of 1/256 pulse
   EXPECT_TRUE(arc.gradient_y == 0);
   EXPECT_EQ(arc.half_x, 65536u);

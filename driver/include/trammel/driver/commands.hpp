@@ -17,9 +17,9 @@ __extension__ typedef __int128 int128;
 
 // A straight line over `ticks` feed ticks; axes outside `mask` stand still.
 struct Line {
-  std::uint64_t ticks = 0;                           // N, feed ticks, 1 .. 2^40 - 1
-  std::uint8_t mask = 0;                             // bit n: axis n moves
-  std::array<std::int64_t, kMaxAxes> increment{};    // by axis index; 2^-40 pulses a tick, |.| <= 2^40
+  std::uint64_t ticks = 0;                         // N, feed ticks, 1 .. 2^40 - 1
+  std::uint8_t mask = 0;                           // bit n: axis n moves
+  std::array<std::int64_t, kMaxAxes> increment{};  // by axis index; 2^-40 pulses a tick, |.| <= 2^40
 };
 
 // An arc on the deviation accumulator.
@@ -33,10 +33,10 @@ struct Arc {
   std::uint16_t quadrants = 0;   // Q, quadrant changes before the end may be taken
   std::int32_t end_x = 0;        // displacement start to end, pulses
   std::int32_t end_y = 0;
-  int128 deviation = 0;          // F at the start
-  int128 gradient_x = 0;         // GX, GY at the start
+  int128 deviation = 0;   // F at the start
+  int128 gradient_x = 0;  // GX, GY at the start
   int128 gradient_y = 0;
-  std::uint64_t half_x = 0;      // CX/2, CY/2
+  std::uint64_t half_x = 0;  // CX/2, CY/2
   std::uint64_t half_y = 0;
 };
 
@@ -61,7 +61,17 @@ struct End {};
 using Command = std::variant<Line, Arc, Feed, Dwell, End>;
 
 // Appends the command's words (header first) to `words`. `number` is the command's number, mod 256.
-// Throws std::invalid_argument, naming the field, when a value is outside its layout; nothing is appended then.
+// Throws ArgumentError, naming the field, when a value is outside its layout or an axis outside the mask has an
+// increment; nothing is appended then. What depends on the card (its axes, engines, room) is not checked here.
 void encode(const Command& command, std::uint8_t number, std::vector<std::uint32_t>& words);
+
+struct DecodedCommand {
+  Command command;
+  std::uint8_t number = 0;  // mod 256
+};
+
+// Inverse of encode(): exactly one command of `count` words. Throws ArgumentError, naming what is wrong, unless
+// encode() could have made them.
+DecodedCommand decode(const std::uint32_t* words, std::size_t count);
 
 }  // namespace trammel::driver

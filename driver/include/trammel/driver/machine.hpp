@@ -24,7 +24,7 @@ class MachineError : public std::runtime_error {
 };
 
 // Lengths in mm; for the rotary letters A, B and C read degrees.
-struct AxisSettings {
+struct MachineAxis {
   char letter = 'X';
   double steps_per_mm = 0;        // pulses, > 0
   double max_velocity = 0;        // mm/s, > 0
@@ -40,8 +40,8 @@ struct AxisSettings {
 };
 
 struct Machine {
-  std::uint32_t clock_hz = 0;      // > 0
-  std::vector<AxisSettings> axes;  // in the card's order
+  std::uint32_t clock_hz = 0;     // > 0
+  std::vector<MachineAxis> axes;  // in the card's order
 
   // Index of the axis on the card; `letter` in upper case.
   std::optional<std::size_t> axis(char letter) const;

@@ -1,0 +1,25 @@
+# Install and export rules of the libraries: card map, golden models, driver. A consumer needs no Python, RTL or Verilator.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
+
+install(TARGETS trammel_card_map trammel_model trammel_driver EXPORT trammel-targets
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
+install(DIRECTORY
+  "${PROJECT_SOURCE_DIR}/rtl/regs/generated/include/"
+  "${PROJECT_SOURCE_DIR}/cpp-model/include/"
+  "${PROJECT_SOURCE_DIR}/driver/include/"
+  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp")
+install(EXPORT trammel-targets NAMESPACE trammel:: DESTINATION "${trammel_package_dir}"
+  COMPONENT trammel_development)
+
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/trammel-config.cmake.in"
+  "${PROJECT_BINARY_DIR}/trammel-config.cmake" INSTALL_DESTINATION "${trammel_package_dir}")
+# Before 1.0 every minor version may break its users.
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/trammel-config-version.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  "${PROJECT_BINARY_DIR}/trammel-config.cmake"
+  "${PROJECT_BINARY_DIR}/trammel-config-version.cmake"
+  DESTINATION "${trammel_package_dir}" COMPONENT trammel_development)

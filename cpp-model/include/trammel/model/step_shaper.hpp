@@ -1,0 +1,159 @@
+// Golden model of the step shaper: pulses with the drive's times at the pins, and the position that the pins show.
+//
+// Rules: a pulse is high for max(1, length) clocks. The space begins 2 clocks behind the pulse's end (1 where
+// length is 0) and lasts space + 2; then the next pulse begins, or else the direction's hold, hold + 2 clocks (a
+// waiting step in DIR's direction cuts it short). Behind the hold DIR may turn, setup + 2 clocks before the pulse it
+// turns for. Pins are one clock behind all that. Not thread-safe; faults are reported by outputs().fault.
+#pragma once
+
+#include <cstdint>
+
+namespace trammel::model {
+
+class StepShaper {
+ public:
+  static constexpr unsigned kPlaces = 4;  // steps that can wait
+
+  struct Inputs {
+    bool step = false;
+    bool dir = false;               // 1 = negative
+    std::uint16_t step_length = 0;  // clocks
+    std::uint16_t step_space = 0;   // clocks
+    std::uint16_t dir_setup = 0;    // clocks
+    std::uint16_t dir_hold = 0;     // clocks
+    std::uint8_t mode = 0;          // [1:0] 0 step/dir, 1 up/down, 2 or 3 quadrature; [2] inverts step, [3] dir
+    bool hold_tick = false;         // one clock in HOLD_LIMIT
+    bool clear_fault = false;
+  };
+  struct Outputs {
+    bool step = false;           // pin
+    bool dir = false;            // pin
+    std::uint32_t position = 0;  // pulses, two's complement, wraps
+    bool busy = false;           // steps wait, or a pulse or one of its times is under way
+    bool fault = false;          // a step was lost, or waited from one hold tick to the next
+  };
+
+  // One rising edge.
+  void clock(const Inputs& in) {
+    if (!quiet_ || in.step || in.clear_fault || in.mode != mode_) clock_busy(in);
+    times_ = {in.step_length, in.step_space, in.dir_setup, in.dir_hold};
+  }
+
+  const Outputs& outputs() const { return out_; }
+
+  // Steps wait: the only state in which hold_tick means anything.
+  bool waiting() const { return waiting_ != 0; }
+  // Nothing changes any more without a step, a new mode or clear_fault.
+  bool quiet() const { return quiet_; }
+
+  // The number of clocks, without step and clear_fault and with the other inputs as they are, for which no output
+  // changes (hold_tick may come in them unless waiting()). A lower bound; 2^63 when quiet().
+  std::uint64_t idle_clocks() const {
+    if (quiet_) return std::uint64_t{1} << 63;
+    if (begun_ || waiting_ != 0 || phase_ == Phase::kSetup || left_ < 4) return 0;
+    return left_ - 3;
+  }
+
+  // n clocks at once, n <= idle_clocks().
+  void advance(std::uint64_t n) {
+    if (!quiet_) left_ -= static_cast<std::uint32_t>(n);
+  }
+
+ private:
+  struct Times {
+    std::uint16_t length, space, setup, hold;
+  };
+  enum class Phase : std::uint8_t { kRest, kSetup, kHigh, kSpace };
+
+  void clock_busy(const Inputs& in) {
+    const bool expired = left_ == 0;
+    show(in);
+    begun_ = false;
+    const bool go = seen_same_ && (phase_ == Phase::kRest || (phase_ == Phase::kSpace && expired));
+    const bool head_same = waiting_ != 0 && head_back() == back_;
+    const bool head_other = waiting_ != 0 && !head_same;
+    bool served = false;
+    if (go || (phase_ == Phase::kSetup && expired)) {
+      enter(Phase::kHigh, times_.length);
+      begun_ = true;
+      served = true;
+    } else if (phase_ == Phase::kRest && seen_other_ && expired) {
+      enter(Phase::kSetup, times_.setup);
+      back_ = !back_;
+    } else if (phase_ == Phase::kHigh && expired) {
+      enter(Phase::kSpace, times_.space);
+    } else if (phase_ == Phase::kSpace && expired) {
+      enter(Phase::kRest, times_.hold);
+    } else if (left_ != 0) {
+      --left_;
+    }
+    seen_same_ = head_same;
+    seen_other_ = head_other;
+    judge(in, served);
+    queue(in, served);
+    quiet_ = !out_.busy;
+  }
+
+  // A phase of t takes t + 2 clocks.
+  void enter(Phase phase, std::uint16_t time) {
+    phase_ = phase;
+    left_ = std::uint32_t{time} + 1;
+  }
+
+  bool head_back() const { return (backs_ >> (waiting_ - 1) & 1) != 0; }
+
+  void judge(const Inputs& in, bool served) {
+    const bool lost = in.step && waiting_ == kPlaces && !served;
+    const bool late = in.hold_tick && waited_ && !served;
+    if (in.clear_fault) out_.fault = false;
+    if (lost || late) out_.fault = true;
+    if (served)
+      waited_ = false;
+    else if (in.hold_tick)
+      waited_ = waiting_ != 0;
+  }
+
+  // The directions that wait, the youngest in bit 0.
+  void queue(const Inputs& in, bool served) {
+    if (served) --waiting_;
+    if (!in.step || waiting_ == kPlaces) return;
+    backs_ = static_cast<std::uint8_t>(backs_ << 1 | (in.dir ? 1 : 0));
+    ++waiting_;
+  }
+
+  // Pins, position and busy follow the state before this clock.
+  void show(const Inputs& in) {
+    if (begun_) out_.position += back_ ? ~std::uint32_t{0} : 1U;
+    // The last two clocks of the pulse's phase are low already.
+    const bool pulse = phase_ == Phase::kHigh && (begun_ || left_ >= 2);
+    bool first = pulse;
+    bool second = back_;
+    if ((in.mode & 3) == 1) {
+      first = pulse && !back_;
+      second = pulse && back_;
+    } else if ((in.mode & 3) >= 2) {
+      first = ((out_.position + 1) & 2) != 0;
+      second = (out_.position & 2) != 0;
+    }
+    out_.step = first != ((in.mode & 4) != 0);
+    out_.dir = second != ((in.mode & 8) != 0);
+    out_.busy = in.step || waiting_ != 0 || phase_ != Phase::kRest || left_ != 0;
+    mode_ = in.mode;
+  }
+
+  Phase phase_ = Phase::kRest;
+  std::uint32_t left_ = 0;  // clocks of the phase behind this one
+  bool back_ = false;       // DIR
+  bool begun_ = false;      // the pulse began with the last edge
+  bool seen_same_ = false;  // what was waiting a clock ago
+  bool seen_other_ = false;
+  bool waited_ = false;
+  bool quiet_ = false;
+  std::uint8_t waiting_ = 0;
+  std::uint8_t backs_ = 0;
+  std::uint8_t mode_ = 0;
+  Times times_{};  // the times of a clock ago: a phase takes the one that stood before it began
+  Outputs out_;
+};
+
+}  // namespace trammel::model

@@ -1,0 +1,162 @@
+// One card: who it is, its settings, its state. Addresses and limits come from the generated card map.
+//
+// Units: times in nanoseconds of real time where a motor driver's data sheet gives them, else in card clocks; positions
+// in pulses. Every argument is checked before the first access to the bus (ArgumentError). Errors besides those named:
+// BusError, or RefusedError when the card latched why it refused the access. Thread-safety: none; one thread at a time
+// uses a card, its bus and its streams.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "trammel/driver/bus.hpp"
+#include "trammel/driver/commands.hpp"
+#include "trammel/driver/errors.hpp"
+
+namespace trammel::driver {
+
+// What the card says of itself.
+struct Identification {
+  std::uint16_t map_major = 0;
+  std::uint16_t map_minor = 0;
+  std::uint32_t commands_version = 0;
+  unsigned axes = 0;                 // 1 .. 8
+  std::uint32_t clock_hz = 0;        // Hz
+  std::uint32_t engines = 0;         // card_map's bits of ENGINES
+  std::uint32_t geometry_depth = 0;  // halfwords
+  std::uint32_t feed_depth = 0;      // halfwords
+};
+
+// What times a line on this card.
+struct CardTiming {
+  std::uint32_t clock_hz = 0;
+  unsigned axes = 0;
+  // Shortest distance of two leading edges of an axis, clocks: step length + step space, each at least 1.
+  std::array<std::uint32_t, kMaxAxes> pulse_period{};
+};
+
+enum class StepMode : std::uint8_t { kStepDirection = 0, kUpDown = 1, kQuadrature = 2 };
+
+// Settings of an axis. Times are those of the motor driver's data sheet; the card keeps at least these: clocks are
+// rounded up, 0 .. 65535 clocks each. A step pulse and its space last at least 1 clock.
+struct AxisSettings {
+  std::chrono::nanoseconds step_length{0};      // the pulse
+  std::chrono::nanoseconds step_space{0};       // trailing edge to the next leading edge
+  std::chrono::nanoseconds direction_setup{0};  // direction stable before the leading edge
+  std::chrono::nanoseconds direction_hold{0};   // and after the trailing edge
+  StepMode mode = StepMode::kStepDirection;
+  bool invert_first = false;   // pin STEP, UP or A
+  bool invert_second = false;  // pin DIR, DOWN or B
+};
+
+// STATUS.
+struct Status {
+  bool busy = false;         // something runs or is queued
+  bool direct = false;       // a one-shot line runs
+  bool path_active = false;  // a geometry command is in work
+  bool feed_active = false;  // a feed piece is in work
+  bool held = false;         // the time base's ratio is 0
+  bool ended = false;        // END was reached
+  bool faulted = false;      // FAULT is not 0
+  bool refused = false;      // REFUSAL is not 0
+  bool snapshot = false;     // a snapshot is under way
+  bool incomplete = false;   // the stream stands inside a command
+};
+
+// REFUSAL.
+struct Refusal {
+  std::uint8_t reason = 0;          // value of card_map::Reason, not 0
+  std::uint8_t command_number = 0;  // of a stream command
+  std::uint32_t address = 0;        // byte address of the access
+};
+
+// State of one clock.
+struct Snapshot {
+  std::uint64_t time = 0;                         // clocks since reset
+  Status status;                                  //
+  std::uint32_t rate = 0;                         // 2^-32 feed ticks an enabled clock
+  std::uint32_t ratio = 0;                        // 2^-16, of the time base
+  std::uint8_t geometry_command = 0;              // number of the geometry command in work
+  std::uint8_t feed_command = 0;                  // number of the feed piece in work
+  std::array<std::int32_t, kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
+};
+
+// Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".
+std::string describe_faults(std::uint32_t faults);
+// Name of a refusal reason and what it means.
+std::string describe_reason(std::uint8_t reason);
+
+class Card {
+ public:
+  // Full ratio of the time base: every clock is enabled.
+  static constexpr std::uint32_t kFullRatio = 0x10000;
+
+  // Reads who the card is and its step times. Throws IdentificationError, naming what does not fit and what would,
+  // unless it is a Trammel card with a map and commands that this driver knows. Writes nothing.
+  // `bus` must outlive the card.
+  static Card open(Bus& bus);
+
+  const Identification& identification() const { return identification_; }
+  // As read by open() or written by configure_axis() since.
+  const CardTiming& timing() const { return timing_; }
+  Bus& bus() const { return *bus_; }
+
+  // One block write; only while the axis stands. Throws ArgumentError for an axis that the card lacks, a negative time
+  // or one over 65535 clocks.
+  void configure_axis(unsigned axis, const AxisSettings& settings);
+
+  // Time base: share of clocks that are enabled, 2^-16, 0 .. kFullRatio.
+  void set_ratio(std::uint32_t ratio);
+  // Time that the ratio takes from 0 to full, up to 2^30 clocks; the slew is rounded down, to one that is no faster.
+  // Times under 5 clocks give the card's fastest slew, 8 clocks.
+  void set_slew_time(std::chrono::nanoseconds full_scale);
+  // Slews the time base to 0 (or back to its ratio).
+  void set_hold(bool hold);
+  // Time that a step may wait before it is a fault, 1 .. 65535 clocks, rounded up.
+  void set_hold_limit(std::chrono::nanoseconds limit);
+
+  // All of one clock. Throws TimeoutError if the card does not come up with it.
+  Snapshot snapshot();
+
+  Status status();
+  bool busy() { return status().busy; }
+  // Waits until the card is idle. Throws FaultError once it is faulted, TimeoutError after `timeout` of card time.
+  void wait_until_idle(std::chrono::nanoseconds timeout);
+
+  // FAULT, 0 if there is none.
+  std::uint32_t faults();
+  // Clears all faults; one whose cause persists comes back at once.
+  void clear_faults();
+  // The first access or command refused since the last clear.
+  std::optional<Refusal> refusal();
+  // Likewise after a BusError: nothing, rather than another BusError, if the link does not answer.
+  std::optional<Refusal> refusal_after_failure();
+  void clear_refusal();
+
+  // Drops the queues, stops the path and opens the stream's door. Positions stay; faults and refusals stay latched.
+  void abort();
+
+  // Throws FaultError if the card is faulted; reads FAULT only if `status` says so.
+  void throw_if_faulted(const Status& status, const std::string& context);
+  // Only within a handler of `error`: throws RefusedError if REFUSAL holds the access that failed, else a BusError.
+  [[noreturn]] void throw_refusal(const BusError& error, const std::string& context);
+
+  // Nanoseconds to card clocks, rounded up. Throws ArgumentError for a negative time or one of 2^63 clocks or more;
+  // `what` names it in the message.
+  std::uint64_t clocks(std::chrono::nanoseconds time, const char* what) const;
+  // A pause between two looks at the card, clocks: 50 microseconds, at least 64 clocks.
+  std::uint64_t poll_interval() const;
+
+ private:
+  explicit Card(Bus& bus) : bus_(&bus) {}
+  void write(std::uint32_t address, std::uint32_t value, const std::string& context);
+
+  Bus* bus_;
+  Identification identification_;
+  CardTiming timing_;
+};
+
+}  // namespace trammel::driver

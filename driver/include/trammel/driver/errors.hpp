@@ -1,0 +1,92 @@
+// What the driver throws. Every message says what was wrong with the value, and its unit.
+// Plain values; safe to copy between threads.
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace trammel::driver {
+
+// Base of all errors of the driver.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class Direction { kRead, kWrite };
+
+// The bus refused an access: the card answered an error, or the link failed.
+class BusError : public Error {
+ public:
+  BusError(std::uint32_t address, Direction direction);
+  // `detail`: what the transport knows, appended to the message.
+  BusError(std::uint32_t address, Direction direction, const std::string& detail);
+
+  std::uint32_t address() const { return address_; }  // byte address in the card's window
+  Direction direction() const { return direction_; }
+
+ private:
+  std::uint32_t address_;
+  Direction direction_;
+};
+
+// What answers is not a card that this driver understands.
+class IdentificationError : public Error {
+ public:
+  using Error::Error;
+};
+
+// The card refused a command or an access and latched why (REFUSAL).
+class RefusedError : public Error {
+ public:
+  // Fields as latched in REFUSAL; `context` names the operation that was refused, in the message only.
+  RefusedError(std::uint8_t reason, std::uint8_t command_number, std::uint32_t address, const std::string& context);
+
+  std::uint8_t reason() const { return reason_; }                  // value of card_map::Reason
+  std::uint8_t command_number() const { return command_number_; }  // mod 256; of the stream command
+  std::uint32_t address() const { return address_; }               // byte address of the access refused
+
+ private:
+  std::uint8_t reason_;
+  std::uint8_t command_number_;
+  std::uint32_t address_;
+};
+
+// The card has stopped with a latched fault.
+class FaultError : public Error {
+ public:
+  // `faults`: the FAULT register; its bits are named in the message. `context` as above.
+  FaultError(std::uint32_t faults, const std::string& context);
+
+  std::uint32_t faults() const { return faults_; }
+
+ private:
+  std::uint32_t faults_;
+};
+
+// The call makes no sense in the state that the card or the stream is in; the message says what to do first.
+class StateError : public Error {
+ public:
+  using Error::Error;
+};
+
+// A value is outside its range. Thrown before any access to the bus.
+class ArgumentError : public Error {
+ public:
+  using Error::Error;
+};
+
+// The card did not get there within the time allowed. Nothing was aborted.
+class TimeoutError : public Error {
+ public:
+  // `waited`: card clocks.
+  TimeoutError(const std::string& context, std::uint64_t waited);
+
+  std::uint64_t waited() const { return waited_; }
+
+ private:
+  std::uint64_t waited_;
+};
+
+}  // namespace trammel::driver

@@ -1,0 +1,112 @@
+// One-shot lines: frequency and pulse count of every axis, computed once and written with one block write; the pulse
+// generators then make the line by themselves.
+//
+// Source: Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm", (5)-(8): v_y = v (y_e - y_s), v_x = v (x_e -
+// x_s), p_y = y_e - y_s, p_x = x_e - x_s, with v in lines a second, that is 1 / duration. Here for up to 8 axes: a line
+// of N clocks has FREQUENCY = round(|p| * 2^40 / N), in 2^-40 pulses a clock, and COUNT = |p|. The phase starts at one
+// half, so after k clocks floor(1/2 + k * FREQUENCY / 2^40) pulses are made, and after N < 2^40 exactly |p|.
+//
+// All arithmetic is exact (integers). Durations and speeds are those at time base ratio 1; a lower ratio stretches
+// the line and leaves its track as it is. Planning is pure and thread-safe; what takes a Card is as thread-safe as it.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/commands.hpp"
+
+namespace trammel::driver {
+
+// Pulses from start to end by axis index; each within +-2^62.
+using Displacement = std::array<std::int64_t, kMaxAxes>;
+
+// Speed along the path, `pulses` each `seconds`, both at least 1. The path's length is sqrt(sum p^2) pulses.
+struct PathSpeed {
+  std::uint64_t pulses = 0;
+  std::uint32_t seconds = 1;
+};
+
+enum class LimitPolicy {
+  kRefuse,  // a line too fast for a limit throws ArgumentError
+  kSlow,    // it gets the shortest duration, in whole clocks, that keeps all limits
+};
+
+// Besides these the card's own limit counts: a pulse an axis in step length + step space clocks.
+struct LineLimits {
+  std::array<std::uint64_t, kMaxAxes> max_velocity{};  // by axis, pulses/s; 0: the card's own limit only
+  LimitPolicy policy = LimitPolicy::kRefuse;
+};
+
+inline constexpr std::size_t kOneShotWords = (card_map::reg::kStart - card_map::reg::frequency_lo(0)) / 4 + 1;
+
+// A line that the card runs in one go.
+struct OneShotPart {
+  std::uint64_t length = 0;                         // N, clocks, 1 .. 2^40 - 1
+  std::array<std::uint64_t, kMaxAxes> frequency{};  // 2^-40 pulses a clock, 0 .. 2^40
+  std::array<std::uint32_t, kMaxAxes> count{};      // pulses
+  std::uint8_t mask = 0;                            // bit n: axis n takes part
+  std::uint8_t negative = 0;                        // bit n: axis n steps in the negative direction
+
+  // The registers FREQUENCY_LO[0] .. START in order of address.
+  std::array<std::uint32_t, kOneShotWords> words() const;
+};
+
+// A line as the parts of equal length that the card runs one after another: one, unless the line is longer than the
+// card's counters (COUNT 32 bits, LENGTH 40). Part i runs from the pulse nearest to i / size() of the line to the one
+// nearest to (i + 1) / size(), so that an axis has at most one pulse more in one part than in another.
+class OneShotPlan {
+ public:
+  std::size_t size() const { return parts_; }
+  // Precondition: index < size().
+  OneShotPart part(std::size_t index) const;
+
+  // Length of all parts together, clocks. More than asked for if the line was slowed down, or rounded up to a whole
+  // number of clocks (of clocks a part).
+  std::uint64_t clocks() const { return part_clocks_ * parts_; }
+  // A limit made the line longer than asked for (LimitPolicy::kSlow).
+  bool slowed() const { return slowed_; }
+
+ private:
+  friend OneShotPlan plan_line_clocks(const CardTiming&, const Displacement&, std::uint64_t, const LineLimits&);
+
+  Displacement displacement_{};
+  std::size_t parts_ = 0;
+  std::uint64_t part_clocks_ = 0;
+  bool slowed_ = false;
+};
+
+// round(pulses * 2^40 / clocks), half away from zero. Precondition: 0 < clocks, pulses <= clocks < 2^40.
+std::uint64_t one_shot_frequency(std::uint64_t pulses, std::uint64_t clocks);
+
+// Plans a line over a duration, rounded up to whole clocks. Throws ArgumentError when no axis moves, an axis moves that
+// the card lacks, the duration is not positive, a limit is exceeded (kRefuse), or the line would take 2^62 clocks or
+// more.
+OneShotPlan plan_line(const CardTiming& card, const Displacement& displacement, std::chrono::nanoseconds duration,
+                      const LineLimits& limits = {});
+
+// Likewise at a speed along the path: the fewest clocks that do not exceed it.
+OneShotPlan plan_line(const CardTiming& card, const Displacement& displacement, PathSpeed speed,
+                      const LineLimits& limits = {});
+
+// Likewise over a number of clocks, at least 1.
+OneShotPlan plan_line_clocks(const CardTiming& card, const Displacement& displacement, std::uint64_t clocks,
+                             const LineLimits& limits = {});
+
+// Starts the part with one block write and nothing else on the bus. Throws RefusedError if the card is not idle.
+void start_line(Card& card, const OneShotPart& part);
+
+// Plans a line and starts it. Throws what plan_line throws, and ArgumentError if the line has more than one part;
+// all that before the first access to the bus. Gives back the plan.
+OneShotPlan start_line(Card& card, const Displacement& displacement, std::chrono::nanoseconds duration,
+                       const LineLimits& limits = {});
+OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed speed, const LineLimits& limits = {});
+
+// Runs all parts and returns when the last has ended. Throws FaultError, and TimeoutError when a part is not over
+// `patience` (card time) after its length has passed, for example because of a hold.
+void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds patience = std::chrono::seconds(1));
+
+}  // namespace trammel::driver

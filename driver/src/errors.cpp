@@ -1,0 +1,73 @@
+#include "trammel/driver/errors.hpp"
+
+#include <fmt/format.h>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+
+namespace trammel::driver {
+namespace {
+
+std::string register_name(std::uint32_t address) {
+  const card_map::Slot slot = card_map::find_register(address);
+  if (slot.entry == nullptr) {
+    return fmt::format("address 0x{:03X}", address);
+  }
+  const std::string index = slot.entry->count > 1 ? fmt::format("[{}]", slot.index) : "";
+  return fmt::format("{}{} (0x{:03X})", slot.entry->name, index, address);
+}
+
+std::string bus_message(std::uint32_t address, Direction direction, const std::string& detail) {
+  return fmt::format("bus: {} {} failed{}{}", direction == Direction::kRead ? "read of" : "write to",
+                     register_name(address), detail.empty() ? "" : ": ", detail);
+}
+
+}  // namespace
+
+BusError::BusError(std::uint32_t address, Direction direction) : BusError(address, direction, "") {}
+
+BusError::BusError(std::uint32_t address, Direction direction, const std::string& detail)
+    : Error(bus_message(address, direction, detail)), address_(address), direction_(direction) {}
+
+RefusedError::RefusedError(std::uint8_t reason, std::uint8_t command_number, std::uint32_t address,
+                           const std::string& context)
+    : Error(fmt::format("{}: the card refused it: {} Access to {}, command number {}", context, describe_reason(reason),
+                        register_name(address), command_number)),
+      reason_(reason),
+      command_number_(command_number),
+      address_(address) {}
+
+FaultError::FaultError(std::uint32_t faults, const std::string& context)
+    : Error(fmt::format("{}: the card has stopped with a fault: {}", context, describe_faults(faults))),
+      faults_(faults) {}
+
+TimeoutError::TimeoutError(const std::string& context, std::uint64_t waited)
+    : Error(fmt::format("{}: not within {} card clocks", context, waited)), waited_(waited) {}
+
+std::string describe_faults(std::uint32_t faults) {
+  namespace field = card_map::field;
+  std::string text;
+  const auto add = [&text](const std::string& name) { text += (text.empty() ? "" : ", ") + name; };
+  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+    if ((faults >> (field::kFaultStepShift + axis) & 1U) != 0) {
+      add(fmt::format("step fault of axis {}", axis));
+    }
+  }
+  if ((faults & field::kFaultTickMismatch) != 0) {
+    add("TICK_MISMATCH");
+  }
+  if ((faults & field::kFaultPathIncomplete) != 0) {
+    add("PATH_INCOMPLETE");
+  }
+  const std::uint32_t unknown = faults & ~card_map::find_register(card_map::reg::kFault).entry->mask;
+  if (unknown != 0) {
+    add(fmt::format("unknown bits 0x{:X}", unknown));
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string describe_reason(std::uint8_t reason) {
+  return fmt::format("{} ({}): {}", card_map::reason_name(reason), reason, card_map::reason_text(reason));
+}
+
+}  // namespace trammel::driver

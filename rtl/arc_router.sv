@@ -1,0 +1,39 @@
+// Carries the accumulator's steps to the two axes of the arc's plane.
+//
+// The plane is loaded with the arc, that is when no other arc runs, so that one register is enough.
+`default_nettype none
+
+module arc_router #(
+    parameter int Axes = 4
+) (
+    input  wire logic            clk_i,
+    input  wire logic            rst_i,
+    input  wire logic            load_plane_i,
+    input  wire logic [15:0]     word_i,
+    input  wire logic            step_x_i,
+    input  wire logic            dir_x_i,
+    input  wire logic            step_y_i,
+    input  wire logic            dir_y_i,
+    output logic      [Axes-1:0] step_o,
+    output logic      [Axes-1:0] dir_o
+);
+  logic [2:0] axis_x_q;
+  logic [2:0] axis_y_q;
+
+  always_ff @(posedge clk_i) begin
+    if (load_plane_i) begin
+      axis_x_q <= word_i[6:4];
+      axis_y_q <= word_i[10:8];
+    end
+    for (int i = 0; i < Axes; i++) begin
+      step_o[i] <= ((step_x_i & (axis_x_q == 3'(i))) | (step_y_i & (axis_y_q == 3'(i)))) & ~rst_i;
+      dir_o[i]  <= (axis_x_q == 3'(i)) ? dir_x_i : dir_y_i;
+    end
+  end
+
+  // Bits of the halfword that the accumulator reads.
+  logic unused;
+  assign unused = &{1'b0, word_i[15:11], word_i[7], word_i[3:0]};
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,120 @@
+`default_nettype none
+
+// AXI4-Lite slave in front of the register file's port.
+// A write is taken when address and data are both there, a read when its address is; where both wait they take turns.
+// Ready answers valid a clock later, for one clock: the access was noted a clock before its handshake, which is safe
+// since a master keeps valid and what belongs to it until then.
+module axi4_lite_port (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        awvalid_i,
+    output logic             awready_o,
+    input  wire logic [11:0] awaddr_i,
+    input  wire logic        wvalid_i,
+    output logic             wready_o,
+    input  wire logic [31:0] wdata_i,
+    input  wire logic [ 3:0] wstrb_i,
+    output logic             bvalid_o,
+    input  wire logic        bready_i,
+    output logic      [ 1:0] bresp_o,
+    input  wire logic        arvalid_i,
+    output logic             arready_o,
+    input  wire logic [11:0] araddr_i,
+    output logic             rvalid_o,
+    input  wire logic        rready_i,
+    output logic      [31:0] rdata_o,
+    output logic      [ 1:0] rresp_o,
+    // to the register file
+    output logic             request_o,
+    output logic             write_o,
+    output logic             partial_o,
+    output logic      [11:0] address_o,
+    output logic      [31:0] data_o,
+    input  wire logic        ack_i,
+    input  wire logic        error_i,
+    input  wire logic [31:0] data_i
+);
+
+  logic busy_q;
+  logic write_q;
+  logic bvalid_q;
+  logic rvalid_q;
+  logic write_waits;
+  logic read_waits;
+  logic take_write;
+  logic take_read;
+
+  // A new access only when its answer has a place to go.
+  assign write_waits = awvalid_i && wvalid_i && !bvalid_q;
+  assign read_waits = arvalid_i && !rvalid_q;
+  assign take_write = !busy_q && write_waits && !(read_waits && write_q);
+  assign take_read = !busy_q && read_waits && !take_write;
+
+  logic        request_q;
+  logic        write_ready_q;
+  logic        read_ready_q;
+  logic        partial_q;
+  logic [11:0] address_q;
+  logic [31:0] data_q;
+
+  always_ff @(posedge clk_i) begin
+    request_q <= take_write || take_read;
+    write_ready_q <= take_write;
+    read_ready_q <= take_read;
+    if (!busy_q) begin
+      busy_q <= take_write || take_read;
+      if (take_write || take_read) write_q <= take_write;
+      partial_q <= wstrb_i != 4'b1111;
+      address_q <= take_write ? awaddr_i : araddr_i;
+      data_q <= wdata_i;
+    end else if (ack_i) begin
+      busy_q <= 1'b0;
+    end
+    if (rst_i) begin
+      request_q <= 1'b0;
+      write_ready_q <= 1'b0;
+      read_ready_q <= 1'b0;
+      busy_q <= 1'b0;
+      write_q <= 1'b0;
+    end
+  end
+
+  logic        write_error_q;
+  logic        read_error_q;
+  logic [31:0] rdata_q;
+
+  always_ff @(posedge clk_i) begin
+    if (bready_i) bvalid_q <= 1'b0;
+    if (rready_i) rvalid_q <= 1'b0;
+    if (ack_i && write_q) begin
+      bvalid_q <= 1'b1;
+      write_error_q <= error_i;
+    end
+    if (ack_i && !write_q) begin
+      rvalid_q <= 1'b1;
+      read_error_q <= error_i;
+      rdata_q <= data_i;
+    end
+    if (rst_i) begin
+      bvalid_q <= 1'b0;
+      rvalid_q <= 1'b0;
+    end
+  end
+
+  assign awready_o = write_ready_q;
+  assign wready_o = write_ready_q;
+  assign bvalid_o = bvalid_q;
+  assign bresp_o = {write_error_q, 1'b0};
+  assign arready_o = read_ready_q;
+  assign rvalid_o = rvalid_q;
+  assign rdata_o = rdata_q;
+  assign rresp_o = {read_error_q, 1'b0};
+  assign request_o = request_q;
+  assign write_o = write_q;
+  assign partial_o = partial_q;
+  assign address_o = address_q;
+  assign data_o = data_q;
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,61 @@
+// DWELL and END: waits until both queues stand at the barrier, counts the dwell's clocks, then lets both go on.
+//
+// The path's tick counter, free at a barrier, counts the clocks. A dwell of n clocks counts for max(1, n).
+`default_nettype none
+
+module barrier (
+    input  wire logic clk_i,
+    input  wire logic rst_i,
+    input  wire logic clear_i,
+    input  wire logic go_i,          // no fault
+    input  wire logic geometry_at_i,
+    input  wire logic feed_at_i,
+    input  wire logic zero_i,        // the count is 0
+    input  wire logic end_i,         // the barrier is an END
+    input  wire logic last_i,        // of the tick counter
+    output logic      load_o,        // load the tick counter
+    output logic      counting_o,    // one count each clock
+    output logic      done_o,        // both queues go on
+    output logic      ended_o,       // with done_o: it was an END
+    output logic      idle_o
+);
+  // LEAVE gives the two fetches the clocks in which they take back geometry_at_i and feed_at_i.
+  typedef enum logic [2:0] {
+    IDLE,
+    SETTLE,
+    LOAD,
+    COUNT,
+    LEAVE
+  } state_e;
+
+  state_e     state_q;
+  state_e     state_d;
+  logic [1:0] step_q;
+  logic       over;
+
+  assign over = (state_q == COUNT) & go_i & (zero_i | last_i);
+
+  always_comb begin
+    state_d = state_q;
+    case (state_q)
+      IDLE: if (geometry_at_i & feed_at_i & go_i) state_d = SETTLE;
+      SETTLE: if (step_q == 2'd1) state_d = LOAD;
+      LOAD: state_d = COUNT;
+      COUNT: if (over) state_d = LEAVE;
+      default: if (step_q == 2'd2) state_d = IDLE;
+    endcase
+    if (clear_i | rst_i) state_d = IDLE;
+  end
+
+  always_ff @(posedge clk_i) begin
+    state_q    <= state_d;
+    step_q     <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
+    load_o     <= state_d == LOAD;
+    counting_o <= state_d == COUNT;
+    done_o     <= over & ~clear_i & ~rst_i;
+    ended_o    <= over & end_i & ~clear_i & ~rst_i;
+    idle_o     <= state_d == IDLE;
+  end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,168 @@
+// The stream's door: takes command words, judges them halfword by halfword against the layouts of
+// rtl/regs/commands.toml and passes good commands on in their stored form (halfword 1 and padding left out, the number
+// in the top of the count).
+//
+// A word written at c is answered by done_o or error_o at c+6 (at c+2 when the door is closed), when ready_o is back;
+// a write without ready_o is ignored. A refused word gives refuse_o with its answer, drops its command whole and
+// closes the door until clear_i. flush_i waits for a word in work and comes before one beside it. A word in work at
+// clear_i is answered by error_o at once. number_o is the number in the last header, reason_o the last refusal's;
+// halfword_o holds between writes.
+`default_nettype none
+module command_door #(
+    parameter int Axes = 4  // 1..8
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic write_i,
+    input wire logic [31:0] word_i,
+    input wire logic flush_i,
+    input wire logic clear_i,
+    input wire logic [12:0] geometry_room_i,
+    input wire logic [12:0] feed_room_i,
+    output logic ready_o,
+    output logic done_o,
+    output logic error_o,
+    output logic [15:0] halfword_o,
+    output logic geometry_write_o,
+    output logic feed_write_o,
+    output logic geometry_commit_o,
+    output logic feed_commit_o,
+    output logic drop_o,
+    output logic refuse_o,
+    output logic [7:0] reason_o,
+    output logic [7:0] number_o,
+    output logic partial_o
+);
+
+  // A word's way, one clock each: either halfword is examined and judged, then the word is answered.
+  logic low_q;
+  logic low_judge_q;
+  logic high_q;
+  logic high_judge_q;
+  logic answer_q;
+
+  logic [31:0] word_q;  // goes round by a halfword with each judgement
+  logic open_q;
+  logic flush_q;
+  logic [4:0] left_q;  // words to come: at most 18, ARC
+  logic restart;
+  logic truncate;
+  logic last;
+  logic padding;
+  logic refused;
+  logic accepted;
+  logic store;
+  logic [7:0] op;
+  logic [7:0] mask;
+  logic to_geometry;
+  logic to_feed;
+  logic [5:0] stored;
+  logic header_bad;
+  logic [7:0] header_reason;
+  logic count_top;
+  logic field_bad;
+  logic field_bad_mask;
+
+  assign restart  = rst_i || clear_i;
+  assign truncate = ready_o && (flush_i || flush_q) && partial_o;
+  assign last     = left_q == 5'd1;
+  assign padding  = last && !stored[0];
+  assign refused  = answer_q && (!open_q || (partial_o ? field_bad : header_bad));
+  assign accepted = answer_q && partial_o && last && !field_bad;
+  // The first halfword waits for its header's verdict: before that there may be no room for it.
+  assign store    = partial_o ? low_judge_q || (high_judge_q && !padding) : answer_q && !refused;
+
+  command_header #(
+      .Axes(Axes)
+  ) header (
+      .clk_i,
+      .restart_i(restart),
+      .low_i(low_q && !partial_o),
+      .low_judge_i(low_judge_q && !partial_o),
+      .high_i(high_q && !partial_o),
+      .high_judge_i(high_judge_q && !partial_o),
+      .accept_i(accepted),
+      .halfword_i(word_q[15:0]),
+      .geometry_room_i,
+      .feed_room_i,
+      .op_o(op),
+      .mask_o(mask),
+      .number_o,
+      .to_geometry_o(to_geometry),
+      .to_feed_o(to_feed),
+      .stored_o(stored),
+      .bad_o(header_bad),
+      .reason_o(header_reason)
+  );
+
+  command_fields fields (
+      .clk_i,
+      .restart_i(low_q && !partial_o),
+      .examine_i((low_q || high_q) && partial_o),
+      .judge_i((low_judge_q || high_judge_q) && partial_o),
+      .read_ahead_i(low_judge_q || high_judge_q),
+      .padding_i(low_judge_q && padding && partial_o),
+      .halfword_i(word_q[15:0]),
+      .op_i(op),
+      .mask_i(mask),
+      .count_top_o(count_top),
+      .bad_o(field_bad),
+      .bad_mask_o(field_bad_mask)
+  );
+
+  always_ff @(posedge clk_i) begin
+    if (ready_o) word_q <= word_i;
+    else if (low_judge_q || high_judge_q) word_q <= {word_q[15:0], word_q[31:16]};
+
+    if (answer_q) left_q <= partial_o ? left_q - 5'd1 : stored[5:1];
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (restart) begin
+      {low_q, low_judge_q, high_q, high_judge_q, answer_q} <= 5'd0;
+      ready_o <= 1'b1;
+      done_o <= 1'b0;
+      error_o <= !rst_i && (!ready_o || write_i);
+      flush_q <= 1'b0;
+      open_q <= 1'b1;
+      partial_o <= 1'b0;
+    end else begin
+      low_q <= ready_o && write_i && open_q && !truncate;
+      low_judge_q <= low_q;
+      high_q <= low_judge_q;
+      high_judge_q <= high_q;
+      answer_q <= high_judge_q || (ready_o && write_i && (!open_q || truncate));
+      ready_o <= answer_q || (ready_o && !write_i);
+      done_o <= answer_q && !refused;
+      error_o <= refused;
+      flush_q <= !ready_o && (flush_i || flush_q);
+      if (refused || truncate) open_q <= 1'b0;
+      if (refused || truncate) partial_o <= 1'b0;
+      else if (answer_q) partial_o <= !accepted;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (restart) begin
+      halfword_o <= 16'd0;
+      {geometry_write_o, feed_write_o, geometry_commit_o, feed_commit_o} <= 4'd0;
+      drop_o <= 1'b0;
+      refuse_o <= 1'b0;
+      reason_o <= card_map_pkg::REFUSE_NONE;
+    end else begin
+      if (store) halfword_o <= {partial_o && count_top ? number_o : word_q[15:8], word_q[7:0]};
+      geometry_write_o <= store && to_geometry;
+      feed_write_o <= store && to_feed;
+      geometry_commit_o <= accepted && to_geometry;
+      feed_commit_o <= accepted && to_feed;
+      drop_o <= (refused || truncate) && open_q;
+      refuse_o <= refused || truncate;
+      if (truncate) reason_o <= card_map_pkg::REFUSE_TRUNCATED;
+      else if (refused && !open_q) reason_o <= card_map_pkg::REFUSE_DOOR_CLOSED;
+      else if (refused && !partial_o) reason_o <= header_reason;
+      else if (refused) reason_o <= field_bad_mask ? card_map_pkg::REFUSE_BAD_MASK : card_map_pkg::REFUSE_BAD_FIELD;
+    end
+  end
+
+endmodule
+`default_nettype wire

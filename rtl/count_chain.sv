@@ -1,0 +1,26 @@
+// The next command's count and number, shifted in from the load bus, with the zero flags that a tick_counter loads.
+`default_nettype none
+
+module count_chain (
+    input  wire logic        clk_i,
+    input  wire logic        load_i,
+    input  wire logic [15:0] word_i,
+    output logic      [39:0] count_o,
+    output logic      [ 7:0] number_o,
+    // of count_o, one clock late
+    output logic             mid_zero_o,  // bits 19 to 4
+    output logic             top_zero_o,  // bits 39 to 20
+    output logic             zero_o       // all bits; two clocks late
+);
+  logic low_zero_q;
+
+  always_ff @(posedge clk_i) begin
+    if (load_i) {number_o, count_o} <= {word_i, number_o, count_o[39:16]};
+    mid_zero_o <= count_o[19:4] == 16'd0;
+    top_zero_o <= count_o[39:20] == 20'd0;
+    low_zero_q <= count_o[3:0] == 4'd0;
+    zero_o     <= low_zero_q & mid_zero_o & top_zero_o;
+  end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,133 @@
+// Pulse generator of one axis: a phase accumulator with 40 fraction bits whose carry is a step forward and whose
+// borrow is a step back, and a count that can end the line early (direct mode).
+//
+// The accumulator is split: the low half is added at the tick, the high half one clock later, with its half of the
+// increment, the preset and the tick delayed alike. The step is registered before it meets the count, so neither adder
+// sits in front of other logic. Latency from tick_i to step_o: 3 clocks, always.
+//
+// Rules for the user: swaps at least 3 clocks apart; no load in the 2 clocks after a swap; no swap and no count load
+// while live_o; a count is used up by its line and loaded anew for the next.
+`default_nettype none
+
+module pulse_generator #(
+    parameter int CountWidth = 32,  // at least 17, at most 32
+    parameter bit Counted = 1       // 0: no count is built, counted_i and load_count_i do nothing
+) (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        clear_i,           // ends the line and drops the steps in flight
+    input  wire logic        tick_i,
+    input  wire logic        swap_i,
+    input  wire logic        active_i,
+    input  wire logic        counted_i,
+    input  wire logic        mirror_i,
+    input  wire logic        load_increment_i,
+    input  wire logic        load_count_i,
+    input  wire logic [15:0] word_i,
+    output logic             step_o,
+    output logic             dir_o,
+    output logic             live_o
+);
+
+  // |increment| <= 2^40 needs 42 bits signed; three halfwords shift through 48.
+  logic [47:0] next_q;
+  always_ff @(posedge clk_i) begin
+    if (load_increment_i) next_q <= {word_i, next_q[47:16]};
+  end
+
+  // Low half of the accumulator. One half less 2^-40 is 0111..1: each half is preset to zeros or ones but for the top bit.
+  logic [19:0] low_q;
+  logic [19:0] low_increment_q;
+  logic [20:0] low_sum;
+  logic        carry_q;
+  logic        preset_high;  // the preset's low bits are ones: a mirrored line that runs backwards
+  assign low_sum = {1'b0, low_q} + {1'b0, low_increment_q};
+  assign preset_high = swap_i & mirror_i & next_q[41];
+
+  always_ff @(posedge clk_i) begin
+    carry_q <= low_sum[20];
+    if (swap_i) low_increment_q <= next_q[19:0];
+    if (swap_i & ~preset_high) low_q <= '0;
+    else if (swap_i | tick_i) low_q <= low_sum[19:0] | {20{preset_high}};
+  end
+
+  // High half, one clock later: bit 20 of its sum is a step (carry or borrow), bit 21 the sign of it.
+  logic [19:0] high_q;
+  logic [21:0] high_increment_q;
+  logic [21:0] high_sum;
+  logic        tick_q;
+  logic        swap_q;
+  logic        preset_high_q;
+  logic        carried_q;
+  logic        backwards_q;
+  assign high_sum = {2'b00, high_q} + high_increment_q + {21'b0, carry_q};
+
+  always_ff @(posedge clk_i) begin
+    tick_q <= tick_i;
+    swap_q <= swap_i;
+    preset_high_q <= preset_high;
+    carried_q <= tick_q & high_sum[20];
+    backwards_q <= high_sum[21];
+    if (swap_q) high_increment_q <= next_q[41:20];
+    if (swap_q & ~preset_high_q) high_q <= 20'h80000;
+    else if (swap_q) high_q <= 20'h7FFFF;
+    else if (tick_q) high_q <= high_sum[19:0];
+    if (rst_i | clear_i) swap_q <= 1'b0;
+  end
+
+  // A line's gate opens in the clock in which its first tick's carry can arrive, behind the old line's last one.
+  logic opening_q;  // the line swapped in last is active
+  logic swap_late_q;
+  logic open_q;
+  logic nothing;  // the line is counted, and its count is 0
+  logic last;     // the step under way makes the count
+  logic step;
+  assign step = carried_q & open_q;
+
+  always_ff @(posedge clk_i) begin
+    swap_late_q <= swap_q;
+    if (swap_i) opening_q <= active_i;
+    if (swap_late_q) open_q <= opening_q & ~nothing;
+    else if (last) open_q <= 1'b0;
+    step_o <= step;
+    if (step & ~clear_i) dir_o <= backwards_q;
+    if (rst_i | clear_i) begin
+      swap_late_q <= 1'b0;
+      open_q <= 1'b0;
+      step_o <= 1'b0;
+    end
+    if (rst_i) dir_o <= 1'b0;
+  end
+
+  generate
+    if (Counted) begin : g_count
+      step_count #(
+          .Width(CountWidth)
+      ) u_count (
+          .clk_i,
+          .clear_i  (rst_i | clear_i),
+          .load_i   (load_count_i),
+          .word_i,
+          .arm_i    (swap_i),
+          .counted_i(active_i & counted_i),
+          .begin_i  (swap_late_q),
+          .step_i   (carried_q),
+          .live_o,
+          .nothing_o(nothing),
+          .last_o   (last)
+      );
+    end else begin : g_free
+      logic unused;
+      assign unused = ^{counted_i, load_count_i};
+      assign nothing = 1'b0;
+      assign last = 1'b0;
+      assign live_o = 1'b0;
+    end
+  endgenerate
+
+  logic unused_extension;  // of the third halfword only 10 bits have a meaning
+  assign unused_extension = ^next_q[47:42];
+
+endmodule
+
+`default_nettype wire

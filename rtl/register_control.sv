@@ -1,0 +1,150 @@
+`default_nettype none
+
+// Takes one access at a time and carries it through: judgement, action, answer.
+// The access stands at address_o, write_o, partial_o and word_o from the clock behind request_i until the next one;
+// word_o keeps the last word written.
+module register_control (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        request_i,
+    input  wire logic        write_i,
+    input  wire logic        partial_i,
+    input  wire logic [11:0] address_i,
+    input  wire logic [31:0] data_i,
+    output logic             ack_o,
+    output logic             error_o,
+    output logic             respond_o,
+    output logic             write_o,
+    output logic             partial_o,
+    output logic      [11:0] address_o,
+    output logic      [31:0] word_o,
+    // judgement
+    input  wire logic [ 2:0] kind_i,
+    input  wire logic        stream_i,
+    input  wire logic        start_i,
+    input  wire logic        good_i,
+    input  wire logic [ 7:0] reason_i,
+    input  wire logic        walking_i,
+    // a write takes effect while act_o is high, together with its ack_o
+    output logic             act_o,
+    output logic             refuse_o,
+    output logic      [ 7:0] refuse_reason_o,
+    output logic             stream_write_o,
+    output logic             start_o,
+    input  wire logic        door_ready_i,
+    input  wire logic        door_refuse_i,
+    input  wire logic        start_done_i,
+    input  wire logic        start_error_i,
+    input  wire logic [ 7:0] start_reason_i
+);
+
+  typedef enum logic [3:0] {
+    IDLE,
+    DECODE,   // register_decode takes the access
+    WAIT,     // its judgement comes; a walk over the RAM goes first
+    ACT,      // refuse or act; the RAM's word is in its first register
+    RESPOND,  // the read value is there
+    SEND,     // a word for the door: wait until it is ready
+    SENT,     // the door sees the word
+    JUDGE,    // wait for the door's judgement
+    LOAD      // wait for the direct loader's
+  } state_e;
+
+  state_e state_q;
+  state_e state_d;
+
+  logic        write_q;
+  logic        partial_q;
+  logic [11:0] address_q;
+  logic [31:0] word_q;
+
+  always_ff @(posedge clk_i) begin
+    if (request_i && state_q == IDLE) begin
+      write_q <= write_i;
+      partial_q <= partial_i;
+      address_q <= address_i;
+      if (write_i) word_q <= data_i;
+    end
+    if (rst_i) begin
+      address_q <= '0;
+      word_q <= '0;
+    end
+  end
+
+  logic finish;
+  logic failed;
+  logic word_refused_q;
+
+  always_comb begin
+    state_d = state_q;
+    finish = 1'b0;
+    failed = 1'b0;
+    case (state_q)
+      IDLE: if (request_i) state_d = DECODE;
+      DECODE: state_d = WAIT;
+      WAIT: if (!walking_i || kind_i == card_map_pkg::ACCESS_LIVE) state_d = ACT;
+      ACT: begin
+        if (!good_i) begin
+          finish = 1'b1;
+          failed = 1'b1;
+        end else if (!write_q) state_d = RESPOND;
+        else if (stream_i) state_d = SEND;
+        else if (start_i) state_d = LOAD;
+        else finish = 1'b1;
+      end
+      RESPOND: finish = 1'b1;
+      SEND: if (door_ready_i) state_d = SENT;
+      SENT: state_d = JUDGE;
+      JUDGE: begin
+        finish = door_ready_i;
+        failed = word_refused_q || door_refuse_i;
+      end
+      LOAD: begin
+        finish = start_done_i;
+        failed = start_error_i;
+      end
+      default: state_d = IDLE;
+    endcase
+    if (finish) state_d = IDLE;
+  end
+
+  logic act_q;
+  logic ack_q;
+  logic error_q;
+  logic stream_write_q;
+  logic start_q;
+
+  always_ff @(posedge clk_i) begin
+    state_q <= state_d;
+    act_q <= state_q == ACT && finish && !failed;
+    ack_q <= finish;
+    error_q <= finish && failed;
+    word_refused_q <= state_q == JUDGE && (word_refused_q || door_refuse_i);
+    stream_write_q <= state_q == SEND && door_ready_i;
+    start_q <= state_q == ACT && state_d == LOAD;
+    if (rst_i) begin
+      state_q <= IDLE;
+      act_q <= 1'b0;
+      ack_q <= 1'b0;
+      error_q <= 1'b0;
+      stream_write_q <= 1'b0;
+      start_q <= 1'b0;
+    end
+  end
+
+  assign ack_o = ack_q;
+  assign error_o = error_q;
+  assign respond_o = state_q == RESPOND;
+  assign write_o = write_q;
+  assign partial_o = partial_q;
+  assign address_o = address_q;
+  assign word_o = word_q;
+  assign act_o = act_q;
+  assign refuse_o = state_q == ACT ? !good_i : state_q == LOAD && start_done_i && start_error_i;
+  assign refuse_reason_o = state_q == ACT ? reason_i : start_reason_i;
+  assign stream_write_o = stream_write_q;
+  assign start_o = start_q;
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,76 @@
+`default_nettype none
+
+// STATUS, the registers that read as the card stands, and the interrupt.
+// data_o is, a clock later, the live register at word_i; its low 4 bits tell the live registers apart.
+module register_live (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic [ 5:2] word_i,
+    input  wire logic        busy_i,
+    input  wire logic        direct_i,
+    input  wire logic        path_active_i,
+    input  wire logic        feed_active_i,
+    input  wire logic        ended_i,
+    input  wire logic        incomplete_i,
+    input  wire logic        walking_i,
+    input  wire logic [16:0] ratio_i,
+    input  wire logic [ 9:0] fault_i,
+    input  wire logic        refused_i,
+    input  wire logic [27:0] refusal_i,
+    input  wire logic [12:0] geometry_room_i,
+    input  wire logic [12:0] feed_room_i,
+    input  wire logic [15:0] running_i,
+    input  wire logic [ 7:0] irq_enable_i,
+    output logic      [ 9:0] status_o,
+    output logic      [27:0] data_o,
+    output logic             irq_o
+);
+
+  logic [9:0] status;
+
+  always_comb begin
+    status = '0;
+    status[card_map_pkg::BIT_STATUS_BUSY] = busy_i;
+    status[card_map_pkg::BIT_STATUS_DIRECT] = direct_i;
+    status[card_map_pkg::BIT_STATUS_PATH_ACTIVE] = path_active_i;
+    status[card_map_pkg::BIT_STATUS_FEED_ACTIVE] = feed_active_i;
+    status[card_map_pkg::BIT_STATUS_HELD] = ratio_i == 17'd0;
+    status[card_map_pkg::BIT_STATUS_ENDED] = ended_i;
+    status[card_map_pkg::BIT_STATUS_FAULTED] = fault_i != 10'd0;
+    status[card_map_pkg::BIT_STATUS_REFUSED] = refused_i;
+    status[card_map_pkg::BIT_STATUS_SNAPSHOT] = walking_i;
+    status[card_map_pkg::BIT_STATUS_INCOMPLETE] = incomplete_i;
+  end
+
+  logic [ 7:0] causes;
+  logic [27:0] data_q;
+  logic        irq_q;
+
+  always_comb begin
+    causes = '0;
+    causes[card_map_pkg::BIT_IRQ_ENABLE_IDLE] = !busy_i;
+    causes[card_map_pkg::BIT_IRQ_ENABLE_ENDED] = ended_i;
+    causes[card_map_pkg::BIT_IRQ_ENABLE_FAULTED] = fault_i != 10'd0;
+    causes[card_map_pkg::BIT_IRQ_ENABLE_REFUSED] = refused_i;
+  end
+
+  always_ff @(posedge clk_i) begin
+    case (word_i)
+      card_map_pkg::ADDR_STATUS[5:2]: data_q <= {18'd0, status};
+      card_map_pkg::ADDR_FAULT[5:2]: data_q <= {18'd0, fault_i};
+      card_map_pkg::ADDR_REFUSAL[5:2]: data_q <= refusal_i;
+      card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_q <= {15'd0, geometry_room_i};
+      card_map_pkg::ADDR_FEED_ROOM[5:2]: data_q <= {15'd0, feed_room_i};
+      default: data_q <= {12'd0, running_i};
+    endcase
+    irq_q <= (causes & irq_enable_i) != 8'd0;
+    if (rst_i) irq_q <= 1'b0;
+  end
+
+  assign status_o = status;
+  assign data_o = data_q;
+  assign irq_o = irq_q;
+
+endmodule
+
+`default_nettype wire

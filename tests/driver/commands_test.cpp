@@ -1,0 +1,236 @@
+#include "trammel/driver/commands.hpp"
+
+#include <gmock/gmock.h>
+#include <rapidcheck/gtest.h>
+
+#include <limits>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/errors.hpp"
+
+namespace trammel::driver {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::vector<std::uint32_t> words_of(const Command& command, std::uint8_t number = 0) {
+  std::vector<std::uint32_t> words;
+  encode(command, number, words);
+  return words;
+}
+
+// The message of the ArgumentError, empty if there is none; nothing may have been appended.
+std::string refusal_of(const Command& command) {
+  std::vector<std::uint32_t> words{42};
+  try {
+    encode(command, 0, words);
+  } catch (const ArgumentError& error) {
+    EXPECT_THAT(words, ElementsAre(42U));
+    return error.what();
+  }
+  return "";
+}
+
+Arc some_arc() {
+  Arc arc;
+  arc.ticks = 1000;
+  arc.path_ticks = 800;
+  arc.prescale = 0xCCCCCCCCCD;
+  arc.quadrants = 1;
+  arc.end_x = -3;
+  arc.deviation = -1;
+  arc.half_x = 1;
+  arc.half_y = 1;
+  return arc;
+}
+
+TEST(Commands, ALineIsLaidOutAsTheLayoutPageSays) {
+  Line line;
+  line.ticks = 0x0123456789;
+  line.mask = 0b0101;
+  line.increment[0] = 0x10000000000;  // 2^40, one pulse a tick
+  line.increment[2] = -2;
+  // Halfwords: 0501 0706 | 6789 2345 | 0001 0000 | 0000 0100 | FFFE FFFF | FFFF and padding.
+  EXPECT_THAT(words_of(line, 7),
+              ElementsAre(0x07060501U, 0x23456789U, 0x00000001U, 0x01000000U, 0xFFFFFFFEU, 0x0000FFFFU));
+}
+
+TEST(Commands, BarriersAreThreeWords) {
+  EXPECT_THAT(words_of(Dwell{0x0123456789}, 255), ElementsAre(0xFF030020U, 0x23456789U, 0x00000001U));
+  EXPECT_THAT(words_of(End{}, 1), ElementsAre(0x01030021U, 0U, 0U));
+}
+
+TEST(Commands, LimitsOfALineAreKept) {
+  Line line;
+  line.mask = 1;
+  line.increment[0] = std::int64_t{1} << 40;
+  EXPECT_THAT(refusal_of(line), HasSubstr("count 0"));
+  line.ticks = std::uint64_t{1} << 40;
+  EXPECT_THAT(refusal_of(line), HasSubstr("count 1099511627776"));
+  line.ticks -= 1;
+  EXPECT_EQ(refusal_of(line), "");
+  line.increment[0] += 1;
+  EXPECT_THAT(refusal_of(line), HasSubstr("increment = 1099511627777"));
+  line.increment[0] = -(std::int64_t{1} << 40) - 1;
+  EXPECT_THAT(refusal_of(line), HasSubstr("increment = -1099511627777"));
+  line.increment[0] = 0;
+  line.increment[1] = 1;
+  EXPECT_THAT(refusal_of(line), HasSubstr("axis 1"));
+  line = Line{};
+  line.ticks = 1;
+  EXPECT_THAT(refusal_of(line), HasSubstr("mask 0x00"));
+}
+
+TEST(Commands, LimitsOfAnArcAreKept) {
+  EXPECT_EQ(refusal_of(some_arc()), "");
+  const auto with = [](auto change) {
+    Arc arc = some_arc();
+    change(arc);
+    return refusal_of(arc);
+  };
+  EXPECT_THAT(with([](Arc& arc) { arc.path_ticks = arc.ticks + 1; }), HasSubstr("path_ticks = 1001"));
+  EXPECT_THAT(with([](Arc& arc) { arc.path_ticks = 0; }), HasSubstr("path_ticks = 0"));
+  EXPECT_THAT(with([](Arc& arc) { arc.prescale = (std::uint64_t{1} << 40) + 1; }), HasSubstr("prescale"));
+  EXPECT_THAT(with([](Arc& arc) { arc.axis_y = arc.axis_x; }), HasSubstr("plane"));
+  EXPECT_THAT(with([](Arc& arc) { arc.axis_y = 8; }), HasSubstr("plane"));
+  EXPECT_THAT(with([](Arc& arc) { arc.half_x = std::uint64_t{1} << 48; }), HasSubstr("half_x"));
+  EXPECT_THAT(with([](Arc& arc) { arc.deviation = int128{1} << 79; }), HasSubstr("deviation"));
+  EXPECT_EQ(with([](Arc& arc) { arc.deviation = -(int128{1} << 79); }), "");
+  EXPECT_THAT(with([](Arc& arc) { arc.gradient_y = -(int128{1} << 79) - 1; }), HasSubstr("gradient_y"));
+}
+
+TEST(Commands, LimitsOfAFeedPieceAndADwellAreKept) {
+  Feed feed;
+  feed.ticks = 1;
+  EXPECT_EQ(refusal_of(feed), "");
+  feed.floor = 0;
+  EXPECT_THAT(refusal_of(feed), HasSubstr("floor = 0"));
+  feed.floor = 1;
+  feed.stop_distance = 1;
+  EXPECT_THAT(refusal_of(feed), HasSubstr("stop_distance = 1"));
+  EXPECT_THAT(refusal_of(Dwell{std::uint64_t{1} << 40}), HasSubstr("DWELL: count"));
+}
+
+TEST(Commands, DecodeRefusesWhatEncodeCannotMake) {
+  Line line;
+  line.ticks = 5;
+  line.mask = 1;
+  const auto good = words_of(line);
+  EXPECT_NO_THROW(decode(good.data(), good.size()));
+  EXPECT_THROW(decode(good.data(), 0), ArgumentError);
+  EXPECT_THROW(decode(good.data(), good.size() - 1), ArgumentError);
+  const auto refuses = [&good](std::size_t word, std::uint32_t flip) {
+    auto bad = good;
+    bad[word] ^= flip;
+    EXPECT_THROW(decode(bad.data(), bad.size()), ArgumentError) << word << " " << flip;
+  };
+  refuses(0, 0x80);        // opcode
+  refuses(0, 0x200);       // a second axis without its field
+  refuses(0, 0x10000);     // length
+  refuses(2, 0x100);       // count bit 40
+  refuses(3, 0x80000000);  // increment not sign-extended: 2^47
+  const auto arc_words = words_of(some_arc());
+  auto arc = arc_words;
+  arc[0] ^= 0x600;  // mask names other axes than the plane
+  EXPECT_THROW(decode(arc.data(), arc.size()), ArgumentError);
+}
+
+TEST(Commands, PaddingMustBeZero) {
+  const auto good = words_of(End{});
+  auto bad = good;
+  bad.back() |= 0x10000;
+  EXPECT_NO_THROW(decode(good.data(), good.size()));
+  EXPECT_THROW(decode(bad.data(), bad.size()), ArgumentError);
+}
+
+std::int64_t signed_bits(unsigned bits) {
+  const auto limit = std::int64_t{1} << bits;
+  return *rc::gen::inRange<std::int64_t>(-limit, limit + 1);
+}
+
+int128 any_80_bits() {
+  const int128 high = *rc::gen::inRange<std::int64_t>(-(1 << 15), 1 << 15);
+  return high * (int128{1} << 64) + *rc::gen::arbitrary<std::uint64_t>();
+}
+
+void expect_round_trip(const Command& command, std::uint8_t number) {
+  const auto words = words_of(command, number);
+  const auto& layout = *card_map::find_command(static_cast<std::uint8_t>(words[0]));
+  RC_ASSERT(words.size() == card_map::words(layout, static_cast<std::uint8_t>(words[0] >> 8)));
+  const DecodedCommand back = decode(words.data(), words.size());
+  RC_ASSERT(back.number == number);
+  RC_ASSERT(back.command.index() == command.index());
+  RC_ASSERT(words_of(back.command, number) == words);
+}
+
+RC_GTEST_PROP(CommandsProperty, ALineComesBack, (std::uint8_t number)) {
+  Line line;
+  line.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
+  line.mask = static_cast<std::uint8_t>(*rc::gen::inRange(1, 256));
+  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+    line.increment[axis] = (line.mask >> axis & 1U) != 0 ? signed_bits(40) : 0;
+  }
+  expect_round_trip(line, number);
+  const auto words = words_of(line, number);
+  const Line back = std::get<Line>(decode(words.data(), words.size()).command);
+  RC_ASSERT(back.ticks == line.ticks);
+  RC_ASSERT(back.mask == line.mask);
+  RC_ASSERT(back.increment == line.increment);
+}
+
+RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
+              (std::uint8_t number, bool clockwise, std::uint16_t quadrants, std::int32_t end_x, std::int32_t end_y)) {
+  Arc arc;
+  arc.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
+  arc.path_ticks = *rc::gen::inRange<std::uint64_t>(1, arc.ticks + 1);
+  arc.prescale = *rc::gen::inRange<std::uint64_t>(0, (std::uint64_t{1} << 40) + 1);
+  arc.clockwise = clockwise;
+  arc.axis_x = static_cast<std::uint8_t>(*rc::gen::inRange(0, 8));
+  arc.axis_y = static_cast<std::uint8_t>((arc.axis_x + *rc::gen::inRange(1, 8)) % 8);
+  arc.quadrants = quadrants;
+  arc.end_x = end_x;
+  arc.end_y = end_y;
+  arc.deviation = any_80_bits();
+  arc.gradient_x = any_80_bits();
+  arc.gradient_y = any_80_bits();
+  arc.half_x = *rc::gen::inRange<std::uint64_t>(0, std::uint64_t{1} << 48);
+  arc.half_y = *rc::gen::inRange<std::uint64_t>(0, std::uint64_t{1} << 48);
+  expect_round_trip(arc, number);
+  const auto words = words_of(arc, number);
+  const Arc back = std::get<Arc>(decode(words.data(), words.size()).command);
+  RC_ASSERT(back.path_ticks == arc.path_ticks);
+  RC_ASSERT(back.prescale == arc.prescale);
+  RC_ASSERT(back.clockwise == arc.clockwise);
+  RC_ASSERT(back.axis_x == arc.axis_x);
+  RC_ASSERT(back.axis_y == arc.axis_y);
+  RC_ASSERT(back.quadrants == arc.quadrants);
+  RC_ASSERT(back.end_x == arc.end_x);
+  RC_ASSERT(back.end_y == arc.end_y);
+  RC_ASSERT(back.deviation == arc.deviation);
+  RC_ASSERT(back.gradient_x == arc.gradient_x);
+  RC_ASSERT(back.gradient_y == arc.gradient_y);
+  RC_ASSERT(back.half_x == arc.half_x);
+  RC_ASSERT(back.half_y == arc.half_y);
+}
+
+RC_GTEST_PROP(CommandsProperty, AFeedPieceComesBack,
+              (std::uint8_t number, std::uint64_t rate, std::int64_t acceleration, std::int64_t jerk)) {
+  Feed feed;
+  feed.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
+  feed.rate = rate;
+  feed.acceleration = acceleration;
+  feed.jerk = jerk;
+  feed.floor = *rc::gen::inRange<std::uint32_t>(1, std::numeric_limits<std::uint32_t>::max());
+  expect_round_trip(feed, number);
+  const auto words = words_of(feed, number);
+  const Feed back = std::get<Feed>(decode(words.data(), words.size()).command);
+  RC_ASSERT(back.ticks == feed.ticks);
+  RC_ASSERT(back.rate == feed.rate);
+  RC_ASSERT(back.acceleration == feed.acceleration);
+  RC_ASSERT(back.jerk == feed.jerk);
+  RC_ASSERT(back.floor == feed.floor);
+}
+
+}  // namespace
+}  // namespace trammel::driver

@@ -1,0 +1,272 @@
+// Valid stream commands and their single-field violations, made from the layout table alone.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::testing {
+
+__extension__ typedef unsigned __int128 uint128;
+
+inline constexpr std::size_t kCountBegin = 2;
+inline constexpr std::size_t kPayloadBegin = 5;
+inline constexpr std::uint64_t kCountMaximum = (std::uint64_t{1} << 40) - 1;
+
+// A command as it stands on the wire, without padding.
+struct WireCommand {
+  const card_map::Command* layout = nullptr;
+  std::vector<std::uint16_t> halfwords;
+
+  std::uint8_t mask() const { return static_cast<std::uint8_t>(halfwords[0] >> 8); }
+  std::uint8_t number() const { return static_cast<std::uint8_t>(halfwords[1] >> 8); }
+  uint128 value(std::size_t begin, std::size_t count) const {
+    uint128 sum = 0;
+    for (std::size_t i = count; i > 0; --i) sum = sum << 16 | halfwords[begin + i - 1];
+    return sum;
+  }
+  void set_value(std::size_t begin, std::size_t count, uint128 value) {
+    for (std::size_t i = 0; i < count; ++i) halfwords[begin + i] = static_cast<std::uint16_t>(value >> (16 * i));
+  }
+  std::vector<std::uint32_t> words(std::uint16_t padding = 0) const {
+    std::vector<std::uint16_t> padded = halfwords;
+    if (padded.size() % 2 != 0) padded.push_back(padding);
+    std::vector<std::uint32_t> result;
+    for (std::size_t i = 0; i < padded.size(); i += 2) result.push_back(padded[i] | std::uint32_t{padded[i + 1]} << 16);
+    return result;
+  }
+  // What the queues hold: halfword 1 left out, the number in the top byte of the count.
+  std::vector<std::uint16_t> stored() const {
+    std::vector<std::uint16_t> result = halfwords;
+    result[4] = static_cast<std::uint16_t>(result[4] | number() << 8);
+    result.erase(result.begin() + 1);
+    return result;
+  }
+};
+
+// Where a field of a command lies on the wire.
+struct Place {
+  const card_map::Field* field;
+  std::size_t begin;
+};
+
+inline std::vector<Place> places(const card_map::Command& layout, std::uint8_t mask) {
+  std::vector<Place> result;
+  const std::size_t axes = card_map::axes_in(mask);
+  for (std::size_t i = 0; i < layout.field_count; ++i) {
+    const card_map::Field& field = layout.fields[i];
+    for (std::size_t copy = 0; copy < (field.per_axis ? axes : 1); ++copy) {
+      result.push_back({&field, kPayloadBegin + field.offset + copy * layout.axis_halfwords});
+    }
+  }
+  return result;
+}
+
+class CommandSource {
+ public:
+  CommandSource(unsigned axes, std::uint64_t seed) : axes_(axes), random_(seed) {}
+
+  std::mt19937_64& random() { return random_; }
+
+  // Any command that the card can take.
+  WireCommand any(std::uint8_t number) {
+    const card_map::Command* layout = nullptr;
+    do {
+      layout = &card_map::kCommands[random_() % card_map::kCommands.size()];
+    } while (layout->mask_rule == card_map::MaskRule::Plane && axes_ < 2);
+    return make(*layout, number);
+  }
+
+  WireCommand make(const card_map::Command& layout, std::uint8_t number) {
+    return make(layout, number, random_mask(layout.mask_rule));
+  }
+
+  WireCommand make(const card_map::Command& layout, std::uint8_t number, std::uint8_t mask) {
+    WireCommand command;
+    command.layout = &layout;
+    command.halfwords.resize(card_map::halfwords(layout, mask));
+    command.halfwords[0] = static_cast<std::uint16_t>(mask << 8 | static_cast<unsigned>(layout.opcode));
+    command.halfwords[1] = static_cast<std::uint16_t>(number << 8 | card_map::words(layout, mask));
+    command.set_value(kCountBegin, 3, random_between(layout.count_minimum, layout.count_maximum));
+    for (const Place& place : places(layout, mask)) {
+      command.set_value(place.begin, place.field->halfwords, random_value(*place.field, command));
+    }
+    return command;
+  }
+
+ private:
+  std::uint8_t random_mask(card_map::MaskRule rule) {
+    const auto all = (1U << axes_) - 1U;
+    if (rule == card_map::MaskRule::None) return 0;
+    std::uint8_t mask = 0;
+    do {
+      mask = static_cast<std::uint8_t>(random_() & all);
+    } while (mask == 0 || (rule == card_map::MaskRule::Plane && card_map::axes_in(mask) != 2));
+    return mask;
+  }
+
+  // Bounds often, small numbers often, else anywhere.
+  uint128 random_between(uint128 low, uint128 high) {
+    const std::uint64_t kind = random_() % 8;
+    if (kind == 0 || high == low) return low;
+    if (kind == 1) return high;
+    const uint128 any = uint128{random_()} << 64 | random_();
+    const uint128 span = high - low + 1;
+    return low + (kind < 4 ? (any & 0xFFFF) % span : any % span);
+  }
+
+  uint128 random_value(const card_map::Field& field, const WireCommand& command) {
+    if (field.kind == card_map::FieldKind::Zero) return 0;
+    if (field.name == "plane") return random_plane(command.mask());
+    if (field.kind == card_map::FieldKind::Signed) {
+      const uint128 magnitude_limit = field.limit != 0 ? uint128{field.limit} : (uint128{1} << (field.bits - 1)) - 1;
+      const uint128 magnitude = random_between(0, magnitude_limit);
+      return random_() % 2 == 0 ? magnitude : 0 - magnitude;
+    }
+    uint128 high = field.limit != 0 ? uint128{field.limit} : (uint128{1} << field.bits) - 1;
+    if (field.at_most_count) high = command.value(kCountBegin, 3);
+    return random_between(field.minimum, high);
+  }
+
+  uint128 random_plane(std::uint8_t mask) {
+    unsigned low = 0;
+    while ((mask >> low & 1) == 0) ++low;
+    unsigned high = 7;
+    while ((mask >> high & 1) == 0) --high;
+    if (random_() % 2 == 0) std::swap(low, high);
+    return (random_() & 1) | low << 4 | high << 8;
+  }
+
+  unsigned axes_;
+  std::mt19937_64 random_;
+};
+
+// A command with one thing wrong in it.
+struct Violation {
+  std::string name;
+  WireCommand command;
+  card_map::Reason reason;
+  std::uint16_t padding = 0;
+};
+
+namespace detail {
+
+inline void add_range_violations(std::vector<Violation>& list, const WireCommand& good, const Place& place) {
+  const card_map::Field& field = *place.field;
+  const auto add = [&](const std::string& what, uint128 value) {
+    Violation v{std::string(field.name) + "@" + std::to_string(place.begin) + " " + what, good,
+                card_map::Reason::BadField, 0};
+    v.command.set_value(place.begin, field.halfwords, value);
+    list.push_back(v);
+  };
+  const unsigned wire_bits = 16 * field.halfwords;
+  if (field.minimum == 1) add("zero", 0);
+  if (field.kind == card_map::FieldKind::Zero) {
+    for (unsigned bit = 0; bit < wire_bits; ++bit) add("bit " + std::to_string(bit), uint128{1} << bit);
+    return;
+  }
+  if (field.mask != 0) {
+    const uint128 old = good.value(place.begin, field.halfwords);
+    for (unsigned bit = 0; bit < wire_bits; ++bit) {
+      if ((field.mask >> bit & 1) == 0) add("bit " + std::to_string(bit), old | uint128{1} << bit);
+    }
+    return;
+  }
+  if (field.at_most_count) {
+    const uint128 count = good.value(kCountBegin, 3);
+    for (unsigned bit : {0U, 15U, 16U, 31U, 32U}) {
+      if (count + (uint128{1} << bit) <= kCountMaximum)
+        add("count + 2^" + std::to_string(bit), count + (uint128{1} << bit));
+    }
+  }
+  if (field.limit != 0) {
+    for (unsigned bit : {0U, 15U, 16U, 31U, 32U, 39U}) {
+      add("limit + 2^" + std::to_string(bit), uint128{field.limit} + (uint128{1} << bit));
+      if (field.kind == card_map::FieldKind::Signed) {
+        add("-limit - 2^" + std::to_string(bit), 0 - uint128{field.limit} - (uint128{1} << bit));
+      }
+    }
+  }
+  for (unsigned bit = field.bits; bit < wire_bits; ++bit) {
+    add("extension bit " + std::to_string(bit), good.value(place.begin, field.halfwords) ^ uint128{1} << bit);
+  }
+}
+
+inline void add_header_violations(std::vector<Violation>& list, const WireCommand& good, unsigned axes) {
+  const auto add = [&](const std::string& what, std::size_t halfword, unsigned flip, card_map::Reason reason) {
+    Violation v{what, good, reason, 0};
+    v.command.halfwords[halfword] = static_cast<std::uint16_t>(v.command.halfwords[halfword] ^ flip);
+    list.push_back(v);
+  };
+  for (unsigned opcode = 0; opcode < 256; ++opcode) {
+    if (card_map::find_command(static_cast<std::uint8_t>(opcode)) != nullptr) continue;
+    add("opcode " + std::to_string(opcode), 0, opcode ^ (good.halfwords[0] & 0xFFU), card_map::Reason::UnknownOpcode);
+  }
+  for (unsigned flip = 1; flip < 256; ++flip) {
+    add("length ^ " + std::to_string(flip), 1, flip, card_map::Reason::BadLength);
+    add("number ^ " + std::to_string(flip), 1, flip << 8, card_map::Reason::BadNumber);
+  }
+  for (unsigned axis = axes; axis < 8; ++axis) {
+    add("absent axis " + std::to_string(axis), 0, 0x100U << axis, card_map::Reason::BadMask);
+  }
+  if (good.mask() != 0) add("no axis", 0, static_cast<unsigned>(good.mask()) << 8, card_map::Reason::BadMask);
+  if (good.layout->mask_rule == card_map::MaskRule::None) {
+    for (unsigned mask = 1; mask < 256; ++mask) {
+      add("mask " + std::to_string(mask), 0, mask << 8, card_map::Reason::BadMask);
+    }
+  }
+}
+
+inline void add_plane_violations(std::vector<Violation>& list, const WireCommand& good, const Place& place,
+                                 unsigned axes) {
+  for (unsigned pair = 0; pair < 64; ++pair) {
+    const unsigned first = pair & 7;
+    const unsigned second = pair >> 3;
+    if (first != second && (1U << first | 1U << second) == good.mask()) continue;
+    Violation v{"plane " + std::to_string(first) + " " + std::to_string(second), good, card_map::Reason::BadMask, 0};
+    v.command.halfwords[place.begin] = static_cast<std::uint16_t>(first << 4 | second << 8);
+    list.push_back(v);
+  }
+  for (unsigned mask = 1; mask < 1U << axes; ++mask) {
+    if (mask == good.mask()) continue;
+    Violation v{"mask of another plane " + std::to_string(mask), good, card_map::Reason::BadMask, 0};
+    v.command.halfwords[0] = static_cast<std::uint16_t>(mask << 8 | (good.halfwords[0] & 0xFFU));
+    list.push_back(v);
+  }
+}
+
+}  // namespace detail
+
+// Every way to get one thing of `good` wrong that the layout knows of.
+inline std::vector<Violation> violations(const WireCommand& good, unsigned axes) {
+  std::vector<Violation> list;
+  detail::add_header_violations(list, good, axes);
+  const auto add_count = [&](const std::string& what, uint128 value) {
+    Violation v{"count " + what, good, card_map::Reason::BadField, 0};
+    v.command.set_value(kCountBegin, 3, value);
+    list.push_back(v);
+  };
+  if (good.layout->count_minimum != 0) add_count("zero", 0);
+  const unsigned first_bad_bit = good.layout->count_maximum == 0 ? 0 : 40;
+  for (unsigned bit = first_bad_bit; bit < 48; ++bit) {
+    add_count("bit " + std::to_string(bit), good.value(kCountBegin, 3) | uint128{1} << bit);
+  }
+  for (const Place& place : places(*good.layout, good.mask())) {
+    detail::add_range_violations(list, good, place);
+    if (place.field->name == "plane") detail::add_plane_violations(list, good, place, axes);
+  }
+  if (good.halfwords.size() % 2 != 0) {
+    for (unsigned bit = 0; bit < 16; ++bit) {
+      list.push_back({"padding bit " + std::to_string(bit), good, card_map::Reason::BadField,
+                      static_cast<std::uint16_t>(1U << bit)});
+    }
+  }
+  return list;
+}
+
+}  // namespace trammel::testing

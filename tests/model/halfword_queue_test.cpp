@@ -1,0 +1,157 @@
+// The queue's model against a deque of committed and of pending halfwords.
+#include "trammel/model/halfword_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <deque>
+#include <random>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using trammel::model::HalfwordQueue;
+
+HalfwordQueue::Inputs write_of(std::uint16_t word) {
+  HalfwordQueue::Inputs in;
+  in.write = true;
+  in.word = word;
+  return in;
+}
+
+HalfwordQueue::Inputs commit() {
+  HalfwordQueue::Inputs in;
+  in.commit = true;
+  return in;
+}
+
+HalfwordQueue::Inputs drop() {
+  HalfwordQueue::Inputs in;
+  in.drop = true;
+  return in;
+}
+
+HalfwordQueue::Inputs read() {
+  HalfwordQueue::Inputs in;
+  in.read = true;
+  return in;
+}
+
+TEST(HalfwordQueue, RefusesDepthsItCannotCount) {
+  EXPECT_THROW(HalfwordQueue(1), std::invalid_argument);
+  EXPECT_THROW(HalfwordQueue(8192), std::invalid_argument);
+  EXPECT_NO_THROW(HalfwordQueue(8191));
+}
+
+TEST(HalfwordQueue, ShowsOnlyWhatIsCommitted) {
+  HalfwordQueue queue(8);
+  queue.clock(write_of(0x1234));
+  for (int i = 0; i < 5; ++i) {
+    queue.clock(read());
+    EXPECT_TRUE(queue.outputs().empty);
+  }
+  EXPECT_EQ(queue.outputs().room, 7);
+  queue.clock(commit());
+  EXPECT_TRUE(queue.outputs().empty);
+  queue.clock({});
+  EXPECT_FALSE(queue.outputs().empty);
+  queue.clock(read());
+  EXPECT_TRUE(queue.outputs().empty);
+  EXPECT_EQ(queue.outputs().room, 8);
+  EXPECT_NE(queue.outputs().word, 0x1234);
+  queue.clock({});
+  EXPECT_EQ(queue.outputs().word, 0x1234);
+}
+
+TEST(HalfwordQueue, DropGivesTheRoomBackAndKeepsWhatIsCommitted) {
+  HalfwordQueue queue(5);
+  queue.clock(write_of(1));
+  queue.clock(commit());
+  queue.clock(write_of(2));
+  queue.clock(write_of(3));
+  queue.clock(drop());
+  EXPECT_EQ(queue.outputs().room, 4);
+  queue.clock(write_of(4));
+  queue.clock(commit());
+  queue.clock({});
+  queue.clock(read());
+  queue.clock(read());
+  EXPECT_EQ(queue.outputs().word, 1);
+  queue.clock({});
+  EXPECT_EQ(queue.outputs().word, 4);
+  EXPECT_TRUE(queue.outputs().empty);
+}
+
+TEST(HalfwordQueue, ClearForgetsEverything) {
+  HalfwordQueue queue(5);
+  for (std::uint16_t i = 0; i < 5; ++i) queue.clock(write_of(i));
+  EXPECT_EQ(queue.outputs().room, 0);
+  queue.clock(commit());
+  HalfwordQueue::Inputs clear;
+  clear.clear = true;
+  queue.clock(clear);
+  queue.clock({});
+  EXPECT_TRUE(queue.outputs().empty);
+  EXPECT_EQ(queue.outputs().room, 5);
+}
+
+// What is read is what was committed, in order, whatever comes in between; room is always exact.
+void compare_with_deque(std::size_t depth, std::uint64_t seed) {
+  HalfwordQueue queue(depth);
+  std::mt19937_64 random(seed);
+  std::deque<std::uint16_t> committed;
+  std::vector<std::uint16_t> pending;
+  std::deque<std::pair<int, std::uint16_t>> due;
+  std::size_t reads = 0;
+  for (int now = 0; now < 20000; ++now) {
+    HalfwordQueue::Inputs in;
+    in.write = queue.outputs().room != 0 && random() % 2 == 0;
+    in.word = static_cast<std::uint16_t>(random());
+    in.commit = !in.write && random() % 4 == 0;
+    in.drop = !in.commit && !in.write && random() % 20 == 0;
+    in.read = random() % 2 == 0;
+    if (in.read && !queue.outputs().empty) {
+      ASSERT_FALSE(committed.empty());
+      due.emplace_back(now + 1, committed.front());
+      committed.pop_front();
+      ++reads;
+    }
+    if (in.write) pending.push_back(in.word);
+    if (in.commit) committed.insert(committed.end(), pending.begin(), pending.end());
+    if (in.commit || in.drop) pending.clear();
+    queue.clock(in);
+    ASSERT_EQ(queue.outputs().room, depth - committed.size() - pending.size());
+    ASSERT_TRUE(queue.outputs().empty || !committed.empty());
+    if (!due.empty() && due.front().first == now) {
+      ASSERT_EQ(queue.outputs().word, due.front().second);
+      due.pop_front();
+    }
+  }
+  EXPECT_GT(reads, 1000U);
+}
+
+TEST(HalfwordQueue, GivesBackWhatWasCommittedInOrder) {
+  for (const std::size_t depth : {2U, 3U, 37U, 64U, 2560U}) compare_with_deque(depth, 7 + depth);
+}
+
+TEST(HalfwordQueue, QuietMeansThatAClockChangesNothing) {
+  HalfwordQueue queue(4);
+  queue.clock(write_of(9));
+  queue.clock(commit());
+  EXPECT_FALSE(queue.quiet());
+  queue.clock({});
+  EXPECT_TRUE(queue.quiet());
+  queue.clock(read());
+  EXPECT_FALSE(queue.quiet());
+  queue.clock({});
+  EXPECT_TRUE(queue.quiet());
+  const auto before = queue.outputs();
+  for (int i = 0; i < 10; ++i) queue.clock({});
+  EXPECT_EQ(queue.outputs().word, before.word);
+  EXPECT_EQ(queue.outputs().empty, before.empty);
+  EXPECT_EQ(queue.outputs().room, before.room);
+}
+
+}  // namespace

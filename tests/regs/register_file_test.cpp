@@ -1,0 +1,188 @@
+// The register table of the card map, walked over the golden register file: reset values, kinds of access, every
+// bit, no aliases, refusals that change nothing. Expectations come from the table and from architecture.md.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "register_bench.hpp"
+
+namespace {
+
+using trammel::model::RegisterFile;
+using trammel::tests::Answer;
+using trammel::tests::RegisterBench;
+namespace card_map = trammel::card_map;
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+using card_map::Access;
+using card_map::Reason;
+
+struct Place {
+  const card_map::Register& entry;
+  std::uint32_t address;
+  bool present;
+};
+
+std::vector<Place> places(std::uint32_t axes) {
+  std::vector<Place> all;
+  for (const card_map::Register& entry : card_map::kRegisters) {
+    for (std::uint32_t i = 0; i < entry.count; ++i) {
+      all.push_back({entry, entry.address + i * entry.stride, !entry.only_present_axes || i < axes});
+    }
+  }
+  return all;
+}
+
+bool readable(const card_map::Register& entry) { return entry.access != Access::Command; }
+
+// A value that the register takes and that differs from both its reset value and 0 where it can.
+std::uint32_t other_value(const card_map::Register& entry) {
+  if (entry.limited == entry.mask) return entry.maximum == entry.reset ? entry.maximum - 1 : entry.maximum;
+  return entry.mask & ~entry.limited;
+}
+
+// Everything that reads back, by address; the live registers of the test do not move by themselves.
+std::vector<std::uint32_t> image(RegisterBench& bench) {
+  std::vector<std::uint32_t> values;
+  for (const Place& place : places(bench.axes())) {
+    if (readable(place.entry) && place.present) values.push_back(bench.read(place.address).data);
+  }
+  return values;
+}
+
+class EveryAxisCount : public ::testing::TestWithParam<std::uint32_t> {
+ protected:
+  RegisterBench bench_{GetParam()};
+};
+
+TEST_P(EveryAxisCount, ResetValues) {
+  for (const Place& place : places(GetParam())) {
+    if (!readable(place.entry) || !place.present || place.entry.from_card) continue;
+    const Answer answer = bench_.read(place.address);
+    EXPECT_FALSE(answer.error) << place.entry.name;
+    EXPECT_EQ(answer.data, place.entry.reset) << place.entry.name;
+  }
+}
+
+TEST_P(EveryAxisCount, DescribesItself) {
+  EXPECT_EQ(bench_.read(reg::kMagic).data, 0x54524D4Cu);
+  EXPECT_EQ(bench_.read(reg::kAxes).data, GetParam());
+  EXPECT_EQ(bench_.read(reg::kClockHz).data, 25'000'000u);
+  EXPECT_EQ(bench_.read(reg::kGeometryDepth).data, 1024u);
+  EXPECT_EQ(bench_.read(reg::kFeedDepth).data, 512u);
+  EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, card_map::kCommandsVersionValue);
+}
+
+TEST_P(EveryAxisCount, SlotsOfAbsentAxesAreUnknown) {
+  for (const Place& place : places(GetParam())) {
+    if (place.present) continue;
+    EXPECT_EQ(bench_.refusal_of_read(place.address), Reason::UnknownAddress) << place.entry.name;
+    EXPECT_EQ(bench_.refusal_of_write(place.address, 0), Reason::UnknownAddress) << place.entry.name;
+  }
+}
+
+TEST_P(EveryAxisCount, EveryBitOfASettingHoldsBothValues) {
+  for (const Place& place : places(GetParam())) {
+    if (place.entry.access != Access::Setting || !place.present) continue;
+    for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
+      if ((place.entry.mask & bit) == 0 || ((place.entry.limited & bit) != 0 && place.entry.maximum < bit)) continue;
+      EXPECT_FALSE(bench_.write(place.address, bit).error) << place.entry.name << " " << bit;
+      EXPECT_EQ(bench_.read(place.address).data, bit) << place.entry.name;
+    }
+  }
+}
+
+TEST_P(EveryAxisCount, NoSettingHasAnAlias) {
+  for (const Place& place : places(GetParam())) {
+    if (place.entry.access != Access::Setting || !place.present) continue;
+    const std::uint32_t before = bench_.read(place.address).data;
+    const std::vector<std::uint32_t> old_image = image(bench_);
+    ASSERT_FALSE(bench_.write(place.address, other_value(place.entry)).error) << place.entry.name;
+    ASSERT_NE(bench_.read(place.address).data, before) << place.entry.name;
+    const std::vector<std::uint32_t> new_image = image(bench_);
+    int changes = 0;
+    for (std::size_t i = 0; i < old_image.size(); ++i) changes += old_image[i] != new_image[i];
+    EXPECT_EQ(changes, 1) << place.entry.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Axes, EveryAxisCount, ::testing::Values(1u, 3u, 4u, 8u));
+
+TEST(Refusals, EveryAddressOutsideTheMapIsUnknown) {
+  RegisterBench bench(8);
+  for (std::uint32_t address = 0; address < card_map::kWindowBytes; ++address) {
+    if (card_map::find_register(address).entry != nullptr) continue;
+    ASSERT_EQ(bench.refusal_of_read(address), Reason::UnknownAddress) << address;
+    ASSERT_EQ(bench.refusal_of_write(address, 0), Reason::UnknownAddress) << address;
+  }
+}
+
+TEST(Refusals, KindsOfAccess) {
+  RegisterBench bench(8);
+  for (const Place& place : places(8)) {
+    const Access access = place.entry.access;
+    const bool fixed = access == Access::Constant || access == Access::Live || access == Access::Snapshot;
+    if (fixed) {
+      EXPECT_EQ(bench.refusal_of_write(place.address, 0), Reason::ReadOnly) << place.entry.name;
+    } else {
+      EXPECT_EQ(bench.refusal_of_partial_write(place.address, 1), Reason::PartialWrite) << place.entry.name;
+    }
+    EXPECT_EQ(bench.refusal_of_read(place.address), readable(place.entry) ? Reason::None : Reason::WriteOnly)
+        << place.entry.name;
+  }
+}
+
+TEST(Refusals, BitsWithoutMeaningAndLimits) {
+  RegisterBench bench(8);
+  for (const Place& place : places(8)) {
+    const card_map::Register& entry = place.entry;
+    if (entry.access != Access::Setting && entry.access != Access::ClearOnes && entry.access != Access::Command)
+      continue;
+    for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
+      if ((entry.mask & bit) != 0) continue;
+      EXPECT_EQ(bench.refusal_of_write(place.address, entry.reset | bit), Reason::BadValue) << entry.name << " " << bit;
+    }
+    if (entry.limited == 0) continue;
+    if (entry.maximum < entry.limited) {
+      EXPECT_EQ(bench.refusal_of_write(place.address, entry.maximum + 1), Reason::BadValue) << entry.name;
+    }
+    if (entry.minimum > 0) {
+      EXPECT_EQ(bench.refusal_of_write(place.address, entry.minimum - 1), Reason::BadValue) << entry.name;
+    }
+    EXPECT_EQ(bench.refusal_of_write(place.address, entry.minimum), Reason::None) << entry.name;
+    EXPECT_EQ(bench.refusal_of_write(place.address, entry.maximum), Reason::None) << entry.name;
+  }
+}
+
+TEST(Refusals, ChangeNothing) {
+  RegisterBench bench(4);
+  for (const Place& place : places(4)) {
+    if (place.entry.access == Access::Setting && place.present) bench.write(place.address, other_value(place.entry));
+  }
+  const std::vector<std::uint32_t> before = image(bench);
+  const RegisterFile::Outputs outputs = bench.outputs();
+  for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4) {
+    EXPECT_NE(bench.refusal_of_partial_write(address, 0x1), Reason::None) << address;
+  }
+  EXPECT_EQ(image(bench), before);
+  EXPECT_EQ(bench.outputs().ratio, outputs.ratio);
+  EXPECT_EQ(bench.outputs().mode, outputs.mode);
+  EXPECT_EQ(bench.outputs().step_length, outputs.step_length);
+}
+
+TEST(Refusals, TheFirstOneStaysUntilItIsCleared) {
+  RegisterBench bench(4);
+  EXPECT_TRUE(bench.write(reg::kMagic, 0).error);
+  EXPECT_TRUE(bench.read(reg::kStream).error);
+  const std::uint32_t refusal = bench.read(reg::kRefusal).data;
+  EXPECT_EQ(refusal & field::kRefusalReason, static_cast<std::uint32_t>(Reason::ReadOnly));
+  EXPECT_EQ((refusal & field::kRefusalAddress) >> field::kRefusalAddressShift, reg::kMagic);
+  EXPECT_NE(bench.read(reg::kStatus).data & field::kStatusRefused, 0u);
+  EXPECT_FALSE(bench.write(reg::kRefusal, 0).error);
+  EXPECT_EQ(bench.read(reg::kRefusal).data, refusal) << "a write of zeros clears nothing";
+  EXPECT_FALSE(bench.write(reg::kRefusal, 1).error);
+  EXPECT_EQ(bench.read(reg::kRefusal).data, 0u);
+  EXPECT_EQ(bench.read(reg::kStatus).data & field::kStatusRefused, 0u);
+}
+
+}  // namespace

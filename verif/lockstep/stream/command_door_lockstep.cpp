@@ -1,0 +1,161 @@
+// The stream's door in lockstep with its model: every violation of every layout, then random streams with corrupted
+// words, scarce room, flushes, clears and writes that the door does not wait for.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "Vdut.h"
+#include "command_source.hpp"
+#include "lockstep.hpp"
+#include "trammel/model/command_door.hpp"
+
+namespace {
+
+using trammel::lockstep::Checker;
+using trammel::model::CommandDoor;
+using trammel::testing::CommandSource;
+using trammel::testing::WireCommand;
+
+constexpr unsigned kAxes = TRAMMEL_AXES;
+constexpr std::uint64_t kSignals = 13;
+constexpr std::uint16_t kMuchRoom = 4096;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed) : checker_("command_door", seed), model_(kAxes) {
+    CommandDoor::Inputs in;
+    in.reset = true;
+    clock(in);
+  }
+
+  void clock(const CommandDoor::Inputs& in) {
+    rtl_->rst_i = in.reset;
+    rtl_->write_i = in.write;
+    rtl_->word_i = in.word;
+    rtl_->flush_i = in.flush;
+    rtl_->clear_i = in.clear;
+    rtl_->geometry_room_i = in.geometry_room;
+    rtl_->feed_room_i = in.feed_room;
+    if (in.write) checker_.event("write", in.word);
+    if (in.flush) checker_.event("flush");
+    if (in.clear) checker_.event("clear");
+    rtl_.clock();
+    model_.clock(in);
+    checker_.next_cycle();
+    compare(model_.outputs());
+    commits_ += model_.outputs().geometry_commit || model_.outputs().feed_commit ? 1U : 0U;
+    refusals_ += model_.outputs().refuse ? 1U : 0U;
+  }
+
+  const CommandDoor::Outputs& outputs() const { return model_.outputs(); }
+  const Checker& checker() const { return checker_; }
+  std::uint64_t commits() const { return commits_; }
+  std::uint64_t refusals() const { return refusals_; }
+
+ private:
+  void compare(const CommandDoor::Outputs& model) {
+    checker_.compare("ready_o", rtl_->ready_o, model.ready);
+    checker_.compare("done_o", rtl_->done_o, model.done);
+    checker_.compare("error_o", rtl_->error_o, model.error);
+    checker_.compare("halfword_o", rtl_->halfword_o, model.halfword);
+    checker_.compare("geometry_write_o", rtl_->geometry_write_o, model.geometry_write);
+    checker_.compare("feed_write_o", rtl_->feed_write_o, model.feed_write);
+    checker_.compare("geometry_commit_o", rtl_->geometry_commit_o, model.geometry_commit);
+    checker_.compare("feed_commit_o", rtl_->feed_commit_o, model.feed_commit);
+    checker_.compare("drop_o", rtl_->drop_o, model.drop);
+    checker_.compare("refuse_o", rtl_->refuse_o, model.refuse);
+    checker_.compare("reason_o", rtl_->reason_o, model.reason);
+    checker_.compare("number_o", rtl_->number_o, model.number);
+    checker_.compare("partial_o", rtl_->partial_o, model.partial);
+  }
+
+  Checker checker_;
+  trammel::lockstep::Simulated<Vdut> rtl_;
+  CommandDoor model_;
+  std::uint64_t commits_ = 0;
+  std::uint64_t refusals_ = 0;
+};
+
+void send(Bench& bench, const std::vector<std::uint32_t>& words, std::uint16_t geometry_room, std::uint16_t feed_room) {
+  CommandDoor::Inputs in;
+  in.geometry_room = geometry_room;
+  in.feed_room = feed_room;
+  for (const std::uint32_t word : words) {
+    in.write = true;
+    in.word = word;
+    bench.clock(in);
+    in.write = false;
+    while (!bench.outputs().ready) bench.clock(in);
+  }
+}
+
+void clear(Bench& bench) {
+  CommandDoor::Inputs in;
+  in.clear = true;
+  bench.clock(in);
+}
+
+void directed(Bench& bench, CommandSource& source) {
+  for (const auto& layout : trammel::card_map::kCommands) {
+    if (layout.mask_rule == trammel::card_map::MaskRule::Plane && kAxes < 2) continue;
+    const WireCommand good = source.make(layout, 0);
+    const auto needed = static_cast<std::uint16_t>(good.stored().size());
+    for (int lack = 0; lack < 4; ++lack) {
+      clear(bench);
+      send(bench, good.words(), static_cast<std::uint16_t>(needed - (lack & 1)),
+           static_cast<std::uint16_t>(needed - (lack >> 1)));
+    }
+    for (const auto& violation : trammel::testing::violations(good, kAxes)) {
+      clear(bench);
+      send(bench, violation.command.words(violation.padding), kMuchRoom, kMuchRoom);
+    }
+  }
+}
+
+// Drives the door as no register file would: writes and flushes at any time, clears in the middle of words.
+void random_stream(Bench& bench, CommandSource& source, int commands) {
+  auto& random = source.random();
+  std::uint8_t number = 0;
+  for (int i = 0; i < commands; ++i) {
+    const bool corrupt = random() % 8 == 0;
+    const bool patient = random() % 8 != 0;
+    std::vector<std::uint32_t> words = source.any(number).words();
+    if (corrupt) words[random() % words.size()] ^= 1U << random() % 32;
+    bool open = true;
+    for (std::size_t w = 0; w < words.size();) {
+      CommandDoor::Inputs in;
+      in.write = patient ? bench.outputs().ready && random() % 4 != 0 : random() % 2 == 0;
+      in.word = words[w];
+      in.flush = random() % 400 == 0;
+      in.clear = random() % 700 == 0;
+      in.reset = random() % 5000 == 0;
+      in.geometry_room = static_cast<std::uint16_t>(random() % 20 == 0 ? random() % 38 : random() % 8192);
+      in.feed_room = static_cast<std::uint16_t>(random() % 20 == 0 ? random() % 38 : random() % 8192);
+      if (in.write && bench.outputs().ready) ++w;
+      bench.clock(in);
+      open = open && !bench.outputs().refuse && !in.clear && !in.reset;
+    }
+    while (!bench.outputs().ready) bench.clock({});
+    open = open && !bench.outputs().refuse;
+    number = static_cast<std::uint8_t>(open ? number + 1 : 0);
+    if (!open && random() % 4 != 0) clear(bench);
+  }
+}
+
+TEST(CommandDoorLockstep, EqualsModelInEveryCycle) {
+  const std::string complaint = trammel::lockstep::judge([] {
+    const std::uint64_t seed = trammel::lockstep::seed_from_environment(20260102);
+    Bench bench(seed);
+    CommandSource source(kAxes, seed);
+    directed(bench, source);
+    random_stream(bench, source, 20000);
+    ASSERT_EQ(bench.checker().comparisons(), kSignals * bench.checker().cycles());
+    ASSERT_GT(bench.commits(), 1000U);
+    ASSERT_GT(bench.refusals(), 1000U);
+  });
+  EXPECT_EQ(complaint, "");
+}
+
+}  // namespace

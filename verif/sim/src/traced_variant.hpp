@@ -1,0 +1,40 @@
+// A variant that writes its signals to an FST file, two time steps a clock.
+#pragma once
+
+#include <verilated_fst_c.h>
+
+#include <stdexcept>
+
+#include "card_variant.hpp"
+
+namespace trammel::sim {
+
+template <class Dut, unsigned kAxes>
+class TracedVariant : public CardVariant<Dut, kAxes> {
+ public:
+  TracedVariant(std::uint32_t clock_hz, const std::string& path) : CardVariant<Dut, kAxes>(clock_hz) {
+    Verilated::threadContextp(&this->dut_.context());
+    this->dut_.context().traceEverOn(true);
+    this->dut_->trace(&file_, 99);
+    file_.open(path.c_str());
+    if (!file_.isOpen()) throw std::runtime_error("cannot write the trace file " + path);
+  }
+  ~TracedVariant() override {
+    Verilated::threadContextp(&this->dut_.context());
+    file_.close();
+  }
+
+  void clock(const model::CardModel::Inputs& in) override {
+    CardVariant<Dut, kAxes>::clock(in);
+    file_.dump(time_++);
+    this->dut_->clk_i = 0;
+    this->dut_->eval();
+    file_.dump(time_++);
+  }
+
+ private:
+  VerilatedFstC file_;
+  std::uint64_t time_ = 0;
+};
+
+}  // namespace trammel::sim
