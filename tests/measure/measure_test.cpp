@@ -31,12 +31,11 @@ Trace trace_of(std::size_t axes, std::uint64_t total, const std::vector<Pulse>& 
 // (0,0) to (2,1): y at 1, then x at 2 and 3, in 3 units.
 Trace small_line() { return trace_of(2, 3, {{1, {0, 1}}, {2, {1, 0}}, {3, {1, 0}}}); }
 
-TEST(Trace, StepsOfOneTimeAreOneEvent) {
-  const Trace trace = trace_of(2, 4, {{1, {1, 0}}, {1, {0, -1}}, {4, {1, 1}}});
-  ASSERT_EQ(trace.events().size(), 2U);
-  EXPECT_THAT(trace.events()[0].direction, testing::ElementsAre(1, -1, 0, 0));
+TEST(Trace, KnowsTheTimesOfEachAxis) {
+  const Trace trace = trace_of(2, 4, {{1, {1, -1}}, {3, {0, -1}}, {4, {1, 0}}});
   EXPECT_EQ(pulses_of(trace), 4U);
-  EXPECT_EQ(pulses_of(trace, 1), 2U);
+  EXPECT_THAT(trace.times(0), testing::ElementsAre(1, 4));
+  EXPECT_THAT(trace.times(1), testing::ElementsAre(1, 3));
 }
 
 TEST(Distance, OfALineByHand) {
@@ -204,6 +203,19 @@ TEST(SpeedRipple, OfEvenPulsesIsZeroAndOfAlternatingOnesByHand) {
   const Ripple ripple = measure_speed_ripple(uneven, curve);
   EXPECT_NEAR(ripple.largest, 1.5, 1e-12);
   EXPECT_NEAR(ripple.rms, std::sqrt((4 * 1.5 * 1.5 + 16 * 0.375 * 0.375) / 30), 1e-12);
+}
+
+TEST(SpeedRipple, LinesAgreeWithTheGeneralFormula) {
+  // A large circle's first pulses run almost along y; so does the line.
+  const std::vector<Pulse> pulses = {{5, {0, 1}}, {15, {0, 1}}, {19, {0, 1}}, {35, {0, 1}}};
+  RoundShape shape;
+  shape.a = shape.b = 1e7;
+  shape.start = {1e7, 0};
+  shape.end = {1e7 - 8e-7, 4};
+  const Ripple line = measure_speed_ripple(trace_of(2, 40, pulses), IdealCurve::line(2, {}, {0, 4}));
+  const Ripple arc = measure_speed_ripple(trace_of(2, 40, pulses, {10'000'000, 0}), IdealCurve::round(shape));
+  EXPECT_NEAR(line.rms, arc.rms, 1e-6);
+  EXPECT_NEAR(line.largest, arc.largest, 1e-6);
 }
 
 TEST(SpeedRipple, IsTheComponentAlongThePath) {

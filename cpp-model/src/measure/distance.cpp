@@ -6,40 +6,58 @@
 namespace trammel::model::measure {
 namespace {
 
+double larger(double a, double b) { return a < b ? b : a; }
+
 void take(Spread& spread, double distance) {
-  spread.largest = std::max(spread.largest, distance);
+  spread.largest = larger(spread.largest, distance);
   spread.mean += distance;
 }
 
-// The line's distances relative to its start, for two axes without a square root an event: what a million random
-// lines are measured with. `scale` is 1 / total time.
+// Times are below 2^63; the conversion from unsigned would branch.
+double as_double(std::uint64_t time) { return static_cast<double>(static_cast<std::int64_t>(time)); }
+
+// One axis of a line: how far it is from the running point, at each event and at the whole time unit before it, when
+// it still stands where it stood.
+class AxisError {
+ public:
+  explicit AxisError(double rate) : rate_(rate) {}
+  void event(double time, int direction) {
+    const double expected = rate_ * time;
+    const double before = std::abs(at_ - expected + rate_);
+    at_ += direction;
+    const double after = std::abs(at_ - expected);
+    largest_ = larger(largest_, larger(before, after));
+    sum_ += after;
+  }
+  double at() const { return at_; }
+  Spread spread() const { return {largest_, sum_}; }
+
+ private:
+  double rate_;  // pulses a time unit
+  double at_ = 0;
+  double largest_ = 0;
+  double sum_ = 0;
+};
+
+// Two axes without a square root an event: what a million random lines are measured with. `scale` is 1 / total time.
 Distances plane_line(const Trace& trace, const IdealCurve& curve, double scale) {
   const double px = curve.displacement()[0];
   const double py = curve.displacement()[1];
-  const double rate_x = px * scale;
-  const double rate_y = py * scale;
-  Distances result;
+  AxisError x(px * scale);
+  AxisError y(py * scale);
   Spread cross;
-  double x = 0;
-  double y = 0;
   for (const Event& event : trace.events()) {
-    const auto time = static_cast<double>(event.time);
-    // Just before the event, at the whole time unit before it, the axes still stand where they stood.
-    const double before_x = std::abs(x - rate_x * (time - 1));
-    const double before_y = std::abs(y - rate_y * (time - 1));
-    x += event.direction[0];
-    y += event.direction[1];
-    const double after_x = std::abs(x - rate_x * time);
-    const double after_y = std::abs(y - rate_y * time);
-    result.axis[0].largest = std::max({result.axis[0].largest, before_x, after_x});
-    result.axis[1].largest = std::max({result.axis[1].largest, before_y, after_y});
-    result.axis[0].mean += after_x;
-    result.axis[1].mean += after_y;
-    take(cross, std::abs(x * py - y * px));
+    const double time = as_double(event.time);
+    x.event(time, event.direction[0]);
+    y.event(time, event.direction[1]);
+    take(cross, std::abs(x.at() * py - y.at() * px));
   }
+  Distances result;
   const double length = curve.length();
   result.perpendicular = {cross.largest / length, cross.mean / length};
   if (py != 0) result.horizontal = Spread{cross.largest / std::abs(py), cross.mean / std::abs(py)};
+  result.axis[0] = x.spread();
+  result.axis[1] = y.spread();
   return result;
 }
 

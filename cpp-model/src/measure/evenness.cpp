@@ -9,77 +9,148 @@ namespace {
 
 constexpr double kTurn = 6.283185307179586476925;
 
+// Times are below 2^63; the conversion from unsigned would branch.
+double as_double(std::uint64_t time) { return static_cast<double>(static_cast<std::int64_t>(time)); }
+
 // Line: the deviations are linear in the intervals, so integers do, and one division at the end.
 Evenness line_evenness(const Trace& trace, double pulses, std::size_t axis) {
+  const std::vector<std::uint64_t>& times = trace.times(axis);
+  if (times.size() < 2) return {};
   std::uint64_t shortest = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t longest = 0;
-  std::uint64_t last = 0;
-  std::size_t count = 0;
-  double sum = 0;
   double squares = 0;
-  for (const Event& event : trace.events()) {
-    if (event.direction[axis] == 0) continue;
-    if (count++ > 0) {
-      const std::uint64_t interval = event.time - last;
-      shortest = std::min(shortest, interval);
-      longest = std::max(longest, interval);
-      const auto value = static_cast<double>(interval);
-      sum += value;
-      squares += value * value;
-    }
-    last = event.time;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const std::uint64_t interval = times[i] - times[i - 1];
+    shortest = std::min(shortest, interval);
+    longest = std::max(longest, interval);
+    squares += as_double(interval) * as_double(interval);
   }
-  if (count < 2) return {};
-  const auto intervals = static_cast<double>(count - 1);
-  const double scale = pulses / static_cast<double>(trace.total_time());
+  const double sum = as_double(times.back() - times.front());
+  const auto intervals = static_cast<double>(times.size() - 1);
+  const double scale = pulses / as_double(trace.total_time());
   const double mean_square = (squares * scale * scale - 2 * sum * scale) / intervals + 1;
   Evenness result;
-  result.intervals = count - 1;
-  result.largest = std::max(static_cast<double>(longest) * scale - 1, 1 - static_cast<double>(shortest) * scale);
+  result.intervals = times.size() - 1;
+  result.largest = std::max(as_double(longest) * scale - 1, 1 - as_double(shortest) * scale);
   result.rms = std::sqrt(std::max(0.0, mean_square));
   return result;
 }
 
-// The speed of each axis in the interval that ends at each event, pulses a time unit; not a number where none ends.
+// The speed of each axis between its pulses, pulses a time unit, and the time for which all moving axes have one.
 class AxisSpeeds {
  public:
-  explicit AxisSpeeds(const Trace& trace) : axes_(trace.axes()), from_(0), to_(trace.total_time()) {
-    const std::vector<Event>& events = trace.events();
-    speeds_.resize(events.size() * kTraceAxes);
-    for (std::size_t a = 0; a < axes_; ++a) {
-      int direction = 0;
-      std::uint64_t last = 0;
-      std::uint64_t first = 0;
-      std::size_t count = 0;
-      for (std::size_t i = 0; i < events.size(); ++i) {
-        const int now = events[i].direction[a];
-        if (now == 0) continue;
-        if (count++ > 0) {
-          speeds_[i * kTraceAxes + a] = 0.5 * (direction + now) / static_cast<double>(events[i].time - last);
-        } else {
-          first = events[i].time;
-        }
-        direction = now;
-        last = events[i].time;
-      }
-      moves_[a] = count >= 2;
-      if (!moves_[a]) continue;
-      from_ = std::max(from_, first);
-      to_ = std::min(to_, last);
+  explicit AxisSpeeds(const Trace& trace) : to_(trace.total_time()) {
+    for (std::size_t a = 0; a < trace.axes(); ++a) {
+      const std::vector<std::uint64_t>& times = trace.times(a);
+      // speeds_[a][k]: after the k-th pulse, until the next. The ends are never looked at.
+      speeds_[a].assign(times.size() + 1, 0);
+      for (std::size_t k = 1; k < times.size(); ++k) speeds_[a][k] = 1 / as_double(times[k] - times[k - 1]);
+      if (times.size() < 2) continue;
+      from_ = std::max(from_, times.front());
+      to_ = std::min(to_, times.back());
     }
   }
-  bool moves(std::size_t axis) const { return moves_[axis]; }
-  double ending_at(std::size_t event, std::size_t axis) const { return speeds_[event * kTraceAxes + axis]; }
+  // Give the axis's pulses their directions, which a line does not need: its axes never turn round.
+  void turn(const Trace& trace, std::size_t axis) {
+    int last = 0;
+    std::size_t k = 0;
+    for (const Event& event : trace.events()) {
+      const int now = event.direction[axis];
+      if (now == 0) continue;
+      speeds_[axis][k++] *= 0.5 * (last + now);
+      last = now;
+    }
+  }
+  const std::vector<double>& of(std::size_t axis) const { return speeds_[axis]; }
+  bool moves(std::size_t axis) const { return speeds_[axis].size() > 2; }
   std::uint64_t from() const { return from_; }
   std::uint64_t to() const { return to_; }
 
  private:
-  std::size_t axes_;
-  std::uint64_t from_;
+  std::uint64_t from_ = 0;
   std::uint64_t to_;
-  std::array<bool, kTraceAxes> moves_{};
-  std::vector<double> speeds_;
+  std::array<std::vector<double>, kTraceAxes> speeds_;
 };
+
+// Events from the one at `from` to the one before `to`: each begins a stretch of constant speed.
+struct Stretches {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+Stretches stretches_of(const std::vector<Event>& events, const AxisSpeeds& speeds) {
+  const auto earlier = [](const Event& event, std::uint64_t time) { return event.time < time; };
+  const auto from = std::lower_bound(events.begin(), events.end(), speeds.from(), earlier);
+  const auto to = std::lower_bound(from, events.end(), speeds.to(), earlier);
+  return {static_cast<std::size_t>(from - events.begin()), static_cast<std::size_t>(to - events.begin())};
+}
+
+class RippleSum {
+ public:
+  void add(double ripple, double width) {
+    const double size = std::abs(ripple);
+    largest_ = largest_ < size ? size : largest_;
+    squares_ += width * ripple * ripple;
+    duration_ += width;
+  }
+  Ripple ripple() const { return duration_ > 0 ? Ripple{std::sqrt(squares_ / duration_), largest_} : Ripple{}; }
+
+ private:
+  double largest_ = 0;
+  double squares_ = 0;
+  double duration_ = 0;
+};
+
+// Two axes, no branch an event: what a million random lines are measured with.
+Ripple plane_line_ripple(const Trace& trace, const IdealCurve& curve, const AxisSpeeds& speeds) {
+  const std::vector<Event>& events = trace.events();
+  const Stretches stretches = stretches_of(events, speeds);
+  const double to_relative = as_double(trace.total_time()) / curve.length();
+  std::array<double, 2> weight{};
+  double still = -1;
+  for (std::size_t a = 0; a < 2; ++a) {
+    const double cosine = std::abs(curve.tangent(0)[a]);
+    if (speeds.moves(a)) {
+      weight[a] = cosine * to_relative;
+    } else {
+      still += cosine * cosine;
+    }
+  }
+  const double* x = speeds.of(0).data();
+  const double* y = speeds.of(1).data();
+  for (std::size_t i = 0; i < stretches.begin; ++i) {
+    x += events[i].direction[0] != 0 ? 1 : 0;
+    y += events[i].direction[1] != 0 ? 1 : 0;
+  }
+  RippleSum sum;
+  for (std::size_t i = stretches.begin; i < stretches.end; ++i) {
+    x += events[i].direction[0] != 0 ? 1 : 0;
+    y += events[i].direction[1] != 0 ? 1 : 0;
+    sum.add(still + *x * weight[0] + *y * weight[1], as_double(events[i + 1].time - events[i].time));
+  }
+  return sum.ripple();
+}
+
+Ripple general_ripple(const Trace& trace, const IdealCurve& curve, AxisSpeeds& speeds) {
+  const std::vector<Event>& events = trace.events();
+  const Stretches stretches = stretches_of(events, speeds);
+  for (std::size_t a = 0; a < trace.axes(); ++a) speeds.turn(trace, a);
+  const double total = as_double(trace.total_time());
+  const double mean_speed = curve.length() / total;
+  std::array<std::size_t, kTraceAxes> made{};
+  RippleSum sum;
+  for (std::size_t i = 0; i < stretches.end; ++i) {
+    for (std::size_t a = 0; a < trace.axes(); ++a) made[a] += events[i].direction[a] != 0 ? 1U : 0U;
+    if (i < stretches.begin) continue;
+    const Vector tangent = curve.tangent(0.5 * as_double(events[i].time + events[i + 1].time) / total);
+    double along = 0;
+    for (std::size_t a = 0; a < trace.axes(); ++a) {
+      along += speeds.moves(a) ? speeds.of(a)[made[a]] * tangent[a] : tangent[a] * tangent[a] * mean_speed;
+    }
+    sum.add(along / mean_speed - 1, as_double(events[i + 1].time - events[i].time));
+  }
+  return sum.ripple();
+}
 
 }  // namespace
 
@@ -143,37 +214,11 @@ SpectrumLine highest_line(const std::vector<SpectrumLine>& spectrum) {
 }
 
 Ripple measure_speed_ripple(const Trace& trace, const IdealCurve& curve) {
-  const std::vector<Event>& events = trace.events();
-  const AxisSpeeds speeds(trace);
-  if (events.empty() || speeds.to() <= speeds.from()) return {};
-  const auto total = static_cast<double>(trace.total_time());
-  const double mean_speed = curve.length() / total;
-  Vector tangent = curve.tangent(0);
-  Vector speed{};
-  double along = 0;
-  double squares = 0;
-  double duration = 0;
-  double largest = 0;
-  // Backwards, because an interval's speed is known at the event that ends it.
-  for (std::size_t i = events.size(); i-- > 1;) {
-    const std::uint64_t time = events[i].time;
-    for (std::size_t a = 0; a < trace.axes(); ++a) {
-      if (events[i].direction[a] != 0) speed[a] = speeds.ending_at(i, a);
-    }
-    const std::uint64_t before = events[i - 1].time;
-    if (time > speeds.to() || before < speeds.from()) continue;
-    if (!curve.is_line()) tangent = curve.tangent(0.5 * static_cast<double>(time + before) / total);
-    along = 0;
-    for (std::size_t a = 0; a < trace.axes(); ++a) {
-      along += speeds.moves(a) ? speed[a] * tangent[a] : tangent[a] * tangent[a] * mean_speed;
-    }
-    const double ripple = along / mean_speed - 1;
-    const auto width = static_cast<double>(time - before);
-    squares += width * ripple * ripple;
-    duration += width;
-    largest = std::max(largest, std::abs(ripple));
-  }
-  return {std::sqrt(squares / duration), largest};
+  if (trace.events().empty()) return {};
+  AxisSpeeds speeds(trace);
+  if (speeds.to() <= speeds.from()) return {};
+  if (curve.is_line() && trace.axes() == 2) return plane_line_ripple(trace, curve, speeds);
+  return general_ripple(trace, curve, speeds);
 }
 
 }  // namespace trammel::model::measure

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 #include <cmath>
-#include <functional>
 #include <cstdint>
+#include <functional>
 
 namespace trammel::model::measure {
 namespace {
@@ -59,20 +59,31 @@ class Motor {
   Currents reference_{};
 };
 
+// Run again and again without a jump in position or speed. (An open arc has one in speed.)
+bool repeatable(const IdealCurve& curve) { return curve.is_line() || curve.is_closed(); }
+
+// How often the curve is run: whole times, but for a curve of more than the most pulses, which is broken off.
+double repeats_of(const Trace& trace, const IdealCurve& curve, const MotorRun& run) {
+  const std::uint64_t pulses = pulses_of(trace);
+  if (pulses > run.most_pulses) return static_cast<double>(run.most_pulses) / static_cast<double>(pulses);
+  return repeatable(curve) ? std::ceil(static_cast<double>(run.least_pulses) / static_cast<double>(pulses)) : 1;
+}
+
 // One axis over all repeats of the curve.
 class AxisRun {
  public:
-  AxisRun(const Trace& trace, const IdealCurve& curve, const MotorRun& run, std::size_t axis, std::size_t repeats)
+  // Repeats the curve until `end` times its duration, which need not be whole.
+  AxisRun(const Trace& trace, const IdealCurve& curve, const MotorRun& run, std::size_t axis, double end)
       : trace_(trace),
         curve_(curve),
         run_(run),
         axis_(axis),
-        repeats_(repeats),
         motor_(run.motor),
         duration_(curve.length() / run.speed),
+        end_(end * duration_),
         full_steps_a_pulse_(run.drive == Drive::kFullStep ? 1.0 : 0.5),
         radians_a_pulse_(kTurn / (4 * run.motor.pole_pairs) * full_steps_a_pulse_) {
-    measured_from_ = repeats > 1 ? duration_ * static_cast<double>(repeats) / 3 : 0;
+    measured_from_ = end == 1 && !repeatable(curve) ? 0 : end_ / 3;
     // Full-step positions have both phases on: the field stands at 45 degrees.
     turn_field();
     const Currents currents = motor_.reference(field_angle() * run.motor.pole_pairs);
@@ -81,16 +92,20 @@ class AxisRun {
 
   // False: steps were lost.
   bool execute() {
-    for (std::size_t repeat = 0; repeat < repeats_; ++repeat) {
+    bool over = false;
+    for (std::size_t repeat = 0; !over; ++repeat) {
       const double offset = duration_ * static_cast<double>(repeat);
+      over = offset + duration_ >= end_;
       for (const Event& event : trace_.events()) {
         if (event.direction[axis_] == 0) continue;
-        if (!advance(offset + duration_ * fraction(event.time))) return false;
+        const double time = offset + duration_ * fraction(event.time);
+        if (time > end_) break;
+        if (!advance(time)) return false;
         pulses_ += event.direction[axis_];
         turn_field();
       }
     }
-    if (!advance(duration_ * static_cast<double>(repeats_))) return false;
+    if (!advance(end_)) return false;
     measuring_ = false;
     return advance(time_ + kSettle) && std::abs(lag()) < 2;
   }
@@ -149,9 +164,9 @@ class AxisRun {
   const IdealCurve& curve_;
   const MotorRun& run_;
   std::size_t axis_;
-  std::size_t repeats_;
   Motor motor_;
   double duration_;  // s, one repeat
+  double end_;       // s
   double full_steps_a_pulse_;
   double radians_a_pulse_;
   double measured_from_ = 0;
@@ -169,13 +184,11 @@ class AxisRun {
 
 Vibration simulate_motors(const Trace& trace, const IdealCurve& curve, const MotorRun& run) {
   Vibration result;
-  const std::uint64_t pulses = pulses_of(trace);
-  if (pulses == 0) return result;
-  const bool repeatable = curve.is_line() || curve.is_closed();
-  const std::size_t repeats = repeatable ? (run.least_pulses + pulses - 1) / pulses : 1;
+  if (pulses_of(trace) == 0) return result;
+  const double repeats = repeats_of(trace, curve, run);
   double squares = 0;
   for (std::size_t a = 0; a < trace.axes(); ++a) {
-    if (pulses_of(trace, a) == 0) continue;
+    if (trace.times(a).empty()) continue;
     AxisRun axis(trace, curve, run, a, repeats);
     if (!axis.execute()) result.lost_steps = true;
     result.axis[a] = axis.vibration();

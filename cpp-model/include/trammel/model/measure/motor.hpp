@@ -52,7 +52,8 @@ struct MotorRun {
   double speed = 200;  // mean speed along the path, pulses/s, > 0
   bool from_standstill = false;
   double step = 10e-6;             // s, longest integration step, > 0
-  std::size_t least_pulses = 240;  // a line or closed curve is repeated until it has made so many
+  std::size_t least_pulses = 240;  // a line or closed curve is repeated until all axes together have made so many
+  std::size_t most_pulses = 1000;  // and the run ends after so many
 };
 
 struct AxisVibration {
@@ -68,8 +69,9 @@ struct Vibration {
 };
 
 // Runs one motor an axis. What the first third of the pulses make is left out of ripple and lag (lost steps count from
-// the start), unless the curve can be run only once (an open arc). After a loss the run ends, and ripple and lag are
-// what they had become. Precondition: the trace ends at the curve's end, or for closed curves at its start.
+// the start), unless the curve can be run only once (an open arc) and is run whole. After a loss the run ends, and
+// ripple and lag are what they had become. Precondition: the trace ends at the curve's end, or for closed curves at its
+// start.
 Vibration simulate_motors(const Trace& trace, const IdealCurve& curve, const MotorRun& run);
 
 }  // namespace trammel::model::measure

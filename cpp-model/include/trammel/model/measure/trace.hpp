@@ -33,23 +33,31 @@ class Trace {
     events_.clear();
   }
 
-  // Steps at `time`, which never decreases and is at least 1; steps of equal time become one event.
-  void add(std::uint64_t time, const Directions& direction) {
-    if (!events_.empty() && events_.back().time == time) {
-      for (std::size_t a = 0; a < kTraceAxes; ++a) {
-        events_.back().direction[a] = static_cast<std::int8_t>(events_.back().direction[a] + direction[a]);
-      }
-      return;
-    }
-    events_.push_back({time, direction});
-  }
+  // All steps of one time, which increases from call to call and is at least 1.
+  void add(std::uint64_t time, const Directions& direction) { events_.push_back({time, direction}); }
+  // The same for two axes.
+  void add(std::uint64_t time, std::int8_t x, std::int8_t y) { events_.push_back({time, {x, y, 0, 0}}); }
 
-  // `total_time` is at least the last step's time.
-  void finish(std::uint64_t total_time) { total_time_ = total_time; }
+  // Call once after the last step. `total_time` is at least that one's time, and below 2^63.
+  void finish(std::uint64_t total_time) {
+    total_time_ = total_time;
+    for (std::size_t a = 0; a < axes_; ++a) {
+      // Without a branch: which axis steps next is as good as random.
+      times_[a].resize(events_.size() + 1);
+      std::size_t count = 0;
+      for (const Event& event : events_) {
+        times_[a][count] = event.time;
+        count += event.direction[a] != 0 ? 1U : 0U;
+      }
+      times_[a].resize(count);
+    }
+  }
 
   std::size_t axes() const { return axes_; }
   const TracePosition& start() const { return start_; }
   const std::vector<Event>& events() const { return events_; }
+  // When an axis stepped. Valid after finish().
+  const std::vector<std::uint64_t>& times(std::size_t axis) const { return times_[axis]; }
   std::uint64_t total_time() const { return total_time_; }
 
  private:
@@ -57,19 +65,13 @@ class Trace {
   TracePosition start_{};
   std::uint64_t total_time_ = 0;
   std::vector<Event> events_;
+  std::array<std::vector<std::uint64_t>, kTraceAxes> times_;
 };
-
-// Pulses of one axis, whatever their direction.
-inline std::uint64_t pulses_of(const Trace& trace, std::size_t axis) {
-  std::uint64_t count = 0;
-  for (const Event& event : trace.events()) count += event.direction[axis] != 0 ? 1U : 0U;
-  return count;
-}
 
 // Pulses of all axes: a diagonal step counts twice.
 inline std::uint64_t pulses_of(const Trace& trace) {
   std::uint64_t count = 0;
-  for (std::size_t a = 0; a < trace.axes(); ++a) count += pulses_of(trace, a);
+  for (std::size_t a = 0; a < trace.axes(); ++a) count += trace.times(a).size();
   return count;
 }
 
