@@ -7,7 +7,9 @@
 #include "errors.hpp"
 #include "info_command.hpp"
 #include "line_command.hpp"
+#include "methods_command.hpp"
 #include "run_command.hpp"
+#include "steps_command.hpp"
 #include "trammel/driver/gcode.hpp"
 #include "trammel/driver/machine.hpp"
 
@@ -27,6 +29,8 @@ int main(int argc, char** argv) {
   trammel::app::add_run_command(app);
   trammel::app::add_line_command(app);
   trammel::app::add_info_command(app);
+  trammel::app::add_steps_command(app);
+  trammel::app::add_methods_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -102,19 +102,15 @@ struct MinDeviationRule {
     const bool outside = s.f >= 0;
     const Word size_x = magnitude(s.gradient_x);
     const Word size_y = magnitude(s.gradient_y);
-    const bool x_allowed = !(outside && x_outward && size_x > size_y);
-    const bool y_allowed = !(outside && !x_outward && size_y > size_x);
-    Step step{{step_x, step_y, 0, 0}};
-    Word best = magnitude(f_both);
-    if (x_allowed && magnitude(f_x) < best) {
-      best = magnitude(f_x);
-      step.direction[1] = 0;
-    }
-    if (y_allowed && magnitude(f_y) < best) {
-      step.direction[0] = 0;
-      step.direction[1] = step_y;
-    }
-    return step;
+    // Whole expressions rather than short circuits: the outcomes are as good as random to a branch predictor.
+    const bool x_allowed = !(outside & x_outward & (size_x > size_y));
+    const bool y_allowed = !(outside & !x_outward & (size_y > size_x));
+    const Word size_both = magnitude(f_both);
+    const Word size_f_x = magnitude(f_x);
+    const bool not_y = x_allowed & (size_f_x < size_both);
+    const Word best = not_y ? size_f_x : size_both;
+    const bool not_x = y_allowed & (magnitude(f_y) < best);
+    return {{static_cast<std::int8_t>(step_x * !not_x), static_cast<std::int8_t>(step_y * (not_x | !not_y)), 0, 0}};
   }
 
  private:
@@ -162,19 +158,16 @@ class ConicArc {
     return 2 * ((x < 0 ? -x : x) + (y < 0 ? -y : y));
   }
 
+  // Products with -1, 0 or 1 rather than branches, for the same reason.
   void apply(const Step& step) {
-    if (step.direction[0] != 0) {
-      const bool back = step.direction[0] < 0;
-      state_.f += state_.half_x + (back ? -state_.gradient_x : state_.gradient_x);
-      state_.gradient_x += back ? -2 * state_.half_x : 2 * state_.half_x;
-      at_.x += step.direction[0];
-    }
-    if (step.direction[1] != 0) {
-      const bool back = step.direction[1] < 0;
-      state_.f += state_.half_y + (back ? -state_.gradient_y : state_.gradient_y);
-      state_.gradient_y += back ? -2 * state_.half_y : 2 * state_.half_y;
-      at_.y += step.direction[1];
-    }
+    const Word x = step.direction[0];
+    const Word y = step.direction[1];
+    state_.f += x * state_.gradient_x + x * x * state_.half_x;
+    state_.f += y * state_.gradient_y + y * y * state_.half_y;
+    state_.gradient_x += 2 * x * state_.half_x;
+    state_.gradient_y += 2 * y * state_.half_y;
+    at_.x += step.direction[0];
+    at_.y += step.direction[1];
   }
 
   Point centre_;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "trammel/model/interpolation/curve.hpp"
 
@@ -51,7 +52,7 @@ template <unsigned Axes>
 class PulseTrainLine {
  public:
   // At most one pulse a clock: p <= L on every axis.
-  PulseTrainLine(const Line& line, const PulseTiming& timing) : position_(line.start) {
+  PulseTrainLine(const Line& line, const PulseTiming& timing) : end_(line.end) {
     next_.fill(kNever);
     total_ = (timing.numerator + timing.denominator - 1) / timing.denominator;
     for (unsigned a = 0; a < Axes; ++a) {
@@ -68,24 +69,14 @@ class PulseTrainLine {
   bool done() const { return earliest() == kNever; }
   // Not to be called when done.
   Step next() {
-    Step step;
     time_ = earliest();
-    for (unsigned a = 0; a < Axes; ++a) {
-      const bool due = next_[a] == time_;
-      // Masks rather than branches: which axis is due next is as good as random.
-      const std::uint64_t mask = -static_cast<std::uint64_t>(due);
-      slack_[a] -= static_cast<std::int64_t>(mask & remainder_[a]);
-      const std::uint64_t late = static_cast<std::uint64_t>(slack_[a]) >> 63;
-      slack_[a] += static_cast<std::int64_t>(-late & modulus_[a]);
-      next_[a] += (mask & whole_[a]) + late;
-      left_[a] -= due;
-      step.direction[a] = static_cast<std::int8_t>(sign_[a] & static_cast<std::int8_t>(mask));
-      position_[a] += step.direction[a];
-      if (left_[a] == 0) next_[a] = kNever;
-    }
-    return step;
+    return step(std::make_index_sequence<Axes>{});
   }
-  const Position& position() const { return position_; }
+  Position position() const {
+    Position result = end_;
+    for (unsigned a = 0; a < Axes; ++a) result[a] -= sign_[a] * static_cast<std::int64_t>(left_[a]);
+    return result;
+  }
   // Clocks or iterations from the common start.
   std::uint64_t time() const { return time_; }
   // Accumulators: the line's duration, rounded up to whole clocks. Dividers: the slowest axis's last pulse.
@@ -111,13 +102,32 @@ class PulseTrainLine {
     slack_[a] = static_cast<std::int64_t>(next_[a] * modulus_[a] - first);
   }
 
+  // One expression for all axes: stepping through the bytes of a Step in a loop stalls on each of them.
+  template <std::size_t... Index>
+  Step step(std::index_sequence<Index...>) {
+    return {{pulse(Index)...}};
+  }
+
+  // The direction in which the axis steps at time_, or 0.
+  std::int8_t pulse(std::size_t a) {
+    // Masks rather than branches: which axis is due next is as good as random.
+    const std::uint64_t due = next_[a] == time_;
+    slack_[a] -= static_cast<std::int64_t>(-due & remainder_[a]);
+    const std::uint64_t late = static_cast<std::uint64_t>(slack_[a]) >> 63;
+    slack_[a] += static_cast<std::int64_t>(-late & modulus_[a]);
+    next_[a] += (-due & whole_[a]) + late;
+    left_[a] -= due;
+    if (left_[a] == 0) next_[a] = kNever;
+    return static_cast<std::int8_t>(sign_[a] * static_cast<std::int8_t>(due));
+  }
+
   std::uint64_t earliest() const {
     std::uint64_t first = next_[0];
     for (unsigned a = 1; a < Axes; ++a) first = std::min(first, next_[a]);
     return first;
   }
 
-  Position position_;
+  Position end_;
   std::uint64_t time_ = 0;
   std::uint64_t total_ = 0;
   std::array<std::uint64_t, Axes> next_{};   // clock of the next pulse

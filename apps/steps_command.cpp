@@ -1,0 +1,163 @@
+#include "steps_command.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+#include "curve_options.hpp"
+#include "errors.hpp"
+#include "trammel/model/interpolation/any_interpolator.hpp"
+
+namespace trammel::app {
+namespace {
+
+namespace interpolation = model::interpolation;
+using interpolation::AnyInterpolator;
+using interpolation::Position;
+using interpolation::Step;
+
+struct Options {
+  std::string method;
+  CurveChoice curve;
+  VelocityChoice velocity;
+  std::optional<std::string> csv;
+  std::optional<std::string> json;
+};
+
+// Standard output, or a file of its own.
+class Output {
+ public:
+  explicit Output(const std::string& name) : name_(name), file_(name == "-" ? stdout : std::fopen(name.c_str(), "w")) {
+    if (file_ == nullptr) throw UsageError(fmt::format("cannot write {}", name_));
+  }
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+  ~Output() {
+    if (file_ != stdout && file_ != nullptr) std::fclose(file_);
+  }
+  template <class... Arguments>
+  void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    buffer_.clear();
+    fmt::format_to(std::back_inserter(buffer_), format, std::forward<Arguments>(arguments)...);
+    if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail();
+  }
+  // A full disk shows here at the latest.
+  void finish() {
+    if (std::fflush(file_) != 0 || std::ferror(file_) != 0) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw std::runtime_error(fmt::format("cannot write {}", name_)); }
+
+  std::string name_;
+  std::FILE* file_;
+  fmt::memory_buffer buffer_;
+};
+
+std::string axis_of(const Step& step) {
+  std::string result;
+  if (step.direction[0] != 0) result += 'x';
+  if (step.direction[1] != 0) result += 'y';
+  return result;
+}
+
+std::string direction_of(const Step& step) {
+  std::string result;
+  for (unsigned a = 0; a < 2; ++a) {
+    if (step.direction[a] != 0) result += step.direction[a] < 0 ? '-' : '+';
+  }
+  return result;
+}
+
+// One step: position and deviation before it.
+struct Row {
+  std::uint64_t index;
+  Step step;
+  Position from;
+  std::optional<interpolation::Deviation> f;
+  std::uint64_t time;
+
+  std::string deviation(const char* none) const { return f ? fmt::format("{}", *f) : none; }
+};
+
+template <class Sink>
+std::uint64_t walk(AnyInterpolator& interpolator, Sink&& sink) {
+  std::uint64_t count = 0;
+  for (; !interpolator.done(); ++count) {
+    const Position from = interpolator.position();
+    const auto f = interpolator.deviation();
+    const Step step = interpolator.next();
+    sink(Row{count, step, from, f, interpolator.time()});
+  }
+  return count;
+}
+
+void write_csv(const std::string& name, AnyInterpolator interpolator) {
+  Output out(name);
+  out.print("index,axis,direction,x,y,f\n");
+  walk(interpolator, [&](const Row& row) {
+    out.print("{},{},{},{},{},{}\n", row.index, axis_of(row.step), direction_of(row.step), row.from[0], row.from[1],
+              row.deviation(""));
+  });
+  out.finish();
+}
+
+// The walk as it comes, so that its length does not matter.
+void write_json(const std::string& name, const interpolation::MethodInfo& method, AnyInterpolator interpolator) {
+  Output out(name);
+  const Position start = interpolator.position();
+  out.print("{{\n\"method\": \"{}\",\n\"time_unit\": \"{}\",\n", method.name, method.time_unit);
+  out.print("\"start\": [{}, {}],\n\"path\": [", start[0], start[1]);
+  const std::uint64_t count = walk(interpolator, [&](const Row& row) {
+    out.print("{}{{\"index\": {}, \"axis\": \"{}\", \"direction\": \"{}\", \"x\": {}, \"y\": {}, \"f\": {}, ",
+              row.index == 0 ? "\n" : ",\n", row.index, axis_of(row.step), direction_of(row.step), row.from[0],
+              row.from[1], row.deviation("null"));
+    out.print("\"time\": {}}}", row.time);
+  });
+  const Position end = interpolator.position();
+  out.print("],\n\"end\": [{}, {}],\n\"steps\": {},\n\"total_time\": {}\n}}\n", end[0], end[1], count,
+            interpolator.total_time());
+  out.finish();
+}
+
+void execute(const Options& options) {
+  const auto method = interpolation::method_named(options.method);
+  if (!method) throw UsageError(fmt::format("no method \"{}\": trammel methods lists them", options.method));
+  if (options.csv && options.json && *options.csv == "-" && *options.json == "-") {
+    throw UsageError("--csv and --json: only one of them can go to standard output");
+  }
+  const interpolation::Curve curve = options.curve.curve();
+  const AnyInterpolator interpolator = [&] {
+    try {
+      return interpolation::make_interpolator(*method, curve, options.velocity.options(curve));
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(error.what());
+    }
+  }();
+  if (options.csv || !options.json) write_csv(options.csv.value_or("-"), interpolator);
+  if (options.json) write_json(*options.json, interpolation::info(*method), interpolator);
+}
+
+}  // namespace
+
+void add_steps_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("steps", "print the steps of one interpolation method on one curve");
+  command->add_option("--method", options->method, "interpolation method; trammel methods lists them")
+      ->required()
+      ->type_name("NAME");
+  options->curve.add_to(*command);
+  options->velocity.add_to(*command);
+  command->add_option("--csv", options->csv, "index,axis,direction,x,y,f of each step ('-': standard output, default)")
+      ->type_name("FILE");
+  command->add_option("--json", options->json, "the same and the times, as JSON ('-': standard output)")
+      ->type_name("FILE");
+  command->callback([options] { execute(*options); });
+}
+
+}  // namespace trammel::app
