@@ -1,10 +1,8 @@
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <thread>
 
+#include "for_each_index.hpp"
 #include "trammel/model/measure/comparison.hpp"
 
 namespace trammel::model::measure {
@@ -136,22 +134,13 @@ std::vector<RandomMeasures> measure_random_lines(const RandomLines& lines,
   }
   const std::uint64_t blocks = (lines.count + kBlock - 1) / kBlock;
   std::vector<std::vector<RandomMeasures>> results(blocks);
-  std::atomic<std::uint64_t> next{0};
-  std::atomic<std::uint64_t> done{0};
-  const auto work = [&] {
-    Trace trace;
-    for (std::uint64_t block = next++; block < blocks; block = next++) {
-      results[block] = measure_block(lines, block, trace);
-      ++done;
-    }
-  };
-  std::vector<std::thread> threads;
-  for (unsigned i = 0; i < std::max(1U, lines.threads); ++i) threads.emplace_back(work);
-  while (progress && done < blocks) {
-    progress(static_cast<double>(done) / static_cast<double>(blocks));
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  for (std::thread& thread : threads) thread.join();
+  for_each_index(
+      blocks, lines.threads,
+      [&](std::uint64_t block) {
+        Trace trace;
+        results[block] = measure_block(lines, block, trace);
+      },
+      progress);
   for (const std::vector<RandomMeasures>& block : results) {
     for (std::size_t i = 0; i < total.size(); ++i) add_block(total[i], block[i]);
   }

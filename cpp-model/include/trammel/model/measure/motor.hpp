@@ -17,6 +17,8 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "trammel/model/measure/ideal_curve.hpp"
@@ -73,5 +75,18 @@ struct Vibration {
 // ripple and lag are what they had become. Precondition: the trace ends at the curve's end, or for closed curves at its
 // start.
 Vibration simulate_motors(const Trace& trace, const IdealCurve& curve, const MotorRun& run);
+
+// A third of an octave apart, 100 to 6,350 pulses/s: from below the resonance of the motor above to beyond its
+// pull-out.
+std::vector<double> sweep_speeds();
+
+// Every trace at every speed; run.speed is not looked at. The result does not depend on the number of threads.
+// `progress` is called by the calling thread now and then with the part done.
+std::vector<std::vector<Vibration>> sweep_motors(const std::vector<Trace>& traces, const IdealCurve& curve,
+                                                 const MotorRun& run, const std::vector<double>& speeds,
+                                                 unsigned threads, const std::function<void(double)>& progress = {});
+
+// The lowest speed of a sweep at which steps were lost; nothing if none were.
+std::optional<double> lost_from(const std::vector<double>& speeds, const std::vector<Vibration>& sweep);
 
 }  // namespace trammel::model::measure
