@@ -28,7 +28,7 @@ constexpr std::array<const char*, 10> kColours = {"#1f77b4", "#ff7f0e", "#2ca02c
 
 constexpr const char* kStyle = R"(<style>
 text{font:13px sans-serif;fill:#222} .small{font-size:11px;fill:#555} .title{font-size:18px;font-weight:bold}
-.frame{fill:#fcfcfc;stroke:#bbb} .grid{stroke:#ddd} polyline{fill:none;stroke-width:1.3}
+.frame{fill:#fcfcfc;stroke:#bbb} .grid{stroke:#ddd} polyline{stroke-width:1.3}
 </style>
 )";
 
@@ -50,7 +50,7 @@ struct Panel {
   }
   // Steps: each value is held until the next one.
   std::string held(const std::vector<Sample>& samples, const char* colour) const {
-    std::string text = "<polyline points=\"";
+    std::string text = "<polyline fill=\"none\" points=\"";
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (i > 0) text += fmt::format("{:.1f},{:.1f} ", x(samples[i].x), y(samples[i - 1].y));
       text += fmt::format("{:.1f},{:.1f} ", x(samples[i].x), y(samples[i].y));
@@ -58,7 +58,7 @@ struct Panel {
     return text + fmt::format("\" stroke=\"{}\"/>\n", colour);
   }
   std::string line(const std::vector<Sample>& samples, const char* colour) const {
-    std::string text = "<polyline points=\"";
+    std::string text = "<polyline fill=\"none\" points=\"";
     for (const Sample& sample : samples) text += fmt::format("{:.1f},{:.1f} ", x(sample.x), y(sample.y));
     return text + fmt::format("\" stroke=\"{}\"/>\n", colour);
   }

@@ -74,11 +74,15 @@ void record(Method method, const Curve& curve, const interpolation::Options& opt
   const auto* line = std::get_if<Line>(&curve);
   const std::size_t axes = line != nullptr ? line->axes : 2;
   trace.clear(axes, interpolator.position());
-  if (axes == 2) {
-    // Apart, because the four bytes of a Step as one word cost more than the walk itself.
-    interpolator.run([&trace](const interpolation::Step& step, const auto& walk) {
-      trace.add(walk.time(), step.direction[0], step.direction[1]);
+  if (line != nullptr && axes == 2) {
+    Event* at = trace.room(pulses_along(curve));
+    interpolator.run([&at](const interpolation::Step& step, const auto& walk) {
+      at->time = walk.time();
+      at->direction[0] = step.direction[0];
+      at->direction[1] = step.direction[1];
+      ++at;
     });
+    trace.take(at);
   } else {
     interpolator.run(
         [&trace](const interpolation::Step& step, const auto& walk) { trace.add(walk.time(), step.direction); });
