@@ -18,57 +18,52 @@ namespace {
 
 constexpr double kCentreScale = 256.0;
 
-// The commanded path as points: of a whole segment (`step` = 0), or one a pulse up to `limit` of them.
+// The commanded path of a segment as points. In mm, where an arc is a circle whatever the axes' scales.
 class CommandedPath {
  public:
   CommandedPath(const driver::PlannedSegment& segment, const std::vector<double>& steps_per_mm)
-      : segment_(segment), steps_per_mm_(steps_per_mm) {
-    if (segment.kind == driver::MotionKind::kArc) {
-      centre_x_ = static_cast<double>(segment.centre_x) / kCentreScale;
-      centre_y_ = static_cast<double>(segment.centre_y) / kCentreScale;
-      const double x = static_cast<double>(segment.start[segment.axis_x]) - centre_x_;
-      const double y = static_cast<double>(segment.start[segment.axis_y]) - centre_y_;
-      radius_ = std::hypot(x, y);
-      angle_ = std::atan2(y, x);
-      length_ = radius_ * segment.sweep;
-    } else {
-      double square = 0;
-      for (std::size_t a = 0; a < steps_per_mm.size(); ++a) {
-        square += std::pow(static_cast<double>(segment.end[a] - segment.start[a]), 2);
-      }
-      length_ = std::sqrt(square);
+      : axes_(std::min<std::size_t>(3, steps_per_mm.size())), axis_x_(segment.axis_x), axis_y_(segment.axis_y) {
+    double square = 0;
+    for (std::size_t a = 0; a < steps_per_mm.size(); ++a) {
+      start_[a] = static_cast<double>(segment.start[a]) / steps_per_mm[a];
+      end_[a] = static_cast<double>(segment.end[a]) / steps_per_mm[a];
+      square += std::pow(static_cast<double>(segment.end[a] - segment.start[a]), 2);
     }
+    pulses_ = std::sqrt(square);
+    if (segment.kind != driver::MotionKind::kArc) return;
+    centre_x_ = static_cast<double>(segment.centre_x) / kCentreScale / steps_per_mm[axis_x_];
+    centre_y_ = static_cast<double>(segment.centre_y) / kCentreScale / steps_per_mm[axis_y_];
+    radius_ = std::hypot(start_[axis_x_] - centre_x_, start_[axis_y_] - centre_y_);
+    angle_ = std::atan2(start_[axis_y_] - centre_y_, start_[axis_x_] - centre_x_);
+    turn_ = segment.clockwise ? -segment.sweep : segment.sweep;
+    pulses_ = radius_ * segment.sweep * std::max(steps_per_mm[axis_x_], steps_per_mm[axis_y_]);
   }
-  double length() const { return length_; }  // pulses
+  double pulses() const { return pulses_; }  // length, about
 
-  // The point `s` pulses along the path.
-  Point at(double s) const {
-    std::array<double, driver::kMaxAxes> pulses{};
-    const double share = length_ > 0 ? std::min(1.0, s / length_) : 1.0;
-    for (std::size_t a = 0; a < steps_per_mm_.size(); ++a) {
-      pulses[a] =
-          static_cast<double>(segment_.start[a]) + share * static_cast<double>(segment_.end[a] - segment_.start[a]);
-    }
-    if (radius_ > 0) {
-      const double angle = angle_ + (segment_.clockwise ? -1 : 1) * share * segment_.sweep;
-      pulses[segment_.axis_x] = centre_x_ + radius_ * std::cos(angle);
-      pulses[segment_.axis_y] = centre_y_ + radius_ * std::sin(angle);
-    }
+  // The point at a share, 0 to 1, of the path.
+  Point at(double share) const {
     Point point{};
-    for (std::size_t a = 0; a < std::min<std::size_t>(3, steps_per_mm_.size()); ++a) {
-      point[a] = pulses[a] / steps_per_mm_[a];
+    for (std::size_t a = 0; a < axes_; ++a) point[a] = start_[a] + share * (end_[a] - start_[a]);
+    if (radius_ > 0) {
+      const double angle = angle_ + share * turn_;
+      point[axis_x_] = centre_x_ + radius_ * std::cos(angle);
+      point[axis_y_] = centre_y_ + radius_ * std::sin(angle);
     }
     return point;
   }
 
  private:
-  const driver::PlannedSegment& segment_;
-  const std::vector<double>& steps_per_mm_;
+  std::size_t axes_;
+  std::size_t axis_x_;
+  std::size_t axis_y_;
+  std::array<double, driver::kMaxAxes> start_{};
+  std::array<double, driver::kMaxAxes> end_{};
   double centre_x_ = 0;
   double centre_y_ = 0;
-  double radius_ = 0;
+  double radius_ = 0;  // 0: a line
   double angle_ = 0;
-  double length_ = 0;
+  double turn_ = 0;
+  double pulses_ = 0;
 };
 
 // What one pass over the plan, before anything moves, tells.
@@ -108,14 +103,14 @@ Survey survey(const driver::Program& program, const driver::Machine& machine, st
       const CommandedPath path(segment, steps_per_mm);
       if (commanded.given() == 0) commanded.add(path.at(0));
       const double points = segment.kind == driver::MotionKind::kArc ? kArcPoints : 1;
-      for (double i = 1; i <= points; ++i) commanded.add(path.at(path.length() * i / points));
+      for (double i = 1; i <= points; ++i) commanded.add(path.at(i / points));
       const int rank = detail_rank(segment);
       if (rank > best_rank) {
         best_rank = rank;
         result.detail_command = result.commands + static_cast<std::uint64_t>(geometry - segment.commands.begin());
         result.detail.clear();
-        const double length = std::min(path.length(), 0.75 * static_cast<double>(StepRecorder::kDetailPoints));
-        for (double s = 0; s <= length; s += 1) result.detail.push_back(path.at(s));
+        const double length = std::min(path.pulses(), 0.75 * static_cast<double>(StepRecorder::kDetailPoints));
+        for (double s = 0; s <= length; s += 1) result.detail.push_back(path.at(s / path.pulses()));
       }
     }
     result.commands += segment.commands.size();

@@ -13,6 +13,7 @@ debian_packages=(
   verilator
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
   libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev
+  clang-14 libclang-rt-14-dev  # libFuzzer
 )
 # Checks of the sources, other RTL readers, synthesis.
 debian_packages_check=(clang-format iverilog yosys)
@@ -44,10 +45,11 @@ install_python() {
   fi
 }
 
+# build_release [arguments of cmake --build ...]
 build_release() {
   install_debian "${debian_packages[@]}"
   say "building"
   mkdir -p build
   cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log >&2; die "configuring failed"; }
-  cmake --build --preset release
+  cmake --build --preset release "$@"
 }

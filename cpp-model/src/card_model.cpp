@@ -218,8 +218,8 @@ void CardModel::clock_commands(bool geometry_read, bool feed_read) {
     door_.clock(in);
   }
   if (awake_ != 0 || geometry_read || !geometry_queue_.quiet()) {
-    geometry_queue_.clock({false, set.abort, door.geometry_write, door.halfword, door.geometry_commit, door.drop,
-                           geometry_read});
+    geometry_queue_.clock(
+        {false, set.abort, door.geometry_write, door.halfword, door.geometry_commit, door.drop, geometry_read});
   }
   if (awake_ != 0 || feed_read || !feed_queue_.quiet()) {
     feed_queue_.clock({false, set.abort, door.feed_write, door.halfword, door.feed_commit, door.drop, feed_read});
@@ -328,8 +328,10 @@ void CardModel::report_path_steps(std::uint32_t steps) {
   for (unsigned n = 0; n < axes_.size(); ++n) {
     if ((steps >> n & 1) == 0) continue;
     const int direction = (axis_state_.path_dir >> n & 1) != 0 ? -1 : 1;
-    if ((ext_step_ >> n & 1) != 0) steps_->path_step(command_, arc_taken_, n, direction);
-    else steps_->path_step(take.command, take.tick, n, direction);
+    if ((ext_step_ >> n & 1) != 0)
+      steps_->path_step(command_, arc_taken_, n, direction);
+    else
+      steps_->path_step(take.command, take.tick, n, direction);
   }
 }
 

@@ -18,10 +18,10 @@ std::uint8_t number_of(std::uint64_t chain) { return static_cast<std::uint8_t>(c
 struct Sequencer::Wires {
   bool clear;
   bool take;
-  bool ending;       // the path's last tick is taken
-  bool over;         // the engine has finished behind it
-  bool swap;         // the decoded path begins
-  bool path_load;    // the path's counter is loaded for a path
+  bool ending;     // the path's last tick is taken
+  bool over;       // the engine has finished behind it
+  bool swap;       // the decoded path begins
+  bool path_load;  // the path's counter is loaded for a path
   bool feed_swap;
   bool feed_ending;
   bool path_waits;   // a decoded path
@@ -54,9 +54,9 @@ void Sequencer::clock(const Inputs& in) {
 
   out_.idle = geometry_idle_ && feed_idle && in.feed_empty && !feed_active;
   geometry_idle_ = geometry_.idle() && in.geometry_empty && !out_.path_active && barrier_.idle();
-  out_.mismatch = ((geometry_at && (feed_active || w.piece_waits)) ||
-                   (feed_at && ((taking && !direct) || w.path_waits))) &&
-                  go_ && !w.barrier_done && !w.clear;
+  out_.mismatch =
+      ((geometry_at && (feed_active || w.piece_waits)) || (feed_at && ((taking && !direct) || w.path_waits))) && go_ &&
+      !w.barrier_done && !w.clear;
   step_path(in, w);
   step_feed(in, w);
 
@@ -79,10 +79,14 @@ void Sequencer::step_path(const Inputs& in, const Wires& w) {
   began_direct_ = in.direct_go && !w.clear;
 
   // Status.
-  if (w.clear || w.path_load || barrier_load) out_.ended = false;
-  else if (barrier_.ended()) out_.ended = true;
-  if (w.clear) out_.geometry_number = 0;
-  else if (w.swap || barrier_load) out_.geometry_number = next_number;
+  if (w.clear || w.path_load || barrier_load)
+    out_.ended = false;
+  else if (barrier_.ended())
+    out_.ended = true;
+  if (w.clear)
+    out_.geometry_number = 0;
+  else if (w.swap || barrier_load)
+    out_.geometry_number = next_number;
 
   // What leaves with the tick.
   out_.swap = w.path_load && !w.clear;
@@ -100,8 +104,10 @@ void Sequencer::step_path(const Inputs& in, const Wires& w) {
   const bool at_barrier = geometry_.valid() && !geometry_.is_path() && was_idle && !done && !w.clear;
   const bool was_arc_busy = arc_;
   settled_ = drain_ && settle_ == 0 && !w.over && !w.clear;
-  if (!drain_) settle_ = kSettleClocks;
-  else if (settle_ != 0) --settle_;
+  if (!drain_)
+    settle_ = kSettleClocks;
+  else if (settle_ != 0)
+    --settle_;
   if (w.clear) {
     idle_ = true;
     taking_ = drain_ = arc_ = out_.direct = false;
@@ -142,14 +148,19 @@ void Sequencer::step_path(const Inputs& in, const Wires& w) {
 
 void Sequencer::step_feed(const Inputs& in, const Wires& w) {
   const bool done = w.barrier_done;
-  if (w.clear) out_.feed_number = 0;
-  else if (w.feed_swap || done) out_.feed_number = number_of(feed_chain_);
+  if (w.clear)
+    out_.feed_number = 0;
+  else if (w.feed_swap || done)
+    out_.feed_number = number_of(feed_chain_);
   out_.feed_swap = w.feed_swap && !w.clear;
   feed_at_ = feed_.valid() && !feed_.is_feed() && !out_.feed_active && !done && !w.clear;
   feed_left_.clock(w.feed_swap, count_of(feed_chain_), w.take);
-  if (w.clear) out_.feed_active = false;
-  else if (w.feed_swap) out_.feed_active = true;
-  else if (w.feed_ending) out_.feed_active = false;
+  if (w.clear)
+    out_.feed_active = false;
+  else if (w.feed_swap)
+    out_.feed_active = true;
+  else if (w.feed_ending)
+    out_.feed_active = false;
   if (feed_.load().count) shift_count(feed_chain_, feed_.load().word);
   feed_.clock({w.clear, w.feed_swap || done, false, in.feed_empty, in.feed_word});
 }
@@ -157,8 +168,10 @@ void Sequencer::step_feed(const Inputs& in, const Wires& w) {
 void Sequencer::step_faults(const Inputs& in, bool event) {
   const bool any = event || in.faulted;
   const bool go = !any && !fault_seen_ && !abort_due_;
-  if (in.abort) abort_due_ = false;
-  else if (any && !fault_seen_) abort_due_ = true;
+  if (in.abort)
+    abort_due_ = false;
+  else if (any && !fault_seen_)
+    abort_due_ = true;
   fault_seen_ = any;
   go_ = go;
   if (in.reset) {
@@ -169,10 +182,24 @@ void Sequencer::step_faults(const Inputs& in, bool event) {
 
 bool Sequencer::quiet(const Inputs& in) const {
   const bool fetching = !geometry_.quiet() || !feed_.quiet() || (geometry_.idle() && !in.geometry_empty) ||
-                        (feed_.idle() && !in.feed_empty) || load_.any();
+                        (feed_.idle() && !in.feed_empty) || (geometry_.waiting() && !arc_) || load_.any();
   const bool moving = out_.tick || out_.swap || out_.feed_swap || source_tick_ || gate_.owed() || path_gate_.tick() ||
                       path_gate_.waiting() || took_ || began_ || began_direct_ || drain_ || out_.direct;
-  return !fetching && !moving;
+  // A barrier that is neither awaited nor counting, and flags that have not yet followed.
+  const bool meeting = !barrier_.idle() && !barrier_.counting();
+  const bool waits_here = geometry_.valid() && !geometry_.is_path() && idle_;
+  const bool feed_waits_here = feed_.valid() && !feed_.is_feed() && !out_.feed_active;
+  const bool flags = geometry_at_ == waits_here && feed_at_ == feed_waits_here &&
+                     !(barrier_.idle() && geometry_at_ && feed_at_ && go_);
+  // A decoded command that could begin now.
+  const bool begins = go_ && ((geometry_.valid() && geometry_.is_path() && idle_) ||
+                              (feed_.valid() && feed_.is_feed() && !out_.feed_active));
+  const bool geometry_idle = geometry_.idle() && in.geometry_empty && !out_.path_active && barrier_.idle();
+  const bool idle = geometry_idle && feed_.idle() && in.feed_empty && !out_.feed_active;
+  const bool faults =
+      out_.mismatch || out_.incomplete || in.faulted != fault_seen_ || go_ != (!fault_seen_ && !abort_due_);
+  return !fetching && !moving && !meeting && flags && !begins && geometry_idle_ == geometry_idle && out_.idle == idle &&
+         !faults && out_.feed_clear == !out_.feed_active;
 }
 
 std::uint64_t Sequencer::silent_ticks() const { return std::min(path_left_.left(), feed_left_.left()) - 1; }

@@ -46,10 +46,14 @@ std::size_t number_end(std::string_view line, std::size_t at) {
   return digits == 0 ? std::string_view::npos : at;
 }
 
-// The text of the malformed word, for the message: up to the next space or letter.
+// The text of the malformed word, for the message: up to the next space or letter, without spaces at
+// its end.
 std::string_view malformed(std::string_view line, std::size_t from, std::size_t at) {
   while (at < line.size() && is_printable(line[at]) && !is_letter(line[at])) {
     ++at;
+  }
+  while (is_space(line[at - 1])) {
+    --at;
   }
   return line.substr(from, at - from);
 }

@@ -95,6 +95,9 @@ RotationArc::RotationArc(const Arc& circle)
   const auto ticks = static_cast<Real>(ticks_);
   closing_x_ = fixed((wanted_x - from_x - made_x) / ticks, kPhase);
   closing_y_ = fixed((wanted_y - from_y - made_y) / ticks, kPhase);
+  increment_x_ = increment(chord_x_) + closing_x_;
+  increment_y_ = increment(chord_y_) + closing_y_;
+  corner_ = std::uint64_t{1} << (chord_bits_ - 1);
   advance();
 }
 
@@ -103,36 +106,39 @@ std::int64_t RotationArc::turned(std::int64_t value) const {
 }
 
 void RotationArc::rotate() {
-  const std::uint64_t length = std::uint64_t{1} << chord_bits_;
-  const std::uint64_t place = tick_ & (length - 1);
-  if (place == 0 && tick_ != 0) {
-    x_ += chord_x_;
-    chord_x_ = -sign_ * turned(y_);
-  }
-  if (place == length / 2) {
+  const std::uint64_t half = std::uint64_t{1} << (chord_bits_ - 1);
+  if ((corner_ & half) != 0) {
     // Y's chord ends halfway through X's, where X's next corner is already known.
     chord_y_ = sign_ * turned(x_ + chord_x_);
     y_ += chord_y_;
+  } else {
+    x_ += chord_x_;
+    chord_x_ = -sign_ * turned(y_);
   }
+  increment_x_ = increment(chord_x_) + closing_x_;
+  increment_y_ = increment(chord_y_) + closing_y_;
+  corner_ += half;
 }
 
 void RotationArc::advance() {
   constexpr std::int64_t kOne = std::int64_t{1} << kPhase;
-  step_ = Step{};
-  while (tick_ != ticks_) {
-    rotate();
-    phase_x_ += increment(chord_x_) + closing_x_;
-    phase_y_ += increment(chord_y_) + closing_y_;
-    ++tick_;
-    step_.direction[0] = static_cast<std::int8_t>(phase_x_ >> kPhase);
-    step_.direction[1] = static_cast<std::int8_t>(phase_y_ >> kPhase);
-    if (step_ == Step{}) continue;
-    phase_x_ &= kOne - 1;
-    phase_y_ &= kOne - 1;
-    pending_ = true;
-    return;
-  }
+  // A carry or a borrow leaves bits at and above the one's.
+  const auto carries = [&] { return (static_cast<std::uint64_t>(phase_x_ | phase_y_) >> kPhase) != 0; };
   pending_ = false;
+  while (tick_ != ticks_ && !pending_) {
+    if (tick_ == corner_) rotate();
+    const std::uint64_t stop = std::min(corner_, ticks_);
+    do {
+      phase_x_ += increment_x_;
+      phase_y_ += increment_y_;
+      ++tick_;
+    } while (tick_ != stop && !carries());
+    pending_ = carries();
+  }
+  step_.direction[0] = static_cast<std::int8_t>(phase_x_ >> kPhase);
+  step_.direction[1] = static_cast<std::int8_t>(phase_y_ >> kPhase);
+  phase_x_ &= kOne - 1;
+  phase_y_ &= kOne - 1;
 }
 
 Step RotationArc::next() {

@@ -63,7 +63,7 @@ inline driver::Line line(std::uint64_t ticks, const std::vector<std::int64_t>& p
   for (std::size_t n = 0; n < pulses.size(); ++n) {
     if (pulses[n] == 0) continue;
     result.mask = static_cast<std::uint8_t>(result.mask | 1U << n);
-    const auto magnitude = static_cast<std::uint64_t>(std::abs(pulses[n]));
+    const auto magnitude = static_cast<std::uint64_t>(std::abs(pulses[n])) << 40;
     const auto increment = static_cast<std::int64_t>((magnitude + ticks / 2) / ticks);
     result.increment[n] = pulses[n] < 0 ? -increment : increment;
   }
@@ -89,7 +89,8 @@ class RandomProgram {
     std::vector<driver::Command> geometry;
     std::uint64_t total = 0;
     // Clocks for one tick, from nearly one to many.
-    const double pace = one_of(3) == 0 ? 1.001 + one_of(100) * 0.05 : 8 + static_cast<double>(one_of(40));
+    const double pace =
+        one_of(3) == 0 ? 1.001 + static_cast<double>(one_of(100)) * 0.05 : 8 + static_cast<double>(one_of(40));
     for (std::uint64_t paths = 1 + one_of(8); paths != 0; --paths) geometry.push_back(path(pace, total));
     std::vector<driver::Command> pieces;
     while (total != 0) {
@@ -104,8 +105,10 @@ class RandomProgram {
       if (one_of(6) == 0) disturb();
     }
     while (next != geometry.end()) host_.send(*next++);
-    if (one_of(2) == 0) host_.send(driver::Dwell{one_of(3) == 0 ? 0 : one_of(200)});
-    else host_.send(driver::End{});
+    if (one_of(2) == 0)
+      host_.send(driver::Dwell{one_of(3) == 0 ? 0 : one_of(200)});
+    else
+      host_.send(driver::End{});
     host_.card.wait(one_of(2000));
   }
 
@@ -113,12 +116,24 @@ class RandomProgram {
   void disturb() {
     sim::Engine& card = host_.card;
     switch (one_of(6)) {
-      case 0: card.write(reg::kHold, one_of(2) == 0 ? 1 : 0); break;
-      case 1: card.write(reg::kRatio, static_cast<std::uint32_t>(0x4000 + one_of(0xC001))); break;
-      case 2: card.write(reg::kSlew, static_cast<std::uint32_t>(1 + one_of(0xFFFFFF))); break;
-      case 3: card.write(reg::kControl, field::kControlSnapshot); break;
-      case 4: card.read(reg::snap_position(static_cast<std::uint32_t>(one_of(axes_)))); break;
-      default: card.read(reg::kRunning); break;
+      case 0:
+        card.write(reg::kHold, one_of(2) == 0 ? 1 : 0);
+        break;
+      case 1:
+        card.write(reg::kRatio, static_cast<std::uint32_t>(0x4000 + one_of(0xC001)));
+        break;
+      case 2:
+        card.write(reg::kSlew, static_cast<std::uint32_t>(1 + one_of(0xFFFFFF)));
+        break;
+      case 3:
+        card.write(reg::kControl, field::kControlSnapshot);
+        break;
+      case 4:
+        card.read(reg::snap_position(static_cast<std::uint32_t>(one_of(axes_))));
+        break;
+      default:
+        card.read(reg::kRunning);
+        break;
     }
     card.wait(one_of(100));
   }
@@ -174,7 +189,7 @@ class RandomProgram {
     result.floor = static_cast<std::uint32_t>(0x1p32 / (4 * pace));
     if (one_of(2) == 0) {
       const double change = (static_cast<double>(one_of(2001)) - 1000) / 1000;
-      result.acceleration = static_cast<std::int64_t>(change * 0x1p64 / pace / static_cast<double>(ticks) / pace);
+      result.acceleration = static_cast<std::int64_t>(change * 0x1p64 / pace / pace / static_cast<double>(ticks));
       result.jerk = -result.acceleration / static_cast<std::int64_t>(1 + one_of(100));
     }
     return result;

@@ -23,7 +23,8 @@ class BusEngine : public Engine, private model::CardSteps {
     CardModel::Inputs in;
     in.arvalid = true;
     in.araddr = address;
-    handshake(in, [this] { return card().bus().arready; }, address, driver::Direction::kRead);
+    handshake(
+        in, [this] { return card().bus().arready; }, address, driver::Direction::kRead);
     in = CardModel::Inputs{};
     in.rready = true;
     wait_for([this] { return card().bus().rvalid; }, address, driver::Direction::kRead);
@@ -40,7 +41,8 @@ class BusEngine : public Engine, private model::CardSteps {
     in.awaddr = address;
     in.wdata = value;
     in.wstrb = model::Axi4LitePort::kAllStrobes;
-    handshake(in, [this] { return card().bus().awready; }, address, driver::Direction::kWrite);
+    handshake(
+        in, [this] { return card().bus().awready; }, address, driver::Direction::kWrite);
     in = CardModel::Inputs{};
     in.bready = true;
     wait_for([this] { return card().bus().bvalid; }, address, driver::Direction::kWrite);

@@ -10,10 +10,10 @@ class Barrier {
  public:
   struct Inputs {
     bool clear = false;
-    bool go = true;            // no fault
-    bool both_at = false;      // both queues stand at the barrier
-    bool over = false;         // the dwell's last clock, or nothing to count
-    bool end = false;          // the barrier is an END
+    bool go = true;        // no fault
+    bool both_at = false;  // both queues stand at the barrier
+    bool over = false;     // the dwell's last clock, or nothing to count
+    bool end = false;      // the barrier is an END
   };
 
   void clock(const Inputs& in) {

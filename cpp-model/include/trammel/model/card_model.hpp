@@ -42,8 +42,8 @@ class CardModel {
   static constexpr unsigned kMaxAxes = 8;
 
   struct Config {
-    unsigned axes = 4;                // 1 .. 8
-    unsigned geometry_depth = 4096;   // halfwords
+    unsigned axes = 4;               // 1 .. 8
+    unsigned geometry_depth = 4096;  // halfwords
     unsigned feed_depth = 2560;
     std::uint32_t clock_hz = 1'000'000;
   };
@@ -73,7 +73,7 @@ class CardModel {
     std::uint32_t path_dir = 0;
     std::uint32_t geometry_room = 0;
     std::uint32_t feed_room = 0;
-    std::uint32_t status = 0;   // {incomplete, ended, feed active, path active, direct, busy}
+    std::uint32_t status = 0;  // {incomplete, ended, feed active, path active, direct, busy}
     std::uint32_t fault = 0;
     std::uint32_t running = 0;  // {feed, geometry}
     std::uint32_t ratio = 0;
@@ -140,9 +140,12 @@ class CardModel {
   void report_pin_step(unsigned axis);
   void refresh_settings();
 
-  bool may_skip();
-  std::uint64_t skip(std::uint64_t limit);
-  void jump(std::uint64_t clocks, std::uint64_t enables_done);
+  bool may_jump() const;
+  std::uint64_t accumulations_in(std::uint64_t clocks) const;
+  std::uint64_t clock_of(std::uint64_t accumulation) const;
+  std::uint64_t silent_ticks() const;
+  std::uint64_t jump(std::uint64_t limit);
+  void land(std::uint64_t clocks, std::uint64_t ticks, bool feed_enable);
 
   Config config_;
   CardSteps* steps_ = nullptr;
@@ -177,11 +180,11 @@ class CardModel {
   int awake_ = 0;  // clocks for which the host side is clocked whatever it says
 
   // Record of steps.
-  std::uint64_t accepted_ = 0;                 // commands that the door let in
-  std::deque<std::uint64_t> geometry_numbers_; // of those in the geometry queue
+  std::uint64_t accepted_ = 0;                  // commands that the door let in
+  std::deque<std::uint64_t> geometry_numbers_;  // of those in the geometry queue
   std::uint64_t command_ = 0;
-  std::uint64_t path_taken_ = 0;               // ticks of the path
-  std::uint64_t arc_taken_ = 0;                // path ticks of the arc
+  std::uint64_t path_taken_ = 0;  // ticks of the path
+  std::uint64_t arc_taken_ = 0;   // path ticks of the arc
   bool arc_ = false;
   std::array<Take, 8> takes_{};
   std::size_t take_index_ = 0;

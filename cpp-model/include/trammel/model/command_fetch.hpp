@@ -16,12 +16,12 @@ namespace trammel::model {
 // The load bus: a halfword and the chains that shift it in.
 struct LoadBus {
   std::uint16_t word = 0;
-  bool count = false;          // the next command's count and number
-  bool prescale = false;       // the prescaler's increment
-  std::uint8_t increment = 0;  // by axis
-  std::uint8_t steps = 0;      // by axis: the count of a direct move
-  std::uint8_t feed = 0;       // {floor, jerk, acceleration, rate}
-  std::uint16_t deviation = 0; // {plane, quadrants, end_y, end_x, half_y, half_x, gradient_y, gradient_x, deviation}
+  bool count = false;           // the next command's count and number
+  bool prescale = false;        // the prescaler's increment
+  std::uint8_t increment = 0;   // by axis
+  std::uint8_t steps = 0;       // by axis: the count of a direct move
+  std::uint8_t feed = 0;        // {floor, jerk, acceleration, rate}
+  std::uint16_t deviation = 0;  // {plane, quadrants, end_y, end_x, half_y, half_x, gradient_y, gradient_x, deviation}
 
   bool any() const { return count || prescale || (increment | steps | feed | deviation) != 0; }
 };
@@ -30,15 +30,15 @@ class CommandFetch {
  public:
   struct Inputs {
     bool clear = false;
-    bool pop = false;       // the decoded command is taken
-    bool arc_busy = false;  // the accumulator's registers are in use: an arc's payload has to wait
-    bool empty = true;      // of the queue
-    std::uint16_t word = 0; // what was asked for two clocks ago
+    bool pop = false;        // the decoded command is taken
+    bool arc_busy = false;   // the accumulator's registers are in use: an arc's payload has to wait
+    bool empty = true;       // of the queue
+    std::uint16_t word = 0;  // what was asked for two clocks ago
   };
 
   void clock(const Inputs& in);
 
-  bool read() const { return asked_ >= 0; }           // asks the queue for a halfword
+  bool read() const { return asked_ >= 0; }  // asks the queue for a halfword
   bool valid() const { return phase_ == Phase::Valid; }
   bool idle() const { return phase_ == Phase::Idle; }
   bool is_path() const { return path_; }
@@ -48,6 +48,8 @@ class CommandFetch {
   bool is_end() const { return opcode_ == card_map::Opcode::End; }
   std::uint8_t mask() const { return mask_; }
   const LoadBus& load() const { return load_; }
+
+  bool waiting() const { return phase_ == Phase::Waiting; }  // for the accumulator to be free
 
   // Nothing moves while the queue stays as it is and nothing is taken.
   bool quiet() const {
@@ -62,9 +64,9 @@ class CommandFetch {
   void direct(int payload_index);
 
   Phase phase_ = Phase::Idle;
-  int asked_ = -1;                    // index of the halfword asked for, -1: none
+  int asked_ = -1;  // index of the halfword asked for, -1: none
   std::array<int, 2> arriving_{-1, -1};
-  int length_ = 0;                    // halfwords of the command
+  int length_ = 0;  // halfwords of the command
   int tail_ = 0;
   bool path_ = false;
   card_map::Opcode opcode_ = card_map::Opcode::End;

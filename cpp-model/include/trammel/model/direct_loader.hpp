@@ -14,22 +14,22 @@ class DirectLoader {
  public:
   struct Inputs {
     bool reset = false;
-    bool busy = false;        // anything runs, is queued, or a fault stops the ticks
+    bool busy = false;  // anything runs, is queued, or a fault stops the ticks
     bool start = false;
-    std::uint8_t mask = 0;    // stands until done
-    std::uint32_t data = 0;   // of the address of two clocks ago
+    std::uint8_t mask = 0;   // stands until done
+    std::uint32_t data = 0;  // of the address of two clocks ago
   };
   struct Outputs {
     std::uint8_t address = 0;  // words
     bool done = false;
-    bool error = false;        // means something with done
+    bool error = false;  // means something with done
     std::uint8_t reason = 0;
     std::uint16_t word = 0;
     std::uint8_t axis = 0;
     bool increment = false;
     bool steps = false;
     bool length = false;
-    bool go = false;           // with done: the chains are loaded, the move begins
+    bool go = false;  // with done: the chains are loaded, the move begins
     std::uint8_t mask = 0;
   };
 

@@ -16,6 +16,9 @@
 namespace trammel::model {
 
 class FeedGenerator {
+  __extension__ typedef unsigned __int128 uint128;
+  static constexpr std::uint64_t kOne = std::uint64_t{1} << 48;
+
  public:
   struct Inputs {
     bool clear = false;      // phase and the ticks in flight become 0; wins over an enable in the same clock
@@ -69,13 +72,32 @@ class FeedGenerator {
     return gone;
   }
 
+  // The enabled clock that carries, behind a skip() that ended in front of it: its tick is the caller's to count and
+  // does not appear. The rate shown lags as after skip().
+  void carry_silently() { accumulate(); }
+
+  // The rate stays what it is for the rest of the piece: ticks can be counted in closed form.
+  bool constant() const { return constant_ && slope_ != 0; }
+  // Ticks that the next `enables` enabled clocks give, and the enabled clocks until `ticks` more are given, the last one
+  // included; only while constant(). Results are below 2^64: enables < 2^64, ticks < 2^60 * rate.
+  std::uint64_t ticks_in(std::uint64_t enables) const {
+    return static_cast<std::uint64_t>((phase_ + uint128{enables} * slope_) >> 48);
+  }
+  std::uint64_t enables_for(std::uint64_t ticks) const {
+    return static_cast<std::uint64_t>(((uint128{ticks} << 48) - phase_ + slope_ - 1) / slope_);
+  }
+  // `enables` enabled clocks whose ticks are the caller's to count and do not appear; only while quiet() and constant().
+  void leap(std::uint64_t enables) {
+    phase_ = static_cast<std::uint64_t>((phase_ + uint128{enables} * slope_) & (kOne - 1));
+    count_ = static_cast<std::uint32_t>((count_ + enables) % kUpdateClocks);
+    outputs_.rate = in_flight_[0].rate = in_flight_[1].rate = static_cast<std::uint32_t>(slope_ >> 16);
+  }
+
   // Phase and slope in use, 2^-48 ticks (an enabled clock).
   std::uint64_t phase() const { return phase_; }
   std::uint64_t slope() const { return slope_; }
 
  private:
-  __extension__ typedef unsigned __int128 uint128;
-  static constexpr std::uint64_t kOne = std::uint64_t{1} << 48;
 
   struct Piece {
     std::uint64_t rate = 0;

@@ -1,9 +1,9 @@
 // Golden model of the sequencer: which tick is taken when, which command runs, where both queues meet, what stops.
 //
-// A path begins with a swap and has N ticks; the clock of its last one swaps the next path in where it is decoded and the
-// present one is a line. Arcs drain first: their path ticks come later than the feed ticks. Direct moves go on until no
-// axis is live. A tick is taken in clock c, shows at the output in c+1 and makes a step there three clocks later.
-// Not thread-safe; no errors are reported.
+// A path begins with a swap and has N ticks; the clock of its last one swaps the next path in where it is decoded and
+// the present one is a line. Arcs drain first: their path ticks come later than the feed ticks. Direct moves go on
+// until no axis is live. A tick is taken in clock c, shows at the output in c+1 and makes a step there three clocks
+// later. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -58,7 +58,7 @@ class Sequencer {
     bool path_active = false;
     bool feed_active = false;
     bool ended = false;
-    bool idle = false;  // nothing runs, is decoded or queued
+    bool idle = true;  // nothing runs, is decoded or queued
     std::uint8_t geometry_number = 0;
     std::uint8_t feed_number = 0;
   };
@@ -76,23 +76,27 @@ class Sequencer {
   const LoadBus& feed_load() const { return feed_.load(); }
 
   // For the record of steps: what happened in the last clock.
-  bool took() const { return took_; }              // a tick was taken
-  bool began_command() const { return began_; }    // a geometry command was taken up
+  bool took() const { return took_; }            // a tick was taken
+  bool began_command() const { return began_; }  // a geometry command was taken up
   bool began_direct() const { return began_direct_; }
 
-  // Nothing is on its way: without a tick, an input that changes or an access, clock() changes nothing but a dwell's count.
+  // Nothing is on its way: without a tick, an input that changes or an access, clock() changes nothing but a dwell's
+  // count.
   bool quiet(const Inputs& in) const;
   // A path runs on feed ticks and takes each at once: ticks up to silent_ticks() change no more than the counters.
   bool cruising() const { return taking_ && out_.feed_active && go_ && !out_.direct && !drain_; }
+  // Cruising, or no tick can come.
+  bool cruising_or_still() const { return cruising() || !(out_.feed_enable || out_.direct || drain_); }
   std::uint64_t silent_ticks() const;
-  void take_silently(std::uint64_t ticks) {
+  // `ticks` of them at once; `feed_enable`: the generator's enable behind them.
+  void take_silently(std::uint64_t ticks, bool feed_enable) {
     path_left_.advance(ticks);
-    feed_left_.advance(ticks);
+    if (out_.feed_active) feed_left_.advance(ticks);
+    out_.feed_enable = feed_enable;
   }
-  bool on_arc() const { return arc_; }
-  bool taking() const { return taking_; }
 
-  // Clocks that a dwell still counts before its end comes near, 0 when none runs; and those clocks at once.
+  // A dwell counts; clocks of it before its end comes near; and those clocks at once.
+  bool dwelling() const { return barrier_.counting(); }
   std::uint64_t dwell_clocks() const;
   void dwell(std::uint64_t clocks) { path_left_.advance(clocks); }
 
@@ -122,7 +126,7 @@ class Sequencer {
   int settle_ = 0;
   bool geometry_at_ = false;
   bool feed_at_ = false;
-  bool geometry_idle_ = false;
+  bool geometry_idle_ = true;
   bool source_tick_ = false;
   bool go_ = true;
   bool fault_seen_ = false;

@@ -1,4 +1,5 @@
-// Golden models of the card's small blocks: arc router, hold timer, busy timer. Not thread-safe; no errors are reported.
+// Golden models of the card's small blocks: arc router, hold timer, busy timer. Not thread-safe; no errors are
+// reported.
 #pragma once
 
 #include <cstdint>
@@ -61,8 +62,10 @@ class BusyTimer {
  public:
   void clock(bool running) {
     busy_ = running || left_ != 0;
-    if (running) left_ = 7;
-    else if (left_ != 0) --left_;
+    if (running)
+      left_ = 7;
+    else if (left_ != 0)
+      --left_;
   }
   bool busy() const { return busy_; }
   // True when clocks with the same input change nothing.

@@ -1,4 +1,5 @@
-// Golden models of the two gates that hold ticks until their user can take them. Not thread-safe; no errors are reported.
+// Golden models of the two gates that hold ticks until their user can take them. Not thread-safe; no errors are
+// reported.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +9,7 @@ namespace trammel::model {
 // Ticks of the feed generator, owed to the path.
 class TickGate {
  public:
-  void clock(bool clear, bool tick, bool take) {
-    count_ = clear ? 0 : count_ + (tick ? 1U : 0U) - (take ? 1U : 0U);
-  }
+  void clock(bool clear, bool tick, bool take) { count_ = clear ? 0 : count_ + (tick ? 1U : 0U) - (take ? 1U : 0U); }
   bool owed() const { return count_ != 0; }
   bool stall() const { return count_ > 1; }
 

@@ -36,6 +36,7 @@ class RotationArc {
   }
   // value / 2^k, rounded: truncation would shift the centre.
   std::int64_t turned(std::int64_t value) const;
+  // At half a chord's end: X and Y by turns.
   void rotate();
   // Ticks on to the next one with a step; none is pending after the last.
   void advance();
@@ -50,9 +51,12 @@ class RotationArc {
   std::int64_t chord_y_ = 0;
   std::int64_t closing_x_ = 0;
   std::int64_t closing_y_ = 0;
+  std::int64_t increment_x_ = 0;  // of a tick, until the next rotation
+  std::int64_t increment_y_ = 0;
   std::int64_t phase_x_ = 0;
   std::int64_t phase_y_ = 0;
-  std::uint64_t tick_ = 0;  // ticks made
+  std::uint64_t corner_ = 0;  // the tick before which the next rotation comes
+  std::uint64_t tick_ = 0;    // ticks made
   std::uint64_t ticks_ = 0;
   std::uint64_t time_ = 0;
   bool pending_ = false;

@@ -1,0 +1,172 @@
+// CardModel::run() against clock(): the same programs on two cards, one of which goes from tick to tick.
+#include "trammel/model/card_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <tuple>
+#include <vector>
+
+#include "trammel/driver/arc.hpp"
+#include "trammel/driver/commands.hpp"
+
+namespace {
+
+using namespace trammel;
+using model::CardModel;
+namespace reg = card_map::reg;
+
+using PinRow = std::tuple<std::uint64_t, unsigned, int>;
+using PathRow = std::tuple<std::uint64_t, std::uint64_t, unsigned, int>;
+
+class Recorder : public model::CardSteps {
+ public:
+  void pin_step(std::uint64_t cycle, unsigned axis, int direction) override {
+    pins.emplace_back(cycle, axis, direction);
+  }
+  void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override {
+    path.emplace_back(command, tick, axis, direction);
+  }
+  std::vector<PinRow> pins;
+  std::vector<PathRow> path;
+};
+
+// A card with a host; `skips` says how it spends idle time.
+class Card {
+ public:
+  explicit Card(bool skips) : skips_(skips), model_(CardModel::Config{}) { model_.set_steps(&steps); }
+
+  void write(std::uint32_t address, std::uint32_t value) {
+    CardModel::Inputs in;
+    in.awvalid = in.wvalid = true;
+    in.awaddr = address;
+    in.wdata = value;
+    in.wstrb = 0xF;
+    while (!model_.bus().awready) model_.clock(in);
+    model_.clock(in);
+    in = CardModel::Inputs{};
+    while (!model_.bus().bvalid) model_.clock(in);
+    ASSERT_EQ(model_.bus().bresp, 0) << "write to " << address;
+    in.bready = true;
+    model_.clock(in);
+  }
+  void send(const driver::Command& command) {
+    std::vector<std::uint32_t> words;
+    driver::encode(command, number_++, words);
+    for (const std::uint32_t word : words) write(reg::kStream, word);
+  }
+  void wait(std::uint64_t clocks) {
+    if (skips_) {
+      model_.run(clocks);
+    } else {
+      for (; clocks != 0; --clocks) model_.clock(CardModel::Inputs{});
+    }
+  }
+  const CardModel& model() const { return model_; }
+  Recorder steps;
+
+ private:
+  bool skips_;
+  CardModel model_;
+  std::uint8_t number_ = 0;
+};
+
+class Pair {
+ public:
+  template <class Action>
+  void both(Action action) {
+    action(clocked);
+    action(skipping);
+    compare();
+  }
+  void compare() const {
+    ASSERT_EQ(clocked.model().cycles(), skipping.model().cycles());
+    ASSERT_TRUE(clocked.model().outputs() == skipping.model().outputs()) << "cycle " << clocked.model().cycles();
+    for (unsigned n = 0; n < clocked.model().axes(); ++n) {
+      ASSERT_EQ(clocked.model().position(n), skipping.model().position(n)) << "cycle " << clocked.model().cycles();
+    }
+    ASSERT_EQ(clocked.steps.pins, skipping.steps.pins);
+    ASSERT_EQ(clocked.steps.path, skipping.steps.path);
+  }
+  Card clocked{false};
+  Card skipping{true};
+};
+
+driver::Line line(std::uint64_t ticks, std::int64_t pulses_x, std::int64_t pulses_y) {
+  driver::Line result;
+  result.ticks = ticks;
+  result.mask = 3;
+  const auto n = static_cast<std::int64_t>(ticks);
+  result.increment[0] = (pulses_x << 40) / n;
+  result.increment[1] = (pulses_y << 40) / n;
+  return result;
+}
+
+// Waits of all lengths, that the ends of jumps fall everywhere.
+void wait_in_pieces(Pair& pair, std::mt19937_64& random, std::uint64_t clocks) {
+  while (clocks != 0) {
+    const std::uint64_t piece = std::min<std::uint64_t>(clocks, 1 + random() % (random() % 4 == 0 ? 4000 : 90));
+    pair.both([piece](Card& card) { card.wait(piece); });
+    if (testing::Test::HasFatalFailure()) return;
+    clocks -= piece;
+  }
+}
+
+TEST(CardModelRun, EqualsClockForRandomPrograms) {
+  std::mt19937_64 random(7);
+  for (int program = 0; program < 30; ++program) {
+    Pair pair;
+    SCOPED_TRACE(program);
+    const auto ratio = static_cast<std::uint32_t>(random() % 2 == 0 ? 0x10000 : 0x3000 + random() % 0xD001);
+    pair.both([ratio](Card& card) { card.write(reg::kRatio, ratio); });
+    const double pace = random() % 3 == 0 ? 20 : 60 + static_cast<double>(random() % 500);
+    std::uint64_t total = 0;
+    for (int path = 0; path < 4; ++path) {
+      const std::uint64_t ticks = 20 + random() % 300;
+      const auto span = static_cast<std::int64_t>(ticks / 10 + 1);
+      const std::int64_t x = static_cast<std::int64_t>(random()) % span;
+      const std::int64_t y = static_cast<std::int64_t>(random()) % span;
+      driver::Command command = line(ticks, x, y);
+      total += ticks;
+      if (random() % 3 == 0) {
+        driver::ArcGeometry arc;
+        arc.centre_x = -10 * driver::kCentreUnitsPerPulse;
+        arc.sweep = 6.283185307179586;
+        arc.clockwise = random() % 2 == 0;
+        command = driver::make_arc(arc, ticks + 80);
+        total += 80;
+      }
+      pair.both([&command](Card& card) { card.send(command); });
+    }
+    for (std::uint64_t left = total; left != 0;) {
+      const std::uint64_t ticks = std::min(left, 1 + random() % 400);
+      driver::Feed piece;
+      piece.ticks = ticks;
+      piece.rate = static_cast<std::uint64_t>(0x1p64 / pace);
+      piece.floor = static_cast<std::uint32_t>(0x1p32 / pace / 3);
+      if (random() % 2 == 0) {
+        piece.acceleration = static_cast<std::int64_t>(random()) / static_cast<std::int64_t>(pace * pace * 900);
+        piece.jerk = piece.acceleration / -97;
+      }
+      pair.both([&piece](Card& card) { card.send(piece); });
+      left -= ticks;
+    }
+    const std::uint64_t dwell = random() % 500;
+    pair.both([dwell](Card& card) { card.send(driver::Dwell{dwell}); });
+    pair.both([](Card& card) { card.send(driver::End{}); });
+    wait_in_pieces(pair, random, 3000);
+    pair.both([](Card& card) { card.write(reg::kSlew, 0x8000); });
+    pair.both([](Card& card) { card.write(reg::kHold, 1); });
+    wait_in_pieces(pair, random, 9000);
+    pair.both([](Card& card) { card.write(reg::kHold, 0); });
+    for (int i = 0; i < 400 && !HasFatalFailure() && (pair.clocked.model().outputs().status & 1) != 0; ++i) {
+      wait_in_pieces(pair, random, 4000);
+    }
+    ASSERT_FALSE(HasFatalFailure());
+    ASSERT_EQ(pair.clocked.model().outputs().status, 0x10U) << "ended, and nothing else";
+    ASSERT_EQ(pair.clocked.model().outputs().fault, 0U);
+    ASSERT_FALSE(pair.clocked.steps.path.empty());
+  }
+}
+
+}  // namespace
