@@ -148,7 +148,7 @@ class ProgramStream {
         plan_(plan),
         bar_(progress),
         planner_(program, machine, card.identification().clock_hz),
-        clock_hz_(card.identification().clock_hz),
+        card_clock_hz_(card.identification().clock_hz),
         stream_(card, options()) {}
 
   // Gives back where the program ends, pulses.
@@ -176,7 +176,10 @@ class ProgramStream {
 
  private:
   driver::StreamOptions options() {
+    // 200 looks a second: the queues hold far more than 5 ms of motion, and every look costs the simulation bus clocks.
+    constexpr std::uint32_t kLooksPerSecond = 200;
     driver::StreamOptions options;
+    options.poll_clocks = std::max<std::uint64_t>(64, card_clock_hz_ / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
       running_ = progress.geometry_command;
       show();
@@ -184,7 +187,7 @@ class ProgramStream {
     return options;
   }
   void show() {
-    const double seconds = static_cast<double>(engine_.cycles()) / clock_hz_;
+    const double seconds = static_cast<double>(engine_.cycles()) / card_clock_hz_;
     bar_.show(plan_.seconds > 0 ? seconds / plan_.seconds : 1.0,
               fmt::format("{:.1f} of {:.1f} s of card time", seconds, plan_.seconds));
   }
@@ -202,7 +205,7 @@ class ProgramStream {
   const Survey& plan_;
   ProgressBar bar_;
   driver::Planner planner_;
-  double clock_hz_;
+  std::uint32_t card_clock_hz_;
   std::vector<std::size_t> lines_;  // of the program, by command number
   std::uint8_t running_ = 0;
   driver::Stream stream_;

@@ -1,4 +1,4 @@
-// Pulse generator of one axis: a phase accumulator with 40 fraction bits whose carry is a step forward and whose
+// Pulse generator of one axis: a phase accumulator with 40 fraction bits (fewer for proofs) whose carry is a step forward and whose
 // borrow is a step back, and a count that can end the line early (direct mode).
 //
 // The accumulator is split: the low half is added at the tick, the high half one clock later, with its half of the
@@ -10,6 +10,7 @@
 `default_nettype none
 
 module pulse_generator #(
+    parameter int FractionBits = 40,  // even, 4 to 40; fewer only so that all lines can be tried
     parameter int CountWidth = 32,  // at least 17, at most 32
     parameter bit Counted = 1       // 0: no count is built, counted_i and load_count_i do nothing
 ) (
@@ -29,50 +30,55 @@ module pulse_generator #(
     output logic             live_o
 );
 
-  // |increment| <= 2^40 needs 42 bits signed; three halfwords shift through 48.
+  localparam int HALF = FractionBits / 2;
+  localparam logic [HALF-1:0] ONE_HALF = {1'b1, {(HALF - 1) {1'b0}}};
+
+  // |increment| <= 2^FractionBits needs FractionBits + 2 bits signed; three halfwords shift through 48.
   logic [47:0] next_q;
   always_ff @(posedge clk_i) begin
     if (load_increment_i) next_q <= {word_i, next_q[47:16]};
   end
 
-  // Low half of the accumulator. One half less 2^-40 is 0111..1: each half is preset to zeros or ones but for the top bit.
-  logic [19:0] low_q;
-  logic [19:0] low_increment_q;
-  logic [20:0] low_sum;
-  logic        carry_q;
-  logic        preset_high;  // the preset's low bits are ones: a mirrored line that runs backwards
+  // Low half of the accumulator. One half less 2^-FractionBits is 0111..1: each half is preset to zeros or ones but for the
+  // top bit.
+  logic [HALF-1:0] low_q;
+  logic [HALF-1:0] low_increment_q;
+  logic [  HALF:0] low_sum;
+  logic            carry_q;
+  logic            preset_high;  // the preset's low bits are ones: a mirrored line that runs backwards
   assign low_sum = {1'b0, low_q} + {1'b0, low_increment_q};
-  assign preset_high = swap_i & mirror_i & next_q[41];
+  assign preset_high = swap_i & mirror_i & next_q[FractionBits+1];
 
   always_ff @(posedge clk_i) begin
-    carry_q <= tick_i & low_sum[20];
-    if (swap_i) low_increment_q <= next_q[19:0];
+    carry_q <= tick_i & low_sum[HALF];
+    if (swap_i) low_increment_q <= next_q[HALF-1:0];
     if (swap_i & ~preset_high) low_q <= '0;
-    else if (swap_i | tick_i) low_q <= low_sum[19:0] | {20{preset_high}};
+    else if (swap_i | tick_i) low_q <= low_sum[HALF-1:0] | {HALF{preset_high}};
   end
 
-  // High half, one clock later. A carry that differs from bit 20 of the increment is a step (bit 20 of the whole sum), and
-  // goes the way of the increment's sign. The carries are gated by the tick: then a carry ends in a table, not in a wire.
-  logic [19:0] high_q;
-  logic [21:0] high_increment_q;
-  logic [20:0] high_sum;
-  logic        tick_q;
-  logic        swap_q;
-  logic        preset_high_q;
-  logic        carried_q;
-  logic        backwards_q;
-  assign high_sum = {1'b0, high_q} + {1'b0, high_increment_q[19:0]} + {20'b0, carry_q};
+  // High half, one clock later. A carry that differs from bit HALF of the increment is a step (bit HALF of the whole sum),
+  // and goes the way of the increment's sign. The carries are gated by the tick: then a carry ends in a table, not in a
+  // wire.
+  logic [HALF-1:0] high_q;
+  logic [HALF+1:0] high_increment_q;
+  logic [  HALF:0] high_sum;
+  logic            tick_q;
+  logic            swap_q;
+  logic            preset_high_q;
+  logic            carried_q;
+  logic            backwards_q;
+  assign high_sum = {1'b0, high_q} + {1'b0, high_increment_q[HALF-1:0]} + {{HALF{1'b0}}, carry_q};
 
   always_ff @(posedge clk_i) begin
     tick_q <= tick_i;
     swap_q <= swap_i;
     preset_high_q <= preset_high;
-    carried_q <= tick_q & (high_sum[20] ^ high_increment_q[20]);
-    backwards_q <= high_increment_q[21];
-    if (swap_q) high_increment_q <= next_q[41:20];
-    if (swap_q & ~preset_high_q) high_q <= 20'h80000;
-    else if (swap_q) high_q <= 20'h7FFFF;
-    else if (tick_q) high_q <= high_sum[19:0];
+    carried_q <= tick_q & (high_sum[HALF] ^ high_increment_q[HALF]);
+    backwards_q <= high_increment_q[HALF+1];
+    if (swap_q) high_increment_q <= next_q[FractionBits+1:HALF];
+    if (swap_q & ~preset_high_q) high_q <= ONE_HALF;
+    else if (swap_q) high_q <= ~ONE_HALF;
+    else if (tick_q) high_q <= high_sum[HALF-1:0];
     if (rst_i | clear_i) swap_q <= 1'b0;
   end
 
@@ -127,7 +133,7 @@ module pulse_generator #(
   endgenerate
 
   logic unused_extension;  // of the third halfword only 10 bits have a meaning
-  assign unused_extension = ^next_q[47:42];
+  assign unused_extension = ^next_q[47:FractionBits+2];
 
 endmodule
 

@@ -1,0 +1,224 @@
+// Every line and every arc of small curves on the RTL, both directions: the number of steps is the closed form's, the
+// end is the commanded one, and no point strays farther than the rule's bound.
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lockstep.hpp"
+#include "trammel/driver/arc.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+using driver::Arc;
+using Point = std::pair<int, int>;
+
+constexpr double kPi = 3.14159265358979323846;
+
+class Accumulator {
+ public:
+  Accumulator() {
+    dut_->rst_i = 1;
+    dut_.clock();
+    dut_->rst_i = 0;
+  }
+
+  void start(const Arc& arc) {
+    load(0, arc.deviation, 5);
+    load(1, arc.gradient_x, 5);
+    load(2, arc.gradient_y, 5);
+    load(3, static_cast<driver::int128>(arc.half_x), 3);
+    load(4, static_cast<driver::int128>(arc.half_y), 3);
+    load(5, arc.end_x, 2);
+    load(6, arc.end_y, 2);
+    load(7, arc.quadrants, 1);
+    load(8, arc.clockwise ? 1 : 0, 1);
+    dut_->start_i = 1;
+    dut_.clock();
+    dut_->start_i = 0;
+    dut_.clock();
+    position_ = {0, 0};
+  }
+
+  bool at_end() { return dut_->ready_o && dut_->at_end_o; }
+
+  // One tick and the nine clocks until the next.
+  void tick() {
+    dut_->tick_i = 1;
+    for (int clock = 0; clock < 9; ++clock) {
+      dut_.clock();
+      dut_->tick_i = 0;
+      if (dut_->step_x_o) position_.first += dut_->dir_x_o ? -1 : 1;
+      if (dut_->step_y_o) position_.second += dut_->dir_y_o ? -1 : 1;
+    }
+  }
+
+  const Point& position() const { return position_; }
+
+ private:
+  void load(int chain, driver::int128 value, int halfwords) {
+    dut_->load_i = static_cast<std::uint16_t>(1u << chain);
+    for (int i = 0; i < halfwords; ++i) {
+      dut_->word_i = static_cast<std::uint16_t>(value >> (16 * i));
+      dut_.clock();
+    }
+    dut_->load_i = 0;
+  }
+
+  Simulated<Vdut> dut_;
+  Point position_;
+};
+
+// Walks and calls `see` at every point; false when the steps are not exactly `steps` or the end is another.
+template <class See>
+bool walk(Accumulator& accumulator, const Arc& arc, std::uint64_t steps, const See& see) {
+  accumulator.start(arc);
+  for (std::uint64_t i = 0; i < steps; ++i) {
+    if (accumulator.at_end()) return false;
+    accumulator.tick();
+    see(accumulator.position());
+  }
+  return accumulator.at_end() && accumulator.position() == Point(arc.end_x, arc.end_y);
+}
+
+// The ellipse's points, rounded.
+std::vector<Point> points(int a, int b) {
+  std::set<Point> found;
+  const int samples = 64 * (a + b);
+  for (int i = 0; i < samples; ++i) {
+    const double angle = 2 * kPi * i / samples;
+    found.emplace(static_cast<int>(std::lround(a * std::cos(angle))),
+                  static_cast<int>(std::lround(b * std::sin(angle))));
+  }
+  return {found.begin(), found.end()};
+}
+
+// The angle from start to end in the arc's direction; a full turn for the same point.
+double sweep_between(const Point& start, const Point& end, bool clockwise) {
+  double sweep = std::atan2(end.second, end.first) - std::atan2(start.second, start.first);
+  if (clockwise) sweep = -sweep;
+  return start == end || sweep <= 0 ? sweep + 2 * kPi : sweep;
+}
+
+TEST(EveryLine, TakesSteersSteps) {
+  Accumulator accumulator;
+  constexpr int kLongest = 24;
+  int lines = 0;
+  double worst = 0;
+  for (int dx = -kLongest; dx <= kLongest; ++dx) {
+    for (int dy = -kLongest; dy <= kLongest; ++dy) {
+      if (dx == 0 || dy == 0) continue;
+      ++lines;
+      const int sx = dx > 0 ? 1 : -1;
+      const int sy = dy > 0 ? 1 : -1;
+      Arc line;
+      line.deviation = std::abs(dx) - std::abs(dy) - 1;
+      line.gradient_x = -sx * std::abs(dy);
+      line.gradient_y = sy * std::abs(dx);
+      line.clockwise = sx * sy > 0;
+      line.end_x = dx;
+      line.end_y = dy;
+      int f = std::abs(dx) - std::abs(dy);  // STEER's, beside it
+      Point steer{0, 0};
+      const auto see = [&](const Point& at) {
+        const bool in_x = f > 0;
+        f += in_x ? -std::abs(dy) : std::abs(dx);
+        (in_x ? steer.first : steer.second) += in_x ? sx : sy;
+        ASSERT_EQ(at, steer);
+        worst = std::max(worst, std::abs(at.first * dy - at.second * dx) / std::hypot(dx, dy));
+      };
+      ASSERT_TRUE(walk(accumulator, line, static_cast<std::uint64_t>(std::abs(dx) + std::abs(dy)), see))
+          << dx << ", " << dy;
+      ASSERT_FALSE(HasFatalFailure()) << dx << ", " << dy;
+    }
+  }
+  EXPECT_EQ(lines, 4 * kLongest * kLongest);
+  EXPECT_LT(worst, 1);
+  RecordProperty("lines", std::to_string(lines));
+  RecordProperty("largest_distance", std::to_string(worst));
+}
+
+TEST(EveryArc, OfSmallCirclesStaysNearAndEnds) {
+  Accumulator accumulator;
+  constexpr int kLargest = 9;
+  int arcs = 0;
+  for (int r = 2; r <= kLargest; ++r) {
+    double worst = 0;
+    for (const Point& start : points(r, r)) {
+      for (const Point& end : points(r, r)) {
+        for (const bool clockwise : {false, true}) {
+          driver::ArcGeometry geometry;
+          geometry.centre_x = -start.first * driver::kCentreUnitsPerPulse;
+          geometry.centre_y = -start.second * driver::kCentreUnitsPerPulse;
+          geometry.end_x = end.first - start.first;
+          geometry.end_y = end.second - start.second;
+          geometry.clockwise = clockwise;
+          geometry.sweep = sweep_between(start, end, clockwise);
+          const Arc arc = driver::prepare(geometry);
+          const double first = std::hypot(start.first, start.second);
+          const double second = std::hypot(end.first, end.second);
+          const auto see = [&](const Point& at) {
+            const double radius = std::hypot(at.first + start.first, at.second + start.second);
+            worst = std::max({worst, std::min(first, second) - radius, radius - std::max(first, second)});
+          };
+          ASSERT_TRUE(walk(accumulator, arc, arc.path_ticks, see))
+              << "r " << r << " from " << start.first << ", " << start.second << " to " << end.first << ", "
+              << end.second << " clockwise " << clockwise;
+          ++arcs;
+        }
+      }
+    }
+    EXPECT_LE(worst, 1 + 0.3 / r) << "r " << r;
+  }
+  EXPECT_GT(arcs, 10000);
+  RecordProperty("arcs", std::to_string(arcs));
+}
+
+TEST(EveryArc, OfSmallEllipsesEnds) {
+  Accumulator accumulator;
+  constexpr int kLargest = 5;
+  int arcs = 0;
+  for (int a = 1; a <= kLargest; ++a) {
+    for (int b = 1; b <= kLargest; ++b) {
+      for (const Point& start : points(a, b)) {
+        for (const Point& end : points(a, b)) {
+          for (const bool clockwise : {false, true}) {
+            driver::EllipseGeometry geometry;
+            geometry.semi_x = a;
+            geometry.semi_y = b;
+            geometry.start_x = start.first;
+            geometry.start_y = start.second;
+            geometry.end_x = end.first - start.first;
+            geometry.end_y = end.second - start.second;
+            geometry.clockwise = clockwise;
+            geometry.sweep = sweep_between(start, end, clockwise);
+            const Arc arc = driver::prepare(geometry);
+            // Never more than one pulse outside the bounding box (lemma deviation_range).
+            const auto see = [&](const Point& at) {
+              ASSERT_LE(std::abs(at.first + start.first), a + 1);
+              ASSERT_LE(std::abs(at.second + start.second), b + 1);
+            };
+            ASSERT_TRUE(walk(accumulator, arc, arc.path_ticks, see))
+                << a << ", " << b << " from " << start.first << ", " << start.second << " to " << end.first << ", "
+                << end.second << " clockwise " << clockwise;
+            ASSERT_FALSE(HasFatalFailure());
+            ++arcs;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(arcs, 10000);
+  RecordProperty("arcs", std::to_string(arcs));
+}
+
+}  // namespace
+}  // namespace trammel::lockstep
