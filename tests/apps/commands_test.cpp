@@ -110,15 +110,15 @@ testing::AssertionResult is_well_formed(const std::string& text) {
 
 TEST(Run, PictureOfALongProgramIsThinned) {
   std::string program = "G21 G90\nF9000\n";
-  for (int i = 1; i <= 4000; ++i) {
+  for (int i = 1; i <= 2000; ++i) {
     const double angle = 0.05 * i;
     program +=
         "G1 X" + std::to_string(0.01 * i * std::cos(angle)) + " Y" + std::to_string(0.01 * i * std::sin(angle)) + "\n";
   }
   const Command command;
   // The name holds what XML reserves.
-  const Outcome outcome = command.run("run '" + command.write("a<b>&c.ngc", program) + "' --engine model --plot " +
-                                      command.path("out.svg"));
+  const Outcome outcome = command.run("run '" + command.write("a<b>&c.ngc", program) +
+                                      "' --engine model --clock 1000000 --plot " + command.path("out.svg"));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::string svg = contents(command.path("out.svg"));
   EXPECT_LT(svg.size(), 5'000'000U);
