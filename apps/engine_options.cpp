@@ -6,6 +6,8 @@
 
 namespace trammel::app {
 
+unsigned card_axes(std::size_t needed) { return needed <= 4 ? 4 : 8; }
+
 void EngineChoice::add_to(CLI::App& command) {
   command
       .add_option("--engine", engine,

@@ -78,7 +78,7 @@ driver::LineLimits limits_of(const Options& options) {
 
 void execute(const Options& options) {
   const std::vector<std::int64_t> pulses = displacement_of(options);
-  const unsigned axes = static_cast<unsigned>(std::max<std::size_t>(pulses.size(), 2));
+  const unsigned axes = card_axes(pulses.size());
   const sim::EngineOptions engine_options = options.engine.options(axes, kDefaultClock, kDefaultClock);
   const auto engine = sim::make_engine(engine_options);
   StepRecorder::Options recording;

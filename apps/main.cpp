@@ -36,8 +36,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int status = app.exit(error);
-    return status == 0 ? 0 : trammel::app::kExitUsage;
+    // Help and version count as errors too, of status 0; a real one gets its one line here.
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return report(fmt::format("{} (--help tells more)", error.what()).c_str(), trammel::app::kExitUsage);
   } catch (const trammel::app::UsageError& error) {
     return report(error.what(), trammel::app::kExitUsage);
   } catch (const trammel::driver::ProgramError& error) {

@@ -1,7 +1,10 @@
 #include "run_command.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,12 +31,30 @@ struct Options {
   RunOutputs outputs;
 };
 
+void check_program_file(const std::string& file) {
+  if (std::filesystem::is_directory(file)) {
+    throw UsageError(fmt::format("{}: is a directory, not a program", file));
+  }
+  // Looked at, not opened: a pipe can be opened once only.
+  if (::access(file.c_str(), R_OK) != 0) throw UsageError(fmt::format("{}: cannot read the program", file));
+}
+
+// A summary or picture that cannot be written is found before the first step, not after the last.
+void check_outputs(const RunOutputs& outputs) {
+  for (const std::optional<std::string>& file : {outputs.json, outputs.plot}) {
+    if (!file || *file == "-") continue;
+    if (!std::ofstream(*file, std::ios::app)) throw UsageError(fmt::format("{}: cannot be written", *file));
+  }
+}
+
 void execute(const Options& options) {
   driver::Machine machine = options.machine ? driver::load_machine(*options.machine) : driver::default_machine();
   for (const std::string& text : options.overrides) driver::apply_override(machine, text);
+  check_program_file(options.program);
   const driver::Program program = driver::read_program_file(options.program, machine);
   const sim::EngineOptions engine =
-      options.engine.options(static_cast<unsigned>(machine.axes.size()), kSimulatedClock, machine.clock_hz);
+      options.engine.options(card_axes(machine.axes.size()), kSimulatedClock, machine.clock_hz);
+  check_outputs(options.outputs);
   const RunResult result = run_program(program, machine, engine, options.outputs);
   if (options.outputs.json) write_json(result, *options.outputs.json);
   if (options.outputs.plot) write_svg(result.plot, *options.outputs.plot);

@@ -1,0 +1,57 @@
+// Runs the trammel command as a process and reads what it writes. Every object has a directory of its own, removed
+// with it. TRAMMEL_BINARY in the environment names another binary than the one that was built.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace trammel::test {
+
+struct Outcome {
+  int status = -1;  // of exit; -1: killed by a signal
+  std::string out;
+  std::string err;
+};
+
+// One row of --steps. `cycle` counts clocks of the card.
+struct Step {
+  std::uint64_t cycle = 0;
+  unsigned axis = 0;
+  int direction = 0;
+};
+
+class Command {
+ public:
+  Command();
+  ~Command();
+  Command(const Command&) = delete;
+  Command& operator=(const Command&) = delete;
+
+  // Arguments as in a shell.
+  Outcome run(const std::string& arguments) const;
+  // A file's place in the directory.
+  std::string path(const std::string& name) const;
+  // Writes a file into the directory and gives its place.
+  std::string write(const std::string& name, const std::string& text) const;
+
+ private:
+  std::filesystem::path directory_;
+};
+
+// The whole file; empty where there is none.
+std::string contents(const std::string& file);
+
+// The JSON of a file; a discarded value where it is none.
+nlohmann::json read_json(const std::string& file);
+
+// The rows of --steps. Reports a failure for a wrong header, a malformed row, or cycles out of order.
+std::vector<Step> read_steps(const std::string& file);
+
+// Lines of text, counted by their ends.
+std::size_t count_lines(const std::string& text);
+
+}  // namespace trammel::test

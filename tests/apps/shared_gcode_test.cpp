@@ -1,0 +1,95 @@
+// Real programs from elsewhere. Each runs on both engines; by default at a lower clock than the command's 1 MHz, so
+// that each takes about a minute: TRAMMEL_LONG=1 in the environment runs all of them at 1 MHz (up to 306 million
+// clocks on the Verilated card).
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "command.hpp"
+
+namespace trammel::test {
+namespace {
+
+using Pulses = std::array<std::int64_t, 4>;
+
+const std::string kFolder = TRAMMEL_SHARED_GCODE_DIR "/";
+
+// `end`: the last words of the file, rounded to pulses at 80 steps/mm. `axes`: that move together in its lines.
+struct Job {
+  const char* name;
+  const char* clock;  // Hz
+  Pulses end;
+  int axes;
+};
+
+class Jobs : public testing::TestWithParam<Job> {};
+
+TEST_P(Jobs, RunsOnBothEngines) {
+  const Job& job = GetParam();
+  const std::string clock = std::getenv("TRAMMEL_LONG") != nullptr ? "1000000" : job.clock;
+  const Command command;
+  for (const std::string engine : {"model", "rtl"}) {
+    const Outcome outcome = command.run("run " + kFolder + job.name + ".gcode --clock " + clock + " --engine " +
+                                        engine + " --steps " + command.path(engine + ".steps") + " --path-steps " +
+                                        command.path(engine + ".path") + " --json " + command.path(engine + ".json"));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json json = read_json(command.path(engine + ".json"));
+    EXPECT_EQ(json["final_position"].get<Pulses>(), job.end);
+    EXPECT_LE(json["max_deviation"]["line"].get<double>(), std::sqrt(job.axes) / 2 + 0.001);
+    EXPECT_LE(json["max_deviation"]["arc"].get<double>(), 1.1);
+    EXPECT_EQ(json["mismatches"], 0);
+    if (engine == "rtl") {
+      EXPECT_GT(json["cycles"], 0);
+      EXPECT_EQ(json["lockstep_cycles"], json["cycles"]);
+    }
+  }
+  EXPECT_GT(read_steps(command.path("rtl.steps")).size(), 1000U);
+  EXPECT_TRUE(contents(command.path("rtl.steps")) == contents(command.path("model.steps")));
+  EXPECT_TRUE(contents(command.path("rtl.path")) == contents(command.path("model.path")));
+}
+
+std::string job_name(const testing::TestParamInfo<Job>& info) {
+  std::string name = info.param.name;
+  for (char& c : name) c = c == '-' ? '_' : c;
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Gcode, Jobs,
+                         testing::Values(Job{"jsdc-laser", "100000", {0, 0, 0, 0}, 2},
+                                         Job{"tball", "100000", {12482, -2388, 400, 0}, 2},
+                                         Job{"arc-xz-plane", "200000", {1600, 0, 0, 0}, 2},
+                                         Job{"arc-yz-plane", "200000", {0, 1600, 0, 0}, 2},
+                                         Job{"g2-arc", "200000", {800, 800, 0, 0}, 2},
+                                         // Its last line moves three axes.
+                                         Job{"circle-inch", "200000", {0, 0, 508, 0}, 3}),
+                         job_name);
+
+TEST(Gcode, OctocatRunsAtTheRealClock) {
+  const Command command;
+  const Outcome outcome = command.run("run " + kFolder + "octocat.gcode --engine model --clock 100000000 --json " +
+                                      command.path("out.json"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json json = read_json(command.path("out.json"));
+  // Z ends 2 mm above the last layer, 35.4 mm; E is the sum over all G92 E0: 2644.55913 mm.
+  EXPECT_EQ(json["final_position"].get<Pulses>(), (Pulses{400, 400, 2992, 211565}));
+  EXPECT_LE(json["max_deviation"]["line"].get<double>(), std::sqrt(4.0) / 2 + 0.001);
+  EXPECT_EQ(json["clock_hz"], 100000000);
+  EXPECT_TRUE(json["lockstep_cycles"].is_null());
+}
+
+void expect_refused(const std::string& name, const std::string& line) {
+  const Command command;
+  const Outcome outcome = command.run("run " + kFolder + name + " --steps " + command.path("steps.csv"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find(name + ":" + line + ":"), std::string::npos) << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+  EXPECT_LE(count_lines(contents(command.path("steps.csv"))), 1U) << "a header at most";
+}
+
+TEST(Gcode, CircleDiamondSquareIsRefused) { expect_refused("circle-diamond-square.gcode", "624"); }
+TEST(Gcode, FullCircleWithoutXyzIsRefused) { expect_refused("full-circle-without-xyz.gcode", "11"); }
+
+}  // namespace
+}  // namespace trammel::test
