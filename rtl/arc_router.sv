@@ -9,7 +9,7 @@ module arc_router #(
     input  wire logic            clk_i,
     input  wire logic            rst_i,
     input  wire logic            load_plane_i,
-    input  wire logic [15:0]     word_i,
+    input  wire logic [    15:0] word_i,
     input  wire logic            step_x_i,
     input  wire logic            dir_x_i,
     input  wire logic            step_y_i,

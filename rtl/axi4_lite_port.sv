@@ -46,9 +46,9 @@ module axi4_lite_port (
 
   // A new access only when its answer has a place to go.
   assign write_waits = awvalid_i && wvalid_i && !bvalid_q;
-  assign read_waits = arvalid_i && !rvalid_q;
-  assign take_write = !busy_q && write_waits && !(read_waits && write_q);
-  assign take_read = !busy_q && read_waits && !take_write;
+  assign read_waits  = arvalid_i && !rvalid_q;
+  assign take_write  = !busy_q && write_waits && !(read_waits && write_q);
+  assign take_read   = !busy_q && read_waits && !take_write;
 
   logic        request_q;
   logic        write_ready_q;

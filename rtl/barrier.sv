@@ -7,16 +7,16 @@ module barrier (
     input  wire logic clk_i,
     input  wire logic rst_i,
     input  wire logic clear_i,
-    input  wire logic go_i,          // no fault
+    input  wire logic go_i,           // no fault
     input  wire logic geometry_at_i,
     input  wire logic feed_at_i,
-    input  wire logic zero_i,        // the count is 0
-    input  wire logic end_i,         // the barrier is an END
-    input  wire logic last_i,        // of the tick counter
-    output logic      load_o,        // load the tick counter
-    output logic      counting_o,    // one count each clock
-    output logic      done_o,        // both queues go on
-    output logic      ended_o,       // with done_o: it was an END
+    input  wire logic zero_i,         // the count is 0
+    input  wire logic end_i,          // the barrier is an END
+    input  wire logic last_i,         // of the tick counter
+    output logic      load_o,         // load the tick counter
+    output logic      counting_o,     // one count each clock
+    output logic      done_o,         // both queues go on
+    output logic      ended_o,        // with done_o: it was an END
     output logic      idle_o
 );
   // LEAVE gives the two fetches the clocks in which they take back geometry_at_i and feed_at_i.
@@ -28,10 +28,10 @@ module barrier (
     LEAVE
   } state_e;
 
-  state_e     state_q;
-  state_e     state_d;
-  logic [1:0] step_q;
-  logic       over;
+  state_e       state_q;
+  state_e       state_d;
+  logic   [1:0] step_q;
+  logic         over;
 
   assign over = (state_q == COUNT) & go_i & (zero_i | last_i);
 

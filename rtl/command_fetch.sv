@@ -11,7 +11,7 @@ module command_fetch (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        clear_i,
-    input  wire logic        pop_i,           // the decoded command is taken; the next may be read
+    input  wire logic        pop_i,            // the decoded command is taken; the next may be read
     // queue
     input  wire logic        empty_i,
     input  wire logic [15:0] word_i,
@@ -26,14 +26,14 @@ module command_fetch (
     input  wire logic        last_field_i,
     output logic             first_o,          // the first field is taken up now (combinational)
     output logic             advance_o,        // the next field is taken up now (combinational)
-    output logic [ 3:0]      field_o,          // field under way
+    output logic      [ 3:0] field_o,          // field under way
     // halfwords on their way, aligned with word_i
     output logic             count_strobe_o,
     output logic             field_strobe_o,
-    output logic [ 3:0]      strobe_field_o,
+    output logic      [ 3:0] strobe_field_o,
     // header
-    output logic [ 7:0]      opcode_o,
-    output logic [ 7:0]      mask_o,
+    output logic      [ 7:0] opcode_o,
+    output logic      [ 7:0] mask_o,
     output logic             idle_o,           // nothing read or decoded
     output logic             valid_o           // a command is decoded
 );
@@ -46,24 +46,26 @@ module command_fetch (
     VALID
   } state_e;
 
-  state_e     state_q;
-  state_e     state_d;
-  logic [1:0] step_q;  // within HEADER and TAIL
-  logic [2:0] left_q;  // halfwords left in the field, less one
-  logic       enter_payload;
-  logic       field_done;
+  state_e       state_q;
+  state_e       state_d;
+  logic   [1:0] step_q;  // within HEADER and TAIL
+  logic   [2:0] left_q;  // halfwords left in the field, less one
+  logic         header_done;
+  logic         enter_payload;
+  logic         field_done;
 
   // What was read 1 and 2 clocks ago.
-  logic       header_1_q;
-  logic       payload_1_q;
-  logic       first_1_q;
-  logic       first_2_q;
-  logic [3:0] field_1_q;
+  logic         header_1_q;
+  logic         payload_1_q;
+  logic         first_1_q;
+  logic         first_2_q;
+  logic   [3:0] field_1_q;
 
-  assign field_done    = left_q == 3'd0;
-  assign enter_payload = has_payload_i & payload_ready_i & (((state_q == HEADER) & (step_q == 2'd3)) | (state_q == WAIT));
-  assign first_o       = enter_payload;
-  assign advance_o     = (state_q == PAYLOAD) & field_done;
+  assign field_done = left_q == 3'd0;
+  assign header_done = (state_q == HEADER) & (step_q == 2'd3);
+  assign enter_payload = has_payload_i & payload_ready_i & (header_done | (state_q == WAIT));
+  assign first_o = enter_payload;
+  assign advance_o = (state_q == PAYLOAD) & field_done;
 
   always_comb begin
     state_d = state_q;

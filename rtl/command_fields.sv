@@ -68,7 +68,7 @@ module command_fields (
       is_count_q <= in_count_q;
       if (padding_i) begin
         allowed_q <= 16'd0;
-        checks_q <= 6'd0;
+        checks_q  <= 6'd0;
       end else if (in_count_q) begin
         allowed_q <= {index_q != 6'd2 ? 8'hFF : 8'h00, 8'hFF};
         if (card_map_pkg::command_count_zero(op_i)) allowed_q <= 16'd0;
@@ -77,7 +77,7 @@ module command_fields (
         checks_q[NOT_ZERO] <= index_q == 6'd2 && card_map_pkg::command_count_not_zero(op_i);
       end else begin
         allowed_q <= card_map_pkg::payload_bits(op_i, index_q);
-        checks_q <= card_map_pkg::payload_checks(op_i, index_q);
+        checks_q  <= card_map_pkg::payload_checks(op_i, index_q);
       end
     end
   end

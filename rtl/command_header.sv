@@ -47,7 +47,9 @@ module command_header #(
   endfunction
 
   always_comb begin
-    unique case (card_map_pkg::command_mask_rule(op_o))
+    unique case (card_map_pkg::command_mask_rule(
+        op_o
+    ))
       card_map_pkg::MASK_RULE_ANY: count_bad = moving_q == 4'd0;
       card_map_pkg::MASK_RULE_PLANE: count_bad = moving_q != 4'd2;
       default: count_bad = moving_q != 4'd0;
@@ -67,7 +69,7 @@ module command_header #(
     if (high_i) begin
       mask_bad_q <= count_bad || (mask_o & ABSENT_AXES) != 8'd0;
       // Halfword 1 is not stored, which also rounds the words behind the first: stored / 2, rounded down.
-      stored_o <= base_q + 6'(per_axis_q * moving_q);
+      stored_o   <= base_q + 6'(per_axis_q * moving_q);
     end
     if (high_judge_i) begin
       length_bad_q <= halfword_i[7:0] != {3'b0, stored_o[5:1]} + 8'd1;
@@ -79,7 +81,7 @@ module command_header #(
 
   always_ff @(posedge clk_i) begin
     if (restart_i) begin
-      number_o <= 8'd0;
+      number_o   <= 8'd0;
       expected_q <= 8'd0;
     end else begin
       if (high_i) number_o <= halfword_i[15:8];

@@ -12,7 +12,7 @@
 module deviation_accumulator (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
-    input  wire logic [8:0]  load_i,
+    input  wire logic [ 8:0] load_i,
     input  wire logic [15:0] word_i,
     input  wire logic        start_i,
     input  wire logic        tick_i,
@@ -37,22 +37,22 @@ module deviation_accumulator (
   logic [LAST:0] phase_q;
   logic start_q, g_shift_q, f_shift_q, h_shift_q, e_shift_q;
   logic drop, accept;
-  assign drop = rst_i | clear_i | (|load_i);
+  assign drop   = rst_i | clear_i | (|load_i);
   assign accept = ready_o & tick_i & ~at_end_o;
 
   always_ff @(posedge clk_i) begin
     if (drop) begin
-      phase_q <= '0;
-      start_q <= 1'b0;
-      ready_o <= 1'b0;
+      phase_q   <= '0;
+      start_q   <= 1'b0;
+      ready_o   <= 1'b0;
       g_shift_q <= 1'b0;
       f_shift_q <= 1'b0;
       h_shift_q <= 1'b0;
       e_shift_q <= 1'b0;
     end else begin
-      phase_q <= {phase_q[LAST-1:0], accept};
-      start_q <= start_i;
-      ready_o <= (ready_o & ~accept & ~start_i) | phase_q[LAST] | start_q;
+      phase_q   <= {phase_q[LAST-1:0], accept};
+      start_q   <= start_i;
+      ready_o   <= (ready_o & ~accept & ~start_i) | phase_q[LAST] | start_q;
       g_shift_q <= accept | (|phase_q[LAST-1:0]);
       f_shift_q <= |phase_q[6:1];
       h_shift_q <= accept | (|phase_q[1:0]);
@@ -76,7 +76,7 @@ module deviation_accumulator (
 
   always_ff @(posedge clk_i) begin
     if (ready_o) begin
-      finish_q <= finish;
+      finish_q   <= finish;
       select_x_q <= select_x;
       negative_q <= negative;
       old_sign_q <= select_x ? gx_negative : gy_negative;
@@ -126,7 +126,7 @@ module deviation_accumulator (
   // the upper bits 0 the change takes the last one: at 0 done_q is set already, and the count no longer matters.
   logic upper_zero_q, change, done;
   assign change = phase_q[LAST] & (g_back[15] ^ old_sign_q);
-  assign done = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
+  assign done   = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
   always_ff @(posedge clk_i) begin
     if (load_i[7]) quadrants_q <= word_i;
     else quadrants_q <= quadrants_q - {15'd0, change};

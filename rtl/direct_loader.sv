@@ -13,15 +13,15 @@ module direct_loader #(
     input  wire logic            busy_i,       // anything runs, is queued, or a fault stops the ticks
     // register file
     input  wire logic            start_i,
-    input  wire logic [ 7:0]     mask_i,       // stands until done_o
-    output logic      [ 7:0]     address_o,    // word address
-    input  wire logic [31:0]     data_i,
+    input  wire logic [     7:0] mask_i,       // stands until done_o
+    output logic      [     7:0] address_o,    // word address
+    input  wire logic [    31:0] data_i,
     output logic                 done_o,
     output logic                 error_o,
-    output logic      [ 7:0]     reason_o,
+    output logic      [     7:0] reason_o,
     // sequencer
-    output logic      [15:0]     word_o,
-    output logic      [ 2:0]     axis_o,
+    output logic      [    15:0] word_o,
+    output logic      [     2:0] axis_o,
     output logic                 increment_o,
     output logic                 steps_o,
     output logic                 length_o,
@@ -47,36 +47,37 @@ module direct_loader #(
   localparam logic [4:0] TAKE_LENGTH_1 = 5'd4;
   localparam logic [4:0] TAKE_LENGTH_2 = 5'd7;
 
-  state_e      state_q;
-  state_e      state_d;
-  logic [ 4:0] step_q;
-  logic [ 7:0] rest_q;      // masked axes from axis_q on
-  logic [ 2:0] axis_q;
-  logic        axis_done;
-  logic        take_high;
-  logic        busy_q;
+  state_e        state_q;
+  state_e        state_d;
+  logic   [ 4:0] step_q;
+  logic   [ 7:0] rest_q;  // masked axes from axis_q on
+  logic   [ 2:0] axis_q;
+  logic          axis_done;
+  logic          take_high;
+  logic          busy_q;
 
   // The halfword taken, on its way to the chains.
-  logic [15:0] raw_q;
-  logic        frequency_q;
-  logic        frequency_top_q;
-  logic        count_q;
-  logic        length_q;
-  logic [ 2:0] raw_axis_q;
+  logic   [15:0] raw_q;
+  logic          frequency_q;
+  logic          frequency_top_q;
+  logic          count_q;
+  logic          length_q;
+  logic   [ 2:0] raw_axis_q;
 
   // Judgement.
-  logic        negative_q;
-  logic        carry_q;          // of the serial negation
-  logic        frequency_any_q;  // a one in the frequency so far
-  logic        length_any_q;
-  logic        bad_q;
-  logic [15:0] negated;
-  logic        raw_any;
+  logic          negative_q;
+  logic          carry_q;  // of the serial negation
+  logic          frequency_any_q;  // a one in the frequency so far
+  logic          length_any_q;
+  logic          bad_q;
+  logic   [15:0] negated;
+  logic          raw_any;
 
   assign axis_done = ~rest_q[0] | (step_q == TAKE_COUNT_1);
-  assign take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_COUNT_1) : step_q == TAKE_LENGTH_1;
-  assign raw_any   = raw_q != 16'd0;
-  assign negated   = (raw_q ^ {16{negative_q}}) + {15'd0, carry_q};
+  assign take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_COUNT_1)
+                                       : step_q == TAKE_LENGTH_1;
+  assign raw_any = raw_q != 16'd0;
+  assign negated = (raw_q ^ {16{negative_q}}) + {15'd0, carry_q};
 
   always_comb begin
     state_d = state_q;
@@ -121,12 +122,12 @@ module direct_loader #(
       endcase
     end
 
-    raw_q           <= take_high ? data_i[31:16] : data_i[15:0];
-    raw_axis_q      <= axis_q;
+    raw_q <= take_high ? data_i[31:16] : data_i[15:0];
+    raw_axis_q <= axis_q;
     frequency_top_q <= step_q == TAKE_FREQUENCY_2;
     frequency_q     <= (state_q == AXIS) & rest_q[0] &
         ((step_q == TAKE_FREQUENCY_0) | (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_FREQUENCY_2));
-    count_q         <= (state_q == AXIS) & rest_q[0] & ((step_q == TAKE_COUNT_0) | (step_q == TAKE_COUNT_1));
+    count_q <= (state_q == AXIS) & rest_q[0] & ((step_q == TAKE_COUNT_0) | (step_q == TAKE_COUNT_1));
     length_q        <= (state_q == LENGTH) &
         ((step_q == TAKE_LENGTH_0) | (step_q == TAKE_LENGTH_1) | (step_q == TAKE_LENGTH_2));
 
@@ -155,10 +156,10 @@ module direct_loader #(
     steps_o     <= count_q;
     length_o    <= length_q;
 
-    done_o  <= (state_q == DECIDE) & (step_q == 5'd7);
-    error_o <= busy_q | bad_q | ~length_any_q;
-    go_o    <= (state_q == DECIDE) & (step_q == 5'd7) & ~busy_q & ~bad_q & length_any_q;
-    reason_o <= busy_q ? card_map_pkg::REFUSE_BUSY : card_map_pkg::REFUSE_BAD_VALUE;
+    done_o      <= (state_q == DECIDE) & (step_q == 5'd7);
+    error_o     <= busy_q | bad_q | ~length_any_q;
+    go_o        <= (state_q == DECIDE) & (step_q == 5'd7) & ~busy_q & ~bad_q & length_any_q;
+    reason_o    <= busy_q ? card_map_pkg::REFUSE_BUSY : card_map_pkg::REFUSE_BAD_VALUE;
   end
 endmodule
 

@@ -11,7 +11,7 @@ module feed_fetch (
     output logic             read_o,
     output logic      [15:0] load_word_o,
     output logic             load_count_o,
-    output logic      [ 3:0] load_o,       // {floor, jerk, acceleration, rate}
+    output logic      [ 3:0] load_o,        // {floor, jerk, acceleration, rate}
     output logic             piece_o,
     output logic             barrier_o,
     output logic             idle_o,

@@ -58,9 +58,9 @@ module feed_generator (
   always_ff @(posedge clk_i) begin
     if (load_high_q) step_q <= '0;
     else if (rotate_q) step_q <= step_q + 5'd1;
-    rotate_q <= keep && ((load_high_q && !swap_q) || (rotate_q && !last_step));
+    rotate_q  <= keep && ((load_high_q && !swap_q) || (rotate_q && !last_step));
     compare_q <= keep && rotate_q && step_q[4:3] == 2'b01;
-    judge_q <= keep && rotate_q && last_step;
+    judge_q   <= keep && rotate_q && last_step;
   end
 
   logic [Width-1:0] rate_q, acceleration_q, jerk_q;
@@ -125,7 +125,7 @@ module feed_generator (
   logic enable_low_q, enable_high_q, carry_q, tick_q;
   logic [16:0] low_sum;
   logic [32:0] high_sum;
-  assign low_sum = {1'b0, phase_low_q} + {1'b0, slope_low_q};
+  assign low_sum  = {1'b0, phase_low_q} + {1'b0, slope_low_q};
   assign high_sum = {1'b0, phase_high_q} + {1'b0, slope_high_q} + {32'd0, carry_q};
   always_ff @(posedge clk_i) begin
     carry_q <= low_sum[16];

@@ -13,21 +13,21 @@ module geometry_fetch #(
     input  wire logic            pop_i,
     input  wire logic            arc_busy_i,
     input  wire logic            empty_i,
-    input  wire logic [15:0]     word_i,
+    input  wire logic [    15:0] word_i,
     output logic                 read_o,
     // direct loader, while nothing is decoded
-    input  wire logic [15:0]     direct_word_i,
-    input  wire logic [ 2:0]     direct_axis_i,
+    input  wire logic [    15:0] direct_word_i,
+    input  wire logic [     2:0] direct_axis_i,
     input  wire logic            direct_increment_i,  // the word belongs to the axis's increment
     input  wire logic            direct_steps_i,      // to the axis's count of steps
     input  wire logic            direct_length_i,     // to the count of ticks
     // load bus
-    output logic      [15:0]     load_word_o,
+    output logic      [    15:0] load_word_o,
     output logic                 load_count_o,
     output logic      [Axes-1:0] load_increment_o,
     output logic      [Axes-1:0] load_steps_o,
     output logic                 load_prescale_o,
-    output logic      [ 8:0]     load_deviation_o,
+    output logic      [     8:0] load_deviation_o,
     // the decoded command
     output logic      [Axes-1:0] mask_o,
     output logic                 line_o,
@@ -142,10 +142,10 @@ module geometry_fetch #(
     load_deviation_o[7] <= field_strobe & is_arc & (strobe_field == QUADRANTS);
     load_deviation_o[8] <= field_strobe & is_arc & (strobe_field == PLANE);
 
-    line_o    <= opcode == card_map_pkg::OP_LINE;
-    arc_o     <= is_arc;
-    barrier_o <= ~is_path;
-    end_o     <= opcode == card_map_pkg::OP_END;
+    line_o              <= opcode == card_map_pkg::OP_LINE;
+    arc_o               <= is_arc;
+    barrier_o           <= ~is_path;
+    end_o               <= opcode == card_map_pkg::OP_END;
   end
 endmodule
 

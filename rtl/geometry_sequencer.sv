@@ -10,11 +10,11 @@ module geometry_sequencer #(
     input  wire logic            go_i,                // no fault
     // queue
     input  wire logic            empty_i,
-    input  wire logic [15:0]     word_i,
+    input  wire logic [    15:0] word_i,
     output logic                 read_o,
     // direct move
-    input  wire logic [15:0]     direct_word_i,
-    input  wire logic [ 2:0]     direct_axis_i,
+    input  wire logic [    15:0] direct_word_i,
+    input  wire logic [     2:0] direct_axis_i,
     input  wire logic            direct_increment_i,
     input  wire logic            direct_steps_i,
     input  wire logic            direct_length_i,
@@ -22,11 +22,11 @@ module geometry_sequencer #(
     input  wire logic [Axes-1:0] direct_mask_i,
     output logic                 direct_o,
     // load bus
-    output logic      [15:0]     load_word_o,
+    output logic      [    15:0] load_word_o,
     output logic      [Axes-1:0] load_increment_o,
     output logic      [Axes-1:0] load_steps_o,
     output logic                 load_prescale_o,
-    output logic      [ 8:0]     load_deviation_o,
+    output logic      [     8:0] load_deviation_o,
     // ticks
     input  wire logic            take_i,
     output logic                 taking_o,
@@ -47,29 +47,29 @@ module geometry_sequencer #(
     output logic                 path_active_o,
     output logic                 ended_o,
     output logic                 idle_o,
-    output logic      [ 7:0]     number_o             // of the command under way
+    output logic      [     7:0] number_o             // of the command under way
 );
   logic [Axes-1:0] mask;
-  logic        line;
-  logic        arc;
-  logic        is_barrier;
-  logic        is_end;
-  logic        valid;
-  logic        pop;
-  logic        fetch_idle;
-  logic        load_length;
-  logic        load_path;
-  logic        arc_busy;
-  logic [39:0] count;
-  logic [ 7:0] next_number;
-  logic        mid_zero;
-  logic        top_zero;
-  logic        zero;
-  logic        last;
-  logic        barrier_load;
-  logic        barrier_counting;
-  logic        barrier_ended;
-  logic        barrier_idle;
+  logic            line;
+  logic            arc;
+  logic            is_barrier;
+  logic            is_end;
+  logic            valid;
+  logic            pop;
+  logic            fetch_idle;
+  logic            load_length;
+  logic            load_path;
+  logic            arc_busy;
+  logic [    39:0] count;
+  logic [     7:0] next_number;
+  logic            mid_zero;
+  logic            top_zero;
+  logic            zero;
+  logic            last;
+  logic            barrier_load;
+  logic            barrier_counting;
+  logic            barrier_ended;
+  logic            barrier_idle;
 
   assign path_waits_o = valid & ~is_barrier;
 

@@ -9,53 +9,53 @@ module motion_core #(
     input  wire logic               abort_i,
     // queues
     input  wire logic               geometry_empty_i,
-    input  wire logic [15:0]        geometry_word_i,
+    input  wire logic [       15:0] geometry_word_i,
     output logic                    geometry_read_o,
     input  wire logic               feed_empty_i,
-    input  wire logic [15:0]        feed_word_i,
+    input  wire logic [       15:0] feed_word_i,
     output logic                    feed_read_o,
     // START
     input  wire logic               start_i,
-    input  wire logic [ 7:0]        start_mask_i,
+    input  wire logic [        7:0] start_mask_i,
     output logic                    start_done_o,
     output logic                    start_error_o,
-    output logic      [ 7:0]        start_reason_o,
-    output logic      [ 7:0]        loader_address_o,
-    input  wire logic [31:0]        loader_data_i,
+    output logic      [        7:0] start_reason_o,
+    output logic      [        7:0] loader_address_o,
+    input  wire logic [       31:0] loader_data_i,
     // settings
     input  wire logic               hold_i,
-    input  wire logic [16:0]        target_i,
-    input  wire logic [27:0]        slew_i,
-    input  wire logic [15:0]        hold_limit_i,
+    input  wire logic [       16:0] target_i,
+    input  wire logic [       27:0] slew_i,
+    input  wire logic [       15:0] hold_limit_i,
     input  wire logic [16*Axes-1:0] step_length_i,
     input  wire logic [16*Axes-1:0] step_space_i,
     input  wire logic [16*Axes-1:0] dir_setup_i,
     input  wire logic [16*Axes-1:0] dir_hold_i,
-    input  wire logic [4*Axes-1:0]  mode_i,
+    input  wire logic [ 4*Axes-1:0] mode_i,
     // faults
-    input  wire logic [ 9:0]        fault_i,         // FAULT
-    input  wire logic [Axes-1:0]    clear_fault_i,
-    output logic      [Axes-1:0]    step_fault_o,
-    output logic      [ 1:0]        fault_o,
+    input  wire logic [        9:0] fault_i,           // FAULT
+    input  wire logic [   Axes-1:0] clear_fault_i,
+    output logic      [   Axes-1:0] step_fault_o,
+    output logic      [        1:0] fault_o,
     // status
     output logic                    busy_o,
     output logic                    direct_o,
     output logic                    path_active_o,
     output logic                    feed_active_o,
     output logic                    ended_o,
-    output logic      [15:0]        running_o,       // {feed, geometry}
-    output logic      [16:0]        ratio_o,
-    output logic      [31:0]        rate_o,
+    output logic      [       15:0] running_o,         // {feed, geometry}
+    output logic      [       16:0] ratio_o,
+    output logic      [       31:0] rate_o,
     output logic                    tick_o,
     output logic                    path_tick_o,
     output logic                    path_swap_o,
     output logic                    feed_swap_o,
-    output logic      [Axes-1:0]    path_step_o,
-    output logic      [Axes-1:0]    path_dir_o,
+    output logic      [   Axes-1:0] path_step_o,
+    output logic      [   Axes-1:0] path_dir_o,
     output logic      [32*Axes-1:0] position_o,
     // pins
-    output logic      [Axes-1:0]    step_o,
-    output logic      [Axes-1:0]    dir_o
+    output logic      [   Axes-1:0] step_o,
+    output logic      [   Axes-1:0] dir_o
 );
   logic            enable;
   logic            feed_tick;

@@ -45,8 +45,8 @@ module path_sequencer #(
   // Clocks from the last take until its path tick is counted (5) or an axis's live flag has followed it (4).
   localparam logic [2:0] SETTLE_CLOCKS = 3'd7;
 
-  logic       idle_q;     // no path
-  logic       drain_q;    // the last tick is taken, the engine still works
+  logic       idle_q;  // no path
+  logic       drain_q;  // the last tick is taken, the engine still works
   logic [2:0] settle_q;
   logic       settled_q;
   logic       over;
@@ -54,13 +54,13 @@ module path_sequencer #(
   logic       path_valid;
   logic       swap;
 
-  assign path_valid   = valid_i & (line_i | arc_i);
-  assign ending       = take_i & last_i & ~drain_q;
-  assign over         = settled_q & (arc_busy_o ? engine_empty_i : ~axes_live_i);
+  assign path_valid    = valid_i & (line_i | arc_i);
+  assign ending        = take_i & last_i & ~drain_q;
+  assign over          = settled_q & (arc_busy_o ? engine_empty_i : ~axes_live_i);
   // Behind a line the next path takes over in the clock of the last tick.
-  assign swap         = path_valid & go_i & (idle_q | (ending & ~arc_busy_o & ~direct_o));
-  assign pop_o        = swap | barrier_done_i;
-  assign load_count_o = swap | direct_go_i;
+  assign swap          = path_valid & go_i & (idle_q | (ending & ~arc_busy_o & ~direct_o));
+  assign pop_o         = swap | barrier_done_i;
+  assign load_count_o  = swap | direct_go_i;
   assign active_path_o = ~idle_q;
 
   always_ff @(posedge clk_i) begin

@@ -8,11 +8,11 @@ module path_tick_gate (
     input  wire logic clk_i,
     input  wire logic rst_i,
     input  wire logic clear_i,
-    input  wire logic step_i,         // from the prescaler
+    input  wire logic step_i,          // from the prescaler
     input  wire logic engine_ready_i,
-    output logic      tick_o,         // to the accumulator
-    output logic      ready_o,        // feed ticks may be taken
-    output logic      empty_o         // nothing waits and the accumulator has worked off the last one
+    output logic      tick_o,          // to the accumulator
+    output logic      ready_o,         // feed ticks may be taken
+    output logic      empty_o          // nothing waits and the accumulator has worked off the last one
 );
   logic [3:0] count_q;
   logic [3:0] count_d;

@@ -1,5 +1,5 @@
-// Pulse generator of one axis: a phase accumulator with 40 fraction bits (fewer for proofs) whose carry is a step forward and whose
-// borrow is a step back, and a count that can end the line early (direct mode).
+// Pulse generator of one axis: a phase accumulator with 40 fraction bits (fewer for proofs) whose carry is a step forward
+// and whose borrow is a step back, and a count that can end the line early (direct mode).
 //
 // The accumulator is split: the low half is added at the tick, the high half one clock later, with its half of the
 // increment, the preset and the tick delayed alike. The step is registered before it meets the count, so neither adder
@@ -11,8 +11,8 @@
 
 module pulse_generator #(
     parameter int FractionBits = 40,  // even, 4 to 40; fewer only so that all lines can be tried
-    parameter int CountWidth = 32,  // at least 17, at most 32
-    parameter bit Counted = 1       // 0: no count is built, counted_i and load_count_i do nothing
+    parameter int CountWidth   = 32,  // at least 17, at most 32
+    parameter bit Counted      = 1    // 0: no count is built, counted_i and load_count_i do nothing
 ) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
@@ -87,7 +87,7 @@ module pulse_generator #(
   logic swap_late_q;
   logic open_q;
   logic nothing;  // the line is counted, and its count is 0
-  logic last;     // the step under way makes the count
+  logic last;  // the step under way makes the count
   logic step;
   assign step = carried_q & open_q;
 

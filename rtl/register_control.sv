@@ -50,17 +50,17 @@ module register_control (
     LOAD      // wait for the direct loader's
   } state_e;
 
-  state_e state_q;
-  state_e state_d;
+  state_e        state_q;
+  state_e        state_d;
 
-  logic        write_q;
-  logic        partial_q;
-  logic [11:0] address_q;
-  logic [31:0] word_q;
+  logic          write_q;
+  logic          partial_q;
+  logic   [11:0] address_q;
+  logic   [31:0] word_q;
 
   always_ff @(posedge clk_i) begin
     if (request_i && state_q == IDLE) begin
-      write_q <= write_i;
+      write_q   <= write_i;
       partial_q <= partial_i;
       address_q <= address_i;
       if (write_i) word_q <= data_i;
@@ -77,8 +77,8 @@ module register_control (
 
   always_comb begin
     state_d = state_q;
-    finish = 1'b0;
-    failed = 1'b0;
+    finish  = 1'b0;
+    failed  = 1'b0;
     case (state_q)
       IDLE: if (request_i) state_d = DECODE;
       DECODE: state_d = WAIT;

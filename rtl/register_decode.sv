@@ -92,7 +92,7 @@ module register_decode #(
 
   always_ff @(posedge clk_i) begin
     reason_q <= reason_d;
-    good_q <= reason_d == card_map_pkg::REFUSE_NONE;
+    good_q   <= reason_d == card_map_pkg::REFUSE_NONE;
   end
 
   assign kind_o = kind_q;

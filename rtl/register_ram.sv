@@ -135,7 +135,7 @@ module register_ram #(
   always_ff @(posedge clk_i) begin
     if (store_q) memory[store_address_q] <= store_data_q;
     memory_q <= memory[address_i];
-    data_q <= memory_q;
+    data_q   <= memory_q;
   end
 
   assign walking_o = resetting_q || snapping_q || store_q;

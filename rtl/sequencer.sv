@@ -12,14 +12,14 @@ module sequencer #(
     input  wire logic            abort_i,
     // queues
     input  wire logic            geometry_empty_i,
-    input  wire logic [15:0]     geometry_word_i,
+    input  wire logic [    15:0] geometry_word_i,
     output logic                 geometry_read_o,
     input  wire logic            feed_empty_i,
-    input  wire logic [15:0]     feed_word_i,
+    input  wire logic [    15:0] feed_word_i,
     output logic                 feed_read_o,
     // direct move
-    input  wire logic [15:0]     direct_word_i,
-    input  wire logic [ 2:0]     direct_axis_i,
+    input  wire logic [    15:0] direct_word_i,
+    input  wire logic [     2:0] direct_axis_i,
     input  wire logic            direct_increment_i,
     input  wire logic            direct_steps_i,
     input  wire logic            direct_length_i,
@@ -27,19 +27,19 @@ module sequencer #(
     input  wire logic [Axes-1:0] direct_mask_i,
     output logic                 direct_o,
     // time
-    input  wire logic            enable_i,          // time base
+    input  wire logic            enable_i,            // time base
     input  wire logic            feed_tick_i,
     output logic                 feed_enable_o,
     output logic                 feed_clear_o,
     output logic                 feed_swap_o,
-    output logic      [ 3:0]     feed_load_o,
-    output logic      [15:0]     feed_word_o,
+    output logic      [     3:0] feed_load_o,
+    output logic      [    15:0] feed_word_o,
     // load bus and axes
-    output logic      [15:0]     load_word_o,
+    output logic      [    15:0] load_word_o,
     output logic      [Axes-1:0] load_increment_o,
     output logic      [Axes-1:0] load_steps_o,
     output logic                 load_prescale_o,
-    output logic      [ 8:0]     load_deviation_o,
+    output logic      [     8:0] load_deviation_o,
     output logic                 tick_o,
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
@@ -52,15 +52,15 @@ module sequencer #(
     input  wire logic            engine_at_end_i,
     output logic                 path_tick_o,
     // status
-    input  wire logic            faulted_i,         // a step fault, or a bit of FAULT
-    output logic                 go_o,              // ticks may be taken
-    output logic      [ 1:0]     fault_o,           // {PATH_INCOMPLETE, TICK_MISMATCH}, at the moment
+    input  wire logic            faulted_i,           // a step fault, or a bit of FAULT
+    output logic                 go_o,                // ticks may be taken
+    output logic      [     1:0] fault_o,             // {PATH_INCOMPLETE, TICK_MISMATCH}, at the moment
     output logic                 path_active_o,
     output logic                 feed_active_o,
     output logic                 ended_o,
-    output logic                 idle_o,            // nothing runs, is decoded or queued
-    output logic      [ 7:0]     geometry_number_o,
-    output logic      [ 7:0]     feed_number_o
+    output logic                 idle_o,              // nothing runs, is decoded or queued
+    output logic      [     7:0] geometry_number_o,
+    output logic      [     7:0] feed_number_o
 );
   logic take;
   logic taking;
@@ -94,12 +94,12 @@ module sequencer #(
   path_tick_gate path_ticks (
       .clk_i,
       .rst_i,
-      .clear_i       (abort_i),
-      .step_i        (prescaler_step_i),
+      .clear_i(abort_i),
+      .step_i (prescaler_step_i),
       .engine_ready_i,
-      .tick_o        (path_tick_o),
-      .ready_o       (engine_free),
-      .empty_o       (engine_empty)
+      .tick_o (path_tick_o),
+      .ready_o(engine_free),
+      .empty_o(engine_empty)
   );
 
   geometry_sequencer #(
@@ -177,15 +177,15 @@ module sequencer #(
   assign fault_o = {incomplete, mismatch_q};
 
   always_ff @(posedge clk_i) begin
-    tick_o        <= take & ~abort_i & ~rst_i;
+    tick_o <= take & ~abort_i & ~rst_i;
     // The generator rests while no path can take its ticks, so that a path does not begin with a burst.
     feed_enable_o <= enable_i & feed_active_o & taking & ~stall & go_o & ~abort_i & ~rst_i;
     // Without a piece nothing is owed: ticks made beyond the last one's end never count.
-    feed_clear_o  <= ~feed_active_o | abort_i | rst_i;
+    feed_clear_o <= ~feed_active_o | abort_i | rst_i;
     source_tick_q <= (direct_o ? enable_i & taking : feed_tick_i & feed_active_o) & ~abort_i & ~rst_i;
     mismatch_q    <= ((geometry_at & (feed_active_o | piece_waits)) | (feed_at & ((taking & ~direct_o) | path_waits))) &
         go_o & ~barrier_done & ~abort_i & ~rst_i;
-    idle_o        <= geometry_idle & feed_idle & feed_empty_i & ~feed_active_o;
+    idle_o <= geometry_idle & feed_idle & feed_empty_i & ~feed_active_o;
   end
 endmodule
 

@@ -20,17 +20,17 @@ module step_count #(
     output logic             last_o      // combinational: step_i is the line's last step
 );
 
-  logic [       3:0] fast_q;
-  logic [Width-1:4]  slow_q;
-  logic              slow_zero_q;
-  logic              borrow_q;
-  logic              counting_q;
-  logic              count_step;
-  logic [       3:0] fast_next;
-  logic [Width-1:4]  slow_next;
-  logic [Width-1:4]  slow_sum;
-  logic              slow_full;
-  logic [      31:0] shifted;
+  logic [      3:0] fast_q;
+  logic [Width-1:4] slow_q;
+  logic             slow_zero_q;
+  logic             borrow_q;
+  logic             counting_q;
+  logic             count_step;
+  logic [      3:0] fast_next;
+  logic [Width-1:4] slow_next;
+  logic [Width-1:4] slow_sum;
+  logic             slow_full;
+  logic [     31:0] shifted;
 
   assign shifted = {~word_i, 16'({slow_q, fast_q} >> 16)};
   assign count_step = step_i & counting_q;

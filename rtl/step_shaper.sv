@@ -21,7 +21,7 @@ module step_shaper (
     input  wire logic        clear_fault_i,
     output logic             step_o,
     output logic             dir_o,
-    output logic [31:0]      position_o,
+    output logic      [31:0] position_o,
     output logic             busy_o,
     output logic             fault_o
 );
@@ -42,18 +42,18 @@ module step_shaper (
   assign above = {1'b0, waiting_q[3:1]};
   assign direction_above = {1'b0, direction_q[3:1]};
 
-  logic [ 1:0] phase_q;
-  logic [ 1:0] phase_d;
-  logic        dir_q;
-  logic        same;     // a step waits that goes the way DIR points
-  logic        same_q;
-  logic        other_q;  // a step waits that goes the other way
-  logic        go;       // a pulse begins
-  logic        turn;     // DIR changes
-  logic        load;     // a phase begins
-  logic        expired_q;
+  logic [1:0] phase_q;
+  logic [1:0] phase_d;
+  logic       dir_q;
+  logic       same;  // a step waits that goes the way DIR points
+  logic       same_q;
+  logic       other_q;  // a step waits that goes the other way
+  logic       go;  // a pulse begins
+  logic       turn;  // DIR changes
+  logic       load;  // a phase begins
+  logic       expired_q;
   assign same = waiting_q[0] & (direction_q[0] == dir_q);
-  assign go = (same_q && phase_q == REST) || (expired_q && (phase_q == SETUP || (phase_q == SPACE && same_q)));
+  assign go   = (same_q && phase_q == REST) || (expired_q && (phase_q == SETUP || (phase_q == SPACE && same_q)));
   assign turn = phase_q == REST && other_q && expired_q;
   assign load = (phase_q == REST) ? same_q | (other_q & expired_q) : expired_q;
 
@@ -69,14 +69,14 @@ module step_shaper (
 
   always_ff @(posedge clk_i) begin
     if (load) phase_q <= phase_d;
-    same_q <= same;
+    same_q  <= same;
     other_q <= waiting_q[0] & ~same;
     if (turn) dir_q <= ~dir_q;
     if (rst_i) begin
       phase_q <= REST;
-      same_q <= 1'b0;
+      same_q  <= 1'b0;
       other_q <= 1'b0;
-      dir_q <= 1'b0;
+      dir_q   <= 1'b0;
     end
   end
 

@@ -21,7 +21,7 @@ module time_base (
   // Q1.28: 1 is 2^28. The candidate lies between -2^28 and 2^29 - 1.
   localparam logic [28:0] ONE = 29'h1000_0000;
 
-  logic [1:0] turn_q;
+  logic [ 1:0] turn_q;
   logic [28:0] ratio_q;
   logic [16:0] goal_q;
   logic up_q, arrived_q;
@@ -46,7 +46,7 @@ module time_base (
       turn_q <= turn_q + 2'd1;
       if (turn_q == 2'd0) begin
         ratio_q <= arrived_q ? goal : candidate_q[28:0];
-        goal_q <= hold_i ? 17'd0 : target_i;
+        goal_q  <= hold_i ? 17'd0 : target_i;
       end
       if (turn_q == 2'd1) up_q <= goal >= ratio_q;
       if (turn_q == 2'd2) begin
@@ -64,7 +64,7 @@ module time_base (
   end
 
   assign enable_o = enable_q;
-  assign ratio_o = ratio_q[28:12];
+  assign ratio_o  = ratio_q[28:12];
 endmodule
 
 `default_nettype wire

@@ -4,50 +4,50 @@
 `default_nettype none
 
 module trammel_card #(
-    parameter int Axes = 4,              // 1 to 8
+    parameter int Axes          = 4,     // 1 to 8
     parameter int GeometryDepth = 4096,  // halfwords
-    parameter int FeedDepth = 2560
+    parameter int FeedDepth     = 2560
 ) (
-    input  wire logic               clk_i,
-    input  wire logic               rst_i,
-    input  wire logic [31:0]        clock_hz_i,
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [31:0] clock_hz_i,
     // AXI4-Lite
-    input  wire logic               awvalid_i,
-    output logic                    awready_o,
-    input  wire logic [11:0]        awaddr_i,
-    input  wire logic               wvalid_i,
-    output logic                    wready_o,
-    input  wire logic [31:0]        wdata_i,
-    input  wire logic [ 3:0]        wstrb_i,
-    output logic                    bvalid_o,
-    input  wire logic               bready_i,
-    output logic      [ 1:0]        bresp_o,
-    input  wire logic               arvalid_i,
-    output logic                    arready_o,
-    input  wire logic [11:0]        araddr_i,
-    output logic                    rvalid_o,
-    input  wire logic               rready_i,
-    output logic      [31:0]        rdata_o,
-    output logic      [ 1:0]        rresp_o,
+    input wire logic awvalid_i,
+    output logic awready_o,
+    input wire logic [11:0] awaddr_i,
+    input wire logic wvalid_i,
+    output logic wready_o,
+    input wire logic [31:0] wdata_i,
+    input wire logic [3:0] wstrb_i,
+    output logic bvalid_o,
+    input wire logic bready_i,
+    output logic [1:0] bresp_o,
+    input wire logic arvalid_i,
+    output logic arready_o,
+    input wire logic [11:0] araddr_i,
+    output logic rvalid_o,
+    input wire logic rready_i,
+    output logic [31:0] rdata_o,
+    output logic [1:0] rresp_o,
     // pins
-    output logic      [Axes-1:0]    step_o,
-    output logic      [Axes-1:0]    dir_o,
-    output logic                    irq_o,
+    output logic [Axes-1:0] step_o,
+    output logic [Axes-1:0] dir_o,
+    output logic irq_o,
     // observation
-    output logic                    tick_o,
-    output logic                    path_tick_o,
-    output logic                    path_swap_o,
-    output logic                    feed_swap_o,
-    output logic      [Axes-1:0]    path_step_o,
-    output logic      [Axes-1:0]    path_dir_o,
-    output logic      [32*Axes-1:0] position_o,
-    output logic      [12:0]        geometry_room_o,
-    output logic      [12:0]        feed_room_o,
-    output logic      [ 5:0]        status_o,   // {door incomplete, ended, feed active, path active, direct, busy}
-    output logic      [ 9:0]        fault_o,
-    output logic      [15:0]        running_o,  // {feed, geometry}
-    output logic      [16:0]        ratio_o,
-    output logic      [31:0]        rate_o
+    output logic tick_o,
+    output logic path_tick_o,
+    output logic path_swap_o,
+    output logic feed_swap_o,
+    output logic [Axes-1:0] path_step_o,
+    output logic [Axes-1:0] path_dir_o,
+    output logic [32*Axes-1:0] position_o,
+    output logic [12:0] geometry_room_o,
+    output logic [12:0] feed_room_o,
+    output logic [5:0] status_o,  // {door incomplete, ended, feed active, path active, direct, busy}
+    output logic [9:0] fault_o,
+    output logic [15:0] running_o,  // {feed, geometry}
+    output logic [16:0] ratio_o,
+    output logic [31:0] rate_o
 );
   // Host side.
   logic        request;
@@ -90,39 +90,39 @@ module trammel_card #(
   );
 
   // Registers.
-  logic        stream_write;
-  logic [31:0] stream_word;
-  logic        door_ready;
-  logic        door_refuse;
-  logic [ 7:0] door_reason;
-  logic [ 7:0] door_number;
-  logic        door_partial;
-  logic        abort;
-  logic        flush;
-  logic        start;
-  logic [ 7:0] start_mask;
-  logic        start_done;
-  logic        start_error;
-  logic [ 7:0] start_reason;
-  logic [ 7:0] loader_address;
-  logic [31:0] loader_data;
-  logic        hold;
-  logic [16:0] target;
-  logic [27:0] slew;
-  logic [15:0] hold_limit;
+  logic               stream_write;
+  logic [       31:0] stream_word;
+  logic               door_ready;
+  logic               door_refuse;
+  logic [        7:0] door_reason;
+  logic [        7:0] door_number;
+  logic               door_partial;
+  logic               abort;
+  logic               flush;
+  logic               start;
+  logic [        7:0] start_mask;
+  logic               start_done;
+  logic               start_error;
+  logic [        7:0] start_reason;
+  logic [        7:0] loader_address;
+  logic [       31:0] loader_data;
+  logic               hold;
+  logic [       16:0] target;
+  logic [       27:0] slew;
+  logic [       15:0] hold_limit;
   logic [16*Axes-1:0] step_length;
   logic [16*Axes-1:0] step_space;
   logic [16*Axes-1:0] dir_setup;
   logic [16*Axes-1:0] dir_hold;
-  logic [4*Axes-1:0] mode;
-  logic [Axes-1:0] step_fault;
-  logic [ 1:0] sequencer_fault;
-  logic [ 9:0] clear_fault;
-  logic        busy;
-  logic        direct;
-  logic        path_active;
-  logic        feed_active;
-  logic        ended;
+  logic [ 4*Axes-1:0] mode;
+  logic [   Axes-1:0] step_fault;
+  logic [        1:0] sequencer_fault;
+  logic [        9:0] clear_fault;
+  logic               busy;
+  logic               direct;
+  logic               path_active;
+  logic               feed_active;
+  logic               ended;
 
   register_file #(
       .Axes         (Axes),
@@ -185,7 +185,7 @@ module trammel_card #(
 
   // The bits of absent axes and of the sequencer's own faults, which are pulses.
   logic unused;
-  assign unused = &{1'b0, clear_fault[9:Axes]};
+  assign unused   = &{1'b0, clear_fault[9:Axes]};
 
   assign status_o = {door_partial, ended, feed_active, path_active, direct, busy};
 

@@ -78,15 +78,16 @@ class FeedGenerator {
 
   // The rate stays what it is for the rest of the piece: ticks can be counted in closed form.
   bool constant() const { return constant_ && slope_ != 0; }
-  // Ticks that the next `enables` enabled clocks give, and the enabled clocks until `ticks` more are given, the last one
-  // included; only while constant(). Results are below 2^64: enables < 2^64, ticks < 2^60 * rate.
+  // Ticks that the next `enables` enabled clocks give, and the enabled clocks until `ticks` more are given, the last
+  // one included; only while constant(). Results are below 2^64: enables < 2^64, ticks < 2^60 * rate.
   std::uint64_t ticks_in(std::uint64_t enables) const {
     return static_cast<std::uint64_t>((phase_ + uint128{enables} * slope_) >> 48);
   }
   std::uint64_t enables_for(std::uint64_t ticks) const {
     return static_cast<std::uint64_t>(((uint128{ticks} << 48) - phase_ + slope_ - 1) / slope_);
   }
-  // `enables` enabled clocks whose ticks are the caller's to count and do not appear; only while quiet() and constant().
+  // `enables` enabled clocks whose ticks are the caller's to count and do not appear; only while quiet() and
+  // constant().
   void leap(std::uint64_t enables) {
     phase_ = static_cast<std::uint64_t>((phase_ + uint128{enables} * slope_) & (kOne - 1));
     count_ = static_cast<std::uint32_t>((count_ + enables) % kUpdateClocks);
@@ -98,7 +99,6 @@ class FeedGenerator {
   std::uint64_t slope() const { return slope_; }
 
  private:
-
   struct Piece {
     std::uint64_t rate = 0;
     std::uint64_t acceleration = 0;  // two's complement
