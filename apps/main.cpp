@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
+#include "compare_command.hpp"
 #include "errors.hpp"
 #include "info_command.hpp"
 #include "line_command.hpp"
@@ -33,6 +34,7 @@ int main(int argc, char** argv) {
   trammel::app::add_steps_command(app);
   trammel::app::add_methods_command(app);
   trammel::app::add_reproduce_command(app);
+  trammel::app::add_compare_command(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

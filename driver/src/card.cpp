@@ -92,11 +92,6 @@ Status status_of(std::uint32_t value) {
   return status;
 }
 
-// Shortest distance of two pulses for the raw settings, of which 0 counts as 1.
-std::uint32_t pulse_period(std::uint32_t step_length, std::uint32_t step_space) {
-  return std::max<std::uint32_t>(step_length, 1) + std::max<std::uint32_t>(step_space, 1);
-}
-
 }  // namespace
 
 Card Card::open(Bus& bus) {
@@ -124,7 +119,7 @@ Card Card::open(Bus& bus) {
   card.timing_.axes = identification.axes;
   for (unsigned axis = 0; axis < identification.axes; ++axis) {
     const std::uint32_t step_length = bus.read(reg::step_length(axis));
-    card.timing_.pulse_period[axis] = pulse_period(step_length, bus.read(reg::step_space(axis)));
+    card.timing_.pulse_period[axis] = shortest_pulse_period(step_length, bus.read(reg::step_space(axis)));
   }
   return card;
 }
@@ -154,7 +149,7 @@ void Card::configure_axis(unsigned axis, const AxisSettings& settings) {
   } catch (const BusError& error) {
     throw_refusal(error, fmt::format("axis {}: settings", axis));
   }
-  timing_.pulse_period[axis] = pulse_period(words[0], words[1]);
+  timing_.pulse_period[axis] = shortest_pulse_period(words[0], words[1]);
 }
 
 void Card::set_ratio(std::uint32_t ratio) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "trammel/driver/arc.hpp"
+#include "trammel/driver/card.hpp"
 #include "trammel/driver/profile.hpp"
 
 namespace trammel::driver {
@@ -32,8 +33,8 @@ struct PathLimits {
 // Pulses/s that an axis may make: its own limit, and what its pulse shape allows.
 double axis_velocity(const PathContext& context, std::size_t axis) {
   const MachineAxis& settings = context.machine.axes[axis];
-  const double clocks = std::max<double>(1, clocks_from_ns(settings.step_length_ns, context.clock_hz)) +
-                        std::max<double>(1, clocks_from_ns(settings.step_space_ns, context.clock_hz));
+  const double clocks = shortest_pulse_period(clocks_from_ns(settings.step_length_ns, context.clock_hz),
+                                              clocks_from_ns(settings.step_space_ns, context.clock_hz));
   return std::min(settings.max_velocity * settings.steps_per_mm, kShaperShare * context.clock_hz / clocks);
 }
 

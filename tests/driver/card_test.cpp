@@ -42,8 +42,8 @@ TEST(CardOpen, ReadsWhoTheCardIsInThisOrderAndWritesNothing) {
   EXPECT_EQ(card.identification().engines, 0x13U);
   EXPECT_EQ(card.identification().geometry_depth, 4096U);
   EXPECT_EQ(card.identification().feed_depth, 2560U);
-  EXPECT_EQ(card.timing().pulse_period[0], 2U);
-  EXPECT_EQ(card.timing().pulse_period[1], 500U);
+  EXPECT_EQ(card.timing().pulse_period[0], 7U);
+  EXPECT_EQ(card.timing().pulse_period[1], 506U);
 }
 
 TEST(CardOpen, AsksNothingMoreOfWhatIsNotACard) {
@@ -125,7 +125,7 @@ TEST_F(CardTest, SettingsOfAnAxisAreOneBlockWithTimesRoundedUp) {
   EXPECT_CALL(bus_, block(reg::step_length(2), ElementsAre(3U, 3U, 1U, 65535U, 2U | field::kModeInvertSecond),
                           Addressing::kIncrementing));
   card_.configure_axis(2, settings);
-  EXPECT_EQ(card_.timing().pulse_period[2], 6U);
+  EXPECT_EQ(card_.timing().pulse_period[2], 12U);
 }
 
 TEST_F(CardTest, BadArgumentsNeverReachTheBus) {

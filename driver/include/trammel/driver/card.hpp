@@ -34,9 +34,16 @@ struct Identification {
 struct CardTiming {
   std::uint32_t clock_hz = 0;
   unsigned axes = 0;
-  // Shortest distance of two leading edges of an axis, clocks: step length + step space, each at least 1.
+  // Shortest distance of two leading edges of an axis, clocks: shortest_pulse_period() of its settings.
   std::array<std::uint32_t, kMaxAxes> pulse_period{};
 };
+
+// Shortest distance of two leading edges for the raw settings of an axis, clocks. The step shaper turns over from phase
+// to phase in 6 clocks beyond the times themselves, and a length of 0 counts as 1 (docs/developer/architecture.md).
+constexpr std::uint32_t shortest_pulse_period(std::uint32_t step_length, std::uint32_t step_space) {
+  constexpr std::uint32_t kTurnover = 6;
+  return (step_length == 0 ? 1 : step_length) + step_space + kTurnover;
+}
 
 enum class StepMode : std::uint8_t { kStepDirection = 0, kUpDown = 1, kQuadrature = 2 };
 

@@ -40,21 +40,21 @@ enum class EngineKind { kRtl, kModel };
 
 struct EngineOptions {
   EngineKind kind = EngineKind::kRtl;
-  unsigned axes = 4;                       // 1 .. 8
-  std::uint32_t clock_hz = 1'000'000;      // what the card says of itself; 1 cycle is 1 / clock_hz seconds
-  std::optional<std::string> trace;        // FST file, kRtl only
-  std::uint64_t seed = 1;                  // named in the report of a mismatch
+  unsigned axes = 4;                   // 1 .. 8
+  std::uint32_t clock_hz = 1'000'000;  // what the card says of itself; 1 cycle is 1 / clock_hz seconds
+  std::optional<std::string> trace;    // FST file, kRtl only
+  std::uint64_t seed = 1;              // named in the report of a mismatch
 };
 
 // A card on a simulated bus: the driver's Bus, with wait() running clocks. A mismatch throws lockstep::Mismatch out
 // of the access during which it was found.
 class Engine : public driver::Bus {
  public:
-  virtual void set_sink(StepSink* sink) = 0;               // nullptr: none; not owned
-  virtual std::uint64_t cycles() const = 0;                // clocks since reset
+  virtual void set_sink(StepSink* sink) = 0;                         // nullptr: none; not owned
+  virtual std::uint64_t cycles() const = 0;                          // clocks since reset
   virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
-  virtual std::uint64_t comparisons() const = 0;           // signals compared
-  virtual std::vector<std::int64_t> positions() const = 0; // pulses, by axis, as the position counters have them
+  virtual std::uint64_t comparisons() const = 0;                     // signals compared
+  virtual std::vector<std::int64_t> positions() const = 0;  // pulses, by axis, as the position counters have them
 };
 
 // Throws std::invalid_argument for options out of range.

@@ -1,0 +1,19 @@
+// The picture of a comparison: how far each method is from the curve along the way, its step intervals, and the
+// vibration of the simulated motors over speed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compare_report.hpp"
+#include "trammel/model/measure/ideal_curve.hpp"
+#include "trammel/model/measure/trace.hpp"
+
+namespace trammel::app {
+
+// `traces` in the order of comparison.methods. An SVG below 5 MB, whatever the curve. Throws std::runtime_error when
+// the file cannot be written.
+void write_comparison_svg(const Comparison& comparison, const std::vector<model::measure::Trace>& traces,
+                          const model::measure::IdealCurve& curve, const std::string& file);
+
+}  // namespace trammel::app
