@@ -32,12 +32,13 @@ struct Chapter {
   double share;  // of the time of all
 };
 
-constexpr std::array<Chapter, 7> kChapters{{{"STEER's tables", 0, reproduce::steer_tables, 0.01},
+constexpr std::array<Chapter, 8> kChapters{{{"STEER's tables", 0, reproduce::steer_tables, 0.01},
                                             {"STEER's circles", 0, reproduce::steer_circles, 0.25},
                                             {"STEER's program", 0, reproduce::steer_program, 0.01},
                                             {"one-shot lines", 1, reproduce::one_shot_lines, 0.02},
                                             {"one-shot waveforms", 1, reproduce::one_shot_waves, 0.01},
-                                            {"one-shot bound", 1, reproduce::one_shot_bound, 0.5},
+                                            {"motors", 1, reproduce::one_shot_motor, 0.1},
+                                            {"one-shot bound", 1, reproduce::one_shot_bound, 0.4},
                                             {"lines on the card", 1, reproduce::one_shot_card, 0.2}}};
 
 std::string cell(std::string text) {
@@ -52,9 +53,10 @@ void write_entry_page(const std::filesystem::path& folder, const std::vector<Pag
       "wrote these pages. PASS: as the paper has it. CORRECTED: the paper is wrong or silent there, and what is right\n"
       "was found again. FAIL: neither; the command then ends with status 1.\n";
   for (const Page& page : pages) {
-    text += fmt::format("\n## [{}]({})\n\n{} PASS, {} CORRECTED, {} FAIL\n\n| item | verdict | paper | found |\n|---|---|---|---|\n",
-                        page.title(), page.file(), page.count(Verdict::kPass), page.count(Verdict::kCorrected),
-                        page.count(Verdict::kFail));
+    text += fmt::format(
+        "\n## [{}]({})\n\n{} PASS, {} CORRECTED, {} FAIL\n\n| item | verdict | paper | found |\n|---|---|---|---|\n",
+        page.title(), page.file(), page.count(Verdict::kPass), page.count(Verdict::kCorrected),
+        page.count(Verdict::kFail));
     for (const reproduce::Item& item : page.items()) {
       text += fmt::format("| {} | {} | {} | {} |\n", cell(item.what), name_of(item.verdict), cell(item.paper),
                           cell(item.found));
@@ -77,8 +79,7 @@ void execute(const Options& options) {
   double done = 0;
   for (const Chapter& chapter : kChapters) {
     bar.show(done, chapter.name);
-    chapter.make(pages[chapter.page],
-                 [&](double part) { bar.show(done + part * chapter.share, chapter.name); });
+    chapter.make(pages[chapter.page], [&](double part) { bar.show(done + part * chapter.share, chapter.name); });
     done += chapter.share;
   }
   bar.show(1, "done");

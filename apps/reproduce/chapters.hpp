@@ -27,6 +27,7 @@ void steer_program(Page& page, const Progress& progress);
 // Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm".
 void one_shot_lines(Page& page, const Progress& progress);
 void one_shot_waves(Page& page, const Progress& progress);
+void one_shot_motor(Page& page, const Progress& progress);
 void one_shot_bound(Page& page, const Progress& progress);
 void one_shot_card(Page& page, const Progress& progress);
 

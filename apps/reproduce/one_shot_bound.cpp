@@ -17,7 +17,7 @@ using namespace model::interpolation;
 constexpr int kLines = 1'000'000;
 
 struct Bounds {
-  std::int64_t over = 0;      // positions at a distance of one pulse or more along the shorter axis
+  std::int64_t over = 0;  // positions at a distance of one pulse or more along the shorter axis
   std::int64_t wrong_end = 0;
   std::int64_t positions = 0;
   double along = 0;  // largest distance along the shorter axis
@@ -43,7 +43,8 @@ void take(Bounds& bounds, const Line& line, std::uint64_t clocks) {
   if (walk.position() != line.end || walk.time() > clocks) ++bounds.wrong_end;
   const auto d = static_cast<double>(largest);
   bounds.along = std::max(bounds.along, d / static_cast<double>(longer));
-  bounds.perpendicular = std::max(bounds.perpendicular, d / std::hypot(static_cast<double>(dx), static_cast<double>(dy)));
+  bounds.perpendicular =
+      std::max(bounds.perpendicular, d / std::hypot(static_cast<double>(dx), static_cast<double>(dy)));
 }
 
 void random_lines(Page& page, const Progress& progress) {

@@ -68,7 +68,8 @@ void Page::add(Item item) {
   fmt::print("{:<10} {}: {}\n", name_of(item.verdict), item.what, item.found);
   if (item.verdict != Verdict::kPass) fmt::print("{:<10} the paper: {}\n", "", item.paper);
   std::fflush(stdout);
-  body_ += fmt::format("\n**{}** {}. Paper: {}. Found: {}.\n", name_of(item.verdict), item.what, item.paper, item.found);
+  body_ +=
+      fmt::format("\n**{}** {}. Paper: {}. Found: {}.\n", name_of(item.verdict), item.what, item.paper, item.found);
   items_.push_back(std::move(item));
 }
 

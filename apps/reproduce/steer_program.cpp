@@ -1,4 +1,6 @@
 // Goldberg & Goldberg: the delay and its ramp, and what a gradient of zero does to lines.
+#include "trammel/model/interpolation/steer_program.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,7 +9,6 @@
 #include "chapters.hpp"
 #include "picture.hpp"
 #include "trammel/model/interpolation/steer_delay.hpp"
-#include "trammel/model/interpolation/steer_program.hpp"
 
 namespace trammel::app::reproduce {
 namespace {
@@ -38,7 +39,8 @@ void delay_list(Page& page) {
   const std::int32_t slow = SteerDelay(600).delay().value_or(0);
   const std::int32_t fast = SteerDelay(300).delay().value_or(0);
   page.corrected("Feedrate", "the speed; about steps a minute",
-                 fmt::format("a larger number is a longer delay: {} passes at 600, {} at 300", slow, fast), slow > fast);
+                 fmt::format("a larger number is a longer delay: {} passes at 600, {} at 300", slow, fast),
+                 slow > fast);
   unsigned endless = 0;
   for (const std::int32_t feedrate : {0, 1, 29}) {
     SteerDelay small(feedrate);

@@ -49,9 +49,22 @@ void table_one(Page& page) {
 void table_two(Page& page) {
   page.heading("Table 2: the 16 entries");
   // As printed, rows D F DX DY from 0000 to 1111.
-  constexpr std::array<std::array<int, 2>, 16> kPrinted{{{0, -1}, {-1, 0}, {1, 0},  {0, 1}, {1, 0}, {0, -1},
-                                                         {0, 1},  {-1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 0},
-                                                         {0, 1},  {1, 0},  {-1, 0}, {0, -1}}};
+  constexpr std::array<std::array<int, 2>, 16> kPrinted{{{0, -1},
+                                                         {-1, 0},
+                                                         {1, 0},
+                                                         {0, 1},
+                                                         {1, 0},
+                                                         {0, -1},
+                                                         {0, 1},
+                                                         {-1, 0},
+                                                         {-1, 0},
+                                                         {0, 1},
+                                                         {0, -1},
+                                                         {1, 0},
+                                                         {0, 1},
+                                                         {1, 0},
+                                                         {-1, 0},
+                                                         {0, -1}}};
   Csv csv("d,f,a,b,x_step,y_step,turns,side");
   unsigned equal = 0;
   unsigned counter_clockwise_at_zero = 0;
