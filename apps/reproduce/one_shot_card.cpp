@@ -144,6 +144,7 @@ struct Totals {
   unsigned ends = 0;
   unsigned formula = 0;
   unsigned bound = 0;
+  unsigned equal = 0;  // errors, to three decimals, to those of exact arithmetic
   double lag = 0;
   double interval_difference = 0;  // of the pulses at the pins, without each axis's first interval
   double forward_first = 0;        // how much shorter an axis's first interval is than its next ones
@@ -171,6 +172,7 @@ void lines_on_card(Page& page, const Progress& progress) {
     totals.ends += ends_exactly(line, run) && track.back().position == line.end && track.back().time <= kPaperClocks;
     totals.formula += follows_formula(line, run, track);
     totals.bound += largest <= std::sqrt(2.0) * (0.5 + std::ldexp(static_cast<double>(kPaperClocks), -41));
+    totals.equal += std::fabs(largest - largest_distance(line, exact)) < 0.0005;
     totals.lag = std::max(totals.lag, largest_lag(track, exact));
     totals.clocks += run.clocks;
     for (unsigned a = 0; a < 2; ++a) {
@@ -202,7 +204,10 @@ void lines_on_card(Page& page, const Progress& progress) {
             totals.formula == 8 && totals.lag <= 1);
   page.table(rows);
   page.pass("Error on the card", "below 1 pulse",
-            fmt::format("{} of 8 within sqrt(2) (1/2 + L / 2^41), perpendicular", totals.bound), totals.bound == 8);
+            fmt::format("{} of 8 within sqrt(2) (1/2 + L / 2^41), perpendicular, and {} of 8 errors equal to those of "
+                        "exact arithmetic to three decimals",
+                        totals.bound, totals.equal),
+            totals.bound == 8 && totals.equal == 8);
   // After reset DIR says forward, and the shaper turns it round before an axis's first pulse backward: a few clocks, at
   // the pin alone.
   page.corrected("Velocities on the card", "both velocities stay the same",
