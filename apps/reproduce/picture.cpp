@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace trammel::app::reproduce {
@@ -54,10 +55,10 @@ std::string axes(const Frame& frame) {
   std::string out = fmt::format(
       "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" stroke=\"#bbb\"/>\n", left, top,
       right - left, bottom - top);
-  out += label(left, bottom + 14, "start", fmt::format("{:g}", frame.low(0)));
-  out += label(right, bottom + 14, "end", fmt::format("{:g}", frame.high(0)));
-  out += label(left - 4, bottom, "end", fmt::format("{:g}", frame.low(1)));
-  out += label(left - 4, top + 10, "end", fmt::format("{:g}", frame.high(1)));
+  out += label(left, bottom + 14, "start", fmt::format("{:g}", std::round(10 * frame.low(0)) / 10));
+  out += label(right, bottom + 14, "end", fmt::format("{:g}", std::round(10 * frame.high(0)) / 10));
+  out += label(left - 4, bottom, "end", fmt::format("{:g}", std::round(10 * frame.low(1)) / 10));
+  out += label(left - 4, top + 10, "end", fmt::format("{:g}", std::round(10 * frame.high(1)) / 10));
   return out;
 }
 
