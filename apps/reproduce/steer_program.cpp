@@ -55,7 +55,7 @@ void delay_list(Page& page) {
   for (int i = 0; i < 5; ++i) after.delay();
   page.corrected("Ramp of a circle", "a ramp allows for inertia at the start-up",
                  fmt::format("the line routine alone arms it: a circle starts with drag {}, or {} after a line of 5 "
-                             "steps; on this card every path starts through the same ramp",
+                             "steps",
                              circle.drag(), after.drag()),
                  circle.drag() == 0 && after.drag() == 85);
 }
