@@ -9,6 +9,7 @@
 #include "info_command.hpp"
 #include "line_command.hpp"
 #include "methods_command.hpp"
+#include "reproduce_command.hpp"
 #include "run_command.hpp"
 #include "steps_command.hpp"
 #include "trammel/driver/gcode.hpp"
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   trammel::app::add_info_command(app);
   trammel::app::add_steps_command(app);
   trammel::app::add_methods_command(app);
+  trammel::app::add_reproduce_command(app);
   trammel::app::add_compare_command(app);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,90 @@
+// The two papers, a function for each group of tables, figures and claims, in the order of the pages; and what the
+// chapters share. Units: pulses.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "page.hpp"
+#include "picture.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/model/interpolation/any_interpolator.hpp"
+
+namespace trammel::app::reproduce {
+
+// Tells how much of a chapter is done, 0 .. 1.
+using Progress = std::function<void(double)>;
+
+// Goldberg & Goldberg, "XY Interpolation Algorithms".
+void steer_tables(Page& page, const Progress& progress);
+void steer_circles(Page& page, const Progress& progress);
+void steer_program(Page& page, const Progress& progress);
+// Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm".
+void one_shot_lines(Page& page, const Progress& progress);
+void one_shot_waves(Page& page, const Progress& progress);
+void one_shot_motor(Page& page, const Progress& progress);
+void one_shot_bound(Page& page, const Progress& progress);
+void one_shot_card(Page& page, const Progress& progress);
+
+// Lines 1 to 8 of the second paper: x and y of the start, x and y of the end.
+inline constexpr std::array<std::array<std::int64_t, 4>, 8> kPaperLines{{{0, 0, 20, 40},
+                                                                         {10, 10, 40, 20},
+                                                                         {10, -10, 40, -20},
+                                                                         {-10, 10, -40, 20},
+                                                                         {-10, -10, -40, -40},
+                                                                         {-10, -5, 30, 20},
+                                                                         {7, -2, -32, -38},
+                                                                         {-10, 20, 30, 20}}};
+// 10 MHz and 5,000 lines a second.
+inline constexpr std::uint64_t kPaperClocks = 2000;
+
+inline model::interpolation::Line paper_line(std::size_t index) {
+  const auto& l = kPaperLines[index];
+  return model::interpolation::make_line({l[0], l[1]}, {l[2], l[3]});
+}
+
+// Perpendicular distance from a line of length > 0.
+inline double distance(const model::interpolation::Line& line, const model::interpolation::Position& p) {
+  const auto dx = static_cast<double>(line.end[0] - line.start[0]);
+  const auto dy = static_cast<double>(line.end[1] - line.start[1]);
+  const auto x = static_cast<double>(p[0] - line.start[0]);
+  const auto y = static_cast<double>(p[1] - line.start[1]);
+  return std::fabs(dx * y - dy * x) / std::hypot(dx, dy);
+}
+
+// Where a path is after all steps of a clock (or, without clocks, of a step).
+struct TrackPoint {
+  std::uint64_t time;
+  model::interpolation::Position position;
+};
+using Track = std::vector<TrackPoint>;
+
+// From the start on; one_shot methods at 10 MHz and 5,000 lines a second.
+Track track_of(model::interpolation::Method method, const model::interpolation::Line& line);
+double largest_distance(const model::interpolation::Line& line, const Track& track);
+// A panel of Figure 3: the line, the band of one pulse and the track.
+Panel line_panel(std::size_t index, const Track& track, const std::string& label);
+
+// When an axis pulses, in clocks; `period` is the length of one unit of the track's time.
+std::vector<double> pulse_times(const Track& track, std::size_t axis, double period);
+// Shortest and longest interval of two pulses.
+struct Spread {
+  double least = 0;
+  double largest = 0;
+};
+Spread spread_of(const std::vector<double>& times);
+
+// The timing of a card at 10 MHz with which the papers' lines are planned.
+driver::CardTiming paper_card();
+
+// Uniform from low to high, the same with every standard library. The modulo's bias is below 2^-40 here.
+inline std::int64_t uniform(std::mt19937_64& random, std::int64_t low, std::int64_t high) {
+  return low + static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(high - low + 1));
+}
+
+}  // namespace trammel::app::reproduce

@@ -1,0 +1,284 @@
+// Lines 1 to 8 and the line of Figure 4 on the Verilated card, in direct mode at 10 MHz: what the hardware does.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "chapters.hpp"
+#include "picture.hpp"
+#include "trammel/driver/one_shot.hpp"
+#include "trammel/sim/engine.hpp"
+
+namespace trammel::app::reproduce {
+
+using namespace model::interpolation;
+
+driver::CardTiming paper_card() {
+  driver::CardTiming timing;
+  timing.clock_hz = 10'000'000;
+  timing.axes = 2;
+  // A clock of pulse and one of space.
+  timing.pulse_period.fill(2);
+  return timing;
+}
+
+namespace {
+
+constexpr unsigned kFractionBits = 40;  // of the card's frequencies
+
+class Steps final : public sim::StepSink {
+ public:
+  void pin_step(const sim::PinStep& step) override { pins.push_back(step); }
+  void path_step(const sim::PathStep& step) override { path.push_back(step); }
+  std::vector<sim::PinStep> pins;
+  std::vector<sim::PathStep> path;
+};
+
+struct CardRun {
+  Steps steps;
+  driver::OneShotPart part;
+  std::vector<std::int64_t> counters;  // the card's positions at the end
+  std::uint64_t clocks = 0;            // in lockstep with the golden model
+  std::uint64_t line_cycles = 0;       // from the start until the card was found idle
+};
+
+driver::Displacement displacement_of(const Line& line) {
+  driver::Displacement displacement{};
+  for (std::size_t a = 0; a < 2; ++a) displacement[a] = line.end[a] - line.start[a];
+  return displacement;
+}
+
+// Runs a line of 2,000 clocks; with `hold`, the time base is ramped to a stop in the middle of it and up again.
+CardRun run_on_card(const Line& line, bool hold) {
+  sim::EngineOptions options;
+  options.kind = sim::EngineKind::kRtl;
+  options.axes = 4;
+  options.clock_hz = 10'000'000;
+  const auto engine = sim::make_engine(options);
+  driver::Card card = driver::Card::open(*engine);
+  CardRun run;
+  run.part = driver::plan_line_clocks(card.timing(), displacement_of(line), kPaperClocks).part(0);
+  if (hold) card.set_slew_time(std::chrono::microseconds(100));
+  engine->set_sink(&run.steps);
+  const std::uint64_t before = engine->cycles();
+  driver::start_line(card, run.part);
+  if (hold) {
+    engine->wait(300);
+    card.set_hold(true);
+    engine->wait(3000);
+    card.set_hold(false);
+  }
+  engine->wait(kPaperClocks);
+  card.wait_until_idle(std::chrono::milliseconds(10));
+  run.line_cycles = engine->cycles() - before;
+  engine->set_sink(nullptr);
+  card.throw_if_faulted(card.status(), "line of the paper");
+  run.counters = engine->positions();
+  run.clocks = engine->lockstep_cycles().value_or(0);
+  return run;
+}
+
+// The path from its steps, at the ticks of the path: an enabled clock each.
+Track track_of_card(const Line& line, const CardRun& run) {
+  Track track{{0, line.start}};
+  for (const sim::PathStep& step : run.steps.path) {
+    TrackPoint next = track.back();
+    if (step.tick != next.time) {
+      next.time = step.tick;
+      track.push_back(next);
+    }
+    track.back().position[step.axis] += step.direction;
+  }
+  return track;
+}
+
+// The pulses at the pins, in clocks from the first clock of the line, given its first tick's clock.
+std::vector<double> pin_times(const CardRun& run, unsigned axis) {
+  std::vector<double> times;
+  for (const sim::PinStep& step : run.steps.pins) {
+    if (step.axis == axis) times.push_back(static_cast<double>(step.cycle));
+  }
+  return times;
+}
+
+// floor(1/2 + k * frequency / 2^40), the card's formula, at every point of the track.
+bool follows_formula(const Line& line, const CardRun& run, const Track& track) {
+  for (const TrackPoint& point : track) {
+    for (std::size_t a = 0; a < 2; ++a) {
+      const std::uint64_t half = std::uint64_t{1} << (kFractionBits - 1);
+      // 2,000 clocks of at most one pulse: below 2^52.
+      const std::uint64_t made = (half + point.time * run.part.frequency[a]) >> kFractionBits;
+      if (static_cast<std::uint64_t>(std::abs(point.position[a] - line.start[a])) != made) return false;
+    }
+  }
+  return true;
+}
+
+// The largest difference of the clocks at which an axis makes the same pulse on the card and in exact arithmetic.
+double largest_lag(const Track& card, const Track& exact) {
+  double lag = 0;
+  for (std::size_t a = 0; a < 2; ++a) {
+    const std::vector<double> one = pulse_times(card, a, 1);
+    const std::vector<double> other = pulse_times(exact, a, 1);
+    if (one.size() != other.size()) return static_cast<double>(kPaperClocks);
+    for (std::size_t i = 0; i < one.size(); ++i) lag = std::max(lag, std::fabs(one[i] - other[i]));
+  }
+  return lag;
+}
+
+bool ends_exactly(const Line& line, const CardRun& run) {
+  std::array<std::int64_t, 2> at_pins{};
+  for (const sim::PinStep& step : run.steps.pins) at_pins[step.axis] += step.direction;
+  for (std::size_t a = 0; a < 2; ++a) {
+    const std::int64_t p = line.end[a] - line.start[a];
+    if (run.counters[a] != p || at_pins[a] != p) return false;
+  }
+  return true;
+}
+
+struct Totals {
+  unsigned ends = 0;
+  unsigned formula = 0;
+  unsigned bound = 0;
+  unsigned equal = 0;  // errors, to three decimals, to those of exact arithmetic
+  double lag = 0;
+  double interval_difference = 0;  // of the pulses at the pins, without each axis's first interval
+  double forward_first = 0;        // how much shorter an axis's first interval is than its next ones
+  double backward_first = 0;       // the same where the axis starts in the negative direction
+  std::uint64_t clocks = 0;
+};
+
+void lines_on_card(Page& page, const Progress& progress) {
+  page.heading("Lines 1 to 8 on the card");
+  page.text(
+      "The Verilated card in lockstep with its golden model, direct mode, 10 MHz, 2,000 clocks a line. Its "
+      "frequencies are rounded to 2^-40 pulses a clock, so where exact arithmetic has a tie, a step comes a "
+      "clock later or at the same time.");
+  Csv csv("line,tick,x,y,distance");
+  Csv pins("line,axis,direction,clock");
+  std::vector<Panel> panels;
+  std::vector<std::vector<std::string>> rows{{"line", "pulses x, y", "card, pulses", "exact arithmetic, pulses"}};
+  Totals totals;
+  for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
+    const Line line = paper_line(i);
+    const CardRun run = run_on_card(line, false);
+    const Track track = track_of_card(line, run);
+    const Track exact = track_of(Method::kOneShot, line);
+    const double largest = largest_distance(line, track);
+    totals.ends += ends_exactly(line, run) && track.back().position == line.end && track.back().time <= kPaperClocks;
+    totals.formula += follows_formula(line, run, track);
+    totals.bound += largest <= std::sqrt(2.0) * (0.5 + std::ldexp(static_cast<double>(kPaperClocks), -41));
+    totals.equal += std::fabs(largest - largest_distance(line, exact)) < 0.0005;
+    totals.lag = std::max(totals.lag, largest_lag(track, exact));
+    totals.clocks += run.clocks;
+    for (unsigned a = 0; a < 2; ++a) {
+      const std::vector<double> times = pin_times(run, a);
+      if (times.size() < 3) continue;
+      const Spread spread = spread_of({times.begin() + 1, times.end()});
+      totals.interval_difference = std::max(totals.interval_difference, spread.largest - spread.least);
+      double& first = line.end[a] < line.start[a] ? totals.backward_first : totals.forward_first;
+      first = std::max(first, spread.largest - (times[1] - times[0]));
+    }
+    for (const TrackPoint& p : track) {
+      csv.row("{},{},{},{},{:.4f}", i + 1, p.time, p.position[0], p.position[1], distance(line, p.position));
+    }
+    const std::uint64_t first = run.steps.pins.front().cycle;
+    for (const sim::PinStep& step : run.steps.pins) {
+      pins.row("{},{},{},{}", i + 1, step.axis == 0 ? 'x' : 'y', step.direction, step.cycle - first);
+    }
+    rows.push_back({std::to_string(i + 1), fmt::format("{}, {}", run.part.count[0], run.part.count[1]),
+                    fmt::format("{:.3f}", largest), fmt::format("{:.3f}", largest_distance(line, exact))});
+    panels.push_back(line_panel(i, track, "card"));
+    progress(0.8 * static_cast<double>(i + 1) / 8);
+  }
+  page.pass("Figure 3 on the card, end points", "the error of the end point is zero",
+            fmt::format("{} of 8 lines end exactly, at the pins and in the counters", totals.ends), totals.ends == 8);
+  page.pass("Position formula (9), (10) on the card", "x = round(v t / f)",
+            fmt::format("{} of 8 lines at floor(1/2 + k F / 2^40) in every clock, at most {:g} clock from exact "
+                        "arithmetic",
+                        totals.formula, totals.lag),
+            totals.formula == 8 && totals.lag <= 1);
+  page.table(rows);
+  page.pass("Error on the card", "below 1 pulse",
+            fmt::format("{} of 8 within sqrt(2) (1/2 + L / 2^41), perpendicular, and {} of 8 errors equal to those of "
+                        "exact arithmetic to three decimals",
+                        totals.bound, totals.equal),
+            totals.bound == 8 && totals.equal == 8);
+  // After reset DIR says forward, and the shaper turns it round before an axis's first pulse backward: a few clocks, at
+  // the pin alone.
+  page.corrected("Velocities on the card", "both velocities stay the same",
+                 fmt::format("intervals at a pin differ by at most {:g} clock after an axis's first one; the first is "
+                             "up to {:g} clocks shorter on an axis that starts backward, because its first pulse waits "
+                             "for DIR, up to {:g} forward",
+                             totals.interval_difference, totals.backward_first, totals.forward_first),
+                 totals.interval_difference <= 1 && totals.forward_first <= 1 && totals.backward_first <= 8);
+  page.pass("Lockstep", "(no simulation of hardware)",
+            fmt::format("{} clocks compared with the golden model, no mismatch", totals.clocks),
+            totals.clocks > 16'000);
+  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card made them", draw(panels, {4, 250, 250}), csv);
+  page.data("one-shot-card-pins", "Leading edges at the STEP pins, clocks from each line's first", pins);
+}
+
+void wave_on_card(Page& page) {
+  page.heading("Figure 4 (a) on the card");
+  const CardRun run = run_on_card(make_line({0, 0}, {10, 20}), false);
+  Csv csv("axis,pulse,clock");
+  Panel panel{"STEP pins", {}, false};
+  const auto first = static_cast<double>(run.steps.pins.front().cycle);
+  std::array<Spread, 2> spread;
+  for (unsigned a = 0; a < 2; ++a) {
+    std::vector<double> times = pin_times(run, a);
+    spread[a] = spread_of(times);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      times[i] -= first;
+      csv.row("{},{},{:g}", a == 0 ? 'x' : 'y', i + 1, times[i]);
+    }
+    // Leading edges as the card makes them; the drawn width is half an interval for the eye.
+    panel.series.push_back({a == 0 ? "x" : "y", a == 0 ? "#c03" : "#06c",
+                            waveform(times, static_cast<double>(kPaperClocks), a == 0 ? 1.2 : 0.0), 1, false, false});
+  }
+  page.pass("Figure 4 (a) on the card", "the frequency of both axes stays the same",
+            fmt::format("x pulses {:g} to {:g} clocks apart, y {:g} to {:g}", spread[0].least, spread[0].largest,
+                        spread[1].least, spread[1].largest),
+            spread[0].least >= 199 && spread[0].largest <= 201 && spread[1].least >= 99 && spread[1].largest <= 101);
+  page.picture("one-shot-figure-4-card", "Leading edges at the pins of the line (0,0) to (10,20)",
+               draw({panel}, {1, 900, 170}), csv);
+}
+
+void standstill(Page& page) {
+  page.heading("From a standstill");
+  unsigned same = 0;
+  std::uint64_t longest = 0;
+  for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
+    const Line line = paper_line(i);
+    const CardRun held = run_on_card(line, true);
+    const Track straight = track_of_card(line, run_on_card(line, false));
+    const Track ramped = track_of_card(line, held);
+    const auto equal = [](const TrackPoint& a, const TrackPoint& b) {
+      return a.time == b.time && a.position == b.position;
+    };
+    same +=
+        std::equal(straight.begin(), straight.end(), ramped.begin(), ramped.end(), equal) && ends_exactly(line, held);
+    longest = std::max(longest, held.line_cycles);
+  }
+  page.corrected("Constant velocity from a standstill", "full velocity from the first pulse to the last",
+                 fmt::format("no motor can; the card's time base ramps both axes at once: {} of 8 lines that it stops "
+                             "in the middle and starts again ({} clocks) keep their track tick by tick",
+                             same, longest),
+                 same == 8 && longest > 2 * kPaperClocks);
+}
+
+}  // namespace
+
+void one_shot_card(Page& page, const Progress& progress) {
+  lines_on_card(page, progress);
+  wave_on_card(page);
+  progress(0.9);
+  standstill(page);
+}
+
+}  // namespace trammel::app::reproduce

@@ -1,0 +1,110 @@
+// Zeng, Zhang & Huang, Figure 4: the pulses of both methods on the line (0,0) to (10,20), and how even they are.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "chapters.hpp"
+#include "picture.hpp"
+
+namespace trammel::app::reproduce {
+
+using namespace model::interpolation;
+
+std::vector<double> pulse_times(const Track& track, std::size_t axis, double period) {
+  std::vector<double> times;
+  for (std::size_t i = 1; i < track.size(); ++i) {
+    if (track[i].position[axis] == track[i - 1].position[axis]) continue;
+    times.push_back(static_cast<double>(track[i].time) * period);
+  }
+  return times;
+}
+
+Spread spread_of(const std::vector<double>& times) {
+  Spread spread;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double interval = times[i] - times[i - 1];
+    spread.least = i == 1 ? interval : std::min(spread.least, interval);
+    spread.largest = std::max(spread.largest, interval);
+  }
+  return spread;
+}
+
+namespace {
+
+void add_pulses(Csv& csv, Panel& panel, const char* method, const Track& track, double period, double end) {
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const std::vector<double> times = pulse_times(track, axis, period);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      csv.row("{},{},{},{:g}", method, axis == 0 ? 'x' : 'y', i + 1, times[i]);
+    }
+    panel.series.push_back({axis == 0 ? "x" : "y", axis == 0 ? "#c03" : "#06c",
+                            waveform(times, end, axis == 0 ? 1.2 : 0.0), 1, false, false});
+  }
+}
+
+// Over all axes of Lines 1 to 8: the largest difference of two intervals of one axis.
+struct Unevenness {
+  double units = 0;     // of the method's time
+  double relative = 0;  // in the axis's mean interval
+};
+
+Unevenness unevenness(Method method) {
+  Unevenness worst;
+  for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
+    const Track track = track_of(method, paper_line(i));
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const std::vector<double> times = pulse_times(track, axis, 1);
+      if (times.size() < 2) continue;
+      const Spread spread = spread_of(times);
+      const double mean = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+      worst.units = std::max(worst.units, spread.largest - spread.least);
+      worst.relative = std::max(worst.relative, (spread.largest - spread.least) / mean);
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+void one_shot_waves(Page& page, const Progress& progress) {
+  page.heading("Figure 4: waveforms of (0,0) to (10,20)");
+  const Line line = make_line({0, 0}, {10, 20});
+  const Track one_shot = track_of(Method::kOneShot, line);
+  const Track by_point = track_of(Method::kPointByPoint, line);
+  // A step every 100 clocks: y's pulse interval in the one-shot line, the equal velocity of the paper.
+  constexpr double kPeriod = 100;
+  const double end = kPeriod * static_cast<double>(by_point.size() - 1);
+  Csv csv("method,axis,pulse,clock");
+  std::vector<Panel> panels(2);
+  panels[0] = {"(a) one-shot", {}, false};
+  panels[1] = {"(b) point by point", {}, false};
+  add_pulses(csv, panels[0], "one-shot", one_shot, 1, end);
+  add_pulses(csv, panels[1], "point-by-point", by_point, kPeriod, end);
+  const Spread x = spread_of(pulse_times(one_shot, 0, 1));
+  const Spread y = spread_of(pulse_times(one_shot, 1, 1));
+  const Spread other = spread_of(pulse_times(by_point, 1, kPeriod));
+  page.pass("Figure 4 (a)", "the frequency of both axes stays the same",
+            fmt::format("x pulses every {:g} clocks, y every {:g}", x.largest, y.largest),
+            x.least == 200 && x.largest == 200 && y.least == 100 && y.largest == 100);
+  page.pass("Figure 4 (b)", "the frequency of y changes",
+            fmt::format("y pulses {:g} to {:g} clocks apart", other.least, other.largest), other.largest > other.least);
+  page.pass("Figure 4, time", "one-shot takes less time at equal velocity",
+            fmt::format("{} clocks against {:g}", kPaperClocks, end), end == 3000);
+  page.picture("one-shot-figure-4", "Pulses over clocks at 10 MHz, v = 5000", draw(panels, {1, 900, 170}), csv);
+  progress(0.5);
+  const Unevenness even = unevenness(Method::kOneShot);
+  const Unevenness uneven = unevenness(Method::kPointByPoint);
+  page.corrected(
+      "Velocities unchanged", "both velocities stay the same during the line",
+      fmt::format("to within {:g} clock, where f / (v p) is no whole number: over Lines 1 to 8 the intervals "
+                  "of an axis differ by at most {:.1f} % of their mean, by {:.0f} % point by point",
+                  even.units, 100 * even.relative, 100 * uneven.relative),
+      even.units == 1 && even.relative < uneven.relative);
+  page.text(
+      "Not measured: the paper's duty ratio of 50 %. The card's pulse is as long as its step length is set, at any "
+      "frequency; the pictures draw half an interval.");
+}
+
+}  // namespace trammel::app::reproduce

@@ -1,0 +1,82 @@
+// The pages that `trammel reproduce` writes: text, items with their verdicts, tables, pictures with the CSV behind
+// them. Nothing in them changes from run to run. Errors: std::runtime_error when a file cannot be written. Not
+// thread-safe.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace trammel::app::reproduce {
+
+enum class Verdict {
+  kPass,       // as the paper has it
+  kCorrected,  // the paper is wrong or silent here; what is right was found again
+  kFail,       // not what was expected
+};
+
+struct Item {
+  std::string what;
+  std::string paper;  // what the paper prints or says
+  std::string found;
+  Verdict verdict;
+};
+
+const char* name_of(Verdict verdict);
+
+// Lines of comma-separated values with a header.
+class Csv {
+ public:
+  explicit Csv(const std::string& header) : text_(header + "\n") {}
+  template <class... Values>
+  void row(fmt::format_string<Values...> format, Values&&... values) {
+    text_ += fmt::format(format, std::forward<Values>(values)...) + "\n";
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+class Page {
+ public:
+  // Writes `folder`/`file`, with pictures and CSV files in folders beside it.
+  Page(std::filesystem::path folder, std::string file, std::string title);
+
+  void heading(const std::string& text);
+  void text(const std::string& paragraph);
+  // A table: the first row is its head.
+  void table(const std::vector<std::vector<std::string>>& rows);
+  void picture(const std::string& name, const std::string& caption, const std::string& svg, const Csv& csv);
+  // A CSV without a picture of its own.
+  void data(const std::string& name, const std::string& caption, const Csv& csv);
+
+  // The paper's own result, found again when `holds`.
+  void pass(const std::string& what, const std::string& paper, const std::string& found, bool holds);
+  // A place where the paper is wrong or silent; `found` is right when `holds`.
+  void corrected(const std::string& what, const std::string& paper, const std::string& found, bool holds);
+
+  void write() const;
+
+  const std::vector<Item>& items() const { return items_; }
+  std::size_t count(Verdict verdict) const;
+  const std::string& file() const { return file_; }
+  const std::string& title() const { return title_; }
+
+ private:
+  void add(Item item);
+  void file_beside(const std::string& path, const std::string& content) const;
+
+  std::filesystem::path folder_;
+  std::string file_;
+  std::string title_;
+  std::string body_;
+  std::vector<Item> items_;
+};
+
+void write_file(const std::filesystem::path& file, const std::string& content);
+
+}  // namespace trammel::app::reproduce

@@ -1,0 +1,224 @@
+// Goldberg & Goldberg: what becomes of full circles, of starts off the circle, of arcs and of ellipses; Figure 1.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "chapters.hpp"
+#include "picture.hpp"
+#include "trammel/model/interpolation/steer_program.hpp"
+
+namespace trammel::app::reproduce {
+namespace {
+
+using namespace model::interpolation;
+
+const double kTurn = 2 * std::acos(-1.0);
+
+double radius_of(const Point& p) { return std::hypot(static_cast<double>(p.x), static_cast<double>(p.y)); }
+
+void figure_one(Page& page) {
+  page.heading("Figure 1: part of a circle of radius 50");
+  SteerProgram walk({50, 0}, 50, false);
+  Csv csv("step,x,y,f");
+  Series path{"STEER", "#c03", {}, 1.5, false, false};
+  Series ideal{"circle", "#393", {}, 1, true, false};
+  bool unit_steps = true;
+  for (int step = 0; step <= 100; ++step) {
+    const Point at = walk.position();
+    csv.row("{},{},{},{}", step, at.x, at.y, walk.deviation());
+    path.points.push_back({static_cast<double>(at.x), static_cast<double>(at.y)});
+    const Step next = walk.next();
+    unit_steps = unit_steps && next.direction[0] * next.direction[1] == 0;
+  }
+  const Point quarter{static_cast<std::int64_t>(path.points.back()[0]),
+                      static_cast<std::int64_t>(path.points.back()[1])};
+  for (int i = 0; i <= 45; ++i) {
+    const double angle = i * kTurn / 180;
+    ideal.points.push_back({50 * std::cos(angle), 50 * std::sin(angle)});
+  }
+  page.pass("Figure 1", "a ragged path of x and y steps along the circle",
+            fmt::format("a quarter of radius 50 takes 100 unit steps, to ({},{})", quarter.x, quarter.y),
+            unit_steps && quarter == Point{0, 50});
+  page.picture("steer-figure-1", "A quarter of the circle, radius 50",
+               draw({{"radius 50", {ideal, path}, true}}, {1, 480, 480}), csv);
+}
+
+void full_circles(Page& page, const Progress& progress) {
+  page.heading("Full circles");
+  Csv csv("radius,clockwise,steps,least_error,largest_error");
+  unsigned exact = 0;
+  unsigned tried = 0;
+  double least = 0;
+  double largest = 0;
+  double relative_small = 0;
+  double relative_large = 0;
+  for (std::int64_t r = 2; r < 400; ++r) {
+    for (const bool clockwise : {false, true}) {
+      SteerProgram walk({r, 0}, r, clockwise);
+      std::int64_t steps = 0;
+      double low = 0;
+      double high = 0;
+      do {
+        walk.next();
+        const double error = radius_of(walk.position()) - static_cast<double>(r);
+        low = std::min(low, error);
+        high = std::max(high, error);
+        ++steps;
+      } while (!walk.back() && steps < 20 * r);
+      ++tried;
+      if (walk.back() && steps == 8 * r) ++exact;
+      least = std::min(least, low);
+      largest = std::max(largest, high);
+      const double relative = std::max(-low, high) / static_cast<double>(r);
+      if (r == 25) relative_small = relative;
+      if (r == 399) relative_large = relative;
+      csv.row("{},{:d},{},{:.4f},{:.4f}", r, clockwise, steps, low, high);
+    }
+    if (r % 40 == 0) progress(static_cast<double>(r) / 800);
+  }
+  page.pass("Full circles", "circles until it is back at its start",
+            fmt::format("{} of {} (radius 2 to 399, both directions) take exactly 8 r steps", exact, tried),
+            exact == tried && tried == 796);
+  page.pass("Full circles, radius error", "the path follows the circle",
+            fmt::format("from {:.3f} to {:+.3f} pulses, |error| at most 1", least, largest),
+            least >= -1 && largest < 1 && largest > 0.9);
+  page.pass("Raggedness", "greatly decreased in large-diameter circles",
+            fmt::format("largest error {:.2f} % of the radius at 25 pulses, {:.2f} % at 399", 100 * relative_small,
+                        100 * relative_large),
+            relative_large * 10 < relative_small);
+  page.data("steer-full-circles", "Steps and errors of every circle", csv);
+  const auto one = SteerProgram({1, 0}, 1, false).steps_to_return();
+  const auto clockwise_one = SteerProgram({1, 0}, 1, true).steps_to_return();
+  const auto zero = SteerProgram({0, 0}, 0, false).steps_to_return();
+  page.corrected("Radius 1, D = 0", "circles until it is back at its start",
+                 one ? fmt::format("back after {} steps", *one)
+                     : "the walk meets itself without its start: STEER hangs; refused here",
+                 !one);
+  page.corrected("Radius 1, D = 1", "circles until it is back at its start",
+                 fmt::format("back after {} steps, not 8", clockwise_one.value_or(0)), clockwise_one == 6U);
+  page.corrected("Radius 0", "no word on it",
+                 fmt::format("a 2x2 square of points in {} steps instead of none; refused here", zero.value_or(0)),
+                 zero == 4U);
+}
+
+void starts_off(Page& page) {
+  page.heading("Starts off the circle");
+  std::mt19937_64 random(1);
+  Csv csv("radius,x,y,clockwise,steps_to_return");
+  int never = 0;
+  for (int tried = 0; tried < 2000;) {
+    const std::int64_t r = uniform(random, 2, 200);
+    const Point start{uniform(random, -300, 300), uniform(random, -300, 300)};
+    const bool clockwise = uniform(random, 0, 1) != 0;
+    if (start.x * start.x + start.y * start.y == r * r) continue;
+    ++tried;
+    const auto steps = SteerProgram(start, r, clockwise).steps_to_return();
+    if (!steps) ++never;
+    if (steps) csv.row("{},{},{},{:d},{}", r, start.x, start.y, clockwise, *steps);
+  }
+  // The share depends on how starts are drawn; the other count's are not stated, so only "nearly all" is asserted.
+  page.corrected("Start off the circle", "any start is taken",
+                 fmt::format("{} of 2,000 random starts never return (1,974 of 2,000 in an earlier count with other "
+                             "starts): STEER hangs; a radius that does not fit the start cannot be given here",
+                             never),
+                 never > 1900 && never < 2000);
+  page.data("steer-starts-off", "The starts that do return", csv);
+}
+
+// Whether a walk by `Rule` alone meets the end within a turn and a half.
+template <class Rule>
+bool meets(const Point& start, const Point& end, bool clockwise) {
+  Point at = start;
+  const std::int64_t n = start.x * start.x + start.y * start.y;
+  const auto budget = static_cast<std::int64_t>(12 * radius_of(start)) + 12;
+  for (std::int64_t i = 0; i < budget; ++i) {
+    const std::int64_t f = at.x * at.x + at.y * at.y - n;
+    const Step step = Rule::choose(ConicState<std::int64_t>{f, 2 * at.x, 2 * at.y, 1, 1, clockwise});
+    at.x += step.direction[0];
+    at.y += step.direction[1];
+    if (at == end) return true;
+  }
+  return false;
+}
+
+void arcs(Page& page, const Progress& progress) {
+  page.heading("Arcs");
+  constexpr int kArcs = 20000;
+  std::mt19937_64 random(2);
+  int missed_four = 0;
+  int missed_eight = 0;
+  int missed_here = 0;
+  for (int i = 0; i < kArcs; ++i) {
+    const double radius = static_cast<double>(uniform(random, 10'000, 300'000)) / 1000;
+    const double from = static_cast<double>(uniform(random, 0, 999'999)) * kTurn * 1e-6;
+    const double to = static_cast<double>(uniform(random, 0, 999'999)) * kTurn * 1e-6;
+    const bool clockwise = uniform(random, 0, 1) != 0;
+    const Point start{std::llround(radius * std::cos(from)), std::llround(radius * std::sin(from))};
+    const double exact = radius_of(start);
+    const Point end{std::llround(exact * std::cos(to)), std::llround(exact * std::sin(to))};
+    missed_four += !meets<SteerTable>(start, end, clockwise);
+    missed_eight += !meets<MinDeviationRule>(start, end, clockwise);
+    for (const Method method : {Method::kSteer, Method::kMinDeviation8}) {
+      auto walk = make_interpolator(method, Arc{{0, 0}, start, end, clockwise, 0, 0});
+      walk.run([](const Step&, const auto&) {});
+      missed_here += walk.position() != Position{end.x, end.y, 0, 0};
+    }
+    if (i % 1000 == 0) progress(0.5 + 0.5 * i / kArcs);
+  }
+  const double four = 100.0 * missed_four / kArcs;
+  const double eight = 100.0 * missed_eight / kArcs;
+  // The shares depend on how arcs are drawn, and on the 8-direction rule; those of the other count are not stated. So
+  // only this is asserted: that a good part of the ends is missed without the exact-end rule, and none with it.
+  page.corrected("Arcs", "full circles only",
+                 fmt::format("of {} random arcs with a correctly rounded end (radius 10 to 300), a walk by the rule "
+                             "alone misses {:.1f} % in 4 directions (sign of F) and {:.1f} % in 8 (minimum deviation); "
+                             "an earlier count with other arcs had 13.6 % and 12.4 %; with the exact-end rule {} are "
+                             "missed",
+                             kArcs, four, eight, missed_here),
+                 four > 5 && eight > 5 && missed_here == 0);
+}
+
+void ellipse(Page& page) {
+  page.heading("The ellipse");
+  const Arc curve = make_ellipse(60, 25);
+  Csv csv("method,step,x,y");
+  std::vector<Series> series;
+  bool ends = true;
+  double largest = 0;
+  for (const Method method : {Method::kSteer, Method::kMinDeviation8}) {
+    Series path{
+        std::string(info(method).name), method == Method::kSteer ? "#c03" : "#06c", {{60, 0}}, 1.2, false, false};
+    std::uint64_t step = 0;
+    auto walk = make_interpolator(method, curve);
+    walk.run([&](const Step&, const auto& state) {
+      const Position p = state.position();
+      path.points.push_back({static_cast<double>(p[0]), static_cast<double>(p[1])});
+      csv.row("{},{},{},{}", info(method).name, ++step, p[0], p[1]);
+      // F over the gradient's length: the distance to first order.
+      const auto x = static_cast<double>(p[0]);
+      const auto y = static_cast<double>(p[1]);
+      const double f = 625 * x * x + 3600 * y * y - 2'250'000;
+      if (method == Method::kMinDeviation8) largest = std::max(largest, std::fabs(f) / std::hypot(1250 * x, 7200 * y));
+    });
+    ends = ends && walk.position() == Position{60, 0, 0, 0};
+    series.push_back(path);
+  }
+  page.pass(
+      "Extension to the ellipse", "named as possible, not given",
+      fmt::format("semi-axes 60 and 25 by additions alone, back at (60,0); 8 directions within {:.3f} pulses", largest),
+      ends && largest < 0.52);
+  page.picture("steer-ellipse", "An ellipse in 4 and in 8 directions",
+               draw({{"semi-axes 60 and 25", series, true}}, {1, 640, 330}), csv);
+}
+
+}  // namespace
+
+void steer_circles(Page& page, const Progress& progress) {
+  figure_one(page);
+  full_circles(page, progress);
+  starts_off(page);
+  arcs(page, progress);
+  ellipse(page);
+}
+
+}  // namespace trammel::app::reproduce

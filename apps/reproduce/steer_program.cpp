@@ -1,0 +1,112 @@
+// Goldberg & Goldberg: the delay and its ramp, and what a gradient of zero does to lines.
+#include "trammel/model/interpolation/steer_program.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+#include "chapters.hpp"
+#include "picture.hpp"
+#include "trammel/model/interpolation/steer_delay.hpp"
+
+namespace trammel::app::reproduce {
+namespace {
+
+using namespace model::interpolation;
+
+void delay_list(Page& page) {
+  page.heading("The delay and its ramp");
+  const std::vector<std::int32_t> expected{100, 99, 99, 98, 94, 85, 69, 44, 8, 0};
+  SteerDelay delay(300);
+  delay.arm();
+  std::vector<std::int32_t> drags;
+  Series passes{"passes of the loop", "#c03", {}, 2.5, false, true};
+  Csv csv("step,drag,passes");
+  for (int step = 0; step < 20; ++step) {
+    const std::int32_t drag = delay.drag();
+    if (drags.size() < expected.size()) drags.push_back(drag);
+    const std::int32_t taken = delay.delay().value_or(-1);
+    csv.row("{},{},{}", step, drag, taken);
+    passes.points.push_back({static_cast<double>(step), static_cast<double>(taken)});
+  }
+  page.pass("Delay list", "(feedrate + drag) / 30 passes, drag from 100 down",
+            fmt::format("drag {}", fmt::join(drags, " ")), drags == expected);
+  page.corrected("Delay list, its shape", "falls off exponentially (comment)",
+                 "falls by 1, 0, 1, 4, 9, 16, 25, 36: the squares of a count, a cubic", drags == expected);
+  page.picture("steer-delay", "Loop passes before each step of a line, feedrate 300",
+               draw({{"delay", {passes}, false}}, {1, 480, 240}), csv);
+  const std::int32_t slow = SteerDelay(600).delay().value_or(0);
+  const std::int32_t fast = SteerDelay(300).delay().value_or(0);
+  page.corrected("Feedrate", "the speed; about steps a minute",
+                 fmt::format("a larger number is a longer delay: {} passes at 600, {} at 300", slow, fast),
+                 slow > fast);
+  unsigned endless = 0;
+  for (const std::int32_t feedrate : {0, 1, 29}) {
+    SteerDelay small(feedrate);
+    if (small.passes() == 0 && !small.delay()) ++endless;
+  }
+  page.corrected("Feedrate + drag below 30", "no word on it",
+                 fmt::format("0 passes meant, and the loop runs until its int wraps ({} of 3 tried)", endless),
+                 endless == 3 && SteerDelay(30).delay() == 1);
+  SteerDelay circle(300);
+  SteerDelay after(300);
+  after.arm();
+  for (int i = 0; i < 5; ++i) after.delay();
+  page.corrected("Ramp of a circle", "a ramp allows for inertia at the start-up",
+                 fmt::format("the line routine alone arms it: a circle starts with drag {}, or {} after a line of 5 "
+                             "steps",
+                             circle.drag(), after.drag()),
+                 circle.drag() == 0 && after.drag() == 85);
+}
+
+// A line walked by Table 2, F = -dy x + dx y with the gradient (-dy, dx), clockwise: that goes along (dx, dy).
+bool table_two_meets(std::int64_t dx, std::int64_t dy) {
+  Point at{0, 0};
+  for (std::int64_t step = 0; step < 4 * (std::abs(dx) + std::abs(dy)); ++step) {
+    const std::int64_t f = dx * at.y - dy * at.x;
+    const Step next = SteerTable::choose(ConicState<std::int64_t>{f, -dy, dx, 0, 0, true});
+    at.x += next.direction[0];
+    at.y += next.direction[1];
+    if (at == Point{dx, dy}) return true;
+  }
+  return false;
+}
+
+void zero_gradient(Page& page) {
+  page.heading("A gradient of zero");
+  constexpr std::array<std::array<std::int64_t, 2>, 4> kParallel{{{10, 0}, {0, 10}, {-10, 0}, {0, -10}}};
+  unsigned by_table = 0;
+  unsigned by_line_routine = 0;
+  Csv csv("dx,dy,met_by_table_2,met_with_direction_bits");
+  for (const auto& [dx, dy] : kParallel) {
+    const bool met = table_two_meets(dx, dy);
+    SteerLine walk(make_line({0, 0}, {dx, dy}));
+    bool straight = true;
+    while (!walk.done()) {
+      walk.next();
+      const Position p = walk.position();
+      straight = straight && p[0] * dy == p[1] * dx;
+    }
+    const bool direct = straight && walk.position() == Position{dx, dy, 0, 0};
+    by_table += met;
+    by_line_routine += direct;
+    csv.row("{},{},{:d},{:d}", dx, dy, met, direct);
+  }
+  page.corrected("Zero gradient", "zero counts as positive in Table 2",
+                 fmt::format("of the 4 lines along an axis, walked by the signs of their gradient, {} meet their end; "
+                             "with direction bits from the displacement {} do",
+                             by_table, by_line_routine),
+                 by_table < 4 && by_line_routine == 4);
+  page.data("steer-zero-gradient", "The four lines", csv);
+}
+
+}  // namespace
+
+void steer_program(Page& page, const Progress& progress) {
+  delay_list(page);
+  progress(0.5);
+  zero_gradient(page);
+}
+
+}  // namespace trammel::app::reproduce

@@ -1,0 +1,157 @@
+// Goldberg & Goldberg, Tables 1 to 3: the line, the 16 entries, the circle.
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "chapters.hpp"
+#include "picture.hpp"
+#include "trammel/model/interpolation/steer_program.hpp"
+
+namespace trammel::app::reproduce {
+namespace {
+
+using namespace model::interpolation;
+
+long long whole(Deviation value) { return static_cast<long long>(value); }
+
+void table_one(Page& page) {
+  page.heading("Table 1: the line from (0,0) to (3,-7)");
+  // F and the axis of every row as printed.
+  constexpr std::array<int, 10> kF{-4, -1, 2, -5, -2, 1, -6, -3, 0, 3};
+  const std::string axes = "yyxyyxyyyx";
+  const Line line = make_line({0, 0}, {3, -7});
+  SteerLine walk(line);
+  Csv csv("step,f,x2,y2,axis,direction,x,y");
+  Series path{"STEER", "#c03", {{0, 0}}, 1.5, false, false};
+  unsigned equal = 0;
+  bool zero_steps_y = false;
+  for (std::size_t row = 0; !walk.done(); ++row) {
+    const long long f = whole(walk.deviation());
+    const Position before = walk.position();
+    const Step step = walk.next();
+    const bool in_x = step.direction[0] != 0;
+    if (row < kF.size() && f == kF[row] && (in_x ? 'x' : 'y') == axes[row]) ++equal;
+    if (f == 0) zero_steps_y = !in_x;
+    csv.row("{},{},{},{},{},{},{},{}", row, f, std::abs(before[0]), std::abs(before[1]), in_x ? 'x' : 'y',
+            in_x ? step.direction[0] : step.direction[1], walk.position()[0], walk.position()[1]);
+    path.points.push_back({static_cast<double>(walk.position()[0]), static_cast<double>(walk.position()[1])});
+  }
+  page.pass("Table 1", "10 rows of F, x2, y2 and the step", fmt::format("{} of 10 rows equal, end at (3,-7)", equal),
+            equal == 10 && walk.time() == 10 && walk.position() == line.end);
+  page.corrected("Line, step rule in the text", "y steps when F becomes negative",
+                 "y steps at F = 0 too (row 8 of Table 1, and the listing's F > 0)", zero_steps_y);
+  const Series ideal{"line", "#393", {{0, 0}, {3, -7}}, 1, true, false};
+  page.picture("steer-table-1", "Table 1 as a path", draw({{"(0,0) to (3,-7)", {ideal, path}, true}}, {1, 240, 400}),
+               csv);
+}
+
+void table_two(Page& page) {
+  page.heading("Table 2: the 16 entries");
+  // As printed, rows D F DX DY from 0000 to 1111.
+  constexpr std::array<std::array<int, 2>, 16> kPrinted{{{0, -1},
+                                                         {-1, 0},
+                                                         {1, 0},
+                                                         {0, 1},
+                                                         {1, 0},
+                                                         {0, -1},
+                                                         {0, 1},
+                                                         {-1, 0},
+                                                         {-1, 0},
+                                                         {0, 1},
+                                                         {0, -1},
+                                                         {1, 0},
+                                                         {0, 1},
+                                                         {1, 0},
+                                                         {-1, 0},
+                                                         {0, -1}}};
+  Csv csv("d,f,a,b,x_step,y_step,turns,side");
+  unsigned equal = 0;
+  unsigned counter_clockwise_at_zero = 0;
+  unsigned sound = 0;
+  for (unsigned row = 0; row < 16; ++row) {
+    const bool d = (row & 8U) != 0;
+    const bool outside = (row & 4U) != 0;
+    const int sign_x = (row & 2U) != 0 ? 1 : -1;
+    const int sign_y = (row & 1U) != 0 ? 1 : -1;
+    const Step step = SteerTable::choose(ConicState<std::int64_t>{outside ? 0 : -1, sign_x, sign_y, 1, 1, d});
+    const int x = step.direction[0];
+    const int y = step.direction[1];
+    if (x == kPrinted[row][0] && y == kPrinted[row][1]) ++equal;
+    // The radius (sign_x, sign_y) turned by the step: positive is counter-clockwise.
+    const int turn = sign_x * y - sign_y * x;
+    const bool outward = sign_x * x + sign_y * y > 0;
+    if (!d && turn > 0) ++counter_clockwise_at_zero;
+    if (turn == (d ? -1 : 1) && outward == !outside) ++sound;
+    csv.row("{:d},{:d},{:d},{:d},{},{},{},{}", d, outside, sign_x > 0, sign_y > 0, x, y,
+            turn > 0 ? "counter-clockwise" : "clockwise", outward ? "outward" : "inward");
+  }
+  page.pass("Table 2", "16 steps by D, F, DX, DY", fmt::format("{} of 16 entries equal", equal), equal == 16);
+  page.pass("Table 2, its sense", "the sign of F and the quadrant choose the correction",
+            fmt::format("{} of 16 steps go along the curve in one sense, inward for F >= 0, outward for F < 0", sound),
+            sound == 16);
+  page.corrected("Direction", "0 = clockwise, 1 = counter-clockwise (text)",
+                 fmt::format("with x right and y up {} of the 8 entries for D = 0 turn counter-clockwise",
+                             counter_clockwise_at_zero),
+                 counter_clockwise_at_zero == 8);
+  page.data("steer-table-2", "The entries", csv);
+}
+
+void table_three(Page& page) {
+  page.heading("Table 3: the circle of radius 25");
+  // x, y and F as printed.
+  constexpr std::array<std::array<int, 3>, 26> kPrinted{
+      {{25, 0, 0},    {24, 0, -49}, {24, 1, -48},  {24, 2, -45},  {24, 3, -40}, {24, 4, -33},  {24, 5, -24},
+       {24, 6, -13},  {24, 7, 0},   {23, 7, -47},  {23, 8, -32},  {23, 9, -15}, {23, 10, 4},   {22, 10, -41},
+       {22, 11, -20}, {22, 12, 3},  {21, 12, -40}, {21, 13, -15}, {21, 14, 12}, {20, 14, -29}, {20, 15, 0},
+       {19, 15, -39}, {19, 16, -8}, {19, 17, 25},  {18, 17, -12}, {13, 18, 23}}};
+  SteerProgram walk({25, 0}, 25, false);
+  Csv csv("step,x,y,f,dx,dy,x_step,y_step");
+  Series path{"STEER", "#c03", {}, 1.5, false, false};
+  unsigned equal = 0;
+  Point last;
+  bool last_differs_in_x_alone = false;
+  std::uint64_t steps = 0;
+  do {
+    const Point at = walk.position();
+    const std::int64_t f = walk.deviation();
+    if (steps < kPrinted.size()) {
+      const auto& row = kPrinted[steps];
+      const bool same_rest = at.y == row[1] && f == row[2];
+      if (at.x == row[0] && same_rest) ++equal;
+      if (steps == 25) {
+        last = at;
+        last_differs_in_x_alone = same_rest && at.x != row[0];
+      }
+    }
+    const Step step = walk.next();
+    csv.row("{},{},{},{},{},{},{},{}", steps, at.x, at.y, f, 2 * at.x, 2 * at.y, step.direction[0], step.direction[1]);
+    path.points.push_back({static_cast<double>(at.x), static_cast<double>(at.y)});
+    ++steps;
+  } while (!walk.back() && steps < 1000);
+  path.points.push_back(path.points.front());
+  page.pass("Table 3, rows 0 to 24", "25 rows of x, y, F", fmt::format("{} of 25 rows equal", equal), equal == 25);
+  page.corrected("Table 3, last row", "x = 13 with y = 18, F = 23, DX = 36",
+                 fmt::format("x = {}: F = 23 and DX = 36 fit ({},{}) only", last.x, last.x, last.y),
+                 last_differs_in_x_alone && last == Point{18, 18});
+  page.pass("Table 3, the full turn", "back at (25,0)", fmt::format("back after {} steps", steps), steps == 200);
+  Series ideal{"circle", "#393", {}, 1, true, false};
+  for (int i = 0; i <= 180; ++i) {
+    const double angle = i * std::acos(-1.0) / 90;
+    ideal.points.push_back({25 * std::cos(angle), 25 * std::sin(angle)});
+  }
+  page.picture("steer-table-3", "The full circle that Table 3 begins",
+               draw({{"radius 25, D = 0", {ideal, path}, true}}, {1, 480, 480}), csv);
+}
+
+}  // namespace
+
+void steer_tables(Page& page, const Progress& progress) {
+  table_one(page);
+  progress(0.3);
+  table_two(page);
+  progress(0.6);
+  table_three(page);
+}
+
+}  // namespace trammel::app::reproduce

@@ -1,0 +1,114 @@
+#include "reproduce_command.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "errors.hpp"
+#include "progress_bar.hpp"
+#include "reproduce/chapters.hpp"
+
+namespace trammel::app {
+namespace {
+
+using reproduce::Page;
+using reproduce::Progress;
+using reproduce::Verdict;
+
+struct Options {
+  std::string out = "reproduce";
+  bool progress = false;
+};
+
+struct Chapter {
+  const char* name;
+  std::size_t page;
+  void (*make)(Page&, const Progress&);
+  double share;  // of the time of all
+};
+
+constexpr std::array<Chapter, 8> kChapters{{{"STEER's tables", 0, reproduce::steer_tables, 0.01},
+                                            {"STEER's circles", 0, reproduce::steer_circles, 0.25},
+                                            {"STEER's program", 0, reproduce::steer_program, 0.01},
+                                            {"one-shot lines", 1, reproduce::one_shot_lines, 0.02},
+                                            {"one-shot waveforms", 1, reproduce::one_shot_waves, 0.01},
+                                            {"motors", 1, reproduce::one_shot_motor, 0.1},
+                                            {"one-shot bound", 1, reproduce::one_shot_bound, 0.4},
+                                            {"lines on the card", 1, reproduce::one_shot_card, 0.2}}};
+
+std::string cell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) text.insert(at, "\\");
+  return text;
+}
+
+void write_entry_page(const std::filesystem::path& folder, const std::vector<Page>& pages) {
+  std::string text =
+      "# Both papers, made again\n\n"
+      "Every table, figure and claim of the two papers behind this project, made again by `trammel reproduce`, which\n"
+      "wrote these pages. PASS: as the paper has it. CORRECTED: the paper is wrong or silent there, and what is right\n"
+      "was found again. FAIL: neither; the command then ends with status 1.\n";
+  for (const Page& page : pages) {
+    text += fmt::format(
+        "\n## [{}]({})\n\n{} PASS, {} CORRECTED, {} FAIL\n\n| item | verdict | paper | found |\n|---|---|---|---|\n",
+        page.title(), page.file(), page.count(Verdict::kPass), page.count(Verdict::kCorrected),
+        page.count(Verdict::kFail));
+    for (const reproduce::Item& item : page.items()) {
+      text += fmt::format("| {} | {} | {} | {} |\n", cell(item.what), name_of(item.verdict), cell(item.paper),
+                          cell(item.found));
+    }
+  }
+  reproduce::write_file(folder / "README.md", text);
+}
+
+void execute(const Options& options) {
+  const std::filesystem::path folder = options.out;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!std::filesystem::is_directory(folder)) {
+    throw UsageError(fmt::format("--out: {}: cannot be made a folder", options.out));
+  }
+  std::vector<Page> pages;
+  pages.emplace_back(folder, "goldberg-steer.md", "Goldberg & Goldberg: XY Interpolation Algorithms");
+  pages.emplace_back(folder, "zeng-one-shot.md", "Zeng, Zhang & Huang: A New Linear Interpolation Algorithm");
+  ProgressBar bar(options.progress);
+  double done = 0;
+  for (const Chapter& chapter : kChapters) {
+    bar.show(done, chapter.name);
+    chapter.make(pages[chapter.page], [&](double part) { bar.show(done + part * chapter.share, chapter.name); });
+    done += chapter.share;
+  }
+  bar.show(1, "done");
+  std::size_t failed = 0;
+  std::size_t passed = 0;
+  std::size_t corrected = 0;
+  for (const Page& page : pages) {
+    page.write();
+    passed += page.count(Verdict::kPass);
+    corrected += page.count(Verdict::kCorrected);
+    failed += page.count(Verdict::kFail);
+  }
+  write_entry_page(folder, pages);
+  fmt::print("{} items: {} PASS, {} CORRECTED, {} FAIL; pages in {}\n", passed + corrected + failed, passed, corrected,
+             failed, folder.string());
+  if (failed != 0) throw std::runtime_error(fmt::format("{} items of the papers were not reproduced", failed));
+}
+
+}  // namespace
+
+void add_reproduce_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("reproduce", "make every table and figure of both papers again, with a verdict on each");
+  command->add_option("--out", options->out, "folder for the pages, pictures and data")
+      ->capture_default_str()
+      ->type_name("DIR");
+  command->add_flag("--progress", options->progress, "progress bar even if stderr is not a terminal");
+  command->callback([options] { execute(*options); });
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,10 @@
+# Runs ${TRAMMEL} reproduce into ${WRITTEN} and compares that folder with ${COMMITTED}.
+file(REMOVE_RECURSE "${WRITTEN}")
+execute_process(COMMAND "${TRAMMEL}" reproduce --out "${WRITTEN}" RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "trammel reproduce ended with status ${status}")
+endif()
+execute_process(COMMAND diff -r "${COMMITTED}" "${WRITTEN}" RESULT_VARIABLE differs)
+if(NOT differs EQUAL 0)
+  message(FATAL_ERROR "docs/papers is not what the command writes: run trammel reproduce --out docs/papers")
+endif()
