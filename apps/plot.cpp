@@ -175,12 +175,15 @@ std::string speed_panel(const std::vector<SpeedOverTime::Sample>& speed, double 
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    if (c == '&')
+    if (c == '&') {
       result += "&amp;";
-    else if (c == '<')
+    } else if (c == '<') {
       result += "&lt;";
-    else
+    } else if (c == '>') {
+      result += "&gt;";
+    } else {
       result += c;
+    }
   }
   return result;
 }
