@@ -212,14 +212,14 @@ TEST(OneShot, AnEarlierRefusalIsNotTakenForThisOne) {
 TEST(OneShot, RunsOnTheFakeAndIsFreeUntilTheEnd) {
   FakeCard fake;
   Card card = Card::open(fake);
-  start_line(card, {100, -250}, 1ms);
+  start_line(card, {40, -100}, 1ms);
   EXPECT_TRUE(card.busy());
   EXPECT_THROW(start_line(card, {1}, 1ms), RefusedError);
   card.clear_refusal();
   card.wait_until_idle(10ms);
   const Snapshot snapshot = card.snapshot();
-  EXPECT_EQ(snapshot.position[0], 100);
-  EXPECT_EQ(snapshot.position[1], -250);
+  EXPECT_EQ(snapshot.position[0], 40);
+  EXPECT_EQ(snapshot.position[1], -100);
 }
 
 TEST(OneShot, RunsAllPartsOfALongLine) {
