@@ -109,7 +109,7 @@ Survey survey(const driver::Program& program, const driver::Machine& machine, st
         best_rank = rank;
         result.detail_command = result.commands + static_cast<std::uint64_t>(geometry - segment.commands.begin());
         result.detail.clear();
-        const double length = std::min(path.pulses(), 0.75 * static_cast<double>(StepRecorder::kDetailPoints));
+        const double length = std::min(path.pulses(), static_cast<double>(StepRecorder::kDetailPoints));
         for (double s = 0; s <= length; s += 1) result.detail.push_back(path.at(s / path.pulses()));
       }
     }
