@@ -66,6 +66,8 @@ function(trammel_add_seeded_bug name bug)
   add_executable(${target} ${L_TEST})
   trammel_lockstep_target(${target})
   target_compile_definitions(${target} PRIVATE TRAMMEL_SEEDED_BUG)
+  # A seeded bug may leave a signal unused: that warning must not keep the lockstep from judging it. The sources proper are
+  # linted by the block's own lockstep, with every warning an error.
   trammel_verilate(${target} PREFIX Vdut TOP ${L_TOP} SOURCES ${sources} ARGS -Wno-fatal ${L_ARGS})
   add_test(NAME seeded_bug.${name}.${bug} COMMAND ${target})
   set_tests_properties(seeded_bug.${name}.${bug} PROPERTIES LABELS seeded_bug)
