@@ -1,12 +1,25 @@
 # Verilation of the card, of single blocks, and of copies of a block with one seeded bug.
 find_package(verilator REQUIRED HINTS $ENV{VERILATOR_ROOT})
+find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED)
 
 set(TRAMMEL_RTL_DIR "${PROJECT_SOURCE_DIR}/rtl")
 set(TRAMMEL_VERILATOR_ARGS -Wall "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" -O3 --x-assign fast --x-initial fast
     --noassert)
 
+# Verilator's run time, once for all models.
+add_library(trammel_verilated STATIC "${VERILATOR_ROOT}/include/verilated.cpp"
+  "${VERILATOR_ROOT}/include/verilated_threads.cpp" "${VERILATOR_ROOT}/include/verilated_fst_c.cpp")
+target_compile_features(trammel_verilated PUBLIC cxx_std_17)
+target_compile_definitions(trammel_verilated PUBLIC VM_COVERAGE=0 VM_SC=0 VM_TRACE=1 VM_TRACE_VCD=0 VM_TRACE_FST=1)
+target_compile_options(trammel_verilated PRIVATE -w)
+target_include_directories(trammel_verilated SYSTEM PUBLIC "${VERILATOR_ROOT}/include" "${VERILATOR_ROOT}/include/vltstd")
+target_link_libraries(trammel_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
+
 # trammel_verilate(target PREFIX Vx TOP top SOURCES a.sv b.sv [ARGS ...] [TRACE])
 # Sources are relative to rtl/ unless absolute. The package of the card map always comes first.
+# Verilator runs as a step of the build (its own verilate() runs it while configuring, and again when building), and all
+# that it writes is compiled as two files: the code that runs each clock, and the rest.
 function(trammel_verilate target)
   cmake_parse_arguments(A "TRACE" "PREFIX;TOP" "SOURCES;ARGS" ${ARGN})
   set(files "${TRAMMEL_RTL_DIR}/regs/generated/card_map_pkg.sv")
@@ -14,18 +27,23 @@ function(trammel_verilate target)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${TRAMMEL_RTL_DIR}" NORMALIZE)
     list(APPEND files "${file}")
   endforeach()
-  set(trace "")
-  if(A_TRACE)
-    set(trace TRACE_FST)
-  endif()
-  verilate(${target} PREFIX ${A_PREFIX} TOP_MODULE ${A_TOP} SOURCES ${files} ${trace}
-           DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/${target}_${A_PREFIX}"
-           OPT_FAST -O3 OPT_SLOW -O1
-           VERILATOR_ARGS ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS})
-  # What Verilator writes and brings along is not the project's: no warnings from it.
-  get_target_property(sources ${target} SOURCES)
-  list(FILTER sources INCLUDE REGEX "/${target}_${A_PREFIX}/|/verilated[a-z_]*\\.cpp$")
-  set_property(SOURCE ${sources} APPEND PROPERTY COMPILE_OPTIONS -w)
+  set(dir "${CMAKE_CURRENT_BINARY_DIR}/${target}_${A_PREFIX}")
+  set(fast "${dir}/${A_PREFIX}__fast.cc")
+  set(slow "${dir}/${A_PREFIX}__slow.cc")
+  set(join "${PROJECT_SOURCE_DIR}/cmake/JoinVerilated.cmake")
+  add_custom_command(OUTPUT "${fast}" "${slow}" "${dir}/${A_PREFIX}.h"
+    COMMAND "${CMAKE_COMMAND}" -E rm -rf "${dir}"
+    COMMAND "${VERILATOR_BIN}" --cc --compiler gcc --prefix ${A_PREFIX} --top-module ${A_TOP} --Mdir "${dir}"
+            $<$<BOOL:${A_TRACE}>:--trace-fst> ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS} ${files}
+    COMMAND "${CMAKE_COMMAND}" -D DIR=${dir} -D PREFIX=${A_PREFIX} -P "${join}"
+    DEPENDS ${files} "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" "${join}"
+    COMMENT "Verilating ${A_TOP} for ${target}" VERBATIM COMMAND_EXPAND_LISTS)
+  target_sources(${target} PRIVATE "${fast}" "${slow}" "${dir}/${A_PREFIX}.h")
+  # What Verilator writes is not the project's: no warnings from it.
+  set_property(SOURCE "${fast}" PROPERTY COMPILE_OPTIONS -w -O3)
+  set_property(SOURCE "${slow}" PROPERTY COMPILE_OPTIONS -w -O1)
+  target_include_directories(${target} SYSTEM PRIVATE "${dir}")
+  target_link_libraries(${target} PRIVATE trammel_verilated)
 endfunction()
 
 # trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [ARGS ...])

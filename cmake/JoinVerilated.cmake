@@ -1,0 +1,16 @@
+# cmake -D DIR=... -D PREFIX=Vx -P: joins the files that Verilator wrote into Vx__fast.cc and Vx__slow.cc. Their names hold
+# hashes, so a build cannot know them beforehand.
+file(GLOB sources "${DIR}/${PREFIX}*.cpp")
+list(SORT sources)
+set(fast "")
+set(slow "")
+foreach(source IN LISTS sources)
+  cmake_path(GET source FILENAME name)
+  if(name MATCHES "__(Slow|Syms|ConstPool)")
+    string(APPEND slow "#include \"${name}\"\n")
+  else()
+    string(APPEND fast "#include \"${name}\"\n")
+  endif()
+endforeach()
+file(WRITE "${DIR}/${PREFIX}__fast.cc" "${fast}")
+file(WRITE "${DIR}/${PREFIX}__slow.cc" "${slow}")
