@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Programs, BadProgram,
                                          Bad{"Malformed", "G1 X1.2.3 F100", "3: malformed number"},
                                          Bad{"NoNumber", "G1 X F100", "3:"},
                                          Bad{"BeyondCounters", "G1 X99999999 F100", "3:"}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& row) { return std::string(row.param.name); });
 
 TEST(BadInput, UnreadableProgram) {
   const Command command;

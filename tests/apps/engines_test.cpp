@@ -39,7 +39,7 @@ TEST_P(Engines, GiveTheSameStepLists) {
 INSTANTIATE_TEST_SUITE_P(Examples, Engines,
                          testing::Values(Example{"part", "250000"}, Example{"inch", "1000000"},
                                          Example{"extruder", "1000000"}, Example{"relative", "1000000"}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& row) { return std::string(row.param.name); });
 
 }  // namespace
 }  // namespace trammel::test

@@ -191,7 +191,9 @@ Reading read(const std::vector<Step>& steps, const std::vector<Shape>& shapes) {
       }
       result.end[step.axis] += step.direction;
       ++result.counts[step.axis];
-      if (walk.is_line()) EXPECT_EQ(step.direction, walk.direction(step.axis)) << "in cycle " << cycle;
+      if (walk.is_line()) {
+        EXPECT_EQ(step.direction, walk.direction(step.axis)) << "in cycle " << cycle;
+      }
     }
     const double off = walk.distance(result.end);
     if (off > walk.bound()) {
