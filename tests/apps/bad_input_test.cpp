@@ -19,6 +19,8 @@ struct Bad {
   const char* program;
   const char* where;  // what the message must name
 };
+// In the names of the tests.
+void PrintTo(const Bad& row, std::ostream* out) { *out << row.name; }
 
 class BadProgram : public testing::TestWithParam<Bad> {};
 

@@ -10,6 +10,8 @@ struct Example {
   const char* name;
   const char* clock;  // Hz; lower for the long program, so that all together stay under a minute
 };
+// In the names of the tests.
+void PrintTo(const Example& row, std::ostream* out) { *out << row.name; }
 
 class Engines : public testing::TestWithParam<Example> {};
 

@@ -23,6 +23,8 @@ struct Job {
   Pulses end;
   int axes;
 };
+// In the names of the tests.
+void PrintTo(const Job& row, std::ostream* out) { *out << row.name; }
 
 class Jobs : public testing::TestWithParam<Job> {};
 

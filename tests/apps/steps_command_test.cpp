@@ -1,4 +1,6 @@
 // trammel steps as a user calls it: formats and exit reasons.
+#include "steps_command.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +12,6 @@
 
 #include "errors.hpp"
 #include "methods_command.hpp"
-#include "steps_command.hpp"
 
 namespace trammel::app {
 namespace {
