@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +14,7 @@
 #include "compare_report.hpp"
 #include "curve_options.hpp"
 #include "errors.hpp"
+#include "outputs.hpp"
 #include "progress_bar.hpp"
 #include "trammel/model/measure/comparison.hpp"
 
@@ -98,21 +97,10 @@ Comparison compare(const Options& options, std::vector<measure::Trace>& traces) 
   return result;
 }
 
-void write_json(const std::string& name, const nlohmann::ordered_json& json) {
-  if (name == "-") {
-    std::cout << json.dump(2) << '\n';
-    return;
-  }
-  std::ofstream out(name);
-  out << json.dump(2) << '\n';
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", name));
-}
-
 void compare_curve(const Options& options) {
   std::vector<measure::Trace> traces;
   const Comparison comparison = compare(options, traces);
-  if (options.json) write_json(*options.json, json_of(comparison));
+  if (options.json) write_json_file(json_of(comparison), *options.json);
   if (options.plot) write_comparison_svg(comparison, traces, measure::ideal_of(options.curve.curve()), *options.plot);
   if (options.json != "-") fmt::print("{}", table_of(comparison));
 }
@@ -140,7 +128,7 @@ void compare_random(const Options& options) {
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
-  if (options.json) write_json(*options.json, json_of(lines, measures));
+  if (options.json) write_json_file(json_of(lines, measures), *options.json);
   if (options.json != "-") fmt::print("{}", table_of(lines, measures));
   for (const measure::RandomMeasures& method : measures) {
     if (method.wrong_ends > 0) {
@@ -171,6 +159,7 @@ void add_compare_command(CLI::App& app) {
   command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")->type_name("FILE.svg");
   command->callback([options] {
     check_velocity(options->velocity);
+    require_writable({options->json, options->plot});
     options->random ? compare_random(*options) : compare_curve(*options);
   });
 }

@@ -8,6 +8,17 @@ namespace trammel::app {
 
 unsigned card_axes(std::size_t needed) { return needed <= 4 ? 4 : 8; }
 
+CLI::Validator positive() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0;
+        const bool number = CLI::detail::lexical_cast(text, value);
+        return number && value > 0 && std::isfinite(value) ? std::string()
+                                                           : "must be a number greater than 0, not " + text;
+      },
+      "> 0");
+}
+
 void EngineChoice::add_to(CLI::App& command) {
   command
       .add_option("--engine", engine,

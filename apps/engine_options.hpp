@@ -13,6 +13,9 @@ namespace trammel::app {
 // Axes of the simulated card that serves `needed` of them (1 to 8): it is built with 4 and with 8.
 unsigned card_axes(std::size_t needed);
 
+// For options that must be greater than 0; CLI11's own message names the largest double.
+CLI::Validator positive();
+
 struct EngineChoice {
   std::string engine = "rtl";
   double clock_hz = 0;  // 0: not given

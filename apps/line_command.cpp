@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <fstream>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,6 +12,7 @@
 
 #include "engine_options.hpp"
 #include "errors.hpp"
+#include "outputs.hpp"
 #include "step_recorder.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/one_shot.hpp"
@@ -134,14 +133,7 @@ void execute(const Options& options) {
     json["mismatches"] = 0;  // one would have ended the run
     json["max_deviation"] = {{"line", recorder.deviation().largest_line()},
                              {"arc", recorder.deviation().largest_arc()}};
-    if (*options.json == "-") {
-      std::cout << json.dump(2) << '\n';
-    } else {
-      std::ofstream out(*options.json);
-      out << json.dump(2) << '\n';
-      out.close();
-      if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", *options.json));
-    }
+    write_json_file(json, *options.json);
   }
   if (options.json != "-" && options.steps != "-") {
     fmt::print("line of {} pulses in {} clocks ({:g} s at {:g} MHz){}: ended at {}\n", fmt::join(pulses, ", "),
@@ -167,10 +159,10 @@ void add_line_command(CLI::App& app) {
       ->required()
       ->type_name("X,Y,...");
   auto* velocity =
-      command->add_option("--velocity", options->velocity, "lines a second: the paper's v")->check(CLI::PositiveNumber);
-  auto* duration = command->add_option("--duration", options->duration, "seconds")->check(CLI::PositiveNumber);
-  auto* speed = command->add_option("--speed", options->speed, "pulses/s along the path (default 1000)")
-                    ->check(CLI::PositiveNumber);
+      command->add_option("--velocity", options->velocity, "lines a second: the paper's v")->check(positive());
+  auto* duration = command->add_option("--duration", options->duration, "seconds")->check(positive());
+  auto* speed =
+      command->add_option("--speed", options->speed, "pulses/s along the path (default 1000)")->check(positive());
   velocity->excludes(duration)->excludes(speed);
   duration->excludes(speed);
   command->add_option("--max-velocity", options->max_velocity, "limit of each axis, pulses/s (0: none)")
@@ -180,7 +172,10 @@ void add_line_command(CLI::App& app) {
   command->add_option("--json", options->json, "summary as JSON ('-': standard output)")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
-  command->callback([options] { execute(*options); });
+  command->callback([options] {
+    require_writable({options->json, options->steps, options->engine.trace});
+    execute(*options);
+  });
 }
 
 }  // namespace trammel::app

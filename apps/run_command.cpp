@@ -12,6 +12,7 @@
 
 #include "engine_options.hpp"
 #include "errors.hpp"
+#include "outputs.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
 #include "trammel/driver/gcode.hpp"
@@ -39,14 +40,6 @@ void check_program_file(const std::string& file) {
   if (::access(file.c_str(), R_OK) != 0) throw UsageError(fmt::format("{}: cannot read the program", file));
 }
 
-// A summary or picture that cannot be written is found before the first step, not after the last.
-void check_outputs(const RunOutputs& outputs) {
-  for (const std::optional<std::string>& file : {outputs.json, outputs.plot}) {
-    if (!file || *file == "-") continue;
-    if (!std::ofstream(*file, std::ios::app)) throw UsageError(fmt::format("{}: cannot be written", *file));
-  }
-}
-
 void execute(const Options& options) {
   driver::Machine machine = options.machine ? driver::load_machine(*options.machine) : driver::default_machine();
   for (const std::string& text : options.overrides) driver::apply_override(machine, text);
@@ -54,7 +47,8 @@ void execute(const Options& options) {
   const driver::Program program = driver::read_program_file(options.program, machine);
   const sim::EngineOptions engine =
       options.engine.options(card_axes(machine.axes.size()), kSimulatedClock, machine.clock_hz);
-  check_outputs(options.outputs);
+  const RunOutputs& files = options.outputs;
+  require_writable({files.json, files.plot, files.steps, files.path_steps, options.engine.trace});
   const RunResult result = run_program(program, machine, engine, options.outputs);
   if (options.outputs.json) write_json(result, *options.outputs.json);
   if (options.outputs.plot) write_svg(result.plot, *options.outputs.plot);

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <fstream>
-#include <iostream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+
+#include "outputs.hpp"
 
 namespace trammel::app {
 
@@ -55,15 +54,7 @@ void write_json(const RunResult& result, const std::string& file) {
   json["commands"] = result.commands;
   json["planned_seconds"] = result.planned_seconds;
   json["accepted_words"] = result.accepted;
-  const std::string text = json.dump(2) + "\n";
-  if (file == "-") {
-    std::cout << text;
-    return;
-  }
-  std::ofstream out(file);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", file));
+  write_json_file(json, file);
 }
 
 }  // namespace trammel::app

@@ -33,7 +33,7 @@ struct Options {
 class Output {
  public:
   explicit Output(const std::string& name) : name_(name), file_(name == "-" ? stdout : std::fopen(name.c_str(), "w")) {
-    if (file_ == nullptr) throw UsageError(fmt::format("cannot write {}", name_));
+    if (file_ == nullptr) throw UsageError(fmt::format("{}: cannot be written", name_));
   }
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
@@ -52,7 +52,9 @@ class Output {
   }
 
  private:
-  [[noreturn]] void fail() const { throw std::runtime_error(fmt::format("cannot write {}", name_)); }
+  [[noreturn]] void fail() const {
+    throw std::runtime_error(fmt::format("{}: could not be written to its end", name_));
+  }
 
   std::string name_;
   std::FILE* file_;

@@ -238,7 +238,7 @@ Machine load_machine(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file || file.bad()) {
-    throw MachineError(path + ":1: cannot read the machine file");
+    throw MachineError(path + ": cannot read the machine file");
   }
   return parse_machine(text, path);
 }

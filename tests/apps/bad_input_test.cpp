@@ -86,7 +86,7 @@ TEST(BadInput, OutputsThatCannotBeWritten) {
   const std::string run = "run " + command.write("ok.ngc", "G1 X1 F600\n");
   expect_refused(command, run + " --json " + command.path("none/out.json"), 2, "none/out.json");
   expect_refused(command, run + " --plot " + command.path("none/out.svg"), 2, "none/out.svg");
-  expect_refused(command, run + " --path-steps " + command.path("none/out.csv"), 1, "none/out.csv");
+  expect_refused(command, run + " --path-steps " + command.path("none/out.csv"), 2, "none/out.csv");
 }
 
 TEST(BadInput, FullDisk) {
@@ -98,7 +98,7 @@ TEST(BadInput, FullDisk) {
 
 TEST(Help, OfEverySubcommand) {
   const Command command;
-  for (const std::string subcommand : {"", "run", "line", "info"}) {
+  for (const std::string subcommand : {"", "run", "line", "info", "steps", "methods", "compare", "reproduce"}) {
     const Outcome outcome = command.run(subcommand + " --help");
     EXPECT_EQ(outcome.status, 0) << subcommand;
     EXPECT_NE(outcome.out.find("Usage: trammel"), std::string::npos) << outcome.out;

@@ -100,7 +100,7 @@ TEST_F(StepsCommand, RefusesBadInput) {
   EXPECT_THAT(refusal({"--method", "dda", "--ellipse", "5,3"}), HasSubstr("cannot do ellipses"));
   EXPECT_THAT(refusal({"--method", "dda", "--ellipse", "5,0"}), HasSubstr("below 1"));
   file_ = "/nonexistent/steps.csv";
-  EXPECT_THAT(refusal({"--method", "steer", "--circle", "5"}), HasSubstr("cannot write"));
+  EXPECT_THAT(refusal({"--method", "steer", "--circle", "5"}), HasSubstr("cannot be written"));
 }
 
 TEST(MethodsCommand, ListsEveryMethod) {

@@ -1,0 +1,46 @@
+#include "outputs.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "errors.hpp"
+
+namespace trammel::app {
+
+namespace {
+
+bool writable(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::exists(file, ignored)) {
+    return !std::filesystem::is_directory(file, ignored) && ::access(file.c_str(), W_OK) == 0;
+  }
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  return std::filesystem::is_directory(folder, ignored) && ::access(folder.c_str(), W_OK) == 0;
+}
+
+}  // namespace
+
+void require_writable(std::initializer_list<std::optional<std::string>> files) {
+  for (const std::optional<std::string>& file : files) {
+    if (file && *file != "-" && !writable(*file)) throw UsageError(fmt::format("{}: cannot be written", *file));
+  }
+}
+
+void write_json_file(const nlohmann::ordered_json& json, const std::string& file) {
+  const std::string text = json.dump(2) + "\n";
+  if (file == "-") {
+    std::cout << text;
+    return;
+  }
+  std::ofstream out(file);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(fmt::format("{}: could not be written to its end", file));
+}
+
+}  // namespace trammel::app
