@@ -90,6 +90,15 @@ View choose_view(const std::vector<Point>& points) {
   return best;
 }
 
+// 1, 2 or 5 times a power of ten, so that 4 to 10 of them make `whole`.
+double round_step(double whole) {
+  const double power = std::pow(10.0, std::floor(std::log10(whole / 4)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= whole / 4) return factor * power;
+  }
+  return power;
+}
+
 // Maps millimetres into a panel with equal scales on both axes.
 class Panel {
  public:
@@ -154,15 +163,16 @@ std::string speed_panel(const std::vector<SpeedOverTime::Sample>& speed, double 
       "<text x=\"{0}\" y=\"{1}\">speed along the path, mm/s</text>\n<rect x=\"{0}\" y=\"{2}\" width=\"{3}\" "
       "height=\"{4}\" class=\"frame\"/>\n",
       kMargin, top - 8, top, width, height);
-  for (int i = 0; i <= 4; ++i) {
-    const double y = top + height * (1 - 0.94 * i / 4);
-    const double x = kMargin + width * i / 4;
+  for (double v = 0; v <= fastest; v += round_step(fastest)) {
+    const double y = top + height * (1 - 0.94 * v / fastest);
     text += fmt::format(
         "<line x1=\"{}\" y1=\"{:.1f}\" x2=\"{}\" y2=\"{:.1f}\" class=\"grid\"/><text x=\"{}\" y=\"{:.1f}\" "
-        "class=\"small\" text-anchor=\"end\">{:.3g}</text>\n",
-        kMargin, y, kMargin + width, y, kMargin - 6, y + 4, fastest * i / 4);
-    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"small\" text-anchor=\"middle\">{:.3g} s</text>\n", x,
-                        top + height + 16, longest * i / 4);
+        "class=\"small\" text-anchor=\"end\">{:g}</text>\n",
+        kMargin, y, kMargin + width, y, kMargin - 6, y + 4, v);
+  }
+  for (double t = 0; t <= longest; t += round_step(longest)) {
+    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"small\" text-anchor=\"middle\">{:g} s</text>\n",
+                        kMargin + width * t / longest, top + height + 16, t);
   }
   text += "<polyline points=\"";
   for (const auto& s : speed) {
