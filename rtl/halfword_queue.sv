@@ -29,9 +29,6 @@ module halfword_queue #(
     next = (pointer[AddressWidth-1:0] == LAST) ? {~pointer[AddressWidth], {AddressWidth{1'b0}}} : pointer + 1'b1;
   endfunction
 
-  // Nothing is read that is not committed, so no location is read and written in one clock.
-  (* no_rw_check *) logic [15:0] memory[0:Depth-1];
-  logic [15:0] memory_q;
   logic [AddressWidth:0] write_q;
   logic [AddressWidth:0] commit_q;
   logic [AddressWidth:0] read_q;
@@ -45,11 +42,18 @@ module halfword_queue #(
   assign keep  = write_i && !drop_i;
   assign reset = rst_i || clear_i;
 
-  always_ff @(posedge clk_i) begin
-    if (write_i) memory[write_q[AddressWidth-1:0]] <= word_i;
-    if (take) memory_q <= memory[read_q[AddressWidth-1:0]];
-    // A bare flip-flop right behind the RAM: its clock-to-output is the slowest there is.
-    word_o <= memory_q;
+  // In nibbles, so that a block RAM is deep and narrow: then none, or few, are chosen between behind the RAM's slow output.
+  // Nothing is read that is not committed, so no location is read and written in one clock.
+  for (genvar n = 0; n < 4; n++) begin : gen_nibble
+    (* no_rw_check *) logic [3:0] memory[0:Depth-1];
+    logic [3:0] memory_q;
+
+    always_ff @(posedge clk_i) begin
+      if (write_i) memory[write_q[AddressWidth-1:0]] <= word_i[4*n+:4];
+      if (take) memory_q <= memory[read_q[AddressWidth-1:0]];
+      // A bare flip-flop right behind the RAM.
+      word_o[4*n+:4] <= memory_q;
+    end
   end
 
   always_ff @(posedge clk_i) begin
