@@ -25,9 +25,13 @@ module arc_router #(
       axis_x_q <= word_i[6:4];
       axis_y_q <= word_i[10:8];
     end
-    for (int i = 0; i < Axes; i++) begin
-      step_o[i] <= ((step_x_i & (axis_x_q == 3'(i))) | (step_y_i & (axis_y_q == 3'(i)))) & ~rst_i;
-      dir_o[i]  <= (axis_x_q == 3'(i)) ? dir_x_i : dir_y_i;
+    // A direction is looked at with its step only.
+    step_o <= '0;
+    if ((step_x_i | step_y_i) & ~rst_i) begin
+      for (int i = 0; i < Axes; i++) begin
+        step_o[i] <= (step_x_i & (axis_x_q == 3'(i))) | (step_y_i & (axis_y_q == 3'(i)));
+        dir_o[i]  <= (axis_x_q == 3'(i)) ? dir_x_i : dir_y_i;
+      end
     end
   end
 

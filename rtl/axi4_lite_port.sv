@@ -40,15 +40,9 @@ module axi4_lite_port (
   logic bvalid_q;
   logic rvalid_q;
   logic write_waits;
-  logic read_waits;
-  logic take_write;
-  logic take_read;
 
   // A new access only when its answer has a place to go.
   assign write_waits = awvalid_i && wvalid_i && !bvalid_q;
-  assign read_waits  = arvalid_i && !rvalid_q;
-  assign take_write  = !busy_q && write_waits && !(read_waits && write_q);
-  assign take_read   = !busy_q && read_waits && !take_write;
 
   logic        request_q;
   logic        write_ready_q;
@@ -58,17 +52,25 @@ module axi4_lite_port (
   logic [31:0] data_q;
 
   always_ff @(posedge clk_i) begin
-    request_q <= take_write || take_read;
-    write_ready_q <= take_write;
-    read_ready_q <= take_read;
-    if (!busy_q) begin
-      busy_q <= take_write || take_read;
-      if (take_write || take_read) write_q <= take_write;
+    request_q <= 1'b0;
+    write_ready_q <= 1'b0;
+    read_ready_q <= 1'b0;
+    if (busy_q) begin
+      if (ack_i) busy_q <= 1'b0;
+    end else if (write_waits && !(arvalid_i && !rvalid_q && write_q)) begin
+      request_q <= 1'b1;
+      write_ready_q <= 1'b1;
+      busy_q <= 1'b1;
+      write_q <= 1'b1;
       partial_q <= wstrb_i != 4'b1111;
-      address_q <= take_write ? awaddr_i : araddr_i;
+      address_q <= awaddr_i;
       data_q <= wdata_i;
-    end else if (ack_i) begin
-      busy_q <= 1'b0;
+    end else if (arvalid_i && !rvalid_q) begin
+      request_q <= 1'b1;
+      read_ready_q <= 1'b1;
+      busy_q <= 1'b1;
+      write_q <= 1'b0;
+      address_q <= araddr_i;
     end
     if (rst_i) begin
       request_q <= 1'b0;
@@ -86,14 +88,15 @@ module axi4_lite_port (
   always_ff @(posedge clk_i) begin
     if (bready_i) bvalid_q <= 1'b0;
     if (rready_i) rvalid_q <= 1'b0;
-    if (ack_i && write_q) begin
-      bvalid_q <= 1'b1;
-      write_error_q <= error_i;
-    end
-    if (ack_i && !write_q) begin
-      rvalid_q <= 1'b1;
-      read_error_q <= error_i;
-      rdata_q <= data_i;
+    if (ack_i) begin
+      if (write_q) begin
+        bvalid_q <= 1'b1;
+        write_error_q <= error_i;
+      end else begin
+        rvalid_q <= 1'b1;
+        read_error_q <= error_i;
+        rdata_q <= data_i;
+      end
     end
     if (rst_i) begin
       bvalid_q <= 1'b0;

@@ -29,32 +29,34 @@ module barrier (
   } state_e;
 
   state_e       state_q;
-  state_e       state_d;
   logic   [1:0] step_q;
   logic         over;
 
   assign over = (state_q == COUNT) & go_i & (zero_i | last_i);
 
-  always_comb begin
-    state_d = state_q;
-    case (state_q)
-      IDLE: if (geometry_at_i & feed_at_i & go_i) state_d = SETTLE;
-      SETTLE: if (step_q == 2'd1) state_d = LOAD;
-      LOAD: state_d = COUNT;
-      COUNT: if (over) state_d = LEAVE;
-      default: if (step_q == 2'd2) state_d = IDLE;
-    endcase
-    if (clear_i | rst_i) state_d = IDLE;
-  end
+  always_ff @(posedge clk_i) begin : p_barrier
+    state_e state_d;
 
-  always_ff @(posedge clk_i) begin
-    state_q    <= state_d;
-    step_q     <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
-    load_o     <= state_d == LOAD;
-    counting_o <= state_d == COUNT;
-    done_o     <= over & ~clear_i & ~rst_i;
-    ended_o    <= over & end_i & ~clear_i & ~rst_i;
-    idle_o     <= state_d == IDLE;
+    // Between barriers nothing moves; LEAVE is long enough for every pulse to fall.
+    if (clear_i | rst_i | (state_q != IDLE) | (geometry_at_i & feed_at_i & go_i)) begin
+      state_d = state_q;
+      case (state_q)
+        IDLE: if (geometry_at_i & feed_at_i & go_i) state_d = SETTLE;
+        SETTLE: if (step_q == 2'd1) state_d = LOAD;
+        LOAD: state_d = COUNT;
+        COUNT: if (over) state_d = LEAVE;
+        default: if (step_q == 2'd2) state_d = IDLE;
+      endcase
+      if (clear_i | rst_i) state_d = IDLE;
+
+      done_o     <= over & ~clear_i & ~rst_i;
+      ended_o    <= over & end_i & ~clear_i & ~rst_i;
+      load_o     <= state_d == LOAD;
+      counting_o <= state_d == COUNT;
+      idle_o     <= state_d == IDLE;
+      step_q     <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
+      state_q    <= state_d;
+    end
   end
 endmodule
 

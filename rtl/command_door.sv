@@ -63,6 +63,12 @@ module command_door #(
   logic field_bad;
   logic field_bad_mask;
 
+  // Nothing moves but for a word in work and the clock behind it, in which the pulses fall.
+  logic awake;
+  logic awake_q;
+  assign awake = restart || write_i || flush_i || awake_q;
+  always_ff @(posedge clk_i) awake_q <= restart || write_i || flush_i || flush_q || !ready_o;
+
   assign restart  = rst_i || clear_i;
   assign truncate = ready_o && (flush_i || flush_q) && partial_o;
   assign last     = left_q == 5'd1;
@@ -111,56 +117,62 @@ module command_door #(
   );
 
   always_ff @(posedge clk_i) begin
-    if (ready_o) word_q <= word_i;
-    else if (low_judge_q || high_judge_q) word_q <= {word_q[15:0], word_q[31:16]};
+    if (awake) begin
+      if (ready_o) word_q <= word_i;
+      else if (low_judge_q || high_judge_q) word_q <= {word_q[15:0], word_q[31:16]};
 
-    if (answer_q) left_q <= partial_o ? left_q - 5'd1 : stored[5:1];
-  end
-
-  always_ff @(posedge clk_i) begin
-    if (restart) begin
-      {low_q, low_judge_q, high_q, high_judge_q, answer_q} <= 5'd0;
-      ready_o <= 1'b1;
-      done_o <= 1'b0;
-      error_o <= !rst_i && (!ready_o || write_i);
-      flush_q <= 1'b0;
-      open_q <= 1'b1;
-      partial_o <= 1'b0;
-    end else begin
-      low_q <= ready_o && write_i && open_q && !truncate;
-      low_judge_q <= low_q;
-      high_q <= low_judge_q;
-      high_judge_q <= high_q;
-      answer_q <= high_judge_q || (ready_o && write_i && (!open_q || truncate));
-      ready_o <= answer_q || (ready_o && !write_i);
-      done_o <= answer_q && !refused;
-      error_o <= refused;
-      flush_q <= !ready_o && (flush_i || flush_q);
-      if (refused || truncate) open_q <= 1'b0;
-      if (refused || truncate) partial_o <= 1'b0;
-      else if (answer_q) partial_o <= !accepted;
+      if (answer_q) left_q <= partial_o ? left_q - 5'd1 : stored[5:1];
     end
   end
 
   always_ff @(posedge clk_i) begin
-    if (restart) begin
-      halfword_o <= 16'd0;
-      {geometry_write_o, feed_write_o, geometry_commit_o, feed_commit_o} <= 4'd0;
-      drop_o <= 1'b0;
-      refuse_o <= 1'b0;
-      reason_o <= card_map_pkg::REFUSE_NONE;
-    end else begin
-      if (store) halfword_o <= {partial_o && count_top ? number_o : word_q[15:8], word_q[7:0]};
-      geometry_write_o <= store && to_geometry;
-      feed_write_o <= store && to_feed;
-      geometry_commit_o <= accepted && to_geometry;
-      feed_commit_o <= accepted && to_feed;
-      drop_o <= (refused || truncate) && open_q;
-      refuse_o <= refused || truncate;
-      if (truncate) reason_o <= card_map_pkg::REFUSE_TRUNCATED;
-      else if (refused && !open_q) reason_o <= card_map_pkg::REFUSE_DOOR_CLOSED;
-      else if (refused && !partial_o) reason_o <= header_reason;
-      else if (refused) reason_o <= field_bad_mask ? card_map_pkg::REFUSE_BAD_MASK : card_map_pkg::REFUSE_BAD_FIELD;
+    if (awake) begin
+      if (restart) begin
+        {low_q, low_judge_q, high_q, high_judge_q, answer_q} <= 5'd0;
+        ready_o <= 1'b1;
+        done_o <= 1'b0;
+        error_o <= !rst_i && (!ready_o || write_i);
+        flush_q <= 1'b0;
+        open_q <= 1'b1;
+        partial_o <= 1'b0;
+      end else begin
+        low_q <= ready_o && write_i && open_q && !truncate;
+        low_judge_q <= low_q;
+        high_q <= low_judge_q;
+        high_judge_q <= high_q;
+        answer_q <= high_judge_q || (ready_o && write_i && (!open_q || truncate));
+        ready_o <= answer_q || (ready_o && !write_i);
+        done_o <= answer_q && !refused;
+        error_o <= refused;
+        flush_q <= !ready_o && (flush_i || flush_q);
+        if (refused || truncate) open_q <= 1'b0;
+        if (refused || truncate) partial_o <= 1'b0;
+        else if (answer_q) partial_o <= !accepted;
+      end
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (awake) begin
+      if (restart) begin
+        halfword_o <= 16'd0;
+        {geometry_write_o, feed_write_o, geometry_commit_o, feed_commit_o} <= 4'd0;
+        drop_o <= 1'b0;
+        refuse_o <= 1'b0;
+        reason_o <= card_map_pkg::REFUSE_NONE;
+      end else begin
+        if (store) halfword_o <= {partial_o && count_top ? number_o : word_q[15:8], word_q[7:0]};
+        geometry_write_o <= store && to_geometry;
+        feed_write_o <= store && to_feed;
+        geometry_commit_o <= accepted && to_geometry;
+        feed_commit_o <= accepted && to_feed;
+        drop_o <= (refused || truncate) && open_q;
+        refuse_o <= refused || truncate;
+        if (truncate) reason_o <= card_map_pkg::REFUSE_TRUNCATED;
+        else if (refused && !open_q) reason_o <= card_map_pkg::REFUSE_DOOR_CLOSED;
+        else if (refused && !partial_o) reason_o <= header_reason;
+        else if (refused) reason_o <= field_bad_mask ? card_map_pkg::REFUSE_BAD_MASK : card_map_pkg::REFUSE_BAD_FIELD;
+      end
     end
   end
 

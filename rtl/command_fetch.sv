@@ -24,6 +24,7 @@ module command_fetch (
     input  wire logic [ 3:0] next_field_i,
     input  wire logic [ 2:0] next_length_i,
     input  wire logic        last_field_i,
+    output logic             header_o,         // {mask, opcode} is on word_i
     output logic             first_o,          // the first field is taken up now (combinational)
     output logic             advance_o,        // the next field is taken up now (combinational)
     output logic      [ 3:0] field_o,          // field under way
@@ -47,79 +48,76 @@ module command_fetch (
   } state_e;
 
   state_e       state_q;
-  state_e       state_d;
   logic   [1:0] step_q;  // within HEADER and TAIL
   logic   [2:0] left_q;  // halfwords left in the field, less one
-  logic         header_done;
-  logic         enter_payload;
   logic         field_done;
 
   // What was read 1 and 2 clocks ago.
   logic         header_1_q;
   logic         payload_1_q;
   logic         first_1_q;
-  logic         first_2_q;
   logic   [3:0] field_1_q;
 
   assign field_done = left_q == 3'd0;
-  assign header_done = (state_q == HEADER) & (step_q == 2'd3);
-  assign enter_payload = has_payload_i & payload_ready_i & (header_done | (state_q == WAIT));
-  assign first_o = enter_payload;
+  assign first_o = has_payload_i & payload_ready_i & (((state_q == HEADER) & (step_q == 2'd3)) | (state_q == WAIT));
   assign advance_o = (state_q == PAYLOAD) & field_done;
 
-  always_comb begin
-    state_d = state_q;
-    case (state_q)
-      IDLE: if (~empty_i) state_d = HEADER;
-      HEADER: begin
-        if (step_q == 2'd3) begin
-          if (~has_payload_i) state_d = TAIL;
-          else if (payload_ready_i) state_d = PAYLOAD;
-          else state_d = WAIT;
+  always_ff @(posedge clk_i) begin : p_fetch
+    state_e state_d;
+
+    // Nothing moves while there is nothing to read, or what was read waits.
+    if (clear_i | rst_i | ~((idle_o & empty_i) | (valid_o & ~pop_i))) begin
+      state_d = state_q;
+      case (state_q)
+        IDLE: if (~empty_i) state_d = HEADER;
+        HEADER: begin
+          if (step_q == 2'd3) begin
+            if (~has_payload_i) state_d = TAIL;
+            else if (payload_ready_i) state_d = PAYLOAD;
+            else state_d = WAIT;
+          end
         end
+        WAIT: if (payload_ready_i) state_d = PAYLOAD;
+        PAYLOAD: if (field_done & last_field_i) state_d = TAIL;
+        TAIL: if (step_q == 2'd1) state_d = VALID;
+        default: if (pop_i) state_d = IDLE;
+      endcase
+      if (clear_i | rst_i) state_d = IDLE;
+
+      state_q <= state_d;
+      read_o  <= (state_d == HEADER) | (state_d == PAYLOAD);
+      valid_o <= state_d == VALID;
+      idle_o  <= state_d == IDLE;
+      step_q  <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
+
+      if (first_o) begin
+        field_o <= first_field_i;
+        left_q  <= first_length_i;
+      end else if (advance_o) begin
+        field_o <= next_field_i;
+        left_q  <= next_length_i;
+      end else begin
+        left_q <= left_q - 3'd1;
       end
-      WAIT: if (payload_ready_i) state_d = PAYLOAD;
-      PAYLOAD: if (field_done & last_field_i) state_d = TAIL;
-      TAIL: if (step_q == 2'd1) state_d = VALID;
-      default: if (pop_i) state_d = IDLE;
-    endcase
-    if (clear_i | rst_i) state_d = IDLE;
-  end
 
-  always_ff @(posedge clk_i) begin
-    state_q <= state_d;
-    read_o  <= (state_d == HEADER) | (state_d == PAYLOAD);
-    valid_o <= state_d == VALID;
-    idle_o  <= state_d == IDLE;
-    step_q  <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
+      header_1_q     <= state_q == HEADER;
+      first_1_q      <= (state_q == HEADER) & (step_q == 2'd0);
+      payload_1_q    <= state_q == PAYLOAD;
+      field_1_q      <= field_o;
+      header_o       <= first_1_q;
+      count_strobe_o <= header_1_q & ~first_1_q;
+      field_strobe_o <= payload_1_q;
+      strobe_field_o <= field_1_q;
+      if (header_o) {mask_o, opcode_o} <= word_i;
 
-    if (enter_payload) begin
-      field_o <= first_field_i;
-      left_q  <= first_length_i;
-    end else if (advance_o) begin
-      field_o <= next_field_i;
-      left_q  <= next_length_i;
-    end else begin
-      left_q <= left_q - 3'd1;
-    end
-
-    header_1_q     <= state_q == HEADER;
-    first_1_q      <= (state_q == HEADER) & (step_q == 2'd0);
-    payload_1_q    <= state_q == PAYLOAD;
-    field_1_q      <= field_o;
-    first_2_q      <= first_1_q;
-    count_strobe_o <= header_1_q & ~first_1_q;
-    field_strobe_o <= payload_1_q;
-    strobe_field_o <= field_1_q;
-    if (first_2_q) {mask_o, opcode_o} <= word_i;
-
-    if (clear_i | rst_i) begin
-      header_1_q     <= 1'b0;
-      first_1_q      <= 1'b0;
-      first_2_q      <= 1'b0;
-      payload_1_q    <= 1'b0;
-      count_strobe_o <= 1'b0;
-      field_strobe_o <= 1'b0;
+      if (clear_i | rst_i) begin
+        header_1_q     <= 1'b0;
+        first_1_q      <= 1'b0;
+        header_o       <= 1'b0;
+        payload_1_q    <= 1'b0;
+        count_strobe_o <= 1'b0;
+        field_strobe_o <= 1'b0;
+      end
     end
   end
 endmodule

@@ -29,8 +29,6 @@ module command_fields (
   // Where the next halfword lies, and what the table says of the present one.
   logic in_count_q;
   logic [5:0] index_q;
-  logic [5:0] repeat_from;
-  logic [5:0] repeat_after;
   logic [15:0] allowed_q;
   logic [5:0] checks_q;
   logic is_count_q;
@@ -42,18 +40,19 @@ module command_fields (
   logic over_count_q;
   logic off_plane_q;
   logic [47:0] count_q;
-  logic violated;
-  logic violated_mask;
 
-  assign repeat_from  = card_map_pkg::command_base_halfwords(op_i) - 6'd5;
-  assign repeat_after = repeat_from + card_map_pkg::command_halfwords_per_axis(op_i) - 6'd1;
-  assign count_top_o  = is_count_q && checks_q[FIELD_END];
+  assign count_top_o = is_count_q && checks_q[FIELD_END];
 
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk_i) begin : p_index
+    logic [5:0] repeat_from;
+    logic [5:0] repeat_after;
+
     if (restart_i) begin
       in_count_q <= 1'b1;
       index_q <= 6'd0;
     end else if (examine_i) begin
+      repeat_from  = card_map_pkg::command_base_halfwords(op_i) - 6'd5;
+      repeat_after = repeat_from + card_map_pkg::command_halfwords_per_axis(op_i) - 6'd1;
       index_q <= index_q + 6'd1;
       if (in_count_q && index_q == 6'd2) begin
         in_count_q <= 1'b0;
@@ -108,16 +107,18 @@ module command_fields (
     end
   end
 
-  assign violated = not_allowed_q || (checks_q[NOT_ZERO] && !not_zero_q && !below_not_zero_q) ||
-                    (checks_q[FIELD_END] && checks_q[AT_MOST_COUNT] && over_count_q) ||
-                    (checks_q[FIELD_END] && (checks_q[UNSIGNED_LIMIT] || checks_q[SIGNED_LIMIT]) && over_limit_q);
-  assign violated_mask = checks_q[PLANE] && off_plane_q;
+  always_ff @(posedge clk_i) begin : p_verdict
+    logic violated;
+    logic violated_mask;
 
-  always_ff @(posedge clk_i) begin
     if (restart_i) begin
       bad_o <= 1'b0;
       bad_mask_o <= 1'b0;
     end else if (judge_i && !bad_o) begin
+      violated = not_allowed_q || (checks_q[NOT_ZERO] && !not_zero_q && !below_not_zero_q) ||
+                 (checks_q[FIELD_END] && checks_q[AT_MOST_COUNT] && over_count_q) ||
+                 (checks_q[FIELD_END] && (checks_q[UNSIGNED_LIMIT] || checks_q[SIGNED_LIMIT]) && over_limit_q);
+      violated_mask = checks_q[PLANE] && off_plane_q;
       bad_o <= violated || violated_mask;
       bad_mask_o <= violated_mask && !violated;
     end

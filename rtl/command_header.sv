@@ -39,24 +39,15 @@ module command_header #(
   logic number_bad_q;
   logic geometry_full_q;
   logic feed_full_q;
-  logic count_bad;
 
   function automatic logic [3:0] ones(input logic [7:0] mask);
     ones = 4'd0;
     for (int i = 0; i < 8; i++) ones = ones + {3'b0, mask[i]};
   endfunction
 
-  always_comb begin
-    unique case (card_map_pkg::command_mask_rule(
-        op_o
-    ))
-      card_map_pkg::MASK_RULE_ANY: count_bad = moving_q == 4'd0;
-      card_map_pkg::MASK_RULE_PLANE: count_bad = moving_q != 4'd2;
-      default: count_bad = moving_q != 4'd0;
-    endcase
-  end
+  always_ff @(posedge clk_i) begin : p_header
+    logic count_bad;
 
-  always_ff @(posedge clk_i) begin
     if (low_i) {mask_o, op_o} <= halfword_i;
     if (low_judge_i) begin
       unknown_q <= !card_map_pkg::command_known(op_o);
@@ -67,6 +58,13 @@ module command_header #(
       moving_q <= ones(mask_o);
     end
     if (high_i) begin
+      case (card_map_pkg::command_mask_rule(
+          op_o
+      ))
+        card_map_pkg::MASK_RULE_ANY: count_bad = moving_q == 4'd0;
+        card_map_pkg::MASK_RULE_PLANE: count_bad = moving_q != 4'd2;
+        default: count_bad = moving_q != 4'd0;
+      endcase
       mask_bad_q <= count_bad || (mask_o & ABSENT_AXES) != 8'd0;
       // Halfword 1 is not stored, which also rounds the words behind the first: stored / 2, rounded down.
       stored_o   <= base_q + 6'(per_axis_q * moving_q);

@@ -13,13 +13,19 @@ module count_chain (
     output logic             zero_o       // all bits; two clocks late
 );
   logic low_zero_q;
+  logic loaded_q;
+  logic settled_q;
 
   always_ff @(posedge clk_i) begin
     if (load_i) {number_o, count_o} <= {word_i, number_o, count_o[39:16]};
-    mid_zero_o <= count_o[19:4] == 16'd0;
-    top_zero_o <= count_o[39:20] == 20'd0;
-    low_zero_q <= count_o[3:0] == 4'd0;
-    zero_o     <= low_zero_q & mid_zero_o & top_zero_o;
+    loaded_q  <= load_i;
+    settled_q <= loaded_q;
+    if (loaded_q) begin
+      mid_zero_o <= count_o[19:4] == 16'd0;
+      top_zero_o <= count_o[39:20] == 20'd0;
+      low_zero_q <= count_o[3:0] == 4'd0;
+    end
+    if (settled_q) zero_o <= low_zero_q & mid_zero_o & top_zero_o;
   end
 endmodule
 

@@ -49,7 +49,7 @@ module deviation_accumulator (
       f_shift_q <= 1'b0;
       h_shift_q <= 1'b0;
       e_shift_q <= 1'b0;
-    end else begin
+    end else if (accept | g_shift_q | start_i | start_q) begin
       phase_q   <= {phase_q[LAST-1:0], accept};
       start_q   <= start_i;
       ready_o   <= (ready_o & ~accept & ~start_i) | phase_q[LAST] | start_q;
@@ -62,24 +62,28 @@ module deviation_accumulator (
 
   // Choice of the next step, renewed at rest, held while the step is worked off.
   logic x_zero_q, y_zero_q, done_q, finish_q, select_x_q, negative_q, old_sign_q;
-  logic gx_negative, gy_negative, x_negative, y_negative, x_table, x_reached, y_reached, finish, select_x, negative;
-  assign gx_negative = gx_q[79];
-  assign gy_negative = gy_q[79];
-  assign x_negative = clockwise_q ^ ~gy_negative;
-  assign y_negative = clockwise_q ^ gx_negative;
-  assign x_table = ~(f_q[79] ^ gx_negative ^ gy_negative ^ clockwise_q);  // the 16-entry table's axis
-  assign x_reached = x_zero_q | (ex_q[31] ^ x_negative);
-  assign y_reached = y_zero_q | (ey_q[31] ^ y_negative);
-  assign finish = finish_q | (done_q & (x_reached | y_reached));
-  assign select_x = finish ? ~x_zero_q : x_table;
-  assign negative = select_x ? (finish ? ex_q[31] : x_negative) : (finish ? ey_q[31] : y_negative);
+  always_ff @(posedge clk_i) begin : p_choice_of_step
+    logic gx_negative, gy_negative, x_negative, y_negative, x_table, x_reached, y_reached, finish;
 
-  always_ff @(posedge clk_i) begin
     if (ready_o) begin
-      finish_q   <= finish;
-      select_x_q <= select_x;
-      negative_q <= negative;
-      old_sign_q <= select_x ? gx_negative : gy_negative;
+      gx_negative = gx_q[79];
+      gy_negative = gy_q[79];
+      x_negative = clockwise_q ^ ~gy_negative;
+      y_negative = clockwise_q ^ gx_negative;
+      x_table = ~(f_q[79] ^ gx_negative ^ gy_negative ^ clockwise_q);  // the 16-entry table's axis
+      x_reached = x_zero_q | (ex_q[31] ^ x_negative);
+      y_reached = y_zero_q | (ey_q[31] ^ y_negative);
+      finish = finish_q | (done_q & (x_reached | y_reached));
+      finish_q <= finish;
+      if (finish ? ~x_zero_q : x_table) begin
+        select_x_q <= 1'b1;
+        negative_q <= finish ? ex_q[31] : x_negative;
+        old_sign_q <= gx_negative;
+      end else begin
+        select_x_q <= 1'b0;
+        negative_q <= finish ? ey_q[31] : y_negative;
+        old_sign_q <= gy_negative;
+      end
     end
     if (start_q) finish_q <= 1'b0;
   end
@@ -94,32 +98,35 @@ module deviation_accumulator (
   assign e_sum = {1'b0, e_q} + {1'b0, {16{~negative_q}}} + {16'd0, e_carry_q};
 
   always_ff @(posedge clk_i) begin
-    g_q <= (select_x_q ? gx_q[15:0] : gy_q[15:0]) ^ {16{negative_q}};
-    h_q <= h_shift_q ? (select_x_q ? hx_q[15:0] : hy_q[15:0]) : 16'd0;
-    h_late_q <= h_q;
-    e_q <= select_x_q ? ex_q[15:0] : ey_q[15:0];
-    u_q <= u_sum[15:0];
-    v_q <= v_sum[15:0];
-    sum_q <= f_sum[15:0];
-    rest_q <= e_sum[15:0];
-    u_carry_q <= u_sum[16] & ~phase_q[0];
-    v_carry_q <= v_sum[16] & ~phase_q[1];
-    f_carry_q <= phase_q[1] ? negative_q : f_sum[16];
-    e_carry_q <= phase_q[0] ? negative_q : e_sum[16];
+    // Between steps the words rest; what they held before a step's first phase never counts.
+    if (g_shift_q) begin
+      g_q <= (select_x_q ? gx_q[15:0] : gy_q[15:0]) ^ {16{negative_q}};
+      h_q <= h_shift_q ? (select_x_q ? hx_q[15:0] : hy_q[15:0]) : 16'd0;
+      h_late_q <= h_q;
+      e_q <= select_x_q ? ex_q[15:0] : ey_q[15:0];
+      {u_carry_q, u_q} <= u_sum & {~phase_q[0], 16'hFFFF};
+      {v_carry_q, v_q} <= v_sum & {~phase_q[1], 16'hFFFF};
+      {f_carry_q, sum_q} <= f_sum;
+      if (phase_q[1]) f_carry_q <= negative_q;
+      {e_carry_q, rest_q} <= e_sum;
+      if (phase_q[0]) e_carry_q <= negative_q;
+    end
   end
 
   // State: shift chains; a chain that travels is full again when its last word is back.
   logic [15:0] g_back;
   assign g_back = v_q ^ {16{negative_q}};
   always_ff @(posedge clk_i) begin
-    if (load_i[0] | f_shift_q) f_q <= {load_i[0] ? word_i : sum_q, f_q[79:16]};
-    if (load_i[1] | (g_shift_q & select_x_q)) gx_q <= {load_i[1] ? word_i : g_back, gx_q[79:16]};
-    if (load_i[2] | (g_shift_q & ~select_x_q)) gy_q <= {load_i[2] ? word_i : g_back, gy_q[79:16]};
-    if (load_i[3] | (h_shift_q & select_x_q)) hx_q <= {load_i[3] ? word_i : hx_q[15:0], hx_q[47:16]};
-    if (load_i[4] | (h_shift_q & ~select_x_q)) hy_q <= {load_i[4] ? word_i : hy_q[15:0], hy_q[47:16]};
-    if (load_i[5] | (e_shift_q & select_x_q)) ex_q <= {load_i[5] ? word_i : rest_q, ex_q[31:16]};
-    if (load_i[6] | (e_shift_q & ~select_x_q)) ey_q <= {load_i[6] ? word_i : rest_q, ey_q[31:16]};
-    if (load_i[8]) clockwise_q <= word_i[0];
+    if ((|load_i) | g_shift_q) begin
+      if (load_i[0] | f_shift_q) f_q <= {load_i[0] ? word_i : sum_q, f_q[79:16]};
+      if (load_i[1] | (g_shift_q & select_x_q)) gx_q <= {load_i[1] ? word_i : g_back, gx_q[79:16]};
+      if (load_i[2] | (g_shift_q & ~select_x_q)) gy_q <= {load_i[2] ? word_i : g_back, gy_q[79:16]};
+      if (load_i[3] | (h_shift_q & select_x_q)) hx_q <= {load_i[3] ? word_i : hx_q[15:0], hx_q[47:16]};
+      if (load_i[4] | (h_shift_q & ~select_x_q)) hy_q <= {load_i[4] ? word_i : hy_q[15:0], hy_q[47:16]};
+      if (load_i[5] | (e_shift_q & select_x_q)) ex_q <= {load_i[5] ? word_i : rest_q, ex_q[31:16]};
+      if (load_i[6] | (e_shift_q & ~select_x_q)) ey_q <= {load_i[6] ? word_i : rest_q, ey_q[31:16]};
+      if (load_i[8]) clockwise_q <= word_i[0];
+    end
   end
 
   // Quadrants: the last one is foreseen, so that at_end_o and the next choice know of it with the sign itself. With
@@ -129,11 +136,14 @@ module deviation_accumulator (
   assign done   = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
   always_ff @(posedge clk_i) begin
     if (load_i[7]) quadrants_q <= word_i;
-    else quadrants_q <= quadrants_q - {15'd0, change};
-    upper_zero_q <= quadrants_q[15:1] == 15'd0;
-    x_zero_q <= ex_q == 32'd0;
-    y_zero_q <= ey_q == 32'd0;
-    done_q <= done;
+    else if (change) quadrants_q <= quadrants_q - 16'd1;
+    // The flags of what a start finds, and of what a step leaves.
+    if (start_i | g_shift_q) begin
+      upper_zero_q <= quadrants_q[15:1] == 15'd0;
+      x_zero_q <= ex_q == 32'd0;
+      y_zero_q <= ey_q == 32'd0;
+    end
+    if (start_q | phase_q[LAST]) done_q <= done;
     if (drop) at_end_o <= 1'b0;
     else if (start_q | phase_q[LAST]) at_end_o <= done & x_zero_q & y_zero_q;
   end
@@ -142,7 +152,7 @@ module deviation_accumulator (
     if (rst_i | clear_i) begin
       step_x_o <= 1'b0;
       step_y_o <= 1'b0;
-    end else begin
+    end else if (g_shift_q) begin
       step_x_o <= phase_q[0] & select_x_q;
       step_y_o <= phase_q[0] & ~select_x_q;
     end

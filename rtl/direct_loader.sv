@@ -48,12 +48,9 @@ module direct_loader #(
   localparam logic [4:0] TAKE_LENGTH_2 = 5'd7;
 
   state_e        state_q;
-  state_e        state_d;
   logic   [ 4:0] step_q;
   logic   [ 7:0] rest_q;  // masked axes from axis_q on
   logic   [ 2:0] axis_q;
-  logic          axis_done;
-  logic          take_high;
   logic          busy_q;
 
   // The halfword taken, on its way to the chains.
@@ -70,96 +67,115 @@ module direct_loader #(
   logic          frequency_any_q;  // a one in the frequency so far
   logic          length_any_q;
   logic          bad_q;
-  logic   [15:0] negated;
-  logic          raw_any;
 
-  assign axis_done = ~rest_q[0] | (step_q == TAKE_COUNT_1);
-  assign take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_COUNT_1)
-                                       : step_q == TAKE_LENGTH_1;
-  assign raw_any = raw_q != 16'd0;
-  assign negated = (raw_q ^ {16{negative_q}}) + {15'd0, carry_q};
+  always_ff @(posedge clk_i) begin : p_loader
+    logic        refused;
+    logic        axis_done;
+    logic        axis_last;
+    logic        take_high;
+    logic        raw_any;
+    logic [15:0] negated;
 
-  always_comb begin
-    state_d = state_q;
-    case (state_q)
-      IDLE: if (start_i) state_d = CHECK;
-      // The clocks in which a command just committed makes the card busy.
-      CHECK: begin
-        if (step_q == 5'd7) begin
-          if (busy_q | bad_q) state_d = DECIDE;
-          else state_d = AXIS;
-        end
+    // At rest nothing moves, once done_o and go_o have fallen again.
+    if (rst_i | start_i | (state_q != IDLE) | done_o) begin
+      refused = busy_q | bad_q;
+      axis_last = axis_q == 3'd7;
+      axis_done = ~rest_q[0] | (step_q == TAKE_COUNT_1);
+      take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_COUNT_1) : step_q == TAKE_LENGTH_1;
+      raw_any = raw_q != 16'd0;
+      negated = (raw_q ^ {16{negative_q}}) + {15'd0, carry_q};
+
+      // Each stage before the one that feeds it.
+      word_o      <= frequency_q ? negated : raw_q;
+      axis_o      <= raw_axis_q;
+      increment_o <= frequency_q;
+      steps_o     <= count_q;
+      length_o    <= length_q;
+
+      done_o      <= (state_q == DECIDE) & (step_q == 5'd7);
+      error_o     <= busy_q | bad_q | ~length_any_q;
+      go_o        <= (state_q == DECIDE) & (step_q == 5'd7) & ~busy_q & ~bad_q & length_any_q;
+      reason_o    <= busy_q ? card_map_pkg::REFUSE_BUSY : card_map_pkg::REFUSE_BAD_VALUE;
+
+      if (state_q == CHECK) busy_q <= busy_i;
+      if (state_q == IDLE) begin
+        bad_q        <= 1'b0;
+        length_any_q <= 1'b0;
       end
-      AXIS: if (axis_done & (axis_q == 3'd7)) state_d = LENGTH;
-      LENGTH: if (step_q == TAKE_LENGTH_2) state_d = DECIDE;
-      default: if (step_q == 5'd7) state_d = IDLE;
-    endcase
-    if (rst_i) state_d = IDLE;
-  end
+      if (state_q == CHECK) bad_q <= (mask_i == 8'd0) | ((mask_i >> Axes) != 8'd0);
+      // A frequency above 2^40: bit 40 is bit 8 of its third halfword.
+      if (frequency_q & frequency_top_q & raw_q[8] & (frequency_any_q | (raw_q[7:0] != 8'd0))) bad_q <= 1'b1;
+      if (count_q & raw_any & ~frequency_any_q) bad_q <= 1'b1;
+      if (length_q & raw_any) length_any_q <= 1'b1;
 
-  always_ff @(posedge clk_i) begin
-    state_q <= state_d;
-    step_q  <= ((state_d != state_q) | ((state_q == AXIS) & axis_done)) ? 5'd0 : step_q + 5'd1;
-    busy_q  <= (state_q == CHECK) ? busy_i : busy_q;
+      if ((state_q == AXIS) & (step_q == TAKE_DIRECTION)) begin
+        negative_q      <= data_i[0];
+        carry_q         <= data_i[0];
+        frequency_any_q <= 1'b0;
+      end else if (frequency_q) begin
+        carry_q         <= carry_q & ~raw_any;
+        frequency_any_q <= frequency_any_q | raw_any;
+      end
 
-    if (state_q == CHECK) begin
-      rest_q <= mask_i;
-      axis_q <= 3'd0;
-      mask_o <= mask_i[Axes-1:0];
-    end else if ((state_q == AXIS) & axis_done) begin
-      rest_q <= {1'b0, rest_q[7:1]};
-      axis_q <= axis_q + 3'd1;
-    end
+      raw_q <= take_high ? data_i[31:16] : data_i[15:0];
+      raw_axis_q <= axis_q;
+      frequency_top_q <= step_q == TAKE_FREQUENCY_2;
+      frequency_q     <= (state_q == AXIS) & rest_q[0] &
+          ((step_q == TAKE_FREQUENCY_0) | (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_FREQUENCY_2));
+      count_q <= (state_q == AXIS) & rest_q[0] & ((step_q == TAKE_COUNT_0) | (step_q == TAKE_COUNT_1));
+      length_q        <= (state_q == LENGTH) &
+          ((step_q == TAKE_LENGTH_0) | (step_q == TAKE_LENGTH_1) | (step_q == TAKE_LENGTH_2));
 
-    if (state_q == LENGTH) begin
-      address_o <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[9:2] : card_map_pkg::ADDR_LENGTH_LO[9:2];
-    end else begin
-      case (step_q[3:2])
-        2'd0: address_o <= card_map_pkg::ADDR_DIRECTION[9:2] + {3'd0, axis_q, 2'd0};
-        2'd1: address_o <= card_map_pkg::ADDR_FREQUENCY_LO[9:2] + {3'd0, axis_q, 2'd0};
-        2'd2: address_o <= card_map_pkg::ADDR_FREQUENCY_HI[9:2] + {3'd0, axis_q, 2'd0};
-        default: address_o <= card_map_pkg::ADDR_COUNT[9:2] + {3'd0, axis_q, 2'd0};
+      if (state_q == LENGTH) begin
+        address_o <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[9:2] : card_map_pkg::ADDR_LENGTH_LO[9:2];
+      end else begin
+        case (step_q[3:2])
+          2'd0: address_o <= card_map_pkg::ADDR_DIRECTION[9:2] + {3'd0, axis_q, 2'd0};
+          2'd1: address_o <= card_map_pkg::ADDR_FREQUENCY_LO[9:2] + {3'd0, axis_q, 2'd0};
+          2'd2: address_o <= card_map_pkg::ADDR_FREQUENCY_HI[9:2] + {3'd0, axis_q, 2'd0};
+          default: address_o <= card_map_pkg::ADDR_COUNT[9:2] + {3'd0, axis_q, 2'd0};
+        endcase
+      end
+
+      if (state_q == CHECK) begin
+        rest_q <= mask_i;
+        axis_q <= 3'd0;
+        mask_o <= mask_i[Axes-1:0];
+      end else if ((state_q == AXIS) & axis_done) begin
+        rest_q <= {1'b0, rest_q[7:1]};
+        axis_q <= axis_q + 3'd1;
+      end
+
+      step_q <= step_q + 5'd1;
+      case (state_q)
+        IDLE: begin
+          step_q <= 5'd0;
+          if (start_i) state_q <= CHECK;
+        end
+        // The clocks in which a command just committed makes the card busy.
+        CHECK: begin
+          if (step_q == 5'd7) begin
+            step_q  <= 5'd0;
+            state_q <= refused ? DECIDE : AXIS;
+          end
+        end
+        AXIS: begin
+          if (axis_done) begin
+            step_q <= 5'd0;
+            if (axis_last) state_q <= LENGTH;
+          end
+        end
+        LENGTH: begin
+          if (step_q == TAKE_LENGTH_2) begin
+            step_q  <= 5'd0;
+            state_q <= DECIDE;
+          end
+        end
+        default: if (step_q == 5'd7) state_q <= IDLE;
       endcase
+
+      if (rst_i) state_q <= IDLE;
     end
-
-    raw_q <= take_high ? data_i[31:16] : data_i[15:0];
-    raw_axis_q <= axis_q;
-    frequency_top_q <= step_q == TAKE_FREQUENCY_2;
-    frequency_q     <= (state_q == AXIS) & rest_q[0] &
-        ((step_q == TAKE_FREQUENCY_0) | (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_FREQUENCY_2));
-    count_q <= (state_q == AXIS) & rest_q[0] & ((step_q == TAKE_COUNT_0) | (step_q == TAKE_COUNT_1));
-    length_q        <= (state_q == LENGTH) &
-        ((step_q == TAKE_LENGTH_0) | (step_q == TAKE_LENGTH_1) | (step_q == TAKE_LENGTH_2));
-
-    if ((state_q == AXIS) & (step_q == TAKE_DIRECTION)) begin
-      negative_q      <= data_i[0];
-      carry_q         <= data_i[0];
-      frequency_any_q <= 1'b0;
-    end else if (frequency_q) begin
-      carry_q         <= carry_q & ~raw_any;
-      frequency_any_q <= frequency_any_q | raw_any;
-    end
-
-    if (state_q == IDLE) begin
-      bad_q        <= 1'b0;
-      length_any_q <= 1'b0;
-    end
-    if (state_q == CHECK) bad_q <= (mask_i == 8'd0) | ((mask_i >> Axes) != 8'd0);
-    // A frequency above 2^40: bit 40 is bit 8 of its third halfword.
-    if (frequency_q & frequency_top_q & raw_q[8] & (frequency_any_q | (raw_q[7:0] != 8'd0))) bad_q <= 1'b1;
-    if (count_q & raw_any & ~frequency_any_q) bad_q <= 1'b1;
-    if (length_q & raw_any) length_any_q <= 1'b1;
-
-    word_o      <= frequency_q ? negated : raw_q;
-    axis_o      <= raw_axis_q;
-    increment_o <= frequency_q;
-    steps_o     <= count_q;
-    length_o    <= length_q;
-
-    done_o      <= (state_q == DECIDE) & (step_q == 5'd7);
-    error_o     <= busy_q | bad_q | ~length_any_q;
-    go_o        <= (state_q == DECIDE) & (step_q == 5'd7) & ~busy_q & ~bad_q & length_any_q;
-    reason_o    <= busy_q ? card_map_pkg::REFUSE_BUSY : card_map_pkg::REFUSE_BAD_VALUE;
   end
 endmodule
 

@@ -48,6 +48,7 @@ module feed_fetch (
       .next_field_i   (field + 4'd1),
       .next_length_i  ((field == RATE || field == ACCELERATION) ? 3'd3 : 3'd1),
       .last_field_i   (field == STOP_DISTANCE),
+      .header_o       (),
       .first_o        (),
       .advance_o      (),
       .field_o        (field),

@@ -29,15 +29,9 @@ module feed_generator (
   // The next piece, shifted in from the load bus.
   logic [63:0] next_rate_q, next_acceleration_q, next_jerk_q;
   logic [31:0] next_floor_q;
-  always_ff @(posedge clk_i) begin
-    if (load_i[0]) next_rate_q <= {word_i, next_rate_q[63:16]};
-    if (load_i[1]) next_acceleration_q <= {word_i, next_acceleration_q[63:16]};
-    if (load_i[2]) next_jerk_q <= {word_i, next_jerk_q[63:16]};
-    if (load_i[3]) next_floor_q <= {word_i, next_floor_q[31:16]};
-  end
 
   // Enabled clocks of the piece, modulo 32, and the moments at which the two parts of the slope are taken from R.
-  logic [4:0] count_q;
+  logic [ 4:0] count_q;
   logic swap_q, load_low_q, load_high_q;
   always_ff @(posedge clk_i) begin
     if (rst_i || swap_i) count_q <= '0;
@@ -52,82 +46,115 @@ module feed_generator (
   logic [4:0] step_q;
   logic rotate_q, compare_q, judge_q;
   logic keep;
-  logic last_step;
   assign keep = !rst_i && !swap_i;
-  assign last_step = step_q == LAST_STEP;
   always_ff @(posedge clk_i) begin
-    if (load_high_q) step_q <= '0;
-    else if (rotate_q) step_q <= step_q + 5'd1;
-    rotate_q  <= keep && ((load_high_q && !swap_q) || (rotate_q && !last_step));
-    compare_q <= keep && rotate_q && step_q[4:3] == 2'b01;
-    judge_q   <= keep && rotate_q && last_step;
+    compare_q <= 1'b0;
+    judge_q   <= 1'b0;
+    if (rotate_q) begin
+      step_q    <= step_q + 5'd1;
+      rotate_q  <= keep && step_q != LAST_STEP;
+      compare_q <= keep && step_q[4:3] == 2'b01;
+      judge_q   <= keep && step_q == LAST_STEP;
+    end
+    if (load_high_q) begin
+      step_q <= '0;
+      if (!swap_q) rotate_q <= keep;
+    end
+    if (rst_i) rotate_q <= 1'b0;
   end
 
-  logic [Width-1:0] rate_q, acceleration_q, jerk_q;
+  // Each is an upper and a lower part that shift as one.
+  logic [Width-33:0] rate_high_q;
+  logic [31:0] rate_low_q;
+  logic [Width-65:0] acceleration_top_q, jerk_top_q;
+  logic [63:0] acceleration_q, jerk_q;
   logic [31:0] floor_q;
   logic rate_carry_q, acceleration_carry_q, borrow_q;
-  logic [Word:0] rate_sum, acceleration_sum, difference;
-  assign rate_sum = {1'b0, rate_q[Word-1:0]} + {1'b0, acceleration_q[Word-1:0]} + {4'd0, rate_carry_q};
-  assign acceleration_sum = {1'b0, acceleration_q[Word-1:0]} + {1'b0, jerk_q[Word-1:0]} + {4'd0, acceleration_carry_q};
-  assign difference = {1'b0, rate_q[Width-1-:Word]} - {1'b0, floor_q[Word-1:0]} - {4'd0, borrow_q};
-  always_ff @(posedge clk_i) begin
-    rate_carry_q <= rotate_q && rate_sum[Word];
-    acceleration_carry_q <= rotate_q && acceleration_sum[Word];
-    borrow_q <= compare_q && difference[Word];
+  always_ff @(posedge clk_i) begin : p_update
+    logic [Word:0] rate_sum, acceleration_sum, difference;
 
-    if (swap_i) rate_q[31:0] <= next_rate_q[31:0];
-    else if (rotate_q) rate_q[31:0] <= rate_q[31+Word:Word];
+    rate_carry_q <= 1'b0;
+    acceleration_carry_q <= 1'b0;
+    borrow_q <= 1'b0;
 
-    if (swap_q) begin
-      rate_q[Width-1:32] <= {4'd0, next_rate_q[63:32]};
-      acceleration_q <= {{4{next_acceleration_q[63]}}, next_acceleration_q};
-      jerk_q <= {{4{next_jerk_q[63]}}, next_jerk_q};
-    end else if (rotate_q) begin
-      rate_q[Width-1:32] <= {rate_sum[Word-1:0], rate_q[Width-1:32+Word]};
-      acceleration_q <= {acceleration_sum[Word-1:0], acceleration_q[Width-1:Word]};
-      jerk_q <= {jerk_q[Word-1:0], jerk_q[Width-1:Word]};
+    if (rotate_q) begin
+      rate_sum = {1'b0, rate_low_q[Word-1:0]} + {1'b0, acceleration_q[Word-1:0]} + {4'd0, rate_carry_q};
+      acceleration_sum = {1'b0, acceleration_q[Word-1:0]} + {1'b0, jerk_q[Word-1:0]} + {4'd0, acceleration_carry_q};
+      rate_carry_q <= rate_sum[Word];
+      acceleration_carry_q <= acceleration_sum[Word];
+      rate_low_q <= {rate_high_q[Word-1:0], rate_low_q[31:Word]};
+      rate_high_q <= {rate_sum[Word-1:0], rate_high_q[Width-33:Word]};
+      acceleration_top_q <= acceleration_sum[Word-1:0];
+      acceleration_q <= {acceleration_top_q, acceleration_q[63:Word]};
+      jerk_top_q <= jerk_q[Word-1:0];
+      jerk_q <= {jerk_top_q, jerk_q[63:Word]};
     end
 
     // Eight nibbles: after the comparison the floor is back in its place.
-    if (swap_q) floor_q <= next_floor_q;
-    else if (compare_q) floor_q <= {floor_q[Word-1:0], floor_q[31:Word]};
+    if (compare_q) begin
+      difference = {1'b0, rate_high_q[Width-33-:Word]} - {1'b0, floor_q[Word-1:0]} - {4'd0, borrow_q};
+      borrow_q <= difference[Word];
+      floor_q  <= {floor_q[Word-1:0], floor_q[31:Word]};
+    end
+
+    if (swap_i) rate_low_q <= next_rate_q[31:0];
+    if (swap_q) begin
+      floor_q <= next_floor_q;
+      rate_high_q <= {4'd0, next_rate_q[63:32]};
+      acceleration_top_q <= {4{next_acceleration_q[63]}};
+      acceleration_q <= next_acceleration_q;
+      jerk_top_q <= {4{next_jerk_q[63]}};
+      jerk_q <= next_jerk_q;
+    end
+
+    if (load_i != 4'd0) begin
+      if (load_i[0]) next_rate_q <= {word_i, next_rate_q[63:16]};
+      if (load_i[1]) next_acceleration_q <= {word_i, next_acceleration_q[63:16]};
+      if (load_i[2]) next_jerk_q <= {word_i, next_jerk_q[63:16]};
+      if (load_i[3]) next_floor_q <= {word_i, next_floor_q[31:16]};
+    end
   end
 
   // Where R lies: below the floor, or at 1 or above. Both are 0 behind a swap, so the first slope is not clamped.
   logic below_q, above_q, below_high_q, above_high_q;
-  logic negative;
-  logic whole;
-  assign negative = rate_q[Width-1];
-  assign whole = |rate_q[Width-2:64];
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk_i) begin : p_judge
+    logic negative;
+    logic whole;
+
     if (rst_i || swap_i) begin
       below_q <= 1'b0;
       above_q <= 1'b0;
     end else if (judge_q) begin
+      negative = rate_high_q[Width-33];
+      whole = |rate_high_q[Width-34:32];
       below_q <= negative || (!whole && borrow_q);
       above_q <= !negative && whole;
     end
-    below_high_q <= below_q;
-    above_high_q <= above_q;
+    if (load_low_q) begin
+      below_high_q <= below_q;
+      above_high_q <= above_q;
+    end
   end
 
   logic [15:0] slope_low_q;
   logic [31:0] slope_high_q;
   always_ff @(posedge clk_i) begin
-    if (rst_i) slope_low_q <= '0;
-    else if (load_low_q) slope_low_q <= (rate_q[31:16] | {16{above_q}}) & ~{16{below_q}};
-    if (rst_i) slope_high_q <= '0;
-    else if (load_high_q) slope_high_q <= below_high_q ? floor_q : rate_q[63:32] | {32{above_high_q}};
+    if (load_low_q) slope_low_q <= (rate_low_q[31:16] | {16{above_q}}) & ~{16{below_q}};
+    if (load_high_q) slope_high_q <= below_high_q ? floor_q : rate_high_q[31:0] | {32{above_high_q}};
+    if (rst_i) begin
+      slope_low_q  <= '0;
+      slope_high_q <= '0;
+    end
   end
 
   logic [15:0] phase_low_q;
   logic [31:0] phase_high_q;
   logic enable_low_q, enable_high_q, carry_q, tick_q;
-  logic [16:0] low_sum;
-  logic [32:0] high_sum;
-  assign low_sum  = {1'b0, phase_low_q} + {1'b0, slope_low_q};
-  assign high_sum = {1'b0, phase_high_q} + {1'b0, slope_high_q} + {32'd0, carry_q};
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk_i) begin : p_phase
+    logic [16:0] low_sum;
+    logic [32:0] high_sum;
+
+    low_sum = {1'b0, phase_low_q} + {1'b0, slope_low_q};
     carry_q <= low_sum[16];
     if (rst_i || clear_i) begin
       enable_low_q <= 1'b0;
@@ -138,9 +165,13 @@ module feed_generator (
     end else begin
       enable_low_q <= enable_i;
       enable_high_q <= enable_low_q;
-      tick_q <= enable_high_q && high_sum[32];
+      tick_q <= 1'b0;
       if (enable_low_q) phase_low_q <= low_sum[15:0];
-      if (enable_high_q) phase_high_q <= high_sum[31:0];
+      if (enable_high_q) begin
+        high_sum = {1'b0, phase_high_q} + {1'b0, slope_high_q} + {32'd0, carry_q};
+        tick_q <= high_sum[32];
+        phase_high_q <= high_sum[31:0];
+      end
     end
   end
 

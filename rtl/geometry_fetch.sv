@@ -54,6 +54,8 @@ module geometry_fetch #(
   logic [3:0] field;
   logic [3:0] first_field;
   logic [3:0] next_field;
+  logic [3:0] lowest;
+  logic       header;
   logic [2:0] next_length;
   logic       last_field;
   logic       count_strobe;
@@ -65,8 +67,12 @@ module geometry_fetch #(
   logic       is_path;
   logic [7:0] rest_q;  // axes of the mask whose increments are still to come
 
-  assign is_arc  = opcode == card_map_pkg::OP_ARC;
-  assign mask_o  = mask[Axes-1:0];
+  assign is_arc = opcode == card_map_pkg::OP_ARC;
+  assign mask_o = mask[Axes-1:0];
+
+  logic unused;  // absent axes: the door lets no command for them in
+  assign unused  = &{1'b0, mask};
+
   assign is_path = is_arc | (opcode == card_map_pkg::OP_LINE);
 
   function automatic logic [3:0] lowest_axis(input logic [7:0] axes);
@@ -85,14 +91,15 @@ module geometry_fetch #(
   endfunction
 
   // Lines and arcs both begin with a field of three halfwords: the first increment, or the path ticks.
-  assign first_field = is_arc ? 4'd0 : lowest_axis(mask);
-  assign next_field  = is_arc ? field + 4'd1 : lowest_axis(rest_q);
+  assign lowest      = lowest_axis(rest_q);
+  assign first_field = is_arc ? 4'd0 : lowest;
+  assign next_field  = is_arc ? field + 4'd1 : lowest;
   assign next_length = is_arc ? arc_field_length(field + 4'd1) : 3'd2;
   assign last_field  = is_arc ? field == HALF_Y : rest_q == 8'd0;
 
   always_ff @(posedge clk_i) begin
-    if (first) rest_q <= mask & (mask - 8'd1);
-    else if (advance) rest_q <= rest_q & (rest_q - 8'd1);
+    if (header) rest_q <= word_i[15:8];
+    else if (first | advance) rest_q <= rest_q & (rest_q - 8'd1);
   end
 
   command_fetch fetch (
@@ -110,6 +117,7 @@ module geometry_fetch #(
       .next_field_i   (next_field),
       .next_length_i  (next_length),
       .last_field_i   (last_field),
+      .header_o       (header),
       .first_o        (first),
       .advance_o      (advance),
       .field_o        (field),
@@ -124,28 +132,42 @@ module geometry_fetch #(
 
   // The path ticks (field 0 of an arc) go nowhere: the prescaler makes exactly as many from its increment.
   always_ff @(posedge clk_i) begin
-    load_word_o  <= (direct_increment_i | direct_steps_i | direct_length_i) ? direct_word_i : word_i;
-    load_count_o <= count_strobe | direct_length_i;
-    for (int i = 0; i < Axes; i++) begin
-      load_increment_o[i] <= (field_strobe & ~is_arc & (strobe_field == 4'(i))) |
-          (direct_increment_i & (direct_axis_i == 3'(i)));
-      load_steps_o[i] <= direct_steps_i & (direct_axis_i == 3'(i));
+    load_word_o      <= (direct_increment_i | direct_steps_i | direct_length_i) ? direct_word_i : word_i;
+    load_count_o     <= count_strobe | direct_length_i;
+    load_increment_o <= '0;
+    load_steps_o     <= '0;
+    load_prescale_o  <= 1'b0;
+    load_deviation_o <= '0;
+    if (direct_increment_i | direct_steps_i) begin
+      for (int i = 0; i < Axes; i++) begin
+        load_increment_o[i] <= direct_increment_i & (direct_axis_i == 3'(i));
+        load_steps_o[i] <= direct_steps_i & (direct_axis_i == 3'(i));
+      end
     end
-    load_prescale_o     <= field_strobe & is_arc & (strobe_field == PRESCALE);
-    load_deviation_o[0] <= field_strobe & is_arc & (strobe_field == DEVIATION);
-    load_deviation_o[1] <= field_strobe & is_arc & (strobe_field == GRADIENT_X);
-    load_deviation_o[2] <= field_strobe & is_arc & (strobe_field == GRADIENT_Y);
-    load_deviation_o[3] <= field_strobe & is_arc & (strobe_field == HALF_X);
-    load_deviation_o[4] <= field_strobe & is_arc & (strobe_field == HALF_Y);
-    load_deviation_o[5] <= field_strobe & is_arc & (strobe_field == END_X);
-    load_deviation_o[6] <= field_strobe & is_arc & (strobe_field == END_Y);
-    load_deviation_o[7] <= field_strobe & is_arc & (strobe_field == QUADRANTS);
-    load_deviation_o[8] <= field_strobe & is_arc & (strobe_field == PLANE);
+    if (field_strobe) begin
+      if (~is_arc) begin
+        for (int i = 0; i < Axes; i++) load_increment_o[i] <= strobe_field == 4'(i);
+      end else begin
+        case (strobe_field)
+          PRESCALE: load_prescale_o <= 1'b1;
+          DEVIATION: load_deviation_o[0] <= 1'b1;
+          GRADIENT_X: load_deviation_o[1] <= 1'b1;
+          GRADIENT_Y: load_deviation_o[2] <= 1'b1;
+          HALF_X: load_deviation_o[3] <= 1'b1;
+          HALF_Y: load_deviation_o[4] <= 1'b1;
+          END_X: load_deviation_o[5] <= 1'b1;
+          END_Y: load_deviation_o[6] <= 1'b1;
+          QUADRANTS: load_deviation_o[7] <= 1'b1;
+          PLANE: load_deviation_o[8] <= 1'b1;
+          default: ;
+        endcase
+      end
+    end
 
-    line_o              <= opcode == card_map_pkg::OP_LINE;
-    arc_o               <= is_arc;
-    barrier_o           <= ~is_path;
-    end_o               <= opcode == card_map_pkg::OP_END;
+    line_o    <= opcode == card_map_pkg::OP_LINE;
+    arc_o     <= is_arc;
+    barrier_o <= ~is_path;
+    end_o     <= opcode == card_map_pkg::OP_END;
   end
 endmodule
 

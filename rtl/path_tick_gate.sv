@@ -15,26 +15,28 @@ module path_tick_gate (
     output logic      empty_o          // nothing waits and the accumulator has worked off the last one
 );
   logic [3:0] count_q;
-  logic [3:0] count_d;
   logic       give;
   logic       waiting_q;
 
   // The accumulator answers a tick with ready low in the next clock: none is given in that clock.
   assign give = waiting_q & engine_ready_i & ~tick_o;
 
-  always_comb begin
-    count_d = count_q;
-    if (step_i & ~give) count_d = count_q + 4'd1;
-    if (give & ~step_i) count_d = count_q - 4'd1;
-    if (clear_i | rst_i) count_d = 4'd0;
-  end
+  always_ff @(posedge clk_i) begin : p_count
+    logic [3:0] count_d;
 
-  always_ff @(posedge clk_i) begin
-    count_q   <= count_d;
-    waiting_q <= count_d != 4'd0;
-    ready_o   <= count_d < 4'd2;
-    tick_o    <= give & ~clear_i & ~rst_i;
-    empty_o   <= (count_d == 4'd0) & ~give & ~tick_o & engine_ready_i;
+    if (clear_i | rst_i) begin
+      count_q   <= 4'd0;
+      waiting_q <= 1'b0;
+      ready_o   <= 1'b1;
+    end else if (step_i ^ give) begin
+      count_d = step_i ? count_q + 4'd1 : count_q - 4'd1;
+      count_q   <= count_d;
+      waiting_q <= count_d != 4'd0;
+      ready_o   <= count_d < 4'd2;
+    end
+    tick_o  <= give & ~clear_i & ~rst_i;
+    // A step that arrives makes it wait; a tick on its way is not worked off.
+    empty_o <= ((~waiting_q & ~step_i) | clear_i | rst_i) & ~give & ~tick_o & engine_ready_i;
   end
 endmodule
 

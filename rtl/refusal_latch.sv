@@ -42,18 +42,12 @@ module refusal_latch (
 
   logic        refused_q;
   logic [27:0] refusal_q;
-  logic [27:0] refusal_d;
-
-  // A refusal by the door and one by the register file never meet: the door refuses a word while its write waits.
-  always_comb begin
-    refusal_d = {address_i, 8'd0, reason_i};
-    if (door_refuse_i) refusal_d = {address_i, door_number_i, door_reason_i};
-  end
 
   always_ff @(posedge clk_i) begin
+    // A refusal by the door and one by the register file never meet: the door refuses a word while its write waits.
     if ((refuse_i || door_refuse_i) && (!refused_q || clear_refusal_i)) begin
       refused_q <= 1'b1;
-      refusal_q <= refusal_d;
+      refusal_q <= door_refuse_i ? {address_i, door_number_i, door_reason_i} : {address_i, 8'd0, reason_i};
     end else if (clear_refusal_i) begin
       refused_q <= 1'b0;
       refusal_q <= '0;

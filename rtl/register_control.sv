@@ -18,6 +18,8 @@ module register_control (
     output logic             partial_o,
     output logic      [11:0] address_o,
     output logic      [31:0] word_o,
+    output logic             judge_o,          // the access is being judged
+    output logic             sample_o,         // a live register is taken, for respond_o in the next clock
     // judgement
     input  wire logic [ 2:0] kind_i,
     input  wire logic        stream_i,
@@ -51,7 +53,6 @@ module register_control (
   } state_e;
 
   state_e        state_q;
-  state_e        state_d;
 
   logic          write_q;
   logic          partial_q;
@@ -71,43 +72,7 @@ module register_control (
     end
   end
 
-  logic finish;
-  logic failed;
   logic word_refused_q;
-
-  always_comb begin
-    state_d = state_q;
-    finish  = 1'b0;
-    failed  = 1'b0;
-    case (state_q)
-      IDLE: if (request_i) state_d = DECODE;
-      DECODE: state_d = WAIT;
-      WAIT: if (!walking_i || kind_i == card_map_pkg::ACCESS_LIVE) state_d = ACT;
-      ACT: begin
-        if (!good_i) begin
-          finish = 1'b1;
-          failed = 1'b1;
-        end else if (!write_q) state_d = RESPOND;
-        else if (stream_i) state_d = SEND;
-        else if (start_i) state_d = LOAD;
-        else finish = 1'b1;
-      end
-      RESPOND: finish = 1'b1;
-      SEND: if (door_ready_i) state_d = SENT;
-      SENT: state_d = JUDGE;
-      JUDGE: begin
-        finish = door_ready_i;
-        failed = word_refused_q || door_refuse_i;
-      end
-      LOAD: begin
-        finish = start_done_i;
-        failed = start_error_i;
-      end
-      default: state_d = IDLE;
-    endcase
-    if (finish) state_d = IDLE;
-  end
-
   logic act_q;
   logic ack_q;
   logic error_q;
@@ -115,13 +80,62 @@ module register_control (
   logic start_q;
 
   always_ff @(posedge clk_i) begin
-    state_q <= state_d;
-    act_q <= state_q == ACT && finish && !failed;
-    ack_q <= finish;
-    error_q <= finish && failed;
-    word_refused_q <= state_q == JUDGE && (word_refused_q || door_refuse_i);
-    stream_write_q <= state_q == SEND && door_ready_i;
-    start_q <= state_q == ACT && state_d == LOAD;
+    act_q <= 1'b0;
+    ack_q <= 1'b0;
+    error_q <= 1'b0;
+    stream_write_q <= 1'b0;
+    start_q <= 1'b0;
+    case (state_q)
+      IDLE:   if (request_i) state_q <= DECODE;
+      DECODE: state_q <= WAIT;
+      WAIT:   if (!walking_i || kind_i == card_map_pkg::ACCESS_LIVE) state_q <= ACT;
+      ACT: begin
+        if (!good_i) begin
+          state_q <= IDLE;
+          ack_q   <= 1'b1;
+          error_q <= 1'b1;
+        end else if (!write_q) begin
+          state_q <= RESPOND;
+        end else if (stream_i) begin
+          state_q <= SEND;
+        end else if (start_i) begin
+          state_q <= LOAD;
+          start_q <= 1'b1;
+        end else begin
+          state_q <= IDLE;
+          ack_q   <= 1'b1;
+          act_q   <= 1'b1;
+        end
+      end
+      SEND: begin
+        word_refused_q <= 1'b0;
+        if (door_ready_i) begin
+          state_q <= SENT;
+          stream_write_q <= 1'b1;
+        end
+      end
+      SENT:   state_q <= JUDGE;
+      JUDGE: begin
+        word_refused_q <= word_refused_q || door_refuse_i;
+        if (door_ready_i) begin
+          state_q <= IDLE;
+          ack_q   <= 1'b1;
+          error_q <= word_refused_q || door_refuse_i;
+        end
+      end
+      LOAD: begin
+        if (start_done_i) begin
+          state_q <= IDLE;
+          ack_q   <= 1'b1;
+          error_q <= start_error_i;
+        end
+      end
+      // RESPOND
+      default: begin
+        state_q <= IDLE;
+        ack_q   <= 1'b1;
+      end
+    endcase
     if (rst_i) begin
       state_q <= IDLE;
       act_q <= 1'b0;
@@ -134,6 +148,8 @@ module register_control (
 
   assign ack_o = ack_q;
   assign error_o = error_q;
+  assign judge_o = state_q == DECODE || state_q == WAIT;
+  assign sample_o = state_q == ACT;
   assign respond_o = state_q == RESPOND;
   assign write_o = write_q;
   assign partial_o = partial_q;

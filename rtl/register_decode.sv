@@ -1,11 +1,13 @@
 `default_nettype none
 
-// Judges an access by the register map. The access must stand still: kind_o and what the access aims at are valid one
-// clock after it stands, reason_o and good_o two clocks after. direct_i is looked at in the second of them.
+// Judges an access by the register map. The access must stand still while judge_i is high: kind_o and what the access
+// aims at are valid one clock after it stands, reason_o and good_o two clocks after. direct_i is looked at in the last
+// clock of judge_i. All of it is kept until the next one: nothing moves between accesses.
 module register_decode #(
     parameter int Axes = 4
 ) (
     input  wire logic        clk_i,
+    input  wire logic        judge_i,
     input  wire logic        write_i,
     input  wire logic        partial_i,
     input  wire logic [11:0] address_i,
@@ -23,24 +25,9 @@ module register_decode #(
 
   localparam logic [3:0] AXIS_COUNT = 4'(Axes);
 
-  logic [ 9:0] word;
-  logic [ 2:0] axis;
-  logic        axis_slot;
-  logic [31:0] mask;
-  logic        absent_d;
+  logic [9:0] word;
 
   assign word = address_i[11:2];
-
-  logic unaligned;
-
-  assign unaligned = address_i[1:0] != 2'd0;
-
-  always_comb begin
-    axis = card_map_pkg::register_axis(word);
-    axis_slot = card_map_pkg::register_only_present_axes(word);
-    mask = card_map_pkg::register_mask(word);
-    absent_d = unaligned || (axis_slot && {1'b0, axis} >= AXIS_COUNT);
-  end
 
   logic [2:0] kind_q;
   logic       absent_q;
@@ -52,47 +39,54 @@ module register_decode #(
   logic       stream_q;
   logic       start_q;
 
-  always_ff @(posedge clk_i) begin
-    kind_q <= card_map_pkg::register_access(word);
-    absent_q <= absent_d;
-    stray_bits_q <= (data_i & ~mask) != 32'd0;
-    in_limits_q <= card_map_pkg::register_in_limits(word, data_i);
-    control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
-    fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
-    refusal_q <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data_i != 32'd0;
-    stream_q <= word == card_map_pkg::ADDR_STREAM[11:2];
-    start_q <= word == card_map_pkg::ADDR_START[11:2];
+  always_ff @(posedge clk_i) begin : p_decode
+    logic        only_present;
+    logic [ 2:0] axis;
+    logic [31:0] mask;
+
+    if (judge_i) begin
+      only_present = card_map_pkg::register_only_present_axes(word);
+      axis = card_map_pkg::register_axis(word);
+      mask = card_map_pkg::register_mask(word);
+      kind_q <= card_map_pkg::register_access(word);
+      absent_q <= address_i[1:0] != 2'd0 || (only_present && {1'b0, axis} >= AXIS_COUNT);
+      stray_bits_q <= (data_i & ~mask) != 32'd0;
+      in_limits_q <= card_map_pkg::register_in_limits(word, data_i);
+      control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
+      fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
+      refusal_q <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data_i != 32'd0;
+      stream_q <= word == card_map_pkg::ADDR_STREAM[11:2];
+      start_q <= word == card_map_pkg::ADDR_START[11:2];
+    end
   end
 
   logic       read_only;
-  logic [7:0] reason_d;
+  logic [7:0] reason_q;
+  logic       good_q;
 
   assign read_only = kind_q == card_map_pkg::ACCESS_CONSTANT || kind_q == card_map_pkg::ACCESS_LIVE ||
       kind_q == card_map_pkg::ACCESS_SNAPSHOT;
 
-  always_comb begin
-    reason_d = card_map_pkg::REFUSE_NONE;
-    if (kind_q == card_map_pkg::ACCESS_NONE || absent_q) begin
-      reason_d = card_map_pkg::REFUSE_UNKNOWN_ADDRESS;
-    end else if (!write_i) begin
-      if (kind_q == card_map_pkg::ACCESS_COMMAND) reason_d = card_map_pkg::REFUSE_WRITE_ONLY;
-    end else if (read_only) begin
-      reason_d = card_map_pkg::REFUSE_READ_ONLY;
-    end else if (partial_i) begin
-      reason_d = card_map_pkg::REFUSE_PARTIAL_WRITE;
-    end else if (stray_bits_q || !in_limits_q) begin
-      reason_d = card_map_pkg::REFUSE_BAD_VALUE;
-    end else if (stream_q && direct_i) begin
-      reason_d = card_map_pkg::REFUSE_BUSY;
-    end
-  end
-
-  logic [7:0] reason_q;
-  logic       good_q;
-
   always_ff @(posedge clk_i) begin
-    reason_q <= reason_d;
-    good_q   <= reason_d == card_map_pkg::REFUSE_NONE;
+    if (judge_i) begin
+      good_q <= 1'b0;
+      if (kind_q == card_map_pkg::ACCESS_NONE || absent_q) begin
+        reason_q <= card_map_pkg::REFUSE_UNKNOWN_ADDRESS;
+      end else if (!write_i && kind_q == card_map_pkg::ACCESS_COMMAND) begin
+        reason_q <= card_map_pkg::REFUSE_WRITE_ONLY;
+      end else if (write_i && read_only) begin
+        reason_q <= card_map_pkg::REFUSE_READ_ONLY;
+      end else if (write_i && partial_i) begin
+        reason_q <= card_map_pkg::REFUSE_PARTIAL_WRITE;
+      end else if (write_i && (stray_bits_q || !in_limits_q)) begin
+        reason_q <= card_map_pkg::REFUSE_BAD_VALUE;
+      end else if (write_i && stream_q && direct_i) begin
+        reason_q <= card_map_pkg::REFUSE_BUSY;
+      end else begin
+        reason_q <= card_map_pkg::REFUSE_NONE;
+        good_q   <= 1'b1;
+      end
+    end
   end
 
   assign kind_o = kind_q;

@@ -66,6 +66,8 @@ module register_file #(
     output logic      [ 4*Axes-1:0] mode_o
 );
 
+  logic        judge;
+  logic        sample;
   logic        respond;
   logic        write;
   logic        partial;
@@ -100,6 +102,8 @@ module register_file #(
       .partial_o(partial),
       .address_o(address),
       .word_o(word),
+      .judge_o(judge),
+      .sample_o(sample),
       .kind_i(kind),
       .stream_i(stream_write),
       .start_i(start_write),
@@ -122,6 +126,7 @@ module register_file #(
       .Axes(Axes)
   ) i_decode (
       .clk_i,
+      .judge_i(judge),
       .write_i(write),
       .partial_i(partial),
       .address_i(address),
@@ -147,9 +152,14 @@ module register_file #(
   logic flush_q;
 
   always_ff @(posedge clk_i) begin
-    snapshot_q <= act && control && word[card_map_pkg::BIT_CONTROL_SNAPSHOT];
-    abort_q <= act && control && word[card_map_pkg::BIT_CONTROL_ABORT];
-    flush_q <= act && control && word[card_map_pkg::BIT_CONTROL_FLUSH];
+    snapshot_q <= 1'b0;
+    abort_q <= 1'b0;
+    flush_q <= 1'b0;
+    if (act && control) begin
+      snapshot_q <= word[card_map_pkg::BIT_CONTROL_SNAPSHOT];
+      abort_q <= word[card_map_pkg::BIT_CONTROL_ABORT];
+      flush_q <= word[card_map_pkg::BIT_CONTROL_FLUSH];
+    end
     if (rst_i) begin
       snapshot_q <= 1'b0;
       abort_q <= 1'b0;
@@ -215,6 +225,7 @@ module register_file #(
   register_live i_live (
       .clk_i,
       .rst_i,
+      .sample_i(sample),
       .word_i(address[5:2]),
       .busy_i,
       .direct_i,

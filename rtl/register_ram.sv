@@ -44,8 +44,8 @@ module register_ram #(
   logic [31:0] time_hi_q;
 
   always_ff @(posedge clk_i) begin
+    if (time_carry_q) time_hi_q <= time_hi_q + 32'd1;
     {time_carry_q, time_lo_q} <= {1'b0, time_lo_q} + 33'd1;
-    time_hi_q <= time_hi_q + {31'd0, time_carry_q};
     if (rst_i) begin
       time_carry_q <= 1'b0;
       time_lo_q <= '0;
@@ -53,14 +53,13 @@ module register_ram #(
     end
   end
 
-  // What the snapshot took, shifted down a word a clock. next_q runs on when nothing is walked, so a snapshot must go
-  // before hold_chain.
+  // What the snapshot took, shifted down a word a clock.
   logic [32*ChainWords-1:0] chain_q;
 
   always_ff @(posedge clk_i) begin
     // The chain shifts from the clock behind the time's high word on.
     if (snapshot_i) chain_q <= {22'd0, status_i, 16'd0, running_i, 15'd0, ratio_i, rate_i, position_i};
-    else if (!hold_chain) chain_q <= {32'd0, chain_q[32*ChainWords-1:32]};
+    else if (snapping_q && !hold_chain) chain_q <= {32'd0, chain_q[32*ChainWords-1:32]};
   end
 
   // The walks. next_q is the address to write next.
@@ -68,47 +67,32 @@ module register_ram #(
   logic       snapping_q;
   logic       hold_chain;
   logic [7:0] next_q;
-  logic [7:0] next_d;
 
   assign hold_chain = next_q == TIME_HI;
 
-  always_comb begin
-    next_d = next_q + 8'd1;
-    if (snapping_q) begin
-      case (next_q)
-        TIME_HI: next_d = FIRST_POSITION;
-        LAST_POSITION: next_d = RATE;
-        RATE: next_d = RATIO;
-        RATIO: next_d = RUNNING;
-        RUNNING: next_d = STATUS;
-        default: ;
-      endcase
-    end
-    if (snapshot_i) next_d = TIME_HI;
-  end
-
   always_ff @(posedge clk_i) begin
-    next_q <= next_d;
-    if (resetting_q && next_q == 8'hFF) resetting_q <= 1'b0;
-    if (snapping_q && next_q == STATUS) snapping_q <= 1'b0;
-    if (snapshot_i) snapping_q <= 1'b1;
+    if (snapshot_i) begin
+      next_q <= TIME_HI;
+      snapping_q <= 1'b1;
+    end else if (snapping_q) begin
+      case (next_q)
+        TIME_HI: next_q <= FIRST_POSITION;
+        LAST_POSITION: next_q <= RATE;
+        RATE: next_q <= RATIO;
+        RATIO: next_q <= RUNNING;
+        RUNNING: next_q <= STATUS;
+        default: next_q <= next_q + 8'd1;
+      endcase
+      if (next_q == STATUS) snapping_q <= 1'b0;
+    end else if (resetting_q) begin
+      next_q <= next_q + 8'd1;
+      if (next_q == 8'hFF) resetting_q <= 1'b0;
+    end
     if (rst_i) begin
       next_q <= '0;
       resetting_q <= 1'b1;
       snapping_q <= 1'b0;
     end
-  end
-
-  logic [31:0] constant;
-
-  always_comb begin
-    case (next_q)
-      card_map_pkg::ADDR_AXES[9:2]: constant = 32'(Axes);
-      card_map_pkg::ADDR_CLOCK_HZ[9:2]: constant = clock_hz_i;
-      card_map_pkg::ADDR_GEOMETRY_DEPTH[9:2]: constant = 32'(GeometryDepth);
-      card_map_pkg::ADDR_FEED_DEPTH[9:2]: constant = 32'(FeedDepth);
-      default: constant = card_map_pkg::register_reset({2'b00, next_q});
-    endcase
   end
 
   // The write port, registered.
@@ -118,12 +102,26 @@ module register_ram #(
 
   always_ff @(posedge clk_i) begin
     store_q <= write_i || snapshot_i || resetting_q || snapping_q;
-    store_address_q <= write_i ? write_address_i : snapshot_i ? TIME_LO : next_q;
-    if (write_i) store_data_q <= write_data_i;
-    else if (snapshot_i) store_data_q <= time_lo_q;
-    else if (resetting_q) store_data_q <= constant;
-    else if (hold_chain) store_data_q <= time_hi_q;
-    else store_data_q <= chain_q[31:0];
+    if (write_i) begin
+      store_address_q <= write_address_i;
+      store_data_q <= write_data_i;
+    end else if (snapshot_i) begin
+      store_address_q <= TIME_LO;
+      store_data_q <= time_lo_q;
+    end else if (resetting_q) begin
+      store_address_q <= next_q;
+      case (next_q)
+        card_map_pkg::ADDR_AXES[9:2]: store_data_q <= 32'(Axes);
+        card_map_pkg::ADDR_CLOCK_HZ[9:2]: store_data_q <= clock_hz_i;
+        card_map_pkg::ADDR_GEOMETRY_DEPTH[9:2]: store_data_q <= 32'(GeometryDepth);
+        card_map_pkg::ADDR_FEED_DEPTH[9:2]: store_data_q <= 32'(FeedDepth);
+        default: store_data_q <= card_map_pkg::register_reset({2'b00, next_q});
+      endcase
+    end else if (snapping_q) begin
+      store_address_q <= next_q;
+      if (hold_chain) store_data_q <= time_hi_q;
+      else store_data_q <= chain_q[31:0];
+    end
     if (rst_i) store_q <= 1'b0;
   end
 

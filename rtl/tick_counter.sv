@@ -1,7 +1,7 @@
 // Counts the ticks of a path or a piece down, 40 bits: `last_o` says that the next tick taken is the last one.
 //
 // Four fast bits take every tick; the upper 36 bits follow in two parts with registered borrows and zero flags. They
-// change at most once in 16 ticks, so their flags, at most 4 clocks late, are settled long before the fast bits reach 1.
+// change at most once in 16 ticks, so their flags, renewed with each tick, are settled long before the fast bits reach 1.
 // The loaded value comes with its flags, so that a count of 1 is recognised in the clock after the load; its upper parts are
 // taken one clock later, so that the late load_i does not reach so many flip-flops: count_i stands until then.
 `default_nettype none
@@ -24,32 +24,35 @@ module tick_counter (
   logic        mid_borrow_q;
   logic        top_borrow_q;
   logic        load_q;
-  logic [ 3:0] low_next;
-
-  assign low_next = load_i ? count_i[3:0] : low_q - {3'd0, take_i};
 
   always_ff @(posedge clk_i) begin
-    low_q  <= low_next;
-    load_q <= load_i;
-    if (load_q) mid_q <= count_i[19:4];
-    else if (mid_borrow_q) mid_q <= mid_q - 16'd1;
-    if (load_q) top_q <= count_i[39:20];
-    else if (top_borrow_q) top_q <= top_q - 20'd1;
+    if (load_q) begin
+      mid_q <= count_i[19:4];
+      top_q <= count_i[39:20];
+    end else begin
+      if (top_borrow_q) top_q <= top_q - 20'd1;
+      if (mid_borrow_q) mid_q <= mid_q - 16'd1;
+    end
     if (load_i) begin
+      low_q        <= count_i[3:0];
       mid_zero_q   <= mid_zero_i;
       top_zero_q   <= top_zero_i;
       mid_borrow_q <= 1'b0;
       top_borrow_q <= 1'b0;
       last_o       <= (count_i[3:0] == 4'd1) & mid_zero_i & top_zero_i;
     end else begin
-      if (!load_q) begin
-        mid_zero_q <= mid_q == 16'd0;
-        top_zero_q <= top_q == 20'd0;
-      end
-      mid_borrow_q <= take_i & (low_q == 4'd0);
       top_borrow_q <= mid_borrow_q & mid_zero_q;
-      last_o       <= (low_next == 4'd1) & mid_zero_q & top_zero_q;
+      mid_borrow_q <= take_i & (low_q == 4'd0);
+      if (take_i) begin
+        last_o <= (low_q == 4'd2) & mid_zero_q & top_zero_q;
+        low_q  <= low_q - 4'd1;
+        if (!load_q) begin
+          mid_zero_q <= mid_q == 16'd0;
+          top_zero_q <= top_q == 20'd0;
+        end
+      end
     end
+    load_q <= load_i;
     if (rst_i) begin
       load_q       <= 1'b0;
       mid_borrow_q <= 1'b0;

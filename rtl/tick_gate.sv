@@ -14,19 +14,20 @@ module tick_gate (
     output logic      stall_o   // two or more are owed
 );
   logic [3:0] count_q;
-  logic [3:0] count_d;
 
-  always_comb begin
-    count_d = count_q;
-    if (tick_i & ~take_i) count_d = count_q + 4'd1;
-    if (take_i & ~tick_i) count_d = count_q - 4'd1;
-    if (clear_i | rst_i) count_d = 4'd0;
-  end
+  always_ff @(posedge clk_i) begin : p_count
+    logic [3:0] count_d;
 
-  always_ff @(posedge clk_i) begin
-    count_q <= count_d;
-    owed_o  <= count_d != 4'd0;
-    stall_o <= count_d > 4'd1;
+    if (clear_i | rst_i) begin
+      count_q <= 4'd0;
+      owed_o  <= 1'b0;
+      stall_o <= 1'b0;
+    end else if (tick_i ^ take_i) begin
+      count_d = tick_i ? count_q + 4'd1 : count_q - 4'd1;
+      count_q <= count_d;
+      owed_o  <= count_d != 4'd0;
+      stall_o <= count_d > 4'd1;
+    end
   end
 endmodule
 

@@ -28,13 +28,12 @@ module time_base (
   logic [29:0] candidate_q;
 
   logic [28:0] goal;
-  logic at_least;
-  logic at_most;
   assign goal = {goal_q, 12'd0};
-  assign at_least = $signed(candidate_q) >= $signed({1'b0, goal});
-  assign at_most = $signed(candidate_q) <= $signed({1'b0, goal});
 
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk_i) begin : p_ratio
+    logic at_least;
+    logic at_most;
+
     if (rst_i) begin
       turn_q <= 2'd0;
       ratio_q <= ONE;
@@ -52,7 +51,11 @@ module time_base (
       if (turn_q == 2'd2) begin
         candidate_q <= {1'b0, ratio_q} + ({2'b00, slew_i} ^ {30{!up_q}}) + {29'd0, !up_q};
       end
-      if (turn_q == 2'd3) arrived_q <= up_q ? at_least : at_most;
+      if (turn_q == 2'd3) begin
+        at_least = $signed(candidate_q) >= $signed({1'b0, goal});
+        at_most  = $signed(candidate_q) <= $signed({1'b0, goal});
+        arrived_q <= up_q ? at_least : at_most;
+      end
     end
   end
 

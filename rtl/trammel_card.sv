@@ -49,6 +49,11 @@ module trammel_card #(
     output logic [16:0] ratio_o,
     output logic [31:0] rate_o
 );
+  // The reset is registered once for all blocks: it takes effect a clock later, and nothing combinational hangs on the
+  // pin.
+  logic rst_q;
+  always_ff @(posedge clk_i) rst_q <= rst_i;
+
   // Host side.
   logic        request;
   logic        write;
@@ -61,7 +66,7 @@ module trammel_card #(
 
   axi4_lite_port host (
       .clk_i,
-      .rst_i,
+      .rst_i    (rst_q),
       .awvalid_i,
       .awready_o,
       .awaddr_i,
@@ -130,7 +135,7 @@ module trammel_card #(
       .FeedDepth    (FeedDepth)
   ) registers (
       .clk_i,
-      .rst_i,
+      .rst_i             (rst_q),
       .clock_hz_i,
       .request_i         (request),
       .write_i           (write),
@@ -207,7 +212,7 @@ module trammel_card #(
       .Axes(Axes)
   ) door (
       .clk_i,
-      .rst_i,
+      .rst_i            (rst_q),
       .write_i          (stream_write),
       .word_i           (stream_word),
       .flush_i          (flush),
@@ -233,39 +238,39 @@ module trammel_card #(
       .Depth(GeometryDepth)
   ) geometry_queue (
       .clk_i,
-      .rst_i,
-      .clear_i (abort),
-      .write_i (geometry_write),
-      .word_i  (halfword),
+      .rst_i(rst_q),
+      .clear_i(abort),
+      .write_i(geometry_write),
+      .word_i(halfword),
       .commit_i(geometry_commit),
-      .drop_i  (drop),
-      .read_i  (geometry_read),
-      .word_o  (geometry_word),
-      .empty_o (geometry_empty),
-      .room_o  (geometry_room_o)
+      .drop_i(drop),
+      .read_i(geometry_read),
+      .word_o(geometry_word),
+      .empty_o(geometry_empty),
+      .room_o(geometry_room_o)
   );
 
   halfword_queue #(
       .Depth(FeedDepth)
   ) feed_queue (
       .clk_i,
-      .rst_i,
-      .clear_i (abort),
-      .write_i (feed_write),
-      .word_i  (halfword),
+      .rst_i(rst_q),
+      .clear_i(abort),
+      .write_i(feed_write),
+      .word_i(halfword),
       .commit_i(feed_commit),
-      .drop_i  (drop),
-      .read_i  (feed_read),
-      .word_o  (feed_word),
-      .empty_o (feed_empty),
-      .room_o  (feed_room_o)
+      .drop_i(drop),
+      .read_i(feed_read),
+      .word_o(feed_word),
+      .empty_o(feed_empty),
+      .room_o(feed_room_o)
   );
 
   motion_core #(
       .Axes(Axes)
   ) motion (
       .clk_i,
-      .rst_i,
+      .rst_i           (rst_q),
       .abort_i         (abort),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i (geometry_word),

@@ -58,6 +58,7 @@ void CardModel::reset() {
   takes_ = {};
   shown_position_ = {};
   axis_state_ = AxisBits{};
+  restless_ = 0;
   refresh_settings();
   show();
 }
@@ -161,10 +162,11 @@ void CardModel::clock_axes() {
 
   ext_step_ = router_.step();
   const bool common = s.tick || s.swap || set.abort || set.clear_fault != 0 || awake_ != 0;
-  for (unsigned n = 0; n < axes_.size(); ++n) {
+  std::uint32_t due = common ? ~0U : load.increment | load.steps | ext_step_ | restless_;
+  for (unsigned n = 0; due != 0 && n < axes_.size(); ++n, due >>= 1) {
+    if ((due & 1) == 0) continue;
     const std::uint32_t bit = 1U << n;
     Axis& axis = axes_[n];
-    if (!common && ((load.increment | load.steps | ext_step_) & bit) == 0 && axis.quiet()) continue;
     Axis::Inputs& in = axis_in_[n];
     PulseGenerator::Inputs& generator = in.generator;
     generator.clear = set.abort;
@@ -181,6 +183,7 @@ void CardModel::clock_axes() {
     in.shaper.clear_fault = (set.clear_fault & bit) != 0;
     axis.clock(in);
     axis_state_.show(bit, axis.outputs());
+    AxisBits::set(restless_, bit, !axis.quiet());
     if (steps_ != nullptr) report_pin_step(n);
   }
   hold_timer_.clock(set.hold_limit);
@@ -248,7 +251,9 @@ void CardModel::clock_host(const Inputs& in) {
 }
 
 void CardModel::clock(const Inputs& in) {
-  if (in.rst) {
+  const bool reset_now = reset_due_;
+  reset_due_ = in.rst;
+  if (reset_now) {
     reset();
     return;
   }

@@ -29,7 +29,7 @@ struct Sequencer::Wires {
   bool barrier_done;
 };
 
-void Sequencer::clock(const Inputs& in) {
+void Sequencer::work(const Inputs& in) {
   Wires w{};
   w.barrier_done = barrier_.done();
   w.clear = in.abort || in.reset;
@@ -68,6 +68,12 @@ void Sequencer::clock(const Inputs& in) {
   source_tick_ = (direct ? in.enable && taking : in.feed_tick && feed_active) && !w.clear;
   step_faults(in, fault_event);
   took_ = w.take;
+  // A tick, a reset or an abort is never the end of it: no need to look.
+  if (w.take || w.clear || source_tick_ || barrier_.counting() || !in.same_but_enable(last_in_) || !quiet(in))
+    calm_ = 0;
+  else if (calm_ < kCalm)
+    ++calm_;
+  last_in_ = in;
 }
 
 void Sequencer::step_path(const Inputs& in, const Wires& w) {

@@ -22,8 +22,13 @@ LockstepCard::LockstepCard(std::unique_ptr<VerilatedCard> card, const model::Car
     : card_(std::move(card)), model_(config), checker_("card", seed) {
   model::CardModel::Inputs reset;
   reset.rst = true;
-  for (int i = 0; i < kResetClocks; ++i) card_->clock(reset);
-  model_.clock(reset);
+  for (int i = 0; i < kResetClocks; ++i) {
+    card_->clock(reset);
+    model_.clock(reset);
+  }
+  // The reset is registered: one more clock under it.
+  card_->clock({});
+  model_.clock({});
 }
 
 void LockstepCard::clock(const model::CardModel::Inputs& in) {

@@ -49,7 +49,7 @@ class CardModel {
   };
   // Pins of the AXI4-Lite port, as the card has them; see Axi4LitePort.
   struct Inputs {
-    bool rst = false;
+    bool rst = false;  // registered: it takes effect a clock later
     bool awvalid = false;
     bool wvalid = false;
     bool bready = false;
@@ -150,6 +150,7 @@ class CardModel {
   Config config_;
   CardSteps* steps_ = nullptr;
   std::uint64_t cycles_ = 0;
+  bool reset_due_ = false;
 
   Axi4LitePort port_;
   RegisterFile registers_;
@@ -169,6 +170,7 @@ class CardModel {
   std::array<Axis::Inputs, kMaxAxes> axis_in_{};
   std::array<std::uint32_t, kMaxAxes> shown_position_{};
   AxisBits axis_state_;
+  std::uint32_t restless_ = 0;  // axes that the next clock moves whatever it brings
   std::uint32_t ext_step_ = 0;  // steps of the accumulator that the axes took in this clock
   bool any_live_ = false;
   bool faulted_ = false;

@@ -42,6 +42,16 @@ class Sequencer {
     bool engine_ready = false;
     bool engine_at_end = false;
     bool faulted = false;
+
+    // True when only `enable` may differ.
+    bool same_but_enable(const Inputs& o) const {
+      return feed_tick == o.feed_tick && geometry_empty == o.geometry_empty && feed_empty == o.feed_empty &&
+             geometry_word == o.geometry_word && feed_word == o.feed_word && engine_ready == o.engine_ready &&
+             engine_at_end == o.engine_at_end && prescaler_step == o.prescaler_step && axes_live == o.axes_live &&
+             faulted == o.faulted && direct_go == o.direct_go && direct_increment == o.direct_increment &&
+             direct_steps == o.direct_steps && direct_length == o.direct_length && direct_word == o.direct_word &&
+             direct_axis == o.direct_axis && direct_mask == o.direct_mask && abort == o.abort && reset == o.reset;
+    }
   };
   struct Outputs {
     bool tick = false;
@@ -63,8 +73,14 @@ class Sequencer {
     std::uint8_t feed_number = 0;
   };
 
-  // One rising edge.
-  void clock(const Inputs& in);
+  // One rising edge. Between two ticks of a path only the generator's enable moves.
+  void clock(const Inputs& in) {
+    if (calm_ == kCalm && in.same_but_enable(last_in_)) {
+      out_.feed_enable = in.enable && out_.feed_active && taking_ && go_;
+      return;
+    }
+    work(in);
+  }
 
   const Outputs& outputs() const { return out_; }
   bool geometry_read() const { return geometry_.read(); }
@@ -101,7 +117,11 @@ class Sequencer {
   void dwell(std::uint64_t clocks) { path_left_.advance(clocks); }
 
  private:
+  // Quiet clocks with the same inputs behind which nothing but the enable moves any more.
+  static constexpr int kCalm = 2;
+
   struct Wires;
+  void work(const Inputs& in);
   void step_path(const Inputs& in, const Wires& w);
   void step_feed(const Inputs& in, const Wires& w);
   void step_faults(const Inputs& in, bool event);
@@ -134,6 +154,8 @@ class Sequencer {
   bool took_ = false;
   bool began_ = false;
   bool began_direct_ = false;
+  int calm_ = 0;
+  Inputs last_in_;
   Outputs out_;
 };
 
