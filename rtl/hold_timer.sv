@@ -8,12 +8,15 @@ module hold_timer (
     output logic             tick_o
 );
   logic [15:0] count_q;
+  logic [15:0] last_q;
 
   always_ff @(posedge clk_i) begin
-    // A limit lowered in mid count takes effect at once; >= costs no more than the equality.
-    tick_o  <= count_q >= limit_i - 16'd1;
-    count_q <= (count_q >= limit_i - 16'd1) ? 16'd0 : count_q + 16'd1;
+    last_q  <= limit_i - 16'd1;
+    // A limit lowered in mid count takes effect in the next clock; >= costs no more than the equality.
+    tick_o  <= count_q >= last_q;
+    count_q <= (count_q >= last_q) ? 16'd0 : count_q + 16'd1;
     if (rst_i) begin
+      last_q  <= card_map_pkg::RESET_HOLD_LIMIT[15:0] - 16'd1;
       tick_o  <= 1'b0;
       count_q <= 16'd0;
     end

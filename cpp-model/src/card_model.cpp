@@ -27,6 +27,7 @@ CardModel::CardModel(const Config& config)
       geometry_queue_(config.geometry_depth),
       feed_queue_(config.feed_depth),
       loader_(config.axes),
+      hold_timer_(registers_.outputs().hold_limit),
       axes_(config.axes) {
   if (config.axes < 1 || config.axes > kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   reset();
@@ -47,7 +48,7 @@ void CardModel::reset() {
   prescaler_ = PulseGenerator();
   accumulator_ = DeviationAccumulator();
   router_ = ArcRouter();
-  hold_timer_ = HoldTimer();
+  hold_timer_ = HoldTimer(registers_.outputs().hold_limit);
   busy_timer_ = BusyTimer();
   axes_.assign(config_.axes, Axis());
   any_live_ = faulted_ = running_ = false;

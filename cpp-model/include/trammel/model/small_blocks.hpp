@@ -35,17 +35,24 @@ class ArcRouter {
 // One clock in `limit` (clocks, at least 1).
 class HoldTimer {
  public:
+  // `limit`: HOLD_LIMIT behind reset, clocks.
+  explicit HoldTimer(std::uint32_t limit) : limit_(limit) {}
+
+  // A limit counts from the next clock on.
   void clock(std::uint32_t limit) {
-    tick_ = count_ + 1 >= limit;
+    tick_ = count_ + 1 >= limit_;
     count_ = tick_ ? 0 : count_ + 1;
+    limit_ = limit;
   }
   // The same as clock() n times.
   void advance(std::uint32_t limit, std::uint64_t n) {
     if (n == 0) return;
-    // A limit lowered below the count is caught up by the first clock.
     clock(limit);
-    const std::uint64_t sum = count_ + (n - 1);
-    if (n > 1) {
+    if (n == 1) return;
+    // A limit lowered below the count is caught up by the clock in which it counts first.
+    clock(limit);
+    const std::uint64_t sum = count_ + (n - 2);
+    if (n > 2) {
       count_ = static_cast<std::uint32_t>(sum % limit);
       tick_ = count_ == 0;
     }
@@ -53,6 +60,7 @@ class HoldTimer {
   bool tick() const { return tick_; }
 
  private:
+  std::uint32_t limit_;
   std::uint32_t count_ = 0;
   bool tick_ = false;
 };
