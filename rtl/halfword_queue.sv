@@ -84,7 +84,7 @@ module halfword_queue #(
       else if (commit_i) pending_q <= {12'b0, write_i};
       else if (write_i) pending_q <= pending_q + 1'b1;
       // All ones take one off; a read is the carry-in.
-      if (drop_i || write_i || take) room_o <= room_o + (drop_i ? pending_q : {13{keep}}) + {12'b0, take};
+      room_o <= room_o + (drop_i ? pending_q : {13{keep}}) + {12'b0, take};
     end
   end
 

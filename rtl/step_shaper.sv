@@ -58,8 +58,6 @@ module step_shaper (
     gray = place ^ {1'b0, place[1]};
   endfunction
 
-  // At rest the timer and the pulse stand still: busy_o is low, until the clock behind a step. (Flip-flops that have an enable
-  // of their own, and single ones, stay outside: on an HX8K a second condition costs them a table each.)
   always_ff @(posedge clk_i) begin : p_shaper
     logic        busy;
     logic [ 3:0] below;  // is there a step in the place before
@@ -93,28 +91,21 @@ module step_shaper (
 
     same = waiting_q[0] & (direction_q[0] == dir_q);
     if (begun_q) position_o <= position_o + {{31{dir_q}}, 1'b1};
-    if (busy_o) begin
-      {nonzero, timer_sum} = {1'b0, timer_q} + {1'b0, pulse_time_q};
+    {nonzero, timer_sum} = {1'b0, timer_q} + {1'b0, pulse_time_q};
+    timer_q <= timer_sum | (dir_time_q & ~pulse_time_q);
+    if (load) timer_q <= '0;
+    pulse_q <= settled_q | (pulse_q & nonzero & ~expired_q);
+    begun_q <= settled_q;
+    settled_q <= go_q;
+    go_q <= go;
 
-      pulse_q <= settled_q | (pulse_q & nonzero & ~expired_q);
-      begun_q <= settled_q;
-      settled_q <= go_q;
-      go_q <= go;
+    expired_q <= ~load & (expired_q | (~loading_q & ~nonzero));
+    loading_q <= load;
 
-      timer_q <= timer_sum | (dir_time_q & ~pulse_time_q);
-      if (load) timer_q <= '0;
-      expired_q <= ~load & (expired_q | (~loading_q & ~nonzero));
-      loading_q <= load;
-    end
-
-    // The times of a phase that begins. (Not under busy_o: a clock enable of more flip-flops would take the count's global
-    // net on an HX8K.)
+    take_pulse_time = phase_q == HIGH || phase_q == SETUP || same_q;
+    dir_time_q   <= take_pulse_time ? '0 : (phase_q == REST) ? dir_setup_i : dir_hold_i;
     pulse_time_q <= '1;
-    if (load) begin
-      take_pulse_time = phase_q == HIGH || phase_q == SETUP || same_q;
-      pulse_time_q <= !take_pulse_time ? '0 : (phase_q == HIGH) ? step_space_i : step_length_i;
-      dir_time_q   <= take_pulse_time ? '0 : (phase_q == REST) ? dir_setup_i : dir_hold_i;
-    end
+    if (load) pulse_time_q <= !take_pulse_time ? '0 : (phase_q == HIGH) ? step_space_i : step_length_i;
 
     turn = phase_q == REST && other_q && expired_q;
     if (load) begin
