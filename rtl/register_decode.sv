@@ -29,26 +29,28 @@ module register_decode #(
 
   assign word = address_i[11:2];
 
-  logic [ 2:0] kind_q;
-  logic        absent_q;
-  logic [31:0] mask_q;
-  logic        in_limits_q;
-  logic        control_q;
-  logic        fault_q;
-  logic        refusal_q;
-  logic        stream_q;
-  logic        start_q;
+  logic [2:0] kind_q;
+  logic       absent_q;
+  logic [3:0] stray_q;  // bytes with bits that must be 0
+  logic       in_limits_q;
+  logic       control_q;
+  logic       fault_q;
+  logic       refusal_q;
+  logic       stream_q;
+  logic       start_q;
 
   always_ff @(posedge clk_i) begin : p_decode
-    logic       only_present;
-    logic [2:0] axis;
+    logic        only_present;
+    logic [ 2:0] axis;
+    logic [31:0] mask;
 
     if (judge_i) begin
+      mask = card_map_pkg::register_mask(word);
       only_present = card_map_pkg::register_only_present_axes(word);
       axis = card_map_pkg::register_axis(word);
-      kind_q <= card_map_pkg::register_access(word);
+      kind_q   <= card_map_pkg::register_access(word);
       absent_q <= address_i[1:0] != 2'd0 || (only_present && {1'b0, axis} >= AXIS_COUNT);
-      mask_q <= card_map_pkg::register_mask(word);
+      for (int b = 0; b < 4; b++) stray_q[b] <= (data_i[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
       in_limits_q <= card_map_pkg::register_in_limits(word, data_i);
       control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
       fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
@@ -76,7 +78,7 @@ module register_decode #(
         reason_q <= card_map_pkg::REFUSE_READ_ONLY;
       end else if (write_i && partial_i) begin
         reason_q <= card_map_pkg::REFUSE_PARTIAL_WRITE;
-      end else if (write_i && ((data_i & ~mask_q) != 32'd0 || !in_limits_q)) begin
+      end else if (write_i && (stray_q != 4'd0 || !in_limits_q)) begin
         reason_q <= card_map_pkg::REFUSE_BAD_VALUE;
       end else if (write_i && stream_q && direct_i) begin
         reason_q <= card_map_pkg::REFUSE_BUSY;
