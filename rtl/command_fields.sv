@@ -29,6 +29,9 @@ module command_fields (
   // Where the next halfword lies, and what the table says of the present one.
   logic in_count_q;
   logic [5:0] index_q;
+  // The part of the payload that comes once an axis. Set by the count's halfwords, long before they are asked.
+  logic [5:0] repeat_from_q;
+  logic [5:0] repeat_after_q;
   logic [15:0] allowed_q;
   logic [5:0] checks_q;
   logic is_count_q;
@@ -43,22 +46,21 @@ module command_fields (
 
   assign count_top_o = is_count_q && checks_q[FIELD_END];
 
-  always_ff @(posedge clk_i) begin : p_index
-    logic [5:0] repeat_from;
-    logic [5:0] repeat_after;
-
+  always_ff @(posedge clk_i) begin
     if (restart_i) begin
       in_count_q <= 1'b1;
       index_q <= 6'd0;
     end else if (examine_i) begin
-      repeat_from  = card_map_pkg::command_base_halfwords(op_i) - 6'd5;
-      repeat_after = repeat_from + card_map_pkg::command_halfwords_per_axis(op_i) - 6'd1;
       index_q <= index_q + 6'd1;
       if (in_count_q && index_q == 6'd2) begin
         in_count_q <= 1'b0;
         index_q <= 6'd0;
       end
-      if (!in_count_q && index_q == repeat_after) index_q <= repeat_from;
+      if (!in_count_q && index_q == repeat_after_q) index_q <= repeat_from_q;
+    end
+    if (examine_i) begin
+      repeat_from_q  <= card_map_pkg::command_base_halfwords(op_i) - 6'd5;
+      repeat_after_q <= repeat_from_q + card_map_pkg::command_halfwords_per_axis(op_i) - 6'd1;
     end
   end
 

@@ -62,7 +62,7 @@ void one_shot_motor(Page& page, const Progress& progress) {
                              ripple(1, 1), ripple(0, 1), ripple(1, 0), ripple(0, 0)),
                  less_above && ripple(1, 0) > ripple(0, 0));
   page.picture("one-shot-motor", "Rms speed ripple in % over pulses/s (no point where steps are lost)",
-               draw({{"ripple, %", series, false}}, {1, 480, 300}), csv);
+               draw({{"rms speed ripple in % over pulses/s", series, false}}, {1, 480, 300}), csv);
 }
 
 }  // namespace trammel::app::reproduce

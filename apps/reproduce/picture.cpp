@@ -26,6 +26,13 @@ class Frame {
         first = false;
       }
     }
+    // A flat panel at equal scale still has room for its labels.
+    const double least = panel.equal_scale ? 0.25 * std::max(high_[0] - low_[0], high_[1] - low_[1]) : 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double missing = std::max(0.0, least - (high_[i] - low_[i]));
+      low_[i] -= missing / 2;
+      high_[i] += missing / 2;
+    }
     const double room[2] = {layout.width - 1.5 * kMargin, layout.height - 2 * kMargin};
     for (std::size_t i = 0; i < 2; ++i) scale_[i] = room[i] / std::max(high_[i] - low_[i], 1e-9);
     if (panel.equal_scale) scale_[0] = scale_[1] = std::min(scale_[0], scale_[1]);
