@@ -66,7 +66,7 @@ module command_fetch (
     state_e state_d;
 
     // Nothing moves while there is nothing to read, or what was read waits.
-    if (clear_i | rst_i | ~((idle_o & empty_i) | (valid_o & ~pop_i))) begin
+    if (clear_i | rst_i | ~(valid_o | (idle_o & empty_i))) begin
       state_d = state_q;
       case (state_q)
         IDLE: if (~empty_i) state_d = HEADER;
@@ -80,7 +80,7 @@ module command_fetch (
         WAIT: if (payload_ready_i) state_d = PAYLOAD;
         PAYLOAD: if (field_done & last_field_i) state_d = TAIL;
         TAIL: if (step_q == 2'd1) state_d = VALID;
-        default: if (pop_i) state_d = IDLE;
+        default: ;
       endcase
       if (clear_i | rst_i) state_d = IDLE;
 
@@ -118,6 +118,10 @@ module command_fetch (
         count_strobe_o <= 1'b0;
         field_strobe_o <= 1'b0;
       end
+    end else if (valid_o & pop_i) begin  // pop_i comes late: it reaches no more than it must
+      state_q <= IDLE;
+      valid_o <= 1'b0;
+      idle_o  <= 1'b1;
     end
   end
 endmodule
