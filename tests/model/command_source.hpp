@@ -90,8 +90,8 @@ class CommandSource {
     WireCommand command;
     command.layout = &layout;
     command.halfwords.resize(card_map::halfwords(layout, mask));
-    command.halfwords[0] = static_cast<std::uint16_t>(mask << 8 | static_cast<unsigned>(layout.opcode));
-    command.halfwords[1] = static_cast<std::uint16_t>(number << 8 | card_map::words(layout, mask));
+    command.halfwords[0] = static_cast<std::uint16_t>(unsigned{mask} << 8 | static_cast<unsigned>(layout.opcode));
+    command.halfwords[1] = static_cast<std::uint16_t>(unsigned{number} << 8 | card_map::words(layout, mask));
     command.set_value(kCountBegin, 3, random_between(layout.count_minimum, layout.count_maximum));
     for (const Place& place : places(layout, mask)) {
       command.set_value(place.begin, place.field->halfwords, random_value(*place.field, command));
