@@ -97,8 +97,9 @@ driver::Line line(std::uint64_t ticks, std::int64_t pulses_x, std::int64_t pulse
   result.ticks = ticks;
   result.mask = 3;
   const auto n = static_cast<std::int64_t>(ticks);
-  result.increment[0] = (pulses_x << 40) / n;
-  result.increment[1] = (pulses_y << 40) / n;
+  constexpr std::int64_t kOnePulse = std::int64_t{1} << 40;
+  result.increment[0] = pulses_x * kOnePulse / n;
+  result.increment[1] = pulses_y * kOnePulse / n;
   return result;
 }
 
