@@ -171,20 +171,20 @@ TEST(Behaviour, ARefusalByFlushBelongsToThePortThatAskedForIt) {
   RegisterBench bench(4);
   bench.in.port = 2;
   bench.write(reg::kControl, field::kControlFlush);
-  EXPECT_TRUE(bench.outputs().flush);
-  bench.clock();
-  bench.in.checker_refuse = true;
-  bench.in.checker_reason = static_cast<std::uint8_t>(Reason::Truncated);
-  bench.in.checker_number = 9;
-  // The next access comes in the very clock.
+  // The checker answers the flush in the clock of the write's answer; the next access comes a clock later.
   RegisterFile file = bench.file();
   RegisterFile::Inputs in = bench.in;
+  in.checker_refuse = true;
+  in.checker_reason = static_cast<std::uint8_t>(Reason::Truncated);
+  in.checker_number = 9;
+  file.clock(in);
+  in.checker_refuse = false;
   in.request = true;
   in.port = 0;
   in.write = false;
   in.address = reg::kRefusal;
   file.clock(in);
-  in.request = in.checker_refuse = false;
+  in.request = false;
   while (!file.outputs().ack) file.clock(in);
   EXPECT_EQ(file.outputs().data, 0u);
   in.request = true;
@@ -230,14 +230,30 @@ TEST(Behaviour, StartWaitsForTheLoaderWhichReadsItsRegisters) {
 
 TEST(Behaviour, EventsLastTheClockOfTheAnswer) {
   RegisterBench bench(4);
-  bench.write(reg::kControl, field::kControlAbort | field::kControlFlush);
+  bench.write(reg::kControl, field::kControlAbort);
   EXPECT_TRUE(bench.outputs().abort);
-  EXPECT_TRUE(bench.outputs().flush);
   bench.clock();
   EXPECT_FALSE(bench.outputs().abort);
-  EXPECT_FALSE(bench.outputs().flush);
   bench.write(reg::kControl, 0);
-  EXPECT_FALSE(bench.outputs().abort || bench.outputs().flush);
+  EXPECT_FALSE(bench.outputs().abort);
+}
+
+// In which clocks after the request flush and abort are high, for each combination of the two.
+TEST(Behaviour, AFlushComesAClockBeforeTheAnswerAndNeverWithAnAbort) {
+  for (const std::uint32_t orders : {0u, 2u, 4u, 6u}) {
+    RegisterBench bench(4);
+    bench.read(reg::kMagic);
+    bench.clock();
+    bench.in.request = bench.in.write = true;
+    bench.in.address = reg::kControl;
+    bench.in.data = orders;
+    for (int clock = 1; clock < 8; ++clock) {
+      bench.clock();
+      bench.in.request = false;
+      EXPECT_EQ(bench.outputs().flush, orders == 4 && clock == 3) << orders << " " << clock;
+      EXPECT_EQ(bench.outputs().abort, (orders & 2) != 0 && clock == 4) << orders << " " << clock;
+    }
+  }
 }
 
 TEST(Behaviour, InterruptFollowsItsMaskAClockLate) {
