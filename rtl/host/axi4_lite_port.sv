@@ -1,6 +1,6 @@
 `default_nettype none
 
-// AXI4-Lite slave in front of the register file's port.
+// AXI4-Lite slave in front of the card's inner port.
 // A write is taken when address and data are both there, a read when its address is; where both wait they take turns.
 // Ready answers valid a clock later, for one clock: the access was noted a clock before its handshake, which is safe
 // since a master keeps valid and what belongs to it until then.
@@ -24,7 +24,7 @@ module axi4_lite_port (
     input  wire logic        rready_i,
     output logic      [31:0] rdata_o,
     output logic      [ 1:0] rresp_o,
-    // to the register file
+    // to the inner port
     output logic             request_o,
     output logic             write_o,
     output logic             partial_o,

@@ -1,68 +1,61 @@
+// STATUS.refused and REFUSAL, one of each for every port.
+//
+// A port's first refusal is kept until the port clears it; one that comes in the very clock of the clear is kept, not
+// lost. Refusals by the map and by the command checker never meet: the checker refuses while its access waits, or in
+// the clock after a flush.
 `default_nettype none
-
-// The sticky registers: FAULT and REFUSAL.
-// clear_fault_i (ones for the bits to clear) goes out as clear_fault_o a clock later; the sources have two more
-// clocks to drop their levels before FAULT itself is cleared, so that an old level does not set it again.
-// REFUSAL keeps the first refusal; one that comes in the very clock of the clear is kept, not lost.
-module refusal_latch (
+module refusal_latch #(
+    parameter int Ports = 1  // 1 to 4
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
-    input  wire logic [ 9:0] fault_i,
-    input  wire logic [ 9:0] clear_fault_i,
-    input  wire logic        clear_refusal_i,
+    input  wire logic [ 1:0] port_i,            // the port that asks
+    input  wire logic [11:0] address_i,
+    input  wire logic        clear_i,
     input  wire logic        refuse_i,
     input  wire logic [ 7:0] reason_i,
-    input  wire logic [11:0] address_i,
-    input  wire logic        door_refuse_i,
-    input  wire logic [ 7:0] door_reason_i,
-    input  wire logic [ 7:0] door_number_i,
-    output logic      [ 9:0] fault_o,
-    output logic      [ 9:0] clear_fault_o,
+    input  wire logic        checker_refuse_i,
+    input  wire logic [15:0] checker_reason_i,  // {number, reason}
+    output logic             any_refused_o,     // combinational, as the two below: of the port that asks
     output logic             refused_o,
     output logic      [27:0] refusal_o
 );
 
-  logic [9:0] clear_fault_q;
-  logic [9:0] dropping_q;
-  logic [9:0] dropped_q;
-  logic [9:0] fault_q;
+  logic [      27:0] refusal;
+  logic [ Ports-1:0] refused_q;
+  logic [28*Ports-1:0] refusal_q;
 
-  always_ff @(posedge clk_i) begin
-    clear_fault_q <= clear_fault_i;
-    dropping_q <= clear_fault_q;
-    dropped_q <= dropping_q;
-    fault_q <= (fault_q & ~dropped_q) | fault_i;
-    if (rst_i) begin
-      clear_fault_q <= '0;
-      dropping_q <= '0;
-      dropped_q <= '0;
-      fault_q <= '0;
+  assign refusal = {address_i, checker_refuse_i ? checker_reason_i : {8'd0, reason_i}};
+
+  for (genvar p = 0; p < Ports; p++) begin : gen_port
+    always_ff @(posedge clk_i) begin
+      if (Ports == 1 || port_i == 2'(p)) begin
+        if ((refuse_i || checker_refuse_i) && (!refused_q[p] || clear_i)) begin
+          refused_q[p] <= 1'b1;
+          refusal_q[28*p+:28] <= refusal;
+        end else if (clear_i) begin
+          refused_q[p] <= 1'b0;
+          refusal_q[28*p+:28] <= '0;
+        end
+      end
+      if (rst_i) begin
+        refused_q[p] <= 1'b0;
+        refusal_q[28*p+:28] <= '0;
+      end
     end
   end
 
-  logic        refused_q;
-  logic [27:0] refusal_q;
+  assign any_refused_o = refused_q != '0;
 
-  always_ff @(posedge clk_i) begin
-    // A refusal by the door and one by the register file never meet: the door refuses a word while its write waits.
-    if ((refuse_i || door_refuse_i) && (!refused_q || clear_refusal_i)) begin
-      refused_q <= 1'b1;
-      refusal_q <= door_refuse_i ? {address_i, door_number_i, door_reason_i} : {address_i, 8'd0, reason_i};
-    end else if (clear_refusal_i) begin
-      refused_q <= 1'b0;
-      refusal_q <= '0;
-    end
-    if (rst_i) begin
-      refused_q <= 1'b0;
-      refusal_q <= '0;
-    end
+  if (Ports == 1) begin : gen_one
+    logic unused;
+    assign unused    = &{1'b0, port_i};
+    assign refused_o = refused_q;
+    assign refusal_o = refusal_q;
+  end else begin : gen_choice
+    assign refused_o = refused_q[port_i];
+    assign refusal_o = refusal_q[28*port_i+:28];
   end
-
-  assign fault_o = fault_q;
-  assign clear_fault_o = clear_fault_q;
-  assign refused_o = refused_q;
-  assign refusal_o = refusal_q;
 
 endmodule
-
 `default_nettype wire

@@ -1,76 +1,87 @@
+// STATUS, the registers that read as the card stands, the interrupt, and the far end of the snapshot chain: FAULT and
+// STATUS. data_o is, a clock after sample_i, the live register at word_i; three bits tell the live registers apart.
 `default_nettype none
-
-// STATUS, the registers that read as the card stands, and the interrupt.
-// data_o is, a clock after sample_i, the live register at word_i; its low 4 bits tell the live registers apart.
 module register_live (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
+    input  wire logic [40:0] setting_i,
+    input  wire logic [ 1:0] snapshot_i,      // {shift, strobe}
     input  wire logic        sample_i,
-    input  wire logic [ 5:2] word_i,
-    input  wire logic        busy_i,
-    input  wire logic        direct_i,
-    input  wire logic        path_active_i,
-    input  wire logic        feed_active_i,
-    input  wire logic        ended_i,
+    input  wire logic [ 4:2] word_i,
+    // STATUS
+    input  wire logic [ 5:0] motion_i,        // {stopping, ended, feed active, path active, direct, busy}
+    input  wire logic        held_i,
+    input  wire logic        any_refused_i,
+    input  wire logic        refused_i,       // of the port that asks
+    input  wire logic        snapshotting_i,
     input  wire logic        incomplete_i,
-    input  wire logic        walking_i,
-    input  wire logic [16:0] ratio_i,
-    input  wire logic [ 9:0] fault_i,
-    input  wire logic        refused_i,
+    // the other live registers
+    input  wire logic [31:0] fault_i,
     input  wire logic [27:0] refusal_i,
-    input  wire logic [12:0] geometry_room_i,
-    input  wire logic [12:0] feed_room_i,
-    input  wire logic [15:0] running_i,
-    input  wire logic [ 7:0] irq_enable_i,
-    output logic      [ 9:0] status_o,
-    output logic      [27:0] data_o,
+    input  wire logic [31:0] room_i,          // {geometry, feed}
+    input  wire logic [63:0] begun_i,         // {geometry, feed}
+    output logic      [31:0] status_o,        // combinational; refused is any port's
+    output logic      [31:0] data_o,
+    output logic      [31:0] chain_o,
     output logic             irq_o
 );
 
-  logic [9:0] status;
-
-  assign status = 10'(busy_i) << card_map_pkg::BIT_STATUS_BUSY |
-      10'(direct_i) << card_map_pkg::BIT_STATUS_DIRECT |
-      10'(path_active_i) << card_map_pkg::BIT_STATUS_PATH_ACTIVE |
-      10'(feed_active_i) << card_map_pkg::BIT_STATUS_FEED_ACTIVE |
-      10'(ratio_i == 17'd0) << card_map_pkg::BIT_STATUS_HELD |
-      10'(ended_i) << card_map_pkg::BIT_STATUS_ENDED |
-      10'(fault_i != 10'd0) << card_map_pkg::BIT_STATUS_FAULTED |
-      10'(refused_i) << card_map_pkg::BIT_STATUS_REFUSED |
-      10'(walking_i) << card_map_pkg::BIT_STATUS_SNAPSHOT |
-      10'(incomplete_i) << card_map_pkg::BIT_STATUS_INCOMPLETE;
-
-  logic [27:0] data_q;
-  logic        irq_q;
-
-  always_ff @(posedge clk_i) begin : p_live
-    logic [7:0] causes;
-
-    if (sample_i) begin
-      case (word_i)
-        card_map_pkg::ADDR_STATUS[5:2]: data_q <= {18'd0, status};
-        card_map_pkg::ADDR_FAULT[5:2]: data_q <= {18'd0, fault_i};
-        card_map_pkg::ADDR_REFUSAL[5:2]: data_q <= refusal_i;
-        card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_q <= {15'd0, geometry_room_i};
-        card_map_pkg::ADDR_FEED_ROOM[5:2]: data_q <= {15'd0, feed_room_i};
-        default: data_q <= {12'd0, running_i};
-      endcase
-    end
-    irq_q <= 1'b0;
-    if (irq_enable_i != 8'd0) begin
-      causes = 8'(!busy_i) << card_map_pkg::BIT_IRQ_ENABLE_IDLE |
-          8'(ended_i) << card_map_pkg::BIT_IRQ_ENABLE_ENDED |
-          8'(fault_i != 10'd0) << card_map_pkg::BIT_IRQ_ENABLE_FAULTED |
-          8'(refused_i) << card_map_pkg::BIT_IRQ_ENABLE_REFUSED;
-      irq_q <= (causes & irq_enable_i) != 8'd0;
-    end
-    if (rst_i) irq_q <= 1'b0;
+  always_comb begin
+    status_o = '0;
+    status_o[card_map_pkg::BIT_STATUS_BUSY] = motion_i[0];
+    status_o[card_map_pkg::BIT_STATUS_DIRECT] = motion_i[1];
+    status_o[card_map_pkg::BIT_STATUS_PATH_ACTIVE] = motion_i[2];
+    status_o[card_map_pkg::BIT_STATUS_FEED_ACTIVE] = motion_i[3];
+    status_o[card_map_pkg::BIT_STATUS_HELD] = held_i;
+    status_o[card_map_pkg::BIT_STATUS_ENDED] = motion_i[4];
+    status_o[card_map_pkg::BIT_STATUS_FAULTED] = fault_i != 32'd0;
+    status_o[card_map_pkg::BIT_STATUS_REFUSED] = any_refused_i;
+    status_o[card_map_pkg::BIT_STATUS_SNAPSHOT] = snapshotting_i;
+    status_o[card_map_pkg::BIT_STATUS_INCOMPLETE] = incomplete_i;
+    status_o[card_map_pkg::BIT_STATUS_STOPPING] = motion_i[5];
   end
 
-  assign status_o = status;
-  assign data_o = data_q;
-  assign irq_o = irq_q;
+  always_ff @(posedge clk_i) begin
+    if (sample_i) begin
+      case (word_i)
+        card_map_pkg::ADDR_STATUS[4:2]: begin
+          data_o <= status_o;
+          data_o[card_map_pkg::BIT_STATUS_REFUSED] <= refused_i;
+        end
+        card_map_pkg::ADDR_FAULT[4:2]: data_o <= fault_i;
+        card_map_pkg::ADDR_REFUSAL[4:2]: data_o <= {4'd0, refusal_i};
+        card_map_pkg::ADDR_GEOMETRY_ROOM[4:2]: data_o <= {16'd0, room_i[31:16]};
+        card_map_pkg::ADDR_FEED_ROOM[4:2]: data_o <= {16'd0, room_i[15:0]};
+        card_map_pkg::ADDR_GEOMETRY_BEGUN[4:2]: data_o <= begun_i[63:32];
+        default: data_o <= begun_i[31:0];
+      endcase
+    end
+  end
+
+  logic [31:0] enable_q;
+
+  always_ff @(posedge clk_i) begin
+    irq_o <= 1'b0;
+    if (enable_q != '0) irq_o <= ((status_o ^ (32'd1 << card_map_pkg::BIT_STATUS_BUSY)) & enable_q) != '0;
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_IRQ_ENABLE[9:2]) enable_q <= setting_i[31:0];
+    if (rst_i) begin
+      irq_o <= 1'b0;
+      enable_q <= card_map_pkg::RESET_IRQ_ENABLE;
+    end
+  end
+
+  // A snapshot of the card does not show itself.
+  logic [31:0] fault_q;
+
+  always_ff @(posedge clk_i) begin
+    if (snapshot_i[0]) begin
+      fault_q <= fault_i;
+      chain_o <= status_o & ~(32'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT);
+    end else if (snapshot_i[1]) begin
+      fault_q <= '0;
+      chain_o <= fault_q;
+    end
+  end
 
 endmodule
-
 `default_nettype wire
