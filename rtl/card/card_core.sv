@@ -5,11 +5,11 @@ module card_core #(
     parameter int          Axes          = 4,     // 1 to 8
     parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth     = 2560,
-    parameter bit          Accumulator   = 1,     // arcs and conics
-    parameter bit          DirectMode    = 1,
+    parameter int          Accumulator   = 1,     // arcs and conics
+    parameter int          DirectMode    = 1,
     parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
     parameter logic [31:0] BuildId       = 0,
-    parameter bit          BuildDirty    = 0,
+    parameter int          BuildDirty    = 0,
     parameter logic [31:0] BoardId       = 0
 ) (
     input wire logic clk_i,
@@ -45,28 +45,22 @@ module card_core #(
     ERROR_Ports_must_be_1_to_4 error ();
   end
 
-  localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::BIT_ENGINES_LINES |
-      32'(Accumulator) << card_map_pkg::BIT_ENGINES_ACCUMULATOR | 32'd1 << card_map_pkg::BIT_ENGINES_JERK |
-      32'(DirectMode) << card_map_pkg::BIT_ENGINES_DIRECT_MODE;
+  localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
+      32'(Accumulator) << card_map_pkg::ENGINE_ACCUMULATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
+      32'(DirectMode) << card_map_pkg::ENGINE_DIRECT_MODE;
 
-  // Constants by their address; the others come from the description of the registers.
+  // What parameters and straps decide of the constants, by address.
   logic [511:0] constants;
 
-  always_comb begin
-    constants = '0;
-    constants[8*card_map_pkg::ADDR_MAGIC+:32] = card_map_pkg::RESET_MAGIC;
-    constants[8*card_map_pkg::ADDR_MAP_VERSION+:32] = card_map_pkg::RESET_MAP_VERSION;
-    constants[8*card_map_pkg::ADDR_AXES+:32] = 32'(Axes);
-    constants[8*card_map_pkg::ADDR_CLOCK_HZ+:32] = clock_hz_i;
-    constants[8*card_map_pkg::ADDR_ENGINES+:32] = ENGINES;
-    constants[8*card_map_pkg::ADDR_GEOMETRY_DEPTH+:32] = 32'(GeometryDepth);
-    constants[8*card_map_pkg::ADDR_FEED_DEPTH+:32] = 32'(FeedDepth);
-    constants[8*card_map_pkg::ADDR_COMMANDS_VERSION+:32] = card_map_pkg::LAYOUT_VERSION;
-    constants[8*card_map_pkg::ADDR_BUILD_ID+:32] = BuildId;
-    constants[8*card_map_pkg::ADDR_BUILD_FLAGS+:32] = 32'(BuildDirty);
-    constants[8*card_map_pkg::ADDR_BOARD_ID+:32] = BoardId;
-    constants[8*card_map_pkg::ADDR_PORTS+:32] = 32'(Ports);
-  end
+  assign constants = 512'(Axes) << 8 * card_map_pkg::ADDR_AXES |
+      512'(clock_hz_i) << 8 * card_map_pkg::ADDR_CLOCK_HZ |
+      512'(ENGINES) << 8 * card_map_pkg::ADDR_ENGINES |
+      512'(GeometryDepth) << 8 * card_map_pkg::ADDR_GEOMETRY_DEPTH |
+      512'(FeedDepth) << 8 * card_map_pkg::ADDR_FEED_DEPTH |
+      512'(BuildId) << 8 * card_map_pkg::ADDR_BUILD_ID |
+      512'(BuildDirty) << 8 * card_map_pkg::ADDR_BUILD_FLAGS |
+      512'(BoardId) << 8 * card_map_pkg::ADDR_BOARD_ID |
+      512'(Ports) << 8 * card_map_pkg::ADDR_PORTS;
 
   logic [31:0] clear_fault;
   logic [31:0] fault;

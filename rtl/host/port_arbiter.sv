@@ -33,7 +33,7 @@ module port_arbiter #(
     assign access_o  = {2'd0, access_i[46:45], access_i[43:0]};
   end else begin : gen_turns
     logic [Ports-1:0] request;
-    logic [Ports-1:0] waiting_q;
+    logic [      3:0] waiting_q;
     logic [      1:0] port_q;
     logic             busy_q;
 
@@ -43,19 +43,18 @@ module port_arbiter #(
     end
 
     always_ff @(posedge clk_i) begin : p_turns
-      logic [2:0] candidate;
+      logic [1:0] candidate;
       logic [1:0] chosen;
 
       request_o <= 1'b0;
-      waiting_q <= waiting_q | request;
+      waiting_q <= waiting_q | 4'(request);
       if (ack_i) busy_q <= 1'b0;
       if ((!busy_q || ack_i) && waiting_q != '0) begin
-        // From the farthest port to the next one: the last that waits is taken.
+        // From the farthest port to the next one: the last that waits is taken. Ports that are not there never wait.
         chosen = port_q;
-        for (int n = Ports - 1; n >= 1; n--) begin
-          candidate = {1'b0, port_q} + 3'(n);
-          if (candidate >= 3'(Ports)) candidate = candidate - 3'(Ports);
-          if (waiting_q[candidate[1:0]]) chosen = candidate[1:0];
+        for (int n = 3; n >= 1; n--) begin
+          candidate = port_q + 2'(n);
+          if (waiting_q[candidate]) chosen = candidate;
         end
         port_q <= chosen;
         waiting_q[chosen] <= 1'b0;
@@ -66,7 +65,7 @@ module port_arbiter #(
         request_o <= 1'b0;
         waiting_q <= '0;
         busy_q <= 1'b0;
-        port_q <= 2'(Ports - 1);
+        port_q <= 2'd3;
       end
     end
 

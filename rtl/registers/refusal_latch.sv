@@ -53,8 +53,12 @@ module refusal_latch #(
     assign refused_o = refused_q;
     assign refusal_o = refusal_q;
   end else begin : gen_choice
-    assign refused_o = refused_q[port_i];
-    assign refusal_o = refusal_q[28*port_i+:28];
+    logic [  3:0] refused;
+    logic [111:0] refusals;
+    assign refused   = 4'(refused_q);
+    assign refusals  = 112'(refusal_q);
+    assign refused_o = refused[port_i];
+    assign refusal_o = refusals[28*port_i+:28];
   end
 
 endmodule

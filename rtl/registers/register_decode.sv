@@ -54,7 +54,7 @@ module register_decode #(
       fault_o <= word == card_map_pkg::ADDR_FAULT[11:2];
       refusal_o <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data != 32'd0;
       stream_o <= word == card_map_pkg::ADDR_STREAM[11:2];
-      start_o <= word == card_map_pkg::ADDR_START[11:2] && Engines[card_map_pkg::BIT_ENGINES_DIRECT_MODE];
+      start_o <= word == card_map_pkg::ADDR_START[11:2] && Engines[card_map_pkg::ENGINE_DIRECT_MODE];
     end
   end
 

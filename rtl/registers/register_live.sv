@@ -26,20 +26,17 @@ module register_live (
     output logic             irq_o
 );
 
-  always_comb begin
-    status_o = '0;
-    status_o[card_map_pkg::BIT_STATUS_BUSY] = motion_i[0];
-    status_o[card_map_pkg::BIT_STATUS_DIRECT] = motion_i[1];
-    status_o[card_map_pkg::BIT_STATUS_PATH_ACTIVE] = motion_i[2];
-    status_o[card_map_pkg::BIT_STATUS_FEED_ACTIVE] = motion_i[3];
-    status_o[card_map_pkg::BIT_STATUS_HELD] = held_i;
-    status_o[card_map_pkg::BIT_STATUS_ENDED] = motion_i[4];
-    status_o[card_map_pkg::BIT_STATUS_FAULTED] = fault_i != 32'd0;
-    status_o[card_map_pkg::BIT_STATUS_REFUSED] = any_refused_i;
-    status_o[card_map_pkg::BIT_STATUS_SNAPSHOT] = snapshotting_i;
-    status_o[card_map_pkg::BIT_STATUS_INCOMPLETE] = incomplete_i;
-    status_o[card_map_pkg::BIT_STATUS_STOPPING] = motion_i[5];
-  end
+  assign status_o = 32'(motion_i[0]) << card_map_pkg::BIT_STATUS_BUSY |
+      32'(motion_i[1]) << card_map_pkg::BIT_STATUS_DIRECT |
+      32'(motion_i[2]) << card_map_pkg::BIT_STATUS_PATH_ACTIVE |
+      32'(motion_i[3]) << card_map_pkg::BIT_STATUS_FEED_ACTIVE |
+      32'(held_i) << card_map_pkg::BIT_STATUS_HELD |
+      32'(motion_i[4]) << card_map_pkg::BIT_STATUS_ENDED |
+      32'(fault_i != 32'd0) << card_map_pkg::BIT_STATUS_FAULTED |
+      32'(any_refused_i) << card_map_pkg::BIT_STATUS_REFUSED |
+      32'(snapshotting_i) << card_map_pkg::BIT_STATUS_SNAPSHOT |
+      32'(incomplete_i) << card_map_pkg::BIT_STATUS_INCOMPLETE |
+      32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin

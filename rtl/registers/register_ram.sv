@@ -50,8 +50,8 @@ module register_ram #(
       store_data_q <= snapshot_i[31:0];
     end else if (resetting_q) begin
       store_address_q <= next_q;
-      store_data_q <= card_map_pkg::register_reset({2'b00, next_q});
-      if (next_q < 8'd16) store_data_q <= constants_i[32*next_q[3:0]+:32];
+      store_data_q <= card_map_pkg::register_reset({2'b00, next_q}) |
+          (next_q < 8'd16 ? constants_i[32*next_q[3:0]+:32] : 32'd0);
       first_inverted  = 8'(idle_level_i[Axes-1:0]);
       second_inverted = 8'(idle_level_i[2*Axes-1:Axes]);
       if ((next_q & ~AXIS_SLOTS) == FIRST_MODE) begin

@@ -19,11 +19,11 @@ module snapshot_writer #(
     output logic      [40:0] store_o      // {write, address, data}, combinational
 );
 
-  localparam logic [3:0] FAULT = card_map_pkg::ADDR_SNAP_FAULT[5:2];
-  localparam logic [3:0] GEOMETRY_BEGUN = card_map_pkg::ADDR_SNAP_GEOMETRY_BEGUN[5:2];
-  localparam logic [3:0] TIME_HI = card_map_pkg::ADDR_SNAP_TIME_HI[5:2];
-  localparam logic [3:0] TIME_LO = card_map_pkg::ADDR_SNAP_TIME_LO[5:2];
-  localparam logic [3:0] FIRST_POSITION = card_map_pkg::ADDR_SNAP_POSITION[5:2];
+  localparam logic [3:0] FAULT = card_map_pkg::IN_AREA_FAULT[5:2];
+  localparam logic [3:0] GEOMETRY_BEGUN = card_map_pkg::IN_AREA_GEOMETRY_BEGUN[5:2];
+  localparam logic [3:0] TIME_HI = card_map_pkg::IN_AREA_TIME_HI[5:2];
+  localparam logic [3:0] TIME_LO = card_map_pkg::IN_AREA_TIME_LO[5:2];
+  localparam logic [3:0] FIRST_POSITION = card_map_pkg::IN_AREA_POSITION[5:2];
   localparam logic [3:0] LAST_POSITION = FIRST_POSITION + 4'(Axes - 1);
 
   // Clocks since reset, two less: the strobe's time is written two clocks after it. The high half runs one clock late,
@@ -102,7 +102,7 @@ module snapshot_writer #(
   end
 
   assign store_o[40] = write_q;
-  assign store_o[39:32] = {for_stop_q ? card_map_pkg::ADDR_STOP_FAULT[9:6] : card_map_pkg::ADDR_SNAP_FAULT[9:6], word_q};
+  assign store_o[39:32] = {for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6], word_q};
   assign store_o[31:0] = data;
 
 endmodule
