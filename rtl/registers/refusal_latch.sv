@@ -1,8 +1,8 @@
 // STATUS.refused and REFUSAL, one of each for every port.
 //
-// A port's first refusal is kept until the port clears it; one that comes in the very clock of the clear is kept, not
-// lost. Refusals by the map and by the command checker never meet: the checker refuses while its access waits, or in
-// the clock after a flush.
+// A port's first refusal is kept until the port clears it. Refusals by the map, refusals by the command checker and
+// clears never meet: one access is carried through at a time, and the checker refuses while its access waits, or in the
+// clock after a flush.
 `default_nettype none
 module refusal_latch #(
     parameter int Ports = 1  // 1 to 4
@@ -30,7 +30,7 @@ module refusal_latch #(
   for (genvar p = 0; p < Ports; p++) begin : gen_port
     always_ff @(posedge clk_i) begin
       if (Ports == 1 || port_i == 2'(p)) begin
-        if ((refuse_i || checker_refuse_i) && (!refused_q[p] || clear_i)) begin
+        if ((refuse_i || checker_refuse_i) && !refused_q[p]) begin
           refused_q[p] <= 1'b1;
           refusal_q[28*p+:28] <= refusal;
         end else if (clear_i) begin

@@ -129,19 +129,16 @@ module register_file #(
 
   // What a write does, in the clock of its answer.
   logic set_q;
-  logic clear_refusal_q;
   logic snapshot_q;
 
   always_ff @(posedge clk_i) begin
     set_q <= act && setting;
-    clear_refusal_q <= act && refusal;
     clear_fault_o <= act && fault ? data : '0;
     snapshot_q <= act && control && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
     abort_o <= act && control && data[card_map_pkg::BIT_CONTROL_ABORT];
-    flush_o <= act && control && data[card_map_pkg::BIT_CONTROL_FLUSH];
+    flush_o <= act && control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
     if (rst_i) begin
       set_q <= 1'b0;
-      clear_refusal_q <= 1'b0;
       clear_fault_o <= '0;
       snapshot_q <= 1'b0;
       abort_o <= 1'b0;
@@ -163,7 +160,7 @@ module register_file #(
       .rst_i,
       .port_i(asking),
       .address_i(access[43:32]),
-      .clear_i(clear_refusal_q),
+      .clear_i(act && refusal),
       .refuse_i(refuse),
       .reason_i(refuse_reason),
       .checker_refuse_i,

@@ -67,18 +67,27 @@ module register_live (
     end
   end
 
-  // A snapshot of the card does not show itself.
-  logic [31:0] fault_q;
+  logic [31:0] chain;
 
-  always_ff @(posedge clk_i) begin
-    if (snapshot_i[0]) begin
-      fault_q <= fault_i;
-      chain_o <= status_o & ~(32'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT);
-    end else if (snapshot_i[1]) begin
-      fault_q <= '0;
-      chain_o <= fault_q;
-    end
-  end
+  snapshot_slice #(
+      .Width(16)
+  ) i_fault (
+      .clk_i,
+      .snapshot_i,
+      .value_i(fault_i[15:0]),
+      .chain_i('0),
+      .chain_o(chain)
+  );
+
+  snapshot_slice #(
+      .Width(18)
+  ) i_status (
+      .clk_i,
+      .snapshot_i,
+      .value_i(status_o[17:0] & ~(18'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
+      .chain_i(chain),
+      .chain_o
+  );
 
 endmodule
 `default_nettype wire
