@@ -3,9 +3,11 @@
 // Enabled clocks 32k..32k+31 of a piece add clamp(R_k) to the phase; R_0 is the rate itself, unclamped.
 // R and A are added in nibbles, 17 clocks for 68 bits, right after R_k was taken, so R_(k+1) and its comparison with
 // the floor are ready 20 clocks later, 12 before the earliest need. A swap may come at any clock, also amid an update.
+// A and J have no shadow: they come after the swap, and R_1 is made when the last halfword of J is there (11 clocks
+// after the swap at the earliest and 14 at the latest, or the 32nd enabled clock could be missed).
 //
 // The phase is 16 + 32 bits with a registered carry: everything of the upper 32 bits (its part of R, the floor, the
-// slope) is taken one clock after the lower part. So the shadow must hold in the clock of a swap and behind it. Swaps are
+// slope) is taken one clock after the lower part. So the shadow must hold in the clock of a swap and the next. Swaps are
 // 24 clocks apart or more (the card's decoder takes longer to load a piece); nothing is enabled before the first one.
 // An enable at c gives its tick at c+3; the rate shows with the same delay.
 `default_nettype none
@@ -15,9 +17,11 @@ module feed_generator (
     input  wire logic        rst_i,
     input  wire logic        clear_i,
     input  wire logic        enable_i,
-    input  wire logic [ 3:0] load_i,
-    input  wire logic [15:0] word_i,
+    input  wire logic [19:0] load_i,      // {valid, target, word}
     input  wire logic        swap_i,
+    input  wire logic [ 1:0] snapshot_i,
+    input  wire logic [31:0] chain_i,
+    output logic      [31:0] chain_o,
     output logic             tick_o,
     output logic      [31:0] rate_o
 );
@@ -26,9 +30,19 @@ module feed_generator (
   localparam int Width = 68;
   localparam logic [4:0] LAST_STEP = 5'd16;
 
-  // The next piece, shifted in from the load bus.
-  logic [63:0] next_rate_q, next_acceleration_q, next_jerk_q;
+  logic load_rate, load_floor, load_acceleration, load_jerk;
+  assign load_rate = load_i[19] && load_i[18:16] == load_target_pkg::FEED_RATE;
+  assign load_floor = load_i[19] && load_i[18:16] == load_target_pkg::FEED_FLOOR;
+  assign load_acceleration = load_i[19] && load_i[18:16] == load_target_pkg::FEED_ACCELERATION;
+  assign load_jerk = load_i[19] && load_i[18:16] == load_target_pkg::FEED_JERK;
+
+  // The next piece's first slope and floor.
+  logic [63:0] next_rate_q;
   logic [31:0] next_floor_q;
+  always_ff @(posedge clk_i) begin
+    if (load_rate) next_rate_q <= {load_i[15:0], next_rate_q[63:16]};
+    if (load_floor) next_floor_q <= {load_i[15:0], next_floor_q[31:16]};
+  end
 
   // Enabled clocks of the piece, modulo 32, and the moments at which the two parts of the slope are taken from R.
   logic [ 4:0] count_q;
@@ -45,9 +59,16 @@ module feed_generator (
   // of the new R, stand at its upper end and are compared with the floor; then the sign and overflow are judged.
   logic [4:0] step_q;
   logic rotate_q, compare_q, judge_q;
+  logic waits_q;  // for acceleration and jerk
+  logic load_jerk_q;
+  logic loaded;
   logic keep;
   assign keep = !rst_i && !swap_i;
+  assign loaded = load_jerk_q && !load_jerk;
   always_ff @(posedge clk_i) begin
+    load_jerk_q <= load_jerk && keep;
+    if (swap_i) waits_q <= 1'b1;
+    else if (loaded || rst_i) waits_q <= 1'b0;
     compare_q <= 1'b0;
     judge_q   <= 1'b0;
     if (rotate_q) begin
@@ -56,9 +77,9 @@ module feed_generator (
       compare_q <= keep && step_q[4:3] == 2'b01;
       judge_q   <= keep && step_q == LAST_STEP;
     end
-    if (load_high_q) begin
-      step_q <= '0;
-      if (!swap_q) rotate_q <= keep;
+    if (waits_q ? loaded : load_high_q) begin
+      step_q   <= '0;
+      rotate_q <= keep;
     end
     if (rst_i) rotate_q <= 1'b0;
   end
@@ -84,10 +105,14 @@ module feed_generator (
       acceleration_carry_q <= acceleration_sum[Word];
       rate_low_q <= {rate_high_q[Word-1:0], rate_low_q[31:Word]};
       rate_high_q <= {rate_sum[Word-1:0], rate_high_q[Width-33:Word]};
-      acceleration_top_q <= acceleration_sum[Word-1:0];
-      acceleration_q <= {acceleration_top_q, acceleration_q[63:Word]};
-      jerk_top_q <= jerk_q[Word-1:0];
-      jerk_q <= {jerk_top_q, jerk_q[63:Word]};
+    end
+    if (rotate_q || load_acceleration) begin
+      acceleration_top_q <= rotate_q ? acceleration_sum[Word-1:0] : {Word{load_i[15]}};
+      acceleration_q <= rotate_q ? {acceleration_top_q, acceleration_q[63:Word]} : {load_i[15:0], acceleration_q[63:16]};
+    end
+    if (rotate_q || load_jerk) begin
+      jerk_top_q <= rotate_q ? jerk_q[Word-1:0] : {Word{load_i[15]}};
+      jerk_q <= rotate_q ? {jerk_top_q, jerk_q[63:Word]} : {load_i[15:0], jerk_q[63:16]};
     end
 
     // Eight nibbles: after the comparison the floor is back in its place.
@@ -101,21 +126,10 @@ module feed_generator (
     if (swap_q) begin
       floor_q <= next_floor_q;
       rate_high_q <= {4'd0, next_rate_q[63:32]};
-      acceleration_top_q <= {4{next_acceleration_q[63]}};
-      acceleration_q <= next_acceleration_q;
-      jerk_top_q <= {4{next_jerk_q[63]}};
-      jerk_q <= next_jerk_q;
-    end
-
-    if (load_i != 4'd0) begin
-      if (load_i[0]) next_rate_q <= {word_i, next_rate_q[63:16]};
-      if (load_i[1]) next_acceleration_q <= {word_i, next_acceleration_q[63:16]};
-      if (load_i[2]) next_jerk_q <= {word_i, next_jerk_q[63:16]};
-      if (load_i[3]) next_floor_q <= {word_i, next_floor_q[31:16]};
     end
   end
 
-  // Where R lies: below the floor, or at 1 or above. Both are 0 behind a swap, so the first slope is not clamped.
+  // Where R lies: below the floor, or at 1 or above. Both are 0 after a swap, so the first slope is not clamped.
   logic below_q, above_q, below_high_q, above_high_q;
   always_ff @(posedge clk_i) begin : p_judge
     logic negative;
@@ -177,6 +191,14 @@ module feed_generator (
 
   assign tick_o = tick_q;
   assign rate_o = slope_high_q;
+
+  snapshot_slice rate (
+      .clk_i,
+      .snapshot_i,
+      .value_i(rate_o),
+      .chain_i,
+      .chain_o
+  );
 endmodule
 
 `default_nettype wire
