@@ -1,4 +1,4 @@
-"""The stream commands as plain data, read from TOML and checked against what the card's door can judge."""
+"""The stream commands as plain data, read from TOML and checked against what the card's checker can judge."""
 
 import tomllib
 from dataclasses import dataclass
@@ -9,7 +9,9 @@ HEADER_HALFWORDS = 2
 COUNT_HALFWORDS = 3
 COUNT_BITS = 40
 MAX_AXES = 8
-# The one limit inside a halfword range that the door compares with: one pulse a tick.
+PLANE_AXES = 2
+MASK_RULES = ["none", "any", "plane", "plane_and_axes", "flags"]
+# The one limit inside a halfword range that the checker compares with: one pulse a tick.
 UNIT_LIMIT = 1 << 40
 UNIT_LIMIT_HALFWORDS = 3
 
@@ -30,7 +32,7 @@ class Count:
 @dataclass
 class Field:
     name: str
-    kind: str  # unsigned, signed or zero
+    kind: str  # unsigned or signed
     bits: int
     per_axis: bool
     offset: int  # in halfwords from the payload's start (for a field per axis: of the first axis)
@@ -38,6 +40,8 @@ class Field:
     minimum: int
     limit: Optional[int]  # largest magnitude where the bits allow more
     bit_mask: Optional[int]  # bits that may be set, where they are not contiguous
+    optional_bits: int  # further bits that may be set with `optional_engine`
+    optional_engine: str
     at_most_count: bool
     unit: str
     brief: str
@@ -45,11 +49,20 @@ class Field:
 
 
 @dataclass
+class Flags:
+    maximum: int  # of the mask byte
+    engine: str  # needed for any value but 0
+    brief: str
+
+
+@dataclass
 class Command:
     name: str
     opcode: int
     queues: List[str]
-    mask: str  # any, plane or none
+    mask: str  # one of MASK_RULES
+    engine: str  # field of ENGINES without which the opcode is unknown; empty: always there
+    flags: Optional[Flags]  # with the mask rule `flags`
     brief: str
     count: Count
     fields: List[Field]
@@ -64,8 +77,22 @@ class Command:
         return sum(f.halfwords for f in self.fields if f.per_axis)
 
     @property
+    def axes_in_base(self):
+        """Axes of the mask whose fields stand in the fixed part, so that nothing is repeated for them."""
+        return PLANE_AXES if self.mask == "plane_and_axes" else 0
+
+    @property
     def base_halfwords(self):
         return HEADER_HALFWORDS + COUNT_HALFWORDS + self.fixed_halfwords
+
+
+@dataclass
+class Constant:
+    """A number that follows from how the card is built, needed by hosts, models and RTL alike."""
+
+    name: str
+    value: int
+    brief: str
 
 
 @dataclass
@@ -83,13 +110,21 @@ def read_command_map(path):
     return CommandMap(data["version"], commands)
 
 
+def read_constants(path):
+    with open(path, "rb") as file:
+        return [Constant(**entry) for entry in tomllib.load(file)["constant"]]
+
+
 def _command(entry):
     count = entry["count"]
+    flags = entry.get("flags")
     command = Command(
         name=entry["name"],
         opcode=entry["opcode"],
         queues=entry["queues"],
         mask=entry["mask"],
+        engine=entry.get("engine", ""),
+        flags=Flags(flags["max"], flags["engine"], flags["brief"]) if flags else None,
         brief=entry["brief"],
         count=Count(
             name=count["name"],
@@ -110,6 +145,7 @@ def _command(entry):
 
 
 def _field(entry, offset):
+    optional = entry.get("optional", {})
     return Field(
         name=entry["name"],
         kind=entry["kind"],
@@ -120,6 +156,8 @@ def _field(entry, offset):
         minimum=entry.get("min", 0),
         limit=entry.get("magnitude_max", entry.get("max")),
         bit_mask=entry.get("mask"),
+        optional_bits=optional.get("bits", 0),
+        optional_engine=optional.get("engine", ""),
         at_most_count=entry.get("at_most_count", False),
         unit=entry.get("unit", ""),
         brief=entry["brief"],
@@ -132,12 +170,13 @@ def _check(command):
         if not condition:
             raise CommandError(f"{command.name}: {text}")
 
-    need(command.mask in ("any", "plane", "none"), f"mask {command.mask}")
+    need(command.mask in MASK_RULES, f"mask {command.mask}")
+    need((command.flags is not None) == (command.mask == "flags"), "flags are described where the mask byte has them")
     need(command.count.minimum in (0, 1), "a count's minimum is 0 or 1")
     need(command.count.maximum in (0, (1 << COUNT_BITS) - 1), "a count's maximum is 0 or all ones")
     after_axis_part = False
     for field in command.fields:
-        need(field.kind in ("unsigned", "signed", "zero"), f"kind {field.kind}")
+        need(field.kind in ("unsigned", "signed"), f"kind {field.kind}")
         need(field.per_axis or not after_axis_part, f"{field.name} follows a field per axis")
         after_axis_part = field.per_axis
         need(field.minimum in (0, 1), f"{field.name}: a minimum is 0 or 1")
@@ -150,3 +189,5 @@ def _check(command):
             need(field.halfwords == COUNT_HALFWORDS, f"{field.name}: as wide as the count")
         if field.bit_mask is not None:
             need(field.halfwords == 1, f"{field.name}: a mask covers one halfword")
+        else:
+            need(not field.optional_bits, f"{field.name}: optional bits come on top of a mask")

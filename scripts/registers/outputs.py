@@ -3,22 +3,35 @@
 import shutil
 import subprocess
 
-from .command_map import read_command_map
+from .command_map import read_command_map, read_constants
+from .frozen import frozen_text
 from .register_map import read_register_map
 from .write_cpp import header_text
 from .write_docs import commands_text, registers_text
 from .write_sv import package_text
 
 
-def generate(root):
-    registers = read_register_map(root / "rtl/regs/trammel.rdl")
-    commands = read_command_map(root / "rtl/regs/commands.toml")
+FROZEN = "rtl/regs/frozen.txt"
+
+
+class Descriptions:
+    def __init__(self, root):
+        self.registers = read_register_map(root / "rtl/regs/trammel.rdl")
+        self.commands = read_command_map(root / "rtl/regs/commands.toml")
+        self.constants = read_constants(root / "rtl/regs/constants.toml")
+
+    def positions(self):
+        return frozen_text(self.registers, self.commands)
+
+
+def generate(root, descriptions):
+    registers, commands, constants = descriptions.registers, descriptions.commands, descriptions.constants
     header = "rtl/regs/generated/include/trammel/card_map.hpp"
     return {
-        "rtl/regs/generated/card_map_pkg.sv": package_text(registers, commands),
-        header: formatted(root, header, header_text(registers, commands)),
+        "rtl/regs/generated/card_map_pkg.sv": package_text(registers, commands, constants),
+        header: formatted(root, header, header_text(registers, commands, constants)),
         "docs/reference/registers.md": registers_text(registers, commands),
-        "docs/reference/commands.md": commands_text(commands),
+        "docs/reference/commands.md": commands_text(commands, constants),
     }
 
 

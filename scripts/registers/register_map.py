@@ -24,6 +24,7 @@ class Field:
     brief: str
     minimum: Optional[int]
     maximum: Optional[int]
+    engine: str  # field of ENGINES that must be set for the bits to have a meaning; empty: always
 
     @property
     def mask(self):
@@ -33,15 +34,15 @@ class Field:
 @dataclass
 class Register:
     name: str
-    address: int
+    address: int  # of axis 0's slot in an array
     access: str  # constant, live, snapshot, clear_ones, setting or command
     brief: str
     source: str  # what gives a constant its value; empty: the map itself
     count: int
-    stride: int
+    stride: int  # in bytes from one axis to the next; negative where an array runs downwards
     only_present_axes: bool
-    always_needed: bool
-    single_pulse: bool
+    engine: str  # field of ENGINES without which the register is not there; empty: always there
+    area: str  # of latched values that it belongs to, else empty
     fields: List[Field] = field(default_factory=list)
 
     @property
@@ -51,6 +52,18 @@ class Register:
     @property
     def reset(self):
         return sum(f.reset << f.low for f in self.fields)
+
+    @property
+    def optional(self):
+        """Bits that need an engine besides the register's own, and that engine."""
+        fields = [f for f in self.fields if f.engine]
+        if len({f.engine for f in fields}) > 1:
+            raise MapError(f"{self.name}: fields need more than one engine")
+        return (sum(f.mask for f in fields), fields[0].engine) if fields else (0, "")
+
+    @property
+    def addresses(self):
+        return [self.address + i * self.stride for i in range(self.count)]
 
     @property
     def is_array(self):
@@ -76,6 +89,23 @@ class Reason:
 class RegisterMap:
     registers: List[Register]
     reasons: List[Reason]
+    engines: List[Field]  # the fields of ENGINES, a bit each
+
+    @property
+    def version(self):
+        return next(r for r in self.registers if r.name == "MAP_VERSION").reset
+
+    def engine_bit(self, name):
+        """Bit of ENGINES; 0 (lines, which every card has) where nothing is needed."""
+        return next(e.low for e in self.engines if e.name == name) if name else 0
+
+    def areas(self):
+        """Areas of latched values with the same layout: name -> registers, their names without the area's."""
+        areas = {}
+        for r in self.registers:
+            if r.area:
+                areas.setdefault(r.area, []).append(r)
+        return areas
 
 
 def read_register_map(path):
@@ -83,27 +113,38 @@ def read_register_map(path):
     compiler.compile_file(str(path))
     top = compiler.elaborate().top
     registers = [_register(node) for node in top.descendants(unroll=False) if isinstance(node, RegNode)]
-    registers.sort(key=lambda r: r.address)
-    return RegisterMap(registers, _reasons(top))
+    registers.sort(key=lambda r: min(r.addresses))
+    engines = next(r for r in registers if r.name == "ENGINES").fields
+    known = {e.name for e in engines} | {""}
+    for r in registers:
+        for engine in [r.engine] + [f.engine for f in r.fields]:
+            if engine not in known:
+                raise MapError(f"{r.name}: ENGINES has no field {engine}")
+    return RegisterMap(registers, _reasons(top), engines)
 
 
 def _register(node):
-    in_file = node.parent.inst_name != node.owning_addrmap.inst_name
-    array = node.parent if in_file else node
-    register = Register(
-        name=node.inst_name,
-        address=node.raw_address_offset + (node.parent.raw_address_offset if in_file else 0),
+    file = node.parent if node.parent.inst_name != node.owning_addrmap.inst_name else None
+    array = file if file is not None and file.is_array else node
+    area = file.inst_name if file is not None and not file.is_array else ""
+    base = node.raw_address_offset + (file.raw_address_offset if file is not None else 0)
+    count = array.array_dimensions[0] if array.is_array else 1
+    stride = array.array_stride if array.is_array else 0
+    if file is not None and file.get_property("downwards"):
+        base, stride = base + (count - 1) * stride, -stride
+    return Register(
+        name=f"{area}_{node.inst_name}" if area else node.inst_name,
+        address=base,
         access=_access(node),
         brief=node.get_property("desc"),
         source=node.get_property("source") or "",
-        count=array.array_dimensions[0] if array.is_array else 1,
-        stride=array.array_stride if array.is_array else 0,
+        count=count,
+        stride=stride,
         only_present_axes=bool(array.get_property("only_present_axes")),
-        always_needed=bool(node.get_property("always_needed")),
-        single_pulse=any(f.get_property("singlepulse") for f in node.fields()),
+        engine=node.get_property("engine") or (file is not None and file.get_property("engine")) or "",
+        area=area,
         fields=[_field(f) for f in node.fields()],
     )
-    return register
 
 
 def _field(node):
@@ -116,6 +157,7 @@ def _field(node):
         brief=node.get_property("desc") or "",
         minimum=node.get_property("minimum"),
         maximum=node.get_property("maximum"),
+        engine=node.get_property("engine") or "",
     )
 
 

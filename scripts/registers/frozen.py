@@ -1,0 +1,56 @@
+"""Positions that drivers rely on, as text: rtl/regs/frozen.txt holds them for the present versions."""
+
+from . import command_map as cm
+
+HEAD = """# Positions of the register map and of the command layouts, one line each. scripts/generate-registers refuses a
+# description that differs from this file without a new version; a new version is written here with --freeze.
+"""
+
+
+def frozen_text(register_map, commands):
+    lines = [HEAD, f"map 0x{register_map.version:08X}\n"]
+    for r in register_map.registers:
+        array = f" x{r.count} {r.stride:+#x}" if r.is_array else ""
+        engine = f" engine {register_map.engine_bit(r.engine)}" if r.engine else ""
+        fields = " ".join(f"{f.name}[{f.low + f.width - 1}:{f.low}]" for f in r.fields)
+        lines.append(f"  0x{r.address:03X} {r.name}{array} {r.access}{engine}: {fields}\n")
+    lines += [f"  reason {r.value} {r.name}\n" for r in register_map.reasons]
+    lines.append(f"commands {commands.version}\n")
+    for c in commands.commands:
+        engine = f" engine {register_map.engine_bit(c.engine)}" if c.engine else ""
+        fields = " ".join(_field(f) for f in c.fields)
+        lines.append(f"  {c.opcode} {c.name} to {'+'.join(c.queues)} mask {c.mask}{engine}: {fields}\n")
+    return "".join(lines)
+
+
+def _field(field):
+    each = "*" if field.per_axis else ""
+    first = cm.HEADER_HALFWORDS + cm.COUNT_HALFWORDS + field.offset
+    return f"{field.name}@{first}+{field.halfwords}{each}({field.kind} {field.bits})"
+
+
+def moved(frozen, text):
+    """What a committed text and the description disagree on though the version is the same: a list of lines."""
+    differences = []
+    old, new = _sections(frozen), _sections(text)
+    for version, lines in new.items():
+        if version not in old:
+            differences.append(f"{version} is not in the file: write it with --freeze")
+        elif old[version] != lines:
+            differences += [f"{version}: -{line}" for line in old[version] if line not in lines]
+            differences += [f"{version}: +{line}" for line in lines if line not in old[version]]
+            if not differences:
+                differences.append(f"{version}: in another order")
+    return differences
+
+
+def _sections(text):
+    sections, lines = {}, []
+    for line in text.splitlines():
+        if line.startswith("#"):
+            continue
+        if line.startswith(" "):
+            lines.append(line)
+        else:
+            lines = sections.setdefault(line, [])
+    return sections
