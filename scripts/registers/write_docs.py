@@ -22,7 +22,7 @@ behaves](behaviour.md)).
 
 Registers of axes that the card lacks and of engines that are not built in (the column `engine` names a bit of
 [`ENGINES`](#engines); empty: on every card) are unknown addresses. For 257 clocks after reset the registers are being
-filled: accesses wait, but reads of live registers are answered at once, with `STATUS.snapshot` set.
+filled: accesses wait, but reads of live registers, of `FAULT` and of `REFUSAL` are answered at once.
 
 The registers of the direct mode run downwards, axis n at 0x370 - 0x10 n, and `START` is the last register: on a card
 with n axes one block write of 4 n + 3 words, from `FREQUENCY_LO` of axis n - 1 to `START`, sets and starts a move.

@@ -222,9 +222,9 @@ def _limit_function(registers, patterns):
             conditions.append(f"{bits} >= {_hex(f.width, f.minimum)}")
         if f.maximum is not None:
             conditions.append(f"{bits} <= {_hex(f.width, f.maximum)}")
-        items += [(p, _built(r.engine, " && ".join(conditions), "1'b1")) for p in patterns[r.name]]
+        items += [(p, " && ".join(conditions)) for p in patterns[r.name]]
     return _function(["1: the written value keeps the limits that a field has beyond its width."], "register_in_limits",
-                     1, f"input logic [9:0] word, input logic [31:0] data, {ENGINES_ARGUMENT}", "word", items, "1'b1")
+                     1, "input logic [9:0] word, input logic [31:0] data", "word", items, "1'b1")
 
 
 def _slot_function(registers, patterns):

@@ -684,14 +684,10 @@ package card_map_pkg;
   endfunction
 
   // 1: the written value keeps the limits that a field has beyond its width.
-  function automatic logic register_in_limits(input logic [9:0] word,
-                                              input logic [31:0] data,
-                                              input logic [31:0] engines);
+  function automatic logic register_in_limits(input logic [9:0] word, input logic [31:0] data);
     casez (word)
-      10'b00_0110_0010:
+      10'b00_0110_0010, 10'b00_0110_0011, 10'b00_0110_0100:
         register_in_limits = data[16:0] <= 17'h10000;
-      10'b00_0110_0011, 10'b00_0110_0100:
-        register_in_limits = engines[ENGINE_CLASSES] ? data[16:0] <= 17'h10000 : 1'b1;
       10'b00_0110_0101:
         register_in_limits = data[27:0] >= 28'h0000001;
       10'b00_0110_0110:
