@@ -12,3 +12,28 @@ target_precompile_headers(trammel_test_headers PRIVATE <gmock/gmock.h> <gtest/gt
 function(trammel_test_headers target)
   target_precompile_headers(${target} REUSE_FROM trammel_test_headers)
 endfunction()
+
+# Real programs from elsewhere, beside the checkout: TRAMMEL_SHARED_GCODE is their folder, or empty where it is missing.
+set(TRAMMEL_SHARED_GCODE "${PROJECT_SOURCE_DIR}/../shared/gcode")
+if(NOT EXISTS "${TRAMMEL_SHARED_GCODE}")
+  set(TRAMMEL_SHARED_GCODE "")
+  message(STATUS "no ../shared/gcode: its programs are not tested, those of examples/ are")
+endif()
+
+# trammel_shared_gcode(target): TRAMMEL_SHARED_GCODE_DIR for its sources, where the programs are there.
+function(trammel_shared_gcode target)
+  if(TRAMMEL_SHARED_GCODE)
+    target_compile_definitions(${target} PRIVATE TRAMMEL_SHARED_GCODE_DIR="${TRAMMEL_SHARED_GCODE}")
+  endif()
+endfunction()
+
+# trammel_discover_tests(target prefix [LABEL label] [FILTER filter] [properties ...]): a test of ctest for each of
+# GoogleTest's (that the filter lets through), with the label `unit` unless another is named.
+function(trammel_discover_tests target prefix)
+  cmake_parse_arguments(PARSE_ARGV 2 A "" "LABEL;FILTER" "")
+  if(NOT A_LABEL)
+    set(A_LABEL unit)
+  endif()
+  gtest_discover_tests(${target} TEST_PREFIX "${prefix}." DISCOVERY_TIMEOUT 60 TEST_FILTER "${A_FILTER}"
+                       PROPERTIES LABELS ${A_LABEL} ${A_UNPARSED_ARGUMENTS})
+endfunction()
