@@ -11,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <regex>
 #include <string>
 #include <utility>
@@ -33,6 +34,9 @@ struct Job {
   sim::EngineKind engine;
   std::string set;  // override of the machine, or nothing
 };
+
+// In the names of the tests.
+void PrintTo(const Job& job, std::ostream* out) { *out << job.program; }
 
 bool is_model(const Job& job) { return job.engine == sim::EngineKind::kModel; }
 
