@@ -17,7 +17,7 @@ bool remember_low(Root&, long) {
   return false;
 }
 
-// The model was evaluated before with clk_i low or by this function.
+// The model was evaluated before.
 template <class Dut>
 void rising_edge(Dut& dut) {
   if (!remember_low(*dut.rootp, 0)) {

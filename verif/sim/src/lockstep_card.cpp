@@ -16,7 +16,7 @@ constexpr std::size_t kResetClocks = 4;
 
 LockstepCard::LockstepCard(std::unique_ptr<VerilatedCard> card, const model::CardModel::Config& config,
                            std::uint64_t seed, std::size_t batch)
-    : card_(std::move(card)), model_(config), seed_(seed), golden_(batch), rtl_(batch) {
+    : card_(std::move(card)), model_(config), seed_(seed), signals_(signals_compared(config.axes)), golden_(batch), rtl_(batch) {
   model::CardModel::Inputs reset;
   reset.rst = true;
   CardRecord unused;
@@ -60,23 +60,26 @@ void LockstepCard::settle() {
     record += stretch.clocks;
   }
   const std::size_t clocks = golden_clocks_;
-  forget_batch();
-  for (std::size_t i = 0; i < clocks; ++i) compare(rtl_[i], golden_[i]);
+  // A batch is compared once, also when that ends in a mismatch.
+  stretches_.clear();
+  golden_clocks_ = 0;
+  compare(clocks);
   events_.settle();
 }
 
-// A batch is compared once, also when that ends in a mismatch.
-void LockstepCard::forget_batch() {
-  stretches_.clear();
-  golden_clocks_ = 0;
-}
-
-void LockstepCard::compare(const CardRecord& rtl, const CardRecord& golden) {
-  ++cycles_;
-  comparisons_ += signals_compared(model_.axes());
-  if (std::memcmp(&rtl, &golden, sizeof rtl) == 0) return;
+// All records at once; they are told apart only when something differs.
+void LockstepCard::compare(std::size_t clocks) {
+  std::size_t same = clocks;
+  if (std::memcmp(rtl_.data(), golden_.data(), clocks * sizeof(CardRecord)) != 0) {
+    same = 0;
+    while (same < clocks && std::memcmp(&rtl_[same], &golden_[same], sizeof(CardRecord)) == 0) ++same;
+  }
+  const std::size_t compared = same == clocks ? clocks : same + 1;
+  cycles_ += compared;
+  comparisons_ += compared * signals_;
+  if (same == clocks) return;
   // An event of this many cycles came before the clock that made the difference.
-  lockstep::fail("card", cycles_, seed_, differences(rtl, golden), events_.text(cycles_ - 1));
+  lockstep::fail("card", cycles_, seed_, differences(rtl_[same], golden_[same]), events_.text(cycles_ - 1));
 }
 
 }  // namespace trammel::sim

@@ -47,12 +47,12 @@ class LockstepCard {
     std::size_t clocks;
   };
 
-  void compare(const CardRecord& rtl, const CardRecord& golden);
-  void forget_batch();
+  void compare(std::size_t clocks);
 
   std::unique_ptr<VerilatedCard> card_;
   model::CardModel model_;
   std::uint64_t seed_;
+  std::uint64_t signals_;           // of a record
   std::vector<Stretch> stretches_;  // of the batch
   std::vector<CardRecord> golden_;
   std::vector<CardRecord> rtl_;
