@@ -4,13 +4,16 @@ namespace trammel::model {
 
 namespace {
 
+using card_map::Reason;
 namespace reg = card_map::reg;
 
-constexpr std::uint64_t kOnePulse = std::uint64_t{1} << 40;
+constexpr std::uint64_t kOnePulse = std::uint64_t{1} << card_map::constant::kFractionBits;
 constexpr int kAxisClocks = 17;
 constexpr int kOtherClocks = 8;  // of every other phase
 
-std::uint16_t half(std::uint64_t value, int index) { return static_cast<std::uint16_t>(value >> (16 * index)); }
+LoadWord halfword(unsigned target, std::uint64_t value, int index) {
+  return {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
+}
 
 }  // namespace
 
@@ -20,68 +23,65 @@ void DirectLoader::enter(Phase phase) {
 }
 
 // Halfwords go out lowest first; a frequency to the negative side as its two's complement.
-DirectLoader::Halfword DirectLoader::frequency_halfword(int index) const {
-  Halfword result;
-  result.word = half(negative_ ? 0 - frequency_ : frequency_, index);
-  result.axis = static_cast<std::uint8_t>(axis_);
-  result.increment = true;
-  return result;
+LoadWord DirectLoader::frequency_halfword(int index) const {
+  return halfword(load_target::kIncrement + axis_, negative_ ? 0 - frequency_ : frequency_, index);
 }
 
-void DirectLoader::read_axis(const Inputs& in, Halfword& taken) {
+LoadWord DirectLoader::read_axis(const Inputs& in) {
+  const std::uint32_t addresses[] = {reg::direction(axis_), reg::frequency_lo(axis_), reg::frequency_hi(axis_),
+                                     reg::count(axis_)};
+  out_.address = word_address(addresses[step_ / 4 % 4]);
   switch (step_) {
     case 3:
       negative_ = (in.data & 1) != 0;
       break;
     case 7:
       frequency_ = in.data;
-      taken = frequency_halfword(0);
-      break;
+      return frequency_halfword(0);
     case 8:
-      taken = frequency_halfword(1);
-      break;
+      return frequency_halfword(1);
     case 11:
       frequency_ |= std::uint64_t{in.data} << 32;
-      taken = frequency_halfword(2);
-      if (frequency_ > kOnePulse) bad_ = true;
-      break;
+      if (frequency_ > kOnePulse) bad_value_ = true;
+      return frequency_halfword(2);
     case 15:
     case 16:
-      taken.word = half(in.data, step_ - 15);
-      taken.axis = static_cast<std::uint8_t>(axis_);
-      taken.steps = true;
-      if (in.data != 0 && frequency_ == 0) bad_ = true;
-      break;
+      if (in.data != 0 && frequency_ == 0) bad_value_ = true;
+      return halfword(load_target::kCount + axis_, in.data, step_ - 15);
     default:
       break;
   }
-  const std::uint32_t addresses[] = {reg::direction(axis_), reg::frequency_lo(axis_), reg::frequency_hi(axis_),
-                                     reg::count(axis_)};
-  out_.address = word_address(addresses[step_ / 4 % 4]);
+  return {};
 }
 
-void DirectLoader::read_length(const Inputs& in, Halfword& taken) {
-  if (step_ == 3 || step_ == 4) {
-    taken.word = half(in.data, step_ - 3);
-    taken.length = true;
-    length_ |= in.data;
-  } else if (step_ == 7) {
-    taken.word = half(in.data, 0);
-    taken.length = true;
-    length_ |= std::uint64_t{in.data} << 32;
-  }
+LoadWord DirectLoader::read_length(const Inputs& in) {
   out_.address = word_address(step_ < 4 ? reg::kLengthLo : reg::kLengthHi);
+  if (step_ == 3 || step_ == 4) {
+    length_ |= in.data;
+    return halfword(load_target::kTicks, in.data, step_ - 3);
+  }
+  if (step_ != 7) return {};
+  length_ |= std::uint64_t{in.data} << 32;
+  return halfword(load_target::kTicks, in.data, 0);
 }
 
-void DirectLoader::work(const Inputs& in) {
-  out_.word = taken_.word;
-  out_.axis = taken_.axis;
-  out_.increment = taken_.increment;
-  out_.steps = taken_.steps;
-  out_.length = taken_.length;
+void DirectLoader::decide(const Inputs& in) {
+  Reason reason = Reason::None;
+  if (bad_value_ || length_ == 0) reason = Reason::BadValue;
+  if (busy_) reason = Reason::Busy;
+  if (closed_ || in.closed) reason = Reason::Faulted;
+  if (bad_mask_) reason = Reason::BadValue;
+  out_.done = true;
+  out_.error = reason != Reason::None;
+  out_.go = !out_.error;
+  out_.reason = static_cast<std::uint8_t>(reason);
+}
+
+void DirectLoader::go_on(const Inputs& in) {
+  out_.load = taken_;
   out_.done = false;
   out_.go = false;
-  Halfword taken;
+  LoadWord taken;
   switch (phase_) {
     case Phase::Idle:
       if (in.start) enter(Phase::Check);
@@ -90,41 +90,43 @@ void DirectLoader::work(const Inputs& in) {
       if (step_ == 0) {
         frequency_ = length_ = 0;
         axis_ = 0;
-        bad_ = in.mask == 0 || in.mask >> axes_ != 0;
+        bad_value_ = false;
+        bad_mask_ = in.mask == 0 || in.mask >> axes_ != 0;
       }
-      if (step_ == kOtherClocks - 1) enter(busy_ || bad_ ? Phase::Decide : Phase::Axis);
-      busy_ = in.busy;
       out_.mask = in.mask;
+      if (step_ == kOtherClocks - 1) {
+        enter(bad_mask_ || closed_ || busy_ ? Phase::Decide : Phase::Axis);
+      } else {
+        busy_ = in.busy;
+        closed_ = in.closed;
+      }
       break;
     case Phase::Axis: {
       const bool masked = (in.mask >> axis_ & 1) != 0;
-      if (masked) read_axis(in, taken);
+      if (masked) taken = read_axis(in);
       if (masked && step_ != kAxisClocks - 1) break;
       step_ = -1;
-      if (axis_ == 7) enter(Phase::Length);
+      if (axis_ == card_map::kMaxAxes - 1) enter(Phase::Length);
       ++axis_;
       break;
     }
     case Phase::Length:
-      read_length(in, taken);
+      taken = read_length(in);
       if (step_ == kOtherClocks - 1) enter(Phase::Decide);
       break;
     case Phase::Decide:
       if (step_ != kOtherClocks - 1) break;
-      out_.done = true;
-      out_.error = busy_ || bad_ || length_ == 0;
-      out_.go = !out_.error;
-      out_.reason = static_cast<std::uint8_t>(busy_ ? card_map::Reason::Busy : card_map::Reason::BadValue);
+      decide(in);
       enter(Phase::Idle);
       break;
   }
   ++step_;
-  moving_ = taken.increment || taken.steps || taken.length || taken_.increment || taken_.steps || taken_.length;
+  moving_ = taken.valid || taken_.valid;
   taken_ = taken;
   if (in.reset) {
     phase_ = Phase::Idle;
     moving_ = false;
-    taken_ = Halfword{};
+    taken_ = LoadWord{};
     out_ = Outputs{};
   }
 }

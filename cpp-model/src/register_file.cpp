@@ -5,18 +5,19 @@ namespace trammel::model {
 namespace {
 
 using card_map::Access;
+using card_map::Area;
 using card_map::Reason;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr std::uint32_t kByteInWord = 3;
-constexpr std::uint32_t kRamWords = 256;
-constexpr std::uint32_t kResetWalk = kRamWords + 1;  // one word a clock, and the last one's own clock
-constexpr std::uint32_t kSnapshotWords = 6;          // beside the positions
+constexpr std::uint64_t kFillClocks = 257;  // from reset on accesses wait so long for the registers to be filled
 
 bool writable(Access access) {
   return access == Access::ClearOnes || access == Access::Setting || access == Access::Command;
 }
+
+bool reads_live(Access access) { return access == Access::Live || access == Access::ClearOnes; }
 
 bool in_limits(const card_map::Register& entry, std::uint32_t word) {
   if (entry.limited == 0) return true;
@@ -26,60 +27,76 @@ bool in_limits(const card_map::Register& entry, std::uint32_t word) {
   return value >= entry.minimum && value <= entry.maximum;
 }
 
+std::size_t in_area(std::uint32_t address) { return (address - static_cast<std::uint32_t>(Area::Snap)) / 4; }
+
 }  // namespace
 
-RegisterFile::RegisterFile(const Config& config) : config_(config) {
+RegisterFile::RegisterFile(const Config& config) : config_(config), snapshot_(config.axes) {
   for (const card_map::Register& entry : card_map::kRegisters) {
-    for (std::uint32_t i = 0; i < entry.count; ++i) stored(entry.address + i * entry.stride) = entry.reset;
+    for (std::uint32_t i = 0; i < entry.count; ++i) stored(card_map::slot_address(entry, i)) = entry.reset;
   }
   stored(reg::kAxes) = config_.axes;
   stored(reg::kClockHz) = config_.clock_hz;
+  stored(reg::kEngines) = config_.engines;
   stored(reg::kGeometryDepth) = config_.geometry_depth;
   stored(reg::kFeedDepth) = config_.feed_depth;
-  show_settings();
-  walk_ = kResetWalk;
+  stored(reg::kBuildId) = config_.build_id;
+  stored(reg::kBuildFlags) = config_.build_dirty ? field::kBuildFlagsDirty : 0;
+  stored(reg::kBoardId) = config_.board_id;
+  stored(reg::kPorts) = config_.ports;
+  for (std::uint32_t n = 0; n < config_.axes; ++n) {
+    const bool first = (config_.idle_level >> n & 1) != 0;
+    const bool second = (config_.idle_level >> (config_.axes + n) & 1) != 0;
+    stored(reg::mode(n)) = (first ? field::kModeInvertFirst : 0) | (second ? field::kModeInvertSecond : 0);
+  }
 }
 
 void RegisterFile::reset() { *this = RegisterFile(config_); }
 
 void RegisterFile::clock(const Inputs& in) {
-  const bool walking = walk_ != 0;
-  const std::uint32_t access_address = address_;
-  const std::uint32_t fault = (out_.fault & ~clearing_[1]) | in.fault;
   const bool irq = interrupt(in);
+  const bool asked = snapshot_asked_;
+  const bool enable_set = out_.setting.set && out_.setting.address == reg::kIrqEnable;
+  const std::uint32_t enable = out_.setting.data;
+  if (snapshot_.strobe()) take_values(in);
   step_loader(in);
-  clearing_ = {out_.clear_fault, clearing_[0]};
-  clear_pulses();
-  if (snapshot_pending_) take_snapshot(in);
-  if (write_pending_) effect();
+  clear_events();
+  refuse_checked(in);
   step_access(in);
-  settle_refusal(in, access_address);
-  out_.fault = fault;
+  step_snapshot(in, asked);
+  if (enable_set) irq_enable_ = enable;
   out_.irq = irq;
-  if (walking) --walk_;
   ++time_;
 }
 
 bool RegisterFile::quiet(const Inputs& in) const {
-  const bool pulses = out_.ack || out_.stream_write || out_.abort || out_.flush || out_.start || out_.clear_fault != 0;
-  const bool underway = snapshot_pending_ || write_pending_ || walk_ != 0 || clearing_[0] != 0 || clearing_[1] != 0 ||
-                        loading_ || loader_read_.valid || out_.loader_valid;
-  const bool events = in.request || in.door_refuse || (in.fault & ~out_.fault) != 0;
-  return stage_ == Stage::Idle && !pulses && !underway && !events && out_.irq == interrupt(in);
+  const bool events = out_.ack || out_.setting.set || out_.stream_write || out_.abort || out_.flush || out_.start ||
+                      out_.clear_fault != 0 || snapshot_asked_;
+  const bool underway = snapshot_.busy() || loading_ || loader_read_.valid || out_.loader_valid;
+  const bool asked = in.request || in.checker_refuse || in.stop;
+  return stage_ == Stage::Idle && !events && !underway && !asked && out_.irq == interrupt(in);
 }
 
-void RegisterFile::clear_pulses() {
+void RegisterFile::clear_events() {
   out_.ack = false;
   out_.error = false;
   out_.data = 0;
+  out_.setting.set = false;
   out_.clear_fault = 0;
   out_.stream_write = false;
   out_.abort = false;
   out_.flush = false;
   out_.start = false;
+  snapshot_asked_ = false;
 }
 
 std::uint32_t RegisterFile::status(const Inputs& in) const {
+  bool refused = false;
+  for (const std::uint32_t refusal : refusal_) refused = refused || refusal != 0;
+  return status_for(in, refused);
+}
+
+std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   std::uint32_t status = 0;
   if (in.busy) status |= field::kStatusBusy;
   if (in.direct) status |= field::kStatusDirect;
@@ -87,45 +104,55 @@ std::uint32_t RegisterFile::status(const Inputs& in) const {
   if (in.feed_active) status |= field::kStatusFeedActive;
   if (in.ratio == 0) status |= field::kStatusHeld;
   if (in.ended) status |= field::kStatusEnded;
-  if (out_.fault != 0) status |= field::kStatusFaulted;
-  if (refusal_ != 0) status |= field::kStatusRefused;
-  if (walk_ != 0) status |= field::kStatusSnapshot;
+  if (in.fault != 0) status |= field::kStatusFaulted;
+  if (refused) status |= field::kStatusRefused;
+  if (snapshot_.busy()) status |= field::kStatusSnapshot;
   if (in.incomplete) status |= field::kStatusIncomplete;
+  if (in.stopping) status |= field::kStatusStopping;
   return status;
 }
 
 bool RegisterFile::interrupt(const Inputs& in) const {
   // IRQ_ENABLE has the bits of STATUS, but its bit for busy means idle.
-  const std::uint32_t causes = status(in) ^ field::kStatusBusy;
-  return (causes & stored(reg::kIrqEnable)) != 0;
+  return ((status(in) ^ field::kStatusBusy) & irq_enable_) != 0;
 }
 
 std::uint32_t RegisterFile::live(const Inputs& in) const {
   switch (address_) {
     case reg::kStatus:
-      return status(in);
+      return status_for(in, refusal_[port_] != 0);
     case reg::kFault:
-      return out_.fault;
+      return in.fault;
     case reg::kRefusal:
-      return refusal_;
+      return refusal_[port_];
     case reg::kGeometryRoom:
       return in.geometry_room;
     case reg::kFeedRoom:
       return in.feed_room;
+    case reg::kGeometryBegun:
+      return in.geometry_begun;
     default:
-      return std::uint32_t{in.running_feed} << field::kRunningFeedShift | in.running_geometry;
+      return in.feed_begun;
   }
 }
 
-Reason RegisterFile::judge(bool direct) const {
+Reason RegisterFile::judge(const Inputs& in) const {
   if (slot_.entry == nullptr || (address_ & kByteInWord) != 0) return Reason::UnknownAddress;
   const card_map::Register& entry = *slot_.entry;
+  if (!card_map::has_engine(config_.engines, entry.engine)) return Reason::UnknownAddress;
   if (entry.only_present_axes && slot_.index >= config_.axes) return Reason::UnknownAddress;
   if (!write_) return entry.access == Access::Command ? Reason::WriteOnly : Reason::None;
+  return judge_write(in);
+}
+
+Reason RegisterFile::judge_write(const Inputs& in) const {
+  const card_map::Register& entry = *slot_.entry;
   if (!writable(entry.access)) return Reason::ReadOnly;
   if (partial_) return Reason::PartialWrite;
-  if ((word_ & ~entry.mask) != 0 || !in_limits(entry, word_)) return Reason::BadValue;
-  if (address_ == reg::kStream && direct) return Reason::Busy;
+  const std::uint32_t meaning = card_map::bits_with_meaning(entry, config_.engines);
+  if ((word_ & ~meaning) != 0 || !in_limits(entry, word_)) return Reason::BadValue;
+  const bool owned_by_another = in.incomplete && stream_owner_ != port_;
+  if (address_ == reg::kStream && (in.direct || owned_by_another)) return Reason::Busy;
   return Reason::None;
 }
 
@@ -138,9 +165,10 @@ void RegisterFile::step_access(const Inputs& in) {
       stage_ = Stage::Wait;
       break;
     case Stage::Wait: {
-      reason_ = judge(in.direct);
-      const bool past_walk = slot_.entry != nullptr && slot_.entry->access == Access::Live;
-      if (walk_ == 0 || past_walk) stage_ = Stage::Act;
+      reason_ = judge(in);
+      const bool needs_ram = write_ || reason_ == Reason::UnknownAddress || !reads_live(slot_.entry->access);
+      const bool ram_taken = time_ < kFillClocks || snapshot_.busy();
+      if (!needs_ram || !ram_taken) stage_ = Stage::Act;
       break;
     }
     case Stage::Act:
@@ -149,23 +177,16 @@ void RegisterFile::step_access(const Inputs& in) {
     case Stage::Respond:
       finish(false, answer_);
       break;
-    case Stage::Send:
-      if (in.door_ready) {
-        out_.stream_write = true;
-        stage_ = Stage::Sent;
-      }
-      break;
     case Stage::Sent:
-      word_refused_ = false;
       stage_ = Stage::Judge;
       break;
     case Stage::Judge:
-      word_refused_ = word_refused_ || in.door_refuse;
-      if (in.door_ready) finish(word_refused_);
+      word_refused_ = word_refused_ || in.checker_refuse;
+      if (in.checker_ready) finish(word_refused_);
       break;
     case Stage::Load:
       if (!in.start_done) break;
-      if (in.start_error) own_refusal_ = in.start_reason;
+      if (in.start_error) refuse(in.start_reason);
       finish(in.start_error);
       break;
   }
@@ -174,6 +195,7 @@ void RegisterFile::step_access(const Inputs& in) {
 void RegisterFile::begin(const Inputs& in) {
   write_ = in.write;
   partial_ = in.partial;
+  port_ = in.port;
   address_ = in.address;
   slot_ = card_map::find_register(address_ & ~kByteInWord);
   if (write_) {
@@ -186,18 +208,20 @@ void RegisterFile::begin(const Inputs& in) {
 
 void RegisterFile::act(const Inputs& in) {
   if (reason_ != Reason::None) {
-    own_refusal_ = static_cast<std::uint8_t>(reason_);
+    refuse(static_cast<std::uint8_t>(reason_));
     finish(true);
     return;
   }
-  const Access access = slot_.entry->access;
   if (!write_) {
-    answer_ = access == Access::Live || access == Access::ClearOnes ? live(in) : stored(address_);
+    answer_ = reads_live(slot_.entry->access) ? live(in) : stored(address_);
     stage_ = Stage::Respond;
     return;
   }
   if (address_ == reg::kStream) {
-    stage_ = Stage::Send;
+    out_.stream_write = true;
+    stream_owner_ = port_;
+    word_refused_ = false;
+    stage_ = Stage::Sent;
     return;
   }
   if (address_ == reg::kStart) {
@@ -205,35 +229,22 @@ void RegisterFile::act(const Inputs& in) {
     stage_ = Stage::Load;
     return;
   }
-  write_pending_ = true;
+  take_effect();
   finish(false);
 }
 
-void RegisterFile::effect() {
-  write_pending_ = false;
+void RegisterFile::take_effect() {
   if (slot_.entry->access == Access::Setting) {
     stored(address_) = word_;
-    show_settings();
+    out_.setting = {true, address_, word_};
   }
   if (address_ == reg::kControl) {
     out_.abort = (word_ & field::kControlAbort) != 0;
     out_.flush = (word_ & field::kControlFlush) != 0;
-    snapshot_pending_ = (word_ & field::kControlSnapshot) != 0;
+    snapshot_asked_ = (word_ & field::kControlSnapshot) != 0;
   }
   if (address_ == reg::kFault) out_.clear_fault = word_;
-  if (address_ == reg::kRefusal) clear_refusal_ = word_ != 0;
-}
-
-void RegisterFile::take_snapshot(const Inputs& in) {
-  snapshot_pending_ = false;
-  stored(reg::kSnapTimeLo) = static_cast<std::uint32_t>(time_);
-  stored(reg::kSnapTimeHi) = static_cast<std::uint32_t>(time_ >> 32);
-  stored(reg::kSnapStatus) = status(in);
-  stored(reg::kSnapRate) = in.rate;
-  stored(reg::kSnapRatio) = in.ratio;
-  stored(reg::kSnapRunning) = std::uint32_t{in.running_feed} << field::kRunningFeedShift | in.running_geometry;
-  for (std::uint32_t n = 0; n < config_.axes; ++n) stored(reg::snap_position(n)) = in.position[n];
-  walk_ = kSnapshotWords + config_.axes;
+  if (address_ == reg::kRefusal && word_ != 0) refusal_[port_] = 0;
 }
 
 void RegisterFile::finish(bool error, std::uint32_t data) {
@@ -243,14 +254,36 @@ void RegisterFile::finish(bool error, std::uint32_t data) {
   stage_ = Stage::Idle;
 }
 
-void RegisterFile::settle_refusal(const Inputs& in, std::uint32_t access_address) {
-  std::uint32_t refusal = 0;
-  if (own_refusal_ != 0) refusal = own_refusal_;
-  if (in.door_refuse) refusal = std::uint32_t{in.door_number} << field::kRefusalCommandShift | in.door_reason;
-  if (clear_refusal_) refusal_ = 0;
-  if (refusal != 0 && refusal_ == 0) refusal_ = access_address << field::kRefusalAddressShift | refusal;
-  own_refusal_ = 0;
-  clear_refusal_ = false;
+// The first refusal of a port stays until it is cleared.
+void RegisterFile::refuse(std::uint8_t reason, std::uint8_t number) {
+  std::uint32_t& refusal = refusal_[port_];
+  if (refusal != 0) return;
+  refusal = address_ << field::kRefusalAddressShift | std::uint32_t{number} << field::kRefusalCommandShift | reason;
+}
+
+// A refusal by the checker belongs to the access that brought it: a word of the stream, or a flush just answered.
+void RegisterFile::refuse_checked(const Inputs& in) {
+  if (in.checker_refuse) refuse(in.checker_reason, in.checker_number);
+}
+
+void RegisterFile::step_snapshot(const Inputs& in, bool host) {
+  if (snapshot_.clock(host, in.stop)) {
+    const auto base = static_cast<std::uint32_t>(snapshot_.finished());
+    for (std::size_t i = 0; i < config_.axes + 8; ++i) stored_[base / 4 + i] = latched_[i];
+  }
+  out_.strobe = snapshot_.strobe();
+}
+
+void RegisterFile::take_values(const Inputs& in) {
+  latched_[in_area(reg::fault(Area::Snap))] = in.fault;
+  latched_[in_area(reg::status(Area::Snap))] = status(in) & ~field::kStatusSnapshot;
+  latched_[in_area(reg::ratio(Area::Snap))] = in.ratio;
+  latched_[in_area(reg::rate(Area::Snap))] = in.rate;
+  latched_[in_area(reg::feed_begun(Area::Snap))] = in.feed_begun;
+  latched_[in_area(reg::geometry_begun(Area::Snap))] = in.geometry_begun;
+  latched_[in_area(reg::time_hi(Area::Snap))] = static_cast<std::uint32_t>(time_ >> 32);
+  latched_[in_area(reg::time_lo(Area::Snap))] = static_cast<std::uint32_t>(time_);
+  for (std::uint32_t n = 0; n < config_.axes; ++n) latched_[in_area(reg::position(Area::Snap, n))] = in.position[n];
 }
 
 void RegisterFile::step_loader(const Inputs& in) {
@@ -258,20 +291,6 @@ void RegisterFile::step_loader(const Inputs& in) {
   out_.loader_data = loader_read_.data;
   loader_read_ = {loading_, stored_[in.loader_address]};
   loading_ = (loading_ || out_.start) && !in.start_done;
-}
-
-void RegisterFile::show_settings() {
-  out_.hold = stored(reg::kHold) != 0;
-  out_.ratio = stored(reg::kRatio);
-  out_.slew = stored(reg::kSlew);
-  out_.hold_limit = stored(reg::kHoldLimit);
-  for (std::uint32_t n = 0; n < config_.axes; ++n) {
-    out_.step_length[n] = static_cast<std::uint16_t>(stored(reg::step_length(n)));
-    out_.step_space[n] = static_cast<std::uint16_t>(stored(reg::step_space(n)));
-    out_.dir_setup[n] = static_cast<std::uint16_t>(stored(reg::dir_setup(n)));
-    out_.dir_hold[n] = static_cast<std::uint16_t>(stored(reg::dir_hold(n)));
-    out_.mode[n] = static_cast<std::uint8_t>(stored(reg::mode(n)));
-  }
 }
 
 }  // namespace trammel::model

@@ -2,7 +2,7 @@
 //
 // The chains are loaded while they are checked: nothing takes them up before `go_o`, and the next command or START
 // loads them afresh. A read has 4 clocks: the address is a register, its data lies there two clocks later, and the two
-// halfwords are taken in the last clock and the one behind it.
+// halfwords are taken in the last clock and the next.
 `default_nettype none
 
 module direct_loader #(
@@ -10,8 +10,9 @@ module direct_loader #(
 ) (
     input  wire logic            clk_i,
     input  wire logic            rst_i,
-    input  wire logic            busy_i,       // anything runs, is queued, or a fault stops the ticks
-    // register file
+    input  wire logic            busy_i,     // anything runs, is decoded or queued
+    input  wire logic            closed_i,   // a fault stands
+    // registers
     input  wire logic            start_i,
     input  wire logic [     7:0] mask_i,       // stands until done_o
     output logic      [     7:0] address_o,    // word address
@@ -19,12 +20,8 @@ module direct_loader #(
     output logic                 done_o,
     output logic                 error_o,
     output logic      [     7:0] reason_o,
-    // sequencer
-    output logic      [    15:0] word_o,
-    output logic      [     2:0] axis_o,
-    output logic                 increment_o,
-    output logic                 steps_o,
-    output logic                 length_o,
+    // to the geometry sequencer
+    output logic      [    21:0] load_o,
     output logic                 go_o,
     output logic      [Axes-1:0] mask_o
 );
@@ -52,6 +49,8 @@ module direct_loader #(
   logic   [ 7:0] rest_q;  // masked axes from axis_q on
   logic   [ 2:0] axis_q;
   logic          busy_q;
+  logic          closed_q;
+  logic          bad_mask_q;
 
   // The halfword taken, on its way to the chains.
   logic   [15:0] raw_q;
@@ -77,8 +76,8 @@ module direct_loader #(
     logic [15:0] negated;
 
     // At rest nothing moves, once done_o and go_o have fallen again.
-    if (rst_i | start_i | (state_q != IDLE) | done_o) begin
-      refused = busy_q | bad_q;
+    if (rst_i || start_i || state_q != IDLE || done_o) begin
+      refused = bad_mask_q || closed_q || busy_q || bad_q;
       axis_last = axis_q == 3'd7;
       axis_done = ~rest_q[0] | (step_q == TAKE_COUNT_1);
       take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_COUNT_1) : step_q == TAKE_LENGTH_1;
@@ -86,23 +85,28 @@ module direct_loader #(
       negated = (raw_q ^ {16{negative_q}}) + {15'd0, carry_q};
 
       // Each stage before the one that feeds it.
-      word_o      <= frequency_q ? negated : raw_q;
-      axis_o      <= raw_axis_q;
-      increment_o <= frequency_q;
-      steps_o     <= count_q;
-      length_o    <= length_q;
+      load_o <= {
+        (frequency_q || count_q || length_q) && !rst_i,
+        length_q ? load_target_pkg::TICKS : (count_q ? load_target_pkg::COUNT : load_target_pkg::INCREMENT) + {2'd0, raw_axis_q},
+        frequency_q ? negated : raw_q
+      };
 
-      done_o      <= (state_q == DECIDE) & (step_q == 5'd7);
-      error_o     <= busy_q | bad_q | ~length_any_q;
-      go_o        <= (state_q == DECIDE) & (step_q == 5'd7) & ~busy_q & ~bad_q & length_any_q;
-      reason_o    <= busy_q ? card_map_pkg::REFUSE_BUSY : card_map_pkg::REFUSE_BAD_VALUE;
+      done_o  <= state_q == DECIDE && step_q == 5'd7 && !rst_i;
+      error_o <= refused || !length_any_q;
+      go_o    <= state_q == DECIDE && step_q == 5'd7 && !refused && length_any_q && !rst_i;
+      if (bad_mask_q) reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
+      else if (closed_q) reason_o <= card_map_pkg::REFUSE_FAULTED;
+      else if (busy_q) reason_o <= card_map_pkg::REFUSE_BUSY;
+      else reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
 
       if (state_q == CHECK) busy_q <= busy_i;
+      // A fault at any time until the move begins counts.
+      closed_q <= state_q != IDLE && (closed_q || closed_i);
+      if (state_q == CHECK) bad_mask_q <= mask_i == 8'd0 || (mask_i >> Axes) != 8'd0;
       if (state_q == IDLE) begin
         bad_q        <= 1'b0;
         length_any_q <= 1'b0;
       end
-      if (state_q == CHECK) bad_q <= (mask_i == 8'd0) | ((mask_i >> Axes) != 8'd0);
       // A frequency above 2^40: bit 40 is bit 8 of its third halfword.
       if (frequency_q & frequency_top_q & raw_q[8] & (frequency_any_q | (raw_q[7:0] != 8'd0))) bad_q <= 1'b1;
       if (count_q & raw_any & ~frequency_any_q) bad_q <= 1'b1;
@@ -130,10 +134,10 @@ module direct_loader #(
         address_o <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[9:2] : card_map_pkg::ADDR_LENGTH_LO[9:2];
       end else begin
         case (step_q[3:2])
-          2'd0: address_o <= card_map_pkg::ADDR_DIRECTION[9:2] + {3'd0, axis_q, 2'd0};
-          2'd1: address_o <= card_map_pkg::ADDR_FREQUENCY_LO[9:2] + {3'd0, axis_q, 2'd0};
-          2'd2: address_o <= card_map_pkg::ADDR_FREQUENCY_HI[9:2] + {3'd0, axis_q, 2'd0};
-          default: address_o <= card_map_pkg::ADDR_COUNT[9:2] + {3'd0, axis_q, 2'd0};
+          2'd0: address_o <= card_map_pkg::ADDR_DIRECTION[9:2] - {3'd0, axis_q, 2'd0};
+          2'd1: address_o <= card_map_pkg::ADDR_FREQUENCY_LO[9:2] - {3'd0, axis_q, 2'd0};
+          2'd2: address_o <= card_map_pkg::ADDR_FREQUENCY_HI[9:2] - {3'd0, axis_q, 2'd0};
+          default: address_o <= card_map_pkg::ADDR_COUNT[9:2] - {3'd0, axis_q, 2'd0};
         endcase
       end
 

@@ -12,16 +12,16 @@
 module deviation_accumulator (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
-    input  wire logic [ 8:0] load_i,
-    input  wire logic [15:0] word_i,
+    input  wire logic        clear_i,
+    input  wire logic [21:0] load_i,
     input  wire logic        start_i,
     input  wire logic        tick_i,
-    input  wire logic        clear_i,
     output logic             step_x_o,
     output logic             dir_x_o,
     output logic             step_y_o,
     output logic             dir_y_o,
     output logic             ready_o,
+    output logic             stepping_o,  // not in the last five clocks before ready_o (combinational)
     output logic             at_end_o
 );
   // Words that travel: 5 words of G enter the adders in phases 0..4 and come back three clocks later, in 3..7.
@@ -33,12 +33,23 @@ module deviation_accumulator (
   logic [15:0] quadrants_q;
   logic clockwise_q;
 
+  // Its targets on the load bus.
+  logic [15:0] word;
+  logic [ 8:0] load;
+  logic        loading;
+  assign word = load_i[15:0];
+  assign loading = load != '0;
+  for (genvar i = 0; i < 9; i++) begin : gen_load
+    assign load[i] = load_i[21] && load_i[20:16] == load_target_pkg::DEVIATION + 5'(i);
+  end
+
   // Control: one-hot phase of a step, and enables registered a clock ahead.
   logic [LAST:0] phase_q;
   logic start_q, g_shift_q, f_shift_q, h_shift_q, e_shift_q;
   logic drop, accept;
-  assign drop   = rst_i | clear_i | (|load_i);
+  assign drop   = rst_i | clear_i | loading;
   assign accept = ready_o & tick_i & ~at_end_o;
+  assign stepping_o = phase_q[3:0] != '0;
 
   always_ff @(posedge clk_i) begin
     if (drop) begin
@@ -60,7 +71,7 @@ module deviation_accumulator (
     end
   end
 
-  // Choice of the next step, renewed at rest, held while the step is worked off.
+  // Choice of the next step, renewed at rest, held while the step is made.
   logic x_zero_q, y_zero_q, done_q, finish_q, select_x_q, negative_q, old_sign_q;
   always_ff @(posedge clk_i) begin : p_choice_of_step
     logic gx_negative, gy_negative, x_negative, y_negative, x_table, x_reached, y_reached, finish;
@@ -117,15 +128,15 @@ module deviation_accumulator (
   logic [15:0] g_back;
   assign g_back = v_q ^ {16{negative_q}};
   always_ff @(posedge clk_i) begin
-    if ((|load_i) | g_shift_q) begin
-      if (load_i[0] | f_shift_q) f_q <= {load_i[0] ? word_i : sum_q, f_q[79:16]};
-      if (load_i[1] | (g_shift_q & select_x_q)) gx_q <= {load_i[1] ? word_i : g_back, gx_q[79:16]};
-      if (load_i[2] | (g_shift_q & ~select_x_q)) gy_q <= {load_i[2] ? word_i : g_back, gy_q[79:16]};
-      if (load_i[3] | (h_shift_q & select_x_q)) hx_q <= {load_i[3] ? word_i : hx_q[15:0], hx_q[47:16]};
-      if (load_i[4] | (h_shift_q & ~select_x_q)) hy_q <= {load_i[4] ? word_i : hy_q[15:0], hy_q[47:16]};
-      if (load_i[5] | (e_shift_q & select_x_q)) ex_q <= {load_i[5] ? word_i : rest_q, ex_q[31:16]};
-      if (load_i[6] | (e_shift_q & ~select_x_q)) ey_q <= {load_i[6] ? word_i : rest_q, ey_q[31:16]};
-      if (load_i[8]) clockwise_q <= word_i[0];
+    if (loading | g_shift_q) begin
+      if (load[0] | f_shift_q) f_q <= {load[0] ? word : sum_q, f_q[79:16]};
+      if (load[1] | (g_shift_q & select_x_q)) gx_q <= {load[1] ? word : g_back, gx_q[79:16]};
+      if (load[2] | (g_shift_q & ~select_x_q)) gy_q <= {load[2] ? word : g_back, gy_q[79:16]};
+      if (load[3] | (h_shift_q & select_x_q)) hx_q <= {load[3] ? word : hx_q[15:0], hx_q[47:16]};
+      if (load[4] | (h_shift_q & ~select_x_q)) hy_q <= {load[4] ? word : hy_q[15:0], hy_q[47:16]};
+      if (load[5] | (e_shift_q & select_x_q)) ex_q <= {load[5] ? word : rest_q, ex_q[31:16]};
+      if (load[6] | (e_shift_q & ~select_x_q)) ey_q <= {load[6] ? word : rest_q, ey_q[31:16]};
+      if (load[8]) clockwise_q <= word[0];
     end
   end
 
@@ -135,7 +146,7 @@ module deviation_accumulator (
   assign change = phase_q[LAST] & (g_back[15] ^ old_sign_q);
   assign done   = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
   always_ff @(posedge clk_i) begin
-    if (load_i[7]) quadrants_q <= word_i;
+    if (load[7]) quadrants_q <= word;
     else if (change) quadrants_q <= quadrants_q - 16'd1;
     // The flags of what a start finds, and of what a step leaves.
     if (start_i | g_shift_q) begin

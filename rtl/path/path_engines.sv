@@ -1,191 +1,140 @@
-// The card's sequencer: takes ticks, runs geometry and feed side by side, joins them at barriers, stops at faults.
+// What makes steps from ticks beside the axes' own generators: prescaler, engines and router as one socket.
 //
-// `take` is the tick of the whole card. It is decided from registers only and leaves as `tick_o` one clock later, in
-// step with the swaps that it causes.
+// All paths share one domain of ticks and swaps, those of the feed as late as the prescaler's steps, so that a path on
+// prescaled ticks and a line after it cannot overtake each other.
 `default_nettype none
 
-module sequencer #(
-    parameter int Axes = 4
+module path_engines #(
+    parameter int Axes        = 4,
+    parameter bit Accumulator = 1
 ) (
     input  wire logic            clk_i,
     input  wire logic            rst_i,
-    input  wire logic            abort_i,
-    // queues
-    input  wire logic            geometry_empty_i,
-    input  wire logic [    15:0] geometry_word_i,
-    output logic                 geometry_read_o,
-    input  wire logic            feed_empty_i,
-    input  wire logic [    15:0] feed_word_i,
-    output logic                 feed_read_o,
-    // direct move
-    input  wire logic [    15:0] direct_word_i,
-    input  wire logic [     2:0] direct_axis_i,
-    input  wire logic            direct_increment_i,
-    input  wire logic            direct_steps_i,
-    input  wire logic            direct_length_i,
-    input  wire logic            direct_go_i,
-    input  wire logic [Axes-1:0] direct_mask_i,
-    output logic                 direct_o,
-    // time
-    input  wire logic            enable_i,            // time base
-    input  wire logic            feed_tick_i,
-    output logic                 feed_enable_o,
-    output logic                 feed_clear_o,
-    output logic                 feed_swap_o,
-    output logic      [     3:0] feed_load_o,
-    output logic      [    15:0] feed_word_o,
-    // load bus and axes
-    output logic      [    15:0] load_word_o,
-    output logic      [Axes-1:0] load_increment_o,
-    output logic      [Axes-1:0] load_steps_o,
-    output logic                 load_prescale_o,
-    output logic      [     8:0] load_deviation_o,
-    output logic                 tick_o,
+    input  wire logic            cut_i,
+    input  wire logic            tick_i,
+    input  wire logic            swap_i,
+    input  wire logic            engine_i,         // with swap_i, what the path runs on: 0 lines, 1 accumulator
+    input  wire logic            start_i,          // with swap_i: the engine's state is loaded
+    input  wire logic [    21:0] load_i,
+    output logic                 tick_o,           // path domain, to the axes
     output logic                 swap_o,
-    output logic      [Axes-1:0] active_o,
-    input  wire logic            axes_live_i,
-    // arcs
-    output logic                 prescaler_o,
-    output logic                 arc_start_o,
-    input  wire logic            prescaler_step_i,
-    input  wire logic            engine_ready_i,
-    input  wire logic            engine_at_end_i,
-    output logic                 path_tick_o,
-    // status
-    input  wire logic            faulted_i,           // a step fault, or a bit of FAULT
-    output logic                 go_o,                // ticks may be taken
-    output logic      [     1:0] fault_o,             // {PATH_INCOMPLETE, TICK_MISMATCH}, at the moment
-    output logic                 path_active_o,
-    output logic                 feed_active_o,
-    output logic                 ended_o,
-    output logic                 idle_o,              // nothing runs, is decoded or queued
-    output logic      [     7:0] geometry_number_o,
-    output logic      [     7:0] feed_number_o
+    output logic                 path_tick_o,      // the accumulator's tick
+    output logic      [Axes-1:0] step_o,
+    output logic      [Axes-1:0] dir_o,
+    output logic                 ready_o,          // a tick may be taken
+    output logic                 payload_ready_o,  // the engine's state may be loaded
+    output logic                 done_o,           // every path tick given is finished
+    output logic                 elsewhere_o       // with done_o: not on the commanded end point
 );
-  logic take;
-  logic taking;
-  logic owed;
-  logic stall;
-  logic engine_free;
-  logic engine_empty;
-  logic incomplete;
-  logic mismatch_q;
-  logic path_waits;
-  logic piece_waits;
-  logic geometry_at;
-  logic feed_at;
-  logic barrier_done;
-  logic geometry_idle;
-  logic feed_idle;
-  logic source_tick_q;
+  logic [2:0] tick_q;
+  logic [2:0] swap_q;
 
-  assign take = owed & taking & engine_free & go_o & (feed_active_o | direct_o);
-
-  tick_gate gate (
-      .clk_i,
-      .rst_i,
-      .clear_i(abort_i | ~(feed_active_o | direct_o)),
-      .tick_i (source_tick_q),
-      .take_i (take),
-      .owed_o (owed),
-      .stall_o(stall)
-  );
-
-  path_tick_gate path_ticks (
-      .clk_i,
-      .rst_i,
-      .clear_i(abort_i),
-      .step_i (prescaler_step_i),
-      .engine_ready_i,
-      .tick_o (path_tick_o),
-      .ready_o(engine_free),
-      .empty_o(engine_empty)
-  );
-
-  geometry_sequencer #(
-      .Axes(Axes)
-  ) geometry (
-      .clk_i,
-      .rst_i,
-      .clear_i          (abort_i),
-      .go_i             (go_o),
-      .empty_i          (geometry_empty_i),
-      .word_i           (geometry_word_i),
-      .read_o           (geometry_read_o),
-      .direct_word_i,
-      .direct_axis_i,
-      .direct_increment_i,
-      .direct_steps_i,
-      .direct_length_i,
-      .direct_go_i,
-      .direct_mask_i,
-      .direct_o,
-      .load_word_o,
-      .load_increment_o,
-      .load_steps_o,
-      .load_prescale_o,
-      .load_deviation_o,
-      .take_i           (take),
-      .taking_o         (taking),
-      .swap_o,
-      .active_o,
-      .prescaler_o,
-      .arc_start_o,
-      .axes_live_i,
-      .engine_empty_i   (engine_empty),
-      .engine_at_end_i,
-      .feed_at_barrier_i(feed_at),
-      .at_barrier_o     (geometry_at),
-      .barrier_done_o   (barrier_done),
-      .incomplete_o     (incomplete),
-      .path_waits_o     (path_waits),
-      .path_active_o,
-      .ended_o,
-      .idle_o           (geometry_idle),
-      .number_o         (geometry_number_o)
-  );
-
-  feed_sequencer feed (
-      .clk_i,
-      .rst_i,
-      .clear_i       (abort_i),
-      .go_i          (go_o),
-      .empty_i       (feed_empty_i),
-      .word_i        (feed_word_i),
-      .read_o        (feed_read_o),
-      .take_i        (take),
-      .barrier_done_i(barrier_done),
-      .at_barrier_o  (feed_at),
-      .piece_waits_o (piece_waits),
-      .active_o      (feed_active_o),
-      .idle_o        (feed_idle),
-      .number_o      (feed_number_o),
-      .swap_o        (feed_swap_o),
-      .load_o        (feed_load_o),
-      .load_word_o   (feed_word_o)
-  );
-
-  fault_stop faults (
-      .clk_i,
-      .rst_i,
-      .abort_i,
-      .event_i  (fault_o[0] | fault_o[1]),
-      .latched_i(faulted_i),
-      .go_o     (go_o)
-  );
-
-  assign fault_o = {incomplete, mismatch_q};
+  assign tick_o = tick_q[2];
+  assign swap_o = swap_q[2];
 
   always_ff @(posedge clk_i) begin
-    tick_o <= take & ~abort_i & ~rst_i;
-    // The generator rests while no path can take its ticks, so that a path does not begin with a burst.
-    feed_enable_o <= enable_i & feed_active_o & taking & ~stall & go_o & ~abort_i & ~rst_i;
-    // Without a piece nothing is owed: ticks made beyond the last one's end never count.
-    feed_clear_o <= ~feed_active_o | abort_i | rst_i;
-    source_tick_q <= (direct_o ? enable_i & taking : feed_tick_i & feed_active_o) & ~abort_i & ~rst_i;
-    mismatch_q    <= ((geometry_at & (feed_active_o | piece_waits)) | (feed_at & ((taking & ~direct_o) | path_waits))) &
-        go_o & ~barrier_done & ~abort_i & ~rst_i;
-    idle_o <= geometry_idle & feed_idle & feed_empty_i & ~feed_active_o;
+    tick_q <= {tick_q[1:0], tick_i};
+    swap_q <= {swap_q[1:0], swap_i};
+    if (rst_i || cut_i) begin
+      tick_q <= '0;
+      swap_q <= '0;
+    end
+  end
+
+  if (Accumulator) begin : gen_accumulator
+    logic on_engine_q;
+    logic coming;
+    logic prescaler_step;
+    logic engine_ready;
+    logic engine_stepping;
+    logic at_end;
+    logic step_x;
+    logic dir_x;
+    logic step_y;
+    logic dir_y;
+
+    // Ticks of other paths pass without a step of the prescaler.
+    assign coming = on_engine_q && (tick_i || tick_q != '0);
+
+    always_ff @(posedge clk_i) begin
+      if (swap_i) on_engine_q <= engine_i;
+      elsewhere_o <= !at_end;
+      if (rst_i || cut_i) on_engine_q <= 1'b0;
+    end
+
+    pulse_generator #(
+        .Counted(0)
+    ) prescaler (
+        .clk_i,
+        .rst_i,
+        .clear_i         (cut_i),
+        .tick_i,
+        .swap_i,
+        .active_i        (engine_i),
+        .counted_i       (1'b0),
+        .mirror_i        (1'b0),
+        .load_increment_i(load_i[21] && load_i[20:16] == load_target_pkg::PRESCALE),
+        .load_count_i    (1'b0),
+        .word_i          (load_i[15:0]),
+        .step_o          (prescaler_step),
+        .dir_o           (),
+        .live_o          ()
+    );
+
+    path_tick_gate gate (
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .coming_i         (coming),
+        .step_i           (prescaler_step),
+        .engine_ready_i   (engine_ready),
+        .engine_stepping_i(engine_stepping),
+        .tick_o           (path_tick_o),
+        .ready_o,
+        .payload_ready_o,
+        .done_o
+    );
+
+    deviation_accumulator accumulator (
+        .clk_i,
+        .rst_i,
+        .clear_i   (cut_i),
+        .load_i,
+        .start_i,
+        .tick_i    (path_tick_o),
+        .step_x_o  (step_x),
+        .dir_x_o   (dir_x),
+        .step_y_o  (step_y),
+        .dir_y_o   (dir_y),
+        .ready_o   (engine_ready),
+        .stepping_o(engine_stepping),
+        .at_end_o  (at_end)
+    );
+
+    arc_router #(
+        .Axes(Axes)
+    ) router (
+        .clk_i,
+        .rst_i,
+        .load_i,
+        .step_x_i(step_x),
+        .dir_x_i (dir_x),
+        .step_y_i(step_y),
+        .dir_y_i (dir_y),
+        .step_o,
+        .dir_o
+    );
+  end else begin : gen_lines_only
+    assign path_tick_o     = 1'b0;
+    assign step_o          = '0;
+    assign dir_o           = '0;
+    assign ready_o         = 1'b1;
+    assign payload_ready_o = 1'b1;
+    assign done_o          = 1'b1;
+    assign elsewhere_o     = 1'b0;
+
+    logic unused;
+    assign unused = &{1'b0, engine_i, start_i, load_i};
   end
 endmodule
 

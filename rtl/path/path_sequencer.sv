@@ -10,7 +10,7 @@ module path_sequencer #(
 ) (
     input  wire logic            clk_i,
     input  wire logic            rst_i,
-    input  wire logic            clear_i,
+    input  wire logic            cut_i,
     input  wire logic            go_i,             // no fault
     // decoded command
     input  wire logic            valid_i,
@@ -27,81 +27,82 @@ module path_sequencer #(
     input  wire logic            last_i,
     output logic                 taking_o,         // ticks may be taken
     output logic                 swap_o,           // a path begins with the next tick
-    output logic                 load_count_o,     // as swap_o, a clock earlier (combinational)
+    output logic                 begin_o,          // as swap_o, a clock earlier (combinational)
     output logic      [Axes-1:0] active_o,         // sampled with swap_o
-    output logic                 prescaler_o,      // sampled with swap_o: the path is an arc
-    output logic                 arc_start_o,
+    output logic                 engine_o,         // sampled with swap_o: the path is an arc
+    output logic                 start_o,          // with swap_o: the engine's state is loaded
     output logic                 direct_o,         // a direct move is under way
-    output logic                 arc_busy_o,
     // ends
     input  wire logic            axes_live_i,
-    input  wire logic            engine_empty_i,
-    input  wire logic            engine_at_end_i,
-    output logic                 incomplete_o,     // an arc ended elsewhere
+    input  wire logic            done_i,           // every path tick given is finished
+    input  wire logic            elsewhere_i,
+    output logic                 engine_taken_o,   // by an arc that still takes ticks (combinational)
+    output logic                 incomplete_o,     // event: an arc ended elsewhere
     input  wire logic            barrier_done_i,
     output logic                 at_barrier_o,
-    output logic                 active_path_o
+    output logic                 path_active_o
 );
-  // Clocks from the last take until its path tick is counted (5) or an axis's live flag has followed it (4).
+  // Clocks from the last enabled clock of a direct move until the axes are asked whether one is live.
   localparam logic [2:0] SETTLE_CLOCKS = 3'd7;
 
   logic       idle_q;  // no path
-  logic       drain_q;  // the last tick is taken, the engine still works
+  logic       drain_q;  // the last tick is taken, the path goes on
+  logic       drained_q;  // a clock later: done_i knows of the last tick
   logic [2:0] settle_q;
   logic       settled_q;
+  logic       arc_q;
   logic       over;
   logic       ending;
   logic       path_valid;
   logic       swap;
 
-  assign path_valid    = valid_i & (line_i | arc_i);
-  assign ending        = take_i & last_i & ~drain_q;
-  assign over          = settled_q & (arc_busy_o ? engine_empty_i : ~axes_live_i);
-  // Behind a line the next path takes over in the clock of the last tick.
-  assign swap          = path_valid & go_i & (idle_q | (ending & ~arc_busy_o & ~direct_o));
-  assign pop_o         = swap | barrier_done_i;
-  assign load_count_o  = swap | direct_go_i;
-  assign active_path_o = ~idle_q;
+  assign path_valid     = valid_i && (line_i || arc_i);
+  assign ending         = take_i && last_i && !drain_q;
+  assign over           = arc_q ? drained_q && done_i : settled_q && !axes_live_i;
+  // After a line the next path takes over in the clock of the last tick. An arc that ended elsewhere has no successor.
+  assign swap           = path_valid && go_i && !incomplete_o && (idle_q || (ending && !arc_q && !direct_o));
+  assign pop_o          = swap || barrier_done_i;
+  assign begin_o        = swap || direct_go_i;
+  assign path_active_o  = !idle_q;
+  assign engine_taken_o = arc_q && !drained_q;
 
   always_ff @(posedge clk_i) begin
-    swap_o       <= (swap | direct_go_i) & ~clear_i & ~rst_i;
-    arc_start_o  <= swap & arc_i & ~clear_i & ~rst_i;
-    incomplete_o <= over & arc_busy_o & ~engine_at_end_i & ~clear_i & ~rst_i;
-    at_barrier_o <= valid_i & barrier_i & idle_q & ~barrier_done_i & ~clear_i & ~rst_i;
-    settled_q    <= drain_q & (settle_q == 3'd0) & ~over & ~clear_i & ~rst_i;
-    if (~drain_q) settle_q <= SETTLE_CLOCKS;
+    swap_o       <= begin_o && !cut_i && !rst_i;
+    start_o      <= swap && arc_i && !cut_i && !rst_i;
+    incomplete_o <= over && arc_q && elsewhere_i && !cut_i && !rst_i;
+    at_barrier_o <= valid_i && barrier_i && idle_q && !barrier_done_i && !cut_i && !rst_i;
+    drained_q    <= drain_q && !over && !cut_i && !rst_i;
+    settled_q    <= drain_q && settle_q == 3'd0 && !over && !cut_i && !rst_i;
+    if (!drain_q) settle_q <= SETTLE_CLOCKS;
     else if (settle_q != 3'd0) settle_q <= settle_q - 3'd1;
 
-    if (swap) begin
-      active_o    <= line_i ? mask_i : '0;
-      prescaler_o <= arc_i;
-    end else if (direct_go_i) begin
-      active_o    <= direct_mask_i;
-      prescaler_o <= 1'b0;
+    if (begin_o) begin
+      active_o <= direct_go_i ? direct_mask_i : line_i ? mask_i : '0;
+      engine_o <= swap && arc_i;
     end
 
-    if (rst_i | clear_i) begin
-      idle_q     <= 1'b1;
-      taking_o   <= 1'b0;
-      drain_q    <= 1'b0;
-      arc_busy_o <= 1'b0;
-      direct_o   <= 1'b0;
-    end else if (swap | direct_go_i) begin
-      idle_q     <= 1'b0;
-      taking_o   <= 1'b1;
-      drain_q    <= 1'b0;
-      arc_busy_o <= swap & arc_i;
-      direct_o   <= ~swap;
+    if (rst_i || cut_i) begin
+      idle_q   <= 1'b1;
+      taking_o <= 1'b0;
+      drain_q  <= 1'b0;
+      arc_q    <= 1'b0;
+      direct_o <= 1'b0;
+    end else if (begin_o) begin
+      idle_q   <= 1'b0;
+      taking_o <= 1'b1;
+      drain_q  <= 1'b0;
+      arc_q    <= swap && arc_i;
+      direct_o <= direct_go_i;
     end else if (ending) begin
-      idle_q   <= ~arc_busy_o & ~direct_o;
+      idle_q   <= !arc_q && !direct_o;
       taking_o <= direct_o;
-      drain_q  <= arc_busy_o | direct_o;
+      drain_q  <= arc_q || direct_o;
     end else if (over) begin
-      idle_q     <= 1'b1;
-      taking_o   <= 1'b0;
-      drain_q    <= 1'b0;
-      arc_busy_o <= 1'b0;
-      direct_o   <= 1'b0;
+      idle_q   <= 1'b1;
+      taking_o <= 1'b0;
+      drain_q  <= 1'b0;
+      arc_q    <= 1'b0;
+      direct_o <= 1'b0;
     end
   end
 endmodule

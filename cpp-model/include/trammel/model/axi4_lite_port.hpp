@@ -1,5 +1,5 @@
 // Golden model of the AXI4-Lite port, cycle-exact at every port: docs/developer/architecture.md.
-// One access at a time goes to the register file; reads and writes that wait together take turns. Not thread-safe.
+// One access at a time goes to the inner port; reads and writes that wait together take turns. Not thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ class Axi4LitePort {
     bool arvalid = false;
     std::uint32_t araddr = 0;  // byte address, 12 bits
     bool rready = false;
-    // from the register file
+    // from the inner port
     bool ack = false;
     bool error = false;
     std::uint32_t data = 0;
@@ -32,12 +32,12 @@ class Axi4LitePort {
     bool awready = false;
     bool wready = false;
     bool bvalid = false;
-    std::uint8_t bresp = kOkay;  // means something with bvalid
+    std::uint8_t bresp = kOkay;  // holds from answer to answer
     bool arready = false;
     bool rvalid = false;
-    std::uint32_t rdata = 0;  // means something with rvalid
+    std::uint32_t rdata = 0;  // as bresp
     std::uint8_t rresp = kOkay;
-    // to the register file; the others mean something with `request`
+    // to the inner port; the others mean something with `request`
     bool request = false;
     bool write = false;
     bool partial = false;

@@ -1,12 +1,16 @@
 // Golden model of the direct loader: what START does with the direct-mode registers.
 //
-// After START: 8 clocks in which the card's being busy is seen, 17 for each masked axis and 1 for each other, 8 for the
-// length, 8 until the answer. A halfword taken in clock c is on the load bus from c+3 on. Not thread-safe.
+// START at c: mask and the card's state are looked at as in c+7; where one is wrong the answer (done) comes at c+17.
+// Else 17 clocks for each masked axis and 1 for each other of the 8, 8 for the length, 8 until the answer: at c+33+16m
+// for m masked axes. A fault is looked at once more in the clock before the answer, so that no move can begin when it is
+// cleared.
+// A halfword taken in clock c is on `load` in c+2. Not thread-safe.
 #pragma once
 
 #include <cstdint>
 
 #include "trammel/card_map.hpp"
+#include "trammel/model/buses.hpp"
 
 namespace trammel::model {
 
@@ -14,7 +18,8 @@ class DirectLoader {
  public:
   struct Inputs {
     bool reset = false;
-    bool busy = false;  // anything runs, is queued, or a fault stops the ticks
+    bool busy = false;    // anything runs, is decoded or queued
+    bool closed = false;  // a fault stands
     bool start = false;
     std::uint8_t mask = 0;   // stands until done
     std::uint32_t data = 0;  // of the address of two clocks ago
@@ -24,11 +29,7 @@ class DirectLoader {
     bool done = false;
     bool error = false;  // means something with done
     std::uint8_t reason = 0;
-    std::uint16_t word = 0;
-    std::uint8_t axis = 0;
-    bool increment = false;
-    bool steps = false;
-    bool length = false;
+    LoadWord load;
     bool go = false;  // with done: the chains are loaded, the move begins
     std::uint8_t mask = 0;
   };
@@ -37,7 +38,7 @@ class DirectLoader {
 
   // One rising edge.
   void clock(const Inputs& in) {
-    if (!quiet() || in.start || in.reset) work(in);
+    if (!quiet() || in.start || in.reset) go_on(in);
   }
   const Outputs& outputs() const { return out_; }
 
@@ -45,20 +46,13 @@ class DirectLoader {
 
  private:
   enum class Phase { Idle, Check, Axis, Length, Decide };
-  // A halfword between the register file and the bus.
-  struct Halfword {
-    std::uint16_t word = 0;
-    std::uint8_t axis = 0;
-    bool increment = false;
-    bool steps = false;
-    bool length = false;
-  };
 
-  void work(const Inputs& in);
+  void go_on(const Inputs& in);
   void enter(Phase phase);
-  void read_axis(const Inputs& in, Halfword& taken);
-  void read_length(const Inputs& in, Halfword& taken);
-  Halfword frequency_halfword(int index) const;
+  LoadWord read_axis(const Inputs& in);
+  LoadWord read_length(const Inputs& in);
+  LoadWord frequency_halfword(int index) const;
+  void decide(const Inputs& in);
   static std::uint8_t word_address(std::uint32_t byte_address) { return static_cast<std::uint8_t>(byte_address >> 2); }
 
   unsigned axes_;
@@ -66,12 +60,14 @@ class DirectLoader {
   int step_ = 0;
   unsigned axis_ = 0;
   bool busy_ = false;
-  bool bad_ = false;
+  bool closed_ = false;
+  bool bad_mask_ = false;
+  bool bad_value_ = false;
   bool negative_ = false;
   std::uint64_t frequency_ = 0;
   std::uint64_t length_ = 0;
   bool moving_ = false;  // halfwords are on their way
-  Halfword taken_;
+  LoadWord taken_;
   Outputs out_;
 };
 

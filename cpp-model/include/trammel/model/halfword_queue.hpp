@@ -1,4 +1,4 @@
-// Golden model of rtl/halfword_queue.sv: halfwords that become readable once their whole command is committed.
+// Golden model of the queue: halfwords that become readable once their whole command is committed.
 // Cycle exact. Not thread-safe; the only allocation is the constructor's.
 #pragma once
 
@@ -25,7 +25,7 @@ class HalfwordQueue {
     std::uint16_t room = 0;  // free halfwords
   };
 
-  // depth: 2 .. 8191 halfwords; throws std::invalid_argument otherwise.
+  // depth: 2 .. 32,768 halfwords; throws std::invalid_argument otherwise.
   explicit HalfwordQueue(std::size_t depth);
 
   // One rising edge.

@@ -1,5 +1,6 @@
-#include "trammel/model/command_door.hpp"
+#include "trammel/model/command_checker.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace trammel::model {
@@ -11,7 +12,7 @@ using card_map::Reason;
 
 namespace {
 
-using uint128 = CommandDoor::uint128;
+using uint128 = CommandChecker::uint128;
 
 constexpr std::size_t kCountBegin = 2;
 constexpr std::size_t kCountHalfwords = 3;
@@ -21,10 +22,11 @@ constexpr std::size_t kPayloadBegin = kCountBegin + kCountHalfwords;
 constexpr int kStoreLow = 2;
 constexpr int kReadNumber = 3;
 constexpr int kStoreHigh = 4;
-constexpr int kAnswer = CommandDoor::kAnswerClocks - 1;
+constexpr int kAnswer = CommandChecker::kAnswerClocks - 1;
+constexpr int kUnread = CommandChecker::kClosedAnswerClocks - 1;
 
 std::uint8_t lowest_axes(unsigned axes) {
-  if (axes < 1 || axes > card_map::kMaxAxes) throw std::invalid_argument("CommandDoor: axes must be 1 .. 8");
+  if (axes < 1 || axes > card_map::kMaxAxes) throw std::invalid_argument("CommandChecker: axes must be 1 .. 8");
   return static_cast<std::uint8_t>((1U << axes) - 1U);
 }
 
@@ -38,21 +40,19 @@ bool in_signed_range(uint128 value, const Field& field) {
   return negative ? magnitude <= half_range : magnitude < half_range;
 }
 
-bool in_unsigned_range(uint128 value, const Field& field) {
+bool in_unsigned_range(uint128 value, const Field& field, std::uint32_t engines) {
   if (value < field.minimum) return false;
   if (field.limit != 0 && value > field.limit) return false;
-  if (field.mask != 0 && (value & ~uint128{field.mask}) != 0) return false;
+  if (field.mask != 0 && (value & ~uint128{card_map::bits_with_meaning(field, engines)}) != 0) return false;
   return value >> field.bits == 0;
 }
 
 }  // namespace
 
-CommandDoor::CommandDoor(unsigned axes) : card_mask_(lowest_axes(axes)) {}
+CommandChecker::CommandChecker(unsigned axes, std::uint32_t engines)
+    : card_mask_(lowest_axes(axes)), engines_(engines) {}
 
-void CommandDoor::clock(const Inputs& in) {
-  const bool interrupted = !outputs_.ready || in.write;
-  outputs_.done = false;
-  outputs_.error = false;
+void CommandChecker::clock(const Inputs& in) {
   outputs_.geometry_write = false;
   outputs_.feed_write = false;
   outputs_.geometry_commit = false;
@@ -61,15 +61,14 @@ void CommandDoor::clock(const Inputs& in) {
   outputs_.refuse = false;
   if (in.reset || in.clear) {
     restart();
-    outputs_.error = interrupted && !in.reset;
   } else if (outputs_.ready) {
     idle(in);
   } else {
-    work(in);
+    go_on(in);
   }
 }
 
-void CommandDoor::restart() {
+void CommandChecker::restart() {
   open_ = true;
   flush_waits_ = false;
   expected_ = 0;
@@ -77,25 +76,31 @@ void CommandDoor::restart() {
   outputs_ = Outputs{};
 }
 
-void CommandDoor::idle(const Inputs& in) {
+void CommandChecker::idle(const Inputs& in) {
   if ((in.flush || flush_waits_) && outputs_.partial) refuse(Reason::Truncated);
   flush_waits_ = false;
   if (!in.write) return;
   outputs_.ready = false;
-  age_ = open_ ? 0 : kAnswer - 1;
-  if (!open_) return;
+  unread_ = in.closed ? Reason::Faulted : open_ ? Reason::None : Reason::StreamClosed;
+  age_ = unread_ == Reason::None ? 0 : kAnswer - kUnread;
+  if (unread_ != Reason::None) return;
   if (!outputs_.partial) received_ = 0;
   halfwords_[received_++] = static_cast<std::uint16_t>(in.word);
   halfwords_[received_++] = static_cast<std::uint16_t>(in.word >> 16);
 }
 
-void CommandDoor::work(const Inputs& in) {
+void CommandChecker::go_on(const Inputs& in) {
   flush_waits_ = flush_waits_ || in.flush;
   ++age_;
+  if (unread_ != Reason::None) {
+    if (age_ == kAnswer) answer_unread();
+    return;
+  }
   const bool header = !outputs_.partial;
   if (age_ == kStoreLow && !header) store(received_ - 2);
   if (age_ == kReadNumber && header) {
     command_ = card_map::find_command(static_cast<std::uint8_t>(halfwords_[0]));
+    if (command_ != nullptr && !card_map::has_engine(engines_, command_->engine)) command_ = nullptr;
     outputs_.number = static_cast<std::uint8_t>(halfwords_[1] >> 8);
   }
   if (age_ == kStoreHigh) {
@@ -108,16 +113,14 @@ void CommandDoor::work(const Inputs& in) {
   if (age_ == kAnswer) answer();
 }
 
-void CommandDoor::answer() {
+void CommandChecker::answer() {
   outputs_.ready = true;
   const bool header = !outputs_.partial;
-  const Reason verdict = !open_ ? Reason::DoorClosed : header ? header_verdict_ : judge_payload();
+  const Reason verdict = header ? header_verdict_ : judge_payload();
   if (verdict != Reason::None) {
-    outputs_.error = true;
     refuse(verdict);
     return;
   }
-  outputs_.done = true;
   outputs_.partial = true;
   if (header) {
     store(0);
@@ -129,38 +132,49 @@ void CommandDoor::answer() {
   }
 }
 
-void CommandDoor::refuse(Reason reason) {
+void CommandChecker::answer_unread() {
+  outputs_.ready = true;
+  outputs_.refuse = true;
+  outputs_.reason = static_cast<std::uint8_t>(unread_);
+}
+
+void CommandChecker::refuse(Reason reason) {
   outputs_.refuse = true;
   outputs_.reason = static_cast<std::uint8_t>(reason);
-  outputs_.drop = open_;
+  outputs_.drop = true;
   outputs_.partial = false;
   open_ = false;
 }
 
-void CommandDoor::store(std::size_t index) {
+void CommandChecker::store(std::size_t index) {
   if (index >= card_map::halfwords(*command_, mask())) return;
   outputs_.halfword = halfwords_[index];
-  if (index == kPayloadBegin - 1) {
-    outputs_.halfword = static_cast<std::uint16_t>((halfwords_[index] & 0xFF) | outputs_.number << 8);
-  }
   outputs_.geometry_write = command_->to_geometry;
   outputs_.feed_write = command_->to_feed;
 }
 
-bool CommandDoor::mask_fits() const {
-  if ((mask() & ~card_mask_) != 0) return false;
+bool CommandChecker::mask_fits() const {
+  const bool present = (mask() & ~card_mask_) == 0;
   switch (command_->mask_rule) {
     case MaskRule::Any:
-      return mask() != 0;
+      return present && mask() != 0;
     case MaskRule::Plane:
-      return card_map::axes_in(mask()) == 2;
+      return present && card_map::axes_in(mask()) == 2;
+    case MaskRule::PlaneAndAxes:
+      return present && card_map::axes_in(mask()) >= 2;
+    case MaskRule::Flags:
+      return card_map::flags_good(*command_, mask(), engines_);
     case MaskRule::None:
       return mask() == 0;
   }
   return false;
 }
 
-Reason CommandDoor::judge_header(const Inputs& in) const {
+std::size_t CommandChecker::copies(const Field& field) const {
+  return field.per_axis ? card_map::axes_in(mask()) - command_->axes_in_base : 1;
+}
+
+Reason CommandChecker::judge_header(const Inputs& in) const {
   if (command_ == nullptr) return Reason::UnknownOpcode;
   if (!mask_fits()) return Reason::BadMask;
   if ((halfwords_[1] & 0xFF) != card_map::words(*command_, mask())) return Reason::BadLength;
@@ -172,23 +186,19 @@ Reason CommandDoor::judge_header(const Inputs& in) const {
 }
 
 // The first violation among the fields that have begun, in their order.
-Reason CommandDoor::judge_payload() const {
-  const bool no_count = command_->count_maximum == 0;
-  const Field count{"count",
-                    no_count ? FieldKind::Zero : FieldKind::Unsigned,
-                    40,
-                    0,
-                    kCountHalfwords,
-                    false,
-                    command_->count_minimum,
-                    command_->count_maximum,
-                    0,
-                    false};
+Reason CommandChecker::judge_payload() const {
+  Field count{};
+  count.bits = 40;
+  count.halfwords = kCountHalfwords;
+  count.minimum = command_->count_minimum;
+  // A count that must be 0 is judged halfword by halfword.
+  for (std::size_t i = kCountBegin; command_->count_maximum == 0 && i < std::min(received_, kPayloadBegin); ++i) {
+    if (halfwords_[i] != 0) return Reason::BadField;
+  }
   if (const Reason reason = judge_field(count, kCountBegin); reason != Reason::None) return reason;
   for (std::size_t i = 0; i < command_->field_count; ++i) {
     const Field& field = command_->fields[i];
-    const std::size_t copies = field.per_axis ? card_map::axes_in(mask()) : 1;
-    for (std::size_t copy = 0; copy < copies; ++copy) {
+    for (std::size_t copy = 0; copy < copies(field); ++copy) {
       const std::size_t begin = kPayloadBegin + field.offset + copy * command_->axis_halfwords;
       if (const Reason reason = judge_field(field, begin); reason != Reason::None) return reason;
     }
@@ -197,28 +207,22 @@ Reason CommandDoor::judge_payload() const {
   return received_ > end && halfwords_[end] != 0 ? Reason::BadField : Reason::None;
 }
 
-// A field is judged when its last halfword is there; one that must be 0, in each of its halfwords.
-Reason CommandDoor::judge_field(const Field& field, std::size_t begin) const {
-  if (received_ <= begin) return Reason::None;
-  const bool whole = received_ >= begin + field.halfwords;
-  if (field.kind == FieldKind::Zero) {
-    const std::size_t there = whole ? field.halfwords : received_ - begin;
-    return value(begin, there) == 0 ? Reason::None : Reason::BadField;
-  }
-  if (!whole) return Reason::None;
+// A field is judged when its last halfword is there.
+Reason CommandChecker::judge_field(const Field& field, std::size_t begin) const {
+  if (received_ < begin + field.halfwords) return Reason::None;
   const uint128 all = value(begin, field.halfwords);
-  const bool in_range = field.kind == FieldKind::Signed ? in_signed_range(all, field) : in_unsigned_range(all, field);
+  const bool in_range = field.kind == FieldKind::Signed ? in_signed_range(all, field) : in_unsigned_range(all, field, engines_);
   if (!in_range) return Reason::BadField;
   if (field.at_most_count && all > value(kCountBegin, kCountHalfwords)) return Reason::BadField;
   if (field.name == "plane") {
     const unsigned first = 1U << (static_cast<unsigned>(all >> 4) & 7);
     const unsigned second = 1U << (static_cast<unsigned>(all >> 8) & 7);
-    if (first == second || mask() != (first | second)) return Reason::BadMask;
+    if (first == second || (mask() & (first | second)) != (first | second)) return Reason::BadMask;
   }
   return Reason::None;
 }
 
-uint128 CommandDoor::value(std::size_t begin, std::size_t count) const {
+uint128 CommandChecker::value(std::size_t begin, std::size_t count) const {
   uint128 sum = 0;
   for (std::size_t i = count; i > 0; --i) sum = sum << 16 | halfwords_[begin + i - 1];
   return sum;

@@ -1,4 +1,4 @@
-// Golden model of rtl/command_door.sv: judges stream words against the layouts of trammel/card_map.hpp and passes good
+// Golden model of the command checker: judges stream words against the layouts of trammel/card_map.hpp and passes good
 // commands on in their stored form. Cycle exact. Not thread-safe; no allocation.
 #pragma once
 
@@ -10,21 +10,20 @@
 
 namespace trammel::model {
 
-class CommandDoor {
+class CommandChecker {
  public:
   struct Inputs {
     bool reset = false;
     bool write = false;  // a word; ignored unless ready
     std::uint32_t word = 0;
-    bool flush = false;               // refuses a partial command; waits for a word in work, comes before one beside it
-    bool clear = false;               // opens the door; the next number is 0
-    std::uint16_t geometry_room = 0;  // halfwords, 0 .. 8191, as the queue shows it
+    bool flush = false;               // refuses a partial command; waits for a word under way, comes before one beside it
+    bool clear = false;               // opens the stream; the next number is 0; wins over all else
+    bool closed = false;              // a fault stands: a word written now is refused as FAULTED and changes nothing
+    std::uint16_t geometry_room = 0;  // halfwords, as the queue shows it
     std::uint16_t feed_room = 0;
   };
   struct Outputs {
     bool ready = true;
-    bool done = false;           // the word is taken
-    bool error = false;          // the word is refused, or a clear came over it
     std::uint16_t halfword = 0;  // holds between writes
     bool geometry_write = false;
     bool feed_write = false;
@@ -37,15 +36,15 @@ class CommandDoor {
     bool partial = false;     // inside a command
   };
 
-  // Clocks from a word's write to its answer, and to the answer of a closed door.
+  // Clocks from a word's write until `ready` is back, and from one that is refused unread: as FAULTED, STREAM_CLOSED.
   static constexpr int kAnswerClocks = 6;
   static constexpr int kClosedAnswerClocks = 2;
 
   // Fields have up to 80 bits.
   __extension__ typedef unsigned __int128 uint128;
 
-  // axes: 1 .. 8; throws std::invalid_argument otherwise.
-  explicit CommandDoor(unsigned axes);
+  // axes: 1 .. 8; throws std::invalid_argument otherwise. engines: the card's ENGINES.
+  CommandChecker(unsigned axes, std::uint32_t engines);
 
   // One rising edge.
   void clock(const Inputs& in);
@@ -54,7 +53,7 @@ class CommandDoor {
   // True when a clock without inputs changes nothing.
   bool quiet() const {
     const Outputs& o = outputs_;
-    return o.ready && !o.done && !o.error && !o.geometry_write && !o.feed_write && !o.geometry_commit &&
+    return o.ready && !o.geometry_write && !o.feed_write && !o.geometry_commit &&
            !o.feed_commit && !o.drop && !o.refuse;
   }
 
@@ -63,25 +62,29 @@ class CommandDoor {
 
   void restart();
   void idle(const Inputs& in);
-  void work(const Inputs& in);
+  void go_on(const Inputs& in);
   void answer();
+  void answer_unread();
   void refuse(card_map::Reason reason);
   void store(std::size_t index);
   std::uint8_t mask() const { return static_cast<std::uint8_t>(halfwords_[0] >> 8); }
   bool mask_fits() const;
+  std::size_t copies(const card_map::Field& field) const;
   card_map::Reason judge_header(const Inputs& in) const;
   card_map::Reason judge_payload() const;
   card_map::Reason judge_field(const card_map::Field& field, std::size_t begin) const;
   uint128 value(std::size_t begin, std::size_t count) const;
 
-  const std::uint8_t card_mask_;
+  std::uint8_t card_mask_;
+  std::uint32_t engines_;
   bool open_ = true;
+  card_map::Reason unread_ = card_map::Reason::None;  // why the word under way is refused whatever it is
   bool flush_waits_ = false;
-  int age_ = 0;                // clocks since the write of the word in work
+  int age_ = 0;                // clocks since the write of the word under way
   std::uint8_t expected_ = 0;  // number
   const card_map::Command* command_ = nullptr;
   card_map::Reason header_verdict_ = card_map::Reason::None;
-  std::size_t received_ = 0;  // halfwords of the command, with the word in work
+  std::size_t received_ = 0;  // halfwords of the command, with the word under way
   std::array<std::uint16_t, kMostHalfwords> halfwords_{};
   Outputs outputs_;
 };
