@@ -74,7 +74,7 @@ module register_live (
       .clk_i,
       .snapshot_i,
       .value_i(fault_i[15:0]),
-      .chain_i('0),
+      .chain_i(32'd0),
       .chain_o(chain)
   );
 

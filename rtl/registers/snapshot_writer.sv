@@ -78,17 +78,9 @@ module snapshot_writer #(
     end
   end
 
-  logic [31:0] data;
-
-  always_comb begin
-    data = chain_i;
-    if (word_q == TIME_LO) data = time_i[31:0];
-    if (word_q == TIME_HI) data = time_i[63:32];
-  end
-
   assign store_o[40] = write_q;
   assign store_o[39:32] = {for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6], word_q};
-  assign store_o[31:0] = data;
+  assign store_o[31:0] = word_q == TIME_LO ? time_i[31:0] : word_q == TIME_HI ? time_i[63:32] : chain_i;
 
 endmodule
 `default_nettype wire
