@@ -53,6 +53,14 @@ module register_ram #(
     end
   end
 
+  // Which walk is under way, and the address to write next.
+  logic       resetting_q;
+  logic       snapping_q;
+  logic       hold_chain;
+  logic [7:0] next_q;
+
+  assign hold_chain = next_q == TIME_HI;
+
   // What the snapshot took, shifted down a word a clock.
   logic [32*ChainWords-1:0] chain_q;
 
@@ -62,14 +70,7 @@ module register_ram #(
     else if (snapping_q && !hold_chain) chain_q <= {32'd0, chain_q[32*ChainWords-1:32]};
   end
 
-  // The walks. next_q is the address to write next.
-  logic       resetting_q;
-  logic       snapping_q;
-  logic       hold_chain;
-  logic [7:0] next_q;
-
-  assign hold_chain = next_q == TIME_HI;
-
+  // The walks.
   always_ff @(posedge clk_i) begin
     if (snapshot_i) begin
       next_q <= TIME_HI;
