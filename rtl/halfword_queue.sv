@@ -6,7 +6,7 @@
 // c+2; room_o counts reads, writes and drops at c+1. The writer keeps within room_o.
 `default_nettype none
 module halfword_queue #(
-    parameter int Depth = 4096  // halfwords, 2..8191
+    parameter int Depth = 4096  // halfwords, 2 to 32,768
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -18,10 +18,14 @@ module halfword_queue #(
     input wire logic read_i,
     output logic [15:0] word_o,
     output logic empty_o,
-    output logic [12:0] room_o
+    output logic [15:0] room_o
 );
+  if (Depth < 2 || Depth > 32768) begin : gen_wrong_depth
+    ERROR_a_queue_holds_2_to_32768_halfwords error ();
+  end
 
-  localparam int AddressWidth = $clog2(Depth);
+  // An impossible depth has a width too, so that readers come as far as the message.
+  localparam int AddressWidth = (Depth < 2) ? 1 : $clog2(Depth);
   localparam logic [AddressWidth-1:0] LAST = AddressWidth'(Depth - 1);
 
   // A pointer is an address and, above it, the parity of its laps: equal addresses mean empty or full.
@@ -33,7 +37,7 @@ module halfword_queue #(
   logic [AddressWidth:0] commit_q;
   logic [AddressWidth:0] read_q;
   logic [AddressWidth:0] read_next_q;
-  logic [12:0] pending_q;
+  logic [15:0] pending_q;
   logic take;
   logic keep;
   logic reset;
@@ -77,14 +81,14 @@ module halfword_queue #(
     if (reset) begin
       empty_o <= 1'b1;
       pending_q <= '0;
-      room_o <= 13'(Depth);
+      room_o <= 16'(Depth);
     end else begin
       empty_o <= (take ? read_next_q : read_q) == commit_q;
       if (drop_i) pending_q <= '0;
-      else if (commit_i) pending_q <= {12'b0, write_i};
+      else if (commit_i) pending_q <= {15'b0, write_i};
       else if (write_i) pending_q <= pending_q + 1'b1;
       // All ones take one off; a read is the carry-in.
-      room_o <= room_o + (drop_i ? pending_q : {13{keep}}) + {12'b0, take};
+      room_o <= room_o + (drop_i ? pending_q : {16{keep}}) + {15'b0, take};
     end
   end
 

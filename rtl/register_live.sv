@@ -18,8 +18,8 @@ module register_live (
     input  wire logic [ 9:0] fault_i,
     input  wire logic        refused_i,
     input  wire logic [27:0] refusal_i,
-    input  wire logic [12:0] geometry_room_i,
-    input  wire logic [12:0] feed_room_i,
+    input  wire logic [15:0] geometry_room_i,
+    input  wire logic [15:0] feed_room_i,
     input  wire logic [15:0] running_i,
     input  wire logic [ 7:0] irq_enable_i,
     output logic      [ 9:0] status_o,
@@ -51,8 +51,8 @@ module register_live (
         card_map_pkg::ADDR_STATUS[5:2]: data_q <= {18'd0, status};
         card_map_pkg::ADDR_FAULT[5:2]: data_q <= {18'd0, fault_i};
         card_map_pkg::ADDR_REFUSAL[5:2]: data_q <= refusal_i;
-        card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_q <= {15'd0, geometry_room_i};
-        card_map_pkg::ADDR_FEED_ROOM[5:2]: data_q <= {15'd0, feed_room_i};
+        card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_q <= {12'd0, geometry_room_i};
+        card_map_pkg::ADDR_FEED_ROOM[5:2]: data_q <= {12'd0, feed_room_i};
         default: data_q <= {12'd0, running_i};
       endcase
     end

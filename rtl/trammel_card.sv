@@ -5,8 +5,8 @@
 
 module trammel_card #(
     parameter int Axes          = 4,     // 1 to 8
-    parameter int GeometryDepth = 4096,  // halfwords
-    parameter int FeedDepth     = 2560
+    parameter int GeometryDepth = 4096,  // halfwords, even, 2 to 32,768
+    parameter int FeedDepth     = 2560   // likewise
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -41,14 +41,22 @@ module trammel_card #(
     output logic [Axes-1:0] path_step_o,
     output logic [Axes-1:0] path_dir_o,
     output logic [32*Axes-1:0] position_o,
-    output logic [12:0] geometry_room_o,
-    output logic [12:0] feed_room_o,
+    output logic [15:0] geometry_room_o,
+    output logic [15:0] feed_room_o,
     output logic [5:0] status_o,  // {door incomplete, ended, feed active, path active, direct, busy}
     output logic [9:0] fault_o,
     output logic [15:0] running_o,  // {feed, geometry}
     output logic [16:0] ratio_o,
     output logic [31:0] rate_o
 );
+  // A parameter out of its range stops every reader here: there is no module of this name, and the name says why.
+  if (Axes < 1 || Axes > 8) begin : gen_wrong_axes
+    ERROR_Axes_must_be_1_to_8 error ();
+  end
+  if (GeometryDepth % 2 != 0 || FeedDepth % 2 != 0) begin : gen_odd_depth
+    ERROR_GeometryDepth_and_FeedDepth_must_be_even error ();
+  end
+
   // The reset is registered once for all blocks: it takes effect a clock later, and nothing combinational hangs on the
   // pin.
   logic rst_q;

@@ -5,7 +5,7 @@
 namespace trammel::model {
 
 HalfwordQueue::HalfwordQueue(std::size_t depth) {
-  if (depth < 2 || depth > 8191) throw std::invalid_argument("HalfwordQueue: depth must be 2 .. 8191 halfwords");
+  if (depth < 2 || depth > 32768) throw std::invalid_argument("HalfwordQueue: depth must be 2 .. 32768 halfwords");
   memory_.resize(depth);
   forget_all();
 }

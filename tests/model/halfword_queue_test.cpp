@@ -41,8 +41,8 @@ HalfwordQueue::Inputs read() {
 
 TEST(HalfwordQueue, RefusesDepthsItCannotCount) {
   EXPECT_THROW(HalfwordQueue(1), std::invalid_argument);
-  EXPECT_THROW(HalfwordQueue(8192), std::invalid_argument);
-  EXPECT_NO_THROW(HalfwordQueue(8191));
+  EXPECT_THROW(HalfwordQueue(32769), std::invalid_argument);
+  EXPECT_NO_THROW(HalfwordQueue(32768));
 }
 
 TEST(HalfwordQueue, ShowsOnlyWhatIsCommitted) {

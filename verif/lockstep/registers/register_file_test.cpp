@@ -99,8 +99,8 @@ class Bench {
     in_.feed_active = (bits & 0x20) != 0;
     in_.ended = (bits & 0x40) != 0;
     in_.incomplete = (bits & 0x80) != 0;
-    in_.geometry_room = bits >> 8 & 0x1FFF;
-    in_.feed_room = bits >> 19;
+    in_.geometry_room = bits >> 8 & 0xFFFF;
+    in_.feed_room = draw() & 0xFFFF;
     in_.running_geometry = static_cast<std::uint8_t>(draw());
     in_.running_feed = static_cast<std::uint8_t>(draw());
     in_.rate = draw();

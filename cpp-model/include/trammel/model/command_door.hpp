@@ -18,7 +18,7 @@ class CommandDoor {
     std::uint32_t word = 0;
     bool flush = false;               // refuses a partial command; waits for a word in work, comes before one beside it
     bool clear = false;               // opens the door; the next number is 0
-    std::uint16_t geometry_room = 0;  // halfwords, 0 .. 8191, as the queue shows it
+    std::uint16_t geometry_room = 0;  // halfwords, 0 .. 32768, as the queue shows it
     std::uint16_t feed_room = 0;
   };
   struct Outputs {

@@ -25,7 +25,7 @@ class HalfwordQueue {
     std::uint16_t room = 0;  // free halfwords
   };
 
-  // depth: 2 .. 8191 halfwords; throws std::invalid_argument otherwise.
+  // depth: 2 .. 32768 halfwords; throws std::invalid_argument otherwise.
   explicit HalfwordQueue(std::size_t depth);
 
   // One rising edge.

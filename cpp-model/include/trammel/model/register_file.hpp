@@ -35,7 +35,7 @@ class RegisterFile {
     bool feed_active = false;
     bool ended = false;
     bool incomplete = false;
-    std::uint32_t geometry_room = 0;  // halfwords, 13 bits
+    std::uint32_t geometry_room = 0;  // halfwords, 16 bits
     std::uint32_t feed_room = 0;
     std::uint8_t running_geometry = 0;
     std::uint8_t running_feed = 0;

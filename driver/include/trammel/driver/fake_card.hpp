@@ -28,8 +28,8 @@ namespace trammel::driver {
 struct FakeCardOptions {
   unsigned axes = 4;
   std::uint32_t clock_hz = 1'000'000;      // Hz
-  std::uint32_t geometry_depth = 4096;     // halfwords, up to 8191
-  std::uint32_t feed_depth = 2560;         // halfwords, up to 8191
+  std::uint32_t geometry_depth = 4096;     // halfwords, up to 32768
+  std::uint32_t feed_depth = 2560;         // halfwords, up to 32768
   std::uint64_t clocks_per_access = 8;     // of every bus access
   std::uint64_t clocks_per_snapshot = 40;  // from the strobe until STATUS.snapshot clears
   // For malformed cards: value of a constant register by its address, instead of the proper one.
