@@ -4,6 +4,10 @@ find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 
 set(TRAMMEL_RTL_DIR "${PROJECT_SOURCE_DIR}/rtl")
+# The card's sources without the package, which trammel_verilate() always puts first.
+file(STRINGS "${TRAMMEL_RTL_DIR}/trammel.f" TRAMMEL_CARD_SOURCES REGEX "^[^/].*\\.sv$")
+list(FILTER TRAMMEL_CARD_SOURCES EXCLUDE REGEX "_pkg\\.sv$")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${TRAMMEL_RTL_DIR}/trammel.f")
 set(TRAMMEL_VERILATOR_ARGS -Wall "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" -O3 --x-assign fast --x-initial fast
     --noassert)
 
