@@ -24,8 +24,9 @@ module halfword_queue #(
     ERROR_a_queue_holds_2_to_32768_halfwords error ();
   end
 
-  // An impossible depth has a width too, so that readers come as far as the message.
+  // An impossible depth has widths too, so that readers come as far as the message.
   localparam int AddressWidth = (Depth < 2) ? 1 : $clog2(Depth);
+  localparam int RoomWidth = (Depth < 2) ? 2 : $clog2(Depth + 1);
   localparam logic [AddressWidth-1:0] LAST = AddressWidth'(Depth - 1);
 
   // A pointer is an address and, above it, the parity of its laps: equal addresses mean empty or full.
@@ -37,14 +38,16 @@ module halfword_queue #(
   logic [AddressWidth:0] commit_q;
   logic [AddressWidth:0] read_q;
   logic [AddressWidth:0] read_next_q;
-  logic [15:0] pending_q;
+  logic [RoomWidth-1:0] pending_q;
+  logic [RoomWidth-1:0] room_q;
   logic take;
   logic keep;
   logic reset;
 
-  assign take  = read_i && !empty_o;
-  assign keep  = write_i && !drop_i;
-  assign reset = rst_i || clear_i;
+  assign room_o = 16'(room_q);
+  assign take   = read_i && !empty_o;
+  assign keep   = write_i && !drop_i;
+  assign reset  = rst_i || clear_i;
 
   // In nibbles, so that a block RAM is deep and narrow: then none, or few, are chosen between behind the RAM's slow output.
   // Nothing is read that is not committed, so no location is read and written in one clock.
@@ -81,14 +84,14 @@ module halfword_queue #(
     if (reset) begin
       empty_o <= 1'b1;
       pending_q <= '0;
-      room_o <= 16'(Depth);
+      room_q <= RoomWidth'(Depth);
     end else begin
       empty_o <= (take ? read_next_q : read_q) == commit_q;
       if (drop_i) pending_q <= '0;
-      else if (commit_i) pending_q <= {15'b0, write_i};
+      else if (commit_i) pending_q <= RoomWidth'(write_i);
       else if (write_i) pending_q <= pending_q + 1'b1;
       // All ones take one off; a read is the carry-in.
-      room_o <= room_o + (drop_i ? pending_q : {16{keep}}) + {15'b0, take};
+      room_q <= room_q + (drop_i ? pending_q : {RoomWidth{keep}}) + RoomWidth'(take);
     end
   end
 
