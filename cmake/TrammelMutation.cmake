@@ -18,26 +18,33 @@ function(trammel_instrument)
     DEPENDS ${sources} ${tool} COMMENT "Instrumenting the RTL in ${A_RTL}" VERBATIM)
 endfunction()
 
-# trammel_add_judge(name OUT folder TOP top SOURCES a.sv ... [PREFIX Vdut] [ARGS ...])
-# Builds mutation_<name> over the instrumented copies in OUT. Its test is added by the caller, or is lockstep_<name>'s.
+# trammel_add_judge(name OUT folder SOUND target PREFIX Vx TOP top SOURCES a.sv ... [ARGS ...])
+# Verilates the instrumented copies in OUT for mutation_<name>, which is linked with a test that was compiled against
+# the Vx.h of SOUND.
 function(trammel_add_judge name)
-  cmake_parse_arguments(A "" "OUT;TOP" "SOURCES;ARGS;PREFIX" ${ARGN})
+  cmake_parse_arguments(A "" "OUT;SOUND;PREFIX;TOP" "SOURCES;ARGS" ${ARGN})
   set(target mutation_${name})
   set(copies ${A_SOURCES})
   list(TRANSFORM copies PREPEND "${A_OUT}/")
   # A mutant may leave a signal unused or compare with a constant that is out of reach: the sound sources are linted.
-  trammel_verilate(${target} PREFIX ${A_PREFIX} TOP ${A_TOP} SOURCES ${copies} ARGS -Wno-lint -Wno-style -Wno-fatal ${A_ARGS})
+  trammel_verilate(${target} CHEAP PREFIX ${A_PREFIX} TOP ${A_TOP} SOURCES ${copies}
+                   ARGS -Wno-lint -Wno-style -Wno-fatal ${A_ARGS})
   target_link_libraries(${target} PRIVATE trammel_mutant_number)
-  # Most runs end early, so that compiling is what takes long.
-  get_target_property(sources ${target} SOURCES)
-  list(FILTER sources INCLUDE REGEX "__fast.cc$")
-  set_property(SOURCE ${sources} PROPERTY COMPILE_OPTIONS -w -O1)
+  # The header must be the one that the test knows, but for what calls from SystemVerilog into C include.
+  get_property(copy_dir GLOBAL PROPERTY TRAMMEL_VERILATED_${target}_${A_PREFIX})
+  get_property(sound_dir GLOBAL PROPERTY TRAMMEL_VERILATED_${A_SOUND}_${A_PREFIX})
+  add_custom_command(TARGET ${target} PRE_LINK VERBATIM
+    COMMAND diff -I svdpi.h "${copy_dir}/${A_PREFIX}.h" "${sound_dir}/${A_PREFIX}.h")
 endfunction()
 
-# trammel_judge_entry(out name SOURCES a.sv ...): the judge's line of judges.json.
+# trammel_judge_entry(out name SOURCES a.sv ... [ARGUMENTS ...]): the judge's line of judges.json. The arguments are GoogleTest's.
 function(trammel_judge_entry out name)
-  cmake_parse_arguments(A "" "" "SOURCES" ${ARGN})
-  list(JOIN A_SOURCES "\", \"" sources)
-  set(${out} "{\"name\": \"${name}\", \"executable\": \"$<TARGET_FILE:mutation_${name}>\", \"sources\": [\"${sources}\"]}"
-      PARENT_SCOPE)
+  cmake_parse_arguments(A "" "" "SOURCES;ARGUMENTS" ${ARGN})
+  foreach(list IN ITEMS SOURCES ARGUMENTS)
+    list(TRANSFORM A_${list} REPLACE "(.+)" "\"\\1\"")
+    list(JOIN A_${list} ", " A_${list})
+  endforeach()
+  string(CONCAT entry "{\"name\": \"${name}\", \"executable\": \"$<TARGET_FILE:mutation_${name}>\", "
+                      "\"arguments\": [${A_ARGUMENTS}], \"sources\": [${A_SOURCES}]}")
+  set(${out} "${entry}" PARENT_SCOPE)
 endfunction()

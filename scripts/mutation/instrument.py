@@ -315,8 +315,9 @@ class Instrumenter:
         return body, self.twice(body, self.statement(body))
 
     def continuous(self, node):
+        # What is named unused is there for lint alone.
         for assignment in node.assignments:
-            if kind_of(assignment) != "AssignmentExpression":
+            if kind_of(assignment) != "AssignmentExpression" or self.plain(assignment.left).startswith("unused"):
                 continue
             self.begin_group()
             self.within(*self.span(assignment))

@@ -7,7 +7,7 @@ import os
 import resource
 import subprocess
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Dict, List
 
@@ -24,6 +24,7 @@ class Judge:
     name: str
     executable: str
     sources: List[str]  # relative to the folder of the RTL
+    arguments: List[str] = field(default_factory=list)  # GoogleTest's, to choose among its tests
     seconds: float = 0.0  # of processor time for the sound design
 
     def limit(self) -> int:
@@ -52,7 +53,7 @@ def fingerprint(judges: List[Judge]) -> str:
     """Changes with anything that could change a verdict."""
     digest = hashlib.sha256()
     for judge in judges:
-        digest.update(judge.name.encode() + Path(judge.executable).read_bytes())
+        digest.update(f"{judge.name} {judge.arguments}".encode() + Path(judge.executable).read_bytes())
     return digest.hexdigest()
 
 
@@ -65,7 +66,7 @@ def run(judge: Judge, number: int, limit: int) -> Verdict:
     start = time.monotonic()
     try:
         # One that sleeps uses no processor time; it is given ten times as long.
-        done = subprocess.run([judge.executable, "--gtest_fail_fast", "--gtest_brief=1"], env=environment,
+        done = subprocess.run([judge.executable, "--gtest_fail_fast", "--gtest_brief=1", *judge.arguments], env=environment,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=10 * limit, preexec_fn=limits,
                               errors="replace")
         how = judged(done.returncode, done.stdout)
