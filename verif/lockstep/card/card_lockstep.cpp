@@ -50,7 +50,7 @@ TEST_P(CardLockstep, RandomTraffic) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Axes, CardLockstep, testing::ValuesIn(test::axes_built()),
+INSTANTIATE_TEST_SUITE_P(Axes, CardLockstep, testing::Range(1U, 9U),
                          [](const auto& axes) { return std::to_string(axes.param); });
 
 // Lines without a gap, an arc, a dwell, a line; about 800 clocks.
