@@ -1,6 +1,8 @@
 #include "trammel/model/command_fetch.hpp"
 
+#include <array>
 #include <string_view>
+#include <utility>
 
 namespace trammel::model {
 
@@ -8,121 +10,126 @@ namespace {
 
 using card_map::Opcode;
 
-constexpr int kMostPayload = 40;
+constexpr int kHeader = 4;  // halfwords before the payload, as they are stored
+constexpr int kMostPayload = 64;
+constexpr int kEndless = 1 << 20;
 
-// What a halfword of an arc or a feed piece loads.
-struct Target {
-  bool prescale = false;
-  std::uint8_t feed = 0;
-  std::uint16_t deviation = 0;
+// Where the halfwords of an arc or a feed piece go, and the first one that waits.
+struct Layout {
+  std::array<std::uint8_t, kMostPayload> targets{};
+  int pause_at = kEndless;
 };
-using Targets = std::array<Target, kMostPayload>;
 
-Target target_of(std::string_view field) {
-  if (field == "prescale") return {true, 0, 0};
-  constexpr std::string_view kDeviation[] = {"deviation", "gradient_x", "gradient_y", "half_x", "half_y",
-                                             "end_x",     "end_y",      "quadrants",  "plane"};
-  constexpr std::string_view kFeed[] = {"rate", "acceleration", "jerk", "floor"};
-  Target target;
-  for (unsigned i = 0; i < std::size(kDeviation); ++i) {
-    if (field == kDeviation[i]) target.deviation = static_cast<std::uint16_t>(1U << i);
-  }
-  for (unsigned i = 0; i < std::size(kFeed); ++i) {
-    if (field == kFeed[i]) target.feed = static_cast<std::uint8_t>(1U << i);
-  }
-  return target;
-}
-
-Targets targets_of(Opcode opcode) {
-  Targets targets;
+Layout layout_of(Opcode opcode, const std::pair<std::string_view, unsigned>* names, std::size_t count,
+                 std::string_view waits) {
+  Layout layout;
+  layout.targets.fill(load_target::kNowhere);
   const card_map::Command& command = *card_map::find_command(static_cast<std::uint8_t>(opcode));
   for (std::size_t i = 0; i < command.field_count; ++i) {
     const card_map::Field& field = command.fields[i];
-    for (std::size_t k = 0; k < field.halfwords; ++k) targets[field.offset + k] = target_of(field.name);
+    if (field.name == waits) layout.pause_at = kHeader + static_cast<int>(field.offset);
+    for (std::size_t n = 0; n < count; ++n) {
+      if (field.name != names[n].first) continue;
+      for (std::size_t k = 0; k < field.halfwords; ++k)
+        layout.targets[field.offset + k] = static_cast<std::uint8_t>(names[n].second);
+    }
   }
-  return targets;
+  return layout;
 }
 
-const Targets kArc = targets_of(Opcode::Arc);
-const Targets kFeedPiece = targets_of(Opcode::Feed);
+Layout arc_layout() {
+  using namespace load_target;
+  constexpr std::pair<std::string_view, unsigned> kNames[] = {
+      {"prescale", kPrescale},   {"deviation", kDeviation}, {"gradient_x", kGradientX}, {"gradient_y", kGradientY},
+      {"half_x", kHalfX},        {"half_y", kHalfY},        {"end_x", kEndX},           {"end_y", kEndY},
+      {"quadrants", kQuadrants}, {"plane", kPlane}};
+  return layout_of(Opcode::Arc, kNames, std::size(kNames), "plane");
+}
+
+Layout feed_layout() {
+  using namespace feed_target;
+  constexpr std::pair<std::string_view, unsigned> kNames[] = {{"rate", kRate},
+                                                              {"floor", kFloor},
+                                                              {"stop_distance", kStopDistance},
+                                                              {"acceleration", kAcceleration},
+                                                              {"jerk", kJerk}};
+  return layout_of(Opcode::Feed, kNames, std::size(kNames), "acceleration");
+}
+
+const Layout kArc = arc_layout();
+const Layout kFeed = feed_layout();
 
 }  // namespace
 
-// The header's first halfword says how long the command is and which axes a line moves.
-void CommandFetch::plan(std::uint16_t header) {
-  opcode_ = static_cast<Opcode>(header & 0xFF);
-  mask_ = static_cast<std::uint8_t>(header >> 8);
-  path_ = opcode_ == Opcode::Line || opcode_ == Opcode::Arc;
-  const card_map::Command* command = card_map::find_command(static_cast<std::uint8_t>(header & 0xFF));
+unsigned CommandFetch::target_of(int index) const {
+  const unsigned ticks = queue_ == Queue::Geometry ? load_target::kTicks : feed_target::kTicks;
+  if (index < kHeader) return ticks;
+  const auto payload = static_cast<std::size_t>(index - kHeader);
+  if (opcode_ == Opcode::Line) return load_target::kIncrement + axes_[payload / 3];
+  return (opcode_ == Opcode::Arc ? kArc : kFeed).targets[payload];
+}
+
+// The first halfword says how long the command is and which axes a line moves.
+void CommandFetch::arrive(int index, std::uint16_t halfword) {
+  if (index > 0) {
+    bus_ = {true, static_cast<std::uint8_t>(target_of(index)), halfword};
+    return;
+  }
+  opcode_ = static_cast<Opcode>(halfword & 0xFF);
+  mask_ = static_cast<std::uint8_t>(halfword >> 8);
+  const card_map::Command* command = card_map::find_command(static_cast<std::uint8_t>(opcode_));
   length_ = command != nullptr ? static_cast<int>(card_map::queue_halfwords(*command, mask_)) : kHeader;
+  pause_at_ = is_arc() ? kArc.pause_at : is_feed() ? kFeed.pause_at : kEndless;
   std::size_t count = 0;
   for (unsigned axis = 0; axis < 8; ++axis) {
     if ((mask_ >> axis & 1) != 0) axes_[count++] = static_cast<std::uint8_t>(axis);
   }
 }
 
-void CommandFetch::direct(int payload_index) {
-  const auto index = static_cast<std::size_t>(payload_index);
-  if (opcode_ == Opcode::Line) {
-    load_.increment = static_cast<std::uint8_t>(1U << axes_[index / 3]);
+void CommandFetch::ask(const Inputs& in) {
+  const int next = asked_ + 1;
+  if (state_ == State::Idle) {
+    if (in.empty) return;
+    state_ = State::Reading;
+    asked_ = 0;
+  } else if (state_ == State::Waiting) {
+    if (!in.payload_ready) return;
+    state_ = State::Reading;
+    asked_ = pause_at_;
+  } else if (asked_ < 0) {
     return;
+  } else if (asked_ < kHeader - 1) {
+    asked_ = next;  // the header is known when its last halfword is asked for
+  } else if (next >= length_) {
+    asked_ = -1;
+    if (state_ == State::Finishing) state_ = State::Idle;
+  } else if (next == pause_at_ && is_feed()) {
+    asked_ = -1;
+  } else if (next == pause_at_ && !in.payload_ready) {
+    state_ = State::Waiting;
+    asked_ = -1;
+  } else {
+    asked_ = next;
   }
-  const Target& target = (opcode_ == Opcode::Arc ? kArc : kFeedPiece)[index];
-  load_.prescale = target.prescale;
-  load_.feed = target.feed;
-  load_.deviation = target.deviation;
 }
 
-void CommandFetch::clock(const Inputs& in) {
+void CommandFetch::work(const Inputs& in) {
   const int arrived = arriving_[1];
   arriving_[1] = arriving_[0];
   arriving_[0] = asked_;
-  load_ = LoadBus{};
-  load_.word = in.word;
-  if (arrived == 0) {
-    plan(in.word);
-  } else if (arrived > 0 && arrived < kHeader) {
-    load_.count = true;
-  } else if (arrived >= kHeader) {
-    direct(arrived - kHeader);
+  bus_.valid = false;
+  if (arrived >= 0) arrive(arrived, in.halfword);
+  if (in.pop) {
+    state_ = is_feed() ? State::Finishing : State::Idle;
+    if (is_feed()) asked_ = pause_at_;
+  } else {
+    ask(in);
   }
-
-  const bool payload_ready = opcode_ != Opcode::Arc || !in.arc_busy;
-  switch (phase_) {
-    case Phase::Idle:
-      if (in.empty) break;
-      phase_ = Phase::Reading;
-      asked_ = 0;
-      break;
-    case Phase::Reading:
-      // The header is known when its last halfword is asked for.
-      if (asked_ >= kHeader - 1 && asked_ + 1 >= length_) {
-        phase_ = Phase::Tail;
-        tail_ = 2;
-        asked_ = -1;
-      } else if (asked_ == kHeader - 1 && !payload_ready) {
-        phase_ = Phase::Waiting;
-        asked_ = -1;
-      } else {
-        ++asked_;
-      }
-      break;
-    case Phase::Waiting:
-      if (!payload_ready) break;
-      phase_ = Phase::Reading;
-      asked_ = kHeader;
-      break;
-    case Phase::Tail:
-      if (--tail_ == 0) phase_ = Phase::Valid;
-      break;
-    case Phase::Valid:
-      if (in.pop) phase_ = Phase::Idle;
-      break;
-  }
+  const int last = is_feed() ? pause_at_ - 1 : length_ - 1;
+  if (state_ == State::Reading && arrived >= kHeader - 1 && arrived == last) state_ = State::Decoded;
   if (in.clear) {
-    phase_ = Phase::Idle;
-    asked_ = -1;
-    arriving_ = {-1, -1};
+    state_ = State::Idle;
+    asked_ = arriving_[0] = arriving_[1] = -1;
   }
 }
 

@@ -21,17 +21,29 @@ void shift_end(std::uint32_t& chain, std::uint16_t word) {
 
 }  // namespace
 
-void DeviationAccumulator::shift_in(std::uint16_t load, std::uint16_t word) {
+void DeviationAccumulator::take(const LoadWord& load) {
   DeviationPath::State& state = path_.state;
-  if (load & 1u << 0) shift_gradient(state.deviation, word);
-  if (load & 1u << 1) shift_gradient(state.gradient_x, word);
-  if (load & 1u << 2) shift_gradient(state.gradient_y, word);
-  if (load & 1u << 3) shift_half(state.half_x, word);
-  if (load & 1u << 4) shift_half(state.half_y, word);
-  if (load & 1u << 5) shift_end(state.left_x, word);
-  if (load & 1u << 6) shift_end(state.left_y, word);
-  if (load & 1u << 7) state.quadrants = word;
-  if (load & 1u << 8) state.clockwise = (word & 1u) != 0;
+  switch (load.target) {
+    case load_target::kDeviation:
+      return shift_gradient(state.deviation, load.word);
+    case load_target::kGradientX:
+      return shift_gradient(state.gradient_x, load.word);
+    case load_target::kGradientY:
+      return shift_gradient(state.gradient_y, load.word);
+    case load_target::kHalfX:
+      return shift_half(state.half_x, load.word);
+    case load_target::kHalfY:
+      return shift_half(state.half_y, load.word);
+    case load_target::kEndX:
+      return shift_end(state.left_x, load.word);
+    case load_target::kEndY:
+      return shift_end(state.left_y, load.word);
+    case load_target::kQuadrants:
+      state.quadrants = load.word;
+      return;
+    default:
+      state.clockwise = (load.word & 1U) != 0;
+  }
 }
 
 }  // namespace trammel::model

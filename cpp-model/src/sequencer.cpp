@@ -4,214 +4,164 @@
 
 namespace trammel::model {
 
-namespace {
+// An arc or a direct move whose last tick was taken.
+bool Sequencer::judged(const Inputs& in) const {
+  if (!drained_) return false;
+  if (path_ == Path::Arc) return now_ >= drained_at_ + kArcJudged && in.engine_done;
+  return now_ >= drained_at_ + kDirectJudged && !in.axes_live;
+}
 
-constexpr std::uint64_t kCountMask = (std::uint64_t{1} << 40) - 1;
-constexpr int kSettleClocks = 7;
+Sequencer::Decision Sequencer::decide(const Inputs& in) const {
+  Decision d;
+  const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
+  d.take = owed_ != 0 && ticking && in.engine_ready && in.go && (out_.feed_active || out_.direct);
+  d.path_ends = d.take && !drained_ && path_left_ == 1;
+  d.path_over = judged(in);
+  d.piece_ends = d.take && out_.feed_active && piece_left_ == 1;
+  const bool free = path_ == Path::None || (path_ == Path::Line && d.path_ends);
+  const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
+  const bool piece_waits = feed_.decoded() && feed_.is_feed();
+  d.path_begins = path_waits && free && in.go && !out_.incomplete;
+  d.piece_begins = piece_waits && in.go && (!out_.feed_active || d.piece_ends);
+  d.barrier_begins = barrier_ == Barrier::Meeting && now_ == barrier_at_;
+  d.barrier_ends = barrier_ == Barrier::Running && in.go && now_ == barrier_at_;
+  d.barrier_done = barrier_ == Barrier::Done;
+  // The accumulator's state is in use until the arc's last feed tick has reached the path engines.
+  d.payload_ready = in.payload_ready && (path_ != Path::Arc || (drained_ && now_ >= drained_at_ + kArcJudged));
+  return d;
+}
 
-std::uint64_t count_of(std::uint64_t chain) { return chain & kCountMask; }
-std::uint8_t number_of(std::uint64_t chain) { return static_cast<std::uint8_t>(chain >> 40); }
+// One queue at a barrier while the other still has ticks to give or to take.
+bool Sequencer::mismatches(const Inputs& in) const {
+  const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
+  const bool piece_waits = feed_.decoded() && feed_.is_feed();
+  const bool path_ticks = (path_ == Path::Line || path_ == Path::Arc) && !drained_;
+  const bool geometry_alone = geometry_stands_ && (out_.feed_active || piece_waits);
+  const bool feed_alone = feed_stands_ && (path_ticks || path_waits);
+  return (geometry_alone || feed_alone) && in.go && barrier_ != Barrier::Done;
+}
 
-}  // namespace
-
-// What the state of this clock decides, before anything moves.
-struct Sequencer::Wires {
-  bool clear;
-  bool take;
-  bool ending;     // the path's last tick is taken
-  bool over;       // the engine has finished behind it
-  bool swap;       // the decoded path begins
-  bool path_load;  // the path's counter is loaded for a path
-  bool feed_swap;
-  bool feed_ending;
-  bool path_waits;   // a decoded path
-  bool piece_waits;  // a decoded piece
-  bool barrier_done;
-};
-
-void Sequencer::work(const Inputs& in) {
-  Wires w{};
-  w.barrier_done = barrier_.done();
-  w.clear = in.abort || in.reset;
-  w.take = gate_.owed() && taking_ && path_gate_.ready() && go_ && (out_.feed_active || out_.direct);
-  w.ending = w.take && path_left_.last() && !drain_;
-  w.over = settled_ && (arc_ ? path_gate_.empty() : !in.axes_live);
-  w.path_waits = geometry_.valid() && geometry_.is_path();
-  w.piece_waits = feed_.valid() && feed_.is_feed();
-  w.swap = w.path_waits && go_ && (idle_ || (w.ending && !arc_ && !out_.direct));
-  w.path_load = w.swap || in.direct_go;
-  w.feed_ending = w.take && feed_left_.last();
-  w.feed_swap = w.piece_waits && go_ && (!out_.feed_active || w.feed_ending);
-
-  const bool fault_event = out_.mismatch || out_.incomplete;
-  const bool geometry_at = geometry_at_;
-  const bool feed_at = feed_at_;
-  const bool stall = gate_.stall();
-  const bool feed_active = out_.feed_active;
-  const bool taking = taking_;
-  const bool direct = out_.direct;
+void Sequencer::clock(const Inputs& in) {
+  const Decision d = decide(in);
+  const bool mismatch = mismatches(in);
   const bool feed_idle = feed_.idle();
-
-  out_.idle = geometry_idle_ && feed_idle && in.feed_empty && !feed_active;
-  geometry_idle_ = geometry_.idle() && in.geometry_empty && !out_.path_active && barrier_.idle();
-  out_.mismatch =
-      ((geometry_at && (feed_active || w.piece_waits)) || (feed_at && ((taking && !direct) || w.path_waits))) && go_ &&
-      !w.barrier_done && !w.clear;
-  step_path(in, w);
-  step_feed(in, w);
-
-  out_.tick = w.take && !w.clear;
-  out_.feed_enable = in.enable && feed_active && taking && !stall && go_ && !w.clear;
-  out_.feed_clear = !feed_active || w.clear;
-  gate_.clock(in.reset || in.abort || !(feed_active || direct), source_tick_, w.take);
-  path_gate_.clock(w.clear, in.prescaler_step, in.engine_ready);
-  source_tick_ = (direct ? in.enable && taking : in.feed_tick && feed_active) && !w.clear;
-  step_faults(in, fault_event);
-  took_ = w.take;
-  // A tick, a reset or an abort is never the end of it: no need to look.
-  if (w.take || w.clear || source_tick_ || barrier_.counting() || !in.same_but_enable(last_in_) || !quiet(in))
-    calm_ = 0;
-  else if (calm_ < kCalm)
-    ++calm_;
-  last_in_ = in;
+  out_.idle = geometry_idle_ && feed_idle && in.feed_empty && !out_.feed_active;
+  geometry_idle_ = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
+  out_.mismatch = mismatch;
+  out_.incomplete = d.path_over && path_ == Path::Arc && in.elsewhere;
+  record_ = {d.path_begins || d.barrier_begins, in.direct_go};
+  count_begun(in, d);
+  clock_ticks(in, d);
+  clock_barrier(in, d);
+  stand(d);
+  clock_path(in, d);
+  clock_piece(d);
+  clock_fetches(in, d);
+  if (in.cut) cut();
+  ++now_;
 }
 
-void Sequencer::step_path(const Inputs& in, const Wires& w) {
-  const std::uint64_t next_count = count_of(path_chain_);
-  const std::uint8_t next_number = number_of(path_chain_);
-  const bool done = w.barrier_done;
-  const bool barrier_load = barrier_.load();
-  began_ = (w.swap || barrier_load) && !w.clear;
-  began_direct_ = in.direct_go && !w.clear;
+// Paths and pieces count a clock after their swap shows, barriers as they begin; a cut shows in the counters last.
+void Sequencer::count_begun(const Inputs& in, const Decision& d) {
+  if (cut_before_) out_.geometry_begun = out_.feed_begun = 0;
+  cut_before_ = in.cut;
+  if (!in.cut) {
+    if (path_begun_ || d.barrier_begins) ++out_.geometry_begun;
+    if (piece_begun_ || d.barrier_begins) ++out_.feed_begun;
+  }
+  path_begun_ = d.path_begins && !in.cut;
+  piece_begun_ = d.piece_begins && !in.cut;
+}
 
-  // Status.
-  if (w.clear || w.path_load || barrier_load)
+// Ticks made, owed and taken.
+void Sequencer::clock_ticks(const Inputs& in, const Decision& d) {
+  const bool running = out_.feed_active || out_.direct;
+  const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
+  const bool stall = owed_ > 1;
+  out_.tick = d.take;
+  out_.feed_enable = in.enable && out_.feed_active && ticking && !stall && in.go;
+  out_.feed_clear = !out_.feed_active;
+  owed_ = running ? owed_ + (tick_arrives_ ? 1U : 0U) - (d.take ? 1U : 0U) : 0;
+  tick_arrives_ = out_.direct ? in.enable && ticking : in.feed_tick && out_.feed_active;
+}
+
+// A decoded barrier with nothing before it that runs.
+void Sequencer::stand(const Decision& d) {
+  geometry_stands_ = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None && !d.barrier_done;
+  feed_stands_ = feed_.decoded() && feed_.is_barrier() && !out_.feed_active && !d.barrier_done;
+}
+
+// The fetches see a command as taken when it begins, a barrier in the clock after its last one.
+void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
+  if (load_.to(load_target::kTicks)) shift_in<48>(path_count_, load_.word);
+  geometry_.clock({in.cut, d.path_begins || d.barrier_done, d.payload_ready, in.geometry_empty, in.geometry_word});
+  load_ = in.direct_load.valid ? in.direct_load : geometry_.bus();
+  if (feed_.bus().to(feed_target::kTicks)) shift_in<48>(piece_count_, feed_.bus().word);
+  feed_.clock({in.cut, d.piece_begins || d.barrier_done, true, in.feed_empty, in.feed_word});
+}
+
+// From both queues standing at it to the clock in which they go on.
+void Sequencer::clock_barrier(const Inputs& in, const Decision& d) {
+  if (d.barrier_begins) {
+    barrier_ = Barrier::Running;
+    barrier_at_ = now_ + std::max<std::uint64_t>(1, path_count_ & kCountMask);
+  } else if (d.barrier_ends) {
+    barrier_ = Barrier::Done;
+  } else if (barrier_ == Barrier::Done) {
+    barrier_ = Barrier::None;
+  } else if (barrier_ == Barrier::None && geometry_stands_ && feed_stands_ && in.go) {
+    barrier_ = Barrier::Meeting;
+    barrier_at_ = now_ + kBarrierBegins;
+  }
+}
+
+void Sequencer::clock_path(const Inputs& in, const Decision& d) {
+  out_.swap = d.path_begins || in.direct_go;
+  out_.arc_start = d.path_begins && geometry_.is_arc();
+  if (d.take) --path_left_;
+  if (out_.swap) {
+    path_ = in.direct_go ? Path::Direct : geometry_.is_arc() ? Path::Arc : Path::Line;
+    path_left_ = path_count_ & kCountMask;
+    drained_ = false;
+    out_.active = in.direct_go ? in.direct_mask : geometry_.is_arc() ? 0 : geometry_.mask();
+    out_.accumulator = path_ == Path::Arc;
+  } else if (d.path_ends && path_ != Path::Line) {
+    drained_ = true;
+    drained_at_ = now_;
+  } else if (d.path_ends || d.path_over) {
+    path_ = Path::None;
+  }
+  out_.direct = path_ == Path::Direct;
+  out_.path_active = path_ != Path::None;
+  if (out_.swap || d.barrier_begins)
     out_.ended = false;
-  else if (barrier_.ended())
+  else if (d.barrier_ends && geometry_.is_end())
     out_.ended = true;
-  if (w.clear)
-    out_.geometry_number = 0;
-  else if (w.swap || barrier_load)
-    out_.geometry_number = next_number;
-
-  // What leaves with the tick.
-  out_.swap = w.path_load && !w.clear;
-  out_.arc_start = w.swap && geometry_.is_arc() && !w.clear;
-  out_.incomplete = w.over && arc_ && !in.engine_at_end && !w.clear;
-  if (w.swap) {
-    out_.active = geometry_.is_line() ? geometry_.mask() : 0;
-    out_.prescaler = geometry_.is_arc();
-  } else if (in.direct_go) {
-    out_.active = in.direct_mask;
-    out_.prescaler = false;
-  }
-
-  const bool was_idle = idle_;
-  const bool at_barrier = geometry_.valid() && !geometry_.is_path() && was_idle && !done && !w.clear;
-  const bool was_arc_busy = arc_;
-  settled_ = drain_ && settle_ == 0 && !w.over && !w.clear;
-  if (!drain_)
-    settle_ = kSettleClocks;
-  else if (settle_ != 0)
-    --settle_;
-  if (w.clear) {
-    idle_ = true;
-    taking_ = drain_ = arc_ = out_.direct = false;
-  } else if (w.path_load) {
-    idle_ = false;
-    taking_ = true;
-    drain_ = false;
-    arc_ = w.swap && geometry_.is_arc();
-    out_.direct = !w.swap;
-  } else if (w.ending) {
-    idle_ = !arc_ && !out_.direct;
-    taking_ = out_.direct;
-    drain_ = !idle_;
-  } else if (w.over) {
-    idle_ = true;
-    taking_ = drain_ = arc_ = out_.direct = false;
-  }
-  out_.path_active = !idle_;
-
-  // Barrier, counter and fetch.
-  const bool nothing_to_count = next_count == 0;
-  const bool last = path_left_.last();
-  const bool counting = barrier_.counting();
-  barrier_.clock({w.clear, go_, geometry_at_ && feed_at_, nothing_to_count || last, geometry_.is_end()});
-  geometry_at_ = at_barrier;
-  path_left_.clock(w.path_load || barrier_load, next_count, w.take || counting);
-  if (load_.count) shift_count(path_chain_, load_.word);
-  geometry_.clock({w.clear, w.swap || done, was_arc_busy, in.geometry_empty, in.geometry_word});
-  load_ = geometry_.load();
-  if (in.direct_increment || in.direct_steps || in.direct_length) {
-    const auto axis = static_cast<std::uint8_t>(1U << in.direct_axis);
-    load_.word = in.direct_word;
-    if (in.direct_increment) load_.increment = axis;
-    if (in.direct_steps) load_.steps = axis;
-    if (in.direct_length) load_.count = true;
-  }
 }
 
-void Sequencer::step_feed(const Inputs& in, const Wires& w) {
-  const bool done = w.barrier_done;
-  if (w.clear)
-    out_.feed_number = 0;
-  else if (w.feed_swap || done)
-    out_.feed_number = number_of(feed_chain_);
-  out_.feed_swap = w.feed_swap && !w.clear;
-  feed_at_ = feed_.valid() && !feed_.is_feed() && !out_.feed_active && !done && !w.clear;
-  feed_left_.clock(w.feed_swap, count_of(feed_chain_), w.take);
-  if (w.clear)
-    out_.feed_active = false;
-  else if (w.feed_swap)
+void Sequencer::clock_piece(const Decision& d) {
+  out_.feed_swap = d.piece_begins;
+  if (d.take) --piece_left_;
+  if (d.piece_begins) {
     out_.feed_active = true;
-  else if (w.feed_ending)
+    piece_left_ = piece_count_ & kCountMask;
+  } else if (d.piece_ends) {
     out_.feed_active = false;
-  if (feed_.load().count) shift_count(feed_chain_, feed_.load().word);
-  feed_.clock({w.clear, w.feed_swap || done, false, in.feed_empty, in.feed_word});
-}
-
-void Sequencer::step_faults(const Inputs& in, bool event) {
-  const bool any = event || in.faulted;
-  const bool go = !any && !fault_seen_ && !abort_due_;
-  if (in.abort)
-    abort_due_ = false;
-  else if (any && !fault_seen_)
-    abort_due_ = true;
-  fault_seen_ = any;
-  go_ = go;
-  if (in.reset) {
-    fault_seen_ = abort_due_ = false;
-    go_ = true;
   }
 }
 
-bool Sequencer::quiet(const Inputs& in) const {
-  const bool fetching = !geometry_.quiet() || !feed_.quiet() || (geometry_.idle() && !in.geometry_empty) ||
-                        (feed_.idle() && !in.feed_empty) || (geometry_.waiting() && !arc_) || load_.any();
-  const bool moving = out_.tick || out_.swap || out_.feed_swap || source_tick_ || gate_.owed() || path_gate_.tick() ||
-                      path_gate_.waiting() || took_ || began_ || began_direct_ || drain_ || out_.direct;
-  // A barrier that is neither awaited nor counting, and flags that have not yet followed.
-  const bool meeting = !barrier_.idle() && !barrier_.counting();
-  const bool waits_here = geometry_.valid() && !geometry_.is_path() && idle_;
-  const bool feed_waits_here = feed_.valid() && !feed_.is_feed() && !out_.feed_active;
-  const bool flags = geometry_at_ == waits_here && feed_at_ == feed_waits_here &&
-                     !(barrier_.idle() && geometry_at_ && feed_at_ && go_);
-  // A decoded command that could begin now.
-  const bool begins = go_ && ((geometry_.valid() && geometry_.is_path() && idle_) ||
-                              (feed_.valid() && feed_.is_feed() && !out_.feed_active));
-  const bool geometry_idle = geometry_.idle() && in.geometry_empty && !out_.path_active && barrier_.idle();
-  const bool idle = geometry_idle && feed_.idle() && in.feed_empty && !out_.feed_active;
-  const bool faults =
-      out_.mismatch || out_.incomplete || in.faulted != fault_seen_ || go_ != (!fault_seen_ && !abort_due_);
-  return !fetching && !moving && !meeting && flags && !begins && geometry_idle_ == geometry_idle && out_.idle == idle &&
-         !faults && out_.feed_clear == !out_.feed_active;
-}
-
-std::uint64_t Sequencer::silent_ticks() const { return std::min(path_left_.left(), feed_left_.left()) - 1; }
-
-std::uint64_t Sequencer::dwell_clocks() const {
-  return barrier_.counting() && go_ && path_left_.left() > 2 ? path_left_.left() - 2 : 0;
+// Everything decoded or running is gone; the chains keep what they have.
+void Sequencer::cut() {
+  const Outputs before = out_;
+  out_ = Outputs{};
+  out_.idle = before.idle;
+  out_.geometry_begun = before.geometry_begun;
+  out_.feed_begun = before.feed_begun;
+  path_ = Path::None;
+  drained_ = tick_arrives_ = geometry_stands_ = feed_stands_ = false;
+  owed_ = 0;
+  barrier_ = Barrier::None;
+  record_ = {};
 }
 
 }  // namespace trammel::model

@@ -1,9 +1,13 @@
-// Golden model of an axis: pulse generator and external steps merged by one register, then the step shaper.
-// Not thread-safe. Units, ranges and rules: see the two parts.
+// Golden model of an axis: pulse generator and the path engines' steps merged by one register, then the step shaper,
+// with the axis's own settings. Not thread-safe. Units, ranges and rules: see the two parts.
+//
+// A tick at c that makes a step: path_step at c+4, at the shaper then.
 #pragma once
 
 #include <cstdint>
 
+#include "trammel/card_map.hpp"
+#include "trammel/model/buses.hpp"
 #include "trammel/model/pulse_generator.hpp"
 #include "trammel/model/step_shaper.hpp"
 
@@ -12,36 +16,57 @@ namespace trammel::model {
 class Axis {
  public:
   struct Inputs {
-    PulseGenerator::Inputs generator;
-    bool ext_step = false;      // from the deviation accumulator; never together with a step of the generator
-    bool ext_dir = false;       // 1 = negative
-    StepShaper::Inputs shaper;  // its step and dir are the axis's own, and not looked at
+    bool cut = false;
+    bool tick = false;  // path domain
+    bool swap = false;
+    bool active = false;       // sampled with swap
+    bool direct = false;       // sampled with swap: the count ends the axis, backwards mirrors forwards
+    bool engine_step = false;  // from a path engine; never together with a step of the generator
+    bool engine_dir = false;   // 1 = negative
+    bool hold_tick = false;
+    LoadWord load;    // INCREMENT and COUNT of this axis are its own
+    Setting setting;  // STEP_LENGTH, STEP_SPACE, DIR_SETUP, DIR_HOLD, MODE of this axis
   };
   struct Outputs {
     bool path_step = false;  // a step on its way to the shaper
     bool path_dir = false;   // of the last one
-    bool live = false;
+    bool live = false;       // direct: the count is not made
     StepShaper::Outputs shaper;
   };
 
+  // `number`: 0 .. 7; `idle_level`: strap, {second pin, first pin}.
+  explicit Axis(unsigned number, unsigned idle_level = 0) : number_(number), shaper_(idle_level) {
+    times_.mode = static_cast<std::uint8_t>((idle_level & 3) << 2);
+  }
+
   // One rising edge.
   void clock(const Inputs& in) {
-    StepShaper::Inputs shaped = in.shaper;
-    shaped.step = path_step_;
-    shaped.dir = path_dir_;
-    shaper_.clock(shaped);
+    times_.step = path_step_;
+    times_.dir = path_dir_;
+    times_.hold_tick = in.hold_tick;
+    shaper_.clock(times_);
     const PulseGenerator::Outputs& made = generator_.outputs();
-    path_step_ = made.step || in.ext_step;
-    if (path_step_) path_dir_ = in.ext_step ? in.ext_dir : made.dir;
-    generator_.clock(in.generator);
+    path_step_ = made.step || in.engine_step;
+    if (path_step_) path_dir_ = in.engine_step ? in.engine_dir : made.dir;
+    PulseGenerator::Inputs generator;
+    generator.clear = in.cut;
+    generator.tick = in.tick;
+    generator.swap = in.swap;
+    generator.active = in.active;
+    generator.counted = generator.mirror = in.direct;
+    generator.load_increment = in.load.to(load_target::kIncrement + number_);
+    generator.load_count = in.load.to(load_target::kCount + number_);
+    generator.word = in.load.word;
+    generator_.clock(generator);
+    if (in.setting.set) set(in.setting);
   }
 
   Outputs outputs() const { return {path_step_, path_dir_, generator_.outputs().live, shaper_.outputs()}; }
 
   // Nothing changes any more without new inputs.
-  bool quiet() const { return generator_.quiet() && !path_step_ && shaper_.quiet(); }
+  bool quiet() const { return generator_.quiet() && !path_step_ && shaper_.quiet() && times_.mode == shaper_.mode(); }
 
-  // Clocks without tick, swap, load, clear, ext_step and clear_fault for which no output changes.
+  // Clocks without tick, swap, load, cut, engine_step and setting for which no output changes.
   std::uint64_t idle_clocks() const { return generator_.quiet() && !path_step_ ? shaper_.idle_clocks() : 0; }
 
   // n such clocks at once, n <= idle_clocks().
@@ -52,8 +77,19 @@ class Axis {
   const StepShaper& shaper() const { return shaper_; }
 
  private:
+  void set(const Setting& setting) {
+    namespace reg = card_map::reg;
+    if (setting.address == reg::step_length(number_)) times_.step_length = static_cast<std::uint16_t>(setting.data);
+    if (setting.address == reg::step_space(number_)) times_.step_space = static_cast<std::uint16_t>(setting.data);
+    if (setting.address == reg::dir_setup(number_)) times_.dir_setup = static_cast<std::uint16_t>(setting.data);
+    if (setting.address == reg::dir_hold(number_)) times_.dir_hold = static_cast<std::uint16_t>(setting.data);
+    if (setting.address == reg::mode(number_)) times_.mode = static_cast<std::uint8_t>(setting.data);
+  }
+
+  unsigned number_;
   PulseGenerator generator_;
   StepShaper shaper_;
+  StepShaper::Inputs times_;
   bool path_step_ = false;
   bool path_dir_ = false;
 };

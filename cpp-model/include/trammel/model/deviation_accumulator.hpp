@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "trammel/model/buses.hpp"
+
 namespace trammel::model {
 
 // The path alone: which unit step comes next, without clocks. Units: pulses; F and gradients in the host's scale.
@@ -99,9 +101,7 @@ class DeviationAccumulator {
  public:
   struct Inputs {
     bool rst = false;
-    // Shift enables {plane, quadrants, end_y, end_x, half_y, half_x, gradient_y, gradient_x, deviation}, bit 8 to 0.
-    std::uint16_t load = 0;
-    std::uint16_t word = 0;
+    LoadWord load;       // load bus; targets DEVIATION to PLANE are its own
     bool start = false;  // state is loaded: all nine chains, the last halfword before this clock; only at rest
     bool tick = false;   // path tick, while ready
     bool clear = false;
@@ -127,11 +127,12 @@ class DeviationAccumulator {
     const bool emit = emit_;
     const bool accept = in.tick && out_.ready && !out_.at_end;
     emit_ = false;
-    if (in.rst || in.clear || in.load != 0) {
+    const bool load = is_own(in.load);
+    if (in.rst || in.clear || load) {
       wait_ = 0;
       out_.ready = false;
       out_.at_end = false;
-      if (in.load != 0) shift_in(in.load, in.word);
+      if (load) take(in.load);
       if (in.rst) {
         out_.dir_x = false;
         out_.dir_y = false;
@@ -155,6 +156,10 @@ class DeviationAccumulator {
 
   const Outputs& outputs() const { return out_; }
 
+  static bool is_own(const LoadWord& load) {
+    return load.valid && load.target >= load_target::kDeviation && load.target <= load_target::kPlane;
+  }
+
   // Nothing is under way: without inputs no output will change.
   bool quiet() const { return wait_ == 0 && !emit_ && !out_.step_x && !out_.step_y; }
 
@@ -164,7 +169,7 @@ class DeviationAccumulator {
   }
 
  private:
-  void shift_in(std::uint16_t load, std::uint16_t word);
+  void take(const LoadWord& load);
 
   void show() {
     if (next_.in_x) {

@@ -2,16 +2,19 @@
 // the tick.
 //
 // With the rate r, acceleration a and jerk j of a piece, all in 2^-64 ticks an enabled clock (a and j an update),
-// enabled clocks 32k..32k+31 behind its swap add clamp(R_k) to the phase, where
+// enabled clocks 32k..32k+31 after its swap add clamp(R_k) to the phase, where
 //   R_k = r + k * a + k * (k - 1) / 2 * j   (mod 2^68, signed)
 // and clamp() keeps it between the floor and 1 - 2^-48; R_0 is taken as it is. The phase has 48 bits and goes on from
 // piece to piece. A piece of k updates thus covers 32 * (k * r + k(k-1)/2 * a + k(k-1)(k-2)/6 * j) ticks: the host
-// sends forward differences, centred on the update (r = v + a/2 for a constant acceleration a an update). Not
-// thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
+// sends forward differences, centred on the update (r = v + a/2 for a constant acceleration a an update).
+// Acceleration and jerk come after the swap and have no shadow: they are added first at the 32nd enabled clock.
+// Not thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+
+#include "trammel/model/buses.hpp"
 
 namespace trammel::model {
 
@@ -21,11 +24,10 @@ class FeedGenerator {
 
  public:
   struct Inputs {
-    bool clear = false;      // phase and the ticks in flight become 0; wins over an enable in the same clock
-    bool enable = false;     // one accumulation
-    std::uint8_t load = 0;   // [0] rate, [1] acceleration, [2] jerk (4 halfwords each), [3] floor (2 halfwords)
-    std::uint16_t word = 0;  // lowest halfword first
-    bool swap = false;       // the shadow becomes the current piece; no load in this clock or the 2 behind it
+    bool clear = false;   // phase and the ticks in flight become 0; wins over an enable in the same clock
+    bool enable = false;  // one accumulation
+    LoadWord load;      // feed load: rate (4 halfwords) and floor (2) before the swap, acceleration and jerk (4) after
+    bool swap = false;  // the next piece's rate and floor are taken; no load in this clock or the 2 after it
   };
   struct Outputs {
     bool tick = false;
@@ -40,7 +42,7 @@ class FeedGenerator {
   void clock(const Inputs& in) {
     const bool carry = in.enable && accumulate();
     if (in.swap) swap();
-    if (in.load != 0) load(in.load, in.word);
+    if (in.load.valid) load(in.load);
     outputs_ = in_flight_[1];
     in_flight_[1] = in_flight_[0];
     in_flight_[0] = {carry, static_cast<std::uint32_t>(slope_ >> 16)};
@@ -99,13 +101,6 @@ class FeedGenerator {
   std::uint64_t slope() const { return slope_; }
 
  private:
-  struct Piece {
-    std::uint64_t rate = 0;
-    std::uint64_t acceleration = 0;  // two's complement
-    std::uint64_t jerk = 0;          // two's complement
-    std::uint32_t floor = 0;         // 2^-32
-  };
-
   static uint128 sign_extended(std::uint64_t value) {
     const std::uint64_t high = (value >> 63) != 0 ? ~std::uint64_t{0} : 0;
     return (uint128{high} << 64) | value;
@@ -135,22 +130,28 @@ class FeedGenerator {
   }
 
   void swap() {
-    rate_ = next_.rate;
-    acceleration_ = sign_extended(next_.acceleration);
-    jerk_ = sign_extended(next_.jerk);
-    floor_rate_ = std::uint64_t{next_.floor} << 32;
-    slope_ = next_.rate >> 16;
+    rate_ = next_rate_;
+    floor_rate_ = next_floor_ << 32;
+    slope_ = next_rate_ >> 16;
     count_ = 0;
-    constant_ = next_.acceleration == 0 && next_.jerk == 0 && next_.rate >= floor_rate_;
+    judge_constant();
   }
 
-  void load(std::uint8_t select, std::uint16_t word) {
-    const std::uint64_t top = std::uint64_t{word} << 48;
-    if ((select & 1) != 0) next_.rate = next_.rate >> 16 | top;
-    if ((select & 2) != 0) next_.acceleration = next_.acceleration >> 16 | top;
-    if ((select & 4) != 0) next_.jerk = next_.jerk >> 16 | top;
-    if ((select & 8) != 0) next_.floor = next_.floor >> 16 | std::uint32_t{word} << 16;
+  void load(const LoadWord& load) {
+    if (load.target == feed_target::kRate) shift_in<64>(next_rate_, load.word);
+    if (load.target == feed_target::kFloor) shift_in<32>(next_floor_, load.word);
+    if (load.target == feed_target::kAcceleration) load_signed(acceleration_, load.word);
+    if (load.target == feed_target::kJerk) load_signed(jerk_, load.word);
   }
+
+  void load_signed(uint128& value, std::uint16_t word) {
+    auto chain = static_cast<std::uint64_t>(value);
+    shift_in<64>(chain, word);
+    value = sign_extended(chain);
+    judge_constant();
+  }
+
+  void judge_constant() { constant_ = acceleration_ == 0 && jerk_ == 0 && rate_ >= floor_rate_ && rate_ >> 64 == 0; }
 
   void clear() {
     phase_ = 0;
@@ -195,8 +196,9 @@ class FeedGenerator {
     return gone;
   }
 
-  Piece next_;
-  uint128 rate_ = 0;
+  std::uint64_t next_rate_ = 0;
+  std::uint64_t next_floor_ = 0;  // 2^-32
+  uint128 rate_ = 0;              // 2^-64
   uint128 acceleration_ = 0;
   uint128 jerk_ = 0;
   std::uint64_t floor_rate_ = 0;  // as the rate, 2^-64

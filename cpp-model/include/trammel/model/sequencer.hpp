@@ -1,162 +1,144 @@
-// Golden model of the sequencer: which tick is taken when, which command runs, where both queues meet, what stops.
+// Golden model of the sequencers: what is queued becomes decoded, what is decoded begins, what runs counts ticks.
 //
-// A path begins with a swap and has N ticks; the clock of its last one swaps the next path in where it is decoded and
-// the present one is a line. Arcs drain first: their path ticks come later than the feed ticks. Direct moves go on
-// until no axis is live. A tick is taken in clock c, shows at the output in c+1 and makes a step there three clocks
-// later. Not thread-safe; no errors are reported.
+// Geometry and feed each decode one command ahead. A path runs for its N ticks, a piece for its own; every tick taken
+// counts both down, and the last one of either swaps in what is decoded. A tick made by the feed generator (in direct
+// mode: an enabled clock) is owed from two clocks on until a path can take it. An arc is over when the path engines
+// have finished its path ticks, a direct move when no axis is live. A barrier (DWELL, END) begins when both queues
+// stand at it. Everything decided in clock c shows at c+1; other times stand with their constants. Not thread-safe; no
+// errors are reported.
 #pragma once
 
 #include <cstdint>
 
-#include "trammel/model/barrier.hpp"
+#include "trammel/model/buses.hpp"
 #include "trammel/model/command_fetch.hpp"
-#include "trammel/model/tick_counter.hpp"
-#include "trammel/model/tick_gate.hpp"
 
 namespace trammel::model {
 
 class Sequencer {
  public:
   struct Inputs {
-    bool reset = false;
-    bool abort = false;
+    bool cut = false;
+    bool go = true;  // ticks may be taken
     // queues
     bool geometry_empty = true;
     bool feed_empty = true;
     std::uint16_t geometry_word = 0;
     std::uint16_t feed_word = 0;
-    // direct move
-    std::uint16_t direct_word = 0;
-    std::uint8_t direct_axis = 0;
-    bool direct_increment = false;
-    bool direct_steps = false;
-    bool direct_length = false;
+    // direct loader
     bool direct_go = false;
     std::uint8_t direct_mask = 0;
+    LoadWord direct_load;
     // time
     bool enable = false;
     bool feed_tick = false;
-    // engines
+    // path engines and axes
+    bool engine_ready = true;
+    bool payload_ready = true;
+    bool engine_done = false;
+    bool elsewhere = false;
     bool axes_live = false;
-    bool prescaler_step = false;
-    bool engine_ready = false;
-    bool engine_at_end = false;
-    bool faulted = false;
-
-    // True when only `enable` may differ.
-    bool same_but_enable(const Inputs& o) const {
-      return feed_tick == o.feed_tick && geometry_empty == o.geometry_empty && feed_empty == o.feed_empty &&
-             geometry_word == o.geometry_word && feed_word == o.feed_word && engine_ready == o.engine_ready &&
-             engine_at_end == o.engine_at_end && prescaler_step == o.prescaler_step && axes_live == o.axes_live &&
-             faulted == o.faulted && direct_go == o.direct_go && direct_increment == o.direct_increment &&
-             direct_steps == o.direct_steps && direct_length == o.direct_length && direct_word == o.direct_word &&
-             direct_axis == o.direct_axis && direct_mask == o.direct_mask && abort == o.abort && reset == o.reset;
-    }
   };
   struct Outputs {
-    bool tick = false;
-    bool swap = false;
-    std::uint8_t active = 0;  // axes; sampled with swap, holds
-    bool prescaler = false;   // the path is an arc; sampled with swap, holds
+    bool tick = false;         // a tick was taken
+    bool swap = false;         // a path begins
+    std::uint8_t active = 0;   // axes of a line; sampled with swap, holds
+    bool accumulator = false;  // the path is an arc; sampled with swap, holds
     bool arc_start = false;
     bool direct = false;
     bool feed_enable = false;
     bool feed_clear = true;
-    bool feed_swap = false;
-    bool mismatch = false;
+    bool feed_swap = false;  // a piece begins
+    bool mismatch = false;   // events
     bool incomplete = false;
     bool path_active = false;
     bool feed_active = false;
     bool ended = false;
     bool idle = true;  // nothing runs, is decoded or queued
-    std::uint8_t geometry_number = 0;
-    std::uint8_t feed_number = 0;
+    std::uint32_t geometry_begun = 0;
+    std::uint32_t feed_begun = 0;
+  };
+  // For the record of steps: what shows since the last clock.
+  struct Record {
+    bool command = false;  // a geometry command has begun
+    bool direct = false;   // a direct move has begun
   };
 
-  // One rising edge. Between two ticks of a path only the generator's enable moves.
-  void clock(const Inputs& in) {
-    if (calm_ == kCalm && in.same_but_enable(last_in_)) {
-      out_.feed_enable = in.enable && out_.feed_active && taking_ && go_;
-      return;
-    }
-    work(in);
-  }
+  Sequencer() : geometry_(CommandFetch::Queue::Geometry), feed_(CommandFetch::Queue::Feed) {}
+
+  // One rising edge.
+  void clock(const Inputs& in);
 
   const Outputs& outputs() const { return out_; }
+  const Record& record() const { return record_; }
   bool geometry_read() const { return geometry_.read(); }
   bool feed_read() const { return feed_.read(); }
-  bool path_tick() const { return path_gate_.tick(); }
-  bool go() const { return go_; }
-  // The load bus of geometry and direct moves, and that of the feed generator.
-  const LoadBus& load() const { return load_; }
-  const LoadBus& feed_load() const { return feed_.load(); }
-
-  // For the record of steps: what happened in the last clock.
-  bool took() const { return took_; }            // a tick was taken
-  bool began_command() const { return began_; }  // a geometry command was taken up
-  bool began_direct() const { return began_direct_; }
-
-  // Nothing is on its way: without a tick, an input that changes or an access, clock() changes nothing but a dwell's
-  // count.
-  bool quiet(const Inputs& in) const;
-  // A path runs on feed ticks and takes each at once: ticks up to silent_ticks() change no more than the counters.
-  bool cruising() const { return taking_ && out_.feed_active && go_ && !out_.direct && !drain_; }
-  // Cruising, or no tick can come.
-  bool cruising_or_still() const { return cruising() || !(out_.feed_enable || out_.direct || drain_); }
-  std::uint64_t silent_ticks() const;
-  // `ticks` of them at once; `feed_enable`: the generator's enable behind them.
-  void take_silently(std::uint64_t ticks, bool feed_enable) {
-    path_left_.advance(ticks);
-    if (out_.feed_active) feed_left_.advance(ticks);
-    out_.feed_enable = feed_enable;
-  }
-
-  // A dwell counts; clocks of it before its end comes near; and those clocks at once.
-  bool dwelling() const { return barrier_.counting(); }
-  std::uint64_t dwell_clocks() const;
-  void dwell(std::uint64_t clocks) { path_left_.advance(clocks); }
+  const LoadWord& load() const { return load_; }             // the load bus
+  const LoadWord& feed_load() const { return feed_.bus(); }  // the feed load
 
  private:
-  // Quiet clocks with the same inputs behind which nothing but the enable moves any more.
-  static constexpr int kCalm = 2;
+  static constexpr std::uint64_t kCountMask = (std::uint64_t{1} << 40) - 1;
+  // From the take of the last tick: the clock in which an arc's end may be judged, and a direct move's.
+  static constexpr std::uint64_t kArcJudged = 2;
+  static constexpr std::uint64_t kDirectJudged = 9;
+  // From the clock in which both queues stand at a barrier: that in which it is decided, one before it shows.
+  static constexpr std::uint64_t kBarrierBegins = 4;
 
-  struct Wires;
-  void work(const Inputs& in);
-  void step_path(const Inputs& in, const Wires& w);
-  void step_feed(const Inputs& in, const Wires& w);
-  void step_faults(const Inputs& in, bool event);
-  void shift_count(std::uint64_t& chain, std::uint16_t word) { chain = chain >> 16 | std::uint64_t{word} << 32; }
+  enum class Path : std::uint8_t { None, Line, Arc, Direct };
+  enum class Barrier : std::uint8_t { None, Meeting, Running, Done };
 
+  // What this clock decides.
+  struct Decision {
+    bool take = false;
+    bool path_ends = false;  // its last tick is taken
+    bool path_over = false;  // arc or direct move: finished after that
+    bool path_begins = false;
+    bool piece_ends = false;
+    bool piece_begins = false;
+    bool barrier_begins = false;
+    bool barrier_ends = false;
+    bool barrier_done = false;  // ended in the clock before: both queues go on
+    bool payload_ready = false;
+  };
+
+  Decision decide(const Inputs& in) const;
+  bool judged(const Inputs& in) const;
+  bool mismatches(const Inputs& in) const;
+  void stand(const Decision& d);
+  void clock_path(const Inputs& in, const Decision& d);
+  void clock_piece(const Decision& d);
+  void clock_barrier(const Inputs& in, const Decision& d);
+  void clock_ticks(const Inputs& in, const Decision& d);
+  void clock_fetches(const Inputs& in, const Decision& d);
+  void count_begun(const Inputs& in, const Decision& d);
+  void cut();
+
+  std::uint64_t now_ = 0;
   CommandFetch geometry_;
   CommandFetch feed_;
-  LoadBus load_;
-  TickGate gate_;
-  PathTickGate path_gate_;
-  TickCounter path_left_;
-  TickCounter feed_left_;
-  Barrier barrier_;
-  std::uint64_t path_chain_ = 0;  // next count (40 bits) and number (8 bits)
-  std::uint64_t feed_chain_ = 0;
+  LoadWord load_;
+  std::uint64_t path_count_ = 0;  // chains: count of the next path or barrier, of the next piece
+  std::uint64_t piece_count_ = 0;
 
-  bool idle_ = true;  // no path
-  bool taking_ = false;
-  bool drain_ = false;  // the last tick is taken, the engine still works
-  bool arc_ = false;
-  bool settled_ = false;
-  int settle_ = 0;
-  bool geometry_at_ = false;
-  bool feed_at_ = false;
+  Path path_ = Path::None;
+  bool drained_ = false;          // its last tick is taken
+  std::uint64_t path_left_ = 0;   // ticks
+  std::uint64_t drained_at_ = 0;  // the clock of that take
+  std::uint64_t piece_left_ = 0;
+  unsigned owed_ = 0;          // ticks
+  bool tick_arrives_ = false;  // owed from the next clock on
+
+  bool geometry_stands_ = false;  // at a barrier
+  bool feed_stands_ = false;
+  Barrier barrier_ = Barrier::None;
+  std::uint64_t barrier_at_ = 0;  // the clock in which it begins; its last one
   bool geometry_idle_ = true;
-  bool source_tick_ = false;
-  bool go_ = true;
-  bool fault_seen_ = false;
-  bool abort_due_ = false;
-  bool took_ = false;
-  bool began_ = false;
-  bool began_direct_ = false;
-  int calm_ = 0;
-  Inputs last_in_;
+  bool path_begun_ = false;  // in the clock before
+  bool piece_begun_ = false;
+  bool cut_before_ = false;
+
   Outputs out_;
+  Record record_;
 };
 
 }  // namespace trammel::model

@@ -1,9 +1,9 @@
 // Golden model of the step shaper: pulses with the drive's times at the pins, and the position that the pins show.
 //
 // Rules: the phases pulse, space, hold and setup last their time + 3 clocks. The pin is high for max(1, length) of
-// them, from the third clock of the pulse's phase on. Behind the space the next pulse's phase begins, or else the
-// direction's hold (a waiting step in DIR's direction cuts it short). Behind the hold DIR may turn, and the setup
-// begins, then the pulse it turned for. Pins are one clock behind all that. Not thread-safe; faults are reported by
+// them, from the third clock of the pulse's phase on. After the space the next pulse's phase begins, or else the
+// direction's hold (a waiting step in DIR's direction cuts it short). After the hold DIR may turn, and the setup
+// begins, then the pulse it turned for. Pins are one clock after all that. Not thread-safe; faults are reported by
 // outputs().fault.
 #pragma once
 
@@ -24,33 +24,40 @@ class StepShaper {
     std::uint16_t dir_hold = 0;     // clocks
     std::uint8_t mode = 0;          // [1:0] 0 step/dir, 1 up/down, 2 or 3 quadrature; [2] inverts step, [3] dir
     bool hold_tick = false;         // one clock in HOLD_LIMIT
-    bool clear_fault = false;
   };
   struct Outputs {
     bool step = false;           // pin
     bool dir = false;            // pin
     std::uint32_t position = 0;  // pulses, two's complement, wraps
     bool busy = false;           // steps wait, or a pulse or one of its times is under way
-    bool fault = false;          // a step was lost, or waited from one hold tick to the next
+    bool fault = false;          // event: a step was lost, or waited from one hold tick to the next
   };
+
+  // `idle_level`: strap, {second pin, first pin}; MODE begins with these bits as its inversions.
+  explicit StepShaper(unsigned idle_level = 0) : mode_(static_cast<std::uint8_t>((idle_level & 3) << 2)) {
+    out_.step = (idle_level & 1) != 0;
+    out_.dir = (idle_level & 2) != 0;
+  }
 
   // One rising edge.
   void clock(const Inputs& in) {
-    if (!quiet_ || in.step || in.clear_fault || in.mode != mode_) clock_busy(in);
+    if (!quiet_ || in.step || in.mode != mode_) clock_busy(in);
   }
 
   const Outputs& outputs() const { return out_; }
 
+  // MODE as the pins show it.
+  std::uint8_t mode() const { return mode_; }
   // Steps wait: the only state in which hold_tick means anything.
   bool waiting() const { return waiting_ != 0; }
-  // Nothing changes any more without a step, a new mode or clear_fault.
+  // Nothing changes any more without a step or a new mode.
   bool quiet() const { return quiet_; }
 
-  // The number of clocks, without step and clear_fault and with the other inputs as they are, for which no output
+  // The number of clocks, without step and with the other inputs as they are, for which no output
   // changes (hold_tick may come in them unless waiting()). A lower bound; 2^63 when quiet().
   std::uint64_t idle_clocks() const {
     if (quiet_) return std::uint64_t{1} << 63;
-    if (lead_ != 0 || waiting_ != 0 || phase_ == Phase::kSetup || left_ < 4) return 0;
+    if (out_.fault || lead_ != 0 || waiting_ != 0 || phase_ == Phase::kSetup || left_ < 4) return 0;
     return left_ - 3;
   }
 
@@ -102,8 +109,7 @@ class StepShaper {
   void judge(const Inputs& in, bool served) {
     const bool lost = in.step && waiting_ == kPlaces && !served;
     const bool late = in.hold_tick && waited_ && !served;
-    if (in.clear_fault) out_.fault = false;
-    if (lost || late) out_.fault = true;
+    out_.fault = lost || late;
     if (served)
       waited_ = false;
     else if (in.hold_tick)
@@ -140,13 +146,13 @@ class StepShaper {
   }
 
   Phase phase_ = Phase::kRest;
-  std::uint32_t left_ = 0;  // clocks of the phase behind this one
+  std::uint32_t left_ = 0;  // clocks of the phase after this one
   bool back_ = false;       // DIR
   unsigned lead_ = 0;       // 3 as a pulse's phase begins, 1 in the pulse's first clock
   bool seen_same_ = false;  // what was waiting a clock ago
   bool seen_other_ = false;
   bool waited_ = false;
-  bool quiet_ = false;
+  bool quiet_ = true;
   std::uint8_t waiting_ = 0;
   std::uint8_t backs_ = 0;
   std::uint8_t mode_ = 0;

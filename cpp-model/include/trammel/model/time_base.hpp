@@ -9,14 +9,16 @@
 #include <cstdint>
 #include <limits>
 
+#include "trammel/card_map.hpp"
+#include "trammel/model/buses.hpp"
+
 namespace trammel::model {
 
 class TimeBase {
  public:
   struct Inputs {
-    std::uint32_t target = 0x10000;   // ratio, 2^-16, 0..65536
-    std::uint32_t slew = 0xFFF'FFFF;  // 2^-28 of ratio an update (4 clocks), 28 bits; 0 keeps the ratio
-    bool hold = false;                // slew to 0 instead of the target
+    bool hold = false;  // slew to 0 instead of the target
+    Setting setting;    // RATIO_FEED: the target; SLEW
   };
   struct Outputs {
     bool enable = false;
@@ -27,14 +29,19 @@ class TimeBase {
   // One rising edge. Clocks are counted from reset (the constructor): at clocks 4k the goal is sampled, at 4k + 2 the
   // slew, and the ratio that follows from them is in use from clock 4k + 5 on (visible behind clock 4k + 4).
   void clock(const Inputs& in) {
+    step(in.hold);
+    if (in.setting.set) set(in.setting);
+  }
+  // The same without a setting.
+  void step(bool hold) {
     const std::uint32_t sum = phase_ + outputs_.ratio;
     outputs_.enable = (sum >> 16) != 0;
     phase_ = sum & 0xFFFF;
     if (turn_ == 0) {
       ratio_ = next_ratio_;
-      goal_ = goal(in);
+      goal_ = goal(hold);
     } else if (turn_ == 2) {
-      next_ratio_ = moved(ratio_, goal_, in.slew);
+      next_ratio_ = moved(ratio_, goal_, slew_);
     }
     outputs_.ratio = ratio_ >> 12;
     turn_ = (turn_ + 1) & 3;
@@ -42,8 +49,10 @@ class TimeBase {
 
   const Outputs& outputs() const { return outputs_; }
 
-  // True when the ratio has arrived and stays what it is for as long as the inputs stay `in`.
-  bool steady(const Inputs& in) const { return ratio_ == goal(in) && goal_ == ratio_ && next_ratio_ == ratio_; }
+  // True when the ratio has arrived and stays what it is for as long as `hold` stays and nothing is set.
+  bool steady(bool hold) const {
+    return ratio_ == goal(hold) && goal_ == ratio_ && next_ratio_ == ratio_ && outputs_.ratio == ratio_ >> 12;
+  }
 
   // Enables that the next `clocks` clocks give; only while steady. clocks < 2^47.
   std::uint64_t enabled_in(std::uint64_t clocks) const { return (phase_ + clocks * outputs_.ratio) >> 16; }
@@ -56,7 +65,7 @@ class TimeBase {
     return ((enables << 16) - phase_ + outputs_.ratio - 1) / outputs_.ratio;
   }
 
-  // The same as clock() n times with inputs for which steady() holds; n < 2^47. Returns the enables given.
+  // The same as clock() n times while steady(); n < 2^47. Returns the enables given.
   std::uint64_t advance(std::uint64_t clocks) {
     if (clocks == 0) return 0;
     const std::uint64_t enables = enabled_in(clocks);
@@ -67,13 +76,20 @@ class TimeBase {
   }
 
  private:
-  static std::uint32_t goal(const Inputs& in) { return in.hold ? 0 : in.target << 12; }
+  void set(const Setting& setting) {
+    if (setting.address == card_map::reg::kRatioFeed) target_ = setting.data;
+    if (setting.address == card_map::reg::kSlew) slew_ = setting.data;
+  }
+
+  std::uint32_t goal(bool hold) const { return hold ? 0 : target_ << 12; }
 
   static std::uint32_t moved(std::uint32_t from, std::uint32_t to, std::uint32_t step) {
     if (from < to) return to - from < step ? to : from + step;
     return from - to < step ? to : from - step;
   }
 
+  std::uint32_t target_ = 0x10000;   // ratio, 2^-16, 0..65536
+  std::uint32_t slew_ = 0xFFF'FFFF;  // 2^-28 of ratio an update (4 clocks), 28 bits; 0 keeps the ratio
   // Q1.28, at most 1 = 2^28.
   std::uint32_t ratio_ = 1U << 28;
   std::uint32_t next_ratio_ = 1U << 28;

@@ -1,0 +1,140 @@
+// Golden model of the card's core: everything between the inner register port and the pins, cycle by cycle.
+//
+// clock() is one rising edge. Steps are reported as they appear: at the pins in the cycle of their leading edge, on the
+// path before the shapers. Not thread-safe; no errors are reported beside the constructor's.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+
+#include "trammel/model/command_checker.hpp"
+#include "trammel/model/halfword_queue.hpp"
+#include "trammel/model/motion_core.hpp"
+#include "trammel/model/register_file.hpp"
+
+namespace trammel::model {
+
+// Receives steps in order of time.
+class CardSteps {
+ public:
+  virtual ~CardSteps() = default;
+  // A step at the pins of `axis`; `cycle` counts rising edges since reset, that of the leading edge included.
+  virtual void pin_step(std::uint64_t cycle, unsigned axis, int direction) = 0;
+  // A step of the path. `command`: number in the stream, from 0 at reset or a cut, not wrapped, barriers and feed
+  // pieces counted; 0 in direct mode. `tick`: of its path, from 1; feed ticks of a line (enabled clocks in direct
+  // mode), path ticks of an arc.
+  virtual void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) = 0;
+};
+
+struct CardConfig {
+  unsigned axes = 4;               // 1 .. 8
+  unsigned geometry_depth = 4096;  // halfwords
+  unsigned feed_depth = 2560;
+  std::uint32_t clock_hz = 1'000'000;
+  bool accumulator = true;
+  bool direct_mode = true;
+  unsigned ports = 1;            // 1 .. 4
+  std::uint32_t idle_level = 0;  // strap: {second pins, first pins}, `axes` bits each
+  std::uint32_t build_id = 0;
+  bool build_dirty = false;
+  std::uint32_t board_id = 0;
+};
+
+class CoreModel {
+ public:
+  static constexpr unsigned kMaxAxes = MotionCore::kMaxAxes;
+  using Config = CardConfig;
+
+  // The inner register port.
+  struct Inputs {
+    bool rst = false;  // registered: it takes effect a clock later
+    bool request = false;
+    bool write = false;
+    bool partial = false;
+    std::uint8_t port = 0;
+    std::uint32_t address = 0;  // bytes, 12 bits
+    std::uint32_t data = 0;
+  };
+  struct Answer {
+    bool ack = false;
+    bool error = false;
+    std::uint32_t data = 0;
+  };
+  // Pins, and what the core shows of itself beside the port (observe_o; positions: position()).
+  struct Outputs {
+    std::uint32_t step = 0;  // pins, by axis
+    std::uint32_t dir = 0;
+    bool irq = false;
+    bool tick = false;  // feed domain, as path_swap
+    bool path_tick = false;
+    bool path_swap = false;
+    bool feed_swap = false;
+    std::uint32_t path_step = 0;  // by axis
+    std::uint32_t path_dir = 0;
+    std::uint32_t geometry_room = 0;
+    std::uint32_t feed_room = 0;
+    std::uint32_t status = 0;
+    std::uint32_t fault = 0;
+    std::uint32_t geometry_begun = 0;
+    std::uint32_t feed_begun = 0;
+    std::uint32_t ratio = 0;
+    std::uint32_t rate = 0;
+    bool operator==(const Outputs& o) const;
+  };
+
+  // Throws std::invalid_argument for numbers out of range.
+  explicit CoreModel(const Config& config);
+
+  // One rising edge.
+  void clock(const Inputs& in);
+
+  const Answer& answer() const { return answer_; }
+  const Outputs& outputs() const { return out_; }
+  std::uint32_t position(unsigned axis) const { return motion_.position(axis); }
+  const Config& config() const { return config_; }
+  std::uint64_t cycles() const { return cycles_; }
+  void set_steps(CardSteps* steps) { steps_ = steps; }  // nullptr: none; not owned
+
+ private:
+  struct Take {
+    std::uint64_t cycle = 0;
+    std::uint64_t command = 0;
+    std::uint64_t tick = 0;
+  };
+
+  void reset();
+  MotionCore::Inputs motion_inputs() const;
+  void clock_commands(bool cut);
+  void gather();
+  void show();
+  void record(bool cut);
+  void report_path_steps();
+  void report_pin_steps();
+
+  Config config_;
+  CardSteps* steps_ = nullptr;
+  std::uint64_t cycles_ = 0;
+  bool reset_due_ = false;
+
+  RegisterFile registers_;
+  CommandChecker checker_;
+  HalfwordQueue geometry_queue_;
+  HalfwordQueue feed_queue_;
+  MotionCore motion_;
+  RegisterFile::Inputs register_in_;  // but for the port's: what stands after the last edge
+
+  // Record of steps.
+  std::uint64_t accepted_ = 0;                  // commands that the checker let in
+  std::deque<std::uint64_t> geometry_numbers_;  // of those in the geometry queue
+  std::uint64_t command_ = 0;
+  std::uint64_t path_taken_ = 0;  // ticks of the path
+  std::uint64_t arc_taken_ = 0;   // path ticks of the arc
+  std::array<Take, 16> takes_{};
+  std::array<std::uint32_t, kMaxAxes> shown_position_{};
+
+  Answer answer_;
+  Outputs out_;
+};
+
+}  // namespace trammel::model

@@ -1,0 +1,128 @@
+// Golden model of the path engines: what stands between the tick of the card (feed domain) and the axes.
+//
+// Feed ticks and swaps leave 3 clocks later as path ticks and swaps: as long as the prescaler takes, so that a path on
+// prescaled ticks and a line after it keep their order. On engine 1 (accumulator) the prescaler, a pulse generator,
+// makes path ticks from feed ticks; they wait until the accumulator can take them. Its steps leave by axis.
+//
+// From a tick at c: path domain at c+3; the accumulator's tick at c+5 at the earliest, its step at c+8 by axis.
+// `done`: no tick is in the 3 clocks, no path tick waits and the accumulator has finished the last one; a clock late.
+// `payload_ready`: as that for ticks of engine 1 alone, but from the 6th clock after the accumulator's tick on: a load
+// that is asked for then comes after the tick is finished. Not thread-safe; no errors are reported.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/model/buses.hpp"
+#include "trammel/model/deviation_accumulator.hpp"
+#include "trammel/model/pulse_generator.hpp"
+
+namespace trammel::model {
+
+class PathEngines {
+ public:
+  struct Inputs {
+    bool cut = false;
+    bool tick = false;  // feed domain
+    bool swap = false;
+    bool accumulator = false;  // engine, sampled with swap: 0 lines, 1 accumulator
+    bool start = false;        // with swap: the accumulator's state is loaded
+    LoadWord load;
+  };
+  struct Outputs {
+    bool tick = false;  // path domain
+    bool swap = false;
+    bool path_tick = false;  // of the accumulator
+    std::uint8_t step = 0;   // engines' steps, by axis
+    std::uint8_t dir = 0;    // 1 = negative; means something with a step
+    bool ready = true;       // a feed tick may be taken
+    bool payload_ready = true;
+    bool done = false;
+    bool elsewhere = false;  // with done: not on the commanded end point
+  };
+
+  // One rising edge.
+  void clock(const Inputs& in) {
+    const DeviationAccumulator::Outputs engine = accumulator_.outputs();
+    judge(in, engine);
+    route(in.load, engine);
+    accumulator_.clock({false, in.load, in.start, out_.path_tick, in.cut});
+    give(in.cut, engine.ready);
+    prescaler_.clock({in.cut, in.tick, in.swap, in.accumulator, false, false, in.load.to(load_target::kPrescale), false,
+                      in.load.word});
+    delay(in);
+  }
+
+  const Outputs& outputs() const { return out_; }
+
+  // Nothing is on its way: without inputs no output changes.
+  bool quiet() const {
+    return quiet_but_done() && out_.done == accumulator_.outputs().ready &&
+           out_.elsewhere == !accumulator_.outputs().at_end && out_.payload_ready;
+  }
+
+  const PulseGenerator& prescaler() const { return prescaler_; }
+  PulseGenerator& prescaler() { return prescaler_; }
+  const DeviationAccumulator& accumulator() const { return accumulator_; }
+
+ private:
+  static constexpr unsigned kDelay = 3;   // feed domain to path domain
+  static constexpr unsigned kAlmost = 4;  // clocks after the accumulator's tick in which no load may be asked for
+
+  bool quiet_but_done() const {
+    return ticks_ == 0 && swaps_ == 0 && !out_.tick && !out_.swap && waiting_ == 0 && !out_.path_tick && almost_ == 0 &&
+           out_.step == 0 && prescaler_.quiet() && accumulator_.quiet();
+  }
+
+  // What the sequencer may know of it, a clock late.
+  void judge(const Inputs& in, const DeviationAccumulator::Outputs& engine) {
+    const bool feed_ticks = in.tick || ticks_ != 0;
+    const bool path_ticks = waiting_ != 0 || out_.path_tick;
+    out_.done = !feed_ticks && !path_ticks && engine.ready;
+    out_.elsewhere = !engine.at_end;
+    out_.payload_ready = !(feed_ticks && prescaled_) && !path_ticks && almost_ == 0;
+    if (out_.path_tick && engine.ready && !engine.at_end)  // at its end it makes no step
+      almost_ = kAlmost;
+    else if (almost_ != 0)
+      --almost_;
+    if (in.swap) prescaled_ = in.accumulator;
+  }
+
+  void route(const LoadWord& load, const DeviationAccumulator::Outputs& engine) {
+    const unsigned x = 1U << axis_x_;
+    const unsigned y = 1U << axis_y_;
+    out_.step = static_cast<std::uint8_t>((engine.step_x ? x : 0) | (engine.step_y ? y : 0));
+    out_.dir = static_cast<std::uint8_t>((engine.dir_y ? y : 0) | (engine.dir_x ? x : 0));
+    if (load.to(load_target::kPlane)) {
+      axis_x_ = load.word >> 4 & 7;
+      axis_y_ = load.word >> 8 & 7;
+    }
+  }
+
+  // Path ticks wait for the accumulator, which answers a tick with ready low a clock later.
+  void give(bool cut, bool engine_ready) {
+    const bool given = waiting_ != 0 && engine_ready && !out_.path_tick;
+    waiting_ = cut ? 0 : waiting_ + (prescaler_.outputs().step ? 1U : 0U) - (given ? 1U : 0U);
+    out_.path_tick = given && !cut;
+    out_.ready = waiting_ < 2;
+  }
+
+  void delay(const Inputs& in) {
+    ticks_ = in.cut ? 0 : ticks_ >> 1 | (in.tick ? 1U << (kDelay - 1) : 0);
+    swaps_ = in.cut ? 0 : swaps_ >> 1 | (in.swap ? 1U << (kDelay - 1) : 0);
+    out_.tick = (ticks_ & 1) != 0;
+    out_.swap = (swaps_ & 1) != 0;
+  }
+
+  DeviationAccumulator accumulator_;
+  PulseGenerator prescaler_;
+  std::uint32_t ticks_ = 0;  // on their way, bit k leaves in k clocks; bit 0 is visible
+  std::uint32_t swaps_ = 0;
+  std::uint32_t waiting_ = 0;  // path ticks
+  unsigned almost_ = 0;
+  bool prescaled_ = false;  // the path swapped in last runs on the accumulator
+  unsigned axis_x_ = 0;
+  unsigned axis_y_ = 0;
+  Outputs out_;
+};
+
+}  // namespace trammel::model

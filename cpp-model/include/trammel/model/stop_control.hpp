@@ -1,0 +1,92 @@
+// Golden model of the stop control: every cause of a stop, in one place. FAULT remembers causes; the card is in RUN,
+// ramps to a stop (RAMP), or stands until FAULT is clear (STOPPED). A cut drops queues, paths and everything decoded.
+//
+// What comes in clock c shows at c+1: fault, go, cut, stop, stopping. hold and closed follow the state a clock later.
+// Not thread-safe; no errors are reported.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/buses.hpp"
+
+namespace trammel::model {
+
+class StopControl {
+ public:
+  struct Inputs {
+    std::uint32_t step_fault = 0;  // events, by axis
+    bool mismatch = false;         // event
+    bool incomplete = false;       // event
+    bool abort = false;            // event
+    std::uint32_t clear = 0;       // event: ones written to FAULT
+    bool at_rest = false;          // the ratio is 0
+    Setting setting;               // HOLD, STOP_REACTION
+  };
+  struct Outputs {
+    std::uint32_t fault = 0;
+    bool go = true;         // ticks may be taken
+    bool hold = false;      // of the time base
+    bool cut = false;       // event
+    bool stop = false;      // event: the first cause of a stop
+    bool closed = false;    // neither command nor START is taken
+    bool stopping = false;  // the ramp to a stop
+  };
+
+  // One rising edge.
+  void clock(const Inputs& in) {
+    const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
+                                 (in.incomplete ? card_map::field::kFaultPathIncomplete : 0);
+    const std::uint32_t ramped = reaction_ & card_map::field::kFaultStep;
+    const bool at_once = (events & ~ramped) != 0;
+    out_.hold = hold_ || state_ == State::Ramp;
+    out_.closed = out_.fault != 0 || state_ != State::Run;
+    out_.cut = in.abort;
+    out_.stop = state_ == State::Run && events != 0;
+    switch (state_) {
+      case State::Run:
+        if (at_once) halt();
+        if (events != 0 && !at_once) state_ = State::Ramp;
+        break;
+      case State::Ramp:
+        if (at_once || in.at_rest || in.abort) halt();
+        break;
+      case State::Stopped:
+        if (out_.fault == 0 && events == 0) state_ = State::Run;
+        break;
+    }
+    out_.fault = (out_.fault & ~in.clear) | events;
+    out_.go = state_ != State::Stopped;
+    out_.stopping = state_ == State::Ramp;
+    if (in.setting.set) set(in.setting);
+  }
+
+  const Outputs& outputs() const { return out_; }
+
+  // Without an event, a setting, an abort or a clear, clock() changes nothing, whatever the ratio does.
+  bool quiet() const {
+    const bool settled = out_.hold == hold_ && out_.closed == (out_.fault != 0 || state_ != State::Run);
+    return settled && !out_.cut && !out_.stop &&
+           (state_ == State::Run || (state_ == State::Stopped && out_.fault != 0));
+  }
+
+ private:
+  enum class State : std::uint8_t { Run, Ramp, Stopped };
+
+  void halt() {
+    state_ = State::Stopped;
+    out_.cut = true;
+  }
+
+  void set(const Setting& setting) {
+    if (setting.address == card_map::reg::kHold) hold_ = setting.data != 0;
+    if (setting.address == card_map::reg::kStopReaction) reaction_ = setting.data;
+  }
+
+  State state_ = State::Run;
+  bool hold_ = false;
+  std::uint32_t reaction_ = 0;
+  Outputs out_;
+};
+
+}  // namespace trammel::model

@@ -1,0 +1,225 @@
+#include "trammel/model/core_model.hpp"
+
+#include <stdexcept>
+
+namespace trammel::model {
+
+namespace {
+
+// From a tick that shows to its step before the shaper.
+constexpr std::uint64_t kTickToStep = 7;
+
+const CardConfig& checked(const CardConfig& config) {
+  if (config.axes < 1 || config.axes > CoreModel::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
+  if (config.ports < 1 || config.ports > 4) throw std::invalid_argument("a card has 1 to 4 ports");
+  return config;
+}
+
+RegisterFile::Config register_config(const CardConfig& config) {
+  RegisterFile::Config result;
+  result.axes = config.axes;
+  result.geometry_depth = config.geometry_depth;
+  result.feed_depth = config.feed_depth;
+  result.clock_hz = config.clock_hz;
+  result.engines = RegisterFile::engines(config.accumulator, config.direct_mode);
+  result.build_id = config.build_id;
+  result.build_dirty = config.build_dirty;
+  result.board_id = config.board_id;
+  result.ports = config.ports;
+  result.idle_level = config.idle_level;
+  return result;
+}
+
+}  // namespace
+
+bool CoreModel::Outputs::operator==(const Outputs& o) const {
+  return step == o.step && dir == o.dir && irq == o.irq && tick == o.tick && path_tick == o.path_tick &&
+         path_swap == o.path_swap && feed_swap == o.feed_swap && path_step == o.path_step && path_dir == o.path_dir &&
+         geometry_room == o.geometry_room && feed_room == o.feed_room && status == o.status && fault == o.fault &&
+         geometry_begun == o.geometry_begun && feed_begun == o.feed_begun && ratio == o.ratio && rate == o.rate;
+}
+
+CoreModel::CoreModel(const Config& config)
+    : config_(checked(config)),
+      registers_(register_config(config)),
+      checker_(config.axes, register_config(config).engines),
+      geometry_queue_(config.geometry_depth),
+      feed_queue_(config.feed_depth),
+      motion_(config.axes, config.idle_level) {
+  reset();
+}
+
+void CoreModel::reset() {
+  registers_.reset();
+  checker_ = CommandChecker(config_.axes, register_config(config_).engines);
+  geometry_queue_ = HalfwordQueue(config_.geometry_depth);
+  feed_queue_ = HalfwordQueue(config_.feed_depth);
+  motion_ = MotionCore(config_.axes, config_.idle_level);
+  cycles_ = 0;
+  accepted_ = command_ = path_taken_ = arc_taken_ = 0;
+  geometry_numbers_.clear();
+  takes_ = {};
+  shown_position_ = {};
+  answer_ = {};
+  gather();
+  show();
+}
+
+void CoreModel::clock(const Inputs& in) {
+  const bool reset_now = reset_due_;
+  reset_due_ = in.rst;
+  if (reset_now) return reset();
+  ++cycles_;
+  const bool cut = motion_.stop().cut;
+  const MotionCore::Inputs motion_in = motion_inputs();
+  clock_commands(cut);
+  register_in_.request = in.request;
+  register_in_.write = in.write;
+  register_in_.partial = in.partial;
+  register_in_.port = in.port;
+  register_in_.address = in.address;
+  register_in_.data = in.data;
+  registers_.clock(register_in_);
+  motion_.clock(motion_in);
+  gather();
+  record(cut);
+  show();
+}
+
+MotionCore::Inputs CoreModel::motion_inputs() const {
+  const RegisterFile::Outputs& set = registers_.outputs();
+  MotionCore::Inputs in;
+  in.setting = set.setting;
+  in.abort = set.abort;
+  in.clear_fault = set.clear_fault;
+  in.geometry_empty = geometry_queue_.outputs().empty;
+  in.feed_empty = feed_queue_.outputs().empty;
+  in.geometry_word = geometry_queue_.outputs().word;
+  in.feed_word = feed_queue_.outputs().word;
+  in.start = set.start;
+  in.start_mask = set.start_mask;
+  in.loader_data = set.loader_data;
+  return in;
+}
+
+// The queues take the checker's outputs as they stood before the edge, the checker the queues' rooms.
+void CoreModel::clock_commands(bool cut) {
+  const RegisterFile::Outputs& set = registers_.outputs();
+  const CommandChecker::Outputs was = checker_.outputs();
+  CommandChecker::Inputs in;
+  in.write = set.stream_write;
+  in.word = set.stream_word;
+  in.flush = set.flush;
+  in.clear = cut;
+  in.closed = motion_.stop().closed;
+  in.geometry_room = geometry_queue_.outputs().room;
+  in.feed_room = feed_queue_.outputs().room;
+  checker_.clock(in);
+  const Sequencer& s = motion_.sequencer();
+  geometry_queue_.clock(
+      {false, cut, was.geometry_write, was.halfword, was.geometry_commit, was.drop, s.geometry_read()});
+  feed_queue_.clock({false, cut, was.feed_write, was.halfword, was.feed_commit, was.drop, s.feed_read()});
+}
+
+// What the register file sees of the card, as it stands now.
+void CoreModel::gather() {
+  RegisterFile::Inputs& in = register_in_;
+  const Sequencer::Outputs& s = motion_.sequencer().outputs();
+  in.busy = motion_.outputs().busy;
+  in.direct = s.direct;
+  in.path_active = s.path_active;
+  in.feed_active = s.feed_active;
+  in.ended = s.ended;
+  in.stopping = motion_.stop().stopping;
+  in.incomplete = checker_.outputs().partial;
+  in.geometry_room = geometry_queue_.outputs().room;
+  in.feed_room = feed_queue_.outputs().room;
+  in.geometry_begun = s.geometry_begun;
+  in.feed_begun = s.feed_begun;
+  in.rate = motion_.feed().rate;
+  in.ratio = motion_.time().ratio;
+  for (unsigned n = 0; n < config_.axes; ++n) in.position[n] = motion_.position(n);
+  in.fault = motion_.stop().fault;
+  in.stop = motion_.stop().stop;
+  in.checker_ready = checker_.outputs().ready;
+  in.checker_refuse = checker_.outputs().refuse;
+  in.checker_reason = checker_.outputs().reason;
+  in.checker_number = checker_.outputs().number;
+  const DirectLoader::Outputs& loader = motion_.loader();
+  in.start_done = loader.done;
+  in.start_error = loader.error;
+  in.start_reason = loader.reason;
+  in.loader_address = loader.address;
+}
+
+void CoreModel::show() {
+  const Sequencer::Outputs& s = motion_.sequencer().outputs();
+  const MotionCore::Outputs& m = motion_.outputs();
+  answer_ = {registers_.outputs().ack, registers_.outputs().error, registers_.outputs().data};
+  out_.step = m.step;
+  out_.dir = m.dir;
+  out_.irq = registers_.outputs().irq;
+  out_.tick = s.tick;
+  out_.path_tick = motion_.engines().path_tick;
+  out_.path_swap = s.swap;
+  out_.feed_swap = s.feed_swap;
+  out_.path_step = m.path_step;
+  out_.path_dir = m.path_dir;
+  out_.geometry_room = register_in_.geometry_room;
+  out_.feed_room = register_in_.feed_room;
+  out_.status = registers_.status(register_in_);
+  out_.fault = register_in_.fault;
+  out_.geometry_begun = s.geometry_begun;
+  out_.feed_begun = s.feed_begun;
+  out_.ratio = register_in_.ratio;
+  out_.rate = register_in_.rate;
+}
+
+void CoreModel::record(bool cut) {
+  if (cut) {
+    accepted_ = 0;
+    geometry_numbers_.clear();
+  }
+  const CommandChecker::Outputs& checker = checker_.outputs();
+  if (checker.geometry_commit || checker.feed_commit) {
+    if (checker.geometry_commit) geometry_numbers_.push_back(accepted_);
+    ++accepted_;
+  }
+  report_pin_steps();
+  if (motion_.engines().path_tick) ++arc_taken_;
+  // The last tick of a path is its own, though the next one begins in the same clock.
+  const Sequencer& s = motion_.sequencer();
+  if (s.outputs().tick) takes_[cycles_ % takes_.size()] = {cycles_, command_, ++path_taken_};
+  report_path_steps();
+  if (s.record().command && !geometry_numbers_.empty()) {
+    command_ = geometry_numbers_.front();
+    geometry_numbers_.pop_front();
+    path_taken_ = arc_taken_ = 0;
+  }
+  if (s.record().direct) command_ = path_taken_ = 0;
+}
+
+void CoreModel::report_path_steps() {
+  const MotionCore::Outputs& m = motion_.outputs();
+  if (m.path_step == 0 || steps_ == nullptr) return;
+  const Take& take = takes_[(cycles_ - kTickToStep) % takes_.size()];
+  for (unsigned n = 0; n < config_.axes; ++n) {
+    if ((m.path_step >> n & 1) == 0) continue;
+    const int direction = (m.path_dir >> n & 1) != 0 ? -1 : 1;
+    if ((m.engine_step >> n & 1) != 0)
+      steps_->path_step(command_, arc_taken_, n, direction);
+    else
+      steps_->path_step(take.command, take.tick, n, direction);
+  }
+}
+
+void CoreModel::report_pin_steps() {
+  for (unsigned n = 0; n < config_.axes; ++n) {
+    const std::uint32_t position = motion_.position(n);
+    if (position == shown_position_[n]) continue;
+    if (steps_ != nullptr) steps_->pin_step(cycles_, n, static_cast<std::int32_t>(position - shown_position_[n]));
+    shown_position_[n] = position;
+  }
+}
+
+}  // namespace trammel::model

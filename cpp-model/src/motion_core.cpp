@@ -1,0 +1,102 @@
+#include "trammel/model/motion_core.hpp"
+
+namespace trammel::model {
+
+namespace {
+
+void put(std::uint32_t& word, std::uint32_t bit, bool value) { word = value ? word | bit : word & ~bit; }
+
+unsigned idle_level_of(std::uint32_t levels, unsigned axes, unsigned axis) {
+  return (levels >> axis & 1) | (levels >> (axes + axis) & 1) << 1;
+}
+
+}  // namespace
+
+MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level) : loader_(axes) {
+  for (unsigned n = 0; n < axes; ++n) {
+    axes_.emplace_back(n, idle_level_of(idle_level, axes, n));
+    put(out_.step, 1U << n, axes_[n].shaper().outputs().step);
+    put(out_.dir, 1U << n, axes_[n].shaper().outputs().dir);
+  }
+}
+
+Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
+  Sequencer::Inputs s;
+  s.cut = stop_.outputs().cut;
+  s.go = stop_.outputs().go;
+  s.geometry_empty = in.geometry_empty;
+  s.feed_empty = in.feed_empty;
+  s.geometry_word = in.geometry_word;
+  s.feed_word = in.feed_word;
+  s.direct_go = loader_.outputs().go;
+  s.direct_mask = loader_.outputs().mask;
+  s.direct_load = loader_.outputs().load;
+  s.enable = time_base_.outputs().enable;
+  s.feed_tick = feed_.outputs().tick;
+  const PathEngines::Outputs& engines = engines_.outputs();
+  s.engine_ready = engines.ready;
+  s.payload_ready = engines.payload_ready;
+  s.engine_done = engines.done;
+  s.elsewhere = engines.elsewhere;
+  s.axes_live = axes_live_;
+  return s;
+}
+
+// Each consumer before its producer: what a block sees is what stood before this edge.
+void MotionCore::clock(const Inputs& in) {
+  const Sequencer::Inputs sequencer_in = sequencer_inputs(in);
+  const Sequencer::Outputs& s = sequencer_.outputs();
+  const StopControl::Outputs stop = stop_.outputs();
+  loader_.clock({false, out_.busy, stop.closed, in.start, in.start_mask, in.loader_data});
+  const bool at_rest = time_base_.outputs().ratio == 0;
+  stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, in.setting});
+  clock_busy();
+  axes_live_ = out_.live != 0;
+  clock_axes(in, stop.cut);
+  hold_timer_.clock(in.setting);
+  engines_.clock({stop.cut, s.tick, s.swap, s.accumulator, s.arc_start, sequencer_.load()});
+  feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
+  time_base_.clock({stop.hold, in.setting});
+  sequencer_.clock(sequencer_in);
+}
+
+void MotionCore::clock_axes(const Inputs& in, bool cut) {
+  const Sequencer::Outputs& s = sequencer_.outputs();
+  const PathEngines::Outputs& engines = engines_.outputs();
+  Axis::Inputs axis;
+  axis.cut = cut;
+  axis.tick = engines.tick;
+  axis.swap = engines.swap;
+  axis.direct = s.direct;
+  axis.hold_tick = hold_timer_.tick();
+  axis.load = sequencer_.load();
+  axis.setting = in.setting;
+  out_.engine_step = engines.step;
+  for (unsigned n = 0; n < axes_.size(); ++n) {
+    const std::uint32_t bit = 1U << n;
+    axis.active = (s.active & bit) != 0;
+    axis.engine_step = (engines.step & bit) != 0;
+    axis.engine_dir = (engines.dir & bit) != 0;
+    axes_[n].clock(axis);
+    const Axis::Outputs o = axes_[n].outputs();
+    put(out_.step, bit, o.shaper.step);
+    put(out_.dir, bit, o.shaper.dir);
+    put(out_.path_step, bit, o.path_step);
+    put(out_.path_dir, bit, o.path_dir);
+    put(out_.live, bit, o.live);
+    put(out_.axis_busy, bit, o.shaper.busy);
+    put(out_.step_fault, bit, o.shaper.fault);
+  }
+}
+
+void MotionCore::clock_busy() {
+  if (running_)
+    busy_left_ = kBusyClocks;
+  else if (busy_left_ != 0)
+    --busy_left_;
+  out_.busy = busy_left_ != 0;
+  const Sequencer::Outputs& s = sequencer_.outputs();
+  running_ = !s.idle || s.direct || out_.axis_busy != 0;
+}
+
+}  // namespace trammel::model
