@@ -164,7 +164,7 @@ TEST(CardModelRun, EqualsClockForRandomPrograms) {
       wait_in_pieces(pair, random, 4000);
     }
     ASSERT_FALSE(HasFatalFailure());
-    ASSERT_EQ(pair.clocked.model().outputs().status, 0x10U) << "ended, and nothing else";
+    ASSERT_EQ(pair.clocked.model().outputs().status, card_map::field::kStatusEnded) << "ended, and nothing else";
     ASSERT_EQ(pair.clocked.model().outputs().fault, 0U);
     ASSERT_FALSE(pair.clocked.steps.path.empty());
   }
