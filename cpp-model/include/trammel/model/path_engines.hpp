@@ -31,10 +31,10 @@ class PathEngines {
   struct Outputs {
     bool tick = false;  // path domain
     bool swap = false;
-    bool path_tick = false;   // of the accumulator
-    std::uint8_t step = 0;    // engines' steps, by axis
-    std::uint8_t dir = 0;     // 1 = negative; means something with a step
-    bool ready = true;        // a feed tick may be taken
+    bool path_tick = false;  // of the accumulator
+    std::uint8_t step = 0;   // engines' steps, by axis
+    std::uint8_t dir = 0;    // 1 = negative; means something with a step
+    bool ready = true;       // a feed tick may be taken
     bool payload_ready = true;
     bool done = false;
     bool elsewhere = false;  // with done: not on the commanded end point
@@ -80,7 +80,7 @@ class PathEngines {
     out_.done = !feed_ticks && !path_ticks && engine.ready;
     out_.elsewhere = !engine.at_end;
     out_.payload_ready = !(feed_ticks && prescaled_) && !path_ticks && almost_ == 0;
-    if (out_.path_tick)
+    if (out_.path_tick && engine.ready && !engine.at_end)  // at its end it makes no step
       almost_ = kAlmost;
     else if (almost_ != 0)
       --almost_;
