@@ -1,6 +1,6 @@
 `default_nettype none
 
-// AXI4-Lite slave in front of the register file's port.
+// AXI4-Lite slave in front of the card's inner port.
 // A write is taken when address and data are both there, a read when its address is; where both wait they take turns.
 // Ready answers valid a clock later, for one clock: the access was noted a clock before its handshake, which is safe
 // since a master keeps valid and what belongs to it until then.
@@ -24,7 +24,7 @@ module axi4_lite_port (
     input  wire logic        rready_i,
     output logic      [31:0] rdata_o,
     output logic      [ 1:0] rresp_o,
-    // to the register file
+    // to the inner port
     output logic             request_o,
     output logic             write_o,
     output logic             partial_o,
@@ -36,87 +36,71 @@ module axi4_lite_port (
 );
 
   logic busy_q;
-  logic write_q;
-  logic bvalid_q;
-  logic rvalid_q;
   logic write_waits;
+  logic read_waits;
 
   // A new access only when its answer has a place to go.
-  assign write_waits = awvalid_i && wvalid_i && !bvalid_q;
-
-  logic        request_q;
-  logic        write_ready_q;
-  logic        read_ready_q;
-  logic        partial_q;
-  logic [11:0] address_q;
-  logic [31:0] data_q;
+  assign write_waits = awvalid_i && wvalid_i && !bvalid_o;
+  assign read_waits  = arvalid_i && !rvalid_o;
 
   always_ff @(posedge clk_i) begin
-    request_q <= 1'b0;
-    write_ready_q <= 1'b0;
-    read_ready_q <= 1'b0;
+    request_o <= 1'b0;
+    awready_o <= 1'b0;
+    arready_o <= 1'b0;
     if (busy_q) begin
       if (ack_i) busy_q <= 1'b0;
-    end else if (write_waits && !(arvalid_i && !rvalid_q && write_q)) begin
-      request_q <= 1'b1;
-      write_ready_q <= 1'b1;
+    end else if (write_waits && !(read_waits && write_o)) begin
+      request_o <= 1'b1;
+      awready_o <= 1'b1;
       busy_q <= 1'b1;
-      write_q <= 1'b1;
-      partial_q <= wstrb_i != 4'b1111;
-      address_q <= awaddr_i;
-      data_q <= wdata_i;
-    end else if (arvalid_i && !rvalid_q) begin
-      request_q <= 1'b1;
-      read_ready_q <= 1'b1;
+      write_o <= 1'b1;
+      partial_o <= wstrb_i != 4'b1111;
+      address_o <= awaddr_i;
+      data_o <= wdata_i;
+    end else if (read_waits) begin
+      request_o <= 1'b1;
+      arready_o <= 1'b1;
       busy_q <= 1'b1;
-      write_q <= 1'b0;
-      address_q <= araddr_i;
+      write_o <= 1'b0;
+      address_o <= araddr_i;
     end
     if (rst_i) begin
-      request_q <= 1'b0;
-      write_ready_q <= 1'b0;
-      read_ready_q <= 1'b0;
+      request_o <= 1'b0;
+      awready_o <= 1'b0;
+      arready_o <= 1'b0;
       busy_q <= 1'b0;
-      write_q <= 1'b0;
+      write_o <= 1'b0;
     end
   end
 
-  logic        write_error_q;
-  logic        read_error_q;
-  logic [31:0] rdata_q;
+  assign wready_o = awready_o;
+
+  // Answers: 0 is OKAY, 2 is SLVERR.
+  logic write_error_q;
+  logic read_error_q;
 
   always_ff @(posedge clk_i) begin
-    if (bready_i) bvalid_q <= 1'b0;
-    if (rready_i) rvalid_q <= 1'b0;
-    if (ack_i) begin
-      if (write_q) begin
-        bvalid_q <= 1'b1;
-        write_error_q <= error_i;
-      end else begin
-        rvalid_q <= 1'b1;
-        read_error_q <= error_i;
-        rdata_q <= data_i;
-      end
+    if (bready_i) bvalid_o <= 1'b0;
+    if (rready_i) rvalid_o <= 1'b0;
+    if (ack_i && write_o) begin
+      bvalid_o <= 1'b1;
+      write_error_q <= error_i;
+    end
+    if (ack_i && !write_o) begin
+      rvalid_o <= 1'b1;
+      read_error_q <= error_i;
+      rdata_o <= data_i;
     end
     if (rst_i) begin
-      bvalid_q <= 1'b0;
-      rvalid_q <= 1'b0;
+      bvalid_o <= 1'b0;
+      rvalid_o <= 1'b0;
+      write_error_q <= 1'b0;
+      read_error_q <= 1'b0;
     end
   end
 
-  assign awready_o = write_ready_q;
-  assign wready_o = write_ready_q;
-  assign bvalid_o = bvalid_q;
   assign bresp_o = {write_error_q, 1'b0};
-  assign arready_o = read_ready_q;
-  assign rvalid_o = rvalid_q;
-  assign rdata_o = rdata_q;
   assign rresp_o = {read_error_q, 1'b0};
-  assign request_o = request_q;
-  assign write_o = write_q;
-  assign partial_o = partial_q;
-  assign address_o = address_q;
-  assign data_o = data_q;
 
 endmodule
 

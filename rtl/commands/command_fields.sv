@@ -1,10 +1,12 @@
-// Judges the halfwords of a command behind its header: count, payload fields, padding.
+// Judges the halfwords of a command after its header: count, payload fields, padding.
 //
 // Two clocks a halfword with halfword_i held: examine_i, then judge_i. restart_i (a header's first clock) begins a
 // command; op_i must be there in the judge_i that comes before the first halfword, where the table is read ahead.
 // The verdict stands from the clock after a bad halfword's judge_i to the next restart_i.
 `default_nettype none
-module command_fields (
+module command_fields #(
+    parameter logic [31:0] Engines = '1
+) (
     input wire logic clk_i,
     input wire logic restart_i,
     input wire logic examine_i,
@@ -14,7 +16,6 @@ module command_fields (
     input wire logic [15:0] halfword_i,
     input wire logic [7:0] op_i,
     input wire logic [7:0] mask_i,
-    output logic count_top_o,  // the halfword is the count's highest
     output logic bad_o,
     output logic bad_mask_o    // what is bad is the plane, which differs from the mask
 );
@@ -44,8 +45,6 @@ module command_fields (
   logic off_plane_q;
   logic [47:0] count_q;
 
-  assign count_top_o = is_count_q && checks_q[FIELD_END];
-
   always_ff @(posedge clk_i) begin
     if (restart_i) begin
       in_count_q <= 1'b1;
@@ -59,8 +58,8 @@ module command_fields (
       if (!in_count_q && index_q == repeat_after_q) index_q <= repeat_from_q;
     end
     if (examine_i) begin
-      repeat_from_q  <= card_map_pkg::command_base_halfwords(op_i) - 6'd5;
-      repeat_after_q <= repeat_from_q + card_map_pkg::command_halfwords_per_axis(op_i) - 6'd1;
+      repeat_from_q  <= card_map_pkg::command_base_halfwords(op_i, Engines) - 6'd5;
+      repeat_after_q <= repeat_from_q + card_map_pkg::command_halfwords_per_axis(op_i, Engines) - 6'd1;
     end
   end
 
@@ -72,13 +71,13 @@ module command_fields (
         checks_q  <= 6'd0;
       end else if (in_count_q) begin
         allowed_q <= {index_q != 6'd2 ? 8'hFF : 8'h00, 8'hFF};
-        if (card_map_pkg::command_count_zero(op_i)) allowed_q <= 16'd0;
+        if (card_map_pkg::command_count_zero(op_i, Engines)) allowed_q <= 16'd0;
         checks_q <= 6'd0;
         checks_q[FIELD_END] <= index_q == 6'd2;
-        checks_q[NOT_ZERO] <= index_q == 6'd2 && card_map_pkg::command_count_not_zero(op_i);
+        checks_q[NOT_ZERO] <= index_q == 6'd2 && card_map_pkg::command_count_not_zero(op_i, Engines);
       end else begin
-        allowed_q <= card_map_pkg::payload_bits(op_i, index_q);
-        checks_q  <= card_map_pkg::payload_checks(op_i, index_q);
+        allowed_q <= card_map_pkg::payload_bits(op_i, index_q, Engines);
+        checks_q  <= card_map_pkg::payload_checks(op_i, index_q, Engines);
       end
     end
   end

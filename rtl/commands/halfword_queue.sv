@@ -6,7 +6,7 @@
 // c+2; room_o counts reads, writes and drops at c+1. The writer keeps within room_o.
 `default_nettype none
 module halfword_queue #(
-    parameter int Depth = 4096  // halfwords, 2..8191
+    parameter int Depth = 4096  // halfwords, 2 to 32,768
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -18,7 +18,7 @@ module halfword_queue #(
     input wire logic read_i,
     output logic [15:0] word_o,
     output logic empty_o,
-    output logic [12:0] room_o
+    output logic [15:0] room_o
 );
 
   localparam int AddressWidth = $clog2(Depth);
@@ -33,7 +33,7 @@ module halfword_queue #(
   logic [AddressWidth:0] commit_q;
   logic [AddressWidth:0] read_q;
   logic [AddressWidth:0] read_next_q;
-  logic [12:0] pending_q;
+  logic [15:0] pending_q;
   logic take;
   logic keep;
   logic reset;
@@ -42,7 +42,7 @@ module halfword_queue #(
   assign keep  = write_i && !drop_i;
   assign reset = rst_i || clear_i;
 
-  // In nibbles, so that a block RAM is deep and narrow: then none, or few, are chosen between behind the RAM's slow output.
+  // In nibbles, so that a block RAM is deep and narrow: then none, or few, are chosen between after the RAM's slow output.
   // Nothing is read that is not committed, so no location is read and written in one clock.
   for (genvar n = 0; n < 4; n++) begin : gen_nibble
     (* no_rw_check *) logic [3:0] memory[0:Depth-1];
@@ -51,7 +51,7 @@ module halfword_queue #(
     always_ff @(posedge clk_i) begin
       if (write_i) memory[write_q[AddressWidth-1:0]] <= word_i[4*n+:4];
       if (take) memory_q <= memory[read_q[AddressWidth-1:0]];
-      // A bare flip-flop right behind the RAM.
+      // A bare flip-flop right after the RAM.
       word_o[4*n+:4] <= memory_q;
     end
   end
@@ -77,14 +77,14 @@ module halfword_queue #(
     if (reset) begin
       empty_o <= 1'b1;
       pending_q <= '0;
-      room_o <= 13'(Depth);
+      room_o <= 16'(Depth);
     end else begin
       empty_o <= (take ? read_next_q : read_q) == commit_q;
       if (drop_i) pending_q <= '0;
-      else if (commit_i) pending_q <= {12'b0, write_i};
+      else if (commit_i) pending_q <= {15'b0, write_i};
       else if (write_i) pending_q <= pending_q + 1'b1;
       // All ones take one off; a read is the carry-in.
-      room_o <= room_o + (drop_i ? pending_q : {13{keep}}) + {12'b0, take};
+      room_o <= room_o + (drop_i ? pending_q : {16{keep}}) + {15'b0, take};
     end
   end
 
