@@ -74,7 +74,7 @@ class RegisterFile {
     std::uint8_t loader_address = 0;  // words
   };
 
-  // Events and `setting.set` are high in the clock of `ack`.
+  // Events and `setting.set` are high in the clock of `ack`, `flush` a clock earlier (never with `abort`).
   struct Outputs {
     bool ack = false;
     bool error = false;
