@@ -137,17 +137,37 @@ void configure(driver::Card& card, const driver::Machine& machine) {
   }
 }
 
+// Steps for the recorder and whoever else watches.
+class StepFork final : public sim::StepSink {
+ public:
+  StepFork(StepRecorder& recorder, RunWatcher* watcher) : recorder_(recorder), watcher_(watcher) {}
+  void pin_step(const sim::PinStep& step) override {
+    recorder_.pin_step(step);
+    if (watcher_ != nullptr) watcher_->pin_step(step);
+  }
+  void path_step(const sim::PathStep& step) override {
+    recorder_.path_step(step);
+    if (watcher_ != nullptr) watcher_->path_step(step);
+  }
+
+ private:
+  StepRecorder& recorder_;
+  RunWatcher* watcher_;
+};
+
 // Streams the plan; errors of the card get the line of the program that was being run.
 class ProgramStream {
  public:
   ProgramStream(const driver::Program& program, const driver::Machine& machine, sim::Engine& engine, driver::Card& card,
-                StepRecorder& recorder, const Survey& plan, bool progress)
+                StepRecorder& recorder, const Survey& plan, bool progress, RunWatcher* watcher)
       : program_(program),
         engine_(engine),
         recorder_(recorder),
         plan_(plan),
         bar_(progress),
+        watcher_(watcher),
         planner_(program, machine, card.identification().clock_hz),
+        card_(card),
         card_clock_hz_(card.identification().clock_hz),
         stream_(card, options()) {}
 
@@ -158,14 +178,20 @@ class ProgramStream {
       driver::PlannedSegment segment;
       while (planner_.next(segment)) {
         for (const driver::Command& command : segment.commands) {
-          recorder_.deviation().command(lines_.size(), command);
-          lines_.push_back(segment.line);
+          recorder_.deviation().command(commands_++, command);
+          if (!std::holds_alternative<driver::Feed>(command)) geometry_lines_.push_back(segment.line);
         }
+        if (watcher_ != nullptr) watcher_->sending(segment);
         stream_.send(segment.commands);
+        if (watcher_ != nullptr) watcher_->sent(engine_.cycles());
         if (segment.kind != driver::MotionKind::kDwell && segment.kind != driver::MotionKind::kEnd) end = segment.end;
         show();
       }
       stream_.finish();
+    } catch (const driver::FaultError& error) {
+      // A fault has set the card's counters back; what had begun by then was latched.
+      begun_ = card_.stop_snapshot().geometry_begun;
+      throw std::runtime_error(fmt::format("{}:{}: {}", program_.file, current_line(), error.what()));
     } catch (const driver::Error& error) {
       throw std::runtime_error(fmt::format("{}:{}: {}", program_.file, current_line(), error.what()));
     }
@@ -181,7 +207,7 @@ class ProgramStream {
     driver::StreamOptions options;
     options.poll_clocks = std::max<std::uint64_t>(64, card_clock_hz_ / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
-      running_ = progress.geometry_command;
+      begun_ = progress.geometry_begun;
       show();
     };
     return options;
@@ -191,12 +217,11 @@ class ProgramStream {
     bar_.show(plan_.seconds > 0 ? seconds / plan_.seconds : 1.0,
               fmt::format("{:.1f} of {:.1f} s of card time", seconds, plan_.seconds));
   }
-  // The line of the command in work: the latest one sent whose number fits what the card says.
+  // The line of the path or barrier that the card has begun last; of the first one before that.
   std::size_t current_line() const {
-    for (std::size_t i = lines_.size(); i > 0; --i) {
-      if (((i - 1) & 0xFFU) == running_) return lines_[i - 1];
-    }
-    return 0;
+    if (geometry_lines_.empty()) return 0;
+    const std::size_t begun = std::max<std::size_t>(begun_, 1);
+    return geometry_lines_[std::min(begun, geometry_lines_.size()) - 1];
   }
 
   const driver::Program& program_;
@@ -204,10 +229,13 @@ class ProgramStream {
   StepRecorder& recorder_;
   const Survey& plan_;
   ProgressBar bar_;
+  RunWatcher* watcher_;
   driver::Planner planner_;
+  driver::Card& card_;
   std::uint32_t card_clock_hz_;
-  std::vector<std::size_t> lines_;  // of the program, by command number
-  std::uint8_t running_ = 0;
+  std::uint64_t commands_ = 0;               // sent
+  std::vector<std::size_t> geometry_lines_;  // of the program, by commands in the geometry queue
+  std::uint32_t begun_ = 0;                  // of these, as the card said last
   driver::Stream stream_;
 };
 
@@ -228,7 +256,7 @@ void check_end(const std::vector<std::int64_t>& card, const StepRecorder& record
 }  // namespace
 
 RunResult run_program(const driver::Program& program, const driver::Machine& machine,
-                      const sim::EngineOptions& engine_options, const RunOutputs& outputs) {
+                      const sim::EngineOptions& engine_options, const RunOutputs& outputs, RunWatcher* watcher) {
   const auto begun = std::chrono::steady_clock::now();
   StepRecorder::Options recording;
   recording.steps = outputs.steps;
@@ -245,10 +273,11 @@ RunResult run_program(const driver::Program& program, const driver::Machine& mac
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);
   StepRecorder recorder(recording);
   if (plan.detail_command) recorder.detail_of(*plan.detail_command);
-  engine->set_sink(&recorder);
+  StepFork steps(recorder, watcher);
+  engine->set_sink(&steps);
   driver::Card card = driver::Card::open(*engine);
   configure(card, machine);
-  ProgramStream stream(program, machine, *engine, card, recorder, plan, outputs.progress);
+  ProgramStream stream(program, machine, *engine, card, recorder, plan, outputs.progress, watcher);
   const driver::PulsePosition end = stream.run();
   const driver::Snapshot snapshot = card.snapshot();
   recorder.finish();

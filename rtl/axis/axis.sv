@@ -1,0 +1,119 @@
+// One axis: the pulse generator's steps and those of the path engines, merged, shaped and counted; with its settings
+// and its word of the snapshot.
+`default_nettype none
+
+module axis #(
+    parameter int Axis    = 0,
+    parameter bit Counted = 1   // direct mode: lines may end at a count of steps
+) (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic [ 1:0] idle_level_i,   // {second pin, first pin}
+    input  wire logic [40:0] setting_i,
+    input  wire logic [21:0] load_i,
+    // path domain
+    input  wire logic        tick_i,
+    input  wire logic        swap_i,
+    input  wire logic        active_i,       // sampled with the swap
+    input  wire logic        direct_i,       // with it: counted, and lines drawn backwards are mirrored
+    input  wire logic        engine_step_i,  // a path runs on one engine: never together with a step of the generator
+    input  wire logic        engine_dir_i,
+    input  wire logic        wait_tick_i,
+    input  wire logic [ 1:0] snapshot_i,
+    input  wire logic [31:0] chain_i,
+    output logic      [31:0] chain_o,
+    output logic             path_step_o,
+    output logic             path_dir_o,
+    output logic             live_o,
+    output logic             busy_o,
+    output logic             fault_o,        // event
+    output logic      [31:0] position_o,
+    output logic             step_o,
+    output logic             dir_o
+);
+  localparam logic [4:0] INCREMENT = load_target_pkg::INCREMENT + 5'(Axis);
+  localparam logic [4:0] COUNT = load_target_pkg::COUNT + 5'(Axis);
+
+  logic        generator_step;
+  logic        generator_dir;
+  logic        any_step;
+  logic [15:0] step_length;
+  logic [15:0] step_space;
+  logic [15:0] dir_setup;
+  logic [15:0] dir_hold;
+  logic [ 3:0] mode;
+
+  axis_settings #(
+      .Axis(Axis)
+  ) settings (
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .idle_level_i,
+      .step_length_o(step_length),
+      .step_space_o (step_space),
+      .dir_setup_o  (dir_setup),
+      .dir_hold_o   (dir_hold),
+      .mode_o       (mode)
+  );
+
+  pulse_generator #(
+      .Counted(Counted)
+  ) generator (
+      .clk_i,
+      .rst_i,
+      .clear_i         (cut_i),
+      .tick_i,
+      .swap_i,
+      .active_i,
+      .counted_i       (direct_i),
+      .mirror_i        (direct_i),
+      .load_increment_i(load_i[21] && load_i[20:16] == INCREMENT),
+      .load_count_i    (load_i[21] && load_i[20:16] == COUNT),
+      .word_i          (load_i[15:0]),
+      .step_o          (generator_step),
+      .dir_o           (generator_dir),
+      .live_o
+  );
+
+  // A cut does not drop the step in this register: a step on its way to the shaper is made.
+  assign any_step = generator_step || engine_step_i;
+  always_ff @(posedge clk_i) begin
+    path_step_o <= any_step;
+    if (any_step) path_dir_o <= engine_step_i ? engine_dir_i : generator_dir;
+    if (rst_i) begin
+      path_step_o <= 1'b0;
+      path_dir_o  <= 1'b0;
+    end
+  end
+
+  step_shaper shaper (
+      .clk_i,
+      .rst_i,
+      .step_i       (path_step_o),
+      .dir_i        (path_dir_o),
+      .step_length_i(step_length),
+      .step_space_i (step_space),
+      .dir_setup_i  (dir_setup),
+      .dir_hold_i   (dir_hold),
+      .mode_i       (mode),
+      .idle_level_i,
+      .wait_tick_i,
+      .step_o,
+      .dir_o,
+      .position_o,
+      .busy_o,
+      .fault_o
+  );
+
+  snapshot_slice position (
+      .clk_i,
+      .snapshot_i,
+      .value_i(position_o),
+      .chain_i,
+      .chain_o
+  );
+endmodule
+
+`default_nettype wire

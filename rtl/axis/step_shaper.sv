@@ -1,0 +1,81 @@
+// Step shaper of one axis: turns one-clock steps into pulses at the pins that keep the drive's times, and counts the
+// position by what the pins show.
+`default_nettype none
+
+module step_shaper (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        step_i,
+    input  wire logic        dir_i,
+    input  wire logic [15:0] step_length_i,
+    input  wire logic [15:0] step_space_i,
+    input  wire logic [15:0] dir_setup_i,
+    input  wire logic [15:0] dir_hold_i,
+    input  wire logic [ 3:0] mode_i,
+    input  wire logic [ 1:0] idle_level_i,   // {second pin, first pin}
+    input  wire logic        wait_tick_i,
+    output logic             step_o,
+    output logic             dir_o,
+    output logic      [31:0] position_o,
+    output logic             busy_o,
+    output logic             fault_o         // event
+);
+  logic any;
+  logic same;
+  logic other;
+  logic go;
+  logic resting;
+  logic dir;
+  logic begun;
+  logic pulse;
+
+  waiting_steps waiting (
+      .clk_i,
+      .rst_i,
+      .step_i,
+      .dir_i,
+      .points_i(dir),
+      .take_i  (go),
+      .wait_tick_i,
+      .any_o   (any),
+      .same_o  (same),
+      .other_o (other),
+      .fault_o
+  );
+
+  step_phases phases (
+      .clk_i,
+      .rst_i,
+      .same_i   (same),
+      .other_i  (other),
+      .step_length_i,
+      .step_space_i,
+      .dir_setup_i,
+      .dir_hold_i,
+      .go_o     (go),
+      .resting_o(resting),
+      .dir_o    (dir),
+      .begun_o  (begun),
+      .pulse_o  (pulse)
+  );
+
+  step_pins pins (
+      .clk_i,
+      .rst_i,
+      .dir_i  (dir),
+      .begun_i(begun),
+      .pulse_i(pulse),
+      .mode_i,
+      .idle_level_i,
+      .step_o,
+      .dir_o,
+      .position_o
+  );
+
+  always_ff @(posedge clk_i) begin
+    busy_o <= step_i || any || !resting;
+    if (rst_i) busy_o <= 1'b0;
+  end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,248 @@
+// The card behind its inner register port: registers, command checker, queues and all that moves.
+// Ports and latencies: docs/developer/architecture.md.
+`default_nettype none
+module card_core #(
+    parameter int          Axes          = 4,     // 1 to 8
+    parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
+    parameter int          FeedDepth     = 2560,
+    parameter int          Accumulator   = 1,     // 0: without arcs and conics
+    parameter int          DirectMode    = 1,     // 0: without
+    parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
+    parameter logic [31:0] BuildId       = 0,
+    parameter int          BuildDirty    = 0,
+    parameter logic [31:0] BoardId       = 0
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    // the inner port
+    input wire logic request_i,
+    input wire logic write_i,
+    input wire logic partial_i,
+    input wire logic [1:0] port_i,
+    input wire logic [11:0] address_i,
+    input wire logic [31:0] data_i,
+    output logic ack_o,
+    output logic error_o,
+    output logic [31:0] data_o,
+    // straps
+    input wire logic [31:0] clock_hz_i,
+    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    // pins
+    output logic [Axes-1:0] step_o,
+    output logic [Axes-1:0] dir_o,
+    output logic irq_o,
+    // for lockstep; a board leaves it open
+    output logic [34*Axes+212:0] observe_o
+);
+  // A parameter out of its range stops every reader here: there is no module of this name, and the name says why.
+  if (Axes < 1 || Axes > 8) begin : gen_wrong_axes
+    ERROR_Axes_must_be_1_to_8 error ();
+  end
+  if (GeometryDepth < 2 || GeometryDepth > 32768 || FeedDepth < 2 || FeedDepth > 32768) begin : gen_wrong_depth
+    ERROR_GeometryDepth_and_FeedDepth_must_be_2_to_32768 error ();
+  end
+  if (Ports < 1 || Ports > 4) begin : gen_wrong_ports
+    ERROR_Ports_must_be_1_to_4 error ();
+  end
+
+  localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
+      32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
+      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE;
+
+  // What parameters and straps decide of the constants, by address.
+  logic [511:0] constants;
+
+  assign constants = 512'(Axes) << 8 * card_map_pkg::ADDR_AXES |
+      512'(clock_hz_i) << 8 * card_map_pkg::ADDR_CLOCK_HZ |
+      512'(ENGINES) << 8 * card_map_pkg::ADDR_ENGINES |
+      512'(GeometryDepth) << 8 * card_map_pkg::ADDR_GEOMETRY_DEPTH |
+      512'(FeedDepth) << 8 * card_map_pkg::ADDR_FEED_DEPTH |
+      512'(BuildId) << 8 * card_map_pkg::ADDR_BUILD_ID |
+      512'(BuildDirty != 0) << 8 * card_map_pkg::ADDR_BUILD_FLAGS |
+      512'(BoardId) << 8 * card_map_pkg::ADDR_BOARD_ID |
+      512'(Ports) << 8 * card_map_pkg::ADDR_PORTS;
+
+  logic [31:0] clear_fault;
+  logic [31:0] fault;
+  logic [31:0] status;
+  logic [ 5:0] motion_status;
+  logic        held;
+  logic [63:0] begun;  // {geometry, feed}
+  logic [31:0] room;  // {geometry, feed}
+  logic [40:0] setting;  // {set, address, data}
+  logic        abort;
+  logic        flush;
+  logic        cut;
+  logic        closed;
+  logic        stop;
+  logic [ 1:0] snapshot;  // {shift, strobe}
+  logic [31:0] chain_far;
+  logic [31:0] chain_near;
+  logic        start;
+  logic        start_done;
+  logic        start_error;
+  logic [ 7:0] start_reason;
+  logic [ 7:0] loader_address;
+  logic [31:0] loader_data;
+  logic        stream_write;
+  logic        checker_ready;
+  logic        checker_partial;
+  logic        checker_refuse;
+  logic [15:0] checker_reason;
+
+  register_file #(
+      .Axes(Axes),
+      .Ports(Ports),
+      .Engines(ENGINES)
+  ) registers (
+      .clk_i,
+      .rst_i,
+      .constants_i(constants),
+      .idle_level_i,
+      .request_i,
+      .access_i({port_i, write_i, partial_i, address_i, data_i}),
+      .ack_o,
+      .error_o,
+      .data_o,
+      .irq_o,
+      .motion_i(motion_status),
+      .held_i(held),
+      .fault_i(fault),
+      .room_i(room),
+      .begun_i(begun),
+      .status_o(status),
+      .setting_o(setting),
+      .clear_fault_o(clear_fault),
+      .abort_o(abort),
+      .flush_o(flush),
+      .stream_write_o(stream_write),
+      .checker_ready_i(checker_ready),
+      .checker_partial_i(checker_partial),
+      .checker_refuse_i(checker_refuse),
+      .checker_reason_i(checker_reason),
+      .start_o(start),
+      .start_done_i(start_done),
+      .start_error_i(start_error),
+      .start_reason_i(start_reason),
+      .loader_address_i(loader_address),
+      .loader_data_o(loader_data),
+      .stop_i(stop),
+      .snapshot_o(snapshot),
+      .chain_o(chain_far),
+      .chain_i(chain_near)
+  );
+
+  logic [15:0] halfword;
+  logic        geometry_write;
+  logic        geometry_commit;
+  logic        geometry_read;
+  logic        geometry_empty;
+  logic [15:0] geometry_word;
+  logic        feed_write;
+  logic        feed_commit;
+  logic        feed_read;
+  logic        feed_empty;
+  logic [15:0] feed_word;
+  logic        drop;
+
+  command_checker #(
+      .Axes(Axes),
+      .Engines(ENGINES)
+  ) stream (
+      .clk_i,
+      .rst_i,
+      .write_i(stream_write),
+      .word_i(setting[31:0]),  // the word last written, whatever it was for
+      .flush_i(flush),
+      .clear_i(cut),
+      .closed_i(closed),
+      .geometry_room_i(room[31:16]),
+      .feed_room_i(room[15:0]),
+      .ready_o(checker_ready),
+      .halfword_o(halfword),
+      .geometry_write_o(geometry_write),
+      .feed_write_o(feed_write),
+      .geometry_commit_o(geometry_commit),
+      .feed_commit_o(feed_commit),
+      .drop_o(drop),
+      .refuse_o(checker_refuse),
+      .reason_o(checker_reason[7:0]),
+      .number_o(checker_reason[15:8]),
+      .partial_o(checker_partial)
+  );
+
+  halfword_queue #(
+      .Depth(GeometryDepth)
+  ) geometry_queue (
+      .clk_i,
+      .rst_i,
+      .clear_i (cut),
+      .write_i (geometry_write),
+      .word_i  (halfword),
+      .commit_i(geometry_commit),
+      .drop_i  (drop),
+      .read_i  (geometry_read),
+      .word_o  (geometry_word),
+      .empty_o (geometry_empty),
+      .room_o  (room[31:16])
+  );
+
+  halfword_queue #(
+      .Depth(FeedDepth)
+  ) feed_queue (
+      .clk_i,
+      .rst_i,
+      .clear_i (cut),
+      .write_i (feed_write),
+      .word_i  (halfword),
+      .commit_i(feed_commit),
+      .drop_i  (drop),
+      .read_i  (feed_read),
+      .word_o  (feed_word),
+      .empty_o (feed_empty),
+      .room_o  (room[15:0])
+  );
+
+  motion_core #(
+      .Axes(Axes),
+      .Accumulator(Accumulator != 0),
+      .DirectMode(DirectMode != 0)
+  ) motion (
+      .clk_i,
+      .rst_i,
+      .idle_level_i,
+      .setting_i(setting),
+      .abort_i(abort),
+      .clear_fault_i(clear_fault),
+      .geometry_empty_i(geometry_empty),
+      .geometry_word_i(geometry_word),
+      .geometry_read_o(geometry_read),
+      .feed_empty_i(feed_empty),
+      .feed_word_i(feed_word),
+      .feed_read_o(feed_read),
+      .start_i(start),
+      .start_mask_i(setting[7:0]),
+      .start_done_o(start_done),
+      .start_error_o(start_error),
+      .start_reason_o(start_reason),
+      .loader_address_o(loader_address),
+      .loader_data_i(loader_data),
+      .snapshot_i(snapshot),
+      .chain_i(chain_far),
+      .chain_o(chain_near),
+      .fault_o(fault),
+      .cut_o(cut),
+      .closed_o(closed),
+      .stop_o(stop),
+      .status_o(motion_status),
+      .held_o(held),
+      .geometry_begun_o(begun[63:32]),
+      .feed_begun_o(begun[31:0]),
+      .observe_o(observe_o[34*Axes+52:0]),
+      .step_o,
+      .dir_o
+  );
+
+  assign observe_o[34*Axes+212:34*Axes+53] = {room, status, fault, begun};
+endmodule
+`default_nettype wire

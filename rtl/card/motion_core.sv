@@ -1,0 +1,289 @@
+// What moves: time base, feed, geometry, path engines and axes, with what stops them.
+`default_nettype none
+
+module motion_core #(
+    parameter int Axes        = 4,
+    parameter bit Accumulator = 1,
+    parameter bit DirectMode  = 1
+) (
+    input  wire logic                clk_i,
+    input  wire logic                rst_i,
+    input  wire logic [  2*Axes-1:0] idle_level_i,      // {second pins, first pins}
+    input  wire logic [        40:0] setting_i,         // {set, address[9:2], data}
+    input  wire logic                abort_i,
+    input  wire logic [        31:0] clear_fault_i,
+    // queues
+    input  wire logic                geometry_empty_i,
+    input  wire logic [        15:0] geometry_word_i,
+    output logic                     geometry_read_o,
+    input  wire logic                feed_empty_i,
+    input  wire logic [        15:0] feed_word_i,
+    output logic                     feed_read_o,
+    // START
+    input  wire logic                start_i,
+    input  wire logic [         7:0] start_mask_i,
+    output logic                     start_done_o,
+    output logic                     start_error_o,
+    output logic      [         7:0] start_reason_o,
+    output logic      [         7:0] loader_address_o,
+    input  wire logic [        31:0] loader_data_i,
+    // snapshot chain: FAULT and STATUS come in, POSITION of the last axis goes out first
+    input  wire logic [         1:0] snapshot_i,        // {shift, strobe}
+    input  wire logic [        31:0] chain_i,
+    output logic      [        31:0] chain_o,
+    // stops
+    output logic      [        31:0] fault_o,
+    output logic                     cut_o,
+    output logic                     closed_o,
+    output logic                     stop_o,
+    // status
+    output logic      [         5:0] status_o,          // {stopping, ended, feed active, path active, direct, busy}
+    output logic                     held_o,            // the ratio is 0 (combinational)
+    output logic      [        31:0] geometry_begun_o,
+    output logic      [        31:0] feed_begun_o,
+    // {rate, ratio, position, path dir, path step, feed swap, path swap, path tick, tick}
+    output logic      [34*Axes+52:0] observe_o,
+    output logic      [    Axes-1:0] step_o,
+    output logic      [    Axes-1:0] dir_o
+);
+  // stops
+  logic            go;
+  logic            hold;
+  logic            mismatch;
+  logic            incomplete;
+  logic            stopping;
+  logic [Axes-1:0] step_fault;
+  // ticks
+  logic            take;
+  logic            tick;
+  logic            feed_swap;
+  logic            feed_active;
+  logic            feed_runs;
+  logic            feed_at;
+  logic            feed_idle;
+  logic [    16:0] ratio;
+  logic [    31:0] rate;
+  // geometry
+  logic [    21:0] load;
+  logic            taking;
+  logic            swap;
+  logic [Axes-1:0] active;
+  logic            engine;
+  logic            engine_start;
+  logic            barrier_begin;
+  logic            barrier_done;
+  logic            path_active;
+  logic            ended;
+  logic            geometry_idle;
+  logic            direct;
+  logic            direct_go;
+  logic [Axes-1:0] direct_mask;
+  logic [    21:0] direct_load;
+  // path engines
+  logic            path_tick;
+  logic            path_swap;
+  logic            engine_tick;
+  logic [Axes-1:0] engine_step;
+  logic [Axes-1:0] engine_dir;
+  logic            engine_ready;
+  logic            payload_ready;
+  logic            engine_done;
+  logic            elsewhere;
+  // axes
+  logic            axes_live;
+  logic            axes_busy;
+  logic [34*Axes-1:0] axes_observe;
+  // status
+  logic            idle_q;
+  logic            running_q;
+  logic            busy;
+  logic [    31:0] feed_chain;
+  logic [    31:0] geometry_chain;
+
+  assign held_o    = ratio == 17'd0;
+  assign status_o  = {stopping, ended, feed_active, path_active, direct, busy};
+  assign observe_o = {rate, ratio, axes_observe, feed_swap, swap, engine_tick, tick};
+
+  stop_control #(
+      .Axes(Axes)
+  ) stops (
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .step_fault_i(step_fault),
+      .mismatch_i  (mismatch),
+      .incomplete_i(incomplete),
+      .abort_i,
+      .clear_i     (clear_fault_i),
+      .at_rest_i   (held_o),
+      .fault_o,
+      .go_o        (go),
+      .hold_o      (hold),
+      .cut_o,
+      .stop_o,
+      .stopping_o  (stopping),
+      .closed_o
+  );
+
+  tick_source ticks (
+      .clk_i,
+      .rst_i,
+      .cut_i          (cut_o),
+      .go_i           (go),
+      .hold_i         (hold),
+      .setting_i,
+      .empty_i        (feed_empty_i),
+      .word_i         (feed_word_i),
+      .read_o         (feed_read_o),
+      .direct_i       (direct),
+      .taking_i       (taking),
+      .ready_i        (engine_ready),
+      .take_o         (take),
+      .tick_o         (tick),
+      .swap_o         (feed_swap),
+      .barrier_begin_i(barrier_begin),
+      .barrier_done_i (barrier_done),
+      .at_barrier_o   (feed_at),
+      .runs_o         (feed_runs),
+      .active_o       (feed_active),
+      .idle_o         (feed_idle),
+      .ratio_o        (ratio),
+      .rate_o         (rate),
+      .begun_o        (feed_begun_o),
+      .snapshot_i,
+      .chain_i,
+      .chain_o        (feed_chain)
+  );
+
+  geometry_sequencer #(
+      .Axes       (Axes),
+      .Accumulator(Accumulator)
+  ) geometry (
+      .clk_i,
+      .rst_i,
+      .cut_i          (cut_o),
+      .go_i           (go),
+      .empty_i        (geometry_empty_i),
+      .word_i         (geometry_word_i),
+      .read_o         (geometry_read_o),
+      .direct_load_i  (direct_load),
+      .direct_go_i    (direct_go),
+      .direct_mask_i  (direct_mask),
+      .direct_o       (direct),
+      .load_o         (load),
+      .take_i         (take),
+      .taking_o       (taking),
+      .swap_o         (swap),
+      .active_o       (active),
+      .engine_o       (engine),
+      .start_o        (engine_start),
+      .payload_ready_i(payload_ready),
+      .done_i         (engine_done),
+      .elsewhere_i    (elsewhere),
+      .axes_live_i    (axes_live),
+      .feed_at_i      (feed_at),
+      .feed_runs_i    (feed_runs),
+      .barrier_begin_o(barrier_begin),
+      .barrier_done_o (barrier_done),
+      .mismatch_o     (mismatch),
+      .incomplete_o   (incomplete),
+      .path_active_o  (path_active),
+      .ended_o        (ended),
+      .idle_o         (geometry_idle),
+      .snapshot_i,
+      .chain_i        (feed_chain),
+      .chain_o        (geometry_chain),
+      .begun_o        (geometry_begun_o)
+  );
+
+  path_engines #(
+      .Axes       (Axes),
+      .Accumulator(Accumulator)
+  ) engines (
+      .clk_i,
+      .rst_i,
+      .cut_i          (cut_o),
+      .tick_i         (tick),
+      .swap_i         (swap),
+      .engine_i       (engine),
+      .start_i        (engine_start),
+      .load_i         (load),
+      .tick_o         (path_tick),
+      .swap_o         (path_swap),
+      .path_tick_o    (engine_tick),
+      .step_o         (engine_step),
+      .dir_o          (engine_dir),
+      .ready_o        (engine_ready),
+      .payload_ready_o(payload_ready),
+      .done_o         (engine_done),
+      .elsewhere_o    (elsewhere)
+  );
+
+  axes #(
+      .Axes   (Axes),
+      .Counted(DirectMode)
+  ) all_axes (
+      .clk_i,
+      .rst_i,
+      .cut_i        (cut_o),
+      .idle_level_i,
+      .setting_i,
+      .load_i       (load),
+      .tick_i       (path_tick),
+      .swap_i       (path_swap),
+      .active_i     (active),
+      .direct_i     (direct),
+      .engine_step_i(engine_step),
+      .engine_dir_i (engine_dir),
+      .snapshot_i,
+      .chain_i      (geometry_chain),
+      .chain_o,
+      .live_o       (axes_live),
+      .busy_o       (axes_busy),
+      .fault_o      (step_fault),
+      .observe_o    (axes_observe),
+      .step_o,
+      .dir_o
+  );
+
+  if (DirectMode) begin : gen_direct_mode
+    direct_loader #(
+        .Axes(Axes)
+    ) loader (
+        .clk_i,
+        .rst_i,
+        .busy_i   (busy),
+        .closed_i (closed_o),
+        .start_i,
+        .mask_i   (start_mask_i),
+        .address_o(loader_address_o),
+        .data_i   (loader_data_i),
+        .done_o   (start_done_o),
+        .error_o  (start_error_o),
+        .reason_o (start_reason_o),
+        .load_o   (direct_load),
+        .go_o     (direct_go),
+        .mask_o   (direct_mask)
+    );
+  end else begin : gen_no_direct_mode
+    assign {loader_address_o, start_done_o, start_error_o, start_reason_o} = '0;
+    assign {direct_load, direct_go, direct_mask} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, start_i, start_mask_i, loader_data_i};
+  end
+
+  always_ff @(posedge clk_i) begin
+    idle_q    <= (geometry_idle && feed_idle) || rst_i;
+    running_q <= (!idle_q || direct || axes_busy) && !rst_i;
+  end
+
+  busy_timer status_busy (
+      .clk_i,
+      .rst_i,
+      .running_i(running_q),
+      .busy_o   (busy)
+  );
+endmodule
+
+`default_nettype wire

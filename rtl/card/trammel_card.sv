@@ -1,0 +1,137 @@
+// The card behind an AXI4-Lite port.
+`default_nettype none
+module trammel_card #(
+    parameter int          Axes          = 4,     // 1 to 8
+    parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
+    parameter int          FeedDepth     = 2560,
+    parameter int          Accumulator   = 1,     // 0: without arcs and conics
+    parameter int          DirectMode    = 1,     // 0: without
+    parameter logic [31:0] BuildId       = 0,
+    parameter int          BuildDirty    = 0,
+    parameter logic [31:0] BoardId       = 0
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    // straps
+    input wire logic [31:0] clock_hz_i,
+    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    // AXI4-Lite
+    input wire logic awvalid_i,
+    output logic awready_o,
+    input wire logic [11:0] awaddr_i,
+    input wire logic wvalid_i,
+    output logic wready_o,
+    input wire logic [31:0] wdata_i,
+    input wire logic [3:0] wstrb_i,
+    output logic bvalid_o,
+    input wire logic bready_i,
+    output logic [1:0] bresp_o,
+    input wire logic arvalid_i,
+    output logic arready_o,
+    input wire logic [11:0] araddr_i,
+    output logic rvalid_o,
+    input wire logic rready_i,
+    output logic [31:0] rdata_o,
+    output logic [1:0] rresp_o,
+    // pins
+    output logic [Axes-1:0] step_o,
+    output logic [Axes-1:0] dir_o,
+    output logic irq_o,
+    // for lockstep; a board leaves it open
+    output logic [34*Axes+212:0] observe_o
+);
+  // The reset is registered once for all blocks: it takes effect a clock later, and nothing combinational hangs on the
+  // pin.
+  logic rst_q;
+  always_ff @(posedge clk_i) rst_q <= rst_i;
+
+  logic [47:0] port_access;
+  logic        port_ack;
+  logic        port_error;
+  logic [31:0] port_data;
+
+  axi4_lite_port host (
+      .clk_i,
+      .rst_i    (rst_q),
+      .awvalid_i,
+      .awready_o,
+      .awaddr_i,
+      .wvalid_i,
+      .wready_o,
+      .wdata_i,
+      .wstrb_i,
+      .bvalid_o,
+      .bready_i,
+      .bresp_o,
+      .arvalid_i,
+      .arready_o,
+      .araddr_i,
+      .rvalid_o,
+      .rready_i,
+      .rdata_o,
+      .rresp_o,
+      .request_o(port_access[47]),
+      .write_o  (port_access[46]),
+      .partial_o(port_access[45]),
+      .address_o(port_access[43:32]),
+      .data_o   (port_access[31:0]),
+      .ack_i    (port_ack),
+      .error_i  (port_error),
+      .data_i   (port_data)
+  );
+
+  assign port_access[44] = 1'b0;
+
+  logic        request;
+  logic [47:0] access;  // {port, write, partial, address, data}
+  logic        ack;
+  logic        error;
+  logic [31:0] data;
+
+  port_arbiter #(
+      .Ports(1)
+  ) arbiter (
+      .clk_i,
+      .rst_i    (rst_q),
+      .access_i (port_access),
+      .ack_o    (port_ack),
+      .error_o  (port_error),
+      .data_o   (port_data),
+      .request_o(request),
+      .access_o (access),
+      .ack_i    (ack),
+      .error_i  (error),
+      .data_i   (data)
+  );
+
+  card_core #(
+      .Axes(Axes),
+      .GeometryDepth(GeometryDepth),
+      .FeedDepth(FeedDepth),
+      .Accumulator(Accumulator),
+      .DirectMode(DirectMode),
+      .Ports(1),
+      .BuildId(BuildId),
+      .BuildDirty(BuildDirty),
+      .BoardId(BoardId)
+  ) core (
+      .clk_i,
+      .rst_i    (rst_q),
+      .request_i(request),
+      .port_i   (access[47:46]),
+      .write_i  (access[45]),
+      .partial_i(access[44]),
+      .address_i(access[43:32]),
+      .data_i   (access[31:0]),
+      .ack_o    (ack),
+      .error_o  (error),
+      .data_o   (data),
+      .clock_hz_i,
+      .idle_level_i,
+      .step_o,
+      .dir_o,
+      .irq_o,
+      .observe_o
+  );
+endmodule
+`default_nettype wire

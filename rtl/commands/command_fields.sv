@@ -1,0 +1,129 @@
+// Judges the halfwords of a command after its header: count, payload fields, padding.
+//
+// Two clocks a halfword with halfword_i held: examine_i, then judge_i. restart_i (a header's first clock) begins a
+// command; op_i must be there in the judge_i that comes before the first halfword, where the table is read ahead.
+// The verdict stands from the clock after a bad halfword's judge_i to the next restart_i.
+`default_nettype none
+module command_fields #(
+    parameter logic [31:0] Engines = '1
+) (
+    input wire logic clk_i,
+    input wire logic restart_i,
+    input wire logic examine_i,
+    input wire logic judge_i,
+    input wire logic read_ahead_i,  // read the table for the next halfword
+    input wire logic padding_i,     // the next halfword is padding
+    input wire logic [15:0] halfword_i,
+    input wire logic [7:0] op_i,
+    input wire logic [7:0] mask_i,
+    output logic bad_o,
+    output logic bad_mask_o    // what is bad is the plane, which differs from the mask
+);
+
+  localparam int FIELD_END = card_map_pkg::CHECK_FIELD_END;
+  localparam int NOT_ZERO = card_map_pkg::CHECK_NOT_ZERO;
+  localparam int AT_MOST_COUNT = card_map_pkg::CHECK_AT_MOST_COUNT;
+  localparam int UNSIGNED_LIMIT = card_map_pkg::CHECK_UNSIGNED_LIMIT;
+  localparam int SIGNED_LIMIT = card_map_pkg::CHECK_SIGNED_LIMIT;
+  localparam int PLANE = card_map_pkg::CHECK_PLANE;
+
+  // Where the next halfword lies, and what the table says of the present one.
+  logic in_count_q;
+  logic [5:0] index_q;
+  // The part of the payload that comes once an axis. Set by the count's halfwords, long before they are asked.
+  logic [5:0] repeat_from_q;
+  logic [5:0] repeat_after_q;
+  logic [15:0] allowed_q;
+  logic [5:0] checks_q;
+  logic is_count_q;
+  // What was found in the present halfword and, of the same field, below it.
+  logic not_allowed_q;
+  logic not_zero_q;
+  logic below_not_zero_q;
+  logic over_limit_q;
+  logic over_count_q;
+  logic off_plane_q;
+  logic [47:0] count_q;
+
+  always_ff @(posedge clk_i) begin
+    if (restart_i) begin
+      in_count_q <= 1'b1;
+      index_q <= 6'd0;
+    end else if (examine_i) begin
+      index_q <= index_q + 6'd1;
+      if (in_count_q && index_q == 6'd2) begin
+        in_count_q <= 1'b0;
+        index_q <= 6'd0;
+      end
+      if (!in_count_q && index_q == repeat_after_q) index_q <= repeat_from_q;
+    end
+    if (examine_i) begin
+      repeat_from_q  <= card_map_pkg::command_base_halfwords(op_i, Engines) - 6'd5;
+      repeat_after_q <= repeat_from_q + card_map_pkg::command_halfwords_per_axis(op_i, Engines) - 6'd1;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (read_ahead_i) begin
+      is_count_q <= in_count_q;
+      if (padding_i) begin
+        allowed_q <= 16'd0;
+        checks_q  <= 6'd0;
+      end else if (in_count_q) begin
+        allowed_q <= {index_q != 6'd2 ? 8'hFF : 8'h00, 8'hFF};
+        if (card_map_pkg::command_count_zero(op_i, Engines)) allowed_q <= 16'd0;
+        checks_q <= 6'd0;
+        checks_q[FIELD_END] <= index_q == 6'd2;
+        checks_q[NOT_ZERO] <= index_q == 6'd2 && card_map_pkg::command_count_not_zero(op_i, Engines);
+      end else begin
+        allowed_q <= card_map_pkg::payload_bits(op_i, index_q, Engines);
+        checks_q  <= card_map_pkg::payload_checks(op_i, index_q, Engines);
+      end
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (examine_i) begin
+      not_allowed_q <= (halfword_i & ~allowed_q) != 16'd0;
+      not_zero_q <= halfword_i != 16'd0;
+      // In the highest halfword of a field whose limit is 2^40 either way; other halfwords are not asked.
+      over_limit_q <= halfword_i[15:8] != 8'h00 && halfword_i[15:8] != 8'hFF &&
+                      (halfword_i != 16'h0100 || below_not_zero_q);
+      off_plane_q <= !mask_i[halfword_i[6:4]] || !mask_i[halfword_i[10:8]] || halfword_i[6:4] == halfword_i[10:8];
+      // The count goes round once while it is compared, lowest halfword first.
+      if (is_count_q || checks_q[AT_MOST_COUNT]) count_q <= {is_count_q ? halfword_i : count_q[15:0], count_q[47:16]};
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (restart_i) begin
+      below_not_zero_q <= 1'b0;
+      over_count_q <= 1'b0;
+    end else begin
+      if (examine_i) over_count_q <= {count_q[15:0], 1'b0} < {halfword_i, over_count_q};
+      if (judge_i) begin
+        below_not_zero_q <= (below_not_zero_q || not_zero_q) && !checks_q[FIELD_END];
+        if (checks_q[FIELD_END]) over_count_q <= 1'b0;
+      end
+    end
+  end
+
+  always_ff @(posedge clk_i) begin : p_verdict
+    logic violated;
+    logic violated_mask;
+
+    if (restart_i) begin
+      bad_o <= 1'b0;
+      bad_mask_o <= 1'b0;
+    end else if (judge_i && !bad_o) begin
+      violated = not_allowed_q || (checks_q[NOT_ZERO] && !not_zero_q && !below_not_zero_q) ||
+                 (checks_q[FIELD_END] && checks_q[AT_MOST_COUNT] && over_count_q) ||
+                 (checks_q[FIELD_END] && (checks_q[UNSIGNED_LIMIT] || checks_q[SIGNED_LIMIT]) && over_limit_q);
+      violated_mask = checks_q[PLANE] && off_plane_q;
+      bad_o <= violated || violated_mask;
+      bad_mask_o <= violated_mask && !violated;
+    end
+  end
+
+endmodule
+`default_nettype wire

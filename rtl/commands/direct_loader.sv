@@ -1,0 +1,187 @@
+// START: reads the direct-mode registers, checks them, shifts them into the chains of the masked axes and starts the move.
+//
+// The chains are loaded while they are checked: nothing takes them up before `go_o`, and the next command or START
+// loads them afresh. A read has 4 clocks: the address is a register, its data lies there two clocks later, and the two
+// halfwords are taken in the last clock and the next.
+`default_nettype none
+
+module direct_loader #(
+    parameter int Axes = 4
+) (
+    input  wire logic            clk_i,
+    input  wire logic            rst_i,
+    input  wire logic            busy_i,     // anything runs, is decoded or queued
+    input  wire logic            closed_i,   // a fault stands
+    // registers
+    input  wire logic            start_i,
+    input  wire logic [     7:0] mask_i,       // stands until done_o
+    output logic      [     7:0] address_o,    // word address
+    input  wire logic [    31:0] data_i,
+    output logic                 done_o,
+    output logic                 error_o,
+    output logic      [     7:0] reason_o,
+    // to the geometry sequencer
+    output logic      [    21:0] load_o,
+    output logic                 go_o,
+    output logic      [Axes-1:0] mask_o
+);
+  typedef enum logic [2:0] {
+    IDLE,
+    CHECK,
+    AXIS,
+    LENGTH,
+    DECIDE
+  } state_e;
+
+  // Steps within a state at which halfwords are taken.
+  localparam logic [4:0] TAKE_DIRECTION = 5'd3;
+  localparam logic [4:0] TAKE_FREQUENCY_0 = 5'd7;
+  localparam logic [4:0] TAKE_FREQUENCY_1 = 5'd8;
+  localparam logic [4:0] TAKE_FREQUENCY_2 = 5'd11;
+  localparam logic [4:0] TAKE_COUNT_0 = 5'd15;
+  localparam logic [4:0] TAKE_COUNT_1 = 5'd16;
+  localparam logic [4:0] TAKE_LENGTH_0 = 5'd3;
+  localparam logic [4:0] TAKE_LENGTH_1 = 5'd4;
+  localparam logic [4:0] TAKE_LENGTH_2 = 5'd7;
+
+  state_e        state_q;
+  logic   [ 4:0] step_q;
+  logic   [ 7:0] rest_q;  // masked axes from axis_q on
+  logic   [ 2:0] axis_q;
+  logic          busy_q;
+  logic          closed_q;
+  logic          bad_mask_q;
+
+  // The halfword taken, on its way to the chains.
+  logic   [15:0] raw_q;
+  logic          frequency_q;
+  logic          frequency_top_q;
+  logic          count_q;
+  logic          length_q;
+  logic   [ 2:0] raw_axis_q;
+
+  // Judgement.
+  logic          negative_q;
+  logic          carry_q;  // of the serial negation
+  logic          frequency_any_q;  // a one in the frequency so far
+  logic          length_any_q;
+  logic          bad_q;
+
+  always_ff @(posedge clk_i) begin : p_loader
+    logic        closed;
+    logic        refused;
+    logic        axis_done;
+    logic        axis_last;
+    logic        take_high;
+    logic        raw_any;
+    logic [15:0] negated;
+
+    // At rest nothing moves, once done_o and go_o have fallen again.
+    if (rst_i || start_i || state_q != IDLE || done_o) begin
+      // A fault that came in between counts: the move must not wait for FAULT to be cleared.
+      closed = closed_q || (state_q == DECIDE && closed_i);
+      refused = bad_mask_q || closed || busy_q || bad_q;
+      axis_last = axis_q == 3'd7;
+      axis_done = ~rest_q[0] | (step_q == TAKE_COUNT_1);
+      take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_COUNT_1) : step_q == TAKE_LENGTH_1;
+      raw_any = raw_q != 16'd0;
+      negated = (raw_q ^ {16{negative_q}}) + {15'd0, carry_q};
+
+      // Each stage before the one that feeds it.
+      load_o <= {
+        (frequency_q || count_q || length_q) && !rst_i,
+        length_q ? load_target_pkg::TICKS : (count_q ? load_target_pkg::COUNT : load_target_pkg::INCREMENT) + {2'd0, raw_axis_q},
+        frequency_q ? negated : raw_q
+      };
+
+      done_o  <= state_q == DECIDE && step_q == 5'd7 && !rst_i;
+      error_o <= refused || !length_any_q;
+      go_o    <= state_q == DECIDE && step_q == 5'd7 && !refused && length_any_q && !rst_i;
+      if (bad_mask_q) reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
+      else if (closed) reason_o <= card_map_pkg::REFUSE_FAULTED;
+      else if (busy_q) reason_o <= card_map_pkg::REFUSE_BUSY;
+      else reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
+
+      if (state_q == CHECK && step_q != 5'd7) {busy_q, closed_q} <= {busy_i, closed_i};
+      if (state_q == CHECK) bad_mask_q <= mask_i == 8'd0 || (mask_i >> Axes) != 8'd0;
+      if (state_q == IDLE) begin
+        bad_q        <= 1'b0;
+        length_any_q <= 1'b0;
+      end
+      // A frequency above 2^40: bit 40 is bit 8 of its third halfword.
+      if (frequency_q & frequency_top_q & raw_q[8] & (frequency_any_q | (raw_q[7:0] != 8'd0))) bad_q <= 1'b1;
+      if (count_q & raw_any & ~frequency_any_q) bad_q <= 1'b1;
+      if (length_q & raw_any) length_any_q <= 1'b1;
+
+      if ((state_q == AXIS) & (step_q == TAKE_DIRECTION)) begin
+        negative_q      <= data_i[0];
+        carry_q         <= data_i[0];
+        frequency_any_q <= 1'b0;
+      end else if (frequency_q) begin
+        carry_q         <= carry_q & ~raw_any;
+        frequency_any_q <= frequency_any_q | raw_any;
+      end
+
+      raw_q <= take_high ? data_i[31:16] : data_i[15:0];
+      raw_axis_q <= axis_q;
+      frequency_top_q <= step_q == TAKE_FREQUENCY_2;
+      frequency_q     <= (state_q == AXIS) & rest_q[0] &
+          ((step_q == TAKE_FREQUENCY_0) | (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_FREQUENCY_2));
+      count_q <= (state_q == AXIS) & rest_q[0] & ((step_q == TAKE_COUNT_0) | (step_q == TAKE_COUNT_1));
+      length_q        <= (state_q == LENGTH) &
+          ((step_q == TAKE_LENGTH_0) | (step_q == TAKE_LENGTH_1) | (step_q == TAKE_LENGTH_2));
+
+      if (state_q == LENGTH) begin
+        address_o <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[9:2] : card_map_pkg::ADDR_LENGTH_LO[9:2];
+      end else begin
+        case (step_q[3:2])
+          2'd0: address_o <= card_map_pkg::ADDR_DIRECTION[9:2] - {3'd0, axis_q, 2'd0};
+          2'd1: address_o <= card_map_pkg::ADDR_FREQUENCY_LO[9:2] - {3'd0, axis_q, 2'd0};
+          2'd2: address_o <= card_map_pkg::ADDR_FREQUENCY_HI[9:2] - {3'd0, axis_q, 2'd0};
+          default: address_o <= card_map_pkg::ADDR_COUNT[9:2] - {3'd0, axis_q, 2'd0};
+        endcase
+      end
+
+      if (state_q == CHECK) begin
+        rest_q <= mask_i;
+        axis_q <= 3'd0;
+        mask_o <= mask_i[Axes-1:0];
+      end else if ((state_q == AXIS) & axis_done) begin
+        rest_q <= {1'b0, rest_q[7:1]};
+        axis_q <= axis_q + 3'd1;
+      end
+
+      step_q <= step_q + 5'd1;
+      case (state_q)
+        IDLE: begin
+          step_q <= 5'd0;
+          if (start_i) state_q <= CHECK;
+        end
+        // The clocks in which a command just committed makes the card busy.
+        CHECK: begin
+          if (step_q == 5'd7) begin
+            step_q  <= 5'd0;
+            state_q <= refused ? DECIDE : AXIS;
+          end
+        end
+        AXIS: begin
+          if (axis_done) begin
+            step_q <= 5'd0;
+            if (axis_last) state_q <= LENGTH;
+          end
+        end
+        LENGTH: begin
+          if (step_q == TAKE_LENGTH_2) begin
+            step_q  <= 5'd0;
+            state_q <= DECIDE;
+          end
+        end
+        default: if (step_q == 5'd7) state_q <= IDLE;
+      endcase
+
+      if (rst_i) state_q <= IDLE;
+    end
+  end
+endmodule
+
+`default_nettype wire

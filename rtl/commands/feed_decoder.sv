@@ -1,0 +1,74 @@
+// Decodes the next feed piece onto the feed load. Acceleration and jerk have no shadow in the generator: they follow
+// when the piece has begun.
+`default_nettype none
+
+module feed_decoder (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic        pop_i,
+    input  wire logic        empty_i,
+    input  wire logic [15:0] word_i,
+    output logic             read_o,
+    output logic      [19:0] load_o,     // {valid, target, word}
+    output logic             piece_o,
+    output logic             barrier_o,
+    output logic             idle_o,
+    output logic             valid_o
+);
+  logic [4:0] field;
+  logic       count_strobe;
+  logic       field_strobe;
+  logic [4:0] strobe_field;
+  logic [7:0] opcode;
+  logic       is_feed;
+
+  assign is_feed = opcode == card_map_pkg::OP_FEED;
+
+  // Fields are targets of the feed load, and follow each other as these do.
+  function automatic logic [2:0] length_of(input logic [2:0] target);  // halfwords, less one
+    length_of = (target == load_target_pkg::FEED_FLOOR || target == load_target_pkg::FEED_STOP_DISTANCE) ? 3'd1 : 3'd3;
+  endfunction
+
+  command_fetch fetch (
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i,
+      .empty_i,
+      .word_i,
+      .read_o,
+      .has_payload_i (is_feed),
+      .first_field_i ({2'd0, load_target_pkg::FEED_RATE}),
+      .first_length_i(3'd3),
+      .next_field_i  (field + 5'd1),
+      .next_length_i (length_of(field[2:0] + 3'd1)),
+      .last_field_i  (field[2:0] == load_target_pkg::FEED_STOP_DISTANCE || field[2:0] == load_target_pkg::FEED_JERK),
+      .rest_i        (is_feed),
+      .wait_i        (1'b0),
+      .header_o      (),
+      .first_o       (),
+      .advance_o     (),
+      .field_o       (field),
+      .count_strobe_o(count_strobe),
+      .field_strobe_o(field_strobe),
+      .strobe_field_o(strobe_field),
+      .opcode_o      (opcode),
+      .mask_o        (),
+      .idle_o,
+      .valid_o
+  );
+
+  always_ff @(posedge clk_i) begin
+    load_o[19]    <= (count_strobe || field_strobe) && !rst_i;
+    load_o[18:16] <= count_strobe ? load_target_pkg::FEED_TICKS : strobe_field[2:0];
+    load_o[15:0]  <= word_i;
+    piece_o       <= is_feed;
+    barrier_o     <= !is_feed;
+  end
+
+  logic unused;
+  assign unused = &{1'b0, strobe_field[4:3]};
+endmodule
+
+`default_nettype wire

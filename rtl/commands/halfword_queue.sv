@@ -1,0 +1,91 @@
+// Command queue: halfwords in block RAM, readable only once their whole command is committed.
+//
+// A write at c belongs to the command under way; commit_i makes what was written in earlier clocks readable, drop_i
+// forgets it (and wins over a write or commit beside it). word_o at c+2 is the halfword that read_i took at c; reads may
+// follow each other every clock, and a read while empty_o is ignored. empty_o counts a read at c+1 and a commit at
+// c+2; room_o (combinational) counts reads, writes and drops at c+1. The writer keeps within room_o.
+`default_nettype none
+module halfword_queue #(
+    parameter int Depth = 4096  // halfwords, 2 to 32,768
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic clear_i,
+    input wire logic write_i,
+    input wire logic [15:0] word_i,
+    input wire logic commit_i,
+    input wire logic drop_i,
+    input wire logic read_i,
+    output logic [15:0] word_o,
+    output logic empty_o,
+    output logic [15:0] room_o
+);
+
+  localparam int AddressWidth = $clog2(Depth);
+  localparam logic [AddressWidth:0] DEPTH = (AddressWidth + 1)'(Depth);
+  localparam logic [AddressWidth-1:0] LAST = AddressWidth'(Depth - 1);
+
+  // A pointer is an address and, above it, the parity of its laps: equal addresses mean empty or full. A lap of a power of
+  // two needs no comparison.
+  function automatic logic [AddressWidth:0] next(input logic [AddressWidth:0] pointer);
+    next = pointer + 1'b1;
+    if (Depth != 2 ** AddressWidth && pointer[AddressWidth-1:0] == LAST) begin
+      next = {~pointer[AddressWidth], {AddressWidth{1'b0}}};
+    end
+  endfunction
+
+  logic [AddressWidth:0] write_q;
+  logic [AddressWidth:0] commit_q;
+  logic [AddressWidth:0] read_q;
+  logic [AddressWidth:0] read_next_q;
+  logic take;
+  logic reset;
+
+  assign take  = read_i && !empty_o;
+  assign reset = rst_i || clear_i;
+
+  // In nibbles, so that a block RAM is deep and narrow: then none, or few, are chosen between after the RAM's slow output.
+  // Nothing is read that is not committed, so no location is read and written in one clock.
+  for (genvar n = 0; n < 4; n++) begin : gen_nibble
+    (* no_rw_check *) logic [3:0] memory[0:Depth-1];
+    logic [3:0] memory_q;
+
+    always_ff @(posedge clk_i) begin
+      if (write_i) memory[write_q[AddressWidth-1:0]] <= word_i[4*n+:4];
+      if (take) memory_q <= memory[read_q[AddressWidth-1:0]];
+      // A bare flip-flop right after the RAM.
+      word_o[4*n+:4] <= memory_q;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (reset) begin
+      write_q <= '0;
+      commit_q <= '0;
+      read_q <= '0;
+      read_next_q <= (AddressWidth + 1)'(1);
+    end else begin
+      if (drop_i) write_q <= commit_q;
+      else if (write_i) write_q <= next(write_q);
+      if (commit_i && !drop_i) commit_q <= write_q;
+      if (take) begin
+        read_q <= read_next_q;
+        read_next_q <= next(read_next_q);
+      end
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (reset) empty_o <= 1'b1;
+    else empty_o <= (take ? read_next_q : read_q) == commit_q;
+  end
+
+  logic [AddressWidth:0] ahead;  // of the writer to the reader; negative or 0 in the same lap
+  logic [AddressWidth:0] room;
+
+  assign ahead  = {1'b0, read_q[AddressWidth-1:0]} - {1'b0, write_q[AddressWidth-1:0]};
+  assign room   = read_q[AddressWidth] == write_q[AddressWidth] ? ahead + DEPTH : ahead;
+  assign room_o = 16'(room);
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,107 @@
+`default_nettype none
+
+// AXI4-Lite slave in front of the card's inner port.
+// A write is taken when address and data are both there, a read when its address is; where both wait they take turns.
+// Ready answers valid a clock later, for one clock: the access was noted a clock before its handshake, which is safe
+// since a master keeps valid and what belongs to it until then.
+module axi4_lite_port (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        awvalid_i,
+    output logic             awready_o,
+    input  wire logic [11:0] awaddr_i,
+    input  wire logic        wvalid_i,
+    output logic             wready_o,
+    input  wire logic [31:0] wdata_i,
+    input  wire logic [ 3:0] wstrb_i,
+    output logic             bvalid_o,
+    input  wire logic        bready_i,
+    output logic      [ 1:0] bresp_o,
+    input  wire logic        arvalid_i,
+    output logic             arready_o,
+    input  wire logic [11:0] araddr_i,
+    output logic             rvalid_o,
+    input  wire logic        rready_i,
+    output logic      [31:0] rdata_o,
+    output logic      [ 1:0] rresp_o,
+    // to the inner port
+    output logic             request_o,
+    output logic             write_o,
+    output logic             partial_o,
+    output logic      [11:0] address_o,
+    output logic      [31:0] data_o,
+    input  wire logic        ack_i,
+    input  wire logic        error_i,
+    input  wire logic [31:0] data_i
+);
+
+  logic busy_q;
+  logic write_waits;
+  logic read_waits;
+
+  // A new access only when its answer has a place to go.
+  assign write_waits = awvalid_i && wvalid_i && !bvalid_o;
+  assign read_waits  = arvalid_i && !rvalid_o;
+
+  always_ff @(posedge clk_i) begin
+    request_o <= 1'b0;
+    awready_o <= 1'b0;
+    arready_o <= 1'b0;
+    if (busy_q) begin
+      if (ack_i) busy_q <= 1'b0;
+    end else if (write_waits && !(read_waits && write_o)) begin
+      request_o <= 1'b1;
+      awready_o <= 1'b1;
+      busy_q <= 1'b1;
+      write_o <= 1'b1;
+      partial_o <= wstrb_i != 4'b1111;
+      address_o <= awaddr_i;
+      data_o <= wdata_i;
+    end else if (read_waits) begin
+      request_o <= 1'b1;
+      arready_o <= 1'b1;
+      busy_q <= 1'b1;
+      write_o <= 1'b0;
+      address_o <= araddr_i;
+    end
+    if (rst_i) begin
+      request_o <= 1'b0;
+      awready_o <= 1'b0;
+      arready_o <= 1'b0;
+      busy_q <= 1'b0;
+      write_o <= 1'b0;
+    end
+  end
+
+  assign wready_o = awready_o;
+
+  // Answers: 0 is OKAY, 2 is SLVERR.
+  logic write_error_q;
+  logic read_error_q;
+
+  always_ff @(posedge clk_i) begin
+    if (bready_i) bvalid_o <= 1'b0;
+    if (rready_i) rvalid_o <= 1'b0;
+    if (ack_i && write_o) begin
+      bvalid_o <= 1'b1;
+      write_error_q <= error_i;
+    end
+    if (ack_i && !write_o) begin
+      rvalid_o <= 1'b1;
+      read_error_q <= error_i;
+      rdata_o <= data_i;
+    end
+    if (rst_i) begin
+      bvalid_o <= 1'b0;
+      rvalid_o <= 1'b0;
+      write_error_q <= 1'b0;
+      read_error_q <= 1'b0;
+    end
+  end
+
+  assign bresp_o = {write_error_q, 1'b0};
+  assign rresp_o = {read_error_q, 1'b0};
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,76 @@
+// DWELL and END: waits until both queues stand at the barrier, counts the dwell's clocks, then lets both go on. Where
+// one queue stands and the other still has ticks to give or take, the program is wrong.
+//
+// The path's tick counter, free at a barrier, counts the clocks. A dwell of n clocks counts for max(1, n).
+`default_nettype none
+
+module barrier (
+    input  wire logic clk_i,
+    input  wire logic rst_i,
+    input  wire logic cut_i,
+    input  wire logic go_i,             // no fault
+    input  wire logic geometry_at_i,
+    input  wire logic geometry_runs_i,
+    input  wire logic feed_at_i,
+    input  wire logic feed_runs_i,
+    input  wire logic zero_i,           // the count is 0
+    input  wire logic end_i,            // the barrier is an END
+    input  wire logic last_i,           // of the tick counter
+    input  wire logic begin_i,          // a path or a direct move begins
+    output logic      mismatch_o,       // event
+    output logic      load_o,           // the barrier begins: load the tick counter
+    output logic      counting_o,       // one count each clock
+    output logic      done_o,           // both queues go on
+    output logic      ended_o,          // the last command was an END
+    output logic      idle_o
+);
+  // SETTLE waits for the last tick in the path domain; LEAVE gives the two fetches the clock in which they take back
+  // geometry_at_i and feed_at_i.
+  typedef enum logic [2:0] {
+    IDLE,
+    SETTLE,
+    LOAD,
+    COUNT,
+    LEAVE
+  } state_e;
+
+  state_e       state_q;
+  logic   [1:0] step_q;
+  logic         start;
+  logic         over;
+
+  assign start = geometry_at_i && feed_at_i && go_i;
+  assign over  = state_q == COUNT && go_i && (zero_i || last_i);
+
+  always_ff @(posedge clk_i) begin : p_barrier
+    state_e state_d;
+
+    // Between barriers nothing moves.
+    if (cut_i || rst_i || state_q != IDLE || start) begin
+      state_d = state_q;
+      case (state_q)
+        IDLE: if (start) state_d = SETTLE;
+        SETTLE: if (step_q == 2'd2) state_d = LOAD;
+        LOAD: state_d = COUNT;
+        COUNT: if (over) state_d = LEAVE;
+        default: state_d = IDLE;
+      endcase
+      if (cut_i || rst_i) state_d = IDLE;
+
+      done_o     <= over && !cut_i && !rst_i;
+      load_o     <= state_d == LOAD;
+      counting_o <= state_d == COUNT;
+      idle_o     <= state_d == IDLE;
+      step_q     <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
+      state_q    <= state_d;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    mismatch_o <= ((geometry_at_i && feed_runs_i) || (feed_at_i && geometry_runs_i)) && go_i && !done_o && !cut_i && !rst_i;
+    if (rst_i || cut_i || begin_i || load_o) ended_o <= 1'b0;
+    else if (over && end_i) ended_o <= 1'b1;
+  end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,34 @@
+// How many commands of a queue have begun since the last cut, with its word of the snapshot.
+//
+// A cut zeroes it a clock later than all else: the snapshot that a stop takes strobes with the cut's next clock and
+// must still find the number.
+`default_nettype none
+
+module begun_counter (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic        begin_i,
+    input  wire logic [ 1:0] snapshot_i,
+    input  wire logic [31:0] chain_i,
+    output logic      [31:0] chain_o,
+    output logic      [31:0] begun_o
+);
+  logic cut_q;
+
+  always_ff @(posedge clk_i) begin
+    cut_q <= cut_i && !rst_i;
+    if (begin_i && !cut_i) begun_o <= begun_o + 32'd1;
+    if (cut_q || rst_i) begun_o <= 32'd0;
+  end
+
+  snapshot_slice begun (
+      .clk_i,
+      .snapshot_i,
+      .value_i(begun_o),
+      .chain_i,
+      .chain_o
+  );
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,93 @@
+// Judges an access by the register map. The access stands still while judge_i is high: live_o, stored_o and what the
+// access aims at are valid one clock after it stands, reason_o and good_o two clocks after. busy_i is looked at in the
+// last clock of judge_i. All of it is kept until the next access: nothing moves in between.
+`default_nettype none
+module register_decode #(
+    parameter int Axes = 4,
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+) (
+    input  wire logic        clk_i,
+    input  wire logic        judge_i,
+    input  wire logic [45:0] access_i,   // {write, partial, address, data}
+    input  wire logic        busy_i,     // the stream is not for this port, or not now
+    output logic             live_o,     // reads as the card stands
+    output logic             setting_o,
+    output logic             control_o,
+    output logic             fault_o,
+    output logic             refusal_o,  // and with ones to clear
+    output logic             stream_o,
+    output logic             start_o,
+    output logic             good_o,
+    output logic      [ 7:0] reason_o
+);
+
+  localparam logic [3:0] AXIS_COUNT = 4'(Axes);
+
+  logic       write;
+  logic       partial;
+  logic [9:0] word;
+  logic [2:0] access_q;
+  logic       absent_q;
+  logic [3:0] stray_q;  // bytes with bits that must be 0
+  logic       in_limits_q;
+
+  assign write   = access_i[45];
+  assign partial = access_i[44];
+  assign word    = access_i[43:34];
+
+  always_ff @(posedge clk_i) begin : p_decode
+    logic        only_present;
+    logic [ 2:0] axis;
+    logic [31:0] mask;
+    logic [31:0] data;
+
+    if (judge_i) begin
+      data = access_i[31:0];
+      mask = card_map_pkg::register_mask(word, Engines);
+      only_present = card_map_pkg::register_only_present_axes(word);
+      axis = card_map_pkg::register_axis(word);
+      access_q <= card_map_pkg::register_access(word, Engines);
+      absent_q <= access_i[33:32] != 2'd0 || (only_present && {1'b0, axis} >= AXIS_COUNT);
+      for (int b = 0; b < 4; b++) stray_q[b] <= (data[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
+      in_limits_q <= card_map_pkg::register_in_limits(word, data);
+      control_o <= word == card_map_pkg::ADDR_CONTROL[11:2];
+      fault_o <= word == card_map_pkg::ADDR_FAULT[11:2];
+      refusal_o <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data != 32'd0;
+      stream_o <= word == card_map_pkg::ADDR_STREAM[11:2];
+      start_o <= word == card_map_pkg::ADDR_START[11:2] && Engines[card_map_pkg::ENGINE_DIRECT_MODE];
+    end
+  end
+
+  assign live_o = !absent_q &&
+      (access_q == card_map_pkg::ACCESS_LIVE || access_q == card_map_pkg::ACCESS_CLEAR_ONES);
+  assign setting_o = access_q == card_map_pkg::ACCESS_SETTING;
+
+  logic read_only;
+
+  assign read_only = access_q == card_map_pkg::ACCESS_CONSTANT || access_q == card_map_pkg::ACCESS_LIVE ||
+      access_q == card_map_pkg::ACCESS_SNAPSHOT;
+
+  always_ff @(posedge clk_i) begin
+    if (judge_i) begin
+      good_o   <= 1'b0;
+      reason_o <= card_map_pkg::REFUSE_NONE;
+      if (access_q == card_map_pkg::ACCESS_NONE || absent_q) begin
+        reason_o <= card_map_pkg::REFUSE_UNKNOWN_ADDRESS;
+      end else if (!write && access_q == card_map_pkg::ACCESS_COMMAND) begin
+        reason_o <= card_map_pkg::REFUSE_WRITE_ONLY;
+      end else if (write && read_only) begin
+        reason_o <= card_map_pkg::REFUSE_READ_ONLY;
+      end else if (write && partial) begin
+        reason_o <= card_map_pkg::REFUSE_PARTIAL_WRITE;
+      end else if (write && (stray_q != 4'd0 || !in_limits_q)) begin
+        reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
+      end else if (write && stream_o && busy_i) begin
+        reason_o <= card_map_pkg::REFUSE_BUSY;
+      end else begin
+        good_o <= 1'b1;
+      end
+    end
+  end
+
+endmodule
+`default_nettype wire

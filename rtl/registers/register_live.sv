@@ -1,0 +1,92 @@
+// STATUS, the registers that read as the card stands, the interrupt, and the far end of the snapshot chain: FAULT and
+// STATUS. data_o is, a clock after sample_i, the live register at word_i; three bits tell the live registers apart.
+`default_nettype none
+module register_live (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic [40:0] setting_i,
+    input  wire logic [ 1:0] snapshot_i,      // {shift, strobe}
+    input  wire logic        sample_i,
+    input  wire logic [ 4:2] word_i,
+    // STATUS
+    input  wire logic [ 5:0] motion_i,        // {stopping, ended, feed active, path active, direct, busy}
+    input  wire logic        held_i,
+    input  wire logic        any_refused_i,
+    input  wire logic        refused_i,       // of the port that asks
+    input  wire logic        snapshotting_i,
+    input  wire logic        incomplete_i,
+    // the other live registers
+    input  wire logic [31:0] fault_i,
+    input  wire logic [27:0] refusal_i,
+    input  wire logic [31:0] room_i,          // {geometry, feed}
+    input  wire logic [63:0] begun_i,         // {geometry, feed}
+    output logic      [31:0] status_o,        // combinational; refused is any port's
+    output logic      [31:0] data_o,
+    output logic      [31:0] chain_o,
+    output logic             irq_o
+);
+
+  assign status_o = 32'(motion_i[0]) << card_map_pkg::BIT_STATUS_BUSY |
+      32'(motion_i[1]) << card_map_pkg::BIT_STATUS_DIRECT |
+      32'(motion_i[2]) << card_map_pkg::BIT_STATUS_PATH_ACTIVE |
+      32'(motion_i[3]) << card_map_pkg::BIT_STATUS_FEED_ACTIVE |
+      32'(held_i) << card_map_pkg::BIT_STATUS_HELD |
+      32'(motion_i[4]) << card_map_pkg::BIT_STATUS_ENDED |
+      32'(fault_i != 32'd0) << card_map_pkg::BIT_STATUS_FAULTED |
+      32'(any_refused_i) << card_map_pkg::BIT_STATUS_REFUSED |
+      32'(snapshotting_i) << card_map_pkg::BIT_STATUS_SNAPSHOT |
+      32'(incomplete_i) << card_map_pkg::BIT_STATUS_INCOMPLETE |
+      32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING;
+
+  always_ff @(posedge clk_i) begin
+    if (sample_i) begin
+      case (word_i)
+        card_map_pkg::ADDR_STATUS[4:2]: begin
+          data_o <= status_o;
+          data_o[card_map_pkg::BIT_STATUS_REFUSED] <= refused_i;
+        end
+        card_map_pkg::ADDR_FAULT[4:2]: data_o <= fault_i;
+        card_map_pkg::ADDR_REFUSAL[4:2]: data_o <= {4'd0, refusal_i};
+        card_map_pkg::ADDR_GEOMETRY_ROOM[4:2]: data_o <= {16'd0, room_i[31:16]};
+        card_map_pkg::ADDR_FEED_ROOM[4:2]: data_o <= {16'd0, room_i[15:0]};
+        card_map_pkg::ADDR_GEOMETRY_BEGUN[4:2]: data_o <= begun_i[63:32];
+        default: data_o <= begun_i[31:0];
+      endcase
+    end
+  end
+
+  logic [31:0] enable_q;
+
+  always_ff @(posedge clk_i) begin
+    irq_o <= ((status_o ^ (32'd1 << card_map_pkg::BIT_STATUS_BUSY)) & enable_q) != '0;
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_IRQ_ENABLE[9:2]) enable_q <= setting_i[31:0];
+    if (rst_i) begin
+      irq_o <= 1'b0;
+      enable_q <= card_map_pkg::RESET_IRQ_ENABLE;
+    end
+  end
+
+  logic [31:0] chain;
+
+  snapshot_slice #(
+      .Width(16)
+  ) i_fault (
+      .clk_i,
+      .snapshot_i,
+      .value_i(fault_i[15:0]),
+      .chain_i(32'd0),
+      .chain_o(chain)
+  );
+
+  snapshot_slice #(
+      .Width(18)
+  ) i_status (
+      .clk_i,
+      .snapshot_i,
+      .value_i(status_o[17:0] & ~(18'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
+      .chain_i(chain),
+      .chain_o
+  );
+
+endmodule
+`default_nettype wire

@@ -1,0 +1,77 @@
+// The block RAM behind the registers: constants, the settings' shadow, snapshots and the direct mode's registers.
+//
+// After reset every word is written with its reset value or constant in 256 clocks, in the order in which the low byte
+// of the time counter runs; writing_o tells whether a word may still be on its way. Settings and words of a snapshot never come together, nor before that is over.
+// data_o is the word at address_i two clocks earlier.
+`default_nettype none
+module register_ram #(
+    parameter int Axes = 4  // 1 to 8
+) (
+    input  wire logic              clk_i,
+    input  wire logic              rst_i,
+    input  wire logic [     511:0] constants_i,   // what parameters and straps decide, by address
+    input  wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input  wire logic [      40:0] setting_i,     // {write, address, data}
+    input  wire logic [      40:0] snapshot_i,
+    input  wire logic [       7:0] sweep_i,       // low byte of the time counter
+    input  wire logic [       7:0] address_i,
+    output logic                   writing_o,
+    output logic      [      31:0] data_o
+);
+
+  localparam logic [7:0] FIRST_MODE = card_map_pkg::ADDR_MODE[9:2];
+  localparam logic [7:0] AXIS_SLOTS = 8'(7 * card_map_pkg::STRIDE_MODE / 4);
+
+  // The counter is two clocks late: it begins at 0xFE.
+  localparam logic [7:0] LAST_SWEPT = 8'hFD;
+
+  logic        resetting_q;
+  logic        store_q;
+  logic [ 7:0] store_address_q;
+  logic [31:0] store_data_q;
+
+  always_ff @(posedge clk_i) begin
+    if (sweep_i == LAST_SWEPT) resetting_q <= 1'b0;
+    if (rst_i) resetting_q <= 1'b1;
+  end
+
+  // The write port, registered: those who write take turns, and give 0 when it is not theirs.
+  always_ff @(posedge clk_i) begin : p_store
+    logic [ 7:0] swept;
+    logic [31:0] reset_value;
+    logic [ 7:0] first_inverted;
+    logic [ 7:0] second_inverted;
+
+    swept = '0;
+    reset_value = '0;
+    if (resetting_q) begin
+      swept = sweep_i;
+      reset_value = card_map_pkg::register_reset({2'b00, swept});
+      if (swept < 8'd16) reset_value = reset_value | constants_i[32*swept[3:0]+:32];
+      first_inverted  = 8'(idle_level_i[Axes-1:0]);
+      second_inverted = 8'(idle_level_i[2*Axes-1:Axes]);
+      if ((swept & ~AXIS_SLOTS) == FIRST_MODE) begin
+        reset_value[3:2] = {second_inverted[swept[5:3]], first_inverted[swept[5:3]]};
+      end
+    end
+    store_q <= setting_i[40] || snapshot_i[40] || resetting_q;
+    store_address_q <= {8{setting_i[40]}} & setting_i[39:32] | snapshot_i[39:32] | swept;
+    store_data_q <= {32{setting_i[40]}} & setting_i[31:0] | snapshot_i[31:0] | reset_value;
+    if (rst_i) store_q <= 1'b0;
+  end
+
+  (* no_rw_check *)
+  logic [31:0] memory[0:255];
+  logic [31:0] memory_q;
+
+  always_ff @(posedge clk_i) begin
+    if (store_q) memory[store_address_q] <= store_data_q;
+    memory_q <= memory[address_i];
+    data_o   <= memory_q;
+  end
+
+  // Of a snapshot its writer tells.
+  assign writing_o = resetting_q || store_q;
+
+endmodule
+`default_nettype wire

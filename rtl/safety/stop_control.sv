@@ -1,0 +1,94 @@
+// Everything that stops the card: gathers the faults, lets ticks be taken or not, holds the time base, cuts.
+//
+// A fault stops at once, or, where its reaction says so, after the time base has come to rest. Either way the cut leaves
+// nothing that could move, so clearing FAULT never starts motion.
+`default_nettype none
+
+module stop_control #(
+    parameter int Axes = 4
+) (
+    input  wire logic            clk_i,
+    input  wire logic            rst_i,
+    input  wire logic [    40:0] setting_i,
+    input  wire logic [Axes-1:0] step_fault_i,
+    input  wire logic            mismatch_i,
+    input  wire logic            incomplete_i,
+    input  wire logic            abort_i,
+    input  wire logic [    31:0] clear_i,       // ones written to FAULT
+    input  wire logic            at_rest_i,     // the ratio is 0
+    output logic      [    31:0] fault_o,
+    output logic                 go_o,          // ticks may be taken
+    output logic                 hold_o,        // the time base slows down to rest
+    output logic                 cut_o,
+    output logic                 stop_o,        // the first cause of a stop
+    output logic                 stopping_o,
+    output logic                 closed_o       // no command and no START is taken
+);
+  typedef enum logic [1:0] {
+    RUN,
+    RAMP,
+    STOPPED
+  } state_e;
+
+  localparam int Faults = card_map_pkg::BIT_FAULT_PATH_INCOMPLETE + 1;
+
+  state_e              state_q;
+  state_e              state_d;
+  logic   [Faults-1:0] fault_q;
+  logic   [Faults-1:0] cause;
+  logic                hold_q;
+  logic   [       7:0] ramped_q;  // step faults whose reaction is a ramp
+  logic                any;
+  logic                immediate;
+
+  assign any = mismatch_i || incomplete_i || step_fault_i != '0;
+  assign immediate = mismatch_i || incomplete_i || (step_fault_i & ~ramped_q[Axes-1:0]) != '0;
+
+  always_comb begin
+    cause = Faults'(step_fault_i) << card_map_pkg::BIT_FAULT_STEP;
+    cause[card_map_pkg::BIT_FAULT_TICK_MISMATCH] = mismatch_i;
+    cause[card_map_pkg::BIT_FAULT_PATH_INCOMPLETE] = incomplete_i;
+  end
+
+  always_comb begin
+    state_d = state_q;
+    case (state_q)
+      RUN:
+      if (immediate) state_d = STOPPED;
+      else if (any) state_d = RAMP;
+      RAMP: if (immediate || abort_i || at_rest_i) state_d = STOPPED;
+      default: if (!any && fault_q == '0) state_d = RUN;
+    endcase
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_HOLD[9:2]) hold_q <= setting_i[0];
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_STOP_REACTION[9:2]) ramped_q <= setting_i[7:0];
+    fault_q  <= (fault_q & ~clear_i[Faults-1:0]) | cause;
+    state_q  <= state_d;
+    go_o     <= state_d != STOPPED;
+    cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
+    stop_o   <= state_q == RUN && state_d != RUN;
+    hold_o   <= hold_q || state_q == RAMP;
+    closed_o <= fault_q != '0 || state_q != RUN;
+    if (rst_i) begin
+      hold_q   <= card_map_pkg::RESET_HOLD[0];
+      ramped_q <= card_map_pkg::RESET_STOP_REACTION[7:0];
+      fault_q  <= '0;
+      state_q  <= RUN;
+      go_o     <= 1'b1;
+      cut_o    <= 1'b0;
+      stop_o   <= 1'b0;
+      hold_o   <= 1'b0;
+      closed_o <= 1'b0;
+    end
+  end
+
+  assign fault_o = 32'(fault_q);
+  assign stopping_o = state_q == RAMP;
+
+  logic unused;  // absent axes and faults that are not built
+  assign unused = &{1'b0, setting_i[31:8], clear_i, ramped_q};
+endmodule
+
+`default_nettype wire

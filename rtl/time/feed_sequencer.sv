@@ -1,0 +1,98 @@
+// Runs one feed piece after the other; the next one is swapped in at the last tick of the present one.
+`default_nettype none
+
+module feed_sequencer (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic        go_i,             // no fault
+    // queue
+    input  wire logic        empty_i,
+    input  wire logic [15:0] word_i,
+    output logic             read_o,
+    // ticks
+    input  wire logic        take_i,           // only while active_o
+    input  wire logic        barrier_begin_i,
+    input  wire logic        barrier_done_i,
+    output logic             at_barrier_o,
+    output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
+    output logic             active_o,         // a piece gives ticks
+    output logic             idle_o,           // nothing read or decoded
+    // feed generator
+    output logic             swap_o,
+    output logic      [19:0] load_o,
+    // what began
+    input  wire logic [ 1:0] snapshot_i,
+    input  wire logic [31:0] chain_i,
+    output logic      [31:0] chain_o,
+    output logic      [31:0] begun_o
+);
+  logic        piece;
+  logic        is_barrier;
+  logic        valid;
+  logic        swap;
+  logic        last;
+  logic [39:0] count;
+  logic        mid_zero;
+  logic        top_zero;
+
+  assign swap   = valid && piece && go_i && (!active_o || (take_i && last));
+  assign runs_o = active_o || (valid && piece);
+
+  feed_decoder decoder (
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i    (swap || barrier_done_i),
+      .empty_i,
+      .word_i,
+      .read_o,
+      .load_o,
+      .piece_o  (piece),
+      .barrier_o(is_barrier),
+      .idle_o,
+      .valid_o  (valid)
+  );
+
+  count_chain next_count (
+      .clk_i,
+      .load_i    (load_o[19] && load_o[18:16] == load_target_pkg::FEED_TICKS),
+      .word_i    (load_o[15:0]),
+      .count_o   (count),
+      .mid_zero_o(mid_zero),
+      .top_zero_o(top_zero),
+      .zero_o    ()
+  );
+
+  tick_counter ticks (
+      .clk_i,
+      .rst_i,
+      .load_i    (swap),
+      .count_i   (count),
+      .mid_zero_i(mid_zero),
+      .top_zero_i(top_zero),
+      .take_i,
+      .last_o    (last)
+  );
+
+  begun_counter begun (
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .begin_i(swap_o || barrier_begin_i),
+      .snapshot_i,
+      .chain_i,
+      .chain_o,
+      .begun_o
+  );
+
+  always_ff @(posedge clk_i) begin
+    swap_o       <= swap && !cut_i && !rst_i;
+    at_barrier_o <= valid && is_barrier && !active_o && !barrier_done_i && !cut_i && !rst_i;
+    if (rst_i || cut_i) active_o <= 1'b0;
+    else if (swap) active_o <= 1'b1;
+    else if (take_i && last) active_o <= 1'b0;
+  end
+endmodule
+
+`default_nettype wire

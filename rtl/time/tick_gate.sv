@@ -1,0 +1,58 @@
+// Decides the tick of the whole card: ticks of the feed generator (in direct mode: enabled clocks) are owed until the
+// path can take them. `take_o` is decided from registers only and leaves as `tick_o` a clock later.
+//
+// The generator is stalled while two or more ticks are owed. At most five more arrive then (this gate's registers, the
+// generator's three clocks), so that four bits never overflow.
+`default_nettype none
+
+module tick_gate (
+    input  wire logic clk_i,
+    input  wire logic rst_i,
+    input  wire logic cut_i,
+    input  wire logic go_i,           // ticks may be taken
+    input  wire logic enable_i,       // of the time base
+    input  wire logic feed_tick_i,
+    input  wire logic feed_active_i,  // a piece gives ticks
+    input  wire logic direct_i,       // a direct move is under way
+    input  wire logic taking_i,       // a path takes ticks
+    input  wire logic ready_i,        // and so does its engine
+    output logic      take_o,         // combinational
+    output logic      tick_o,
+    output logic      feed_enable_o,
+    output logic      feed_clear_o
+);
+  logic [3:0] count_q;
+  logic       owed_q;
+  logic       stall_q;
+  logic       source_q;
+  logic       source_active;
+
+  assign source_active = feed_active_i || direct_i;
+  assign take_o = owed_q && taking_i && ready_i && go_i && source_active;
+
+  always_ff @(posedge clk_i) begin : p_count
+    logic [3:0] count_d;
+
+    if (cut_i || rst_i || !source_active) begin
+      count_q <= 4'd0;
+      owed_q  <= 1'b0;
+      stall_q <= 1'b0;
+    end else if (source_q ^ take_o) begin
+      count_d = source_q ? count_q + 4'd1 : count_q - 4'd1;
+      count_q <= count_d;
+      owed_q  <= count_d != 4'd0;
+      stall_q <= count_d > 4'd1;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    source_q <= (direct_i ? enable_i && taking_i : feed_tick_i && feed_active_i) && !cut_i && !rst_i;
+    tick_o <= take_o && !cut_i && !rst_i;
+    // The generator rests while no path can take its ticks, so that a path does not begin with a burst.
+    feed_enable_o <= enable_i && feed_active_i && taking_i && !stall_q && go_i && !cut_i && !rst_i;
+    // Without a piece nothing is owed: ticks made beyond the last one's end never count.
+    feed_clear_o <= !feed_active_i || cut_i || rst_i;
+  end
+endmodule
+
+`default_nettype wire

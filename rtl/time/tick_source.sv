@@ -1,0 +1,115 @@
+// Where the card's ticks come from: the time base's enabled clocks, the feed pieces, the gate that takes their ticks.
+`default_nettype none
+
+module tick_source (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic        go_i,
+    input  wire logic        hold_i,
+    input  wire logic [40:0] setting_i,
+    // queue
+    input  wire logic        empty_i,
+    input  wire logic [15:0] word_i,
+    output logic             read_o,
+    // ticks
+    input  wire logic        direct_i,         // a direct move is under way
+    input  wire logic        taking_i,         // a path takes ticks
+    input  wire logic        ready_i,          // and so does its engine
+    output logic             take_o,           // combinational
+    output logic             tick_o,
+    output logic             swap_o,           // of the feed piece
+    // barriers
+    input  wire logic        barrier_begin_i,
+    input  wire logic        barrier_done_i,
+    output logic             at_barrier_o,
+    output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
+    // status
+    output logic             active_o,         // a piece gives ticks
+    output logic             idle_o,           // nothing runs, is decoded or queued (combinational)
+    output logic      [16:0] ratio_o,
+    output logic      [31:0] rate_o,
+    output logic      [31:0] begun_o,
+    input  wire logic [ 1:0] snapshot_i,
+    input  wire logic [31:0] chain_i,
+    output logic      [31:0] chain_o
+);
+  logic        enable;
+  logic        feed_tick;
+  logic        feed_enable;
+  logic        feed_clear;
+  logic [19:0] load;
+  logic        decoder_idle;
+  logic [31:0] ratio_chain;
+  logic [31:0] rate_chain;
+
+  assign idle_o = decoder_idle && empty_i && !active_o;
+
+  time_base base (
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .hold_i,
+      .snapshot_i,
+      .chain_i,
+      .chain_o (ratio_chain),
+      .enable_o(enable),
+      .ratio_o
+  );
+
+  feed_sequencer pieces (
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .go_i,
+      .empty_i,
+      .word_i,
+      .read_o,
+      .take_i (take_o),
+      .barrier_begin_i,
+      .barrier_done_i,
+      .at_barrier_o,
+      .runs_o,
+      .active_o,
+      .idle_o (decoder_idle),
+      .swap_o,
+      .load_o (load),
+      .snapshot_i,
+      .chain_i(rate_chain),
+      .chain_o,
+      .begun_o
+  );
+
+  feed_generator generator (
+      .clk_i,
+      .rst_i,
+      .clear_i (feed_clear),
+      .enable_i(feed_enable),
+      .load_i  (load),
+      .swap_i  (swap_o),
+      .snapshot_i,
+      .chain_i (ratio_chain),
+      .chain_o (rate_chain),
+      .tick_o  (feed_tick),
+      .rate_o
+  );
+
+  tick_gate gate (
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .go_i,
+      .enable_i     (enable),
+      .feed_tick_i  (feed_tick),
+      .feed_active_i(active_o),
+      .direct_i,
+      .taking_i,
+      .ready_i,
+      .take_o,
+      .tick_o,
+      .feed_enable_o(feed_enable),
+      .feed_clear_o (feed_clear)
+  );
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,100 @@
+// The time base: a clock enable with a programmable ratio of all clocks, slewed linearly towards its target.
+//
+// Every 4th clock the ratio moves by at most the slew towards its goal and never past it. An update takes 4 clocks:
+//   0  the last update's result becomes the ratio; the goal of this one is sampled (hold, target)
+//   1  direction: goal against ratio
+//   2  candidate: ratio + or - slew (the slew is sampled here)
+//   3  whether the candidate reached or passed the goal
+// The goal is a sampled copy because direction and arrival must be judged against the same one: otherwise a hold that
+// comes in between would let the ratio jump.
+`default_nettype none
+
+module time_base (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic [40:0] setting_i,
+    input  wire logic        hold_i,
+    input  wire logic [ 1:0] snapshot_i,
+    input  wire logic [31:0] chain_i,
+    output logic      [31:0] chain_o,
+    output logic             enable_o,
+    output logic      [16:0] ratio_o
+);
+  // Q1.28: 1 is 2^28. The candidate lies between -2^28 and 2^29 - 1.
+  localparam logic [28:0] ONE = 29'h1000_0000;
+
+  logic [16:0] target_q;
+  logic [27:0] slew_q;
+  always_ff @(posedge clk_i) begin
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_FEED[9:2]) target_q <= setting_i[16:0];
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_SLEW[9:2]) slew_q <= setting_i[27:0];
+    if (rst_i) begin
+      target_q <= card_map_pkg::RESET_RATIO_FEED[16:0];
+      slew_q   <= card_map_pkg::RESET_SLEW[27:0];
+    end
+  end
+
+  logic [ 1:0] turn_q;
+  logic [28:0] ratio_q;
+  logic [16:0] goal_q;
+  logic up_q, arrived_q;
+  logic [29:0] candidate_q;
+
+  logic [28:0] goal;
+  assign goal = {goal_q, 12'd0};
+
+  always_ff @(posedge clk_i) begin : p_ratio
+    logic at_least;
+    logic at_most;
+
+    if (rst_i) begin
+      turn_q <= 2'd0;
+      ratio_q <= ONE;
+      goal_q <= 17'h1_0000;
+      up_q <= 1'b0;
+      arrived_q <= 1'b0;
+      candidate_q <= {1'b0, ONE};
+    end else begin
+      turn_q <= turn_q + 2'd1;
+      if (turn_q == 2'd0) begin
+        ratio_q <= arrived_q ? goal : candidate_q[28:0];
+        goal_q  <= hold_i ? 17'd0 : target_q;
+      end
+      if (turn_q == 2'd1) up_q <= goal >= ratio_q;
+      if (turn_q == 2'd2) begin
+        candidate_q <= {1'b0, ratio_q} + ({2'b00, slew_q} ^ {30{!up_q}}) + {29'd0, !up_q};
+      end
+      if (turn_q == 2'd3) begin
+        at_least = $signed(candidate_q) >= $signed({1'b0, goal});
+        at_most  = $signed(candidate_q) <= $signed({1'b0, goal});
+        arrived_q <= up_q ? at_least : at_most;
+      end
+    end
+  end
+
+  logic [15:0] phase_q;
+  logic enable_q;
+  always_ff @(posedge clk_i) begin
+    if (rst_i) {enable_q, phase_q} <= '0;
+    else {enable_q, phase_q} <= {1'b0, phase_q} + ratio_q[28:12];
+  end
+
+  assign enable_o = enable_q;
+  assign ratio_o  = ratio_q[28:12];
+
+  // STATUS and FAULT pass here: no wider than 18 bits.
+  snapshot_slice #(
+      .Width(18)
+  ) ratio (
+      .clk_i,
+      .snapshot_i,
+      .value_i({1'b0, ratio_o}),
+      .chain_i,
+      .chain_o
+  );
+
+  logic unused;
+  assign unused = &{1'b0, setting_i[31:28]};
+endmodule
+
+`default_nettype wire
