@@ -29,11 +29,12 @@ std::string EventLog::text(std::uint64_t cycle) const {
 
 void fail(std::string_view block, std::uint64_t cycle, std::uint64_t seed, const std::vector<Difference>& differences,
           const std::string& events) {
-  if (differences.empty()) throw std::logic_error(fmt::format("{}: cycle {}: a difference without a name", block, cycle));
+  if (differences.empty())
+    throw std::logic_error(fmt::format("{}: cycle {}: a difference without a name", block, cycle));
   std::string text;
   for (const Difference& d : differences) {
-    text += fmt::format("{}: cycle {}: {} is {:#x} ({}) in RTL, {:#x} ({}) in the model\n", block, cycle, d.signal, d.rtl,
-                        d.rtl, d.model, d.model);
+    text += fmt::format("{}: cycle {}: {} is {:#x} ({}) in RTL, {:#x} ({}) in the model\n", block, cycle, d.signal,
+                        d.rtl, d.rtl, d.model, d.model);
   }
   text += fmt::format("repeat with TRAMMEL_SEED={}\n", seed);
   throw Mismatch(text + events);

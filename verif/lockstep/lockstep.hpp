@@ -50,8 +50,8 @@ class EventLog {
   std::vector<Event> events_;
 };
 
-// Throws the Mismatch of `differences`, all of one cycle. Throws std::logic_error when there are none: RTL and model were
-// found to differ, and nobody can say in what.
+// Throws the Mismatch of `differences`, all of one cycle. Throws std::logic_error when there are none: RTL and model
+// were found to differ, and nobody can say in what.
 [[noreturn]] void fail(std::string_view block, std::uint64_t cycle, std::uint64_t seed,
                        const std::vector<Difference>& differences, const std::string& events);
 

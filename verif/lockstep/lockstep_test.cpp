@@ -81,7 +81,9 @@ TEST(EventLog, EventsBehindTheCycleAreLeftOut) {
 }
 
 TEST(Fail, AllDifferencesAreNamed) {
-  EXPECT_EQ(report_of([] { fail("card", 9, 3, {{"a_o", 1, 0}, {"b_o", 2, 4}}, ""); }),
+  EXPECT_EQ(report_of([] {
+              fail("card", 9, 3, {{"a_o", 1, 0}, {"b_o", 2, 4}}, "");
+            }),
             "card: cycle 9: a_o is 0x1 (1) in RTL, 0x0 (0) in the model\n"
             "card: cycle 9: b_o is 0x2 (2) in RTL, 0x4 (4) in the model\n"
             "repeat with TRAMMEL_SEED=3\n");
@@ -100,12 +102,16 @@ class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {
     if (const char* old = std::getenv(name)) old_ = old;
-    if (value != nullptr) setenv(name, value, 1);
-    else unsetenv(name);
+    if (value != nullptr)
+      setenv(name, value, 1);
+    else
+      unsetenv(name);
   }
   ~Environment() {
-    if (old_) setenv(name_, old_->c_str(), 1);
-    else unsetenv(name_);
+    if (old_)
+      setenv(name_, old_->c_str(), 1);
+    else
+      unsetenv(name_);
   }
 
  private:

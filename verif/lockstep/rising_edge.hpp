@@ -4,9 +4,9 @@
 
 namespace trammel::lockstep {
 
-// Nothing in the RTL happens at the falling edge (JoinVerilated.cmake refuses other events than posedge clk_i), so all that
-// evaluating it does is to let Verilator remember that the clock was low. Where that memory is known by name it is set
-// directly, which saves the evaluation; false where it is not.
+// Nothing in the RTL happens at the falling edge (JoinVerilated.cmake refuses other events than posedge clk_i), so all
+// that evaluating it does is to let Verilator remember that the clock was low. Where that memory is known by name it is
+// set directly, which saves the evaluation; false where it is not.
 template <class Root>
 auto remember_low(Root& root, int) -> decltype(root.__Vtrigrprev__TOP__clk_i, bool()) {
   root.__Vtrigrprev__TOP__clk_i = 0;

@@ -97,7 +97,8 @@ TEST(CardJudge, EventsUpToTheCycleAreReported) {
   std::string expected;
   std::string too_late;
   for (std::uint32_t i = 0; card->cycles() - begin < 300; ++i) {
-    (card->cycles() - begin < 150 ? expected : too_late) = fmt::format("cycle {}: written {:#x}\n", card->cycles() - begin, i);
+    (card->cycles() - begin < 150 ? expected : too_late) =
+        fmt::format("cycle {}: written {:#x}\n", card->cycles() - begin, i);
     card->write(card_map::reg::step_length(0), i);
   }
   const std::string report = report_of([&] { card->lockstep_cycles(); });

@@ -14,30 +14,30 @@
 // SIGNAL(port, the golden model's value, when it means anything)
 // `out` and `bus` are the model's outputs; a condition names ports that stand further up. Where it does not hold both
 // records say 0. All signals are compared in every cycle.
-#define TRAMMEL_CARD_SIGNALS(SIGNAL)              \
-  SIGNAL(tick_o, out.tick, true)                  \
-  SIGNAL(path_swap_o, out.path_swap, true)        \
-  SIGNAL(feed_swap_o, out.feed_swap, true)        \
-  SIGNAL(path_tick_o, out.path_tick, true)        \
-  SIGNAL(path_step_o, out.path_step, true)        \
-  SIGNAL(path_dir_o, out.path_dir, true)          \
-  SIGNAL(step_o, out.step, true)                  \
-  SIGNAL(dir_o, out.dir, true)                    \
-  SIGNAL(status_o, out.status, true)              \
-  SIGNAL(fault_o, out.fault, true)                \
-  SIGNAL(running_o, out.running, true)            \
+#define TRAMMEL_CARD_SIGNALS(SIGNAL)               \
+  SIGNAL(tick_o, out.tick, true)                   \
+  SIGNAL(path_swap_o, out.path_swap, true)         \
+  SIGNAL(feed_swap_o, out.feed_swap, true)         \
+  SIGNAL(path_tick_o, out.path_tick, true)         \
+  SIGNAL(path_step_o, out.path_step, true)         \
+  SIGNAL(path_dir_o, out.path_dir, true)           \
+  SIGNAL(step_o, out.step, true)                   \
+  SIGNAL(dir_o, out.dir, true)                     \
+  SIGNAL(status_o, out.status, true)               \
+  SIGNAL(fault_o, out.fault, true)                 \
+  SIGNAL(running_o, out.running, true)             \
   SIGNAL(geometry_room_o, out.geometry_room, true) \
-  SIGNAL(feed_room_o, out.feed_room, true)        \
-  SIGNAL(ratio_o, out.ratio, true)                \
-  SIGNAL(rate_o, out.rate, true)                  \
-  SIGNAL(irq_o, out.irq, true)                    \
-  SIGNAL(awready_o, bus.awready, true)            \
-  SIGNAL(wready_o, bus.wready, true)              \
-  SIGNAL(bvalid_o, bus.bvalid, true)              \
-  SIGNAL(bresp_o, bus.bresp, bvalid_o)            \
-  SIGNAL(arready_o, bus.arready, true)            \
-  SIGNAL(rvalid_o, bus.rvalid, true)              \
-  SIGNAL(rdata_o, bus.rdata, rvalid_o)            \
+  SIGNAL(feed_room_o, out.feed_room, true)         \
+  SIGNAL(ratio_o, out.ratio, true)                 \
+  SIGNAL(rate_o, out.rate, true)                   \
+  SIGNAL(irq_o, out.irq, true)                     \
+  SIGNAL(awready_o, bus.awready, true)             \
+  SIGNAL(wready_o, bus.wready, true)               \
+  SIGNAL(bvalid_o, bus.bvalid, true)               \
+  SIGNAL(bresp_o, bus.bresp, bvalid_o)             \
+  SIGNAL(arready_o, bus.arready, true)             \
+  SIGNAL(rvalid_o, bus.rvalid, true)               \
+  SIGNAL(rdata_o, bus.rdata, rvalid_o)             \
   SIGNAL(rresp_o, bus.rresp, rvalid_o)
 
 // AXIS_SIGNAL(port of 32 bits an axis, the golden model's value for axis n)
@@ -71,7 +71,7 @@ struct CardRecord {
   // `rtl`: a Verilated card.
   template <unsigned kAxes, class Rtl>
   void show_rtl(const Rtl& rtl) {
-#define TRAMMEL_SHOW(port, golden, when)                \
+#define TRAMMEL_SHOW(port, golden, when)                 \
   static_assert(sizeof(rtl.port) <= sizeof(this->port)); \
   port = (when) ? rtl.port : 0;
 #define TRAMMEL_SHOW_AXIS(port, golden) port[n] = axis_word(rtl.port, n);

@@ -16,7 +16,12 @@ constexpr std::size_t kResetClocks = 4;
 
 LockstepCard::LockstepCard(std::unique_ptr<VerilatedCard> card, const model::CardModel::Config& config,
                            std::uint64_t seed, std::size_t batch)
-    : card_(std::move(card)), model_(config), seed_(seed), signals_(signals_compared(config.axes)), golden_(batch), rtl_(batch) {
+    : card_(std::move(card)),
+      model_(config),
+      seed_(seed),
+      signals_(signals_compared(config.axes)),
+      golden_(batch),
+      rtl_(batch) {
   model::CardModel::Inputs reset;
   reset.rst = true;
   CardRecord unused;

@@ -22,7 +22,8 @@ class LockstepCard {
   // Both start in reset's state. `card` has as many axes as `config`. The RTL is at most `batch` clocks behind.
   LockstepCard(std::unique_ptr<VerilatedCard> card, const model::CardModel::Config& config, std::uint64_t seed,
                std::size_t batch = kBatch);
-  // The RTL catches up. A mismatch that is found only here ends the process with its report: nobody is left to catch it.
+  // The RTL catches up. A mismatch that is found only here ends the process with its report: nobody is left to catch
+  // it.
   ~LockstepCard();
   LockstepCard(const LockstepCard&) = delete;
   LockstepCard& operator=(const LockstepCard&) = delete;
