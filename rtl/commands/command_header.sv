@@ -57,8 +57,11 @@ module command_header #(
       to_feed_o <= card_map_pkg::command_to_feed(op_o, Engines);
       // Of the axes in the mask some stand in the fixed part.
       per_axis = card_map_pkg::command_halfwords_per_axis(op_o, Engines);
-      base_q <= card_map_pkg::command_base_halfwords(op_o, Engines) - 6'd1 -
-                6'(card_map_pkg::command_axes_in_base(op_o, Engines) * per_axis);
+      base_q <= card_map_pkg::command_base_halfwords(
+          op_o, Engines
+      ) - 6'd1 - 6'(card_map_pkg::command_axes_in_base(
+          op_o, Engines
+      ) * per_axis);
       per_axis_q <= per_axis;
       moving_q <= ones(mask_o);
     end
