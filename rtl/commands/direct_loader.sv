@@ -179,7 +179,12 @@ module direct_loader #(
         default: if (step_q == 5'd7) state_q <= IDLE;
       endcase
 
-      if (rst_i) state_q <= IDLE;
+      if (rst_i) begin
+        state_q     <= IDLE;
+        frequency_q <= 1'b0;
+        count_q     <= 1'b0;
+        length_q    <= 1'b0;
+      end
     end
   end
 endmodule
