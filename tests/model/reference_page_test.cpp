@@ -1,6 +1,7 @@
 // What docs/reference/behaviour.md says, tried on the golden model of the whole card over its bus alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <tuple>
 #include <utility>
@@ -414,29 +415,33 @@ TEST(ReferencePage, WhatWrongNumbersOfAnArcDo) {
   for (const auto& step : straight) EXPECT_EQ(step, (std::pair<int, int>{-1, 0}));
 }
 
-TEST(ReferencePage, ADwellOfNClocksLastsMaxOneN) {
-  // From the last step before to the first step after it, at a tick a clock and a pulse a tick.
-  const auto gap = [](std::uint64_t clocks) {
+// Clocks without a tick at a barrier, at a tick a clock: two lines of 4 ticks with a step at the second one each would
+// have their steps 4 clocks apart.
+TEST(ReferencePage, ABarrierOfNClocksStopsTheTicksForOverheadAndMaxOneN) {
+  const auto gap = [](const driver::Command& barrier, unsigned axes) {
     Host host;
     host.write(reg::kHold, 1);
     host.clocks(20);
-    host.send(line(4, kOnePulse));
+    driver::Line next = line(4, kOnePulse / 4);
+    next.mask = static_cast<std::uint8_t>((1U << axes) - 1);
+    host.send(line(4, kOnePulse / 4));
     host.send(feed(4));
-    host.send(driver::Dwell{clocks});
-    host.send(line(4, kOnePulse));
+    host.send(barrier);
+    host.send(next);
     host.send(feed(4));
-    host.send(driver::End{});
     host.write(reg::kHold, 0);
-    host.idle();
-    EXPECT_EQ(host.path.size(), 8U);
-    EXPECT_EQ(host.position(0), 8);
-    return host.pins[4].tick - host.pins[3].tick;
+    host.clocks(3000);
+    EXPECT_EQ(host.pins.size(), 2U);
+    return host.pins[1].tick - host.pins[0].tick - 4;
   };
-  const std::uint64_t shortest = gap(0);
-  RecordProperty("clocks_of_a_barrier", static_cast<int>(shortest));
-  EXPECT_EQ(gap(1), shortest);
-  EXPECT_EQ(gap(2), shortest + 1);
-  EXPECT_EQ(gap(1000), shortest + 999);
+  for (unsigned axes = 1; axes <= 4; ++axes) {
+    const std::uint64_t overhead = std::max(30U, 22 + 3 * axes);
+    EXPECT_EQ(gap(driver::Dwell{0}, axes), overhead + 1) << axes;
+    EXPECT_EQ(gap(driver::Dwell{1}, axes), overhead + 1);
+    EXPECT_EQ(gap(driver::Dwell{2}, axes), overhead + 2);
+    EXPECT_EQ(gap(driver::Dwell{1000}, axes), overhead + 1000);
+    EXPECT_EQ(gap(driver::End{}, axes), overhead + 1);
+  }
 }
 
 TEST(ReferencePage, RecoveryInWhicheverOrder) {
@@ -492,6 +497,41 @@ TEST(ReferencePage, WhichPinIsWhich) {
   EXPECT_EQ(pins(1), (Seen{0, 1, 0, 1, 0, 1, 0, 2, 0, 2, 0, 2, 0})) << "first pin up, second down";
   EXPECT_EQ(pins(2), (Seen{0, 1, 3, 2, 3, 1, 0})) << "the first pin leads going up";
   EXPECT_EQ(pins(field::kModeInvertFirst), (Seen{1, 0, 1, 0, 1, 0, 1, 3, 2, 3, 2, 3, 2, 3}));
+}
+
+TEST(ReferencePage, TheShapersReversal) {
+  Host host;
+  host.write(reg::step_length(0), 5);
+  host.write(reg::step_space(0), 3);
+  host.write(reg::dir_setup(0), 7);
+  host.write(reg::dir_hold(0), 9);
+  host.write(reg::kHold, 1);
+  host.clocks(20);
+  host.send(line(1, kOnePulse));
+  host.send(line(1, -kOnePulse));
+  host.send(feed(2));
+  host.send(driver::End{});
+  host.write(reg::kHold, 0);
+  host.idle();
+  ASSERT_EQ(host.pins.size(), 2U);
+  EXPECT_EQ(host.pins[1].tick - host.pins[0].tick, 5U + 3 + 9 + 7 + 12);
+}
+
+TEST(ReferencePage, AnswerTimeOfStart) {
+  for (unsigned mask = 1; mask < 16; ++mask) {
+    Host host;
+    host.direct(0, 0, 1);
+    host.clocks(300);
+    // Against a write that takes 4 clocks at the inner port.
+    const std::uint64_t begin = host.card.cycles();
+    EXPECT_TRUE(host.write(reg::kStart, mask));
+    const std::uint64_t start = host.card.cycles() - begin;
+    host.idle();
+    const std::uint64_t again = host.card.cycles();
+    EXPECT_TRUE(host.write(reg::kHold, 0));
+    const std::uint64_t plain = host.card.cycles() - again;
+    EXPECT_EQ(start - plain, 38U + 16 * card_map::axes_in(static_cast<std::uint8_t>(mask)) - 4) << mask;
+  }
 }
 
 TEST(ReferencePage, TheShapersShortestPeriod) {
