@@ -133,9 +133,10 @@ void Recorder::clock() {
   write_line();
 }
 
-// What is recorded is a card that runs right.
+// What is recorded is a card that runs right. Nothing is known of it before its first reset, which takes effect after
+// the second clock.
 void Recorder::judge() {
-  ++seen_.clocks;
+  if (++seen_.clocks < 2) return;
   sim::CardRecord rtl;
   sim::CardRecord model;
   rtl.show_rtl<kAxes>(*dut_);
