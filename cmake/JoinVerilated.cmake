@@ -1,16 +1,27 @@
 # cmake -D DIR=... -D PREFIX=Vx -P: joins the files that Verilator wrote into Vx__fast.cc and Vx__slow.cc. Their names hold
-# hashes, so a build cannot know them beforehand.
+# hashes, so a build cannot know them beforehand. Vx__fast.cc also gets the model's rising_edge().
 file(GLOB sources "${DIR}/${PREFIX}*.cpp")
 list(SORT sources)
 set(fast "")
 set(slow "")
+set(events "")
 foreach(source IN LISTS sources)
   cmake_path(GET source FILENAME name)
   if(name MATCHES "__(Slow|Syms|ConstPool)")
     string(APPEND slow "#include \"${name}\"\n")
+    # Verilator writes down the events that it triggers on, for its own debugging.
+    file(READ "${source}" text)
+    string(REGEX MATCHALL "@\\([a-z]+edge [^)]*\\)" found "${text}")
+    list(APPEND events ${found})
   else()
     string(APPEND fast "#include \"${name}\"\n")
   endif()
 endforeach()
+list(REMOVE_DUPLICATES events)
+if(NOT events STREQUAL "@(posedge clk_i)")
+  message(FATAL_ERROR "${PREFIX} triggers on \"${events}\"; rising_edge.hpp evaluates @(posedge clk_i) only")
+endif()
+string(APPEND fast "#include \"rising_edge.hpp\"\n"
+  "template void trammel::lockstep::rising_edge<${PREFIX}>(${PREFIX}&);\n")
 file(WRITE "${DIR}/${PREFIX}__fast.cc" "${fast}")
 file(WRITE "${DIR}/${PREFIX}__slow.cc" "${slow}")

@@ -7,22 +7,69 @@
 
 namespace trammel::lockstep {
 
-void Checker::fail(const char* signal, std::uint64_t rtl, std::uint64_t model) const {
-  std::string text = fmt::format("{}: cycle {}: {} is {:#x} ({}) in RTL, {:#x} ({}) in the model\n", block_, cycles_,
-                                 signal, rtl, rtl, model, model);
-  text += fmt::format("repeat with TRAMMEL_SEED={}\n", seed_);
-  const std::uint64_t kept = std::min<std::uint64_t>(event_count_, events_.size());
-  text += fmt::format("last {} events:\n", kept);
-  for (std::uint64_t i = event_count_ - kept; i < event_count_; ++i) {
-    const Event& e = events_[i % events_.size()];
-    text += fmt::format("  cycle {}: {} {:#x}\n", e.cycle, e.what, e.value);
+namespace {
+
+bool seeded_bug_expected = false;
+std::string seeded_bug_report;
+
+}  // namespace
+
+void EventLog::settle() {
+  if (events_.size() > kKept) events_.erase(events_.begin(), events_.end() - kKept);
+}
+
+std::string EventLog::text(std::uint64_t cycle) const {
+  auto end = events_.end();
+  while (end != events_.begin() && std::prev(end)->cycle > cycle) --end;
+  const auto kept = std::min<std::ptrdiff_t>(end - events_.begin(), kKept);
+  std::string text = fmt::format("last {} events:\n", kept);
+  for (auto e = end - kept; e != end; ++e) text += fmt::format("  cycle {}: {} {:#x}\n", e->cycle, e->what, e->value);
+  return text;
+}
+
+void fail(std::string_view block, std::uint64_t cycle, std::uint64_t seed, const std::vector<Difference>& differences,
+          const std::string& events) {
+  if (differences.empty())
+    throw std::logic_error(fmt::format("{}: cycle {}: a difference without a name", block, cycle));
+  std::string text;
+  for (const Difference& d : differences) {
+    text += fmt::format("{}: cycle {}: {} is {:#x} ({}) in RTL, {:#x} ({}) in the model\n", block, cycle, d.signal,
+                        d.rtl, d.rtl, d.model, d.model);
   }
-  throw Mismatch(text);
+  text += fmt::format("repeat with TRAMMEL_SEED={}\n", seed);
+  throw Mismatch(text + events);
+}
+
+void Checker::differ(const char* signal, std::uint64_t rtl, std::uint64_t model) const {
+  fail(block_, cycles_, seed_, {{signal, rtl, model}}, events_.text(cycles_));
 }
 
 std::uint64_t seed_from_environment(std::uint64_t fallback) {
   const char* text = std::getenv("TRAMMEL_SEED");
   return text ? std::strtoull(text, nullptr, 0) : fallback;
 }
+
+std::uint64_t scaled(std::uint64_t length) {
+  const char* text = std::getenv("TRAMMEL_LONG");
+  if (text == nullptr) return length;
+  char* end = nullptr;
+  const std::uint64_t factor = std::strtoull(text, &end, 10);
+  if (*end != '\0' || factor == 0) throw std::invalid_argument(fmt::format("TRAMMEL_LONG is no factor: {}", text));
+  return length * factor;
+}
+
+std::string judge(const std::function<void()>& scenario) {
+  if (!seeded_bug_report.empty()) return {};
+  try {
+    scenario();
+  } catch (const Mismatch& mismatch) {
+    if (!seeded_bug_expected) return mismatch.what();
+    seeded_bug_report = mismatch.what();
+  }
+  return {};
+}
+
+void expect_seeded_bug() { seeded_bug_expected = true; }
+const std::string& caught() { return seeded_bug_report; }
 
 }  // namespace trammel::lockstep

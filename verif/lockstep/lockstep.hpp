@@ -1,16 +1,17 @@
-// Lockstep of one block or of the whole card: RTL and golden model are clocked together, and every output and all
+// Lockstep of one block or of the whole card: RTL and golden model get the same inputs, and every output and all
 // visible state is compared in every cycle. The first difference stops the run with everything needed to repeat it.
 // Not thread-safe; one Checker for each run.
 #pragma once
 
 #include <verilated.h>
 
-#include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace trammel::lockstep {
 
@@ -20,14 +21,48 @@ class Mismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// A signal that differs.
+struct Difference {
+  const char* signal;
+  std::uint64_t rtl;
+  std::uint64_t model;
+};
+
+// What happened, for the report of a mismatch that is found later.
+class EventLog {
+ public:
+  static constexpr std::size_t kKept = 32;
+
+  // `what` must outlive the log (a string literal).
+  void add(std::uint64_t cycle, const char* what, std::uint64_t value) { events_.push_back({cycle, what, value}); }
+  std::size_t size() const { return events_.size(); }
+  // No mismatch is left to be found before the last event: only the last kKept stay.
+  void settle();
+  // The last kKept that are not younger than `cycle`, a line each.
+  std::string text(std::uint64_t cycle) const;
+
+ private:
+  struct Event {
+    std::uint64_t cycle;
+    const char* what;
+    std::uint64_t value;
+  };
+  std::vector<Event> events_;
+};
+
+// Throws the Mismatch of `differences`, all of one cycle. Throws std::logic_error when there are none: RTL and model
+// were found to differ, and nobody can say in what.
+[[noreturn]] void fail(std::string_view block, std::uint64_t cycle, std::uint64_t seed,
+                       const std::vector<Difference>& differences, const std::string& events);
+
 class Checker {
  public:
   Checker(std::string block, std::uint64_t seed) : block_(std::move(block)), seed_(seed) {}
 
   // Keeps the event for the report of a later mismatch; `what` must outlive the Checker (a string literal).
   void event(const char* what, std::uint64_t value = 0) {
-    events_[event_count_ % events_.size()] = {cycles_, what, value};
-    ++event_count_;
+    events_.add(cycles_, what, value);
+    if (events_.size() >= 8 * EventLog::kKept) events_.settle();
   }
 
   // Compares one signal in the present cycle; throws Mismatch on a difference.
@@ -36,7 +71,7 @@ class Checker {
     ++comparisons_;
     const auto a = static_cast<std::uint64_t>(rtl);
     const auto b = static_cast<std::uint64_t>(model);
-    if (a != b) fail(signal, a, b);
+    if (a != b) differ(signal, a, b);
   }
 
   void next_cycle() { ++cycles_; }
@@ -44,20 +79,18 @@ class Checker {
   std::uint64_t comparisons() const { return comparisons_; }
 
  private:
-  struct Event {
-    std::uint64_t cycle;
-    const char* what;
-    std::uint64_t value;
-  };
-  [[noreturn]] void fail(const char* signal, std::uint64_t rtl, std::uint64_t model) const;
+  [[noreturn]] void differ(const char* signal, std::uint64_t rtl, std::uint64_t model) const;
 
   std::string block_;
   std::uint64_t seed_;
   std::uint64_t cycles_ = 0;
   std::uint64_t comparisons_ = 0;
-  std::uint64_t event_count_ = 0;
-  std::array<Event, 32> events_{};
+  EventLog events_;
 };
+
+// rising_edge.hpp; every Verilated copy has its own.
+template <class Dut>
+void rising_edge(Dut& dut);
 
 // Owns a Verilated model and its context. Several live side by side: eval() does not select its context by itself,
 // so every evaluation and the destructor make it the thread's current one first.
@@ -68,6 +101,7 @@ class Simulated {
     Verilated::threadContextp(context_.get());
     dut_ = std::make_unique<Dut>(context_.get());
     dut_->clk_i = 0;
+    dut_->eval();
   }
   ~Simulated() {
     Verilated::threadContextp(context_.get());
@@ -78,13 +112,22 @@ class Simulated {
   Simulated& operator=(const Simulated&) = delete;
 
   Dut* operator->() { return dut_.get(); }
+  Dut& operator*() { return *dut_; }
   // One clock period: inputs were set before the call; after it the outputs show the state behind the rising edge.
   void clock() {
     Verilated::threadContextp(context_.get());
-    dut_->clk_i = 0;
-    dut_->eval();
+    rising_edge(*dut_);
+  }
+  // The same with both edges evaluated, `at_edge` called behind each.
+  template <class AtEdge>
+  void clock_by_both_edges(AtEdge at_edge) {
+    Verilated::threadContextp(context_.get());
     dut_->clk_i = 1;
     dut_->eval();
+    at_edge();
+    dut_->clk_i = 0;
+    dut_->eval();
+    at_edge();
   }
   VerilatedContext& context() { return *context_; }
 
@@ -96,21 +139,16 @@ class Simulated {
 // The seed of a random scenario: TRAMMEL_SEED from the environment, else `fallback`.
 std::uint64_t seed_from_environment(std::uint64_t fallback);
 
-// The judge's own test: in a normal build the scenario must pass and must have compared something; in a build over
-// a seeded bug (TRAMMEL_SEEDED_BUG) it must end in a Mismatch. Returns an empty text when the expectation is met.
-template <class Scenario>
-std::string judge(Scenario&& scenario) {
-#ifdef TRAMMEL_SEEDED_BUG
-  try {
-    scenario();
-  } catch (const Mismatch&) {
-    return {};
-  }
-  return "the seeded bug was not caught";
-#else
-  scenario();
-  return {};
-#endif
-}
+// The length of a random scenario (clocks, commands, whatever it counts): `length`, times TRAMMEL_LONG where the
+// environment has it, a whole number from 1 on. Throws std::invalid_argument when it is something else.
+std::uint64_t scaled(std::uint64_t length);
+
+// Runs a scenario of a test executable, which judges either the sound RTL or, called with --seeded-bug, a copy with a
+// seeded bug. Over sound RTL the report of a Mismatch is returned, an empty text for none. Over a seeded bug at least
+// one of the executable's scenarios must end in a Mismatch (main.cpp asks caught() at the end); those behind it are not
+// run, and the text is empty.
+std::string judge(const std::function<void()>& scenario);
+void expect_seeded_bug();
+const std::string& caught();  // the report of the seeded bug's mismatch; empty: none
 
 }  // namespace trammel::lockstep

@@ -121,7 +121,8 @@ class Bench {
 
 void random_paths() {
   Bench bench(seed_from_environment(20260703));
-  while (bench.check().cycles() < 400'000) bench.path();
+  const std::uint64_t length = scaled(400'000);
+  while (bench.check().cycles() < length) bench.path();
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 8);
   EXPECT_GT(bench.steps(), 10'000U);
 }

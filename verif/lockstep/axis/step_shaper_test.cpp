@@ -112,23 +112,14 @@ void longest_times() {
 
 void random_steps() {
   Bench bench(seed_from_environment(20260702));
-  while (bench.check().cycles() < 600'000) bench.stretch(50 + bench.below(2000));
+  const std::uint64_t length = scaled(600'000);
+  while (bench.check().cycles() < length) bench.stretch(50 + bench.below(2000));
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 5);
   EXPECT_GT(bench.faulty(), 1000U);
 }
 
-void everything() {
-  random_steps();
-  longest_times();
-}
-
-#ifdef TRAMMEL_SEEDED_BUG
-TEST(StepShaper, SeededBugIsCaught) { EXPECT_EQ(judge(everything), ""); }
-#else
-TEST(StepShaper, LongestTimes) { EXPECT_EQ(judge(longest_times), ""); }
 TEST(StepShaper, RandomSteps) { EXPECT_EQ(judge(random_steps), ""); }
-TEST(StepShaper, AllInOneProcess) { EXPECT_EQ(judge(everything), ""); }
-#endif
+TEST(StepShaper, LongestTimes) { EXPECT_EQ(judge(longest_times), ""); }
 
 }  // namespace
 }  // namespace trammel::lockstep

@@ -217,14 +217,14 @@ TEST(DeviationLockstep, EveryOutputInEveryCycle) {
   EXPECT_EQ(judge([&] {
               Random random(seed);
               Bench bench(seed);
-              constexpr int kPaths = 4000;
-              for (int i = 0; i < kPaths; ++i) {
+              const std::uint64_t paths = scaled(4000);
+              for (std::uint64_t i = 0; i < paths; ++i) {
                 load(bench, random, any_path(random), random() % 2 == 0);
                 run(bench, random, random() % 4 == 0 ? 100 : 6000);
               }
               EXPECT_EQ(bench.checker.comparisons(), 6 * bench.checker.cycles());
               EXPECT_GT(bench.steps, 400000u);
-              EXPECT_GT(bench.ends, kPaths / 4u);
+              EXPECT_GT(bench.ends, paths / 4u);
               RecordProperty("cycles", std::to_string(bench.checker.cycles()));
             }),
             "");

@@ -141,7 +141,8 @@ TEST(Axi4LitePort, RandomTraffic) {
   const std::uint64_t seed = trammel::lockstep::seed_from_environment(1);
   EXPECT_EQ("", trammel::lockstep::judge([&] {
               Bench bench(seed);
-              for (int i = 0; i < 200'000; ++i) bench.random_clock();
+              const std::uint64_t length = trammel::lockstep::scaled(200'000);
+              for (std::uint64_t i = 0; i < length; ++i) bench.random_clock();
               EXPECT_GT(bench.requests(), 10'000u);
               EXPECT_GE(bench.checker().comparisons(), bench.checker().cycles() * 6);
             }));

@@ -115,10 +115,10 @@ void directed(Bench& bench, CommandSource& source) {
 }
 
 // Drives the door as no register file would: writes and flushes at any time, clears in the middle of words.
-void random_stream(Bench& bench, CommandSource& source, int commands) {
+void random_stream(Bench& bench, CommandSource& source, std::uint64_t commands) {
   auto& random = source.random();
   std::uint8_t number = 0;
-  for (int i = 0; i < commands; ++i) {
+  for (std::uint64_t i = 0; i < commands; ++i) {
     const bool corrupt = random() % 8 == 0;
     const bool patient = random() % 8 != 0;
     std::vector<std::uint32_t> words = source.any(number).words();
@@ -150,7 +150,7 @@ TEST(CommandDoorLockstep, EqualsModelInEveryCycle) {
     Bench bench(seed);
     CommandSource source(kAxes, seed);
     directed(bench, source);
-    random_stream(bench, source, 20000);
+    random_stream(bench, source, trammel::lockstep::scaled(20000));
     ASSERT_EQ(bench.checker().comparisons(), kSignals * bench.checker().cycles());
     ASSERT_GT(bench.commits(), 1000U);
     ASSERT_GT(bench.refusals(), 1000U);

@@ -69,10 +69,10 @@ void fill_and_drain(Bench& bench, std::uint16_t first) {
   for (std::size_t i = 0; i < kDepth + 4; ++i) bench.clock(in);
 }
 
-void random_traffic(Bench& bench, std::mt19937_64& random, int clocks) {
+void random_traffic(Bench& bench, std::mt19937_64& random, std::uint64_t clocks) {
   std::uint64_t read_share = 50;
   std::uint64_t write_share = 50;
-  for (int i = 0; i < clocks; ++i) {
+  for (std::uint64_t i = 0; i < clocks; ++i) {
     if (i % 500 == 0) {
       read_share = random() % 101;
       write_share = random() % 101;
@@ -95,9 +95,10 @@ TEST(HalfwordQueueLockstep, EqualsModelInEveryCycle) {
     Bench bench(seed);
     for (std::uint16_t lap = 0; lap < 5; ++lap) fill_and_drain(bench, static_cast<std::uint16_t>(1000 * lap));
     std::mt19937_64 random(seed);
-    random_traffic(bench, random, 200000);
+    const std::uint64_t length = trammel::lockstep::scaled(200'000);
+    random_traffic(bench, random, length);
     ASSERT_EQ(bench.checker().comparisons(), kSignals * bench.checker().cycles());
-    ASSERT_GT(bench.checker().cycles(), 200000U);
+    ASSERT_GT(bench.checker().cycles(), length);
   });
   EXPECT_EQ(complaint, "");
 }

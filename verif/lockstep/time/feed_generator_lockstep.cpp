@@ -144,11 +144,12 @@ Piece random_piece(std::mt19937_64& random) {
   return p;
 }
 
-// `enable_of_1024`: how many of 1,024 clocks are enabled.
+// `enable_of_1024`: how many of 1,024 clocks are enabled. `pieces` are scaled.
 void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
   const std::uint64_t seed = lockstep::seed_from_environment(enable_of_1024);
   std::mt19937_64 random(seed);
   Bench bench(seed, enable_of_1024);
+  pieces = lockstep::scaled(pieces);
   for (std::uint64_t i = 0; i < pieces; ++i) {
     std::uint64_t distance = kSwapDistance + random() % 80;
     // One piece in 16 lasts for about 50 updates, however rare the enables are.
@@ -163,7 +164,6 @@ void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
   bench.expect_all_compared();
 }
 
-// One test: over a seeded bug the whole of it must end in a mismatch.
 TEST(FeedGeneratorLockstep, DirectedAndRandom) {
   const std::string complaint = lockstep::judge([] {
     directed();

@@ -83,7 +83,8 @@ void random_inputs() {
   std::mt19937_64 random(seed);
   Bench bench(seed);
   std::uint64_t cycles = 0;
-  while (cycles < 2'000'000) {
+  const std::uint64_t length = lockstep::scaled(2'000'000);
+  while (cycles < length) {
     model::TimeBase::Inputs in;
     in.target = random() % 4 == 0 ? 0x10000 : log_uniform(random, 16);
     in.slew = log_uniform(random, 28);
@@ -96,7 +97,6 @@ void random_inputs() {
   bench.expect_cycles(cycles);
 }
 
-// One test: over a seeded bug the whole of it must end in a mismatch.
 TEST(TimeBaseLockstep, DirectedAndRandom) {
   const std::string complaint = lockstep::judge([] {
     directed();

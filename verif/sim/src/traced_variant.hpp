@@ -10,9 +10,9 @@
 namespace trammel::sim {
 
 template <class Dut, unsigned kAxes>
-class TracedVariant : public CardVariant<Dut, kAxes> {
+class TracedVariant : public BothEdgesVariant<Dut, kAxes> {
  public:
-  TracedVariant(std::uint32_t clock_hz, const std::string& path) : CardVariant<Dut, kAxes>(clock_hz) {
+  TracedVariant(std::uint32_t clock_hz, const std::string& path) : BothEdgesVariant<Dut, kAxes>(clock_hz) {
     Verilated::threadContextp(&this->dut_.context());
     this->dut_.context().traceEverOn(true);
     this->dut_->trace(&file_, 99);
@@ -24,15 +24,9 @@ class TracedVariant : public CardVariant<Dut, kAxes> {
     file_.close();
   }
 
-  void clock(const model::CardModel::Inputs& in) override {
-    CardVariant<Dut, kAxes>::clock(in);
-    file_.dump(time_++);
-    this->dut_->clk_i = 0;
-    this->dut_->eval();
-    file_.dump(time_++);
-  }
-
  private:
+  void at_edge() override { file_.dump(time_++); }
+
   VerilatedFstC file_;
   std::uint64_t time_ = 0;
 };

@@ -1,29 +1,22 @@
 // The Verilated card behind one small interface: Verilator's headers stay in the files that build a variant.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "card_record.hpp"
 #include "trammel/model/card_model.hpp"
 
 namespace trammel::sim {
 
 class VerilatedCard {
  public:
-  // All that the card's ports show, as the golden model names it.
-  struct Ports {
-    model::CardModel::Outputs card;
-    model::Axi4LitePort::Outputs bus;  // the part at the card's pins
-    std::array<std::uint32_t, model::CardModel::kMaxAxes> position{};
-  };
-
   virtual ~VerilatedCard() = default;
-  // One rising edge.
-  virtual void clock(const model::CardModel::Inputs& in) = 0;
-  virtual void read(Ports& ports) = 0;
+  // `clocks` rising edges with the same inputs; what the ports show behind each goes to records[0 .. clocks - 1].
+  virtual void run(const model::CardModel::Inputs& in, std::size_t clocks, CardRecord* records) = 0;
 };
 
 // Axes: 4 or 8, the variants that are built. `trace`: an FST file, written until the card is destroyed.

@@ -47,7 +47,9 @@ struct EngineOptions {
 };
 
 // A card on a simulated bus: the driver's Bus, with wait() running clocks. A mismatch throws lockstep::Mismatch out
-// of the access during which it was found.
+// of the call during which it was found: an access, wait(), lockstep_cycles() or comparisons(), at most some thousand
+// clocks late. With a trace it is found at once. One that is found only when the engine is destroyed ends the process
+// with its report: who wants to catch it asks for lockstep_cycles() first.
 class Engine : public driver::Bus {
  public:
   virtual void set_sink(StepSink* sink) = 0;                         // nullptr: none; not owned

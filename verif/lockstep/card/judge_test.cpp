@@ -1,0 +1,200 @@
+// What judges the card, judged: every compared signal is missed nowhere and named right, nothing is left out of the
+// comparison, the RTL behind the model is compared as if beside it, and one evaluation a clock is as good as two.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <regex>
+
+#include "Vcard4.h"
+#include "card_variant.hpp"
+#include "host.hpp"
+#include "lockstep_card.hpp"
+#include "rtl_engine.hpp"
+
+namespace trammel::sim {
+namespace {
+
+using model::CardModel;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr std::uint32_t kClockHz = 1'000'000;
+constexpr std::uint64_t kResetClocks = 5;  // before the first cycle that is compared
+
+// A sound card that shows one wrong word in one cycle.
+class Liar : public VerilatedCard {
+ public:
+  Liar(std::uint64_t cycle, std::size_t offset, std::uint32_t wrong_bits)
+      : cycle_(cycle), offset_(offset), wrong_bits_(wrong_bits) {}
+
+  void run(const CardModel::Inputs& in, std::size_t clocks, CardRecord* records) override {
+    card_->run(in, clocks, records);
+    for (std::size_t i = 0; i < clocks; ++i) {
+      if (++clocks_ != cycle_ + kResetClocks) continue;
+      char* const word = reinterpret_cast<char*>(records + i) + offset_;
+      std::uint32_t value = 0;
+      std::memcpy(&value, word, sizeof value);
+      value ^= wrong_bits_;
+      std::memcpy(word, &value, sizeof value);
+    }
+  }
+
+ private:
+  std::unique_ptr<VerilatedCard> card_ = make_card_4(kClockHz);
+  std::uint64_t cycle_;
+  std::size_t offset_;
+  std::uint32_t wrong_bits_;
+  std::uint64_t clocks_ = 0;
+};
+
+// The report of the mismatch in which `scenario` ends; empty for none.
+template <class Scenario>
+std::string report_of(Scenario scenario) {
+  try {
+    scenario();
+  } catch (const lockstep::Mismatch& mismatch) {
+    return mismatch.what();
+  }
+  return {};
+}
+
+std::string report_of_lie(std::uint64_t cycle, std::size_t offset, std::uint32_t wrong_bits, std::size_t batch) {
+  return report_of([&] {
+    LockstepCard card(std::make_unique<Liar>(cycle, offset, wrong_bits), CardModel::Config{}, 5, batch);
+    card.run({}, 5000);
+    card.settle();
+  });
+}
+
+// One bit of one signal in one cycle: at the edges of a batch, within one, and behind the last full one.
+TEST(CardJudge, EverySignalIsCaughtAndNamedWithItsCycle) {
+  for (const CardSignal& signal : kCardSignals) {
+    for (std::size_t n = 0; n < signal.words; ++n) {
+      for (const std::uint64_t cycle : {1U, 700U, 2048U, 2049U, 4999U, 5000U}) {
+        const std::string report = report_of_lie(cycle, signal.offset + 4 * n, 1U << cycle % 32, LockstepCard::kBatch);
+        EXPECT_THAT(report, StartsWith(fmt::format("card: cycle {}: {} is 0x", cycle, signal.name)));
+        EXPECT_THAT(report, HasSubstr("repeat with TRAMMEL_SEED=5\n"));
+        EXPECT_EQ(report_of_lie(cycle, signal.offset + 4 * n, 1U << cycle % 32, 1), report);
+      }
+    }
+  }
+}
+
+TEST(CardJudge, ReportHasBothValues) {
+  // At rest both rooms are the queues' depths.
+  const std::string report = report_of_lie(100, offsetof(CardRecord, feed_room_o), 0x1, 64);
+  EXPECT_THAT(report, StartsWith("card: cycle 100: feed_room_o is 0xa01 (2561) in RTL, 0xa00 (2560) in the model\n"));
+}
+
+TEST(CardJudge, EventsUpToTheCycleAreReported) {
+  EngineOptions options;
+  const auto card = make_rtl_engine(std::make_unique<Liar>(150, offsetof(CardRecord, irq_o), 1), options);
+  // While a first write is answered no other runs: the events stand some clocks apart.
+  const std::uint64_t begin = card->cycles();
+  std::string expected;
+  std::string too_late;
+  for (std::uint32_t i = 0; card->cycles() - begin < 300; ++i) {
+    (card->cycles() - begin < 150 ? expected : too_late) =
+        fmt::format("cycle {}: written {:#x}\n", card->cycles() - begin, i);
+    card->write(card_map::reg::step_length(0), i);
+  }
+  const std::string report = report_of([&] { card->lockstep_cycles(); });
+  EXPECT_THAT(report, StartsWith("card: cycle 150: irq_o is 0x1 (1) in RTL"));
+  EXPECT_THAT(report, HasSubstr(expected));
+  EXPECT_THAT(report, Not(HasSubstr(too_late)));
+}
+
+// Whoever asks what was compared is told of a mismatch in what the RTL had still to catch up with.
+TEST(CardJudge, QueriesCatchUp) {
+  const auto engine = [] {
+    return make_rtl_engine(std::make_unique<Liar>(20, offsetof(CardRecord, dir_o), 8), EngineOptions{});
+  };
+  const auto first = engine();
+  first->wait(30);
+  EXPECT_THAT(report_of([&] { first->lockstep_cycles(); }), HasSubstr("cycle 20: dir_o"));
+  const auto second = engine();
+  second->wait(30);
+  EXPECT_THAT(report_of([&] { second->comparisons(); }), HasSubstr("cycle 20: dir_o"));
+  const auto third = engine();
+  EXPECT_THAT(report_of([&] { third->wait(100'000); }), HasSubstr("cycle 20: dir_o"));
+}
+
+TEST(CardJudgeDeathTest, MismatchAtTheEndIsNotLost) {
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_DEATH(
+      {
+        LockstepCard card(std::make_unique<Liar>(9, offsetof(CardRecord, tick_o), 1), CardModel::Config{}, 5);
+        card.run({}, 10);
+      },
+      "cycle 9: tick_o is 0x1");
+}
+
+// As many signals a cycle as the card has outputs, counted in its source; the positions are one an axis.
+TEST(CardJudge, EveryOutputIsComparedInEveryCycle) {
+  std::ifstream source(TRAMMEL_CARD_SOURCE);
+  const std::regex output(R"(^\s*output logic (\[[^\]]*\] )?(\w+))");
+  for (const unsigned axes : {4U, 8U}) {
+    source.clear();
+    source.seekg(0);
+    std::uint64_t outputs = 0;
+    std::smatch match;
+    for (std::string line; std::getline(source, line);) {
+      if (std::regex_search(line, match, output)) outputs += match[1] == "[32*Axes-1:0] " ? axes : 1;
+    }
+    EngineOptions options;
+    options.axes = axes;
+    const auto card = make_engine(options);
+    const std::uint64_t begin = card->cycles();
+    card->wait(3000);
+    card->read(card_map::reg::kStatus);
+    card->wait(3000);
+    EXPECT_GT(card->cycles() - begin, 6000U);
+    EXPECT_EQ(*card->lockstep_cycles(), card->cycles() - begin);
+    EXPECT_EQ(card->comparisons(), (card->cycles() - begin) * outputs);
+  }
+}
+
+// The card with one evaluation a clock and the card with both edges evaluated, in every clock, reset included.
+class Pair : public VerilatedCard {
+ public:
+  Pair(std::uint64_t& clocks, std::uint64_t& different) : clocks_(clocks), different_(different) {}
+
+  void run(const CardModel::Inputs& in, std::size_t clocks, CardRecord* records) override {
+    std::vector<CardRecord> both(clocks);
+    one_.run(in, clocks, records);
+    both_.run(in, clocks, both.data());
+    for (std::size_t i = 0; i < clocks; ++i) different_ += std::memcmp(&both[i], records + i, sizeof both[i]) != 0;
+    clocks_ += clocks;
+  }
+
+ private:
+  CardVariant<Vcard4, 4> one_{kClockHz};
+  BothEdgesVariant<Vcard4, 4> both_{kClockHz};
+  std::uint64_t& clocks_;
+  std::uint64_t& different_;
+};
+
+TEST(CardJudge, OneEvaluationAClockIsAsGoodAsTwo) {
+  std::uint64_t clocks = 0;
+  std::uint64_t different = 0;
+  const auto card = make_rtl_engine(std::make_unique<Pair>(clocks, different), EngineOptions{});
+  test::Host host(*card);
+  const std::uint64_t seed = lockstep::seed_from_environment(3);
+  test::RandomProgram program(host, 4, seed);
+  while (card->cycles() < lockstep::scaled(500'000)) {
+    try {
+      program.section();
+    } catch (const driver::BusError&) {
+      host.abort();
+    }
+    program.finish();
+  }
+  EXPECT_EQ(*card->lockstep_cycles() + kResetClocks, clocks);
+  EXPECT_EQ(different, 0U);
+}
+
+}  // namespace
+}  // namespace trammel::sim
