@@ -5,8 +5,8 @@ module card_core #(
     parameter int          Axes          = 4,     // 1 to 8
     parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth     = 2560,
-    parameter int          Accumulator   = 1,     // arcs and conics
-    parameter int          DirectMode    = 1,
+    parameter int          Accumulator   = 1,     // 0: without arcs and conics
+    parameter int          DirectMode    = 1,     // 0: without
     parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
@@ -46,8 +46,8 @@ module card_core #(
   end
 
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
-      32'(Accumulator) << card_map_pkg::ENGINE_ACCUMULATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
-      32'(DirectMode) << card_map_pkg::ENGINE_DIRECT_MODE;
+      32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
+      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE;
 
   // What parameters and straps decide of the constants, by address.
   logic [511:0] constants;
@@ -58,7 +58,7 @@ module card_core #(
       512'(GeometryDepth) << 8 * card_map_pkg::ADDR_GEOMETRY_DEPTH |
       512'(FeedDepth) << 8 * card_map_pkg::ADDR_FEED_DEPTH |
       512'(BuildId) << 8 * card_map_pkg::ADDR_BUILD_ID |
-      512'(BuildDirty) << 8 * card_map_pkg::ADDR_BUILD_FLAGS |
+      512'(BuildDirty != 0) << 8 * card_map_pkg::ADDR_BUILD_FLAGS |
       512'(BoardId) << 8 * card_map_pkg::ADDR_BOARD_ID |
       512'(Ports) << 8 * card_map_pkg::ADDR_PORTS;
 
@@ -205,8 +205,8 @@ module card_core #(
 
   motion_core #(
       .Axes(Axes),
-      .Accumulator(Accumulator),
-      .DirectMode(DirectMode)
+      .Accumulator(Accumulator != 0),
+      .DirectMode(DirectMode != 0)
   ) motion (
       .clk_i,
       .rst_i,

@@ -4,8 +4,8 @@ module trammel_card #(
     parameter int          Axes          = 4,     // 1 to 8
     parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth     = 2560,
-    parameter int          Accumulator   = 1,     // arcs and conics
-    parameter int          DirectMode    = 1,
+    parameter int          Accumulator   = 1,     // 0: without arcs and conics
+    parameter int          DirectMode    = 1,     // 0: without
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
     parameter logic [31:0] BoardId       = 0

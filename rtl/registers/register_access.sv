@@ -1,16 +1,16 @@
 // Carries one access at a time through: judgement, action, answer.
 //
-// The access stands at access_o from the clock after request_i until the next one; its word keeps the last word written.
-// A write acts a clock after act_o; good_i and reason_i are its judgement.
+// The access stands still from request_i to ack_o. good_i and reason_i are its judgement; a write that is good acts in
+// the clock after act_o, which is that of its ack_o.
 `default_nettype none
 module register_access (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        request_i,
-    input  wire logic [47:0] access_i,         // {port, write, partial, address, data}
+    input  wire logic        write_i,
     output logic             ack_o,
     output logic             error_o,
-    output logic      [47:0] access_o,
+    output logic             read_o,           // with ack_o: what was read is to be shown
     // judgement
     output logic             judge_o,
     input  wire logic        wait_i,           // the RAM is being written and the access is not to a live register
@@ -19,8 +19,7 @@ module register_access (
     input  wire logic        stream_i,
     input  wire logic        start_i,
     output logic             act_o,            // combinational
-    output logic             sample_o,         // combinational: a live register is taken, for respond_o in the next clock
-    output logic             respond_o,        // combinational
+    output logic             sample_o,         // combinational: a live register is taken
     // who answers a word of the stream and START
     output logic             stream_write_o,
     input  wire logic        checker_ready_i,
@@ -39,27 +38,17 @@ module register_access (
     DECODE,  // register_decode takes the access
     WAIT,    // its judgement comes; whoever writes the RAM goes first
     ACT,     // refuse or act; the RAM's word is in its first register
-    RESPOND, // the read value is there
+    RESPOND, // the RAM's word gets into its second register
     STREAM,  // wait for the command checker's judgement
     START    // wait for the direct loader's
   } state_e;
 
   state_e state_q;
-  logic   write;
-
-  assign write = access_o[45];
-
-  always_ff @(posedge clk_i) begin
-    if (request_i && state_q == IDLE) begin
-      access_o[47:32] <= access_i[47:32];
-      if (access_i[45]) access_o[31:0] <= access_i[31:0];
-    end
-    if (rst_i) access_o <= '0;
-  end
 
   always_ff @(posedge clk_i) begin
     ack_o <= 1'b0;
     error_o <= 1'b0;
+    read_o <= 1'b0;
     stream_write_o <= 1'b0;
     start_o <= 1'b0;
     case (state_q)
@@ -68,7 +57,7 @@ module register_access (
       WAIT:    if (!wait_i) state_q <= ACT;
       ACT: begin
         state_q <= IDLE;
-        if (good_i && !write) begin
+        if (good_i && !write_i) begin
           state_q <= RESPOND;
         end else if (good_i && stream_i) begin
           state_q <= STREAM;
@@ -99,21 +88,22 @@ module register_access (
       default: begin  // RESPOND
         state_q <= IDLE;
         ack_o   <= 1'b1;
+        read_o  <= 1'b1;
       end
     endcase
     if (rst_i) begin
       state_q <= IDLE;
       ack_o <= 1'b0;
       error_o <= 1'b0;
+      read_o <= 1'b0;
       stream_write_o <= 1'b0;
       start_o <= 1'b0;
     end
   end
 
   assign judge_o = state_q == DECODE || state_q == WAIT;
-  assign act_o = state_q == ACT && good_i && write;
+  assign act_o = state_q == ACT && good_i && write_i;
   assign sample_o = state_q == ACT;
-  assign respond_o = state_q == RESPOND;
   assign refuse_o = state_q == ACT ? !good_i : state_q == START && start_done_i && start_error_i;
   assign reason_o = state_q == ACT ? reason_i : start_reason_i;
 

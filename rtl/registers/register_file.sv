@@ -1,6 +1,7 @@
 // The card's registers: takes an access, judges it by the register map, acts and answers.
 //
-// An access is {port, write, partial, address, data}. What a write does goes out in the clock of its ack_o.
+// An access is {port, write, partial, address, data} and stands still from request_i to ack_o. What a write does goes
+// out in the clock of its ack_o; a flush a clock before, so that its refusal finds the access that asked for it.
 // Latencies: docs/developer/architecture.md.
 `default_nettype none
 module register_file #(
@@ -17,7 +18,7 @@ module register_file #(
     input  wire logic [      47:0] access_i,
     output logic                   ack_o,
     output logic                   error_o,
-    output logic      [      31:0] data_o,
+    output logic      [      31:0] data_o,            // combinational
     output logic                   irq_o,
     // the card's state
     input  wire logic [       5:0] motion_i,          // {stopping, ended, feed active, path active, direct, busy}
@@ -30,7 +31,7 @@ module register_file #(
     output logic      [      40:0] setting_o,         // {set, address, data}
     output logic      [      31:0] clear_fault_o,
     output logic                   abort_o,
-    output logic                   flush_o,
+    output logic                   flush_o,           // combinational
     // the command checker
     output logic                   stream_write_o,
     input  wire logic              checker_ready_i,
@@ -51,13 +52,12 @@ module register_file #(
     input  wire logic [      31:0] chain_i
 );
 
-  logic [47:0] access;
   logic [ 1:0] asking;
   logic [31:0] data;
   logic        judge;
   logic        act;
   logic        sample;
-  logic        respond;
+  logic        read;
   logic        refuse;
   logic [ 7:0] refuse_reason;
   logic        live;
@@ -72,26 +72,25 @@ module register_file #(
   logic        writing;
   logic        snapshotting;
 
-  assign asking = access[47:46];
-  assign data   = access[31:0];
+  assign asking = access_i[47:46];
+  assign data   = access_i[31:0];
 
   register_access i_access (
       .clk_i,
       .rst_i,
       .request_i,
-      .access_i,
+      .write_i(access_i[45]),
       .ack_o,
       .error_o,
-      .access_o(access),
+      .read_o(read),
       .judge_o(judge),
-      .wait_i((writing || snapshotting) && (access[45] || !live)),
+      .wait_i((writing || snapshotting) && (access_i[45] || !live)),
       .good_i(good),
       .reason_i(reason),
       .stream_i(stream),
       .start_i(start),
       .act_o(act),
       .sample_o(sample),
-      .respond_o(respond),
       .stream_write_o,
       .checker_ready_i,
       .checker_refuse_i,
@@ -114,7 +113,7 @@ module register_file #(
   ) i_decode (
       .clk_i,
       .judge_i(judge),
-      .access_i(access[45:0]),
+      .access_i(access_i[45:0]),
       .busy_i(motion_i[1] || (checker_partial_i && owner_q != asking)),
       .live_o(live),
       .setting_o(setting),
@@ -136,17 +135,16 @@ module register_file #(
     clear_fault_o <= act && fault ? data : '0;
     snapshot_q <= act && control && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
     abort_o <= act && control && data[card_map_pkg::BIT_CONTROL_ABORT];
-    flush_o <= act && control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
     if (rst_i) begin
       set_q <= 1'b0;
       clear_fault_o <= '0;
       snapshot_q <= 1'b0;
       abort_o <= 1'b0;
-      flush_o <= 1'b0;
     end
   end
 
-  assign setting_o = {set_q, access[41:34], data};
+  assign setting_o = {set_q, access_i[41:34], data};
+  assign flush_o = act && control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
 
   logic        any_refused;
   logic        refused;
@@ -159,7 +157,7 @@ module register_file #(
       .clk_i,
       .rst_i,
       .port_i(asking),
-      .address_i(access[43:32]),
+      .address_i(access_i[43:32]),
       .clear_i(act && refusal),
       .refuse_i(refuse),
       .reason_i(refuse_reason),
@@ -176,7 +174,7 @@ module register_file #(
       .setting_i(setting_o),
       .snapshot_i(snapshot_o),
       .sample_i(sample),
-      .word_i(access[36:34]),
+      .word_i(access_i[36:34]),
       .motion_i,
       .held_i,
       .any_refused_i(any_refused),
@@ -194,6 +192,13 @@ module register_file #(
   );
 
   logic [40:0] latched;
+  logic [63:0] now;
+
+  time_counter i_time (
+      .clk_i,
+      .rst_i,
+      .time_o(now)
+  );
 
   snapshot_writer #(
       .Axes(Axes)
@@ -205,6 +210,7 @@ module register_file #(
       .chain_i,
       .snapshot_o,
       .active_o(snapshotting),
+      .time_i(now),
       .store_o(latched)
   );
 
@@ -225,16 +231,13 @@ module register_file #(
       .idle_level_i,
       .setting_i(setting_o),
       .snapshot_i(latched),
-      .address_i(loading_q ? loader_address_i : access[41:34]),
+      .sweep_i(now[7:0]),
+      .address_i(loading_q ? loader_address_i : access_i[41:34]),
       .writing_o(writing),
       .data_o(loader_data_o)
   );
 
-  always_ff @(posedge clk_i) begin
-    data_o <= '0;
-    if (respond) data_o <= live ? live_data : loader_data_o;
-    if (rst_i) data_o <= '0;
-  end
+  assign data_o = !read ? '0 : live ? live_data : loader_data_o;
 
 endmodule
 `default_nettype wire

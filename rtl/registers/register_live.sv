@@ -58,8 +58,7 @@ module register_live (
   logic [31:0] enable_q;
 
   always_ff @(posedge clk_i) begin
-    irq_o <= 1'b0;
-    if (enable_q != '0) irq_o <= ((status_o ^ (32'd1 << card_map_pkg::BIT_STATUS_BUSY)) & enable_q) != '0;
+    irq_o <= ((status_o ^ (32'd1 << card_map_pkg::BIT_STATUS_BUSY)) & enable_q) != '0;
     if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_IRQ_ENABLE[9:2]) enable_q <= setting_i[31:0];
     if (rst_i) begin
       irq_o <= 1'b0;
@@ -75,7 +74,7 @@ module register_live (
       .clk_i,
       .snapshot_i,
       .value_i(fault_i[15:0]),
-      .chain_i('0),
+      .chain_i(32'd0),
       .chain_o(chain)
   );
 

@@ -1,7 +1,7 @@
 // The block RAM behind the registers: constants, the settings' shadow, snapshots and the direct mode's registers.
 //
-// After reset every word is written with its reset value or constant, 256 clocks long; writing_o tells whether a word
-// may still be on its way. Settings and words of a snapshot never come together, nor before that is over.
+// After reset every word is written with its reset value or constant in 256 clocks, in the order in which the low byte
+// of the time counter runs; writing_o tells whether a word may still be on its way. Settings and words of a snapshot never come together, nor before that is over.
 // data_o is the word at address_i two clocks earlier.
 `default_nettype none
 module register_ram #(
@@ -13,6 +13,7 @@ module register_ram #(
     input  wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
     input  wire logic [      40:0] setting_i,     // {write, address, data}
     input  wire logic [      40:0] snapshot_i,
+    input  wire logic [       7:0] sweep_i,       // low byte of the time counter
     input  wire logic [       7:0] address_i,
     output logic                   writing_o,
     output logic      [      31:0] data_o
@@ -21,19 +22,17 @@ module register_ram #(
   localparam logic [7:0] FIRST_MODE = card_map_pkg::ADDR_MODE[9:2];
   localparam logic [7:0] AXIS_SLOTS = 8'(7 * card_map_pkg::STRIDE_MODE / 4);
 
+  // The counter is two clocks late: it begins at 0xFE.
+  localparam logic [7:0] LAST_SWEPT = 8'hFD;
+
   logic        resetting_q;
-  logic [ 7:0] next_q;
   logic        store_q;
   logic [ 7:0] store_address_q;
   logic [31:0] store_data_q;
 
   always_ff @(posedge clk_i) begin
-    if (resetting_q) next_q <= next_q + 8'd1;
-    if (next_q == 8'hFF) resetting_q <= 1'b0;
-    if (rst_i) begin
-      next_q <= '0;
-      resetting_q <= 1'b1;
-    end
+    if (sweep_i == LAST_SWEPT) resetting_q <= 1'b0;
+    if (rst_i) resetting_q <= 1'b1;
   end
 
   // The write port, registered.
@@ -49,13 +48,13 @@ module register_ram #(
       store_address_q <= snapshot_i[39:32];
       store_data_q <= snapshot_i[31:0];
     end else if (resetting_q) begin
-      store_address_q <= next_q;
-      store_data_q <= card_map_pkg::register_reset({2'b00, next_q}) |
-          (next_q < 8'd16 ? constants_i[32*next_q[3:0]+:32] : 32'd0);
+      store_address_q <= sweep_i;
+      store_data_q <= card_map_pkg::register_reset({2'b00, sweep_i}) |
+          (sweep_i < 8'd16 ? constants_i[32*sweep_i[3:0]+:32] : 32'd0);
       first_inverted  = 8'(idle_level_i[Axes-1:0]);
       second_inverted = 8'(idle_level_i[2*Axes-1:Axes]);
-      if ((next_q & ~AXIS_SLOTS) == FIRST_MODE) begin
-        store_data_q[3:2] <= {second_inverted[next_q[5:3]], first_inverted[next_q[5:3]]};
+      if ((sweep_i & ~AXIS_SLOTS) == FIRST_MODE) begin
+        store_data_q[3:2] <= {second_inverted[sweep_i[5:3]], first_inverted[sweep_i[5:3]]};
       end
     end
     if (rst_i) store_q <= 1'b0;

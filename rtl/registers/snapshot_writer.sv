@@ -1,10 +1,10 @@
 // Takes snapshots: strobes the chain of latched values and writes what it brings, and the time, to the RAM's area of
 // whoever asked, a word a clock.
 //
-// The strobe is given in the clock after the request. The words follow two clocks later: an access that was let through
-// just before a stop's request has written its setting by then. A stop's request goes before the host's and breaks into
+// The strobe is given in the clock after the request. The words follow two clocks later, the time first: an access that
+// was let through just before a stop's request has written its setting by then. A stop's request goes before the host's and breaks into
 // its snapshot, which is then taken anew.
-// In an area the words lie in the order in which the chain brings them, downwards but for the time, which is first.
+// The chain's words go down from the last position; the words below the time follow those above it.
 `default_nettype none
 module snapshot_writer #(
     parameter int Axes = 4  // 1 to 8
@@ -13,6 +13,7 @@ module snapshot_writer #(
     input  wire logic        rst_i,
     input  wire logic        host_i,      // events: a snapshot is wanted
     input  wire logic        stop_i,
+    input  wire logic [63:0] time_i,      // two clocks old, the high word three
     input  wire logic [31:0] chain_i,
     output logic      [ 1:0] snapshot_o,  // {shift, strobe}
     output logic             active_o,    // from the strobe until the last word is in the RAM
@@ -25,22 +26,6 @@ module snapshot_writer #(
   localparam logic [3:0] TIME_LO = card_map_pkg::IN_AREA_TIME_LO[5:2];
   localparam logic [3:0] FIRST_POSITION = card_map_pkg::IN_AREA_POSITION[5:2];
   localparam logic [3:0] LAST_POSITION = FIRST_POSITION + 4'(Axes - 1);
-
-  // Clocks since reset, two less: the strobe's time is written two clocks after it. The high half runs one clock late,
-  // so that it still matches when it is written next.
-  logic [31:0] time_lo_q;
-  logic        time_carry_q;
-  logic [31:0] time_hi_q;
-
-  always_ff @(posedge clk_i) begin
-    if (time_carry_q) time_hi_q <= time_hi_q + 32'd1;
-    {time_carry_q, time_lo_q} <= {1'b0, time_lo_q} + 33'd1;
-    if (rst_i) begin
-      time_carry_q <= 1'b0;
-      time_lo_q <= 32'hFFFFFFFE;
-      time_hi_q <= 32'hFFFFFFFF;
-    end
-  end
 
   logic       host_q;    // the host's request is not served yet
   logic       for_stop_q;
@@ -93,17 +78,9 @@ module snapshot_writer #(
     end
   end
 
-  logic [31:0] data;
-
-  always_comb begin
-    data = chain_i;
-    if (word_q == TIME_LO) data = time_lo_q;
-    if (word_q == TIME_HI) data = time_hi_q;
-  end
-
   assign store_o[40] = write_q;
   assign store_o[39:32] = {for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6], word_q};
-  assign store_o[31:0] = data;
+  assign store_o[31:0] = word_q == TIME_LO ? time_i[31:0] : word_q == TIME_HI ? time_i[63:32] : chain_i;
 
 endmodule
 `default_nettype wire

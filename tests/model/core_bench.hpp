@@ -1,0 +1,132 @@
+// A host at the inner register port of the golden core, and stream commands made from the layout table alone.
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/core_model.hpp"
+
+namespace trammel::testing {
+
+inline constexpr std::int64_t kOnePulse = std::int64_t{1} << 40;
+
+__extension__ typedef __int128 int128;
+
+// A command on the wire. Fields by name; those that are not named are 0. `increments`: of the mask's axes.
+using Field = std::pair<std::string_view, int128>;
+
+inline void put_halfwords(std::vector<std::uint16_t>& to, std::size_t at, std::size_t count, int128 value) {
+  for (std::size_t i = 0; i < count; ++i) to[at + i] = static_cast<std::uint16_t>(value >> (16 * i));
+}
+
+inline std::vector<std::uint32_t> command_words(card_map::Opcode opcode, std::uint8_t mask, std::uint8_t number,
+                                                std::uint64_t count, const std::vector<Field>& fields,
+                                                const std::vector<std::int64_t>& increments = {}) {
+  constexpr std::size_t kPayload = 5;
+  const card_map::Command& layout = *card_map::find_command(static_cast<std::uint8_t>(opcode));
+  std::vector<std::uint16_t> halfwords(card_map::halfwords(layout, mask) + 1, 0);
+  halfwords[0] = static_cast<std::uint16_t>(static_cast<unsigned>(opcode) | unsigned{mask} << 8);
+  halfwords[1] = static_cast<std::uint16_t>(card_map::words(layout, mask) | unsigned{number} << 8);
+  put_halfwords(halfwords, 2, 3, static_cast<int128>(count));
+  for (std::size_t i = 0; i < layout.field_count; ++i) {
+    const card_map::Field& field = layout.fields[i];
+    for (const Field& given : fields) {
+      if (given.first == field.name) put_halfwords(halfwords, kPayload + field.offset, field.halfwords, given.second);
+    }
+    if (field.name != "increment") continue;
+    for (std::size_t n = 0; n < increments.size(); ++n)
+      put_halfwords(halfwords, kPayload + field.offset + 3 * n, 3, increments[n]);
+  }
+  std::vector<std::uint32_t> words;
+  for (std::size_t i = 0; i < card_map::words(layout, mask); ++i)
+    words.push_back(halfwords[2 * i] | std::uint32_t{halfwords[2 * i + 1]} << 16);
+  return words;
+}
+
+class StepRecorder : public model::CardSteps {
+ public:
+  using Pin = std::tuple<std::uint64_t, unsigned, int>;
+  using Path = std::tuple<std::uint64_t, std::uint64_t, unsigned, int>;
+  void pin_step(std::uint64_t cycle, unsigned axis, int direction) override {
+    pins.emplace_back(cycle, axis, direction);
+  }
+  void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override {
+    path.emplace_back(command, tick, axis, direction);
+  }
+  std::vector<Pin> pins;
+  std::vector<Path> path;
+};
+
+class CoreBench {
+ public:
+  explicit CoreBench(const model::CardConfig& config = {}) : core(config) { core.set_steps(&steps); }
+
+  void idle(std::uint64_t clocks) {
+    for (; clocks != 0; --clocks) core.clock({});
+  }
+  // True when the card took it.
+  bool write(std::uint32_t address, std::uint32_t data) { return access(address, true, data); }
+  std::uint32_t read(std::uint32_t address) {
+    access(address, false, 0);
+    return core.answer().data;
+  }
+  bool access(std::uint32_t address, bool write, std::uint32_t data) {
+    model::CoreModel::Inputs in;
+    in.request = true;
+    in.write = write;
+    in.address = address;
+    in.data = data;
+    core.clock(in);
+    for (int clocks = 0; !core.answer().ack && clocks < 2000; ++clocks) core.clock({});
+    return core.answer().ack && !core.answer().error;
+  }
+  bool send(const std::vector<std::uint32_t>& words) {
+    bool good = true;
+    for (const std::uint32_t word : words) good = write(card_map::reg::kStream, word) && good;
+    return good;
+  }
+  bool line(std::uint64_t ticks, const std::vector<std::int64_t>& increments) {
+    const auto mask = static_cast<std::uint8_t>((1U << increments.size()) - 1);
+    return send(command_words(card_map::Opcode::Line, mask, number++, ticks, {}, increments));
+  }
+  bool feed(std::uint64_t ticks, std::uint64_t rate, std::int64_t acceleration = 0, std::int64_t jerk = 0,
+            std::uint32_t floor = 1) {
+    return send(command_words(card_map::Opcode::Feed, 0, number++, ticks,
+                              {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
+  }
+  // A circle of radius r, all of it, from its rightmost point, over `ticks`; 8 r path ticks.
+  bool circle(std::uint64_t ticks, std::int64_t r, bool clockwise = false) {
+    const std::int64_t steps_made = 8 * r;
+    const auto prescale =
+        static_cast<std::int64_t>((static_cast<int128>(steps_made) * kOnePulse + static_cast<std::int64_t>(ticks / 2)) / static_cast<std::int64_t>(ticks));
+    return send(command_words(card_map::Opcode::Arc, 3, number++, ticks,
+                              {{"path_ticks", steps_made},
+                               {"prescale", prescale},
+                               {"plane", 1 << 8 | (clockwise ? 1 : 0)},
+                               {"quadrants", 4},
+                               {"deviation", 0},
+                               {"gradient_x", 2 * r},
+                               {"gradient_y", 0},
+                               {"half_x", 1},
+                               {"half_y", 1}}));
+  }
+  bool dwell(std::uint64_t clocks) { return send(command_words(card_map::Opcode::Dwell, 0, number++, clocks, {})); }
+  bool end() { return send(command_words(card_map::Opcode::End, 0, number++, 0, {})); }
+  // Until not busy; false when that does not come.
+  bool finish(std::uint64_t limit) {
+    idle(8);
+    for (; limit != 0 && (core.outputs().status & 1) != 0; --limit) core.clock({});
+    return (core.outputs().status & 1) == 0;
+  }
+
+  model::CoreModel core;
+  StepRecorder steps;
+  std::uint8_t number = 0;
+};
+
+}  // namespace trammel::testing
