@@ -62,11 +62,12 @@ void Sequencer::clock(const Inputs& in) {
 }
 
 void Sequencer::count_begun(const Inputs& in, const Decision& d) {
+  // What began shows a clock after its swap, and for that clock even when a cut drops it.
+  const bool barrier_begins = d.barrier_begins && !in.cut;
+  if ((out_.swap && !out_.direct) || barrier_begins) ++out_.geometry_begun;
+  if (out_.feed_swap || barrier_begins) ++out_.feed_begun;
   if (cut_before_) out_.geometry_begun = out_.feed_begun = 0;
   cut_before_ = in.cut;
-  if (in.cut) return;
-  if (d.path_begins || d.barrier_begins) ++out_.geometry_begun;
-  if (d.piece_begins || d.barrier_begins) ++out_.feed_begun;
 }
 
 // Ticks made, owed and taken.

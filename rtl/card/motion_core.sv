@@ -274,7 +274,7 @@ module motion_core #(
   end
 
   always_ff @(posedge clk_i) begin
-    idle_q    <= geometry_idle && feed_idle;
+    idle_q    <= (geometry_idle && feed_idle) || rst_i;
     running_q <= (!idle_q || direct || axes_busy) && !rst_i;
   end
 

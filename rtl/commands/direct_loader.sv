@@ -68,6 +68,7 @@ module direct_loader #(
   logic          bad_q;
 
   always_ff @(posedge clk_i) begin : p_loader
+    logic        closed;
     logic        refused;
     logic        axis_done;
     logic        axis_last;
@@ -77,7 +78,9 @@ module direct_loader #(
 
     // At rest nothing moves, once done_o and go_o have fallen again.
     if (rst_i || start_i || state_q != IDLE || done_o) begin
-      refused = bad_mask_q || closed_q || busy_q || bad_q;
+      // A fault that came in between counts: the move must not wait for FAULT to be cleared.
+      closed = closed_q || (state_q == DECIDE && closed_i);
+      refused = bad_mask_q || closed || busy_q || bad_q;
       axis_last = axis_q == 3'd7;
       axis_done = ~rest_q[0] | (step_q == TAKE_COUNT_1);
       take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_COUNT_1) : step_q == TAKE_LENGTH_1;
@@ -95,13 +98,11 @@ module direct_loader #(
       error_o <= refused || !length_any_q;
       go_o    <= state_q == DECIDE && step_q == 5'd7 && !refused && length_any_q && !rst_i;
       if (bad_mask_q) reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
-      else if (closed_q) reason_o <= card_map_pkg::REFUSE_FAULTED;
+      else if (closed) reason_o <= card_map_pkg::REFUSE_FAULTED;
       else if (busy_q) reason_o <= card_map_pkg::REFUSE_BUSY;
       else reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
 
-      if (state_q == CHECK) busy_q <= busy_i;
-      // A fault at any time until the move begins counts.
-      closed_q <= state_q != IDLE && (closed_q || closed_i);
+      if (state_q == CHECK && step_q != 5'd7) {busy_q, closed_q} <= {busy_i, closed_i};
       if (state_q == CHECK) bad_mask_q <= mask_i == 8'd0 || (mask_i >> Axes) != 8'd0;
       if (state_q == IDLE) begin
         bad_q        <= 1'b0;

@@ -181,7 +181,7 @@ module geometry_sequencer #(
       .begun_o
   );
 
-  always_ff @(posedge clk_i) idle_o <= decoder_idle && empty_i && !path_active_o && barrier_idle;
+  always_ff @(posedge clk_i) idle_o <= (decoder_idle && empty_i && !path_active_o && barrier_idle) || rst_i;
 endmodule
 
 `default_nettype wire
