@@ -211,7 +211,8 @@ Reason CommandChecker::judge_payload() const {
 Reason CommandChecker::judge_field(const Field& field, std::size_t begin) const {
   if (received_ < begin + field.halfwords) return Reason::None;
   const uint128 all = value(begin, field.halfwords);
-  const bool in_range = field.kind == FieldKind::Signed ? in_signed_range(all, field) : in_unsigned_range(all, field, engines_);
+  const bool in_range =
+      field.kind == FieldKind::Signed ? in_signed_range(all, field) : in_unsigned_range(all, field, engines_);
   if (!in_range) return Reason::BadField;
   if (field.at_most_count && all > value(kCountBegin, kCountHalfwords)) return Reason::BadField;
   if (field.name == "plane") {

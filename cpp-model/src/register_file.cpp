@@ -168,7 +168,12 @@ void RegisterFile::step_access(const Inputs& in) {
       reason_ = judge(in);
       const bool needs_ram = write_ || reason_ == Reason::UnknownAddress || !reads_live(slot_.entry->access);
       const bool ram_taken = time_ < kFillClocks || snapshot_.busy();
-      if (!needs_ram || !ram_taken) stage_ = Stage::Act;
+      if (!needs_ram || !ram_taken) {
+        stage_ = Stage::Act;
+        // A clock before the rest, so that the checker's refusal comes with the answer; an abort makes it idle.
+        const std::uint32_t orders = word_ & (field::kControlFlush | field::kControlAbort);
+        out_.flush = write_ && reason_ == Reason::None && address_ == reg::kControl && orders == field::kControlFlush;
+      }
       break;
     }
     case Stage::Act:
@@ -240,7 +245,6 @@ void RegisterFile::take_effect() {
   }
   if (address_ == reg::kControl) {
     out_.abort = (word_ & field::kControlAbort) != 0;
-    out_.flush = (word_ & field::kControlFlush) != 0;
     snapshot_asked_ = (word_ & field::kControlSnapshot) != 0;
   }
   if (address_ == reg::kFault) out_.clear_fault = word_;
@@ -261,7 +265,8 @@ void RegisterFile::refuse(std::uint8_t reason, std::uint8_t number) {
   refusal = address_ << field::kRefusalAddressShift | std::uint32_t{number} << field::kRefusalCommandShift | reason;
 }
 
-// A refusal by the checker belongs to the access that brought it: a word of the stream, or a flush just answered.
+// A refusal by the checker belongs to the access that brought it: a word of the stream, or a flush that is answered in
+// this clock.
 void RegisterFile::refuse_checked(const Inputs& in) {
   if (in.checker_refuse) refuse(in.checker_reason, in.checker_number);
 }

@@ -1,6 +1,7 @@
 // Valid stream commands and their single-field violations, made from the layout table alone.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <random>
@@ -17,6 +18,9 @@ __extension__ typedef unsigned __int128 uint128;
 inline constexpr std::size_t kCountBegin = 2;
 inline constexpr std::size_t kPayloadBegin = 5;
 inline constexpr std::uint64_t kCountMaximum = (std::uint64_t{1} << 40) - 1;
+// Lines, accumulator, jerk and direct mode: what a card has that is built with everything there is.
+inline constexpr std::uint32_t kUsualEngines = 0x33;
+inline constexpr std::uint32_t kAllEngines = 0x7FF;
 
 // A command as it stands on the wire, without padding.
 struct WireCommand {
@@ -40,10 +44,9 @@ struct WireCommand {
     for (std::size_t i = 0; i < padded.size(); i += 2) result.push_back(padded[i] | std::uint32_t{padded[i + 1]} << 16);
     return result;
   }
-  // What the queues hold: halfword 1 left out, the number in the top byte of the count.
+  // What the queues hold: halfword 1 left out.
   std::vector<std::uint16_t> stored() const {
     std::vector<std::uint16_t> result = halfwords;
-    result[4] = static_cast<std::uint16_t>(result[4] | number() << 8);
     result.erase(result.begin() + 1);
     return result;
   }
@@ -57,7 +60,7 @@ struct Place {
 
 inline std::vector<Place> places(const card_map::Command& layout, std::uint8_t mask) {
   std::vector<Place> result;
-  const std::size_t axes = card_map::axes_in(mask);
+  const std::size_t axes = card_map::axes_in(mask) - layout.axes_in_base;
   for (std::size_t i = 0; i < layout.field_count; ++i) {
     const card_map::Field& field = layout.fields[i];
     for (std::size_t copy = 0; copy < (field.per_axis ? axes : 1); ++copy) {
@@ -69,7 +72,16 @@ inline std::vector<Place> places(const card_map::Command& layout, std::uint8_t m
 
 class CommandSource {
  public:
-  CommandSource(unsigned axes, std::uint64_t seed) : axes_(axes), random_(seed) {}
+  // engines: of the card that shall take the commands.
+  CommandSource(unsigned axes, std::uint64_t seed, std::uint32_t engines = kUsualEngines)
+      : axes_(axes), engines_(engines), random_(seed) {}
+
+  // What the card has for a command with this layout.
+  static bool possible(const card_map::Command& layout, unsigned axes, std::uint32_t engines) {
+    const bool plane =
+        layout.mask_rule == card_map::MaskRule::Plane || layout.mask_rule == card_map::MaskRule::PlaneAndAxes;
+    return card_map::has_engine(engines, layout.engine) && (axes >= 2 || !plane);
+  }
 
   std::mt19937_64& random() { return random_; }
 
@@ -78,12 +90,12 @@ class CommandSource {
     const card_map::Command* layout = nullptr;
     do {
       layout = &card_map::kCommands[random_() % card_map::kCommands.size()];
-    } while (layout->mask_rule == card_map::MaskRule::Plane && axes_ < 2);
+    } while (!possible(*layout, axes_, engines_));
     return make(*layout, number);
   }
 
   WireCommand make(const card_map::Command& layout, std::uint8_t number) {
-    return make(layout, number, random_mask(layout.mask_rule));
+    return make(layout, number, random_mask(layout));
   }
 
   WireCommand make(const card_map::Command& layout, std::uint8_t number, std::uint8_t mask) {
@@ -100,13 +112,28 @@ class CommandSource {
   }
 
  private:
-  std::uint8_t random_mask(card_map::MaskRule rule) {
+  std::uint8_t random_mask(const card_map::Command& layout) {
     const auto all = (1U << axes_) - 1U;
-    if (rule == card_map::MaskRule::None) return 0;
     std::uint8_t mask = 0;
-    do {
-      mask = static_cast<std::uint8_t>(random_() & all);
-    } while (mask == 0 || (rule == card_map::MaskRule::Plane && card_map::axes_in(mask) != 2));
+    switch (layout.mask_rule) {
+      case card_map::MaskRule::None:
+        return 0;
+      case card_map::MaskRule::Flags:
+        if (!card_map::has_engine(engines_, layout.flags_engine)) return 0;
+        return static_cast<std::uint8_t>(random_() % (layout.flags_maximum + 1));
+      case card_map::MaskRule::Any:
+        do {
+          mask = static_cast<std::uint8_t>(random_() & all);
+        } while (mask == 0);
+        return mask;
+      case card_map::MaskRule::Plane:
+      case card_map::MaskRule::PlaneAndAxes:
+        do {
+          mask = static_cast<std::uint8_t>(random_() & all);
+        } while (layout.mask_rule == card_map::MaskRule::Plane ? card_map::axes_in(mask) != 2
+                                                               : card_map::axes_in(mask) < 2);
+        return mask;
+    }
     return mask;
   }
 
@@ -121,28 +148,31 @@ class CommandSource {
   }
 
   uint128 random_value(const card_map::Field& field, const WireCommand& command) {
-    if (field.kind == card_map::FieldKind::Zero) return 0;
-    if (field.name == "plane") return random_plane(command.mask());
+    if (field.name == "plane") return random_plane(command.mask(), card_map::bits_with_meaning(field, engines_));
+    if (field.mask != 0) return random_() & card_map::bits_with_meaning(field, engines_);
     if (field.kind == card_map::FieldKind::Signed) {
       const uint128 magnitude_limit = field.limit != 0 ? uint128{field.limit} : (uint128{1} << (field.bits - 1)) - 1;
       const uint128 magnitude = random_between(0, magnitude_limit);
       return random_() % 2 == 0 ? magnitude : 0 - magnitude;
     }
     uint128 high = field.limit != 0 ? uint128{field.limit} : (uint128{1} << field.bits) - 1;
-    if (field.at_most_count) high = command.value(kCountBegin, 3);
+    if (field.at_most_count) high = std::min(high, command.value(kCountBegin, 3));
     return random_between(field.minimum, high);
   }
 
-  uint128 random_plane(std::uint8_t mask) {
-    unsigned low = 0;
-    while ((mask >> low & 1) == 0) ++low;
-    unsigned high = 7;
-    while ((mask >> high & 1) == 0) --high;
-    if (random_() % 2 == 0) std::swap(low, high);
-    return (random_() & 1) | low << 4 | high << 8;
+  // Any two axes of the mask, in any order.
+  uint128 random_plane(std::uint8_t mask, std::uint32_t bits) {
+    unsigned first = 0;
+    unsigned second = 0;
+    do {
+      first = random_() % 8;
+      second = random_() % 8;
+    } while (first == second || (mask >> first & 1) == 0 || (mask >> second & 1) == 0);
+    return (random_() & bits & 0xF) | first << 4 | second << 8;
   }
 
   unsigned axes_;
+  std::uint32_t engines_;
   std::mt19937_64 random_;
 };
 
@@ -156,7 +186,8 @@ struct Violation {
 
 namespace detail {
 
-inline void add_range_violations(std::vector<Violation>& list, const WireCommand& good, const Place& place) {
+inline void add_range_violations(std::vector<Violation>& list, const WireCommand& good, const Place& place,
+                                 std::uint32_t engines) {
   const card_map::Field& field = *place.field;
   const auto add = [&](const std::string& what, uint128 value) {
     Violation v{std::string(field.name) + "@" + std::to_string(place.begin) + " " + what, good,
@@ -166,14 +197,11 @@ inline void add_range_violations(std::vector<Violation>& list, const WireCommand
   };
   const unsigned wire_bits = 16 * field.halfwords;
   if (field.minimum == 1) add("zero", 0);
-  if (field.kind == card_map::FieldKind::Zero) {
-    for (unsigned bit = 0; bit < wire_bits; ++bit) add("bit " + std::to_string(bit), uint128{1} << bit);
-    return;
-  }
   if (field.mask != 0) {
     const uint128 old = good.value(place.begin, field.halfwords);
     for (unsigned bit = 0; bit < wire_bits; ++bit) {
-      if ((field.mask >> bit & 1) == 0) add("bit " + std::to_string(bit), old | uint128{1} << bit);
+      if ((card_map::bits_with_meaning(field, engines) >> bit & 1) == 0)
+        add("bit " + std::to_string(bit), old | uint128{1} << bit);
     }
     return;
   }
@@ -197,27 +225,37 @@ inline void add_range_violations(std::vector<Violation>& list, const WireCommand
   }
 }
 
-inline void add_header_violations(std::vector<Violation>& list, const WireCommand& good, unsigned axes) {
+inline void add_header_violations(std::vector<Violation>& list, const WireCommand& good, unsigned axes,
+                                  std::uint32_t engines) {
   const auto add = [&](const std::string& what, std::size_t halfword, unsigned flip, card_map::Reason reason) {
     Violation v{what, good, reason, 0};
     v.command.halfwords[halfword] = static_cast<std::uint16_t>(v.command.halfwords[halfword] ^ flip);
     list.push_back(v);
   };
   for (unsigned opcode = 0; opcode < 256; ++opcode) {
-    if (card_map::find_command(static_cast<std::uint8_t>(opcode)) != nullptr) continue;
+    const card_map::Command* known = card_map::find_command(static_cast<std::uint8_t>(opcode));
+    if (known != nullptr && card_map::has_engine(engines, known->engine)) continue;
     add("opcode " + std::to_string(opcode), 0, opcode ^ (good.halfwords[0] & 0xFFU), card_map::Reason::UnknownOpcode);
   }
   for (unsigned flip = 1; flip < 256; ++flip) {
     add("length ^ " + std::to_string(flip), 1, flip, card_map::Reason::BadLength);
     add("number ^ " + std::to_string(flip), 1, flip << 8, card_map::Reason::BadNumber);
   }
-  for (unsigned axis = axes; axis < 8; ++axis) {
+  const bool names_axes = good.layout->mask_rule != card_map::MaskRule::Flags;
+  for (unsigned axis = axes; axis < 8 && names_axes; ++axis) {
     add("absent axis " + std::to_string(axis), 0, 0x100U << axis, card_map::Reason::BadMask);
   }
-  if (good.mask() != 0) add("no axis", 0, static_cast<unsigned>(good.mask()) << 8, card_map::Reason::BadMask);
+  if (good.mask() != 0 && names_axes)
+    add("no axis", 0, static_cast<unsigned>(good.mask()) << 8, card_map::Reason::BadMask);
   if (good.layout->mask_rule == card_map::MaskRule::None) {
     for (unsigned mask = 1; mask < 256; ++mask) {
       add("mask " + std::to_string(mask), 0, mask << 8, card_map::Reason::BadMask);
+    }
+  }
+  if (!names_axes) {
+    const unsigned most = card_map::has_engine(engines, good.layout->flags_engine) ? good.layout->flags_maximum : 0;
+    for (unsigned flags = most + 1; flags < 256; ++flags) {
+      add("flags " + std::to_string(flags), 0, (flags ^ good.mask()) << 8, card_map::Reason::BadMask);
     }
   }
 }
@@ -227,13 +265,19 @@ inline void add_plane_violations(std::vector<Violation>& list, const WireCommand
   for (unsigned pair = 0; pair < 64; ++pair) {
     const unsigned first = pair & 7;
     const unsigned second = pair >> 3;
-    if (first != second && (1U << first | 1U << second) == good.mask()) continue;
+    const unsigned both = 1U << first | 1U << second;
+    if (first != second && (both & good.mask()) == both) continue;
     Violation v{"plane " + std::to_string(first) + " " + std::to_string(second), good, card_map::Reason::BadMask, 0};
     v.command.halfwords[place.begin] = static_cast<std::uint16_t>(first << 4 | second << 8);
     list.push_back(v);
   }
+  const auto plane = static_cast<unsigned>(good.value(place.begin, 1));
+  const unsigned both = 1U << (plane >> 4 & 7) | 1U << (plane >> 8 & 7);
   for (unsigned mask = 1; mask < 1U << axes; ++mask) {
-    if (mask == good.mask()) continue;
+    // With more or fewer further axes the length would be wrong first.
+    const bool same_length = card_map::axes_in(static_cast<std::uint8_t>(mask)) == card_map::axes_in(good.mask());
+    const bool alone = good.layout->axis_halfwords == 0;
+    if ((alone ? mask == good.mask() : (mask & both) == both) || (!alone && !same_length)) continue;
     Violation v{"mask of another plane " + std::to_string(mask), good, card_map::Reason::BadMask, 0};
     v.command.halfwords[0] = static_cast<std::uint16_t>(mask << 8 | (good.halfwords[0] & 0xFFU));
     list.push_back(v);
@@ -243,9 +287,10 @@ inline void add_plane_violations(std::vector<Violation>& list, const WireCommand
 }  // namespace detail
 
 // Every way to get one thing of `good` wrong that the layout knows of.
-inline std::vector<Violation> violations(const WireCommand& good, unsigned axes) {
+inline std::vector<Violation> violations(const WireCommand& good, unsigned axes,
+                                         std::uint32_t engines = kUsualEngines) {
   std::vector<Violation> list;
-  detail::add_header_violations(list, good, axes);
+  detail::add_header_violations(list, good, axes, engines);
   const auto add_count = [&](const std::string& what, uint128 value) {
     Violation v{"count " + what, good, card_map::Reason::BadField, 0};
     v.command.set_value(kCountBegin, 3, value);
@@ -257,7 +302,7 @@ inline std::vector<Violation> violations(const WireCommand& good, unsigned axes)
     add_count("bit " + std::to_string(bit), good.value(kCountBegin, 3) | uint128{1} << bit);
   }
   for (const Place& place : places(*good.layout, good.mask())) {
-    detail::add_range_violations(list, good, place);
+    detail::add_range_violations(list, good, place, engines);
     if (place.field->name == "plane") detail::add_plane_violations(list, good, place, axes);
   }
   if (good.halfwords.size() % 2 != 0) {

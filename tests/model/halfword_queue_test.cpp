@@ -41,8 +41,8 @@ HalfwordQueue::Inputs read() {
 
 TEST(HalfwordQueue, RefusesDepthsItCannotCount) {
   EXPECT_THROW(HalfwordQueue(1), std::invalid_argument);
-  EXPECT_THROW(HalfwordQueue(8192), std::invalid_argument);
-  EXPECT_NO_THROW(HalfwordQueue(8191));
+  EXPECT_THROW(HalfwordQueue(32769), std::invalid_argument);
+  EXPECT_NO_THROW(HalfwordQueue(32768));
 }
 
 TEST(HalfwordQueue, ShowsOnlyWhatIsCommitted) {
@@ -133,7 +133,25 @@ void compare_with_deque(std::size_t depth, std::uint64_t seed) {
 }
 
 TEST(HalfwordQueue, GivesBackWhatWasCommittedInOrder) {
-  for (const std::size_t depth : {2U, 3U, 37U, 64U, 2560U}) compare_with_deque(depth, 7 + depth);
+  for (const std::size_t depth : {2U, 3U, 37U, 64U, 2560U, 8192U, 32768U}) compare_with_deque(depth, 7 + depth);
+}
+
+// The room has a bit more than a pointer: an empty queue of the largest depth shows 0x8000.
+TEST(HalfwordQueue, CountsItsFullDepth) {
+  HalfwordQueue queue(32768);
+  EXPECT_EQ(queue.outputs().room, 32768);
+  for (std::uint32_t i = 0; i < 32768; ++i) queue.clock(write_of(static_cast<std::uint16_t>(i * 40503U)));
+  EXPECT_EQ(queue.outputs().room, 0);
+  queue.clock(commit());
+  queue.clock({});
+  for (std::uint32_t i = 0; i < 32768; ++i) {
+    queue.clock(read());
+    if (i != 0) {
+      ASSERT_EQ(queue.outputs().word, static_cast<std::uint16_t>((i - 1) * 40503U)) << i;
+    }
+  }
+  EXPECT_TRUE(queue.outputs().empty);
+  EXPECT_EQ(queue.outputs().room, 32768);
 }
 
 TEST(HalfwordQueue, QuietMeansThatAClockChangesNothing) {

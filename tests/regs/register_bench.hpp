@@ -1,5 +1,5 @@
-// Accesses to the golden register file with a card at rest around it: a door that takes every word in two clocks
-// and a direct loader that accepts every start.
+// Accesses to the golden register file with a card at rest around it: a command checker that takes every word in six
+// clocks (or refuses it, when told) and a direct loader that accepts every start.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,35 @@ struct Answer {
 
 class RegisterBench {
  public:
-  explicit RegisterBench(std::uint32_t axes) : axes_(axes), file_({axes, 1024, 512, 25'000'000}) { in.ratio = 1; }
+  explicit RegisterBench(std::uint32_t axes) : RegisterBench(config_of(axes)) {}
+  explicit RegisterBench(const model::RegisterFile::Config& config) : axes_(config.axes), file_(config) {
+    in.ratio = 1;
+  }
+
+  static model::RegisterFile::Config config_of(std::uint32_t axes) {
+    model::RegisterFile::Config config;
+    config.axes = axes;
+    config.geometry_depth = 1024;
+    config.feed_depth = 512;
+    config.clock_hz = 25'000'000;
+    return config;
+  }
 
   std::uint32_t axes() const { return axes_; }
   const model::RegisterFile::Outputs& outputs() const { return file_.outputs(); }
   const model::RegisterFile& file() const { return file_; }
 
+  static constexpr int kCheckerClocks = 6;
+
   void clock() {
     in.start_done = file_.outputs().start;
-    in.door_ready = !file_.outputs().stream_write;
+    in.checker_refuse = refuse_word && checker_left_ == 1;
+    if (checker_left_ != 0) --checker_left_;
+    in.checker_ready = checker_left_ == 0;
+    if (file_.outputs().stream_write) checker_left_ = kCheckerClocks;
     file_.clock(in);
+    if (file_.outputs().setting.set) ++settings;
+    in.stop = false;
   }
 
   Answer read(std::uint32_t address) { return access(false, address, 0, false); }
@@ -43,6 +62,8 @@ class RegisterBench {
   std::uint64_t latency() const { return latency_; }
 
   model::RegisterFile::Inputs in;
+  std::uint32_t settings = 0;  // how often the setting bus was set
+  bool refuse_word = false;    // by the checker, with in.checker_reason and in.checker_number
 
  private:
   Answer access(bool write, std::uint32_t address, std::uint32_t data, bool partial) {
@@ -58,7 +79,6 @@ class RegisterBench {
     } while (!file_.outputs().ack);
     latency_ = file_.time() - start;
     const Answer answer{file_.outputs().error, file_.outputs().data};
-    clock();  // a write takes effect in the clock of its answer
     return answer;
   }
 
@@ -75,6 +95,7 @@ class RegisterBench {
   std::uint32_t axes_;
   model::RegisterFile file_;
   std::uint64_t latency_ = 0;
+  int checker_left_ = 0;
 };
 
 }  // namespace trammel::tests

@@ -16,9 +16,9 @@ class CommandChecker {
     bool reset = false;
     bool write = false;  // a word; ignored unless ready
     std::uint32_t word = 0;
-    bool flush = false;               // refuses a partial command; waits for a word under way, comes before one beside it
-    bool clear = false;               // opens the stream; the next number is 0; wins over all else
-    bool closed = false;              // a fault stands: a word written now is refused as FAULTED and changes nothing
+    bool flush = false;   // refuses a partial command; waits for a word under way, comes before one beside it
+    bool clear = false;   // opens the stream; the next number is 0; wins over all else
+    bool closed = false;  // a fault stands: a word written now is refused as FAULTED and changes nothing
     std::uint16_t geometry_room = 0;  // halfwords, as the queue shows it
     std::uint16_t feed_room = 0;
   };
@@ -53,8 +53,8 @@ class CommandChecker {
   // True when a clock without inputs changes nothing.
   bool quiet() const {
     const Outputs& o = outputs_;
-    return o.ready && !o.geometry_write && !o.feed_write && !o.geometry_commit &&
-           !o.feed_commit && !o.drop && !o.refuse;
+    return o.ready && !o.geometry_write && !o.feed_write && !o.geometry_commit && !o.feed_commit && !o.drop &&
+           !o.refuse;
   }
 
  private:

@@ -2,9 +2,8 @@
 //
 // START at c: mask and the card's state are looked at as in c+7; where one is wrong the answer (done) comes at c+17.
 // Else 17 clocks for each masked axis and 1 for each other of the 8, 8 for the length, 8 until the answer: at c+33+16m
-// for m masked axes. A fault is looked at once more in the clock before the answer, so that no move can begin when it is
-// cleared.
-// A halfword taken in clock c is on `load` in c+2. Not thread-safe.
+// for m masked axes. A fault is looked at once more in the clock before the answer, so that no move can begin when it
+// is cleared. A halfword taken in clock c is on `load` in c+2. Not thread-safe.
 #pragma once
 
 #include <cstdint>

@@ -52,7 +52,7 @@ class RegisterFile {
     bool feed_active = false;
     bool ended = false;
     bool stopping = false;
-    bool incomplete = false;  // the stream stands inside a command
+    bool incomplete = false;          // the stream stands inside a command
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;
     std::uint32_t geometry_begun = 0;
@@ -74,7 +74,7 @@ class RegisterFile {
     std::uint8_t loader_address = 0;  // words
   };
 
-  // Events and `setting.set` are high in the clock of `ack`.
+  // Events and `setting.set` are high in the clock of `ack`, `flush` a clock earlier (never with `abort`).
   struct Outputs {
     bool ack = false;
     bool error = false;
@@ -150,9 +150,9 @@ class RegisterFile {
   card_map::Slot slot_{nullptr, 0};
   card_map::Reason reason_ = card_map::Reason::None;
   std::uint32_t answer_ = 0;
-  bool word_refused_ = false;       // by the checker
-  std::uint8_t stream_owner_ = 0;   // port that the command under way belongs to
-  bool snapshot_asked_ = false;     // by CONTROL, in this clock
+  bool word_refused_ = false;      // by the checker
+  std::uint8_t stream_owner_ = 0;  // port that the command under way belongs to
+  bool snapshot_asked_ = false;    // by CONTROL, in this clock
 
   std::array<std::uint32_t, 256> stored_{};  // whatever reads back: constants, settings, latched values
   std::uint32_t irq_enable_ = 0;

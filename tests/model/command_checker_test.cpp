@@ -1,12 +1,13 @@
-// The door's model against the layout table: what it lets in, what it refuses and why, and that nothing of a refused
+// The checker's model against the layout table: what it lets in, what it refuses and why, and that nothing of a refused
 // command is ever committed.
-#include "trammel/model/command_door.hpp"
+#include "trammel/model/command_checker.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_source.hpp"
@@ -15,19 +16,20 @@ namespace {
 
 using trammel::card_map::Command;
 using trammel::card_map::kCommands;
-using trammel::card_map::MaskRule;
 using trammel::card_map::Reason;
-using trammel::model::CommandDoor;
+using trammel::model::CommandChecker;
 using trammel::testing::CommandSource;
+using trammel::testing::kAllEngines;
+using trammel::testing::kUsualEngines;
 using trammel::testing::Violation;
 using trammel::testing::WireCommand;
 
 using Halfwords = std::vector<std::uint16_t>;
 
-// A door with a host in front and two queues of any room behind it.
+// A checker with a host before it and two queues of any room after it.
 class Stream {
  public:
-  explicit Stream(unsigned axes) : door_(axes) {}
+  explicit Stream(unsigned axes, std::uint32_t engines = kUsualEngines) : checker_(axes, engines) {}
 
   struct Queue {
     std::uint16_t room = 4096;
@@ -38,12 +40,13 @@ class Stream {
   Queue feed;
   std::vector<Reason> refusals;
   std::uint8_t refused_number = 0;
+  bool closed = false;
 
-  void clock(CommandDoor::Inputs in) {
+  void clock(CommandChecker::Inputs in) {
     in.geometry_room = geometry.room;
     in.feed_room = feed.room;
-    door_.clock(in);
-    const CommandDoor::Outputs& out = door_.outputs();
+    checker_.clock(in);
+    const CommandChecker::Outputs& out = checker_.outputs();
     take(geometry, out.geometry_write, out.geometry_commit);
     take(feed, out.feed_write, out.feed_commit);
     if (!out.refuse) return;
@@ -52,19 +55,20 @@ class Stream {
   }
 
   // True when the word was taken; the answer must come after exactly the time that the header promises.
-  bool write(std::uint32_t word, int answer_clocks = CommandDoor::kAnswerClocks) {
-    CommandDoor::Inputs in;
+  bool write(std::uint32_t word, int answer_clocks = CommandChecker::kAnswerClocks) {
+    CommandChecker::Inputs in;
     in.write = true;
     in.word = word;
-    EXPECT_TRUE(door_.outputs().ready);
+    in.closed = closed;
+    const std::size_t refused = refusals.size();
+    EXPECT_TRUE(checker_.outputs().ready);
     clock(in);
     for (int i = 1; i < answer_clocks; ++i) {
-      EXPECT_FALSE(door_.outputs().ready || door_.outputs().done || door_.outputs().error);
+      EXPECT_FALSE(checker_.outputs().ready);
       clock({});
     }
-    EXPECT_TRUE(door_.outputs().ready);
-    EXPECT_NE(door_.outputs().done, door_.outputs().error);
-    return door_.outputs().done;
+    EXPECT_TRUE(checker_.outputs().ready);
+    return refusals.size() == refused;
   }
 
   // Sends words until one is refused; true when all were taken.
@@ -76,7 +80,7 @@ class Stream {
   }
 
   void clear() {
-    CommandDoor::Inputs in;
+    CommandChecker::Inputs in;
     in.clear = true;
     clock(in);
     geometry.pending.clear();
@@ -84,42 +88,44 @@ class Stream {
   }
 
   void flush() {
-    CommandDoor::Inputs in;
+    CommandChecker::Inputs in;
     in.flush = true;
     clock(in);
   }
 
-  const CommandDoor::Outputs& outputs() const { return door_.outputs(); }
-  bool quiet() const { return door_.quiet(); }
+  const CommandChecker::Outputs& outputs() const { return checker_.outputs(); }
+  bool quiet() const { return checker_.quiet(); }
 
  private:
   void take(Queue& queue, bool write, bool commit) {
     EXPECT_FALSE(write && commit);
-    EXPECT_FALSE(door_.outputs().drop && (write || commit));
-    if (write) queue.pending.push_back(door_.outputs().halfword);
+    EXPECT_FALSE(checker_.outputs().drop && (write || commit));
+    if (write) queue.pending.push_back(checker_.outputs().halfword);
     EXPECT_LE(queue.pending.size(), queue.room);
     if (commit) queue.committed.insert(queue.committed.end(), queue.pending.begin(), queue.pending.end());
-    if (commit || door_.outputs().drop) queue.pending.clear();
+    if (commit || checker_.outputs().drop) queue.pending.clear();
   }
 
-  CommandDoor door_;
+  CommandChecker checker_;
 };
 
-bool possible(const Command& layout, unsigned axes) { return layout.mask_rule != MaskRule::Plane || axes >= 2; }
+bool possible(const Command& layout, unsigned axes, std::uint32_t engines = kUsualEngines) {
+  return CommandSource::possible(layout, axes, engines);
+}
 
 void append(Halfwords& to, const Halfwords& from) { to.insert(to.end(), from.begin(), from.end()); }
 
-TEST(CommandDoor, RefusesImpossibleCards) {
-  EXPECT_THROW(CommandDoor(0), std::invalid_argument);
-  EXPECT_THROW(CommandDoor(9), std::invalid_argument);
+TEST(CommandChecker, RefusesImpossibleCards) {
+  EXPECT_THROW(CommandChecker(0, kUsualEngines), std::invalid_argument);
+  EXPECT_THROW(CommandChecker(9, kUsualEngines), std::invalid_argument);
 }
 
-TEST(CommandDoor, StoresEveryKindOfCommandExactly) {
+TEST(CommandChecker, StoresEveryKindOfCommandExactly) {
   for (unsigned axes = 1; axes <= 8; ++axes) {
     for (const Command& layout : kCommands) {
-      if (!possible(layout, axes)) continue;
-      CommandSource source(axes, axes);
-      Stream stream(axes);
+      if (!possible(layout, axes, kAllEngines)) continue;
+      CommandSource source(axes, axes, kAllEngines);
+      Stream stream(axes, kAllEngines);
       const WireCommand command = source.make(layout, 0);
       ASSERT_TRUE(stream.send(command.words())) << layout.name;
       const Halfwords nothing;
@@ -132,7 +138,7 @@ TEST(CommandDoor, StoresEveryKindOfCommandExactly) {
 }
 
 // A line by hand, so that the layout table is not its own only judge: 0x3322221111 ticks, X 2^-40 pulses a tick, Z -1.
-TEST(CommandDoor, StoresThisLine) {
+TEST(CommandChecker, StoresThisLine) {
   Stream stream(4);
   ASSERT_TRUE(stream.send({0x00060501, 0x22221111, 0x00010033, 0x00000000, 0x00000000, 0x0000FF00}));
   EXPECT_EQ(stream.geometry.committed,
@@ -140,9 +146,9 @@ TEST(CommandDoor, StoresThisLine) {
   EXPECT_TRUE(stream.feed.committed.empty());
 }
 
-void expect_refused(unsigned axes, const Violation& violation) {
+void expect_refused(unsigned axes, const Violation& violation, std::uint32_t engines = kUsualEngines) {
   SCOPED_TRACE(std::string(violation.command.layout->name) + ", " + violation.name);
-  Stream stream(axes);
+  Stream stream(axes, engines);
   EXPECT_FALSE(stream.send(violation.command.words(violation.padding)));
   EXPECT_EQ(stream.refusals, std::vector<Reason>{violation.reason});
   EXPECT_EQ(stream.refused_number, violation.command.number());
@@ -151,21 +157,96 @@ void expect_refused(unsigned axes, const Violation& violation) {
   EXPECT_FALSE(stream.outputs().partial);
 }
 
-TEST(CommandDoor, RefusesEverySingleViolationWithItsReason) {
-  for (const unsigned axes : {1U, 4U, 8U}) {
-    CommandSource source(axes, 11 * axes);
-    for (const Command& layout : kCommands) {
-      if (!possible(layout, axes)) continue;
-      const auto list = violations(source.make(layout, 0), axes);
-      ASSERT_GT(list.size(), 700U);
-      for (const Violation& violation : list) expect_refused(axes, violation);
+TEST(CommandChecker, RefusesEverySingleViolationWithItsReason) {
+  for (const std::uint32_t engines : {kUsualEngines, kAllEngines}) {
+    for (const unsigned axes : {1U, 4U, 8U}) {
+      CommandSource source(axes, 11 * axes, engines);
+      for (const Command& layout : kCommands) {
+        if (!possible(layout, axes, engines)) continue;
+        const auto list = violations(source.make(layout, 0), axes, engines);
+        ASSERT_GT(list.size(), 700U);
+        for (const Violation& violation : list) expect_refused(axes, violation, engines);
+      }
     }
   }
 }
 
-TEST(CommandDoor, PassesRandomStreamsAndWrapsTheNumber) {
-  CommandSource source(8, 12);
-  Stream stream(8);
+// By hand: which opcodes which engine brings.
+TEST(CommandChecker, KnowsTheCommandsOfItsEnginesAlone) {
+  const std::vector<std::pair<unsigned, unsigned>> needs = {{1, 0},  {2, 1},  {3, 3},  {16, 0}, {32, 0}, {33, 0},
+                                                            {34, 7}, {35, 7}, {36, 7}, {37, 7}, {38, 7}};
+  for (const auto& [opcode, engine] : needs) {
+    const Command& layout = *trammel::card_map::find_command(static_cast<std::uint8_t>(opcode));
+    // Lines are on every card.
+    for (const std::uint32_t engines : {kAllEngines, (kAllEngines & ~(1U << engine)) | 1U}) {
+      SCOPED_TRACE(std::string(layout.name) + " with engines " + std::to_string(engines));
+      CommandSource source(4, opcode, engines);
+      Stream stream(4, engines);
+      const bool known = engine == 0 || engines == kAllEngines;
+      EXPECT_EQ(stream.send(source.make(layout, 0).words()), known);
+      EXPECT_EQ(stream.refusals, known ? std::vector<Reason>{} : std::vector<Reason>{Reason::UnknownOpcode});
+    }
+  }
+}
+
+TEST(CommandChecker, StepRuleAndClassNeedTheirEngines) {
+  CommandSource source(4, 30);
+  WireCommand arc = source.make(*trammel::card_map::find_command(2), 0);
+  arc.halfwords[11] |= 2;
+  WireCommand rapid = source.make(*trammel::card_map::find_command(16), 0);
+  rapid.halfwords[0] |= 0x0100;
+  for (const bool has : {false, true}) {
+    const std::uint32_t engines = kUsualEngines | (has ? 1U << 2 | 1U << 9 : 0);
+    Stream stream(4, engines);
+    EXPECT_EQ(stream.send(arc.words()), has);
+    if (!has) {
+      EXPECT_EQ(stream.refusals.back(), Reason::BadField);
+    }
+    Stream second(4, engines);
+    EXPECT_EQ(second.send(rapid.words()), has);
+    if (!has) {
+      EXPECT_EQ(second.refusals.back(), Reason::BadMask);
+    }
+  }
+}
+
+// While a fault stands a word is refused unread: nothing closes, nothing is dropped, the number stays.
+TEST(CommandChecker, RefusesWordsAsFaultedWhileAFaultStands) {
+  CommandSource source(4, 31);
+  Stream stream(4);
+  ASSERT_TRUE(stream.send(source.any(0).words()));
+  const WireCommand next = source.make(kCommands[0], 1);
+  stream.closed = true;
+  for (const std::uint32_t word : next.words()) {
+    EXPECT_FALSE(stream.write(word, CommandChecker::kClosedAnswerClocks));
+    EXPECT_EQ(stream.refusals.back(), Reason::Faulted);
+    EXPECT_FALSE(stream.outputs().drop);
+    EXPECT_FALSE(stream.outputs().partial);
+  }
+  stream.closed = false;
+  EXPECT_TRUE(stream.send(next.words())) << "the stream is as it was";
+  stream.closed = true;
+  stream.clear();
+  EXPECT_FALSE(stream.write(next.words()[0], CommandChecker::kClosedAnswerClocks));
+  EXPECT_EQ(stream.refused_number, 0) << "after a cut";
+}
+
+TEST(CommandChecker, FaultedGoesBeforeStreamClosed) {
+  CommandSource source(4, 32);
+  Stream stream(4);
+  EXPECT_FALSE(stream.write(0x000000FF));
+  EXPECT_EQ(stream.refusals.back(), Reason::UnknownOpcode);
+  stream.closed = true;
+  EXPECT_FALSE(stream.write(0, CommandChecker::kClosedAnswerClocks));
+  EXPECT_EQ(stream.refusals.back(), Reason::Faulted);
+  stream.closed = false;
+  EXPECT_FALSE(stream.write(0, CommandChecker::kClosedAnswerClocks));
+  EXPECT_EQ(stream.refusals.back(), Reason::StreamClosed);
+}
+
+TEST(CommandChecker, PassesRandomStreamsAndWrapsTheNumber) {
+  CommandSource source(8, 12, kAllEngines);
+  Stream stream(8, kAllEngines);
   Halfwords geometry;
   Halfwords feed;
   for (unsigned i = 0; i < 1000; ++i) {
@@ -179,8 +260,8 @@ TEST(CommandDoor, PassesRandomStreamsAndWrapsTheNumber) {
 }
 
 // Words with three bits turned over. What is taken nevertheless has become another good command (DWELL for END, other
-// axes, another value), and stands in its queues exactly as it was sent.
-TEST(CommandDoor, CommitsWhatWasSentOrNothing) {
+// axes, another value; a short one in place of a long one's first words), and stands in its queues exactly as sent.
+TEST(CommandChecker, CommitsWhatWasSentOrNothing) {
   CommandSource source(4, 13);
   auto& random = source.random();
   unsigned refused = 0;
@@ -188,16 +269,18 @@ TEST(CommandDoor, CommitsWhatWasSentOrNothing) {
     Stream stream(4);
     std::vector<std::uint32_t> words = source.any(0).words();
     for (int flips = 0; flips < 3; ++flips) words[random() % words.size()] ^= 1U << random() % 32;
-    if (!stream.send(words) || stream.outputs().partial) {
-      ++refused;
-      EXPECT_TRUE(stream.geometry.committed.empty() && stream.feed.committed.empty());
+    const bool whole = stream.send(words) && !stream.outputs().partial;
+    if (!whole) ++refused;
+    if (stream.geometry.committed.empty() && stream.feed.committed.empty()) {
+      EXPECT_FALSE(whole);
       continue;
     }
     WireCommand sent;
     sent.layout = trammel::card_map::find_command(static_cast<std::uint8_t>(words[0]));
     ASSERT_NE(sent.layout, nullptr);
     const auto mask = static_cast<std::uint8_t>(words[0] >> 8);
-    ASSERT_EQ(words.size(), trammel::card_map::words(*sent.layout, mask));
+    const std::size_t length = trammel::card_map::words(*sent.layout, mask);
+    ASSERT_TRUE(whole ? words.size() == length : words.size() > length);
     for (std::size_t h = 0; h < trammel::card_map::halfwords(*sent.layout, mask); ++h) {
       sent.halfwords.push_back(static_cast<std::uint16_t>(words[h / 2] >> (16 * (h % 2))));
     }
@@ -208,7 +291,7 @@ TEST(CommandDoor, CommitsWhatWasSentOrNothing) {
   EXPECT_LT(refused, 20000U);
 }
 
-TEST(CommandDoor, NeverCommitsGarbage) {
+TEST(CommandChecker, NeverCommitsGarbage) {
   CommandSource source(8, 14);
   Stream stream(8);
   for (int i = 0; i < 200000; ++i) {
@@ -218,14 +301,14 @@ TEST(CommandDoor, NeverCommitsGarbage) {
   EXPECT_TRUE(stream.geometry.committed.empty() && stream.feed.committed.empty());
 }
 
-TEST(CommandDoor, NeedsRoomForTheWholeCommandInEachOfItsQueues) {
+TEST(CommandChecker, NeedsRoomForTheWholeCommandInEachOfItsQueues) {
   for (const Command& layout : kCommands) {
-    CommandSource source(4, 15);
+    CommandSource source(4, 15, kAllEngines);
     const WireCommand command = source.make(layout, 0);
     const auto needed = static_cast<std::uint16_t>(command.stored().size());
     for (int lack = 0; lack < 4; ++lack) {
       SCOPED_TRACE(std::string(layout.name) + " lack " + std::to_string(lack));
-      Stream stream(4);
+      Stream stream(4, kAllEngines);
       stream.geometry.room = static_cast<std::uint16_t>(needed - (lack & 1));
       stream.feed.room = static_cast<std::uint16_t>(needed - (lack >> 1));
       const bool lacks = (layout.to_geometry && (lack & 1) != 0) || (layout.to_feed && (lack >> 1) != 0);
@@ -235,7 +318,7 @@ TEST(CommandDoor, NeedsRoomForTheWholeCommandInEachOfItsQueues) {
   }
 }
 
-TEST(CommandDoor, RefusesAPartialCommandAtAFlush) {
+TEST(CommandChecker, RefusesAPartialCommandAtAFlush) {
   CommandSource source(4, 16);
   const WireCommand command = source.make(kCommands[1], 0);
   const auto words = command.words();
@@ -251,7 +334,7 @@ TEST(CommandDoor, RefusesAPartialCommandAtAFlush) {
   }
 }
 
-TEST(CommandDoor, TakesNoNoticeOfAFlushBetweenCommands) {
+TEST(CommandChecker, TakesNoNoticeOfAFlushBetweenCommands) {
   CommandSource source(4, 17);
   Stream stream(4);
   stream.flush();
@@ -261,58 +344,58 @@ TEST(CommandDoor, TakesNoNoticeOfAFlushBetweenCommands) {
   EXPECT_TRUE(stream.refusals.empty());
 }
 
-TEST(CommandDoor, LetsAFlushWaitForTheWordInWork) {
+TEST(CommandChecker, LetsAFlushWaitForTheWordUnderWay) {
   CommandSource source(4, 18);
   const auto words = source.make(kCommands[0], 0).words();
   Stream stream(4);
-  CommandDoor::Inputs in;
+  CommandChecker::Inputs in;
   in.write = true;
   in.word = words[0];
   stream.clock(in);
   stream.flush();
-  for (int i = 2; i < CommandDoor::kAnswerClocks; ++i) stream.clock({});
-  EXPECT_TRUE(stream.outputs().done);
+  for (int i = 2; i < CommandChecker::kAnswerClocks; ++i) stream.clock({});
+  EXPECT_TRUE(stream.outputs().ready);
+  EXPECT_TRUE(stream.outputs().partial);
   EXPECT_TRUE(stream.refusals.empty());
   stream.clock({});
   EXPECT_EQ(stream.refusals, std::vector<Reason>{Reason::Truncated});
 }
 
-TEST(CommandDoor, StaysClosedUntilClear) {
+TEST(CommandChecker, StaysClosedUntilClear) {
   CommandSource source(4, 19);
   Stream stream(4);
   ASSERT_TRUE(stream.send(source.any(0).words()));
   EXPECT_FALSE(stream.write(0x000000FF));
   stream.refusals.clear();
   for (const std::uint32_t word : source.any(1).words()) {
-    EXPECT_FALSE(stream.write(word, CommandDoor::kClosedAnswerClocks));
+    EXPECT_FALSE(stream.write(word, CommandChecker::kClosedAnswerClocks));
     EXPECT_FALSE(stream.outputs().drop);
   }
-  for (const Reason reason : stream.refusals) EXPECT_EQ(reason, Reason::DoorClosed);
+  for (const Reason reason : stream.refusals) EXPECT_EQ(reason, Reason::StreamClosed);
   EXPECT_FALSE(stream.refusals.empty());
   stream.clear();
   EXPECT_TRUE(stream.send(source.any(0).words()));
 }
 
-TEST(CommandDoor, AnswersAWordInWorkAtClearWithAnError) {
+TEST(CommandChecker, DropsAWordUnderWayAtClearWithoutARefusal) {
   CommandSource source(4, 20);
   Stream stream(4);
-  CommandDoor::Inputs in;
+  CommandChecker::Inputs in;
   in.write = true;
   in.word = source.any(0).words()[0];
   stream.clock(in);
   stream.clear();
-  EXPECT_TRUE(stream.outputs().error);
   EXPECT_TRUE(stream.outputs().ready);
   EXPECT_FALSE(stream.outputs().refuse);
   EXPECT_TRUE(stream.send(source.any(0).words()));
 }
 
-TEST(CommandDoor, IgnoresAWriteThatDoesNotWait) {
+TEST(CommandChecker, IgnoresAWriteThatDoesNotWait) {
   CommandSource source(4, 21);
   const WireCommand command = source.make(kCommands[0], 0);
   Stream stream(4);
   for (const std::uint32_t word : command.words()) {
-    CommandDoor::Inputs in;
+    CommandChecker::Inputs in;
     in.write = true;
     in.word = word;
     stream.clock(in);
@@ -322,7 +405,7 @@ TEST(CommandDoor, IgnoresAWriteThatDoesNotWait) {
   EXPECT_EQ(stream.geometry.committed, command.stored());
 }
 
-TEST(CommandDoor, QuietMeansThatAClockChangesNothing) {
+TEST(CommandChecker, QuietMeansThatAClockChangesNothing) {
   CommandSource source(4, 22);
   Stream stream(4);
   EXPECT_TRUE(stream.quiet());
@@ -330,7 +413,7 @@ TEST(CommandDoor, QuietMeansThatAClockChangesNothing) {
   EXPECT_FALSE(stream.quiet());
   stream.clock({});
   EXPECT_TRUE(stream.quiet());
-  const CommandDoor::Outputs before = stream.outputs();
+  const CommandChecker::Outputs before = stream.outputs();
   for (int i = 0; i < 10; ++i) stream.clock({});
   EXPECT_TRUE(stream.quiet());
   EXPECT_EQ(stream.outputs().halfword, before.halfword);
