@@ -40,9 +40,9 @@ Layout layout_of(Opcode opcode, const std::pair<std::string_view, unsigned>* nam
 Layout arc_layout() {
   using namespace load_target;
   constexpr std::pair<std::string_view, unsigned> kNames[] = {
-      {"prescale", kPrescale},     {"deviation", kDeviation}, {"gradient_x", kGradientX}, {"gradient_y", kGradientY},
-      {"half_x", kHalfX},          {"half_y", kHalfY},        {"end_x", kEndX},           {"end_y", kEndY},
-      {"quadrants", kQuadrants},   {"plane", kPlane}};
+      {"prescale", kPrescale},   {"deviation", kDeviation}, {"gradient_x", kGradientX}, {"gradient_y", kGradientY},
+      {"half_x", kHalfX},        {"half_y", kHalfY},        {"end_x", kEndX},           {"end_y", kEndY},
+      {"quadrants", kQuadrants}, {"plane", kPlane}};
   return layout_of(Opcode::Arc, kNames, std::size(kNames), "plane");
 }
 

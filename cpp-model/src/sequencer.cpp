@@ -61,13 +61,16 @@ void Sequencer::clock(const Inputs& in) {
   ++now_;
 }
 
+// Paths and pieces count a clock after their swap shows, barriers as they begin; a cut shows in the counters last.
 void Sequencer::count_begun(const Inputs& in, const Decision& d) {
-  // What began shows a clock after its swap, and for that clock even when a cut drops it.
-  const bool barrier_begins = d.barrier_begins && !in.cut;
-  if ((out_.swap && !out_.direct) || barrier_begins) ++out_.geometry_begun;
-  if (out_.feed_swap || barrier_begins) ++out_.feed_begun;
   if (cut_before_) out_.geometry_begun = out_.feed_begun = 0;
   cut_before_ = in.cut;
+  if (!in.cut) {
+    if (path_begun_ || d.barrier_begins) ++out_.geometry_begun;
+    if (piece_begun_ || d.barrier_begins) ++out_.feed_begun;
+  }
+  path_begun_ = d.path_begins && !in.cut;
+  piece_begun_ = d.piece_begins && !in.cut;
 }
 
 // Ticks made, owed and taken.

@@ -103,7 +103,8 @@ class CoreBench {
   bool circle(std::uint64_t ticks, std::int64_t r, bool clockwise = false) {
     const std::int64_t steps_made = 8 * r;
     const auto prescale =
-        static_cast<std::int64_t>((static_cast<int128>(steps_made) * kOnePulse + static_cast<std::int64_t>(ticks / 2)) / static_cast<std::int64_t>(ticks));
+        static_cast<std::int64_t>((static_cast<int128>(steps_made) * kOnePulse + static_cast<std::int64_t>(ticks / 2)) /
+                                  static_cast<std::int64_t>(ticks));
     return send(command_words(card_map::Opcode::Arc, 3, number++, ticks,
                               {{"path_ticks", steps_made},
                                {"prescale", prescale},

@@ -51,15 +51,18 @@ State line(std::int32_t dx, std::int32_t dy) {
 class Rig {
  public:
   void load(const State& state) {
-    for (int i = 0; i < 5; ++i) shift(0, static_cast<std::uint16_t>(state.deviation >> (48 + 16 * i)));
-    for (int i = 0; i < 5; ++i) shift(1, static_cast<std::uint16_t>(state.gradient_x >> (48 + 16 * i)));
-    for (int i = 0; i < 5; ++i) shift(2, static_cast<std::uint16_t>(state.gradient_y >> (48 + 16 * i)));
-    for (int i = 0; i < 3; ++i) shift(3, static_cast<std::uint16_t>(state.half_x >> (16 * i)));
-    for (int i = 0; i < 3; ++i) shift(4, static_cast<std::uint16_t>(state.half_y >> (16 * i)));
-    for (int i = 0; i < 2; ++i) shift(5, static_cast<std::uint16_t>(state.left_x >> (16 * i)));
-    for (int i = 0; i < 2; ++i) shift(6, static_cast<std::uint16_t>(state.left_y >> (16 * i)));
-    shift(7, state.quadrants);
-    shift(8, state.clockwise ? 1 : 0);
+    for (int i = 0; i < 5; ++i)
+      shift(load_target::kDeviation, static_cast<std::uint16_t>(state.deviation >> (48 + 16 * i)));
+    for (int i = 0; i < 5; ++i)
+      shift(load_target::kGradientX, static_cast<std::uint16_t>(state.gradient_x >> (48 + 16 * i)));
+    for (int i = 0; i < 5; ++i)
+      shift(load_target::kGradientY, static_cast<std::uint16_t>(state.gradient_y >> (48 + 16 * i)));
+    for (int i = 0; i < 3; ++i) shift(load_target::kHalfX, static_cast<std::uint16_t>(state.half_x >> (16 * i)));
+    for (int i = 0; i < 3; ++i) shift(load_target::kHalfY, static_cast<std::uint16_t>(state.half_y >> (16 * i)));
+    for (int i = 0; i < 2; ++i) shift(load_target::kEndX, static_cast<std::uint16_t>(state.left_x >> (16 * i)));
+    for (int i = 0; i < 2; ++i) shift(load_target::kEndY, static_cast<std::uint16_t>(state.left_y >> (16 * i)));
+    shift(load_target::kQuadrants, state.quadrants);
+    shift(load_target::kPlane, state.clockwise ? 1 : 0);
     Inputs in;
     in.start = true;
     block.clock(in);
@@ -89,10 +92,9 @@ class Rig {
   int y = 0;
 
  private:
-  void shift(int chain, std::uint16_t word) {
+  void shift(unsigned chain, std::uint16_t word) {
     Inputs in;
-    in.load = static_cast<std::uint16_t>(1u << chain);
-    in.word = word;
+    in.load = {true, static_cast<std::uint8_t>(chain), word};
     block.clock(in);
   }
 };

@@ -22,22 +22,29 @@ struct Piece {
   std::uint32_t floor = 1;
 };
 
-void load_and_swap(FeedGenerator& feed, const Piece& p) {
-  const auto shift = [&feed](std::uint8_t select, std::uint64_t value, int halfwords) {
-    for (int i = 0; i < halfwords; ++i) {
-      FeedGenerator::Inputs in;
-      in.load = select;
-      in.word = static_cast<std::uint16_t>(value >> (16 * i));
-      feed.clock(in);
-    }
-  };
-  shift(1, p.rate, 4);
-  shift(2, static_cast<std::uint64_t>(p.acceleration), 4);
-  shift(4, static_cast<std::uint64_t>(p.jerk), 4);
-  shift(8, p.floor, 2);
+void shift(FeedGenerator& feed, unsigned target, std::uint64_t value, int halfwords) {
+  for (int i = 0; i < halfwords; ++i) {
+    FeedGenerator::Inputs in;
+    in.load = {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value >> (16 * i))};
+    feed.clock(in);
+  }
+}
+
+void swap(FeedGenerator& feed, const Piece& p) {
+  shift(feed, feed_target::kRate, p.rate, 4);
+  shift(feed, feed_target::kFloor, p.floor, 2);
   FeedGenerator::Inputs in;
   in.swap = true;
   feed.clock(in);
+}
+
+// Acceleration and jerk come after the swap.
+void load_and_swap(FeedGenerator& feed, const Piece& p) {
+  swap(feed, p);
+  feed.clock({});
+  feed.clock({});
+  shift(feed, feed_target::kAcceleration, static_cast<std::uint64_t>(p.acceleration), 4);
+  shift(feed, feed_target::kJerk, static_cast<std::uint64_t>(p.jerk), 4);
 }
 
 bool enabled_clock(FeedGenerator& feed) {
@@ -152,7 +159,7 @@ TEST(FeedGenerator, EverySlopeIsTheClosedForm) {
 
 TEST(FeedGenerator, TickAndRateShowThreeClocksLater) {
   FeedGenerator feed;
-  load_and_swap(feed, {~std::uint64_t{0}});
+  swap(feed, {~std::uint64_t{0}});
   EXPECT_EQ(feed.outputs().rate, 0U);
   feed.clock({});
   EXPECT_EQ(feed.outputs().rate, 0U);
@@ -182,6 +189,35 @@ TEST(FeedGenerator, ClearDropsPhaseAndTicksInFlight) {
     EXPECT_TRUE(feed.quiet()) << before;
     EXPECT_EQ(feed.phase(), 0U);
     EXPECT_EQ(drain(feed), 0U);
+  }
+}
+
+// Up to the 31st enabled clock the piece's own acceleration and jerk may come; the last piece's never count.
+TEST(FeedGenerator, AccelerationAndJerkComeAfterTheSwap) {
+  Random random(9);
+  for (int i = 0; i < 200; ++i) {
+    FeedGenerator feed;
+    load_and_swap(feed, random.piece());
+    ticks_in(feed, random.word() % 500);
+    const Piece p = random.piece();
+    swap(feed, p);
+    const std::uint64_t first = random.word() % 24;
+    ticks_in(feed, first);
+    const auto load = [&feed](unsigned target, std::int64_t value) {
+      for (int k = 0; k < 4; ++k) {
+        FeedGenerator::Inputs in;
+        in.enable = true;
+        in.load = {true, static_cast<std::uint8_t>(target),
+                   static_cast<std::uint16_t>(static_cast<std::uint64_t>(value) >> (16 * k))};
+        feed.clock(in);
+      }
+    };
+    load(feed_target::kAcceleration, p.acceleration);
+    load(feed_target::kJerk, p.jerk);
+    for (std::uint64_t c = first + 8; c < 2000; ++c) {
+      ASSERT_EQ(feed.slope(), ideal_slope(p, static_cast<std::int64_t>(c / FeedGenerator::kUpdateClocks))) << c;
+      enabled_clock(feed);
+    }
   }
 }
 

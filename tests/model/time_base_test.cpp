@@ -10,21 +10,27 @@ namespace {
 
 constexpr std::uint32_t kWhole = 0x10000;
 
-std::uint64_t run(TimeBase& base, const TimeBase::Inputs& in, std::uint64_t clocks) {
+std::uint64_t run(TimeBase& base, std::uint64_t clocks, bool hold = false) {
   std::uint64_t enables = 0;
   for (std::uint64_t i = 0; i < clocks; ++i) {
-    base.clock(in);
+    base.clock({hold, {}});
     enables += base.outputs().enable;
   }
   return enables;
 }
 
+// Two clocks, one for each setting.
+void set(TimeBase& base, std::uint32_t target, std::uint32_t slew) {
+  base.clock({false, {true, card_map::reg::kSlew, slew}});
+  base.clock({false, {true, card_map::reg::kRatioFeed, target}});
+}
+
 // A time base whose ratio is `ratio`, after an odd number of clocks.
 TimeBase at_ratio(std::uint32_t ratio) {
   TimeBase base;
-  const TimeBase::Inputs in{ratio, 0xFFF'FFFF, false};
-  run(base, in, 17);
-  EXPECT_TRUE(base.steady(in));
+  set(base, ratio, 0xFFF'FFFF);
+  run(base, 17);
+  EXPECT_TRUE(base.steady(false));
   EXPECT_EQ(base.outputs().ratio, ratio);
   return base;
 }
@@ -33,7 +39,7 @@ TEST(TimeBase, EveryClockIsEnabledFromReset) {
   TimeBase base;
   EXPECT_FALSE(base.outputs().enable);
   EXPECT_EQ(base.outputs().ratio, kWhole);
-  EXPECT_EQ(run(base, {}, 1000), 1000U);
+  EXPECT_EQ(run(base, 1000), 1000U);
 }
 
 TEST(TimeBase, EnablesAreTheFlooredProductInEveryClock) {
@@ -41,13 +47,12 @@ TEST(TimeBase, EnablesAreTheFlooredProductInEveryClock) {
     TimeBase base = at_ratio(ratio);
     // A whole turn of the phase from 0 on: no ratio gives an enable at phase 0 but the whole.
     const std::uint64_t first = base.enabled_in(1);
-    const TimeBase::Inputs in{ratio, 0xFFF'FFFF, false};
-    const std::uint64_t in_a_turn = run(base, in, 0x10000);
+    const std::uint64_t in_a_turn = run(base, 0x10000);
     EXPECT_EQ(in_a_turn, ratio) << "first " << first;
     TimeBase counted = base;
     std::uint64_t enables = 0;
     for (std::uint64_t n = 1; n <= 3000; ++n) {
-      enables += run(counted, in, 1);
+      enables += run(counted, 1);
       ASSERT_EQ(enables, base.enabled_in(n)) << "ratio " << ratio << " clock " << n;
     }
   }
@@ -56,12 +61,11 @@ TEST(TimeBase, EnablesAreTheFlooredProductInEveryClock) {
 TEST(TimeBase, GapsBetweenEnablesDifferByOneClock) {
   for (const std::uint32_t ratio : {777U, 0x5EB8U, 0x9999U, 0xFFFEU}) {
     TimeBase base = at_ratio(ratio);
-    const TimeBase::Inputs in{ratio, 0xFFF'FFFF, false};
-    while (run(base, in, 1) == 0) {
+    while (run(base, 1) == 0) {
     }
     for (int i = 0; i < 2000; ++i) {
       std::uint64_t gap = 1;
-      while (run(base, in, 1) == 0) ++gap;
+      while (run(base, 1) == 0) ++gap;
       ASSERT_GE(gap, kWhole / ratio);
       ASSERT_LE(gap, kWhole / ratio + 1);
     }
@@ -71,44 +75,41 @@ TEST(TimeBase, GapsBetweenEnablesDifferByOneClock) {
 TEST(TimeBase, SlewIsLinearAndEndsOnTheTarget) {
   constexpr std::uint32_t kSlew = 0x1357;
   TimeBase base = at_ratio(0x1000);
-  while (run(base, {0x1000, kSlew, false}, 1), base.outputs().ratio != 0x1000) {
-  }
   // The goal is sampled every 4th clock and its first move is seen 4 clocks later.
-  const TimeBase::Inputs up{0xC000, kSlew, false};
+  set(base, 0xC000, kSlew);
   std::uint64_t waited = 0;
   TimeBase probe = base;
   while (probe.outputs().ratio == 0x1000) {
-    run(probe, up, 1);
+    run(probe, 1);
     ++waited;
   }
   EXPECT_LE(waited, 8U);
-  run(base, up, waited);
+  run(base, waited);
   const std::uint64_t start = std::uint64_t{0x1000} << 12;
   const std::uint64_t goal = std::uint64_t{0xC000} << 12;
   for (std::uint64_t clocks = 0; clocks < 4 * (goal - start) / kSlew + 400; ++clocks) {
     const std::uint64_t updates = clocks / 4 + 1;
     const std::uint64_t expected = std::min(goal, start + updates * kSlew);
     ASSERT_EQ(base.outputs().ratio, expected >> 12) << "clock " << clocks;
-    run(base, up, 1);
+    run(base, 1);
   }
-  EXPECT_TRUE(base.steady(up));
+  EXPECT_TRUE(base.steady(false));
 }
 
 TEST(TimeBase, HoldGoesToZeroAndComesBack) {
-  const TimeBase::Inputs go{0xABCD, 0x4'0000, false};
-  const TimeBase::Inputs hold{0xABCD, 0x4'0000, true};
   TimeBase base = at_ratio(0xABCD);
+  set(base, 0xABCD, 0x4'0000);
   std::uint32_t before = base.outputs().ratio;
-  while (!base.steady(hold)) {
-    run(base, hold, 1);
+  while (!base.steady(true)) {
+    run(base, 1, true);
     ASSERT_LE(base.outputs().ratio, before);
     before = base.outputs().ratio;
   }
   EXPECT_EQ(before, 0U);
-  EXPECT_EQ(run(base, hold, 100'000), 0U);
+  EXPECT_EQ(run(base, 100'000, true), 0U);
   EXPECT_EQ(base.clocks_for(1), TimeBase::kNever);
-  while (!base.steady(go)) {
-    run(base, go, 1);
+  while (!base.steady(false)) {
+    run(base, 1);
     ASSERT_GE(base.outputs().ratio, before);
     ASSERT_LE(base.outputs().ratio, 0xABCDU);
     before = base.outputs().ratio;
@@ -120,9 +121,9 @@ TEST(TimeBase, HoldGoesToZeroAndComesBack) {
 TEST(TimeBase, AHoldTakesTheTriangleOfItsSlew) {
   for (const std::uint32_t slew : {0x1000U, 0x7777U, 0x10'0001U}) {
     TimeBase base;
-    const TimeBase::Inputs hold{kWhole, slew, true};
+    set(base, kWhole, slew);
     std::uint64_t enables = 0;
-    while (!base.steady(hold)) enables += run(base, hold, 1);
+    while (!base.steady(true)) enables += run(base, 1, true);
     // Sum over updates of 4 clocks at 1 - i * slew; up to 8 whole clocks go by before the first move.
     const double updates = 268435456.0 / slew;
     EXPECT_NEAR(static_cast<double>(enables), 2 * updates, 12) << "slew " << slew;
@@ -131,34 +132,35 @@ TEST(TimeBase, AHoldTakesTheTriangleOfItsSlew) {
 
 TEST(TimeBase, AZeroSlewKeepsTheRatio) {
   TimeBase base = at_ratio(0x1234);
-  run(base, {0x1234, 0, false}, 8);
-  run(base, {kWhole, 0, false}, 1000);
+  set(base, kWhole, 0);
+  run(base, 1000);
   EXPECT_EQ(base.outputs().ratio, 0x1234U);
-  EXPECT_FALSE(base.steady({kWhole, 0, false}));
+  EXPECT_FALSE(base.steady(false));
 }
 
 TEST(TimeBase, AdvanceAndItsInverseAgreeWithClocks) {
   std::mt19937_64 random(7);
   for (int i = 0; i < 2000; ++i) {
     const auto ratio = static_cast<std::uint32_t>(random() % 5 == 0 ? kWhole : random() % (kWhole + 1));
-    const TimeBase::Inputs in{ratio, 0xFFF'FFFF, false};
     TimeBase clocked = at_ratio(ratio);
-    run(clocked, in, random() % 100);
+    run(clocked, random() % 100);
     TimeBase skipped = clocked;
     const std::uint64_t clocks = random() % 500;
-    EXPECT_EQ(skipped.advance(clocks), run(clocked, in, clocks));
+    EXPECT_EQ(skipped.advance(clocks), run(clocked, clocks));
     ASSERT_EQ(skipped.outputs().enable, clocked.outputs().enable);
     const std::uint64_t enables = 1 + random() % 50;
     const std::uint64_t needed = clocked.clocks_for(enables);
     if (ratio > 300) {
       TimeBase probe = clocked;
-      EXPECT_EQ(run(probe, in, needed - 1), enables - 1);
-      EXPECT_EQ(run(probe, in, 1), 1U);
+      EXPECT_EQ(run(probe, needed - 1), enables - 1);
+      EXPECT_EQ(run(probe, 1), 1U);
     }
     // A change behind it finds the same place within the update.
+    set(clocked, 0x3000, 0x12'3456);
+    set(skipped, 0x3000, 0x12'3456);
     for (int k = 0; k < 24; ++k) {
-      clocked.clock({0x3000, 0x12'3456, k > 11});
-      skipped.clock({0x3000, 0x12'3456, k > 11});
+      clocked.clock({k > 11, {}});
+      skipped.clock({k > 11, {}});
       ASSERT_EQ(skipped.outputs().enable, clocked.outputs().enable);
       ASSERT_EQ(skipped.outputs().ratio, clocked.outputs().ratio);
     }

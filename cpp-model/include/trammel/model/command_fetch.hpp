@@ -19,10 +19,10 @@ class CommandFetch {
   enum class Queue { Geometry, Feed };
   struct Inputs {
     bool clear = false;
-    bool pop = false;              // the decoded command has begun (a barrier: is over)
-    bool payload_ready = true;     // the accumulator may be loaded
-    bool empty = true;             // of the queue
-    std::uint16_t halfword = 0;    // what was asked for two clocks ago
+    bool pop = false;            // the decoded command has begun (a barrier: is over)
+    bool payload_ready = true;   // the accumulator may be loaded
+    bool empty = true;           // of the queue
+    std::uint16_t halfword = 0;  // what was asked for two clocks ago
   };
 
   explicit CommandFetch(Queue queue) : queue_(queue) {}

@@ -26,8 +26,8 @@ class FeedGenerator {
   struct Inputs {
     bool clear = false;   // phase and the ticks in flight become 0; wins over an enable in the same clock
     bool enable = false;  // one accumulation
-    LoadWord load;        // feed load: rate (4 halfwords) and floor (2) before the swap, acceleration and jerk (4) after
-    bool swap = false;    // the next piece's rate and floor are taken; no load in this clock or the 2 after it
+    LoadWord load;      // feed load: rate (4 halfwords) and floor (2) before the swap, acceleration and jerk (4) after
+    bool swap = false;  // the next piece's rate and floor are taken; no load in this clock or the 2 after it
   };
   struct Outputs {
     bool tick = false;

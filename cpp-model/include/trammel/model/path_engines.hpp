@@ -31,10 +31,10 @@ class PathEngines {
   struct Outputs {
     bool tick = false;  // path domain
     bool swap = false;
-    bool path_tick = false;   // of the accumulator
-    std::uint8_t step = 0;    // engines' steps, by axis
-    std::uint8_t dir = 0;     // 1 = negative; means something with a step
-    bool ready = true;        // a feed tick may be taken
+    bool path_tick = false;  // of the accumulator
+    std::uint8_t step = 0;   // engines' steps, by axis
+    std::uint8_t dir = 0;    // 1 = negative; means something with a step
+    bool ready = true;       // a feed tick may be taken
     bool payload_ready = true;
     bool done = false;
     bool elsewhere = false;  // with done: not on the commanded end point

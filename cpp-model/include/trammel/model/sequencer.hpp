@@ -3,9 +3,9 @@
 // Geometry and feed each decode one command ahead. A path runs for its N ticks, a piece for its own; every tick taken
 // counts both down, and the last one of either swaps in what is decoded. A tick made by the feed generator (in direct
 // mode: an enabled clock) is owed from two clocks on until a path can take it. An arc is over when the path engines
-// have finished its path ticks, a direct move when no axis is live. A barrier (DWELL, END) begins when both queues stand
-// at it. Everything decided in clock c shows at c+1; other times stand with their constants.
-// Not thread-safe; no errors are reported.
+// have finished its path ticks, a direct move when no axis is live. A barrier (DWELL, END) begins when both queues
+// stand at it. Everything decided in clock c shows at c+1; other times stand with their constants. Not thread-safe; no
+// errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -40,8 +40,8 @@ class Sequencer {
     bool axes_live = false;
   };
   struct Outputs {
-    bool tick = false;  // a tick was taken
-    bool swap = false;  // a path begins
+    bool tick = false;         // a tick was taken
+    bool swap = false;         // a path begins
     std::uint8_t active = 0;   // axes of a line; sampled with swap, holds
     bool accumulator = false;  // the path is an arc; sampled with swap, holds
     bool arc_start = false;
@@ -73,8 +73,8 @@ class Sequencer {
   const Record& record() const { return record_; }
   bool geometry_read() const { return geometry_.read(); }
   bool feed_read() const { return feed_.read(); }
-  const LoadWord& load() const { return load_; }               // the load bus
-  const LoadWord& feed_load() const { return feed_.bus(); }    // the feed load
+  const LoadWord& load() const { return load_; }             // the load bus
+  const LoadWord& feed_load() const { return feed_.bus(); }  // the feed load
 
  private:
   static constexpr std::uint64_t kCountMask = (std::uint64_t{1} << 40) - 1;
@@ -133,6 +133,8 @@ class Sequencer {
   Barrier barrier_ = Barrier::None;
   std::uint64_t barrier_at_ = 0;  // the clock in which it begins; its last one
   bool geometry_idle_ = true;
+  bool path_begun_ = false;  // in the clock before
+  bool piece_begun_ = false;
   bool cut_before_ = false;
 
   Outputs out_;

@@ -66,7 +66,8 @@ class StopControl {
   // Without an event, a setting, an abort or a clear, clock() changes nothing, whatever the ratio does.
   bool quiet() const {
     const bool settled = out_.hold == hold_ && out_.closed == (out_.fault != 0 || state_ != State::Run);
-    return settled && !out_.cut && !out_.stop && (state_ == State::Run || (state_ == State::Stopped && out_.fault != 0));
+    return settled && !out_.cut && !out_.stop &&
+           (state_ == State::Run || (state_ == State::Stopped && out_.fault != 0));
   }
 
  private:
