@@ -137,16 +137,35 @@ void configure(driver::Card& card, const driver::Machine& machine) {
   }
 }
 
+// Steps for the recorder and whoever else watches.
+class StepFork final : public sim::StepSink {
+ public:
+  StepFork(StepRecorder& recorder, RunWatcher* watcher) : recorder_(recorder), watcher_(watcher) {}
+  void pin_step(const sim::PinStep& step) override {
+    recorder_.pin_step(step);
+    if (watcher_ != nullptr) watcher_->pin_step(step);
+  }
+  void path_step(const sim::PathStep& step) override {
+    recorder_.path_step(step);
+    if (watcher_ != nullptr) watcher_->path_step(step);
+  }
+
+ private:
+  StepRecorder& recorder_;
+  RunWatcher* watcher_;
+};
+
 // Streams the plan; errors of the card get the line of the program that was being run.
 class ProgramStream {
  public:
   ProgramStream(const driver::Program& program, const driver::Machine& machine, sim::Engine& engine, driver::Card& card,
-                StepRecorder& recorder, const Survey& plan, bool progress)
+                StepRecorder& recorder, const Survey& plan, bool progress, RunWatcher* watcher)
       : program_(program),
         engine_(engine),
         recorder_(recorder),
         plan_(plan),
         bar_(progress),
+        watcher_(watcher),
         planner_(program, machine, card.identification().clock_hz),
         card_clock_hz_(card.identification().clock_hz),
         stream_(card, options()) {}
@@ -161,7 +180,9 @@ class ProgramStream {
           recorder_.deviation().command(lines_.size(), command);
           lines_.push_back(segment.line);
         }
+        if (watcher_ != nullptr) watcher_->sending(segment);
         stream_.send(segment.commands);
+        if (watcher_ != nullptr) watcher_->sent(engine_.cycles());
         if (segment.kind != driver::MotionKind::kDwell && segment.kind != driver::MotionKind::kEnd) end = segment.end;
         show();
       }
@@ -204,6 +225,7 @@ class ProgramStream {
   StepRecorder& recorder_;
   const Survey& plan_;
   ProgressBar bar_;
+  RunWatcher* watcher_;
   driver::Planner planner_;
   std::uint32_t card_clock_hz_;
   std::vector<std::size_t> lines_;  // of the program, by command number
@@ -228,7 +250,7 @@ void check_end(const std::vector<std::int64_t>& card, const StepRecorder& record
 }  // namespace
 
 RunResult run_program(const driver::Program& program, const driver::Machine& machine,
-                      const sim::EngineOptions& engine_options, const RunOutputs& outputs) {
+                      const sim::EngineOptions& engine_options, const RunOutputs& outputs, RunWatcher* watcher) {
   const auto begun = std::chrono::steady_clock::now();
   StepRecorder::Options recording;
   recording.steps = outputs.steps;
@@ -245,10 +267,11 @@ RunResult run_program(const driver::Program& program, const driver::Machine& mac
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);
   StepRecorder recorder(recording);
   if (plan.detail_command) recorder.detail_of(*plan.detail_command);
-  engine->set_sink(&recorder);
+  StepFork steps(recorder, watcher);
+  engine->set_sink(&steps);
   driver::Card card = driver::Card::open(*engine);
   configure(card, machine);
-  ProgramStream stream(program, machine, *engine, card, recorder, plan, outputs.progress);
+  ProgramStream stream(program, machine, *engine, card, recorder, plan, outputs.progress, watcher);
   const driver::PulsePosition end = stream.run();
   const driver::Snapshot snapshot = card.snapshot();
   recorder.finish();

@@ -10,6 +10,7 @@
 #include "plot.hpp"
 #include "trammel/driver/gcode.hpp"
 #include "trammel/driver/machine.hpp"
+#include "trammel/driver/planner.hpp"
 #include "trammel/sim/engine.hpp"
 
 namespace trammel::app {
@@ -47,9 +48,20 @@ struct RunResult {
   Plot plot;                                     // filled when asked for
 };
 
-// Throws driver::ProgramError before anything moves, driver::Error with the program's line in its message while it
-// runs, lockstep::Mismatch, and std::runtime_error when the card does not end where the program says.
+// Sees a run as it goes: what is sent, and every step.
+class RunWatcher : public sim::StepSink {
+ public:
+  // Before the commands of a segment are written. Their numbers follow on those of the segment before, from 0.
+  virtual void sending(const driver::PlannedSegment& segment) = 0;
+  // When they are written; `cycle` of the card.
+  virtual void sent(std::uint64_t cycle) = 0;
+};
+
+// `watcher` may be nullptr. Throws driver::ProgramError before anything moves, driver::Error with the program's line in
+// its message while it runs, lockstep::Mismatch, and std::runtime_error when the card does not end where the program
+// says.
 RunResult run_program(const driver::Program& program, const driver::Machine& machine,
-                      const sim::EngineOptions& engine_options, const RunOutputs& outputs);
+                      const sim::EngineOptions& engine_options, const RunOutputs& outputs,
+                      RunWatcher* watcher = nullptr);
 
 }  // namespace trammel::app

@@ -2,13 +2,49 @@
 include(GoogleTest)
 find_package(fmt REQUIRED)
 
-# GoogleTest's headers, compiled once for all tests.
-add_library(trammel_test_headers OBJECT "${PROJECT_SOURCE_DIR}/tests/headers.cpp")
-trammel_target(trammel_test_headers)
-target_link_libraries(trammel_test_headers PRIVATE fmt::fmt GTest::gmock)
-target_precompile_headers(trammel_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h> <fmt/format.h> <fstream> <sstream>)
+# GoogleTest's headers, compiled once for all tests, and once more for those that are not worth -O3: optimising takes half
+# the time of compiling a test.
+set(trammel_quick "$<$<NOT:$<CONFIG:Debug>>:-O1>")
+foreach(headers IN ITEMS trammel_test_headers trammel_quick_test_headers)
+  add_library(${headers} OBJECT "${PROJECT_SOURCE_DIR}/tests/headers.cpp")
+  trammel_target(${headers})
+  target_link_libraries(${headers} PRIVATE fmt::fmt GTest::gmock)
+  target_precompile_headers(${headers} PRIVATE <gmock/gmock.h> <gtest/gtest.h> <fmt/format.h> <fstream> <sstream>)
+endforeach()
+target_compile_options(trammel_quick_test_headers PRIVATE "${trammel_quick}")
 
-# trammel_test_headers(target): for targets of the project's usual compile options that link GTest and fmt.
+# trammel_test_headers(target [QUICK]): for targets of the project's usual compile options that link GTest and fmt.
+# QUICK: tests that spend their time in the libraries; compiled with -O1.
 function(trammel_test_headers target)
-  target_precompile_headers(${target} REUSE_FROM trammel_test_headers)
+  if("QUICK" IN_LIST ARGN)
+    target_compile_options(${target} PRIVATE "${trammel_quick}")
+    target_precompile_headers(${target} REUSE_FROM trammel_quick_test_headers)
+  else()
+    target_precompile_headers(${target} REUSE_FROM trammel_test_headers)
+  endif()
+endfunction()
+
+# Real programs from elsewhere, beside the checkout: TRAMMEL_SHARED_GCODE is their folder, or empty where it is missing.
+set(TRAMMEL_SHARED_GCODE "${PROJECT_SOURCE_DIR}/../shared/gcode")
+if(NOT EXISTS "${TRAMMEL_SHARED_GCODE}")
+  set(TRAMMEL_SHARED_GCODE "")
+  message(STATUS "no ../shared/gcode: its programs are not tested, those of examples/ are")
+endif()
+
+# trammel_shared_gcode(target): TRAMMEL_SHARED_GCODE_DIR for its sources, where the programs are there.
+function(trammel_shared_gcode target)
+  if(TRAMMEL_SHARED_GCODE)
+    target_compile_definitions(${target} PRIVATE TRAMMEL_SHARED_GCODE_DIR="${TRAMMEL_SHARED_GCODE}")
+  endif()
+endfunction()
+
+# trammel_discover_tests(target prefix [LABEL label] [FILTER filter] [properties ...]): a test of ctest for each of
+# GoogleTest's (that the filter lets through), with the label `unit` unless another is named.
+function(trammel_discover_tests target prefix)
+  cmake_parse_arguments(PARSE_ARGV 2 A "" "LABEL;FILTER" "")
+  if(NOT A_LABEL)
+    set(A_LABEL unit)
+  endif()
+  gtest_discover_tests(${target} TEST_PREFIX "${prefix}." DISCOVERY_TIMEOUT 60 TEST_FILTER "${A_FILTER}"
+                       PROPERTIES LABELS ${A_LABEL} ${A_UNPARSED_ARGUMENTS})
 endfunction()

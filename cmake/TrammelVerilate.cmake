@@ -4,6 +4,12 @@ find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 
 set(TRAMMEL_RTL_DIR "${PROJECT_SOURCE_DIR}/rtl")
+# The card's sources, and the packages, which trammel_verilate() always puts first.
+file(STRINGS "${TRAMMEL_RTL_DIR}/trammel.f" TRAMMEL_CARD_SOURCES REGEX "^[^/].*\\.sv$")
+set(TRAMMEL_RTL_PACKAGES "${TRAMMEL_CARD_SOURCES}")
+list(FILTER TRAMMEL_RTL_PACKAGES INCLUDE REGEX "_pkg\\.sv$")
+list(FILTER TRAMMEL_CARD_SOURCES EXCLUDE REGEX "_pkg\\.sv$")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${TRAMMEL_RTL_DIR}/trammel.f")
 set(TRAMMEL_VERILATOR_ARGS -Wall "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" -O3 --x-assign fast --x-initial fast
     --noassert)
 
@@ -24,8 +30,7 @@ target_link_libraries(trammel_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
 # The folder of Vx.h is left in the global property TRAMMEL_VERILATED_<target>_<Vx>.
 function(trammel_verilate target)
   cmake_parse_arguments(A "TRACE;CHEAP" "PREFIX;TOP" "SOURCES;ARGS" ${ARGN})
-  set(files "${TRAMMEL_RTL_DIR}/regs/generated/card_map_pkg.sv")
-  foreach(file IN LISTS A_SOURCES)
+  foreach(file IN LISTS TRAMMEL_RTL_PACKAGES A_SOURCES)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${TRAMMEL_RTL_DIR}" NORMALIZE)
     list(APPEND files "${file}")
   endforeach()

@@ -1,0 +1,171 @@
+#include "recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <stdexcept>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::netlist {
+
+namespace {
+
+template <class Value>
+void append_hex(std::string& line, const Value& value, unsigned width) {
+  fmt::format_to(std::back_inserter(line), "{:0{}x}", value, (width + 3) / 4);
+}
+// Wide ports are arrays of words, the lowest first.
+template <std::size_t kWords>
+void append_hex(std::string& line, const VlWide<kWords>& value, unsigned) {
+  for (std::size_t i = kWords; i-- > 0;) fmt::format_to(std::back_inserter(line), "{:08x}", value[i]);
+}
+
+}  // namespace
+
+Recorder::Recorder(const std::string& path) : file_(std::fopen(path.c_str(), "w")), model_({}) {
+  if (file_ == nullptr) throw std::runtime_error("cannot write " + path);
+  dut_->clock_hz_i = model::CardModel::Config{}.clock_hz;
+  line_ = "";
+  for_each_port([this](const char* name, char direction, const auto&, unsigned width) {
+    fmt::format_to(std::back_inserter(line_), "{}{}{} ", name, direction, width);
+  });
+  std::fprintf(file_, "%s\n", line_.c_str());
+}
+
+Recorder::~Recorder() { std::fclose(file_); }
+
+template <class Port>
+void Recorder::for_each_port(Port&& port) {
+  port("rst_i", '<', dut_->rst_i, 1);
+  port("clock_hz_i", '<', dut_->clock_hz_i, 32);
+  port("awvalid_i", '<', dut_->awvalid_i, 1);
+  port("awaddr_i", '<', dut_->awaddr_i, 12);
+  port("wvalid_i", '<', dut_->wvalid_i, 1);
+  port("wdata_i", '<', dut_->wdata_i, 32);
+  port("wstrb_i", '<', dut_->wstrb_i, 4);
+  port("bready_i", '<', dut_->bready_i, 1);
+  port("arvalid_i", '<', dut_->arvalid_i, 1);
+  port("araddr_i", '<', dut_->araddr_i, 12);
+  port("rready_i", '<', dut_->rready_i, 1);
+  port("awready_o", '>', dut_->awready_o, 1);
+  port("wready_o", '>', dut_->wready_o, 1);
+  port("bvalid_o", '>', dut_->bvalid_o, 1);
+  port("bresp_o", '>', dut_->bresp_o, 2);
+  port("arready_o", '>', dut_->arready_o, 1);
+  port("rvalid_o", '>', dut_->rvalid_o, 1);
+  port("rdata_o", '>', dut_->rdata_o, 32);
+  port("rresp_o", '>', dut_->rresp_o, 2);
+  port("step_o", '>', dut_->step_o, kAxes);
+  port("dir_o", '>', dut_->dir_o, kAxes);
+  port("irq_o", '>', dut_->irq_o, 1);
+  port("tick_o", '>', dut_->tick_o, 1);
+  port("path_tick_o", '>', dut_->path_tick_o, 1);
+  port("path_swap_o", '>', dut_->path_swap_o, 1);
+  port("feed_swap_o", '>', dut_->feed_swap_o, 1);
+  port("path_step_o", '>', dut_->path_step_o, kAxes);
+  port("path_dir_o", '>', dut_->path_dir_o, kAxes);
+  port("position_o", '>', dut_->position_o, 32 * kAxes);
+  port("geometry_room_o", '>', dut_->geometry_room_o, 16);
+  port("feed_room_o", '>', dut_->feed_room_o, 16);
+  port("status_o", '>', dut_->status_o, 6);
+  port("fault_o", '>', dut_->fault_o, 10);
+  port("running_o", '>', dut_->running_o, 16);
+  port("ratio_o", '>', dut_->ratio_o, 17);
+  port("rate_o", '>', dut_->rate_o, 32);
+}
+
+bool Recorder::write(std::uint32_t address, std::uint32_t data, std::uint8_t strobes) {
+  in_.awvalid = in_.wvalid = true;
+  in_.awaddr = address;
+  in_.wdata = data;
+  in_.wstrb = strobes;
+  while (!dut_->awready_o) clock();
+  clock();
+  in_ = {};
+  while (!dut_->bvalid_o) clock();
+  in_.bready = true;
+  const bool okay = dut_->bresp_o == model::Axi4LitePort::kOkay;
+  if (!okay) ++seen_.refused;
+  clock();
+  in_ = {};
+  return okay;
+}
+
+std::uint32_t Recorder::read(std::uint32_t address) {
+  in_.arvalid = true;
+  in_.araddr = address;
+  while (!dut_->arready_o) clock();
+  clock();
+  in_ = {};
+  while (!dut_->rvalid_o) clock();
+  in_.rready = true;
+  const std::uint32_t data = dut_->rdata_o;
+  if (dut_->rresp_o != model::Axi4LitePort::kOkay) ++seen_.refused;
+  clock();
+  in_ = {};
+  return data;
+}
+
+void Recorder::wait(std::uint64_t clocks) {
+  for (; clocks != 0; --clocks) clock();
+}
+
+void Recorder::reset(int clocks) {
+  in_ = {};
+  in_.rst = true;
+  for (int i = 0; i < clocks; ++i) clock();
+  in_ = {};
+}
+
+void Recorder::clock() {
+  dut_->rst_i = in_.rst;
+  dut_->awvalid_i = in_.awvalid;
+  dut_->awaddr_i = static_cast<std::uint16_t>(in_.awaddr);
+  dut_->wvalid_i = in_.wvalid;
+  dut_->wdata_i = in_.wdata;
+  dut_->wstrb_i = in_.wstrb;
+  dut_->bready_i = in_.bready;
+  dut_->arvalid_i = in_.arvalid;
+  dut_->araddr_i = static_cast<std::uint16_t>(in_.araddr);
+  dut_->rready_i = in_.rready;
+  dut_.clock();
+  model_.clock(in_);
+  checker_.next_cycle();
+  judge();
+  count();
+  write_line();
+}
+
+// The pins and the positions: what is recorded is a card that runs right.
+void Recorder::judge() {
+  checker_.compare("step_o", dut_->step_o, model_.outputs().step);
+  checker_.compare("dir_o", dut_->dir_o, model_.outputs().dir);
+  checker_.compare("irq_o", dut_->irq_o, model_.outputs().irq);
+  for (unsigned n = 0; n < kAxes; ++n) checker_.compare("position_o", dut_->position_o[n], model_.position(n));
+}
+
+void Recorder::count() {
+  ++seen_.clocks;
+  const std::uint32_t rising = dut_->step_o & ~last_step_;
+  for (unsigned n = 0; n < kAxes; ++n) seen_.steps += rising >> n & 1U;
+  seen_.path_ticks += dut_->path_tick_o;
+  seen_.direct += (dut_->status_o & card_map::field::kStatusDirect) != 0;
+  seen_.held += (dut_->status_o & card_map::field::kStatusPathActive) != 0 && dut_->ratio_o == 0;
+  seen_.interrupts += dut_->irq_o && !last_irq_;
+  seen_.faulted += dut_->fault_o != 0;
+  last_step_ = dut_->step_o;
+  last_irq_ = dut_->irq_o;
+}
+
+void Recorder::write_line() {
+  line_.clear();
+  for_each_port([this](const char*, char, const auto& value, unsigned width) {
+    append_hex(line_, value, width);
+    line_ += ' ';
+  });
+  line_.back() = '\n';
+  std::fwrite(line_.data(), 1, line_.size(), file_);
+}
+
+}  // namespace trammel::netlist

@@ -1,0 +1,66 @@
+// The Verilated card on a bus of its own, beside its golden model; every clock's inputs and outputs go to a file, for
+// the replay on the synthesised netlist.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "Vrecorded.h"
+#include "lockstep.hpp"
+#include "trammel/model/card_model.hpp"
+
+namespace trammel::netlist {
+
+// The file: a first line that names the ports in order, `name<width` for an input and `name>width` for an output; then
+// a line a clock with their values in hexadecimal, the outputs as they are behind the clock's edge.
+class Recorder {
+ public:
+  static constexpr unsigned kAxes = 4;
+
+  // What the recording must have seen to be worth a replay; clocks or edges, counted.
+  struct Seen {
+    std::uint64_t clocks = 0;
+    std::uint64_t steps = 0;       // rising edges of STEP pins
+    std::uint64_t path_ticks = 0;  // of the accumulator
+    std::uint64_t direct = 0;      // clocks in a direct move
+    std::uint64_t held = 0;        // clocks with a path, the time base at 0
+    std::uint64_t interrupts = 0;  // rising edges
+    std::uint64_t refused = 0;     // answers with an error
+    std::uint64_t faulted = 0;     // clocks with a fault
+  };
+
+  // Throws std::runtime_error when the file cannot be written.
+  explicit Recorder(const std::string& path);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  // `strobes`: the bytes of the word that are written. Both return an access's answer; a refused read gives 0.
+  bool write(std::uint32_t address, std::uint32_t data, std::uint8_t strobes = model::Axi4LitePort::kAllStrobes);
+  std::uint32_t read(std::uint32_t address);
+  void wait(std::uint64_t clocks);
+  void reset(int clocks);
+
+  const Seen& seen() const { return seen_; }
+
+ private:
+  void clock();
+  void judge();
+  void count();
+  void write_line();
+  template <class Port>
+  void for_each_port(Port&& port);
+
+  std::FILE* file_;
+  std::string line_;
+  lockstep::Simulated<Vrecorded> dut_;
+  model::CardModel model_;
+  model::CardModel::Inputs in_;
+  lockstep::Checker checker_{"recorded card", 0};
+  Seen seen_;
+  std::uint32_t last_step_ = 0;
+  bool last_irq_ = false;
+};
+
+}  // namespace trammel::netlist
