@@ -71,7 +71,8 @@ module step_phases (
     timer_q <= timer_sum | (dir_time_q & ~pulse_time_q);
     if (load) timer_q <= '0;
     loading_q <= load;
-    expired_q <= (!load && (expired_q || (!loading_q && !nonzero))) || rst_i;
+    expired_q <= !load && (expired_q || (!loading_q && !nonzero));
+    if (rst_i) expired_q <= 1'b1;
 
     dir_time_q   <= take_pulse_time ? '0 : (phase_q == REST) ? dir_setup_i : dir_hold_i;
     pulse_time_q <= '1;
@@ -82,10 +83,16 @@ module step_phases (
   logic go_q;
   logic settled_q;
   always_ff @(posedge clk_i) begin
-    go_q      <= go_o && !rst_i;
-    settled_q <= go_q && !rst_i;
-    begun_o   <= settled_q && !rst_i;
-    pulse_o   <= (settled_q || (pulse_o && nonzero && !expired_q)) && !rst_i;
+    go_q      <= go_o;
+    settled_q <= go_q;
+    begun_o   <= settled_q;
+    pulse_o   <= settled_q || (pulse_o && nonzero && !expired_q);
+    if (rst_i) begin
+      go_q      <= 1'b0;
+      settled_q <= 1'b0;
+      begun_o   <= 1'b0;
+      pulse_o   <= 1'b0;
+    end
   end
 endmodule
 

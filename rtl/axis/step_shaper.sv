@@ -72,7 +72,10 @@ module step_shaper (
       .position_o
   );
 
-  always_ff @(posedge clk_i) busy_o <= (step_i || any || !resting) && !rst_i;
+  always_ff @(posedge clk_i) begin
+    busy_o <= step_i || any || !resting;
+    if (rst_i) busy_o <= 1'b0;
+  end
 endmodule
 
 `default_nettype wire

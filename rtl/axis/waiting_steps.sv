@@ -46,14 +46,17 @@ module waiting_steps (
     if (rst_i) begin
       valid_q <= '0;
       same_o  <= 1'b0;
-      other_o <= 1'b0;
     end
   end
 
   always_ff @(posedge clk_i) begin
-    fault_o <= !take_i && ((step_i && valid_q[3]) || (wait_tick_i && waited_q)) && !rst_i;
-    if (take_i || rst_i) waited_q <= 1'b0;
+    fault_o <= !take_i && ((step_i && valid_q[3]) || (wait_tick_i && waited_q));
+    if (take_i) waited_q <= 1'b0;
     else if (wait_tick_i) waited_q <= valid_q[0];
+    if (rst_i) begin
+      fault_o  <= 1'b0;
+      waited_q <= 1'b0;
+    end
   end
 endmodule
 

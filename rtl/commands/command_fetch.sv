@@ -67,8 +67,8 @@ module command_fetch (
   always_ff @(posedge clk_i) begin : p_fetch
     state_e state_d;
 
-    // Nothing moves while there is nothing to read, or what was read waits.
-    if (cut_i || rst_i || !(valid_o || (idle_o && empty_i))) begin
+    // Nothing moves while there is nothing to read and nothing on its way, or what was read waits.
+    if (cut_i || rst_i || !(valid_o || (idle_o && empty_i && !payload_1_q && !field_strobe_o))) begin
       state_d = state_q;
       case (state_q)
         IDLE: if (!empty_i) state_d = HEADER;

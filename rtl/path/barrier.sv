@@ -24,7 +24,7 @@ module barrier (
     output logic      ended_o,          // the last command was an END
     output logic      idle_o
 );
-  // SETTLE waits for the last tick in the path domain; LEAVE gives the two fetches the clocks in which they take back
+  // SETTLE waits for the last tick in the path domain; LEAVE gives the two fetches the clock in which they take back
   // geometry_at_i and feed_at_i.
   typedef enum logic [2:0] {
     IDLE,
@@ -45,7 +45,7 @@ module barrier (
   always_ff @(posedge clk_i) begin : p_barrier
     state_e state_d;
 
-    // Between barriers nothing moves; LEAVE is long enough for every pulse to fall.
+    // Between barriers nothing moves.
     if (cut_i || rst_i || state_q != IDLE || start) begin
       state_d = state_q;
       case (state_q)
@@ -53,7 +53,7 @@ module barrier (
         SETTLE: if (step_q == 2'd2) state_d = LOAD;
         LOAD: state_d = COUNT;
         COUNT: if (over) state_d = LEAVE;
-        default: if (step_q == 2'd2) state_d = IDLE;
+        default: state_d = IDLE;
       endcase
       if (cut_i || rst_i) state_d = IDLE;
 

@@ -18,7 +18,7 @@ module begun_counter (
 
   always_ff @(posedge clk_i) begin
     cut_q <= cut_i && !rst_i;
-    if (begin_i) begun_o <= begun_o + 32'd1;
+    if (begin_i && !cut_i) begun_o <= begun_o + 32'd1;
     if (cut_q || rst_i) begun_o <= 32'd0;
   end
 

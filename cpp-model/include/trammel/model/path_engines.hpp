@@ -80,7 +80,7 @@ class PathEngines {
     out_.done = !feed_ticks && !path_ticks && engine.ready;
     out_.elsewhere = !engine.at_end;
     out_.payload_ready = !(feed_ticks && prescaled_) && !path_ticks && almost_ == 0;
-    if (out_.path_tick)
+    if (out_.path_tick && engine.ready && !engine.at_end)  // at its end it makes no step
       almost_ = kAlmost;
     else if (almost_ != 0)
       --almost_;
