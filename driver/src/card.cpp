@@ -30,10 +30,13 @@ void check_setting(std::uint32_t address, std::uint64_t value, const std::string
   }
 }
 
-std::uint32_t longest_command(bool map::Command::*queue, unsigned axes) {
+std::uint32_t longest_command(bool map::Command::*queue, const Identification& card) {
   std::uint32_t result = 0;
   for (const map::Command& command : map::kCommands) {
-    const auto mask = static_cast<std::uint8_t>(command.axis_halfwords != 0 ? (1U << axes) - 1 : 0);
+    if (!map::has_engine(card.engines, command.engine)) {
+      continue;
+    }
+    const auto mask = static_cast<std::uint8_t>(command.axis_halfwords != 0 ? (1U << card.axes) - 1 : 0);
     result = std::max(result, command.*queue ? map::queue_halfwords(command, mask) : 0);
   }
   return result;
@@ -70,11 +73,11 @@ void check_build(const Identification& card) {
     throw IdentificationError(
         fmt::format("card: engines 0x{:X}, of which this driver does not know 0x{:X}", card.engines, unknown));
   }
-  if ((card.engines & field::kEnginesPulseGenerators) == 0) {
-    throw IdentificationError(fmt::format("card: engines 0x{:X} without pulse generators", card.engines));
+  if (!map::has_engine(card.engines, map::engine::kLines)) {
+    throw IdentificationError(fmt::format("card: engines 0x{:X} without lines", card.engines));
   }
-  check_depth("geometry", card.geometry_depth, longest_command(&map::Command::to_geometry, card.axes));
-  check_depth("feed", card.feed_depth, longest_command(&map::Command::to_feed, card.axes));
+  check_depth("geometry", card.geometry_depth, longest_command(&map::Command::to_geometry, card));
+  check_depth("feed", card.feed_depth, longest_command(&map::Command::to_feed, card));
 }
 
 Status status_of(std::uint32_t value) {
@@ -89,6 +92,7 @@ Status status_of(std::uint32_t value) {
   status.refused = (value & field::kStatusRefused) != 0;
   status.snapshot = (value & field::kStatusSnapshot) != 0;
   status.incomplete = (value & field::kStatusIncomplete) != 0;
+  status.stopping = (value & field::kStatusStopping) != 0;
   return status;
 }
 
@@ -153,13 +157,13 @@ void Card::configure_axis(unsigned axis, const AxisSettings& settings) {
 }
 
 void Card::set_ratio(std::uint32_t ratio) {
-  check_setting(reg::kRatio, ratio, fmt::format("time base: ratio {} / 65536", ratio));
-  write(reg::kRatio, ratio, "time base: ratio");
+  check_setting(reg::kRatioFeed, ratio, fmt::format("time base: ratio {} / 65536", ratio));
+  write(reg::kRatioFeed, ratio, "time base: ratio");
 }
 
 void Card::set_slew_time(std::chrono::nanoseconds full_scale) {
   // The ratio moves by `slew` * 2^-28 every 4 clocks, so slew = 4 * 2^28 / clocks.
-  constexpr std::uint64_t kFullScale = std::uint64_t{1} << 30;
+  constexpr std::uint64_t kFullScale = std::uint64_t{map::constant::kSlewClocks} << map::constant::kSlewFractionBits;
   const std::uint64_t time = std::max<std::uint64_t>(clocks(full_scale, "time base: slew time"), 1);
   const std::uint64_t slew = std::min<std::uint64_t>(kFullScale / time, entry(reg::kSlew).maximum);
   check_setting(reg::kSlew, slew,
@@ -176,9 +180,15 @@ void Card::set_hold_limit(std::chrono::nanoseconds limit) {
 }
 
 Snapshot Card::snapshot() {
+  write(reg::kControl, field::kControlSnapshot, "snapshot");
+  return read_area(map::Area::Snap);
+}
+
+Snapshot Card::stop_snapshot() { return read_area(map::Area::Stop); }
+
+Snapshot Card::read_area(map::Area area) {
   constexpr std::uint64_t kPause = 16;    // clocks; a snapshot is a few dozen register words
   constexpr std::uint64_t kLimit = 4096;  // clocks
-  write(reg::kControl, field::kControlSnapshot, "snapshot");
   std::uint64_t waited = 0;
   while (status().snapshot) {
     if (waited >= kLimit) {
@@ -188,17 +198,16 @@ Snapshot Card::snapshot() {
     waited += kPause;
   }
   Snapshot result;
-  const std::uint64_t time_low = bus_->read(reg::kSnapTimeLo);
-  result.time = time_low | std::uint64_t{bus_->read(reg::kSnapTimeHi)} << 32;
-  result.status = status_of(bus_->read(reg::kSnapStatus));
-  result.rate = bus_->read(reg::kSnapRate);
-  result.ratio = bus_->read(reg::kSnapRatio);
-  const std::uint32_t running = bus_->read(reg::kSnapRunning);
-  result.geometry_command =
-      static_cast<std::uint8_t>(bits(running, field::kRunningGeometry, field::kRunningGeometryShift));
-  result.feed_command = static_cast<std::uint8_t>(bits(running, field::kRunningFeed, field::kRunningFeedShift));
+  const std::uint64_t time_low = bus_->read(reg::time_lo(area));
+  result.time = time_low | std::uint64_t{bus_->read(reg::time_hi(area))} << 32;
+  result.status = status_of(bus_->read(reg::status(area)));
+  result.faults = bus_->read(reg::fault(area));
+  result.rate = bus_->read(reg::rate(area));
+  result.ratio = bus_->read(reg::ratio(area));
+  result.geometry_begun = bus_->read(reg::geometry_begun(area));
+  result.feed_begun = bus_->read(reg::feed_begun(area));
   for (unsigned axis = 0; axis < identification_.axes; ++axis) {
-    result.position[axis] = static_cast<std::int32_t>(bus_->read(reg::snap_position(axis)));
+    result.position[axis] = static_cast<std::int32_t>(bus_->read(reg::position(area, axis)));
   }
   return result;
 }

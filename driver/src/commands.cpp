@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 
 #include "trammel/card_map.hpp"
@@ -44,8 +45,6 @@ const map::Command& layout_of(map::Opcode opcode) {
 bool fits(const map::Field& field, int128 value) {
   const int128 limit = static_cast<int128>(field.limit);
   switch (field.kind) {
-    case map::FieldKind::Zero:
-      return value == 0;
     case map::FieldKind::Signed: {
       const int128 half = int128{1} << (field.bits - 1);
       return value >= -half && value < half && (limit == 0 || (value >= -limit && value <= limit));
@@ -63,7 +62,8 @@ template <typename Visit>
 void for_each_value(const map::Command& layout, std::uint8_t mask, Visit visit) {
   std::size_t index = 0;
   for (std::size_t i = 0; i < layout.field_count; ++i) {
-    const std::uint32_t times = layout.fields[i].per_axis ? map::axes_in(mask) : 1;
+    const std::uint32_t axes = map::axes_in(mask);
+    const std::uint32_t times = layout.fields[i].per_axis ? axes - std::min(axes, layout.axes_in_base) : 1;
     for (std::uint32_t time = 0; time < times; ++time) {
       visit(layout.fields[i], index++);
     }
@@ -75,7 +75,8 @@ void check(const map::Command& layout, const Plain& plain) {
     refuse(layout,
            fmt::format("count {} is outside {} .. {}", plain.count, layout.count_minimum, layout.count_maximum));
   }
-  if ((plain.mask == 0) != (layout.mask_rule == map::MaskRule::None)) {
+  const bool names_axes = layout.mask_rule != map::MaskRule::None && layout.mask_rule != map::MaskRule::Flags;
+  if ((plain.mask != 0) != names_axes) {
     refuse(layout, fmt::format("axis mask 0x{:02X}", plain.mask));
   }
   for_each_value(layout, plain.mask, [&](const map::Field& field, std::size_t index) {
@@ -122,7 +123,7 @@ Plain plain_of(const Feed& feed) {
   return {map::Opcode::Feed,
           0,
           feed.ticks,
-          {static_cast<int128>(feed.rate), feed.acceleration, feed.jerk, feed.floor, feed.stop_distance}};
+          {static_cast<int128>(feed.rate), feed.floor, feed.stop_distance, feed.acceleration, feed.jerk}};
 }
 
 Plain plain_of(const Dwell& dwell) { return {map::Opcode::Dwell, 0, dwell.clocks, {}}; }
@@ -172,10 +173,10 @@ Command feed_from(const Plain& plain) {
   Feed feed;
   feed.ticks = plain.count;
   feed.rate = static_cast<std::uint64_t>(value[0]);
-  feed.acceleration = static_cast<std::int64_t>(value[1]);
-  feed.jerk = static_cast<std::int64_t>(value[2]);
-  feed.floor = static_cast<std::uint32_t>(value[3]);
-  feed.stop_distance = static_cast<std::uint32_t>(value[4]);
+  feed.floor = static_cast<std::uint32_t>(value[1]);
+  feed.stop_distance = static_cast<std::uint32_t>(value[2]);
+  feed.acceleration = static_cast<std::int64_t>(value[3]);
+  feed.jerk = static_cast<std::int64_t>(value[4]);
   return feed;
 }
 
@@ -190,9 +191,11 @@ Command command_from(const Plain& plain) {
     case map::Opcode::Dwell:
       return Dwell{plain.count};
     case map::Opcode::End:
+      return End{};
+    default:
       break;
   }
-  return End{};
+  throw ArgumentError(fmt::format("opcode {}: this driver has no such command", static_cast<unsigned>(plain.opcode)));
 }
 
 // Appends the low `halfwords` halfwords of the value, lowest first. Conversion of a negative value is mod 2^128.

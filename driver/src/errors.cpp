@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 
@@ -53,11 +55,18 @@ std::string describe_faults(std::uint32_t faults) {
       add(fmt::format("step fault of axis {}", axis));
     }
   }
-  if ((faults & field::kFaultTickMismatch) != 0) {
-    add("TICK_MISMATCH");
-  }
-  if ((faults & field::kFaultPathIncomplete) != 0) {
-    add("PATH_INCOMPLETE");
+  constexpr std::pair<std::uint32_t, const char*> kNames[] = {{field::kFaultTickMismatch, "TICK_MISMATCH"},
+                                                              {field::kFaultPathIncomplete, "PATH_INCOMPLETE"},
+                                                              {field::kFaultMissingPeriod, "MISSING_PERIOD"},
+                                                              {field::kFaultLimit, "LIMIT"},
+                                                              {field::kFaultEmergencyStop, "EMERGENCY_STOP"},
+                                                              {field::kFaultDriveFault, "DRIVE_FAULT"},
+                                                              {field::kFaultWatchdog, "WATCHDOG"},
+                                                              {field::kFaultLinkLoss, "LINK_LOSS"}};
+  for (const auto& [mask, name] : kNames) {
+    if ((faults & mask) != 0) {
+      add(name);
+    }
   }
   const std::uint32_t unknown = faults & ~card_map::find_register(card_map::reg::kFault).entry->mask;
   if (unknown != 0) {

@@ -1,4 +1,4 @@
-// The fake's registers and the stream's door; its motion is in fake_card_motion.cpp.
+// The fake's registers and its command checker; its motion is in fake_card_motion.cpp.
 #include "trammel/driver/fake_card.hpp"
 
 #include <utility>
@@ -10,8 +10,8 @@ namespace map = card_map;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-bool in_limits(const map::Register& entry, std::uint32_t value) {
-  if ((value & ~entry.mask) != 0) {
+bool in_limits(const map::Register& entry, std::uint32_t value, std::uint32_t engines) {
+  if ((value & ~map::bits_with_meaning(entry, engines)) != 0) {
     return false;
   }
   const std::uint32_t lowest_bit = entry.limited & ~(entry.limited - 1);
@@ -24,7 +24,7 @@ bool in_limits(const map::Register& entry, std::uint32_t value) {
 FakeCard::FakeCard(FakeCardOptions options) : options_(std::move(options)) {
   for (const map::Register& entry : map::kRegisters) {
     for (std::uint32_t slot = 0; slot < entry.count; ++slot) {
-      const std::uint32_t address = entry.address + slot * entry.stride;
+      const std::uint32_t address = map::slot_address(entry, slot);
       if (entry.access == map::Access::Setting) {
         settings_[address] = entry.reset;
       } else if (entry.access == map::Access::Snapshot) {
@@ -79,7 +79,7 @@ void FakeCard::write_word(std::uint32_t address, std::uint32_t value) {
       entry.access == map::Access::Snapshot) {
     refuse(map::Reason::ReadOnly, address, Direction::kWrite);
   }
-  if (!in_limits(entry, value)) {
+  if (!in_limits(entry, value, options_.engines)) {
     refuse(map::Reason::BadValue, address, Direction::kWrite);
   }
   if (entry.access == map::Access::Setting) {
@@ -99,7 +99,8 @@ void FakeCard::write_word(std::uint32_t address, std::uint32_t value) {
 
 const map::Register& FakeCard::require_register(std::uint32_t address, Direction direction) {
   const map::Slot slot = map::find_register(address);
-  if (slot.entry == nullptr || (slot.entry->only_present_axes && slot.index >= options_.axes)) {
+  if (slot.entry == nullptr || !map::has_engine(options_.engines, slot.entry->engine) ||
+      (slot.entry->only_present_axes && slot.index >= options_.axes)) {
     refuse(map::Reason::UnknownAddress, address, direction);
   }
   return *slot.entry;
@@ -128,6 +129,12 @@ std::uint32_t FakeCard::constant(const map::Register& entry) const {
       return options_.axes;
     case reg::kClockHz:
       return options_.clock_hz;
+    case reg::kEngines:
+      return options_.engines;
+    case reg::kCommandsVersion:
+      return map::kCommandsVersionValue;
+    case reg::kPorts:
+      return 1;
     case reg::kGeometryDepth:
       return options_.geometry_depth;
     case reg::kFeedDepth:
@@ -147,16 +154,13 @@ std::uint32_t FakeCard::live(std::uint32_t address) const {
       return options_.geometry_depth - geometry_.used;
     case reg::kFeedRoom:
       return options_.feed_depth - feed_.used;
-    case reg::kRunning:
-      return running();
+    case reg::kGeometryBegun:
+      return geometry_.begun;
+    case reg::kFeedBegun:
+      return feed_.begun;
     default:
       return status();
   }
-}
-
-std::uint32_t FakeCard::running() const {
-  return std::uint32_t{geometry_.number} << field::kRunningGeometryShift | std::uint32_t{feed_.number}
-                                                                               << field::kRunningFeedShift;
 }
 
 std::uint32_t FakeCard::status() const {
@@ -175,34 +179,35 @@ std::uint32_t FakeCard::status() const {
   return value;
 }
 
-void FakeCard::take_snapshot() {
+void FakeCard::take_snapshot(map::Area area) {
   if (time_ >= snapshot_until_) {
     snapshot_before_ = snapshot_;
   }
-  snapshot_[reg::kSnapTimeLo] = static_cast<std::uint32_t>(time_);
-  snapshot_[reg::kSnapTimeHi] = static_cast<std::uint32_t>(time_ >> 32);
-  snapshot_[reg::kSnapStatus] = status();
+  snapshot_[reg::fault(area)] = fault_;
+  snapshot_[reg::status(area)] = status() & ~field::kStatusSnapshot;
+  snapshot_[reg::time_lo(area)] = static_cast<std::uint32_t>(time_);
+  snapshot_[reg::time_hi(area)] = static_cast<std::uint32_t>(time_ >> 32);
   const Feed* feed = feed_.left != 0 ? std::get_if<Feed>(&feed_.command) : nullptr;
-  snapshot_[reg::kSnapRate] = feed != nullptr ? static_cast<std::uint32_t>(feed->rate >> 32) : 0;
-  snapshot_[reg::kSnapRatio] = ratio();
-  snapshot_[reg::kSnapRunning] = running();
+  snapshot_[reg::rate(area)] = feed != nullptr ? static_cast<std::uint32_t>(feed->rate >> 32) : 0;
+  snapshot_[reg::ratio(area)] = ratio();
+  snapshot_[reg::geometry_begun(area)] = geometry_.begun;
+  snapshot_[reg::feed_begun(area)] = feed_.begun;
   for (unsigned axis = 0; axis < options_.axes; ++axis) {
-    snapshot_[reg::snap_position(axis)] = static_cast<std::uint32_t>(position_[axis]);
+    snapshot_[reg::position(area, axis)] = static_cast<std::uint32_t>(position_[axis]);
   }
   snapshot_until_ = time_ + options_.clocks_per_snapshot;
 }
 
 void FakeCard::control(std::uint32_t value) {
   if ((value & field::kControlSnapshot) != 0) {
-    take_snapshot();
-  }
-  if ((value & field::kControlFlush) != 0 && !partial_.empty()) {
-    latch_refusal(map::Reason::Truncated, reg::kControl, static_cast<std::uint8_t>(partial_[0] >> 24));
-    partial_.clear();
-    door_open_ = false;
+    take_snapshot(map::Area::Snap);
   }
   if ((value & field::kControlAbort) != 0) {
-    abort();
+    cut();
+  } else if ((value & field::kControlFlush) != 0 && !partial_.empty()) {
+    latch_refusal(map::Reason::Truncated, reg::kControl, static_cast<std::uint8_t>(partial_[0] >> 24));
+    partial_.clear();
+    stream_open_ = false;
   }
 }
 
@@ -212,8 +217,11 @@ void FakeCard::stream_word(std::uint32_t word) {
   if (direct_left_ != 0) {
     refuse(map::Reason::Busy, reg::kStream, Direction::kWrite);
   }
-  if (!door_open_) {
-    refuse(map::Reason::DoorClosed, reg::kStream, Direction::kWrite);
+  if (fault_ != 0) {
+    refuse(map::Reason::Faulted, reg::kStream, Direction::kWrite);
+  }
+  if (!stream_open_) {
+    refuse(map::Reason::StreamClosed, reg::kStream, Direction::kWrite);
   }
   partial_.push_back(word);
   if (partial_.size() == 1) {
@@ -228,10 +236,13 @@ void FakeCard::check_header() {
   const std::uint32_t header = partial_[0];
   const auto mask = static_cast<std::uint8_t>(header >> 8);
   const map::Command* layout = map::find_command(static_cast<std::uint8_t>(header));
-  if (layout == nullptr) {
+  if (layout == nullptr || !map::has_engine(options_.engines, layout->engine)) {
     refuse_partial(map::Reason::UnknownOpcode);
   }
-  if (mask >> options_.axes != 0 || (mask == 0) != (layout->mask_rule == map::MaskRule::None)) {
+  const bool good_mask = layout->mask_rule == map::MaskRule::Flags  ? map::flags_good(*layout, mask, options_.engines)
+                         : layout->mask_rule == map::MaskRule::None ? mask == 0
+                                                                    : mask != 0 && mask >> options_.axes == 0;
+  if (!good_mask) {
     refuse_partial(map::Reason::BadMask);
   }
   if ((header >> 16 & 0xFF) != map::words(*layout, mask)) {
@@ -262,7 +273,7 @@ void FakeCard::accept_command() {
   const std::uint32_t halfwords = map::queue_halfwords(layout, static_cast<std::uint8_t>(partial_[0] >> 8));
   for (Queue* queue : {layout.to_geometry ? &geometry_ : nullptr, layout.to_feed ? &feed_ : nullptr}) {
     if (queue != nullptr) {
-      queue->commands.push_back({decoded.command, decoded.number, halfwords});
+      queue->commands.push_back({decoded.command, halfwords});
       queue->used += halfwords;
     }
   }
@@ -275,7 +286,7 @@ void FakeCard::accept_command() {
 void FakeCard::refuse_partial(map::Reason reason) {
   latch_refusal(reason, reg::kStream, static_cast<std::uint8_t>(partial_[0] >> 24));
   partial_.clear();
-  door_open_ = false;
+  stream_open_ = false;
   throw BusError(reg::kStream, Direction::kWrite, "refused by the card");
 }
 

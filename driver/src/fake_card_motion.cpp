@@ -41,26 +41,34 @@ bool FakeCard::busy() const {
          !geometry_.commands.empty() || !feed_.commands.empty();
 }
 
-std::uint32_t FakeCard::ratio() const { return setting(reg::kHold) != 0 ? 0 : setting(reg::kRatio); }
+std::uint32_t FakeCard::ratio() const { return setting(reg::kHold) != 0 ? 0 : setting(reg::kRatioFeed); }
 
 std::uint64_t FakeCard::setting64(std::uint32_t low, std::uint32_t high) const {
   return setting(low) | std::uint64_t{setting(high)} << 32;
 }
 
-void FakeCard::abort() {
+void FakeCard::raise_fault(std::uint32_t bits) {
+  const bool first = fault_ == 0;
+  fault_ |= bits;
+  if (first) {
+    take_snapshot(card_map::Area::Stop);
+  }
+  cut();
+}
+
+void FakeCard::cut() {
   geometry_ = {};
   feed_ = {};
   dwell_left_ = 0;
   direct_left_ = 0;
   partial_.clear();
-  door_open_ = true;
+  stream_open_ = true;
   next_number_ = 0;
   ended_ = false;
 }
 
 bool FakeCard::direct_is_valid(std::uint32_t mask) const {
-  const std::uint64_t length = setting64(reg::kLengthLo, reg::kLengthHi);
-  if (mask == 0 || mask >> options_.axes != 0 || length == 0) {
+  if (setting64(reg::kLengthLo, reg::kLengthHi) == 0) {
     return false;
   }
   for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
@@ -75,7 +83,13 @@ bool FakeCard::direct_is_valid(std::uint32_t mask) const {
 }
 
 void FakeCard::start_direct(std::uint32_t mask) {
-  if (busy() || fault_ != 0 || !partial_.empty()) {
+  if (mask == 0 || mask >> options_.axes != 0) {
+    refuse(card_map::Reason::BadValue, reg::kStart, Direction::kWrite);
+  }
+  if (fault_ != 0) {
+    refuse(card_map::Reason::Faulted, reg::kStart, Direction::kWrite);
+  }
+  if (busy()) {
     refuse(card_map::Reason::Busy, reg::kStart, Direction::kWrite);
   }
   if (!direct_is_valid(mask)) {
@@ -107,9 +121,6 @@ void FakeCard::run(std::uint64_t clocks) {
 
 // Runs up to the next event, at most `clocks`; gives back the clocks used, 0 only if something has changed.
 std::uint64_t FakeCard::run_some(std::uint64_t clocks) {
-  if (fault_ != 0) {
-    return clocks;
-  }
   std::uint64_t ticks = 0;
   if (direct_left_ != 0) {
     const std::uint64_t used = run_ticks(clocks, direct_left_, ticks);
@@ -152,14 +163,14 @@ std::uint64_t FakeCard::run_ticks(std::uint64_t clocks, std::uint64_t wanted, st
   return used;
 }
 
-// Takes the next command in work if none is; a barrier stays in its queue.
+// Begins the next command if none is under way; a barrier stays in its queue.
 void FakeCard::load(Queue& queue) {
   if (queue.left != 0 || queue.commands.empty() || is_barrier(queue.commands.front().command)) {
     return;
   }
   const Queued& next = queue.commands.front();
   queue.command = next.command;
-  queue.number = next.number;
+  ++queue.begun;
   queue.left = ticks_of(next.command);
   queue.used -= next.halfwords;
   queue.commands.pop_front();
@@ -170,7 +181,7 @@ void FakeCard::load(Queue& queue) {
 bool FakeCard::pass_barrier() {
   const auto at_barrier = [](const Queue& queue) { return queue.left == 0 && !queue.commands.empty(); };
   if ((at_barrier(geometry_) && feed_.left != 0) || (at_barrier(feed_) && geometry_.left != 0)) {
-    fault_ |= field::kFaultTickMismatch;
+    raise_fault(field::kFaultTickMismatch);
     return true;
   }
   if (!at_barrier(geometry_) || !at_barrier(feed_)) {
@@ -178,7 +189,7 @@ bool FakeCard::pass_barrier() {
   }
   const Command barrier = geometry_.commands.front().command;
   for (Queue* queue : {&geometry_, &feed_}) {
-    queue->number = queue->commands.front().number;
+    ++queue->begun;
     queue->used -= queue->commands.front().halfwords;
     queue->commands.pop_front();
   }

@@ -12,7 +12,7 @@ namespace {
 
 using wide::uint128;
 
-constexpr unsigned kFractionBits = 40;
+constexpr unsigned kFractionBits = card_map::constant::kFractionBits;
 constexpr std::uint64_t kMaxLength = (std::uint64_t{1} << 40) - 1;
 constexpr std::uint64_t kMaxCount = 0xFFFFFFFF;
 constexpr std::uint64_t kMaxClocks = (std::uint64_t{1} << 62) - 1;
@@ -92,6 +92,14 @@ std::uint64_t speed_clocks(const CardTiming& card, const Displacement& displacem
   return static_cast<std::uint64_t>(std::min<uint128>(clocks, kMaxClocks + 1));  // too long is refused later
 }
 
+void require_direct_mode(const Card& card) {
+  const std::uint32_t engines = card.identification().engines;
+  if (!card_map::has_engine(engines, card_map::engine::kDirectMode)) {
+    throw ArgumentError(
+        fmt::format("line: the card has no direct mode (engines 0x{:X}); stream it as LINE and FEED", engines));
+  }
+}
+
 const OneShotPart require_single_part(const OneShotPlan& plan) {
   if (plan.size() != 1) {
     throw ArgumentError(fmt::format("line: {} clocks are too long for one start; run_line takes its {} parts",
@@ -110,7 +118,7 @@ std::array<std::uint32_t, kOneShotWords> OneShotPart::words() const {
   namespace reg = card_map::reg;
   std::array<std::uint32_t, kOneShotWords> result{};
   const auto at = [&result](std::uint32_t address) -> std::uint32_t& {
-    return result[(address - reg::frequency_lo(0)) / 4];
+    return result[(address - reg::frequency_lo(kMaxAxes - 1)) / 4];
   };
   for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
     at(reg::frequency_lo(axis)) = static_cast<std::uint32_t>(frequency[axis]);
@@ -175,9 +183,15 @@ OneShotPlan plan_line(const CardTiming& card, const Displacement& displacement, 
 }
 
 void start_line(Card& card, const OneShotPart& part) {
+  namespace reg = card_map::reg;
+  require_direct_mode(card);
   const auto words = part.words();
+  // The slots run downwards, so that those of the card's axes lie just before LENGTH and START.
+  const unsigned axes = card.identification().axes;
+  const std::size_t absent = words.size() - one_shot_words(axes);
   try {
-    card.bus().write_block(card_map::reg::frequency_lo(0), words.data(), words.size(), Addressing::kIncrementing);
+    card.bus().write_block(reg::frequency_lo(axes - 1), &words[absent], words.size() - absent,
+                           Addressing::kIncrementing);
   } catch (const BusError& error) {
     card.throw_refusal(error, "line");
   }
@@ -185,12 +199,14 @@ void start_line(Card& card, const OneShotPart& part) {
 
 OneShotPlan start_line(Card& card, const Displacement& displacement, std::chrono::nanoseconds duration,
                        const LineLimits& limits) {
+  require_direct_mode(card);
   const OneShotPlan plan = plan_line(card.timing(), displacement, duration, limits);
   start_line(card, require_single_part(plan));
   return plan;
 }
 
 OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed speed, const LineLimits& limits) {
+  require_direct_mode(card);
   const OneShotPlan plan = plan_line(card.timing(), displacement, speed, limits);
   start_line(card, require_single_part(plan));
   return plan;

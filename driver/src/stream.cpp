@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 #include "trammel/card_map.hpp"
@@ -12,21 +13,19 @@ namespace {
 
 namespace map = card_map;
 namespace reg = card_map::reg;
-namespace field = card_map::field;
 
-void require_engine(const Identification& card, std::uint32_t engine, const char* what) {
-  if ((card.engines & engine) == 0) {
-    throw ArgumentError(fmt::format("stream: {}, which the card does not have (engines 0x{:X})", what, card.engines));
+void require_engine(const Identification& card, std::uint32_t engine, std::string_view command) {
+  if (!map::has_engine(card.engines, engine)) {
+    throw ArgumentError(fmt::format("stream: {} needs {}, which the card does not have (engines 0x{:X})", command,
+                                    map::kEngineNames[engine], card.engines));
   }
 }
 
 // What of a command depends on the card; its layout is checked by encode().
-void check_for_card(const Identification& card, const Command& command) {
+void check_for_card(const Identification& card, const Command& command, const map::Command& layout) {
+  require_engine(card, layout.engine, layout.name);
   if (const auto* feed = std::get_if<Feed>(&command); feed != nullptr && feed->jerk != 0) {
-    require_engine(card, field::kEnginesJerk, "FEED needs jerk");
-  }
-  if (std::holds_alternative<Arc>(command)) {
-    require_engine(card, field::kEnginesAccumulator4, "ARC needs the deviation accumulator");
+    require_engine(card, map::engine::kJerk, layout.name);
   }
 }
 
@@ -96,13 +95,13 @@ Stream::Encoded Stream::encode_checked(const Command& command, std::uint8_t numb
   encode(command, number, words);
   encoded.end = words.size();
   encoded.is_end = std::holds_alternative<End>(command);
-  check_for_card(card, command);
   const std::uint32_t header = words[encoded.begin];
   const auto mask = static_cast<std::uint8_t>(header >> 8);
+  const map::Command& layout = *map::find_command(static_cast<std::uint8_t>(header));
+  check_for_card(card, command, layout);
   if (mask >> card.axes != 0) {
     throw ArgumentError(fmt::format("stream: axis mask 0x{:02X}, but the card has {} axes", mask, card.axes));
   }
-  const map::Command& layout = *map::find_command(static_cast<std::uint8_t>(header));
   const std::uint32_t halfwords = map::queue_halfwords(layout, mask);
   encoded.need = {layout.to_geometry ? halfwords : 0, layout.to_feed ? halfwords : 0};
   return encoded;
@@ -166,17 +165,18 @@ Status Stream::look(Watch& watch) {
       throw_refused(*refusal);
     }
   }
-  const std::uint32_t running = card_->bus().read(reg::kRunning);
-  if (!watch.started || running != watch.running || status.held) {
-    watch = {0, running, true};
+  const std::uint32_t geometry_begun = card_->bus().read(reg::kGeometryBegun);
+  const std::uint32_t feed_begun = card_->bus().read(reg::kFeedBegun);
+  const bool same = geometry_begun == watch.geometry_begun && feed_begun == watch.feed_begun;
+  if (!watch.started || !same || status.held) {
+    watch = {0, geometry_begun, feed_begun, true};
   }
   if (options_.progress) {
     StreamProgress progress;
     progress.commands_sent = sent_;
     progress.status = status;
-    progress.geometry_command =
-        static_cast<std::uint8_t>((running & field::kRunningGeometry) >> field::kRunningGeometryShift);
-    progress.feed_command = static_cast<std::uint8_t>((running & field::kRunningFeed) >> field::kRunningFeedShift);
+    progress.geometry_begun = geometry_begun;
+    progress.feed_begun = feed_begun;
     options_.progress(progress);
   }
   return status;

@@ -3,7 +3,7 @@
 // A write at c belongs to the command under way; commit_i makes what was written in earlier clocks readable, drop_i
 // forgets it (and wins over a write or commit beside it). word_o at c+2 is the halfword that read_i took at c; reads may
 // follow each other every clock, and a read while empty_o is ignored. empty_o counts a read at c+1 and a commit at
-// c+2; room_o counts reads, writes and drops at c+1. The writer keeps within room_o.
+// c+2; room_o (combinational) counts reads, writes and drops at c+1. The writer keeps within room_o.
 `default_nettype none
 module halfword_queue #(
     parameter int Depth = 4096  // halfwords, 2 to 32,768
@@ -22,24 +22,26 @@ module halfword_queue #(
 );
 
   localparam int AddressWidth = $clog2(Depth);
+  localparam logic [AddressWidth:0] DEPTH = (AddressWidth + 1)'(Depth);
   localparam logic [AddressWidth-1:0] LAST = AddressWidth'(Depth - 1);
 
-  // A pointer is an address and, above it, the parity of its laps: equal addresses mean empty or full.
+  // A pointer is an address and, above it, the parity of its laps: equal addresses mean empty or full. A lap of a power of
+  // two needs no comparison.
   function automatic logic [AddressWidth:0] next(input logic [AddressWidth:0] pointer);
-    next = (pointer[AddressWidth-1:0] == LAST) ? {~pointer[AddressWidth], {AddressWidth{1'b0}}} : pointer + 1'b1;
+    next = pointer + 1'b1;
+    if (Depth != 2 ** AddressWidth && pointer[AddressWidth-1:0] == LAST) begin
+      next = {~pointer[AddressWidth], {AddressWidth{1'b0}}};
+    end
   endfunction
 
   logic [AddressWidth:0] write_q;
   logic [AddressWidth:0] commit_q;
   logic [AddressWidth:0] read_q;
   logic [AddressWidth:0] read_next_q;
-  logic [15:0] pending_q;
   logic take;
-  logic keep;
   logic reset;
 
   assign take  = read_i && !empty_o;
-  assign keep  = write_i && !drop_i;
   assign reset = rst_i || clear_i;
 
   // In nibbles, so that a block RAM is deep and narrow: then none, or few, are chosen between after the RAM's slow output.
@@ -74,19 +76,16 @@ module halfword_queue #(
   end
 
   always_ff @(posedge clk_i) begin
-    if (reset) begin
-      empty_o <= 1'b1;
-      pending_q <= '0;
-      room_o <= 16'(Depth);
-    end else begin
-      empty_o <= (take ? read_next_q : read_q) == commit_q;
-      if (drop_i) pending_q <= '0;
-      else if (commit_i) pending_q <= {15'b0, write_i};
-      else if (write_i) pending_q <= pending_q + 1'b1;
-      // All ones take one off; a read is the carry-in.
-      room_o <= room_o + (drop_i ? pending_q : {16{keep}}) + {15'b0, take};
-    end
+    if (reset) empty_o <= 1'b1;
+    else empty_o <= (take ? read_next_q : read_q) == commit_q;
   end
+
+  logic [AddressWidth:0] ahead;  // of the writer to the reader; negative or 0 in the same lap
+  logic [AddressWidth:0] room;
+
+  assign ahead  = {1'b0, read_q[AddressWidth-1:0]} - {1'b0, write_q[AddressWidth-1:0]};
+  assign room   = read_q[AddressWidth] == write_q[AddressWidth] ? ahead + DEPTH : ahead;
+  assign room_o = 16'(room);
 
 endmodule
 `default_nettype wire

@@ -35,28 +35,28 @@ module register_ram #(
     if (rst_i) resetting_q <= 1'b1;
   end
 
-  // The write port, registered.
+  // The write port, registered: those who write take turns, and give 0 when it is not theirs.
   always_ff @(posedge clk_i) begin : p_store
-    logic [7:0] first_inverted;
-    logic [7:0] second_inverted;
+    logic [ 7:0] swept;
+    logic [31:0] reset_value;
+    logic [ 7:0] first_inverted;
+    logic [ 7:0] second_inverted;
 
-    store_q <= setting_i[40] || snapshot_i[40] || resetting_q;
-    if (setting_i[40]) begin
-      store_address_q <= setting_i[39:32];
-      store_data_q <= setting_i[31:0];
-    end else if (snapshot_i[40]) begin
-      store_address_q <= snapshot_i[39:32];
-      store_data_q <= snapshot_i[31:0];
-    end else if (resetting_q) begin
-      store_address_q <= sweep_i;
-      store_data_q <= card_map_pkg::register_reset({2'b00, sweep_i}) |
-          (sweep_i < 8'd16 ? constants_i[32*sweep_i[3:0]+:32] : 32'd0);
+    swept = '0;
+    reset_value = '0;
+    if (resetting_q) begin
+      swept = sweep_i;
+      reset_value = card_map_pkg::register_reset({2'b00, swept});
+      if (swept < 8'd16) reset_value = reset_value | constants_i[32*swept[3:0]+:32];
       first_inverted  = 8'(idle_level_i[Axes-1:0]);
       second_inverted = 8'(idle_level_i[2*Axes-1:Axes]);
-      if ((sweep_i & ~AXIS_SLOTS) == FIRST_MODE) begin
-        store_data_q[3:2] <= {second_inverted[sweep_i[5:3]], first_inverted[sweep_i[5:3]]};
+      if ((swept & ~AXIS_SLOTS) == FIRST_MODE) begin
+        reset_value[3:2] = {second_inverted[swept[5:3]], first_inverted[swept[5:3]]};
       end
     end
+    store_q <= setting_i[40] || snapshot_i[40] || resetting_q;
+    store_address_q <= {8{setting_i[40]}} & setting_i[39:32] | snapshot_i[39:32] | swept;
+    store_data_q <= {32{setting_i[40]}} & setting_i[31:0] | snapshot_i[31:0] | reset_value;
     if (rst_i) store_q <= 1'b0;
   end
 

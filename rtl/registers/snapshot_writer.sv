@@ -17,7 +17,7 @@ module snapshot_writer #(
     input  wire logic [31:0] chain_i,
     output logic      [ 1:0] snapshot_o,  // {shift, strobe}
     output logic             active_o,    // from the strobe until the last word is in the RAM
-    output logic      [40:0] store_o      // {write, address, data}, combinational
+    output logic      [40:0] store_o      // {write, address, data}, combinational; 0 when there is nothing to write
 );
 
   localparam logic [3:0] FAULT = card_map_pkg::IN_AREA_FAULT[5:2];
@@ -78,9 +78,10 @@ module snapshot_writer #(
     end
   end
 
-  assign store_o[40] = write_q;
-  assign store_o[39:32] = {for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6], word_q};
-  assign store_o[31:0] = word_q == TIME_LO ? time_i[31:0] : word_q == TIME_HI ? time_i[63:32] : chain_i;
+  logic [31:0] data;
+
+  assign data = word_q == TIME_LO ? time_i[31:0] : word_q == TIME_HI ? time_i[63:32] : chain_i;
+  assign store_o = write_q ? {1'b1, for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6], word_q, data} : '0;
 
 endmodule
 `default_nettype wire

@@ -27,7 +27,7 @@ TEST(CardOpen, ReadsWhoTheCardIsInThisOrderAndWritesNothing) {
   EXPECT_CALL(bus, read(reg::kCommandsVersion)).WillOnce(Return(card_map::kCommandsVersionValue));
   EXPECT_CALL(bus, read(reg::kAxes)).WillOnce(Return(2U));
   EXPECT_CALL(bus, read(reg::kClockHz)).WillOnce(Return(100'000'000U));
-  EXPECT_CALL(bus, read(reg::kEngines)).WillOnce(Return(0x13U));
+  EXPECT_CALL(bus, read(reg::kEngines)).WillOnce(Return(0x33U));
   EXPECT_CALL(bus, read(reg::kGeometryDepth)).WillOnce(Return(4096U));
   EXPECT_CALL(bus, read(reg::kFeedDepth)).WillOnce(Return(2560U));
   EXPECT_CALL(bus, read(reg::step_length(0))).WillOnce(Return(0U));
@@ -39,7 +39,7 @@ TEST(CardOpen, ReadsWhoTheCardIsInThisOrderAndWritesNothing) {
   EXPECT_EQ(card.identification().map_minor, 5);
   EXPECT_EQ(card.identification().axes, 2U);
   EXPECT_EQ(card.identification().clock_hz, 100'000'000U);
-  EXPECT_EQ(card.identification().engines, 0x13U);
+  EXPECT_EQ(card.identification().engines, 0x33U);
   EXPECT_EQ(card.identification().geometry_depth, 4096U);
   EXPECT_EQ(card.identification().feed_depth, 2560U);
   EXPECT_EQ(card.timing().pulse_period[0], 7U);
@@ -76,13 +76,13 @@ TEST_P(MalformedCard, IsRefusedWithTheReason) {
 INSTANTIATE_TEST_SUITE_P(
     CardOpen, MalformedCard,
     ::testing::Values(Malformed{"Magic", reg::kMagic, 0x4D4C5254, "0x4D4C5254"},
-                      Malformed{"OlderMap", reg::kMapVersion, 0x00000001, "map version 0.1"},
-                      Malformed{"NewerMap", reg::kMapVersion, 0x00020003, "map version 2.3"},
-                      Malformed{"Commands", reg::kCommandsVersion, 2, "layouts of version 2"},
+                      Malformed{"OlderMap", reg::kMapVersion, 0x00010000, "map version 1.0"},
+                      Malformed{"NewerMap", reg::kMapVersion, 0x00030003, "map version 3.3"},
+                      Malformed{"Commands", reg::kCommandsVersion, 1, "layouts of version 1"},
                       Malformed{"NoAxes", reg::kAxes, 0, "0 axes"}, Malformed{"NineAxes", reg::kAxes, 9, "9 axes"},
                       Malformed{"NoClock", reg::kClockHz, 0, "0 Hz"},
-                      Malformed{"UnknownEngine", reg::kEngines, 0x21, "does not know 0x20"},
-                      Malformed{"NoPulseGenerators", reg::kEngines, 0x12, "without pulse generators"},
+                      Malformed{"UnknownEngine", reg::kEngines, 0x801, "does not know 0x800"},
+                      Malformed{"NoLines", reg::kEngines, 0x12, "without lines"},
                       Malformed{"ShortGeometry", reg::kGeometryDepth, 36, "geometry queue holds 36"},
                       Malformed{"ShortFeed", reg::kFeedDepth, 19, "feed queue holds 19"}),
     [](const auto& test) { return test.param.name; });
@@ -148,7 +148,7 @@ TEST_F(CardTest, BadArgumentsNeverReachTheBus) {
 
 TEST_F(CardTest, TimeBase) {
   InSequence in_order;
-  EXPECT_CALL(bus_, write(reg::kRatio, 0x8000));
+  EXPECT_CALL(bus_, write(reg::kRatioFeed, 0x8000));
   card_.set_ratio(0x8000);
   EXPECT_CALL(bus_, write(reg::kSlew, (1U << 30) / 500'000));
   card_.set_slew_time(500ms);
@@ -171,9 +171,11 @@ TEST_F(CardTest, ASnapshotIsStrobedAwaitedAndReadOnce) {
   EXPECT_CALL(bus_, read(reg::kSnapTimeLo)).WillOnce(Return(0x89ABCDEFU));
   EXPECT_CALL(bus_, read(reg::kSnapTimeHi)).WillOnce(Return(0x01234567U));
   EXPECT_CALL(bus_, read(reg::kSnapStatus)).WillOnce(Return(field::kStatusBusy | field::kStatusHeld));
+  EXPECT_CALL(bus_, read(reg::kSnapFault)).WillOnce(Return(0x400U));
   EXPECT_CALL(bus_, read(reg::kSnapRate)).WillOnce(Return(7U));
   EXPECT_CALL(bus_, read(reg::kSnapRatio)).WillOnce(Return(0x10000U));
-  EXPECT_CALL(bus_, read(reg::kSnapRunning)).WillOnce(Return(0x0201U));
+  EXPECT_CALL(bus_, read(reg::kSnapGeometryBegun)).WillOnce(Return(0x80000001U));
+  EXPECT_CALL(bus_, read(reg::kSnapFeedBegun)).WillOnce(Return(2U));
   EXPECT_CALL(bus_, read(reg::snap_position(0))).WillOnce(Return(0xFFFFFFFFU));
   EXPECT_CALL(bus_, read(reg::snap_position(1))).WillOnce(Return(0x7FFFFFFFU));
   EXPECT_CALL(bus_, read(reg::snap_position(2))).WillOnce(Return(0x80000000U));
@@ -185,9 +187,25 @@ TEST_F(CardTest, ASnapshotIsStrobedAwaitedAndReadOnce) {
   EXPECT_FALSE(snapshot.status.snapshot);
   EXPECT_EQ(snapshot.rate, 7U);
   EXPECT_EQ(snapshot.ratio, 0x10000U);
-  EXPECT_EQ(snapshot.geometry_command, 1);
-  EXPECT_EQ(snapshot.feed_command, 2);
+  EXPECT_EQ(snapshot.faults, 0x400U);
+  EXPECT_EQ(snapshot.geometry_begun, 0x80000001U);
+  EXPECT_EQ(snapshot.feed_begun, 2U);
   EXPECT_THAT(snapshot.position, ElementsAre(-1, 0x7FFFFFFF, std::numeric_limits<std::int32_t>::min(), 1, 0, 0, 0, 0));
+}
+
+TEST(CardOnFake, AFaultLatchesWhereTheCardStood) {
+  FakeCard fake;
+  Card card = Card::open(fake);
+  fake.wait(1000);
+  fake.raise_fault(0x2000);
+  fake.wait(1000);
+  fake.raise_fault(0x1000);
+  const Snapshot stopped = card.stop_snapshot();
+  EXPECT_EQ(stopped.faults, 0x2000U) << "the first cause";
+  EXPECT_TRUE(stopped.status.faulted);
+  EXPECT_GE(stopped.time, 1000U);
+  EXPECT_LT(stopped.time, 2000U);
+  EXPECT_EQ(card.faults(), 0x3000U);
 }
 
 TEST_F(CardTest, ASnapshotThatNeverComesTimesOut) {
@@ -230,7 +248,7 @@ TEST_F(CardTest, FaultsAndRefusalsAreReadAndClearedByTheirMasks) {
   EXPECT_EQ(refusal->address, reg::kStream);
   EXPECT_CALL(bus_, write(reg::kRefusal, 0x0FFFFFFF));
   card_.clear_refusal();
-  EXPECT_CALL(bus_, write(reg::kFault, 0x3FF));
+  EXPECT_CALL(bus_, write(reg::kFault, 0xFFFF));
   card_.clear_faults();
   EXPECT_CALL(bus_, write(reg::kControl, field::kControlAbort));
   card_.abort();
@@ -248,16 +266,18 @@ TEST_F(CardTest, ALinkThatIsGoneKeepsTheFirstError) {
     FAIL();
   } catch (const BusError& error) {
     EXPECT_EQ(error.address(), reg::kHold);
-    EXPECT_THAT(error.what(), HasSubstr("HOLD (0x084) failed: no answer"));
+    EXPECT_THAT(error.what(), HasSubstr("HOLD (0x184) failed: no answer"));
   }
 }
 
 TEST(Errors, TextsNameWhatTheyAreOf) {
   EXPECT_EQ(describe_faults(0), "none");
   EXPECT_EQ(describe_faults(0x80000200), "PATH_INCOMPLETE, unknown bits 0x80000000");
+  EXPECT_EQ(describe_faults(0xFC00), "MISSING_PERIOD, LIMIT, EMERGENCY_STOP, DRIVE_FAULT, WATCHDOG, LINK_LOSS");
+  EXPECT_THAT(describe_reason(15), HasSubstr("FAULTED (15): "));
   EXPECT_THAT(describe_reason(5), HasSubstr("NO_ROOM (5): "));
   EXPECT_THAT(RefusedError(6, 17, reg::kStream, "stream").what(), HasSubstr("BAD_FIELD"));
-  EXPECT_THAT(BusError(reg::step_space(3), Direction::kRead).what(), HasSubstr("STEP_SPACE[3] (0x164)"));
+  EXPECT_THAT(BusError(reg::step_space(3), Direction::kRead).what(), HasSubstr("STEP_SPACE[3] (0x264)"));
 }
 
 }  // namespace

@@ -56,6 +56,26 @@ TEST(Commands, ALineIsLaidOutAsTheLayoutPageSays) {
               ElementsAre(0x07060501U, 0x23456789U, 0x00000001U, 0x01000000U, 0xFFFFFFFEU, 0x0000FFFFU));
 }
 
+TEST(Commands, APieceIsLaidOutAsTheLayoutPageSays) {
+  Feed feed;
+  feed.ticks = 5;
+  feed.rate = 0x0123456789ABCDEF;
+  feed.floor = 0x11112222;
+  feed.stop_distance = 0x33334444;
+  feed.acceleration = -2;
+  feed.jerk = 3;
+  // Halfwords: 0010 000B | 0005 0000 | 0000 CDEF | 89AB 4567 | 0123 2222 | 1111 4444 | 3333 FFFE | ... | 0003 ...
+  EXPECT_THAT(words_of(feed, 0), ElementsAre(0x000B0010U, 0x00000005U, 0xCDEF0000U, 0x456789ABU, 0x22220123U,
+                                             0x44441111U, 0xFFFE3333U, 0xFFFFFFFFU, 0x0003FFFFU, 0U, 0U));
+}
+
+TEST(Commands, CommandsOfThatThisDriverHasNoneAreNotDecoded) {
+  const std::vector<std::uint32_t> mark{0x00030023U, 0, 0};
+  EXPECT_THROW(decode(mark.data(), mark.size()), ArgumentError);
+  const std::vector<std::uint32_t> rapid{0x000B0110U, 5, 0, 0, 0x00010000U, 0, 0, 0, 0, 0, 0};
+  EXPECT_THROW(decode(rapid.data(), rapid.size()), ArgumentError) << "a class";
+}
+
 TEST(Commands, BarriersAreThreeWords) {
   EXPECT_THAT(words_of(Dwell{0x0123456789}, 255), ElementsAre(0xFF030020U, 0x23456789U, 0x00000001U));
   EXPECT_THAT(words_of(End{}, 1), ElementsAre(0x01030021U, 0U, 0U));
@@ -107,8 +127,8 @@ TEST(Commands, LimitsOfAFeedPieceAndADwellAreKept) {
   feed.floor = 0;
   EXPECT_THAT(refusal_of(feed), HasSubstr("floor = 0"));
   feed.floor = 1;
-  feed.stop_distance = 1;
-  EXPECT_THAT(refusal_of(feed), HasSubstr("stop_distance = 1"));
+  feed.stop_distance = 0xFFFFFFFF;
+  EXPECT_EQ(refusal_of(feed), "");
   EXPECT_THAT(refusal_of(Dwell{std::uint64_t{1} << 40}), HasSubstr("DWELL: count"));
 }
 
@@ -222,6 +242,7 @@ RC_GTEST_PROP(CommandsProperty, AFeedPieceComesBack,
   feed.acceleration = acceleration;
   feed.jerk = jerk;
   feed.floor = *rc::gen::inRange<std::uint32_t>(1, std::numeric_limits<std::uint32_t>::max());
+  feed.stop_distance = *rc::gen::arbitrary<std::uint32_t>();
   expect_round_trip(feed, number);
   const auto words = words_of(feed, number);
   const Feed back = std::get<Feed>(decode(words.data(), words.size()).command);
@@ -230,6 +251,7 @@ RC_GTEST_PROP(CommandsProperty, AFeedPieceComesBack,
   RC_ASSERT(back.acceleration == feed.acceleration);
   RC_ASSERT(back.jerk == feed.jerk);
   RC_ASSERT(back.floor == feed.floor);
+  RC_ASSERT(back.stop_distance == feed.stop_distance);
 }
 
 }  // namespace

@@ -64,14 +64,15 @@ TEST(OneShot, WordsAreTheRegistersInOrder) {
   const OneShotPart part = plan_line_clocks(timing(1'000'000), {0, -3, 0, 1}, kOne - 1).part(0);
   const auto words = part.words();
   ASSERT_EQ(words.size(), 35U);
-  EXPECT_EQ(words[0], 0U);
-  EXPECT_EQ(words[4], 3U);  // FREQUENCY_LO[1] = round(3 * 2^40 / (2^40 - 1))
-  EXPECT_EQ(words[5], 0U);
-  EXPECT_EQ(words[6], 3U);  // COUNT[1]
-  EXPECT_EQ(words[7], 1U);  // DIRECTION[1]
-  EXPECT_EQ(words[12], 1U);
-  EXPECT_EQ(words[14], 1U);
-  EXPECT_EQ(words[15], 0U);
+  // From FREQUENCY_LO[7] at 0x300 on, so axis n is at word 4 (7 - n).
+  EXPECT_EQ(words[28], 0U);
+  EXPECT_EQ(words[24], 3U);  // FREQUENCY_LO[1] = round(3 * 2^40 / (2^40 - 1))
+  EXPECT_EQ(words[25], 0U);
+  EXPECT_EQ(words[26], 3U);  // COUNT[1]
+  EXPECT_EQ(words[27], 1U);  // DIRECTION[1]
+  EXPECT_EQ(words[16], 1U);
+  EXPECT_EQ(words[18], 1U);
+  EXPECT_EQ(words[19], 0U);
   EXPECT_EQ(words[32], 0xFFFFFFFFU);  // LENGTH
   EXPECT_EQ(words[33], 0xFFU);
   EXPECT_EQ(words[34], 0b1010U);  // START
@@ -80,7 +81,7 @@ TEST(OneShot, WordsAreTheRegistersInOrder) {
 TEST(OneShot, OnePulseAClockIsTheHighestFrequency) {
   const OneShotPart part = plan_line_clocks(timing(1'000'000, 1), {1000}, 1000).part(0);
   EXPECT_EQ(part.frequency[0], kOne);
-  EXPECT_EQ(part.words()[1], 0x100U);
+  EXPECT_EQ(part.words()[29], 0x100U);
 }
 
 TEST(OneShot, ADurationIsRoundedUpToClocks) {
@@ -162,8 +163,10 @@ TEST(OneShot, EveryArgumentErrorComesBeforeTheBus) {
 }
 
 // Opens a card on a mock without saying in which order.
-Card open_quietly(StrictMock<MockBus>& bus) {
-  FakeCard fake;
+Card open_quietly(StrictMock<MockBus>& bus, unsigned axes = 4) {
+  FakeCardOptions options;
+  options.axes = axes;
+  FakeCard fake(options);
   EXPECT_CALL(bus, read(_)).WillRepeatedly([&fake](std::uint32_t address) { return fake.read(address); });
   Card card = Card::open(bus);
   ::testing::Mock::VerifyAndClearExpectations(&bus);
@@ -171,12 +174,46 @@ Card open_quietly(StrictMock<MockBus>& bus) {
 }
 
 TEST(OneShot, StartIsOneBlockWriteAndNothingElse) {
-  StrictMock<MockBus> bus;
-  Card card = open_quietly(bus);
-  const auto words = plan_line(card.timing(), {5, -2}, 1ms).part(0).words();
-  EXPECT_CALL(bus, block(reg::frequency_lo(0), std::vector<std::uint32_t>(words.begin(), words.end()),
-                         Addressing::kIncrementing));
-  start_line(card, {5, -2}, 1ms);
+  for (unsigned axes = 1; axes <= 8; ++axes) {
+    StrictMock<MockBus> bus;
+    Card card = open_quietly(bus, axes);
+    Displacement line{5};
+    line[axes - 1] = -2;
+    const auto words = plan_line(card.timing(), line, 1ms).part(0).words();
+    const std::ptrdiff_t used = 4 * std::ptrdiff_t{axes} + 3;
+    EXPECT_CALL(bus, block(0x380 - 0x10 * axes, std::vector<std::uint32_t>(words.end() - used, words.end()),
+                           Addressing::kIncrementing));
+    start_line(card, line, 1ms);
+  }
+}
+
+TEST(OneShot, ACardWithoutDirectModeIsToldSo) {
+  FakeCardOptions options;
+  options.engines = 0x13;
+  FakeCard fake(options);
+  Card card = Card::open(fake);
+  const std::uint64_t accesses = fake.accesses();
+  EXPECT_THAT(argument_error([&] { start_line(card, {5}, 1ms); }), HasSubstr("no direct mode"));
+  EXPECT_THAT(argument_error([&] { start_line(card, {5}, PathSpeed{10}); }), HasSubstr("no direct mode"));
+  EXPECT_THAT(argument_error([&] { run_line(card, plan_line(card.timing(), {5}, 1ms)); }), HasSubstr("no direct mode"));
+  EXPECT_EQ(fake.accesses(), accesses);
+}
+
+TEST(OneShot, AFaultedCardRefusesTheStartAndSaysWhy) {
+  FakeCard fake;
+  Card card = Card::open(fake);
+  fake.raise_fault(1);
+  try {
+    start_line(card, {5}, 1ms);
+    FAIL();
+  } catch (const RefusedError& error) {
+    EXPECT_EQ(error.reason(), static_cast<std::uint8_t>(card_map::Reason::Faulted));
+  }
+  card.clear_refusal();
+  card.clear_faults();
+  start_line(card, {5}, 1ms);
+  card.wait_until_idle(10ms);
+  EXPECT_EQ(fake.position(0), 5);
 }
 
 TEST(OneShot, ALineThatIsRefusedOrTooLongTouchesNothing) {

@@ -104,7 +104,8 @@ TEST_F(StreamOrder, SeveralCommandsAreOneBlockAsFarAsThereIsRoom) {
   EXPECT_CALL(bus_, block(reg::kStream, words_of({line_of(1), line_of(2)}, 0), Addressing::kFixed));
   EXPECT_CALL(bus_, read(reg::kGeometryRoom)).WillOnce(Return(6U));
   EXPECT_CALL(bus_, read(reg::kStatus)).WillOnce(Return(field::kStatusBusy));
-  EXPECT_CALL(bus_, read(reg::kRunning)).WillOnce(Return(0U));
+  EXPECT_CALL(bus_, read(reg::kGeometryBegun)).WillOnce(Return(0U));
+  EXPECT_CALL(bus_, read(reg::kFeedBegun)).WillOnce(Return(0U));
   EXPECT_CALL(bus_, wait(100));
   EXPECT_CALL(bus_, read(reg::kGeometryRoom)).WillOnce(Return(7U));
   EXPECT_CALL(bus_, block(reg::kStream, words_of({line_of(3)}, 2), Addressing::kFixed));
@@ -121,7 +122,8 @@ TEST_F(StreamOrder, FinishWaitsForTheEnd) {
   for (const std::uint32_t status : {0U, field::kStatusBusy, field::kStatusEnded}) {
     EXPECT_CALL(bus_, wait(100));
     EXPECT_CALL(bus_, read(reg::kStatus)).WillOnce(Return(status));
-    EXPECT_CALL(bus_, read(reg::kRunning)).WillOnce(Return(0U));
+    EXPECT_CALL(bus_, read(reg::kGeometryBegun)).WillOnce(Return(0U));
+    EXPECT_CALL(bus_, read(reg::kFeedBegun)).WillOnce(Return(0U));
   }
   EXPECT_TRUE(stream.finish().ended);
 }
@@ -157,7 +159,8 @@ TEST_F(StreamOrder, AStallTimesOutAndAHoldDoesNot) {
   options_.stall_timeout = 250us;  // at 1 MHz: three pauses of 100 clocks
   Stream stream = open_stream();
   EXPECT_CALL(bus_, read(reg::kGeometryRoom)).WillRepeatedly(Return(0U));
-  EXPECT_CALL(bus_, read(reg::kRunning)).WillRepeatedly(Return(3U));
+  EXPECT_CALL(bus_, read(reg::kGeometryBegun)).WillRepeatedly(Return(3U));
+  EXPECT_CALL(bus_, read(reg::kFeedBegun)).WillRepeatedly(Return(2U));
   EXPECT_CALL(bus_, wait(100)).Times(12);
   EXPECT_CALL(bus_, read(reg::kStatus))
       .Times(13)
@@ -183,9 +186,12 @@ TEST(StreamOnFake, RunsAProgramThroughSmallQueues) {
   Card card = Card::open(fake);
   StreamOptions options;
   std::uint64_t looks = 0;
-  options.progress = [&looks](const StreamProgress& progress) {
+  std::uint32_t begun = 0;
+  options.progress = [&looks, &begun](const StreamProgress& progress) {
     ++looks;
     EXPECT_LE(progress.commands_sent, 602U);
+    EXPECT_LE(progress.geometry_begun, 302U);
+    begun = std::max(begun, progress.feed_begun);
   };
   Stream stream(card, options);
   std::vector<Command> program;
@@ -202,6 +208,7 @@ TEST(StreamOnFake, RunsAProgramThroughSmallQueues) {
   EXPECT_EQ(fake.accepted().size(), 602U);
   EXPECT_EQ(fake.accepted().back().number, 601 % 256);
   EXPECT_GT(looks, 0U);
+  EXPECT_GE(begun, 298U) << "pieces and barriers, beyond 8 bits";
   EXPECT_GE(fake.time(), 300U * 500U + 1000U);
 }
 
@@ -225,12 +232,61 @@ TEST(StreamOnFake, AFaultWhileWaitingEndsTheWait) {
   stream.send({line_of(100'000), feed_of(100'000), End{}});
   EXPECT_THROW(stream.finish(), FaultError);
   EXPECT_THROW(stream.restart(), FaultError);
-  card.abort();
+  EXPECT_EQ(card.stop_snapshot().geometry_begun, 1U);
   card.clear_faults();
   stream.restart();
   stream.send({line_of(10, 1), feed_of(10), End{}});
   stream.finish();
   EXPECT_EQ(fake.position(0), 1);
+}
+
+// Recovery in whichever order, with an abort or without: nothing of before the fault moves.
+TEST(StreamOnFake, RecoversInWhicheverOrder) {
+  for (int order = 0; order < 3; ++order) {
+    FakeCard fake;
+    Card card = Card::open(fake);
+    Stream stream(card);
+    stream.send({line_of(1000, 100), feed_of(1000), End{}});
+    fake.wait(100);
+    fake.raise_fault(field::kFaultStep & 1U);
+    if (order == 0) {
+      card.abort();
+    }
+    card.clear_faults();
+    if (order == 1) {
+      card.abort();
+    }
+    fake.wait(10'000);
+    EXPECT_EQ(fake.position(0), 0) << order;
+    EXPECT_FALSE(card.busy());
+    stream.restart();
+    stream.send({line_of(10, 1), feed_of(10), End{}});
+    EXPECT_TRUE(stream.finish().ended);
+    EXPECT_EQ(fake.position(0), 1) << order;
+  }
+}
+
+TEST(StreamOnFake, HonoursTheCardsEngines) {
+  FakeCardOptions fake_options;
+  fake_options.engines = 0x01;
+  FakeCard fake(fake_options);
+  Card card = Card::open(fake);
+  Stream stream(card);
+  Arc arc;
+  arc.ticks = arc.path_ticks = 4;
+  const auto message = [&stream](const Command& command) -> std::string {
+    try {
+      stream.send(command);
+    } catch (const ArgumentError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message(arc), ::testing::HasSubstr("ARC needs accumulator"));
+  Feed feed = feed_of(4);
+  EXPECT_EQ(message(feed), "");
+  feed.jerk = 1;
+  EXPECT_THAT(message(feed), ::testing::HasSubstr("FEED needs jerk"));
 }
 
 TEST(StreamOnFake, TicksThatDoNotMatchAreAFault) {

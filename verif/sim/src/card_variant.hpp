@@ -9,7 +9,10 @@ namespace trammel::sim {
 template <class Dut, unsigned kAxes>
 class CardVariant : public VerilatedCard {
  public:
-  explicit CardVariant(std::uint32_t clock_hz) { dut_->clock_hz_i = clock_hz; }
+  explicit CardVariant(const CardStraps& straps) {
+    dut_->clock_hz_i = straps.clock_hz;
+    dut_->idle_level_i = static_cast<std::uint16_t>(straps.idle_level & ((1U << 2 * kAxes) - 1));
+  }
 
   void run(const model::CardModel::Inputs& in, std::size_t clocks, CardRecord* records) override {
     apply(in);
@@ -36,7 +39,7 @@ class CardVariant : public VerilatedCard {
   lockstep::Simulated<Dut> dut_;
 };
 
-// Evaluates both edges of each clock, `at_edge` called behind each: for a trace, and as the judge of CardVariant, which
+// Evaluates both edges of each clock, `at_edge` called after each: for a trace, and as the judge of CardVariant, which
 // leaves the falling edge out.
 template <class Dut, unsigned kAxes>
 class BothEdgesVariant : public CardVariant<Dut, kAxes> {

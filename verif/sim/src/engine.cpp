@@ -169,7 +169,7 @@ std::unique_ptr<Engine> make_engine(const EngineOptions& options) {
     if (options.trace) throw std::invalid_argument("a trace needs the RTL engine");
     return std::make_unique<ModelEngine>(options);
   }
-  return make_rtl_engine(make_verilated_card(options.axes, options.clock_hz, options.trace), options);
+  return make_rtl_engine(make_verilated_card(options.axes, {options.clock_hz, 0}, options.trace), options);
 }
 
 std::unique_ptr<Engine> make_rtl_engine(std::unique_ptr<VerilatedCard> card, const EngineOptions& options) {

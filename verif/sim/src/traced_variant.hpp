@@ -12,7 +12,7 @@ namespace trammel::sim {
 template <class Dut, unsigned kAxes>
 class TracedVariant : public BothEdgesVariant<Dut, kAxes> {
  public:
-  TracedVariant(std::uint32_t clock_hz, const std::string& path) : BothEdgesVariant<Dut, kAxes>(clock_hz) {
+  TracedVariant(const CardStraps& straps, const std::string& path) : BothEdgesVariant<Dut, kAxes>(straps) {
     Verilated::threadContextp(&this->dut_.context());
     this->dut_.context().traceEverOn(true);
     this->dut_->trace(&file_, 99);

@@ -15,18 +15,46 @@ namespace trammel::sim {
 class VerilatedCard {
  public:
   virtual ~VerilatedCard() = default;
-  // `clocks` rising edges with the same inputs; what the ports show behind each goes to records[0 .. clocks - 1].
+  // `clocks` rising edges with the same inputs; what the ports show after each goes to records[0 .. clocks - 1].
   virtual void run(const model::CardModel::Inputs& in, std::size_t clocks, CardRecord* records) = 0;
 };
 
-// Axes: 4 or 8, the variants that are built. `trace`: an FST file, written until the card is destroyed.
+// The card's inputs that stand still.
+struct CardStraps {
+  std::uint32_t clock_hz = 1'000'000;
+  std::uint32_t idle_level = 0;  // {second pins, first pins}
+};
+
+// Axes: 1 to 8; with a trace 4 or 8. `trace`: an FST file, written until the card is destroyed.
 // Throws std::invalid_argument for other numbers of axes.
-std::unique_ptr<VerilatedCard> make_verilated_card(unsigned axes, std::uint32_t clock_hz,
+std::unique_ptr<VerilatedCard> make_verilated_card(unsigned axes, const CardStraps& straps,
                                                    const std::optional<std::string>& trace);
 
-std::unique_ptr<VerilatedCard> make_card_4(std::uint32_t clock_hz);
-std::unique_ptr<VerilatedCard> make_card_8(std::uint32_t clock_hz);
-std::unique_ptr<VerilatedCard> make_traced_card_4(std::uint32_t clock_hz, const std::string& trace);
-std::unique_ptr<VerilatedCard> make_traced_card_8(std::uint32_t clock_hz, const std::string& trace);
+// The variants that are built; each in a file of its own.
+template <unsigned kAxes>
+std::unique_ptr<VerilatedCard> make_card(const CardStraps& straps);
+template <unsigned kAxes>
+std::unique_ptr<VerilatedCard> make_traced_card(const CardStraps& straps, const std::string& trace);
+
+template <>
+std::unique_ptr<VerilatedCard> make_card<1>(const CardStraps& straps);
+template <>
+std::unique_ptr<VerilatedCard> make_card<2>(const CardStraps& straps);
+template <>
+std::unique_ptr<VerilatedCard> make_card<3>(const CardStraps& straps);
+template <>
+std::unique_ptr<VerilatedCard> make_card<4>(const CardStraps& straps);
+template <>
+std::unique_ptr<VerilatedCard> make_card<5>(const CardStraps& straps);
+template <>
+std::unique_ptr<VerilatedCard> make_card<6>(const CardStraps& straps);
+template <>
+std::unique_ptr<VerilatedCard> make_card<7>(const CardStraps& straps);
+template <>
+std::unique_ptr<VerilatedCard> make_card<8>(const CardStraps& straps);
+template <>
+std::unique_ptr<VerilatedCard> make_traced_card<4>(const CardStraps& straps, const std::string& trace);
+template <>
+std::unique_ptr<VerilatedCard> make_traced_card<8>(const CardStraps& straps, const std::string& trace);
 
 }  // namespace trammel::sim

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "trammel/card_map.hpp"
 #include "trammel/driver/bus.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/driver/errors.hpp"
@@ -38,11 +39,10 @@ struct CardTiming {
   std::array<std::uint32_t, kMaxAxes> pulse_period{};
 };
 
-// Shortest distance of two leading edges for the raw settings of an axis, clocks. The step shaper turns over from phase
-// to phase in 6 clocks beyond the times themselves, and a length of 0 counts as 1 (docs/developer/architecture.md).
+// Shortest distance of two leading edges for the raw settings of an axis, clocks. The step shaper takes some clocks
+// beyond the times themselves to turn over from phase to phase, and a length of 0 counts as 1.
 constexpr std::uint32_t shortest_pulse_period(std::uint32_t step_length, std::uint32_t step_space) {
-  constexpr std::uint32_t kTurnover = 6;
-  return (step_length == 0 ? 1 : step_length) + step_space + kTurnover;
+  return (step_length == 0 ? 1 : step_length) + step_space + card_map::constant::kShaperTurnoverClocks;
 }
 
 enum class StepMode : std::uint8_t { kStepDirection = 0, kUpDown = 1, kQuadrature = 2 };
@@ -63,14 +63,15 @@ struct AxisSettings {
 struct Status {
   bool busy = false;         // something runs or is queued
   bool direct = false;       // a one-shot line runs
-  bool path_active = false;  // a geometry command is in work
-  bool feed_active = false;  // a feed piece is in work
+  bool path_active = false;  // a path is under way
+  bool feed_active = false;  // a feed piece is under way
   bool held = false;         // the time base's ratio is 0
   bool ended = false;        // END was reached
   bool faulted = false;      // FAULT is not 0
   bool refused = false;      // REFUSAL is not 0
   bool snapshot = false;     // a snapshot is under way
   bool incomplete = false;   // the stream stands inside a command
+  bool stopping = false;     // on a ramp to a stop
 };
 
 // REFUSAL.
@@ -84,10 +85,11 @@ struct Refusal {
 struct Snapshot {
   std::uint64_t time = 0;                         // clocks since reset
   Status status;                                  //
+  std::uint32_t faults = 0;                       // FAULT
   std::uint32_t rate = 0;                         // 2^-32 feed ticks an enabled clock
   std::uint32_t ratio = 0;                        // 2^-16, of the time base
-  std::uint8_t geometry_command = 0;              // number of the geometry command in work
-  std::uint8_t feed_command = 0;                  // number of the feed piece in work
+  std::uint32_t geometry_begun = 0;               // commands begun from the geometry queue since the last cut
+  std::uint32_t feed_begun = 0;                   // and from the feed queue
   std::array<std::int32_t, kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
 };
 
@@ -115,7 +117,8 @@ class Card {
   // or one over 65535 clocks.
   void configure_axis(unsigned axis, const AxisSettings& settings);
 
-  // Time base: share of clocks that are enabled, 2^-16, 0 .. kFullRatio.
+  // Time base: share of clocks that are enabled, 2^-16, 0 .. kFullRatio; in pieces of the class feed where the card has
+  // classes, else in all.
   void set_ratio(std::uint32_t ratio);
   // Time that the ratio takes from 0 to full, up to 2^30 clocks; the slew is rounded down, to one that is no faster.
   // Times under 5 clocks give the card's fastest slew, 8 clocks.
@@ -127,6 +130,8 @@ class Card {
 
   // All of one clock. Throws TimeoutError if the card does not come up with it.
   Snapshot snapshot();
+  // What the card latched when it was stopped by the first cause of its present or last fault; zeros if there was none.
+  Snapshot stop_snapshot();
 
   Status status();
   bool busy() { return status().busy; }
@@ -135,7 +140,8 @@ class Card {
 
   // FAULT, 0 if there is none.
   std::uint32_t faults();
-  // Clears all faults; one whose cause persists comes back at once.
+  // Clears all faults. Nothing moves by it: a fault has dropped all that the card had, and an abort may come before,
+  // after or not at all. The stream begins with number 0 (Stream::restart()).
   void clear_faults();
   // The first access or command refused since the last clear.
   std::optional<Refusal> refusal();
@@ -143,7 +149,7 @@ class Card {
   std::optional<Refusal> refusal_after_failure();
   void clear_refusal();
 
-  // Drops the queues, stops the path and opens the stream's door. Positions stay; faults and refusals stay latched.
+  // Drops the queues, stops the path and reopens the stream. Positions stay; faults and refusals stay latched.
   void abort();
 
   // Throws FaultError if the card is faulted; reads FAULT only if `status` says so.
@@ -160,6 +166,7 @@ class Card {
  private:
   explicit Card(Bus& bus) : bus_(&bus) {}
   void write(std::uint32_t address, std::uint32_t value, const std::string& context);
+  Snapshot read_area(card_map::Area area);
 
   Bus* bus_;
   Identification identification_;

@@ -47,7 +47,7 @@ struct Feed {
   std::int64_t acceleration = 0;    // the same unit an update of 32 enabled clocks
   std::int64_t jerk = 0;            // the same unit an update, each update
   std::uint32_t floor = 1;          // 2^-32 ticks an enabled clock, not 0
-  std::uint32_t stop_distance = 0;  // feed ticks; 0 until the under-run hold is built
+  std::uint32_t stop_distance = 0;  // feed ticks needed to stop on the path; 0: the piece ends at rest
 };
 
 // Barrier, then `clocks` of real time (0 .. 2^40 - 1).

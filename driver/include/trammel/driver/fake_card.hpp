@@ -4,7 +4,7 @@
 //
 // Simplified, and no substitute for the golden model: a feed tick comes at every enabled clock whatever rate the piece
 // names, positions change when a path ends, no step takes time after its path has ended, and a slew is immediate.
-// Kept: which commands the door accepts, what takes room for how long, barriers, and that feed ticks and path
+// Kept: which commands the card accepts, what takes room for how long, barriers, and that feed ticks and path
 // ticks must match.
 //
 // Thread-safety: none.
@@ -28,8 +28,9 @@ namespace trammel::driver {
 struct FakeCardOptions {
   unsigned axes = 4;
   std::uint32_t clock_hz = 1'000'000;      // Hz
-  std::uint32_t geometry_depth = 4096;     // halfwords, up to 8191
-  std::uint32_t feed_depth = 2560;         // halfwords, up to 8191
+  std::uint32_t engines = 0x33;            // ENGINES: lines, accumulator, jerk, direct mode
+  std::uint32_t geometry_depth = 4096;     // halfwords, up to 32768
+  std::uint32_t feed_depth = 2560;         // halfwords, up to 32768
   std::uint64_t clocks_per_access = 8;     // of every bus access
   std::uint64_t clocks_per_snapshot = 40;  // from the strobe until STATUS.snapshot clears
   // For malformed cards: value of a constant register by its address, instead of the proper one.
@@ -46,12 +47,12 @@ class FakeCard final : public Bus {
                    Addressing addressing) override;
   void wait(std::uint64_t card_clocks) override { run(card_clocks); }
 
-  // The door refuses the command with this number (mod 256) for the given reason when its last word comes.
+  // The card refuses the command with this number (mod 256) for the given reason when its last word comes.
   void refuse_command(std::uint8_t number, card_map::Reason reason);
-  // Latches bits of FAULT; motion stops until they are cleared and the card is aborted.
-  void raise_fault(std::uint32_t bits) { fault_ |= bits; }
+  // A fault: latches bits of FAULT and, if it is the first, the STOP area, and drops all that the card had.
+  void raise_fault(std::uint32_t bits);
 
-  // Commands that the door has accepted since the fake was made, in order.
+  // Commands that the card has accepted since the fake was made, in order.
   const std::vector<DecodedCommand>& accepted() const { return accepted_; }
   // Pulses, not wrapped.
   std::int64_t position(unsigned axis) const { return position_.at(axis); }
@@ -63,14 +64,13 @@ class FakeCard final : public Bus {
  private:
   struct Queued {
     Command command;
-    std::uint8_t number = 0;
     std::uint32_t halfwords = 0;
   };
   struct Queue {
     std::deque<Queued> commands;
     std::uint32_t used = 0;   // halfwords
-    std::uint64_t left = 0;   // ticks that the command in work still takes or gives; 0: none in work
-    std::uint8_t number = 0;  // of the command in work
+    std::uint64_t left = 0;   // ticks that the command under way still takes or gives; 0: none is
+    std::uint32_t begun = 0;  // commands since the last cut
     Command command;
   };
 
@@ -81,10 +81,9 @@ class FakeCard final : public Bus {
   std::uint32_t constant(const card_map::Register& entry) const;
   std::uint32_t live(std::uint32_t address) const;
   std::uint32_t status() const;
-  std::uint32_t running() const;
-  void take_snapshot();
+  void take_snapshot(card_map::Area area);
   void control(std::uint32_t value);
-  void abort();
+  void cut();
 
   void stream_word(std::uint32_t word);
   void check_header();
@@ -116,7 +115,7 @@ class FakeCard final : public Bus {
   bool ended_ = false;
 
   std::vector<std::uint32_t> partial_;
-  bool door_open_ = true;
+  bool stream_open_ = true;
   std::uint8_t next_number_ = 0;
   std::map<std::uint8_t, card_map::Reason> injected_;
   std::vector<DecodedCommand> accepted_;

@@ -41,7 +41,11 @@ struct LineLimits {
   LimitPolicy policy = LimitPolicy::kRefuse;
 };
 
-inline constexpr std::size_t kOneShotWords = (card_map::reg::kStart - card_map::reg::frequency_lo(0)) / 4 + 1;
+// Words of the block write that starts a line on a card with so many axes: the slots of its axes, LENGTH and START.
+constexpr std::size_t one_shot_words(unsigned axes) {
+  return (card_map::reg::kStart - card_map::reg::frequency_lo(axes - 1)) / 4 + 1;
+}
+inline constexpr std::size_t kOneShotWords = one_shot_words(kMaxAxes);
 
 // A line that the card runs in one go.
 struct OneShotPart {
@@ -51,7 +55,7 @@ struct OneShotPart {
   std::uint8_t mask = 0;                            // bit n: axis n takes part
   std::uint8_t negative = 0;                        // bit n: axis n steps in the negative direction
 
-  // The registers FREQUENCY_LO[0] .. START in order of address.
+  // The registers FREQUENCY_LO[7] .. START in order of address: the slots of the axes come in falling order.
   std::array<std::uint32_t, kOneShotWords> words() const;
 };
 
@@ -96,7 +100,8 @@ OneShotPlan plan_line(const CardTiming& card, const Displacement& displacement, 
 OneShotPlan plan_line_clocks(const CardTiming& card, const Displacement& displacement, std::uint64_t clocks,
                              const LineLimits& limits = {});
 
-// Starts the part with one block write and nothing else on the bus. Throws RefusedError if the card is not idle.
+// Starts the part with one block write of 4 n + 3 words on a card with n axes, and nothing else on the bus. Throws
+// ArgumentError if the card has no direct mode, RefusedError if it is not idle or faulted.
 void start_line(Card& card, const OneShotPart& part);
 
 // Plans a line and starts it. Throws what plan_line throws, and ArgumentError if the line has more than one part;

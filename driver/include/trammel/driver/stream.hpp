@@ -20,16 +20,16 @@
 namespace trammel::driver {
 
 struct StreamProgress {
-  std::uint64_t commands_sent = 0;    // since the stream was opened or restarted
-  Status status;                      // of the card
-  std::uint8_t geometry_command = 0;  // number (mod 256) of the geometry command in work
-  std::uint8_t feed_command = 0;      // number of the feed piece in work
+  std::uint64_t commands_sent = 0;   // since the stream was opened or restarted
+  Status status;                     // of the card
+  std::uint32_t geometry_begun = 0;  // of these, commands begun from the geometry queue: paths and barriers
+  std::uint32_t feed_begun = 0;      // and from the feed queue: pieces and barriers
 };
 
 struct StreamOptions {
   // Pause between two looks at the card, card clocks; 0: Card::poll_interval().
   std::uint64_t poll_clocks = 0;
-  // Longest time (of the card) in which nothing is finished and nothing is held back by a hold: longer than the
+  // Longest time (of the card) in which nothing is begun and nothing is held back by a hold: longer than the
   // longest command takes.
   std::chrono::nanoseconds stall_timeout = std::chrono::minutes(10);
   // Called at each look while the stream waits. May throw: the exception passes through, the stream stays usable.
@@ -77,10 +77,11 @@ class Stream {
     std::size_t end = 0;
     bool is_end = false;
   };
-  // State of one wait: time since the card last finished something.
+  // State of one wait: time since the card last began something.
   struct Watch {
     std::uint64_t waited = 0;  // clocks
-    std::uint32_t running = 0;
+    std::uint32_t geometry_begun = 0;
+    std::uint32_t feed_begun = 0;
     bool started = false;
   };
 

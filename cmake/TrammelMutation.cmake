@@ -1,0 +1,50 @@
+# Judges over the RTL's mutants: each lockstep once more, over one instrumented copy of the RTL that holds all mutants.
+# scripts/mutate runs them. Python with pyslang writes the copy, so this is built only where TRAMMEL_MUTATION asks for it.
+find_program(TRAMMEL_PYTHON NAMES python3 HINTS "${PROJECT_SOURCE_DIR}/.venv/bin" NO_DEFAULT_PATH)
+find_program(TRAMMEL_PYTHON NAMES python3 REQUIRED)
+
+# trammel_instrument(RTL folder OUT folder FILES a.sv ...)
+# Writes the instrumented copies of the files, which are given relative to RTL, and mutants.json into OUT.
+function(trammel_instrument)
+  cmake_parse_arguments(A "" "RTL;OUT" "FILES" ${ARGN})
+  file(GLOB tool CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/scripts/mutation/*.py")
+  set(sources ${A_FILES})
+  set(copies ${A_FILES})
+  list(TRANSFORM sources PREPEND "${A_RTL}/")
+  list(TRANSFORM copies PREPEND "${A_OUT}/")
+  add_custom_command(OUTPUT ${copies} "${A_OUT}/mutants.json"
+    COMMAND "${CMAKE_COMMAND}" -E env "PYTHONPATH=${PROJECT_SOURCE_DIR}/scripts"
+            "${TRAMMEL_PYTHON}" -B -m mutation.instrument --rtl "${A_RTL}" --out "${A_OUT}" ${sources}
+    DEPENDS ${sources} ${tool} COMMENT "Instrumenting the RTL in ${A_RTL}" VERBATIM)
+endfunction()
+
+# trammel_add_judge(name OUT folder SOUND target PREFIX Vx TOP top SOURCES a.sv ... [ARGS ...])
+# Verilates the instrumented copies in OUT for mutation_<name>, which is linked with a test that was compiled against
+# the Vx.h of SOUND.
+function(trammel_add_judge name)
+  cmake_parse_arguments(A "" "OUT;SOUND;PREFIX;TOP" "SOURCES;ARGS" ${ARGN})
+  set(target mutation_${name})
+  set(copies ${A_SOURCES})
+  list(TRANSFORM copies PREPEND "${A_OUT}/")
+  # A mutant may leave a signal unused or compare with a constant that is out of reach: the sound sources are linted.
+  trammel_verilate(${target} CHEAP PREFIX ${A_PREFIX} TOP ${A_TOP} SOURCES ${copies}
+                   ARGS -Wno-lint -Wno-style -Wno-fatal ${A_ARGS})
+  target_link_libraries(${target} PRIVATE trammel_mutant_number)
+  # The header must be the one that the test knows, but for what calls from SystemVerilog into C include.
+  get_property(copy_dir GLOBAL PROPERTY TRAMMEL_VERILATED_${target}_${A_PREFIX})
+  get_property(sound_dir GLOBAL PROPERTY TRAMMEL_VERILATED_${A_SOUND}_${A_PREFIX})
+  add_custom_command(TARGET ${target} PRE_LINK VERBATIM
+    COMMAND diff -I svdpi.h "${copy_dir}/${A_PREFIX}.h" "${sound_dir}/${A_PREFIX}.h")
+endfunction()
+
+# trammel_judge_entry(out name SOURCES a.sv ... [ARGUMENTS ...]): the judge's line of judges.json. The arguments are GoogleTest's.
+function(trammel_judge_entry out name)
+  cmake_parse_arguments(A "" "" "SOURCES;ARGUMENTS" ${ARGN})
+  foreach(list IN ITEMS SOURCES ARGUMENTS)
+    list(TRANSFORM A_${list} REPLACE "(.+)" "\"\\1\"")
+    list(JOIN A_${list} ", " A_${list})
+  endforeach()
+  string(CONCAT entry "{\"name\": \"${name}\", \"executable\": \"$<TARGET_FILE:mutation_${name}>\", "
+                      "\"arguments\": [${A_ARGUMENTS}], \"sources\": [${A_SOURCES}]}")
+  set(${out} "${entry}" PARENT_SCOPE)
+endfunction()

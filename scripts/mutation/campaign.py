@@ -1,0 +1,165 @@
+"""Tries every mutant of the RTL: one that no judge kills is listed, and the exit status is 1 when it has no reason to live
+in verif/mutation/equivalents.toml. All mutants lie in one build; a run is a process with another number."""
+
+import argparse
+import csv
+import json
+import os
+import random
+import sys
+import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import Dict, List
+
+from . import equivalents, judges
+
+COLUMNS = ["id", "how", "judge", "seconds", "module", "file", "line", "kind", "nth", "original", "mutated"]
+
+
+def arguments_of(argv):
+    parser = argparse.ArgumentParser(prog="scripts/mutate", description=__doc__)
+    parser.add_argument("--sample", type=int, metavar="N", help="N mutants chosen at random instead of all")
+    parser.add_argument("--seed", type=int, default=1, metavar="S", help="of the random choice (default 1)")
+    parser.add_argument("--module", action="append", metavar="NAME", help="only mutants of this module; may be repeated")
+    parser.add_argument("--list", action="store_true", help="list the mutants, try none")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="runs at a time (default: all cores)")
+    parser.add_argument("--resume", action="store_true",
+                        help="keep the verdicts of an interrupted run of the same build")
+    places = parser.add_argument_group("places, for the tool's own test")
+    places.add_argument("--mutants", type=Path, default=Path("build/release/mutation/rtl/mutants.json"))
+    places.add_argument("--judges", type=Path, default=Path("build/release/mutation/judges.json"))
+    places.add_argument("--equivalents", type=Path, default=Path("verif/mutation/equivalents.toml"))
+    places.add_argument("--out", type=Path, default=Path("build/mutation"), help="folder of results.csv")
+    return parser.parse_args(argv)
+
+
+def chosen(mutants: List[dict], arguments) -> List[dict]:
+    if arguments.module:
+        unknown = set(arguments.module) - {mutant["module"] for mutant in mutants}
+        if unknown:
+            sys.exit(f"mutate: no mutants of a module {', '.join(sorted(unknown))}")
+        mutants = [mutant for mutant in mutants if mutant["module"] in arguments.module]
+    if arguments.sample is not None and arguments.sample < len(mutants):
+        mutants = random.Random(arguments.seed).sample(mutants, arguments.sample)
+    return mutants
+
+
+class Results:
+    """results.csv, a row as soon as there is a verdict."""
+
+    def __init__(self, folder: Path, build: str, resume: bool):
+        folder.mkdir(parents=True, exist_ok=True)
+        self.path = folder / "results.csv"
+        stamp = folder / "results.build"
+        self.rows: Dict[str, dict] = {}
+        if resume and self.path.exists() and stamp.exists() and stamp.read_text() == build:
+            with self.path.open(newline="") as file:
+                self.rows = {row["id"]: row for row in csv.DictReader(file) if row["mutated"] is not None}
+        self.file = self.path.open("w", newline="")
+        self.writer = csv.DictWriter(self.file, COLUMNS)
+        self.writer.writeheader()
+        for row in self.rows.values():
+            self.writer.writerow(row)
+        self.file.flush()
+        stamp.write_text(build)
+
+    def add(self, mutant: dict, verdict: judges.Verdict):
+        row = {key: mutant[key] for key in COLUMNS if key in mutant}
+        row.update(how=verdict.how, judge=verdict.judge, seconds=f"{verdict.seconds:.2f}")
+        self.rows[mutant["id"]] = row
+        self.writer.writerow(row)
+        self.file.flush()
+
+    def how(self, mutant: dict) -> str:
+        return self.rows[mutant["id"]]["how"]
+
+
+class Progress:
+    def __init__(self, total: int):
+        self.total, self.done, self.lived = total, 0, 0
+        self.start = self.last = time.monotonic()
+
+    def step(self, lived: bool):
+        self.done += 1
+        self.lived += lived
+        now = time.monotonic()
+        terminal = sys.stderr.isatty()
+        if self.done == self.total or now - self.last > (0.2 if terminal else 30):
+            self.last = now
+            begin = "\r" if terminal else ""
+            end = "\n" if not terminal or self.done == self.total else ""
+            left = (now - self.start) / self.done * (self.total - self.done)
+            print(f"{begin}{self.done} of {self.total} mutants, {self.lived} lived, {left:.0f} s left ",
+                  end=end, file=sys.stderr, flush=True)
+
+
+def try_all(mutants, all_judges, results, jobs):
+    waiting = [mutant for mutant in mutants if mutant["id"] not in results.rows]
+    progress = Progress(len(waiting))
+    with ThreadPoolExecutor(jobs) as pool:
+        runs = {pool.submit(judges.try_mutant, all_judges, m["number"], m["file"]): m for m in waiting}
+        try:
+            for run in as_completed(runs):
+                results.add(runs[run], run.result())
+                progress.step(not run.result().killed)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def show(mutant: dict) -> str:
+    mutated = mutant["mutated"] or "(dropped)"
+    nth = f"  (number {mutant['nth']} of these)" if mutant["nth"] > 1 else ""
+    return f"rtl/{mutant['file']}:{mutant['line']}: {mutant['kind']}{nth}\n    {mutant['original']}\n    {mutated}"
+
+
+def report(mutants, results, listed) -> int:
+    """The summary; the number of findings."""
+    lived = [mutant for mutant in mutants if results.how(mutant) == "lived"]
+    unlisted = [mutant for mutant in lived if mutant["id"] not in listed]
+    wrong = [mutant for mutant in mutants if mutant["id"] in listed and results.how(mutant) != "lived"]
+    for mutant in sorted(unlisted, key=lambda m: (m["file"], m["line"], m["number"])):
+        print(f"LIVES {show(mutant)}")
+    for mutant in wrong:
+        print(f"KILLED, though listed as equivalent: {show(mutant)}\n    reason given: {listed[mutant['id']].reason}")
+    how = Counter(results.how(mutant) for mutant in mutants)
+    print(f"\n{len(mutants)} mutants: " + ", ".join(f"{how[key]} {key}" for key in
+                                                    ("mismatch", "failed", "crashed", "timed out", "lived") if how[key]))
+    print(f"of those that lived {len(lived) - len(unlisted)} are listed as equivalent, {len(unlisted)} are not")
+    modules = Counter(mutant["module"] for mutant in mutants)
+    live_by_module = Counter(mutant["module"] for mutant in unlisted)
+    for module, count in sorted(live_by_module.items(), key=lambda item: (-item[1], item[0])):
+        print(f"  {module:24} {count:4} of {modules[module]:4} live")
+    return len(unlisted) + len(wrong)
+
+
+def main(argv=None) -> int:
+    arguments = arguments_of(argv)
+    mutants = json.loads(arguments.mutants.read_text())
+    try:
+        listed = equivalents.by_mutant(equivalents.read(arguments.equivalents), mutants)
+    except equivalents.EquivalentsError as error:
+        sys.exit(f"mutate: {error}")
+    mutants = chosen(mutants, arguments)
+    if arguments.list:
+        for mutant in mutants:
+            print(show(mutant))
+        return 0
+    all_judges = judges.read_judges(arguments.judges)
+    results = Results(arguments.out, judges.fingerprint(all_judges), arguments.resume)
+    try:
+        for judge in all_judges:
+            judges.try_sound_design(judge)
+    except judges.SoundDesignRefused as error:
+        sys.exit(f"mutate: {error}")
+    start = time.monotonic()
+    try_all(mutants, all_judges, results, arguments.jobs)
+    findings = report(mutants, results, listed)
+    print(f"{time.monotonic() - start:.0f} s with {arguments.jobs} runs at a time; verdicts in {results.path}")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,109 @@
+"""Judges: executables whose tests pass over the sound design; each runs in a process with the number of one mutant."""
+
+import hashlib
+import json
+import math
+import os
+import resource
+import subprocess
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Dict, List
+
+MISMATCH = "repeat with TRAMMEL_SEED="  # the line that every report of a lockstep has
+TESTS_PASSED = "[  PASSED  ]"
+
+
+class SoundDesignRefused(Exception):
+    """A judge finds fault with mutant 0."""
+
+
+@dataclass
+class Judge:
+    name: str
+    executable: str
+    sources: List[str]  # relative to the folder of the RTL
+    arguments: List[str] = field(default_factory=list)  # GoogleTest's, to choose among its tests
+    seconds: float = 0.0  # of processor time for the sound design
+
+    def limit(self) -> int:
+        """Processor seconds after which a run has hung: no other work on the machine uses them up."""
+        return math.ceil(5 * self.seconds + 2)
+
+
+@dataclass
+class Verdict:
+    how: str  # lived, mismatch, failed, crashed, timed out
+    judge: str = ""
+    seconds: float = 0.0
+
+    @property
+    def killed(self) -> bool:
+        return self.how != "lived"
+
+
+def read_judges(path: Path) -> List[Judge]:
+    """Those that see little of the design first: they are quick and say most about it."""
+    judges = [Judge(**entry) for entry in json.loads(path.read_text())]
+    return sorted(judges, key=lambda judge: (len(judge.sources), judge.name))
+
+
+def fingerprint(judges: List[Judge]) -> str:
+    """Changes with anything that could change a verdict."""
+    digest = hashlib.sha256()
+    for judge in judges:
+        digest.update(f"{judge.name} {judge.arguments}".encode() + Path(judge.executable).read_bytes())
+    return digest.hexdigest()
+
+
+def run(judge: Judge, number: int, limit: int) -> Verdict:
+    def limits():
+        resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 1))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+    environment: Dict[str, str] = {**os.environ, "TRAMMEL_MUTANT": str(number)}
+    start = time.monotonic()
+    try:
+        # One that sleeps uses no processor time; it is given ten times as long.
+        done = subprocess.run([judge.executable, "--gtest_fail_fast", "--gtest_brief=1", *judge.arguments], env=environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=10 * limit, preexec_fn=limits,
+                              errors="replace")
+        how = judged(done.returncode, done.stdout)
+    except subprocess.TimeoutExpired:
+        how = "timed out"
+    return Verdict(how, judge.name, time.monotonic() - start)
+
+
+def judged(status: int, output: str) -> str:
+    if status == 0:
+        return "lived" if TESTS_PASSED in output else "failed"
+    if -status in (24, 9):  # SIGXCPU; SIGKILL a second later
+        return "timed out"
+    if MISMATCH in output:
+        return "mismatch"
+    return "failed" if status == 1 else "crashed"
+
+
+def try_sound_design(judge: Judge):
+    """Mutant 0 must pass; how long it takes is the measure for the others."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    verdict = run(judge, 0, 3600)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if verdict.killed:
+        raise SoundDesignRefused(f"judge {judge.name} finds fault with the sound design ({verdict.how}): "
+                                 f"TRAMMEL_MUTANT=0 {judge.executable}")
+    judge.seconds = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
+
+
+def try_mutant(judges: List[Judge], number: int, file: str) -> Verdict:
+    """The first judge that kills it; "lived" when none does."""
+    seconds = 0.0
+    for judge in judges:
+        if file not in judge.sources:
+            continue
+        verdict = run(judge, number, judge.limit())
+        seconds += verdict.seconds
+        if verdict.killed:
+            return Verdict(verdict.how, judge.name, seconds)
+    return Verdict("lived", "", seconds)

@@ -1,0 +1,111 @@
+// An AXI4-Lite master for the card under lockstep: clocks of its own choice before each valid and ready, write and read
+// side by side. It looks at what the golden model answers; an answer of the RTL that differs is a mismatch.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <stdexcept>
+
+#include "lockstep_card.hpp"
+
+namespace trammel::test {
+
+class AxiHost {
+ public:
+  struct Write {
+    std::uint32_t address = 0;
+    std::uint32_t value = 0;
+    std::uint8_t strobes = 0xF;
+  };
+  struct Answers {
+    bool written = false;               // the write was taken, not refused
+    std::optional<std::uint32_t> read;  // what was read; nothing when refused
+  };
+
+  AxiHost(sim::LockstepCard& card, std::uint64_t seed) : card_(card), random_(seed) {}
+
+  // Valid and ready come up to `clocks` late, each at random; 0: at once, ready before its valid.
+  void set_delays(unsigned clocks) { most_delay_ = clocks; }
+
+  bool write(std::uint32_t address, std::uint32_t value, std::uint8_t strobes = 0xF) {
+    const Write access{address, value, strobes};
+    return perform(&access, nullptr).written;
+  }
+  std::optional<std::uint32_t> read(std::uint32_t address) { return perform(nullptr, &address).read; }
+  Answers write_beside_read(const Write& write, std::uint32_t address) { return perform(&write, &address); }
+
+  void wait(std::uint64_t clocks) { card_.run({}, clocks); }
+  void reset(std::uint64_t clocks) {
+    model::CardModel::Inputs in;
+    in.rst = true;
+    card_.run(in, clocks);
+  }
+
+  // The most clocks that an answer took from its handshake on.
+  std::uint64_t slowest_answer() const { return slowest_; }
+  sim::LockstepCard& card() { return card_; }
+  std::uint64_t below(std::uint64_t count) { return random_() % count; }
+
+ private:
+  // One handshake: not before `delay` clocks, done when valid and ready met.
+  struct Handshake {
+    bool due = false;
+    std::uint64_t delay = 0;
+
+    bool up() const { return due && delay == 0; }
+    void clock(bool met) {
+      if (met) due = false;
+      if (delay != 0) --delay;
+    }
+  };
+  static constexpr std::uint64_t kMostClocks = 5000;  // far above the card's bound of 600
+
+  Handshake handshake(bool wanted) { return {wanted, wanted && most_delay_ != 0 ? below(most_delay_ + 1) : 0}; }
+
+  Answers perform(const Write* write, const std::uint32_t* read) {
+    Handshake aw = handshake(write != nullptr);
+    Handshake w = handshake(write != nullptr);
+    Handshake b = handshake(write != nullptr);
+    Handshake ar = handshake(read != nullptr);
+    Handshake r = handshake(read != nullptr);
+    Answers answers;
+    model::CardModel::Inputs in;
+    if (write != nullptr) {
+      in.awaddr = write->address;
+      in.wdata = write->value;
+      in.wstrb = write->strobes;
+    }
+    if (read != nullptr) in.araddr = *read;
+    std::uint64_t asked = 0;
+    for (std::uint64_t clocks = 0; b.due || r.due; ++clocks) {
+      if (clocks == kMostClocks) throw std::logic_error("the card does not answer");
+      in.awvalid = aw.up();
+      in.wvalid = w.up();
+      in.bready = b.up();
+      in.arvalid = ar.up();
+      in.rready = r.up();
+      const model::Axi4LitePort::Outputs bus = card_.model().bus();
+      const bool asking = aw.due || w.due || ar.due;
+      if (asking) asked = clocks;
+      if (b.up() && bus.bvalid) answers.written = bus.bresp == model::Axi4LitePort::kOkay;
+      if (r.up() && bus.rvalid && bus.rresp == model::Axi4LitePort::kOkay) answers.read = bus.rdata;
+      if ((b.due && bus.bvalid) || (r.due && bus.rvalid)) slowest_ = std::max(slowest_, clocks - asked);
+      card_.run(in, 1);
+      aw.clock(in.awvalid && bus.awready);
+      w.clock(in.wvalid && bus.wready);
+      b.clock(in.bready && bus.bvalid);
+      ar.clock(in.arvalid && bus.arready);
+      r.clock(in.rready && bus.rvalid);
+    }
+    return answers;
+  }
+
+  sim::LockstepCard& card_;
+  std::mt19937_64 random_;
+  unsigned most_delay_ = 0;
+  std::uint64_t slowest_ = 0;
+};
+
+}  // namespace trammel::test

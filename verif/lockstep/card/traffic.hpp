@@ -1,0 +1,252 @@
+// Random traffic for the card under lockstep: programs, and everything that a host may do to them at any clock.
+// The same seed gives the same traffic.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "axi_host.hpp"
+#include "commands.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/commands.hpp"
+
+namespace trammel::test {
+
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+
+class Traffic {
+ public:
+  Traffic(AxiHost& host, unsigned axes) : host_(host), axes_(axes) {}
+
+  // Sends a command, sometimes broken in one bit when `faulty`. False when a word was refused.
+  bool send(const driver::Command& command, bool faulty = false) {
+    std::vector<std::uint32_t> words;
+    driver::encode(command, number_, words);
+    if (faulty) corrupt(words);
+    for (const std::uint32_t word : words) {
+      if (!host_.write(reg::kStream, word)) return false;
+    }
+    ++number_;
+    return true;
+  }
+  void abort() {
+    host_.write(reg::kControl, field::kControlAbort);
+    number_ = 0;
+  }
+  // A few paths and the pieces for them in any order between, sometimes a barrier.
+  void section(bool faulty);
+  // Sections until `commands` were tried; disturbed after each with the given chance of one in `calm`.
+  void run(std::uint64_t commands, std::uint64_t calm);
+  // One act of a host: a setting, a read, a hold, a START, an abort, a reset ...
+  void disturb();
+  // START with values on and beyond every limit.
+  void start();
+  void settings();
+  // Everything at peace again: no hold, full ratio, no fault, nothing queued; in any order.
+  void recover();
+  void reset(std::uint64_t clocks);
+  bool wait_idle(std::uint64_t clocks);
+  std::uint32_t status() { return host_.read(reg::kStatus).value_or(0); }
+
+ private:
+  std::uint64_t below(std::uint64_t count) { return host_.below(count); }
+  bool one_in(std::uint64_t count) { return below(count) == 0; }
+  // A number of up to `bits` bits, short ones as likely as long ones; sometimes next to a power of two.
+  std::uint64_t odd_number(unsigned bits) {
+    const std::uint64_t power = std::uint64_t{1} << below(bits);
+    if (one_in(3)) return power - 1 + below(3);
+    return below(2 * power);
+  }
+  void corrupt(std::vector<std::uint32_t>& words) {
+    std::uint32_t& word = words[below(words.size())];
+    word ^= std::uint32_t{1} << below(32);
+    if (one_in(4)) word = static_cast<std::uint32_t>(odd_number(32));
+    if (one_in(6)) words.resize(1 + below(words.size()));
+  }
+  void read_anything();
+  void write_anything();
+
+  AxiHost& host_;
+  unsigned axes_;
+  std::uint8_t number_ = 0;
+};
+
+inline void Traffic::section(bool faulty) {
+  const double pace = one_in(2) ? 1.001 + static_cast<double>(below(100)) * 0.05 : 8 + static_cast<double>(below(40));
+  std::vector<driver::Command> geometry;
+  std::uint64_t total = 0;
+  const auto random = [this](std::uint64_t count) { return below(count); };
+  for (std::uint64_t paths = 1 + below(6); paths != 0; --paths) geometry.push_back(random_path(random, axes_, pace, total));
+  std::vector<driver::Command> pieces;
+  for (std::uint64_t left = total; left != 0;) {
+    const std::uint64_t ticks = one_in(3) ? left : 1 + below(left);
+    pieces.push_back(random_piece(random, ticks, pace));
+    left -= ticks;
+  }
+  // Pieces and paths that do not add up are a fault at the next barrier.
+  if (one_in(25)) pieces.pop_back();
+  auto path = geometry.begin();
+  auto piece = pieces.begin();
+  while (path != geometry.end() || piece != pieces.end()) {
+    const bool geometry_next = piece == pieces.end() || (path != geometry.end() && one_in(2));
+    const bool broken = faulty && one_in(12);
+    if (!send(geometry_next ? *path++ : *piece++, broken)) {
+      // Refused: the rest is refused too until an abort, which need not come at once.
+      if (!one_in(3)) abort();
+      return;
+    }
+    if (one_in(30)) host_.write(reg::kControl, field::kControlFlush);
+  }
+  switch (below(4)) {
+    case 0:
+      send(driver::Dwell{one_in(3) ? below(3) : below(300)});
+      break;
+    case 1:
+      send(driver::End{});
+      if (one_in(2)) send(driver::Dwell{below(40)});
+      break;
+    default:
+      break;
+  }
+}
+
+inline void Traffic::settings() {
+  const auto time = [this] { return static_cast<std::uint32_t>(one_in(12) ? odd_number(16) & 0xFFFF : below(5)); };
+  for (unsigned n = 0; n < axes_; ++n) {
+    if (one_in(2)) host_.write(reg::step_length(n), time());
+    if (one_in(2)) host_.write(reg::step_space(n), time());
+    if (one_in(2)) host_.write(reg::dir_setup(n), time());
+    if (one_in(2)) host_.write(reg::dir_hold(n), time());
+    if (one_in(2)) host_.write(reg::mode(n), static_cast<std::uint32_t>(below(16)));
+  }
+  if (one_in(2)) host_.write(reg::kHoldLimit, static_cast<std::uint32_t>(one_in(2) ? 1 + below(300) : 0xFFFF));
+  if (one_in(2)) host_.write(reg::kIrqEnable, static_cast<std::uint32_t>(below(1U << 18)));
+  if (one_in(2)) host_.write(reg::kStopReaction, static_cast<std::uint32_t>(below(256)));
+}
+
+inline void Traffic::start() {
+  constexpr std::uint64_t kWhole = std::uint64_t{1} << 40;
+  for (unsigned n = 0; n < axes_; ++n) {
+    std::uint64_t frequency = kWhole / (1 + below(60));
+    if (one_in(8)) frequency = std::uint64_t{1} << (30 + below(11));
+    if (one_in(10)) frequency = kWhole - 1 + below(3);
+    if (one_in(10)) frequency = below(0x1FF) << 32;  // low word 0
+    if (one_in(10)) frequency = 0;
+    host_.write(reg::frequency_lo(n), static_cast<std::uint32_t>(frequency));
+    host_.write(reg::frequency_hi(n), static_cast<std::uint32_t>(frequency >> 32));
+    host_.write(reg::count(n), static_cast<std::uint32_t>(one_in(6) ? 0 : one_in(8) ? odd_number(20) : below(40)));
+    host_.write(reg::direction(n), static_cast<std::uint32_t>(below(2)));
+  }
+  host_.write(reg::kLengthLo, static_cast<std::uint32_t>(one_in(6) ? 0 : one_in(8) ? odd_number(12) : below(600)));
+  host_.write(reg::kLengthHi, 0);
+  std::uint32_t mask = static_cast<std::uint32_t>(below(1U << axes_));
+  if (one_in(8)) mask = static_cast<std::uint32_t>(below(256));
+  host_.write(reg::kStart, mask);
+  if (one_in(3)) host_.wait(below(900));
+}
+
+inline void Traffic::read_anything() {
+  const auto address = static_cast<std::uint32_t>(one_in(8) ? below(4096) : 4 * below(256));
+  if (one_in(2)) {
+    host_.read(address);
+  } else {
+    host_.write_beside_read({reg::kControl, field::kControlSnapshot}, address);
+  }
+}
+
+inline void Traffic::write_anything() {
+  const auto address = static_cast<std::uint32_t>(one_in(8) ? below(4096) : 4 * below(256));
+  const auto strobes = static_cast<std::uint8_t>(one_in(3) ? below(16) : 0xF);
+  host_.write(address, static_cast<std::uint32_t>(odd_number(32)), strobes);
+}
+
+inline void Traffic::disturb() {
+  switch (below(16)) {
+    case 0:
+      host_.write(reg::kHold, static_cast<std::uint32_t>(below(2)));
+      break;
+    case 1:
+      host_.write(reg::kRatioFeed, static_cast<std::uint32_t>(0x4000 + below(0xC001)));
+      break;
+    case 2:
+      host_.write(reg::kSlew, static_cast<std::uint32_t>(1 + odd_number(28)));
+      break;
+    case 3:
+      start();
+      break;
+    case 4:
+      settings();
+      break;
+    case 5:
+      host_.write(reg::kFault, static_cast<std::uint32_t>(below(1U << 16)));
+      break;
+    case 6:
+      host_.write(reg::kRefusal, 1);
+      break;
+    case 7:
+      abort();
+      break;
+    case 8:
+      write_anything();
+      break;
+    case 9:
+      host_.set_delays(static_cast<unsigned>(one_in(2) ? 0 : below(7)));
+      break;
+    case 10:
+      recover();
+      break;
+    case 11:
+      if (one_in(6)) reset(1 + below(5));
+      break;
+    default:
+      read_anything();
+      break;
+  }
+}
+
+inline void Traffic::recover() {
+  const auto calm = [this] {
+    host_.write(reg::kHold, 0);
+    host_.write(reg::kRatioFeed, 0x10000);
+    host_.write(reg::kSlew, 0xFFFFFFF);
+  };
+  const bool calm_first = one_in(2);
+  if (calm_first) calm();
+  const bool abort_first = one_in(2);
+  if (abort_first) abort();
+  host_.wait(below(60));
+  host_.write(reg::kFault, 0xFFFF);
+  host_.wait(below(60));
+  if (!abort_first || one_in(3)) abort();
+  if (!calm_first) calm();
+  host_.write(reg::kRefusal, 1);
+}
+
+inline void Traffic::reset(std::uint64_t clocks) {
+  host_.reset(clocks);
+  number_ = 0;
+}
+
+inline bool Traffic::wait_idle(std::uint64_t clocks) {
+  for (std::uint64_t waited = 0; waited <= clocks; waited += 50) {
+    if ((status() & field::kStatusBusy) == 0) return true;
+    host_.wait(50);
+  }
+  return false;
+}
+
+inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
+  for (; sections != 0; --sections) {
+    section(one_in(4));
+    host_.wait(below(one_in(4) ? 6000 : 600));
+    while (one_in(calm)) disturb();
+    if (one_in(6)) {
+      recover();
+      settings();
+    }
+  }
+}
+
+}  // namespace trammel::test
