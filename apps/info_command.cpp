@@ -12,8 +12,6 @@
 namespace trammel::app {
 namespace {
 
-namespace field = card_map::field;
-
 constexpr std::uint32_t kDefaultClock = 1'000'000;
 
 struct Options {
@@ -23,16 +21,11 @@ struct Options {
 
 std::string engines(std::uint32_t bits) {
   std::string text;
-  const auto add = [&](std::uint32_t mask, const char* name) {
-    if ((bits & mask) == 0) return;
+  for (std::uint32_t engine = 0; engine < card_map::kEngineNames.size(); ++engine) {
+    if (!card_map::has_engine(bits, engine)) continue;
     if (!text.empty()) text += ", ";
-    text += name;
-  };
-  add(field::kEnginesPulseGenerators, "pulse generators");
-  add(field::kEnginesAccumulator4, "deviation accumulator (4 directions)");
-  add(field::kEnginesAccumulator8, "deviation accumulator (8 directions)");
-  add(field::kEnginesArcGenerator, "arc generator");
-  add(field::kEnginesJerk, "jerk in the feed generator");
+    text += card_map::kEngineNames[engine];
+  }
   return text;
 }
 

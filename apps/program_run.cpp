@@ -167,6 +167,7 @@ class ProgramStream {
         bar_(progress),
         watcher_(watcher),
         planner_(program, machine, card.identification().clock_hz),
+        card_(card),
         card_clock_hz_(card.identification().clock_hz),
         stream_(card, options()) {}
 
@@ -177,8 +178,8 @@ class ProgramStream {
       driver::PlannedSegment segment;
       while (planner_.next(segment)) {
         for (const driver::Command& command : segment.commands) {
-          recorder_.deviation().command(lines_.size(), command);
-          lines_.push_back(segment.line);
+          recorder_.deviation().command(commands_++, command);
+          if (!std::holds_alternative<driver::Feed>(command)) geometry_lines_.push_back(segment.line);
         }
         if (watcher_ != nullptr) watcher_->sending(segment);
         stream_.send(segment.commands);
@@ -187,6 +188,10 @@ class ProgramStream {
         show();
       }
       stream_.finish();
+    } catch (const driver::FaultError& error) {
+      // A fault has set the card's counters back; what had begun by then was latched.
+      begun_ = card_.stop_snapshot().geometry_begun;
+      throw std::runtime_error(fmt::format("{}:{}: {}", program_.file, current_line(), error.what()));
     } catch (const driver::Error& error) {
       throw std::runtime_error(fmt::format("{}:{}: {}", program_.file, current_line(), error.what()));
     }
@@ -202,7 +207,7 @@ class ProgramStream {
     driver::StreamOptions options;
     options.poll_clocks = std::max<std::uint64_t>(64, card_clock_hz_ / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
-      running_ = progress.geometry_command;
+      begun_ = progress.geometry_begun;
       show();
     };
     return options;
@@ -212,12 +217,11 @@ class ProgramStream {
     bar_.show(plan_.seconds > 0 ? seconds / plan_.seconds : 1.0,
               fmt::format("{:.1f} of {:.1f} s of card time", seconds, plan_.seconds));
   }
-  // The line of the command in work: the latest one sent whose number fits what the card says.
+  // The line of the path or barrier that the card has begun last; of the first one before that.
   std::size_t current_line() const {
-    for (std::size_t i = lines_.size(); i > 0; --i) {
-      if (((i - 1) & 0xFFU) == running_) return lines_[i - 1];
-    }
-    return 0;
+    if (geometry_lines_.empty()) return 0;
+    const std::size_t begun = std::max<std::size_t>(begun_, 1);
+    return geometry_lines_[std::min(begun, geometry_lines_.size()) - 1];
   }
 
   const driver::Program& program_;
@@ -227,9 +231,11 @@ class ProgramStream {
   ProgressBar bar_;
   RunWatcher* watcher_;
   driver::Planner planner_;
+  driver::Card& card_;
   std::uint32_t card_clock_hz_;
-  std::vector<std::size_t> lines_;  // of the program, by command number
-  std::uint8_t running_ = 0;
+  std::uint64_t commands_ = 0;               // sent
+  std::vector<std::size_t> geometry_lines_;  // of the program, by commands in the geometry queue
+  std::uint32_t begun_ = 0;                  // of these, as the card said last
   driver::Stream stream_;
 };
 

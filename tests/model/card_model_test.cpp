@@ -119,7 +119,7 @@ TEST(CardModelRun, EqualsClockForRandomPrograms) {
     Pair pair;
     SCOPED_TRACE(program);
     const auto ratio = static_cast<std::uint32_t>(random() % 2 == 0 ? 0x10000 : 0x3000 + random() % 0xD001);
-    pair.both([ratio](Card& card) { card.write(reg::kRatio, ratio); });
+    pair.both([ratio](Card& card) { card.write(reg::kRatioFeed, ratio); });
     const double pace = random() % 3 == 0 ? 20 : 60 + static_cast<double>(random() % 500);
     std::uint64_t total = 0;
     for (int path = 0; path < 4; ++path) {
@@ -164,7 +164,7 @@ TEST(CardModelRun, EqualsClockForRandomPrograms) {
       wait_in_pieces(pair, random, 4000);
     }
     ASSERT_FALSE(HasFatalFailure());
-    ASSERT_EQ(pair.clocked.model().outputs().status, 0x10U) << "ended, and nothing else";
+    ASSERT_EQ(pair.clocked.model().outputs().status, card_map::field::kStatusEnded) << "ended, and nothing else";
     ASSERT_EQ(pair.clocked.model().outputs().fault, 0U);
     ASSERT_FALSE(pair.clocked.steps.path.empty());
   }

@@ -147,7 +147,7 @@ TEST_P(CardScenario, HoldAndOtherRatioLeaveThePathAsItIs) {
     host.send(driver::End{});
     if (disturbed) {
       card->write(reg::kSlew, 0x20'0000);
-      card->write(reg::kRatio, 0x9000);
+      card->write(reg::kRatioFeed, 0x9000);
       card->wait(700);
       card->write(reg::kHold, 1);
       card->wait(3000);
@@ -166,7 +166,7 @@ TEST_P(CardScenario, HoldAndOtherRatioLeaveThePathAsItIs) {
 }
 
 TEST_P(CardScenario, DwellsInRealTime) {
-  card->write(reg::kRatio, 0x4000);
+  card->write(reg::kRatioFeed, 0x4000);
   std::uint64_t gaps[2];
   for (const std::uint64_t clocks : {0U, 5000U}) {
     steps.pins.clear();

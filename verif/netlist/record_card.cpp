@@ -48,7 +48,7 @@ class Program {
     send(driver::Dwell{50 + below(200)});
     send(driver::End{});
     for (int i = 0; i < 60 && (card_.read(reg::kStatus) & field::kStatusBusy) != 0; ++i) disturb();
-    card_.write(reg::kRatio, 0x10000);
+    card_.write(reg::kRatioFeed, 0x10000);
     card_.write(reg::kSlew, 0xFFFFFFF);
     settle();
   }
@@ -100,8 +100,8 @@ class Program {
     card_.write(0xFFC, 1);
     card_.read(0xFFC);
     card_.write(reg::kMagic, 1);
-    card_.write(reg::kRatio, 0x10001);
-    card_.write(reg::kRatio, 0x100, 0x3);
+    card_.write(reg::kRatioFeed, 0x10001);
+    card_.write(reg::kRatioFeed, 0x100, 0x3);
     card_.read(reg::kRefusal);
     card_.write(reg::kRefusal, 1);
   }
@@ -163,7 +163,7 @@ class Program {
         card_.write(reg::kHold, 0);
         break;
       case 1:
-        card_.write(reg::kRatio, 0x4000 + below(0xC001));
+        card_.write(reg::kRatioFeed, 0x4000 + below(0xC001));
         break;
       case 2:
         card_.write(reg::kControl, field::kControlSnapshot);
