@@ -6,9 +6,6 @@ namespace trammel::model {
 
 namespace {
 
-// From a tick that shows to its step before the shaper.
-constexpr std::uint64_t kTickToStep = 7;
-
 const CardConfig& checked(const CardConfig& config) {
   if (config.axes < 1 || config.axes > CoreModel::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   if (config.ports < 1 || config.ports > 4) throw std::invalid_argument("a card has 1 to 4 ports");
@@ -56,10 +53,7 @@ void CoreModel::reset() {
   feed_queue_ = HalfwordQueue(config_.feed_depth);
   motion_ = MotionCore(config_.axes, config_.idle_level);
   cycles_ = 0;
-  accepted_ = command_ = path_taken_ = arc_taken_ = 0;
-  geometry_numbers_.clear();
-  takes_ = {};
-  shown_position_ = {};
+  record_.reset();
   answer_ = {};
   gather();
   show();
@@ -84,6 +78,26 @@ void CoreModel::clock(const Inputs& in) {
   gather();
   record(cut);
   show();
+}
+
+void CoreModel::run(std::uint64_t clocks) {
+  while (clocks != 0) {
+    const std::uint64_t gone = jump(clocks);
+    if (gone == 0) clock({});
+    clocks -= gone == 0 ? 1 : gone;
+  }
+}
+
+std::uint64_t CoreModel::jump(std::uint64_t limit) {
+  if (reset_due_ || register_in_.request || !registers_.quiet(register_in_) || !checker_.quiet()) return 0;
+  if (!geometry_queue_.quiet() || !feed_queue_.quiet()) return 0;
+  const std::uint64_t gone = motion_.jump(limit, motion_inputs(), cycles_, record_);
+  if (gone == 0) return 0;
+  cycles_ += gone;
+  registers_.advance(gone);
+  gather();
+  show();
+  return gone;
 }
 
 MotionCore::Inputs CoreModel::motion_inputs() const {
@@ -176,50 +190,25 @@ void CoreModel::show() {
 }
 
 void CoreModel::record(bool cut) {
-  if (cut) {
-    accepted_ = 0;
-    geometry_numbers_.clear();
-  }
+  if (cut) record_.cut();
   const CommandChecker::Outputs& checker = checker_.outputs();
-  if (checker.geometry_commit || checker.feed_commit) {
-    if (checker.geometry_commit) geometry_numbers_.push_back(accepted_);
-    ++accepted_;
-  }
-  report_pin_steps();
-  if (motion_.engines().path_tick) ++arc_taken_;
+  if (checker.geometry_commit || checker.feed_commit) record_.accepted(checker.geometry_commit);
+  for (unsigned n = 0; n < config_.axes; ++n) record_.pin(cycles_, n, motion_.position(n));
+  if (motion_.engines().path_tick) record_.arc_tick();
   // The last tick of a path is its own, though the next one begins in the same clock.
   const Sequencer& s = motion_.sequencer();
-  if (s.outputs().tick) takes_[cycles_ % takes_.size()] = {cycles_, command_, ++path_taken_};
-  report_path_steps();
-  if (s.record().command && !geometry_numbers_.empty()) {
-    command_ = geometry_numbers_.front();
-    geometry_numbers_.pop_front();
-    path_taken_ = arc_taken_ = 0;
-  }
-  if (s.record().direct) command_ = path_taken_ = 0;
-}
-
-void CoreModel::report_path_steps() {
+  if (s.outputs().tick) record_.tick(cycles_);
   const MotionCore::Outputs& m = motion_.outputs();
-  if (m.path_step == 0 || steps_ == nullptr) return;
-  const Take& take = takes_[(cycles_ - kTickToStep) % takes_.size()];
-  for (unsigned n = 0; n < config_.axes; ++n) {
-    if ((m.path_step >> n & 1) == 0) continue;
-    const int direction = (m.path_dir >> n & 1) != 0 ? -1 : 1;
+  for (std::uint32_t n = 0, left = m.path_step; left != 0; ++n, left >>= 1) {
+    if ((left & 1) == 0) continue;
+    const bool backwards = (m.path_dir >> n & 1) != 0;
     if ((m.engine_step >> n & 1) != 0)
-      steps_->path_step(command_, arc_taken_, n, direction);
+      record_.arc_step(n, backwards);
     else
-      steps_->path_step(take.command, take.tick, n, direction);
+      record_.line_step(cycles_, n, backwards);
   }
-}
-
-void CoreModel::report_pin_steps() {
-  for (unsigned n = 0; n < config_.axes; ++n) {
-    const std::uint32_t position = motion_.position(n);
-    if (position == shown_position_[n]) continue;
-    if (steps_ != nullptr) steps_->pin_step(cycles_, n, static_cast<std::int32_t>(position - shown_position_[n]));
-    shown_position_[n] = position;
-  }
+  if (s.record().command) record_.command_begins();
+  if (s.record().direct) record_.direct_begins();
 }
 
 }  // namespace trammel::model

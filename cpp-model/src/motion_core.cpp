@@ -78,15 +78,20 @@ void MotionCore::clock_axes(const Inputs& in, bool cut) {
     axis.engine_step = (engines.step & bit) != 0;
     axis.engine_dir = (engines.dir & bit) != 0;
     axes_[n].clock(axis);
-    const Axis::Outputs o = axes_[n].outputs();
-    put(out_.step, bit, o.shaper.step);
-    put(out_.dir, bit, o.shaper.dir);
-    put(out_.path_step, bit, o.path_step);
-    put(out_.path_dir, bit, o.path_dir);
-    put(out_.live, bit, o.live);
-    put(out_.axis_busy, bit, o.shaper.busy);
-    put(out_.step_fault, bit, o.shaper.fault);
+    show_axis(n);
   }
+}
+
+void MotionCore::show_axis(unsigned n) {
+  const std::uint32_t bit = 1U << n;
+  const Axis::Outputs o = axes_[n].outputs();
+  put(out_.step, bit, o.shaper.step);
+  put(out_.dir, bit, o.shaper.dir);
+  put(out_.path_step, bit, o.path_step);
+  put(out_.path_dir, bit, o.path_dir);
+  put(out_.live, bit, o.live);
+  put(out_.axis_busy, bit, o.shaper.busy);
+  put(out_.step_fault, bit, o.shaper.fault);
 }
 
 void MotionCore::clock_busy() {

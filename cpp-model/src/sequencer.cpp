@@ -150,6 +150,40 @@ void Sequencer::clock_piece(const Decision& d) {
   }
 }
 
+bool Sequencer::settled(const Inputs& in) const {
+  const bool nothing_shows = !(out_.swap || out_.feed_swap || out_.arc_start || out_.mismatch || out_.incomplete) &&
+                             !(path_begun_ || piece_begun_ || cut_before_ || in.cut || in.direct_go) &&
+                             !(load_.valid || in.direct_load.valid || record_.command || record_.direct);
+  if (!nothing_shows || drained_ || path_ == Path::Direct || !(geometry_.quiet() && feed_.quiet())) return false;
+  if ((geometry_.idle() && !in.geometry_empty) || (feed_.idle() && !in.feed_empty)) return false;
+  if (geometry_.waiting() && path_ != Path::Arc) return false;
+  const Decision d = decide(in);
+  if (d.path_begins || d.piece_begins || d.barrier_begins || d.barrier_done || mismatches(in)) return false;
+  if (barrier_ == Barrier::Meeting || d.barrier_ends) return false;
+  const bool geometry_stands = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None;
+  const bool feed_stands = feed_.decoded() && feed_.is_barrier() && !out_.feed_active;
+  if (geometry_stands != geometry_stands_ || feed_stands != feed_stands_) return false;
+  if (barrier_ == Barrier::None && geometry_stands && feed_stands && in.go) return false;
+  if (barrier_ == Barrier::Running && !in.go) return false;
+  const bool geometry_idle = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
+  const bool idle = geometry_idle && feed_.idle() && in.feed_empty && !out_.feed_active;
+  if (geometry_idle != geometry_idle_ || idle != out_.idle || out_.feed_clear == out_.feed_active) return false;
+  if (ticking()) return in.go && in.engine_ready && owed_ <= 1;
+  return !d.take && !tick_arrives_ && !out_.tick && !out_.feed_enable && !in.feed_tick &&
+         (out_.feed_active || owed_ == 0);
+}
+
+void Sequencer::jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flight, bool feed_enable) {
+  now_ += clocks;
+  if (!ticking()) return;
+  path_left_ -= ticks;
+  piece_left_ -= ticks;
+  tick_arrives_ = (in_flight >> kArrives & 1) != 0;
+  owed_ = in_flight >> kOwed & 1;
+  out_.tick = (in_flight >> kTaken & 1) != 0;
+  out_.feed_enable = feed_enable;
+}
+
 // Everything decoded or running is gone; the chains keep what they have.
 void Sequencer::cut() {
   const Outputs before = out_;

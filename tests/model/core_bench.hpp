@@ -100,21 +100,22 @@ class CoreBench {
                               {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
   }
   // A circle of radius r, all of it, from its rightmost point, over `ticks`; 8 r path ticks.
+  static std::vector<std::uint32_t> circle_words(std::uint8_t number, std::uint64_t ticks, std::int64_t r,
+                                                 bool clockwise) {
+    const std::int64_t made = 8 * r;
+    const auto n = static_cast<int128>(ticks);
+    const int128 prescale = (int128{made} * kOnePulse + n / 2) / n;
+    return command_words(card_map::Opcode::Arc, 3, number, ticks,
+                         {{"path_ticks", made},
+                          {"prescale", prescale},
+                          {"plane", 1 << 8 | (clockwise ? 1 : 0)},
+                          {"quadrants", 4},
+                          {"gradient_x", 2 * r},
+                          {"half_x", 1},
+                          {"half_y", 1}});
+  }
   bool circle(std::uint64_t ticks, std::int64_t r, bool clockwise = false) {
-    const std::int64_t steps_made = 8 * r;
-    const auto prescale =
-        static_cast<std::int64_t>((static_cast<int128>(steps_made) * kOnePulse + static_cast<std::int64_t>(ticks / 2)) /
-                                  static_cast<std::int64_t>(ticks));
-    return send(command_words(card_map::Opcode::Arc, 3, number++, ticks,
-                              {{"path_ticks", steps_made},
-                               {"prescale", prescale},
-                               {"plane", 1 << 8 | (clockwise ? 1 : 0)},
-                               {"quadrants", 4},
-                               {"deviation", 0},
-                               {"gradient_x", 2 * r},
-                               {"gradient_y", 0},
-                               {"half_x", 1},
-                               {"half_y", 1}}));
+    return send(circle_words(number++, ticks, r, clockwise));
   }
   bool dwell(std::uint64_t clocks) { return send(command_words(card_map::Opcode::Dwell, 0, number++, clocks, {})); }
   bool end() { return send(command_words(card_map::Opcode::End, 0, number++, 0, {})); }

@@ -66,15 +66,24 @@ class Axis {
   // Nothing changes any more without new inputs.
   bool quiet() const { return generator_.quiet() && !path_step_ && shaper_.quiet() && times_.mode == shaper_.mode(); }
 
-  // Clocks without tick, swap, load, cut, engine_step and setting for which no output changes.
-  std::uint64_t idle_clocks() const { return generator_.quiet() && !path_step_ ? shaper_.idle_clocks() : 0; }
+  // Ready for a jump: nothing on its way to the shaper, and there no step that waits.
+  bool calm() const {
+    return generator_.quiet() && !path_step_ && shaper_.calm() && times_.mode == shaper_.mode() &&
+           !generator_.outputs().live;
+  }
 
-  // n such clocks at once, n <= idle_clocks().
-  void advance(std::uint64_t n) { shaper_.advance(n); }
+  // A step of a tick taken `clocks_ago` clocks ago that is not yet at the shaper, placed in flight.
+  void place_step(std::uint64_t clocks_ago, bool backwards) {
+    generator_.place_step(clocks_ago, backwards);
+    path_step_ = clocks_ago == 3;
+    if (clocks_ago >= 3) path_dir_ = backwards;
+  }
 
   PulseGenerator& generator() { return generator_; }
   const PulseGenerator& generator() const { return generator_; }
+  StepShaper& shaper() { return shaper_; }
   const StepShaper& shaper() const { return shaper_; }
+  const StepShaper::Inputs& times() const { return times_; }
 
  private:
   void set(const Setting& setting) {

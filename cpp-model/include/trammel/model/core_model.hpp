@@ -1,31 +1,20 @@
 // Golden model of the card's core: everything between the inner register port and the pins, cycle by cycle.
 //
-// clock() is one rising edge. Steps are reported as they appear: at the pins in the cycle of their leading edge, on the
-// path before the shapers. Not thread-safe; no errors are reported beside the constructor's.
+// clock() is one rising edge; run(n) is n edges without requests, which goes from step to step where nothing else
+// happens, and leaves exactly the state that n calls of clock() leave. Steps are reported as they appear: at the pins
+// in the cycle of their leading edge, on the path before the shapers. Not thread-safe; no errors are reported beside
+// the constructor's.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <deque>
 
 #include "trammel/model/command_checker.hpp"
 #include "trammel/model/halfword_queue.hpp"
 #include "trammel/model/motion_core.hpp"
 #include "trammel/model/register_file.hpp"
+#include "trammel/model/step_record.hpp"
 
 namespace trammel::model {
-
-// Receives steps in order of time.
-class CardSteps {
- public:
-  virtual ~CardSteps() = default;
-  // A step at the pins of `axis`; `cycle` counts rising edges since reset, that of the leading edge included.
-  virtual void pin_step(std::uint64_t cycle, unsigned axis, int direction) = 0;
-  // A step of the path. `command`: number in the stream, from 0 at reset or a cut, not wrapped, barriers and feed
-  // pieces counted; 0 in direct mode. `tick`: of its path, from 1; feed ticks of a line (enabled clocks in direct
-  // mode), path ticks of an arc.
-  virtual void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) = 0;
-};
 
 struct CardConfig {
   unsigned axes = 4;               // 1 .. 8
@@ -89,31 +78,27 @@ class CoreModel {
   // One rising edge.
   void clock(const Inputs& in);
 
+  // `clocks` edges without requests.
+  void run(std::uint64_t clocks);
+  // Edges at once without requests, `limit` at most; 0 where it is not worth it.
+  std::uint64_t jump(std::uint64_t limit);
+
   const Answer& answer() const { return answer_; }
   const Outputs& outputs() const { return out_; }
   std::uint32_t position(unsigned axis) const { return motion_.position(axis); }
   const Config& config() const { return config_; }
   std::uint64_t cycles() const { return cycles_; }
-  void set_steps(CardSteps* steps) { steps_ = steps; }  // nullptr: none; not owned
+  void set_steps(CardSteps* steps) { record_.set_steps(steps); }  // nullptr: none; not owned
 
  private:
-  struct Take {
-    std::uint64_t cycle = 0;
-    std::uint64_t command = 0;
-    std::uint64_t tick = 0;
-  };
-
   void reset();
   MotionCore::Inputs motion_inputs() const;
   void clock_commands(bool cut);
   void gather();
   void show();
   void record(bool cut);
-  void report_path_steps();
-  void report_pin_steps();
 
   Config config_;
-  CardSteps* steps_ = nullptr;
   std::uint64_t cycles_ = 0;
   bool reset_due_ = false;
 
@@ -124,15 +109,7 @@ class CoreModel {
   MotionCore motion_;
   RegisterFile::Inputs register_in_;  // but for the port's: what stands after the last edge
 
-  // Record of steps.
-  std::uint64_t accepted_ = 0;                  // commands that the checker let in
-  std::deque<std::uint64_t> geometry_numbers_;  // of those in the geometry queue
-  std::uint64_t command_ = 0;
-  std::uint64_t path_taken_ = 0;  // ticks of the path
-  std::uint64_t arc_taken_ = 0;   // path ticks of the arc
-  std::array<Take, 16> takes_{};
-  std::array<std::uint32_t, kMaxAxes> shown_position_{};
-
+  StepRecord record_;
   Answer answer_;
   Outputs out_;
 };

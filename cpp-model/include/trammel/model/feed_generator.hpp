@@ -11,7 +11,6 @@
 // Not thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "trammel/model/buses.hpp"
@@ -51,50 +50,24 @@ class FeedGenerator {
 
   const Outputs& outputs() const { return outputs_; }
 
-  // No tick is visible or in flight: what skip() needs.
-  bool quiet() const { return !(outputs_.tick || in_flight_[0].tick || in_flight_[1].tick); }
-
-  // Goes over the enabled clocks that do not carry, `limit` at most, and returns how many those were; so when it
-  // returns less than `limit`, the next enabled clock gives a tick. The clocks that are not enabled change nothing and
-  // may lie anywhere between. Only while quiet(), and without swap, load and clear. The tick is exact at once; the rate
-  // shown is exact from the second clock() behind it on, since it lags by two clocks that need not be enabled ones.
-  // Cost: one division at a constant rate, about a nanosecond an update otherwise.
-  std::uint64_t skip(std::uint64_t limit) {
-    std::uint64_t gone = 0;
-    if (constant_) {
-      gone = glide(limit);
-    } else {
-      gone = glide(std::min<std::uint64_t>(limit, kUpdateClocks - count_));
-      // At count 0 an update was just reached; inside of one, a carry or the limit is what ended the way.
-      if (count_ == 0) gone += whole_updates(limit - gone);
-      if (count_ == 0) gone += glide(std::min<std::uint64_t>(limit - gone, kUpdateClocks));
-    }
+  // No tick is visible or in flight, and the rate shown is the one in use: without inputs nothing changes.
+  bool quiet() const {
     const auto rate = static_cast<std::uint32_t>(slope_ >> 16);
-    outputs_.rate = in_flight_[0].rate = in_flight_[1].rate = rate;
-    return gone;
+    return !(outputs_.tick || in_flight_[0].tick || in_flight_[1].tick) && outputs_.rate == rate &&
+           in_flight_[0].rate == rate && in_flight_[1].rate == rate;
   }
 
-  // The enabled clock that carries, behind a skip() that ended in front of it: its tick is the caller's to count and
-  // does not appear. The rate shown lags as after skip().
-  void carry_silently() { accumulate(); }
+  // The carry of the last clock(), and those of the two before.
+  bool carried(unsigned clocks_ago) const { return clocks_ago == 2 ? outputs_.tick : in_flight_[clocks_ago].tick; }
 
-  // The rate stays what it is for the rest of the piece: ticks can be counted in closed form.
-  bool constant() const { return constant_ && slope_ != 0; }
-  // Ticks that the next `enables` enabled clocks give, and the enabled clocks until `ticks` more are given, the last
-  // one included; only while constant(). Results are below 2^64: enables < 2^64, ticks < 2^60 * rate.
-  std::uint64_t ticks_in(std::uint64_t enables) const {
-    return static_cast<std::uint64_t>((phase_ + uint128{enables} * slope_) >> 48);
-  }
-  std::uint64_t enables_for(std::uint64_t ticks) const {
-    return static_cast<std::uint64_t>(((uint128{ticks} << 48) - phase_ + slope_ - 1) / slope_);
-  }
-  // `enables` enabled clocks whose ticks are the caller's to count and do not appear; only while quiet() and
-  // constant().
-  void leap(std::uint64_t enables) {
-    phase_ = static_cast<std::uint64_t>((phase_ + uint128{enables} * slope_) & (kOne - 1));
-    count_ = static_cast<std::uint32_t>((count_ + enables) % kUpdateClocks);
-    outputs_.rate = in_flight_[0].rate = in_flight_[1].rate = static_cast<std::uint32_t>(slope_ >> 16);
-  }
+  struct Advanced {
+    std::uint64_t enables = 0;
+    std::uint64_t carries = 0;
+  };
+  // Enabled clocks at once, up to the one that carries for the `carries`-th time, `limit` at most. Exact in all but
+  // what is in flight: neither ticks nor rates appear before 3 more clocks of clock(). Without swap, load and clear.
+  // Cost: a division at a constant rate, else about a nanosecond an update.
+  Advanced advance(std::uint64_t limit, std::uint64_t carries);
 
   // Phase and slope in use, 2^-48 ticks (an enabled clock).
   std::uint64_t phase() const { return phase_; }
@@ -127,6 +100,7 @@ class FeedGenerator {
     rate_ += acceleration_;
     acceleration_ += jerk_;
     slope_ = clamped(rate_, floor_rate_);
+    constant_ = acceleration_ == 0 && jerk_ == 0;
   }
 
   void swap() {
@@ -151,50 +125,17 @@ class FeedGenerator {
     judge_constant();
   }
 
-  void judge_constant() { constant_ = acceleration_ == 0 && jerk_ == 0 && rate_ >= floor_rate_ && rate_ >> 64 == 0; }
+  void judge_constant() { constant_ = acceleration_ == 0 && jerk_ == 0 && slope_ == clamped(rate_, floor_rate_); }
 
   void clear() {
     phase_ = 0;
     outputs_.tick = in_flight_[0].tick = in_flight_[1].tick = false;
   }
 
-  // Enabled clocks with the present slope, `limit` at most, up to just before the carry. The caller sees to it that no
-  // update lies inside; the one at the end is made.
-  std::uint64_t glide(std::uint64_t limit) {
-    const std::uint64_t room = kOne - 1 - phase_;
-    // Within one update the product tells without a division; beyond it could exceed 64 bits.
-    const bool all = slope_ == 0 || (limit <= kUpdateClocks && limit * slope_ <= room);
-    const std::uint64_t most = all ? limit : std::min(limit, room / slope_);
-    phase_ += most * slope_;
-    const std::uint64_t count = count_ + most;
-    count_ = static_cast<std::uint32_t>(count % kUpdateClocks);
-    if (!constant_ && count == kUpdateClocks) update();
-    return most;
-  }
-
-  // Whole updates without a carry, from a count of 0. The hot loop of the skipping engine.
-  std::uint64_t whole_updates(std::uint64_t limit) {
-    const uint128 jerk = jerk_;
-    const std::uint64_t floor_rate = floor_rate_;
-    uint128 rate = rate_;
-    uint128 acceleration = acceleration_;
-    std::uint64_t slope = slope_;
-    std::uint64_t phase = phase_;
-    std::uint64_t gone = 0;
-    for (; limit - gone >= kUpdateClocks; gone += kUpdateClocks) {
-      const std::uint64_t sum = phase + slope * kUpdateClocks;  // below 2^48 + 2^53
-      if (sum >= kOne) break;
-      phase = sum;
-      rate += acceleration;
-      acceleration += jerk;
-      slope = clamped(rate, floor_rate);
-    }
-    rate_ = rate;
-    acceleration_ = acceleration;
-    slope_ = slope;
-    phase_ = phase;
-    return gone;
-  }
+  void advance_constant(Advanced& gone, std::uint64_t limit, std::uint64_t carries);
+  void advance_varying(Advanced& gone, std::uint64_t limit, std::uint64_t carries);
+  std::uint64_t whole_updates(std::uint64_t& sum, std::uint64_t target, std::uint64_t most);
+  bool unclamped_for(std::uint64_t updates) const;
 
   std::uint64_t next_rate_ = 0;
   std::uint64_t next_floor_ = 0;  // 2^-32

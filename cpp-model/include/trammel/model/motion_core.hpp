@@ -13,6 +13,7 @@
 #include "trammel/model/hold_timer.hpp"
 #include "trammel/model/path_engines.hpp"
 #include "trammel/model/sequencer.hpp"
+#include "trammel/model/step_record.hpp"
 #include "trammel/model/stop_control.hpp"
 #include "trammel/model/time_base.hpp"
 
@@ -55,6 +56,10 @@ class MotionCore {
   // One rising edge.
   void clock(const Inputs& in);
 
+  // Clocks at once without host inputs and with the queues as they are, `limit` at most, from step to step (see
+  // jump.hpp); the state is that after as many calls of clock(). `cycle`: edges so far. 0 where it is not worth it.
+  std::uint64_t jump(std::uint64_t limit, const Inputs& in, std::uint64_t cycle, StepRecord& record);
+
   const Outputs& outputs() const { return out_; }
   const Sequencer& sequencer() const { return sequencer_; }
   const StopControl::Outputs& stop() const { return stop_.outputs(); }
@@ -65,11 +70,15 @@ class MotionCore {
   std::uint32_t position(unsigned axis) const { return axes_[axis].shaper().outputs().position; }
 
  private:
+  friend class Jump;
+
   // STATUS.busy falls when nothing has run for this many clocks.
   static constexpr unsigned kBusyClocks = 11;
 
   void clock_axes(const Inputs& in, bool cut);
   void clock_busy();
+  void show_axis(unsigned n);
+  bool may_jump(const Inputs& in) const;
   Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
 
   StopControl stop_;

@@ -54,10 +54,28 @@ class PathEngines {
 
   const Outputs& outputs() const { return out_; }
 
-  // Nothing is on its way: without inputs no output changes.
+  // For jumps. settled(): but for ticks on their way through the 3 clocks, nothing moves without inputs.
+  bool settled() const {
+    return swaps_ == 0 && !out_.swap && waiting_ == 0 && !out_.path_tick && almost_ == 0 && out_.step == 0 &&
+           prescaler_.quiet() && accumulator_.quiet();
+  }
+  // As settled(), and without ticks.
   bool quiet() const {
-    return quiet_but_done() && out_.done == accumulator_.outputs().ready &&
+    return settled() && ticks_ == 0 && !out_.tick && out_.done == accumulator_.outputs().ready &&
            out_.elsewhere == !accumulator_.outputs().at_end && out_.payload_ready;
+  }
+  // Ticks on their way: bit k belongs to an accumulation of the feed generator k clocks ago.
+  unsigned in_flight() const { return (ticks_ >> 2 & 1) << 6 | (ticks_ >> 1 & 1) << 7 | (ticks_ & 1) << 8; }
+  // What shows after clocks in which the prescaler took `ticks` without a step, and these are on their way (bit 9: the
+  // one before).
+  void jump(std::uint64_t ticks, unsigned in_flight) {
+    prescaler_.silent_ticks(ticks);
+    ticks_ = (in_flight >> 6 & 1) << 2 | (in_flight >> 7 & 1) << 1 | (in_flight >> 8 & 1);
+    out_.tick = (ticks_ & 1) != 0;
+    const bool feed_ticks = (in_flight >> 6 & 0xF) != 0;
+    out_.done = !feed_ticks && accumulator_.outputs().ready;
+    out_.elsewhere = !accumulator_.outputs().at_end;
+    out_.payload_ready = !(feed_ticks && prescaled_);
   }
 
   const PulseGenerator& prescaler() const { return prescaler_; }
@@ -67,11 +85,6 @@ class PathEngines {
  private:
   static constexpr unsigned kDelay = 3;   // feed domain to path domain
   static constexpr unsigned kAlmost = 4;  // clocks after the accumulator's tick in which no load may be asked for
-
-  bool quiet_but_done() const {
-    return ticks_ == 0 && swaps_ == 0 && !out_.tick && !out_.swap && waiting_ == 0 && !out_.path_tick && almost_ == 0 &&
-           out_.step == 0 && prescaler_.quiet() && accumulator_.quiet();
-  }
 
   // What the sequencer may know of it, a clock late.
   void judge(const Inputs& in, const DeviationAccumulator::Outputs& engine) {

@@ -59,19 +59,27 @@ class PulseGenerator {
   // n clocks without tick, swap, load or clear; only when quiet().
   void advance(std::uint64_t) {}
 
-  // Would a tick in the next clock make a step?
-  bool would_step() const {
-    const std::int64_t sum = phase_ + increment_;
-    return open_ && (sum < 0 || sum >= static_cast<std::int64_t>(kOne));
-  }
-
-  // A tick that makes no step (not would_step()), and the clocks until it has worked off; only when quiet().
-  void silent_tick() { phase_ = (phase_ + increment_) & kMask; }
-
-  // n silent ticks; only when quiet(), and n <= silent_ticks().
+  // n ticks that make no step, n <= silent_ticks(); only when quiet().
   void silent_ticks(std::uint64_t n) {
     const auto sum = static_cast<std::uint64_t>(phase_) + n * static_cast<std::uint64_t>(increment_);
     phase_ = static_cast<std::int64_t>(sum & static_cast<std::uint64_t>(kMask));
+  }
+
+  // The tick after silent_ticks() silent ones: true when its step is backwards. The step is not in flight.
+  bool step_at_once() {
+    phase_ += increment_;
+    const bool backwards = phase_ < 0;
+    phase_ &= kMask;
+    return backwards;
+  }
+
+  // A step of a tick taken `clocks_ago` clocks ago (0: in the last one), for the outputs alone.
+  void place_step(std::uint64_t clocks_ago, bool backwards) {
+    const unsigned event = backwards ? kStep | kBackwards : kStep;
+    if (clocks_ago == 0) pipe_ = event << 4;
+    if (clocks_ago == 1) pipe_ = event;
+    if (clocks_ago == 2) out_.step = true;
+    if (clocks_ago >= 2) out_.dir = backwards;
   }
 
   // How many ticks in a row would make no step; the largest number there is where none ever would.

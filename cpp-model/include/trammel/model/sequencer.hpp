@@ -73,6 +73,24 @@ class Sequencer {
   const Record& record() const { return record_; }
   bool geometry_read() const { return geometry_.read(); }
   bool feed_read() const { return feed_.read(); }
+  // For jumps. settled(): with these inputs, the enables and the ticks made apart, only counters move.
+  bool settled(const Inputs& in) const;
+  // A path takes each tick of its piece as it comes.
+  bool ticking() const { return (path_ == Path::Line || path_ == Path::Arc) && !drained_ && out_.feed_active; }
+  // Ticks until the path or its piece ends, the last one included.
+  std::uint64_t ticks_left() const { return path_left_ < piece_left_ ? path_left_ : piece_left_; }
+  // Clocks that a settled sequencer may jump over at most, ticks apart.
+  std::uint64_t settled_clocks() const { return barrier_ == Barrier::Running ? barrier_at_ - now_ : kLong; }
+  // Ticks on their way: bit k was made by an accumulation k clocks ago.
+  unsigned in_flight() const {
+    return (tick_arrives_ ? 1U << kArrives : 0) | (owed_ != 0 ? 1U << kOwed : 0) | (out_.tick ? 1U << kTaken : 0);
+  }
+  // `clocks` at once in which `ticks` are taken, none of them a last one; what is then on its way.
+  void jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flight, bool feed_enable);
+  static constexpr unsigned kArrives = 3;  // clocks from an accumulation
+  static constexpr unsigned kOwed = 4;
+  static constexpr unsigned kTaken = 5;
+
   const LoadWord& load() const { return load_; }             // the load bus
   const LoadWord& feed_load() const { return feed_.bus(); }  // the feed load
 
@@ -83,6 +101,8 @@ class Sequencer {
   static constexpr std::uint64_t kDirectJudged = 9;
   // From the clock in which both queues stand at a barrier: that in which it is decided, one before it shows.
   static constexpr std::uint64_t kBarrierBegins = 4;
+
+  static constexpr std::uint64_t kLong = std::uint64_t{1} << 62;
 
   enum class Path : std::uint8_t { None, Line, Arc, Direct };
   enum class Barrier : std::uint8_t { None, Meeting, Running, Done };

@@ -33,8 +33,9 @@ class StepShaper {
     bool fault = false;          // event: a step was lost, or waited from one hold tick to the next
   };
 
+  StepShaper() = default;
   // `idle_level`: strap, {second pin, first pin}; MODE begins with these bits as its inversions.
-  explicit StepShaper(unsigned idle_level = 0) : mode_(static_cast<std::uint8_t>((idle_level & 3) << 2)) {
+  explicit StepShaper(unsigned idle_level) : mode_(static_cast<std::uint8_t>((idle_level & 3) << 2)) {
     out_.step = (idle_level & 1) != 0;
     out_.dir = (idle_level & 2) != 0;
   }
@@ -53,8 +54,8 @@ class StepShaper {
   // Nothing changes any more without a step or a new mode.
   bool quiet() const { return quiet_; }
 
-  // The number of clocks, without step and with the other inputs as they are, for which no output
-  // changes (hold_tick may come in them unless waiting()). A lower bound; 2^63 when quiet().
+  // The number of clocks, without step and with the other inputs as they are, for which no output changes (hold_tick
+  // may come in them unless waiting()). A lower bound; 2^63 when quiet().
   std::uint64_t idle_clocks() const {
     if (quiet_) return std::uint64_t{1} << 63;
     if (out_.fault || lead_ != 0 || waiting_ != 0 || phase_ == Phase::kSetup || left_ < 4) return 0;
@@ -64,6 +65,24 @@ class StepShaper {
   // n clocks at once, n <= idle_clocks().
   void advance(std::uint64_t n) {
     if (!quiet_) left_ -= static_cast<std::uint32_t>(n);
+  }
+
+  // Nothing waits and no pulse is about to begin: without a step the position stays and no fault can come.
+  bool calm() const { return waiting_ == 0 && lead_ == 0 && !waited_ && !out_.fault; }
+
+  // n clocks without step and hold tick, while calm().
+  void pass(const Inputs& times, std::uint64_t n) {
+    while (n != 0) {
+      const std::uint64_t idle = idle_clocks();
+      const std::uint64_t some = idle < n ? idle : n;
+      if (some != 0) {
+        advance(some);
+        n -= some;
+      } else {
+        clock_busy(times);
+        --n;
+      }
+    }
   }
 
  private:

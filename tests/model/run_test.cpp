@@ -1,0 +1,215 @@
+// CoreModel::run() against clock(): the same random programs on two cores, one of which goes from step to step.
+// Outputs, positions, reported steps and all that follows are compared after waits of random length.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <string>
+
+#include "core_bench.hpp"
+
+namespace trammel::testing {
+namespace {
+
+namespace reg = card_map::reg;
+
+std::uint64_t seed() {
+  const char* given = std::getenv("TRAMMEL_SEED");
+  return given != nullptr ? std::stoull(given) : 1;
+}
+
+class Pair {
+ public:
+  explicit Pair(const model::CardConfig& config, std::uint64_t seed) : clocked(config), jumping(config), random(seed) {}
+
+  std::uint64_t any(std::uint64_t low, std::uint64_t high) { return low + random() % (high - low + 1); }
+  // Any order of size up to 2^bits.
+  std::uint64_t sized(unsigned bits) { return random() >> (64 - any(0, bits)); }
+  bool one_in(std::uint64_t n) { return random() % n == 0; }
+
+  bool write(std::uint32_t address, std::uint32_t data) {
+    const bool good = clocked.write(address, data);
+    EXPECT_EQ(jumping.write(address, data), good);
+    return good;
+  }
+  bool send(const std::vector<std::uint32_t>& words) {
+    const bool good = clocked.send(words);
+    EXPECT_EQ(jumping.send(words), good);
+    return good;
+  }
+  void wait(std::uint64_t clocks) {
+    clocked.idle(clocks);
+    jumping.core.run(clocks);
+    waits += 1;
+  }
+  void compare() {
+    ASSERT_EQ(clocked.core.cycles(), jumping.core.cycles());
+    const auto& a = clocked.core.outputs();
+    const auto& b = jumping.core.outputs();
+    ASSERT_TRUE(a == b) << "cycle " << clocked.core.cycles() << " rate " << a.rate << " " << b.rate << " status "
+                        << a.status << " " << b.status << " tick " << a.tick << b.tick << " path " << a.path_step
+                        << b.path_step << " dir " << a.path_dir << b.path_dir << " pins " << a.step << b.step;
+    for (unsigned n = 0; n < clocked.core.config().axes; ++n)
+      ASSERT_EQ(clocked.core.position(n), jumping.core.position(n)) << "axis " << n;
+    ASSERT_TRUE(clocked.steps.pins == jumping.steps.pins) << "cycle " << clocked.core.cycles();
+    ASSERT_TRUE(clocked.steps.path == jumping.steps.path) << "cycle " << clocked.core.cycles();
+    // What was equal once need not be compared again.
+    for (CoreBench* bench : {&clocked, &jumping}) {
+      steps += bench->steps.pins.size();
+      bench->steps.pins.clear();
+      bench->steps.path.clear();
+    }
+  }
+  // Waits of all lengths, that the ends of jumps fall everywhere.
+  void wait_in_pieces(std::uint64_t clocks, std::uint64_t longest) {
+    while (clocks != 0 && !::testing::Test::HasFatalFailure()) {
+      const std::uint64_t piece = std::min(clocks, one_in(4) ? any(1, longest) : any(1, 90));
+      wait(piece);
+      compare();
+      clocks -= piece;
+    }
+  }
+
+  CoreBench clocked;
+  CoreBench jumping;
+  std::mt19937_64 random;
+  std::uint64_t waits = 0;
+  std::uint64_t steps = 0;
+};
+
+// Settings, paths, pieces and barriers of a program; returns its ticks.
+class Program {
+ public:
+  explicit Program(Pair& pair) : p_(pair), axes_(pair.clocked.core.config().axes) {}
+
+  void settings() {
+    const auto times = [this](std::uint64_t most) {
+      return static_cast<std::uint32_t>(p_.one_in(3) ? 0 : p_.any(0, most));
+    };
+    const std::uint64_t most = p_.one_in(4) ? 200 : 12;
+    for (unsigned n = 0; n < axes_; ++n) {
+      p_.write(reg::step_length(n), times(most));
+      p_.write(reg::step_space(n), times(most));
+      p_.write(reg::dir_setup(n), times(most));
+      p_.write(reg::dir_hold(n), times(most));
+      p_.write(reg::mode(n), static_cast<std::uint32_t>(p_.one_in(2) ? 0 : p_.any(0, 3) << 2 | p_.any(0, 2)));
+    }
+    p_.write(reg::kRatioFeed, static_cast<std::uint32_t>(p_.one_in(2) ? 0x10000 : p_.any(0x100, 0x10000)));
+    if (p_.one_in(3)) p_.write(reg::kHoldLimit, static_cast<std::uint32_t>(p_.any(1, p_.one_in(2) ? 60 : 2000)));
+    if (p_.one_in(3)) p_.write(reg::kStopReaction, static_cast<std::uint32_t>(p_.any(0, 255)));
+  }
+
+  // A tick every `pace` clocks.
+  void paths_and_pieces(double pace) {
+    std::uint64_t ticks = 0;
+    for (std::uint64_t paths = p_.any(1, 5); paths != 0; --paths) {
+      const std::uint64_t n = p_.one_in(4) ? p_.any(1, 40) : p_.any(100, 3000);
+      ticks += axes_ >= 2 && p_.one_in(5) ? circle(n) : line(n);
+    }
+    while (ticks != 0) {
+      const std::uint64_t n = std::min(ticks, p_.one_in(4) ? p_.any(1, 30) : p_.any(30, 4000));
+      piece(n, pace);
+      ticks -= n;
+    }
+    if (p_.one_in(2)) barrier();
+  }
+
+ private:
+  std::uint64_t line(std::uint64_t ticks) {
+    const auto mask = static_cast<std::uint8_t>(p_.any(1, (1U << axes_) - 1));
+    std::vector<std::int64_t> increments;
+    for (unsigned n = 0; n < card_map::axes_in(mask); ++n) {
+      const auto magnitude = static_cast<std::int64_t>(p_.one_in(3) ? p_.sized(40) : p_.any(0, std::uint64_t{1} << 34));
+      increments.push_back(p_.one_in(2) ? magnitude : -magnitude);
+    }
+    p_.send(command_words(card_map::Opcode::Line, mask, number_++, ticks, {}, increments));
+    return ticks;
+  }
+
+  std::uint64_t circle(std::uint64_t ticks) {
+    const std::int64_t r = static_cast<std::int64_t>(p_.any(1, 6));
+    ticks = std::max<std::uint64_t>(ticks, static_cast<std::uint64_t>(8 * r));
+    p_.send(CoreBench::circle_words(number_++, ticks, r, p_.one_in(2)));
+    return ticks;
+  }
+
+  void piece(std::uint64_t ticks, double pace) {
+    const auto rate = static_cast<std::uint64_t>(0x1p64 / pace);
+    const auto floor = static_cast<std::uint32_t>(std::max(1.0, 0x1p32 / pace / 3));
+    std::int64_t acceleration = 0;
+    std::int64_t jerk = 0;
+    if (p_.one_in(2)) {
+      acceleration = static_cast<std::int64_t>(p_.random()) / static_cast<std::int64_t>(pace * pace * 900);
+      if (p_.one_in(2)) jerk = acceleration / -97;
+    }
+    p_.send(command_words(card_map::Opcode::Feed, 0, number_++, ticks,
+                          {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
+  }
+
+  void barrier() {
+    if (p_.one_in(3))
+      p_.send(command_words(card_map::Opcode::End, 0, number_++, 0, {}));
+    else
+      p_.send(command_words(card_map::Opcode::Dwell, 0, number_++, p_.sized(12), {}));
+  }
+
+  Pair& p_;
+  unsigned axes_;
+  std::uint8_t number_ = 0;
+};
+
+void disturb(Pair& pair) {
+  const auto clocks = [&pair] { return pair.any(1, 3000); };
+  switch (pair.any(0, 5)) {
+    case 0:
+      pair.write(reg::kSlew, static_cast<std::uint32_t>(pair.any(0x1'0000, 0xFFF'FFFF)));
+      pair.write(reg::kHold, 1);
+      pair.wait_in_pieces(clocks(), 4000);
+      pair.write(reg::kHold, 0);
+      break;
+    case 1:
+      pair.write(reg::kControl, card_map::field::kControlAbort);
+      break;
+    case 2:
+      pair.write(reg::kRatioFeed, static_cast<std::uint32_t>(pair.any(1, 0x10000)));
+      break;
+    case 3:
+      pair.write(reg::kControl, card_map::field::kControlSnapshot);
+      break;
+    default:
+      break;
+  }
+}
+
+TEST(Run, EqualsClockForRandomPrograms) {
+  const bool long_run = std::getenv("TRAMMEL_LONG") != nullptr;
+  const std::uint64_t programs = long_run ? 4000 : 120;
+  std::uint64_t waits = 0;
+  std::uint64_t steps = 0;
+  for (std::uint64_t i = 0; i < programs; ++i) {
+    SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
+    model::CardConfig config;
+    std::mt19937_64 random(seed() * 1'000'003 + i);
+    config.axes = 1 + static_cast<unsigned>(random() % 8);
+    Pair pair(config, random());
+    Program program(pair);
+    program.settings();
+    const double paces[] = {1.0001, 1.5, 4, 20, 100, 700};
+    const double pace = paces[pair.any(0, 5)];
+    for (std::uint64_t part = pair.any(1, 3); part != 0; --part) program.paths_and_pieces(pace);
+    for (int part = 0; part < 6 && !HasFatalFailure(); ++part) {
+      pair.wait_in_pieces(pair.any(1, 4000), 4000);
+      if (pair.one_in(2)) disturb(pair);
+    }
+    pair.wait_in_pieces(200'000, 30'000);
+    ASSERT_FALSE(HasFatalFailure());
+    waits += pair.waits;
+    steps += pair.steps;
+  }
+  EXPECT_GT(waits, 20 * programs);
+  EXPECT_GT(steps, 100 * programs);
+}
+
+}  // namespace
+}  // namespace trammel::testing
