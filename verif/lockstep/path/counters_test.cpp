@@ -1,5 +1,6 @@
 // Lockstep of the counters with their closed forms: the next tick is the last one when one is left, whatever the count
-// and its word boundaries; the zero flag is the chain's; commands begun are counted from the second clock after a cut.
+// and its word boundaries; the zero flag is the chain's; commands begun count but
+// in the clock of a cut, and are 0 from the second clock after it.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -74,7 +75,7 @@ class Bench {
     dut_->swap_i = swap;
     drive();
     snapshot_.clock(dut_->snapshot_i, begun_, dut_->chain_i);
-    begun_ = cut_before_ ? 0 : begun_ + dut_->begin_i;
+    begun_ = cut_before_ ? 0 : begun_ + (dut_->cut_i != 0 ? 0U : dut_->begin_i);
     cut_before_ = dut_->cut_i != 0;
     if (take) --left_;
     if (swap) left_ = next_;

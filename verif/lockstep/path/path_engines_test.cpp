@@ -53,10 +53,11 @@ class Bench {
     check_.event("swap", arc);
     in_.swap = true;
     in_.accumulator = in_.start = arc;
-    in_.tick = !on_arc_ && since_swap_ > 3 && model_.outputs().ready && dice_.chance(2);
+    in_.tick = on_line_ && since_swap_ > 3 && model_.outputs().ready && dice_.chance(2);
     clock();
     in_.swap = in_.accumulator = in_.start = false;
     on_arc_ = arc;
+    on_line_ = !arc;
     since_swap_ = 0;
     ticks_left_ = dice_.chance(4) ? dice_.below(3) : dice_.below(300);
     tick_every_ = 1 + dice_.below(dice_.chance(2) ? 2 : 20);
@@ -125,7 +126,7 @@ class Bench {
       clock();
     }
     in_ = {};
-    on_arc_ = false;
+    on_arc_ = on_line_ = false;
     ticks_left_ = 0;
     for (unsigned i = dice_.below(4); i != 0; --i) clock();
     since_swap_ = 3;
@@ -183,6 +184,7 @@ class Bench {
   Dice dice_;
   Random random_;
   bool on_arc_ = false;
+  bool on_line_ = false;
   std::uint32_t ticks_left_ = 0;
   std::uint32_t tick_every_ = 1;
   std::uint32_t cut_every_ = 2000;

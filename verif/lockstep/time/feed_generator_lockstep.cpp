@@ -54,13 +54,13 @@ class Bench {
     ticks_ += model_.outputs().tick;
   }
 
-  // Loads rate and floor (6 clocks), waits, swaps the piece in at a distance of `clocks` from the last swap, and loads
+  // Loads rate and floor (6 clocks), waits, swaps the piece in at a distance of `clocks` or more from the last swap, and loads
   // acceleration and jerk, of which the last halfword comes 10 to 13 clocks after it.
   void piece(const Piece& p, std::uint64_t clocks, std::uint64_t late = 0) {
     using namespace model::feed_target;
     std::uint64_t used = since_swap_ + idle(3);
     used += shift(kRate, p.rate, 4) + shift(kFloor, p.floor, 2);
-    idle(clocks - used - 1);
+    idle(clocks > used + 1 ? clocks - used - 1 : 0);
     checker_.event("swap: rate", p.rate);
     checker_.event("  acceleration", p.acceleration);
     checker_.event("  jerk", p.jerk);
