@@ -7,6 +7,8 @@
 
 #include <array>
 #include <memory>
+#include <type_traits>
+#include <utility>
 
 #include "lockstep.hpp"
 #include "programs.hpp"
@@ -19,6 +21,7 @@ namespace reg = card_map::reg;
 
 constexpr unsigned kAxes = TRAMMEL_AXES;
 constexpr std::uint64_t kComparedSignals = 27 + kAxes;
+using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
 // The registers of direct mode as the loader reads them: the word at an address, two clocks later.
@@ -183,7 +186,7 @@ class Bench {
     in_.feed_word = feed_.outputs().word;
     in_.start_mask = static_cast<std::uint8_t>(mask_);
     in_.loader_data = model_ram_.data();
-    dut_->idle_level_i = static_cast<decltype(dut_->idle_level_i)>(idle_level_);
+    dut_->idle_level_i = static_cast<IdleLevel>(idle_level_);
     dut_->setting_i = wire(in_.setting);
     dut_->abort_i = in_.abort;
     dut_->clear_fault_i = in_.clear_fault;
@@ -198,7 +201,7 @@ class Bench {
     dut_->chain_i = dice_.draw() & 0x3FFFF;
   }
 
-  std::uint32_t observed(unsigned low, unsigned width) const {
+  std::uint32_t observed(unsigned low, unsigned width) {
     const std::uint32_t* words = &dut_->observe_o[0];
     const std::uint64_t two = words[low / 32] | (low % 32 + width > 32 ? std::uint64_t{words[low / 32 + 1]} << 32 : 0);
     return static_cast<std::uint32_t>(two >> low % 32 & ((std::uint64_t{1} << width) - 1));
