@@ -80,11 +80,11 @@ void Jump::travel() {
       edge = flight_[next - 1];
     else if (!find(next, generator, done, edge))
       return;
-    if (next == stop) {
-      end_ = std::min(end_, edge + kLastTake);
-      return;
-    }
+    if (next == stop) return stop_before(stop);
     const std::int64_t arrival = edge + kToAxis;
+    // Ticks are a clock apart at least; one that comes later than this may stop before this one's arrival.
+    const bool close = stop - next < static_cast<std::uint64_t>(kToAxis - kLastTake);
+    if (close || arrival > end_) stop_before(stop);
     if (arrival > end_) return;
     report_until(arrival - 1);
     if (!step_all(next, arrival)) {
@@ -98,6 +98,18 @@ void Jump::travel() {
     made_ = next - flying_;
     edge_ = edge;
   }
+}
+
+// Ends before a tick that must not be taken.
+void Jump::stop_before(std::uint64_t tick) {
+  FeedGenerator generator;
+  std::uint64_t done = 0;
+  std::int64_t edge = 0;
+  if (tick <= flying_)
+    edge = flight_[tick - 1];
+  else if (!find(tick, generator, done, edge))
+    return;
+  end_ = std::min(end_, edge + kLastTake);
 }
 
 // Where a tick is made, and the generator there; false when that is after the end.

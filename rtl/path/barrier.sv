@@ -40,7 +40,7 @@ module barrier (
   logic         over;
 
   assign start = geometry_at_i && feed_at_i && go_i;
-  assign over  = state_q == COUNT && go_i && (zero_i || last_i);
+  assign over  = state_q == COUNT && (zero_i || last_i);
 
   always_ff @(posedge clk_i) begin : p_barrier
     state_e state_d;

@@ -120,7 +120,6 @@ module geometry_sequencer #(
       .clk_i,
       .rst_i,
       .cut_i,
-      .go_i,
       .valid_i       (valid),
       .line_i        (line),
       .arc_i         (arc),

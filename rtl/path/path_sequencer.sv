@@ -11,7 +11,6 @@ module path_sequencer #(
     input  wire logic            clk_i,
     input  wire logic            rst_i,
     input  wire logic            cut_i,
-    input  wire logic            go_i,             // no fault
     // decoded command
     input  wire logic            valid_i,
     input  wire logic            line_i,
@@ -60,7 +59,7 @@ module path_sequencer #(
   assign ending         = take_i && last_i && !drain_q;
   assign over           = arc_q ? drained_q && done_i : settled_q && !axes_live_i;
   // After a line the next path takes over in the clock of the last tick. An arc that ended elsewhere has no successor.
-  assign swap           = path_valid && go_i && !incomplete_o && (idle_q || (ending && !arc_q && !direct_o));
+  assign swap           = path_valid && !incomplete_o && (idle_q || (ending && !arc_q && !direct_o));
   assign pop_o          = swap || barrier_done_i;
   assign begin_o        = swap || direct_go_i;
   assign path_active_o  = !idle_q;

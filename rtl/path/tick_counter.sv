@@ -17,7 +17,7 @@ module tick_counter (
     output logic             last_o
 );
   logic [ 3:0] low_q;
-  logic [15:0] mid_q;
+  logic [15:0] mid_q;  // these two inverted: so they count up, and load and count fit one 4-input table a bit
   logic [19:0] top_q;
   logic        mid_zero_q;
   logic        top_zero_q;
@@ -25,14 +25,15 @@ module tick_counter (
   logic        top_borrow_q;
   logic        load_q;
 
+  // The added load changes nothing (a load overrides the sum); it lets table and carry share an input.
+  logic [15:0] mid_sum;
+  logic [19:0] top_sum;
+  assign mid_sum = mid_q + {16{load_q}} + 16'd1;
+  assign top_sum = top_q + {20{load_q}} + 20'd1;
+
   always_ff @(posedge clk_i) begin
-    if (load_q) begin
-      mid_q <= count_i[19:4];
-      top_q <= count_i[39:20];
-    end else begin
-      if (top_borrow_q) top_q <= top_q - 20'd1;
-      if (mid_borrow_q) mid_q <= mid_q - 16'd1;
-    end
+    if (load_q || mid_borrow_q) mid_q <= load_q ? ~count_i[19:4] : mid_sum;
+    if (load_q || top_borrow_q) top_q <= load_q ? ~count_i[39:20] : top_sum;
     if (load_i) begin
       low_q        <= count_i[3:0];
       mid_zero_q   <= mid_zero_i;
@@ -47,8 +48,8 @@ module tick_counter (
         last_o <= (low_q == 4'd2) & mid_zero_q & top_zero_q;
         low_q  <= low_q - 4'd1;
         if (!load_q) begin
-          mid_zero_q <= mid_q == 16'd0;
-          top_zero_q <= top_q == 20'd0;
+          mid_zero_q <= mid_q == '1;
+          top_zero_q <= top_q == '1;
         end
       end
     end

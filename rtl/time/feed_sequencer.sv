@@ -5,7 +5,6 @@ module feed_sequencer (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        cut_i,
-    input  wire logic        go_i,             // no fault
     // queue
     input  wire logic        empty_i,
     input  wire logic [15:0] word_i,
@@ -36,7 +35,7 @@ module feed_sequencer (
   logic        mid_zero;
   logic        top_zero;
 
-  assign swap   = valid && piece && go_i && (!active_o || (take_i && last));
+  assign swap   = valid && piece && (!active_o || (take_i && last));
   assign runs_o = active_o || (valid && piece);
 
   feed_decoder decoder (

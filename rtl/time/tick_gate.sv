@@ -28,7 +28,8 @@ module tick_gate (
   logic       source_active;
 
   assign source_active = feed_active_i || direct_i;
-  assign take_o = owed_q && taking_i && ready_i && go_i && source_active;
+  // No need to ask for go_i here: when it falls there is a cut, and that leaves nothing that could take a tick.
+  assign take_o = owed_q && taking_i && ready_i && source_active;
 
   always_ff @(posedge clk_i) begin : p_count
     logic [3:0] count_d;

@@ -61,7 +61,6 @@ module tick_source (
       .clk_i,
       .rst_i,
       .cut_i,
-      .go_i,
       .empty_i,
       .word_i,
       .read_o,

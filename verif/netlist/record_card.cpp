@@ -214,12 +214,22 @@ void record(const char* path, std::uint64_t clocks, std::uint32_t seed) {
   Recorder card(path);
   card.reset(8);
   Program program(card, seed);
-  while (card.seen().clocks < clocks) {
-    program.settings();
-    program.paths();
-    program.direct_move();
-    program.overrun();
-    program.errors();
+  for (unsigned part = 0; card.seen().clocks < clocks; ++part) {
+    switch (part % 4) {
+      case 0:
+        program.settings();
+        program.paths();
+        break;
+      case 1:
+        program.direct_move();
+        break;
+      case 2:
+        program.overrun();
+        break;
+      default:
+        program.errors();
+        break;
+    }
   }
   const Recorder::Seen& seen = card.seen();
   std::printf(

@@ -53,6 +53,7 @@ class Jump {
   std::int64_t edge_of(std::uint64_t accumulation) const;
   std::uint64_t first_that_stops() const;
   void travel();
+  void stop_before(std::uint64_t tick);
   bool find(std::uint64_t tick, FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const;
   bool step_all(std::uint64_t tick, std::int64_t arrival);
   bool may_step(unsigned axis, std::int64_t arrival, StepShaper& after, std::int64_t& served) const;

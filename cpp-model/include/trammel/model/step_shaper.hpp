@@ -59,6 +59,7 @@ class StepShaper {
   std::uint64_t idle_clocks() const {
     if (quiet_) return std::uint64_t{1} << 63;
     if (out_.fault || lead_ != 0 || waiting_ != 0 || phase_ == Phase::kSetup || left_ < 4) return 0;
+    if (pulse_ != (phase_ == Phase::kHigh)) return 0;  // a pulse of length 0 shows in the first clock of its space
     return left_ - 3;
   }
 
@@ -149,6 +150,7 @@ class StepShaper {
     if (begins) out_.position += back_ ? ~std::uint32_t{0} : 1U;
     // The first two clocks of the pulse's phase are low still, the last is low already.
     const bool pulse = phase_ == Phase::kHigh && (begins || (lead_ == 0 && left_ != 0));
+    pulse_ = pulse;
     bool first = pulse;
     bool second = back_;
     if ((in.mode & 3) == 1) {
@@ -171,6 +173,7 @@ class StepShaper {
   bool seen_same_ = false;  // what was waiting a clock ago
   bool seen_other_ = false;
   bool waited_ = false;
+  bool pulse_ = false;  // at the pin
   bool quiet_ = true;
   std::uint8_t waiting_ = 0;
   std::uint8_t backs_ = 0;
