@@ -179,7 +179,10 @@ module direct_loader #(
         default: if (step_q == 5'd7) state_q <= IDLE;
       endcase
 
-      if (rst_i) state_q <= IDLE;
+      if (rst_i) begin
+        state_q <= IDLE;
+        {frequency_q, count_q, length_q} <= '0;
+      end
     end
   end
 endmodule

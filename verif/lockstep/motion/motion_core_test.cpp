@@ -162,10 +162,18 @@ class Bench {
     geometry_.clock(geometry_reads, true, dice_.chance(8), cut);
     feed_.clock(feed_reads, true, dice_.chance(8), cut);
     compare();
-    if (model_->loader().done) starting_ = false;
+    note_events();
     steps_ += model_->outputs().path_step != 0 ? 1U : 0U;
     moves_ += model_->loader().go ? 1U : 0U;
     faults_ += model_->stop().stop ? 1U : 0U;
+  }
+
+  void note_events() {
+    const auto& s = model_->sequencer().outputs();
+    if (model_->stop().cut) check_.event("cut, with fault", model_->stop().fault);
+    if (s.swap) check_.event(s.accumulator ? "arc begins" : s.direct ? "direct move begins" : "line begins", s.active);
+    if (s.feed_swap) check_.event("piece begins");
+    if (model_->loader().done) starting_ = false;
   }
 
   // From the far end: RATIO, RATE, FEED_BEGUN, GEOMETRY_BEGUN, POSITION of each axis; only 18 bits pass RATIO.

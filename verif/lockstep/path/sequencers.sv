@@ -108,7 +108,6 @@ module sequencers #(
       .clk_i,
       .rst_i,
       .cut_i,
-      .go_i,
       .empty_i        (feed_empty_i),
       .word_i         (feed_word_i),
       .read_o         (feed_read_o),

@@ -44,8 +44,10 @@ class Bench {
 
   void random_clock() {
     if (dice_.chance(3000)) random_pace();
-    if (direct_step_ == 0 && geometry_.waiting() == 0 && dice_.chance(40)) add(programs_.stretch());
-    if (at_rest() && dice_.chance(100)) direct_step_ = 1;
+    // Where ticks may not be taken neither commands nor a START get this far.
+    const bool open = stand_for_ == 0;
+    if (open && direct_step_ == 0 && geometry_.waiting() == 0 && dice_.chance(40)) add(programs_.stretch());
+    if (open && at_rest() && dice_.chance(100)) direct_step_ = 1;
     direct();
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
@@ -125,7 +127,7 @@ class Bench {
       in_.direct_load = halfword(dice_.below(16), dice_.word(), 0);
     } else if (direct_step_ == 15) {
       check_.event("direct move", length_);
-      in_.direct_go = stand_for_ == 0;
+      in_.direct_go = true;
       in_.direct_mask = static_cast<std::uint8_t>(1 + dice_.below((1U << kAxes) - 1));
     } else if (direct_step_ > 20 && !model_.outputs().direct) {
       direct_step_ = 0;

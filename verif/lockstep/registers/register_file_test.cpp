@@ -26,6 +26,7 @@ constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
 constexpr std::uint64_t kComparedSignals = 12;
+constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
 // RATIO, RATE, FEED_BEGUN and GEOMETRY_BEGUN come before the positions on the snapshot chain.
 constexpr std::size_t kBeforePositions = 4;
 
@@ -108,7 +109,8 @@ class Bench {
     random_checker();
     random_loader();
     random_access();
-    in_.stop = chance(300);
+    // Nothing moves before the registers are filled, so nothing stops.
+    in_.stop = model_.time() > kFilled && chance(300);
     if (in_.stop) checker_.event("stop");
     if (chance(20000)) {
       reset();
@@ -278,10 +280,9 @@ class Bench {
 
 // Snapshots in every clock around the carry into the time's high word, of which the card writes the halves in turn.
 void snapshots_around_the_carry(Bench& bench) {
-  constexpr std::uint32_t kFill = 300;  // clocks, more than the filling after reset takes
   for (std::uint32_t before = 0; before < 16; ++before) {
     bench.reset();
-    for (std::uint32_t i = 0; i < kFill; ++i) bench.clock();
+    for (std::uint64_t i = 0; i < kFilled; ++i) bench.clock();
     bench.skip_to(0xFFFF'FFFFu - before);
     bench.access(true, reg::kControl, card_map::field::kControlSnapshot);
     bench.access(false, reg::kSnapTimeLo, 0);
