@@ -2,8 +2,8 @@
 // them; what the sequencers and the motion core are judged with. Now and then a program is wrong on purpose.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -54,8 +54,8 @@ class Programs {
   unsigned longest = 600;
 
   struct Stretch {
-    Halfwords geometry;
-    Halfwords feed;
+    std::vector<Halfwords> geometry;
+    std::vector<Halfwords> feed;
   };
 
   Stretch stretch() {
@@ -86,14 +86,12 @@ class Programs {
     const bool end = dice_.chance(3);
     const Halfwords command = stored_command(end ? card_map::Opcode::End : card_map::Opcode::Dwell, 0,
                                              end ? 0 : kDwells[dice_.below(std::size(kDwells))]);
-    append(s.geometry, command);
-    append(s.feed, command);
+    s.geometry.push_back(command);
+    s.feed.push_back(command);
   }
 
-  static void append(Halfwords& to, const Halfwords& more) { to.insert(to.end(), more.begin(), more.end()); }
-
  private:
-  std::uint64_t path(Halfwords& to, bool single) {
+  std::uint64_t path(std::vector<Halfwords>& to, bool single) {
     if (axes_ > 1 && dice_.chance(4)) return arc(to);
     const unsigned mask = 1 + dice_.below((1U << axes_) - 1);
     const std::uint64_t ticks = single ? 1 : 1 + dice_.below(dice_.chance(3) ? 4 : longest);
@@ -103,12 +101,12 @@ class Programs {
       const auto magnitude = static_cast<std::int64_t>(dice_.log_uniform(41) % (kOnePulse + 1));
       increments.push_back(dice_.chance(2) ? magnitude : -magnitude);
     }
-    append(to, stored_command(card_map::Opcode::Line, mask, ticks, {}, increments));
+    to.push_back(stored_command(card_map::Opcode::Line, mask, ticks, {}, increments));
     return ticks;
   }
 
   // A full circle in unit steps, with as many path ticks as it has steps.
-  std::uint64_t arc(Halfwords& to) {
+  std::uint64_t arc(std::vector<Halfwords>& to) {
     const std::int64_t radius = 1 + dice_.below(8);
     const std::int64_t steps = 8 * radius;
     const std::int64_t ticks = steps + dice_.below(dice_.chance(2) ? 4 : 300);
@@ -116,7 +114,7 @@ class Programs {
     const auto prescale = static_cast<std::int64_t>((int128{steps} * kOnePulse + ticks / 2) / ticks);
     const unsigned x = dice_.below(axes_);
     const unsigned y = (x + 1 + dice_.below(axes_ - 1)) % axes_;
-    append(to, stored_command(card_map::Opcode::Arc, 1U << x | 1U << y, static_cast<std::uint64_t>(ticks),
+    to.push_back(stored_command(card_map::Opcode::Arc, 1U << x | 1U << y, static_cast<std::uint64_t>(ticks),
                               {{"path_ticks", steps},
                                {"prescale", prescale},
                                {"plane", y << 8 | x << 4 | dice_.below(2)},
@@ -128,14 +126,14 @@ class Programs {
   }
 
   // Mostly fast: a tick every few clocks at most.
-  void piece(Halfwords& to, std::uint64_t ticks) {
+  void piece(std::vector<Halfwords>& to, std::uint64_t ticks) {
     const std::uint64_t rate = dice_.word() >> dice_.below(5) | std::uint64_t{1} << 58;
     const auto change = [this] {
       const auto magnitude = static_cast<std::int64_t>(dice_.log_uniform(58));
       return dice_.chance(2) ? int128{magnitude} : -int128{magnitude};
     };
     const bool constant = dice_.chance(3);
-    append(to, stored_command(card_map::Opcode::Feed, 0, ticks,
+    to.push_back(stored_command(card_map::Opcode::Feed, 0, ticks,
                               {{"rate", static_cast<int128>(rate)},
                                {"floor", static_cast<int128>(std::uint64_t{1} << 26 | dice_.draw() >> 2)},
                                {"stop_distance", static_cast<int128>(dice_.draw())},
@@ -147,28 +145,23 @@ class Programs {
   Dice& dice_;
 };
 
-// The geometry and feed queue with a writer that fills them command by command, as the checker does: halfwords come
-// one at a time and count when their command is committed.
+// A queue with a writer that fills it command by command, as the checker does: halfwords come one at a time, and count
+// from the commit on that follows the command's last one.
 class QueueWriter {
  public:
   explicit QueueWriter(std::size_t depth) : queue_(depth) {}
 
-  void add(const Halfwords& commands) { Programs::append(waiting_, commands); }
-  std::size_t waiting() const { return waiting_.size() - written_; }
+  void add(const std::vector<Halfwords>& commands) { commands_.insert(commands_.end(), commands.begin(), commands.end()); }
+  // Nothing is left to be written.
+  bool done() const { return commands_.empty(); }
   const model::HalfwordQueue::Outputs& outputs() const { return queue_.outputs(); }
 
-  // One rising edge. A halfword is written when `write`; what is written counts when `commit` or none waits.
-  void clock(bool read, bool write, bool commit, bool clear) {
+  // One rising edge; the writer goes on when `write`.
+  void clock(bool read, bool write, bool clear) {
     model::HalfwordQueue::Inputs in;
     in.read = read;
     in.clear = clear;
-    in.write = write && waiting() != 0 && queue_.outputs().room != 0;
-    if (in.write) in.word = waiting_[written_++];
-    in.commit = commit;
-    if (written_ == waiting_.size()) {
-      waiting_.clear();
-      written_ = 0;
-    }
+    if (write && !commands_.empty()) go_on(in);
     if (clear) forget();
     queue_.clock(in);
   }
@@ -181,14 +174,26 @@ class QueueWriter {
   }
 
  private:
+  void go_on(model::HalfwordQueue::Inputs& in) {
+    const Halfwords& command = commands_.front();
+    if (written_ == command.size()) {
+      in.commit = true;
+      commands_.pop_front();
+      written_ = 0;
+    } else if (queue_.outputs().room != 0) {
+      in.write = true;
+      in.word = command[written_++];
+    }
+  }
+
   void forget() {
-    waiting_.clear();
+    commands_.clear();
     written_ = 0;
   }
 
   model::HalfwordQueue queue_;
-  Halfwords waiting_;
-  std::size_t written_ = 0;
+  std::deque<Halfwords> commands_;
+  std::size_t written_ = 0;  // halfwords of the first one
 };
 
 }  // namespace trammel::lockstep

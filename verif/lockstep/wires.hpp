@@ -28,10 +28,15 @@ inline model::LoadWord halfword(unsigned target, std::uint64_t value, unsigned i
 // A word of the snapshot chain: takes its value at a strobe, what comes in at a shift. Unknown before either.
 class SnapshotWord {
  public:
-  void clock(std::uint32_t snapshot, std::uint32_t value, std::uint32_t chain) {
+  void clock(std::uint32_t snapshot, std::uint32_t value, std::uint32_t chain, bool chain_known = true) {
     if (snapshot == 0) return;
-    word_ = (snapshot & 1) != 0 ? value : chain;
-    known_ = true;
+    const bool strobe = (snapshot & 1) != 0;
+    word_ = strobe ? value : chain;
+    known_ = strobe || chain_known;
+  }
+  // The same behind another slice.
+  void clock(std::uint32_t snapshot, std::uint32_t value, const SnapshotWord& before) {
+    clock(snapshot, value, before.word_, before.known_);
   }
   bool known() const { return known_; }
   std::uint32_t word() const { return word_; }

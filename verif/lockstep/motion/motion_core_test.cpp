@@ -50,9 +50,9 @@ class Bench {
   void random_clock() {
     if (dice_.chance(20'000)) random_pace();
     const bool closed = model_->stop().closed;
-    if (!closed && !starting_ && geometry_.waiting() == 0 && dice_.chance(stretch_every_)) {
+    if (!closed && !starting_ && geometry_.done() && dice_.chance(stretch_every_)) {
       const Programs::Stretch stretch = programs_.stretch();
-      check_.event("stretch of halfwords", stretch.geometry.size());
+      check_.event("stretch of commands", stretch.geometry.size());
       geometry_.add(stretch.geometry);
       feed_.add(stretch.feed);
     }
@@ -81,6 +81,7 @@ class Bench {
   void random_pace() {
     abort_every_ = dice_.chance(2) ? 200 + dice_.below(500) : 20'000;
     start_every_ = dice_.chance(2) ? 400 : 5000;
+    write_every_ = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
     stretch_every_ = dice_.chance(2) ? 10 : 3000;
     programs_.wrong_every = dice_.chance(3) ? 10 : 1000;
     programs_.longest = dice_.chance(2) ? 20 : 300;
@@ -159,8 +160,8 @@ class Bench {
     model_->clock(in_);
     rtl_ram_.clock(rtl_address);
     model_ram_.clock(model_address);
-    geometry_.clock(geometry_reads, true, dice_.chance(8), cut);
-    feed_.clock(feed_reads, true, dice_.chance(8), cut);
+    geometry_.clock(geometry_reads, dice_.chance(write_every_), cut);
+    feed_.clock(feed_reads, dice_.chance(write_every_), cut);
     compare();
     note_events();
     steps_ += model_->outputs().path_step != 0 ? 1U : 0U;
@@ -183,7 +184,10 @@ class Bench {
       const std::uint32_t values[] = {model_->time().ratio, model_->feed().rate, sequencer.feed_begun,
                                       sequencer.geometry_begun};
       const std::uint32_t value = i < 4 ? values[i] : model_->position(static_cast<unsigned>(i - 4));
-      chain_[i].clock(dut_->snapshot_i, value, i == 0 ? dut_->chain_i : chain_[i - 1].word());
+      if (i == 0)
+        chain_[i].clock(dut_->snapshot_i, value, dut_->chain_i);
+      else
+        chain_[i].clock(dut_->snapshot_i, value, chain_[i - 1]);
     }
   }
 
@@ -279,6 +283,7 @@ class Bench {
   unsigned abort_every_ = 20'000;
   unsigned start_every_ = 5000;
   unsigned stretch_every_ = 10;
+  unsigned write_every_ = 1;  // one halfword in so many clocks
   std::uint64_t steps_ = 0;
   std::uint64_t moves_ = 0;
   std::uint64_t faults_ = 0;

@@ -15,6 +15,7 @@ namespace {
 namespace load_target = model::load_target;
 
 constexpr unsigned kAxes = 4;
+constexpr std::uint64_t kOnePulse = std::uint64_t{1} << 40;
 constexpr std::uint64_t kComparedSignals = 8;
 
 class Bench {
@@ -22,8 +23,10 @@ class Bench {
   explicit Bench(std::uint64_t seed) : check_("path_engines", seed), dice_(seed), random_(seed) { reset(); }
 
   void arc() {
-    if (!load(load_target::kPrescale, dice_.log_uniform(41), 3)) return;
-    if (!wait([this] { return accumulator_free() && model_.outputs().payload_ready; }, 2000)) return;
+    // Mostly a path tick every few feed ticks.
+    const std::uint64_t prescale = dice_.word() >> 23 >> (dice_.chance(4) ? dice_.below(40) : dice_.below(4));
+    if (!load(load_target::kPrescale, prescale % (kOnePulse + 1), 3)) return;
+    if (!wait([this] { return accumulator_free() && model_.outputs().payload_ready; }, 20'000)) return;
     // What is asked for now arrives three clocks later.
     if (!idle(2) || !load_path(any_path(random_))) return;
     if (finish_path()) begin(true);

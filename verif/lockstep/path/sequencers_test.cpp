@@ -46,7 +46,7 @@ class Bench {
     if (dice_.chance(3000)) random_pace();
     // Where ticks may not be taken neither commands nor a START get this far.
     const bool open = stand_for_ == 0;
-    if (open && direct_step_ == 0 && geometry_.waiting() == 0 && dice_.chance(40)) add(programs_.stretch());
+    if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
     if (open && at_rest() && dice_.chance(100)) direct_step_ = 1;
     direct();
     in_.cut = dice_.chance(pace.cut);
@@ -69,10 +69,10 @@ class Bench {
     const bool feed_reads = model_.feed_read();
     dut_.clock();
     model_.clock(in_);
-    chain_[1].clock(dut_->snapshot_i, begun[1], chain_[0].word());
+    chain_[1].clock(dut_->snapshot_i, begun[1], chain_[0]);
     chain_[0].clock(dut_->snapshot_i, begun[0], dut_->chain_i);
-    geometry_.clock(geometry_reads, dice_.chance(pace.write), dice_.chance(8), in_.cut);
-    feed_.clock(feed_reads, dice_.chance(pace.write), dice_.chance(8), in_.cut);
+    geometry_.clock(geometry_reads, dice_.chance(pace.write), in_.cut);
+    feed_.clock(feed_reads, dice_.chance(pace.write), in_.cut);
     if (in_.cut) direct_step_ = 0;
     compare();
     ends_ += model_.outputs().swap ? 1U : 0U;
@@ -81,13 +81,13 @@ class Bench {
   }
 
   void add(const Programs::Stretch& stretch) {
-    check_.event("stretch of halfwords", stretch.geometry.size());
+    check_.event("stretch of commands", stretch.geometry.size());
     geometry_.add(stretch.geometry);
     feed_.add(stretch.feed);
   }
 
   bool at_rest() const {
-    return model_.outputs().idle && geometry_.waiting() == 0 && feed_.waiting() == 0 && geometry_.outputs().empty &&
+    return model_.outputs().idle && geometry_.done() && feed_.done() && geometry_.outputs().empty &&
            feed_.outputs().empty && direct_step_ == 0 && !model_.outputs().direct && model_.outputs().feed_clear;
   }
 
@@ -229,7 +229,7 @@ void boundaries() {
   Bench bench(1);
   bench.pace = {1, 1, 1'000'000, 1, 1'000'000};
   const auto run = [&bench](const Halfwords& geometry, const Halfwords& feed) {
-    bench.add({geometry, feed});
+    bench.add({{geometry}, {feed}});
     for (unsigned i = 0; i < 200; ++i) bench.clock();
     while (!bench.at_rest()) bench.clock();
   };
