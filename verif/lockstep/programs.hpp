@@ -98,7 +98,9 @@ class Programs {
     std::vector<std::int64_t> increments;
     for (unsigned axis = 0; axis < axes_; ++axis) {
       if ((mask >> axis & 1) == 0) continue;
-      const auto magnitude = static_cast<std::int64_t>(dice_.log_uniform(41) % (kOnePulse + 1));
+      // Half of them a step every few ticks.
+      const std::uint64_t any = dice_.chance(2) ? dice_.word() >> 23 >> dice_.below(5) : dice_.log_uniform(41);
+      const auto magnitude = static_cast<std::int64_t>(any % (kOnePulse + 1));
       increments.push_back(dice_.chance(2) ? magnitude : -magnitude);
     }
     to.push_back(stored_command(card_map::Opcode::Line, mask, ticks, {}, increments));

@@ -63,7 +63,7 @@ class Bench {
       in_.clear_fault = dice_.chance(3) ? dice_.draw() : ~0U;
       check_.event("clear fault", in_.clear_fault);
     }
-    if (dice_.chance(300)) random_setting();
+    if (dice_.chance(200)) random_setting();
     if (!starting_ && dice_.chance(start_every_)) random_start();
     if (dice_.chance(50 * abort_every_))
       reset();
@@ -99,9 +99,9 @@ class Bench {
         {reg::dir_hold(axis), time},
         {reg::mode(axis), dice_.below(16)},
         {reg::kHoldLimit, 1 + dice_.below(dice_.chance(2) ? 300 : 0xFFFF)},
-        {reg::kHold, dice_.chance(4) ? 1U : 0U},
-        {reg::kRatioFeed, dice_.chance(2) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
-        {reg::kSlew, dice_.chance(2) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
+        {reg::kHold, dice_.chance(8) ? 1U : 0U},
+        {reg::kRatioFeed, !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
+        {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
         {reg::kStopReaction, dice_.chance(2) ? 0xFF : dice_.below(256)}};
     const auto& [address, data] = settings[dice_.below(std::size(settings))];
     in_.setting = {true, address, data};
@@ -120,7 +120,7 @@ class Bench {
       write_register(reg::direction(axis), dice_.below(2));
     }
     write_register(reg::kLengthLo, dice_.chance(20) ? 0 : 1 + dice_.below(200));
-    write_register(reg::kLengthHi, dice_.chance(100) ? 1 : 0);
+    write_register(reg::kLengthHi, dice_.chance(1000) ? 1 : 0);
     starting_ = true;
     in_.start = true;
     mask_ = dice_.chance(10) ? dice_.draw() : 1 + dice_.below(kAllAxes);

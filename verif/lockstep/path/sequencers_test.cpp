@@ -145,7 +145,8 @@ class Bench {
     feed_ticks_ >>= 1;
     if (model_.outputs().feed_enable && dice_.chance(pace.feed_tick)) feed_ticks_ |= 4;
     if (model_.outputs().feed_clear) feed_ticks_ = 0;
-    in_.engine_ready = !dice_.chance(pace.busy);
+    // A direct move has no engine to wait for.
+    in_.engine_ready = model_.outputs().direct || !dice_.chance(pace.busy);
     in_.payload_ready = !dice_.chance(2 * pace.busy);
     in_.engine_done = !dice_.chance(pace.busy);
     in_.axes_live = dice_.chance(2);
