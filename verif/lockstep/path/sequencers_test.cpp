@@ -26,7 +26,7 @@ class Bench {
   struct Pace {
     unsigned enable = 1;
     unsigned feed_tick = 1;  // of the enabled clocks
-    unsigned busy = 8;       // engine not ready; payload not ready, done low and axes live: twice, half, as often
+    unsigned busy = 8;       // engine not ready, not done, its state not free
     unsigned write = 1;      // a halfword into a queue
     unsigned cut = 2000;
   };
@@ -147,7 +147,12 @@ class Bench {
     if (model_.outputs().feed_clear) feed_ticks_ = 0;
     // A direct move has no engine to wait for.
     in_.engine_ready = model_.outputs().direct || !dice_.chance(pace.busy);
-    in_.payload_ready = !dice_.chance(2 * pace.busy);
+    // Taken from a clock after an arc's tick on, for at least as long as that is on its way.
+    if (model_.outputs().accumulator && model_.outputs().tick)
+      payload_taken_for_ = 4 + dice_.below(pace.busy);
+    else if (payload_taken_for_ != 0)
+      --payload_taken_for_;
+    in_.payload_ready = payload_taken_for_ == 0;
     in_.engine_done = !dice_.chance(pace.busy);
     in_.axes_live = dice_.chance(2);
   }
@@ -218,6 +223,7 @@ class Bench {
   QueueWriter feed_;
   SnapshotWord chain_[2];
   unsigned feed_ticks_ = 0;   // on their way, bit 0 comes next
+  unsigned payload_taken_for_ = 0;
   unsigned stand_for_ = 0;    // clocks without go
   unsigned direct_step_ = 0;  // of a direct move; 0: none
   std::uint64_t length_ = 0;
