@@ -37,14 +37,19 @@ function(trammel_add_judge name)
     COMMAND diff -I svdpi.h "${copy_dir}/${A_PREFIX}.h" "${sound_dir}/${A_PREFIX}.h")
 endfunction()
 
-# trammel_judge_entry(out name SOURCES a.sv ... [ARGUMENTS ...]): the judge's line of judges.json. The arguments are GoogleTest's.
+# trammel_judge_entry(out name SOURCES a.sv ... [EXECUTABLE target] [ARGUMENTS ...] [LENGTH factor])
+# The judge's line of judges.json. EXECUTABLE is mutation_<name> by itself, ARGUMENTS are GoogleTest's, LENGTH is that of
+# the random scenarios.
 function(trammel_judge_entry out name)
-  cmake_parse_arguments(A "" "" "SOURCES;ARGUMENTS" ${ARGN})
+  cmake_parse_arguments(A "" "EXECUTABLE;LENGTH" "SOURCES;ARGUMENTS" ${ARGN})
+  if(NOT A_EXECUTABLE)
+    set(A_EXECUTABLE mutation_${name})
+  endif()
   foreach(list IN ITEMS SOURCES ARGUMENTS)
     list(TRANSFORM A_${list} REPLACE "(.+)" "\"\\1\"")
     list(JOIN A_${list} ", " A_${list})
   endforeach()
-  string(CONCAT entry "{\"name\": \"${name}\", \"executable\": \"$<TARGET_FILE:mutation_${name}>\", "
+  string(CONCAT entry "{\"name\": \"${name}\", \"executable\": \"$<TARGET_FILE:${A_EXECUTABLE}>\", \"length\": \"${A_LENGTH}\", "
                       "\"arguments\": [${A_ARGUMENTS}], \"sources\": [${A_SOURCES}]}")
   set(${out} "${entry}" PARENT_SCOPE)
 endfunction()

@@ -45,11 +45,14 @@ install_python() {
   fi
 }
 
+# Options for configuring beside the preset's; a script may add to them.
+configure_options=()
+
 # build_release [arguments of cmake --build ...]
 build_release() {
   install_debian "${debian_packages[@]}"
   say "building"
   mkdir -p build
-  cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log >&2; die "configuring failed"; }
+  cmake --preset release "${configure_options[@]}" >build/configure.log 2>&1 || { cat build/configure.log >&2; die "configuring failed"; }
   cmake --build --preset release "$@"
 }

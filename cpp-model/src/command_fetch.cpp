@@ -103,9 +103,10 @@ void CommandFetch::ask(const Inputs& in) {
   } else if (next >= length_) {
     asked_ = -1;
     if (state_ == State::Finishing) state_ = State::Idle;
-  } else if (next == pause_at_ && is_feed()) {
+  } else if (next == pause_at_ && is_feed() && !in.payload_ready) {
+    split_ = true;
     asked_ = -1;
-  } else if (next == pause_at_ && !in.payload_ready) {
+  } else if (next == pause_at_ && !is_feed() && !in.payload_ready) {
     state_ = State::Waiting;
     asked_ = -1;
   } else {
@@ -120,15 +121,17 @@ void CommandFetch::work(const Inputs& in) {
   bus_.valid = false;
   if (arrived >= 0) arrive(arrived, in.halfword);
   if (in.pop) {
-    state_ = is_feed() ? State::Finishing : State::Idle;
-    if (is_feed()) asked_ = pause_at_;
+    state_ = split_ ? State::Finishing : State::Idle;
+    if (split_) asked_ = pause_at_;
+    split_ = false;
   } else {
     ask(in);
   }
-  const int last = is_feed() ? pause_at_ - 1 : length_ - 1;
+  const int last = split_ ? pause_at_ - 1 : length_ - 1;
   if (state_ == State::Reading && arrived >= kHeader - 1 && arrived == last) state_ = State::Decoded;
   if (in.clear) {
     state_ = State::Idle;
+    split_ = false;
     asked_ = arriving_[0] = arriving_[1] = -1;
   }
 }

@@ -26,6 +26,7 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.barrier_begins = barrier_ == Barrier::Meeting && now_ == barrier_at_;
   d.barrier_ends = barrier_ == Barrier::Running && in.go && now_ == barrier_at_;
   d.barrier_done = barrier_ == Barrier::Done;
+  d.piece_runs = out_.feed_active;
   // The accumulator's state is in use until the arc's last feed tick has reached the path engines.
   d.payload_ready = in.payload_ready && (path_ != Path::Arc || (drained_ && now_ >= drained_at_ + kArcJudged));
   return d;
@@ -97,7 +98,7 @@ void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
   geometry_.clock({in.cut, d.path_begins || d.barrier_done, d.payload_ready, in.geometry_empty, in.geometry_word});
   load_ = in.direct_load.valid ? in.direct_load : geometry_.bus();
   if (feed_.bus().to(feed_target::kTicks)) shift_in<48>(piece_count_, feed_.bus().word);
-  feed_.clock({in.cut, d.piece_begins || d.barrier_done, true, in.feed_empty, in.feed_word});
+  feed_.clock({in.cut, d.piece_begins || d.barrier_done, !d.piece_runs, in.feed_empty, in.feed_word});
 }
 
 // From both queues standing at it to the clock in which they go on.

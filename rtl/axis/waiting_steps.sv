@@ -46,6 +46,7 @@ module waiting_steps (
     if (rst_i) begin
       valid_q <= '0;
       same_o  <= 1'b0;
+      other_o <= 1'b0;
     end
   end
 

@@ -48,6 +48,8 @@ module command_header #(
 
   always_ff @(posedge clk_i) begin : p_header
     logic mask_bad;
+    logic [5:0] base;
+    logic [1:0] axes_in_base;
     logic [5:0] per_axis;
 
     if (low_i) {mask_o, op_o} <= halfword_i;
@@ -56,9 +58,10 @@ module command_header #(
       to_geometry_o <= card_map_pkg::command_to_geometry(op_o, Engines);
       to_feed_o <= card_map_pkg::command_to_feed(op_o, Engines);
       // Of the axes in the mask some stand in the fixed part.
+      base = card_map_pkg::command_base_halfwords(op_o, Engines);
+      axes_in_base = card_map_pkg::command_axes_in_base(op_o, Engines);
       per_axis = card_map_pkg::command_halfwords_per_axis(op_o, Engines);
-      base_q <= card_map_pkg::command_base_halfwords(op_o, Engines) - 6'd1 -
-                6'(card_map_pkg::command_axes_in_base(op_o, Engines) * per_axis);
+      base_q <= base - 6'd1 - 6'(axes_in_base * per_axis);
       per_axis_q <= per_axis;
       moving_q <= ones(mask_o);
     end

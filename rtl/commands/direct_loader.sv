@@ -180,8 +180,10 @@ module direct_loader #(
       endcase
 
       if (rst_i) begin
-        state_q <= IDLE;
-        {frequency_q, count_q, length_q} <= '0;
+        state_q     <= IDLE;
+        frequency_q <= 1'b0;
+        count_q     <= 1'b0;
+        length_q    <= 1'b0;
       end
     end
   end

@@ -21,8 +21,8 @@ module refusal_latch #(
     output logic      [27:0] refusal_o
 );
 
-  logic [      27:0] refusal;
-  logic [ Ports-1:0] refused_q;
+  logic [        27:0] refusal;
+  logic [   Ports-1:0] refused_q;
   logic [28*Ports-1:0] refusal_q;
 
   assign refusal = {address_i, checker_refuse_i ? checker_reason_i : {8'd0, reason_i}};

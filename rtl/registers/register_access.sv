@@ -4,33 +4,33 @@
 // the clock after act_o, which is that of its ack_o.
 `default_nettype none
 module register_access (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        request_i,
-    input  wire logic        write_i,
-    output logic             ack_o,
-    output logic             error_o,
-    output logic             read_o,           // with ack_o: what was read is to be shown
+    input  wire logic       clk_i,
+    input  wire logic       rst_i,
+    input  wire logic       request_i,
+    input  wire logic       write_i,
+    output logic            ack_o,
+    output logic            error_o,
+    output logic            read_o,            // with ack_o: what was read is to be shown
     // judgement
-    output logic             judge_o,
-    input  wire logic        wait_i,           // the RAM is being written and the access is not to a live register
-    input  wire logic        good_i,
-    input  wire logic [ 7:0] reason_i,
-    input  wire logic        stream_i,
-    input  wire logic        start_i,
-    output logic             act_o,            // combinational
-    output logic             sample_o,         // combinational: a live register is taken
+    output logic            judge_o,
+    input  wire logic       wait_i,            // the RAM is being written and the access is not to a live register
+    input  wire logic       good_i,
+    input  wire logic [7:0] reason_i,
+    input  wire logic       stream_i,
+    input  wire logic       start_i,
+    output logic            act_o,             // combinational
+    output logic            sample_o,          // combinational: a live register is taken
     // who answers a word of the stream and START
-    output logic             stream_write_o,
-    input  wire logic        checker_ready_i,
-    input  wire logic        checker_refuse_i,
-    output logic             start_o,
-    input  wire logic        start_done_i,
-    input  wire logic        start_error_i,
-    input  wire logic [ 7:0] start_reason_i,
+    output logic            stream_write_o,
+    input  wire logic       checker_ready_i,
+    input  wire logic       checker_refuse_i,
+    output logic            start_o,
+    input  wire logic       start_done_i,
+    input  wire logic       start_error_i,
+    input  wire logic [7:0] start_reason_i,
     // a refusal by the map or by START, combinational
-    output logic             refuse_o,
-    output logic      [ 7:0] reason_o
+    output logic            refuse_o,
+    output logic      [7:0] reason_o
 );
 
   typedef enum logic [2:0] {
@@ -52,9 +52,9 @@ module register_access (
     stream_write_o <= 1'b0;
     start_o <= 1'b0;
     case (state_q)
-      IDLE:    if (request_i) state_q <= DECODE;
-      DECODE:  state_q <= WAIT;
-      WAIT:    if (!wait_i) state_q <= ACT;
+      IDLE:   if (request_i) state_q <= DECODE;
+      DECODE: state_q <= WAIT;
+      WAIT:   if (!wait_i) state_q <= ACT;
       ACT: begin
         state_q <= IDLE;
         if (good_i && !write_i) begin

@@ -58,8 +58,7 @@ module register_decode #(
     end
   end
 
-  assign live_o = !absent_q &&
-      (access_q == card_map_pkg::ACCESS_LIVE || access_q == card_map_pkg::ACCESS_CLEAR_ONES);
+  assign live_o = !absent_q && (access_q == card_map_pkg::ACCESS_LIVE || access_q == card_map_pkg::ACCESS_CLEAR_ONES);
   assign setting_o = access_q == card_map_pkg::ACCESS_SETTING;
 
   logic read_only;

@@ -11,33 +11,33 @@ module register_file #(
 ) (
     input  wire logic              clk_i,
     input  wire logic              rst_i,
-    input  wire logic [     511:0] constants_i,       // what parameters and straps decide, by address
+    input  wire logic [     511:0] constants_i,        // what parameters and straps decide, by address
     input  wire logic [2*Axes-1:0] idle_level_i,
     // the access
     input  wire logic              request_i,
     input  wire logic [      47:0] access_i,
     output logic                   ack_o,
     output logic                   error_o,
-    output logic      [      31:0] data_o,            // combinational
+    output logic      [      31:0] data_o,             // combinational
     output logic                   irq_o,
     // the card's state
-    input  wire logic [       5:0] motion_i,          // {stopping, ended, feed active, path active, direct, busy}
+    input  wire logic [       5:0] motion_i,           // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic              held_i,
     input  wire logic [      31:0] fault_i,
-    input  wire logic [      31:0] room_i,            // {geometry, feed}
-    input  wire logic [      63:0] begun_i,           // {geometry, feed}
-    output logic      [      31:0] status_o,          // combinational; refused is any port's
+    input  wire logic [      31:0] room_i,             // {geometry, feed}
+    input  wire logic [      63:0] begun_i,            // {geometry, feed}
+    output logic      [      31:0] status_o,           // combinational; refused is any port's
     // what writes do
-    output logic      [      40:0] setting_o,         // {set, address, data}
+    output logic      [      40:0] setting_o,          // {set, address, data}
     output logic      [      31:0] clear_fault_o,
     output logic                   abort_o,
-    output logic                   flush_o,           // combinational
+    output logic                   flush_o,            // combinational
     // the command checker
     output logic                   stream_write_o,
     input  wire logic              checker_ready_i,
     input  wire logic              checker_partial_i,
     input  wire logic              checker_refuse_i,
-    input  wire logic [      15:0] checker_reason_i,  // {number, reason}
+    input  wire logic [      15:0] checker_reason_i,   // {number, reason}
     // the direct loader
     output logic                   start_o,
     input  wire logic              start_done_i,
@@ -47,8 +47,8 @@ module register_file #(
     output logic      [      31:0] loader_data_o,
     // snapshots
     input  wire logic              stop_i,
-    output logic      [       1:0] snapshot_o,        // {shift, strobe}
-    output logic      [      31:0] chain_o,           // the far end
+    output logic      [       1:0] snapshot_o,         // {shift, strobe}
+    output logic      [      31:0] chain_o,            // the far end
     input  wire logic [      31:0] chain_i
 );
 
@@ -144,7 +144,7 @@ module register_file #(
   end
 
   assign setting_o = {set_q, access_i[41:34], data};
-  assign flush_o = act && control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
+  assign flush_o   = act && control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
 
   logic        any_refused;
   logic        refused;
@@ -205,13 +205,13 @@ module register_file #(
   ) i_snapshot (
       .clk_i,
       .rst_i,
-      .host_i(snapshot_q),
+      .host_i  (snapshot_q),
       .stop_i,
       .chain_i,
       .snapshot_o,
       .active_o(snapshotting),
-      .time_i(now),
-      .store_o(latched)
+      .time_i  (now),
+      .store_o (latched)
   );
 
   // The direct loader owns the RAM's read side from its start to its end; the START write waits all the while.

@@ -27,12 +27,12 @@ module snapshot_writer #(
   localparam logic [3:0] FIRST_POSITION = card_map_pkg::IN_AREA_POSITION[5:2];
   localparam logic [3:0] LAST_POSITION = FIRST_POSITION + 4'(Axes - 1);
 
-  logic       host_q;    // the host's request is not served yet
+  logic       host_q;  // the host's request is not served yet
   logic       for_stop_q;
   logic       settle_q;  // the clock between the strobe and the first word
   logic       write_q;
   logic [3:0] word_q;
-  logic       last_q;    // the last word is on its way into the RAM
+  logic       last_q;  // the last word is on its way into the RAM
   logic       begin_stop;
   logic       begin_host;
 
@@ -78,10 +78,12 @@ module snapshot_writer #(
     end
   end
 
+  logic [ 3:0] area;
   logic [31:0] data;
 
+  assign area = for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6];
   assign data = word_q == TIME_LO ? time_i[31:0] : word_q == TIME_HI ? time_i[63:32] : chain_i;
-  assign store_o = write_q ? {1'b1, for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6], word_q, data} : '0;
+  assign store_o = write_q ? {1'b1, area, word_q, data} : '0;
 
 endmodule
 `default_nettype wire

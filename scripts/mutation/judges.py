@@ -4,6 +4,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import resource
 import subprocess
 import time
@@ -12,7 +13,7 @@ from pathlib import Path
 from typing import Dict, List
 
 MISMATCH = "repeat with TRAMMEL_SEED="  # the line that every report of a lockstep has
-TESTS_PASSED = "[  PASSED  ]"
+TESTS_PASSED = re.compile(r"\[  PASSED  \] [1-9]")  # a filter that matches no test passes as well
 
 
 class SoundDesignRefused(Exception):
@@ -25,6 +26,7 @@ class Judge:
     executable: str
     sources: List[str]  # relative to the folder of the RTL
     arguments: List[str] = field(default_factory=list)  # GoogleTest's, to choose among its tests
+    length: str = ""  # of its random scenarios, as a factor: TRAMMEL_LONG
     seconds: float = 0.0  # of processor time for the sound design
 
     def limit(self) -> int:
@@ -44,16 +46,16 @@ class Verdict:
 
 
 def read_judges(path: Path) -> List[Judge]:
-    """Those that see little of the design first: they are quick and say most about it."""
+    """Those that see little of the design first: they are quick and say most about it. Of equal ones in the file's order."""
     judges = [Judge(**entry) for entry in json.loads(path.read_text())]
-    return sorted(judges, key=lambda judge: (len(judge.sources), judge.name))
+    return sorted(judges, key=lambda judge: len(judge.sources))
 
 
 def fingerprint(judges: List[Judge]) -> str:
     """Changes with anything that could change a verdict."""
     digest = hashlib.sha256()
     for judge in judges:
-        digest.update(f"{judge.name} {judge.arguments}".encode() + Path(judge.executable).read_bytes())
+        digest.update(f"{judge.name} {judge.arguments} {judge.length}".encode() + Path(judge.executable).read_bytes())
     return digest.hexdigest()
 
 
@@ -63,6 +65,9 @@ def run(judge: Judge, number: int, limit: int) -> Verdict:
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
     environment: Dict[str, str] = {**os.environ, "TRAMMEL_MUTANT": str(number)}
+    environment.pop("TRAMMEL_LONG", None)
+    if judge.length:
+        environment["TRAMMEL_LONG"] = judge.length
     start = time.monotonic()
     try:
         # One that sleeps uses no processor time; it is given ten times as long.
@@ -77,7 +82,7 @@ def run(judge: Judge, number: int, limit: int) -> Verdict:
 
 def judged(status: int, output: str) -> str:
     if status == 0:
-        return "lived" if TESTS_PASSED in output else "failed"
+        return "lived" if TESTS_PASSED.search(output) else "failed"
     if -status in (24, 9):  # SIGXCPU; SIGKILL a second later
         return "timed out"
     if MISMATCH in output:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace trammel::lockstep {
@@ -53,9 +54,12 @@ std::uint64_t scaled(std::uint64_t length) {
   const char* text = std::getenv("TRAMMEL_LONG");
   if (text == nullptr) return length;
   char* end = nullptr;
-  const std::uint64_t factor = std::strtoull(text, &end, 10);
-  if (*end != '\0' || factor == 0) throw std::invalid_argument(fmt::format("TRAMMEL_LONG is no factor: {}", text));
-  return length * factor;
+  const double factor = std::strtod(text, &end);
+  // A factor up to a million keeps every length well below 2^64.
+  if (end == text || *end != '\0' || !(factor > 0 && factor <= 1e6)) {
+    throw std::invalid_argument(fmt::format("TRAMMEL_LONG is no factor: {}", text));
+  }
+  return static_cast<std::uint64_t>(std::ceil(static_cast<double>(length) * factor));
 }
 
 std::string judge(const std::function<void()>& scenario) {

@@ -140,7 +140,8 @@ class Simulated {
 std::uint64_t seed_from_environment(std::uint64_t fallback);
 
 // The length of a random scenario (clocks, commands, whatever it counts): `length`, times TRAMMEL_LONG where the
-// environment has it, a whole number from 1 on. Throws std::invalid_argument when it is something else.
+// environment has it: a factor above 0, at most 10^6; below 1 the scenario is shorter. Throws std::invalid_argument
+// when it is something else.
 std::uint64_t scaled(std::uint64_t length);
 
 // Runs a scenario of a test executable, which judges either the sound RTL or, called with --seeded-bug, a copy with a

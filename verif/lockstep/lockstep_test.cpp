@@ -128,7 +128,12 @@ TEST(Scaled, TakesTheFactorFromTheEnvironment) {
     const Environment long_run("TRAMMEL_LONG", "25");
     EXPECT_EQ(scaled(400), 10'000U);
   }
-  for (const char* wrong : {"", "0", "long", "2x"}) {
+  {
+    const Environment short_run("TRAMMEL_LONG", "0.01");
+    EXPECT_EQ(scaled(400), 4U);
+    EXPECT_EQ(scaled(1), 1U);
+  }
+  for (const char* wrong : {"", "0", "-1", "1e7", "nan", "long", "2x"}) {
     const Environment environment("TRAMMEL_LONG", wrong);
     EXPECT_THROW(scaled(1), std::invalid_argument) << wrong;
   }

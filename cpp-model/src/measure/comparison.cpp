@@ -17,8 +17,8 @@ using interpolation::Method;
 
 std::uint64_t magnitude(std::int64_t value) { return static_cast<std::uint64_t>(value < 0 ? -value : value); }
 
-// The direct-mode registers of a line, one block: FREQUENCY_LO[0] .. START.
-constexpr std::uint64_t kLineBlock = (card_map::reg::kStart - card_map::reg::frequency_lo(0)) / 4 + 1;
+// The direct-mode registers of a line on a card of 4 axes, one block: FREQUENCY_LO[3] .. START.
+constexpr std::uint64_t kLineBlock = (card_map::reg::kStart - card_map::reg::frequency_lo(3)) / 4 + 1;
 
 // An ARC command of two axes.
 constexpr std::uint64_t kArcBlock =

@@ -14,11 +14,13 @@
 
 #include "lockstep.hpp"
 #include "trammel/driver/arc.hpp"
+#include "trammel/model/buses.hpp"
 
 namespace trammel::lockstep {
 namespace {
 
 using driver::Arc;
+namespace load_target = model::load_target;
 using Point = std::pair<int, int>;
 
 constexpr double kPi = 3.14159265358979323846;
@@ -32,15 +34,15 @@ class Accumulator {
   }
 
   void start(const Arc& arc) {
-    load(0, arc.deviation, 5);
-    load(1, arc.gradient_x, 5);
-    load(2, arc.gradient_y, 5);
-    load(3, static_cast<driver::int128>(arc.half_x), 3);
-    load(4, static_cast<driver::int128>(arc.half_y), 3);
-    load(5, arc.end_x, 2);
-    load(6, arc.end_y, 2);
-    load(7, arc.quadrants, 1);
-    load(8, arc.clockwise ? 1 : 0, 1);
+    load(load_target::kDeviation, arc.deviation, 5);
+    load(load_target::kGradientX, arc.gradient_x, 5);
+    load(load_target::kGradientY, arc.gradient_y, 5);
+    load(load_target::kHalfX, static_cast<driver::int128>(arc.half_x), 3);
+    load(load_target::kHalfY, static_cast<driver::int128>(arc.half_y), 3);
+    load(load_target::kEndX, arc.end_x, 2);
+    load(load_target::kEndY, arc.end_y, 2);
+    load(load_target::kQuadrants, arc.quadrants, 1);
+    load(load_target::kPlane, arc.clockwise ? 1 : 0, 1);
     dut_->start_i = 1;
     dut_.clock();
     dut_->start_i = 0;
@@ -64,10 +66,10 @@ class Accumulator {
   const Point& position() const { return position_; }
 
  private:
-  void load(int chain, driver::int128 value, int halfwords) {
-    dut_->load_i = static_cast<std::uint16_t>(1u << chain);
+  void load(unsigned target, driver::int128 value, int halfwords) {
     for (int i = 0; i < halfwords; ++i) {
-      dut_->word_i = static_cast<std::uint16_t>(value >> (16 * i));
+      const auto word = static_cast<std::uint16_t>(value >> (16 * i));
+      dut_->load_i = 1U << 21 | target << 16 | word;
       dut_.clock();
     }
     dut_->load_i = 0;

@@ -119,15 +119,19 @@ class Verdicts(Folder):
 
     def test_no_test_is_no_pass(self):
         self.assertEqual(self.how("exit 0"), "failed")
+        entry = json.loads((BUILD / "judges.json").read_text())[0]
+        judge = judges.Judge(**{**entry, "arguments": ["--gtest_filter=NoSuchTest.*"]})
+        with self.assertRaises(judges.SoundDesignRefused):
+            judges.try_sound_design(judge)
 
     def test_a_hanging_run_ends(self):
         self.assertEqual(self.how("while :; do :; done", limit=1), "timed out")
 
     def test_the_mutant_is_chosen_by_its_number(self):
-        self.assertEqual(self.how("[ $TRAMMEL_MUTANT = 1 ] && echo '[  PASSED  ]'"), "lived")
+        self.assertEqual(self.how("[ $TRAMMEL_MUTANT = 1 ] && echo '[  PASSED  ] 1 test.'"), "lived")
 
     def test_the_limit_follows_the_sound_run(self):
-        judge = judges.Judge("fake", self.script("judge", "echo '[  PASSED  ]'"), [])
+        judge = judges.Judge("fake", self.script("judge", "echo '[  PASSED  ] 1 test.'"), [])
         judges.try_sound_design(judge)
         self.assertEqual(judge.limit(), 3)
         judge.seconds = 10

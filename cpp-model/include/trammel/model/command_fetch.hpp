@@ -3,7 +3,8 @@
 //
 // A halfword asked for in clock r lies on the queue's output in r+2 and on the bus in r+3. A command is decoded in the
 // clock in which its last halfword is on the bus. An arc's halfwords after the prescaler wait until the accumulator is
-// free; a feed piece's acceleration and jerk until it has begun. Not thread-safe; no errors are reported: the checker
+// free; a feed piece's acceleration and jerk until it has begun, where a piece runs as they would be asked for: it is
+// decoded without them. Not thread-safe; no errors are reported: the checker
 // lets only good commands into the queue.
 #pragma once
 
@@ -20,7 +21,7 @@ class CommandFetch {
   struct Inputs {
     bool clear = false;
     bool pop = false;            // the decoded command has begun (a barrier: is over)
-    bool payload_ready = true;   // the accumulator may be loaded
+    bool payload_ready = true;   // the accumulator may be loaded; no piece is under way
     bool empty = true;           // of the queue
     std::uint16_t halfword = 0;  // what was asked for two clocks ago
   };
@@ -66,8 +67,9 @@ class CommandFetch {
   State state_ = State::Idle;
   int asked_ = -1;  // index of the halfword asked for, -1: none
   int arriving_[2] = {-1, -1};
-  int length_ = 0;    // halfwords of the command
-  int pause_at_ = 0;  // the halfword before which it may have to wait
+  int length_ = 0;      // halfwords of the command
+  int pause_at_ = 0;    // the halfword before which it may have to wait
+  bool split_ = false;  // the piece is decoded without acceleration and jerk
   card_map::Opcode opcode_ = card_map::Opcode::End;
   std::uint8_t mask_ = 0;
   std::uint8_t axes_[8] = {};  // of the mask, lowest first

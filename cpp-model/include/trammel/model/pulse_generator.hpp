@@ -89,10 +89,6 @@ class PulseGenerator {
     return static_cast<std::uint64_t>(phase_ / -increment_);
   }
 
-  // The line's state after `ticks` more ticks of an uncounted line, worked off: the signed number of steps they make.
-  // ticks < 2^63. Only when quiet(); outputs().dir is that of the last step.
-  std::int64_t leap(std::uint64_t ticks);
-
   std::int64_t increment() const { return increment_; }  // of the present line, 2^-40 pulses a tick
 
  private:

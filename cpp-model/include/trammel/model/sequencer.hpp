@@ -119,6 +119,7 @@ class Sequencer {
     bool barrier_ends = false;
     bool barrier_done = false;  // ended in the clock before: both queues go on
     bool payload_ready = false;
+    bool piece_runs = false;
   };
 
   Decision decide(const Inputs& in) const;
