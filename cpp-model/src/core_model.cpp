@@ -6,6 +6,9 @@ namespace trammel::model {
 
 namespace {
 
+// Clocks that the register file stays awake after its last activity.
+constexpr int kAwake = 2;
+
 const CardConfig& checked(const CardConfig& config) {
   if (config.axes < 1 || config.axes > CoreModel::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   if (config.ports < 1 || config.ports > 4) throw std::invalid_argument("a card has 1 to 4 ports");
@@ -42,7 +45,7 @@ CoreModel::CoreModel(const Config& config)
       checker_(config.axes, register_config(config).engines),
       geometry_queue_(config.geometry_depth),
       feed_queue_(config.feed_depth),
-      motion_(config.axes, config.idle_level) {
+      motion_(config.axes, config.idle_level, config.clock_all) {
   reset();
 }
 
@@ -51,11 +54,11 @@ void CoreModel::reset() {
   checker_ = CommandChecker(config_.axes, register_config(config_).engines);
   geometry_queue_ = HalfwordQueue(config_.geometry_depth);
   feed_queue_ = HalfwordQueue(config_.feed_depth);
-  motion_ = MotionCore(config_.axes, config_.idle_level);
+  motion_ = MotionCore(config_.axes, config_.idle_level, config_.clock_all);
   cycles_ = 0;
   record_.reset();
   answer_ = {};
-  gather();
+  awake_ = kAwake;
   show();
 }
 
@@ -67,17 +70,39 @@ void CoreModel::clock(const Inputs& in) {
   const bool cut = motion_.stop().cut;
   const MotionCore::Inputs motion_in = motion_inputs();
   clock_commands(cut);
+  clock_registers(in);
+  motion_.clock(motion_in);
+  record(cut);
+  show();
+}
+
+// The register file looks at a few signals in every clock, at all others only while it is at work.
+void CoreModel::clock_registers(const Inputs& in) {
+  if (in.request) awake_ = kAwake;
+  if (awake_ == 0 && !config_.clock_all) return registers_.advance(1);
   register_in_.request = in.request;
   register_in_.write = in.write;
   register_in_.partial = in.partial;
   register_in_.port = in.port;
   register_in_.address = in.address;
   register_in_.data = in.data;
+  const bool quiet = registers_.quiet(register_in_);
   registers_.clock(register_in_);
-  motion_.clock(motion_in);
-  gather();
-  record(cut);
-  show();
+  register_in_.request = false;
+  awake_ = quiet && awake_ != 0 ? awake_ - 1 : quiet ? 0 : kAwake;
+}
+
+// What the register file looks at in every clock.
+std::uint64_t CoreModel::watched() const {
+  const Sequencer::Outputs& s = motion_.sequencer().outputs();
+  const StopControl::Outputs& stop = motion_.stop();
+  const CommandChecker::Outputs& checker = checker_.outputs();
+  const bool flags[] = {
+      motion_.outputs().busy, s.direct,        s.path_active,  s.feed_active, s.ended,
+      stop.stopping,          checker.partial, checker.refuse, stop.stop,     motion_.time().ratio == 0};
+  std::uint64_t bits = stop.fault;
+  for (const bool flag : flags) bits = bits << 1 | (flag ? 1 : 0);
+  return bits;
 }
 
 void CoreModel::run(std::uint64_t clocks) {
@@ -89,13 +114,12 @@ void CoreModel::run(std::uint64_t clocks) {
 }
 
 std::uint64_t CoreModel::jump(std::uint64_t limit) {
-  if (reset_due_ || register_in_.request || !registers_.quiet(register_in_) || !checker_.quiet()) return 0;
+  if (reset_due_ || awake_ != 0 || !checker_.quiet()) return 0;
   if (!geometry_queue_.quiet() || !feed_queue_.quiet()) return 0;
   const std::uint64_t gone = motion_.jump(limit, motion_inputs(), cycles_, record_);
   if (gone == 0) return 0;
   cycles_ += gone;
   registers_.advance(gone);
-  gather();
   show();
   return gone;
 }
@@ -128,11 +152,15 @@ void CoreModel::clock_commands(bool cut) {
   in.closed = motion_.stop().closed;
   in.geometry_room = geometry_queue_.outputs().room;
   in.feed_room = feed_queue_.outputs().room;
-  checker_.clock(in);
+  const bool all = config_.clock_all || cut;
+  const bool quiet = checker_.quiet();
+  if (all || in.write || in.flush || !quiet) checker_.clock(in);
   const Sequencer& s = motion_.sequencer();
-  geometry_queue_.clock(
-      {false, cut, was.geometry_write, was.halfword, was.geometry_commit, was.drop, s.geometry_read()});
-  feed_queue_.clock({false, cut, was.feed_write, was.halfword, was.feed_commit, was.drop, s.feed_read()});
+  if (all || !quiet || s.geometry_read() || !geometry_queue_.quiet())
+    geometry_queue_.clock(
+        {false, cut, was.geometry_write, was.halfword, was.geometry_commit, was.drop, s.geometry_read()});
+  if (all || !quiet || s.feed_read() || !feed_queue_.quiet())
+    feed_queue_.clock({false, cut, was.feed_write, was.halfword, was.feed_commit, was.drop, s.feed_read()});
 }
 
 // What the register file sees of the card, as it stands now.
@@ -179,21 +207,30 @@ void CoreModel::show() {
   out_.feed_swap = s.feed_swap;
   out_.path_step = m.path_step;
   out_.path_dir = m.path_dir;
-  out_.geometry_room = register_in_.geometry_room;
-  out_.feed_room = register_in_.feed_room;
-  out_.status = registers_.status(register_in_);
-  out_.fault = register_in_.fault;
+  out_.geometry_room = geometry_queue_.outputs().room;
+  out_.feed_room = feed_queue_.outputs().room;
+  const std::uint64_t watched_now = watched();
+  if (watched_now != watched_) awake_ = kAwake;
+  watched_ = watched_now;
+  if (awake_ != 0 || config_.clock_all) {
+    gather();
+    out_.status = registers_.status(register_in_);
+  }
+  out_.fault = motion_.stop().fault;
   out_.geometry_begun = s.geometry_begun;
   out_.feed_begun = s.feed_begun;
-  out_.ratio = register_in_.ratio;
-  out_.rate = register_in_.rate;
+  out_.ratio = motion_.time().ratio;
+  out_.rate = motion_.feed().rate;
 }
 
 void CoreModel::record(bool cut) {
   if (cut) record_.cut();
   const CommandChecker::Outputs& checker = checker_.outputs();
   if (checker.geometry_commit || checker.feed_commit) record_.accepted(checker.geometry_commit);
-  for (unsigned n = 0; n < config_.axes; ++n) record_.pin(cycles_, n, motion_.position(n));
+  // Positions change only while an axis is busy.
+  if (motion_.outputs().axis_busy != 0 || config_.clock_all) {
+    for (unsigned n = 0; n < config_.axes; ++n) record_.pin(cycles_, n, motion_.position(n));
+  }
   if (motion_.engines().path_tick) record_.arc_tick();
   // The last tick of a path is its own, though the next one begins in the same clock.
   const Sequencer& s = motion_.sequencer();

@@ -12,9 +12,10 @@ unsigned idle_level_of(std::uint32_t levels, unsigned axes, unsigned axis) {
 
 }  // namespace
 
-MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level) : loader_(axes) {
+MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all)
+    : clock_all_(clock_all), loader_(axes), sequencer_(clock_all), engines_(clock_all) {
   for (unsigned n = 0; n < axes; ++n) {
-    axes_.emplace_back(n, idle_level_of(idle_level, axes, n));
+    axes_.emplace_back(n, idle_level_of(idle_level, axes, n), clock_all);
     put(out_.step, 1U << n, axes_[n].shaper().outputs().step);
     put(out_.dir, 1U << n, axes_[n].shaper().outputs().dir);
   }
@@ -49,7 +50,9 @@ void MotionCore::clock(const Inputs& in) {
   const StopControl::Outputs stop = stop_.outputs();
   loader_.clock({false, out_.busy, stop.closed, in.start, in.start_mask, in.loader_data});
   const bool at_rest = time_base_.outputs().ratio == 0;
-  stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, in.setting});
+  const bool events = out_.step_fault != 0 || s.mismatch || s.incomplete || in.abort || in.clear_fault != 0;
+  if (clock_all_ || events || in.setting.set || !stop_.quiet())
+    stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, in.setting});
   clock_busy();
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
@@ -72,8 +75,11 @@ void MotionCore::clock_axes(const Inputs& in, bool cut) {
   axis.load = sequencer_.load();
   axis.setting = in.setting;
   out_.engine_step = engines.step;
+  const bool common = cut || engines.tick || engines.swap || axis.hold_tick || in.setting.set || axis.load.valid;
+  const std::uint32_t due = common || clock_all_ ? ~0U : engines.step | restless_;
   for (unsigned n = 0; n < axes_.size(); ++n) {
     const std::uint32_t bit = 1U << n;
+    if ((due & bit) == 0) continue;
     axis.active = (s.active & bit) != 0;
     axis.engine_step = (engines.step & bit) != 0;
     axis.engine_dir = (engines.dir & bit) != 0;
@@ -92,6 +98,7 @@ void MotionCore::show_axis(unsigned n) {
   put(out_.live, bit, o.live);
   put(out_.axis_busy, bit, o.shaper.busy);
   put(out_.step_fault, bit, o.shaper.fault);
+  put(restless_, bit, !axes_[n].quiet());
 }
 
 void MotionCore::clock_busy() {

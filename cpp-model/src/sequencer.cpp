@@ -11,10 +11,14 @@ bool Sequencer::judged(const Inputs& in) const {
   return now_ >= drained_at_ + kDirectJudged && !in.axes_live;
 }
 
+bool Sequencer::takes(const Inputs& in) const {
+  const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
+  return owed_ != 0 && ticking && in.engine_ready && in.go && (out_.feed_active || out_.direct);
+}
+
 Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   Decision d;
-  const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
-  d.take = owed_ != 0 && ticking && in.engine_ready && in.go && (out_.feed_active || out_.direct);
+  d.take = takes(in);
   d.path_ends = d.take && !drained_ && path_left_ == 1;
   d.path_over = judged(in);
   d.piece_ends = d.take && out_.feed_active && piece_left_ == 1;
@@ -43,6 +47,25 @@ bool Sequencer::mismatches(const Inputs& in) const {
 }
 
 void Sequencer::clock(const Inputs& in) {
+  const unsigned inputs = (in.cut ? 1U : 0) | (in.go ? 2U : 0) | (in.geometry_empty ? 4U : 0) |
+                          (in.feed_empty ? 8U : 0) | (in.direct_go ? 16U : 0) | (in.direct_load.valid ? 32U : 0);
+  if (!calm_ || inputs != calm_inputs_) {
+    calm_ = !clock_all_ && calm(in);
+    calm_inputs_ = inputs;
+  }
+  const bool take = takes(in);
+  const bool ends = take && (path_left_ == 1 || piece_left_ == 1);
+  if (!calm_ || ends || (barrier_ == Barrier::Running && now_ == barrier_at_)) {
+    calm_ = false;
+    return clock_all(in);
+  }
+  clock_ticks(in, take);
+  path_left_ -= take ? 1 : 0;
+  piece_left_ -= take ? 1 : 0;
+  ++now_;
+}
+
+void Sequencer::clock_all(const Inputs& in) {
   const Decision d = decide(in);
   const bool mismatch = mismatches(in);
   const bool feed_idle = feed_.idle();
@@ -52,7 +75,7 @@ void Sequencer::clock(const Inputs& in) {
   out_.incomplete = d.path_over && path_ == Path::Arc && in.elsewhere;
   record_ = {d.path_begins || d.barrier_begins, in.direct_go};
   count_begun(in, d);
-  clock_ticks(in, d);
+  clock_ticks(in, d.take);
   clock_barrier(in, d);
   stand(d);
   clock_path(in, d);
@@ -75,14 +98,14 @@ void Sequencer::count_begun(const Inputs& in, const Decision& d) {
 }
 
 // Ticks made, owed and taken.
-void Sequencer::clock_ticks(const Inputs& in, const Decision& d) {
+void Sequencer::clock_ticks(const Inputs& in, bool take) {
   const bool running = out_.feed_active || out_.direct;
   const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
   const bool stall = owed_ > 1;
-  out_.tick = d.take;
+  out_.tick = take;
   out_.feed_enable = in.enable && out_.feed_active && ticking && !stall && in.go;
   out_.feed_clear = !out_.feed_active;
-  owed_ = running ? owed_ + (tick_arrives_ ? 1U : 0U) - (d.take ? 1U : 0U) : 0;
+  owed_ = running ? owed_ + (tick_arrives_ ? 1U : 0U) - (take ? 1U : 0U) : 0;
   tick_arrives_ = out_.direct ? in.enable && ticking : in.feed_tick && out_.feed_active;
 }
 
@@ -152,15 +175,24 @@ void Sequencer::clock_piece(const Decision& d) {
 }
 
 bool Sequencer::settled(const Inputs& in) const {
+  if (!calm(in) || (barrier_ == Barrier::Running && now_ == barrier_at_)) return false;
+  if (ticking()) return in.go && in.engine_ready && owed_ <= 1;
+  return !takes(in) && !tick_arrives_ && !out_.tick && !out_.feed_enable && !in.feed_tick &&
+         (out_.feed_active || owed_ == 0);
+}
+
+// With inputs as these nothing is decided but ticks, and a dwell's end.
+bool Sequencer::calm(const Inputs& in) const {
   const bool nothing_shows = !(out_.swap || out_.feed_swap || out_.arc_start || out_.mismatch || out_.incomplete) &&
                              !(path_begun_ || piece_begun_ || cut_before_ || in.cut || in.direct_go) &&
                              !(load_.valid || in.direct_load.valid || record_.command || record_.direct);
   if (!nothing_shows || drained_ || path_ == Path::Direct || !(geometry_.quiet() && feed_.quiet())) return false;
   if ((geometry_.idle() && !in.geometry_empty) || (feed_.idle() && !in.feed_empty)) return false;
   if (geometry_.waiting() && path_ != Path::Arc) return false;
-  const Decision d = decide(in);
-  if (d.path_begins || d.piece_begins || d.barrier_begins || d.barrier_done || mismatches(in)) return false;
-  if (barrier_ == Barrier::Meeting || d.barrier_ends) return false;
+  const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
+  const bool piece_waits = feed_.decoded() && feed_.is_feed();
+  if (in.go && ((path_waits && path_ == Path::None) || (piece_waits && !out_.feed_active))) return false;
+  if (barrier_ == Barrier::Meeting || barrier_ == Barrier::Done || mismatches(in)) return false;
   const bool geometry_stands = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None;
   const bool feed_stands = feed_.decoded() && feed_.is_barrier() && !out_.feed_active;
   if (geometry_stands != geometry_stands_ || feed_stands != feed_stands_) return false;
@@ -168,10 +200,7 @@ bool Sequencer::settled(const Inputs& in) const {
   if (barrier_ == Barrier::Running && !in.go) return false;
   const bool geometry_idle = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
   const bool idle = geometry_idle && feed_.idle() && in.feed_empty && !out_.feed_active;
-  if (geometry_idle != geometry_idle_ || idle != out_.idle || out_.feed_clear == out_.feed_active) return false;
-  if (ticking()) return in.go && in.engine_ready && owed_ <= 1;
-  return !d.take && !tick_arrives_ && !out_.tick && !out_.feed_enable && !in.feed_tick &&
-         (out_.feed_active || owed_ == 0);
+  return geometry_idle == geometry_idle_ && idle == out_.idle && out_.feed_clear != out_.feed_active;
 }
 
 void Sequencer::jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flight, bool feed_enable) {

@@ -79,16 +79,11 @@ module card_core #(
   logic [31:0] chain_far;
   logic [31:0] chain_near;
   logic        start;
-  logic        start_done;
-  logic        start_error;
-  logic [ 7:0] start_reason;
+  logic [ 9:0] start_answer;  // {done, error, reason}
   logic [ 7:0] loader_address;
   logic [31:0] loader_data;
   logic        stream_write;
-  logic        checker_ready;
-  logic        checker_partial;
-  logic        checker_refuse;
-  logic [15:0] checker_reason;
+  logic [18:0] checked;  // {partial, ready, refuse, number, reason}
 
   register_file #(
       .Axes(Axes),
@@ -116,14 +111,9 @@ module card_core #(
       .abort_o(abort),
       .flush_o(flush),
       .stream_write_o(stream_write),
-      .checker_ready_i(checker_ready),
-      .checker_partial_i(checker_partial),
-      .checker_refuse_i(checker_refuse),
-      .checker_reason_i(checker_reason),
+      .checker_i(checked),
       .start_o(start),
-      .start_done_i(start_done),
-      .start_error_i(start_error),
-      .start_reason_i(start_reason),
+      .start_answer_i(start_answer),
       .loader_address_i(loader_address),
       .loader_data_o(loader_data),
       .stop_i(stop),
@@ -158,17 +148,17 @@ module card_core #(
       .closed_i(closed),
       .geometry_room_i(room[31:16]),
       .feed_room_i(room[15:0]),
-      .ready_o(checker_ready),
+      .ready_o(checked[17]),
       .halfword_o(halfword),
       .geometry_write_o(geometry_write),
       .feed_write_o(feed_write),
       .geometry_commit_o(geometry_commit),
       .feed_commit_o(feed_commit),
       .drop_o(drop),
-      .refuse_o(checker_refuse),
-      .reason_o(checker_reason[7:0]),
-      .number_o(checker_reason[15:8]),
-      .partial_o(checker_partial)
+      .refuse_o(checked[16]),
+      .reason_o(checked[7:0]),
+      .number_o(checked[15:8]),
+      .partial_o(checked[18])
   );
 
   halfword_queue #(
@@ -222,9 +212,9 @@ module card_core #(
       .feed_read_o(feed_read),
       .start_i(start),
       .start_mask_i(setting[7:0]),
-      .start_done_o(start_done),
-      .start_error_o(start_error),
-      .start_reason_o(start_reason),
+      .start_done_o(start_answer[9]),
+      .start_error_o(start_answer[8]),
+      .start_reason_o(start_answer[7:0]),
       .loader_address_o(loader_address),
       .loader_data_i(loader_data),
       .snapshot_i(snapshot),

@@ -1,6 +1,6 @@
 // Carries one access at a time through: judgement, action, answer.
 //
-// The access stands still from request_i to ack_o. good_i and reason_i are its judgement; a write that is good acts in
+// The access stands still from request_i to ack_o. A write that is good acts in
 // the clock after act_o, which is that of its ack_o.
 `default_nettype none
 module register_access (
@@ -14,8 +14,7 @@ module register_access (
     // judgement
     output logic            judge_o,
     input  wire logic       wait_i,            // the RAM is being written and the access is not to a live register
-    input  wire logic       good_i,
-    input  wire logic [7:0] reason_i,
+    input  wire logic [8:0] verdict_i,         // {good, reason}
     input  wire logic       stream_i,
     input  wire logic       start_i,
     output logic            act_o,             // combinational
@@ -25,9 +24,7 @@ module register_access (
     input  wire logic       checker_ready_i,
     input  wire logic       checker_refuse_i,
     output logic            start_o,
-    input  wire logic       start_done_i,
-    input  wire logic       start_error_i,
-    input  wire logic [7:0] start_reason_i,
+    input  wire logic [9:0] start_answer_i,    // {done, error, reason}
     // a refusal by the map or by START, combinational
     output logic            refuse_o,
     output logic      [7:0] reason_o
@@ -44,6 +41,9 @@ module register_access (
   } state_e;
 
   state_e state_q;
+  logic   good;
+
+  assign good = verdict_i[8];
 
   always_ff @(posedge clk_i) begin
     ack_o <= 1'b0;
@@ -57,17 +57,17 @@ module register_access (
       WAIT:   if (!wait_i) state_q <= ACT;
       ACT: begin
         state_q <= IDLE;
-        if (good_i && !write_i) begin
+        if (good && !write_i) begin
           state_q <= RESPOND;
-        end else if (good_i && stream_i) begin
+        end else if (good && stream_i) begin
           state_q <= STREAM;
           stream_write_o <= 1'b1;
-        end else if (good_i && start_i) begin
+        end else if (good && start_i) begin
           state_q <= START;
           start_o <= 1'b1;
         end else begin
           ack_o   <= 1'b1;
-          error_o <= !good_i;
+          error_o <= !good;
         end
       end
       STREAM: begin
@@ -79,10 +79,10 @@ module register_access (
         end
       end
       START: begin
-        if (start_done_i) begin
+        if (start_answer_i[9]) begin
           state_q <= IDLE;
           ack_o   <= 1'b1;
-          error_o <= start_error_i;
+          error_o <= start_answer_i[8];
         end
       end
       default: begin  // RESPOND
@@ -102,10 +102,10 @@ module register_access (
   end
 
   assign judge_o = state_q == DECODE || state_q == WAIT;
-  assign act_o = state_q == ACT && good_i && write_i;
+  assign act_o = state_q == ACT && good && write_i;
   assign sample_o = state_q == ACT;
-  assign refuse_o = state_q == ACT ? !good_i : state_q == START && start_done_i && start_error_i;
-  assign reason_o = state_q == ACT ? reason_i : start_reason_i;
+  assign refuse_o = state_q == ACT ? !good : state_q == START && start_answer_i[9] && start_answer_i[8];
+  assign reason_o = state_q == ACT ? verdict_i[7:0] : start_answer_i[7:0];
 
 endmodule
 `default_nettype wire

@@ -1,6 +1,6 @@
-// Judges an access by the register map. The access stands still while judge_i is high: live_o, stored_o and what the
-// access aims at are valid one clock after it stands, reason_o and good_o two clocks after. busy_i is looked at in the
-// last clock of judge_i. All of it is kept until the next access: nothing moves in between.
+// Judges an access by the register map. The access stands still while judge_i is high: live_o and target_o are valid one
+// clock after it stands, verdict_o two clocks after. busy_i is looked at in the last clock of judge_i. All of it is kept
+// until the next access: nothing moves in between.
 `default_nettype none
 module register_decode #(
     parameter int Axes = 4,
@@ -8,17 +8,11 @@ module register_decode #(
 ) (
     input  wire logic        clk_i,
     input  wire logic        judge_i,
-    input  wire logic [45:0] access_i,   // {write, partial, address, data}
-    input  wire logic        busy_i,     // the stream is not for this port, or not now
-    output logic             live_o,     // reads as the card stands
-    output logic             setting_o,
-    output logic             control_o,
-    output logic             fault_o,
-    output logic             refusal_o,  // and with ones to clear
-    output logic             stream_o,
-    output logic             start_o,
-    output logic             good_o,
-    output logic      [ 7:0] reason_o
+    input  wire logic [45:0] access_i,  // {write, partial, address, data}
+    input  wire logic        busy_i,    // the stream is not for this port, or not now
+    output logic             live_o,    // reads as the card stands
+    output logic      [ 5:0] target_o,  // {start, stream, refusal and ones to clear, fault, control, setting}
+    output logic      [ 8:0] verdict_o  // {good, reason}
 );
 
   localparam logic [3:0] AXIS_COUNT = 4'(Axes);
@@ -30,6 +24,11 @@ module register_decode #(
   logic       absent_q;
   logic [3:0] stray_q;  // bytes with bits that must be 0
   logic       in_limits_q;
+  logic       start_q;
+  logic       stream_q;
+  logic       refusal_q;
+  logic       fault_q;
+  logic       control_q;
 
   assign write   = access_i[45];
   assign partial = access_i[44];
@@ -50,16 +49,16 @@ module register_decode #(
       absent_q <= access_i[33:32] != 2'd0 || (only_present && {1'b0, axis} >= AXIS_COUNT);
       for (int b = 0; b < 4; b++) stray_q[b] <= (data[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
       in_limits_q <= card_map_pkg::register_in_limits(word, data);
-      control_o <= word == card_map_pkg::ADDR_CONTROL[11:2];
-      fault_o <= word == card_map_pkg::ADDR_FAULT[11:2];
-      refusal_o <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data != 32'd0;
-      stream_o <= word == card_map_pkg::ADDR_STREAM[11:2];
-      start_o <= word == card_map_pkg::ADDR_START[11:2] && Engines[card_map_pkg::ENGINE_DIRECT_MODE];
+      control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
+      fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
+      refusal_q <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data != 32'd0;
+      stream_q <= word == card_map_pkg::ADDR_STREAM[11:2];
+      start_q <= word == card_map_pkg::ADDR_START[11:2] && Engines[card_map_pkg::ENGINE_DIRECT_MODE];
     end
   end
 
-  assign live_o = !absent_q && (access_q == card_map_pkg::ACCESS_LIVE || access_q == card_map_pkg::ACCESS_CLEAR_ONES);
-  assign setting_o = access_q == card_map_pkg::ACCESS_SETTING;
+  assign live_o   = !absent_q && (access_q == card_map_pkg::ACCESS_LIVE || access_q == card_map_pkg::ACCESS_CLEAR_ONES);
+  assign target_o = {start_q, stream_q, refusal_q, fault_q, control_q, access_q == card_map_pkg::ACCESS_SETTING};
 
   logic read_only;
 
@@ -68,22 +67,21 @@ module register_decode #(
 
   always_ff @(posedge clk_i) begin
     if (judge_i) begin
-      good_o   <= 1'b0;
-      reason_o <= card_map_pkg::REFUSE_NONE;
+      verdict_o <= {1'b0, card_map_pkg::REFUSE_NONE};
       if (access_q == card_map_pkg::ACCESS_NONE || absent_q) begin
-        reason_o <= card_map_pkg::REFUSE_UNKNOWN_ADDRESS;
+        verdict_o[7:0] <= card_map_pkg::REFUSE_UNKNOWN_ADDRESS;
       end else if (!write && access_q == card_map_pkg::ACCESS_COMMAND) begin
-        reason_o <= card_map_pkg::REFUSE_WRITE_ONLY;
+        verdict_o[7:0] <= card_map_pkg::REFUSE_WRITE_ONLY;
       end else if (write && read_only) begin
-        reason_o <= card_map_pkg::REFUSE_READ_ONLY;
+        verdict_o[7:0] <= card_map_pkg::REFUSE_READ_ONLY;
       end else if (write && partial) begin
-        reason_o <= card_map_pkg::REFUSE_PARTIAL_WRITE;
+        verdict_o[7:0] <= card_map_pkg::REFUSE_PARTIAL_WRITE;
       end else if (write && (stray_q != 4'd0 || !in_limits_q)) begin
-        reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
-      end else if (write && stream_o && busy_i) begin
-        reason_o <= card_map_pkg::REFUSE_BUSY;
+        verdict_o[7:0] <= card_map_pkg::REFUSE_BAD_VALUE;
+      end else if (write && stream_q && busy_i) begin
+        verdict_o[7:0] <= card_map_pkg::REFUSE_BUSY;
       end else begin
-        good_o <= 1'b1;
+        verdict_o[8] <= 1'b1;
       end
     end
   end

@@ -11,44 +11,39 @@ module register_file #(
 ) (
     input  wire logic              clk_i,
     input  wire logic              rst_i,
-    input  wire logic [     511:0] constants_i,        // what parameters and straps decide, by address
+    input  wire logic [     511:0] constants_i,       // what parameters and straps decide, by address
     input  wire logic [2*Axes-1:0] idle_level_i,
     // the access
     input  wire logic              request_i,
     input  wire logic [      47:0] access_i,
     output logic                   ack_o,
     output logic                   error_o,
-    output logic      [      31:0] data_o,             // combinational
+    output logic      [      31:0] data_o,            // combinational
     output logic                   irq_o,
     // the card's state
-    input  wire logic [       5:0] motion_i,           // {stopping, ended, feed active, path active, direct, busy}
+    input  wire logic [       5:0] motion_i,          // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic              held_i,
     input  wire logic [      31:0] fault_i,
-    input  wire logic [      31:0] room_i,             // {geometry, feed}
-    input  wire logic [      63:0] begun_i,            // {geometry, feed}
-    output logic      [      31:0] status_o,           // combinational; refused is any port's
+    input  wire logic [      31:0] room_i,            // {geometry, feed}
+    input  wire logic [      63:0] begun_i,           // {geometry, feed}
+    output logic      [      31:0] status_o,          // combinational; refused is any port's
     // what writes do
-    output logic      [      40:0] setting_o,          // {set, address, data}
+    output logic      [      40:0] setting_o,         // {set, address, data}
     output logic      [      31:0] clear_fault_o,
     output logic                   abort_o,
-    output logic                   flush_o,            // combinational
+    output logic                   flush_o,           // combinational
     // the command checker
     output logic                   stream_write_o,
-    input  wire logic              checker_ready_i,
-    input  wire logic              checker_partial_i,
-    input  wire logic              checker_refuse_i,
-    input  wire logic [      15:0] checker_reason_i,   // {number, reason}
+    input  wire logic [      18:0] checker_i,         // {partial, ready, refuse, number, reason}
     // the direct loader
     output logic                   start_o,
-    input  wire logic              start_done_i,
-    input  wire logic              start_error_i,
-    input  wire logic [       7:0] start_reason_i,
+    input  wire logic [       9:0] start_answer_i,    // {done, error, reason}
     input  wire logic [       7:0] loader_address_i,
     output logic      [      31:0] loader_data_o,
     // snapshots
     input  wire logic              stop_i,
-    output logic      [       1:0] snapshot_o,         // {shift, strobe}
-    output logic      [      31:0] chain_o,            // the far end
+    output logic      [       1:0] snapshot_o,        // {shift, strobe}
+    output logic      [      31:0] chain_o,           // the far end
     input  wire logic [      31:0] chain_i
 );
 
@@ -61,14 +56,8 @@ module register_file #(
   logic        refuse;
   logic [ 7:0] refuse_reason;
   logic        live;
-  logic        setting;
-  logic        control;
-  logic        fault;
-  logic        refusal;
-  logic        stream;
-  logic        start;
-  logic        good;
-  logic [ 7:0] reason;
+  logic [ 5:0] target;  // {start, stream, refusal, fault, control, setting}
+  logic [ 8:0] verdict;  // {good, reason}
   logic        writing;
   logic        snapshotting;
 
@@ -85,19 +74,16 @@ module register_file #(
       .read_o(read),
       .judge_o(judge),
       .wait_i((writing || snapshotting) && (access_i[45] || !live)),
-      .good_i(good),
-      .reason_i(reason),
-      .stream_i(stream),
-      .start_i(start),
+      .verdict_i(verdict),
+      .stream_i(target[4]),
+      .start_i(target[5]),
       .act_o(act),
       .sample_o(sample),
       .stream_write_o,
-      .checker_ready_i,
-      .checker_refuse_i,
+      .checker_ready_i(checker_i[17]),
+      .checker_refuse_i(checker_i[16]),
       .start_o,
-      .start_done_i,
-      .start_error_i,
-      .start_reason_i,
+      .start_answer_i,
       .refuse_o(refuse),
       .reason_o(refuse_reason)
   );
@@ -114,37 +100,34 @@ module register_file #(
       .clk_i,
       .judge_i(judge),
       .access_i(access_i[45:0]),
-      .busy_i(motion_i[1] || (checker_partial_i && owner_q != asking)),
+      .busy_i(motion_i[1] || (checker_i[18] && owner_q != asking)),
       .live_o(live),
-      .setting_o(setting),
-      .control_o(control),
-      .fault_o(fault),
-      .refusal_o(refusal),
-      .stream_o(stream),
-      .start_o(start),
-      .good_o(good),
-      .reason_o(reason)
+      .target_o(target),
+      .verdict_o(verdict)
   );
 
   // What a write does, in the clock of its answer.
   logic set_q;
   logic snapshot_q;
+  logic control;
+
+  assign control = act && target[1];
 
   always_ff @(posedge clk_i) begin
-    set_q <= act && setting;
-    clear_fault_o <= act && fault ? data : '0;
-    snapshot_q <= act && control && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
-    abort_o <= act && control && data[card_map_pkg::BIT_CONTROL_ABORT];
+    set_q <= act && target[0];
+    snapshot_q <= control && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
+    abort_o <= control && data[card_map_pkg::BIT_CONTROL_ABORT];
+    clear_fault_o <= act && target[2] ? data : '0;
     if (rst_i) begin
       set_q <= 1'b0;
-      clear_fault_o <= '0;
       snapshot_q <= 1'b0;
       abort_o <= 1'b0;
+      clear_fault_o <= '0;
     end
   end
 
   assign setting_o = {set_q, access_i[41:34], data};
-  assign flush_o   = act && control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
+  assign flush_o   = control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
 
   logic        any_refused;
   logic        refused;
@@ -158,11 +141,11 @@ module register_file #(
       .rst_i,
       .port_i(asking),
       .address_i(access_i[43:32]),
-      .clear_i(act && refusal),
+      .clear_i(act && target[3]),
       .refuse_i(refuse),
       .reason_i(refuse_reason),
-      .checker_refuse_i,
-      .checker_reason_i,
+      .checker_refuse_i(checker_i[16]),
+      .checker_reason_i(checker_i[15:0]),
       .any_refused_o(any_refused),
       .refused_o(refused),
       .refusal_o(refused_what)
@@ -180,7 +163,7 @@ module register_file #(
       .any_refused_i(any_refused),
       .refused_i(refused),
       .snapshotting_i(snapshotting),
-      .incomplete_i(checker_partial_i),
+      .incomplete_i(checker_i[18]),
       .fault_i,
       .refusal_i(refused_what),
       .room_i,
@@ -218,7 +201,7 @@ module register_file #(
   logic loading_q;
 
   always_ff @(posedge clk_i) begin
-    loading_q <= (loading_q || start_o) && !start_done_i;
+    loading_q <= (loading_q || start_o) && !start_answer_i[9];
     if (rst_i) loading_q <= 1'b0;
   end
 

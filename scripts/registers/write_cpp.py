@@ -306,8 +306,10 @@ def _command_table(commands, register_map):
     for c in commands:
         fields = ",\n".join(_field(f, register_map) for f in c.fields)
         flags = (c.flags.maximum, register_map.engine_bit(c.flags.engine)) if c.flags else (0, 0)
-        yield (f'{{"{c.name}", Opcode::{camel(c.name)}, {_bool("geometry" in c.queues)}, {_bool("feed" in c.queues)}, '
-               f"{register_map.engine_bit(c.engine)}, MaskRule::{camel(c.mask)}, {flags[0]}, {flags[1]}, {c.count.minimum}, 0x{c.count.maximum:X}, {c.base_halfwords}, "
+        queues = f'{_bool("geometry" in c.queues)}, {_bool("feed" in c.queues)}'
+        yield (f'{{"{c.name}", Opcode::{camel(c.name)}, {queues}, '
+               f"{register_map.engine_bit(c.engine)}, MaskRule::{camel(c.mask)}, {flags[0]}, {flags[1]}, "
+               f"{c.count.minimum}, 0x{c.count.maximum:X}, {c.base_halfwords}, "
                f"{c.axis_halfwords}, {c.axes_in_base}, {len(c.fields)}, {{{{{fields}}}}}}},\n")
     yield "}};\n"
 

@@ -36,8 +36,8 @@ def package_text(register_map, commands, constants):
     parts += _areas(register_map.areas())
     parts += _reasons(register_map)
     parts += _command_constants(commands)
-    parts += _register_functions(register_map, commands.version)
-    parts += _command_functions(commands.commands, register_map)
+    parts += _register_functions(register_map.registers, commands.version)
+    parts += _command_functions(commands.commands)
     parts.append(TAIL)
     return "".join(parts)
 
@@ -157,8 +157,7 @@ def _pattern(address, wild):
     return f"10'b{bits[:2]}_{bits[2:6]}_{bits[6:]}"
 
 
-def _register_functions(register_map, version):
-    registers = register_map.registers
+def _register_functions(registers, version):
     patterns = {r.name: _word_patterns(r) for r in registers}
 
     def per_register(name, comment, width, value, default):
@@ -184,10 +183,6 @@ def _register_functions(register_map, version):
         "register_only_present_axes",
         ["1: the register is a slot of one axis and there only when the card has the axis."],
         1, lambda r: f"1'b{int(r.only_present_axes)}", "1'b0")
-    yield per_register(
-        "register_engine",
-        ["Bit of ENGINES without which the register is not there; 0 (lines, on every card) where it always is."],
-        4, lambda r: f"4'd{register_map.engine_bit(r.engine)}", "4'd0")
     yield per_built_register(
         "register_mask", ["Bits with meaning, by the engines that are built in; a write of any other bit is refused."],
         32, mask, _hex(32, 0))
@@ -243,16 +238,13 @@ def _slot_function(registers, patterns):
                      "input logic [9:0] word", "word", items, "3'd0")
 
 
-def _command_functions(commands, register_map):
+def _command_functions(commands):
     def per_command(name, comment, width, value, default):
         items = [(f"OP_{c.name}", _built(c.engine, value(c), default)) for c in commands]
         return _function(comment, name, width, f"input logic [7:0] op, {ENGINES_ARGUMENT}", "op", items, default)
 
-    yield ("\n  // Commands, by the engines that are built in: what is not built in is like an opcode without meaning.\n")
+    yield "\n  // Commands, by the engines that are built in: what is not built in is like an opcode without meaning.\n"
     yield per_command("command_known", ["1: the opcode has a meaning."], 1, lambda c: "1'b1", "1'b0")
-    yield _function(["Bit of ENGINES without which the opcode is unknown; 0 where it always is known."], "command_engine", 4,
-                    "input logic [7:0] op", "op",
-                    [(f"OP_{c.name}", f"4'd{register_map.engine_bit(c.engine)}") for c in commands], "4'd0")
     yield per_command("command_to_geometry", ["1: the command goes to the geometry queue."], 1,
                       lambda c: f"1'b{int('geometry' in c.queues)}", "1'b0")
     yield per_command("command_to_feed", ["1: the command goes to the feed queue."], 1,
@@ -268,10 +260,11 @@ def _command_functions(commands, register_map):
                       ["Halfwords on the wire, without what is repeated for each axis and without padding:",
                        "header (2), count (3) and the fixed part of the payload."],
                       6, lambda c: f"6'd{c.base_halfwords}", "6'd0")
-    yield per_command("command_halfwords_per_axis", ["Halfwords of the payload for each axis of the mask, but command_axes_in_base() of them."], 6,
-                      lambda c: f"6'd{c.axis_halfwords}", "6'd0")
-    yield per_command("command_axes_in_base", ["Axes of the mask whose fields stand in the fixed part of the payload."], 2,
-                      lambda c: f"2'd{c.axes_in_base}", "2'd0")
+    yield per_command("command_halfwords_per_axis", ["Halfwords of the payload for each axis of the mask, but command_axes_in_base() of them."],
+                      6, lambda c: f"6'd{c.axis_halfwords}", "6'd0")
+    yield per_command("command_axes_in_base",
+                      ["Axes of the mask whose fields stand in the fixed part of the payload."],
+                      2, lambda c: f"2'd{c.axes_in_base}", "2'd0")
     yield _payload_function(
         commands, "payload_bits", 16,
         ["Bits of a payload halfword that may be set, by the engines that are built in (limits and signs: see",

@@ -51,6 +51,50 @@ TEST(Axi4LitePort, AWriteNeedsAddressAndData) {
   EXPECT_EQ(port.outputs().bresp, Axi4LitePort::kSlaveError) << "holds";
 }
 
+// An answer that the master does not take yet keeps the next access of its kind out, and that kind alone.
+TEST(Axi4LitePort, AnswersThatWaitHoldTheirKindBack) {
+  for (const bool write : {false, true}) {
+    Axi4LitePort port;
+    Axi4LitePort::Inputs in;
+    in.awvalid = in.wvalid = write;
+    in.arvalid = !write;
+    port.clock(in);
+    in.ack = true;
+    port.clock(in);
+    in.ack = false;
+    for (int i = 0; i < 5; ++i) {
+      port.clock(in);
+      EXPECT_FALSE(port.outputs().request);
+      EXPECT_TRUE(write ? port.outputs().bvalid : port.outputs().rvalid);
+    }
+    in.awvalid = in.wvalid = in.arvalid = true;
+    port.clock(in);
+    EXPECT_TRUE(port.outputs().request);
+    EXPECT_EQ(port.outputs().write, !write);
+  }
+}
+
+// Both come in one clock, long after the last access: the kind that was not served last goes first.
+TEST(Axi4LitePort, OfTwoInOneClockTheOtherKindGoesFirst) {
+  for (const bool write_before : {false, true}) {
+    Axi4LitePort port;
+    Axi4LitePort::Inputs in;
+    in.bready = in.rready = true;
+    in.awvalid = in.wvalid = write_before;
+    in.arvalid = !write_before;
+    port.clock(in);
+    in.awvalid = in.wvalid = in.arvalid = false;
+    in.ack = true;
+    port.clock(in);
+    in.ack = false;
+    for (int i = 0; i < 5; ++i) port.clock(in);
+    in.awvalid = in.wvalid = in.arvalid = true;
+    port.clock(in);
+    EXPECT_TRUE(port.outputs().request);
+    EXPECT_EQ(port.outputs().write, !write_before);
+  }
+}
+
 // Reads and writes that wait together take turns, one access at a time; every one is answered once, with its own data.
 TEST(Axi4LitePort, ReadsAndWritesTakeTurns) {
   std::mt19937_64 random(3);

@@ -1,6 +1,7 @@
 // A host at the inner register port of the golden core, and stream commands made from the layout table alone.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <string_view>
@@ -64,10 +65,30 @@ class StepRecorder : public model::CardSteps {
 
 class CoreBench {
  public:
+  // All that shows after a clock.
+  struct Shown {
+    model::CoreModel::Outputs outputs;
+    model::CoreModel::Answer answer;
+    std::array<std::uint32_t, model::CoreModel::kMaxAxes> position;
+
+    bool operator==(const Shown& o) const {
+      return outputs == o.outputs && answer.ack == o.answer.ack && answer.error == o.answer.error &&
+             answer.data == o.answer.data && position == o.position;
+    }
+  };
+
   explicit CoreBench(const model::CardConfig& config = {}) : core(config) { core.set_steps(&steps); }
 
+  // Every clock goes through here.
+  void clock(const model::CoreModel::Inputs& in) {
+    core.clock(in);
+    if (!logs) return;
+    Shown shown{core.outputs(), core.answer(), {}};
+    for (unsigned n = 0; n < core.config().axes; ++n) shown.position[n] = core.position(n);
+    log.push_back(shown);
+  }
   void idle(std::uint64_t clocks) {
-    for (; clocks != 0; --clocks) core.clock({});
+    for (; clocks != 0; --clocks) clock({});
   }
   // True when the card took it.
   bool write(std::uint32_t address, std::uint32_t data) { return access(address, true, data); }
@@ -81,8 +102,8 @@ class CoreBench {
     in.write = write;
     in.address = address;
     in.data = data;
-    core.clock(in);
-    for (int clocks = 0; !core.answer().ack && clocks < 2000; ++clocks) core.clock({});
+    clock(in);
+    for (int clocks = 0; !core.answer().ack && clocks < 2000; ++clocks) clock({});
     return core.answer().ack && !core.answer().error;
   }
   bool send(const std::vector<std::uint32_t>& words) {
@@ -122,13 +143,15 @@ class CoreBench {
   // Until not busy; false when that does not come.
   bool finish(std::uint64_t limit) {
     idle(8);
-    for (; limit != 0 && (core.outputs().status & 1) != 0; --limit) core.clock({});
+    for (; limit != 0 && (core.outputs().status & 1) != 0; --limit) clock({});
     return (core.outputs().status & 1) == 0;
   }
 
   model::CoreModel core;
   StepRecorder steps;
   std::uint8_t number = 0;
+  bool logs = false;
+  std::vector<Shown> log;
 };
 
 }  // namespace trammel::testing

@@ -31,7 +31,13 @@ struct PathStep {
 
 class Host : public model::CardSteps {
  public:
-  Host() : card(CardModel::Config{}) { card.set_steps(this); }
+  explicit Host(unsigned axes = 4) : card(config_of(axes)) { card.set_steps(this); }
+
+  static CardModel::Config config_of(unsigned axes) {
+    CardModel::Config config;
+    config.axes = axes;
+    return config;
+  }
 
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override {
     pins.push_back({cycle, axis, direction});
@@ -419,7 +425,7 @@ TEST(ReferencePage, WhatWrongNumbersOfAnArcDo) {
 // have their steps 4 clocks apart.
 TEST(ReferencePage, ABarrierOfNClocksStopsTheTicksForOverheadAndMaxOneN) {
   const auto gap = [](const driver::Command& barrier, unsigned axes) {
-    Host host;
+    Host host(8);
     host.write(reg::kHold, 1);
     host.clocks(20);
     driver::Line next = line(4, kOnePulse / 4);
@@ -434,8 +440,8 @@ TEST(ReferencePage, ABarrierOfNClocksStopsTheTicksForOverheadAndMaxOneN) {
     EXPECT_EQ(host.pins.size(), 2U);
     return host.pins[1].tick - host.pins[0].tick - 4;
   };
-  for (unsigned axes = 1; axes <= 4; ++axes) {
-    const std::uint64_t overhead = std::max(30U, 22 + 3 * axes);
+  for (unsigned axes = 1; axes <= 8; ++axes) {
+    const std::uint64_t overhead = std::max(38U, 22 + 3 * axes);
     EXPECT_EQ(gap(driver::Dwell{0}, axes), overhead + 1) << axes;
     EXPECT_EQ(gap(driver::Dwell{1}, axes), overhead + 1);
     EXPECT_EQ(gap(driver::Dwell{2}, axes), overhead + 2);

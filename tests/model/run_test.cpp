@@ -21,7 +21,13 @@ std::uint64_t seed() {
 
 class Pair {
  public:
-  explicit Pair(const model::CardConfig& config, std::uint64_t seed) : clocked(config), jumping(config), random(seed) {}
+  // What is compared: a core that is clocked with one that jumps, or one that never rests with one that does.
+  enum class Of { ClockAndRun, AllAndResting };
+
+  Pair(Of of, const model::CardConfig& config, std::uint64_t seed)
+      : of_(of), clocked(reference(of, config)), jumping(config), random(seed) {
+    clocked.logs = jumping.logs = of == Of::AllAndResting;
+  }
 
   std::uint64_t any(std::uint64_t low, std::uint64_t high) { return low + random() % (high - low + 1); }
   // Any order of size up to 2^bits.
@@ -40,7 +46,10 @@ class Pair {
   }
   void wait(std::uint64_t clocks) {
     clocked.idle(clocks);
-    jumping.core.run(clocks);
+    if (of_ == Of::ClockAndRun)
+      jumping.core.run(clocks);
+    else
+      jumping.idle(clocks);
     waits += 1;
   }
   void compare() {
@@ -50,6 +59,8 @@ class Pair {
     ASSERT_TRUE(a == b) << "cycle " << clocked.core.cycles() << " rate " << a.rate << " " << b.rate << " status "
                         << a.status << " " << b.status << " tick " << a.tick << b.tick << " path " << a.path_step
                         << b.path_step << " dir " << a.path_dir << b.path_dir << " pins " << a.step << b.step;
+    for (std::size_t i = 0; i < clocked.log.size(); ++i)
+      ASSERT_TRUE(clocked.log[i] == jumping.log[i]) << clocked.log.size() - i - 1 << " clocks before";
     for (unsigned n = 0; n < clocked.core.config().axes; ++n)
       ASSERT_EQ(clocked.core.position(n), jumping.core.position(n)) << "axis " << n;
     ASSERT_TRUE(clocked.steps.pins == jumping.steps.pins) << "cycle " << clocked.core.cycles();
@@ -59,6 +70,8 @@ class Pair {
       steps += bench->steps.pins.size();
       bench->steps.pins.clear();
       bench->steps.path.clear();
+      one_by_one += bench->log.size();
+      bench->log.clear();
     }
   }
   // Waits of all lengths, that the ends of jumps fall everywhere.
@@ -71,11 +84,18 @@ class Pair {
     }
   }
 
+  static model::CardConfig reference(Of of, model::CardConfig config) {
+    config.clock_all = of == Of::AllAndResting;
+    return config;
+  }
+
+  const Of of_;
   CoreBench clocked;
   CoreBench jumping;
   std::mt19937_64 random;
   std::uint64_t waits = 0;
   std::uint64_t steps = 0;
+  std::uint64_t one_by_one = 0;  // clocks compared, on both
 };
 
 // Settings, paths, pieces and barriers of a program; returns its ticks.
@@ -113,6 +133,18 @@ class Program {
       ticks -= n;
     }
     if (p_.one_in(2)) barrier();
+  }
+
+  // Refused where anything runs still.
+  void direct_move() {
+    for (unsigned n = 0; n < axes_; ++n) {
+      p_.write(reg::frequency_lo(n), static_cast<std::uint32_t>(p_.random()));
+      p_.write(reg::frequency_hi(n), static_cast<std::uint32_t>(p_.any(0, 40)));
+      p_.write(reg::count(n), static_cast<std::uint32_t>(p_.any(0, 40)));
+      p_.write(reg::direction(n), static_cast<std::uint32_t>(p_.any(0, 1)));
+    }
+    p_.write(reg::kLengthLo, static_cast<std::uint32_t>(p_.any(1, 2000)));
+    p_.write(reg::kStart, static_cast<std::uint32_t>(p_.any(1, (1U << axes_) - 1)));
   }
 
  private:
@@ -161,7 +193,7 @@ class Program {
 
 void disturb(Pair& pair) {
   const auto clocks = [&pair] { return pair.any(1, 3000); };
-  switch (pair.any(0, 5)) {
+  switch (pair.any(0, 6)) {
     case 0:
       pair.write(reg::kSlew, static_cast<std::uint32_t>(pair.any(0x1'0000, 0xFFF'FFFF)));
       pair.write(reg::kHold, 1);
@@ -177,38 +209,70 @@ void disturb(Pair& pair) {
     case 3:
       pair.write(reg::kControl, card_map::field::kControlSnapshot);
       break;
+    case 4: {
+      // A reset of a clock or more.
+      model::CoreModel::Inputs in;
+      in.rst = true;
+      for (std::uint64_t left = pair.any(1, 3); left != 0; --left) {
+        pair.clocked.clock(in);
+        pair.jumping.clock(in);
+      }
+      break;
+    }
     default:
       break;
   }
 }
 
-TEST(Run, EqualsClockForRandomPrograms) {
-  const bool long_run = std::getenv("TRAMMEL_LONG") != nullptr;
-  const std::uint64_t programs = long_run ? 4000 : 120;
+// Random programs; what was compared.
+struct Compared {
   std::uint64_t waits = 0;
   std::uint64_t steps = 0;
-  for (std::uint64_t i = 0; i < programs; ++i) {
+  std::uint64_t clocks = 0;
+};
+
+Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t longest) {
+  Compared compared;
+  for (std::uint64_t i = 0; i < programs && !::testing::Test::HasFailure(); ++i) {
     SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
     model::CardConfig config;
     std::mt19937_64 random(seed() * 1'000'003 + i);
     config.axes = 1 + static_cast<unsigned>(random() % 8);
-    Pair pair(config, random());
+    config.idle_level = static_cast<std::uint32_t>(random() & ((1U << 2 * config.axes) - 1));
+    Pair pair(of, config, random());
     Program program(pair);
     program.settings();
     const double paces[] = {1.0001, 1.5, 4, 20, 100, 700};
     const double pace = paces[pair.any(0, 5)];
     for (std::uint64_t part = pair.any(1, 3); part != 0; --part) program.paths_and_pieces(pace);
-    for (int part = 0; part < 6 && !HasFatalFailure(); ++part) {
+    for (int part = 0; part < 6 && !::testing::Test::HasFatalFailure(); ++part) {
       pair.wait_in_pieces(pair.any(1, 4000), 4000);
       if (pair.one_in(2)) disturb(pair);
     }
-    pair.wait_in_pieces(200'000, 30'000);
-    ASSERT_FALSE(HasFatalFailure());
-    waits += pair.waits;
-    steps += pair.steps;
+    pair.wait_in_pieces(longest, 30'000);
+    if (pair.one_in(2)) program.direct_move();
+    pair.wait_in_pieces(longest / 10, 3000);
+    compared.waits += pair.waits;
+    compared.steps += pair.steps;
+    compared.clocks += pair.one_by_one / 2;
   }
-  EXPECT_GT(waits, 20 * programs);
-  EXPECT_GT(steps, 20 * programs);
+  return compared;
+}
+
+bool long_run() { return std::getenv("TRAMMEL_LONG") != nullptr; }
+
+TEST(Run, EqualsClock) {
+  const std::uint64_t programs = long_run() ? 4000 : 80;
+  const Compared compared = compare_programs(Pair::Of::ClockAndRun, programs, 200'000);
+  EXPECT_GT(compared.waits, 20 * programs);
+  EXPECT_GT(compared.steps, 20 * programs);
+}
+
+TEST(RestingBlocks, ChangeNothing) {
+  const std::uint64_t programs = long_run() ? 1500 : 40;
+  const Compared compared = compare_programs(Pair::Of::AllAndResting, programs, 20'000);
+  EXPECT_GT(compared.clocks, 22'000 * programs);
+  EXPECT_GT(compared.steps, 20 * programs);
 }
 
 }  // namespace

@@ -596,30 +596,6 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Bit of ENGINES without which the register is not there; 0 (lines, on every card) where it always is.
-  function automatic logic [3:0] register_engine(input logic [9:0] word);
-    casez (word)
-      10'b00_0001_0111, 10'b00_0001_1000, 10'b00_0001_1010, 10'b00_0100_0000, 10'b00_0100_0001,
-      10'b00_0100_0010, 10'b00_0100_0011, 10'b00_0100_0100, 10'b00_0100_0101, 10'b00_0100_0110,
-      10'b00_0100_0111, 10'b00_0100_1???, 10'b00_0101_0000, 10'b00_0101_0001, 10'b00_0101_0010,
-      10'b00_0101_0011, 10'b00_0101_0100, 10'b00_0101_0101, 10'b00_0101_0110, 10'b00_0101_0111,
-      10'b00_0101_1???, 10'b00_0110_1011, 10'b00_0110_1100:
-        register_engine = 4'd7;
-      10'b00_0001_1001:
-        register_engine = 4'd6;
-      10'b00_0001_1011, 10'b00_0110_1101:
-        register_engine = 4'd8;
-      10'b00_0110_0011, 10'b00_0110_0100:
-        register_engine = 4'd9;
-      10'b00_0110_1001, 10'b00_0110_1010:
-        register_engine = 4'd10;
-      10'b00_110?_??00, 10'b00_110?_??01, 10'b00_110?_??10, 10'b00_110?_??11, 10'b00_1110_0000,
-      10'b00_1110_0001, 10'b00_1110_0010:
-        register_engine = 4'd5;
-      default: register_engine = 4'd0;
-    endcase
-  endfunction
-
   // Bits with meaning, by the engines that are built in; a write of any other bit is refused.
   function automatic logic [31:0] register_mask(input logic [9:0] word, input logic [31:0] engines);
     casez (word)
@@ -725,19 +701,6 @@ package card_map_pkg;
       OP_OUTPUT, OP_MARK, OP_WAIT_INPUT, OP_PROBE, OP_PROBE_END:
         command_known = engines[ENGINE_PATH_COMMANDS] ? 1'b1 : 1'b0;
       default: command_known = 1'b0;
-    endcase
-  endfunction
-
-  // Bit of ENGINES without which the opcode is unknown; 0 where it always is known.
-  function automatic logic [3:0] command_engine(input logic [7:0] op);
-    casez (op)
-      OP_ARC:
-        command_engine = 4'd1;
-      OP_ARC_CHORD:
-        command_engine = 4'd3;
-      OP_OUTPUT, OP_MARK, OP_WAIT_INPUT, OP_PROBE, OP_PROBE_END:
-        command_engine = 4'd7;
-      default: command_engine = 4'd0;
     endcase
   endfunction
 

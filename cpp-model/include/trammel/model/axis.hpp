@@ -34,8 +34,9 @@ class Axis {
     StepShaper::Outputs shaper;
   };
 
-  // `number`: 0 .. 7; `idle_level`: strap, {second pin, first pin}.
-  explicit Axis(unsigned number, unsigned idle_level = 0) : number_(number), shaper_(idle_level) {
+  // `number`: 0 .. 7; `idle_level`: strap, {second pin, first pin}; `clock_all`: the shaper never rests.
+  explicit Axis(unsigned number, unsigned idle_level = 0, bool clock_all = false)
+      : number_(number), clock_all_(clock_all), shaper_(idle_level) {
     times_.mode = static_cast<std::uint8_t>((idle_level & 3) << 2);
   }
 
@@ -44,7 +45,10 @@ class Axis {
     times_.step = path_step_;
     times_.dir = path_dir_;
     times_.hold_tick = in.hold_tick;
-    shaper_.clock(times_);
+    if (clock_all_)
+      shaper_.clock_always(times_);
+    else
+      shaper_.clock(times_);
     const PulseGenerator::Outputs& made = generator_.outputs();
     path_step_ = made.step || in.engine_step;
     if (path_step_) path_dir_ = in.engine_step ? in.engine_dir : made.dir;
@@ -96,6 +100,7 @@ class Axis {
   }
 
   unsigned number_;
+  bool clock_all_;
   PulseGenerator generator_;
   StepShaper shaper_;
   StepShaper::Inputs times_;

@@ -26,11 +26,12 @@ class CommandFetch {
     std::uint16_t halfword = 0;  // what was asked for two clocks ago
   };
 
-  explicit CommandFetch(Queue queue) : queue_(queue) {}
+  // `clock_all`: it never rests.
+  explicit CommandFetch(Queue queue, bool clock_all = false) : queue_(queue), clock_all_(clock_all) {}
 
   // One rising edge.
   void clock(const Inputs& in) {
-    if (idle() && asked_ < 0 && in.empty && arriving_[0] < 0 && arriving_[1] < 0 && !bus_.valid) return;
+    if (!clock_all_ && idle() && asked_ < 0 && in.empty && arriving_[0] < 0 && arriving_[1] < 0 && !bus_.valid) return;
     work(in);
   }
 
@@ -64,12 +65,14 @@ class CommandFetch {
   unsigned target_of(int index) const;
 
   Queue queue_;
+  bool clock_all_;
   State state_ = State::Idle;
   int asked_ = -1;  // index of the halfword asked for, -1: none
   int arriving_[2] = {-1, -1};
   int length_ = 0;      // halfwords of the command
   int pause_at_ = 0;    // the halfword before which it may have to wait
   bool split_ = false;  // the piece is decoded without acceleration and jerk
+  bool header_here_ = false;  // what arrives is of this command, not the rest of the one before
   card_map::Opcode opcode_ = card_map::Opcode::End;
   std::uint8_t mask_ = 0;
   std::uint8_t axes_[8] = {};  // of the mask, lowest first

@@ -28,6 +28,8 @@ struct CardConfig {
   std::uint32_t build_id = 0;
   bool build_dirty = false;
   std::uint32_t board_id = 0;
+  // Model alone: clocks every block in every clock, the reference for the one that lets idle blocks rest.
+  bool clock_all = false;
 };
 
 class CoreModel {
@@ -94,7 +96,9 @@ class CoreModel {
   void reset();
   MotionCore::Inputs motion_inputs() const;
   void clock_commands(bool cut);
+  void clock_registers(const Inputs& in);
   void gather();
+  std::uint64_t watched() const;
   void show();
   void record(bool cut);
 
@@ -107,7 +111,9 @@ class CoreModel {
   HalfwordQueue geometry_queue_;
   HalfwordQueue feed_queue_;
   MotionCore motion_;
-  RegisterFile::Inputs register_in_;  // but for the port's: what stands after the last edge
+  RegisterFile::Inputs register_in_;  // but for the port's: what stood as it was last awake
+  std::uint64_t watched_ = 0;
+  int awake_ = 0;  // clocks for which the register file is clocked whatever it says
 
   StepRecord record_;
   Answer answer_;

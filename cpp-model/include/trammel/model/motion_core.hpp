@@ -50,8 +50,8 @@ class MotionCore {
     bool busy = false;
   };
 
-  // `idle_level`: {second pins, first pins}, `axes` bits each.
-  MotionCore(unsigned axes, std::uint32_t idle_level);
+  // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests.
+  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false);
 
   // One rising edge.
   void clock(const Inputs& in);
@@ -81,6 +81,8 @@ class MotionCore {
   bool may_jump(const Inputs& in) const;
   Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
 
+  bool clock_all_;
+  std::uint32_t restless_ = ~0U;  // axes that the next clock moves whatever it brings
   StopControl stop_;
   DirectLoader loader_;
   Sequencer sequencer_;

@@ -40,15 +40,19 @@ class PathEngines {
     bool elsewhere = false;  // with done: not on the commanded end point
   };
 
+  // `clock_all`: neither part ever rests.
+  explicit PathEngines(bool clock_all = false) : clock_all_(clock_all) {}
+
   // One rising edge.
   void clock(const Inputs& in) {
     const DeviationAccumulator::Outputs engine = accumulator_.outputs();
     judge(in, engine);
-    route(in.load, engine);
-    accumulator_.clock({false, in.load, in.start, out_.path_tick, in.cut});
+    const bool commanded = in.cut || in.load.valid || clock_all_;
+    if (commanded || out_.step != 0 || !accumulator_.quiet()) route(in.load, engine);
+    if (commanded || in.start || out_.path_tick || !accumulator_.quiet())
+      accumulator_.clock({false, in.load, in.start, out_.path_tick, in.cut});
     give(in.cut, engine.ready);
-    prescaler_.clock({in.cut, in.tick, in.swap, in.accumulator, false, false, in.load.to(load_target::kPrescale), false,
-                      in.load.word});
+    if (commanded || in.tick || in.swap || !prescaler_.quiet()) clock_prescaler(in);
     delay(in);
   }
 
@@ -123,6 +127,11 @@ class PathEngines {
     out_.ready = waiting_ < 2;
   }
 
+  void clock_prescaler(const Inputs& in) {
+    prescaler_.clock({in.cut, in.tick, in.swap, in.accumulator, false, false, in.load.to(load_target::kPrescale), false,
+                      in.load.word});
+  }
+
   void delay(const Inputs& in) {
     ticks_ = in.cut ? 0 : ticks_ >> 1 | (in.tick ? 1U << (kDelay - 1) : 0);
     swaps_ = in.cut ? 0 : swaps_ >> 1 | (in.swap ? 1U << (kDelay - 1) : 0);
@@ -130,6 +139,7 @@ class PathEngines {
     out_.swap = (swaps_ & 1) != 0;
   }
 
+  bool clock_all_;
   DeviationAccumulator accumulator_;
   PulseGenerator prescaler_;
   std::uint32_t ticks_ = 0;  // on their way, bit k leaves in k clocks; bit 0 is visible

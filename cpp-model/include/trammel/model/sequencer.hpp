@@ -64,9 +64,13 @@ class Sequencer {
     bool direct = false;   // a direct move has begun
   };
 
-  Sequencer() : geometry_(CommandFetch::Queue::Geometry), feed_(CommandFetch::Queue::Feed) {}
+  // `clock_all`: it never rests.
+  explicit Sequencer(bool clock_all = false)
+      : clock_all_(clock_all),
+        geometry_(CommandFetch::Queue::Geometry, clock_all),
+        feed_(CommandFetch::Queue::Feed, clock_all) {}
 
-  // One rising edge.
+  // One rising edge. Between the ticks that end something only counters move.
   void clock(const Inputs& in);
 
   const Outputs& outputs() const { return out_; }
@@ -122,6 +126,9 @@ class Sequencer {
     bool piece_runs = false;
   };
 
+  void clock_all(const Inputs& in);
+  bool calm(const Inputs& in) const;
+  bool takes(const Inputs& in) const;
   Decision decide(const Inputs& in) const;
   bool judged(const Inputs& in) const;
   bool mismatches(const Inputs& in) const;
@@ -129,11 +136,14 @@ class Sequencer {
   void clock_path(const Inputs& in, const Decision& d);
   void clock_piece(const Decision& d);
   void clock_barrier(const Inputs& in, const Decision& d);
-  void clock_ticks(const Inputs& in, const Decision& d);
+  void clock_ticks(const Inputs& in, bool take);
   void clock_fetches(const Inputs& in, const Decision& d);
   void count_begun(const Inputs& in, const Decision& d);
   void cut();
 
+  bool clock_all_;
+  bool calm_ = false;  // as of the last clock, with inputs as these flags say
+  unsigned calm_inputs_ = 0;
   std::uint64_t now_ = 0;
   CommandFetch geometry_;
   CommandFetch feed_;

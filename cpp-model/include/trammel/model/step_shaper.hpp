@@ -42,7 +42,37 @@ class StepShaper {
 
   // One rising edge.
   void clock(const Inputs& in) {
-    if (!quiet_ || in.step || in.mode != mode_) clock_busy(in);
+    if (!quiet_ || in.step || in.mode != mode_) clock_always(in);
+  }
+
+  // The same without a look at whether anything can change.
+  void clock_always(const Inputs& in) {
+    const bool expired = left_ == 0;
+    show(in);
+    if (lead_ != 0) --lead_;
+    const bool go = seen_same_ && (phase_ == Phase::kRest || (phase_ == Phase::kSpace && expired));
+    const bool head_same = waiting_ != 0 && head_back() == back_;
+    const bool head_other = waiting_ != 0 && !head_same;
+    bool served = false;
+    if (go || (phase_ == Phase::kSetup && expired)) {
+      enter(Phase::kHigh, in.step_length);
+      lead_ = 3;
+      served = true;
+    } else if (phase_ == Phase::kRest && seen_other_ && expired) {
+      enter(Phase::kSetup, in.dir_setup);
+      back_ = !back_;
+    } else if (phase_ == Phase::kHigh && expired) {
+      enter(Phase::kSpace, in.step_space);
+    } else if (phase_ == Phase::kSpace && expired) {
+      enter(Phase::kRest, in.dir_hold);
+    } else if (left_ != 0) {
+      --left_;
+    }
+    seen_same_ = head_same;
+    seen_other_ = head_other;
+    judge(in, served);
+    queue(in, served);
+    quiet_ = !out_.busy;
   }
 
   const Outputs& outputs() const { return out_; }
@@ -80,7 +110,7 @@ class StepShaper {
         advance(some);
         n -= some;
       } else {
-        clock_busy(times);
+        clock_always(times);
         --n;
       }
     }
@@ -88,35 +118,6 @@ class StepShaper {
 
  private:
   enum class Phase : std::uint8_t { kRest, kSetup, kHigh, kSpace };
-
-  void clock_busy(const Inputs& in) {
-    const bool expired = left_ == 0;
-    show(in);
-    if (lead_ != 0) --lead_;
-    const bool go = seen_same_ && (phase_ == Phase::kRest || (phase_ == Phase::kSpace && expired));
-    const bool head_same = waiting_ != 0 && head_back() == back_;
-    const bool head_other = waiting_ != 0 && !head_same;
-    bool served = false;
-    if (go || (phase_ == Phase::kSetup && expired)) {
-      enter(Phase::kHigh, in.step_length);
-      lead_ = 3;
-      served = true;
-    } else if (phase_ == Phase::kRest && seen_other_ && expired) {
-      enter(Phase::kSetup, in.dir_setup);
-      back_ = !back_;
-    } else if (phase_ == Phase::kHigh && expired) {
-      enter(Phase::kSpace, in.step_space);
-    } else if (phase_ == Phase::kSpace && expired) {
-      enter(Phase::kRest, in.dir_hold);
-    } else if (left_ != 0) {
-      --left_;
-    }
-    seen_same_ = head_same;
-    seen_other_ = head_other;
-    judge(in, served);
-    queue(in, served);
-    quiet_ = !out_.busy;
-  }
 
   // A phase of t takes t + 3 clocks.
   void enter(Phase phase, std::uint16_t time) {
