@@ -65,7 +65,7 @@ endfunction()
 # trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [ARGS ...] [DEFINITIONS ...] [INCLUDES ...] [INSIDE inside.cpp])
 # Builds lockstep_<name>: the test runs Vdut (the block) beside its golden model.
 # The test is compiled once (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded
-# bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named behind INSIDE and is
+# bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named after INSIDE and is
 # compiled for each copy. DEFINITIONS and INCLUDES are the test's.
 function(trammel_add_lockstep name)
   cmake_parse_arguments(A "" "TOP;TEST;INSIDE" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})

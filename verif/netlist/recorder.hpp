@@ -13,7 +13,7 @@
 namespace trammel::netlist {
 
 // The file: a first line that names the ports in order, `name<width` for an input and `name>width` for an output; then
-// a line a clock with their values in hexadecimal, the outputs as they are behind the clock's edge.
+// a line a clock with their values in hexadecimal, the outputs as they are after the clock's edge.
 class Recorder {
  public:
   static constexpr unsigned kAxes = 4;
