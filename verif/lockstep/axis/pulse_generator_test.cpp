@@ -80,7 +80,10 @@ class Random {
     in.tick = tick();
     in.swap = below(2) == 0;
     in.active = true;
-    bench_.clock(in);
+    if (below(4) == 0)
+      bench_.reset(in);
+    else
+      bench_.clock(in);
     run(3);
   }
 

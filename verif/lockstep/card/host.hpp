@@ -53,4 +53,25 @@ class Host {
   std::uint8_t number_ = 0;
 };
 
+// A few random paths, the pieces for them and an END, played to the end; a fault is cleared. `random(n)`: 0 .. n - 1.
+template <class Random>
+void random_section(Host& host, Random&& random, unsigned axes) {
+  const double pace = 1.5 + static_cast<double>(random(40));
+  std::uint64_t total = 0;
+  std::vector<driver::Command> paths;
+  for (std::uint64_t count = 1 + random(6); count != 0; --count) {
+    paths.push_back(random_path(random, axes, pace, total));
+  }
+  for (const driver::Command& path : paths) host.send(path);
+  while (total != 0) {
+    const std::uint64_t ticks = 1 + random(total);
+    host.send(random_piece(random, ticks, pace));
+    total -= ticks;
+  }
+  host.send(driver::End{});
+  if (host.wait_idle(1'000'000)) return;
+  host.card.write(reg::kFault, 0xFFFF);
+  host.abort();
+}
+
 }  // namespace trammel::test
