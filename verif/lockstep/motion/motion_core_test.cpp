@@ -64,7 +64,8 @@ class Bench {
       check_.event("clear fault", in_.clear_fault);
     }
     if (dice_.chance(200)) random_setting();
-    if (!starting_ && dice_.chance(start_every_)) random_start();
+    // While a START is answered no word is written: what it finds queued is all there is.
+    if (!starting_ && geometry_.done() && feed_.done() && dice_.chance(start_every_)) random_start();
     if (dice_.chance(50 * abort_every_))
       reset();
     else

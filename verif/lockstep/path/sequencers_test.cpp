@@ -47,7 +47,9 @@ class Bench {
     // Where ticks may not be taken neither commands nor a START get this far.
     const bool open = stand_for_ == 0;
     if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
-    if (open && at_rest() && dice_.chance(100)) direct_step_ = 1;
+    // The last command's commit shows in the queue two clocks later and in `idle` after two more.
+    rest_for_ = at_rest() ? rest_for_ + 1 : 0;
+    if (open && rest_for_ > 8 && dice_.chance(100)) direct_step_ = 1;
     direct();
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
@@ -226,6 +228,7 @@ class Bench {
   unsigned payload_taken_for_ = 0;
   unsigned stand_for_ = 0;    // clocks without go
   unsigned direct_step_ = 0;  // of a direct move; 0: none
+  unsigned rest_for_ = 0;     // clocks
   std::uint64_t length_ = 0;
   std::uint64_t ends_ = 0;
   std::uint64_t more_ = 0;
