@@ -227,8 +227,9 @@ class Bench {
     rtl_->fault_i = in_.fault;
     rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
     rtl_->begun_i = std::uint64_t{in_.geometry_begun} << 32 | in_.feed_begun;
-    rtl_->checker_i = static_cast<IData>(in_.incomplete << 18 | in_.checker_ready << 17 | in_.checker_refuse << 16 |
-                                         in_.checker_number << 8 | in_.checker_reason);
+    rtl_->checker_i = std::uint32_t{in_.incomplete} << 18 | std::uint32_t{in_.checker_ready} << 17 |
+                      std::uint32_t{in_.checker_refuse} << 16 | std::uint32_t{in_.checker_number} << 8 |
+                      in_.checker_reason;
     rtl_->start_answer_i = static_cast<SData>(in_.start_done << 9 | in_.start_error << 8 | in_.start_reason);
     rtl_->loader_address_i = in_.loader_address;
     rtl_->stop_i = in_.stop;
