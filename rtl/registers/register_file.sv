@@ -56,7 +56,7 @@ module register_file #(
   logic        refuse;
   logic [ 7:0] refuse_reason;
   logic        live;
-  logic [ 5:0] target;  // {start, stream, refusal, fault, control, setting}
+  logic [ 6:0] target;  // {flush, start, stream, refusal, fault, control, setting}
   logic [ 8:0] verdict;  // {good, reason}
   logic        writing;
   logic        snapshotting;
@@ -127,7 +127,7 @@ module register_file #(
   end
 
   assign setting_o = {set_q, access_i[41:34], data};
-  assign flush_o   = control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
+  assign flush_o   = act && target[6];
 
   logic        any_refused;
   logic        refused;
