@@ -91,7 +91,10 @@ module register_file #(
   // The stream belongs to a port from a command's first word to its last.
   logic [1:0] owner_q;
 
-  always_ff @(posedge clk_i) if (stream_write_o) owner_q <= asking;
+  always_ff @(posedge clk_i) begin
+    if (stream_write_o) owner_q <= asking;
+    if (rst_i) owner_q <= 2'd0;
+  end
 
   register_decode #(
       .Axes(Axes),
