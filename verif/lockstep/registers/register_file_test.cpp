@@ -175,7 +175,8 @@ class Bench {
 
   void random_loader() {
     if (model_.outputs().start) start_wait_ = 1 + draw() % 40;
-    in_.loader_address = static_cast<std::uint8_t>(draw());
+    // The registers of direct mode, which nobody else writes.
+    in_.loader_address = static_cast<std::uint8_t>(0xC0 | draw());
     in_.start_done = start_wait_ == 1;
     in_.start_error = chance(2);
     in_.start_reason = chance(2) ? 8 : chance(2) ? 12 : 15;
