@@ -62,6 +62,7 @@ class Bench {
 
   // One clock of reset, whatever comes in it; what was asked for is forgotten.
   void reset() {
+    in_.incomplete = false;
     rtl_->rst_i = 1;
     drive();
     rtl_.clock();
@@ -71,7 +72,7 @@ class Bench {
     outstanding_ = false;
     checker_wait_ = 0;
     start_wait_ = 0;
-    flushed_ = streamed_ = in_.incomplete = false;
+    flushed_ = streamed_ = false;
     chain_.fill({});
     in_.request = in_.stop = in_.start_done = in_.checker_refuse = false;
     in_.checker_ready = true;
@@ -111,7 +112,7 @@ class Bench {
     random_access();
     // Nothing moves before the registers are filled, so nothing stops.
     const bool snapshot_asked = outstanding_ && in_.write && in_.address == reg::kControl;
-    in_.stop = model_.time() > kFilled && chance(snapshot_asked ? 6 : 300);
+    in_.stop = model_.time() > kFilled && chance(snapshot_asked ? 30 : 300);
     if (in_.stop) checker_.event("stop");
     if (chance(20000)) {
       reset();
