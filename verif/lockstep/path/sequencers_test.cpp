@@ -224,7 +224,7 @@ class Bench {
   QueueWriter geometry_;
   QueueWriter feed_;
   SnapshotWord chain_[2];
-  unsigned feed_ticks_ = 0;   // on their way, bit 0 comes next
+  unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
   unsigned rested_for_ = 0;   // clocks
   unsigned stand_for_ = 0;    // clocks without go
@@ -244,8 +244,29 @@ void boundaries() {
     while (!bench.at_rest()) bench.clock();
   };
   std::uint64_t dwells = 0;
-  for (const std::uint64_t count : {0U, 1U, 2U, 3U, 14U, 15U, 16U, 17U, 18U, 31U, 32U, 33U, 255U, 256U, 257U, 65535U,
-                                    65536U, 65537U, 65552U, (1U << 20) - 1, 1U << 20, (1U << 20) + 1, (1U << 20) + 17}) {
+  for (const std::uint64_t count : {0U,
+                                    1U,
+                                    2U,
+                                    3U,
+                                    14U,
+                                    15U,
+                                    16U,
+                                    17U,
+                                    18U,
+                                    31U,
+                                    32U,
+                                    33U,
+                                    255U,
+                                    256U,
+                                    257U,
+                                    65535U,
+                                    65536U,
+                                    65537U,
+                                    65552U,
+                                    (1U << 20) - 1,
+                                    1U << 20,
+                                    (1U << 20) + 1,
+                                    (1U << 20) + 17}) {
     const Halfwords dwell = stored_command(card_map::Opcode::Dwell, 0, count);
     run(dwell, dwell);
     dwells += std::max<std::uint64_t>(count, 1);
