@@ -68,7 +68,7 @@ endfunction()
 #                      [INCLUDES ...] [INSIDE inside.cpp])
 # Builds lockstep_<name>: the test runs Vdut (the block) beside its golden model.
 # The test is compiled once (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded
-# bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named behind INSIDE and is
+# bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named after INSIDE and is
 # compiled for each copy. DEFINITIONS and INCLUDES are the test's. HARNESS is a top that joins several blocks for their
 # lockstep alone, beside the test.
 function(trammel_add_lockstep name)

@@ -71,7 +71,7 @@ std::string report_of_lie(std::uint64_t cycle, std::size_t offset, std::uint32_t
   });
 }
 
-// One bit of one signal in one cycle: at the edges of a batch, within one, and behind the last full one.
+// One bit of one signal in one cycle: at the edges of a batch, within one, and after the last full one.
 TEST(CardJudge, EverySignalIsCaughtAndNamedWithItsCycle) {
   for (const CardSignal& signal : kCardSignals) {
     for (std::size_t n = 0; n < signal.words; ++n) {

@@ -1,4 +1,4 @@
-// What the card shows behind one rising edge, as memory to be compared: the one list of the signals that the lockstep
+// What the card shows after one rising edge, as memory to be compared: the one list of the signals that the lockstep
 // compares. RTL and golden model each fill a record; equal cards are equal bytes.
 #pragma once
 
