@@ -8,7 +8,7 @@
 
 namespace trammel::app {
 
-// Throws UsageError for the first file that cannot be written, so that it is found before the work, not behind it.
+// Throws UsageError for the first file that cannot be written, so that it is found before the work, not after it.
 // Nothing is created or opened. "-" is standard output.
 void require_writable(std::initializer_list<std::optional<std::string>> files);
 

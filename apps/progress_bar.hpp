@@ -13,7 +13,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // `done` from 0 to 1; `note` stands behind the bar. Redraws at most ten times a second.
+  // `done` from 0 to 1; `note` stands after the bar. Redraws at most ten times a second.
   void show(double done, const std::string& note);
 
  private:

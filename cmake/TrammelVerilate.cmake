@@ -34,6 +34,8 @@ function(trammel_verilate target)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${TRAMMEL_RTL_DIR}" NORMALIZE)
     list(APPEND files "${file}")
   endforeach()
+  set(harness ${A_ARGS})
+  list(FILTER harness INCLUDE REGEX "\\.sv$")
   set(dir "${CMAKE_CURRENT_BINARY_DIR}/${target}_${A_PREFIX}")
   set(fast "${dir}/${A_PREFIX}__fast.cc")
   set(slow "${dir}/${A_PREFIX}__slow.cc")
@@ -43,7 +45,7 @@ function(trammel_verilate target)
     COMMAND "${VERILATOR_BIN}" --cc --compiler gcc --prefix ${A_PREFIX} --top-module ${A_TOP} --Mdir "${dir}"
             $<$<BOOL:${A_TRACE}>:--trace-fst> ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS} ${files}
     COMMAND "${CMAKE_COMMAND}" -D DIR=${dir} -D PREFIX=${A_PREFIX} -P "${join}"
-    DEPENDS ${files} "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" "${join}"
+    DEPENDS ${files} ${harness} "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" "${join}"
     COMMENT "Verilating ${A_TOP} for ${target}" VERBATIM COMMAND_EXPAND_LISTS)
   target_sources(${target} PRIVATE "${fast}" "${slow}" "${dir}/${A_PREFIX}.h")
   # What Verilator writes is not the project's: no warnings from it.
@@ -62,14 +64,19 @@ function(trammel_verilate target)
   set_property(GLOBAL PROPERTY TRAMMEL_VERILATED_${target}_${A_PREFIX} "${dir}")
 endfunction()
 
-# trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [ARGS ...] [DEFINITIONS ...] [INCLUDES ...] [INSIDE inside.cpp])
+# trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [HARNESS top.sv] [ARGS ...] [DEFINITIONS ...]
+#                      [INCLUDES ...] [INSIDE inside.cpp])
 # Builds lockstep_<name>: the test runs Vdut (the block) beside its golden model.
 # The test is compiled once (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded
-# bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named behind INSIDE and is
-# compiled for each copy. DEFINITIONS and INCLUDES are the test's.
+# bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named after INSIDE and is
+# compiled for each copy. DEFINITIONS and INCLUDES are the test's. HARNESS is a top that joins several blocks for their
+# lockstep alone, beside the test.
 function(trammel_add_lockstep name)
-  cmake_parse_arguments(A "" "TOP;TEST;INSIDE" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
+  cmake_parse_arguments(A "" "TOP;TEST;INSIDE;HARNESS" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
   set(target lockstep_${name})
+  if(A_HARNESS)
+    list(APPEND A_ARGS "${CMAKE_CURRENT_SOURCE_DIR}/${A_HARNESS}")
+  endif()
   add_executable(${target} ${A_INSIDE})
   trammel_verilate(${target} PREFIX Vdut TOP ${A_TOP} SOURCES ${A_SOURCES} ARGS ${A_ARGS})
   trammel_lockstep_test(${target} TEST ${A_TEST} HEADERS_OF ${target} PREFIX Vdut)
@@ -121,10 +128,12 @@ function(trammel_add_seeded_bug name bug)
         cmake_path(GET file FILENAME file_name)
         file(CONFIGURE OUTPUT "${dir}/${file_name}" CONTENT "${text}" @ONLY)
         list(TRANSFORM L_SOURCES REPLACE "^${file}$" "${dir}/${file_name}")
+        list(TRANSFORM TRAMMEL_RTL_PACKAGES REPLACE "^${file}$" "${dir}/${file_name}")
       endif()
       if(i LESS ARGC)
         set(file "${ARGV${next}}")
-        if(NOT file IN_LIST L_SOURCES)
+        set_property(GLOBAL APPEND PROPERTY TRAMMEL_RTL_WITH_SEEDED_BUG "${file}")
+        if(NOT file IN_LIST L_SOURCES AND NOT file IN_LIST TRAMMEL_RTL_PACKAGES)
           message(FATAL_ERROR "seeded bug ${name}/${bug}: ${file} is no source of ${name}, or named twice")
         endif()
         file(READ "${TRAMMEL_RTL_DIR}/${file}" text)

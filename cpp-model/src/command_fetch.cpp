@@ -75,6 +75,7 @@ void CommandFetch::arrive(int index, std::uint16_t halfword) {
     bus_ = {true, static_cast<std::uint8_t>(target_of(index)), halfword};
     return;
   }
+  header_here_ = true;
   opcode_ = static_cast<Opcode>(halfword & 0xFF);
   mask_ = static_cast<std::uint8_t>(halfword >> 8);
   const card_map::Command* command = card_map::find_command(static_cast<std::uint8_t>(opcode_));
@@ -123,15 +124,15 @@ void CommandFetch::work(const Inputs& in) {
   if (in.pop) {
     state_ = split_ ? State::Finishing : State::Idle;
     if (split_) asked_ = pause_at_;
-    split_ = false;
+    split_ = header_here_ = false;
   } else {
     ask(in);
   }
   const int last = split_ ? pause_at_ - 1 : length_ - 1;
-  if (state_ == State::Reading && arrived >= kHeader - 1 && arrived == last) state_ = State::Decoded;
+  if (state_ == State::Reading && header_here_ && arrived >= kHeader - 1 && arrived == last) state_ = State::Decoded;
   if (in.clear) {
     state_ = State::Idle;
-    split_ = false;
+    split_ = header_here_ = false;
     asked_ = arriving_[0] = arriving_[1] = -1;
   }
 }

@@ -17,7 +17,7 @@ bool is_printable(char c) { return c > ' ' && c < '\x7f'; }
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
-// Behind the comment that opens at `at`.
+// After the comment that opens at `at`.
 std::size_t skip_comment(std::string_view line, std::size_t at) {
   const std::size_t close = line.find(')', at);
   if (close == std::string_view::npos) {

@@ -82,7 +82,7 @@ module pulse_generator #(
     if (rst_i | clear_i) swap_q <= 1'b0;
   end
 
-  // A line's gate opens in the clock in which its first tick's carry can arrive, behind the old line's last one.
+  // A line's gate opens in the clock in which its first tick's carry can arrive, after the old line's last one.
   logic opening_q;  // the line swapped in last is active
   logic swap_late_q;
   logic open_q;

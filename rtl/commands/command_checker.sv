@@ -168,11 +168,13 @@ module command_checker #(
         feed_commit_o <= accepted && to_feed;
         drop_o <= refused || truncate;
         refuse_o <= refused || truncate || (answer_q && !judged);
-        if (truncate) reason_o <= card_map_pkg::REFUSE_TRUNCATED;
-        else if (answer_q && faulted_q) reason_o <= card_map_pkg::REFUSE_FAULTED;
-        else if (answer_q && !open_q) reason_o <= card_map_pkg::REFUSE_STREAM_CLOSED;
-        else if (refused && !partial_o) reason_o <= header_reason;
-        else if (refused) reason_o <= field_bad_mask ? card_map_pkg::REFUSE_BAD_MASK : card_map_pkg::REFUSE_BAD_FIELD;
+        // Never both: an answer comes while ready_o is low, a flush is heard while it is high.
+        if (answer_q) begin
+          if (faulted_q) reason_o <= card_map_pkg::REFUSE_FAULTED;
+          else if (!open_q) reason_o <= card_map_pkg::REFUSE_STREAM_CLOSED;
+          else if (refused && !partial_o) reason_o <= header_reason;
+          else if (refused) reason_o <= field_bad_mask ? card_map_pkg::REFUSE_BAD_MASK : card_map_pkg::REFUSE_BAD_FIELD;
+        end else if (truncate) reason_o <= card_map_pkg::REFUSE_TRUNCATED;
       end
     end
   end

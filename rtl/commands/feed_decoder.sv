@@ -1,5 +1,5 @@
-// Decodes the next feed piece onto the feed load. Acceleration and jerk have no shadow in the generator: they follow
-// when the piece has begun.
+// Decodes the next feed piece onto the feed load. Acceleration and jerk have no shadow in the generator: while a piece
+// runs they follow when the next one has begun.
 `default_nettype none
 
 module feed_decoder (
@@ -7,6 +7,7 @@ module feed_decoder (
     input  wire logic        rst_i,
     input  wire logic        cut_i,
     input  wire logic        pop_i,
+    input  wire logic        active_i,   // a piece runs
     input  wire logic        empty_i,
     input  wire logic [15:0] word_i,
     output logic             read_o,
@@ -22,8 +23,11 @@ module feed_decoder (
   logic [4:0] strobe_field;
   logic [7:0] opcode;
   logic       is_feed;
+  logic       pause;
 
   assign is_feed = opcode == card_map_pkg::OP_FEED;
+
+  assign pause   = active_i && field[2:0] == load_target_pkg::FEED_STOP_DISTANCE;
 
   // Fields are targets of the feed load, and follow each other as these do.
   function automatic logic [2:0] length_of(input logic [2:0] target);  // halfwords, less one
@@ -43,8 +47,8 @@ module feed_decoder (
       .first_length_i(3'd3),
       .next_field_i  (field + 5'd1),
       .next_length_i (length_of(field[2:0] + 3'd1)),
-      .last_field_i  (field[2:0] == load_target_pkg::FEED_STOP_DISTANCE || field[2:0] == load_target_pkg::FEED_JERK),
-      .rest_i        (is_feed),
+      .last_field_i  (pause || field[2:0] == load_target_pkg::FEED_JERK),
+      .rest_i        (is_feed && field[2:0] == load_target_pkg::FEED_ACCELERATION),
       .wait_i        (1'b0),
       .header_o      (),
       .first_o       (),

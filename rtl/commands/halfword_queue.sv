@@ -21,7 +21,8 @@ module halfword_queue #(
     output logic [15:0] room_o
 );
 
-  localparam int AddressWidth = $clog2(Depth);
+  // A depth below 2 gets as far as the message that refuses it.
+  localparam int AddressWidth = Depth > 1 ? $clog2(Depth) : 1;
   localparam logic [AddressWidth:0] DEPTH = (AddressWidth + 1)'(Depth);
   localparam logic [AddressWidth-1:0] LAST = AddressWidth'(Depth - 1);
 

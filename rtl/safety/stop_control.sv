@@ -31,18 +31,20 @@ module stop_control #(
   } state_e;
 
   localparam int Faults = card_map_pkg::BIT_FAULT_PATH_INCOMPLETE + 1;
+  // The bits that a reaction may be chosen for: no flip-flops for the others.
+  localparam logic [Faults-1:0] REACTIONS = card_map_pkg::MASK_STOP_REACTION[Faults-1:0];
 
   state_e              state_q;
   state_e              state_d;
   logic   [Faults-1:0] fault_q;
   logic   [Faults-1:0] cause;
   logic                hold_q;
-  logic   [       7:0] ramped_q;  // step faults whose reaction is a ramp
+  logic   [Faults-1:0] ramped_q;  // causes whose reaction is a ramp
   logic                any;
   logic                immediate;
 
-  assign any = mismatch_i || incomplete_i || step_fault_i != '0;
-  assign immediate = mismatch_i || incomplete_i || (step_fault_i & ~ramped_q[Axes-1:0]) != '0;
+  assign any = cause != '0;
+  assign immediate = (cause & ~ramped_q) != '0;
 
   always_comb begin
     cause = Faults'(step_fault_i) << card_map_pkg::BIT_FAULT_STEP;
@@ -63,7 +65,8 @@ module stop_control #(
 
   always_ff @(posedge clk_i) begin
     if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_HOLD[9:2]) hold_q <= setting_i[0];
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_STOP_REACTION[9:2]) ramped_q <= setting_i[7:0];
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_STOP_REACTION[9:2])
+      ramped_q <= setting_i[Faults-1:0] & REACTIONS;
     fault_q  <= (fault_q & ~clear_i[Faults-1:0]) | cause;
     state_q  <= state_d;
     go_o     <= state_d != STOPPED;
@@ -73,7 +76,7 @@ module stop_control #(
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
       hold_q   <= card_map_pkg::RESET_HOLD[0];
-      ramped_q <= card_map_pkg::RESET_STOP_REACTION[7:0];
+      ramped_q <= card_map_pkg::RESET_STOP_REACTION[Faults-1:0];
       fault_q  <= '0;
       state_q  <= RUN;
       go_o     <= 1'b1;
@@ -88,7 +91,7 @@ module stop_control #(
   assign stopping_o = state_q == RAMP;
 
   logic unused;  // absent axes and faults that are not built
-  assign unused = &{1'b0, setting_i[31:8], clear_i, ramped_q};
+  assign unused = &{1'b0, setting_i[31:Faults], clear_i};
 endmodule
 
 `default_nettype wire

@@ -3,12 +3,13 @@
 // Enabled clocks 32k..32k+31 of a piece add clamp(R_k) to the phase; R_0 is the rate itself, unclamped.
 // R and A are added in nibbles, 17 clocks for 68 bits, right after R_k was taken, so R_(k+1) and its comparison with
 // the floor are ready 20 clocks later, 12 before the earliest need. A swap may come at any clock, also amid an update.
-// A and J have no shadow: they come after the swap, and R_1 is made when the last halfword of J is there (11 clocks
-// after the swap at the earliest and 14 at the latest, or the 32nd enabled clock could be missed).
+// A and J have no shadow. Where no piece runs they come before the swap (clear_i is high then); else after it, and R_1 is
+// made when the last halfword of J is there: 14 clocks after the swap at the latest, or the 32nd enabled clock could be
+// missed.
 //
 // The phase is 16 + 32 bits with a registered carry: everything of the upper 32 bits (its part of R, the floor, the
 // slope) is taken one clock after the lower part. So the shadow must hold in the clock of a swap and the next. Swaps are
-// 24 clocks apart or more (the card's decoder takes longer to load a piece); nothing is enabled before the first one.
+// 16 clocks apart or more (the decoder takes that long to load a piece); nothing is enabled before the first one.
 // An enable at c gives its tick at c+3; the rate shows with the same delay.
 `default_nettype none
 
@@ -60,15 +61,22 @@ module feed_generator (
   logic [4:0] step_q;
   logic rotate_q, compare_q, judge_q;
   logic waits_q;  // for acceleration and jerk
+  logic primed_q;  // the next piece has them
   logic load_jerk_q;
   logic loaded;
   logic keep;
-  assign keep = !rst_i && !swap_i;
+  assign keep = !rst_i && !swap_i && !clear_i;
   assign loaded = load_jerk_q && !load_jerk;
   always_ff @(posedge clk_i) begin
-    load_jerk_q <= load_jerk && keep;
-    if (swap_i) waits_q <= 1'b1;
-    else if (loaded || rst_i) waits_q <= 1'b0;
+    load_jerk_q <= load_jerk;
+    if (swap_i) waits_q <= !primed_q && !loaded;
+    else if (loaded) waits_q <= 1'b0;
+    primed_q <= clear_i && !swap_i && (primed_q || loaded);
+    if (rst_i) begin
+      load_jerk_q <= 1'b0;
+      waits_q     <= 1'b0;
+      primed_q    <= 1'b0;
+    end
     compare_q <= 1'b0;
     judge_q   <= 1'b0;
     if (rotate_q) begin

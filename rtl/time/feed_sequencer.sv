@@ -43,6 +43,7 @@ module feed_sequencer (
       .rst_i,
       .cut_i,
       .pop_i    (swap || barrier_done_i),
+      .active_i (active_o),
       .empty_i,
       .word_i,
       .read_o,

@@ -95,7 +95,7 @@ def _reasons(register_map):
 
 
 def _command_constants(commands):
-    yield "\n  // Commands: opcodes; offset and size in halfwords of each field of the payload behind the count.\n"
+    yield "\n  // Commands: opcodes; offset and size in halfwords of each field of the payload after the count.\n"
     yield f"  localparam logic [31:0] LAYOUT_VERSION = 32'd{commands.version};\n"
     for c in commands.commands:
         yield f"  localparam logic [7:0] OP_{c.name} = 8'd{c.opcode};\n"
@@ -187,7 +187,7 @@ def _register_functions(registers, version):
         "register_mask", ["Bits with meaning, by the engines that are built in; a write of any other bit is refused."],
         32, mask, _hex(32, 0))
     yield per_register(
-        "register_reset", ["Value behind reset, and of constants that neither parameters nor straps decide."],
+        "register_reset", ["Value after reset, and of constants that neither parameters nor straps decide."],
         32, lambda r: _hex(32, version if r.name == "COMMANDS_VERSION" else r.reset), _hex(32, 0))
     yield _limit_function(registers, patterns)
     yield _slot_function(registers, patterns)

@@ -7,8 +7,7 @@ from synthesis.tools import BUILD, ports
 
 # Ports that exist for lockstep.
 OBSERVATION = {
-    "trammel_card": {"tick_o", "path_tick_o", "path_swap_o", "feed_swap_o", "path_step_o", "path_dir_o", "position_o",
-                     "geometry_room_o", "feed_room_o", "status_o", "fault_o", "running_o", "ratio_o", "rate_o"},
+    "trammel_card": {"observe_o"},
 }
 
 

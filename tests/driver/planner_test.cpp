@@ -96,7 +96,7 @@ void expect_sound(const PlannedSegment& segment) {
   bool geometry = false;
   for (const Command& command : segment.commands) {
     const bool feed = std::holds_alternative<Feed>(command);
-    EXPECT_FALSE(feed && geometry) << "feed behind geometry";
+    EXPECT_FALSE(feed && geometry) << "feed after geometry";
     geometry = geometry || !feed;
   }
   if (commands<Arc>(segment).empty()) {

@@ -88,7 +88,7 @@ class StepHasher final : public app::RunWatcher {
 
   Hash path_;
   std::vector<sim::PathStep> tick_;  // its steps
-  Pulses chord_{};                   // of the command in work
+  Pulses chord_{};                   // of the command under way
 
   Hash pins_;
   std::array<std::deque<Waiting>, driver::kMaxAxes> waiting_;

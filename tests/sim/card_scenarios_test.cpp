@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "host.hpp"
 
 namespace {
@@ -250,11 +252,11 @@ TEST(Engines, MakeTheSameStepsInTheSameCycles) {
     const auto card = make(kind);
     card->set_sink(&steps[index]);
     Host host(*card);
-    test::RandomProgram program(host, 4, 11);
+    std::mt19937_64 engine(11);
     host.set_times(4, 2, 1, 3, 1);
     for (int i = 0; i < 12; ++i) {
-      program.section();
-      program.finish();
+      test::random_section(
+          host, [&engine](std::uint64_t count) { return engine() % count; }, 4);
     }
     cycles[index] = card->cycles();
   }

@@ -113,12 +113,12 @@ class Simulated {
 
   Dut* operator->() { return dut_.get(); }
   Dut& operator*() { return *dut_; }
-  // One clock period: inputs were set before the call; after it the outputs show the state behind the rising edge.
+  // One clock period: inputs were set before the call; after it the outputs show the state after the rising edge.
   void clock() {
     Verilated::threadContextp(context_.get());
     rising_edge(*dut_);
   }
-  // The same with both edges evaluated, `at_edge` called behind each.
+  // The same with both edges evaluated, `at_edge` called after each.
   template <class AtEdge>
   void clock_by_both_edges(AtEdge at_edge) {
     Verilated::threadContextp(context_.get());
@@ -146,7 +146,7 @@ std::uint64_t scaled(std::uint64_t length);
 
 // Runs a scenario of a test executable, which judges either the sound RTL or, called with --seeded-bug, a copy with a
 // seeded bug. Over sound RTL the report of a Mismatch is returned, an empty text for none. Over a seeded bug at least
-// one of the executable's scenarios must end in a Mismatch (main.cpp asks caught() at the end); those behind it are not
+// one of the executable's scenarios must end in a Mismatch (main.cpp asks caught() at the end); those after it are not
 // run, and the text is empty.
 std::string judge(const std::function<void()>& scenario);
 void expect_seeded_bug();

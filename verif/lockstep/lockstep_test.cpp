@@ -68,7 +68,7 @@ TEST(Checker, LastEventsAreKept) {
                             HasSubstr("cycle 999: event 0x3e7"), Not(HasSubstr("cycle 967:"))));
 }
 
-// A mismatch that is found late is reported with the events before it, however many came behind it.
+// A mismatch that is found late is reported with the events before it, however many came after it.
 TEST(EventLog, EventsBehindTheCycleAreLeftOut) {
   EventLog log;
   for (std::uint64_t i = 0; i < 100; ++i) log.add(i, "event", i);

@@ -1,4 +1,5 @@
-// Records a program on the card: lines, arcs, dwells, holds, ratios, direct moves, faults, aborts, refused accesses.
+// Records a program on the card: lines, arcs, dwells, holds, ratios, direct moves, faults, aborts, resets, refused
+// accesses.
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -106,6 +107,15 @@ class Program {
     card_.write(reg::kRefusal, 1);
   }
 
+  // A reset of one clock somewhere in a line; then the card has its settings of after a reset.
+  void reset() {
+    piece(line());
+    card_.wait(below(300));
+    card_.reset(1);
+    number_ = 0;
+    card_.read(reg::kStatus);
+  }
+
  private:
   std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); }
 
@@ -211,11 +221,11 @@ class Program {
 };
 
 void record(const char* path, std::uint64_t clocks, std::uint32_t seed) {
-  Recorder card(path);
+  Recorder card(path, seed * 0x35 & 0xFF, seed);  // every seed another level of the pins
   card.reset(8);
   Program program(card, seed);
   for (unsigned part = 0; card.seen().clocks < clocks; ++part) {
-    switch (part % 4) {
+    switch (part % 5) {
       case 0:
         program.settings();
         program.paths();
@@ -226,8 +236,11 @@ void record(const char* path, std::uint64_t clocks, std::uint32_t seed) {
       case 2:
         program.overrun();
         break;
-      default:
+      case 3:
         program.errors();
+        break;
+      default:
+        program.reset();
         break;
     }
   }

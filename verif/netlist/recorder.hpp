@@ -7,13 +7,14 @@
 #include <string>
 
 #include "Vrecorded.h"
+#include "card_record.hpp"
 #include "lockstep.hpp"
 #include "trammel/model/card_model.hpp"
 
 namespace trammel::netlist {
 
 // The file: a first line that names the ports in order, `name<width` for an input and `name>width` for an output; then
-// a line a clock with their values in hexadecimal, the outputs as they are behind the clock's edge.
+// a line a clock with their values in hexadecimal, the outputs as they are after the clock's edge.
 class Recorder {
  public:
   static constexpr unsigned kAxes = 4;
@@ -30,8 +31,9 @@ class Recorder {
     std::uint64_t faulted = 0;     // clocks with a fault
   };
 
-  // Throws std::runtime_error when the file cannot be written.
-  explicit Recorder(const std::string& path);
+  // `idle_level`: the strap, {second pins, first pins}; `seed` is only named where RTL and model differ. Throws
+  // std::runtime_error when the file cannot be written.
+  Recorder(const std::string& path, std::uint32_t idle_level, std::uint32_t seed);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -47,7 +49,7 @@ class Recorder {
  private:
   void clock();
   void judge();
-  void count();
+  void count(const sim::CardRecord& rtl);
   void write_line();
   template <class Port>
   void for_each_port(Port&& port);
@@ -57,7 +59,7 @@ class Recorder {
   lockstep::Simulated<Vrecorded> dut_;
   model::CardModel model_;
   model::CardModel::Inputs in_;
-  lockstep::Checker checker_{"recorded card", 0};
+  std::uint32_t seed_;
   Seen seen_;
   std::uint32_t last_step_ = 0;
   bool last_irq_ = false;

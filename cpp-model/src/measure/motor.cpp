@@ -141,7 +141,7 @@ class AxisRun {
     const auto steps = static_cast<std::size_t>(std::ceil(span / run_.step));
     const double step = span / static_cast<double>(steps);
     double ideal = line_speed();
-    // The lag is largest right behind a pulse.
+    // The lag is largest right after a pulse.
     if (measuring_ && time_ >= measured_from_) largest_lag_ = std::max(largest_lag_, std::abs(lag()));
     for (std::size_t i = 0; i < steps; ++i) {
       stepper_.do_step(std::cref(motor_), state_, time_, step);

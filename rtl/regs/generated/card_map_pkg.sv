@@ -435,7 +435,7 @@ package card_map_pkg;
   localparam logic [7:0] REFUSE_WRITE_ONLY = 8'd14;
   localparam logic [7:0] REFUSE_FAULTED = 8'd15;
 
-  // Commands: opcodes; offset and size in halfwords of each field of the payload behind the count.
+  // Commands: opcodes; offset and size in halfwords of each field of the payload after the count.
   localparam logic [31:0] LAYOUT_VERSION = 32'd2;
   localparam logic [7:0] OP_LINE = 8'd1;
   localparam int AT_LINE_INCREMENT = 0;
@@ -640,7 +640,7 @@ package card_map_pkg;
     endcase
   endfunction
 
-  // Value behind reset, and of constants that neither parameters nor straps decide.
+  // Value after reset, and of constants that neither parameters nor straps decide.
   function automatic logic [31:0] register_reset(input logic [9:0] word);
     casez (word)
       10'b00_0000_0000:

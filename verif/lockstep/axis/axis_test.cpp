@@ -1,80 +1,131 @@
-// Lockstep of a whole axis: lines, external steps and random times, every output in every cycle.
+// Lockstep of a whole axis: lines, counted lines, an engine's steps, settings in mid pulse, cuts and resets at any
+// clock, and its word of the snapshot; every output in every cycle.
 #include "trammel/model/axis.hpp"
 
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "lockstep.hpp"
+#include "wires.hpp"
 
 namespace trammel::lockstep {
 namespace {
 
+namespace reg = card_map::reg;
+using model::load_target::kCount;
+using model::load_target::kIncrement;
+
+constexpr unsigned kAxis = TRAMMEL_AXIS;
+constexpr std::uint64_t kComparedSignals = 8;
+
 class Bench {
  public:
-  explicit Bench(std::uint64_t seed) : check_("axis", seed), random_(seed) {
-    apply();
-    dut_->rst_i = 1;
-    for (int i = 0; i < 4; ++i) dut_.clock();
-    dut_->rst_i = 0;
-  }
+  explicit Bench(std::uint64_t seed) : check_("axis", seed), dice_(seed) { reset(); }
 
-  // A line, or a stretch of external steps, with its own times.
+  // A line, counted or not, or a stretch of an engine's steps, with settings of its own.
   void path() {
-    settings();
-    const bool external = below(4) == 0;
-    const std::int64_t top = std::int64_t{1} << (30 + below(11));
-    const std::int64_t magnitude = static_cast<std::int64_t>(random_() >> 24) % (top + 1);
-    load(below(2) == 0 ? magnitude : -magnitude);
-    in_.generator.swap = true;
-    in_.generator.active = !external;
-    in_.generator.mirror = below(2) == 0;
+    if (dice_.chance(3)) settings();
+    const bool engine = dice_.chance(4);
+    const bool direct = !engine && dice_.chance(3);
+    const std::int64_t top = std::int64_t{1} << (30 + dice_.below(11));
+    const std::int64_t magnitude = static_cast<std::int64_t>(dice_.word() >> 24) % (top + 1);
+    send(kIncrement, static_cast<std::uint64_t>(dice_.chance(2) ? magnitude : -magnitude), 3);
+    if (direct) send(kCount, dice_.below(30), 2);
+    in_.swap = true;
+    in_.active = !engine;
+    in_.direct = direct;
     clock();
-    in_.generator.swap = false;
-    // The old line's steps leave the generator before the first external one.
+    in_.swap = false;
+    // The old line's steps leave the generator before the engine's first one.
     for (int i = 0; i < 3; ++i) clock();
-    const unsigned every = 1 + below(20);
-    const unsigned clocks = 20 + below(500);
-    for (unsigned i = 0; i < clocks; ++i) {
-      in_.generator.tick = below(every) == 0;
-      in_.ext_step = external && below(every) == 0;
-      in_.ext_dir = below(3) == 0;
-      clock();
-    }
-    in_.ext_step = false;
-    in_.generator.tick = false;
+    run(engine, 1 + dice_.below(20), 20 + dice_.below(500));
+    if (model_.outputs().live) cut();
+    if (dice_.chance(200)) reset();
   }
 
   Checker& check() { return check_; }
   std::uint64_t steps() const { return steps_; }
+  std::uint64_t chained() const { return chained_; }
 
  private:
-  void settings() {
-    const unsigned top = 1U << below(5);
-    in_.shaper.step_length = static_cast<std::uint16_t>(below(top));
-    in_.shaper.step_space = static_cast<std::uint16_t>(below(top));
-    in_.shaper.dir_setup = static_cast<std::uint16_t>(below(top));
-    in_.shaper.dir_hold = static_cast<std::uint16_t>(below(top));
-    in_.shaper.mode = static_cast<std::uint8_t>(below(16));
+  void run(bool engine, unsigned every, unsigned clocks) {
+    for (unsigned i = 0; i < clocks; ++i) {
+      in_.tick = !engine && dice_.chance(every);
+      in_.engine_step = engine && dice_.chance(every);
+      in_.engine_dir = dice_.chance(3);
+      if (dice_.chance(100)) settings();
+      clock();
+      if (dice_.chance(2000)) return cut();
+    }
+    in_.engine_step = in_.tick = false;
   }
 
-  void load(std::int64_t increment) {
-    check_.event("increment", static_cast<std::uint64_t>(increment));
-    in_.generator.load_increment = true;
-    for (int i = 0; i < 3; ++i) {
-      in_.generator.word = static_cast<std::uint16_t>(static_cast<std::uint64_t>(increment) >> (16 * i));
+  // Beside whatever else there is in this clock, swaps included.
+  void cut() {
+    check_.event("cut");
+    in_.cut = true;
+    in_.swap = dice_.chance(2);
+    clock();
+    in_ = {};
+    for (int i = 0; i < 3; ++i) clock();
+  }
+
+  // One clock; the pins stand at the strap's level.
+  void reset() {
+    check_.event("reset");
+    const unsigned idle_level = dice_.below(4);
+    dut_->idle_level_i = static_cast<CData>(idle_level);
+    dut_->rst_i = 1;
+    apply();
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::Axis(kAxis, idle_level);
+    snapshot_ = {};
+    compare();
+    in_ = {};
+  }
+
+  // One setting of this axis, of a neighbour, or of nobody.
+  void settings() {
+    const unsigned axis = dice_.chance(4) ? dice_.below(8) : kAxis;
+    const unsigned times = 1U << dice_.below(5);
+    const std::uint32_t addresses[] = {reg::step_length(axis), reg::step_space(axis), reg::dir_setup(axis),
+                                       reg::dir_hold(axis),    reg::mode(axis),       reg::mode(axis) + 4};
+    const unsigned which = dice_.below(6);
+    in_.setting.set = true;
+    in_.setting.address = addresses[which];
+    in_.setting.data = which == 4 ? dice_.below(16) : dice_.below(times);
+    check_.event("setting", in_.setting.address);
+    clock();
+    in_.setting = {};
+  }
+
+  void send(unsigned target, std::uint64_t value, unsigned halfwords) {
+    check_.event("load", value);
+    for (unsigned i = 0; i < halfwords; ++i) {
+      in_.load = halfword(target + kAxis, value, i);
       clock();
+      // What goes to another axis or chain is not this one's.
+      if (dice_.chance(3)) {
+        in_.load = halfword(target + (kAxis + 1 + dice_.below(7)) % 8, dice_.word(), 0);
+        clock();
+      }
     }
-    in_.generator.load_increment = false;
+    in_.load = {};
   }
 
   void clock() {
-    in_.shaper.hold_tick = below(100) == 0;
-    in_.shaper.clear_fault = below(60) == 0;
+    in_.hold_tick = dice_.chance(100);
     apply();
+    const std::uint32_t position = model_.outputs().shaper.position;
     dut_.clock();
     model_.clock(in_);
+    snapshot_.clock(dut_->snapshot_i, position, dut_->chain_i);
+    compare();
+    steps_ += model_.outputs().path_step ? 1U : 0U;
+  }
+
+  void compare() {
     check_.next_cycle();
     const auto out = model_.outputs();
     check_.compare("path_step_o", dut_->path_step_o, out.path_step);
@@ -85,45 +136,42 @@ class Bench {
     check_.compare("position_o", dut_->position_o, out.shaper.position);
     check_.compare("busy_o", dut_->busy_o, out.shaper.busy);
     check_.compare("fault_o", dut_->fault_o, out.shaper.fault);
-    steps_ += out.path_step ? 1 : 0;
+    if (!snapshot_.known()) return;
+    check_.compare("chain_o", dut_->chain_o, snapshot_.word());
+    ++chained_;
   }
 
   void apply() {
-    dut_->clear_i = in_.generator.clear;
-    dut_->tick_i = in_.generator.tick;
-    dut_->swap_i = in_.generator.swap;
-    dut_->active_i = in_.generator.active;
-    dut_->counted_i = in_.generator.counted;
-    dut_->mirror_i = in_.generator.mirror;
-    dut_->load_increment_i = in_.generator.load_increment;
-    dut_->load_count_i = in_.generator.load_count;
-    dut_->word_i = in_.generator.word;
-    dut_->ext_step_i = in_.ext_step;
-    dut_->ext_dir_i = in_.ext_dir;
-    dut_->step_length_i = in_.shaper.step_length;
-    dut_->step_space_i = in_.shaper.step_space;
-    dut_->dir_setup_i = in_.shaper.dir_setup;
-    dut_->dir_hold_i = in_.shaper.dir_hold;
-    dut_->mode_i = in_.shaper.mode;
-    dut_->hold_tick_i = in_.shaper.hold_tick;
-    dut_->clear_fault_i = in_.shaper.clear_fault;
+    dut_->cut_i = in_.cut;
+    dut_->tick_i = in_.tick;
+    dut_->swap_i = in_.swap;
+    dut_->active_i = in_.active;
+    dut_->direct_i = in_.direct;
+    dut_->engine_step_i = in_.engine_step;
+    dut_->engine_dir_i = in_.engine_dir;
+    dut_->wait_tick_i = in_.hold_tick;
+    dut_->load_i = load_wire(in_.load);
+    dut_->setting_i = wire(in_.setting);
+    dut_->snapshot_i = dice_.snapshot();
+    dut_->chain_i = dice_.draw();
   }
 
-  unsigned below(unsigned n) { return static_cast<unsigned>(random_() >> 32) % n; }
-
   Simulated<Vdut> dut_;
-  model::Axis model_;
+  model::Axis model_{kAxis};
   model::Axis::Inputs in_;
+  SnapshotWord snapshot_;
   Checker check_;
-  std::mt19937_64 random_;
+  Dice dice_;
   std::uint64_t steps_ = 0;
+  std::uint64_t chained_ = 0;
 };
 
 void random_paths() {
   Bench bench(seed_from_environment(20260703));
   const std::uint64_t length = scaled(400'000);
   while (bench.check().cycles() < length) bench.path();
-  EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 8);
+  EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * kComparedSignals + bench.chained());
+  EXPECT_GT(bench.chained(), bench.check().cycles() / 2);
   EXPECT_GT(bench.steps(), 10'000U);
 }
 

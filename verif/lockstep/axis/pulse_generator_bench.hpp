@@ -14,23 +14,25 @@ class PulseGeneratorBench {
  public:
   using Inputs = model::PulseGenerator::Inputs;
 
-  explicit PulseGeneratorBench(std::uint64_t seed) : check_("pulse_generator", seed) {
-    apply(Inputs{});
+  explicit PulseGeneratorBench(std::uint64_t seed) : check_("pulse_generator", seed) { reset(Inputs{}); }
+
+  // One clock of reset, whatever else comes in it.
+  void reset(const Inputs& in) {
+    check_.event("reset");
+    apply(in);
     dut_->rst_i = 1;
-    for (int i = 0; i < 4; ++i) dut_.clock();
+    dut_.clock();
     dut_->rst_i = 0;
+    model_ = model::PulseGenerator();
+    compare();
   }
 
   void clock(const Inputs& in) {
     apply(in);
     dut_.clock();
     model_.clock(in);
-    check_.next_cycle();
-    const auto& out = model_.outputs();
-    check_.compare("step_o", dut_->step_o, out.step);
-    check_.compare("dir_o", dut_->dir_o, out.dir);
-    check_.compare("live_o", dut_->live_o, out.live);
-    steps_ += out.step ? 1 : 0;
+    compare();
+    steps_ += model_.outputs().step ? 1U : 0U;
   }
 
   // Shifts an increment (2^-40 pulses a tick) in, ticking on with `tick`.
@@ -71,6 +73,14 @@ class PulseGeneratorBench {
   std::uint64_t steps() const { return steps_; }  // since reset
 
  private:
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_.outputs();
+    check_.compare("step_o", dut_->step_o, out.step);
+    check_.compare("dir_o", dut_->dir_o, out.dir);
+    check_.compare("live_o", dut_->live_o, out.live);
+  }
+
   void apply(const Inputs& in) {
     dut_->clear_i = in.clear;
     dut_->tick_i = in.tick;

@@ -32,7 +32,7 @@ void full_rate() {
       bench.ticks(count + 20);
       bench.wait(5);
       if (bench.steps() - before != count) throw std::logic_error("the model itself missed the count");
-      if (bench.model().outputs().live) throw std::logic_error("live behind the count");
+      if (bench.model().outputs().live) throw std::logic_error("live after its count");
     }
   }
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 3);
@@ -80,7 +80,10 @@ class Random {
     in.tick = tick();
     in.swap = below(2) == 0;
     in.active = true;
-    bench_.clock(in);
+    if (below(4) == 0)
+      bench_.reset(in);
+    else
+      bench_.clock(in);
     run(3);
   }
 

@@ -1,4 +1,4 @@
-// Lockstep of the step shaper: random steps, times, modes and hold ticks, every output in every cycle.
+// Lockstep of the step shaper: random steps, times, modes, wait ticks and resets, every output in every cycle.
 #include "trammel/model/step_shaper.hpp"
 
 #include <Vdut.h>
@@ -15,25 +15,27 @@ class Bench {
  public:
   using Inputs = model::StepShaper::Inputs;
 
-  explicit Bench(std::uint64_t seed) : check_("step_shaper", seed), random_(seed) {
-    apply(Inputs{});
+  explicit Bench(std::uint64_t seed) : check_("step_shaper", seed), random_(seed) { reset(Inputs{}); }
+
+  // One clock of reset, whatever else comes in it. The strap that says how the pins stand then is drawn anew.
+  void reset(const Inputs& in) {
+    check_.event("reset");
+    const unsigned idle_level = below(4);
+    dut_->idle_level_i = static_cast<CData>(idle_level);
+    apply(in);
     dut_->rst_i = 1;
-    for (int i = 0; i < 4; ++i) dut_.clock();
+    dut_.clock();
     dut_->rst_i = 0;
+    model_ = model::StepShaper(idle_level);
+    compare();
   }
 
   void clock(const Inputs& in) {
     apply(in);
     dut_.clock();
     model_.clock(in);
-    check_.next_cycle();
-    const auto& out = model_.outputs();
-    check_.compare("step_o", dut_->step_o, out.step);
-    check_.compare("dir_o", dut_->dir_o, out.dir);
-    check_.compare("position_o", dut_->position_o, out.position);
-    check_.compare("busy_o", dut_->busy_o, out.busy);
-    check_.compare("fault_o", dut_->fault_o, out.fault);
-    if (out.fault) ++faulty_;
+    compare();
+    if (model_.outputs().fault) ++faulty_;
   }
 
   // A stretch with one choice of times, mode and densities; times may change in its middle.
@@ -41,7 +43,7 @@ class Bench {
     Inputs in;
     const unsigned every = 1 + below(40);
     const unsigned turns = 1 + below(6);
-    const unsigned hold_every = 20 + below(300);
+    const unsigned wait_every = 20 + below(300);
     times(in);
     in.mode = static_cast<std::uint8_t>(below(16));
     check_.event("mode", in.mode);
@@ -49,8 +51,8 @@ class Bench {
       if (below(200) == 0) times(in);
       in.step = below(every) == 0;
       if (in.step && below(turns) == 0) in.dir = !in.dir;
-      in.hold_tick = below(hold_every) == 0;
-      in.clear_fault = below(50) == 0;
+      in.hold_tick = below(wait_every) == 0;
+      if (below(3000) == 0) reset(in);
       clock(in);
     }
   }
@@ -61,6 +63,16 @@ class Bench {
   const model::StepShaper& model() const { return model_; }
 
  private:
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_.outputs();
+    check_.compare("step_o", dut_->step_o, out.step);
+    check_.compare("dir_o", dut_->dir_o, out.dir);
+    check_.compare("position_o", dut_->position_o, out.position);
+    check_.compare("busy_o", dut_->busy_o, out.busy);
+    check_.compare("fault_o", dut_->fault_o, out.fault);
+  }
+
   void times(Inputs& in) {
     const unsigned top = 1U << below(6);
     in.step_length = static_cast<std::uint16_t>(below(top));
@@ -78,8 +90,7 @@ class Bench {
     dut_->dir_setup_i = in.dir_setup;
     dut_->dir_hold_i = in.dir_hold;
     dut_->mode_i = in.mode;
-    dut_->hold_tick_i = in.hold_tick;
-    dut_->clear_fault_i = in.clear_fault;
+    dut_->wait_tick_i = in.hold_tick;
   }
 
   Simulated<Vdut> dut_;

@@ -1,5 +1,5 @@
-// The whole card, RTL beside golden model, from the AXI4-Lite pins to the STEP pins: random traffic, and programs that are
-// cut short at every clock.
+// The whole card, RTL beside golden model, from the AXI4-Lite pins to the STEP pins: random traffic, and programs that
+// are cut short at every clock.
 #include <gtest/gtest.h>
 
 #include "card_under_test.hpp"
@@ -46,7 +46,8 @@ TEST_P(CardLockstep, RandomTraffic) {
   const unsigned axes = GetParam();
   const std::uint64_t first = lockstep::seed_from_environment(1);
   for (std::uint64_t seed = first; seed < first + 3; ++seed) {
-    EXPECT_EQ(lockstep::judge([&] { random_traffic(axes, seed, lockstep::scaled(axes == 4 ? 1500 : 150)); }), "") << seed;
+    EXPECT_EQ(lockstep::judge([&] { random_traffic(axes, seed, lockstep::scaled(axes == 4 ? 1500 : 150)); }), "")
+        << seed;
   }
 }
 

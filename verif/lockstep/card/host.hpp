@@ -53,4 +53,31 @@ class Host {
   std::uint8_t number_ = 0;
 };
 
+// A few random paths, the pieces for them and an END, played to the end. Some are faults, after which words are
+// refused; they are cleared. `random(n)`: 0 .. n - 1.
+template <class Random>
+void random_section(Host& host, Random&& random, unsigned axes) {
+  const double pace = 1.5 + static_cast<double>(random(40));
+  std::uint64_t total = 0;
+  std::vector<driver::Command> commands;
+  for (std::uint64_t count = 1 + random(6); count != 0; --count) {
+    commands.push_back(random_path(random, axes, pace, total));
+  }
+  while (total != 0) {
+    const std::uint64_t ticks = 1 + random(total);
+    commands.push_back(random_piece(random, ticks, pace));
+    total -= ticks;
+  }
+  commands.push_back(driver::End{});
+  bool taken = true;
+  try {
+    for (const driver::Command& command : commands) host.send(command);
+  } catch (const driver::BusError&) {
+    taken = false;
+  }
+  if (taken && host.wait_idle(1'000'000)) return;
+  host.card.write(reg::kFault, 0xFFFF);
+  host.abort();
+}
+
 }  // namespace trammel::test

@@ -78,7 +78,8 @@ inline void Traffic::section(bool faulty) {
   std::vector<driver::Command> geometry;
   std::uint64_t total = 0;
   const auto random = [this](std::uint64_t count) { return below(count); };
-  for (std::uint64_t paths = 1 + below(6); paths != 0; --paths) geometry.push_back(random_path(random, axes_, pace, total));
+  for (std::uint64_t paths = 1 + below(6); paths != 0; --paths)
+    geometry.push_back(random_path(random, axes_, pace, total));
   std::vector<driver::Command> pieces;
   for (std::uint64_t left = total; left != 0;) {
     const std::uint64_t ticks = one_in(3) ? left : 1 + below(left);

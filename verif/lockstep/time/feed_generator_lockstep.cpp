@@ -1,4 +1,4 @@
-// Lockstep of the feed generator: RTL and model, both outputs in every cycle.
+// Lockstep of the feed generator: RTL and model, every output in every cycle.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -6,12 +6,13 @@
 #include "Vdut.h"
 #include "lockstep.hpp"
 #include "trammel/model/feed_generator.hpp"
+#include "wires.hpp"
 
 namespace trammel {
 namespace {
 
 constexpr std::uint64_t kComparedSignals = 2;
-// What the card guarantees between two swaps.
+// What the card guarantees between two swaps but after a piece that began at rest.
 constexpr std::uint64_t kSwapDistance = 24;
 
 struct Piece {
@@ -24,31 +25,43 @@ struct Piece {
 class Bench {
  public:
   Bench(std::uint64_t seed, unsigned enable_of_1024)
-      : checker_("feed_generator", seed), random_(seed), enable_of_1024_(enable_of_1024) {
+      : checker_("feed_generator", seed), dice_(seed), enable_of_1024_(enable_of_1024) {
+    reset();
+  }
+
+  // One clock; nothing is enabled from then to the next swap.
+  void reset() {
+    checker_.event("reset");
+    started_ = false;
     dut_->rst_i = 1;
     apply({});
     dut_.clock();
-    dut_.clock();
     dut_->rst_i = 0;
+    model_ = model::FeedGenerator();
+    snapshot_ = {};
+    compare();
   }
 
   void clock(model::FeedGenerator::Inputs in) {
-    in.enable = started_ && random_() % 1024 < enable_of_1024_;
+    in.clear = in.clear || resting_;
+    in.enable = started_ && !in.clear && dice_.below(1024) < enable_of_1024_;
     started_ = started_ || in.swap;
     apply(in);
+    const std::uint32_t rate = model_.outputs().rate;
     dut_.clock();
     model_.clock(in);
-    checker_.compare("tick_o", dut_->tick_o, model_.outputs().tick);
-    checker_.compare("rate_o", dut_->rate_o, model_.outputs().rate);
+    snapshot_.clock(dut_->snapshot_i, rate, dut_->chain_i);
+    compare();
     ticks_ += model_.outputs().tick;
-    checker_.next_cycle();
   }
 
-  // Loads a piece (14 clocks), waits, swaps it in at a distance of `clocks` from the last swap.
-  void piece(const Piece& p, std::uint64_t clocks) {
-    std::uint64_t used = idle(3);  // the swap's own clock was the last; two more and one to spare
-    used += shift(1, p.rate, 4) + shift(2, p.acceleration, 4) + shift(4, p.jerk, 4) + shift(8, p.floor, 2);
-    idle(clocks - used - 1);
+  // Loads rate and floor (6 clocks), waits, swaps the piece in at a distance of `clocks` or more from the last swap, and loads
+  // acceleration and jerk, of which the last halfword comes 10 to 13 clocks after it.
+  void piece(const Piece& p, std::uint64_t clocks, std::uint64_t late = 0) {
+    using namespace model::feed_target;
+    std::uint64_t used = since_swap_ + idle(3);
+    used += shift(kRate, p.rate, 4) + shift(kFloor, p.floor, 2);
+    idle(clocks > used + 1 ? clocks - used - 1 : 0);
     checker_.event("swap: rate", p.rate);
     checker_.event("  acceleration", p.acceleration);
     checker_.event("  jerk", p.jerk);
@@ -56,6 +69,26 @@ class Bench {
     model::FeedGenerator::Inputs in;
     in.swap = true;
     clock(in);
+    since_swap_ = idle(2 + late) + shift(kAcceleration, p.acceleration, 4) + shift(kJerk, p.jerk, 4);
+  }
+
+  // As the first piece after a barrier: cleared all the while, and loaded whole before its swap.
+  void piece_at_rest(const Piece& p, std::uint64_t rest) {
+    using namespace model::feed_target;
+    resting_ = true;
+    idle(3 + rest);
+    shift(kRate, p.rate, 4);
+    shift(kFloor, p.floor, 2);
+    idle(rest % 3);
+    shift(kAcceleration, p.acceleration, 4);
+    shift(kJerk, p.jerk, 4);
+    idle(rest % 5);
+    checker_.event("swap at rest: rate", p.rate);
+    model::FeedGenerator::Inputs in;
+    in.swap = true;
+    clock(in);
+    resting_ = false;
+    since_swap_ = 0;
   }
 
   std::uint64_t idle(std::uint64_t clocks) {
@@ -63,46 +96,54 @@ class Bench {
     return clocks;
   }
 
-  void clear() {
-    checker_.event("clear");
-    model::FeedGenerator::Inputs in;
-    in.clear = true;
-    clock(in);
-  }
-
   std::uint64_t ticks() const { return ticks_; }
+  void wait(std::uint64_t clocks) { since_swap_ += idle(clocks); }
 
   void expect_all_compared() const {
     EXPECT_GT(checker_.cycles(), 0U);
-    EXPECT_EQ(checker_.comparisons(), kComparedSignals * checker_.cycles());
+    EXPECT_EQ(checker_.comparisons(), kComparedSignals * checker_.cycles() + chained_);
+    EXPECT_GT(chained_, checker_.cycles() / 2);
   }
 
  private:
   void apply(const model::FeedGenerator::Inputs& in) {
     dut_->clear_i = in.clear;
     dut_->enable_i = in.enable;
-    dut_->load_i = in.load;
-    dut_->word_i = in.word;
+    dut_->load_i = lockstep::feed_wire(in.load);
     dut_->swap_i = in.swap;
+    dut_->snapshot_i = dice_.snapshot();
+    dut_->chain_i = dice_.draw();
   }
 
-  std::uint64_t shift(std::uint8_t select, std::uint64_t value, int halfwords) {
-    for (int i = 0; i < halfwords; ++i) {
+  void compare() {
+    checker_.next_cycle();
+    checker_.compare("tick_o", dut_->tick_o, model_.outputs().tick);
+    checker_.compare("rate_o", dut_->rate_o, model_.outputs().rate);
+    if (!snapshot_.known()) return;
+    checker_.compare("chain_o", dut_->chain_o, snapshot_.word());
+    ++chained_;
+  }
+
+  std::uint64_t shift(unsigned target, std::uint64_t value, unsigned halfwords) {
+    for (unsigned i = 0; i < halfwords; ++i) {
       model::FeedGenerator::Inputs in;
-      in.load = select;
-      in.word = static_cast<std::uint16_t>(value >> (16 * i));
+      in.load = lockstep::halfword(target, value, i);
       clock(in);
     }
-    return static_cast<std::uint64_t>(halfwords);
+    return halfwords;
   }
 
   lockstep::Checker checker_;
   lockstep::Simulated<Vdut> dut_;
   model::FeedGenerator model_;
-  std::mt19937_64 random_;
+  lockstep::SnapshotWord snapshot_;
+  lockstep::Dice dice_;
   unsigned enable_of_1024_;
   bool started_ = false;
+  bool resting_ = false;  // no piece runs
+  std::uint64_t since_swap_ = 0;  // clocks
   std::uint64_t ticks_ = 0;
+  std::uint64_t chained_ = 0;
 };
 
 // Corners of every field, at each distance from the shortest to beyond two updates.
@@ -126,6 +167,10 @@ void directed() {
   }
   for (const Piece& p : pieces) bench.piece(p, 2000);
   EXPECT_GT(bench.ticks(), 1000U);
+  for (const Piece& p : pieces) {
+    bench.piece_at_rest(p, 0);
+    bench.wait(200);
+  }
   bench.expect_all_compared();
 }
 
@@ -154,11 +199,9 @@ void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
     std::uint64_t distance = kSwapDistance + random() % 80;
     // One piece in 16 lasts for about 50 updates, however rare the enables are.
     if (random() % 16 == 0) distance += random() % (1 + 3'000'000 / enable_of_1024);
-    bench.piece(random_piece(random), distance);
-    if (random() % 8 == 0) {
-      bench.idle(random() % 50);
-      bench.clear();
-    }
+    if (random() % 5 == 0) bench.piece_at_rest(random_piece(random), random() % 40);
+    bench.piece(random_piece(random), distance, random() % 4);
+    if (random() % 500 == 0) bench.reset();
   }
   EXPECT_GT(bench.ticks(), pieces);
   bench.expect_all_compared();

@@ -1,68 +1,99 @@
-// Lockstep of the time base: RTL and model, both outputs in every cycle.
+// Lockstep of the time base: RTL and model, every output in every cycle.
 #include <gtest/gtest.h>
 
-#include <random>
+#include <vector>
 
 #include "Vdut.h"
 #include "lockstep.hpp"
 #include "trammel/model/time_base.hpp"
+#include "wires.hpp"
 
-namespace trammel {
+namespace trammel::lockstep {
 namespace {
+
+namespace reg = card_map::reg;
 
 constexpr std::uint64_t kComparedSignals = 2;
 
 class Bench {
  public:
-  explicit Bench(std::uint64_t seed) : checker_("time_base", seed) {
+  explicit Bench(std::uint64_t seed) : checker_("time_base", seed), dice_(seed) { reset(); }
+
+  // One clock: ratio, target and slew are the map's again, the clocks of an update counted anew.
+  void reset() {
+    checker_.event("reset");
     dut_->rst_i = 1;
-    dut_->target_i = 0x10000;
-    dut_->slew_i = 0;
-    dut_->hold_i = 0;
-    dut_.clock();
-    dut_.clock();
+    clock_dut({});
     dut_->rst_i = 0;
+    model_ = model::TimeBase();
+    snapshot_ = {};
+    compare();
   }
 
-  void run(const model::TimeBase::Inputs& in, std::uint64_t clocks) {
-    checker_.event("target", in.target);
-    checker_.event("slew", in.slew);
-    checker_.event("hold", in.hold);
-    dut_->target_i = in.target;
-    dut_->slew_i = in.slew;
-    dut_->hold_i = in.hold;
-    for (std::uint64_t i = 0; i < clocks; ++i) {
-      dut_.clock();
-      model_.clock(in);
-      checker_.compare("enable_o", dut_->enable_o, model_.outputs().enable);
-      checker_.compare("ratio_o", dut_->ratio_o, model_.outputs().ratio);
-      checker_.next_cycle();
-    }
+  // One clock; `setting` arrives in it.
+  void clock(bool hold, const model::Setting& setting = {}) {
+    dut_->hold_i = hold;
+    const std::uint32_t ratio = model_.outputs().ratio;
+    clock_dut(setting);
+    model_.clock({hold, setting});
+    // STATUS and FAULT come through here: 18 bits.
+    snapshot_.clock(dut_->snapshot_i, ratio, dut_->chain_i & 0x3FFFF);
+    compare();
+  }
+
+  void set(std::uint32_t address, std::uint32_t value, bool hold) {
+    checker_.event("setting", std::uint64_t{address} << 32 | value);
+    clock(hold, {true, address, value});
+  }
+
+  void run(bool hold, std::uint64_t clocks) {
+    checker_.event("hold", hold);
+    for (std::uint64_t i = 0; i < clocks; ++i) clock(hold);
   }
 
   // Every signal of every cycle was compared, and there were as many cycles as the scenario meant to run.
   void expect_cycles(std::uint64_t cycles) const {
     EXPECT_EQ(checker_.cycles(), cycles);
-    EXPECT_EQ(checker_.comparisons(), kComparedSignals * cycles);
+    EXPECT_EQ(checker_.comparisons(), kComparedSignals * cycles + chained_);
+    EXPECT_GT(chained_, cycles / 2);
   }
 
- private:
-  lockstep::Checker checker_;
-  lockstep::Simulated<Vdut> dut_;
-  model::TimeBase model_;
-};
+  Dice& dice() { return dice_; }
 
-std::uint32_t log_uniform(std::mt19937_64& random, int bits) {
-  return static_cast<std::uint32_t>(random() >> (64 - bits) >> (random() % static_cast<unsigned>(bits)));
-}
+ private:
+  void clock_dut(const model::Setting& setting) {
+    dut_->setting_i = wire(setting);
+    dut_->snapshot_i = dice_.snapshot();
+    dut_->chain_i = dice_.draw() & 0x3FFFF;
+    dut_.clock();
+  }
+
+  void compare() {
+    checker_.next_cycle();
+    checker_.compare("enable_o", dut_->enable_o, model_.outputs().enable);
+    checker_.compare("ratio_o", dut_->ratio_o, model_.outputs().ratio);
+    if (!snapshot_.known()) return;
+    checker_.compare("chain_o", dut_->chain_o, snapshot_.word());
+    ++chained_;
+  }
+
+  Checker checker_;
+  Dice dice_;
+  Simulated<Vdut> dut_;
+  model::TimeBase model_;
+  SnapshotWord snapshot_;
+  std::uint64_t chained_ = 0;
+};
 
 // Ratios at and around 0, 1 and the goal, slews of one unit and of everything at once; hold and resume in between.
 void directed() {
   Bench bench(0);
-  std::uint64_t cycles = 0;
+  std::uint64_t cycles = 1;
   const auto run = [&](std::uint32_t target, std::uint32_t slew, bool hold, std::uint64_t clocks) {
-    bench.run({target, slew, hold}, clocks);
-    cycles += clocks;
+    bench.set(reg::kRatioFeed, target, hold);
+    bench.set(reg::kSlew, slew, hold);
+    bench.run(hold, clocks);
+    cycles += clocks + 2;
   };
   for (const std::uint32_t slew : {0xFFF'FFFFU, 0xFFF'FFFEU, 0x100'0001U, 0x123'4567U}) {
     for (const std::uint32_t target : {0x10000U, 0xFFFFU, 1U, 0U, 0x8000U, 0x5EB8U}) {
@@ -79,26 +110,33 @@ void directed() {
 }
 
 void random_inputs() {
-  const std::uint64_t seed = lockstep::seed_from_environment(1);
-  std::mt19937_64 random(seed);
-  Bench bench(seed);
-  std::uint64_t cycles = 0;
-  const std::uint64_t length = lockstep::scaled(2'000'000);
+  Bench bench(seed_from_environment(1));
+  Dice& dice = bench.dice();
+  const std::uint64_t length = scaled(2'000'000);
+  std::uint64_t cycles = 1;
+  bool hold = false;
   while (cycles < length) {
-    model::TimeBase::Inputs in;
-    in.target = random() % 4 == 0 ? 0x10000 : log_uniform(random, 16);
-    in.slew = log_uniform(random, 28);
-    in.hold = random() % 4 == 0;
+    ++cycles;
+    if (dice.chance(4)) hold = !hold;
+    const unsigned kind = dice.below(100);
+    if (kind == 0)
+      bench.reset();
+    else if (kind < 40)
+      bench.set(reg::kRatioFeed, dice.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice.log_uniform(16)), hold);
+    else if (kind < 80)
+      bench.set(reg::kSlew, static_cast<std::uint32_t>(dice.log_uniform(28)), hold);
+    else  // somebody else's setting, or none
+      bench.clock(hold, {dice.chance(2), dice.chance(2) ? reg::kRatioRapid : reg::kHoldLimit, dice.draw()});
     // Mostly short: changes then fall on each of the four clocks of an update.
-    const std::uint64_t clocks = 1 + random() % (random() % 8 == 0 ? 5000 : 40);
-    bench.run(in, clocks);
+    const std::uint64_t clocks = dice.below(dice.chance(8) ? 5000 : 40);
+    bench.run(hold, clocks);
     cycles += clocks;
   }
   bench.expect_cycles(cycles);
 }
 
 TEST(TimeBaseLockstep, DirectedAndRandom) {
-  const std::string complaint = lockstep::judge([] {
+  const std::string complaint = judge([] {
     directed();
     random_inputs();
   });
@@ -106,4 +144,4 @@ TEST(TimeBaseLockstep, DirectedAndRandom) {
 }
 
 }  // namespace
-}  // namespace trammel
+}  // namespace trammel::lockstep

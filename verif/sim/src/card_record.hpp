@@ -1,4 +1,4 @@
-// What the card shows behind one rising edge, as memory to be compared: the one list of the signals that the lockstep
+// What the card shows after one rising edge, as memory to be compared: the one list of the signals that the lockstep
 // compares. RTL and golden model each fill a record; equal cards are equal bytes.
 #pragma once
 
@@ -14,31 +14,31 @@
 // SIGNAL(name, what the RTL shows, the golden model's value, when it means anything)
 // `rtl` is the Verilated card, `seen` its observe_o, `out` and `bus` are the model's outputs; a condition names signals
 // that stand further up. Where it does not hold both records say 0. All signals are compared in every cycle.
-#define TRAMMEL_CARD_SIGNALS(SIGNAL)                                          \
-  SIGNAL(tick, seen.tick(), out.tick, true)                                   \
-  SIGNAL(path_tick, seen.path_tick(), out.path_tick, true)                    \
-  SIGNAL(path_swap, seen.path_swap(), out.path_swap, true)                    \
-  SIGNAL(feed_swap, seen.feed_swap(), out.feed_swap, true)                    \
-  SIGNAL(path_step, seen.path_step(), out.path_step, true)                    \
-  SIGNAL(path_dir, seen.path_dir(), out.path_dir, true)                       \
-  SIGNAL(step_o, rtl.step_o, out.step, true)                                  \
-  SIGNAL(dir_o, rtl.dir_o, out.dir, true)                                     \
-  SIGNAL(irq_o, rtl.irq_o, out.irq, true)                                     \
-  SIGNAL(status, seen.status(), out.status, true)                             \
-  SIGNAL(fault, seen.fault(), out.fault, true)                                \
-  SIGNAL(geometry_begun, seen.geometry_begun(), out.geometry_begun, true)     \
-  SIGNAL(feed_begun, seen.feed_begun(), out.feed_begun, true)                 \
-  SIGNAL(geometry_room, seen.geometry_room(), out.geometry_room, true)        \
-  SIGNAL(feed_room, seen.feed_room(), out.feed_room, true)                    \
-  SIGNAL(ratio, seen.ratio(), out.ratio, true)                                \
-  SIGNAL(rate, seen.rate(), out.rate, true)                                   \
-  SIGNAL(awready_o, rtl.awready_o, bus.awready, true)                         \
-  SIGNAL(wready_o, rtl.wready_o, bus.wready, true)                            \
-  SIGNAL(bvalid_o, rtl.bvalid_o, bus.bvalid, true)                            \
-  SIGNAL(bresp_o, rtl.bresp_o, bus.bresp, bvalid_o)                           \
-  SIGNAL(arready_o, rtl.arready_o, bus.arready, true)                         \
-  SIGNAL(rvalid_o, rtl.rvalid_o, bus.rvalid, true)                            \
-  SIGNAL(rdata_o, rtl.rdata_o, bus.rdata, rvalid_o)                           \
+#define TRAMMEL_CARD_SIGNALS(SIGNAL)                                      \
+  SIGNAL(tick, seen.tick(), out.tick, true)                               \
+  SIGNAL(path_tick, seen.path_tick(), out.path_tick, true)                \
+  SIGNAL(path_swap, seen.path_swap(), out.path_swap, true)                \
+  SIGNAL(feed_swap, seen.feed_swap(), out.feed_swap, true)                \
+  SIGNAL(path_step, seen.path_step(), out.path_step, true)                \
+  SIGNAL(path_dir, seen.path_dir(), out.path_dir, true)                   \
+  SIGNAL(step_o, rtl.step_o, out.step, true)                              \
+  SIGNAL(dir_o, rtl.dir_o, out.dir, true)                                 \
+  SIGNAL(irq_o, rtl.irq_o, out.irq, true)                                 \
+  SIGNAL(status, seen.status(), out.status, true)                         \
+  SIGNAL(fault, seen.fault(), out.fault, true)                            \
+  SIGNAL(geometry_begun, seen.geometry_begun(), out.geometry_begun, true) \
+  SIGNAL(feed_begun, seen.feed_begun(), out.feed_begun, true)             \
+  SIGNAL(geometry_room, seen.geometry_room(), out.geometry_room, true)    \
+  SIGNAL(feed_room, seen.feed_room(), out.feed_room, true)                \
+  SIGNAL(ratio, seen.ratio(), out.ratio, true)                            \
+  SIGNAL(rate, seen.rate(), out.rate, true)                               \
+  SIGNAL(awready_o, rtl.awready_o, bus.awready, true)                     \
+  SIGNAL(wready_o, rtl.wready_o, bus.wready, true)                        \
+  SIGNAL(bvalid_o, rtl.bvalid_o, bus.bvalid, true)                        \
+  SIGNAL(bresp_o, rtl.bresp_o, bus.bresp, bvalid_o)                       \
+  SIGNAL(arready_o, rtl.arready_o, bus.arready, true)                     \
+  SIGNAL(rvalid_o, rtl.rvalid_o, bus.rvalid, true)                        \
+  SIGNAL(rdata_o, rtl.rdata_o, bus.rdata, rvalid_o)                       \
   SIGNAL(rresp_o, rtl.rresp_o, bus.rresp, rvalid_o)
 
 // AXIS_SIGNAL(name, what the RTL shows of axis n, the golden model's value), 32 bits each
@@ -124,7 +124,6 @@ struct CardRecord {
 #undef TRAMMEL_SHOW_AXIS
 #undef TRAMMEL_SHOW
   }
-
 };
 
 // No padding: equal cards are equal bytes.

@@ -72,6 +72,7 @@ class CommandFetch {
   int length_ = 0;      // halfwords of the command
   int pause_at_ = 0;    // the halfword before which it may have to wait
   bool split_ = false;  // the piece is decoded without acceleration and jerk
+  bool header_here_ = false;  // what arrives is of this command, not the rest of the one before
   card_map::Opcode opcode_ = card_map::Opcode::End;
   std::uint8_t mask_ = 0;
   std::uint8_t axes_[8] = {};  // of the mask, lowest first

@@ -102,6 +102,10 @@ class PathEngines {
     else if (almost_ != 0)
       --almost_;
     if (in.swap) prescaled_ = in.accumulator;
+    if (in.cut) {
+      almost_ = 0;
+      prescaled_ = false;
+    }
   }
 
   void route(const LoadWord& load, const DeviationAccumulator::Outputs& engine) {

@@ -37,8 +37,7 @@ class StopControl {
   void clock(const Inputs& in) {
     const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
                                  (in.incomplete ? card_map::field::kFaultPathIncomplete : 0);
-    const std::uint32_t ramped = reaction_ & card_map::field::kFaultStep;
-    const bool at_once = (events & ~ramped) != 0;
+    const bool at_once = (events & ~reaction_) != 0;
     out_.hold = hold_ || state_ == State::Ramp;
     out_.closed = out_.fault != 0 || state_ != State::Run;
     out_.cut = in.abort;

@@ -26,7 +26,6 @@ class Bench {
     rtl_->rst_i = 1;
     drive();
     rtl_.clock();
-    rtl_.clock();
     rtl_->rst_i = 0;
     model_.reset();
     compare();

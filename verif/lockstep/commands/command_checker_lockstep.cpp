@@ -1,5 +1,5 @@
-// The stream's door in lockstep with its model: every violation of every layout, then random streams with corrupted
-// words, scarce room, flushes, clears and writes that the door does not wait for.
+// The command checker in lockstep with its model: every violation of every layout, then random streams with corrupted
+// words, scarce room, flushes, clears and writes that it is not ready for.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -9,33 +9,35 @@
 #include "Vdut.h"
 #include "command_source.hpp"
 #include "lockstep.hpp"
-#include "trammel/model/command_door.hpp"
+#include "trammel/model/command_checker.hpp"
 
 namespace {
 
 using trammel::lockstep::Checker;
-using trammel::model::CommandDoor;
+using trammel::model::CommandChecker;
 using trammel::testing::CommandSource;
 using trammel::testing::WireCommand;
 
 constexpr unsigned kAxes = TRAMMEL_AXES;
-constexpr std::uint64_t kSignals = 13;
+constexpr std::uint32_t kEngines = TRAMMEL_ENGINES;
+constexpr std::uint64_t kSignals = 11;
 constexpr std::uint16_t kMuchRoom = 4096;
 
 class Bench {
  public:
-  explicit Bench(std::uint64_t seed) : checker_("command_door", seed), model_(kAxes) {
-    CommandDoor::Inputs in;
+  explicit Bench(std::uint64_t seed) : checker_("command_checker", seed), model_(kAxes, kEngines) {
+    CommandChecker::Inputs in;
     in.reset = true;
     clock(in);
   }
 
-  void clock(const CommandDoor::Inputs& in) {
+  void clock(const CommandChecker::Inputs& in) {
     rtl_->rst_i = in.reset;
     rtl_->write_i = in.write;
     rtl_->word_i = in.word;
     rtl_->flush_i = in.flush;
     rtl_->clear_i = in.clear;
+    rtl_->closed_i = in.closed;
     rtl_->geometry_room_i = in.geometry_room;
     rtl_->feed_room_i = in.feed_room;
     if (in.write) checker_.event("write", in.word);
@@ -49,16 +51,14 @@ class Bench {
     refusals_ += model_.outputs().refuse ? 1U : 0U;
   }
 
-  const CommandDoor::Outputs& outputs() const { return model_.outputs(); }
+  const CommandChecker::Outputs& outputs() const { return model_.outputs(); }
   const Checker& checker() const { return checker_; }
   std::uint64_t commits() const { return commits_; }
   std::uint64_t refusals() const { return refusals_; }
 
  private:
-  void compare(const CommandDoor::Outputs& model) {
+  void compare(const CommandChecker::Outputs& model) {
     checker_.compare("ready_o", rtl_->ready_o, model.ready);
-    checker_.compare("done_o", rtl_->done_o, model.done);
-    checker_.compare("error_o", rtl_->error_o, model.error);
     checker_.compare("halfword_o", rtl_->halfword_o, model.halfword);
     checker_.compare("geometry_write_o", rtl_->geometry_write_o, model.geometry_write);
     checker_.compare("feed_write_o", rtl_->feed_write_o, model.feed_write);
@@ -73,13 +73,13 @@ class Bench {
 
   Checker checker_;
   trammel::lockstep::Simulated<Vdut> rtl_;
-  CommandDoor model_;
+  CommandChecker model_;
   std::uint64_t commits_ = 0;
   std::uint64_t refusals_ = 0;
 };
 
 void send(Bench& bench, const std::vector<std::uint32_t>& words, std::uint16_t geometry_room, std::uint16_t feed_room) {
-  CommandDoor::Inputs in;
+  CommandChecker::Inputs in;
   in.geometry_room = geometry_room;
   in.feed_room = feed_room;
   for (const std::uint32_t word : words) {
@@ -92,14 +92,14 @@ void send(Bench& bench, const std::vector<std::uint32_t>& words, std::uint16_t g
 }
 
 void clear(Bench& bench) {
-  CommandDoor::Inputs in;
+  CommandChecker::Inputs in;
   in.clear = true;
   bench.clock(in);
 }
 
 void directed(Bench& bench, CommandSource& source) {
   for (const auto& layout : trammel::card_map::kCommands) {
-    if (layout.mask_rule == trammel::card_map::MaskRule::Plane && kAxes < 2) continue;
+    if (!CommandSource::possible(layout, kAxes, kEngines)) continue;
     const WireCommand good = source.make(layout, 0);
     const auto needed = static_cast<std::uint16_t>(good.stored().size());
     for (int lack = 0; lack < 4; ++lack) {
@@ -107,17 +107,18 @@ void directed(Bench& bench, CommandSource& source) {
       send(bench, good.words(), static_cast<std::uint16_t>(needed - (lack & 1)),
            static_cast<std::uint16_t>(needed - (lack >> 1)));
     }
-    for (const auto& violation : trammel::testing::violations(good, kAxes)) {
+    for (const auto& violation : trammel::testing::violations(good, kAxes, kEngines)) {
       clear(bench);
       send(bench, violation.command.words(violation.padding), kMuchRoom, kMuchRoom);
     }
   }
 }
 
-// Drives the door as no register file would: writes and flushes at any time, clears in the middle of words.
+// Drives the checker as no register file would: writes and flushes at any time, clears in the middle of words.
 void random_stream(Bench& bench, CommandSource& source, std::uint64_t commands) {
   auto& random = source.random();
   std::uint8_t number = 0;
+  unsigned closed_for = 0;  // clocks
   for (std::uint64_t i = 0; i < commands; ++i) {
     const bool corrupt = random() % 8 == 0;
     const bool patient = random() % 8 != 0;
@@ -125,14 +126,16 @@ void random_stream(Bench& bench, CommandSource& source, std::uint64_t commands) 
     if (corrupt) words[random() % words.size()] ^= 1U << random() % 32;
     bool open = true;
     for (std::size_t w = 0; w < words.size();) {
-      CommandDoor::Inputs in;
+      CommandChecker::Inputs in;
       in.write = patient ? bench.outputs().ready && random() % 4 != 0 : random() % 2 == 0;
       in.word = words[w];
       in.flush = random() % 400 == 0;
       in.clear = random() % 700 == 0;
       in.reset = random() % 5000 == 0;
-      in.geometry_room = static_cast<std::uint16_t>(random() % 20 == 0 ? random() % 38 : random() % 8192);
-      in.feed_room = static_cast<std::uint16_t>(random() % 20 == 0 ? random() % 38 : random() % 8192);
+      in.closed = closed_for != 0 || random() % 600 == 0;
+      if (in.closed) closed_for = closed_for != 0 ? closed_for - 1 : static_cast<unsigned>(random() % 30);
+      in.geometry_room = static_cast<std::uint16_t>(random() % 20 == 0 ? random() % 52 : random() % 8192);
+      in.feed_room = static_cast<std::uint16_t>(random() % 20 == 0 ? random() % 52 : random() % 8192);
       if (in.write && bench.outputs().ready) ++w;
       bench.clock(in);
       open = open && !bench.outputs().refuse && !in.clear && !in.reset;
@@ -144,11 +147,11 @@ void random_stream(Bench& bench, CommandSource& source, std::uint64_t commands) 
   }
 }
 
-TEST(CommandDoorLockstep, EqualsModelInEveryCycle) {
+TEST(CommandCheckerLockstep, EqualsModelInEveryCycle) {
   const std::string complaint = trammel::lockstep::judge([] {
     const std::uint64_t seed = trammel::lockstep::seed_from_environment(20260102);
     Bench bench(seed);
-    CommandSource source(kAxes, seed);
+    CommandSource source(kAxes, seed, kEngines);
     directed(bench, source);
     random_stream(bench, source, trammel::lockstep::scaled(20000));
     ASSERT_EQ(bench.checker().comparisons(), kSignals * bench.checker().cycles());

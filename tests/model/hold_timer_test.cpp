@@ -1,0 +1,52 @@
+// The wait timer's model: a tick in every `limit` clocks, whatever the limit was before.
+#include "trammel/model/hold_timer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace trammel::model {
+namespace {
+
+constexpr std::uint32_t kLimitAfterReset = 0xFFFF;
+
+TEST(HoldTimer, TicksOnceInEachLimit) {
+  for (const std::uint32_t limit : {1U, 2U, 3U, 300U, 65535U}) {
+    HoldTimer timer;
+    timer.clock({true, card_map::reg::kHoldLimit, limit});
+    // The clock of the setting counted already, against the limit of reset.
+    for (std::uint32_t clocks = 2; clocks <= 4 * limit; ++clocks) {
+      timer.clock({});
+      EXPECT_EQ(timer.tick(), clocks % limit == 0) << limit << " " << clocks;
+    }
+  }
+}
+
+TEST(HoldTimer, LimitBelowTheCountTicksAtOnce) {
+  HoldTimer timer;
+  for (int i = 0; i < 100; ++i) timer.clock({});
+  timer.clock({true, card_map::reg::kHoldLimit, 7});
+  EXPECT_FALSE(timer.tick());
+  timer.clock({});
+  EXPECT_TRUE(timer.tick());
+}
+
+TEST(HoldTimer, AdvanceIsAsManyClocks) {
+  for (std::uint64_t n : {1U, 2U, 299U, 300U, 301U, 12345U}) {
+    HoldTimer one_by_one;
+    HoldTimer at_once;
+    for (HoldTimer* timer : {&one_by_one, &at_once}) {
+      for (int i = 0; i < 500; ++i) timer->clock({});
+      timer->clock({true, card_map::reg::kHoldLimit, 300});
+    }
+    for (std::uint64_t i = 0; i < n; ++i) one_by_one.clock({});
+    at_once.advance(n);
+    for (int i = 0; i < 600; ++i) {
+      EXPECT_EQ(one_by_one.tick(), at_once.tick()) << n << " " << i;
+      one_by_one.clock({});
+      at_once.clock({});
+    }
+  }
+  EXPECT_EQ(HoldTimer().limit(), kLimitAfterReset);
+}
+
+}  // namespace
+}  // namespace trammel::model

@@ -1,0 +1,159 @@
+// The sequencers' model against the page's clocks: how fast lines follow each other, how long a dwell counts, that every
+// tick taken counts for path and piece alike.
+#include "trammel/model/sequencer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "trammel/model/halfword_queue.hpp"
+
+namespace trammel::model {
+namespace {
+
+using card_map::Opcode;
+using Halfwords = std::vector<std::uint16_t>;
+
+Halfwords command(Opcode opcode, unsigned mask, std::uint64_t count, std::size_t payload) {
+  Halfwords to{static_cast<std::uint16_t>(static_cast<unsigned>(opcode) | mask << 8), static_cast<std::uint16_t>(count),
+               static_cast<std::uint16_t>(count >> 16), static_cast<std::uint16_t>(count >> 32)};
+  to.resize(to.size() + payload, 0);
+  return to;
+}
+
+Halfwords line(unsigned axes, std::uint64_t ticks) {
+  return command(Opcode::Line, (1U << axes) - 1, ticks, 3 * std::size_t{axes});
+}
+Halfwords piece(std::uint64_t ticks) {
+  const card_map::Command& layout = *card_map::find_command(static_cast<std::uint8_t>(Opcode::Feed));
+  return command(Opcode::Feed, 0, ticks, card_map::queue_halfwords(layout, 0) - 4);
+}
+Halfwords dwell(std::uint64_t clocks) { return command(Opcode::Dwell, 0, clocks, 0); }
+
+// A feed tick three clocks after each enable; the engines and axes never keep anything waiting.
+class Bench {
+ public:
+  Bench() : geometry_(4096), feed_(4096) {}
+
+  void queue(const std::vector<Halfwords>& geometry, const std::vector<Halfwords>& feed) {
+    fill(geometry_, geometry);
+    fill(feed_, feed);
+  }
+
+  void run(std::uint64_t clocks) {
+    for (; clocks != 0; --clocks, ++now) {
+      Sequencer::Inputs in;
+      in.geometry_empty = geometry_.outputs().empty;
+      in.geometry_word = geometry_.outputs().word;
+      in.feed_empty = feed_.outputs().empty;
+      in.feed_word = feed_.outputs().word;
+      in.enable = true;
+      in.engine_done = true;
+      in.feed_tick = (coming_ & 1) != 0;
+      coming_ = sequencer.outputs().feed_clear ? 0 : coming_ >> 1 | (sequencer.outputs().feed_enable ? 4U : 0U);
+      HalfwordQueue::Inputs geometry;
+      HalfwordQueue::Inputs feed;
+      geometry.read = sequencer.geometry_read();
+      feed.read = sequencer.feed_read();
+      const std::uint32_t begun = sequencer.outputs().geometry_begun;
+      sequencer.clock(in);
+      geometry_.clock(geometry);
+      feed_.clock(feed);
+      const Sequencer::Outputs& out = sequencer.outputs();
+      if (out.swap) swaps.push_back(now);
+      if (out.feed_swap) pieces.push_back(now);
+      if (out.geometry_begun != begun) begins.push_back(now);
+      ticks += out.tick ? 1U : 0U;
+      mismatches += out.mismatch ? 1U : 0U;
+    }
+  }
+
+  Sequencer sequencer;
+  std::uint64_t now = 0;
+  std::uint64_t ticks = 0;
+  unsigned mismatches = 0;
+  std::vector<std::uint64_t> swaps;
+  std::vector<std::uint64_t> pieces;
+  std::vector<std::uint64_t> begins;
+
+ private:
+  static void fill(HalfwordQueue& queue, const std::vector<Halfwords>& commands) {
+    HalfwordQueue::Inputs in;
+    in.write = true;
+    for (const Halfwords& halfwords : commands) {
+      for (const std::uint16_t word : halfwords) {
+        in.word = word;
+        queue.clock(in);
+      }
+    }
+    in = {};
+    in.commit = true;
+    queue.clock(in);
+    queue.clock({});
+  }
+
+  HalfwordQueue geometry_;
+  HalfwordQueue feed_;
+  unsigned coming_ = 0;
+};
+
+TEST(Sequencer, ShortLinesFollowAsFastAsTheyAreDecoded) {
+  for (unsigned axes = 1; axes <= 8; ++axes) {
+    Bench bench;
+    // The first line waits for its piece: meanwhile the second one is decoded.
+    bench.queue(std::vector<Halfwords>(6, line(axes, 1)), {piece(6)});
+    bench.run(500);
+    ASSERT_EQ(bench.swaps.size(), 6U);
+    for (std::size_t i = 3; i < 6; ++i) EXPECT_EQ(bench.swaps[i] - bench.swaps[i - 1], 8 + 3 * axes);
+    EXPECT_EQ(bench.ticks, 6U);
+  }
+}
+
+TEST(Sequencer, LongLinesFollowInTheClockOfTheLastTick) {
+  Bench bench;
+  bench.queue({line(3, 100), line(3, 50), dwell(0)}, {piece(150), dwell(0)});
+  bench.run(600);
+  ASSERT_EQ(bench.swaps.size(), 2U);
+  EXPECT_EQ(bench.ticks, 150U);
+  // Ticks begin some clocks after the piece and then come a clock each.
+  EXPECT_GE(bench.swaps[1] - bench.pieces[0], 100U);
+  EXPECT_LT(bench.swaps[1] - bench.pieces[0], 110U);
+}
+
+TEST(Sequencer, ADwellCountsAtLeastOneClock) {
+  const auto distance = [](std::uint64_t clocks) {
+    Bench bench;
+    bench.queue({dwell(clocks), dwell(0)}, {dwell(clocks), dwell(0)});
+    bench.run(clocks + 200);
+    EXPECT_EQ(bench.begins.size(), 2U);
+    EXPECT_EQ(bench.sequencer.outputs().feed_begun, 2U);
+    return bench.begins.back() - bench.begins.front();
+  };
+  const std::uint64_t none = distance(0);
+  for (const std::uint64_t clocks : {1U, 2U, 3U, 16U, 17U, 1000U, 70'000U}) {
+    EXPECT_EQ(distance(clocks) - none, clocks - 1) << clocks;
+  }
+}
+
+TEST(Sequencer, PathsAndPiecesThatDisagreeAreAMismatchAtTheBarrier) {
+  for (const bool more_feed : {false, true}) {
+    Bench bench;
+    bench.queue({line(1, more_feed ? 10 : 11), dwell(0)}, {piece(more_feed ? 11 : 10), dwell(0)});
+    bench.run(300);
+    EXPECT_GT(bench.mismatches, 0U);
+    EXPECT_EQ(bench.ticks, 10U);
+  }
+}
+
+TEST(Sequencer, BegunCountsBothQueues) {
+  Bench bench;
+  bench.queue({line(1, 4), line(2, 6), dwell(3)}, {piece(5), piece(3), piece(2), dwell(3)});
+  bench.run(500);
+  EXPECT_EQ(bench.sequencer.outputs().geometry_begun, 3U);
+  EXPECT_EQ(bench.sequencer.outputs().feed_begun, 4U);
+  EXPECT_EQ(bench.pieces.size(), 3U);
+  EXPECT_EQ(bench.mismatches, 0U);
+}
+
+}  // namespace
+}  // namespace trammel::model

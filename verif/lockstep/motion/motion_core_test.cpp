@@ -1,0 +1,306 @@
+// Lockstep of the motion core, from queue words to steps: random programs, direct moves, settings, holds, faults with
+// each reaction, clears and aborts in either order, cuts and resets at any clock; every output in every cycle.
+#include "trammel/model/motion_core.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "lockstep.hpp"
+#include "programs.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+namespace reg = card_map::reg;
+
+constexpr unsigned kAxes = TRAMMEL_AXES;
+constexpr std::uint64_t kComparedSignals = 27 + kAxes;
+using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
+constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
+
+// The registers of direct mode as the loader reads them: the word at an address, two clocks later.
+class LoaderRam {
+ public:
+  void clock(std::uint8_t address) {
+    data_ = fetched_;
+    fetched_ = words_[address];
+  }
+  std::uint32_t data() const { return data_; }
+  void write(std::uint32_t address, std::uint32_t data) { words_[address >> 2 & 0xFF] = data; }
+
+ private:
+  std::array<std::uint32_t, 256> words_{};
+  std::uint32_t fetched_ = 0;
+  std::uint32_t data_ = 0;
+};
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed)
+      : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
+    reset();
+  }
+
+  void random_clock() {
+    if (dice_.chance(10'000)) random_pace();
+    const bool closed = model_->stop().closed;
+    if (!closed && !starting_ && geometry_.done() && dice_.chance(stretch_every_)) {
+      const Programs::Stretch stretch = programs_.stretch();
+      check_.event("stretch of commands", stretch.geometry.size());
+      geometry_.add(stretch.geometry);
+      feed_.add(stretch.feed);
+    }
+    in_ = {};
+    in_.abort = dice_.chance(abort_every_);
+    if (in_.abort) check_.event("abort");
+    if (model_->stop().fault != 0 ? dice_.chance(40) : dice_.chance(5000)) {
+      in_.clear_fault = dice_.chance(3) ? dice_.draw() : ~0U;
+      check_.event("clear fault", in_.clear_fault);
+    }
+    if (dice_.chance(200)) random_setting();
+    if (!starting_ && dice_.chance(start_every_)) random_start();
+    if (dice_.chance(50 * abort_every_))
+      reset();
+    else
+      clock();
+  }
+
+  Checker& check() { return check_; }
+  std::uint64_t steps() const { return steps_; }
+  std::uint64_t moves() const { return moves_; }
+  std::uint64_t faults() const { return faults_; }
+  std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
+
+ private:
+  void random_pace() {
+    abort_every_ = dice_.chance(3) ? 200 + dice_.below(500) : 20'000;
+    start_every_ = dice_.chance(2) ? 400 : 5000;
+    write_every_ = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
+    stretch_every_ = dice_.chance(3) ? 1000 : 10;
+    programs_.wrong_every = dice_.chance(3) ? 10 : 1000;
+    programs_.longest = dice_.chance(2) ? 20 : 300;
+    // Drives that are slow make step faults; mostly they are quick.
+    slow_ = dice_.chance(4);
+  }
+
+  void random_setting() {
+    const unsigned axis = dice_.below(kAxes);
+    const std::uint32_t time = slow_ ? dice_.below(100) : dice_.below(1U << dice_.below(4));
+    const std::pair<std::uint32_t, std::uint32_t> settings[] = {
+        {reg::step_length(axis), time},
+        {reg::step_space(axis), time},
+        {reg::dir_setup(axis), time},
+        {reg::dir_hold(axis), time},
+        {reg::mode(axis), dice_.below(16)},
+        {reg::kHoldLimit, 1 + dice_.below(dice_.chance(2) ? 300 : 0xFFFF)},
+        {reg::kHold, dice_.chance(8) ? 1U : 0U},
+        {reg::kRatioFeed, !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
+        {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
+        {reg::kStopReaction, dice_.chance(2) ? 0xFF : dice_.below(256)}};
+    const auto& [address, data] = settings[dice_.below(std::size(settings))];
+    in_.setting = {true, address, data};
+    check_.event("setting", std::uint64_t{address} << 32 | data);
+  }
+
+  // Mostly a move that can be made; else one value is off.
+  void random_start() {
+    for (unsigned axis = 0; axis < kAxes; ++axis) {
+      std::uint64_t frequency = dice_.log_uniform(40) + 1;
+      if (dice_.chance(8)) frequency = std::uint64_t{1} << 40;
+      if (dice_.chance(20)) frequency = dice_.chance(2) ? 0 : (std::uint64_t{1} << 40) + 1 + dice_.below(2) * 0xFFFFFFFF;
+      write_register(reg::frequency_lo(axis), static_cast<std::uint32_t>(frequency));
+      write_register(reg::frequency_hi(axis), static_cast<std::uint32_t>(frequency >> 32));
+      write_register(reg::count(axis), dice_.chance(3) ? dice_.below(4) : dice_.below(100));
+      write_register(reg::direction(axis), dice_.below(2));
+    }
+    write_register(reg::kLengthLo, dice_.chance(20) ? 0 : 1 + dice_.below(200));
+    write_register(reg::kLengthHi, dice_.chance(1000) ? 1 : 0);
+    starting_ = true;
+    in_.start = true;
+    mask_ = dice_.chance(10) ? dice_.draw() : 1 + dice_.below(kAllAxes);
+    check_.event("START", mask_ & 0xFF);
+  }
+
+  void write_register(std::uint32_t address, std::uint32_t data) {
+    rtl_ram_.write(address, data);
+    model_ram_.write(address, data);
+  }
+
+  // One clock of reset, whatever comes in it; the pins stand at the strap's levels.
+  void reset() {
+    idle_level_ = dice_.draw() & ((1U << 2 * kAxes) - 1);
+    check_.event("reset", idle_level_);
+    dut_->rst_i = 1;
+    apply();
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_);
+    geometry_.reset();
+    feed_.reset();
+    starting_ = false;
+    chain_.fill({});
+    compare();
+  }
+
+  void clock() {
+    apply();
+    advance_chain();
+    const bool cut = model_->stop().cut;
+    const bool geometry_reads = model_->sequencer().geometry_read();
+    const bool feed_reads = model_->sequencer().feed_read();
+    const std::uint8_t rtl_address = dut_->loader_address_o;
+    const std::uint8_t model_address = model_->loader().address;
+    dut_.clock();
+    model_->clock(in_);
+    rtl_ram_.clock(rtl_address);
+    model_ram_.clock(model_address);
+    geometry_.clock(geometry_reads, dice_.chance(write_every_), cut);
+    feed_.clock(feed_reads, dice_.chance(write_every_), cut);
+    compare();
+    note_events();
+    steps_ += model_->outputs().path_step != 0 ? 1U : 0U;
+    moves_ += model_->loader().go ? 1U : 0U;
+    faults_ += model_->stop().stop ? 1U : 0U;
+  }
+
+  void note_events() {
+    const auto& s = model_->sequencer().outputs();
+    if (model_->stop().cut) check_.event("cut, with fault", model_->stop().fault);
+    if (s.swap) check_.event(s.accumulator ? "arc begins" : s.direct ? "direct move begins" : "line begins", s.active);
+    if (s.feed_swap) check_.event("piece begins");
+    if (model_->loader().done) starting_ = false;
+  }
+
+  // From the far end: RATIO, RATE, FEED_BEGUN, GEOMETRY_BEGUN, POSITION of each axis; only 18 bits pass RATIO.
+  void advance_chain() {
+    const auto& sequencer = model_->sequencer().outputs();
+    for (std::size_t i = chain_.size(); i-- > 0;) {
+      const std::uint32_t values[] = {model_->time().ratio, model_->feed().rate, sequencer.feed_begun,
+                                      sequencer.geometry_begun};
+      const std::uint32_t value = i < 4 ? values[i] : model_->position(static_cast<unsigned>(i - 4));
+      if (i == 0)
+        chain_[i].clock(dut_->snapshot_i, value, dut_->chain_i);
+      else
+        chain_[i].clock(dut_->snapshot_i, value, chain_[i - 1]);
+    }
+  }
+
+  void apply() {
+    in_.geometry_empty = geometry_.outputs().empty;
+    in_.geometry_word = geometry_.outputs().word;
+    in_.feed_empty = feed_.outputs().empty;
+    in_.feed_word = feed_.outputs().word;
+    in_.start_mask = static_cast<std::uint8_t>(mask_);
+    in_.loader_data = model_ram_.data();
+    dut_->idle_level_i = static_cast<IdleLevel>(idle_level_);
+    dut_->setting_i = wire(in_.setting);
+    dut_->abort_i = in_.abort;
+    dut_->clear_fault_i = in_.clear_fault;
+    dut_->geometry_empty_i = in_.geometry_empty;
+    dut_->geometry_word_i = in_.geometry_word;
+    dut_->feed_empty_i = in_.feed_empty;
+    dut_->feed_word_i = in_.feed_word;
+    dut_->start_i = in_.start;
+    dut_->start_mask_i = in_.start_mask;
+    dut_->loader_data_i = rtl_ram_.data();
+    dut_->snapshot_i = dice_.snapshot();
+    dut_->chain_i = dice_.draw() & 0x3FFFF;
+  }
+
+  std::uint32_t observed(unsigned low, unsigned width) {
+    const std::uint32_t* words = &dut_->observe_o[0];
+    const std::uint64_t two = words[low / 32] | (low % 32 + width > 32 ? std::uint64_t{words[low / 32 + 1]} << 32 : 0);
+    return static_cast<std::uint32_t>(two >> low % 32 & ((std::uint64_t{1} << width) - 1));
+  }
+
+  void compare() {
+    check_.next_cycle();
+    const auto& s = model_->sequencer().outputs();
+    const auto& out = model_->outputs();
+    const auto& stop = model_->stop();
+    check_.compare("geometry_read_o", dut_->geometry_read_o, model_->sequencer().geometry_read());
+    check_.compare("feed_read_o", dut_->feed_read_o, model_->sequencer().feed_read());
+    check_.compare("start_done_o", dut_->start_done_o, model_->loader().done);
+    check_.compare("fault_o", dut_->fault_o, stop.fault);
+    check_.compare("cut_o", dut_->cut_o, stop.cut);
+    check_.compare("closed_o", dut_->closed_o, stop.closed);
+    check_.compare("stop_o", dut_->stop_o, stop.stop);
+    const unsigned status = dut_->status_o;
+    check_.compare("busy", status & 1, out.busy);
+    check_.compare("direct", status >> 1 & 1, s.direct);
+    check_.compare("path active", status >> 2 & 1, s.path_active);
+    check_.compare("feed active", status >> 3 & 1, s.feed_active);
+    check_.compare("ended", status >> 4 & 1, s.ended);
+    check_.compare("stopping", status >> 5 & 1, stop.stopping);
+    check_.compare("held_o", dut_->held_o, model_->time().ratio == 0);
+    check_.compare("geometry_begun_o", dut_->geometry_begun_o, s.geometry_begun);
+    check_.compare("feed_begun_o", dut_->feed_begun_o, s.feed_begun);
+    check_.compare("tick", observed(0, 1), s.tick);
+    check_.compare("path tick", observed(1, 1), model_->engines().path_tick);
+    check_.compare("path swap", observed(2, 1), s.swap);
+    check_.compare("feed swap", observed(3, 1), s.feed_swap);
+    check_.compare("path step", observed(4, kAxes), out.path_step);
+    check_.compare("path dir", observed(4 + kAxes, kAxes), out.path_dir);
+    for (unsigned axis = 0; axis < kAxes; ++axis)
+      check_.compare("position", observed(4 + 2 * kAxes + 32 * axis, 32), model_->position(axis));
+    check_.compare("ratio", observed(4 + 34 * kAxes, 17), model_->time().ratio);
+    check_.compare("rate", observed(21 + 34 * kAxes, 32), model_->feed().rate);
+    check_.compare("step_o", dut_->step_o, out.step);
+    check_.compare("dir_o", dut_->dir_o, out.dir);
+    check_.compare("start_error_o, with done", dut_->start_done_o & dut_->start_error_o,
+                   model_->loader().done && model_->loader().error);
+    if (model_->loader().done && model_->loader().error)
+      more("start_reason_o", dut_->start_reason_o, model_->loader().reason);
+    if (chain_.back().known()) more("chain_o", dut_->chain_o, chain_.back().word());
+  }
+
+  void more(const char* signal, std::uint64_t rtl, std::uint64_t model) {
+    check_.compare(signal, rtl, model);
+    ++more_;
+  }
+
+  Simulated<Vdut> dut_;
+  std::unique_ptr<model::MotionCore> model_;
+  model::MotionCore::Inputs in_;
+  Checker check_;
+  Dice dice_;
+  Programs programs_;
+  QueueWriter geometry_;
+  QueueWriter feed_;
+  LoaderRam rtl_ram_;
+  LoaderRam model_ram_;
+  std::array<SnapshotWord, 4 + kAxes> chain_;
+  std::uint32_t idle_level_ = 0;
+  std::uint32_t mask_ = 0;
+  bool starting_ = false;
+  bool slow_ = false;
+  unsigned abort_every_ = 20'000;
+  unsigned start_every_ = 5000;
+  unsigned stretch_every_ = 10;
+  unsigned write_every_ = 1;  // one halfword in so many clocks
+  std::uint64_t steps_ = 0;
+  std::uint64_t moves_ = 0;
+  std::uint64_t faults_ = 0;
+  std::uint64_t more_ = 0;
+};
+
+void random_programs() {
+  Bench bench(seed_from_environment(20261115));
+  const std::uint64_t length = scaled(1'000'000);
+  while (bench.check().cycles() < length) bench.random_clock();
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+  EXPECT_GT(bench.steps(), length / 100);
+  EXPECT_GT(bench.moves(), length / 20'000);
+  EXPECT_GT(bench.faults(), length / 20'000);
+}
+
+TEST(MotionCore, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

@@ -1,0 +1,60 @@
+// What counts on the path, as one top for its lockstep: a count shifted in and counted down, and the commands begun.
+`default_nettype none
+
+module counters (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    // count of the next path
+    input  wire logic        load_i,
+    input  wire logic [15:0] word_i,
+    output logic      [39:0] count_o,
+    output logic             zero_o,
+    // ticks
+    input  wire logic        swap_i,
+    input  wire logic        take_i,
+    output logic             last_o,
+    // commands begun
+    input  wire logic        cut_i,
+    input  wire logic        begin_i,
+    input  wire logic [ 1:0] snapshot_i,
+    input  wire logic [31:0] chain_i,
+    output logic      [31:0] chain_o,
+    output logic      [31:0] begun_o
+);
+  logic mid_zero;
+  logic top_zero;
+
+  count_chain next_count (
+      .clk_i,
+      .load_i,
+      .word_i,
+      .count_o,
+      .mid_zero_o(mid_zero),
+      .top_zero_o(top_zero),
+      .zero_o
+  );
+
+  tick_counter ticks (
+      .clk_i,
+      .rst_i,
+      .load_i    (swap_i),
+      .count_i   (count_o),
+      .mid_zero_i(mid_zero),
+      .top_zero_i(top_zero),
+      .take_i,
+      .last_o
+  );
+
+  begun_counter begun (
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .begin_i,
+      .snapshot_i,
+      .chain_i,
+      .chain_o,
+      .begun_o
+  );
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,160 @@
+// Lockstep of the counters with their closed forms: the next tick is the last one when one is left, whatever the count
+// and its word boundaries; the zero flag is the chain's; commands begun count but
+// in the clock of a cut, and are 0 from the second clock after it.
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+constexpr std::uint64_t kCountMask = (std::uint64_t{1} << 40) - 1;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed) : check_("counters", seed), dice_(seed) { reset(); }
+
+  void reset() {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    drive();
+    dut_->take_i = 0;
+    dut_.clock();
+    dut_->rst_i = 0;
+    left_ = 0;
+    begun_ = 0;
+    cut_before_ = false;
+    snapshot_ = {};
+    compare();
+  }
+
+  // Shifts a count in while the one before it still runs.
+  void load(std::uint64_t count, unsigned take_of_16) {
+    check_.event("count", count);
+    for (unsigned i = 0; i < 3; ++i) {
+      dut_->load_i = 1;
+      dut_->word_i = static_cast<SData>(count >> (16 * i) | (i == 2 ? dice_.draw() << 8 : 0));
+      settled_ = 0;
+      clock(take_of_16, false);
+    }
+    dut_->load_i = 0;
+    next_ = count & kCountMask;
+    for (int i = 0; i < 3; ++i) clock(take_of_16, false);
+  }
+
+  // Takes the count loaded last; a tick beside it still belongs to the one before. Then `clocks` clocks.
+  void begin(unsigned take_of_16, std::uint64_t clocks) {
+    check_.event("swap");
+    clock(take_of_16, true);
+    for (std::uint64_t i = 0; i < clocks && left_ != 0; ++i) clock(take_of_16, false);
+  }
+
+  // Ticks until none is left.
+  void finish(unsigned take_of_16) {
+    while (left_ != 0) clock(take_of_16, false);
+  }
+
+  Checker& check() { return check_; }
+  Dice& dice() { return dice_; }
+  std::uint64_t comparisons() const { return expected_; }
+  std::uint64_t lasts() const { return lasts_; }
+
+ private:
+  void drive() {
+    dut_->cut_i = dice_.chance(100);
+    dut_->begin_i = dice_.chance(3);
+    dut_->snapshot_i = dice_.snapshot();
+    dut_->chain_i = dice_.draw();
+  }
+
+  void clock(unsigned take_of_16, bool swap) {
+    const bool take = left_ != 0 && dice_.below(16) < take_of_16;
+    dut_->take_i = take;
+    dut_->swap_i = swap;
+    drive();
+    snapshot_.clock(dut_->snapshot_i, begun_, dut_->chain_i);
+    begun_ = cut_before_ ? 0 : begun_ + (dut_->cut_i != 0 ? 0U : dut_->begin_i);
+    cut_before_ = dut_->cut_i != 0;
+    if (take) --left_;
+    if (swap) left_ = next_;
+    if (settled_ < 3) ++settled_;
+    dut_.clock();
+    compare();
+    lasts_ += left_ == 1 ? 1U : 0U;
+  }
+
+  void compare() {
+    check_.next_cycle();
+    check_.compare("last_o", dut_->last_o, left_ == 1);
+    check_.compare("begun_o", dut_->begun_o, begun_);
+    expected_ += 2;
+    if (snapshot_.known()) {
+      check_.compare("chain_o", dut_->chain_o, snapshot_.word());
+      ++expected_;
+    }
+    if (settled_ < 3 || dut_->load_i != 0) return;
+    check_.compare("count_o", dut_->count_o, next_);
+    check_.compare("zero_o", dut_->zero_o, next_ == 0);
+    expected_ += 2;
+  }
+
+  Simulated<Vdut> dut_;
+  Checker check_;
+  Dice dice_;
+  SnapshotWord snapshot_;
+  std::uint64_t next_ = 0;
+  std::uint64_t left_ = 0;
+  std::uint32_t begun_ = 0;
+  bool cut_before_ = false;
+  unsigned settled_ = 0;  // clocks since the chain's last halfword, up to 3
+  std::uint64_t expected_ = 0;
+  std::uint64_t lasts_ = 0;
+};
+
+// Every count around each boundary of the counter's parts and of the chain's halfwords, at a tick a clock to the end.
+void boundaries() {
+  Bench bench(1);
+  std::uint64_t paths = 0;
+  const auto run = [&](std::uint64_t count) {
+    bench.load(count, 16);
+    bench.finish(16);
+    bench.begin(16, 0);
+    bench.finish(16);
+    ++paths;
+  };
+  for (std::uint64_t count = 1; count <= 600; ++count) run(count);
+  for (const unsigned bit : {10U, 12U, 16U, 17U, 20U}) {
+    for (std::uint64_t count = (1U << bit) - 2; count <= (1U << bit) + 18; ++count) run(count);
+  }
+  // Two laps of the upper part, all borrows in between.
+  run((std::uint64_t{2} << 20) + 0x10000);
+  EXPECT_EQ(bench.lasts(), paths);
+  EXPECT_EQ(bench.check().comparisons(), bench.comparisons());
+  EXPECT_GT(bench.check().cycles(), 20U << 20U);
+}
+
+// Counts whose end is far away: `last` stays low, and the next one begins in their midst (a cut).
+void random_counts() {
+  Bench bench(seed_from_environment(20261118));
+  Dice& dice = bench.dice();
+  const std::uint64_t paths = scaled(10'000);
+  for (std::uint64_t i = 0; i < paths; ++i) {
+    const unsigned density = 1 + dice.below(16);
+    std::uint64_t count = dice.log_uniform(dice.chance(2) ? 40 : 10);
+    if (dice.chance(4)) count = std::uint64_t{1} << dice.below(40);
+    if (dice.chance(4)) count |= std::uint64_t{1} << (20 + dice.below(20));
+    bench.load(count, density);
+    if (dice.chance(100)) bench.reset();
+    bench.begin(density, dice.below(300));
+  }
+  EXPECT_EQ(bench.check().comparisons(), bench.comparisons());
+  EXPECT_GT(bench.lasts(), paths / 10);
+}
+
+TEST(Counters, Boundaries) { EXPECT_EQ(judge(boundaries), ""); }
+TEST(Counters, RandomCounts) { EXPECT_EQ(judge(random_counts), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

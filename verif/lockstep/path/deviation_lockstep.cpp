@@ -1,0 +1,142 @@
+// The deviation accumulator beside its golden model: circles, ellipses, lines and values that fill every width,
+// loaded in any order, with ticks as fast as they go or with gaps, reloaded at once, cleared at any moment.
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <random>
+
+#include "deviation_paths.hpp"
+#include "lockstep.hpp"
+#include "trammel/model/deviation_accumulator.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+using Model = model::DeviationAccumulator;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed) : checker("deviation_accumulator", seed) {
+    Model::Inputs reset;
+    reset.rst = true;
+    // The direction outputs are unknown before the first edge under reset; from it on everything is compared.
+    clock(reset);
+  }
+
+  void clock(const Model::Inputs& in) {
+    dut_->rst_i = in.rst;
+    dut_->load_i = load_wire(in.load);
+    dut_->start_i = in.start;
+    dut_->tick_i = in.tick;
+    dut_->clear_i = in.clear;
+    dut_.clock();
+    const bool accepts = in.tick && outputs().ready && !outputs().at_end;
+    model_.clock(in);
+    const Model::Outputs& out = model_.outputs();
+    checker.next_cycle();
+    checker.compare("step_x_o", dut_->step_x_o, out.step_x);
+    checker.compare("dir_x_o", dut_->dir_x_o, out.dir_x);
+    checker.compare("step_y_o", dut_->step_y_o, out.step_y);
+    checker.compare("dir_y_o", dut_->dir_y_o, out.dir_y);
+    checker.compare("ready_o", dut_->ready_o, out.ready);
+    checker.compare("at_end_o", dut_->at_end_o, out.at_end);
+    // Not in the last five clocks before ready.
+    stepping_ = in.rst || in.clear || Model::is_own(in.load) ? 0 : accepts ? 4 : stepping_ != 0 ? stepping_ - 1 : 0;
+    checker.compare("stepping_o", dut_->stepping_o, stepping_ != 0);
+    steps += (out.step_x || out.step_y) ? 1 : 0;
+  }
+
+  const Model::Outputs& outputs() const { return model_.outputs(); }
+
+  Checker checker;
+  std::uint64_t steps = 0;
+  std::uint64_t ends = 0;
+
+ private:
+  Simulated<Vdut> dut_;
+  Model model_;
+  unsigned stepping_ = 0;
+};
+
+// A halfword on the bus for somebody else, or none.
+Model::Inputs not_its_own(Random& random) {
+  Model::Inputs in;
+  in.load = {random() % 2 == 0, static_cast<std::uint8_t>(random() % 32), static_cast<std::uint16_t>(random())};
+  if (Model::is_own(in.load)) in.load.valid = false;
+  return in;
+}
+
+void load(Bench& bench, Random& random, const Path& path, bool gaps) {
+  std::array<int, 9> order{0, 1, 2, 3, 4, 5, 6, 7, 8};
+  std::shuffle(order.begin(), order.end(), random);
+  const std::array<int128, 9> values = chains(path);
+  for (const int chain : order) {
+    const auto index = static_cast<std::size_t>(chain);
+    for (int i = 0; i < static_cast<int>(kChainHalfwords[index]); ++i) {
+      Model::Inputs in;
+      in.load = {true, static_cast<std::uint8_t>(model::load_target::kDeviation + index),
+                 static_cast<std::uint16_t>(values[index] >> (16 * i))};
+      bench.clock(in);
+      while (gaps && random() % 4 == 0) bench.clock(not_its_own(random));
+    }
+  }
+  Model::Inputs start;
+  start.start = true;
+  bench.checker.event("start", path.quadrants);
+  bench.clock(start);
+}
+
+// Ticks until the end, `limit` clocks or a clear or reset in any state.
+void run(Bench& bench, Random& random, std::uint64_t limit) {
+  const std::uint64_t gap = random() % 3 == 0 ? random() % 20 : 0;
+  const bool cut = random() % 8 == 0;
+  const bool stubborn = random() % 4 == 0;  // ticks while not ready, and at the end, change nothing
+  for (std::uint64_t i = 0; i < limit; ++i) {
+    const bool ready = bench.outputs().ready;
+    if (ready && bench.outputs().at_end) {
+      ++bench.ends;
+      break;
+    }
+    Model::Inputs in;
+    in.tick = stubborn || (ready && (gap == 0 || random() % gap == 0));
+    if (cut && random() % 64 == 0) {
+      in.clear = random() % 2 == 0;
+      in.rst = !in.clear;
+      in.tick = random() % 2 == 0;
+      bench.checker.event(in.rst ? "reset" : "clear");
+      bench.clock(in);
+      break;
+    }
+    bench.clock(in);
+  }
+  Model::Inputs tick_at_end;
+  tick_at_end.tick = bench.outputs().ready && bench.outputs().at_end;
+  if (random() % 2 == 0) bench.clock(tick_at_end);
+  // A path cut off by the limit may be in a step: a reload comes only at rest.
+  for (unsigned i = 0; i < Model::kTickPeriod && !bench.outputs().ready; ++i) bench.clock({});
+}
+
+TEST(DeviationLockstep, EveryOutputInEveryCycle) {
+  const std::uint64_t seed = seed_from_environment(20261121);
+  EXPECT_EQ(judge([&] {
+              Random random(seed);
+              Bench bench(seed);
+              const std::uint64_t paths = scaled(4000);
+              for (std::uint64_t i = 0; i < paths; ++i) {
+                load(bench, random, any_path(random), random() % 2 == 0);
+                run(bench, random, random() % 4 == 0 ? 100 : 6000);
+              }
+              EXPECT_EQ(bench.checker.comparisons(), 7 * bench.checker.cycles());
+              EXPECT_GT(bench.steps, 400000u);
+              EXPECT_GT(bench.ends, paths / 4u);
+              RecordProperty("cycles", std::to_string(bench.checker.cycles()));
+            }),
+            "");
+}
+
+}  // namespace
+}  // namespace trammel::lockstep

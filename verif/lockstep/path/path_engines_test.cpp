@@ -1,0 +1,219 @@
+// Lockstep of the path engines: arcs and lines one after the other, ticks at random, the next arc's state loaded while
+// a line runs, cuts and resets at any clock; every output in every cycle.
+#include "trammel/model/path_engines.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "deviation_paths.hpp"
+#include "lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+namespace load_target = model::load_target;
+
+constexpr unsigned kAxes = 4;
+constexpr std::uint64_t kOnePulse = std::uint64_t{1} << 40;
+constexpr std::uint64_t kComparedSignals = 8;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed) : check_("path_engines", seed), dice_(seed), random_(seed) { reset(); }
+
+  void arc() {
+    // Mostly a path tick every few feed ticks.
+    const std::uint64_t prescale = dice_.word() >> 23 >> (dice_.chance(4) ? dice_.below(40) : dice_.below(4));
+    if (!load(load_target::kPrescale, prescale % (kOnePulse + 1), 3)) return;
+    if (!wait([this] { return accumulator_free() && model_.outputs().payload_ready; }, 20'000)) return;
+    // What is asked for now arrives three clocks later.
+    if (!idle(2) || !load_path(any_path(random_))) return;
+    if (finish_path()) begin(true);
+  }
+
+  void line() {
+    if (finish_path()) begin(false);
+  }
+
+  Checker& check() { return check_; }
+  std::uint64_t steps() const { return steps_; }
+  std::uint64_t expected() const { return kComparedSignals * check_.cycles() + judged_; }
+
+ private:
+  // An arc's ticks all given, two clocks ago.
+  bool accumulator_free() const { return !on_arc_ || (ticks_left_ == 0 && since_tick_ >= 2); }
+
+  // The ticks of the path are given; an arc's are finished too.
+  bool finish_path() {
+    if (!wait([this] { return ticks_left_ == 0; }, 20'000)) return false;
+    return !on_arc_ || wait([this] { return since_tick_ >= 2 && model_.outputs().done; }, 2000);
+  }
+
+  // A line's swap may stand beside the last tick of the line before it. Swaps are 3 clocks apart.
+  void begin(bool arc) {
+    if (!idle(since_swap_ < 3 ? 3 - since_swap_ : 0)) return;
+    check_.event("swap", arc);
+    in_.swap = true;
+    in_.accumulator = in_.start = arc;
+    in_.tick = on_line_ && since_swap_ > 3 && model_.outputs().ready && dice_.chance(2);
+    clock();
+    in_.swap = in_.accumulator = in_.start = false;
+    on_arc_ = arc;
+    on_line_ = !arc;
+    since_swap_ = 0;
+    ticks_left_ = dice_.chance(4) ? dice_.below(3) : dice_.below(300);
+    tick_every_ = 1 + dice_.below(dice_.chance(2) ? 2 : 20);
+    idle(3);
+  }
+
+  bool load(unsigned target, std::uint64_t value, unsigned halfwords) {
+    bool good = true;
+    for (unsigned i = 0; i < halfwords && good; ++i) {
+      in_.load = halfword(target, value, i);
+      good = idle(1);
+      in_.load = {};
+      while (good && dice_.chance(5)) good = idle(1);
+    }
+    return good;
+  }
+
+  bool load_path(const Path& path) {
+    const std::array<int128, 9> values = chains(path);
+    const unsigned x = dice_.below(kAxes);
+    const unsigned y = (x + 1 + dice_.below(kAxes - 1)) % kAxes;
+    bool good = true;
+    for (unsigned chain = 0; chain < 8; ++chain) {
+      for (unsigned i = 0; i < kChainHalfwords[chain] && good; ++i)
+        good = load(load_target::kDeviation + chain, static_cast<std::uint64_t>(values[chain] >> (16 * i)), 1);
+    }
+    return good && load(load_target::kPlane, y << 8 | x << 4 | (path.clockwise ? 1 : 0), 1);
+  }
+
+  // False when a cut or a reset came in between.
+  template <class Condition>
+  bool wait(Condition condition, unsigned limit) {
+    for (unsigned i = 0; i < limit; ++i) {
+      if (condition()) return true;
+      if (!idle(1)) return false;
+    }
+    cut();
+    return false;
+  }
+
+  bool idle(std::uint64_t clocks) {
+    for (std::uint64_t i = 0; i < clocks; ++i) {
+      in_.tick = ticks_left_ != 0 && since_swap_ > 0 && model_.outputs().ready && dice_.chance(tick_every_);
+      const bool tick = in_.tick;
+      clock();
+      if (tick) --ticks_left_;
+      if (dice_.chance(cut_every_)) {
+        cut();
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // Beside whatever else; one in four is a reset, of one clock.
+  void cut() {
+    cut_every_ = 20 + dice_.below(8000);
+    in_.tick = dice_.chance(2);
+    in_.swap = dice_.chance(2);
+    in_.accumulator = in_.start = dice_.chance(2);
+    if (dice_.chance(4)) {
+      reset();
+    } else {
+      check_.event("cut");
+      in_.cut = true;
+      clock();
+    }
+    in_ = {};
+    on_arc_ = on_line_ = false;
+    ticks_left_ = 0;
+    for (unsigned i = dice_.below(4); i != 0; --i) clock();
+    since_swap_ = 3;
+  }
+
+  void reset() {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    apply();
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::PathEngines();
+    compare();
+  }
+
+  void clock() {
+    apply();
+    dut_.clock();
+    model_.clock(in_);
+    compare();
+    since_tick_ = in_.tick ? 0 : since_tick_ + 1;
+    ++since_swap_;
+    steps_ += model_.outputs().step != 0 ? 1U : 0U;
+  }
+
+  void apply() {
+    dut_->cut_i = in_.cut;
+    dut_->tick_i = in_.tick;
+    dut_->swap_i = in_.swap;
+    dut_->engine_i = in_.accumulator;
+    dut_->start_i = in_.start;
+    dut_->load_i = load_wire(in_.load);
+  }
+
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_.outputs();
+    check_.compare("tick_o", dut_->tick_o, out.tick);
+    check_.compare("swap_o", dut_->swap_o, out.swap);
+    check_.compare("path_tick_o", dut_->path_tick_o, out.path_tick);
+    check_.compare("step_o", dut_->step_o, out.step);
+    check_.compare("dir_o, of steps", dut_->dir_o & dut_->step_o, out.dir & out.step);
+    check_.compare("ready_o", dut_->ready_o, out.ready);
+    check_.compare("payload_ready_o", dut_->payload_ready_o, out.payload_ready);
+    // Both are asked for while an arc runs.
+    check_.compare("done_o, of an arc", on_arc_ && dut_->done_o, on_arc_ && out.done);
+    if (!on_arc_ || !out.done) return;
+    check_.compare("elsewhere_o", dut_->elsewhere_o, out.elsewhere);
+    ++judged_;
+  }
+
+  Simulated<Vdut> dut_;
+  model::PathEngines model_;
+  model::PathEngines::Inputs in_;
+  Checker check_;
+  Dice dice_;
+  Random random_;
+  bool on_arc_ = false;
+  bool on_line_ = false;
+  std::uint32_t ticks_left_ = 0;
+  std::uint32_t tick_every_ = 1;
+  std::uint32_t cut_every_ = 2000;
+  std::uint64_t since_tick_ = 10;  // clocks
+  std::uint64_t since_swap_ = 10;
+  std::uint64_t judged_ = 0;
+  std::uint64_t steps_ = 0;
+};
+
+void random_paths() {
+  const std::uint64_t seed = seed_from_environment(20261117);
+  Bench bench(seed);
+  Dice dice(seed);
+  const std::uint64_t length = scaled(600'000);
+  while (bench.check().cycles() < length) {
+    if (dice.chance(3))
+      bench.line();
+    else
+      bench.arc();
+  }
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+  EXPECT_GT(bench.steps(), length / 100);
+}
+
+TEST(PathEngines, RandomPaths) { EXPECT_EQ(judge(random_paths), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

@@ -1,0 +1,270 @@
+// Lockstep of both sequencers with all that belongs to them (fetches, decoders, counters, barrier, tick gate): random
+// programs while time, engines and axes do as they like, cuts and resets at any clock, direct moves; every output in
+// every cycle.
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "lockstep.hpp"
+#include "programs.hpp"
+#include "trammel/model/sequencer.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+constexpr unsigned kAxes = 4;
+constexpr std::uint64_t kComparedSignals = 20;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed)
+      : check_("sequencers", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
+    reset();
+  }
+
+  // How often what comes from outside comes: one clock in so many.
+  struct Pace {
+    unsigned enable = 1;
+    unsigned feed_tick = 1;  // of the enabled clocks
+    unsigned busy = 8;       // engine not ready, not done, its state not free
+    unsigned write = 1;      // a halfword into a queue
+    unsigned cut = 2000;
+  };
+  Pace pace;
+
+  void random_pace() {
+    pace.enable = 1 + dice_.below(dice_.chance(2) ? 1 : 6);
+    pace.feed_tick = 1 + dice_.below(dice_.chance(2) ? 1 : 6);
+    pace.busy = 2 + dice_.below(20);
+    pace.write = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
+    pace.cut = dice_.chance(2) ? 100 + dice_.below(400) : 20'000;
+    programs_.wrong_every = dice_.chance(4) ? 10 : 1000;
+    programs_.longest = dice_.chance(2) ? 20 : 200;
+  }
+
+  void random_clock() {
+    if (dice_.chance(3000)) random_pace();
+    // Where ticks may not be taken neither commands nor a START get this far.
+    const bool open = stand_for_ == 0;
+    if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
+    if (open && at_rest() && dice_.chance(100)) direct_step_ = 1;
+    direct();
+    in_.cut = dice_.chance(pace.cut);
+    if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
+    in_.go = stand_for_ == 0;
+    if (stand_for_ != 0) --stand_for_;
+    in_.elsewhere = dice_.chance(200);
+    if (in_.cut) check_.event("cut");
+    if (dice_.chance(10 * pace.cut))
+      reset();
+    else
+      clock();
+  }
+
+  void clock() {
+    surroundings();
+    apply();
+    const std::uint32_t begun[] = {model_.outputs().feed_begun, model_.outputs().geometry_begun};
+    const bool geometry_reads = model_.geometry_read();
+    const bool feed_reads = model_.feed_read();
+    dut_.clock();
+    model_.clock(in_);
+    chain_[1].clock(dut_->snapshot_i, begun[1], chain_[0]);
+    chain_[0].clock(dut_->snapshot_i, begun[0], dut_->chain_i);
+    geometry_.clock(geometry_reads, dice_.chance(pace.write), in_.cut);
+    feed_.clock(feed_reads, dice_.chance(pace.write), in_.cut);
+    if (in_.cut) direct_step_ = 0;
+    compare();
+    ends_ += model_.outputs().swap ? 1U : 0U;
+    in_.direct_load = {};
+    in_.direct_go = false;
+  }
+
+  void add(const Programs::Stretch& stretch) {
+    check_.event("stretch of commands", stretch.geometry.size());
+    geometry_.add(stretch.geometry);
+    feed_.add(stretch.feed);
+  }
+
+  bool at_rest() const {
+    return model_.outputs().idle && geometry_.done() && feed_.done() && geometry_.outputs().empty &&
+           feed_.outputs().empty && direct_step_ == 0 && !model_.outputs().direct && model_.outputs().feed_clear;
+  }
+
+  Checker& check() { return check_; }
+  const model::Sequencer::Outputs& outputs() const { return model_.outputs(); }
+  std::uint64_t swaps() const { return ends_; }
+  std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
+
+ private:
+  // One clock of reset, whatever comes in it.
+  void reset() {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    surroundings();
+    apply();
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::Sequencer();
+    geometry_.reset();
+    feed_.reset();
+    chain_[0] = chain_[1] = {};
+    direct_step_ = 0;
+    feed_ticks_ = 0;
+    in_.direct_load = {};
+    in_.direct_go = false;
+    compare();
+  }
+
+  // The loader: the length's halfwords, then, 8 clocks later, go.
+  void direct() {
+    if (direct_step_ == 0) return;
+    ++direct_step_;
+    if (direct_step_ == 2) length_ = dice_.chance(2) ? 1 + dice_.below(4) : 1 + dice_.below(200);
+    if (direct_step_ >= 3 && direct_step_ < 6) {
+      in_.direct_load = halfword(model::load_target::kTicks, length_, direct_step_ - 3);
+    } else if (direct_step_ == 6) {
+      in_.direct_load = halfword(dice_.below(16), dice_.word(), 0);
+    } else if (direct_step_ == 15) {
+      check_.event("direct move", length_);
+      in_.direct_go = true;
+      in_.direct_mask = static_cast<std::uint8_t>(1 + dice_.below((1U << kAxes) - 1));
+    } else if (direct_step_ > 20 && !model_.outputs().direct) {
+      direct_step_ = 0;
+    }
+  }
+
+  // Ticks come three clocks after their enable and not after a clear.
+  void surroundings() {
+    in_.geometry_empty = geometry_.outputs().empty;
+    in_.geometry_word = geometry_.outputs().word;
+    in_.feed_empty = feed_.outputs().empty;
+    in_.feed_word = feed_.outputs().word;
+    in_.enable = dice_.chance(pace.enable);
+    in_.feed_tick = (feed_ticks_ & 1) != 0;
+    feed_ticks_ >>= 1;
+    if (model_.outputs().feed_enable && dice_.chance(pace.feed_tick)) feed_ticks_ |= 4;
+    if (model_.outputs().feed_clear) feed_ticks_ = 0;
+    // A direct move has no engine to wait for.
+    in_.engine_ready = model_.outputs().direct || !dice_.chance(pace.busy);
+    // Taken from a clock after an arc's tick on, for at least as long as that is on its way.
+    if (model_.outputs().accumulator && model_.outputs().tick)
+      payload_taken_for_ = 4 + dice_.below(pace.busy);
+    else if (payload_taken_for_ != 0)
+      --payload_taken_for_;
+    in_.payload_ready = payload_taken_for_ == 0;
+    in_.engine_done = !dice_.chance(pace.busy);
+    in_.axes_live = dice_.chance(2);
+  }
+
+  void apply() {
+    dut_->cut_i = in_.cut;
+    dut_->go_i = in_.go;
+    dut_->geometry_empty_i = in_.geometry_empty;
+    dut_->geometry_word_i = in_.geometry_word;
+    dut_->feed_empty_i = in_.feed_empty;
+    dut_->feed_word_i = in_.feed_word;
+    dut_->direct_load_i = load_wire(in_.direct_load);
+    dut_->direct_go_i = in_.direct_go;
+    dut_->direct_mask_i = in_.direct_mask;
+    dut_->enable_i = in_.enable;
+    dut_->feed_tick_i = in_.feed_tick;
+    dut_->engine_ready_i = in_.engine_ready;
+    dut_->payload_ready_i = in_.payload_ready;
+    dut_->engine_done_i = in_.engine_done;
+    dut_->elsewhere_i = in_.elsewhere;
+    dut_->axes_live_i = in_.axes_live;
+    dut_->snapshot_i = dice_.snapshot();
+    dut_->chain_i = dice_.draw();
+  }
+
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_.outputs();
+    check_.compare("geometry_read_o", dut_->geometry_read_o, model_.geometry_read());
+    check_.compare("feed_read_o", dut_->feed_read_o, model_.feed_read());
+    check_.compare("direct_o", dut_->direct_o, out.direct);
+    check_.compare("feed_enable_o", dut_->feed_enable_o, out.feed_enable);
+    check_.compare("feed_clear_o", dut_->feed_clear_o, out.feed_clear);
+    check_.compare("tick_o", dut_->tick_o, out.tick);
+    check_.compare("swap_o", dut_->swap_o, out.swap);
+    check_.compare("start_o", dut_->start_o, out.arc_start);
+    check_.compare("feed_swap_o", dut_->feed_swap_o, out.feed_swap);
+    check_.compare("load_o, valid", dut_->load_o >> 21, model_.load().valid);
+    check_.compare("feed_load_o, valid", dut_->feed_load_o >> 19, model_.feed_load().valid);
+    check_.compare("mismatch_o", dut_->mismatch_o, out.mismatch);
+    check_.compare("incomplete_o", dut_->incomplete_o, out.incomplete);
+    check_.compare("path_active_o", dut_->path_active_o, out.path_active);
+    check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
+    check_.compare("ended_o", dut_->ended_o, out.ended);
+    check_.compare("idle_o", dut_->idle_o, out.idle);
+    check_.compare("geometry_begun_o", dut_->geometry_begun_o, out.geometry_begun);
+    check_.compare("feed_begun_o", dut_->feed_begun_o, out.feed_begun);
+    // What stands beside an event, where there is one.
+    const std::uint64_t beside = out.swap ? std::uint64_t{out.accumulator} << 8 | out.active : 0;
+    check_.compare("active_o and engine_o", out.swap ? dut_->engine_o << 8 | dut_->active_o : 0, beside);
+    if (model_.load().valid) more("load_o", dut_->load_o, load_wire(model_.load()));
+    if (model_.feed_load().valid) more("feed_load_o", dut_->feed_load_o, feed_wire(model_.feed_load()));
+    if (chain_[1].known()) more("chain_o", dut_->chain_o, chain_[1].word());
+  }
+
+  void more(const char* signal, std::uint64_t rtl, std::uint64_t model) {
+    check_.compare(signal, rtl, model);
+    ++more_;
+  }
+
+  Simulated<Vdut> dut_;
+  model::Sequencer model_;
+  model::Sequencer::Inputs in_;
+  Checker check_;
+  Dice dice_;
+  Programs programs_;
+  QueueWriter geometry_;
+  QueueWriter feed_;
+  SnapshotWord chain_[2];
+  unsigned feed_ticks_ = 0;   // on their way, bit 0 comes next
+  unsigned payload_taken_for_ = 0;
+  unsigned stand_for_ = 0;    // clocks without go
+  unsigned direct_step_ = 0;  // of a direct move; 0: none
+  std::uint64_t length_ = 0;
+  std::uint64_t ends_ = 0;
+  std::uint64_t more_ = 0;
+};
+
+// Paths, pieces and dwells at the boundaries of their counters' words, at a tick a clock; each alone to its end.
+void boundaries() {
+  Bench bench(1);
+  bench.pace = {1, 1, 1'000'000, 1, 1'000'000};
+  const auto run = [&bench](const Halfwords& geometry, const Halfwords& feed) {
+    bench.add({{geometry}, {feed}});
+    for (unsigned i = 0; i < 200; ++i) bench.clock();
+    while (!bench.at_rest()) bench.clock();
+  };
+  std::uint64_t dwells = 0;
+  for (const std::uint64_t count : {0U, 1U, 2U, 3U, 14U, 15U, 16U, 17U, 18U, 31U, 32U, 33U, 255U, 256U, 257U, 65535U,
+                                    65536U, 65537U, 65552U, (1U << 20) - 1, 1U << 20, (1U << 20) + 1, (1U << 20) + 17}) {
+    const Halfwords dwell = stored_command(card_map::Opcode::Dwell, 0, count);
+    run(dwell, dwell);
+    dwells += std::max<std::uint64_t>(count, 1);
+    if (count == 0) continue;
+    run(stored_command(card_map::Opcode::Line, 1, count, {}, {kOnePulse}),
+        stored_command(card_map::Opcode::Feed, 0, count, {{"rate", int128{1} << 63}, {"floor", 1}}));
+    dwells += count;
+  }
+  EXPECT_GT(bench.check().cycles(), dwells);
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+}
+
+void random_programs() {
+  Bench bench(seed_from_environment(20261116));
+  const std::uint64_t length = scaled(1'500'000);
+  while (bench.check().cycles() < length) bench.random_clock();
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+  EXPECT_GT(bench.swaps(), length / 500);
+}
+
+TEST(Sequencers, Boundaries) { EXPECT_EQ(judge(boundaries), ""); }
+TEST(Sequencers, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

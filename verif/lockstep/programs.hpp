@@ -1,0 +1,201 @@
+// Programs as the queues hold them: stretches of paths and feed pieces that cover as many ticks, with barriers between
+// them; what the sequencers and the motion core are judged with. Now and then a program is wrong on purpose.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/halfword_queue.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+
+__extension__ typedef __int128 int128;
+
+using Field = std::pair<std::string_view, int128>;
+using Halfwords = std::vector<std::uint16_t>;
+
+inline constexpr std::int64_t kOnePulse = std::int64_t{1} << 40;
+
+// In its stored form. Fields that are not named are 0; `increments` are those of the mask's axes.
+inline Halfwords stored_command(card_map::Opcode opcode, unsigned mask, std::uint64_t count,
+                                const std::vector<Field>& fields = {},
+                                const std::vector<std::int64_t>& increments = {}) {
+  constexpr std::size_t kHeader = 4;
+  const card_map::Command& layout = *card_map::find_command(static_cast<std::uint8_t>(opcode));
+  Halfwords to(card_map::queue_halfwords(layout, static_cast<std::uint8_t>(mask)), 0);
+  const auto put = [&to](std::size_t at, std::size_t halfwords, int128 value) {
+    for (std::size_t i = 0; i < halfwords; ++i) to[at + i] = static_cast<std::uint16_t>(value >> (16 * i));
+  };
+  to[0] = static_cast<std::uint16_t>(static_cast<unsigned>(opcode) | mask << 8);
+  put(1, 3, static_cast<int128>(count));
+  for (std::size_t i = 0; i < layout.field_count; ++i) {
+    const card_map::Field& field = layout.fields[i];
+    for (const Field& given : fields) {
+      if (given.first == field.name) put(kHeader + field.offset, field.halfwords, given.second);
+    }
+    if (field.name != "increment") continue;
+    for (std::size_t n = 0; n < increments.size(); ++n) put(kHeader + field.offset + 3 * n, 3, increments[n]);
+  }
+  return to;
+}
+
+class Programs {
+ public:
+  Programs(unsigned axes, Dice& dice) : axes_(axes), dice_(dice) {}
+
+  // One in `wrong_every` stretches gives more ticks than it takes, or less; one in as many arcs misses its end.
+  unsigned wrong_every = 100;
+  // The most ticks of a stretch, and of its paths and pieces.
+  unsigned longest = 600;
+
+  struct Stretch {
+    std::vector<Halfwords> geometry;
+    std::vector<Halfwords> feed;
+  };
+
+  Stretch stretch() {
+    Stretch s;
+    std::uint64_t path_ticks = 0;
+    std::uint64_t piece_ticks = 0;
+    const unsigned paths = dice_.below(6);
+    const bool single = dice_.chance(4);  // paths and pieces of one tick each, one after the other
+    for (unsigned i = 0; i < paths; ++i) path_ticks += path(s.geometry, single);
+    while (piece_ticks < path_ticks) {
+      const std::uint64_t left = path_ticks - piece_ticks;
+      const std::uint64_t ticks = single ? 1 : dice_.chance(3) ? left : 1 + dice_.below(static_cast<unsigned>(left));
+      piece(s.feed, ticks);
+      piece_ticks += ticks;
+    }
+    if (dice_.chance(wrong_every)) {
+      if (dice_.chance(2))
+        piece(s.feed, 1 + dice_.below(3));
+      else
+        path(s.geometry, true);
+    }
+    for (unsigned i = dice_.below(3); i != 0; --i) barrier(s);
+    return s;
+  }
+
+  void barrier(Stretch& s) {
+    constexpr unsigned kDwells[] = {0, 1, 2, 3, 4, 15, 16, 17, 18, 33, 100};
+    const bool end = dice_.chance(3);
+    const Halfwords command = stored_command(end ? card_map::Opcode::End : card_map::Opcode::Dwell, 0,
+                                             end ? 0 : kDwells[dice_.below(std::size(kDwells))]);
+    s.geometry.push_back(command);
+    s.feed.push_back(command);
+  }
+
+ private:
+  std::uint64_t path(std::vector<Halfwords>& to, bool single) {
+    if (axes_ > 1 && dice_.chance(4)) return arc(to);
+    const unsigned mask = 1 + dice_.below((1U << axes_) - 1);
+    const std::uint64_t ticks = single ? 1 : 1 + dice_.below(dice_.chance(3) ? 4 : longest);
+    std::vector<std::int64_t> increments;
+    for (unsigned axis = 0; axis < axes_; ++axis) {
+      if ((mask >> axis & 1) == 0) continue;
+      // Half of them a step every few ticks.
+      const std::uint64_t any = dice_.chance(2) ? dice_.word() >> 23 >> dice_.below(5) : dice_.log_uniform(41);
+      const auto magnitude = static_cast<std::int64_t>(any % (kOnePulse + 1));
+      increments.push_back(dice_.chance(2) ? magnitude : -magnitude);
+    }
+    to.push_back(stored_command(card_map::Opcode::Line, mask, ticks, {}, increments));
+    return ticks;
+  }
+
+  // A full circle in unit steps, with as many path ticks as it has steps.
+  std::uint64_t arc(std::vector<Halfwords>& to) {
+    const std::int64_t radius = 1 + dice_.below(8);
+    const std::int64_t steps = 8 * radius;
+    const std::int64_t ticks = steps + dice_.below(dice_.chance(2) ? 4 : 300);
+    const bool wrong = dice_.chance(wrong_every);
+    const auto prescale = static_cast<std::int64_t>((int128{steps} * kOnePulse + ticks / 2) / ticks);
+    const unsigned x = dice_.below(axes_);
+    const unsigned y = (x + 1 + dice_.below(axes_ - 1)) % axes_;
+    to.push_back(stored_command(card_map::Opcode::Arc, 1U << x | 1U << y, static_cast<std::uint64_t>(ticks),
+                              {{"path_ticks", steps},
+                               {"prescale", prescale},
+                               {"plane", y << 8 | x << 4 | dice_.below(2)},
+                               {"quadrants", wrong ? 5 : 4},
+                               {"gradient_x", 2 * radius},
+                               {"half_x", 1},
+                               {"half_y", 1}}));
+    return static_cast<std::uint64_t>(ticks);
+  }
+
+  // Mostly fast: a tick every few clocks at most.
+  void piece(std::vector<Halfwords>& to, std::uint64_t ticks) {
+    const std::uint64_t rate = dice_.word() >> dice_.below(5) | std::uint64_t{1} << 58;
+    const auto change = [this] {
+      const auto magnitude = static_cast<std::int64_t>(dice_.log_uniform(58));
+      return dice_.chance(2) ? int128{magnitude} : -int128{magnitude};
+    };
+    const bool constant = dice_.chance(3);
+    to.push_back(stored_command(card_map::Opcode::Feed, 0, ticks,
+                              {{"rate", static_cast<int128>(rate)},
+                               {"floor", static_cast<int128>(std::uint64_t{1} << 26 | dice_.draw() >> 2)},
+                               {"stop_distance", static_cast<int128>(dice_.draw())},
+                               {"acceleration", constant ? 0 : change()},
+                               {"jerk", constant ? 0 : change()}}));
+  }
+
+  unsigned axes_;
+  Dice& dice_;
+};
+
+// A queue with a writer that fills it command by command, as the checker does: halfwords come one at a time, and count
+// from the commit on that follows the command's last one.
+class QueueWriter {
+ public:
+  explicit QueueWriter(std::size_t depth) : queue_(depth) {}
+
+  void add(const std::vector<Halfwords>& commands) { commands_.insert(commands_.end(), commands.begin(), commands.end()); }
+  // Nothing is left to be written.
+  bool done() const { return commands_.empty(); }
+  const model::HalfwordQueue::Outputs& outputs() const { return queue_.outputs(); }
+
+  // One rising edge; the writer goes on when `write`.
+  void clock(bool read, bool write, bool clear) {
+    model::HalfwordQueue::Inputs in;
+    in.read = read;
+    in.clear = clear;
+    if (write && !commands_.empty()) go_on(in);
+    if (clear) forget();
+    queue_.clock(in);
+  }
+
+  void reset() {
+    forget();
+    model::HalfwordQueue::Inputs in;
+    in.reset = true;
+    queue_.clock(in);
+  }
+
+ private:
+  void go_on(model::HalfwordQueue::Inputs& in) {
+    const Halfwords& command = commands_.front();
+    if (written_ == command.size()) {
+      in.commit = true;
+      commands_.pop_front();
+      written_ = 0;
+    } else if (queue_.outputs().room != 0) {
+      in.write = true;
+      in.word = command[written_++];
+    }
+  }
+
+  void forget() {
+    commands_.clear();
+    written_ = 0;
+  }
+
+  model::HalfwordQueue queue_;
+  std::deque<Halfwords> commands_;
+  std::size_t written_ = 0;  // halfwords of the first one
+};
+
+}  // namespace trammel::lockstep

@@ -1,0 +1,188 @@
+// Lockstep of the stop control: every order of two or three events in each state with each reaction, and random ones;
+// every output in every cycle.
+#include "trammel/model/stop_control.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+namespace reg = card_map::reg;
+
+constexpr unsigned kAxes = TRAMMEL_AXES;
+constexpr std::uint64_t kComparedSignals = 7;
+
+class Bench {
+ public:
+  using Inputs = model::StopControl::Inputs;
+
+  explicit Bench(std::uint64_t seed) : check_("stop_control", seed) { reset({}); }
+
+  // One clock of reset, whatever comes in it.
+  void reset(const Inputs& in) {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    apply(in);
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::StopControl();
+    compare();
+  }
+
+  void clock(const Inputs& in) {
+    if (in.step_fault != 0) check_.event("step fault", in.step_fault);
+    if (in.mismatch || in.incomplete) check_.event("fault at once", in.mismatch);
+    if (in.abort) check_.event("abort");
+    if (in.clear != 0) check_.event("clear", in.clear);
+    if (in.setting.set) check_.event("setting", std::uint64_t{in.setting.address} << 32 | in.setting.data);
+    apply(in);
+    dut_.clock();
+    model_.clock(in);
+    compare();
+    cuts_ += model_.outputs().cut ? 1U : 0U;
+  }
+
+  void set(std::uint32_t address, std::uint32_t data) {
+    Inputs in;
+    in.setting = {true, address, data};
+    clock(in);
+  }
+
+  const model::StopControl::Outputs& outputs() const { return model_.outputs(); }
+  Checker& check() { return check_; }
+  std::uint64_t cuts() const { return cuts_; }
+
+ private:
+  void apply(const Inputs& in) {
+    dut_->setting_i = wire(in.setting);
+    dut_->step_fault_i = static_cast<CData>(in.step_fault);
+    dut_->mismatch_i = in.mismatch;
+    dut_->incomplete_i = in.incomplete;
+    dut_->abort_i = in.abort;
+    dut_->clear_i = in.clear;
+    dut_->at_rest_i = in.at_rest;
+  }
+
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_.outputs();
+    check_.compare("fault_o", dut_->fault_o, out.fault);
+    check_.compare("go_o", dut_->go_o, out.go);
+    check_.compare("hold_o", dut_->hold_o, out.hold);
+    check_.compare("cut_o", dut_->cut_o, out.cut);
+    check_.compare("stop_o", dut_->stop_o, out.stop);
+    check_.compare("stopping_o", dut_->stopping_o, out.stopping);
+    check_.compare("closed_o", dut_->closed_o, out.closed);
+  }
+
+  Simulated<Vdut> dut_;
+  model::StopControl model_;
+  Checker check_;
+  std::uint64_t cuts_ = 0;
+};
+
+// What may happen in one clock of the directed scenario.
+Bench::Inputs happening(unsigned kind) {
+  Bench::Inputs in;
+  switch (kind) {
+    case 0:
+      in.step_fault = 1;
+      break;
+    case 1:
+      in.step_fault = 1U << (kAxes - 1);
+      break;
+    case 2:
+      in.mismatch = true;
+      break;
+    case 3:
+      in.incomplete = true;
+      break;
+    case 4:
+      in.abort = true;
+      break;
+    case 5:
+      in.clear = ~0U;
+      break;
+    case 6:
+      in.at_rest = true;
+      break;
+    case 7:  // an event wins over a clear beside it
+      in.clear = ~0U;
+      in.step_fault = 1;
+      break;
+    case 8:
+      in.abort = true;
+      in.step_fault = 1;
+      break;
+    default:
+      break;
+  }
+  return in;
+}
+constexpr unsigned kHappenings = 10;  // the last is nothing
+
+// Three happenings at any distance of 0 to 2 clocks, with each reaction, from reset.
+void every_order() {
+  Bench bench(0);
+  std::uint64_t cycles = 1;
+  for (const std::uint32_t reaction : {0U, 0xFFU}) {
+    for (unsigned order = 0; order < kHappenings * kHappenings * kHappenings * 9; ++order) {
+      unsigned rest = order;
+      const auto draw = [&rest](unsigned n) {
+        const unsigned value = rest % n;
+        rest /= n;
+        return value;
+      };
+      bench.reset({});
+      bench.set(reg::kStopReaction, reaction);
+      bench.clock(happening(draw(kHappenings)));
+      const unsigned first = draw(3);
+      for (unsigned i = 0; i < first; ++i) bench.clock({});
+      bench.clock(happening(draw(kHappenings)));
+      const unsigned second = draw(3);
+      for (unsigned i = 0; i < second; ++i) bench.clock({});
+      bench.clock(happening(draw(kHappenings)));
+      for (int i = 0; i < 3; ++i) bench.clock({});
+      cycles += 8 + first + second;
+    }
+  }
+  EXPECT_EQ(bench.check().cycles(), cycles);
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * cycles);
+  EXPECT_GT(bench.cuts(), 10'000U);
+}
+
+void random_events() {
+  const std::uint64_t seed = seed_from_environment(20261119);
+  Bench bench(seed);
+  Dice dice(seed);
+  const std::uint64_t length = scaled(500'000);
+  unsigned rest_every = 10;
+  for (std::uint64_t i = 0; i < length; ++i) {
+    Bench::Inputs in;
+    if (i % 512 == 0) rest_every = 1 + dice.below(40);
+    if (dice.chance(12)) in.step_fault = dice.draw() & dice.draw() & ((1U << kAxes) - 1);
+    in.mismatch = dice.chance(60);
+    in.incomplete = dice.chance(60);
+    in.abort = dice.chance(30);
+    if (dice.chance(6)) in.clear = dice.chance(2) ? ~0U : dice.draw();
+    in.at_rest = dice.chance(rest_every);
+    if (dice.chance(20)) in.setting = {dice.chance(2), dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.below(2)};
+    if (dice.chance(20)) in.setting = {dice.chance(2), reg::kStopReaction, dice.draw() & 0xFCFF};
+    if (dice.chance(2000))
+      bench.reset(in);
+    else
+      bench.clock(in);
+  }
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * (length + 1));
+  EXPECT_GT(bench.cuts(), length / 100);
+}
+
+TEST(StopControl, EveryOrderOfThree) { EXPECT_EQ(judge(every_order), ""); }
+TEST(StopControl, RandomEvents) { EXPECT_EQ(judge(random_events), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep
