@@ -9,7 +9,7 @@
 //
 // The phase is 16 + 32 bits with a registered carry: everything of the upper 32 bits (its part of R, the floor, the
 // slope) is taken one clock after the lower part. So the shadow must hold in the clock of a swap and the next. Swaps are
-// 24 clocks apart or more (the card's decoder takes longer to load a piece); nothing is enabled before the first one.
+// 16 clocks apart or more (the decoder takes that long to load a piece); nothing is enabled before the first one.
 // An enable at c gives its tick at c+3; the rate shows with the same delay.
 `default_nettype none
 

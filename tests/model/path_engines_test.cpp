@@ -1,116 +1,168 @@
-// The path engines' model by closed forms: the path domain is the feed's three clocks late; N feed ticks make
-// floor(1/2 + N * prescale / 2^40) path ticks; a full circle of radius r has 8 r steps and ends where it began.
+// The path engines by the page's clocks: the path domain's 3, path ticks from the prescaler, and what the sequencer may
+// know of them.
 #include "trammel/model/path_engines.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <random>
+#include <vector>
 
 namespace trammel::model {
 namespace {
 
-__extension__ typedef unsigned __int128 uint128;
+constexpr std::int64_t kOne = std::int64_t{1} << 40;
 
-constexpr std::uint64_t kOnePulse = std::uint64_t{1} << 40;
-
-class Engines {
- public:
-  void clock(const PathEngines::Inputs& in = {}) {
-    engines.clock(in);
-    const PathEngines::Outputs& out = engines.outputs();
-    path_ticks += out.path_tick ? 1U : 0U;
-    for (unsigned axis = 0; axis < 8; ++axis) {
-      if ((out.step >> axis & 1) == 0) continue;
-      ++steps;
-      place[axis] += (out.dir >> axis & 1) != 0 ? -1 : 1;
-    }
-  }
-  void load(unsigned target, std::uint64_t value, unsigned halfwords) {
-    for (unsigned i = 0; i < halfwords; ++i) {
-      PathEngines::Inputs in;
-      in.load = {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(i < 4 ? value >> (16 * i) : 0)};
-      clock(in);
-    }
-  }
-  // A circle in the plane of two axes, from its rightmost point, and `ticks` feed ticks as soon as they may be taken.
-  void circle(std::uint64_t radius, std::uint64_t prescale, std::uint64_t ticks, unsigned x, unsigned y) {
-    load(load_target::kPrescale, prescale, 3);
-    load(load_target::kPlane, y << 8 | x << 4, 1);
-    load(load_target::kQuadrants, 4, 1);
-    load(load_target::kEndX, 0, 2);
-    load(load_target::kEndY, 0, 2);
-    load(load_target::kDeviation, 0, 5);
-    load(load_target::kGradientX, 2 * radius, 5);
-    load(load_target::kGradientY, 0, 5);
-    load(load_target::kHalfX, 1, 3);
-    load(load_target::kHalfY, 1, 3);
-    PathEngines::Inputs swap;
-    swap.swap = swap.accumulator = swap.start = true;
-    clock(swap);
-    while (ticks != 0) {
-      PathEngines::Inputs in;
-      in.tick = engines.outputs().ready;
-      ticks -= in.tick ? 1 : 0;
-      clock(in);
-    }
-    for (int i = 0; i < 200; ++i) clock();
-  }
-
-  PathEngines engines;
-  std::uint64_t path_ticks = 0;
-  std::uint64_t steps = 0;
-  std::array<std::int64_t, 8> place{};
-};
-
-TEST(PathEngines, PathDomainIsThreeClocksLate) {
-  Engines e;
-  for (int i = 0; i < 4; ++i) {
+void load(PathEngines& engines, unsigned target, std::uint64_t value, int halfwords) {
+  for (int i = 0; i < halfwords; ++i) {
     PathEngines::Inputs in;
-    in.tick = i == 0 || i == 2;
-    in.swap = i == 1;
-    e.clock(in);
-    EXPECT_EQ(e.engines.outputs().tick, i == 2);
-    EXPECT_EQ(e.engines.outputs().swap, i == 3);
+    in.load = {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value)};
+    value >>= 16;
+    engines.clock(in);
   }
-  e.clock();
-  EXPECT_TRUE(e.engines.outputs().tick);
+}
+
+// A circle of radius r around (-r, 0) in the plane of axes 1 and 0 (x is axis 1), path ticks at `prescale`.
+void begin_circle(PathEngines& engines, std::uint64_t r, std::int64_t prescale) {
+  load(engines, load_target::kPrescale, static_cast<std::uint64_t>(prescale), 3);
+  load(engines, load_target::kPlane, 1U << 4, 1);
+  load(engines, load_target::kQuadrants, 4, 1);
+  load(engines, load_target::kEndX, 0, 2);
+  load(engines, load_target::kEndY, 0, 2);
+  load(engines, load_target::kDeviation, 0, 5);
+  load(engines, load_target::kGradientX, 2 * r, 5);
+  load(engines, load_target::kGradientY, 0, 5);
+  load(engines, load_target::kHalfX, 1, 3);
+  load(engines, load_target::kHalfY, 1, 3);
+  PathEngines::Inputs in;
+  in.swap = in.accumulator = in.start = true;
+  engines.clock(in);
+}
+
+TEST(PathEngines, TicksAndSwapsLeaveThreeClocksLater) {
+  PathEngines engines;
+  std::mt19937 random(1);
+  std::vector<PathEngines::Inputs> past(3);
+  for (int i = 0; i < 1000; ++i) {
+    PathEngines::Inputs in;
+    in.tick = random() % 2 == 0;
+    in.swap = random() % 20 == 0;
+    engines.clock(in);
+    EXPECT_EQ(engines.outputs().tick, past[past.size() - 2].tick);
+    EXPECT_EQ(engines.outputs().swap, past[past.size() - 2].swap);
+    past.push_back(in);
+  }
 }
 
 TEST(PathEngines, ACutDropsWhatIsOnItsWay) {
-  Engines e;
-  PathEngines::Inputs in;
-  in.tick = in.swap = true;
-  e.clock(in);
-  in = {};
-  in.cut = true;
-  e.clock(in);
-  for (int i = 0; i < 8; ++i) {
-    e.clock();
-    EXPECT_FALSE(e.engines.outputs().tick || e.engines.outputs().swap);
-  }
-}
-
-TEST(PathEngines, CirclesCloseAndAreDone) {
-  for (const std::uint64_t radius : {1U, 2U, 7U, 40U}) {
-    const std::uint64_t wanted = 8 * radius;
-    for (const std::uint64_t ticks : {wanted, wanted + 1, 3 * wanted + 5}) {
-      Engines e;
-      const std::uint64_t prescale = (wanted * kOnePulse + ticks / 2) / ticks;
-      e.circle(radius, prescale, ticks, 2, 5);
-      EXPECT_EQ(e.path_ticks, static_cast<std::uint64_t>((uint128{ticks} * prescale + kOnePulse / 2) >> 40));
-      EXPECT_EQ(e.path_ticks, wanted);
-      EXPECT_EQ(e.steps, wanted);
-      EXPECT_EQ(e.place, (std::array<std::int64_t, 8>{}));
-      EXPECT_TRUE(e.engines.outputs().done && !e.engines.outputs().elsewhere && e.engines.outputs().payload_ready);
+  for (int clocks = 0; clocks < 3; ++clocks) {
+    PathEngines engines;
+    PathEngines::Inputs in;
+    in.tick = in.swap = true;
+    engines.clock(in);
+    for (int i = 0; i < clocks; ++i) engines.clock({});
+    in = {};
+    in.cut = true;
+    engines.clock(in);
+    for (int i = 0; i < 6; ++i) {
+      EXPECT_FALSE(engines.outputs().tick || engines.outputs().swap);
+      engines.clock({});
     }
   }
 }
 
-TEST(PathEngines, AnArcCutShortIsElsewhere) {
-  Engines e;
-  e.circle(5, kOnePulse, 39, 0, 1);
-  EXPECT_EQ(e.path_ticks, 39U);
-  EXPECT_TRUE(e.engines.outputs().done && e.engines.outputs().elsewhere);
+// A feed tick at c that is a path tick: at the accumulator c+5, its step at c+8 by axis.
+TEST(PathEngines, APathTickTakesItsClocks) {
+  PathEngines engines;
+  begin_circle(engines, 10, kOne);
+  for (int i = 0; i < 5; ++i) engines.clock({});
+  PathEngines::Inputs in;
+  in.tick = true;
+  engines.clock(in);
+  for (int clock = 1; clock < 30; ++clock) {
+    const auto& o = engines.outputs();
+    EXPECT_EQ(o.path_tick, clock == 5) << clock;
+    EXPECT_EQ(o.step, clock == 8 ? 2U : 0U) << "x is axis 1, and steps first where F is 0; clock " << clock;
+    // The tick was at the accumulator at 5: payload from 5 + 6, done from 5 + 10.
+    EXPECT_EQ(o.payload_ready, clock >= 11) << clock;
+    EXPECT_EQ(o.done, clock >= 15) << clock;
+    EXPECT_TRUE(o.ready);
+    engines.clock({});
+  }
+  EXPECT_TRUE(engines.outputs().elsewhere);
+}
+
+// Ticks as fast as they are taken: every path tick makes a step, none is lost, and the circle ends where it began.
+TEST(PathEngines, ACircleAsFastAsItGoes) {
+  for (const std::uint64_t r : {1U, 5U, 30U}) {
+    PathEngines engines;
+    begin_circle(engines, r, kOne);
+    std::int64_t at[2] = {0, 0};
+    std::uint64_t given = 0;
+    std::uint64_t steps = 0;
+    for (std::uint64_t clock = 0; clock < 10 * 8 * r + 60; ++clock) {
+      PathEngines::Inputs in;
+      in.tick = clock > 6 && engines.outputs().ready && given < 8 * r;
+      given += in.tick ? 1U : 0U;
+      engines.clock(in);
+      for (unsigned axis = 0; axis < 2; ++axis) {
+        if ((engines.outputs().step >> axis & 1) == 0) continue;
+        ++steps;
+        at[axis] += (engines.outputs().dir >> axis & 1) != 0 ? -1 : 1;
+      }
+    }
+    EXPECT_EQ(steps, 8 * r);
+    EXPECT_EQ(at[0], 0);
+    EXPECT_EQ(at[1], 0);
+    EXPECT_TRUE(engines.outputs().done);
+    EXPECT_FALSE(engines.outputs().elsewhere);
+  }
+}
+
+TEST(PathEngines, TicksOfLinesLeaveThePayloadReady) {
+  PathEngines engines;
+  PathEngines::Inputs in;
+  in.swap = true;
+  engines.clock(in);
+  in = {};
+  in.tick = true;
+  for (int i = 0; i < 20; ++i) {
+    engines.clock(in);
+    EXPECT_TRUE(engines.outputs().payload_ready);
+    EXPECT_FALSE(engines.outputs().done);
+  }
+}
+
+// Ticks in flight and silent ones of the prescaler at once.
+TEST(PathEngines, JumpEqualsClock) {
+  std::mt19937_64 random(3);
+  for (int n = 0; n < 500; ++n) {
+    PathEngines clocked;
+    begin_circle(clocked, 10, kOne / 5000);
+    for (int i = 0; i < 20; ++i) clocked.clock({});
+    PathEngines jumping = clocked;
+    ASSERT_TRUE(jumping.settled());
+    const int clocks = 10 + static_cast<int>(random() % 200);
+    std::uint64_t ticks = 0;
+    unsigned in_flight = 0;
+    for (int i = 0; i < clocks; ++i) {
+      PathEngines::Inputs in;
+      in.tick = random() % 3 != 0;
+      clocked.clock(in);
+      ticks += in.tick ? 1U : 0U;
+      in_flight = in_flight << 1 | (in.tick ? 1U << 6 : 0U);
+    }
+    jumping.jump(ticks, in_flight & 0x3FF);
+    for (int i = 0; i < 3000; ++i) {
+      ASSERT_EQ(jumping.outputs().tick, clocked.outputs().tick);
+      ASSERT_EQ(jumping.outputs().path_tick, clocked.outputs().path_tick);
+      ASSERT_EQ(jumping.outputs().done, clocked.outputs().done) << i;
+      ASSERT_EQ(jumping.outputs().payload_ready, clocked.outputs().payload_ready);
+      PathEngines::Inputs in;
+      in.tick = i > 8;
+      clocked.clock(in);
+      jumping.clock(in);
+    }
+  }
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// The stop control's model against the page's sentences: what stops at once and what ramps, who wins, and that clearing
-// never lets go while anything is left.
+// The stop control by its rules: what each event does in each state, and when it shows.
 #include "trammel/model/stop_control.hpp"
 
 #include <gtest/gtest.h>
@@ -10,131 +9,175 @@ namespace {
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-class Stop {
- public:
-  const StopControl::Outputs& clock(const StopControl::Inputs& in = {}) {
-    stop_.clock(in);
-    cuts += stop_.outputs().cut ? 1 : 0;
-    stops += stop_.outputs().stop ? 1 : 0;
-    return stop_.outputs();
-  }
-  const StopControl::Outputs& set(std::uint32_t address, std::uint32_t data) {
-    StopControl::Inputs in;
-    in.setting = {true, address, data};
-    return clock(in);
-  }
-  const StopControl::Outputs& step_fault(std::uint32_t axes) {
-    StopControl::Inputs in;
-    in.step_fault = axes;
-    return clock(in);
-  }
-  const StopControl::Outputs& clear(std::uint32_t ones = ~0U, std::uint32_t step_fault = 0) {
-    StopControl::Inputs in;
-    in.clear = ones;
-    in.step_fault = step_fault;
-    return clock(in);
-  }
-  const StopControl::Outputs& abort() {
-    StopControl::Inputs in;
-    in.abort = true;
-    return clock(in);
-  }
-  int cuts = 0;
-  int stops = 0;
-
- private:
-  StopControl stop_;
-};
-
-TEST(StopControl, AnEventCutsAtOnceAndAsksForOneSnapshot) {
-  Stop stop;
-  EXPECT_TRUE(stop.clock().go);
-  const StopControl::Outputs out = stop.step_fault(4);
-  EXPECT_EQ(out.fault, 4U);
-  EXPECT_TRUE(out.cut && out.stop && !out.go && !out.stopping);
-  EXPECT_FALSE(out.closed);  // a clock later
-  EXPECT_TRUE(stop.clock().closed);
-  stop.step_fault(1);
-  EXPECT_EQ(stop.cuts, 1);
-  EXPECT_EQ(stop.stops, 1);
+StopControl::Inputs none() { return {}; }
+StopControl::Inputs step_fault(std::uint32_t axes) {
+  StopControl::Inputs in;
+  in.step_fault = axes;
+  return in;
+}
+StopControl::Inputs mismatch() {
+  StopControl::Inputs in;
+  in.mismatch = true;
+  return in;
+}
+StopControl::Inputs incomplete() {
+  StopControl::Inputs in;
+  in.incomplete = true;
+  return in;
+}
+StopControl::Inputs abort_now() {
+  StopControl::Inputs in;
+  in.abort = true;
+  return in;
+}
+StopControl::Inputs clear(std::uint32_t bits) {
+  StopControl::Inputs in;
+  in.clear = bits;
+  return in;
+}
+StopControl::Inputs set(std::uint32_t address, std::uint32_t data) {
+  StopControl::Inputs in;
+  in.setting = {true, address, data};
+  return in;
 }
 
-TEST(StopControl, ARampedEventHoldsUntilTheRatioIsZero) {
-  Stop stop;
-  stop.set(reg::kStopReaction, 2);
-  EXPECT_TRUE(stop.step_fault(2).stopping);
-  const StopControl::Outputs ramp = stop.clock();
-  EXPECT_TRUE(ramp.go && ramp.hold && ramp.closed && !ramp.cut);
-  for (int i = 0; i < 50; ++i) EXPECT_FALSE(stop.clock().cut);
-  StopControl::Inputs at_rest;
-  at_rest.at_rest = true;
-  const StopControl::Outputs out = stop.clock(at_rest);
-  EXPECT_TRUE(out.cut && !out.go && !out.stopping);
-  EXPECT_EQ(stop.stops, 1);
+void idle(StopControl& stop, int clocks) {
+  for (; clocks != 0; --clocks) stop.clock(none());
 }
 
-TEST(StopControl, AnImmediateEventOrAnAbortEndsTheRamp) {
-  for (const bool abort : {false, true}) {
-    Stop stop;
-    stop.set(reg::kStopReaction, 2);
-    stop.step_fault(2);
-    const StopControl::Outputs out = abort ? stop.abort() : stop.step_fault(1);
-    EXPECT_TRUE(out.cut && !out.go);
-    EXPECT_EQ(stop.stops, 1);
+TEST(StopControl, NothingHappensByItself) {
+  StopControl stop;
+  for (int i = 0; i < 20; ++i) {
+    const auto& o = stop.outputs();
+    EXPECT_TRUE(o.go && !o.hold && !o.cut && !o.stop && !o.closed && !o.stopping && o.fault == 0);
+    EXPECT_TRUE(stop.quiet());
+    stop.clock(none());
   }
 }
 
-TEST(StopControl, MismatchAndIncompleteAreImmediateWhateverTheReactionIs) {
-  for (const bool mismatch : {false, true}) {
-    Stop stop;
-    stop.set(reg::kStopReaction, ~0U);
-    StopControl::Inputs in;
-    in.mismatch = mismatch;
-    in.incomplete = !mismatch;
-    const StopControl::Outputs out = stop.clock(in);
-    EXPECT_TRUE(out.cut);
-    EXPECT_EQ(out.fault, mismatch ? field::kFaultTickMismatch : field::kFaultPathIncomplete);
+TEST(StopControl, AnImmediateEventStopsAClockLater) {
+  const std::pair<StopControl::Inputs, std::uint32_t> causes[] = {{step_fault(1), 1},
+                                                                  {step_fault(0x82), 0x82},
+                                                                  {mismatch(), field::kFaultTickMismatch},
+                                                                  {incomplete(), field::kFaultPathIncomplete}};
+  for (const auto& [event, bits] : causes) {
+    StopControl stop;
+    stop.clock(event);
+    EXPECT_EQ(stop.outputs().fault, bits);
+    EXPECT_FALSE(stop.outputs().go);
+    EXPECT_TRUE(stop.outputs().cut);
+    EXPECT_TRUE(stop.outputs().stop);
+    EXPECT_FALSE(stop.outputs().closed);
+    stop.clock(none());
+    EXPECT_FALSE(stop.outputs().cut);
+    EXPECT_FALSE(stop.outputs().stop);
+    EXPECT_TRUE(stop.outputs().closed);
+    idle(stop, 50);
+    EXPECT_FALSE(stop.outputs().go) << "for as long as the fault stands";
+    stop.clock(clear(~bits));
+    idle(stop, 3);
+    EXPECT_EQ(stop.outputs().fault, bits);
+    stop.clock(clear(bits));
+    EXPECT_EQ(stop.outputs().fault, 0U);
+    EXPECT_FALSE(stop.outputs().go);
+    stop.clock(none());
+    EXPECT_TRUE(stop.outputs().go);
+    EXPECT_TRUE(stop.outputs().closed);
+    stop.clock(none());
+    EXPECT_FALSE(stop.outputs().closed);
   }
 }
 
-TEST(StopControl, AnAbortWithoutFaultCutsAndGoesOn) {
-  Stop stop;
-  const StopControl::Outputs out = stop.abort();
-  EXPECT_TRUE(out.cut && out.go && !out.stop);
-  EXPECT_FALSE(stop.clock().closed);
+TEST(StopControl, AnEventWinsOverAClearAndKeepsTheCardStopped) {
+  StopControl stop;
+  stop.clock(step_fault(1));
+  StopControl::Inputs both = step_fault(1);
+  both.clear = 1;
+  stop.clock(both);
+  EXPECT_EQ(stop.outputs().fault, 1U);
+  EXPECT_FALSE(stop.outputs().cut) << "in STOPPED an event only sets its bit";
+  EXPECT_FALSE(stop.outputs().stop);
+  stop.clock(clear(1));
+  stop.clock(step_fault(2));  // in the clock in which it would have gone to RUN
+  EXPECT_FALSE(stop.outputs().go);
+  idle(stop, 5);
+  EXPECT_FALSE(stop.outputs().go);
+  EXPECT_EQ(stop.outputs().fault, 2U);
 }
 
-TEST(StopControl, ClearAndAbortInEitherOrderOpen) {
-  for (const bool abort_first : {false, true}) {
-    Stop stop;
-    stop.step_fault(1);
-    if (abort_first) stop.abort();
-    stop.clear();
-    if (!abort_first) stop.abort();
-    for (int i = 0; i < 3; ++i) stop.clock();
-    EXPECT_TRUE(stop.clock().go);
-    EXPECT_FALSE(stop.clock().closed);
-    EXPECT_EQ(stop.cuts, 2);
+TEST(StopControl, ARampHoldsUntilAtRest) {
+  StopControl stop;
+  stop.clock(set(reg::kStopReaction, 0x02));
+  stop.clock(step_fault(2));
+  EXPECT_TRUE(stop.outputs().go);
+  EXPECT_TRUE(stop.outputs().stop);
+  EXPECT_TRUE(stop.outputs().stopping);
+  EXPECT_FALSE(stop.outputs().cut);
+  EXPECT_FALSE(stop.outputs().hold);
+  stop.clock(none());
+  EXPECT_TRUE(stop.outputs().hold);
+  EXPECT_TRUE(stop.outputs().closed);
+  stop.clock(clear(2));
+  stop.clock(step_fault(2));
+  idle(stop, 10);
+  EXPECT_TRUE(stop.outputs().go && stop.outputs().hold) << "neither a clear nor the same cause ends the ramp";
+  StopControl::Inputs rest;
+  rest.at_rest = true;
+  stop.clock(rest);
+  EXPECT_TRUE(stop.outputs().cut);
+  EXPECT_FALSE(stop.outputs().stop) << "the first cause has asked for the snapshot";
+  EXPECT_FALSE(stop.outputs().go);
+  EXPECT_FALSE(stop.outputs().stopping);
+  stop.clock(none());
+  EXPECT_FALSE(stop.outputs().hold);
+}
+
+TEST(StopControl, AnImmediateEventOrAnAbortEndsARamp) {
+  for (const auto& event : {step_fault(1), mismatch(), incomplete(), abort_now()}) {
+    StopControl stop;
+    stop.clock(set(reg::kStopReaction, 0xFE));
+    stop.clock(step_fault(0x80));
+    idle(stop, 3);
+    stop.clock(event);
+    EXPECT_TRUE(stop.outputs().cut);
+    EXPECT_FALSE(stop.outputs().go);
   }
+  StopControl stop;
+  stop.clock(set(reg::kStopReaction, 0x80));
+  stop.clock(step_fault(0x81));
+  EXPECT_FALSE(stop.outputs().go) << "ramped and immediate at once: immediate";
 }
 
-TEST(StopControl, AnEventWinsOverAClearBesideIt) {
-  Stop stop;
-  stop.step_fault(3);
-  EXPECT_EQ(stop.clear(~0U, 2).fault, 2U);
-  EXPECT_EQ(stop.clear(1).fault, 2U);
-  EXPECT_FALSE(stop.clock().go);
-  stop.clear(2);
-  EXPECT_TRUE(stop.clock().go);
+TEST(StopControl, AnAbortCutsInAnyState) {
+  StopControl stop;
+  stop.clock(abort_now());
+  EXPECT_TRUE(stop.outputs().cut);
+  EXPECT_TRUE(stop.outputs().go);
+  EXPECT_FALSE(stop.outputs().stop);
+  stop.clock(mismatch());
+  idle(stop, 2);
+  stop.clock(abort_now());
+  EXPECT_TRUE(stop.outputs().cut);
+  EXPECT_FALSE(stop.outputs().go) << "the fault stands";
+  StopControl ramping;
+  ramping.clock(set(reg::kStopReaction, 1));
+  StopControl::Inputs both = step_fault(1);
+  both.abort = true;
+  ramping.clock(both);
+  EXPECT_TRUE(ramping.outputs().cut && ramping.outputs().stopping) << "an abort beside a ramped event cuts and ramps";
 }
 
-TEST(StopControl, HoldHoldsWithoutClosing) {
-  Stop stop;
-  stop.set(reg::kHold, 1);
-  const StopControl::Outputs out = stop.clock();
-  EXPECT_TRUE(out.hold && out.go && !out.closed);
-  stop.set(reg::kHold, 0);
-  EXPECT_FALSE(stop.clock().hold);
+TEST(StopControl, HoldFollowsItsSettingTwoClocksLater) {
+  StopControl stop;
+  stop.clock(set(reg::kHold, 1));
+  EXPECT_FALSE(stop.outputs().hold);
+  stop.clock(none());
+  EXPECT_TRUE(stop.outputs().hold);
+  EXPECT_TRUE(stop.outputs().go);
+  EXPECT_FALSE(stop.outputs().closed);
+  stop.clock(set(reg::kHold, 0));
+  stop.clock(none());
+  EXPECT_FALSE(stop.outputs().hold);
 }
 
 }  // namespace

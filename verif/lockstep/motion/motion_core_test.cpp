@@ -48,7 +48,7 @@ class Bench {
   }
 
   void random_clock() {
-    if (dice_.chance(20'000)) random_pace();
+    if (dice_.chance(10'000)) random_pace();
     const bool closed = model_->stop().closed;
     if (!closed && !starting_ && geometry_.done() && dice_.chance(stretch_every_)) {
       const Programs::Stretch stretch = programs_.stretch();
@@ -79,10 +79,10 @@ class Bench {
 
  private:
   void random_pace() {
-    abort_every_ = dice_.chance(2) ? 200 + dice_.below(500) : 20'000;
+    abort_every_ = dice_.chance(3) ? 200 + dice_.below(500) : 20'000;
     start_every_ = dice_.chance(2) ? 400 : 5000;
     write_every_ = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
-    stretch_every_ = dice_.chance(2) ? 10 : 3000;
+    stretch_every_ = dice_.chance(3) ? 1000 : 10;
     programs_.wrong_every = dice_.chance(3) ? 10 : 1000;
     programs_.longest = dice_.chance(2) ? 20 : 300;
     // Drives that are slow make step faults; mostly they are quick.
@@ -295,7 +295,7 @@ void random_programs() {
   const std::uint64_t length = scaled(1'000'000);
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
-  EXPECT_GT(bench.steps(), length / 50);
+  EXPECT_GT(bench.steps(), length / 100);
   EXPECT_GT(bench.moves(), length / 20'000);
   EXPECT_GT(bench.faults(), length / 20'000);
 }

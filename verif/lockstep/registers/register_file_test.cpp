@@ -227,13 +227,10 @@ class Bench {
     rtl_->fault_i = in_.fault;
     rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
     rtl_->begun_i = std::uint64_t{in_.geometry_begun} << 32 | in_.feed_begun;
-    rtl_->checker_ready_i = in_.checker_ready;
-    rtl_->checker_partial_i = in_.incomplete;
-    rtl_->checker_refuse_i = in_.checker_refuse;
-    rtl_->checker_reason_i = static_cast<SData>(in_.checker_number << 8 | in_.checker_reason);
-    rtl_->start_done_i = in_.start_done;
-    rtl_->start_error_i = in_.start_error;
-    rtl_->start_reason_i = in_.start_reason;
+    rtl_->checker_i = std::uint32_t{in_.incomplete} << 18 | std::uint32_t{in_.checker_ready} << 17 |
+                      std::uint32_t{in_.checker_refuse} << 16 | std::uint32_t{in_.checker_number} << 8 |
+                      in_.checker_reason;
+    rtl_->start_answer_i = static_cast<SData>(in_.start_done << 9 | in_.start_error << 8 | in_.start_reason);
     rtl_->loader_address_i = in_.loader_address;
     rtl_->stop_i = in_.stop;
     rtl_->chain_i = chain_.back().word();

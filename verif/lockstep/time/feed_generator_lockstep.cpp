@@ -12,7 +12,7 @@ namespace trammel {
 namespace {
 
 constexpr std::uint64_t kComparedSignals = 2;
-// What the card guarantees between two swaps.
+// What the card guarantees between two swaps but after a piece that began at rest.
 constexpr std::uint64_t kSwapDistance = 24;
 
 struct Piece {
@@ -43,7 +43,8 @@ class Bench {
   }
 
   void clock(model::FeedGenerator::Inputs in) {
-    in.enable = started_ && dice_.below(1024) < enable_of_1024_;
+    in.clear = in.clear || resting_;
+    in.enable = started_ && !in.clear && dice_.below(1024) < enable_of_1024_;
     started_ = started_ || in.swap;
     apply(in);
     const std::uint32_t rate = model_.outputs().rate;
@@ -71,17 +72,28 @@ class Bench {
     since_swap_ = idle(2 + late) + shift(kAcceleration, p.acceleration, 4) + shift(kJerk, p.jerk, 4);
   }
 
+  // As the first piece after a barrier: cleared all the while, and loaded whole before its swap.
+  void piece_at_rest(const Piece& p, std::uint64_t rest) {
+    using namespace model::feed_target;
+    resting_ = true;
+    idle(3 + rest);
+    shift(kRate, p.rate, 4);
+    shift(kFloor, p.floor, 2);
+    idle(rest % 3);
+    shift(kAcceleration, p.acceleration, 4);
+    shift(kJerk, p.jerk, 4);
+    idle(rest % 5);
+    checker_.event("swap at rest: rate", p.rate);
+    model::FeedGenerator::Inputs in;
+    in.swap = true;
+    clock(in);
+    resting_ = false;
+    since_swap_ = 0;
+  }
+
   std::uint64_t idle(std::uint64_t clocks) {
     for (std::uint64_t i = 0; i < clocks; ++i) clock({});
     return clocks;
-  }
-
-  void clear() {
-    checker_.event("clear");
-    model::FeedGenerator::Inputs in;
-    in.clear = true;
-    clock(in);
-    ++since_swap_;
   }
 
   std::uint64_t ticks() const { return ticks_; }
@@ -128,6 +140,7 @@ class Bench {
   lockstep::Dice dice_;
   unsigned enable_of_1024_;
   bool started_ = false;
+  bool resting_ = false;  // no piece runs
   std::uint64_t since_swap_ = 0;  // clocks
   std::uint64_t ticks_ = 0;
   std::uint64_t chained_ = 0;
@@ -154,6 +167,10 @@ void directed() {
   }
   for (const Piece& p : pieces) bench.piece(p, 2000);
   EXPECT_GT(bench.ticks(), 1000U);
+  for (const Piece& p : pieces) {
+    bench.piece_at_rest(p, 0);
+    bench.wait(200);
+  }
   bench.expect_all_compared();
 }
 
@@ -182,11 +199,8 @@ void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
     std::uint64_t distance = kSwapDistance + random() % 80;
     // One piece in 16 lasts for about 50 updates, however rare the enables are.
     if (random() % 16 == 0) distance += random() % (1 + 3'000'000 / enable_of_1024);
+    if (random() % 5 == 0) bench.piece_at_rest(random_piece(random), random() % 40);
     bench.piece(random_piece(random), distance, random() % 4);
-    if (random() % 8 == 0) {
-      bench.wait(random() % 8);
-      bench.clear();
-    }
     if (random() % 500 == 0) bench.reset();
   }
   EXPECT_GT(bench.ticks(), pieces);
