@@ -47,7 +47,9 @@ class Bench {
     // Where ticks may not be taken neither commands nor a START get this far.
     const bool open = stand_for_ == 0;
     if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
-    if (open && at_rest() && dice_.chance(100)) direct_step_ = 1;
+    // A commit shows two clocks later.
+    rested_for_ = open && at_rest() ? rested_for_ + 1 : 0;
+    if (rested_for_ > 3 && dice_.chance(100)) direct_step_ = 1;
     direct();
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
@@ -224,6 +226,7 @@ class Bench {
   SnapshotWord chain_[2];
   unsigned feed_ticks_ = 0;   // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
+  unsigned rested_for_ = 0;   // clocks
   unsigned stand_for_ = 0;    // clocks without go
   unsigned direct_step_ = 0;  // of a direct move; 0: none
   std::uint64_t length_ = 0;
