@@ -30,28 +30,18 @@ module step_shaper (
   logic pulse;
 
   waiting_steps waiting (
-      .clk_i,
-      .rst_i,
-      .step_i,
-      .dir_i,
+      .*,
       .points_i(dir),
       .take_i  (go),
-      .wait_tick_i,
       .any_o   (any),
       .same_o  (same),
-      .other_o (other),
-      .fault_o
+      .other_o (other)
   );
 
   step_phases phases (
-      .clk_i,
-      .rst_i,
+      .*,
       .same_i   (same),
       .other_i  (other),
-      .step_length_i,
-      .step_space_i,
-      .dir_setup_i,
-      .dir_hold_i,
       .go_o     (go),
       .resting_o(resting),
       .dir_o    (dir),
@@ -60,16 +50,10 @@ module step_shaper (
   );
 
   step_pins pins (
-      .clk_i,
-      .rst_i,
+      .*,
       .dir_i  (dir),
       .begun_i(begun),
-      .pulse_i(pulse),
-      .mode_i,
-      .idle_level_i,
-      .step_o,
-      .dir_o,
-      .position_o
+      .pulse_i(pulse)
   );
 
   always_ff @(posedge clk_i) begin

@@ -90,16 +90,9 @@ module card_core #(
       .Ports(Ports),
       .Engines(ENGINES)
   ) registers (
-      .clk_i,
-      .rst_i,
+      .*,
       .constants_i(constants),
-      .idle_level_i,
-      .request_i,
       .access_i({port_i, write_i, partial_i, address_i, data_i}),
-      .ack_o,
-      .error_o,
-      .data_o,
-      .irq_o,
       .motion_i(motion_status),
       .held_i(held),
       .fault_i(fault),
@@ -139,8 +132,7 @@ module card_core #(
       .Axes(Axes),
       .Engines(ENGINES)
   ) stream (
-      .clk_i,
-      .rst_i,
+      .*,
       .write_i(stream_write),
       .word_i(setting[31:0]),  // the word last written, whatever it was for
       .flush_i(flush),
@@ -164,8 +156,7 @@ module card_core #(
   halfword_queue #(
       .Depth(GeometryDepth)
   ) geometry_queue (
-      .clk_i,
-      .rst_i,
+      .*,
       .clear_i (cut),
       .write_i (geometry_write),
       .word_i  (halfword),
@@ -180,8 +171,7 @@ module card_core #(
   halfword_queue #(
       .Depth(FeedDepth)
   ) feed_queue (
-      .clk_i,
-      .rst_i,
+      .*,
       .clear_i (cut),
       .write_i (feed_write),
       .word_i  (halfword),
@@ -198,9 +188,7 @@ module card_core #(
       .Accumulator(Accumulator != 0),
       .DirectMode(DirectMode != 0)
   ) motion (
-      .clk_i,
-      .rst_i,
-      .idle_level_i,
+      .*,
       .setting_i(setting),
       .abort_i(abort),
       .clear_fault_i(clear_fault),
@@ -228,9 +216,7 @@ module card_core #(
       .held_o(held),
       .geometry_begun_o(begun[63:32]),
       .feed_begun_o(begun[31:0]),
-      .observe_o(observe_o[34*Axes+52:0]),
-      .step_o,
-      .dir_o
+      .observe_o(observe_o[34*Axes+52:0])
   );
 
   assign observe_o[34*Axes+212:34*Axes+53] = {room, status, fault, begun};

@@ -51,25 +51,8 @@ module trammel_card #(
   logic [31:0] port_data;
 
   axi4_lite_port host (
-      .clk_i,
+      .*,
       .rst_i    (rst_q),
-      .awvalid_i,
-      .awready_o,
-      .awaddr_i,
-      .wvalid_i,
-      .wready_o,
-      .wdata_i,
-      .wstrb_i,
-      .bvalid_o,
-      .bready_i,
-      .bresp_o,
-      .arvalid_i,
-      .arready_o,
-      .araddr_i,
-      .rvalid_o,
-      .rready_i,
-      .rdata_o,
-      .rresp_o,
       .request_o(port_access[47]),
       .write_o  (port_access[46]),
       .partial_o(port_access[45]),
@@ -115,7 +98,7 @@ module trammel_card #(
       .BuildDirty(BuildDirty),
       .BoardId(BoardId)
   ) core (
-      .clk_i,
+      .*,
       .rst_i    (rst_q),
       .request_i(request),
       .port_i   (access[47:46]),
@@ -125,13 +108,7 @@ module trammel_card #(
       .data_i   (access[31:0]),
       .ack_o    (ack),
       .error_o  (error),
-      .data_o   (data),
-      .clock_hz_i,
-      .idle_level_i,
-      .step_o,
-      .dir_o,
-      .irq_o,
-      .observe_o
+      .data_o   (data)
   );
 endmodule
 `default_nettype wire

@@ -83,7 +83,7 @@ module command_checker #(
       .Axes(Axes),
       .Engines(Engines)
   ) header (
-      .clk_i,
+      .*,
       .restart_i(restart),
       .low_i(low_q && !partial_o),
       .low_judge_i(low_judge_q && !partial_o),
@@ -91,11 +91,8 @@ module command_checker #(
       .high_judge_i(high_judge_q && !partial_o),
       .accept_i(accepted),
       .halfword_i(word_q[15:0]),
-      .geometry_room_i,
-      .feed_room_i,
       .op_o(op),
       .mask_o(mask),
-      .number_o,
       .to_geometry_o(to_geometry),
       .to_feed_o(to_feed),
       .stored_o(stored),

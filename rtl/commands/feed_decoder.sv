@@ -35,13 +35,7 @@ module feed_decoder (
   endfunction
 
   command_fetch fetch (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .pop_i,
-      .empty_i,
-      .word_i,
-      .read_o,
+      .*,
       .has_payload_i (is_feed),
       .first_field_i ({2'd0, load_target_pkg::FEED_RATE}),
       .first_length_i(3'd3),
@@ -58,9 +52,7 @@ module feed_decoder (
       .field_strobe_o(field_strobe),
       .strobe_field_o(strobe_field),
       .opcode_o      (opcode),
-      .mask_o        (),
-      .idle_o,
-      .valid_o
+      .mask_o        ()
   );
 
   always_ff @(posedge clk_i) begin

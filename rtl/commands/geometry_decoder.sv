@@ -84,13 +84,7 @@ module geometry_decoder #(
   end
 
   command_fetch fetch (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .pop_i,
-      .empty_i,
-      .word_i,
-      .read_o,
+      .*,
       .has_payload_i (is_line || is_arc),
       .first_field_i (is_arc ? load_target_pkg::NOWHERE : lowest),
       .first_length_i(3'd2),
@@ -107,9 +101,7 @@ module geometry_decoder #(
       .field_strobe_o(field_strobe),
       .strobe_field_o(strobe_field),
       .opcode_o      (opcode),
-      .mask_o        (mask),
-      .idle_o,
-      .valid_o
+      .mask_o        (mask)
   );
 
   always_ff @(posedge clk_i) begin

@@ -65,11 +65,8 @@ module path_engines #(
     pulse_generator #(
         .Counted(0)
     ) prescaler (
-        .clk_i,
-        .rst_i,
+        .*,
         .clear_i         (cut_i),
-        .tick_i,
-        .swap_i,
         .active_i        (engine_i),
         .counted_i       (1'b0),
         .mirror_i        (1'b0),
@@ -82,25 +79,17 @@ module path_engines #(
     );
 
     path_tick_gate gate (
-        .clk_i,
-        .rst_i,
-        .cut_i,
+        .*,
         .coming_i         (coming),
         .step_i           (prescaler_step),
         .engine_ready_i   (engine_ready),
         .engine_stepping_i(engine_stepping),
-        .tick_o           (path_tick_o),
-        .ready_o,
-        .payload_ready_o,
-        .done_o
+        .tick_o           (path_tick_o)
     );
 
     deviation_accumulator accumulator (
-        .clk_i,
-        .rst_i,
+        .*,
         .clear_i   (cut_i),
-        .load_i,
-        .start_i,
         .tick_i    (path_tick_o),
         .step_x_o  (step_x),
         .dir_x_o   (dir_x),
@@ -114,15 +103,11 @@ module path_engines #(
     arc_router #(
         .Axes(Axes)
     ) router (
-        .clk_i,
-        .rst_i,
-        .load_i,
+        .*,
         .step_x_i(step_x),
         .dir_x_i (dir_x),
         .step_y_i(step_y),
-        .dir_y_i (dir_y),
-        .step_o,
-        .dir_o
+        .dir_y_i (dir_y)
     );
   end else begin : gen_lines_only
     assign path_tick_o     = 1'b0;

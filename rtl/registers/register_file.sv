@@ -65,12 +65,8 @@ module register_file #(
   assign data   = access_i[31:0];
 
   register_access i_access (
-      .clk_i,
-      .rst_i,
-      .request_i,
+      .*,
       .write_i(access_i[45]),
-      .ack_o,
-      .error_o,
       .read_o(read),
       .judge_o(judge),
       .wait_i((writing || snapshotting) && (access_i[45] || !live)),
@@ -79,11 +75,8 @@ module register_file #(
       .start_i(target[5]),
       .act_o(act),
       .sample_o(sample),
-      .stream_write_o,
       .checker_ready_i(checker_i[17]),
       .checker_refuse_i(checker_i[16]),
-      .start_o,
-      .start_answer_i,
       .refuse_o(refuse),
       .reason_o(refuse_reason)
   );
@@ -140,8 +133,7 @@ module register_file #(
   refusal_latch #(
       .Ports(Ports)
   ) i_refusal (
-      .clk_i,
-      .rst_i,
+      .*,
       .port_i(asking),
       .address_i(access_i[43:32]),
       .clear_i(act && target[3]),
@@ -155,46 +147,32 @@ module register_file #(
   );
 
   register_live i_live (
-      .clk_i,
-      .rst_i,
+      .*,
       .setting_i(setting_o),
       .snapshot_i(snapshot_o),
       .sample_i(sample),
       .word_i(access_i[36:34]),
-      .motion_i,
-      .held_i,
       .any_refused_i(any_refused),
       .refused_i(refused),
       .snapshotting_i(snapshotting),
       .incomplete_i(checker_i[18]),
-      .fault_i,
       .refusal_i(refused_what),
-      .room_i,
-      .begun_i,
-      .status_o,
-      .data_o(live_data),
-      .chain_o,
-      .irq_o
+      .data_o(live_data)
   );
 
   logic [40:0] latched;
   logic [63:0] now;
 
   time_counter i_time (
-      .clk_i,
-      .rst_i,
+      .*,
       .time_o(now)
   );
 
   snapshot_writer #(
       .Axes(Axes)
   ) i_snapshot (
-      .clk_i,
-      .rst_i,
+      .*,
       .host_i  (snapshot_q),
-      .stop_i,
-      .chain_i,
-      .snapshot_o,
       .active_o(snapshotting),
       .time_i  (now),
       .store_o (latched)
@@ -211,10 +189,7 @@ module register_file #(
   register_ram #(
       .Axes(Axes)
   ) i_ram (
-      .clk_i,
-      .rst_i,
-      .constants_i,
-      .idle_level_i,
+      .*,
       .setting_i(setting_o),
       .snapshot_i(latched),
       .sweep_i(now[7:0]),

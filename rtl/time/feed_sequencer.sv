@@ -39,18 +39,11 @@ module feed_sequencer (
   assign runs_o = active_o || (valid && piece);
 
   feed_decoder decoder (
-      .clk_i,
-      .rst_i,
-      .cut_i,
+      .*,
       .pop_i    (swap || barrier_done_i),
       .active_i (active_o),
-      .empty_i,
-      .word_i,
-      .read_o,
-      .load_o,
       .piece_o  (piece),
       .barrier_o(is_barrier),
-      .idle_o,
       .valid_o  (valid)
   );
 
@@ -65,25 +58,17 @@ module feed_sequencer (
   );
 
   tick_counter ticks (
-      .clk_i,
-      .rst_i,
+      .*,
       .load_i    (swap),
       .count_i   (count),
       .mid_zero_i(mid_zero),
       .top_zero_i(top_zero),
-      .take_i,
       .last_o    (last)
   );
 
   begun_counter begun (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .begin_i(swap_o || barrier_begin_i),
-      .snapshot_i,
-      .chain_i,
-      .chain_o,
-      .begun_o
+      .*,
+      .begin_i(swap_o || barrier_begin_i)
   );
 
   always_ff @(posedge clk_i) begin
