@@ -116,13 +116,11 @@ module card_core #(
   );
 
   logic [15:0] halfword;
-  logic        geometry_write;
-  logic        geometry_commit;
+  logic [ 1:0] geometry_store;  // {commit, write}
   logic        geometry_read;
   logic        geometry_empty;
   logic [15:0] geometry_word;
-  logic        feed_write;
-  logic        feed_commit;
+  logic [ 1:0] feed_store;  // {commit, write}
   logic        feed_read;
   logic        feed_empty;
   logic [15:0] feed_word;
@@ -138,49 +136,36 @@ module card_core #(
       .flush_i(flush),
       .clear_i(cut),
       .closed_i(closed),
-      .geometry_room_i(room[31:16]),
-      .feed_room_i(room[15:0]),
-      .ready_o(checked[17]),
+      .room_i(room),
       .halfword_o(halfword),
-      .geometry_write_o(geometry_write),
-      .feed_write_o(feed_write),
-      .geometry_commit_o(geometry_commit),
-      .feed_commit_o(feed_commit),
+      .geometry_o(geometry_store),
+      .feed_o(feed_store),
       .drop_o(drop),
-      .refuse_o(checked[16]),
-      .reason_o(checked[7:0]),
-      .number_o(checked[15:8]),
-      .partial_o(checked[18])
+      .answer_o(checked)
   );
 
   halfword_queue #(
       .Depth(GeometryDepth)
   ) geometry_queue (
       .*,
-      .clear_i (cut),
-      .write_i (geometry_write),
-      .word_i  (halfword),
-      .commit_i(geometry_commit),
-      .drop_i  (drop),
-      .read_i  (geometry_read),
-      .word_o  (geometry_word),
-      .empty_o (geometry_empty),
-      .room_o  (room[31:16])
+      .clear_i(cut),
+      .store_i({drop, geometry_store, halfword}),
+      .read_i (geometry_read),
+      .word_o (geometry_word),
+      .empty_o(geometry_empty),
+      .room_o (room[31:16])
   );
 
   halfword_queue #(
       .Depth(FeedDepth)
   ) feed_queue (
       .*,
-      .clear_i (cut),
-      .write_i (feed_write),
-      .word_i  (halfword),
-      .commit_i(feed_commit),
-      .drop_i  (drop),
-      .read_i  (feed_read),
-      .word_o  (feed_word),
-      .empty_o (feed_empty),
-      .room_o  (room[15:0])
+      .clear_i(cut),
+      .store_i({drop, feed_store, halfword}),
+      .read_i (feed_read),
+      .word_o (feed_word),
+      .empty_o(feed_empty),
+      .room_o (room[15:0])
   );
 
   motion_core #(

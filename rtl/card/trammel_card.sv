@@ -52,18 +52,12 @@ module trammel_card #(
 
   axi4_lite_port host (
       .*,
-      .rst_i    (rst_q),
-      .request_o(port_access[47]),
-      .write_o  (port_access[46]),
-      .partial_o(port_access[45]),
-      .address_o(port_access[43:32]),
-      .data_o   (port_access[31:0]),
-      .ack_i    (port_ack),
-      .error_i  (port_error),
-      .data_i   (port_data)
+      .rst_i   (rst_q),
+      .access_o(port_access),
+      .ack_i   (port_ack),
+      .error_i (port_error),
+      .data_i  (port_data)
   );
-
-  assign port_access[44] = 1'b0;
 
   logic        request;
   logic [47:0] access;  // {port, write, partial, address, data}

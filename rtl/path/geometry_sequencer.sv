@@ -59,9 +59,6 @@ module geometry_sequencer #(
   logic            path_begin;
   logic            engine_taken;
   logic            runs;
-  logic [    39:0] count;
-  logic            mid_zero;
-  logic            top_zero;
   logic            zero;
   logic            last;
   logic            at_barrier;
@@ -86,24 +83,13 @@ module geometry_sequencer #(
       .valid_o        (valid)
   );
 
-  count_chain next_count (
-      .clk_i,
-      .load_i    (load_o[21] && load_o[20:16] == load_target_pkg::TICKS),
-      .word_i    (load_o[15:0]),
-      .count_o   (count),
-      .mid_zero_o(mid_zero),
-      .top_zero_o(top_zero),
-      .zero_o    (zero)
-  );
-
   tick_counter ticks (
       .*,
-      .load_i    (path_begin || barrier_begin_o),
-      .count_i   (count),
-      .mid_zero_i(mid_zero),
-      .top_zero_i(top_zero),
-      .take_i    (take_i || counting),
-      .last_o    (last)
+      .next_i({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
+      .zero_o(zero),
+      .load_i(path_begin || barrier_begin_o),
+      .take_i(take_i || counting),
+      .last_o(last)
   );
 
   path_sequencer #(

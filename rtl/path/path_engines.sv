@@ -100,15 +100,25 @@ module path_engines #(
         .at_end_o  (at_end)
     );
 
-    arc_router #(
-        .Axes(Axes)
-    ) router (
-        .*,
-        .step_x_i(step_x),
-        .dir_x_i (dir_x),
-        .step_y_i(step_y),
-        .dir_y_i (dir_y)
-    );
+    // The accumulator's steps go to the two axes of the arc's plane. The plane is loaded with the arc, that is when no
+    // other arc runs, so that one register is enough.
+    logic [2:0] axis_x_q;
+    logic [2:0] axis_y_q;
+
+    always_ff @(posedge clk_i) begin
+      if (load_i[21] && load_i[20:16] == load_target_pkg::PLANE) begin
+        axis_x_q <= load_i[6:4];
+        axis_y_q <= load_i[10:8];
+      end
+      // A direction is looked at with its step only.
+      step_o <= '0;
+      if ((step_x || step_y) && !rst_i) begin
+        for (int i = 0; i < Axes; i++) begin
+          step_o[i] <= (step_x && axis_x_q == 3'(i)) || (step_y && axis_y_q == 3'(i));
+          dir_o[i]  <= (axis_x_q == 3'(i)) ? dir_x : dir_y;
+        end
+      end
+    end
   end else begin : gen_lines_only
     assign path_tick_o     = 1'b0;
     assign step_o          = '0;
