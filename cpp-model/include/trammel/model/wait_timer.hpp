@@ -1,4 +1,4 @@
-// Golden model of the hold timer: one clock in HOLD_LIMIT, for all shapers. Not thread-safe; no errors are reported.
+// Golden model of the wait timer: one clock in HOLD_LIMIT, for all shapers. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace trammel::model {
 
-class HoldTimer {
+class WaitTimer {
  public:
   // One rising edge. A limit set in clock c counts from c+1 on.
   void clock(const Setting& setting) {
