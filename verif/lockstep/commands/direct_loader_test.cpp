@@ -180,7 +180,7 @@ void random_starts() {
     bench.surroundings(dice.chance(2) ? 0 : 2 + dice.below(60), dice.chance(2) ? 0 : 2 + dice.below(200));
     for (unsigned axis = 0; axis < 8; ++axis) {
       std::uint64_t frequency = dice.log_uniform(41) % (kOnePulse + 1);
-      if (dice.chance(30)) frequency = kOnePulse + dice.below(2) * (std::uint64_t{1} << dice.below(41));
+      if (dice.chance(30)) frequency = kOnePulse + dice.below(2) * (std::uint64_t{1} << dice.below(40));
       set_axis(bench, axis, frequency, static_cast<std::uint32_t>(dice.log_uniform(32)), dice.below(2));
     }
     set_length(bench, dice.chance(20) ? 0 : dice.log_uniform(40));

@@ -27,6 +27,7 @@ constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
 constexpr std::uint64_t kComparedSignals = 12;
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
+constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(7) / 4;  // word of the direct mode's first register
 // RATIO, RATE, FEED_BEGUN and GEOMETRY_BEGUN come before the positions on the snapshot chain.
 constexpr std::size_t kBeforePositions = 4;
 
@@ -62,6 +63,7 @@ class Bench {
 
   // One clock of reset, whatever comes in it; what was asked for is forgotten.
   void reset() {
+    in_.incomplete = false;
     rtl_->rst_i = 1;
     drive();
     rtl_.clock();
@@ -71,7 +73,7 @@ class Bench {
     outstanding_ = false;
     checker_wait_ = 0;
     start_wait_ = 0;
-    flushed_ = false;
+    flushed_ = streamed_ = false;
     chain_.fill({});
     in_.request = in_.stop = in_.start_done = in_.checker_refuse = false;
     in_.checker_ready = true;
@@ -110,7 +112,8 @@ class Bench {
     random_loader();
     random_access();
     // Nothing moves before the registers are filled, so nothing stops.
-    in_.stop = model_.time() > kFilled && chance(300);
+    // A stop is as likely beside what a write asks for as anywhere else.
+    in_.stop = model_.time() > kFilled && chance(model_.outputs().ack ? 20 : 300);
     if (in_.stop) checker_.event("stop");
     if (chance(20000)) {
       reset();
@@ -149,7 +152,7 @@ class Bench {
     in_.path_active = (bits & 0x10) != 0;
     in_.feed_active = (bits & 0x20) != 0;
     in_.ended = (bits & 0x40) != 0;
-    in_.incomplete = (bits & 0x80) != 0;
+    in_.incomplete = streamed_ && (bits & 0x80) != 0;
     in_.stopping = (bits & 0x100) != 0;
     in_.geometry_room = static_cast<std::uint16_t>(draw());
     in_.feed_room = static_cast<std::uint16_t>(draw());
@@ -167,6 +170,7 @@ class Bench {
     flushed_ = model_.outputs().flush;
     in_.checker_reason = static_cast<std::uint8_t>(1 + draw() % 15);
     in_.checker_number = static_cast<std::uint8_t>(draw());
+    streamed_ = streamed_ || model_.outputs().stream_write;
     if (model_.outputs().stream_write) checker_wait_ = 2 + draw() % 6;
     in_.checker_ready = checker_wait_ < 2 || model_.outputs().stream_write;
     if (checker_wait_ == 1) in_.checker_refuse = chance(3);
@@ -175,7 +179,8 @@ class Bench {
 
   void random_loader() {
     if (model_.outputs().start) start_wait_ = 1 + draw() % 40;
-    in_.loader_address = static_cast<std::uint8_t>(draw());
+    // The direct loader reads its own registers alone, never words that a snapshot may be writing.
+    in_.loader_address = static_cast<std::uint8_t>(kFirstDirect + draw() % (256 - kFirstDirect));
     in_.start_done = start_wait_ == 1;
     in_.start_error = chance(2);
     in_.start_reason = chance(2) ? 8 : chance(2) ? 12 : 15;
@@ -196,11 +201,22 @@ class Bench {
     in_.port = static_cast<std::uint8_t>(draw() % kPorts);
     in_.address = random_address();
     in_.data = random_data(in_.address);
+    // Refusals are cleared often, or there would be no first one; snapshots are asked for often.
+    if (chance(5)) write_register(reg::kRefusal, ~0U);
+    if (chance(20)) write_register(reg::kControl, card_map::field::kControlSnapshot);
     checker_.event(in_.write ? "write" : "read", in_.address);
+  }
+
+  void write_register(std::uint32_t address, std::uint32_t data) {
+    in_.write = true;
+    in_.partial = false;
+    in_.address = address;
+    in_.data = data;
   }
 
   std::uint32_t random_address() {
     if (chance(20)) return draw() & 0xFFF;
+    if (chance(10)) return chance(2) ? card_map::reg::kRefusal : card_map::reg::kControl;
     const card_map::Register& entry = card_map::kRegisters[draw() % card_map::kRegisters.size()];
     const std::uint32_t stray = chance(40) ? 1 + draw() % 3 : 0;
     return card_map::slot_address(entry, draw() % entry.count) + stray;
@@ -270,6 +286,7 @@ class Bench {
   std::array<trammel::lockstep::SnapshotWord, kBeforePositions + kAxes> chain_;
   std::uint64_t more_ = 0;
   bool flushed_ = false;
+  bool streamed_ = false;  // since reset
   std::uint32_t checker_wait_ = 0;
   std::uint32_t start_wait_ = 0;
   bool outstanding_ = false;
