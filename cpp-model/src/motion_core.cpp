@@ -75,7 +75,7 @@ void MotionCore::clock_axes(const Inputs& in, bool cut) {
   axis.load = sequencer_.load();
   axis.setting = in.setting;
   out_.engine_step = engines.step;
-  const bool common = cut || engines.tick || engines.swap || axis.wait_tick || in.setting.set || axis.load.valid;
+  const bool common = cut || engines.tick || engines.swap || in.setting.set || axis.load.valid;
   const std::uint32_t due = common || clock_all_ ? ~0U : engines.step | restless_;
   for (unsigned n = 0; n < axes_.size(); ++n) {
     const std::uint32_t bit = 1U << n;

@@ -1,4 +1,5 @@
-// Golden model of the wait timer: one clock in HOLD_LIMIT, for all shapers. Not thread-safe; no errors are reported.
+// Golden model of the timer (wait_timer) that judges steps which wait: one clock in HOLD_LIMIT, for all shapers. Not
+// thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
