@@ -9,7 +9,7 @@
 
 namespace trammel::model {
 
-class HoldTimer {
+class WaitTimer {
  public:
   // One rising edge. A limit set in clock c counts from c+1 on.
   void clock(const Setting& setting) {
