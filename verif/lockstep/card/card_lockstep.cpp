@@ -27,14 +27,14 @@ void expect_all_compared(sim::LockstepCard& card, unsigned axes, std::uint64_t a
 
 // One run of random traffic; together 5 * 10^7 clocks. Several runs instead of a longer one: ctest spreads them over
 // the cores.
-struct Run {
+struct TrafficRun {
   unsigned axes;
   unsigned index;
   std::uint64_t clocks;
 };
 
-std::vector<Run> runs() {
-  std::vector<Run> result;
+std::vector<TrafficRun> runs() {
+  std::vector<TrafficRun> result;
   for (unsigned axes = 1; axes <= 8; ++axes) {
     const unsigned count = axes == 4 ? 6 : axes == 8 ? 2 : 1;
     for (unsigned i = 0; i < count; ++i) result.push_back({axes, i, axes % 4 == 0 ? 5'600'000U : 1'000'000U});
@@ -57,10 +57,10 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   expect_all_compared(card, axes, clocks);
 }
 
-class CardLockstep : public testing::TestWithParam<Run> {};
+class CardLockstep : public testing::TestWithParam<TrafficRun> {};
 
 TEST_P(CardLockstep, RandomTraffic) {
-  const Run run = GetParam();
+  const TrafficRun run = GetParam();
   const std::uint64_t seed = lockstep::seed_from_environment(10 * run.axes + run.index);
   EXPECT_EQ(lockstep::judge([&] { random_traffic(run.axes, seed, lockstep::scaled(run.clocks)); }), "");
 }
