@@ -103,7 +103,7 @@ module direct_loader #(
       else reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
 
       if (state_q == CHECK && step_q != 5'd7) {busy_q, closed_q} <= {busy_i, closed_i};
-      bad_mask_q <= mask_i == 8'd0 || (mask_i >> Axes) != 8'd0;
+      if (state_q == CHECK) bad_mask_q <= mask_i == 8'd0 || (mask_i >> Axes) != 8'd0;
       if (state_q == IDLE) begin
         bad_q        <= 1'b0;
         length_any_q <= 1'b0;
@@ -113,8 +113,7 @@ module direct_loader #(
       if (count_q & raw_any & ~frequency_any_q) bad_q <= 1'b1;
       if (length_q & raw_any) length_any_q <= 1'b1;
 
-      // Only in AXIS does a frequency come after it.
-      if (step_q == TAKE_DIRECTION) begin
+      if ((state_q == AXIS) & (step_q == TAKE_DIRECTION)) begin
         negative_q      <= data_i[0];
         carry_q         <= data_i[0];
         frequency_any_q <= 1'b0;
@@ -123,13 +122,12 @@ module direct_loader #(
         frequency_any_q <= frequency_any_q | raw_any;
       end
 
-      // An axis that is not masked has but one clock.
       raw_q <= take_high ? data_i[31:16] : data_i[15:0];
       raw_axis_q <= axis_q;
       frequency_top_q <= step_q == TAKE_FREQUENCY_2;
-      frequency_q     <= (state_q == AXIS) &
+      frequency_q     <= (state_q == AXIS) & rest_q[0] &
           ((step_q == TAKE_FREQUENCY_0) | (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_FREQUENCY_2));
-      count_q <= (state_q == AXIS) & ((step_q == TAKE_COUNT_0) | (step_q == TAKE_COUNT_1));
+      count_q <= (state_q == AXIS) & rest_q[0] & ((step_q == TAKE_COUNT_0) | (step_q == TAKE_COUNT_1));
       length_q        <= (state_q == LENGTH) &
           ((step_q == TAKE_LENGTH_0) | (step_q == TAKE_LENGTH_1) | (step_q == TAKE_LENGTH_2));
 
@@ -148,7 +146,7 @@ module direct_loader #(
         rest_q <= mask_i;
         axis_q <= 3'd0;
         mask_o <= mask_i[Axes-1:0];
-      end else if (axis_done) begin
+      end else if ((state_q == AXIS) & axis_done) begin
         rest_q <= {1'b0, rest_q[7:1]};
         axis_q <= axis_q + 3'd1;
       end

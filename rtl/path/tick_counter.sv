@@ -34,15 +34,15 @@ module tick_counter (
   always_ff @(posedge clk_i) begin
     if (load_q || mid_borrow_q) mid_q <= load_q ? ~count_i[19:4] : mid_sum;
     if (load_q || top_borrow_q) top_q <= load_q ? ~count_i[39:20] : top_sum;
-    // Beside a load, too: the load of the upper part, a clock later, overrides it.
-    top_borrow_q <= mid_borrow_q & mid_zero_q;
     if (load_i) begin
       low_q        <= count_i[3:0];
       mid_zero_q   <= mid_zero_i;
       top_zero_q   <= top_zero_i;
       mid_borrow_q <= 1'b0;
+      top_borrow_q <= 1'b0;
       last_o       <= (count_i[3:0] == 4'd1) & mid_zero_i & top_zero_i;
     end else begin
+      top_borrow_q <= mid_borrow_q & mid_zero_q;
       mid_borrow_q <= take_i & (low_q == 4'd0);
       if (take_i) begin
         last_o <= (low_q == 4'd2) & mid_zero_q & top_zero_q;
@@ -54,8 +54,12 @@ module tick_counter (
       end
     end
     load_q <= load_i;
-    // The rest is loaded before a tick is taken.
-    if (rst_i) last_o <= 1'b0;
+    if (rst_i) begin
+      load_q       <= 1'b0;
+      mid_borrow_q <= 1'b0;
+      top_borrow_q <= 1'b0;
+      last_o       <= 1'b0;
+    end
   end
 endmodule
 

@@ -73,7 +73,7 @@ module stop_control #(
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
     stop_o   <= state_q == RUN && state_d != RUN;
     hold_o   <= hold_q || state_q == RAMP;
-    closed_o <= state_q != RUN;
+    closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
       hold_q   <= card_map_pkg::RESET_HOLD[0];
       ramped_q <= card_map_pkg::RESET_STOP_REACTION[Faults-1:0];
