@@ -28,12 +28,12 @@ module axes #(
     output logic      [   Axes-1:0] step_o,
     output logic      [   Axes-1:0] dir_o
 );
-  logic               wait_tick;
-  logic [   Axes-1:0] live;
-  logic [   Axes-1:0] busy;
-  logic [   Axes-1:0] path_step;
-  logic [   Axes-1:0] path_dir;
-  logic [32*Axes-1:0] position;
+  logic                wait_tick;
+  logic [    Axes-1:0] live;
+  logic [    Axes-1:0] busy;
+  logic [    Axes-1:0] path_step;
+  logic [    Axes-1:0] path_dir;
+  logic [ 32*Axes-1:0] position;
   logic [32*Axes+31:0] chain;  // the word that comes in, and each axis's
 
   assign chain[31:0] = chain_i;

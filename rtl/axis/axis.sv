@@ -58,6 +58,16 @@ module axis #(
       .mode_o       (mode)
   );
 
+  // A clock later, so that no comparison stands before the count's adder; path swaps come three clocks late.
+  logic        load_increment_q;
+  logic        load_count_q;
+  logic [15:0] word_q;
+  always_ff @(posedge clk_i) begin
+    load_increment_q <= load_i[21] && load_i[20:16] == INCREMENT;
+    load_count_q <= load_i[21] && load_i[20:16] == COUNT;
+    word_q <= load_i[15:0];
+  end
+
   pulse_generator #(
       .Counted(Counted)
   ) generator (
@@ -69,9 +79,9 @@ module axis #(
       .active_i,
       .counted_i       (direct_i),
       .mirror_i        (direct_i),
-      .load_increment_i(load_i[21] && load_i[20:16] == INCREMENT),
-      .load_count_i    (load_i[21] && load_i[20:16] == COUNT),
-      .word_i          (load_i[15:0]),
+      .load_increment_i(load_increment_q),
+      .load_count_i    (load_count_q),
+      .word_i          (word_q),
       .step_o          (generator_step),
       .dir_o           (generator_dir),
       .live_o

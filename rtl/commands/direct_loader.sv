@@ -14,8 +14,8 @@ module direct_loader #(
     input  wire logic            closed_i,   // a fault stands
     // registers
     input  wire logic            start_i,
-    input  wire logic [     7:0] mask_i,       // stands until done_o
-    output logic      [     7:0] address_o,    // word address
+    input  wire logic [     7:0] mask_i,     // stands until done_o
+    output logic      [     7:0] address_o,  // word address
     input  wire logic [    31:0] data_i,
     output logic                 done_o,
     output logic                 error_o,
@@ -82,17 +82,16 @@ module direct_loader #(
       closed = closed_q || (state_q == DECIDE && closed_i);
       refused = bad_mask_q || closed || busy_q || bad_q;
       axis_last = axis_q == 3'd7;
-      axis_done = ~rest_q[0] | (step_q == TAKE_COUNT_1);
-      take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_COUNT_1) : step_q == TAKE_LENGTH_1;
+      axis_done = !rest_q[0] || step_q == TAKE_COUNT_1;
+      take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1 || step_q == TAKE_COUNT_1) : step_q == TAKE_LENGTH_1;
       raw_any = raw_q != 16'd0;
       negated = (raw_q ^ {16{negative_q}}) + {15'd0, carry_q};
 
       // Each stage before the one that feeds it.
-      load_o <= {
-        (frequency_q || count_q || length_q) && !rst_i,
-        length_q ? load_target_pkg::TICKS : (count_q ? load_target_pkg::COUNT : load_target_pkg::INCREMENT) + {2'd0, raw_axis_q},
-        frequency_q ? negated : raw_q
-      };
+      load_o[21]   <= (frequency_q || count_q || length_q) && !rst_i;
+      load_o[15:0] <= frequency_q ? negated : raw_q;
+      if (length_q) load_o[20:16] <= load_target_pkg::TICKS;
+      else load_o[20:16] <= (count_q ? load_target_pkg::COUNT : load_target_pkg::INCREMENT) + {2'd0, raw_axis_q};
 
       done_o  <= state_q == DECIDE && step_q == 5'd7 && !rst_i;
       error_o <= refused || !length_any_q;
@@ -109,27 +108,26 @@ module direct_loader #(
         length_any_q <= 1'b0;
       end
       // A frequency above 2^40: bit 40 is bit 8 of its third halfword.
-      if (frequency_q & frequency_top_q & raw_q[8] & (frequency_any_q | (raw_q[7:0] != 8'd0))) bad_q <= 1'b1;
-      if (count_q & raw_any & ~frequency_any_q) bad_q <= 1'b1;
-      if (length_q & raw_any) length_any_q <= 1'b1;
+      if (frequency_q && frequency_top_q && raw_q[8] && (frequency_any_q || raw_q[7:0] != 8'd0)) bad_q <= 1'b1;
+      if (count_q && raw_any && !frequency_any_q) bad_q <= 1'b1;
+      if (length_q && raw_any) length_any_q <= 1'b1;
 
-      if ((state_q == AXIS) & (step_q == TAKE_DIRECTION)) begin
+      if (state_q == AXIS && step_q == TAKE_DIRECTION) begin
         negative_q      <= data_i[0];
         carry_q         <= data_i[0];
         frequency_any_q <= 1'b0;
       end else if (frequency_q) begin
-        carry_q         <= carry_q & ~raw_any;
-        frequency_any_q <= frequency_any_q | raw_any;
+        carry_q         <= carry_q && !raw_any;
+        frequency_any_q <= frequency_any_q || raw_any;
       end
 
       raw_q <= take_high ? data_i[31:16] : data_i[15:0];
       raw_axis_q <= axis_q;
       frequency_top_q <= step_q == TAKE_FREQUENCY_2;
-      frequency_q     <= (state_q == AXIS) & rest_q[0] &
-          ((step_q == TAKE_FREQUENCY_0) | (step_q == TAKE_FREQUENCY_1) | (step_q == TAKE_FREQUENCY_2));
-      count_q <= (state_q == AXIS) & rest_q[0] & ((step_q == TAKE_COUNT_0) | (step_q == TAKE_COUNT_1));
-      length_q        <= (state_q == LENGTH) &
-          ((step_q == TAKE_LENGTH_0) | (step_q == TAKE_LENGTH_1) | (step_q == TAKE_LENGTH_2));
+      frequency_q     <= state_q == AXIS && rest_q[0] &&
+          (step_q == TAKE_FREQUENCY_0 || step_q == TAKE_FREQUENCY_1 || step_q == TAKE_FREQUENCY_2);
+      count_q <= state_q == AXIS && rest_q[0] && (step_q == TAKE_COUNT_0 || step_q == TAKE_COUNT_1);
+      length_q <= state_q == LENGTH && (step_q == TAKE_LENGTH_0 || step_q == TAKE_LENGTH_1 || step_q == TAKE_LENGTH_2);
 
       if (state_q == LENGTH) begin
         address_o <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[9:2] : card_map_pkg::ADDR_LENGTH_LO[9:2];
@@ -146,7 +144,7 @@ module direct_loader #(
         rest_q <= mask_i;
         axis_q <= 3'd0;
         mask_o <= mask_i[Axes-1:0];
-      end else if ((state_q == AXIS) & axis_done) begin
+      end else if (state_q == AXIS && axis_done) begin
         rest_q <= {1'b0, rest_q[7:1]};
         axis_q <= axis_q + 3'd1;
       end

@@ -117,10 +117,10 @@ module geometry_decoder #(
     load_o[20:16] <= direct_load_i[21] ? direct_load_i[20:16] : count_strobe ? load_target_pkg::TICKS : strobe_field;
     load_o[15:0]  <= direct_load_i[21] ? direct_load_i[15:0] : word_i;
 
-    line_o    <= is_line;
-    arc_o     <= is_arc;
-    barrier_o <= !is_line && !is_arc;
-    end_o     <= opcode == card_map_pkg::OP_END;
+    line_o        <= is_line;
+    arc_o         <= is_arc;
+    barrier_o     <= !is_line && !is_arc;
+    end_o         <= opcode == card_map_pkg::OP_END;
   end
 endmodule
 

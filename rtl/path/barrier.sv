@@ -37,9 +37,11 @@ module barrier (
   state_e       state_q;
   logic   [1:0] step_q;
   logic         start;
+  logic         alone;
   logic         over;
 
   assign start = geometry_at_i && feed_at_i && go_i;
+  assign alone = (geometry_at_i && feed_runs_i) || (feed_at_i && geometry_runs_i);
   assign over  = state_q == COUNT && (zero_i || last_i);
 
   always_ff @(posedge clk_i) begin : p_barrier
@@ -67,7 +69,7 @@ module barrier (
   end
 
   always_ff @(posedge clk_i) begin
-    mismatch_o <= ((geometry_at_i && feed_runs_i) || (feed_at_i && geometry_runs_i)) && go_i && !done_o && !cut_i && !rst_i;
+    mismatch_o <= alone && go_i && !done_o && !cut_i && !rst_i;
     if (rst_i || cut_i || begin_i || load_o) ended_o <= 1'b0;
     else if (over && end_i) ended_o <= 1'b1;
   end

@@ -31,7 +31,7 @@ module deviation_accumulator (
   logic [47:0] hx_q, hy_q;  // CX/2, CY/2
   logic [31:0] ex_q, ey_q;  // displacement that remains
   logic [15:0] quadrants_q;
-  logic clockwise_q;
+  logic        clockwise_q;
 
   // Its targets on the load bus.
   logic [15:0] word;
@@ -47,7 +47,7 @@ module deviation_accumulator (
   logic [LAST:0] phase_q;
   logic start_q, g_shift_q, f_shift_q, h_shift_q, e_shift_q;
   logic drop, accept;
-  assign drop   = rst_i | clear_i | loading;
+  assign drop = rst_i | clear_i | loading;
   assign accept = ready_o & tick_i & ~at_end_o;
   assign stepping_o = phase_q[3:0] != '0;
 

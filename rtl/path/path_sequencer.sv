@@ -17,26 +17,26 @@ module path_sequencer #(
     input  wire logic            arc_i,
     input  wire logic            barrier_i,
     input  wire logic [Axes-1:0] mask_i,
-    output logic                 pop_o,            // taken now (combinational)
+    output logic                 pop_o,           // taken now (combinational)
     // direct move: the chains are loaded
     input  wire logic            direct_go_i,
     input  wire logic [Axes-1:0] direct_mask_i,
     // ticks
     input  wire logic            take_i,
     input  wire logic            last_i,
-    output logic                 taking_o,         // ticks may be taken
-    output logic                 swap_o,           // a path begins with the next tick
-    output logic                 begin_o,          // as swap_o, a clock earlier (combinational)
-    output logic      [Axes-1:0] active_o,         // sampled with swap_o
-    output logic                 engine_o,         // sampled with swap_o: the path is an arc
-    output logic                 start_o,          // with swap_o: the engine's state is loaded
-    output logic                 direct_o,         // a direct move is under way
+    output logic                 taking_o,        // ticks may be taken
+    output logic                 swap_o,          // a path begins with the next tick
+    output logic                 begin_o,         // as swap_o, a clock earlier (combinational)
+    output logic      [Axes-1:0] active_o,        // sampled with swap_o
+    output logic                 engine_o,        // sampled with swap_o: the path is an arc
+    output logic                 start_o,         // with swap_o: the engine's state is loaded
+    output logic                 direct_o,        // a direct move is under way
     // ends
     input  wire logic            axes_live_i,
-    input  wire logic            done_i,           // every path tick given is finished
+    input  wire logic            done_i,          // every path tick given is finished
     input  wire logic            elsewhere_i,
-    output logic                 engine_taken_o,   // by an arc that still takes ticks (combinational)
-    output logic                 incomplete_o,     // event: an arc ended elsewhere
+    output logic                 engine_taken_o,  // by an arc that still takes ticks (combinational)
+    output logic                 incomplete_o,    // event: an arc ended elsewhere
     input  wire logic            barrier_done_i,
     output logic                 at_barrier_o,
     output logic                 path_active_o

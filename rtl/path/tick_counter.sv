@@ -40,12 +40,12 @@ module tick_counter (
       top_zero_q   <= top_zero_i;
       mid_borrow_q <= 1'b0;
       top_borrow_q <= 1'b0;
-      last_o       <= (count_i[3:0] == 4'd1) & mid_zero_i & top_zero_i;
+      last_o       <= count_i[3:0] == 4'd1 && mid_zero_i && top_zero_i;
     end else begin
-      top_borrow_q <= mid_borrow_q & mid_zero_q;
-      mid_borrow_q <= take_i & (low_q == 4'd0);
+      top_borrow_q <= mid_borrow_q && mid_zero_q;
+      mid_borrow_q <= take_i && low_q == 4'd0;
       if (take_i) begin
-        last_o <= (low_q == 4'd2) & mid_zero_q & top_zero_q;
+        last_o <= low_q == 4'd2 && mid_zero_q && top_zero_q;
         low_q  <= low_q - 4'd1;
         if (!load_q) begin
           mid_zero_q <= mid_q == '1;

@@ -41,6 +41,7 @@ module register_access (
   } state_e;
 
   state_e state_q;
+  logic   acting_q;  // ACT
   logic   good;
 
   assign good = verdict_i[8];
@@ -51,6 +52,7 @@ module register_access (
     read_o <= 1'b0;
     stream_write_o <= 1'b0;
     start_o <= 1'b0;
+    acting_q <= state_q == WAIT && !wait_i;
     case (state_q)
       IDLE:   if (request_i) state_q <= DECODE;
       DECODE: state_q <= WAIT;
@@ -98,14 +100,15 @@ module register_access (
       read_o <= 1'b0;
       stream_write_o <= 1'b0;
       start_o <= 1'b0;
+      acting_q <= 1'b0;
     end
   end
 
   assign judge_o = state_q == DECODE || state_q == WAIT;
-  assign act_o = state_q == ACT && good && write_i;
-  assign sample_o = state_q == ACT;
-  assign refuse_o = state_q == ACT ? !good : state_q == START && start_answer_i[9] && start_answer_i[8];
-  assign reason_o = state_q == ACT ? verdict_i[7:0] : start_answer_i[7:0];
+  assign act_o = acting_q && good && write_i;
+  assign sample_o = acting_q;
+  assign refuse_o = acting_q ? !good : state_q == START && start_answer_i[9] && start_answer_i[8];
+  assign reason_o = acting_q ? verdict_i[7:0] : start_answer_i[7:0];
 
 endmodule
 `default_nettype wire

@@ -11,7 +11,7 @@ module register_decode #(
     input  wire logic [45:0] access_i,  // {write, partial, address, data}
     input  wire logic        busy_i,    // the stream is not for this port, or not now
     output logic             live_o,    // reads as the card stands
-    output logic      [ 5:0] target_o,  // {start, stream, refusal and ones to clear, fault, control, setting}
+    output logic      [ 6:0] target_o,  // {flush, start, stream, refusal and ones to clear, fault, control, setting}
     output logic      [ 8:0] verdict_o  // {good, reason}
 );
 
@@ -24,6 +24,7 @@ module register_decode #(
   logic       absent_q;
   logic [3:0] stray_q;  // bytes with bits that must be 0
   logic       in_limits_q;
+  logic       flush_q;
   logic       start_q;
   logic       stream_q;
   logic       refusal_q;
@@ -50,6 +51,9 @@ module register_decode #(
       for (int b = 0; b < 4; b++) stray_q[b] <= (data[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
       in_limits_q <= card_map_pkg::register_in_limits(word, data);
       control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
+      // An abort beside it does more than a flush.
+      flush_q <= word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&
+          !data[card_map_pkg::BIT_CONTROL_ABORT];
       fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
       refusal_q <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data != 32'd0;
       stream_q <= word == card_map_pkg::ADDR_STREAM[11:2];
@@ -57,8 +61,10 @@ module register_decode #(
     end
   end
 
-  assign live_o   = !absent_q && (access_q == card_map_pkg::ACCESS_LIVE || access_q == card_map_pkg::ACCESS_CLEAR_ONES);
-  assign target_o = {start_q, stream_q, refusal_q, fault_q, control_q, access_q == card_map_pkg::ACCESS_SETTING};
+  assign live_o = !absent_q && (access_q == card_map_pkg::ACCESS_LIVE || access_q == card_map_pkg::ACCESS_CLEAR_ONES);
+  assign target_o = {
+    flush_q, start_q, stream_q, refusal_q, fault_q, control_q, access_q == card_map_pkg::ACCESS_SETTING
+  };
 
   logic read_only;
 

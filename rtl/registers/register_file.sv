@@ -56,7 +56,7 @@ module register_file #(
   logic        refuse;
   logic [ 7:0] refuse_reason;
   logic        live;
-  logic [ 5:0] target;  // {start, stream, refusal, fault, control, setting}
+  logic [ 6:0] target;  // {flush, start, stream, refusal, fault, control, setting}
   logic [ 8:0] verdict;  // {good, reason}
   logic        writing;
   logic        snapshotting;
@@ -91,7 +91,10 @@ module register_file #(
   // The stream belongs to a port from a command's first word to its last.
   logic [1:0] owner_q;
 
-  always_ff @(posedge clk_i) if (stream_write_o) owner_q <= asking;
+  always_ff @(posedge clk_i) begin
+    if (stream_write_o) owner_q <= asking;
+    if (rst_i) owner_q <= 2'd0;
+  end
 
   register_decode #(
       .Axes(Axes),
@@ -127,7 +130,7 @@ module register_file #(
   end
 
   assign setting_o = {set_q, access_i[41:34], data};
-  assign flush_o   = control && data[card_map_pkg::BIT_CONTROL_FLUSH] && !data[card_map_pkg::BIT_CONTROL_ABORT];
+  assign flush_o   = act && target[6];
 
   logic        any_refused;
   logic        refused;

@@ -46,7 +46,7 @@ module feed_generator (
   end
 
   // Enabled clocks of the piece, modulo 32, and the moments at which the two parts of the slope are taken from R.
-  logic [ 4:0] count_q;
+  logic [4:0] count_q;
   logic swap_q, load_low_q, load_high_q;
   always_ff @(posedge clk_i) begin
     if (rst_i || swap_i) count_q <= '0;
@@ -65,7 +65,7 @@ module feed_generator (
   logic load_jerk_q;
   logic loaded;
   logic keep;
-  assign keep = !rst_i && !swap_i && !clear_i;
+  assign keep   = !rst_i && !swap_i && !clear_i;
   assign loaded = load_jerk_q && !load_jerk;
   always_ff @(posedge clk_i) begin
     load_jerk_q <= load_jerk;
@@ -116,11 +116,13 @@ module feed_generator (
     end
     if (rotate_q || load_acceleration) begin
       acceleration_top_q <= rotate_q ? acceleration_sum[Word-1:0] : {Word{load_i[15]}};
-      acceleration_q <= rotate_q ? {acceleration_top_q, acceleration_q[63:Word]} : {load_i[15:0], acceleration_q[63:16]};
+      if (rotate_q) acceleration_q <= {acceleration_top_q, acceleration_q[63:Word]};
+      else acceleration_q <= {load_i[15:0], acceleration_q[63:16]};
     end
     if (rotate_q || load_jerk) begin
       jerk_top_q <= rotate_q ? jerk_q[Word-1:0] : {Word{load_i[15]}};
-      jerk_q <= rotate_q ? {jerk_top_q, jerk_q[63:Word]} : {load_i[15:0], jerk_q[63:16]};
+      if (rotate_q) jerk_q <= {jerk_top_q, jerk_q[63:Word]};
+      else jerk_q <= {load_i[15:0], jerk_q[63:16]};
     end
 
     // Eight nibbles: after the comparison the floor is back in its place.

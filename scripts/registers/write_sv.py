@@ -124,10 +124,16 @@ def _function(comment, name, width, arguments, key, items, default):
         if value != default:
             groups.setdefault(value, []).append(label)
     for value, labels in groups.items():
-        lines.append(_labels(labels) + f"        {name} = {value};\n")
+        lines.append(_labels(labels) + _assignment(name, value))
     lines.append(f"      default: {name} = {default};\n")
     lines.append("    endcase\n  endfunction\n")
     return "".join(lines)
+
+
+def _assignment(name, value):
+    """`name = value;`, a long value after its condition in a line of its own."""
+    line = f"        {name} = {value};\n"
+    return line if len(line) <= LINE + 1 else line.replace(" ? ", " ?\n            ", 1)
 
 
 def _labels(labels):

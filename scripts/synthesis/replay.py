@@ -1,6 +1,9 @@
 """A test bench in Verilog that replays a recording (verif/netlist/recorder.hpp) on a netlist and compares every output."""
 import re
 
+# What an output needs to mean something: until the first answer it is not known.
+MEANS_WITH = {"rdata_o": "rvalid_o"}
+
 
 def recorded_ports(recording):
     """Names, directions and widths of the ports that a recording has, in its order."""
@@ -27,7 +30,7 @@ def bench(ports, top):
               f'      got = $fscanf(file, "{form}\\n", {values});',
               f'      if (got != {len(ports)}) begin $display("a line of %0d values", got); wrong = wrong + 1; end',
               "      #1 clk_i = 1;", "      #1 clocks = clocks + 1;"]
-    lines += [f"      if ({n} !== {n}_then) begin wrong = wrong + 1; "
+    lines += [f"      if ({MEANS_WITH.get(n, 1)} && {n} !== {n}_then) begin wrong = wrong + 1; "
               f'$display("clock %0d: {n} is %h, recorded %h", clocks, {n}, {n}_then); end' for n, _, _ in outputs]
     lines += ["      clk_i = 0;", "    end", '    $display("%0d clocks replayed, %0d differences", clocks, wrong);',
               "    $finish;", "  end", "endmodule", ""]

@@ -1,5 +1,5 @@
-// The sequencers' model against the page's clocks: how fast lines follow each other, how long a dwell counts, that every
-// tick taken counts for path and piece alike.
+// The sequencers' model against the page's clocks: how fast lines follow each other, how long a dwell counts, that
+// every tick taken counts for path and piece alike.
 #include "trammel/model/sequencer.hpp"
 
 #include <gtest/gtest.h>

@@ -117,13 +117,13 @@ class Programs {
     const unsigned x = dice_.below(axes_);
     const unsigned y = (x + 1 + dice_.below(axes_ - 1)) % axes_;
     to.push_back(stored_command(card_map::Opcode::Arc, 1U << x | 1U << y, static_cast<std::uint64_t>(ticks),
-                              {{"path_ticks", steps},
-                               {"prescale", prescale},
-                               {"plane", y << 8 | x << 4 | dice_.below(2)},
-                               {"quadrants", wrong ? 5 : 4},
-                               {"gradient_x", 2 * radius},
-                               {"half_x", 1},
-                               {"half_y", 1}}));
+                                {{"path_ticks", steps},
+                                 {"prescale", prescale},
+                                 {"plane", y << 8 | x << 4 | dice_.below(2)},
+                                 {"quadrants", wrong ? 5 : 4},
+                                 {"gradient_x", 2 * radius},
+                                 {"half_x", 1},
+                                 {"half_y", 1}}));
     return static_cast<std::uint64_t>(ticks);
   }
 
@@ -136,11 +136,11 @@ class Programs {
     };
     const bool constant = dice_.chance(3);
     to.push_back(stored_command(card_map::Opcode::Feed, 0, ticks,
-                              {{"rate", static_cast<int128>(rate)},
-                               {"floor", static_cast<int128>(std::uint64_t{1} << 26 | dice_.draw() >> 2)},
-                               {"stop_distance", static_cast<int128>(dice_.draw())},
-                               {"acceleration", constant ? 0 : change()},
-                               {"jerk", constant ? 0 : change()}}));
+                                {{"rate", static_cast<int128>(rate)},
+                                 {"floor", static_cast<int128>(std::uint64_t{1} << 26 | dice_.draw() >> 2)},
+                                 {"stop_distance", static_cast<int128>(dice_.draw())},
+                                 {"acceleration", constant ? 0 : change()},
+                                 {"jerk", constant ? 0 : change()}}));
   }
 
   unsigned axes_;
@@ -153,7 +153,9 @@ class QueueWriter {
  public:
   explicit QueueWriter(std::size_t depth) : queue_(depth) {}
 
-  void add(const std::vector<Halfwords>& commands) { commands_.insert(commands_.end(), commands.begin(), commands.end()); }
+  void add(const std::vector<Halfwords>& commands) {
+    commands_.insert(commands_.end(), commands.begin(), commands.end());
+  }
   // Nothing is left to be written.
   bool done() const { return commands_.empty(); }
   const model::HalfwordQueue::Outputs& outputs() const { return queue_.outputs(); }

@@ -605,7 +605,8 @@ package card_map_pkg;
       10'b00_0001_0010, 10'b00_0110_0101:
         register_mask = 32'h0FFFFFFF;
       10'b00_0110_0000:
-        register_mask = 32'h00000007 | (engines[ENGINE_PATH_COMMANDS] ? 32'h00000008 : 32'h00000000);
+        register_mask = 32'h00000007 | (engines[ENGINE_PATH_COMMANDS] ?
+            32'h00000008 : 32'h00000000);
       10'b00_0110_0001:
         register_mask = 32'h00000001;
       10'b00_0110_0010:
@@ -738,7 +739,8 @@ package card_map_pkg;
       OP_ARC:
         command_mask_rule = engines[ENGINE_ACCUMULATOR] ? MASK_RULE_PLANE : MASK_RULE_NONE;
       OP_ARC_CHORD:
-        command_mask_rule = engines[ENGINE_ARC_GENERATOR] ? MASK_RULE_PLANE_AND_AXES : MASK_RULE_NONE;
+        command_mask_rule = engines[ENGINE_ARC_GENERATOR] ?
+            MASK_RULE_PLANE_AND_AXES : MASK_RULE_NONE;
       OP_FEED:
         command_mask_rule = MASK_RULE_FLAGS;
       default: command_mask_rule = MASK_RULE_NONE;
@@ -849,7 +851,8 @@ package card_map_pkg;
       {OP_ARC, 6'd5}:
         payload_bits = engines[ENGINE_ACCUMULATOR] ? 16'h01FF : 16'h0000;
       {OP_ARC, 6'd6}:
-        payload_bits = engines[ENGINE_ACCUMULATOR] ? 16'h0771 | (engines[ENGINE_ACCUMULATOR_8] ? 16'h0002 : 16'h0000) : 16'h0000;
+        payload_bits = engines[ENGINE_ACCUMULATOR] ?
+            16'h0771 | (engines[ENGINE_ACCUMULATOR_8] ? 16'h0002 : 16'h0000) : 16'h0000;
       {OP_ARC_CHORD, 6'd0}, {OP_ARC_CHORD, 6'd1}, {OP_ARC_CHORD, 6'd3}, {OP_ARC_CHORD, 6'd4},
       {OP_ARC_CHORD, 6'd8}, {OP_ARC_CHORD, 6'd9}, {OP_ARC_CHORD, 6'd10}, {OP_ARC_CHORD, 6'd11},
       {OP_ARC_CHORD, 6'd12}, {OP_ARC_CHORD, 6'd13}, {OP_ARC_CHORD, 6'd14}, {OP_ARC_CHORD, 6'd15},

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "lockstep.hpp"
-#include "trammel/model/hold_timer.hpp"
+#include "trammel/model/wait_timer.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {
@@ -24,7 +24,7 @@ class Bench {
     drive({});
     dut_.clock();
     dut_->rst_i = 0;
-    model_ = model::HoldTimer();
+    model_ = model::WaitTimer();
     since_ran_ = kBusyClocks;
     compare();
   }
@@ -59,7 +59,7 @@ class Bench {
   }
 
   Simulated<Vdut> dut_;
-  model::HoldTimer model_;
+  model::WaitTimer model_;
   Checker check_;
   Dice dice_;
   std::uint32_t since_ran_ = kBusyClocks;

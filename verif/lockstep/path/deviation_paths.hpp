@@ -114,7 +114,7 @@ inline Path any_path(Random& random) {
 // Chains in the order of the load bus's targets, from DEVIATION on: how many halfwords, and what goes in.
 inline constexpr std::array<unsigned, 9> kChainHalfwords{5, 5, 5, 3, 3, 2, 2, 1, 1};
 inline std::array<int128, 9> chains(const Path& path) {
-  return {path.deviation, path.gradient_x, path.gradient_y, path.half_x,    path.half_y,
+  return {path.deviation, path.gradient_x, path.gradient_y, path.half_x,           path.half_y,
           path.end_x,     path.end_y,      path.quadrants,  path.clockwise ? 1 : 0};
 }
 

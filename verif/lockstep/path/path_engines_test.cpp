@@ -210,7 +210,7 @@ void random_paths() {
       bench.arc();
   }
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
-  EXPECT_GT(bench.steps(), length / 100);
+  EXPECT_GT(bench.steps(), length / 200);
 }
 
 TEST(PathEngines, RandomPaths) { EXPECT_EQ(judge(random_paths), ""); }

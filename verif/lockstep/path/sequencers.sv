@@ -143,8 +143,7 @@ module sequencers #(
       .feed_clear_o
   );
 
-  always_ff @(posedge clk_i)
-    idle_o <= (geometry_idle && feed_decoder_idle && feed_empty_i && !feed_active_o) || rst_i;
+  always_ff @(posedge clk_i) idle_o <= (geometry_idle && feed_decoder_idle && feed_empty_i && !feed_active_o) || rst_i;
 endmodule
 
 `default_nettype wire

@@ -47,9 +47,9 @@ class Bench {
     // Where ticks may not be taken neither commands nor a START get this far.
     const bool open = stand_for_ == 0;
     if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
-    // A commit shows two clocks later.
-    rested_for_ = open && at_rest() ? rested_for_ + 1 : 0;
-    if (rested_for_ > 3 && dice_.chance(100)) direct_step_ = 1;
+    // The last command's commit shows in the queue two clocks later and in `idle` after two more.
+    rest_for_ = at_rest() ? rest_for_ + 1 : 0;
+    if (open && rest_for_ > 8 && dice_.chance(100)) direct_step_ = 1;
     direct();
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
@@ -224,11 +224,11 @@ class Bench {
   QueueWriter geometry_;
   QueueWriter feed_;
   SnapshotWord chain_[2];
-  unsigned feed_ticks_ = 0;   // on their way, bit 0 comes next
+  unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
-  unsigned rested_for_ = 0;   // clocks
   unsigned stand_for_ = 0;    // clocks without go
   unsigned direct_step_ = 0;  // of a direct move; 0: none
+  unsigned rest_for_ = 0;     // clocks
   std::uint64_t length_ = 0;
   std::uint64_t ends_ = 0;
   std::uint64_t more_ = 0;
@@ -244,8 +244,29 @@ void boundaries() {
     while (!bench.at_rest()) bench.clock();
   };
   std::uint64_t dwells = 0;
-  for (const std::uint64_t count : {0U, 1U, 2U, 3U, 14U, 15U, 16U, 17U, 18U, 31U, 32U, 33U, 255U, 256U, 257U, 65535U,
-                                    65536U, 65537U, 65552U, (1U << 20) - 1, 1U << 20, (1U << 20) + 1, (1U << 20) + 17}) {
+  for (const std::uint64_t count : {0U,
+                                    1U,
+                                    2U,
+                                    3U,
+                                    14U,
+                                    15U,
+                                    16U,
+                                    17U,
+                                    18U,
+                                    31U,
+                                    32U,
+                                    33U,
+                                    255U,
+                                    256U,
+                                    257U,
+                                    65535U,
+                                    65536U,
+                                    65537U,
+                                    65552U,
+                                    (1U << 20) - 1,
+                                    1U << 20,
+                                    (1U << 20) + 1,
+                                    (1U << 20) + 17}) {
     const Halfwords dwell = stored_command(card_map::Opcode::Dwell, 0, count);
     run(dwell, dwell);
     dwells += std::max<std::uint64_t>(count, 1);

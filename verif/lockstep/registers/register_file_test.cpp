@@ -27,6 +27,7 @@ constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
 constexpr std::uint64_t kComparedSignals = 12;
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
+constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(7) / 4;  // word of the direct mode's first register
 // RATIO, RATE, FEED_BEGUN and GEOMETRY_BEGUN come before the positions on the snapshot chain.
 constexpr std::size_t kBeforePositions = 4;
 
@@ -111,8 +112,8 @@ class Bench {
     random_loader();
     random_access();
     // Nothing moves before the registers are filled, so nothing stops.
-    const bool snapshot_asked = outstanding_ && in_.write && in_.address == reg::kControl;
-    in_.stop = model_.time() > kFilled && chance(snapshot_asked ? 30 : 300);
+    // A stop is as likely beside what a write asks for as anywhere else.
+    in_.stop = model_.time() > kFilled && chance(model_.outputs().ack ? 20 : 300);
     if (in_.stop) checker_.event("stop");
     if (chance(20000)) {
       reset();
@@ -178,8 +179,8 @@ class Bench {
 
   void random_loader() {
     if (model_.outputs().start) start_wait_ = 1 + draw() % 40;
-    // The registers of direct mode, which nobody else writes.
-    in_.loader_address = static_cast<std::uint8_t>(0xC0 | draw());
+    // The direct loader reads its own registers alone, never words that a snapshot may be writing.
+    in_.loader_address = static_cast<std::uint8_t>(kFirstDirect + draw() % (256 - kFirstDirect));
     in_.start_done = start_wait_ == 1;
     in_.start_error = chance(2);
     in_.start_reason = chance(2) ? 8 : chance(2) ? 12 : 15;
@@ -215,6 +216,7 @@ class Bench {
 
   std::uint32_t random_address() {
     if (chance(20)) return draw() & 0xFFF;
+    if (chance(10)) return chance(2) ? card_map::reg::kRefusal : card_map::reg::kControl;
     const card_map::Register& entry = card_map::kRegisters[draw() % card_map::kRegisters.size()];
     const std::uint32_t stray = chance(40) ? 1 + draw() % 3 : 0;
     return card_map::slot_address(entry, draw() % entry.count) + stray;

@@ -55,8 +55,8 @@ class Bench {
     ticks_ += model_.outputs().tick;
   }
 
-  // Loads rate and floor (6 clocks), waits, swaps the piece in at a distance of `clocks` or more from the last swap, and loads
-  // acceleration and jerk, of which the last halfword comes 10 to 13 clocks after it.
+  // Loads rate and floor (6 clocks), waits, swaps the piece in at a distance of `clocks` or more from the last swap,
+  // and loads acceleration and jerk, of which the last halfword comes 10 to 13 clocks after it.
   void piece(const Piece& p, std::uint64_t clocks, std::uint64_t late = 0) {
     using namespace model::feed_target;
     std::uint64_t used = since_swap_ + idle(3);
@@ -140,7 +140,7 @@ class Bench {
   lockstep::Dice dice_;
   unsigned enable_of_1024_;
   bool started_ = false;
-  bool resting_ = false;  // no piece runs
+  bool resting_ = false;          // no piece runs
   std::uint64_t since_swap_ = 0;  // clocks
   std::uint64_t ticks_ = 0;
   std::uint64_t chained_ = 0;

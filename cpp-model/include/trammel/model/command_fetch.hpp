@@ -69,9 +69,9 @@ class CommandFetch {
   State state_ = State::Idle;
   int asked_ = -1;  // index of the halfword asked for, -1: none
   int arriving_[2] = {-1, -1};
-  int length_ = 0;      // halfwords of the command
-  int pause_at_ = 0;    // the halfword before which it may have to wait
-  bool split_ = false;  // the piece is decoded without acceleration and jerk
+  int length_ = 0;            // halfwords of the command
+  int pause_at_ = 0;          // the halfword before which it may have to wait
+  bool split_ = false;        // the piece is decoded without acceleration and jerk
   bool header_here_ = false;  // what arrives is of this command, not the rest of the one before
   card_map::Opcode opcode_ = card_map::Opcode::End;
   std::uint8_t mask_ = 0;
