@@ -106,7 +106,9 @@ void random_limits() {
     } else if (dice.chance(50)) {
       bench.limit(1 + static_cast<std::uint32_t>(dice.log_uniform(dice.chance(20) ? 16 : 8)) % 0xFFFF);
     } else if (dice.chance(50)) {
-      bench.clock({dice.chance(2), card_map::reg::kHoldLimit + 4 * (1 + dice.below(9)), dice.draw()});
+      // Any other setting, and the limit's own address without one.
+      const std::uint32_t word = dice.below(10);
+      bench.clock({word != 0 && dice.chance(2), card_map::reg::kHoldLimit + 4 * word, dice.draw()});
     } else {
       bench.clock();
     }
