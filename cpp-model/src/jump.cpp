@@ -138,12 +138,12 @@ bool Jump::step_all(std::uint64_t tick, std::int64_t arrival) {
   return true;
 }
 
-// The step's pulse, when it is the only one under way and cannot be late at a hold tick.
+// The step's pulse, when it is the only one under way and cannot be late at a wait tick.
 bool Jump::may_step(unsigned axis, std::int64_t arrival, StepShaper& after, std::int64_t& served) const {
   const Traveller& t = travellers_[axis];
   if (t.under_way && t.served >= arrival) return false;
   StepShaper::Inputs in = core_.axes_[axis].times();
-  in.step = in.hold_tick = false;
+  in.step = in.wait_tick = false;
   after = t.under_way ? t.after : core_.axes_[axis].shaper();
   const std::int64_t from = t.under_way ? t.served : t.edge;
   served = arrival + kToShaper;
@@ -153,7 +153,7 @@ bool Jump::may_step(unsigned axis, std::int64_t arrival, StepShaper& after, std:
   in.dir = core_.axes_[axis].generator().increment() < 0;
   after.clock(in);
   in.step = false;
-  const std::int64_t late = served + core_.hold_timer_.limit();
+  const std::int64_t late = served + core_.wait_timer_.limit();
   for (; after.outputs().position == position; ++served) {
     if (served >= late) return false;
     after.clock(in);
@@ -230,7 +230,7 @@ void Jump::land() {
   for (unsigned n = 0; n < axes_; ++n) land_axis(n, at_axes);
   core_.sequencer_.jump(clocks, taken, in_flight, feed_enable);
   core_.time_base_.advance(clocks);
-  core_.hold_timer_.advance(clocks);
+  core_.wait_timer_.advance(clocks);
   core_.out_.engine_step = 0;
 }
 
@@ -272,19 +272,19 @@ void Jump::land_axis(unsigned axis, std::uint64_t ticks) {
   Axis& a = core_.axes_[axis];
   if (ticking_) a.generator().silent_ticks(ticks - t.ticks);
   StepShaper::Inputs in = a.times();
-  in.step = in.hold_tick = false;
+  in.step = in.wait_tick = false;
   const std::int64_t at_shaper = t.arrival + kToShaper;
   if (t.under_way && t.served <= end_) {
     a.shaper() = t.after;
     a.shaper().pass(in, static_cast<std::uint64_t>(end_ - t.served));
   } else if (t.under_way && at_shaper <= end_) {
     a.shaper().pass(in, static_cast<std::uint64_t>(at_shaper - 1 - t.edge));
-    HoldTimer timer = core_.hold_timer_;
+    WaitTimer timer = core_.wait_timer_;
     timer.advance(static_cast<std::uint64_t>(at_shaper - 1));
     in.dir = t.backwards;
     for (std::int64_t edge = at_shaper; edge <= end_; ++edge) {
       in.step = edge == at_shaper;
-      in.hold_tick = timer.tick();
+      in.wait_tick = timer.tick();
       a.shaper().clock(in);
       timer.clock({});
     }

@@ -56,7 +56,7 @@ void MotionCore::clock(const Inputs& in) {
   clock_busy();
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
-  hold_timer_.clock(in.setting);
+  wait_timer_.clock(in.setting);
   engines_.clock({stop.cut, s.tick, s.swap, s.accumulator, s.arc_start, sequencer_.load()});
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
   time_base_.clock({stop.hold, in.setting});
@@ -71,11 +71,11 @@ void MotionCore::clock_axes(const Inputs& in, bool cut) {
   axis.tick = engines.tick;
   axis.swap = engines.swap;
   axis.direct = s.direct;
-  axis.hold_tick = hold_timer_.tick();
+  axis.wait_tick = wait_timer_.tick();
   axis.load = sequencer_.load();
   axis.setting = in.setting;
   out_.engine_step = engines.step;
-  const bool common = cut || engines.tick || engines.swap || axis.hold_tick || in.setting.set || axis.load.valid;
+  const bool common = cut || engines.tick || engines.swap || in.setting.set || axis.load.valid;
   const std::uint32_t due = common || clock_all_ ? ~0U : engines.step | restless_;
   for (unsigned n = 0; n < axes_.size(); ++n) {
     const std::uint32_t bit = 1U << n;

@@ -27,7 +27,7 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   const bool piece_waits = feed_.decoded() && feed_.is_feed();
   d.path_begins = path_waits && free && in.go && !out_.incomplete;
   d.piece_begins = piece_waits && in.go && (!out_.feed_active || d.piece_ends);
-  d.barrier_begins = barrier_ == Barrier::Meeting && now_ == barrier_at_;
+  d.barrier_begins = barrier_ == Barrier::Beginning && now_ == barrier_at_;
   d.barrier_ends = barrier_ == Barrier::Running && in.go && now_ == barrier_at_;
   d.barrier_done = barrier_ == Barrier::Done;
   d.piece_runs = out_.feed_active;
@@ -134,7 +134,7 @@ void Sequencer::clock_barrier(const Inputs& in, const Decision& d) {
   } else if (barrier_ == Barrier::Done) {
     barrier_ = Barrier::None;
   } else if (barrier_ == Barrier::None && geometry_stands_ && feed_stands_ && in.go) {
-    barrier_ = Barrier::Meeting;
+    barrier_ = Barrier::Beginning;
     barrier_at_ = now_ + kBarrierBegins;
   }
 }
@@ -192,7 +192,7 @@ bool Sequencer::calm(const Inputs& in) const {
   const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
   const bool piece_waits = feed_.decoded() && feed_.is_feed();
   if (in.go && ((path_waits && path_ == Path::None) || (piece_waits && !out_.feed_active))) return false;
-  if (barrier_ == Barrier::Meeting || barrier_ == Barrier::Done || mismatches(in)) return false;
+  if (barrier_ == Barrier::Beginning || barrier_ == Barrier::Done || mismatches(in)) return false;
   const bool geometry_stands = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None;
   const bool feed_stands = feed_.decoded() && feed_.is_barrier() && !out_.feed_active;
   if (geometry_stands != geometry_stands_ || feed_stands != feed_stands_) return false;

@@ -3,9 +3,9 @@ in verif/mutation/equivalents.toml. All mutants lie in one build; a run is a pro
 
 import argparse
 import csv
+import hashlib
 import json
 import os
-import random
 import sys
 import time
 from collections import Counter
@@ -42,7 +42,9 @@ def chosen(mutants: List[dict], arguments) -> List[dict]:
             sys.exit(f"mutate: no mutants of a module {', '.join(sorted(unknown))}")
         mutants = [mutant for mutant in mutants if mutant["module"] in arguments.module]
     if arguments.sample is not None and arguments.sample < len(mutants):
-        mutants = random.Random(arguments.seed).sample(mutants, arguments.sample)
+        # By name, so that a change of the RTL leaves the rest of the sample as it was.
+        drawn = {mutant["id"]: hashlib.sha256(f"{arguments.seed} {mutant['id']}".encode()).digest() for mutant in mutants}
+        mutants = sorted(mutants, key=lambda mutant: drawn[mutant["id"]])[:arguments.sample]
     return mutants
 
 

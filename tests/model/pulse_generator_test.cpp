@@ -49,7 +49,7 @@ int signed_step(const PulseGenerator& generator) {
   return out.dir ? -1 : 1;
 }
 
-// One tick, worked off: the signed step it made, and where it came out of the pipeline.
+// One tick, taken to its end: the signed step it made, and where it came out of the pipeline.
 int tick(PulseGenerator& generator) {
   PulseGenerator::Inputs in;
   in.tick = true;
@@ -245,7 +245,7 @@ TEST(PulseGenerator, SwapIsSeamless) {
   }
   EXPECT_EQ(x, 4);
   generator.clock(in);
-  EXPECT_EQ(signed_step(generator), -1) << "the first tick behind the swap is the new line's";
+  EXPECT_EQ(signed_step(generator), -1) << "the first tick after the swap is the new line's";
 }
 
 TEST(PulseGenerator, ClearDropsStepsInFlight) {

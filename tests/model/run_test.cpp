@@ -268,6 +268,33 @@ TEST(Run, EqualsClock) {
   EXPECT_GT(compared.steps, 20 * programs);
 }
 
+// A jump that ends while a step waits for a reversal: a hold tick that has passed must count when the next one comes.
+TEST(Run, EndsWhileAStepWaits) {
+  unsigned faults = 0;
+  for (std::uint64_t wait = 2000; wait < 3600; wait += 5) {
+    model::CardConfig config;
+    config.axes = 1;
+    Pair pair(Pair::Of::ClockAndRun, config, wait);
+    pair.write(reg::dir_setup(0), 300);
+    pair.write(reg::dir_hold(0), 300);
+    pair.write(reg::kHoldLimit, static_cast<std::uint32_t>(320 + wait % 97));
+    const std::int64_t increment = kOnePulse / 100;
+    pair.send(command_words(card_map::Opcode::Line, 1, 0, 250, {}, {increment}));
+    pair.send(command_words(card_map::Opcode::Line, 1, 1, 140, {}, {-increment}));
+    pair.send(command_words(card_map::Opcode::Feed, 0, 2, 390, {{"rate", int128{1} << 61}, {"floor", 1}}));
+    pair.wait(wait);
+    pair.compare();
+    pair.write(reg::kHoldLimit, 1);
+    for (int i = 0; i < 8; ++i) {
+      pair.wait(1);
+      pair.compare();
+    }
+    faults += pair.clocked.core.outputs().fault != 0 ? 1U : 0U;
+    ASSERT_FALSE(HasFatalFailure()) << "wait " << wait;
+  }
+  EXPECT_GT(faults, 30U);
+}
+
 TEST(RestingBlocks, ChangeNothing) {
   const std::uint64_t programs = long_run() ? 1500 : 40;
   const Compared compared = compare_programs(Pair::Of::AllAndResting, programs, 20'000);

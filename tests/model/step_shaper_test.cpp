@@ -173,11 +173,11 @@ TEST(StepShaper, WaitingFromOneHoldTickToTheNextIsAFault) {
   for (const bool waits : {false, true}) {
     StepShaper shaper;
     StepShaper::Inputs in = times(waits ? 400 : 20, 0, 0, 0);
-    // The second step waits for some 400 clocks: hold ticks at 10, 110, 210, 310, each but the first is late.
+    // The second step waits for some 400 clocks: wait ticks at 10, 110, 210, 310, each but the first is late.
     unsigned faults = 0;
     for (unsigned i = 0; i < 1000; ++i) {
       in.step = i < 2;
-      in.hold_tick = i % 100 == 10;
+      in.wait_tick = i % 100 == 10;
       shaper.clock(in);
       faults += shaper.outputs().fault ? 1U : 0U;
     }
@@ -195,16 +195,16 @@ TEST(StepShaper, AdvancingEqualsClocking) {
   for (int n = 0; n < 100'000; ++n) {
     in.step = random() % 80 == 0;
     in.dir = random() % 2 == 0;
-    in.hold_tick = random() % 20 == 0;
+    in.wait_tick = random() % 20 == 0;
     clocked.clock(in);
     skipping.clock(in);
-    in.step = in.hold_tick = false;
+    in.step = in.wait_tick = false;
     const std::uint64_t n_idle = std::min<std::uint64_t>(skipping.idle_clocks(), random() % 100);
     const StepShaper::Outputs before = clocked.outputs();
     skipping.advance(n_idle);
     skipped += n_idle;
     for (std::uint64_t i = 0; i < n_idle; ++i) {
-      in.hold_tick = !clocked.waiting() && random() % 2 == 0;
+      in.wait_tick = !clocked.waiting() && random() % 2 == 0;
       clocked.clock(in);
       ASSERT_EQ(clocked.outputs().step, before.step);
       ASSERT_EQ(clocked.outputs().busy, before.busy);

@@ -155,7 +155,7 @@ TEST(TimeBase, AdvanceAndItsInverseAgreeWithClocks) {
       EXPECT_EQ(run(probe, needed - 1), enables - 1);
       EXPECT_EQ(run(probe, 1), 1U);
     }
-    // A change behind it finds the same place within the update.
+    // A change after it finds the same place within the update.
     set(clocked, 0x3000, 0x12'3456);
     set(skipped, 0x3000, 0x12'3456);
     for (int k = 0; k < 24; ++k) {

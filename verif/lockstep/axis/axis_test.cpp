@@ -117,7 +117,7 @@ class Bench {
   }
 
   void clock() {
-    in_.hold_tick = dice_.chance(100);
+    in_.wait_tick = dice_.chance(100);
     apply();
     const std::uint32_t position = model_.outputs().shaper.position;
     dut_.clock();
@@ -151,7 +151,7 @@ class Bench {
     dut_->direct_i = in_.direct;
     dut_->engine_step_i = in_.engine_step;
     dut_->engine_dir_i = in_.engine_dir;
-    dut_->wait_tick_i = in_.hold_tick;
+    dut_->wait_tick_i = in_.wait_tick;
     dut_->load_i = load_wire(in_.load);
     dut_->setting_i = wire(in_.setting);
     dut_->snapshot_i = dice_.snapshot();

@@ -51,7 +51,7 @@ class Bench {
       if (below(200) == 0) times(in);
       in.step = below(every) == 0;
       if (in.step && below(turns) == 0) in.dir = !in.dir;
-      in.hold_tick = below(wait_every) == 0;
+      in.wait_tick = below(wait_every) == 0;
       if (below(3000) == 0) reset(in);
       clock(in);
     }
@@ -90,7 +90,7 @@ class Bench {
     dut_->dir_setup_i = in.dir_setup;
     dut_->dir_hold_i = in.dir_hold;
     dut_->mode_i = in.mode;
-    dut_->wait_tick_i = in.hold_tick;
+    dut_->wait_tick_i = in.wait_tick;
   }
 
   Simulated<Vdut> dut_;

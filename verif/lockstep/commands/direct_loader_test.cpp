@@ -193,6 +193,25 @@ void random_starts() {
   EXPECT_GT(bench.moves(), starts / 20);
 }
 
+// A reset in every clock of a START whose values are refused leaves nothing to the next one, which moves.
+void every_reset() {
+  Bench bench(1);
+  constexpr unsigned kLongest = 33 + 16 * kAxes;
+  constexpr std::uint32_t kAll = (1U << kAxes) - 1;
+  set_length(bench, 100);
+  for (unsigned after = 1; after < kLongest; ++after) {
+    for (unsigned axis = 0; axis < kAxes; ++axis) set_axis(bench, axis, kOnePulse + 0xFFFF'FFFF, 5, 1);
+    bench.start(kAll, after);
+    for (unsigned axis = 0; axis < kAxes; ++axis) set_axis(bench, axis, 1000, 5, 0);
+    bench.idle(after % 3);
+    bench.start(kAll);
+  }
+  EXPECT_EQ(bench.answers(), kLongest - 1);
+  EXPECT_EQ(bench.moves(), kLongest - 1);
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+}
+
+TEST(DirectLoader, EveryReset) { EXPECT_EQ(judge(every_reset), ""); }
 TEST(DirectLoader, EveryOddValue) { EXPECT_EQ(judge(every_odd_value), ""); }
 TEST(DirectLoader, RandomStarts) { EXPECT_EQ(judge(random_starts), ""); }
 

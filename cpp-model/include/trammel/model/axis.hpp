@@ -23,7 +23,7 @@ class Axis {
     bool direct = false;       // sampled with swap: the count ends the axis, backwards mirrors forwards
     bool engine_step = false;  // from a path engine; never together with a step of the generator
     bool engine_dir = false;   // 1 = negative
-    bool hold_tick = false;
+    bool wait_tick = false;
     LoadWord load;    // INCREMENT and COUNT of this axis are its own
     Setting setting;  // STEP_LENGTH, STEP_SPACE, DIR_SETUP, DIR_HOLD, MODE of this axis
   };
@@ -44,7 +44,7 @@ class Axis {
   void clock(const Inputs& in) {
     times_.step = path_step_;
     times_.dir = path_dir_;
-    times_.hold_tick = in.hold_tick;
+    times_.wait_tick = in.wait_tick;
     if (clock_all_)
       shaper_.clock_always(times_);
     else

@@ -10,12 +10,12 @@
 #include "trammel/model/buses.hpp"
 #include "trammel/model/direct_loader.hpp"
 #include "trammel/model/feed_generator.hpp"
-#include "trammel/model/hold_timer.hpp"
 #include "trammel/model/path_engines.hpp"
 #include "trammel/model/sequencer.hpp"
 #include "trammel/model/step_record.hpp"
 #include "trammel/model/stop_control.hpp"
 #include "trammel/model/time_base.hpp"
+#include "trammel/model/wait_timer.hpp"
 
 namespace trammel::model {
 
@@ -89,7 +89,7 @@ class MotionCore {
   TimeBase time_base_;
   FeedGenerator feed_;
   PathEngines engines_;
-  HoldTimer hold_timer_;
+  WaitTimer wait_timer_;
   std::vector<Axis> axes_;
   bool axes_live_ = false;  // a clock late
   bool running_ = false;    // a clock late

@@ -105,7 +105,7 @@ class PulseGenerator {
       unsigned event = phase_ < 0 ? kStep | kBackwards : kStep;
       if (counted_ && --count_ == 0) {
         event |= kEnd;
-        open_ = false;  // for good: the next line's count may be loaded behind it
+        open_ = false;  // for good: the next line's count may be loaded after it
       }
       pipe_ |= event << 4;
     }

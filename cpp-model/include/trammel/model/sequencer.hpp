@@ -109,7 +109,7 @@ class Sequencer {
   static constexpr std::uint64_t kLong = std::uint64_t{1} << 62;
 
   enum class Path : std::uint8_t { None, Line, Arc, Direct };
-  enum class Barrier : std::uint8_t { None, Meeting, Running, Done };
+  enum class Barrier : std::uint8_t { None, Beginning, Running, Done };
 
   // What this clock decides.
   struct Decision {

@@ -23,14 +23,14 @@ class StepShaper {
     std::uint16_t dir_setup = 0;    // clocks
     std::uint16_t dir_hold = 0;     // clocks
     std::uint8_t mode = 0;          // [1:0] 0 step/dir, 1 up/down, 2 or 3 quadrature; [2] inverts step, [3] dir
-    bool hold_tick = false;         // one clock in HOLD_LIMIT
+    bool wait_tick = false;         // one clock in HOLD_LIMIT
   };
   struct Outputs {
     bool step = false;           // pin
     bool dir = false;            // pin
     std::uint32_t position = 0;  // pulses, two's complement, wraps
     bool busy = false;           // steps wait, or a pulse or one of its times is under way
-    bool fault = false;          // event: a step was lost, or waited from one hold tick to the next
+    bool fault = false;          // event: a step was lost, or waited from one wait tick to the next
   };
 
   StepShaper() = default;
@@ -79,12 +79,12 @@ class StepShaper {
 
   // MODE as the pins show it.
   std::uint8_t mode() const { return mode_; }
-  // Steps wait: the only state in which hold_tick means anything.
+  // Steps wait: the only state in which wait_tick means anything.
   bool waiting() const { return waiting_ != 0; }
   // Nothing changes any more without a step or a new mode.
   bool quiet() const { return quiet_; }
 
-  // The number of clocks, without step and with the other inputs as they are, for which no output changes (hold_tick
+  // The number of clocks, without step and with the other inputs as they are, for which no output changes (wait_tick
   // may come in them unless waiting()). A lower bound; 2^63 when quiet().
   std::uint64_t idle_clocks() const {
     if (quiet_) return std::uint64_t{1} << 63;
@@ -101,7 +101,7 @@ class StepShaper {
   // Nothing waits and no pulse is about to begin: without a step the position stays and no fault can come.
   bool calm() const { return waiting_ == 0 && lead_ == 0 && !waited_ && !out_.fault; }
 
-  // n clocks without step and hold tick, while calm().
+  // n clocks without step and wait tick, while calm().
   void pass(const Inputs& times, std::uint64_t n) {
     while (n != 0) {
       const std::uint64_t idle = idle_clocks();
@@ -129,11 +129,11 @@ class StepShaper {
 
   void judge(const Inputs& in, bool served) {
     const bool lost = in.step && waiting_ == kPlaces && !served;
-    const bool late = in.hold_tick && waited_ && !served;
+    const bool late = in.wait_tick && waited_ && !served;
     out_.fault = lost || late;
     if (served)
       waited_ = false;
-    else if (in.hold_tick)
+    else if (in.wait_tick)
       waited_ = waiting_ != 0;
   }
 

@@ -27,7 +27,7 @@ class TimeBase {
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 
   // One rising edge. Clocks are counted from reset (the constructor): at clocks 4k the goal is sampled, at 4k + 2 the
-  // slew, and the ratio that follows from them is in use from clock 4k + 5 on (visible behind clock 4k + 4).
+  // slew, and the ratio that follows from them is in use from clock 4k + 5 on (visible after clock 4k + 4).
   void clock(const Inputs& in) {
     step(in.hold);
     if (in.setting.set) set(in.setting);

@@ -1,4 +1,5 @@
-// Golden model of the hold timer: one clock in HOLD_LIMIT, for all shapers. Not thread-safe; no errors are reported.
+// Golden model of the timer (wait_timer) that judges steps which wait: one clock in HOLD_LIMIT, for all shapers. Not
+// thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,7 @@
 
 namespace trammel::model {
 
-class HoldTimer {
+class WaitTimer {
  public:
   // One rising edge. A limit set in clock c counts from c+1 on.
   void clock(const Setting& setting) {

@@ -1,5 +1,5 @@
 // The wait timer's model: a tick in every `limit` clocks, whatever the limit was before.
-#include "trammel/model/hold_timer.hpp"
+#include "trammel/model/wait_timer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@ namespace {
 
 constexpr std::uint32_t kLimitAfterReset = 0xFFFF;
 
-TEST(HoldTimer, TicksOnceInEachLimit) {
+TEST(WaitTimer, TicksOnceInEachLimit) {
   for (const std::uint32_t limit : {1U, 2U, 3U, 300U, 65535U}) {
-    HoldTimer timer;
+    WaitTimer timer;
     timer.clock({true, card_map::reg::kHoldLimit, limit});
     // The clock of the setting counted already, against the limit of reset.
     for (std::uint32_t clocks = 2; clocks <= 4 * limit; ++clocks) {
@@ -20,8 +20,8 @@ TEST(HoldTimer, TicksOnceInEachLimit) {
   }
 }
 
-TEST(HoldTimer, LimitBelowTheCountTicksAtOnce) {
-  HoldTimer timer;
+TEST(WaitTimer, LimitBelowTheCountTicksAtOnce) {
+  WaitTimer timer;
   for (int i = 0; i < 100; ++i) timer.clock({});
   timer.clock({true, card_map::reg::kHoldLimit, 7});
   EXPECT_FALSE(timer.tick());
@@ -29,11 +29,11 @@ TEST(HoldTimer, LimitBelowTheCountTicksAtOnce) {
   EXPECT_TRUE(timer.tick());
 }
 
-TEST(HoldTimer, AdvanceIsAsManyClocks) {
+TEST(WaitTimer, AdvanceIsAsManyClocks) {
   for (std::uint64_t n : {1U, 2U, 299U, 300U, 301U, 12345U}) {
-    HoldTimer one_by_one;
-    HoldTimer at_once;
-    for (HoldTimer* timer : {&one_by_one, &at_once}) {
+    WaitTimer one_by_one;
+    WaitTimer at_once;
+    for (WaitTimer* timer : {&one_by_one, &at_once}) {
       for (int i = 0; i < 500; ++i) timer->clock({});
       timer->clock({true, card_map::reg::kHoldLimit, 300});
     }
@@ -45,7 +45,7 @@ TEST(HoldTimer, AdvanceIsAsManyClocks) {
       at_once.clock({});
     }
   }
-  EXPECT_EQ(HoldTimer().limit(), kLimitAfterReset);
+  EXPECT_EQ(WaitTimer().limit(), kLimitAfterReset);
 }
 
 }  // namespace
