@@ -43,8 +43,8 @@ void full_rate() {
 void seams() {
   PulseGeneratorBench bench(0);
   for (int repeat = 0; repeat < 2000; ++repeat) {
-    for (const std::int64_t increment : {kOne / 2, -kOne / 2, kOne / 4, -kOne / 4, kOne, -kOne, kOne - 1, 1 - kOne, kOne / 2 - 1,
-                                         1 - kOne / 2}) {
+    for (const std::int64_t increment :
+         {kOne / 2, -kOne / 2, kOne / 4, -kOne / 4, kOne, -kOne, kOne - 1, 1 - kOne, kOne / 2 - 1, 1 - kOne / 2}) {
       bench.load_increment(increment, true);
       bench.clock(swap_in(true, false, repeat % 2 != 0, repeat % 3 != 0));
       bench.ticks(static_cast<std::uint64_t>(2 + repeat % 7));
