@@ -204,7 +204,7 @@ TEST_F(Changes, OfTheFeedShowAtThePins) {
 }
 
 TEST_F(Changes, OfTheStartShowInTheStartAlone) {
-  const StepHashes other = hashes_of(job_, {3, 0});
+  const StepHashes other = hashes_of(job_, {kShift.start + 3, kShift.barrier});
   EXPECT_EQ(other.pins, card_.pins);
   EXPECT_EQ(other.start, card_.start - 3);
 }

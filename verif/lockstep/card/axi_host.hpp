@@ -36,19 +36,25 @@ class AxiHost {
   std::optional<std::uint32_t> read(std::uint32_t address) { return perform(nullptr, &address).read; }
   Answers write_beside_read(const Write& write, std::uint32_t address) { return perform(&write, &address); }
 
-  void wait(std::uint64_t clocks) { card_.run({}, clocks); }
+  void wait(std::uint64_t clocks) { run({}, clocks); }
   void reset(std::uint64_t clocks) {
     model::CardModel::Inputs in;
     in.rst = true;
-    card_.run(in, clocks);
+    run(in, clocks);
   }
 
+  // Clocks since the start, whatever reset the card.
+  std::uint64_t clocks() const { return clocks_; }
   // The most clocks that an answer took from its handshake on.
   std::uint64_t slowest_answer() const { return slowest_; }
   sim::LockstepCard& card() { return card_; }
   std::uint64_t below(std::uint64_t count) { return random_() % count; }
 
  private:
+  void run(const model::CardModel::Inputs& in, std::uint64_t clocks) {
+    card_.run(in, clocks);
+    clocks_ += clocks;
+  }
   // One handshake: not before `delay` clocks, done when valid and ready met.
   struct Handshake {
     bool due = false;
@@ -92,7 +98,7 @@ class AxiHost {
       if (b.up() && bus.bvalid) answers.written = bus.bresp == model::Axi4LitePort::kOkay;
       if (r.up() && bus.rvalid && bus.rresp == model::Axi4LitePort::kOkay) answers.read = bus.rdata;
       if ((b.due && bus.bvalid) || (r.due && bus.rvalid)) slowest_ = std::max(slowest_, clocks - asked);
-      card_.run(in, 1);
+      run(in, 1);
       aw.clock(in.awvalid && bus.awready);
       w.clock(in.wvalid && bus.wready);
       b.clock(in.bready && bus.bvalid);
@@ -106,6 +112,7 @@ class AxiHost {
   std::mt19937_64 random_;
   unsigned most_delay_ = 0;
   std::uint64_t slowest_ = 0;
+  std::uint64_t clocks_ = 0;
 };
 
 }  // namespace trammel::test
