@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Axes, CardLockstep, testing::ValuesIn(runs()), [](const
 void short_program(Traffic& traffic, unsigned axes, AxiHost& host) {
   const auto random = [&host](std::uint64_t count) { return host.below(count); };
   std::uint64_t ticks = 0;
-  for (const std::uint64_t n : {25, 40}) {
+  for (const std::uint64_t n : {25U, 40U}) {
     traffic.send(line(n, std::vector<std::int64_t>(axes, 3)));
     ticks += n;
   }
