@@ -44,9 +44,7 @@ module axes #(
   always_ff @(posedge clk_i) live_o <= live != '0 && !rst_i;
 
   wait_timer timer (
-      .clk_i,
-      .rst_i,
-      .setting_i,
+      .*,
       .tick_o(wait_tick)
   );
 
@@ -55,20 +53,12 @@ module axes #(
         .Axis   (n),
         .Counted(Counted)
     ) motor (
-        .clk_i,
-        .rst_i,
-        .cut_i,
+        .*,
         .idle_level_i ({idle_level_i[Axes+n], idle_level_i[n]}),
-        .setting_i,
-        .load_i,
-        .tick_i,
-        .swap_i,
         .active_i     (active_i[n]),
-        .direct_i,
         .engine_step_i(engine_step_i[n]),
         .engine_dir_i (engine_dir_i[n]),
         .wait_tick_i  (wait_tick),
-        .snapshot_i,
         .chain_i      (chain[32*n+:32]),
         .chain_o      (chain[32*n+32+:32]),
         .path_step_o  (path_step[n]),

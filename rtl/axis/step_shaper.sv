@@ -30,28 +30,18 @@ module step_shaper (
   logic pulse;
 
   waiting_steps waiting (
-      .clk_i,
-      .rst_i,
-      .step_i,
-      .dir_i,
+      .*,
       .points_i(dir),
       .take_i  (go),
-      .wait_tick_i,
       .any_o   (any),
       .same_o  (same),
-      .other_o (other),
-      .fault_o
+      .other_o (other)
   );
 
   step_phases phases (
-      .clk_i,
-      .rst_i,
+      .*,
       .same_i   (same),
       .other_i  (other),
-      .step_length_i,
-      .step_space_i,
-      .dir_setup_i,
-      .dir_hold_i,
       .go_o     (go),
       .resting_o(resting),
       .dir_o    (dir),
@@ -59,22 +49,28 @@ module step_shaper (
       .pulse_o  (pulse)
   );
 
-  step_pins pins (
-      .clk_i,
-      .rst_i,
-      .dir_i  (dir),
-      .begun_i(begun),
-      .pulse_i(pulse),
-      .mode_i,
-      .idle_level_i,
-      .step_o,
-      .dir_o,
-      .position_o
-  );
-
   always_ff @(posedge clk_i) begin
     busy_o <= step_i || any || !resting;
     if (rst_i) busy_o <= 1'b0;
+  end
+
+  // The two pins in the axis's mode, and the position that they show: both a register after the pulse.
+  function automatic logic [1:0] gray(input logic [1:0] place);
+    gray = place ^ {1'b0, place[1]};
+  endfunction
+
+  always_ff @(posedge clk_i) begin
+    // In quadrature the pins are the position's two low bits, as they will be, in Gray code (first pin leads forwards).
+    case (mode_i[1:0])
+      2'd0: {dir_o, step_o} <= mode_i[3:2] ^ {dir, pulse};
+      2'd1: {dir_o, step_o} <= mode_i[3:2] ^ {pulse && dir, pulse && !dir};
+      default: {dir_o, step_o} <= mode_i[3:2] ^ gray(position_o[1:0] + (begun ? {dir, 1'b1} : 2'd0));
+    endcase
+    if (begun) position_o <= position_o + {{31{dir}}, 1'b1};
+    if (rst_i) begin
+      {dir_o, step_o} <= idle_level_i;
+      position_o <= '0;
+    end
   end
 endmodule
 

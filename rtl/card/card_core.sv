@@ -90,16 +90,9 @@ module card_core #(
       .Ports(Ports),
       .Engines(ENGINES)
   ) registers (
-      .clk_i,
-      .rst_i,
+      .*,
       .constants_i(constants),
-      .idle_level_i,
-      .request_i,
       .access_i({port_i, write_i, partial_i, address_i, data_i}),
-      .ack_o,
-      .error_o,
-      .data_o,
-      .irq_o,
       .motion_i(motion_status),
       .held_i(held),
       .fault_i(fault),
@@ -123,13 +116,11 @@ module card_core #(
   );
 
   logic [15:0] halfword;
-  logic        geometry_write;
-  logic        geometry_commit;
+  logic [ 1:0] geometry_store;  // {commit, write}
   logic        geometry_read;
   logic        geometry_empty;
   logic [15:0] geometry_word;
-  logic        feed_write;
-  logic        feed_commit;
+  logic [ 1:0] feed_store;  // {commit, write}
   logic        feed_read;
   logic        feed_empty;
   logic [15:0] feed_word;
@@ -139,58 +130,42 @@ module card_core #(
       .Axes(Axes),
       .Engines(ENGINES)
   ) stream (
-      .clk_i,
-      .rst_i,
+      .*,
       .write_i(stream_write),
       .word_i(setting[31:0]),  // the word last written, whatever it was for
       .flush_i(flush),
       .clear_i(cut),
       .closed_i(closed),
-      .geometry_room_i(room[31:16]),
-      .feed_room_i(room[15:0]),
-      .ready_o(checked[17]),
+      .room_i(room),
       .halfword_o(halfword),
-      .geometry_write_o(geometry_write),
-      .feed_write_o(feed_write),
-      .geometry_commit_o(geometry_commit),
-      .feed_commit_o(feed_commit),
+      .geometry_o(geometry_store),
+      .feed_o(feed_store),
       .drop_o(drop),
-      .refuse_o(checked[16]),
-      .reason_o(checked[7:0]),
-      .number_o(checked[15:8]),
-      .partial_o(checked[18])
+      .answer_o(checked)
   );
 
   halfword_queue #(
       .Depth(GeometryDepth)
   ) geometry_queue (
-      .clk_i,
-      .rst_i,
-      .clear_i (cut),
-      .write_i (geometry_write),
-      .word_i  (halfword),
-      .commit_i(geometry_commit),
-      .drop_i  (drop),
-      .read_i  (geometry_read),
-      .word_o  (geometry_word),
-      .empty_o (geometry_empty),
-      .room_o  (room[31:16])
+      .*,
+      .clear_i(cut),
+      .store_i({drop, geometry_store, halfword}),
+      .read_i (geometry_read),
+      .word_o (geometry_word),
+      .empty_o(geometry_empty),
+      .room_o (room[31:16])
   );
 
   halfword_queue #(
       .Depth(FeedDepth)
   ) feed_queue (
-      .clk_i,
-      .rst_i,
-      .clear_i (cut),
-      .write_i (feed_write),
-      .word_i  (halfword),
-      .commit_i(feed_commit),
-      .drop_i  (drop),
-      .read_i  (feed_read),
-      .word_o  (feed_word),
-      .empty_o (feed_empty),
-      .room_o  (room[15:0])
+      .*,
+      .clear_i(cut),
+      .store_i({drop, feed_store, halfword}),
+      .read_i (feed_read),
+      .word_o (feed_word),
+      .empty_o(feed_empty),
+      .room_o (room[15:0])
   );
 
   motion_core #(
@@ -198,9 +173,7 @@ module card_core #(
       .Accumulator(Accumulator != 0),
       .DirectMode(DirectMode != 0)
   ) motion (
-      .clk_i,
-      .rst_i,
-      .idle_level_i,
+      .*,
       .setting_i(setting),
       .abort_i(abort),
       .clear_fault_i(clear_fault),
@@ -228,9 +201,7 @@ module card_core #(
       .held_o(held),
       .geometry_begun_o(begun[63:32]),
       .feed_begun_o(begun[31:0]),
-      .observe_o(observe_o[34*Axes+52:0]),
-      .step_o,
-      .dir_o
+      .observe_o(observe_o[34*Axes+52:0])
   );
 
   assign observe_o[34*Axes+212:34*Axes+53] = {room, status, fault, begun};

@@ -47,58 +47,58 @@ module motion_core #(
     output logic      [    Axes-1:0] dir_o
 );
   // stops
-  logic            go;
-  logic            hold;
-  logic            mismatch;
-  logic            incomplete;
-  logic            stopping;
-  logic [Axes-1:0] step_fault;
+  logic               go;
+  logic               hold;
+  logic               mismatch;
+  logic               incomplete;
+  logic               stopping;
+  logic [   Axes-1:0] step_fault;
   // ticks
-  logic            take;
-  logic            tick;
-  logic            feed_swap;
-  logic            feed_active;
-  logic            feed_runs;
-  logic            feed_at;
-  logic            feed_idle;
-  logic [    16:0] ratio;
-  logic [    31:0] rate;
+  logic               take;
+  logic               tick;
+  logic               feed_swap;
+  logic               feed_active;
+  logic               feed_runs;
+  logic               feed_at;
+  logic               feed_idle;
+  logic [       16:0] ratio;
+  logic [       31:0] rate;
   // geometry
-  logic [    21:0] load;
-  logic            taking;
-  logic            swap;
-  logic [Axes-1:0] active;
-  logic            engine;
-  logic            engine_start;
-  logic            barrier_begin;
-  logic            barrier_done;
-  logic            path_active;
-  logic            ended;
-  logic            geometry_idle;
-  logic            direct;
-  logic            direct_go;
-  logic [Axes-1:0] direct_mask;
-  logic [    21:0] direct_load;
+  logic [       21:0] load;
+  logic               taking;
+  logic               swap;
+  logic [   Axes-1:0] active;
+  logic               engine;
+  logic               engine_start;
+  logic               barrier_begin;
+  logic               barrier_done;
+  logic               path_active;
+  logic               ended;
+  logic               geometry_idle;
+  logic               direct;
+  logic               direct_go;
+  logic [   Axes-1:0] direct_mask;
+  logic [       21:0] direct_load;
   // path engines
-  logic            path_tick;
-  logic            path_swap;
-  logic            engine_tick;
-  logic [Axes-1:0] engine_step;
-  logic [Axes-1:0] engine_dir;
-  logic            engine_ready;
-  logic            payload_ready;
-  logic            engine_done;
-  logic            elsewhere;
+  logic               path_tick;
+  logic               path_swap;
+  logic               engine_tick;
+  logic [   Axes-1:0] engine_step;
+  logic [   Axes-1:0] engine_dir;
+  logic               engine_ready;
+  logic               payload_ready;
+  logic               engine_done;
+  logic               elsewhere;
   // axes
-  logic            axes_live;
-  logic            axes_busy;
+  logic               axes_live;
+  logic               axes_busy;
   logic [34*Axes-1:0] axes_observe;
   // status
-  logic            idle_q;
-  logic            running_q;
-  logic            busy;
-  logic [    31:0] feed_chain;
-  logic [    31:0] geometry_chain;
+  logic               idle_q;
+  logic               running_q;
+  logic               busy;
+  logic [       31:0] feed_chain;
+  logic [       31:0] geometry_chain;
 
   assign held_o    = ratio == 17'd0;
   assign status_o  = {stopping, ended, feed_active, path_active, direct, busy};
@@ -107,31 +107,22 @@ module motion_core #(
   stop_control #(
       .Axes(Axes)
   ) stops (
-      .clk_i,
-      .rst_i,
-      .setting_i,
+      .*,
       .step_fault_i(step_fault),
       .mismatch_i  (mismatch),
       .incomplete_i(incomplete),
-      .abort_i,
       .clear_i     (clear_fault_i),
       .at_rest_i   (held_o),
-      .fault_o,
       .go_o        (go),
       .hold_o      (hold),
-      .cut_o,
-      .stop_o,
-      .stopping_o  (stopping),
-      .closed_o
+      .stopping_o  (stopping)
   );
 
   tick_source ticks (
-      .clk_i,
-      .rst_i,
+      .*,
       .cut_i          (cut_o),
       .go_i           (go),
       .hold_i         (hold),
-      .setting_i,
       .empty_i        (feed_empty_i),
       .word_i         (feed_word_i),
       .read_o         (feed_read_o),
@@ -150,8 +141,6 @@ module motion_core #(
       .ratio_o        (ratio),
       .rate_o         (rate),
       .begun_o        (feed_begun_o),
-      .snapshot_i,
-      .chain_i,
       .chain_o        (feed_chain)
   );
 
@@ -159,8 +148,7 @@ module motion_core #(
       .Axes       (Axes),
       .Accumulator(Accumulator)
   ) geometry (
-      .clk_i,
-      .rst_i,
+      .*,
       .cut_i          (cut_o),
       .go_i           (go),
       .empty_i        (geometry_empty_i),
@@ -190,7 +178,6 @@ module motion_core #(
       .path_active_o  (path_active),
       .ended_o        (ended),
       .idle_o         (geometry_idle),
-      .snapshot_i,
       .chain_i        (feed_chain),
       .chain_o        (geometry_chain),
       .begun_o        (geometry_begun_o)
@@ -200,8 +187,7 @@ module motion_core #(
       .Axes       (Axes),
       .Accumulator(Accumulator)
   ) engines (
-      .clk_i,
-      .rst_i,
+      .*,
       .cut_i          (cut_o),
       .tick_i         (tick),
       .swap_i         (swap),
@@ -223,11 +209,8 @@ module motion_core #(
       .Axes   (Axes),
       .Counted(DirectMode)
   ) all_axes (
-      .clk_i,
-      .rst_i,
+      .*,
       .cut_i        (cut_o),
-      .idle_level_i,
-      .setting_i,
       .load_i       (load),
       .tick_i       (path_tick),
       .swap_i       (path_swap),
@@ -235,26 +218,20 @@ module motion_core #(
       .direct_i     (direct),
       .engine_step_i(engine_step),
       .engine_dir_i (engine_dir),
-      .snapshot_i,
       .chain_i      (geometry_chain),
-      .chain_o,
       .live_o       (axes_live),
       .busy_o       (axes_busy),
       .fault_o      (step_fault),
-      .observe_o    (axes_observe),
-      .step_o,
-      .dir_o
+      .observe_o    (axes_observe)
   );
 
   if (DirectMode) begin : gen_direct_mode
     direct_loader #(
         .Axes(Axes)
     ) loader (
-        .clk_i,
-        .rst_i,
+        .*,
         .busy_i   (busy),
         .closed_i (closed_o),
-        .start_i,
         .mask_i   (start_mask_i),
         .address_o(loader_address_o),
         .data_i   (loader_data_i),
@@ -279,8 +256,7 @@ module motion_core #(
   end
 
   busy_timer status_busy (
-      .clk_i,
-      .rst_i,
+      .*,
       .running_i(running_q),
       .busy_o   (busy)
   );

@@ -51,36 +51,13 @@ module trammel_card #(
   logic [31:0] port_data;
 
   axi4_lite_port host (
-      .clk_i,
-      .rst_i    (rst_q),
-      .awvalid_i,
-      .awready_o,
-      .awaddr_i,
-      .wvalid_i,
-      .wready_o,
-      .wdata_i,
-      .wstrb_i,
-      .bvalid_o,
-      .bready_i,
-      .bresp_o,
-      .arvalid_i,
-      .arready_o,
-      .araddr_i,
-      .rvalid_o,
-      .rready_i,
-      .rdata_o,
-      .rresp_o,
-      .request_o(port_access[47]),
-      .write_o  (port_access[46]),
-      .partial_o(port_access[45]),
-      .address_o(port_access[43:32]),
-      .data_o   (port_access[31:0]),
-      .ack_i    (port_ack),
-      .error_i  (port_error),
-      .data_i   (port_data)
+      .*,
+      .rst_i   (rst_q),
+      .access_o(port_access),
+      .ack_i   (port_ack),
+      .error_i (port_error),
+      .data_i  (port_data)
   );
-
-  assign port_access[44] = 1'b0;
 
   logic        request;
   logic [47:0] access;  // {port, write, partial, address, data}
@@ -115,7 +92,7 @@ module trammel_card #(
       .BuildDirty(BuildDirty),
       .BoardId(BoardId)
   ) core (
-      .clk_i,
+      .*,
       .rst_i    (rst_q),
       .request_i(request),
       .port_i   (access[47:46]),
@@ -125,13 +102,7 @@ module trammel_card #(
       .data_i   (access[31:0]),
       .ack_o    (ack),
       .error_o  (error),
-      .data_o   (data),
-      .clock_hz_i,
-      .idle_level_i,
-      .step_o,
-      .dir_o,
-      .irq_o,
-      .observe_o
+      .data_o   (data)
   );
 endmodule
 `default_nettype wire

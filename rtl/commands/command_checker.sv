@@ -1,11 +1,11 @@
 // Takes the words of the stream, judges them halfword by halfword against the layouts of rtl/regs/commands.toml and
 // passes good commands on in their stored form: halfword 1 and padding left out.
 //
-// A word written at c is answered at c+6, when ready_o is back: refuse_o says that it is refused. A refusal drops the
+// A word written at c is answered at c+6, when it is ready again: refuse says that it is refused. A refusal drops the
 // command whole and closes the stream until clear_i; a closed stream answers at c+2. So does a fault (closed_i), whose
-// refusal changes nothing else: the cut that comes with it clears all there is. A write without ready_o is ignored.
+// refusal changes nothing else: the cut that comes with it clears all there is. A write while it is not ready is ignored.
 // flush_i waits for a word under way and comes before one beside it. A word under way at clear_i is dropped without a
-// refusal. number_o is the number in the last header, reason_o the last refusal's; halfword_o holds between writes.
+// refusal. number is that in the last header, reason the last refusal's; halfword_o holds between writes.
 `default_nettype none
 module command_checker #(
     parameter int Axes = 4,  // 1 to 8
@@ -18,19 +18,12 @@ module command_checker #(
     input wire logic flush_i,
     input wire logic clear_i,
     input wire logic closed_i,
-    input wire logic [15:0] geometry_room_i,
-    input wire logic [15:0] feed_room_i,
-    output logic ready_o,
+    input wire logic [31:0] room_i,  // {geometry, feed}, halfwords
     output logic [15:0] halfword_o,
-    output logic geometry_write_o,
-    output logic feed_write_o,
-    output logic geometry_commit_o,
-    output logic feed_commit_o,
+    output logic [1:0] geometry_o,  // {commit, write}
+    output logic [1:0] feed_o,
     output logic drop_o,
-    output logic refuse_o,
-    output logic [7:0] reason_o,
-    output logic [7:0] number_o,
-    output logic partial_o
+    output logic [18:0] answer_o  // {partial, ready, refuse, number, reason}; partial: inside a command
 );
 
   // A word's way, one clock each: either halfword is examined and judged, then the word is answered.
@@ -41,6 +34,10 @@ module command_checker #(
   logic answer_q;
 
   logic [31:0] word_q;  // goes round by a halfword with each judgement
+  logic ready_q;
+  logic partial_q;
+  logic refuse_q;
+  logic [7:0] reason_q;
   logic open_q;
   logic faulted_q;  // the word came while a fault stood
   logic flush_q;
@@ -55,6 +52,7 @@ module command_checker #(
   logic store;
   logic [7:0] op;
   logic [7:0] mask;
+  logic [7:0] number;
   logic to_geometry;
   logic to_feed;
   logic [5:0] stored;
@@ -63,43 +61,40 @@ module command_checker #(
   logic field_bad;
   logic field_bad_mask;
 
+  assign answer_o = {partial_q, ready_q, refuse_q, number, reason_q};
+
   // Nothing moves but for a word under way and the clock after it, in which the pulses fall.
   logic awake;
   logic awake_q;
   assign awake = restart || write_i || flush_i || awake_q;
-  always_ff @(posedge clk_i) awake_q <= restart || write_i || flush_i || flush_q || !ready_o;
+  always_ff @(posedge clk_i) awake_q <= restart || write_i || flush_i || flush_q || !ready_q;
 
   assign restart  = rst_i || clear_i;
-  assign truncate = ready_o && (flush_i || flush_q) && partial_o;
+  assign truncate = ready_q && (flush_i || flush_q) && partial_q;
   assign last     = left_q == 5'd1;
   assign padding  = last && !stored[0];
   assign judged   = answer_q && open_q && !faulted_q;
-  assign refused  = judged && (partial_o ? field_bad : header_bad);
-  assign accepted = judged && partial_o && last && !field_bad;
+  assign refused  = judged && (partial_q ? field_bad : header_bad);
+  assign accepted = judged && partial_q && last && !field_bad;
   // The first halfword waits for its header's verdict: before that there may be no room for it.
-  assign store    = partial_o ? low_judge_q || (high_judge_q && !padding) : judged && !refused;
+  assign store    = partial_q ? low_judge_q || (high_judge_q && !padding) : judged && !refused;
 
   command_header #(
       .Axes(Axes),
       .Engines(Engines)
   ) header (
-      .clk_i,
+      .*,
       .restart_i(restart),
-      .low_i(low_q && !partial_o),
-      .low_judge_i(low_judge_q && !partial_o),
-      .high_i(high_q && !partial_o),
-      .high_judge_i(high_judge_q && !partial_o),
+      .phase_i(partial_q ? 4'd0 : {high_judge_q, high_q, low_judge_q, low_q}),
       .accept_i(accepted),
       .halfword_i(word_q[15:0]),
-      .geometry_room_i,
-      .feed_room_i,
       .op_o(op),
       .mask_o(mask),
-      .number_o,
       .to_geometry_o(to_geometry),
       .to_feed_o(to_feed),
       .stored_o(stored),
       .bad_o(header_bad),
+      .number_o(number),
       .reason_o(header_reason)
   );
 
@@ -107,11 +102,11 @@ module command_checker #(
       .Engines(Engines)
   ) fields (
       .clk_i,
-      .restart_i(low_q && !partial_o),
-      .examine_i((low_q || high_q) && partial_o),
-      .judge_i((low_judge_q || high_judge_q) && partial_o),
+      .restart_i(low_q && !partial_q),
+      .examine_i((low_q || high_q) && partial_q),
+      .judge_i((low_judge_q || high_judge_q) && partial_q),
       .read_ahead_i(low_judge_q || high_judge_q),
-      .padding_i(low_judge_q && padding && partial_o),
+      .padding_i(low_judge_q && padding && partial_q),
       .halfword_i(word_q[15:0]),
       .op_i(op),
       .mask_i(mask),
@@ -121,10 +116,10 @@ module command_checker #(
 
   always_ff @(posedge clk_i) begin
     if (awake) begin
-      if (ready_o) word_q <= word_i;
+      if (ready_q) word_q <= word_i;
       else if (low_judge_q || high_judge_q) word_q <= {word_q[15:0], word_q[31:16]};
 
-      if (judged) left_q <= partial_o ? left_q - 5'd1 : stored[5:1];
+      if (judged) left_q <= partial_q ? left_q - 5'd1 : stored[5:1];
     end
   end
 
@@ -132,22 +127,22 @@ module command_checker #(
     if (awake) begin
       if (restart) begin
         {low_q, low_judge_q, high_q, high_judge_q, answer_q} <= 5'd0;
-        ready_o <= 1'b1;
+        ready_q <= 1'b1;
         flush_q <= 1'b0;
         open_q <= 1'b1;
-        partial_o <= 1'b0;
+        partial_q <= 1'b0;
       end else begin
-        low_q <= ready_o && write_i && open_q && !closed_i && !truncate;
+        low_q <= ready_q && write_i && open_q && !closed_i && !truncate;
         low_judge_q <= low_q;
         high_q <= low_judge_q;
         high_judge_q <= high_q;
-        answer_q <= high_judge_q || (ready_o && write_i && (!open_q || closed_i || truncate));
-        ready_o <= answer_q || (ready_o && !write_i);
-        if (ready_o) faulted_q <= closed_i;
-        flush_q <= !ready_o && (flush_i || flush_q);
+        answer_q <= high_judge_q || (ready_q && write_i && (!open_q || closed_i || truncate));
+        ready_q <= answer_q || (ready_q && !write_i);
+        if (ready_q) faulted_q <= closed_i;
+        flush_q <= !ready_q && (flush_i || flush_q);
         if (refused || truncate) open_q <= 1'b0;
-        if (refused || truncate) partial_o <= 1'b0;
-        else if (judged) partial_o <= !accepted;
+        if (refused || truncate) partial_q <= 1'b0;
+        else if (judged) partial_q <= !accepted;
       end
     end
   end
@@ -156,25 +151,23 @@ module command_checker #(
     if (awake) begin
       if (restart) begin
         halfword_o <= 16'd0;
-        {geometry_write_o, feed_write_o, geometry_commit_o, feed_commit_o} <= 4'd0;
+        {geometry_o, feed_o} <= 4'd0;
         drop_o <= 1'b0;
-        refuse_o <= 1'b0;
-        reason_o <= card_map_pkg::REFUSE_NONE;
+        refuse_q <= 1'b0;
+        reason_q <= card_map_pkg::REFUSE_NONE;
       end else begin
         if (store) halfword_o <= word_q[15:0];
-        geometry_write_o <= store && to_geometry;
-        feed_write_o <= store && to_feed;
-        geometry_commit_o <= accepted && to_geometry;
-        feed_commit_o <= accepted && to_feed;
+        geometry_o <= {accepted && to_geometry, store && to_geometry};
+        feed_o <= {accepted && to_feed, store && to_feed};
         drop_o <= refused || truncate;
-        refuse_o <= refused || truncate || (answer_q && !judged);
-        // Never both: an answer comes while ready_o is low, a flush is heard while it is high.
+        refuse_q <= refused || truncate || (answer_q && !judged);
+        // Never both: an answer comes while ready_q is low, a flush is heard while it is high.
         if (answer_q) begin
-          if (faulted_q) reason_o <= card_map_pkg::REFUSE_FAULTED;
-          else if (!open_q) reason_o <= card_map_pkg::REFUSE_STREAM_CLOSED;
-          else if (refused && !partial_o) reason_o <= header_reason;
-          else if (refused) reason_o <= field_bad_mask ? card_map_pkg::REFUSE_BAD_MASK : card_map_pkg::REFUSE_BAD_FIELD;
-        end else if (truncate) reason_o <= card_map_pkg::REFUSE_TRUNCATED;
+          if (faulted_q) reason_q <= card_map_pkg::REFUSE_FAULTED;
+          else if (!open_q) reason_q <= card_map_pkg::REFUSE_STREAM_CLOSED;
+          else if (refused && !partial_q) reason_q <= header_reason;
+          else if (refused) reason_q <= field_bad_mask ? card_map_pkg::REFUSE_BAD_MASK : card_map_pkg::REFUSE_BAD_FIELD;
+        end else if (truncate) reason_q <= card_map_pkg::REFUSE_TRUNCATED;
       end
     end
   end

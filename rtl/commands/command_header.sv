@@ -1,7 +1,7 @@
 // Judges a command's first word and keeps what the rest of the command needs of it: opcode, mask, number, size.
 //
-// low_i, low_judge_i, high_i, high_judge_i are high in turn, one clock each, with the header's halfword 0 (low) and 1
-// (high) on halfword_i. The verdict stands from the clock after high_judge_i to the next header. In doubt the order of
+// The bits of phase_i are high in turn, one clock each, with the header's halfword 0 (phases 0 and 1) and 1 (2 and 3) on
+// halfword_i. The verdict stands from the clock after the last phase to the next header. In doubt the order of
 // reasons is that of the checks: opcode, mask, length, number, room.
 `default_nettype none
 module command_header #(
@@ -10,14 +10,10 @@ module command_header #(
 ) (
     input wire logic clk_i,
     input wire logic restart_i,
-    input wire logic low_i,
-    input wire logic low_judge_i,
-    input wire logic high_i,
-    input wire logic high_judge_i,
+    input wire logic [3:0] phase_i,
     input wire logic accept_i,  // the command is committed: its successor is due
     input wire logic [15:0] halfword_i,
-    input wire logic [15:0] geometry_room_i,
-    input wire logic [15:0] feed_room_i,
+    input wire logic [31:0] room_i,  // {geometry, feed}
     output logic [7:0] op_o,
     output logic [7:0] mask_o,
     output logic [7:0] number_o,
@@ -52,8 +48,8 @@ module command_header #(
     logic [1:0] axes_in_base;
     logic [5:0] per_axis;
 
-    if (low_i) {mask_o, op_o} <= halfword_i;
-    if (low_judge_i) begin
+    if (phase_i[0]) {mask_o, op_o} <= halfword_i;
+    if (phase_i[1]) begin
       unknown_q <= !card_map_pkg::command_known(op_o, Engines);
       to_geometry_o <= card_map_pkg::command_to_geometry(op_o, Engines);
       to_feed_o <= card_map_pkg::command_to_feed(op_o, Engines);
@@ -65,7 +61,7 @@ module command_header #(
       per_axis_q <= per_axis;
       moving_q <= ones(mask_o);
     end
-    if (high_i) begin
+    if (phase_i[2]) begin
       mask_bad = (mask_o & ABSENT_AXES) != 8'd0;
       case (card_map_pkg::command_mask_rule(
           op_o, Engines
@@ -80,11 +76,11 @@ module command_header #(
       // Halfword 1 is not stored, which also rounds the words after the first: stored / 2, rounded down.
       stored_o   <= base_q + 6'(per_axis_q * moving_q);
     end
-    if (high_judge_i) begin
+    if (phase_i[3]) begin
       length_bad_q <= halfword_i[7:0] != {3'b0, stored_o[5:1]} + 8'd1;
       number_bad_q <= number_o != expected_q;
-      geometry_full_q <= to_geometry_o && geometry_room_i < {10'b0, stored_o};
-      feed_full_q <= to_feed_o && feed_room_i < {10'b0, stored_o};
+      geometry_full_q <= to_geometry_o && room_i[31:16] < {10'b0, stored_o};
+      feed_full_q <= to_feed_o && room_i[15:0] < {10'b0, stored_o};
     end
   end
 
@@ -93,7 +89,7 @@ module command_header #(
       number_o   <= 8'd0;
       expected_q <= 8'd0;
     end else begin
-      if (high_i) number_o <= halfword_i[15:8];
+      if (phase_i[2]) number_o <= halfword_i[15:8];
       if (accept_i) expected_q <= expected_q + 8'd1;
     end
   end

@@ -18,9 +18,7 @@ module feed_decoder (
     output logic             valid_o
 );
   logic [4:0] field;
-  logic       count_strobe;
-  logic       field_strobe;
-  logic [4:0] strobe_field;
+  logic [6:0] strobe;  // {of the count, of a field, which one}
   logic [7:0] opcode;
   logic       is_feed;
   logic       pause;
@@ -35,44 +33,32 @@ module feed_decoder (
   endfunction
 
   command_fetch fetch (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .pop_i,
-      .empty_i,
-      .word_i,
-      .read_o,
-      .has_payload_i (is_feed),
-      .first_field_i ({2'd0, load_target_pkg::FEED_RATE}),
-      .first_length_i(3'd3),
-      .next_field_i  (field + 5'd1),
-      .next_length_i (length_of(field[2:0] + 3'd1)),
-      .last_field_i  (pause || field[2:0] == load_target_pkg::FEED_JERK),
-      .rest_i        (is_feed && field[2:0] == load_target_pkg::FEED_ACCELERATION),
-      .wait_i        (1'b0),
-      .header_o      (),
-      .first_o       (),
-      .advance_o     (),
-      .field_o       (field),
-      .count_strobe_o(count_strobe),
-      .field_strobe_o(field_strobe),
-      .strobe_field_o(strobe_field),
-      .opcode_o      (opcode),
-      .mask_o        (),
-      .idle_o,
-      .valid_o
+      .*,
+      .has_payload_i(is_feed),
+      .first_i      ({2'd0, load_target_pkg::FEED_RATE, 3'd3}),
+      .next_i       ({field + 5'd1, length_of(field[2:0] + 3'd1)}),
+      .last_field_i (pause || field[2:0] == load_target_pkg::FEED_JERK),
+      .rest_i       (is_feed && field[2:0] == load_target_pkg::FEED_ACCELERATION),
+      .wait_i       (1'b0),
+      .header_o     (),
+      .first_o      (),
+      .advance_o    (),
+      .field_o      (field),
+      .strobe_o     (strobe),
+      .opcode_o     (opcode),
+      .mask_o       ()
   );
 
   always_ff @(posedge clk_i) begin
-    load_o[19]    <= (count_strobe || field_strobe) && !rst_i;
-    load_o[18:16] <= count_strobe ? load_target_pkg::FEED_TICKS : strobe_field[2:0];
+    load_o[19]    <= strobe[6:5] != 2'd0 && !rst_i;
+    load_o[18:16] <= strobe[6] ? load_target_pkg::FEED_TICKS : strobe[2:0];
     load_o[15:0]  <= word_i;
     piece_o       <= is_feed;
     barrier_o     <= !is_feed;
   end
 
   logic unused;
-  assign unused = &{1'b0, strobe_field[4:3]};
+  assign unused = &{1'b0, strobe[4:3]};
 endmodule
 
 `default_nettype wire

@@ -34,9 +34,7 @@ module geometry_decoder #(
   logic [2:0] next_arc_length;
   logic [4:0] lowest;
   logic       header;
-  logic       count_strobe;
-  logic       field_strobe;
-  logic [4:0] strobe_field;
+  logic [6:0] strobe;  // {of the count, of a field, which one}
   logic [7:0] opcode;
   logic [7:0] mask;
   logic       is_arc;
@@ -84,37 +82,25 @@ module geometry_decoder #(
   end
 
   command_fetch fetch (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .pop_i,
-      .empty_i,
-      .word_i,
-      .read_o,
-      .has_payload_i (is_line || is_arc),
-      .first_field_i (is_arc ? load_target_pkg::NOWHERE : lowest),
-      .first_length_i(3'd2),
-      .next_field_i  (is_arc ? next_arc : lowest),
-      .next_length_i (is_arc ? next_arc_length : 3'd2),
-      .last_field_i  (is_arc ? field == load_target_pkg::HALF_Y : rest_q == 8'd0),
-      .rest_i        (1'b0),
-      .wait_i        (is_arc && at_prescaler && !payload_ready_i),
-      .header_o      (header),
-      .first_o       (first),
-      .advance_o     (advance),
-      .field_o       (field),
-      .count_strobe_o(count_strobe),
-      .field_strobe_o(field_strobe),
-      .strobe_field_o(strobe_field),
-      .opcode_o      (opcode),
-      .mask_o        (mask),
-      .idle_o,
-      .valid_o
+      .*,
+      .has_payload_i(is_line || is_arc),
+      .first_i      ({is_arc ? load_target_pkg::NOWHERE : lowest, 3'd2}),
+      .next_i       (is_arc ? {next_arc, next_arc_length} : {lowest, 3'd2}),
+      .last_field_i (is_arc ? field == load_target_pkg::HALF_Y : rest_q == 8'd0),
+      .rest_i       (1'b0),
+      .wait_i       (is_arc && at_prescaler && !payload_ready_i),
+      .header_o     (header),
+      .first_o      (first),
+      .advance_o    (advance),
+      .field_o      (field),
+      .strobe_o     (strobe),
+      .opcode_o     (opcode),
+      .mask_o       (mask)
   );
 
   always_ff @(posedge clk_i) begin
-    load_o[21]    <= (count_strobe || field_strobe || direct_load_i[21]) && !rst_i;
-    load_o[20:16] <= direct_load_i[21] ? direct_load_i[20:16] : count_strobe ? load_target_pkg::TICKS : strobe_field;
+    load_o[21]    <= (strobe[6:5] != 2'd0 || direct_load_i[21]) && !rst_i;
+    load_o[20:16] <= direct_load_i[21] ? direct_load_i[20:16] : strobe[6] ? load_target_pkg::TICKS : strobe[4:0];
     load_o[15:0]  <= direct_load_i[21] ? direct_load_i[15:0] : word_i;
 
     line_o        <= is_line;

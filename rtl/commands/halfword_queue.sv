@@ -1,6 +1,6 @@
 // Command queue: halfwords in block RAM, readable only once their whole command is committed.
 //
-// A write at c belongs to the command under way; commit_i makes what was written in earlier clocks readable, drop_i
+// A write at c belongs to the command under way; a commit makes what was written in earlier clocks readable, a drop
 // forgets it (and wins over a write or commit beside it). word_o at c+2 is the halfword that read_i took at c; reads may
 // follow each other every clock, and a read while empty_o is ignored. empty_o counts a read at c+1 and a commit at
 // c+2; room_o (combinational) counts reads, writes and drops at c+1. The writer keeps within room_o.
@@ -11,10 +11,7 @@ module halfword_queue #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic clear_i,
-    input wire logic write_i,
-    input wire logic [15:0] word_i,
-    input wire logic commit_i,
-    input wire logic drop_i,
+    input wire logic [18:0] store_i,  // {drop, commit, write, halfword}
     input wire logic read_i,
     output logic [15:0] word_o,
     output logic empty_o,
@@ -39,10 +36,14 @@ module halfword_queue #(
   logic [AddressWidth:0] commit_q;
   logic [AddressWidth:0] read_q;
   logic [AddressWidth:0] read_next_q;
+  logic drop;
+  logic commit;
+  logic write;
   logic take;
   logic reset;
 
-  assign take  = read_i && !empty_o;
+  assign {drop, commit, write} = store_i[18:16];
+  assign take = read_i && !empty_o;
   assign reset = rst_i || clear_i;
 
   // In nibbles, so that a block RAM is deep and narrow: then none, or few, are chosen between after the RAM's slow output.
@@ -52,7 +53,7 @@ module halfword_queue #(
     logic [3:0] memory_q;
 
     always_ff @(posedge clk_i) begin
-      if (write_i) memory[write_q[AddressWidth-1:0]] <= word_i[4*n+:4];
+      if (write) memory[write_q[AddressWidth-1:0]] <= store_i[4*n+:4];
       if (take) memory_q <= memory[read_q[AddressWidth-1:0]];
       // A bare flip-flop right after the RAM.
       word_o[4*n+:4] <= memory_q;
@@ -66,9 +67,9 @@ module halfword_queue #(
       read_q <= '0;
       read_next_q <= (AddressWidth + 1)'(1);
     end else begin
-      if (drop_i) write_q <= commit_q;
-      else if (write_i) write_q <= next(write_q);
-      if (commit_i && !drop_i) commit_q <= write_q;
+      if (drop) write_q <= commit_q;
+      else if (write) write_q <= next(write_q);
+      if (commit && !drop) commit_q <= write_q;
       if (take) begin
         read_q <= read_next_q;
         read_next_q <= next(read_next_q);

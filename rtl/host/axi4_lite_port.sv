@@ -25,17 +25,21 @@ module axi4_lite_port (
     output logic      [31:0] rdata_o,
     output logic      [ 1:0] rresp_o,
     // to the inner port
-    output logic             request_o,
-    output logic             write_o,
-    output logic             partial_o,
-    output logic      [11:0] address_o,
-    output logic      [31:0] data_o,
+    output logic      [47:0] access_o,   // {request, write, partial, 0, address, data}
     input  wire logic        ack_i,
     input  wire logic        error_i,
     input  wire logic [31:0] data_i
 );
 
-  logic busy_q;
+  logic        busy_q;
+  logic        request_q;
+  logic        write_q;
+  logic        partial_q;
+  logic [11:0] address_q;
+  logic [31:0] data_q;
+
+  assign access_o = {request_q, write_q, partial_q, 1'b0, address_q, data_q};
+
   logic write_waits;
   logic read_waits;
 
@@ -44,32 +48,32 @@ module axi4_lite_port (
   assign read_waits  = arvalid_i && !rvalid_o;
 
   always_ff @(posedge clk_i) begin
-    request_o <= 1'b0;
+    request_q <= 1'b0;
     awready_o <= 1'b0;
     arready_o <= 1'b0;
     if (busy_q) begin
       if (ack_i) busy_q <= 1'b0;
-    end else if (write_waits && !(read_waits && write_o)) begin
-      request_o <= 1'b1;
+    end else if (write_waits && !(read_waits && write_q)) begin
+      request_q <= 1'b1;
       awready_o <= 1'b1;
       busy_q <= 1'b1;
-      write_o <= 1'b1;
-      partial_o <= wstrb_i != 4'b1111;
-      address_o <= awaddr_i;
-      data_o <= wdata_i;
+      write_q <= 1'b1;
+      partial_q <= wstrb_i != 4'b1111;
+      address_q <= awaddr_i;
+      data_q <= wdata_i;
     end else if (read_waits) begin
-      request_o <= 1'b1;
+      request_q <= 1'b1;
       arready_o <= 1'b1;
       busy_q <= 1'b1;
-      write_o <= 1'b0;
-      address_o <= araddr_i;
+      write_q <= 1'b0;
+      address_q <= araddr_i;
     end
     if (rst_i) begin
-      request_o <= 1'b0;
+      request_q <= 1'b0;
       awready_o <= 1'b0;
       arready_o <= 1'b0;
       busy_q <= 1'b0;
-      write_o <= 1'b0;
+      write_q <= 1'b0;
     end
   end
 
@@ -82,11 +86,11 @@ module axi4_lite_port (
   always_ff @(posedge clk_i) begin
     if (bready_i) bvalid_o <= 1'b0;
     if (rready_i) rvalid_o <= 1'b0;
-    if (ack_i && write_o) begin
+    if (ack_i && write_q) begin
       bvalid_o <= 1'b1;
       write_error_q <= error_i;
     end
-    if (ack_i && !write_o) begin
+    if (ack_i && !write_q) begin
       rvalid_o <= 1'b1;
       read_error_q <= error_i;
       rdata_o <= data_i;

@@ -23,11 +23,8 @@ module begun_counter (
   end
 
   snapshot_slice begun (
-      .clk_i,
-      .snapshot_i,
-      .value_i(begun_o),
-      .chain_i,
-      .chain_o
+      .*,
+      .value_i(begun_o)
   );
 endmodule
 

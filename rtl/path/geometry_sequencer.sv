@@ -8,7 +8,7 @@ module geometry_sequencer #(
     input  wire logic            clk_i,
     input  wire logic            rst_i,
     input  wire logic            cut_i,
-    input  wire logic            go_i,              // no fault
+    input  wire logic            go_i,             // no fault
     // queue
     input  wire logic            empty_i,
     input  wire logic [    15:0] word_i,
@@ -59,9 +59,6 @@ module geometry_sequencer #(
   logic            path_begin;
   logic            engine_taken;
   logic            runs;
-  logic [    39:0] count;
-  logic            mid_zero;
-  logic            top_zero;
   logic            zero;
   logic            last;
   logic            at_barrier;
@@ -74,16 +71,9 @@ module geometry_sequencer #(
       .Axes       (Axes),
       .Accumulator(Accumulator)
   ) decoder (
-      .clk_i,
-      .rst_i,
-      .cut_i,
+      .*,
       .pop_i          (pop),
       .payload_ready_i(payload_ready_i && !engine_taken),
-      .empty_i,
-      .word_i,
-      .read_o,
-      .direct_load_i,
-      .load_o,
       .mask_o         (mask),
       .line_o         (line),
       .arc_o          (arc),
@@ -93,91 +83,50 @@ module geometry_sequencer #(
       .valid_o        (valid)
   );
 
-  count_chain next_count (
-      .clk_i,
-      .load_i    (load_o[21] && load_o[20:16] == load_target_pkg::TICKS),
-      .word_i    (load_o[15:0]),
-      .count_o   (count),
-      .mid_zero_o(mid_zero),
-      .top_zero_o(top_zero),
-      .zero_o    (zero)
-  );
-
   tick_counter ticks (
-      .clk_i,
-      .rst_i,
-      .load_i    (path_begin || barrier_begin_o),
-      .count_i   (count),
-      .mid_zero_i(mid_zero),
-      .top_zero_i(top_zero),
-      .take_i    (take_i || counting),
-      .last_o    (last)
+      .*,
+      .next_i({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
+      .zero_o(zero),
+      .load_i(path_begin || barrier_begin_o),
+      .take_i(take_i || counting),
+      .last_o(last)
   );
 
   path_sequencer #(
       .Axes(Axes)
   ) paths (
-      .clk_i,
-      .rst_i,
-      .cut_i,
+      .*,
       .valid_i       (valid),
       .line_i        (line),
       .arc_i         (arc),
       .barrier_i     (is_barrier),
       .mask_i        (mask),
       .pop_o         (pop),
-      .direct_go_i,
-      .direct_mask_i,
-      .take_i,
       .last_i        (last),
-      .taking_o,
-      .swap_o,
       .begin_o       (path_begin),
-      .active_o,
-      .engine_o,
-      .start_o,
-      .direct_o,
-      .axes_live_i,
-      .done_i,
-      .elsewhere_i,
       .engine_taken_o(engine_taken),
-      .incomplete_o,
       .barrier_done_i(barrier_done_o),
-      .at_barrier_o  (at_barrier),
-      .path_active_o
+      .at_barrier_o  (at_barrier)
   );
 
   barrier both_queues (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .go_i,
+      .*,
       .geometry_at_i  (at_barrier),
       .geometry_runs_i(runs),
-      .feed_at_i,
-      .feed_runs_i,
       .zero_i         (zero),
       .end_i          (is_end),
       .last_i         (last),
       .begin_i        (path_begin),
-      .mismatch_o,
       .load_o         (barrier_begin_o),
       .counting_o     (counting),
       .done_o         (barrier_done_o),
-      .ended_o,
       .idle_o         (barrier_idle)
   );
 
   // A direct move does not count.
   begun_counter begun (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .begin_i((swap_o && !direct_o) || barrier_begin_o),
-      .snapshot_i,
-      .chain_i,
-      .chain_o,
-      .begun_o
+      .*,
+      .begin_i((swap_o && !direct_o) || barrier_begin_o)
   );
 
   always_ff @(posedge clk_i) idle_o <= (decoder_idle && empty_i && !path_active_o && barrier_idle) || rst_i;

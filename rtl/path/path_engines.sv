@@ -65,11 +65,8 @@ module path_engines #(
     pulse_generator #(
         .Counted(0)
     ) prescaler (
-        .clk_i,
-        .rst_i,
+        .*,
         .clear_i         (cut_i),
-        .tick_i,
-        .swap_i,
         .active_i        (engine_i),
         .counted_i       (1'b0),
         .mirror_i        (1'b0),
@@ -82,25 +79,17 @@ module path_engines #(
     );
 
     path_tick_gate gate (
-        .clk_i,
-        .rst_i,
-        .cut_i,
+        .*,
         .coming_i         (coming),
         .step_i           (prescaler_step),
         .engine_ready_i   (engine_ready),
         .engine_stepping_i(engine_stepping),
-        .tick_o           (path_tick_o),
-        .ready_o,
-        .payload_ready_o,
-        .done_o
+        .tick_o           (path_tick_o)
     );
 
     deviation_accumulator accumulator (
-        .clk_i,
-        .rst_i,
+        .*,
         .clear_i   (cut_i),
-        .load_i,
-        .start_i,
         .tick_i    (path_tick_o),
         .step_x_o  (step_x),
         .dir_x_o   (dir_x),
@@ -111,19 +100,25 @@ module path_engines #(
         .at_end_o  (at_end)
     );
 
-    arc_router #(
-        .Axes(Axes)
-    ) router (
-        .clk_i,
-        .rst_i,
-        .load_i,
-        .step_x_i(step_x),
-        .dir_x_i (dir_x),
-        .step_y_i(step_y),
-        .dir_y_i (dir_y),
-        .step_o,
-        .dir_o
-    );
+    // The accumulator's steps go to the two axes of the arc's plane. The plane is loaded with the arc, that is when no
+    // other arc runs, so that one register is enough.
+    logic [2:0] axis_x_q;
+    logic [2:0] axis_y_q;
+
+    always_ff @(posedge clk_i) begin
+      if (load_i[21] && load_i[20:16] == load_target_pkg::PLANE) begin
+        axis_x_q <= load_i[6:4];
+        axis_y_q <= load_i[10:8];
+      end
+      // A direction is looked at with its step only.
+      step_o <= '0;
+      if ((step_x || step_y) && !rst_i) begin
+        for (int i = 0; i < Axes; i++) begin
+          step_o[i] <= (step_x && axis_x_q == 3'(i)) || (step_y && axis_y_q == 3'(i));
+          dir_o[i]  <= (axis_x_q == 3'(i)) ? dir_x : dir_y;
+        end
+      end
+    end
   end else begin : gen_lines_only
     assign path_tick_o     = 1'b0;
     assign step_o          = '0;

@@ -1,21 +1,41 @@
-// Counts the ticks of a path or a piece down, 40 bits: `last_o` says that the next tick taken is the last one.
+// Counts the ticks of a path or a piece, 40 bits: `last_o` says that the next tick taken is the last one. The next count
+// is shifted in from the load bus meanwhile, with the zero flags that come with it when it is loaded.
 //
 // Four fast bits take every tick; the upper 36 bits follow in two parts with registered borrows and zero flags. They
 // change at most once in 16 ticks, so their flags, renewed with each tick, are settled long before the fast bits reach 1.
 // The loaded value comes with its flags, so that a count of 1 is recognised in the clock after the load; its upper parts are
-// taken one clock later, so that the late load_i does not reach so many flip-flops: count_i stands until then.
+// taken one clock later, so that the late load_i does not reach so many flip-flops: the next count stands until then.
 `default_nettype none
 
 module tick_counter (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
-    input  wire logic        load_i,
-    input  wire logic [39:0] count_i,     // at least 1
-    input  wire logic        mid_zero_i,  // count_i[19:4] is 0
-    input  wire logic        top_zero_i,  // count_i[39:20] is 0
+    input  wire logic [16:0] next_i,  // {valid, halfword} of the next count, which is at least 1 where ticks count it
+    output logic             zero_o,  // the next count is 0; two clocks late
+    input  wire logic        load_i,  // take it
     input  wire logic        take_i,
     output logic             last_o
 );
+  logic [39:0] count_q;  // the next one
+  logic [ 7:0] top_pass_q;  // of the third halfword nothing counts, but the first two pass here
+  logic        loaded_q;
+  logic        settled_q;
+  logic        next_low_zero_q;  // of bits 3 to 0, 19 to 4, 39 to 20, a clock late
+  logic        next_mid_zero_q;
+  logic        next_top_zero_q;
+
+  always_ff @(posedge clk_i) begin
+    if (next_i[16]) {top_pass_q, count_q} <= {next_i[15:0], top_pass_q, count_q[39:16]};
+    loaded_q  <= next_i[16];
+    settled_q <= loaded_q;
+    if (loaded_q) begin
+      next_low_zero_q <= count_q[3:0] == 4'd0;
+      next_mid_zero_q <= count_q[19:4] == 16'd0;
+      next_top_zero_q <= count_q[39:20] == 20'd0;
+    end
+    if (settled_q) zero_o <= next_low_zero_q && next_mid_zero_q && next_top_zero_q;
+  end
+
   logic [ 3:0] low_q;
   logic [15:0] mid_q;  // these two inverted: so they count up, and load and count fit one 4-input table a bit
   logic [19:0] top_q;
@@ -32,15 +52,15 @@ module tick_counter (
   assign top_sum = top_q + {20{load_q}} + 20'd1;
 
   always_ff @(posedge clk_i) begin
-    if (load_q || mid_borrow_q) mid_q <= load_q ? ~count_i[19:4] : mid_sum;
-    if (load_q || top_borrow_q) top_q <= load_q ? ~count_i[39:20] : top_sum;
+    if (load_q || mid_borrow_q) mid_q <= load_q ? ~count_q[19:4] : mid_sum;
+    if (load_q || top_borrow_q) top_q <= load_q ? ~count_q[39:20] : top_sum;
     if (load_i) begin
-      low_q        <= count_i[3:0];
-      mid_zero_q   <= mid_zero_i;
-      top_zero_q   <= top_zero_i;
+      low_q        <= count_q[3:0];
+      mid_zero_q   <= next_mid_zero_q;
+      top_zero_q   <= next_top_zero_q;
       mid_borrow_q <= 1'b0;
       top_borrow_q <= 1'b0;
-      last_o       <= count_i[3:0] == 4'd1 && mid_zero_i && top_zero_i;
+      last_o       <= count_q[3:0] == 4'd1 && next_mid_zero_q && next_top_zero_q;
     end else begin
       top_borrow_q <= mid_borrow_q && mid_zero_q;
       mid_borrow_q <= take_i && low_q == 4'd0;

@@ -1,50 +1,143 @@
-// Carries one access at a time through: judgement, action, answer.
+// Carries one access at a time through: judges it by the register map, acts, answers.
 //
-// The access stands still from request_i to ack_o. A write that is good acts in
-// the clock after act_o, which is that of its ack_o.
+// The access stands still from request_i to ack_o. What a write does goes out in the clock of its ack_o; a flush a clock
+// before, so that its refusal finds the access that asked for it. What is known of an access is kept until the next one:
+// nothing moves in between.
 `default_nettype none
-module register_access (
-    input  wire logic       clk_i,
-    input  wire logic       rst_i,
-    input  wire logic       request_i,
-    input  wire logic       write_i,
-    output logic            ack_o,
-    output logic            error_o,
-    output logic            read_o,            // with ack_o: what was read is to be shown
-    // judgement
-    output logic            judge_o,
-    input  wire logic       wait_i,            // the RAM is being written and the access is not to a live register
-    input  wire logic [8:0] verdict_i,         // {good, reason}
-    input  wire logic       stream_i,
-    input  wire logic       start_i,
-    output logic            act_o,             // combinational
-    output logic            sample_o,          // combinational: a live register is taken
+module register_access #(
+    parameter int          Axes    = 4,  // 1 to 8
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+) (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        request_i,
+    input  wire logic [47:0] access_i,         // {port, write, partial, address, data}
+    output logic             ack_o,
+    output logic             error_o,
+    input  wire logic        writing_i,        // the RAM is being written
+    input  wire logic        direct_i,         // a direct move is under way
+    // reads
+    output logic             live_o,           // the register reads as the card stands
+    output logic             sample_o,         // combinational: a live register is taken
+    output logic             read_o,           // with ack_o: what was read is to be shown
+    // writes
+    output logic      [40:0] setting_o,        // {set, address, data}
+    output logic      [31:0] clear_fault_o,
+    output logic             clear_refusal_o,  // combinational
+    output logic             snapshot_o,
+    output logic             abort_o,
+    output logic             flush_o,          // combinational
     // who answers a word of the stream and START
-    output logic            stream_write_o,
-    input  wire logic       checker_ready_i,
-    input  wire logic       checker_refuse_i,
-    output logic            start_o,
-    input  wire logic [9:0] start_answer_i,    // {done, error, reason}
-    // a refusal by the map or by START, combinational
-    output logic            refuse_o,
-    output logic      [7:0] reason_o
+    output logic             stream_write_o,
+    input  wire logic [18:0] checker_i,        // {partial, ready, refuse, number, reason}
+    output logic             start_o,
+    input  wire logic [ 9:0] start_answer_i,   // {done, error, reason}
+    // a refusal, combinational
+    output logic             refuse_o,
+    output logic      [15:0] reason_o          // {number, reason}
 );
+
+  localparam logic [3:0] AXIS_COUNT = 4'(Axes);
 
   typedef enum logic [2:0] {
     IDLE,
-    DECODE,  // register_decode takes the access
-    WAIT,    // its judgement comes; whoever writes the RAM goes first
-    ACT,     // refuse or act; the RAM's word is in its first register
-    RESPOND, // the RAM's word gets into its second register
-    STREAM,  // wait for the command checker's judgement
-    START    // wait for the direct loader's
+    DECODE,   // what the access aims at is looked up
+    WAIT,     // it is judged; whoever writes the RAM goes first
+    ACT,      // refuse or act; the RAM's word is in its first register
+    RESPOND,  // the RAM's word gets into its second register
+    STREAM,   // wait for the command checker's judgement
+    START     // wait for the direct loader's
   } state_e;
 
-  state_e state_q;
-  logic   acting_q;  // ACT
-  logic   good;
+  state_e        state_q;
+  logic          acting_q;  // ACT
+  logic          judging;
+  logic          waiting;
+  logic          write;
+  logic   [ 9:0] word;
+  logic   [31:0] data;
 
-  assign good = verdict_i[8];
+  assign judging = state_q == DECODE || state_q == WAIT;
+  assign write   = access_i[45];
+  assign word    = access_i[43:34];
+  assign data    = access_i[31:0];
+
+  // What the access aims at.
+  logic [2:0] kind_q;
+  logic       absent_q;
+  logic [3:0] stray_q;  // bytes with bits that must be 0
+  logic       in_limits_q;
+  logic       control_q;
+  logic       flush_q;
+  logic       fault_q;
+  logic       refusal_q;
+  logic       stream_q;
+  logic       start_q;
+
+  always_ff @(posedge clk_i) begin : p_decode
+    logic        only_present;
+    logic [ 2:0] axis;
+    logic [31:0] mask;
+
+    if (judging) begin
+      mask = card_map_pkg::register_mask(word, Engines);
+      only_present = card_map_pkg::register_only_present_axes(word);
+      axis = card_map_pkg::register_axis(word);
+      kind_q   <= card_map_pkg::register_access(word, Engines);
+      absent_q <= access_i[33:32] != 2'd0 || (only_present && {1'b0, axis} >= AXIS_COUNT);
+      for (int b = 0; b < 4; b++) stray_q[b] <= (data[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
+      in_limits_q <= card_map_pkg::register_in_limits(word, data);
+      control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
+      // An abort beside it does more than a flush.
+      flush_q <= word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&
+          !data[card_map_pkg::BIT_CONTROL_ABORT];
+      fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
+      refusal_q <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data != 32'd0;
+      stream_q <= word == card_map_pkg::ADDR_STREAM[11:2];
+      start_q <= word == card_map_pkg::ADDR_START[11:2] && Engines[card_map_pkg::ENGINE_DIRECT_MODE];
+    end
+  end
+
+  // The stream belongs to a port from a command's first word to its last.
+  logic [1:0] owner_q;
+  logic       stream_busy;
+
+  assign stream_busy = direct_i || (checker_i[18] && owner_q != access_i[47:46]);
+
+  always_ff @(posedge clk_i) begin
+    if (stream_write_o) owner_q <= access_i[47:46];
+    if (rst_i) owner_q <= 2'd0;
+  end
+
+  logic       read_only;
+  logic       good_q;
+  logic [7:0] reason_q;
+
+  assign live_o = !absent_q && (kind_q == card_map_pkg::ACCESS_LIVE || kind_q == card_map_pkg::ACCESS_CLEAR_ONES);
+  assign read_only = kind_q == card_map_pkg::ACCESS_CONSTANT || kind_q == card_map_pkg::ACCESS_LIVE ||
+      kind_q == card_map_pkg::ACCESS_SNAPSHOT;
+
+  always_ff @(posedge clk_i) begin
+    if (judging) begin
+      good_q   <= 1'b0;
+      reason_q <= card_map_pkg::REFUSE_NONE;
+      if (kind_q == card_map_pkg::ACCESS_NONE || absent_q) begin
+        reason_q <= card_map_pkg::REFUSE_UNKNOWN_ADDRESS;
+      end else if (!write && kind_q == card_map_pkg::ACCESS_COMMAND) begin
+        reason_q <= card_map_pkg::REFUSE_WRITE_ONLY;
+      end else if (write && read_only) begin
+        reason_q <= card_map_pkg::REFUSE_READ_ONLY;
+      end else if (write && access_i[44]) begin
+        reason_q <= card_map_pkg::REFUSE_PARTIAL_WRITE;
+      end else if (write && (stray_q != 4'd0 || !in_limits_q)) begin
+        reason_q <= card_map_pkg::REFUSE_BAD_VALUE;
+      end else if (write && stream_q && stream_busy) begin
+        reason_q <= card_map_pkg::REFUSE_BUSY;
+      end else begin
+        good_q <= 1'b1;
+      end
+    end
+  end
 
   always_ff @(posedge clk_i) begin
     ack_o <= 1'b0;
@@ -52,32 +145,32 @@ module register_access (
     read_o <= 1'b0;
     stream_write_o <= 1'b0;
     start_o <= 1'b0;
-    acting_q <= state_q == WAIT && !wait_i;
+    acting_q <= state_q == WAIT && !waiting;
     case (state_q)
       IDLE:   if (request_i) state_q <= DECODE;
       DECODE: state_q <= WAIT;
-      WAIT:   if (!wait_i) state_q <= ACT;
+      WAIT:   if (!waiting) state_q <= ACT;
       ACT: begin
         state_q <= IDLE;
-        if (good && !write_i) begin
+        if (good_q && !write) begin
           state_q <= RESPOND;
-        end else if (good && stream_i) begin
+        end else if (good_q && stream_q) begin
           state_q <= STREAM;
           stream_write_o <= 1'b1;
-        end else if (good && start_i) begin
+        end else if (good_q && start_q) begin
           state_q <= START;
           start_o <= 1'b1;
         end else begin
           ack_o   <= 1'b1;
-          error_o <= !good;
+          error_o <= !good_q;
         end
       end
       STREAM: begin
         // The checker is still ready in the clock of the write.
-        if (checker_ready_i && !stream_write_o) begin
+        if (checker_i[17] && !stream_write_o) begin
           state_q <= IDLE;
           ack_o   <= 1'b1;
-          error_o <= checker_refuse_i;
+          error_o <= checker_i[16];
         end
       end
       START: begin
@@ -104,11 +197,32 @@ module register_access (
     end
   end
 
-  assign judge_o = state_q == DECODE || state_q == WAIT;
-  assign act_o = acting_q && good && write_i;
+  assign waiting  = writing_i && (write || !live_o);
   assign sample_o = acting_q;
-  assign refuse_o = acting_q ? !good : state_q == START && start_answer_i[9] && start_answer_i[8];
-  assign reason_o = acting_q ? verdict_i[7:0] : start_answer_i[7:0];
+  // By the map, by the direct loader, or by the checker: while its access waits, or in the clock after a flush.
+  assign refuse_o = acting_q ? !good_q : state_q == START ? start_answer_i[9] && start_answer_i[8] : checker_i[16];
+  assign reason_o = acting_q ? {8'd0, reason_q} : state_q == START ? {8'd0, start_answer_i[7:0]} : checker_i[15:0];
+
+  logic act;
+  logic set_q;
+
+  assign act = acting_q && good_q && write;
+  assign setting_o = {set_q, access_i[41:34], data};
+  assign clear_refusal_o = act && refusal_q;
+  assign flush_o = act && flush_q;
+
+  always_ff @(posedge clk_i) begin
+    set_q <= act && kind_q == card_map_pkg::ACCESS_SETTING;
+    clear_fault_o <= act && fault_q ? data : '0;
+    snapshot_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
+    abort_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_ABORT];
+    if (rst_i) begin
+      set_q <= 1'b0;
+      clear_fault_o <= '0;
+      snapshot_o <= 1'b0;
+      abort_o <= 1'b0;
+    end
+  end
 
 endmodule
 `default_nettype wire

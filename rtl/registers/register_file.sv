@@ -1,7 +1,6 @@
 // The card's registers: takes an access, judges it by the register map, acts and answers.
 //
-// An access is {port, write, partial, address, data} and stands still from request_i to ack_o. What a write does goes
-// out in the clock of its ack_o; a flush a clock before, so that its refusal finds the access that asked for it.
+// An access is {port, write, partial, address, data} and stands still from request_i to ack_o.
 // Latencies: docs/developer/architecture.md.
 `default_nettype none
 module register_file #(
@@ -47,156 +46,58 @@ module register_file #(
     input  wire logic [      31:0] chain_i
 );
 
-  logic [ 1:0] asking;
-  logic [31:0] data;
-  logic        judge;
-  logic        act;
+  logic        live;
   logic        sample;
   logic        read;
+  logic        clear_refusal;
   logic        refuse;
-  logic [ 7:0] refuse_reason;
-  logic        live;
-  logic [ 6:0] target;  // {flush, start, stream, refusal, fault, control, setting}
-  logic [ 8:0] verdict;  // {good, reason}
-  logic        writing;
+  logic [15:0] reason;  // {number, reason}
+  logic        snapshot;
   logic        snapshotting;
-
-  assign asking = access_i[47:46];
-  assign data   = access_i[31:0];
-
-  register_access i_access (
-      .clk_i,
-      .rst_i,
-      .request_i,
-      .write_i(access_i[45]),
-      .ack_o,
-      .error_o,
-      .read_o(read),
-      .judge_o(judge),
-      .wait_i((writing || snapshotting) && (access_i[45] || !live)),
-      .verdict_i(verdict),
-      .stream_i(target[4]),
-      .start_i(target[5]),
-      .act_o(act),
-      .sample_o(sample),
-      .stream_write_o,
-      .checker_ready_i(checker_i[17]),
-      .checker_refuse_i(checker_i[16]),
-      .start_o,
-      .start_answer_i,
-      .refuse_o(refuse),
-      .reason_o(refuse_reason)
-  );
-
-  // The stream belongs to a port from a command's first word to its last.
-  logic [1:0] owner_q;
-
-  always_ff @(posedge clk_i) begin
-    if (stream_write_o) owner_q <= asking;
-    if (rst_i) owner_q <= 2'd0;
-  end
-
-  register_decode #(
-      .Axes(Axes),
-      .Engines(Engines)
-  ) i_decode (
-      .clk_i,
-      .judge_i(judge),
-      .access_i(access_i[45:0]),
-      .busy_i(motion_i[1] || (checker_i[18] && owner_q != asking)),
-      .live_o(live),
-      .target_o(target),
-      .verdict_o(verdict)
-  );
-
-  // What a write does, in the clock of its answer.
-  logic set_q;
-  logic snapshot_q;
-  logic control;
-
-  assign control = act && target[1];
-
-  always_ff @(posedge clk_i) begin
-    set_q <= act && target[0];
-    snapshot_q <= control && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
-    abort_o <= control && data[card_map_pkg::BIT_CONTROL_ABORT];
-    clear_fault_o <= act && target[2] ? data : '0;
-    if (rst_i) begin
-      set_q <= 1'b0;
-      snapshot_q <= 1'b0;
-      abort_o <= 1'b0;
-      clear_fault_o <= '0;
-    end
-  end
-
-  assign setting_o = {set_q, access_i[41:34], data};
-  assign flush_o   = act && target[6];
-
-  logic        any_refused;
-  logic        refused;
-  logic [27:0] refused_what;
+  logic [40:0] latched;
+  logic [ 7:0] clocks;
+  logic        writing;
   logic [31:0] live_data;
 
-  refusal_latch #(
-      .Ports(Ports)
-  ) i_refusal (
-      .clk_i,
-      .rst_i,
-      .port_i(asking),
-      .address_i(access_i[43:32]),
-      .clear_i(act && target[3]),
-      .refuse_i(refuse),
-      .reason_i(refuse_reason),
-      .checker_refuse_i(checker_i[16]),
-      .checker_reason_i(checker_i[15:0]),
-      .any_refused_o(any_refused),
-      .refused_o(refused),
-      .refusal_o(refused_what)
+  register_access #(
+      .Axes(Axes),
+      .Engines(Engines)
+  ) i_access (
+      .*,
+      .writing_i(writing || snapshotting),
+      .direct_i(motion_i[1]),
+      .live_o(live),
+      .sample_o(sample),
+      .read_o(read),
+      .clear_refusal_o(clear_refusal),
+      .snapshot_o(snapshot),
+      .refuse_o(refuse),
+      .reason_o(reason)
   );
 
-  register_live i_live (
-      .clk_i,
-      .rst_i,
+  register_live #(
+      .Ports(Ports)
+  ) i_live (
+      .*,
       .setting_i(setting_o),
       .snapshot_i(snapshot_o),
       .sample_i(sample),
-      .word_i(access_i[36:34]),
-      .motion_i,
-      .held_i,
-      .any_refused_i(any_refused),
-      .refused_i(refused),
+      .access_i({access_i[47:46], access_i[43:32]}),
+      .clear_refusal_i(clear_refusal),
+      .refuse_i(refuse),
+      .reason_i(reason),
       .snapshotting_i(snapshotting),
       .incomplete_i(checker_i[18]),
-      .fault_i,
-      .refusal_i(refused_what),
-      .room_i,
-      .begun_i,
-      .status_o,
-      .data_o(live_data),
-      .chain_o,
-      .irq_o
-  );
-
-  logic [40:0] latched;
-  logic [63:0] now;
-
-  time_counter i_time (
-      .clk_i,
-      .rst_i,
-      .time_o(now)
+      .data_o(live_data)
   );
 
   snapshot_writer #(
       .Axes(Axes)
   ) i_snapshot (
-      .clk_i,
-      .rst_i,
-      .host_i  (snapshot_q),
-      .stop_i,
-      .chain_i,
-      .snapshot_o,
+      .*,
+      .host_i  (snapshot),
       .active_o(snapshotting),
-      .time_i  (now),
+      .clocks_o(clocks),
       .store_o (latched)
   );
 
@@ -211,13 +112,10 @@ module register_file #(
   register_ram #(
       .Axes(Axes)
   ) i_ram (
-      .clk_i,
-      .rst_i,
-      .constants_i,
-      .idle_level_i,
+      .*,
       .setting_i(setting_o),
       .snapshot_i(latched),
-      .sweep_i(now[7:0]),
+      .clocks_i(clocks),
       .address_i(loading_q ? loader_address_i : access_i[41:34]),
       .writing_o(writing),
       .data_o(loader_data_o)

@@ -1,30 +1,69 @@
-// STATUS, the registers that read as the card stands, the interrupt, and the far end of the snapshot chain: FAULT and
-// STATUS. data_o is, a clock after sample_i, the live register at word_i; three bits tell the live registers apart.
+// The registers that read as the card stands, STATUS and REFUSAL among them, the interrupt, and the far end of the
+// snapshot chain: FAULT and STATUS. data_o is, a clock after sample_i, the live register that is read; three bits of its
+// address tell the live registers apart.
+//
+// Each port has a REFUSAL of its own, which keeps the port's first refusal until the port clears it. Refusals and clears
+// never meet: one access is carried through at a time.
 `default_nettype none
-module register_live (
+module register_live #(
+    parameter int Ports = 1  // 1 to 4
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic [40:0] setting_i,
-    input  wire logic [ 1:0] snapshot_i,      // {shift, strobe}
+    input  wire logic [ 1:0] snapshot_i,       // {shift, strobe}
     input  wire logic        sample_i,
-    input  wire logic [ 4:2] word_i,
+    input  wire logic [13:0] access_i,         // {port, address}
+    // refusals
+    input  wire logic        clear_refusal_i,
+    input  wire logic        refuse_i,
+    input  wire logic [15:0] reason_i,         // {number, reason}
     // STATUS
-    input  wire logic [ 5:0] motion_i,        // {stopping, ended, feed active, path active, direct, busy}
+    input  wire logic [ 5:0] motion_i,         // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic        held_i,
-    input  wire logic        any_refused_i,
-    input  wire logic        refused_i,       // of the port that asks
     input  wire logic        snapshotting_i,
     input  wire logic        incomplete_i,
     // the other live registers
     input  wire logic [31:0] fault_i,
-    input  wire logic [27:0] refusal_i,
-    input  wire logic [31:0] room_i,          // {geometry, feed}
-    input  wire logic [63:0] begun_i,         // {geometry, feed}
-    output logic      [31:0] status_o,        // combinational; refused is any port's
+    input  wire logic [31:0] room_i,           // {geometry, feed}
+    input  wire logic [63:0] begun_i,          // {geometry, feed}
+    output logic      [31:0] status_o,         // combinational; refused is any port's
     output logic      [31:0] data_o,
     output logic      [31:0] chain_o,
     output logic             irq_o
 );
+
+  logic [  3:0] refused;
+  logic [111:0] refusal;
+
+  for (genvar p = 0; p < 4; p++) begin : gen_port
+    if (p < Ports) begin : gen_refusal
+      logic        refused_q;
+      logic [27:0] refusal_q;
+
+      always_ff @(posedge clk_i) begin
+        if (access_i[13:12] == 2'(p)) begin
+          if (refuse_i && !refused_q) begin
+            refused_q <= 1'b1;
+            refusal_q <= {access_i[11:0], reason_i};
+          end else if (clear_refusal_i) begin
+            refused_q <= 1'b0;
+            refusal_q <= '0;
+          end
+        end
+        if (rst_i) begin
+          refused_q <= 1'b0;
+          refusal_q <= '0;
+        end
+      end
+
+      assign refused[p] = refused_q;
+      assign refusal[28*p+:28] = refusal_q;
+    end else begin : gen_absent
+      assign refused[p] = 1'b0;
+      assign refusal[28*p+:28] = '0;
+    end
+  end
 
   assign status_o = 32'(motion_i[0]) << card_map_pkg::BIT_STATUS_BUSY |
       32'(motion_i[1]) << card_map_pkg::BIT_STATUS_DIRECT |
@@ -33,20 +72,20 @@ module register_live (
       32'(held_i) << card_map_pkg::BIT_STATUS_HELD |
       32'(motion_i[4]) << card_map_pkg::BIT_STATUS_ENDED |
       32'(fault_i != 32'd0) << card_map_pkg::BIT_STATUS_FAULTED |
-      32'(any_refused_i) << card_map_pkg::BIT_STATUS_REFUSED |
+      32'(refused != '0) << card_map_pkg::BIT_STATUS_REFUSED |
       32'(snapshotting_i) << card_map_pkg::BIT_STATUS_SNAPSHOT |
       32'(incomplete_i) << card_map_pkg::BIT_STATUS_INCOMPLETE |
       32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin
-      case (word_i)
+      case (access_i[4:2])
         card_map_pkg::ADDR_STATUS[4:2]: begin
           data_o <= status_o;
-          data_o[card_map_pkg::BIT_STATUS_REFUSED] <= refused_i;
+          data_o[card_map_pkg::BIT_STATUS_REFUSED] <= refused[access_i[13:12]];
         end
         card_map_pkg::ADDR_FAULT[4:2]: data_o <= fault_i;
-        card_map_pkg::ADDR_REFUSAL[4:2]: data_o <= {4'd0, refusal_i};
+        card_map_pkg::ADDR_REFUSAL[4:2]: data_o <= {4'd0, refusal[28*access_i[13:12]+:28]};
         card_map_pkg::ADDR_GEOMETRY_ROOM[4:2]: data_o <= {16'd0, room_i[31:16]};
         card_map_pkg::ADDR_FEED_ROOM[4:2]: data_o <= {16'd0, room_i[15:0]};
         card_map_pkg::ADDR_GEOMETRY_BEGUN[4:2]: data_o <= begun_i[63:32];
@@ -71,8 +110,7 @@ module register_live (
   snapshot_slice #(
       .Width(16)
   ) i_fault (
-      .clk_i,
-      .snapshot_i,
+      .*,
       .value_i(fault_i[15:0]),
       .chain_i(32'd0),
       .chain_o(chain)
@@ -81,11 +119,9 @@ module register_live (
   snapshot_slice #(
       .Width(18)
   ) i_status (
-      .clk_i,
-      .snapshot_i,
+      .*,
       .value_i(status_o[17:0] & ~(18'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
-      .chain_i(chain),
-      .chain_o
+      .chain_i(chain)
   );
 
 endmodule

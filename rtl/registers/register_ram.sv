@@ -13,7 +13,7 @@ module register_ram #(
     input  wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
     input  wire logic [      40:0] setting_i,     // {write, address, data}
     input  wire logic [      40:0] snapshot_i,
-    input  wire logic [       7:0] sweep_i,       // low byte of the time counter
+    input  wire logic [       7:0] clocks_i,      // since reset, the low byte
     input  wire logic [       7:0] address_i,
     output logic                   writing_o,
     output logic      [      31:0] data_o
@@ -31,7 +31,7 @@ module register_ram #(
   logic [31:0] store_data_q;
 
   always_ff @(posedge clk_i) begin
-    if (sweep_i == LAST_SWEPT) resetting_q <= 1'b0;
+    if (clocks_i == LAST_SWEPT) resetting_q <= 1'b0;
     if (rst_i) resetting_q <= 1'b1;
   end
 
@@ -45,7 +45,7 @@ module register_ram #(
     swept = '0;
     reset_value = '0;
     if (resetting_q) begin
-      swept = sweep_i;
+      swept = clocks_i;
       reset_value = card_map_pkg::register_reset({2'b00, swept});
       if (swept < 8'd16) reset_value = reset_value | constants_i[32*swept[3:0]+:32];
       first_inverted  = 8'(idle_level_i[Axes-1:0]);

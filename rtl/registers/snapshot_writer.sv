@@ -2,8 +2,8 @@
 // whoever asked, a word a clock.
 //
 // The strobe is given in the clock after the request. The words follow two clocks later, the time first: an access that
-// was let through just before a stop's request has written its setting by then. A stop's request goes before the host's and breaks into
-// its snapshot, which is then taken anew.
+// was let through just before a stop's request has written its setting by then. A stop's request goes before the host's
+// and breaks into its snapshot, which is then taken anew.
 // The chain's words go down from the last position; the words below the time follow those above it.
 `default_nettype none
 module snapshot_writer #(
@@ -13,10 +13,10 @@ module snapshot_writer #(
     input  wire logic        rst_i,
     input  wire logic        host_i,      // events: a snapshot is wanted
     input  wire logic        stop_i,
-    input  wire logic [63:0] time_i,      // two clocks old, the high word three
     input  wire logic [31:0] chain_i,
     output logic      [ 1:0] snapshot_o,  // {shift, strobe}
     output logic             active_o,    // from the strobe until the last word is in the RAM
+    output logic      [ 7:0] clocks_o,    // since reset, two clocks late: the low byte
     output logic      [40:0] store_o      // {write, address, data}, combinational; 0 when there is nothing to write
 );
 
@@ -26,6 +26,21 @@ module snapshot_writer #(
   localparam logic [3:0] TIME_LO = card_map_pkg::IN_AREA_TIME_LO[5:2];
   localparam logic [3:0] FIRST_POSITION = card_map_pkg::IN_AREA_POSITION[5:2];
   localparam logic [3:0] LAST_POSITION = FIRST_POSITION + 4'(Axes - 1);
+
+  // Clocks since reset as they are written down: two clocks late, the high word three.
+  logic        carry_q;
+  logic [63:0] time_q;
+
+  assign clocks_o = time_q[7:0];
+
+  always_ff @(posedge clk_i) begin
+    if (carry_q) time_q[63:32] <= time_q[63:32] + 32'd1;
+    {carry_q, time_q[31:0]} <= {1'b0, time_q[31:0]} + 33'd1;
+    if (rst_i) begin
+      carry_q <= 1'b0;
+      time_q  <= -64'd2;
+    end
+  end
 
   logic       host_q;  // the host's request is not served yet
   logic       for_stop_q;
@@ -82,7 +97,7 @@ module snapshot_writer #(
   logic [31:0] data;
 
   assign area = for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6];
-  assign data = word_q == TIME_LO ? time_i[31:0] : word_q == TIME_HI ? time_i[63:32] : chain_i;
+  assign data = word_q == TIME_LO ? time_q[31:0] : word_q == TIME_HI ? time_q[63:32] : chain_i;
   assign store_o = write_q ? {1'b1, area, word_q, data} : '0;
 
 endmodule

@@ -203,11 +203,8 @@ module feed_generator (
   assign rate_o = slope_high_q;
 
   snapshot_slice rate (
-      .clk_i,
-      .snapshot_i,
-      .value_i(rate_o),
-      .chain_i,
-      .chain_o
+      .*,
+      .value_i(rate_o)
   );
 endmodule
 

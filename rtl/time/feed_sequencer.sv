@@ -26,64 +26,35 @@ module feed_sequencer (
     output logic      [31:0] chain_o,
     output logic      [31:0] begun_o
 );
-  logic        piece;
-  logic        is_barrier;
-  logic        valid;
-  logic        swap;
-  logic        last;
-  logic [39:0] count;
-  logic        mid_zero;
-  logic        top_zero;
+  logic piece;
+  logic is_barrier;
+  logic valid;
+  logic swap;
+  logic last;
 
   assign swap   = valid && piece && (!active_o || (take_i && last));
   assign runs_o = active_o || (valid && piece);
 
   feed_decoder decoder (
-      .clk_i,
-      .rst_i,
-      .cut_i,
+      .*,
       .pop_i    (swap || barrier_done_i),
       .active_i (active_o),
-      .empty_i,
-      .word_i,
-      .read_o,
-      .load_o,
       .piece_o  (piece),
       .barrier_o(is_barrier),
-      .idle_o,
       .valid_o  (valid)
   );
 
-  count_chain next_count (
-      .clk_i,
-      .load_i    (load_o[19] && load_o[18:16] == load_target_pkg::FEED_TICKS),
-      .word_i    (load_o[15:0]),
-      .count_o   (count),
-      .mid_zero_o(mid_zero),
-      .top_zero_o(top_zero),
-      .zero_o    ()
-  );
-
   tick_counter ticks (
-      .clk_i,
-      .rst_i,
-      .load_i    (swap),
-      .count_i   (count),
-      .mid_zero_i(mid_zero),
-      .top_zero_i(top_zero),
-      .take_i,
-      .last_o    (last)
+      .*,
+      .next_i({load_o[19] && load_o[18:16] == load_target_pkg::FEED_TICKS, load_o[15:0]}),
+      .zero_o(),
+      .load_i(swap),
+      .last_o(last)
   );
 
   begun_counter begun (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .begin_i(swap_o || barrier_begin_i),
-      .snapshot_i,
-      .chain_i,
-      .chain_o,
-      .begun_o
+      .*,
+      .begin_i(swap_o || barrier_begin_i)
   );
 
   always_ff @(posedge clk_i) begin

@@ -46,66 +46,35 @@ module tick_source (
   assign idle_o = decoder_idle && empty_i && !active_o;
 
   time_base base (
-      .clk_i,
-      .rst_i,
-      .setting_i,
-      .hold_i,
-      .snapshot_i,
-      .chain_i,
+      .*,
       .chain_o (ratio_chain),
-      .enable_o(enable),
-      .ratio_o
+      .enable_o(enable)
   );
 
   feed_sequencer pieces (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .empty_i,
-      .word_i,
-      .read_o,
+      .*,
       .take_i (take_o),
-      .barrier_begin_i,
-      .barrier_done_i,
-      .at_barrier_o,
-      .runs_o,
-      .active_o,
       .idle_o (decoder_idle),
-      .swap_o,
       .load_o (load),
-      .snapshot_i,
-      .chain_i(rate_chain),
-      .chain_o,
-      .begun_o
+      .chain_i(rate_chain)
   );
 
   feed_generator generator (
-      .clk_i,
-      .rst_i,
+      .*,
       .clear_i (feed_clear),
       .enable_i(feed_enable),
       .load_i  (load),
       .swap_i  (swap_o),
-      .snapshot_i,
       .chain_i (ratio_chain),
       .chain_o (rate_chain),
-      .tick_o  (feed_tick),
-      .rate_o
+      .tick_o  (feed_tick)
   );
 
   tick_gate gate (
-      .clk_i,
-      .rst_i,
-      .cut_i,
-      .go_i,
+      .*,
       .enable_i     (enable),
       .feed_tick_i  (feed_tick),
       .feed_active_i(active_o),
-      .direct_i,
-      .taking_i,
-      .ready_i,
-      .take_o,
-      .tick_o,
       .feed_enable_o(feed_enable),
       .feed_clear_o (feed_clear)
   );

@@ -86,11 +86,8 @@ module time_base (
   snapshot_slice #(
       .Width(18)
   ) ratio (
-      .clk_i,
-      .snapshot_i,
-      .value_i({1'b0, ratio_o}),
-      .chain_i,
-      .chain_o
+      .*,
+      .value_i({1'b0, ratio_o})
   );
 
   logic unused;

@@ -38,8 +38,7 @@ class Bench {
     rtl_->flush_i = in.flush;
     rtl_->clear_i = in.clear;
     rtl_->closed_i = in.closed;
-    rtl_->geometry_room_i = in.geometry_room;
-    rtl_->feed_room_i = in.feed_room;
+    rtl_->room_i = std::uint32_t{in.geometry_room} << 16 | in.feed_room;
     if (in.write) checker_.event("write", in.word);
     if (in.flush) checker_.event("flush");
     if (in.clear) checker_.event("clear");
@@ -58,17 +57,17 @@ class Bench {
 
  private:
   void compare(const CommandChecker::Outputs& model) {
-    checker_.compare("ready_o", rtl_->ready_o, model.ready);
+    checker_.compare("ready", rtl_->answer_o >> 17 & 1U, model.ready);
     checker_.compare("halfword_o", rtl_->halfword_o, model.halfword);
-    checker_.compare("geometry_write_o", rtl_->geometry_write_o, model.geometry_write);
-    checker_.compare("feed_write_o", rtl_->feed_write_o, model.feed_write);
-    checker_.compare("geometry_commit_o", rtl_->geometry_commit_o, model.geometry_commit);
-    checker_.compare("feed_commit_o", rtl_->feed_commit_o, model.feed_commit);
+    checker_.compare("geometry_o, write", rtl_->geometry_o & 1U, model.geometry_write);
+    checker_.compare("feed_o, write", rtl_->feed_o & 1U, model.feed_write);
+    checker_.compare("geometry_o, commit", rtl_->geometry_o >> 1, model.geometry_commit);
+    checker_.compare("feed_o, commit", rtl_->feed_o >> 1, model.feed_commit);
     checker_.compare("drop_o", rtl_->drop_o, model.drop);
-    checker_.compare("refuse_o", rtl_->refuse_o, model.refuse);
-    checker_.compare("reason_o", rtl_->reason_o, model.reason);
-    checker_.compare("number_o", rtl_->number_o, model.number);
-    checker_.compare("partial_o", rtl_->partial_o, model.partial);
+    checker_.compare("refuse", rtl_->answer_o >> 16 & 1U, model.refuse);
+    checker_.compare("reason", rtl_->answer_o & 0xFFU, model.reason);
+    checker_.compare("number", rtl_->answer_o >> 8 & 0xFFU, model.number);
+    checker_.compare("partial", rtl_->answer_o >> 18, model.partial);
   }
 
   Checker checker_;

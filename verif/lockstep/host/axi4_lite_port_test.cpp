@@ -106,18 +106,18 @@ class Bench {
     checker_.compare("arready_o", rtl_->arready_o, out.arready);
     checker_.compare("bvalid_o", rtl_->bvalid_o, out.bvalid);
     checker_.compare("rvalid_o", rtl_->rvalid_o, out.rvalid);
-    checker_.compare("request_o", rtl_->request_o, out.request);
+    checker_.compare("request_o", rtl_->access_o >> 47, out.request);
     if (out.bvalid) checker_.compare("bresp_o", rtl_->bresp_o, out.bresp);
     if (out.rvalid) {
       checker_.compare("rresp_o", rtl_->rresp_o, out.rresp);
       checker_.compare("rdata_o", rtl_->rdata_o, out.rdata);
     }
     if (!out.request) return;
-    checker_.compare("write_o", rtl_->write_o, out.write);
-    checker_.compare("address_o", rtl_->address_o, out.address);
+    checker_.compare("write_o", rtl_->access_o >> 46 & 1U, out.write);
+    checker_.compare("address_o", rtl_->access_o >> 32 & 0xFFFU, out.address);
     if (!out.write) return;
-    checker_.compare("partial_o", rtl_->partial_o, out.partial);
-    checker_.compare("data_o", rtl_->data_o, out.data);
+    checker_.compare("partial_o", rtl_->access_o >> 45 & 1U, out.partial);
+    checker_.compare("data_o", rtl_->access_o & 0xFFFFFFFFU, out.data);
   }
 
   struct Handshake {

@@ -7,7 +7,6 @@ module counters (
     // count of the next path
     input  wire logic        load_i,
     input  wire logic [15:0] word_i,
-    output logic      [39:0] count_o,
     output logic             zero_o,
     // ticks
     input  wire logic        swap_i,
@@ -21,26 +20,12 @@ module counters (
     output logic      [31:0] chain_o,
     output logic      [31:0] begun_o
 );
-  logic mid_zero;
-  logic top_zero;
-
-  count_chain next_count (
-      .clk_i,
-      .load_i,
-      .word_i,
-      .count_o,
-      .mid_zero_o(mid_zero),
-      .top_zero_o(top_zero),
-      .zero_o
-  );
-
   tick_counter ticks (
       .clk_i,
       .rst_i,
-      .load_i    (swap_i),
-      .count_i   (count_o),
-      .mid_zero_i(mid_zero),
-      .top_zero_i(top_zero),
+      .next_i({load_i, word_i}),
+      .zero_o,
+      .load_i(swap_i),
       .take_i,
       .last_o
   );
