@@ -184,7 +184,7 @@ inline void Traffic::disturb() {
       host_.write(reg::kFault, static_cast<std::uint32_t>(below(1U << 16)));
       break;
     case 6:
-      host_.write(reg::kRefusal, 1);
+      host_.write(reg::kRefusal, static_cast<std::uint32_t>(below(2)));
       break;
     case 7:
       abort();

@@ -201,8 +201,9 @@ class Bench {
     in_.port = static_cast<std::uint8_t>(draw() % kPorts);
     in_.address = random_address();
     in_.data = random_data(in_.address);
-    // Refusals are cleared often, or there would be no first one; snapshots are asked for often.
-    if (chance(5)) write_register(reg::kRefusal, ~0U);
+    // Refusals are cleared often, or there would be no first one (a write of 0 clears nothing); snapshots are asked for
+    // often.
+    if (chance(5)) write_register(reg::kRefusal, chance(3) ? 0 : 1U << draw() % 28);
     if (chance(20)) write_register(reg::kControl, card_map::field::kControlSnapshot);
     checker_.event(in_.write ? "write" : "read", in_.address);
   }
