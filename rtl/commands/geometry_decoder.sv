@@ -5,8 +5,8 @@
 `default_nettype none
 
 module geometry_decoder #(
-    parameter int Axes        = 4,
-    parameter bit Accumulator = 1
+    parameter int          Axes    = 4,
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
     input  wire logic            clk_i,
     input  wire logic            rst_i,
@@ -20,8 +20,7 @@ module geometry_decoder #(
     output logic      [    21:0] load_o,
     // the decoded command
     output logic      [Axes-1:0] mask_o,
-    output logic                 line_o,
-    output logic                 arc_o,
+    output logic      [     4:0] engine_o,         // what a path runs on, by its bit of ENGINES
     output logic                 barrier_o,
     output logic                 end_o,
     output logic                 idle_o,
@@ -42,7 +41,7 @@ module geometry_decoder #(
   logic       at_prescaler;
   logic [7:0] rest_q;  // axes of the mask whose increments are still to come
 
-  assign is_arc  = Accumulator && opcode == card_map_pkg::OP_ARC;
+  assign is_arc  = Engines[card_map_pkg::ENGINE_ACCUMULATOR] && opcode == card_map_pkg::OP_ARC;
   assign is_line = opcode == card_map_pkg::OP_LINE;
   assign mask_o  = mask[Axes-1:0];
 
@@ -103,8 +102,7 @@ module geometry_decoder #(
     load_o[20:16] <= direct_load_i[21] ? direct_load_i[20:16] : strobe[6] ? load_target_pkg::TICKS : strobe[4:0];
     load_o[15:0]  <= direct_load_i[21] ? direct_load_i[15:0] : word_i;
 
-    line_o        <= is_line;
-    arc_o         <= is_arc;
+    engine_o      <= 5'(is_arc ? card_map_pkg::ENGINE_ACCUMULATOR : card_map_pkg::ENGINE_LINES);
     barrier_o     <= !is_line && !is_arc;
     end_o         <= opcode == card_map_pkg::OP_END;
   end

@@ -1,17 +1,18 @@
 // Golden model of the path engines: what stands between the tick of the card (feed domain) and the axes.
 //
 // Feed ticks and swaps leave 3 clocks later as path ticks and swaps: as long as the prescaler takes, so that a path on
-// prescaled ticks and a line after it keep their order. On engine 1 (accumulator) the prescaler, a pulse generator,
-// makes path ticks from feed ticks; they wait until the accumulator can take them. Its steps leave by axis.
+// prescaled ticks and a line after it keep their order. On another engine than lines the prescaler, a pulse generator,
+// makes path ticks from feed ticks; they wait until the engine can take them. Its steps leave by axis.
 //
 // From a tick at c: path domain at c+3; the accumulator's tick at c+5 at the earliest, its step at c+8 by axis.
 // `done`: no tick is in the 3 clocks, no path tick waits and the accumulator has finished the last one; a clock late.
-// `payload_ready`: as that for ticks of engine 1 alone, but from the 6th clock after the accumulator's tick on: a load
+// `payload_ready`: as that for an engine's ticks alone, but from the 6th clock after the accumulator's tick on: a load
 // that is asked for then comes after the tick is finished. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
 
+#include "trammel/card_map.hpp"
 #include "trammel/model/buses.hpp"
 #include "trammel/model/deviation_accumulator.hpp"
 #include "trammel/model/pulse_generator.hpp"
@@ -24,8 +25,8 @@ class PathEngines {
     bool cut = false;
     bool tick = false;  // feed domain
     bool swap = false;
-    bool accumulator = false;  // engine, sampled with swap: 0 lines, 1 accumulator
-    bool start = false;        // with swap: the accumulator's state is loaded
+    // Sampled with swap: what the path runs on, by its bit of ENGINES; the state of one that is not lines is loaded.
+    std::uint8_t engine = card_map::engine::kLines;
     LoadWord load;
   };
   struct Outputs {
@@ -47,10 +48,11 @@ class PathEngines {
   void clock(const Inputs& in) {
     const DeviationAccumulator::Outputs engine = accumulator_.outputs();
     judge(in, engine);
+    const bool start = in.swap && in.engine == card_map::engine::kAccumulator;
     const bool commanded = in.cut || in.load.valid || clock_all_;
     if (commanded || out_.step != 0 || !accumulator_.quiet()) route(in.load, engine);
-    if (commanded || in.start || out_.path_tick || !accumulator_.quiet())
-      accumulator_.clock({false, in.load, in.start, out_.path_tick, in.cut});
+    if (commanded || start || out_.path_tick || !accumulator_.quiet())
+      accumulator_.clock({false, in.load, start, out_.path_tick, in.cut});
     give(in.cut, engine.ready);
     if (commanded || in.tick || in.swap || !prescaler_.quiet()) clock_prescaler(in);
     delay(in);
@@ -90,6 +92,8 @@ class PathEngines {
   static constexpr unsigned kDelay = 3;   // feed domain to path domain
   static constexpr unsigned kAlmost = 4;  // clocks after the accumulator's tick in which no load may be asked for
 
+  static bool on_engine(const Inputs& in) { return in.engine != card_map::engine::kLines; }
+
   // What the sequencer may know of it, a clock late.
   void judge(const Inputs& in, const DeviationAccumulator::Outputs& engine) {
     const bool feed_ticks = in.tick || ticks_ != 0;
@@ -101,7 +105,7 @@ class PathEngines {
       almost_ = kAlmost;
     else if (almost_ != 0)
       --almost_;
-    if (in.swap) prescaled_ = in.accumulator;
+    if (in.swap) prescaled_ = on_engine(in);
     if (in.cut) {
       almost_ = 0;
       prescaled_ = false;
@@ -128,7 +132,7 @@ class PathEngines {
   }
 
   void clock_prescaler(const Inputs& in) {
-    prescaler_.clock({in.cut, in.tick, in.swap, in.accumulator, false, false, in.load.to(load_target::kPrescale), false,
+    prescaler_.clock({in.cut, in.tick, in.swap, on_engine(in), false, false, in.load.to(load_target::kPrescale), false,
                       in.load.word});
   }
 
@@ -146,7 +150,7 @@ class PathEngines {
   std::uint32_t swaps_ = 0;
   std::uint32_t waiting_ = 0;  // path ticks
   unsigned almost_ = 0;
-  bool prescaled_ = false;  // the path swapped in last runs on the accumulator
+  bool prescaled_ = false;  // the path swapped in last runs on an engine
   unsigned axis_x_ = 0;
   unsigned axis_y_ = 0;
   Outputs out_;
