@@ -1,6 +1,7 @@
 #include "trammel/model/command_fetch.hpp"
 
 #include <array>
+#include <initializer_list>
 #include <string_view>
 #include <utility>
 
@@ -14,50 +15,58 @@ constexpr int kHeader = 4;  // halfwords before the payload, as they are stored
 constexpr int kMostPayload = 64;
 constexpr int kEndless = 1 << 20;
 
-// Where the halfwords of an arc or a feed piece go, and the first one that waits.
+// Where the halfwords of a payload go, and the first one that waits.
 struct Layout {
   std::array<std::uint8_t, kMostPayload> targets{};
   int pause_at = kEndless;
 };
 
-Layout layout_of(Opcode opcode, const std::pair<std::string_view, unsigned>* names, std::size_t count,
-                 std::string_view waits) {
+using Names = std::initializer_list<std::pair<std::string_view, unsigned>>;
+
+Layout layout_of(Opcode opcode, const Names& names, std::string_view waits) {
   Layout layout;
   layout.targets.fill(load_target::kNowhere);
   const card_map::Command& command = *card_map::find_command(static_cast<std::uint8_t>(opcode));
   for (std::size_t i = 0; i < command.field_count; ++i) {
     const card_map::Field& field = command.fields[i];
     if (field.name == waits) layout.pause_at = kHeader + static_cast<int>(field.offset);
-    for (std::size_t n = 0; n < count; ++n) {
-      if (field.name != names[n].first) continue;
+    for (const auto& [name, target] : names) {
+      if (field.name != name) continue;
       for (std::size_t k = 0; k < field.halfwords; ++k)
-        layout.targets[field.offset + k] = static_cast<std::uint8_t>(names[n].second);
+        layout.targets[field.offset + k] = static_cast<std::uint8_t>(target);
     }
   }
   return layout;
 }
 
-Layout arc_layout() {
-  using namespace load_target;
-  constexpr std::pair<std::string_view, unsigned> kNames[] = {
-      {"prescale", kPrescale},   {"deviation", kDeviation}, {"gradient_x", kGradientX}, {"gradient_y", kGradientY},
-      {"half_x", kHalfX},        {"half_y", kHalfY},        {"end_x", kEndX},           {"end_y", kEndY},
-      {"quadrants", kQuadrants}, {"plane", kPlane}};
-  return layout_of(Opcode::Arc, kNames, std::size(kNames), "plane");
+// By opcode, of what a card can be built with; the others have no payload, or a line's.
+std::array<Layout, 256> all_layouts() {
+  namespace path = load_target;
+  namespace feed = feed_target;
+  std::array<Layout, 256> all;
+  all[static_cast<std::uint8_t>(Opcode::Arc)] = layout_of(Opcode::Arc,
+                                                          {{"prescale", path::kPrescale},
+                                                           {"plane", path::kPlane},
+                                                           {"quadrants", path::kQuadrants},
+                                                           {"end_x", path::kEndX},
+                                                           {"end_y", path::kEndY},
+                                                           {"deviation", path::kDeviation},
+                                                           {"gradient_x", path::kGradientX},
+                                                           {"gradient_y", path::kGradientY},
+                                                           {"half_x", path::kHalfX},
+                                                           {"half_y", path::kHalfY}},
+                                                          "plane");
+  all[static_cast<std::uint8_t>(Opcode::Feed)] = layout_of(Opcode::Feed,
+                                                           {{"rate", feed::kRate},
+                                                            {"floor", feed::kFloor},
+                                                            {"stop_distance", feed::kStopDistance},
+                                                            {"acceleration", feed::kAcceleration},
+                                                            {"jerk", feed::kJerk}},
+                                                           "acceleration");
+  return all;
 }
 
-Layout feed_layout() {
-  using namespace feed_target;
-  constexpr std::pair<std::string_view, unsigned> kNames[] = {{"rate", kRate},
-                                                              {"floor", kFloor},
-                                                              {"stop_distance", kStopDistance},
-                                                              {"acceleration", kAcceleration},
-                                                              {"jerk", kJerk}};
-  return layout_of(Opcode::Feed, kNames, std::size(kNames), "acceleration");
-}
-
-const Layout kArc = arc_layout();
-const Layout kFeed = feed_layout();
+const std::array<Layout, 256> kLayouts = all_layouts();
 
 }  // namespace
 
@@ -66,7 +75,7 @@ unsigned CommandFetch::target_of(int index) const {
   if (index < kHeader) return ticks;
   const auto payload = static_cast<std::size_t>(index - kHeader);
   if (opcode_ == Opcode::Line) return load_target::kIncrement + axes_[payload / 3];
-  return (opcode_ == Opcode::Arc ? kArc : kFeed).targets[payload];
+  return kLayouts[static_cast<std::uint8_t>(opcode_)].targets[payload];
 }
 
 // The first halfword says how long the command is and which axes a line moves.
@@ -80,7 +89,8 @@ void CommandFetch::arrive(int index, std::uint16_t halfword) {
   mask_ = static_cast<std::uint8_t>(halfword >> 8);
   const card_map::Command* command = card_map::find_command(static_cast<std::uint8_t>(opcode_));
   length_ = command != nullptr ? static_cast<int>(card_map::queue_halfwords(*command, mask_)) : kHeader;
-  pause_at_ = is_arc() ? kArc.pause_at : is_feed() ? kFeed.pause_at : kEndless;
+  pause_at_ = kLayouts[static_cast<std::uint8_t>(opcode_)].pause_at;
+  engine_ = static_cast<std::uint8_t>(is_path() ? command->engine : card_map::engine::kLines);
   std::size_t count = 0;
   for (unsigned axis = 0; axis < 8; ++axis) {
     if ((mask_ >> axis & 1) != 0) axes_[count++] = static_cast<std::uint8_t>(axis);

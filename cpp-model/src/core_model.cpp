@@ -12,6 +12,9 @@ constexpr int kAwake = 2;
 const CardConfig& checked(const CardConfig& config) {
   if (config.axes < 1 || config.axes > CoreModel::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   if (config.ports < 1 || config.ports > 4) throw std::invalid_argument("a card has 1 to 4 ports");
+  constexpr std::uint32_t kLeast = RegisterFile::kLeastEngines;
+  if ((config.engines & kLeast) != kLeast || (config.engines & ~RegisterFile::kMostEngines) != 0)
+    throw std::invalid_argument("no card has these engines");
   return config;
 }
 
@@ -21,7 +24,7 @@ RegisterFile::Config register_config(const CardConfig& config) {
   result.geometry_depth = config.geometry_depth;
   result.feed_depth = config.feed_depth;
   result.clock_hz = config.clock_hz;
-  result.engines = RegisterFile::engines(config.accumulator, config.direct_mode);
+  result.engines = config.engines;
   result.build_id = config.build_id;
   result.build_dirty = config.build_dirty;
   result.board_id = config.board_id;

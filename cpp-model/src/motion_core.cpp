@@ -57,7 +57,7 @@ void MotionCore::clock(const Inputs& in) {
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
   wait_timer_.clock(in.setting);
-  engines_.clock({stop.cut, s.tick, s.swap, s.accumulator, s.arc_start, sequencer_.load()});
+  engines_.clock({stop.cut, s.tick, s.swap, s.engine, sequencer_.load()});
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
   time_base_.clock({stop.hold, in.setting});
   sequencer_.clock(sequencer_in);

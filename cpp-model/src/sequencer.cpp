@@ -4,10 +4,10 @@
 
 namespace trammel::model {
 
-// An arc or a direct move whose last tick was taken.
+// A path on an engine or a direct move whose last tick was taken.
 bool Sequencer::judged(const Inputs& in) const {
   if (!drained_) return false;
-  if (path_ == Path::Arc) return now_ >= drained_at_ + kArcJudged && in.engine_done;
+  if (path_ == Path::Engine) return now_ >= drained_at_ + kEngineJudged && in.engine_done;
   return now_ >= drained_at_ + kDirectJudged && !in.axes_live;
 }
 
@@ -31,8 +31,8 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.barrier_ends = barrier_ == Barrier::Running && in.go && now_ == barrier_at_;
   d.barrier_done = barrier_ == Barrier::Done;
   d.piece_runs = out_.feed_active;
-  // The accumulator's state is in use until the arc's last feed tick has reached the path engines.
-  d.payload_ready = in.payload_ready && (path_ != Path::Arc || (drained_ && now_ >= drained_at_ + kArcJudged));
+  // An engine's state is in use until its path's last feed tick has reached it.
+  d.payload_ready = in.payload_ready && (path_ != Path::Engine || (drained_ && now_ >= drained_at_ + kEngineJudged));
   return d;
 }
 
@@ -40,7 +40,7 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
 bool Sequencer::mismatches(const Inputs& in) const {
   const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
   const bool piece_waits = feed_.decoded() && feed_.is_feed();
-  const bool path_ticks = (path_ == Path::Line || path_ == Path::Arc) && !drained_;
+  const bool path_ticks = (path_ == Path::Line || path_ == Path::Engine) && !drained_;
   const bool geometry_alone = geometry_stands_ && (out_.feed_active || piece_waits);
   const bool feed_alone = feed_stands_ && (path_ticks || path_waits);
   return (geometry_alone || feed_alone) && in.go && barrier_ != Barrier::Done;
@@ -72,7 +72,7 @@ void Sequencer::clock_all(const Inputs& in) {
   out_.idle = geometry_idle_ && feed_idle && in.feed_empty && !out_.feed_active;
   geometry_idle_ = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
   out_.mismatch = mismatch;
-  out_.incomplete = d.path_over && path_ == Path::Arc && in.elsewhere;
+  out_.incomplete = d.path_over && path_ == Path::Engine && in.elsewhere;
   record_ = {d.path_begins || d.barrier_begins, in.direct_go};
   count_begun(in, d);
   clock_ticks(in, d.take);
@@ -141,14 +141,14 @@ void Sequencer::clock_barrier(const Inputs& in, const Decision& d) {
 
 void Sequencer::clock_path(const Inputs& in, const Decision& d) {
   out_.swap = d.path_begins || in.direct_go;
-  out_.arc_start = d.path_begins && geometry_.is_arc();
   if (d.take) --path_left_;
   if (out_.swap) {
-    path_ = in.direct_go ? Path::Direct : geometry_.is_arc() ? Path::Arc : Path::Line;
+    out_.engine = in.direct_go ? card_map::engine::kLines : geometry_.engine();
+    const bool on_lines = out_.engine == card_map::engine::kLines;
+    path_ = in.direct_go ? Path::Direct : on_lines ? Path::Line : Path::Engine;
     path_left_ = path_count_ & kCountMask;
     drained_ = false;
-    out_.active = in.direct_go ? in.direct_mask : geometry_.is_arc() ? 0 : geometry_.mask();
-    out_.accumulator = path_ == Path::Arc;
+    out_.active = in.direct_go ? in.direct_mask : on_lines ? geometry_.mask() : 0;
   } else if (d.path_ends && path_ != Path::Line) {
     drained_ = true;
     drained_at_ = now_;
@@ -183,12 +183,12 @@ bool Sequencer::settled(const Inputs& in) const {
 
 // With inputs as these nothing is decided but ticks, and a dwell's end.
 bool Sequencer::calm(const Inputs& in) const {
-  const bool nothing_shows = !(out_.swap || out_.feed_swap || out_.arc_start || out_.mismatch || out_.incomplete) &&
+  const bool nothing_shows = !(out_.swap || out_.feed_swap || out_.mismatch || out_.incomplete) &&
                              !(path_begun_ || piece_begun_ || cut_before_ || in.cut || in.direct_go) &&
                              !(load_.valid || in.direct_load.valid || record_.command || record_.direct);
   if (!nothing_shows || drained_ || path_ == Path::Direct || !(geometry_.quiet() && feed_.quiet())) return false;
   if ((geometry_.idle() && !in.geometry_empty) || (feed_.idle() && !in.feed_empty)) return false;
-  if (geometry_.waiting() && path_ != Path::Arc) return false;
+  if (geometry_.waiting() && path_ != Path::Engine) return false;
   const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
   const bool piece_waits = feed_.decoded() && feed_.is_feed();
   if (in.go && ((path_waits && path_ == Path::None) || (piece_waits && !out_.feed_active))) return false;

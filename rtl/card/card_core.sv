@@ -170,8 +170,7 @@ module card_core #(
 
   motion_core #(
       .Axes(Axes),
-      .Accumulator(Accumulator != 0),
-      .DirectMode(DirectMode != 0)
+      .Engines(ENGINES)
   ) motion (
       .*,
       .setting_i(setting),

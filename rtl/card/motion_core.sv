@@ -2,9 +2,8 @@
 `default_nettype none
 
 module motion_core #(
-    parameter int Axes        = 4,
-    parameter bit Accumulator = 1,
-    parameter bit DirectMode  = 1
+    parameter int          Axes    = 4,
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
     input  wire logic                clk_i,
     input  wire logic                rst_i,
@@ -68,8 +67,7 @@ module motion_core #(
   logic               taking;
   logic               swap;
   logic [   Axes-1:0] active;
-  logic               engine;
-  logic               engine_start;
+  logic [        4:0] engine;
   logic               barrier_begin;
   logic               barrier_done;
   logic               path_active;
@@ -145,8 +143,8 @@ module motion_core #(
   );
 
   geometry_sequencer #(
-      .Axes       (Axes),
-      .Accumulator(Accumulator)
+      .Axes   (Axes),
+      .Engines(Engines)
   ) geometry (
       .*,
       .cut_i          (cut_o),
@@ -164,7 +162,6 @@ module motion_core #(
       .swap_o         (swap),
       .active_o       (active),
       .engine_o       (engine),
-      .start_o        (engine_start),
       .payload_ready_i(payload_ready),
       .done_i         (engine_done),
       .elsewhere_i    (elsewhere),
@@ -184,15 +181,14 @@ module motion_core #(
   );
 
   path_engines #(
-      .Axes       (Axes),
-      .Accumulator(Accumulator)
+      .Axes   (Axes),
+      .Engines(Engines)
   ) engines (
       .*,
       .cut_i          (cut_o),
       .tick_i         (tick),
       .swap_i         (swap),
       .engine_i       (engine),
-      .start_i        (engine_start),
       .load_i         (load),
       .tick_o         (path_tick),
       .swap_o         (path_swap),
@@ -207,7 +203,7 @@ module motion_core #(
 
   axes #(
       .Axes   (Axes),
-      .Counted(DirectMode)
+      .Counted(Engines[card_map_pkg::ENGINE_DIRECT_MODE])
   ) all_axes (
       .*,
       .cut_i        (cut_o),
@@ -225,7 +221,7 @@ module motion_core #(
       .observe_o    (axes_observe)
   );
 
-  if (DirectMode) begin : gen_direct_mode
+  if (Engines[card_map_pkg::ENGINE_DIRECT_MODE]) begin : gen_direct_mode
     direct_loader #(
         .Axes(Axes)
     ) loader (

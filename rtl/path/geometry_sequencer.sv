@@ -2,8 +2,8 @@
 `default_nettype none
 
 module geometry_sequencer #(
-    parameter int Axes        = 4,
-    parameter bit Accumulator = 1
+    parameter int          Axes    = 4,
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
     input  wire logic            clk_i,
     input  wire logic            rst_i,
@@ -24,8 +24,7 @@ module geometry_sequencer #(
     output logic                 taking_o,
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
-    output logic                 engine_o,
-    output logic                 start_o,
+    output logic      [     4:0] engine_o,
     // ends
     input  wire logic            payload_ready_i,
     input  wire logic            done_i,
@@ -49,8 +48,7 @@ module geometry_sequencer #(
     output logic      [    31:0] begun_o
 );
   logic [Axes-1:0] mask;
-  logic            line;
-  logic            arc;
+  logic [     4:0] engine;
   logic            is_barrier;
   logic            is_end;
   logic            valid;
@@ -68,15 +66,14 @@ module geometry_sequencer #(
   assign runs = (taking_o && !direct_o) || (valid && !is_barrier);
 
   geometry_decoder #(
-      .Axes       (Axes),
-      .Accumulator(Accumulator)
+      .Axes   (Axes),
+      .Engines(Engines)
   ) decoder (
       .*,
       .pop_i          (pop),
       .payload_ready_i(payload_ready_i && !engine_taken),
       .mask_o         (mask),
-      .line_o         (line),
-      .arc_o          (arc),
+      .engine_o       (engine),
       .barrier_o      (is_barrier),
       .end_o          (is_end),
       .idle_o         (decoder_idle),
@@ -97,8 +94,7 @@ module geometry_sequencer #(
   ) paths (
       .*,
       .valid_i       (valid),
-      .line_i        (line),
-      .arc_i         (arc),
+      .engine_i      (engine),
       .barrier_i     (is_barrier),
       .mask_i        (mask),
       .pop_o         (pop),

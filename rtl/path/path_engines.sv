@@ -1,24 +1,25 @@
-// What makes steps from ticks beside the axes' own generators: prescaler, engines and router as one socket.
+// What makes steps from ticks beside the axes' own generators: the engines and the socket that they share, a prescaler
+// with the gate that gives its ticks to the engine of the path one at a time.
 //
 // All paths share one domain of ticks and swaps, those of the feed as late as the prescaler's steps, so that a path on
 // prescaled ticks and a line after it cannot overtake each other.
 `default_nettype none
 
 module path_engines #(
-    parameter int Axes        = 4,
-    parameter bit Accumulator = 1
+    parameter int          Axes    = 4,
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
     input  wire logic            clk_i,
     input  wire logic            rst_i,
     input  wire logic            cut_i,
     input  wire logic            tick_i,
     input  wire logic            swap_i,
-    input  wire logic            engine_i,         // with swap_i, what the path runs on: 0 lines, 1 accumulator
-    input  wire logic            start_i,          // with swap_i: the engine's state is loaded
+    // with swap_i: what the path runs on, by its bit of ENGINES; the state of one that is not lines is loaded
+    input  wire logic [     4:0] engine_i,
     input  wire logic [    21:0] load_i,
     output logic                 tick_o,           // path domain, to the axes
     output logic                 swap_o,
-    output logic                 path_tick_o,      // the accumulator's tick
+    output logic                 path_tick_o,      // an engine's tick
     output logic      [Axes-1:0] step_o,
     output logic      [Axes-1:0] dir_o,
     output logic                 ready_o,          // a tick may be taken
@@ -26,6 +27,11 @@ module path_engines #(
     output logic                 done_o,           // every path tick given is finished
     output logic                 elsewhere_o       // with done_o: not on the commanded end point
 );
+  localparam logic [4:0] LINES = 5'(card_map_pkg::ENGINE_LINES);
+  localparam logic [4:0] ACCUMULATOR = 5'(card_map_pkg::ENGINE_ACCUMULATOR);
+  // Those that take the prescaler's ticks.
+  localparam logic [31:0] TICKED = 32'd1 << ACCUMULATOR;
+
   logic [2:0] tick_q;
   logic [2:0] swap_q;
 
@@ -41,25 +47,30 @@ module path_engines #(
     end
   end
 
-  if (Accumulator) begin : gen_accumulator
-    logic on_engine_q;
-    logic coming;
-    logic prescaler_step;
-    logic engine_ready;
-    logic engine_stepping;
-    logic at_end;
-    logic step_x;
-    logic dir_x;
-    logic step_y;
-    logic dir_y;
+  if ((Engines & TICKED) != 32'd0) begin : gen_engines
+    logic [       4:0] engine_q;  // of the path
+    logic              coming;
+    logic              prescaler_step;
+    // What an engine says, from registers: {stepping, at its end, ready, dir, step}. Its steps leave before it is ready.
+    logic [2*Axes+2:0] accumulator;
+    logic              engine_stepping;
+    logic              at_end;
+    logic              engine_ready;
 
-    // Ticks of other paths pass without a step of the prescaler.
-    assign coming = on_engine_q && (tick_i || tick_q != '0);
+    // Of the engine on which the path runs. On lines nothing is asked.
+    always_comb begin
+      case (engine_q)
+        default: {engine_stepping, at_end, engine_ready, dir_o, step_o} = accumulator;
+      endcase
+    end
+
+    // Ticks of lines pass without a step of the prescaler.
+    assign coming = engine_q != LINES && (tick_i || tick_q != '0);
 
     always_ff @(posedge clk_i) begin
-      if (swap_i) on_engine_q <= engine_i;
+      if (swap_i) engine_q <= engine_i;
       elsewhere_o <= !at_end;
-      if (rst_i || cut_i) on_engine_q <= 1'b0;
+      if (rst_i || cut_i) engine_q <= LINES;
     end
 
     pulse_generator #(
@@ -67,7 +78,7 @@ module path_engines #(
     ) prescaler (
         .*,
         .clear_i         (cut_i),
-        .active_i        (engine_i),
+        .active_i        (engine_i != LINES),
         .counted_i       (1'b0),
         .mirror_i        (1'b0),
         .load_increment_i(load_i[21] && load_i[20:16] == load_target_pkg::PRESCALE),
@@ -87,37 +98,50 @@ module path_engines #(
         .tick_o           (path_tick_o)
     );
 
-    deviation_accumulator accumulator (
-        .*,
-        .clear_i   (cut_i),
-        .tick_i    (path_tick_o),
-        .step_x_o  (step_x),
-        .dir_x_o   (dir_x),
-        .step_y_o  (step_y),
-        .dir_y_o   (dir_y),
-        .ready_o   (engine_ready),
-        .stepping_o(engine_stepping),
-        .at_end_o  (at_end)
-    );
+    if (Engines[ACCUMULATOR]) begin : gen_accumulator
+      logic [Axes-1:0] step_q;
+      logic [Axes-1:0] dir_q;
+      logic            step_x;
+      logic            dir_x;
+      logic            step_y;
+      logic            dir_y;
+      logic [     2:0] axis_x_q;
+      logic [     2:0] axis_y_q;
 
-    // The accumulator's steps go to the two axes of the arc's plane. The plane is loaded with the arc, that is when no
-    // other arc runs, so that one register is enough.
-    logic [2:0] axis_x_q;
-    logic [2:0] axis_y_q;
+      deviation_accumulator deviation (
+          .*,
+          .clear_i   (cut_i),
+          .start_i   (swap_i && engine_i == ACCUMULATOR),
+          .tick_i    (path_tick_o && engine_q == ACCUMULATOR),
+          .step_x_o  (step_x),
+          .dir_x_o   (dir_x),
+          .step_y_o  (step_y),
+          .dir_y_o   (dir_y),
+          .ready_o   (accumulator[2*Axes]),
+          .at_end_o  (accumulator[2*Axes+1]),
+          .stepping_o(accumulator[2*Axes+2])
+      );
 
-    always_ff @(posedge clk_i) begin
-      if (load_i[21] && load_i[20:16] == load_target_pkg::PLANE) begin
-        axis_x_q <= load_i[6:4];
-        axis_y_q <= load_i[10:8];
-      end
-      // A direction is looked at with its step only.
-      step_o <= '0;
-      if ((step_x || step_y) && !rst_i) begin
-        for (int i = 0; i < Axes; i++) begin
-          step_o[i] <= (step_x && axis_x_q == 3'(i)) || (step_y && axis_y_q == 3'(i));
-          dir_o[i]  <= (axis_x_q == 3'(i)) ? dir_x : dir_y;
+      // Its steps go to the two axes of the arc's plane. The plane is loaded with the arc, that is when no other arc runs,
+      // so that one register is enough.
+      always_ff @(posedge clk_i) begin
+        if (load_i[21] && load_i[20:16] == load_target_pkg::PLANE) begin
+          axis_x_q <= load_i[6:4];
+          axis_y_q <= load_i[10:8];
+        end
+        // A direction is looked at with its step only.
+        step_q <= '0;
+        if ((step_x || step_y) && !rst_i) begin
+          for (int i = 0; i < Axes; i++) begin
+            step_q[i] <= (step_x && axis_x_q == 3'(i)) || (step_y && axis_y_q == 3'(i));
+            dir_q[i]  <= (axis_x_q == 3'(i)) ? dir_x : dir_y;
+          end
         end
       end
+
+      assign accumulator[2*Axes-1:0] = {dir_q, step_q};
+    end else begin : gen_no_accumulator
+      assign accumulator = '0;
     end
   end else begin : gen_lines_only
     assign path_tick_o     = 1'b0;
@@ -129,7 +153,7 @@ module path_engines #(
     assign elsewhere_o     = 1'b0;
 
     logic unused;
-    assign unused = &{1'b0, engine_i, start_i, load_i};
+    assign unused = &{1'b0, engine_i, load_i};
   end
 endmodule
 

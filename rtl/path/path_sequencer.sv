@@ -1,5 +1,5 @@
-// Runs one path after the other: swaps the decoded command in at the last tick of a line, waits for an arc's engine or
-// for the axes of a direct move to finish, and stops at barriers.
+// Runs one path after the other: swaps the decoded command in at the last tick of a line, waits for a path's engine
+// or for the axes of a direct move to finish, and stops at barriers.
 //
 // A swap is decided in one clock and carried out in the next, together with the tick (both leave as registers), so that
 // the last tick still meets the old increments and the next one the new.
@@ -13,8 +13,7 @@ module path_sequencer #(
     input  wire logic            cut_i,
     // decoded command
     input  wire logic            valid_i,
-    input  wire logic            line_i,
-    input  wire logic            arc_i,
+    input  wire logic [     4:0] engine_i,        // what a path runs on, by its bit of ENGINES
     input  wire logic            barrier_i,
     input  wire logic [Axes-1:0] mask_i,
     output logic                 pop_o,           // taken now (combinational)
@@ -28,47 +27,48 @@ module path_sequencer #(
     output logic                 swap_o,          // a path begins with the next tick
     output logic                 begin_o,         // as swap_o, a clock earlier (combinational)
     output logic      [Axes-1:0] active_o,        // sampled with swap_o
-    output logic                 engine_o,        // sampled with swap_o: the path is an arc
-    output logic                 start_o,         // with swap_o: the engine's state is loaded
+    output logic      [     4:0] engine_o,        // sampled with swap_o: what the path runs on
     output logic                 direct_o,        // a direct move is under way
     // ends
     input  wire logic            axes_live_i,
     input  wire logic            done_i,          // every path tick given is finished
     input  wire logic            elsewhere_i,
-    output logic                 engine_taken_o,  // by an arc that still takes ticks (combinational)
-    output logic                 incomplete_o,    // event: an arc ended elsewhere
+    output logic                 engine_taken_o,  // by a path that still takes ticks (combinational)
+    output logic                 incomplete_o,    // event: a path ended elsewhere
     input  wire logic            barrier_done_i,
     output logic                 at_barrier_o,
     output logic                 path_active_o
 );
   // Clocks from the last enabled clock of a direct move until the axes are asked whether one is live.
   localparam logic [2:0] SETTLE_CLOCKS = 3'd7;
+  localparam logic [4:0] LINES = 5'(card_map_pkg::ENGINE_LINES);
 
   logic       idle_q;  // no path
   logic       drain_q;  // the last tick is taken, the path goes on
   logic       drained_q;  // a clock later: done_i knows of the last tick
   logic [2:0] settle_q;
   logic       settled_q;
-  logic       arc_q;
+  logic       on_lines;
+  logic       on_engine_q;  // the path runs on another engine than lines
   logic       over;
   logic       ending;
   logic       path_valid;
   logic       swap;
 
-  assign path_valid     = valid_i && (line_i || arc_i);
+  assign on_lines       = engine_i == LINES;
+  assign path_valid     = valid_i && !barrier_i;
   assign ending         = take_i && last_i && !drain_q;
-  assign over           = arc_q ? drained_q && done_i : settled_q && !axes_live_i;
-  // After a line the next path takes over in the clock of the last tick. An arc that ended elsewhere has no successor.
-  assign swap           = path_valid && !incomplete_o && (idle_q || (ending && !arc_q && !direct_o));
+  assign over           = on_engine_q ? drained_q && done_i : settled_q && !axes_live_i;
+  // After a line the next path takes over in the clock of the last tick. A path that ended elsewhere has no successor.
+  assign swap           = path_valid && !incomplete_o && (idle_q || (ending && !on_engine_q && !direct_o));
   assign pop_o          = swap || barrier_done_i;
   assign begin_o        = swap || direct_go_i;
   assign path_active_o  = !idle_q;
-  assign engine_taken_o = arc_q && !drained_q;
+  assign engine_taken_o = on_engine_q && !drained_q;
 
   always_ff @(posedge clk_i) begin
     swap_o       <= begin_o && !cut_i && !rst_i;
-    start_o      <= swap && arc_i && !cut_i && !rst_i;
-    incomplete_o <= over && arc_q && elsewhere_i && !cut_i && !rst_i;
+    incomplete_o <= over && on_engine_q && elsewhere_i && !cut_i && !rst_i;
     at_barrier_o <= valid_i && barrier_i && idle_q && !barrier_done_i && !cut_i && !rst_i;
     drained_q    <= drain_q && !over && !cut_i && !rst_i;
     settled_q    <= drain_q && settle_q == 3'd0 && !over && !cut_i && !rst_i;
@@ -76,31 +76,31 @@ module path_sequencer #(
     else if (settle_q != 3'd0) settle_q <= settle_q - 3'd1;
 
     if (begin_o) begin
-      active_o <= direct_go_i ? direct_mask_i : line_i ? mask_i : '0;
-      engine_o <= swap && arc_i;
+      active_o <= direct_go_i ? direct_mask_i : on_lines ? mask_i : '0;
+      engine_o <= swap ? engine_i : LINES;
     end
 
     if (rst_i || cut_i) begin
-      idle_q   <= 1'b1;
+      idle_q <= 1'b1;
       taking_o <= 1'b0;
-      drain_q  <= 1'b0;
-      arc_q    <= 1'b0;
+      drain_q <= 1'b0;
+      on_engine_q <= 1'b0;
       direct_o <= 1'b0;
     end else if (begin_o) begin
-      idle_q   <= 1'b0;
+      idle_q <= 1'b0;
       taking_o <= 1'b1;
-      drain_q  <= 1'b0;
-      arc_q    <= swap && arc_i;
+      drain_q <= 1'b0;
+      on_engine_q <= swap && !on_lines;
       direct_o <= direct_go_i;
     end else if (ending) begin
-      idle_q   <= !arc_q && !direct_o;
+      idle_q   <= !on_engine_q && !direct_o;
       taking_o <= direct_o;
-      drain_q  <= arc_q || direct_o;
+      drain_q  <= on_engine_q || direct_o;
     end else if (over) begin
-      idle_q   <= 1'b1;
+      idle_q <= 1'b1;
       taking_o <= 1'b0;
-      drain_q  <= 1'b0;
-      arc_q    <= 1'b0;
+      drain_q <= 1'b0;
+      on_engine_q <= 1'b0;
       direct_o <= 1'b0;
     end
   end

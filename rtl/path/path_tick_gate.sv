@@ -1,4 +1,4 @@
-// Path ticks of an arc: counts what the prescaler has made and gives them to the accumulator one at a time; says when
+// Path ticks: counts what the prescaler has made and gives them to the engine of the path one at a time; says when
 // all are finished.
 //
 // `ready_o` falls while two or more wait. The take reaches the prescaler one clock later and its step this counter three
@@ -12,18 +12,18 @@ module path_tick_gate (
     input  wire logic coming_i,           // a tick is on its way through the prescaler
     input  wire logic step_i,             // from the prescaler
     input  wire logic engine_ready_i,
-    input  wire logic engine_stepping_i,  // the accumulator is not in the last clocks of a step
-    output logic      tick_o,             // to the accumulator
+    input  wire logic engine_stepping_i,  // the engine is not in the last clocks of a step
+    output logic      tick_o,             // to the engine
     output logic      ready_o,            // feed ticks may be taken
     output logic      payload_ready_o,    // as done_o, earlier by the clocks from there to a halfword on the load bus
-    output logic      done_o              // nothing is coming or waits and the accumulator has finished the last one
+    output logic      done_o              // nothing is coming or waits and the engine has finished the last one
 );
   logic [3:0] count_q;
   logic       waiting_q;
   logic       give;
   logic       quiet;
 
-  // The accumulator answers a tick with ready low in the next clock: none is given in that clock.
+  // An engine answers a tick with ready low in the next clock: none is given in that clock.
   assign give  = waiting_q && engine_ready_i && !tick_o;
   assign quiet = !coming_i && !step_i && !waiting_q && !tick_o;
 

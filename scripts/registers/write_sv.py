@@ -95,11 +95,12 @@ def _reasons(register_map):
 
 
 def _command_constants(commands):
-    yield "\n  // Commands: opcodes; offset and size in halfwords of each field of the payload after the count.\n"
+    yield "\n  // Commands: opcodes; number, offset and size in halfwords of each field of the payload after the count.\n"
     yield f"  localparam logic [31:0] LAYOUT_VERSION = 32'd{commands.version};\n"
     for c in commands.commands:
         yield f"  localparam logic [7:0] OP_{c.name} = 8'd{c.opcode};\n"
-        for f in c.fields:
+        for i, f in enumerate(c.fields):
+            yield f"  localparam logic [4:0] FIELD_{c.name}_{f.name.upper()} = 5'd{i};\n"
             yield f"  localparam int AT_{c.name}_{f.name.upper()} = {f.offset};\n"
             yield f"  localparam int SIZE_{c.name}_{f.name.upper()} = {f.halfwords};\n"
     yield "\n  // Rules for a command's axis mask, see command_mask_rule().\n"
@@ -271,6 +272,10 @@ def _command_functions(commands):
     yield per_command("command_axes_in_base",
                       ["Axes of the mask whose fields stand in the fixed part of the payload."],
                       2, lambda c: f"2'd{c.axes_in_base}", "2'd0")
+    yield _function(
+        ["Halfwords of a field less one, by its number in the command: FIELD_*."], "field_halfwords_less_one", 3,
+        "input logic [7:0] op, input logic [4:0] field", "{op, field}",
+        [(f"{{OP_{c.name}, 5'd{i}}}", f"3'd{f.halfwords - 1}") for c in commands for i, f in enumerate(c.fields)], "3'd0")
     yield _payload_function(
         commands, "payload_bits", 16,
         ["Bits of a payload halfword that may be set, by the engines that are built in (limits and signs: see",

@@ -34,7 +34,8 @@ void begin_circle(PathEngines& engines, std::uint64_t r, std::int64_t prescale) 
   load(engines, load_target::kHalfX, 1, 3);
   load(engines, load_target::kHalfY, 1, 3);
   PathEngines::Inputs in;
-  in.swap = in.accumulator = in.start = true;
+  in.swap = true;
+  in.engine = card_map::engine::kAccumulator;
   engines.clock(in);
 }
 

@@ -435,80 +435,112 @@ package card_map_pkg;
   localparam logic [7:0] REFUSE_WRITE_ONLY = 8'd14;
   localparam logic [7:0] REFUSE_FAULTED = 8'd15;
 
-  // Commands: opcodes; offset and size in halfwords of each field of the payload after the count.
+  // Commands: opcodes; number, offset and size in halfwords of each field of the payload after the count.
   localparam logic [31:0] LAYOUT_VERSION = 32'd2;
   localparam logic [7:0] OP_LINE = 8'd1;
+  localparam logic [4:0] FIELD_LINE_INCREMENT = 5'd0;
   localparam int AT_LINE_INCREMENT = 0;
   localparam int SIZE_LINE_INCREMENT = 3;
   localparam logic [7:0] OP_ARC = 8'd2;
+  localparam logic [4:0] FIELD_ARC_PATH_TICKS = 5'd0;
   localparam int AT_ARC_PATH_TICKS = 0;
   localparam int SIZE_ARC_PATH_TICKS = 3;
+  localparam logic [4:0] FIELD_ARC_PRESCALE = 5'd1;
   localparam int AT_ARC_PRESCALE = 3;
   localparam int SIZE_ARC_PRESCALE = 3;
+  localparam logic [4:0] FIELD_ARC_PLANE = 5'd2;
   localparam int AT_ARC_PLANE = 6;
   localparam int SIZE_ARC_PLANE = 1;
+  localparam logic [4:0] FIELD_ARC_QUADRANTS = 5'd3;
   localparam int AT_ARC_QUADRANTS = 7;
   localparam int SIZE_ARC_QUADRANTS = 1;
+  localparam logic [4:0] FIELD_ARC_END_X = 5'd4;
   localparam int AT_ARC_END_X = 8;
   localparam int SIZE_ARC_END_X = 2;
+  localparam logic [4:0] FIELD_ARC_END_Y = 5'd5;
   localparam int AT_ARC_END_Y = 10;
   localparam int SIZE_ARC_END_Y = 2;
+  localparam logic [4:0] FIELD_ARC_DEVIATION = 5'd6;
   localparam int AT_ARC_DEVIATION = 12;
   localparam int SIZE_ARC_DEVIATION = 5;
+  localparam logic [4:0] FIELD_ARC_GRADIENT_X = 5'd7;
   localparam int AT_ARC_GRADIENT_X = 17;
   localparam int SIZE_ARC_GRADIENT_X = 5;
+  localparam logic [4:0] FIELD_ARC_GRADIENT_Y = 5'd8;
   localparam int AT_ARC_GRADIENT_Y = 22;
   localparam int SIZE_ARC_GRADIENT_Y = 5;
+  localparam logic [4:0] FIELD_ARC_HALF_X = 5'd9;
   localparam int AT_ARC_HALF_X = 27;
   localparam int SIZE_ARC_HALF_X = 3;
+  localparam logic [4:0] FIELD_ARC_HALF_Y = 5'd10;
   localparam int AT_ARC_HALF_Y = 30;
   localparam int SIZE_ARC_HALF_Y = 3;
   localparam logic [7:0] OP_ARC_CHORD = 8'd3;
+  localparam logic [4:0] FIELD_ARC_CHORD_PATH_TICKS = 5'd0;
   localparam int AT_ARC_CHORD_PATH_TICKS = 0;
   localparam int SIZE_ARC_CHORD_PATH_TICKS = 3;
+  localparam logic [4:0] FIELD_ARC_CHORD_PRESCALE = 5'd1;
   localparam int AT_ARC_CHORD_PRESCALE = 3;
   localparam int SIZE_ARC_CHORD_PRESCALE = 3;
+  localparam logic [4:0] FIELD_ARC_CHORD_PLANE = 5'd2;
   localparam int AT_ARC_CHORD_PLANE = 6;
   localparam int SIZE_ARC_CHORD_PLANE = 1;
+  localparam logic [4:0] FIELD_ARC_CHORD_SHIFTS = 5'd3;
   localparam int AT_ARC_CHORD_SHIFTS = 7;
   localparam int SIZE_ARC_CHORD_SHIFTS = 1;
+  localparam logic [4:0] FIELD_ARC_CHORD_X = 5'd4;
   localparam int AT_ARC_CHORD_X = 8;
   localparam int SIZE_ARC_CHORD_X = 4;
+  localparam logic [4:0] FIELD_ARC_CHORD_Y = 5'd5;
   localparam int AT_ARC_CHORD_Y = 12;
   localparam int SIZE_ARC_CHORD_Y = 4;
+  localparam logic [4:0] FIELD_ARC_CHORD_FIRST_X = 5'd6;
   localparam int AT_ARC_CHORD_FIRST_X = 16;
   localparam int SIZE_ARC_CHORD_FIRST_X = 3;
+  localparam logic [4:0] FIELD_ARC_CHORD_FIRST_Y = 5'd7;
   localparam int AT_ARC_CHORD_FIRST_Y = 19;
   localparam int SIZE_ARC_CHORD_FIRST_Y = 3;
+  localparam logic [4:0] FIELD_ARC_CHORD_CLOSING_X = 5'd8;
   localparam int AT_ARC_CHORD_CLOSING_X = 22;
   localparam int SIZE_ARC_CHORD_CLOSING_X = 3;
+  localparam logic [4:0] FIELD_ARC_CHORD_CLOSING_Y = 5'd9;
   localparam int AT_ARC_CHORD_CLOSING_Y = 25;
   localparam int SIZE_ARC_CHORD_CLOSING_Y = 3;
+  localparam logic [4:0] FIELD_ARC_CHORD_INCREMENT = 5'd10;
   localparam int AT_ARC_CHORD_INCREMENT = 28;
   localparam int SIZE_ARC_CHORD_INCREMENT = 3;
   localparam logic [7:0] OP_FEED = 8'd16;
+  localparam logic [4:0] FIELD_FEED_RATE = 5'd0;
   localparam int AT_FEED_RATE = 0;
   localparam int SIZE_FEED_RATE = 4;
+  localparam logic [4:0] FIELD_FEED_FLOOR = 5'd1;
   localparam int AT_FEED_FLOOR = 4;
   localparam int SIZE_FEED_FLOOR = 2;
+  localparam logic [4:0] FIELD_FEED_STOP_DISTANCE = 5'd2;
   localparam int AT_FEED_STOP_DISTANCE = 6;
   localparam int SIZE_FEED_STOP_DISTANCE = 2;
+  localparam logic [4:0] FIELD_FEED_ACCELERATION = 5'd3;
   localparam int AT_FEED_ACCELERATION = 8;
   localparam int SIZE_FEED_ACCELERATION = 4;
+  localparam logic [4:0] FIELD_FEED_JERK = 5'd4;
   localparam int AT_FEED_JERK = 12;
   localparam int SIZE_FEED_JERK = 4;
   localparam logic [7:0] OP_DWELL = 8'd32;
   localparam logic [7:0] OP_END = 8'd33;
   localparam logic [7:0] OP_OUTPUT = 8'd34;
+  localparam logic [4:0] FIELD_OUTPUT_SET = 5'd0;
   localparam int AT_OUTPUT_SET = 0;
   localparam int SIZE_OUTPUT_SET = 1;
+  localparam logic [4:0] FIELD_OUTPUT_CLEAR = 5'd1;
   localparam int AT_OUTPUT_CLEAR = 1;
   localparam int SIZE_OUTPUT_CLEAR = 1;
   localparam logic [7:0] OP_MARK = 8'd35;
   localparam logic [7:0] OP_WAIT_INPUT = 8'd36;
+  localparam logic [4:0] FIELD_WAIT_INPUT_CONDITION = 5'd0;
   localparam int AT_WAIT_INPUT_CONDITION = 0;
   localparam int SIZE_WAIT_INPUT_CONDITION = 1;
   localparam logic [7:0] OP_PROBE = 8'd37;
+  localparam logic [4:0] FIELD_PROBE_CONDITION = 5'd0;
   localparam int AT_PROBE_CONDITION = 0;
   localparam int SIZE_PROBE_CONDITION = 1;
   localparam logic [7:0] OP_PROBE_END = 8'd38;
@@ -824,6 +856,24 @@ package card_map_pkg;
       OP_ARC_CHORD:
         command_axes_in_base = engines[ENGINE_ARC_GENERATOR] ? 2'd2 : 2'd0;
       default: command_axes_in_base = 2'd0;
+    endcase
+  endfunction
+
+  // Halfwords of a field less one, by its number in the command: FIELD_*.
+  function automatic logic [2:0] field_halfwords_less_one(input logic [7:0] op,
+                                                          input logic [4:0] field);
+    casez ({op, field})
+      {OP_LINE, 5'd0}, {OP_ARC, 5'd0}, {OP_ARC, 5'd1}, {OP_ARC, 5'd9}, {OP_ARC, 5'd10},
+      {OP_ARC_CHORD, 5'd0}, {OP_ARC_CHORD, 5'd1}, {OP_ARC_CHORD, 5'd6}, {OP_ARC_CHORD, 5'd7},
+      {OP_ARC_CHORD, 5'd8}, {OP_ARC_CHORD, 5'd9}, {OP_ARC_CHORD, 5'd10}:
+        field_halfwords_less_one = 3'd2;
+      {OP_ARC, 5'd4}, {OP_ARC, 5'd5}, {OP_FEED, 5'd1}, {OP_FEED, 5'd2}:
+        field_halfwords_less_one = 3'd1;
+      {OP_ARC, 5'd6}, {OP_ARC, 5'd7}, {OP_ARC, 5'd8}:
+        field_halfwords_less_one = 3'd4;
+      {OP_ARC_CHORD, 5'd4}, {OP_ARC_CHORD, 5'd5}, {OP_FEED, 5'd0}, {OP_FEED, 5'd3}, {OP_FEED, 5'd4}:
+        field_halfwords_less_one = 3'd3;
+      default: field_halfwords_less_one = 3'd0;
     endcase
   endfunction
 

@@ -176,7 +176,11 @@ class Bench {
   void note_events() {
     const auto& s = model_->sequencer().outputs();
     if (model_->stop().cut) check_.event("cut, with fault", model_->stop().fault);
-    if (s.swap) check_.event(s.accumulator ? "arc begins" : s.direct ? "direct move begins" : "line begins", s.active);
+    if (s.swap)
+      check_.event(s.engine != card_map::engine::kLines ? "arc begins"
+                   : s.direct                           ? "direct move begins"
+                                                        : "line begins",
+                   s.active);
     if (s.feed_swap) check_.event("piece begins");
     if (model_->loader().done) starting_ = false;
   }

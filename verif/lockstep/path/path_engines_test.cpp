@@ -14,6 +14,8 @@ namespace {
 
 namespace load_target = model::load_target;
 
+constexpr std::uint8_t kLines = card_map::engine::kLines;
+constexpr std::uint8_t kAccumulator = card_map::engine::kAccumulator;
 constexpr unsigned kAxes = 4;
 constexpr std::uint64_t kOnePulse = std::uint64_t{1} << 40;
 constexpr std::uint64_t kComparedSignals = 8;
@@ -55,10 +57,11 @@ class Bench {
     if (!idle(since_swap_ < 3 ? 3 - since_swap_ : 0)) return;
     check_.event("swap", arc);
     in_.swap = true;
-    in_.accumulator = in_.start = arc;
+    in_.engine = arc ? kAccumulator : kLines;
     in_.tick = on_line_ && since_swap_ > 3 && model_.outputs().ready && dice_.chance(2);
     clock();
-    in_.swap = in_.accumulator = in_.start = false;
+    in_.swap = false;
+    in_.engine = kLines;
     on_arc_ = arc;
     on_line_ = !arc;
     since_swap_ = 0;
@@ -120,7 +123,7 @@ class Bench {
     cut_every_ = 20 + dice_.below(8000);
     in_.tick = dice_.chance(2);
     in_.swap = dice_.chance(2);
-    in_.accumulator = in_.start = dice_.chance(2);
+    in_.engine = dice_.chance(2) ? kAccumulator : kLines;
     if (dice_.chance(4)) {
       reset();
     } else {
@@ -159,8 +162,7 @@ class Bench {
     dut_->cut_i = in_.cut;
     dut_->tick_i = in_.tick;
     dut_->swap_i = in_.swap;
-    dut_->engine_i = in_.accumulator;
-    dut_->start_i = in_.start;
+    dut_->engine_i = in_.engine;
     dut_->load_i = load_wire(in_.load);
   }
 

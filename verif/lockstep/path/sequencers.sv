@@ -36,8 +36,7 @@ module sequencers #(
     // what begins
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
-    output logic                 engine_o,
-    output logic                 start_o,
+    output logic      [     4:0] engine_o,
     output logic                 feed_swap_o,
     output logic      [    21:0] load_o,
     output logic      [    19:0] feed_load_o,
@@ -84,7 +83,6 @@ module sequencers #(
       .swap_o,
       .active_o,
       .engine_o,
-      .start_o,
       .payload_ready_i,
       .done_i         (engine_done_i),
       .elsewhere_i,

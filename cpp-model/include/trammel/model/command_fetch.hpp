@@ -2,7 +2,7 @@
 // load bus. Where each halfword goes follows from the layouts of the card map.
 //
 // A halfword asked for in clock r lies on the queue's output in r+2 and on the bus in r+3. A command is decoded in the
-// clock in which its last halfword is on the bus. An arc's halfwords after the prescaler wait until the accumulator is
+// clock in which its last halfword is on the bus. An engine's halfwords after the prescaler wait until it is
 // free; a feed piece's acceleration and jerk until it has begun, where a piece runs as they would be asked for: it is
 // decoded without them. Not thread-safe; no errors are reported: the checker
 // lets only good commands into the queue.
@@ -21,7 +21,7 @@ class CommandFetch {
   struct Inputs {
     bool clear = false;
     bool pop = false;            // the decoded command has begun (a barrier: is over)
-    bool payload_ready = true;   // the accumulator may be loaded; no piece is under way
+    bool payload_ready = true;   // the engine may be loaded; no piece is under way
     bool empty = true;           // of the queue
     std::uint16_t halfword = 0;  // what was asked for two clocks ago
   };
@@ -43,13 +43,14 @@ class CommandFetch {
   // Of the command decoded.
   card_map::Opcode opcode() const { return opcode_; }
   bool is_line() const { return opcode_ == card_map::Opcode::Line; }
-  bool is_arc() const { return opcode_ == card_map::Opcode::Arc; }
+  bool is_path() const { return is_line() || opcode_ == card_map::Opcode::Arc; }
   bool is_feed() const { return opcode_ == card_map::Opcode::Feed; }
   bool is_end() const { return opcode_ == card_map::Opcode::End; }
-  bool is_barrier() const { return !is_line() && !is_arc() && !is_feed(); }
+  bool is_barrier() const { return !is_path() && !is_feed(); }
+  std::uint8_t engine() const { return engine_; }  // what a path runs on, by its bit of ENGINES
   std::uint8_t mask() const { return mask_; }
 
-  // Without inputs that change nothing moves; an arc that waits looks at payload_ready.
+  // Without inputs that change nothing moves; a path that waits looks at payload_ready.
   bool quiet() const {
     return asked_ < 0 && arriving_[0] < 0 && arriving_[1] < 0 && !bus_.valid &&
            (state_ == State::Idle || state_ == State::Decoded || state_ == State::Waiting);
@@ -74,6 +75,7 @@ class CommandFetch {
   bool split_ = false;        // the piece is decoded without acceleration and jerk
   bool header_here_ = false;  // what arrives is of this command, not the rest of the one before
   card_map::Opcode opcode_ = card_map::Opcode::End;
+  std::uint8_t engine_ = card_map::engine::kLines;
   std::uint8_t mask_ = 0;
   std::uint8_t axes_[8] = {};  // of the mask, lowest first
   LoadWord bus_;

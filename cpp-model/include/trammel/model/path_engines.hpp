@@ -1,17 +1,18 @@
 // Golden model of the path engines: what stands between the tick of the card (feed domain) and the axes.
 //
 // Feed ticks and swaps leave 3 clocks later as path ticks and swaps: as long as the prescaler takes, so that a path on
-// prescaled ticks and a line after it keep their order. On engine 1 (accumulator) the prescaler, a pulse generator,
-// makes path ticks from feed ticks; they wait until the accumulator can take them. Its steps leave by axis.
+// prescaled ticks and a line after it keep their order. On another engine than lines the prescaler, a pulse generator,
+// makes path ticks from feed ticks; they wait until the engine can take them. Its steps leave by axis.
 //
 // From a tick at c: path domain at c+3; the accumulator's tick at c+5 at the earliest, its step at c+8 by axis.
 // `done`: no tick is in the 3 clocks, no path tick waits and the accumulator has finished the last one; a clock late.
-// `payload_ready`: as that for ticks of engine 1 alone, but from the 6th clock after the accumulator's tick on: a load
+// `payload_ready`: as that for an engine's ticks alone, but from the 6th clock after the accumulator's tick on: a load
 // that is asked for then comes after the tick is finished. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
 
+#include "trammel/card_map.hpp"
 #include "trammel/model/buses.hpp"
 #include "trammel/model/deviation_accumulator.hpp"
 #include "trammel/model/pulse_generator.hpp"
@@ -24,8 +25,8 @@ class PathEngines {
     bool cut = false;
     bool tick = false;  // feed domain
     bool swap = false;
-    bool accumulator = false;  // engine, sampled with swap: 0 lines, 1 accumulator
-    bool start = false;        // with swap: the accumulator's state is loaded
+    // Sampled with swap: what the path runs on, by its bit of ENGINES; the state of one that is not lines is loaded.
+    std::uint8_t engine = card_map::engine::kLines;
     LoadWord load;
   };
   struct Outputs {
@@ -45,12 +46,14 @@ class PathEngines {
 
   // One rising edge.
   void clock(const Inputs& in) {
-    const DeviationAccumulator::Outputs engine = accumulator_.outputs();
+    const Said engine = said();
+    const DeviationAccumulator::Outputs accumulator = accumulator_.outputs();
+    const bool tick = out_.path_tick && engine_ == card_map::engine::kAccumulator;
     judge(in, engine);
+    const bool start = in.swap && in.engine == card_map::engine::kAccumulator;
     const bool commanded = in.cut || in.load.valid || clock_all_;
-    if (commanded || out_.step != 0 || !accumulator_.quiet()) route(in.load, engine);
-    if (commanded || in.start || out_.path_tick || !accumulator_.quiet())
-      accumulator_.clock({false, in.load, in.start, out_.path_tick, in.cut});
+    if (commanded || out_.step != 0 || !accumulator_.quiet()) route(in.load, accumulator);
+    if (commanded || start || tick || !accumulator_.quiet()) accumulator_.clock({false, in.load, start, tick, in.cut});
     give(in.cut, engine.ready);
     if (commanded || in.tick || in.swap || !prescaler_.quiet()) clock_prescaler(in);
     delay(in);
@@ -65,8 +68,8 @@ class PathEngines {
   }
   // As settled(), and without ticks.
   bool quiet() const {
-    return settled() && ticks_ == 0 && !out_.tick && out_.done == accumulator_.outputs().ready &&
-           out_.elsewhere == !accumulator_.outputs().at_end && out_.payload_ready;
+    return settled() && ticks_ == 0 && !out_.tick && out_.done == said().ready && out_.elsewhere == !said().at_end &&
+           out_.payload_ready;
   }
   // Ticks on their way: bit k belongs to an accumulation of the feed generator k clocks ago.
   unsigned in_flight() const { return (ticks_ >> 2 & 1) << 6 | (ticks_ >> 1 & 1) << 7 | (ticks_ & 1) << 8; }
@@ -77,9 +80,9 @@ class PathEngines {
     ticks_ = (in_flight >> 6 & 1) << 2 | (in_flight >> 7 & 1) << 1 | (in_flight >> 8 & 1);
     out_.tick = (ticks_ & 1) != 0;
     const bool feed_ticks = (in_flight >> 6 & 0xF) != 0;
-    out_.done = !feed_ticks && accumulator_.outputs().ready;
-    out_.elsewhere = !accumulator_.outputs().at_end;
-    out_.payload_ready = !(feed_ticks && prescaled_);
+    out_.done = !feed_ticks && said().ready;
+    out_.elsewhere = !said().at_end;
+    out_.payload_ready = !(feed_ticks && on_engine(engine_));
   }
 
   const PulseGenerator& prescaler() const { return prescaler_; }
@@ -90,36 +93,45 @@ class PathEngines {
   static constexpr unsigned kDelay = 3;   // feed domain to path domain
   static constexpr unsigned kAlmost = 4;  // clocks after the accumulator's tick in which no load may be asked for
 
+  static bool on_engine(std::uint8_t engine) { return engine != card_map::engine::kLines; }
+
+  // What the engine says on which the path runs. On lines nothing is asked.
+  struct Said {
+    bool ready = false;
+    bool at_end = false;
+  };
+  Said said() const { return {accumulator_.outputs().ready, accumulator_.outputs().at_end}; }
+
   // What the sequencer may know of it, a clock late.
-  void judge(const Inputs& in, const DeviationAccumulator::Outputs& engine) {
+  void judge(const Inputs& in, const Said& engine) {
     const bool feed_ticks = in.tick || ticks_ != 0;
     const bool path_ticks = waiting_ != 0 || out_.path_tick;
     out_.done = !feed_ticks && !path_ticks && engine.ready;
     out_.elsewhere = !engine.at_end;
-    out_.payload_ready = !(feed_ticks && prescaled_) && !path_ticks && almost_ == 0;
+    out_.payload_ready = !(feed_ticks && on_engine(engine_)) && !path_ticks && almost_ == 0;
     if (out_.path_tick && engine.ready && !engine.at_end)  // at its end it makes no step
       almost_ = kAlmost;
     else if (almost_ != 0)
       --almost_;
-    if (in.swap) prescaled_ = in.accumulator;
+    if (in.swap) engine_ = in.engine;
     if (in.cut) {
       almost_ = 0;
-      prescaled_ = false;
+      engine_ = card_map::engine::kLines;
     }
   }
 
-  void route(const LoadWord& load, const DeviationAccumulator::Outputs& engine) {
+  void route(const LoadWord& load, const DeviationAccumulator::Outputs& accumulator) {
     const unsigned x = 1U << axis_x_;
     const unsigned y = 1U << axis_y_;
-    out_.step = static_cast<std::uint8_t>((engine.step_x ? x : 0) | (engine.step_y ? y : 0));
-    out_.dir = static_cast<std::uint8_t>((engine.dir_y ? y : 0) | (engine.dir_x ? x : 0));
+    out_.step = static_cast<std::uint8_t>((accumulator.step_x ? x : 0) | (accumulator.step_y ? y : 0));
+    out_.dir = static_cast<std::uint8_t>((accumulator.dir_y ? y : 0) | (accumulator.dir_x ? x : 0));
     if (load.to(load_target::kPlane)) {
       axis_x_ = load.word >> 4 & 7;
       axis_y_ = load.word >> 8 & 7;
     }
   }
 
-  // Path ticks wait for the accumulator, which answers a tick with ready low a clock later.
+  // Path ticks wait for the engine, which answers a tick with ready low a clock later.
   void give(bool cut, bool engine_ready) {
     const bool given = waiting_ != 0 && engine_ready && !out_.path_tick;
     waiting_ = cut ? 0 : waiting_ + (prescaler_.outputs().step ? 1U : 0U) - (given ? 1U : 0U);
@@ -128,8 +140,8 @@ class PathEngines {
   }
 
   void clock_prescaler(const Inputs& in) {
-    prescaler_.clock({in.cut, in.tick, in.swap, in.accumulator, false, false, in.load.to(load_target::kPrescale), false,
-                      in.load.word});
+    prescaler_.clock({in.cut, in.tick, in.swap, on_engine(in.engine), false, false, in.load.to(load_target::kPrescale),
+                      false, in.load.word});
   }
 
   void delay(const Inputs& in) {
@@ -146,7 +158,7 @@ class PathEngines {
   std::uint32_t swaps_ = 0;
   std::uint32_t waiting_ = 0;  // path ticks
   unsigned almost_ = 0;
-  bool prescaled_ = false;  // the path swapped in last runs on the accumulator
+  std::uint8_t engine_ = card_map::engine::kLines;  // of the path swapped in last
   unsigned axis_x_ = 0;
   unsigned axis_y_ = 0;
   Outputs out_;

@@ -17,19 +17,17 @@ class RegisterFile {
   static constexpr std::size_t kMaxAxes = card_map::kMaxAxes;
   static constexpr std::size_t kMaxPorts = 4;
 
-  // ENGINES of a card with these parameters; lines and jerk are on every card.
-  static constexpr std::uint32_t engines(bool accumulator, bool direct_mode) {
-    namespace field = card_map::field;
-    return field::kEnginesLines | field::kEnginesJerk | (accumulator ? field::kEnginesAccumulator : 0) |
-           (direct_mode ? field::kEnginesDirectMode : 0);
-  }
+  // ENGINES: what every card has, and what one has that is built with everything there is.
+  static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
+  static constexpr std::uint32_t kMostEngines =
+      kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8
     std::uint32_t geometry_depth = 4096;  // halfwords
     std::uint32_t feed_depth = 2560;      // halfwords
     std::uint32_t clock_hz = 100'000'000;
-    std::uint32_t engines = RegisterFile::engines(true, true);
+    std::uint32_t engines = kMostEngines;
     std::uint32_t build_id = 0;
     bool build_dirty = false;
     std::uint32_t board_id = 0;

@@ -2,8 +2,8 @@
 //
 // Geometry and feed each decode one command ahead. A path runs for its N ticks, a piece for its own; every tick taken
 // counts both down, and the last one of either swaps in what is decoded. A tick made by the feed generator (in direct
-// mode: an enabled clock) is owed from two clocks on until a path can take it. An arc is over when the path engines
-// have finished its path ticks, a direct move when no axis is live. A barrier (DWELL, END) begins when both queues
+// mode: an enabled clock) is owed from two clocks on until a path can take it. A path on an engine is over when
+// that has finished its path ticks, a direct move when no axis is live. A barrier (DWELL, END) begins when both queues
 // stand at it. Everything decided in clock c shows at c+1; other times stand with their constants. Not thread-safe; no
 // errors are reported.
 #pragma once
@@ -40,11 +40,10 @@ class Sequencer {
     bool axes_live = false;
   };
   struct Outputs {
-    bool tick = false;         // a tick was taken
-    bool swap = false;         // a path begins
-    std::uint8_t active = 0;   // axes of a line; sampled with swap, holds
-    bool accumulator = false;  // the path is an arc; sampled with swap, holds
-    bool arc_start = false;
+    bool tick = false;                               // a tick was taken
+    bool swap = false;                               // a path begins
+    std::uint8_t active = 0;                         // axes of a line; sampled with swap, holds
+    std::uint8_t engine = card_map::engine::kLines;  // what the path runs on; sampled with swap, holds
     bool direct = false;
     bool feed_enable = false;
     bool feed_clear = true;
@@ -80,7 +79,7 @@ class Sequencer {
   // For jumps. settled(): with these inputs, the enables and the ticks made apart, only counters move.
   bool settled(const Inputs& in) const;
   // A path takes each tick of its piece as it comes.
-  bool ticking() const { return (path_ == Path::Line || path_ == Path::Arc) && !drained_ && out_.feed_active; }
+  bool ticking() const { return (path_ == Path::Line || path_ == Path::Engine) && !drained_ && out_.feed_active; }
   // Ticks until the path or its piece ends, the last one included.
   std::uint64_t ticks_left() const { return path_left_ < piece_left_ ? path_left_ : piece_left_; }
   // Clocks that a settled sequencer may jump over at most, ticks apart.
@@ -100,22 +99,22 @@ class Sequencer {
 
  private:
   static constexpr std::uint64_t kCountMask = (std::uint64_t{1} << 40) - 1;
-  // From the take of the last tick: the clock in which an arc's end may be judged, and a direct move's.
-  static constexpr std::uint64_t kArcJudged = 2;
+  // From the take of the last tick: the clock in which the end on an engine may be judged, and a direct move's.
+  static constexpr std::uint64_t kEngineJudged = 2;
   static constexpr std::uint64_t kDirectJudged = 9;
   // From the clock in which both queues stand at a barrier: that in which it is decided, one before it shows.
   static constexpr std::uint64_t kBarrierBegins = 4;
 
   static constexpr std::uint64_t kLong = std::uint64_t{1} << 62;
 
-  enum class Path : std::uint8_t { None, Line, Arc, Direct };
+  enum class Path : std::uint8_t { None, Line, Engine, Direct };
   enum class Barrier : std::uint8_t { None, Beginning, Running, Done };
 
   // What this clock decides.
   struct Decision {
     bool take = false;
     bool path_ends = false;  // its last tick is taken
-    bool path_over = false;  // arc or direct move: finished after that
+    bool path_over = false;  // on an engine or direct: finished after that
     bool path_begins = false;
     bool piece_ends = false;
     bool piece_begins = false;
