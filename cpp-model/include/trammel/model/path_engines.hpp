@@ -52,9 +52,10 @@ class PathEngines {
     judge(in, engine);
     const bool start = in.swap && in.engine == card_map::engine::kAccumulator;
     const bool commanded = in.cut || in.load.valid || clock_all_;
-    if (commanded || out_.step != 0 || !accumulator_.quiet()) route(in.load, accumulator);
+    if (commanded || routed_step_ != 0 || !accumulator_.quiet()) route(in.load, accumulator);
     if (commanded || start || tick || !accumulator_.quiet()) accumulator_.clock({false, in.load, start, tick, in.cut});
     give(in.cut, engine.ready);
+    step();
     if (commanded || in.tick || in.swap || !prescaler_.quiet()) clock_prescaler(in);
     delay(in);
   }
@@ -95,12 +96,20 @@ class PathEngines {
 
   static bool on_engine(std::uint8_t engine) { return engine != card_map::engine::kLines; }
 
-  // What the engine says on which the path runs. On lines nothing is asked.
+  // What an engine says, from its registers.
   struct Said {
     bool ready = false;
     bool at_end = false;
+    std::uint8_t step = 0;  // by axis
+    std::uint8_t dir = 0;
   };
-  Said said() const { return {accumulator_.outputs().ready, accumulator_.outputs().at_end}; }
+  // Of the engine on which the path runs. On lines nothing is asked.
+  Said said() const {
+    switch (engine_) {
+      default:
+        return {accumulator_.outputs().ready, accumulator_.outputs().at_end, routed_step_, routed_dir_};
+    }
+  }
 
   // What the sequencer may know of it, a clock late.
   void judge(const Inputs& in, const Said& engine) {
@@ -120,15 +129,22 @@ class PathEngines {
     }
   }
 
+  // The accumulator's two axes are those of its plane.
   void route(const LoadWord& load, const DeviationAccumulator::Outputs& accumulator) {
     const unsigned x = 1U << axis_x_;
     const unsigned y = 1U << axis_y_;
-    out_.step = static_cast<std::uint8_t>((accumulator.step_x ? x : 0) | (accumulator.step_y ? y : 0));
-    out_.dir = static_cast<std::uint8_t>((accumulator.dir_y ? y : 0) | (accumulator.dir_x ? x : 0));
+    routed_step_ = static_cast<std::uint8_t>((accumulator.step_x ? x : 0) | (accumulator.step_y ? y : 0));
+    routed_dir_ = static_cast<std::uint8_t>((accumulator.dir_y ? y : 0) | (accumulator.dir_x ? x : 0));
     if (load.to(load_target::kPlane)) {
       axis_x_ = load.word >> 4 & 7;
       axis_y_ = load.word >> 8 & 7;
     }
+  }
+
+  void step() {
+    const Said engine = said();
+    out_.step = engine.step;
+    out_.dir = engine.dir;
   }
 
   // Path ticks wait for the engine, which answers a tick with ready low a clock later.
@@ -161,6 +177,8 @@ class PathEngines {
   std::uint8_t engine_ = card_map::engine::kLines;  // of the path swapped in last
   unsigned axis_x_ = 0;
   unsigned axis_y_ = 0;
+  std::uint8_t routed_step_ = 0;  // the accumulator's, by axis
+  std::uint8_t routed_dir_ = 0;
   Outputs out_;
 };
 
