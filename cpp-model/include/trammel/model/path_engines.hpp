@@ -50,6 +50,7 @@ class PathEngines {
     const DeviationAccumulator::Outputs accumulator = accumulator_.outputs();
     const bool tick = out_.path_tick && engine_ == card_map::engine::kAccumulator;
     judge(in, engine);
+    finish_step(in.cut, tick, accumulator);
     const bool start = in.swap && in.engine == card_map::engine::kAccumulator;
     const bool commanded = in.cut || in.load.valid || clock_all_;
     if (commanded || routed_step_ != 0 || !accumulator_.quiet()) route(in.load, accumulator);
@@ -100,6 +101,7 @@ class PathEngines {
   struct Said {
     bool ready = false;
     bool at_end = false;
+    bool stepping = false;  // no load may come yet
     std::uint8_t step = 0;  // by axis
     std::uint8_t dir = 0;
   };
@@ -107,7 +109,7 @@ class PathEngines {
   Said said() const {
     switch (engine_) {
       default:
-        return {accumulator_.outputs().ready, accumulator_.outputs().at_end, routed_step_, routed_dir_};
+        return {accumulator_.outputs().ready, accumulator_.outputs().at_end, almost_ != 0, routed_step_, routed_dir_};
     }
   }
 
@@ -117,16 +119,18 @@ class PathEngines {
     const bool path_ticks = waiting_ != 0 || out_.path_tick;
     out_.done = !feed_ticks && !path_ticks && engine.ready;
     out_.elsewhere = !engine.at_end;
-    out_.payload_ready = !(feed_ticks && on_engine(engine_)) && !path_ticks && almost_ == 0;
-    if (out_.path_tick && engine.ready && !engine.at_end)  // at its end it makes no step
+    out_.payload_ready = !(feed_ticks && on_engine(engine_)) && !path_ticks && !engine.stepping;
+    if (in.swap) engine_ = in.engine;
+    if (in.cut) engine_ = card_map::engine::kLines;
+  }
+
+  void finish_step(bool cut, bool tick, const DeviationAccumulator::Outputs& accumulator) {
+    if (cut)
+      almost_ = 0;
+    else if (tick && accumulator.ready && !accumulator.at_end)  // at its end it makes no step
       almost_ = kAlmost;
     else if (almost_ != 0)
       --almost_;
-    if (in.swap) engine_ = in.engine;
-    if (in.cut) {
-      almost_ = 0;
-      engine_ = card_map::engine::kLines;
-    }
   }
 
   // The accumulator's two axes are those of its plane.
@@ -172,12 +176,13 @@ class PathEngines {
   PulseGenerator prescaler_;
   std::uint32_t ticks_ = 0;  // on their way, bit k leaves in k clocks; bit 0 is visible
   std::uint32_t swaps_ = 0;
-  std::uint32_t waiting_ = 0;  // path ticks
-  unsigned almost_ = 0;
+  std::uint32_t waiting_ = 0;                       // path ticks
   std::uint8_t engine_ = card_map::engine::kLines;  // of the path swapped in last
+  // The accumulator's: clocks in which no load may be asked for, and its steps by axis.
+  unsigned almost_ = 0;
   unsigned axis_x_ = 0;
   unsigned axis_y_ = 0;
-  std::uint8_t routed_step_ = 0;  // the accumulator's, by axis
+  std::uint8_t routed_step_ = 0;
   std::uint8_t routed_dir_ = 0;
   Outputs out_;
 };
