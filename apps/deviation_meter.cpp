@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "trammel/card_map.hpp"
+
 namespace trammel::app {
 namespace {
 
@@ -11,7 +13,7 @@ namespace {
 constexpr int kIncrementBits = 40;
 constexpr double kCentreScale = 256.0;
 
-double displacement(const driver::Line& line, unsigned axis) {
+double displacement(const driver::LineCommand& line, unsigned axis) {
   const auto product = static_cast<long double>(line.increment[axis]) * static_cast<long double>(line.ticks);
   return static_cast<double>(std::round(std::ldexp(product, -kIncrementBits)));
 }
@@ -21,8 +23,8 @@ double displacement(const driver::Line& line, unsigned axis) {
 void DeviationMeter::command(std::uint64_t number, const driver::Command& command) {
   Path path;
   path.number = number;
-  if (const auto* line = std::get_if<driver::Line>(&command)) {
-    for (unsigned axis = 0; axis < driver::kMaxAxes; ++axis) {
+  if (const auto* line = std::get_if<driver::LineCommand>(&command)) {
+    for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
       if ((line->mask >> axis & 1U) == 0) continue;
       path.axes[path.axis_count] = axis;
       path.target[path.axis_count++] = displacement(*line, axis);
@@ -30,7 +32,7 @@ void DeviationMeter::command(std::uint64_t number, const driver::Command& comman
     double square = 0;
     for (unsigned i = 0; i < path.axis_count; ++i) square += path.target[i] * path.target[i];
     path.length = std::sqrt(square);
-  } else if (const auto* arc = std::get_if<driver::Arc>(&command)) {
+  } else if (const auto* arc = std::get_if<driver::ArcCommand>(&command)) {
     path.arc = true;
     path.axis_count = 2;
     path.axes[0] = arc->axis_x;

@@ -10,6 +10,7 @@
 #include <deque>
 #include <optional>
 
+#include "trammel/card_map.hpp"
 #include "trammel/driver/commands.hpp"
 
 namespace trammel::app {
@@ -32,10 +33,10 @@ class DeviationMeter {
   struct Path {
     std::uint64_t number = 0;
     bool arc = false;
-    std::array<unsigned, driver::kMaxAxes> axes{};  // indices of the moving axes
+    std::array<unsigned, card_map::kMaxAxes> axes{};  // indices of the moving axes
     unsigned axis_count = 0;
-    std::array<double, driver::kMaxAxes> target{};  // line: displacement; arc: centre relative to the start (x, y)
-    double inner = 0;                               // arc: radii of the annulus
+    std::array<double, card_map::kMaxAxes> target{};  // line: displacement; arc: centre relative to the start (x, y)
+    double inner = 0;                                 // arc: radii of the annulus
     double outer = 0;
     double length = 0;  // line: length of the displacement
   };
@@ -43,7 +44,7 @@ class DeviationMeter {
   void enter(std::uint64_t command);
 
   std::deque<Path> paths_;
-  std::array<std::int64_t, driver::kMaxAxes> position_{};  // relative to the current path's start
+  std::array<std::int64_t, card_map::kMaxAxes> position_{};  // relative to the current path's start
   std::optional<std::uint64_t> tick_;
   double largest_line_ = 0;
   double largest_arc_ = 0;

@@ -9,9 +9,10 @@
 
 #include "progress_bar.hpp"
 #include "step_recorder.hpp"
+#include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
-#include "trammel/driver/planner.hpp"
 #include "trammel/driver/stream.hpp"
+#include "trammel/planner/planner.hpp"
 
 namespace trammel::app {
 namespace {
@@ -21,7 +22,7 @@ constexpr double kCentreScale = 256.0;
 // The commanded path of a segment as points. In mm, where an arc is a circle whatever the axes' scales.
 class CommandedPath {
  public:
-  CommandedPath(const driver::PlannedSegment& segment, const std::vector<double>& steps_per_mm)
+  CommandedPath(const planner::PlannedSegment& segment, const std::vector<double>& steps_per_mm)
       : axes_(std::min<std::size_t>(3, steps_per_mm.size())), axis_x_(segment.axis_x), axis_y_(segment.axis_y) {
     double square = 0;
     for (std::size_t a = 0; a < steps_per_mm.size(); ++a) {
@@ -30,7 +31,7 @@ class CommandedPath {
       square += std::pow(static_cast<double>(segment.end[a] - segment.start[a]), 2);
     }
     pulses_ = std::sqrt(square);
-    if (segment.kind != driver::MotionKind::kArc) return;
+    if (segment.kind != gcode::MotionKind::kArc) return;
     centre_x_ = static_cast<double>(segment.centre_x) / kCentreScale / steps_per_mm[axis_x_];
     centre_y_ = static_cast<double>(segment.centre_y) / kCentreScale / steps_per_mm[axis_y_];
     radius_ = std::hypot(start_[axis_x_] - centre_x_, start_[axis_y_] - centre_y_);
@@ -56,8 +57,8 @@ class CommandedPath {
   std::size_t axes_;
   std::size_t axis_x_;
   std::size_t axis_y_;
-  std::array<double, driver::kMaxAxes> start_{};
-  std::array<double, driver::kMaxAxes> end_{};
+  std::array<double, card_map::kMaxAxes> start_{};
+  std::array<double, card_map::kMaxAxes> end_{};
   double centre_x_ = 0;
   double centre_y_ = 0;
   double radius_ = 0;  // 0: a line
@@ -77,32 +78,32 @@ struct Survey {
 };
 
 bool is_geometry(const driver::Command& command) {
-  return std::holds_alternative<driver::Line>(command) || std::holds_alternative<driver::Arc>(command);
+  return std::holds_alternative<driver::LineCommand>(command) || std::holds_alternative<driver::ArcCommand>(command);
 }
 
 // How well a segment shows single pulses: an arc best, then a line of several axes, then any path.
-int detail_rank(const driver::PlannedSegment& segment) {
-  if (segment.kind == driver::MotionKind::kArc) return 3;
+int detail_rank(const planner::PlannedSegment& segment) {
+  if (segment.kind == gcode::MotionKind::kArc) return 3;
   int moving = 0;
   for (std::size_t a = 0; a < 3; ++a) moving += segment.end[a] != segment.start[a] ? 1 : 0;
   return std::min(moving, 2);
 }
 
-Survey survey(const driver::Program& program, const driver::Machine& machine, std::uint32_t clock_hz,
+Survey survey(const gcode::Program& program, const machine::Machine& machine, std::uint32_t clock_hz,
               const std::vector<double>& steps_per_mm) {
   constexpr double kArcPoints = 64;
   Survey result;
   ThinnedPath commanded(10000);
   int best_rank = 0;
-  driver::Planner planner(program, machine, clock_hz);
-  driver::PlannedSegment segment;
+  planner::Planner planner(program, machine, clock_hz);
+  planner::PlannedSegment segment;
   while (planner.next(segment)) {
     const auto geometry = std::find_if(segment.commands.begin(), segment.commands.end(), is_geometry);
     if (geometry != segment.commands.end()) {
       ++result.segments;
       const CommandedPath path(segment, steps_per_mm);
       if (commanded.given() == 0) commanded.add(path.at(0));
-      const double points = segment.kind == driver::MotionKind::kArc ? kArcPoints : 1;
+      const double points = segment.kind == gcode::MotionKind::kArc ? kArcPoints : 1;
       for (double i = 1; i <= points; ++i) commanded.add(path.at(i / points));
       const int rank = detail_rank(segment);
       if (rank > best_rank) {
@@ -124,9 +125,9 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(std::ceil(nanoseconds)));
 }
 
-void configure(driver::Card& card, const driver::Machine& machine) {
+void configure(driver::Card& card, const machine::Machine& machine) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const driver::MachineAxis& axis = machine.axes[i];
+    const machine::MachineAxis& axis = machine.axes[i];
     driver::AxisSettings settings;
     settings.step_length = rounded_up(axis.step_length_ns);
     settings.step_space = rounded_up(axis.step_space_ns);
@@ -158,7 +159,7 @@ class StepFork final : public sim::StepSink {
 // Streams the plan; errors of the card get the line of the program that was being run.
 class ProgramStream {
  public:
-  ProgramStream(const driver::Program& program, const driver::Machine& machine, sim::Engine& engine, driver::Card& card,
+  ProgramStream(const gcode::Program& program, const machine::Machine& machine, sim::Engine& engine, driver::Card& card,
                 StepRecorder& recorder, const Survey& plan, bool progress, RunWatcher* watcher)
       : program_(program),
         engine_(engine),
@@ -172,19 +173,19 @@ class ProgramStream {
         stream_(card, options()) {}
 
   // Gives back where the program ends, pulses.
-  driver::PulsePosition run() {
-    driver::PulsePosition end = planner_.start();
+  planner::Pulses run() {
+    planner::Pulses end = planner_.start();
     try {
-      driver::PlannedSegment segment;
+      planner::PlannedSegment segment;
       while (planner_.next(segment)) {
         for (const driver::Command& command : segment.commands) {
           recorder_.deviation().command(commands_++, command);
-          if (!std::holds_alternative<driver::Feed>(command)) geometry_lines_.push_back(segment.line);
+          if (!std::holds_alternative<driver::FeedCommand>(command)) geometry_lines_.push_back(segment.line);
         }
         if (watcher_ != nullptr) watcher_->sending(segment);
         stream_.send(segment.commands);
         if (watcher_ != nullptr) watcher_->sent(engine_.cycles());
-        if (segment.kind != driver::MotionKind::kDwell && segment.kind != driver::MotionKind::kEnd) end = segment.end;
+        if (segment.kind != gcode::MotionKind::kDwell && segment.kind != gcode::MotionKind::kEnd) end = segment.end;
         show();
       }
       stream_.finish();
@@ -224,13 +225,13 @@ class ProgramStream {
     return geometry_lines_[std::min(begun, geometry_lines_.size()) - 1];
   }
 
-  const driver::Program& program_;
+  const gcode::Program& program_;
   sim::Engine& engine_;
   StepRecorder& recorder_;
   const Survey& plan_;
   ProgressBar bar_;
   RunWatcher* watcher_;
-  driver::Planner planner_;
+  planner::Planner planner_;
   driver::Card& card_;
   std::uint32_t card_clock_hz_;
   std::uint64_t commands_ = 0;               // sent
@@ -239,8 +240,8 @@ class ProgramStream {
   driver::Stream stream_;
 };
 
-void check_end(const std::vector<std::int64_t>& card, const StepRecorder& recorder, const driver::PulsePosition& start,
-               const driver::PulsePosition& end) {
+void check_end(const std::vector<std::int64_t>& card, const StepRecorder& recorder, const planner::Pulses& start,
+               const planner::Pulses& end) {
   for (std::size_t a = 0; a < card.size(); ++a) {
     if (card[a] != recorder.position()[a]) {
       throw std::runtime_error(fmt::format("axis {}: the card counts {} pulses, {} were seen at the pin", a, card[a],
@@ -255,8 +256,8 @@ void check_end(const std::vector<std::int64_t>& card, const StepRecorder& record
 
 }  // namespace
 
-RunResult run_program(const driver::Program& program, const driver::Machine& machine,
-                      const sim::EngineOptions& engine_options, const RunOutputs& outputs, RunWatcher* watcher) {
+RunResult run_program(const gcode::Program& program, const machine::Machine& machine,
+                      const sim::SimulationOptions& engine_options, const RunOutputs& outputs, RunWatcher* watcher) {
   const auto begun = std::chrono::steady_clock::now();
   StepRecorder::Options recording;
   recording.steps = outputs.steps;
@@ -264,7 +265,7 @@ RunResult run_program(const driver::Program& program, const driver::Machine& mac
   recording.plot = outputs.plot.has_value();
   recording.clock_hz = engine_options.clock_hz;
   RunResult result;
-  for (const driver::MachineAxis& axis : machine.axes) {
+  for (const machine::MachineAxis& axis : machine.axes) {
     recording.steps_per_mm.push_back(axis.steps_per_mm);
     result.axes += axis.letter;
   }
@@ -278,13 +279,13 @@ RunResult run_program(const driver::Program& program, const driver::Machine& mac
   driver::Card card = driver::Card::open(*engine);
   configure(card, machine);
   ProgramStream stream(program, machine, *engine, card, recorder, plan, outputs.progress, watcher);
-  const driver::PulsePosition end = stream.run();
+  const planner::Pulses end = stream.run();
   const driver::Snapshot snapshot = card.snapshot();
   recorder.finish();
 
   result.final_position.assign(snapshot.position.begin(),
                                snapshot.position.begin() + static_cast<std::ptrdiff_t>(machine.axes.size()));
-  driver::Planner start(program, machine, engine_options.clock_hz);
+  planner::Planner start(program, machine, engine_options.clock_hz);
   check_end(result.final_position, recorder, start.start(), end);
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     result.final_position[a] += start.start()[a];

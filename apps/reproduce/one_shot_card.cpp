@@ -11,11 +11,11 @@
 #include "chapters.hpp"
 #include "picture.hpp"
 #include "trammel/driver/one_shot.hpp"
-#include "trammel/sim/engine.hpp"
+#include "trammel/sim/engines.hpp"
 
 namespace trammel::app::reproduce {
 
-using namespace model::interpolation;
+using namespace interpolation;
 
 driver::CardTiming paper_card() {
   driver::CardTiming timing;
@@ -54,7 +54,7 @@ driver::Displacement displacement_of(const Line& line) {
 
 // Runs a line of 2,000 clocks; with `hold`, the time base is ramped to a stop in the middle of it and up again.
 CardRun run_on_card(const Line& line, bool hold) {
-  sim::EngineOptions options;
+  sim::SimulationOptions options;
   options.kind = sim::EngineKind::kRtl;
   options.axes = 4;
   options.clock_hz = 10'000'000;

@@ -8,7 +8,7 @@ namespace trammel::test {
 namespace {
 
 bool is_barrier(const driver::Command& command) {
-  return std::holds_alternative<driver::Dwell>(command) || std::holds_alternative<driver::End>(command);
+  return std::holds_alternative<driver::DwellCommand>(command) || std::holds_alternative<driver::EndCommand>(command);
 }
 
 std::uint64_t word(std::int64_t value) { return static_cast<std::uint64_t>(value); }
@@ -26,8 +26,8 @@ void Hash::add(std::uint64_t word) {
   value_ ^= value_ >> 29U;
 }
 
-void StepHasher::sending(const driver::PlannedSegment& segment) {
-  arcs_ |= segment.kind == driver::MotionKind::kArc;
+void StepHasher::sending(const planner::PlannedSegment& segment) {
+  arcs_ |= segment.kind == gcode::MotionKind::kArc;
   for (const driver::Command& command : segment.commands) {
     commands_.push_back({sent_at_.size(), result_.barriers, segment.chords});
     if (is_barrier(command)) ++result_.barriers;

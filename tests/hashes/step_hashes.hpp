@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "program_run.hpp"
+#include "trammel/card_map.hpp"
 
 namespace trammel::test {
 
@@ -55,7 +56,7 @@ class StepHasher final : public app::RunWatcher {
  public:
   explicit StepHasher(Shift shift) : shift_(shift) {}
 
-  void sending(const driver::PlannedSegment& segment) override;
+  void sending(const planner::PlannedSegment& segment) override;
   void sent(std::uint64_t cycle) override;
   void path_step(const sim::PathStep& step) override;
   void pin_step(const sim::PinStep& step) override;
@@ -73,7 +74,7 @@ class StepHasher final : public app::RunWatcher {
     const Sent* command;
     std::int8_t direction;
   };
-  using Pulses = std::array<std::array<std::uint64_t, 2>, driver::kMaxAxes>;  // by axis: up, down
+  using Pulses = std::array<std::array<std::uint64_t, 2>, card_map::kMaxAxes>;  // by axis: up, down
 
   void end_tick();
   void end_chord();
@@ -91,7 +92,7 @@ class StepHasher final : public app::RunWatcher {
   Pulses chord_{};                   // of the command under way
 
   Hash pins_;
-  std::array<std::deque<Waiting>, driver::kMaxAxes> waiting_;
+  std::array<std::deque<Waiting>, card_map::kMaxAxes> waiting_;
   std::vector<sim::PinStep> cycle_;          // its steps
   std::int64_t corrected_ = 0;               // time of that cycle, shift taken off, since the first write
   std::optional<std::size_t> last_segment_;  // of the pins' steps

@@ -116,16 +116,16 @@ class Host : public model::CardSteps {
   std::uint8_t number = 0;
 };
 
-driver::Line line(std::uint64_t ticks, std::int64_t increment) {
-  driver::Line result;
+driver::LineCommand line(std::uint64_t ticks, std::int64_t increment) {
+  driver::LineCommand result;
   result.ticks = ticks;
   result.mask = 1;
   result.increment[0] = increment;
   return result;
 }
 
-driver::Feed feed(std::uint64_t ticks, unsigned clocks_a_tick = 1) {
-  driver::Feed result;
+driver::FeedCommand feed(std::uint64_t ticks, unsigned clocks_a_tick = 1) {
+  driver::FeedCommand result;
   result.ticks = ticks;
   result.rate = clocks_a_tick == 1 ? ~std::uint64_t{0} : (std::uint64_t{1} << 63) / clocks_a_tick * 2;
   return result;
@@ -141,7 +141,7 @@ void make_fault(Host& host) {
   host.number = 0;
   host.send(line(10, 0));
   host.send(feed(11));
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   host.clocks(200);
   ASSERT_EQ(host.read(reg::kFault), field::kFaultTickMismatch);
 }
@@ -158,7 +158,7 @@ TEST(ReferencePage, AddressesBetweenWordsAreUnknown) {
 
 TEST(ReferencePage, RefusalsOfTheStream) {
   Host host;
-  EXPECT_TRUE(host.send(driver::Dwell{1}));
+  EXPECT_TRUE(host.send(driver::DwellCommand{1}));
   // The third word of command 1 is wrong: bits 47:40 of the count.
   EXPECT_TRUE(host.write(reg::kStream, 0x01030020));
   EXPECT_TRUE(host.write(reg::kStream, 0x00000000));
@@ -263,7 +263,7 @@ TEST(ReferencePage, TiesOfLinesAndOfDirectMoves) {
     Host host;
     host.send(line(8, increment));
     host.send(feed(8, 40));
-    host.send(driver::End{});
+    host.send(driver::EndCommand{});
     host.idle();
     std::vector<std::uint64_t> ticks;
     for (const PathStep& step : host.path) ticks.push_back(step.tick);
@@ -321,9 +321,9 @@ struct Walk {
   }
 };
 
-driver::Arc arc(std::int32_t x, std::int32_t y, std::int32_t end_x, std::int32_t end_y, std::int64_t square, unsigned q,
-                bool clockwise, std::uint64_t path_ticks) {
-  driver::Arc result;
+driver::ArcCommand arc(std::int32_t x, std::int32_t y, std::int32_t end_x, std::int32_t end_y, std::int64_t square,
+                       unsigned q, bool clockwise, std::uint64_t path_ticks) {
+  driver::ArcCommand result;
   result.clockwise = clockwise;
   result.quadrants = static_cast<std::uint16_t>(q);
   result.end_x = end_x - x;
@@ -337,11 +337,11 @@ driver::Arc arc(std::int32_t x, std::int32_t y, std::int32_t end_x, std::int32_t
 }
 
 // The steps of an arc on the card; FAULT in `fault`.
-std::vector<std::pair<int, int>> steps_of(const driver::Arc& command, std::uint32_t& fault) {
+std::vector<std::pair<int, int>> steps_of(const driver::ArcCommand& command, std::uint32_t& fault) {
   Host host;
   host.send(command);
   host.send(feed(command.ticks, 8));
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   host.idle();
   fault = host.read(reg::kFault);
   std::vector<std::pair<int, int>> steps;
@@ -351,7 +351,7 @@ std::vector<std::pair<int, int>> steps_of(const driver::Arc& command, std::uint3
   return steps;
 }
 
-Walk walk_of(const driver::Arc& a) {
+Walk walk_of(const driver::ArcCommand& a) {
   return {static_cast<std::int64_t>(a.deviation),
           static_cast<std::int64_t>(a.gradient_x),
           static_cast<std::int64_t>(a.gradient_y),
@@ -368,7 +368,7 @@ TEST(ReferencePage, TheArcRuleStepForStep) {
   for (const bool clockwise : {false, true}) {
     for (const int radius : {5, 13, 25}) {
       const unsigned steps = 8 * static_cast<unsigned>(radius);
-      const driver::Arc full = arc(radius, 0, radius, 0, radius * radius, 4, clockwise, steps);
+      const driver::ArcCommand full = arc(radius, 0, radius, 0, radius * radius, 4, clockwise, steps);
       std::uint32_t fault = 0;
       const auto made = steps_of(full, fault);
       EXPECT_EQ(fault, 0U);
@@ -389,11 +389,11 @@ TEST(ReferencePage, WhatWrongNumbersOfAnArcDo) {
   // A quarter of R = 25, counter-clockwise from (25, 0) to (0, 25): 50 steps and no change of sign, as zero is
   // positive.
   std::uint32_t fault = 0;
-  const driver::Arc good = arc(25, 0, 0, 25, 625, 0, false, 50);
+  const driver::ArcCommand good = arc(25, 0, 0, 25, 625, 0, false, 50);
   EXPECT_EQ(steps_of(good, fault).size(), 50U);
   EXPECT_EQ(fault, 0U);
   // path_ticks is only compared with the count; the prescaler decides how many there are.
-  driver::Arc other = good;
+  driver::ArcCommand other = good;
   other.path_ticks = 1;
   EXPECT_EQ(steps_of(other, fault).size(), 50U);
   EXPECT_EQ(fault, 0U);
@@ -410,7 +410,7 @@ TEST(ReferencePage, WhatWrongNumbersOfAnArcDo) {
   steps_of(other, fault);
   EXPECT_EQ(fault, field::kFaultPathIncomplete);
   // On to (-25, 0): x changes its sign, y ends at zero, which is positive.
-  const driver::Arc half = arc(25, 0, -25, 0, 625, 1, false, 100);
+  const driver::ArcCommand half = arc(25, 0, -25, 0, 625, 1, false, 100);
   EXPECT_EQ(steps_of(half, fault).size(), 100U);
   EXPECT_EQ(fault, 0U);
   other = half;
@@ -428,7 +428,7 @@ TEST(ReferencePage, ABarrierOfNClocksStopsTheTicksForOverheadAndMaxOneN) {
     Host host(8);
     host.write(reg::kHold, 1);
     host.clocks(20);
-    driver::Line next = line(4, kOnePulse / 4);
+    driver::LineCommand next = line(4, kOnePulse / 4);
     next.mask = static_cast<std::uint8_t>((1U << axes) - 1);
     host.send(line(4, kOnePulse / 4));
     host.send(feed(4));
@@ -442,11 +442,11 @@ TEST(ReferencePage, ABarrierOfNClocksStopsTheTicksForOverheadAndMaxOneN) {
   };
   for (unsigned axes = 1; axes <= 8; ++axes) {
     const std::uint64_t overhead = std::max(38U, 22 + 3 * axes);
-    EXPECT_EQ(gap(driver::Dwell{0}, axes), overhead + 1) << axes;
-    EXPECT_EQ(gap(driver::Dwell{1}, axes), overhead + 1);
-    EXPECT_EQ(gap(driver::Dwell{2}, axes), overhead + 2);
-    EXPECT_EQ(gap(driver::Dwell{1000}, axes), overhead + 1000);
-    EXPECT_EQ(gap(driver::End{}, axes), overhead + 1);
+    EXPECT_EQ(gap(driver::DwellCommand{0}, axes), overhead + 1) << axes;
+    EXPECT_EQ(gap(driver::DwellCommand{1}, axes), overhead + 1);
+    EXPECT_EQ(gap(driver::DwellCommand{2}, axes), overhead + 2);
+    EXPECT_EQ(gap(driver::DwellCommand{1000}, axes), overhead + 1000);
+    EXPECT_EQ(gap(driver::EndCommand{}, axes), overhead + 1);
   }
 }
 
@@ -471,7 +471,7 @@ TEST(ReferencePage, RecoveryInWhicheverOrder) {
     host.number = 0;
     EXPECT_TRUE(host.send(line(10, kOnePulse / 10)));
     EXPECT_TRUE(host.send(feed(10)));
-    EXPECT_TRUE(host.send(driver::End{}));
+    EXPECT_TRUE(host.send(driver::EndCommand{}));
     host.idle();
     EXPECT_EQ(host.read(reg::kStatus), field::kStatusEnded);
     EXPECT_EQ(host.position(0), 1);
@@ -488,7 +488,7 @@ TEST(ReferencePage, WhichPinIsWhich) {
     host.send(line(3, kOnePulse));
     host.send(line(3, -kOnePulse));
     host.send(feed(6, 100));
-    host.send(driver::End{});
+    host.send(driver::EndCommand{});
     std::vector<unsigned> seen;
     for (int clock = 0; clock < 2000; ++clock) {
       host.card.clock({});
@@ -516,7 +516,7 @@ TEST(ReferencePage, TheShapersReversal) {
   host.send(line(1, kOnePulse));
   host.send(line(1, -kOnePulse));
   host.send(feed(2));
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   host.write(reg::kHold, 0);
   host.idle();
   ASSERT_EQ(host.pins.size(), 2U);
@@ -550,7 +550,7 @@ TEST(ReferencePage, TheShapersShortestPeriod) {
       host.clocks(20);
       host.send(line(4, kOnePulse));
       host.send(feed(4));
-      host.send(driver::End{});
+      host.send(driver::EndCommand{});
       host.write(reg::kHold, 0);
       host.idle();
       ASSERT_EQ(host.pins.size(), 4U);

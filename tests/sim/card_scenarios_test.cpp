@@ -39,7 +39,7 @@ bool same(const std::vector<sim::PathStep>& a, const std::vector<sim::PathStep>&
 }
 
 std::unique_ptr<sim::Engine> make(sim::EngineKind kind) {
-  sim::EngineOptions options;
+  sim::SimulationOptions options;
   options.kind = kind;
   options.clock_hz = 10'000'000;
   return sim::make_engine(options);
@@ -108,11 +108,11 @@ TEST_P(CardScenario, MakesThePapersLinesInOneShot) {
 
 TEST_P(CardScenario, LeavesNoGapBetweenLinesOf22Ticks) {
   for (int i = 0; i < 12; ++i) host.send(line(22, {1, 0, 0, 0}));
-  host.send(driver::Line{22 * 2, 15, {1 << 30, 1 << 30, 1 << 30, 0}});
-  driver::Feed full = feed(22 * 14, 1);
+  host.send(driver::LineCommand{22 * 2, 15, {1 << 30, 1 << 30, 1 << 30, 0}});
+  driver::FeedCommand full = feed(22 * 14, 1);
   full.rate = ~std::uint64_t{0};
   host.send(full);
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   finish();
   ASSERT_EQ(steps.pins.size(), 12U);
   for (std::size_t i = 1; i < steps.pins.size(); ++i) EXPECT_EQ(steps.pins[i].cycle - steps.pins[i - 1].cycle, 22U);
@@ -128,11 +128,11 @@ TEST_P(CardScenario, EndsArcsOnTheirEndPoint) {
   arc.sweep = 1.5707963267948966;
   arc.axis_x = 2;
   arc.axis_y = 1;
-  const driver::Arc command = driver::make_arc(arc, 1000);
+  const driver::ArcCommand command = driver::make_arc(arc, 1000);
   host.send(command);
   host.send(line(100, {5, 0, 0, -7}));
   host.send(feed(1100, 12));
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   finish();
   EXPECT_THAT(card->positions(), ElementsAre(5, 25, -25, -7));
   EXPECT_EQ(steps.path.size(), command.path_ticks + 12);
@@ -146,7 +146,7 @@ TEST_P(CardScenario, HoldAndOtherRatioLeaveThePathAsItIs) {
     steps.path.clear();
     for (int i = 0; i < 6; ++i) host.send(line(150, {40 - 13 * i, 9 * i - 20, i, -i}));
     host.send(feed(900, 9));
-    host.send(driver::End{});
+    host.send(driver::EndCommand{});
     if (disturbed) {
       card->write(reg::kSlew, 0x20'0000);
       card->write(reg::kRatioFeed, 0x9000);
@@ -174,7 +174,7 @@ TEST_P(CardScenario, DwellsInRealTime) {
     steps.pins.clear();
     host.send(line(40, {1}));
     host.send(feed(40, 30));
-    host.send(driver::Dwell{clocks});
+    host.send(driver::DwellCommand{clocks});
     host.send(line(40, {1}));
     host.send(feed(40, 30));
     finish();
@@ -188,7 +188,7 @@ TEST_P(CardScenario, DwellsInRealTime) {
 TEST_P(CardScenario, StopsWhereTicksDoNotFit) {
   host.send(line(100, {50}));
   host.send(feed(60, 20));
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   card->wait(5000);
   EXPECT_EQ(card->read(reg::kFault), field::kFaultTickMismatch);
   const auto stopped = card->positions();
@@ -207,7 +207,7 @@ TEST_P(CardScenario, StopsAtAnArcThatMissesItsEnd) {
   driver::ArcGeometry arc;
   arc.centre_x = -10 * driver::kCentreUnitsPerPulse;
   arc.sweep = 6.283185307179586;
-  driver::Arc command = driver::make_arc(arc, 400);
+  driver::ArcCommand command = driver::make_arc(arc, 400);
   command.prescale /= 2;
   host.send(command);
   host.send(line(50, {10}));

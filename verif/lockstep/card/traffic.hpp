@@ -102,11 +102,11 @@ inline void Traffic::section(bool faulty) {
   }
   switch (below(4)) {
     case 0:
-      send(driver::Dwell{one_in(3) ? below(3) : below(300)});
+      send(driver::DwellCommand{one_in(3) ? below(3) : below(300)});
       break;
     case 1:
-      send(driver::End{});
-      if (one_in(2)) send(driver::Dwell{below(40)});
+      send(driver::EndCommand{});
+      if (one_in(2)) send(driver::DwellCommand{below(40)});
       break;
     default:
       break;

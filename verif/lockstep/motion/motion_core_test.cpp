@@ -10,8 +10,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "lockstep.hpp"
 #include "programs.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {
