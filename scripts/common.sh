@@ -16,7 +16,7 @@ debian_packages=(
   clang-14 libclang-rt-14-dev  # libFuzzer
 )
 # Checks of the sources, other RTL readers, synthesis.
-debian_packages_check=(clang-format iverilog yosys)
+debian_packages_check=(clang-format universal-ctags iverilog yosys)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static googletest)
