@@ -85,7 +85,7 @@ class Bench {
  private:
   void random_pace() {
     abort_every_ = dice_.chance(3) ? 200 + dice_.below(500) : 20'000;
-    start_every_ = dice_.chance(2) ? 400 : 5000;
+    start_every_ = dice_.chance(2) ? 100 : 2000;
     write_every_ = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
     stretch_every_ = dice_.chance(3) ? 1000 : 10;
     programs_.wrong_every = dice_.chance(3) ? 10 : 1000;
