@@ -8,7 +8,6 @@ module barrier (
     input  wire logic clk_i,
     input  wire logic rst_i,
     input  wire logic cut_i,
-    input  wire logic go_i,             // no fault
     input  wire logic geometry_at_i,
     input  wire logic geometry_runs_i,
     input  wire logic feed_at_i,
@@ -40,7 +39,7 @@ module barrier (
   logic         alone;
   logic         over;
 
-  assign start = geometry_at_i && feed_at_i && go_i;
+  assign start = geometry_at_i && feed_at_i;
   assign alone = (geometry_at_i && feed_runs_i) || (feed_at_i && geometry_runs_i);
   assign over  = state_q == COUNT && (zero_i || last_i);
 
@@ -69,7 +68,7 @@ module barrier (
   end
 
   always_ff @(posedge clk_i) begin
-    mismatch_o <= alone && go_i && !done_o && !cut_i && !rst_i;
+    mismatch_o <= alone && !cut_i && !rst_i;
     if (rst_i || cut_i || begin_i || load_o) ended_o <= 1'b0;
     else if (over && end_i) ended_o <= 1'b1;
   end

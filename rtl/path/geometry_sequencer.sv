@@ -8,7 +8,6 @@ module geometry_sequencer #(
     input  wire logic            clk_i,
     input  wire logic            rst_i,
     input  wire logic            cut_i,
-    input  wire logic            go_i,             // no fault
     // queue
     input  wire logic            empty_i,
     input  wire logic [    15:0] word_i,

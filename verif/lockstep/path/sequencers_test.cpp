@@ -53,7 +53,6 @@ class Bench {
     direct();
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
-    in_.go = stand_for_ == 0;
     if (stand_for_ != 0) --stand_for_;
     in_.elsewhere = dice_.chance(200);
     if (in_.cut) check_.event("cut");
@@ -161,7 +160,6 @@ class Bench {
 
   void apply() {
     dut_->cut_i = in_.cut;
-    dut_->go_i = in_.go;
     dut_->geometry_empty_i = in_.geometry_empty;
     dut_->geometry_word_i = in_.geometry_word;
     dut_->feed_empty_i = in_.feed_empty;
@@ -225,7 +223,7 @@ class Bench {
   SnapshotWord chain_[2];
   unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
-  unsigned stand_for_ = 0;    // clocks without go
+  unsigned stand_for_ = 0;    // clocks of a fault
   unsigned direct_step_ = 0;  // of a direct move; 0: none
   unsigned rest_for_ = 0;     // clocks
   std::uint64_t length_ = 0;
