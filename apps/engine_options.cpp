@@ -44,6 +44,7 @@ sim::EngineOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_clock,
     throw UsageError("--trace: only the rtl engine has waveforms (--engine rtl)");
   }
   options.trace = trace;
+  options.rtl_thread = true;
   return options;
 }
 

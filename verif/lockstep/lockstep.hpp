@@ -36,8 +36,8 @@ class EventLog {
   // `what` must outlive the log (a string literal).
   void add(std::uint64_t cycle, const char* what, std::uint64_t value) { events_.push_back({cycle, what, value}); }
   std::size_t size() const { return events_.size(); }
-  // No mismatch is left to be found before the last event: only the last kKept stay.
-  void settle();
+  // No mismatch is left to be found up to `cycle`: of the events that are not younger only the last kKept stay.
+  void settle(std::uint64_t cycle);
   // The last kKept that are not younger than `cycle`, a line each.
   std::string text(std::uint64_t cycle) const;
 
@@ -47,6 +47,9 @@ class EventLog {
     const char* what;
     std::uint64_t value;
   };
+  // The end of the events that are not younger than `cycle`.
+  std::vector<Event>::const_iterator end_of(std::uint64_t cycle) const;
+
   std::vector<Event> events_;
 };
 
@@ -62,7 +65,7 @@ class Checker {
   // Keeps the event for the report of a later mismatch; `what` must outlive the Checker (a string literal).
   void event(const char* what, std::uint64_t value = 0) {
     events_.add(cycles_, what, value);
-    if (events_.size() >= 8 * EventLog::kKept) events_.settle();
+    if (events_.size() >= 8 * EventLog::kKept) events_.settle(cycles_);
   }
 
   // Compares one signal in the present cycle; throws Mismatch on a difference.

@@ -1,6 +1,8 @@
 // The simulated card, in two engines with the same step lists, cycle by cycle the same numbers:
 // kRtl is the Verilated card in lockstep with the golden model, kModel the golden model alone, going from tick to tick.
-// Both take bus accesses in the same number of clocks. One engine, one thread; several engines may live side by side.
+// Both take bus accesses in the same number of clocks. Several engines may live side by side. An engine is not
+// thread-safe: one thread at a time calls it, and only that one sees its steps and exceptions, also where the engine
+// keeps a thread of its own (EngineOptions::rtl_thread).
 #pragma once
 
 #include <cstdint>
@@ -44,6 +46,7 @@ struct EngineOptions {
   std::uint32_t clock_hz = 1'000'000;  // what the card says of itself; 1 cycle is 1 / clock_hz seconds
   std::optional<std::string> trace;    // FST file, kRtl only
   std::uint64_t seed = 1;              // named in the report of a mismatch
+  bool rtl_thread = false;             // kRtl: the Verilated card in a thread of its own; not with a trace
 };
 
 // A card on a simulated bus: the driver's Bus, with wait() running clocks. A mismatch throws lockstep::Mismatch out
