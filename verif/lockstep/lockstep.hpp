@@ -96,18 +96,20 @@ template <class Dut>
 void rising_edge(Dut& dut);
 
 // Owns a Verilated model and its context. Several live side by side: eval() does not select its context by itself,
-// so every evaluation and the destructor make it the thread's current one first.
+// so every evaluation and the destructor make it the thread's current one first. One thread at a time; not always the
+// same.
 template <class Dut>
 class Simulated {
  public:
   Simulated() : context_(std::make_unique<VerilatedContext>()) {
-    Verilated::threadContextp(context_.get());
+    select();
+    context_->threads(1);  // else the context starts threads that nothing uses
     dut_ = std::make_unique<Dut>(context_.get());
     dut_->clk_i = 0;
     dut_->eval();
   }
   ~Simulated() {
-    Verilated::threadContextp(context_.get());
+    select();
     dut_->final();
     dut_.reset();
   }
@@ -118,13 +120,13 @@ class Simulated {
   Dut& operator*() { return *dut_; }
   // One clock period: inputs were set before the call; after it the outputs show the state after the rising edge.
   void clock() {
-    Verilated::threadContextp(context_.get());
+    select();
     rising_edge(*dut_);
   }
   // The same with both edges evaluated, `at_edge` called after each.
   template <class AtEdge>
   void clock_by_both_edges(AtEdge at_edge) {
-    Verilated::threadContextp(context_.get());
+    select();
     dut_->clk_i = 1;
     dut_->eval();
     at_edge();
@@ -135,6 +137,11 @@ class Simulated {
   VerilatedContext& context() { return *context_; }
 
  private:
+  // Not in each clock anew: setting it also writes a variable that all threads share.
+  void select() {
+    if (Verilated::threadContextp() != context_.get()) Verilated::threadContextp(context_.get());
+  }
+
   std::unique_ptr<VerilatedContext> context_;
   std::unique_ptr<Dut> dut_;
 };
