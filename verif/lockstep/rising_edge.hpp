@@ -13,9 +13,9 @@ void rising_edge(Dut& dut) {
 }
 
 // All that eval() finds to do at a rising edge when nothing in the RTL happens at another (JoinVerilated.cmake refuses
-// other events than posedge clk_i): the functions that Verilator 5.006 wrote for what depends on inputs and for the edge,
-// without the search for triggers before, between and after them. clk_i and Verilator's memory of it stay as they are, so
-// eval() finds no edge afterwards.
+// other events than posedge clk_i): the functions that Verilator 5.006 wrote for what depends on inputs and for the
+// edge, without the search for triggers before, between and after them. clk_i and Verilator's memory of it stay as they
+// are, so eval() finds no edge afterwards.
 template <class Root>
 void evaluate_inputs(Root& root, void (*eval_ico)(Root*)) {
   root.__VicoTriggered.at(0) = true;
