@@ -38,7 +38,7 @@ class BlockBuilder {
     double jerk;          // pulses/s^3
     double lowest;        // mm, soft limits
     double highest;
-    SpeedLimit limit;        // what `velocity` comes from
+    SpeedLimit limit;     // what `velocity` comes from
     unsigned feed_group;  // which feed it counts for: 0 X Y Z, 1 U V W, 2 A B C, 3 E
   };
   // Along a path in a unit of its own: pulses or unit steps.
@@ -56,7 +56,7 @@ class BlockBuilder {
   bool build_accumulator_arc(Block& block);
   bool build_chords(Block& block);
   bool build_dwell(Block& block);
-  PathLimits curve_limits(const Block& block, double radius, double acceleration) const;
+  static PathLimits curve_limits(PathLimits limits, double radius, double axis_acceleration);
   void finish(Block& block, double length, const PathLimits& limits, double feed_length);
   bool check(std::size_t axis, double mm);
   bool check_arc(const Block& block);

@@ -1,0 +1,188 @@
+// Blocks of arcs: on the accumulator where the scales are equal and it reaches, else as chords.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "chords.hpp"
+#include "trammel/driver/arc.hpp"
+#include "trammel/planner/block_builder.hpp"
+#include "trammel/planner/trigonometry.hpp"
+
+namespace trammel::planner {
+namespace {
+
+constexpr double kMaxRadius = 0x1p44;      // pulses; the centre in 1/256 pulses fits 64 bits
+constexpr double kClocksPerPathTick = 10;  // the accumulator takes 9
+
+double hypotenuse(double x, double y) { return std::sqrt(x * x + y * y); }
+
+ExactArc exact_arc(const gcode::Motion& motion, const gcode::Coordinates& from) {
+  const double start_x = from[motion.axis_x] - motion.centre_x;
+  const double start_y = from[motion.axis_y] - motion.centre_y;
+  const double end_x = motion.target[motion.axis_x] - motion.centre_x;
+  const double end_y = motion.target[motion.axis_y] - motion.centre_y;
+  const double angle_start = arc_tangent(start_y, start_x);
+  double sweep = 2 * kPi;
+  if (!motion.full_circle) {
+    sweep = (arc_tangent(end_y, end_x) - angle_start) * (motion.clockwise ? -1 : 1);
+    sweep += sweep <= 0 ? 2 * kPi : 0;
+  }
+  return {motion.centre_x, motion.centre_y, hypotenuse(start_x, start_y), hypotenuse(end_x, end_y), angle_start, sweep};
+}
+
+std::int64_t centre_units(double mm, double steps_per_mm) {
+  return std::llround(mm * steps_per_mm * static_cast<double>(driver::kCentreUnitsPerPulse));
+}
+
+double largest_radius(const Block& block) { return std::max(block.exact.radius_start, block.exact.radius_end); }
+
+// None where the accumulator's bounds do not admit the arc.
+std::optional<driver::ArcCommand> accumulator_arc(const Block& block) {
+  const std::int64_t start_x = block.start[block.axis_x];
+  const std::int64_t start_y = block.start[block.axis_y];
+  driver::ArcGeometry geometry;
+  geometry.centre_x = block.centre_x - start_x * driver::kCentreUnitsPerPulse;
+  geometry.centre_y = block.centre_y - start_y * driver::kCentreUnitsPerPulse;
+  const std::int64_t end_x = block.end[block.axis_x] - start_x;
+  const std::int64_t end_y = block.end[block.axis_y] - start_y;
+  if (end_x != static_cast<std::int32_t>(end_x) || end_y != static_cast<std::int32_t>(end_y)) return std::nullopt;
+  geometry.end_x = static_cast<std::int32_t>(end_x);
+  geometry.end_y = static_cast<std::int32_t>(end_y);
+  geometry.clockwise = block.clockwise;
+  geometry.sweep = block.exact.sweep;
+  geometry.axis_x = block.axis_x;
+  geometry.axis_y = block.axis_y;
+  try {
+    return driver::prepare(geometry);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::uint64_t chord_count(const ExactArc& arc, double largest_steps_per_mm) {
+  constexpr double kChordError = 0.25;  // pulses
+  const double radius = std::max(arc.radius_start, arc.radius_end) * largest_steps_per_mm;
+  // A chord over the angle d strays r (1 - cos(d / 2)) from its arc; the arc sine keeps its digits where d is small.
+  const double turn = radius > kChordError ? 4 * arc_sine(std::sqrt(kChordError / radius / 2)) : kPi;
+  return static_cast<std::uint64_t>(std::ceil(arc.sweep / std::min(turn, kPi / 4)));
+}
+
+// The arc's extremes: its start and end are targets, the others lie at whole quarters of a turn.
+bool BlockBuilder::check_arc(const Block& block) {
+  const ExactArc& arc = block.exact;
+  const double scale = std::max(axes_[block.axis_x].steps_per_mm, axes_[block.axis_y].steps_per_mm);
+  if (!(largest_radius(block) * scale <= kMaxRadius)) {
+    return refuse(gcode::ErrorCode::kArcTooLarge,
+                  fmt::format("an arc of radius {:.10g} mm is too large", largest_radius(block)));
+  }
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    double turned = (quarter * (kPi / 2) - arc.angle_start) * (block.clockwise ? -1 : 1);
+    while (turned < 0) turned += 2 * kPi;
+    while (turned >= 2 * kPi) turned -= 2 * kPi;
+    if (turned > arc.sweep) continue;
+    const double radius = arc.radius_start + (arc.radius_end - arc.radius_start) * (turned / arc.sweep);
+    const double side = quarter < 2 ? radius : -radius;
+    const bool fits =
+        quarter % 2 == 0 ? check(block.axis_x, arc.centre_x + side) : check(block.axis_y, arc.centre_y + side);
+    if (!fits) return false;
+  }
+  return true;
+}
+
+bool BlockBuilder::build_arc(Block& block) {
+  block.clockwise = motion_.clockwise;
+  block.axis_x = motion_.axis_x;
+  block.axis_y = motion_.axis_y;
+  block.exact = exact_arc(motion_, exact_);
+  if (!check_arc(block)) return false;
+  const double scale_x = axes_[block.axis_x].steps_per_mm;
+  const double scale_y = axes_[block.axis_y].steps_per_mm;
+  block.centre_x = centre_units(motion_.centre_x, scale_x);
+  block.centre_y = centre_units(motion_.centre_y, scale_y);
+  block.jerk = std::min(axes_[block.axis_x].jerk / scale_x, axes_[block.axis_y].jerk / scale_y);
+  // Radius and bounds of the accumulator are checked where the command is made.
+  if (card_.accumulator && scale_x == scale_y) {
+    if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block)) {
+      block.arc = *arc;
+      return build_accumulator_arc(block);
+    }
+  }
+  return build_chords(block);
+}
+
+// Limits of an arc: the speed changes along it in direction, and on the accumulator in size too (uniform in unit steps,
+// as x'' = V^2 / (r (|sin| + |cos|)^3) at most V^2 / r), so that on either axis the two accelerations may add up; each
+// gets half of the axis's. `velocity`: what the axes allow.
+BlockBuilder::PathLimits BlockBuilder::curve_limits(PathLimits limits, double radius, double axis_acceleration) {
+  limits.acceleration = axis_acceleration / 2;
+  const double curve = std::sqrt(radius * axis_acceleration / 2);
+  if (curve < limits.velocity) {
+    limits.velocity = curve;
+    limits.limit = SpeedLimit::kAcceleration;
+  }
+  return limits;
+}
+
+bool BlockBuilder::build_accumulator_arc(Block& block) {
+  const Axis& x = axes_[block.axis_x];
+  const Axis& y = axes_[block.axis_y];
+  const double radius = largest_radius(block);
+  // In unit steps: the speed that the faster axis has where the arc runs along it.
+  PathLimits limits{static_cast<double>(block.arc.path_ticks), x.velocity, 0, x.limit};
+  if (y.velocity < limits.velocity) {
+    limits.velocity = y.velocity;
+    limits.limit = y.limit;
+  }
+  if (card_.clock_hz / kClocksPerPathTick < limits.velocity) {
+    limits.velocity = card_.clock_hz / kClocksPerPathTick;
+    limits.limit = SpeedLimit::kClock;
+  }
+  limits = curve_limits(limits, radius * x.steps_per_mm, std::min(x.acceleration, y.acceleration));
+  block.geometry = Geometry::kArc;
+  block.pulses = limits.length;
+  // Two feed ticks a unit step at least: the step is then within a tick of its time.
+  block.least_ticks = 2 * block.arc.path_ticks;
+  finish(block, radius * block.exact.sweep, limits, radius * block.exact.sweep);
+  return true;
+}
+
+// One profile over all chords, each the same number of ticks: they cover equal angles.
+bool BlockBuilder::build_chords(Block& block) {
+  const Axis& x = axes_[block.axis_x];
+  const Axis& y = axes_[block.axis_y];
+  const double scale = std::max(x.steps_per_mm, y.steps_per_mm);
+  block.geometry = Geometry::kChords;
+  block.chords = chord_count(block.exact, scale);
+  block.chord_lines = 0;
+  Corner longest{0, 0};
+  for_each_chord(block, x.steps_per_mm, y.steps_per_mm, [&](Corner step) {
+    ++block.chord_lines;
+    longest = {std::max(longest.x, std::abs(step.x)), std::max(longest.y, std::abs(step.y))};
+  });
+  if (block.chord_lines == 0) return false;
+  const double radius = largest_radius(block);
+  block.pulses = radius * block.exact.sweep * scale;
+  block.least_ticks = static_cast<std::uint64_t>(std::max({longest.x, longest.y, std::int64_t{1}}));
+  PathLimits limits{block.pulses, std::numeric_limits<double>::infinity(), 0, SpeedLimit::kNone};
+  const auto bound = [&](const Axis& axis, std::int64_t pulses) {
+    const double velocity =
+        axis.velocity * limits.length / static_cast<double>(block.chord_lines) / static_cast<double>(pulses);
+    if (pulses == 0 || velocity >= limits.velocity) return;
+    limits.velocity = velocity;
+    limits.limit = axis.limit;
+  };
+  bound(x, longest.x);
+  bound(y, longest.y);
+  limits = curve_limits(limits, radius * scale,
+                        scale * std::min(x.acceleration / x.steps_per_mm, y.acceleration / y.steps_per_mm));
+  finish(block, radius * block.exact.sweep, limits, radius * block.exact.sweep);
+  return true;
+}
+
+}  // namespace trammel::planner
