@@ -105,7 +105,6 @@ bool BlockBuilder::build_arc(Block& block) {
   const double scale_y = axes_[block.axis_y].steps_per_mm;
   block.centre_x = centre_units(motion_.centre_x, scale_x);
   block.centre_y = centre_units(motion_.centre_y, scale_y);
-  block.jerk = std::min(axes_[block.axis_x].jerk / scale_x, axes_[block.axis_y].jerk / scale_y);
   // Radius and bounds of the accumulator are checked where the command is made.
   if (card_.accumulator && scale_x == scale_y) {
     if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block)) {
@@ -116,39 +115,37 @@ bool BlockBuilder::build_arc(Block& block) {
   return build_chords(block);
 }
 
+void BlockBuilder::limit_speed(Block& block, double speed, SpeedLimit limit) {
+  if (speed >= block.speed) return;
+  block.speed = speed;
+  block.limit = limit;
+}
+
 // Limits of an arc: the speed changes along it in direction, and on the accumulator in size too (uniform in unit steps,
 // as x'' = V^2 / (r (|sin| + |cos|)^3) at most V^2 / r), so that on either axis the two accelerations may add up; each
-// gets half of the axis's. `velocity`: what the axes allow.
-BlockBuilder::PathLimits BlockBuilder::curve_limits(PathLimits limits, double radius, double axis_acceleration) {
-  limits.acceleration = axis_acceleration / 2;
-  const double curve = std::sqrt(radius * axis_acceleration / 2);
-  if (curve < limits.velocity) {
-    limits.velocity = curve;
-    limits.limit = SpeedLimit::kAcceleration;
-  }
-  return limits;
+// gets half of the axis's.
+void BlockBuilder::limit_curve(Block& block, double radius, double axis_acceleration) {
+  block.acceleration = axis_acceleration / 2;
+  limit_speed(block, std::sqrt(radius * axis_acceleration / 2), SpeedLimit::kAcceleration);
 }
 
 bool BlockBuilder::build_accumulator_arc(Block& block) {
   const Axis& x = axes_[block.axis_x];
   const Axis& y = axes_[block.axis_y];
   const double radius = largest_radius(block);
-  // In unit steps: the speed that the faster axis has where the arc runs along it.
-  PathLimits limits{static_cast<double>(block.arc.path_ticks), x.velocity, 0, x.limit};
-  if (y.velocity < limits.velocity) {
-    limits.velocity = y.velocity;
-    limits.limit = y.limit;
-  }
-  if (card_.clock_hz / kClocksPerPathTick < limits.velocity) {
-    limits.velocity = card_.clock_hz / kClocksPerPathTick;
-    limits.limit = SpeedLimit::kClock;
-  }
-  limits = curve_limits(limits, radius * x.steps_per_mm, std::min(x.acceleration, y.acceleration));
   block.geometry = Geometry::kArc;
-  block.pulses = limits.length;
+  block.length = radius * block.exact.sweep;
+  block.pulses = static_cast<double>(block.arc.path_ticks);
   // Two feed ticks a unit step at least: the step is then within a tick of its time.
   block.least_ticks = 2 * block.arc.path_ticks;
-  finish(block, radius * block.exact.sweep, limits, radius * block.exact.sweep);
+  // The speed that the faster axis has where the arc runs along it.
+  block.speed = x.velocity;
+  block.limit = x.limit;
+  limit_speed(block, y.velocity, y.limit);
+  limit_speed(block, card_.clock_hz / kClocksPerPathTick, SpeedLimit::kClock);
+  limit_curve(block, radius * x.steps_per_mm, std::min(x.acceleration, y.acceleration));
+  block.jerk = std::min(x.jerk, y.jerk);
+  apply_feed(block, block.length);
   return true;
 }
 
@@ -167,21 +164,19 @@ bool BlockBuilder::build_chords(Block& block) {
   });
   if (block.chord_lines == 0) return false;
   const double radius = largest_radius(block);
+  const double lines = static_cast<double>(block.chord_lines);
+  block.length = radius * block.exact.sweep;
   block.pulses = radius * block.exact.sweep * scale;
-  block.least_ticks = static_cast<std::uint64_t>(std::max({longest.x, longest.y, std::int64_t{1}}));
-  PathLimits limits{block.pulses, std::numeric_limits<double>::infinity(), 0, SpeedLimit::kNone};
-  const auto bound = [&](const Axis& axis, std::int64_t pulses) {
-    const double velocity =
-        axis.velocity * limits.length / static_cast<double>(block.chord_lines) / static_cast<double>(pulses);
-    if (pulses == 0 || velocity >= limits.velocity) return;
-    limits.velocity = velocity;
-    limits.limit = axis.limit;
-  };
-  bound(x, longest.x);
-  bound(y, longest.y);
-  limits = curve_limits(limits, radius * scale,
-                        scale * std::min(x.acceleration / x.steps_per_mm, y.acceleration / y.steps_per_mm));
-  finish(block, radius * block.exact.sweep, limits, radius * block.exact.sweep);
+  block.least_ticks = static_cast<std::uint64_t>(std::max(longest.x, longest.y));
+  block.speed = std::numeric_limits<double>::infinity();
+  block.limit = SpeedLimit::kNone;
+  if (longest.x > 0) limit_speed(block, x.velocity * block.pulses / lines / static_cast<double>(longest.x), x.limit);
+  if (longest.y > 0) limit_speed(block, y.velocity * block.pulses / lines / static_cast<double>(longest.y), y.limit);
+  limit_curve(
+      block, radius * scale,
+      scale * std::min(machine_.axes[block.axis_x].max_acceleration, machine_.axes[block.axis_y].max_acceleration));
+  block.jerk = scale * std::min(x.jerk / x.steps_per_mm, y.jerk / y.steps_per_mm);
+  apply_feed(block, block.length);
   return true;
 }
 

@@ -51,9 +51,9 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
     axis.steps_per_mm = from.steps_per_mm;
     axis.velocity = std::min(from.max_velocity * from.steps_per_mm, shaper);
     axis.acceleration = from.max_acceleration * from.steps_per_mm;
-    axis.jerk = from.max_jerk * from.steps_per_mm;
-    axis.lowest = -kNoLimit;
-    axis.highest = kNoLimit;
+    axis.jerk = from.max_jerk > 0 ? from.max_jerk * from.steps_per_mm : kNoLimit;
+    axis.lowest = from.min;
+    axis.highest = from.max;
     axis.limit = axis.velocity < shaper ? SpeedLimit::kAxisVelocity : SpeedLimit::kPulseShape;
     axis.feed_group = feed_group(from.letter);
     start_[i] = to_pulses(start[i], from.steps_per_mm);
@@ -162,30 +162,29 @@ bool BlockBuilder::build_line(Block& block) {
     jerk = std::min(jerk, axis.jerk / pulses);
   }
   if (most == 0) return false;
-  const double length = std::sqrt(squares);
   block.geometry = Geometry::kLine;
-  block.pulses = length * scale;
+  block.length = std::sqrt(squares);
+  block.pulses = block.length * scale;
   block.least_ticks = static_cast<std::uint64_t>(most);  // at most one pulse a tick
-  block.jerk = jerk * length;
+  block.acceleration = acceleration * block.pulses;
+  block.jerk = jerk * block.pulses;
+  block.speed = velocity * block.pulses;
+  block.limit = limit;
   const auto counts = std::find_if(feed_squares.begin(), feed_squares.end(), [](double sum) { return sum > 0; });
-  finish(block, length, {block.pulses, velocity * block.pulses, acceleration * block.pulses, limit},
-         std::sqrt(*counts));
+  apply_feed(block, std::sqrt(*counts));
   return true;
 }
 
-// Limits from a unit of their own to mm, and what the program asks for.
-void BlockBuilder::finish(Block& block, double length, const PathLimits& limits, double feed_length) {
-  const double unit = length / limits.length;  // mm
-  block.length = length;
-  block.speed = limits.velocity * unit;
-  block.acceleration = limits.acceleration * unit;
+// What the program asks for, against the limits so far.
+void BlockBuilder::apply_feed(Block& block, double feed_length) {
+  const SpeedLimit limit = block.limit;
   block.limit = SpeedLimit::kNone;
   block.wanted = 0;
   if (motion_.kind == gcode::MotionKind::kTraverse) return;
   const double seconds = motion_.seconds > 0 ? motion_.seconds : feed_length / motion_.feed;
-  block.wanted = length / seconds;
+  block.wanted = block.pulses / seconds;
   block.feed = feed_length / seconds;
-  if (block.speed < block.wanted * kSameSpeed) block.limit = limits.limit;
+  if (block.speed < block.wanted * kSameSpeed) block.limit = limit;
   block.speed = std::min(block.speed, block.wanted);
 }
 

@@ -16,7 +16,6 @@ constexpr double kMostTicks = 0x1p39;   // half of the command's 40 bits
 constexpr double kLeastRate = 0x1p-30;  // ticks a clock; four times the finest floor
 constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
 constexpr std::uint64_t kMaxDwell = (std::uint64_t{1} << 40) - 1;  // clocks of one command
-constexpr double kSameSpeed = 1 - 1e-6;                            // a feed is reached from this share on
 
 }  // namespace
 
@@ -29,42 +28,44 @@ Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const Ca
 bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
   Block& block = planned.block;
   if (!blocks_.next(block)) return false;
-  planned.reached = 0;
+  planned.speed = 0;
   planned.limit = SpeedLimit::kNone;
-  planned.seconds = 0;
-  planned.geometry = 1;
-  planned.feed = 1;
-  planned.commands = 1;
-  if (moves(block)) {
-    plan_move(planned);
-    for (const driver::FeedCommand& piece : profile_) {
-      std::get<driver::FeedCommand>(piece_) = piece;
-      sink.put(piece_);
-    }
-    put_geometry(block, sink);
+  if (block.geometry == Geometry::kDwell) {
+    put_dwell(planned, sink);
     return true;
   }
   if (block.geometry == Geometry::kEnd) {
+    planned.seconds = 0;
+    planned.commands = planned.geometry = planned.feed = 1;
     sink.put(other_ = driver::EndCommand{});
     return true;
   }
-  planned.seconds = block.dwell_seconds;
-  planned.commands = std::max<std::uint64_t>(1, (block.dwell_clocks + kMaxDwell - 1) / kMaxDwell);
+  plan_move(planned);
+  for (const driver::FeedCommand& piece : profile_) {
+    std::get<driver::FeedCommand>(piece_) = piece;
+    sink.put(piece_);
+  }
+  put_geometry(block, sink);
+  return true;
+}
+
+void Planner::put_dwell(PlannedBlock& planned, driver::CommandSink& sink) {
+  std::uint64_t left = planned.block.dwell_clocks;
+  planned.seconds = planned.block.dwell_seconds;
+  planned.commands = std::max<std::uint64_t>(1, (left + kMaxDwell - 1) / kMaxDwell);
   planned.geometry = planned.feed = planned.commands;
-  std::uint64_t left = block.dwell_clocks;
   for (std::uint64_t i = 0; i < planned.commands; ++i) {
     const std::uint64_t part = std::min(left, kMaxDwell);
     sink.put(other_ = driver::DwellCommand{part});
     left -= part;
   }
-  return true;
 }
 
-// Feed ticks of a path as many as evenness wants and the clock allows; of each line of kChords.
+// Feed ticks of a path: T a pulse, as large as evenness wants and the clock allows; kChords: of each line.
 std::uint64_t Planner::ticks_for(const Block& block) const {
-  const double clocks = block.length / block.speed * card_.clock_hz;
-  const double wanted = std::max(std::min(kTicksPerPulse * block.pulses, kMaxTickRate * clocks), kLeastRate * clocks);
-  double ticks = std::clamp(std::round(wanted), static_cast<double>(least_ticks_), kMostTicks);
+  double per_pulse = std::min(kTicksPerPulse, kMaxTickRate * card_.clock_hz / block.speed);
+  per_pulse = std::max(per_pulse, kLeastRate * card_.clock_hz / block.speed);
+  double ticks = std::clamp(std::round(per_pulse * block.pulses), static_cast<double>(least_ticks_), kMostTicks);
   if (block.geometry == Geometry::kChords) ticks = std::round(ticks / static_cast<double>(block.chord_lines));
   return std::max({static_cast<std::uint64_t>(ticks), block.least_ticks, least_ticks_});
 }
@@ -73,19 +74,16 @@ void Planner::plan_move(PlannedBlock& planned) {
   const Block& block = planned.block;
   const std::uint64_t lines = block.geometry == Geometry::kChords ? block.chord_lines : 1;
   ticks_ = ticks_for(block);
-  const double clock = card_.clock_hz;
-  const double density = static_cast<double>(ticks_ * lines) / block.length;  // ticks a mm
-  const ProfileLimits limits{block.speed * density / clock, block.acceleration * density / clock / clock};
-  profile_ = trapezoid(ticks_ * lines, limits);
-  planned.seconds = duration(profile_) / clock;
+  profile_ = trapezoid(ticks_ * lines, {block.pulses, block.speed, block.acceleration}, card_.clock_hz);
+  planned.seconds = duration(profile_) / card_.clock_hz;
   planned.geometry = lines;
   planned.feed = profile_.size();
   planned.commands = lines + profile_.size();
-  planned.reached = std::min(profile_.top_rate, limits.rate) / density * clock;
+  const double mm_a_tick = block.length / static_cast<double>(ticks_ * lines);
+  planned.speed = profile_.top_rate * card_.clock_hz * mm_a_tick;
   planned.limit = block.limit;
-  if (block.wanted == 0 || planned.reached >= block.speed * kSameSpeed) return;
-  planned.limit =
-      limits.rate > kMaxTickRate && profile_.top_rate >= kMaxTickRate ? SpeedLimit::kClock : SpeedLimit::kAcceleration;
+  if (block.wanted == 0 || profile_.reaches_limit) return;
+  planned.limit = profile_.top_rate >= kMaxTickRate ? SpeedLimit::kClock : SpeedLimit::kAcceleration;
 }
 
 void Planner::put_geometry(const Block& block, driver::CommandSink& sink) {

@@ -10,7 +10,8 @@ void FeedReport::add(const planner::PlannedBlock& planned) {
   FeedNotReached& entry = entries_[static_cast<std::size_t>(planned.limit)];
   entry.cause = planned.limit;
   const double wanted = planned.block.feed * kMinute;
-  const double reached = wanted * planned.reached / planned.block.wanted;
+  const double wanted_on_path = planned.block.wanted * planned.block.length / planned.block.pulses;  // mm/s
+  const double reached = wanted * planned.speed / wanted_on_path;
   if (entry.count++ != 0 && reached * entry.wanted >= entry.reached * wanted) return;
   entry.line = planned.block.line;
   entry.wanted = wanted;

@@ -21,8 +21,8 @@ namespace trammel::planner {
 struct PlannedBlock {
   Block block;                           // complete before the first command is put, as are `seconds` and what follows
   double seconds = 0;                    // planned duration
-  double reached = 0;                    // mm/s along the path, the highest planned; 0 for what does not move
-  SpeedLimit limit = SpeedLimit::kNone;  // what keeps `reached` below what the program wants
+  double speed = 0;                      // mm/s along the path, the highest planned; 0 for what does not move
+  SpeedLimit limit = SpeedLimit::kNone;  // what keeps it below what the program wants
   std::uint64_t commands = 0;            // put
   std::uint64_t geometry = 0;            // of these, into the geometry queue: paths and barriers
   std::uint64_t feed = 0;                // and into the feed queue: pieces and barriers
@@ -41,6 +41,7 @@ class Planner {
  private:
   std::uint64_t ticks_for(const Block& block) const;
   void plan_move(PlannedBlock& planned);
+  void put_dwell(PlannedBlock& planned, driver::CommandSink& sink);
   void put_geometry(const Block& block, driver::CommandSink& sink);
   void put_chords(const Block& block, driver::CommandSink& sink);
 

@@ -22,9 +22,11 @@ inline constexpr std::uint64_t kClocksPerUpdate = card_map::constant::kUpdateClo
 // Rates above this leave the time base no room to slow down evenly and the shapers no jitter.
 inline constexpr double kMaxTickRate = 0.9;  // ticks a clock
 
-struct ProfileLimits {
-  double rate = 0;          // ticks a clock, > 0; values above kMaxTickRate count as that
-  double acceleration = 0;  // ticks a clock^2, > 0
+// What holds along a path, in a unit of length of the caller's.
+struct PathLimits {
+  double length = 0;        // > 0
+  double velocity = 0;      // a second, > 0; what would be above kMaxTickRate counts as that
+  double acceleration = 0;  // a second^2, > 0
 };
 
 // Pieces in the order to send.
@@ -37,15 +39,17 @@ class Profile {
   const driver::FeedCommand* begin() const { return pieces_.data(); }
   const driver::FeedCommand* end() const { return pieces_.data() + size_; }
 
-  double top_rate = 0;  // ticks a clock, the highest of all pieces
+  double top_rate = 0;         // ticks a clock, the highest of all pieces
+  bool reaches_limit = false;  // it is the limits' velocity
 
  private:
   std::array<driver::FeedCommand, 3> pieces_;
   std::size_t size_ = 0;
 };
 
-// Throws std::invalid_argument when ticks is 0 or over 2^40 - 1 or a limit is not above 0.
-Profile trapezoid(std::uint64_t ticks, const ProfileLimits& limits);
+// The path's length in `ticks` feed ticks. Throws std::invalid_argument when ticks is 0 or over 2^40 - 1 or a limit is
+// not above 0.
+Profile trapezoid(std::uint64_t ticks, const PathLimits& limits, std::uint32_t clock_hz);
 
 // Clocks that the pieces take, within a few: for estimates.
 double duration(const Profile& profile);
