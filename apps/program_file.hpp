@@ -1,0 +1,29 @@
+// The program that `trammel run` reads: twice, so what can be read only once (standard input, a pipe) is copied to a
+// temporary file first. Not thread-safe.
+#pragma once
+
+#include <string>
+
+namespace trammel::app {
+
+class ProgramFile {
+ public:
+  // "-" is standard input. Throws UsageError when it cannot be read, std::runtime_error when it cannot be copied.
+  explicit ProgramFile(const std::string& file);
+  ~ProgramFile();
+  ProgramFile(const ProgramFile&) = delete;
+  ProgramFile& operator=(const ProgramFile&) = delete;
+
+  // For messages.
+  const std::string& name() const { return name_; }
+  // Of a file that can be read from any place (pread), any number of times; closed with the object.
+  int descriptor() const { return descriptor_; }
+
+ private:
+  void copy_to_temporary();
+
+  std::string name_;
+  int descriptor_ = -1;
+};
+
+}  // namespace trammel::app
