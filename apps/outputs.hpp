@@ -12,17 +12,18 @@
 #include <vector>
 
 #include "temporary_files.hpp"
+#include "trammel/run/text_sink.hpp"
 
 namespace trammel::app {
 
-class Output {
+class Output final : public run::TextSink {
  public:
-  ~Output();
+  ~Output() override;
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
   // Throws std::runtime_error when the destination does not take it all.
-  void write(std::string_view text);
+  void write(std::string_view text) override;
   // For who writes by name: a temporary file of commit()'s to move or copy. Not together with write().
   std::string path_to_write() const { return staged_->path().string(); }
 
