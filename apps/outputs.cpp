@@ -20,6 +20,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kBuffer = 1U << 18U;  // a step list has up to some 10^8 rows
 
+// An open file, not a name in a folder.
+bool is_descriptor(const fs::path& file) {
+  return file.native().rfind("/proc/", 0) == 0 || file.native().rfind("/dev/fd/", 0) == 0;
+}
+
 // The file that a name leads to, whether it exists or not.
 fs::path follow_links(fs::path file) {
   std::error_code error;
@@ -34,11 +39,6 @@ fs::path follow_links(fs::path file) {
 }
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
-
-// An open file, not a name in a folder.
-bool is_descriptor(const fs::path& file) {
-  return file.native().rfind("/proc/", 0) == 0 || file.native().rfind("/dev/fd/", 0) == 0;
-}
 
 // Empty for devices that take any number of writers, such as the null device: all but terminals.
 std::string identity_of(const struct stat& status, bool is_terminal) {
@@ -206,7 +206,7 @@ void Outputs::keep(const std::string& what, const std::string& file) {
   if (there) kept_.push_back({what, identity_of(status, false)});
 }
 
-void Outputs::open() {
+void Outputs::check() const {
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     const Output& output = *outputs_[i];
     const bool standard = output.kind_ == Output::Kind::kStandardOutput;
@@ -224,12 +224,18 @@ void Outputs::open() {
       }
     }
   }
+}
+
+void Outputs::open() {
   for (const auto& output : outputs_) output->open();
 }
 
-void Outputs::commit() {
-  finish_standard_output();
+void Outputs::commit(const std::string& summary) {
   for (const auto& output : outputs_) output->finish();
+  std::FILE* const people = standard_output_taken_ ? stderr : stdout;
+  std::fwrite(summary.data(), 1, summary.size(),
+              people);  // what standard output does not take shows when it is flushed
+  finish_standard_output();
   const SignalsWait wait;
   try {
     for (const auto& output : outputs_) output->take_name();

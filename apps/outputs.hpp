@@ -56,13 +56,14 @@ class Outputs {
   Output* add(const std::string& option, const std::optional<std::string>& file, bool by_name = false);
   // No output may be this file: `what` is "the program" or the like; "-" is standard input.
   void keep(const std::string& what, const std::string& file);
-  // Refuses a file that cannot be written, the same file twice, and the files to keep with UsageError, before anything
-  // is opened; then opens all.
+  // Refuses the same file twice and the files to keep with UsageError; add() has refused what cannot be written.
+  // Nothing is opened or made.
+  void check() const;
+  // After check().
   void open();
-  // All outputs whole, or none. Throws std::runtime_error. Flushes standard output too.
-  void commit();
-  // For what people read: standard output, unless an option has taken it.
-  std::FILE* summary() const { return standard_output_taken_ ? stderr : stdout; }
+  // All outputs whole, or none; `summary`, for people, goes to standard output, or to standard error where an option
+  // has taken that, once nothing but a name can fail. Throws std::runtime_error.
+  void commit(const std::string& summary = {});
 
  private:
   struct Kept {

@@ -2,7 +2,12 @@
 // temporary file first. Not thread-safe.
 #pragma once
 
+#include <sys/types.h>
+
+#include <optional>
 #include <string>
+
+#include "trammel/gcode/line_source.hpp"
 
 namespace trammel::app {
 
@@ -24,6 +29,21 @@ class ProgramFile {
 
   std::string name_;
   int descriptor_ = -1;
+};
+
+// Its lines, from the first one on. The file must outlive them.
+class ProgramLines final : public gcode::ChunkedLines {
+ public:
+  explicit ProgramLines(const ProgramFile& file) : ChunkedLines(file.name()), descriptor_(file.descriptor()) {}
+  std::optional<std::string> failure() const override { return failure_; }
+
+ protected:
+  std::size_t read(char* to, std::size_t most) override;
+
+ private:
+  int descriptor_;
+  off_t at_ = 0;
+  std::optional<std::string> failure_;
 };
 
 }  // namespace trammel::app
