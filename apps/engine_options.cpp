@@ -6,12 +6,10 @@
 #include <cmath>
 
 #include "errors.hpp"
+#include "trammel/machine/machine.hpp"
 
 namespace trammel::app {
 namespace {
-
-constexpr std::uint64_t kLeastClock = 1000;
-constexpr std::uint64_t kMostClock = 4'294'967'295;
 
 // FROM:TO, seconds, either may be missing; gives back clocks.
 std::pair<std::uint64_t, std::uint64_t> window_of(const std::string& text, std::uint32_t clock_hz) {
@@ -70,7 +68,7 @@ void EngineChoice::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"rtl", "model"}))
       ->capture_default_str();
   command.add_option("--clock", clock_hz, "clock of the simulated card")
-      ->transform(whole_number(kLeastClock, kMostClock, "Hz"))
+      ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
       ->type_name("HZ");
   command.add_option("--trace", trace, "waveform of the card as FST file (engine rtl only)")->type_name("FILE");
   command

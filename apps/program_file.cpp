@@ -52,12 +52,9 @@ void ProgramFile::copy_to_temporary() {
   descriptor_ = descriptor;
 }
 
-std::size_t ProgramLines::read(char* to, std::size_t most) {
-  const ssize_t count = ::pread(descriptor_, to, most, at_);
-  if (count < 0) failure_ = fmt::format("cannot read the program: {}", strerror(errno));
-  if (count <= 0) return 0;
-  at_ += count;
-  return static_cast<std::size_t>(count);
+gcode::FileLines ProgramFile::lines() const {
+  ::lseek(descriptor_, 0, SEEK_SET);
+  return {descriptor_, name_};
 }
 
 }  // namespace trammel::app

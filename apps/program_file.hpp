@@ -2,9 +2,6 @@
 // temporary file first. Not thread-safe.
 #pragma once
 
-#include <sys/types.h>
-
-#include <optional>
 #include <string>
 
 #include "trammel/gcode/line_source.hpp"
@@ -21,29 +18,14 @@ class ProgramFile {
 
   // For messages.
   const std::string& name() const { return name_; }
-  // Of a file that can be read from any place (pread), any number of times; closed with the object.
-  int descriptor() const { return descriptor_; }
+  // Its lines from the first one on; not two at a time. The file must outlive them.
+  gcode::FileLines lines() const;
 
  private:
   void copy_to_temporary();
 
   std::string name_;
   int descriptor_ = -1;
-};
-
-// Its lines, from the first one on. The file must outlive them.
-class ProgramLines final : public gcode::ChunkedLines {
- public:
-  explicit ProgramLines(const ProgramFile& file) : ChunkedLines(file.name()), descriptor_(file.descriptor()) {}
-  std::optional<std::string> failure() const override { return failure_; }
-
- protected:
-  std::size_t read(char* to, std::size_t most) override;
-
- private:
-  int descriptor_;
-  off_t at_ = 0;
-  std::optional<std::string> failure_;
 };
 
 }  // namespace trammel::app

@@ -43,7 +43,7 @@ machine::Machine machine_of(const Options& options) {
 }
 
 gcode::Program read_program(const ProgramFile& file, const machine::Machine& machine) {
-  ProgramLines lines(file);
+  gcode::FileLines lines = file.lines();
   gcode::Reader reader(lines, machine);
   gcode::Program program;
   program.file = file.name();
