@@ -4,7 +4,6 @@
 
 #include <chrono>
 
-#include "outputs.hpp"
 #include "progress_bar.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/step_recorder.hpp"
@@ -59,7 +58,7 @@ class Watch final : public run::Observer {
 }  // namespace
 
 RunResult run_program(const gcode::Program& program, const machine::Machine& machine,
-                      const sim::SimulationOptions& engine_options, const RunOutputs& outputs, RunWatcher* watcher) {
+                      const sim::SimulationOptions& engine_options, const RunOptions& options, RunWatcher* watcher) {
   const auto begun = std::chrono::steady_clock::now();
   RunResult result;
   run::StepRecorder::Options recording;
@@ -69,15 +68,14 @@ RunResult run_program(const gcode::Program& program, const machine::Machine& mac
   }
   run::Runner runner(program, machine, engine_options.clock_hz);
   run::CommandedCourse course(machine);
-  if (outputs.plot) runner.add(course);
+  if (options.plot) runner.add(course);
   const run::Plan plan = runner.plan();
 
-  const std::unique_ptr<FileSink> steps = outputs.steps ? std::make_unique<FileSink>(*outputs.steps) : nullptr;
-  const std::unique_ptr<FileSink> path_steps =
-      outputs.path_steps ? std::make_unique<FileSink>(*outputs.path_steps) : nullptr;
-  recording.steps = steps.get();
-  recording.path_steps = path_steps.get();
-  recording.plot = outputs.plot.has_value();
+  if (options.planned) options.planned(plan);
+
+  recording.steps = options.steps;
+  recording.path_steps = options.path_steps;
+  recording.plot = options.plot;
   recording.clock_hz = engine_options.clock_hz;
   run::StepRecorder recorder(recording);
   if (course.detail_command()) recorder.detail_of(*course.detail_command());
@@ -86,13 +84,11 @@ RunResult run_program(const gcode::Program& program, const machine::Machine& mac
   StepFork fork(recorder, watcher);
   engine->set_sink(&fork);
   driver::Card card = driver::Card::open(*engine);
-  Watch watch(*engine, plan, card.identification().clock_hz, outputs.progress, watcher);
+  Watch watch(*engine, plan, card.identification().clock_hz, options.progress, watcher);
   runner.add(recorder);
   runner.add(watch);
   const run::Outcome outcome = runner.run(card);
   recorder.finish();
-  if (steps) steps->close();
-  if (path_steps) path_steps->close();
   recorder.check(outcome.counted);
 
   result.program = program.file;
@@ -112,7 +108,7 @@ RunResult run_program(const gcode::Program& program, const machine::Machine& mac
   result.commands = outcome.commands;
   result.planned_seconds = plan.seconds;
   result.accepted = program.accepted;
-  if (outputs.plot) {
+  if (options.plot) {
     result.plot = {program.file,    course.points(),   recorder.executed(), recorder.thinned(),
                    course.detail(), recorder.detail(), recorder.speed()};
   }

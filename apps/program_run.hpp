@@ -2,26 +2,27 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "trammel/gcode/reader.hpp"
+#include "trammel/gcode/program.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/plot.hpp"
 #include "trammel/run/runner.hpp"
+#include "trammel/run/text_sink.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
 
-// Files to write; "-" is standard output.
-struct RunOutputs {
-  std::optional<std::string> json;
-  std::optional<std::string> steps;
-  std::optional<std::string> path_steps;
-  std::optional<std::string> plot;
-  bool progress = false;
+struct RunOptions {
+  run::TextSink* steps = nullptr;  // not owned
+  run::TextSink* path_steps = nullptr;
+  bool plot = false;
+  bool progress = false;                          // also where stderr is no terminal
+  std::function<void(const run::Plan&)> planned;  // when all is checked and nothing has moved yet
 };
 
 // Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds` and the picture's
@@ -57,11 +58,10 @@ class RunWatcher : public driver::StepSink {
   virtual void sent(std::uint64_t cycle) = 0;
 };
 
-// `watcher` may be nullptr. Throws gcode::ProgramError before anything moves, driver::Error with the program's line in
-// its message while it runs, lockstep::Mismatch, and std::runtime_error when the card does not end where the program
-// says.
+// `watcher` may be nullptr. Throws gcode::ProgramError before anything moves, run::RunError while it runs,
+// lockstep::Mismatch, and std::runtime_error when the card does not end where the program says.
 RunResult run_program(const gcode::Program& program, const machine::Machine& machine,
-                      const sim::SimulationOptions& engine_options, const RunOutputs& outputs,
+                      const sim::SimulationOptions& engine_options, const RunOptions& options,
                       RunWatcher* watcher = nullptr);
 
 }  // namespace trammel::app
