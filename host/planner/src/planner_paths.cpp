@@ -8,6 +8,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/arc.hpp"
+#include "trammel/driver/increment.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/planner/profile.hpp"
 
@@ -63,20 +64,13 @@ void append_profile(const PathContext& context, const PathLimits& limits, std::u
   segment.commands.insert(segment.commands.end(), pieces.begin(), pieces.end());
 }
 
-std::int64_t increment(std::int64_t pulses, std::uint64_t ticks) {
-  const driver::int128 magnitude = pulses < 0 ? -static_cast<driver::int128>(pulses) : pulses;
-  const auto wide_ticks = static_cast<driver::int128>(ticks);
-  const auto rounded = static_cast<std::int64_t>(((magnitude << 41) + wide_ticks) / (2 * wide_ticks));
-  return pulses < 0 ? -rounded : rounded;
-}
-
 driver::LineCommand line_command(const Pulses& from, const Pulses& to, std::uint64_t ticks) {
   driver::LineCommand line;
   line.ticks = ticks;
   for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
     if (to[axis] != from[axis]) {
       line.mask = static_cast<std::uint8_t>(line.mask | (1U << axis));
-      line.increment[axis] = increment(to[axis] - from[axis], ticks);
+      line.increment[axis] = driver::rounded_increment(to[axis] - from[axis], ticks);
     }
   }
   return line;
