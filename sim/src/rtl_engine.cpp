@@ -14,7 +14,8 @@ using model::CardModel;
 class RtlEngine final : public BusEngine {
  public:
   RtlEngine(std::unique_ptr<VerilatedCard> card, const SimulationOptions& options)
-      : card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch) {}
+      : card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch,
+              options.rtl_thread && !options.trace ? RtlThread::kOwn : RtlThread::kCallers) {}
 
   std::uint32_t read(std::uint32_t address) override {
     card_.event("read", address);
