@@ -18,8 +18,8 @@
 #include "run_command.hpp"
 #include "steps_command.hpp"
 #include "temporary_files.hpp"
-#include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/run/runner.hpp"
 
 namespace {
 
@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
     run(app, argc, argv);
   } catch (const trammel::app::UsageError& error) {
     return report(error.what(), trammel::app::kExitUsage);
-  } catch (const trammel::gcode::ProgramError& error) {
+  } catch (const trammel::run::ProgramError& error) {
     return report(error.what(), trammel::app::kExitUsage);
   } catch (const trammel::machine::MachineError& error) {
     return report(error.what(), trammel::app::kExitUsage);

@@ -42,17 +42,6 @@ machine::Machine machine_of(const Options& options) {
   return machine;
 }
 
-gcode::Program read_program(const ProgramFile& file, const machine::Machine& machine) {
-  gcode::FileLines lines = file.lines();
-  gcode::Reader reader(lines, machine);
-  gcode::Program program;
-  program.file = file.name();
-  for (gcode::Motion motion; reader.next(motion);) program.motions.push_back(motion);
-  if (reader.error()) throw gcode::ProgramError(*reader.error());
-  program.accepted = reader.accepted();
-  return program;
-}
-
 void note(const std::string& text) { fmt::print(stderr, "trammel: note: {}\n", text); }
 
 void execute(const Options& options) {
@@ -74,14 +63,16 @@ void execute(const Options& options) {
   sim::SimulationOptions engine =
       options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);
   const ProgramFile file(options.program);
-  const gcode::Program program = read_program(file, machine);
-  outputs.open();
-  if (trace != nullptr) engine.trace->path = trace->path_to_write();
+  const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
+    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
+  };
   run.planned = [&](const run::Plan& plan) {
+    outputs.open();
+    if (trace != nullptr) engine.trace->path = trace->path_to_write();
     if (const auto text = long_run_note(engine, plan.seconds)) note(*text);
     if (engine.axes != axes) note(fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
   };
-  const RunResult result = run_program(program, machine, engine, run);
+  const RunResult result = run_program(lines, machine, engine, run);
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
   if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
   if (plot != nullptr) plot->write(run::svg(result.plot));
