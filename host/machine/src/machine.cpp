@@ -26,6 +26,4 @@ std::uint16_t clocks_from_ns(double nanoseconds, std::uint32_t clock_hz) {
   return static_cast<std::uint16_t>(std::max(clocks, least));
 }
 
-Machine default_machine() { return parse_machine(default_machine_text(), "default machine"); }
-
 }  // namespace trammel::machine
