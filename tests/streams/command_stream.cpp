@@ -1,8 +1,9 @@
-// Usage: command_stream [--libm] PROGRAM...
+// Usage: command_stream [--libm] [--one] [--keep] PROGRAM...
 // Reads, plans and encodes each program (a file, or generated:<lines>) for two machines: the default one, and one of
 // unequal scales, where arcs go out as chords. Prints a line for each: machine, program, commands, words, and a hash of
 // all words. Nothing but bits is compared, so nothing is rounded. --libm adds results of the C library's sin, cos,
-// atan2 and exp to the hash: what a comparison of two hosts must find different where their C libraries differ.
+// atan2 and exp to the hash: what a comparison of two hosts must find different where their C libraries differ. --one:
+// the default machine alone. --keep: a byte of every command stays in memory, for the judge of memory.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -35,7 +36,15 @@ class Hash {
   std::uint64_t state_ = 0xCBF29CE484222325;
 };
 
+struct Options {
+  bool libm = false;
+  bool one = false;   // the default machine alone
+  bool keep = false;  // a byte of every command stays in memory
+};
+
 struct Stream {
+  explicit Stream(const Options& options) : keep_(options.keep) {}
+
   std::uint64_t commands = 0;
   std::uint64_t words = 0;
   Hash hash;
@@ -46,9 +55,12 @@ struct Stream {
     ++commands;
     words += encoded_.size();
     for (const std::uint32_t word : encoded_) hash.add(word, 4);
+    if (keep_) kept_.push_back(static_cast<char>(words));
   }
 
  private:
+  bool keep_;
+  std::string kept_;
   std::vector<std::uint32_t> encoded_;
 };
 
@@ -60,13 +72,13 @@ std::unique_ptr<gcode::LineSource> open(const std::string& program) {
   return std::make_unique<gcode::FileLines>(program);
 }
 
-Stream stream_of(const std::string& name, const machine::Machine& machine) {
+Stream stream_of(const std::string& name, const machine::Machine& machine, const Options& options) {
   const std::unique_ptr<gcode::LineSource> lines = open(name);
   gcode::Reader reader(*lines, machine);
   gcode::Program program;
   for (gcode::Motion motion; reader.next(motion);) program.motions.push_back(motion);
   if (reader.error()) throw gcode::ProgramError(*reader.error());
-  Stream stream;
+  Stream stream(options);
   planner::Planner planner(program, machine, machine.clock_hz);
   for (planner::PlannedSegment segment; planner.next(segment);) {
     for (const driver::Command& command : segment.commands) stream.put(command);
@@ -86,11 +98,12 @@ void add_libm(Hash& hash) {
 }
 
 // False where the program is refused, which is printed too: it must be refused alike everywhere.
-bool print(const char* machine_name, const machine::Machine& machine, const std::string& program, bool libm) {
+bool print(const char* machine_name, const machine::Machine& machine, const std::string& program,
+           const Options& options) {
   const std::string name = program.substr(program.rfind('/') + 1);
   try {
-    Stream stream = stream_of(program, machine);
-    if (libm) add_libm(stream.hash);
+    Stream stream = stream_of(program, machine, options);
+    if (options.libm) add_libm(stream.hash);
     std::printf("%s %s: %llu commands, %llu words, %016llx\n", machine_name, name.c_str(),
                 static_cast<unsigned long long>(stream.commands), static_cast<unsigned long long>(stream.words),
                 static_cast<unsigned long long>(stream.hash.value()));
@@ -104,7 +117,7 @@ bool print(const char* machine_name, const machine::Machine& machine, const std:
 }  // namespace
 
 int main(int argc, char** argv) {
-  bool libm = false;
+  Options options;
   bool all = true;
   machine::Machine unequal = machine::default_machine();
   machine::apply_override(unequal, "axis.x.steps_per_mm=100");
@@ -112,11 +125,15 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--libm") {
-      libm = true;
-      continue;
+      options.libm = true;
+    } else if (argument == "--one") {
+      options.one = true;
+    } else if (argument == "--keep") {
+      options.keep = true;
+    } else {
+      all &= print("default", machine::default_machine(), argument, options);
+      if (!options.one) all &= print("unequal", unequal, argument, options);
     }
-    all &= print("default", machine::default_machine(), argument, libm);
-    all &= print("unequal", unequal, argument, libm);
   }
   return all ? 0 : 1;
 }

@@ -1,11 +1,14 @@
 # cmake -D "FIRST=command;argument;..." -D "SECOND=..." -D "ARGUMENTS=..." [-D "CONTROL=..."] -P: both commands, given the
 # arguments, print the same and at least one line. CONTROL: arguments with which they must print different things, else
 # the two are no different hosts and nothing is compared.
+cmake_minimum_required(VERSION 3.25)
+
 function(output_of result)
   execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE out ERROR_VARIABLE err RESULT_VARIABLE status)
   if(NOT status MATCHES "^[01]$" OR err)
     message(FATAL_ERROR "${ARGN}: ${status} ${err}")
   endif()
+  string(STRIP "${out}" out)
   string(REGEX REPLACE "[][;]" "." out "${out}")
   string(REPLACE "\n" ";" out "${out}")
   set(${result} "${out}" PARENT_SCOPE)
