@@ -4,8 +4,9 @@ set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR armv7)
 set(CMAKE_C_COMPILER arm-linux-gnueabihf-gcc)
 set(CMAKE_CXX_COMPILER arm-linux-gnueabihf-g++)
-# VFPv4 has fused multiply-add: a compiler that contracts a * b + c would change the planner's numbers here. -Wno-psabi: g++
-# notes that it passes some arguments otherwise than g++ 6 did. -Wno-maybe-uninitialized: at -O1 it warns of std::optional.
+# VFPv4 has fused multiply-add: where the compiler contracted a * b + c, the planner's numbers would change here. (g++ does so
+# with -fexpensive-optimizations, which the preset adds to -O1.) -Wno-psabi: g++ notes that it passes some arguments otherwise
+# than g++ 6 did. -Wno-maybe-uninitialized: at -O1 it warns of std::optional.
 set(CMAKE_C_FLAGS_INIT "-mfpu=neon-vfpv4")
 set(CMAKE_CXX_FLAGS_INIT "-mfpu=neon-vfpv4 -Wno-psabi -Wno-maybe-uninitialized")
 set(CMAKE_FIND_ROOT_PATH /usr/arm-linux-gnueabihf "${CMAKE_CURRENT_LIST_DIR}/../build/armhf-packages")

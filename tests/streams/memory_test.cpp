@@ -41,6 +41,11 @@ Process run(const std::vector<std::string>& command) {
 // Peaks of a program with so many lines, and with ten times as many or as TRAMMEL_LONG asks for.
 class Memory : public testing::Test {
  protected:
+  void SetUp() override {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer keeps what is freed";
+#endif
+  }
   // In kB; `few` and `many`: lines.
   static long growth(std::vector<std::string> command, long few, long many) {
     command.emplace_back();
