@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 
-
 namespace trammel::sim {
 
 namespace {
@@ -57,7 +56,7 @@ void BusEngine::write_block(std::uint32_t address, const std::uint32_t* words, s
   }
 }
 
-void BusEngine::set_sink(StepSink* sink) {
+void BusEngine::set_sink(driver::StepSink* sink) {
   sink_ = sink;
   card().set_steps(sink != nullptr ? this : nullptr);
 }

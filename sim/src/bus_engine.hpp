@@ -15,7 +15,7 @@ class BusEngine : public Engine, private model::CardSteps {
   void write_block(std::uint32_t address, const std::uint32_t* words, std::size_t count,
                    driver::Addressing addressing) override;
 
-  void set_sink(StepSink* sink) override;
+  void set_sink(driver::StepSink* sink) override;
   std::uint64_t cycles() const override { return card().cycles(); }
   std::vector<std::int64_t> positions() const override;
 
@@ -33,7 +33,7 @@ class BusEngine : public Engine, private model::CardSteps {
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override;
   void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override;
 
-  StepSink* sink_ = nullptr;
+  driver::StepSink* sink_ = nullptr;
 };
 
 // Throws std::invalid_argument for options out of range.

@@ -9,31 +9,9 @@
 #include <vector>
 
 #include "trammel/driver/bus.hpp"
+#include "trammel/driver/steps.hpp"
 
 namespace trammel::sim {
-
-// A leading edge at a STEP pin.
-struct PinStep {
-  std::uint64_t cycle;
-  std::uint8_t axis;
-  std::int8_t direction;  // +1 or -1
-};
-
-// A step of the path, before the shapers.
-struct PathStep {
-  std::uint64_t command;  // number of the stream command, not wrapped; 0 in direct mode
-  std::uint64_t tick;     // of its path, from 1: feed ticks of a line, path ticks of an arc
-  std::uint8_t axis;
-  std::int8_t direction;
-};
-
-// Receives steps in order of time. Called from within bus accesses and idle(); must not use the engine.
-class StepSink {
- public:
-  virtual ~StepSink() = default;
-  virtual void pin_step(const PinStep& step) = 0;
-  virtual void path_step(const PathStep& step) = 0;
-};
 
 struct EngineOptions {
   unsigned axes = 4;                   // 1 .. 8
@@ -43,7 +21,7 @@ struct EngineOptions {
 // A card on a simulated bus: the driver's Bus, with wait() running clocks.
 class Engine : public driver::Bus {
  public:
-  virtual void set_sink(StepSink* sink) = 0;                         // nullptr: none; not owned
+  virtual void set_sink(driver::StepSink* sink) = 0;                 // nullptr: none; not owned
   virtual std::uint64_t cycles() const = 0;                          // clocks since reset
   virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
   virtual std::uint64_t comparisons() const = 0;                     // signals compared
