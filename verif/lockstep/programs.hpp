@@ -52,6 +52,7 @@ class Programs {
   unsigned wrong_every = 100;
   // The most ticks of a stretch, and of its paths and pieces.
   unsigned longest = 600;
+  bool arcs = true;
 
   struct Stretch {
     std::vector<Halfwords> geometry;
@@ -92,7 +93,7 @@ class Programs {
 
  private:
   std::uint64_t path(std::vector<Halfwords>& to, bool single) {
-    if (axes_ > 1 && dice_.chance(4)) return arc(to);
+    if (arcs && axes_ > 1 && dice_.chance(4)) return arc(to);
     const unsigned mask = 1 + dice_.below((1U << axes_) - 1);
     const std::uint64_t ticks = single ? 1 : 1 + dice_.below(dice_.chance(3) ? 4 : longest);
     std::vector<std::int64_t> increments;
