@@ -27,6 +27,7 @@ class Judge:
     sources: List[str]  # relative to the folder of the RTL
     arguments: List[str] = field(default_factory=list)  # GoogleTest's, to choose among its tests
     length: str = ""  # of its random scenarios, as a factor: TRAMMEL_LONG
+    last_resort: bool = False  # a long run: tries no mutant that is listed as equivalent
     seconds: float = 0.0  # of processor time for the sound design
 
     def limit(self) -> int:
@@ -101,11 +102,11 @@ def try_sound_design(judge: Judge):
     judge.seconds = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
 
 
-def try_mutant(judges: List[Judge], number: int, file: str) -> Verdict:
+def try_mutant(judges: List[Judge], number: int, file: str, listed: bool) -> Verdict:
     """The first judge that kills it; "lived" when none does."""
     seconds = 0.0
     for judge in judges:
-        if file not in judge.sources:
+        if file not in judge.sources or (listed and judge.last_resort):
             continue
         verdict = run(judge, number, judge.limit())
         seconds += verdict.seconds
