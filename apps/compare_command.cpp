@@ -16,13 +16,13 @@
 #include "errors.hpp"
 #include "outputs.hpp"
 #include "progress_bar.hpp"
-#include "trammel/model/measure/comparison.hpp"
+#include "trammel/measure/comparison.hpp"
 
 namespace trammel::app {
 namespace {
 
-namespace interpolation = model::interpolation;
-namespace measure = model::measure;
+namespace interpolation = interpolation;
+namespace measure = measure;
 
 // Lines a second of random lines where none is given: 100,000 clocks a line at 10 MHz, so that the clock's own
 // coarseness does not hide what the methods do.

@@ -11,7 +11,7 @@
 namespace trammel::app {
 namespace {
 
-namespace measure = model::measure;
+namespace measure = measure;
 
 constexpr double kWidth = 1100;
 constexpr double kLeft = 150;  // of the small panels
@@ -139,7 +139,7 @@ std::string rows(const Comparison& comparison, const std::vector<measure::Trace>
     const Panel left{kLeft, top, kPanelWidth, kRowHeight - 8, 0, 1, distance.low, 1.05 * distance.high};
     const Panel right{kRight, top, kPanelWidth, kRowHeight - 8, 0, 1, 1.05 * interval.low, 1.05 * interval.high};
     text += fmt::format("<text x=\"10\" y=\"{:.1f}\" style=\"fill:{}\">{}</text>\n", top + kRowHeight / 2, colour,
-                        model::interpolation::info(comparison.methods[m].method).name);
+                        interpolation::info(comparison.methods[m].method).name);
     text += left.frame() + left.held(distances[m], colour);
     text += right.frame() + right.line({{0, 0}, {1, 0}}, "#ddd") + right.line(intervals[m], colour);
   }

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "compare_report.hpp"
-#include "trammel/model/measure/ideal_curve.hpp"
-#include "trammel/model/measure/trace.hpp"
+#include "trammel/measure/ideal_curve.hpp"
+#include "trammel/measure/trace.hpp"
 
 namespace trammel::app {
 
 // `traces` in the order of comparison.methods. An SVG below 5 MB, whatever the curve. Throws std::runtime_error when
 // the file cannot be written.
-void write_comparison_svg(const Comparison& comparison, const std::vector<model::measure::Trace>& traces,
-                          const model::measure::IdealCurve& curve, const std::string& file);
+void write_comparison_svg(const Comparison& comparison, const std::vector<measure::Trace>& traces,
+                          const measure::IdealCurve& curve, const std::string& file);
 
 }  // namespace trammel::app

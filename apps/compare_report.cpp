@@ -8,8 +8,8 @@
 namespace trammel::app {
 namespace {
 
-namespace interpolation = model::interpolation;
-namespace measure = model::measure;
+namespace interpolation = interpolation;
+namespace measure = measure;
 using interpolation::Method;
 using nlohmann::ordered_json;
 

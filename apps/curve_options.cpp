@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "trammel/model/interpolation/any_interpolator.hpp"
+#include "trammel/interpolation/any_interpolator.hpp"
 
 namespace trammel::app {
 namespace {
 
-namespace interpolation = model::interpolation;
+namespace interpolation = interpolation;
 using interpolation::Arc;
 using interpolation::Curve;
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "trammel/model/interpolation/curve.hpp"
+#include "trammel/interpolation/curve.hpp"
 
 namespace trammel::app {
 
@@ -19,7 +19,7 @@ struct CurveChoice {
   void add_to(CLI::App& command);
   bool given() const { return line || circle || arc || ellipse; }
   // The one curve that was named. Throws UsageError when there is none, more than one, or one that no method can do.
-  model::interpolation::Curve curve() const;
+  interpolation::Curve curve() const;
 };
 
 // The second paper's f and v, for the methods that know clocks.
@@ -30,7 +30,7 @@ struct VelocityChoice {
   void add_to(CLI::App& command);
   // 10 MHz and 5000 lines a second where not given; a default velocity that a long line cannot keep is lowered to one
   // pulse in two clocks on its longest axis.
-  model::interpolation::Options options(const model::interpolation::Curve& curve) const;
+  interpolation::Options options(const interpolation::Curve& curve) const;
 };
 
 }  // namespace trammel::app

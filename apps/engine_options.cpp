@@ -31,8 +31,8 @@ void EngineChoice::add_to(CLI::App& command) {
   command.add_option("--trace", trace, "waveform of the card as FST file (engine rtl only)")->type_name("FILE");
 }
 
-sim::EngineOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const {
-  sim::EngineOptions options;
+sim::SimulationOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const {
+  sim::SimulationOptions options;
   options.kind = engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;
   options.axes = axes;
   options.clock_hz = options.kind == sim::EngineKind::kModel ? model_clock : rtl_clock;

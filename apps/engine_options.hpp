@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "trammel/sim/engine.hpp"
+#include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
 
@@ -24,7 +24,7 @@ struct EngineChoice {
   void add_to(CLI::App& command);
   // The engine's options; `rtl_clock` and `model_clock` are the clocks, in Hz, where none was given.
   // Throws UsageError for what does not go together.
-  sim::EngineOptions options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const;
+  sim::SimulationOptions options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const;
 };
 
 }  // namespace trammel::app

@@ -13,9 +13,10 @@
 #include "engine_options.hpp"
 #include "errors.hpp"
 #include "outputs.hpp"
-#include "step_recorder.hpp"
+#include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/one_shot.hpp"
+#include "trammel/run/step_recorder.hpp"
 
 namespace trammel::app {
 namespace {
@@ -41,7 +42,7 @@ std::vector<std::int64_t> displacement_of(const Options& options) {
   if (!options.from.empty() && options.from.size() != options.to.size()) {
     throw UsageError("--from and --to: must name the same number of axes");
   }
-  if (result.size() > driver::kMaxAxes) throw UsageError("--to: a card has at most 8 axes");
+  if (result.size() > card_map::kMaxAxes) throw UsageError("--to: a card has at most 8 axes");
   for (std::size_t a = 0; a < options.from.size(); ++a) {
     if (__builtin_sub_overflow(result[a], options.from[a], &result[a])) {
       throw UsageError("--from and --to: more pulses apart than 64 bits hold");
@@ -69,7 +70,7 @@ std::uint64_t clocks_of(const Options& options, const std::vector<std::int64_t>&
 
 driver::LineLimits limits_of(const Options& options) {
   driver::LineLimits limits;
-  if (options.max_velocity.size() > driver::kMaxAxes) throw UsageError("--max-velocity: a card has at most 8 axes");
+  if (options.max_velocity.size() > card_map::kMaxAxes) throw UsageError("--max-velocity: a card has at most 8 axes");
   std::copy(options.max_velocity.begin(), options.max_velocity.end(), limits.max_velocity.begin());
   limits.policy = options.slow ? driver::LimitPolicy::kSlow : driver::LimitPolicy::kRefuse;
   return limits;
@@ -78,13 +79,14 @@ driver::LineLimits limits_of(const Options& options) {
 void execute(const Options& options) {
   const std::vector<std::int64_t> pulses = displacement_of(options);
   const unsigned axes = card_axes(pulses.size());
-  const sim::EngineOptions engine_options = options.engine.options(axes, kDefaultClock, kDefaultClock);
+  const sim::SimulationOptions engine_options = options.engine.options(axes, kDefaultClock, kDefaultClock);
   const auto engine = sim::make_engine(engine_options);
-  StepRecorder::Options recording;
-  recording.steps = options.steps;
+  const std::unique_ptr<FileSink> steps = options.steps ? std::make_unique<FileSink>(*options.steps) : nullptr;
+  run::StepRecorder::Options recording;
+  recording.steps = steps.get();
   recording.clock_hz = engine_options.clock_hz;
   recording.steps_per_mm.assign(axes, 1.0);
-  StepRecorder recorder(recording);
+  run::StepRecorder recorder(recording);
   // The path of direct mode has no command; the recorder measures it as one line over its clocks.
   driver::Displacement displacement{};
   std::copy(pulses.begin(), pulses.end(), displacement.begin());
@@ -97,19 +99,20 @@ void execute(const Options& options) {
       throw UsageError(error.what());
     }
   }();
-  driver::Line line;
+  driver::LineCommand line;
   line.ticks = plan.part(0).length;
   line.mask = plan.part(0).mask;
   for (std::size_t a = 0; a < pulses.size(); ++a) {
     const auto increment = static_cast<std::int64_t>(plan.part(0).frequency[a]);
     line.increment[a] = pulses[a] < 0 ? -increment : increment;
   }
-  recorder.deviation().command(0, line);
+  recorder.command(0, line);
   engine->set_sink(&recorder);
   driver::run_line(card, plan);
   const driver::Snapshot snapshot = card.snapshot();
   engine->set_sink(nullptr);
   recorder.finish();
+  if (steps) steps->close();
 
   const std::vector<std::int64_t> final(snapshot.position.begin(), snapshot.position.begin() + axes);
   for (std::size_t a = 0; a < pulses.size(); ++a) {

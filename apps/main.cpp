@@ -12,8 +12,8 @@
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
 #include "steps_command.hpp"
-#include "trammel/driver/gcode.hpp"
-#include "trammel/driver/machine.hpp"
+#include "trammel/gcode/reader.hpp"
+#include "trammel/machine/machine.hpp"
 
 namespace {
 
@@ -43,9 +43,9 @@ int main(int argc, char** argv) {
     return report(fmt::format("{} (--help tells more)", error.what()).c_str(), trammel::app::kExitUsage);
   } catch (const trammel::app::UsageError& error) {
     return report(error.what(), trammel::app::kExitUsage);
-  } catch (const trammel::driver::ProgramError& error) {
+  } catch (const trammel::gcode::ProgramError& error) {
     return report(error.what(), trammel::app::kExitUsage);
-  } catch (const trammel::driver::MachineError& error) {
+  } catch (const trammel::machine::MachineError& error) {
     return report(error.what(), trammel::app::kExitUsage);
   } catch (const std::exception& error) {
     return report(error.what(), trammel::app::kExitFailure);

@@ -4,12 +4,12 @@
 
 #include <string>
 
-#include "trammel/model/interpolation/method.hpp"
+#include "trammel/interpolation/method.hpp"
 
 namespace trammel::app {
 namespace {
 
-std::string abilities(const model::interpolation::MethodInfo& method) {
+std::string abilities(const interpolation::MethodInfo& method) {
   std::string result;
   const auto add = [&](const std::string& what) { result += (result.empty() ? "" : ", ") + what; };
   if (method.line_axes == 2) add("lines (2 axes)");
@@ -21,7 +21,7 @@ std::string abilities(const model::interpolation::MethodInfo& method) {
 
 void execute() {
   fmt::print("{:<16} {:<46} {:<10} {}\n", "method", "can do", "time in", "what it is");
-  for (const auto& method : model::interpolation::methods()) {
+  for (const auto& method : interpolation::methods()) {
     const std::string unit = std::string(method.time_unit) + "s";
     fmt::print("{:<16} {:<46} {:<10} {}\n", method.name, abilities(method), unit, method.brief);
   }

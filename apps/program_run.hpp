@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "plot.hpp"
-#include "trammel/driver/gcode.hpp"
-#include "trammel/driver/machine.hpp"
-#include "trammel/driver/planner.hpp"
-#include "trammel/sim/engine.hpp"
+#include "trammel/gcode/reader.hpp"
+#include "trammel/machine/machine.hpp"
+#include "trammel/run/plot.hpp"
+#include "trammel/run/runner.hpp"
+#include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
 
@@ -45,23 +45,23 @@ struct RunResult {
   double planned_seconds = 0;                    // estimate
   double wall_seconds = 0;                       // the simulation took
   std::map<std::string, std::size_t> accepted;   // words without effect yet
-  Plot plot;                                     // filled when asked for
+  run::Plot plot;                                // filled when asked for
 };
 
 // Sees a run as it goes: what is sent, and every step.
-class RunWatcher : public sim::StepSink {
+class RunWatcher : public driver::StepSink {
  public:
   // Before the commands of a segment are written. Their numbers follow on those of the segment before, from 0.
-  virtual void sending(const driver::PlannedSegment& segment) = 0;
+  virtual void sending(const planner::PlannedSegment& segment) = 0;
   // When they are written; `cycle` of the card.
   virtual void sent(std::uint64_t cycle) = 0;
 };
 
-// `watcher` may be nullptr. Throws driver::ProgramError before anything moves, driver::Error with the program's line in
+// `watcher` may be nullptr. Throws gcode::ProgramError before anything moves, driver::Error with the program's line in
 // its message while it runs, lockstep::Mismatch, and std::runtime_error when the card does not end where the program
 // says.
-RunResult run_program(const driver::Program& program, const driver::Machine& machine,
-                      const sim::EngineOptions& engine_options, const RunOutputs& outputs,
+RunResult run_program(const gcode::Program& program, const machine::Machine& machine,
+                      const sim::SimulationOptions& engine_options, const RunOutputs& outputs,
                       RunWatcher* watcher = nullptr);
 
 }  // namespace trammel::app

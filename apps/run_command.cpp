@@ -15,8 +15,8 @@
 #include "outputs.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
-#include "trammel/driver/gcode.hpp"
-#include "trammel/driver/machine.hpp"
+#include "trammel/gcode/reader.hpp"
+#include "trammel/machine/machine.hpp"
 
 namespace trammel::app {
 namespace {
@@ -41,17 +41,17 @@ void check_program_file(const std::string& file) {
 }
 
 void execute(const Options& options) {
-  driver::Machine machine = options.machine ? driver::load_machine(*options.machine) : driver::default_machine();
-  for (const std::string& text : options.overrides) driver::apply_override(machine, text);
+  machine::Machine machine = options.machine ? machine::load_machine(*options.machine) : machine::default_machine();
+  for (const std::string& text : options.overrides) machine::apply_override(machine, text);
   check_program_file(options.program);
-  const driver::Program program = driver::read_program_file(options.program, machine);
-  const sim::EngineOptions engine =
+  const gcode::Program program = gcode::read_program_file(options.program, machine);
+  const sim::SimulationOptions engine =
       options.engine.options(card_axes(machine.axes.size()), kSimulatedClock, machine.clock_hz);
   const RunOutputs& files = options.outputs;
   require_writable({files.json, files.plot, files.steps, files.path_steps, options.engine.trace});
   const RunResult result = run_program(program, machine, engine, options.outputs);
   if (options.outputs.json) write_json(result, *options.outputs.json);
-  if (options.outputs.plot) write_svg(result.plot, *options.outputs.plot);
+  if (options.outputs.plot) write_text_file(run::svg(result.plot), *options.outputs.plot);
   if (options.outputs.json != "-" && options.outputs.steps != "-" && options.outputs.path_steps != "-") {
     fmt::print("{}", summary(result));
   }

@@ -11,12 +11,12 @@
 
 #include "curve_options.hpp"
 #include "errors.hpp"
-#include "trammel/model/interpolation/any_interpolator.hpp"
+#include "trammel/interpolation/any_interpolator.hpp"
 
 namespace trammel::app {
 namespace {
 
-namespace interpolation = model::interpolation;
+namespace interpolation = interpolation;
 using interpolation::AnyInterpolator;
 using interpolation::Position;
 using interpolation::Step;

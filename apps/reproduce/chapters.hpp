@@ -13,7 +13,7 @@
 #include "page.hpp"
 #include "picture.hpp"
 #include "trammel/driver/card.hpp"
-#include "trammel/model/interpolation/any_interpolator.hpp"
+#include "trammel/interpolation/any_interpolator.hpp"
 
 namespace trammel::app::reproduce {
 
@@ -43,13 +43,13 @@ inline constexpr std::array<std::array<std::int64_t, 4>, 8> kPaperLines{{{0, 0, 
 // 10 MHz and 5,000 lines a second.
 inline constexpr std::uint64_t kPaperClocks = 2000;
 
-inline model::interpolation::Line paper_line(std::size_t index) {
+inline interpolation::Line paper_line(std::size_t index) {
   const auto& l = kPaperLines[index];
-  return model::interpolation::make_line({l[0], l[1]}, {l[2], l[3]});
+  return interpolation::make_line({l[0], l[1]}, {l[2], l[3]});
 }
 
 // Perpendicular distance from a line of length > 0.
-inline double distance(const model::interpolation::Line& line, const model::interpolation::Position& p) {
+inline double distance(const interpolation::Line& line, const interpolation::Position& p) {
   const auto dx = static_cast<double>(line.end[0] - line.start[0]);
   const auto dy = static_cast<double>(line.end[1] - line.start[1]);
   const auto x = static_cast<double>(p[0] - line.start[0]);
@@ -60,13 +60,13 @@ inline double distance(const model::interpolation::Line& line, const model::inte
 // Where a path is after all steps of a clock (or, without clocks, of a step).
 struct TrackPoint {
   std::uint64_t time;
-  model::interpolation::Position position;
+  interpolation::Position position;
 };
 using Track = std::vector<TrackPoint>;
 
 // From the start on; one_shot methods at 10 MHz and 5,000 lines a second.
-Track track_of(model::interpolation::Method method, const model::interpolation::Line& line);
-double largest_distance(const model::interpolation::Line& line, const Track& track);
+Track track_of(interpolation::Method method, const interpolation::Line& line);
+double largest_distance(const interpolation::Line& line, const Track& track);
 // A panel of Figure 3: the line, the band of one pulse and the track.
 Panel line_panel(std::size_t index, const Track& track, const std::string& label);
 

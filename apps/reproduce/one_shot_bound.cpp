@@ -12,7 +12,7 @@
 namespace trammel::app::reproduce {
 namespace {
 
-using namespace model::interpolation;
+using namespace interpolation;
 
 constexpr int kLines = 1'000'000;
 
@@ -93,7 +93,7 @@ void dividers(Page& page) {
   for (std::size_t i = 0; i < kCases.size(); ++i) {
     const DividerCase& c = kCases[i];
     const Line line = make_line({0, 0}, {c.x, c.y});
-    const model::interpolation::Options options{50'000'000, c.v, 1};
+    const interpolation::Options options{50'000'000, c.v, 1};
     double largest = 0;
     std::array<std::uint64_t, 2> ends{};
     Series stray{fmt::format("({},{}) v = {}", c.x, c.y, c.v), colours[i], {{0, 0}}, 1.2, false, false};

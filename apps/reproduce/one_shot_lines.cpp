@@ -12,7 +12,7 @@
 
 namespace trammel::app::reproduce {
 
-using namespace model::interpolation;
+using namespace interpolation;
 
 Track track_of(Method method, const Line& line) {
   Track track;

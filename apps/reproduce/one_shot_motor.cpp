@@ -7,13 +7,13 @@
 
 #include "chapters.hpp"
 #include "picture.hpp"
-#include "trammel/model/measure/motor.hpp"
+#include "trammel/measure/motor.hpp"
 
 namespace trammel::app::reproduce {
 namespace {
 
-using namespace model::interpolation;
-namespace measure = model::measure;
+using namespace interpolation;
+namespace measure = measure;
 
 measure::Trace trace_of(Method method, const Line& line) {
   measure::Trace trace;

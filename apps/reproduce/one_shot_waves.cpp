@@ -10,7 +10,7 @@
 
 namespace trammel::app::reproduce {
 
-using namespace model::interpolation;
+using namespace interpolation;
 
 std::vector<double> pulse_times(const Track& track, std::size_t axis, double period) {
   std::vector<double> times;

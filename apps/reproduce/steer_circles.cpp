@@ -5,12 +5,12 @@
 
 #include "chapters.hpp"
 #include "picture.hpp"
-#include "trammel/model/interpolation/steer_program.hpp"
+#include "trammel/interpolation/steer_program.hpp"
 
 namespace trammel::app::reproduce {
 namespace {
 
-using namespace model::interpolation;
+using namespace interpolation;
 
 const double kTurn = 2 * std::acos(-1.0);
 

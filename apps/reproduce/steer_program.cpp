@@ -1,5 +1,5 @@
 // Goldberg & Goldberg: the delay and its ramp, and what a gradient of zero does to lines.
-#include "trammel/model/interpolation/steer_program.hpp"
+#include "trammel/interpolation/steer_program.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,12 +8,12 @@
 
 #include "chapters.hpp"
 #include "picture.hpp"
-#include "trammel/model/interpolation/steer_delay.hpp"
+#include "trammel/interpolation/steer_delay.hpp"
 
 namespace trammel::app::reproduce {
 namespace {
 
-using namespace model::interpolation;
+using namespace interpolation;
 
 void delay_list(Page& page) {
   page.heading("The delay and its ramp");

@@ -6,12 +6,12 @@
 
 #include "chapters.hpp"
 #include "picture.hpp"
-#include "trammel/model/interpolation/steer_program.hpp"
+#include "trammel/interpolation/steer_program.hpp"
 
 namespace trammel::app::reproduce {
 namespace {
 
-using namespace model::interpolation;
+using namespace interpolation;
 
 long long whole(Deviation value) { return static_cast<long long>(value); }
 

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "trammel/card_map.hpp"
+
 namespace trammel::driver {
 namespace {
 
@@ -119,7 +121,8 @@ std::uint64_t path_length(const Conic& conic, const Point& start, const Point& e
 
 template <class Geometry>
 void check_common(const Geometry& geometry) {
-  if (geometry.axis_x >= kMaxAxes || geometry.axis_y >= kMaxAxes || geometry.axis_x == geometry.axis_y) {
+  if (geometry.axis_x >= card_map::kMaxAxes || geometry.axis_y >= card_map::kMaxAxes ||
+      geometry.axis_x == geometry.axis_y) {
     refuse(fmt::format("axes {} and {} span no plane", geometry.axis_x, geometry.axis_y));
   }
   // The upper bound keeps the conversion to turns within range; more than 65,535 quadrants are refused later.
@@ -127,9 +130,9 @@ void check_common(const Geometry& geometry) {
 }
 
 template <class Geometry>
-Arc fill(const Geometry& geometry, const Conic& conic, const Point& start, const Point& end) {
+ArcCommand fill(const Geometry& geometry, const Conic& conic, const Point& start, const Point& end) {
   const std::int64_t changes = quadrant_changes(start, end, geometry.clockwise, geometry.sweep, geometry.turns);
-  Arc arc;
+  ArcCommand arc;
   arc.path_ticks = path_length(conic, start, end, geometry.clockwise, changes);
   arc.clockwise = geometry.clockwise;
   arc.axis_x = geometry.axis_x;
@@ -162,7 +165,7 @@ bool within(const Point& p, std::int64_t limit) { return std::llabs(p.x) <= limi
 
 }  // namespace
 
-Arc prepare(const ArcGeometry& geometry) {
+ArcCommand prepare(const ArcGeometry& geometry) {
   check_common(geometry);
   constexpr std::int64_t kUnit = kCentreUnitsPerPulse;
   // Compared before the negation, which the most negative value would not survive.
@@ -181,7 +184,7 @@ Arc prepare(const ArcGeometry& geometry) {
   return fill(geometry, Conic{1, 1, mean - kUnit * kUnit / 2, kUnit}, start, end);
 }
 
-Arc prepare(const EllipseGeometry& geometry) {
+ArcCommand prepare(const EllipseGeometry& geometry) {
   check_common(geometry);
   const std::int64_t a = geometry.semi_x;
   const std::int64_t b = geometry.semi_y;
@@ -203,7 +206,7 @@ Arc prepare(const EllipseGeometry& geometry) {
   return fill(geometry, conic, start, end);
 }
 
-Arc with_ticks(Arc arc, std::uint64_t ticks) {
+ArcCommand with_ticks(ArcCommand arc, std::uint64_t ticks) {
   if (ticks < arc.path_ticks) refuse(fmt::format("{} feed ticks for {} steps", ticks, arc.path_ticks));
   if (ticks >= kCountLimit) refuse(fmt::format("{} feed ticks, fewer than 2^40 fit", ticks));
   arc.ticks = ticks;
@@ -212,8 +215,10 @@ Arc with_ticks(Arc arc, std::uint64_t ticks) {
   return arc;
 }
 
-Arc make_arc(const ArcGeometry& geometry, std::uint64_t ticks) { return with_ticks(prepare(geometry), ticks); }
+ArcCommand make_arc(const ArcGeometry& geometry, std::uint64_t ticks) { return with_ticks(prepare(geometry), ticks); }
 
-Arc make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks) { return with_ticks(prepare(geometry), ticks); }
+ArcCommand make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks) {
+  return with_ticks(prepare(geometry), ticks);
+}
 
 }  // namespace trammel::driver

@@ -14,8 +14,6 @@ namespace map = card_map;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-static_assert(kMaxAxes == map::kMaxAxes);
-
 const map::Register& entry(std::uint32_t address) { return *map::find_register(address).entry; }
 
 std::uint32_t bits(std::uint32_t value, std::uint32_t mask, std::uint32_t shift) { return (value & mask) >> shift; }
@@ -62,8 +60,8 @@ void check_versions(const Identification& card) {
 }
 
 void check_build(const Identification& card) {
-  if (card.axes < 1 || card.axes > kMaxAxes) {
-    throw IdentificationError(fmt::format("card: {} axes, this driver knows 1 to {}", card.axes, kMaxAxes));
+  if (card.axes < 1 || card.axes > card_map::kMaxAxes) {
+    throw IdentificationError(fmt::format("card: {} axes, this driver knows 1 to {}", card.axes, card_map::kMaxAxes));
   }
   if (card.clock_hz == 0) {
     throw IdentificationError("card: a clock of 0 Hz; its clock strap is not set");

@@ -92,9 +92,9 @@ std::uint8_t plane_mask(unsigned axis_x, unsigned axis_y) {
   return static_cast<std::uint8_t>(1U << axis_x | 1U << axis_y);
 }
 
-Plain plain_of(const Line& line) {
+Plain plain_of(const LineCommand& line) {
   Plain plain{map::Opcode::Line, line.mask, line.ticks, {}};
-  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     if ((line.mask >> axis & 1U) != 0) {
       plain.values.push_back(line.increment[axis]);
     } else if (line.increment[axis] != 0) {
@@ -105,7 +105,7 @@ Plain plain_of(const Line& line) {
   return plain;
 }
 
-Plain plain_of(const Arc& arc) {
+Plain plain_of(const ArcCommand& arc) {
   if (arc.axis_x > kAxisMask || arc.axis_y > kAxisMask || arc.axis_x == arc.axis_y) {
     throw ArgumentError(fmt::format("ARC: plane of axes {} and {}", arc.axis_x, arc.axis_y));
   }
@@ -119,23 +119,23 @@ Plain plain_of(const Arc& arc) {
            static_cast<int128>(arc.half_y)}};
 }
 
-Plain plain_of(const Feed& feed) {
+Plain plain_of(const FeedCommand& feed) {
   return {map::Opcode::Feed,
           0,
           feed.ticks,
           {static_cast<int128>(feed.rate), feed.floor, feed.stop_distance, feed.acceleration, feed.jerk}};
 }
 
-Plain plain_of(const Dwell& dwell) { return {map::Opcode::Dwell, 0, dwell.clocks, {}}; }
+Plain plain_of(const DwellCommand& dwell) { return {map::Opcode::Dwell, 0, dwell.clocks, {}}; }
 
-Plain plain_of(const End&) { return {map::Opcode::End, 0, 0, {}}; }
+Plain plain_of(const EndCommand&) { return {map::Opcode::End, 0, 0, {}}; }
 
 Command line_from(const Plain& plain) {
-  Line line;
+  LineCommand line;
   line.ticks = plain.count;
   line.mask = plain.mask;
   std::size_t next = 0;
-  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     if ((plain.mask >> axis & 1U) != 0) {
       line.increment[axis] = static_cast<std::int64_t>(plain.values[next++]);
     }
@@ -146,7 +146,7 @@ Command line_from(const Plain& plain) {
 Command arc_from(const Plain& plain) {
   const auto& value = plain.values;
   const auto plane = static_cast<unsigned>(value[2]);
-  Arc arc;
+  ArcCommand arc;
   arc.ticks = plain.count;
   arc.path_ticks = static_cast<std::uint64_t>(value[0]);
   arc.prescale = static_cast<std::uint64_t>(value[1]);
@@ -170,7 +170,7 @@ Command arc_from(const Plain& plain) {
 
 Command feed_from(const Plain& plain) {
   const auto& value = plain.values;
-  Feed feed;
+  FeedCommand feed;
   feed.ticks = plain.count;
   feed.rate = static_cast<std::uint64_t>(value[0]);
   feed.floor = static_cast<std::uint32_t>(value[1]);
@@ -189,9 +189,9 @@ Command command_from(const Plain& plain) {
     case map::Opcode::Feed:
       return feed_from(plain);
     case map::Opcode::Dwell:
-      return Dwell{plain.count};
+      return DwellCommand{plain.count};
     case map::Opcode::End:
-      return End{};
+      return EndCommand{};
     default:
       break;
   }

@@ -50,7 +50,7 @@ std::string describe_faults(std::uint32_t faults) {
   namespace field = card_map::field;
   std::string text;
   const auto add = [&text](const std::string& name) { text += (text.empty() ? "" : ", ") + name; };
-  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     if ((faults >> (field::kFaultStepShift + axis) & 1U) != 0) {
       add(fmt::format("step fault of axis {}", axis));
     }

@@ -187,7 +187,7 @@ void FakeCard::take_snapshot(map::Area area) {
   snapshot_[reg::status(area)] = status() & ~field::kStatusSnapshot;
   snapshot_[reg::time_lo(area)] = static_cast<std::uint32_t>(time_);
   snapshot_[reg::time_hi(area)] = static_cast<std::uint32_t>(time_ >> 32);
-  const Feed* feed = feed_.left != 0 ? std::get_if<Feed>(&feed_.command) : nullptr;
+  const FeedCommand* feed = feed_.left != 0 ? std::get_if<FeedCommand>(&feed_.command) : nullptr;
   snapshot_[reg::rate(area)] = feed != nullptr ? static_cast<std::uint32_t>(feed->rate >> 32) : 0;
   snapshot_[reg::ratio(area)] = ratio();
   snapshot_[reg::geometry_begun(area)] = geometry_.begun;

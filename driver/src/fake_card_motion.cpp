@@ -1,6 +1,7 @@
 // The fake's time: queues that empty, barriers, one-shot lines.
 #include <algorithm>
 
+#include "trammel/card_map.hpp"
 #include "trammel/driver/fake_card.hpp"
 #include "wide_arithmetic.hpp"
 
@@ -14,17 +15,17 @@ constexpr unsigned kRatioBits = 16;
 constexpr unsigned kIncrementBits = 40;
 
 bool is_barrier(const Command& command) {
-  return std::holds_alternative<Dwell>(command) || std::holds_alternative<End>(command);
+  return std::holds_alternative<DwellCommand>(command) || std::holds_alternative<EndCommand>(command);
 }
 
 std::uint64_t ticks_of(const Command& command) {
-  if (const auto* line = std::get_if<Line>(&command)) {
+  if (const auto* line = std::get_if<LineCommand>(&command)) {
     return line->ticks;
   }
-  if (const auto* arc = std::get_if<Arc>(&command)) {
+  if (const auto* arc = std::get_if<ArcCommand>(&command)) {
     return arc->ticks;
   }
-  const auto* feed = std::get_if<Feed>(&command);
+  const auto* feed = std::get_if<FeedCommand>(&command);
   return feed != nullptr ? feed->ticks : 0;
 }
 
@@ -71,7 +72,7 @@ bool FakeCard::direct_is_valid(std::uint32_t mask) const {
   if (setting64(reg::kLengthLo, reg::kLengthHi) == 0) {
     return false;
   }
-  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     const std::uint64_t frequency = setting64(reg::frequency_lo(axis), reg::frequency_hi(axis));
     const bool impossible =
         frequency > std::uint64_t{1} << kIncrementBits || (frequency == 0 && setting(reg::count(axis)) != 0);
@@ -96,7 +97,7 @@ void FakeCard::start_direct(std::uint32_t mask) {
     refuse(card_map::Reason::BadValue, reg::kStart, Direction::kWrite);
   }
   direct_left_ = setting64(reg::kLengthLo, reg::kLengthHi);
-  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     const auto frequency = static_cast<std::int64_t>(setting64(reg::frequency_lo(axis), reg::frequency_hi(axis)));
     const std::int64_t possible = steps_of(direct_left_, frequency);
     const std::int64_t steps = std::min<std::int64_t>(possible, setting(reg::count(axis)));
@@ -106,7 +107,7 @@ void FakeCard::start_direct(std::uint32_t mask) {
 }
 
 void FakeCard::end_direct() {
-  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     position_[axis] += direct_steps_[axis];
   }
 }
@@ -193,7 +194,7 @@ bool FakeCard::pass_barrier() {
     queue->used -= queue->commands.front().halfwords;
     queue->commands.pop_front();
   }
-  if (const auto* dwell = std::get_if<Dwell>(&barrier)) {
+  if (const auto* dwell = std::get_if<DwellCommand>(&barrier)) {
     dwell_left_ = dwell->clocks;
   } else {
     ended_ = true;
@@ -202,11 +203,11 @@ bool FakeCard::pass_barrier() {
 }
 
 void FakeCard::end_path() {
-  if (const auto* line = std::get_if<Line>(&geometry_.command)) {
+  if (const auto* line = std::get_if<LineCommand>(&geometry_.command)) {
     for (unsigned axis = 0; axis < options_.axes; ++axis) {
       position_[axis] += steps_of(line->ticks, line->increment[axis]);
     }
-  } else if (const auto* arc = std::get_if<Arc>(&geometry_.command)) {
+  } else if (const auto* arc = std::get_if<ArcCommand>(&geometry_.command)) {
     position_[arc->axis_x] += arc->end_x;
     position_[arc->axis_y] += arc->end_y;
   }

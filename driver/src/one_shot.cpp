@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "clocks.hpp"
+#include "trammel/card_map.hpp"
 #include "wide_arithmetic.hpp"
 
 namespace trammel::driver {
@@ -31,7 +32,7 @@ std::uint64_t longest(const Displacement& displacement) {
 }
 
 void check_displacement(const CardTiming& card, const Displacement& displacement) {
-  for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
+  for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
     const std::int64_t pulses = displacement[axis];
     if (pulses != 0 && axis >= card.axes) {
       throw ArgumentError(
@@ -59,7 +60,7 @@ uint128 fewest_clocks(const CardTiming& card, std::size_t axis, std::uint64_t pu
 uint128 limited_clocks(const CardTiming& card, const Displacement& displacement, std::uint64_t clocks,
                        const LineLimits& limits) {
   uint128 result = clocks;
-  for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
+  for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
     const std::uint64_t pulses = magnitude(displacement[axis]);
     const uint128 needed = fewest_clocks(card, axis, pulses, limits.max_velocity[axis]);
     if (needed > clocks && limits.policy == LimitPolicy::kRefuse) {
@@ -118,9 +119,9 @@ std::array<std::uint32_t, kOneShotWords> OneShotPart::words() const {
   namespace reg = card_map::reg;
   std::array<std::uint32_t, kOneShotWords> result{};
   const auto at = [&result](std::uint32_t address) -> std::uint32_t& {
-    return result[(address - reg::frequency_lo(kMaxAxes - 1)) / 4];
+    return result[(address - reg::frequency_lo(card_map::kMaxAxes - 1)) / 4];
   };
-  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     at(reg::frequency_lo(axis)) = static_cast<std::uint32_t>(frequency[axis]);
     at(reg::frequency_hi(axis)) = static_cast<std::uint32_t>(frequency[axis] >> 32);
     at(reg::count(axis)) = count[axis];
@@ -135,7 +136,7 @@ std::array<std::uint32_t, kOneShotWords> OneShotPart::words() const {
 OneShotPart OneShotPlan::part(std::size_t index) const {
   OneShotPart part;
   part.length = part_clocks_;
-  for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
+  for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
     const std::uint64_t pulses = magnitude(displacement_[axis]);
     const std::uint64_t count = pulses_before(pulses, index + 1, parts_) - pulses_before(pulses, index, parts_);
     part.count[axis] = static_cast<std::uint32_t>(count);

@@ -24,7 +24,7 @@ void require_engine(const Identification& card, std::uint32_t engine, std::strin
 // What of a command depends on the card; its layout is checked by encode().
 void check_for_card(const Identification& card, const Command& command, const map::Command& layout) {
   require_engine(card, layout.engine, layout.name);
-  if (const auto* feed = std::get_if<Feed>(&command); feed != nullptr && feed->jerk != 0) {
+  if (const auto* feed = std::get_if<FeedCommand>(&command); feed != nullptr && feed->jerk != 0) {
     require_engine(card, map::engine::kJerk, layout.name);
   }
 }
@@ -94,7 +94,7 @@ Stream::Encoded Stream::encode_checked(const Command& command, std::uint8_t numb
   encoded.begin = words.size();
   encode(command, number, words);
   encoded.end = words.size();
-  encoded.is_end = std::holds_alternative<End>(command);
+  encoded.is_end = std::holds_alternative<EndCommand>(command);
   const std::uint32_t header = words[encoded.begin];
   const auto mask = static_cast<std::uint8_t>(header >> 8);
   const map::Command& layout = *map::find_command(static_cast<std::uint8_t>(header));

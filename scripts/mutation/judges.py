@@ -47,9 +47,10 @@ class Verdict:
 
 
 def read_judges(path: Path) -> List[Judge]:
-    """Those that see little of the design first: they are quick and say most about it. Of equal ones in the file's order."""
+    """Those that see little of the design first: they are quick and say most about it. Of equal ones in the file's order;
+    last resorts come last."""
     judges = [Judge(**entry) for entry in json.loads(path.read_text())]
-    return sorted(judges, key=lambda judge: len(judge.sources))
+    return sorted(judges, key=lambda judge: (judge.last_resort, len(judge.sources)))
 
 
 def fingerprint(judges: List[Judge]) -> str:

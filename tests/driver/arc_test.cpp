@@ -24,7 +24,7 @@ using model::DeviationPath;
 
 constexpr double kPi = 3.14159265358979323846;
 
-DeviationPath path_of(const Arc& arc) {
+DeviationPath path_of(const ArcCommand& arc) {
   const auto aligned = [](int128 value) { return static_cast<DeviationPath::Word>(value) << DeviationPath::kAlign; };
   DeviationPath path;
   path.state.deviation = aligned(arc.deviation);
@@ -43,7 +43,7 @@ DeviationPath path_of(const Arc& arc) {
 // Walks the arc and shows `visit(x, y)` every point after a step, relative to the start. Expects the end point after
 // exactly L steps, and not before.
 template <class Visit>
-bool walk(const Arc& arc, Visit&& visit) {
+bool walk(const ArcCommand& arc, Visit&& visit) {
   DeviationPath path = path_of(arc);
   std::int64_t x = 0;
   std::int64_t y = 0;
@@ -102,7 +102,7 @@ void expect_random_arcs(std::uint64_t seed, int count, double smallest, double l
   for (int i = 0; i < count; ++i) {
     const RandomArc made = random_arc(random, smallest, largest);
     const ArcGeometry& g = made.geometry;
-    Arc arc;
+    ArcCommand arc;
     try {
       arc = prepare(g);
     } catch (const std::invalid_argument&) {
@@ -138,7 +138,7 @@ void expect_random_arcs(std::uint64_t seed, int count, double smallest, double l
   }
 }
 
-TEST(Arc, RandomArcsEndExactlyWithinTheirError) {
+TEST(ArcCommand, RandomArcsEndExactlyWithinTheirError) {
   Extremes small;
   expect_random_arcs(1, 30000, 2, 4, small);
   Extremes large;
@@ -162,7 +162,7 @@ double sweep_between(double from, double to, bool clockwise) {
 
 // Every start and end on the rounded circles of 1 to 20 pulses about a whole-pulse centre, both directions, and the
 // same with a full turn more.
-TEST(Arc, EverySmallArcEndsExactly) {
+TEST(ArcCommand, EverySmallArcEndsExactly) {
   std::uint64_t arcs = 0;
   for (int r = 1; r <= 20; ++r) {
     std::vector<std::pair<int, int>> points;
@@ -184,7 +184,7 @@ TEST(Arc, EverySmallArcEndsExactly) {
           g.turns = sx == ex && sy == ey ? 1 : 0;
           if (std::hypot(sx, sy) + std::hypot(ex, ey) < 2) continue;  // below a pulse: refused
           for (int more = 0; more < 2; ++more, ++g.turns) {
-            const Arc arc = prepare(g);
+            const ArcCommand arc = prepare(g);
             ASSERT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {}))
                 << "r " << r << " from " << sx << ',' << sy << " to " << ex << ',' << ey << " clockwise " << clockwise;
             ++arcs;
@@ -204,17 +204,17 @@ ArcGeometry full_circle(std::int64_t r, bool clockwise) {
   return g;
 }
 
-TEST(Arc, FullCirclesHaveEightRadiiSteps) {
+TEST(ArcCommand, FullCirclesHaveEightRadiiSteps) {
   for (std::int64_t r = 2; r <= 2000; ++r) {
     EXPECT_EQ(prepare(full_circle(r, false)).path_ticks, static_cast<std::uint64_t>(8 * r));
     EXPECT_EQ(prepare(full_circle(r, true)).path_ticks, static_cast<std::uint64_t>(8 * r));
   }
-  const Arc largest = prepare(full_circle(std::int64_t{1} << 24, true));
+  const ArcCommand largest = prepare(full_circle(std::int64_t{1} << 24, true));
   EXPECT_EQ(largest.path_ticks, std::uint64_t{1} << 27);
 }
 
-TEST(Arc, FieldsOfGoldbergsCircle) {
-  const Arc arc = make_arc(full_circle(25, false), 1000);
+TEST(ArcCommand, FieldsOfGoldbergsCircle) {
+  const ArcCommand arc = make_arc(full_circle(25, false), 1000);
   EXPECT_EQ(arc.ticks, 1000u);
   EXPECT_EQ(arc.path_ticks, 200u);
   EXPECT_EQ(arc.prescale, (std::uint64_t{200} << 40) / 1000);
@@ -228,7 +228,7 @@ TEST(Arc, FieldsOfGoldbergsCircle) {
 }
 
 // A nearly full and a nearly empty arc between the same rounded points differ only in their sweep.
-TEST(Arc, SweepTellsShortFromFull) {
+TEST(ArcCommand, SweepTellsShortFromFull) {
   ArcGeometry g = full_circle(100, false);
   g.end_y = 1;
   g.sweep = 0.01;
@@ -240,16 +240,16 @@ TEST(Arc, SweepTellsShortFromFull) {
   EXPECT_NEAR(static_cast<double>(prepare(g).path_ticks), 800, 4);
   EXPECT_TRUE(walk(prepare(g), [](std::int64_t, std::int64_t) {}));
   g.sweep = 0.01;
-  const Arc back = prepare(g);
+  const ArcCommand back = prepare(g);
   EXPECT_EQ(back.path_ticks, 1u);
   EXPECT_EQ(back.quadrants, 0);
   EXPECT_TRUE(walk(back, [](std::int64_t, std::int64_t) {}));
 }
 
-TEST(Arc, TurnsAdd) {
+TEST(ArcCommand, TurnsAdd) {
   ArcGeometry g = full_circle(30, true);
   for (g.turns = 0; g.turns < 20; ++g.turns) {
-    const Arc arc = prepare(g);
+    const ArcCommand arc = prepare(g);
     EXPECT_EQ(arc.quadrants, 4 * (g.turns + 1));
     EXPECT_EQ(arc.path_ticks, 240u * (g.turns + 1));
     EXPECT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {}));
@@ -340,7 +340,7 @@ TEST(Ellipse, FullTurnReturns) {
     g.sweep = 2 * kPi;
     for (const bool clockwise : {false, true}) {
       g.clockwise = clockwise;
-      const Arc arc = make_ellipse(g, 1 << 20);
+      const ArcCommand arc = make_ellipse(g, 1 << 20);
       // A needle's tip, narrower than a pulse, is cut short.
       EXPECT_GE(arc.path_ticks, static_cast<std::uint64_t>(3 * (a + b)));
       EXPECT_LE(arc.path_ticks, static_cast<std::uint64_t>(4 * (a + b) + 4));
@@ -358,7 +358,7 @@ std::string refusal(const ArcGeometry& geometry) {
   return {};
 }
 
-TEST(Arc, RefusesWhatTheCardCannotDo) {
+TEST(ArcCommand, RefusesWhatTheCardCannotDo) {
   using ::testing::HasSubstr;
   ArcGeometry g = full_circle(0, false);
   EXPECT_THAT(refusal(g), HasSubstr("radius below one pulse"));
@@ -407,8 +407,8 @@ TEST(Ellipse, RefusesWhatTheCardCannotDo) {
   EXPECT_THROW(prepare(g), std::invalid_argument);
 }
 
-TEST(Arc, TicksBoundThePath) {
-  const Arc arc = prepare(full_circle(25, false));
+TEST(ArcCommand, TicksBoundThePath) {
+  const ArcCommand arc = prepare(full_circle(25, false));
   EXPECT_THROW(with_ticks(arc, 199), std::invalid_argument);
   EXPECT_THROW(with_ticks(arc, std::uint64_t{1} << 40), std::invalid_argument);
   EXPECT_EQ(with_ticks(arc, 200).prescale, std::uint64_t{1} << 40);

@@ -32,8 +32,8 @@ std::string refusal_of(const Command& command) {
   return "";
 }
 
-Arc some_arc() {
-  Arc arc;
+ArcCommand some_arc() {
+  ArcCommand arc;
   arc.ticks = 1000;
   arc.path_ticks = 800;
   arc.prescale = 0xCCCCCCCCCD;
@@ -46,7 +46,7 @@ Arc some_arc() {
 }
 
 TEST(Commands, ALineIsLaidOutAsTheLayoutPageSays) {
-  Line line;
+  LineCommand line;
   line.ticks = 0x0123456789;
   line.mask = 0b0101;
   line.increment[0] = 0x10000000000;  // 2^40, one pulse a tick
@@ -57,7 +57,7 @@ TEST(Commands, ALineIsLaidOutAsTheLayoutPageSays) {
 }
 
 TEST(Commands, APieceIsLaidOutAsTheLayoutPageSays) {
-  Feed feed;
+  FeedCommand feed;
   feed.ticks = 5;
   feed.rate = 0x0123456789ABCDEF;
   feed.floor = 0x11112222;
@@ -77,12 +77,12 @@ TEST(Commands, CommandsOfThatThisDriverHasNoneAreNotDecoded) {
 }
 
 TEST(Commands, BarriersAreThreeWords) {
-  EXPECT_THAT(words_of(Dwell{0x0123456789}, 255), ElementsAre(0xFF030020U, 0x23456789U, 0x00000001U));
-  EXPECT_THAT(words_of(End{}, 1), ElementsAre(0x01030021U, 0U, 0U));
+  EXPECT_THAT(words_of(DwellCommand{0x0123456789}, 255), ElementsAre(0xFF030020U, 0x23456789U, 0x00000001U));
+  EXPECT_THAT(words_of(EndCommand{}, 1), ElementsAre(0x01030021U, 0U, 0U));
 }
 
 TEST(Commands, LimitsOfALineAreKept) {
-  Line line;
+  LineCommand line;
   line.mask = 1;
   line.increment[0] = std::int64_t{1} << 40;
   EXPECT_THAT(refusal_of(line), HasSubstr("count 0"));
@@ -97,7 +97,7 @@ TEST(Commands, LimitsOfALineAreKept) {
   line.increment[0] = 0;
   line.increment[1] = 1;
   EXPECT_THAT(refusal_of(line), HasSubstr("axis 1"));
-  line = Line{};
+  line = LineCommand{};
   line.ticks = 1;
   EXPECT_THAT(refusal_of(line), HasSubstr("mask 0x00"));
 }
@@ -105,23 +105,23 @@ TEST(Commands, LimitsOfALineAreKept) {
 TEST(Commands, LimitsOfAnArcAreKept) {
   EXPECT_EQ(refusal_of(some_arc()), "");
   const auto with = [](auto change) {
-    Arc arc = some_arc();
+    ArcCommand arc = some_arc();
     change(arc);
     return refusal_of(arc);
   };
-  EXPECT_THAT(with([](Arc& arc) { arc.path_ticks = arc.ticks + 1; }), HasSubstr("path_ticks = 1001"));
-  EXPECT_THAT(with([](Arc& arc) { arc.path_ticks = 0; }), HasSubstr("path_ticks = 0"));
-  EXPECT_THAT(with([](Arc& arc) { arc.prescale = (std::uint64_t{1} << 40) + 1; }), HasSubstr("prescale"));
-  EXPECT_THAT(with([](Arc& arc) { arc.axis_y = arc.axis_x; }), HasSubstr("plane"));
-  EXPECT_THAT(with([](Arc& arc) { arc.axis_y = 8; }), HasSubstr("plane"));
-  EXPECT_THAT(with([](Arc& arc) { arc.half_x = std::uint64_t{1} << 48; }), HasSubstr("half_x"));
-  EXPECT_THAT(with([](Arc& arc) { arc.deviation = int128{1} << 79; }), HasSubstr("deviation"));
-  EXPECT_EQ(with([](Arc& arc) { arc.deviation = -(int128{1} << 79); }), "");
-  EXPECT_THAT(with([](Arc& arc) { arc.gradient_y = -(int128{1} << 79) - 1; }), HasSubstr("gradient_y"));
+  EXPECT_THAT(with([](ArcCommand& arc) { arc.path_ticks = arc.ticks + 1; }), HasSubstr("path_ticks = 1001"));
+  EXPECT_THAT(with([](ArcCommand& arc) { arc.path_ticks = 0; }), HasSubstr("path_ticks = 0"));
+  EXPECT_THAT(with([](ArcCommand& arc) { arc.prescale = (std::uint64_t{1} << 40) + 1; }), HasSubstr("prescale"));
+  EXPECT_THAT(with([](ArcCommand& arc) { arc.axis_y = arc.axis_x; }), HasSubstr("plane"));
+  EXPECT_THAT(with([](ArcCommand& arc) { arc.axis_y = 8; }), HasSubstr("plane"));
+  EXPECT_THAT(with([](ArcCommand& arc) { arc.half_x = std::uint64_t{1} << 48; }), HasSubstr("half_x"));
+  EXPECT_THAT(with([](ArcCommand& arc) { arc.deviation = int128{1} << 79; }), HasSubstr("deviation"));
+  EXPECT_EQ(with([](ArcCommand& arc) { arc.deviation = -(int128{1} << 79); }), "");
+  EXPECT_THAT(with([](ArcCommand& arc) { arc.gradient_y = -(int128{1} << 79) - 1; }), HasSubstr("gradient_y"));
 }
 
 TEST(Commands, LimitsOfAFeedPieceAndADwellAreKept) {
-  Feed feed;
+  FeedCommand feed;
   feed.ticks = 1;
   EXPECT_EQ(refusal_of(feed), "");
   feed.floor = 0;
@@ -129,11 +129,11 @@ TEST(Commands, LimitsOfAFeedPieceAndADwellAreKept) {
   feed.floor = 1;
   feed.stop_distance = 0xFFFFFFFF;
   EXPECT_EQ(refusal_of(feed), "");
-  EXPECT_THAT(refusal_of(Dwell{std::uint64_t{1} << 40}), HasSubstr("DWELL: count"));
+  EXPECT_THAT(refusal_of(DwellCommand{std::uint64_t{1} << 40}), HasSubstr("DWELL: count"));
 }
 
 TEST(Commands, DecodeRefusesWhatEncodeCannotMake) {
-  Line line;
+  LineCommand line;
   line.ticks = 5;
   line.mask = 1;
   const auto good = words_of(line);
@@ -157,7 +157,7 @@ TEST(Commands, DecodeRefusesWhatEncodeCannotMake) {
 }
 
 TEST(Commands, PaddingMustBeZero) {
-  const auto good = words_of(End{});
+  const auto good = words_of(EndCommand{});
   auto bad = good;
   bad.back() |= 0x10000;
   EXPECT_NO_THROW(decode(good.data(), good.size()));
@@ -185,15 +185,15 @@ void expect_round_trip(const Command& command, std::uint8_t number) {
 }
 
 RC_GTEST_PROP(CommandsProperty, ALineComesBack, (std::uint8_t number)) {
-  Line line;
+  LineCommand line;
   line.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   line.mask = static_cast<std::uint8_t>(*rc::gen::inRange(1, 256));
-  for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
     line.increment[axis] = (line.mask >> axis & 1U) != 0 ? signed_bits(40) : 0;
   }
   expect_round_trip(line, number);
   const auto words = words_of(line, number);
-  const Line back = std::get<Line>(decode(words.data(), words.size()).command);
+  const LineCommand back = std::get<LineCommand>(decode(words.data(), words.size()).command);
   RC_ASSERT(back.ticks == line.ticks);
   RC_ASSERT(back.mask == line.mask);
   RC_ASSERT(back.increment == line.increment);
@@ -201,7 +201,7 @@ RC_GTEST_PROP(CommandsProperty, ALineComesBack, (std::uint8_t number)) {
 
 RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
               (std::uint8_t number, bool clockwise, std::uint16_t quadrants, std::int32_t end_x, std::int32_t end_y)) {
-  Arc arc;
+  ArcCommand arc;
   arc.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   arc.path_ticks = *rc::gen::inRange<std::uint64_t>(1, arc.ticks + 1);
   arc.prescale = *rc::gen::inRange<std::uint64_t>(0, (std::uint64_t{1} << 40) + 1);
@@ -218,7 +218,7 @@ RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
   arc.half_y = *rc::gen::inRange<std::uint64_t>(0, std::uint64_t{1} << 48);
   expect_round_trip(arc, number);
   const auto words = words_of(arc, number);
-  const Arc back = std::get<Arc>(decode(words.data(), words.size()).command);
+  const ArcCommand back = std::get<ArcCommand>(decode(words.data(), words.size()).command);
   RC_ASSERT(back.path_ticks == arc.path_ticks);
   RC_ASSERT(back.prescale == arc.prescale);
   RC_ASSERT(back.clockwise == arc.clockwise);
@@ -236,7 +236,7 @@ RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
 
 RC_GTEST_PROP(CommandsProperty, AFeedPieceComesBack,
               (std::uint8_t number, std::uint64_t rate, std::int64_t acceleration, std::int64_t jerk)) {
-  Feed feed;
+  FeedCommand feed;
   feed.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   feed.rate = rate;
   feed.acceleration = acceleration;
@@ -245,7 +245,7 @@ RC_GTEST_PROP(CommandsProperty, AFeedPieceComesBack,
   feed.stop_distance = *rc::gen::arbitrary<std::uint32_t>();
   expect_round_trip(feed, number);
   const auto words = words_of(feed, number);
-  const Feed back = std::get<Feed>(decode(words.data(), words.size()).command);
+  const FeedCommand back = std::get<FeedCommand>(decode(words.data(), words.size()).command);
   RC_ASSERT(back.ticks == feed.ticks);
   RC_ASSERT(back.rate == feed.rate);
   RC_ASSERT(back.acceleration == feed.acceleration);

@@ -65,7 +65,7 @@ TEST(FakeCard, StartChecksMaskThenFaultThenBusyThenValues) {
 TEST(FakeCard, AFaultDropsEverythingAndTakesNothingUntilItIsCleared) {
   FakeCard fake;
   std::vector<std::uint32_t> words;
-  Line line;
+  LineCommand line;
   line.ticks = 100;
   line.mask = 1;
   encode(line, 0, words);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <rapidcheck/gtest.h>
 
+#include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/fake_card.hpp"
 #include "trammel/driver/mock_bus.hpp"
@@ -301,7 +302,7 @@ RC_GTEST_PROP(OneShotProperty, EveryPartMakesItsPulsesAndTheyAddUp, ()) {
     RC_ASSERT(part.length > 0U);
     RC_ASSERT(part.length < kOne);
     RC_ASSERT(part.mask != 0);
-    for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
+    for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
       RC_ASSERT(part.frequency[axis] <= kOne);
       RC_ASSERT(pulses_made(part, axis) == part.count[axis]);
       sum[axis] += (part.negative >> axis & 1U) != 0 ? -std::int64_t{part.count[axis]} : part.count[axis];

@@ -18,16 +18,16 @@ using ::testing::StrictMock;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-Line line_of(std::uint64_t ticks, std::int64_t pulses = 0) {
-  Line line;
+LineCommand line_of(std::uint64_t ticks, std::int64_t pulses = 0) {
+  LineCommand line;
   line.ticks = ticks;
   line.mask = 1;
   line.increment[0] = pulses * (std::int64_t{1} << 40) / static_cast<std::int64_t>(ticks);
   return line;
 }
 
-Feed feed_of(std::uint64_t ticks) {
-  Feed feed;
+FeedCommand feed_of(std::uint64_t ticks) {
+  FeedCommand feed;
   feed.ticks = ticks;
   feed.rate = 1;
   return feed;
@@ -91,8 +91,8 @@ TEST_F(StreamOrder, RoomIsReadOnceAndThenCounted) {
   stream.send(line_of(6));
   EXPECT_CALL(bus_, read(reg::kGeometryRoom)).WillOnce(Return(4U));
   EXPECT_CALL(bus_, read(reg::kFeedRoom)).WillOnce(Return(4U));
-  EXPECT_CALL(bus_, block(reg::kStream, words_of({Dwell{9}}, 3), Addressing::kFixed));
-  stream.send(Dwell{9});
+  EXPECT_CALL(bus_, block(reg::kStream, words_of({DwellCommand{9}}, 3), Addressing::kFixed));
+  stream.send(DwellCommand{9});
   EXPECT_EQ(stream.sent(), 4U);
 }
 
@@ -118,7 +118,7 @@ TEST_F(StreamOrder, FinishWaitsForTheEnd) {
   EXPECT_CALL(bus_, read(reg::kGeometryRoom)).WillOnce(Return(4096U));
   EXPECT_CALL(bus_, read(reg::kFeedRoom)).WillOnce(Return(2560U));
   EXPECT_CALL(bus_, block(reg::kStream, _, Addressing::kFixed));
-  stream.send(End{});
+  stream.send(EndCommand{});
   for (const std::uint32_t status : {0U, field::kStatusBusy, field::kStatusEnded}) {
     EXPECT_CALL(bus_, wait(100));
     EXPECT_CALL(bus_, read(reg::kStatus)).WillOnce(Return(status));
@@ -130,8 +130,8 @@ TEST_F(StreamOrder, FinishWaitsForTheEnd) {
 
 TEST_F(StreamOrder, BadCommandsNeverReachTheBus) {
   Stream stream = open_stream();
-  EXPECT_THROW(stream.send({line_of(1), Line{}}), ArgumentError);
-  Line fifth = line_of(1);
+  EXPECT_THROW(stream.send({line_of(1), LineCommand{}}), ArgumentError);
+  LineCommand fifth = line_of(1);
   fifth.mask = 0x10;
   fifth.increment = {};
   EXPECT_THROW(stream.send(fifth), ArgumentError);
@@ -199,8 +199,8 @@ TEST(StreamOnFake, RunsAProgramThroughSmallQueues) {
     program.emplace_back(line_of(500, i % 2 == 0 ? 7 : -3));
     program.emplace_back(feed_of(500));
   }
-  program.emplace_back(Dwell{1000});
-  program.emplace_back(End{});
+  program.emplace_back(DwellCommand{1000});
+  program.emplace_back(EndCommand{});
   stream.send(program);
   EXPECT_TRUE(stream.finish().ended);
   EXPECT_EQ(fake.position(0), 150 * 7 - 150 * 3);
@@ -229,13 +229,13 @@ TEST(StreamOnFake, AFaultWhileWaitingEndsTheWait) {
   StreamOptions options;
   options.progress = [&fake](const StreamProgress&) { fake.raise_fault(card_map::field::kFaultPathIncomplete); };
   Stream stream(card, options);
-  stream.send({line_of(100'000), feed_of(100'000), End{}});
+  stream.send({line_of(100'000), feed_of(100'000), EndCommand{}});
   EXPECT_THROW(stream.finish(), FaultError);
   EXPECT_THROW(stream.restart(), FaultError);
   EXPECT_EQ(card.stop_snapshot().geometry_begun, 1U);
   card.clear_faults();
   stream.restart();
-  stream.send({line_of(10, 1), feed_of(10), End{}});
+  stream.send({line_of(10, 1), feed_of(10), EndCommand{}});
   stream.finish();
   EXPECT_EQ(fake.position(0), 1);
 }
@@ -246,7 +246,7 @@ TEST(StreamOnFake, RecoversInWhicheverOrder) {
     FakeCard fake;
     Card card = Card::open(fake);
     Stream stream(card);
-    stream.send({line_of(1000, 100), feed_of(1000), End{}});
+    stream.send({line_of(1000, 100), feed_of(1000), EndCommand{}});
     fake.wait(100);
     fake.raise_fault(field::kFaultStep & 1U);
     if (order == 0) {
@@ -260,7 +260,7 @@ TEST(StreamOnFake, RecoversInWhicheverOrder) {
     EXPECT_EQ(fake.position(0), 0) << order;
     EXPECT_FALSE(card.busy());
     stream.restart();
-    stream.send({line_of(10, 1), feed_of(10), End{}});
+    stream.send({line_of(10, 1), feed_of(10), EndCommand{}});
     EXPECT_TRUE(stream.finish().ended);
     EXPECT_EQ(fake.position(0), 1) << order;
   }
@@ -272,7 +272,7 @@ TEST(StreamOnFake, HonoursTheCardsEngines) {
   FakeCard fake(fake_options);
   Card card = Card::open(fake);
   Stream stream(card);
-  Arc arc;
+  ArcCommand arc;
   arc.ticks = arc.path_ticks = 4;
   const auto message = [&stream](const Command& command) -> std::string {
     try {
@@ -283,7 +283,7 @@ TEST(StreamOnFake, HonoursTheCardsEngines) {
     return "";
   };
   EXPECT_THAT(message(arc), ::testing::HasSubstr("ARC needs accumulator"));
-  Feed feed = feed_of(4);
+  FeedCommand feed = feed_of(4);
   EXPECT_EQ(message(feed), "");
   feed.jerk = 1;
   EXPECT_THAT(message(feed), ::testing::HasSubstr("FEED needs jerk"));
@@ -293,7 +293,7 @@ TEST(StreamOnFake, TicksThatDoNotMatchAreAFault) {
   FakeCard fake;
   Card card = Card::open(fake);
   Stream stream(card);
-  stream.send({line_of(10), feed_of(11), End{}});
+  stream.send({line_of(10), feed_of(11), EndCommand{}});
   EXPECT_THROW(stream.finish(), FaultError);
   EXPECT_EQ(card.faults(), card_map::field::kFaultTickMismatch);
 }
@@ -332,7 +332,7 @@ RC_GTEST_PROP(StreamProperty, AnyMatchedProgramArrivesInOrderAndWhole, ()) {
     program.emplace_back(feed_of(64));
     position += pulses;
   }
-  program.emplace_back(End{});
+  program.emplace_back(EndCommand{});
   stream.send(program);
   stream.finish();
   RC_ASSERT(fake.position(0) == position);

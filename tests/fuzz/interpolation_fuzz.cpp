@@ -7,11 +7,11 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "trammel/model/interpolation/any_interpolator.hpp"
+#include "trammel/interpolation/any_interpolator.hpp"
 
 namespace {
 
-using namespace trammel::model::interpolation;
+using namespace trammel::interpolation;
 
 // The bytes as numbers; zeros when they run out.
 class Bytes {

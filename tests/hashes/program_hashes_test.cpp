@@ -54,13 +54,13 @@ struct Outcome {
 };
 
 Outcome run(const Job& job, Shift shift = kShift) {
-  driver::Machine machine = driver::default_machine();
-  if (!job.set.empty()) driver::apply_override(machine, job.set);
-  sim::EngineOptions options;
+  machine::Machine machine = machine::default_machine();
+  if (!job.set.empty()) machine::apply_override(machine, job.set);
+  sim::SimulationOptions options;
   options.kind = job.engine;
   options.clock_hz = is_model(job) ? 100'000'000 : 1'000'000;
   StepHasher hasher(shift);
-  const driver::Program program = driver::read_program_file(job.folder + "/" + job.program, machine);
+  const gcode::Program program = gcode::read_program_file(job.folder + "/" + job.program, machine);
   app::RunResult result = app::run_program(program, machine, options, {}, &hasher);
   return {hasher.finish(), std::move(result)};
 }

@@ -8,7 +8,7 @@ namespace trammel::test {
 namespace {
 
 bool is_barrier(const driver::Command& command) {
-  return std::holds_alternative<driver::Dwell>(command) || std::holds_alternative<driver::End>(command);
+  return std::holds_alternative<driver::DwellCommand>(command) || std::holds_alternative<driver::EndCommand>(command);
 }
 
 std::uint64_t word(std::int64_t value) { return static_cast<std::uint64_t>(value); }
@@ -26,8 +26,8 @@ void Hash::add(std::uint64_t word) {
   value_ ^= value_ >> 29U;
 }
 
-void StepHasher::sending(const driver::PlannedSegment& segment) {
-  arcs_ |= segment.kind == driver::MotionKind::kArc;
+void StepHasher::sending(const planner::PlannedSegment& segment) {
+  arcs_ |= segment.kind == gcode::MotionKind::kArc;
   for (const driver::Command& command : segment.commands) {
     commands_.push_back({sent_at_.size(), result_.barriers, segment.chords});
     if (is_barrier(command)) ++result_.barriers;
@@ -36,7 +36,7 @@ void StepHasher::sending(const driver::PlannedSegment& segment) {
 
 void StepHasher::sent(std::uint64_t cycle) { sent_at_.push_back(cycle); }
 
-void StepHasher::path_step(const sim::PathStep& step) {
+void StepHasher::path_step(const driver::PathStep& step) {
   const Sent& command = commands_.at(step.command);
   if (!tick_.empty() && (tick_.back().command != step.command || tick_.back().tick != step.tick)) {
     const bool next_command = tick_.back().command != step.command;
@@ -50,7 +50,7 @@ void StepHasher::path_step(const sim::PathStep& step) {
 
 void StepHasher::end_tick() {
   sort_by_axis(tick_);
-  for (const sim::PathStep& step : tick_) {
+  for (const driver::PathStep& step : tick_) {
     if (commands_[step.command].chord) {
       if (chord_ == Pulses{}) path_.add(step.command);
       ++chord_[step.axis][step.direction > 0 ? 0 : 1];
@@ -72,7 +72,7 @@ void StepHasher::end_chord() {
   chord_ = {};
 }
 
-void StepHasher::pin_step(const sim::PinStep& step) {
+void StepHasher::pin_step(const driver::PinStep& step) {
   auto& waiting = waiting_.at(step.axis);
   if (waiting.empty() || waiting.front().direction != step.direction) {
     throw std::logic_error("a step at a pin that no path has made");
@@ -103,7 +103,7 @@ void StepHasher::look_at_lead(std::size_t segment, std::uint64_t cycle) {
 
 void StepHasher::end_cycle() {
   sort_by_axis(cycle_);
-  for (const sim::PinStep& step : cycle_) {
+  for (const driver::PinStep& step : cycle_) {
     pins_.add(word(corrected_ - result_.start));
     pins_.add(step.axis);
     pins_.add(word(step.direction));

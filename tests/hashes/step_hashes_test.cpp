@@ -11,7 +11,7 @@ namespace {
 // Two lines, a dwell, and a third line; each path step comes with its step at the pin, some clocks later.
 struct Steps {
   struct Both {
-    sim::PathStep path;
+    driver::PathStep path;
     std::uint64_t cycle;  // at the pin
   };
   std::vector<Both> steps = {
@@ -20,30 +20,30 @@ struct Steps {
       {{6, 7, 0, 1}, 5007},  {{6, 9, 0, 1}, 5009},
   };
   std::uint64_t first_write = 900;
-  driver::MotionKind kind = driver::MotionKind::kLine;  // of the second path
+  gcode::MotionKind kind = gcode::MotionKind::kLine;  // of the second path
   bool chords = false;
 };
 
-driver::PlannedSegment segment(std::vector<driver::Command> commands) {
-  driver::PlannedSegment result;
+planner::PlannedSegment segment(std::vector<driver::Command> commands) {
+  planner::PlannedSegment result;
   result.commands = std::move(commands);
   return result;
 }
 
 StepHashes hashes_of(const Steps& list, Shift shift = {0, 0}) {
   StepHasher hasher(shift);
-  hasher.sending(segment({driver::Feed{}, driver::Line{}}));  // commands 0 and 1
+  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));  // commands 0 and 1
   hasher.sent(list.first_write);
-  driver::PlannedSegment second = segment({driver::Feed{}, driver::Line{}});  // 2 and 3
+  planner::PlannedSegment second = segment({driver::FeedCommand{}, driver::LineCommand{}});  // 2 and 3
   second.kind = list.kind;
   second.chords = list.chords;
   hasher.sending(second);
   hasher.sent(list.first_write + 20);
-  hasher.sending(segment({driver::Dwell{}}));  // 4
+  hasher.sending(segment({driver::DwellCommand{}}));  // 4
   hasher.sent(list.first_write + 30);
-  hasher.sending(segment({driver::Feed{}, driver::Line{}}));  // 5 and 6
+  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));  // 5 and 6
   hasher.sent(list.first_write + 50);
-  hasher.sending(segment({driver::End{}}));
+  hasher.sending(segment({driver::EndCommand{}}));
   hasher.sent(list.first_write + 60);
   for (const Steps::Both& step : list.steps) {
     hasher.path_step(step.path);
@@ -145,14 +145,14 @@ TEST(Shift, OfABarrierDoesNotHideOneClockBehindIt) {
 
 // An arc on the accumulator: path ticks stay in, there is nothing to say of the pins.
 TEST(Arcs, HaveNoHashOfThePins) {
-  const auto arc = [](Steps& s) { s.kind = driver::MotionKind::kArc; };
+  const auto arc = [](Steps& s) { s.kind = gcode::MotionKind::kArc; };
   EXPECT_FALSE(hashes_with(arc).pins);
   EXPECT_EQ(hashes_with(arc).path, hashes_of({}).path);
 }
 
 TEST(Arcs, InChordsCountThePulsesOfEachCommandAndAxis) {
   const auto chords = [](Steps& s) {
-    s.kind = driver::MotionKind::kArc;
+    s.kind = gcode::MotionKind::kArc;
     s.chords = true;
   };
   const auto same = hashes_with(chords);
@@ -171,7 +171,7 @@ TEST(Arcs, InChordsCountThePulsesOfEachCommandAndAxis) {
 
 TEST(Pins, WithOtherStepsThanThePathsAreRefused) {
   StepHasher hasher({0, 0});
-  hasher.sending(segment({driver::Feed{}, driver::Line{}}));
+  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));
   hasher.sent(10);
   EXPECT_THROW(hasher.pin_step({20, 0, 1}), std::logic_error);
   hasher.path_step({1, 1, 0, 1});
@@ -181,11 +181,11 @@ TEST(Pins, WithOtherStepsThanThePathsAreRefused) {
 
 TEST(Lead, ShowsAPathThatCameTooLate) {
   StepHasher hasher({0, 0});
-  hasher.sending(segment({driver::Feed{}, driver::Line{}}));
+  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));
   hasher.sent(10);
   hasher.path_step({1, 1, 0, 1});
   hasher.pin_step({20, 0, 1});
-  hasher.sending(segment({driver::Feed{}, driver::Line{}}));
+  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));
   hasher.sent(25);
   hasher.path_step({3, 1, 0, 1});
   hasher.pin_step({40, 0, 1});

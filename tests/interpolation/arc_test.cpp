@@ -4,10 +4,10 @@
 #include <array>
 #include <random>
 
-#include "trammel/model/interpolation/steer_program.hpp"
+#include "trammel/interpolation/steer_program.hpp"
 #include "walks.hpp"
 
-namespace trammel::model::interpolation {
+namespace trammel::interpolation {
 namespace {
 
 constexpr std::array<Method, 5> kCircleMethods{Method::kSteer, Method::kMinDeviation8, Method::kDda, Method::kDdaHalf,
@@ -320,4 +320,4 @@ TEST(Ellipse, DeviationStaysItsClosedForm) {
 }
 
 }  // namespace
-}  // namespace trammel::model::interpolation
+}  // namespace trammel::interpolation

@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "trammel/model/interpolation/any_interpolator.hpp"
+#include "trammel/interpolation/any_interpolator.hpp"
 
 namespace {
 
-using namespace trammel::model::interpolation;
+using namespace trammel::interpolation;
 
 void walk(benchmark::State& state, Method method, const Curve& curve) {
   const AnyInterpolator start = make_interpolator(method, curve, {100'000'000, 1, 1});

@@ -6,7 +6,7 @@
 
 #include "walks.hpp"
 
-namespace trammel::model::interpolation {
+namespace trammel::interpolation {
 namespace {
 
 constexpr std::array<std::array<std::int64_t, 4>, 8> kPaperLines{{{0, 0, 20, 40},
@@ -236,4 +236,4 @@ TEST(Line, LongestLineStaysInsideItsWidths) {
 }
 
 }  // namespace
-}  // namespace trammel::model::interpolation
+}  // namespace trammel::interpolation

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "trammel/model/interpolation/any_interpolator.hpp"
+#include "trammel/interpolation/any_interpolator.hpp"
 
-namespace trammel::model::interpolation {
+namespace trammel::interpolation {
 namespace {
 
 using ::testing::HasSubstr;
@@ -102,4 +102,4 @@ TEST(Refusal, Velocities) {
 }
 
 }  // namespace
-}  // namespace trammel::model::interpolation
+}  // namespace trammel::interpolation

@@ -1,9 +1,9 @@
 // STEER's delay against the paper's list, and its defects.
-#include "trammel/model/interpolation/steer_delay.hpp"
+#include "trammel/interpolation/steer_delay.hpp"
 
 #include <gtest/gtest.h>
 
-namespace trammel::model::interpolation {
+namespace trammel::interpolation {
 namespace {
 
 TEST(SteerDelay, DragFallsAsListed) {
@@ -47,4 +47,4 @@ TEST(SteerDelay, ACircleHasNoRampOrALinesLeftOvers) {
 }
 
 }  // namespace
-}  // namespace trammel::model::interpolation
+}  // namespace trammel::interpolation

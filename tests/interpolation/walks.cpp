@@ -1,6 +1,6 @@
 #include "walks.hpp"
 
-namespace trammel::model::interpolation {
+namespace trammel::interpolation {
 
 double from_ellipse(double semi_x, double semi_y, const Position& p) {
   double x = std::fabs(static_cast<double>(p[0]));
@@ -33,4 +33,4 @@ double from_ellipse(double semi_x, double semi_y, const Position& p) {
   return std::hypot(r * x / (s + r) - x, y / (s + 1) - y);
 }
 
-}  // namespace trammel::model::interpolation
+}  // namespace trammel::interpolation

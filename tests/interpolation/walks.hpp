@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "trammel/model/interpolation/any_interpolator.hpp"
+#include "trammel/interpolation/any_interpolator.hpp"
 
-namespace trammel::model::interpolation {
+namespace trammel::interpolation {
 
 struct Walked {
   Position end{};
@@ -54,4 +54,4 @@ std::string axes_of(Walk walk) {
   return result;
 }
 
-}  // namespace trammel::model::interpolation
+}  // namespace trammel::interpolation

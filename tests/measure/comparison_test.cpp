@@ -1,6 +1,6 @@
 // The comparison over the real methods: the table of the second paper's lines, what every method must keep, and random
 // lines.
-#include "trammel/model/measure/comparison.hpp"
+#include "trammel/measure/comparison.hpp"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace trammel::model::measure {
+namespace trammel::measure {
 namespace {
 
 using interpolation::Curve;
@@ -203,4 +203,4 @@ TEST(RandomLinesTest, RefuseALineFasterThanTheClock) {
 }
 
 }  // namespace
-}  // namespace trammel::model::measure
+}  // namespace trammel::measure

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <vector>
 
-#include "trammel/model/measure/cost.hpp"
-#include "trammel/model/measure/distance.hpp"
-#include "trammel/model/measure/evenness.hpp"
-#include "trammel/model/measure/ideal_curve.hpp"
-#include "trammel/model/measure/trace.hpp"
+#include "trammel/measure/cost.hpp"
+#include "trammel/measure/distance.hpp"
+#include "trammel/measure/evenness.hpp"
+#include "trammel/measure/ideal_curve.hpp"
+#include "trammel/measure/trace.hpp"
 
-namespace trammel::model::measure {
+namespace trammel::measure {
 namespace {
 
 constexpr double kTurn = 6.283185307179586476925;
@@ -241,4 +241,4 @@ TEST(Cost, CountsComputationsAndWrites) {
 }
 
 }  // namespace
-}  // namespace trammel::model::measure
+}  // namespace trammel::measure

@@ -1,11 +1,11 @@
 // The motor against what its equations say, and the integration against a finer one.
-#include "trammel/model/measure/motor.hpp"
+#include "trammel/measure/motor.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-namespace trammel::model::measure {
+namespace trammel::measure {
 namespace {
 
 // `pulses` of one axis, all even, or every second one late by `delay` of the interval.
@@ -96,4 +96,4 @@ TEST(Motor, MirroredAxisVibratesAlike) {
 }
 
 }  // namespace
-}  // namespace trammel::model::measure
+}  // namespace trammel::measure

@@ -92,8 +92,8 @@ class Pair {
   Card skipping{true};
 };
 
-driver::Line line(std::uint64_t ticks, std::int64_t pulses_x, std::int64_t pulses_y) {
-  driver::Line result;
+driver::LineCommand line(std::uint64_t ticks, std::int64_t pulses_x, std::int64_t pulses_y) {
+  driver::LineCommand result;
   result.ticks = ticks;
   result.mask = 3;
   const auto n = static_cast<std::int64_t>(ticks);
@@ -141,7 +141,7 @@ TEST(CardModelRun, EqualsClockForRandomPrograms) {
     }
     for (std::uint64_t left = total; left != 0;) {
       const std::uint64_t ticks = std::min(left, 1 + random() % 400);
-      driver::Feed piece;
+      driver::FeedCommand piece;
       piece.ticks = ticks;
       piece.rate = static_cast<std::uint64_t>(0x1p64 / pace);
       piece.floor = static_cast<std::uint32_t>(0x1p32 / pace / 3);
@@ -153,8 +153,8 @@ TEST(CardModelRun, EqualsClockForRandomPrograms) {
       left -= ticks;
     }
     const std::uint64_t dwell = random() % 500;
-    pair.both([dwell](Card& card) { card.send(driver::Dwell{dwell}); });
-    pair.both([](Card& card) { card.send(driver::End{}); });
+    pair.both([dwell](Card& card) { card.send(driver::DwellCommand{dwell}); });
+    pair.both([](Card& card) { card.send(driver::EndCommand{}); });
     wait_in_pieces(pair, random, 3000);
     pair.both([](Card& card) { card.write(reg::kSlew, 0x8000); });
     pair.both([](Card& card) { card.write(reg::kHold, 1); });

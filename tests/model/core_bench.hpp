@@ -69,7 +69,7 @@ class CoreBench {
   struct Shown {
     model::CoreModel::Outputs outputs;
     model::CoreModel::Answer answer;
-    std::array<std::uint32_t, model::CoreModel::kMaxAxes> position;
+    std::array<std::uint32_t, card_map::kMaxAxes> position;
 
     bool operator==(const Shown& o) const {
       return outputs == o.outputs && answer.ack == o.answer.ack && answer.error == o.answer.error &&

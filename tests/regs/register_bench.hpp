@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "trammel/card_map.hpp"
 #include "trammel/model/register_file.hpp"
 
 namespace trammel::tests {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "register_bench.hpp"
+#include "trammel/card_map.hpp"
 #include "trammel/model/snapshot_writer.hpp"
 
 namespace {
@@ -25,7 +26,7 @@ void count(RegisterFile::Inputs& in, std::uint64_t time) {
   in.geometry_begun = 0x10000000 + t;
   in.feed_begun = 0x20000000 + t;
   in.fault = t & 0xFFFF;
-  for (std::uint32_t n = 0; n < RegisterFile::kMaxAxes; ++n) in.position[n] = 0x01000000 * (n + 1) + t;
+  for (std::uint32_t n = 0; n < card_map::kMaxAxes; ++n) in.position[n] = 0x01000000 * (n + 1) + t;
 }
 
 struct Taken {

@@ -19,27 +19,27 @@ namespace field = card_map::field;
 
 constexpr std::uint64_t kLong = 10'000'000;
 
-class Steps : public sim::StepSink {
+class Steps : public driver::StepSink {
  public:
-  void pin_step(const sim::PinStep& step) override { pins.push_back(step); }
-  void path_step(const sim::PathStep& step) override { path.push_back(step); }
-  std::vector<sim::PinStep> pins;
-  std::vector<sim::PathStep> path;
+  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
+  void path_step(const driver::PathStep& step) override { path.push_back(step); }
+  std::vector<driver::PinStep> pins;
+  std::vector<driver::PathStep> path;
 };
 
-bool same(const std::vector<sim::PinStep>& a, const std::vector<sim::PinStep>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const sim::PinStep& x, const sim::PinStep& y) {
+bool same(const std::vector<driver::PinStep>& a, const std::vector<driver::PinStep>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const driver::PinStep& x, const driver::PinStep& y) {
     return x.cycle == y.cycle && x.axis == y.axis && x.direction == y.direction;
   });
 }
-bool same(const std::vector<sim::PathStep>& a, const std::vector<sim::PathStep>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const sim::PathStep& x, const sim::PathStep& y) {
+bool same(const std::vector<driver::PathStep>& a, const std::vector<driver::PathStep>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const driver::PathStep& x, const driver::PathStep& y) {
     return x.command == y.command && x.tick == y.tick && x.axis == y.axis && x.direction == y.direction;
   });
 }
 
 std::unique_ptr<sim::Engine> make(sim::EngineKind kind) {
-  sim::EngineOptions options;
+  sim::SimulationOptions options;
   options.kind = kind;
   options.clock_hz = 10'000'000;
   return sim::make_engine(options);
@@ -97,7 +97,7 @@ TEST_P(CardScenario, MakesThePapersLinesInOneShot) {
     ASSERT_EQ(steps.path.size(), static_cast<std::size_t>(std::abs(p[0]) + std::abs(p[1])));
     // After k clocks |p| k / 2000 pulses, rounded; a line drawn backwards is its mirror image.
     std::int64_t made[2] = {0, 0};
-    for (const sim::PathStep& step : steps.path) {
+    for (const driver::PathStep& step : steps.path) {
       const std::int64_t pulses = std::abs(p[step.axis]);
       ++made[step.axis];
       const auto k = static_cast<std::int64_t>(step.tick);
@@ -108,15 +108,15 @@ TEST_P(CardScenario, MakesThePapersLinesInOneShot) {
 
 TEST_P(CardScenario, LeavesNoGapBetweenLinesOf22Ticks) {
   for (int i = 0; i < 12; ++i) host.send(line(22, {1, 0, 0, 0}));
-  host.send(driver::Line{22 * 2, 15, {1 << 30, 1 << 30, 1 << 30, 0}});
-  driver::Feed full = feed(22 * 14, 1);
+  host.send(driver::LineCommand{22 * 2, 15, {1 << 30, 1 << 30, 1 << 30, 0}});
+  driver::FeedCommand full = feed(22 * 14, 1);
   full.rate = ~std::uint64_t{0};
   host.send(full);
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   finish();
   ASSERT_EQ(steps.pins.size(), 12U);
   for (std::size_t i = 1; i < steps.pins.size(); ++i) EXPECT_EQ(steps.pins[i].cycle - steps.pins[i - 1].cycle, 22U);
-  for (const sim::PathStep& step : steps.path) EXPECT_EQ(step.tick, 11U);
+  for (const driver::PathStep& step : steps.path) EXPECT_EQ(step.tick, 11U);
   EXPECT_EQ(host.status(), field::kStatusEnded);
 }
 
@@ -128,11 +128,11 @@ TEST_P(CardScenario, EndsArcsOnTheirEndPoint) {
   arc.sweep = 1.5707963267948966;
   arc.axis_x = 2;
   arc.axis_y = 1;
-  const driver::Arc command = driver::make_arc(arc, 1000);
+  const driver::ArcCommand command = driver::make_arc(arc, 1000);
   host.send(command);
   host.send(line(100, {5, 0, 0, -7}));
   host.send(feed(1100, 12));
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   finish();
   EXPECT_THAT(card->positions(), ElementsAre(5, 25, -25, -7));
   EXPECT_EQ(steps.path.size(), command.path_ticks + 12);
@@ -141,12 +141,12 @@ TEST_P(CardScenario, EndsArcsOnTheirEndPoint) {
 }
 
 TEST_P(CardScenario, HoldAndOtherRatioLeaveThePathAsItIs) {
-  std::vector<sim::PathStep> straight;
+  std::vector<driver::PathStep> straight;
   for (const bool disturbed : {false, true}) {
     steps.path.clear();
     for (int i = 0; i < 6; ++i) host.send(line(150, {40 - 13 * i, 9 * i - 20, i, -i}));
     host.send(feed(900, 9));
-    host.send(driver::End{});
+    host.send(driver::EndCommand{});
     if (disturbed) {
       card->write(reg::kSlew, 0x20'0000);
       card->write(reg::kRatioFeed, 0x9000);
@@ -174,7 +174,7 @@ TEST_P(CardScenario, DwellsInRealTime) {
     steps.pins.clear();
     host.send(line(40, {1}));
     host.send(feed(40, 30));
-    host.send(driver::Dwell{clocks});
+    host.send(driver::DwellCommand{clocks});
     host.send(line(40, {1}));
     host.send(feed(40, 30));
     finish();
@@ -188,7 +188,7 @@ TEST_P(CardScenario, DwellsInRealTime) {
 TEST_P(CardScenario, StopsWhereTicksDoNotFit) {
   host.send(line(100, {50}));
   host.send(feed(60, 20));
-  host.send(driver::End{});
+  host.send(driver::EndCommand{});
   card->wait(5000);
   EXPECT_EQ(card->read(reg::kFault), field::kFaultTickMismatch);
   const auto stopped = card->positions();
@@ -207,7 +207,7 @@ TEST_P(CardScenario, StopsAtAnArcThatMissesItsEnd) {
   driver::ArcGeometry arc;
   arc.centre_x = -10 * driver::kCentreUnitsPerPulse;
   arc.sweep = 6.283185307179586;
-  driver::Arc command = driver::make_arc(arc, 400);
+  driver::ArcCommand command = driver::make_arc(arc, 400);
   command.prescale /= 2;
   host.send(command);
   host.send(line(50, {10}));

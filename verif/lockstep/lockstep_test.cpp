@@ -1,5 +1,5 @@
 // The judges' own tests: what a mismatch report says, what is kept for it, how long a random scenario is.
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

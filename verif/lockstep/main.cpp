@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);

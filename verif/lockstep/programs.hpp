@@ -50,9 +50,10 @@ class Programs {
 
   // One in `wrong_every` stretches gives more ticks than it takes, or less; one in as many arcs misses its end.
   unsigned wrong_every = 100;
+  // Without them all paths are lines.
+  bool arcs = true;
   // The most ticks of a stretch, and of its paths and pieces.
   unsigned longest = 600;
-  bool arcs = true;
 
   struct Stretch {
     std::vector<Halfwords> geometry;

@@ -46,8 +46,8 @@ class Program {
     const std::uint64_t first = 1 + below(static_cast<std::uint32_t>(total) - 1);
     piece(first);
     piece(total - first);
-    send(driver::Dwell{50 + below(200)});
-    send(driver::End{});
+    send(driver::DwellCommand{50 + below(200)});
+    send(driver::EndCommand{});
     for (int i = 0; i < 60 && (card_.read(reg::kStatus) & field::kStatusBusy) != 0; ++i) disturb();
     card_.write(reg::kRatioFeed, 0x10000);
     card_.write(reg::kSlew, 0xFFFFFFF);
@@ -74,7 +74,7 @@ class Program {
   void overrun() {
     card_.write(reg::kHoldLimit, 40);
     card_.write(reg::step_length(0), 200);
-    driver::Line fast;
+    driver::LineCommand fast;
     fast.ticks = 400;
     fast.mask = 1;
     fast.increment[0] = std::int64_t{1} << kFractionBits;
@@ -91,7 +91,7 @@ class Program {
     card_.wait(below(300));
     abort();
     std::vector<std::uint32_t> words;
-    driver::Feed whole;
+    driver::FeedCommand whole;
     whole.ticks = 1;
     driver::encode(whole, 0, words);
     card_.write(reg::kStream, words.front());
@@ -127,7 +127,7 @@ class Program {
 
   // Both return the feed ticks of their path.
   std::uint64_t line() {
-    driver::Line line;
+    driver::LineCommand line;
     line.ticks = 20 + below(60);
     line.mask = 0xF;
     for (std::size_t n = 0; n < Recorder::kAxes; ++n) {
@@ -148,7 +148,7 @@ class Program {
     arc.sweep = 1.5707963267948966;
     arc.axis_x = static_cast<std::uint8_t>(below(Recorder::kAxes));
     arc.axis_y = static_cast<std::uint8_t>((arc.axis_x + 1) % Recorder::kAxes);
-    const driver::Arc command = driver::prepare(arc);
+    const driver::ArcCommand command = driver::prepare(arc);
     const std::uint64_t ticks = command.path_ticks + below(50);
     send(driver::with_ticks(command, ticks));
     return ticks;
@@ -156,7 +156,7 @@ class Program {
 
   // About a tick in 24 clocks, with a little acceleration and jerk.
   void piece(std::uint64_t ticks) {
-    driver::Feed feed;
+    driver::FeedCommand feed;
     feed.ticks = ticks;
     feed.rate = ~std::uint64_t{0} / (20 + below(8));
     feed.acceleration = static_cast<std::int64_t>(feed.rate / 4096) - static_cast<std::int64_t>(feed.rate / 8192);

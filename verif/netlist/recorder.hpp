@@ -8,8 +8,8 @@
 
 #include "Vrecorded.h"
 #include "card_record.hpp"
-#include "lockstep.hpp"
 #include "trammel/model/card_model.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace trammel::netlist {
 

@@ -12,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "lockstep.hpp"
 #include "trammel/driver/arc.hpp"
 #include "trammel/model/buses.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace trammel::lockstep {
 namespace {
 
-using driver::Arc;
+using driver::ArcCommand;
 namespace load_target = model::load_target;
 using Point = std::pair<int, int>;
 
@@ -33,7 +33,7 @@ class Accumulator {
     dut_->rst_i = 0;
   }
 
-  void start(const Arc& arc) {
+  void start(const ArcCommand& arc) {
     load(load_target::kDeviation, arc.deviation, 5);
     load(load_target::kGradientX, arc.gradient_x, 5);
     load(load_target::kGradientY, arc.gradient_y, 5);
@@ -81,7 +81,7 @@ class Accumulator {
 
 // Walks and calls `see` at every point; false when the steps are not exactly `steps` or the end is another.
 template <class See>
-bool walk(Accumulator& accumulator, const Arc& arc, std::uint64_t steps, const See& see) {
+bool walk(Accumulator& accumulator, const ArcCommand& arc, std::uint64_t steps, const See& see) {
   accumulator.start(arc);
   for (std::uint64_t i = 0; i < steps; ++i) {
     if (accumulator.at_end()) return false;
@@ -121,7 +121,7 @@ TEST(EveryLine, TakesSteersSteps) {
       ++lines;
       const int sx = dx > 0 ? 1 : -1;
       const int sy = dy > 0 ? 1 : -1;
-      Arc line;
+      ArcCommand line;
       line.deviation = std::abs(dx) - std::abs(dy) - 1;
       line.gradient_x = -sx * std::abs(dy);
       line.gradient_y = sy * std::abs(dx);
@@ -164,7 +164,7 @@ TEST(EveryArc, OfSmallCirclesStaysNearAndEnds) {
           geometry.end_y = end.second - start.second;
           geometry.clockwise = clockwise;
           geometry.sweep = sweep_between(start, end, clockwise);
-          const Arc arc = driver::prepare(geometry);
+          const ArcCommand arc = driver::prepare(geometry);
           const double first = std::hypot(start.first, start.second);
           const double second = std::hypot(end.first, end.second);
           const auto see = [&](const Point& at) {
@@ -202,7 +202,7 @@ TEST(EveryArc, OfSmallEllipsesEnds) {
             geometry.end_y = end.second - start.second;
             geometry.clockwise = clockwise;
             geometry.sweep = sweep_between(start, end, clockwise);
-            const Arc arc = driver::prepare(geometry);
+            const ArcCommand arc = driver::prepare(geometry);
             // Never more than one pulse outside the bounding box (lemma deviation_range).
             const auto see = [&](const Point& at) {
               ASSERT_LE(std::abs(at.first + start.first), a + 1);

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace trammel::lockstep {
 namespace {

@@ -5,7 +5,7 @@
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {

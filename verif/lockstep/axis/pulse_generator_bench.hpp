@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
-#include "lockstep.hpp"
 #include "trammel/model/pulse_generator.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace trammel::lockstep {
 

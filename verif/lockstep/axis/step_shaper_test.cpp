@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace trammel::lockstep {
 namespace {

@@ -3,8 +3,8 @@
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
-#include "lockstep.hpp"
 #include "trammel/model/wait_timer.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {

@@ -9,7 +9,7 @@ using namespace trammel;
 
 // One step of the fastest axis in 100 ticks.
 void run_line(benchmark::State& state, sim::EngineKind kind, double clocks_a_tick) {
-  sim::EngineOptions options;
+  sim::SimulationOptions options;
   options.kind = kind;
   const auto card = sim::make_engine(options);
   test::Host host(*card);

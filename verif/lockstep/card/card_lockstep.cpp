@@ -85,18 +85,19 @@ void short_program(Traffic& traffic, unsigned axes, AxiHost& host) {
     ticks += n;
   }
   if (axes > 1) {
-    const driver::Arc arc = test::random_arc(random, axes);
+    const driver::ArcCommand arc = test::random_arc(random, axes);
     traffic.send(driver::with_ticks(arc, 2 * arc.path_ticks));
     ticks += 2 * arc.path_ticks;
   }
   traffic.send(feed(ticks, 1.5));
-  traffic.send(driver::Dwell{30});
+  traffic.send(driver::DwellCommand{30});
   traffic.send(line(20, std::vector<std::int64_t>(axes, -2)));
   traffic.send(feed(20, 2));
-  traffic.send(driver::End{});
+  traffic.send(driver::EndCommand{});
 }
 
-// What only the card joins, each of it once: constants, strobes, a flush, full queues, counters, a reset between accesses.
+// What only the card joins, each of it once: constants, strobes, a flush, full queues, counters, a reset between
+// accesses.
 void joins(unsigned axes) {
   sim::LockstepCard card = test::card_under_test(axes, 5, 0x3A5C);
   AxiHost host(card, 5);
@@ -231,9 +232,9 @@ void counts_around(std::uint64_t count, std::uint64_t seed) {
     traffic.send(line(n, {2, -1, 1, 0}));
     traffic.send(feed(n + 40, 1.01));
     traffic.send(line(40, {1, 1, 1, 1}));
-    traffic.send(driver::Dwell{n});
-    traffic.send(driver::End{});
-    traffic.send(driver::Dwell{2});
+    traffic.send(driver::DwellCommand{n});
+    traffic.send(driver::EndCommand{});
+    traffic.send(driver::DwellCommand{2});
   }
   host.wait(7 * count);
   EXPECT_TRUE(traffic.wait_idle(20'000));

@@ -12,8 +12,8 @@
 namespace trammel::test {
 
 // A line of p pulses on each axis over `ticks` ticks.
-inline driver::Line line(std::uint64_t ticks, const std::vector<std::int64_t>& pulses) {
-  driver::Line result;
+inline driver::LineCommand line(std::uint64_t ticks, const std::vector<std::int64_t>& pulses) {
+  driver::LineCommand result;
   result.ticks = ticks;
   for (std::size_t n = 0; n < pulses.size(); ++n) {
     if (pulses[n] == 0) continue;
@@ -27,8 +27,8 @@ inline driver::Line line(std::uint64_t ticks, const std::vector<std::int64_t>& p
 }
 
 // A piece at a constant rate of one tick in `clocks`.
-inline driver::Feed feed(std::uint64_t ticks, double clocks) {
-  driver::Feed result;
+inline driver::FeedCommand feed(std::uint64_t ticks, double clocks) {
+  driver::FeedCommand result;
   result.ticks = ticks;
   result.rate = static_cast<std::uint64_t>(0x1p64 * std::min(1 / clocks, 1 - 0x1p-50));
   result.floor = 1;
@@ -37,7 +37,7 @@ inline driver::Feed feed(std::uint64_t ticks, double clocks) {
 
 // A quarter or a whole circle of up to 20 pulses about an axis crossing, on two axes by chance.
 template <class Random>
-driver::Arc random_arc(Random&& random, unsigned axes) {
+driver::ArcCommand random_arc(Random&& random, unsigned axes) {
   driver::ArcGeometry arc;
   const auto radius = static_cast<std::int32_t>(1 + random(20));
   arc.clockwise = random(2) == 0;
@@ -51,15 +51,16 @@ driver::Arc random_arc(Random&& random, unsigned axes) {
   return driver::prepare(arc);
 }
 
-// A line or an arc for ticks that come one in `pace` clocks; adds its ticks to `total`. `random(n)`: 0 .. n - 1.
+// A line, or one path in `arc_every` an arc, for ticks that come one in `pace` clocks; adds its ticks to `total`.
+// `random(n)`: 0 .. n - 1.
 template <class Random>
-driver::Command random_path(Random&& random, unsigned axes, double pace, std::uint64_t& total) {
+driver::Command random_path(Random&& random, unsigned axes, double pace, std::uint64_t& total, unsigned arc_every = 4) {
   const std::uint64_t ticks = random(3) == 0 ? 1 + random(30) : 1 + random(400);
   total += ticks;
-  if (axes > 1 && random(4) == 0) {
-    const driver::Arc arc = random_arc(random, axes);
+  if (axes > 1 && random(arc_every) == 0) {
+    const driver::ArcCommand arc = random_arc(random, axes);
     total += arc.path_ticks;
-    driver::Arc timed = driver::with_ticks(arc, ticks + arc.path_ticks);
+    driver::ArcCommand timed = driver::with_ticks(arc, ticks + arc.path_ticks);
     // An end that the walk does not meet: PATH_INCOMPLETE.
     if (random(20) == 0) timed.end_x += 3;
     return timed;
@@ -77,8 +78,8 @@ driver::Command random_path(Random&& random, unsigned axes, double pace, std::ui
 
 // A piece about one tick in `pace` clocks, half of them with acceleration and jerk.
 template <class Random>
-driver::Feed random_piece(Random&& random, std::uint64_t ticks, double pace) {
-  driver::Feed result = feed(ticks, pace);
+driver::FeedCommand random_piece(Random&& random, std::uint64_t ticks, double pace) {
+  driver::FeedCommand result = feed(ticks, pace);
   result.floor = static_cast<std::uint32_t>(0x1p32 / (4 * pace));
   if (random(2) == 0) {
     const double change = (static_cast<double>(random(2001)) - 1000) / 1000;

@@ -7,7 +7,7 @@
 #include "commands.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
-#include "trammel/sim/engine.hpp"
+#include "trammel/sim/engines.hpp"
 
 namespace trammel::test {
 
@@ -68,7 +68,7 @@ void random_section(Host& host, Random&& random, unsigned axes) {
     commands.push_back(random_piece(random, ticks, pace));
     total -= ticks;
   }
-  commands.push_back(driver::End{});
+  commands.push_back(driver::EndCommand{});
   bool taken = true;
   try {
     for (const driver::Command& command : commands) host.send(command);

@@ -92,7 +92,7 @@ TEST(CardJudge, ReportHasBothValues) {
 }
 
 TEST(CardJudge, EventsUpToTheCycleAreReported) {
-  EngineOptions options;
+  SimulationOptions options;
   const auto card = make_rtl_engine(std::make_unique<Liar>(150, offsetof(CardRecord, irq_o), 1), options);
   // While a first write is answered no other runs: the events stand some clocks apart.
   const std::uint64_t begin = card->cycles();
@@ -112,7 +112,7 @@ TEST(CardJudge, EventsUpToTheCycleAreReported) {
 // Whoever asks what was compared is told of a mismatch in what the RTL had still to catch up with.
 TEST(CardJudge, QueriesCatchUp) {
   const auto engine = [] {
-    return make_rtl_engine(std::make_unique<Liar>(20, offsetof(CardRecord, dir_o), 8), EngineOptions{});
+    return make_rtl_engine(std::make_unique<Liar>(20, offsetof(CardRecord, dir_o), 8), SimulationOptions{});
   };
   const auto first = engine();
   first->wait(30);
@@ -138,7 +138,7 @@ TEST(CardJudgeDeathTest, MismatchAtTheEndIsNotLost) {
 // one an axis.
 TEST(CardJudge, EverySignalIsComparedInEveryCycle) {
   for (const unsigned axes : {4U, 8U}) {
-    EngineOptions options;
+    SimulationOptions options;
     options.axes = axes;
     const auto card = make_engine(options);
     const std::uint64_t begin = card->cycles();
@@ -217,7 +217,7 @@ class Pair : public VerilatedCard {
 TEST(CardJudge, OneEvaluationAClockIsAsGoodAsTwo) {
   std::uint64_t clocks = 0;
   std::uint64_t different = 0;
-  const auto card = make_rtl_engine(std::make_unique<Pair>(clocks, different), EngineOptions{});
+  const auto card = make_rtl_engine(std::make_unique<Pair>(clocks, different), SimulationOptions{});
   test::Host host(*card);
   const std::uint64_t seed = lockstep::seed_from_environment(3);
   std::mt19937_64 engine(seed);

@@ -8,8 +8,8 @@
 
 #include "Vdut.h"
 #include "command_source.hpp"
-#include "lockstep.hpp"
 #include "trammel/model/command_checker.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "Vdut.h"
-#include "lockstep.hpp"
 #include "trammel/model/halfword_queue.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "Vdut.h"
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {

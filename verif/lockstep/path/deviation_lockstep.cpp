@@ -9,8 +9,8 @@
 #include <random>
 
 #include "deviation_paths.hpp"
-#include "lockstep.hpp"
 #include "trammel/model/deviation_accumulator.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "deviation_paths.hpp"
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {

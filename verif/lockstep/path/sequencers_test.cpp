@@ -4,9 +4,9 @@
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
-#include "lockstep.hpp"
 #include "programs.hpp"
 #include "trammel/model/sequencer.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {

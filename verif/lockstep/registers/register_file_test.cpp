@@ -9,8 +9,8 @@
 #include <type_traits>
 
 #include "Vdut.h"
-#include "lockstep.hpp"
 #include "register_file_inside.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace {

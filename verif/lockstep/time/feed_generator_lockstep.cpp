@@ -4,8 +4,8 @@
 #include <random>
 
 #include "Vdut.h"
-#include "lockstep.hpp"
 #include "trammel/model/feed_generator.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "Vdut.h"
-#include "lockstep.hpp"
 #include "trammel/model/time_base.hpp"
+#include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
 namespace trammel::lockstep {

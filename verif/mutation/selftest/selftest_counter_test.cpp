@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "Vdut.h"
-#include "lockstep.hpp"
+#include "trammel/sim/lockstep.hpp"
 
 namespace {
 

@@ -54,13 +54,13 @@ struct EllipseGeometry {
 
 // Everything of the command but its time: `ticks` and `prescale` are 0, `path_ticks` is L, the exact number of unit
 // steps. Takes a bisection of 36 rounds for each quadrant change; no walk.
-Arc prepare(const ArcGeometry& geometry);
-Arc prepare(const EllipseGeometry& geometry);
+ArcCommand prepare(const ArcGeometry& geometry);
+ArcCommand prepare(const EllipseGeometry& geometry);
 
 // The arc over `ticks` feed ticks; also throws when ticks < path_ticks or ticks >= 2^40.
-Arc with_ticks(Arc arc, std::uint64_t ticks);
+ArcCommand with_ticks(ArcCommand arc, std::uint64_t ticks);
 
-Arc make_arc(const ArcGeometry& geometry, std::uint64_t ticks);
-Arc make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks);
+ArcCommand make_arc(const ArcGeometry& geometry, std::uint64_t ticks);
+ArcCommand make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks);
 
 }  // namespace trammel::driver

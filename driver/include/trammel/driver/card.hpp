@@ -36,7 +36,7 @@ struct CardTiming {
   std::uint32_t clock_hz = 0;
   unsigned axes = 0;
   // Shortest distance of two leading edges of an axis, clocks: shortest_pulse_period() of its settings.
-  std::array<std::uint32_t, kMaxAxes> pulse_period{};
+  std::array<std::uint32_t, card_map::kMaxAxes> pulse_period{};
 };
 
 // Shortest distance of two leading edges for the raw settings of an axis, clocks. The step shaper takes some clocks
@@ -83,14 +83,14 @@ struct Refusal {
 
 // State of one clock.
 struct Snapshot {
-  std::uint64_t time = 0;                         // clocks since reset
-  Status status;                                  //
-  std::uint32_t faults = 0;                       // FAULT
-  std::uint32_t rate = 0;                         // 2^-32 feed ticks an enabled clock
-  std::uint32_t ratio = 0;                        // 2^-16, of the time base
-  std::uint32_t geometry_begun = 0;               // commands begun from the geometry queue since the last cut
-  std::uint32_t feed_begun = 0;                   // and from the feed queue
-  std::array<std::int32_t, kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
+  std::uint64_t time = 0;                                   // clocks since reset
+  Status status;                                            //
+  std::uint32_t faults = 0;                                 // FAULT
+  std::uint32_t rate = 0;                                   // 2^-32 feed ticks an enabled clock
+  std::uint32_t ratio = 0;                                  // 2^-16, of the time base
+  std::uint32_t geometry_begun = 0;                         // commands begun from the geometry queue since the last cut
+  std::uint32_t feed_begun = 0;                             // and from the feed queue
+  std::array<std::int32_t, card_map::kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
 };
 
 // Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".

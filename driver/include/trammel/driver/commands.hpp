@@ -8,22 +8,22 @@
 #include <variant>
 #include <vector>
 
-namespace trammel::driver {
+#include "trammel/card_map.hpp"
 
-inline constexpr std::size_t kMaxAxes = 8;
+namespace trammel::driver {
 
 // 128-bit signed integer: deviations and gradients of the conic need more than 64 bits.
 __extension__ typedef __int128 int128;
 
 // A straight line over `ticks` feed ticks; axes outside `mask` stand still.
-struct Line {
-  std::uint64_t ticks = 0;                         // N, feed ticks, 1 .. 2^40 - 1
-  std::uint8_t mask = 0;                           // bit n: axis n moves
-  std::array<std::int64_t, kMaxAxes> increment{};  // by axis index; 2^-40 pulses a tick, |.| <= 2^40
+struct LineCommand {
+  std::uint64_t ticks = 0;                                   // N, feed ticks, 1 .. 2^40 - 1
+  std::uint8_t mask = 0;                                     // bit n: axis n moves
+  std::array<std::int64_t, card_map::kMaxAxes> increment{};  // by axis index; 2^-40 pulses a tick, |.| <= 2^40
 };
 
 // An arc on the deviation accumulator.
-struct Arc {
+struct ArcCommand {
   std::uint64_t ticks = 0;       // N, feed ticks
   std::uint64_t path_ticks = 0;  // L <= N, unit steps
   std::uint64_t prescale = 0;    // round(L * 2^40 / N), 2^-40 path ticks a feed tick
@@ -41,7 +41,7 @@ struct Arc {
 };
 
 // One piece of the feed profile.
-struct Feed {
+struct FeedCommand {
   std::uint64_t ticks = 0;          // feed ticks of the piece
   std::uint64_t rate = 0;           // 2^-64 ticks an enabled clock
   std::int64_t acceleration = 0;    // the same unit an update of 32 enabled clocks
@@ -51,14 +51,14 @@ struct Feed {
 };
 
 // Barrier, then `clocks` of real time (0 .. 2^40 - 1).
-struct Dwell {
+struct DwellCommand {
   std::uint64_t clocks = 0;
 };
 
 // Barrier: end of the program.
-struct End {};
+struct EndCommand {};
 
-using Command = std::variant<Line, Arc, Feed, Dwell, End>;
+using Command = std::variant<LineCommand, ArcCommand, FeedCommand, DwellCommand, EndCommand>;
 
 // Appends the command's words (header first) to `words`. `number` is the command's number, mod 256.
 // Throws ArgumentError, naming the field, when a value is outside its layout or an axis outside the mask has an

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "trammel/card_map.hpp"
+
 namespace trammel::driver {
 
 // Base of all errors of the driver.

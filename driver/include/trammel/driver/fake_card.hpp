@@ -124,11 +124,11 @@ class FakeCard final : public Bus {
   Queue feed_;
   std::uint64_t dwell_left_ = 0;
   std::uint64_t direct_left_ = 0;
-  std::array<std::int64_t, kMaxAxes> direct_steps_{};  // of the one-shot line under way
-  std::uint64_t ratio_phase_ = 0;                      // 2^-16 clocks
+  std::array<std::int64_t, card_map::kMaxAxes> direct_steps_{};  // of the one-shot line under way
+  std::uint64_t ratio_phase_ = 0;                                // 2^-16 clocks
   std::uint64_t time_ = 0;
   std::uint64_t accesses_ = 0;
-  std::array<std::int64_t, kMaxAxes> position_{};
+  std::array<std::int64_t, card_map::kMaxAxes> position_{};
 };
 
 }  // namespace trammel::driver

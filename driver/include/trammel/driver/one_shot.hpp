@@ -22,7 +22,7 @@
 namespace trammel::driver {
 
 // Pulses from start to end by axis index; each within +-2^62.
-using Displacement = std::array<std::int64_t, kMaxAxes>;
+using Displacement = std::array<std::int64_t, card_map::kMaxAxes>;
 
 // Speed along the path, `pulses` each `seconds`, both at least 1. The path's length is sqrt(sum p^2) pulses.
 struct PathSpeed {
@@ -37,7 +37,7 @@ enum class LimitPolicy {
 
 // Besides these the card's own limit counts: a pulse an axis in step length + step space clocks.
 struct LineLimits {
-  std::array<std::uint64_t, kMaxAxes> max_velocity{};  // by axis, pulses/s; 0: the card's own limit only
+  std::array<std::uint64_t, card_map::kMaxAxes> max_velocity{};  // by axis, pulses/s; 0: the card's own limit only
   LimitPolicy policy = LimitPolicy::kRefuse;
 };
 
@@ -45,15 +45,15 @@ struct LineLimits {
 constexpr std::size_t one_shot_words(unsigned axes) {
   return (card_map::reg::kStart - card_map::reg::frequency_lo(axes - 1)) / 4 + 1;
 }
-inline constexpr std::size_t kOneShotWords = one_shot_words(kMaxAxes);
+inline constexpr std::size_t kOneShotWords = one_shot_words(card_map::kMaxAxes);
 
 // A line that the card runs in one go.
 struct OneShotPart {
-  std::uint64_t length = 0;                         // N, clocks, 1 .. 2^40 - 1
-  std::array<std::uint64_t, kMaxAxes> frequency{};  // 2^-40 pulses a clock, 0 .. 2^40
-  std::array<std::uint32_t, kMaxAxes> count{};      // pulses
-  std::uint8_t mask = 0;                            // bit n: axis n takes part
-  std::uint8_t negative = 0;                        // bit n: axis n steps in the negative direction
+  std::uint64_t length = 0;                                   // N, clocks, 1 .. 2^40 - 1
+  std::array<std::uint64_t, card_map::kMaxAxes> frequency{};  // 2^-40 pulses a clock, 0 .. 2^40
+  std::array<std::uint32_t, card_map::kMaxAxes> count{};      // pulses
+  std::uint8_t mask = 0;                                      // bit n: axis n takes part
+  std::uint8_t negative = 0;                                  // bit n: axis n steps in the negative direction
 
   // The registers FREQUENCY_LO[7] .. START in order of address: the slots of the axes come in falling order.
   std::array<std::uint32_t, kOneShotWords> words() const;

@@ -1,0 +1,90 @@
+// Golden model of the command checker: judges stream words against the layouts of trammel/card_map.hpp and passes good
+// commands on in their stored form. Cycle exact. Not thread-safe; no allocation.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/wide.hpp"
+
+namespace trammel::model {
+
+class CommandChecker {
+ public:
+  struct Inputs {
+    bool reset = false;
+    bool write = false;  // a word; ignored unless ready
+    std::uint32_t word = 0;
+    bool flush = false;   // refuses a partial command; waits for a word under way, comes before one beside it
+    bool clear = false;   // opens the stream; the next number is 0; wins over all else
+    bool closed = false;  // a fault stands: a word written now is refused as FAULTED and changes nothing
+    std::uint16_t geometry_room = 0;  // halfwords, as the queue shows it
+    std::uint16_t feed_room = 0;
+  };
+  struct Outputs {
+    bool ready = true;
+    std::uint16_t halfword = 0;  // holds between writes
+    bool geometry_write = false;
+    bool feed_write = false;
+    bool geometry_commit = false;
+    bool feed_commit = false;
+    bool drop = false;
+    bool refuse = false;
+    std::uint8_t reason = 0;  // card_map::Reason; holds between refusals
+    std::uint8_t number = 0;  // in the last header
+    bool partial = false;     // inside a command
+  };
+
+  // Clocks from a word's write until `ready` is back, and from one that is refused unread: as FAULTED, STREAM_CLOSED.
+  static constexpr int kAnswerClocks = 6;
+  static constexpr int kClosedAnswerClocks = 2;
+
+  // axes: 1 .. 8; throws std::invalid_argument otherwise. engines: the card's ENGINES.
+  CommandChecker(unsigned axes, std::uint32_t engines);
+
+  // One rising edge.
+  void clock(const Inputs& in);
+  const Outputs& outputs() const { return outputs_; }
+
+  // True when a clock without inputs changes nothing.
+  bool quiet() const {
+    const Outputs& o = outputs_;
+    return o.ready && !o.geometry_write && !o.feed_write && !o.geometry_commit && !o.feed_commit && !o.drop &&
+           !o.refuse;
+  }
+
+ private:
+  static constexpr std::size_t kMostHalfwords = 64;
+
+  void restart();
+  void idle(const Inputs& in);
+  void go_on(const Inputs& in);
+  void answer();
+  void answer_unread();
+  void refuse(card_map::Reason reason);
+  void store(std::size_t index);
+  std::uint8_t mask() const { return static_cast<std::uint8_t>(halfwords_[0] >> 8); }
+  bool mask_fits() const;
+  std::size_t copies(const card_map::Field& field) const;
+  card_map::Reason judge_header(const Inputs& in) const;
+  card_map::Reason judge_payload() const;
+  card_map::Reason judge_field(const card_map::Field& field, std::size_t begin) const;
+  uint128 value(std::size_t begin, std::size_t count) const;  // fields have up to 80 bits
+
+  std::uint8_t card_mask_;
+  std::uint32_t engines_;
+  bool open_ = true;
+  card_map::Reason unread_ = card_map::Reason::None;  // why the word under way is refused whatever it is
+  bool flush_waits_ = false;
+  int age_ = 0;                // clocks since the write of the word under way
+  std::uint8_t expected_ = 0;  // number
+  const card_map::Command* command_ = nullptr;
+  card_map::Reason header_verdict_ = card_map::Reason::None;
+  std::size_t received_ = 0;  // halfwords of the command, with the word under way
+  std::array<std::uint16_t, kMostHalfwords> halfwords_{};
+  Outputs outputs_;
+};
+
+}  // namespace trammel::model

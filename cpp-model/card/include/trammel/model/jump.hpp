@@ -1,0 +1,91 @@
+// Going from step to step: many clocks of the motion core at once, exactly as clock() would.
+//
+// A jump begins where nothing is decided: no swap, decode, access or step under way, a steady time base. Ticks may be
+// in flight. Within it a path may make steps on its axes; a jump ends before a path's or piece's last tick is taken,
+// before the prescaler makes a path tick, and before a step that could wait long at its shaper.
+//
+// An accumulation of the feed generator at edge t that carries is a tick that is taken at t+5, reaches the prescaler at
+// t+6 and the axes at t+9; its step shows on the path after edge t+12 and reaches the shaper at t+13. Ticks are
+// numbered from the oldest that was in flight as the jump began; edges are counted from that clock (0), those of ticks
+// in flight backwards. One object a jump; no allocation.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/motion_core.hpp"
+
+namespace trammel::model {
+
+class Jump {
+ public:
+  // `cycle`: edges so far; `limit`: clocks at most, below 2^46.
+  Jump(MotionCore& core, StepRecord& record, std::uint64_t cycle, std::uint64_t limit);
+
+  // Returns the clocks that are gone; 0 where it was not worth it.
+  std::uint64_t go();
+
+ private:
+  static constexpr std::uint64_t kNever = UINT64_MAX;
+  static constexpr std::int64_t kLastTake = 4;  // from an accumulation: the last edge before its tick is taken
+  static constexpr std::int64_t kToAxis = 9;
+  // From the axis.
+  static constexpr std::int64_t kToPath = 3;
+  static constexpr std::int64_t kToShaper = 4;
+  static constexpr std::int64_t kShortest = 16;
+
+  // An axis on its way. Its generator stands after `ticks` ticks, its shaper (the core's) at edge `edge`; it may have
+  // one step under way from there.
+  struct Traveller {
+    std::uint64_t ticks = 0;
+    std::uint64_t next = kNever;  // number of the tick that makes the next step
+    std::int64_t edge = 0;
+    bool under_way = false;
+    bool backwards = false;
+    bool path_due = false;  // reports that are still to be made
+    bool pin_due = false;
+    std::int64_t arrival = 0;  // of its tick at the axis
+    std::int64_t served = 0;   // the edge at which the pulse's leading edge shows
+    StepShaper after;          // the shaper then
+  };
+
+  std::uint64_t accumulations_to(std::int64_t edge) const;
+  std::int64_t edge_of(std::uint64_t accumulation) const;
+  std::uint64_t first_that_stops() const;
+  void travel();
+  void stop_before(std::uint64_t tick);
+  bool find(std::uint64_t tick, FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const;
+  bool step_all(std::uint64_t tick, std::int64_t arrival);
+  bool may_step(unsigned axis, std::int64_t arrival, StepShaper& after, std::int64_t& served) const;
+  void step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::int64_t served);
+  void report_until(std::int64_t edge);
+  void land();
+  unsigned land_generator();
+  void land_axis(unsigned axis, std::uint64_t ticks);
+  void place_takes(unsigned in_flight);
+
+  MotionCore& core_;
+  StepRecord& record_;
+  const std::uint64_t cycle_;
+  std::int64_t end_;  // the edge at which the jump ends
+  const bool ticking_;
+  const std::uint64_t first_;   // accumulations at edge 1
+  const std::uint64_t second_;  // and at edge 2
+  unsigned in_flight_ = 0;      // as the jump begins: bit k from an accumulation at edge -k
+  std::array<std::int64_t, 9> flight_{};
+  std::size_t flying_ = 0;          // ticks that were in flight
+  std::uint64_t taken_before_ = 0;  // ticks of the path before tick 1
+
+  // The generator stands after so many accumulations and carries, the last at this edge.
+  std::uint64_t done_ = 0;
+  std::uint64_t made_ = 0;
+  std::int64_t edge_ = 0;
+
+  bool moved_ = false;
+  std::int64_t next_report_ = INT64_MAX;  // not later than the first report due
+  unsigned axes_;
+  std::array<Traveller, card_map::kMaxAxes> travellers_{};
+};
+
+}  // namespace trammel::model

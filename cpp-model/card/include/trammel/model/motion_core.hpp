@@ -1,0 +1,98 @@
+// Golden model of the motion core: sequencers, time, path engines, axes and the stop control between the queues and the
+// pins. One rising edge moves everything from what stood before it. Not thread-safe; no errors are reported.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "trammel/model/axis.hpp"
+#include "trammel/model/buses.hpp"
+#include "trammel/model/direct_loader.hpp"
+#include "trammel/model/feed_generator.hpp"
+#include "trammel/model/path_engines.hpp"
+#include "trammel/model/sequencer.hpp"
+#include "trammel/model/step_record.hpp"
+#include "trammel/model/stop_control.hpp"
+#include "trammel/model/time_base.hpp"
+#include "trammel/model/wait_timer.hpp"
+
+namespace trammel::model {
+
+class MotionCore {
+ public:
+  struct Inputs {
+    Setting setting;
+    bool abort = false;
+    std::uint32_t clear_fault = 0;
+    // queues
+    bool geometry_empty = true;
+    bool feed_empty = true;
+    std::uint16_t geometry_word = 0;
+    std::uint16_t feed_word = 0;
+    // direct mode
+    bool start = false;
+    std::uint8_t start_mask = 0;
+    std::uint32_t loader_data = 0;
+  };
+  // A bit for each axis.
+  struct Outputs {
+    std::uint32_t step = 0;  // pins
+    std::uint32_t dir = 0;
+    std::uint32_t path_step = 0;
+    std::uint32_t path_dir = 0;
+    std::uint32_t live = 0;
+    std::uint32_t axis_busy = 0;
+    std::uint32_t step_fault = 0;
+    std::uint32_t engine_step = 0;  // of path_step: those that came from a path engine
+    bool busy = false;
+  };
+
+  // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests.
+  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false);
+
+  // One rising edge.
+  void clock(const Inputs& in);
+
+  // Clocks at once without host inputs and with the queues as they are, `limit` at most, from step to step (see
+  // jump.hpp); the state is that after as many calls of clock(). `cycle`: edges so far. 0 where it is not worth it.
+  std::uint64_t jump(std::uint64_t limit, const Inputs& in, std::uint64_t cycle, StepRecord& record);
+
+  const Outputs& outputs() const { return out_; }
+  const Sequencer& sequencer() const { return sequencer_; }
+  const StopControl::Outputs& stop() const { return stop_.outputs(); }
+  const DirectLoader::Outputs& loader() const { return loader_.outputs(); }
+  const TimeBase::Outputs& time() const { return time_base_.outputs(); }
+  const FeedGenerator::Outputs& feed() const { return feed_.outputs(); }
+  const PathEngines::Outputs& engines() const { return engines_.outputs(); }
+  std::uint32_t position(unsigned axis) const { return axes_[axis].shaper().outputs().position; }
+
+ private:
+  friend class Jump;
+
+  // STATUS.busy falls when nothing has run for this many clocks.
+  static constexpr unsigned kBusyClocks = 11;
+
+  void clock_axes(const Inputs& in, bool cut);
+  void clock_busy();
+  void show_axis(unsigned n);
+  bool may_jump(const Inputs& in) const;
+  Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
+
+  bool clock_all_;
+  std::uint32_t restless_ = ~0U;  // axes that the next clock moves whatever it brings
+  StopControl stop_;
+  DirectLoader loader_;
+  Sequencer sequencer_;
+  TimeBase time_base_;
+  FeedGenerator feed_;
+  PathEngines engines_;
+  WaitTimer wait_timer_;
+  std::vector<Axis> axes_;
+  bool axes_live_ = false;  // a clock late
+  bool running_ = false;    // a clock late
+  unsigned busy_left_ = 0;  // clocks
+  Outputs out_;
+};
+
+}  // namespace trammel::model

@@ -1,0 +1,190 @@
+// Golden model of the path engines: what stands between the tick of the card (feed domain) and the axes.
+//
+// Feed ticks and swaps leave 3 clocks later as path ticks and swaps: as long as the prescaler takes, so that a path on
+// prescaled ticks and a line after it keep their order. On another engine than lines the prescaler, a pulse generator,
+// makes path ticks from feed ticks; they wait until the engine can take them. Its steps leave by axis.
+//
+// From a tick at c: path domain at c+3; the accumulator's tick at c+5 at the earliest, its step at c+8 by axis.
+// `done`: no tick is in the 3 clocks, no path tick waits and the accumulator has finished the last one; a clock late.
+// `payload_ready`: as that for an engine's ticks alone, but from the 6th clock after the accumulator's tick on: a load
+// that is asked for then comes after the tick is finished. Not thread-safe; no errors are reported.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/buses.hpp"
+#include "trammel/model/deviation_accumulator.hpp"
+#include "trammel/model/pulse_generator.hpp"
+
+namespace trammel::model {
+
+class PathEngines {
+ public:
+  struct Inputs {
+    bool cut = false;
+    bool tick = false;  // feed domain
+    bool swap = false;
+    // Sampled with swap: what the path runs on, by its bit of ENGINES; the state of one that is not lines is loaded.
+    std::uint8_t engine = card_map::engine::kLines;
+    LoadWord load;
+  };
+  struct Outputs {
+    bool tick = false;  // path domain
+    bool swap = false;
+    bool path_tick = false;  // of the accumulator
+    std::uint8_t step = 0;   // engines' steps, by axis
+    std::uint8_t dir = 0;    // 1 = negative; means something with a step
+    bool ready = true;       // a feed tick may be taken
+    bool payload_ready = true;
+    bool done = false;
+    bool elsewhere = false;  // with done: not on the commanded end point
+  };
+
+  // `clock_all`: neither part ever rests.
+  explicit PathEngines(bool clock_all = false) : clock_all_(clock_all) {}
+
+  // One rising edge.
+  void clock(const Inputs& in) {
+    const Said engine = said();
+    const DeviationAccumulator::Outputs accumulator = accumulator_.outputs();
+    const bool tick = out_.path_tick && engine_ == card_map::engine::kAccumulator;
+    judge(in, engine);
+    finish_step(in.cut, tick, accumulator);
+    const bool start = in.swap && in.engine == card_map::engine::kAccumulator;
+    const bool commanded = in.cut || in.load.valid || clock_all_;
+    if (commanded || routed_step_ != 0 || !accumulator_.quiet()) route(in.load, accumulator);
+    if (commanded || start || tick || !accumulator_.quiet()) accumulator_.clock({false, in.load, start, tick, in.cut});
+    give(in.cut, engine.ready);
+    step();
+    if (commanded || in.tick || in.swap || !prescaler_.quiet()) clock_prescaler(in);
+    delay(in);
+  }
+
+  const Outputs& outputs() const { return out_; }
+
+  // For jumps. settled(): but for ticks on their way through the 3 clocks, nothing moves without inputs.
+  bool settled() const {
+    return swaps_ == 0 && !out_.swap && waiting_ == 0 && !out_.path_tick && almost_ == 0 && out_.step == 0 &&
+           prescaler_.quiet() && accumulator_.quiet();
+  }
+  // As settled(), and without ticks.
+  bool quiet() const {
+    return settled() && ticks_ == 0 && !out_.tick && out_.done == said().ready && out_.elsewhere == !said().at_end &&
+           out_.payload_ready;
+  }
+  // Ticks on their way: bit k belongs to an accumulation of the feed generator k clocks ago.
+  unsigned in_flight() const { return (ticks_ >> 2 & 1) << 6 | (ticks_ >> 1 & 1) << 7 | (ticks_ & 1) << 8; }
+  // What shows after clocks in which the prescaler took `ticks` without a step, and these are on their way (bit 9: the
+  // one before).
+  void jump(std::uint64_t ticks, unsigned in_flight) {
+    prescaler_.silent_ticks(ticks);
+    ticks_ = (in_flight >> 6 & 1) << 2 | (in_flight >> 7 & 1) << 1 | (in_flight >> 8 & 1);
+    out_.tick = (ticks_ & 1) != 0;
+    const bool feed_ticks = (in_flight >> 6 & 0xF) != 0;
+    out_.done = !feed_ticks && said().ready;
+    out_.elsewhere = !said().at_end;
+    out_.payload_ready = !(feed_ticks && on_engine(engine_));
+  }
+
+  const PulseGenerator& prescaler() const { return prescaler_; }
+  PulseGenerator& prescaler() { return prescaler_; }
+  const DeviationAccumulator& accumulator() const { return accumulator_; }
+
+ private:
+  static constexpr unsigned kDelay = 3;   // feed domain to path domain
+  static constexpr unsigned kAlmost = 4;  // clocks after the accumulator's tick in which no load may be asked for
+
+  static bool on_engine(std::uint8_t engine) { return engine != card_map::engine::kLines; }
+
+  // What an engine says, from its registers.
+  struct Said {
+    bool ready = false;
+    bool at_end = false;
+    bool stepping = false;  // no load may come yet
+    std::uint8_t step = 0;  // by axis
+    std::uint8_t dir = 0;
+  };
+  // Of the engine on which the path runs. On lines nothing is asked.
+  Said said() const {
+    switch (engine_) {
+      default:
+        return {accumulator_.outputs().ready, accumulator_.outputs().at_end, almost_ != 0, routed_step_, routed_dir_};
+    }
+  }
+
+  // What the sequencer may know of it, a clock late.
+  void judge(const Inputs& in, const Said& engine) {
+    const bool feed_ticks = in.tick || ticks_ != 0;
+    const bool path_ticks = waiting_ != 0 || out_.path_tick;
+    out_.done = !feed_ticks && !path_ticks && engine.ready;
+    out_.elsewhere = !engine.at_end;
+    out_.payload_ready = !(feed_ticks && on_engine(engine_)) && !path_ticks && !engine.stepping;
+    if (in.swap) engine_ = in.engine;
+    if (in.cut) engine_ = card_map::engine::kLines;
+  }
+
+  void finish_step(bool cut, bool tick, const DeviationAccumulator::Outputs& accumulator) {
+    if (cut)
+      almost_ = 0;
+    else if (tick && accumulator.ready && !accumulator.at_end)  // at its end it makes no step
+      almost_ = kAlmost;
+    else if (almost_ != 0)
+      --almost_;
+  }
+
+  // The accumulator's two axes are those of its plane.
+  void route(const LoadWord& load, const DeviationAccumulator::Outputs& accumulator) {
+    const unsigned x = 1U << axis_x_;
+    const unsigned y = 1U << axis_y_;
+    routed_step_ = static_cast<std::uint8_t>((accumulator.step_x ? x : 0) | (accumulator.step_y ? y : 0));
+    routed_dir_ = static_cast<std::uint8_t>((accumulator.dir_y ? y : 0) | (accumulator.dir_x ? x : 0));
+    if (load.to(load_target::kPlane)) {
+      axis_x_ = load.word >> 4 & 7;
+      axis_y_ = load.word >> 8 & 7;
+    }
+  }
+
+  void step() {
+    const Said engine = said();
+    out_.step = engine.step;
+    out_.dir = engine.dir;
+  }
+
+  // Path ticks wait for the engine, which answers a tick with ready low a clock later.
+  void give(bool cut, bool engine_ready) {
+    const bool given = waiting_ != 0 && engine_ready && !out_.path_tick;
+    waiting_ = cut ? 0 : waiting_ + (prescaler_.outputs().step ? 1U : 0U) - (given ? 1U : 0U);
+    out_.path_tick = given && !cut;
+    out_.ready = waiting_ < 2;
+  }
+
+  void clock_prescaler(const Inputs& in) {
+    prescaler_.clock({in.cut, in.tick, in.swap, on_engine(in.engine), false, false, in.load.to(load_target::kPrescale),
+                      false, in.load.word});
+  }
+
+  void delay(const Inputs& in) {
+    ticks_ = in.cut ? 0 : ticks_ >> 1 | (in.tick ? 1U << (kDelay - 1) : 0);
+    swaps_ = in.cut ? 0 : swaps_ >> 1 | (in.swap ? 1U << (kDelay - 1) : 0);
+    out_.tick = (ticks_ & 1) != 0;
+    out_.swap = (swaps_ & 1) != 0;
+  }
+
+  bool clock_all_;
+  DeviationAccumulator accumulator_;
+  PulseGenerator prescaler_;
+  std::uint32_t ticks_ = 0;  // on their way, bit k leaves in k clocks; bit 0 is visible
+  std::uint32_t swaps_ = 0;
+  std::uint32_t waiting_ = 0;                       // path ticks
+  std::uint8_t engine_ = card_map::engine::kLines;  // of the path swapped in last
+  // The accumulator's: clocks in which no load may be asked for, and its steps by axis.
+  unsigned almost_ = 0;
+  unsigned axis_x_ = 0;
+  unsigned axis_y_ = 0;
+  std::uint8_t routed_step_ = 0;
+  std::uint8_t routed_dir_ = 0;
+  Outputs out_;
+};
+
+}  // namespace trammel::model

@@ -1,0 +1,168 @@
+// Golden model of the register file: the register map as a plain table of values, with the latencies of
+// docs/developer/architecture.md. Cycle-exact at every port. One instance for each card; not thread-safe.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/buses.hpp"
+#include "trammel/model/snapshot_writer.hpp"
+
+namespace trammel::model {
+
+class RegisterFile {
+ public:
+  static constexpr std::size_t kMaxPorts = 4;
+
+  // ENGINES: what every card has, and what one has that is built with everything there is.
+  static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
+  static constexpr std::uint32_t kMostEngines =
+      kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode;
+
+  struct Config {
+    std::uint32_t axes = 4;               // 1 .. 8
+    std::uint32_t geometry_depth = 4096;  // halfwords
+    std::uint32_t feed_depth = 2560;      // halfwords
+    std::uint32_t clock_hz = 100'000'000;
+    std::uint32_t engines = kMostEngines;
+    std::uint32_t build_id = 0;
+    bool build_dirty = false;
+    std::uint32_t board_id = 0;
+    std::uint32_t ports = 1;       // 1 .. 4
+    std::uint32_t idle_level = 0;  // {second pins, first pins}, a bit an axis each
+  };
+
+  struct Inputs {
+    // the access; `request` for one clock, the next at the earliest in the clock after `ack`
+    bool request = false;
+    bool write = false;
+    bool partial = false;
+    std::uint8_t port = 0;
+    std::uint32_t address = 0;  // byte address, 12 bits
+    std::uint32_t data = 0;
+    // the card's state
+    bool busy = false;
+    bool direct = false;
+    bool path_active = false;
+    bool feed_active = false;
+    bool ended = false;
+    bool stopping = false;
+    bool incomplete = false;          // the stream stands inside a command
+    std::uint16_t geometry_room = 0;  // halfwords
+    std::uint16_t feed_room = 0;
+    std::uint32_t geometry_begun = 0;
+    std::uint32_t feed_begun = 0;
+    std::uint32_t rate = 0;   // 2^-32 feed ticks an enabled clock
+    std::uint32_t ratio = 0;  // 2^-16, 17 bits
+    std::array<std::uint32_t, card_map::kMaxAxes> position{};
+    std::uint32_t fault = 0;  // FAULT as it stands
+    bool stop = false;        // event: the first cause of a stop asks for a snapshot
+    // the command checker
+    bool checker_ready = true;
+    bool checker_refuse = false;
+    std::uint8_t checker_reason = 0;
+    std::uint8_t checker_number = 0;
+    // the direct loader
+    bool start_done = false;
+    bool start_error = false;
+    std::uint8_t start_reason = 0;
+    std::uint8_t loader_address = 0;  // words
+  };
+
+  // Events and `setting.set` are high in the clock of `ack`, `flush` a clock earlier (never with `abort`).
+  struct Outputs {
+    bool ack = false;
+    bool error = false;
+    std::uint32_t data = 0;
+    Setting setting;  // address and data mean something with `set`
+    std::uint32_t clear_fault = 0;
+    bool irq = false;
+    bool stream_write = false;
+    std::uint32_t stream_word = 0;
+    bool abort = false;
+    bool flush = false;
+    bool start = false;
+    std::uint8_t start_mask = 0;
+    bool loader_valid = false;  // no port: whether `loader_data` answers the loader; unspecified otherwise
+    std::uint32_t loader_data = 0;
+    bool strobe = false;  // the snapshot takes what the inputs of this clock are
+  };
+
+  explicit RegisterFile(const Config& config);
+
+  // Back to the state in reset.
+  void reset();
+
+  // One rising edge with reset low.
+  void clock(const Inputs& in);
+
+  const Outputs& outputs() const { return out_; }
+
+  // STATUS with these inputs, as the interrupt and lockstep see it: refused on any port.
+  std::uint32_t status(const Inputs& in) const;
+
+  // True when clocks with these same inputs change nothing but the time; then advance(n) equals n times clock(in).
+  bool quiet(const Inputs& in) const;
+  void advance(std::uint64_t clocks) { time_ += clocks; }
+
+  // Clocks since reset.
+  std::uint64_t time() const { return time_; }
+
+ private:
+  enum class Stage { Idle, Decode, Wait, Act, Respond, Sent, Judge, Load };
+  using Values = std::array<std::uint32_t, card_map::kMaxAxes + 8>;  // of an area, by words
+
+  void clear_events();
+  std::uint32_t status_for(const Inputs& in, bool refused) const;
+  bool interrupt(const Inputs& in) const;
+  std::uint32_t live(const Inputs& in) const;
+  card_map::Reason judge(const Inputs& in) const;
+  card_map::Reason judge_write(const Inputs& in) const;
+  void step_access(const Inputs& in);
+  void begin(const Inputs& in);
+  void act(const Inputs& in);
+  void take_effect();
+  void finish(bool error, std::uint32_t data = 0);
+  void refuse(std::uint8_t reason, std::uint8_t number = 0);
+  void step_snapshot(const Inputs& in, bool host);
+  void take_values(const Inputs& in);
+  void step_loader(const Inputs& in);
+  void refuse_checked(const Inputs& in);
+  std::uint32_t& stored(std::uint32_t address) { return stored_[address / 4]; }
+  std::uint32_t stored(std::uint32_t address) const { return stored_[address / 4]; }
+
+  Config config_;
+  Outputs out_;
+  std::uint64_t time_ = 0;
+
+  // The access under way.
+  Stage stage_ = Stage::Idle;
+  bool write_ = false;
+  bool partial_ = false;
+  std::uint8_t port_ = 0;
+  std::uint32_t address_ = 0;
+  std::uint32_t word_ = 0;  // last word written
+  card_map::Slot slot_{nullptr, 0};
+  card_map::Reason reason_ = card_map::Reason::None;
+  std::uint32_t answer_ = 0;
+  bool word_refused_ = false;      // by the checker
+  std::uint8_t stream_owner_ = 0;  // port that the command under way belongs to
+  bool snapshot_asked_ = false;    // by CONTROL, in this clock
+
+  std::array<std::uint32_t, 256> stored_{};  // whatever reads back: constants, settings, latched values
+  std::uint32_t irq_enable_ = 0;
+  SnapshotWriter snapshot_;
+  Values latched_{};
+  std::array<std::uint32_t, kMaxPorts> refusal_{};  // as the register reads; a reason is never 0
+
+  struct LoaderRead {
+    bool valid = false;
+    std::uint32_t data = 0;
+  };
+  bool loading_ = false;
+  LoaderRead loader_read_;
+};
+
+}  // namespace trammel::model

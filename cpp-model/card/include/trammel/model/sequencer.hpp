@@ -1,0 +1,174 @@
+// Golden model of the sequencers: what is queued becomes decoded, what is decoded begins, what runs counts ticks.
+//
+// Geometry and feed each decode one command ahead. A path runs for its N ticks, a piece for its own; every tick taken
+// counts both down, and the last one of either swaps in what is decoded. A tick made by the feed generator (in direct
+// mode: an enabled clock) is owed from two clocks on until a path can take it. A path on an engine is over when
+// that has finished its path ticks, a direct move when no axis is live. A barrier (DWELL, END) begins when both queues
+// stand at it. Everything decided in clock c shows at c+1; other times stand with their constants. Not thread-safe; no
+// errors are reported.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/buses.hpp"
+#include "trammel/model/command_fetch.hpp"
+
+namespace trammel::model {
+
+class Sequencer {
+ public:
+  struct Inputs {
+    bool cut = false;
+    // queues
+    bool geometry_empty = true;
+    bool feed_empty = true;
+    std::uint16_t geometry_word = 0;
+    std::uint16_t feed_word = 0;
+    // direct loader
+    bool direct_go = false;
+    std::uint8_t direct_mask = 0;
+    LoadWord direct_load;
+    // time
+    bool enable = false;
+    bool feed_tick = false;
+    // path engines and axes
+    bool engine_ready = true;
+    bool payload_ready = true;
+    bool engine_done = false;
+    bool elsewhere = false;
+    bool axes_live = false;
+  };
+  struct Outputs {
+    bool tick = false;                               // a tick was taken
+    bool swap = false;                               // a path begins
+    std::uint8_t active = 0;                         // axes of a line; sampled with swap, holds
+    std::uint8_t engine = card_map::engine::kLines;  // what the path runs on; sampled with swap, holds
+    bool direct = false;
+    bool feed_enable = false;
+    bool feed_clear = true;
+    bool feed_swap = false;  // a piece begins
+    bool mismatch = false;   // events
+    bool incomplete = false;
+    bool path_active = false;
+    bool feed_active = false;
+    bool ended = false;
+    bool idle = true;  // nothing runs, is decoded or queued
+    std::uint32_t geometry_begun = 0;
+    std::uint32_t feed_begun = 0;
+  };
+  // For the record of steps: what shows since the last clock.
+  struct Record {
+    bool command = false;  // a geometry command has begun
+    bool direct = false;   // a direct move has begun
+  };
+
+  // `clock_all`: it never rests.
+  explicit Sequencer(bool clock_all = false)
+      : clock_all_(clock_all),
+        geometry_(CommandFetch::Queue::Geometry, clock_all),
+        feed_(CommandFetch::Queue::Feed, clock_all) {}
+
+  // One rising edge. Between the ticks that end something only counters move.
+  void clock(const Inputs& in);
+
+  const Outputs& outputs() const { return out_; }
+  const Record& record() const { return record_; }
+  bool geometry_read() const { return geometry_.read(); }
+  bool feed_read() const { return feed_.read(); }
+  // For jumps. settled(): with these inputs, the enables and the ticks made apart, only counters move.
+  bool settled(const Inputs& in) const;
+  // A path takes each tick of its piece as it comes.
+  bool ticking() const { return (path_ == Path::Line || path_ == Path::Engine) && !drained_ && out_.feed_active; }
+  // Ticks until the path or its piece ends, the last one included.
+  std::uint64_t ticks_left() const { return path_left_ < piece_left_ ? path_left_ : piece_left_; }
+  // Clocks that a settled sequencer may jump over at most, ticks apart.
+  std::uint64_t settled_clocks() const { return barrier_ == Barrier::Running ? barrier_at_ - now_ : kLong; }
+  // Ticks on their way: bit k was made by an accumulation k clocks ago.
+  unsigned in_flight() const {
+    return (tick_arrives_ ? 1U << kArrives : 0) | (owed_ != 0 ? 1U << kOwed : 0) | (out_.tick ? 1U << kTaken : 0);
+  }
+  // `clocks` at once in which `ticks` are taken, none of them a last one; what is then on its way.
+  void jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flight, bool feed_enable);
+  static constexpr unsigned kArrives = 3;  // clocks from an accumulation
+  static constexpr unsigned kOwed = 4;
+  static constexpr unsigned kTaken = 5;
+
+  const LoadWord& load() const { return load_; }             // the load bus
+  const LoadWord& feed_load() const { return feed_.bus(); }  // the feed load
+
+ private:
+  static constexpr std::uint64_t kCountMask = (std::uint64_t{1} << 40) - 1;
+  // From the take of the last tick: the clock in which the end on an engine may be judged, and a direct move's.
+  static constexpr std::uint64_t kEngineJudged = 2;
+  static constexpr std::uint64_t kDirectJudged = 9;
+  // From the clock in which both queues stand at a barrier: that in which it is decided, one before it shows.
+  static constexpr std::uint64_t kBarrierBegins = 4;
+
+  static constexpr std::uint64_t kLong = std::uint64_t{1} << 62;
+
+  enum class Path : std::uint8_t { None, Line, Engine, Direct };
+  enum class Barrier : std::uint8_t { None, Beginning, Running, Done };
+
+  // What this clock decides.
+  struct Decision {
+    bool take = false;
+    bool path_ends = false;  // its last tick is taken
+    bool path_over = false;  // on an engine or direct: finished after that
+    bool path_begins = false;
+    bool piece_ends = false;
+    bool piece_begins = false;
+    bool barrier_begins = false;
+    bool barrier_ends = false;
+    bool barrier_done = false;  // ended in the clock before: both queues go on
+    bool payload_ready = false;
+    bool piece_runs = false;
+  };
+
+  void clock_all(const Inputs& in);
+  bool calm(const Inputs& in) const;
+  bool takes(const Inputs& in) const;
+  Decision decide(const Inputs& in) const;
+  bool judged(const Inputs& in) const;
+  bool mismatches() const;
+  void stand(const Decision& d);
+  void clock_path(const Inputs& in, const Decision& d);
+  void clock_piece(const Decision& d);
+  void clock_barrier(const Decision& d);
+  void clock_ticks(const Inputs& in, bool take);
+  void clock_fetches(const Inputs& in, const Decision& d);
+  void count_begun(const Inputs& in, const Decision& d);
+  void cut();
+
+  bool clock_all_;
+  bool calm_ = false;  // as of the last clock, with inputs as these flags say
+  unsigned calm_inputs_ = 0;
+  std::uint64_t now_ = 0;
+  CommandFetch geometry_;
+  CommandFetch feed_;
+  LoadWord load_;
+  std::uint64_t path_count_ = 0;  // chains: count of the next path or barrier, of the next piece
+  std::uint64_t piece_count_ = 0;
+
+  Path path_ = Path::None;
+  bool drained_ = false;          // its last tick is taken
+  std::uint64_t path_left_ = 0;   // ticks
+  std::uint64_t drained_at_ = 0;  // the clock of that take
+  std::uint64_t piece_left_ = 0;
+  unsigned owed_ = 0;          // ticks
+  bool tick_arrives_ = false;  // owed from the next clock on
+
+  bool geometry_stands_ = false;  // at a barrier
+  bool feed_stands_ = false;
+  Barrier barrier_ = Barrier::None;
+  std::uint64_t barrier_at_ = 0;  // the clock in which it begins; its last one
+  bool geometry_idle_ = true;
+  bool path_begun_ = false;  // in the clock before
+  bool piece_begun_ = false;
+  bool cut_before_ = false;
+
+  Outputs out_;
+  Record record_;
+};
+
+}  // namespace trammel::model

@@ -1,0 +1,321 @@
+#include "trammel/model/jump.hpp"
+
+#include <algorithm>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::model {
+
+namespace {
+
+constexpr unsigned kTakenBits = 0x1E0;      // in flight: taken, but not yet at the axes
+constexpr unsigned kPrescaledBits = 0x1C0;  // at the prescaler, but not yet at the axes
+
+std::uint64_t count(unsigned bits) {
+  std::uint64_t ones = 0;
+  for (; bits != 0; bits &= bits - 1) ++ones;
+  return ones;
+}
+
+}  // namespace
+
+Jump::Jump(MotionCore& core, StepRecord& record, std::uint64_t cycle, std::uint64_t limit)
+    : core_(core),
+      record_(record),
+      cycle_(cycle),
+      end_(static_cast<std::int64_t>(std::min(limit, core.sequencer_.settled_clocks()))),
+      ticking_(core.sequencer_.ticking()),
+      first_(core.sequencer_.outputs().feed_enable ? 1 : 0),
+      second_(core.time_base_.outputs().enable ? 1 : 0),
+      axes_(static_cast<unsigned>(core.axes_.size())) {
+  if (!ticking_) return;
+  for (unsigned k = 0; k < 3; ++k) in_flight_ |= core.feed_.carried(k) ? 1U << k : 0;
+  in_flight_ |= core.sequencer_.in_flight() | core.engines_.in_flight();
+  for (int k = 8; k >= 0; --k) {
+    if ((in_flight_ >> k & 1) != 0) flight_[flying_++] = -k;
+  }
+  taken_before_ = record.taken() - count(in_flight_ & kTakenBits);
+}
+
+std::uint64_t Jump::go() {
+  if (ticking_) travel();
+  if (end_ <= 0 || (end_ < kShortest && !moved_)) return 0;
+  land();
+  return static_cast<std::uint64_t>(end_);
+}
+
+// Accumulations of the feed generator at edges 1 .. `edge`: the enables on their way come first.
+std::uint64_t Jump::accumulations_to(std::int64_t edge) const {
+  if (edge < 2) return edge < 1 ? 0 : first_;
+  return first_ + second_ + core_.time_base_.enabled_in(static_cast<std::uint64_t>(edge - 2));
+}
+
+// The edge of an accumulation, from 1.
+std::int64_t Jump::edge_of(std::uint64_t accumulation) const {
+  if (accumulation <= first_) return 1;
+  if (accumulation <= first_ + second_) return 2;
+  return 2 + static_cast<std::int64_t>(core_.time_base_.clocks_for(accumulation - first_ - second_));
+}
+
+// The first tick that must not be taken, or not reach the prescaler.
+std::uint64_t Jump::first_that_stops() const {
+  const std::uint64_t last = core_.sequencer_.ticks_left() + count(in_flight_ & kTakenBits);
+  const std::uint64_t silent = core_.engines_.prescaler().silent_ticks();
+  if (silent >= last) return last;
+  return std::min(last, silent + 1 + count(in_flight_ & kPrescaledBits));
+}
+
+void Jump::travel() {
+  const std::uint64_t stop = first_that_stops();
+  for (unsigned n = 0; n < axes_; ++n) {
+    const std::uint64_t silent = core_.axes_[n].generator().silent_ticks();
+    travellers_[n].next = silent == UINT64_MAX ? kNever : silent + 1;
+  }
+  for (;;) {
+    std::uint64_t next = stop;
+    for (unsigned n = 0; n < axes_; ++n) next = std::min(next, travellers_[n].next);
+    FeedGenerator generator;
+    std::uint64_t done = done_;
+    std::int64_t edge = 0;
+    const bool in_flight = next <= flying_;
+    if (in_flight)
+      edge = flight_[static_cast<std::size_t>(next - 1)];
+    else if (!find(next, generator, done, edge))
+      return;
+    if (next == stop) return stop_before(stop);
+    const std::int64_t arrival = edge + kToAxis;
+    // Ticks are a clock apart at least; one that comes later than this may stop before this one's arrival.
+    const bool close = stop - next < static_cast<std::uint64_t>(kToAxis - kLastTake);
+    if (close || arrival > end_) stop_before(stop);
+    if (arrival > end_) return;
+    report_until(arrival - 1);
+    if (!step_all(next, arrival)) {
+      end_ = arrival - 1;
+      return;
+    }
+    moved_ = true;
+    if (in_flight) continue;
+    core_.feed_ = generator;
+    done_ = done;
+    made_ = next - flying_;
+    edge_ = edge;
+  }
+}
+
+// Ends before a tick that must not be taken.
+void Jump::stop_before(std::uint64_t tick) {
+  FeedGenerator generator;
+  std::uint64_t done = 0;
+  std::int64_t edge = 0;
+  if (tick <= flying_)
+    edge = flight_[static_cast<std::size_t>(tick - 1)];
+  else if (!find(tick, generator, done, edge))
+    return;
+  end_ = std::min(end_, edge + kLastTake);
+}
+
+// Where a tick is made, and the generator there; false when that is after the end.
+bool Jump::find(std::uint64_t tick, FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const {
+  generator = core_.feed_;
+  const std::uint64_t wanted = tick - flying_ - made_;
+  const FeedGenerator::Advanced gone = generator.advance(accumulations_to(end_) - done_, wanted);
+  if (gone.carries < wanted) return false;
+  done = done_ + gone.enables;
+  edge = edge_of(done);
+  return true;
+}
+
+// All axes that this tick makes a step on; none where one of them may not.
+bool Jump::step_all(std::uint64_t tick, std::int64_t arrival) {
+  std::array<std::int64_t, card_map::kMaxAxes> served;
+  std::array<StepShaper, card_map::kMaxAxes> after;
+  for (unsigned n = 0; n < axes_; ++n) {
+    if (travellers_[n].next == tick && !may_step(n, arrival, after[n], served[n])) return false;
+  }
+  for (unsigned n = 0; n < axes_; ++n) {
+    if (travellers_[n].next != tick) continue;
+    step(n, tick, arrival, served[n]);
+    travellers_[n].after = after[n];
+  }
+  return true;
+}
+
+// The step's pulse, when it is the only one under way and cannot be late at a wait tick.
+bool Jump::may_step(unsigned axis, std::int64_t arrival, StepShaper& after, std::int64_t& served) const {
+  const Traveller& t = travellers_[axis];
+  if (t.under_way && t.served >= arrival) return false;
+  StepShaper::Inputs in = core_.axes_[axis].times();
+  in.step = in.wait_tick = false;
+  after = t.under_way ? t.after : core_.axes_[axis].shaper();
+  const std::int64_t from = t.under_way ? t.served : t.edge;
+  served = arrival + kToShaper;
+  after.pass(in, static_cast<std::uint64_t>(served - 1 - from));
+  const std::uint32_t position = after.outputs().position;
+  in.step = true;
+  in.dir = core_.axes_[axis].generator().increment() < 0;
+  after.clock(in);
+  in.step = false;
+  const std::int64_t late = served + core_.wait_timer_.limit();
+  for (; after.outputs().position == position; ++served) {
+    if (served >= late) return false;
+    after.clock(in);
+  }
+  return true;
+}
+
+void Jump::step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::int64_t served) {
+  Traveller& t = travellers_[axis];
+  Axis& a = core_.axes_[axis];
+  if (t.under_way) {
+    a.shaper() = t.after;
+    a.place_step(kToShaper, t.backwards);
+    t.edge = t.served;
+  }
+  a.generator().silent_ticks(tick - 1 - t.ticks);
+  t.backwards = a.generator().step_at_once();
+  t.ticks = tick;
+  const std::uint64_t silent = a.generator().silent_ticks();
+  t.next = silent == UINT64_MAX ? kNever : tick + silent + 1;
+  t.under_way = t.path_due = t.pin_due = true;
+  t.arrival = arrival;
+  t.served = served;
+  // The tick shows 4 edges before it reaches the axes.
+  record_.place(cycle_ + static_cast<std::uint64_t>(arrival) - 4, taken_before_ + tick);
+  next_report_ = std::min({next_report_, arrival + kToPath, served});
+}
+
+// Reports in order of time, pins before the path, then by axis.
+void Jump::report_until(std::int64_t edge) {
+  while (next_report_ <= edge) {
+    std::int64_t first = INT64_MAX;
+    for (unsigned n = 0; n < axes_; ++n) {
+      const Traveller& t = travellers_[n];
+      if (t.pin_due) first = std::min(first, t.served);
+      if (t.path_due) first = std::min(first, t.arrival + kToPath);
+    }
+    next_report_ = first;
+    if (first > edge) return;
+    const std::uint64_t cycle = cycle_ + static_cast<std::uint64_t>(first);
+    for (unsigned n = 0; n < axes_; ++n) {
+      Traveller& t = travellers_[n];
+      if (!t.pin_due || t.served != first) continue;
+      record_.pin(cycle, n, t.after.outputs().position);
+      t.pin_due = false;
+    }
+    for (unsigned n = 0; n < axes_; ++n) {
+      Traveller& t = travellers_[n];
+      if (!t.path_due || t.arrival + kToPath != first) continue;
+      record_.line_step(cycle, n, t.backwards);
+      t.path_due = false;
+    }
+  }
+}
+
+void Jump::land() {
+  report_until(end_);
+  const auto clocks = static_cast<std::uint64_t>(end_);
+  std::uint64_t at_axes = 0;
+  std::uint64_t taken = 0;
+  bool feed_enable = false;
+  unsigned in_flight = 0;
+  if (ticking_) {
+    in_flight = land_generator();
+    const std::uint64_t all = flying_ + made_;
+    at_axes = all - count(in_flight & 0x1FF);
+    taken = all - count(in_flight & 0x1F) - count(in_flight_ & kTakenBits);
+    core_.engines_.jump(all - count(in_flight & 0x3F) - count(in_flight_ & kPrescaledBits), in_flight);
+    const TimeBase& time = core_.time_base_;
+    feed_enable = clocks < 2 ? second_ != 0 : time.enabled_in(clocks - 1) != time.enabled_in(clocks - 2);
+    record_.take(taken);
+    place_takes(in_flight);
+  }
+  for (unsigned n = 0; n < axes_; ++n) land_axis(n, at_axes);
+  core_.sequencer_.jump(clocks, taken, in_flight, feed_enable);
+  core_.time_base_.advance(clocks);
+  core_.wait_timer_.advance(clocks);
+  core_.out_.engine_step = 0;
+}
+
+// The generator at the end; the last clocks one by one, for what is in flight: bit k from the edge k before the end.
+unsigned Jump::land_generator() {
+  constexpr std::int64_t kTail = 10;
+  unsigned in_flight = edge_ == 0 ? in_flight_ : 1;
+  if (end_ > edge_ + kTail) {
+    edge_ = end_ - kTail;
+    const std::uint64_t done = accumulations_to(edge_);
+    made_ += core_.feed_.advance(done - done_, kNever).carries;
+    done_ = done;
+    in_flight = 0;
+  }
+  while (edge_ != end_) {
+    FeedGenerator::Inputs in;
+    const std::uint64_t done = accumulations_to(++edge_);
+    in.enable = done != done_;
+    done_ = done;
+    core_.feed_.clock(in);
+    const bool carry = core_.feed_.carried(0);
+    made_ += carry ? 1 : 0;
+    in_flight = in_flight << 1 | (carry ? 1U : 0U);
+  }
+  return in_flight;
+}
+
+// The record of the ticks that are taken and not yet at the axes.
+void Jump::place_takes(unsigned in_flight) {
+  constexpr unsigned kTaken = Sequencer::kTaken;
+  std::uint64_t tick = record_.taken();
+  for (unsigned k = kTaken; k < kToAxis; ++k) {
+    if ((in_flight >> k & 1) != 0) record_.place(cycle_ + static_cast<std::uint64_t>(end_) - (k - kTaken), tick--);
+  }
+}
+
+void Jump::land_axis(unsigned axis, std::uint64_t ticks) {
+  const Traveller& t = travellers_[axis];
+  Axis& a = core_.axes_[axis];
+  if (ticking_) a.generator().silent_ticks(ticks - t.ticks);
+  StepShaper::Inputs in = a.times();
+  in.step = in.wait_tick = false;
+  const std::int64_t at_shaper = t.arrival + kToShaper;
+  if (t.under_way && t.served <= end_) {
+    a.shaper() = t.after;
+    a.shaper().pass(in, static_cast<std::uint64_t>(end_ - t.served));
+  } else if (t.under_way && at_shaper <= end_) {
+    a.shaper().pass(in, static_cast<std::uint64_t>(at_shaper - 1 - t.edge));
+    WaitTimer timer = core_.wait_timer_;
+    timer.advance(static_cast<std::uint64_t>(at_shaper - 1));
+    in.dir = t.backwards;
+    for (std::int64_t edge = at_shaper; edge <= end_; ++edge) {
+      in.step = edge == at_shaper;
+      in.wait_tick = timer.tick();
+      a.shaper().clock(in);
+      timer.clock({});
+    }
+  } else {
+    a.shaper().pass(in, static_cast<std::uint64_t>(end_ - t.edge));
+  }
+  if (t.under_way) a.place_step(static_cast<std::uint64_t>(std::min(end_ - t.arrival, kToShaper)), t.backwards);
+  core_.show_axis(axis);
+}
+
+// Nothing is decided, and no host is at work.
+bool MotionCore::may_jump(const Inputs& in) const {
+  const StopControl::Outputs& stop = stop_.outputs();
+  const Sequencer::Outputs& s = sequencer_.outputs();
+  if (s.swap || s.feed_swap || s.direct || out_.path_step != 0 || axes_live_ || out_.step_fault != 0) return false;
+  if (in.setting.set || in.abort || in.clear_fault != 0 || in.start || !stop_.quiet() || !loader_.quiet()) return false;
+  if (!engines_.settled() || !time_base_.steady(stop.hold)) return false;
+  for (const Axis& axis : axes_) {
+    if (!axis.calm()) return false;
+  }
+  if (running_ != (!s.idle || out_.axis_busy != 0) || busy_left_ != (running_ ? kBusyClocks : 0)) return false;
+  if (s.idle && out_.axis_busy != 0) return false;
+  if (!sequencer_.settled(sequencer_inputs(in))) return false;
+  return sequencer_.ticking() || (feed_.quiet() && engines_.quiet() && (!s.feed_clear || feed_.phase() == 0));
+}
+
+std::uint64_t MotionCore::jump(std::uint64_t limit, const Inputs& in, std::uint64_t cycle, StepRecord& record) {
+  constexpr std::uint64_t kLongest = std::uint64_t{1} << 40;
+  return may_jump(in) ? Jump(*this, record, cycle, std::min(limit, kLongest)).go() : 0;
+}
+
+}  // namespace trammel::model

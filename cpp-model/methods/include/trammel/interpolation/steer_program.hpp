@@ -1,0 +1,55 @@
+// STEER's circle routine as printed: from (x, y), steps by Table 2 about the origin until it is back at its start,
+// which is all the end that it knows. From a start off the circle it hardly ever comes back. Source: Goldberg &
+// Goldberg, "XY Interpolation Algorithms", listing 1, docircle(). Its method with an end is SteerCircle
+// (conic_arc.hpp). |x|, |y|, radius < 2^30. Not thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "trammel/interpolation/conic_arc.hpp"
+#include "trammel/interpolation/curve.hpp"
+
+namespace trammel::interpolation {
+
+class SteerProgram {
+ public:
+  // `clockwise` is its D = 1.
+  SteerProgram(Point start, std::int64_t radius, bool clockwise)
+      : start_(start), at_(start), radius_(radius), clockwise_(clockwise) {}
+
+  Point position() const { return at_; }
+  std::int64_t deviation() const { return at_.x * at_.x + at_.y * at_.y - radius_ * radius_; }
+  // Back at the start; true before the first step too, where the program does not ask yet.
+  bool back() const { return at_ == start_; }
+
+  Step next() {
+    const ConicState<std::int64_t> state{deviation(), 2 * at_.x, 2 * at_.y, 1, 1, clockwise_};
+    const Step step = SteerTable::choose(state);
+    at_.x += step.direction[0];
+    at_.y += step.direction[1];
+    return step;
+  }
+
+  // Steps until it is back at its start, or nothing when it never is: the next step depends on the position alone, so
+  // a walk that meets itself anywhere else (one at double speed overtakes it there) turns there for ever.
+  std::optional<std::uint64_t> steps_to_return() const {
+    SteerProgram slow = *this;
+    SteerProgram fast = *this;
+    for (std::uint64_t steps = 1;; ++steps) {
+      fast.next();
+      if (fast.back()) return steps;
+      if (steps % 2 != 0) continue;
+      slow.next();
+      if (slow.at_ == fast.at_) return std::nullopt;
+    }
+  }
+
+ private:
+  Point start_;
+  Point at_;
+  std::int64_t radius_;
+  bool clockwise_;
+};
+
+}  // namespace trammel::interpolation

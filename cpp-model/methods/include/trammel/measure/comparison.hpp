@@ -1,0 +1,89 @@
+// All measures of one method on one curve, and of a method over many random lines.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "trammel/interpolation/any_interpolator.hpp"
+#include "trammel/interpolation/curve.hpp"
+#include "trammel/interpolation/method.hpp"
+#include "trammel/measure/cost.hpp"
+#include "trammel/measure/distance.hpp"
+#include "trammel/measure/evenness.hpp"
+#include "trammel/measure/ideal_curve.hpp"
+#include "trammel/measure/trace.hpp"
+
+namespace trammel::measure {
+
+// A trace takes 16 bytes a step. Longer curves are for the caller to refuse.
+inline constexpr std::uint64_t kMostPulses = 4'000'000;
+
+// Pulses of all axes on the way, at least: exact for lines, the circumscribed rectangle's way round for a full turn.
+std::uint64_t pulses_along(const interpolation::Curve& curve);
+
+IdealCurve ideal_of(const interpolation::Curve& curve);
+
+// The whole walk. Throws what make_interpolator throws (std::invalid_argument).
+void record(interpolation::Method method, const interpolation::Curve& curve, const interpolation::Options& options,
+            Trace& trace);
+
+// Methods that compute once count the card's blocks: the direct-mode registers for a line (FREQUENCY_LO[0] .. START),
+// the ARC command for an arc. Those that compute step by step are counted as run by the host.
+HostCost cost_of(interpolation::Method method, const Trace& trace);
+
+struct MethodMeasures {
+  interpolation::Method method = interpolation::Method::kSteer;
+  std::uint64_t steps = 0;   // times with a step
+  std::uint64_t pulses = 0;  // of all axes
+  std::uint64_t total_time = 0;
+  HostCost cost;
+  Distances distances;
+  std::array<Evenness, kTraceAxes> evenness{};
+  std::array<std::vector<SpectrumLine>, kTraceAxes> spectrum;
+  Ripple ripple;
+};
+
+// All but the motor. Thread-safe.
+MethodMeasures measure_method(interpolation::Method method, const Trace& trace, const IdealCurve& curve);
+
+// Methods that can do this curve, in the order of the enumeration.
+std::vector<interpolation::Method> methods_for(const interpolation::Curve& curve);
+
+// One method over many lines.
+struct RandomMeasures {
+  interpolation::Method method = interpolation::Method::kSteer;
+  double largest_perpendicular = 0;
+  interpolation::Line worst_line;  // where that was
+  double mean_perpendicular = 0;   // this and what follows: mean over the lines
+  double largest_horizontal = 0;
+  double largest_axis = 0;
+  double largest_interval_deviation = 0;
+  double mean_interval_deviation = 0;  // of the largest of each line
+  double mean_rms_interval = 0;
+  double largest_ripple = 0;
+  double mean_rms_ripple = 0;
+  double mean_steps = 0;
+  double mean_operations = 0;
+  std::uint64_t wrong_ends = 0;  // lines that did not end on their end point: 0, or the method is broken
+};
+
+struct RandomLines {
+  std::uint64_t count = 0;
+  std::uint64_t seed = 1;
+  std::int64_t largest = 1000;  // displacements of each axis are uniform in -largest .. largest, not both 0
+  interpolation::Options options;
+  unsigned threads = 2;
+};
+
+// Line number `index`: depends on it and the seed alone.
+interpolation::Line random_line(const RandomLines& lines, std::uint64_t index);
+
+// Every method on every line. The result does not depend on the number of threads. `progress` is called by the calling
+// thread now and then with the part done. Throws std::invalid_argument when a method cannot do the largest line
+// (a velocity of more than a pulse a clock).
+std::vector<RandomMeasures> measure_random_lines(const RandomLines& lines,
+                                                 const std::function<void(double)>& progress = {});
+
+}  // namespace trammel::measure

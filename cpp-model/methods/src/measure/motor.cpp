@@ -1,0 +1,202 @@
+#include "trammel/measure/motor.hpp"
+
+#include <algorithm>
+#include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+namespace trammel::measure {
+namespace {
+
+constexpr double kTurn = 6.283185307179586476925;
+constexpr double kSettle = 0.1;  // s of rest after the last pulse
+
+// Rotor angle (rad), speed (rad/s), currents of both phases (A).
+using State = std::array<double, 4>;
+using Currents = std::array<double, 2>;
+
+class Motor {
+ public:
+  explicit Motor(const MotorParameters& parameters)
+      : p_(parameters),
+        torque_constant_(p_.holding_torque / (std::sqrt(2.0) * p_.rated_current)),
+        inertia_(p_.rotor_inertia + p_.load_inertia),
+        gain_(p_.inductance / p_.chopper_time) {}
+
+  // The currents whose field stands at an electrical angle.
+  Currents reference(double electrical_angle) const {
+    const double amplitude = std::sqrt(2.0) * p_.rated_current;
+    return {amplitude * std::cos(electrical_angle), amplitude * std::sin(electrical_angle)};
+  }
+
+  void set_reference(const Currents& reference) { reference_ = reference; }
+
+  void operator()(const State& state, State& rate, double /*time*/) const {
+    const double speed = state[1];
+    const double sine = std::sin(p_.pole_pairs * state[0]);
+    const double cosine = std::cos(p_.pole_pairs * state[0]);
+    const double sine_of_4 = 4 * sine * cosine * (cosine * cosine - sine * sine);
+    const double torque = torque_constant_ * (state[3] * cosine - state[2] * sine) - p_.detent_torque * sine_of_4 -
+                          p_.viscous_damping * speed - p_.friction * std::tanh(speed / p_.friction_speed);
+    rate[0] = speed;
+    rate[1] = torque / inertia_;
+    rate[2] = current_rate(0, state[2], -torque_constant_ * speed * sine);
+    rate[3] = current_rate(1, state[3], torque_constant_ * speed * cosine);
+  }
+
+ private:
+  double current_rate(std::size_t phase, double current, double back_emf) const {
+    const double wanted = p_.resistance * reference_[phase] + gain_ * (reference_[phase] - current);
+    const double voltage = std::clamp(wanted, -p_.supply, p_.supply);
+    return (voltage - p_.resistance * current - back_emf) / p_.inductance;
+  }
+
+  MotorParameters p_;
+  double torque_constant_;  // N m/A
+  double inertia_;
+  double gain_;  // V/A
+  Currents reference_{};
+};
+
+// Run again and again without a jump in position or speed. (An open arc has one in speed.)
+bool repeatable(const IdealCurve& curve) { return curve.is_line() || curve.is_closed(); }
+
+// How often the curve is run: whole times, but for a curve of more than the most pulses, which is broken off.
+double repeats_of(const Trace& trace, const IdealCurve& curve, const MotorRun& run) {
+  const std::uint64_t pulses = pulses_of(trace);
+  if (pulses > run.most_pulses) return static_cast<double>(run.most_pulses) / static_cast<double>(pulses);
+  return repeatable(curve) ? std::ceil(static_cast<double>(run.least_pulses) / static_cast<double>(pulses)) : 1;
+}
+
+// One axis over all repeats of the curve.
+class AxisRun {
+ public:
+  // Repeats the curve until `end` times its duration, which need not be whole.
+  AxisRun(const Trace& trace, const IdealCurve& curve, const MotorRun& run, std::size_t axis, double end)
+      : trace_(trace),
+        curve_(curve),
+        run_(run),
+        axis_(axis),
+        motor_(run.motor),
+        duration_(curve.length() / run.speed),
+        end_(end * duration_),
+        full_steps_a_pulse_(run.drive == Drive::kFullStep ? 1.0 : 0.5),
+        radians_a_pulse_(kTurn / (4 * run.motor.pole_pairs) * full_steps_a_pulse_) {
+    measured_from_ = end == 1 && !repeatable(curve) ? 0 : end_ / 3;
+    // Full-step positions have both phases on: the field stands at 45 degrees.
+    turn_field();
+    const Currents currents = motor_.reference(field_angle() * run.motor.pole_pairs);
+    state_ = {field_angle(), run.from_standstill ? 0 : ideal_speed(0), currents[0], currents[1]};
+  }
+
+  // False: steps were lost.
+  bool execute() {
+    bool over = false;
+    for (std::size_t repeat = 0; !over; ++repeat) {
+      const double offset = duration_ * static_cast<double>(repeat);
+      over = offset + duration_ >= end_;
+      for (const Event& event : trace_.events()) {
+        if (event.direction[axis_] == 0) continue;
+        const double time = offset + duration_ * fraction(event.time);
+        if (time > end_) break;
+        if (!advance(time)) return false;
+        pulses_ += event.direction[axis_];
+        turn_field();
+      }
+    }
+    if (!advance(end_)) return false;
+    measuring_ = false;
+    return advance(time_ + kSettle) && std::abs(lag()) < 2;
+  }
+
+  AxisVibration vibration() const {
+    AxisVibration result;
+    const double mean_speed = run_.speed * radians_a_pulse_;
+    if (measured_time_ > 0) result.rms_ripple = std::sqrt(squares_ / measured_time_) / mean_speed;
+    result.largest_lag = largest_lag_;
+    return result;
+  }
+
+ private:
+  double fraction(std::uint64_t time) const {
+    return static_cast<double>(time) / static_cast<double>(trace_.total_time());
+  }
+  double field_angle() const {
+    return kTurn / 8 / run_.motor.pole_pairs + static_cast<double>(pulses_) * radians_a_pulse_;
+  }
+  void turn_field() { motor_.set_reference(motor_.reference(field_angle() * run_.motor.pole_pairs)); }
+  double lag() const { return (field_angle() - state_[0]) / radians_a_pulse_ * full_steps_a_pulse_; }
+
+  // The running point's speed, as the motor's, rad/s.
+  double ideal_speed(double time) const {
+    const double within = std::fmod(time, duration_) / duration_;
+    return curve_.tangent(within)[axis_] * run_.speed * radians_a_pulse_;
+  }
+
+  // Integrates until `end`; false when the rotor has slipped by a whole electrical turn (4 full steps).
+  bool advance(double end) {
+    const double span = end - time_;
+    if (span <= 0) return true;
+    const auto steps = static_cast<std::size_t>(std::ceil(span / run_.step));
+    const double step = span / static_cast<double>(steps);
+    double ideal = line_speed();
+    // The lag is largest right after a pulse.
+    if (measuring_ && time_ >= measured_from_) largest_lag_ = std::max(largest_lag_, std::abs(lag()));
+    for (std::size_t i = 0; i < steps; ++i) {
+      stepper_.do_step(std::cref(motor_), state_, time_, step);
+      time_ += step;
+      const double angle = std::abs(lag());
+      if (!(angle < 4)) return false;
+      if (!measuring_ || time_ < measured_from_) continue;
+      if (!curve_.is_line()) ideal = ideal_speed(time_);
+      const double difference = state_[1] - ideal;
+      squares_ += difference * difference * step;
+      measured_time_ += step;
+      largest_lag_ = std::max(largest_lag_, angle);
+    }
+    time_ = end;
+    return true;
+  }
+  double line_speed() const { return curve_.is_line() ? ideal_speed(0) : 0; }
+
+  const Trace& trace_;
+  const IdealCurve& curve_;
+  const MotorRun& run_;
+  std::size_t axis_;
+  Motor motor_;
+  double duration_;  // s, one repeat
+  double end_;       // s
+  double full_steps_a_pulse_;
+  double radians_a_pulse_;
+  double measured_from_ = 0;
+  bool measuring_ = true;
+  std::int64_t pulses_ = 0;
+  State state_{};
+  double time_ = 0;
+  double squares_ = 0;
+  double measured_time_ = 0;
+  double largest_lag_ = 0;
+  boost::numeric::odeint::runge_kutta4<State> stepper_;
+};
+
+}  // namespace
+
+Vibration simulate_motors(const Trace& trace, const IdealCurve& curve, const MotorRun& run) {
+  Vibration result;
+  if (pulses_of(trace) == 0) return result;
+  const double repeats = repeats_of(trace, curve, run);
+  double squares = 0;
+  for (std::size_t a = 0; a < trace.axes(); ++a) {
+    if (trace.times(a).empty()) continue;
+    AxisRun axis(trace, curve, run, a, repeats);
+    if (!axis.execute()) result.lost_steps = true;
+    result.axis[a] = axis.vibration();
+    squares += result.axis[a].rms_ripple * result.axis[a].rms_ripple;
+    result.largest_lag = std::max(result.largest_lag, result.axis[a].largest_lag);
+  }
+  result.rms_ripple = std::sqrt(squares);
+  return result;
+}
+
+}  // namespace trammel::measure

@@ -1,0 +1,39 @@
+#include <cmath>
+
+#include "for_each_index.hpp"
+#include "trammel/measure/motor.hpp"
+
+namespace trammel::measure {
+
+std::vector<double> sweep_speeds() {
+  std::vector<double> speeds;
+  for (int third = 0; third <= 18; ++third) speeds.push_back(std::round(100 * std::exp2(third / 3.0)));
+  return speeds;
+}
+
+std::vector<std::vector<Vibration>> sweep_motors(const std::vector<Trace>& traces, const IdealCurve& curve,
+                                                 const MotorRun& run, const std::vector<double>& speeds,
+                                                 unsigned threads, const std::function<void(double)>& progress) {
+  std::vector<std::vector<Vibration>> result(traces.size(), std::vector<Vibration>(speeds.size()));
+  for_each_index(
+      traces.size() * speeds.size(), threads,
+      [&](std::uint64_t index) {
+        // Slow ones, which take the longest, first.
+        const std::size_t speed = index / traces.size();
+        const std::size_t trace = index % traces.size();
+        MotorRun at_speed = run;
+        at_speed.speed = speeds[speed];
+        result[trace][speed] = simulate_motors(traces[trace], curve, at_speed);
+      },
+      progress);
+  return result;
+}
+
+std::optional<double> lost_from(const std::vector<double>& speeds, const std::vector<Vibration>& sweep) {
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    if (sweep[i].lost_steps) return speeds[i];
+  }
+  return std::nullopt;
+}
+
+}  // namespace trammel::measure

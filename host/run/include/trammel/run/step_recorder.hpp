@@ -1,0 +1,72 @@
+// Takes the steps of a run: writes the step lists, counts, and feeds the deviation meter and the picture.
+// Not thread-safe.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "trammel/driver/steps.hpp"
+#include "trammel/run/deviation_meter.hpp"
+#include "trammel/run/observer.hpp"
+#include "trammel/run/plot.hpp"
+#include "trammel/run/text_sink.hpp"
+
+namespace trammel::run {
+
+class CsvWriter;
+
+// Takes the steps as they come; as an observer of the run it learns the commands that they belong to.
+class StepRecorder final : public driver::StepSink, public Observer {
+ public:
+  struct Options {
+    TextSink* steps = nullptr;       // list of the pins' steps: cycle,axis,direction
+    TextSink* path_steps = nullptr;  // list of the path's steps: command,tick,axis,direction
+    bool plot = false;
+    double clock_hz = 0;
+    std::vector<double> steps_per_mm;  // by axis
+  };
+  explicit StepRecorder(const Options& options);
+  ~StepRecorder() override;
+
+  void command(std::uint64_t number, const driver::Command& command) override { deviation_.command(number, command); }
+  void pin_step(const driver::PinStep& step) override;
+  void path_step(const driver::PathStep& step) override;
+  // After the last step: writes what is left of the lists.
+  void finish();
+  // Throws std::runtime_error unless the pins have made what the card counted, pulses by axis.
+  void check(const std::vector<std::int64_t>& counted) const;
+
+  DeviationMeter& deviation() { return deviation_; }
+  const std::vector<std::uint64_t>& steps() const { return steps_; }       // at the pins, by axis
+  const std::vector<std::int64_t>& position() const { return position_; }  // sum of the pins' steps
+  std::vector<Point> executed() const { return executed_.points(); }
+  bool thinned() const { return executed_.thinned(); }
+  const std::vector<Point>& detail() const { return detail_; }
+  std::vector<SpeedOverTime::Sample> speed() const { return speed_.samples(); }
+
+  // From now on up to kDetailPoints positions are kept one by one for the magnified picture, for path `command`.
+  void detail_of(std::uint64_t command) { detail_command_ = command; }
+  static constexpr std::size_t kDetailPoints = 120;
+
+ private:
+  Point millimetres() const;
+  void point_of_path();
+
+  Options options_;
+  std::unique_ptr<CsvWriter> step_list_;
+  std::unique_ptr<CsvWriter> path_step_list_;
+  DeviationMeter deviation_;
+  std::vector<std::uint64_t> steps_;
+  std::vector<std::int64_t> position_;       // at the pins
+  std::vector<std::int64_t> path_position_;  // before the shapers
+  ThinnedPath executed_{20000};
+  SpeedOverTime speed_;
+  std::vector<Point> detail_;
+  std::optional<std::uint64_t> detail_command_;
+  std::optional<driver::PathStep> last_;  // the path step before
+};
+
+}  // namespace trammel::run

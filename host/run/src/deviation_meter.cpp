@@ -1,0 +1,99 @@
+#include "trammel/run/deviation_meter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::run {
+namespace {
+
+// Fraction bits of a pulse generator's increment and of an arc's centre.
+constexpr int kIncrementBits = 40;
+constexpr double kCentreScale = 256.0;
+
+double displacement(const driver::LineCommand& line, unsigned axis) {
+  const auto product = static_cast<long double>(line.increment[axis]) * static_cast<long double>(line.ticks);
+  return static_cast<double>(std::round(std::ldexp(product, -kIncrementBits)));
+}
+
+}  // namespace
+
+void DeviationMeter::command(std::uint64_t number, const driver::Command& command) {
+  Path path;
+  path.number = number;
+  if (const auto* line = std::get_if<driver::LineCommand>(&command)) {
+    for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
+      if ((line->mask >> axis & 1U) == 0) continue;
+      path.axes[path.axis_count] = axis;
+      path.target[path.axis_count++] = displacement(*line, axis);
+    }
+    double square = 0;
+    for (unsigned i = 0; i < path.axis_count; ++i) square += path.target[i] * path.target[i];
+    path.length = std::sqrt(square);
+  } else if (const auto* arc = std::get_if<driver::ArcCommand>(&command)) {
+    path.arc = true;
+    path.axis_count = 2;
+    path.axes[0] = arc->axis_x;
+    path.axes[1] = arc->axis_y;
+    // F = X^2 + Y^2 - R^2 with X in 1/256 pulse: GX = 2 * 256 * X, so the centre lies at -GX / 512 / 256 pulses.
+    path.target[0] = -static_cast<double>(arc->gradient_x) / (2 * kCentreScale * kCentreScale);
+    path.target[1] = -static_cast<double>(arc->gradient_y) / (2 * kCentreScale * kCentreScale);
+    const double start = std::hypot(path.target[0], path.target[1]);
+    const double end = std::hypot(arc->end_x - path.target[0], arc->end_y - path.target[1]);
+    path.inner = std::min(start, end);
+    path.outer = std::max(start, end);
+  } else {
+    return;
+  }
+  paths_.push_back(path);
+}
+
+void DeviationMeter::enter(std::uint64_t command) {
+  while (!paths_.empty() && paths_.front().number < command) {
+    paths_.pop_front();
+    position_.fill(0);
+  }
+  if (paths_.empty() || paths_.front().number != command) {
+    throw std::logic_error("a step of a command that was never sent");
+  }
+}
+
+void DeviationMeter::step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) {
+  const bool same_path = !paths_.empty() && paths_.front().number == command;
+  if (tick_ && !(same_path && *tick_ == tick)) measure();
+  if (!same_path) enter(command);
+  tick_ = tick;
+  position_[axis] += direction;
+}
+
+void DeviationMeter::finish() {
+  if (tick_) measure();
+  tick_.reset();
+}
+
+void DeviationMeter::measure() {
+  const Path& path = paths_.front();
+  if (path.arc) {
+    const double x = static_cast<double>(position_[path.axes[0]]) - path.target[0];
+    const double y = static_cast<double>(position_[path.axes[1]]) - path.target[1];
+    const double radius = std::hypot(x, y);
+    largest_arc_ = std::max({largest_arc_, radius - path.outer, path.inner - radius});
+    return;
+  }
+  // |d|^2 - (d.u)^2 loses digits on long lines; the rejection d - (d.u) u does not.
+  double along = 0;
+  for (unsigned i = 0; i < path.axis_count; ++i) {
+    along += static_cast<double>(position_[path.axes[i]]) * path.target[i];
+  }
+  along /= path.length * path.length;
+  double square = 0;
+  for (unsigned i = 0; i < path.axis_count; ++i) {
+    const double off = static_cast<double>(position_[path.axes[i]]) - along * path.target[i];
+    square += off * off;
+  }
+  largest_line_ = std::max(largest_line_, std::sqrt(square));
+}
+
+}  // namespace trammel::run

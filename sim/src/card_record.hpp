@@ -1,0 +1,164 @@
+// What the card shows after one rising edge, as memory to be compared: the one list of the signals that the lockstep
+// compares. RTL and golden model each fill a record; equal cards are equal bytes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/card_model.hpp"
+#include "trammel/sim/lockstep.hpp"
+
+// SIGNAL(name, what the RTL shows, the golden model's value, when it means anything)
+// `rtl` is the Verilated card, `seen` its observe_o, `out` and `bus` are the model's outputs; a condition names signals
+// that stand further up. Where it does not hold both records say 0. All signals are compared in every cycle.
+#define TRAMMEL_CARD_SIGNALS(SIGNAL)                                      \
+  SIGNAL(tick, seen.tick(), out.tick, true)                               \
+  SIGNAL(path_tick, seen.path_tick(), out.path_tick, true)                \
+  SIGNAL(path_swap, seen.path_swap(), out.path_swap, true)                \
+  SIGNAL(feed_swap, seen.feed_swap(), out.feed_swap, true)                \
+  SIGNAL(path_step, seen.path_step(), out.path_step, true)                \
+  SIGNAL(path_dir, seen.path_dir(), out.path_dir, true)                   \
+  SIGNAL(step_o, rtl.step_o, out.step, true)                              \
+  SIGNAL(dir_o, rtl.dir_o, out.dir, true)                                 \
+  SIGNAL(irq_o, rtl.irq_o, out.irq, true)                                 \
+  SIGNAL(status, seen.status(), out.status, true)                         \
+  SIGNAL(fault, seen.fault(), out.fault, true)                            \
+  SIGNAL(geometry_begun, seen.geometry_begun(), out.geometry_begun, true) \
+  SIGNAL(feed_begun, seen.feed_begun(), out.feed_begun, true)             \
+  SIGNAL(geometry_room, seen.geometry_room(), out.geometry_room, true)    \
+  SIGNAL(feed_room, seen.feed_room(), out.feed_room, true)                \
+  SIGNAL(ratio, seen.ratio(), out.ratio, true)                            \
+  SIGNAL(rate, seen.rate(), out.rate, true)                               \
+  SIGNAL(awready_o, rtl.awready_o, bus.awready, true)                     \
+  SIGNAL(wready_o, rtl.wready_o, bus.wready, true)                        \
+  SIGNAL(bvalid_o, rtl.bvalid_o, bus.bvalid, true)                        \
+  SIGNAL(bresp_o, rtl.bresp_o, bus.bresp, bvalid_o)                       \
+  SIGNAL(arready_o, rtl.arready_o, bus.arready, true)                     \
+  SIGNAL(rvalid_o, rtl.rvalid_o, bus.rvalid, true)                        \
+  SIGNAL(rdata_o, rtl.rdata_o, bus.rdata, rvalid_o)                       \
+  SIGNAL(rresp_o, rtl.rresp_o, bus.rresp, rvalid_o)
+
+// AXIS_SIGNAL(name, what the RTL shows of axis n, the golden model's value), 32 bits each
+#define TRAMMEL_CARD_AXIS_SIGNALS(AXIS_SIGNAL) AXIS_SIGNAL(position, seen.position(n), model.position(n))
+
+namespace trammel::sim {
+
+// The fields of observe_o, layout in docs/developer/architecture.md.
+template <unsigned kAxes, class Wide>
+class Observed {
+ public:
+  explicit Observed(const Wide& bits) : bits_(bits) {}
+
+  std::uint32_t tick() const { return field<0, 1>(); }
+  std::uint32_t path_tick() const { return field<1, 1>(); }
+  std::uint32_t path_swap() const { return field<2, 1>(); }
+  std::uint32_t feed_swap() const { return field<3, 1>(); }
+  std::uint32_t path_step() const { return field<4, kAxes>(); }
+  std::uint32_t path_dir() const { return field<4 + kAxes, kAxes>(); }
+  std::uint32_t position(unsigned axis) const { return word(kPosition + 32 * axis); }
+  std::uint32_t ratio() const { return field<kRatio, 17>(); }
+  std::uint32_t rate() const { return field<kRatio + 17, 32>(); }
+  std::uint32_t feed_begun() const { return field<kRatio + 49, 32>(); }
+  std::uint32_t geometry_begun() const { return field<kRatio + 81, 32>(); }
+  std::uint32_t fault() const { return field<kRatio + 113, 32>(); }
+  std::uint32_t status() const { return field<kRatio + 145, 32>(); }
+  std::uint32_t feed_room() const { return field<kRatio + 177, 16>(); }
+  std::uint32_t geometry_room() const { return field<kRatio + 193, 16>(); }
+
+ private:
+  static constexpr unsigned kPosition = 4 + 2 * kAxes;
+  static constexpr unsigned kRatio = kPosition + 32 * kAxes;
+
+  // 32 bits from bit `low` on; zeros beyond the port.
+  std::uint32_t word(unsigned low) const {
+    const unsigned place = low / 32;
+    const unsigned shift = low % 32;
+    const std::uint64_t high = place + 1 < sizeof(Wide) / sizeof(std::uint32_t) ? bits_[place + 1] : 0;
+    return static_cast<std::uint32_t>((high << 32 | bits_[place]) >> shift);
+  }
+  template <unsigned kLow, unsigned kWidth>
+  std::uint32_t field() const {
+    constexpr std::uint32_t kMask = kWidth == 32 ? ~0U : (1U << kWidth) - 1;
+    return word(kLow) & kMask;
+  }
+
+  const Wide& bits_;
+};
+
+struct CardRecord {
+#define TRAMMEL_MEMBER(port, shown, golden, when) std::uint32_t port = 0;
+#define TRAMMEL_AXIS_MEMBER(port, shown, golden) \
+  std::array<std::uint32_t, card_map::kMaxAxes> port{};  // 0 for absent axes
+  TRAMMEL_CARD_SIGNALS(TRAMMEL_MEMBER)
+  TRAMMEL_CARD_AXIS_SIGNALS(TRAMMEL_AXIS_MEMBER)
+#undef TRAMMEL_AXIS_MEMBER
+#undef TRAMMEL_MEMBER
+
+  void show(const model::CardModel& model) {
+    const auto& out = model.outputs();
+    const auto& bus = model.bus();
+#define TRAMMEL_SHOW(port, shown, golden, when) port = (when) ? static_cast<std::uint32_t>(golden) : 0;
+#define TRAMMEL_SHOW_AXIS(port, shown, golden) port[n] = golden;
+    TRAMMEL_CARD_SIGNALS(TRAMMEL_SHOW)
+    for (unsigned n = 0; n < model.axes(); ++n) {
+      TRAMMEL_CARD_AXIS_SIGNALS(TRAMMEL_SHOW_AXIS)
+    }
+#undef TRAMMEL_SHOW_AXIS
+#undef TRAMMEL_SHOW
+  }
+
+  // `rtl`: a Verilated card.
+  template <unsigned kAxes, class Rtl>
+  void show_rtl(const Rtl& rtl) {
+    const Observed<kAxes, std::remove_reference_t<decltype(rtl.observe_o)>> seen(rtl.observe_o);
+#define TRAMMEL_SHOW(port, shown, golden, when) port = (when) ? static_cast<std::uint32_t>(shown) : 0;
+#define TRAMMEL_SHOW_AXIS(port, shown, golden) port[n] = shown;
+    TRAMMEL_CARD_SIGNALS(TRAMMEL_SHOW)
+    for (unsigned n = 0; n < kAxes; ++n) {
+      TRAMMEL_CARD_AXIS_SIGNALS(TRAMMEL_SHOW_AXIS)
+    }
+#undef TRAMMEL_SHOW_AXIS
+#undef TRAMMEL_SHOW
+  }
+};
+
+// No padding: equal cards are equal bytes.
+static_assert(std::has_unique_object_representations_v<CardRecord>);
+
+// A signal's place in a record.
+struct CardSignal {
+  const char* name;
+  std::size_t offset;  // bytes
+  std::size_t words;   // 1, or one for each of card_map::kMaxAxes
+};
+inline constexpr CardSignal kCardSignals[] = {
+#define TRAMMEL_PLACE(port, shown, golden, when) {#port, offsetof(CardRecord, port), 1},
+#define TRAMMEL_AXIS_PLACE(port, shown, golden) {#port, offsetof(CardRecord, port), card_map::kMaxAxes},
+    TRAMMEL_CARD_SIGNALS(TRAMMEL_PLACE) TRAMMEL_CARD_AXIS_SIGNALS(TRAMMEL_AXIS_PLACE)
+#undef TRAMMEL_AXIS_PLACE
+#undef TRAMMEL_PLACE
+};
+
+// Signals of a record that hold something with `axes` axes, those of each axis counted for themselves.
+constexpr unsigned signals_compared(unsigned axes) {
+  unsigned signals = 0;
+  for (const CardSignal& s : kCardSignals) signals += s.words == 1 ? 1 : axes;
+  return signals;
+}
+
+// Every byte of a record has a name.
+constexpr std::size_t named_words() {
+  std::size_t words = 0;
+  for (const CardSignal& s : kCardSignals) words += s.words;
+  return words;
+}
+static_assert(named_words() * sizeof(std::uint32_t) == sizeof(CardRecord));
+
+// All signals in which the two differ.
+std::vector<lockstep::Difference> differences(const CardRecord& rtl, const CardRecord& model);
+
+}  // namespace trammel::sim

@@ -1,0 +1,60 @@
+#include "rtl_engine.hpp"
+
+#include <stdexcept>
+
+#include "bus_engine.hpp"
+#include "lockstep_card.hpp"
+
+namespace trammel::sim {
+
+namespace {
+
+using model::CardModel;
+
+class RtlEngine final : public BusEngine {
+ public:
+  RtlEngine(std::unique_ptr<VerilatedCard> card, const SimulationOptions& options)
+      : card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch) {}
+
+  std::uint32_t read(std::uint32_t address) override {
+    card_.event("read", address);
+    return BusEngine::read(address);
+  }
+  void write(std::uint32_t address, std::uint32_t value) override {
+    card_.event("write to", address);
+    card_.event("written", value);
+    BusEngine::write(address, value);
+  }
+  void wait(std::uint64_t card_clocks) override { card_.run(CardModel::Inputs{}, card_clocks); }
+  std::optional<std::uint64_t> lockstep_cycles() const override {
+    card_.settle();
+    return card_.cycles();
+  }
+  std::uint64_t comparisons() const override {
+    card_.settle();
+    return card_.comparisons();
+  }
+
+ private:
+  void clock(const CardModel::Inputs& in) override { card_.run(in, 1); }
+  CardModel& card() override { return card_.model(); }
+  const CardModel& card() const override { return card_.model(); }
+
+  mutable LockstepCard card_;  // who asks what was compared makes the RTL catch up
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_engine(const SimulationOptions& options) {
+  if (options.kind == EngineKind::kModel) {
+    if (options.trace) throw std::invalid_argument("a trace needs the RTL engine");
+    return make_model_engine(options);
+  }
+  return make_rtl_engine(make_verilated_card(config_of(options).axes, {options.clock_hz, 0}, options.trace), options);
+}
+
+std::unique_ptr<Engine> make_rtl_engine(std::unique_ptr<VerilatedCard> card, const SimulationOptions& options) {
+  return std::make_unique<RtlEngine>(std::move(card), options);
+}
+
+}  // namespace trammel::sim

@@ -1,0 +1,310 @@
+#include "trammel/gcode/reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace trammel::gcode {
+
+using namespace machine;
+namespace {
+
+using ::testing::HasSubstr;
+
+Program read(const std::string& text) { return read_program(text, "p.ngc", default_machine()); }
+
+// Message of the refusal, without "p.ngc:".
+std::string refusal(const std::string& text) {
+  try {
+    read(text);
+  } catch (const ProgramError& error) {
+    return std::string(error.what()).substr(6);
+  }
+  return "accepted";
+}
+
+void expect_at(const Motion& motion, double x, double y, double z = 0, double e = 0) {
+  EXPECT_NEAR(motion.target[0], x, 1e-9);
+  EXPECT_NEAR(motion.target[1], y, 1e-9);
+  EXPECT_NEAR(motion.target[2], z, 1e-9);
+  EXPECT_NEAR(motion.target[3], e, 1e-9);
+}
+
+// Target of the last motion before the end.
+void expect_end(const std::string& text, double x, double y, double z = 0, double e = 0) {
+  SCOPED_TRACE(text);
+  expect_at(read(text).motions.back(), x, y, z, e);
+}
+
+TEST(Gcode, ReadsWordsInAnyDress) {
+  const Program program = read("n10 g1x1Y-2.5 Z+.5F600\r\nX 3.(note)Y4;rest G99\n\n(only a note)\n");
+  ASSERT_EQ(program.motions.size(), 3U);
+  EXPECT_EQ(program.motions[0].kind, MotionKind::kLine);
+  EXPECT_EQ(program.motions[0].line, 1U);
+  EXPECT_EQ(program.motions[0].feed, 10);
+  expect_at(program.motions[0], 1, -2.5, 0.5);
+  expect_at(program.motions[1], 3, 4, 0.5);
+  EXPECT_EQ(program.motions[1].line, 2U);
+  EXPECT_EQ(program.motions[2].kind, MotionKind::kEnd);
+}
+
+TEST(Gcode, RefusesMalformedWords) {
+  EXPECT_EQ(refusal("G0 X"), "1: malformed number in 'X'");
+  EXPECT_EQ(refusal("G0 X1\nG0 X--5"), "2: malformed number in 'X--5'");
+  EXPECT_EQ(refusal("G0 X1.2.3"), "1: malformed number in 'X1.2.3'");
+  EXPECT_EQ(refusal("G0 X1 2"), "1: unexpected '2'");
+  EXPECT_EQ(refusal("G0 X."), "1: malformed number in 'X.'");
+  EXPECT_EQ(refusal("G0 Xnan"), "1: malformed number in 'X'");
+  EXPECT_EQ(refusal("G0 Xinf"), "1: malformed number in 'X'");
+  EXPECT_THAT(refusal("G0 X" + std::string(400, '9')), HasSubstr("1: number out of range"));
+  EXPECT_EQ(refusal("G0 X#1"), "1: malformed number in 'X#1'");
+  EXPECT_EQ(refusal("G0 X[1+1]"), "1: malformed number in 'X[1+1]'");
+  EXPECT_EQ(refusal("#1=5"), "1: unexpected '#1=5'");
+  EXPECT_EQ(refusal("G0 X1*71"), "1: malformed number in 'X1*71'");
+  EXPECT_EQ(refusal("G0 (open"), "1: comment without ')'");
+  EXPECT_EQ(refusal("G0 (a (b) )"), "1: '(' inside a comment");
+  EXPECT_EQ(refusal("G0 )"), "1: unexpected ')'");
+  EXPECT_EQ(refusal("G0 \x01"), "1: unexpected byte 0x01");
+  EXPECT_EQ(refusal("G0 \xc3\xa4"), "1: unexpected byte 0xc3");
+  EXPECT_EQ(refusal(std::string("G0\0X1", 5)), "1: unexpected byte 0x00");
+}
+
+TEST(Gcode, RefusesExponents) {
+  EXPECT_EQ(refusal("G0 X1.5e-05"),
+            "1: malformed number in 'X1.5e-05': write it without exponent; before an axis e put a blank");
+  for (const char* line : {"G0 X1e5", "G0 X1.e5", "g0x1e2", "G0 X-1.5e+3 Y1", "G1 F1e3"}) {
+    EXPECT_THAT(refusal(line), HasSubstr("write it without exponent")) << line;
+  }
+  EXPECT_EQ(refusal("G0 X1E5"), "accepted");
+  EXPECT_EQ(refusal("g0 x1 e5"), "accepted");
+}
+
+TEST(Gcode, RefusesTextBesideAndBehindPercent) {
+  EXPECT_EQ(refusal("%\nG0 X1\n%\nG0 X2"), "4: 'G0 X2' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("% G0 X1"), "1: 'G0 X1' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("%G0 X1\n"), "1: 'G0 X1' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("%\nG0 X1\n% G0 X2"), "3: 'G0 X2' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("%\nG0 X1\n%\n%G0 X2"), "4: 'G0 X2' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("%\nG0 X1\n%\nnot G-code"), "4: 'not G-code' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("G0 X1 %"), "1: '%' beside other words: it needs a line of its own");
+  EXPECT_EQ(refusal("G0 X1%"), "1: '%' beside other words: it needs a line of its own");
+  EXPECT_EQ(refusal(" % (tape) ; start\nG0 X1\n % ;end\n\n(note)\n;note\n/G0 X1\n%\n"), "accepted");
+}
+
+TEST(Gcode, MessagesQuoteOneShortLine) {
+  EXPECT_EQ(refusal("G0 X\t\x1b[1m"), "1: malformed number in 'X'");
+  EXPECT_EQ(refusal("G0 X\t1\t*"), "1: unexpected '*'");
+  EXPECT_EQ(refusal("Q\t\t1"), "1: unsupported word 'Q\\t\\t1'");
+  EXPECT_EQ(refusal("%\x1b[2J\xff"), "1: '\\x1b[2J\\xff' beside or behind '%', where nothing is read");
+  const std::string zeros(5000, '0');
+  EXPECT_EQ(refusal("Q" + zeros), "1: unsupported word 'Q" + zeros.substr(0, 76) + "...'");
+  EXPECT_EQ(refusal("*" + std::string(79, '*')), "1: unexpected '" + std::string(80, '*') + "'");
+  EXPECT_EQ(refusal("*" + std::string(80, '*')), "1: unexpected '" + std::string(77, '*') + "...'");
+  EXPECT_EQ(describe({ErrorCode::kCannotRead, "a\nb\x1b\xc3\xa4", 3, "message"}), "a\\nb\\x1b\xc3\xa4:3: message");
+}
+
+TEST(Gcode, RefusesNumbersBeyondReason) {
+  EXPECT_EQ(refusal("G0 X1000000000000"), "accepted");
+  EXPECT_EQ(refusal("G0 X1000000000001"), "1: number out of range in 'X1000000000001'");
+  EXPECT_EQ(refusal("G1 X1 F0.0000001"), "1: feed is too small");
+  EXPECT_EQ(refusal("G93 G1 X1 F0.0000001"), "1: feed is too small");
+}
+
+TEST(Gcode, RefusesWordsItDoesNotKnow) {
+  for (const char* word : {"G5",   "G10",   "G30", "G33", "G38.2", "G41",  "G43", "G28.1", "G59.1", "G61.1",
+                           "G81",  "G92.2", "G95", "G96", "G99",   "G1.5", "M6",  "M19",   "M48",   "M98",
+                           "M104", "M84.5", "D1",  "H1",  "L2",    "O100", "Q1",  "G-1",   "G10000"}) {
+    EXPECT_EQ(refusal(std::string("G21\n") + word), std::string("2: unsupported word '") + word + "'");
+  }
+  EXPECT_EQ(refusal("G0 A5"), "1: 'A5': the machine has no axis A");
+}
+
+TEST(Gcode, RefusesTwoWordsOfAModalGroup) {
+  for (const char* line : {"G0 G1 X1", "G1 G1 X1 F1", "G17 G18", "G20 G21", "G90 G91", "G90.1 G91.1", "G93 G94",
+                           "G54 G55", "G61 G64", "G4 G28 P1", "M3 M5", "M7 M9", "M0 M2", "M82 M83", "M18 M84"}) {
+    EXPECT_THAT(refusal(line), HasSubstr("beside another word of its modal group")) << line;
+  }
+  EXPECT_EQ(refusal("G0 X1 X2"), "1: 'X2': X stands twice");
+  EXPECT_EQ(refusal("F1 F2"), "1: 'F2': F stands twice");
+  EXPECT_EQ(refusal("G0 X1 N5"), "1: 'N5' must be the first word");
+  EXPECT_EQ(refusal("N1.5 G0 X1"), "1: 'N1.5' must be a whole number");
+  EXPECT_EQ(refusal("F-1"), "1: 'F-1' must not be negative");
+}
+
+TEST(Gcode, ListsWhatHasNoEffectYet) {
+  const Program program = read("M3 S100 T2\nM8\nG64 P0.1\nG40 G49 G61 G80\nM0\nM1\nM5 M9\nM3 S5\nM84\nM18\nM30\n");
+  const std::map<std::string, std::size_t> expected = {{"M3", 2},  {"S", 2},   {"T", 1},  {"M8", 1},
+                                                       {"G64", 1}, {"M0", 1},  {"M1", 1}, {"M5", 1},
+                                                       {"M9", 1},  {"M84", 1}, {"M18", 1}};
+  EXPECT_EQ(program.accepted, expected);
+  ASSERT_EQ(program.motions.size(), 1U);
+  EXPECT_EQ(program.motions[0].line, 11U);
+}
+
+TEST(Gcode, EndsAtM2OrM30OrSecondPercent) {
+  EXPECT_EQ(read("G0 X1\nM2\nnot G-code").motions.size(), 2U);
+  EXPECT_EQ(read("G0 X1\nM30\nG0 X2").motions.size(), 2U);
+  EXPECT_EQ(read("%\nG0 X1\n%\n").motions.size(), 2U);
+  EXPECT_EQ(read("G0 X1\n%").motions.size(), 2U);
+  EXPECT_EQ(read("G0 X1 M2").motions.size(), 2U);
+  EXPECT_EQ(read("").motions.size(), 1U);
+  EXPECT_EQ(read("\xEF\xBB\xBFG0 X1").motions.size(), 2U);
+}
+
+TEST(Gcode, SkipsDeletedBlocks) { expect_end("G0 X1\n/G0 X2\n / G0 X3\n", 1, 0); }
+
+TEST(Gcode, InchesAndMillimetres) {
+  const Program program = read("G20 G1 X1 F60\nG21 X1\nG20 G91 Y2 F1\n");
+  EXPECT_NEAR(program.motions[0].feed, 25.4, 1e-12);
+  expect_at(program.motions[0], 25.4, 0);
+  EXPECT_NEAR(program.motions[1].feed, 25.4, 1e-12);
+  expect_at(program.motions[1], 1, 0);
+  expect_at(program.motions[2], 1, 50.8);
+}
+
+TEST(Gcode, RotaryAxesAreInDegrees) {
+  Machine machine = default_machine();
+  machine.axes[2].letter = 'A';
+  const Program program = read_program("G20 G1 A90 F60\nX1 A0\n", "p.ngc", machine);
+  EXPECT_EQ(program.motions[0].target[2], 90);
+  EXPECT_EQ(program.motions[0].feed, 1);
+  EXPECT_NEAR(program.motions[1].feed, 25.4, 1e-12);
+}
+
+TEST(Gcode, RelativeDistances) { expect_end("G91 G0 X1 Y2\nX1\nG90 Y5\nG91 Y-1 Z1", 2, 4, 1); }
+
+TEST(Gcode, ExtruderFollowsDistanceModeUntilM82OrM83) {
+  expect_end("G91\nG0 E1\nE1\nG90\nE5", 0, 0, 0, 5);
+  expect_end("G91\nG0 E1\nE1", 0, 0, 0, 2);
+  expect_end("M83\nG0 X1 E1\nX1 E1", 1, 0, 0, 2);
+  expect_end("M82\nG91\nG0 X1 E1\nX1 E1", 2, 0, 0, 1);
+  expect_end("M83\nG90\nG0 X1 E1\nX1 E1", 1, 0, 0, 2);
+}
+
+TEST(Gcode, G92ShiftsTheOrigin) {
+  expect_end("G0 X10\nG92 X2\nG0 X3 Y1", 11, 1);
+  expect_end("G0 X10\nG92 X0\nG92.1\nG0 X3", 3, 0);
+  expect_end("G0 E10\nG92 E0\nG0 E5", 0, 0, 0, 15);
+  expect_end("G20 G0 X1\nG92 X0\nG0 X1", 50.8, 0);
+  expect_end("G0 X10\nG92 X0\nG53 G0 X1", 1, 0);
+  EXPECT_EQ(refusal("G92"), "1: G92 without an axis word");
+  EXPECT_EQ(refusal("G92 G0 X1"), "1: G28 and G92 cannot share a line with a motion");
+}
+
+TEST(Gcode, CoordinateSystemsAndG53) {
+  Machine machine = default_machine();
+  machine.axes[0].offsets = {1, 2, 3, 4, 5, 6};
+  const auto x_of = [&](const std::string& text) { return read_program(text, "p", machine).motions.back().target[0]; };
+  EXPECT_EQ(x_of("G0 X10"), 11);
+  EXPECT_EQ(x_of("G55 G0 X10"), 12);
+  EXPECT_EQ(x_of("G59 G0 X10"), 16);
+  EXPECT_EQ(x_of("G59 G53 G0 X10"), 10);
+  EXPECT_EQ(x_of("G53 G0 X10\nX10"), 11);
+  EXPECT_EQ(x_of("G0 X10\nG92 X0\nG55 X0"), 12);
+  EXPECT_EQ(refusal("G91 G53 G0 X1"), "1: G53 with relative distances");
+  EXPECT_EQ(refusal("G53 X1"), "1: G53 needs G0 or G1");
+  EXPECT_EQ(refusal("G0\nG53"), "2: G53 without an axis word");
+}
+
+TEST(Gcode, G28GoesHomeThroughThePoint) {
+  Machine machine = default_machine();
+  machine.axes[0].home = -5;
+  machine.axes[2].home = 30;
+  const Program all = read_program("G0 X1 Y1 Z1 E1\nG28", "p", machine);
+  ASSERT_EQ(all.motions.size(), 3U);
+  expect_at(all.motions[1], -5, 0, 30, 1);
+  const Program named = read_program("G0 X1 Y1 Z1\nG91 G28 Z4 X0", "p", machine);
+  ASSERT_EQ(named.motions.size(), 4U);
+  EXPECT_EQ(named.motions[1].kind, MotionKind::kTraverse);
+  expect_at(named.motions[1], 1, 1, 5);
+  expect_at(named.motions[2], -5, 1, 30);
+}
+
+TEST(Gcode, DwellIsInSeconds) {
+  const Program program = read("G4 P0.5");
+  EXPECT_EQ(program.motions[0].kind, MotionKind::kDwell);
+  EXPECT_EQ(program.motions[0].seconds, 0.5);
+  EXPECT_EQ(refusal("G4"), "1: G4 needs P, its seconds");
+  EXPECT_EQ(refusal("G4 P-1"), "1: 'P-1' must not be negative");
+  EXPECT_EQ(refusal("G0 P1"), "1: P without G4 or G64");
+}
+
+TEST(Gcode, FeedModes) {
+  const Program program = read("G93 G1 X1 F30\nG1 X2 F60\nG0 X5\n");
+  EXPECT_EQ(program.motions[0].seconds, 2);
+  EXPECT_EQ(program.motions[1].seconds, 1);
+  EXPECT_EQ(program.motions[0].feed, 0);
+  EXPECT_EQ(refusal("G93 G1 X1 F30\nX2"), "2: under G93 every motion needs an F word");
+  EXPECT_EQ(refusal("G1 X1"), "1: motion with feed, but no F word before");
+  EXPECT_EQ(refusal("G1 X1 F0"), "1: feed is 0");
+  EXPECT_EQ(refusal("F5 G93\nG94 G1 X1"), "2: motion with feed, but no F word before");
+  EXPECT_EQ(refusal("G0 X1"), "accepted");
+}
+
+TEST(Gcode, ModalMotionAndItsEnd) {
+  expect_end("G1 F5\nX1\nF6\nY2", 1, 2);
+  EXPECT_EQ(refusal("X1"), "1: axis words without a motion word (G0, G1, G2 or G3)");
+  EXPECT_EQ(refusal("G0 X1\nG80 X2"), "2: axis words without a motion word (G0, G1, G2 or G3)");
+  EXPECT_EQ(refusal("M84 X"), "1: malformed number in 'X'");
+  EXPECT_EQ(refusal("G0\nM84 X1"), "2: axis words beside M18 or M84: only all motors together are understood");
+}
+
+TEST(Gcode, ErrorsNameFileAndLine) {
+  try {
+    read("G0 X1\n\nG0 Q1");
+    FAIL();
+  } catch (const ProgramError& error) {
+    EXPECT_EQ(error.file(), "p.ngc");
+    EXPECT_EQ(error.line(), 3U);
+    EXPECT_EQ(error.message(), "unsupported word 'Q1'");
+    EXPECT_STREQ(error.what(), "p.ngc:3: unsupported word 'Q1'");
+  }
+  EXPECT_THROW(read_program_file("no/such.ngc", default_machine()), ProgramError);
+}
+
+TEST(Gcode, StartsWhereTheMachineStands) {
+  const Program program = read_program("G91 G0 X1", "p", default_machine(), {10, 20});
+  expect_at(program.motions[0], 11, 20);
+}
+
+TEST(Gcode, ReadsTheExamples) {
+  for (const char* name : {"part", "inch", "relative", "extruder"}) {
+    const Program program = read_program_file(std::string(TRAMMEL_EXAMPLES_DIR "/") + name + ".ngc", default_machine());
+    EXPECT_GT(program.motions.size(), 8U) << name;
+  }
+}
+
+#ifdef TRAMMEL_SHARED_GCODE_DIR
+std::string shared(const std::string& name) { return TRAMMEL_SHARED_GCODE_DIR "/" + name + ".gcode"; }
+
+TEST(GcodeShared, OctocatEndsWhereItSays) {
+  const Program program = read_program_file(shared("octocat"), default_machine());
+  expect_at(program.motions.back(), 5, 5, 37.4, 2644.55913);
+  EXPECT_EQ(program.motions.size(), 25570U);
+}
+
+TEST(GcodeShared, AcceptsWhatLinuxcncAccepts) {
+  for (const char* name : {"jsdc-laser", "tball", "arc-xz-plane", "arc-yz-plane", "g2-arc", "circle-inch"}) {
+    EXPECT_NO_THROW(read_program_file(shared(name), default_machine())) << name;
+  }
+}
+
+TEST(GcodeShared, RefusesWhatLinuxcncRefuses) {
+  const auto line_of = [](const char* name) {
+    try {
+      read_program_file(shared(name), default_machine());
+    } catch (const ProgramError& error) {
+      return error.line();
+    }
+    return std::size_t{0};
+  };
+  EXPECT_EQ(line_of("circle-diamond-square"), 624U);
+  EXPECT_EQ(line_of("full-circle-without-xyz"), 11U);
+}
+#endif
+
+}  // namespace
+}  // namespace trammel::gcode

@@ -1,0 +1,385 @@
+#include "trammel/planner/planner.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "trammel/planner/profile.hpp"
+
+namespace trammel::planner {
+
+using namespace driver;
+using namespace machine;
+using namespace gcode;
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::uint32_t kClock = 100'000'000;
+
+std::vector<PlannedSegment> plan(const std::string& text, const Machine& machine = default_machine(),
+                                 std::uint32_t clock_hz = kClock) {
+  const Program program = read_program(text, "p.ngc", machine);
+  Planner planner(program, machine, clock_hz);
+  std::vector<PlannedSegment> segments;
+  for (PlannedSegment segment; planner.next(segment);) {
+    segments.push_back(segment);
+  }
+  return segments;
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    plan(text);
+  } catch (const ProgramError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+template <typename T>
+std::vector<T> commands(const PlannedSegment& segment) {
+  std::vector<T> found;
+  for (const Command& command : segment.commands) {
+    if (const T* one = std::get_if<T>(&command)) {
+      found.push_back(*one);
+    }
+  }
+  return found;
+}
+
+std::uint64_t feed_ticks(const PlannedSegment& segment) {
+  std::uint64_t sum = 0;
+  for (const FeedCommand& piece : commands<FeedCommand>(segment)) {
+    sum += piece.ticks;
+  }
+  return sum;
+}
+
+std::uint64_t path_ticks(const PlannedSegment& segment) {
+  std::uint64_t sum = 0;
+  for (const LineCommand& line : commands<LineCommand>(segment)) {
+    sum += line.ticks;
+  }
+  for (const ArcCommand& arc : commands<ArcCommand>(segment)) {
+    sum += arc.ticks;
+  }
+  return sum;
+}
+
+// Pulses that the lines of a segment make: floor(1/2 + N * increment / 2^40).
+Pulses line_pulses(const PlannedSegment& segment) {
+  Pulses sum{};
+  for (const LineCommand& line : commands<LineCommand>(segment)) {
+    for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
+      const int128 phase = (int128{1} << 39) + static_cast<int128>(line.ticks) * line.increment[axis];
+      sum[axis] += static_cast<std::int64_t>(phase >> 40);
+    }
+  }
+  return sum;
+}
+
+// Throws when a command does not fit its layout.
+void encode_all(const PlannedSegment& segment) {
+  std::vector<std::uint32_t> words;
+  for (const Command& command : segment.commands) {
+    encode(command, 0, words);
+  }
+}
+
+// What holds for every moving segment.
+void expect_sound(const PlannedSegment& segment) {
+  EXPECT_EQ(feed_ticks(segment), path_ticks(segment));
+  EXPECT_GE(path_ticks(segment), 22U);
+  EXPECT_NO_THROW(encode_all(segment));
+  bool geometry = false;
+  for (const Command& command : segment.commands) {
+    const bool feed = std::holds_alternative<FeedCommand>(command);
+    EXPECT_FALSE(feed && geometry) << "feed after geometry";
+    geometry = geometry || !feed;
+  }
+  if (commands<ArcCommand>(segment).empty()) {
+    const Pulses made = line_pulses(segment);
+    for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
+      EXPECT_EQ(made[axis], segment.end[axis] - segment.start[axis]);
+    }
+  }
+  for (const LineCommand& line : commands<LineCommand>(segment)) {
+    for (const std::int64_t increment : line.increment) {
+      EXPECT_LE(std::abs(increment), std::int64_t{1} << 40);
+    }
+  }
+}
+
+// Largest rate in ticks a second.
+double top_rate(const PlannedSegment& segment, std::uint32_t clock_hz = kClock) {
+  double top = 0;
+  for (const FeedCommand& piece : commands<FeedCommand>(segment)) {
+    top = std::max(top, std::ldexp(static_cast<double>(piece.rate), -64));
+  }
+  return top * clock_hz;
+}
+
+TEST(Planner, LineHasFeedThenGeometry) {
+  const auto segments = plan("G1 X10 Y5 F3000\nM2\n");
+  ASSERT_EQ(segments.size(), 2U);
+  const PlannedSegment& line = segments[0];
+  EXPECT_EQ(line.line, 1U);
+  EXPECT_EQ(line.kind, MotionKind::kLine);
+  EXPECT_EQ(line.end, (Pulses{800, 400}));
+  ASSERT_EQ(line.commands.size(), 4U);
+  expect_sound(line);
+  EXPECT_EQ(commands<LineCommand>(line)[0].mask, 3);
+  // 11.18 mm at 80 steps/mm, 128 ticks each.
+  EXPECT_EQ(path_ticks(line), static_cast<std::uint64_t>(std::llround(std::hypot(800, 400) * 128)));
+  EXPECT_NEAR(line.seconds, std::hypot(10, 5) / 50 + 50 / 1000.0 * 0.894, 0.002);
+  EXPECT_TRUE(std::holds_alternative<EndCommand>(segments[1].commands.at(0)));
+}
+
+TEST(Planner, FeedHoldsAlongThePath) {
+  // ticks a second = feed * N / length.
+  const auto xy = plan("G1 X30 Y40 F600");
+  EXPECT_NEAR(top_rate(xy[0]) / static_cast<double>(path_ticks(xy[0])), 10.0 / 50, 1e-6);
+  const auto with_e = plan("G1 X30 Y40 E7 F600");
+  EXPECT_NEAR(top_rate(with_e[0]) / static_cast<double>(path_ticks(with_e[0])), 10.0 / 50, 1e-6);
+  const auto e_only = plan("G1 E7 F600");
+  EXPECT_NEAR(top_rate(e_only[0]) / static_cast<double>(path_ticks(e_only[0])), 10.0 / 7, 1e-5);
+  const auto inverse_time = plan("G93 G1 X30 Y40 F6");
+  EXPECT_NEAR(top_rate(inverse_time[0]) / static_cast<double>(path_ticks(inverse_time[0])), 0.1, 1e-6);
+}
+
+TEST(Planner, AxisLimitsBindTheFeed) {
+  // Z may do 100 mm/s: along (3, 0, 4) that is 125 mm/s.
+  const auto segments = plan("G0 X60 Z80");
+  EXPECT_NEAR(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])), 100.0 / 80, 1e-4);
+  const auto fast = plan("G1 X100 F60000");
+  EXPECT_NEAR(top_rate(fast[0]) / static_cast<double>(path_ticks(fast[0])), 150.0 / 100, 1e-4);
+}
+
+TEST(Planner, PulseShapeBindsTheSpeed) {
+  Machine machine = default_machine();
+  apply_override(machine, "axis.x.step_length_ns=500000");  // with the space 502 us: 1992 pulses a second
+  const auto segments = plan("G0 X100", machine);
+  EXPECT_LE(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])) * 8000, 1992.0);
+  EXPECT_GE(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])) * 8000, 1800.0);
+}
+
+TEST(Planner, RoundsAbsoluteTargetsHalfAwayFromZero) {
+  // 0.00625 mm are half a pulse.
+  EXPECT_EQ(plan("G0 X0.00625")[0].end[0], 1);
+  EXPECT_EQ(plan("G0 X-0.00625")[0].end[0], -1);
+  EXPECT_EQ(plan("G0 X0.00624").size(), 1U);
+  std::string text = "G91 G0\n";
+  for (int i = 0; i < 1000; ++i) {
+    text += "X0.003\n";
+  }
+  const auto segments = plan(text);
+  EXPECT_EQ(segments.at(segments.size() - 2).end[0], 240);
+  Pulses here{};
+  for (const PlannedSegment& segment : segments) {
+    EXPECT_EQ(segment.start, here);
+    here = segment.end;
+  }
+}
+
+TEST(Planner, ExtremesWork) {
+  Machine machine = default_machine();
+  apply_override(machine, "axis.x.steps_per_mm=1000000");
+  for (const std::uint32_t clock_hz : {100'000U, 1'000'000U, kClock}) {
+    machine.clock_hz = clock_hz;
+    for (const auto& segment : plan("G0 X0.000001\nX2000 Y0.0125\nG1 X0 F0.0001\nY0 F0.00001", machine, clock_hz)) {
+      if (segment.kind != MotionKind::kEnd) {
+        expect_sound(segment);
+        EXPECT_LE(top_rate(segment, clock_hz), 0.9001 * clock_hz);
+      }
+    }
+  }
+}
+
+TEST(Planner, RefusesTargetsBeyondTheCounters) {
+  EXPECT_EQ(refusal("G0 X26843545"), "accepted");
+  EXPECT_THAT(refusal("G0 X1\nG0 X26843546"), HasSubstr("p.ngc:2: X26843546 is beyond the card's 32-bit"));
+  EXPECT_THAT(refusal("G0 X1\nG0 Y-26843546"), HasSubstr("p.ngc:2: Y"));
+  EXPECT_THAT(refusal("G0 X26843000\nG2 I1000 F1"), HasSubstr("p.ngc:2: X"));
+  EXPECT_EQ(refusal("G0 X26843000\nG2 I-1000 F1"), "accepted");
+  EXPECT_THAT(refusal("G2 X1 R1e"), HasSubstr("malformed"));
+  EXPECT_THAT(refusal("G2 X1 R1000000000000 F1"), HasSubstr("too large"));
+}
+
+TEST(Planner, DwellIsSplitAtTheCommandsWidth) {
+  const auto segments = plan("G4 P0.25\nG4 P15000");
+  EXPECT_EQ(commands<DwellCommand>(segments[0]).at(0).clocks, 25'000'000U);
+  const auto parts = commands<DwellCommand>(segments[1]);
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[0].clocks + parts[1].clocks, 1'500'000'000'000U);
+  EXPECT_THAT(refusal("G4 P9000000"), HasSubstr("p.ngc:1: a dwell of"));
+}
+
+TEST(Planner, ArcsGoToTheAccumulator) {
+  const auto segments = plan("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-5\n");
+  ASSERT_EQ(segments.size(), 4U);
+  for (const std::size_t i : {1U, 2U}) {
+    const PlannedSegment& arc = segments[i];
+    expect_sound(arc);
+    EXPECT_FALSE(arc.chords);
+    ASSERT_EQ(commands<ArcCommand>(arc).size(), 1U);
+  }
+  const ArcCommand quarter = commands<ArcCommand>(segments[1])[0];
+  EXPECT_EQ(quarter.path_ticks, 1600U);
+  EXPECT_EQ(quarter.end_x, -800);
+  EXPECT_EQ(quarter.end_y, 800);
+  EXPECT_FALSE(quarter.clockwise);
+  EXPECT_EQ(segments[1].centre_x, 0);
+  EXPECT_NEAR(segments[1].sweep, std::acos(0.0), 1e-12);
+  EXPECT_NEAR(segments[1].seconds, 10 * std::acos(0.0) / 10, 0.05);
+  EXPECT_EQ(commands<ArcCommand>(segments[2])[0].path_ticks, 3200U);
+  EXPECT_EQ(segments[2].centre_y, 5 * 80 * 256);
+}
+
+TEST(Planner, CentripetalAccelerationIsLimited) {
+  const auto arc = plan("G2 I1 F60000")[0];
+  const ArcCommand command = commands<ArcCommand>(arc).at(0);
+  const double unit_steps =
+      top_rate(arc) * static_cast<double>(command.path_ticks) / static_cast<double>(command.ticks);
+  EXPECT_LE(unit_steps * unit_steps / 80, 1000.0 * 80 / 2 * 1.001);
+  EXPECT_GE(unit_steps * unit_steps / 80, 1000.0 * 80 / 2 * 0.9);
+}
+
+TEST(Planner, UnequalScalesGoOutAsChords) {
+  Machine machine = default_machine();
+  apply_override(machine, "axis.x.steps_per_mm=200");
+  const auto segments = plan("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-10\n", machine);
+  for (const std::size_t i : {1U, 2U}) {
+    const PlannedSegment& arc = segments[i];
+    expect_sound(arc);
+    EXPECT_TRUE(arc.chords);
+    const auto lines = commands<LineCommand>(arc);
+    ASSERT_GT(lines.size(), 10U);
+    // Every corner within a rounded pulse of the ellipse, every chord's middle within 0.25 pulse more.
+    const double centre_x = static_cast<double>(arc.centre_x) / 256;
+    const double centre_y = static_cast<double>(arc.centre_y) / 256;
+    Pulses here = arc.start;
+    for (const LineCommand& line : lines) {
+      PlannedSegment one;
+      one.commands.emplace_back(line);
+      const Pulses step = line_pulses(one);
+      const auto off_ellipse = [&](double x, double y) {
+        const double scaled = std::hypot((x - centre_x) / 2000, (y - centre_y) / 800);
+        return std::abs(scaled - 1) * std::hypot(x - centre_x, y - centre_y);
+      };
+      const double x = static_cast<double>(here[0]);
+      const double y = static_cast<double>(here[1]);
+      EXPECT_LE(off_ellipse(x, y), 1.8);
+      EXPECT_LE(off_ellipse(x + static_cast<double>(step[0]) / 2, y + static_cast<double>(step[1]) / 2), 2.3);
+      here[0] += step[0];
+      here[1] += step[1];
+    }
+    EXPECT_EQ(here, arc.end);
+  }
+}
+
+TEST(Planner, TinyAndHugeArcsEndWhereTheyShould) {
+  for (const char* text : {"G2 X0.01 I0.005 F60", "G2 I0.01 F60", "G2 X0.02 Y0.02 R0.02 F60", "G2 X100 R3000000 F60",
+                           "G2 I0.001 F60", "G3 X0.0001 Y0.0001 R-1 F60"}) {
+    SCOPED_TRACE(text);
+    for (const PlannedSegment& segment : plan(text)) {
+      if (segment.kind == MotionKind::kArc) {
+        expect_sound(segment);
+      }
+    }
+  }
+}
+
+// Whatever stands in a program, it is refused with its line or planned soundly.
+TEST(Planner, RandomTextIsRefusedOrPlanned) {
+  std::size_t planned = 0;
+  const std::vector<std::string> words = {
+      "G0",   "G1",  "G2",  "G3",  "G17",  "G18",   "G19", "G20",   "G21",        "G28",   "G53",      "G55", "G80",
+      "G90",  "G91", "G92", "G93", "G94",  "G90.1", "M82", "M83",   "X1",         "X-2.5", "Y3",       "Y0",  "Z1",
+      "E2",   "I1",  "J-1", "K1",  "R2",   "F100",  "F0",  "P0.01", "G4",         "/",     "%",        "(x)", ";",
+      "X1e9", "F1",  "I0",  "M2",  "I9e1", "X.001", "N5",  "J2",    "X999999999", "R-3",   "R99999999"};
+  const std::vector<std::string> sound = {"G94 G1 X1 Y2 F100", "G91 G0 X-1 Z2", "G90 G0 Y7", "G94 G17 G91.1 G2 I3 F60",
+                                          "G92 X0"};
+  EXPECT_TRUE(rc::check("random programs", [&] {
+    std::string text = "F500 G1\n";
+    const int lines = *rc::gen::inRange(1, 5);
+    for (int line = 0; line < lines; ++line) {
+      const int count = *rc::gen::inRange(1, 4);
+      // A line that holds in any state now and then, so that some programs get through.
+      if (*rc::gen::arbitrary<bool>()) {
+        text += *rc::gen::elementOf(sound) + "\n";
+        continue;
+      }
+      for (int word = 0; word < count; ++word) {
+        text += *rc::gen::elementOf(words) + " ";
+      }
+      text += "\n";
+    }
+    try {
+      for (const PlannedSegment& segment : plan(text)) {
+        const bool moves = segment.kind != MotionKind::kEnd && segment.kind != MotionKind::kDwell;
+        encode_all(segment);
+        RC_ASSERT(!moves || feed_ticks(segment) == path_ticks(segment));
+        planned += moves ? 1U : 0U;
+      }
+    } catch (const ProgramError& error) {
+      RC_ASSERT(error.line() >= 1U);
+    }
+  }));
+  EXPECT_GT(planned, 10U);
+}
+
+TEST(Planner, RandomLinesAreSound) {
+  EXPECT_TRUE(rc::check("lines", [] {
+    const auto coordinate = [] { return *rc::gen::inRange(-200000, 200000) / std::pow(10, *rc::gen::inRange(1, 5)); };
+    std::string text = "G1 F" + std::to_string(*rc::gen::inRange(1, 20000)) + "\n";
+    for (int i = 0; i < 5; ++i) {
+      text += "X" + std::to_string(coordinate()) + "Y" + std::to_string(coordinate()) + "Z" +
+              std::to_string(coordinate()) + "E" + std::to_string(coordinate()) + "\n";
+    }
+    const std::uint32_t clock_hz = *rc::gen::element(1'000'000U, 25'000'000U, kClock);
+    for (const PlannedSegment& segment : plan(text, default_machine(), clock_hz)) {
+      if (segment.kind == MotionKind::kEnd) {
+        continue;
+      }
+      RC_ASSERT(feed_ticks(segment) == path_ticks(segment));
+      const Pulses made = line_pulses(segment);
+      for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
+        RC_ASSERT(made[axis] == segment.end[axis] - segment.start[axis]);
+      }
+      // No axis above its velocity: ticks a second times pulses a tick.
+      const Machine machine = default_machine();
+      for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+        const double pulses = static_cast<double>(std::abs(made[axis])) / static_cast<double>(path_ticks(segment));
+        RC_ASSERT(top_rate(segment, clock_hz) * pulses <= machine.axes[axis].max_velocity * 80 * 1.000001);
+      }
+    }
+  }));
+}
+
+#ifdef TRAMMEL_SHARED_GCODE_DIR
+TEST(PlannerShared, OctocatIsSound) {
+  const Machine machine = default_machine();
+  const Program program = read_program_file(TRAMMEL_SHARED_GCODE_DIR "/octocat.gcode", machine);
+  Planner planner(program, machine, kClock);
+  Pulses here = planner.start();
+  std::size_t count = 0;
+  for (PlannedSegment segment; planner.next(segment); ++count) {
+    ASSERT_EQ(segment.start, here);
+    here = segment.end;
+    if (segment.kind != MotionKind::kEnd) {
+      ASSERT_EQ(feed_ticks(segment), path_ticks(segment));
+    }
+  }
+  EXPECT_GT(count, 25000U);
+  EXPECT_EQ(here, (Pulses{400, 400, 2992, 211565}));
+}
+#endif
+
+}  // namespace
+}  // namespace trammel::planner
