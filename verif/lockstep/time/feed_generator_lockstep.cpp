@@ -29,12 +29,15 @@ class Bench {
     reset();
   }
 
-  // One clock; nothing is enabled from then to the next swap.
+  // One clock, whatever comes in it; nothing is enabled from then to the next swap.
   void reset() {
     checker_.event("reset");
+    model::FeedGenerator::Inputs in;
+    in.swap = dice_.chance(2);
+    in.enable = started_ && dice_.chance(2);
     started_ = false;
     dut_->rst_i = 1;
-    apply({});
+    apply(in);
     dut_.clock();
     dut_->rst_i = 0;
     model_ = model::FeedGenerator();
@@ -202,7 +205,7 @@ void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
     if (random() % 16 == 0) distance += random() % (1 + 3'000'000 / enable_of_1024);
     if (random() % 5 == 0) bench.piece_at_rest(random_piece(random), random() % 40);
     bench.piece(random_piece(random), distance, random() % 4);
-    if (random() % 500 == 0) bench.reset();
+    if (random() % 50 == 0) bench.reset();
   }
   EXPECT_GT(bench.ticks(), pieces);
   bench.expect_all_compared();
