@@ -44,6 +44,7 @@ sim::SimulationOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_cl
     throw UsageError("--trace: only the rtl engine has waveforms (--engine rtl)");
   }
   options.trace = trace;
+  options.rtl_thread = true;
   return options;
 }
 

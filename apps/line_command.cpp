@@ -13,10 +13,10 @@
 #include "engine_options.hpp"
 #include "errors.hpp"
 #include "outputs.hpp"
-#include "step_recorder.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/one_shot.hpp"
+#include "trammel/run/step_recorder.hpp"
 
 namespace trammel::app {
 namespace {
@@ -81,11 +81,12 @@ void execute(const Options& options) {
   const unsigned axes = card_axes(pulses.size());
   const sim::SimulationOptions engine_options = options.engine.options(axes, kDefaultClock, kDefaultClock);
   const auto engine = sim::make_engine(engine_options);
-  StepRecorder::Options recording;
-  recording.steps = options.steps;
+  const std::unique_ptr<FileSink> steps = options.steps ? std::make_unique<FileSink>(*options.steps) : nullptr;
+  run::StepRecorder::Options recording;
+  recording.steps = steps.get();
   recording.clock_hz = engine_options.clock_hz;
   recording.steps_per_mm.assign(axes, 1.0);
-  StepRecorder recorder(recording);
+  run::StepRecorder recorder(recording);
   // The path of direct mode has no command; the recorder measures it as one line over its clocks.
   driver::Displacement displacement{};
   std::copy(pulses.begin(), pulses.end(), displacement.begin());
@@ -105,12 +106,13 @@ void execute(const Options& options) {
     const auto increment = static_cast<std::int64_t>(plan.part(0).frequency[a]);
     line.increment[a] = pulses[a] < 0 ? -increment : increment;
   }
-  recorder.deviation().command(0, line);
+  recorder.command(0, line);
   engine->set_sink(&recorder);
   driver::run_line(card, plan);
   const driver::Snapshot snapshot = card.snapshot();
   engine->set_sink(nullptr);
   recorder.finish();
+  if (steps) steps->close();
 
   const std::vector<std::int64_t> final(snapshot.position.begin(), snapshot.position.begin() + axes);
   for (std::size_t a = 0; a < pulses.size(); ++a) {

@@ -31,6 +31,30 @@ void require_writable(std::initializer_list<std::optional<std::string>> files) {
   }
 }
 
+FileSink::FileSink(const std::string& file) : file_(file), out_(file == "-" ? stdout : std::fopen(file.c_str(), "w")) {
+  if (out_ == nullptr) throw std::runtime_error(fmt::format("{}: cannot be written", file));
+}
+
+FileSink::~FileSink() {
+  if (out_ != nullptr && out_ != stdout) std::fclose(out_);
+}
+
+void FileSink::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), out_) != text.size()) {
+    throw std::runtime_error(fmt::format("{}: could not be written to its end", file_));
+  }
+}
+
+void FileSink::close() {
+  if (std::fflush(out_) != 0) throw std::runtime_error(fmt::format("{}: could not be written to its end", file_));
+}
+
+void write_text_file(std::string_view text, const std::string& file) {
+  FileSink sink(file);
+  sink.write(text);
+  sink.close();
+}
+
 void write_json_file(const nlohmann::ordered_json& json, const std::string& file) {
   const std::string text = json.dump(2) + "\n";
   if (file == "-") {

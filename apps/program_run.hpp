@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "plot.hpp"
 #include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
-#include "trammel/planner/planner.hpp"
+#include "trammel/run/plot.hpp"
+#include "trammel/run/runner.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
@@ -45,11 +45,11 @@ struct RunResult {
   double planned_seconds = 0;                    // estimate
   double wall_seconds = 0;                       // the simulation took
   std::map<std::string, std::size_t> accepted;   // words without effect yet
-  Plot plot;                                     // filled when asked for
+  run::Plot plot;                                // filled when asked for
 };
 
 // Sees a run as it goes: what is sent, and every step.
-class RunWatcher : public sim::StepSink {
+class RunWatcher : public driver::StepSink {
  public:
   // Before the commands of a segment are written. Their numbers follow on those of the segment before, from 0.
   virtual void sending(const planner::PlannedSegment& segment) = 0;

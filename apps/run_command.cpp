@@ -51,7 +51,7 @@ void execute(const Options& options) {
   require_writable({files.json, files.plot, files.steps, files.path_steps, options.engine.trace});
   const RunResult result = run_program(program, machine, engine, options.outputs);
   if (options.outputs.json) write_json(result, *options.outputs.json);
-  if (options.outputs.plot) write_svg(result.plot, *options.outputs.plot);
+  if (options.outputs.plot) write_text_file(run::svg(result.plot), *options.outputs.plot);
   if (options.outputs.json != "-" && options.outputs.steps != "-" && options.outputs.path_steps != "-") {
     fmt::print("{}", summary(result));
   }

@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
 install(TARGETS trammel_card_map trammel_model trammel_methods trammel_driver trammel_machine trammel_gcode
-  trammel_planner trammel_sim EXPORT trammel-targets
+  trammel_planner trammel_run trammel_sim EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
 install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/rtl/regs/generated/include/"
@@ -15,6 +15,7 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/host/machine/include/"
   "${PROJECT_SOURCE_DIR}/host/gcode/include/"
   "${PROJECT_SOURCE_DIR}/host/planner/include/"
+  "${PROJECT_SOURCE_DIR}/host/run/include/"
   "${PROJECT_SOURCE_DIR}/sim/include/"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp"
   PATTERN "lockstep.hpp" EXCLUDE)

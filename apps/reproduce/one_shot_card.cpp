@@ -30,12 +30,12 @@ namespace {
 
 constexpr unsigned kFractionBits = 40;  // of the card's frequencies
 
-class Steps final : public sim::StepSink {
+class Steps final : public driver::StepSink {
  public:
-  void pin_step(const sim::PinStep& step) override { pins.push_back(step); }
-  void path_step(const sim::PathStep& step) override { path.push_back(step); }
-  std::vector<sim::PinStep> pins;
-  std::vector<sim::PathStep> path;
+  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
+  void path_step(const driver::PathStep& step) override { path.push_back(step); }
+  std::vector<driver::PinStep> pins;
+  std::vector<driver::PathStep> path;
 };
 
 struct CardRun {
@@ -85,7 +85,7 @@ CardRun run_on_card(const Line& line, bool hold) {
 // The path from its steps, at the ticks of the path: an enabled clock each.
 Track track_of_card(const Line& line, const CardRun& run) {
   Track track{{0, line.start}};
-  for (const sim::PathStep& step : run.steps.path) {
+  for (const driver::PathStep& step : run.steps.path) {
     TrackPoint next = track.back();
     if (step.tick != next.time) {
       next.time = step.tick;
@@ -99,7 +99,7 @@ Track track_of_card(const Line& line, const CardRun& run) {
 // The pulses at the pins, in clocks from the first clock of the line, given its first tick's clock.
 std::vector<double> pin_times(const CardRun& run, unsigned axis) {
   std::vector<double> times;
-  for (const sim::PinStep& step : run.steps.pins) {
+  for (const driver::PinStep& step : run.steps.pins) {
     if (step.axis == axis) times.push_back(static_cast<double>(step.cycle));
   }
   return times;
@@ -132,7 +132,7 @@ double largest_lag(const Track& card, const Track& exact) {
 
 bool ends_exactly(const Line& line, const CardRun& run) {
   std::array<std::int64_t, 2> at_pins{};
-  for (const sim::PinStep& step : run.steps.pins) at_pins[step.axis] += step.direction;
+  for (const driver::PinStep& step : run.steps.pins) at_pins[step.axis] += step.direction;
   for (std::size_t a = 0; a < 2; ++a) {
     const std::int64_t p = line.end[a] - line.start[a];
     if (run.counters[a] != p || at_pins[a] != p) return false;
@@ -187,7 +187,7 @@ void lines_on_card(Page& page, const Progress& progress) {
       csv.row("{},{},{},{},{:.4f}", i + 1, p.time, p.position[0], p.position[1], distance(line, p.position));
     }
     const std::uint64_t first = run.steps.pins.front().cycle;
-    for (const sim::PinStep& step : run.steps.pins) {
+    for (const driver::PinStep& step : run.steps.pins) {
       pins.row("{},{},{},{}", i + 1, step.axis == 0 ? 'x' : 'y', step.direction, step.cycle - first);
     }
     rows.push_back({std::to_string(i + 1), fmt::format("{}, {}", run.part.count[0], run.part.count[1]),

@@ -149,7 +149,8 @@ def main(argv=None) -> int:
         for mutant in mutants:
             print(show(mutant))
         return 0
-    all_judges = judges.read_judges(arguments.judges)
+    files = {mutant["file"] for mutant in mutants}
+    all_judges = [judge for judge in judges.read_judges(arguments.judges) if files & set(judge.sources)]
     results = Results(arguments.out, judges.fingerprint(all_judges), arguments.resume)
     try:
         for judge in all_judges:

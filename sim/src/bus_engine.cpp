@@ -97,7 +97,7 @@ void BusEngine::reset() {
   clock({});
 }
 
-void BusEngine::set_sink(StepSink* sink) {
+void BusEngine::set_sink(driver::StepSink* sink) {
   sink_ = sink;
   card().set_steps(sink != nullptr ? this : nullptr);
 }

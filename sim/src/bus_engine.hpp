@@ -19,7 +19,7 @@ class BusEngine : public Engine, private model::CardSteps {
   bool wait_for_interrupt(std::chrono::nanoseconds longest) override;
 
   void reset() override;
-  void set_sink(StepSink* sink) override;
+  void set_sink(driver::StepSink* sink) override;
   std::uint64_t cycles() const override { return card().cycles(); }
   std::vector<std::int64_t> positions() const override;
 
@@ -45,7 +45,7 @@ class BusEngine : public Engine, private model::CardSteps {
 
   std::uint32_t clock_hz_;
   bool interrupt_;
-  StepSink* sink_ = nullptr;
+  driver::StepSink* sink_ = nullptr;
 };
 
 // Throws std::invalid_argument for options out of range.

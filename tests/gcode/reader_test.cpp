@@ -72,6 +72,40 @@ TEST(Gcode, RefusesMalformedWords) {
   EXPECT_EQ(refusal(std::string("G0\0X1", 5)), "1: unexpected byte 0x00");
 }
 
+TEST(Gcode, RefusesExponents) {
+  EXPECT_EQ(refusal("G0 X1.5e-05"),
+            "1: malformed number in 'X1.5e-05': write it without exponent; before an axis e put a blank");
+  for (const char* line : {"G0 X1e5", "G0 X1.e5", "g0x1e2", "G0 X-1.5e+3 Y1", "G1 F1e3"}) {
+    EXPECT_THAT(refusal(line), HasSubstr("write it without exponent")) << line;
+  }
+  EXPECT_EQ(refusal("G0 X1E5"), "accepted");
+  EXPECT_EQ(refusal("g0 x1 e5"), "accepted");
+}
+
+TEST(Gcode, RefusesTextBesideAndBehindPercent) {
+  EXPECT_EQ(refusal("%\nG0 X1\n%\nG0 X2"), "4: 'G0 X2' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("% G0 X1"), "1: 'G0 X1' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("%G0 X1\n"), "1: 'G0 X1' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("%\nG0 X1\n% G0 X2"), "3: 'G0 X2' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("%\nG0 X1\n%\n%G0 X2"), "4: 'G0 X2' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("%\nG0 X1\n%\nnot G-code"), "4: 'not G-code' beside or behind '%', where nothing is read");
+  EXPECT_EQ(refusal("G0 X1 %"), "1: '%' beside other words: it needs a line of its own");
+  EXPECT_EQ(refusal("G0 X1%"), "1: '%' beside other words: it needs a line of its own");
+  EXPECT_EQ(refusal(" % (tape) ; start\nG0 X1\n % ;end\n\n(note)\n;note\n/G0 X1\n%\n"), "accepted");
+}
+
+TEST(Gcode, MessagesQuoteOneShortLine) {
+  EXPECT_EQ(refusal("G0 X\t\x1b[1m"), "1: malformed number in 'X'");
+  EXPECT_EQ(refusal("G0 X\t1\t*"), "1: unexpected '*'");
+  EXPECT_EQ(refusal("Q\t\t1"), "1: unsupported word 'Q\\t\\t1'");
+  EXPECT_EQ(refusal("%\x1b[2J\xff"), "1: '\\x1b[2J\\xff' beside or behind '%', where nothing is read");
+  const std::string zeros(5000, '0');
+  EXPECT_EQ(refusal("Q" + zeros), "1: unsupported word 'Q" + zeros.substr(0, 76) + "...'");
+  EXPECT_EQ(refusal("*" + std::string(79, '*')), "1: unexpected '" + std::string(80, '*') + "'");
+  EXPECT_EQ(refusal("*" + std::string(80, '*')), "1: unexpected '" + std::string(77, '*') + "...'");
+  EXPECT_EQ(describe({ErrorCode::kCannotRead, "a\nb\x1b\xc3\xa4", 3, "message"}), "a\\nb\\x1b\xc3\xa4:3: message");
+}
+
 TEST(Gcode, RefusesNumbersBeyondReason) {
   EXPECT_EQ(refusal("G0 X1000000000000"), "accepted");
   EXPECT_EQ(refusal("G0 X1000000000001"), "1: number out of range in 'X1000000000001'");
@@ -113,7 +147,8 @@ TEST(Gcode, ListsWhatHasNoEffectYet) {
 TEST(Gcode, EndsAtM2OrM30OrSecondPercent) {
   EXPECT_EQ(read("G0 X1\nM2\nnot G-code").motions.size(), 2U);
   EXPECT_EQ(read("G0 X1\nM30\nG0 X2").motions.size(), 2U);
-  EXPECT_EQ(read("%\nG0 X1\n%\nG0 X2").motions.size(), 2U);
+  EXPECT_EQ(read("%\nG0 X1\n%\n").motions.size(), 2U);
+  EXPECT_EQ(read("G0 X1\n%").motions.size(), 2U);
   EXPECT_EQ(read("G0 X1 M2").motions.size(), 2U);
   EXPECT_EQ(read("").motions.size(), 1U);
   EXPECT_EQ(read("\xEF\xBB\xBFG0 X1").motions.size(), 2U);

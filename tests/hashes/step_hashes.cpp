@@ -36,7 +36,7 @@ void StepHasher::sending(const planner::PlannedSegment& segment) {
 
 void StepHasher::sent(std::uint64_t cycle) { sent_at_.push_back(cycle); }
 
-void StepHasher::path_step(const sim::PathStep& step) {
+void StepHasher::path_step(const driver::PathStep& step) {
   const Sent& command = commands_.at(step.command);
   if (!tick_.empty() && (tick_.back().command != step.command || tick_.back().tick != step.tick)) {
     const bool next_command = tick_.back().command != step.command;
@@ -50,7 +50,7 @@ void StepHasher::path_step(const sim::PathStep& step) {
 
 void StepHasher::end_tick() {
   sort_by_axis(tick_);
-  for (const sim::PathStep& step : tick_) {
+  for (const driver::PathStep& step : tick_) {
     if (commands_[step.command].chord) {
       if (chord_ == Pulses{}) path_.add(step.command);
       ++chord_[step.axis][step.direction > 0 ? 0 : 1];
@@ -72,7 +72,7 @@ void StepHasher::end_chord() {
   chord_ = {};
 }
 
-void StepHasher::pin_step(const sim::PinStep& step) {
+void StepHasher::pin_step(const driver::PinStep& step) {
   auto& waiting = waiting_.at(step.axis);
   if (waiting.empty() || waiting.front().direction != step.direction) {
     throw std::logic_error("a step at a pin that no path has made");
@@ -103,7 +103,7 @@ void StepHasher::look_at_lead(std::size_t segment, std::uint64_t cycle) {
 
 void StepHasher::end_cycle() {
   sort_by_axis(cycle_);
-  for (const sim::PinStep& step : cycle_) {
+  for (const driver::PinStep& step : cycle_) {
     pins_.add(word(corrected_ - result_.start));
     pins_.add(step.axis);
     pins_.add(word(step.direction));

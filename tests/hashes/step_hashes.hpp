@@ -58,8 +58,8 @@ class StepHasher final : public app::RunWatcher {
 
   void sending(const planner::PlannedSegment& segment) override;
   void sent(std::uint64_t cycle) override;
-  void path_step(const sim::PathStep& step) override;
-  void pin_step(const sim::PinStep& step) override;
+  void path_step(const driver::PathStep& step) override;
+  void pin_step(const driver::PinStep& step) override;
 
   // After the last step. Throws std::logic_error when the pins have made other steps than the paths.
   StepHashes finish();
@@ -88,12 +88,12 @@ class StepHasher final : public app::RunWatcher {
   StepHashes result_;
 
   Hash path_;
-  std::vector<sim::PathStep> tick_;  // its steps
-  Pulses chord_{};                   // of the command under way
+  std::vector<driver::PathStep> tick_;  // its steps
+  Pulses chord_{};                      // of the command under way
 
   Hash pins_;
   std::array<std::deque<Waiting>, card_map::kMaxAxes> waiting_;
-  std::vector<sim::PinStep> cycle_;          // its steps
+  std::vector<driver::PinStep> cycle_;       // its steps
   std::int64_t corrected_ = 0;               // time of that cycle, shift taken off, since the first write
   std::optional<std::size_t> last_segment_;  // of the pins' steps
   std::uint64_t last_cycle_ = 0;

@@ -11,7 +11,7 @@ namespace {
 // Two lines, a dwell, and a third line; each path step comes with its step at the pin, some clocks later.
 struct Steps {
   struct Both {
-    sim::PathStep path;
+    driver::PathStep path;
     std::uint64_t cycle;  // at the pin
   };
   std::vector<Both> steps = {

@@ -19,21 +19,21 @@ namespace field = card_map::field;
 
 constexpr std::uint64_t kLong = 10'000'000;
 
-class Steps : public sim::StepSink {
+class Steps : public driver::StepSink {
  public:
-  void pin_step(const sim::PinStep& step) override { pins.push_back(step); }
-  void path_step(const sim::PathStep& step) override { path.push_back(step); }
-  std::vector<sim::PinStep> pins;
-  std::vector<sim::PathStep> path;
+  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
+  void path_step(const driver::PathStep& step) override { path.push_back(step); }
+  std::vector<driver::PinStep> pins;
+  std::vector<driver::PathStep> path;
 };
 
-bool same(const std::vector<sim::PinStep>& a, const std::vector<sim::PinStep>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const sim::PinStep& x, const sim::PinStep& y) {
+bool same(const std::vector<driver::PinStep>& a, const std::vector<driver::PinStep>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const driver::PinStep& x, const driver::PinStep& y) {
     return x.cycle == y.cycle && x.axis == y.axis && x.direction == y.direction;
   });
 }
-bool same(const std::vector<sim::PathStep>& a, const std::vector<sim::PathStep>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const sim::PathStep& x, const sim::PathStep& y) {
+bool same(const std::vector<driver::PathStep>& a, const std::vector<driver::PathStep>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const driver::PathStep& x, const driver::PathStep& y) {
     return x.command == y.command && x.tick == y.tick && x.axis == y.axis && x.direction == y.direction;
   });
 }
@@ -97,7 +97,7 @@ TEST_P(CardScenario, MakesThePapersLinesInOneShot) {
     ASSERT_EQ(steps.path.size(), static_cast<std::size_t>(std::abs(p[0]) + std::abs(p[1])));
     // After k clocks |p| k / 2000 pulses, rounded; a line drawn backwards is its mirror image.
     std::int64_t made[2] = {0, 0};
-    for (const sim::PathStep& step : steps.path) {
+    for (const driver::PathStep& step : steps.path) {
       const std::int64_t pulses = std::abs(p[step.axis]);
       ++made[step.axis];
       const auto k = static_cast<std::int64_t>(step.tick);
@@ -116,7 +116,7 @@ TEST_P(CardScenario, LeavesNoGapBetweenLinesOf22Ticks) {
   finish();
   ASSERT_EQ(steps.pins.size(), 12U);
   for (std::size_t i = 1; i < steps.pins.size(); ++i) EXPECT_EQ(steps.pins[i].cycle - steps.pins[i - 1].cycle, 22U);
-  for (const sim::PathStep& step : steps.path) EXPECT_EQ(step.tick, 11U);
+  for (const driver::PathStep& step : steps.path) EXPECT_EQ(step.tick, 11U);
   EXPECT_EQ(host.status(), field::kStatusEnded);
 }
 
@@ -141,7 +141,7 @@ TEST_P(CardScenario, EndsArcsOnTheirEndPoint) {
 }
 
 TEST_P(CardScenario, HoldAndOtherRatioLeaveThePathAsItIs) {
-  std::vector<sim::PathStep> straight;
+  std::vector<driver::PathStep> straight;
   for (const bool disturbed : {false, true}) {
     steps.path.clear();
     for (int i = 0; i < 6; ++i) host.send(line(150, {40 - 13 * i, 9 * i - 20, i, -i}));

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "words.hpp"
-
 namespace trammel::gcode {
 namespace {
 
@@ -15,63 +13,78 @@ constexpr double kRadiusSlack = 0.005;  // mm
 constexpr double kRadiusSlackRelative = 0.001;
 constexpr double kRadiusSlackMost = 0.5;  // mm
 
-bool same_point(PlanePoint a, PlanePoint b) { return std::hypot(a.x - b.x, a.y - b.y) < kSamePoint; }
+// Not std::hypot, whose last digit differs between libraries. Numbers of words are at most 1e12: no square overflows.
+double distance(PlanePoint a, PlanePoint b) {
+  const double x = a.x - b.x;
+  const double y = a.y - b.y;
+  return std::sqrt(x * x + y * y);
+}
 
-PlanePoint centre_from_radius(const ArcWords& words) {
+bool same_point(PlanePoint a, PlanePoint b) { return distance(a, b) < kSamePoint; }
+
+bool centre_from_radius(const ArcWords& words, PlanePoint& centre, Problem& problem) {
   const double radius = *words.radius;
   if (std::abs(radius) < kSamePoint) {
-    throw WordError{"arc of radius 0"};
+    return problem.set(ErrorCode::kArcRadiusZero, "arc of radius 0");
   }
   if (same_point(words.start, words.end)) {
-    throw WordError{"an arc with R needs an end point other than its start; a full circle takes I, J or K"};
+    return problem.set(ErrorCode::kArcRadiusFullCircle,
+                       "an arc with R needs an end point other than its start; a full circle takes I, J or K");
   }
   const double dx = words.end.x - words.start.x;
   const double dy = words.end.y - words.start.y;
-  const double chord = std::hypot(dx, dy);
+  const double chord = distance(words.start, words.end);
   if (chord / 2 - std::abs(radius) > kRadiusSlack) {
-    throw WordError{fmt::format("R is too small: the end point is {:.4f} mm away", chord)};
+    return problem.set(ErrorCode::kArcRadiusTooSmall,
+                       fmt::format("R is too small: the end point is {:.4f} mm away", chord));
   }
   const double height = std::sqrt(std::max(0.0, radius * radius - chord * chord / 4));
   // Counter-clockwise arcs up to half a turn have their centre on the left of the chord.
   const double left = words.clockwise == (radius > 0) ? -height : height;
-  return {words.start.x + dx / 2 - left * dy / chord, words.start.y + dy / 2 + left * dx / chord};
+  centre = {words.start.x + dx / 2 - left * dy / chord, words.start.y + dy / 2 + left * dx / chord};
+  return true;
 }
 
-PlanePoint centre_from_offsets(const ArcWords& words) {
+bool centre_from_offsets(const ArcWords& words, PlanePoint& centre, Problem& problem) {
   if (!words.centre_x && !words.centre_y) {
-    throw WordError{"an arc needs its centre or radius: I, J, K or R"};
+    return problem.set(ErrorCode::kArcNoCentre, "an arc needs its centre or radius: I, J, K or R");
   }
   if (!words.centre_absolute) {
-    return {words.start.x + words.centre_x.value_or(0), words.start.y + words.centre_y.value_or(0)};
+    centre = {words.start.x + words.centre_x.value_or(0), words.start.y + words.centre_y.value_or(0)};
+    return true;
   }
   if (!words.centre_x || !words.centre_y) {
-    throw WordError{"under G90.1 an arc needs both words of its centre"};
+    return problem.set(ErrorCode::kArcNoCentre, "under G90.1 an arc needs both words of its centre");
   }
-  return {*words.centre_x, *words.centre_y};
+  centre = {*words.centre_x, *words.centre_y};
+  return true;
 }
 
-void check_radii(double start, double end) {
+bool check_radii(double start, double end, Problem& problem) {
   if (start < kSamePoint || end < kSamePoint) {
-    throw WordError{"arc of radius 0"};
+    return problem.set(ErrorCode::kArcRadiusZero, "arc of radius 0");
   }
   const double difference = std::abs(start - end);
   const bool off = difference > kRadiusSlack && difference > kRadiusSlackRelative * start;
   if (off || difference > kRadiusSlackMost) {
-    throw WordError{fmt::format(
-        "the arc's end is not on its circle: radius {:.3f} mm at the start, {:.3f} mm at the end", start, end)};
+    return problem.set(
+        ErrorCode::kArcOffCircle,
+        fmt::format("the arc's end is not on its circle: radius {:.3f} mm at the start, {:.3f} mm at the end", start,
+                    end));
   }
+  return true;
 }
 
 }  // namespace
 
-ArcCentre arc_centre(const ArcWords& words) {
+bool find_centre(const ArcWords& words, ArcCentre& found, Problem& problem) {
   if (words.radius && (words.centre_x || words.centre_y)) {
-    throw WordError{"an arc takes R or its centre, not both"};
+    return problem.set(ErrorCode::kArcRadiusAndCentre, "an arc takes R or its centre, not both");
   }
-  const PlanePoint centre = words.radius ? centre_from_radius(words) : centre_from_offsets(words);
-  check_radii(std::hypot(words.start.x - centre.x, words.start.y - centre.y),
-              std::hypot(words.end.x - centre.x, words.end.y - centre.y));
-  return {centre, same_point(words.start, words.end)};
+  PlanePoint& centre = found.centre;
+  found.full_circle = same_point(words.start, words.end);
+  return (words.radius ? centre_from_radius(words, centre, problem) : centre_from_offsets(words, centre, problem)) &&
+         check_radii(distance(words.start, centre), distance(words.end, centre), problem);
 }
 
 }  // namespace trammel::gcode

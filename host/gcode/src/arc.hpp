@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "problem.hpp"
+
 namespace trammel::gcode {
 
 struct PlanePoint {
@@ -26,8 +28,9 @@ struct ArcCentre {
   bool full_circle;
 };
 
-// Throws WordError when the words describe no arc. Start and end radius may differ by 0.005 mm or by 0.1 %, whichever
-// is more, and by 0.5 mm at most (Grbl's rule).
-ArcCentre arc_centre(const ArcWords& words);
+// False, with a problem, when the words describe no arc. Start and end radius may differ by 0.005 mm or by 0.1 %,
+// whichever is more, and by 0.5 mm at most (Grbl's rule). Nothing but + - * / and square roots, which are the same on
+// every machine.
+bool find_centre(const ArcWords& words, ArcCentre& found, Problem& problem);
 
 }  // namespace trammel::gcode

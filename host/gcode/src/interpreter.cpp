@@ -27,206 +27,229 @@ constexpr int kOriginReset = 921;
 
 }  // namespace
 
-Interpreter::Interpreter(const machine::Machine& machine, Program& program)
-    : machine_(machine), program_(program), here_(program.start) {}
-
 // The order of execution is RS274/NGC's.
-bool Interpreter::execute(const Block& block, std::size_t line) {
+Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line, LineMotions& motions,
+                                          Problem& problem) {
   line_ = line;
-  for (const std::string& word : block.accepted) {
-    ++program_.accepted[word];
+  const Context context{words, motions, problem};
+  if (!check_leftovers(context)) {
+    return Outcome::kFailed;
   }
-  check_leftovers(block);
-  set_modes(block);
-  set_feed(block);
-  const std::optional<int> action = block.code(Group::kNonModal);
+  set_modes(words);
+  set_feed(words);
+  if (!act(context)) {
+    return Outcome::kFailed;
+  }
+  const std::optional<int> stopping = words.code(Group::kStopping);
+  if (stopping == 20 || stopping == 300) {
+    end(line, motions);
+    return Outcome::kEnded;
+  }
+  return Outcome::kGoesOn;
+}
+
+bool Interpreter::act(const Context& context) {
+  const std::optional<int> action = context.words.code(Group::kNonModal);
+  if (action == kHome) {
+    return go_home(context);
+  }
+  if (action == kOrigin) {
+    return set_origin(context);
+  }
   if (action == kDwell) {
-    dwell(block);
-  } else if (action == kHome) {
-    go_home(block);
-  } else if (action == kOrigin) {
-    set_origin(block);
+    dwell(context);
   } else if (action == kOriginReset) {
     origin_ = {};
   }
-  if (action != kHome && action != kOrigin) {
-    move(block);
-  }
-  const std::optional<int> stopping = block.code(Group::kStopping);
-  if (stopping == 20 || stopping == 300) {
-    end(line);
-    return false;
-  }
-  return true;
+  return move(context);
 }
 
-void Interpreter::end(std::size_t line) {
+void Interpreter::end(std::size_t line, LineMotions& motions) {
   line_ = line;
   Motion motion;
   motion.kind = MotionKind::kEnd;
-  append(motion);
+  motion.target = here_;
+  append(motion, motions);
 }
 
 // Words that no word of the line would use.
-void Interpreter::check_leftovers(const Block& block) const {
-  const std::optional<int> action = block.code(Group::kNonModal);
-  const std::optional<int> motion = block.code(Group::kMotion);
+bool Interpreter::check_leftovers(const Context& context) const {
+  const auto& [words, motions, problem] = context;
+  const std::optional<int> action = words.code(Group::kNonModal);
+  const std::optional<int> motion = words.code(Group::kMotion);
   const bool uses_axes = action == kHome || action == kOrigin;
   if (uses_axes && motion && motion != kCancel) {
-    throw WordError{"G28 and G92 cannot share a line with a motion"};
+    return problem.set(ErrorCode::kTwoUsesOfAxisWords, "G28 and G92 cannot share a line with a motion");
   }
-  if (block.letter('P') && action != kDwell && block.code(Group::kPathControl) != 640) {
-    throw WordError{"P without G4 or G64"};
+  if (words.letter('P') && action != kDwell && words.code(Group::kPathControl) != 640) {
+    return problem.set(ErrorCode::kUnusedWord, "P without G4 or G64");
   }
-  if (action == kDwell && !block.letter('P')) {
-    throw WordError{"G4 needs P, its seconds"};
+  if (action == kDwell && !words.letter('P')) {
+    return problem.set(ErrorCode::kMissingWord, "G4 needs P, its seconds");
   }
-  if (block.has_axis_words() && block.code(Group::kMotors)) {
-    throw WordError{"axis words beside M18 or M84: only all motors together are understood"};
+  if (words.has_axis_words() && words.code(Group::kMotors)) {
+    return problem.set(ErrorCode::kTwoUsesOfAxisWords,
+                       "axis words beside M18 or M84: only all motors together are understood");
   }
   const std::optional<int> effective = uses_axes ? std::nullopt : (motion ? motion : motion_);
   const bool is_arc = effective == kArcClockwise || effective == kArcCounterClockwise;
   for (const char letter : {'I', 'J', 'K', 'R'}) {
-    if (block.letter(letter) && !is_arc) {
-      throw WordError{fmt::format("{} without G2 or G3", letter)};
+    if (words.letter(letter) && !is_arc) {
+      return problem.set(ErrorCode::kUnusedWord, fmt::format("{} without G2 or G3", letter));
     }
   }
+  return true;
 }
 
-void Interpreter::set_modes(const Block& block) {
-  if (const auto plane = block.code(Group::kPlane)) {
+void Interpreter::set_modes(const WordSet& words) {
+  if (const auto plane = words.code(Group::kPlane)) {
     plane_ = *plane;
   }
-  if (const auto units = block.code(Group::kUnits)) {
+  if (const auto units = words.code(Group::kUnits)) {
     inches_ = units == 200;
   }
-  if (const auto system = block.code(Group::kCoordinates)) {
+  if (const auto system = words.code(Group::kCoordinates)) {
     coordinate_system_ = static_cast<std::size_t>((*system - 540) / 10);
   }
-  if (const auto distance = block.code(Group::kArcDistance)) {
+  if (const auto distance = words.code(Group::kArcDistance)) {
     centre_absolute_ = distance == 901;
   }
-  if (const auto distance = block.code(Group::kDistance)) {
+  if (const auto distance = words.code(Group::kDistance)) {
     absolute_ = distance == 900;
   }
-  if (const auto extruder = block.code(Group::kExtruder)) {
+  if (const auto extruder = words.code(Group::kExtruder)) {
     extruder_absolute_ = extruder == 820;
   }
 }
 
-void Interpreter::set_feed(const Block& block) {
-  if (const auto mode = block.code(Group::kFeedMode)) {
+void Interpreter::set_feed(const WordSet& words) {
+  if (const auto mode = words.code(Group::kFeedMode)) {
     const FeedMode wanted = mode == 930 ? FeedMode::kInverseTime : FeedMode::kPerMinute;
     if (wanted != feed_mode_) {
       feed_.reset();
     }
     feed_mode_ = wanted;
   }
-  if (const auto feed = block.letter('F')) {
+  if (const auto feed = words.letter('F')) {
     feed_ = *feed;
     feed_in_inches_ = inches_;
   }
 }
 
-void Interpreter::dwell(const Block& block) {
+void Interpreter::dwell(const Context& context) {
   Motion motion;
   motion.kind = MotionKind::kDwell;
-  motion.seconds = *block.letter('P');
-  append(motion);
+  motion.target = here_;
+  motion.seconds = *context.words.letter('P');
+  append(motion, context.motions);
 }
 
 // Through the programmed point to the home position of the axes named; bare G28: of all axes but the extruder, whose
 // position has no home.
-void Interpreter::go_home(const Block& block) {
+bool Interpreter::go_home(const Context& context) {
   Motion motion;
   motion.kind = MotionKind::kTraverse;
-  const bool all = !block.has_axis_words();
+  const bool all = !context.words.has_axis_words();
   if (!all) {
-    motion.target = target_of(block);
-    append(motion);
+    if (!target_of(context, motion.target)) {
+      return false;
+    }
+    append(motion, context.motions);
   }
   motion.target = here_;
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    if (all ? machine_.axes[axis].letter != 'E' : block.axes[axis].has_value()) {
+    if (all ? machine_.axes[axis].letter != 'E' : context.words.has_axis(axis)) {
       motion.target[axis] = machine_.axes[axis].home;
     }
   }
-  append(motion);
+  append(motion, context.motions);
+  return true;
 }
 
 // G92: from now on the point where the machine stands has the coordinates given.
-void Interpreter::set_origin(const Block& block) {
-  if (!block.has_axis_words()) {
-    throw WordError{"G92 without an axis word"};
+bool Interpreter::set_origin(const Context& context) {
+  if (!context.words.has_axis_words()) {
+    return context.problem.set(ErrorCode::kMissingWord, "G92 without an axis word");
   }
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    if (block.axes[axis]) {
+    if (context.words.has_axis(axis)) {
       const double system = machine_.axes[axis].offsets[coordinate_system_];
-      origin_[axis] = here_[axis] - system - to_mm(axis, *block.axes[axis]);
+      origin_[axis] = here_[axis] - system - to_mm(axis, context.words.axis(axis));
     }
   }
+  return true;
 }
 
-void Interpreter::move(const Block& block) {
-  const std::optional<int> word = block.code(Group::kMotion);
+bool Interpreter::move(const Context& context) {
+  const auto& [words, motions, problem] = context;
+  const std::optional<int> word = words.code(Group::kMotion);
   if (word) {
     motion_ = word == kCancel ? std::nullopt : word;
   }
   const bool explicit_arc = word == kArcClockwise || word == kArcCounterClockwise;
-  const bool centre_words = block.letter('I') || block.letter('J') || block.letter('K') || block.letter('R');
-  const bool machine_coordinates = block.code(Group::kNonModal) == kMachineCoordinates;
+  const bool centre_words = words.letter('I') || words.letter('J') || words.letter('K') || words.letter('R');
+  const bool machine_coordinates = words.code(Group::kNonModal) == kMachineCoordinates;
   if (machine_coordinates && motion_ != kTraverse && motion_ != kLine) {
-    throw WordError{"G53 needs G0 or G1"};
+    return problem.set(ErrorCode::kMachineCoordinates, "G53 needs G0 or G1");
   }
-  if (!block.has_axis_words() && !explicit_arc && !centre_words) {
-    if (machine_coordinates) {
-      throw WordError{"G53 without an axis word"};
-    }
-    return;
+  if (!words.has_axis_words() && !explicit_arc && !centre_words) {
+    return !machine_coordinates || problem.set(ErrorCode::kMachineCoordinates, "G53 without an axis word");
   }
   if (!motion_) {
-    throw WordError{"axis words without a motion word (G0, G1, G2 or G3)"};
+    return problem.set(ErrorCode::kNoMotionMode, "axis words without a motion word (G0, G1, G2 or G3)");
   }
   if (motion_ == kTraverse || motion_ == kLine) {
-    straight(block, motion_ == kTraverse);
-  } else {
-    arc(block, motion_ == kArcClockwise);
+    return straight(context, motion_ == kTraverse);
   }
+  return arc(context, motion_ == kArcClockwise);
 }
 
-void Interpreter::straight(const Block& block, bool rapid) {
+bool Interpreter::straight(const Context& context, bool rapid) {
   Motion motion;
   motion.kind = rapid ? MotionKind::kTraverse : MotionKind::kLine;
-  motion.target = target_of(block);
-  if (!rapid) {
-    set_speed(block, motion);
+  if (!target_of(context, motion.target) || (!rapid && !set_speed(context, motion))) {
+    return false;
   }
-  append(motion);
+  append(motion, context.motions);
+  return true;
 }
 
-void Interpreter::arc(const Block& block, bool clockwise) {
+bool Interpreter::arc(const Context& context, bool clockwise) {
   constexpr Plane kPlaneXy{'X', 'Y', 'I', 'J', 'K'};
   constexpr Plane kPlaneZx{'Z', 'X', 'K', 'I', 'J'};
   constexpr Plane kPlaneYz{'Y', 'Z', 'J', 'K', 'I'};
   const Plane& plane = plane_ == 170 ? kPlaneXy : plane_ == 180 ? kPlaneZx : kPlaneYz;
-  check_plane_words(block, plane);
-
+  Problem& problem = context.problem;
+  if (context.words.letter(plane.unused_offset)) {
+    return problem.set(ErrorCode::kArcOutsidePlane, fmt::format("{} in the plane {}{} (G{})", plane.unused_offset,
+                                                                plane.first, plane.second, plane_ / 10));
+  }
   Motion motion;
   motion.kind = MotionKind::kArc;
   motion.clockwise = clockwise;
-  motion.target = target_of(block);
-  const std::size_t x = plane_axis(plane.first);
-  const std::size_t y = plane_axis(plane.second);
-  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    if (axis != x && axis != y && std::abs(motion.target[axis] - here_[axis]) > kStill) {
-      throw WordError{
-          fmt::format("axis {} moves during an arc: helices are not supported", machine_.axes[axis].letter)};
-    }
+  std::size_t x = 0;
+  std::size_t y = 0;
+  if (!target_of(context, motion.target) || !plane_axis(plane.first, x, problem) ||
+      !plane_axis(plane.second, y, problem) || !check_helix(motion.target, x, y, problem)) {
+    return false;
   }
+  motion.axis_x = static_cast<std::uint8_t>(x);
+  motion.axis_y = static_cast<std::uint8_t>(y);
+  if (!arc_geometry(context, plane, motion) || !set_speed(context, motion)) {
+    return false;
+  }
+  append(motion, context.motions);
+  return true;
+}
 
-  ArcWords words{{here_[x], here_[y]}, {motion.target[x], motion.target[y]}, clockwise, {}, {}, centre_absolute_, {}};
+// The motion has its target and the axes of its plane.
+bool Interpreter::arc_geometry(const Context& context, const Plane& plane, Motion& motion) const {
+  const std::size_t x = motion.axis_x;
+  const std::size_t y = motion.axis_y;
+  ArcWords words{
+      {here_[x], here_[y]}, {motion.target[x], motion.target[y]}, motion.clockwise, {}, {}, centre_absolute_, {}};
   const auto centre = [&](char letter, std::size_t axis) -> std::optional<double> {
-    const auto word = block.letter(letter);
+    const auto word = context.words.letter(letter);
     if (!word) {
       return std::nullopt;
     }
@@ -234,32 +257,37 @@ void Interpreter::arc(const Block& block, bool clockwise) {
   };
   words.centre_x = centre(plane.first_offset, x);
   words.centre_y = centre(plane.second_offset, y);
-  if (const auto radius = block.letter('R')) {
+  if (const auto radius = context.words.letter('R')) {
     words.radius = to_mm(x, *radius);
   }
-  const ArcCentre found = arc_centre(words);
-  motion.axis_x = static_cast<std::uint8_t>(x);
-  motion.axis_y = static_cast<std::uint8_t>(y);
+  ArcCentre found{};
+  if (!find_centre(words, found, context.problem)) {
+    return false;
+  }
   motion.centre_x = found.centre.x;
   motion.centre_y = found.centre.y;
   motion.full_circle = found.full_circle;
-  set_speed(block, motion);
-  append(motion);
+  return true;
 }
 
-void Interpreter::check_plane_words(const Block& block, const Plane& plane) const {
-  if (block.letter(plane.unused_offset)) {
-    throw WordError{
-        fmt::format("{} in the plane {}{} (G{})", plane.unused_offset, plane.first, plane.second, plane_ / 10)};
+bool Interpreter::check_helix(const Coordinates& target, std::size_t x, std::size_t y, Problem& problem) const {
+  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+    if (axis != x && axis != y && std::abs(target[axis] - here_[axis]) > kStill) {
+      return problem.set(ErrorCode::kHelix, fmt::format("axis {} moves during an arc: helices are not supported",
+                                                        machine_.axes[axis].letter));
+    }
   }
+  return true;
 }
 
-std::size_t Interpreter::plane_axis(char letter) const {
-  const auto axis = machine_.axis(letter);
-  if (!axis) {
-    throw WordError{fmt::format("an arc in this plane needs an axis {}, which the machine lacks", letter)};
+bool Interpreter::plane_axis(char letter, std::size_t& axis, Problem& problem) const {
+  const auto found = machine_.axis(letter);
+  if (!found) {
+    return problem.set(ErrorCode::kArcPlaneAxis,
+                       fmt::format("an arc in this plane needs an axis {}, which the machine lacks", letter));
   }
-  return *axis;
+  axis = *found;
+  return true;
 }
 
 bool Interpreter::is_rotary(std::size_t axis) const {
@@ -276,53 +304,53 @@ double Interpreter::offset(std::size_t axis) const {
   return machine_.axes[axis].offsets[coordinate_system_] + origin_[axis];
 }
 
-Coordinates Interpreter::target_of(const Block& block) const {
-  const bool machine_coordinates = block.code(Group::kNonModal) == kMachineCoordinates;
-  Coordinates target = here_;
+bool Interpreter::target_of(const Context& context, Coordinates& target) const {
+  const WordSet& words = context.words;
+  const bool machine_coordinates = words.code(Group::kNonModal) == kMachineCoordinates;
+  target = here_;
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    if (!block.axes[axis]) {
+    if (!words.has_axis(axis)) {
       continue;
     }
     const bool extruder = machine_.axes[axis].letter == 'E';
     const bool absolute = extruder ? extruder_absolute_.value_or(absolute_) : absolute_;
     if (machine_coordinates && !absolute) {
-      throw WordError{"G53 with relative distances"};
+      return context.problem.set(ErrorCode::kMachineCoordinates, "G53 with relative distances");
     }
     const double base = machine_coordinates ? 0 : absolute ? offset(axis) : here_[axis];
-    target[axis] = base + to_mm(axis, *block.axes[axis]);
+    target[axis] = base + to_mm(axis, words.axis(axis));
   }
-  return target;
+  return true;
 }
 
 // Speed or duration of a motion with feed. A move of rotary axes alone is in degrees a minute, whatever the units.
-void Interpreter::set_speed(const Block& block, Motion& motion) const {
-  if (feed_mode_ == FeedMode::kInverseTime && !block.letter('F')) {
-    throw WordError{"under G93 every motion needs an F word"};
+bool Interpreter::set_speed(const Context& context, Motion& motion) const {
+  Problem& problem = context.problem;
+  if (feed_mode_ == FeedMode::kInverseTime && !context.words.letter('F')) {
+    return problem.set(ErrorCode::kNoFeed, "under G93 every motion needs an F word");
   }
-  if (!feed_ || *feed_ <= 0) {
-    throw WordError{feed_ ? "feed is 0" : "motion with feed, but no F word before"};
+  if (!feed_) {
+    return problem.set(ErrorCode::kNoFeed, "motion with feed, but no F word before");
   }
   if (*feed_ < kLeastFeed) {
-    throw WordError{"feed is too small"};
+    return problem.set(ErrorCode::kFeedTooSmall, *feed_ == 0 ? "feed is 0" : "feed is too small");
   }
   if (feed_mode_ == FeedMode::kInverseTime) {
     motion.seconds = 60 / *feed_;
-    return;
+    return true;
   }
   bool linear = motion.kind == MotionKind::kArc;
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
     linear = linear || (!is_rotary(axis) && std::abs(motion.target[axis] - here_[axis]) > kStill);
   }
   motion.feed = *feed_ * (feed_in_inches_ && linear ? kMmPerInch : 1) / 60;
+  return true;
 }
 
-void Interpreter::append(Motion motion) {
+void Interpreter::append(Motion& motion, LineMotions& motions) {
   motion.line = line_;
-  if (motion.kind == MotionKind::kDwell || motion.kind == MotionKind::kEnd) {
-    motion.target = here_;
-  }
   here_ = motion.target;
-  program_.motions.push_back(motion);
+  motions.push(motion);
 }
 
 }  // namespace trammel::gcode

@@ -1,22 +1,37 @@
-// Modal state of a G-code program, and the execution of blocks. Internal to the reader.
+// Modal state of a G-code program, and the execution of its lines. Internal to the reader.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <optional>
 
-#include "block.hpp"
-#include "trammel/gcode/reader.hpp"
+#include "trammel/gcode/motion.hpp"
+#include "word_set.hpp"
 
 namespace trammel::gcode {
 
+// The motions of one line.
+class LineMotions {
+ public:
+  void clear() { count_ = 0; }
+  void push(const Motion& motion) { motions_[count_++] = motion; }
+  std::size_t size() const { return count_; }
+  const Motion& operator[](std::size_t i) const { return motions_[i]; }
+
+ private:
+  std::array<Motion, 3> motions_;  // the most: G28 by way of a point, and the end
+  std::size_t count_ = 0;
+};
+
 class Interpreter {
  public:
-  Interpreter(const machine::Machine& machine, Program& program);
+  Interpreter(const machine::Machine& machine, const Coordinates& start) : machine_(machine), here_(start) {}
 
-  // Appends the block's motions. Throws WordError. False: the program ended with this block.
-  bool execute(const Block& block, std::size_t line);
-  void end(std::size_t line);
+  enum class Outcome { kGoesOn, kEnded, kFailed };
+  // Appends the line's motions. After a failure, of which `problem` tells, the state means nothing.
+  Outcome execute(const WordSet& words, std::size_t line, LineMotions& motions, Problem& problem);
+  // Appends the motion kEnd.
+  void end(std::size_t line, LineMotions& motions);
 
  private:
   enum class FeedMode { kPerMinute, kInverseTime };
@@ -27,30 +42,37 @@ class Interpreter {
     char second_offset;
     char unused_offset;
   };
+  // Where a line's motions and problems go.
+  struct Context {
+    const WordSet& words;
+    LineMotions& motions;
+    Problem& problem;
+  };
 
-  void set_feed(const Block& block);
-  void set_modes(const Block& block);
-  void dwell(const Block& block);
-  void go_home(const Block& block);
-  void set_origin(const Block& block);
-  void move(const Block& block);
-  void straight(const Block& block, bool rapid);
-  void arc(const Block& block, bool clockwise);
-  void check_leftovers(const Block& block) const;
+  void set_feed(const WordSet& words);
+  void set_modes(const WordSet& words);
+  bool check_leftovers(const Context& context) const;
+  bool act(const Context& context);
+  void dwell(const Context& context);
+  bool go_home(const Context& context);
+  bool set_origin(const Context& context);
+  bool move(const Context& context);
+  bool straight(const Context& context, bool rapid);
+  bool arc(const Context& context, bool clockwise);
+  bool plane_axis(char letter, std::size_t& axis, Problem& problem) const;
+  bool check_helix(const Coordinates& target, std::size_t x, std::size_t y, Problem& problem) const;
+  bool arc_geometry(const Context& context, const Plane& plane, Motion& motion) const;
 
   bool is_rotary(std::size_t axis) const;
   double to_mm(std::size_t axis, double value) const;
   double offset(std::size_t axis) const;
-  Coordinates target_of(const Block& block) const;
-  void append(Motion motion);
-  void set_speed(const Block& block, Motion& motion) const;
-  std::size_t plane_axis(char letter) const;
-  void check_plane_words(const Block& block, const Plane& plane) const;
+  bool target_of(const Context& context, Coordinates& target) const;
+  bool set_speed(const Context& context, Motion& motion) const;
+  void append(Motion& motion, LineMotions& motions);
 
   const machine::Machine& machine_;
-  Program& program_;
   std::size_t line_ = 0;
-  Coordinates here_{};    // machine coordinates
+  Coordinates here_;      // machine coordinates
   Coordinates origin_{};  // G92
   std::size_t coordinate_system_ = 0;
   std::optional<int> motion_;  // code in tenths; none under G80

@@ -2,101 +2,164 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-#include <string>
-
 #include "interpreter.hpp"
-#include "words.hpp"
 
 namespace trammel::gcode {
 namespace {
 
-// Lines of a text, without their ends.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (rest_.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
-      rest_.remove_prefix(kByteOrderMark.size());
-    }
-  }
-
-  bool next(std::string_view& line) {
-    if (rest_.empty()) {
-      return false;
-    }
-    const std::size_t end = rest_.find('\n');
-    line = rest_.substr(0, end);
-    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-    ++number_;
-    return true;
-  }
-
-  std::size_t number() const { return number_; }
-
- private:
-  std::string_view rest_;
-  std::size_t number_ = 0;
-};
-
-std::string_view without_spaces_around(std::string_view line) {
-  constexpr std::string_view kSpaces = " \t\r";
-  const std::size_t first = line.find_first_not_of(kSpaces);
-  if (first == std::string_view::npos) {
-    return {};
-  }
-  return line.substr(first, line.find_last_not_of(kSpaces) - first + 1);
+std::string_view without_blanks_before(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first == std::string_view::npos ? std::string_view{} : line.substr(first);
 }
 
 }  // namespace
 
-ProgramError::ProgramError(const std::string& file, std::size_t line, const std::string& message)
-    : std::runtime_error(fmt::format("{}:{}: {}", file, line, message)), file_(file), line_(line), message_(message) {}
+class Reader::Impl {
+ public:
+  Impl(LineSource& lines, const machine::Machine& machine, const Coordinates& start)
+      : lines_(lines), axes_(machine), interpreter_(machine, start) {}
 
-Program read_program(std::string_view text, const std::string& file, const machine::Machine& machine,
-                     const Coordinates& start) {
-  Program program;
-  program.file = file;
-  program.start = start;
-  Interpreter interpreter(machine, program);
-  Lines lines(text);
-  std::vector<Word> words;
-  std::string_view line;
-  bool seen_block = false;
-  bool ended = false;
-  try {
-    while (!ended && lines.next(line)) {
-      const std::string_view content = without_spaces_around(line);
-      if (content.empty() || content.front() == '/') {
-        continue;
+  bool next(Motion& motion) {
+    while (given_ == motions_.size()) {
+      if (ended_ || error_) {
+        return false;
       }
-      if (content.front() == '%') {
-        // The first one opens the tape, the next one ends it.
-        ended = seen_block;
-        seen_block = true;
-        continue;
+      motions_.clear();
+      given_ = 0;
+      if (!read_line()) {
+        motions_.clear();
+        return false;
       }
-      split_words(content, words);
-      seen_block = seen_block || !words.empty();
-      ended = !interpreter.execute(make_block(words, machine), lines.number());
     }
-  } catch (const WordError& error) {
-    throw ProgramError(file, lines.number(), error.message);
+    motion = motions_[given_++];
+    return true;
   }
-  if (program.motions.empty() || program.motions.back().kind != MotionKind::kEnd) {
-    interpreter.end(lines.number());
-  }
-  return program;
-}
 
-Program read_program_file(const std::string& path, const machine::Machine& machine, const Coordinates& start) {
-  std::ifstream stream(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream || stream.bad()) {
-    throw ProgramError(path, 0, "cannot read the program");
+  const std::optional<Error>& error() const { return error_; }
+  const std::map<std::string, std::size_t>& accepted() const { return accepted_; }
+  const std::string& file() const { return lines_.name(); }
+
+ private:
+  // The next line and its motions. False at an error.
+  bool read_line() {
+    std::string_view line;
+    if (!next_line(line)) {
+      ended_ = true;
+      interpreter_.end(number_, motions_);
+      return !error_;
+    }
+    if (line.empty() || line.front() == '/') {
+      return !error_;
+    }
+    if (line.front() == '%') {
+      return percent(line);
+    }
+    if (!words_.read(line, axes_, problem_)) {
+      return fail();
+    }
+    in_program_ = in_program_ || !words_.empty();
+    count_accepted();
+    const Interpreter::Outcome outcome = interpreter_.execute(words_, number_, motions_, problem_);
+    ended_ = outcome == Interpreter::Outcome::kEnded;
+    return outcome != Interpreter::Outcome::kFailed || fail();
   }
-  return read_program(text, path, machine, start);
-}
+
+  // Without the blanks before it. Too long a line sets the error and is empty; false at the end, and where the source
+  // failed, which sets the error.
+  bool next_line(std::string_view& line) {
+    if (!lines_.next(line)) {
+      if (const auto failure = lines_.failure()) {
+        fail(ErrorCode::kCannotRead, "cannot read the program: " + *failure);
+      }
+      return false;
+    }
+    ++number_;
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (number_ == 1 && line.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
+      line.remove_prefix(kByteOrderMark.size());
+    }
+    if (line.size() > kLongestLine) {
+      fail(ErrorCode::kLineTooLong, fmt::format("a line of more than {} bytes", kLongestLine));
+      line = {};
+    }
+    line = without_blanks_before(line);
+    return true;
+  }
+
+  // The first one opens the program, the next one ends it; so does the first one behind words. What follows that is
+  // read to the end, so that no motion is left out in silence.
+  bool percent(std::string_view line) {
+    if (!only_comments(line.substr(1))) {
+      return fail();
+    }
+    if (!in_program_) {
+      in_program_ = true;
+      return true;
+    }
+    ended_ = true;
+    interpreter_.end(number_, motions_);
+    while (next_line(line)) {
+      if (error_) {
+        return false;
+      }
+      const bool deleted = !line.empty() && line.front() == '/';
+      const bool mark = !line.empty() && line.front() == '%';
+      if (!deleted && !only_comments(line.substr(mark ? 1 : 0))) {
+        return fail();
+      }
+    }
+    return !error_;
+  }
+
+  // A problem where something but blanks and comments stands beside or behind a '%'.
+  bool only_comments(std::string_view text) {
+    WordScanner scanner(text);
+    Word word{};
+    const bool any = scanner.next(word, problem_) || scanner.failed();
+    return !any ||
+           problem_.set(ErrorCode::kTextBesidePercent, fmt::format("'{}' beside or behind '%', where nothing is read",
+                                                                   quote(without_blanks_before(text))));
+  }
+
+  void count_accepted() {
+    for (const WordSet::Accepted* word = words_.accepted_begin(); word != words_.accepted_end(); ++word) {
+      std::string name(1, word->letter);
+      if (word->number >= 0) {
+        name += std::to_string(word->number);
+      }
+      ++accepted_[name];
+    }
+  }
+
+  bool fail() { return fail(problem_.code, problem_.message); }
+  bool fail(ErrorCode code, const std::string& message) {
+    error_ = Error{code, lines_.name(), number_, message};
+    return false;
+  }
+
+  LineSource& lines_;
+  AxisLetters axes_;
+  Interpreter interpreter_;
+  std::size_t number_ = 0;   // of the line
+  bool in_program_ = false;  // a word or a '%' was there
+  bool ended_ = false;
+  WordSet words_;
+  LineMotions motions_;
+  std::size_t given_ = 0;  // of motions_
+  Problem problem_;
+  std::optional<Error> error_;
+  std::map<std::string, std::size_t> accepted_;
+};
+
+Reader::Reader(LineSource& lines, const machine::Machine& machine, const Coordinates& start)
+    : impl_(std::make_unique<Impl>(lines, machine, start)) {}
+Reader::~Reader() = default;
+Reader::Reader(Reader&&) noexcept = default;
+Reader& Reader::operator=(Reader&&) noexcept = default;
+
+bool Reader::next(Motion& motion) { return impl_->next(motion); }
+const std::optional<Error>& Reader::error() const { return impl_->error(); }
+const std::map<std::string, std::size_t>& Reader::accepted() const { return impl_->accepted(); }
+const std::string& Reader::file() const { return impl_->file(); }
 
 }  // namespace trammel::gcode

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
-#include <cmath>
+#include <cstdint>
 
 namespace trammel::gcode {
 namespace {
@@ -11,106 +12,173 @@ namespace {
 // So that no sum or square of coordinates leaves the range of a double.
 constexpr double kLargest = 1e12;
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+// Whole numbers up to the first and powers of ten up to the second are doubles: their quotient is then rounded once
+// only, so that it is the double nearest to the decimal number.
+constexpr std::uint64_t kExactWhole = std::uint64_t{1} << 53;
+constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                                 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+bool is_space(char c) { return c == ' ' || c == '\t'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_printable(char c) { return c > ' ' && c < '\x7f'; }
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
-// After the comment that opens at `at`.
-std::size_t skip_comment(std::string_view line, std::size_t at) {
-  const std::size_t close = line.find(')', at);
-  if (close == std::string_view::npos) {
-    throw WordError{"comment without ')'"};
-  }
-  if (line.substr(at + 1, close - at - 1).find('(') != std::string_view::npos) {
-    throw WordError{"'(' inside a comment"};
-  }
-  return close + 1;
-}
-
-// End of [+-] digits [. digits], which needs at least one digit.
-std::size_t number_end(std::string_view line, std::size_t at) {
-  if (at < line.size() && (line[at] == '+' || line[at] == '-')) {
-    ++at;
-  }
-  std::size_t digits = 0;
-  for (; at < line.size() && is_digit(line[at]); ++at) {
-    ++digits;
-  }
-  if (at < line.size() && line[at] == '.') {
-    for (++at; at < line.size() && is_digit(line[at]); ++at) {
-      ++digits;
-    }
-  }
-  return digits == 0 ? std::string_view::npos : at;
-}
-
-// The text of the malformed word, for the message: up to the next space or letter, without spaces at
-// its end.
-std::string_view malformed(std::string_view line, std::size_t from, std::size_t at) {
-  while (at < line.size() && is_printable(line[at]) && !is_letter(line[at])) {
-    ++at;
-  }
-  while (is_space(line[at - 1])) {
-    --at;
-  }
-  return line.substr(from, at - from);
-}
-
-Word parse_word(std::string_view line, std::size_t& at) {
-  const std::size_t from = at;
-  ++at;
-  while (at < line.size() && is_space(line[at])) {
-    ++at;
-  }
-  const std::size_t end = number_end(line, at);
-  constexpr std::string_view kMayFollow = "(;%";
-  const bool followed = end < line.size() && is_printable(line[end]) && !is_letter(line[end]) &&
-                        kMayFollow.find(line[end]) == std::string_view::npos;
-  if (end == std::string_view::npos || followed) {
-    throw WordError{fmt::format("malformed number in '{}'", malformed(line, from, at))};
-  }
-  const std::size_t digits = line[at] == '+' ? at + 1 : at;  // from_chars knows no plus sign
-  double value = 0;
-  const auto result = std::from_chars(line.data() + digits, line.data() + end, value, std::chars_format::fixed);
-  if (result.ec != std::errc() || result.ptr != line.data() + end || std::abs(value) > kLargest) {
-    throw WordError{fmt::format("number out of range in '{}'", line.substr(from, end - from))};
-  }
-  at = end;
-  return Word{upper(line[from]), value, line.substr(from, end - from)};
-}
-
 }  // namespace
 
-void split_words(std::string_view line, std::vector<Word>& words) {
-  words.clear();
-  std::size_t at = 0;
-  while (at < line.size()) {
-    const char c = line[at];
+bool WordScanner::next(Word& word, Problem& problem) {
+  while (at_ < line_.size()) {
+    const char c = line_[at_];
+    if (is_letter(c)) {
+      failed_ = !parse(word, problem);
+      return !failed_;
+    }
+    if (c == ';') {
+      return false;
+    }
     if (is_space(c)) {
-      ++at;
-    } else if (c == ';') {
-      return;
-    } else if (c == '(') {
-      at = skip_comment(line, at);
-    } else if (is_letter(c)) {
-      words.push_back(parse_word(line, at));
-    } else {
-      throw WordError{is_printable(c) ? fmt::format("unexpected '{}'", malformed(line, at, at + 1))
-                                      : fmt::format("unexpected byte 0x{:02x}", static_cast<unsigned char>(c))};
+      ++at_;
+    } else if (c != '(') {
+      failed_ = true;
+      return unexpected(problem);
+    } else if (!skip_comment(problem)) {
+      failed_ = true;
+      return false;
     }
   }
+  return false;
 }
 
-int code_of(const Word& word) {
-  const double tenths = word.value * 10;
-  const double whole = std::round(tenths);
-  // Tenths of a decimal fraction are off by a few ulps only.
-  if (whole < 0 || whole > 9999 || std::abs(tenths - whole) > 1e-6) {
-    throw WordError{fmt::format("unsupported word '{}'", word.text)};
+bool WordScanner::skip_comment(Problem& problem) {
+  const std::size_t close = line_.find(')', at_);
+  if (close == std::string_view::npos) {
+    return problem.set(ErrorCode::kCommentNotClosed, "comment without ')'");
   }
-  return static_cast<int>(whole);
+  if (line_.substr(at_ + 1, close - at_ - 1).find('(') != std::string_view::npos) {
+    return problem.set(ErrorCode::kCommentInComment, "'(' inside a comment");
+  }
+  at_ = close + 1;
+  return true;
+}
+
+bool WordScanner::unexpected(Problem& problem) const {
+  const char c = line_[at_];
+  if (c == '%') {
+    return problem.set(ErrorCode::kTextBesidePercent, "'%' beside other words: it needs a line of its own");
+  }
+  if (!is_printable(c)) {
+    return problem.set(ErrorCode::kUnexpectedCharacter,
+                       fmt::format("unexpected byte 0x{:02x}", static_cast<unsigned char>(c)));
+  }
+  std::size_t end = at_ + 1;
+  while (end < line_.size() && is_printable(line_[end]) && !is_letter(line_[end])) {
+    ++end;
+  }
+  return problem.set(ErrorCode::kUnexpectedCharacter,
+                     fmt::format("unexpected '{}'", quote(line_.substr(at_, end - at_))));
+}
+
+// A letter, blanks, [+-] digits [. digits] with one digit at least.
+bool WordScanner::parse(Word& word, Problem& problem) {
+  const std::size_t from = at_;
+  const char* const text = line_.data();
+  const std::size_t size = line_.size();
+  std::size_t at = from + 1;
+  while (at < size && is_space(text[at])) {
+    ++at;
+  }
+  const std::size_t number = at;
+  const bool negative = at < size && text[at] == '-';
+  if (at < size && (negative || text[at] == '+')) {
+    ++at;
+  }
+  const std::size_t digits_from = at;
+  std::uint64_t whole = 0;  // of all digits; meaningless above 19 of them
+  while (at < size && is_digit(text[at])) {
+    whole = whole * 10 + static_cast<std::uint64_t>(text[at++] - '0');
+  }
+  std::size_t digits = at - digits_from;
+  std::size_t decimals = 0;
+  if (at < size && text[at] == '.') {
+    const std::size_t point = at++;
+    while (at < size && is_digit(text[at])) {
+      whole = whole * 10 + static_cast<std::uint64_t>(text[at++] - '0');
+    }
+    decimals = at - point - 1;
+    digits += decimals;
+  }
+  at_ = at;
+  constexpr std::string_view kMayFollow = "(;%";
+  const bool followed = at < size && is_printable(text[at]) && !is_letter(text[at]) &&
+                        kMayFollow.find(text[at]) == std::string_view::npos;
+  if (digits == 0 || followed) {
+    at_ = digits == 0 ? number : at;
+    return malformed(from, problem);
+  }
+  if (at < size && text[at] == 'e') {
+    return exponent(from, problem);
+  }
+  double value = 0;
+  bool in_range = true;
+  if (digits <= 18 && whole <= kExactWhole) {
+    value = static_cast<double>(whole) / kPowersOfTen[decimals];
+  } else {
+    in_range = convert(digits_from, at, value);
+  }
+  if (!in_range || value > kLargest) {
+    return problem.set(ErrorCode::kNumberOutOfRange,
+                       fmt::format("number out of range in '{}'", quote(line_.substr(from, at - from))));
+  }
+  word = Word{upper(text[from]), negative ? -value : value, line_.substr(from, at - from)};
+  return true;
+}
+
+// More digits than a double holds exactly: std::from_chars rounds once, too.
+bool WordScanner::convert(std::size_t from, std::size_t end, double& value) const {
+  const char* const last = line_.data() + end;
+  const auto result = std::from_chars(line_.data() + from, last, value, std::chars_format::fixed);
+  // So small that it is no double: 0 is the nearest.
+  if (result.ec == std::errc::result_out_of_range) {
+    const std::string_view text = line_.substr(from, end - from);
+    value = 0;
+    return text.substr(0, text.find('.')).find_first_not_of('0') == std::string_view::npos;
+  }
+  return result.ec == std::errc() && result.ptr == last;
+}
+
+// Quotes from the word's letter up to the next blank or letter.
+bool WordScanner::malformed(std::size_t from, Problem& problem) const {
+  std::size_t end = at_;
+  while (end < line_.size() && is_printable(line_[end]) && !is_letter(line_[end])) {
+    ++end;
+  }
+  while (is_space(line_[end - 1])) {
+    --end;
+  }
+  return problem.set(ErrorCode::kMalformedNumber,
+                     fmt::format("malformed number in '{}'", quote(line_.substr(from, end - from))));
+}
+
+// As programs print small numbers: 1.5e-05. Read as two words it would be a motion of the axis E.
+bool WordScanner::exponent(std::size_t from, Problem& problem) const {
+  std::size_t end = at_ + 1;
+  while (end < line_.size() && is_printable(line_[end]) && !is_letter(line_[end])) {
+    ++end;
+  }
+  return problem.set(ErrorCode::kExponent,
+                     fmt::format("malformed number in '{}': write it without exponent; before an axis e put a blank",
+                                 quote(line_.substr(from, end - from))));
+}
+
+int code_of(double value) {
+  const double tenths = value * 10;
+  if (!(tenths >= 0 && tenths <= 9999)) {
+    return -1;
+  }
+  const int whole = static_cast<int>(tenths + 0.5);
+  const double off = tenths - whole;
+  // Tenths of a decimal fraction are off by a few ulps only.
+  return off > 1e-6 || off < -1e-6 ? -1 : whole;
 }
 
 }  // namespace trammel::gcode

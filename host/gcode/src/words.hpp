@@ -1,17 +1,11 @@
 // Words of one line of G-code. Internal to the reader.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
+
+#include "problem.hpp"
 
 namespace trammel::gcode {
-
-// Every "file:line" is added by the caller.
-struct WordError {
-  std::string message;
-};
 
 struct Word {
   char letter;            // upper case
@@ -19,10 +13,30 @@ struct Word {
   std::string_view text;  // as written, for messages
 };
 
-// The words of a line without its comments; numbers are decimal, without exponent. Throws WordError.
-void split_words(std::string_view line, std::vector<Word>& words);
+// Gives the words of a line one by one, without its comments. Numbers are decimal, without exponent, and become the
+// nearest double, whatever the locale and the machine.
+class WordScanner {
+ public:
+  explicit WordScanner(std::string_view line) : line_(line) {}
 
-// The code of a G or M word in tenths (G91.1 is 911). Throws WordError when it is no code.
-int code_of(const Word& word);
+  // False at the end of the line, and where `problem` is set: then failed().
+  bool next(Word& word, Problem& problem);
+  bool failed() const { return failed_; }
+
+ private:
+  bool skip_comment(Problem& problem);
+  bool unexpected(Problem& problem) const;
+  bool parse(Word& word, Problem& problem);
+  bool convert(std::size_t from, std::size_t end, double& value) const;
+  bool malformed(std::size_t from, Problem& problem) const;
+  bool exponent(std::size_t from, Problem& problem) const;
+
+  std::string_view line_;
+  std::size_t at_ = 0;
+  bool failed_ = false;
+};
+
+// The code of a G or M word in tenths (G91.1 is 911), or -1 where it can be none.
+int code_of(double value);
 
 }  // namespace trammel::gcode

@@ -9,31 +9,9 @@
 #include <vector>
 
 #include "trammel/driver/bus.hpp"
+#include "trammel/driver/steps.hpp"
 
 namespace trammel::sim {
-
-// A leading edge at a STEP pin.
-struct PinStep {
-  std::uint64_t cycle;
-  std::uint8_t axis;
-  std::int8_t direction;  // +1 or -1
-};
-
-// A step of the path, before the shapers.
-struct PathStep {
-  std::uint64_t command;  // number of the stream command, not wrapped; 0 in direct mode
-  std::uint64_t tick;     // of its path, from 1: feed ticks of a line, path ticks of an arc
-  std::uint8_t axis;
-  std::int8_t direction;
-};
-
-// Receives steps in order of time. Called from within bus accesses and idle(); must not use the engine.
-class StepSink {
- public:
-  virtual ~StepSink() = default;
-  virtual void pin_step(const PinStep& step) = 0;
-  virtual void path_step(const PathStep& step) = 0;
-};
 
 struct EngineOptions {
   unsigned axes = 4;                   // 1 .. 8
@@ -44,9 +22,9 @@ struct EngineOptions {
 // The model can be any build of the card.
 struct ModelOptions : EngineOptions {
   ModelOptions(const EngineOptions& options = {}) : EngineOptions(options) {}  // NOLINT: they are options of the model
-  std::uint32_t geometry_depth = 4096;   // halfwords
-  std::uint32_t feed_depth = 2560;       // halfwords
-  std::optional<std::uint32_t> engines;  // ENGINES; all that are built without it
+  std::uint32_t geometry_depth = 4096;                                         // halfwords
+  std::uint32_t feed_depth = 2560;                                             // halfwords
+  std::optional<std::uint32_t> engines;                                        // ENGINES; all that are built without it
 };
 
 // A card on a simulated bus: the driver's Bus, with sleep() running clocks. A refused access shows in transfer(). An
@@ -59,7 +37,7 @@ class Engine : public driver::Bus {
 
   virtual void wait(std::uint64_t clocks) = 0;                       // runs so many clocks
   virtual void reset() = 0;                                          // as by the card's reset input
-  virtual void set_sink(StepSink* sink) = 0;                         // nullptr: none; not owned
+  virtual void set_sink(driver::StepSink* sink) = 0;                 // nullptr: none; not owned
   virtual std::uint64_t cycles() const = 0;                          // clocks since reset
   virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
   virtual std::uint64_t comparisons() const = 0;                     // signals compared

@@ -2,62 +2,42 @@
 // Not thread-safe.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "deviation_meter.hpp"
-#include "plot.hpp"
-#include "trammel/sim/engine.hpp"
+#include "trammel/driver/steps.hpp"
+#include "trammel/run/deviation_meter.hpp"
+#include "trammel/run/observer.hpp"
+#include "trammel/run/plot.hpp"
+#include "trammel/run/text_sink.hpp"
 
-namespace trammel::app {
+namespace trammel::run {
 
-// A CSV file written through a large buffer; "-" is stdout.
-class CsvFile {
- public:
-  // Throws std::runtime_error when the file cannot be opened.
-  CsvFile(const std::string& file, const char* header);
-  ~CsvFile();
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
+class CsvWriter;
 
-  template <class... Values>
-  void row(fmt::format_string<Values...> format, Values... values) {
-    fmt::format_to(std::back_inserter(buffer_), format, values...);
-    if (buffer_.size() > kFlushAt) flush();
-  }
-  // Writes what is left; throws std::runtime_error when the disk did not take it all.
-  void close();
-
- private:
-  static constexpr std::size_t kFlushAt = 1U << 16U;
-  void flush();
-  std::string file_;
-  std::FILE* out_;
-  bool failed_ = false;
-  fmt::memory_buffer buffer_;
-};
-
-class StepRecorder final : public sim::StepSink {
+// Takes the steps as they come; as an observer of the run it learns the commands that they belong to.
+class StepRecorder final : public driver::StepSink, public Observer {
  public:
   struct Options {
-    std::optional<std::string> steps;       // file of --steps
-    std::optional<std::string> path_steps;  // file of --path-steps
+    TextSink* steps = nullptr;       // list of the pins' steps: cycle,axis,direction
+    TextSink* path_steps = nullptr;  // list of the path's steps: command,tick,axis,direction
     bool plot = false;
     double clock_hz = 0;
     std::vector<double> steps_per_mm;  // by axis
   };
   explicit StepRecorder(const Options& options);
+  ~StepRecorder() override;
 
-  void pin_step(const sim::PinStep& step) override;
-  void path_step(const sim::PathStep& step) override;
+  void command(std::uint64_t number, const driver::Command& command) override { deviation_.command(number, command); }
+  void pin_step(const driver::PinStep& step) override;
+  void path_step(const driver::PathStep& step) override;
+  // After the last step: writes what is left of the lists.
   void finish();
+  // Throws std::runtime_error unless the pins have made what the card counted, pulses by axis.
+  void check(const std::vector<std::int64_t>& counted) const;
 
   DeviationMeter& deviation() { return deviation_; }
   const std::vector<std::uint64_t>& steps() const { return steps_; }       // at the pins, by axis
@@ -76,8 +56,8 @@ class StepRecorder final : public sim::StepSink {
   void point_of_path();
 
   Options options_;
-  std::unique_ptr<CsvFile> steps_file_;
-  std::unique_ptr<CsvFile> path_steps_file_;
+  std::unique_ptr<CsvWriter> step_list_;
+  std::unique_ptr<CsvWriter> path_step_list_;
   DeviationMeter deviation_;
   std::vector<std::uint64_t> steps_;
   std::vector<std::int64_t> position_;       // at the pins
@@ -86,7 +66,7 @@ class StepRecorder final : public sim::StepSink {
   SpeedOverTime speed_;
   std::vector<Point> detail_;
   std::optional<std::uint64_t> detail_command_;
-  std::optional<sim::PathStep> last_;  // the path step before
+  std::optional<driver::PathStep> last_;  // the path step before
 };
 
-}  // namespace trammel::app
+}  // namespace trammel::run

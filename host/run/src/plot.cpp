@@ -1,15 +1,12 @@
-#include "plot.hpp"
+#include "trammel/run/plot.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <stdexcept>
 
-namespace trammel::app {
+namespace trammel::run {
 
 void ThinnedPath::add(const Point& point) {
   last_ = point;
@@ -208,7 +205,7 @@ text{font:14px sans-serif;fill:#222} .small{font-size:11px;fill:#555} .title{fon
 
 }  // namespace
 
-void write_svg(const Plot& plot, const std::string& file) {
+std::string svg(const Plot& plot) {
   constexpr double kPanelTop = 70;
   constexpr double kPanelHeight = 520;
   constexpr double kPathWidth = 540;
@@ -222,25 +219,20 @@ void write_svg(const Plot& plot, const std::string& file) {
   detail.insert(detail.end(), plot.detail_executed.begin(), plot.detail_executed.end());
   const Panel zoom(detail, choose_view(detail), kDetailLeft, kPanelTop, kWidth - kDetailLeft - kMargin, kPanelHeight);
 
-  std::string svg = fmt::format(
+  std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n{2}"
       "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{3}\" y=\"30\" class=\"title\">{4}</text>\n",
       kWidth, kSpeedTop + kSpeedHeight + 40, kStyle, kMargin, escaped(plot.title));
-  svg += path.frame(plot.executed_thinned ? "path: commanded (red), pulses (blue, thinned)"
-                                          : "path: commanded (red), pulses (blue)");
-  svg += path.line(plot.commanded, "class=\"commanded\"");
-  svg += path.line(plot.executed, "class=\"executed\"");
-  svg += zoom.frame("magnified: every pulse of one stretch");
-  svg += zoom.line(plot.detail_commanded, "class=\"commanded\"");
-  svg += zoom.line(plot.detail_executed, "class=\"executed\"");
-  svg += zoom.dots(plot.detail_executed, 2.2, "class=\"pulse\"");
-  svg += speed_panel(plot.speed, kSpeedTop, kSpeedHeight);
-  svg += "</svg>\n";
-
-  std::ofstream out(file);
-  out << svg;
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", file));
+  text += path.frame(plot.executed_thinned ? "path: commanded (red), pulses (blue, thinned)"
+                                           : "path: commanded (red), pulses (blue)");
+  text += path.line(plot.commanded, "class=\"commanded\"");
+  text += path.line(plot.executed, "class=\"executed\"");
+  text += zoom.frame("magnified: every pulse of one stretch");
+  text += zoom.line(plot.detail_commanded, "class=\"commanded\"");
+  text += zoom.line(plot.detail_executed, "class=\"executed\"");
+  text += zoom.dots(plot.detail_executed, 2.2, "class=\"pulse\"");
+  text += speed_panel(plot.speed, kSpeedTop, kSpeedHeight);
+  return text + "</svg>\n";
 }
 
-}  // namespace trammel::app
+}  // namespace trammel::run

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace trammel::app {
+namespace trammel::run {
 
 using Point = std::array<double, 3>;  // mm, the first three axes
 
@@ -61,7 +61,7 @@ struct Plot {
   std::vector<SpeedOverTime::Sample> speed;
 };
 
-// Writes the SVG; throws std::runtime_error when the file cannot be written.
-void write_svg(const Plot& plot, const std::string& file);
+// The picture as SVG.
+std::string svg(const Plot& plot);
 
-}  // namespace trammel::app
+}  // namespace trammel::run

@@ -13,7 +13,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/commands.hpp"
 
-namespace trammel::app {
+namespace trammel::run {
 
 class DeviationMeter {
  public:
@@ -50,4 +50,4 @@ class DeviationMeter {
   double largest_arc_ = 0;
 };
 
-}  // namespace trammel::app
+}  // namespace trammel::run

@@ -1,4 +1,4 @@
-#include "deviation_meter.hpp"
+#include "trammel/run/deviation_meter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "trammel/card_map.hpp"
 
-namespace trammel::app {
+namespace trammel::run {
 namespace {
 
 // Fraction bits of a pulse generator's increment and of an arc's centre.
@@ -96,4 +96,4 @@ void DeviationMeter::measure() {
   largest_line_ = std::max(largest_line_, std::sqrt(square));
 }
 
-}  // namespace trammel::app
+}  // namespace trammel::run

@@ -1,0 +1,71 @@
+// What can be wrong with a program, as a value: nothing between the lines and the card's commands throws for it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace trammel::gcode {
+
+// One a kind of error. The numbers stay as they are, so that a server can give them to its clients.
+enum class ErrorCode : std::uint16_t {
+  // Lines and words
+  kCannotRead = 1,
+  kLineTooLong = 2,
+  kUnexpectedCharacter = 3,
+  kCommentNotClosed = 4,
+  kCommentInComment = 5,
+  kMalformedNumber = 6,
+  kNumberOutOfRange = 7,
+  kExponent = 8,
+  kTextBesidePercent = 9,
+  kUnsupportedWord = 10,
+  // Words of one line against each other
+  kModalGroupTwice = 20,
+  kLetterTwice = 21,
+  kNegative = 22,
+  kNotWhole = 23,
+  kLineNumberNotFirst = 24,
+  kNoSuchAxis = 25,
+  kTwoUsesOfAxisWords = 26,  // G28 or G92 beside a motion, motors off for single axes
+  kUnusedWord = 27,          // P without G4, I without G2 or G3
+  kMissingWord = 28,         // G4 without P, G92 without an axis
+  kNoMotionMode = 29,
+  kMachineCoordinates = 30,  // G53 where it means nothing
+  // Feed
+  kNoFeed = 40,
+  kFeedTooSmall = 41,
+  // Arcs
+  kArcRadiusZero = 50,
+  kArcRadiusTooSmall = 51,
+  kArcRadiusFullCircle = 52,
+  kArcRadiusAndCentre = 53,
+  kArcNoCentre = 54,
+  kArcOffCircle = 55,
+  kArcOutsidePlane = 56,  // a centre word that the plane has not
+  kArcPlaneAxis = 57,     // the machine lacks an axis of the plane
+  kHelix = 58,
+  // Against machine and card: found where motions become pulses
+  kSoftLimit = 70,
+  kPositionRange = 71,
+  kDwellTooLong = 72,
+  kArcTooLarge = 73,
+};
+
+struct Error {
+  ErrorCode code{};
+  std::string file;
+  std::size_t line = 0;  // from 1; 0: the program as a whole
+  std::string message;   // one line
+};
+
+// "file:line: message", one line.
+std::string describe(const Error& error);
+
+// Text of a program for a message: control characters and what is not ASCII as escapes, cut to kLongestQuote
+// characters.
+inline constexpr std::size_t kLongestQuote = 80;
+std::string quote(std::string_view text);
+
+}  // namespace trammel::gcode

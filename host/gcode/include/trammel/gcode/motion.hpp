@@ -1,0 +1,31 @@
+// What a program asks for, one motion at a time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::gcode {
+
+// By axis index of the machine; machine coordinates in mm (degrees for A, B and C).
+using Coordinates = std::array<double, card_map::kMaxAxes>;
+
+enum class MotionKind { kTraverse, kLine, kArc, kDwell, kEnd };
+
+struct Motion {
+  MotionKind kind = MotionKind::kLine;
+  std::size_t line = 0;    // of the source, from 1
+  Coordinates target{};    // where it ends; kDwell and kEnd: where the one before ended
+  double feed = 0;         // mm/s along the path; 0 for kTraverse and where `seconds` counts
+  double seconds = 0;      // kDwell, or the duration of a motion under G93
+  bool clockwise = false;  // the rest: kArc; seen with the plane's first axis to the right and the second up
+  bool full_circle = false;
+  std::uint8_t axis_x = 0;  // of the plane: X Y, Z X or Y Z
+  std::uint8_t axis_y = 0;
+  double centre_x = 0;  // machine coordinates
+  double centre_y = 0;
+};
+
+}  // namespace trammel::gcode

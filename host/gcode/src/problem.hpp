@@ -1,0 +1,23 @@
+// What is wrong with the line being read. Internal to the reader, which adds the place.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "trammel/gcode/error.hpp"
+
+namespace trammel::gcode {
+
+struct Problem {
+  ErrorCode code{};
+  std::string message;
+
+  // False, so that a function that fails can return it.
+  bool set(ErrorCode wrong, std::string what) {
+    code = wrong;
+    message = std::move(what);
+    return false;
+  }
+};
+
+}  // namespace trammel::gcode

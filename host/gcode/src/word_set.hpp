@@ -1,0 +1,101 @@
+// One line of G-code as a set of words, one for each modal group and letter. Internal to the reader.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "problem.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/machine/machine.hpp"
+#include "words.hpp"
+
+namespace trammel::gcode {
+
+// Modal groups as in RS274/NGC: at most one word of a group on a line.
+enum class Group {
+  kNonModal,     // G4 G28 G53 G92 G92.1
+  kMotion,       // G0 G1 G2 G3 G80
+  kPlane,        // G17 G18 G19
+  kDistance,     // G90 G91
+  kArcDistance,  // G90.1 G91.1
+  kFeedMode,     // G93 G94
+  kUnits,        // G20 G21
+  kCutter,       // G40
+  kToolLength,   // G49
+  kCoordinates,  // G54 .. G59
+  kPathControl,  // G61 G64
+  kStopping,     // M0 M1 M2 M30
+  kSpindle,      // M3 M4 M5
+  kCoolant,      // M7 M8 M9
+  kMotors,       // M18 M84
+  kExtruder,     // M82 M83
+  kCount
+};
+
+inline constexpr std::size_t kLetters = 26;
+
+// The axis of each letter, or kNone.
+class AxisLetters {
+ public:
+  static constexpr std::uint8_t kNone = 0xff;
+  explicit AxisLetters(const machine::Machine& machine);
+  std::uint8_t operator[](char letter) const { return axes_[static_cast<std::size_t>(letter - 'A')]; }
+
+ private:
+  std::array<std::uint8_t, kLetters> axes_;
+};
+
+// Values count only where the bit of their place is set: a line sets few of them.
+class WordSet {
+ public:
+  // Sorts the words of a line. False, with a problem, for an unknown word, an axis that the machine lacks, two words of
+  // one group, a letter twice, and values that a letter cannot have.
+  bool read(std::string_view line, const AxisLetters& axes, Problem& problem);
+
+  bool empty() const { return words_ == 0; }
+  // In tenths of a group's word, as G2 = 20 or M30 = 300.
+  std::optional<int> code(Group group) const;
+  std::optional<double> letter(char name) const;  // F I J K N P R S T
+  bool has_axis_words() const { return axes_present_ != 0; }
+  bool has_axis(std::size_t axis) const { return (axes_present_ >> axis & 1U) != 0; }
+  double axis(std::size_t axis) const { return axes_[axis]; }  // as written
+
+  // Words without effect: "M3".
+  struct Accepted {
+    char letter;
+    int number;  // -1: the letter alone
+  };
+  const Accepted* accepted_begin() const { return accepted_.data(); }
+  const Accepted* accepted_end() const { return accepted_.data() + accepted_count_; }
+
+ private:
+  bool add(const Word& word, const AxisLetters& axes, Problem& problem);
+  bool add_code(const Word& word, Problem& problem);
+  bool add_letter(const Word& word, Problem& problem);
+  bool add_axis(const Word& word, const AxisLetters& axes, Problem& problem);
+
+  std::size_t words_ = 0;
+  std::uint32_t codes_present_ = 0;
+  std::uint32_t letters_present_ = 0;
+  std::uint32_t axes_present_ = 0;
+  std::size_t accepted_count_ = 0;
+  std::array<std::int16_t, static_cast<std::size_t>(Group::kCount)> codes_;
+  std::array<double, kLetters> letters_;
+  std::array<double, card_map::kMaxAxes> axes_;
+  std::array<Accepted, static_cast<std::size_t>(Group::kCount) + 2> accepted_;  // one a group, S and T
+};
+
+inline std::optional<int> WordSet::code(Group group) const {
+  const auto place = static_cast<std::size_t>(group);
+  return (codes_present_ >> place & 1U) != 0 ? std::optional<int>(codes_[place]) : std::nullopt;
+}
+
+inline std::optional<double> WordSet::letter(char name) const {
+  const auto place = static_cast<std::size_t>(name - 'A');
+  return (letters_present_ >> place & 1U) != 0 ? std::optional<double>(letters_[place]) : std::nullopt;
+}
+
+}  // namespace trammel::gcode

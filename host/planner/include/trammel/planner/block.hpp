@@ -1,0 +1,79 @@
+// A motion as the planner takes it: geometry in pulses, length and limits along the path. Plain data.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/commands.hpp"
+#include "trammel/gcode/motion.hpp"
+
+namespace trammel::planner {
+
+// By axis index, machine coordinates in pulses; within the 32-bit position counters where it is a target.
+using Pulses = std::array<std::int64_t, card_map::kMaxAxes>;
+
+// What keeps a motion below its programmed feed.
+enum class SpeedLimit : std::uint8_t {
+  kNone,          // it is reached
+  kAxisVelocity,  // max_velocity of an axis
+  kPulseShape,    // step length and space of an axis
+  kAcceleration,  // too short to reach it, or too strong a curve
+  kClock,         // the card's clock
+};
+inline constexpr std::size_t kSpeedLimits = 5;
+
+// What goes to the card's geometry queue.
+enum class Geometry : std::uint8_t { kLine, kArc, kChords, kDwell, kEnd };
+
+// An arc before rounding: machine coordinates in mm.
+struct ExactArc {
+  double centre_x = 0;
+  double centre_y = 0;
+  double radius_start = 0;
+  double radius_end = 0;
+  double angle_start = 0;  // radians, from the plane's first axis towards its second
+  double sweep = 0;        // radians, > 0
+};
+
+// Lengths in mm; for moves of rotary axes alone read degrees. Of the fields that a kind of geometry does not name, the
+// content means nothing.
+struct Block {
+  std::size_t line = 0;  // of the program
+  Geometry geometry = Geometry::kEnd;
+  Pulses start{};
+  Pulses end{};
+
+  // Motions: kLine, kArc, kChords.
+  double length = 0;                         // mm along the path of all axes
+  double pulses = 0;                         // the length in pulses of the finest axis; kArc: in unit steps
+  std::uint64_t least_ticks = 0;             // feed ticks that the geometry needs; kChords: for each of its lines
+  double speed = 0;                          // mm/s, the most that axes, card and program allow
+  double acceleration = 0;                   // mm/s^2
+  double jerk = 0;                           // mm/s^3, infinite where no axis has one
+  double wanted = 0;                         // mm/s along the path that the program asks for; 0: as fast as may be
+  double feed = 0;                           // the same as the program has it, mm/s along the axes that F counts for
+  SpeedLimit limit = SpeedLimit::kNone;      // what puts `speed` below `wanted`
+
+  // Arcs: kArc, kChords.
+  bool clockwise = false;
+  std::uint8_t axis_x = 0;
+  std::uint8_t axis_y = 0;
+  std::int64_t centre_x = 0;  // 1/256 pulses, machine coordinates
+  std::int64_t centre_y = 0;
+  ExactArc exact;
+  driver::ArcCommand arc;        // kArc: all but its ticks
+  std::uint64_t chords = 0;      // kChords: of equal angles; some may have no step
+  std::uint64_t chord_lines = 0;  // those with steps
+
+  // kDwell
+  std::uint64_t dwell_clocks = 0;
+  double dwell_seconds = 0;
+};
+
+inline bool moves(const Block& block) {
+  return block.geometry != Geometry::kDwell && block.geometry != Geometry::kEnd;
+}
+
+}  // namespace trammel::planner

@@ -1,0 +1,81 @@
+// From motions to blocks: pulses, length, limits. What a program asks of machine and card is checked here: soft limits,
+// the range of the position counters, dwells. Pulls from the reader and holds one motion. Not thread-safe.
+//
+// Targets become pulses by rounding the absolute target, half away from zero: nothing drifts. Lengths and limits are
+// those of the path between rounded ends. Feeds hold along X Y Z; without those along U V W, then A B C, then E (as
+// LinuxCNC).
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "trammel/gcode/reader.hpp"
+#include "trammel/machine/machine.hpp"
+#include "trammel/planner/block.hpp"
+#include "trammel/planner/card_limits.hpp"
+
+namespace trammel::planner {
+
+class BlockBuilder {
+ public:
+  // `start`: where the machine stands, as the reader was told. Reader and machine must outlive the builder. Throws
+  // driver::ArgumentError for step times that the card cannot keep.
+  BlockBuilder(gcode::Reader& reader, const machine::Machine& machine, const CardLimits& card,
+               const gcode::Coordinates& start = {});
+
+  // The next block; false after the one of kEnd, and at the first thing that reader, machine or card does not allow:
+  // then error() says what. Motions of less than a pulse give no block.
+  bool next(Block& block);
+  const std::optional<gcode::Error>& error() const { return error_; }
+
+  const Pulses& start() const { return start_; }
+
+ private:
+  struct Axis {
+    double steps_per_mm;
+    double velocity;      // pulses/s
+    double acceleration;  // pulses/s^2
+    double jerk;          // pulses/s^3
+    double lowest;        // mm, soft limits
+    double highest;
+    SpeedLimit limit;        // what `velocity` comes from
+    unsigned feed_group;  // which feed it counts for: 0 X Y Z, 1 U V W, 2 A B C, 3 E
+  };
+  // Along a path in a unit of its own: pulses or unit steps.
+  struct PathLimits {
+    double length;
+    double velocity;      // a second
+    double acceleration;  // a second^2
+    SpeedLimit limit;
+  };
+
+  bool build(Block& block);
+  bool set_targets(Block& block);
+  bool build_line(Block& block);
+  bool build_arc(Block& block);
+  bool build_accumulator_arc(Block& block);
+  bool build_chords(Block& block);
+  bool build_dwell(Block& block);
+  PathLimits curve_limits(const Block& block, double radius, double acceleration) const;
+  void finish(Block& block, double length, const PathLimits& limits, double feed_length);
+  bool check(std::size_t axis, double mm);
+  bool check_arc(const Block& block);
+  bool refuse(gcode::ErrorCode code, std::string message);
+
+  gcode::Reader& reader_;
+  const machine::Machine& machine_;
+  CardLimits card_;
+  std::size_t axis_count_;
+  std::array<Axis, card_map::kMaxAxes> axes_{};
+  gcode::Motion motion_;
+  Pulses start_{};
+  Pulses here_{};
+  gcode::Coordinates exact_{};  // unrounded
+  std::optional<gcode::Error> error_;
+};
+
+// mm (or degrees) to pulses, half away from zero. Sums of decimal fractions miss a half by some 1e-13: they count as
+// it. |mm * steps_per_mm| below 2^52.
+std::int64_t to_pulses(double mm, double steps_per_mm);
+
+}  // namespace trammel::planner

@@ -1,0 +1,29 @@
+#include "trammel/planner/card_limits.hpp"
+
+#include <chrono>
+#include <cmath>
+
+namespace trammel::planner {
+namespace {
+
+std::chrono::nanoseconds rounded_up(double nanoseconds) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::ceil(nanoseconds)));
+}
+
+}  // namespace
+
+CardLimits limits_of(const driver::Identification& card) {
+  return {card.clock_hz, card.axes, (card.engines >> card_map::engine::kAccumulator & 1U) != 0};
+}
+
+driver::AxisSettings settings_of(const machine::MachineAxis& axis) {
+  driver::AxisSettings settings;
+  settings.step_length = rounded_up(axis.step_length_ns);
+  settings.step_space = rounded_up(axis.step_space_ns);
+  settings.direction_setup = rounded_up(axis.direction_setup_ns);
+  settings.direction_hold = rounded_up(axis.direction_hold_ns);
+  settings.invert_second = axis.inverted;
+  return settings;
+}
+
+}  // namespace trammel::planner

@@ -1,0 +1,32 @@
+// The commanded course of a program for its picture, taken from the first pass: thinned points, and a stretch to
+// magnify. Not thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "trammel/run/observer.hpp"
+#include "trammel/run/plot.hpp"
+
+namespace trammel::run {
+
+class CommandedCourse final : public Observer {
+ public:
+  explicit CommandedCourse(const machine::Machine& machine);
+  void planned(const planner::PlannedSegment& segment, std::uint64_t first) override;
+
+  std::vector<Point> points() const { return points_.points(); }
+  // The path that shows single pulses best, an arc rather than a line: its number, and its beginning.
+  std::optional<std::uint64_t> detail_command() const { return detail_command_; }
+  const std::vector<Point>& detail() const { return detail_; }
+
+ private:
+  std::vector<double> steps_per_mm_;
+  ThinnedPath points_{10000};
+  int best_rank_ = 0;
+  std::optional<std::uint64_t> detail_command_;
+  std::vector<Point> detail_;
+};
+
+}  // namespace trammel::run

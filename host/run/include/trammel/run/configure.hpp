@@ -1,0 +1,13 @@
+// Settings of a card from a machine file.
+#pragma once
+
+#include "trammel/driver/card.hpp"
+#include "trammel/machine/machine.hpp"
+
+namespace trammel::run {
+
+// Gives each of the machine's axes its step times and direction. The card must stand. Throws driver::Error as
+// driver::Card::configure_axis() does.
+void configure(driver::Card& card, const machine::Machine& machine);
+
+}  // namespace trammel::run

@@ -1,0 +1,25 @@
+// What a run tells of itself while it goes. Called from the thread that runs; must not use the card.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/driver/commands.hpp"
+#include "trammel/planner/planner.hpp"
+
+namespace trammel::run {
+
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  // First pass, before anything moves: a segment whose first command has the number `first`.
+  virtual void planned(const planner::PlannedSegment& /*segment*/, std::uint64_t /*first*/) {}
+  // Second pass: a segment before its commands are written, and each of them with its number, which is not wrapped.
+  virtual void sending(const planner::PlannedSegment& /*segment*/) {}
+  virtual void command(std::uint64_t /*number*/, const driver::Command& /*command*/) {}
+  // When the segment's commands are written.
+  virtual void sent() {}
+  // Every now and then while the card runs.
+  virtual void progress() {}
+};
+
+}  // namespace trammel::run

@@ -1,0 +1,119 @@
+// Lines of programs, however the bytes come.
+#include "trammel/gcode/line_source.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "trammel/gcode/reader.hpp"
+
+namespace trammel::gcode {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::vector<std::string> all(LineSource& source) {
+  std::vector<std::string> lines;
+  for (std::string_view line; source.next(line);) {
+    lines.emplace_back(line);
+  }
+  std::string_view line;
+  EXPECT_FALSE(source.next(line)) << "a line behind the end";
+  return lines;
+}
+
+std::vector<std::string> lines_of(const std::string& text, std::size_t chunk = 65536) {
+  TextLines source(text, "text", chunk);
+  return all(source);
+}
+
+// Written another way: byte by byte.
+std::vector<std::string> plainly_split(const std::string& text) {
+  std::vector<std::string> lines;
+  std::string line;
+  bool open = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    open = text[i] != '\n' && text[i] != '\r';
+    if (open) {
+      line += text[i];
+      continue;
+    }
+    lines.push_back(line);
+    line.clear();
+    if (text[i] == '\r' && i + 1 < text.size() && text[i + 1] == '\n') {
+      ++i;
+    }
+  }
+  if (open) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(LineSource, EveryEndOfALine) {
+  EXPECT_THAT(lines_of("a\nb\r\nc\rd"), ElementsAre("a", "b", "c", "d"));
+  EXPECT_THAT(lines_of("a\n\nb\r\r\n\n\r"), ElementsAre("a", "", "b", "", "", ""));
+  EXPECT_THAT(lines_of(""), ElementsAre());
+  EXPECT_THAT(lines_of("\n"), ElementsAre(""));
+  EXPECT_THAT(lines_of("\r\n"), ElementsAre(""));
+  EXPECT_THAT(lines_of("a"), ElementsAre("a"));
+  EXPECT_THAT(lines_of(std::string("a\0b\n", 4)), ElementsAre(std::string("a\0b", 3)));
+}
+
+RC_GTEST_PROP(LineSource, ChunksMakeNoDifference, ()) {
+  const auto text = *rc::gen::container<std::string>(rc::gen::element('a', 'b', '\n', '\r'));
+  const auto chunk = *rc::gen::inRange<std::size_t>(1, 9);
+  RC_ASSERT(lines_of(text, chunk) == plainly_split(text));
+}
+
+TEST(LineSource, LongLinesStayWithinTheBuffer) {
+  const std::string longest(kLongestLine, 'x');
+  for (const std::size_t chunk : {std::size_t{1000}, std::size_t{65536}}) {
+    EXPECT_THAT(lines_of("a\n" + longest + "\nb", chunk), ElementsAre("a", longest, "b"));
+    EXPECT_THAT(lines_of(longest, chunk), ElementsAre(longest));
+    const std::string program = "(a)\n;" + longest + longest + "\n(b)";
+    TextLines source(program, "p.ngc", chunk);
+    machine::Machine machine;
+    Reader reader(source, machine);
+    Motion motion;
+    EXPECT_FALSE(reader.next(motion));
+    ASSERT_TRUE(reader.error());
+    EXPECT_EQ(reader.error()->code, ErrorCode::kLineTooLong);
+    EXPECT_EQ(describe(*reader.error()), "p.ngc:2: a line of more than 65535 bytes");
+  }
+}
+
+TEST(LineSource, FilesGiveTheirLines) {
+  const std::string path = testing::TempDir() + "line_source.ngc";
+  std::string text;
+  for (int i = 0; i < 50000; ++i) {
+    text += "N" + std::to_string(i) + (i % 3 == 0 ? "\r" : i % 3 == 1 ? "\n" : "\r\n");
+  }
+  std::ofstream(path, std::ios::binary) << text;
+  FileLines file(path);
+  EXPECT_EQ(file.name(), path);
+  EXPECT_EQ(all(file), plainly_split(text));
+  EXPECT_FALSE(file.failure());
+}
+
+TEST(LineSource, SaysWhyAFileCannotBeRead) {
+  for (const auto& [path, reason] :
+       {std::pair("no/such.ngc", "No such file or directory"), std::pair("/", "Is a directory")}) {
+    FileLines source(path);
+    machine::Machine machine;
+    Reader reader(source, machine);
+    Motion motion;
+    EXPECT_FALSE(reader.next(motion));
+    ASSERT_TRUE(reader.error());
+    EXPECT_EQ(reader.error()->code, ErrorCode::kCannotRead);
+    EXPECT_EQ(reader.error()->line, 0U);
+    EXPECT_EQ(reader.error()->message, std::string("cannot read the program: ") + reason);
+  }
+}
+
+}  // namespace
+}  // namespace trammel::gcode
