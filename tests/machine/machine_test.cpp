@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <iterator>
@@ -142,6 +144,29 @@ TEST(Machine, RefusesMoreThanEightAxes) {
   EXPECT_EQ(parse_machine(text, "m.toml").axes.size(), 8U);
   text += "\n" + replaced(table, "[axis.y]", "[axis.v]");
   EXPECT_EQ(error_of(text), "m.toml:1: 9 axes, the card has at most 8");
+}
+
+bool is_one_line(const std::string& message) {
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  return !message.empty() && message.size() <= 1000 && std::none_of(message.begin(), message.end(), control);
+}
+
+// Files that are nearly right: read, or refused with one line.
+RC_GTEST_PROP(Machine, AnyTextIsReadOrRefused, ()) {
+  std::string text = defaults();
+  const auto changes = *rc::gen::inRange(1, 6);
+  for (int i = 0; i < changes; ++i) {
+    const auto at = *rc::gen::inRange<std::size_t>(0, text.size());
+    const auto count = std::min(*rc::gen::inRange<std::size_t>(0, 12), text.size() - at);
+    text.replace(
+        at, count,
+        *rc::gen::element<std::string>("", "[", "]", "{", "}", "=", ".", "\n", "\"", "'", "[axis.x]", "[[card]]",
+                                       "card={}", "1e400", "nan", "0x", "99999999999999999999", "1979-05-27",
+                                       std::string("\0", 1), "\xff", "\x1b", "\"\\u0007\" = 1", "#", "\r"));
+  }
+  const std::string error = error_of(text);
+  RC_ASSERT(is_one_line(error));
+  RC_ASSERT(is_one_line(override_error(text.substr(0, *rc::gen::inRange<std::size_t>(0, 200)))));
 }
 
 std::string load_error(const std::string& path) {
