@@ -1,6 +1,7 @@
 // A run's result for people and for programs.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "program_run.hpp"
@@ -10,7 +11,6 @@ namespace trammel::app {
 // Some lines of text, units in every one.
 std::string summary(const RunResult& result);
 
-// Throws std::runtime_error when the file cannot be written; "-" is standard output.
-void write_json(const RunResult& result, const std::string& file);
+nlohmann::ordered_json json_of(const RunResult& result);
 
 }  // namespace trammel::app

@@ -16,7 +16,9 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/host/gcode/include/"
   "${PROJECT_SOURCE_DIR}/host/planner/include/"
   "${PROJECT_SOURCE_DIR}/host/run/include/"
-  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp")
+  "${PROJECT_SOURCE_DIR}/sim/include/"
+  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp"
+  PATTERN "lockstep.hpp" EXCLUDE)
 install(EXPORT trammel-targets NAMESPACE trammel:: DESTINATION "${trammel_package_dir}"
   COMPONENT trammel_development)
 

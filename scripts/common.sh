@@ -1,10 +1,14 @@
 # Shared by the scripts: where the project lies, what it needs from the distribution, how it says what it does.
 # Sourced, not run.
 set -euo pipefail
+caller_dir=$PWD  # what the command line names is meant from there
 project_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$project_dir"
 
-say() { printf '\033[1m== %s\033[0m\n' "$*" >&2; }
+# Bold on a terminal, plain in a log.
+say() {
+  if [ -t 2 ] && [ "${TERM:-dumb}" != dumb ]; then printf '\033[1m== %s\033[0m\n' "$*" >&2; else printf '== %s\n' "$*" >&2; fi
+}
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 # Everything that building and testing needs; scripts/setup installs what is missing.

@@ -1,6 +1,7 @@
 // Either engine: the Verilated card in lockstep with the golden model, or the model alone. Thread-safety: as of Engine.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,10 +12,16 @@ namespace trammel::sim {
 
 enum class EngineKind { kRtl, kModel };
 
+struct TraceFile {
+  std::string path;        // FST, two time steps a clock
+  std::uint64_t from = 0;  // the window, clocks since reset: from <= clock < to
+  std::uint64_t to = UINT64_MAX;
+};
+
 struct SimulationOptions : EngineOptions {
   EngineKind kind = EngineKind::kRtl;
-  std::optional<std::string> trace;  // FST file, kRtl with 4 or 8 axes only
-  std::uint64_t seed = 1;            // named in the report of a mismatch
+  std::optional<TraceFile> trace;  // kRtl with 4 or 8 axes only
+  std::uint64_t seed = 1;          // named in the report of a mismatch
 };
 
 // Throws std::invalid_argument for options out of range. A mismatch throws lockstep::Mismatch out of the call during
