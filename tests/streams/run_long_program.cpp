@@ -1,5 +1,6 @@
 // Usage: run_long_program [--keep] generated:<lines>
-// Runs a cheap program of so many lines on the model engine, from reader to steps, with a recorder of steps whose lists go nowhere.
+// Runs a cheap program of so many lines on the model engine, from reader to steps, with a recorder of steps whose lists
+// go nowhere.
 // --keep: an observer keeps a byte of every command, for the judge of memory.
 #include <cstdint>
 #include <cstdio>
@@ -56,7 +57,9 @@ class Keeper final : public run::Observer {
 
 void run_lines(std::uint64_t lines, bool keep) {
   const machine::Machine machine = machine::default_machine();
-  const std::unique_ptr<sim::Engine> engine = sim::make_model_engine({4, machine.clock_hz});
+  sim::EngineOptions card_options;
+  card_options.clock_hz = machine.clock_hz;
+  const std::unique_ptr<sim::Engine> engine = sim::make_model_engine(card_options);
   driver::Card card = driver::Card::open(*engine);
   run::Runner runner([&] { return std::make_unique<ShortMoves>(lines); }, machine,
                      planner::limits_of(card.identification()));
