@@ -84,6 +84,7 @@ sim::SimulationOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_cl
   options.kind = engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;
   options.axes = axes;
   options.clock_hz = clock_hz.value_or(options.kind == sim::EngineKind::kModel ? model_clock : rtl_clock);
+  options.rtl_thread = true;
   if (trace_window && !trace) throw UsageError("--trace-window: needs --trace");
   if (!trace) return options;
   if (options.kind == sim::EngineKind::kModel) {

@@ -9,10 +9,11 @@ endif()
 
 option(TRAMMEL_WERROR "Warnings are errors" OFF)
 
-# Every target of the project goes through this: C++17 (Debian's SystemC links only so) and the warnings.
+# Every target of the project goes through this: C++17 (Debian's SystemC links only so), the warnings, and no contraction of
+# a * b + c into one rounding: commands shall be the same on CPUs with and without fused multiply-add.
 function(trammel_target target)
   target_compile_features(${target} PUBLIC cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
                                            $<$<BOOL:${TRAMMEL_WERROR}>:-Werror>)
 endfunction()

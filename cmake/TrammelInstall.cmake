@@ -1,4 +1,9 @@
-# Install and export rules of the libraries. A consumer needs no Python, RTL or Verilator.
+# What is installed, a component each, every one of use without the others:
+#   trammel_development  libraries, headers, CMake package; a consumer needs no Python, RTL or Verilator
+#   trammel_command      the trammel command
+#   trammel_rtl          the card's sources, with their file list, FuseSoC core and lint waivers
+#   trammel_machine      the default machine file, to be changed
+#   trammel_licence
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -31,3 +36,22 @@ install(FILES
   "${PROJECT_BINARY_DIR}/trammel-config.cmake"
   "${PROJECT_BINARY_DIR}/trammel-config-version.cmake"
   DESTINATION "${trammel_package_dir}" COMPONENT trammel_development)
+
+# The model's engine; engines.hpp, which makes the Verilated one too, is of no use without Verilator.
+install(FILES "${PROJECT_SOURCE_DIR}/sim/include/trammel/sim/engine.hpp"
+  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/trammel/sim" COMPONENT trammel_development)
+
+set(trammel_data_dir "${CMAKE_INSTALL_DATADIR}/trammel")
+
+# In the folders that the file list names.
+file(STRINGS "${PROJECT_SOURCE_DIR}/rtl/trammel.f" sources REGEX "^[^/].*\\.sv$")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/rtl/trammel.f")
+foreach(file IN ITEMS trammel.f trammel.core lint/waivers.vlt LISTS sources)
+  cmake_path(GET file PARENT_PATH folder)
+  install(FILES "${PROJECT_SOURCE_DIR}/rtl/${file}" DESTINATION "${trammel_data_dir}/rtl/${folder}"
+    COMPONENT trammel_rtl)
+endforeach()
+
+install(FILES "${PROJECT_SOURCE_DIR}/examples/machine.toml" DESTINATION "${trammel_data_dir}"
+  COMPONENT trammel_machine)
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT trammel_licence)

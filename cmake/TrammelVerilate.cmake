@@ -65,20 +65,24 @@ function(trammel_verilate target)
 endfunction()
 
 # trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [HARNESS top.sv] [ARGS ...] [DEFINITIONS ...]
-#                      [INCLUDES ...] [INSIDE inside.cpp])
+#                      [INCLUDES ...] [INSIDE inside.cpp] [CHEAP])
 # Builds lockstep_<name>: the test runs Vdut (the block) beside its golden model.
 # The test is compiled once (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded
 # bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named after INSIDE and is
 # compiled for each copy. DEFINITIONS and INCLUDES are the test's. HARNESS is a top that joins several blocks for their
 # lockstep alone, beside the test.
 function(trammel_add_lockstep name)
-  cmake_parse_arguments(A "" "TOP;TEST;INSIDE;HARNESS" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
+  cmake_parse_arguments(A "CHEAP" "TOP;TEST;INSIDE;HARNESS" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
   set(target lockstep_${name})
+  set(cheap "")
+  if(A_CHEAP)
+    set(cheap CHEAP)
+  endif()
   if(A_HARNESS)
     list(APPEND A_ARGS "${CMAKE_CURRENT_SOURCE_DIR}/${A_HARNESS}")
   endif()
   add_executable(${target} ${A_INSIDE})
-  trammel_verilate(${target} PREFIX Vdut TOP ${A_TOP} SOURCES ${A_SOURCES} ARGS ${A_ARGS})
+  trammel_verilate(${target} ${cheap} PREFIX Vdut TOP ${A_TOP} SOURCES ${A_SOURCES} ARGS ${A_ARGS})
   trammel_lockstep_test(${target} TEST ${A_TEST} HEADERS_OF ${target} PREFIX Vdut)
   target_compile_definitions(${target}_test PRIVATE ${A_DEFINITIONS})
   target_include_directories(${target}_test PRIVATE ${A_INCLUDES})

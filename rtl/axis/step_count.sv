@@ -32,7 +32,7 @@ module step_count #(
   logic             slow_full;
   logic [     31:0] shifted;
 
-  assign shifted = {~word_i, 16'({slow_q, fast_q} >> 16)};
+  assign shifted = {~word_i, 16'(slow_q[Width-1:16])};
   assign count_step = step_i & counting_q;
   assign last_o = count_step & slow_zero_q & (fast_q == 4'b1110);
   assign nothing_o = live_o & slow_zero_q & (fast_q == 4'b1111);
@@ -45,7 +45,7 @@ module step_count #(
   always_ff @(posedge clk_i) begin
     if (load_i | count_step) fast_q <= fast_next;
     if (load_i | borrow_q) slow_q <= slow_next;
-    slow_zero_q <= slow_full & ~load_i;
+    slow_zero_q <= slow_full;
     borrow_q <= count_step & (fast_q == 4'b1111);
 
     if (arm_i) live_o <= counted_i;

@@ -46,7 +46,6 @@ module motion_core #(
     output logic      [    Axes-1:0] dir_o
 );
   // stops
-  logic               go;
   logic               hold;
   logic               mismatch;
   logic               incomplete;
@@ -111,7 +110,6 @@ module motion_core #(
       .incomplete_i(incomplete),
       .clear_i     (clear_fault_i),
       .at_rest_i   (held_o),
-      .go_o        (go),
       .hold_o      (hold),
       .stopping_o  (stopping)
   );
@@ -119,7 +117,6 @@ module motion_core #(
   tick_source ticks (
       .*,
       .cut_i          (cut_o),
-      .go_i           (go),
       .hold_i         (hold),
       .empty_i        (feed_empty_i),
       .word_i         (feed_word_i),
@@ -148,7 +145,6 @@ module motion_core #(
   ) geometry (
       .*,
       .cut_i          (cut_o),
-      .go_i           (go),
       .empty_i        (geometry_empty_i),
       .word_i         (geometry_word_i),
       .read_o         (geometry_read_o),

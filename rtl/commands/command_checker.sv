@@ -67,7 +67,7 @@ module command_checker #(
   logic awake;
   logic awake_q;
   assign awake = restart || write_i || flush_i || awake_q;
-  always_ff @(posedge clk_i) awake_q <= restart || write_i || flush_i || flush_q || !ready_q;
+  always_ff @(posedge clk_i) awake_q <= write_i || flush_i || flush_q || !ready_q;
 
   assign restart  = rst_i || clear_i;
   assign truncate = ready_q && (flush_i || flush_q) && partial_q;
@@ -102,11 +102,11 @@ module command_checker #(
       .Engines(Engines)
   ) fields (
       .clk_i,
-      .restart_i(low_q && !partial_q),
+      .restart_i(!partial_q),
       .examine_i((low_q || high_q) && partial_q),
       .judge_i((low_judge_q || high_judge_q) && partial_q),
       .read_ahead_i(low_judge_q || high_judge_q),
-      .padding_i(low_judge_q && padding && partial_q),
+      .padding_i(padding && partial_q),
       .halfword_i(word_q[15:0]),
       .op_i(op),
       .mask_i(mask),

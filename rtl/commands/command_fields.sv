@@ -1,6 +1,6 @@
 // Judges the halfwords of a command after its header: count, payload fields, padding.
 //
-// Two clocks a halfword with halfword_i held: examine_i, then judge_i. restart_i (a header's first clock) begins a
+// Two clocks a halfword with halfword_i held: examine_i, then judge_i. restart_i (high until a header has passed) begins a
 // command; op_i must be there in the judge_i that comes before the first halfword, where the table is read ahead.
 // The verdict stands from the clock after a bad halfword's judge_i to the next restart_i.
 `default_nettype none
@@ -17,7 +17,7 @@ module command_fields #(
     input wire logic [7:0] op_i,
     input wire logic [7:0] mask_i,
     output logic bad_o,
-    output logic bad_mask_o    // what is bad is the plane, which differs from the mask
+    output logic bad_mask_o    // with bad_o: what is bad is the plane, which differs from the mask
 );
 
   localparam int FIELD_END = card_map_pkg::CHECK_FIELD_END;
@@ -35,7 +35,6 @@ module command_fields #(
   logic [5:0] repeat_after_q;
   logic [15:0] allowed_q;
   logic [5:0] checks_q;
-  logic is_count_q;
   // What was found in the present halfword and, of the same field, below it.
   logic not_allowed_q;
   logic not_zero_q;
@@ -65,7 +64,6 @@ module command_fields #(
 
   always_ff @(posedge clk_i) begin
     if (read_ahead_i) begin
-      is_count_q <= in_count_q;
       if (padding_i) begin
         allowed_q <= 16'd0;
         checks_q  <= 6'd0;
@@ -90,8 +88,8 @@ module command_fields #(
       over_limit_q <= halfword_i[15:8] != 8'h00 && halfword_i[15:8] != 8'hFF &&
                       (halfword_i != 16'h0100 || below_not_zero_q);
       off_plane_q <= !mask_i[halfword_i[6:4]] || !mask_i[halfword_i[10:8]] || halfword_i[6:4] == halfword_i[10:8];
-      // The count goes round once while it is compared, lowest halfword first.
-      if (is_count_q || checks_q[AT_MOST_COUNT]) count_q <= {is_count_q ? halfword_i : count_q[15:0], count_q[47:16]};
+      // Where a field may be at most the count, it is the first one: the count leaves beside it, lowest halfword first.
+      count_q <= {halfword_i, count_q[47:16]};
     end
   end
 
@@ -114,14 +112,13 @@ module command_fields #(
 
     if (restart_i) begin
       bad_o <= 1'b0;
-      bad_mask_o <= 1'b0;
     end else if (judge_i && !bad_o) begin
       violated = not_allowed_q || (checks_q[NOT_ZERO] && !not_zero_q && !below_not_zero_q) ||
                  (checks_q[FIELD_END] && checks_q[AT_MOST_COUNT] && over_count_q) ||
                  (checks_q[FIELD_END] && (checks_q[UNSIGNED_LIMIT] || checks_q[SIGNED_LIMIT]) && over_limit_q);
       violated_mask = checks_q[PLANE] && off_plane_q;
       bad_o <= violated || violated_mask;
-      bad_mask_o <= violated_mask && !violated;
+      bad_mask_o <= !violated;
     end
   end
 

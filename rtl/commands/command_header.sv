@@ -38,8 +38,8 @@ module command_header #(
   logic feed_full_q;
 
   function automatic logic [3:0] ones(input logic [7:0] mask);
-    ones = 4'd0;
-    for (int i = 0; i < 8; i++) ones = ones + {3'b0, mask[i]};
+    ones = {3'b0, mask[0]};
+    for (int i = 1; i < 8; i++) ones = ones + {3'b0, mask[i]};
   endfunction
 
   always_ff @(posedge clk_i) begin : p_header

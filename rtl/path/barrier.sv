@@ -8,7 +8,6 @@ module barrier (
     input  wire logic clk_i,
     input  wire logic rst_i,
     input  wire logic cut_i,
-    input  wire logic go_i,             // no fault
     input  wire logic geometry_at_i,
     input  wire logic geometry_runs_i,
     input  wire logic feed_at_i,
@@ -21,8 +20,7 @@ module barrier (
     output logic      load_o,           // the barrier begins: load the tick counter
     output logic      counting_o,       // one count each clock
     output logic      done_o,           // both queues go on
-    output logic      ended_o,          // the last command was an END
-    output logic      idle_o
+    output logic      ended_o           // the last command was an END
 );
   // SETTLE waits for the last tick in the path domain; LEAVE gives the two fetches the clock in which they take back
   // geometry_at_i and feed_at_i.
@@ -36,22 +34,22 @@ module barrier (
 
   state_e       state_q;
   logic   [1:0] step_q;
-  logic         start;
+  logic         together;
   logic         alone;
   logic         over;
 
-  assign start = geometry_at_i && feed_at_i && go_i;
+  assign together = geometry_at_i && feed_at_i;
   assign alone = (geometry_at_i && feed_runs_i) || (feed_at_i && geometry_runs_i);
-  assign over  = state_q == COUNT && (zero_i || last_i);
+  assign over = state_q == COUNT && (zero_i || last_i);
 
   always_ff @(posedge clk_i) begin : p_barrier
     state_e state_d;
 
-    // Between barriers nothing moves.
-    if (cut_i || rst_i || state_q != IDLE || start) begin
+    // Both queues stand at a barrier until it is done, or cut; between barriers nothing moves.
+    if (together || rst_i) begin
       state_d = state_q;
       case (state_q)
-        IDLE: if (start) state_d = SETTLE;
+        IDLE: state_d = SETTLE;
         SETTLE: if (step_q == 2'd2) state_d = LOAD;
         LOAD: state_d = COUNT;
         COUNT: if (over) state_d = LEAVE;
@@ -62,14 +60,13 @@ module barrier (
       done_o     <= over && !cut_i && !rst_i;
       load_o     <= state_d == LOAD;
       counting_o <= state_d == COUNT;
-      idle_o     <= state_d == IDLE;
       step_q     <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
       state_q    <= state_d;
     end
   end
 
   always_ff @(posedge clk_i) begin
-    mismatch_o <= alone && go_i && !done_o && !cut_i && !rst_i;
+    mismatch_o <= alone && !cut_i && !rst_i;
     if (rst_i || cut_i || begin_i || load_o) ended_o <= 1'b0;
     else if (over && end_i) ended_o <= 1'b1;
   end

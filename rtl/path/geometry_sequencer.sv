@@ -8,7 +8,6 @@ module geometry_sequencer #(
     input  wire logic            clk_i,
     input  wire logic            rst_i,
     input  wire logic            cut_i,
-    input  wire logic            go_i,             // no fault
     // queue
     input  wire logic            empty_i,
     input  wire logic [    15:0] word_i,
@@ -61,9 +60,8 @@ module geometry_sequencer #(
   logic            last;
   logic            at_barrier;
   logic            counting;
-  logic            barrier_idle;
 
-  assign runs = (taking_o && !direct_o) || (valid && !is_barrier);
+  assign runs = taking_o || (valid && !is_barrier);
 
   geometry_decoder #(
       .Axes   (Axes),
@@ -115,8 +113,7 @@ module geometry_sequencer #(
       .begin_i        (path_begin),
       .load_o         (barrier_begin_o),
       .counting_o     (counting),
-      .done_o         (barrier_done_o),
-      .idle_o         (barrier_idle)
+      .done_o         (barrier_done_o)
   );
 
   // A direct move does not count.
@@ -125,7 +122,8 @@ module geometry_sequencer #(
       .begin_i((swap_o && !direct_o) || barrier_begin_o)
   );
 
-  always_ff @(posedge clk_i) idle_o <= (decoder_idle && empty_i && !path_active_o && barrier_idle) || rst_i;
+  // A barrier is over before its command is.
+  always_ff @(posedge clk_i) idle_o <= (decoder_idle && empty_i && !path_active_o) || rst_i;
 endmodule
 
 `default_nettype wire

@@ -57,10 +57,10 @@ module path_sequencer #(
 
   assign on_lines       = engine_i == LINES;
   assign path_valid     = valid_i && !barrier_i;
-  assign ending         = take_i && last_i && !drain_q;
+  assign ending         = take_i && last_i;
   assign over           = on_engine_q ? drained_q && done_i : settled_q && !axes_live_i;
   // After a line the next path takes over in the clock of the last tick. A path that ended elsewhere has no successor.
-  assign swap           = path_valid && !incomplete_o && (idle_q || (ending && !on_engine_q && !direct_o));
+  assign swap           = path_valid && !incomplete_o && (idle_q || (ending && !on_engine_q));
   assign pop_o          = swap || barrier_done_i;
   assign begin_o        = swap || direct_go_i;
   assign path_active_o  = !idle_q;
@@ -70,8 +70,8 @@ module path_sequencer #(
     swap_o       <= begin_o && !cut_i && !rst_i;
     incomplete_o <= over && on_engine_q && elsewhere_i && !cut_i && !rst_i;
     at_barrier_o <= valid_i && barrier_i && idle_q && !barrier_done_i && !cut_i && !rst_i;
-    drained_q    <= drain_q && !over && !cut_i && !rst_i;
-    settled_q    <= drain_q && settle_q == 3'd0 && !over && !cut_i && !rst_i;
+    drained_q    <= drain_q;
+    settled_q    <= drain_q && settle_q == 3'd0;
     if (!drain_q) settle_q <= SETTLE_CLOCKS;
     else if (settle_q != 3'd0) settle_q <= settle_q - 3'd1;
 
@@ -89,7 +89,6 @@ module path_sequencer #(
     end else if (begin_o) begin
       idle_q <= 1'b0;
       taking_o <= 1'b1;
-      drain_q <= 1'b0;
       on_engine_q <= swap && !on_lines;
       direct_o <= direct_go_i;
     end else if (ending) begin

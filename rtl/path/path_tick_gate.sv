@@ -9,7 +9,7 @@ module path_tick_gate (
     input  wire logic clk_i,
     input  wire logic rst_i,
     input  wire logic cut_i,
-    input  wire logic coming_i,           // a tick is on its way through the prescaler
+    input  wire logic coming_i,           // a tick is on its way through the prescaler, up to its step
     input  wire logic step_i,             // from the prescaler
     input  wire logic engine_ready_i,
     input  wire logic engine_stepping_i,  // the engine is not in the last clocks of a step
@@ -25,7 +25,7 @@ module path_tick_gate (
 
   // An engine answers a tick with ready low in the next clock: none is given in that clock.
   assign give  = waiting_q && engine_ready_i && !tick_o;
-  assign quiet = !coming_i && !step_i && !waiting_q && !tick_o;
+  assign quiet = !coming_i && !waiting_q && !tick_o;
 
   always_ff @(posedge clk_i) begin : p_count
     logic [3:0] count_d;

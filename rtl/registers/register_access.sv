@@ -106,7 +106,6 @@ module register_access #(
 
   always_ff @(posedge clk_i) begin
     if (stream_write_o) owner_q <= access_i[47:46];
-    if (rst_i) owner_q <= 2'd0;
   end
 
   logic       read_only;
@@ -119,8 +118,7 @@ module register_access #(
 
   always_ff @(posedge clk_i) begin
     if (judging) begin
-      good_q   <= 1'b0;
-      reason_q <= card_map_pkg::REFUSE_NONE;
+      good_q <= 1'b0;
       if (kind_q == card_map_pkg::ACCESS_NONE || absent_q) begin
         reason_q <= card_map_pkg::REFUSE_UNKNOWN_ADDRESS;
       end else if (!write && kind_q == card_map_pkg::ACCESS_COMMAND) begin
@@ -131,7 +129,7 @@ module register_access #(
         reason_q <= card_map_pkg::REFUSE_PARTIAL_WRITE;
       end else if (write && (stray_q != 4'd0 || !in_limits_q)) begin
         reason_q <= card_map_pkg::REFUSE_BAD_VALUE;
-      end else if (write && stream_q && stream_busy) begin
+      end else if (stream_q && stream_busy) begin
         reason_q <= card_map_pkg::REFUSE_BUSY;
       end else begin
         good_q <= 1'b1;

@@ -57,7 +57,6 @@ module register_ram #(
     store_q <= setting_i[40] || snapshot_i[40] || resetting_q;
     store_address_q <= {8{setting_i[40]}} & setting_i[39:32] | snapshot_i[39:32] | swept;
     store_data_q <= {32{setting_i[40]}} & setting_i[31:0] | snapshot_i[31:0] | reset_value;
-    if (rst_i) store_q <= 1'b0;
   end
 
   (* no_rw_check *)
@@ -70,8 +69,8 @@ module register_ram #(
     data_o   <= memory_q;
   end
 
-  // Of a snapshot its writer tells.
-  assign writing_o = resetting_q || store_q;
+  // Of a snapshot its writer tells. An access after a reset asks two clocks later at the earliest.
+  assign writing_o = store_q;
 
 endmodule
 `default_nettype wire

@@ -52,7 +52,7 @@ module snapshot_writer #(
   logic       begin_host;
 
   assign begin_stop = stop_i;
-  assign begin_host = (host_i && !active_o) || (last_q && for_stop_q && (host_q || host_i));
+  assign begin_host = (host_i && !active_o) || (last_q && for_stop_q && host_q);
 
   always_ff @(posedge clk_i) begin
     if (begin_stop || active_o || host_i) begin

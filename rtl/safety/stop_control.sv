@@ -1,4 +1,4 @@
-// Everything that stops the card: gathers the faults, lets ticks be taken or not, holds the time base, cuts.
+// Everything that stops the card: gathers the faults, holds the time base, cuts.
 //
 // A fault stops at once, or, where its reaction says so, after the time base has come to rest. Either way the cut leaves
 // nothing that could move, so clearing FAULT never starts motion.
@@ -17,7 +17,6 @@ module stop_control #(
     input  wire logic [    31:0] clear_i,       // ones written to FAULT
     input  wire logic            at_rest_i,     // the ratio is 0
     output logic      [    31:0] fault_o,
-    output logic                 go_o,          // ticks may be taken
     output logic                 hold_o,        // the time base slows down to rest
     output logic                 cut_o,
     output logic                 stop_o,        // the first cause of a stop
@@ -69,7 +68,6 @@ module stop_control #(
       ramped_q <= setting_i[Faults-1:0] & REACTIONS;
     fault_q  <= (fault_q & ~clear_i[Faults-1:0]) | cause;
     state_q  <= state_d;
-    go_o     <= state_d != STOPPED;
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
     stop_o   <= state_q == RUN && state_d != RUN;
     hold_o   <= hold_q || state_q == RAMP;
@@ -79,7 +77,6 @@ module stop_control #(
       ramped_q <= card_map_pkg::RESET_STOP_REACTION[Faults-1:0];
       fault_q  <= '0;
       state_q  <= RUN;
-      go_o     <= 1'b1;
       cut_o    <= 1'b0;
       stop_o   <= 1'b0;
       hold_o   <= 1'b0;

@@ -5,7 +5,6 @@ module tick_source (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        cut_i,
-    input  wire logic        go_i,
     input  wire logic        hold_i,
     input  wire logic [40:0] setting_i,
     // queue

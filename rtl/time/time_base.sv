@@ -51,9 +51,7 @@ module time_base (
       turn_q <= 2'd0;
       ratio_q <= ONE;
       goal_q <= 17'h1_0000;
-      up_q <= 1'b0;
-      arrived_q <= 1'b0;
-      candidate_q <= {1'b0, ONE};
+      arrived_q <= 1'b1;
     end else begin
       turn_q <= turn_q + 2'd1;
       if (turn_q == 2'd0) begin

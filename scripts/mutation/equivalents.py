@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List, Optional
 
-KEYS = {"module", "original", "mutated", "nth", "reason"}
+KEYS = [{"module", "original", "mutated", "reason"}, {"module", "part", "reason"}]
 
 
 class EquivalentsError(Exception):
@@ -14,39 +14,47 @@ class EquivalentsError(Exception):
 
 @dataclass
 class Equivalent:
-    module: str
+    modules: List[str]
     original: str
     mutated: List[str]
     nth: Optional[int]  # none: every one with these texts
+    part: str  # what all mutants of a family have in their mutated text; with it no texts
     reason: str
 
     def covers(self, mutant: dict) -> bool:
-        return (mutant["module"] == self.module and mutant["original"] == self.original
-                and mutant["mutated"] in self.mutated and self.nth in (None, mutant["nth"]))
+        if mutant["module"] not in self.modules or self.nth not in (None, mutant["nth"]):
+            return False
+        if self.part:
+            return self.part in mutant["mutated"] and self.part not in mutant["original"]
+        return mutant["original"] == self.original and mutant["mutated"] in self.mutated
 
 
 def read(path: Path) -> List[Equivalent]:
     result = []
     for entry in tomllib.loads(path.read_text()).get("equivalent", []):
-        unknown, missing = set(entry) - KEYS, KEYS - {"nth"} - set(entry)
-        if unknown or missing or not entry["reason"].strip():
-            raise EquivalentsError(f"{path.name}: {entry}: needs module, original, mutated and reason, may have nth")
-        mutated = entry["mutated"] if isinstance(entry["mutated"], list) else [entry["mutated"]]
-        result.append(Equivalent(entry["module"], entry["original"], mutated, entry.get("nth"), entry["reason"]))
+        if set(entry) - {"nth"} not in KEYS or not entry["reason"].strip() or not entry.get("part", "-"):
+            raise EquivalentsError(f"{path.name}: {entry}: needs module, reason and original with mutated, or part; may have nth")
+        result.append(Equivalent(as_list(entry["module"]), entry.get("original", ""), as_list(entry.get("mutated", [])),
+                                 entry.get("nth"), entry.get("part", ""), entry["reason"]))
     return result
 
 
+def as_list(value) -> List[str]:
+    return value if isinstance(value, list) else [value]
+
+
 def by_mutant(entries: List[Equivalent], mutants: List[dict]) -> Dict[str, Equivalent]:
-    """For the id of each mutant that is listed its entry. Every text of every entry must match a mutant."""
+    """For the id of each mutant that is listed its entry. Every text and module of every entry must match a mutant."""
     listed = {}
     for entry in entries:
         covered = [mutant for mutant in mutants if entry.covers(mutant)]
         stale = set(entry.mutated) - {mutant["mutated"] for mutant in covered}
-        if stale:
-            raise EquivalentsError(
-                f"equivalents: no such mutant of {entry.module}: {entry.original}  ->  {' / '.join(sorted(stale))}")
+        empty = set(entry.modules) - {mutant["module"] for mutant in covered}
+        if stale or empty:
+            raise EquivalentsError(f"equivalents: no such mutant of {', '.join(sorted(empty) or entry.modules)}: "
+                                   f"{entry.original}  ->  {entry.part or ' / '.join(sorted(stale) or entry.mutated)}")
         for mutant in covered:
             if mutant["id"] in listed:
-                raise EquivalentsError(f"equivalents: listed twice: {entry.module}: {entry.original}  ->  {mutant['mutated']}")
+                raise EquivalentsError(f"equivalents: listed twice: {mutant['module']}: {mutant['original']}  ->  {mutant['mutated']}")
             listed[mutant["id"]] = entry
     return listed

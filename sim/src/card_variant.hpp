@@ -1,6 +1,7 @@
 // One variant of the Verilated card; instantiated once for each Verilated class, in a file of its own.
 #pragma once
 
+#include "card_inputs.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "verilated_card.hpp"
 
@@ -15,7 +16,7 @@ class CardVariant : public VerilatedCard {
   }
 
   void run(const model::CardModel::Inputs& in, std::size_t clocks, CardRecord* records) override {
-    apply(in);
+    set_inputs(*dut_, in);
     for (std::size_t i = 0; i < clocks; ++i) {
       dut_.clock();
       records[i].template show_rtl<kAxes>(*dut_);
@@ -23,19 +24,6 @@ class CardVariant : public VerilatedCard {
   }
 
  protected:
-  void apply(const model::CardModel::Inputs& in) {
-    dut_->rst_i = in.rst;
-    dut_->awvalid_i = in.awvalid;
-    dut_->awaddr_i = static_cast<std::uint16_t>(in.awaddr);
-    dut_->wvalid_i = in.wvalid;
-    dut_->wdata_i = in.wdata;
-    dut_->wstrb_i = in.wstrb;
-    dut_->bready_i = in.bready;
-    dut_->arvalid_i = in.arvalid;
-    dut_->araddr_i = static_cast<std::uint16_t>(in.araddr);
-    dut_->rready_i = in.rready;
-  }
-
   lockstep::Simulated<Dut> dut_;
 };
 
@@ -47,7 +35,7 @@ class BothEdgesVariant : public CardVariant<Dut, kAxes> {
   using CardVariant<Dut, kAxes>::CardVariant;
 
   void run(const model::CardModel::Inputs& in, std::size_t clocks, CardRecord* records) override {
-    this->apply(in);
+    set_inputs(*this->dut_, in);
     for (std::size_t i = 0; i < clocks; ++i) {
       this->dut_.clock_by_both_edges([this] { at_edge(); });
       records[i].template show_rtl<kAxes>(*this->dut_);

@@ -15,7 +15,8 @@ class RtlEngine final : public BusEngine {
  public:
   RtlEngine(std::unique_ptr<VerilatedCard> card, const SimulationOptions& options)
       : BusEngine(options),
-        card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch) {}
+        card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch,
+              options.rtl_thread && !options.trace ? RtlThread::kOwn : RtlThread::kCallers) {}
 
   void wait(std::uint64_t card_clocks) override { card_.run(CardModel::Inputs{}, card_clocks); }
   std::optional<std::uint64_t> lockstep_cycles() const override {

@@ -247,6 +247,10 @@ inline void add_header_violations(std::vector<Violation>& list, const WireComman
   }
   if (good.mask() != 0 && names_axes)
     add("no axis", 0, static_cast<unsigned>(good.mask()) << 8, card_map::Reason::BadMask);
+  for (unsigned axis = 0; axis < axes && good.layout->mask_rule == card_map::MaskRule::PlaneAndAxes; ++axis) {
+    const unsigned flip = (1U << axis) ^ good.mask();
+    add("axis " + std::to_string(axis) + " alone", 0, flip << 8, card_map::Reason::BadMask);
+  }
   if (good.layout->mask_rule == card_map::MaskRule::None) {
     for (unsigned mask = 1; mask < 256; ++mask) {
       add("mask " + std::to_string(mask), 0, mask << 8, card_map::Reason::BadMask);

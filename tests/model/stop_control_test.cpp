@@ -49,7 +49,7 @@ TEST(StopControl, NothingHappensByItself) {
   StopControl stop;
   for (int i = 0; i < 20; ++i) {
     const auto& o = stop.outputs();
-    EXPECT_TRUE(o.go && !o.hold && !o.cut && !o.stop && !o.closed && !o.stopping && o.fault == 0);
+    EXPECT_TRUE(!stop.stopped() && !o.hold && !o.cut && !o.stop && !o.closed && !o.stopping && o.fault == 0);
     EXPECT_TRUE(stop.quiet());
     stop.clock(none());
   }
@@ -64,7 +64,7 @@ TEST(StopControl, AnImmediateEventStopsAClockLater) {
     StopControl stop;
     stop.clock(event);
     EXPECT_EQ(stop.outputs().fault, bits);
-    EXPECT_FALSE(stop.outputs().go);
+    EXPECT_TRUE(stop.stopped());
     EXPECT_TRUE(stop.outputs().cut);
     EXPECT_TRUE(stop.outputs().stop);
     EXPECT_FALSE(stop.outputs().closed);
@@ -73,15 +73,15 @@ TEST(StopControl, AnImmediateEventStopsAClockLater) {
     EXPECT_FALSE(stop.outputs().stop);
     EXPECT_TRUE(stop.outputs().closed);
     idle(stop, 50);
-    EXPECT_FALSE(stop.outputs().go) << "for as long as the fault stands";
+    EXPECT_TRUE(stop.stopped()) << "for as long as the fault stands";
     stop.clock(clear(~bits));
     idle(stop, 3);
     EXPECT_EQ(stop.outputs().fault, bits);
     stop.clock(clear(bits));
     EXPECT_EQ(stop.outputs().fault, 0U);
-    EXPECT_FALSE(stop.outputs().go);
+    EXPECT_TRUE(stop.stopped());
     stop.clock(none());
-    EXPECT_TRUE(stop.outputs().go);
+    EXPECT_FALSE(stop.stopped());
     EXPECT_TRUE(stop.outputs().closed);
     stop.clock(none());
     EXPECT_FALSE(stop.outputs().closed);
@@ -99,9 +99,9 @@ TEST(StopControl, AnEventWinsOverAClearAndKeepsTheCardStopped) {
   EXPECT_FALSE(stop.outputs().stop);
   stop.clock(clear(1));
   stop.clock(step_fault(2));  // in the clock in which it would have gone to RUN
-  EXPECT_FALSE(stop.outputs().go);
+  EXPECT_TRUE(stop.stopped());
   idle(stop, 5);
-  EXPECT_FALSE(stop.outputs().go);
+  EXPECT_TRUE(stop.stopped());
   EXPECT_EQ(stop.outputs().fault, 2U);
 }
 
@@ -109,7 +109,7 @@ TEST(StopControl, ARampHoldsUntilAtRest) {
   StopControl stop;
   stop.clock(set(reg::kStopReaction, 0x02));
   stop.clock(step_fault(2));
-  EXPECT_TRUE(stop.outputs().go);
+  EXPECT_FALSE(stop.stopped());
   EXPECT_TRUE(stop.outputs().stop);
   EXPECT_TRUE(stop.outputs().stopping);
   EXPECT_FALSE(stop.outputs().cut);
@@ -120,13 +120,13 @@ TEST(StopControl, ARampHoldsUntilAtRest) {
   stop.clock(clear(2));
   stop.clock(step_fault(2));
   idle(stop, 10);
-  EXPECT_TRUE(stop.outputs().go && stop.outputs().hold) << "neither a clear nor the same cause ends the ramp";
+  EXPECT_TRUE(!stop.stopped() && stop.outputs().hold) << "neither a clear nor the same cause ends the ramp";
   StopControl::Inputs rest;
   rest.at_rest = true;
   stop.clock(rest);
   EXPECT_TRUE(stop.outputs().cut);
   EXPECT_FALSE(stop.outputs().stop) << "the first cause has asked for the snapshot";
-  EXPECT_FALSE(stop.outputs().go);
+  EXPECT_TRUE(stop.stopped());
   EXPECT_FALSE(stop.outputs().stopping);
   stop.clock(none());
   EXPECT_FALSE(stop.outputs().hold);
@@ -140,25 +140,25 @@ TEST(StopControl, AnImmediateEventOrAnAbortEndsARamp) {
     idle(stop, 3);
     stop.clock(event);
     EXPECT_TRUE(stop.outputs().cut);
-    EXPECT_FALSE(stop.outputs().go);
+    EXPECT_TRUE(stop.stopped());
   }
   StopControl stop;
   stop.clock(set(reg::kStopReaction, 0x80));
   stop.clock(step_fault(0x81));
-  EXPECT_FALSE(stop.outputs().go) << "ramped and immediate at once: immediate";
+  EXPECT_TRUE(stop.stopped()) << "ramped and immediate at once: immediate";
 }
 
 TEST(StopControl, AnAbortCutsInAnyState) {
   StopControl stop;
   stop.clock(abort_now());
   EXPECT_TRUE(stop.outputs().cut);
-  EXPECT_TRUE(stop.outputs().go);
+  EXPECT_FALSE(stop.stopped());
   EXPECT_FALSE(stop.outputs().stop);
   stop.clock(mismatch());
   idle(stop, 2);
   stop.clock(abort_now());
   EXPECT_TRUE(stop.outputs().cut);
-  EXPECT_FALSE(stop.outputs().go) << "the fault stands";
+  EXPECT_TRUE(stop.stopped()) << "the fault stands";
   StopControl ramping;
   ramping.clock(set(reg::kStopReaction, 1));
   StopControl::Inputs both = step_fault(1);
@@ -173,7 +173,7 @@ TEST(StopControl, HoldFollowsItsSettingTwoClocksLater) {
   EXPECT_FALSE(stop.outputs().hold);
   stop.clock(none());
   EXPECT_TRUE(stop.outputs().hold);
-  EXPECT_TRUE(stop.outputs().go);
+  EXPECT_FALSE(stop.stopped());
   EXPECT_FALSE(stop.outputs().closed);
   stop.clock(set(reg::kHold, 0));
   stop.clock(none());

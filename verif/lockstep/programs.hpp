@@ -50,6 +50,8 @@ class Programs {
 
   // One in `wrong_every` stretches gives more ticks than it takes, or less; one in as many arcs misses its end.
   unsigned wrong_every = 100;
+  // Without them all paths are lines.
+  bool arcs = true;
   // The most ticks of a stretch, and of its paths and pieces.
   unsigned longest = 600;
 
@@ -92,7 +94,7 @@ class Programs {
 
  private:
   std::uint64_t path(std::vector<Halfwords>& to, bool single) {
-    if (axes_ > 1 && dice_.chance(4)) return arc(to);
+    if (arcs && axes_ > 1 && dice_.chance(4)) return arc(to);
     const unsigned mask = 1 + dice_.below((1U << axes_) - 1);
     const std::uint64_t ticks = single ? 1 : 1 + dice_.below(dice_.chance(3) ? 4 : longest);
     std::vector<std::int64_t> increments;

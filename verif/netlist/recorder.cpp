@@ -6,6 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "card_inputs.hpp"
 #include "trammel/card_map.hpp"
 
 namespace trammel::netlist {
@@ -117,16 +118,7 @@ void Recorder::reset(int clocks) {
 }
 
 void Recorder::clock() {
-  dut_->rst_i = in_.rst;
-  dut_->awvalid_i = in_.awvalid;
-  dut_->awaddr_i = static_cast<std::uint16_t>(in_.awaddr);
-  dut_->wvalid_i = in_.wvalid;
-  dut_->wdata_i = in_.wdata;
-  dut_->wstrb_i = in_.wstrb;
-  dut_->bready_i = in_.bready;
-  dut_->arvalid_i = in_.arvalid;
-  dut_->araddr_i = static_cast<std::uint16_t>(in_.araddr);
-  dut_->rready_i = in_.rready;
+  sim::set_inputs(*dut_, in_);
   dut_.clock();
   model_.clock(in_);
   judge();

@@ -14,8 +14,6 @@ using card_map::Reason;
 
 namespace {
 
-using uint128 = CommandChecker::uint128;
-
 constexpr std::size_t kCountBegin = 2;
 constexpr std::size_t kCountHalfwords = 3;
 constexpr std::size_t kPayloadBegin = kCountBegin + kCountHalfwords;

@@ -60,16 +60,12 @@ void FeedGenerator::advance_varying(Advanced& gone, std::uint64_t limit, std::ui
 
 // Rate and its difference stay between floor and 1 for so many updates.
 bool FeedGenerator::unclamped_for(std::uint64_t updates) const {
-  __extension__ typedef __int128 int128;
-  const auto rate = static_cast<int128>(rate_);
-  const auto magnitude = [](uint128 value) {
-    const auto number = static_cast<int128>(value);
-    return number < 0 ? -number : number;
-  };
-  const int128 difference = magnitude(acceleration_) + magnitude(jerk_) * static_cast<int128>(updates);
-  if (difference >> 63 != 0) return false;
-  const int128 span = difference * static_cast<int128>(updates);
-  return rate - span >= static_cast<int128>(floor_rate_) && rate + span < (static_cast<int128>(1) << 64);
+  const auto negative = [](uint128 value) { return value >> 127 != 0; };
+  const auto magnitude = [&](uint128 value) { return negative(value) ? uint128{0} - value : value; };
+  const uint128 difference = magnitude(acceleration_) + magnitude(jerk_) * updates;
+  if (difference >> 63 != 0 || negative(rate_)) return false;
+  const uint128 span = difference * updates;
+  return rate_ >= span + floor_rate_ && (rate_ + span) >> 64 == 0;
 }
 
 // Updates without a carry that reaches the target, from a count of 0. The hot loop of a changing rate.

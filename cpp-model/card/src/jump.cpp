@@ -79,7 +79,7 @@ void Jump::travel() {
     std::int64_t edge = 0;
     const bool in_flight = next <= flying_;
     if (in_flight)
-      edge = flight_[next - 1];
+      edge = flight_[static_cast<std::size_t>(next - 1)];
     else if (!find(next, generator, done, edge))
       return;
     if (next == stop) return stop_before(stop);
@@ -108,7 +108,7 @@ void Jump::stop_before(std::uint64_t tick) {
   std::uint64_t done = 0;
   std::int64_t edge = 0;
   if (tick <= flying_)
-    edge = flight_[tick - 1];
+    edge = flight_[static_cast<std::size_t>(tick - 1)];
   else if (!find(tick, generator, done, edge))
     return;
   end_ = std::min(end_, edge + kLastTake);

@@ -24,7 +24,6 @@ MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all)
 Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
   Sequencer::Inputs s;
   s.cut = stop_.outputs().cut;
-  s.go = stop_.outputs().go;
   s.geometry_empty = in.geometry_empty;
   s.feed_empty = in.feed_empty;
   s.geometry_word = in.geometry_word;

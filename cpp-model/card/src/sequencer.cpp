@@ -13,7 +13,7 @@ bool Sequencer::judged(const Inputs& in) const {
 
 bool Sequencer::takes(const Inputs& in) const {
   const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
-  return owed_ != 0 && ticking && in.engine_ready && in.go && (out_.feed_active || out_.direct);
+  return owed_ != 0 && ticking && in.engine_ready && (out_.feed_active || out_.direct);
 }
 
 Sequencer::Decision Sequencer::decide(const Inputs& in) const {
@@ -25,10 +25,10 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   const bool free = path_ == Path::None || (path_ == Path::Line && d.path_ends);
   const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
   const bool piece_waits = feed_.decoded() && feed_.is_feed();
-  d.path_begins = path_waits && free && in.go && !out_.incomplete;
-  d.piece_begins = piece_waits && in.go && (!out_.feed_active || d.piece_ends);
+  d.path_begins = path_waits && free && !out_.incomplete;
+  d.piece_begins = piece_waits && (!out_.feed_active || d.piece_ends);
   d.barrier_begins = barrier_ == Barrier::Beginning && now_ == barrier_at_;
-  d.barrier_ends = barrier_ == Barrier::Running && in.go && now_ == barrier_at_;
+  d.barrier_ends = barrier_ == Barrier::Running && now_ == barrier_at_;
   d.barrier_done = barrier_ == Barrier::Done;
   d.piece_runs = out_.feed_active;
   // An engine's state is in use until its path's last feed tick has reached it.
@@ -37,18 +37,18 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
 }
 
 // One queue at a barrier while the other still has ticks to give or to take.
-bool Sequencer::mismatches(const Inputs& in) const {
+bool Sequencer::mismatches() const {
   const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
   const bool piece_waits = feed_.decoded() && feed_.is_feed();
   const bool path_ticks = (path_ == Path::Line || path_ == Path::Engine) && !drained_;
   const bool geometry_alone = geometry_stands_ && (out_.feed_active || piece_waits);
   const bool feed_alone = feed_stands_ && (path_ticks || path_waits);
-  return (geometry_alone || feed_alone) && in.go && barrier_ != Barrier::Done;
+  return (geometry_alone || feed_alone) && barrier_ != Barrier::Done;
 }
 
 void Sequencer::clock(const Inputs& in) {
-  const unsigned inputs = (in.cut ? 1U : 0) | (in.go ? 2U : 0) | (in.geometry_empty ? 4U : 0) |
-                          (in.feed_empty ? 8U : 0) | (in.direct_go ? 16U : 0) | (in.direct_load.valid ? 32U : 0);
+  const unsigned inputs = (in.cut ? 1U : 0) | (in.geometry_empty ? 2U : 0) | (in.feed_empty ? 4U : 0) |
+                          (in.direct_go ? 8U : 0) | (in.direct_load.valid ? 16U : 0);
   if (!calm_ || inputs != calm_inputs_) {
     calm_ = !clock_all_ && calm(in);
     calm_inputs_ = inputs;
@@ -67,7 +67,7 @@ void Sequencer::clock(const Inputs& in) {
 
 void Sequencer::clock_all(const Inputs& in) {
   const Decision d = decide(in);
-  const bool mismatch = mismatches(in);
+  const bool mismatch = mismatches();
   const bool feed_idle = feed_.idle();
   out_.idle = geometry_idle_ && feed_idle && in.feed_empty && !out_.feed_active;
   geometry_idle_ = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
@@ -76,7 +76,7 @@ void Sequencer::clock_all(const Inputs& in) {
   record_ = {d.path_begins || d.barrier_begins, in.direct_go};
   count_begun(in, d);
   clock_ticks(in, d.take);
-  clock_barrier(in, d);
+  clock_barrier(d);
   stand(d);
   clock_path(in, d);
   clock_piece(d);
@@ -103,7 +103,7 @@ void Sequencer::clock_ticks(const Inputs& in, bool take) {
   const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
   const bool stall = owed_ > 1;
   out_.tick = take;
-  out_.feed_enable = in.enable && out_.feed_active && ticking && !stall && in.go;
+  out_.feed_enable = in.enable && out_.feed_active && ticking && !stall;
   out_.feed_clear = !out_.feed_active;
   owed_ = running ? owed_ + (tick_arrives_ ? 1U : 0U) - (take ? 1U : 0U) : 0;
   tick_arrives_ = out_.direct ? in.enable && ticking : in.feed_tick && out_.feed_active;
@@ -125,7 +125,7 @@ void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
 }
 
 // From both queues standing at it to the clock in which they go on.
-void Sequencer::clock_barrier(const Inputs& in, const Decision& d) {
+void Sequencer::clock_barrier(const Decision& d) {
   if (d.barrier_begins) {
     barrier_ = Barrier::Running;
     barrier_at_ = now_ + std::max<std::uint64_t>(1, path_count_ & kCountMask);
@@ -133,7 +133,7 @@ void Sequencer::clock_barrier(const Inputs& in, const Decision& d) {
     barrier_ = Barrier::Done;
   } else if (barrier_ == Barrier::Done) {
     barrier_ = Barrier::None;
-  } else if (barrier_ == Barrier::None && geometry_stands_ && feed_stands_ && in.go) {
+  } else if (barrier_ == Barrier::None && geometry_stands_ && feed_stands_) {
     barrier_ = Barrier::Beginning;
     barrier_at_ = now_ + kBarrierBegins;
   }
@@ -176,7 +176,7 @@ void Sequencer::clock_piece(const Decision& d) {
 
 bool Sequencer::settled(const Inputs& in) const {
   if (!calm(in) || (barrier_ == Barrier::Running && now_ == barrier_at_)) return false;
-  if (ticking()) return in.go && in.engine_ready && owed_ <= 1;
+  if (ticking()) return in.engine_ready && owed_ <= 1;
   return !takes(in) && !tick_arrives_ && !out_.tick && !out_.feed_enable && !in.feed_tick &&
          (out_.feed_active || owed_ == 0);
 }
@@ -191,13 +191,12 @@ bool Sequencer::calm(const Inputs& in) const {
   if (geometry_.waiting() && path_ != Path::Engine) return false;
   const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
   const bool piece_waits = feed_.decoded() && feed_.is_feed();
-  if (in.go && ((path_waits && path_ == Path::None) || (piece_waits && !out_.feed_active))) return false;
-  if (barrier_ == Barrier::Beginning || barrier_ == Barrier::Done || mismatches(in)) return false;
+  if ((path_waits && path_ == Path::None) || (piece_waits && !out_.feed_active)) return false;
+  if (barrier_ == Barrier::Beginning || barrier_ == Barrier::Done || mismatches()) return false;
   const bool geometry_stands = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None;
   const bool feed_stands = feed_.decoded() && feed_.is_barrier() && !out_.feed_active;
   if (geometry_stands != geometry_stands_ || feed_stands != feed_stands_) return false;
-  if (barrier_ == Barrier::None && geometry_stands && feed_stands && in.go) return false;
-  if (barrier_ == Barrier::Running && !in.go) return false;
+  if (barrier_ == Barrier::None && geometry_stands && feed_stands) return false;
   const bool geometry_idle = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
   const bool idle = geometry_idle && feed_.idle() && in.feed_empty && !out_.feed_active;
   return geometry_idle == geometry_idle_ && idle == out_.idle && out_.feed_clear != out_.feed_active;

@@ -28,7 +28,8 @@ class Bench {
     const bool engine = dice_.chance(4);
     const bool direct = !engine && dice_.chance(3);
     const std::int64_t top = std::int64_t{1} << (30 + dice_.below(11));
-    const std::int64_t magnitude = static_cast<std::int64_t>(dice_.word() >> 24) % (top + 1);
+    // A power of two meets the half pulse exactly, where a line and its mirror image differ.
+    const std::int64_t magnitude = dice_.chance(4) ? top : static_cast<std::int64_t>(dice_.word() >> 24) % (top + 1);
     send(kIncrement, static_cast<std::uint64_t>(dice_.chance(2) ? magnitude : -magnitude), 3);
     if (direct) send(kCount, dice_.below(30), 2);
     in_.swap = true;

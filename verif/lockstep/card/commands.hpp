@@ -51,12 +51,13 @@ driver::ArcCommand random_arc(Random&& random, unsigned axes) {
   return driver::prepare(arc);
 }
 
-// A line or an arc for ticks that come one in `pace` clocks; adds its ticks to `total`. `random(n)`: 0 .. n - 1.
+// A line, or one path in `arc_every` an arc, for ticks that come one in `pace` clocks; adds its ticks to `total`.
+// `random(n)`: 0 .. n - 1.
 template <class Random>
-driver::Command random_path(Random&& random, unsigned axes, double pace, std::uint64_t& total) {
+driver::Command random_path(Random&& random, unsigned axes, double pace, std::uint64_t& total, unsigned arc_every = 4) {
   const std::uint64_t ticks = random(3) == 0 ? 1 + random(30) : 1 + random(400);
   total += ticks;
-  if (axes > 1 && random(4) == 0) {
+  if (axes > 1 && random(arc_every) == 0) {
     const driver::ArcCommand arc = random_arc(random, axes);
     total += arc.path_ticks;
     driver::ArcCommand timed = driver::with_ticks(arc, ticks + arc.path_ticks);

@@ -18,7 +18,8 @@ namespace field = card_map::field;
 
 class Traffic {
  public:
-  Traffic(AxiHost& host, unsigned axes) : host_(host), axes_(axes) {}
+  // One path in `arc_every` is an arc.
+  Traffic(AxiHost& host, unsigned axes, unsigned arc_every = 4) : host_(host), axes_(axes), arc_every_(arc_every) {}
 
   // Sends a command, sometimes broken in one bit when `faulty`. False when a word was refused.
   bool send(const driver::Command& command, bool faulty = false) {
@@ -70,6 +71,7 @@ class Traffic {
 
   AxiHost& host_;
   unsigned axes_;
+  unsigned arc_every_;
   std::uint8_t number_ = 0;
 };
 
@@ -79,7 +81,7 @@ inline void Traffic::section(bool faulty) {
   std::uint64_t total = 0;
   const auto random = [this](std::uint64_t count) { return below(count); };
   for (std::uint64_t paths = 1 + below(6); paths != 0; --paths)
-    geometry.push_back(random_path(random, axes_, pace, total));
+    geometry.push_back(random_path(random, axes_, pace, total, arc_every_));
   std::vector<driver::Command> pieces;
   for (std::uint64_t left = total; left != 0;) {
     const std::uint64_t ticks = one_in(3) ? left : 1 + below(left);

@@ -1,5 +1,5 @@
-// Lockstep of the AXI4-Lite port between a random master and a random register file. Payloads are compared where
-// their valid or request makes them mean something.
+// Lockstep of the AXI4-Lite port between a random master and a random register file. Data is compared where its valid
+// or request makes it mean something.
 #include "trammel/model/axi4_lite_port.hpp"
 
 #include <gtest/gtest.h>
@@ -19,22 +19,23 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : checker_("axi4_lite_port", seed), random_(seed) { reset(); }
 
+  // One clock, whatever else comes in it.
   void reset() {
-    in_ = {};
-    handshake_ = {};
-    wait_ = 0;
     rtl_->rst_i = 1;
     drive();
     rtl_.clock();
     rtl_->rst_i = 0;
     model_.reset();
     compare();
+    in_ = {};
+    handshake_ = {};
+    wait_ = 0;
   }
 
   void random_clock() {
     random_master();
     random_file();
-    if (chance(5000)) reset();
+    if (chance(500)) reset();
     drive();
     rtl_.clock();
     model_.clock(in_);
@@ -107,11 +108,10 @@ class Bench {
     checker_.compare("bvalid_o", rtl_->bvalid_o, out.bvalid);
     checker_.compare("rvalid_o", rtl_->rvalid_o, out.rvalid);
     checker_.compare("request_o", rtl_->access_o >> 47, out.request);
-    if (out.bvalid) checker_.compare("bresp_o", rtl_->bresp_o, out.bresp);
-    if (out.rvalid) {
-      checker_.compare("rresp_o", rtl_->rresp_o, out.rresp);
-      checker_.compare("rdata_o", rtl_->rdata_o, out.rdata);
-    }
+    checker_.compare("bresp_o", rtl_->bresp_o, out.bresp);
+    checker_.compare("rresp_o", rtl_->rresp_o, out.rresp);
+    checker_.compare("access_o, bit without a meaning", rtl_->access_o >> 44 & 1U, 0U);
+    if (out.rvalid) checker_.compare("rdata_o", rtl_->rdata_o, out.rdata);
     if (!out.request) return;
     checker_.compare("write_o", rtl_->access_o >> 46 & 1U, out.write);
     checker_.compare("address_o", rtl_->access_o >> 32 & 0xFFFU, out.address);
@@ -143,7 +143,7 @@ TEST(Axi4LitePort, RandomTraffic) {
               const std::uint64_t length = trammel::lockstep::scaled(200'000);
               for (std::uint64_t i = 0; i < length; ++i) bench.random_clock();
               EXPECT_GT(bench.requests(), 10'000u);
-              EXPECT_GE(bench.checker().comparisons(), bench.checker().cycles() * 6);
+              EXPECT_GE(bench.checker().comparisons(), bench.checker().cycles() * 9);
             }));
 }
 

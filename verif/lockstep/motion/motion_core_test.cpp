@@ -20,6 +20,9 @@ namespace {
 namespace reg = card_map::reg;
 
 constexpr unsigned kAxes = TRAMMEL_AXES;
+// What is built in: what is missing is asked for by nobody, since checker and registers refuse it.
+constexpr bool kArcs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator);
+constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kDirectMode);
 constexpr std::uint64_t kComparedSignals = 27 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
@@ -44,6 +47,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed)
       : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
+    programs_.arcs = kArcs;
     reset();
   }
 
@@ -65,7 +69,7 @@ class Bench {
     }
     if (dice_.chance(200)) random_setting();
     // While a START is answered no word is written: what it finds queued is all there is.
-    if (!starting_ && geometry_.done() && feed_.done() && dice_.chance(start_every_)) random_start();
+    if (kDirectMode && !starting_ && geometry_.done() && feed_.done() && dice_.chance(start_every_)) random_start();
     if (dice_.chance(50 * abort_every_))
       reset();
     else
@@ -81,7 +85,7 @@ class Bench {
  private:
   void random_pace() {
     abort_every_ = dice_.chance(3) ? 200 + dice_.below(500) : 20'000;
-    start_every_ = dice_.chance(2) ? 400 : 5000;
+    start_every_ = dice_.chance(2) ? 100 : 2000;
     write_every_ = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
     stretch_every_ = dice_.chance(3) ? 1000 : 10;
     programs_.wrong_every = dice_.chance(3) ? 10 : 1000;
@@ -304,7 +308,9 @@ void random_programs() {
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.steps(), length / 200);
-  EXPECT_GT(bench.moves(), length / 20'000);
+  if (kDirectMode) {
+    EXPECT_GT(bench.moves(), length / 20'000);
+  }
   EXPECT_GT(bench.faults(), length / 20'000);
 }
 

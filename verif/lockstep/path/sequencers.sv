@@ -8,7 +8,6 @@ module sequencers #(
     input  wire logic            clk_i,
     input  wire logic            rst_i,
     input  wire logic            cut_i,
-    input  wire logic            go_i,
     // queues
     input  wire logic            geometry_empty_i,
     input  wire logic [    15:0] geometry_word_i,
@@ -69,7 +68,6 @@ module sequencers #(
       .clk_i,
       .rst_i,
       .cut_i,
-      .go_i,
       .empty_i        (geometry_empty_i),
       .word_i         (geometry_word_i),
       .read_o         (geometry_read_o),
@@ -128,7 +126,6 @@ module sequencers #(
       .clk_i,
       .rst_i,
       .cut_i,
-      .go_i,
       .enable_i,
       .feed_tick_i,
       .feed_active_i(feed_active_o),

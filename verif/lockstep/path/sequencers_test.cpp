@@ -44,16 +44,9 @@ class Bench {
 
   void random_clock() {
     if (dice_.chance(3000)) random_pace();
-    // Where ticks may not be taken neither commands nor a START get this far.
-    const bool open = stand_for_ == 0;
-    if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
-    // The last command's commit shows in the queue two clocks later and in `idle` after two more.
-    rest_for_ = at_rest() ? rest_for_ + 1 : 0;
-    if (open && rest_for_ > 8 && dice_.chance(100)) direct_step_ = 1;
-    direct();
+    commands();
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
-    in_.go = stand_for_ == 0;
     if (stand_for_ != 0) --stand_for_;
     in_.elsewhere = dice_.chance(200);
     if (in_.cut) check_.event("cut");
@@ -61,6 +54,46 @@ class Bench {
       reset();
     else
       clock();
+  }
+
+  // Everything from the start again, by other dice.
+  void restart(std::uint64_t seed) {
+    dice_ = Dice(seed);
+    stand_for_ = rest_for_ = payload_taken_for_ = 0;
+    reset();
+  }
+
+  // Short programs of all kinds, at a tick every other clock.
+  void short_programs(unsigned clocks) {
+    pace = {1, 2, 3, 1, 0};
+    programs_.longest = 8;
+    programs_.wrong_every = 20;
+    for (unsigned i = 0; i < clocks; ++i) {
+      commands();
+      clock();
+    }
+  }
+
+  // At whatever is decided in this clock, a path's wrong end among it.
+  void interrupt(bool by_reset) {
+    in_.elsewhere = true;
+    in_.cut = !by_reset;
+    if (by_reset)
+      reset();
+    else
+      clock();
+    in_.elsewhere = in_.cut = false;
+  }
+
+  // Now and then a stretch of commands or, at rest, a direct move.
+  void commands() {
+    // Where ticks may not be taken neither commands nor a START get this far.
+    const bool open = stand_for_ == 0;
+    if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
+    // The last command's commit shows in the queue two clocks later and in `idle` after two more.
+    rest_for_ = at_rest() ? rest_for_ + 1 : 0;
+    if (open && rest_for_ > 8 && dice_.chance(100)) direct_step_ = 1;
+    direct();
   }
 
   void clock() {
@@ -161,7 +194,6 @@ class Bench {
 
   void apply() {
     dut_->cut_i = in_.cut;
-    dut_->go_i = in_.go;
     dut_->geometry_empty_i = in_.geometry_empty;
     dut_->geometry_word_i = in_.geometry_word;
     dut_->feed_empty_i = in_.feed_empty;
@@ -225,7 +257,7 @@ class Bench {
   SnapshotWord chain_[2];
   unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
-  unsigned stand_for_ = 0;    // clocks without go
+  unsigned stand_for_ = 0;    // clocks of a fault
   unsigned direct_step_ = 0;  // of a direct move; 0: none
   unsigned rest_for_ = 0;     // clocks
   std::uint64_t length_ = 0;
@@ -286,8 +318,24 @@ void random_programs() {
   EXPECT_GT(bench.swaps(), length / 500);
 }
 
-TEST(Sequencers, Boundaries) { EXPECT_EQ(judge(boundaries), ""); }
+// A cut or a reset at each clock of two runs, and what comes next.
+void cuts_at_every_clock() {
+  Bench bench(1);
+  for (const bool by_reset : {false, true}) {
+    for (unsigned run = 0; run < 1000; ++run) {
+      bench.restart(1 + run / 500);
+      bench.short_programs(run % 500);
+      bench.interrupt(by_reset);
+      bench.short_programs(60);
+    }
+  }
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+  EXPECT_GT(bench.swaps(), 2000U);
+}
+
+TEST(Sequencers, CutsAtEveryClock) { EXPECT_EQ(judge(cuts_at_every_clock), ""); }
 TEST(Sequencers, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }
+TEST(Sequencers, Boundaries) { EXPECT_EQ(judge(boundaries), ""); }
 
 }  // namespace
 }  // namespace trammel::lockstep

@@ -25,7 +25,7 @@ namespace reg = card_map::reg;
 constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
-constexpr std::uint64_t kComparedSignals = 12;
+constexpr std::uint64_t kComparedSignals = 13;
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
 constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(7) / 4;  // word of the direct mode's first register
 // RATIO, RATE, FEED_BEGUN and GEOMETRY_BEGUN come before the positions on the snapshot chain.
@@ -115,7 +115,7 @@ class Bench {
     // A stop is as likely beside what a write asks for as anywhere else.
     in_.stop = model_.time() > kFilled && chance(model_.outputs().ack ? 20 : 300);
     if (in_.stop) checker_.event("stop");
-    if (chance(20000)) {
+    if (chance(reset_every())) {
       reset();
     } else {
       clock();
@@ -135,6 +135,14 @@ class Bench {
  private:
   std::uint32_t draw() { return static_cast<std::uint32_t>(random_()); }
   bool chance(std::uint32_t one_in) { return draw() % one_in == 0; }
+
+  // Most where something is under way that a reset must stop, and in the clocks after another one.
+  std::uint32_t reset_every() const {
+    const bool acts = in_.write && (in_.address == reg::kStream || in_.address == reg::kStart ||
+                                    in_.address == reg::kFault || in_.address == reg::kControl);
+    if (model_.time() < 8) return 20;
+    return start_wait_ != 0 || (outstanding_ && acts) ? 60 : 3000;
+  }
 
   std::uint32_t& constants(std::uint32_t address) { return rtl_->constants_i[address / 4]; }
 
@@ -268,6 +276,7 @@ class Bench {
     checker_.compare("start_o", rtl_->start_o, out.start);
     checker_.compare("setting_o, set", rtl_->setting_o >> 40, out.setting.set);
     checker_.compare("snapshot_o, strobe", rtl_->snapshot_o & 1U, out.strobe);
+    checker_.compare("snapshot_o, shift at rest", rtl_->snapshot_o >> 1 & ~(rtl_->status_o >> 8) & 1U, 0U);
     if (out.setting.set) more("setting_o", rtl_->setting_o, trammel::lockstep::wire(out.setting));
     if (out.stream_write) more("setting_o, word", rtl_->setting_o & 0xFFFF'FFFF, out.stream_word);
     if (out.start) more("setting_o, mask", rtl_->setting_o & 0xFF, out.start_mask);

@@ -68,6 +68,16 @@ class Campaign(Folder):
     def test_listed_ones_may_live(self):
         self.assertEqual(self.run_with(self.entries(LIVING)), 0)
 
+    def test_a_part_lists_a_family(self):
+        def family(modules):
+            return f'[[equivalent]]\nmodule = {modules}\npart = "unseen_q <= count_o - "\nreason = "known"\n'
+
+        rest = {(original, mutated) for original, mutated in LIVING if "unseen_q <= count_o - " not in mutated}
+        self.assertEqual(len(rest), len(LIVING) - 1)
+        self.assertEqual(self.run_with(family(["selftest_counter"]) + self.entries(rest)), 0)
+        with self.assertRaisesRegex(SystemExit, "no such mutant of m:"):
+            self.run_with(family(["selftest_counter", "m"]) + self.entries(rest))
+
     def test_one_that_is_not_listed_may_not(self):
         self.assertEqual(self.run_with(self.entries(sorted(LIVING)[1:])), 1)
 

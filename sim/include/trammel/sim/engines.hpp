@@ -1,4 +1,5 @@
-// Either engine: the Verilated card in lockstep with the golden model, or the model alone. Thread-safety: as of Engine.
+// Either engine: the Verilated card in lockstep with the golden model, or the model alone. Thread-safety: as of
+// Engine; only the calling thread sees steps and exceptions, also where the RTL has a thread of its own.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,7 @@ struct SimulationOptions : EngineOptions {
   EngineKind kind = EngineKind::kRtl;
   std::optional<TraceFile> trace;  // kRtl with 4 or 8 axes only
   std::uint64_t seed = 1;          // named in the report of a mismatch
+  bool rtl_thread = false;         // kRtl: the Verilated card in a thread of its own; not with a trace
 };
 
 // Throws std::invalid_argument for options out of range. A mismatch throws lockstep::Mismatch out of the call during

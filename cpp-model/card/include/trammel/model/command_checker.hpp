@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "trammel/card_map.hpp"
+#include "trammel/model/wide.hpp"
 
 namespace trammel::model {
 
@@ -40,9 +41,6 @@ class CommandChecker {
   static constexpr int kAnswerClocks = 6;
   static constexpr int kClosedAnswerClocks = 2;
 
-  // Fields have up to 80 bits.
-  __extension__ typedef unsigned __int128 uint128;
-
   // axes: 1 .. 8; throws std::invalid_argument otherwise. engines: the card's ENGINES.
   CommandChecker(unsigned axes, std::uint32_t engines);
 
@@ -73,7 +71,7 @@ class CommandChecker {
   card_map::Reason judge_header(const Inputs& in) const;
   card_map::Reason judge_payload() const;
   card_map::Reason judge_field(const card_map::Field& field, std::size_t begin) const;
-  uint128 value(std::size_t begin, std::size_t count) const;
+  uint128 value(std::size_t begin, std::size_t count) const;  // fields have up to 80 bits
 
   std::uint8_t card_mask_;
   std::uint32_t engines_;

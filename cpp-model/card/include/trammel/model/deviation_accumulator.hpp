@@ -7,13 +7,14 @@
 #include <cstdint>
 
 #include "trammel/model/buses.hpp"
+#include "trammel/model/wide.hpp"
 
 namespace trammel::model {
 
 // The path alone: which unit step comes next, without clocks. Units: pulses; F and gradients in the host's scale.
 class DeviationPath {
  public:
-  __extension__ typedef unsigned __int128 Word;
+  using Word = uint128;
 
   // What a path starts with, at the card's widths: F, GX, GY 80 bits signed; halves 48 bits.
   struct State {

@@ -14,11 +14,11 @@
 #include <cstdint>
 
 #include "trammel/model/buses.hpp"
+#include "trammel/model/wide.hpp"
 
 namespace trammel::model {
 
 class FeedGenerator {
-  __extension__ typedef unsigned __int128 uint128;
   static constexpr std::uint64_t kOne = std::uint64_t{1} << 48;
 
  public:

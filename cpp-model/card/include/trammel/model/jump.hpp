@@ -74,7 +74,7 @@ class Jump {
   const std::uint64_t second_;  // and at edge 2
   unsigned in_flight_ = 0;      // as the jump begins: bit k from an accumulation at edge -k
   std::array<std::int64_t, 9> flight_{};
-  std::uint64_t flying_ = 0;        // ticks that were in flight
+  std::size_t flying_ = 0;          // ticks that were in flight
   std::uint64_t taken_before_ = 0;  // ticks of the path before tick 1
 
   // The generator stands after so many accumulations and carries, the last at this edge.

@@ -50,11 +50,13 @@ class PathEngines {
     const DeviationAccumulator::Outputs accumulator = accumulator_.outputs();
     const bool tick = out_.path_tick && engine_ == card_map::engine::kAccumulator;
     judge(in, engine);
+    finish_step(in.cut, tick, accumulator);
     const bool start = in.swap && in.engine == card_map::engine::kAccumulator;
     const bool commanded = in.cut || in.load.valid || clock_all_;
-    if (commanded || out_.step != 0 || !accumulator_.quiet()) route(in.load, accumulator);
+    if (commanded || routed_step_ != 0 || !accumulator_.quiet()) route(in.load, accumulator);
     if (commanded || start || tick || !accumulator_.quiet()) accumulator_.clock({false, in.load, start, tick, in.cut});
     give(in.cut, engine.ready);
+    step();
     if (commanded || in.tick || in.swap || !prescaler_.quiet()) clock_prescaler(in);
     delay(in);
   }
@@ -95,12 +97,21 @@ class PathEngines {
 
   static bool on_engine(std::uint8_t engine) { return engine != card_map::engine::kLines; }
 
-  // What the engine says on which the path runs. On lines nothing is asked.
+  // What an engine says, from its registers.
   struct Said {
     bool ready = false;
     bool at_end = false;
+    bool stepping = false;  // no load may come yet
+    std::uint8_t step = 0;  // by axis
+    std::uint8_t dir = 0;
   };
-  Said said() const { return {accumulator_.outputs().ready, accumulator_.outputs().at_end}; }
+  // Of the engine on which the path runs. On lines nothing is asked.
+  Said said() const {
+    switch (engine_) {
+      default:
+        return {accumulator_.outputs().ready, accumulator_.outputs().at_end, almost_ != 0, routed_step_, routed_dir_};
+    }
+  }
 
   // What the sequencer may know of it, a clock late.
   void judge(const Inputs& in, const Said& engine) {
@@ -108,27 +119,36 @@ class PathEngines {
     const bool path_ticks = waiting_ != 0 || out_.path_tick;
     out_.done = !feed_ticks && !path_ticks && engine.ready;
     out_.elsewhere = !engine.at_end;
-    out_.payload_ready = !(feed_ticks && on_engine(engine_)) && !path_ticks && almost_ == 0;
-    if (out_.path_tick && engine.ready && !engine.at_end)  // at its end it makes no step
+    out_.payload_ready = !(feed_ticks && on_engine(engine_)) && !path_ticks && !engine.stepping;
+    if (in.swap) engine_ = in.engine;
+    if (in.cut) engine_ = card_map::engine::kLines;
+  }
+
+  void finish_step(bool cut, bool tick, const DeviationAccumulator::Outputs& accumulator) {
+    if (cut)
+      almost_ = 0;
+    else if (tick && accumulator.ready && !accumulator.at_end)  // at its end it makes no step
       almost_ = kAlmost;
     else if (almost_ != 0)
       --almost_;
-    if (in.swap) engine_ = in.engine;
-    if (in.cut) {
-      almost_ = 0;
-      engine_ = card_map::engine::kLines;
-    }
   }
 
+  // The accumulator's two axes are those of its plane.
   void route(const LoadWord& load, const DeviationAccumulator::Outputs& accumulator) {
     const unsigned x = 1U << axis_x_;
     const unsigned y = 1U << axis_y_;
-    out_.step = static_cast<std::uint8_t>((accumulator.step_x ? x : 0) | (accumulator.step_y ? y : 0));
-    out_.dir = static_cast<std::uint8_t>((accumulator.dir_y ? y : 0) | (accumulator.dir_x ? x : 0));
+    routed_step_ = static_cast<std::uint8_t>((accumulator.step_x ? x : 0) | (accumulator.step_y ? y : 0));
+    routed_dir_ = static_cast<std::uint8_t>((accumulator.dir_y ? y : 0) | (accumulator.dir_x ? x : 0));
     if (load.to(load_target::kPlane)) {
       axis_x_ = load.word >> 4 & 7;
       axis_y_ = load.word >> 8 & 7;
     }
+  }
+
+  void step() {
+    const Said engine = said();
+    out_.step = engine.step;
+    out_.dir = engine.dir;
   }
 
   // Path ticks wait for the engine, which answers a tick with ready low a clock later.
@@ -156,11 +176,14 @@ class PathEngines {
   PulseGenerator prescaler_;
   std::uint32_t ticks_ = 0;  // on their way, bit k leaves in k clocks; bit 0 is visible
   std::uint32_t swaps_ = 0;
-  std::uint32_t waiting_ = 0;  // path ticks
-  unsigned almost_ = 0;
+  std::uint32_t waiting_ = 0;                       // path ticks
   std::uint8_t engine_ = card_map::engine::kLines;  // of the path swapped in last
+  // The accumulator's: clocks in which no load may be asked for, and its steps by axis.
+  unsigned almost_ = 0;
   unsigned axis_x_ = 0;
   unsigned axis_y_ = 0;
+  std::uint8_t routed_step_ = 0;
+  std::uint8_t routed_dir_ = 0;
   Outputs out_;
 };
 

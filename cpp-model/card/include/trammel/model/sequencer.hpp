@@ -20,7 +20,6 @@ class Sequencer {
  public:
   struct Inputs {
     bool cut = false;
-    bool go = true;  // ticks may be taken
     // queues
     bool geometry_empty = true;
     bool feed_empty = true;
@@ -131,11 +130,11 @@ class Sequencer {
   bool takes(const Inputs& in) const;
   Decision decide(const Inputs& in) const;
   bool judged(const Inputs& in) const;
-  bool mismatches(const Inputs& in) const;
+  bool mismatches() const;
   void stand(const Decision& d);
   void clock_path(const Inputs& in, const Decision& d);
   void clock_piece(const Decision& d);
-  void clock_barrier(const Inputs& in, const Decision& d);
+  void clock_barrier(const Decision& d);
   void clock_ticks(const Inputs& in, bool take);
   void clock_fetches(const Inputs& in, const Decision& d);
   void count_begun(const Inputs& in, const Decision& d);

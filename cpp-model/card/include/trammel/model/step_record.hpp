@@ -63,7 +63,7 @@ class StepRecord {
     position_[axis] = position;
   }
   void line_step(std::uint64_t cycle, unsigned axis, bool backwards) {
-    const Take& take = takes_[(cycle - kTickToStep) % takes_.size()];
+    const Take& take = shown_after(cycle - kTickToStep);
     if (steps_ != nullptr) steps_->path_step(take.command, take.tick, axis, backwards ? -1 : 1);
   }
   void arc_step(unsigned axis, bool backwards) {
@@ -73,13 +73,14 @@ class StepRecord {
   // For jumps: ticks of the present path taken so far; `ticks` more at once; the tick that shows after edge `cycle`.
   std::uint64_t taken() const { return taken_; }
   void take(std::uint64_t ticks) { taken_ += ticks; }
-  void place(std::uint64_t cycle, std::uint64_t tick) { takes_[cycle % takes_.size()] = {command_, tick}; }
+  void place(std::uint64_t cycle, std::uint64_t tick) { shown_after(cycle) = {command_, tick}; }
 
  private:
   struct Take {
     std::uint64_t command = 0;
     std::uint64_t tick = 0;
   };
+  Take& shown_after(std::uint64_t cycle) { return takes_[static_cast<std::size_t>(cycle % takes_.size())]; }
 
   CardSteps* steps_ = nullptr;                                // not owned
   std::uint64_t accepted_ = 0;                                // commands that the checker let in

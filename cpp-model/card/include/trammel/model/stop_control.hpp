@@ -1,7 +1,7 @@
 // Golden model of the stop control: every cause of a stop, in one place. FAULT remembers causes; the card is in RUN,
 // ramps to a stop (RAMP), or stands until FAULT is clear (STOPPED). A cut drops queues, paths and everything decoded.
 //
-// What comes in clock c shows at c+1: fault, go, cut, stop, stopping. hold and closed follow the state a clock later.
+// What comes in clock c shows at c+1: fault, cut, stop, stopping. hold and closed follow the state a clock later.
 // Not thread-safe; no errors are reported.
 #pragma once
 
@@ -25,7 +25,6 @@ class StopControl {
   };
   struct Outputs {
     std::uint32_t fault = 0;
-    bool go = true;         // ticks may be taken
     bool hold = false;      // of the time base
     bool cut = false;       // event
     bool stop = false;      // event: the first cause of a stop
@@ -55,12 +54,12 @@ class StopControl {
         break;
     }
     out_.fault = (out_.fault & ~in.clear) | events;
-    out_.go = state_ != State::Stopped;
     out_.stopping = state_ == State::Ramp;
     if (in.setting.set) set(in.setting);
   }
 
   const Outputs& outputs() const { return out_; }
+  bool stopped() const { return state_ == State::Stopped; }
 
   // Without an event, a setting, an abort or a clear, clock() changes nothing, whatever the ratio does.
   bool quiet() const {
