@@ -1,4 +1,4 @@
-// Usage: command_stream [--libm] [--one] [--keep] PROGRAM...
+// Usage: command_stream [--libm] [--list] [--one] [--keep] PROGRAM...
 // Reads, plans and encodes each program (a file, or generated:<lines>) for two machines: the default one, and one of
 // unequal scales, where arcs go out as chords. Prints a line for each: machine, program, commands, words, and a hash of
 // all words. Nothing but bits is compared, so nothing is rounded. --libm adds results of the C library's sin, cos,
@@ -39,6 +39,7 @@ class Hash {
 
 struct Options {
   bool libm = false;
+  bool list = false;  // the words, a line a command, to find where two hosts part
   bool one = false;   // the default machine alone
   bool keep = false;  // a byte of every command stays in memory
 };
@@ -46,14 +47,18 @@ struct Options {
 // Counts the commands and hashes their words.
 class Stream final : public driver::CommandSink {
  public:
-  explicit Stream(bool keep) : keep_(keep) {}
+  Stream(bool list, bool keep) : list_(list), keep_(keep) {}
 
   void put(const driver::Command& command) override {
     std::array<std::uint32_t, driver::kMaxCommandWords> encoded;
     const std::size_t count = driver::encode(command, static_cast<std::uint8_t>(commands), encoded.data());
     ++commands;
     words += count;
-    for (std::size_t i = 0; i < count; ++i) hash.add(encoded[i], 4);
+    for (std::size_t i = 0; i < count; ++i) {
+      hash.add(encoded[i], 4);
+      if (list_) std::printf("%08lx ", static_cast<unsigned long>(encoded[i]));
+    }
+    if (list_) std::puts("");
     if (keep_) kept_.push_back(static_cast<char>(words));
   }
 
@@ -62,6 +67,7 @@ class Stream final : public driver::CommandSink {
   Hash hash;
 
  private:
+  bool list_;
   bool keep_;
   std::string kept_;
 };
@@ -101,7 +107,7 @@ void add_libm(Hash& hash) {
 // False where the program is refused, which is printed too: it must be refused alike everywhere.
 bool print(const char* machine_name, const machine::Machine& machine, const std::string& program,
            const Options& options) {
-  Stream stream(options.keep);
+  Stream stream(options.list, options.keep);
   const std::optional<gcode::Error> error = run(program, machine, stream);
   if (options.libm) add_libm(stream.hash);
   std::printf("%s %s: %llu commands, %llu words, %016llx", machine_name, program.substr(program.rfind('/') + 1).c_str(),
@@ -125,6 +131,8 @@ int main(int argc, char** argv) {
     const std::string argument = argv[i];
     if (argument == "--libm") {
       options.libm = true;
+    } else if (argument == "--list") {
+      options.list = true;
     } else if (argument == "--one") {
       options.one = true;
     } else if (argument == "--keep") {
