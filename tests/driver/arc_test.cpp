@@ -25,7 +25,12 @@ using model::DeviationPath;
 constexpr double kPi = 3.14159265358979323846;
 
 DeviationPath path_of(const ArcCommand& arc) {
-  const auto aligned = [](int128 value) { return static_cast<DeviationPath::Word>(value) << DeviationPath::kAlign; };
+  const auto aligned = [](const Int128& value) {
+    using Word = DeviationPath::Word;
+    const Word word =
+        static_cast<Word>(static_cast<std::uint64_t>(value.high())) << 64 | static_cast<Word>(value.low());
+    return word << DeviationPath::kAlign;
+  };
   DeviationPath path;
   path.state.deviation = aligned(arc.deviation);
   path.state.gradient_x = aligned(arc.gradient_x);

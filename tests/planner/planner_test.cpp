@@ -18,6 +18,8 @@ using namespace machine;
 using namespace gcode;
 namespace {
 
+__extension__ typedef __int128 int128;
+
 using ::testing::HasSubstr;
 
 constexpr std::uint32_t kClock = 100'000'000;

@@ -12,6 +12,7 @@ namespace trammel::planner {
 using namespace driver;
 namespace {
 
+__extension__ typedef __int128 int128;
 __extension__ typedef unsigned __int128 uint128;
 
 // The feed generator as the architecture page words it, in exact integers and whole updates of 32 clocks.

@@ -35,7 +35,7 @@ class ProgramStream final : private driver::CommandSink {
     planner::Pulses end = pipeline_.start();
     try {
       while (pipeline_.next(*this, planned_)) {
-        // INTERIM flush
+        stream_.flush();
         for (Observer* observer : observers_) observer->sent();
         end = planned_.block.end;
         first_of_block_ = true;
@@ -59,7 +59,7 @@ class ProgramStream final : private driver::CommandSink {
     for (Observer* observer : observers_) observer->command(commands_, command);
     ++commands_;
     if (!std::holds_alternative<driver::FeedCommand>(command)) lines_.put(planned_.block.line);
-    stream_.send(command);  // INTERIM
+    stream_.put(command);
   }
   driver::StreamOptions options() {
     // 200 looks a second: the queues hold far more than 5 ms of motion, and every look costs a simulation bus clocks.

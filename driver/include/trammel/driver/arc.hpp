@@ -2,7 +2,7 @@
 //
 // The card walks the conic F = A X^2 + B Y^2 - N from the sign of F (Goldberg & Goldberg, "XY Interpolation
 // Algorithms") and ends on the commanded end point whatever the rounding of start, end and centre. Position is never
-// in floating point; an angle in floating point only tells a short way from the same way and a full turn.
+// in floating point; the sweep only tells a short way from the same way and a full turn.
 // Pure functions, thread-safe. Every function throws std::invalid_argument, naming the value, for what the card cannot
 // do: a radius below one pulse or above the bounds here, an ellipse's start or end off the curve, no step to make, or
 // more turns than its counters hold.
