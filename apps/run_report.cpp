@@ -25,6 +25,9 @@ std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   return text;
 }
 
+// Without an exponent, and without digits that nobody reads.
+std::string number(double feed) { return feed < 100 ? fmt::format("{:.3g}", feed) : fmt::format("{:.0f}", feed); }
+
 const char* text_of(planner::SpeedLimit cause) {
   switch (cause) {
     case planner::SpeedLimit::kAxisVelocity:
@@ -46,9 +49,9 @@ const char* text_of(planner::SpeedLimit cause) {
 std::vector<std::string> feed_warnings(const run::Plan& plan) {
   std::vector<std::string> lines;
   for (const run::FeedNotReached& feed : plan.feeds_not_reached) {
-    lines.push_back(fmt::format("{} {} not reach the feed: {}; the furthest off at {}:{}, {:.4g} of {:.4g} mm/min",
-                                feed.count, feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), plan.file,
-                                feed.line, feed.reached, feed.wanted));
+    lines.push_back(fmt::format("{} {} not reach the feed: {}; the furthest off at {}:{}, {} of {} mm/min", feed.count,
+                                feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), plan.file, feed.line,
+                                number(feed.reached), number(feed.wanted)));
   }
   return lines;
 }

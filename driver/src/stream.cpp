@@ -183,7 +183,7 @@ void Stream::keep(const Command& command, const Need& need, const std::uint32_t*
     } else if (const auto* dwell = std::get_if<DwellCommand>(&command)) {
       duration.real = dwell->clocks;
     }
-    durations_[feed_.put++ % durations_.size()] = duration;
+    durations_[static_cast<std::size_t>(feed_.put++ % durations_.size())] = duration;
   }
   last_is_end_ = std::holds_alternative<EndCommand>(command);
 }
@@ -289,7 +289,7 @@ Stream::Duration Stream::planned() const {
   Duration sum;
   for (std::uint64_t number = feed_.begun - (feed_.begun != 0 ? 1 : 0); number < feed_.sent && number <= feed_.begun;
        ++number) {
-    const Duration& duration = durations_[number % durations_.size()];
+    const Duration& duration = durations_[static_cast<std::size_t>(number % durations_.size())];
     sum.gated += duration.gated;
     sum.real += duration.real;
   }

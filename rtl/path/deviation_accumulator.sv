@@ -63,7 +63,7 @@ module deviation_accumulator (
     end else if (accept | g_shift_q | start_i | start_q) begin
       phase_q   <= {phase_q[LAST-1:0], accept};
       start_q   <= start_i;
-      ready_o   <= (ready_o & ~accept & ~start_i) | phase_q[LAST] | start_q;
+      ready_o   <= phase_q[LAST] | start_q;
       g_shift_q <= accept | (|phase_q[LAST-1:0]);
       f_shift_q <= |phase_q[6:1];
       h_shift_q <= accept | (|phase_q[1:0]);

@@ -102,9 +102,13 @@ struct Extremes {
   double real = 0;  // from the circle before any rounding
 };
 
+// A 32-bit host of the tests is emulated: it gets a share of the cases.
+constexpr bool kFewCases = sizeof(void*) < 8;
+constexpr int some_of(int count) { return kFewCases ? std::max(1, count / 20) : count; }
+
 void expect_random_arcs(std::uint64_t seed, int count, double smallest, double largest, Extremes& worst) {
   std::mt19937_64 random(seed);
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < some_of(count); ++i) {
     const RandomArc made = random_arc(random, smallest, largest);
     const ArcGeometry& g = made.geometry;
     ArcCommand arc;
@@ -169,7 +173,7 @@ double sweep_between(double from, double to, bool clockwise) {
 // same with a full turn more.
 TEST(ArcCommand, EverySmallArcEndsExactly) {
   std::uint64_t arcs = 0;
-  for (int r = 1; r <= 20; ++r) {
+  for (int r = 1; r <= (kFewCases ? 8 : 20); ++r) {
     std::vector<std::pair<int, int>> points;
     for (int x = -r - 1; x <= r + 1; ++x) {
       for (int y = -r - 1; y <= r + 1; ++y) {
@@ -198,7 +202,7 @@ TEST(ArcCommand, EverySmallArcEndsExactly) {
       }
     }
   }
-  EXPECT_GT(arcs, 500000u);
+  EXPECT_GT(arcs, kFewCases ? 20000u : 500000u);
 }
 
 ArcGeometry full_circle(std::int64_t r, bool clockwise) {
@@ -303,7 +307,7 @@ EllipseGeometry random_ellipse_arc(std::mt19937_64& random, std::int64_t a, std:
 TEST(Ellipse, ArcsEndExactlyWithinTheirError) {
   std::mt19937_64 random(11);
   double worst = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < some_of(4000); ++i) {
     const auto a = static_cast<std::int64_t>(20 + random() % 100);
     const auto b = static_cast<std::int64_t>(20 + random() % 100);
     const EllipseGeometry g = random_ellipse_arc(random, a, b);
@@ -324,7 +328,7 @@ TEST(Ellipse, ArcsEndExactlyWithinTheirError) {
 TEST(Ellipse, EveryShapeEndsExactly) {
   std::mt19937_64 random(12);
   std::uniform_real_distribution<double> uniform(0, 1);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < some_of(3000); ++i) {
     const auto a = std::llround(std::pow(2.0, 12 * uniform(random)));
     const auto b = std::llround(std::pow(2.0, 12 * uniform(random)));
     EllipseGeometry g = random_ellipse_arc(random, a, b);

@@ -321,7 +321,7 @@ TEST(OneShot, ALowRatioAndAHoldAreNoTimeOuts) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);
   card.set_ratio(Card::kFullRatio / 16);
-  run_line(card, plan_line(card.timing(), {100}, 1s), 10ms);
+  run_line(card, plan_line(card.timing(), {100}, 100ms), 10ms);
   EXPECT_EQ(engine->positions()[0], 100);
   card.set_ratio(Card::kFullRatio);
   card.set_hold(true);

@@ -281,6 +281,13 @@ TEST(Machine, TimesBecomeWholeClocks) {
   EXPECT_EQ(clocks_from_ns(0, 1'000'000), 0);
   EXPECT_EQ(clocks_from_ns(65535, 1'000'000'000), 65535);
   EXPECT_THROW(clocks_from_ns(65536, 1'000'000'000), std::out_of_range);
+  EXPECT_THROW(clocks_from_ns(1e300, 1000), std::out_of_range);
+  // A hair more than a clock is two, in the card's settings too.
+  EXPECT_EQ(clocks_from_ns(15, 66'666'667), 2);
+  EXPECT_EQ(clocks_from_ns(15, 66'666'666), 1);
+  EXPECT_EQ(clocks_from_ns(14.2, 66'666'667), 2);
+  EXPECT_EQ(clocks_from_ns(15.0 * 1000 * 4369, kSlowestClock), 66);
+  EXPECT_EQ(clocks_from_ns(15, kFastestClock), 65);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace trammel::machine {
@@ -17,15 +16,17 @@ std::optional<std::size_t> Machine::axis(char letter) const {
 }
 
 std::uint16_t clocks_from_ns(double nanoseconds, std::uint32_t clock_hz) {
-  // 1 ns at 4 GHz is 4 clocks: the slack of 1e-6 clock takes the rounding of the product, never a clock.
-  const double clocks = std::ceil(nanoseconds * clock_hz / 1e9 - 1e-6);
-  if (clocks > std::numeric_limits<std::uint16_t>::max()) {
-    throw std::out_of_range(fmt::format("{} ns at {} Hz are more than the card's 65535 clocks", nanoseconds, clock_hz));
+  constexpr std::uint64_t kPerSecond = 1'000'000'000;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint16_t>::max();
+  // What is far too long is refused before the product could overflow.
+  if (nanoseconds * clock_hz < 2.0 * kMost * kPerSecond) {
+    const auto whole = static_cast<std::uint64_t>(std::ceil(nanoseconds));
+    const std::uint64_t clocks = (whole * clock_hz + kPerSecond - 1) / kPerSecond;
+    if (clocks <= kMost) {
+      return static_cast<std::uint16_t>(clocks);
+    }
   }
-  const double least = nanoseconds > 0 ? 1 : 0;
-  return static_cast<std::uint16_t>(std::max(clocks, least));
+  throw std::out_of_range(fmt::format("{} ns at {} Hz are more than the card's 65535 clocks", nanoseconds, clock_hz));
 }
-
-Machine default_machine() { return parse_machine(default_machine_text(), "default machine"); }
 
 }  // namespace trammel::machine

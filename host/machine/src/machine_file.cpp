@@ -323,6 +323,8 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   return machine;
 }
 
+Machine default_machine() { return parse_machine(default_machine_text(), "default machine"); }
+
 Machine load_machine(const std::string& path) {
   if (path.empty()) {
     refuse("the machine file has no name");

@@ -83,8 +83,11 @@ inline Path noise(Random& random) {
   path.gradient_y = any128(random) >> shrink();
   path.half_x = random() >> between(random, 16, 63);
   path.half_y = random() >> between(random, 16, 63);
-  path.end_x = static_cast<std::int32_t>(random()) >> between(random, 0, 31);
-  path.end_y = static_cast<std::int32_t>(random()) >> between(random, 0, 31);
+  const auto end = [&] {
+    return static_cast<std::int32_t>(random()) >> (random() % 2 == 0 ? 0 : between(random, 0, 31));
+  };
+  path.end_x = end();
+  path.end_y = end();
   path.quadrants = static_cast<std::uint16_t>((random() & 0xFFFF) >> between(random, 0, 16));
   path.clockwise = random() % 2 != 0;
   return path;

@@ -55,7 +55,8 @@ struct Machine {
   std::optional<std::size_t> axis(char letter) const;
 };
 
-// A time as register value: rounded up to whole clocks, at least 1 for any time above 0.
+// A time, 0 or more, as register value: rounded up to whole nanoseconds, as the driver takes them, and those to whole
+// clocks, as the driver does.
 // Throws std::out_of_range when it does not fit the 16 bits of the card's registers.
 std::uint16_t clocks_from_ns(double nanoseconds, std::uint32_t clock_hz);
 
