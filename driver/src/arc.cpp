@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 
 #include "trammel/card_map.hpp"
@@ -15,7 +16,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint64_t kCountLimit =
     card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Arc))->count_maximum + 1;  // also of path ticks
-constexpr std::int64_t kMaxQuadrants = 0xFFFF;                                                    // 16 bits
+constexpr std::int64_t kMaxQuadrants = std::numeric_limits<decltype(ArcCommand::quadrants)>::max();
 
 // A lattice point relative to the centre, in the conic's own unit.
 struct Point {

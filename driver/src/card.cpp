@@ -194,6 +194,7 @@ void Card::configure_axis(unsigned axis, const AxisSettings& settings) {
 void Card::set_ratio(std::uint32_t ratio) {
   check_setting(reg::kRatioFeed, ratio, fmt::format("time base: ratio {} / 65536", ratio));
   write(reg::kRatioFeed, ratio, "time base: ratio");
+  ratio_ = ratio;
 }
 
 void Card::set_slew_time(std::chrono::nanoseconds full_scale) {

@@ -13,8 +13,9 @@
 namespace trammel::driver {
 namespace {
 
-constexpr std::uint64_t kMaxLength = (std::uint64_t{1} << 40) - 1;
-constexpr std::uint64_t kMaxCount = 0xFFFFFFFF;
+constexpr std::uint64_t mask_of(std::uint32_t address) { return card_map::find_register(address).entry->mask; }
+constexpr std::uint64_t kMaxLength = mask_of(card_map::reg::kLengthHi) << 32 | mask_of(card_map::reg::kLengthLo);
+constexpr std::uint64_t kMaxCount = mask_of(card_map::reg::count(0));
 constexpr std::uint64_t kMaxClocks = (std::uint64_t{1} << 62) - 1;
 constexpr std::int64_t kMaxDisplacement = std::int64_t{1} << 62;
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/wide.hpp"
 
 namespace trammel::driver {
 
@@ -20,22 +21,24 @@ class Patience {
   Patience(Card& card, const char* context, std::uint64_t margin) : card_(card), context_(context), margin_(margin) {}
 
   // Something begins that takes so long: the time waited counts from here on.
-  void allow(const PlannedTime& planned) {
-    planned_ = planned;
-    waited_ = 0;
-  }
+  void allow(const PlannedTime& planned);
 
   // Throws TimeoutError when it is overdue, else waits for up to `clocks`, `status` being what the card said last.
   void pause(const Status& status, std::uint64_t clocks, bool until_idle);
 
  private:
-  std::uint64_t left();
+  std::uint64_t left() const;
+  bool overdue();
+  void count(std::uint64_t clocks);
 
   Card& card_;
   const char* context_;
   std::uint64_t margin_;
   PlannedTime planned_;
-  std::uint64_t waited_ = 0;  // clocks, without those in holds
+  Uint128 gated_left_;           // 2^-16 clocks at full ratio
+  std::uint64_t real_left_ = 0;  // clocks, the margin with them
+  std::uint64_t waited_ = 0;     // clocks, without those in holds
+  bool slews_counted_ = false;
   bool interrupted_ = false;  // the pause before ended so
 };
 

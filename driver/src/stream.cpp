@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
@@ -179,11 +180,12 @@ void Stream::keep(const Command& command, const Need& need, const std::uint32_t*
   if (need.feed != 0) {
     Duration duration;
     if (const auto* feed = std::get_if<FeedCommand>(&command)) {
-      duration.gated = static_cast<std::uint64_t>(feed_clocks(*feed)) + 1;
+      constexpr double kLongest = 4e18;  // of what 64 bits hold
+      duration.gated = static_cast<std::uint64_t>(std::min(feed_clocks(*feed), kLongest)) + 1;
     } else if (const auto* dwell = std::get_if<DwellCommand>(&command)) {
       duration.real = dwell->clocks;
     }
-    durations_[static_cast<std::size_t>(feed_.put++ % durations_.size())] = duration;
+    durations_[slot(feed_.put++)] = duration;
   }
   last_is_end_ = std::holds_alternative<EndCommand>(command);
 }
@@ -289,7 +291,7 @@ Stream::Duration Stream::planned() const {
   Duration sum;
   for (std::uint64_t number = feed_.begun - (feed_.begun != 0 ? 1 : 0); number < feed_.sent && number <= feed_.begun;
        ++number) {
-    const Duration& duration = durations_[static_cast<std::size_t>(number % durations_.size())];
+    const Duration& duration = durations_[slot(number)];
     sum.gated += duration.gated;
     sum.real += duration.real;
   }

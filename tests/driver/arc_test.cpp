@@ -95,6 +95,37 @@ RandomArc random_arc(std::mt19937_64& random, double smallest, double largest) {
   return made;
 }
 
+// Whole turns are told by divisions; here by angles, over radii down to the smallest.
+TEST(ArcTurns, AreTheNearestByAngles) {
+  std::mt19937_64 random(7);
+  int compared = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    RandomArc made = random_arc(random, 1, 300);
+    ArcGeometry& g = made.geometry;
+    g.turns = static_cast<std::uint32_t>(i % 3);
+    ArcCommand arc;
+    try {
+      arc = prepare(g);
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+    const auto cx = static_cast<double>(g.centre_x) / 256;
+    const auto cy = static_cast<double>(g.centre_y) / 256;
+    const double x = g.end_x - cx;
+    const double y = g.end_y - cy;
+    double ahead = (g.clockwise ? -1 : 1) * (std::atan2(y, x) - std::atan2(-cy, -cx));
+    if (ahead < 0) ahead += 2 * kPi;
+    const auto quadrant = [](double px, double py) { return py >= 0 ? (px >= 0 ? 0 : 1) : (px >= 0 ? 3 : 2); };
+    int changes = ((g.clockwise ? -1 : 1) * (quadrant(x, y) - quadrant(-cx, -cy)) + 4) % 4;
+    if (changes == 0 && ahead > kPi) changes = 4;
+    changes += 4 * static_cast<int>(std::llround((g.sweep - ahead) / (2 * kPi)) + g.turns);
+    ASSERT_EQ(arc.quadrants, std::max(changes, 0))
+        << "arc " << i << ", radius " << made.radius << ", sweep " << g.sweep;
+    ++compared;
+  }
+  EXPECT_GT(compared, 47'000);
+}
+
 // Largest radial distances found, pulses.
 struct Extremes {
   double ring = 0;  // outside the ring between the rounded start's and end's distances from the rounded centre

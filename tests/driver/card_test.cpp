@@ -213,10 +213,15 @@ TEST_F(CardTest, WaitingEndsWithTheMotionTheFaultOrTheTimeout) {
 TEST_F(CardTest, AHoldStopsTheTimeOutAndARatioStretchesIt) {
   bus_.next[reg::kStatus] = std::deque<std::uint32_t>(50, field::kStatusBusy | field::kStatusHeld);
   bus_.values[reg::kStatus] = field::kStatusBusy;
-  bus_.values[reg::kRatioFeed] = Card::kFullRatio / 4;
+  card_.set_ratio(Card::kFullRatio / 4);
   EXPECT_THROW(card_.wait_until_idle(1ms), TimeoutError);
   EXPECT_GE(bus_.slept, 50 * 64us + 4ms);
-  EXPECT_LE(bus_.slept, 50 * 64us + 5ms);
+  EXPECT_LE(bus_.slept, 50 * 64us + 4ms + 100us);
+  bus_.forget();
+  bus_.values[reg::kRatioFeed] = Card::kFullRatio / 8;  // by somebody else: seen once the time has passed
+  EXPECT_THROW(card_.wait_until_idle(1ms), TimeoutError);
+  EXPECT_GE(bus_.slept, 8ms);
+  EXPECT_LE(bus_.slept, 12ms + 100us);
 }
 
 TEST_F(CardTest, FaultsAndRefusalsAreReadAndClearedByTheirMasks) {

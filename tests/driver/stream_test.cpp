@@ -360,6 +360,30 @@ TEST(StreamOnModel, LongCommandsAreNoTimeOuts) {
   EXPECT_EQ(engine->positions()[0], 2);
 }
 
+// Slow for long, then fast: what was slow before counts as slow.
+TEST(StreamOnModel, ARatioChangedInAPieceIsNoTimeOut) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 1ms;
+  std::uint64_t looks = 0;
+  options.progress = [&](const StreamProgress&) {
+    if (++looks == 20'000) card.set_ratio(Card::kFullRatio);
+  };
+  card.set_ratio(Card::kFullRatio / 16);
+  Stream stream(card, options);
+  stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});  // 160,000 clocks at full ratio
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_GT(looks, 20'000U);
+  EXPECT_GE(engine->cycles(), 20'000U * 64U);
+  // Set by somebody else, and never told to this driver.
+  engine->write(reg::kRatioFeed, Card::kFullRatio / 16);
+  stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_EQ(card.ratio(), Card::kFullRatio / 16);
+  EXPECT_EQ(engine->positions()[0], 20);
+}
+
 TEST(StreamOnModel, AFaultWhileWaitingEndsTheWait) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);

@@ -114,6 +114,8 @@ class Card {
   // Time base: share of clocks that are enabled, 2^-16, 0 .. kFullRatio; in pieces of the class feed where the card has
   // classes, else in all.
   void set_ratio(std::uint32_t ratio);
+  // As set_ratio() has set it last, or as somebody else has, where a wait has found that.
+  std::uint32_t ratio() const { return ratio_; }
   // Time that the ratio takes from 0 to full, up to 2^30 clocks; the slew is rounded down, to one that is no faster.
   // Times under 5 clocks give the card's fastest slew, 8 clocks.
   void set_slew_time(std::chrono::nanoseconds full_scale);
@@ -172,6 +174,8 @@ class Card {
   void throw_if_faulted(const Status& status, std::string_view context);
   // Throws what a refusal means: FaultError for the reason FAULTED, else RefusedError.
   [[noreturn]] void throw_refused(const Refusal& refusal, std::string_view context);
+  // Somebody else has set this ratio.
+  void note_ratio(std::uint32_t ratio) { ratio_ = ratio; }
   // Does what other threads have asked for. Throws StateError after an abort.
   void serve_requests();
   // Lets up to `clocks` pass: fewer only where the bus has an interrupt and the card becomes idle (if asked for),
@@ -204,6 +208,7 @@ class Card {
   Bus* bus_;
   Identification identification_;
   CardTiming timing_;
+  std::uint32_t ratio_ = kFullRatio;
   std::optional<Refusal> earlier_;           // taken from the card and not reported yet
   std::optional<std::uint32_t> irq_enable_;  // as written last
   std::shared_ptr<Requests> requests_;

@@ -105,6 +105,7 @@ class Stream final : public CommandSink {
   void advance(Count& count, std::uint32_t begun) const;
   bool all_begun() const { return geometry_.begun == geometry_.sent && feed_.begun == feed_.sent; }
   Duration planned() const;
+  std::size_t slot(std::uint64_t number) const { return static_cast<std::size_t>(number % durations_.size()); }
   void require_open() const;
   template <class Call>
   auto closing_at_errors(Call call);
