@@ -42,7 +42,7 @@ machine::Machine machine_of(const Options& options) {
   return machine;
 }
 
-void note(const std::string& text) { fmt::print(stderr, "trammel: note: {}\n", text); }
+void tell(const char* what, const std::string& text) { fmt::print(stderr, "trammel: {}: {}\n", what, text); }
 
 void execute(const Options& options) {
   Outputs outputs;
@@ -69,8 +69,10 @@ void execute(const Options& options) {
   run.planned = [&](const run::Plan& plan) {
     outputs.open();
     if (trace != nullptr) engine.trace->path = trace->path_to_write();
-    if (const auto text = long_run_note(engine, plan.seconds)) note(*text);
-    if (engine.axes != axes) note(fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
+    for (const std::string& text : feed_warnings(plan)) tell("warning", text);
+    if (const auto text = long_run_note(engine, plan.seconds)) tell("note", *text);
+    if (engine.axes != axes)
+      tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
   };
   const RunResult result = run_program(lines, machine, engine, run);
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);

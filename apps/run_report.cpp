@@ -25,7 +25,36 @@ std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   return text;
 }
 
+// Without an exponent, and without digits that nobody reads.
+std::string number(double feed) { return feed < 100 ? fmt::format("{:.3g}", feed) : fmt::format("{:.0f}", feed); }
+
+const char* text_of(planner::SpeedLimit cause) {
+  switch (cause) {
+    case planner::SpeedLimit::kAxisVelocity:
+      return "beyond the max_velocity of an axis";
+    case planner::SpeedLimit::kPulseShape:
+      return "beyond the step length and space of an axis";
+    case planner::SpeedLimit::kAcceleration:
+      return "too short, or too strong a curve, for the max_acceleration";
+    case planner::SpeedLimit::kClock:
+      return "beyond the card's clock";
+    case planner::SpeedLimit::kNone:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
+
+std::vector<std::string> feed_warnings(const run::Plan& plan) {
+  std::vector<std::string> lines;
+  for (const run::FeedNotReached& feed : plan.feeds_not_reached) {
+    lines.push_back(fmt::format("{} {} not reach the feed: {}; the furthest off at {}:{}, {} of {} mm/min", feed.count,
+                                feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), plan.file, feed.line,
+                                number(feed.reached), number(feed.wanted)));
+  }
+  return lines;
+}
 
 std::string summary(const RunResult& result) {
   const double seconds = static_cast<double>(result.cycles) / result.clock_hz;

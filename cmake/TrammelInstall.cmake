@@ -23,7 +23,7 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/host/run/include/"
   "${PROJECT_SOURCE_DIR}/sim/include/"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp"
-  PATTERN "lockstep.hpp" EXCLUDE)
+  PATTERN "lockstep.hpp" EXCLUDE PATTERN "engines.hpp" EXCLUDE)  # of no use without the Verilated card
 install(EXPORT trammel-targets NAMESPACE trammel:: DESTINATION "${trammel_package_dir}"
   COMPONENT trammel_development)
 
@@ -36,10 +36,6 @@ install(FILES
   "${PROJECT_BINARY_DIR}/trammel-config.cmake"
   "${PROJECT_BINARY_DIR}/trammel-config-version.cmake"
   DESTINATION "${trammel_package_dir}" COMPONENT trammel_development)
-
-# The model's engine; engines.hpp, which makes the Verilated one too, is of no use without Verilator.
-install(FILES "${PROJECT_SOURCE_DIR}/sim/include/trammel/sim/engine.hpp"
-  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/trammel/sim" COMPONENT trammel_development)
 
 set(trammel_data_dir "${CMAKE_INSTALL_DATADIR}/trammel")
 

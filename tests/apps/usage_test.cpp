@@ -84,6 +84,23 @@ TEST(Notes, LongRunOfTheRtlEngine) {
   EXPECT_NE(note.find("--engine model"), std::string::npos) << note;
 }
 
+// One line a cause, with the count and the place where the smallest share of the feed is reached.
+TEST(Notes, FeedsThatAreNotReached) {
+  const Command command;
+  const Outcome reached = command.run("run --engine model " + command.write("a.ngc", "G1 X10 F600\n"));
+  EXPECT_EQ(reached.err, "");
+  const Outcome outcome = command.run(
+      "run --engine model " + command.write("b.ngc", "F3000\nG1 X0.5\nG1 X0.1\nG1 X50\nG1 X0.2 F90000\nG1 X30 F600\n"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 2U) << outcome.err;
+  // 0.4 mm and back at 1000 mm/s^2 reach 20 mm/s.
+  EXPECT_NE(outcome.err.find("2 moves do not reach the feed: too short"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("b.ngc:3, 1200 of 3000 mm/min"), std::string::npos) << outcome.err;
+  // 150 mm/s of the default machine.
+  EXPECT_NE(outcome.err.find("1 move does not reach the feed: beyond the max_velocity"), std::string::npos);
+  EXPECT_NE(outcome.err.find("b.ngc:5, 9000 of 90000 mm/min"), std::string::npos) << outcome.err;
+}
+
 TEST(Notes, WordsWithoutEffectByTheReason) {
   const Command command;
   const Outcome outcome = command.run(

@@ -1,4 +1,4 @@
-// Uses a header and a symbol of the card map, the model, the driver and the simulation; fails if a line does not arrive.
+// Uses a header and a symbol of each library; fails if a line does not arrive.
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -11,8 +11,8 @@
 
 int main() {
   using namespace trammel;
-  const auto engine = sim::make_model_engine({});
-  driver::Card card = driver::Card::open(*engine);
+  const auto bus = sim::make_model_engine({});
+  driver::Card card = driver::Card::open(*bus);
   driver::run_line(card, driver::plan_line(card.timing(), {20, 40}, std::chrono::milliseconds(1)));
   const driver::Snapshot snapshot = card.snapshot();
   std::printf("%s: x %d, y %d\n", std::string(card_map::find_register(card_map::reg::kMagic).entry->name).c_str(),
