@@ -15,7 +15,7 @@
 namespace trammel::driver {
 
 // Centres carry 8 fraction bits: with whole pulses an arc would stray 2.8 pulses, with 8 bits 1.1.
-inline constexpr std::int64_t kCentreUnitsPerPulse = 256;
+inline constexpr std::int64_t kCentreUnitsPerPulse = std::int64_t{1} << card_map::constant::kCentreFractionBits;
 
 // Largest distance from the centre, each coordinate: 2^24 pulses. Then X^2 <= 2^64, |F| and |GX| < 2^67 on any walk
 // inside the circle's bounding square, far from the card's 80 bits, and a turn has at most 2^27 steps.
