@@ -33,8 +33,8 @@ struct Shift {
 struct StepHashes {
   std::uint64_t path = 0;
   std::uint64_t path_steps = 0;
-  // Without them for programs with arcs: rate and length of an arc's feed come from angles, so that the last bit of
-  // libm's functions may move a tick by a clock.
+  // Without them for programs with arcs: when they were recorded, rate and length of an arc's feed came from angles of
+  // the C library, whose last bit may move a tick by a clock.
   std::optional<std::uint64_t> pins;
   std::uint64_t pin_steps = 0;
   std::uint64_t barriers = 0;

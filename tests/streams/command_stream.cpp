@@ -1,22 +1,23 @@
-// Usage: command_stream [--libm] [--one] [--keep] PROGRAM...
+// Usage: command_stream [--libm] [--list] [--one] [--keep] PROGRAM...
 // Reads, plans and encodes each program (a file, or generated:<lines>) for two machines: the default one, and one of
 // unequal scales, where arcs go out as chords. Prints a line for each: machine, program, commands, words, and a hash of
 // all words. Nothing but bits is compared, so nothing is rounded. --libm adds results of the C library's sin, cos,
 // atan2 and exp to the hash: what a comparison of two hosts must find different where their C libraries differ. --one:
 // the default machine alone. --keep: a byte of every command stays in memory, for the judge of memory.
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
-#include <vector>
 
 #include "generated_lines.hpp"
+#include "trammel/driver/command_sink.hpp"
 #include "trammel/driver/commands.hpp"
-#include "trammel/gcode/program.hpp"
+#include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/planner/planner.hpp"
 
@@ -38,30 +39,37 @@ class Hash {
 
 struct Options {
   bool libm = false;
+  bool list = false;  // the words, a line a command, to find where two hosts part
   bool one = false;   // the default machine alone
   bool keep = false;  // a byte of every command stays in memory
 };
 
-struct Stream {
-  explicit Stream(const Options& options) : keep_(options.keep) {}
+// Counts the commands and hashes their words.
+class Stream final : public driver::CommandSink {
+ public:
+  Stream(bool list, bool keep) : list_(list), keep_(keep) {}
+
+  void put(const driver::Command& command) override {
+    std::array<std::uint32_t, driver::kMaxCommandWords> encoded;
+    const std::size_t count = driver::encode(command, static_cast<std::uint8_t>(commands), encoded.data());
+    ++commands;
+    words += count;
+    for (std::size_t i = 0; i < count; ++i) {
+      hash.add(encoded[i], 4);
+      if (list_) std::printf("%08lx ", static_cast<unsigned long>(encoded[i]));
+    }
+    if (list_) std::puts("");
+    if (keep_) kept_.push_back(static_cast<char>(words));
+  }
 
   std::uint64_t commands = 0;
   std::uint64_t words = 0;
   Hash hash;
 
-  void put(const driver::Command& command) {
-    encoded_.clear();
-    driver::encode(command, static_cast<std::uint8_t>(commands), encoded_);
-    ++commands;
-    words += encoded_.size();
-    for (const std::uint32_t word : encoded_) hash.add(word, 4);
-    if (keep_) kept_.push_back(static_cast<char>(words));
-  }
-
  private:
+  bool list_;
   bool keep_;
   std::string kept_;
-  std::vector<std::uint32_t> encoded_;
 };
 
 std::unique_ptr<gcode::LineSource> open(const std::string& program) {
@@ -72,18 +80,17 @@ std::unique_ptr<gcode::LineSource> open(const std::string& program) {
   return std::make_unique<gcode::FileLines>(program);
 }
 
-Stream stream_of(const std::string& name, const machine::Machine& machine, const Options& options) {
-  const std::unique_ptr<gcode::LineSource> lines = open(name);
+// Nothing, or why the program is refused.
+std::optional<gcode::Error> run(const std::string& program, const machine::Machine& machine, Stream& stream) {
+  const std::unique_ptr<gcode::LineSource> lines = open(program);
+  planner::CardLimits card;
+  card.clock_hz = machine.clock_hz;
+  card.axes = static_cast<unsigned>(machine.axes.size());
   gcode::Reader reader(*lines, machine);
-  gcode::Program program;
-  for (gcode::Motion motion; reader.next(motion);) program.motions.push_back(motion);
-  if (reader.error()) throw gcode::ProgramError(*reader.error());
-  Stream stream(options);
-  planner::Planner planner(program, machine, machine.clock_hz);
-  for (planner::PlannedSegment segment; planner.next(segment);) {
-    for (const driver::Command& command : segment.commands) stream.put(command);
-  }
-  return stream;
+  planner::BlockBuilder blocks(reader, machine, card);
+  planner::Planner planner(blocks, machine, card);
+  for (planner::PlannedBlock planned; planner.next(stream, planned);) continue;
+  return blocks.error();
 }
 
 void add_libm(Hash& hash) {
@@ -100,18 +107,16 @@ void add_libm(Hash& hash) {
 // False where the program is refused, which is printed too: it must be refused alike everywhere.
 bool print(const char* machine_name, const machine::Machine& machine, const std::string& program,
            const Options& options) {
-  const std::string name = program.substr(program.rfind('/') + 1);
-  try {
-    Stream stream = stream_of(program, machine, options);
-    if (options.libm) add_libm(stream.hash);
-    std::printf("%s %s: %llu commands, %llu words, %016llx\n", machine_name, name.c_str(),
-                static_cast<unsigned long long>(stream.commands), static_cast<unsigned long long>(stream.words),
-                static_cast<unsigned long long>(stream.hash.value()));
-    return true;
-  } catch (const std::exception& error) {
-    std::printf("%s %s: refused: %s\n", machine_name, name.c_str(), error.what());
-    return false;
-  }
+  Stream stream(options.list, options.keep);
+  const std::optional<gcode::Error> error = run(program, machine, stream);
+  if (options.libm) add_libm(stream.hash);
+  std::printf("%s %s: %llu commands, %llu words, %016llx", machine_name, program.substr(program.rfind('/') + 1).c_str(),
+              static_cast<unsigned long long>(stream.commands), static_cast<unsigned long long>(stream.words),
+              static_cast<unsigned long long>(stream.hash.value()));
+  if (error)
+    std::printf(", refused at line %llu: %s", static_cast<unsigned long long>(error->line), error->message.c_str());
+  std::puts("");
+  return !error;
 }
 
 }  // namespace
@@ -126,6 +131,8 @@ int main(int argc, char** argv) {
     const std::string argument = argv[i];
     if (argument == "--libm") {
       options.libm = true;
+    } else if (argument == "--list") {
+      options.list = true;
     } else if (argument == "--one") {
       options.one = true;
     } else if (argument == "--keep") {

@@ -62,7 +62,9 @@ class GeneratedLines final : public gcode::LineSource {
       write(" R%u.5", 115 + static_cast<unsigned>(random(400)));
       return;
     } else if (kind < 25) {
-      write("G2 I%u.25 J%u.125", 1 + static_cast<unsigned>(random(20)), 1 + static_cast<unsigned>(random(20)));
+      // One after the other: in which order arguments are evaluated is the compiler's choice.
+      write("G2 I%u.25", 1 + static_cast<unsigned>(random(20)));
+      write(" J%u.125", 1 + static_cast<unsigned>(random(20)));
       return;
     } else if (kind < 26) {
       write("G4 P0.%03u", static_cast<unsigned>(random(1000)));

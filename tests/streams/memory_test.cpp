@@ -68,6 +68,20 @@ TEST_F(Memory, OfThePipelineDoesNotGrowWithTheProgram) {
   EXPECT_LT(growth({TRAMMEL_COMMAND_STREAM, "--one"}, 100'000, is_long() ? 10'000'000 : 1'000'000), kTolerance);
 }
 
+// The whole run, on the model engine. A picture's path is thinned at 20,000 points: only a long run has memory of its
+// full size in both programs.
+TEST_F(Memory, OfARunDoesNotGrowWithTheProgram) {
+  if (is_long()) {
+    EXPECT_LT(growth({TRAMMEL_RUN, "--plot"}, 100'000, 1'000'000), kTolerance);
+  } else {
+    EXPECT_LT(growth({TRAMMEL_RUN}, 5'000, 50'000), kTolerance);
+  }
+}
+
+TEST_F(Memory, OfAnObserverThatKeepsIsSeenToGrow) {
+  EXPECT_GT(growth({TRAMMEL_RUN, "--keep"}, 5'000, 40'000), kTolerance);
+}
+
 // A byte kept for each command is seen.
 TEST_F(Memory, OfASinkThatKeepsIsSeenToGrow) {
   EXPECT_GT(growth({TRAMMEL_COMMAND_STREAM, "--one", "--keep"}, 100'000, 300'000), kTolerance);

@@ -1,6 +1,8 @@
-// Usage: run_long_program [--keep] generated:<lines>
-// Runs a cheap program of so many lines on the model engine, from reader to steps, with a recorder of steps whose lists go nowhere.
-// --keep: an observer keeps a byte of every command, for the judge of memory.
+// Usage: run_long_program [--plot] [--keep] generated:<lines>
+// Runs a cheap program of so many lines on the model engine, from reader to steps, with a recorder whose lists go
+// nowhere.
+// --plot: it keeps the thinned path and speed of a picture too. --keep: an observer keeps 16 bytes of every command,
+// for the judge of memory.
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -48,15 +50,17 @@ class Nowhere final : public run::TextSink {
 
 class Keeper final : public run::Observer {
  public:
-  void command(std::uint64_t number, const driver::Command&) override { kept_.push_back(static_cast<char>(number)); }
+  void command(std::uint64_t number, const driver::Command&) override { kept_.append(16, static_cast<char>(number)); }
 
  private:
   std::string kept_;
 };
 
-void run_lines(std::uint64_t lines, bool keep) {
+void run_lines(std::uint64_t lines, bool plot, bool keep) {
   const machine::Machine machine = machine::default_machine();
-  const std::unique_ptr<sim::Engine> engine = sim::make_model_engine({4, machine.clock_hz});
+  sim::EngineOptions card_options;
+  card_options.clock_hz = 1'000'000;
+  const std::unique_ptr<sim::Engine> engine = sim::make_model_engine(card_options);
   driver::Card card = driver::Card::open(*engine);
   run::Runner runner([&] { return std::make_unique<ShortMoves>(lines); }, machine,
                      planner::limits_of(card.identification()));
@@ -65,7 +69,7 @@ void run_lines(std::uint64_t lines, bool keep) {
   run::StepRecorder::Options options;
   options.steps = &steps;
   options.path_steps = &path_steps;
-  options.plot = true;
+  options.plot = plot;
   options.clock_hz = machine.clock_hz;
   for (const machine::MachineAxis& axis : machine.axes) options.steps_per_mm.push_back(axis.steps_per_mm);
   run::StepRecorder recorder(options);
@@ -86,16 +90,19 @@ void run_lines(std::uint64_t lines, bool keep) {
 
 int main(int argc, char** argv) {
   try {
+    bool plot = false;
     bool keep = false;
     std::uint64_t lines = 0;
     for (int i = 1; i < argc; ++i) {
       const std::string argument = argv[i];
-      if (argument == "--keep")
+      if (argument == "--plot")
+        plot = true;
+      else if (argument == "--keep")
         keep = true;
       else
         lines = std::stoull(argument.substr(argument.find(':') + 1));
     }
-    run_lines(lines, keep);
+    run_lines(lines, plot, keep);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <sstream>
@@ -14,6 +15,8 @@
 
 #include "text.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/driver/card_timing.hpp"
+#include "trammel/driver/errors.hpp"
 #include "trammel/machine/machine.hpp"
 
 namespace trammel::machine {
@@ -171,17 +174,22 @@ char axis_letter(const Source& source, const std::string& key, const toml::value
   return letter;
 }
 
-// Fits the 16-bit registers at this clock?
+// Do the step times fit the card's registers at this clock? Rounded up to whole nanoseconds, as the driver takes them.
 void check_times(const std::string& where, const Machine& machine) {
-  for (const MachineAxis& axis : machine.axes) {
-    for (const double time :
-         {axis.step_length_ns, axis.step_space_ns, axis.direction_setup_ns, axis.direction_hold_ns}) {
-      try {
-        clocks_from_ns(time, machine.clock_hz);
-      } catch (const std::out_of_range& error) {
-        refuse(fmt::format("{}: axis {}: {}", where, axis.letter, error.what()));
-      }
+  constexpr double kLongest = 1e15;  // ns; more than any register at the slowest clock
+  const auto check = [&](const MachineAxis& axis, double time, const char* what) {
+    const std::chrono::nanoseconds whole(static_cast<std::int64_t>(std::ceil(std::min(time, kLongest))));
+    try {
+      driver::step_time_clocks(whole, machine.clock_hz, what);
+    } catch (const driver::ArgumentError& error) {
+      refuse(fmt::format("{}: axis {}: {}", where, axis.letter, error.what()));
     }
+  };
+  for (const MachineAxis& axis : machine.axes) {
+    check(axis, axis.step_length_ns, "step_length_ns");
+    check(axis, axis.step_space_ns, "step_space_ns");
+    check(axis, axis.direction_setup_ns, "direction_setup_ns");
+    check(axis, axis.direction_hold_ns, "direction_hold_ns");
   }
 }
 

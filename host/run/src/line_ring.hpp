@@ -15,7 +15,7 @@ class LineRing {
   explicit LineRing(std::size_t most) : lines_(most) {}
 
   // The line of the next command for the geometry queue.
-  void put(std::size_t line) { lines_[put_++ % lines_.size()] = line; }
+  void put(std::size_t line) { lines_[slot(put_++)] = line; }
 
   // The card's count of commands begun, which wraps at 2^32; it grows by less than that from call to call.
   void begun(std::uint32_t count) { begun_ += count - static_cast<std::uint32_t>(begun_); }
@@ -26,10 +26,12 @@ class LineRing {
     if (put_ == 0) return 0;
     const std::uint64_t oldest = put_ > lines_.size() ? put_ - lines_.size() : 0;
     const std::uint64_t number = std::clamp(std::max<std::uint64_t>(begun_, 1) - 1, oldest, put_ - 1);
-    return lines_[number % lines_.size()];
+    return lines_[slot(number)];
   }
 
  private:
+  std::size_t slot(std::uint64_t number) const { return static_cast<std::size_t>(number % lines_.size()); }
+
   std::vector<std::size_t> lines_;
   std::uint64_t put_ = 0;
   std::uint64_t begun_ = 0;

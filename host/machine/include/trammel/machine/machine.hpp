@@ -55,11 +55,6 @@ struct Machine {
   std::optional<std::size_t> axis(char letter) const;
 };
 
-// A time, 0 or more, as register value: rounded up to whole nanoseconds, as the driver takes them, and those to whole
-// clocks, as the driver does.
-// Throws std::out_of_range when it does not fit the 16 bits of the card's registers.
-std::uint16_t clocks_from_ns(double nanoseconds, std::uint32_t clock_hz);
-
 // Each throws MachineError for the first missing, unknown, non-numeric or out-of-range entry, and for a text of more
 // than kLongestMachineText bytes. A file may be a pipe, but no other device.
 inline constexpr std::size_t kLongestMachineText = 1 << 20;
