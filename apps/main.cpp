@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
+#include <iostream>
 
 #include "command_names.hpp"
 #include "compare_command.hpp"

@@ -19,7 +19,7 @@ constexpr std::size_t kMostNames = 256;
 std::array<std::atomic<const char*>, kMostNames> names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-constexpr std::array<int, 4> kEndingSignals{SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+constexpr std::array<int, 5> kEndingSignals{SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGPIPE};
 
 void remember(const std::string& name) {
   for (std::atomic<const char*>& entry : names) {
