@@ -20,6 +20,7 @@
 
 #include "step_hashes.hpp"
 #include "trammel/run/runner.hpp"
+#include "trammel/run/step_fork.hpp"
 #include "trammel/run/step_recorder.hpp"
 #include "trammel/sim/engines.hpp"
 
@@ -53,34 +54,21 @@ const std::map<std::string, std::vector<std::int64_t>> kEnds = {
     {"dwells.ngc", {0, 0, 0, 80}},
 };
 
-// Tells the hasher and the recorder of a run's commands and steps.
-class Watch final : public run::Observer, public driver::StepSink {
+// Tells the hasher of a run's commands.
+class Watch final : public run::Observer {
  public:
-  Watch(StepHasher& hasher, run::StepRecorder& recorder, const sim::Engine& engine)
-      : hasher_(hasher), recorder_(recorder), engine_(engine) {}
+  Watch(StepHasher& hasher, const sim::Engine& engine) : hasher_(hasher), engine_(engine) {}
   void sending(const planner::PlannedBlock& planned) override {
     const planner::Geometry geometry = planned.block.geometry;
     hasher_.block(geometry == planner::Geometry::kChords ? StepHasher::Path::kChords
                   : geometry == planner::Geometry::kArc  ? StepHasher::Path::kArc
                                                          : StepHasher::Path::kNoArc);
   }
-  void command(std::uint64_t number, const driver::Command& command) override {
-    hasher_.command(command);
-    recorder_.command(number, command);
-  }
+  void command(std::uint64_t /*number*/, const driver::Command& command) override { hasher_.command(command); }
   void sent() override { hasher_.sent(engine_.cycles()); }
-  void pin_step(const driver::PinStep& step) override {
-    recorder_.pin_step(step);
-    hasher_.pin_step(step);
-  }
-  void path_step(const driver::PathStep& step) override {
-    recorder_.path_step(step);
-    hasher_.path_step(step);
-  }
 
  private:
   StepHasher& hasher_;
-  run::StepRecorder& recorder_;
   const sim::Engine& engine_;
 };
 
@@ -102,12 +90,16 @@ Outcome run(const Job& job, Shift shift = kShift) {
   run::StepRecorder::Options recording;
   recording.steps_per_mm.assign(machine.axes.size(), 1.0);
   run::StepRecorder recorder(recording);
-  Watch watch(hasher, recorder, *engine);
-  engine->set_sink(&watch);
+  Watch watch(hasher, *engine);
+  run::StepFork steps;
+  steps.add(recorder);
+  steps.add(hasher);
+  engine->set_sink(&steps);
   driver::Card card = driver::Card::open(*engine);
   const std::string file = job.folder + "/" + job.program;
   run::Runner runner([&] { return std::make_unique<gcode::FileLines>(file); }, machine,
                      planner::limits_of(card.identification()));
+  runner.add(recorder);
   runner.add(watch);
   runner.plan();
   const run::Outcome outcome = runner.run(card);

@@ -94,6 +94,18 @@ TEST(Blocks, HaveLengthAndLimitsOfTheirPath) {
   EXPECT_DOUBLE_EQ(block.jerk, 5000 * 80 / 0.6) << "X makes three";
 }
 
+TEST(Blocks, EndAtAnError) {
+  const machine::Machine machine = machine_with({"axis.x.max=10"});
+  gcode::TextLines lines("G0 X11\nG0 X1\n", "p.ngc");
+  gcode::Reader reader(lines, machine);
+  BlockBuilder blocks(reader, machine, kCard);
+  Block block;
+  EXPECT_FALSE(blocks.next(block));
+  EXPECT_FALSE(blocks.next(block)) << "what follows is not looked at";
+  ASSERT_TRUE(blocks.error());
+  EXPECT_EQ(blocks.error()->line, 1U);
+}
+
 TEST(Blocks, RefuseStepTimesThatTheCardCannotKeep) {
   const machine::Machine machine = machine_with({"axis.x.step_length_ns=600000"});
   EXPECT_NO_THROW(plan_text("G0 X1\n", machine, kCard));

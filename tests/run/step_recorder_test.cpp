@@ -6,6 +6,7 @@
 
 #include "string_sink.hpp"
 #include "trammel/driver/increment.hpp"
+#include "trammel/run/step_fork.hpp"
 
 namespace trammel::run {
 namespace {
@@ -78,6 +79,25 @@ TEST(StepRecorder, WritesAsItGoes) {
   StepRecorder recorder(options);
   for (std::uint64_t i = 0; i < 20'000; ++i) recorder.pin_step({i, 0, 1});
   EXPECT_GT(steps.text.size(), 100'000U);
+}
+
+TEST(StepFork, GivesEverySinkEveryStep) {
+  StepRecorder::Options options;
+  options.steps_per_mm = {80};
+  StepRecorder first(options);
+  StringSink path_steps;
+  options.path_steps = &path_steps;
+  StepRecorder second(options);
+  StepFork fork;
+  fork.add(first);
+  fork.add(second);
+  for (StepRecorder* recorder : {&first, &second}) recorder->command(0, line(1));
+  fork.path_step({0, 50, 0, 1});
+  fork.pin_step({60, 0, 1});
+  second.finish();
+  EXPECT_EQ(first.steps()[0], 1U);
+  EXPECT_EQ(second.steps()[0], 1U);
+  EXPECT_EQ(path_steps.text, "command,tick,axis,direction\n0,50,0,1\n");
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
 }
 
 bool BlockBuilder::next(Block& block) {
+  if (error_) return false;
   while (reader_.next(motion_)) {
     const bool any = build(block);
     if (error_) return false;
