@@ -360,6 +360,29 @@ TEST(CardOnModel, AnotherThreadsRequestsAreServedByTheCallThatWaits) {
   EXPECT_LT(engine->positions()[0], 10);
 }
 
+// A line that stays raised for another reason neither makes the wait spin nor keeps its time from passing.
+TEST(CardInterrupts, ARaisedLineTakesTurnsWithSleeping) {
+  class Raised final : public RegisterStub {
+   public:
+    bool has_interrupt() const override { return true; }
+    bool wait_for_interrupt(std::chrono::nanoseconds) override {
+      ++waits;
+      return true;
+    }
+    std::size_t waits = 0;
+  };
+  Raised bus;
+  Card card = Card::open(bus);
+  bus.forget();
+  bus.next[reg::kStatus] = std::deque<std::uint32_t>(6, field::kStatusBusy);
+  card.wait_until_idle(1s);
+  EXPECT_EQ(bus.waits, 3U);
+  EXPECT_EQ(bus.sleeps.size(), 3U);
+  EXPECT_EQ(bus.values[reg::kIrqEnable], field::kStatusBusy | field::kStatusFaulted | field::kStatusRefused);
+  bus.values[reg::kStatus] = field::kStatusBusy;
+  EXPECT_THROW(card.wait_until_idle(1s), TimeoutError);
+}
+
 TEST(CardOnModel, AnInterruptEndsAWait) {
   sim::EngineOptions options;
   options.interrupt = true;

@@ -169,9 +169,9 @@ TEST_F(StreamOrder, FinishWaitsUntilAllHasBegunAndEnded) {
   Stream stream = open_stream();
   stream.send(EndCommand{});
   bus_.forget();
-  bus_.next[reg::kStatus] = {field::kStatusBusy, field::kStatusBusy, 0, field::kStatusEnded};
+  bus_.next[reg::kStatus] = {field::kStatusBusy, field::kStatusBusy, field::kStatusEnded, field::kStatusEnded};
   bus_.next[reg::kGeometryBegun] = {0, 1};
-  bus_.next[reg::kFeedBegun] = {0, 0};
+  bus_.next[reg::kFeedBegun] = {0, 0, 0};
   bus_.values[reg::kGeometryBegun] = 1;
   bus_.values[reg::kFeedBegun] = 1;
   EXPECT_TRUE(stream.finish().ended);
@@ -266,8 +266,11 @@ TEST_F(StreamOrder, ZerosAreALinkErrorWithinTwoLooks) {
 TEST_F(StreamOrder, MoreBegunThanSentIsAStateError) {
   Stream stream = open_stream();
   stream.send({feed_of(10), line_of(10)});
+  bus_.values[reg::kStatus] = field::kStatusBusy;
   bus_.values[reg::kGeometryBegun] = 2;
+  bus_.forget();
   EXPECT_THROW(stream.finish(), StateError);
+  EXPECT_LE(bus_.slept, 100us);
 }
 
 // A bus that notes the words of the stream on their way to the model.
@@ -334,6 +337,23 @@ TEST(StreamOnModel, AStreamThatStarvesTheCardTimesOut) {
   Stream stream(card, options);
   EXPECT_THROW(stream.send(std::vector<Command>(100, line_of(10))), TimeoutError);
   EXPECT_LT(engine->cycles(), 20'000U);
+}
+
+// Each piece has its own time.
+TEST(StreamOnModel, ManyPiecesAreNoTimeOut) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 1ms;
+  Stream stream(card, options);
+  for (int i = 0; i < 50; ++i) {
+    stream.put(feed_of(1000));
+    stream.put(line_of(1000, 1));
+  }
+  stream.put(EndCommand{});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_EQ(engine->positions()[0], 50);
+  EXPECT_GE(engine->cycles(), 800'000U);
 }
 
 // 700 s each, beyond every constant: a dwell, a slow piece, and one at a sixteenth of the ratio.

@@ -77,7 +77,7 @@ inline Path line(Random& random) {
 // No curve at all: every bit of every word in use, carries through all of them, ends of any size.
 inline Path noise(Random& random) {
   Path path;
-  const auto shrink = [&] { return static_cast<int>(between(random, 48, 127)); };
+  const auto shrink = [&] { return random() % 2 == 0 ? 48 : static_cast<int>(between(random, 48, 127)); };
   path.deviation = any128(random) >> shrink();
   path.gradient_x = any128(random) >> shrink();
   path.gradient_y = any128(random) >> shrink();
