@@ -48,3 +48,19 @@ function(trammel_discover_tests target prefix)
   gtest_discover_tests(${target} TEST_PREFIX "${prefix}." DISCOVERY_TIMEOUT 60 TEST_FILTER "${A_FILTER}"
                        PROPERTIES LABELS ${A_LABEL} ${A_UNPARSED_ARGUMENTS})
 endfunction()
+
+# trammel_library_tests(name LIBRARIES library ... [SOURCES further.cpp ...]): test_<name> from the folder's *_test.cpp, with
+# RapidCheck for properties over random values, what tests share, and the examples and real programs by their folders.
+function(trammel_library_tests name)
+  cmake_parse_arguments(PARSE_ARGV 1 A "" "" "LIBRARIES;SOURCES")
+  find_package(rapidcheck REQUIRED)
+  file(GLOB sources CONFIGURE_DEPENDS *_test.cpp)
+  add_executable(test_${name} ${sources} ${A_SOURCES})
+  trammel_target(test_${name})
+  target_link_libraries(test_${name} PRIVATE ${A_LIBRARIES} fmt::fmt GTest::gmock_main rapidcheck rapidcheck_gtest)
+  target_include_directories(test_${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests/support")
+  target_compile_definitions(test_${name} PRIVATE TRAMMEL_EXAMPLES_DIR="${PROJECT_SOURCE_DIR}/examples")
+  trammel_shared_gcode(test_${name})
+  trammel_test_headers(test_${name} QUICK)
+  trammel_discover_tests(test_${name} ${name})
+endfunction()

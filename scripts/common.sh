@@ -52,11 +52,10 @@ install_armhf() {
   touch "$packages/status"
   local apt=(apt-get -qq -o APT::Architecture=armhf -o APT::Architectures::=armhf -o APT::Sandbox::User=
              -o Dir::State::lists="$packages/lists" -o Dir::State::status="$packages/status" -o Dir::Cache="$packages/cache")
-  # Lists of other parts of the archive may fail: what counts is whether the packages come.
-  "${apt[@]}" update >"$packages/log" 2>&1 || true
-  if ! (cd "$packages" && "${apt[@]}" download "${armhf_libraries[@]}" >>log 2>&1); then
-    say "they did not come ($packages/log): the tests on 32-bit ARM will not run"
-    return 0
+  if ! "${apt[@]}" update >"$packages/log" 2>&1 ||
+    ! (cd "$packages" && "${apt[@]}" download "${armhf_libraries[@]}" >>log 2>&1); then
+    say "they did not come, and without them the tests on 32-bit ARM cannot run: $packages/log says why"
+    return 1
   fi
   local file
   for file in "$packages"/*.deb; do dpkg-deb -x "$file" "$packages"; done

@@ -1,32 +1,10 @@
 // The reader allocates nothing once it runs: the global operator new counts.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
 #include <string>
 
+#include "counted_allocations.hpp"
 #include "trammel/gcode/reader.hpp"
-
-namespace {
-
-std::size_t allocations = 0;
-
-void* allocate(std::size_t size) {
-  ++allocations;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return allocate(size); }
-void* operator new[](std::size_t size) { return allocate(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace trammel::gcode {
 namespace {
@@ -67,11 +45,11 @@ TEST(Allocation, NoneABlock) {
   for (int i = 0; i < 100; ++i) {
     ASSERT_TRUE(reader.next(motion)) << describe(*reader.error());
   }
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations();
   for (int i = 0; i < 100000; ++i) {
     reader.next(motion);
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocations(), before);
   EXPECT_FALSE(reader.error());
   EXPECT_GT(reader.accepted().at("M3"), 1000U);
 }
@@ -82,19 +60,19 @@ TEST(Allocation, NoneALine) {
     text += "G1 X1 Y2 F600 ; a line\r\n";
   }
   TextLines lines(text, "text");
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations();
   std::size_t count = 0;
   for (std::string_view line; lines.next(line);) {
     ++count;
   }
   EXPECT_EQ(count, 20000U);
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocations(), before);
 }
 
 TEST(Allocation, IsCounted) {
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations();
   const std::string text(100, 'x');
-  EXPECT_GT(allocations, before) << text;
+  EXPECT_GT(test::allocations(), before) << text;
 }
 
 }  // namespace

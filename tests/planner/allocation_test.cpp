@@ -2,30 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
-#include <new>
 #include <string>
 
+#include "counted_allocations.hpp"
 #include "trammel/planner/planner.hpp"
-
-namespace {
-
-std::size_t allocations = 0;
-
-void* allocate(std::size_t size) {
-  ++allocations;
-  if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return allocate(size); }
-void* operator new[](std::size_t size) { return allocate(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace trammel::planner {
 namespace {
@@ -75,13 +55,13 @@ TEST(Pipeline, AllocatesNothingABlock) {
   Encoder sink;
   PlannedBlock planned;
   for (int i = 0; i < 16; ++i) ASSERT_TRUE(planner.next(sink, planned));
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations();
   std::size_t chords = 0;
   for (int i = 0; i < 800; ++i) {
     if (!planner.next(sink, planned)) break;
     chords += planned.block.geometry == Geometry::kChords;
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocations(), before);
   EXPECT_FALSE(blocks.error());
   EXPECT_GT(chords, 90U);
   EXPECT_GT(sink.words, 10'000U);
