@@ -52,8 +52,9 @@ install_armhf() {
   touch "$packages/status"
   local apt=(apt-get -qq -o APT::Architecture=armhf -o APT::Architectures::=armhf -o APT::Sandbox::User=
              -o Dir::State::lists="$packages/lists" -o Dir::State::status="$packages/status" -o Dir::Cache="$packages/cache")
-  if ! "${apt[@]}" update >"$packages/log" 2>&1 ||
-    ! (cd "$packages" && "${apt[@]}" download "${armhf_libraries[@]}" >>log 2>&1); then
+  # A list of another part of the archive may be missing or out of step: what counts is whether the packages come.
+  "${apt[@]}" update >"$packages/log" 2>&1 || say "not every package list came ($packages/log); going on with those that did"
+  if ! (cd "$packages" && "${apt[@]}" download "${armhf_libraries[@]}" >>log 2>&1); then
     say "they did not come, and without them the tests on 32-bit ARM cannot run: $packages/log says why"
     return 1
   fi
