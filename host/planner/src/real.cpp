@@ -3,23 +3,12 @@
 #include <cmath>
 #include <utility>
 
+#include "trammel/driver/wide.hpp"
+
 namespace trammel::planner {
 namespace {
 
-struct Wide {
-  std::uint64_t high;
-  std::uint64_t low;
-};
-
-Wide product(std::uint64_t a, std::uint64_t b) {
-  constexpr std::uint64_t kMask = 0xFFFFFFFF;
-  const std::uint64_t low_low = (a & kMask) * (b & kMask);
-  const std::uint64_t low_high = (a & kMask) * (b >> 32);
-  const std::uint64_t high_low = (a >> 32) * (b & kMask);
-  const std::uint64_t middle = (low_low >> 32) + (low_high & kMask) + (high_low & kMask);
-  return {(a >> 32) * (b >> 32) + (low_high >> 32) + (high_low >> 32) + (middle >> 32),
-          (middle << 32) | (low_low & kMask)};
-}
+using Wide = driver::Uint128;
 
 struct Quotient {
   std::uint64_t value;
@@ -43,8 +32,8 @@ Quotient divide_digit(std::uint64_t rest, std::uint32_t digit, std::uint64_t div
 
 // (high:low) / divisor, high < divisor, the divisor's highest bit set.
 Quotient divide(Wide dividend, std::uint64_t divisor) {
-  const Quotient first = divide_digit(dividend.high, static_cast<std::uint32_t>(dividend.low >> 32), divisor);
-  const Quotient second = divide_digit(first.rest, static_cast<std::uint32_t>(dividend.low), divisor);
+  const Quotient first = divide_digit(dividend.high(), static_cast<std::uint32_t>(dividend.low() >> 32), divisor);
+  const Quotient second = divide_digit(first.rest, static_cast<std::uint32_t>(dividend.low()), divisor);
   return {first.value << 32 | second.value, second.rest};
 }
 
@@ -81,24 +70,24 @@ Real operator+(Real a, Real b) {
   if (a < b) std::swap(a, b);
   if (b.mantissa_ == 0) return a;
   const Wide shifted = shifted_right(b.mantissa_, a.exponent_ - b.exponent_);
-  const std::uint64_t high = a.mantissa_ + shifted.high;
-  if (high >= a.mantissa_) return Real::normalised(high, shifted.low, a.exponent_);
-  const std::uint64_t low = shifted.low >> 1 | high << 63 | (shifted.low & 1U);
+  const std::uint64_t high = a.mantissa_ + shifted.high();
+  if (high >= a.mantissa_) return Real::normalised(high, shifted.low(), a.exponent_);
+  const std::uint64_t low = shifted.low() >> 1 | high << 63 | (shifted.low() & 1U);
   return Real::normalised(high >> 1 | Real::kTop, low, a.exponent_ + 1);
 }
 
 Real operator-(Real a, Real b) {
   if (b.mantissa_ == 0) return a;
   const Wide shifted = shifted_right(b.mantissa_, a.exponent_ - b.exponent_);
-  const std::uint64_t low = 0 - shifted.low;
-  const std::uint64_t high = a.mantissa_ - shifted.high - (shifted.low != 0 ? 1U : 0U);
+  const std::uint64_t low = 0 - shifted.low();
+  const std::uint64_t high = a.mantissa_ - shifted.high() - (shifted.low() != 0 ? 1U : 0U);
   return high == 0 && low == 0 ? Real() : Real::normalised(high, low, a.exponent_);
 }
 
 Real operator*(Real a, Real b) {
   if (a.mantissa_ == 0 || b.mantissa_ == 0) return {};
-  const Wide full = product(a.mantissa_, b.mantissa_);
-  return Real::normalised(full.high, full.low, a.exponent_ + b.exponent_ + 64);
+  const Wide full = Wide::product(a.mantissa_, b.mantissa_);
+  return Real::normalised(full.high(), full.low(), a.exponent_ + b.exponent_ + 64);
 }
 
 Real operator/(Real a, Real b) {
@@ -120,25 +109,19 @@ Real square_root(Real a) {
   const Wide radicand = odd ? Wide{a.mantissa_ >> 1, a.mantissa_ << 63} : Wide{a.mantissa_, 0};
   const int exponent = (a.exponent_ - 64 + (odd ? 1 : 0)) / 2;
   // 53 bits from the processor, whose square root is exact to the last of them, the others by one step of Heron's.
-  const double near = std::sqrt(static_cast<double>(radicand.high) * 0x1p64);
+  const double near = std::sqrt(static_cast<double>(radicand.high()) * 0x1p64);
   std::uint64_t root = near >= 0x1p64 ? ~std::uint64_t{0} : static_cast<std::uint64_t>(near);
-  if (radicand.high < root) {
+  if (radicand.high() < root) {
     const std::uint64_t other = divide(radicand, root).value;
     root = root / 2 + other / 2 + (root & other & 1U);
   }
   // At most one or two off: down to the floor, then up.
-  const auto above = [&](std::uint64_t candidate) {
-    const Wide square = product(candidate, candidate);
-    return square.high != radicand.high ? square.high > radicand.high : square.low > radicand.low;
-  };
+  const auto above = [&](std::uint64_t candidate) { return Wide::product(candidate, candidate) > radicand; };
   while (above(root)) --root;
   while (root != ~std::uint64_t{0} && !above(root + 1)) ++root;
   // A rest above the root puts it beyond the middle to the next; it is never just there.
-  const Wide square = product(root, root);
-  const std::uint64_t rest_low = radicand.low - square.low;
-  const std::uint64_t rest_high = radicand.high - square.high - (radicand.low < square.low ? 1U : 0U);
-  const bool up = rest_high != 0 || rest_low > root;
-  const std::uint64_t tail = up ? ~std::uint64_t{0} : (rest_low != 0 ? 1U : 0U);
+  const Wide rest = radicand - Wide::product(root, root);
+  const std::uint64_t tail = rest > root ? ~std::uint64_t{0} : (rest != 0 ? 1U : 0U);
   return Real::normalised(root, tail, exponent);
 }
 
