@@ -24,8 +24,11 @@ commands/geometry_decoder.sv
 commands/halfword_queue.sv
 host/axi4_lite_port.sv
 host/port_arbiter.sv
+path/arc_generator.sv
 path/barrier.sv
 path/begun_counter.sv
+path/chord_counter.sv
+path/chord_rotation.sv
 path/deviation_accumulator.sv
 path/geometry_sequencer.sv
 path/path_engines.sv

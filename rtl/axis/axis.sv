@@ -17,6 +17,11 @@ module axis #(
     input  wire logic        swap_i,
     input  wire logic        active_i,       // sampled with the swap
     input  wire logic        direct_i,       // with it: counted, and lines drawn backwards are mirrored
+    // An arc's next chord: its increment, three halfwords, and the swap that keeps the phase. Never beside a halfword of
+    // the load bus for this axis.
+    input  wire logic [15:0] chord_word_i,
+    input  wire logic        chord_load_i,
+    input  wire logic        chord_swap_i,
     input  wire logic        engine_step_i,  // a path runs on one engine: never together with a step of the generator
     input  wire logic        engine_dir_i,
     input  wire logic        wait_tick_i,
@@ -60,9 +65,9 @@ module axis #(
   logic        load_count_q;
   logic [15:0] word_q;
   always_ff @(posedge clk_i) begin
-    load_increment_q <= load_i[21] && load_i[20:16] == INCREMENT;
+    load_increment_q <= (load_i[21] && load_i[20:16] == INCREMENT) || chord_load_i;
     load_count_q <= load_i[21] && load_i[20:16] == COUNT;
-    word_q <= load_i[15:0];
+    word_q <= chord_load_i ? chord_word_i : load_i[15:0];
   end
 
   pulse_generator #(
@@ -70,6 +75,7 @@ module axis #(
   ) generator (
       .*,
       .clear_i         (cut_i),
+      .chord_i         (chord_swap_i),
       .counted_i       (direct_i),
       .mirror_i        (direct_i),
       .load_increment_i(load_increment_q),

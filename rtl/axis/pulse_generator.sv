@@ -5,8 +5,10 @@
 // increment, the preset and the tick delayed alike. The step is registered before it meets the count, so neither adder
 // sits in front of other logic. Latency from tick_i to step_o: 3 clocks, always.
 //
-// Rules for the user: swaps at least 3 clocks apart; no load in the 2 clocks after a swap; no swap and no count load
-// while live_o; a count is used up by its line and loaded anew for the next.
+// A chord is a swap that keeps the phase and whether the axis steps: the line goes on with the next increment.
+//
+// Rules for the user: swaps and chords at least 3 clocks apart; no load in the 2 clocks after either; no swap, no chord and
+// no count load while live_o; a count is used up by its line and loaded anew for the next.
 `default_nettype none
 
 module pulse_generator #(
@@ -19,6 +21,7 @@ module pulse_generator #(
     input  wire logic        clear_i,           // ends the line and drops the steps in flight
     input  wire logic        tick_i,
     input  wire logic        swap_i,
+    input  wire logic        chord_i,           // as a swap, of the increment alone
     input  wire logic        active_i,
     input  wire logic        counted_i,
     input  wire logic        mirror_i,
@@ -51,7 +54,7 @@ module pulse_generator #(
 
   always_ff @(posedge clk_i) begin
     carry_q <= tick_i & low_sum[HALF];
-    if (swap_i) low_increment_q <= next_q[HALF-1:0];
+    if (swap_i | chord_i) low_increment_q <= next_q[HALF-1:0];
     if (swap_i & ~preset_high) low_q <= '0;
     else if (swap_i | tick_i) low_q <= low_sum[HALF-1:0] | {HALF{preset_high}};
   end
@@ -64,6 +67,7 @@ module pulse_generator #(
   logic [  HALF:0] high_sum;
   logic            tick_q;
   logic            swap_q;
+  logic            turn_q;  // a swap or a chord
   logic            preset_high_q;
   logic            carried_q;
   logic            backwards_q;
@@ -72,10 +76,11 @@ module pulse_generator #(
   always_ff @(posedge clk_i) begin
     tick_q <= tick_i;
     swap_q <= swap_i;
+    turn_q <= swap_i | chord_i;
     preset_high_q <= preset_high;
     carried_q <= tick_q & (high_sum[HALF] ^ high_increment_q[HALF]);
     backwards_q <= high_increment_q[HALF+1];
-    if (swap_q) high_increment_q <= next_q[FractionBits+1:HALF];
+    if (turn_q) high_increment_q <= next_q[FractionBits+1:HALF];
     if (swap_q & ~preset_high_q) high_q <= ONE_HALF;
     else if (swap_q) high_q <= ~ONE_HALF;
     else if (tick_q) high_q <= high_sum[HALF-1:0];

@@ -15,6 +15,9 @@ package load_target_pkg;
   localparam logic [4:0] END_Y = 5'd24;
   localparam logic [4:0] QUADRANTS = 5'd25;
   localparam logic [4:0] PLANE = 5'd26;
+  localparam logic [4:0] SHIFTS = 5'd27;  // the arc generator's
+  localparam logic [4:0] STATE = 5'd28;  // X, then Y
+  localparam logic [4:0] CLOSING = 5'd29;  // of x, then of y
   localparam logic [4:0] NOWHERE = 5'd31;
 
   localparam logic [2:0] FEED_TICKS = 3'd0;

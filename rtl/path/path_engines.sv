@@ -78,6 +78,7 @@ module path_engines #(
     ) prescaler (
         .*,
         .clear_i         (cut_i),
+        .chord_i         (1'b0),
         .active_i        (engine_i != LINES),
         .counted_i       (1'b0),
         .mirror_i        (1'b0),

@@ -39,6 +39,7 @@ class Bench {
     in_.swap = false;
     // The old line's steps leave the generator before the engine's first one.
     for (int i = 0; i < 3; ++i) clock();
+    if (!engine && !direct) chords(top);
     run(engine, 1 + dice_.below(20), 20 + dice_.below(500));
     if (model_.outputs().live) cut();
     if (dice_.chance(200)) reset();
@@ -49,6 +50,37 @@ class Bench {
   std::uint64_t chained() const { return chained_; }
 
  private:
+  // An arc: increments that come as chords, while ticks go on.
+  void chords(std::int64_t top) {
+    const unsigned every = 1 + dice_.below(4);
+    for (unsigned left = dice_.below(6); left != 0; --left) {
+      const auto increment = static_cast<std::int64_t>(dice_.word() >> 23) % (2 * top + 1) - top;
+      check_.event("chord", static_cast<std::uint64_t>(increment));
+      for (unsigned i = 0; i < 3; ++i) {
+        in_.chord_load = true;
+        in_.chord_word = static_cast<std::uint16_t>(static_cast<std::uint64_t>(increment) >> (16 * i));
+        tick(every);
+        in_.chord_load = false;
+        // Words without a load, and the load bus's for others, are nobody's.
+        in_.chord_word = static_cast<std::uint16_t>(dice_.draw());
+        in_.load = halfword(kIncrement + (kAxis + 1 + dice_.below(7)) % 8, dice_.word(), 0);
+        if (dice_.chance(3)) tick(every);
+      }
+      for (unsigned clocks = 1 + dice_.below(20); clocks != 0; --clocks) tick(every);
+      in_.chord_swap = true;
+      tick(every);
+      in_.chord_swap = false;
+      for (int i = 0; i < 3; ++i) tick(every);
+    }
+    in_.load = {};
+    in_.tick = false;
+  }
+
+  void tick(unsigned every) {
+    in_.tick = dice_.chance(every);
+    clock();
+  }
+
   void run(bool engine, unsigned every, unsigned clocks) {
     for (unsigned i = 0; i < clocks; ++i) {
       in_.tick = !engine && dice_.chance(every);
@@ -150,6 +182,9 @@ class Bench {
     dut_->swap_i = in_.swap;
     dut_->active_i = in_.active;
     dut_->direct_i = in_.direct;
+    dut_->chord_word_i = in_.chord_word;
+    dut_->chord_load_i = in_.chord_load;
+    dut_->chord_swap_i = in_.chord_swap;
     dut_->engine_step_i = in_.engine_step;
     dut_->engine_dir_i = in_.engine_dir;
     dut_->wait_tick_i = in_.wait_tick;

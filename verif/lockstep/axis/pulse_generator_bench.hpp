@@ -85,6 +85,7 @@ class PulseGeneratorBench {
     dut_->clear_i = in.clear;
     dut_->tick_i = in.tick;
     dut_->swap_i = in.swap;
+    dut_->chord_i = in.chord;
     dut_->active_i = in.active;
     dut_->counted_i = in.counted;
     dut_->mirror_i = in.mirror;

@@ -55,6 +55,27 @@ void seams() {
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 3);
 }
 
+// Chords: the increment turns in the clock of the swap that keeps the phase, forwards and backwards, at a tick every
+// clock and with the carry between the halves on its way.
+void chords() {
+  PulseGeneratorBench bench(0);
+  for (int repeat = 0; repeat < 500; ++repeat) {
+    bench.load_increment(repeat % 2 != 0 ? kOne / 3 : -kOne / 3);
+    bench.clock(swap_in(repeat % 5 != 0, false, false, true));
+    bench.ticks(2);
+    for (const std::int64_t increment : {kOne - 1, -kOne, kOne / 2 + repeat, 1 - kOne / 2, kOne, std::int64_t{0}}) {
+      bench.load_increment(increment, repeat % 3 != 0);
+      PulseGeneratorBench::Inputs in;
+      in.chord = true;
+      in.tick = repeat % 4 != 0;
+      bench.clock(in);
+      bench.ticks(static_cast<std::uint64_t>(2 + repeat % 7));
+    }
+  }
+  EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 3);
+  EXPECT_GT(bench.steps(), 2'000U);
+}
+
 class Random {
  public:
   explicit Random(std::uint64_t seed) : bench_(seed), random_(seed) {}
@@ -65,6 +86,7 @@ class Random {
     counted_ = kCounted && kind < 3;
     if (counted_) bench_.load_count(below(4) == 0 ? below(3) : below(60), tick());
     bench_.clock(swap_in(kind != 7, counted_, below(2) == 0, tick()));
+    if (!counted_ && below(3) == 0) arc();
     if (below(6) == 0) {  // with the swap, or the first step, still on its way
       run(below(6));
       return abort();
@@ -80,6 +102,18 @@ class Random {
   PulseGeneratorBench& bench() { return bench_; }
 
  private:
+  // Further increments, each taken by a chord; the phase goes on.
+  void arc() {
+    for (unsigned left = below(6); left != 0; --left) {
+      run(2 + below(40));
+      load();
+      PulseGeneratorBench::Inputs in;
+      in.chord = true;
+      in.tick = tick();
+      bench_.clock(in);
+    }
+  }
+
   void abort() {
     bench_.check().event("clear");
     const bool reset = below(4) == 0;
@@ -87,6 +121,7 @@ class Random {
     in.clear = !reset;
     in.tick = tick();
     in.swap = below(2) == 0;
+    in.chord = !in.swap && below(2) == 0;
     in.active = true;
     if (reset)
       bench_.reset(in);
@@ -131,6 +166,7 @@ void random_lines() {
 
 TEST(PulseGenerator, FullRateAndCounts) { EXPECT_EQ(judge(full_rate), ""); }
 TEST(PulseGenerator, Seams) { EXPECT_EQ(judge(seams), ""); }
+TEST(PulseGenerator, Chords) { EXPECT_EQ(judge(chords), ""); }
 TEST(PulseGenerator, RandomLines) { EXPECT_EQ(judge(random_lines), ""); }
 
 }  // namespace

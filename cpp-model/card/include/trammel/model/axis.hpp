@@ -24,7 +24,12 @@ class Axis {
     bool engine_step = false;  // from a path engine; never together with a step of the generator
     bool engine_dir = false;   // 1 = negative
     bool wait_tick = false;
-    LoadWord load;    // INCREMENT and COUNT of this axis are its own
+    LoadWord load;  // INCREMENT and COUNT of this axis are its own
+    // An arc's next chord: a halfword of its increment, never beside one on the load bus for this axis, and the swap
+    // that keeps the phase.
+    bool chord_load = false;
+    bool chord_swap = false;
+    std::uint16_t chord_word = 0;
     Setting setting;  // STEP_LENGTH, STEP_SPACE, DIR_SETUP, DIR_HOLD, MODE of this axis
   };
   struct Outputs {
@@ -58,9 +63,10 @@ class Axis {
     generator.swap = in.swap;
     generator.active = in.active;
     generator.counted = generator.mirror = in.direct;
-    generator.load_increment = in.load.to(load_target::kIncrement + number_);
+    generator.chord = in.chord_swap;
+    generator.load_increment = in.load.to(load_target::kIncrement + number_) || in.chord_load;
     generator.load_count = in.load.to(load_target::kCount + number_);
-    generator.word = in.load.word;
+    generator.word = in.chord_load ? in.chord_word : in.load.word;
     generator_.clock(generator);
     if (in.setting.set) set(in.setting);
   }

@@ -37,6 +37,10 @@ inline constexpr unsigned kEndX = 23;
 inline constexpr unsigned kEndY = 24;
 inline constexpr unsigned kQuadrants = 25;
 inline constexpr unsigned kPlane = 26;
+// The arc generator's.
+inline constexpr unsigned kShifts = 27;
+inline constexpr unsigned kState = 28;    // X, then Y
+inline constexpr unsigned kClosing = 29;  // of x, then of y
 inline constexpr unsigned kNowhere = 31;
 }  // namespace load_target
 

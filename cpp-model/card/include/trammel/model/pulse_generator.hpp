@@ -4,8 +4,10 @@
 // Source: Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm" (one-shot velocity), with the phase starting at
 // one half. Not thread-safe; no errors are reported: the rules below are the caller's.
 //
-// Rules, the card's own: swaps at least 3 clocks apart; no load in the 2 clocks after a swap; no swap and no count load
-// while `live`; a count is used up by its line and loaded anew for the next.
+// A chord takes the next increment and keeps the phase: the sum of increments goes on where it is.
+//
+// Rules, the card's own: swaps and chords at least 3 clocks apart; no load in the 2 clocks after either; no swap, no
+// chord and no count load while `live`; a count is used up by its line and loaded anew for the next.
 #pragma once
 
 #include <cstdint>
@@ -27,6 +29,7 @@ class PulseGenerator {
     bool load_increment = false;  // shifts `word` in; 3 halfwords, lowest first, 42 bits signed, 2^-40 pulses a tick
     bool load_count = false;      // shifts `word` in; 2 halfwords, lowest first, pulses
     std::uint16_t word = 0;
+    bool chord = false;  // as a swap, of the increment alone: the phase goes on, and so does whether the axis steps
   };
   struct Outputs {
     bool step = false;  // 3 clocks after the tick that made it
@@ -49,14 +52,15 @@ class PulseGenerator {
       out_.step = false;
     if (in.tick) tick();
     if (in.swap) swap(in);
+    if (in.chord) take_increment();
   }
 
   const Outputs& outputs() const { return out_; }
 
-  // Nothing is in flight: without tick, swap, load or clear, clock() changes nothing any more.
+  // Nothing is in flight: without tick, swap, chord, load or clear, clock() changes nothing any more.
   bool quiet() const { return pipe_ == 0 && !out_.step; }
 
-  // n clocks without tick, swap, load or clear; only when quiet().
+  // n clocks without tick, swap, chord, load or clear; only when quiet().
   void advance(std::uint64_t) {}
 
   // n ticks that make no step, n <= silent_ticks(); only when quiet().
@@ -113,8 +117,7 @@ class PulseGenerator {
   }
 
   void swap(const Inputs& in) {
-    // Sign-extended from bit 41.
-    increment_ = static_cast<std::int64_t>(next_ << 22) >> 22;
+    take_increment();
     phase_ = static_cast<std::int64_t>(kOne / 2) - (in.mirror && increment_ < 0 ? 1 : 0);
     open_ = in.active;
     counted_ = in.counted && in.active;
@@ -124,6 +127,9 @@ class PulseGenerator {
       open_ = false;
     }
   }
+
+  // Sign-extended from bit 41.
+  void take_increment() { increment_ = static_cast<std::int64_t>(next_ << 22) >> 22; }
 
   void arrive(unsigned event) {
     out_.step = (event & kStep) != 0;
