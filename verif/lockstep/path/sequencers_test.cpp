@@ -13,12 +13,13 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr unsigned kAxes = 4;
-constexpr std::uint64_t kComparedSignals = 19;
+constexpr std::uint64_t kComparedSignals = 20;
 
 class Bench {
  public:
   explicit Bench(std::uint64_t seed)
       : check_("sequencers", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
+    programs_.chords = true;
     reset();
   }
 
@@ -187,8 +188,13 @@ class Bench {
       payload_taken_for_ = 4 + dice_.below(pace.busy);
     else if (payload_taken_for_ != 0)
       --payload_taken_for_;
-    in_.payload_ready = payload_taken_for_ == 0;
     in_.engine_done = !dice_.chance(pace.busy);
+    // The arc generator has the axes' shadows from its start until it has been over for a while.
+    if (model_.outputs().swap && model_.outputs().engine == card_map::engine::kArcGenerator)
+      in_.shadows_free = false;
+    else if (!model_.engine_taken() && dice_.chance(pace.busy))
+      in_.shadows_free = true;
+    in_.payload_ready = payload_taken_for_ == 0 && in_.shadows_free;
     in_.axes_live = dice_.chance(2);
   }
 
@@ -205,6 +211,7 @@ class Bench {
     dut_->feed_tick_i = in_.feed_tick;
     dut_->engine_ready_i = in_.engine_ready;
     dut_->payload_ready_i = in_.payload_ready;
+    dut_->shadows_free_i = in_.shadows_free;
     dut_->engine_done_i = in_.engine_done;
     dut_->elsewhere_i = in_.elsewhere;
     dut_->axes_live_i = in_.axes_live;
@@ -216,6 +223,7 @@ class Bench {
     check_.next_cycle();
     const auto& out = model_.outputs();
     check_.compare("geometry_read_o", dut_->geometry_read_o, model_.geometry_read());
+    check_.compare("engine_taken_o", dut_->engine_taken_o, model_.engine_taken());
     check_.compare("feed_read_o", dut_->feed_read_o, model_.feed_read());
     check_.compare("direct_o", dut_->direct_o, out.direct);
     check_.compare("feed_enable_o", dut_->feed_enable_o, out.feed_enable);
