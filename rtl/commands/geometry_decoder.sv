@@ -32,10 +32,13 @@ module geometry_decoder #(
   logic       advance;
   logic [4:0] field;
   logic [4:0] next;
+  logic [2:0] next_length;
   logic [4:0] lowest;
   logic       header;
   logic [6:0] strobe;  // {of the count, of a field, which one}
   logic [4:0] target;  // of that field
+  logic [4:0] of_arc;
+  logic [4:0] of_chord;
   logic [7:0] opcode;
   logic [7:0] mask;
   logic       is_line;
@@ -101,6 +104,7 @@ module geometry_decoder #(
   // are its axes. An arc's in chords end with the axes outside its plane.
   assign lowest = lowest_axis(rest_q);
   assign next = field + 5'd1;
+  assign next_length = card_map_pkg::field_halfwords_less_one(opcode, next);
   assign at_prescaler = field == card_map_pkg::FIELD_ARC_PRESCALE || field == card_map_pkg::FIELD_ARC_PLANE;
 
   assign plane = strobe[5] && is_chord && strobe[4:0] == card_map_pkg::FIELD_ARC_CHORD_PLANE;
@@ -118,8 +122,7 @@ module geometry_decoder #(
       .*,
       .has_payload_i(is_line || on_engine),
       .first_i      ({on_engine ? 5'd0 : lowest, 3'd2}),
-      .next_i       (to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} :
-                     {next, card_map_pkg::field_halfwords_less_one(opcode, next)}),
+      .next_i       (to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length}),
       .last_field_i (is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0),
       .rest_i       (1'b0),
       .wait_i       (first || is_line ? is_line && !shadows_free_i : at_prescaler && !payload_ready_i),
@@ -132,18 +135,20 @@ module geometry_decoder #(
       .mask_o       (mask)
   );
 
-  assign target = is_arc ? arc_target(strobe[4:0]) :
-      is_chord ? chord_target(strobe[4:0], axis_x_q, axis_y_q) : strobe[4:0];
+  assign of_arc   = arc_target(strobe[4:0]);
+  assign of_chord = chord_target(strobe[4:0], axis_x_q, axis_y_q);
+  assign target   = is_arc ? of_arc : is_chord ? of_chord : strobe[4:0];
 
   always_ff @(posedge clk_i) begin
     load_o[21]    <= (strobe[6:5] != 2'd0 || direct_load_i[21]) && !rst_i;
     load_o[20:16] <= direct_load_i[21] ? direct_load_i[20:16] : strobe[6] ? load_target_pkg::TICKS : target;
     load_o[15:0]  <= direct_load_i[21] ? direct_load_i[15:0] : word_i;
 
-    engine_o      <= 5'(is_arc ? card_map_pkg::ENGINE_ACCUMULATOR :
-                        is_chord ? card_map_pkg::ENGINE_ARC_GENERATOR : card_map_pkg::ENGINE_LINES);
-    barrier_o     <= !is_line && !on_engine;
-    end_o         <= opcode == card_map_pkg::OP_END;
+    engine_o      <= 5'(card_map_pkg::ENGINE_LINES);
+    if (is_arc) engine_o <= 5'(card_map_pkg::ENGINE_ACCUMULATOR);
+    if (is_chord) engine_o <= 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
+    barrier_o <= !is_line && !on_engine;
+    end_o     <= opcode == card_map_pkg::OP_END;
   end
 endmodule
 

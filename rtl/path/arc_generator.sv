@@ -99,9 +99,9 @@ module arc_generator #(
       ready_o <= 1'b0;
     end
     if (rst_i | clear_i | start_i) begin
-      in_x_q <= 1'b0;
+      in_x_q   <= 1'b0;
       ticked_q <= 1'b0;
-      begun_q <= 1'b0;
+      begun_q  <= 1'b0;
       full_x_q <= 1'b0;
       full_y_q <= 1'b0;
     end

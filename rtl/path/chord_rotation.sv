@@ -23,12 +23,12 @@ module chord_rotation (
     output logic      [15:0] word_o
 );
   // Clocks of a half chord, one bit each.
-  logic [ 3:0] pass_q;
-  logic        gap_q;
-  logic [ 3:0] add_q;
-  logic        passing_q;
-  logic        adding_q;
-  logic        enter;  // the last clock before the first word is added
+  logic [3:0] pass_q;
+  logic       gap_q;
+  logic [3:0] add_q;
+  logic       passing_q;
+  logic       adding_q;
+  logic       enter;  // the last clock before the first word is added
 
   assign enter = gap_q | (pass_q[3] & ~k_i[4]);
   assign busy_o = passing_q | gap_q | adding_q;
@@ -93,8 +93,7 @@ module chord_rotation (
     carry_q <= enter ? fine[0] : adding_q & sum[16];
     increment_carry_q <= enter ? fine[0] : increment[16];
     word_o <= increment[15:0];
-    if (passing_q | adding_q | load_state)
-      source_q <= {passing_q ? source_q[15:0] : sum[15:0], source_q[63:16]};
+    if (passing_q | adding_q | load_state) source_q <= {passing_q ? source_q[15:0] : sum[15:0], source_q[63:16]};
     if (adding_q | load_state) target_q <= {adding_q ? source_q[15:0] : load_i[15:0], target_q[63:16]};
     if (loading_o | load_closing) closing_q <= {loading_o ? closing_q[15:0] : load_i[15:0], closing_q[95:16]};
   end
