@@ -127,7 +127,7 @@ class Program {
     for (std::uint64_t paths = p_.any(1, 5); paths != 0; --paths) {
       const std::uint64_t n = p_.one_in(4) ? p_.any(1, 40) : p_.any(100, 3000);
       const bool chords = card_map::has_engine(p_.clocked.core.config().engines, card_map::engine::kArcGenerator);
-      if (axes_ >= 2 && chords && p_.one_in(4))
+      if (axes_ >= 2 && chords && p_.one_in(2))
         ticks += chord_arc(n);
       else
         ticks += axes_ >= 2 && p_.one_in(5) ? circle(n) : line(n);
