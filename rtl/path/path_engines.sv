@@ -174,7 +174,8 @@ module path_engines #(
       logic over_q;  // the arc has given its last path tick, also to the generator
 
       assign on_arc = engine_q == ARC_GENERATOR;
-      always_ff @(posedge clk_i) over_q <= on_arc && !engine_taken_i && !coming;
+      // Only while it is under way: the next arc may start with this one's number still standing.
+      always_ff @(posedge clk_i) over_q <= on_arc && !engine_taken_i && !coming && !shadows_free_o;
 
       arc_generator #(
           .Axes(Axes)

@@ -77,8 +77,8 @@ class PathEngines {
   // For jumps. settled(): but for ticks on their way through the 3 clocks, nothing moves without inputs.
   bool settled() const {
     // A path on the arc generator goes clock by clock: its axes step on path ticks.
-    return out_.shadows_free && !out_.chord_load && !out_.chord_swap && swaps_ == 0 && !out_.swap && waiting_ == 0 && !out_.path_tick && almost_ == 0 && out_.step == 0 &&
-           prescaler_.quiet() && accumulator_.quiet();
+    return out_.shadows_free && !out_.chord_load && !out_.chord_swap && swaps_ == 0 && !out_.swap && waiting_ == 0 &&
+           !out_.path_tick && almost_ == 0 && out_.step == 0 && prescaler_.quiet() && accumulator_.quiet();
   }
   // As settled(), and without ticks.
   bool quiet() const {
@@ -135,7 +135,8 @@ class PathEngines {
     out_.done = !feed_ticks && !path_ticks && engine.ready;
     out_.elsewhere = !engine.at_end;
     gate_payload_ready_ = !(feed_ticks && on_engine(engine_)) && !path_ticks && !engine.stepping;
-    over_next_ = engine_ == card_map::engine::kArcGenerator && !in.engine_taken && !feed_ticks;
+    over_next_ =
+        engine_ == card_map::engine::kArcGenerator && !in.engine_taken && !feed_ticks && !arc_.outputs().loadable;
   }
 
   void finish_step(bool cut, bool tick, const DeviationAccumulator::Outputs& accumulator) {
@@ -207,11 +208,11 @@ class PathEngines {
   bool clock_all_;
   DeviationAccumulator accumulator_;
   ArcGenerator arc_;
-  bool over_ = false;       // the arc is
+  bool over_ = false;  // the arc is
   bool over_next_ = false;
   bool gate_payload_ready_ = true;
   PulseGenerator prescaler_;
-  std::uint32_t ticks_ = 0;  // on their way, bit k leaves in k clocks; bit 0 is visible
+  std::uint32_t ticks_ = 0;      // on their way, bit k leaves in k clocks; bit 0 is visible
   std::uint32_t own_ticks_ = 0;  // those that the axes get
   std::uint32_t swaps_ = 0;
   std::uint32_t waiting_ = 0;                       // path ticks
