@@ -13,6 +13,7 @@
 #include "compare_plot.hpp"
 #include "compare_report.hpp"
 #include "curve_options.hpp"
+#include "engine_options.hpp"
 #include "errors.hpp"
 #include "outputs.hpp"
 #include "progress_bar.hpp"
@@ -98,11 +99,16 @@ Comparison compare(const Options& options, std::vector<measure::Trace>& traces) 
 }
 
 void compare_curve(const Options& options) {
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  Output* const plot = outputs.add("--plot", options.plot);
+  outputs.check();
   std::vector<measure::Trace> traces;
   const Comparison comparison = compare(options, traces);
-  if (options.json) write_json_file(json_of(comparison), *options.json);
-  if (options.plot) write_comparison_svg(comparison, traces, measure::ideal_of(options.curve.curve()), *options.plot);
-  if (options.json != "-") fmt::print("{}", table_of(comparison));
+  outputs.open();
+  if (json != nullptr) json->write(json_of(comparison).dump(2) + "\n");
+  if (plot != nullptr) plot->write(comparison_svg(comparison, traces, measure::ideal_of(options.curve.curve())));
+  outputs.commit(table_of(comparison));
 }
 
 void compare_random(const Options& options) {
@@ -121,6 +127,9 @@ void compare_random(const Options& options) {
   lines.threads = options.threads;
   lines.options.clock_hz = options.velocity.clock_hz.value_or(lines.options.clock_hz);
   lines.options.velocity = options.velocity.velocity.value_or(kRandomVelocity);
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  outputs.check();
   std::vector<measure::RandomMeasures> measures;
   try {
     ProgressBar bar(options.progress);
@@ -128,8 +137,9 @@ void compare_random(const Options& options) {
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
-  if (options.json) write_json_file(json_of(lines, measures), *options.json);
-  if (options.json != "-") fmt::print("{}", table_of(lines, measures));
+  outputs.open();
+  if (json != nullptr) json->write(json_of(lines, measures).dump(2) + "\n");
+  outputs.commit(table_of(lines, measures));
   for (const measure::RandomMeasures& method : measures) {
     if (method.wrong_ends > 0) {
       throw std::runtime_error(fmt::format("{}: {} lines did not end on their end point",
@@ -150,7 +160,7 @@ void add_compare_command(CLI::App& app) {
   command->add_option("--random", options->random, "so many random lines instead of one curve")->type_name("N");
   command->add_option("--seed", options->seed, "of the random lines (default 1)");
   command->add_option("--largest", options->largest, "pulses of an axis of a random line, at most (default 1000)");
-  command->add_option("--threads", options->threads, "threads (default: one a core)")->check(CLI::Range(1, 256));
+  command->add_option("--threads", options->threads, "threads (default: one a core)")->transform(whole_number(1, 256));
   command->add_option("--drive", options->drive, "steps of the simulated motor: full or half (default full)")
       ->check(CLI::IsMember({"full", "half"}));
   command->add_flag("--standstill", options->standstill, "start the simulated motor from rest, not at speed");
@@ -159,7 +169,6 @@ void add_compare_command(CLI::App& app) {
   command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")->type_name("FILE.svg");
   command->callback([options] {
     check_velocity(options->velocity);
-    require_writable({options->json, options->plot});
     options->random ? compare_random(*options) : compare_curve(*options);
   });
 }

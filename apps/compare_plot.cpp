@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 
 namespace trammel::app {
@@ -193,8 +192,8 @@ std::string motor_panel(const Comparison& comparison, double top) {
 
 }  // namespace
 
-void write_comparison_svg(const Comparison& comparison, const std::vector<measure::Trace>& traces,
-                          const measure::IdealCurve& curve, const std::string& file) {
+std::string comparison_svg(const Comparison& comparison, const std::vector<measure::Trace>& traces,
+                           const measure::IdealCurve& curve) {
   const double motor_top = kTop + kRowHeight * static_cast<double>(traces.size()) + 40;
   const double height = motor_top + kMotorHeight + 40;
   std::string svg = fmt::format(
@@ -203,11 +202,7 @@ void write_comparison_svg(const Comparison& comparison, const std::vector<measur
       kWidth + 40, height, kStyle, comparison.title);
   svg += rows(comparison, traces, curve);
   svg += motor_panel(comparison, motor_top);
-  svg += "</svg>\n";
-  std::ofstream out(file);
-  out << svg;
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", file));
+  return svg + "</svg>\n";
 }
 
 }  // namespace trammel::app

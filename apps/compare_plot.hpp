@@ -11,9 +11,8 @@
 
 namespace trammel::app {
 
-// `traces` in the order of comparison.methods. An SVG below 5 MB, whatever the curve. Throws std::runtime_error when
-// the file cannot be written.
-void write_comparison_svg(const Comparison& comparison, const std::vector<measure::Trace>& traces,
-                          const measure::IdealCurve& curve, const std::string& file);
+// `traces` in the order of comparison.methods. An SVG below 5 MB, whatever the curve.
+std::string comparison_svg(const Comparison& comparison, const std::vector<measure::Trace>& traces,
+                           const measure::IdealCurve& curve);
 
 }  // namespace trammel::app

@@ -1,12 +1,37 @@
 #include "engine_options.hpp"
 
+#include <fmt/format.h>
+
+#include <charconv>
 #include <cmath>
 
 #include "errors.hpp"
+#include "trammel/machine/machine.hpp"
 
 namespace trammel::app {
+namespace {
 
-unsigned card_axes(std::size_t needed) { return needed <= 4 ? 4 : 8; }
+// FROM:TO, seconds, either may be missing; gives back clocks.
+std::pair<std::uint64_t, std::uint64_t> window_of(const std::string& text, std::uint32_t clock_hz) {
+  const auto refuse = [&](const char* why) { throw UsageError(fmt::format("--trace-window {}: {}", text, why)); };
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) refuse("must be FROM:TO, seconds of card time");
+  const auto clocks = [&](const std::string& part, std::uint64_t missing) {
+    if (part.empty()) return missing;
+    double seconds = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), seconds);
+    if (error != std::errc{} || end != part.data() + part.size() || !(seconds >= 0) || seconds > 1e9) {
+      refuse("must be FROM:TO, seconds of card time");
+    }
+    return static_cast<std::uint64_t>(std::llround(seconds * clock_hz));
+  };
+  const std::uint64_t from = clocks(text.substr(0, colon), 0);
+  const std::uint64_t to = clocks(text.substr(colon + 1), UINT64_MAX);
+  if (from >= to) refuse("ends before it begins");
+  return {from, to};
+}
+
+}  // namespace
 
 CLI::Validator positive() {
   return CLI::Validator(
@@ -19,31 +44,54 @@ CLI::Validator positive() {
       "> 0");
 }
 
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::string& unit) {
+  const std::string range = fmt::format("{} to {}{}{}", least, most, unit.empty() ? "" : " ", unit);
+  return CLI::Validator(
+      [=](std::string& text) {
+        // 1e6 is a whole number too.
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole = error == std::errc{} && end == text.data() + text.size() && value == std::floor(value);
+        if (!whole || value < static_cast<double>(least) || value > static_cast<double>(most)) {
+          return fmt::format("must be a whole number, {}, not {}", range, text);
+        }
+        text = fmt::format("{:.0f}", value);
+        return std::string();
+      },
+      range);
+}
+
 void EngineChoice::add_to(CLI::App& command) {
   command
       .add_option("--engine", engine,
                   "rtl: the Verilated card in lockstep with the golden model; model: the model alone")
       ->check(CLI::IsMember({"rtl", "model"}))
       ->capture_default_str();
-  command.add_option("--clock", clock_hz, "clock of the simulated card, Hz")
-      ->check(CLI::Range(1000.0, 4294967295.0))
+  command.add_option("--clock", clock_hz, "clock of the simulated card")
+      ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
       ->type_name("HZ");
   command.add_option("--trace", trace, "waveform of the card as FST file (engine rtl only)")->type_name("FILE");
+  command
+      .add_option("--trace-window", trace_window,
+                  "trace only this stretch, seconds of card time; either may be left out")
+      ->type_name("FROM:TO");
 }
+
+unsigned traced_axes(unsigned axes) { return axes <= 4 ? 4 : 8; }
 
 sim::SimulationOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const {
   sim::SimulationOptions options;
   options.kind = engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;
   options.axes = axes;
-  options.clock_hz = options.kind == sim::EngineKind::kModel ? model_clock : rtl_clock;
-  if (clock_hz > 0) {
-    if (clock_hz != std::floor(clock_hz)) throw UsageError("--clock: must be a whole number of Hz");
-    options.clock_hz = static_cast<std::uint32_t>(clock_hz);
-  }
-  if (trace && options.kind == sim::EngineKind::kModel) {
+  options.clock_hz = clock_hz.value_or(options.kind == sim::EngineKind::kModel ? model_clock : rtl_clock);
+  options.rtl_thread = true;
+  if (trace_window && !trace) throw UsageError("--trace-window: needs --trace");
+  if (!trace) return options;
+  if (options.kind == sim::EngineKind::kModel) {
     throw UsageError("--trace: only the rtl engine has waveforms (--engine rtl)");
   }
-  options.trace = trace;
+  options.trace.emplace();
+  if (trace_window) std::tie(options.trace->from, options.trace->to) = window_of(*trace_window, options.clock_hz);
   return options;
 }
 

@@ -10,21 +10,26 @@
 
 namespace trammel::app {
 
-// Axes of the simulated card that serves `needed` of them (1 to 8): it is built with 4 and with 8.
-unsigned card_axes(std::size_t needed);
-
 // For options that must be greater than 0; CLI11's own message names the largest double.
 CLI::Validator positive();
 
+// For whole numbers between two others; CLI11's own message has them as 4.29497e+09.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::string& unit = "");
+
 struct EngineChoice {
   std::string engine = "rtl";
-  double clock_hz = 0;  // 0: not given
-  std::optional<std::string> trace;
+  std::optional<std::uint32_t> clock_hz;
+  std::optional<std::string> trace;         // the option's file; who writes it is told a name by options()
+  std::optional<std::string> trace_window;  // FROM:TO
 
   void add_to(CLI::App& command);
-  // The engine's options; `rtl_clock` and `model_clock` are the clocks, in Hz, where none was given.
+  // The engine's options for a card of `axes` (1 to 8); `rtl_clock` and `model_clock` are the clocks, in Hz, where none
+  // was given; `trace_file` is where the waveform goes, if one was asked for.
   // Throws UsageError for what does not go together.
   sim::SimulationOptions options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const;
 };
+
+// Axes of the card that can be traced and serves so many.
+unsigned traced_axes(unsigned axes);
 
 }  // namespace trammel::app

@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <iterator>
 #include <memory>
 #include <string>
 
 #include "engine_options.hpp"
+#include "errors.hpp"
+#include "outputs.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
+#include "waveform.hpp"
 
 namespace trammel::app {
 namespace {
@@ -29,22 +33,41 @@ std::string engines(std::uint32_t bits) {
   return text;
 }
 
-void execute(const Options& options) {
-  const auto engine = sim::make_engine(options.engine.options(options.axes, kDefaultClock, kDefaultClock));
+std::string describe(const sim::SimulationOptions& options) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  const auto engine = sim::make_engine(options);
   driver::Card card = driver::Card::open(*engine);
   const driver::Identification& id = card.identification();
-  fmt::print("register map   {}.{}\n", id.map_major, id.map_minor);
-  fmt::print("commands       version {}\n", id.commands_version);
-  fmt::print("axes           {}\n", id.axes);
-  fmt::print("clock          {} Hz\n", id.clock_hz);
-  fmt::print("engines        {}\n", engines(id.engines));
-  fmt::print("geometry queue {} halfwords\n", id.geometry_depth);
-  fmt::print("feed queue     {} halfwords\n", id.feed_depth);
+  fmt::format_to(out, "register map   {}.{}\n", id.map_major, id.map_minor);
+  fmt::format_to(out, "commands       version {}\n", id.commands_version);
+  fmt::format_to(out, "axes           {}\n", id.axes);
+  fmt::format_to(out, "clock          {} Hz\n", id.clock_hz);
+  fmt::format_to(out, "engines        {}\n", engines(id.engines));
+  fmt::format_to(out, "geometry queue {} halfwords\n", id.geometry_depth);
+  fmt::format_to(out, "feed queue     {} halfwords\n", id.feed_depth);
   const driver::Snapshot now = card.snapshot();
-  fmt::print("time           {} clocks since reset\n", now.time);
-  for (unsigned axis = 0; axis < id.axes; ++axis) fmt::print("axis {}         pulse {}\n", axis, now.position[axis]);
-  fmt::print("state          {}{}{}\n", now.status.busy ? "busy" : "idle", now.status.faulted ? ", faulted" : "",
-             now.status.refused ? ", refused" : "");
+  fmt::format_to(out, "time           {} clocks since reset\n", now.time);
+  for (unsigned axis = 0; axis < id.axes; ++axis)
+    fmt::format_to(out, "axis {}         pulse {}\n", axis, now.position[axis]);
+  fmt::format_to(out, "state          {}{}{}\n", now.status.busy ? "busy" : "idle",
+                 now.status.faulted ? ", faulted" : "", now.status.refused ? ", refused" : "");
+  return text;
+}
+
+void execute(const Options& options) {
+  Outputs outputs;
+  Output* const trace = outputs.add("--trace", options.engine.trace, true);
+  outputs.check();
+  sim::SimulationOptions engine_options = options.engine.options(options.axes, kDefaultClock, kDefaultClock);
+  if (trace != nullptr && traced_axes(options.axes) != options.axes) {
+    throw UsageError(fmt::format("--trace: cards of 4 and of 8 axes are built for it, not of {}", options.axes));
+  }
+  outputs.open();
+  if (trace != nullptr) engine_options.trace->path = trace->path_to_write();
+  const std::string text = describe(engine_options);
+  if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
+  outputs.commit(text);
 }
 
 }  // namespace
@@ -54,7 +77,7 @@ void add_info_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "what the card says of itself");
   options->engine.add_to(*command);
   command->add_option("--axes", options->axes, "axes of the simulated card")
-      ->check(CLI::Range(1, 8))
+      ->transform(whole_number(1, card_map::kMaxAxes))
       ->capture_default_str();
   command->callback([options] { execute(*options); });
 }

@@ -17,6 +17,7 @@
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/run/step_recorder.hpp"
+#include "waveform.hpp"
 
 namespace trammel::app {
 namespace {
@@ -76,29 +77,36 @@ driver::LineLimits limits_of(const Options& options) {
   return limits;
 }
 
-void execute(const Options& options) {
-  const std::vector<std::int64_t> pulses = displacement_of(options);
-  const unsigned axes = card_axes(pulses.size());
-  const sim::SimulationOptions engine_options = options.engine.options(axes, kDefaultClock, kDefaultClock);
-  const auto engine = sim::make_engine(engine_options);
-  const std::unique_ptr<FileSink> steps = options.steps ? std::make_unique<FileSink>(*options.steps) : nullptr;
-  run::StepRecorder::Options recording;
-  recording.steps = steps.get();
-  recording.clock_hz = engine_options.clock_hz;
-  recording.steps_per_mm.assign(axes, 1.0);
-  run::StepRecorder recorder(recording);
-  // The path of direct mode has no command; the recorder measures it as one line over its clocks.
+// What was measured on the card.
+struct Result {
+  std::vector<std::int64_t> pulses;  // asked for
+  std::vector<std::int64_t> final;
+  std::vector<std::uint64_t> steps;
+  std::uint64_t line_clocks = 0;
+  std::size_t parts = 0;
+  bool slowed = false;
+  std::uint64_t cycles = 0;
+  std::uint32_t clock_hz = 0;
+  std::optional<std::uint64_t> lockstep_cycles;
+  std::uint64_t comparisons = 0;
+  double largest_line_deviation = 0;
+  double largest_arc_deviation = 0;
+};
+
+driver::OneShotPlan plan_of(const Options& options, const driver::CardTiming& timing,
+                            const std::vector<std::int64_t>& pulses) {
   driver::Displacement displacement{};
   std::copy(pulses.begin(), pulses.end(), displacement.begin());
-  driver::Card card = driver::Card::open(*engine);
-  const driver::OneShotPlan plan = [&] {
-    try {
-      return driver::plan_line_clocks(card.timing(), displacement, clocks_of(options, pulses, engine_options.clock_hz),
-                                      limits_of(options));
-    } catch (const driver::ArgumentError& error) {
-      throw UsageError(error.what());
-    }
-  }();
+  try {
+    return driver::plan_line_clocks(timing, displacement, clocks_of(options, pulses, timing.clock_hz),
+                                    limits_of(options));
+  } catch (const driver::ArgumentError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+// The path of direct mode has no command; the recorder measures it as one line over its clocks.
+driver::LineCommand as_command(const driver::OneShotPlan& plan, const std::vector<std::int64_t>& pulses) {
   driver::LineCommand line;
   line.ticks = plan.part(0).length;
   line.mask = plan.part(0).mask;
@@ -106,47 +114,92 @@ void execute(const Options& options) {
     const auto increment = static_cast<std::int64_t>(plan.part(0).frequency[a]);
     line.increment[a] = pulses[a] < 0 ? -increment : increment;
   }
-  recorder.command(0, line);
+  return line;
+}
+
+Result make_line(const Options& options, const sim::SimulationOptions& engine_options, run::TextSink* steps) {
+  Result result;
+  result.pulses = displacement_of(options);
+  const auto engine = sim::make_engine(engine_options);
+  run::StepRecorder::Options recording;
+  recording.steps = steps;
+  recording.clock_hz = engine_options.clock_hz;
+  recording.steps_per_mm.assign(engine_options.axes, 1.0);
+  run::StepRecorder recorder(recording);
+  driver::Card card = driver::Card::open(*engine);
+  const driver::OneShotPlan plan = plan_of(options, card.timing(), result.pulses);
+  recorder.command(0, as_command(plan, result.pulses));
   engine->set_sink(&recorder);
   driver::run_line(card, plan);
   const driver::Snapshot snapshot = card.snapshot();
   engine->set_sink(nullptr);
   recorder.finish();
-  if (steps) steps->close();
 
-  const std::vector<std::int64_t> final(snapshot.position.begin(), snapshot.position.begin() + axes);
-  for (std::size_t a = 0; a < pulses.size(); ++a) {
-    if (final[a] != pulses[a]) {
-      throw std::runtime_error(fmt::format("axis {}: ended at pulse {}, asked for {}", a, final[a], pulses[a]));
+  result.final.assign(snapshot.position.begin(), snapshot.position.begin() + engine_options.axes);
+  for (std::size_t a = 0; a < result.pulses.size(); ++a) {
+    if (result.final[a] != result.pulses[a]) {
+      throw std::runtime_error(
+          fmt::format("axis {}: ended at pulse {}, asked for {}", a, result.final[a], result.pulses[a]));
     }
   }
-  const std::uint64_t cycles = engine->cycles();
-  if (options.json) {
-    nlohmann::ordered_json json;
-    json["final_position"] = final;
-    json["steps"] = recorder.steps();
-    json["line_clocks"] = plan.clocks();
-    json["slowed"] = plan.slowed();
-    json["parts"] = plan.size();
-    json["cycles"] = cycles;
-    json["seconds"] = static_cast<double>(cycles) / engine_options.clock_hz;
-    json["clock_hz"] = engine_options.clock_hz;
-    json["lockstep_cycles"] = nullptr;
-    if (const auto compared = engine->lockstep_cycles()) json["lockstep_cycles"] = *compared;
-    json["mismatches"] = 0;  // one would have ended the run
-    json["max_deviation"] = {{"line", recorder.deviation().largest_line()},
-                             {"arc", recorder.deviation().largest_arc()}};
-    write_json_file(json, *options.json);
+  result.steps = recorder.steps();
+  result.line_clocks = plan.clocks();
+  result.parts = plan.size();
+  result.slowed = plan.slowed();
+  result.cycles = engine->cycles();
+  result.clock_hz = engine_options.clock_hz;
+  result.lockstep_cycles = engine->lockstep_cycles();
+  result.comparisons = engine->comparisons();
+  result.largest_line_deviation = recorder.deviation().largest_line();
+  result.largest_arc_deviation = recorder.deviation().largest_arc();
+  return result;
+}
+
+nlohmann::ordered_json json_of(const Result& result) {
+  nlohmann::ordered_json json;
+  json["final_position"] = result.final;
+  json["steps"] = result.steps;
+  json["line_clocks"] = result.line_clocks;
+  json["slowed"] = result.slowed;
+  json["parts"] = result.parts;
+  json["cycles"] = result.cycles;
+  json["seconds"] = static_cast<double>(result.cycles) / result.clock_hz;
+  json["clock_hz"] = result.clock_hz;
+  json["lockstep_cycles"] = nullptr;
+  if (result.lockstep_cycles) json["lockstep_cycles"] = *result.lockstep_cycles;
+  json["mismatches"] = 0;  // one would have ended the run
+  json["max_deviation"] = {{"line", result.largest_line_deviation}, {"arc", result.largest_arc_deviation}};
+  return json;
+}
+
+std::string summary(const Result& result) {
+  std::string text = fmt::format("line of {} pulses in {} clocks ({:g} s at {:g} MHz){}: ended at {}\n",
+                                 fmt::join(result.pulses, ", "), result.line_clocks,
+                                 static_cast<double>(result.line_clocks) / result.clock_hz, result.clock_hz * 1e-6,
+                                 result.slowed ? ", slowed to keep a limit" : "", fmt::join(result.final, ", "));
+  text += fmt::format("  largest distance from the line: {:.4f} pulses\n", result.largest_line_deviation);
+  if (result.lockstep_cycles) {
+    text += fmt::format("  lockstep: {} cycles, {} comparisons, 0 mismatches\n", *result.lockstep_cycles,
+                        result.comparisons);
   }
-  if (options.json != "-" && options.steps != "-") {
-    fmt::print("line of {} pulses in {} clocks ({:g} s at {:g} MHz){}: ended at {}\n", fmt::join(pulses, ", "),
-               plan.clocks(), static_cast<double>(plan.clocks()) / engine_options.clock_hz,
-               engine_options.clock_hz * 1e-6, plan.slowed() ? ", slowed to keep a limit" : "", fmt::join(final, ", "));
-    fmt::print("  largest distance from the line: {:.4f} pulses\n", recorder.deviation().largest_line());
-    if (const auto compared = engine->lockstep_cycles()) {
-      fmt::print("  lockstep: {} cycles, {} comparisons, 0 mismatches\n", *compared, engine->comparisons());
-    }
-  }
+  return text;
+}
+
+void execute(const Options& options) {
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  Output* const steps = outputs.add("--steps", options.steps);
+  Output* const trace = outputs.add("--trace", options.engine.trace, true);
+  outputs.check();
+  // A card of 4 or of 8 axes, so that the results do not depend on whether it is traced.
+  const auto axes = traced_axes(static_cast<unsigned>(displacement_of(options).size()));
+  sim::SimulationOptions engine = options.engine.options(axes, kDefaultClock, kDefaultClock);
+  outputs.open();
+  if (trace != nullptr) engine.trace->path = trace->path_to_write();
+  const Result result = make_line(options, engine, steps);
+  if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
+  if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
+  outputs.commit(summary(result));
 }
 
 }  // namespace
@@ -172,13 +225,10 @@ void add_line_command(CLI::App& app) {
       ->delimiter(',');
   command->add_flag("--slow", options->slow, "slow down to keep a limit instead of refusing");
   options->engine.add_to(*command);
-  command->add_option("--json", options->json, "summary as JSON ('-': standard output)")->type_name("FILE");
+  command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
-  command->callback([options] {
-    require_writable({options->json, options->steps, options->engine.trace});
-    execute(*options);
-  });
+  command->callback([options] { execute(*options); });
 }
 
 }  // namespace trammel::app

@@ -1,43 +1,81 @@
-// Files that a subcommand writes. Not thread-safe.
+// The files that a subcommand writes: complete or absent. A regular file is written beside itself, and all of them take
+// their names together in commit(), when each is whole; until then what was there stays, and a failure or a signal
+// leaves no trace. What exists and is no regular file (a device, a FIFO, the /dev/fd/N of a process substitution) is
+// written as it comes. A symbolic link is followed. "-" is standard output. Not thread-safe.
 #pragma once
 
 #include <cstdio>
-#include <initializer_list>
-#include <nlohmann/json_fwd.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "temporary_files.hpp"
 #include "trammel/run/text_sink.hpp"
 
 namespace trammel::app {
 
-// Throws UsageError for the first file that cannot be written, so that it is found before the work, not after it.
-// Nothing is created or opened. "-" is standard output.
-void require_writable(std::initializer_list<std::optional<std::string>> files);
-
-// Writes the JSON, indented; "-" is standard output. Throws std::runtime_error when it cannot be written to its end.
-void write_json_file(const nlohmann::ordered_json& json, const std::string& file);
-
-// A file, or standard output for "-".
-class FileSink final : public run::TextSink {
+class Output final : public run::TextSink {
  public:
-  // Throws std::runtime_error when the file cannot be opened.
-  explicit FileSink(const std::string& file);
-  ~FileSink() override;
-  FileSink(const FileSink&) = delete;
-  FileSink& operator=(const FileSink&) = delete;
+  ~Output() override;
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
 
-  // Both throw std::runtime_error when the file does not take all of it.
+  // Throws std::runtime_error when the destination does not take it all.
   void write(std::string_view text) override;
-  void close();
+  // For who writes by name: a temporary file of commit()'s to move or copy. Not together with write().
+  std::string path_to_write() const { return staged_->path().string(); }
 
  private:
-  std::string file_;
-  std::FILE* out_;
+  friend class Outputs;
+  enum class Kind { kStandardOutput, kRegular, kOther };
+  Output(std::string option, std::string name, bool by_name);
+  void open();
+  void finish();
+  void copy_staged();
+  void take_name();
+  void give_name_back() noexcept;
+  [[noreturn]] void fail() const;
+
+  std::string option_;
+  std::string name_;  // as it was given
+  bool by_name_;
+  Kind kind_ = Kind::kRegular;
+  std::filesystem::path target_;  // links followed
+  std::string identity_;          // equal for two names of one file; empty where several writers do no harm
+  std::unique_ptr<TemporaryFile> staged_;
+  std::FILE* stream_ = nullptr;
+  bool existed_ = false;  // the target did when it was replaced; its content then lies at the staged name
+  bool named_ = false;    // take_name() was done
 };
 
-// Writes a whole file; throws std::runtime_error when it cannot be written to its end.
-void write_text_file(std::string_view text, const std::string& file);
+class Outputs {
+ public:
+  // An option and its file; nullptr where none was given. by_name: see Output::path_to_write().
+  Output* add(const std::string& option, const std::optional<std::string>& file, bool by_name = false);
+  // No output may be this file: `what` is "the program" or the like; "-" is standard input.
+  void keep(const std::string& what, const std::string& file);
+  // Refuses the same file twice and the files to keep with UsageError; add() has refused what cannot be written.
+  // Nothing is opened or made.
+  void check() const;
+  // After check().
+  void open();
+  // All outputs whole, or none; `summary`, for people, goes to standard output, or to standard error where an option
+  // has taken that, once nothing but a name can fail. Throws std::runtime_error.
+  void commit(const std::string& summary = {});
+
+ private:
+  struct Kept {
+    std::string what;
+    std::string identity;
+  };
+  std::vector<std::unique_ptr<Output>> outputs_;
+  std::vector<Kept> kept_;
+  bool standard_output_taken_ = false;
+};
+
+// Flushes standard output; throws std::runtime_error when it has not taken all that was printed.
+void finish_standard_output();
 
 }  // namespace trammel::app

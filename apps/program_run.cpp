@@ -4,7 +4,6 @@
 
 #include <chrono>
 
-#include "outputs.hpp"
 #include "progress_bar.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/step_recorder.hpp"
@@ -12,36 +11,12 @@
 namespace trammel::app {
 namespace {
 
-// Steps for the recorder and whoever else watches.
-class StepFork final : public driver::StepSink {
- public:
-  StepFork(driver::StepSink& recorder, RunWatcher* watcher) : recorder_(recorder), watcher_(watcher) {}
-  void pin_step(const driver::PinStep& step) override {
-    recorder_.pin_step(step);
-    if (watcher_ != nullptr) watcher_->pin_step(step);
-  }
-  void path_step(const driver::PathStep& step) override {
-    recorder_.path_step(step);
-    if (watcher_ != nullptr) watcher_->path_step(step);
-  }
-
- private:
-  driver::StepSink& recorder_;
-  RunWatcher* watcher_;
-};
-
-// Shows how far the run is; tells a watcher what is sent, and when.
+// Shows how far the run is.
 class Watch final : public run::Observer {
  public:
-  Watch(const sim::Engine& engine, const run::Plan& plan, double clock_hz, bool progress, RunWatcher* watcher)
-      : engine_(engine), plan_(plan), clock_hz_(clock_hz), bar_(progress), watcher_(watcher) {}
-  void sending(const planner::PlannedSegment& segment) override {
-    if (watcher_ != nullptr) watcher_->sending(segment);
-  }
-  void sent() override {
-    if (watcher_ != nullptr) watcher_->sent(engine_.cycles());
-    progress();
-  }
+  Watch(const sim::Engine& engine, const run::Plan& plan, double clock_hz, bool progress)
+      : engine_(engine), plan_(plan), clock_hz_(clock_hz), bar_(progress) {}
+  void sent() override { progress(); }
   void progress() override {
     const double seconds = static_cast<double>(engine_.cycles()) / clock_hz_;
     bar_.show(plan_.seconds > 0 ? seconds / plan_.seconds : 1.0,
@@ -53,13 +28,12 @@ class Watch final : public run::Observer {
   const run::Plan& plan_;
   double clock_hz_;
   ProgressBar bar_;
-  RunWatcher* watcher_;
 };
 
 }  // namespace
 
-RunResult run_program(const gcode::Program& program, const machine::Machine& machine,
-                      const sim::SimulationOptions& engine_options, const RunOutputs& outputs, RunWatcher* watcher) {
+RunResult run_program(const run::ProgramLines& lines, const machine::Machine& machine,
+                      const sim::SimulationOptions& engine_options, const RunOptions& options) {
   const auto begun = std::chrono::steady_clock::now();
   RunResult result;
   run::StepRecorder::Options recording;
@@ -67,35 +41,31 @@ RunResult run_program(const gcode::Program& program, const machine::Machine& mac
     recording.steps_per_mm.push_back(axis.steps_per_mm);
     result.axes += axis.letter;
   }
-  run::Runner runner(program, machine, engine_options.clock_hz);
+  run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes, true});
   run::CommandedCourse course(machine);
-  if (outputs.plot) runner.add(course);
+  if (options.plot) runner.add(course);
   const run::Plan plan = runner.plan();
 
-  const std::unique_ptr<FileSink> steps = outputs.steps ? std::make_unique<FileSink>(*outputs.steps) : nullptr;
-  const std::unique_ptr<FileSink> path_steps =
-      outputs.path_steps ? std::make_unique<FileSink>(*outputs.path_steps) : nullptr;
-  recording.steps = steps.get();
-  recording.path_steps = path_steps.get();
-  recording.plot = outputs.plot.has_value();
+  if (options.planned) options.planned(plan);
+
+  recording.steps = options.steps;
+  recording.path_steps = options.path_steps;
+  recording.plot = options.plot;
   recording.clock_hz = engine_options.clock_hz;
   run::StepRecorder recorder(recording);
   if (course.detail_command()) recorder.detail_of(*course.detail_command());
 
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);
-  StepFork fork(recorder, watcher);
-  engine->set_sink(&fork);
+  engine->set_sink(&recorder);
   driver::Card card = driver::Card::open(*engine);
-  Watch watch(*engine, plan, card.identification().clock_hz, outputs.progress, watcher);
+  Watch watch(*engine, plan, card.identification().clock_hz, options.progress);
   runner.add(recorder);
   runner.add(watch);
   const run::Outcome outcome = runner.run(card);
   recorder.finish();
-  if (steps) steps->close();
-  if (path_steps) path_steps->close();
   recorder.check(outcome.counted);
 
-  result.program = program.file;
+  result.program = plan.file;
   result.engine = engine_options.kind == sim::EngineKind::kRtl ? "rtl" : "model";
   result.final_position = outcome.final_position;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
@@ -111,9 +81,10 @@ RunResult run_program(const gcode::Program& program, const machine::Machine& mac
   result.segments = plan.segments;
   result.commands = outcome.commands;
   result.planned_seconds = plan.seconds;
-  result.accepted = program.accepted;
-  if (outputs.plot) {
-    result.plot = {program.file,    course.points(),   recorder.executed(), recorder.thinned(),
+  result.accepted = plan.accepted;
+  result.feeds_not_reached = plan.feeds_not_reached;
+  if (options.plot) {
+    result.plot = {plan.file,       course.points(),   recorder.executed(), recorder.thinned(),
                    course.detail(), recorder.detail(), recorder.speed()};
   }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

@@ -2,26 +2,26 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/plot.hpp"
 #include "trammel/run/runner.hpp"
+#include "trammel/run/text_sink.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
 
-// Files to write; "-" is standard output.
-struct RunOutputs {
-  std::optional<std::string> json;
-  std::optional<std::string> steps;
-  std::optional<std::string> path_steps;
-  std::optional<std::string> plot;
-  bool progress = false;
+struct RunOptions {
+  run::TextSink* steps = nullptr;  // not owned
+  run::TextSink* path_steps = nullptr;
+  bool plot = false;
+  bool progress = false;                          // also where stderr is no terminal
+  std::function<void(const run::Plan&)> planned;  // when all is checked and nothing has moved yet
 };
 
 // Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds` and the picture's
@@ -45,23 +45,14 @@ struct RunResult {
   double planned_seconds = 0;                    // estimate
   double wall_seconds = 0;                       // the simulation took
   std::map<std::string, std::size_t> accepted;   // words without effect yet
-  run::Plot plot;                                // filled when asked for
+  std::vector<run::FeedNotReached> feeds_not_reached;
+  run::Plot plot;  // filled when asked for
 };
 
-// Sees a run as it goes: what is sent, and every step.
-class RunWatcher : public driver::StepSink {
- public:
-  // Before the commands of a segment are written. Their numbers follow on those of the segment before, from 0.
-  virtual void sending(const planner::PlannedSegment& segment) = 0;
-  // When they are written; `cycle` of the card.
-  virtual void sent(std::uint64_t cycle) = 0;
-};
-
-// `watcher` may be nullptr. Throws gcode::ProgramError before anything moves, driver::Error with the program's line in
-// its message while it runs, lockstep::Mismatch, and std::runtime_error when the card does not end where the program
-// says.
-RunResult run_program(const gcode::Program& program, const machine::Machine& machine,
-                      const sim::SimulationOptions& engine_options, const RunOutputs& outputs,
-                      RunWatcher* watcher = nullptr);
+// `lines`: the program, opened twice. `engine_options` are used when `options.planned` has returned. Throws
+// run::ProgramError before anything moves, run::RunError while it runs, lockstep::Mismatch, and std::runtime_error when
+// the card does not end where the program says.
+RunResult run_program(const run::ProgramLines& lines, const machine::Machine& machine,
+                      const sim::SimulationOptions& engine_options, const RunOptions& options);
 
 }  // namespace trammel::app

@@ -4,25 +4,51 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 namespace trammel::app {
+namespace {
 
-ProgressBar::ProgressBar(bool always) : on_(always || isatty(STDERR_FILENO) != 0) {}
+bool terminal_with_escapes() {
+  const char* const kind = std::getenv("TERM");
+  return isatty(STDERR_FILENO) != 0 && kind != nullptr && std::string_view(kind) != "dumb";
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  if (seconds < 99.5) return fmt::format("{:.0f} s", std::max(1.0, std::ceil(seconds)));
+  if (seconds < 99.5 * 60) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.0f} h", seconds / 3600);
+}
+
+ProgressBar::ProgressBar(bool always) : bar_(terminal_with_escapes()), lines_(always && !bar_) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) std::fputs("\r\033[K", stderr);
 }
 
 void ProgressBar::show(double done, const std::string& note) {
-  const auto now = std::chrono::steady_clock::now();
-  if (!on_ || now - last_ < std::chrono::milliseconds(100)) return;
+  const Clock::time_point now = Clock::now();
+  if (!(bar_ || lines_) || now - last_ < (bar_ ? std::chrono::milliseconds(100) : std::chrono::seconds(10))) return;
   last_ = now;
+  done = std::clamp(done, 0.0, 1.0);
+  const double elapsed = std::chrono::duration<double>(now - begun_).count();
+  // The first second says little of the rest.
+  const std::string left =
+      elapsed > 1 && done > 0 ? fmt::format(", {} left", duration_text(elapsed * (1 - done) / done)) : std::string();
+  if (lines_) {
+    fmt::print(stderr, "{:3.0f} %  {}{}\n", 100 * done, note, left);
+    return;
+  }
   drawn_ = true;
-  constexpr int kWidth = 40;
-  const int full = static_cast<int>(std::clamp(done, 0.0, 1.0) * kWidth);
-  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}", std::string(static_cast<std::size_t>(full), '#'),
-             std::string(static_cast<std::size_t>(kWidth - full), '.'), 100 * done, note);
+  constexpr std::size_t kWidth = 20;  // all of the line within 80 columns
+  const auto full = static_cast<std::size_t>(done * kWidth);
+  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}{}", std::string(full, '#'), std::string(kWidth - full, '.'),
+             100 * done, note, left);
   std::fflush(stderr);
 }
 

@@ -1,15 +1,18 @@
 #include "reproduce_command.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "errors.hpp"
+#include "outputs.hpp"
 #include "progress_bar.hpp"
 #include "reproduce/chapters.hpp"
 
@@ -46,7 +49,7 @@ std::string cell(std::string text) {
   return text;
 }
 
-void write_entry_page(const std::filesystem::path& folder, const std::vector<Page>& pages) {
+std::string entry_page(const std::vector<Page>& pages) {
   std::string text =
       "# Both papers, made again\n\n"
       "Every table, figure and claim of the two papers behind this project, made again by `trammel reproduce`, which\n"
@@ -62,19 +65,40 @@ void write_entry_page(const std::filesystem::path& folder, const std::vector<Pag
                           cell(item.found));
     }
   }
-  reproduce::write_file(folder / "README.md", text);
+  return text;
+}
+
+// Nothing is made before all is computed, but what cannot be made is refused before.
+void check_folder(const std::string& name) {
+  std::filesystem::path folder = std::filesystem::absolute(name);
+  std::error_code error;
+  while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  if (!std::filesystem::is_directory(folder, error) || ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw UsageError(fmt::format("--out: {}: cannot be made a folder", name));
+  }
+}
+
+void write_all(const std::filesystem::path& folder, const std::map<std::string, std::string>& files) {
+  Outputs outputs;
+  std::vector<Output*> places;
+  for (const auto& [name, content] : files) {
+    const std::filesystem::path file = folder / name;
+    std::error_code error;
+    std::filesystem::create_directories(file.parent_path(), error);
+    places.push_back(outputs.add("--out", file.string()));
+  }
+  outputs.check();
+  outputs.open();
+  auto place = places.begin();
+  for (const auto& [name, content] : files) (*place++)->write(content);
+  outputs.commit();
 }
 
 void execute(const Options& options) {
-  const std::filesystem::path folder = options.out;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    throw UsageError(fmt::format("--out: {}: cannot be made a folder", options.out));
-  }
+  check_folder(options.out);
   std::vector<Page> pages;
-  pages.emplace_back(folder, "goldberg-steer.md", "Goldberg & Goldberg: XY Interpolation Algorithms");
-  pages.emplace_back(folder, "zeng-one-shot.md", "Zeng, Zhang & Huang: A New Linear Interpolation Algorithm");
+  pages.emplace_back("goldberg-steer.md", "Goldberg & Goldberg: XY Interpolation Algorithms");
+  pages.emplace_back("zeng-one-shot.md", "Zeng, Zhang & Huang: A New Linear Interpolation Algorithm");
   ProgressBar bar(options.progress);
   double done = 0;
   for (const Chapter& chapter : kChapters) {
@@ -86,15 +110,16 @@ void execute(const Options& options) {
   std::size_t failed = 0;
   std::size_t passed = 0;
   std::size_t corrected = 0;
+  std::map<std::string, std::string> files{{"README.md", entry_page(pages)}};
   for (const Page& page : pages) {
-    page.write();
+    files.merge(page.files());
     passed += page.count(Verdict::kPass);
     corrected += page.count(Verdict::kCorrected);
     failed += page.count(Verdict::kFail);
   }
-  write_entry_page(folder, pages);
+  write_all(options.out, files);
   fmt::print("{} items: {} PASS, {} CORRECTED, {} FAIL; pages in {}\n", passed + corrected + failed, passed, corrected,
-             failed, folder.string());
+             failed, options.out);
   if (failed != 0) throw std::runtime_error(fmt::format("{} items of the papers were not reproduced", failed));
 }
 

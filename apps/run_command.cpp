@@ -1,22 +1,22 @@
 #include "run_command.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "engine_options.hpp"
+#include "engine_speed.hpp"
 #include "errors.hpp"
 #include "outputs.hpp"
+#include "program_file.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
-#include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
+#include "waveform.hpp"
 
 namespace trammel::app {
 namespace {
@@ -29,32 +29,56 @@ struct Options {
   std::optional<std::string> machine;
   std::vector<std::string> overrides;
   EngineChoice engine;
-  RunOutputs outputs;
+  std::optional<std::string> json;
+  std::optional<std::string> steps;
+  std::optional<std::string> path_steps;
+  std::optional<std::string> plot;
+  bool progress = false;
 };
 
-void check_program_file(const std::string& file) {
-  if (std::filesystem::is_directory(file)) {
-    throw UsageError(fmt::format("{}: is a directory, not a program", file));
-  }
-  // Looked at, not opened: a pipe can be opened once only.
-  if (::access(file.c_str(), R_OK) != 0) throw UsageError(fmt::format("{}: cannot read the program", file));
-}
-
-void execute(const Options& options) {
+machine::Machine machine_of(const Options& options) {
   machine::Machine machine = options.machine ? machine::load_machine(*options.machine) : machine::default_machine();
   for (const std::string& text : options.overrides) machine::apply_override(machine, text);
-  check_program_file(options.program);
-  const gcode::Program program = gcode::read_program_file(options.program, machine);
-  const sim::SimulationOptions engine =
-      options.engine.options(card_axes(machine.axes.size()), kSimulatedClock, machine.clock_hz);
-  const RunOutputs& files = options.outputs;
-  require_writable({files.json, files.plot, files.steps, files.path_steps, options.engine.trace});
-  const RunResult result = run_program(program, machine, engine, options.outputs);
-  if (options.outputs.json) write_json(result, *options.outputs.json);
-  if (options.outputs.plot) write_text_file(run::svg(result.plot), *options.outputs.plot);
-  if (options.outputs.json != "-" && options.outputs.steps != "-" && options.outputs.path_steps != "-") {
-    fmt::print("{}", summary(result));
-  }
+  return machine;
+}
+
+void tell(const char* what, const std::string& text) { fmt::print(stderr, "trammel: {}: {}\n", what, text); }
+
+void execute(const Options& options) {
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  Output* const plot = outputs.add("--plot", options.plot);
+  Output* const trace = outputs.add("--trace", options.engine.trace, true);
+  RunOptions run;
+  run.steps = outputs.add("--steps", options.steps);
+  run.path_steps = outputs.add("--path-steps", options.path_steps);
+  run.plot = options.plot.has_value();
+  run.progress = options.progress;
+  outputs.keep("the program", options.program);
+  if (options.machine) outputs.keep("the machine file", *options.machine);
+  outputs.check();
+
+  const machine::Machine machine = machine_of(options);
+  const auto axes = static_cast<unsigned>(machine.axes.size());
+  sim::SimulationOptions engine =
+      options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);
+  const ProgramFile file(options.program);
+  const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
+    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
+  };
+  run.planned = [&](const run::Plan& plan) {
+    outputs.open();
+    if (trace != nullptr) engine.trace->path = trace->path_to_write();
+    for (const std::string& text : feed_warnings(plan)) tell("warning", text);
+    if (const auto text = long_run_note(engine, plan.seconds)) tell("note", *text);
+    if (engine.axes != axes)
+      tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
+  };
+  const RunResult result = run_program(lines, machine, engine, run);
+  if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
+  if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
+  if (plot != nullptr) plot->write(run::svg(result.plot));
+  outputs.commit(summary(result));
 }
 
 }  // namespace
@@ -62,21 +86,21 @@ void execute(const Options& options) {
 void add_run_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "run a G-code program on the simulated card");
-  command->add_option("program", options->program, "G-code file")->required()->type_name("FILE");
+  command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
   command->add_option("--machine", options->machine, "machine file (default: X Y Z E at 80 steps/mm)")
       ->type_name("TOML");
   command->add_option("--set", options->overrides, "override an entry of the machine file (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   options->engine.add_to(*command);
-  command->add_option("--json", options->outputs.json, "summary as JSON ('-': standard output)")->type_name("FILE");
-  command->add_option("--steps", options->outputs.steps, "every leading edge at a STEP pin: cycle,axis,direction")
+  command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
+  command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
-  command
-      ->add_option("--path-steps", options->outputs.path_steps, "every step of the path: command,tick,axis,direction")
+  command->add_option("--path-steps", options->path_steps, "every step of the path: command,tick,axis,direction")
       ->type_name("FILE");
-  command->add_option("--plot", options->outputs.plot, "picture of path and speed as SVG")->type_name("FILE");
-  command->add_flag("--progress", options->outputs.progress, "show the progress bar even if stderr is no terminal");
+  command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
+  command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");
+  command->footer("One FILE may be '-', standard output; what people read then goes to standard error.");
   command->callback([options] { execute(*options); });
 }
 

@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
+#include <utility>
 
 #include "curve_options.hpp"
 #include "errors.hpp"
+#include "outputs.hpp"
 #include "trammel/interpolation/any_interpolator.hpp"
 
 namespace trammel::app {
@@ -27,38 +27,6 @@ struct Options {
   VelocityChoice velocity;
   std::optional<std::string> csv;
   std::optional<std::string> json;
-};
-
-// Standard output, or a file of its own.
-class Output {
- public:
-  explicit Output(const std::string& name) : name_(name), file_(name == "-" ? stdout : std::fopen(name.c_str(), "w")) {
-    if (file_ == nullptr) throw UsageError(fmt::format("{}: cannot be written", name_));
-  }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-  ~Output() {
-    if (file_ != stdout && file_ != nullptr) std::fclose(file_);
-  }
-  template <class... Arguments>
-  void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-    buffer_.clear();
-    fmt::format_to(std::back_inserter(buffer_), format, std::forward<Arguments>(arguments)...);
-    if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail();
-  }
-  // A full disk shows here at the latest.
-  void finish() {
-    if (std::fflush(file_) != 0 || std::ferror(file_) != 0) fail();
-  }
-
- private:
-  [[noreturn]] void fail() const {
-    throw std::runtime_error(fmt::format("{}: could not be written to its end", name_));
-  }
-
-  std::string name_;
-  std::FILE* file_;
-  fmt::memory_buffer buffer_;
 };
 
 std::string axis_of(const Step& step) {
@@ -99,40 +67,44 @@ std::uint64_t walk(AnyInterpolator& interpolator, Sink&& sink) {
   return count;
 }
 
-void write_csv(const std::string& name, AnyInterpolator interpolator) {
-  Output out(name);
-  out.print("index,axis,direction,x,y,f\n");
+template <class... Arguments>
+void print(Output& out, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  fmt::memory_buffer text;
+  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
+  out.write({text.data(), text.size()});
+}
+
+void write_csv(Output& out, AnyInterpolator interpolator) {
+  print(out, "index,axis,direction,x,y,f\n");
   walk(interpolator, [&](const Row& row) {
-    out.print("{},{},{},{},{},{}\n", row.index, axis_of(row.step), direction_of(row.step), row.from[0], row.from[1],
-              row.deviation(""));
+    print(out, "{},{},{},{},{},{}\n", row.index, axis_of(row.step), direction_of(row.step), row.from[0], row.from[1],
+          row.deviation(""));
   });
-  out.finish();
 }
 
 // The walk as it comes, so that its length does not matter.
-void write_json(const std::string& name, const interpolation::MethodInfo& method, AnyInterpolator interpolator) {
-  Output out(name);
+void write_json(Output& out, const interpolation::MethodInfo& method, AnyInterpolator interpolator) {
   const Position start = interpolator.position();
-  out.print("{{\n\"method\": \"{}\",\n\"time_unit\": \"{}\",\n", method.name, method.time_unit);
-  out.print("\"start\": [{}, {}],\n\"path\": [", start[0], start[1]);
+  print(out, "{{\n\"method\": \"{}\",\n\"time_unit\": \"{}\",\n", method.name, method.time_unit);
+  print(out, "\"start\": [{}, {}],\n\"path\": [", start[0], start[1]);
   const std::uint64_t count = walk(interpolator, [&](const Row& row) {
-    out.print("{}{{\"index\": {}, \"axis\": \"{}\", \"direction\": \"{}\", \"x\": {}, \"y\": {}, \"f\": {}, ",
-              row.index == 0 ? "\n" : ",\n", row.index, axis_of(row.step), direction_of(row.step), row.from[0],
-              row.from[1], row.deviation("null"));
-    out.print("\"time\": {}}}", row.time);
+    print(out, "{}{{\"index\": {}, \"axis\": \"{}\", \"direction\": \"{}\", \"x\": {}, \"y\": {}, \"f\": {}, ",
+          row.index == 0 ? "\n" : ",\n", row.index, axis_of(row.step), direction_of(row.step), row.from[0], row.from[1],
+          row.deviation("null"));
+    print(out, "\"time\": {}}}", row.time);
   });
   const Position end = interpolator.position();
-  out.print("],\n\"end\": [{}, {}],\n\"steps\": {},\n\"total_time\": {}\n}}\n", end[0], end[1], count,
-            interpolator.total_time());
-  out.finish();
+  print(out, "],\n\"end\": [{}, {}],\n\"steps\": {},\n\"total_time\": {}\n}}\n", end[0], end[1], count,
+        interpolator.total_time());
 }
 
 void execute(const Options& options) {
   const auto method = interpolation::method_named(options.method);
   if (!method) throw UsageError(fmt::format("no method \"{}\": trammel methods lists them", options.method));
-  if (options.csv && options.json && *options.csv == "-" && *options.json == "-") {
-    throw UsageError("--csv and --json: only one of them can go to standard output");
-  }
+  Outputs outputs;
+  Output* const csv = outputs.add("--csv", options.json ? options.csv : options.csv.value_or("-"));
+  Output* const json = outputs.add("--json", options.json);
+  outputs.check();
   const interpolation::Curve curve = options.curve.curve();
   const AnyInterpolator interpolator = [&] {
     try {
@@ -141,8 +113,10 @@ void execute(const Options& options) {
       throw UsageError(error.what());
     }
   }();
-  if (options.csv || !options.json) write_csv(options.csv.value_or("-"), interpolator);
-  if (options.json) write_json(*options.json, interpolation::info(*method), interpolator);
+  outputs.open();
+  if (csv != nullptr) write_csv(*csv, interpolator);
+  if (json != nullptr) write_json(*json, interpolation::info(*method), interpolator);
+  outputs.commit();
 }
 
 }  // namespace

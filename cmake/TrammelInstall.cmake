@@ -1,4 +1,9 @@
-# Install and export rules of the libraries. A consumer needs no Python, RTL or Verilator.
+# What is installed, a component each, every one of use without the others:
+#   trammel_development  libraries, headers, CMake package; a consumer needs no Python, RTL or Verilator
+#   trammel_command      the trammel command
+#   trammel_rtl          the card's sources, with their file list, FuseSoC core and lint waivers
+#   trammel_machine      the default machine file, to be changed
+#   trammel_licence
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -16,7 +21,9 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/host/gcode/include/"
   "${PROJECT_SOURCE_DIR}/host/planner/include/"
   "${PROJECT_SOURCE_DIR}/host/run/include/"
-  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp")
+  "${PROJECT_SOURCE_DIR}/sim/include/"
+  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp"
+  PATTERN "lockstep.hpp" EXCLUDE PATTERN "engines.hpp" EXCLUDE)  # of no use without the Verilated card
 install(EXPORT trammel-targets NAMESPACE trammel:: DESTINATION "${trammel_package_dir}"
   COMPONENT trammel_development)
 
@@ -29,3 +36,18 @@ install(FILES
   "${PROJECT_BINARY_DIR}/trammel-config.cmake"
   "${PROJECT_BINARY_DIR}/trammel-config-version.cmake"
   DESTINATION "${trammel_package_dir}" COMPONENT trammel_development)
+
+set(trammel_data_dir "${CMAKE_INSTALL_DATADIR}/trammel")
+
+# In the folders that the file list names.
+file(STRINGS "${PROJECT_SOURCE_DIR}/rtl/trammel.f" sources REGEX "^[^/].*\\.sv$")
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/rtl/trammel.f")
+foreach(file IN ITEMS trammel.f trammel.core lint/waivers.vlt LISTS sources)
+  cmake_path(GET file PARENT_PATH folder)
+  install(FILES "${PROJECT_SOURCE_DIR}/rtl/${file}" DESTINATION "${trammel_data_dir}/rtl/${folder}"
+    COMPONENT trammel_rtl)
+endforeach()
+
+install(FILES "${PROJECT_SOURCE_DIR}/examples/machine.toml" DESTINATION "${trammel_data_dir}"
+  COMPONENT trammel_machine)
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT trammel_licence)

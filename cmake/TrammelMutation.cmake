@@ -37,11 +37,15 @@ function(trammel_add_judge name)
     COMMAND diff -I svdpi.h "${copy_dir}/${A_PREFIX}.h" "${sound_dir}/${A_PREFIX}.h")
 endfunction()
 
-# trammel_judge_entry(out name SOURCES a.sv ... [EXECUTABLE target] [ARGUMENTS ...] [LENGTH factor])
+# trammel_judge_entry(out name SOURCES a.sv ... [EXECUTABLE target] [ARGUMENTS ...] [LENGTH factor] [LAST_RESORT])
 # The judge's line of judges.json. EXECUTABLE is mutation_<name> by itself, ARGUMENTS are GoogleTest's, LENGTH is that of
-# the random scenarios.
+# the random scenarios. LAST_RESORT: tries no mutant that is listed as equivalent.
 function(trammel_judge_entry out name)
-  cmake_parse_arguments(A "" "EXECUTABLE;LENGTH" "SOURCES;ARGUMENTS" ${ARGN})
+  cmake_parse_arguments(A "LAST_RESORT" "EXECUTABLE;LENGTH" "SOURCES;ARGUMENTS" ${ARGN})
+  set(last_resort false)
+  if(A_LAST_RESORT)
+    set(last_resort true)
+  endif()
   if(NOT A_EXECUTABLE)
     set(A_EXECUTABLE mutation_${name})
   endif()
@@ -50,6 +54,7 @@ function(trammel_judge_entry out name)
     list(JOIN A_${list} ", " A_${list})
   endforeach()
   string(CONCAT entry "{\"name\": \"${name}\", \"executable\": \"$<TARGET_FILE:${A_EXECUTABLE}>\", \"length\": \"${A_LENGTH}\", "
+                      "\"last_resort\": ${last_resort}, "
                       "\"arguments\": [${A_ARGUMENTS}], \"sources\": [${A_SOURCES}]}")
   set(${out} "${entry}" PARENT_SCOPE)
 endfunction()

@@ -1,10 +1,14 @@
 # Shared by the scripts: where the project lies, what it needs from the distribution, how it says what it does.
 # Sourced, not run.
 set -euo pipefail
+caller_dir=$PWD  # what the command line names is meant from there
 project_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$project_dir"
 
-say() { printf '\033[1m== %s\033[0m\n' "$*" >&2; }
+# Bold on a terminal, plain in a log.
+say() {
+  if [ -t 2 ] && [ "${TERM:-dumb}" != dumb ]; then printf '\033[1m== %s\033[0m\n' "$*" >&2; else printf '== %s\n' "$*" >&2; fi
+}
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 # Everything that building and testing needs; scripts/setup installs what is missing.
@@ -19,7 +23,8 @@ debian_packages=(
 debian_packages_check=(clang-format universal-ctags iverilog yosys)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
-debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static googletest)
+debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
+armhf_libraries=(libfmt9 libfmt-dev libtoml11-dev nlohmann-json3-dev libgtest-dev libgmock-dev librapidcheck-dev)
 
 install_debian() {
   local missing=() package
@@ -35,26 +40,28 @@ install_debian() {
   DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-# What the tests on 32-bit ARM need: compiler, emulator, and RapidCheck's library of that architecture, which is unpacked into
-# build/armhf-packages: apt with lists of its own, so that the system does not become one of two architectures.
+# What the tests on 32-bit ARM need: compiler and emulator, and the libraries of that architecture, which are unpacked into
+# build/armhf-packages. apt works on lists of its own there, so that the system does not become one of two architectures.
 install_armhf() {
   install_debian "${debian_packages_armhf[@]}"
-  local packages=$project_dir/build/armhf-packages
-  [ ! -e "$packages/usr" ] || return 0
-  say "unpacking RapidCheck for armhf into build/armhf-packages"
+  local packages=$project_dir/build/armhf-packages wanted="${armhf_libraries[*]}"
+  [ "$(cat "$packages/unpacked" 2>/dev/null)" != "$wanted" ] || return 0
+  say "unpacking libraries for armhf into build/armhf-packages: $wanted"
   rm -rf "$packages"
   mkdir -p "$packages/lists/partial" "$packages/cache/archives/partial"
   touch "$packages/status"
   local apt=(apt-get -qq -o APT::Architecture=armhf -o APT::Architectures::=armhf -o APT::Sandbox::User=
              -o Dir::State::lists="$packages/lists" -o Dir::State::status="$packages/status" -o Dir::Cache="$packages/cache")
-  # Lists of other parts of the archive may fail: what counts is whether the package comes.
+  # Lists of other parts of the archive may fail: what counts is whether the packages come.
   "${apt[@]}" update >"$packages/log" 2>&1 || true
-  if (cd "$packages" && "${apt[@]}" download librapidcheck-dev >>log 2>&1); then
-    dpkg-deb -x "$packages"/librapidcheck-dev_*.deb "$packages"
-    rm -r "$packages/lists" "$packages/cache"
-  else
-    say "RapidCheck for armhf did not come ($packages/log): the tests on 32-bit ARM will not run"
+  if ! (cd "$packages" && "${apt[@]}" download "${armhf_libraries[@]}" >>log 2>&1); then
+    say "they did not come ($packages/log): the tests on 32-bit ARM will not run"
+    return 0
   fi
+  local file
+  for file in "$packages"/*.deb; do dpkg-deb -x "$file" "$packages"; done
+  rm -r "$packages/lists" "$packages/cache" "$packages"/*.deb
+  echo "$wanted" >"$packages/unpacked"
 }
 
 # install_python FILE: the pinned Python tools of a requirements file, in .venv; again when the file changes.

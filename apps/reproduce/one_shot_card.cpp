@@ -152,49 +152,49 @@ struct Totals {
   std::uint64_t clocks = 0;
 };
 
-void lines_on_card(Page& page, const Progress& progress) {
-  page.heading("Lines 1 to 8 on the card");
-  page.text(
-      "The Verilated card in lockstep with its golden model, direct mode, 10 MHz, 2,000 clocks a line. Its "
-      "frequencies are rounded to 2^-40 pulses a clock, so where exact arithmetic has a tie, a step comes a "
-      "clock later or at the same time.");
-  Csv csv("line,tick,x,y,distance");
-  Csv pins("line,axis,direction,clock");
+// What the lines add up to.
+struct LinesOnCard {
+  Totals totals;
+  Csv track{"line,tick,x,y,distance"};
+  Csv pins{"line,axis,direction,clock"};
   std::vector<Panel> panels;
   std::vector<std::vector<std::string>> rows{{"line", "pulses x, y", "card, pulses", "exact arithmetic, pulses"}};
-  Totals totals;
-  for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    const Line line = paper_line(i);
-    const CardRun run = run_on_card(line, false);
-    const Track track = track_of_card(line, run);
-    const Track exact = track_of(Method::kOneShot, line);
-    const double largest = largest_distance(line, track);
-    totals.ends += ends_exactly(line, run) && track.back().position == line.end && track.back().time <= kPaperClocks;
-    totals.formula += follows_formula(line, run, track);
-    totals.bound += largest <= std::sqrt(2.0) * (0.5 + std::ldexp(static_cast<double>(kPaperClocks), -41));
-    totals.equal += std::fabs(largest - largest_distance(line, exact)) < 0.0005;
-    totals.lag = std::max(totals.lag, largest_lag(track, exact));
-    totals.clocks += run.clocks;
-    for (unsigned a = 0; a < 2; ++a) {
-      const std::vector<double> times = pin_times(run, a);
-      if (times.size() < 3) continue;
-      const Spread spread = spread_of({times.begin() + 1, times.end()});
-      totals.interval_difference = std::max(totals.interval_difference, spread.largest - spread.least);
-      double& first = line.end[a] < line.start[a] ? totals.backward_first : totals.forward_first;
-      first = std::max(first, spread.largest - (times[1] - times[0]));
-    }
-    for (const TrackPoint& p : track) {
-      csv.row("{},{},{},{},{:.4f}", i + 1, p.time, p.position[0], p.position[1], distance(line, p.position));
-    }
-    const std::uint64_t first = run.steps.pins.front().cycle;
-    for (const driver::PinStep& step : run.steps.pins) {
-      pins.row("{},{},{},{}", i + 1, step.axis == 0 ? 'x' : 'y', step.direction, step.cycle - first);
-    }
-    rows.push_back({std::to_string(i + 1), fmt::format("{}, {}", run.part.count[0], run.part.count[1]),
-                    fmt::format("{:.3f}", largest), fmt::format("{:.3f}", largest_distance(line, exact))});
-    panels.push_back(line_panel(i, track, "card"));
-    progress(0.8 * static_cast<double>(i + 1) / 8);
+};
+
+void run_line_of_paper(std::size_t i, LinesOnCard& sums) {
+  const Line line = paper_line(i);
+  const CardRun run = run_on_card(line, false);
+  const Track track = track_of_card(line, run);
+  const Track exact = track_of(Method::kOneShot, line);
+  const double largest = largest_distance(line, track);
+  sums.totals.ends += ends_exactly(line, run) && track.back().position == line.end && track.back().time <= kPaperClocks;
+  sums.totals.formula += follows_formula(line, run, track);
+  sums.totals.bound += largest <= std::sqrt(2.0) * (0.5 + std::ldexp(static_cast<double>(kPaperClocks), -41));
+  sums.totals.equal += std::fabs(largest - largest_distance(line, exact)) < 0.0005;
+  sums.totals.lag = std::max(sums.totals.lag, largest_lag(track, exact));
+  sums.totals.clocks += run.clocks;
+  for (unsigned a = 0; a < 2; ++a) {
+    const std::vector<double> times = pin_times(run, a);
+    if (times.size() < 3) continue;
+    const Spread spread = spread_of({times.begin() + 1, times.end()});
+    sums.totals.interval_difference = std::max(sums.totals.interval_difference, spread.largest - spread.least);
+    double& first = line.end[a] < line.start[a] ? sums.totals.backward_first : sums.totals.forward_first;
+    first = std::max(first, spread.largest - (times[1] - times[0]));
   }
+  for (const TrackPoint& p : track) {
+    sums.track.row("{},{},{},{},{:.4f}", i + 1, p.time, p.position[0], p.position[1], distance(line, p.position));
+  }
+  const std::uint64_t first = run.steps.pins.front().cycle;
+  for (const driver::PinStep& step : run.steps.pins) {
+    sums.pins.row("{},{},{},{}", i + 1, step.axis == 0 ? 'x' : 'y', step.direction, step.cycle - first);
+  }
+  sums.rows.push_back({std::to_string(i + 1), fmt::format("{}, {}", run.part.count[0], run.part.count[1]),
+                       fmt::format("{:.3f}", largest), fmt::format("{:.3f}", largest_distance(line, exact))});
+  sums.panels.push_back(line_panel(i, track, "card"));
+}
+
+void judge_lines(Page& page, const LinesOnCard& sums) {
+  const Totals& totals = sums.totals;
   page.pass("Figure 3 on the card, end points", "the error of the end point is zero",
             fmt::format("{} of 8 lines end exactly, at the pins and in the counters", totals.ends), totals.ends == 8);
   page.pass("Position formula (9), (10) on the card", "x = round(v t / f)",
@@ -202,7 +202,7 @@ void lines_on_card(Page& page, const Progress& progress) {
                         "arithmetic",
                         totals.formula, totals.lag),
             totals.formula == 8 && totals.lag <= 1);
-  page.table(rows);
+  page.table(sums.rows);
   page.pass("Error on the card", "below 1 pulse",
             fmt::format("{} of 8 within sqrt(2) (1/2 + L / 2^41), perpendicular, and {} of 8 errors equal to those of "
                         "exact arithmetic to three decimals",
@@ -219,8 +219,23 @@ void lines_on_card(Page& page, const Progress& progress) {
   page.pass("Lockstep", "(no simulation of hardware)",
             fmt::format("{} clocks compared with the golden model, no mismatch", totals.clocks),
             totals.clocks > 16'000);
-  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card made them", draw(panels, {4, 250, 250}), csv);
-  page.data("one-shot-card-pins", "Leading edges at the STEP pins, clocks from each line's first", pins);
+}
+
+void lines_on_card(Page& page, const Progress& progress) {
+  page.heading("Lines 1 to 8 on the card");
+  page.text(
+      "The Verilated card in lockstep with its golden model, direct mode, 10 MHz, 2,000 clocks a line. Its "
+      "frequencies are rounded to 2^-40 pulses a clock, so where exact arithmetic has a tie, a step comes a "
+      "clock later or at the same time.");
+  LinesOnCard sums;
+  for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
+    run_line_of_paper(i, sums);
+    progress(0.8 * static_cast<double>(i + 1) / 8);
+  }
+  judge_lines(page, sums);
+  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card made them", draw(sums.panels, {4, 250, 250}),
+               sums.track);
+  page.data("one-shot-card-pins", "Leading edges at the STEP pins, clocks from each line's first", sums.pins);
 }
 
 void wave_on_card(Page& page) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <stdexcept>
 #include <utility>
 
 namespace trammel::app::reproduce {
@@ -20,17 +18,7 @@ const char* name_of(Verdict verdict) {
   return "FAIL";
 }
 
-void write_file(const std::filesystem::path& file, const std::string& content) {
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  std::ofstream out(file, std::ios::binary);
-  out << content;
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
-}
-
-Page::Page(std::filesystem::path folder, std::string file, std::string title)
-    : folder_(std::move(folder)), file_(std::move(file)), title_(std::move(title)) {}
+Page::Page(std::string file, std::string title) : file_(std::move(file)), title_(std::move(title)) {}
 
 void Page::heading(const std::string& text) { body_ += "\n## " + text + "\n"; }
 
@@ -49,18 +37,14 @@ void Page::table(const std::vector<std::vector<std::string>>& rows) {
   }
 }
 
-void Page::file_beside(const std::string& path, const std::string& content) const {
-  write_file(folder_ / path, content);
-}
-
 void Page::picture(const std::string& name, const std::string& caption, const std::string& svg, const Csv& csv) {
-  file_beside("pictures/" + name + ".svg", svg);
-  file_beside("data/" + name + ".csv", csv.text());
+  beside_["pictures/" + name + ".svg"] = svg;
+  beside_["data/" + name + ".csv"] = csv.text();
   body_ += fmt::format("\n![{}](pictures/{}.svg)\n\n{} ([data](data/{}.csv))\n", caption, name, caption, name);
 }
 
 void Page::data(const std::string& name, const std::string& caption, const Csv& csv) {
-  file_beside("data/" + name + ".csv", csv.text());
+  beside_["data/" + name + ".csv"] = csv.text();
   body_ += fmt::format("\n{}: [data](data/{}.csv)\n", caption, name);
 }
 
@@ -86,9 +70,10 @@ std::size_t Page::count(Verdict verdict) const {
   return static_cast<std::size_t>(std::count_if(items_.begin(), items_.end(), matches));
 }
 
-void Page::write() const {
-  std::string content = "# " + title_ + "\n\nWritten by `trammel reproduce`; [both papers](README.md).\n";
-  write_file(folder_ / file_, content + body_);
+std::map<std::string, std::string> Page::files() const {
+  std::map<std::string, std::string> result = beside_;
+  result[file_] = "# " + title_ + "\n\nWritten by `trammel reproduce`; [both papers](README.md).\n" + body_;
+  return result;
 }
 
 }  // namespace trammel::app::reproduce

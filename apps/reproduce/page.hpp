@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -43,8 +43,8 @@ class Csv {
 
 class Page {
  public:
-  // Writes `folder`/`file`, with pictures and CSV files in folders beside it.
-  Page(std::filesystem::path folder, std::string file, std::string title);
+  // The page `file`, with pictures and CSV files in folders beside it.
+  Page(std::string file, std::string title);
 
   void heading(const std::string& text);
   void text(const std::string& paragraph);
@@ -59,7 +59,8 @@ class Page {
   // A place where the paper is wrong or silent; `found` is right when `holds`.
   void corrected(const std::string& what, const std::string& paper, const std::string& found, bool holds);
 
-  void write() const;
+  // The page, its pictures and its data, by their names beside each other.
+  std::map<std::string, std::string> files() const;
 
   const std::vector<Item>& items() const { return items_; }
   std::size_t count(Verdict verdict) const;
@@ -68,15 +69,12 @@ class Page {
 
  private:
   void add(Item item);
-  void file_beside(const std::string& path, const std::string& content) const;
 
-  std::filesystem::path folder_;
   std::string file_;
   std::string title_;
   std::string body_;
   std::vector<Item> items_;
+  std::map<std::string, std::string> beside_;  // pictures and data
 };
-
-void write_file(const std::filesystem::path& file, const std::string& content);
 
 }  // namespace trammel::app::reproduce

@@ -4,16 +4,19 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 
 #include "trammel/card_map.hpp"
+#include "trammel/driver/increment.hpp"
 
 namespace trammel::driver {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr std::uint64_t kCountLimit = std::uint64_t{1} << 40;  // ticks and path ticks have 40 bits
-constexpr std::int64_t kMaxQuadrants = 0xFFFF;
+constexpr std::uint64_t kCountLimit =
+    card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Arc))->count_maximum + 1;  // also of path ticks
+constexpr std::int64_t kMaxQuadrants = std::numeric_limits<decltype(ArcCommand::quadrants)>::max();
 
 // A lattice point relative to the centre, in the conic's own unit.
 struct Point {
@@ -25,26 +28,24 @@ struct Point {
 struct Conic {
   std::int64_t a;
   std::int64_t b;
-  int128 n;
+  Int128 n;
   std::int64_t step;  // units a pulse
 
-  int128 deviation(const Point& p) const {
-    return static_cast<int128>(a) * p.x * p.x + static_cast<int128>(b) * p.y * p.y - n;
-  }
+  Int128 deviation(const Point& p) const { return Int128(a) * p.x * p.x + Int128(b) * p.y * p.y - n; }
 };
 
 [[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument("arc: " + why); }
 
-std::int64_t square_root(int128 value) {
+std::int64_t square_root(Int128 value) {
   std::int64_t root = 0;
   for (std::int64_t bit = std::int64_t{1} << 62; bit != 0; bit >>= 1) {
     const std::int64_t trial = root | bit;
-    if (static_cast<int128>(trial) * trial <= value) root = trial;
+    if (Int128(trial) * trial <= value) root = trial;
   }
   return root;
 }
 
-int128 radius_squared(const Point& p) { return static_cast<int128>(p.x) * p.x + static_cast<int128>(p.y) * p.y; }
+Int128 radius_squared(const Point& p) { return Int128(p.x) * p.x + Int128(p.y) * p.y; }
 
 // Zero counts as positive, as in the card: 0 right and up, 1 left and up, 2 left and down, 3 right and down.
 int quadrant(const Point& p) {
@@ -52,18 +53,27 @@ int quadrant(const Point& p) {
   return p.x >= 0 ? 3 : 2;
 }
 
-double angle(const Point& p) { return std::atan2(static_cast<double>(p.y), static_cast<double>(p.x)); }
+// Direction from the centre in quarters of a turn, 0 .. 4, by divisions alone, so that every machine finds the same:
+// right on the axes and their bisectors, never off by 1/16 of a quarter. 0 for the centre itself.
+double direction_of(const Point& p) {
+  const double x = std::abs(static_cast<double>(p.x));
+  const double y = std::abs(static_cast<double>(p.y));
+  if (x + y == 0) return 0;
+  const int side = quadrant(p);
+  return side + (side % 2 == 0 ? y : x) / (x + y);
+}
 
-// Quadrant changes from start to end. The angle between the rounded points is known but for full turns; rounding moves
-// it by less than half a turn from the commanded sweep (radius >= 1 pulse), so the nearest number of turns is meant.
-// An end that rounding has put behind the start comes out as -1 turn and some; the card then goes straight to it.
+// Quadrant changes from start to end. The direction between the rounded points is known but for full turns; rounding
+// moves it by less than half a turn from the commanded sweep (radius >= 1 pulse), so the nearest number of turns is
+// meant, and no last digit of the sweep changes it. An end that rounding has put behind the start comes out as -1 turn
+// and some; the card then goes straight to it.
 std::int64_t quadrant_changes(const Point& start, const Point& end, bool clockwise, double sweep, std::uint32_t turns) {
   const int direction = clockwise ? -1 : 1;
-  double ahead = direction * (angle(end) - angle(start));
-  if (ahead < 0) ahead += 2 * kPi;
-  const std::int64_t more = std::llround((sweep - ahead) / (2 * kPi)) + turns;
+  double ahead = direction * (direction_of(end) - direction_of(start));
+  if (ahead < 0) ahead += 4;
+  const std::int64_t more = std::llround((sweep / (kPi / 2) - ahead) / 4) + turns;
   std::int64_t changes = (direction * (quadrant(end) - quadrant(start)) + 4) % 4;
-  if (changes == 0 && ahead > kPi) changes = 4;  // the same quadrant, but behind
+  if (changes == 0 && ahead > 2) changes = 4;  // the same quadrant, but behind
   changes += 4 * more;
   if (changes > kMaxQuadrants) refuse(fmt::format("{} quadrants, at most {} fit", changes, kMaxQuadrants));
   return changes > 0 ? changes : 0;
@@ -141,8 +151,8 @@ ArcCommand fill(const Geometry& geometry, const Conic& conic, const Point& start
   arc.end_x = geometry.end_x;
   arc.end_y = geometry.end_y;
   arc.deviation = conic.deviation(start);
-  arc.gradient_x = static_cast<int128>(2) * conic.a * start.x * conic.step;
-  arc.gradient_y = static_cast<int128>(2) * conic.b * start.y * conic.step;
+  arc.gradient_x = Int128(2) * conic.a * start.x * conic.step;
+  arc.gradient_y = Int128(2) * conic.b * start.y * conic.step;
   arc.half_x = static_cast<std::uint64_t>(conic.a * conic.step * conic.step);
   arc.half_y = static_cast<std::uint64_t>(conic.b * conic.step * conic.step);
   return arc;
@@ -150,15 +160,14 @@ ArcCommand fill(const Geometry& geometry, const Conic& conic, const Point& start
 
 // Square of the mean of start and end radius: halves the distance that rounding puts between them, so that both ends
 // lie equally near to the curve.
-int128 mean_radius_squared(const Point& start, const Point& end) {
-  const int128 first = radius_squared(start);
-  const int128 second = radius_squared(end);
+Int128 mean_radius_squared(const Point& start, const Point& end) {
+  const Int128 first = radius_squared(start);
+  const Int128 second = radius_squared(end);
   if (first == second) return first;
-  constexpr int kFraction = 8;  // radii to 2^-16 pulses
-  const int128 sum =
-      static_cast<int128>(square_root(first << (2 * kFraction))) + square_root(second << (2 * kFraction));
-  const int kShift = 2 * (kFraction + 1);
-  return (sum * sum + (static_cast<int128>(1) << (kShift - 1))) >> kShift;
+  constexpr unsigned kFraction = 8;  // radii to 2^-16 pulses
+  const Int128 sum = Int128(square_root(first << (2 * kFraction))) + square_root(second << (2 * kFraction));
+  constexpr unsigned kShift = 2 * (kFraction + 1);
+  return Int128((sum * sum + (Int128(1) << (kShift - 1))).bits() >> kShift);  // positive
 }
 
 bool within(const Point& p, std::int64_t limit) { return std::llabs(p.x) <= limit && std::llabs(p.y) <= limit; }
@@ -176,7 +185,7 @@ ArcCommand prepare(const ArcGeometry& geometry) {
   const Point start{-geometry.centre_x, -geometry.centre_y};
   const Point end{geometry.end_x * kUnit - geometry.centre_x, geometry.end_y * kUnit - geometry.centre_y};
   if (!within(end, kMaxCentreDistance)) refuse("the centre is farther than 2^24 pulses from the end");
-  const int128 mean = mean_radius_squared(start, end);
+  const Int128 mean = mean_radius_squared(start, end);
   if (mean < kUnit * kUnit) refuse("radius below one pulse: send a line");
   // A step to the side of the circle adds up to 1/2 to R^2 (in pulses), a step inwards takes nothing off it: half a
   // square pulse less makes outside and inside errors alike, 1 + 1/(4 R). About a whole pulse F is then a whole number
@@ -197,9 +206,9 @@ ArcCommand prepare(const EllipseGeometry& geometry) {
   if (!in_box(start)) refuse("the start is outside the ellipse's bounding box");
   const Point end{start.x + geometry.end_x, start.y + geometry.end_y};
   if (!in_box(end)) refuse("the end is outside the ellipse's bounding box");
-  const Conic conic{b * b, a * a, static_cast<int128>(a * a) * (b * b), 1};
+  const Conic conic{b * b, a * a, Int128(a * a) * (b * b), 1};
   // Rounding moves a point by half a pulse in each coordinate, which changes F by at most ab(a+b) + (a^2+b^2)/4.
-  const int128 limit = static_cast<int128>(4) * a * b * (a > b ? a : b);
+  const Int128 limit = Int128(4) * a * b * (a > b ? a : b);
   const auto on_curve = [&](const Point& p) { return -limit < conic.deviation(p) && conic.deviation(p) < limit; };
   if (!on_curve(start)) refuse("the start is not on the ellipse");
   if (!on_curve(end)) refuse("the end is not on the ellipse");
@@ -210,8 +219,7 @@ ArcCommand with_ticks(ArcCommand arc, std::uint64_t ticks) {
   if (ticks < arc.path_ticks) refuse(fmt::format("{} feed ticks for {} steps", ticks, arc.path_ticks));
   if (ticks >= kCountLimit) refuse(fmt::format("{} feed ticks, fewer than 2^40 fit", ticks));
   arc.ticks = ticks;
-  const int128 scaled = (static_cast<int128>(arc.path_ticks) << 40) + ticks / 2;
-  arc.prescale = static_cast<std::uint64_t>(scaled / ticks);
+  arc.prescale = rounded_share(arc.path_ticks, ticks);
   return arc;
 }
 

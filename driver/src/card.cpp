@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "clocks.hpp"
+#include "patience.hpp"
 #include "trammel/card_map.hpp"
 
 namespace trammel::driver {
@@ -78,7 +78,24 @@ void check_build(const Identification& card) {
   check_depth("feed", card.feed_depth, longest_command(&map::Command::to_feed, card));
 }
 
-Status status_of(std::uint32_t value) {
+// Reads of the step times of all axes, and room for one more access.
+struct StepTimes {
+  explicit StepTimes(unsigned axes) {
+    for (unsigned axis = 0; axis < axes; ++axis) {
+      accesses[count++] = read_of(reg::step_length(axis));
+      accesses[count++] = read_of(reg::step_space(axis));
+    }
+  }
+  std::uint32_t period(unsigned axis) const {
+    Card::check_read(accesses[2 * axis]);
+    Card::check_read(accesses[2 * axis + 1]);
+    return shortest_pulse_period(accesses[2 * axis].data, accesses[2 * axis + 1].data);
+  }
+  std::array<Access, 2 * map::kMaxAxes + 1> accesses{};
+  std::size_t count = 0;
+};
+
+Status status_from(std::uint32_t value) {
   Status status;
   status.busy = (value & field::kStatusBusy) != 0;
   status.direct = (value & field::kStatusDirect) != 0;
@@ -94,69 +111,90 @@ Status status_of(std::uint32_t value) {
   return status;
 }
 
+// Reads of what cannot be refused by a card that this driver knows.
+void read_identity(Bus& bus, Access* accesses, std::size_t count) {
+  const std::size_t made = bus.transfer(accesses, count);
+  if (made < count) {
+    throw IdentificationError(
+        fmt::format("card: no Trammel card answers: the read of 0x{:03X} was refused", accesses[made].address));
+  }
+}
+
 }  // namespace
 
 Card Card::open(Bus& bus) {
-  const std::uint32_t magic = bus.read(reg::kMagic);
-  if (magic != map::kMagicValue) {
+  Access magic = read_of(reg::kMagic);
+  read_identity(bus, &magic, 1);
+  if (magic.data != map::kMagicValue) {
     throw IdentificationError(
-        fmt::format("card: no Trammel card answers: MAGIC reads 0x{:08X}, not 0x{:08X}", magic, map::kMagicValue));
+        fmt::format("card: no Trammel card answers: MAGIC reads 0x{:08X}, not 0x{:08X}", magic.data, map::kMagicValue));
   }
+  std::array<Access, 7> who{read_of(reg::kMapVersion), read_of(reg::kCommandsVersion), read_of(reg::kAxes),
+                            read_of(reg::kClockHz),    read_of(reg::kEngines),         read_of(reg::kGeometryDepth),
+                            read_of(reg::kFeedDepth)};
+  read_identity(bus, who.data(), who.size());
   Card card(bus);
   Identification& identification = card.identification_;
-  const std::uint32_t version = bus.read(reg::kMapVersion);
   identification.map_major =
-      static_cast<std::uint16_t>(bits(version, field::kMapVersionMajor, field::kMapVersionMajorShift));
+      static_cast<std::uint16_t>(bits(who[0].data, field::kMapVersionMajor, field::kMapVersionMajorShift));
   identification.map_minor =
-      static_cast<std::uint16_t>(bits(version, field::kMapVersionMinor, field::kMapVersionMinorShift));
-  identification.commands_version = bus.read(reg::kCommandsVersion);
+      static_cast<std::uint16_t>(bits(who[0].data, field::kMapVersionMinor, field::kMapVersionMinorShift));
+  identification.commands_version = who[1].data;
   check_versions(identification);
-  identification.axes = bus.read(reg::kAxes);
-  identification.clock_hz = bus.read(reg::kClockHz);
-  identification.engines = bus.read(reg::kEngines);
-  identification.geometry_depth = bus.read(reg::kGeometryDepth);
-  identification.feed_depth = bus.read(reg::kFeedDepth);
+  identification.axes = who[2].data;
+  identification.clock_hz = who[3].data;
+  identification.engines = who[4].data;
+  identification.geometry_depth = who[5].data;
+  identification.feed_depth = who[6].data;
   check_build(identification);
   card.timing_.clock_hz = identification.clock_hz;
   card.timing_.axes = identification.axes;
-  for (unsigned axis = 0; axis < identification.axes; ++axis) {
-    const std::uint32_t step_length = bus.read(reg::step_length(axis));
-    card.timing_.pulse_period[axis] = shortest_pulse_period(step_length, bus.read(reg::step_space(axis)));
-  }
+  StepTimes times(identification.axes);
+  read_identity(bus, times.accesses.data(), times.count);
+  for (unsigned axis = 0; axis < identification.axes; ++axis) card.timing_.pulse_period[axis] = times.period(axis);
   return card;
 }
 
+void Card::check_identity() {
+  StepTimes times(identification_.axes);
+  times.accesses[times.count] = read_of(reg::kMagic);
+  const Access& magic = times.accesses[times.count];
+  if (checked_transfer(times.accesses.data(), times.count + 1) <= times.count || magic.data != map::kMagicValue) {
+    throw LinkError(fmt::format("card: it does not answer any more: MAGIC reads 0x{:08X}", magic.data));
+  }
+  for (unsigned axis = 0; axis < identification_.axes; ++axis) {
+    if (times.period(axis) != timing_.pulse_period[axis]) {
+      throw StateError(
+          fmt::format("card: axis {} has other step times than it was given: the card was reset since, or is used by "
+                      "another program",
+                      axis));
+    }
+  }
+}
+
 void Card::configure_axis(unsigned axis, const AxisSettings& settings) {
-  static_assert(reg::mode(0) == reg::step_length(0) + 16 && reg::step_space(0) == reg::step_length(0) + 4 &&
-                reg::dir_setup(0) == reg::step_length(0) + 8 && reg::dir_hold(0) == reg::step_length(0) + 12);
   if (axis >= identification_.axes) {
     throw ArgumentError(fmt::format("axis {}: the card has {} axes", axis, identification_.axes));
   }
   const auto setting = [&](std::uint32_t address, std::chrono::nanoseconds time) {
-    const std::uint64_t value = clocks(time, entry(address).name.data());
-    check_setting(
-        address, value,
-        fmt::format("axis {}: {} ns, {} clocks at {} Hz,", axis, time.count(), value, identification_.clock_hz));
-    return static_cast<std::uint32_t>(value);
+    const std::string what = fmt::format("axis {}: {}", axis, entry(address).name);
+    return write_of(address, step_time_clocks(time, identification_.clock_hz, what.c_str()));
   };
   const auto mode = static_cast<std::uint32_t>(settings.mode);
   check_setting(reg::mode(axis), mode, fmt::format("axis {}: mode {}", axis, mode));
-  const std::array<std::uint32_t, 5> words{
-      setting(reg::step_length(0), settings.step_length), setting(reg::step_space(0), settings.step_space),
-      setting(reg::dir_setup(0), settings.direction_setup), setting(reg::dir_hold(0), settings.direction_hold),
-      mode << field::kModeModeShift | (settings.invert_first ? field::kModeInvertFirst : 0) |
-          (settings.invert_second ? field::kModeInvertSecond : 0)};
-  try {
-    bus_->write_block(reg::step_length(axis), words.data(), words.size(), Addressing::kIncrementing);
-  } catch (const BusError& error) {
-    throw_refusal(error, fmt::format("axis {}: settings", axis));
-  }
-  timing_.pulse_period[axis] = shortest_pulse_period(words[0], words[1]);
+  std::array<Access, 6> accesses{
+      setting(reg::step_length(axis), settings.step_length), setting(reg::step_space(axis), settings.step_space),
+      setting(reg::dir_setup(axis), settings.direction_setup), setting(reg::dir_hold(axis), settings.direction_hold),
+      write_of(reg::mode(axis), mode << field::kModeModeShift | (settings.invert_first ? field::kModeInvertFirst : 0) |
+                                    (settings.invert_second ? field::kModeInvertSecond : 0))};
+  transfer(accesses.data(), accesses.size() - 1, fmt::format("axis {}: settings", axis));
+  timing_.pulse_period[axis] = shortest_pulse_period(accesses[0].data, accesses[1].data);
 }
 
 void Card::set_ratio(std::uint32_t ratio) {
   check_setting(reg::kRatioFeed, ratio, fmt::format("time base: ratio {} / 65536", ratio));
   write(reg::kRatioFeed, ratio, "time base: ratio");
+  ratio_ = ratio;
 }
 
 void Card::set_slew_time(std::chrono::nanoseconds full_scale) {
@@ -171,10 +209,10 @@ void Card::set_slew_time(std::chrono::nanoseconds full_scale) {
 
 void Card::set_hold(bool hold) { write(reg::kHold, hold ? 1 : 0, "time base: hold"); }
 
-void Card::set_hold_limit(std::chrono::nanoseconds limit) {
-  const std::uint64_t value = clocks(limit, "hold limit");
-  check_setting(reg::kHoldLimit, value, fmt::format("hold limit: {} ns, {} clocks,", limit.count(), value));
-  write(reg::kHoldLimit, static_cast<std::uint32_t>(value), "hold limit");
+void Card::set_longest_step_wait(std::chrono::nanoseconds longest) {
+  const std::uint64_t value = clocks(longest, "longest step wait");
+  check_setting(reg::kHoldLimit, value, fmt::format("longest step wait: {} ns, {} clocks,", longest.count(), value));
+  write(reg::kHoldLimit, static_cast<std::uint32_t>(value), "longest step wait");
 }
 
 Snapshot Card::snapshot() {
@@ -192,90 +230,82 @@ Snapshot Card::read_area(map::Area area) {
     if (waited >= kLimit) {
       throw TimeoutError("snapshot", waited);
     }
-    bus_->wait(kPause);
+    bus_->sleep(time_of(kPause, identification_.clock_hz));
     waited += kPause;
   }
-  Snapshot result;
-  const std::uint64_t time_low = bus_->read(reg::time_lo(area));
-  result.time = time_low | std::uint64_t{bus_->read(reg::time_hi(area))} << 32;
-  result.status = status_of(bus_->read(reg::status(area)));
-  result.faults = bus_->read(reg::fault(area));
-  result.rate = bus_->read(reg::rate(area));
-  result.ratio = bus_->read(reg::ratio(area));
-  result.geometry_begun = bus_->read(reg::geometry_begun(area));
-  result.feed_begun = bus_->read(reg::feed_begun(area));
+  constexpr std::size_t kHead = 8;
+  std::array<Access, kHead + map::kMaxAxes + 1> accesses{
+      read_of(reg::time_lo(area)),        read_of(reg::time_hi(area)),   read_of(reg::status(area)),
+      read_of(reg::fault(area)),          read_of(reg::rate(area)),      read_of(reg::ratio(area)),
+      read_of(reg::geometry_begun(area)), read_of(reg::feed_begun(area))};
   for (unsigned axis = 0; axis < identification_.axes; ++axis) {
-    result.position[axis] = static_cast<std::int32_t>(bus_->read(reg::position(area, axis)));
+    accesses[kHead + axis] = read_of(reg::position(area, axis));
+  }
+  transfer(accesses.data(), kHead + identification_.axes, "snapshot");
+  Snapshot result;
+  result.time = accesses[0].data | std::uint64_t{accesses[1].data} << 32;
+  result.status = status_from(accesses[2].data);
+  result.faults = accesses[3].data;
+  result.rate = accesses[4].data;
+  result.ratio = accesses[5].data;
+  result.geometry_begun = accesses[6].data;
+  result.feed_begun = accesses[7].data;
+  for (unsigned axis = 0; axis < identification_.axes; ++axis) {
+    result.position[axis] = static_cast<std::int32_t>(accesses[kHead + axis].data);
   }
   return result;
 }
 
-Status Card::status() { return status_of(bus_->read(reg::kStatus)); }
+Status Card::status() {
+  std::array<Access, 2> access{read_of(reg::kStatus)};
+  transfer(access.data(), 1, "status");
+  return status_of(access[0]);
+}
+
+Status Card::status_of(const Access& access) const {
+  check_read(access);
+  Status status = status_from(access.data);
+  status.refused = status.refused || earlier_.has_value();
+  return status;
+}
 
 void Card::wait_until_idle(std::chrono::nanoseconds timeout) {
-  const std::uint64_t limit = clocks(timeout, "timeout");
-  std::uint64_t waited = 0;
+  constexpr const char* kContext = "waiting for the end of motion";
+  Patience patience(*this, kContext, 0);
+  patience.allow({clocks(timeout, "timeout"), 0});
   for (;;) {
     const Status now = status();
-    throw_if_faulted(now, "waiting for the end of motion");
+    throw_if_faulted(now, kContext);
     if (!now.busy) {
-      return;
+      return check_identity();
     }
-    if (waited >= limit) {
-      throw TimeoutError("waiting for the end of motion", waited);
-    }
-    const std::uint64_t pause = std::min(poll_interval(), limit - waited);
-    bus_->wait(pause);
-    waited += pause;
+    serve_requests();
+    patience.pause(now, poll_interval(), true);
   }
 }
 
-std::uint32_t Card::faults() { return bus_->read(reg::kFault); }
+std::uint32_t Card::faults() { return read(reg::kFault); }
 
 void Card::clear_faults() { write(reg::kFault, entry(reg::kFault).mask, "clearing faults"); }
 
-std::optional<Refusal> Card::refusal() {
-  const std::uint32_t value = bus_->read(reg::kRefusal);
-  Refusal result;
-  result.reason = static_cast<std::uint8_t>(bits(value, field::kRefusalReason, field::kRefusalReasonShift));
-  result.command_number = static_cast<std::uint8_t>(bits(value, field::kRefusalCommand, field::kRefusalCommandShift));
-  result.address = bits(value, field::kRefusalAddress, field::kRefusalAddressShift);
-  if (result.reason == 0) {
-    return std::nullopt;
-  }
-  return result;
-}
-
-void Card::clear_refusal() { write(reg::kRefusal, entry(reg::kRefusal).mask, "clearing the refusal"); }
-
 void Card::abort() { write(reg::kControl, field::kControlAbort, "abort"); }
 
-void Card::throw_if_faulted(const Status& status, const std::string& context) {
+void Card::throw_if_faulted(const Status& status, std::string_view context) {
   if (status.faulted) {
-    throw FaultError(faults(), context);
+    throw FaultError(faults(), std::string(context));
   }
 }
 
-std::optional<Refusal> Card::refusal_after_failure() {
-  try {
-    return refusal();
-  } catch (const BusError&) {
-    return std::nullopt;
+void Card::serve_requests() {
+  if (requests_->abort.exchange(false)) {
+    requests_->hold.store(-1);
+    abort();
+    throw StateError("card: aborted, as another thread has asked for");
   }
-}
-
-void Card::throw_refusal(const BusError& error, const std::string& context) {
-  const std::optional<Refusal> latched = refusal_after_failure();
-  if (!latched.has_value()) {
-    throw;
+  const int hold = requests_->hold.exchange(-1);
+  if (hold >= 0) {
+    set_hold(hold != 0);
   }
-  const Refusal& refusal = latched.value();
-  if (refusal.address == error.address()) {
-    throw RefusedError(refusal.reason, refusal.command_number, refusal.address, context);
-  }
-  throw BusError(error.address(), error.direction(),
-                 fmt::format("{}; REFUSAL holds an earlier one, of address 0x{:03X}: {}", context, refusal.address,
-                             describe_reason(refusal.reason)));
 }
 
 std::uint64_t Card::clocks(std::chrono::nanoseconds time, const char* what) const {
@@ -288,12 +318,33 @@ std::uint64_t Card::poll_interval() const {
   return std::max(identification_.clock_hz / kPollsPerSecond, kFewestClocks);
 }
 
-void Card::write(std::uint32_t address, std::uint32_t value, const std::string& context) {
-  try {
-    bus_->write(address, value);
-  } catch (const BusError& error) {
-    throw_refusal(error, context);
+bool Card::pause(std::uint64_t clocks, bool until_idle) {
+  if (!bus_->has_interrupt()) {
+    bus_->sleep(time_of(clocks, identification_.clock_hz));
+    return false;
   }
+  enable_interrupts(until_idle);
+  return bus_->wait_for_interrupt(time_of(clocks, identification_.clock_hz));
+}
+
+void Card::enable_interrupts(bool until_idle) {
+  // IRQ_ENABLE has the bits of STATUS, but its bit for busy means idle.
+  const std::uint32_t wanted = field::kStatusFaulted | field::kStatusRefused | (until_idle ? field::kStatusBusy : 0);
+  if (irq_enable_ != wanted) {
+    write(reg::kIrqEnable, wanted, "interrupts");
+    irq_enable_ = wanted;
+  }
+}
+
+std::uint32_t Card::read(std::uint32_t address) {
+  std::array<Access, 2> access{read_of(address)};
+  transfer(access.data(), 1, "read");
+  return access[0].data;
+}
+
+void Card::write(std::uint32_t address, std::uint32_t value, std::string_view context) {
+  std::array<Access, 2> access{write_of(address, value)};
+  transfer(access.data(), 1, context);
 }
 
 }  // namespace trammel::driver

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <limits>
 #include <string>
+#include <string_view>
+#include <type_traits>
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
@@ -13,262 +15,333 @@ namespace {
 
 namespace map = card_map;
 
-constexpr std::size_t kHeaderHalfwords = 2;  // axis mask and opcode; number and length in words
-constexpr std::size_t kCountHalfwords = 3;
 constexpr unsigned kHalfwordBits = 16;
+constexpr std::size_t kCountBegin = 2;  // halfword; before it axis mask and opcode, number and length in words
+constexpr std::size_t kCountHalfwords = 3;
+constexpr std::size_t kPayloadBegin = kCountBegin + kCountHalfwords;
 // Bits of the field `plane`.
 constexpr unsigned kClockwiseBit = 0;
 constexpr unsigned kAxisXShift = 4;
 constexpr unsigned kAxisYShift = 8;
 constexpr unsigned kAxisMask = 7;
 
-// A command as the layout sees it: one value for each field in order, a field per axis once for each axis of the mask.
-struct Plain {
-  map::Opcode opcode = map::Opcode::End;
-  std::uint8_t mask = 0;
-  std::uint64_t count = 0;
-  std::vector<int128> values;
-};
+// The layouts of the commands that this driver knows, and their fields, from the card map at compile time: a name that
+// is not there does not compile.
+constexpr const map::Command& layout_for(map::Opcode opcode) {
+  return *map::find_command(static_cast<std::uint8_t>(opcode));
+}
+
+constexpr map::Field field_of(const map::Command& command, std::string_view name) {
+  for (std::size_t i = 0; i < command.field_count; ++i) {
+    if (command.fields[i].name == name) return command.fields[i];
+  }
+  throw std::string_view("the layout has no such field");
+}
+
+constexpr const map::Command& kLine = layout_for(map::Opcode::Line);
+constexpr map::Field kIncrement = field_of(kLine, "increment");
+
+constexpr const map::Command& kArc = layout_for(map::Opcode::Arc);
+constexpr map::Field kPathTicks = field_of(kArc, "path_ticks");
+constexpr map::Field kPrescale = field_of(kArc, "prescale");
+constexpr map::Field kPlane = field_of(kArc, "plane");
+constexpr map::Field kQuadrants = field_of(kArc, "quadrants");
+constexpr map::Field kEndX = field_of(kArc, "end_x");
+constexpr map::Field kEndY = field_of(kArc, "end_y");
+constexpr map::Field kDeviation = field_of(kArc, "deviation");
+constexpr map::Field kGradientX = field_of(kArc, "gradient_x");
+constexpr map::Field kGradientY = field_of(kArc, "gradient_y");
+constexpr map::Field kHalfX = field_of(kArc, "half_x");
+constexpr map::Field kHalfY = field_of(kArc, "half_y");
+
+constexpr const map::Command& kFeed = layout_for(map::Opcode::Feed);
+constexpr map::Field kRate = field_of(kFeed, "rate");
+constexpr map::Field kFloor = field_of(kFeed, "floor");
+constexpr map::Field kStopDistance = field_of(kFeed, "stop_distance");
+constexpr map::Field kAcceleration = field_of(kFeed, "acceleration");
+constexpr map::Field kJerk = field_of(kFeed, "jerk");
+
+constexpr const map::Command& kDwell = layout_for(map::Opcode::Dwell);
+constexpr const map::Command& kEnd = layout_for(map::Opcode::End);
 
 [[noreturn]] void refuse(const map::Command& layout, const std::string& what) {
   throw ArgumentError(fmt::format("{}: {}", layout.name, what));
 }
 
-const map::Command& layout_of(map::Opcode opcode) {
-  const map::Command* layout = map::find_command(static_cast<std::uint8_t>(opcode));
-  if (layout == nullptr) {
-    throw ArgumentError(fmt::format("opcode {} has no layout", static_cast<unsigned>(opcode)));
-  }
-  return *layout;
+std::string text_of(std::uint64_t value) { return fmt::format("{}", value); }
+std::string text_of(std::int64_t value) { return fmt::format("{}", value); }
+std::string text_of(const Int128& value) {
+  return fmt::format("0x{:X}{:016X}", static_cast<std::uint64_t>(value.high()), value.low());
 }
 
-bool fits(const map::Field& field, int128 value) {
-  const int128 limit = static_cast<int128>(field.limit);
-  switch (field.kind) {
-    case map::FieldKind::Signed: {
-      const int128 half = int128{1} << (field.bits - 1);
-      return value >= -half && value < half && (limit == 0 || (value >= -limit && value <= limit));
-    }
-    case map::FieldKind::Unsigned:
-      break;
-  }
-  const bool in_mask = field.mask == 0 || (value & ~int128{field.mask}) == 0;
-  return value >= static_cast<int128>(field.minimum) && value < int128{1} << field.bits &&
-         (limit == 0 || value <= limit) && in_mask;
+template <const map::Field& kField, class Value>
+[[noreturn]] void refuse_field(const map::Command& layout, Value value, std::uint64_t count) {
+  refuse(layout, fmt::format("{} = {} is out of its range ({} bits, count {})", kField.name, text_of(value),
+                             kField.bits, count));
 }
 
-// Calls visit(field, value's index) for every value of the payload in the order of the wire.
-template <typename Visit>
-void for_each_value(const map::Command& layout, std::uint8_t mask, Visit visit) {
-  std::size_t index = 0;
-  for (std::size_t i = 0; i < layout.field_count; ++i) {
-    const std::uint32_t axes = map::axes_in(mask);
-    const std::uint32_t times = layout.fields[i].per_axis ? axes - std::min(axes, layout.axes_in_base) : 1;
-    for (std::uint32_t time = 0; time < times; ++time) {
-      visit(layout.fields[i], index++);
+// Sets halfwords of words that were 0 before. One Writer a command.
+class Writer {
+ public:
+  Writer(const map::Command& layout, std::uint8_t mask, std::uint64_t count, std::uint8_t number, std::uint32_t* words)
+      : layout_(layout), words_(words), count_(count), length_(map::words(layout, mask)) {
+    if (count < layout.count_minimum || count > layout.count_maximum) {
+      refuse(layout, fmt::format("count {} is outside {} .. {}", count, layout.count_minimum, layout.count_maximum));
     }
+    std::fill(words, words + length_, 0U);
+    words_[0] = static_cast<unsigned>(layout.opcode) | std::uint32_t{mask} << 8 | length_ << kHalfwordBits |
+                std::uint32_t{number} << 24;
+    put(kCountBegin, kCountHalfwords, count);
   }
-}
 
-void check(const map::Command& layout, const Plain& plain) {
-  if (plain.count < layout.count_minimum || plain.count > layout.count_maximum) {
-    refuse(layout,
-           fmt::format("count {} is outside {} .. {}", plain.count, layout.count_minimum, layout.count_maximum));
-  }
-  const bool names_axes = layout.mask_rule != map::MaskRule::None && layout.mask_rule != map::MaskRule::Flags;
-  if ((plain.mask != 0) != names_axes) {
-    refuse(layout, fmt::format("axis mask 0x{:02X}", plain.mask));
-  }
-  for_each_value(layout, plain.mask, [&](const map::Field& field, std::size_t index) {
-    const int128 value = plain.values[index];
-    if (!fits(field, value) || (field.at_most_count && value > static_cast<int128>(plain.count))) {
-      refuse(layout, fmt::format("{} = {} is out of its range ({} bits, count {})", field.name, value, field.bits,
-                                 plain.count));
+  // A field with 64 bits or fewer; `offset`: halfwords beyond the field's own place.
+  template <const map::Field& kField>
+  void field(std::uint64_t value, std::size_t offset = 0) {
+    static_assert(kField.kind == map::FieldKind::Unsigned && kField.bits <= 64);
+    constexpr std::uint64_t kBits =
+        kField.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (kField.bits % 64)) - 1;
+    constexpr std::uint64_t kMost = kField.limit != 0 ? kField.limit : kBits;
+    const bool bits_good = kField.mask == 0 || (value & ~std::uint64_t{kField.mask}) == 0;
+    if (value < kField.minimum || value > kMost || !bits_good || (kField.at_most_count && value > count_)) {
+      refuse_field<kField>(layout_, value, count_);
     }
-  });
+    put(kPayloadBegin + kField.offset + offset, kField.halfwords, value);
+  }
+  template <const map::Field& kField>
+  void field(std::int64_t value, std::size_t offset = 0) {
+    static_assert(kField.kind == map::FieldKind::Signed && kField.bits <= 64 && !kField.at_most_count);
+    constexpr auto kHalf = static_cast<std::int64_t>(std::uint64_t{1} << (kField.bits - 1) % 63);
+    constexpr std::int64_t kMost = kField.limit != 0   ? static_cast<std::int64_t>(kField.limit)
+                                   : kField.bits == 64 ? std::numeric_limits<std::int64_t>::max()
+                                                       : kHalf - 1;
+    constexpr std::int64_t kLeast = kField.limit != 0 ? -kMost : -kMost - 1;
+    if (value < kLeast || value > kMost) refuse_field<kField>(layout_, value, count_);
+    put(kPayloadBegin + kField.offset + offset, kField.halfwords, static_cast<std::uint64_t>(value));
+  }
+  template <const map::Field& kField>
+  void field(const Int128& value) {
+    static_assert(kField.kind == map::FieldKind::Signed && kField.bits > 64 && kField.bits < 128 && kField.limit == 0);
+    constexpr std::int64_t kHalf = std::int64_t{1} << (kField.bits - 64 - 1);
+    if (value.high() < -kHalf || value.high() >= kHalf) refuse_field<kField>(layout_, value, count_);
+    put(kPayloadBegin + kField.offset, 4, value.low());
+    put(kPayloadBegin + kField.offset + 4, kField.halfwords - 4, static_cast<std::uint64_t>(value.high()));
+  }
+
+  std::size_t length() const { return length_; }
+
+ private:
+  // Lowest halfword first, at the even halfword in a word's lower half.
+  void put(std::size_t at, std::size_t halfwords, std::uint64_t value) {
+    for (std::size_t i = at; i < at + halfwords; ++i, value >>= kHalfwordBits) {
+      words_[i / 2] |= static_cast<std::uint32_t>(value & 0xFFFF) << (i % 2 != 0 ? kHalfwordBits : 0);
+    }
+  }
+
+  const map::Command& layout_;
+  std::uint32_t* words_;
+  std::uint64_t count_;
+  std::uint32_t length_;
+};
+
+std::size_t write(const LineCommand& line, std::uint8_t number, std::uint32_t* words) {
+  if (line.mask == 0) refuse(kLine, "axis mask 0x00");
+  Writer to(kLine, line.mask, line.ticks, number, words);
+  std::size_t offset = 0;
+  for (unsigned axis = 0; axis < map::kMaxAxes; ++axis) {
+    if ((line.mask >> axis & 1U) != 0) {
+      to.field<kIncrement>(line.increment[axis], offset);
+      offset += kIncrement.halfwords;
+    } else if (line.increment[axis] != 0) {
+      refuse(kLine, fmt::format("increment {} of axis {}, which is not in the mask 0x{:02X}", line.increment[axis],
+                                axis, line.mask));
+    }
+  }
+  return to.length();
 }
 
 std::uint8_t plane_mask(unsigned axis_x, unsigned axis_y) {
   return static_cast<std::uint8_t>(1U << axis_x | 1U << axis_y);
 }
 
-Plain plain_of(const LineCommand& line) {
-  Plain plain{map::Opcode::Line, line.mask, line.ticks, {}};
-  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
-    if ((line.mask >> axis & 1U) != 0) {
-      plain.values.push_back(line.increment[axis]);
-    } else if (line.increment[axis] != 0) {
-      throw ArgumentError(fmt::format("LINE: increment {} of axis {}, which is not in the mask 0x{:02X}",
-                                      line.increment[axis], axis, line.mask));
-    }
-  }
-  return plain;
-}
-
-Plain plain_of(const ArcCommand& arc) {
+std::size_t write(const ArcCommand& arc, std::uint8_t number, std::uint32_t* words) {
   if (arc.axis_x > kAxisMask || arc.axis_y > kAxisMask || arc.axis_x == arc.axis_y) {
-    throw ArgumentError(fmt::format("ARC: plane of axes {} and {}", arc.axis_x, arc.axis_y));
+    refuse(kArc, fmt::format("plane of axes {} and {}", arc.axis_x, arc.axis_y));
   }
-  const unsigned plane = (arc.clockwise ? 1U : 0U) << kClockwiseBit | unsigned{arc.axis_x} << kAxisXShift |
-                         unsigned{arc.axis_y} << kAxisYShift;
-  return {map::Opcode::Arc,
-          plane_mask(arc.axis_x, arc.axis_y),
-          arc.ticks,
-          {static_cast<int128>(arc.path_ticks), static_cast<int128>(arc.prescale), plane, arc.quadrants, arc.end_x,
-           arc.end_y, arc.deviation, arc.gradient_x, arc.gradient_y, static_cast<int128>(arc.half_x),
-           static_cast<int128>(arc.half_y)}};
+  Writer to(kArc, plane_mask(arc.axis_x, arc.axis_y), arc.ticks, number, words);
+  to.field<kPathTicks>(arc.path_ticks);
+  to.field<kPrescale>(arc.prescale);
+  to.field<kPlane>(std::uint64_t{(arc.clockwise ? 1U : 0U) << kClockwiseBit | unsigned{arc.axis_x} << kAxisXShift |
+                                 unsigned{arc.axis_y} << kAxisYShift});
+  to.field<kQuadrants>(std::uint64_t{arc.quadrants});
+  to.field<kEndX>(std::int64_t{arc.end_x});
+  to.field<kEndY>(std::int64_t{arc.end_y});
+  to.field<kDeviation>(arc.deviation);
+  to.field<kGradientX>(arc.gradient_x);
+  to.field<kGradientY>(arc.gradient_y);
+  to.field<kHalfX>(arc.half_x);
+  to.field<kHalfY>(arc.half_y);
+  return to.length();
 }
 
-Plain plain_of(const FeedCommand& feed) {
-  return {map::Opcode::Feed,
-          0,
-          feed.ticks,
-          {static_cast<int128>(feed.rate), feed.floor, feed.stop_distance, feed.acceleration, feed.jerk}};
+std::size_t write(const FeedCommand& feed, std::uint8_t number, std::uint32_t* words) {
+  Writer to(kFeed, 0, feed.ticks, number, words);
+  to.field<kRate>(feed.rate);
+  to.field<kFloor>(std::uint64_t{feed.floor});
+  to.field<kStopDistance>(std::uint64_t{feed.stop_distance});
+  to.field<kAcceleration>(feed.acceleration);
+  to.field<kJerk>(feed.jerk);
+  return to.length();
 }
 
-Plain plain_of(const DwellCommand& dwell) { return {map::Opcode::Dwell, 0, dwell.clocks, {}}; }
+std::size_t write(const DwellCommand& dwell, std::uint8_t number, std::uint32_t* words) {
+  return Writer(kDwell, 0, dwell.clocks, number, words).length();
+}
 
-Plain plain_of(const EndCommand&) { return {map::Opcode::End, 0, 0, {}}; }
+std::size_t write(const EndCommand&, std::uint8_t number, std::uint32_t* words) {
+  return Writer(kEnd, 0, 0, number, words).length();
+}
 
-Command line_from(const Plain& plain) {
-  LineCommand line;
-  line.ticks = plain.count;
-  line.mask = plain.mask;
-  std::size_t next = 0;
-  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
-    if ((plain.mask >> axis & 1U) != 0) {
-      line.increment[axis] = static_cast<std::int64_t>(plain.values[next++]);
+// What a command's words say, taken as they are.
+class Reader {
+ public:
+  explicit Reader(const std::uint32_t* words) : words_(words) {}
+
+  std::uint64_t count() const { return get(kCountBegin, kCountHalfwords); }
+  // Sign-extended from its halfwords.
+  template <const map::Field& kField>
+  std::int64_t signed_field(std::size_t offset = 0) const {
+    const unsigned unused = 64 - kHalfwordBits * static_cast<unsigned>(kField.halfwords);
+    return static_cast<std::int64_t>(unsigned_field<kField>(offset) << unused) / (std::int64_t{1} << unused);
+  }
+  template <const map::Field& kField>
+  std::uint64_t unsigned_field(std::size_t offset = 0) const {
+    static_assert(kField.halfwords <= 4);
+    return get(kPayloadBegin + kField.offset + offset, kField.halfwords);
+  }
+  template <const map::Field& kField>
+  Int128 wide_field() const {
+    static_assert(kField.halfwords == 5);
+    const auto high = static_cast<std::int16_t>(get(kPayloadBegin + kField.offset + 4, 1));
+    const std::uint64_t low = get(kPayloadBegin + kField.offset, 4);
+    return Int128(Uint128(static_cast<std::uint64_t>(std::int64_t{high}), low));
+  }
+
+ private:
+  std::uint64_t get(std::size_t at, std::size_t halfwords) const {
+    std::uint64_t value = 0;
+    for (std::size_t i = at + halfwords; i-- > at;) {
+      value = value << kHalfwordBits | (words_[i / 2] >> (i % 2 != 0 ? kHalfwordBits : 0) & 0xFFFF);
     }
+    return value;
+  }
+
+  const std::uint32_t* words_;
+};
+
+Command line_from(const Reader& from, std::uint8_t mask) {
+  LineCommand line;
+  line.ticks = from.count();
+  line.mask = mask;
+  std::size_t offset = 0;
+  for (unsigned axis = 0; axis < map::kMaxAxes; ++axis) {
+    if ((mask >> axis & 1U) == 0) continue;
+    line.increment[axis] = from.signed_field<kIncrement>(offset);
+    offset += kIncrement.halfwords;
   }
   return line;
 }
 
-Command arc_from(const Plain& plain) {
-  const auto& value = plain.values;
-  const auto plane = static_cast<unsigned>(value[2]);
+Command arc_from(const Reader& from) {
+  const std::uint64_t plane = from.unsigned_field<kPlane>();
   ArcCommand arc;
-  arc.ticks = plain.count;
-  arc.path_ticks = static_cast<std::uint64_t>(value[0]);
-  arc.prescale = static_cast<std::uint64_t>(value[1]);
+  arc.ticks = from.count();
+  arc.path_ticks = from.unsigned_field<kPathTicks>();
+  arc.prescale = from.unsigned_field<kPrescale>();
   arc.clockwise = (plane >> kClockwiseBit & 1U) != 0;
   arc.axis_x = static_cast<std::uint8_t>(plane >> kAxisXShift & kAxisMask);
   arc.axis_y = static_cast<std::uint8_t>(plane >> kAxisYShift & kAxisMask);
-  arc.quadrants = static_cast<std::uint16_t>(value[3]);
-  arc.end_x = static_cast<std::int32_t>(value[4]);
-  arc.end_y = static_cast<std::int32_t>(value[5]);
-  arc.deviation = value[6];
-  arc.gradient_x = value[7];
-  arc.gradient_y = value[8];
-  arc.half_x = static_cast<std::uint64_t>(value[9]);
-  arc.half_y = static_cast<std::uint64_t>(value[10]);
-  if (arc.axis_x == arc.axis_y || plain.mask != plane_mask(arc.axis_x, arc.axis_y)) {
-    throw ArgumentError(
-        fmt::format("ARC: plane of axes {} and {} under mask 0x{:02X}", arc.axis_x, arc.axis_y, plain.mask));
-  }
+  arc.quadrants = static_cast<std::uint16_t>(from.unsigned_field<kQuadrants>());
+  arc.end_x = static_cast<std::int32_t>(from.signed_field<kEndX>());
+  arc.end_y = static_cast<std::int32_t>(from.signed_field<kEndY>());
+  arc.deviation = from.wide_field<kDeviation>();
+  arc.gradient_x = from.wide_field<kGradientX>();
+  arc.gradient_y = from.wide_field<kGradientY>();
+  arc.half_x = from.unsigned_field<kHalfX>();
+  arc.half_y = from.unsigned_field<kHalfY>();
   return arc;
 }
 
-Command feed_from(const Plain& plain) {
-  const auto& value = plain.values;
+Command feed_from(const Reader& from) {
   FeedCommand feed;
-  feed.ticks = plain.count;
-  feed.rate = static_cast<std::uint64_t>(value[0]);
-  feed.floor = static_cast<std::uint32_t>(value[1]);
-  feed.stop_distance = static_cast<std::uint32_t>(value[2]);
-  feed.acceleration = static_cast<std::int64_t>(value[3]);
-  feed.jerk = static_cast<std::int64_t>(value[4]);
+  feed.ticks = from.count();
+  feed.rate = from.unsigned_field<kRate>();
+  feed.floor = static_cast<std::uint32_t>(from.unsigned_field<kFloor>());
+  feed.stop_distance = static_cast<std::uint32_t>(from.unsigned_field<kStopDistance>());
+  feed.acceleration = from.signed_field<kAcceleration>();
+  feed.jerk = from.signed_field<kJerk>();
   return feed;
 }
 
-Command command_from(const Plain& plain) {
-  switch (plain.opcode) {
+Command command_from(map::Opcode opcode, std::uint8_t mask, const Reader& from) {
+  switch (opcode) {
     case map::Opcode::Line:
-      return line_from(plain);
+      return line_from(from, mask);
     case map::Opcode::Arc:
-      return arc_from(plain);
+      return arc_from(from);
     case map::Opcode::Feed:
-      return feed_from(plain);
+      return feed_from(from);
     case map::Opcode::Dwell:
-      return DwellCommand{plain.count};
+      return DwellCommand{from.count()};
     case map::Opcode::End:
       return EndCommand{};
     default:
       break;
   }
-  throw ArgumentError(fmt::format("opcode {}: this driver has no such command", static_cast<unsigned>(plain.opcode)));
-}
-
-// Appends the low `halfwords` halfwords of the value, lowest first. Conversion of a negative value is mod 2^128.
-void put(std::vector<std::uint16_t>& out, int128 value, std::size_t halfwords) {
-  for (std::size_t i = 0; i < halfwords; ++i) {
-    out.push_back(static_cast<std::uint16_t>(value >> (kHalfwordBits * i)));
-  }
-}
-
-int128 get(const std::uint16_t* in, std::size_t halfwords, bool is_signed) {
-  int128 value = 0;
-  for (std::size_t i = halfwords; i > 0; --i) {
-    value = value * (int128{1} << kHalfwordBits) + in[i - 1];
-  }
-  const int128 sign = int128{1} << (kHalfwordBits * halfwords - 1);
-  return is_signed && value >= sign ? value - 2 * sign : value;
-}
-
-std::vector<std::uint16_t> halfwords_of(const std::uint32_t* words, std::size_t count) {
-  std::vector<std::uint16_t> halfwords;
-  halfwords.reserve(2 * count);
-  for (std::size_t i = 0; i < count; ++i) {
-    put(halfwords, words[i], 2);
-  }
-  return halfwords;
+  throw ArgumentError(fmt::format("opcode {}: this driver has no such command", static_cast<unsigned>(opcode)));
 }
 
 }  // namespace
 
+std::size_t encode(const Command& command, std::uint8_t number, std::uint32_t* words) {
+  return std::visit([&](const auto& kind) { return write(kind, number, words); }, command);
+}
+
 void encode(const Command& command, std::uint8_t number, std::vector<std::uint32_t>& words) {
-  const Plain plain = std::visit([](const auto& value) { return plain_of(value); }, command);
-  const map::Command& layout = layout_of(plain.opcode);
-  check(layout, plain);
-  const std::uint32_t length = map::words(layout, plain.mask);
-  std::vector<std::uint16_t> halfwords;
-  halfwords.reserve(2 * std::size_t{length});
-  put(halfwords, static_cast<unsigned>(layout.opcode) | unsigned{plain.mask} << 8, 1);
-  put(halfwords, length | unsigned{number} << 8, 1);
-  put(halfwords, static_cast<int128>(plain.count), kCountHalfwords);
-  for_each_value(layout, plain.mask, [&](const map::Field& field, std::size_t index) {
-    put(halfwords, plain.values[index], field.halfwords);
-  });
-  halfwords.resize(2 * std::size_t{length});
-  for (std::size_t i = 0; i < halfwords.size(); i += 2) {
-    words.push_back(halfwords[i] | std::uint32_t{halfwords[i + 1]} << kHalfwordBits);
-  }
+  std::array<std::uint32_t, kMaxCommandWords> encoded{};
+  const std::size_t count = encode(command, number, encoded.data());
+  words.insert(words.end(), encoded.data(), encoded.data() + count);
+}
+
+const card_map::Command& layout_of(const Command& command) {
+  constexpr std::array<const map::Command*, 5> kLayouts{&kLine, &kArc, &kFeed, &kDwell, &kEnd};
+  static_assert(std::variant_size_v<Command> == kLayouts.size() &&
+                std::is_same_v<std::variant_alternative_t<0, Command>, LineCommand> &&
+                std::is_same_v<std::variant_alternative_t<1, Command>, ArcCommand> &&
+                std::is_same_v<std::variant_alternative_t<2, Command>, FeedCommand> &&
+                std::is_same_v<std::variant_alternative_t<3, Command>, DwellCommand> &&
+                std::is_same_v<std::variant_alternative_t<4, Command>, EndCommand>);
+  return *kLayouts[command.index()];
 }
 
 DecodedCommand decode(const std::uint32_t* words, std::size_t count) {
-  if (count == 0) {
-    throw ArgumentError("command: no words");
+  if (count == 0) throw ArgumentError("command: no words");
+  const auto opcode = static_cast<std::uint8_t>(words[0]);
+  const auto mask = static_cast<std::uint8_t>(words[0] >> 8);
+  const auto number = static_cast<std::uint8_t>(words[0] >> 24);
+  const map::Command* layout = map::find_command(opcode);
+  if (layout == nullptr) throw ArgumentError(fmt::format("opcode {} has no layout", opcode));
+  const std::size_t length = map::words(*layout, mask);
+  const std::uint32_t given = words[0] >> kHalfwordBits & 0xFF;
+  if (length != count || length != given) {
+    refuse(*layout, fmt::format("length {} words, {} given, where {} belong", given, count, length));
   }
-  const std::vector<std::uint16_t> halfwords = halfwords_of(words, count);
-  Plain plain;
-  plain.opcode = static_cast<map::Opcode>(halfwords[0] & 0xFF);
-  plain.mask = static_cast<std::uint8_t>(halfwords[0] >> 8);
-  const map::Command& layout = layout_of(plain.opcode);
-  const std::size_t length = map::words(layout, plain.mask);
-  if (length != count || length != (halfwords[1] & 0xFFU)) {
-    refuse(layout, fmt::format("length {} words, {} given, where {} belong", halfwords[1] & 0xFFU, count, length));
+  DecodedCommand decoded{command_from(layout->opcode, mask, Reader(words)), number};
+  // Whatever encode() would not have made is refused: ranges by itself, mask, padding and sign bits by the comparison.
+  std::array<std::uint32_t, kMaxCommandWords> again{};
+  if (encode(decoded.command, number, again.data()) != count || !std::equal(words, words + count, again.begin())) {
+    refuse(*layout, "its mask, its padding or the upper bits of a field are not as its values ask for");
   }
-  const std::uint16_t* next = &halfwords[kHeaderHalfwords];
-  plain.count = static_cast<std::uint64_t>(get(next, kCountHalfwords, false));
-  next += kCountHalfwords;
-  for_each_value(layout, plain.mask, [&](const map::Field& field, std::size_t) {
-    plain.values.push_back(get(next, field.halfwords, field.kind == map::FieldKind::Signed));
-    next += field.halfwords;
-  });
-  check(layout, plain);
-  if (next != halfwords.data() + halfwords.size() && *next != 0) {
-    refuse(layout, fmt::format("padding 0x{:04X} is not 0", *next));
-  }
-  return {command_from(plain), static_cast<std::uint8_t>(halfwords[1] >> 8)};
+  return decoded;
 }
 
 }  // namespace trammel::driver

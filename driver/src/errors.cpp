@@ -19,22 +19,19 @@ std::string register_name(std::uint32_t address) {
   return fmt::format("{}{} (0x{:03X})", slot.entry->name, index, address);
 }
 
-std::string bus_message(std::uint32_t address, Direction direction, const std::string& detail) {
-  return fmt::format("bus: {} {} failed{}{}", direction == Direction::kRead ? "read of" : "write to",
-                     register_name(address), detail.empty() ? "" : ": ", detail);
+std::string refusal_message(std::uint8_t reason, std::uint8_t command_number, std::uint32_t address,
+                            const std::string& context) {
+  const std::string why = reason == 0 ? "it did not say why." : describe_reason(reason);
+  const std::string number =
+      address == card_map::reg::kStream ? fmt::format(", command number {}", command_number) : std::string();
+  return fmt::format("{}: the card refused it: {} Access to {}{}", context, why, register_name(address), number);
 }
 
 }  // namespace
 
-BusError::BusError(std::uint32_t address, Direction direction) : BusError(address, direction, "") {}
-
-BusError::BusError(std::uint32_t address, Direction direction, const std::string& detail)
-    : Error(bus_message(address, direction, detail)), address_(address), direction_(direction) {}
-
 RefusedError::RefusedError(std::uint8_t reason, std::uint8_t command_number, std::uint32_t address,
                            const std::string& context)
-    : Error(fmt::format("{}: the card refused it: {} Access to {}, command number {}", context, describe_reason(reason),
-                        register_name(address), command_number)),
+    : Error(refusal_message(reason, command_number, address, context)),
       reason_(reason),
       command_number_(command_number),
       address_(address) {}

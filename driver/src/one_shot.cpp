@@ -4,18 +4,18 @@
 
 #include <algorithm>
 
-#include "clocks.hpp"
+#include "patience.hpp"
 #include "trammel/card_map.hpp"
-#include "wide_arithmetic.hpp"
+#include "trammel/driver/increment.hpp"
+#include "trammel/driver/stream.hpp"
+#include "trammel/driver/wide.hpp"
 
 namespace trammel::driver {
 namespace {
 
-using wide::uint128;
-
-constexpr unsigned kFractionBits = card_map::constant::kFractionBits;
-constexpr std::uint64_t kMaxLength = (std::uint64_t{1} << 40) - 1;
-constexpr std::uint64_t kMaxCount = 0xFFFFFFFF;
+constexpr std::uint64_t mask_of(std::uint32_t address) { return card_map::find_register(address).entry->mask; }
+constexpr std::uint64_t kMaxLength = mask_of(card_map::reg::kLengthHi) << 32 | mask_of(card_map::reg::kLengthLo);
+constexpr std::uint64_t kMaxCount = mask_of(card_map::reg::count(0));
 constexpr std::uint64_t kMaxClocks = (std::uint64_t{1} << 62) - 1;
 constexpr std::int64_t kMaxDisplacement = std::int64_t{1} << 62;
 
@@ -48,21 +48,21 @@ void check_displacement(const CardTiming& card, const Displacement& displacement
 }
 
 // The fewest clocks in which the axis makes its pulses. Bound: 2^62 pulses * 2^32 Hz, 94 bits.
-uint128 fewest_clocks(const CardTiming& card, std::size_t axis, std::uint64_t pulses, std::uint64_t max_velocity) {
-  const uint128 of_card = uint128{pulses} * std::max<std::uint32_t>(card.pulse_period[axis], 1);
+Uint128 fewest_clocks(const CardTiming& card, std::size_t axis, std::uint64_t pulses, std::uint64_t max_velocity) {
+  const Uint128 of_card = Uint128::product(pulses, std::max<std::uint32_t>(card.pulse_period[axis], 1));
   if (max_velocity == 0) {
     return of_card;
   }
-  return std::max(of_card, wide::ceil_div(uint128{pulses} * card.clock_hz, max_velocity));
+  return std::max(of_card, ceil_div(Uint128::product(pulses, card.clock_hz), max_velocity));
 }
 
 // N for the whole line: `clocks`, or more where a limit asks for it and the policy allows it.
-uint128 limited_clocks(const CardTiming& card, const Displacement& displacement, std::uint64_t clocks,
+Uint128 limited_clocks(const CardTiming& card, const Displacement& displacement, std::uint64_t clocks,
                        const LineLimits& limits) {
-  uint128 result = clocks;
+  Uint128 result = clocks;
   for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
     const std::uint64_t pulses = magnitude(displacement[axis]);
-    const uint128 needed = fewest_clocks(card, axis, pulses, limits.max_velocity[axis]);
+    const Uint128 needed = fewest_clocks(card, axis, pulses, limits.max_velocity[axis]);
     if (needed > clocks && limits.policy == LimitPolicy::kRefuse) {
       throw ArgumentError(fmt::format(
           "line: axis {}: {} pulses in {} clocks at {} Hz are too fast for its limit ({} pulses/s, 0: none) or for its "
@@ -76,32 +76,106 @@ uint128 limited_clocks(const CardTiming& card, const Displacement& displacement,
 
 // round(pulses * index / parts): pulses up to the start of part `index`.
 std::uint64_t pulses_before(std::uint64_t pulses, std::size_t index, std::size_t parts) {
-  return static_cast<std::uint64_t>((uint128{pulses} * index + parts / 2) / parts);
+  return ((Uint128::product(pulses, index) + parts / 2) / parts).low();
+}
+
+// 256 bits.
+struct Product {
+  Uint128 high;
+  Uint128 low;
+};
+
+Product multiply(Uint128 a, Uint128 b) {
+  const Uint128 low_low = Uint128::product(a.low(), b.low());
+  const Uint128 low_high = Uint128::product(a.low(), b.high());
+  const Uint128 high_low = Uint128::product(a.high(), b.low());
+  const Uint128 middle = Uint128(low_low.high()) + Uint128(low_high.low()) + Uint128(high_low.low());
+  return {Uint128::product(a.high(), b.high()) + Uint128(low_high.high()) + Uint128(high_low.high()) +
+              Uint128(middle.high()),
+          Uint128(middle.low(), low_low.low())};
+}
+
+bool less(const Product& a, const Product& b) { return a.high != b.high ? a.high < b.high : a.low < b.low; }
+
+// The smallest R with R^2 >= square * factor^2. Bound: the root of square is below 2^64 and so is factor, so R <=
+// 2^128.
+Uint128 ceil_root(Uint128 square, std::uint64_t factor) {
+  const Product target = multiply(square, Uint128::product(factor, factor));
+  Uint128 below;  // below^2 < target, once anything is set
+  for (unsigned bit = 128; bit-- > 0;) {
+    const Uint128 candidate = below + (Uint128(1) << bit);
+    if (less(multiply(candidate, candidate), target)) {
+      below = candidate;
+    }
+  }
+  return target.high == Uint128(0) && target.low == Uint128(0) ? Uint128(0) : below + Uint128(1);
 }
 
 std::uint64_t speed_clocks(const CardTiming& card, const Displacement& displacement, PathSpeed speed) {
   if (speed.pulses == 0 || speed.seconds == 0) {
     throw ArgumentError(fmt::format("line: a speed of {} pulses in {} s", speed.pulses, speed.seconds));
   }
-  uint128 square = 0;  // of the path's length; 8 * 2^124 at most
+  Uint128 square;  // of the path's length; 8 * 2^124 at most
   for (const std::int64_t pulses : displacement) {
-    square += uint128{magnitude(pulses)} * magnitude(pulses);
+    square = square + Uint128::product(magnitude(pulses), magnitude(pulses));
   }
   // The fewest whole N with N * speed >= length * f: the root may be rounded up first, as N * pulses is whole.
-  const uint128 scaled = wide::ceil_root(square, std::uint64_t{card.clock_hz} * speed.seconds);
-  const uint128 clocks = wide::ceil_div(scaled, speed.pulses);
-  return static_cast<std::uint64_t>(std::min<uint128>(clocks, kMaxClocks + 1));  // too long is refused later
+  const Uint128 scaled = ceil_root(square, std::uint64_t{card.clock_hz} * speed.seconds);
+  const Uint128 clocks = ceil_div(scaled, speed.pulses);
+  return std::min<Uint128>(clocks, kMaxClocks + 1).low();  // too long is refused later
 }
 
-void require_direct_mode(const Card& card) {
-  const std::uint32_t engines = card.identification().engines;
-  if (!card_map::has_engine(engines, card_map::engine::kDirectMode)) {
-    throw ArgumentError(
-        fmt::format("line: the card has no direct mode (engines 0x{:X}); stream it as LINE and FEED", engines));
+bool has_direct_mode(const Card& card) {
+  return card_map::has_engine(card.identification().engines, card_map::engine::kDirectMode);
+}
+
+// One write for each register of the card's axes, LENGTH and START: the slots run downwards, so that those of the
+// card's axes lie just before LENGTH and START.
+void start_direct(Card& card, const OneShotPart& part) {
+  const auto words = part.words();
+  const unsigned axes = card.identification().axes;
+  const std::size_t absent = words.size() - one_shot_words(axes);
+  std::array<Access, kOneShotWords + 1> accesses;
+  for (std::size_t i = absent; i < words.size(); ++i) {
+    const auto offset = static_cast<std::uint32_t>(4 * (i - absent));
+    accesses[i - absent] = write_of(card_map::reg::frequency_lo(axes - 1) + offset, words[i]);
+  }
+  card.transfer(accesses.data(), words.size() - absent, "line");
+}
+
+// Without direct mode: the same increments on feed ticks, one a clock but for 2^-64 of a clock.
+void start_streamed(Card& card, const OneShotPart& part) {
+  Stream stream(card);
+  FeedCommand feed;
+  feed.ticks = part.length;
+  feed.rate = ~std::uint64_t{0};
+  feed.floor = ~std::uint32_t{0};
+  LineCommand line;
+  line.ticks = part.length;
+  line.mask = part.mask;
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
+    const auto increment = static_cast<std::int64_t>(part.frequency[axis]);
+    line.increment[axis] = (part.negative >> axis & 1U) != 0 ? -increment : increment;
+  }
+  stream.put(feed);
+  stream.put(line);
+  stream.flush();
+}
+
+// The card is idle: it is the same one still, and was not reset since the start.
+void check_made(Card& card, const OneShotPart& part) {
+  card.check_identity();
+  if (!has_direct_mode(card)) {
+    return;
+  }
+  std::array<Access, 3> length{read_of(card_map::reg::kLengthLo), read_of(card_map::reg::kLengthHi)};
+  card.transfer(length.data(), 2, "line");
+  if ((length[0].data | std::uint64_t{length[1].data} << 32) != part.length) {
+    throw StateError("line: the card does not know it any more: it was reset, or is used by another program");
   }
 }
 
-const OneShotPart require_single_part(const OneShotPlan& plan) {
+OneShotPart require_single_part(const OneShotPlan& plan) {
   if (plan.size() != 1) {
     throw ArgumentError(fmt::format("line: {} clocks are too long for one start; run_line takes its {} parts",
                                     plan.clocks(), plan.size()));
@@ -110,10 +184,6 @@ const OneShotPart require_single_part(const OneShotPlan& plan) {
 }
 
 }  // namespace
-
-std::uint64_t one_shot_frequency(std::uint64_t pulses, std::uint64_t clocks) {
-  return static_cast<std::uint64_t>(((uint128{pulses} << kFractionBits) + clocks / 2) / clocks);
-}
 
 std::array<std::uint32_t, kOneShotWords> OneShotPart::words() const {
   namespace reg = card_map::reg;
@@ -140,7 +210,7 @@ OneShotPart OneShotPlan::part(std::size_t index) const {
     const std::uint64_t pulses = magnitude(displacement_[axis]);
     const std::uint64_t count = pulses_before(pulses, index + 1, parts_) - pulses_before(pulses, index, parts_);
     part.count[axis] = static_cast<std::uint32_t>(count);
-    part.frequency[axis] = one_shot_frequency(count, part_clocks_);
+    part.frequency[axis] = rounded_share(count, part_clocks_);
     // An axis of the line without a pulse in this part takes part all the same: no part has an empty mask.
     part.mask = static_cast<std::uint8_t>(part.mask | (pulses != 0 ? 1U : 0U) << axis);
     part.negative = static_cast<std::uint8_t>(part.negative | (displacement_[axis] < 0 ? 1U : 0U) << axis);
@@ -154,16 +224,16 @@ OneShotPlan plan_line_clocks(const CardTiming& card, const Displacement& displac
   if (clocks == 0) {
     throw ArgumentError("line: a duration of 0 clocks");
   }
-  const uint128 total = limited_clocks(card, displacement, clocks, limits);
+  const Uint128 total = limited_clocks(card, displacement, clocks, limits);
   if (total > kMaxClocks) {
     throw ArgumentError(fmt::format("line: it would take 2^62 clocks at {} Hz or more", card.clock_hz));
   }
   // A part has ceil(|p| / parts) pulses at most and a whole share of the clocks, so never more pulses than clocks.
-  const uint128 parts = std::max(wide::ceil_div(total, kMaxLength), wide::ceil_div(longest(displacement), kMaxCount));
+  const Uint128 parts = std::max(ceil_div(total, kMaxLength), ceil_div(longest(displacement), kMaxCount));
   OneShotPlan plan;
   plan.displacement_ = displacement;
-  plan.parts_ = static_cast<std::size_t>(parts);
-  plan.part_clocks_ = static_cast<std::uint64_t>(wide::ceil_div(total, parts));
+  plan.parts_ = static_cast<std::size_t>(parts.low());
+  plan.part_clocks_ = ceil_div(total, parts).low();
   plan.slowed_ = total > clocks;
   return plan;
 }
@@ -184,42 +254,48 @@ OneShotPlan plan_line(const CardTiming& card, const Displacement& displacement, 
 }
 
 void start_line(Card& card, const OneShotPart& part) {
-  namespace reg = card_map::reg;
-  require_direct_mode(card);
-  const auto words = part.words();
-  // The slots run downwards, so that those of the card's axes lie just before LENGTH and START.
-  const unsigned axes = card.identification().axes;
-  const std::size_t absent = words.size() - one_shot_words(axes);
-  try {
-    card.bus().write_block(reg::frequency_lo(axes - 1), &words[absent], words.size() - absent,
-                           Addressing::kIncrementing);
-  } catch (const BusError& error) {
-    card.throw_refusal(error, "line");
+  if (has_direct_mode(card)) {
+    start_direct(card, part);
+  } else {
+    start_streamed(card, part);
   }
 }
 
 OneShotPlan start_line(Card& card, const Displacement& displacement, std::chrono::nanoseconds duration,
                        const LineLimits& limits) {
-  require_direct_mode(card);
   const OneShotPlan plan = plan_line(card.timing(), displacement, duration, limits);
   start_line(card, require_single_part(plan));
   return plan;
 }
 
 OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed speed, const LineLimits& limits) {
-  require_direct_mode(card);
   const OneShotPlan plan = plan_line(card.timing(), displacement, speed, limits);
   start_line(card, require_single_part(plan));
   return plan;
 }
 
 void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds patience) {
-  card.clocks(patience, "line: patience");
+  constexpr const char* kContext = "line: waiting for its end";
+  constexpr std::uint32_t kLooksPerSecond = 50;
+  const std::uint64_t margin = card.clocks(patience, "line: patience");
+  const std::uint64_t look = std::max<std::uint64_t>(card.timing().clock_hz / kLooksPerSecond, card.poll_interval());
   for (std::size_t index = 0; index < plan.size(); ++index) {
     const OneShotPart part = plan.part(index);
     start_line(card, part);
-    card.bus().wait(part.length);
-    card.wait_until_idle(patience);
+    Patience waiting(card, kContext, margin);
+    waiting.allow({part.length, 0});
+    // The first pause is about as long as the line, the last ones are short.
+    Status status;
+    std::uint64_t left = part.length;
+    do {
+      const std::uint64_t pause = std::clamp(left, card.poll_interval(), look);
+      waiting.pause(status, pause, true);
+      left -= std::min(left, pause);
+      status = card.status();
+      card.throw_if_faulted(status, kContext);
+      card.serve_requests();
+    } while (status.busy);
+    check_made(card, part);
   }
 }
 

@@ -2,17 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
+#include "patience.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/feed_time.hpp"
 
 namespace trammel::driver {
 namespace {
 
 namespace map = card_map;
 namespace reg = card_map::reg;
+
+// Words that are written at once at most.
+constexpr std::size_t kKeptWords = 512;
+static_assert(kKeptWords >= kMaxCommandWords);
+constexpr std::size_t kShortestCommandWords = 3;
+constexpr std::size_t kShortestQueued = 4;  // halfwords of a barrier
+// Commands that have left the queue, but may not have begun yet, or not ended.
+constexpr std::size_t kBeyondQueue = 4;
 
 void require_engine(const Identification& card, std::uint32_t engine, std::string_view command) {
   if (!map::has_engine(card.engines, engine)) {
@@ -21,23 +33,68 @@ void require_engine(const Identification& card, std::uint32_t engine, std::strin
   }
 }
 
-// What of a command depends on the card; its layout is checked by encode().
-void check_for_card(const Identification& card, const Command& command, const map::Command& layout) {
-  require_engine(card, layout.engine, layout.name);
-  if (const auto* feed = std::get_if<FeedCommand>(&command); feed != nullptr && feed->jerk != 0) {
-    require_engine(card, map::engine::kJerk, layout.name);
+}  // namespace
+
+// One wait for the card.
+class Stream::Wait {
+ public:
+  Wait(Stream& stream, const char* context, bool until_idle)
+      : stream_(stream), patience_(*stream.card_, context, stream.patience_clocks_), until_idle_(until_idle) {
+    allow();
+  }
+
+  // What was planned counts from now on.
+  void allow() {
+    const Duration planned = stream_.planned();
+    patience_.allow({planned.gated, planned.real});
+  }
+  void pause(const Status& status) { patience_.pause(status, stream_.poll_clocks_, until_idle_); }
+
+  // Throws StateError when the card has been idle at two looks in a row although it has not begun all.
+  void idle(bool without_reason) {
+    idle_looks_ = without_reason ? idle_looks_ + 1 : 0;
+    if (idle_looks_ < 2) return;
+    stream_.card_->check_identity();
+    throw StateError(
+        fmt::format("stream: the card is idle, but of {} geometry and {} feed commands it has begun {} and "
+                    "{}: it was reset, or aborted by somebody else",
+                    stream_.geometry_.sent, stream_.feed_.sent, stream_.geometry_.begun, stream_.feed_.begun));
+  }
+
+ private:
+  Stream& stream_;
+  Patience patience_;
+  bool until_idle_;
+  int idle_looks_ = 0;
+};
+
+// After a fault the card itself refuses what comes; after a time-out it may still get there.
+template <class Call>
+auto Stream::closing_at_errors(Call call) {
+  try {
+    return call();
+  } catch (const FaultError&) {
+    used_ = kept_ = 0;
+    throw;
+  } catch (const TimeoutError&) {
+    throw;
+  } catch (const Error&) {
+    broken_ = true;
+    used_ = kept_ = 0;
+    throw;
   }
 }
-
-}  // namespace
 
 Stream::Stream(Card& card, StreamOptions options)
     : card_(&card),
       options_(std::move(options)),
-      stall_clocks_(card.clocks(options_.stall_timeout, "stream: stall timeout")),
-      poll_clocks_(options_.poll_clocks != 0 ? options_.poll_clocks : card.poll_interval()) {
-  if (stall_clocks_ == 0) {
-    throw ArgumentError("stream: a stall timeout of 0 ns");
+      patience_clocks_(card.clocks(options_.patience, "stream: patience")),
+      poll_clocks_(options_.poll_clocks != 0 ? options_.poll_clocks : card.poll_interval()),
+      accesses_(kKeptWords + 1),
+      durations_(card.identification().feed_depth / kShortestQueued + kKeptWords / kShortestCommandWords +
+                 kBeyondQueue) {
+  if (patience_clocks_ == 0) {
+    throw ArgumentError("stream: a patience of 0 ns");
   }
   const Status status = card.status();
   card.throw_if_faulted(status, "stream");
@@ -56,149 +113,195 @@ void Stream::reset() {
   card_->abort();
   card_->clear_refusal();
   room_ = {};
+  used_ = kept_ = 0;
   sent_ = 0;
+  geometry_ = {};
+  feed_ = {};
   last_is_end_ = false;
   broken_ = false;
 }
 
-void Stream::send(const Command& command) { send(&command, 1); }
-
-void Stream::send(const std::vector<Command>& commands) { send(commands.data(), commands.size()); }
-
-void Stream::send(const Command* commands, std::size_t count) {
+void Stream::put(const Command& command) {
   require_open();
-  std::vector<std::uint32_t> words;
-  std::vector<Encoded> encoded;
-  encoded.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    encoded.push_back(encode_checked(commands[i], static_cast<std::uint8_t>(sent_ + i), words));
+  std::array<std::uint32_t, kMaxCommandWords> words{};
+  const std::size_t count = encode(command, next_number(), words.data());
+  const Need need = checked_need(command, words[0]);
+  if (used_ + count > kKeptWords || !has_room(need)) {
+    flush();
+    if (!has_room(need)) closing_at_errors([&] { wait_for_room(need); });
   }
-  const Encoded* next = encoded.data();
-  const Encoded* const end = next + encoded.size();
-  while (next != end) {
-    wait_for_room(next->need);
-    const Encoded* last = next;
-    for (; last != end && has_room(last->need); ++last) {
-      room_.geometry -= last->need.geometry;
-      room_.feed -= last->need.feed;
-    }
-    write(words, next, last);
-    next = last;
-  }
+  keep(command, need, words.data(), count);
 }
 
-Stream::Encoded Stream::encode_checked(const Command& command, std::uint8_t number,
-                                       std::vector<std::uint32_t>& words) const {
+void Stream::flush() {
+  require_open();
+  if (used_ != 0) closing_at_errors([this] { write_kept(); });
+}
+
+void Stream::send(const Command& command) {
+  put(command);
+  flush();
+}
+
+void Stream::send(const std::vector<Command>& commands) {
+  require_open();
+  std::array<std::uint32_t, kMaxCommandWords> words{};
+  for (const Command& command : commands) {
+    encode(command, 0, words.data());
+    checked_need(command, words[0]);
+  }
+  for (const Command& command : commands) put(command);
+  flush();
+}
+
+// What of a command depends on the card; its layout was checked by encode().
+Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) const {
   const Identification& card = card_->identification();
-  Encoded encoded;
-  encoded.begin = words.size();
-  encode(command, number, words);
-  encoded.end = words.size();
-  encoded.is_end = std::holds_alternative<EndCommand>(command);
-  const std::uint32_t header = words[encoded.begin];
+  const map::Command& layout = layout_of(command);
   const auto mask = static_cast<std::uint8_t>(header >> 8);
-  const map::Command& layout = *map::find_command(static_cast<std::uint8_t>(header));
-  check_for_card(card, command, layout);
+  require_engine(card, layout.engine, layout.name);
+  if (const auto* feed = std::get_if<FeedCommand>(&command); feed != nullptr && feed->jerk != 0) {
+    require_engine(card, map::engine::kJerk, layout.name);
+  }
   if (mask >> card.axes != 0) {
     throw ArgumentError(fmt::format("stream: axis mask 0x{:02X}, but the card has {} axes", mask, card.axes));
   }
   const std::uint32_t halfwords = map::queue_halfwords(layout, mask);
-  encoded.need = {layout.to_geometry ? halfwords : 0, layout.to_feed ? halfwords : 0};
-  return encoded;
+  return {layout.to_geometry ? halfwords : 0, layout.to_feed ? halfwords : 0};
+}
+
+void Stream::keep(const Command& command, const Need& need, const std::uint32_t* words, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) accesses_[used_ + i] = write_of(reg::kStream, words[i]);
+  used_ += count;
+  ++kept_;
+  room_.geometry -= need.geometry;
+  room_.feed -= need.feed;
+  if (need.geometry != 0) ++geometry_.put;
+  if (need.feed != 0) {
+    Duration duration;
+    if (const auto* feed = std::get_if<FeedCommand>(&command)) {
+      constexpr double kLongest = 4e18;  // of what 64 bits hold
+      duration.gated = static_cast<std::uint64_t>(std::min(feed_clocks(*feed), kLongest)) + 1;
+    } else if (const auto* dwell = std::get_if<DwellCommand>(&command)) {
+      duration.real = dwell->clocks;
+    }
+    durations_[slot(feed_.put++)] = duration;
+  }
+  last_is_end_ = std::holds_alternative<EndCommand>(command);
+}
+
+void Stream::write_kept() {
+  const std::size_t count = std::exchange(used_, 0);
+  const std::size_t commands = std::exchange(kept_, 0);
+  card_->transfer_stream(accesses_.data(), count);
+  sent_ += commands;
+  geometry_.sent = geometry_.put;
+  feed_.sent = feed_.put;
 }
 
 void Stream::wait_for_room(const Need& need) {
-  Watch watch;
-  while (!has_room(need)) {
+  Wait wait(*this, "stream: waiting for room in the card's queues", false);
+  for (;;) {
     refresh_room(need);
     if (has_room(need)) {
       return;
     }
-    look(watch);
-    pause(watch, "stream: waiting for room in the card's queues");
+    const Status status = look(wait);
+    wait.idle(!status.busy && !all_begun());
+    wait.pause(status);
   }
 }
 
 void Stream::refresh_room(const Need& need) {
-  if (need.geometry > room_.geometry) {
-    room_.geometry = card_->bus().read(reg::kGeometryRoom);
-  }
-  if (need.feed > room_.feed) {
-    room_.feed = card_->bus().read(reg::kFeedRoom);
-  }
-}
-
-void Stream::write(const std::vector<std::uint32_t>& words, const Encoded* first, const Encoded* last) {
-  const std::size_t begin = first->begin;
-  const std::size_t end = (last - 1)->end;
-  try {
-    card_->bus().write_block(reg::kStream, &words[begin], end - begin, Addressing::kFixed);
-  } catch (const BusError&) {
-    broken_ = true;
-    if (const auto refusal = card_->refusal_after_failure()) {
-      throw_refused(*refusal);
+  std::array<Access, 3> accesses;
+  std::size_t count = 0;
+  if (need.geometry > room_.geometry) accesses[count++] = read_of(reg::kGeometryRoom);
+  if (need.feed > room_.feed) accesses[count++] = read_of(reg::kFeedRoom);
+  card_->transfer(accesses.data(), count, "stream");
+  const Identification& card = card_->identification();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool geometry = accesses[i].address == reg::kGeometryRoom;
+    if (accesses[i].data > (geometry ? card.geometry_depth : card.feed_depth)) {
+      throw LinkError(fmt::format("stream: a {} queue with room for {} halfwords: what answers is no card",
+                                  geometry ? "geometry" : "feed", accesses[i].data));
     }
-    throw;
+    (geometry ? room_.geometry : room_.feed) = accesses[i].data;
   }
-  sent_ += static_cast<std::uint64_t>(last - first);
-  last_is_end_ = (last - 1)->is_end;
 }
 
 Status Stream::finish() {
-  require_open();
-  Watch watch;
-  for (;;) {
+  flush();
+  return closing_at_errors([this] {
+    Wait wait(*this, "stream: waiting for the end", true);
     // The first look comes after a pause too: a command is some clocks on its way from the port to the queue.
-    pause(watch, "stream: waiting for the end");
-    const Status status = look(watch);
-    if (!status.busy && (status.ended || !last_is_end_)) {
-      return status;
+    Status status;
+    for (;;) {
+      wait.pause(status);
+      status = look(wait);
+      if (!status.busy && all_begun() && (status.ended || !last_is_end_)) {
+        card_->check_identity();
+        return status;
+      }
+      wait.idle(!status.busy && !all_begun());
     }
-  }
+  });
 }
 
-Status Stream::look(Watch& watch) {
-  const Status status = card_->status();
+Status Stream::look(Wait& wait) {
+  std::array<Access, 4> accesses{read_of(reg::kStatus), read_of(reg::kGeometryBegun), read_of(reg::kFeedBegun)};
+  card_->transfer(accesses.data(), 3, "stream");
+  const Status status = card_->status_of(accesses[0]);
   card_->throw_if_faulted(status, "stream");
   if (status.refused) {
     if (const auto refusal = card_->refusal()) {
-      throw_refused(*refusal);
+      card_->throw_refused(*refusal, "stream");
     }
   }
-  const std::uint32_t geometry_begun = card_->bus().read(reg::kGeometryBegun);
-  const std::uint32_t feed_begun = card_->bus().read(reg::kFeedBegun);
-  const bool same = geometry_begun == watch.geometry_begun && feed_begun == watch.feed_begun;
-  if (!watch.started || !same || status.held) {
-    watch = {0, geometry_begun, feed_begun, true};
-  }
+  const std::uint64_t begun_before = geometry_.begun + feed_.begun;
+  advance(geometry_, accesses[1].data);
+  advance(feed_, accesses[2].data);
+  if (geometry_.begun + feed_.begun != begun_before) wait.allow();
   if (options_.progress) {
     StreamProgress progress;
     progress.commands_sent = sent_;
     progress.status = status;
-    progress.geometry_begun = geometry_begun;
-    progress.feed_begun = feed_begun;
+    progress.geometry_begun = accesses[1].data;
+    progress.feed_begun = accesses[2].data;
     options_.progress(progress);
   }
+  card_->serve_requests();
   return status;
 }
 
-void Stream::pause(Watch& watch, const char* context) {
-  if (watch.waited >= stall_clocks_) {
-    throw TimeoutError(context, watch.waited);
+// The card counts in 32 bits, from 0 on since the stream was opened.
+void Stream::advance(Count& count, std::uint32_t begun) const {
+  const std::uint64_t more = begun - static_cast<std::uint32_t>(count.begun);
+  if ((more & 0xFFFFFFFF) > count.sent - count.begun) {
+    card_->check_identity();
+    throw StateError(
+        fmt::format("stream: the card says that it has begun {} commands of a queue, where {} were sent and "
+                    "{} had begun: it was reset, or aborted by somebody else",
+                    begun, count.sent, count.begun));
   }
-  card_->bus().wait(poll_clocks_);
-  watch.waited += poll_clocks_;
+  count.begun += more & 0xFFFFFFFF;
+}
+
+// What the card may be with now: the piece or barrier that it has begun last, and the one that it is about to begin.
+Stream::Duration Stream::planned() const {
+  Duration sum;
+  for (std::uint64_t number = feed_.begun - (feed_.begun != 0 ? 1 : 0); number < feed_.sent && number <= feed_.begun;
+       ++number) {
+    const Duration& duration = durations_[slot(number)];
+    sum.gated += duration.gated;
+    sum.real += duration.real;
+  }
+  return sum;
 }
 
 void Stream::require_open() const {
   if (broken_) {
-    throw StateError("stream: closed by a refusal or a bus error; restart it");
+    throw StateError("stream: closed by an error; restart it");
   }
-}
-
-void Stream::throw_refused(const Refusal& refusal) {
-  broken_ = true;
-  throw RefusedError(refusal.reason, refusal.command_number, refusal.address, "stream");
 }
 
 }  // namespace trammel::driver

@@ -55,6 +55,7 @@ module step_count #(
     if (clear_i) begin
       live_o <= 1'b0;
       counting_q <= 1'b0;
+      borrow_q <= 1'b0;
     end
   end
 

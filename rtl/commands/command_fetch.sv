@@ -64,7 +64,7 @@ module command_fetch (
     state_e state_d;
 
     // Nothing moves while there is nothing to read and nothing on its way, or what was read waits.
-    if (cut_i || rst_i || !(valid_o || (idle_o && empty_i && !payload_1_q && !strobe_o[5]))) begin
+    if (cut_i || rst_i || !(valid_o || (idle_o && empty_i && !strobe_o[5]))) begin
       state_d = state_q;
       case (state_q)
         IDLE: if (!empty_i) state_d = HEADER;
@@ -110,12 +110,10 @@ module command_fetch (
 
       if (cut_i || rst_i) begin
         header_1_q    <= 1'b0;
-        first_1_q     <= 1'b0;
-        header_o      <= 1'b0;
         payload_1_q   <= 1'b0;
         strobe_o[6:5] <= 2'b00;
       end
-    end else if (valid_o && pop_i) begin  // pop_i comes late: it reaches no more than it must
+    end else if (pop_i) begin  // pop_i comes late: it reaches no more than it must
       state_q <= rest_i ? REST : IDLE;
       read_o  <= rest_i;
       valid_o <= 1'b0;

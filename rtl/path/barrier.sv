@@ -40,7 +40,7 @@ module barrier (
 
   assign together = geometry_at_i && feed_at_i;
   assign alone = (geometry_at_i && feed_runs_i) || (feed_at_i && geometry_runs_i);
-  assign over  = state_q == COUNT && (zero_i || last_i);
+  assign over = state_q == COUNT && (zero_i || last_i);
 
   always_ff @(posedge clk_i) begin : p_barrier
     state_e state_d;

@@ -5,7 +5,7 @@
 // s is an inversion on the way in and on the way out, and its missing one enters as the carry into F.
 //
 // Timing: a tick at c gives its step at c+2 and ready_o again at c+9; start_i at c gives ready_o at c+2.
-// A load halfword makes the block unready until the next start_i, which comes after the last halfword.
+// A load halfword makes the block unready until the next start_i: two clocks after END_X, END_Y, QUADRANTS, else one.
 // load_i and start_i are given only at rest; all nine chains are loaded before a start.
 `default_nettype none
 
@@ -33,14 +33,18 @@ module deviation_accumulator (
   logic [15:0] quadrants_q;
   logic        clockwise_q;
 
-  // Its targets on the load bus.
+  // Its targets on the load bus. The chains take a halfword a clock late: the choice among so many is in no long path.
   logic [15:0] word;
   logic [ 8:0] load;
   logic        loading;
-  assign word = load_i[15:0];
-  assign loading = load != '0;
-  for (genvar i = 0; i < 9; i++) begin : gen_load
-    assign load[i] = load_i[21] && load_i[20:16] == load_target_pkg::DEVIATION + 5'(i);
+  logic        loading_q;
+  assign loading = load_i[21] && load_i[20:16] >= load_target_pkg::DEVIATION && load_i[20:16] <= load_target_pkg::PLANE;
+  always_ff @(posedge clk_i) begin
+    word <= load_i[15:0];
+    loading_q <= loading;
+    for (int i = 0; i < 9; i++) begin
+      load[i] <= load_i[21] && load_i[20:16] == load_target_pkg::DEVIATION + 5'(i);
+    end
   end
 
   // Control: one-hot phase of a step, and enables registered a clock ahead.
@@ -63,7 +67,7 @@ module deviation_accumulator (
     end else if (accept | g_shift_q | start_i | start_q) begin
       phase_q   <= {phase_q[LAST-1:0], accept};
       start_q   <= start_i;
-      ready_o   <= (ready_o & ~accept & ~start_i) | phase_q[LAST] | start_q;
+      ready_o   <= phase_q[LAST] | start_q;
       g_shift_q <= accept | (|phase_q[LAST-1:0]);
       f_shift_q <= |phase_q[6:1];
       h_shift_q <= accept | (|phase_q[1:0]);
@@ -128,7 +132,7 @@ module deviation_accumulator (
   logic [15:0] g_back;
   assign g_back = v_q ^ {16{negative_q}};
   always_ff @(posedge clk_i) begin
-    if (loading | g_shift_q) begin
+    if (loading_q | g_shift_q) begin
       if (load[0] | f_shift_q) f_q <= {load[0] ? word : sum_q, f_q[79:16]};
       if (load[1] | (g_shift_q & select_x_q)) gx_q <= {load[1] ? word : g_back, gx_q[79:16]};
       if (load[2] | (g_shift_q & ~select_x_q)) gy_q <= {load[2] ? word : g_back, gy_q[79:16]};

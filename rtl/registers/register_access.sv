@@ -118,7 +118,7 @@ module register_access #(
 
   always_ff @(posedge clk_i) begin
     if (judging) begin
-      good_q   <= 1'b0;
+      good_q <= 1'b0;
       if (kind_q == card_map_pkg::ACCESS_NONE || absent_q) begin
         reason_q <= card_map_pkg::REFUSE_UNKNOWN_ADDRESS;
       end else if (!write && kind_q == card_map_pkg::ACCESS_COMMAND) begin

@@ -27,13 +27,13 @@ module tick_gate (
   logic       source_active;
 
   assign source_active = feed_active_i || direct_i;
-  // No need to ask for faults: they come with a cut, and that leaves nothing that could take a tick.
+  // After a cut or a reset neither a piece nor a direct move is left, so that nothing is owed a clock later.
   assign take_o = owed_q && taking_i && ready_i && source_active;
 
   always_ff @(posedge clk_i) begin : p_count
     logic [3:0] count_d;
 
-    if (cut_i || rst_i || !source_active) begin
+    if (!source_active) begin
       count_q <= 4'd0;
       owed_q  <= 1'b0;
       stall_q <= 1'b0;
@@ -46,7 +46,7 @@ module tick_gate (
   end
 
   always_ff @(posedge clk_i) begin
-    source_q <= (direct_i ? enable_i && taking_i : feed_tick_i && feed_active_i) && !cut_i && !rst_i;
+    source_q <= direct_i ? enable_i : feed_tick_i && feed_active_i;
     tick_o <= take_o && !cut_i && !rst_i;
     // The generator rests while no path can take its ticks, so that a path does not begin with a burst.
     feed_enable_o <= enable_i && feed_active_i && taking_i && !stall_q && !cut_i && !rst_i;

@@ -97,11 +97,11 @@ class Progress:
                   end=end, file=sys.stderr, flush=True)
 
 
-def try_all(mutants, all_judges, results, jobs):
+def try_all(mutants, all_judges, results, listed, jobs):
     waiting = [mutant for mutant in mutants if mutant["id"] not in results.rows]
     progress = Progress(len(waiting))
     with ThreadPoolExecutor(jobs) as pool:
-        runs = {pool.submit(judges.try_mutant, all_judges, m["number"], m["file"]): m for m in waiting}
+        runs = {pool.submit(judges.try_mutant, all_judges, m["number"], m["file"], m["id"] in listed): m for m in waiting}
         try:
             for run in as_completed(runs):
                 results.add(runs[run], run.result())
@@ -158,7 +158,7 @@ def main(argv=None) -> int:
     except judges.SoundDesignRefused as error:
         sys.exit(f"mutate: {error}")
     start = time.monotonic()
-    try_all(mutants, all_judges, results, arguments.jobs)
+    try_all(mutants, all_judges, results, listed, arguments.jobs)
     findings = report(mutants, results, listed)
     print(f"{time.monotonic() - start:.0f} s with {arguments.jobs} runs at a time; verdicts in {results.path}")
     return 1 if findings else 0

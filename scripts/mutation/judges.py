@@ -27,6 +27,7 @@ class Judge:
     sources: List[str]  # relative to the folder of the RTL
     arguments: List[str] = field(default_factory=list)  # GoogleTest's, to choose among its tests
     length: str = ""  # of its random scenarios, as a factor: TRAMMEL_LONG
+    last_resort: bool = False  # a long run: tries no mutant that is listed as equivalent
     seconds: float = 0.0  # of processor time for the sound design
 
     def limit(self) -> int:
@@ -46,9 +47,10 @@ class Verdict:
 
 
 def read_judges(path: Path) -> List[Judge]:
-    """Those that see little of the design first: they are quick and say most about it. Of equal ones in the file's order."""
+    """Those that see little of the design first: they are quick and say most about it. Of equal ones in the file's order;
+    last resorts come last."""
     judges = [Judge(**entry) for entry in json.loads(path.read_text())]
-    return sorted(judges, key=lambda judge: len(judge.sources))
+    return sorted(judges, key=lambda judge: (judge.last_resort, len(judge.sources)))
 
 
 def fingerprint(judges: List[Judge]) -> str:
@@ -101,11 +103,11 @@ def try_sound_design(judge: Judge):
     judge.seconds = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
 
 
-def try_mutant(judges: List[Judge], number: int, file: str) -> Verdict:
+def try_mutant(judges: List[Judge], number: int, file: str, listed: bool) -> Verdict:
     """The first judge that kills it; "lived" when none does."""
     seconds = 0.0
     for judge in judges:
-        if file not in judge.sources:
+        if file not in judge.sources or (listed and judge.last_resort):
             continue
         verdict = run(judge, number, judge.limit())
         seconds += verdict.seconds

@@ -1,6 +1,9 @@
 #include "bus_engine.hpp"
 
 #include <stdexcept>
+#include <string>
+
+#include "trammel/driver/card_timing.hpp"
 
 namespace trammel::sim {
 
@@ -14,46 +17,84 @@ constexpr int kPatience = 100'000;
 // A step's direction as the lists have it.
 std::int8_t sign(int direction) { return static_cast<std::int8_t>(direction < 0 ? -1 : 1); }
 
-}  // namespace
-
-std::uint32_t BusEngine::read(std::uint32_t address) {
-  CardModel::Inputs in;
-  in.arvalid = true;
-  in.araddr = address;
-  handshake(
-      in, [this] { return card().bus().arready; }, address, driver::Direction::kRead);
-  in = CardModel::Inputs{};
-  in.rready = true;
-  wait_for([this] { return card().bus().rvalid; }, address, driver::Direction::kRead);
-  const model::Axi4LitePort::Outputs answer = card().bus();
-  clock(in);
-  if (answer.rresp != model::Axi4LitePort::kOkay) throw driver::BusError(address, driver::Direction::kRead);
-  return answer.rdata;
+[[noreturn]] void throw_unanswered(const driver::Access& access) {
+  throw driver::LinkError("simulated bus: no answer to the " + std::string(access.write ? "write" : "read") + " of " +
+                          std::to_string(access.address));
 }
 
-void BusEngine::write(std::uint32_t address, std::uint32_t value) {
+}  // namespace
+
+std::uint32_t Engine::read(std::uint32_t address) {
+  driver::Access access = driver::read_of(address);
+  if (transfer(&access, 1) != 1) throw driver::RefusedError(0, 0, address, "simulated bus");
+  return access.data;
+}
+
+void Engine::write(std::uint32_t address, std::uint32_t value) {
+  driver::Access access = driver::write_of(address, value);
+  if (transfer(&access, 1) != 1) throw driver::RefusedError(0, 0, address, "simulated bus");
+}
+
+std::size_t BusEngine::transfer(driver::Access* accesses, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    note(accesses[i]);
+    if (!make(accesses[i])) return i;
+  }
+  return count;
+}
+
+void BusEngine::sleep(std::chrono::nanoseconds time) { wait(driver::clocks_of(time, clock_hz_, "sleep")); }
+
+// Clock by clock: what raises the line may come at any of them.
+bool BusEngine::wait_for_interrupt(std::chrono::nanoseconds longest) {
+  if (!interrupt_) return Bus::wait_for_interrupt(longest);
+  for (std::uint64_t left = driver::clocks_of(longest, clock_hz_, "wait"); left != 0 && !card().outputs().irq; --left) {
+    wait(1);
+  }
+  return card().outputs().irq;
+}
+
+bool BusEngine::make(driver::Access& access) { return access.write ? write_register(access) : read_register(access); }
+
+bool BusEngine::read_register(driver::Access& access) {
+  CardModel::Inputs in;
+  in.arvalid = true;
+  in.araddr = access.address;
+  handshake(
+      in, [this] { return card().bus().arready; }, access);
+  in = CardModel::Inputs{};
+  in.rready = true;
+  wait_for([this] { return card().bus().rvalid; }, access);
+  const model::Axi4LitePort::Outputs answer = card().bus();
+  clock(in);
+  if (answer.rresp != model::Axi4LitePort::kOkay) return false;
+  access.data = answer.rdata;
+  return true;
+}
+
+bool BusEngine::write_register(const driver::Access& access) {
   CardModel::Inputs in;
   in.awvalid = true;
   in.wvalid = true;
-  in.awaddr = address;
-  in.wdata = value;
+  in.awaddr = access.address;
+  in.wdata = access.data;
   in.wstrb = model::Axi4LitePort::kAllStrobes;
   handshake(
-      in, [this] { return card().bus().awready; }, address, driver::Direction::kWrite);
+      in, [this] { return card().bus().awready; }, access);
   in = CardModel::Inputs{};
   in.bready = true;
-  wait_for([this] { return card().bus().bvalid; }, address, driver::Direction::kWrite);
-  const bool refused = card().bus().bresp != model::Axi4LitePort::kOkay;
+  wait_for([this] { return card().bus().bvalid; }, access);
+  const bool taken = card().bus().bresp == model::Axi4LitePort::kOkay;
   clock(in);
-  if (refused) throw driver::BusError(address, driver::Direction::kWrite);
+  return taken;
 }
 
-void BusEngine::write_block(std::uint32_t address, const std::uint32_t* words, std::size_t count,
-                            driver::Addressing addressing) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto offset = static_cast<std::uint32_t>(addressing == driver::Addressing::kIncrementing ? 4 * i : 0);
-    write(address + offset, words[i]);
-  }
+void BusEngine::reset() {
+  CardModel::Inputs in;
+  in.rst = true;
+  clock(in);
+  // The reset is registered: one more clock under it.
+  clock({});
 }
 
 void BusEngine::set_sink(driver::StepSink* sink) {
@@ -68,10 +109,9 @@ std::vector<std::int64_t> BusEngine::positions() const {
 }
 
 template <class Ready>
-void BusEngine::handshake(const CardModel::Inputs& in, Ready ready, std::uint32_t address,
-                          driver::Direction direction) {
+void BusEngine::handshake(const CardModel::Inputs& in, Ready ready, const driver::Access& access) {
   for (int i = 0; !ready(); ++i) {
-    if (i == kPatience) throw driver::BusError(address, direction);
+    if (i == kPatience) throw_unanswered(access);
     clock(in);
   }
   // The edge at which valid and ready meet.
@@ -79,9 +119,9 @@ void BusEngine::handshake(const CardModel::Inputs& in, Ready ready, std::uint32_
 }
 
 template <class Valid>
-void BusEngine::wait_for(Valid valid, std::uint32_t address, driver::Direction direction) {
+void BusEngine::wait_for(Valid valid, const driver::Access& access) {
   for (int i = 0; !valid(); ++i) {
-    if (i == kPatience) throw driver::BusError(address, direction);
+    if (i == kPatience) throw_unanswered(access);
     clock(CardModel::Inputs{});
   }
 }

@@ -10,11 +10,15 @@ namespace trammel::sim {
 
 class BusEngine : public Engine, private model::CardSteps {
  public:
-  std::uint32_t read(std::uint32_t address) override;
-  void write(std::uint32_t address, std::uint32_t value) override;
-  void write_block(std::uint32_t address, const std::uint32_t* words, std::size_t count,
-                   driver::Addressing addressing) override;
+  explicit BusEngine(const EngineOptions& options) : clock_hz_(options.clock_hz), interrupt_(options.interrupt) {}
 
+  std::size_t transfer(driver::Access* accesses, std::size_t count) override;
+  void sleep(std::chrono::nanoseconds time) override;
+  bool reports_refusals() const override { return true; }
+  bool has_interrupt() const override { return interrupt_; }
+  bool wait_for_interrupt(std::chrono::nanoseconds longest) override;
+
+  void reset() override;
   void set_sink(driver::StepSink* sink) override;
   std::uint64_t cycles() const override { return card().cycles(); }
   std::vector<std::int64_t> positions() const override;
@@ -24,15 +28,23 @@ class BusEngine : public Engine, private model::CardSteps {
   virtual model::CardModel& card() = 0;
   virtual const model::CardModel& card() const = 0;
 
+  // For the report of a mismatch.
+  virtual void note(const driver::Access& access) = 0;
+
  private:
+  bool make(driver::Access& access);
+  bool read_register(driver::Access& access);
+  bool write_register(const driver::Access& access);
   template <class Ready>
-  void handshake(const model::CardModel::Inputs& in, Ready ready, std::uint32_t address, driver::Direction direction);
+  void handshake(const model::CardModel::Inputs& in, Ready ready, const driver::Access& access);
   template <class Valid>
-  void wait_for(Valid valid, std::uint32_t address, driver::Direction direction);
+  void wait_for(Valid valid, const driver::Access& access);
 
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override;
   void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override;
 
+  std::uint32_t clock_hz_;
+  bool interrupt_;
   driver::StepSink* sink_ = nullptr;
 };
 

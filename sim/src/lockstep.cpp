@@ -15,13 +15,19 @@ std::string seeded_bug_report;
 
 }  // namespace
 
-void EventLog::settle() {
-  if (events_.size() > kKept) events_.erase(events_.begin(), events_.end() - kKept);
+std::vector<EventLog::Event>::const_iterator EventLog::end_of(std::uint64_t cycle) const {
+  auto end = events_.end();
+  while (end != events_.begin() && std::prev(end)->cycle > cycle) --end;
+  return end;
+}
+
+void EventLog::settle(std::uint64_t cycle) {
+  const auto end = end_of(cycle);
+  events_.erase(events_.begin(), end - std::min<std::ptrdiff_t>(end - events_.begin(), kKept));
 }
 
 std::string EventLog::text(std::uint64_t cycle) const {
-  auto end = events_.end();
-  while (end != events_.begin() && std::prev(end)->cycle > cycle) --end;
+  const auto end = end_of(cycle);
   const auto kept = std::min<std::ptrdiff_t>(end - events_.begin(), kKept);
   std::string text = fmt::format("last {} events:\n", kept);
   for (auto e = end - kept; e != end; ++e) text += fmt::format("  cycle {}: {} {:#x}\n", e->cycle, e->what, e->value);

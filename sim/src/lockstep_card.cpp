@@ -15,13 +15,9 @@ constexpr std::size_t kResetClocks = 4;
 }  // namespace
 
 LockstepCard::LockstepCard(std::unique_ptr<VerilatedCard> card, const model::CardModel::Config& config,
-                           std::uint64_t seed, std::size_t batch)
-    : card_(std::move(card)),
-      model_(config),
-      seed_(seed),
-      signals_(signals_compared(config.axes)),
-      golden_(batch),
-      rtl_(batch) {
+                           std::uint64_t seed, std::size_t batch, RtlThread thread)
+    : card_(std::move(card)), model_(config), seed_(seed), signals_(signals_compared(config.axes)), rtl_(batch) {
+  for (Batch& b : batches_) b.golden.resize(batch);
   model::CardModel::Inputs reset;
   reset.rst = true;
   CardRecord unused;
@@ -32,6 +28,7 @@ LockstepCard::LockstepCard(std::unique_ptr<VerilatedCard> card, const model::Car
   // The reset is registered: one more clock under it.
   card_->run({}, 1, &unused);
   model_.clock({});
+  if (thread == RtlThread::kOwn) worker_ = std::make_unique<Worker>();
 }
 
 LockstepCard::~LockstepCard() {
@@ -43,48 +40,83 @@ LockstepCard::~LockstepCard() {
   }
 }
 
+void LockstepCard::Batch::clear() {
+  if (same.valid()) same.wait();
+  same = {};
+  stretches.clear();
+  clocks = 0;
+}
+
 void LockstepCard::run(const model::CardModel::Inputs& in, std::uint64_t clocks) {
   while (clocks != 0) {
-    const std::size_t some = std::min<std::uint64_t>(clocks, golden_.size() - golden_clocks_);
-    stretches_.push_back({in, 0});
+    Batch& batch = batches_[filled_];
+    const std::size_t some = std::min<std::uint64_t>(clocks, batch.golden.size() - batch.clocks);
+    batch.stretches.push_back({in, 0});
     // Counted clock by clock: who receives the model's steps may throw.
     for (std::size_t i = 0; i < some; ++i) {
       model_.clock(in);
-      golden_[golden_clocks_++].show(model_);
-      ++stretches_.back().clocks;
+      batch.golden[batch.clocks++].show(model_);
+      ++batch.stretches.back().clocks;
     }
-    if (golden_clocks_ == golden_.size()) settle();
+    if (batch.clocks == batch.golden.size()) {
+      give(batch);
+      if (worker_) filled_ ^= 1;
+      judge(batches_[filled_]);
+    }
     clocks -= some;
   }
 }
 
 void LockstepCard::settle() {
-  CardRecord* record = rtl_.data();
-  for (const Stretch& stretch : stretches_) {
-    card_->run(stretch.in, stretch.clocks, record);
-    record += stretch.clocks;
-  }
-  const std::size_t clocks = golden_clocks_;
-  // A batch is compared once, also when that ends in a mismatch.
-  stretches_.clear();
-  golden_clocks_ = 0;
-  compare(clocks);
-  events_.settle();
+  give(batches_[filled_]);
+  judge(batches_[filled_ ^ 1]);
+  judge(batches_[filled_]);
+}
+
+void LockstepCard::give(Batch& batch) {
+  Worker::Job job([this, &batch] { return follow(batch); });
+  batch.same = job.get_future();
+  if (worker_)
+    worker_->give(std::move(job));
+  else
+    job();
 }
 
 // All records at once; they are told apart only when something differs.
-void LockstepCard::compare(std::size_t clocks) {
-  std::size_t same = clocks;
-  if (std::memcmp(rtl_.data(), golden_.data(), clocks * sizeof(CardRecord)) != 0) {
-    same = 0;
-    while (same < clocks && std::memcmp(&rtl_[same], &golden_[same], sizeof(CardRecord)) == 0) ++same;
+std::size_t LockstepCard::follow(Batch& batch) {
+  CardRecord* record = rtl_.data();
+  for (const Stretch& stretch : batch.stretches) {
+    card_->run(stretch.in, stretch.clocks, record);
+    record += stretch.clocks;
   }
-  const std::size_t compared = same == clocks ? clocks : same + 1;
+  if (std::memcmp(rtl_.data(), batch.golden.data(), batch.clocks * sizeof(CardRecord)) == 0) return batch.clocks;
+  std::size_t same = 0;
+  while (std::memcmp(&rtl_[same], &batch.golden[same], sizeof(CardRecord)) == 0) ++same;
+  batch.different = rtl_[same];
+  return same;
+}
+
+// A batch is compared once, also when that ends in a mismatch; then the other is dropped with it.
+void LockstepCard::judge(Batch& batch) {
+  if (!batch.same.valid()) return;
+  try {
+    compare(batch);
+  } catch (...) {
+    for (Batch& b : batches_) b.clear();
+    throw;
+  }
+  batch.clear();
+  events_.settle(cycles_);
+}
+
+void LockstepCard::compare(Batch& batch) {
+  const std::size_t same = batch.same.get();
+  const std::size_t compared = std::min(same + 1, batch.clocks);
   cycles_ += compared;
   comparisons_ += compared * signals_;
-  if (same == clocks) return;
+  if (same == batch.clocks) return;
   // An event of this many cycles came before the clock that made the difference.
-  lockstep::fail("card", cycles_, seed_, differences(rtl_[same], golden_[same]), events_.text(cycles_ - 1));
+  lockstep::fail("card", cycles_, seed_, differences(batch.different, batch.golden[same]), events_.text(cycles_ - 1));
 }
 
 }  // namespace trammel::sim

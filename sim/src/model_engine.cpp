@@ -4,15 +4,24 @@ namespace trammel::sim {
 
 namespace {
 
+model::CardModel::Config model_config(const ModelOptions& options) {
+  model::CardModel::Config config = config_of(options);
+  config.geometry_depth = options.geometry_depth;
+  config.feed_depth = options.feed_depth;
+  if (options.engines) config.engines = *options.engines;
+  return config;
+}
+
 class ModelEngine final : public BusEngine {
  public:
-  explicit ModelEngine(const EngineOptions& options) : card_(config_of(options)) {}
+  explicit ModelEngine(const ModelOptions& options) : BusEngine(options), card_(model_config(options)) {}
 
   void wait(std::uint64_t card_clocks) override { card_.run(card_clocks); }
   std::optional<std::uint64_t> lockstep_cycles() const override { return std::nullopt; }
   std::uint64_t comparisons() const override { return 0; }
 
  private:
+  void note(const driver::Access&) override {}
   void clock(const model::CardModel::Inputs& in) override { card_.clock(in); }
   model::CardModel& card() override { return card_; }
   const model::CardModel& card() const override { return card_; }
@@ -22,7 +31,7 @@ class ModelEngine final : public BusEngine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_model_engine(const EngineOptions& options) {
+std::unique_ptr<Engine> make_model_engine(const ModelOptions& options) {
   return std::make_unique<ModelEngine>(options);
 }
 

@@ -14,17 +14,10 @@ using model::CardModel;
 class RtlEngine final : public BusEngine {
  public:
   RtlEngine(std::unique_ptr<VerilatedCard> card, const SimulationOptions& options)
-      : card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch) {}
+      : BusEngine(options),
+        card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch,
+              options.rtl_thread && !options.trace ? RtlThread::kOwn : RtlThread::kCallers) {}
 
-  std::uint32_t read(std::uint32_t address) override {
-    card_.event("read", address);
-    return BusEngine::read(address);
-  }
-  void write(std::uint32_t address, std::uint32_t value) override {
-    card_.event("write to", address);
-    card_.event("written", value);
-    BusEngine::write(address, value);
-  }
   void wait(std::uint64_t card_clocks) override { card_.run(CardModel::Inputs{}, card_clocks); }
   std::optional<std::uint64_t> lockstep_cycles() const override {
     card_.settle();
@@ -36,6 +29,14 @@ class RtlEngine final : public BusEngine {
   }
 
  private:
+  void note(const driver::Access& access) override {
+    if (access.write) {
+      card_.event("write to", access.address);
+      card_.event("written", access.data);
+    } else {
+      card_.event("read", access.address);
+    }
+  }
   void clock(const CardModel::Inputs& in) override { card_.run(in, 1); }
   CardModel& card() override { return card_.model(); }
   const CardModel& card() const override { return card_.model(); }

@@ -12,12 +12,13 @@ namespace trammel::sim {
 template <class Dut, unsigned kAxes>
 class TracedVariant : public BothEdgesVariant<Dut, kAxes> {
  public:
-  TracedVariant(const CardStraps& straps, const std::string& path) : BothEdgesVariant<Dut, kAxes>(straps) {
+  TracedVariant(const CardStraps& straps, const TraceFile& trace)
+      : BothEdgesVariant<Dut, kAxes>(straps), trace_(trace) {
     Verilated::threadContextp(&this->dut_.context());
     this->dut_.context().traceEverOn(true);
     this->dut_->trace(&file_, 99);
-    file_.open(path.c_str());
-    if (!file_.isOpen()) throw std::runtime_error("cannot write the trace file " + path);
+    file_.open(trace.path.c_str());
+    if (!file_.isOpen()) throw std::runtime_error("cannot write the trace file " + trace.path);
   }
   ~TracedVariant() override {
     Verilated::threadContextp(&this->dut_.context());
@@ -25,8 +26,13 @@ class TracedVariant : public BothEdgesVariant<Dut, kAxes> {
   }
 
  private:
-  void at_edge() override { file_.dump(time_++); }
+  void at_edge() override {
+    const std::uint64_t clock = time_ / 2;
+    if (clock >= trace_.from && clock < trace_.to) file_.dump(time_);
+    ++time_;
+  }
 
+  TraceFile trace_;
   VerilatedFstC file_;
   std::uint64_t time_ = 0;
 };

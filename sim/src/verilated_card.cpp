@@ -5,7 +5,7 @@
 namespace trammel::sim {
 
 std::unique_ptr<VerilatedCard> make_verilated_card(unsigned axes, const CardStraps& straps,
-                                                   const std::optional<std::string>& trace) {
+                                                   const std::optional<TraceFile>& trace) {
   if (trace) {
     if (axes == 4) return make_traced_card<4>(straps, *trace);
     if (axes == 8) return make_traced_card<8>(straps, *trace);

@@ -9,6 +9,7 @@
 
 #include "card_record.hpp"
 #include "trammel/model/card_model.hpp"
+#include "trammel/sim/engines.hpp"
 
 namespace trammel::sim {
 
@@ -28,13 +29,13 @@ struct CardStraps {
 // Axes: 1 to 8; with a trace 4 or 8. `trace`: an FST file, written until the card is destroyed.
 // Throws std::invalid_argument for other numbers of axes.
 std::unique_ptr<VerilatedCard> make_verilated_card(unsigned axes, const CardStraps& straps,
-                                                   const std::optional<std::string>& trace);
+                                                   const std::optional<TraceFile>& trace);
 
 // The variants that are built; each in a file of its own.
 template <unsigned kAxes>
 std::unique_ptr<VerilatedCard> make_card(const CardStraps& straps);
 template <unsigned kAxes>
-std::unique_ptr<VerilatedCard> make_traced_card(const CardStraps& straps, const std::string& trace);
+std::unique_ptr<VerilatedCard> make_traced_card(const CardStraps& straps, const TraceFile& trace);
 
 template <>
 std::unique_ptr<VerilatedCard> make_card<1>(const CardStraps& straps);
@@ -53,8 +54,8 @@ std::unique_ptr<VerilatedCard> make_card<7>(const CardStraps& straps);
 template <>
 std::unique_ptr<VerilatedCard> make_card<8>(const CardStraps& straps);
 template <>
-std::unique_ptr<VerilatedCard> make_traced_card<4>(const CardStraps& straps, const std::string& trace);
+std::unique_ptr<VerilatedCard> make_traced_card<4>(const CardStraps& straps, const TraceFile& trace);
 template <>
-std::unique_ptr<VerilatedCard> make_traced_card<8>(const CardStraps& straps, const std::string& trace);
+std::unique_ptr<VerilatedCard> make_traced_card<8>(const CardStraps& straps, const TraceFile& trace);
 
 }  // namespace trammel::sim

@@ -1,14 +1,18 @@
 #include "command.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <thread>
 
 namespace trammel::test {
 
@@ -23,17 +27,73 @@ Command::~Command() {
   std::filesystem::remove_all(directory_, ignored);
 }
 
-Outcome Command::run(const std::string& arguments) const {
+namespace {
+
+std::string binary() {
   const char* other = std::getenv("TRAMMEL_BINARY");
-  const std::string binary = other != nullptr ? other : TRAMMEL_COMMAND;
-  const std::string line =
-      "'" + binary + "' " + arguments + " >'" + path("stdout") + "' 2>'" + path("stderr") + "' </dev/null";
-  const int status = std::system(line.c_str());
+  return other != nullptr ? other : TRAMMEL_COMMAND;
+}
+
+}  // namespace
+
+Outcome Command::run(const std::string& arguments) const { return run_in(".", "", arguments); }
+
+Outcome Command::run_in(const std::string& folder, const std::string& before, const std::string& arguments) const {
+  // Process substitution needs bash; what the arguments lead elsewhere comes last and wins.
+  const std::string script = "cd '" + folder + "' && " + before + " '" + binary() + "' </dev/null >'" + path("stdout") +
+                             "' 2>'" + path("stderr") + "' " + arguments + "\n";
+  const std::string file = path("script");
+  std::ofstream(file) << script;
+  const int status = std::system(("bash '" + file + "'").c_str());
   Outcome outcome;
   if (WIFEXITED(status)) outcome.status = WEXITSTATUS(status);
   outcome.out = contents(path("stdout"));
   outcome.err = contents(path("stderr"));
   return outcome;
+}
+
+Running::Running(const Command& command, const std::string& arguments, const std::string& err) {
+  const std::string line =
+      "exec '" + binary() + "' " + arguments + " >/dev/null 2>'" + command.path(err) + "' </dev/null";
+  process_ = ::fork();
+  if (process_ != 0) return;
+  ::execl("/bin/bash", "bash", "-c", line.c_str(), nullptr);
+  ::_exit(127);
+}
+
+Running::~Running() {
+  if (process_ < 0) return;
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+}
+
+void Running::signal(int number) const { ::kill(process_, number); }
+
+std::optional<int> Running::wait() {
+  int status = 0;
+  const bool ended = eventually([&] { return ::waitpid(process_, &status, WNOHANG) == process_; });
+  if (!ended) return std::nullopt;
+  process_ = -1;
+  return status;
+}
+
+bool eventually(const std::function<bool()>& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return true;
+}
+
+std::vector<std::string> Command::names() const {
+  std::vector<std::string> result;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "stdout" && name != "stderr" && name != "script") result.push_back(name);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
 }
 
 std::string Command::path(const std::string& name) const { return (directory_ / name).string(); }

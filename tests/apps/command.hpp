@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,16 +33,41 @@ class Command {
   Command(const Command&) = delete;
   Command& operator=(const Command&) = delete;
 
-  // Arguments as in a shell.
+  // Arguments as in a shell. Standard input is empty and standard output is a file, unless they say otherwise.
   Outcome run(const std::string& arguments) const;
+  // In a folder, with what comes before the command in a shell's line.
+  Outcome run_in(const std::string& folder, const std::string& before, const std::string& arguments) const;
   // A file's place in the directory.
   std::string path(const std::string& name) const;
+  // Names in the directory but for what the commands printed, in order.
+  std::vector<std::string> names() const;
   // Writes a file into the directory and gives its place.
   std::string write(const std::string& name, const std::string& text) const;
 
  private:
   std::filesystem::path directory_;
 };
+
+// The command while it runs.
+class Running {
+ public:
+  // Arguments as in a shell; standard error goes to `err`.
+  Running(const Command& command, const std::string& arguments, const std::string& err);
+  // Ends it, if it still runs.
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  void signal(int number) const;
+  // What waitpid() tells; none when it still runs after 30 s.
+  std::optional<int> wait();
+
+ private:
+  int process_ = -1;
+};
+
+// Waits until it holds, 30 s at most; whether it does.
+bool eventually(const std::function<bool()>& condition);
 
 // The whole file; empty where there is none.
 std::string contents(const std::string& file);

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "trammel/gcode/reader.hpp"
+#include "reading.hpp"
 
 namespace trammel::gcode {
 
@@ -14,17 +14,13 @@ namespace {
 using ::testing::HasSubstr;
 
 Motion last_arc(const std::string& text) {
-  const Program program = read_program("F60\n" + text, "p", default_machine());
+  const Reading program = read_text("F60\n" + text);
   return program.motions.at(program.motions.size() - 2);
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    read_program("F60\n" + text, "p", default_machine());
-  } catch (const ProgramError& error) {
-    return error.message();
-  }
-  return "accepted";
+  const Reading program = read_text("F60\n" + text);
+  return program.error ? program.error->message : "accepted";
 }
 
 void expect_arc(const std::string& text, double centre_x, double centre_y, bool clockwise, bool full = false) {
@@ -113,8 +109,8 @@ TEST(GcodeArc, Refusals) {
 TEST(GcodeArc, NeedsTheAxesOfThePlane) {
   Machine machine = default_machine();
   machine.axes.erase(machine.axes.begin() + 1);
-  EXPECT_THROW(read_program("G2 I5 F1", "p", machine), ProgramError);
-  EXPECT_NO_THROW(read_program("G18 G2 I5 F1", "p", machine));
+  EXPECT_EQ(read_text("G2 I5 F1", machine).error->code, ErrorCode::kArcPlaneAxis);
+  EXPECT_FALSE(read_text("G18 G2 I5 F1", machine).error);
 }
 
 }  // namespace

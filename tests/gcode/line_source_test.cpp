@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cstdio>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -98,6 +99,19 @@ TEST(LineSource, FilesGiveTheirLines) {
   EXPECT_EQ(file.name(), path);
   EXPECT_EQ(all(file), plainly_split(text));
   EXPECT_FALSE(file.failure());
+}
+
+TEST(LineSource, ReadsAnOpenFileFromWhereItStands) {
+  std::FILE* file = std::tmpfile();
+  ASSERT_NE(file, nullptr);
+  std::fputs("first\nsecond\n", file);
+  for (int pass = 0; pass < 2; ++pass) {
+    std::rewind(file);
+    FileLines source(fileno(file), "-");
+    EXPECT_EQ(source.name(), "-");
+    EXPECT_THAT(all(source), ElementsAre("first", "second"));
+  }
+  std::fclose(file);
 }
 
 TEST(LineSource, SaysWhyAFileCannotBeRead) {

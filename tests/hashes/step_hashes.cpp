@@ -26,12 +26,14 @@ void Hash::add(std::uint64_t word) {
   value_ ^= value_ >> 29U;
 }
 
-void StepHasher::sending(const planner::PlannedSegment& segment) {
-  arcs_ |= segment.kind == gcode::MotionKind::kArc;
-  for (const driver::Command& command : segment.commands) {
-    commands_.push_back({sent_at_.size(), result_.barriers, segment.chords});
-    if (is_barrier(command)) ++result_.barriers;
-  }
+void StepHasher::block(Path path) {
+  arcs_ |= path != Path::kNoArc;
+  chords_ = path == Path::kChords;
+}
+
+void StepHasher::command(const driver::Command& command) {
+  commands_.push_back({sent_at_.size(), result_.barriers, chords_});
+  if (is_barrier(command)) ++result_.barriers;
 }
 
 void StepHasher::sent(std::uint64_t cycle) { sent_at_.push_back(cycle); }
@@ -81,7 +83,7 @@ void StepHasher::pin_step(const driver::PinStep& step) {
   waiting.pop_front();
   if (sent_at_.empty()) throw std::logic_error("a step at a pin before the first commands are written");
   if (!cycle_.empty() && last_cycle_ != step.cycle) end_cycle();
-  look_at_lead(command.segment, step.cycle);
+  look_at_lead(command.block, step.cycle);
   const auto since = static_cast<std::int64_t>(step.cycle - sent_at_.front());
   const std::int64_t corrected = since - shift_.start - shift_.barrier * static_cast<std::int64_t>(command.barriers);
   if (result_.pin_steps == 0) result_.start = corrected;
@@ -91,14 +93,14 @@ void StepHasher::pin_step(const driver::PinStep& step) {
   ++result_.pin_steps;
 }
 
-void StepHasher::look_at_lead(std::size_t segment, std::uint64_t cycle) {
-  if (last_segment_ && *last_segment_ != segment) {
-    // A segment that is still being written has no time yet: not ahead.
-    const std::uint64_t written = segment < sent_at_.size() ? sent_at_[segment] : cycle;
+void StepHasher::look_at_lead(std::size_t block, std::uint64_t cycle) {
+  if (last_block_ && *last_block_ != block) {
+    // A block that is still being written has no time yet: not ahead.
+    const std::uint64_t written = block < sent_at_.size() ? sent_at_[block] : cycle;
     const auto lead = static_cast<std::int64_t>(last_cycle_ - written);
     result_.lead = std::min(result_.lead.value_or(lead), lead);
   }
-  last_segment_ = segment;
+  last_block_ = block;
 }
 
 void StepHasher::end_cycle() {

@@ -7,8 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "program_run.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/driver/commands.hpp"
+#include "trammel/driver/steps.hpp"
 
 namespace trammel::test {
 
@@ -32,8 +33,8 @@ struct Shift {
 struct StepHashes {
   std::uint64_t path = 0;
   std::uint64_t path_steps = 0;
-  // Without them for programs with arcs: rate and length of an arc's feed come from angles, so that the last bit of
-  // libm's functions may move a tick by a clock.
+  // Without them for programs with arcs: when they were recorded, rate and length of an arc's feed came from angles of
+  // the C library, whose last bit may move a tick by a clock.
   std::optional<std::uint64_t> pins;
   std::uint64_t pin_steps = 0;
   std::uint64_t barriers = 0;
@@ -52,12 +53,15 @@ struct StepHashes {
 //
 // The pin hash is taken over (cycle since the first step, axis, direction); the n-th step at an axis's pins is the n-th
 // of that axis's path steps, whose command says how many barriers lie before it.
-class StepHasher final : public app::RunWatcher {
+class StepHasher final : public driver::StepSink {
  public:
   explicit StepHasher(Shift shift) : shift_(shift) {}
 
-  void sending(const planner::PlannedSegment& segment) override;
-  void sent(std::uint64_t cycle) override;
+  enum class Path { kNoArc, kArc, kChords };  // what the commands of a block are
+  // A block whose commands follow, those commands, and when they were written.
+  void block(Path path);
+  void command(const driver::Command& command);
+  void sent(std::uint64_t cycle);
   void path_step(const driver::PathStep& step) override;
   void pin_step(const driver::PinStep& step) override;
 
@@ -66,7 +70,7 @@ class StepHasher final : public app::RunWatcher {
 
  private:
   struct Sent {  // a command
-    std::size_t segment;
+    std::size_t block;
     std::uint64_t barriers;  // before it
     bool chord;
   };
@@ -79,12 +83,13 @@ class StepHasher final : public app::RunWatcher {
   void end_tick();
   void end_chord();
   void end_cycle();
-  void look_at_lead(std::size_t segment, std::uint64_t cycle);
+  void look_at_lead(std::size_t block, std::uint64_t cycle);
 
   Shift shift_;
   std::deque<Sent> commands_;
-  std::vector<std::uint64_t> sent_at_;  // by segment
+  std::vector<std::uint64_t> sent_at_;  // by block
   bool arcs_ = false;
+  bool chords_ = false;  // of the block whose commands come
   StepHashes result_;
 
   Hash path_;
@@ -93,9 +98,9 @@ class StepHasher final : public app::RunWatcher {
 
   Hash pins_;
   std::array<std::deque<Waiting>, card_map::kMaxAxes> waiting_;
-  std::vector<driver::PinStep> cycle_;       // its steps
-  std::int64_t corrected_ = 0;               // time of that cycle, shift taken off, since the first write
-  std::optional<std::size_t> last_segment_;  // of the pins' steps
+  std::vector<driver::PinStep> cycle_;     // its steps
+  std::int64_t corrected_ = 0;             // time of that cycle, shift taken off, since the first write
+  std::optional<std::size_t> last_block_;  // of the pins' steps
   std::uint64_t last_cycle_ = 0;
 };
 

@@ -20,31 +20,25 @@ struct Steps {
       {{6, 7, 0, 1}, 5007},  {{6, 9, 0, 1}, 5009},
   };
   std::uint64_t first_write = 900;
-  gcode::MotionKind kind = gcode::MotionKind::kLine;  // of the second path
-  bool chords = false;
+  StepHasher::Path path = StepHasher::Path::kNoArc;  // the second
 };
 
-planner::PlannedSegment segment(std::vector<driver::Command> commands) {
-  planner::PlannedSegment result;
-  result.commands = std::move(commands);
-  return result;
+void send(StepHasher& hasher, const std::vector<driver::Command>& commands, std::uint64_t cycle,
+          StepHasher::Path path = StepHasher::Path::kNoArc) {
+  hasher.block(path);
+  for (const driver::Command& command : commands) hasher.command(command);
+  hasher.sent(cycle);
 }
+
+const std::vector<driver::Command> kMove = {driver::FeedCommand{}, driver::LineCommand{}};
 
 StepHashes hashes_of(const Steps& list, Shift shift = {0, 0}) {
   StepHasher hasher(shift);
-  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));  // commands 0 and 1
-  hasher.sent(list.first_write);
-  planner::PlannedSegment second = segment({driver::FeedCommand{}, driver::LineCommand{}});  // 2 and 3
-  second.kind = list.kind;
-  second.chords = list.chords;
-  hasher.sending(second);
-  hasher.sent(list.first_write + 20);
-  hasher.sending(segment({driver::DwellCommand{}}));  // 4
-  hasher.sent(list.first_write + 30);
-  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));  // 5 and 6
-  hasher.sent(list.first_write + 50);
-  hasher.sending(segment({driver::EndCommand{}}));
-  hasher.sent(list.first_write + 60);
+  send(hasher, kMove, list.first_write);                          // commands 0 and 1
+  send(hasher, kMove, list.first_write + 20, list.path);          // 2 and 3
+  send(hasher, {driver::DwellCommand{}}, list.first_write + 30);  // 4
+  send(hasher, kMove, list.first_write + 50);                     // 5 and 6
+  send(hasher, {driver::EndCommand{}}, list.first_write + 60);
   for (const Steps::Both& step : list.steps) {
     hasher.path_step(step.path);
     hasher.pin_step({step.cycle, step.path.axis, step.path.direction});
@@ -145,16 +139,13 @@ TEST(Shift, OfABarrierDoesNotHideOneClockBehindIt) {
 
 // An arc on the accumulator: path ticks stay in, there is nothing to say of the pins.
 TEST(Arcs, HaveNoHashOfThePins) {
-  const auto arc = [](Steps& s) { s.kind = gcode::MotionKind::kArc; };
+  const auto arc = [](Steps& s) { s.path = StepHasher::Path::kArc; };
   EXPECT_FALSE(hashes_with(arc).pins);
   EXPECT_EQ(hashes_with(arc).path, hashes_of({}).path);
 }
 
 TEST(Arcs, InChordsCountThePulsesOfEachCommandAndAxis) {
-  const auto chords = [](Steps& s) {
-    s.kind = gcode::MotionKind::kArc;
-    s.chords = true;
-  };
+  const auto chords = [](Steps& s) { s.path = StepHasher::Path::kChords; };
   const auto same = hashes_with(chords);
   const auto with = [&](const std::function<void(Steps&)>& change) {
     return hashes_with([&](Steps& s) {
@@ -171,8 +162,7 @@ TEST(Arcs, InChordsCountThePulsesOfEachCommandAndAxis) {
 
 TEST(Pins, WithOtherStepsThanThePathsAreRefused) {
   StepHasher hasher({0, 0});
-  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));
-  hasher.sent(10);
+  send(hasher, kMove, 10);
   EXPECT_THROW(hasher.pin_step({20, 0, 1}), std::logic_error);
   hasher.path_step({1, 1, 0, 1});
   EXPECT_THROW(hasher.pin_step({20, 0, -1}), std::logic_error);
@@ -181,12 +171,10 @@ TEST(Pins, WithOtherStepsThanThePathsAreRefused) {
 
 TEST(Lead, ShowsAPathThatCameTooLate) {
   StepHasher hasher({0, 0});
-  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));
-  hasher.sent(10);
+  send(hasher, kMove, 10);
   hasher.path_step({1, 1, 0, 1});
   hasher.pin_step({20, 0, 1});
-  hasher.sending(segment({driver::FeedCommand{}, driver::LineCommand{}}));
-  hasher.sent(25);
+  send(hasher, kMove, 25);
   hasher.path_step({3, 1, 0, 1});
   hasher.pin_step({40, 0, 1});
   EXPECT_EQ(hasher.finish().lead, -5);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "trammel/planner/profile.hpp"
+#include "plan.hpp"
 
 namespace trammel::planner {
 
@@ -18,42 +18,25 @@ using namespace machine;
 using namespace gcode;
 namespace {
 
+__extension__ typedef __int128 int128;
+
 using ::testing::HasSubstr;
 
 constexpr std::uint32_t kClock = 100'000'000;
 
-std::vector<PlannedSegment> plan(const std::string& text, const Machine& machine = default_machine(),
-                                 std::uint32_t clock_hz = kClock) {
-  const Program program = read_program(text, "p.ngc", machine);
-  Planner planner(program, machine, clock_hz);
-  std::vector<PlannedSegment> segments;
-  for (PlannedSegment segment; planner.next(segment);) {
-    segments.push_back(segment);
-  }
-  return segments;
+std::vector<Planned> plan(const std::string& text, const Machine& machine = default_machine(),
+                          std::uint32_t clock_hz = kClock) {
+  const Plan result = plan_text(text, machine, {clock_hz, 4, true});
+  if (result.error) throw std::runtime_error(describe(*result.error));
+  return result.blocks;
 }
 
 std::string refusal(const std::string& text) {
-  try {
-    plan(text);
-  } catch (const ProgramError& error) {
-    return error.what();
-  }
-  return "accepted";
+  const Plan result = plan_text(text, default_machine(), {kClock, 4, true});
+  return result.error ? describe(*result.error) : "accepted";
 }
 
-template <typename T>
-std::vector<T> commands(const PlannedSegment& segment) {
-  std::vector<T> found;
-  for (const Command& command : segment.commands) {
-    if (const T* one = std::get_if<T>(&command)) {
-      found.push_back(*one);
-    }
-  }
-  return found;
-}
-
-std::uint64_t feed_ticks(const PlannedSegment& segment) {
+std::uint64_t feed_ticks(const Planned& segment) {
   std::uint64_t sum = 0;
   for (const FeedCommand& piece : commands<FeedCommand>(segment)) {
     sum += piece.ticks;
@@ -61,7 +44,7 @@ std::uint64_t feed_ticks(const PlannedSegment& segment) {
   return sum;
 }
 
-std::uint64_t path_ticks(const PlannedSegment& segment) {
+std::uint64_t path_ticks(const Planned& segment) {
   std::uint64_t sum = 0;
   for (const LineCommand& line : commands<LineCommand>(segment)) {
     sum += line.ticks;
@@ -73,7 +56,7 @@ std::uint64_t path_ticks(const PlannedSegment& segment) {
 }
 
 // Pulses that the lines of a segment make: floor(1/2 + N * increment / 2^40).
-Pulses line_pulses(const PlannedSegment& segment) {
+Pulses line_pulses(const Planned& segment) {
   Pulses sum{};
   for (const LineCommand& line : commands<LineCommand>(segment)) {
     for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
@@ -85,7 +68,7 @@ Pulses line_pulses(const PlannedSegment& segment) {
 }
 
 // Throws when a command does not fit its layout.
-void encode_all(const PlannedSegment& segment) {
+void encode_all(const Planned& segment) {
   std::vector<std::uint32_t> words;
   for (const Command& command : segment.commands) {
     encode(command, 0, words);
@@ -93,7 +76,7 @@ void encode_all(const PlannedSegment& segment) {
 }
 
 // What holds for every moving segment.
-void expect_sound(const PlannedSegment& segment) {
+void expect_sound(const Planned& segment) {
   EXPECT_EQ(feed_ticks(segment), path_ticks(segment));
   EXPECT_GE(path_ticks(segment), 22U);
   EXPECT_NO_THROW(encode_all(segment));
@@ -106,7 +89,7 @@ void expect_sound(const PlannedSegment& segment) {
   if (commands<ArcCommand>(segment).empty()) {
     const Pulses made = line_pulses(segment);
     for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
-      EXPECT_EQ(made[axis], segment.end[axis] - segment.start[axis]);
+      EXPECT_EQ(made[axis], segment->end[axis] - segment->start[axis]);
     }
   }
   for (const LineCommand& line : commands<LineCommand>(segment)) {
@@ -117,7 +100,7 @@ void expect_sound(const PlannedSegment& segment) {
 }
 
 // Largest rate in ticks a second.
-double top_rate(const PlannedSegment& segment, std::uint32_t clock_hz = kClock) {
+double top_rate(const Planned& segment, std::uint32_t clock_hz = kClock) {
   double top = 0;
   for (const FeedCommand& piece : commands<FeedCommand>(segment)) {
     top = std::max(top, std::ldexp(static_cast<double>(piece.rate), -64));
@@ -128,16 +111,16 @@ double top_rate(const PlannedSegment& segment, std::uint32_t clock_hz = kClock) 
 TEST(Planner, LineHasFeedThenGeometry) {
   const auto segments = plan("G1 X10 Y5 F3000\nM2\n");
   ASSERT_EQ(segments.size(), 2U);
-  const PlannedSegment& line = segments[0];
-  EXPECT_EQ(line.line, 1U);
-  EXPECT_EQ(line.kind, MotionKind::kLine);
-  EXPECT_EQ(line.end, (Pulses{800, 400}));
+  const Planned& line = segments[0];
+  EXPECT_EQ(line->line, 1U);
+  EXPECT_EQ(line->geometry, Geometry::kLine);
+  EXPECT_EQ(line->end, (Pulses{800, 400}));
   ASSERT_EQ(line.commands.size(), 4U);
   expect_sound(line);
   EXPECT_EQ(commands<LineCommand>(line)[0].mask, 3);
   // 11.18 mm at 80 steps/mm, 128 ticks each.
   EXPECT_EQ(path_ticks(line), static_cast<std::uint64_t>(std::llround(std::hypot(800, 400) * 128)));
-  EXPECT_NEAR(line.seconds, std::hypot(10, 5) / 50 + 50 / 1000.0 * 0.894, 0.002);
+  EXPECT_NEAR(line.planned.seconds, std::hypot(10, 5) / 50 + 50 / 1000.0 * 0.894, 0.002);
   EXPECT_TRUE(std::holds_alternative<EndCommand>(segments[1].commands.at(0)));
 }
 
@@ -171,19 +154,19 @@ TEST(Planner, PulseShapeBindsTheSpeed) {
 
 TEST(Planner, RoundsAbsoluteTargetsHalfAwayFromZero) {
   // 0.00625 mm are half a pulse.
-  EXPECT_EQ(plan("G0 X0.00625")[0].end[0], 1);
-  EXPECT_EQ(plan("G0 X-0.00625")[0].end[0], -1);
+  EXPECT_EQ(plan("G0 X0.00625")[0]->end[0], 1);
+  EXPECT_EQ(plan("G0 X-0.00625")[0]->end[0], -1);
   EXPECT_EQ(plan("G0 X0.00624").size(), 1U);
   std::string text = "G91 G0\n";
   for (int i = 0; i < 1000; ++i) {
     text += "X0.003\n";
   }
   const auto segments = plan(text);
-  EXPECT_EQ(segments.at(segments.size() - 2).end[0], 240);
+  EXPECT_EQ(segments.at(segments.size() - 2)->end[0], 240);
   Pulses here{};
-  for (const PlannedSegment& segment : segments) {
-    EXPECT_EQ(segment.start, here);
-    here = segment.end;
+  for (const Planned& segment : segments) {
+    EXPECT_EQ(segment->start, here);
+    here = segment->end;
   }
 }
 
@@ -193,7 +176,7 @@ TEST(Planner, ExtremesWork) {
   for (const std::uint32_t clock_hz : {100'000U, 1'000'000U, kClock}) {
     machine.clock_hz = clock_hz;
     for (const auto& segment : plan("G0 X0.000001\nX2000 Y0.0125\nG1 X0 F0.0001\nY0 F0.00001", machine, clock_hz)) {
-      if (segment.kind != MotionKind::kEnd) {
+      if (segment->geometry != Geometry::kEnd) {
         expect_sound(segment);
         EXPECT_LE(top_rate(segment, clock_hz), 0.9001 * clock_hz);
       }
@@ -224,9 +207,9 @@ TEST(Planner, ArcsGoToTheAccumulator) {
   const auto segments = plan("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-5\n");
   ASSERT_EQ(segments.size(), 4U);
   for (const std::size_t i : {1U, 2U}) {
-    const PlannedSegment& arc = segments[i];
+    const Planned& arc = segments[i];
     expect_sound(arc);
-    EXPECT_FALSE(arc.chords);
+    EXPECT_EQ(arc->geometry, Geometry::kArc);
     ASSERT_EQ(commands<ArcCommand>(arc).size(), 1U);
   }
   const ArcCommand quarter = commands<ArcCommand>(segments[1])[0];
@@ -234,11 +217,11 @@ TEST(Planner, ArcsGoToTheAccumulator) {
   EXPECT_EQ(quarter.end_x, -800);
   EXPECT_EQ(quarter.end_y, 800);
   EXPECT_FALSE(quarter.clockwise);
-  EXPECT_EQ(segments[1].centre_x, 0);
-  EXPECT_NEAR(segments[1].sweep, std::acos(0.0), 1e-12);
-  EXPECT_NEAR(segments[1].seconds, 10 * std::acos(0.0) / 10, 0.05);
+  EXPECT_EQ(segments[1]->centre_x, 0);
+  EXPECT_NEAR(segments[1]->exact.sweep, std::acos(0.0), 1e-12);
+  EXPECT_NEAR(segments[1].planned.seconds, 10 * std::acos(0.0) / 10, 0.05);
   EXPECT_EQ(commands<ArcCommand>(segments[2])[0].path_ticks, 3200U);
-  EXPECT_EQ(segments[2].centre_y, 5 * 80 * 256);
+  EXPECT_EQ(segments[2]->centre_y, 5 * 80 * 256);
 }
 
 TEST(Planner, CentripetalAccelerationIsLimited) {
@@ -255,17 +238,17 @@ TEST(Planner, UnequalScalesGoOutAsChords) {
   apply_override(machine, "axis.x.steps_per_mm=200");
   const auto segments = plan("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-10\n", machine);
   for (const std::size_t i : {1U, 2U}) {
-    const PlannedSegment& arc = segments[i];
+    const Planned& arc = segments[i];
     expect_sound(arc);
-    EXPECT_TRUE(arc.chords);
+    EXPECT_EQ(arc->geometry, Geometry::kChords);
     const auto lines = commands<LineCommand>(arc);
     ASSERT_GT(lines.size(), 10U);
     // Every corner within a rounded pulse of the ellipse, every chord's middle within 0.25 pulse more.
-    const double centre_x = static_cast<double>(arc.centre_x) / 256;
-    const double centre_y = static_cast<double>(arc.centre_y) / 256;
-    Pulses here = arc.start;
+    const double centre_x = static_cast<double>(arc->centre_x) / 256;
+    const double centre_y = static_cast<double>(arc->centre_y) / 256;
+    Pulses here = arc->start;
     for (const LineCommand& line : lines) {
-      PlannedSegment one;
+      Planned one;
       one.commands.emplace_back(line);
       const Pulses step = line_pulses(one);
       const auto off_ellipse = [&](double x, double y) {
@@ -279,7 +262,7 @@ TEST(Planner, UnequalScalesGoOutAsChords) {
       here[0] += step[0];
       here[1] += step[1];
     }
-    EXPECT_EQ(here, arc.end);
+    EXPECT_EQ(here, arc->end);
   }
 }
 
@@ -287,8 +270,8 @@ TEST(Planner, TinyAndHugeArcsEndWhereTheyShould) {
   for (const char* text : {"G2 X0.01 I0.005 F60", "G2 I0.01 F60", "G2 X0.02 Y0.02 R0.02 F60", "G2 X100 R3000000 F60",
                            "G2 I0.001 F60", "G3 X0.0001 Y0.0001 R-1 F60"}) {
     SCOPED_TRACE(text);
-    for (const PlannedSegment& segment : plan(text)) {
-      if (segment.kind == MotionKind::kArc) {
+    for (const Planned& segment : plan(text)) {
+      if (moves(segment.planned.block)) {
         expect_sound(segment);
       }
     }
@@ -320,16 +303,14 @@ TEST(Planner, RandomTextIsRefusedOrPlanned) {
       }
       text += "\n";
     }
-    try {
-      for (const PlannedSegment& segment : plan(text)) {
-        const bool moves = segment.kind != MotionKind::kEnd && segment.kind != MotionKind::kDwell;
-        encode_all(segment);
-        RC_ASSERT(!moves || feed_ticks(segment) == path_ticks(segment));
-        planned += moves ? 1U : 0U;
-      }
-    } catch (const ProgramError& error) {
-      RC_ASSERT(error.line() >= 1U);
+    const Plan result = plan_text(text, default_machine(), {kClock, 4, true});
+    for (const Planned& segment : result.blocks) {
+      encode_all(segment);
+      if (!moves(segment.planned.block)) continue;
+      RC_ASSERT(feed_ticks(segment) == path_ticks(segment));
+      ++planned;
     }
+    RC_ASSERT(!result.error || result.error->line >= 1U);
   }));
   EXPECT_GT(planned, 10U);
 }
@@ -343,14 +324,14 @@ TEST(Planner, RandomLinesAreSound) {
               std::to_string(coordinate()) + "E" + std::to_string(coordinate()) + "\n";
     }
     const std::uint32_t clock_hz = *rc::gen::element(1'000'000U, 25'000'000U, kClock);
-    for (const PlannedSegment& segment : plan(text, default_machine(), clock_hz)) {
-      if (segment.kind == MotionKind::kEnd) {
+    for (const Planned& segment : plan(text, default_machine(), clock_hz)) {
+      if (segment->geometry == Geometry::kEnd) {
         continue;
       }
       RC_ASSERT(feed_ticks(segment) == path_ticks(segment));
       const Pulses made = line_pulses(segment);
       for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
-        RC_ASSERT(made[axis] == segment.end[axis] - segment.start[axis]);
+        RC_ASSERT(made[axis] == segment->end[axis] - segment->start[axis]);
       }
       // No axis above its velocity: ticks a second times pulses a tick.
       const Machine machine = default_machine();
@@ -365,17 +346,18 @@ TEST(Planner, RandomLinesAreSound) {
 #ifdef TRAMMEL_SHARED_GCODE_DIR
 TEST(PlannerShared, OctocatIsSound) {
   const Machine machine = default_machine();
-  const Program program = read_program_file(TRAMMEL_SHARED_GCODE_DIR "/octocat.gcode", machine);
-  Planner planner(program, machine, kClock);
-  Pulses here = planner.start();
-  std::size_t count = 0;
-  for (PlannedSegment segment; planner.next(segment); ++count) {
-    ASSERT_EQ(segment.start, here);
-    here = segment.end;
-    if (segment.kind != MotionKind::kEnd) {
+  gcode::FileLines lines(TRAMMEL_SHARED_GCODE_DIR "/octocat.gcode");
+  const Plan result = plan_lines(lines, machine, {kClock, 4, true});
+  ASSERT_FALSE(result.error);
+  Pulses here = result.start;
+  for (const Planned& segment : result.blocks) {
+    ASSERT_EQ(segment->start, here);
+    here = segment->end;
+    if (segment->geometry != Geometry::kEnd) {
       ASSERT_EQ(feed_ticks(segment), path_ticks(segment));
     }
   }
+  const std::size_t count = result.blocks.size();
   EXPECT_GT(count, 25000U);
   EXPECT_EQ(here, (Pulses{400, 400, 2992, 211565}));
 }

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <vector>
 
 namespace trammel::planner {
 
 using namespace driver;
 namespace {
 
+__extension__ typedef __int128 int128;
 __extension__ typedef unsigned __int128 uint128;
 
 // The feed generator as the architecture page words it, in exact integers and whole updates of 32 clocks.
@@ -72,7 +72,12 @@ class FeedSimulation {
   std::uint64_t largest_jump_ = 0;
 };
 
-FeedSimulation simulate(const std::vector<FeedCommand>& pieces) {
+// Over a path of as many units as ticks, at a clock of 1 Hz: rates are ticks a clock.
+Profile profile(std::uint64_t ticks, double rate, double acceleration) {
+  return trapezoid(ticks, {static_cast<double>(ticks), rate, acceleration}, 1);
+}
+
+FeedSimulation simulate(const Profile& pieces) {
   FeedSimulation simulation;
   for (const FeedCommand& piece : pieces) {
     simulation.run(piece);
@@ -80,7 +85,7 @@ FeedSimulation simulate(const std::vector<FeedCommand>& pieces) {
   return simulation;
 }
 
-std::uint64_t total_ticks(const std::vector<FeedCommand>& pieces) {
+std::uint64_t total_ticks(const Profile& pieces) {
   std::uint64_t sum = 0;
   for (const FeedCommand& piece : pieces) {
     sum += piece.ticks;
@@ -97,9 +102,9 @@ double time_slack(double acceleration) { return 2 / std::sqrt(acceleration) + 12
 
 TEST(Profile, HasThreePiecesWithAllTicks) {
   // 9 and 20 mm at 80 steps/mm, 128 ticks a pulse, 100 mm/s and 1000 mm/s^2 at 100 MHz.
-  const std::vector<FeedCommand> pieces = trapezoid(92160, {100.0L * 80 * 128 / 1e8L, 1000.0L * 80 * 128 / 1e16L});
+  const Profile pieces = profile(92160, 100.0 * 80 * 128 / 1e8, 1000.0 * 80 * 128 / 1e16);
   ASSERT_EQ(pieces.size(), 2U);  // 10 mm would be just the two ramps
-  const std::vector<FeedCommand> longer = trapezoid(204800, {100.0L * 80 * 128 / 1e8L, 1000.0L * 80 * 128 / 1e16L});
+  const Profile longer = profile(204800, 100.0 * 80 * 128 / 1e8, 1000.0 * 80 * 128 / 1e16);
   ASSERT_EQ(longer.size(), 3U);
   EXPECT_EQ(total_ticks(longer), 204800U);
   EXPECT_GT(longer[0].acceleration, 0);
@@ -114,7 +119,7 @@ TEST(Profile, HasThreePiecesWithAllTicks) {
 TEST(Profile, EndsARampAtTheWantedSpeed) {
   const double rate = 0.05;
   const double acceleration = 1e-9;
-  const std::vector<FeedCommand> pieces = trapezoid(10'000'000, {rate, acceleration});
+  const Profile pieces = profile(10'000'000, rate, acceleration);
   ASSERT_EQ(pieces.size(), 3U);
   FeedSimulation ramp;
   ramp.run(pieces[0]);
@@ -124,24 +129,24 @@ TEST(Profile, EndsARampAtTheWantedSpeed) {
 
 TEST(Profile, VeryShortMovesAreOnePiece) {
   for (std::uint64_t ticks : {1U, 2U, 22U}) {
-    const std::vector<FeedCommand> pieces = trapezoid(ticks, {0.5L, 0.25L});
+    const Profile pieces = profile(ticks, 0.5, 0.25);
     EXPECT_EQ(total_ticks(pieces), ticks);
     EXPECT_LE(simulate(pieces).clocks(), 3 * ticks + 1);
   }
 }
 
 TEST(Profile, VerySlowFeedsEnd) {
-  const std::vector<FeedCommand> pieces = trapezoid(3, {1e-9L, 1e-9L});
+  const Profile pieces = profile(3, 1e-9, 1e-9);
   ASSERT_EQ(pieces.size(), 1U);
   const auto clocks = static_cast<double>(simulate(pieces).clocks());
   EXPECT_NEAR(clocks, 3e9, 3e9 * 0.001);
 }
 
 TEST(Profile, RefusesNonsense) {
-  EXPECT_THROW(trapezoid(0, {0.1L, 0.1L}), std::invalid_argument);
-  EXPECT_THROW(trapezoid(std::uint64_t{1} << 40, {0.1L, 0.1L}), std::invalid_argument);
-  EXPECT_THROW(trapezoid(5, {0.0L, 0.1L}), std::invalid_argument);
-  EXPECT_THROW(trapezoid(5, {0.1L, -1.0L}), std::invalid_argument);
+  EXPECT_THROW(profile(0, 0.1, 0.1), std::invalid_argument);
+  EXPECT_THROW(profile(std::uint64_t{1} << 40, 0.1, 0.1), std::invalid_argument);
+  EXPECT_THROW(profile(5, 0.0, 0.1), std::invalid_argument);
+  EXPECT_THROW(profile(5, 0.1, -1.0), std::invalid_argument);
 }
 
 TEST(Profile, RandomMovesKeepTheirLimits) {
@@ -153,7 +158,7 @@ TEST(Profile, RandomMovesKeepTheirLimits) {
     const double ideal = ideal_clocks(static_cast<double>(ticks), rate, acceleration);
     RC_PRE(ideal < 3e8);
 
-    const std::vector<FeedCommand> pieces = trapezoid(ticks, {rate, acceleration});
+    const Profile pieces = profile(ticks, rate, acceleration);
     three_pieces += pieces.size() == 3 ? 1U : 0U;
     RC_ASSERT(total_ticks(pieces) == ticks);
     for (const FeedCommand& piece : pieces) {
@@ -171,7 +176,7 @@ TEST(Profile, RandomMovesKeepTheirLimits) {
     const auto clocks = static_cast<double>(run.clocks());
     RC_ASSERT(clocks <= ideal * 1.03 + time_slack(acceleration));
     RC_ASSERT(clocks >= ideal * 0.97 - time_slack(acceleration));
-    RC_ASSERT(std::abs(static_cast<double>(duration(pieces)) - clocks) <= 0.03 * clocks + time_slack(acceleration));
+    RC_ASSERT(std::abs(duration(pieces) - clocks) <= 0.03 * clocks + time_slack(acceleration));
   });
   EXPECT_TRUE(passed);
   EXPECT_GT(three_pieces, 10U);
@@ -182,7 +187,7 @@ TEST(Profile, RampsAccelerateAtMostAsAskedFor) {
     const double acceleration = std::exp2(-*rc::gen::inRange(800, 5000) / 100.0);
     const double rate = std::exp2(-*rc::gen::inRange(0, 2600) / 100.0) * 0.9;
     const auto ticks = static_cast<std::uint64_t>(std::exp2(*rc::gen::inRange(0, 3900) / 100.0));
-    for (const FeedCommand& piece : trapezoid(ticks, {rate, acceleration})) {
+    for (const FeedCommand& piece : profile(ticks, rate, acceleration)) {
       const double gained = std::ldexp(std::abs(static_cast<double>(piece.acceleration)), -64);
       RC_ASSERT(gained <= 32 * acceleration * (1 + 1e-9) + 0x1p-63);
     }

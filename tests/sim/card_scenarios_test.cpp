@@ -87,7 +87,7 @@ TEST_P(CardScenario, MakesThePapersLinesInOneShot) {
     card->write(reg::kLengthLo, 2000);
     card->write(reg::kLengthHi, 0);
     card->write(reg::kStart, 3);
-    EXPECT_THROW(card->write(reg::kStart, 3), driver::BusError);
+    EXPECT_THROW(card->write(reg::kStart, 3), driver::RefusedError);
     EXPECT_EQ(reason(), static_cast<std::uint32_t>(card_map::Reason::Busy));
     card->write(reg::kRefusal, 1);
     finish();
@@ -215,12 +215,12 @@ TEST_P(CardScenario, StopsAtAnArcThatMissesItsEnd) {
   card->wait(9000);
   EXPECT_EQ(card->read(reg::kFault), field::kFaultPathIncomplete);
   EXPECT_EQ(steps.path.size(), command.path_ticks / 2);
-  EXPECT_THROW(card->write(reg::kStart, 1), driver::BusError);
+  EXPECT_THROW(card->write(reg::kStart, 1), driver::RefusedError);
 }
 
 TEST_P(CardScenario, RefusesWholeCommands) {
   const std::uint32_t room = card->read(reg::kGeometryRoom);
-  EXPECT_THROW(card->write(reg::kMagic, 1), driver::BusError);
+  EXPECT_THROW(card->write(reg::kMagic, 1), driver::RefusedError);
   EXPECT_EQ(reason(), static_cast<std::uint32_t>(card_map::Reason::ReadOnly));
   card->write(reg::kRefusal, 1);
   EXPECT_THROW(
@@ -228,7 +228,7 @@ TEST_P(CardScenario, RefusesWholeCommands) {
         card->write(reg::kStream, 0x0003'0099);
         card->write(reg::kStream, 0);
       },
-      driver::BusError);
+      driver::RefusedError);
   EXPECT_EQ(reason(), static_cast<std::uint32_t>(card_map::Reason::UnknownOpcode));
   host.abort();
   card->write(reg::kRefusal, 1);

@@ -32,10 +32,12 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
                                           Problem& problem) {
   line_ = line;
   const Context context{words, motions, problem};
-  if (!check_leftovers(context)) {
-    return Outcome::kFailed;
+  if (!words.is_plain()) {
+    if (!check_leftovers(context)) {
+      return Outcome::kFailed;
+    }
+    set_modes(words);
   }
-  set_modes(words);
   set_feed(words);
   if (!act(context)) {
     return Outcome::kFailed;
@@ -64,13 +66,7 @@ bool Interpreter::act(const Context& context) {
   return move(context);
 }
 
-void Interpreter::end(std::size_t line, LineMotions& motions) {
-  line_ = line;
-  Motion motion;
-  motion.kind = MotionKind::kEnd;
-  motion.target = here_;
-  append(motion, motions);
-}
+void Interpreter::end(std::size_t line, LineMotions& motions) { motions.add(MotionKind::kEnd, line).target = here_; }
 
 // Words that no word of the line would use.
 bool Interpreter::check_leftovers(const Context& context) const {
@@ -137,32 +133,30 @@ void Interpreter::set_feed(const WordSet& words) {
 }
 
 void Interpreter::dwell(const Context& context) {
-  Motion motion;
-  motion.kind = MotionKind::kDwell;
+  Motion& motion = context.motions.add(MotionKind::kDwell, line_);
   motion.target = here_;
   motion.seconds = *context.words.letter('P');
-  append(motion, context.motions);
 }
 
 // Through the programmed point to the home position of the axes named; bare G28: of all axes but the extruder, whose
 // position has no home.
 bool Interpreter::go_home(const Context& context) {
-  Motion motion;
-  motion.kind = MotionKind::kTraverse;
   const bool all = !context.words.has_axis_words();
   if (!all) {
-    if (!target_of(context, motion.target)) {
+    Motion& point = context.motions.add(MotionKind::kTraverse, line_);
+    if (!target_of(context, point.target)) {
       return false;
     }
-    append(motion, context.motions);
+    here_ = point.target;
   }
+  Motion& motion = context.motions.add(MotionKind::kTraverse, line_);
   motion.target = here_;
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
     if (all ? machine_.axes[axis].letter != 'E' : context.words.has_axis(axis)) {
       motion.target[axis] = machine_.axes[axis].home;
     }
   }
-  append(motion, context.motions);
+  here_ = motion.target;
   return true;
 }
 
@@ -205,12 +199,11 @@ bool Interpreter::move(const Context& context) {
 }
 
 bool Interpreter::straight(const Context& context, bool rapid) {
-  Motion motion;
-  motion.kind = rapid ? MotionKind::kTraverse : MotionKind::kLine;
+  Motion& motion = context.motions.add(rapid ? MotionKind::kTraverse : MotionKind::kLine, line_);
   if (!target_of(context, motion.target) || (!rapid && !set_speed(context, motion))) {
     return false;
   }
-  append(motion, context.motions);
+  here_ = motion.target;
   return true;
 }
 
@@ -224,8 +217,7 @@ bool Interpreter::arc(const Context& context, bool clockwise) {
     return problem.set(ErrorCode::kArcOutsidePlane, fmt::format("{} in the plane {}{} (G{})", plane.unused_offset,
                                                                 plane.first, plane.second, plane_ / 10));
   }
-  Motion motion;
-  motion.kind = MotionKind::kArc;
+  Motion& motion = context.motions.add(MotionKind::kArc, line_);
   motion.clockwise = clockwise;
   std::size_t x = 0;
   std::size_t y = 0;
@@ -238,7 +230,7 @@ bool Interpreter::arc(const Context& context, bool clockwise) {
   if (!arc_geometry(context, plane, motion) || !set_speed(context, motion)) {
     return false;
   }
-  append(motion, context.motions);
+  here_ = motion.target;
   return true;
 }
 
@@ -345,12 +337,6 @@ bool Interpreter::set_speed(const Context& context, Motion& motion) const {
   }
   motion.feed = *feed_ * (feed_in_inches_ && linear ? kMmPerInch : 1) / 60;
   return true;
-}
-
-void Interpreter::append(Motion& motion, LineMotions& motions) {
-  motion.line = line_;
-  here_ = motion.target;
-  motions.push(motion);
 }
 
 }  // namespace trammel::gcode

@@ -14,7 +14,14 @@ namespace trammel::gcode {
 class LineMotions {
  public:
   void clear() { count_ = 0; }
-  void push(const Motion& motion) { motions_[count_++] = motion; }
+  // A motion to be filled in.
+  Motion& add(MotionKind kind, std::size_t line) {
+    Motion& motion = motions_[count_++];
+    motion = Motion{};
+    motion.kind = kind;
+    motion.line = line;
+    return motion;
+  }
   std::size_t size() const { return count_; }
   const Motion& operator[](std::size_t i) const { return motions_[i]; }
 
@@ -68,7 +75,6 @@ class Interpreter {
   double offset(std::size_t axis) const;
   bool target_of(const Context& context, Coordinates& target) const;
   bool set_speed(const Context& context, Motion& motion) const;
-  void append(Motion& motion, LineMotions& motions);
 
   const machine::Machine& machine_;
   std::size_t line_ = 0;

@@ -73,14 +73,17 @@ bool ChunkedLines::next(std::string_view& line) {
 }
 
 FileLines::FileLines(const std::string& path)
-    : ChunkedLines(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    : ChunkedLines(path), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)), owned_(true) {
   if (descriptor_ < 0) {
     failure_ = std::strerror(errno);
   }
 }
 
+FileLines::FileLines(int descriptor, std::string name)
+    : ChunkedLines(std::move(name)), descriptor_(descriptor), owned_(false) {}
+
 FileLines::~FileLines() {
-  if (descriptor_ >= 0) {
+  if (owned_ && descriptor_ >= 0) {
     ::close(descriptor_);
   }
 }

@@ -8,8 +8,10 @@ namespace trammel::gcode {
 namespace {
 
 std::string_view without_blanks_before(std::string_view line) {
-  const std::size_t first = line.find_first_not_of(" \t");
-  return first == std::string_view::npos ? std::string_view{} : line.substr(first);
+  while (!line.empty() && (line.front() == ' ' || line.front() == '\t')) {
+    line.remove_prefix(1);
+  }
+  return line;
 }
 
 }  // namespace
@@ -58,7 +60,9 @@ class Reader::Impl {
       return fail();
     }
     in_program_ = in_program_ || !words_.empty();
-    count_accepted();
+    if (words_.accepted_begin() != words_.accepted_end()) {
+      count_accepted();
+    }
     const Interpreter::Outcome outcome = interpreter_.execute(words_, number_, motions_, problem_);
     ended_ = outcome == Interpreter::Outcome::kEnded;
     return outcome != Interpreter::Outcome::kFailed || fail();

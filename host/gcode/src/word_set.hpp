@@ -56,6 +56,8 @@ class WordSet {
   bool read(std::string_view line, const AxisLetters& axes, Problem& problem);
 
   bool empty() const { return words_ == 0; }
+  // Nothing but axis words, G0 to G3 or G80, F and N, as most lines of most programs.
+  bool is_plain() const { return (codes_present_ & ~kPlainGroups) == 0 && (letters_present_ & ~kPlainLetters) == 0; }
   // In tenths of a group's word, as G2 = 20 or M30 = 300.
   std::optional<int> code(Group group) const;
   std::optional<double> letter(char name) const;  // F I J K N P R S T
@@ -76,6 +78,9 @@ class WordSet {
   bool add_code(const Word& word, Problem& problem);
   bool add_letter(const Word& word, Problem& problem);
   bool add_axis(const Word& word, const AxisLetters& axes, Problem& problem);
+
+  static constexpr std::uint32_t kPlainGroups = 1U << static_cast<unsigned>(Group::kMotion);
+  static constexpr std::uint32_t kPlainLetters = 1U << ('F' - 'A') | 1U << ('N' - 'A');
 
   std::size_t words_ = 0;
   std::uint32_t codes_present_ = 0;

@@ -24,7 +24,56 @@ bool is_printable(char c) { return c > ' ' && c < '\x7f'; }
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
+// The digits from `at` on, behind those of `whole`; gives back where they end.
+const char* add_digits(const char* at, const char* end, std::uint64_t& whole) {
+  for (; at < end && is_digit(*at); ++at) {
+    whole = whole * 10 + static_cast<std::uint64_t>(*at - '0');
+  }
+  return at;
+}
+
 }  // namespace
+
+// A letter, blanks, [+-] digits [. digits] with one digit at least.
+[[gnu::always_inline]] inline bool WordScanner::parse(Word& word, Problem& problem) {
+  const char* const text = line_.data();
+  const char* const end = text + line_.size();
+  const char* at = text + at_ + 1;
+  while (at < end && is_space(*at)) {
+    ++at;
+  }
+  const char* const number = at;
+  const bool negative = at < end && *at == '-';
+  at += at < end && (negative || *at == '+') ? 1 : 0;
+  const char* const first = at;
+  std::uint64_t whole = 0;  // of all digits; meaningless above 19 of them
+  at = add_digits(at, end, whole);
+  auto digits = static_cast<std::size_t>(at - first);
+  std::size_t decimals = 0;
+  if (at < end && *at == '.') {
+    const char* const point = at + 1;
+    at = add_digits(point, end, whole);
+    decimals = static_cast<std::size_t>(at - point);
+    digits += decimals;
+  }
+  const std::size_t from = at_;
+  at_ = static_cast<std::size_t>((digits == 0 ? number : at) - text);
+  if (digits == 0 || (at < end && !is_space(*at) && !may_follow(*at))) {
+    return at < end && digits != 0 && *at == 'e' ? exponent(from, problem) : malformed(from, problem);
+  }
+  double value = 0;
+  if (digits <= 18 && whole <= kExactWhole) {
+    value = static_cast<double>(whole);
+    value = decimals == 0 ? value : value / kPowersOfTen[decimals];
+  } else if (!convert(static_cast<std::size_t>(first - text), at_, value)) {
+    return out_of_range(from, problem);
+  }
+  if (value > kLargest) {
+    return out_of_range(from, problem);
+  }
+  word = Word{upper(text[from]), negative ? -value : value, std::string_view(text + from, at_ - from)};
+  return true;
+}
 
 bool WordScanner::next(Word& word, Problem& problem) {
   while (at_ < line_.size()) {
@@ -78,59 +127,15 @@ bool WordScanner::unexpected(Problem& problem) const {
                      fmt::format("unexpected '{}'", quote(line_.substr(at_, end - at_))));
 }
 
-// A letter, blanks, [+-] digits [. digits] with one digit at least.
-bool WordScanner::parse(Word& word, Problem& problem) {
-  const std::size_t from = at_;
-  const char* const text = line_.data();
-  const std::size_t size = line_.size();
-  std::size_t at = from + 1;
-  while (at < size && is_space(text[at])) {
-    ++at;
-  }
-  const std::size_t number = at;
-  const bool negative = at < size && text[at] == '-';
-  if (at < size && (negative || text[at] == '+')) {
-    ++at;
-  }
-  const std::size_t digits_from = at;
-  std::uint64_t whole = 0;  // of all digits; meaningless above 19 of them
-  while (at < size && is_digit(text[at])) {
-    whole = whole * 10 + static_cast<std::uint64_t>(text[at++] - '0');
-  }
-  std::size_t digits = at - digits_from;
-  std::size_t decimals = 0;
-  if (at < size && text[at] == '.') {
-    const std::size_t point = at++;
-    while (at < size && is_digit(text[at])) {
-      whole = whole * 10 + static_cast<std::uint64_t>(text[at++] - '0');
-    }
-    decimals = at - point - 1;
-    digits += decimals;
-  }
-  at_ = at;
-  constexpr std::string_view kMayFollow = "(;%";
-  const bool followed = at < size && is_printable(text[at]) && !is_letter(text[at]) &&
-                        kMayFollow.find(text[at]) == std::string_view::npos;
-  if (digits == 0 || followed) {
-    at_ = digits == 0 ? number : at;
-    return malformed(from, problem);
-  }
-  if (at < size && text[at] == 'e') {
-    return exponent(from, problem);
-  }
-  double value = 0;
-  bool in_range = true;
-  if (digits <= 18 && whole <= kExactWhole) {
-    value = static_cast<double>(whole) / kPowersOfTen[decimals];
-  } else {
-    in_range = convert(digits_from, at, value);
-  }
-  if (!in_range || value > kLargest) {
-    return problem.set(ErrorCode::kNumberOutOfRange,
-                       fmt::format("number out of range in '{}'", quote(line_.substr(from, at - from))));
-  }
-  word = Word{upper(text[from]), negative ? -value : value, line_.substr(from, at - from)};
-  return true;
+// Whether a character that is no blank may stand right behind a number. An exponent's letter may not, in the way in
+// which programs print it: 1.5e-05. Read as two words that would be a motion of the axis E.
+bool WordScanner::may_follow(char c) {
+  return (is_letter(c) && c != 'e') || c == '(' || c == ';' || c == '%' || !is_printable(c);
+}
+
+bool WordScanner::out_of_range(std::size_t from, Problem& problem) const {
+  return problem.set(ErrorCode::kNumberOutOfRange,
+                     fmt::format("number out of range in '{}'", quote(line_.substr(from, at_ - from))));
 }
 
 // More digits than a double holds exactly: std::from_chars rounds once, too.
@@ -159,7 +164,6 @@ bool WordScanner::malformed(std::size_t from, Problem& problem) const {
                      fmt::format("malformed number in '{}'", quote(line_.substr(from, end - from))));
 }
 
-// As programs print small numbers: 1.5e-05. Read as two words it would be a motion of the axis E.
 bool WordScanner::exponent(std::size_t from, Problem& problem) const {
   std::size_t end = at_ + 1;
   while (end < line_.size() && is_printable(line_[end]) && !is_letter(line_[end])) {

@@ -24,12 +24,15 @@ class WordScanner {
   bool failed() const { return failed_; }
 
  private:
-  bool skip_comment(Problem& problem);
-  bool unexpected(Problem& problem) const;
-  bool parse(Word& word, Problem& problem);
-  bool convert(std::size_t from, std::size_t end, double& value) const;
-  bool malformed(std::size_t from, Problem& problem) const;
-  bool exponent(std::size_t from, Problem& problem) const;
+  inline bool parse(Word& word, Problem& problem);
+  // What few lines need, out of the way of the rest.
+  [[gnu::cold]] bool skip_comment(Problem& problem);
+  [[gnu::cold]] bool unexpected(Problem& problem) const;
+  [[gnu::cold]] bool convert(std::size_t from, std::size_t end, double& value) const;
+  [[gnu::cold]] bool malformed(std::size_t from, Problem& problem) const;
+  [[gnu::cold]] bool exponent(std::size_t from, Problem& problem) const;
+  [[gnu::cold]] bool out_of_range(std::size_t from, Problem& problem) const;
+  [[gnu::cold]] static bool may_follow(char c);
 
   std::string_view line_;
   std::size_t at_ = 0;

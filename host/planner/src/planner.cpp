@@ -1,120 +1,127 @@
 #include "trammel/planner/planner.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "planner_paths.hpp"
+#include "chords.hpp"
+#include "trammel/driver/arc.hpp"
+#include "trammel/driver/card_timing.hpp"
+#include "trammel/driver/increment.hpp"
 
 namespace trammel::planner {
 namespace {
 
+constexpr double kTicksPerPulse = 128;  // steps even to 1/64
+constexpr double kMostTicks = 0x1p39;   // half of the command's 40 bits
+constexpr double kLeastRate = 0x1p-30;  // ticks a clock; four times the finest floor
+constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
 constexpr std::uint64_t kMaxDwell = (std::uint64_t{1} << 40) - 1;  // clocks of one command
-constexpr double kMaxDwellTotal = 0x1p48;                          // clocks of one G4
-constexpr double kMaxRadius = 0x1p44;                              // pulses; the centre in 1/256 pulses fits 64 bits
-
-Pulses rounded(const machine::Machine& machine, const gcode::Coordinates& position) {
-  Pulses pulses{};
-  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-    pulses[axis] = to_pulses(position[axis], machine.axes[axis].steps_per_mm);
-  }
-  return pulses;
-}
-
-bool in_range(double mm, double steps_per_mm) {
-  // One pulse less than the counters hold, for the rounding.
-  return std::abs(mm * steps_per_mm) <= static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);
-}
-
-void plan_dwell(double seconds, std::uint32_t clock_hz, PlannedSegment& segment) {
-  auto clocks = static_cast<std::uint64_t>(std::llround(seconds * clock_hz));
-  segment.seconds = seconds;
-  do {
-    const std::uint64_t part = std::min(clocks, kMaxDwell);
-    segment.commands.emplace_back(driver::DwellCommand{part});
-    clocks -= part;
-  } while (clocks != 0);
-}
 
 }  // namespace
 
-Planner::Planner(const gcode::Program& program, const machine::Machine& machine, std::uint32_t clock_hz)
-    : program_(program),
+Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card)
+    : blocks_(blocks),
       machine_(machine),
-      clock_hz_(clock_hz),
-      start_(rounded(machine, program.start)),
-      here_(start_),
-      exact_(program.start) {
-  gcode::Coordinates from = program.start;
-  for (const gcode::Motion& motion : program.motions) {
-    check(motion, from);
-    from = motion.target;
+      card_(card),
+      least_ticks_(driver::gap_free_ticks(std::max(kFewestAxes, card.axes))) {}
+
+bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
+  Block& block = planned.block;
+  if (!blocks_.next(block)) return false;
+  planned.speed = 0;
+  planned.limit = SpeedLimit::kNone;
+  if (block.geometry == Geometry::kDwell) {
+    put_dwell(planned, sink);
+    return true;
+  }
+  if (block.geometry == Geometry::kEnd) {
+    planned.seconds = 0;
+    planned.commands = planned.geometry = planned.feed = 1;
+    sink.put(other_ = driver::EndCommand{});
+    return true;
+  }
+  plan_move(planned);
+  for (const driver::FeedCommand& piece : profile_) {
+    std::get<driver::FeedCommand>(piece_) = piece;
+    sink.put(piece_);
+  }
+  put_geometry(block, sink);
+  return true;
+}
+
+void Planner::put_dwell(PlannedBlock& planned, driver::CommandSink& sink) {
+  std::uint64_t left = planned.block.dwell_clocks;
+  planned.seconds = planned.block.dwell_seconds;
+  planned.commands = std::max<std::uint64_t>(1, (left + kMaxDwell - 1) / kMaxDwell);
+  planned.geometry = planned.feed = planned.commands;
+  for (std::uint64_t i = 0; i < planned.commands; ++i) {
+    const std::uint64_t part = std::min(left, kMaxDwell);
+    sink.put(other_ = driver::DwellCommand{part});
+    left -= part;
   }
 }
 
-void Planner::check(const gcode::Motion& motion, const gcode::Coordinates& from) const {
-  if (motion.kind == gcode::MotionKind::kDwell && motion.seconds * clock_hz_ > kMaxDwellTotal) {
-    throw gcode::ProgramError(program_.file, motion.line, fmt::format("a dwell of {} s is too long", motion.seconds));
-  }
-  const auto check_axis = [&](std::size_t axis, double mm) {
-    if (!in_range(mm, machine_.axes[axis].steps_per_mm)) {
-      throw gcode::ProgramError(program_.file, motion.line,
-                                fmt::format("{}{} is beyond the card's 32-bit position counter ({} steps/mm)",
-                                            machine_.axes[axis].letter, mm, machine_.axes[axis].steps_per_mm));
-    }
-  };
-  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    check_axis(axis, motion.target[axis]);
-  }
-  if (motion.kind != gcode::MotionKind::kArc) {
+// Feed ticks of a path: T a pulse, as large as evenness wants and the clock allows; kChords: of each line.
+std::uint64_t Planner::ticks_for(const Block& block) const {
+  double per_pulse = std::min(kTicksPerPulse, kMaxTickRate * card_.clock_hz / block.speed);
+  per_pulse = std::max(per_pulse, kLeastRate * card_.clock_hz / block.speed);
+  double ticks = std::clamp(std::round(per_pulse * block.pulses), static_cast<double>(least_ticks_), kMostTicks);
+  if (block.geometry == Geometry::kChords) ticks = std::round(ticks / static_cast<double>(block.chord_lines));
+  return std::max({static_cast<std::uint64_t>(ticks), block.least_ticks, least_ticks_});
+}
+
+void Planner::plan_move(PlannedBlock& planned) {
+  const Block& block = planned.block;
+  const std::uint64_t lines = block.geometry == Geometry::kChords ? block.chord_lines : 1;
+  ticks_ = ticks_for(block);
+  profile_ = trapezoid(ticks_ * lines, {block.pulses, block.speed, block.acceleration}, card_.clock_hz);
+  planned.seconds = duration(profile_) / card_.clock_hz;
+  planned.geometry = lines;
+  planned.feed = profile_.size();
+  planned.commands = lines + profile_.size();
+  const double mm_a_tick = block.length / static_cast<double>(ticks_ * lines);
+  planned.speed = profile_.top_rate * card_.clock_hz * mm_a_tick;
+  planned.limit = block.limit;
+  if (block.wanted == 0 || profile_.reaches_limit) return;
+  planned.limit = profile_.top_rate >= kMaxTickRate ? SpeedLimit::kClock : SpeedLimit::kAcceleration;
+}
+
+void Planner::put_geometry(const Block& block, driver::CommandSink& sink) {
+  if (block.geometry == Geometry::kArc) {
+    sink.put(other_ = driver::with_ticks(block.arc, ticks_));
     return;
   }
-  // The extremes of the arc: its start and end are targets, the others lie at whole quarters of a turn.
-  const ExactArc arc = exact_arc(motion, from);
-  const double radius = std::max(arc.radius_start, arc.radius_end);
-  const double scale = std::max(machine_.axes[motion.axis_x].steps_per_mm, machine_.axes[motion.axis_y].steps_per_mm);
-  if (!(radius * scale <= kMaxRadius)) {
-    throw gcode::ProgramError(program_.file, motion.line, fmt::format("an arc of radius {} mm is too large", radius));
+  if (block.geometry == Geometry::kChords) {
+    put_chords(block, sink);
+    return;
   }
-  const double quarter = std::acos(0.0);
-  for (int direction = 0; direction < 4; ++direction) {
-    const double turned = (direction * quarter - arc.angle_start) * (motion.clockwise ? -1 : 1);
-    if (std::fmod(std::fmod(turned, 4 * quarter) + 4 * quarter, 4 * quarter) <= arc.sweep) {
-      check_axis(motion.axis_x, motion.centre_x + radius * std::cos(direction * quarter));
-      check_axis(motion.axis_y, motion.centre_y + radius * std::sin(direction * quarter));
-    }
+  auto& line = std::get<driver::LineCommand>(line_);
+  line.ticks = ticks_;
+  unsigned mask = 0;
+  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+    const std::int64_t pulses = block.end[axis] - block.start[axis];
+    line.increment[axis] = 0;
+    if (pulses == 0) continue;
+    mask |= 1U << axis;
+    line.increment[axis] = driver::rounded_increment(pulses, ticks_);
   }
+  line.mask = static_cast<std::uint8_t>(mask);
+  sink.put(line_);
 }
 
-bool Planner::next(PlannedSegment& segment) {
-  const PathContext context{machine_, clock_hz_};
-  while (index_ < program_.motions.size()) {
-    const gcode::Motion& motion = program_.motions[index_++];
-    segment = PlannedSegment{};
-    segment.line = motion.line;
-    segment.kind = motion.kind;
-    segment.start = here_;
-    segment.end = rounded(machine_, motion.target);
-    bool any = true;
-    if (motion.kind == gcode::MotionKind::kDwell) {
-      plan_dwell(motion.seconds, clock_hz_, segment);
-    } else if (motion.kind == gcode::MotionKind::kEnd) {
-      segment.commands.emplace_back(driver::EndCommand{});
-    } else if (motion.kind == gcode::MotionKind::kArc) {
-      any = plan_arc(context, motion, exact_, segment);
-    } else {
-      any = plan_line(context, motion, segment);
-    }
-    exact_ = motion.target;
-    here_ = segment.end;
-    seconds_ += segment.seconds;
-    if (any) {
-      return true;
-    }
-  }
-  return false;
+void Planner::put_chords(const Block& block, driver::CommandSink& sink) {
+  const auto scale = [&](std::size_t axis) { return machine_.axes[axis].steps_per_mm; };
+  auto& line = std::get<driver::LineCommand>(line_);
+  line.increment.fill(0);
+  line.ticks = ticks_;
+  const auto set = [&](std::size_t axis, std::int64_t pulses) {
+    line.increment[axis] = pulses == 0 ? 0 : driver::rounded_increment(pulses, ticks_);
+    return pulses == 0 ? 0U : 1U << axis;
+  };
+  for_each_chord(block, scale(block.axis_x), scale(block.axis_y), [&](Corner step) {
+    line.mask = static_cast<std::uint8_t>(set(block.axis_x, step.x) | set(block.axis_y, step.y));
+    sink.put(line_);
+  });
 }
 
 }  // namespace trammel::planner

@@ -9,13 +9,20 @@
 namespace trammel::run {
 namespace {
 
-// Fraction bits of a pulse generator's increment and of an arc's centre.
-constexpr int kIncrementBits = 40;
-constexpr double kCentreScale = 256.0;
+constexpr double kCentreScale = 1U << card_map::constant::kCentreFractionBits;
 
+// Pulses that a line makes on an axis: its increment times its ticks, to the nearest.
 double displacement(const driver::LineCommand& line, unsigned axis) {
-  const auto product = static_cast<long double>(line.increment[axis]) * static_cast<long double>(line.ticks);
-  return static_cast<double>(std::round(std::ldexp(product, -kIncrementBits)));
+  constexpr unsigned kBits = card_map::constant::kFractionBits;
+  const std::int64_t increment = line.increment[axis];
+  const auto magnitude = static_cast<std::uint64_t>(increment < 0 ? -increment : increment);
+  const driver::Uint128 half(std::uint64_t{1} << (kBits - 1));
+  const double pulses = static_cast<double>(((driver::Uint128::product(magnitude, line.ticks) + half) >> kBits).low());
+  return increment < 0 ? -pulses : pulses;
+}
+
+double to_double(driver::Int128 value) {
+  return static_cast<double>(value.high()) * 0x1p64 + static_cast<double>(value.low());
 }
 
 }  // namespace
@@ -38,8 +45,8 @@ void DeviationMeter::command(std::uint64_t number, const driver::Command& comman
     path.axes[0] = arc->axis_x;
     path.axes[1] = arc->axis_y;
     // F = X^2 + Y^2 - R^2 with X in 1/256 pulse: GX = 2 * 256 * X, so the centre lies at -GX / 512 / 256 pulses.
-    path.target[0] = -static_cast<double>(arc->gradient_x) / (2 * kCentreScale * kCentreScale);
-    path.target[1] = -static_cast<double>(arc->gradient_y) / (2 * kCentreScale * kCentreScale);
+    path.target[0] = -to_double(arc->gradient_x) / (2 * kCentreScale * kCentreScale);
+    path.target[1] = -to_double(arc->gradient_y) / (2 * kCentreScale * kCentreScale);
     const double start = std::hypot(path.target[0], path.target[1]);
     const double end = std::hypot(arc->end_x - path.target[0], arc->end_y - path.target[1]);
     path.inner = std::min(start, end);

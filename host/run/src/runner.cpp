@@ -5,43 +5,45 @@
 #include <algorithm>
 #include <chrono>
 
+#include "line_ring.hpp"
+#include "pipeline.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/configure.hpp"
 
 namespace trammel::run {
 namespace {
 
-bool is_geometry(const driver::Command& command) {
-  return std::holds_alternative<driver::LineCommand>(command) || std::holds_alternative<driver::ArcCommand>(command);
-}
+// The first pass needs the commands' number only.
+class NoSink final : public driver::CommandSink {
+ public:
+  void put(const driver::Command& /*command*/) override {}
+};
 
 // Streams the plan; errors of the card get the line of the program that was being run.
-class ProgramStream {
+class ProgramStream final : private driver::CommandSink {
  public:
-  ProgramStream(const gcode::Program& program, const machine::Machine& machine, driver::Card& card,
-                const std::vector<Observer*>& observers)
-      : program_(program),
+  ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers)
+      : pipeline_(pipeline),
         observers_(observers),
-        planner_(program, machine, card.identification().clock_hz),
         card_(card),
+        // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
+        lines_(card.identification().geometry_depth),
         stream_(card, options()) {}
 
   // Gives back where the program ends, pulses.
   planner::Pulses run() {
-    planner::Pulses end = planner_.start();
+    planner::Pulses end = pipeline_.start();
     try {
-      planner::PlannedSegment segment;
-      while (planner_.next(segment)) {
-        send(segment);
-        if (segment.kind != gcode::MotionKind::kDwell && segment.kind != gcode::MotionKind::kEnd) end = segment.end;
+      while (pipeline_.next(*this, planned_)) {
+        stream_.flush();
+        for (Observer* observer : observers_) observer->sent();
+        end = planned_.block.end;
+        first_of_block_ = true;
       }
       stream_.finish();
-    } catch (const driver::FaultError& error) {
-      // A fault has set the card's counters back; what had begun by then was latched.
-      begun_ = card_.stop_snapshot().geometry_begun;
-      throw RunError(program_.file, current_line(), error.what());
     } catch (const driver::Error& error) {
-      throw RunError(program_.file, current_line(), error.what());
+      look_at_begun(dynamic_cast<const driver::FaultError*>(&error) != nullptr);
+      throw RunError(pipeline_.file(), lines_.current(), error.what());
     }
     return end;
   }
@@ -49,77 +51,95 @@ class ProgramStream {
   std::uint64_t sent() const { return stream_.sent(); }
 
  private:
+  void put(const driver::Command& command) override {
+    if (first_of_block_) {
+      for (Observer* observer : observers_) observer->sending(planned_);
+      first_of_block_ = false;
+    }
+    for (Observer* observer : observers_) observer->command(commands_, command);
+    ++commands_;
+    if (!std::holds_alternative<driver::FeedCommand>(command)) lines_.put(planned_.block.line);
+    stream_.put(command);
+  }
   driver::StreamOptions options() {
     // 200 looks a second: the queues hold far more than 5 ms of motion, and every look costs a simulation bus clocks.
     constexpr std::uint32_t kLooksPerSecond = 200;
     driver::StreamOptions options;
     options.poll_clocks = std::max<std::uint64_t>(64, card_.identification().clock_hz / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
-      begun_ = progress.geometry_begun;
+      lines_.begun(progress.geometry_begun);
       for (Observer* observer : observers_) observer->progress();
     };
     return options;
   }
-  void send(const planner::PlannedSegment& segment) {
-    for (Observer* observer : observers_) observer->sending(segment);
-    for (const driver::Command& command : segment.commands) {
-      for (Observer* observer : observers_) observer->command(commands_, command);
-      ++commands_;
-      if (!std::holds_alternative<driver::FeedCommand>(command)) geometry_lines_.push_back(segment.line);
+  // After an error: what the card has begun by now. A fault has set its counters back; what had begun by then was
+  // latched. Where the link fails too, the last look counts.
+  void look_at_begun(bool fault) {
+    try {
+      lines_.begun((fault ? card_.stop_snapshot() : card_.snapshot()).geometry_begun);
+    } catch (const driver::Error&) {
     }
-    stream_.send(segment.commands);
-    for (Observer* observer : observers_) observer->sent();
-  }
-  // The line of the path or barrier that the card has begun last; of the first one before that.
-  std::size_t current_line() const {
-    if (geometry_lines_.empty()) return 0;
-    const std::size_t begun = std::max<std::size_t>(begun_, 1);
-    return geometry_lines_[std::min(begun, geometry_lines_.size()) - 1];
   }
 
-  const gcode::Program& program_;
+  Pipeline& pipeline_;
   const std::vector<Observer*>& observers_;
-  planner::Planner planner_;
   driver::Card& card_;
-  std::uint64_t commands_ = 0;               // sent
-  std::vector<std::size_t> geometry_lines_;  // of the program, by commands in the geometry queue
-  std::uint32_t begun_ = 0;                  // of these, as the card said last
+  planner::PlannedBlock planned_;
+  bool first_of_block_ = true;
+  std::uint64_t commands_ = 0;  // put
+  LineRing lines_;
   driver::Stream stream_;
 };
 
 }  // namespace
 
+ProgramError::ProgramError(gcode::Error error) : std::runtime_error(gcode::describe(error)), error_(std::move(error)) {}
+
 RunError::RunError(const std::string& file, std::size_t line, const std::string& message)
     : std::runtime_error(fmt::format("{}:{}: {}", file, line, message)), line_(line) {}
 
-Runner::Runner(const gcode::Program& program, const machine::Machine& machine, std::uint32_t clock_hz)
-    : program_(program), machine_(machine), clock_hz_(clock_hz) {
-  start_ = planner::Planner(program, machine, clock_hz).start();
-}
+Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card)
+    : lines_(std::move(lines)), machine_(machine), card_(card) {}
 
 const Plan& Runner::plan() {
+  Pipeline pipeline(lines_, machine_, card_);
   plan_ = Plan{};
-  planner::Planner planner(program_, machine_, clock_hz_);
-  for (planner::PlannedSegment segment; planner.next(segment);) {
-    for (Observer* observer : observers_) observer->planned(segment, plan_.commands);
-    if (std::any_of(segment.commands.begin(), segment.commands.end(), is_geometry)) ++plan_.segments;
-    plan_.commands += segment.commands.size();
+  plan_.file = pipeline.file();
+  plan_.start = plan_.end = pipeline.start();
+  NoSink sink;
+  FeedReport feeds;
+  for (planner::PlannedBlock planned; pipeline.next(sink, planned);) {
+    for (Observer* observer : observers_) observer->planned(planned, plan_.commands);
+    feeds.add(planned);
+    if (planner::moves(planned.block)) ++plan_.segments;
+    plan_.commands += planned.commands;
+    plan_.seconds += planned.seconds;
+    plan_.end = planned.block.end;
   }
-  plan_.seconds = planner.seconds();
+  plan_.feeds_not_reached = feeds.entries();
+  plan_.accepted = pipeline.accepted();
   return plan_;
 }
 
 Outcome Runner::run(driver::Card& card) {
+  const planner::CardLimits limits = planner::limits_of(card.identification());
+  if (limits.clock_hz != card_.clock_hz || limits.axes != card_.axes || limits.accumulator != card_.accumulator) {
+    throw std::invalid_argument("the program was planned for another card");
+  }
   configure(card, machine_);
-  ProgramStream stream(program_, machine_, card, observers_);
+  Pipeline pipeline(lines_, machine_, card_);
+  ProgramStream stream(pipeline, card, observers_);
   const planner::Pulses end = stream.run();
   const driver::Snapshot snapshot = card.snapshot();
+  if (stream.sent() != plan_.commands || end != plan_.end) {
+    throw ProgramError({gcode::ErrorCode::kCannotRead, plan_.file, 0, "the program has changed while it was run"});
+  }
   Outcome outcome;
   for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
     const std::int64_t counted = snapshot.position[a];
-    if (counted != end[a] - start_[a]) {
+    if (counted != end[a] - plan_.start[a]) {
       throw std::runtime_error(
-          fmt::format("axis {}: the card ended at pulse {}, the program at {}", a, counted, end[a] - start_[a]));
+          fmt::format("axis {}: the card ended at pulse {}, the program at {}", a, counted, end[a] - plan_.start[a]));
     }
     outcome.counted.push_back(counted);
     outcome.final_position.push_back(end[a]);

@@ -4,15 +4,15 @@
 #include <string>
 
 #include "trammel/card_map.hpp"
-#include "trammel/driver/fake_card.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/model/deviation_accumulator.hpp"
+#include "trammel/sim/engine.hpp"
 
 int main() {
   using namespace trammel;
-  driver::FakeCard bus;
-  driver::Card card = driver::Card::open(bus);
+  const auto bus = sim::make_model_engine({});
+  driver::Card card = driver::Card::open(*bus);
   driver::run_line(card, driver::plan_line(card.timing(), {20, 40}, std::chrono::milliseconds(1)));
   const driver::Snapshot snapshot = card.snapshot();
   std::printf("%s: x %d, y %d\n", std::string(card_map::find_register(card_map::reg::kMagic).entry->name).c_str(),

@@ -37,8 +37,8 @@ class Accumulator {
     load(load_target::kDeviation, arc.deviation, 5);
     load(load_target::kGradientX, arc.gradient_x, 5);
     load(load_target::kGradientY, arc.gradient_y, 5);
-    load(load_target::kHalfX, static_cast<driver::int128>(arc.half_x), 3);
-    load(load_target::kHalfY, static_cast<driver::int128>(arc.half_y), 3);
+    load(load_target::kHalfX, static_cast<std::int64_t>(arc.half_x), 3);
+    load(load_target::kHalfY, static_cast<std::int64_t>(arc.half_y), 3);
     load(load_target::kEndX, arc.end_x, 2);
     load(load_target::kEndY, arc.end_y, 2);
     load(load_target::kQuadrants, arc.quadrants, 1);
@@ -66,9 +66,9 @@ class Accumulator {
   const Point& position() const { return position_; }
 
  private:
-  void load(unsigned target, driver::int128 value, int halfwords) {
+  void load(unsigned target, const driver::Int128& value, int halfwords) {
     for (int i = 0; i < halfwords; ++i) {
-      const auto word = static_cast<std::uint16_t>(value >> (16 * i));
+      const auto word = static_cast<std::uint16_t>((value.bits() >> (16 * static_cast<unsigned>(i))).low());
       dut_->load_i = 1U << 21 | target << 16 | word;
       dut_.clock();
     }

@@ -55,8 +55,8 @@ void seams() {
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 3);
 }
 
-// Chords: the increment turns in the clock of the swap that keeps the phase, forwards and backwards, at a tick every clock
-// and with the carry between the halves on its way.
+// Chords: the increment turns in the clock of the swap that keeps the phase, forwards and backwards, at a tick every
+// clock and with the carry between the halves on its way.
 void chords() {
   PulseGeneratorBench bench(0);
   for (int repeat = 0; repeat < 500; ++repeat) {

@@ -8,9 +8,7 @@ namespace {
 using namespace trammel;
 
 // One step of the fastest axis in 100 ticks.
-void run_line(benchmark::State& state, sim::EngineKind kind, double clocks_a_tick) {
-  sim::SimulationOptions options;
-  options.kind = kind;
+void run_line(benchmark::State& state, const sim::SimulationOptions& options, double clocks_a_tick) {
   const auto card = sim::make_engine(options);
   test::Host host(*card);
   constexpr std::uint64_t kTicks = 1'000'000'000;
@@ -24,11 +22,28 @@ void run_line(benchmark::State& state, sim::EngineKind kind, double clocks_a_tic
   state.SetItemsProcessed(static_cast<std::int64_t>(card->cycles() - begin));
 }
 
+// The RTL engine in the caller's thread, as tests have it, and with the RTL in its own, as the trammel command.
+sim::SimulationOptions lockstep(bool rtl_thread) {
+  sim::SimulationOptions options;
+  options.rtl_thread = rtl_thread;
+  return options;
+}
+
+sim::SimulationOptions model() {
+  sim::SimulationOptions options;
+  options.kind = sim::EngineKind::kModel;
+  return options;
+}
+
 constexpr double kSlow = 20;
 constexpr double kBusy = 1.05;
-BENCHMARK_CAPTURE(run_line, lockstep, sim::EngineKind::kRtl, kSlow)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(run_line, lockstep_busy, sim::EngineKind::kRtl, kBusy)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(run_line, model, sim::EngineKind::kModel, kSlow)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(run_line, model_busy, sim::EngineKind::kModel, kBusy)->Unit(benchmark::kMillisecond);
+// clang-format off
+BENCHMARK_CAPTURE(run_line, lockstep, lockstep(true), kSlow)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(run_line, lockstep_busy, lockstep(true), kBusy)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(run_line, lockstep_one_thread, lockstep(false), kSlow)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(run_line, lockstep_one_thread_busy, lockstep(false), kBusy)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(run_line, model, model(), kSlow)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(run_line, model_busy, model(), kBusy)->Unit(benchmark::kMillisecond);
+// clang-format on
 
 }  // namespace

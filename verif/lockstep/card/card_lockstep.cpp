@@ -96,6 +96,63 @@ void short_program(Traffic& traffic, unsigned axes, AxiHost& host) {
   traffic.send(driver::EndCommand{});
 }
 
+// What only the card joins, each of it once: constants, strobes, a flush, full queues, counters, a reset between
+// accesses.
+void joins(unsigned axes) {
+  sim::LockstepCard card = test::card_under_test(axes, 5, 0x3A5C);
+  AxiHost host(card, 5);
+  Traffic traffic(host, axes);
+  const auto read_live = [&host] {
+    for (std::uint32_t address = reg::kStatus; address <= reg::kFeedBegun; address += 4) host.read(address);
+  };
+  host.wait(300);
+  for (std::uint32_t address = 0; address < 0x40; address += 4) host.read(address);
+  EXPECT_FALSE(host.write(reg::kHoldLimit, 7, 0x3));
+  read_live();
+  host.write(reg::kRefusal, 1);
+  // A flush in mid command.
+  std::vector<std::uint32_t> words;
+  driver::encode(line(10, {1}), 0, words);
+  host.write(reg::kStream, words.front());
+  host.write(reg::kControl, field::kControlFlush);
+  read_live();
+  traffic.recover();
+  // Queues that fill up while nothing moves.
+  unsigned lines = 0;
+  unsigned pieces = 0;
+  host.write(reg::kRatioFeed, 0);
+  while (traffic.send(line(5, std::vector<std::int64_t>(axes, 1)))) ++lines;
+  read_live();
+  traffic.recover();
+  host.write(reg::kRatioFeed, 0);
+  while (traffic.send(feed(5, 2))) ++pieces;
+  read_live();
+  EXPECT_GT(lines, 100U);
+  EXPECT_GT(pieces, 50U);
+  traffic.recover();
+  short_program(traffic, axes, host);
+  for (int i = 0; i < 20; ++i) {
+    read_live();
+    host.write(reg::kControl, field::kControlSnapshot);
+    host.read(reg::kSnapTimeLo);
+  }
+  // After a reset a write comes before a read that waits beside it, whatever came last.
+  host.write(reg::kHold, 1);
+  host.reset(1);
+  host.write_beside_read({reg::kHold, 1}, reg::kHold);
+  EXPECT_TRUE(traffic.wait_idle(2000));
+  expect_all_compared(card, axes, 10'000);
+}
+
+class CardJoins : public testing::TestWithParam<unsigned> {};
+
+TEST_P(CardJoins, Once) {
+  EXPECT_EQ(lockstep::judge([] { joins(GetParam()); }), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Axes, CardJoins, testing::Values(3U, 4U),
+                         [](const auto& axes) { return std::to_string(axes.param); });
+
 enum class Cut { kAbort, kResetOfOneClock, kResetOfTwoClocks, kHold, kStart };
 
 // The program, cut at a clock of its own each time, and a new one at once.

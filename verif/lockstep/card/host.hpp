@@ -72,7 +72,7 @@ void random_section(Host& host, Random&& random, unsigned axes) {
   bool taken = true;
   try {
     for (const driver::Command& command : commands) host.send(command);
-  } catch (const driver::BusError&) {
+  } catch (const driver::RefusedError&) {
     taken = false;
   }
   if (taken && host.wait_idle(1'000'000)) return;

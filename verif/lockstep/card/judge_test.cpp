@@ -63,23 +63,28 @@ std::string report_of(Scenario scenario) {
   return {};
 }
 
-std::string report_of_lie(std::uint64_t cycle, std::size_t offset, std::uint32_t wrong_bits, std::size_t batch) {
+std::string report_of_lie(std::uint64_t cycle, std::size_t offset, std::uint32_t wrong_bits, std::size_t batch,
+                          RtlThread thread = RtlThread::kCallers) {
   return report_of([&] {
-    LockstepCard card(std::make_unique<Liar>(cycle, offset, wrong_bits), CardModel::Config{}, 5, batch);
+    LockstepCard card(std::make_unique<Liar>(cycle, offset, wrong_bits), CardModel::Config{}, 5, batch, thread);
     card.run({}, 5000);
     card.settle();
   });
 }
 
-// One bit of one signal in one cycle: at the edges of a batch, within one, and after the last full one.
+// One bit of one signal in one cycle: at the edges of a batch, within one, and after the last full one; and whether the
+// RTL follows in batches, in a thread of its own or clock by clock, the report is the same.
 TEST(CardJudge, EverySignalIsCaughtAndNamedWithItsCycle) {
   for (const CardSignal& signal : kCardSignals) {
     for (std::size_t n = 0; n < signal.words; ++n) {
       for (const std::uint64_t cycle : {1U, 700U, 2048U, 2049U, 4999U, 5000U}) {
-        const std::string report = report_of_lie(cycle, signal.offset + 4 * n, 1U << cycle % 32, LockstepCard::kBatch);
+        const std::size_t offset = signal.offset + 4 * n;
+        const std::uint32_t bit = 1U << cycle % 32;
+        const std::string report = report_of_lie(cycle, offset, bit, LockstepCard::kBatch);
         EXPECT_THAT(report, StartsWith(fmt::format("card: cycle {}: {} is 0x", cycle, signal.name)));
         EXPECT_THAT(report, HasSubstr("repeat with TRAMMEL_SEED=5\n"));
-        EXPECT_EQ(report_of_lie(cycle, signal.offset + 4 * n, 1U << cycle % 32, 1), report);
+        EXPECT_EQ(report_of_lie(cycle, offset, bit, 1), report);
+        EXPECT_EQ(report_of_lie(cycle, offset, bit, LockstepCard::kBatch, RtlThread::kOwn), report);
       }
     }
   }
@@ -109,10 +114,73 @@ TEST(CardJudge, EventsUpToTheCycleAreReported) {
   EXPECT_THAT(report, Not(HasSubstr(too_late)));
 }
 
+// The mismatch at the begin of a batch is reported with the last events of the batch before, though the model was
+// ahead.
+TEST(CardJudge, ReportOfTheRtlsOwnThreadIsTheCallers) {
+  for (const std::uint64_t cycle : {150U, 2049U, 3000U, 4097U}) {
+    const auto report = [cycle](bool rtl_thread) {
+      SimulationOptions options;
+      options.rtl_thread = rtl_thread;
+      const auto card = make_rtl_engine(std::make_unique<Liar>(cycle, offsetof(CardRecord, irq_o), 1), options);
+      return report_of([&] {
+        for (std::uint32_t i = 0; i < 3000; ++i) card->write(card_map::reg::step_length(0), i);
+      });
+    };
+    const std::string expected = report(false);
+    EXPECT_THAT(expected, StartsWith(fmt::format("card: cycle {}: irq_o is 0x1 (1) in RTL", cycle)));
+    EXPECT_EQ(report(true), expected);
+  }
+}
+
+// A card whose run fails, and fails again in each later one.
+class Broken : public VerilatedCard {
+ public:
+  explicit Broken(std::uint64_t clocks) : left_(clocks + kResetClocks) {}
+
+  void run(const CardModel::Inputs& in, std::size_t clocks, CardRecord* records) override {
+    card_->run(in, clocks, records);
+    if (left_ == 0) throw std::runtime_error("broken twice");
+    left_ -= std::min<std::uint64_t>(left_, clocks);
+    if (left_ == 0) throw std::runtime_error("broken");
+  }
+
+ private:
+  std::unique_ptr<VerilatedCard> card_ = make_card<4>({kClockHz, 0});
+  std::uint64_t left_;
+};
+
+// Whatever the RTL's thread ends in comes out of a call, and the rest is dropped: the second batch is under way then.
+TEST(CardJudge, ErrorsOfTheRtlsThreadReachTheCaller) {
+  LockstepCard card(std::make_unique<Broken>(1000), CardModel::Config{}, 5, LockstepCard::kBatch, RtlThread::kOwn);
+  EXPECT_THROW(card.run({}, 100'000), std::runtime_error);
+  EXPECT_EQ(card.cycles(), 0U);
+}
+
+// Wrong in every clock: after the first report nothing is left that could end the process.
+TEST(CardJudge, NothingIsComparedAfterAMismatch) {
+  class Wrong : public VerilatedCard {
+   public:
+    void run(const CardModel::Inputs&, std::size_t clocks, CardRecord* records) override {
+      for (std::size_t i = 0; i < clocks; ++i) records[i].tick = 5;
+    }
+  };
+  for (const RtlThread thread : {RtlThread::kCallers, RtlThread::kOwn}) {
+    LockstepCard card(std::make_unique<Wrong>(), CardModel::Config{}, 5, LockstepCard::kBatch, thread);
+    EXPECT_THAT(report_of([&] { card.run({}, 100'000); }), HasSubstr("cycle 1: tick is 0x5"));
+    EXPECT_EQ(card.cycles(), 1U);
+    EXPECT_EQ(report_of([&] { card.settle(); }), "");
+  }
+}
+
 // Whoever asks what was compared is told of a mismatch in what the RTL had still to catch up with.
-TEST(CardJudge, QueriesCatchUp) {
+class CardJudgeThreads : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(RtlThread, CardJudgeThreads, testing::Bool());
+
+TEST_P(CardJudgeThreads, QueriesCatchUp) {
   const auto engine = [] {
-    return make_rtl_engine(std::make_unique<Liar>(20, offsetof(CardRecord, dir_o), 8), SimulationOptions{});
+    SimulationOptions options;
+    options.rtl_thread = GetParam();
+    return make_rtl_engine(std::make_unique<Liar>(20, offsetof(CardRecord, dir_o), 8), options);
   };
   const auto first = engine();
   first->wait(30);
@@ -126,20 +194,28 @@ TEST(CardJudge, QueriesCatchUp) {
 
 TEST(CardJudgeDeathTest, MismatchAtTheEndIsNotLost) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
-  EXPECT_DEATH(
-      {
-        LockstepCard card(std::make_unique<Liar>(9, offsetof(CardRecord, tick), 1), CardModel::Config{}, 5);
-        card.run({}, 10);
-      },
-      "cycle 9: tick is 0x1");
+  // In the last, unfinished batch; and in the one before, which the RTL's thread has when the card is destroyed.
+  for (const std::uint64_t clocks : {10U, 2048U + 10U}) {
+    for (const RtlThread thread : {RtlThread::kCallers, RtlThread::kOwn}) {
+      if (clocks > LockstepCard::kBatch && thread == RtlThread::kCallers) continue;
+      EXPECT_DEATH(
+          {
+            LockstepCard card(std::make_unique<Liar>(9, offsetof(CardRecord, tick), 1), CardModel::Config{}, 5,
+                              LockstepCard::kBatch, thread);
+            card.run({}, clocks);
+          },
+          "cycle 9: tick is 0x1");
+    }
+  }
 }
 
 // Signals a cycle that all cards have: 17 of the core, 8 of the bus (docs/developer/architecture.md); the positions are
 // one an axis.
-TEST(CardJudge, EverySignalIsComparedInEveryCycle) {
+TEST_P(CardJudgeThreads, EverySignalIsComparedInEveryCycle) {
   for (const unsigned axes : {4U, 8U}) {
     SimulationOptions options;
     options.axes = axes;
+    options.rtl_thread = GetParam();
     const auto card = make_engine(options);
     const std::uint64_t begin = card->cycles();
     card->wait(3000);

@@ -84,6 +84,10 @@ void load(Bench& bench, Random& random, const Path& path, bool gaps) {
       while (gaps && random() % 4 == 0) bench.clock(not_its_own(random));
     }
   }
+  // The displacements and the quadrants are in a clock before the start.
+  const auto last = model::load_target::kDeviation + static_cast<unsigned>(order.back());
+  if (last == model::load_target::kEndX || last == model::load_target::kEndY || last == model::load_target::kQuadrants)
+    bench.clock(not_its_own(random));
   Model::Inputs start;
   start.start = true;
   bench.checker.event("start", path.quadrants);

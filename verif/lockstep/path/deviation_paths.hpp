@@ -77,14 +77,17 @@ inline Path line(Random& random) {
 // No curve at all: every bit of every word in use, carries through all of them, ends of any size.
 inline Path noise(Random& random) {
   Path path;
-  const auto shrink = [&] { return static_cast<int>(between(random, 48, 127)); };
+  const auto shrink = [&] { return random() % 2 == 0 ? 48 : static_cast<int>(between(random, 48, 127)); };
   path.deviation = any128(random) >> shrink();
   path.gradient_x = any128(random) >> shrink();
   path.gradient_y = any128(random) >> shrink();
   path.half_x = random() >> between(random, 16, 63);
   path.half_y = random() >> between(random, 16, 63);
-  path.end_x = static_cast<std::int32_t>(random()) >> between(random, 0, 31);
-  path.end_y = static_cast<std::int32_t>(random()) >> between(random, 0, 31);
+  const auto end = [&] {
+    return static_cast<std::int32_t>(random()) >> (random() % 2 == 0 ? 0 : between(random, 0, 31));
+  };
+  path.end_x = end();
+  path.end_y = end();
   path.quadrants = static_cast<std::uint16_t>((random() & 0xFFFF) >> between(random, 0, 16));
   path.clockwise = random() % 2 != 0;
   return path;

@@ -141,7 +141,7 @@ class Bench {
 
   // Beside whatever else; one in four is a reset, of one clock; and another one may follow.
   void cut() {
-    cut_every_ = 20 + dice_.below(8000);
+    cut_every_ = 20 + dice_.below(dice_.chance(2) ? 300 : 8000);
     do {
       in_.tick = dice_.chance(2);
       in_.swap = dice_.chance(2);

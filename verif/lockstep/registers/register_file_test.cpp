@@ -199,6 +199,7 @@ class Bench {
     in_.request = false;
     if (model_.outputs().ack) {
       outstanding_ = false;
+      refused_ = model_.outputs().error;
       return;
     }
     if (outstanding_ || chance(3)) return;
@@ -206,13 +207,16 @@ class Bench {
     in_.request = true;
     in_.write = chance(2);
     in_.partial = chance(20);
-    in_.port = static_cast<std::uint8_t>(draw() % kPorts);
-    in_.address = random_address();
+    // Whoever is refused often looks why.
+    const bool looks = refused_ && chance(3);
+    if (!looks) in_.port = static_cast<std::uint8_t>(draw() % kPorts);
+    in_.write = in_.write && !looks;
+    in_.address = looks ? reg::kRefusal : random_address();
     in_.data = random_data(in_.address);
     // Refusals are cleared often, or there would be no first one (a write of 0 clears nothing); snapshots are asked for
     // often.
-    if (chance(5)) write_register(reg::kRefusal, chance(3) ? 0 : 1U << draw() % 28);
-    if (chance(20)) write_register(reg::kControl, card_map::field::kControlSnapshot);
+    if (!looks && chance(5)) write_register(reg::kRefusal, chance(3) ? 0 : 1U << draw() % 28);
+    if (!looks && chance(20)) write_register(reg::kControl, card_map::field::kControlSnapshot);
     checker_.event(in_.write ? "write" : "read", in_.address);
   }
 
@@ -225,7 +229,8 @@ class Bench {
 
   std::uint32_t random_address() {
     if (chance(20)) return draw() & 0xFFF;
-    if (chance(10)) return chance(2) ? card_map::reg::kRefusal : card_map::reg::kControl;
+    constexpr std::uint32_t kOften[] = {reg::kRefusal, reg::kControl, reg::kStream};
+    if (chance(10)) return kOften[draw() % std::size(kOften)];
     const card_map::Register& entry = card_map::kRegisters[draw() % card_map::kRegisters.size()];
     const std::uint32_t stray = chance(40) ? 1 + draw() % 3 : 0;
     return card_map::slot_address(entry, draw() % entry.count) + stray;
@@ -297,6 +302,7 @@ class Bench {
   std::uint64_t more_ = 0;
   bool flushed_ = false;
   bool streamed_ = false;  // since reset
+  bool refused_ = false;   // the last access
   std::uint32_t checker_wait_ = 0;
   std::uint32_t start_wait_ = 0;
   bool outstanding_ = false;

@@ -29,12 +29,15 @@ class Bench {
     reset();
   }
 
-  // One clock; nothing is enabled from then to the next swap.
+  // One clock, whatever comes in it; nothing is enabled from then to the next swap.
   void reset() {
     checker_.event("reset");
+    model::FeedGenerator::Inputs in;
+    in.swap = dice_.chance(2);
+    in.enable = started_ && dice_.chance(2);
     started_ = false;
     dut_->rst_i = 1;
-    apply({});
+    apply(in);
     dut_.clock();
     dut_->rst_i = 0;
     model_ = model::FeedGenerator();
@@ -156,9 +159,12 @@ void directed() {
       {kMost >> 1, std::uint64_t{1} << 62, 0, 1},       // above 1, and up to 8 and over
       {kMost, std::uint64_t{1} << 63, 0, 0xFFFF'FFFF},  // down through 0, floor just below 1
       {std::uint64_t{5} << 32, kMost, 0, 5},            // one below the floor at the first update
-      {std::uint64_t{5} << 32, 0, 0, 5},                // at the floor
-      {1, 0, 0, 0x4000'0000},                           // starts below its floor: the first slope is as given
-      {std::uint64_t{1} << 60, 0xFFFF, kMost, 1},       // jerk alone turns it round
+      {0x8000'0000'8000'0000, 0 - std::uint64_t{0x8001'0000}, 0, 0x7FFF'FFFF},  // ticks by the low bits above its floor
+      {std::uint64_t{5} << 32, 0, 0, 5},                                        // at the floor
+      {0x7FFF'FFFF'FFFF'0000, 0, 0, 0x7FFF'FFFF},  // at the floor but for the low bits, which make the tick
+      {0x8000'0000'1000'0000, kMost >> 1, 0, 1},   // to 1 with low bits that would miss a tick
+      {1, 0, 0, 0x4000'0000},                      // starts below its floor: the first slope is as given
+      {std::uint64_t{1} << 60, 0xFFFF, kMost, 1},  // jerk alone turns it round
       {0, 0, (std::uint64_t{1} << 63) - 1, 1},
       {0x0123'4567'89AB'CDEF, 0xFEDC'BA98'7654'3211, 0x0000'0FED'CBA9'8765, 0x0765'4321},
   };
@@ -202,7 +208,7 @@ void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
     if (random() % 16 == 0) distance += random() % (1 + 3'000'000 / enable_of_1024);
     if (random() % 5 == 0) bench.piece_at_rest(random_piece(random), random() % 40);
     bench.piece(random_piece(random), distance, random() % 4);
-    if (random() % 500 == 0) bench.reset();
+    if (random() % 50 == 0) bench.reset();
   }
   EXPECT_GT(bench.ticks(), pieces);
   bench.expect_all_compared();

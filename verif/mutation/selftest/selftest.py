@@ -154,8 +154,11 @@ class Verdicts(Folder):
     def test_only_judges_of_the_file_are_asked(self):
         never = judges.Judge("never", self.script("never", "exit 1"), ["b.sv"])
         own = judges.Judge("own", self.script("own", "exit 1"), ["a.sv"])
-        self.assertEqual(judges.try_mutant([never, own], 1, "a.sv").judge, "own")
-        self.assertEqual(judges.try_mutant([never, own], 1, "c.sv").how, "lived")
+        self.assertEqual(judges.try_mutant([never, own], 1, "a.sv", False).judge, "own")
+        self.assertEqual(judges.try_mutant([never, own], 1, "c.sv", False).how, "lived")
+        own.last_resort = True
+        self.assertEqual(judges.try_mutant([never, own], 1, "a.sv", False).judge, "own")
+        self.assertEqual(judges.try_mutant([never, own], 1, "a.sv", True).how, "lived")
 
 
 class Instrument(unittest.TestCase):

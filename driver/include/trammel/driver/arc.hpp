@@ -2,7 +2,7 @@
 //
 // The card walks the conic F = A X^2 + B Y^2 - N from the sign of F (Goldberg & Goldberg, "XY Interpolation
 // Algorithms") and ends on the commanded end point whatever the rounding of start, end and centre. Position is never
-// in floating point; an angle in floating point only tells a short way from the same way and a full turn.
+// in floating point; the sweep only tells a short way from the same way and a full turn.
 // Pure functions, thread-safe. Every function throws std::invalid_argument, naming the value, for what the card cannot
 // do: a radius below one pulse or above the bounds here, an ellipse's start or end off the curve, no step to make, or
 // more turns than its counters hold.
@@ -15,7 +15,7 @@
 namespace trammel::driver {
 
 // Centres carry 8 fraction bits: with whole pulses an arc would stray 2.8 pulses, with 8 bits 1.1.
-inline constexpr std::int64_t kCentreUnitsPerPulse = 256;
+inline constexpr std::int64_t kCentreUnitsPerPulse = std::int64_t{1} << card_map::constant::kCentreFractionBits;
 
 // Largest distance from the centre, each coordinate: 2^24 pulses. Then X^2 <= 2^64, |F| and |GX| < 2^67 on any walk
 // inside the circle's bounding square, far from the card's 80 bits, and a turn has at most 2^27 steps.

@@ -1,37 +1,52 @@
-// The driver's only way to a card: reads and writes of 32-bit registers, and time. A transport (PCIe window, SPI, UART,
-// simulated card) is one class derived from Bus.
+// The driver's only way to a card: accesses to 32-bit registers, and time. A transport (memory window, SPI, serial
+// line, simulated card) is one class derived from Bus; docs/reference/bus.md shows one.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 
 namespace trammel::driver {
 
-// Where the words of a block go.
-enum class Addressing {
-  kIncrementing,  // word i to address + 4 * i
-  kFixed,         // every word to `address` (the stream port)
+// One register access. `address`: bytes within the card's 4 KiB window, a multiple of 4.
+struct Access {
+  std::uint32_t address = 0;
+  std::uint32_t data = 0;  // to write, or what was read
+  bool write = false;
 };
 
-// One card's register window. Addresses are byte addresses within the card's 4 KiB window, multiples of 4.
+constexpr Access read_of(std::uint32_t address) { return {address, 0, false}; }
+constexpr Access write_of(std::uint32_t address, std::uint32_t data) { return {address, data, true}; }
+
+// One connection to one card.
 //
-// Errors: an access that the card or the link refuses throws BusError with the address refused and the direction. A
-// write that throws has not taken effect; of a block, the words before the refused one have.
-// Thread-safety: none; one thread at a time uses a bus and everything built upon it.
+// Thread-safety: none; one thread at a time uses a bus and everything built upon it. Two connections to a card may be
+// used by two threads where the transport says so.
 class Bus {
  public:
   virtual ~Bus() = default;
 
-  virtual std::uint32_t read(std::uint32_t address) = 0;
+  // Makes `count` accesses in order, none for a count of 0; the data of reads are put in their place. Gives back how
+  // many were made: fewer than `count` only where the card refused accesses[result], after which none was made.
+  // Throws LinkError, with what the transport knows, when the link fails: which accesses were made is then not known.
+  virtual std::size_t transfer(Access* accesses, std::size_t count) = 0;
 
-  virtual void write(std::uint32_t address, std::uint32_t value) = 0;
+  // Returns after at least `time` (>= 0): a sleep with hardware, clocks in simulation.
+  virtual void sleep(std::chrono::nanoseconds time) = 0;
 
-  // Writes `count` words in order; a transport may send them as one burst. `count` may be 0: no access then.
-  virtual void write_block(std::uint32_t address, const std::uint32_t* words, std::size_t count,
-                           Addressing addressing) = 0;
+  // Whether a refusal shows in transfer(). Where it does not (posted writes), transfer() gives back `count`, and the
+  // driver reads from the card what it refused before it reports success.
+  virtual bool reports_refusals() const = 0;
 
-  // Lets at least `card_clocks` clocks of the card pass: a sleep with hardware, clock cycles in simulation.
-  virtual void wait(std::uint64_t card_clocks) = 0;
+  // Whether the card's interrupt line reaches this transport.
+  virtual bool has_interrupt() const { return false; }
+
+  // Returns when the card's interrupt is raised or after `longest`, whichever comes first; true for the interrupt. At
+  // once when it is raised already.
+  virtual bool wait_for_interrupt(std::chrono::nanoseconds longest) {
+    sleep(longest);
+    return false;
+  }
 
  protected:
   Bus() = default;

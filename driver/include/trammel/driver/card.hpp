@@ -2,19 +2,27 @@
 //
 // Units: times in nanoseconds of real time where a motor driver's data sheet gives them, else in card clocks; positions
 // in pulses. Every argument is checked before the first access to the bus (ArgumentError). Errors besides those named:
-// BusError, or RefusedError when the card latched why it refused the access. Thread-safety: none; one thread at a time
-// uses a card, its bus and its streams.
+// LinkError; RefusedError, or FaultError when the card refuses because of a fault. A write is confirmed before it
+// counts as made: where the bus does not report refusals, the driver reads REFUSAL behind it, in the same transfer.
+// After any error the objects stay usable; after a LinkError, a card on a new connection is opened anew.
+//
+// Thread-safety: one thread at a time uses a card, its bus and its streams, but for request_hold() and request_abort(),
+// which any thread may call while another one is in a call that waits.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/bus.hpp"
-#include "trammel/driver/commands.hpp"
+#include "trammel/driver/card_timing.hpp"
 #include "trammel/driver/errors.hpp"
 
 namespace trammel::driver {
@@ -30,20 +38,6 @@ struct Identification {
   std::uint32_t geometry_depth = 0;  // halfwords
   std::uint32_t feed_depth = 0;      // halfwords
 };
-
-// What times a line on this card.
-struct CardTiming {
-  std::uint32_t clock_hz = 0;
-  unsigned axes = 0;
-  // Shortest distance of two leading edges of an axis, clocks: shortest_pulse_period() of its settings.
-  std::array<std::uint32_t, card_map::kMaxAxes> pulse_period{};
-};
-
-// Shortest distance of two leading edges for the raw settings of an axis, clocks. The step shaper takes some clocks
-// beyond the times themselves to turn over from phase to phase, and a length of 0 counts as 1.
-constexpr std::uint32_t shortest_pulse_period(std::uint32_t step_length, std::uint32_t step_space) {
-  return (step_length == 0 ? 1 : step_length) + step_space + card_map::constant::kShaperTurnoverClocks;
-}
 
 enum class StepMode : std::uint8_t { kStepDirection = 0, kUpDown = 1, kQuadrature = 2 };
 
@@ -113,20 +107,28 @@ class Card {
   const CardTiming& timing() const { return timing_; }
   Bus& bus() const { return *bus_; }
 
-  // One block write; only while the axis stands. Throws ArgumentError for an axis that the card lacks, a negative time
-  // or one over 65535 clocks.
+  // One transfer; only while the axis stands. Throws ArgumentError for an axis that the card lacks, a negative time or
+  // one over 65535 clocks.
   void configure_axis(unsigned axis, const AxisSettings& settings);
 
   // Time base: share of clocks that are enabled, 2^-16, 0 .. kFullRatio; in pieces of the class feed where the card has
   // classes, else in all.
   void set_ratio(std::uint32_t ratio);
+  // As set_ratio() has set it last, or as somebody else has, where a wait has found that.
+  std::uint32_t ratio() const { return ratio_; }
   // Time that the ratio takes from 0 to full, up to 2^30 clocks; the slew is rounded down, to one that is no faster.
   // Times under 5 clocks give the card's fastest slew, 8 clocks.
   void set_slew_time(std::chrono::nanoseconds full_scale);
-  // Slews the time base to 0 (or back to its ratio).
+  // A hold: slews the time base to 0 (or back to its ratio). Nothing is lost; time-outs do not run in a hold.
   void set_hold(bool hold);
-  // Time that a step may wait before it is a fault, 1 .. 65535 clocks, rounded up.
-  void set_hold_limit(std::chrono::nanoseconds limit);
+  // Longest time that a step may wait for the one before it; longer is a step fault. 1 .. 65535 clocks, rounded up.
+  void set_longest_step_wait(std::chrono::nanoseconds longest);
+
+  // From any thread (and from a signal handler): what the thread that is in a call that waits shall do at its next look
+  // at the card: set_hold(hold), or abort(), after which its call throws StateError. Where no call waits, the next one
+  // that does finds the request. Of several holds the last counts; an abort drops them.
+  void request_hold(bool hold) noexcept { requests_->hold.store(hold ? 1 : 0); }
+  void request_abort() noexcept { requests_->abort.store(true); }
 
   // All of one clock. Throws TimeoutError if the card does not come up with it.
   Snapshot snapshot();
@@ -135,7 +137,9 @@ class Card {
 
   Status status();
   bool busy() { return status().busy; }
-  // Waits until the card is idle. Throws FaultError once it is faulted, TimeoutError after `timeout` of card time.
+  // Waits until the card is idle, and then for its identity: StateError if it was reset since. Throws FaultError once
+  // it is faulted, TimeoutError after `timeout` of card time in which it was not held. Where the ratio is below 1 the
+  // timeout is stretched by as much; a ratio of 0 is a hold.
   void wait_until_idle(std::chrono::nanoseconds timeout);
 
   // FAULT, 0 if there is none.
@@ -143,19 +147,40 @@ class Card {
   // Clears all faults. Nothing moves by it: a fault has dropped all that the card had, and an abort may come before,
   // after or not at all. The stream begins with number 0 (Stream::restart()).
   void clear_faults();
-  // The first access or command refused since the last clear.
+  // The first access or command refused since the last clear that no RefusedError has reported; one of the stream stays
+  // until the stream is restarted.
   std::optional<Refusal> refusal();
-  // Likewise after a BusError: nothing, rather than another BusError, if the link does not answer.
-  std::optional<Refusal> refusal_after_failure();
   void clear_refusal();
 
-  // Drops the queues, stops the path and reopens the stream. Positions stay; faults and refusals stay latched.
+  // Drops the queues, stops the path and reopens the stream. Positions stay; faults stay latched.
   void abort();
 
+  // The rest is for what is built on cards: streams, lines.
+
+  // Makes the accesses in one transfer, and sees to it that none was refused: else RefusedError, or FaultError.
+  // `accesses` has room for count + 1. `context` names the operation in messages.
+  void transfer(Access* accesses, std::size_t count, std::string_view context);
+  // Likewise for words of the stream: whatever was refused since the stream was opened counts.
+  void transfer_stream(Access* accesses, std::size_t count);
+  // One read of a register.
+  std::uint32_t read(std::uint32_t address);
+  // Throws LinkError where a value has bits without meaning in that register: what answers is not the card.
+  static void check_read(const Access& access);
+  // Of a value read from STATUS.
+  Status status_of(const Access& access) const;
+  // Throws LinkError if what answers is no card any more, StateError if it has other step times than it was given.
+  void check_identity();
   // Throws FaultError if the card is faulted; reads FAULT only if `status` says so.
-  void throw_if_faulted(const Status& status, const std::string& context);
-  // Only within a handler of `error`: throws RefusedError if REFUSAL holds the access that failed, else a BusError.
-  [[noreturn]] void throw_refusal(const BusError& error, const std::string& context);
+  void throw_if_faulted(const Status& status, std::string_view context);
+  // Throws what a refusal means: FaultError for the reason FAULTED, else RefusedError.
+  [[noreturn]] void throw_refused(const Refusal& refusal, std::string_view context);
+  // Somebody else has set this ratio.
+  void note_ratio(std::uint32_t ratio) { ratio_ = ratio; }
+  // Does what other threads have asked for. Throws StateError after an abort.
+  void serve_requests();
+  // Lets up to `clocks` pass: fewer only where the bus has an interrupt and the card becomes idle (if asked for),
+  // faulted or refuses something. True for the interrupt.
+  bool pause(std::uint64_t clocks, bool until_idle);
 
   // Nanoseconds to card clocks, rounded up. Throws ArgumentError for a negative time or one of 2^63 clocks or more;
   // `what` names it in the message.
@@ -164,13 +189,29 @@ class Card {
   std::uint64_t poll_interval() const;
 
  private:
-  explicit Card(Bus& bus) : bus_(&bus) {}
-  void write(std::uint32_t address, std::uint32_t value, const std::string& context);
+  struct Requests {
+    std::atomic<int> hold{-1};  // 1 hold, 0 go on, -1 nothing asked
+    std::atomic<bool> abort{false};
+  };
+
+  explicit Card(Bus& bus) : bus_(&bus), requests_(std::make_shared<Requests>()) {}
+  void write(std::uint32_t address, std::uint32_t value, std::string_view context);
+  std::size_t checked_transfer(Access* accesses, std::size_t count);
+  void confirmed_transfer(Access* accesses, std::size_t count, bool confirm, std::string_view context);
+  std::optional<Refusal> latched_refusal();
+  void forget_latched_refusal();
+  void keep_earlier_refusal();
+  [[noreturn]] void throw_refused_access(const Access& access, std::string_view context);
+  void enable_interrupts(bool until_idle);
   Snapshot read_area(card_map::Area area);
 
   Bus* bus_;
   Identification identification_;
   CardTiming timing_;
+  std::uint32_t ratio_ = kFullRatio;
+  std::optional<Refusal> earlier_;           // taken from the card and not reported yet
+  std::optional<std::uint32_t> irq_enable_;  // as written last
+  std::shared_ptr<Requests> requests_;
 };
 
 }  // namespace trammel::driver

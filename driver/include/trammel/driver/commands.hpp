@@ -2,6 +2,7 @@
 // Plain data, no card access; encode() is pure and thread-safe.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,11 +10,9 @@
 #include <vector>
 
 #include "trammel/card_map.hpp"
+#include "trammel/driver/wide.hpp"
 
 namespace trammel::driver {
-
-// 128-bit signed integer: deviations and gradients of the conic need more than 64 bits.
-__extension__ typedef __int128 int128;
 
 // A straight line over `ticks` feed ticks; axes outside `mask` stand still.
 struct LineCommand {
@@ -33,9 +32,9 @@ struct ArcCommand {
   std::uint16_t quadrants = 0;   // Q, quadrant changes before the end may be taken
   std::int32_t end_x = 0;        // displacement start to end, pulses
   std::int32_t end_y = 0;
-  int128 deviation = 0;   // F at the start
-  int128 gradient_x = 0;  // GX, GY at the start
-  int128 gradient_y = 0;
+  Int128 deviation;   // F at the start; 80 bits
+  Int128 gradient_x;  // GX, GY at the start; 80 bits
+  Int128 gradient_y;
   std::uint64_t half_x = 0;  // CX/2, CY/2
   std::uint64_t half_y = 0;
 };
@@ -60,10 +59,26 @@ struct EndCommand {};
 
 using Command = std::variant<LineCommand, ArcCommand, FeedCommand, DwellCommand, EndCommand>;
 
-// Appends the command's words (header first) to `words`. `number` is the command's number, mod 256.
-// Throws ArgumentError, naming the field, when a value is outside its layout or an axis outside the mask has an
-// increment; nothing is appended then. What depends on the card (its axes, engines, room) is not checked here.
+// Words of the longest command of the card's, with all axes: enough for every one of encode()'s.
+inline constexpr std::size_t kMaxCommandWords = [] {
+  std::size_t most = 0;
+  for (const card_map::Command& command : card_map::kCommands) {
+    most = std::max<std::size_t>(most, card_map::words(command, 0xFF));
+  }
+  return most;
+}();
+
+// Writes the command's words (header first) to words[0 ..], and gives back how many: at most kMaxCommandWords. `number`
+// is the command's number, mod 256. Throws ArgumentError, naming the field, when a value is outside its layout or an
+// axis outside the mask has an increment; what `words` holds then is of no use. What depends on the card (its axes,
+// engines, room) is not checked here. Allocates nothing.
+std::size_t encode(const Command& command, std::uint8_t number, std::uint32_t* words);
+
+// Likewise, appended to `words`, which stay as they were when it throws.
 void encode(const Command& command, std::uint8_t number, std::vector<std::uint32_t>& words);
+
+// The layout of the command's kind.
+const card_map::Command& layout_of(const Command& command);
 
 struct DecodedCommand {
   Command command;

@@ -16,21 +16,11 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-enum class Direction { kRead, kWrite };
-
-// The bus refused an access: the card answered an error, or the link failed.
-class BusError : public Error {
+// The link to the card failed, or what answers is no longer a card: what() is the transport's own message, or says
+// what the driver read. Which of the accesses under way were made is not known.
+class LinkError : public Error {
  public:
-  BusError(std::uint32_t address, Direction direction);
-  // `detail`: what the transport knows, appended to the message.
-  BusError(std::uint32_t address, Direction direction, const std::string& detail);
-
-  std::uint32_t address() const { return address_; }  // byte address in the card's window
-  Direction direction() const { return direction_; }
-
- private:
-  std::uint32_t address_;
-  Direction direction_;
+  using Error::Error;
 };
 
 // What answers is not a card that this driver understands.
@@ -39,13 +29,14 @@ class IdentificationError : public Error {
   using Error::Error;
 };
 
-// The card refused a command or an access and latched why (REFUSAL).
+// The card refused a command or an access. A fault as the reason is a FaultError.
 class RefusedError : public Error {
  public:
-  // Fields as latched in REFUSAL; `context` names the operation that was refused, in the message only.
+  // Fields as latched in REFUSAL; `context` names the operation that was refused, in the message only. A reason of 0:
+  // the card did not say.
   RefusedError(std::uint8_t reason, std::uint8_t command_number, std::uint32_t address, const std::string& context);
 
-  std::uint8_t reason() const { return reason_; }                  // value of card_map::Reason
+  std::uint8_t reason() const { return reason_; }                  // value of card_map::Reason, or 0
   std::uint8_t command_number() const { return command_number_; }  // mod 256; of the stream command
   std::uint32_t address() const { return address_; }               // byte address of the access refused
 

@@ -83,9 +83,6 @@ class OneShotPlan {
   bool slowed_ = false;
 };
 
-// round(pulses * 2^40 / clocks), half away from zero. Precondition: 0 < clocks, pulses <= clocks < 2^40.
-std::uint64_t one_shot_frequency(std::uint64_t pulses, std::uint64_t clocks);
-
 // Plans a line over a duration, rounded up to whole clocks. Throws ArgumentError when no axis moves, an axis moves that
 // the card lacks, the duration is not positive, a limit is exceeded (kRefuse), or the line would take 2^62 clocks or
 // more.
@@ -100,8 +97,9 @@ OneShotPlan plan_line(const CardTiming& card, const Displacement& displacement, 
 OneShotPlan plan_line_clocks(const CardTiming& card, const Displacement& displacement, std::uint64_t clocks,
                              const LineLimits& limits = {});
 
-// Starts the part with one block write of 4 n + 3 words on a card with n axes, and nothing else on the bus. Throws
-// ArgumentError if the card has no direct mode, RefusedError if it is not idle or faulted.
+// Starts the part: with direct mode by one transfer of 4 n + 3 writes on a card with n axes; without, through the
+// card's stream, which begins anew by it (a Stream that is open must be restarted). Throws FaultError if the card is
+// faulted; RefusedError (without direct mode StateError) if it is not idle. A line is never lost in silence.
 void start_line(Card& card, const OneShotPart& part);
 
 // Plans a line and starts it. Throws what plan_line throws, and ArgumentError if the line has more than one part;
@@ -110,8 +108,9 @@ OneShotPlan start_line(Card& card, const Displacement& displacement, std::chrono
                        const LineLimits& limits = {});
 OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed speed, const LineLimits& limits = {});
 
-// Runs all parts and returns when the last has ended. Throws FaultError, and TimeoutError when a part is not over
-// `patience` (card time) after its length has passed, for example because of a hold.
+// Runs all parts and returns when the last has ended. Throws FaultError; TimeoutError when a part is not over
+// `patience` (card time) after its length has passed at the ratio that the time base has, holds not counted; StateError
+// when the card was reset, or aborted by Card::request_abort().
 void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds patience = std::chrono::seconds(1));
 
 }  // namespace trammel::driver

@@ -5,7 +5,11 @@
 // use up what it has while the next command waits: whatever fills one queue must find its counterpart in the other.
 // The planner sends them so; another order ends in a TimeoutError, not in a deadlock.
 //
-// Thread-safety: none, as of the card.
+// Nothing is allocated for a command: words wait in a buffer of fixed size until it is full, until there is no room
+// known for the next command, or until flush().
+//
+// Thread-safety: as of the card: a hold or an abort from another thread goes by Card::request_hold() and
+// Card::request_abort(), which put(), flush(), send() and finish() look at whenever they wait.
 #pragma once
 
 #include <chrono>
@@ -15,6 +19,7 @@
 #include <vector>
 
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/command_sink.hpp"
 #include "trammel/driver/commands.hpp"
 
 namespace trammel::driver {
@@ -29,40 +34,46 @@ struct StreamProgress {
 struct StreamOptions {
   // Pause between two looks at the card, card clocks; 0: Card::poll_interval().
   std::uint64_t poll_clocks = 0;
-  // Longest time (of the card) in which nothing is begun and nothing is held back by a hold: longer than the
-  // longest command takes.
-  std::chrono::nanoseconds stall_timeout = std::chrono::minutes(10);
+  // How much longer than planned (in card time) the card may be with what it has begun before it counts as hung. What
+  // was planned is known from the commands: dwells, and pieces at the ratio that the time base has; holds do not count.
+  std::chrono::nanoseconds patience = std::chrono::seconds(1);
   // Called at each look while the stream waits. May throw: the exception passes through, the stream stays usable.
   std::function<void(const StreamProgress&)> progress;
 };
 
-class Stream {
+class Stream final : public CommandSink {
  public:
   // Opens the card's stream: numbers begin at 0, the queues are empty, no refusal is latched. Throws StateError if
-  // the card is busy, FaultError if it is faulted, ArgumentError for a stall timeout that is not positive.
+  // the card is busy, FaultError if it is faulted, ArgumentError for a patience that is not positive.
   // `card` must outlive the stream.
   explicit Stream(Card& card, StreamOptions options = {});
 
-  // Sends commands in order, each whole or not at all, as many in one fixed-address block write as there is room for.
-  // Returns when the last is written, not when it is done. Every command is checked against its layout and against
-  // what the card has (axes, engines) before the first access to the bus: ArgumentError.
+  // Takes a command to send, whole or not at all; it is written now or later. Throws ArgumentError when it does not fit
+  // its layout or what the card has (axes, engines): it is not taken then, and those before it stay as they were.
   //
-  // While it waits for room: FaultError, TimeoutError. When the card refuses a command: RefusedError with the reason
-  // and the command's number; a refusal may show only at a later send() or in finish(), and any refused access to the
-  // card counts. After a RefusedError or
-  // a BusError the card ignores the stream: send() and finish() throw StateError until restart().
+  // When it has to write or to wait for room: LinkError, FaultError; TimeoutError when the card is overdue;
+  // RefusedError when it refuses a command, with the reason and the command's number (a refusal may show only at a
+  // later call, and any refused access to the card counts); StateError when it has not begun what it was sent: it was
+  // reset, or aborted by somebody else. After a RefusedError, a LinkError or a StateError the stream is closed, and
+  // what it kept back is dropped: all calls throw StateError until restart().
+  void put(const Command& command) override;
+
+  // Writes what put() has kept back. Errors as in put().
+  void flush();
+
+  // put() and flush(). Of several, every one is checked before the first access to the bus.
   void send(const Command& command);
   void send(const std::vector<Command>& commands);
 
-  // Waits until all is done: the card is idle and, if the last command was End, has ended. Gives back the status.
-  // Errors as in send().
+  // Flushes and waits until all is done: the card is idle, has begun every command, and, if the last command was End,
+  // has ended. Gives back the status. Errors as in put().
   Status finish();
 
   // Drops what the card has queued, stops its path and begins anew at number 0. Throws FaultError if it is faulted.
   void restart();
 
   // Number that the next command gets.
-  std::uint8_t next_number() const { return static_cast<std::uint8_t>(sent_); }
+  std::uint8_t next_number() const { return static_cast<std::uint8_t>(sent_ + kept_); }
   // Commands written since the stream was opened or restarted.
   std::uint64_t sent() const { return sent_; }
 
@@ -71,38 +82,46 @@ class Stream {
     std::uint32_t geometry = 0;
     std::uint32_t feed = 0;
   };
-  struct Encoded {
-    Need need;
-    std::size_t begin = 0;  // words [begin, end) of the encoded stream
-    std::size_t end = 0;
-    bool is_end = false;
+  struct Duration {  // clocks
+    std::uint64_t gated = 0;
+    std::uint64_t real = 0;
   };
-  // State of one wait: time since the card last began something.
-  struct Watch {
-    std::uint64_t waited = 0;  // clocks
-    std::uint32_t geometry_begun = 0;
-    std::uint32_t feed_begun = 0;
-    bool started = false;
+  // Commands of one queue: how many were put, written, and begun as the card said last.
+  struct Count {
+    std::uint64_t put = 0;
+    std::uint64_t sent = 0;
+    std::uint64_t begun = 0;
   };
+  class Wait;
 
   void reset();
-  void send(const Command* commands, std::size_t count);
-  Encoded encode_checked(const Command& command, std::uint8_t number, std::vector<std::uint32_t>& words) const;
+  Need checked_need(const Command& command, std::uint32_t header) const;
   bool has_room(const Need& need) const { return need.geometry <= room_.geometry && need.feed <= room_.feed; }
   void wait_for_room(const Need& need);
   void refresh_room(const Need& need);
-  void write(const std::vector<std::uint32_t>& words, const Encoded* first, const Encoded* last);
-  Status look(Watch& watch);
-  void pause(Watch& watch, const char* context);
+  void keep(const Command& command, const Need& need, const std::uint32_t* words, std::size_t count);
+  void write_kept();
+  Status look(Wait& wait);
+  void advance(Count& count, std::uint32_t begun) const;
+  bool all_begun() const { return geometry_.begun == geometry_.sent && feed_.begun == feed_.sent; }
+  Duration planned() const;
+  std::size_t slot(std::uint64_t number) const { return static_cast<std::size_t>(number % durations_.size()); }
   void require_open() const;
-  [[noreturn]] void throw_refused(const Refusal& refusal);
+  template <class Call>
+  auto closing_at_errors(Call call);
 
   Card* card_;
   StreamOptions options_;
-  std::uint64_t stall_clocks_;
+  std::uint64_t patience_clocks_;
   std::uint64_t poll_clocks_;
-  Need room_;  // known to be free: never more than the card has
+  std::vector<Access> accesses_;     // kept back: the first used_; of fixed size
+  std::vector<Duration> durations_;  // of the commands of the feed queue that may be under way, by number; a ring
+  std::size_t used_ = 0;
+  std::size_t kept_ = 0;  // commands
+  Need room_;             // known to be free: never more than the card has
   std::uint64_t sent_ = 0;
+  Count geometry_;
+  Count feed_;
   bool last_is_end_ = false;
   bool broken_ = false;
 };

@@ -16,11 +16,27 @@ namespace trammel::sim {
 struct EngineOptions {
   unsigned axes = 4;                   // 1 .. 8
   std::uint32_t clock_hz = 1'000'000;  // what the card says of itself; 1 cycle is 1 / clock_hz seconds
+  bool interrupt = false;              // the card's interrupt line reaches the bus
 };
 
-// A card on a simulated bus: the driver's Bus, with wait() running clocks.
+// The model can be any build of the card.
+struct ModelOptions : EngineOptions {
+  ModelOptions(const EngineOptions& options = {}) : EngineOptions(options) {}  // NOLINT: they are options of the model
+  std::uint32_t geometry_depth = 4096;                                         // halfwords
+  std::uint32_t feed_depth = 2560;                                             // halfwords
+  std::optional<std::uint32_t> engines;                                        // ENGINES; all that are built without it
+};
+
+// A card on a simulated bus: the driver's Bus, with sleep() running clocks. A refused access shows in transfer(). An
+// access that is not answered within 100,000 clocks is a LinkError.
 class Engine : public driver::Bus {
  public:
+  // For tests, one access at a time. Throws driver::RefusedError, without a reason, for what the card refuses.
+  std::uint32_t read(std::uint32_t address);
+  void write(std::uint32_t address, std::uint32_t value);
+
+  virtual void wait(std::uint64_t clocks) = 0;                       // runs so many clocks
+  virtual void reset() = 0;                                          // as by the card's reset input
   virtual void set_sink(driver::StepSink* sink) = 0;                 // nullptr: none; not owned
   virtual std::uint64_t cycles() const = 0;                          // clocks since reset
   virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
@@ -29,6 +45,6 @@ class Engine : public driver::Bus {
 };
 
 // The golden model alone, going from tick to tick. Throws std::invalid_argument for options out of range.
-std::unique_ptr<Engine> make_model_engine(const EngineOptions& options);
+std::unique_ptr<Engine> make_model_engine(const ModelOptions& options);
 
 }  // namespace trammel::sim

@@ -36,8 +36,8 @@ class EventLog {
   // `what` must outlive the log (a string literal).
   void add(std::uint64_t cycle, const char* what, std::uint64_t value) { events_.push_back({cycle, what, value}); }
   std::size_t size() const { return events_.size(); }
-  // No mismatch is left to be found before the last event: only the last kKept stay.
-  void settle();
+  // No mismatch is left to be found up to `cycle`: of the events that are not younger only the last kKept stay.
+  void settle(std::uint64_t cycle);
   // The last kKept that are not younger than `cycle`, a line each.
   std::string text(std::uint64_t cycle) const;
 
@@ -47,6 +47,9 @@ class EventLog {
     const char* what;
     std::uint64_t value;
   };
+  // The end of the events that are not younger than `cycle`.
+  std::vector<Event>::const_iterator end_of(std::uint64_t cycle) const;
+
   std::vector<Event> events_;
 };
 
@@ -62,7 +65,7 @@ class Checker {
   // Keeps the event for the report of a later mismatch; `what` must outlive the Checker (a string literal).
   void event(const char* what, std::uint64_t value = 0) {
     events_.add(cycles_, what, value);
-    if (events_.size() >= 8 * EventLog::kKept) events_.settle();
+    if (events_.size() >= 8 * EventLog::kKept) events_.settle(cycles_);
   }
 
   // Compares one signal in the present cycle; throws Mismatch on a difference.
@@ -93,18 +96,20 @@ template <class Dut>
 void rising_edge(Dut& dut);
 
 // Owns a Verilated model and its context. Several live side by side: eval() does not select its context by itself,
-// so every evaluation and the destructor make it the thread's current one first.
+// so every evaluation and the destructor make it the thread's current one first. One thread at a time; not always the
+// same.
 template <class Dut>
 class Simulated {
  public:
   Simulated() : context_(std::make_unique<VerilatedContext>()) {
-    Verilated::threadContextp(context_.get());
+    select();
+    context_->threads(1);  // else the context starts threads that nothing uses
     dut_ = std::make_unique<Dut>(context_.get());
     dut_->clk_i = 0;
     dut_->eval();
   }
   ~Simulated() {
-    Verilated::threadContextp(context_.get());
+    select();
     dut_->final();
     dut_.reset();
   }
@@ -115,13 +120,13 @@ class Simulated {
   Dut& operator*() { return *dut_; }
   // One clock period: inputs were set before the call; after it the outputs show the state after the rising edge.
   void clock() {
-    Verilated::threadContextp(context_.get());
+    select();
     rising_edge(*dut_);
   }
   // The same with both edges evaluated, `at_edge` called after each.
   template <class AtEdge>
   void clock_by_both_edges(AtEdge at_edge) {
-    Verilated::threadContextp(context_.get());
+    select();
     dut_->clk_i = 1;
     dut_->eval();
     at_edge();
@@ -132,6 +137,11 @@ class Simulated {
   VerilatedContext& context() { return *context_; }
 
  private:
+  // Not in each clock anew: setting it also writes a variable that all threads share.
+  void select() {
+    if (Verilated::threadContextp() != context_.get()) Verilated::threadContextp(context_.get());
+  }
+
   std::unique_ptr<VerilatedContext> context_;
   std::unique_ptr<Dut> dut_;
 };

@@ -24,7 +24,7 @@ class Axis {
     bool engine_step = false;  // from a path engine; never together with a step of the generator
     bool engine_dir = false;   // 1 = negative
     bool wait_tick = false;
-    LoadWord load;    // INCREMENT and COUNT of this axis are its own
+    LoadWord load;  // INCREMENT and COUNT of this axis are its own
     // An arc's next chord: a halfword of its increment, never beside one on the load bus for this axis, and the swap
     // that keeps the phase.
     bool chord_load = false;

@@ -6,8 +6,8 @@
 //
 // A chord takes the next increment and keeps the phase: the sum of increments goes on where it is.
 //
-// Rules, the card's own: swaps and chords at least 3 clocks apart; no load in the 2 clocks after either; no swap, no chord
-// and no count load while `live`; a count is used up by its line and loaded anew for the next.
+// Rules, the card's own: swaps and chords at least 3 clocks apart; no load in the 2 clocks after either; no swap, no
+// chord and no count load while `live`; a count is used up by its line and loaded anew for the next.
 #pragma once
 
 #include <cstdint>

@@ -54,6 +54,8 @@ class ChunkedLines : public LineSource {
 class FileLines final : public ChunkedLines {
  public:
   explicit FileLines(const std::string& path);
+  // From where an open file stands; it is not closed.
+  FileLines(int descriptor, std::string name);
   ~FileLines() override;
   FileLines(const FileLines&) = delete;
   FileLines& operator=(const FileLines&) = delete;
@@ -64,6 +66,7 @@ class FileLines final : public ChunkedLines {
 
  private:
   int descriptor_;
+  bool owned_;
   std::optional<std::string> failure_;
 };
 

@@ -47,5 +47,3 @@ class Reader {
 };
 
 }  // namespace trammel::gcode
-
-#include "trammel/gcode/program.hpp"  // until the planner pulls from the reader

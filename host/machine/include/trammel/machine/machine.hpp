@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,7 +18,11 @@ namespace trammel::machine {
 inline constexpr std::string_view kAxisLetters = "XYZABCUVWE";
 inline constexpr std::size_t kCoordinateSystems = 6;  // G54 .. G59
 
-// Message: "file:line: what is wrong", or "--set text: what is wrong".
+// Of the card, Hz.
+inline constexpr std::uint32_t kSlowestClock = 1000;
+inline constexpr std::uint32_t kFastestClock = std::numeric_limits<std::uint32_t>::max();
+
+// Message, one line: "file:line: what is wrong", or "--set text: what is wrong".
 class MachineError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -29,29 +34,30 @@ struct MachineAxis {
   double steps_per_mm = 0;        // pulses, > 0
   double max_velocity = 0;        // mm/s, > 0
   double max_acceleration = 0;    // mm/s^2, > 0
-  double max_jerk = 0;            // mm/s^3, > 0
+  double max_jerk = 0;            // mm/s^3, > 0; 0: none given. Nothing uses it yet.
   double step_length_ns = 0;      // > 0
   double step_space_ns = 0;       // > 0
   double direction_setup_ns = 0;  // >= 0
   double direction_hold_ns = 0;   // >= 0
   bool inverted = false;
+  // Soft limits, machine coordinates, min < max; infinite where none is given. Nothing checks them here.
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
   double home = 0;                                   // machine coordinate that G28 goes to
   std::array<double, kCoordinateSystems> offsets{};  // of G54 .. G59, machine coordinates
 };
 
 struct Machine {
-  std::uint32_t clock_hz = 0;     // > 0
+  std::uint32_t clock_hz = 0;     // kSlowestClock .. kFastestClock
   std::vector<MachineAxis> axes;  // in the card's order
 
   // Index of the axis on the card; `letter` in upper case.
   std::optional<std::size_t> axis(char letter) const;
 };
 
-// A time as register value: rounded up to whole clocks, at least 1 for any time above 0.
-// Throws std::out_of_range when it does not fit the 16 bits of the card's registers.
-std::uint16_t clocks_from_ns(double nanoseconds, std::uint32_t clock_hz);
-
-// Each throws MachineError for the first missing, unknown, non-numeric or out-of-range entry.
+// Each throws MachineError for the first missing, unknown, non-numeric or out-of-range entry, and for a text of more
+// than kLongestMachineText bytes. A file may be a pipe, but no other device.
+inline constexpr std::size_t kLongestMachineText = 1 << 20;
 Machine load_machine(const std::string& path);
 Machine parse_machine(const std::string& toml_text, const std::string& name);
 

@@ -45,16 +45,16 @@ struct Block {
   Pulses start{};
   Pulses end{};
 
-  // Motions: kLine, kArc, kChords.
-  double length = 0;                         // mm along the path of all axes
-  double pulses = 0;                         // the length in pulses of the finest axis; kArc: in unit steps
-  std::uint64_t least_ticks = 0;             // feed ticks that the geometry needs; kChords: for each of its lines
-  double speed = 0;                          // mm/s, the most that axes, card and program allow
-  double acceleration = 0;                   // mm/s^2
-  double jerk = 0;                           // mm/s^3, infinite where no axis has one
-  double wanted = 0;                         // mm/s along the path that the program asks for; 0: as fast as may be
-  double feed = 0;                           // the same as the program has it, mm/s along the axes that F counts for
-  SpeedLimit limit = SpeedLimit::kNone;      // what puts `speed` below `wanted`
+  // Motions: kLine, kArc, kChords. Limits along the path are in path pulses, of which `pulses` make `length` mm.
+  double length = 0;                     // mm, of the path of all axes
+  double pulses = 0;                     // the length in pulses of the finest axis; kArc: in unit steps
+  std::uint64_t least_ticks = 0;         // feed ticks that the geometry needs; kChords: for each of its lines
+  double speed = 0;                      // a second, the most that axes, card and program allow
+  double acceleration = 0;               // a second^2
+  double jerk = 0;                       // a second^3, infinite where no axis has one
+  double wanted = 0;                     // a second, the speed that the program asks for; 0: as fast as may be
+  double feed = 0;                       // the same as the program has it, mm/s along the axes that F counts for
+  SpeedLimit limit = SpeedLimit::kNone;  // what puts `speed` below `wanted`
 
   // Arcs: kArc, kChords.
   bool clockwise = false;
@@ -63,8 +63,8 @@ struct Block {
   std::int64_t centre_x = 0;  // 1/256 pulses, machine coordinates
   std::int64_t centre_y = 0;
   ExactArc exact;
-  driver::ArcCommand arc;        // kArc: all but its ticks
-  std::uint64_t chords = 0;      // kChords: of equal angles; some may have no step
+  driver::ArcCommand arc;         // kArc: all but its ticks
+  std::uint64_t chords = 0;       // kChords: of equal angles; some may have no step
   std::uint64_t chord_lines = 0;  // those with steps
 
   // kDwell
@@ -72,8 +72,6 @@ struct Block {
   double dwell_seconds = 0;
 };
 
-inline bool moves(const Block& block) {
-  return block.geometry != Geometry::kDwell && block.geometry != Geometry::kEnd;
-}
+inline bool moves(const Block& block) { return block.geometry != Geometry::kDwell && block.geometry != Geometry::kEnd; }
 
 }  // namespace trammel::planner

@@ -38,17 +38,9 @@ class BlockBuilder {
     double jerk;          // pulses/s^3
     double lowest;        // mm, soft limits
     double highest;
-    SpeedLimit limit;        // what `velocity` comes from
+    SpeedLimit limit;     // what `velocity` comes from
     unsigned feed_group;  // which feed it counts for: 0 X Y Z, 1 U V W, 2 A B C, 3 E
   };
-  // Along a path in a unit of its own: pulses or unit steps.
-  struct PathLimits {
-    double length;
-    double velocity;      // a second
-    double acceleration;  // a second^2
-    SpeedLimit limit;
-  };
-
   bool build(Block& block);
   bool set_targets(Block& block);
   bool build_line(Block& block);
@@ -56,8 +48,9 @@ class BlockBuilder {
   bool build_accumulator_arc(Block& block);
   bool build_chords(Block& block);
   bool build_dwell(Block& block);
-  PathLimits curve_limits(const Block& block, double radius, double acceleration) const;
-  void finish(Block& block, double length, const PathLimits& limits, double feed_length);
+  static void limit_speed(Block& block, double speed, SpeedLimit limit);
+  static void limit_curve(Block& block, double radius, double axis_acceleration);
+  void apply_feed(Block& block, double feed_length);
   bool check(std::size_t axis, double mm);
   bool check_arc(const Block& block);
   bool refuse(gcode::ErrorCode code, std::string message);

@@ -1,71 +1,59 @@
-// Planner: from the motions of a program to the card's stream commands, exact stop at the end of every motion.
+// Planner: from blocks to the card's stream commands, exact stop at the end of every block. Not thread-safe.
 //
 // A path has N feed ticks: T ticks for each pulse of path length (length in mm times the largest steps/mm of the moving
 // axes), T up to 128 for even steps, less where the clock or the speed does not allow it. The profile keeps every axis
-// within its velocity and acceleration (a feed override above 100 % is not planned for). Targets become pulses by
-// rounding the absolute target, half away from zero: nothing drifts. Feeds hold along X Y Z; without those along U V W,
-// then A B C, then E (as LinuxCNC).
+// within its velocity and acceleration (a feed override above 100 % is not planned for).
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <vector>
 
-#include "trammel/card_map.hpp"
+#include "trammel/driver/command_sink.hpp"
 #include "trammel/driver/commands.hpp"
-#include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/planner/block.hpp"
+#include "trammel/planner/block_builder.hpp"
+#include "trammel/planner/card_limits.hpp"
+#include "trammel/planner/profile.hpp"
 
 namespace trammel::planner {
 
-// By axis index, machine coordinates in pulses; within the 32-bit position counters where it is a target.
-using Pulses = std::array<std::int64_t, card_map::kMaxAxes>;
-
-struct PlannedSegment {
-  std::size_t line = 0;  // of the program
-  gcode::MotionKind kind = gcode::MotionKind::kLine;
-  Pulses start{};
-  Pulses end{};
-  bool clockwise = false;  // the rest: kArc
-  std::uint8_t axis_x = 0;
-  std::uint8_t axis_y = 0;
-  bool chords = false;        // the arc goes out as lines: unequal scales, or beyond the accumulator's range
-  std::int64_t centre_x = 0;  // 1/256 pulses, absolute
-  std::int64_t centre_y = 0;
-  double sweep = 0;    // angle of the arc, radians, 0 .. 2 pi
-  double seconds = 0;  // estimated duration
-  // In the order to send: the feed pieces of a path come before its geometry, so that neither queue can fill up with
-  // what waits for the other.
-  std::vector<driver::Command> commands;
+// What the commands came from.
+struct PlannedBlock {
+  Block block;                           // complete before the first command is put, as are `seconds` and what follows
+  double seconds = 0;                    // planned duration
+  double speed = 0;                      // mm/s along the path, the highest planned; 0 for what does not move
+  SpeedLimit limit = SpeedLimit::kNone;  // what keeps it below what the program wants
+  std::uint64_t commands = 0;            // put
+  std::uint64_t geometry = 0;            // of these, into the geometry queue: paths and barriers
+  std::uint64_t feed = 0;                // and into the feed queue: pieces and barriers
 };
 
-// Generates the segments one by one. Both references must outlive the planner. Not thread-safe.
 class Planner {
  public:
-  // `clock_hz` of the card that will run it. Throws gcode::ProgramError for any target beyond the position counters
-  // (+-2^31 pulses) or dwell beyond 2^48 clocks: the whole program is checked here.
-  Planner(const gcode::Program& program, const machine::Machine& machine, std::uint32_t clock_hz);
+  // Blocks and machine must outlive the planner.
+  Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card);
 
-  // The next segment, false after the last one (kEnd). Motions of less than a pulse give none.
-  bool next(PlannedSegment& segment);
-
-  // Where the program starts.
-  const Pulses& start() const { return start_; }
-  // Estimated duration of the segments so far.
-  double seconds() const { return seconds_; }
+  // Plans the next block and puts its commands; false after the last (kEnd) and at an error, which the builder has.
+  // The feed pieces of a path come before its geometry, so that neither queue can fill up with what waits for the
+  // other. What the sink throws passes through; the planner is then of no further use.
+  bool next(driver::CommandSink& sink, PlannedBlock& planned);
 
  private:
-  void check(const gcode::Motion& motion, const gcode::Coordinates& from) const;
+  std::uint64_t ticks_for(const Block& block) const;
+  void plan_move(PlannedBlock& planned);
+  void put_dwell(PlannedBlock& planned, driver::CommandSink& sink);
+  void put_geometry(const Block& block, driver::CommandSink& sink);
+  void put_chords(const Block& block, driver::CommandSink& sink);
 
-  const gcode::Program& program_;
+  BlockBuilder& blocks_;
   const machine::Machine& machine_;
-  std::uint32_t clock_hz_;
-  Pulses start_{};
-  Pulses here_{};
-  gcode::Coordinates exact_{};  // unrounded
-  std::size_t index_ = 0;
-  double seconds_ = 0;
+  CardLimits card_;
+  std::uint64_t least_ticks_;
+  std::uint64_t ticks_ = 0;  // of the block; kChords: of each line
+  Profile profile_;
+  driver::Command line_{driver::LineCommand{}};
+  driver::Command piece_{driver::FeedCommand{}};
+  driver::Command other_{driver::EndCommand{}};
 };
 
 }  // namespace trammel::planner

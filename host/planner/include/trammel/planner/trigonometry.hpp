@@ -1,5 +1,5 @@
-// Sine, cosine and arc tangent from + - * / alone, in an order that is fixed, so that every host that rounds as IEEE 754
-// says comes to the same bits: the mathematics library's differ between hosts, and with a fused multiply-add. To be
+// Sine, cosine and arc tangent from + - * / alone, in an order that is fixed, so that every host that rounds as IEEE
+// 754 says comes to the same bits: the mathematics library's differ between hosts, and with a fused multiply-add. To be
 // compiled without contraction (-ffp-contract=off). Pure functions, thread-safe.
 #pragma once
 

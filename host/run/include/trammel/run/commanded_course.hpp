@@ -14,7 +14,7 @@ namespace trammel::run {
 class CommandedCourse final : public Observer {
  public:
   explicit CommandedCourse(const machine::Machine& machine);
-  void planned(const planner::PlannedSegment& segment, std::uint64_t first) override;
+  void planned(const planner::PlannedBlock& planned, std::uint64_t first) override;
 
   std::vector<Point> points() const { return points_.points(); }
   // The path that shows single pulses best, an arc rather than a line: its number, and its beginning.

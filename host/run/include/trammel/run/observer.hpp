@@ -11,12 +11,12 @@ namespace trammel::run {
 class Observer {
  public:
   virtual ~Observer() = default;
-  // First pass, before anything moves: a segment whose first command has the number `first`.
-  virtual void planned(const planner::PlannedSegment& /*segment*/, std::uint64_t /*first*/) {}
-  // Second pass: a segment before its commands are written, and each of them with its number, which is not wrapped.
-  virtual void sending(const planner::PlannedSegment& /*segment*/) {}
+  // First pass, before anything moves: a block whose first command has the number `first`.
+  virtual void planned(const planner::PlannedBlock& /*block*/, std::uint64_t /*first*/) {}
+  // Second pass: a block before its commands are written, and each of them with its number, which is not wrapped.
+  virtual void sending(const planner::PlannedBlock& /*block*/) {}
   virtual void command(std::uint64_t /*number*/, const driver::Command& /*command*/) {}
-  // When the segment's commands are written.
+  // When the block's commands are written.
   virtual void sent() {}
   // Every now and then while the card runs.
   virtual void progress() {}

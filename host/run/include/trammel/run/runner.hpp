@@ -1,8 +1,11 @@
-// Runs a program on a card: a pass that checks and plans all of it, then one that configures the card and streams.
-// Opens nothing and prints nothing. Not thread-safe.
+// Runs a program on a card. It is read twice in memory that does not grow with it: once to check and plan all of it,
+// once to stream it. Opens nothing and prints nothing. Not thread-safe.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,9 +14,23 @@
 #include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/planner/planner.hpp"
+#include "trammel/run/feed_report.hpp"
 #include "trammel/run/observer.hpp"
 
 namespace trammel::run {
+
+// Gives the program's lines from the first one on: called once for each pass, and may be called again.
+using ProgramLines = std::function<std::unique_ptr<gcode::LineSource>()>;
+
+// What is wrong with the program. what() is "file:line: message".
+class ProgramError : public std::runtime_error {
+ public:
+  explicit ProgramError(gcode::Error error);
+  const gcode::Error& error() const { return error_; }
+
+ private:
+  gcode::Error error_;
+};
 
 // What went wrong while the card ran, at the program's line that it was at. what() is "file:line: message".
 class RunError : public std::runtime_error {
@@ -27,9 +44,14 @@ class RunError : public std::runtime_error {
 
 // From the first pass.
 struct Plan {
+  std::string file;
   double seconds = 0;          // estimate
   std::uint64_t segments = 0;  // paths
-  std::uint64_t commands = 0;
+  std::uint64_t commands = 0;  // for the card
+  planner::Pulses start{};     // machine coordinates
+  planner::Pulses end{};
+  std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first
+  std::map<std::string, std::size_t> accepted;    // words without effect yet and how often
 };
 
 struct Outcome {
@@ -40,23 +62,23 @@ struct Outcome {
 
 class Runner {
  public:
-  // All references must outlive the runner. `clock_hz` of the card. Throws gcode::ProgramError for a target out of
-  // range.
-  Runner(const gcode::Program& program, const machine::Machine& machine, std::uint32_t clock_hz);
+  // `machine` must outlive the runner. `card`: limits_of() the card that will run the program.
+  Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card);
 
+  // `observer` must outlive the runner; they are called in the order in which they were added.
   void add(Observer& observer) { observers_.push_back(&observer); }
 
-  // First pass; throws gcode::ProgramError.
+  // First pass. Throws ProgramError, and driver::ArgumentError for step times that the card cannot keep.
   const Plan& plan();
-  // Second pass, to the end of the motion. Throws RunError for what the card or its bus reports, and
-  // std::runtime_error when the card does not end where the program does.
+  // Second pass, after the first, to the end of the motion: configures the card and streams. Throws RunError for what
+  // the card or its bus reports, ProgramError when the program is not the one that was planned, and std::runtime_error
+  // when the card does not end where the program does.
   Outcome run(driver::Card& card);
 
  private:
-  const gcode::Program& program_;
+  ProgramLines lines_;
   const machine::Machine& machine_;
-  std::uint32_t clock_hz_;
-  planner::Pulses start_;
+  planner::CardLimits card_;
   std::vector<Observer*> observers_;
   Plan plan_;
 };

@@ -1,0 +1,17 @@
+// The command line's first word, before the options are read.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace trammel::app {
+
+// `words` as the option reader wants them: "help" and "help X" become "--help" and "X --help".
+// Throws UsageError for a subcommand that there is not; the message names the nearest one.
+std::vector<std::string> subcommand_words(const CLI::App& app, std::vector<std::string> words);
+
+// How many letters must be put in, left out, changed or swapped with their neighbour to make one word of the other.
+std::size_t edit_distance(const std::string& a, const std::string& b);
+
+}  // namespace trammel::app

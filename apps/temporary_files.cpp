@@ -1,0 +1,102 @@
+#include "temporary_files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <stdexcept>
+
+namespace trammel::app {
+namespace {
+
+// Names that the signal handler removes: it may call unlink(), but may not touch a container.
+constexpr std::size_t kMostNames = 256;
+std::array<std::atomic<const char*>, kMostNames> names{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+constexpr std::array<int, 5> kEndingSignals{SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGPIPE};
+
+void remember(const std::string& name) {
+  for (std::atomic<const char*>& entry : names) {
+    if (entry == nullptr) {
+      entry = name.c_str();
+      return;
+    }
+  }
+  throw std::logic_error("more temporary files than there is room for");
+}
+
+void remove_and_forget(const std::string& name) {
+  if (!name.empty()) ::unlink(name.c_str());
+  for (std::atomic<const char*>& entry : names) {
+    if (entry == name.c_str()) entry = nullptr;
+  }
+}
+
+// The signal's own action was put back on entry (SA_RESETHAND), so that the parent sees what ended the process.
+extern "C" void remove_all(int signal) {
+  for (const std::atomic<const char*>& entry : names) {
+    const char* const name = entry;
+    if (name != nullptr) ::unlink(name);
+  }
+  ::raise(signal);
+}
+
+sigset_t ending_signals() {
+  sigset_t set;
+  ::sigemptyset(&set);
+  for (const int signal : kEndingSignals) ::sigaddset(&set, signal);
+  return set;
+}
+
+}  // namespace
+
+void remove_temporary_files_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = remove_all;
+  action.sa_mask = ending_signals();
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int signal : kEndingSignals) {
+    struct sigaction before {};
+    ::sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) ::sigaction(signal, &action, nullptr);
+  }
+  // A file that grows beyond its limit is a write that fails, and is reported as one.
+  ::signal(SIGXFSZ, SIG_IGN);
+}
+
+SignalsWait::SignalsWait() {
+  const sigset_t set = ending_signals();
+  ::pthread_sigmask(SIG_BLOCK, &set, &before_);
+}
+
+SignalsWait::~SignalsWait() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+TemporaryFile::TemporaryFile(const std::filesystem::path& folder) {
+  for (unsigned number = 0; descriptor_ < 0; ++number) {
+    path_ = folder / fmt::format(".trammel-{}-{}", ::getpid(), number);
+    const SignalsWait wait;
+    descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST) {
+      throw std::runtime_error(fmt::format("{}: no new file can be made there: {}", folder.string(), strerror(errno)));
+    }
+    if (descriptor_ < 0) continue;
+    beside_ = path_.string() + ".hier";
+    remember(path_.native());
+    remember(beside_);
+  }
+}
+
+TemporaryFile::~TemporaryFile() {
+  ::close(descriptor_);
+  const SignalsWait wait;
+  remove_and_forget(path_.native());
+  remove_and_forget(beside_);
+}
+
+}  // namespace trammel::app

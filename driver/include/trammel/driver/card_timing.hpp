@@ -1,0 +1,47 @@
+// Times of a card in its clocks: what a planner and the one-shot lines need to know of it. Constants come from the
+// generated card map. Pure functions and plain data, thread-safe.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::driver {
+
+// What times a line on a card.
+struct CardTiming {
+  std::uint32_t clock_hz = 0;
+  unsigned axes = 0;
+  // Shortest distance of two leading edges of an axis, clocks: shortest_pulse_period() of its settings.
+  std::array<std::uint32_t, card_map::kMaxAxes> pulse_period{};
+};
+
+// Shortest distance of two leading edges for the raw settings of an axis, clocks. The step shaper takes some clocks
+// beyond the times themselves to turn over from phase to phase, and a length of 0 counts as 1.
+constexpr std::uint32_t shortest_pulse_period(std::uint32_t step_length, std::uint32_t step_space) {
+  return (step_length == 0 ? 1 : step_length) + step_space + card_map::constant::kShaperTurnoverClocks;
+}
+
+// Clocks in which the card decodes a line of so many axes, 1 .. 8: 20 for 4, 32 for 8.
+constexpr std::uint32_t decode_clocks(unsigned axes) {
+  return card_map::constant::kDecodeClocks + card_map::constant::kDecodeAxisClocks * axes;
+}
+
+// Feed ticks, at a tick every clock, from which on a line follows the one before it without a gap; the line that comes
+// next has so many axes, 1 .. 8. Two more than it takes to decode it: its start and its hand-over.
+constexpr std::uint32_t gap_free_ticks(unsigned axes) { return decode_clocks(axes) + 2; }
+
+// ceil(time * clock_hz / 10^9): the only way of nanoseconds to card clocks. Throws ArgumentError, with `what` in front,
+// for a negative time or 2^63 clocks or more.
+std::uint64_t clocks_of(std::chrono::nanoseconds time, std::uint32_t clock_hz, const char* what);
+
+// ceil(clocks * 10^9 / clock_hz), at most the longest time there is; clock_hz is not 0.
+std::chrono::nanoseconds time_of(std::uint64_t clocks, std::uint32_t clock_hz);
+
+// Clocks of a step time of an axis (`what` names it: step length ...). Throws ArgumentError, naming value and limit,
+// unless it fits the card's register: 0 .. 65535 clocks.
+std::uint32_t step_time_clocks(std::chrono::nanoseconds time, std::uint32_t clock_hz, const char* what);
+
+}  // namespace trammel::driver

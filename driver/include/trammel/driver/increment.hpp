@@ -1,0 +1,29 @@
+// The increment of a pulse generator: the one place where pulses over ticks become 2^-40 pulses a tick.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::driver {
+
+// round(pulses * 2^40 / ticks), half up, for 0 <= pulses <= ticks, 0 < ticks < 2^40. Also a prescaler's round(L * 2^40
+// / N) and direct mode's FREQUENCY. Exact; two divisions of 64 bits.
+constexpr std::uint64_t rounded_share(std::uint64_t pulses, std::uint64_t ticks) {
+  constexpr unsigned kFirst = 24;  // bits of the quotient at once: the rest has 40
+  constexpr unsigned kSecond = card_map::constant::kFractionBits - kFirst;
+  const std::uint64_t first = pulses << kFirst;
+  const std::uint64_t second = first % ticks << kSecond;
+  const std::uint64_t quotient = (first / ticks << kSecond) + second / ticks;
+  return 2 * (second % ticks) >= ticks ? quotient + 1 : quotient;
+}
+
+// Likewise for -ticks <= pulses <= ticks, half away from zero: the increment of a line's axis.
+constexpr std::int64_t rounded_increment(std::int64_t pulses, std::uint64_t ticks) {
+  const auto share = [ticks](std::int64_t magnitude) {
+    return static_cast<std::int64_t>(rounded_share(static_cast<std::uint64_t>(magnitude), ticks));
+  };
+  return pulses < 0 ? -share(-pulses) : share(pulses);
+}
+
+}  // namespace trammel::driver

@@ -1,0 +1,139 @@
+// Accesses of a card, and what it refuses.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+
+namespace trammel::driver {
+namespace {
+
+namespace map = card_map;
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+
+std::optional<Refusal> refusal_from(std::uint32_t value) {
+  Refusal result;
+  result.reason = static_cast<std::uint8_t>((value & field::kRefusalReason) >> field::kRefusalReasonShift);
+  result.command_number = static_cast<std::uint8_t>((value & field::kRefusalCommand) >> field::kRefusalCommandShift);
+  result.address = (value & field::kRefusalAddress) >> field::kRefusalAddressShift;
+  if (result.reason == 0) {
+    return std::nullopt;
+  }
+  return result;
+}
+
+}  // namespace
+
+void Card::check_read(const Access& access) {
+  const map::Slot slot = map::find_register(access.address);
+  if ((access.data & ~slot.entry->mask) != 0) {
+    throw LinkError(fmt::format("card: {} reads 0x{:08X}, with bits that have no meaning: what answers is no card",
+                                slot.entry->name, access.data));
+  }
+}
+
+// The bus's transfer, its result checked.
+std::size_t Card::checked_transfer(Access* accesses, std::size_t count) {
+  const std::size_t made = bus_->transfer(accesses, count);
+  if (made > count || (made < count && !bus_->reports_refusals())) {
+    throw LinkError(fmt::format("bus: its transport says that {} of {} accesses were made", made, count));
+  }
+  return made;
+}
+
+void Card::transfer(Access* accesses, std::size_t count, std::string_view context) {
+  const bool writes = std::any_of(accesses, accesses + count, [](const Access& access) { return access.write; });
+  const bool confirm = writes && !bus_->reports_refusals();
+  if (confirm) {
+    // What is latched already would hide what is refused now.
+    keep_earlier_refusal();
+  }
+  confirmed_transfer(accesses, count, confirm, context);
+}
+
+void Card::transfer_stream(Access* accesses, std::size_t count) {
+  confirmed_transfer(accesses, count, !bus_->reports_refusals(), "stream");
+}
+
+void Card::confirmed_transfer(Access* accesses, std::size_t count, bool confirm, std::string_view context) {
+  if (confirm) {
+    accesses[count++] = read_of(reg::kRefusal);
+  }
+  const std::size_t made = checked_transfer(accesses, count);
+  if (made < count) {
+    throw_refused_access(accesses[made], context);
+  }
+  if (confirm) {
+    check_read(accesses[count - 1]);
+    if (const auto refused = refusal_from(accesses[count - 1].data)) {
+      throw_refused(*refused, context);
+    }
+  }
+}
+
+// REFUSAL as it stands in the card.
+std::optional<Refusal> Card::latched_refusal() {
+  Access access = read_of(reg::kRefusal);
+  if (checked_transfer(&access, 1) != 1) {
+    throw LinkError("card: it refuses the read of REFUSAL: what answers is no card");
+  }
+  check_read(access);
+  return refusal_from(access.data);
+}
+
+void Card::forget_latched_refusal() {
+  Access access = write_of(reg::kRefusal, map::find_register(reg::kRefusal).entry->mask);
+  if (checked_transfer(&access, 1) != 1) {
+    throw LinkError("card: it refuses the write of REFUSAL: what answers is no card");
+  }
+}
+
+void Card::keep_earlier_refusal() {
+  const std::optional<Refusal> latched = latched_refusal();
+  if (!latched) {
+    return;
+  }
+  if (!earlier_) {
+    earlier_ = latched;
+  }
+  forget_latched_refusal();
+}
+
+// An access that the bus says was refused.
+void Card::throw_refused_access(const Access& access, std::string_view context) {
+  const std::optional<Refusal> latched = latched_refusal();
+  if (latched && latched->address == access.address) {
+    throw_refused(*latched, context);
+  }
+  Refusal unknown;
+  unknown.address = access.address;
+  if (latched) {
+    keep_earlier_refusal();
+  }
+  throw_refused(unknown, context);
+}
+
+void Card::throw_refused(const Refusal& refusal, std::string_view context) {
+  // One of the stream stays latched: the stream is closed until it is restarted.
+  if (refusal.address != reg::kStream) {
+    forget_latched_refusal();
+  }
+  if (refusal.reason == static_cast<std::uint8_t>(map::Reason::Faulted)) {
+    const std::uint32_t now = faults();
+    if (now != 0) {
+      throw FaultError(now, std::string(context));
+    }
+  }
+  throw RefusedError(refusal.reason, refusal.command_number, refusal.address, std::string(context));
+}
+
+std::optional<Refusal> Card::refusal() { return earlier_ ? earlier_ : latched_refusal(); }
+
+void Card::clear_refusal() {
+  earlier_.reset();
+  forget_latched_refusal();
+}
+
+}  // namespace trammel::driver

@@ -1,0 +1,372 @@
+// Machine files: TOML in, Machine out.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <sstream>
+#include <toml.hpp>
+
+#include "text.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card_timing.hpp"
+#include "trammel/driver/errors.hpp"
+#include "trammel/machine/machine.hpp"
+
+namespace trammel::machine {
+namespace {
+
+// What an entry's number must be.
+enum class Range { kAny, kNotNegative, kPositive };
+
+struct Entry {
+  const char* name;
+  double MachineAxis::*member;
+  Range range;
+  bool required;
+};
+
+constexpr std::array<Entry, 11> kEntries = {{
+    {"steps_per_mm", &MachineAxis::steps_per_mm, Range::kPositive, true},
+    {"max_velocity", &MachineAxis::max_velocity, Range::kPositive, true},
+    {"max_acceleration", &MachineAxis::max_acceleration, Range::kPositive, true},
+    {"max_jerk", &MachineAxis::max_jerk, Range::kPositive, false},
+    {"step_length_ns", &MachineAxis::step_length_ns, Range::kPositive, true},
+    {"step_space_ns", &MachineAxis::step_space_ns, Range::kPositive, true},
+    {"direction_setup_ns", &MachineAxis::direction_setup_ns, Range::kNotNegative, true},
+    {"direction_hold_ns", &MachineAxis::direction_hold_ns, Range::kNotNegative, true},
+    {"min", &MachineAxis::min, Range::kAny, false},
+    {"max", &MachineAxis::max, Range::kAny, false},
+    {"home", &MachineAxis::home, Range::kAny, false},
+}};
+constexpr const char* kInverted = "inverted";
+
+// A name or a text within a message; the whole message.
+constexpr std::size_t kLongestQuote = 80;
+constexpr std::size_t kLongestMessage = 1000;
+
+[[noreturn]] void refuse(const std::string& message) { throw MachineError(one_line(message, kLongestMessage)); }
+
+// Where a text came from, for messages: a file (with line numbers), or one override.
+struct Source {
+  std::string name;
+  bool has_lines;
+
+  std::string at_line(std::size_t line) const { return has_lines ? fmt::format("{}:{}: ", name, line) : name + ": "; }
+  std::string at(const toml::value& value) const { return at_line(value.location().line()); }
+};
+
+double number(const Source& source, const std::string& path, const toml::value& value, Range range) {
+  double result = 0;
+  if (value.is_integer()) {
+    result = static_cast<double>(value.as_integer());
+  } else if (value.is_floating()) {
+    result = value.as_floating();
+  } else {
+    refuse(source.at(value) + path + " must be a number");
+  }
+  if (!std::isfinite(result)) {
+    refuse(source.at(value) + path + " must be a finite number");
+  }
+  if (range == Range::kPositive && result <= 0) {
+    refuse(fmt::format("{}{} must be greater than 0, not {}", source.at(value), path, result));
+  }
+  if (range == Range::kNotNegative && result < 0) {
+    refuse(fmt::format("{}{} must not be negative, not {}", source.at(value), path, result));
+  }
+  return result;
+}
+
+// "g54" .. "g59" to 0 .. 5.
+std::optional<std::size_t> coordinate_system(const std::string& key) {
+  if (key.size() != 3 || key[0] != 'g' || key[1] != '5' || key[2] < '4' || key[2] > '9') {
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(key[2] - '4');
+}
+
+std::vector<std::string> axis_entries() {
+  std::vector<std::string> names = {kInverted};
+  for (const Entry& entry : kEntries) {
+    names.emplace_back(entry.name);
+  }
+  for (std::size_t system = 0; system < kCoordinateSystems; ++system) {
+    names.push_back(fmt::format("g{}", 54 + system));
+  }
+  return names;
+}
+
+// `path` ends with the key, which is none of `names`.
+[[noreturn]] void refuse_key(const Source& source, const toml::value& value, const std::string& table,
+                             const std::string& key, const std::vector<std::string>& names) {
+  const std::string close = nearest(key, names);
+  const std::string path = one_line(table + key, kLongestQuote);
+  refuse(fmt::format("{}unknown entry {}{}", source.at(value), path,
+                     close.empty() ? fmt::format("; known are {}", fmt::join(names, ", "))
+                                   : fmt::format("; did you mean {}?", close)));
+}
+
+void set_axis_entry(const Source& source, MachineAxis& axis, const std::string& table, const std::string& key,
+                    const toml::value& value) {
+  const std::string path = table + key;
+  if (key == kInverted) {
+    if (!value.is_boolean()) {
+      refuse(source.at(value) + path + " must be true or false");
+    }
+    axis.inverted = value.as_boolean();
+    return;
+  }
+  if (const auto system = coordinate_system(key)) {
+    axis.offsets[*system] = number(source, path, value, Range::kAny);
+    return;
+  }
+  for (const Entry& entry : kEntries) {
+    if (key == entry.name) {
+      axis.*entry.member = number(source, path, value, entry.range);
+      return;
+    }
+  }
+  refuse_key(source, value, table, key, axis_entries());
+}
+
+// Entries of one table [axis.x]. `place` is where their rules with each other are reported.
+void set_axis(const Source& source, MachineAxis& axis, const std::string& name, const toml::table& table,
+              const toml::value& place) {
+  const std::string path = "axis." + name + ".";
+  for (const auto& [key, entry] : table) {
+    set_axis_entry(source, axis, path, key, entry);
+  }
+  if (!(axis.min < axis.max)) {
+    const toml::value& wrong = table.count("min") != 0 ? table.at("min") : place;
+    refuse(fmt::format("{}{}min must be less than {}max: {} and {}", source.at(wrong), path, path, axis.min, axis.max));
+  }
+}
+
+void set_clock(const Source& source, Machine& machine, const toml::value& value) {
+  const double clock = number(source, "card.clock_hz", value, Range::kAny);
+  if (clock != std::floor(clock) || clock < kSlowestClock || clock > kFastestClock) {
+    refuse(fmt::format("{}card.clock_hz must be a whole number of Hz from {} to {}, not {}", source.at(value),
+                       kSlowestClock, kFastestClock, clock));
+  }
+  machine.clock_hz = static_cast<std::uint32_t>(clock);
+}
+
+const toml::table& table_of(const Source& source, const std::string& path, const toml::value& value) {
+  if (!value.is_table()) {
+    refuse(source.at(value) + one_line(path, kLongestQuote) + " must be a table");
+  }
+  return value.as_table();
+}
+
+// The letter of a table [axis.x]; throws for any other name.
+char axis_letter(const Source& source, const std::string& key, const toml::value& value) {
+  const char letter = key.size() == 1 ? static_cast<char>(std::toupper(static_cast<unsigned char>(key[0]))) : ' ';
+  if (kAxisLetters.find(letter) == std::string_view::npos || key[0] == letter) {
+    refuse(fmt::format("{}unknown axis [axis.{}]: one of x y z a b c u v w e", source.at(value),
+                       one_line(key, kLongestQuote)));
+  }
+  return letter;
+}
+
+// Do the step times fit the card's registers at this clock? Rounded up to whole nanoseconds, as the driver takes them.
+void check_times(const std::string& where, const Machine& machine) {
+  constexpr double kLongest = 1e15;  // ns; more than any register at the slowest clock
+  const auto check = [&](const MachineAxis& axis, double time, const char* what) {
+    const std::chrono::nanoseconds whole(static_cast<std::int64_t>(std::ceil(std::min(time, kLongest))));
+    try {
+      driver::step_time_clocks(whole, machine.clock_hz, what);
+    } catch (const driver::ArgumentError& error) {
+      refuse(fmt::format("{}: axis {}: {}", where, axis.letter, error.what()));
+    }
+  };
+  for (const MachineAxis& axis : machine.axes) {
+    check(axis, axis.step_length_ns, "step_length_ns");
+    check(axis, axis.step_space_ns, "step_space_ns");
+    check(axis, axis.direction_setup_ns, "direction_setup_ns");
+    check(axis, axis.direction_hold_ns, "direction_hold_ns");
+  }
+}
+
+MachineAxis read_axis(const Source& source, const std::string& name, const toml::value& value) {
+  MachineAxis axis;
+  const std::string path = "axis." + name;
+  const toml::table& table = table_of(source, path, value);
+  axis.letter = axis_letter(source, name, value);
+  set_axis(source, axis, name, table, value);
+  const auto require = [&](const char* key) {
+    if (table.count(key) == 0) {
+      refuse(fmt::format("{}[{}] has no {}", source.at(value), path, key));
+    }
+  };
+  for (const Entry& entry : kEntries) {
+    if (entry.required) {
+      require(entry.name);
+    }
+  }
+  require(kInverted);
+  return axis;
+}
+
+// toml11's messages are several lines; the first says what, the location says where.
+std::string first_line_of(const std::exception& error) {
+  std::string what = error.what();
+  what = what.substr(0, what.find('\n'));
+  if (const auto colon = what.rfind(": "); colon != std::string::npos) {
+    what = what.substr(colon + 2);
+  }
+  return what;
+}
+
+toml::value parse(const Source& source, const std::string& text) {
+  // Tables in tables are two deep.
+  constexpr std::size_t kDeepest = 16;
+  if (text.size() > kLongestMachineText) {
+    refuse(fmt::format("{}more than {} bytes", source.at_line(1), kLongestMachineText));
+  }
+  if (const std::size_t line = too_deep_line(text, kDeepest); line != 0) {
+    refuse(fmt::format("{}nested deeper than {}", source.at_line(line), kDeepest));
+  }
+  std::istringstream stream(text);
+  try {
+    return toml::parse(stream, source.name);
+  } catch (const toml::syntax_error& error) {
+    refuse(source.at_line(error.location().line()) + "not TOML: " + first_line_of(error));
+  } catch (const std::exception& error) {
+    refuse(source.at_line(1) + "not TOML: " + first_line_of(error));
+  }
+}
+
+void check_top_level(const Source& source, const toml::table& root) {
+  for (const auto& [key, value] : root) {
+    if (key != "card" && key != "axis") {
+      refuse_key(source, value, "", key, {"card", "axis"});
+    }
+    for (const auto& [inner_key, inner] : table_of(source, key, value)) {
+      if (key == "card" && inner_key != "clock_hz") {
+        refuse_key(source, inner, "card.", inner_key, {"clock_hz"});
+      }
+    }
+  }
+}
+
+// The table [name], or nothing where it is missing or empty.
+const toml::table* find_table(const toml::table& root, const char* name) {
+  const auto found = root.find(name);
+  return found != root.end() && !found->second.as_table().empty() ? &found->second.as_table() : nullptr;
+}
+
+std::size_t card_order(char letter) { return kAxisLetters.find(letter); }
+
+// Closed at the end of the scope.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+// A little more than the longest text where the file is longer: a pipe may never end.
+std::string read_all(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    refuse(fmt::format("{}: cannot read the machine file: {}", path, std::strerror(errno)));
+  }
+  // Looked at before it is opened: opening some devices does something.
+  if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) {
+    refuse(fmt::format("{}: is {}, not a machine file", path, S_ISDIR(status.st_mode) ? "a directory" : "a device"));
+  }
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  std::string text;
+  std::array<char, 4096> part{};
+  ssize_t count = file.number() < 0 ? -1 : 1;
+  while (count > 0 && text.size() <= kLongestMachineText) {
+    count = ::read(file.number(), part.data(), part.size());
+    text.append(part.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  }
+  if (count < 0) {
+    refuse(fmt::format("{}: cannot read the machine file: {}", path, std::strerror(errno)));
+  }
+  return text;
+}
+
+}  // namespace
+
+Machine parse_machine(const std::string& toml_text, const std::string& name) {
+  const Source source{name, true};
+  const toml::value document = parse(source, toml_text);
+  const toml::table& root = document.as_table();
+  check_top_level(source, root);
+  const toml::table* card = find_table(root, "card");
+  if (card == nullptr) {
+    refuse(name + ":1: no [card] clock_hz");
+  }
+  const toml::table* axes = find_table(root, "axis");
+  if (axes == nullptr) {
+    refuse(name + ":1: no axis: at least one table [axis.<letter>]");
+  }
+  Machine machine;
+  set_clock(source, machine, card->at("clock_hz"));
+  for (const auto& [key, value] : *axes) {
+    machine.axes.push_back(read_axis(source, key, value));
+  }
+  if (machine.axes.size() > card_map::kMaxAxes) {
+    refuse(fmt::format("{}:1: {} axes, the card has at most {}", name, machine.axes.size(), card_map::kMaxAxes));
+  }
+  std::sort(machine.axes.begin(), machine.axes.end(),
+            [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
+  check_times(name + ":1", machine);
+  return machine;
+}
+
+Machine default_machine() { return parse_machine(default_machine_text(), "default machine"); }
+
+Machine load_machine(const std::string& path) {
+  if (path.empty()) {
+    refuse("the machine file has no name");
+  }
+  return parse_machine(read_all(path), path);
+}
+
+void apply_override(Machine& machine, const std::string& text) {
+  const Source source{"--set " + one_line(text, kLongestQuote), false};
+  Machine changed = machine;
+  const toml::value document = parse(source, text);
+  const toml::table& root = document.as_table();
+  check_top_level(source, root);
+  bool any = false;
+  if (const toml::table* card = find_table(root, "card")) {
+    set_clock(source, changed, card->at("clock_hz"));
+    any = true;
+  }
+  if (const toml::table* axes = find_table(root, "axis")) {
+    for (const auto& [name, value] : *axes) {
+      const toml::table& table = table_of(source, "axis." + name, value);
+      const auto index = changed.axis(axis_letter(source, name, value));
+      if (!index) {
+        refuse(fmt::format("{}: the machine has no axis {}", source.name, name));
+      }
+      set_axis(source, changed.axes[*index], name, table, value);
+      any = any || !table.empty();
+    }
+  }
+  if (!any) {
+    refuse(source.name + ": not an assignment such as axis.x.steps_per_mm=20");
+  }
+  check_times(source.name, changed);
+  machine = changed;
+}
+
+}  // namespace trammel::machine

@@ -1,0 +1,116 @@
+#include "text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace trammel::machine {
+namespace {
+
+// Changed, missing and surplus letters between two words (Levenshtein).
+std::size_t changes(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0U : 1U);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// After the string that begins at `at`. One of a single line ends with its line, closed or not.
+std::size_t skip_string(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const std::string_view three = quote == '"' ? "\"\"\"" : "'''";
+  const bool long_string = text.substr(at, 3) == three;
+  at += long_string ? 3 : 1;
+  while (at < text.size()) {
+    if (quote == '"' && text[at] == '\\') {
+      at += 2;
+    } else if (long_string && text.substr(at, 3) == three) {
+      return at + 3;
+    } else if (!long_string && text[at] == '\n') {
+      return at;
+    } else if (!long_string && text[at] == quote) {
+      return at + 1;
+    } else {
+      ++at;
+    }
+  }
+  return text.size();
+}
+
+bool is_open(char c) { return c == '[' || c == '{'; }
+bool is_close(char c) { return c == ']' || c == '}'; }
+
+}  // namespace
+
+std::string one_line(std::string_view text, std::size_t most) {
+  constexpr std::string_view kCut = "...";
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    result += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
+    if (result.size() > most) {
+      result.resize(most - kCut.size());
+      return result.append(kCut);
+    }
+  }
+  return result;
+}
+
+std::string nearest(std::string_view wrong, const std::vector<std::string>& names) {
+  // Any longer and it is no slip of a name; the comparison takes the product of the two lengths.
+  constexpr std::size_t kLongestName = 64;
+  if (wrong.size() > kLongestName) {
+    return {};
+  }
+  std::string best;
+  std::size_t least = kLongestName;
+  for (const std::string& name : names) {
+    const std::size_t count = changes(wrong, name);
+    if (count < least && count <= std::max(wrong.size(), name.size()) / 2) {
+      least = count;
+      best = name;
+    }
+  }
+  return best;
+}
+
+std::size_t too_deep_line(std::string_view toml, std::size_t most) {
+  std::size_t depth = 0;
+  std::size_t dots = 0;  // of one key
+  std::size_t at = 0;
+  while (at < toml.size()) {
+    const char c = toml[at];
+    if (c == '"' || c == '\'') {
+      at = skip_string(toml, at);
+      continue;
+    }
+    if (c == '#') {
+      at = std::min(toml.find('\n', at), toml.size());
+      continue;
+    }
+    if (is_open(c)) {
+      ++depth;
+    } else if (is_close(c)) {
+      depth -= depth > 0 ? 1 : 0;
+    }
+    const bool key_ends = is_open(c) || is_close(c) || c == '=' || c == ',' || c == '\n';
+    dots = key_ends ? 0 : dots + (c == '.' ? 1 : 0);
+    if (depth > most || dots > most) {
+      return 1 +
+             static_cast<std::size_t>(std::count(toml.begin(), toml.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+    }
+    ++at;
+  }
+  return 0;
+}
+
+}  // namespace trammel::machine

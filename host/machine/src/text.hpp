@@ -1,0 +1,22 @@
+// Text of machine files for checks and messages. Internal to the library.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trammel::machine {
+
+// What of `text` goes into a message: control characters escaped, cut to `most` characters.
+std::string one_line(std::string_view text, std::size_t most);
+
+// The name that takes the fewest changes of a letter to become `wrong`, or nothing where none has half of its
+// letters.
+std::string nearest(std::string_view wrong, const std::vector<std::string>& names);
+
+// The first line, from 1, on which brackets or dotted keys nest deeper than `most`; 0: none does. A TOML reader that
+// recurses would run out of stack on them.
+std::size_t too_deep_line(std::string_view toml, std::size_t most);
+
+}  // namespace trammel::machine

@@ -1,0 +1,26 @@
+// Steps for several sinks: a simulated card has one. Not thread-safe.
+#pragma once
+
+#include <vector>
+
+#include "trammel/driver/steps.hpp"
+
+namespace trammel::run {
+
+class StepFork final : public driver::StepSink {
+ public:
+  // `sink` must outlive the fork; they get each step in the order in which they were added.
+  void add(driver::StepSink& sink) { sinks_.push_back(&sink); }
+
+  void pin_step(const driver::PinStep& step) override {
+    for (driver::StepSink* sink : sinks_) sink->pin_step(step);
+  }
+  void path_step(const driver::PathStep& step) override {
+    for (driver::StepSink* sink : sinks_) sink->path_step(step);
+  }
+
+ private:
+  std::vector<driver::StepSink*> sinks_;
+};
+
+}  // namespace trammel::run

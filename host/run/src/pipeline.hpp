@@ -1,0 +1,35 @@
+// One pass over a program: lines, reader, blocks, planner. Internal to the runner.
+#pragma once
+
+#include <memory>
+
+#include "trammel/gcode/reader.hpp"
+#include "trammel/machine/machine.hpp"
+#include "trammel/planner/planner.hpp"
+#include "trammel/run/runner.hpp"
+
+namespace trammel::run {
+
+class Pipeline {
+ public:
+  Pipeline(const ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card)
+      : lines_(lines()), reader_(*lines_, machine), blocks_(reader_, machine, card), planner_(blocks_, machine, card) {}
+
+  // As planner::Planner::next(), but throws ProgramError.
+  bool next(driver::CommandSink& sink, planner::PlannedBlock& planned) {
+    const bool more = planner_.next(sink, planned);
+    if (!more && blocks_.error()) throw ProgramError(*blocks_.error());
+    return more;
+  }
+  const std::string& file() const { return lines_->name(); }
+  const planner::Pulses& start() const { return blocks_.start(); }
+  const std::map<std::string, std::size_t>& accepted() const { return reader_.accepted(); }
+
+ private:
+  std::unique_ptr<gcode::LineSource> lines_;
+  gcode::Reader reader_;
+  planner::BlockBuilder blocks_;
+  planner::Planner planner_;
+};
+
+}  // namespace trammel::run

@@ -1,0 +1,214 @@
+// What the command says to people: names, help, notes, progress, programs from pipes, cards of any number of axes.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "command.hpp"
+
+namespace trammel::test {
+namespace {
+
+TEST(Names, MistypedSubcommandAndTheNearest) {
+  const Command command;
+  const auto error_of = [&](const std::string& arguments) {
+    const Outcome outcome = command.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_NE(error_of("rnu x.ngc").find("\"rnu\": did you mean run?"), std::string::npos);
+  EXPECT_NE(error_of("comapre --line 0,0,1,1").find("did you mean compare?"), std::string::npos);
+  EXPECT_NE(error_of("help stesp").find("did you mean steps?"), std::string::npos);
+  const std::string far = error_of("simulate");
+  EXPECT_NE(far.find("\"simulate\""), std::string::npos) << far;
+  EXPECT_EQ(far.find("did you mean"), std::string::npos) << far;
+}
+
+TEST(Names, HelpOfACommandIsItsHelp) {
+  const Command command;
+  EXPECT_EQ(command.run("help").out, command.run("--help").out);
+  for (const std::string name : {"run", "line", "info", "steps", "methods", "compare", "reproduce"}) {
+    const Outcome outcome = command.run("help " + name);
+    EXPECT_EQ(outcome.status, 0) << name;
+    EXPECT_EQ(outcome.out, command.run(name + " --help").out);
+    EXPECT_EQ(outcome.out.find("e+"), std::string::npos) << "limits as a person writes them\n" << outcome.out;
+  }
+}
+
+TEST(Limits, AreWrittenAsAPersonWritesThem) {
+  const Command command;
+  const Outcome clock = command.run("info --clock 5");
+  EXPECT_EQ(clock.status, 2);
+  EXPECT_NE(clock.err.find("1000 to 4294967295 Hz"), std::string::npos) << clock.err;
+  EXPECT_NE(command.run("info --axes 9").err.find("1 to 8"), std::string::npos);
+  EXPECT_NE(command.run("compare --circle 5 --threads 0").err.find("1 to 256"), std::string::npos);
+  EXPECT_EQ(command.run("info --clock 1e6").status, 0);
+}
+
+// Standard error of the tests is no terminal.
+TEST(Progress, HasNoEscapesInALog) {
+  const Command command;
+  const std::string run = "run " + command.write("a.ngc", "G1 X20 F600\n");
+  for (const std::string& arguments : {run, run + " --progress", std::string("compare --circle 25 --progress")}) {
+    const Outcome outcome = command.run(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err.find('\033'), std::string::npos) << arguments;
+    EXPECT_EQ(outcome.err.find('\r'), std::string::npos) << arguments;
+    EXPECT_TRUE(arguments != run || outcome.err.empty()) << outcome.err;
+  }
+}
+
+TEST(Progress, TerminalGetsABarAndATimeLeft) {
+  const Command command;
+  const std::string program = command.write("a.ngc", "G1 X60 F600\n");
+  // script(1) gives the command a terminal.
+  const std::string line = "TERM=xterm script -qec \"'" TRAMMEL_COMMAND "' run " + program +
+                           " --clock 2000000\" /dev/null >'" + command.path("log") + "' </dev/null";
+  ASSERT_EQ(std::system(line.c_str()), 0);
+  const std::string log = contents(command.path("log"));
+  EXPECT_NE(log.find("\033[K["), std::string::npos);
+  EXPECT_NE(log.find(" s left"), std::string::npos);
+  for (std::size_t at = log.find("\033[K["); at != std::string::npos; at = log.find("\033[K[", at + 1)) {
+    const std::size_t end = log.find('\r', at);
+    EXPECT_LE(end - at, 83U) << "within 80 columns: " << log.substr(at, end - at);
+  }
+}
+
+TEST(Notes, LongRunOfTheRtlEngine) {
+  const Command command;
+  const std::string program = command.write("long.ngc", "G1 X10000 F60\n");  // 10^10 clocks of 1 MHz
+  Running running(command, "run " + program, "note");
+  EXPECT_TRUE(eventually([&] { return count_lines(contents(command.path("note"))) == 1; }));
+  const std::string note = contents(command.path("note"));
+  EXPECT_NE(note.find(" for 10000 M clocks ("), std::string::npos) << note;
+  EXPECT_NE(note.find("--engine model"), std::string::npos) << note;
+}
+
+// One line a cause, with the count and the place where the smallest share of the feed is reached.
+TEST(Notes, FeedsThatAreNotReached) {
+  const Command command;
+  const Outcome reached = command.run("run --engine model " + command.write("a.ngc", "G1 X10 F600\n"));
+  EXPECT_EQ(reached.err, "");
+  const Outcome outcome = command.run(
+      "run --engine model " + command.write("b.ngc", "F3000\nG1 X0.5\nG1 X0.1\nG1 X50\nG1 X0.2 F90000\nG1 X30 F600\n"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 2U) << outcome.err;
+  // 0.4 mm and back at 1000 mm/s^2 reach 20 mm/s.
+  EXPECT_NE(outcome.err.find("2 moves do not reach the feed: too short"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("b.ngc:3, 1200 of 3000 mm/min"), std::string::npos) << outcome.err;
+  // 150 mm/s of the default machine.
+  EXPECT_NE(outcome.err.find("1 move does not reach the feed: beyond the max_velocity"), std::string::npos);
+  EXPECT_NE(outcome.err.find("b.ngc:5, 9000 of 90000 mm/min"), std::string::npos) << outcome.err;
+}
+
+TEST(Notes, WordsWithoutEffectByTheReason) {
+  const Command command;
+  const Outcome outcome = command.run(
+      "run " + command.write("a.ngc", "G64\nM3 S100\nG1 X1 F600\nM0\nM1\nM0\nM5\nM2\n") + " --engine model");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("which a simulation does not make: M0 (2) M1 (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("every motion ends in an exact stop: G64 (1)\n"), std::string::npos) << outcome.out;
+  const std::size_t hardware = outcome.out.find("without hardware yet:");
+  ASSERT_NE(hardware, std::string::npos);
+  EXPECT_EQ(outcome.out.find("G64", hardware), std::string::npos);
+}
+
+TEST(Program, FromStandardInputAndPipes) {
+  const Command command;
+  const std::string program = command.write("a.ngc", "G1 X1 F600\nG1 X0\n");
+  ASSERT_EQ(command.run("run " + program + " --steps " + command.path("expected")).status, 0);
+  const std::string expected = contents(command.path("expected"));
+  for (const std::string& source : {"- <" + program, "- < <(cat " + program + ")", "<(cat " + program + ")"}) {
+    const Outcome outcome = command.run("run --steps - " + source);
+    EXPECT_EQ(outcome.status, 0) << source << '\n' << outcome.err;
+    EXPECT_EQ(outcome.out, expected) << source;
+  }
+  const Outcome bad = command.run("run - < <(printf 'G1 X1 F600\\nQ5\\n')");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(bad.err.find("standard input:2:"), std::string::npos) << bad.err;
+}
+
+// The host reads less of a card with fewer axes before the start: the pulses come earlier, all by as many clocks.
+TEST(Axes, CardHasAsManyAsTheMachine) {
+  const Command command;
+  std::string machine = contents(TRAMMEL_EXAMPLES_DIR "/machine.toml");
+  machine.resize(machine.find("[axis.e]"));
+  const std::string run = "run " + command.write("a.ngc", "G1 X2 Y-3 Z0.5 F600\nG3 X0 I-1\nG0 X0 Y0 Z0\n") +
+                          " --steps " + command.path("steps") + " --path-steps ";
+  const std::string three = " --machine " + command.write("machine.toml", machine);
+  ASSERT_EQ(command.run(run + command.path("path4")).status, 0);
+  const std::vector<Step> four = read_steps(command.path("steps"));
+  ASSERT_EQ(command.run(run + command.path("path3") + three).status, 0);
+  std::vector<Step> steps = read_steps(command.path("steps"));
+  EXPECT_EQ(contents(command.path("path3")), contents(command.path("path4")));
+  ASSERT_EQ(steps.size(), four.size());
+  ASSERT_GT(steps.size(), 500U);
+  const std::uint64_t earlier = four[0].cycle - steps[0].cycle;
+  EXPECT_LT(earlier, 200U);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    ASSERT_EQ(steps[i].cycle + earlier, four[i].cycle) << i;
+    ASSERT_EQ(steps[i].axis, four[i].axis) << i;
+    ASSERT_EQ(steps[i].direction, four[i].direction) << i;
+  }
+  // Traced on four axes, and it says so.
+  const Outcome traced = command.run(run + command.path("path3") + three + " --trace " + command.path("x.fst"));
+  EXPECT_EQ(traced.status, 0);
+  EXPECT_NE(traced.err.find("card of 4 axes"), std::string::npos) << traced.err;
+}
+
+TEST(Axes, EveryNumberIsBuiltAndTracesSayWhatServes) {
+  const Command command;
+  for (const std::string axes : {"1", "2", "3", "4", "5", "6", "7", "8"}) {
+    const Outcome outcome = command.run("info --axes " + axes);
+    EXPECT_NE(outcome.out.find("axes           " + axes + "\n"), std::string::npos) << outcome.out;
+  }
+  const Outcome refused = command.run("info --axes 3 --trace " + command.path("x.fst"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("4 and of 8"), std::string::npos) << refused.err;
+}
+
+// Start and end of an FST file, in steps of half a clock: 64 bits each behind its first block's kind and length.
+std::pair<std::uint64_t, std::uint64_t> times_of(const std::string& file) {
+  const std::string text = contents(file);
+  const auto number = [&](std::size_t at) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < 8; ++i) value = value << 8U | static_cast<unsigned char>(text.at(at + i));
+    return value;
+  };
+  return {number(9), number(17)};
+}
+
+TEST(Trace, WindowOfTime) {
+  const Command command;
+  const std::string run = "run " + command.write("a.ngc", "G1 X1 F600\n") + " --trace " + command.path("x.fst");
+  using Times = std::pair<std::uint64_t, std::uint64_t>;
+  ASSERT_EQ(command.run(run + " --trace-window 0.01:0.02").status, 0);
+  EXPECT_EQ(times_of(command.path("x.fst")), Times(20'000, 39'999));
+  ASSERT_EQ(command.run(run + " --trace-window :0.005").status, 0);
+  EXPECT_EQ(times_of(command.path("x.fst")), Times(0, 9'999));
+  ASSERT_EQ(command.run(run + " --trace-window 0.02:").status, 0);
+  EXPECT_EQ(times_of(command.path("x.fst")).first, 40'000U);
+  for (const std::string window : {"1", "2:1", "a:b", "-1:2", "0:1x"}) {
+    const Outcome outcome = command.run(run + " --trace-window=" + window);
+    EXPECT_EQ(outcome.status, 2) << window;
+    EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+  }
+  EXPECT_EQ(command.run("info --trace-window 0:1").status, 2) << "no trace";
+}
+
+// The demo would build: a name that is not there shows where it looks, before that.
+TEST(Scripts, NamesAreMeantFromTheCallersFolderAndLogsArePlain) {
+  const Command command;
+  const std::string scripts = TRAMMEL_EXAMPLES_DIR "/../scripts/";
+  const std::string log = command.path("log");
+  const std::string demo = "cd '" + command.path("") + "' && bash '" + scripts + "demo' none.ngc 2>'" + log + "'";
+  EXPECT_NE(std::system(demo.c_str()), 0);
+  EXPECT_EQ(contents(log),
+            "error: " + std::filesystem::canonical(command.path("")).string() + "/none.ngc: cannot be read\n");
+  const std::string say = "bash -c 'source \"" + scripts + "common.sh\"; say hello' 2>'" + log + "'";
+  EXPECT_EQ(std::system(say.c_str()), 0);
+  EXPECT_EQ(contents(log), "== hello\n");
+}
+
+}  // namespace
+}  // namespace trammel::test

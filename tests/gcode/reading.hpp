@@ -1,0 +1,42 @@
+// A whole program at once, for tests.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "trammel/gcode/reader.hpp"
+
+namespace trammel::gcode {
+
+struct Reading {
+  std::vector<Motion> motions;
+  std::map<std::string, std::size_t> accepted;
+  std::optional<Error> error;
+};
+
+inline Reading read_all(LineSource& lines, const machine::Machine& machine = machine::default_machine(),
+                        const Coordinates& start = {}) {
+  Reader reader(lines, machine, start);
+  Reading reading;
+  for (Motion motion; reader.next(motion);) {
+    reading.motions.push_back(motion);
+  }
+  reading.accepted = reader.accepted();
+  reading.error = reader.error();
+  return reading;
+}
+
+inline Reading read_text(const std::string& text, const machine::Machine& machine = machine::default_machine(),
+                         const Coordinates& start = {}) {
+  TextLines lines(text, "p.ngc");
+  return read_all(lines, machine, start);
+}
+
+inline Reading read_file(const std::string& path) {
+  FileLines lines(path);
+  return read_all(lines);
+}
+
+}  // namespace trammel::gcode

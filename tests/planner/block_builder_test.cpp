@@ -1,0 +1,207 @@
+#include "trammel/planner/block_builder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "plan.hpp"
+#include "trammel/driver/card_timing.hpp"
+#include "trammel/driver/errors.hpp"
+
+namespace trammel::planner {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr CardLimits kCard = {100'000'000, 4, true};
+
+machine::Machine machine_with(const std::vector<std::string>& overrides) {
+  machine::Machine machine = machine::default_machine();
+  for (const std::string& text : overrides) machine::apply_override(machine, text);
+  return machine;
+}
+
+std::string refusal(const std::string& text, const machine::Machine& machine, gcode::ErrorCode* code = nullptr,
+                    const gcode::Coordinates& start = {}) {
+  const Plan plan = plan_text(text, machine, kCard, start);
+  if (!plan.error) return "accepted";
+  if (code != nullptr) *code = plan.error->code;
+  return gcode::describe(*plan.error);
+}
+
+TEST(SoftLimits, RefuseTargetsWithFileAndLine) {
+  const machine::Machine machine = machine_with({"axis.x.min=-10", "axis.x.max=200"});
+  gcode::ErrorCode code{};
+  EXPECT_EQ(refusal("G0 X200\nX-10\n", machine), "accepted") << "the limits themselves";
+  EXPECT_EQ(refusal("G0 X200\nX200.01\n", machine, &code),
+            "p.ngc:2: X200.01 is beyond the axis's max of 200 (machine coordinates)");
+  EXPECT_EQ(code, gcode::ErrorCode::kSoftLimit);
+  EXPECT_THAT(refusal("G1 X-10.5 F100\n", machine), HasSubstr("p.ngc:1: X-10.5 is beyond the axis's min of -10"));
+  EXPECT_EQ(refusal("G0 Y5000\n", machine), "accepted") << "Y has none";
+}
+
+TEST(SoftLimits, CountInMachineCoordinates) {
+  const machine::Machine machine = machine_with({"axis.x.max=200", "axis.x.g54=150"});
+  EXPECT_EQ(refusal("G54 G0 X50\n", machine), "accepted");
+  EXPECT_THAT(refusal("G54 G0 X51\n", machine), HasSubstr("X201 is beyond"));
+}
+
+TEST(SoftLimits, HoldForTheExtremesOfArcs) {
+  const machine::Machine machine = machine_with({"axis.x.max=109.9", "axis.y.min=-10.001"});
+  // Half a circle of radius 10 about (100, 0), ends inside: clockwise over X110, or over X90.
+  EXPECT_THAT(refusal("G0 X100 Y10\nG2 Y-10 J-10 F100\n", machine), HasSubstr("p.ngc:2: X110 is beyond"));
+  EXPECT_EQ(refusal("G0 X100 Y10\nG3 Y-10 J-10 F100\n", machine), "accepted");
+  EXPECT_THAT(refusal("G0 X90\nG3 I10 F100\n", machine), HasSubstr("p.ngc:2: X110 is beyond")) << "a full circle";
+  EXPECT_THAT(refusal("G0 X90\nG3 X109 Y-10.1 R20 F100\n", machine), HasSubstr("Y-10.1")) << "the end";
+}
+
+// A machine that stands outside may move in.
+TEST(SoftLimits, HoldForWhatMovesOnly) {
+  const machine::Machine machine = machine_with({"axis.x.max=10", "axis.y.max=10"});
+  EXPECT_EQ(refusal("G0 Y5\nX3\n", machine, nullptr, {50, 0}), "accepted");
+  EXPECT_THAT(refusal("G0 X49\n", machine, nullptr, {50, 0}), HasSubstr("X49 is beyond"));
+}
+
+TEST(CountersRange, HoldsForTheExtremesOfArcs) {
+  const machine::Machine machine = machine::default_machine();
+  gcode::ErrorCode code{};
+  EXPECT_THAT(refusal("G0 X26843000\nG2 I1000 F1\n", machine, &code),
+              HasSubstr("p.ngc:2: X26845000 is beyond the card"));
+  EXPECT_EQ(code, gcode::ErrorCode::kPositionRange);
+}
+
+TEST(Blocks, StartWhereTheMachineStands) {
+  const Plan plan = plan_text("G91 G0 X1\n", machine::default_machine(), kCard, {10, 5});
+  EXPECT_EQ(plan.start, (Pulses{800, 400}));
+  ASSERT_FALSE(plan.blocks.empty());
+  EXPECT_EQ(plan.blocks[0]->start, (Pulses{800, 400}));
+  EXPECT_EQ(plan.blocks[0]->end, (Pulses{880, 400}));
+}
+
+TEST(Blocks, HaveLengthAndLimitsOfTheirPath) {
+  const machine::Machine machine = machine_with({"axis.x.max_jerk=5000", "axis.y.max_jerk=50000"});
+  const Plan plan = plan_text("G1 X30 Y40 F600\nG1 Z1\n", machine, kCard);
+  const Block& block = plan.blocks.at(0).planned.block;
+  EXPECT_DOUBLE_EQ(block.length, 50);
+  EXPECT_DOUBLE_EQ(block.pulses, 4000);
+  EXPECT_DOUBLE_EQ(block.speed, 800) << "10 mm/s";
+  EXPECT_DOUBLE_EQ(block.wanted, 800);
+  EXPECT_DOUBLE_EQ(block.feed, 10);
+  EXPECT_DOUBLE_EQ(block.acceleration, machine.axes[1].max_acceleration * 80 / 0.8) << "Y makes four fifths";
+  EXPECT_DOUBLE_EQ(block.jerk, 5000 * 80 / 0.6) << "X makes three";
+}
+
+TEST(Blocks, EndAtAnError) {
+  const machine::Machine machine = machine_with({"axis.x.max=10"});
+  gcode::TextLines lines("G0 X11\nG0 X1\n", "p.ngc");
+  gcode::Reader reader(lines, machine);
+  BlockBuilder blocks(reader, machine, kCard);
+  Block block;
+  EXPECT_FALSE(blocks.next(block));
+  EXPECT_FALSE(blocks.next(block)) << "what follows is not looked at";
+  ASSERT_TRUE(blocks.error());
+  EXPECT_EQ(blocks.error()->line, 1U);
+}
+
+TEST(Blocks, RefuseStepTimesThatTheCardCannotKeep) {
+  const machine::Machine machine = machine_with({"axis.x.step_length_ns=600000"});
+  EXPECT_NO_THROW(plan_text("G0 X1\n", machine, kCard));
+  EXPECT_THROW(plan_text("G0 X1\n", machine, {1'000'000'000, 4, true}), driver::ArgumentError);
+}
+
+SpeedLimit limit_of(const std::string& text, const machine::Machine& machine = machine::default_machine(),
+                    const CardLimits& card = kCard) {
+  const Plan plan = plan_text(text, machine, card);
+  return plan.blocks.at(plan.blocks.size() - 2).planned.limit;
+}
+
+TEST(FeedsNotReached, HaveACause) {
+  EXPECT_EQ(limit_of("G1 X100 F600\n"), SpeedLimit::kNone);
+  EXPECT_EQ(limit_of("G0 X100\n"), SpeedLimit::kNone) << "as fast as may be";
+  EXPECT_EQ(limit_of("G1 X100 F60000\n"), SpeedLimit::kAxisVelocity);
+  EXPECT_EQ(limit_of("G1 X100 F6000\n", machine_with({"axis.x.step_length_ns=500000"})), SpeedLimit::kPulseShape);
+  EXPECT_EQ(limit_of("G1 X0.1 F6000\n"), SpeedLimit::kAcceleration) << "too short";
+  EXPECT_EQ(limit_of("G2 I1 F6000\n"), SpeedLimit::kAcceleration) << "too strong a curve";
+  const std::vector<std::string> fast = {"axis.x.step_length_ns=100",      "axis.x.step_space_ns=100",
+                                         "axis.y.step_length_ns=100",      "axis.y.step_space_ns=100",
+                                         "axis.x.max_velocity=2000",       "axis.y.max_velocity=2000",
+                                         "axis.x.max_acceleration=100000", "axis.y.max_acceleration=100000"};
+  EXPECT_EQ(limit_of("G2 I300 F100000\n", machine_with(fast), {1'000'000, 4, true}), SpeedLimit::kClock);
+}
+
+TEST(FeedsNotReached, SayHowFarTheyCome) {
+  const machine::Machine machine = machine::default_machine();
+  const Plan plan = plan_text("G1 X100 F60000\nG1 X100.1 F6000\n", machine, kCard);
+  EXPECT_NEAR(plan.blocks[0].planned.speed, machine.axes[0].max_velocity, 1e-6);
+  // v^2 = a s for half the way each.
+  EXPECT_NEAR(plan.blocks[1].planned.speed, std::sqrt(machine.axes[0].max_acceleration * 0.1), 0.1);
+}
+
+// So fast for the clock that evenness would have one tick.
+TEST(ShortLines, TakeWhatTheCardNeedsToDecodeTheNext) {
+  machine::Machine machine = machine_with({"axis.x.max_velocity=10000", "axis.x.max_acceleration=1e9"});
+  const auto shortest = [&](unsigned axes) {
+    const Plan plan = plan_text("G0 X0.0125\n", machine, {100'000, axes, true});
+    return commands<driver::LineCommand>(plan.blocks.at(0)).at(0).ticks;
+  };
+  EXPECT_EQ(shortest(1), 22U);
+  EXPECT_EQ(shortest(4), 22U);
+  EXPECT_EQ(shortest(5), driver::gap_free_ticks(5));
+  EXPECT_EQ(shortest(8), 34U);
+}
+
+TEST(Arcs, GoOutAsChordsWhereTheCardHasNoAccumulator) {
+  const std::string text = "G1 X10 F600\nG2 X20 I5\n";
+  const Plan with = plan_text(text, machine::default_machine(), kCard);
+  const Plan without = plan_text(text, machine::default_machine(), {kCard.clock_hz, 4, false});
+  EXPECT_EQ(commands<driver::ArcCommand>(with.blocks.at(1)).size(), 1U);
+  EXPECT_TRUE(commands<driver::ArcCommand>(without.blocks.at(1)).empty());
+  EXPECT_GT(commands<driver::LineCommand>(without.blocks.at(1)).size(), 20U);
+  EXPECT_EQ(without.blocks.at(1)->end, with.blocks.at(1)->end);
+}
+
+TEST(PlannedBlock, CountsItsCommandsBeforeTheyArePut) {
+  class Sink final : public driver::CommandSink {
+   public:
+    explicit Sink(const PlannedBlock& planned) : planned_(planned) {}
+    void put(const driver::Command& command) override {
+      const bool feed = std::holds_alternative<driver::FeedCommand>(command);
+      const bool barrier =
+          std::holds_alternative<driver::DwellCommand>(command) || std::holds_alternative<driver::EndCommand>(command);
+      geometry += !feed;
+      pieces += feed || barrier;
+      ++all;
+      announced = planned_.commands;
+      line = planned_.block.line;
+    }
+    std::uint64_t geometry = 0, pieces = 0, all = 0, announced = 0;
+    std::size_t line = 0;
+
+   private:
+    const PlannedBlock& planned_;
+  };
+  const machine::Machine machine = machine_with({"axis.y.steps_per_mm=100"});
+  gcode::TextLines lines("G1 X10 F600\nG2 X20 I5\nG4 P30000\nM2\n", "p.ngc");
+  gcode::Reader reader(lines, machine);
+  BlockBuilder blocks(reader, machine, kCard);
+  Planner planner(blocks, machine, kCard);
+  PlannedBlock planned;
+  std::size_t count = 0;
+  while (true) {
+    Sink sink(planned);
+    if (!planner.next(sink, planned)) break;
+    ++count;
+    EXPECT_EQ(sink.all, planned.commands);
+    EXPECT_EQ(sink.announced, planned.commands);
+    EXPECT_EQ(sink.geometry, planned.geometry);
+    EXPECT_EQ(sink.pieces, planned.feed);
+    EXPECT_EQ(sink.line, planned.block.line);
+  }
+  EXPECT_EQ(count, 4U);
+}
+
+}  // namespace
+}  // namespace trammel::planner

@@ -1,0 +1,252 @@
+#include "trammel/run/runner.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "trammel/run/commanded_course.hpp"
+#include "trammel/run/step_recorder.hpp"
+#include "trammel/sim/engine.hpp"
+
+namespace trammel::run {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::uint32_t kClock = 1'000'000;
+
+ProgramLines lines_of(const std::string& text) {
+  return [text = std::make_shared<const std::string>(text)]() -> std::unique_ptr<gcode::LineSource> {
+    return std::make_unique<gcode::TextLines>(*text, "p.ngc");
+  };
+}
+
+// A card's bus that dies at a given time.
+class DyingBus final : public driver::Bus {
+ public:
+  DyingBus(sim::Engine& engine, std::uint64_t last_cycle) : engine_(engine), last_cycle_(last_cycle) {}
+  std::size_t transfer(driver::Access* accesses, std::size_t count) override {
+    if (engine_.cycles() > last_cycle_) throw driver::LinkError("the cable is out");
+    return engine_.transfer(accesses, count);
+  }
+  void sleep(std::chrono::nanoseconds time) override { engine_.sleep(time); }
+  bool reports_refusals() const override { return engine_.reports_refusals(); }
+
+ private:
+  sim::Engine& engine_;
+  std::uint64_t last_cycle_;
+};
+
+class RunnerTest : public testing::Test {
+ protected:
+  Outcome run(const std::string& text) {
+    Runner runner = make(text);
+    runner.plan();
+    return runner.run(card_);
+  }
+  Runner make(const std::string& text) {
+    return Runner(lines_of(text), machine_, planner::limits_of(card_.identification()));
+  }
+  static std::string error_of(const std::function<void()>& call) {
+    try {
+      call();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  machine::Machine machine_ = machine::default_machine();
+  std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
+  driver::Card card_ = driver::Card::open(*engine_);
+};
+
+TEST_F(RunnerTest, RunsAProgramToItsEnd) {
+  Runner runner = make("G1 X1 Y2 F600\nG4 P0.1\nG2 X2 Y1 I1 F600\nM3\nM2\n");
+  StepRecorder::Options options;
+  options.steps_per_mm.assign(4, 80);
+  StepRecorder recorder(options);
+  engine_->set_sink(&recorder);
+  runner.add(recorder);
+  const Plan plan = runner.plan();
+  EXPECT_EQ(plan.file, "p.ngc");
+  EXPECT_EQ(plan.segments, 2U);
+  EXPECT_EQ(plan.end[0], 160);
+  EXPECT_EQ(plan.accepted.count("M3"), 1U);
+  EXPECT_EQ(recorder.steps()[0], 0U) << "nothing moves in the first pass";
+  const Outcome outcome = runner.run(card_);
+  recorder.finish();
+  EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{160, 80, 0, 0}));
+  EXPECT_EQ(outcome.commands, plan.commands);
+  EXPECT_NO_THROW(recorder.check(outcome.counted));
+  const double seconds = static_cast<double>(engine_->cycles()) / kClock;
+  EXPECT_NEAR(plan.seconds, seconds, 0.02 * seconds);
+  EXPECT_GT(recorder.deviation().largest_line(), 0);
+  EXPECT_LE(recorder.deviation().largest_line(), 0.7081);
+}
+
+TEST_F(RunnerTest, RunsSeveralPrograms) {
+  EXPECT_EQ(run("G0 X1\n").final_position[0], 80);
+  const driver::Card again = driver::Card::open(*engine_);
+  EXPECT_EQ(again.identification().axes, 4U);
+}
+
+TEST_F(RunnerTest, ConfiguresTheCard) {
+  machine::apply_override(machine_, "axis.x.step_length_ns=10000");
+  machine::apply_override(machine_, "axis.x.step_space_ns=20000");
+  run("G0 X1\n");
+  EXPECT_EQ(card_.timing().pulse_period[0], driver::shortest_pulse_period(10, 20));
+}
+
+struct Event {
+  std::string what;
+  std::size_t line = 0;
+  std::uint64_t number = 0;
+  bool operator==(const Event& other) const {
+    return what == other.what && line == other.line && number == other.number;
+  }
+};
+
+class Events final : public Observer {
+ public:
+  void planned(const planner::PlannedBlock& block, std::uint64_t first) override {
+    list.push_back({"planned", block.block.line, first});
+  }
+  void sending(const planner::PlannedBlock& block) override { list.push_back({"sending", block.block.line, 0}); }
+  void command(std::uint64_t number, const driver::Command& /*command*/) override {
+    list.push_back({"command", 0, number});
+  }
+  void sent() override { list.push_back({"sent", 0, 0}); }
+  void progress() override { ++looks; }
+  std::vector<Event> list;
+  int looks = 0;
+};
+
+TEST_F(RunnerTest, TellsItsObserversInOrder) {
+  Runner runner = make("G4 P0.01\nG4 P0.02\n");
+  Events events;
+  runner.add(events);
+  runner.plan();
+  EXPECT_EQ(events.list, (std::vector<Event>{{"planned", 1, 0}, {"planned", 2, 1}, {"planned", 2, 2}}));
+  events.list.clear();
+  runner.run(card_);
+  EXPECT_EQ(events.list, (std::vector<Event>{{"sending", 1, 0},
+                                             {"command", 0, 0},
+                                             {"sent", 0, 0},
+                                             {"sending", 2, 0},
+                                             {"command", 0, 1},
+                                             {"sent", 0, 0},
+                                             {"sending", 2, 0},
+                                             {"command", 0, 2},
+                                             {"sent", 0, 0}}));
+  EXPECT_GT(events.looks, 3);
+}
+
+TEST_F(RunnerTest, RefusesAProgramBeforeAnythingMoves) {
+  EXPECT_THAT(error_of([&] { run("G0 X1\nG0 X2 Q\n"); }), HasSubstr("p.ngc:2: "));
+  machine::apply_override(machine_, "axis.x.max=10");
+  EXPECT_THAT(error_of([&] { run("G0 X1\nG0 X11\n"); }), HasSubstr("p.ngc:2: X11 is beyond the axis's max of 10"));
+  EXPECT_EQ(card_.snapshot().position[0], 0);
+}
+
+TEST_F(RunnerTest, RefusesAProgramThatChangesBetweenThePasses) {
+  int opened = 0;
+  Runner runner(
+      [&]() -> std::unique_ptr<gcode::LineSource> {
+        return std::make_unique<gcode::TextLines>(opened++ == 0 ? "G0 X1\n" : "G0 X2\n", "p.ngc");
+      },
+      machine_, planner::limits_of(card_.identification()));
+  runner.plan();
+  EXPECT_THAT(error_of([&] { runner.run(card_); }), HasSubstr("has changed"));
+}
+
+TEST_F(RunnerTest, RefusesAnotherCardThanThePlanned) {
+  Runner runner(lines_of("G0 X1\n"), machine_, {2 * kClock, 4, true});
+  runner.plan();
+  EXPECT_THROW(runner.run(card_), std::invalid_argument);
+}
+
+// The queues hold some 500 dwells ahead of the one that runs.
+TEST_F(RunnerTest, NamesTheLineThatRanAndNotTheLastThatWasSent) {
+  std::string text = "G0 X1\n";
+  for (int i = 0; i < 600; ++i) text += "G4 P1\n";
+  DyingBus bus(*engine_, kClock / 2);  // within the first dwell
+  driver::Card card = driver::Card::open(bus);
+  Runner runner = make(text);
+  Events events;
+  runner.add(events);
+  runner.plan();
+  events.list.clear();
+  std::size_t line = 0;
+  EXPECT_THAT(error_of([&] {
+                try {
+                  runner.run(card);
+                } catch (const RunError& error) {
+                  line = error.line();
+                  throw;
+                }
+              }),
+              HasSubstr("p.ngc:2: "));
+  EXPECT_EQ(line, 2U);
+  EXPECT_GT(events.list.size(), 3 * 500U) << "the queues were full";
+}
+
+// Where the link lives the card is asked once more.
+TEST_F(RunnerTest, NamesTheLineOfARefusal) {
+  class Meddler final : public Observer {
+   public:
+    explicit Meddler(sim::Engine& engine) : engine_(engine) {}
+    void progress() override {
+      if (engine_.cycles() < 2'500'000 || std::exchange(done_, true)) return;
+      try {
+        engine_.write(0xFF0, 0);  // no register
+      } catch (const driver::Error&) {
+      }
+    }
+
+   private:
+    sim::Engine& engine_;
+    bool done_ = false;
+  };
+  std::string text;
+  for (int i = 0; i < 600; ++i) text += "G4 P1\n";
+  Runner runner = make(text);
+  Meddler meddler(*engine_);
+  runner.add(meddler);
+  runner.plan();
+  EXPECT_THAT(error_of([&] { runner.run(card_); }), HasSubstr("p.ngc:3: "));
+}
+
+TEST_F(RunnerTest, ReportsFeedsThatAreNotReached) {
+  Runner runner = make("G1 X10 F600\nG1 X100 F60000\nG1 X100.1 F6000\nG1 X100.05\n");
+  const std::vector<FeedNotReached> feeds = runner.plan().feeds_not_reached;
+  ASSERT_EQ(feeds.size(), 2U);
+  EXPECT_EQ(feeds[0].cause, planner::SpeedLimit::kAcceleration);
+  EXPECT_EQ(feeds[0].count, 2U);
+  EXPECT_EQ(feeds[0].line, 4U) << "the shorter of the two";
+  EXPECT_DOUBLE_EQ(feeds[0].wanted, 6000);
+  EXPECT_LT(feeds[0].reached, 1000);
+  EXPECT_EQ(feeds[1].cause, planner::SpeedLimit::kAxisVelocity);
+  EXPECT_EQ(feeds[1].line, 2U);
+  EXPECT_NEAR(feeds[1].reached, machine_.axes[0].max_velocity * 60, 1);
+}
+
+TEST_F(RunnerTest, DrawsTheCommandedCourse) {
+  Runner runner = make("G1 X10 F600\nG2 X20 I5\n");
+  CommandedCourse course(machine_);
+  runner.add(course);
+  runner.plan();
+  const std::vector<Point> points = course.points();
+  ASSERT_EQ(points.size(), 1 + 1 + 64 + 1U);
+  EXPECT_EQ(points[1][0], 10);
+  EXPECT_NEAR(points[33][1], 5, 0.01) << "the top of the arc";
+  ASSERT_TRUE(course.detail_command());
+  EXPECT_GT(*course.detail_command(), 3U) << "the arc rather than the line";
+  EXPECT_EQ(course.detail().size(), StepRecorder::kDetailPoints + 1);
+}
+
+}  // namespace
+}  // namespace trammel::run

@@ -1,0 +1,98 @@
+// A bus without a card behind it: registers that are as a test sets them, a log of all accesses, and faults on demand.
+// What a card does belongs to the model engine (trammel/sim/engine.hpp); this is for what no card does.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/bus.hpp"
+#include "trammel/driver/errors.hpp"
+
+namespace trammel::test {
+
+// What an access was: {true, address, data} for a write, {false, address, 0} for a read.
+using Made = std::tuple<bool, std::uint32_t, std::uint32_t>;
+inline Made wrote(std::uint32_t address, std::uint32_t data) { return {true, address, data}; }
+inline Made was_read(std::uint32_t address) { return {false, address, 0}; }
+
+class RegisterStub : public driver::Bus {
+ public:
+  // An idle card of so many axes with every engine that the driver uses.
+  explicit RegisterStub(unsigned axes = 4, std::uint32_t clock_hz = 1'000'000) {
+    namespace reg = card_map::reg;
+    values[reg::kMagic] = card_map::kMagicValue;
+    values[reg::kMapVersion] = card_map::kMapVersionValue;
+    values[reg::kCommandsVersion] = card_map::kCommandsVersionValue;
+    values[reg::kAxes] = axes;
+    values[reg::kClockHz] = clock_hz;
+    values[reg::kEngines] = card_map::field::kEnginesLines | card_map::field::kEnginesAccumulator |
+                            card_map::field::kEnginesJerk | card_map::field::kEnginesDirectMode;
+    values[reg::kGeometryDepth] = 4096;
+    values[reg::kFeedDepth] = 2560;
+    values[reg::kRatioFeed] = 0x10000;
+    values[reg::kSlew] = 0xFFFFFFF;
+  }
+
+  // Read and written registers; 0 where nothing is set. Orders are only logged, writing ones clears where the map says.
+  std::map<std::uint32_t, std::uint32_t> values;
+  // What the next reads of a register give, before its value.
+  std::map<std::uint32_t, std::deque<std::uint32_t>> next;
+  // Called before each access. False: the card refuses it. May change what a read gives by setting `values`; may throw.
+  std::function<bool(const driver::Access&)> on_access;
+  bool posted = false;  // refusals do not show
+
+  std::vector<Made> log;
+  std::vector<std::size_t> transfers;  // accesses of each
+  std::vector<std::chrono::nanoseconds> sleeps;
+  std::chrono::nanoseconds slept{0};
+
+  void forget() {
+    log.clear();
+    transfers.clear();
+    sleeps.clear();
+    slept = std::chrono::nanoseconds(0);
+  }
+
+  std::size_t transfer(driver::Access* accesses, std::size_t count) override {
+    transfers.push_back(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool taken = !on_access || on_access(accesses[i]);
+      if (!taken && !posted) return i;
+      if (taken) make(accesses[i]);
+    }
+    return count;
+  }
+  void sleep(std::chrono::nanoseconds time) override {
+    sleeps.push_back(time);
+    slept += time;
+  }
+  bool reports_refusals() const override { return !posted; }
+
+ private:
+  void make(driver::Access& access) {
+    log.push_back(access.write ? wrote(access.address, access.data) : was_read(access.address));
+    if (!access.write) {
+      std::deque<std::uint32_t>& waiting = next[access.address];
+      access.data = values[access.address];
+      if (waiting.empty()) return;
+      access.data = waiting.front();
+      waiting.pop_front();
+      return;
+    }
+    const card_map::Register& entry = *card_map::find_register(access.address).entry;
+    if (entry.access == card_map::Access::ClearOnes) {
+      values[access.address] &= ~access.data;
+    } else if (entry.access == card_map::Access::Setting) {
+      values[access.address] = access.data;
+    }
+  }
+};
+
+}  // namespace trammel::test
