@@ -77,7 +77,8 @@ void MotionCore::clock_axes(const Inputs& in, bool cut) {
   axis.setting = in.setting;
   out_.engine_step = engines.step;
   const bool common = cut || engines.tick || engines.swap || in.setting.set || axis.load.valid;
-  const std::uint32_t due = common || clock_all_ ? ~0U : engines.step | engines.chord_load | engines.chord_swap | restless_;
+  const std::uint32_t due =
+      common || clock_all_ ? ~0U : engines.step | engines.chord_load | engines.chord_swap | restless_;
   for (unsigned n = 0; n < axes_.size(); ++n) {
     const std::uint32_t bit = 1U << n;
     if ((due & bit) == 0) continue;

@@ -1,5 +1,5 @@
-// Lockstep of the path engines: arcs on either engine and lines one after the other, ticks at random, the next arc's state loaded while
-// a line runs, cuts and resets at any clock; every output in every cycle.
+// Lockstep of the path engines: arcs on either engine and lines one after the other, ticks at random, the next arc's
+// state loaded while a line runs, cuts and resets at any clock; every output in every cycle.
 #include "trammel/model/path_engines.hpp"
 
 #include <Vdut.h>

@@ -3,9 +3,9 @@
 //
 // A halfword asked for in clock r lies on the queue's output in r+2 and on the bus in r+3. A command is decoded in the
 // clock in which its last halfword is on the bus. An engine's halfwords after the prescaler wait until it is
-// free, a line's increments until the axes' shadows are; a feed piece's acceleration and jerk until it has begun, where a piece runs as they would be asked for: it is
-// decoded without them. Not thread-safe; no errors are reported: the checker
-// lets only good commands into the queue.
+// free, a line's increments until the axes' shadows are; a feed piece's acceleration and jerk until it has begun, where
+// a piece runs as they would be asked for: it is decoded without them. Not thread-safe; no errors are reported: the
+// checker lets only good commands into the queue.
 #pragma once
 
 #include <cstdint>
