@@ -49,7 +49,7 @@ class Bench {
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
     if (stand_for_ != 0) --stand_for_;
-    in_.elsewhere = dice_.chance(200);
+    in_.elsewhere = dice_.chance(30);
     if (in_.cut) check_.event("cut");
     if (dice_.chance(10 * pace.cut))
       reset();
