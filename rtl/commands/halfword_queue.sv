@@ -3,7 +3,7 @@
 // A write at c belongs to the command under way; a commit makes what was written in earlier clocks readable, a drop
 // forgets it (and wins over a write or commit beside it). word_o at c+2 is the halfword that read_i took at c; reads may
 // follow each other every clock, and a read while empty_o is ignored. empty_o counts a read at c+1 and a commit at
-// c+2; room_o (combinational) counts reads, writes and drops at c+1. The writer keeps within room_o.
+// c+2; room_o counts reads, writes and drops at c+2. The writer keeps within what room_o was before its command.
 `default_nettype none
 module halfword_queue #(
     parameter int Depth = 4096  // halfwords, 2 to 32,768
@@ -85,9 +85,13 @@ module halfword_queue #(
   logic [AddressWidth:0] ahead;  // of the writer to the reader; negative or 0 in the same lap
   logic [AddressWidth:0] room;
 
-  assign ahead  = {1'b0, read_q[AddressWidth-1:0]} - {1'b0, write_q[AddressWidth-1:0]};
-  assign room   = read_q[AddressWidth] == write_q[AddressWidth] ? ahead + DEPTH : ahead;
-  assign room_o = 16'(room);
+  assign ahead = {1'b0, read_q[AddressWidth-1:0]} - {1'b0, write_q[AddressWidth-1:0]};
+  assign room  = read_q[AddressWidth] == write_q[AddressWidth] ? ahead + DEPTH : ahead;
+
+  always_ff @(posedge clk_i) begin
+    if (reset) room_o <= 16'(DEPTH);
+    else room_o <= 16'(room);
+  end
 
 endmodule
 `default_nettype wire

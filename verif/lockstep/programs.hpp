@@ -223,7 +223,7 @@ class QueueWriter {
       in.commit = true;
       commands_.pop_front();
       written_ = 0;
-    } else if (queue_.outputs().room != 0) {
+    } else if (queue_.free() != 0) {
       in.write = true;
       in.word = command[written_++];
     }

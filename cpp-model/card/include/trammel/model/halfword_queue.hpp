@@ -22,7 +22,7 @@ class HalfwordQueue {
   struct Outputs {
     std::uint16_t word = 0;  // two clocks after its read; without meaning before the first read
     bool empty = true;       // counts a read one clock later, a commit two clocks later
-    std::uint16_t room = 0;  // free halfwords
+    std::uint16_t room = 0;  // free halfwords; two clocks after what changed it, one after a reset or clear
   };
 
   // depth: 2 .. 32,768 halfwords; throws std::invalid_argument otherwise.
@@ -37,6 +37,7 @@ class HalfwordQueue {
       forget_all();
       return;
     }
+    outputs_.room = free();
     const bool take = in.read && !outputs_.empty;
     if (take) {
       fetched_ = memory_[read_];
@@ -53,13 +54,17 @@ class HalfwordQueue {
       }
       if (in.write) memory_[(read_ + committed_ + pending_++) % memory_.size()] = in.word;
     }
-    outputs_.room = static_cast<std::uint16_t>(memory_.size() - committed_ - pending_);
   }
 
   const Outputs& outputs() const { return outputs_; }
 
+  // Halfwords free now; `room` shows it a clock later.
+  std::uint16_t free() const { return static_cast<std::uint16_t>(memory_.size() - committed_ - pending_); }
+
   // True when a clock without inputs changes nothing.
-  bool quiet() const { return outputs_.word == fetched_ && outputs_.empty == (committed_ == 0); }
+  bool quiet() const {
+    return outputs_.word == fetched_ && outputs_.empty == (committed_ == 0) && outputs_.room == free();
+  }
 
  private:
   void forget_all() {
@@ -67,7 +72,7 @@ class HalfwordQueue {
     committed_ = 0;
     pending_ = 0;
     outputs_.empty = true;
-    outputs_.room = static_cast<std::uint16_t>(memory_.size());
+    outputs_.room = free();
   }
 
   std::vector<std::uint16_t> memory_;
