@@ -84,7 +84,7 @@ module geometry_decoder #(
     endcase
   endfunction
 
-  // The same of an arc in chords; increments of further axes are numbered AXIS and the axis.
+  // The same of an arc in chords; an axis's increment goes to the target of its number, and as a field it is AXIS and that.
   localparam logic [4:0] AXIS = 5'd16;
   function automatic logic [4:0] chord_target(input logic [4:0] number, input logic [2:0] x, input logic [2:0] y);
     case (number)
@@ -92,11 +92,11 @@ module geometry_decoder #(
       card_map_pkg::FIELD_ARC_CHORD_PLANE: chord_target = load_target_pkg::PLANE;
       card_map_pkg::FIELD_ARC_CHORD_SHIFTS: chord_target = load_target_pkg::SHIFTS;
       card_map_pkg::FIELD_ARC_CHORD_X, card_map_pkg::FIELD_ARC_CHORD_Y: chord_target = load_target_pkg::STATE;
-      card_map_pkg::FIELD_ARC_CHORD_FIRST_X: chord_target = load_target_pkg::INCREMENT | {2'd0, x};
-      card_map_pkg::FIELD_ARC_CHORD_FIRST_Y: chord_target = load_target_pkg::INCREMENT | {2'd0, y};
+      card_map_pkg::FIELD_ARC_CHORD_FIRST_X: chord_target = {2'd0, x};
+      card_map_pkg::FIELD_ARC_CHORD_FIRST_Y: chord_target = {2'd0, y};
       card_map_pkg::FIELD_ARC_CHORD_CLOSING_X, card_map_pkg::FIELD_ARC_CHORD_CLOSING_Y:
       chord_target = load_target_pkg::CLOSING;
-      default: chord_target = number[4] ? load_target_pkg::INCREMENT | {2'd0, number[2:0]} : load_target_pkg::NOWHERE;
+      default: chord_target = number[4] ? {2'd0, number[2:0]} : load_target_pkg::NOWHERE;
     endcase
   endfunction
 
@@ -125,7 +125,9 @@ module geometry_decoder #(
       .next_i       (to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length}),
       .last_field_i (is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0),
       .rest_i       (1'b0),
-      .wait_i       (first || is_line ? is_line && !shadows_free_i : at_prescaler && !payload_ready_i),
+      // Before an engine's first field nothing waits: the command before was an engine's, whose last field this is not, or
+      // runs on lines, and the engine is free.
+      .wait_i       (is_line ? !shadows_free_i : at_prescaler && !payload_ready_i),
       .header_o     (header),
       .first_o      (first),
       .advance_o    (advance),

@@ -53,7 +53,6 @@ module path_engines #(
     tick_o <= own_tick_q[1] || chord_tick;
     swap_q <= {swap_q[1:0], swap_i};
     if (rst_i || cut_i) begin
-      tick_q <= '0;
       own_tick_q <= '0;
       tick_o <= 1'b0;
       swap_q <= '0;
@@ -175,7 +174,7 @@ module path_engines #(
 
       assign on_arc = engine_q == ARC_GENERATOR;
       // Only while it is under way: the next arc may start with this one's number still standing.
-      always_ff @(posedge clk_i) over_q <= on_arc && !engine_taken_i && !coming && !shadows_free_o;
+      always_ff @(posedge clk_i) over_q <= !engine_taken_i && !coming && !shadows_free_o;
 
       arc_generator #(
           .Axes(Axes)

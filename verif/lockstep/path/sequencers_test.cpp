@@ -142,6 +142,7 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     model_ = model::Sequencer();
+    payload_taken_for_ = 0;
     geometry_.reset();
     feed_.reset();
     chain_[0] = chain_[1] = {};
@@ -194,6 +195,9 @@ class Bench {
       in_.shadows_free = false;
     else if (!model_.engine_taken() && dice_.chance(pace.busy))
       in_.shadows_free = true;
+    // A path on lines begins when the engine before it has finished; a cut finishes it.
+    if (in_.cut || (model_.outputs().swap && model_.outputs().engine == card_map::engine::kLines))
+      payload_taken_for_ = 0;
     in_.payload_ready = payload_taken_for_ == 0 && in_.shadows_free;
     in_.axes_live = dice_.chance(2);
   }
