@@ -109,6 +109,7 @@ class Bench {
     chain_[0].clock(dut_->snapshot_i, begun[0], dut_->chain_i);
     geometry_.clock(geometry_reads, dice_.chance(pace.write), in_.cut);
     feed_.clock(feed_reads, dice_.chance(pace.write), in_.cut);
+    cut_before_ = in_.cut;
     if (in_.cut) direct_step_ = 0;
     compare();
     ends_ += model_.outputs().swap ? 1U : 0U;
@@ -143,6 +144,7 @@ class Bench {
     dut_->rst_i = 0;
     model_ = model::Sequencer();
     payload_taken_for_ = 0;
+    cut_before_ = true;
     geometry_.reset();
     feed_.reset();
     chain_[0] = chain_[1] = {};
@@ -193,10 +195,10 @@ class Bench {
     // The arc generator has the axes' shadows from its start until it has been over for a while.
     if (model_.outputs().swap && model_.outputs().engine == card_map::engine::kArcGenerator)
       in_.shadows_free = false;
-    else if (!model_.engine_taken() && dice_.chance(pace.busy))
+    else if (cut_before_ || (!model_.engine_taken() && dice_.chance(pace.busy)))
       in_.shadows_free = true;
     // A path on lines begins when the engine before it has finished; a cut finishes it.
-    if (in_.cut || (model_.outputs().swap && model_.outputs().engine == card_map::engine::kLines))
+    if (cut_before_ || (model_.outputs().swap && model_.outputs().engine == card_map::engine::kLines))
       payload_taken_for_ = 0;
     in_.payload_ready = payload_taken_for_ == 0 && in_.shadows_free;
     in_.axes_live = dice_.chance(2);
@@ -269,6 +271,7 @@ class Bench {
   SnapshotWord chain_[2];
   unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
+  bool cut_before_ = false;  // in the last clock
   unsigned stand_for_ = 0;    // clocks of a fault
   unsigned direct_step_ = 0;  // of a direct move; 0: none
   unsigned rest_for_ = 0;     // clocks
