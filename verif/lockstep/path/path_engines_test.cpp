@@ -244,7 +244,7 @@ void random_paths() {
   const std::uint64_t seed = seed_from_environment(20261117);
   Bench bench(seed);
   Dice dice(seed);
-  const std::uint64_t length = scaled(600'000);
+  const std::uint64_t length = scaled(2'400'000);
   while (bench.check().cycles() < length) {
     if (!kEngines || dice.chance(3))
       bench.line();
@@ -254,8 +254,8 @@ void random_paths() {
       bench.arc();
   }
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
-  EXPECT_GE(bench.steps(), kEngines ? length / 400 : 0);
-  EXPECT_GE(bench.chords_swapped(), kEngines ? length / 2000 : 0);
+  EXPECT_GE(bench.steps(), kEngines ? length / 1000 : 0);
+  EXPECT_GE(bench.chords_swapped(), kEngines ? length / 4000 : 0);
 }
 
 TEST(PathEngines, RandomPaths) { EXPECT_EQ(judge(random_paths), ""); }

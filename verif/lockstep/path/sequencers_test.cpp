@@ -337,7 +337,7 @@ void random_programs() {
 void cuts_at_every_clock() {
   Bench bench(1);
   for (const bool by_reset : {false, true}) {
-    for (unsigned run = 0; run < 1000; ++run) {
+    for (unsigned run = 0; run < 4000; ++run) {
       bench.restart(1 + run / 500);
       bench.short_programs(run % 500);
       bench.interrupt(by_reset);
