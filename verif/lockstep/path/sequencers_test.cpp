@@ -271,7 +271,7 @@ class Bench {
   SnapshotWord chain_[2];
   unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
-  bool cut_before_ = false;  // in the last clock
+  bool cut_before_ = false;   // in the last clock
   unsigned stand_for_ = 0;    // clocks of a fault
   unsigned direct_step_ = 0;  // of a direct move; 0: none
   unsigned rest_for_ = 0;     // clocks
