@@ -6,6 +6,7 @@ module card_core #(
     parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth     = 2560,
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
+    parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
     parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
     parameter logic [31:0] BuildId       = 0,
@@ -46,7 +47,8 @@ module card_core #(
   end
 
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
-      32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
+      32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
+      32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
       32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE;
 
   // What parameters and straps decide of the constants, by address.

@@ -84,6 +84,11 @@ module motion_core #(
   logic [   Axes-1:0] engine_dir;
   logic               engine_ready;
   logic               payload_ready;
+  logic               shadows_free;
+  logic               engine_taken;
+  logic [       15:0] chord_word;
+  logic [   Axes-1:0] chord_load;
+  logic [   Axes-1:0] chord_swap;
   logic               engine_done;
   logic               elsewhere;
   // axes
@@ -158,7 +163,9 @@ module motion_core #(
       .swap_o         (swap),
       .active_o       (active),
       .engine_o       (engine),
+      .engine_taken_o (engine_taken),
       .payload_ready_i(payload_ready),
+      .shadows_free_i (shadows_free),
       .done_i         (engine_done),
       .elsewhere_i    (elsewhere),
       .axes_live_i    (axes_live),
@@ -185,14 +192,19 @@ module motion_core #(
       .tick_i         (tick),
       .swap_i         (swap),
       .engine_i       (engine),
+      .engine_taken_i (engine_taken),
       .load_i         (load),
       .tick_o         (path_tick),
       .swap_o         (path_swap),
       .path_tick_o    (engine_tick),
       .step_o         (engine_step),
       .dir_o          (engine_dir),
+      .chord_word_o   (chord_word),
+      .chord_load_o   (chord_load),
+      .chord_swap_o   (chord_swap),
       .ready_o        (engine_ready),
       .payload_ready_o(payload_ready),
+      .shadows_free_o (shadows_free),
       .done_o         (engine_done),
       .elsewhere_o    (elsewhere)
   );
@@ -208,9 +220,9 @@ module motion_core #(
       .swap_i       (path_swap),
       .active_i     (active),
       .direct_i     (direct),
-      .chord_word_i ('0),
-      .chord_load_i ('0),
-      .chord_swap_i ('0),
+      .chord_word_i (chord_word),
+      .chord_load_i (chord_load),
+      .chord_swap_i (chord_swap),
       .engine_step_i(engine_step),
       .engine_dir_i (engine_dir),
       .chain_i      (geometry_chain),

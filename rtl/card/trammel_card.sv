@@ -5,6 +5,7 @@ module trammel_card #(
     parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth     = 2560,
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
+    parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
@@ -86,6 +87,7 @@ module trammel_card #(
       .GeometryDepth(GeometryDepth),
       .FeedDepth(FeedDepth),
       .Accumulator(Accumulator),
+      .ArcGenerator(ArcGenerator),
       .DirectMode(DirectMode),
       .Ports(1),
       .BuildId(BuildId),

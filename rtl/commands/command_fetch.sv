@@ -22,7 +22,7 @@ module command_fetch (
     input  wire logic [ 7:0] next_i,
     input  wire logic        last_field_i,
     input  wire logic        rest_i,         // fields are left when the command is taken
-    input  wire logic        wait_i,         // the next field must wait
+    input  wire logic        wait_i,         // the next field, with first_o the first one, must wait
     output logic             header_o,       // {mask, opcode} is on word_i
     output logic             first_o,        // the first field is taken up now (combinational)
     output logic             advance_o,      // the next field is taken up now (combinational)
@@ -70,8 +70,9 @@ module command_fetch (
         IDLE: if (!empty_i) state_d = HEADER;
         HEADER:
         if (step_q == 2'd3) begin
-          if (has_payload_i) state_d = PAYLOAD;
-          else state_d = TAIL;
+          if (!has_payload_i) state_d = TAIL;
+          else if (wait_i) state_d = WAIT;
+          else state_d = PAYLOAD;
         end
         PAYLOAD:
         if (field_done) begin

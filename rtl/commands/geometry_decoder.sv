@@ -1,7 +1,8 @@
 // Decodes the next geometry command onto the load bus: a line's increments to the axes, an arc's state to the path
 // engines, the count to the count chain. The direct loader's halfwords go through the same register.
 //
-// The accumulator has no second set of registers: what follows an arc's prescaler waits until the engine takes it.
+// The engines have no second set of registers: what follows an arc's prescaler waits until the engine takes it. A line's
+// increments wait while the axes' shadows are the arc generator's.
 `default_nettype none
 
 module geometry_decoder #(
@@ -13,6 +14,7 @@ module geometry_decoder #(
     input  wire logic            cut_i,
     input  wire logic            pop_i,
     input  wire logic            payload_ready_i,  // the engine's state may be loaded
+    input  wire logic            shadows_free_i,   // so may increments
     input  wire logic            empty_i,
     input  wire logic [    15:0] word_i,
     output logic                 read_o,
@@ -30,21 +32,31 @@ module geometry_decoder #(
   logic       advance;
   logic [4:0] field;
   logic [4:0] next;
+  logic [2:0] next_length;
   logic [4:0] lowest;
   logic       header;
   logic [6:0] strobe;  // {of the count, of a field, which one}
   logic [4:0] target;  // of that field
+  logic [4:0] of_arc;
+  logic [4:0] of_chord;
   logic [7:0] opcode;
   logic [7:0] mask;
   logic       is_line;
   logic       is_arc;
+  logic       is_chord;
+  logic       at_axes;  // of an arc in chords only increments of further axes are left
+  logic       to_axis;  // the next field is an axis's increment
   logic       on_engine;
   logic       at_prescaler;
   logic [7:0] rest_q;  // axes of the mask whose increments are still to come
+  logic [2:0] axis_x_q;  // of an arc's plane
+  logic [2:0] axis_y_q;
+  logic       plane;  // is on word_i
 
   assign is_line   = opcode == card_map_pkg::OP_LINE;
   assign is_arc    = Engines[card_map_pkg::ENGINE_ACCUMULATOR] && opcode == card_map_pkg::OP_ARC;
-  assign on_engine = is_arc;  // another than lines: fields go by their number
+  assign is_chord  = Engines[card_map_pkg::ENGINE_ARC_GENERATOR] && opcode == card_map_pkg::OP_ARC_CHORD;
+  assign on_engine = is_arc || is_chord;  // another than lines: fields go by their number
   assign mask_o    = mask[Axes-1:0];
 
   logic unused;  // absent axes: the checker lets no command for them in
@@ -72,25 +84,50 @@ module geometry_decoder #(
     endcase
   endfunction
 
+  // The same of an arc in chords; an axis's increment goes to the target of its number, and as a field it is AXIS and that.
+  localparam logic [4:0] AXIS = 5'd16;
+  function automatic logic [4:0] chord_target(input logic [4:0] number, input logic [2:0] x, input logic [2:0] y);
+    case (number)
+      card_map_pkg::FIELD_ARC_CHORD_PRESCALE: chord_target = load_target_pkg::PRESCALE;
+      card_map_pkg::FIELD_ARC_CHORD_PLANE: chord_target = load_target_pkg::PLANE;
+      card_map_pkg::FIELD_ARC_CHORD_SHIFTS: chord_target = load_target_pkg::SHIFTS;
+      card_map_pkg::FIELD_ARC_CHORD_X, card_map_pkg::FIELD_ARC_CHORD_Y: chord_target = load_target_pkg::STATE;
+      card_map_pkg::FIELD_ARC_CHORD_FIRST_X: chord_target = {2'd0, x};
+      card_map_pkg::FIELD_ARC_CHORD_FIRST_Y: chord_target = {2'd0, y};
+      card_map_pkg::FIELD_ARC_CHORD_CLOSING_X, card_map_pkg::FIELD_ARC_CHORD_CLOSING_Y:
+      chord_target = load_target_pkg::CLOSING;
+      default: chord_target = number[4] ? {2'd0, number[2:0]} : load_target_pkg::NOWHERE;
+    endcase
+  endfunction
+
   // All paths begin with a field of three halfwords, those on an engine with path ticks, prescale, plane. A line's fields
-  // are its axes.
+  // are its axes. An arc's in chords end with the axes outside its plane.
   assign lowest = lowest_axis(rest_q);
   assign next = field + 5'd1;
+  assign next_length = card_map_pkg::field_halfwords_less_one(opcode, next);
   assign at_prescaler = field == card_map_pkg::FIELD_ARC_PRESCALE || field == card_map_pkg::FIELD_ARC_PLANE;
 
+  assign plane = strobe[5] && is_chord && strobe[4:0] == card_map_pkg::FIELD_ARC_CHORD_PLANE;
+  assign at_axes = is_chord && (field[4] || field == card_map_pkg::FIELD_ARC_CHORD_CLOSING_Y);
+  assign to_axis = is_line || at_axes;
+
   always_ff @(posedge clk_i) begin
+    if (plane) {axis_y_q, axis_x_q} <= {word_i[10:8], word_i[6:4]};
     if (header) rest_q <= word_i[15:8];
-    else if (first || advance) rest_q <= rest_q & (rest_q - 8'd1);
+    else if (plane) rest_q <= rest_q & ~(8'd1 << word_i[6:4]) & ~(8'd1 << word_i[10:8]);
+    else if ((first && is_line) || (advance && to_axis)) rest_q <= rest_q & (rest_q - 8'd1);
   end
 
   command_fetch fetch (
       .*,
       .has_payload_i(is_line || on_engine),
       .first_i      ({on_engine ? 5'd0 : lowest, 3'd2}),
-      .next_i       (on_engine ? {next, card_map_pkg::field_halfwords_less_one(opcode, next)} : {lowest, 3'd2}),
-      .last_field_i (on_engine ? field == card_map_pkg::FIELD_ARC_HALF_Y : rest_q == 8'd0),
+      .next_i       (to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length}),
+      .last_field_i (is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0),
       .rest_i       (1'b0),
-      .wait_i       (on_engine && at_prescaler && !payload_ready_i),
+      // Before an engine's first field nothing waits: the command before was an engine's, whose last field this is not, or
+      // runs on lines, and the engine is free.
+      .wait_i       (is_line ? !shadows_free_i : at_prescaler && !payload_ready_i),
       .header_o     (header),
       .first_o      (first),
       .advance_o    (advance),
@@ -100,16 +137,20 @@ module geometry_decoder #(
       .mask_o       (mask)
   );
 
-  assign target = is_arc ? arc_target(strobe[4:0]) : strobe[4:0];
+  assign of_arc   = arc_target(strobe[4:0]);
+  assign of_chord = chord_target(strobe[4:0], axis_x_q, axis_y_q);
+  assign target   = is_arc ? of_arc : is_chord ? of_chord : strobe[4:0];
 
   always_ff @(posedge clk_i) begin
     load_o[21]    <= (strobe[6:5] != 2'd0 || direct_load_i[21]) && !rst_i;
     load_o[20:16] <= direct_load_i[21] ? direct_load_i[20:16] : strobe[6] ? load_target_pkg::TICKS : target;
     load_o[15:0]  <= direct_load_i[21] ? direct_load_i[15:0] : word_i;
 
-    engine_o      <= 5'(is_arc ? card_map_pkg::ENGINE_ACCUMULATOR : card_map_pkg::ENGINE_LINES);
-    barrier_o     <= !is_line && !on_engine;
-    end_o         <= opcode == card_map_pkg::OP_END;
+    engine_o      <= 5'(card_map_pkg::ENGINE_LINES);
+    if (is_arc) engine_o <= 5'(card_map_pkg::ENGINE_ACCUMULATOR);
+    if (is_chord) engine_o <= 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
+    barrier_o <= !is_line && !on_engine;
+    end_o     <= opcode == card_map_pkg::OP_END;
   end
 endmodule
 

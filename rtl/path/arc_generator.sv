@@ -57,9 +57,10 @@ module arc_generator #(
   logic swap_y;
 
   assign begin_half = start_i | (~loadable_o & (~busy | last) & ~(in_x_q ^ last ? full_x_q : full_y_q));
-  assign begin_arc = full_x_q & full_y_q & (ticked_q | tick_i) & ~begun_q;
-  assign swap_x = begin_arc | (begun_q & tick_i & even);
-  assign swap_y = begin_arc | (begun_q & tick_i & odd);
+  // y's first chord is loaded before x's. The one tick that may come before them ends no half.
+  assign begin_arc = full_x_q & (ticked_q | tick_i) & ~begun_q;
+  assign swap_x = begin_arc | (tick_i & even);
+  assign swap_y = begin_arc | (tick_i & odd);
 
   chord_rotation rotation (
       .*,
@@ -88,7 +89,7 @@ module arc_generator #(
     full_x_q <= (full_x_q & ~swap_x) | (last & in_x_q);
     full_y_q <= (full_y_q & ~swap_y) | (last & ~in_x_q);
     if (last) in_x_q <= ~in_x_q;
-    if (first & in_x_q & ~begun_q) ready_o <= 1'b1;
+    if (first & in_x_q) ready_o <= 1'b1;
     if (rst_i | clear_i) begin
       chord_load_o <= '0;
       chord_swap_o <= '0;
@@ -98,12 +99,12 @@ module arc_generator #(
       loadable_o <= 1'b0;
       ready_o <= 1'b0;
     end
-    if (rst_i | clear_i | start_i) begin
+    // full_y_q is looked at after y's first chord only.
+    if (rst_i | clear_i) begin
       in_x_q   <= 1'b0;
       ticked_q <= 1'b0;
       begun_q  <= 1'b0;
       full_x_q <= 1'b0;
-      full_y_q <= 1'b0;
     end
   end
 

@@ -44,10 +44,8 @@ module chord_rotation (
     adding_q  <= enter | (|add_q[2:0]);
     if (rst_i | clear_i) begin
       pass_q <= '0;
-      passing_q <= 1'b0;
-      gap_q <= 1'b0;
-      add_q <= '0;
-      adding_q <= 1'b0;
+      gap_q  <= 1'b0;
+      add_q  <= '0;
     end
   end
 

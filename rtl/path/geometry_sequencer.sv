@@ -24,8 +24,10 @@ module geometry_sequencer #(
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
     output logic      [     4:0] engine_o,
+    output logic                 engine_taken_o,   // by a path that still takes ticks (combinational)
     // ends
     input  wire logic            payload_ready_i,
+    input  wire logic            shadows_free_i,
     input  wire logic            done_i,
     input  wire logic            elsewhere_i,
     input  wire logic            axes_live_i,
@@ -54,7 +56,6 @@ module geometry_sequencer #(
   logic            pop;
   logic            decoder_idle;
   logic            path_begin;
-  logic            engine_taken;
   logic            runs;
   logic            zero;
   logic            last;
@@ -69,7 +70,7 @@ module geometry_sequencer #(
   ) decoder (
       .*,
       .pop_i          (pop),
-      .payload_ready_i(payload_ready_i && !engine_taken),
+      .payload_ready_i(payload_ready_i && !engine_taken_o),
       .mask_o         (mask),
       .engine_o       (engine),
       .barrier_o      (is_barrier),
@@ -98,7 +99,6 @@ module geometry_sequencer #(
       .pop_o         (pop),
       .last_i        (last),
       .begin_o       (path_begin),
-      .engine_taken_o(engine_taken),
       .barrier_done_i(barrier_done_o),
       .at_barrier_o  (at_barrier)
   );

@@ -2,7 +2,8 @@
 // with the gate that gives its ticks to the engine of the path one at a time.
 //
 // All paths share one domain of ticks and swaps, those of the feed as late as the prescaler's steps, so that a path on
-// prescaled ticks and a line after it cannot overtake each other.
+// prescaled ticks and a line after it cannot overtake each other. On the arc generator the axes get the prescaler's
+// ticks, a clock after the generator.
 `default_nettype none
 
 module path_engines #(
@@ -16,33 +17,44 @@ module path_engines #(
     input  wire logic            swap_i,
     // with swap_i: what the path runs on, by its bit of ENGINES; the state of one that is not lines is loaded
     input  wire logic [     4:0] engine_i,
+    input  wire logic            engine_taken_i,   // the path still takes feed ticks
     input  wire logic [    21:0] load_i,
     output logic                 tick_o,           // path domain, to the axes
     output logic                 swap_o,
     output logic                 path_tick_o,      // an engine's tick
     output logic      [Axes-1:0] step_o,
     output logic      [Axes-1:0] dir_o,
+    output logic      [    15:0] chord_word_o,     // the arc generator's, to the axes
+    output logic      [Axes-1:0] chord_load_o,
+    output logic      [Axes-1:0] chord_swap_o,
     output logic                 ready_o,          // a tick may be taken
     output logic                 payload_ready_o,  // the engine's state may be loaded
+    output logic                 shadows_free_o,   // so may the axes' increments
     output logic                 done_o,           // every path tick given is finished
     output logic                 elsewhere_o       // with done_o: not on the commanded end point
 );
   localparam logic [4:0] LINES = 5'(card_map_pkg::ENGINE_LINES);
   localparam logic [4:0] ACCUMULATOR = 5'(card_map_pkg::ENGINE_ACCUMULATOR);
+  localparam logic [4:0] ARC_GENERATOR = 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
   // Those that take the prescaler's ticks.
-  localparam logic [31:0] TICKED = 32'd1 << ACCUMULATOR;
+  localparam logic [31:0] TICKED = 32'd1 << ACCUMULATOR | 32'd1 << ARC_GENERATOR;
 
   logic [2:0] tick_q;
   logic [2:0] swap_q;
+  logic [1:0] own_tick_q;  // feed ticks that the axes get
+  logic       axes_run;  // on feed ticks
+  logic       chord_tick;  // a path tick that the axes get
 
-  assign tick_o = tick_q[2];
   assign swap_o = swap_q[2];
 
   always_ff @(posedge clk_i) begin
     tick_q <= {tick_q[1:0], tick_i};
+    own_tick_q <= {own_tick_q[0], tick_i && axes_run};
+    tick_o <= own_tick_q[1] || chord_tick;
     swap_q <= {swap_q[1:0], swap_i};
     if (rst_i || cut_i) begin
-      tick_q <= '0;
+      own_tick_q <= '0;
+      tick_o <= 1'b0;
       swap_q <= '0;
     end
   end
@@ -53,6 +65,10 @@ module path_engines #(
     logic              prescaler_step;
     // What an engine says, from registers: {stepping, at its end, ready, dir, step}. Its steps leave before it is ready.
     logic [2*Axes+2:0] accumulator;
+    logic              on_arc;
+    logic              arc_ready;
+    logic              gate_ready;
+    logic              gate_payload_ready;
     logic              engine_stepping;
     logic              at_end;
     logic              engine_ready;
@@ -60,12 +76,18 @@ module path_engines #(
     // Of the engine on which the path runs. On lines nothing is asked.
     always_comb begin
       case (engine_q)
+        // Its steps are the axes' own, and it ends where they do.
+        ARC_GENERATOR: {engine_stepping, at_end, engine_ready, dir_o, step_o} = (2 * Axes + 3)'(2'b11) << 2 * Axes;
         default: {engine_stepping, at_end, engine_ready, dir_o, step_o} = accumulator;
       endcase
     end
 
     // Ticks of lines pass without a step of the prescaler.
     assign coming = engine_q != LINES && (tick_i || tick_q != '0);
+    assign ready_o = gate_ready && arc_ready;
+    assign payload_ready_o = gate_payload_ready && shadows_free_o;
+    assign axes_run = !on_arc;
+    assign chord_tick = on_arc && prescaler_step;
 
     always_ff @(posedge clk_i) begin
       if (swap_i) engine_q <= engine_i;
@@ -93,10 +115,12 @@ module path_engines #(
     path_tick_gate gate (
         .*,
         .coming_i         (coming),
-        .step_i           (prescaler_step),
+        .step_i           (prescaler_step && !on_arc),
         .engine_ready_i   (engine_ready),
         .engine_stepping_i(engine_stepping),
-        .tick_o           (path_tick_o)
+        .tick_o           (path_tick_o),
+        .ready_o          (gate_ready),
+        .payload_ready_o  (gate_payload_ready)
     );
 
     if (Engines[ACCUMULATOR]) begin : gen_accumulator
@@ -144,6 +168,35 @@ module path_engines #(
     end else begin : gen_no_accumulator
       assign accumulator = '0;
     end
+
+    if (Engines[ARC_GENERATOR]) begin : gen_arc_generator
+      logic over_q;  // the arc has given its last path tick, also to the generator
+
+      assign on_arc = engine_q == ARC_GENERATOR;
+      // Only while it is under way: the next arc may start with this one's number still standing.
+      always_ff @(posedge clk_i) over_q <= !engine_taken_i && !coming && !shadows_free_o;
+
+      arc_generator #(
+          .Axes(Axes)
+      ) arc (
+          .*,
+          .clear_i   (cut_i || over_q),
+          .start_i   (swap_i && engine_i == ARC_GENERATOR),
+          .tick_i    (chord_tick),
+          .ready_o   (arc_ready),
+          .loadable_o(shadows_free_o)
+      );
+    end else begin : gen_no_arc_generator
+      assign on_arc         = 1'b0;
+      assign arc_ready      = 1'b1;
+      assign chord_word_o   = '0;
+      assign chord_load_o   = '0;
+      assign chord_swap_o   = '0;
+      assign shadows_free_o = 1'b1;
+
+      logic unused;
+      assign unused = &{1'b0, engine_taken_i};
+    end
   end else begin : gen_lines_only
     assign path_tick_o     = 1'b0;
     assign step_o          = '0;
@@ -152,9 +205,15 @@ module path_engines #(
     assign payload_ready_o = 1'b1;
     assign done_o          = 1'b1;
     assign elsewhere_o     = 1'b0;
+    assign chord_word_o    = '0;
+    assign chord_load_o    = '0;
+    assign chord_swap_o    = '0;
+    assign shadows_free_o  = 1'b1;
+    assign axes_run        = 1'b1;
+    assign chord_tick      = 1'b0;
 
     logic unused;
-    assign unused = &{1'b0, engine_i, load_i};
+    assign unused = &{1'b0, engine_i, engine_taken_i, load_i, tick_q};
   end
 endmodule
 

@@ -42,6 +42,8 @@ module path_sequencer #(
   // Clocks from the last enabled clock of a direct move until the axes are asked whether one is live.
   localparam logic [2:0] SETTLE_CLOCKS = 3'd7;
   localparam logic [4:0] LINES = 5'(card_map_pkg::ENGINE_LINES);
+  // The axes' own generators make its steps.
+  localparam logic [4:0] ARC_GENERATOR = 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
 
   logic       idle_q;  // no path
   logic       drain_q;  // the last tick is taken, the path goes on
@@ -76,7 +78,7 @@ module path_sequencer #(
     else if (settle_q != 3'd0) settle_q <= settle_q - 3'd1;
 
     if (begin_o) begin
-      active_o <= direct_go_i ? direct_mask_i : on_lines ? mask_i : '0;
+      active_o <= direct_go_i ? direct_mask_i : on_lines || engine_i == ARC_GENERATOR ? mask_i : '0;
       engine_o <= swap ? engine_i : LINES;
     end
 

@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "chord_arc.hpp"
 #include "core_bench.hpp"
 
 namespace trammel::testing {
 namespace {
 
 namespace reg = card_map::reg;
+using model::ArcPoints;
+using model::prepare_chords;
 
 constexpr std::uint64_t kWhole = ~std::uint64_t{0};  // a tick nearly every clock
 
@@ -97,6 +101,104 @@ TEST(CoreModel, HandOverAfterAnArc) {
   // A path tick in 20 ticks or more is long finished: 37 and 8 clocks are what remains.
   EXPECT_EQ(hand_over(5, 100, true).first - hand_over(5, 100, true).tick, 37U);
   EXPECT_EQ(hand_over(5, 100, false).first - hand_over(5, 100, false).tick, 8U);
+}
+
+// An arc in chords at a path tick each clock, in the plane of the first two axes.
+std::vector<std::uint32_t> chord_words(std::uint8_t number, const ArcPoints& arc, std::uint64_t ticks) {
+  const model::ChordFields fields = prepare_chords(arc);
+  const model::ChordRotation::State& state = fields.state;
+  const int128 prescale = ((int128{fields.path_ticks} << 40) + ticks / 2) / ticks;
+  return command_words(card_map::Opcode::ArcChord, 3, number, ticks,
+                       {{"path_ticks", fields.path_ticks},
+                        {"prescale", prescale},
+                        {"plane", 1 << 8 | (state.clockwise ? 1 : 0)},
+                        {"shifts", state.k | state.m << 8},
+                        {"x", state.x},
+                        {"y", state.y},
+                        {"first_x", fields.first[0]},
+                        {"first_y", fields.first[1]},
+                        {"closing_x", state.closing_x},
+                        {"closing_y", state.closing_y}});
+}
+
+// From the rightmost point, about 40 pulses long.
+ArcPoints short_arc(std::int64_t radius, bool clockwise) {
+  ArcPoints arc;
+  const double angle = 40.0 / static_cast<double>(radius);
+  arc.start = {radius, 0};
+  arc.end = {std::llround(static_cast<double>(radius) * std::cos(angle)),
+             std::llround(static_cast<double>(radius) * std::sin(angle)) * (clockwise ? -1 : 1)};
+  arc.clockwise = clockwise;
+  arc.ticks_a_pulse = 16;
+  return arc;
+}
+
+// The gaps between ticks: within an arc in chords, and from one path to the next.
+struct ChordGaps {
+  std::uint64_t longest =
+      0;  // in the second path, from its tenth tick on: the tick source comes back from the stall at the start
+  std::uint64_t start = 0;      // the longest of its first ticks
+  std::uint64_t hand_over = 0;  // from the second path's last tick to the third's first
+};
+
+// A line, an arc, and another arc or a line of all axes.
+ChordGaps chord_gaps(std::int64_t radius, bool to_arc) {
+  model::CardConfig config;
+  config.engines |= card_map::field::kEnginesArcGenerator;
+  CoreBench bench(config);
+  const ArcPoints arc = short_arc(radius, false);
+  const std::uint64_t ticks = prepare_chords(arc).path_ticks;
+  bench.logs = true;
+  for (unsigned n = 0; n < 4; ++n) {
+    EXPECT_TRUE(bench.write(reg::step_length(n), 1));
+    for (const auto address : {reg::step_space(n), reg::dir_setup(n), reg::dir_hold(n)})
+      EXPECT_TRUE(bench.write(address, 0));
+  }
+  EXPECT_TRUE(bench.write(reg::kHold, 1));
+  EXPECT_TRUE(bench.line(400, {kOnePulse / 20, kOnePulse / 10}));
+  EXPECT_TRUE(bench.send(chord_words(bench.number++, short_arc(radius, false), ticks)));
+  if (to_arc)
+    EXPECT_TRUE(bench.send(chord_words(bench.number++, short_arc(radius, true), ticks)));
+  else
+    EXPECT_TRUE(bench.line(ticks, {0, 0, 0, 0}));
+  EXPECT_TRUE(bench.feed(2 * ticks + 400, ~std::uint64_t{0}));
+  EXPECT_TRUE(bench.write(reg::kHold, 0));
+  bench.idle(3 * ticks + 3000);
+  EXPECT_EQ(bench.core.outputs().fault, 0U);
+  const std::int64_t x = 20 + (to_arc ? 2 : 1) * (arc.end[0] - arc.start[0]);
+  EXPECT_EQ(bench.core.position(0), static_cast<std::uint32_t>(x));
+  EXPECT_EQ(bench.core.position(1), static_cast<std::uint32_t>(40 + (to_arc ? 0 : arc.end[1])));
+  ChordGaps gaps;
+  unsigned swaps = 0;
+  std::uint64_t made = 0;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < bench.log.size(); ++i) {
+    const model::CoreModel::Outputs& out = bench.log[i].outputs;
+    if (out.tick && swaps == 2) {
+      std::uint64_t& gap = made < 10 ? gaps.start : gaps.longest;
+      gap = std::max<std::uint64_t>(gap, i - last);
+      ++made;
+    }
+    if (out.tick && swaps == 3 && gaps.hand_over == 0) gaps.hand_over = i - last;
+    if (out.tick) last = i;
+    swaps += out.path_swap ? 1U : 0U;
+  }
+  EXPECT_EQ(swaps, 3U);
+  EXPECT_EQ(made, ticks);
+  return gaps;
+}
+
+// docs/developer/architecture.md, arc_generator: no stall but at the start, and what the hand-over costs.
+TEST(CoreModel, HandOverOfArcsInChords) {
+  for (const std::int64_t radius : {10, 40, 5000, 600'000}) {
+    const ChordGaps line = chord_gaps(radius, false);
+    const ChordGaps arc = chord_gaps(radius, true);
+    EXPECT_EQ(line.longest, 1U) << radius;
+    EXPECT_EQ(line.start, radius < 500'000 ? 14U : 16U) << radius;
+    EXPECT_EQ(line.hand_over, 23U) << radius;
+    EXPECT_EQ(arc.hand_over, 33U) << radius;
+    EXPECT_EQ(arc.longest, 1U) << radius;
+  }
 }
 
 TEST(CoreModel, DirectMove) {

@@ -95,6 +95,7 @@ class Pair {
   std::mt19937_64 random;
   std::uint64_t waits = 0;
   std::uint64_t steps = 0;
+  std::uint64_t chord_arcs = 0;
   std::uint64_t one_by_one = 0;  // clocks compared, on both
 };
 
@@ -125,7 +126,11 @@ class Program {
     std::uint64_t ticks = 0;
     for (std::uint64_t paths = p_.any(1, 5); paths != 0; --paths) {
       const std::uint64_t n = p_.one_in(4) ? p_.any(1, 40) : p_.any(100, 3000);
-      ticks += axes_ >= 2 && p_.one_in(5) ? circle(n) : line(n);
+      const bool chords = card_map::has_engine(p_.clocked.core.config().engines, card_map::engine::kArcGenerator);
+      if (axes_ >= 2 && chords && p_.one_in(2))
+        ticks += chord_arc(n);
+      else
+        ticks += axes_ >= 2 && p_.one_in(5) ? circle(n) : line(n);
     }
     while (ticks != 0) {
       const std::uint64_t n = std::min(ticks, p_.one_in(4) ? p_.any(1, 30) : p_.any(30, 4000));
@@ -163,6 +168,35 @@ class Program {
     const std::int64_t r = static_cast<std::int64_t>(p_.any(1, 6));
     ticks = std::max<std::uint64_t>(ticks, static_cast<std::uint64_t>(8 * r));
     p_.send(CoreBench::circle_words(number_++, ticks, r, p_.one_in(2)));
+    return ticks;
+  }
+
+  // In chords, with any further axes.
+  std::uint64_t chord_arc(std::uint64_t ticks) {
+    const auto x = static_cast<unsigned>(p_.any(0, axes_ - 1));
+    const auto y = static_cast<unsigned>((x + p_.any(1, axes_ - 1)) % axes_);
+    const auto mask = static_cast<std::uint8_t>(1U << x | 1U << y | p_.any(0, (1U << axes_) - 1));
+    const auto any = [this](unsigned bits) {
+      const auto magnitude = static_cast<std::int64_t>(p_.sized(bits));
+      return p_.one_in(2) ? magnitude : -magnitude;
+    };
+    const std::uint64_t path_ticks = p_.any(1, ticks);
+    const auto k = static_cast<unsigned>(p_.any(1, 24));
+    std::vector<std::int64_t> further;
+    for (unsigned n = 2; n < card_map::axes_in(mask); ++n) further.push_back(any(36));
+    const bool taken = p_.send(command_words(card_map::Opcode::ArcChord, mask, number_++, ticks,
+                                             {{"path_ticks", path_ticks},
+                                              {"prescale", ((int128{path_ticks} << 40) + ticks / 2) / ticks},
+                                              {"plane", y << 8 | x << 4 | p_.any(0, 1)},
+                                              {"shifts", k | p_.any(5, 8) << 8},
+                                              {"x", any(k + 38)},
+                                              {"y", any(k + 38)},
+                                              {"first_x", any(38)},
+                                              {"first_y", any(38)},
+                                              {"closing_x", any(30)},
+                                              {"closing_y", any(30)}},
+                                             further));
+    p_.chord_arcs += taken ? 1 : 0;
     return ticks;
   }
 
@@ -229,6 +263,7 @@ struct Compared {
   std::uint64_t waits = 0;
   std::uint64_t steps = 0;
   std::uint64_t clocks = 0;
+  std::uint64_t chord_arcs = 0;
 };
 
 Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t longest) {
@@ -239,6 +274,7 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     std::mt19937_64 random(seed() * 1'000'003 + i);
     config.axes = 1 + static_cast<unsigned>(random() % 8);
     config.idle_level = static_cast<std::uint32_t>(random() & ((1U << 2 * config.axes) - 1));
+    if (random() % 2 == 0) config.engines |= card_map::field::kEnginesArcGenerator;
     Pair pair(of, config, random());
     Program program(pair);
     program.settings();
@@ -254,6 +290,7 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     pair.wait_in_pieces(longest / 10, 3000);
     compared.waits += pair.waits;
     compared.steps += pair.steps;
+    compared.chord_arcs += pair.chord_arcs;
     compared.clocks += pair.one_by_one / 2;
   }
   return compared;
@@ -266,6 +303,7 @@ TEST(Run, EqualsClock) {
   const Compared compared = compare_programs(Pair::Of::ClockAndRun, programs, 200'000);
   EXPECT_GT(compared.waits, 20 * programs);
   EXPECT_GT(compared.steps, 20 * programs);
+  EXPECT_GT(compared.chord_arcs, programs / 4);
 }
 
 // A jump that ends while a step waits for a reversal: a hold tick that has passed must count when the next one comes.
@@ -300,6 +338,7 @@ TEST(RestingBlocks, ChangeNothing) {
   const Compared compared = compare_programs(Pair::Of::AllAndResting, programs, 20'000);
   EXPECT_GT(compared.clocks, 22'000 * programs);
   EXPECT_GT(compared.steps, 20 * programs);
+  EXPECT_GT(compared.chord_arcs, programs / 4);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ std::vector<Place> places(std::uint32_t axes) {
   std::vector<Place> all;
   for (const card_map::Register& entry : card_map::kRegisters) {
     for (std::uint32_t i = 0; i < entry.count; ++i) {
-      const bool built = card_map::has_engine(RegisterFile::kMostEngines, entry.engine);
+      const bool built = card_map::has_engine(RegisterFile::kDefaultEngines, entry.engine);
       all.push_back({entry, card_map::slot_address(entry, i), built && (!entry.only_present_axes || i < axes)});
     }
   }
@@ -100,7 +100,7 @@ TEST(Identity, ComesFromTheParameters) {
 // Which registers an engine brings, by hand.
 TEST(Identity, WithoutDirectModeItsRegistersAreUnknown) {
   RegisterFile::Config config = RegisterBench::config_of(2);
-  config.engines = RegisterFile::kMostEngines & ~field::kEnginesDirectMode;
+  config.engines = RegisterFile::kDefaultEngines & ~field::kEnginesDirectMode;
   RegisterBench bench(config);
   for (std::uint32_t address = 0x300; address < 0x400; address += 4) {
     EXPECT_EQ(bench.refusal_of_write(address, 1), Reason::UnknownAddress) << address;
@@ -189,7 +189,7 @@ TEST(Refusals, BitsWithoutMeaningAndLimits) {
     if (entry.access != Access::Setting && entry.access != Access::ClearOnes && entry.access != Access::Command)
       continue;
     for (std::uint32_t bit = 1; bit != 0; bit <<= 1) {
-      if ((card_map::bits_with_meaning(entry, RegisterFile::kMostEngines) & bit) != 0) continue;
+      if ((card_map::bits_with_meaning(entry, RegisterFile::kDefaultEngines) & bit) != 0) continue;
       EXPECT_EQ(bench.refusal_of_write(place.address, entry.reset | bit), Reason::BadValue) << entry.name << " " << bit;
     }
     if (entry.limited == 0) continue;

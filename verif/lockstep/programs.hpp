@@ -52,6 +52,8 @@ class Programs {
   unsigned wrong_every = 100;
   // Without them all paths are lines.
   bool arcs = true;
+  // In chords, on the arc generator.
+  bool chords = false;
   // The most ticks of a stretch, and of its paths and pieces.
   unsigned longest = 600;
 
@@ -95,6 +97,7 @@ class Programs {
  private:
   std::uint64_t path(std::vector<Halfwords>& to, bool single) {
     if (arcs && axes_ > 1 && dice_.chance(4)) return arc(to);
+    if (chords && axes_ > 1 && dice_.chance(3)) return chord_arc(to);
     const unsigned mask = 1 + dice_.below((1U << axes_) - 1);
     const std::uint64_t ticks = single ? 1 : 1 + dice_.below(dice_.chance(3) ? 4 : longest);
     std::vector<std::int64_t> increments;
@@ -127,6 +130,40 @@ class Programs {
                                  {"half_x", 1},
                                  {"half_y", 1}}));
     return static_cast<std::uint64_t>(ticks);
+  }
+
+  // Any chords, with any further axes; the increments sum to at most a pulse a tick.
+  std::uint64_t chord_arc(std::vector<Halfwords>& to) {
+    const unsigned x = dice_.below(axes_);
+    const unsigned y = (x + 1 + dice_.below(axes_ - 1)) % axes_;
+    const unsigned mask = 1U << x | 1U << y | dice_.below(1U << axes_);
+    const std::uint64_t path_ticks = 1 + dice_.below(dice_.chance(4) ? 4 : longest);
+    const std::uint64_t ticks = path_ticks + dice_.below(dice_.chance(2) ? 1 : 2 * longest);
+    const auto prescale = static_cast<std::int64_t>((int128{path_ticks} * kOnePulse + ticks / 2) / ticks);
+    const unsigned k = 1 + dice_.below(27);
+    const unsigned m = 5 + dice_.below(dice_.chance(2) ? 1 : 4);
+    const auto any = [this](unsigned bits) {
+      const auto magnitude = static_cast<std::int64_t>(dice_.word() >> (64 - bits));
+      return dice_.chance(2) ? magnitude : -magnitude;
+    };
+    std::vector<std::int64_t> further;
+    for (unsigned axis = 0; axis < axes_; ++axis) {
+      if (axis != x && axis != y && (mask >> axis & 1) != 0) further.push_back(any(40));
+    }
+    const unsigned bits = k + 38 < 62 ? k + 38 : 62;
+    to.push_back(stored_command(card_map::Opcode::ArcChord, mask, ticks,
+                                {{"path_ticks", path_ticks},
+                                 {"prescale", prescale},
+                                 {"plane", y << 8 | x << 4 | dice_.below(2)},
+                                 {"shifts", k | m << 8},
+                                 {"x", any(bits)},
+                                 {"y", any(bits)},
+                                 {"first_x", any(40)},
+                                 {"first_y", any(40)},
+                                 {"closing_x", any(37)},
+                                 {"closing_y", any(37)}},
+                                further));
+    return ticks;
   }
 
   // Mostly fast: a tick every few clocks at most.

@@ -14,6 +14,7 @@ using card_map::Opcode;
 constexpr int kHeader = 4;  // halfwords before the payload, as they are stored
 constexpr int kMostPayload = 64;
 constexpr int kEndless = 1 << 20;
+constexpr std::size_t kFurtherAxes = 28;  // of an arc in chords: where their increments begin in the payload
 
 // Where the halfwords of a payload go, and the first one that waits.
 struct Layout {
@@ -56,6 +57,19 @@ std::array<Layout, 256> all_layouts() {
                                                            {"half_x", path::kHalfX},
                                                            {"half_y", path::kHalfY}},
                                                           "plane");
+  // Increments are numbered in the order of axes_.
+  all[static_cast<std::uint8_t>(Opcode::ArcChord)] = layout_of(Opcode::ArcChord,
+                                                               {{"prescale", path::kPrescale},
+                                                                {"plane", path::kPlane},
+                                                                {"shifts", path::kShifts},
+                                                                {"x", path::kState},
+                                                                {"y", path::kState},
+                                                                {"first_x", path::kIncrement},
+                                                                {"first_y", path::kIncrement + 1},
+                                                                {"closing_x", path::kClosing},
+                                                                {"closing_y", path::kClosing}},
+                                                               "plane");
+  all[static_cast<std::uint8_t>(Opcode::Line)].pause_at = kHeader;
   all[static_cast<std::uint8_t>(Opcode::Feed)] = layout_of(Opcode::Feed,
                                                            {{"rate", feed::kRate},
                                                             {"floor", feed::kFloor},
@@ -75,13 +89,28 @@ unsigned CommandFetch::target_of(int index) const {
   if (index < kHeader) return ticks;
   const auto payload = static_cast<std::size_t>(index - kHeader);
   if (opcode_ == Opcode::Line) return load_target::kIncrement + axes_[payload / 3];
-  return kLayouts[static_cast<std::uint8_t>(opcode_)].targets[payload];
+  if (is_chord() && payload >= kFurtherAxes) return load_target::kIncrement + axes_[2 + (payload - kFurtherAxes) / 3];
+  const unsigned target = kLayouts[static_cast<std::uint8_t>(opcode_)].targets[payload];
+  return is_chord() && target < load_target::kCount ? load_target::kIncrement + axes_[target] : target;
+}
+
+// The plane's axes first.
+void CommandFetch::order_axes(std::uint16_t plane) {
+  const unsigned x = plane >> 4 & 7;
+  const unsigned y = plane >> 8 & 7;
+  std::size_t count = 0;
+  axes_[count++] = static_cast<std::uint8_t>(x);
+  axes_[count++] = static_cast<std::uint8_t>(y);
+  for (unsigned axis = 0; axis < 8; ++axis) {
+    if ((mask_ >> axis & 1) != 0 && axis != x && axis != y) axes_[count++] = static_cast<std::uint8_t>(axis);
+  }
 }
 
 // The first halfword says how long the command is and which axes a line moves.
 void CommandFetch::arrive(int index, std::uint16_t halfword) {
   if (index > 0) {
     bus_ = {true, static_cast<std::uint8_t>(target_of(index)), halfword};
+    if (is_chord() && bus_.target == load_target::kPlane) order_axes(halfword);
     return;
   }
   header_here_ = true;
@@ -104,7 +133,7 @@ void CommandFetch::ask(const Inputs& in) {
     state_ = State::Reading;
     asked_ = 0;
   } else if (state_ == State::Waiting) {
-    if (!in.payload_ready) return;
+    if (!may_go_on(in)) return;
     state_ = State::Reading;
     asked_ = pause_at_;
   } else if (asked_ < 0) {
@@ -117,7 +146,7 @@ void CommandFetch::ask(const Inputs& in) {
   } else if (next == pause_at_ && is_feed() && !in.payload_ready) {
     split_ = true;
     asked_ = -1;
-  } else if (next == pause_at_ && !is_feed() && !in.payload_ready) {
+  } else if (next == pause_at_ && !is_feed() && !may_go_on(in)) {
     state_ = State::Waiting;
     asked_ = -1;
   } else {

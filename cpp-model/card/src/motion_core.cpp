@@ -36,6 +36,7 @@ Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
   const PathEngines::Outputs& engines = engines_.outputs();
   s.engine_ready = engines.ready;
   s.payload_ready = engines.payload_ready;
+  s.shadows_free = engines.shadows_free;
   s.engine_done = engines.done;
   s.elsewhere = engines.elsewhere;
   s.axes_live = axes_live_;
@@ -56,7 +57,7 @@ void MotionCore::clock(const Inputs& in) {
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
   wait_timer_.clock(in.setting);
-  engines_.clock({stop.cut, s.tick, s.swap, s.engine, sequencer_.load()});
+  engines_.clock({stop.cut, s.tick, s.swap, s.engine, sequencer_.load(), sequencer_.engine_taken()});
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
   time_base_.clock({stop.hold, in.setting});
   sequencer_.clock(sequencer_in);
@@ -72,14 +73,18 @@ void MotionCore::clock_axes(const Inputs& in, bool cut) {
   axis.direct = s.direct;
   axis.wait_tick = wait_timer_.tick();
   axis.load = sequencer_.load();
+  axis.chord_word = engines.chord_word;
   axis.setting = in.setting;
   out_.engine_step = engines.step;
   const bool common = cut || engines.tick || engines.swap || in.setting.set || axis.load.valid;
-  const std::uint32_t due = common || clock_all_ ? ~0U : engines.step | restless_;
+  const std::uint32_t due =
+      common || clock_all_ ? ~0U : engines.step | engines.chord_load | engines.chord_swap | restless_;
   for (unsigned n = 0; n < axes_.size(); ++n) {
     const std::uint32_t bit = 1U << n;
     if ((due & bit) == 0) continue;
     axis.active = (s.active & bit) != 0;
+    axis.chord_load = (engines.chord_load & bit) != 0;
+    axis.chord_swap = (engines.chord_swap & bit) != 0;
     axis.engine_step = (engines.step & bit) != 0;
     axis.engine_dir = (engines.dir & bit) != 0;
     axes_[n].clock(axis);

@@ -32,7 +32,7 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.barrier_done = barrier_ == Barrier::Done;
   d.piece_runs = out_.feed_active;
   // An engine's state is in use until its path's last feed tick has reached it.
-  d.payload_ready = in.payload_ready && (path_ != Path::Engine || (drained_ && now_ >= drained_at_ + kEngineJudged));
+  d.payload_ready = in.payload_ready && !engine_taken();
   return d;
 }
 
@@ -118,10 +118,11 @@ void Sequencer::stand(const Decision& d) {
 // The fetches see a command as taken when it begins, a barrier in the clock after its last one.
 void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
   if (load_.to(load_target::kTicks)) shift_in<48>(path_count_, load_.word);
-  geometry_.clock({in.cut, d.path_begins || d.barrier_done, d.payload_ready, in.geometry_empty, in.geometry_word});
+  geometry_.clock(
+      {in.cut, d.path_begins || d.barrier_done, d.payload_ready, in.shadows_free, in.geometry_empty, in.geometry_word});
   load_ = in.direct_load.valid ? in.direct_load : geometry_.bus();
   if (feed_.bus().to(feed_target::kTicks)) shift_in<48>(piece_count_, feed_.bus().word);
-  feed_.clock({in.cut, d.piece_begins || d.barrier_done, !d.piece_runs, in.feed_empty, in.feed_word});
+  feed_.clock({in.cut, d.piece_begins || d.barrier_done, !d.piece_runs, true, in.feed_empty, in.feed_word});
 }
 
 // From both queues standing at it to the clock in which they go on.
@@ -148,7 +149,8 @@ void Sequencer::clock_path(const Inputs& in, const Decision& d) {
     path_ = in.direct_go ? Path::Direct : on_lines ? Path::Line : Path::Engine;
     path_left_ = path_count_ & kCountMask;
     drained_ = false;
-    out_.active = in.direct_go ? in.direct_mask : on_lines ? geometry_.mask() : 0;
+    const bool steps_elsewhere = out_.engine == card_map::engine::kAccumulator;
+    out_.active = in.direct_go ? in.direct_mask : steps_elsewhere ? std::uint8_t{0} : geometry_.mask();
   } else if (d.path_ends && path_ != Path::Line) {
     drained_ = true;
     drained_at_ = now_;

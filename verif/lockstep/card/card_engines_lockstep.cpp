@@ -1,4 +1,4 @@
-// The card built without accumulator or direct mode, RTL beside golden model: random traffic, of which what needs a
+// The card built with other engines than by default, RTL beside golden model: random traffic, of which what needs a
 // missing engine is refused, and each refusal by its name.
 #include <Vdut.h>
 #include <gtest/gtest.h>
@@ -21,6 +21,7 @@ namespace field = card_map::field;
 constexpr unsigned kAxes = 4;
 constexpr std::uint32_t kEngines = TRAMMEL_ENGINES;
 constexpr bool kArcs = card_map::has_engine(kEngines, card_map::engine::kAccumulator);
+constexpr bool kChords = card_map::has_engine(kEngines, card_map::engine::kArcGenerator);
 constexpr bool kDirectMode = card_map::has_engine(kEngines, card_map::engine::kDirectMode);
 // Where they are refused, since each refusal closes the stream, only now and then.
 constexpr unsigned kArcEvery = kArcs ? 4 : 40;
@@ -44,11 +45,13 @@ void random_traffic(std::uint64_t seed, std::uint64_t clocks) {
   sim::LockstepCard card = card_with_engines(seed);
   AxiHost host(card, seed);
   Traffic traffic(host, kAxes, kArcEvery);
+  traffic.chords_every = kChords ? 3 : 60;
   host.wait(300);
   traffic.settings();
   while (host.clocks() < clocks) traffic.run(10, 4);
   traffic.recover();
   traffic.wait_idle(100'000);
+  if (kChords) EXPECT_GT(traffic.chords_taken, clocks / 5000);
   expect_all_compared(card, clocks);
 }
 

@@ -51,6 +51,45 @@ driver::ArcCommand random_arc(Random&& random, unsigned axes) {
   return driver::prepare(arc);
 }
 
+// An arc in chords, with any further axes, as words without their number; adds its ticks to `total`. The increments sum
+// to at most a pulse a tick.
+template <class Random>
+std::vector<std::uint32_t> random_chords(Random&& random, unsigned axes, std::uint64_t& total) {
+  const std::uint64_t path_ticks = 1 + random(600);
+  const std::uint64_t ticks = path_ticks + random(600);
+  const std::uint64_t x = random(axes);
+  const std::uint64_t y = (x + 1 + random(axes - 1)) % axes;
+  const std::uint64_t mask = 1U << x | 1U << y | random(std::uint64_t{1} << axes);
+  const std::uint64_t k = 1 + random(24);
+  std::vector<std::uint16_t> halfwords{static_cast<std::uint16_t>(3 | mask << 8), 0};
+  const auto put = [&halfwords](std::uint64_t value, unsigned count) {
+    for (unsigned i = 0; i < count; ++i) halfwords.push_back(static_cast<std::uint16_t>(value >> (16 * i)));
+  };
+  const auto any = [&random](std::uint64_t bits) {
+    const std::uint64_t magnitude = random(std::uint64_t{1} << bits);
+    return random(2) == 0 ? magnitude : std::uint64_t{0} - magnitude;
+  };
+  put(ticks, 3);
+  put(path_ticks, 3);
+  // Rounded; exact in 64 bits, since there are few ticks.
+  put(((path_ticks << 40) + ticks / 2) / ticks, 3);
+  put(y << 8 | x << 4 | random(2), 1);
+  put((5 + random(4)) << 8 | k, 1);
+  put(any(k + 36), 4);
+  put(any(k + 36), 4);
+  for (const std::uint64_t bits : {38U, 38U, 34U, 34U}) put(any(bits), 3);
+  for (unsigned axis = 0; axis < axes; ++axis) {
+    if (axis != x && axis != y && (mask >> axis & 1) != 0) put(any(38), 3);
+  }
+  if (halfwords.size() % 2 != 0) halfwords.push_back(0);
+  halfwords[1] = static_cast<std::uint16_t>(halfwords.size() / 2);
+  std::vector<std::uint32_t> words;
+  for (std::size_t i = 0; i < halfwords.size(); i += 2)
+    words.push_back(halfwords[i] | std::uint32_t{halfwords[i + 1]} << 16);
+  total += ticks;
+  return words;
+}
+
 // A line, or one path in `arc_every` an arc, for ticks that come one in `pace` clocks; adds its ticks to `total`.
 // `random(n)`: 0 .. n - 1.
 template <class Random>

@@ -25,13 +25,22 @@ class Traffic {
   bool send(const driver::Command& command, bool faulty = false) {
     std::vector<std::uint32_t> words;
     driver::encode(command, number_, words);
+    return send_words(words, faulty);
+  }
+  // The same of a command's words; their number is set here.
+  bool send_words(std::vector<std::uint32_t> words, bool faulty) {
+    words[0] = (words[0] & 0xFF'FFFF) | std::uint32_t{number_} << 24;
     if (faulty) corrupt(words);
     for (const std::uint32_t word : words) {
       if (!host_.write(reg::kStream, word)) return false;
     }
     ++number_;
+    chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1 : 0;
     return true;
   }
+  // One path in so many is an arc in chords; 0: none.
+  unsigned chords_every = 0;
+  std::uint64_t chords_taken = 0;
   void abort() {
     host_.write(reg::kControl, field::kControlAbort);
     number_ = 0;
@@ -77,11 +86,15 @@ class Traffic {
 
 inline void Traffic::section(bool faulty) {
   const double pace = one_in(2) ? 1.001 + static_cast<double>(below(100)) * 0.05 : 8 + static_cast<double>(below(40));
-  std::vector<driver::Command> geometry;
+  std::vector<std::vector<std::uint32_t>> geometry;
   std::uint64_t total = 0;
   const auto random = [this](std::uint64_t count) { return below(count); };
-  for (std::uint64_t paths = 1 + below(6); paths != 0; --paths)
-    geometry.push_back(random_path(random, axes_, pace, total, arc_every_));
+  for (std::uint64_t paths = 1 + below(6); paths != 0; --paths) {
+    if (chords_every != 0 && axes_ > 1 && one_in(chords_every))
+      geometry.push_back(random_chords(random, axes_, total));
+    else
+      driver::encode(random_path(random, axes_, pace, total, arc_every_), 0, geometry.emplace_back());
+  }
   std::vector<driver::Command> pieces;
   for (std::uint64_t left = total; left != 0;) {
     const std::uint64_t ticks = one_in(3) ? left : 1 + below(left);
@@ -95,7 +108,7 @@ inline void Traffic::section(bool faulty) {
   while (path != geometry.end() || piece != pieces.end()) {
     const bool geometry_next = piece == pieces.end() || (path != geometry.end() && one_in(2));
     const bool broken = faulty && one_in(12);
-    if (!send(geometry_next ? *path++ : *piece++, broken)) {
+    if (!(geometry_next ? send_words(*path++, broken) : send(*piece++, broken))) {
       // Refused: the rest is refused too until an abort, which need not come at once.
       if (!one_in(3)) abort();
       return;

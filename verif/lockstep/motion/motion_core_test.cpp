@@ -22,6 +22,7 @@ namespace reg = card_map::reg;
 constexpr unsigned kAxes = TRAMMEL_AXES;
 // What is built in: what is missing is asked for by nobody, since checker and registers refuse it.
 constexpr bool kArcs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator);
+constexpr bool kChords = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kArcGenerator);
 constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kDirectMode);
 constexpr std::uint64_t kComparedSignals = 27 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
@@ -48,6 +49,7 @@ class Bench {
   explicit Bench(std::uint64_t seed)
       : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.arcs = kArcs;
+    programs_.chords = kChords;
     reset();
   }
 

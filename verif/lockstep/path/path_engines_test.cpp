@@ -1,5 +1,5 @@
-// Lockstep of the path engines: arcs and lines one after the other, ticks at random, the next arc's state loaded while
-// a line runs, cuts and resets at any clock; every output in every cycle.
+// Lockstep of the path engines: arcs on either engine and lines one after the other, ticks at random, the next arc's
+// state loaded while a line runs, cuts and resets at any clock; every output in every cycle.
 #include "trammel/model/path_engines.hpp"
 
 #include <Vdut.h>
@@ -16,10 +16,11 @@ namespace load_target = model::load_target;
 
 constexpr std::uint8_t kLines = card_map::engine::kLines;
 constexpr std::uint8_t kAccumulator = card_map::engine::kAccumulator;
+constexpr std::uint8_t kArcGenerator = card_map::engine::kArcGenerator;
 constexpr bool kEngines = TRAMMEL_ENGINES != 0;  // others than lines are built in
 constexpr unsigned kAxes = 4;
 constexpr std::uint64_t kOnePulse = std::uint64_t{1} << 40;
-constexpr std::uint64_t kComparedSignals = kEngines ? 8 : 10;
+constexpr std::uint64_t kComparedSignals = kEngines ? 12 : 14;
 
 class Bench {
  public:
@@ -29,23 +30,32 @@ class Bench {
     // Mostly a path tick every few feed ticks.
     const std::uint64_t prescale = dice_.word() >> 23 >> (dice_.chance(4) ? dice_.below(40) : dice_.below(4));
     if (!load(load_target::kPrescale, prescale % (kOnePulse + 1), 3)) return;
-    if (!wait([this] { return accumulator_free() && model_.outputs().payload_ready; }, 20'000)) return;
+    if (!wait([this] { return engine_free() && model_.outputs().payload_ready; }, 20'000)) return;
     // What is asked for now arrives three clocks later.
     if (!idle(2) || !load_path(any_path(random_))) return;
-    if (finish_path()) begin(true);
+    if (finish_path()) begin(kAccumulator);
+  }
+
+  void chords() {
+    const std::uint64_t prescale = dice_.chance(2) ? kOnePulse : dice_.word() >> 23 >> dice_.below(4);
+    if (!load(load_target::kPrescale, prescale % (kOnePulse + 1), 3)) return;
+    if (!wait([this] { return engine_free() && model_.outputs().payload_ready; }, 20'000)) return;
+    if (!idle(2) || !load_chords()) return;
+    if (finish_path()) begin(kArcGenerator);
   }
 
   void line() {
-    if (finish_path()) begin(false);
+    if (finish_path()) begin(kLines);
   }
 
   Checker& check() { return check_; }
   std::uint64_t steps() const { return steps_; }
+  std::uint64_t chords_swapped() const { return chords_; }
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + judged_; }
 
  private:
   // An arc's ticks all given, two clocks ago.
-  bool accumulator_free() const { return !on_arc_ || (ticks_left_ == 0 && since_tick_ >= 2); }
+  bool engine_free() const { return !on_arc_ || (ticks_left_ == 0 && since_tick_ >= 2); }
 
   // The ticks of the path are given; an arc's are finished too.
   bool finish_path() {
@@ -54,17 +64,17 @@ class Bench {
   }
 
   // A line's swap may stand beside the last tick of the line before it. Swaps are 3 clocks apart.
-  void begin(bool arc) {
+  void begin(std::uint8_t engine) {
     if (!idle(since_swap_ < 3 ? 3 - since_swap_ : 0)) return;
-    check_.event("swap", arc);
+    check_.event("swap", engine);
     in_.swap = true;
-    in_.engine = arc ? kAccumulator : kLines;
+    in_.engine = engine;
     in_.tick = on_line_ && since_swap_ > 3 && model_.outputs().ready && dice_.chance(2);
     clock();
     in_.swap = false;
     in_.engine = kLines;
-    on_arc_ = arc;
-    on_line_ = !arc;
+    on_arc_ = engine != kLines;
+    on_line_ = !on_arc_;
     since_swap_ = 0;
     ticks_left_ = dice_.chance(4) ? dice_.below(3) : dice_.below(300);
     tick_every_ = 1 + dice_.below(dice_.chance(2) ? 2 : 20);
@@ -79,6 +89,16 @@ class Bench {
       in_.load = {};
       while (good && dice_.chance(5)) good = idle(1);
     }
+    return good;
+  }
+
+  bool load_chords() {
+    const unsigned x = dice_.below(kAxes);
+    const unsigned y = (x + 1 + dice_.below(kAxes - 1)) % kAxes;
+    bool good = load(load_target::kPlane, y << 8 | x << 4 | dice_.below(2), 1) &&
+                load(load_target::kShifts, (5 + dice_.below(4)) << 8 | dice_.below(32), 1);
+    for (unsigned i = 0; i < 2 && good; ++i) good = load(load_target::kState, dice_.word(), 4);
+    for (unsigned i = 0; i < 2 && good; ++i) good = load(load_target::kClosing, dice_.word(), 3);
     return good;
   }
 
@@ -125,7 +145,7 @@ class Bench {
     do {
       in_.tick = dice_.chance(2);
       in_.swap = dice_.chance(2);
-      in_.engine = kEngines && dice_.chance(2) ? kAccumulator : kLines;
+      in_.engine = !kEngines || dice_.chance(2) ? kLines : dice_.chance(2) ? kAccumulator : kArcGenerator;
       if (dice_.chance(4)) {
         reset();
       } else {
@@ -152,6 +172,8 @@ class Bench {
   }
 
   void clock() {
+    // The sequencer knows of the last tick two clocks after it was taken, a clock after it is here.
+    in_.engine_taken = on_arc_ && !engine_free();
     apply();
     dut_.clock();
     model_.clock(in_);
@@ -166,6 +188,7 @@ class Bench {
     dut_->tick_i = in_.tick;
     dut_->swap_i = in_.swap;
     dut_->engine_i = in_.engine;
+    dut_->engine_taken_i = in_.engine_taken;
     // Without its valid bit the bus says nothing.
     dut_->load_i = in_.load.valid ? load_wire(in_.load) : dice_.below(1U << 21);
   }
@@ -180,6 +203,12 @@ class Bench {
     check_.compare("dir_o, of steps", dut_->dir_o & dut_->step_o, out.dir & out.step);
     check_.compare("ready_o", dut_->ready_o, out.ready);
     check_.compare("payload_ready_o", dut_->payload_ready_o, out.payload_ready);
+    check_.compare("shadows_free_o", dut_->shadows_free_o, out.shadows_free);
+    check_.compare("chord_load_o", dut_->chord_load_o, out.chord_load & ((1U << kAxes) - 1));
+    check_.compare("chord_swap_o", dut_->chord_swap_o, out.chord_swap & ((1U << kAxes) - 1));
+    check_.compare("chord_word_o, of loads", out.chord_load != 0 ? dut_->chord_word_o : 0,
+                   out.chord_load != 0 ? out.chord_word : 0);
+    chords_ += out.chord_swap != 0 ? 1U : 0U;
     if (!kEngines) {
       check_.compare("done_o", dut_->done_o, 1);
       check_.compare("elsewhere_o", dut_->elsewhere_o, 0);
@@ -208,21 +237,25 @@ class Bench {
   std::uint64_t since_swap_ = 10;
   std::uint64_t judged_ = 0;
   std::uint64_t steps_ = 0;
+  std::uint64_t chords_ = 0;
 };
 
 void random_paths() {
   const std::uint64_t seed = seed_from_environment(20261117);
   Bench bench(seed);
   Dice dice(seed);
-  const std::uint64_t length = scaled(600'000);
+  const std::uint64_t length = scaled(2'400'000);
   while (bench.check().cycles() < length) {
     if (!kEngines || dice.chance(3))
       bench.line();
+    else if (dice.chance(2))
+      bench.chords();
     else
       bench.arc();
   }
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
-  EXPECT_GE(bench.steps(), kEngines ? length / 200 : 0);
+  EXPECT_GE(bench.steps(), kEngines ? length / 1000 : 0);
+  EXPECT_GE(bench.chords_swapped(), kEngines ? length / 4000 : 0);
 }
 
 TEST(PathEngines, RandomPaths) { EXPECT_EQ(judge(random_paths), ""); }

@@ -13,12 +13,13 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr unsigned kAxes = 4;
-constexpr std::uint64_t kComparedSignals = 19;
+constexpr std::uint64_t kComparedSignals = 20;
 
 class Bench {
  public:
   explicit Bench(std::uint64_t seed)
       : check_("sequencers", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
+    programs_.chords = true;
     reset();
   }
 
@@ -48,7 +49,7 @@ class Bench {
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
     if (stand_for_ != 0) --stand_for_;
-    in_.elsewhere = dice_.chance(200);
+    in_.elsewhere = dice_.chance(30);
     if (in_.cut) check_.event("cut");
     if (dice_.chance(10 * pace.cut))
       reset();
@@ -108,6 +109,7 @@ class Bench {
     chain_[0].clock(dut_->snapshot_i, begun[0], dut_->chain_i);
     geometry_.clock(geometry_reads, dice_.chance(pace.write), in_.cut);
     feed_.clock(feed_reads, dice_.chance(pace.write), in_.cut);
+    cut_before_ = in_.cut;
     if (in_.cut) direct_step_ = 0;
     compare();
     ends_ += model_.outputs().swap ? 1U : 0U;
@@ -141,6 +143,8 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     model_ = model::Sequencer();
+    payload_taken_for_ = 0;
+    cut_before_ = true;
     geometry_.reset();
     feed_.reset();
     chain_[0] = chain_[1] = {};
@@ -187,8 +191,16 @@ class Bench {
       payload_taken_for_ = 4 + dice_.below(pace.busy);
     else if (payload_taken_for_ != 0)
       --payload_taken_for_;
-    in_.payload_ready = payload_taken_for_ == 0;
     in_.engine_done = !dice_.chance(pace.busy);
+    // The arc generator has the axes' shadows from its start until it has been over for a while.
+    if (model_.outputs().swap && model_.outputs().engine == card_map::engine::kArcGenerator)
+      in_.shadows_free = false;
+    else if (cut_before_ || (!model_.engine_taken() && dice_.chance(pace.busy)))
+      in_.shadows_free = true;
+    // A path on lines begins when the engine before it has finished; a cut finishes it.
+    if (cut_before_ || (model_.outputs().swap && model_.outputs().engine == card_map::engine::kLines))
+      payload_taken_for_ = 0;
+    in_.payload_ready = payload_taken_for_ == 0 && in_.shadows_free;
     in_.axes_live = dice_.chance(2);
   }
 
@@ -205,6 +217,7 @@ class Bench {
     dut_->feed_tick_i = in_.feed_tick;
     dut_->engine_ready_i = in_.engine_ready;
     dut_->payload_ready_i = in_.payload_ready;
+    dut_->shadows_free_i = in_.shadows_free;
     dut_->engine_done_i = in_.engine_done;
     dut_->elsewhere_i = in_.elsewhere;
     dut_->axes_live_i = in_.axes_live;
@@ -216,6 +229,7 @@ class Bench {
     check_.next_cycle();
     const auto& out = model_.outputs();
     check_.compare("geometry_read_o", dut_->geometry_read_o, model_.geometry_read());
+    check_.compare("engine_taken_o", dut_->engine_taken_o, model_.engine_taken());
     check_.compare("feed_read_o", dut_->feed_read_o, model_.feed_read());
     check_.compare("direct_o", dut_->direct_o, out.direct);
     check_.compare("feed_enable_o", dut_->feed_enable_o, out.feed_enable);
@@ -257,6 +271,7 @@ class Bench {
   SnapshotWord chain_[2];
   unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
+  bool cut_before_ = false;   // in the last clock
   unsigned stand_for_ = 0;    // clocks of a fault
   unsigned direct_step_ = 0;  // of a direct move; 0: none
   unsigned rest_for_ = 0;     // clocks
@@ -322,7 +337,7 @@ void random_programs() {
 void cuts_at_every_clock() {
   Bench bench(1);
   for (const bool by_reset : {false, true}) {
-    for (unsigned run = 0; run < 1000; ++run) {
+    for (unsigned run = 0; run < 4000; ++run) {
       bench.restart(1 + run / 500);
       bench.short_programs(run % 500);
       bench.interrupt(by_reset);

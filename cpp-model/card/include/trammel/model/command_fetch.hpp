@@ -3,9 +3,9 @@
 //
 // A halfword asked for in clock r lies on the queue's output in r+2 and on the bus in r+3. A command is decoded in the
 // clock in which its last halfword is on the bus. An engine's halfwords after the prescaler wait until it is
-// free; a feed piece's acceleration and jerk until it has begun, where a piece runs as they would be asked for: it is
-// decoded without them. Not thread-safe; no errors are reported: the checker
-// lets only good commands into the queue.
+// free, a line's increments until the axes' shadows are; a feed piece's acceleration and jerk until it has begun, where
+// a piece runs as they would be asked for: it is decoded without them. Not thread-safe; no errors are reported: the
+// checker lets only good commands into the queue.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +22,7 @@ class CommandFetch {
     bool clear = false;
     bool pop = false;            // the decoded command has begun (a barrier: is over)
     bool payload_ready = true;   // the engine may be loaded; no piece is under way
+    bool shadows_free = true;    // the axes' increments may be loaded
     bool empty = true;           // of the queue
     std::uint16_t halfword = 0;  // what was asked for two clocks ago
   };
@@ -43,7 +44,8 @@ class CommandFetch {
   // Of the command decoded.
   card_map::Opcode opcode() const { return opcode_; }
   bool is_line() const { return opcode_ == card_map::Opcode::Line; }
-  bool is_path() const { return is_line() || opcode_ == card_map::Opcode::Arc; }
+  bool is_path() const { return is_line() || opcode_ == card_map::Opcode::Arc || is_chord(); }
+  bool is_chord() const { return opcode_ == card_map::Opcode::ArcChord; }
   bool is_feed() const { return opcode_ == card_map::Opcode::Feed; }
   bool is_end() const { return opcode_ == card_map::Opcode::End; }
   bool is_barrier() const { return !is_path() && !is_feed(); }
@@ -63,6 +65,8 @@ class CommandFetch {
   void work(const Inputs& in);
   void arrive(int index, std::uint16_t halfword);
   void ask(const Inputs& in);
+  bool may_go_on(const Inputs& in) const { return is_line() ? in.shadows_free : in.payload_ready; }
+  void order_axes(std::uint16_t plane);
   unsigned target_of(int index) const;
 
   Queue queue_;
@@ -77,7 +81,7 @@ class CommandFetch {
   card_map::Opcode opcode_ = card_map::Opcode::End;
   std::uint8_t engine_ = card_map::engine::kLines;
   std::uint8_t mask_ = 0;
-  std::uint8_t axes_[8] = {};  // of the mask, lowest first
+  std::uint8_t axes_[8] = {};  // of the mask, lowest first; an arc's in chords: x, y, the further ones
   LoadWord bus_;
 };
 

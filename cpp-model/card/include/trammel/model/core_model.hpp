@@ -21,9 +21,9 @@ struct CardConfig {
   unsigned geometry_depth = 4096;  // halfwords
   unsigned feed_depth = 2560;
   std::uint32_t clock_hz = 1'000'000;
-  std::uint32_t engines = RegisterFile::kMostEngines;  // ENGINES
-  unsigned ports = 1;                                  // 1 .. 4
-  std::uint32_t idle_level = 0;                        // strap: {second pins, first pins}, `axes` bits each
+  std::uint32_t engines = RegisterFile::kDefaultEngines;  // ENGINES
+  unsigned ports = 1;                                     // 1 .. 4
+  std::uint32_t idle_level = 0;                           // strap: {second pins, first pins}, `axes` bits each
   std::uint32_t build_id = 0;
   bool build_dirty = false;
   std::uint32_t board_id = 0;

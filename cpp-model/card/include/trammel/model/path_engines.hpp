@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "trammel/card_map.hpp"
+#include "trammel/model/arc_generator.hpp"
 #include "trammel/model/buses.hpp"
 #include "trammel/model/deviation_accumulator.hpp"
 #include "trammel/model/pulse_generator.hpp"
@@ -28,6 +29,7 @@ class PathEngines {
     // Sampled with swap: what the path runs on, by its bit of ENGINES; the state of one that is not lines is loaded.
     std::uint8_t engine = card_map::engine::kLines;
     LoadWord load;
+    bool engine_taken = false;  // the path is on an engine and still takes feed ticks
   };
   struct Outputs {
     bool tick = false;  // path domain
@@ -37,6 +39,11 @@ class PathEngines {
     std::uint8_t dir = 0;    // 1 = negative; means something with a step
     bool ready = true;       // a feed tick may be taken
     bool payload_ready = true;
+    bool shadows_free = true;  // the axes' increments may be loaded
+    // The arc generator's, by axis.
+    std::uint16_t chord_word = 0;
+    std::uint8_t chord_load = 0;
+    std::uint8_t chord_swap = 0;
     bool done = false;
     bool elsewhere = false;  // with done: not on the commanded end point
   };
@@ -55,18 +62,23 @@ class PathEngines {
     const bool commanded = in.cut || in.load.valid || clock_all_;
     if (commanded || routed_step_ != 0 || !accumulator_.quiet()) route(in.load, accumulator);
     if (commanded || start || tick || !accumulator_.quiet()) accumulator_.clock({false, in.load, start, tick, in.cut});
+    const bool chord_tick = prescaler_.outputs().step && engine_ == card_map::engine::kArcGenerator;
+    clock_arc(in, chord_tick);
     give(in.cut, engine.ready);
-    step();
     if (commanded || in.tick || in.swap || !prescaler_.quiet()) clock_prescaler(in);
-    delay(in);
+    delay(in, chord_tick);
+    if (in.swap) engine_ = in.engine;
+    if (in.cut) engine_ = card_map::engine::kLines;
+    step();
   }
 
   const Outputs& outputs() const { return out_; }
 
   // For jumps. settled(): but for ticks on their way through the 3 clocks, nothing moves without inputs.
   bool settled() const {
-    return swaps_ == 0 && !out_.swap && waiting_ == 0 && !out_.path_tick && almost_ == 0 && out_.step == 0 &&
-           prescaler_.quiet() && accumulator_.quiet();
+    // A path on the arc generator goes clock by clock: its axes step on path ticks.
+    return out_.shadows_free && !out_.chord_load && !out_.chord_swap && swaps_ == 0 && !out_.swap && waiting_ == 0 &&
+           !out_.path_tick && almost_ == 0 && out_.step == 0 && prescaler_.quiet() && accumulator_.quiet();
   }
   // As settled(), and without ticks.
   bool quiet() const {
@@ -84,7 +96,8 @@ class PathEngines {
     const bool feed_ticks = (in_flight >> 6 & 0xF) != 0;
     out_.done = !feed_ticks && said().ready;
     out_.elsewhere = !said().at_end;
-    out_.payload_ready = !(feed_ticks && on_engine(engine_));
+    out_.payload_ready = gate_payload_ready_ = !(feed_ticks && on_engine(engine_));
+    own_ticks_ = ticks_;
   }
 
   const PulseGenerator& prescaler() const { return prescaler_; }
@@ -108,6 +121,8 @@ class PathEngines {
   // Of the engine on which the path runs. On lines nothing is asked.
   Said said() const {
     switch (engine_) {
+      case card_map::engine::kArcGenerator:  // its steps are the axes' own, and it ends where they do
+        return {true, true, false, 0, 0};
       default:
         return {accumulator_.outputs().ready, accumulator_.outputs().at_end, almost_ != 0, routed_step_, routed_dir_};
     }
@@ -119,9 +134,9 @@ class PathEngines {
     const bool path_ticks = waiting_ != 0 || out_.path_tick;
     out_.done = !feed_ticks && !path_ticks && engine.ready;
     out_.elsewhere = !engine.at_end;
-    out_.payload_ready = !(feed_ticks && on_engine(engine_)) && !path_ticks && !engine.stepping;
-    if (in.swap) engine_ = in.engine;
-    if (in.cut) engine_ = card_map::engine::kLines;
+    gate_payload_ready_ = !(feed_ticks && on_engine(engine_)) && !path_ticks && !engine.stepping;
+    over_next_ =
+        engine_ == card_map::engine::kArcGenerator && !in.engine_taken && !feed_ticks && !arc_.outputs().loadable;
   }
 
   void finish_step(bool cut, bool tick, const DeviationAccumulator::Outputs& accumulator) {
@@ -154,9 +169,11 @@ class PathEngines {
   // Path ticks wait for the engine, which answers a tick with ready low a clock later.
   void give(bool cut, bool engine_ready) {
     const bool given = waiting_ != 0 && engine_ready && !out_.path_tick;
-    waiting_ = cut ? 0 : waiting_ + (prescaler_.outputs().step ? 1U : 0U) - (given ? 1U : 0U);
+    const bool comes = prescaler_.outputs().step && engine_ != card_map::engine::kArcGenerator;
+    waiting_ = cut ? 0 : waiting_ + (comes ? 1U : 0U) - (given ? 1U : 0U);
     out_.path_tick = given && !cut;
-    out_.ready = waiting_ < 2;
+    out_.ready = waiting_ < 2 && arc_.outputs().ready;
+    out_.payload_ready = gate_payload_ready_ && arc_.outputs().loadable;
   }
 
   void clock_prescaler(const Inputs& in) {
@@ -164,17 +181,39 @@ class PathEngines {
                       false, in.load.word});
   }
 
-  void delay(const Inputs& in) {
+  // It is over when the path takes no more feed ticks and none is on its way.
+  void clock_arc(const Inputs& in, bool tick) {
+    const bool clear = in.cut || over_;
+    over_ = over_next_;
+    const bool start = in.swap && in.engine == card_map::engine::kArcGenerator;
+    if (in.load.valid || clear || start || tick || clock_all_ || !arc_.quiet())
+      arc_.clock({clear, in.load, start, tick});
+    const ArcGenerator::Outputs& arc = arc_.outputs();
+    out_.shadows_free = arc.loadable;
+    out_.chord_word = arc.word;
+    out_.chord_load = arc.load;
+    out_.chord_swap = arc.swap;
+  }
+
+  void delay(const Inputs& in, bool chord_tick) {
     ticks_ = in.cut ? 0 : ticks_ >> 1 | (in.tick ? 1U << (kDelay - 1) : 0);
     swaps_ = in.cut ? 0 : swaps_ >> 1 | (in.swap ? 1U << (kDelay - 1) : 0);
-    out_.tick = (ticks_ & 1) != 0;
+    // The axes' own: feed ticks of lines, and an arc's path ticks, a clock after the generator.
+    const bool own = in.tick && engine_ != card_map::engine::kArcGenerator;
+    own_ticks_ = in.cut ? 0 : own_ticks_ >> 1 | (own ? 1U << (kDelay - 1) : 0) | (chord_tick ? 1 : 0);
+    out_.tick = (own_ticks_ & 1) != 0;
     out_.swap = (swaps_ & 1) != 0;
   }
 
   bool clock_all_;
   DeviationAccumulator accumulator_;
+  ArcGenerator arc_;
+  bool over_ = false;  // the arc is
+  bool over_next_ = false;
+  bool gate_payload_ready_ = true;
   PulseGenerator prescaler_;
-  std::uint32_t ticks_ = 0;  // on their way, bit k leaves in k clocks; bit 0 is visible
+  std::uint32_t ticks_ = 0;      // on their way, bit k leaves in k clocks; bit 0 is visible
+  std::uint32_t own_ticks_ = 0;  // those that the axes get
   std::uint32_t swaps_ = 0;
   std::uint32_t waiting_ = 0;                       // path ticks
   std::uint8_t engine_ = card_map::engine::kLines;  // of the path swapped in last

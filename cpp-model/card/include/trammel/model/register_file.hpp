@@ -16,17 +16,18 @@ class RegisterFile {
  public:
   static constexpr std::size_t kMaxPorts = 4;
 
-  // ENGINES: what every card has, and what one has that is built with everything there is.
+  // ENGINES: what every card has, what one has by default, and what one that is built with everything there is.
   static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
-  static constexpr std::uint32_t kMostEngines =
+  static constexpr std::uint32_t kDefaultEngines =
       kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode;
+  static constexpr std::uint32_t kMostEngines = kDefaultEngines | card_map::field::kEnginesArcGenerator;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8
     std::uint32_t geometry_depth = 4096;  // halfwords
     std::uint32_t feed_depth = 2560;      // halfwords
     std::uint32_t clock_hz = 100'000'000;
-    std::uint32_t engines = kMostEngines;
+    std::uint32_t engines = kDefaultEngines;
     std::uint32_t build_id = 0;
     bool build_dirty = false;
     std::uint32_t board_id = 0;

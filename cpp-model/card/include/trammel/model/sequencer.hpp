@@ -35,6 +35,7 @@ class Sequencer {
     // path engines and axes
     bool engine_ready = true;
     bool payload_ready = true;
+    bool shadows_free = true;  // the axes' increments may be loaded
     bool engine_done = false;
     bool elsewhere = false;
     bool axes_live = false;
@@ -42,7 +43,7 @@ class Sequencer {
   struct Outputs {
     bool tick = false;                               // a tick was taken
     bool swap = false;                               // a path begins
-    std::uint8_t active = 0;                         // axes of a line; sampled with swap, holds
+    std::uint8_t active = 0;                         // axes of a path whose generators step; sampled with swap, holds
     std::uint8_t engine = card_map::engine::kLines;  // what the path runs on; sampled with swap, holds
     bool direct = false;
     bool feed_enable = false;
@@ -71,6 +72,9 @@ class Sequencer {
 
   // One rising edge. Between the ticks that end something only counters move.
   void clock(const Inputs& in);
+
+  // The path is on an engine and still takes feed ticks.
+  bool engine_taken() const { return path_ == Path::Engine && (!drained_ || now_ < drained_at_ + kEngineJudged); }
 
   const Outputs& outputs() const { return out_; }
   const Record& record() const { return record_; }
