@@ -1,0 +1,42 @@
+// What look-ahead, speed plan and quantiser hand to each other. mm and seconds along the path (degrees for moves of
+// rotary axes alone).
+#pragma once
+
+namespace trammel::planner {
+
+// A stretch of path with limits of its own: a block, or a part of one.
+struct Span {
+  double length = 0;        // > 0
+  double speed = 0;         // > 0, the most in it
+  double acceleration = 0;  // > 0, the most along the path
+  double jerk = 0;          // > 0, the most along the path; infinite: no limit
+  double exit_speed = 0;    // >= 0, the most at its end, where a corner is; 0: a stop
+};
+
+// A part of the motion at constant jerk. Its borders lie anywhere along the path. Speed and acceleration are those at
+// its beginning.
+struct Phase {
+  double length = 0;    // > 0
+  double duration = 0;  // > 0
+  double speed = 0;
+  double acceleration = 0;
+  double jerk = 0;
+};
+
+// Speeds along a path that is not known to its end. A function of the sequence of spans alone. Not thread-safe.
+class SpeedPlan {
+ public:
+  virtual ~SpeedPlan() = default;
+
+  // No further span fits: phases are to be taken first.
+  virtual bool full() const = 0;
+  // The next stretch. Until another follows, the motion is planned to stop at its end.
+  virtual void push(const Span& span) = 0;
+  // What was pushed last ends in a stop; spans after it begin from rest.
+  virtual void finish() = 0;
+  // The next phase, when the window is full or after finish(); false when a span is wanted first. The lengths of the
+  // phases add up to the spans'. In order, without gap.
+  virtual bool next(Phase& phase) = 0;
+};
+
+}  // namespace trammel::planner
