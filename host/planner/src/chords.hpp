@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "trammel/driver/trigonometry.hpp"
 #include "trammel/planner/block.hpp"
 #include "trammel/planner/block_builder.hpp"
-#include "trammel/driver/trigonometry.hpp"
 
 namespace trammel::planner {
 
