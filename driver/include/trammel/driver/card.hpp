@@ -96,6 +96,9 @@ class Card {
  public:
   // Full ratio of the time base: every clock is enabled.
   static constexpr std::uint32_t kFullRatio = 0x10000;
+  // Longest time from no ratio to the full one, clocks.
+  static constexpr std::uint64_t kSlowestSlew = std::uint64_t{card_map::constant::kSlewClocks}
+                                                << card_map::constant::kSlewFractionBits;
 
   // Reads who the card is and its step times. Throws IdentificationError, naming what does not fit and what would,
   // unless it is a Trammel card with a map and commands that this driver knows. Writes nothing.
