@@ -55,6 +55,14 @@ struct Judges {
   run::FeedMeter feed;
 };
 
+void tell(const run::Plan& plan, RunResult& result) {
+  result.program = plan.file;
+  result.segments = plan.segments;
+  result.planned_seconds = plan.seconds;
+  result.accepted = plan.accepted;
+  result.feeds_not_reached = plan.feeds_not_reached;
+}
+
 }  // namespace
 
 RunResult run_program(const run::ProgramLines& lines, const machine::Machine& machine,
@@ -97,7 +105,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   judges.tell(result);
   result.events = timeline.made();
 
-  result.program = plan.file;
+  tell(plan, result);
   result.engine = engine_options.kind == sim::EngineKind::kRtl ? "rtl" : "model";
   result.final_position = outcome.final_position;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
@@ -110,12 +118,8 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   result.comparisons = engine->comparisons();
   result.largest_line_deviation = recorder.deviation().largest_line();
   result.largest_arc_deviation = recorder.deviation().largest_arc();
-  result.segments = plan.segments;
   result.commands = outcome.commands;
   result.under_runs = outcome.under_runs;
-  result.planned_seconds = plan.seconds;
-  result.accepted = plan.accepted;
-  result.feeds_not_reached = plan.feeds_not_reached;
   if (options.plot) {
     result.plot = {plan.file,       course.points(),   recorder.executed(), recorder.thinned(),
                    course.detail(), recorder.detail(), recorder.speed()};

@@ -134,6 +134,7 @@ Outcome Runner::run(driver::Card& card) {
   }
   configure(card, machine_);
   Pipeline pipeline(lines_, machine_, card_, settings_);
+  const driver::Snapshot before = card.snapshot();
   ProgramStream stream(pipeline, card, observers_, settings_.single_block);
   const planner::Pulses end = stream.run();
   const driver::Snapshot snapshot = card.snapshot();
@@ -142,7 +143,7 @@ Outcome Runner::run(driver::Card& card) {
   }
   Outcome outcome;
   for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
-    const std::int64_t counted = snapshot.position[a];
+    const std::int64_t counted = driver::pulses_between(before.position[a], snapshot.position[a]);
     if (counted != end[a] - plan_.start[a]) {
       throw std::runtime_error(
           fmt::format("axis {}: the card ended at pulse {}, the program at {}", a, counted, end[a] - plan_.start[a]));
