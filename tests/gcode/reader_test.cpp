@@ -300,7 +300,9 @@ TEST(Gcode, EveryKindOfErrorHasItsCode) {
       {"G2 X1 F1", Code::kArcNoCentre},
       {"G2 X1 I9 F1", Code::kArcOffCircle},
       {"G2 X1 K1 F1", Code::kArcOutsidePlane},
-      {"G2 X2 I1 Z1 F1", Code::kHelix},
+      {"G2 X2 I1 P1.5 F1", Code::kArcTurns},
+      {"G2 X2 I1 P0 F1", Code::kArcTurns},
+      {"G2 X2 I1 P10001 F1", Code::kArcTurns},
   };
   for (const auto& [text, code] : programs) {
     const Reading program = read_text(text);
