@@ -229,6 +229,10 @@ bool SCurvePlan::Impl::peak(const Gap& gap, Hop& hop, double& speed) const {
   constexpr double kWorth = 1 + 0x1p-8;
   const double least = std::max(gap.from, gap.to);
   if (!(gap.most > least)) return false;
+  // Most are not, which the highest limits show.
+  const double worth = std::min(gap.most, least * kWorth);
+  const RampLimits highest = window_.most();
+  if (ramp_length(gap.from, worth, highest) + ramp_length(gap.to, worth, highest) > gap.end - gap.begin) return false;
   hop = {gap.end - gap.begin, gap.from, gap.to, window_.limits(gap.begin, gap.end), {}};
   hop.down = hop.up;
   speed = peak_speed(hop, gap.most);
@@ -244,7 +248,7 @@ bool SCurvePlan::Impl::peak(const Gap& gap, Hop& hop, double& speed) const {
     higher = peak_speed(hop, gap.most);
     if (!(higher > speed)) break;
   }
-  return speed == gap.most || speed > least * kWorth;
+  return speed >= worth;
 }
 
 void SCurvePlan::Impl::put(double length, double from, double to, RampLimits limits) {
