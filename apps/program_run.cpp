@@ -63,6 +63,12 @@ void tell(const run::Plan& plan, RunResult& result) {
   result.feeds_not_reached = plan.feeds_not_reached;
 }
 
+void tell(run::StepRecorder& recorder, RunResult& result) {
+  result.steps = recorder.steps();
+  result.largest_line_deviation = recorder.deviation().largest_line();
+  result.largest_arc_deviation = recorder.deviation().largest_arc();
+}
+
 }  // namespace
 
 RunResult run_program(const run::ProgramLines& lines, const machine::Machine& machine,
@@ -103,6 +109,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   recorder.finish();
   recorder.check(outcome.counted);
   judges.tell(result);
+  tell(recorder, result);
   result.events = timeline.made();
 
   tell(plan, result);
@@ -111,13 +118,10 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     result.final_millimetres.push_back(static_cast<double>(result.final_position[a]) / machine.axes[a].steps_per_mm);
   }
-  result.steps = recorder.steps();
   result.cycles = engine->cycles();
   result.clock_hz = card.identification().clock_hz;
   result.lockstep_cycles = engine->lockstep_cycles();
   result.comparisons = engine->comparisons();
-  result.largest_line_deviation = recorder.deviation().largest_line();
-  result.largest_arc_deviation = recorder.deviation().largest_arc();
   result.commands = outcome.commands;
   result.under_runs = outcome.under_runs;
   if (options.plot) {

@@ -10,7 +10,9 @@
 namespace trammel::sim {
 
 TimedBus::TimedBus(Engine& engine, std::uint32_t clock_hz, double bytes_per_second)
-    : engine_(engine), clock_hz_(clock_hz), clocks_of_access_(kBytesOfAccess * static_cast<double>(clock_hz) / bytes_per_second) {
+    : engine_(engine),
+      clock_hz_(clock_hz),
+      clocks_of_access_(kBytesOfAccess * static_cast<double>(clock_hz) / bytes_per_second) {
   if (!(bytes_per_second > 0)) throw std::invalid_argument("a bus that carries nothing");
 }
 
