@@ -102,7 +102,7 @@ TEST(GcodeArc, Refusals) {
   EXPECT_EQ(refusal("G0 R5"), "R without G2 or G3");
   EXPECT_THAT(refusal("G1 X10 P2"), HasSubstr("P without"));
   EXPECT_THAT(refusal("G2 X10 Y10 I10\nP2"), HasSubstr("P without")) << "no arc on this line";
-  EXPECT_EQ(refusal("G2 X10 Y10 I10 P-1"), "P-1: an arc makes a whole number of turns, 1 to 10000");
+  EXPECT_EQ(refusal("G2 X10 Y10 I10 P0"), "P0: an arc makes a whole number of turns, 1 to 10000");
 }
 
 // Axes outside the plane go along: a helix. P counts all turns that it begins.

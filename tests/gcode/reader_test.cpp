@@ -229,7 +229,7 @@ TEST(Gcode, DwellIsInSeconds) {
   EXPECT_EQ(program.motions[0].seconds, 0.5);
   EXPECT_EQ(refusal("G4"), "1: G4 needs P, its seconds");
   EXPECT_EQ(refusal("G4 P-1"), "1: 'P-1' must not be negative");
-  EXPECT_EQ(refusal("G0 P1"), "1: P without G4 or G64");
+  EXPECT_EQ(refusal("G0 P1"), "1: P without G2, G3, G4 or G64");
 }
 
 TEST(Gcode, FeedModes) {

@@ -90,16 +90,16 @@ void DeviationMeter::enter(std::uint64_t command) {
   if (paths_.empty() || paths_.front().number != command) {
     throw std::logic_error("a step of a command that was never sent");
   }
-  Path& path = paths_.front();
-  if (!path.of_machine) return;
-  path.of_machine = false;
-  for (unsigned i = 0; i < path.axis_count; ++i) path.target[i] -= static_cast<double>((*machine_)[path.axes[i]]);
 }
 
 void DeviationMeter::step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) {
   const bool same_path = !paths_.empty() && paths_.front().number == command;
   if (tick_ && !(same_path && *tick_ == tick)) measure();
   if (!same_path) enter(command);
+  if (Path& path = paths_.front(); path.of_machine) {
+    path.of_machine = false;
+    for (unsigned i = 0; i < path.axis_count; ++i) path.target[i] -= static_cast<double>((*machine_)[path.axes[i]]);
+  }
   tick_ = tick;
   position_[axis] += direction;
   if (machine_) (*machine_)[axis] += direction;
