@@ -1,5 +1,6 @@
 #include "trammel/planner/card_limits.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -14,6 +15,16 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 
 CardLimits limits_of(const driver::Identification& card) {
   return {card.clock_hz, card.axes, (card.engines >> card_map::engine::kAccumulator & 1U) != 0};
+}
+
+double stop_clocks(const machine::Machine& machine, const CardLimits& card) {
+  const double reserve = machine.motion.hold_reserve;
+  double seconds = 0;
+  for (const machine::MachineAxis& axis : machine.axes) {
+    const double quotient = axis.max_velocity / axis.max_acceleration;
+    seconds = std::max(seconds, reserve > 0 ? quotient / (2 * reserve) : quotient);
+  }
+  return seconds * card.clock_hz;
 }
 
 driver::AxisSettings settings_of(const machine::MachineAxis& axis) {

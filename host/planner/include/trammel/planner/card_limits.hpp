@@ -14,6 +14,9 @@ struct CardLimits {
   bool accumulator = true;     // arcs go to the deviation accumulator; without it out as lines
 };
 
+// T_s of the rule for an under-run: clocks in which the fastest hold stops half of what runs at full ratio.
+double stop_clocks(const machine::Machine& machine, const CardLimits& card);
+
 CardLimits limits_of(const driver::Identification& card);
 
 // An axis's settings on the card: step times rounded up to whole nanoseconds.
