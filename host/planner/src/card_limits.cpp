@@ -18,11 +18,12 @@ CardLimits limits_of(const driver::Identification& card) {
 }
 
 double hold_seconds(const machine::Machine& machine) {
+  const double reserve = machine.motion.hold_reserve;
   double longest = 0;
   for (const machine::MachineAxis& axis : machine.axes) {
-    longest = std::max(longest, 2 * axis.max_velocity / axis.max_acceleration);
+    longest = std::max(longest, axis.max_velocity / axis.max_acceleration);
   }
-  return longest;
+  return longest * (reserve > 0 ? 1 / reserve : 2);
 }
 
 driver::AxisSettings settings_of(const machine::MachineAxis& axis) {
