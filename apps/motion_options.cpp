@@ -93,6 +93,12 @@ void MotionChoice::add_to(CLI::App& command) {
   command.add_option("--from-line", first_line, "begin at this line; those before it set modes and position alone")
       ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()).description(""))
       ->type_name("N");
+  command
+      .add_option("--arcs", arcs,
+                  "what makes arcs: generator, accumulator (helices and other scales: chords), or chords; the next of "
+                  "these where one cannot")
+      ->check(CLI::IsMember({"generator", "accumulator", "chords"}))
+      ->capture_default_str();
   command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
   command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
 }
@@ -130,6 +136,9 @@ run::RunSettings MotionChoice::settings() const {
   settings.reader.feed_scale = feed_scale;
   settings.first_line = first_line;
   settings.single_block = single_block;
+  settings.arcs = arcs == "chords"        ? planner::ArcsBy::kChords
+                  : arcs == "accumulator" ? planner::ArcsBy::kAccumulator
+                                          : planner::ArcsBy::kGenerator;
   return settings;
 }
 

@@ -80,7 +80,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
     recording.steps_per_mm.push_back(axis.steps_per_mm);
     result.axes += axis.letter;
   }
-  run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes, true}, options.settings);
+  run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes}, options.settings);
   run::CommandedCourse course(machine);
   if (options.plot) runner.add(course);
   const run::Plan plan = runner.plan();

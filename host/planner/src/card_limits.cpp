@@ -14,7 +14,14 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 }  // namespace
 
 CardLimits limits_of(const driver::Identification& card) {
-  return {card.clock_hz, card.axes, (card.engines >> card_map::engine::kAccumulator & 1U) != 0};
+  return {card.clock_hz, card.axes, card_map::has_engine(card.engines, card_map::engine::kAccumulator),
+          card_map::has_engine(card.engines, card_map::engine::kArcGenerator)};
+}
+
+CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {
+  if (arcs != ArcsBy::kGenerator) card.arc_generator = false;
+  if (arcs == ArcsBy::kChords) card.accumulator = false;
+  return card;
 }
 
 double hold_seconds(const machine::Machine& machine) {

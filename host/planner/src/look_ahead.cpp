@@ -24,7 +24,7 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       clock_hz_(card.clock_hz / machine.motion.max_override),
       junctions_(machine),
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
-      quantiser_(path_, clock_hz_, stop_clocks(machine, card)),
+      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz),
       plan_(std::make_unique<TrapezoidPlan>(static_cast<std::size_t>(machine.motion.window))) {}
 
 PathEntry* Planner::LookAhead::first() {
@@ -114,14 +114,15 @@ void Planner::LookAhead::place(PathEntry& entry, double density, double begin) {
   entry.density = density;
   entry.end = begin + entry.block.length;
   const auto ticks = static_cast<std::uint64_t>((entry.end - base_mm_) * density + 0.5);
-  entry.end_ticks = std::max(base_tick_ + ticks, entry.begin_ticks + std::max<std::uint64_t>(1, entry.block.least_ticks));
+  entry.end_ticks =
+      std::max(base_tick_ + ticks, entry.begin_ticks + std::max<std::uint64_t>(1, entry.block.least_ticks));
 }
 
 // Ticks a mm: as many as evenness wants and the clock allows.
 double Planner::LookAhead::wanted_density(const Block& block) const {
   double density = std::min(kTicksPerPulse * block.steps_per_mm, kMaxTickRate * clock_hz_ / block.speed);
-  density = std::max({density, kLeastRate * clock_hz_ / block.speed,
-                      static_cast<double>(block.least_ticks) / block.length});
+  density =
+      std::max({density, kLeastRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length});
   return std::min(density, kMostTicks / block.length);
 }
 

@@ -84,7 +84,8 @@ void Quantiser::add(const Phase& phase) {
 // Of a phase that begins at `begin`, from the last portion's end to `end_tick`.
 void Quantiser::portion(const Phase& phase, double begin, std::uint64_t end_tick, bool last, bool stop) {
   const auto place = [&](std::uint64_t tick) {
-    const double ticks = tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
+    const double ticks =
+        tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
     return base_mm_ + ticks / (rate_a_speed_ * clock_hz_) - begin;
   };
   const std::uint64_t ticks = end_tick > pending_.end ? end_tick - pending_.end : 0;
@@ -148,7 +149,8 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
 }
 
 void Quantiser::put_pending(bool stop) {
-  put(steady(pending_.motion.rate, pending_.motion.end_rate, static_cast<double>(pending_.end - tick_)), pending_.end, stop);
+  put(steady(pending_.motion.rate, pending_.motion.end_rate, static_cast<double>(pending_.end - tick_)), pending_.end,
+      stop);
 }
 
 // The highest or lowest rate lies inside where the acceleration changes its sign.
@@ -192,11 +194,11 @@ void Quantiser::time_blocks(const Motion& motion, std::uint64_t end_tick, bool s
     block.short_sight = short_sight_ || (block_clocks_ != 0 && block.short_sight);
     const bool ends = block.end_ticks <= end_tick;
     const double share = ends ? static_cast<double>(block.end_ticks - tick_) : ticks;
-    const double time = share == ticks ? motion.clocks
-                                       : time_at(share, motion.rate, motion.acceleration, motion.jerk,
-                                                 motion.clocks * share / ticks);
-    const double rate = share == ticks ? motion.end_rate
-                                       : motion.rate + time * (motion.acceleration + time * motion.jerk / 2);
+    const double time =
+        share == ticks ? motion.clocks
+                       : time_at(share, motion.rate, motion.acceleration, motion.jerk, motion.clocks * share / ticks);
+    const double rate =
+        share == ticks ? motion.end_rate : motion.rate + time * (motion.acceleration + time * motion.jerk / 2);
     block_rate_ = std::max(block_rate_, rate);
     if (motion.jerk < 0 && before * -motion.jerk <= motion.acceleration && time * -motion.jerk >= motion.acceleration) {
       block_rate_ = std::max(block_rate_, turning_rate(motion));
@@ -262,7 +264,8 @@ void Quantiser::complete_first() {
   const std::uint64_t highest = highest_[highest_first_ % kPieces];
   const double rate = piece(highest).most;
   // At least 1: 0 says that the piece ends at rest.
-  if (!first.stop) first.command.stop_distance = std::max(1U, ticks32(std::ceil(stop_clocks_ * rate) + std::ceil(kRuleClocks * rate)));
+  if (!first.stop)
+    first.command.stop_distance = std::max(1U, ticks32(std::ceil(stop_clocks_ * rate) + std::ceil(kRuleClocks * rate)));
   if (highest == completed_) ++highest_first_;
   ++completed_;
   seen_clocks_ -= completed_ < seen_ ? piece(completed_).clocks : seen_clocks_;

@@ -2,8 +2,8 @@
 // the range of the position counters, dwells. Pulls from the reader and holds one motion. Not thread-safe.
 //
 // Targets become pulses by rounding the absolute target, half away from zero: nothing drifts. Lengths and limits are
-// those of the path before rounding. Limits are smaller by max_override, its square and cube, and by hold_reserve. Feeds hold along X Y Z; without those along U V W, then A B C, then E (as
-// LinuxCNC).
+// those of the path before rounding. Limits are smaller by max_override, its square and cube, and by hold_reserve.
+// Feeds hold along X Y Z; without those along U V W, then A B C, then E (as LinuxCNC).
 #pragma once
 
 #include <array>
@@ -47,6 +47,7 @@ class BlockBuilder {
   bool set_targets(Block& block);
   bool build_line(Block& block);
   bool build_arc(Block& block);
+  bool build_generator_arc(Block& block) const;
   bool build_accumulator_arc(Block& block);
   bool build_chords(Block& block);
   bool build_dwell(Block& block);
@@ -54,6 +55,8 @@ class BlockBuilder {
   static void limit_speed(Block& block, double speed, SpeedLimit limit);
   void limit_line(Block& block) const;
   void limit_arc(Block& block, double unevenness, double share) const;
+  double measure_arc(Block& block) const;
+  void limit_further(Block& block) const;
   static Direction tangent(const Block& block, double share);
   void limit_pulses(Block& block) const;
   void apply_feed(Block& block, double feed_length) const;

@@ -19,6 +19,8 @@
 
 namespace trammel::planner {
 
+struct PlaneScale;
+
 struct PlannerSettings {
   bool exact_stop = false;  // a stop after every line of the program
 };
@@ -56,7 +58,9 @@ class Planner {
   void put_dwell(PlannedBlock& planned, driver::CommandSink& sink);
   void put_geometry(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_line(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
+  void put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
+  PlaneScale scale_of(const Block& block) const;
 
   const machine::Machine& machine_;
   std::unique_ptr<LookAhead> look_ahead_;
