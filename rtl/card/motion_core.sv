@@ -56,6 +56,8 @@ module motion_core #(
   logic               tick;
   logic               feed_swap;
   logic               feed_active;
+  logic               moving;
+  logic               fixed;
   logic               feed_runs;
   logic               feed_at;
   logic               feed_idle;
@@ -115,11 +117,15 @@ module motion_core #(
       .incomplete_i(incomplete),
       .clear_i     (clear_fault_i),
       .at_rest_i   (held_o),
+      .moving_i    (moving),
+      .fixed_i     (fixed),
       .hold_o      (hold),
       .stopping_o  (stopping)
   );
 
-  tick_source ticks (
+  tick_source #(
+      .Engines(Engines)
+  ) ticks (
       .*,
       .cut_i          (cut_o),
       .hold_i         (hold),
@@ -137,6 +143,8 @@ module motion_core #(
       .at_barrier_o   (feed_at),
       .runs_o         (feed_runs),
       .active_o       (feed_active),
+      .moving_o       (moving),
+      .fixed_o        (fixed),
       .idle_o         (feed_idle),
       .ratio_o        (ratio),
       .rate_o         (rate),
