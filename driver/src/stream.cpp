@@ -160,10 +160,12 @@ Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) 
   const map::Command& layout = layout_of(command);
   const auto mask = static_cast<std::uint8_t>(header >> 8);
   require_engine(card, layout.engine, layout.name);
-  if (const auto* feed = std::get_if<FeedCommand>(&command); feed != nullptr && feed->jerk != 0) {
-    require_engine(card, map::engine::kJerk, layout.name);
+  const auto* feed = std::get_if<FeedCommand>(&command);
+  if (feed != nullptr && feed->jerk != 0) require_engine(card, map::engine::kJerk, layout.name);
+  if (feed != nullptr && feed->piece_class != PieceClass::kFeed) {
+    require_engine(card, map::engine::kClasses, layout.name);
   }
-  if (mask >> card.axes != 0) {
+  if (feed == nullptr && mask >> card.axes != 0) {
     throw ArgumentError(fmt::format("stream: axis mask 0x{:02X}, but the card has {} axes", mask, card.axes));
   }
   const std::uint32_t halfwords = map::queue_halfwords(layout, mask);
