@@ -40,7 +40,7 @@ struct Bench : CoreBench {
     while (core.outputs().geometry_begun < paths) clock({});
     while (seen < path_ticks) {
       clock({});
-      seen += core.outputs().tick ? 1 : 0;
+      seen += core.outputs().tick ? 1U : 0U;
     }
   }
   bool held() const { return (core.outputs().status & field::kStatusHeld) != 0; }
