@@ -245,7 +245,7 @@ void CoreModel::record(bool cut) {
     if ((left & 1) == 0) continue;
     const bool backwards = (m.path_dir >> n & 1) != 0;
     if ((m.engine_step >> n & 1) != 0)
-      record_.arc_step(n, backwards);
+      record_.arc_step(cycles_, n, backwards);
     else
       record_.line_step(cycles_, n, backwards);
   }

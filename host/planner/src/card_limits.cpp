@@ -17,14 +17,13 @@ CardLimits limits_of(const driver::Identification& card) {
   return {card.clock_hz, card.axes, (card.engines >> card_map::engine::kAccumulator & 1U) != 0};
 }
 
-double stop_clocks(const machine::Machine& machine, const CardLimits& card) {
+double hold_seconds(const machine::Machine& machine) {
   const double reserve = machine.motion.hold_reserve;
-  double seconds = 0;
+  double longest = 0;
   for (const machine::MachineAxis& axis : machine.axes) {
-    const double quotient = axis.max_velocity / axis.max_acceleration;
-    seconds = std::max(seconds, reserve > 0 ? quotient / (2 * reserve) : quotient);
+    longest = std::max(longest, axis.max_velocity / axis.max_acceleration);
   }
-  return seconds * card.clock_hz;
+  return longest * (reserve > 0 ? 1 / reserve : 2);
 }
 
 driver::AxisSettings settings_of(const machine::MachineAxis& axis) {

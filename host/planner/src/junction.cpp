@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "trammel/planner/trigonometry.hpp"
+#include "trammel/driver/trigonometry.hpp"
 
 namespace trammel::planner {
 namespace {
@@ -56,7 +56,7 @@ double Junctions::corner_square(const Block& from, const Block& to, const Turn& 
   // The sine and the cosine of half the angle.
   const double sine = std::min(1.0, size / 2);
   const double cosine = std::sqrt(1 - sine * sine);
-  const double angle = 2 * arc_tangent(sine, cosine);
+  const double angle = 2 * driver::arc_tangent(sine, cosine);
   // 1 - cosine without its rounding.
   const double formula = acceleration * deviation_ * cosine * (1 + cosine) / (sine * sine);
   return std::min(formula, acceleration * std::min(from.length, to.length) / angle);

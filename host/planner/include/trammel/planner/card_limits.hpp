@@ -14,10 +14,12 @@ struct CardLimits {
   bool accumulator = true;     // arcs go to the deviation accumulator; without it out as lines
 };
 
-// T_s of the rule for an under-run: clocks in which the fastest hold stops half of what runs at full ratio.
-double stop_clocks(const machine::Machine& machine, const CardLimits& card);
-
 CardLimits limits_of(const driver::Identification& card);
+
+// Seconds that a hold takes from full speed to a stop: v / (a / 2) of the axis where that is longest, so that a hold's
+// deceleration is half of every axis's acceleration at most; v / (h a) where h of it is kept for holds (hold_reserve).
+// The card's slew follows from it.
+double hold_seconds(const machine::Machine& machine);
 
 // An axis's settings on the card: step times rounded up to whole nanoseconds.
 driver::AxisSettings settings_of(const machine::MachineAxis& axis);
