@@ -14,7 +14,8 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 }  // namespace
 
 CardLimits limits_of(const driver::Identification& card) {
-  return {card.clock_hz, card.axes, (card.engines >> card_map::engine::kAccumulator & 1U) != 0};
+  const auto has = [&](unsigned engine) { return (card.engines >> engine & 1U) != 0; };
+  return {card.clock_hz, card.axes, has(card_map::engine::kAccumulator), has(card_map::engine::kClasses)};
 }
 
 double hold_seconds(const machine::Machine& machine) {

@@ -27,7 +27,7 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kFewestAxes, card.axes)))),
       junctions_(machine),
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
-      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, false),
+      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, false, card.classes),
       plan_(std::make_unique<TrapezoidPlan>(static_cast<std::size_t>(machine.motion.window))) {}
 
 PathEntry* Planner::LookAhead::first() {

@@ -47,8 +47,8 @@ double time_at(double distance, double speed, double acceleration, double jerk, 
 
 }  // namespace
 
-Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth)
-    : path_(path), smooth_(smooth), clock_hz_(clock_hz), stop_clocks_(stop_clocks), pieces_(kPieces), highest_(kPieces) {}
+Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth, bool classes)
+    : path_(path), smooth_(smooth), classes_(classes), clock_hz_(clock_hz), stop_clocks_(stop_clocks), pieces_(kPieces), highest_(kPieces) {}
 
 void Quantiser::add(const Phase& phase) {
   while (!moves(path_[at_].block)) ++at_;
@@ -188,6 +188,7 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   command.rate = fixed64(std::max(rate, kLeastRate));
   command.acceleration = one_rate ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
   command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);
+  if (classes_ && path_[timed_].block.rapid) command.piece_class = driver::PieceClass::kRapid;
   command.floor = fixed32(std::min({motion.rate, motion.end_rate, turning, rate}));
   if (stop && motion.jerk != 0) command.floor = fixed32(std::min(motion.end_rate, put.most));
   time_blocks(motion, lead, end_tick, stop);

@@ -19,8 +19,8 @@ namespace trammel::planner {
 class Quantiser {
  public:
   // `clock_hz`: enabled clocks a second; `stop_clocks`: T_s, how long the fastest rate counts for stop distances.
-  // `smooth`: acceleration has no jumps.
-  Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth);
+  // `smooth`: acceleration has no jumps; `classes`: pieces say theirs.
+  Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth, bool classes);
 
   // In order. The blocks that the phase covers are in the ring, with all but what comes from here.
   void add(const Phase& phase);
@@ -75,6 +75,7 @@ class Quantiser {
 
   PathRing& path_;
   bool smooth_;
+  bool classes_;
   double clock_hz_;
   double stop_clocks_;
 

@@ -12,6 +12,7 @@ struct CardLimits {
   std::uint32_t clock_hz = 0;  // > 0
   unsigned axes = 4;           // of the card, 1 .. 8
   bool accumulator = true;     // arcs go to the deviation accumulator; without it out as lines
+  bool classes = false;        // pieces of rapids say so, for an override of their own
 };
 
 CardLimits limits_of(const driver::Identification& card);
