@@ -14,8 +14,9 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 }  // namespace
 
 CardLimits limits_of(const driver::Identification& card) {
-  return {card.clock_hz, card.axes, card_map::has_engine(card.engines, card_map::engine::kAccumulator),
-          card_map::has_engine(card.engines, card_map::engine::kArcGenerator)};
+  const auto has = [&](unsigned engine) { return card_map::has_engine(card.engines, engine); };
+  return {card.clock_hz, card.axes, has(card_map::engine::kAccumulator), has(card_map::engine::kClasses),
+          has(card_map::engine::kArcGenerator)};
 }
 
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {

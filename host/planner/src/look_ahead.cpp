@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trammel/driver/card_timing.hpp"
 #include "trapezoid_plan.hpp"
 
 namespace trammel::planner {
@@ -12,6 +13,7 @@ constexpr double kTicksPerPulse = 128;  // steps even to 1/64
 constexpr double kMostTicks = 0x1p38;   // of a block; a command has 40 bits, and pieces span blocks
 constexpr double kLeastRate = 0x1p-30;  // ticks a clock; four times the finest floor
 constexpr double kMaxTickRate = 0.9;    // ticks a clock; above it shapers have no jitter left, holds no evenness
+constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
 // Blocks that are planned, but whose stop distances wait for what follows.
 constexpr std::size_t kSpare = 4096;
 
@@ -22,9 +24,10 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
     : blocks_(blocks),
       settings_(settings),
       clock_hz_(card.clock_hz / machine.motion.max_override),
+      gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kFewestAxes, card.axes)))),
       junctions_(machine),
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
-      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz),
+      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, false, card.classes),
       plan_(std::make_unique<TrapezoidPlan>(static_cast<std::size_t>(machine.motion.window))) {}
 
 PathEntry* Planner::LookAhead::first() {
@@ -114,24 +117,29 @@ void Planner::LookAhead::place(PathEntry& entry, double density, double begin) {
   entry.density = density;
   entry.end = begin + entry.block.length;
   const auto ticks = static_cast<std::uint64_t>((entry.end - base_mm_) * density + 0.5);
-  entry.end_ticks =
-      std::max(base_tick_ + ticks, entry.begin_ticks + std::max<std::uint64_t>(1, entry.block.least_ticks));
+  entry.end_ticks = std::max(base_tick_ + ticks, entry.begin_ticks + std::max<std::uint64_t>(1, entry.block.least_ticks));
 }
 
 // Ticks a mm: as many as evenness wants and the clock allows.
 double Planner::LookAhead::wanted_density(const Block& block) const {
-  double density = std::min(kTicksPerPulse * block.steps_per_mm, kMaxTickRate * clock_hz_ / block.speed);
-  density =
-      std::max({density, kLeastRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length});
-  return std::min(density, kMostTicks / block.length);
+  const double density = std::min(even_density(block), kMaxTickRate * clock_hz_ / block.speed);
+  return std::min(std::max(density, least_density(block)), kMostTicks / block.length);
+}
+
+// Steps even to 1/64, and a line that lasts until the next one is decoded.
+double Planner::LookAhead::even_density(const Block& block) const {
+  return std::max(kTicksPerPulse * block.steps_per_mm, gap_free_ticks_ / block.length);
+}
+
+// What the pulses and the finest rate need.
+double Planner::LookAhead::least_density(const Block& block) const {
+  return std::max(kLeastRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length);
 }
 
 // Each change of density costs a piece: where the clock is the limit, half of what it allows serves too.
 bool Planner::LookAhead::suits(double density, const Block& block) const {
   const double most = std::min(kMaxTickRate * clock_hz_ / block.speed, kMostTicks / block.length);
-  const double even = kTicksPerPulse * block.steps_per_mm;
-  const double least = std::max({std::min(even, most / 2), kLeastRate * clock_hz_ / block.speed,
-                                 static_cast<double>(block.least_ticks) / block.length / 2});
+  const double least = std::max(std::min(even_density(block), most / 2), least_density(block) / 2);
   return density >= least * (1 - 1e-9) && density <= most * (1 + 1e-9);
 }
 

@@ -33,11 +33,14 @@ class Planner::LookAhead {
   void push_span(const PathEntry& entry, double exit_speed);
   void place(PathEntry& entry, double density, double begin);
   double wanted_density(const Block& block) const;
+  double even_density(const Block& block) const;
+  double least_density(const Block& block) const;
   bool suits(double density, const Block& block) const;
 
   BlockBuilder& blocks_;
   PlannerSettings settings_;
   double clock_hz_;  // enabled clocks a second
+  double gap_free_ticks_;
   Junctions junctions_;
   PathRing path_;
   Quantiser quantiser_;

@@ -15,6 +15,8 @@ constexpr double kShortest = 4 * kUpdate;  // clocks; what is shorter makes one 
 // The card's own rule for under-run is looked at every so many clocks at the latest.
 constexpr double kRuleClocks = 64;
 constexpr std::size_t kPieces = 16384;
+// The card goes on at a piece's last rate for so many clocks after its last tick; these ticks are the next piece's.
+constexpr double kSwapClocks = 6;
 constexpr double kLeastRate = 0x1p-32;
 
 std::uint64_t fixed64(double rate) { return static_cast<std::uint64_t>(std::min(rate, 1 - 0x1p-53) * 0x1p64); }
@@ -45,15 +47,16 @@ double time_at(double distance, double speed, double acceleration, double jerk, 
 
 }  // namespace
 
-Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks)
-    : path_(path), clock_hz_(clock_hz), stop_clocks_(stop_clocks), pieces_(kPieces), highest_(kPieces) {}
+Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth, bool classes)
+    : path_(path), smooth_(smooth), classes_(classes), clock_hz_(clock_hz), stop_clocks_(stop_clocks), pieces_(kPieces), highest_(kPieces) {}
 
 void Quantiser::add(const Phase& phase) {
   while (!moves(path_[at_].block)) ++at_;
   if (!moving_) {
     moving_ = true;
-    mm_ = base_mm_ = 0;
+    mm_ = base_mm_ = portion_mm_ = 0;
     base_tick_ = tick_ = pending_.end = 0;
+    lead_ = 0;
     rate_a_speed_ = path_[at_].density / clock_hz_;
   }
   const double begin = mm_;
@@ -62,37 +65,43 @@ void Quantiser::add(const Phase& phase) {
   for (; !path_[at_].stop && (phase.stop || path_[at_].end <= mm_); ++at_) {
     const PathEntry& block = path_[at_];
     if (!block.cut) continue;
-    portion(phase, begin, block.end_ticks, true, false);
+    portion(phase, begin, block.end, block.end_ticks, true, false);
     base_mm_ = block.end;
     base_tick_ = block.end_ticks;
     rate_a_speed_ = path_[at_ + 1].density / clock_hz_;
   }
   PathEntry& block = path_[at_];
   if (phase.stop) {
-    portion(phase, begin, block.end_ticks, true, true);
+    portion(phase, begin, mm_, block.end_ticks, true, true);
     moving_ = false;
     ++at_;
   } else {
-    const auto nearest = static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + 0.5);
+    // A ramp whose acceleration begins and ends at once gets the tick that it shares with a constant speed.
+    const double share = smooth_ ? 0.5 : phase.acceleration == 0 ? 0 : 1 - 1e-9;
+    const std::uint64_t tick = base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
     // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
-    portion(phase, begin, std::clamp(base_tick_ + nearest, pending_.end, std::max(pending_.end, block.end_ticks)),
-            false, false);
+    portion(phase, begin, mm_, std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks)), false, false);
   }
   complete();
 }
 
-// Of a phase that begins at `begin`, from the last portion's end to `end_tick`.
-void Quantiser::portion(const Phase& phase, double begin, std::uint64_t end_tick, bool last, bool stop) {
+// Of a phase that begins at `begin`, from the last portion's end to `end`, which is about at `end_tick`.
+void Quantiser::portion(const Phase& phase, double begin, double end, std::uint64_t end_tick, bool last, bool stop) {
   const auto place = [&](std::uint64_t tick) {
-    const double ticks =
-        tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
+    const double ticks = tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
     return base_mm_ + ticks / (rate_a_speed_ * clock_hz_) - begin;
   };
+  // Smooth motion goes on beyond a border as it was: its speeds are those at the ticks. Else they are those at the
+  // borders, so that the speed has no jump where the acceleration has one.
+  const double from = smooth_ ? place(pending_.end) : std::max(0.0, portion_mm_ - begin);
+  const double to = smooth_ ? place(end_tick) : end - begin;
+  portion_mm_ = end;
   const std::uint64_t ticks = end_tick > pending_.end ? end_tick - pending_.end : 0;
   Motion motion;
   if (ticks != 0) {
-    motion = motion_of(phase, place(pending_.end), place(end_tick), static_cast<double>(ticks), stop);
     const bool empty = pending_.end == tick_;
+    const double lead = empty ? std::min(lead_, static_cast<double>(ticks) / 2) : 0;
+    motion = motion_of(phase, from + lead / (rate_a_speed_ * clock_hz_), to, static_cast<double>(ticks) - lead, stop);
     if (motion.clocks >= kShortest || (empty && last)) {
       if (!empty) put_pending(false);
       put(motion, end_tick, stop);
@@ -125,7 +134,7 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
     const auto rate_at = [&](double place) {
       return rate_a_speed_ * std::sqrt(std::max(0.0, phase.speed * phase.speed + 2 * phase.acceleration * place));
     };
-    const double rate = rate_at(from);
+    const double rate = rate_at(std::min(from, to));
     const double end_rate = rate_at(to);
     const double rest = std::sqrt(std::abs(phase.acceleration) * rate_a_speed_ / clock_hz_);
     const double most = std::max(rate, end_rate);
@@ -149,8 +158,8 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
 }
 
 void Quantiser::put_pending(bool stop) {
-  put(steady(pending_.motion.rate, pending_.motion.end_rate, static_cast<double>(pending_.end - tick_)), pending_.end,
-      stop);
+  const double ticks = static_cast<double>(pending_.end - tick_);
+  put(steady(pending_.motion.rate, pending_.motion.end_rate, ticks - std::min(lead_, ticks / 2)), pending_.end, stop);
 }
 
 // The highest or lowest rate lies inside where the acceleration changes its sign.
@@ -173,50 +182,61 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   driver::FeedCommand& command = put.command;
   command.ticks = end_tick - tick_;
   const bool one_rate = motion.clocks < kUpdate;
-  const double rate = one_rate ? static_cast<double>(command.ticks) / motion.clocks
+  const double lead = std::min(lead_, static_cast<double>(command.ticks) / 2);
+  const double rate = one_rate ? (static_cast<double>(command.ticks) - lead) / motion.clocks
                                : motion.rate + kUpdate / 2 * motion.acceleration + kUpdate * kUpdate / 6 * motion.jerk;
   command.rate = fixed64(std::max(rate, kLeastRate));
   command.acceleration = one_rate ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
   command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);
+  if (classes_ && path_[timed_].block.rapid) command.piece_class = driver::PieceClass::kRapid;
   command.floor = fixed32(std::min({motion.rate, motion.end_rate, turning, rate}));
   if (stop && motion.jerk != 0) command.floor = fixed32(std::min(motion.end_rate, put.most));
-  time_blocks(motion, end_tick, stop);
+  time_blocks(motion, lead, end_tick, stop);
   tick_ = pending_.end = end_tick;
+  lead_ = kSwapClocks * motion.end_rate;
 }
 
-// Durations and speeds of the blocks that the piece from tick_ to `end_tick` covers.
-void Quantiser::time_blocks(const Motion& motion, std::uint64_t end_tick, bool stop) {
+// Durations and speeds of the blocks that the piece from tick_ to `end_tick` covers; the first `lead` ticks pass at the
+// rate of the piece before.
+void Quantiser::time_blocks(const Motion& motion, double lead, std::uint64_t end_tick, bool stop) {
+  const double swap = lead > 0 ? kSwapClocks : 0;
   const double ticks = static_cast<double>(end_tick - tick_);
-  double before = 0;
+  double before = -swap;
   block_rate_ = std::max(block_rate_, motion.rate);
   for (bool more = true; more;) {
     PathEntry& block = path_[timed_];
     block.short_sight = short_sight_ || (block_clocks_ != 0 && block.short_sight);
     const bool ends = block.end_ticks <= end_tick;
     const double share = ends ? static_cast<double>(block.end_ticks - tick_) : ticks;
-    const double time =
-        share == ticks ? motion.clocks
-                       : time_at(share, motion.rate, motion.acceleration, motion.jerk, motion.clocks * share / ticks);
-    const double rate =
-        share == ticks ? motion.end_rate : motion.rate + time * (motion.acceleration + time * motion.jerk / 2);
-    block_rate_ = std::max(block_rate_, rate);
-    if (motion.jerk < 0 && before * -motion.jerk <= motion.acceleration && time * -motion.jerk >= motion.acceleration) {
-      block_rate_ = std::max(block_rate_, turning_rate(motion));
+    Instant at{motion.clocks, motion.end_rate};
+    if (share <= lead) {
+      at = {swap * (share / lead - 1), motion.rate};
+    } else if (share < ticks) {
+      at = instant(motion, share - lead, ticks - lead);
     }
-    block_clocks_ += time - before;
-    before = time;
-    more = false;
+    block_rate_ = std::max(block_rate_, at.rate);
+    const double turning = motion.acceleration + before * motion.jerk > 0 ? turning_rate(motion) : 0;
+    if (motion.acceleration + at.clocks * motion.jerk < 0) block_rate_ = std::max(block_rate_, turning);
+    block_clocks_ += at.clocks - before;
+    before = at.clocks;
     if (!ends) break;
     block.seconds = block_clocks_ / clock_hz_;
     block.speed = block_rate_ * clock_hz_ / block.density;
-    block.end_speed = block.stop ? 0 : rate * clock_hz_ / block.density;
+    block.end_speed = block.stop ? 0 : at.rate * clock_hz_ / block.density;
     block.timed = true;
     block_clocks_ = 0;
-    block_rate_ = block.stop ? 0 : rate;
+    block_rate_ = block.stop ? 0 : at.rate;
     more = share < ticks && !block.stop;
     ++timed_;
   }
   if (stop) block_rate_ = 0;
+}
+
+// Where `distance` of the motion's `ticks` are over.
+Quantiser::Instant Quantiser::instant(const Motion& motion, double distance, double ticks) {
+  const double time =
+      time_at(distance, motion.rate, motion.acceleration, motion.jerk, motion.clocks * distance / ticks);
+  return {time, motion.rate + time * (motion.acceleration + time * motion.jerk / 2)};
 }
 
 bool Quantiser::ready() const {
@@ -264,8 +284,7 @@ void Quantiser::complete_first() {
   const std::uint64_t highest = highest_[highest_first_ % kPieces];
   const double rate = piece(highest).most;
   // At least 1: 0 says that the piece ends at rest.
-  if (!first.stop)
-    first.command.stop_distance = std::max(1U, ticks32(std::ceil(stop_clocks_ * rate) + std::ceil(kRuleClocks * rate)));
+  if (!first.stop) first.command.stop_distance = std::max(1U, ticks32(std::ceil(stop_clocks_ * rate) + std::ceil(kRuleClocks * rate)));
   if (highest == completed_) ++highest_first_;
   ++completed_;
   seen_clocks_ -= completed_ < seen_ ? piece(completed_).clocks : seen_clocks_;

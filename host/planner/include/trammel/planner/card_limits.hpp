@@ -12,7 +12,8 @@ struct CardLimits {
   std::uint32_t clock_hz = 0;  // > 0
   unsigned axes = 4;           // of the card, 1 .. 8
   bool accumulator = true;     // the deviation accumulator is there
-  bool arc_generator = true;   // and the arc generator
+  bool classes = false;        // pieces of rapids say so, for an override of their own
+  bool arc_generator = true;   // the arc generator is there
 };
 
 // Where arcs go: to what is there, the first of these that can; helices to the generator or out as lines.

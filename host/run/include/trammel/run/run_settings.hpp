@@ -10,6 +10,8 @@ namespace trammel::run {
 
 struct RunSettings {
   gcode::ReaderOptions reader;
+  // Where the machine stands at the program's first line, machine coordinates in mm.
+  gcode::Coordinates start{};
   // Lines before it are read for their modes and positions alone: the machine stands where they end.
   std::size_t first_line = 1;
   planner::ArcsBy arcs = planner::ArcsBy::kGenerator;  // and what the card has
