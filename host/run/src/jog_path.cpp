@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "jog_profile.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/increment.hpp"
-#include "trammel/planner/profile.hpp"
 
 namespace trammel::run {
 namespace {
@@ -70,8 +70,8 @@ JogPath made(const machine::Machine& machine, const driver::CardTiming& card, co
   path.speed = speed;
   path.ramp_seconds = 2 * speed / limits.acceleration;
   const double rate = speed * limits.pulses;  // pulses/s
-  const double per_pulse = std::max(std::min(kTicksPerPulse, planner::kMaxTickRate * card.clock_hz / rate),
-                                    kLeastTickRate * card.clock_hz / rate);
+  const double per_pulse =
+      std::max(std::min(kTicksPerPulse, kMostTickRate * card.clock_hz / rate), kLeastTickRate * card.clock_hz / rate);
   const double ticks = std::clamp(std::round(per_pulse * limits.pulses * length), kLeastTicks, kMostTicks);
   path.line.ticks = static_cast<std::uint64_t>(ticks);
   bool any = false;
@@ -85,9 +85,9 @@ JogPath made(const machine::Machine& machine, const driver::CardTiming& card, co
     path.line.increment[a] = driver::rounded_increment(pulses, path.line.ticks);
   }
   if (!any) throw driver::ArgumentError(fmt::format("jog: {:g} mm are less than a pulse of any axis", length));
-  const planner::Profile profile =
-      planner::trapezoid(path.line.ticks, {length, speed, limits.acceleration}, card.clock_hz);
-  path.pieces.assign(profile.begin(), profile.end());
+  const double density = static_cast<double>(path.line.ticks) / length / card.clock_hz;
+  path.pieces = jog_profile(path.line.ticks, std::min(speed * density, kMostTickRate),
+                            limits.acceleration * density / card.clock_hz);
   return path;
 }
 
