@@ -184,7 +184,7 @@ TEST(SCurvePlan, LimitsThatDifferCostLittleMore) {
     const test::Trapezoid best = test::trapezoid_of(spans);
     const double time = seconds(spans);
     ASSERT_GE(time, best.duration * (1 - 1e-9)) << i;
-    ASSERT_LE(time, best.duration * 1.01 + best.bends) << i;
+    ASSERT_LE(time, best.duration * 1.05 + best.bends) << i;
   }
 }
 
