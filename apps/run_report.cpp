@@ -19,7 +19,9 @@ const char* text_of(planner::SpeedLimit cause) {
     case planner::SpeedLimit::kPulseShape:
       return "beyond the step length and space of an axis";
     case planner::SpeedLimit::kAcceleration:
-      return "too short, or too strong a curve, for the max_acceleration";
+      return "too short, or too strong a curve or corner, for the max_acceleration";
+    case planner::SpeedLimit::kWindow:
+      return "too short a look-ahead (motion.window)";
     case planner::SpeedLimit::kClock:
       return "beyond the card's clock";
     case planner::SpeedLimit::kNone:

@@ -14,7 +14,7 @@ struct Code {
   bool effect;  // false: accepted, listed in the summary
 };
 
-constexpr std::array<Code, 45> kCodes = {{
+constexpr std::array<Code, 46> kCodes = {{
     {'G', 0, Group::kMotion, true},        {'G', 10, Group::kMotion, true},
     {'G', 20, Group::kMotion, true},       {'G', 30, Group::kMotion, true},
     {'G', 40, Group::kNonModal, true},     {'G', 170, Group::kPlane, true},
@@ -25,7 +25,8 @@ constexpr std::array<Code, 45> kCodes = {{
     {'G', 540, Group::kCoordinates, true}, {'G', 550, Group::kCoordinates, true},
     {'G', 560, Group::kCoordinates, true}, {'G', 570, Group::kCoordinates, true},
     {'G', 580, Group::kCoordinates, true}, {'G', 590, Group::kCoordinates, true},
-    {'G', 610, Group::kPathControl, true}, {'G', 640, Group::kPathControl, false},
+    {'G', 610, Group::kPathControl, true}, {'G', 611, Group::kPathControl, true},
+    {'G', 640, Group::kPathControl, true},
     {'G', 800, Group::kMotion, true},      {'G', 900, Group::kDistance, true},
     {'G', 901, Group::kArcDistance, true}, {'G', 910, Group::kDistance, true},
     {'G', 911, Group::kArcDistance, true}, {'G', 920, Group::kNonModal, true},
