@@ -137,7 +137,7 @@ TEST(Gcode, RefusesTwoWordsOfAModalGroup) {
 TEST(Gcode, ListsWhatHasNoEffectYet) {
   const Reading program = read("M3 S100 T2\nM8\nG64 P0.1\nG40 G49 G61 G80\nM0\nM1\nM5 M9\nM3 S5\nM84\nM18\nM30\n");
   const std::map<std::string, std::size_t> expected = {{"M3", 2},  {"S", 2},   {"T", 1},  {"M8", 1},
-                                                       {"M0", 1},  {"M1", 1}, {"M5", 1},
+                                                       {"G64 P", 1}, {"M0", 1},  {"M1", 1}, {"M5", 1},
                                                        {"M9", 1},  {"M84", 1}, {"M18", 1}};
   EXPECT_EQ(program.accepted, expected);
   ASSERT_EQ(program.motions.size(), 3U) << "M0 and M1 stop";

@@ -79,31 +79,21 @@ void Planner::LookAhead::read_block() {
 }
 
 void Planner::LookAhead::add_motion(PathEntry& entry) {
-  const double wanted = wanted_density(entry.block);
   entry.cut = entry.stop = false;
   entry.jump = entry.bend = 0;
   const Junction junction =
       tail_ != nullptr && !settings_.exact_stop ? junctions_.between(tail_->block, entry.block) : Junction{};
-  if (tail_ == nullptr || junction.speed == 0) {
-    if (tail_ != nullptr) end_run(*tail_);
-    base_mm_ = 0;
-    base_tick_ = entry.begin_ticks = 0;
-    place(entry, wanted, 0);
-  } else {
-    PathEntry& before = *tail_;
-    before.jump = junction.bend == 0 ? junction.jump : 0;
-    before.bend = junction.bend;
-    const bool same_class = before.block.rapid == entry.block.rapid;
-    const bool keep = same_class && suits(before.density, entry.block);
-    before.cut = !keep && (!same_class || before.density != wanted);
-    if (before.cut) {
-      base_mm_ = before.end;
-      base_tick_ = before.end_ticks;
-    }
-    push_span(before, junction.speed);
-    entry.begin_ticks = before.end_ticks;
-    place(entry, keep ? before.density : wanted, before.end);
+  if (tail_ != nullptr && junction.speed == 0) end_run(*tail_);
+  const bool same_class = rapid_ == entry.block.rapid;
+  const double density = same_class && suits(density_, entry.block) ? density_ : wanted_density(entry.block);
+  if (tail_ != nullptr) {
+    tail_->jump = junction.bend == 0 ? junction.jump : 0;
+    tail_->bend = junction.bend;
+    tail_->cut = !same_class || density != density_;
+    push_span(*tail_, junction.speed);
   }
+  place(entry, density);
+  rapid_ = entry.block.rapid;
   tail_ = &entry;
 }
 
@@ -120,12 +110,20 @@ void Planner::LookAhead::push_span(const PathEntry& entry, double exit_speed) {
   plan_->push({block.length, block.speed, block.acceleration, block.jerk, exit_speed});
 }
 
-void Planner::LookAhead::place(PathEntry& entry, double density, double begin) {
+// Length and ticks go on through stops: a path has the same ticks wherever the program stops.
+void Planner::LookAhead::place(PathEntry& entry, double density) {
+  if (density != density_) {
+    density_ = density;
+    base_mm_ = end_mm_;
+    base_tick_ = end_tick_;
+  }
   entry.density = density;
-  entry.end = begin + entry.block.length;
+  entry.begin = end_mm_;
+  entry.begin_ticks = end_tick_;
+  entry.end = end_mm_ += entry.block.length;
   const auto ticks = static_cast<std::uint64_t>((entry.end - base_mm_) * density + 0.5);
-  entry.end_ticks =
-      std::max(base_tick_ + ticks, entry.begin_ticks + std::max<std::uint64_t>(1, entry.block.least_ticks));
+  const std::uint64_t least = end_tick_ + std::max<std::uint64_t>(1, entry.block.least_ticks);
+  entry.end_ticks = end_tick_ = std::max(base_tick_ + ticks, least);
 }
 
 // Ticks a mm: as many as evenness wants and the clock allows.

@@ -31,7 +31,7 @@ class Planner::LookAhead {
   void add_motion(PathEntry& entry);
   void end_run(PathEntry& last);
   void push_span(const PathEntry& entry, double exit_speed);
-  void place(PathEntry& entry, double density, double begin);
+  void place(PathEntry& entry, double density);
   double wanted_density(const Block& block) const;
   double even_density(const Block& block) const;
   double least_density(const Block& block) const;
@@ -46,9 +46,13 @@ class Planner::LookAhead {
   Quantiser quantiser_;
   std::unique_ptr<SpeedPlan> plan_;
   PathEntry* tail_ = nullptr;  // moves, and its span waits for the corner at its end
-  // Where the tail's density is what it is from.
+  // Of the last motion: where it ends; its density, and where that is what it is from; its class.
+  double end_mm_ = 0;
+  std::uint64_t end_tick_ = 0;
+  double density_ = 0;
   double base_mm_ = 0;
   std::uint64_t base_tick_ = 0;
+  bool rapid_ = false;
   bool draining_ = false;  // a run has ended
   bool ended_ = false;
 };

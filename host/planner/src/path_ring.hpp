@@ -9,10 +9,11 @@
 
 namespace trammel::planner {
 
-// A run is what lies between two stops. Its feed ticks are counted from its start.
+// Length and feed ticks are counted from the start of the program.
 struct PathEntry {
   Block block;
-  double end = 0;               // mm from the start of the run
+  double begin = 0;             // mm
+  double end = 0;
   double density = 0;           // feed ticks a mm
   std::uint64_t begin_ticks = 0;
   std::uint64_t end_ticks = 0;

@@ -67,8 +67,9 @@ void Quantiser::add(const Phase& phase) {
   while (!moves(path_[at_].block)) ++at_;
   if (!moving_) {
     moving_ = true;
-    mm_ = base_mm_ = portion_mm_ = 0;
-    base_tick_ = tick_ = pending_.end = 0;
+    // Where the density is what it is from does not matter: lengths go on from any place.
+    mm_ = base_mm_ = portion_mm_ = path_[at_].begin;
+    base_tick_ = tick_ = pending_.end = path_[at_].begin_ticks;
     lead_ = 0;
     rate_a_speed_ = path_[at_].density / clock_hz_;
   }

@@ -82,7 +82,7 @@ class Quantiser {
   // Where the phases are.
   bool moving_ = false;
   std::uint64_t at_ = 0;     // block
-  double mm_ = 0;            // from the start of the run
+  double mm_ = 0;
   double portion_mm_ = 0;    // and where the last portion of a phase ended
   double base_mm_ = 0;       // where the density is what it is from
   std::uint64_t base_tick_ = 0;
