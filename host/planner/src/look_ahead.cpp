@@ -78,8 +78,7 @@ void Planner::LookAhead::add_motion(PathEntry& entry) {
       tail_ != nullptr && !settings_.exact_stop ? junctions_.between(tail_->block, entry.block) : Junction{};
   if (tail_ != nullptr && junction.speed == 0) end_run(*tail_);
   const bool same_class = rapid_ == entry.block.rapid;
-  const double density =
-      same_class && suits(density_, entry.block) ? density_ : wanted_density(entry.block);
+  const double density = same_class && suits(density_, entry.block) ? density_ : wanted_density(entry.block);
   if (tail_ != nullptr) {
     tail_->jump = junction.bend == 0 ? junction.jump : 0;
     tail_->bend = junction.bend;

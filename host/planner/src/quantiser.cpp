@@ -48,7 +48,13 @@ double time_at(double distance, double speed, double acceleration, double jerk, 
 }  // namespace
 
 Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth, bool classes)
-    : path_(path), smooth_(smooth), classes_(classes), clock_hz_(clock_hz), stop_clocks_(stop_clocks), pieces_(kPieces), highest_(kPieces) {}
+    : path_(path),
+      smooth_(smooth),
+      classes_(classes),
+      clock_hz_(clock_hz),
+      stop_clocks_(stop_clocks),
+      pieces_(kPieces),
+      highest_(kPieces) {}
 
 void Quantiser::add(const Phase& phase) {
   while (!moves(path_[at_].block)) ++at_;
@@ -79,7 +85,8 @@ void Quantiser::add(const Phase& phase) {
   } else {
     // A ramp whose acceleration begins and ends at once gets the tick that it shares with a constant speed.
     const double share = smooth_ ? 0.5 : phase.acceleration == 0 ? 0 : 1 - 1e-9;
-    const std::uint64_t tick = base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
+    const std::uint64_t tick =
+        base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
     // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
     portion(phase, begin, mm_, std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks)), false, false);
   }
@@ -89,7 +96,8 @@ void Quantiser::add(const Phase& phase) {
 // Of a phase that begins at `begin`, from the last portion's end to `end`, which is about at `end_tick`.
 void Quantiser::portion(const Phase& phase, double begin, double end, std::uint64_t end_tick, bool last, bool stop) {
   const auto place = [&](std::uint64_t tick) {
-    const double ticks = tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
+    const double ticks =
+        tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
     return base_mm_ + ticks / (rate_a_speed_ * clock_hz_) - begin;
   };
   // Smooth motion goes on beyond a border as it was: its speeds are those at the ticks. Else they are those at the
@@ -285,7 +293,8 @@ void Quantiser::complete_first() {
   const std::uint64_t highest = highest_[highest_first_ % kPieces];
   const double rate = piece(highest).most;
   // At least 1: 0 says that the piece ends at rest.
-  if (!first.stop) first.command.stop_distance = std::max(1U, ticks32(std::ceil(stop_clocks_ * rate) + std::ceil(kRuleClocks * rate)));
+  if (!first.stop)
+    first.command.stop_distance = std::max(1U, ticks32(std::ceil(stop_clocks_ * rate) + std::ceil(kRuleClocks * rate)));
   if (highest == completed_) ++highest_first_;
   ++completed_;
   seen_clocks_ -= completed_ < seen_ ? piece(completed_).clocks : seen_clocks_;
