@@ -331,7 +331,8 @@ TEST(Planner, RandomLinesAreSound) {
       const Machine machine = default_machine();
       for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
         // The speed is the unrounded path's: ends and ticks are rounded.
-        const double pulses = static_cast<double>(std::abs(made[axis]) - 1) / static_cast<double>(path_ticks(segment) + 1);
+        const double pulses =
+            static_cast<double>(std::abs(made[axis]) - 1) / static_cast<double>(path_ticks(segment) + 1);
         RC_ASSERT(top_rate(segment, clock_hz) * pulses <= machine.axes[axis].max_velocity * 80 * 1.000001);
       }
     }

@@ -126,8 +126,8 @@ Direction BlockBuilder::tangent(const Block& block, double share) {
   return direction;
 }
 
-// What holds for all ways to make an arc. `unevenness`: largest over planned speed, anywhere in it; `share`: of the axes'
-// acceleration and jerk, for what the way to make it adds.
+// What holds for all ways to make an arc. `unevenness`: largest over planned speed, anywhere in it; `share`: of the
+// axes' acceleration and jerk, for what the way to make it adds.
 void BlockBuilder::limit_arc(Block& block, double unevenness, double share) const {
   const Axis& x = axes_[block.axis_x];
   const Axis& y = axes_[block.axis_y];
@@ -152,7 +152,8 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
   }
   apply_feed(block, block.length);
   const double across = block.speed * block.speed / radius;
-  block.acceleration = std::max(kAlong * acceleration, std::sqrt(std::max(0.0, acceleration * acceleration - across * across)));
+  block.acceleration =
+      std::max(kAlong * acceleration, std::sqrt(std::max(0.0, acceleration * acceleration - across * across)));
   block.jerk = jerk * kAlong;
   block.curvature = (block.clockwise ? -1 : 1) / radius;
 }

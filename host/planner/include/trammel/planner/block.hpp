@@ -41,10 +41,10 @@ struct ExactArc {
   double sweep = 0;        // radians, > 0
 };
 
-// Lengths, directions and limits are those of the path before rounding, along it, in mm and seconds; for moves of rotary
-// axes alone read degrees. A path with X, Y or Z has their length, one without that of all axes; where an axis outside
-// would make more than a pulse for each of the finest of these, its pulses count instead. Of the fields that a kind of geometry does not name, the
-// content means nothing.
+// Lengths, directions and limits are those of the path before rounding, along it, in mm and seconds; for moves of
+// rotary axes alone read degrees. A path with X, Y or Z has their length, one without that of all axes; where an axis
+// outside would make more than a pulse for each of the finest of these, its pulses count instead. Of the fields that a
+// kind of geometry does not name, the content means nothing.
 struct Block {
   std::size_t line = 0;  // of the program
   Geometry geometry = Geometry::kEnd;
@@ -53,7 +53,7 @@ struct Block {
 
   // Motions: kLine, kArc, kChords.
   bool rapid = false;
-  bool linear = false;                   // X, Y or Z moves
+  bool linear = false;  // X, Y or Z moves
   gcode::PathControl path_control = gcode::PathControl::kContinuous;
   double tolerance = 0;                  // mm, of G64 P
   Direction entry{};                     // where it begins

@@ -2,8 +2,8 @@
 // the range of the position counters, dwells. Pulls from the reader and holds one motion. Not thread-safe.
 //
 // Targets become pulses by rounding the absolute target, half away from zero: nothing drifts. Lengths and limits are
-// those of the path before rounding. Limits are smaller by max_override, its square and cube, and by hold_reserve. Feeds hold along X Y Z; without those along U V W, then A B C, then E (as
-// LinuxCNC).
+// those of the path before rounding. Limits are smaller by max_override, its square and cube, and by hold_reserve.
+// Feeds hold along X Y Z; without those along U V W, then A B C, then E (as LinuxCNC).
 #pragma once
 
 #include <array>
