@@ -18,6 +18,8 @@ module motion_core #(
     input  wire logic                feed_empty_i,
     input  wire logic [        15:0] feed_word_i,
     output logic                     feed_read_o,
+    input  wire logic [        20:0] arrive_i,          // {drop, geometry {commit, write}, feed {commit, write}, halfword}
+    input  wire logic                full_i,            // a queue may have no room for the next command
     // START
     input  wire logic                start_i,
     input  wire logic [         7:0] start_mask_i,
@@ -38,6 +40,8 @@ module motion_core #(
     // status
     output logic      [         5:0] status_o,          // {stopping, ended, feed active, path active, direct, busy}
     output logic                     held_o,            // the ratio is 0 (combinational)
+    output logic                     underrun_o,        // held by it, or a piece waits for more
+    output logic      [        31:0] underruns_o,
     output logic      [        31:0] geometry_begun_o,
     output logic      [        31:0] feed_begun_o,
     // {rate, ratio, position, path dir, path step, feed swap, path swap, path tick, tick}
@@ -47,6 +51,7 @@ module motion_core #(
 );
   // stops
   logic               hold;
+  logic               underrun_hold;
   logic               mismatch;
   logic               incomplete;
   logic               stopping;
@@ -115,12 +120,16 @@ module motion_core #(
       .incomplete_i(incomplete),
       .clear_i     (clear_fault_i),
       .at_rest_i   (held_o),
+      .underrun_i  (underrun_hold),
       .hold_o      (hold),
       .stopping_o  (stopping)
   );
 
-  tick_source ticks (
+  tick_source #(
+      .Engines(Engines)
+  ) ticks (
       .*,
+      .underrun_hold_o(underrun_hold),
       .cut_i          (cut_o),
       .hold_i         (hold),
       .empty_i        (feed_empty_i),

@@ -7,6 +7,7 @@ module trammel_card #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          UnderrunHold  = 1,     // 0: without
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
     parameter logic [31:0] BoardId       = 0
@@ -89,6 +90,7 @@ module trammel_card #(
       .Accumulator(Accumulator),
       .ArcGenerator(ArcGenerator),
       .DirectMode(DirectMode),
+      .UnderrunHold(UnderrunHold),
       .Ports(1),
       .BuildId(BuildId),
       .BuildDirty(BuildDirty),

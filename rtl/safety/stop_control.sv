@@ -16,6 +16,7 @@ module stop_control #(
     input  wire logic            abort_i,
     input  wire logic [    31:0] clear_i,       // ones written to FAULT
     input  wire logic            at_rest_i,     // the ratio is 0
+    input  wire logic            underrun_i,    // what is queued ends: neither a fault nor a cut
     output logic      [    31:0] fault_o,
     output logic                 hold_o,        // the time base slows down to rest
     output logic                 cut_o,
@@ -70,7 +71,7 @@ module stop_control #(
     state_q  <= state_d;
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
     stop_o   <= state_q == RUN && state_d != RUN;
-    hold_o   <= hold_q || state_q == RAMP;
+    hold_o   <= hold_q || underrun_i || state_q == RAMP;
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
       hold_q   <= card_map_pkg::RESET_HOLD[0];

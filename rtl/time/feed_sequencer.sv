@@ -11,11 +11,13 @@ module feed_sequencer (
     output logic             read_o,
     // ticks
     input  wire logic        take_i,           // only while active_o
+    input  wire logic        wait_i,           // no piece begins
     input  wire logic        barrier_begin_i,
     input  wire logic        barrier_done_i,
     output logic             at_barrier_o,
     output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
     output logic             active_o,         // a piece gives ticks
+    output logic             decoded_o,        // a piece waits (combinational)
     output logic             idle_o,           // nothing read or decoded
     // feed generator
     output logic             swap_o,
@@ -32,8 +34,9 @@ module feed_sequencer (
   logic swap;
   logic last;
 
-  assign swap   = valid && piece && (!active_o || (take_i && last));
-  assign runs_o = active_o || (valid && piece);
+  assign decoded_o = valid && piece;
+  assign swap      = decoded_o && !wait_i && (!active_o || (take_i && last));
+  assign runs_o    = active_o || decoded_o;
 
   feed_decoder decoder (
       .*,

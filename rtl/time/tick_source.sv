@@ -1,7 +1,9 @@
 // Where the card's ticks come from: the time base's enabled clocks, the feed pieces, the gate that takes their ticks.
 `default_nettype none
 
-module tick_source (
+module tick_source #(
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        cut_i,
@@ -11,6 +13,9 @@ module tick_source (
     input  wire logic        empty_i,
     input  wire logic [15:0] word_i,
     output logic             read_o,
+    // what is queued
+    input  wire logic [20:0] arrive_i,         // {drop, geometry {commit, write}, feed {commit, write}, halfword}
+    input  wire logic        full_i,           // a queue may have no room for the next command
     // ticks
     input  wire logic        direct_i,         // a direct move is under way
     input  wire logic        taking_i,         // a path takes ticks
@@ -23,6 +28,10 @@ module tick_source (
     input  wire logic        barrier_done_i,
     output logic             at_barrier_o,
     output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
+    // under-run
+    output logic             underrun_hold_o,
+    output logic             underrun_o,       // it holds, or keeps a piece waiting
+    output logic      [31:0] underruns_o,
     // status
     output logic             active_o,         // a piece gives ticks
     output logic             idle_o,           // nothing runs, is decoded or queued (combinational)
@@ -39,6 +48,8 @@ module tick_source (
   logic        feed_clear;
   logic [19:0] load;
   logic        decoder_idle;
+  logic        decoded;
+  logic        piece_waits;
   logic [31:0] ratio_chain;
   logic [31:0] rate_chain;
 
@@ -52,11 +63,32 @@ module tick_source (
 
   feed_sequencer pieces (
       .*,
-      .take_i (take_o),
-      .idle_o (decoder_idle),
-      .load_o (load),
-      .chain_i(rate_chain)
+      .take_i   (take_o),
+      .wait_i   (piece_waits),
+      .decoded_o(decoded),
+      .idle_o   (decoder_idle),
+      .load_o   (load),
+      .chain_i  (rate_chain)
   );
+
+  if (Engines[card_map_pkg::ENGINE_UNDERRUN_HOLD]) begin : gen_underrun_hold
+    underrun_guard guard (
+        .*,
+        .off_i    (1'b0),
+        .load_i   (load),
+        .take_i   (take_o && active_o),
+        .swap_i   (swap_o),
+        .decoded_i(decoded),
+        .wait_o   (piece_waits),
+        .hold_o   (underrun_hold_o),
+        .shown_o  (underrun_o)
+    );
+  end else begin : gen_no_underrun_hold
+    assign {piece_waits, underrun_hold_o, underrun_o, underruns_o} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, arrive_i, full_i, decoded};
+  end
 
   feed_generator generator (
       .*,

@@ -109,6 +109,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (snapshot_.busy()) status |= field::kStatusSnapshot;
   if (in.incomplete) status |= field::kStatusIncomplete;
   if (in.stopping) status |= field::kStatusStopping;
+  if (in.underrun) status |= field::kStatusUnderrun;
   return status;
 }
 
@@ -131,8 +132,10 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.feed_room;
     case reg::kGeometryBegun:
       return in.geometry_begun;
-    default:
+    case reg::kFeedBegun:
       return in.feed_begun;
+    default:
+      return in.underruns;
   }
 }
 

@@ -167,6 +167,8 @@ class Bench {
     in_.ended = (bits & 0x40) != 0;
     in_.incomplete = streamed_ && (bits & 0x80) != 0;
     in_.stopping = (bits & 0x100) != 0;
+    in_.underrun = (bits & 0x200) != 0;
+    in_.underruns = draw();
     in_.geometry_room = static_cast<std::uint16_t>(draw());
     in_.feed_room = static_cast<std::uint16_t>(draw());
     in_.geometry_begun = draw();
@@ -259,6 +261,8 @@ class Bench {
     rtl_->motion_i = static_cast<CData>(in_.stopping << 5 | in_.ended << 4 | in_.feed_active << 3 |
                                         in_.path_active << 2 | in_.direct << 1 | static_cast<int>(in_.busy));
     rtl_->held_i = in_.ratio == 0;
+    rtl_->underrun_i = in_.underrun;
+    rtl_->underruns_i = in_.underruns;
     rtl_->fault_i = in_.fault;
     rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
     rtl_->begun_i = std::uint64_t{in_.geometry_begun} << 32 | in_.feed_begun;

@@ -65,6 +65,7 @@ class Bench {
     dut_->abort_i = in.abort;
     dut_->clear_i = in.clear;
     dut_->at_rest_i = in.at_rest;
+    dut_->underrun_i = in.underrun;
   }
 
   void compare() {
@@ -169,6 +170,7 @@ void random_events() {
     in.abort = dice.chance(30);
     if (dice.chance(6)) in.clear = dice.chance(2) ? ~0U : dice.draw();
     in.at_rest = dice.chance(rest_every);
+    in.underrun = dice.chance(6);
     if (dice.chance(20)) in.setting = {dice.chance(2), dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.below(2)};
     if (dice.chance(20)) in.setting = {dice.chance(2), reg::kStopReaction, dice.draw() & 0xFCFF};
     if (dice.chance(2000))

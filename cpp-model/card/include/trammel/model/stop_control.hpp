@@ -21,6 +21,7 @@ class StopControl {
     bool abort = false;            // event
     std::uint32_t clear = 0;       // event: ones written to FAULT
     bool at_rest = false;          // the ratio is 0
+    bool underrun = false;         // what is queued ends: neither a fault nor a cut
     Setting setting;               // HOLD, STOP_REACTION
   };
   struct Outputs {
@@ -37,7 +38,8 @@ class StopControl {
     const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
                                  (in.incomplete ? card_map::field::kFaultPathIncomplete : 0);
     const bool at_once = (events & ~reaction_) != 0;
-    out_.hold = hold_ || state_ == State::Ramp;
+    underrun_ = in.underrun;
+    out_.hold = hold_ || underrun_ || state_ == State::Ramp;
     out_.closed = out_.fault != 0 || state_ != State::Run;
     out_.cut = in.abort;
     out_.stop = state_ == State::Run && events != 0;
@@ -60,10 +62,11 @@ class StopControl {
 
   const Outputs& outputs() const { return out_; }
   bool stopped() const { return state_ == State::Stopped; }
+  bool underrun() const { return underrun_; }  // as of the last clock
 
-  // Without an event, a setting, an abort or a clear, clock() changes nothing, whatever the ratio does.
+  // Without an event, a setting, an abort, a clear or a change of `underrun`, clock() changes nothing, whatever the ratio does.
   bool quiet() const {
-    const bool settled = out_.hold == hold_ && out_.closed == (out_.fault != 0 || state_ != State::Run);
+    const bool settled = out_.hold == (hold_ || underrun_) && out_.closed == (out_.fault != 0 || state_ != State::Run);
     return settled && !out_.cut && !out_.stop &&
            (state_ == State::Run || (state_ == State::Stopped && out_.fault != 0));
   }
@@ -83,6 +86,7 @@ class StopControl {
 
   State state_ = State::Run;
   bool hold_ = false;
+  bool underrun_ = false;
   std::uint32_t reaction_ = 0;
   Outputs out_;
 };
