@@ -78,6 +78,8 @@ module tick_source #(
         .load_i   (load),
         .take_i   (take_o && active_o),
         .swap_i   (swap_o),
+        .active_i (active_o),
+        .ratio_i  (ratio_o),
         .decoded_i(decoded),
         .wait_o   (piece_waits),
         .hold_o   (underrun_hold_o),
