@@ -9,6 +9,8 @@ module card_core #(
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
     parameter int          UnderrunHold  = 1,     // 0: without
+    parameter int          Classes       = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks    = 1,     // 0: without
     parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
@@ -51,7 +53,8 @@ module card_core #(
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
       32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
       32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE |
-      32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD;
+      32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
+      32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS;
 
   // What parameters and straps decide of the constants, by address.
   logic [511:0] constants;
@@ -71,10 +74,10 @@ module card_core #(
   logic [31:0] status;
   logic [ 5:0] motion_status;
   logic        held;
-  logic        underrun;
-  logic [31:0] underruns;
+  logic [32:0] underrun;  // {held, how often}
   logic [63:0] begun;  // {geometry, feed}
   logic [31:0] room;  // {geometry, feed}
+  logic [ 1:0] low;  // {feed, geometry}
   logic [40:0] setting;  // {set, address, data}
   logic        abort;
   logic        flush;
@@ -102,9 +105,9 @@ module card_core #(
       .motion_i(motion_status),
       .held_i(held),
       .underrun_i(underrun),
-      .underruns_i(underruns),
       .fault_i(fault),
       .room_i(room),
+      .low_i(low),
       .begun_i(begun),
       .status_o(status),
       .setting_o(setting),
@@ -179,6 +182,20 @@ module card_core #(
       .room_o (room[15:0])
   );
 
+  if (Watermarks != 0) begin : gen_watermarks
+    queue_watermarks #(
+        .GeometryDepth(GeometryDepth),
+        .FeedDepth(FeedDepth)
+    ) watermarks (
+        .*,
+        .setting_i(setting),
+        .room_i(room),
+        .low_o(low)
+    );
+  end else begin : gen_no_watermarks
+    assign low = '0;
+  end
+
   motion_core #(
       .Axes(Axes),
       .Engines(ENGINES)
@@ -193,8 +210,7 @@ module card_core #(
       .feed_empty_i(feed_empty),
       .feed_word_i(feed_word),
       .feed_read_o(feed_read),
-      .arrive_i({drop, geometry_store, feed_store, halfword}),
-      .full_i(full),
+      .arrive_i({full, drop, geometry_store, feed_store, halfword}),
       .start_i(start),
       .start_mask_i(setting[7:0]),
       .start_done_o(start_answer[9]),
@@ -212,7 +228,6 @@ module card_core #(
       .status_o(motion_status),
       .held_o(held),
       .underrun_o(underrun),
-      .underruns_o(underruns),
       .geometry_begun_o(begun[63:32]),
       .feed_begun_o(begun[31:0]),
       .observe_o(observe_o[34*Axes+52:0])

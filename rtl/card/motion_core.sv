@@ -18,8 +18,7 @@ module motion_core #(
     input  wire logic                feed_empty_i,
     input  wire logic [        15:0] feed_word_i,
     output logic                     feed_read_o,
-    input  wire logic [        20:0] arrive_i,          // {drop, geometry {commit, write}, feed {commit, write}, halfword}
-    input  wire logic                full_i,            // a queue may have no room for the next command
+    input  wire logic [        21:0] arrive_i,          // as tick_source has it
     // START
     input  wire logic                start_i,
     input  wire logic [         7:0] start_mask_i,
@@ -40,8 +39,7 @@ module motion_core #(
     // status
     output logic      [         5:0] status_o,          // {stopping, ended, feed active, path active, direct, busy}
     output logic                     held_o,            // the ratio is 0 (combinational)
-    output logic                     underrun_o,        // held by it, or a piece waits for more
-    output logic      [        31:0] underruns_o,
+    output logic      [        32:0] underrun_o,        // {held by it, or a piece waits for more; how often}
     output logic      [        31:0] geometry_begun_o,
     output logic      [        31:0] feed_begun_o,
     // {rate, ratio, position, path dir, path step, feed swap, path swap, path tick, tick}
@@ -50,47 +48,38 @@ module motion_core #(
     output logic      [    Axes-1:0] dir_o
 );
   // stops
-  logic               hold;
-  logic               underrun_hold;
-  logic               mismatch;
-  logic               incomplete;
-  logic               stopping;
-  logic [   Axes-1:0] step_fault;
+  logic hold, underrun_hold;
+  logic mismatch, incomplete;
+  logic            stopping;
+  logic [Axes-1:0] step_fault;
   // ticks
-  logic               take;
-  logic               tick;
-  logic               feed_swap;
-  logic               feed_active;
-  logic               feed_runs;
-  logic               feed_at;
-  logic               feed_idle;
-  logic [       16:0] ratio;
-  logic [       31:0] rate;
+  logic            take;
+  logic            tick;
+  logic            feed_swap;
+  logic            feed_active;
+  logic moving, fixed;
+  logic feed_runs, feed_at, feed_idle;
+  logic [    16:0] ratio;
+  logic [    31:0] rate;
   // geometry
-  logic [       21:0] load;
-  logic               taking;
-  logic               swap;
-  logic [   Axes-1:0] active;
-  logic [        4:0] engine;
-  logic               barrier_begin;
-  logic               barrier_done;
-  logic               path_active;
-  logic               ended;
-  logic               geometry_idle;
-  logic               direct;
-  logic               direct_go;
-  logic [   Axes-1:0] direct_mask;
-  logic [       21:0] direct_load;
+  logic [    21:0] load;
+  logic            taking;
+  logic            swap;
+  logic [Axes-1:0] active;
+  logic [     4:0] engine;
+  logic barrier_begin, barrier_done;
+  logic path_active, ended, geometry_idle;
+  logic            direct;
+  logic            direct_go;
+  logic [Axes-1:0] direct_mask;
+  logic [    21:0] direct_load;
   // path engines
-  logic               path_tick;
-  logic               path_swap;
-  logic               engine_tick;
-  logic [   Axes-1:0] engine_step;
-  logic [   Axes-1:0] engine_dir;
-  logic               engine_ready;
-  logic               payload_ready;
-  logic               shadows_free;
-  logic               engine_taken;
+  logic            path_tick;
+  logic            path_swap;
+  logic            engine_tick;
+  logic [Axes-1:0] engine_step;
+  logic [Axes-1:0] engine_dir;
+  logic engine_ready, payload_ready, shadows_free, engine_taken;
   logic [       15:0] chord_word;
   logic [   Axes-1:0] chord_load;
   logic [   Axes-1:0] chord_swap;
@@ -120,6 +109,8 @@ module motion_core #(
       .incomplete_i(incomplete),
       .clear_i     (clear_fault_i),
       .at_rest_i   (held_o),
+      .moving_i    (moving),
+      .fixed_i     (fixed),
       .underrun_i  (underrun_hold),
       .hold_o      (hold),
       .stopping_o  (stopping)
@@ -146,6 +137,8 @@ module motion_core #(
       .at_barrier_o   (feed_at),
       .runs_o         (feed_runs),
       .active_o       (feed_active),
+      .moving_o       (moving),
+      .fixed_o        (fixed),
       .idle_o         (feed_idle),
       .ratio_o        (ratio),
       .rate_o         (rate),

@@ -8,6 +8,8 @@ module trammel_card #(
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
     parameter int          UnderrunHold  = 1,     // 0: without
+    parameter int          Classes       = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks    = 1,     // 0: without
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
     parameter logic [31:0] BoardId       = 0
@@ -89,6 +91,8 @@ module trammel_card #(
       .FeedDepth(FeedDepth),
       .Accumulator(Accumulator),
       .ArcGenerator(ArcGenerator),
+      .Classes(Classes),
+      .Watermarks(Watermarks),
       .DirectMode(DirectMode),
       .UnderrunHold(UnderrunHold),
       .Ports(1),

@@ -21,14 +21,14 @@ module register_live #(
     // STATUS
     input  wire logic [ 5:0] motion_i,         // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic        held_i,
-    input  wire logic        underrun_i,
+    input  wire logic [32:0] underrun_i,       // {held, how often}
     input  wire logic        snapshotting_i,
     input  wire logic        incomplete_i,
+    input  wire logic [ 1:0] low_i,            // {feed, geometry}: below their watermarks
     // the other live registers
     input  wire logic [31:0] fault_i,
     input  wire logic [31:0] room_i,           // {geometry, feed}
     input  wire logic [63:0] begun_i,          // {geometry, feed}
-    input  wire logic [31:0] underruns_i,
     output logic      [31:0] status_o,         // combinational; refused is any port's
     output logic      [31:0] data_o,
     output logic      [31:0] chain_o,
@@ -78,7 +78,9 @@ module register_live #(
       32'(snapshotting_i) << card_map_pkg::BIT_STATUS_SNAPSHOT |
       32'(incomplete_i) << card_map_pkg::BIT_STATUS_INCOMPLETE |
       32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING |
-      32'(underrun_i) << card_map_pkg::BIT_STATUS_UNDERRUN;
+      32'(low_i[0]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
+      32'(low_i[1]) << card_map_pkg::BIT_STATUS_FEED_LOW |
+      32'(underrun_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin
@@ -93,7 +95,7 @@ module register_live #(
         card_map_pkg::ADDR_FEED_ROOM[5:2]: data_o <= {16'd0, room_i[15:0]};
         card_map_pkg::ADDR_GEOMETRY_BEGUN[5:2]: data_o <= begun_i[63:32];
         card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= begun_i[31:0];
-        default: data_o <= underruns_i;
+        default: data_o <= underrun_i[31:0];
       endcase
     end
   end

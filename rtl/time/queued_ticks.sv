@@ -97,15 +97,15 @@ module queued_ticks #(
     logic [14:0] paths_sum, pieces_sum;
     logic first;
 
-    first  = word_i == 2'd0;
+    first = word_i == 2'd0;
     change = adding_q ? count_q[13:0] : ~(first ? {10'd0, taken_q} : 14'd0);
     paths_sum = {1'b0, paths_q[13:0]} + {1'b0, adding_q && !add_paths_q ? 14'd0 : change} +
         {14'd0, first ? !adding_q : paths_carry_q};
     pieces_sum = {1'b0, pieces_q[13:0]} + {1'b0, adding_q && !add_pieces_q ? 14'd0 : change} +
         {14'd0, first ? !adding_q : pieces_carry_q};
-    paths_carry_q  <= paths_sum[14];
+    paths_carry_q <= paths_sum[14];
     pieces_carry_q <= pieces_sum[14];
-    paths_q  <= {paths_sum[13:0], paths_q[55:14]};
+    paths_q <= {paths_sum[13:0], paths_q[55:14]};
     pieces_q <= {pieces_sum[13:0], pieces_q[55:14]};
     if (word_i == 2'd3 && (reset || clearing_q)) begin
       paths_q  <= EMPTY;

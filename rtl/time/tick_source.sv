@@ -14,8 +14,8 @@ module tick_source #(
     input  wire logic [15:0] word_i,
     output logic             read_o,
     // what is queued
-    input  wire logic [20:0] arrive_i,         // {drop, geometry {commit, write}, feed {commit, write}, halfword}
-    input  wire logic        full_i,           // a queue may have no room for the next command
+    // {a queue may have no room for the next command, drop, geometry {commit, write}, feed {commit, write}, halfword}
+    input  wire logic [21:0] arrive_i,
     // ticks
     input  wire logic        direct_i,         // a direct move is under way
     input  wire logic        taking_i,         // a path takes ticks
@@ -30,10 +30,11 @@ module tick_source #(
     output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
     // under-run
     output logic             underrun_hold_o,
-    output logic             underrun_o,       // it holds, or keeps a piece waiting
-    output logic      [31:0] underruns_o,
+    output logic      [32:0] underrun_o,       // {it holds, or keeps a piece waiting; how often it has held}
     // status
     output logic             active_o,         // a piece gives ticks
+    output logic             moving_o,         // and has, or the one before it in one go
+    output logic             fixed_o,          // the piece's class is fixed (combinational)
     output logic             idle_o,           // nothing runs, is decoded or queued (combinational)
     output logic      [16:0] ratio_o,
     output logic      [31:0] rate_o,
@@ -42,6 +43,7 @@ module tick_source #(
     input  wire logic [31:0] chain_i,
     output logic      [31:0] chain_o
 );
+  logic [ 1:0] class_now;
   logic        enable;
   logic        feed_tick;
   logic        feed_enable;
@@ -53,16 +55,23 @@ module tick_source #(
   logic [31:0] ratio_chain;
   logic [31:0] rate_chain;
 
-  assign idle_o = decoder_idle && empty_i && !active_o;
+  assign idle_o  = decoder_idle && empty_i && !active_o;
+  assign fixed_o = class_now == 2'(card_map_pkg::CLASS_FIXED);
 
-  time_base base (
+  time_base #(
+      .Engines(Engines)
+  ) base (
       .*,
+      .class_i (class_now),
       .chain_o (ratio_chain),
       .enable_o(enable)
   );
 
-  feed_sequencer pieces (
+  feed_sequencer #(
+      .Engines(Engines)
+  ) pieces (
       .*,
+      .class_o  (class_now),
       .take_i   (take_o),
       .wait_i   (piece_waits),
       .decoded_o(decoded),
@@ -74,22 +83,25 @@ module tick_source #(
   if (Engines[card_map_pkg::ENGINE_UNDERRUN_HOLD]) begin : gen_underrun_hold
     underrun_guard guard (
         .*,
-        .off_i    (1'b0),
-        .load_i   (load),
-        .take_i   (take_o && active_o),
-        .swap_i   (swap_o),
-        .active_i (active_o),
-        .ratio_i  (ratio_o),
-        .decoded_i(decoded),
-        .wait_o   (piece_waits),
-        .hold_o   (underrun_hold_o),
-        .shown_o  (underrun_o)
+        .off_i      (1'b0),
+        .arrive_i   (arrive_i[20:0]),
+        .full_i     (arrive_i[21]),
+        .load_i     (load),
+        .take_i     (take_o && active_o),
+        .swap_i     (swap_o),
+        .active_i   (active_o),
+        .ratio_i    (ratio_o),
+        .decoded_i  (decoded),
+        .wait_o     (piece_waits),
+        .hold_o     (underrun_hold_o),
+        .shown_o    (underrun_o[32]),
+        .underruns_o(underrun_o[31:0])
     );
   end else begin : gen_no_underrun_hold
-    assign {piece_waits, underrun_hold_o, underrun_o, underruns_o} = '0;
+    assign {piece_waits, underrun_hold_o, underrun_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, arrive_i, full_i, decoded};
+    assign unused = &{1'b0, arrive_i, decoded};
   end
 
   feed_generator generator (

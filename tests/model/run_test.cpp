@@ -116,7 +116,11 @@ class Program {
       p_.write(reg::dir_hold(n), times(most));
       p_.write(reg::mode(n), static_cast<std::uint32_t>(p_.one_in(2) ? 0 : p_.any(0, 3) << 2 | p_.any(0, 2)));
     }
-    p_.write(reg::kRatioFeed, static_cast<std::uint32_t>(p_.one_in(2) ? 0x10000 : p_.any(0x100, 0x10000)));
+    for (const std::uint32_t ratio : {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed})
+      p_.write(ratio, static_cast<std::uint32_t>(p_.one_in(2) ? 0x10000 : p_.any(0x100, 0x10000)));
+    if (p_.one_in(2)) p_.write(reg::kGeometryWatermark, static_cast<std::uint32_t>(p_.any(1, 60)));
+    if (p_.one_in(2)) p_.write(reg::kFeedWatermark, static_cast<std::uint32_t>(p_.any(1, 60)));
+    if (p_.one_in(2)) p_.write(reg::kIrqEnable, static_cast<std::uint32_t>(p_.any(0, (1U << 18) - 1)));
     if (p_.one_in(3)) p_.write(reg::kHoldLimit, static_cast<std::uint32_t>(p_.any(1, p_.one_in(2) ? 60 : 2000)));
     if (p_.one_in(3)) p_.write(reg::kStopReaction, static_cast<std::uint32_t>(p_.any(0, 255)));
   }
@@ -209,7 +213,8 @@ class Program {
       acceleration = static_cast<std::int64_t>(p_.random()) / static_cast<std::int64_t>(pace * pace * 900);
       if (p_.one_in(2)) jerk = acceleration / -97;
     }
-    p_.send(command_words(card_map::Opcode::Feed, 0, number_++, ticks,
+    const auto piece_class = static_cast<std::uint8_t>(p_.one_in(2) ? 0 : p_.any(0, 2));
+    p_.send(command_words(card_map::Opcode::Feed, piece_class, number_++, ticks,
                           {{"rate", rate},
                            {"acceleration", acceleration},
                            {"jerk", jerk},
@@ -241,9 +246,11 @@ void disturb(Pair& pair) {
     case 1:
       pair.write(reg::kControl, card_map::field::kControlAbort);
       break;
-    case 2:
-      pair.write(reg::kRatioFeed, static_cast<std::uint32_t>(pair.any(1, 0x10000)));
+    case 2: {
+      constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
+      pair.write(kRatios[pair.any(0, 2)], static_cast<std::uint32_t>(pair.any(1, 0x10000)));
       break;
+    }
     case 3:
       pair.write(reg::kControl, card_map::field::kControlSnapshot);
       break;

@@ -305,8 +305,10 @@ bool MotionCore::may_jump(const Inputs& in) const {
   const StopControl::Outputs& stop = stop_.outputs();
   const Sequencer::Outputs& s = sequencer_.outputs();
   if (s.swap || s.feed_swap || s.direct || out_.path_step != 0 || axes_live_ || out_.step_fault != 0) return false;
-  if (in.setting.set || in.abort || in.clear_fault != 0 || in.start || !stop_.quiet() || !loader_.quiet()) return false;
-  if (!engines_.settled() || !time_base_.steady(stop.hold)) return false;
+  if (in.setting.set || in.abort || in.clear_fault != 0 || in.start || !loader_.quiet()) return false;
+  const bool fixed = s.piece_class == card_map::constant::kClassFixed;
+  if (!stop_.quiet(s.moving, fixed, time_base_.outputs().ratio == 0)) return false;
+  if (!engines_.settled() || !time_base_.steady(stop.hold, s.piece_class)) return false;
   for (const Axis& axis : axes_) {
     if (!axis.calm()) return false;
   }

@@ -15,7 +15,9 @@ unsigned idle_level_of(std::uint32_t levels, unsigned axes, unsigned axis) {
 MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all, std::uint32_t engines)
     : clock_all_(clock_all),
       has_guard_(card_map::has_engine(engines, card_map::engine::kUnderrunHold)),
-      loader_(axes), sequencer_(clock_all), engines_(clock_all) {
+      loader_(axes),
+      sequencer_(clock_all),
+      engines_(clock_all) {
   for (unsigned n = 0; n < axes; ++n) {
     axes_.emplace_back(n, idle_level_of(idle_level, axes, n), clock_all);
     put(out_.step, 1U << n, axes_[n].shaper().outputs().step);
@@ -68,18 +70,20 @@ void MotionCore::clock(const Inputs& in) {
   const StopControl::Outputs stop = stop_.outputs();
   loader_.clock({false, out_.busy, stop.closed, in.start, in.start_mask, in.loader_data});
   const bool at_rest = time_base_.outputs().ratio == 0;
+  const bool fixed = s.piece_class == card_map::constant::kClassFixed;
   const bool events = out_.step_fault != 0 || s.mismatch || s.incomplete || in.abort || in.clear_fault != 0;
   const bool underrun = guard_.outputs().hold;
   if (has_guard_) guard_.clock(guard_inputs(in, sequencer_in));
-  if (clock_all_ || events || in.setting.set || underrun != stop_.underrun() || !stop_.quiet())
-    stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, underrun, in.setting});
+  if (clock_all_ || events || in.setting.set || underrun != stop_.underrun() || !stop_.quiet(s.moving, fixed, at_rest))
+    stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, s.moving, fixed,
+                 underrun, in.setting});
   clock_busy();
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
   wait_timer_.clock(in.setting);
   engines_.clock({stop.cut, s.tick, s.swap, s.engine, sequencer_.load(), sequencer_.engine_taken()});
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
-  time_base_.clock({stop.hold, in.setting});
+  time_base_.clock({stop.hold, in.setting, s.piece_class});
   sequencer_.clock(sequencer_in);
 }
 

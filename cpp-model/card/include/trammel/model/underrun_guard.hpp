@@ -3,8 +3,8 @@
 //
 // Every 32 clocks (kRound) it decides: short is where the queued ticks, of paths or of pieces, are at most
 // stop distance * ratio^2 + kUnderrunReserveTicks; but not where the last piece ends at rest with its paths queued, nor
-// where a barrier came last. What a round looks at is taken at its clocks kRatio, kFactor, kCount; it decides at kDecide.
-// Not thread-safe; no errors are reported.
+// where a barrier came last. What a round looks at is taken at its clocks kRatio, kFactor, kCount; it decides at
+// kDecide. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -33,12 +33,12 @@ class UnderrunGuard {
     bool cut = false;
     bool off = false;  // no rule
     Arrival arrival;
-    bool full = false;       // a queue may have no room for the next command
-    LoadWord load;           // feed load
-    bool take = false;       // a feed tick is taken
-    bool swap = false;       // a piece began in the clock before
-    bool active = false;     // a piece gives ticks
-    bool decoded = false;    // a piece waits
+    bool full = false;        // a queue may have no room for the next command
+    LoadWord load;            // feed load
+    bool take = false;        // a feed tick is taken
+    bool swap = false;        // a piece began in the clock before
+    bool active = false;      // a piece gives ticks
+    bool decoded = false;     // a piece waits
     std::uint32_t ratio = 0;  // 2^-16, 0..65536
   };
   struct Outputs {
