@@ -313,6 +313,31 @@ void Card::clear_faults() { write(reg::kFault, entry(reg::kFault).mask, "clearin
 
 void Card::abort() { write(reg::kControl, field::kControlAbort, "abort"); }
 
+Snapshot Card::stop(std::chrono::nanoseconds patience) {
+  set_hold(true);
+  const std::uint64_t margin = clocks(patience, "stop: patience");
+  wait_for_rest(kSlowestSlew / std::max<std::uint32_t>(read(reg::kSlew), 1) + margin, true);
+  const Snapshot at_rest = snapshot();
+  abort();
+  wait_for_rest(margin, false);  // pulses that the shapers have accepted
+  Snapshot end = snapshot();
+  set_hold(false);
+  end.geometry_begun = at_rest.geometry_begun;
+  end.feed_begun = at_rest.feed_begun;
+  return end;
+}
+
+// Until nothing runs any more, or, with `held_is_rest`, until the time base stands.
+void Card::wait_for_rest(std::uint64_t limit, bool held_is_rest) {
+  for (std::uint64_t waited = 0;; waited += poll_interval()) {
+    const Status now = status();
+    throw_if_faulted(now, "stop");
+    if (!now.busy || (held_is_rest && now.held)) return;
+    if (waited > limit) throw TimeoutError("stop on the path", waited);
+    bus_->sleep(time_of(poll_interval(), identification_.clock_hz));
+  }
+}
+
 void Card::throw_if_faulted(const Status& status, std::string_view context) {
   if (status.faulted) {
     throw FaultError(faults(), std::string(context));
@@ -322,8 +347,14 @@ void Card::throw_if_faulted(const Status& status, std::string_view context) {
 void Card::serve_requests() {
   if (requests_->abort.exchange(false)) {
     requests_->hold.store(-1);
+    requests_->stop.store(false);
     abort();
     throw StateError("card: aborted, as another thread has asked for");
+  }
+  if (requests_->stop.exchange(false)) {
+    requests_->hold.store(-1);
+    const Snapshot end = stop();
+    throw StoppedError(end.geometry_begun, "card: stopped on the path, as another thread has asked for");
   }
   const int hold = requests_->hold.exchange(-1);
   if (hold >= 0) {

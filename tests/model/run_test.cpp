@@ -144,6 +144,14 @@ class Program {
     if (p_.one_in(2)) barrier();
   }
 
+  // Arcs in chords alone, at a path tick for nearly each feed tick.
+  void arcs(double pace) {
+    std::uint64_t ticks = 0;
+    for (int i = 0; i < 4; ++i) ticks += chord_arc(p_.any(500, 3000));
+    piece(ticks, pace);
+    barrier();
+  }
+
   // Refused where anything runs still.
   void direct_move() {
     for (unsigned n = 0; n < axes_; ++n) {
@@ -184,7 +192,7 @@ class Program {
       const auto magnitude = static_cast<std::int64_t>(p_.sized(bits));
       return p_.one_in(2) ? magnitude : -magnitude;
     };
-    const std::uint64_t path_ticks = p_.any(1, ticks);
+    const std::uint64_t path_ticks = p_.any(p_.one_in(2) ? 1 : ticks / 2, ticks);
     const auto k = static_cast<unsigned>(p_.any(1, 24));
     std::vector<std::int64_t> further;
     for (unsigned n = 2; n < card_map::axes_in(mask); ++n) further.push_back(any(36));
@@ -192,7 +200,7 @@ class Program {
                                              {{"path_ticks", path_ticks},
                                               {"prescale", ((int128{path_ticks} << 40) + ticks / 2) / ticks},
                                               {"plane", y << 8 | x << 4 | p_.any(0, 1)},
-                                              {"shifts", k | p_.any(5, 8) << 8},
+                                              {"shifts", k | p_.any(5, 13) << 8},
                                               {"x", any(k + 38)},
                                               {"y", any(k + 38)},
                                               {"first_x", any(38)},
@@ -317,6 +325,28 @@ TEST(Run, EqualsClock) {
   EXPECT_GT(compared.waits, 20 * programs);
   EXPECT_GT(compared.steps, 20 * programs);
   EXPECT_GT(compared.chord_arcs, programs / 4);
+}
+
+// Jumps that end anywhere between a feed tick and the step of its path tick.
+TEST(Run, EqualsClockOnArcsInChords) {
+  const std::uint64_t programs = long_run() ? 1000 : 40;
+  std::uint64_t steps = 0;
+  for (std::uint64_t i = 0; i < programs && !HasFailure(); ++i) {
+    SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
+    model::CardConfig config;
+    config.engines |= card_map::field::kEnginesArcGenerator;
+    Pair pair(Pair::Of::ClockAndRun, config, seed() * 1'000'003 + i);
+    Program program(pair);
+    const double paces[] = {5, 9.7, 31, 120};
+    const double pace = paces[i % 4];
+    program.arcs(pace);
+    for (std::uint64_t left = 1500; left != 0 && !HasFatalFailure(); --left) {
+      pair.wait(pair.any(1, static_cast<std::uint64_t>(8 * pace)));
+      pair.compare();
+    }
+    steps += pair.steps;
+  }
+  EXPECT_GT(steps, 30 * programs);
 }
 
 // A jump that ends while a step waits for a reversal: a hold tick that has passed must count when the next one comes.

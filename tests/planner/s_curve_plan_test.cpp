@@ -251,6 +251,19 @@ TEST(SCurvePlan, LongerWindowsAreNotSlower) {
   EXPECT_LT(before, whole * 1.001);
 }
 
+// A window that is some stopping distances long takes the time of the whole path, and stops nowhere.
+TEST(SCurvePlan, AWindowOfSomeStoppingDistancesIsEnough) {
+  Spans spans;
+  for (int i = 0; i < 20'000; ++i) {
+    const double corner = 150 + 120 * std::sin(i * 0.001) + (i % 7);
+    spans.push_back({0.02, 300, 3'000, 100'000, corner});
+  }
+  const std::vector<Phase> phases = plan(spans, 4'096);
+  EXPECT_NEAR(test::duration_of(phases) / seconds(spans, 20'000), 1, 1e-3);
+  for (std::size_t i = 2; i < phases.size(); ++i) EXPECT_GT(phases[i].speed + (i + 1 == phases.size()) * 10, 10) << i;
+  EXPECT_EQ(std::count_if(phases.begin(), phases.end(), [](const Phase& phase) { return phase.short_sight; }), 0);
+}
+
 TEST(SCurvePlan, IsAFunctionOfTheSpansAlone) {
   Random random(7);
   for (int i = 0; i < 200; ++i) {

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kPart = 1e-9;    // of a limit
 constexpr double kSpeed = 1e-5;   // mm/s: 1e-12 mm from a stop the speed is as much
-constexpr double kLength = 1e-9;  // mm
-constexpr double kTouch = 1e-10;  // mm: less of a phase in a span is rounding
+constexpr double kLength = 1e-8;  // mm
+constexpr double kTouch = 1e-9;   // mm: less of a phase in a span is rounding
 
 double length_at(const Phase& phase, double time) {
   return ((phase.jerk / 6 * time + phase.acceleration / 2) * time + phase.speed) * time;

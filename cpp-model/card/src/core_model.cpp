@@ -267,7 +267,9 @@ void CoreModel::record(bool cut) {
     for (unsigned n = 0; n < config_.axes; ++n) record_.pin(cycles_, n, motion_.position(n));
   }
   if (motion_.engines().path_tick) record_.arc_tick();
-  // The last tick of a path is its own, though the next one begins in the same clock.
+  if (motion_.chord_tick()) record_.chord_tick(cycles_);
+  // The last tick of a path is its own, though the next one begins in the same clock. On an arc in chords feed ticks
+  // make no step.
   const Sequencer& s = motion_.sequencer();
   if (s.outputs().tick) record_.tick(cycles_);
   const MotionCore::Outputs& m = motion_.outputs();

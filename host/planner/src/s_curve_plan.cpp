@@ -38,7 +38,10 @@ class SCurvePlan::Impl {
   }
 
   bool full() const { return finishing_ || window_.full(); }
-  void push(const Span& span) { window_.push(span); }
+  void push(const Span& span) {
+    window_.push(span);
+    caps_.push(span);
+  }
   void finish() { finishing_ = true; }
   bool next(Phase& phase);
 
@@ -51,7 +54,9 @@ class SCurvePlan::Impl {
   void put(double length, double from, double to, RampLimits limits);
   void open_phases();
   void give();
+  std::size_t ramps_until(double position) const;
   double give_until(double position);
+  double rounding() const { return window_.length() * 0x1p-40; }
 
   SpeedWindow window_;
   SpeedCaps caps_;
@@ -106,26 +111,38 @@ void SCurvePlan::Impl::give() {
     position = given_.back().length;
   }
   speed_ = given_.back().to;
-  window_.drop_before(position);
+  caps_.drop(window_.drop_before(position));
+}
+
+// How many ramps of the tail end up to `position`, better where the speed rises next: a later plan may want to fall
+// earlier. Not less than a quarter for that.
+std::size_t SCurvePlan::Impl::ramps_until(double position) const {
+  std::size_t last = 0;
+  std::size_t rises = 0;
+  double at = 0;
+  for (std::size_t i = tail_begin_; i < tail_.size() && at <= position; ++i) {
+    last = i - tail_begin_;
+    if (tail_[i].to > tail_[i].from && at >= position / 4) rises = last;
+    at += tail_[i].length;
+  }
+  if (at <= position) return tail_.size() - tail_begin_;
+  return rises != 0 && tail_[tail_begin_ + last].to < tail_[tail_begin_ + last].from ? rises : last;
 }
 
 // At least one ramp. Ends where there is no acceleration.
 double SCurvePlan::Impl::give_until(double position) {
   double at = 0;
-  while (tail_begin_ < tail_.size()) {
-    Ramp& ramp = tail_[tail_begin_];
-    if (at + ramp.length > position && ramp.from == ramp.to && at < position) {
-      given_.push_back(ramp);
-      given_.back().length = position - at;
-      ramp.length -= position - at;
-      return position;
-    }
-    if (at + ramp.length > position && !given_.empty()) return at;
-    at += ramp.length;
-    given_.push_back(ramp);
-    ++tail_begin_;
+  for (std::size_t count = std::max<std::size_t>(ramps_until(position), 1); count > 0; --count) {
+    at += tail_[tail_begin_].length;
+    given_.push_back(tail_[tail_begin_++]);
   }
-  return window_.length();
+  if (tail_begin_ == tail_.size()) return window_.length();
+  Ramp& next = tail_[tail_begin_];
+  if (next.from != next.to || at + next.length <= position || at >= position) return at;
+  given_.push_back(next);
+  given_.back().length = position - at;
+  next.length -= position - at;
+  return position;
 }
 
 bool SCurvePlan::Impl::plan() {
@@ -187,7 +204,7 @@ bool SCurvePlan::Impl::divide_below(Gap gap) {
   const bool late = falls > cap.end;
   const double first = std::min(cap.begin, falls);
   const double last = late ? cap.end : falls;
-  if (first - window_.falling(first, gap.from, cap.speed).length < gap.begin) return false;
+  if (first - window_.falling(first, gap.from, cap.speed).length < gap.begin - rounding()) return false;
   gaps_.push_back({last, gap.end, cap.speed, gap.to, late ? gap.most : cap.speed, late ? cap.after : kNoCap});
   gaps_.push_back({first, last, cap.speed, cap.speed, cap.speed, kNoCap});
   gaps_.push_back({gap.begin, first, gap.from, cap.speed, gap.most, cap.before});
@@ -205,9 +222,9 @@ bool SCurvePlan::Impl::hop(const Gap& gap) {
     const double up = ramp_length(gap.from, top, limits.up);
     const double down = ramp_length(gap.to, top, limits.down);
     const double steady = length - up - down;
-    const bool rounding = steady < length * 0x1p-40;
-    put(rounding ? up + steady : up, gap.from, top, limits.up);
-    if (!rounding) put(steady, top, top, limits.up);
+    const bool none = steady < rounding();
+    put(none ? up + steady : up, gap.from, top, limits.up);
+    if (!none) put(steady, top, top, limits.up);
     put(down, top, gap.to, limits.down);
     return true;
   }
@@ -215,9 +232,8 @@ bool SCurvePlan::Impl::hop(const Gap& gap) {
   const SpeedWindow::Fit ramp =
       rises ? window_.rising(gap.begin, gap.from, gap.to) : window_.falling(gap.end, gap.from, gap.to);
   const double rest = length - ramp.length;
-  const double rounding = window_.length() * 0x1p-40;
-  if (rest < -rounding) return false;
-  const bool whole = rest < rounding && gap.from != gap.to;
+  if (rest < -rounding()) return false;
+  const bool whole = rest < rounding() && gap.from != gap.to;
   if (!rises && !whole) put(rest, gap.from, gap.from, ramp.limits);
   put(whole ? length : ramp.length, gap.from, gap.to, ramp.limits);
   if (rises && !whole) put(rest, gap.to, gap.to, ramp.limits);

@@ -10,28 +10,78 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-SpeedCaps::SpeedCaps(std::size_t spans) {
-  spans_.reserve(spans);
-  corners_.reserve(spans);
+LevelledSpeeds::LevelledSpeeds(std::size_t most) {
+  wanted_.reserve(most);
+  levelled_.reserve(most);
+}
+
+void LevelledSpeeds::push(double speed, bool brief) {
+  constexpr double kNoise = 0x1p-11;
+  wanted_.push_back(speed);
+  levelled_.push_back(speed);
+  if (!brief) {
+    close();
+    open_ = 0;
+  } else if (speed == kInfinite) {
+    if (open_ != 0) ++open_;
+  } else if (open_ != 0 && std::max(high_, speed) * (1 - kNoise) <= std::min(low_, speed)) {
+    ++open_;
+    low_ = std::min(low_, speed);
+    high_ = std::max(high_, speed);
+  } else {
+    close();
+    open_ = 1;
+    low_ = high_ = speed;
+  }
+}
+
+// The last one is not of the equal ones.
+void LevelledSpeeds::close() {
+  const std::size_t end = levelled_.size() - 1;
+  for (std::size_t i = end - std::min(open_, end); i < end; ++i) {
+    if (levelled_[i] != kInfinite) levelled_[i] = low_;
+  }
+}
+
+void LevelledSpeeds::drop(std::size_t count) {
+  const auto passed = static_cast<std::ptrdiff_t>(count);
+  wanted_.erase(wanted_.begin(), wanted_.begin() + passed);
+  levelled_.erase(levelled_.begin(), levelled_.begin() + passed);
+  open_ = std::min(open_, levelled_.size());
+}
+
+double LevelledSpeeds::at(std::size_t i, double start) const {
+  const double wanted = wanted_[i];
+  if (wanted == kInfinite) return wanted;
+  const double levelled = i + open_ >= levelled_.size() ? low_ : levelled_[i];
+  return wanted >= start ? std::max(levelled, start) : levelled;
+}
+
+SpeedCaps::SpeedCaps(std::size_t spans) : spans_(spans), corners_(spans) {
   caps_.reserve(2 * spans);
   open_.reserve(2 * spans);
 }
 
+void SpeedCaps::push(const Span& span) {
+  const bool brief = span.length * span.jerk <= span.speed * span.acceleration;
+  const bool corner = last_.exit_speed < std::min(last_.speed, span.speed);
+  spans_.push(span.speed, brief);
+  corners_.push(corner ? last_.exit_speed : kInfinite, brief);
+  last_ = span;
+}
+
+void SpeedCaps::drop(std::size_t count) {
+  spans_.drop(count);
+  corners_.drop(count);
+}
+
 int SpeedCaps::build(const SpeedWindow& window, double start) {
-  spans_.clear();
-  corners_.clear();
   caps_.clear();
-  for (std::size_t i = 0; i < window.size(); ++i) spans_.push_back(window[i].speed);
-  flatten(window, spans_, start);
-  for (std::size_t i = 0; i + 1 < window.size(); ++i) {
-    const double corner = window[i].exit_speed;
-    corners_.push_back(corner < std::min(spans_[i], spans_[i + 1]) ? corner : kInfinite);
-  }
-  flatten(window, corners_, start);
   for (std::size_t i = 0; i < window.size(); ++i) {
-    add(window.position(i), window.position(i + 1), spans_[i]);
-    if (i + 1 == window.size() || corners_[i] == kInfinite) continue;
-    add(window.position(i + 1), window.position(i + 1), corners_[i]);
+    const double begin = window.position(i);
+    const double corner = i == 0 ? kInfinite : corners_.at(i, start);
+    if (corner != kInfinite) add(begin, begin, corner);
+    add(begin, window.position(i + 1), spans_.at(i, start));
   }
   return link();
 }
@@ -42,38 +92,6 @@ void SpeedCaps::add(double begin, double end, double speed) {
     return;
   }
   caps_.push_back({begin, end, speed, -1, -1});
-}
-
-// Speeds of neighbours that are equal but for noise are made equal, where they last no longer than a ramp's bends:
-// else each would have ramps of its own. Those above `start` stay above it.
-void SpeedCaps::flatten(const SpeedWindow& window, std::vector<double>& speeds, double start) {
-  constexpr double kNoise = 0x1p-11;
-  double low = 0;
-  double high = 0;
-  std::size_t first = 0;
-  const auto level = [&](std::size_t end) {
-    for (; first < end; ++first) {
-      double& speed = speeds[first];
-      if (speed != kInfinite) speed = speed >= start ? std::max(low, start) : low;
-    }
-  };
-  for (std::size_t i = 0; i < speeds.size(); ++i) {
-    const Span& span = window[i];
-    const double speed = speeds[i];
-    if (span.length * span.jerk > span.speed * span.acceleration) {
-      level(i);
-      first = i + 1;
-      low = high = 0;
-    } else if (speed != kInfinite) {
-      if (std::max(high, speed) * (1 - kNoise) > std::min(low, speed)) {
-        level(i);
-        low = high = speed;
-      }
-      low = std::min(low, speed);
-      high = std::max(high, speed);
-    }
-  }
-  level(speeds.size());
 }
 
 int SpeedCaps::link() {

@@ -22,13 +22,14 @@ SpeedWindow::SpeedWindow(std::size_t spans) : most_(spans) {
   blocks_.reserve(spans / kBlock + 1);
 }
 
-void SpeedWindow::drop_before(double position) {
+std::size_t SpeedWindow::drop_before(double position) {
   // What rounding leaves of a span is not a span.
   const double nearly = position + length() * 0x1p-44;
   const auto border = std::upper_bound(positions_.begin() + 1, positions_.end(), nearly);
   const auto passed = border - positions_.begin() - 1;
   spans_.erase(spans_.begin(), spans_.begin() + passed);
   if (!spans_.empty()) spans_.front().length = std::min(spans_.front().length, *border - position);
+  return static_cast<std::size_t>(passed);
 }
 
 void SpeedWindow::index() {

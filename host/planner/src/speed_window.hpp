@@ -19,8 +19,9 @@ class SpeedWindow {
   const Span& operator[](std::size_t i) const { return spans_[i]; }
 
   void push(const Span& span) { spans_.push_back(span); }
-  // The window begins at `position` from now on. index() comes before the next question.
-  void drop_before(double position);
+  // The window begins at `position` from now on; returns how many spans are no longer in it. index() comes before the
+  // next question.
+  std::size_t drop_before(double position);
   void index();
 
   // Where span i begins; size(): the end.

@@ -150,6 +150,8 @@ class Card {
   // that does finds the request. Of several holds the last counts; an abort drops them.
   void request_hold(bool hold) noexcept { requests_->hold.store(hold ? 1 : 0); }
   void request_abort() noexcept { requests_->abort.store(true); }
+  // Likewise stop(), after which its call throws StoppedError.
+  void request_stop() noexcept { requests_->stop.store(true); }
   // Likewise set_ratio(); of several for a class the last counts. A ratio that it would not take is left out.
   void request_ratio(PieceClass piece_class, std::uint32_t ratio) noexcept {
     requests_->ratio[static_cast<std::size_t>(piece_class)].store(ratio);
@@ -180,6 +182,15 @@ class Card {
   // Drops the queues, stops the path and reopens the stream. Positions stay; faults stay latched.
   void abort();
 
+  // Stops on the path: a hold, and when the card is at rest an abort; the hold is then over. Gives back the state at
+  // the end, with the commands begun as they stood before the abort: no pulse comes after it, and a stream may begin
+  // from there. Throws TimeoutError, the card still holding, where it is not at rest `patience` (card time) after the
+  // ramp.
+  Snapshot stop(std::chrono::nanoseconds patience = std::chrono::seconds(1));
+  // In position: the queues and the shapers are empty, and nothing runs. A card that holds with a path under way is
+  // not.
+  bool in_position() { return !busy(); }
+
   // The rest is for what is built on cards: streams, lines.
 
   // Makes the accesses in one transfer, and sees to it that none was refused: else RefusedError, or FaultError.
@@ -203,7 +214,7 @@ class Card {
   void note_ratio(PieceClass piece_class, std::uint32_t ratio) {
     ratios_[static_cast<std::size_t>(piece_class)] = ratio;
   }
-  // Does what other threads have asked for. Throws StateError after an abort.
+  // Does what other threads have asked for. Throws StateError after an abort, StoppedError after a stop.
   void serve_requests();
   // Lets up to `clocks` pass: fewer only where the bus has an interrupt and the card is faulted, refuses something or
   // gets to what `wake` asks for, by the bits of IRQ_ENABLE. True for the interrupt.
@@ -226,10 +237,12 @@ class Card {
     std::atomic<int> hold{-1};  // 1 hold, 0 go on, -1 nothing asked
     std::array<std::atomic<std::uint32_t>, kPieceClasses> ratio{kNoRatio, kNoRatio, kNoRatio};
     std::atomic<bool> abort{false};
+    std::atomic<bool> stop{false};
   };
 
   explicit Card(Bus& bus) : bus_(&bus), requests_(std::make_shared<Requests>()) {}
   void write(std::uint32_t address, std::uint32_t value, std::string_view context);
+  void wait_for_rest(std::uint64_t limit, bool held_is_rest);
   std::size_t checked_transfer(Access* accesses, std::size_t count);
   void confirmed_transfer(Access* accesses, std::size_t count, bool confirm, std::string_view context);
   std::optional<Refusal> latched_refusal();
