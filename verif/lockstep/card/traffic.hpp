@@ -152,7 +152,10 @@ inline void Traffic::starved() {
   std::uint64_t pieces = 0;
   for (std::uint64_t left = 2 + below(30); left != 0; --left) {
     std::uint64_t ticks = 0;
-    if (!send(random_path(random, axes_, pace, ticks, arc_every_))) return abort();
+    const bool chords = chords_every != 0 && axes_ > 1 && one_in(chords_every);
+    if (!(chords ? send_words(random_chords(random, axes_, ticks), false)
+                 : send(random_path(random, axes_, pace, ticks, arc_every_))))
+      return abort();
     paths += ticks;
     if (one_in(3)) host_.wait(below(one_in(4) ? 8000 : 600));
     while (pieces < paths && (left == 1 || !one_in(3))) {
