@@ -58,6 +58,9 @@ struct Plan {
   double seconds = 0;          // estimate
   std::uint64_t segments = 0;  // paths
   std::uint64_t commands = 0;  // for the card
+  std::uint64_t stops = 0;        // of motions that end at rest
+  double velocity_jump = 0;       // mm/s, the largest of an axis at a corner
+  double acceleration_step = 0;   // mm/s^2, the largest where an arc begins or ends without a corner
   planner::Pulses start{};     // machine coordinates; where the first line begins
   planner::Pulses end{};
   std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first
