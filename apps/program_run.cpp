@@ -88,6 +88,9 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
 
   if (options.planned) options.planned(plan);
 
+  for (const std::size_t axis : machine.second_motors()) {
+    recording.steps_per_mm.push_back(machine.axes[axis].steps_per_mm);
+  }
   recording.steps = options.steps;
   recording.path_steps = options.path_steps;
   recording.plot = options.plot;

@@ -73,7 +73,7 @@ struct Plan {
 };
 
 struct Outcome {
-  std::vector<std::int64_t> counted;         // pulses from the start, by axis, as the card counted them
+  std::vector<std::int64_t> counted;         // pulses from the start, by axis of the card, as it counted them
   std::vector<std::int64_t> final_position;  // pulses, machine coordinates
   std::uint64_t commands = 0;                // sent
   std::optional<std::uint32_t> under_runs;   // holds for want of commands; none where the card has no such hold
