@@ -99,6 +99,11 @@ void MotionChoice::add_to(CLI::App& command) {
                   "these where one cannot")
       ->check(CLI::IsMember({"generator", "accumulator", "chords"}))
       ->capture_default_str();
+  command
+      .add_option("--profile", profile,
+                  "how the speed changes: trapezoid or s-curve (default: s-curve where every axis has a max_jerk)")
+      ->check(CLI::IsMember({"trapezoid", "s-curve"}).description(""))
+      ->type_name("PROFILE");
   command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
   command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
 }
@@ -139,6 +144,9 @@ run::RunSettings MotionChoice::settings() const {
   settings.arcs = arcs == "chords"        ? planner::ArcsBy::kChords
                   : arcs == "accumulator" ? planner::ArcsBy::kAccumulator
                                           : planner::ArcsBy::kGenerator;
+  if (profile) {
+    settings.profile = *profile == "s-curve" ? planner::SpeedProfile::kSCurve : planner::SpeedProfile::kTrapezoid;
+  }
   return settings;
 }
 

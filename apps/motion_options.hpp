@@ -34,6 +34,7 @@ struct MotionChoice {
   std::optional<double> bytes_per_second;
   std::size_t first_line = 1;
   std::string arcs = "generator";
+  std::optional<std::string> profile;
   bool single_block = false;
   bool run_deleted = false;
 

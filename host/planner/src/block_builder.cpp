@@ -159,8 +159,8 @@ double BlockBuilder::measure_line(Block& block, const gcode::Coordinates& way) c
   double squares = 0;
   std::array<double, kFeedGroups.size() + 1> feed_squares{};
   double scale = 0;
-  double finest = 0;         // of all that move
-  double other_pulses = 0;   // the most of an axis that the length does not count
+  double finest = 0;        // of all that move
+  double other_pulses = 0;  // the most of an axis that the length does not count
   for (std::size_t i = 0; i < axis_count_; ++i) {
     const Axis& axis = axes_[i];
     if (way[i] == 0) continue;

@@ -1,10 +1,10 @@
 // From the speed plan's phases to the card's feed pieces, in whole ticks. Internal to the planner.
 //
 // A phase ends anywhere on the path; its piece begins and ends at the ticks that are nearest, with the speeds that the
-// plan has there. The feed generator holds a rate for 32 clocks and then adds the acceleration, and to that the jerk: the
-// rates of a piece are the means of the planned speed over 32 clocks each, so that positions at whole updates are the
-// plan's. A stop ends at the rate of one tick before it, which is the piece's floor: slower, its last tick would hang. A
-// start begins at that rate too where acceleration may jump.
+// plan has there. The feed generator holds a rate for 32 clocks and then adds the acceleration, and to that the jerk:
+// the rates of a piece are the means of the planned speed over 32 clocks each, so that positions at whole updates are
+// the plan's. A stop ends at the rate of one tick before it, which is the piece's floor: slower, its last tick would
+// hang. A start begins at that rate too where acceleration may jump.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,7 @@ class Quantiser {
   };
   struct Piece {
     driver::FeedCommand command;
-    double most = 0;          // the highest rate
+    double most = 0;  // the highest rate
     double clocks = 0;
     std::uint64_t block = 0;  // where it begins
     bool stop = false;
@@ -81,10 +81,10 @@ class Quantiser {
 
   // Where the phases are.
   bool moving_ = false;
-  std::uint64_t at_ = 0;     // block
+  std::uint64_t at_ = 0;  // block
   double mm_ = 0;
-  double portion_mm_ = 0;    // and where the last portion of a phase ended
-  double base_mm_ = 0;       // where the density is what it is from
+  double portion_mm_ = 0;  // and where the last portion of a phase ended
+  double base_mm_ = 0;     // where the density is what it is from
   std::uint64_t base_tick_ = 0;
   double rate_a_speed_ = 0;  // ticks a clock at 1 mm/s
   std::uint64_t tick_ = 0;   // end of the last piece
@@ -102,7 +102,7 @@ class Quantiser {
   std::uint64_t completed_ = 0;  // from the first: complete
   std::uint64_t seen_ = 0;       // their rates count in `highest_`
   std::uint64_t last_ = 0;
-  double seen_clocks_ = 0;       // of the pieces from completed_ to seen_
+  double seen_clocks_ = 0;              // of the pieces from completed_ to seen_
   std::vector<std::uint64_t> highest_;  // a ring: pieces from completed_ to seen_ before which none is as fast
   std::uint64_t highest_first_ = 0;
   std::uint64_t highest_last_ = 0;

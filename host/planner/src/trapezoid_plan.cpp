@@ -6,9 +6,9 @@
 namespace trammel::planner {
 namespace {
 
-constexpr std::size_t kChunks = 16;      // of a window
-constexpr double kNoLength = 1e-9;       // share of a span that rounding may leave over
-constexpr double kSameMotion = 1e-6;     // relative: accelerations, or constant speeds, that make one phase
+constexpr std::size_t kChunks = 16;   // of a window
+constexpr double kNoLength = 1e-9;    // share of a span that rounding may leave over
+constexpr double kSameMotion = 1e-6;  // relative: accelerations, or constant speeds, that make one phase
 
 bool same(double a, double b) { return std::abs(a - b) <= kSameMotion * std::abs(b); }
 

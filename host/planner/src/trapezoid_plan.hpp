@@ -40,12 +40,12 @@ class TrapezoidPlan final : public SpeedPlan {
   std::size_t chunk_;
   std::size_t first_ = 0;
   std::size_t count_ = 0;
-  std::size_t due_ = 0;     // spans whose phases are wanted before the next push
+  std::size_t due_ = 0;  // spans whose phases are wanted before the next push
   bool finished_ = false;
-  double speed_ = 0;        // squared, where the first span begins
-  Phase pending_;           // may go on in the next span
+  double speed_ = 0;  // squared, where the first span begins
+  Phase pending_;     // may go on in the next span
   std::array<Phase, 4> phases_;
-  std::size_t made_ = 0;    // of phases_
+  std::size_t made_ = 0;  // of phases_
   std::size_t given_ = 0;
 };
 

@@ -23,10 +23,10 @@ enum class PathControl : std::uint8_t {
 
 struct Motion {
   MotionKind kind = MotionKind::kLine;
-  std::size_t line = 0;    // of the source, from 1
-  Coordinates target{};    // where it ends; kDwell and kEnd: where the one before ended
-  double feed = 0;         // mm/s along the path; 0 for kTraverse and where `seconds` counts
-  double seconds = 0;      // kDwell, or the duration of a motion under G93
+  std::size_t line = 0;  // of the source, from 1
+  Coordinates target{};  // where it ends; kDwell and kEnd: where the one before ended
+  double feed = 0;       // mm/s along the path; 0 for kTraverse and where `seconds` counts
+  double seconds = 0;    // kDwell, or the duration of a motion under G93
   PathControl path_control = PathControl::kContinuous;
   double tolerance = 0;    // mm, G64 P: how far the path may be left in corners
   bool clockwise = false;  // the rest: kArc; seen with the plane's first axis to the right and the second up
