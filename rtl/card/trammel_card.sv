@@ -7,6 +7,7 @@ module trammel_card #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          UnderrunHold  = 1,     // 0: without
     parameter int          Classes       = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks    = 1,     // 0: without
     parameter logic [31:0] BuildId       = 0,
@@ -93,6 +94,7 @@ module trammel_card #(
       .Classes(Classes),
       .Watermarks(Watermarks),
       .DirectMode(DirectMode),
+      .UnderrunHold(UnderrunHold),
       .Ports(1),
       .BuildId(BuildId),
       .BuildDirty(BuildDirty),

@@ -223,7 +223,11 @@ class Program {
     }
     const auto piece_class = static_cast<std::uint8_t>(p_.one_in(2) ? 0 : p_.any(0, 2));
     p_.send(command_words(card_map::Opcode::Feed, piece_class, number_++, ticks,
-                          {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
+                          {{"rate", rate},
+                           {"acceleration", acceleration},
+                           {"jerk", jerk},
+                           {"floor", floor},
+                           {"stop_distance", p_.one_in(2) ? 0 : p_.any(1, p_.one_in(4) ? 5000 : 400)}}));
   }
 
   void barrier() {
@@ -279,6 +283,7 @@ struct Compared {
   std::uint64_t steps = 0;
   std::uint64_t clocks = 0;
   std::uint64_t chord_arcs = 0;
+  std::uint64_t underruns = 0;
 };
 
 Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t longest) {
@@ -306,6 +311,7 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     compared.waits += pair.waits;
     compared.steps += pair.steps;
     compared.chord_arcs += pair.chord_arcs;
+    compared.underruns += pair.clocked.read(reg::kUnderruns);
     compared.clocks += pair.one_by_one / 2;
   }
   return compared;

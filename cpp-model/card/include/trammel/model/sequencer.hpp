@@ -25,6 +25,7 @@ class Sequencer {
     bool feed_empty = true;
     std::uint16_t geometry_word = 0;
     std::uint16_t feed_word = 0;
+    bool wait = false;  // no piece begins
     // direct loader
     bool direct_go = false;
     std::uint8_t direct_mask = 0;
@@ -77,6 +78,10 @@ class Sequencer {
 
   // The path is on an engine and still takes feed ticks.
   bool engine_taken() const { return path_ == Path::Engine && (!drained_ || now_ < drained_at_ + kEngineJudged); }
+
+  // A tick is taken in this clock.
+  bool takes(const Inputs& in) const;
+  bool piece_waits() const { return feed_.decoded() && feed_.is_feed(); }
 
   const Outputs& outputs() const { return out_; }
   const Record& record() const { return record_; }
@@ -134,7 +139,6 @@ class Sequencer {
 
   void clock_all(const Inputs& in);
   bool calm(const Inputs& in) const;
-  bool takes(const Inputs& in) const;
   Decision decide(const Inputs& in) const;
   bool judged(const Inputs& in) const;
   bool mismatches() const;
