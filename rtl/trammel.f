@@ -24,6 +24,8 @@ commands/geometry_decoder.sv
 commands/halfword_queue.sv
 host/axi4_lite_port.sv
 host/port_arbiter.sv
+io/input_pins.sv
+io/output_pins.sv
 path/arc_generator.sv
 path/barrier.sv
 path/begun_counter.sv
@@ -31,6 +33,7 @@ path/chord_counter.sv
 path/chord_rotation.sv
 path/deviation_accumulator.sv
 path/geometry_sequencer.sv
+path/path_commands.sv
 path/path_engines.sv
 path/path_sequencer.sv
 path/path_tick_gate.sv

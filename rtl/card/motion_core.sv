@@ -3,7 +3,9 @@
 
 module motion_core #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+    parameter logic [31:0] Engines = '1,  // what is built in, as the register ENGINES shows it
+    parameter int          Inputs  = 4,
+    parameter int          Outputs = 4
 ) (
     input  wire logic                clk_i,
     input  wire logic                rst_i,
@@ -11,6 +13,12 @@ module motion_core #(
     input  wire logic [        40:0] setting_i,         // {set, address[9:2], data}
     input  wire logic                abort_i,
     input  wire logic [        31:0] clear_fault_i,
+    // pins of path commands
+    input  wire logic [  Inputs-1:0] input_i,
+    input  wire logic [ Outputs-1:0] output_idle_i,     // levels in reset
+    output logic      [ Outputs-1:0] output_o,
+    output logic                     mark_o,
+    output logic      [        63:0] io_o,              // {marks, outputs, inputs}
     // queues
     input  wire logic                geometry_empty_i,
     input  wire logic [        15:0] geometry_word_i,
@@ -67,6 +75,8 @@ module motion_core #(
   logic               swap;
   logic [   Axes-1:0] active;
   logic [        4:0] engine;
+  logic [        1:0] instant;
+  logic               path_over;
   logic               barrier_begin;
   logic               barrier_done;
   logic               path_active;
@@ -169,6 +179,8 @@ module motion_core #(
       .done_i         (engine_done),
       .elsewhere_i    (elsewhere),
       .axes_live_i    (axes_live),
+      .instant_o      (instant),
+      .over_o         (path_over),
       .feed_at_i      (feed_at),
       .feed_runs_i    (feed_runs),
       .barrier_begin_o(barrier_begin),
@@ -231,6 +243,26 @@ module motion_core #(
       .fault_o      (step_fault),
       .observe_o    (axes_observe)
   );
+
+  if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_path_commands
+    path_commands #(
+        .Inputs (Inputs),
+        .Outputs(Outputs)
+    ) commands (
+        .*,
+        .cut_i  (cut_o),
+        .load_i (load),
+        .taken_i(instant),
+        .over_i (path_over),
+        .runs_i (path_active)
+    );
+  end else begin : gen_no_path_commands
+    assign output_o = output_idle_i;
+    assign {mark_o, io_o} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, input_i, instant, path_over};
+  end
 
   if (Engines[card_map_pkg::ENGINE_DIRECT_MODE]) begin : gen_direct_mode
     direct_loader #(

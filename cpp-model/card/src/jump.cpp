@@ -304,6 +304,7 @@ bool MotionCore::may_jump(const Inputs& in) const {
   if (s.swap || s.feed_swap || s.direct || out_.path_step != 0 || axes_live_ || out_.step_fault != 0) return false;
   if (in.setting.set || in.abort || in.clear_fault != 0 || in.start || !stop_.quiet() || !loader_.quiet()) return false;
   if (!engines_.settled() || !time_base_.steady(stop.hold)) return false;
+  if (!commands_.quiet(in.pins, s.path_active)) return false;
   for (const Axis& axis : axes_) {
     if (!axis.calm()) return false;
   }

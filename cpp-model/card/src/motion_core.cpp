@@ -12,8 +12,8 @@ unsigned idle_level_of(std::uint32_t levels, unsigned axes, unsigned axis) {
 
 }  // namespace
 
-MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all)
-    : clock_all_(clock_all), loader_(axes), sequencer_(clock_all), engines_(clock_all) {
+MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all, const PathCommands::Config& pins)
+    : clock_all_(clock_all), loader_(axes), sequencer_(clock_all), engines_(clock_all), commands_(pins) {
   for (unsigned n = 0; n < axes; ++n) {
     axes_.emplace_back(n, idle_level_of(idle_level, axes, n), clock_all);
     put(out_.step, 1U << n, axes_[n].shaper().outputs().step);
@@ -53,6 +53,7 @@ void MotionCore::clock(const Inputs& in) {
   const bool events = out_.step_fault != 0 || s.mismatch || s.incomplete || in.abort || in.clear_fault != 0;
   if (clock_all_ || events || in.setting.set || !stop_.quiet())
     stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, in.setting});
+  clock_commands(in, stop.cut);
   clock_busy();
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
@@ -61,6 +62,21 @@ void MotionCore::clock(const Inputs& in) {
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
   time_base_.clock({stop.hold, in.setting});
   sequencer_.clock(sequencer_in);
+}
+
+void MotionCore::clock_commands(const Inputs& in, bool cut) {
+  const Sequencer::Outputs& s = sequencer_.outputs();
+  PathCommands::Inputs c;
+  c.cut = cut;
+  c.output = sequencer_.takes_output();
+  c.mark = sequencer_.takes_mark();
+  c.over = s.over;
+  c.runs = s.path_active;
+  c.pins = in.pins;
+  c.load = sequencer_.load();
+  c.setting = in.setting;
+  const bool events = cut || c.output || c.mark || c.over || c.load.to(load_target::kCommand) || in.setting.set;
+  if (clock_all_ || events || !commands_.quiet(in.pins, s.path_active)) commands_.clock(c);
 }
 
 void MotionCore::clock_axes(const Inputs& in, bool cut) {

@@ -10,6 +10,7 @@
 #include "trammel/model/buses.hpp"
 #include "trammel/model/direct_loader.hpp"
 #include "trammel/model/feed_generator.hpp"
+#include "trammel/model/path_commands.hpp"
 #include "trammel/model/path_engines.hpp"
 #include "trammel/model/sequencer.hpp"
 #include "trammel/model/step_record.hpp"
@@ -34,6 +35,7 @@ class MotionCore {
     bool start = false;
     std::uint8_t start_mask = 0;
     std::uint32_t loader_data = 0;
+    std::uint16_t pins = 0;  // inputs of the card
   };
   // A bit for each axis.
   struct Outputs {
@@ -49,7 +51,7 @@ class MotionCore {
   };
 
   // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests.
-  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false);
+  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false, const PathCommands::Config& pins = {});
 
   // One rising edge.
   void clock(const Inputs& in);
@@ -64,6 +66,8 @@ class MotionCore {
   const DirectLoader::Outputs& loader() const { return loader_.outputs(); }
   const TimeBase::Outputs& time() const { return time_base_.outputs(); }
   const FeedGenerator::Outputs& feed() const { return feed_.outputs(); }
+  const PathCommands& commands() const { return commands_; }
+  bool chord_tick() const { return engines_.chord_tick(); }
   const PathEngines::Outputs& engines() const { return engines_.outputs(); }
   std::uint32_t position(unsigned axis) const { return axes_[axis].shaper().outputs().position; }
 
@@ -74,6 +78,7 @@ class MotionCore {
   static constexpr unsigned kBusyClocks = 11;
 
   void clock_axes(const Inputs& in, bool cut);
+  void clock_commands(const Inputs& in, bool cut);
   void clock_busy();
   void show_axis(unsigned n);
   bool may_jump(const Inputs& in) const;
@@ -88,6 +93,7 @@ class MotionCore {
   FeedGenerator feed_;
   PathEngines engines_;
   WaitTimer wait_timer_;
+  PathCommands commands_;
   std::vector<Axis> axes_;
   bool axes_live_ = false;  // a clock late
   bool running_ = false;    // a clock late

@@ -62,11 +62,11 @@ class PathEngines {
     const bool commanded = in.cut || in.load.valid || clock_all_;
     if (commanded || routed_step_ != 0 || !accumulator_.quiet()) route(in.load, accumulator);
     if (commanded || start || tick || !accumulator_.quiet()) accumulator_.clock({false, in.load, start, tick, in.cut});
-    const bool chord_tick = prescaler_.outputs().step && engine_ == card_map::engine::kArcGenerator;
-    clock_arc(in, chord_tick);
+    const bool chord = chord_tick();
+    clock_arc(in, chord);
     give(in.cut, engine.ready);
     if (commanded || in.tick || in.swap || !prescaler_.quiet()) clock_prescaler(in);
-    delay(in, chord_tick);
+    delay(in, chord);
     if (in.swap) engine_ = in.engine;
     if (in.cut) engine_ = card_map::engine::kLines;
     step();
@@ -100,6 +100,8 @@ class PathEngines {
     own_ticks_ = ticks_;
   }
 
+  // A path tick of the arc generator shows.
+  bool chord_tick() const { return prescaler_.outputs().step && engine_ == card_map::engine::kArcGenerator; }
   const PulseGenerator& prescaler() const { return prescaler_; }
   PulseGenerator& prescaler() { return prescaler_; }
   const DeviationAccumulator& accumulator() const { return accumulator_; }

@@ -27,6 +27,7 @@ class CardSteps {
 class StepRecord {
  public:
   static constexpr std::uint64_t kTickToStep = 7;  // clocks from a tick that shows to its step on the path
+  static constexpr std::uint64_t kChordToStep = 5;
 
   void set_steps(CardSteps* steps) { steps_ = steps; }
 
@@ -56,6 +57,8 @@ class StepRecord {
   // A tick shows after edge `cycle`.
   void tick(std::uint64_t cycle) { place(cycle, ++taken_); }
   void arc_tick() { ++arc_taken_; }
+  // A path tick of an arc in chords shows at the prescaler; its steps on the path come kChordToStep clocks later.
+  void chord_tick(std::uint64_t cycle) { place(cycle + kChordToStep - kTickToStep, ++arc_taken_); }
 
   void pin(std::uint64_t cycle, unsigned axis, std::uint32_t position) {
     if (position == position_[axis]) return;
