@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "motion_options.hpp"
+#include "operator_timeline.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/run/path_identity.hpp"
 #include "trammel/run/plot.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/run/text_sink.hpp"
@@ -17,6 +20,9 @@
 namespace trammel::app {
 
 struct RunOptions {
+  run::RunSettings settings;
+  Operation operation;
+  double most_percent = 100;       // largest override
   run::TextSink* steps = nullptr;  // not owned
   run::TextSink* path_steps = nullptr;
   bool plot = false;
@@ -43,6 +49,13 @@ struct RunResult {
   std::uint64_t segments = 0;                    // of the program
   std::uint64_t commands = 0;                    // sent to the card
   double planned_seconds = 0;                    // estimate
+  std::optional<std::uint32_t> under_runs;       // none where the card does not count them
+  std::uint64_t path_steps = 0;                  // before the shapers
+  std::string path_identity;                     // of their list
+  run::ShaperDelay::Range shaper_delay;          // clocks
+  std::optional<double> commanded_feed;          // mm/min, means
+  std::optional<double> achieved_feed;           // mm/min
+  std::vector<MadeEvent> events;                 // that the card has seen
   double wall_seconds = 0;                       // the simulation took
   std::map<std::string, std::size_t> accepted;   // words without effect yet
   std::vector<run::FeedNotReached> feeds_not_reached;

@@ -11,7 +11,9 @@
 #include "engine_options.hpp"
 #include "engine_speed.hpp"
 #include "errors.hpp"
+#include "motion_options.hpp"
 #include "outputs.hpp"
+#include "program_check.hpp"
 #include "program_file.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
@@ -29,11 +31,13 @@ struct Options {
   std::optional<std::string> machine;
   std::vector<std::string> overrides;
   EngineChoice engine;
+  MotionChoice motion;
   std::optional<std::string> json;
   std::optional<std::string> steps;
   std::optional<std::string> path_steps;
   std::optional<std::string> plot;
   bool progress = false;
+  bool check = false;
 };
 
 machine::Machine machine_of(const Options& options) {
@@ -44,7 +48,19 @@ machine::Machine machine_of(const Options& options) {
 
 void tell(const char* what, const std::string& text) { fmt::print(stderr, "trammel: {}: {}\n", what, text); }
 
+// What a run alone can write.
+void refuse_outputs_of_a_run(const Options& options) {
+  const auto refuse = [](const char* option, bool given) {
+    if (given) throw UsageError(fmt::format("{}: nothing runs with --check", option));
+  };
+  refuse("--steps", options.steps.has_value());
+  refuse("--path-steps", options.path_steps.has_value());
+  refuse("--plot", options.plot.has_value());
+  refuse("--trace", options.engine.trace.has_value());
+}
+
 void execute(const Options& options) {
+  if (options.check) refuse_outputs_of_a_run(options);
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
   Output* const plot = outputs.add("--plot", options.plot);
@@ -54,6 +70,8 @@ void execute(const Options& options) {
   run.path_steps = outputs.add("--path-steps", options.path_steps);
   run.plot = options.plot.has_value();
   run.progress = options.progress;
+  run.settings = options.motion.settings();
+  run.operation = options.motion.operation(run.most_percent);
   outputs.keep("the program", options.program);
   if (options.machine) outputs.keep("the machine file", *options.machine);
   outputs.check();
@@ -66,6 +84,13 @@ void execute(const Options& options) {
   const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
+  if (options.check) {
+    const CheckResult result = check_program(lines, machine, {engine.clock_hz, engine.axes, true}, run.settings);
+    for (const std::string& text : feed_warnings(result.plan)) tell("warning", text);
+    outputs.open();
+    if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
+    return outputs.commit(summary(result));
+  }
   run.planned = [&](const run::Plan& plan) {
     outputs.open();
     if (trace != nullptr) engine.trace->path = trace->path_to_write();
@@ -93,6 +118,7 @@ void add_run_command(CLI::App& app) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   options->engine.add_to(*command);
+  options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
@@ -100,6 +126,7 @@ void add_run_command(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
   command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");
+  command->add_flag("--check", options->check, "read, plan and time the program; nothing runs");
   command->footer("One FILE may be '-', standard output; what people read then goes to standard error.");
   command->callback([options] { execute(*options); });
 }

@@ -13,6 +13,7 @@ axis/waiting_steps.sv
 card/busy_timer.sv
 card/card_core.sv
 card/motion_core.sv
+card/path_to_pins.sv
 card/trammel_card.sv
 commands/command_checker.sv
 commands/command_fetch.sv
@@ -33,6 +34,7 @@ path/chord_counter.sv
 path/chord_rotation.sv
 path/deviation_accumulator.sv
 path/geometry_sequencer.sv
+path/instant_commands.sv
 path/path_commands.sv
 path/path_engines.sv
 path/path_sequencer.sv

@@ -199,9 +199,8 @@ void Card::set_ratio(std::uint32_t ratio) {
 
 void Card::set_slew_time(std::chrono::nanoseconds full_scale) {
   // The ratio moves by `slew` * 2^-28 every 4 clocks, so slew = 4 * 2^28 / clocks.
-  constexpr std::uint64_t kFullScale = std::uint64_t{map::constant::kSlewClocks} << map::constant::kSlewFractionBits;
   const std::uint64_t time = std::max<std::uint64_t>(clocks(full_scale, "time base: slew time"), 1);
-  const std::uint64_t slew = std::min<std::uint64_t>(kFullScale / time, entry(reg::kSlew).maximum);
+  const std::uint64_t slew = std::min<std::uint64_t>(kSlowestSlew / time, entry(reg::kSlew).maximum);
   check_setting(reg::kSlew, slew,
                 fmt::format("time base: slew of {} ns, {} clocks, which gives {} and", full_scale.count(), time, slew));
   write(reg::kSlew, static_cast<std::uint32_t>(slew), "time base: slew");

@@ -87,18 +87,11 @@ module motion_core #(
   logic [   Axes-1:0] direct_mask;
   logic [       21:0] direct_load;
   // path engines
-  logic               path_tick;
-  logic               path_swap;
   logic               engine_tick;
-  logic [   Axes-1:0] engine_step;
-  logic [   Axes-1:0] engine_dir;
   logic               engine_ready;
   logic               payload_ready;
   logic               shadows_free;
   logic               engine_taken;
-  logic [       15:0] chord_word;
-  logic [   Axes-1:0] chord_load;
-  logic [   Axes-1:0] chord_swap;
   logic               engine_done;
   logic               elsewhere;
   // axes
@@ -195,74 +188,44 @@ module motion_core #(
       .begun_o        (geometry_begun_o)
   );
 
-  path_engines #(
+  path_to_pins #(
       .Axes   (Axes),
       .Engines(Engines)
-  ) engines (
+  ) moves (
       .*,
       .cut_i          (cut_o),
+      .load_i         (load),
       .tick_i         (tick),
       .swap_i         (swap),
+      .active_i       (active),
       .engine_i       (engine),
       .engine_taken_i (engine_taken),
-      .load_i         (load),
-      .tick_o         (path_tick),
-      .swap_o         (path_swap),
-      .path_tick_o    (engine_tick),
-      .step_o         (engine_step),
-      .dir_o          (engine_dir),
-      .chord_word_o   (chord_word),
-      .chord_load_o   (chord_load),
-      .chord_swap_o   (chord_swap),
+      .direct_i       (direct),
       .ready_o        (engine_ready),
       .payload_ready_o(payload_ready),
       .shadows_free_o (shadows_free),
       .done_o         (engine_done),
-      .elsewhere_o    (elsewhere)
+      .elsewhere_o    (elsewhere),
+      .path_tick_o    (engine_tick),
+      .live_o         (axes_live),
+      .busy_o         (axes_busy),
+      .fault_o        (step_fault),
+      .chain_i        (geometry_chain),
+      .observe_o      (axes_observe)
   );
 
-  axes #(
-      .Axes   (Axes),
-      .Counted(Engines[card_map_pkg::ENGINE_DIRECT_MODE])
-  ) all_axes (
+  path_commands #(
+      .Engines(Engines),
+      .Inputs (Inputs),
+      .Outputs(Outputs)
+  ) commands (
       .*,
-      .cut_i        (cut_o),
-      .load_i       (load),
-      .tick_i       (path_tick),
-      .swap_i       (path_swap),
-      .active_i     (active),
-      .direct_i     (direct),
-      .chord_word_i (chord_word),
-      .chord_load_i (chord_load),
-      .chord_swap_i (chord_swap),
-      .engine_step_i(engine_step),
-      .engine_dir_i (engine_dir),
-      .chain_i      (geometry_chain),
-      .live_o       (axes_live),
-      .busy_o       (axes_busy),
-      .fault_o      (step_fault),
-      .observe_o    (axes_observe)
+      .cut_i  (cut_o),
+      .load_i (load),
+      .taken_i(instant),
+      .over_i (path_over),
+      .runs_i (path_active)
   );
-
-  if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_path_commands
-    path_commands #(
-        .Inputs (Inputs),
-        .Outputs(Outputs)
-    ) commands (
-        .*,
-        .cut_i  (cut_o),
-        .load_i (load),
-        .taken_i(instant),
-        .over_i (path_over),
-        .runs_i (path_active)
-    );
-  end else begin : gen_no_path_commands
-    assign output_o = output_idle_i;
-    assign {mark_o, io_o} = '0;
-
-    logic unused;
-    assign unused = &{1'b0, input_i, instant, path_over};
-  end
 
   if (Engines[card_map_pkg::ENGINE_DIRECT_MODE]) begin : gen_direct_mode
     direct_loader #(

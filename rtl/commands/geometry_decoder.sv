@@ -37,6 +37,9 @@ module geometry_decoder #(
   logic [4:0] next;
   logic [2:0] next_length;
   logic [4:0] lowest;
+  logic [7:0] first_field;  // {field, its halfwords less one}
+  logic [7:0] next_field;
+  logic       last_field;
   logic       header;
   logic [6:0] strobe;  // {of the count, of a field, which one}
   logic [4:0] target;  // of that field
@@ -128,16 +131,27 @@ module geometry_decoder #(
     else if ((first && is_line) || (advance && to_axis)) rest_q <= rest_q & (rest_q - 8'd1);
   end
 
+  always_comb begin
+    first_field = {on_engine ? 5'd0 : lowest, 3'd2};
+    next_field  = to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length};
+    last_field  = is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
+    if (is_output) begin
+      first_field = {FIRST_OF_COMMAND, 3'd0};
+      next_field  = {FIRST_OF_COMMAND + 5'd1, 3'd0};
+      last_field  = field[0];
+    end
+  end
+
   command_fetch fetch (
       .*,
       .has_payload_i(is_line || on_engine || is_output),
-      .first_i      (is_output ? {FIRST_OF_COMMAND, 3'd0} : {on_engine ? 5'd0 : lowest, 3'd2}),
-      .next_i       (is_output ? {FIRST_OF_COMMAND + 5'd1, 3'd0} : to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length}),
-      .last_field_i (is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : is_output ? field[0] : to_axis && rest_q == 8'd0),
+      .first_i      (first_field),
+      .next_i       (next_field),
+      .last_field_i (last_field),
       .rest_i       (1'b0),
       // Before an engine's first field nothing waits: the command before was an engine's, whose last field this is not, or
       // runs on lines, and the engine is free.
-      .wait_i       (is_line ? !shadows_free_i : on_engine && at_prescaler && !payload_ready_i),
+      .wait_i       (is_line ? !shadows_free_i : at_prescaler && !payload_ready_i),
       .header_o     (header),
       .first_o      (first),
       .advance_o    (advance),

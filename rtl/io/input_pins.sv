@@ -11,8 +11,8 @@ module input_pins #(
     output logic      [      15:0] level_o     // combinational; 0 for absent inputs
 );
   // Marked, so that tools place the two side by side and know that the first one's data has no timing.
-  (* async_reg = "true" *) logic [Inputs-1:0] first_q;
-  (* async_reg = "true" *) logic [Inputs-1:0] second_q;
+  (* async_reg = "true" *)logic [Inputs-1:0] first_q;
+  (* async_reg = "true" *)logic [Inputs-1:0] second_q;
   logic [Inputs-1:0] inverted_q;
 
   always_ff @(posedge clk_i) begin

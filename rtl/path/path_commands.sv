@@ -1,114 +1,73 @@
-// What commands do at their place on the path beside motion: OUTPUT and MARK.
-//
-// They wait for the end of the path that runs as they are decoded, and then for as long as its last tick takes to the
-// axes' steps; where none runs for that long alone. Nothing is decoded between a path's end and its effect, since a
-// command takes 8 clocks: one set of masks is enough.
+// The card's inputs and outputs, and what commands do with them at their place on the path. Without the engine the inputs
+// are not looked at, and the outputs stand as the strap says.
 `default_nettype none
 
 module path_commands #(
-    parameter int Inputs  = 4,  // 1 to 16
-    parameter int Outputs = 4   // 1 to 16
+    parameter logic [31:0] Engines = '1,  // what is built in, as the register ENGINES shows it
+    parameter int          Inputs  = 4,   // 1 to 16
+    parameter int          Outputs = 4    // 1 to 16
 ) (
-    input  wire logic               clk_i,
-    input  wire logic               rst_i,
-    input  wire logic               cut_i,
-    input  wire logic [       40:0] setting_i,      // {set, address[9:2], data}
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic [40:0] setting_i,  // {set, address[9:2], data}
     // pins
-    input  wire logic [ Inputs-1:0] input_i,
-    input  wire logic [Outputs-1:0] output_idle_i,  // strap
-    output logic      [Outputs-1:0] output_o,
+    input wire logic [Inputs-1:0] input_i,
+    input wire logic [Outputs-1:0] output_idle_i,  // strap
+    output logic [Outputs-1:0] output_o,
     // commands
-    input  wire logic [       21:0] load_i,
-    input  wire logic [        1:0] taken_i,        // {MARK, OUTPUT} is taken now; its last halfword is on load_i
-    input  wire logic               over_i,         // event: a path's last tick was taken, or it has ended on its engine
-    input  wire logic               runs_i,         // a path is under way
-    output logic                    mark_o,         // event: a snapshot is wanted
+    input wire logic [21:0] load_i,
+    input wire logic [1:0] taken_i,  // {MARK, OUTPUT} is taken now; its last halfword is on load_i
+    input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
+    input wire logic runs_i,  // a path is under way
+    output logic mark_o,  // event: a snapshot is wanted
     // registers
-    output logic      [       63:0] io_o            // {marks, outputs, inputs}
+    output logic [63:0] io_o  // {marks, outputs, inputs}
 );
-  // From a path's last tick taken to its step on the path.
-  localparam logic [2:0] TO_STEP = 3'd6;
+  if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_built
+    logic [       15:0] levels;
+    logic [       31:0] marks;
+    logic               change;
+    logic [Outputs-1:0] set;
+    logic [Outputs-1:0] clear;
 
-  // Set, then clear.
-  logic [2*Outputs-1:0] words_q;
-  logic [  Outputs-1:0] set_q;
-  logic [  Outputs-1:0] clear_q;
-  logic                 merge_q;
-  logic                 output_waits_q;
-  logic                 mark_waits_q;
-  logic                 mark_due_q;
-  logic [          2:0] delay_q;
-  logic                 fire;
-  logic                 apply;
-  logic [  Outputs-1:0] set;
-  logic [  Outputs-1:0] clear;
+    input_pins #(
+        .Inputs(Inputs)
+    ) inputs (
+        .*,
+        .pin_i  (input_i),
+        .level_o(levels)
+    );
 
-  assign fire  = (output_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
-  assign apply = delay_q == 3'd1;
-  assign set   = apply ? '0 : set_q;
-  assign clear = apply ? '0 : clear_q;
+    instant_commands #(
+        .Outputs(Outputs)
+    ) instants (
+        .*,
+        .marks_o (marks),
+        .change_o(change),
+        .set_o   (set),
+        .clear_o (clear)
+    );
 
-  always_ff @(posedge clk_i) begin
-    if (load_i[21] && load_i[20:16] == load_target_pkg::COMMAND)
-      words_q <= {load_i[Outputs-1:0], words_q[2*Outputs-1:Outputs]};
-    merge_q <= taken_i[0];
-    set_q   <= merge_q ? (set & ~words_q[2*Outputs-1:Outputs]) | words_q[Outputs-1:0] : set;
-    clear_q <= merge_q ? (clear & ~words_q[Outputs-1:0]) | words_q[2*Outputs-1:Outputs] : clear;
-    output_waits_q <= taken_i[0] || (output_waits_q && !fire);
-    mark_waits_q <= taken_i[1] || (mark_waits_q && !fire);
-    if (fire) mark_due_q <= mark_waits_q;
-    if (fire) delay_q <= TO_STEP;
-    else if (delay_q != 3'd0) delay_q <= delay_q - 3'd1;
-    if (cut_i || rst_i) begin
-      merge_q <= 1'b0;
-      set_q <= '0;
-      clear_q <= '0;
-      output_waits_q <= 1'b0;
-      mark_waits_q <= 1'b0;
-      delay_q <= 3'd0;
-    end
+    output_pins #(
+        .Outputs(Outputs)
+    ) outputs (
+        .*,
+        .idle_i  (output_idle_i),
+        .change_i(change),
+        .set_i   (set),
+        .clear_i (clear),
+        .pin_o   (output_o)
+    );
+
+    assign io_o = {marks, 16'(output_o), levels};
+  end else begin : gen_without
+    assign output_o = output_idle_i;
+    assign {mark_o, io_o} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, taken_i, over_i, runs_i};
   end
-
-  // Those taken, and those that have taken effect.
-  logic [31:0] taken_q;
-  logic [31:0] marks_q;
-
-  always_ff @(posedge clk_i) begin
-    mark_o <= apply && mark_due_q && !cut_i && !rst_i;
-    if (apply && mark_due_q && !cut_i) marks_q <= taken_q;
-    if (cut_i) taken_q <= marks_q;
-    else if (taken_i[1]) taken_q <= taken_q + 32'd1;
-    if (rst_i) begin
-      taken_q <= '0;
-      marks_q <= '0;
-    end
-  end
-
-  logic [15:0] levels;
-
-  input_pins #(
-      .Inputs(Inputs)
-  ) inputs (
-      .*,
-      .pin_i  (input_i),
-      .level_o(levels)
-  );
-
-  output_pins #(
-      .Outputs(Outputs)
-  ) outputs (
-      .*,
-      .idle_i  (output_idle_i),
-      .change_i(apply),
-      .set_i   (set_q),
-      .clear_i (clear_q),
-      .pin_o   (output_o)
-  );
-
-  assign io_o = {marks_q, 16'(output_o), levels};
-
-  logic unused;
-  assign unused = &{1'b0, load_i};
 endmodule
 
 `default_nettype wire

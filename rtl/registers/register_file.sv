@@ -79,7 +79,7 @@ module register_file #(
   );
 
   register_live #(
-      .Ports(Ports),
+      .Ports  (Ports),
       .Engines(Engines)
   ) i_live (
       .*,

@@ -52,12 +52,13 @@ inline std::vector<std::uint32_t> command_words(card_map::Opcode opcode, std::ui
 class StepRecorder : public model::CardSteps {
  public:
   using Pin = std::tuple<std::uint64_t, unsigned, int>;
-  using Path = std::tuple<std::uint64_t, std::uint64_t, unsigned, int>;
+  using Path = std::tuple<std::uint64_t, std::uint64_t, unsigned, int, std::uint64_t>;
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override {
     pins.emplace_back(cycle, axis, direction);
   }
-  void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override {
-    path.emplace_back(command, tick, axis, direction);
+  void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
+                 int direction) override {
+    path.emplace_back(command, tick, axis, direction, cycle);
   }
   std::vector<Pin> pins;
   std::vector<Path> path;

@@ -25,10 +25,12 @@ std::uint64_t cycle_of(CoreBench& bench, std::uint64_t limit, Happened happened)
   return kAll;
 }
 
-// A line that steps on its last tick alone: 3/4 of a pulse over n ticks crosses one half within, so n - 1 ticks of none.
+// A line that steps on its last tick alone: 3/4 of a pulse over n ticks crosses one half within, so n - 1 ticks of
+// none.
 bool line_with_last_step(CoreBench& bench, std::uint64_t ticks) {
   // 1/2 + n * i reaches 1 at n alone: i = 1 / 2n, rounded up.
-  return bench.line(ticks, {static_cast<std::int64_t>((static_cast<std::uint64_t>(kOnePulse) + 2 * ticks - 1) / (2 * ticks))});
+  return bench.line(ticks,
+                    {static_cast<std::int64_t>((static_cast<std::uint64_t>(kOnePulse) + 2 * ticks - 1) / (2 * ticks))});
 }
 
 TEST(PathCommands, AnOutputChangesWithTheStepOfTheLastTick) {

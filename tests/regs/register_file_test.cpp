@@ -113,11 +113,11 @@ TEST(Identity, WithoutDirectModeItsRegistersAreUnknown) {
 }
 
 TEST(Identity, ProbeClearNeedsItsEngine) {
-  RegisterBench without(1);
-  EXPECT_EQ(without.refusal_of_write(reg::kControl, field::kControlProbeClear), Reason::BadValue);
   RegisterFile::Config config = RegisterBench::config_of(1);
-  config.engines |= 1U << card_map::engine::kPathCommands;
-  RegisterBench with(config);
+  config.engines &= ~field::kEnginesPathCommands;
+  RegisterBench without(config);
+  EXPECT_EQ(without.refusal_of_write(reg::kControl, field::kControlProbeClear), Reason::BadValue);
+  RegisterBench with(1);
   EXPECT_EQ(with.refusal_of_write(reg::kControl, field::kControlProbeClear), Reason::None);
 }
 

@@ -101,6 +101,19 @@ TEST_F(RunnerTest, ConfiguresTheCard) {
   EXPECT_EQ(card_.timing().pulse_period[0], driver::shortest_pulse_period(10, 20));
 }
 
+// Full speed goes to rest in 2 v / a of the axis that takes longest: 0.3 s, or as slowly as the card can.
+TEST_F(RunnerTest, SlewFollowsFromTheAxes) {
+  const auto slew = [this] { return card_.read(card_map::reg::kSlew); };
+  run("G0 X1\n");
+  EXPECT_EQ(slew(), driver::Card::kSlowestSlew / 300'000);
+  machine::apply_override(machine_, "axis.y.max_acceleration=500");
+  run("G0 X1\n");
+  EXPECT_EQ(slew(), driver::Card::kSlowestSlew / 600'000);
+  machine::apply_override(machine_, "axis.y.max_acceleration=0.1");
+  run("G0 X1\n");
+  EXPECT_EQ(slew(), 1U);
+}
+
 struct Event {
   std::string what;
   std::size_t line = 0;

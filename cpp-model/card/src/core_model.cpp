@@ -44,10 +44,11 @@ PathCommands::Config pins_of(const CardConfig& config) { return {config.inputs, 
 }  // namespace
 
 bool CoreModel::Outputs::operator==(const Outputs& o) const {
-  return step == o.step && dir == o.dir && output == o.output && irq == o.irq && tick == o.tick && path_tick == o.path_tick &&
-         path_swap == o.path_swap && feed_swap == o.feed_swap && path_step == o.path_step && path_dir == o.path_dir &&
-         geometry_room == o.geometry_room && feed_room == o.feed_room && status == o.status && fault == o.fault &&
-         geometry_begun == o.geometry_begun && feed_begun == o.feed_begun && ratio == o.ratio && rate == o.rate;
+  return step == o.step && dir == o.dir && output == o.output && irq == o.irq && tick == o.tick &&
+         path_tick == o.path_tick && path_swap == o.path_swap && feed_swap == o.feed_swap && path_step == o.path_step &&
+         path_dir == o.path_dir && geometry_room == o.geometry_room && feed_room == o.feed_room && status == o.status &&
+         fault == o.fault && geometry_begun == o.geometry_begun && feed_begun == o.feed_begun && ratio == o.ratio &&
+         rate == o.rate;
 }
 
 CoreModel::CoreModel(const Config& config)
@@ -108,10 +109,17 @@ std::uint64_t CoreModel::watched() const {
   const Sequencer::Outputs& s = motion_.sequencer().outputs();
   const StopControl::Outputs& stop = motion_.stop();
   const CommandChecker::Outputs& checker = checker_.outputs();
-  const bool flags[] = {
-      motion_.outputs().busy, s.direct,        s.path_active,  s.feed_active, s.ended,
-      stop.stopping,          checker.partial, checker.refuse, stop.stop,     motion_.time().ratio == 0,
-      motion_.commands().mark()};
+  const bool flags[] = {motion_.outputs().busy,
+                        s.direct,
+                        s.path_active,
+                        s.feed_active,
+                        s.ended,
+                        stop.stopping,
+                        checker.partial,
+                        checker.refuse,
+                        stop.stop,
+                        motion_.time().ratio == 0,
+                        motion_.commands().mark()};
   std::uint64_t bits = stop.fault;
   for (const bool flag : flags) bits = bits << 1 | (flag ? 1 : 0);
   return bits;
@@ -261,7 +269,7 @@ void CoreModel::record(bool cut) {
     if ((left & 1) == 0) continue;
     const bool backwards = (m.path_dir >> n & 1) != 0;
     if ((m.engine_step >> n & 1) != 0)
-      record_.arc_step(n, backwards);
+      record_.arc_step(cycles_, n, backwards);
     else
       record_.line_step(cycles_, n, backwards);
   }

@@ -298,7 +298,8 @@ void RegisterFile::step_snapshot(const Inputs& in, bool host) {
 std::size_t RegisterFile::written_at(std::uint32_t word) const {
   const std::size_t time = in_area(reg::time_lo(Area::Snap));
   if (word < 2) return time - word;
-  const std::size_t below = word - 2 < config_.axes ? in_area(reg::position(Area::Snap, config_.axes - 1)) : time - 2 + config_.axes;
+  const std::size_t below =
+      word - 2 < config_.axes ? in_area(reg::position(Area::Snap, config_.axes - 1)) : time - 2 + config_.axes;
   return below - (word - 2);
 }
 

@@ -117,8 +117,8 @@ void Sequencer::stand(const Decision& d) {
 // The fetches see a command as taken when it begins, a barrier in the clock after its last one.
 void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
   if (load_.to(load_target::kTicks)) shift_in<48>(path_count_, load_.word);
-  geometry_.clock(
-      {in.cut, d.path_begins || d.barrier_done || instant(), d.payload_ready, in.shadows_free, in.geometry_empty, in.geometry_word});
+  geometry_.clock({in.cut, d.path_begins || d.barrier_done || instant(), d.payload_ready, in.shadows_free,
+                   in.geometry_empty, in.geometry_word});
   load_ = in.direct_load.valid ? in.direct_load : geometry_.bus();
   if (feed_.bus().to(feed_target::kTicks)) shift_in<48>(piece_count_, feed_.bus().word);
   feed_.clock({in.cut, d.piece_begins || d.barrier_done, !d.piece_runs, true, in.feed_empty, in.feed_word});

@@ -37,6 +37,8 @@ class Interpreter {
   enum class Outcome { kGoesOn, kEnded, kFailed };
   // Appends the line's motions. After a failure, of which `problem` tells, the state means nothing.
   Outcome execute(const WordSet& words, std::size_t line, LineMotions& motions, Problem& problem);
+  // Machine coordinates.
+  const Coordinates& position() const { return here_; }
   // Appends the motion kEnd.
   void end(std::size_t line, LineMotions& motions);
 

@@ -1,5 +1,6 @@
 #include "trammel/planner/card_limits.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -14,6 +15,14 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 
 CardLimits limits_of(const driver::Identification& card) {
   return {card.clock_hz, card.axes, (card.engines >> card_map::engine::kAccumulator & 1U) != 0};
+}
+
+double hold_seconds(const machine::Machine& machine) {
+  double longest = 0;
+  for (const machine::MachineAxis& axis : machine.axes) {
+    longest = std::max(longest, 2 * axis.max_velocity / axis.max_acceleration);
+  }
+  return longest;
 }
 
 driver::AxisSettings settings_of(const machine::MachineAxis& axis) {

@@ -22,9 +22,10 @@ class NoSink final : public driver::CommandSink {
 // Streams the plan; errors of the card get the line of the program that was being run.
 class ProgramStream final : private driver::CommandSink {
  public:
-  ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers)
+  ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers, bool single_block)
       : pipeline_(pipeline),
         observers_(observers),
+        single_block_(single_block),
         card_(card),
         // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
         lines_(card.identification().geometry_depth),
@@ -53,6 +54,8 @@ class ProgramStream final : private driver::CommandSink {
  private:
   void put(const driver::Command& command) override {
     if (first_of_block_) {
+      if (single_block_ && commands_ != 0 && planned_.block.line != line_) stream_.finish();
+      line_ = planned_.block.line;
       for (Observer* observer : observers_) observer->sending(planned_);
       first_of_block_ = false;
     }
@@ -83,6 +86,8 @@ class ProgramStream final : private driver::CommandSink {
 
   Pipeline& pipeline_;
   const std::vector<Observer*>& observers_;
+  bool single_block_;
+  std::size_t line_ = 0;  // of the block under way
   driver::Card& card_;
   planner::PlannedBlock planned_;
   bool first_of_block_ = true;
@@ -98,11 +103,12 @@ ProgramError::ProgramError(gcode::Error error) : std::runtime_error(gcode::descr
 RunError::RunError(const std::string& file, std::size_t line, const std::string& message)
     : std::runtime_error(fmt::format("{}:{}: {}", file, line, message)), line_(line) {}
 
-Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card)
-    : lines_(std::move(lines)), machine_(machine), card_(card) {}
+Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card,
+               const RunSettings& settings)
+    : lines_(std::move(lines)), machine_(machine), card_(card), settings_(settings) {}
 
 const Plan& Runner::plan() {
-  Pipeline pipeline(lines_, machine_, card_);
+  Pipeline pipeline(lines_, machine_, card_, settings_);
   plan_ = Plan{};
   plan_.file = pipeline.file();
   plan_.start = plan_.end = pipeline.start();
@@ -127,8 +133,9 @@ Outcome Runner::run(driver::Card& card) {
     throw std::invalid_argument("the program was planned for another card");
   }
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, card_);
-  ProgramStream stream(pipeline, card, observers_);
+  Pipeline pipeline(lines_, machine_, card_, settings_);
+  const driver::Snapshot before = card.snapshot();
+  ProgramStream stream(pipeline, card, observers_, settings_.single_block);
   const planner::Pulses end = stream.run();
   const driver::Snapshot snapshot = card.snapshot();
   if (stream.sent() != plan_.commands || end != plan_.end) {
@@ -136,7 +143,7 @@ Outcome Runner::run(driver::Card& card) {
   }
   Outcome outcome;
   for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
-    const std::int64_t counted = snapshot.position[a];
+    const std::int64_t counted = driver::pulses_between(before.position[a], snapshot.position[a]);
     if (counted != end[a] - plan_.start[a]) {
       throw std::runtime_error(
           fmt::format("axis {}: the card ended at pulse {}, the program at {}", a, counted, end[a] - plan_.start[a]));
@@ -145,6 +152,9 @@ Outcome Runner::run(driver::Card& card) {
     outcome.final_position.push_back(end[a]);
   }
   outcome.commands = stream.sent();
+  if (card_map::has_engine(card.identification().engines, card_map::engine::kUnderrunHold)) {
+    outcome.under_runs = card.read(card_map::reg::kUnderruns);
+  }
   return outcome;
 }
 

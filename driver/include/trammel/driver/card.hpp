@@ -87,6 +87,11 @@ struct Snapshot {
   std::array<std::int32_t, card_map::kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
 };
 
+// Pulses from one position of an axis to another. The counters wrap: for distances below 2^31.
+constexpr std::int32_t pulses_between(std::int32_t from, std::int32_t to) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
+}
+
 // Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".
 std::string describe_faults(std::uint32_t faults);
 // Name of a refusal reason and what it means.
@@ -96,6 +101,9 @@ class Card {
  public:
   // Full ratio of the time base: every clock is enabled.
   static constexpr std::uint32_t kFullRatio = 0x10000;
+  // Longest time from no ratio to the full one, clocks.
+  static constexpr std::uint64_t kSlowestSlew = std::uint64_t{card_map::constant::kSlewClocks}
+                                                << card_map::constant::kSlewFractionBits;
 
   // Reads who the card is and its step times. Throws IdentificationError, naming what does not fit and what would,
   // unless it is a Trammel card with a map and commands that this driver knows. Writes nothing.

@@ -25,8 +25,8 @@ struct CardConfig {
   unsigned ports = 1;                                     // 1 .. 4
   unsigned inputs = 4;                                    // 1 .. 16, of a card with path commands
   unsigned outputs = 4;
-  std::uint16_t output_idle = 0;                          // strap: levels of the outputs in reset
-  std::uint32_t idle_level = 0;                           // strap: {second pins, first pins}, `axes` bits each
+  std::uint16_t output_idle = 0;  // strap: levels of the outputs in reset
+  std::uint32_t idle_level = 0;   // strap: {second pins, first pins}, `axes` bits each
   std::uint32_t build_id = 0;
   bool build_dirty = false;
   std::uint32_t board_id = 0;

@@ -1,8 +1,8 @@
 // Golden model of what commands do at their place on the path beside motion: OUTPUT and MARK.
 //
 // They take effect kToStep clocks after the end of the path that ran as they were decoded shows, that is with the step
-// of its last tick; where none runs, as long after they are taken. What is taken while others are on their way goes with
-// them (outputs) or follows (marks). Not thread-safe; no errors are reported.
+// of its last tick; where none runs, as long after they are taken. What is taken while others are on their way goes
+// with them (outputs) or follows (marks). Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>

@@ -18,11 +18,10 @@ class RegisterFile {
 
   // ENGINES: what every card has, what one has by default, and what one that is built with everything there is.
   static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
-  static constexpr std::uint32_t kDefaultEngines =
-      kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode |
-      card_map::field::kEnginesPathCommands;
-  static constexpr std::uint32_t kMostEngines =
-      kDefaultEngines | card_map::field::kEnginesArcGenerator;
+  static constexpr std::uint32_t kDefaultEngines = kLeastEngines | card_map::field::kEnginesAccumulator |
+                                                   card_map::field::kEnginesDirectMode |
+                                                   card_map::field::kEnginesPathCommands;
+  static constexpr std::uint32_t kMostEngines = kDefaultEngines | card_map::field::kEnginesArcGenerator;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8
@@ -33,8 +32,8 @@ class RegisterFile {
     std::uint32_t build_id = 0;
     bool build_dirty = false;
     std::uint32_t board_id = 0;
-    std::uint32_t ports = 1;       // 1 .. 4
-    std::uint32_t inputs = 4;      // 1 .. 16, of a card with path commands
+    std::uint32_t ports = 1;   // 1 .. 4
+    std::uint32_t inputs = 4;  // 1 .. 16, of a card with path commands
     std::uint32_t outputs = 4;
     std::uint32_t idle_level = 0;  // {second pins, first pins}, a bit an axis each
   };

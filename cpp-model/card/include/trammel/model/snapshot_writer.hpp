@@ -1,9 +1,9 @@
 // Golden model of the snapshot's sequence: who is served when (docs/developer/architecture.md, Registers).
 //
-// A request in clock r strobes in r+1 and keeps the RAM from r+1 to r+axes+11. The stop's and the probe's break into any
-// other's, a MARK's into the host's, but not where that is taken anew already. The host's is then taken anew in the clock
-// after the last; a MARK's, or one that had to wait, follows when the RAM was free for a clock.
-// One instance for each card; not thread-safe.
+// A request in clock r strobes in r+1 and keeps the RAM from r+1 to r+axes+11. The stop's and the probe's break into
+// any other's, a MARK's into the host's, but not where that is taken anew already. The host's is then taken anew in the
+// clock after the last; a MARK's, or one that had to wait, follows when the RAM was free for a clock. One instance for
+// each card; not thread-safe.
 #pragma once
 
 #include <cstdint>

@@ -18,10 +18,11 @@ class CardSteps {
   virtual ~CardSteps() = default;
   // A step at the pins of `axis`; `cycle` counts rising edges since reset, that of the leading edge included.
   virtual void pin_step(std::uint64_t cycle, unsigned axis, int direction) = 0;
-  // A step of the path. `command`: number in the stream, from 0 at reset or a cut, not wrapped, barriers and feed
-  // pieces counted; 0 in direct mode. `tick`: of its path, from 1; feed ticks of a line (enabled clocks in direct
-  // mode), path ticks of an arc.
-  virtual void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) = 0;
+  // A step of the path, at its shaper after edge `cycle`. `command`: number in the stream, from 0 at reset or a cut,
+  // not wrapped, barriers and feed pieces counted; 0 in direct mode. `tick`: of its path, from 1; feed ticks of a line
+  // (enabled clocks in direct mode), path ticks of an arc.
+  virtual void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
+                         int direction) = 0;
 };
 
 class StepRecord {
@@ -67,10 +68,10 @@ class StepRecord {
   }
   void line_step(std::uint64_t cycle, unsigned axis, bool backwards) {
     const Take& take = shown_after(cycle - kTickToStep);
-    if (steps_ != nullptr) steps_->path_step(take.command, take.tick, axis, backwards ? -1 : 1);
+    if (steps_ != nullptr) steps_->path_step(cycle, take.command, take.tick, axis, backwards ? -1 : 1);
   }
-  void arc_step(unsigned axis, bool backwards) {
-    if (steps_ != nullptr) steps_->path_step(command_, arc_taken_, axis, backwards ? -1 : 1);
+  void arc_step(std::uint64_t cycle, unsigned axis, bool backwards) {
+    if (steps_ != nullptr) steps_->path_step(cycle, command_, arc_taken_, axis, backwards ? -1 : 1);
   }
 
   // For jumps: ticks of the present path taken so far; `ticks` more at once; the tick that shows after edge `cycle`.

@@ -16,6 +16,10 @@ struct CardLimits {
 
 CardLimits limits_of(const driver::Identification& card);
 
+// Seconds that a hold takes from full speed to a stop: v / (a / 2) of the axis where that is longest, so that a hold's
+// deceleration is half of every axis's acceleration at most. The card's slew follows from it.
+double hold_seconds(const machine::Machine& machine);
+
 // An axis's settings on the card: step times rounded up to whole nanoseconds.
 driver::AxisSettings settings_of(const machine::MachineAxis& axis);
 

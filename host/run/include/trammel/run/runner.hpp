@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "trammel/planner/planner.hpp"
 #include "trammel/run/feed_report.hpp"
 #include "trammel/run/observer.hpp"
+#include "trammel/run/run_settings.hpp"
 
 namespace trammel::run {
 
@@ -48,7 +50,7 @@ struct Plan {
   double seconds = 0;          // estimate
   std::uint64_t segments = 0;  // paths
   std::uint64_t commands = 0;  // for the card
-  planner::Pulses start{};     // machine coordinates
+  planner::Pulses start{};     // machine coordinates; where the first line begins
   planner::Pulses end{};
   std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first
   std::map<std::string, std::size_t> accepted;    // words without effect yet and how often
@@ -58,12 +60,14 @@ struct Outcome {
   std::vector<std::int64_t> counted;         // pulses from the start, by axis, as the card counted them
   std::vector<std::int64_t> final_position;  // pulses, machine coordinates
   std::uint64_t commands = 0;                // sent
+  std::optional<std::uint32_t> under_runs;   // holds for want of commands; none where the card has no such hold
 };
 
 class Runner {
  public:
   // `machine` must outlive the runner. `card`: limits_of() the card that will run the program.
-  Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card);
+  Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card,
+         const RunSettings& settings = {});
 
   // `observer` must outlive the runner; they are called in the order in which they were added.
   void add(Observer& observer) { observers_.push_back(&observer); }
@@ -79,6 +83,7 @@ class Runner {
   ProgramLines lines_;
   const machine::Machine& machine_;
   planner::CardLimits card_;
+  RunSettings settings_;
   std::vector<Observer*> observers_;
   Plan plan_;
 };
