@@ -14,15 +14,13 @@ struct MadeEvent {
   std::uint64_t cycle = 0;  // clock of the card in which the write was answered, and had taken effect
 };
 
-// The time base's ratio for an override, where `most_percent` is the full one.
-std::uint32_t ratio_of(double percent, double most_percent);
-
 class OperatorTimeline {
  public:
   OperatorTimeline(const Operation& operation, double most_percent) : operation_(operation), most_(most_percent) {}
 
-  // Before the first access: the card has its override before anybody else writes to it. `bus` calls this object until
-  // it is gone.
+  // Before the first access: the card has its overrides before anybody else writes to it. What is overridden are
+  // motions with a feed (all motions where the card has no classes of pieces); rapids and fixed pieces run at 100 %.
+  // `bus` calls this object until it is gone.
   void schedule(sim::TimedBus& bus, std::uint32_t clock_hz);
   // Those whose time has come, in order.
   const std::vector<MadeEvent>& made() const { return made_; }

@@ -18,8 +18,8 @@ class Watch final : public run::Observer {
  public:
   Watch(const sim::Engine& engine, const run::Plan& plan, double clock_hz, bool progress)
       : engine_(engine), plan_(plan), clock_hz_(clock_hz), bar_(progress) {}
-  void sent() override { progress(); }
-  void progress() override {
+  void sent() override { progress({}); }
+  void progress(const run::Progress& /*progress*/) override {
     const double seconds = static_cast<double>(engine_.cycles()) / clock_hz_;
     bar_.show(plan_.seconds > 0 ? seconds / plan_.seconds : 1.0,
               fmt::format("{:.1f} of {:.1f} s of card time", seconds, plan_.seconds));

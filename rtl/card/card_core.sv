@@ -8,6 +8,8 @@ module card_core #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          Classes       = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks    = 1,     // 0: without
     parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
     parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
     parameter int          Outputs       = 4,
@@ -59,7 +61,8 @@ module card_core #(
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
       32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
-      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE |
+      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
+      32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS |
       32'(PathCommands != 0) << card_map_pkg::ENGINE_PATH_COMMANDS;
 
   // PORTS: {outputs, inputs, ports}.
@@ -85,6 +88,7 @@ module card_core #(
   logic        held;
   logic [63:0] begun;  // {geometry, feed}
   logic [31:0] room;  // {geometry, feed}
+  logic [ 1:0] low;  // {feed, geometry}
   logic [40:0] setting;  // {set, address, data}
   logic        abort;
   logic        flush;
@@ -115,6 +119,7 @@ module card_core #(
       .held_i(held),
       .fault_i(fault),
       .room_i(room),
+      .low_i(low),
       .begun_i(begun),
       .io_i(io),
       .status_o(status),
@@ -188,6 +193,20 @@ module card_core #(
       .empty_o(feed_empty),
       .room_o (room[15:0])
   );
+
+  if (Watermarks != 0) begin : gen_watermarks
+    queue_watermarks #(
+        .GeometryDepth(GeometryDepth),
+        .FeedDepth(FeedDepth)
+    ) watermarks (
+        .*,
+        .setting_i(setting),
+        .room_i(room),
+        .low_o(low)
+    );
+  end else begin : gen_no_watermarks
+    assign low = '0;
+  end
 
   motion_core #(
       .Axes(Axes),

@@ -7,6 +7,8 @@ module trammel_card #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          Classes       = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks    = 1,     // 0: without
     parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
     parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
     parameter int          Outputs       = 4,
@@ -94,6 +96,8 @@ module trammel_card #(
       .FeedDepth(FeedDepth),
       .Accumulator(Accumulator),
       .ArcGenerator(ArcGenerator),
+      .Classes(Classes),
+      .Watermarks(Watermarks),
       .DirectMode(DirectMode),
       .PathCommands(PathCommands),
       .Inputs(Inputs),

@@ -122,8 +122,22 @@ TEST(Commands, WhatStandsBesideThePathIsDecodedAgain) {
 }
 
 TEST(Commands, CommandsOfThatThisDriverHasNoneAreNotDecoded) {
-  const std::vector<std::uint32_t> rapid{0x000B0110U, 5, 0, 0, 0x00010000U, 0, 0, 0, 0, 0, 0};
-  EXPECT_THROW(decode(rapid.data(), rapid.size()), ArgumentError) << "a class";
+  const std::vector<std::uint32_t> fourth{0x000B0310U, 5, 0, 0, 0x00010000U, 0, 0, 0, 0, 0, 0};
+  EXPECT_THROW(decode(fourth.data(), fourth.size()), ArgumentError) << "a fourth class";
+}
+
+TEST(Commands, TheClassOfAPieceIsInItsFlags) {
+  FeedCommand feed;
+  feed.ticks = 5;
+  feed.floor = 1;
+  for (const PieceClass piece_class : {PieceClass::kFeed, PieceClass::kRapid, PieceClass::kFixed}) {
+    feed.piece_class = piece_class;
+    const std::vector<std::uint32_t> words = words_of(feed, 0);
+    EXPECT_EQ(words[0], 0x000B0010U | static_cast<std::uint32_t>(piece_class) << 8);
+    EXPECT_EQ(std::get<FeedCommand>(decode(words.data(), words.size()).command).piece_class, piece_class);
+  }
+  feed.piece_class = static_cast<PieceClass>(3);
+  EXPECT_THROW(words_of(feed, 0), ArgumentError);
 }
 
 // Not the longest that this driver has, but that of the card's layouts: a later command still fits.

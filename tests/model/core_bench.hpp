@@ -118,8 +118,8 @@ class CoreBench {
     return send(command_words(card_map::Opcode::Line, mask, number++, ticks, {}, increments));
   }
   bool feed(std::uint64_t ticks, std::uint64_t rate, std::int64_t acceleration = 0, std::int64_t jerk = 0,
-            std::uint32_t floor = 1) {
-    return send(command_words(card_map::Opcode::Feed, 0, number++, ticks,
+            std::uint32_t floor = 1, std::uint8_t piece_class = card_map::constant::kClassFeed) {
+    return send(command_words(card_map::Opcode::Feed, piece_class, number++, ticks,
                               {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
   }
   // A circle of radius r, all of it, from its rightmost point, over `ticks`; 8 r path ticks.

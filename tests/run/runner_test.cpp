@@ -133,7 +133,7 @@ class Events final : public Observer {
     list.push_back({"command", 0, number});
   }
   void sent() override { list.push_back({"sent", 0, 0}); }
-  void progress() override { ++looks; }
+  void progress(const Progress& /*progress*/) override { ++looks; }
   std::vector<Event> list;
   int looks = 0;
 };
@@ -212,7 +212,7 @@ TEST_F(RunnerTest, NamesTheLineOfARefusal) {
   class Meddler final : public Observer {
    public:
     explicit Meddler(sim::Engine& engine) : engine_(engine) {}
-    void progress() override {
+    void progress(const Progress& /*progress*/) override {
       if (engine_.cycles() < 2'500'000 || std::exchange(done_, true)) return;
       try {
         engine_.write(0xFF0, 0);  // no register

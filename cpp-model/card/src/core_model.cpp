@@ -57,6 +57,7 @@ CoreModel::CoreModel(const Config& config)
       checker_(config.axes, register_config(config).engines),
       geometry_queue_(config.geometry_depth),
       feed_queue_(config.feed_depth),
+      watermarks_(config.geometry_depth, config.feed_depth),
       motion_(config.axes, config.idle_level, config.clock_all, pins_of(config)) {
   reset();
 }
@@ -66,6 +67,7 @@ void CoreModel::reset() {
   checker_ = CommandChecker(config_.axes, register_config(config_).engines);
   geometry_queue_ = HalfwordQueue(config_.geometry_depth);
   feed_queue_ = HalfwordQueue(config_.feed_depth);
+  watermarks_ = QueueWatermarks(config_.geometry_depth, config_.feed_depth);
   motion_ = MotionCore(config_.axes, config_.idle_level, config_.clock_all, pins_of(config_));
   cycles_ = 0;
   record_.reset();
@@ -81,8 +83,11 @@ void CoreModel::clock(const Inputs& in) {
   ++cycles_;
   const bool cut = motion_.stop().cut;
   const MotionCore::Inputs motion_in = motion_inputs(in.pins);
+  const QueueWatermarks::Inputs watermark_in = watermark_inputs();
   clock_commands(cut);
   clock_registers(in);
+  if (config_.clock_all || watermark_in.setting.set || !watermarks_.quiet(watermark_in))
+    watermarks_.clock(watermark_in);
   motion_.clock(motion_in);
   record(cut);
   show();
@@ -119,7 +124,9 @@ std::uint64_t CoreModel::watched() const {
                         checker.refuse,
                         stop.stop,
                         motion_.time().ratio == 0,
-                        motion_.commands().mark()};
+                        motion_.commands().mark(),
+                        watermarks_.outputs().geometry_low,
+                        watermarks_.outputs().feed_low};
   std::uint64_t bits = stop.fault;
   for (const bool flag : flags) bits = bits << 1 | (flag ? 1 : 0);
   return bits;
@@ -137,7 +144,7 @@ void CoreModel::run(std::uint64_t clocks, std::uint16_t pins) {
 
 std::uint64_t CoreModel::jump(std::uint64_t limit, std::uint16_t pins) {
   if (reset_due_ || awake_ != 0 || !checker_.quiet()) return 0;
-  if (!geometry_queue_.quiet() || !feed_queue_.quiet()) return 0;
+  if (!geometry_queue_.quiet() || !feed_queue_.quiet() || !watermarks_.quiet(watermark_inputs())) return 0;
   const std::uint64_t gone = motion_.jump(limit, motion_inputs(pins), cycles_, record_);
   if (gone == 0) return 0;
   cycles_ += gone;
@@ -161,6 +168,10 @@ MotionCore::Inputs CoreModel::motion_inputs(std::uint16_t pins) const {
   in.loader_data = set.loader_data;
   in.pins = pins;
   return in;
+}
+
+QueueWatermarks::Inputs CoreModel::watermark_inputs() const {
+  return {registers_.outputs().setting, geometry_queue_.outputs().room, feed_queue_.outputs().room};
 }
 
 // The queues take the checker's outputs as they stood before the edge, the checker the queues' rooms.
@@ -199,6 +210,8 @@ void CoreModel::gather() {
   in.incomplete = checker_.outputs().partial;
   in.geometry_room = geometry_queue_.outputs().room;
   in.feed_room = feed_queue_.outputs().room;
+  in.geometry_low = watermarks_.outputs().geometry_low;
+  in.feed_low = watermarks_.outputs().feed_low;
   in.geometry_begun = s.geometry_begun;
   in.feed_begun = s.feed_begun;
   in.rate = motion_.feed().rate;
@@ -260,10 +273,11 @@ void CoreModel::record(bool cut) {
     for (unsigned n = 0; n < config_.axes; ++n) record_.pin(cycles_, n, motion_.position(n));
   }
   if (motion_.engines().path_tick) record_.arc_tick();
-  // The last tick of a path is its own, though the next one begins in the same clock.
+  if (motion_.chord_tick()) record_.chord_tick(cycles_);
+  // The last tick of a path is its own, though the next one begins in the same clock. On an arc in chords feed ticks
+  // make no step.
   const Sequencer& s = motion_.sequencer();
   if (s.outputs().tick) record_.tick(cycles_);
-  if (motion_.chord_tick()) record_.chord_tick(cycles_);
   const MotionCore::Outputs& m = motion_.outputs();
   for (std::uint32_t n = 0, left = m.path_step; left != 0; ++n, left >>= 1) {
     if ((left & 1) == 0) continue;

@@ -15,7 +15,7 @@ class Pipeline {
   Pipeline(const ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card,
            const RunSettings& settings)
       : lines_(lines()),
-        reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, {}, settings.reader))),
+        reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
         blocks_(reader_, machine, card, reader_.position()),
         planner_(blocks_, machine, card) {}
 

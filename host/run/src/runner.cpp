@@ -42,6 +42,9 @@ class ProgramStream final : private driver::CommandSink {
         first_of_block_ = true;
       }
       stream_.finish();
+    } catch (const driver::StoppedError& error) {
+      lines_.begun(error.geometry_begun());
+      throw StoppedOnPath(pipeline_.file(), lines_.current(), error.what());
     } catch (const driver::Error& error) {
       look_at_begun(dynamic_cast<const driver::FaultError*>(&error) != nullptr);
       throw RunError(pipeline_.file(), lines_.current(), error.what());
@@ -71,7 +74,8 @@ class ProgramStream final : private driver::CommandSink {
     options.poll_clocks = std::max<std::uint64_t>(64, card_.identification().clock_hz / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
       lines_.begun(progress.geometry_begun);
-      for (Observer* observer : observers_) observer->progress();
+      const Progress how_far{progress.geometry_begun, lines_.current(), progress.status};
+      for (Observer* observer : observers_) observer->progress(how_far);
     };
     return options;
   }

@@ -23,6 +23,8 @@ constexpr std::uint32_t kEngines = TRAMMEL_ENGINES;
 constexpr bool kArcs = card_map::has_engine(kEngines, card_map::engine::kAccumulator);
 constexpr bool kChords = card_map::has_engine(kEngines, card_map::engine::kArcGenerator);
 constexpr bool kCommands = card_map::has_engine(kEngines, card_map::engine::kPathCommands);
+constexpr bool kClasses = card_map::has_engine(kEngines, card_map::engine::kClasses);
+constexpr bool kWatermarks = card_map::has_engine(kEngines, card_map::engine::kWatermarks);
 constexpr bool kDirectMode = card_map::has_engine(kEngines, card_map::engine::kDirectMode);
 // Where they are refused, since each refusal closes the stream, only now and then.
 constexpr unsigned kArcEvery = kArcs ? 4 : 40;
@@ -47,6 +49,7 @@ void random_traffic(std::uint64_t seed, std::uint64_t clocks) {
   sim::LockstepCard card = card_with_engines(seed);
   AxiHost host(card, seed);
   Traffic traffic(host, kAxes, kArcEvery);
+  traffic.classes = kClasses;
   traffic.chords_every = kChords ? 3 : 60;
   traffic.commands_every = kCommands ? 3 : 60;
   host.wait(300);
@@ -102,6 +105,21 @@ void refusals(std::uint64_t seed) {
       EXPECT_EQ(refusal(host), kDirectMode ? Reason::BadValue : Reason::UnknownAddress) << address;
     }
   }
+  for (const auto& [address, there] :
+       {std::pair{reg::kRatioRapid, kClasses}, std::pair{reg::kRatioFixed, kClasses},
+        std::pair{reg::kGeometryWatermark, kWatermarks}, std::pair{reg::kFeedWatermark, kWatermarks}}) {
+    EXPECT_EQ(host.write(address, 0x1234), there) << address;
+    EXPECT_EQ(refusal(host), there ? Reason::None : Reason::UnknownAddress) << address;
+    EXPECT_EQ(host.read(address), there ? std::optional<std::uint32_t>(0x1234) : std::nullopt) << address;
+    EXPECT_EQ(refusal(host), there ? Reason::None : Reason::UnknownAddress) << address;
+  }
+  driver::FeedCommand fixed = test::feed(60, 12);
+  fixed.piece_class = driver::PieceClass::kFixed;
+  EXPECT_EQ(traffic.send(fixed), kClasses);
+  EXPECT_EQ(refusal(host), kClasses ? Reason::None : Reason::BadMask);
+  traffic.abort();
+  host.write(reg::kRatioFixed, 0x10000);
+  host.write(reg::kRefusal, 1);
   // Lines are on every card.
   EXPECT_TRUE(traffic.send(test::line(60, {5, -6, 7, 8})));
   EXPECT_TRUE(traffic.send(test::feed(60, 12)));

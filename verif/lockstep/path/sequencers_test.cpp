@@ -13,7 +13,7 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr unsigned kAxes = 4;
-constexpr std::uint64_t kComparedSignals = 22;
+constexpr std::uint64_t kComparedSignals = 24;
 
 class Bench {
  public:
@@ -21,6 +21,7 @@ class Bench {
       : check_("sequencers", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.chords = true;
     programs_.path_commands = true;
+    programs_.classes = true;
     reset();
   }
 
@@ -246,6 +247,8 @@ class Bench {
     check_.compare("over_o", dut_->over_o, out.over);
     check_.compare("path_active_o", dut_->path_active_o, out.path_active);
     check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
+    check_.compare("moving_o", dut_->moving_o, out.moving);
+    check_.compare("class_o", dut_->class_o, out.piece_class);
     check_.compare("ended_o", dut_->ended_o, out.ended);
     check_.compare("idle_o", dut_->idle_o, out.idle);
     check_.compare("geometry_begun_o", dut_->geometry_begun_o, out.geometry_begun);

@@ -28,7 +28,7 @@ class CardSteps {
 class StepRecord {
  public:
   static constexpr std::uint64_t kTickToStep = 7;  // clocks from a tick that shows to its step on the path
-  static constexpr std::uint64_t kChordToStep = 5;
+  static constexpr std::uint64_t kToAxes = 3;      // of these, to where it leaves for the axes
 
   void set_steps(CardSteps* steps) { steps_ = steps; }
 
@@ -58,8 +58,9 @@ class StepRecord {
   // A tick shows after edge `cycle`.
   void tick(std::uint64_t cycle) { place(cycle, ++taken_); }
   void arc_tick() { ++arc_taken_; }
-  // A path tick of an arc in chords shows at the prescaler; its steps on the path come kChordToStep clocks later.
-  void chord_tick(std::uint64_t cycle) { place(cycle + kChordToStep - kTickToStep, ++arc_taken_); }
+  // A path tick of an arc in chords shows after edge `cycle`, on its way to the axes, where a line's comes kToAxes
+  // clocks after it was taken.
+  void chord_tick(std::uint64_t cycle) { place(cycle - kToAxes, ++arc_taken_); }
 
   void pin(std::uint64_t cycle, unsigned axis, std::uint32_t position) {
     if (position == position_[axis]) return;
@@ -77,6 +78,8 @@ class StepRecord {
   // For jumps: ticks of the present path taken so far; `ticks` more at once; the tick that shows after edge `cycle`.
   std::uint64_t taken() const { return taken_; }
   void take(std::uint64_t ticks) { taken_ += ticks; }
+  std::uint64_t path_ticks() const { return arc_taken_; }
+  void take_path_ticks(std::uint64_t ticks) { arc_taken_ += ticks; }
   void place(std::uint64_t cycle, std::uint64_t tick) { shown_after(cycle) = {command_, tick}; }
 
  private:

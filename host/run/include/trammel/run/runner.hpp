@@ -44,6 +44,13 @@ class RunError : public std::runtime_error {
   std::size_t line_;
 };
 
+// It was asked to stop on the path (driver::Card::request_stop()): the card is at rest, its position is known, and a
+// program may begin there.
+class StoppedOnPath : public RunError {
+ public:
+  using RunError::RunError;
+};
+
 // From the first pass.
 struct Plan {
   std::string file;
@@ -74,7 +81,8 @@ class Runner {
 
   // First pass. Throws ProgramError, and driver::ArgumentError for step times that the card cannot keep.
   const Plan& plan();
-  // Second pass, after the first, to the end of the motion: configures the card and streams. Throws RunError for what
+  // Second pass, after the first, to the end of the motion: configures the card and streams. Throws StoppedOnPath when
+  // another thread has asked the card for it, RunError for what
   // the card or its bus reports, ProgramError when the program is not the one that was planned, and std::runtime_error
   // when the card does not end where the program does.
   Outcome run(driver::Card& card);
