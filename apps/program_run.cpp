@@ -83,7 +83,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes, true}, options.settings);
   run::CommandedCourse course(machine);
   if (options.plot) runner.add(course);
-  const run::Plan plan = runner.plan();
+  const run::Plan plan = options.stream ? run::Plan{} : runner.plan();
 
   if (options.planned) options.planned(plan);
 
@@ -105,14 +105,14 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   runner.add(recorder);
   runner.add(judges.feed);
   runner.add(watch);
-  const run::Outcome outcome = runner.run(card);
+  const run::Outcome outcome = options.stream ? runner.stream(card) : runner.run(card);
   recorder.finish();
   recorder.check(outcome.counted);
   judges.tell(result);
   tell(recorder, result);
   result.events = timeline.made();
 
-  tell(plan, result);
+  tell(runner.last_plan(), result);
   result.engine = engine_options.kind == sim::EngineKind::kRtl ? "rtl" : "model";
   result.final_position = outcome.final_position;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
@@ -125,7 +125,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   result.commands = outcome.commands;
   result.under_runs = outcome.under_runs;
   if (options.plot) {
-    result.plot = {plan.file,       course.points(),   recorder.executed(), recorder.thinned(),
+    result.plot = {result.program,  course.points(),   recorder.executed(), recorder.thinned(),
                    course.detail(), recorder.detail(), recorder.speed()};
   }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

@@ -20,14 +20,16 @@
 namespace trammel::app {
 
 struct RunOptions {
+  bool stream = false;  // the program is read once, while it runs
   run::RunSettings settings;
   Operation operation;
   double most_percent = 100;       // largest override
   run::TextSink* steps = nullptr;  // not owned
   run::TextSink* path_steps = nullptr;
   bool plot = false;
-  bool progress = false;                          // also where stderr is no terminal
-  std::function<void(const run::Plan&)> planned;  // when all is checked and nothing has moved yet
+  bool progress = false;  // also where stderr is no terminal
+  // When all is checked and nothing has moved yet; with `stream` of an empty plan.
+  std::function<void(const run::Plan&)> planned;
 };
 
 // Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds` and the picture's

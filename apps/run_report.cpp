@@ -72,11 +72,11 @@ nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds)
   return list;
 }
 
-std::vector<std::string> feed_warnings(const run::Plan& plan) {
+std::vector<std::string> feed_warnings(const std::string& file, const std::vector<run::FeedNotReached>& feeds) {
   std::vector<std::string> lines;
-  for (const run::FeedNotReached& feed : plan.feeds_not_reached) {
+  for (const run::FeedNotReached& feed : feeds) {
     lines.push_back(fmt::format("{} {} not reach the feed: {}; the furthest off at {}:{}, {} of {} mm/min", feed.count,
-                                feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), plan.file, feed.line,
+                                feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), file, feed.line,
                                 number(feed.reached), number(feed.wanted)));
   }
   return lines;

@@ -11,7 +11,7 @@
 namespace trammel::app {
 
 // A line a cause for which feeds are not reached.
-std::vector<std::string> feed_warnings(const run::Plan& plan);
+std::vector<std::string> feed_warnings(const std::string& file, const std::vector<run::FeedNotReached>& feeds);
 
 // Some lines of text, units in every one.
 std::string summary(const RunResult& result);

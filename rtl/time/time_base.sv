@@ -27,6 +27,8 @@ module time_base #(
   localparam logic [28:0] ONE = 29'h1000_0000;
 
   logic [16:0] feed_q;
+  logic [16:0] rapid_q;
+  logic [16:0] fixed_q;
   logic [16:0] target;
   logic [27:0] slew_q;
   always_ff @(posedge clk_i) begin
@@ -39,9 +41,6 @@ module time_base #(
   end
 
   if (Engines[card_map_pkg::ENGINE_CLASSES]) begin : gen_classes
-    logic [16:0] rapid_q;
-    logic [16:0] fixed_q;
-
     always_ff @(posedge clk_i) begin
       if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_RAPID[9:2]) rapid_q <= setting_i[16:0];
       if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_FIXED[9:2]) fixed_q <= setting_i[16:0];
@@ -57,10 +56,11 @@ module time_base #(
       if (class_i == 2'(card_map_pkg::CLASS_FIXED)) target = fixed_q;
     end
   end else begin : gen_no_classes
+    assign {rapid_q, fixed_q} = '0;
     assign target = feed_q;
 
     logic unused_class;
-    assign unused_class = &{1'b0, class_i};
+    assign unused_class = &{1'b0, class_i, rapid_q, fixed_q};
   end
 
   logic [ 1:0] turn_q;

@@ -195,6 +195,22 @@ TEST_F(Operator, CheckTellsTheTimeOfTheRunAndRunsNothing) {
   EXPECT_NE(bad.err.find("b.ngc:2: "), std::string::npos) << bad.err;
 }
 
+// The same run, read once; standard input needs no copy.
+TEST_F(Operator, StreamRunsWhatIsReadAndEndsAtRestWhereItIsWrong) {
+  const Made whole = run(command_.write("a.ngc", kProgram), "");
+  const Made streamed = run("- --stream <" + command_.path("a.ngc"), "");
+  expect_same_path(whole, streamed, "stream");
+  for (const char* key : {"segments", "commands", "planned_seconds", "cycles"}) {
+    EXPECT_EQ(streamed.json[key], whole.json[key]) << key;
+  }
+  const Outcome outcome =
+      command_.run("run - --stream --engine model --clock 250000 < <(printf 'G1 X3 F600\\nY2\\nG1 Q7\\nX0\\n')");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+  EXPECT_NE(outcome.err.find("standard input:3: "), std::string::npos) << outcome.err;
+  EXPECT_EQ(command_.run("run - <<< 'G1 Q7'").status, 2) << "without it nothing begins";
+}
+
 TEST_F(Operator, BadValuesAreRefusedWithTheirUnits) {
   const std::string program = command_.write("a.ngc", "G1 X1 F600\n");
   const std::map<std::string, std::string> wrong{
@@ -214,6 +230,8 @@ TEST_F(Operator, BadValuesAreRefusedWithTheirUnits) {
       {"--from-line 0", "must be a whole number, 1 to 4294967295, not 0"},
       {"--from-line 2", "a.ngc:1: the program ends before line 2"},
       {"--check --steps -", "--steps: nothing runs with --check"},
+      {"--stream --check", "--stream: nothing runs with --check"},
+      {"--stream --plot x.svg", "--plot: needs the whole program first"},
   };
   for (const auto& [options, message] : wrong) {
     const Outcome outcome = command_.run("run " + program + " " + options);

@@ -75,6 +75,30 @@ TEST(Classes, EachPieceRunsAtItsOwnRatio) {
   }
 }
 
+// Overrides of the others in the middle of a piece: its ratio stays to the clock, and its time is that of its own.
+TEST(Classes, AnOverrideMovesItsOwnClassAlone) {
+  for (const std::uint8_t running : {kFeed, kRapid, kFixed}) {
+    Bench bench({running});
+    bench.ratios(0x8000, 0x8000, 0x8000);
+    bench.write(reg::kHold, 0);
+    bench.until(1, 100);
+    const std::uint64_t begin = bench.core.cycles();
+    constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
+    for (const std::uint32_t ratio : {0U, 0x1234U, kWhole}) {
+      for (const std::uint8_t other : {kFeed, kRapid, kFixed}) {
+        if (other != running) bench.write(kRatios[other], ratio);
+      }
+      for (int clock = 0; clock < 500; ++clock) {
+        bench.clock({});
+        ASSERT_EQ(bench.core.outputs().ratio, 0x8000U) << int{running};
+      }
+    }
+    while ((bench.core.outputs().status & field::kStatusPathActive) != 0) bench.clock({});
+    EXPECT_NEAR(static_cast<double>(bench.core.cycles() - begin), 400.0 * 32, 40);
+    EXPECT_EQ(bench.steps.path.size(), 50U);
+  }
+}
+
 // The path-step list knows nothing of ratios, holds and their moments.
 TEST(Classes, ThePathIsTheSameWhateverTheTimeBaseDoes) {
   const std::vector<std::uint8_t> classes{kFeed, kFixed, kFixed, kRapid, kFeed, kFixed, kRapid};

@@ -176,6 +176,22 @@ TEST_F(RunnerTest, RefusesAProgramThatChangesBetweenThePasses) {
   EXPECT_THAT(error_of([&] { runner.run(card_); }), HasSubstr("has changed"));
 }
 
+// Read once: what stands before the error is made, and the card is at rest.
+TEST_F(RunnerTest, StreamsWithoutAFirstPass) {
+  Runner runner = make("F600\nG1 X1\nG1 Y2\nM3\n");
+  const Outcome outcome = runner.stream(card_);
+  EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{80, 160, 0, 0}));
+  EXPECT_EQ(runner.last_plan().segments, 2U);
+  EXPECT_EQ(runner.last_plan().commands, outcome.commands);
+  EXPECT_EQ(runner.last_plan().accepted.count("M3"), 1U);
+  RunSettings there;
+  there.start = {1, 2};
+  Runner wrong(lines_of("F600\nG1 X2\nG1 Y2.5\nX\nX0\n"), machine_, planner::limits_of(card_.identification()), there);
+  EXPECT_THAT(error_of([&] { wrong.stream(card_); }), HasSubstr("p.ngc:4: malformed number"));
+  EXPECT_TRUE(card_.in_position());
+  EXPECT_EQ(engine_->positions(), (std::vector<std::int64_t>{160, 200, 0, 0}));
+}
+
 TEST_F(RunnerTest, RefusesAnotherCardThanThePlanned) {
   Runner runner(lines_of("G0 X1\n"), machine_, {2 * kClock, 4, true});
   runner.plan();

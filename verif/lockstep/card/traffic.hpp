@@ -35,7 +35,7 @@ class Traffic {
       if (!host_.write(reg::kStream, word)) return false;
     }
     ++number_;
-    chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1 : 0;
+    chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1U : 0U;
     return true;
   }
   // OUTPUT and MARK beside one path in so many; 0: none.

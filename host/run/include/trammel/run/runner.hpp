@@ -38,6 +38,7 @@ class ProgramError : public std::runtime_error {
 class RunError : public std::runtime_error {
  public:
   RunError(const std::string& file, std::size_t line, const std::string& message);
+  explicit RunError(const ProgramError& error);
   std::size_t line() const { return line_; }
 
  private:
@@ -86,8 +87,16 @@ class Runner {
   // the card or its bus reports, ProgramError when the program is not the one that was planned, and std::runtime_error
   // when the card does not end where the program does.
   Outcome run(driver::Card& card);
+  // In place of both: the program is read once, while it runs, and last_plan() tells what was read. What is wrong in it
+  // is a RunError then; the motion before it is made and ends at rest.
+  Outcome stream(driver::Card& card);
+  // Of the last pass.
+  const Plan& last_plan() const { return plan_; }
 
  private:
+  void require_planned_for(driver::Card& card) const;
+  Outcome outcome(driver::Card& card, const driver::Snapshot& before, std::uint64_t commands) const;
+
   ProgramLines lines_;
   const machine::Machine& machine_;
   planner::CardLimits card_;
