@@ -161,7 +161,7 @@ class Writer {
   void increments(const std::array<std::int64_t, map::kMaxAxes>& increment, std::uint8_t mask) {
     std::size_t offset = 0;
     for (unsigned axis = 0; axis < map::kMaxAxes; ++axis) {
-      if ((mask >> axis & 1U) != 0) {
+      if ((std::uint32_t{mask} >> axis & 1U) != 0) {
         field<kField>(increment[axis], offset);
         offset += kField.halfwords;
       } else if (increment[axis] != 0) {

@@ -308,7 +308,7 @@ RC_GTEST_PROP(CommandsProperty, ALineComesBack, (std::uint8_t number)) {
   line.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   line.mask = static_cast<std::uint8_t>(*rc::gen::inRange(1, 256));
   for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
-    line.increment[axis] = (line.mask >> axis & 1U) != 0 ? signed_bits(40) : 0;
+    line.increment[axis] = (std::uint32_t{line.mask} >> axis & 1U) != 0 ? signed_bits(40) : 0;
   }
   expect_round_trip(line, number);
   const auto words = words_of(line, number);

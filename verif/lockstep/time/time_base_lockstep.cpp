@@ -171,8 +171,10 @@ void random_inputs() {
                 hold);
     else if (kind < 80)
       bench.set(reg::kSlew, static_cast<std::uint32_t>(dice.log_uniform(28)), hold);
-    else  // somebody else's setting, or none
-      bench.clock(hold, {dice.chance(2), dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.draw()});
+    else if (kind < 90)  // none, whatever lies on the bus
+      bench.clock(hold, {false, dice.chance(4) ? reg::kSlew : ratios[dice.below(3)], dice.draw()});
+    else  // somebody else's
+      bench.clock(hold, {true, dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.draw()});
     // Mostly short: changes then fall on each of the four clocks of an update.
     const std::uint64_t clocks = dice.below(dice.chance(8) ? 5000 : 40);
     bench.run(hold, clocks);
