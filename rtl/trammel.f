@@ -50,6 +50,9 @@ registers/snapshot_writer.sv
 safety/stop_control.sv
 time/feed_generator.sv
 time/feed_sequencer.sv
+time/queued_ticks.sv
+time/stop_ticks.sv
 time/tick_gate.sv
 time/tick_source.sv
 time/time_base.sv
+time/underrun_guard.sv

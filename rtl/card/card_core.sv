@@ -8,6 +8,7 @@ module card_core #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          UnderrunHold  = 1,     // 0: without
     parameter int          Classes       = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks    = 1,     // 0: without
     parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
@@ -61,7 +62,8 @@ module card_core #(
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
       32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
-      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
+      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE |
+      32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
       32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS |
       32'(PathCommands != 0) << card_map_pkg::ENGINE_PATH_COMMANDS;
 
@@ -86,6 +88,7 @@ module card_core #(
   logic [31:0] status;
   logic [ 5:0] motion_status;
   logic        held;
+  logic [32:0] underrun;  // {held, how often}
   logic [63:0] begun;  // {geometry, feed}
   logic [31:0] room;  // {geometry, feed}
   logic [ 1:0] low;  // {feed, geometry}
@@ -117,6 +120,7 @@ module card_core #(
       .access_i({port_i, write_i, partial_i, address_i, data_i}),
       .motion_i(motion_status),
       .held_i(held),
+      .underrun_i(underrun),
       .fault_i(fault),
       .room_i(room),
       .low_i(low),
@@ -151,6 +155,9 @@ module card_core #(
   logic        feed_empty;
   logic [15:0] feed_word;
   logic        drop;
+  logic        full;  // no room for the largest command: 50 halfwords of geometry, 20 of feed
+
+  assign full = room[31:22] == 10'd0 || room[15:5] == 11'd0;
 
   command_checker #(
       .Axes(Axes),
@@ -226,6 +233,7 @@ module card_core #(
       .feed_empty_i(feed_empty),
       .feed_word_i(feed_word),
       .feed_read_o(feed_read),
+      .arrive_i({full, drop, geometry_store, feed_store, halfword}),
       .start_i(start),
       .start_mask_i(setting[7:0]),
       .start_done_o(start_answer[9]),
@@ -242,6 +250,7 @@ module card_core #(
       .stop_o(stop),
       .status_o(motion_status),
       .held_o(held),
+      .underrun_o(underrun),
       .geometry_begun_o(begun[63:32]),
       .feed_begun_o(begun[31:0]),
       .observe_o(observe_o[34*Axes+52:0])

@@ -26,6 +26,7 @@ module motion_core #(
     input  wire logic                feed_empty_i,
     input  wire logic [        15:0] feed_word_i,
     output logic                     feed_read_o,
+    input  wire logic [        21:0] arrive_i,          // as tick_source has it
     // START
     input  wire logic                start_i,
     input  wire logic [         7:0] start_mask_i,
@@ -46,6 +47,7 @@ module motion_core #(
     // status
     output logic      [         5:0] status_o,          // {stopping, ended, feed active, path active, direct, busy}
     output logic                     held_o,            // the ratio is 0 (combinational)
+    output logic      [        32:0] underrun_o,        // {held by it, or a piece waits for more; how often}
     output logic      [        31:0] geometry_begun_o,
     output logic      [        31:0] feed_begun_o,
     // {rate, ratio, position, path dir, path step, feed swap, path swap, path tick, tick}
@@ -54,7 +56,7 @@ module motion_core #(
     output logic      [    Axes-1:0] dir_o
 );
   // stops
-  logic hold;
+  logic hold, underrun_hold;
   logic mismatch, incomplete;
   logic            stopping;
   logic [Axes-1:0] step_fault;
@@ -76,19 +78,14 @@ module motion_core #(
   logic [     1:0] instant;
   logic            path_over;
   logic barrier_begin, barrier_done;
-  logic               path_active;
-  logic               ended;
-  logic               geometry_idle;
-  logic               direct;
-  logic               direct_go;
-  logic [   Axes-1:0] direct_mask;
-  logic [       21:0] direct_load;
+  logic path_active, ended, geometry_idle;
+  logic            direct;
+  logic            direct_go;
+  logic [Axes-1:0] direct_mask;
+  logic [    21:0] direct_load;
   // path engines
-  logic               engine_tick;
-  logic               engine_ready;
-  logic               payload_ready;
-  logic               shadows_free;
-  logic               engine_taken;
+  logic            engine_tick;
+  logic engine_ready, payload_ready, shadows_free, engine_taken;
   logic               engine_done;
   logic               elsewhere;
   // axes
@@ -117,6 +114,7 @@ module motion_core #(
       .at_rest_i   (held_o),
       .moving_i    (moving),
       .fixed_i     (fixed),
+      .underrun_i  (underrun_hold),
       .hold_o      (hold),
       .stopping_o  (stopping)
   );
@@ -125,6 +123,7 @@ module motion_core #(
       .Engines(Engines)
   ) ticks (
       .*,
+      .underrun_hold_o(underrun_hold),
       .cut_i          (cut_o),
       .hold_i         (hold),
       .empty_i        (feed_empty_i),

@@ -7,6 +7,7 @@ module trammel_card #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          UnderrunHold  = 1,     // 0: without
     parameter int          Classes       = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks    = 1,     // 0: without
     parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
@@ -99,6 +100,7 @@ module trammel_card #(
       .Classes(Classes),
       .Watermarks(Watermarks),
       .DirectMode(DirectMode),
+      .UnderrunHold(UnderrunHold),
       .PathCommands(PathCommands),
       .Inputs(Inputs),
       .Outputs(Outputs),

@@ -22,6 +22,7 @@ module register_file #(
     // the card's state
     input  wire logic [       5:0] motion_i,          // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic              held_i,
+    input  wire logic [      32:0] underrun_i,        // {held, how often}
     input  wire logic [      31:0] fault_i,
     input  wire logic [      31:0] room_i,            // {geometry, feed}
     input  wire logic [       1:0] low_i,             // {feed, geometry}: below their watermarks
@@ -80,8 +81,7 @@ module register_file #(
   );
 
   register_live #(
-      .Ports  (Ports),
-      .Engines(Engines)
+      .Ports(Ports)
   ) i_live (
       .*,
       .setting_i(setting_o),

@@ -237,7 +237,11 @@ class Program {
     }
     const auto piece_class = static_cast<std::uint8_t>(p_.one_in(2) ? 0 : p_.any(0, 2));
     p_.send(command_words(card_map::Opcode::Feed, piece_class, number_++, ticks,
-                          {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
+                          {{"rate", rate},
+                           {"acceleration", acceleration},
+                           {"jerk", jerk},
+                           {"floor", floor},
+                           {"stop_distance", p_.one_in(2) ? 0 : p_.any(1, p_.one_in(4) ? 5000 : 400)}}));
   }
 
   void barrier() {
@@ -301,6 +305,7 @@ struct Compared {
   std::uint64_t clocks = 0;
   std::uint64_t chord_arcs = 0;
   std::uint64_t marks = 0;
+  std::uint64_t underruns = 0;
 };
 
 Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t longest) {
@@ -331,6 +336,7 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     const std::uint32_t marks = pair.clocked.read(reg::kMarks);
     EXPECT_EQ(pair.jumping.read(reg::kMarks), marks);
     compared.marks += marks;
+    compared.underruns += pair.clocked.read(reg::kUnderruns);
     compared.clocks += pair.one_by_one / 2;
   }
   return compared;

@@ -10,6 +10,9 @@ namespace {
 
 // Clocks that the register file stays awake after its last activity.
 constexpr int kAwake = 2;
+// A queue with less room than this, in halfwords, may have none for the next command.
+constexpr std::uint16_t kMostGeometry = 64;
+constexpr std::uint16_t kMostFeed = 32;
 
 const CardConfig& checked(const CardConfig& config) {
   if (config.axes < 1 || config.axes > card_map::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
@@ -58,7 +61,7 @@ CoreModel::CoreModel(const Config& config)
       geometry_queue_(config.geometry_depth),
       feed_queue_(config.feed_depth),
       watermarks_(config.geometry_depth, config.feed_depth),
-      motion_(config.axes, config.idle_level, config.clock_all, pins_of(config)) {
+      motion_(config.axes, config.idle_level, config.clock_all, config.engines, pins_of(config)) {
   reset();
 }
 
@@ -68,7 +71,7 @@ void CoreModel::reset() {
   geometry_queue_ = HalfwordQueue(config_.geometry_depth);
   feed_queue_ = HalfwordQueue(config_.feed_depth);
   watermarks_ = QueueWatermarks(config_.geometry_depth, config_.feed_depth);
-  motion_ = MotionCore(config_.axes, config_.idle_level, config_.clock_all, pins_of(config_));
+  motion_ = MotionCore(config_.axes, config_.idle_level, config_.clock_all, config_.engines, pins_of(config_));
   cycles_ = 0;
   record_.reset();
   answer_ = {};
@@ -126,7 +129,8 @@ std::uint64_t CoreModel::watched() const {
                         motion_.time().ratio == 0,
                         motion_.commands().mark(),
                         watermarks_.outputs().geometry_low,
-                        watermarks_.outputs().feed_low};
+                        watermarks_.outputs().feed_low,
+                        motion_.underrun().shown};
   std::uint64_t bits = stop.fault;
   for (const bool flag : flags) bits = bits << 1 | (flag ? 1 : 0);
   return bits;
@@ -163,6 +167,10 @@ MotionCore::Inputs CoreModel::motion_inputs(std::uint16_t pins) const {
   in.feed_empty = feed_queue_.outputs().empty;
   in.geometry_word = geometry_queue_.outputs().word;
   in.feed_word = feed_queue_.outputs().word;
+  const CommandChecker::Outputs& checker = checker_.outputs();
+  in.arrival = {checker.drop,        checker.geometry_commit, checker.geometry_write,
+                checker.feed_commit, checker.feed_write,      checker.halfword};
+  in.full = geometry_queue_.outputs().room < kMostGeometry || feed_queue_.outputs().room < kMostFeed;
   in.start = set.start;
   in.start_mask = set.start_mask;
   in.loader_data = set.loader_data;
@@ -207,6 +215,8 @@ void CoreModel::gather() {
   in.feed_active = s.feed_active;
   in.ended = s.ended;
   in.stopping = motion_.stop().stopping;
+  in.underrun = motion_.underrun().shown;
+  in.underruns = motion_.underrun().underruns;
   in.incomplete = checker_.outputs().partial;
   in.geometry_room = geometry_queue_.outputs().room;
   in.feed_room = feed_queue_.outputs().room;

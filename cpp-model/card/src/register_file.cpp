@@ -113,6 +113,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (in.stopping) status |= field::kStatusStopping;
   if (in.geometry_low) status |= field::kStatusGeometryLow;
   if (in.feed_low) status |= field::kStatusFeedLow;
+  if (in.underrun) status |= field::kStatusUnderrun;
   return status;
 }
 
@@ -141,8 +142,10 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.outputs;
     case reg::kMarks:
       return in.marks;
-    default:
+    case reg::kFeedBegun:
       return in.feed_begun;
+    default:
+      return in.underruns;
   }
 }
 

@@ -23,9 +23,8 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.path_over = judged(in);
   d.piece_ends = d.take && out_.feed_active && piece_left_ == 1;
   const bool free = path_ == Path::None || (path_ == Path::Line && d.path_ends);
-  const bool piece_waits = feed_.decoded() && feed_.is_feed();
   d.path_begins = path_waits() && free && !out_.incomplete;
-  d.piece_begins = piece_waits && (!out_.feed_active || d.piece_ends);
+  d.piece_begins = piece_waits() && !in.wait && (!out_.feed_active || d.piece_ends);
   d.barrier_begins = barrier_ == Barrier::Beginning && now_ == barrier_at_;
   d.barrier_ends = barrier_ == Barrier::Running && now_ == barrier_at_;
   d.barrier_done = barrier_ == Barrier::Done;
@@ -38,16 +37,15 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
 
 // One queue at a barrier while the other still has ticks to give or to take.
 bool Sequencer::mismatches() const {
-  const bool piece_waits = feed_.decoded() && feed_.is_feed();
   const bool path_ticks = (path_ == Path::Line || path_ == Path::Engine) && !drained_;
-  const bool geometry_alone = geometry_stands_ && (out_.feed_active || piece_waits);
+  const bool geometry_alone = geometry_stands_ && (out_.feed_active || piece_waits());
   const bool feed_alone = feed_stands_ && (path_ticks || path_waits());
   return (geometry_alone || feed_alone) && barrier_ != Barrier::Done;
 }
 
 void Sequencer::clock(const Inputs& in) {
   const unsigned inputs = (in.cut ? 1U : 0) | (in.geometry_empty ? 2U : 0) | (in.feed_empty ? 4U : 0) |
-                          (in.direct_go ? 8U : 0) | (in.direct_load.valid ? 16U : 0);
+                          (in.direct_go ? 8U : 0) | (in.direct_load.valid ? 16U : 0) | (in.wait ? 32U : 0);
   if (!calm_ || inputs != calm_inputs_) {
     calm_ = !clock_all_ && calm(in);
     calm_inputs_ = inputs;
@@ -197,9 +195,9 @@ bool Sequencer::calm(const Inputs& in) const {
   if (!nothing_shows || drained_ || path_ == Path::Direct || !(geometry_.quiet() && feed_.quiet())) return false;
   if ((geometry_.idle() && !in.geometry_empty) || (feed_.idle() && !in.feed_empty)) return false;
   if (geometry_.waiting() && path_ != Path::Engine) return false;
-  const bool piece_waits = feed_.decoded() && feed_.is_feed();
   if (instant()) return false;
-  if ((path_waits() && path_ == Path::None) || (piece_waits && !out_.feed_active)) return false;
+  const bool piece_may_begin = piece_waits() && !in.wait;
+  if ((path_waits() && path_ == Path::None) || (piece_may_begin && !out_.feed_active)) return false;
   if (barrier_ == Barrier::Beginning || barrier_ == Barrier::Done || mismatches()) return false;
   const bool geometry_stands = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None;
   const bool feed_stands = feed_.decoded() && feed_.is_barrier() && !out_.feed_active;

@@ -23,6 +23,7 @@ module sequencers #(
     // ticks
     input  wire logic            enable_i,
     input  wire logic            feed_tick_i,
+    input  wire logic            wait_i,
     output logic                 feed_enable_o,
     output logic                 feed_clear_o,
     output logic                 tick_o,
@@ -124,7 +125,9 @@ module sequencers #(
       .barrier_done_i (barrier_done),
       .at_barrier_o   (feed_at),
       .runs_o         (feed_runs),
+      .wait_i,
       .active_o       (feed_active_o),
+      .decoded_o      (),
       .moving_o,
       .class_o,
       .idle_o         (feed_decoder_idle),

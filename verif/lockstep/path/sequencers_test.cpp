@@ -204,6 +204,8 @@ class Bench {
       payload_taken_for_ = 0;
     in_.payload_ready = payload_taken_for_ == 0 && in_.shadows_free;
     in_.axes_live = dice_.chance(2);
+    // A piece that is short of ticks behind it; mostly none is.
+    if (dice_.chance(in_.wait ? 30 : 300)) in_.wait = !in_.wait;
   }
 
   void apply() {
@@ -216,6 +218,7 @@ class Bench {
     dut_->direct_go_i = in_.direct_go;
     dut_->direct_mask_i = in_.direct_mask;
     dut_->enable_i = in_.enable;
+    dut_->wait_i = in_.wait;
     dut_->feed_tick_i = in_.feed_tick;
     dut_->engine_ready_i = in_.engine_ready;
     dut_->payload_ready_i = in_.payload_ready;

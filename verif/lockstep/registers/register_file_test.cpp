@@ -178,6 +178,8 @@ class Bench {
     in_.ended = (bits & 0x40) != 0;
     in_.incomplete = streamed_ && (bits & 0x80) != 0;
     in_.stopping = (bits & 0x100) != 0;
+    in_.underrun = (bits & 0x200) != 0;
+    in_.underruns = draw();
     in_.geometry_room = static_cast<std::uint16_t>(draw());
     in_.feed_room = static_cast<std::uint16_t>(draw());
     in_.geometry_low = (bits & 0x200) != 0;
@@ -275,6 +277,7 @@ class Bench {
     rtl_->motion_i = static_cast<CData>(in_.stopping << 5 | in_.ended << 4 | in_.feed_active << 3 |
                                         in_.path_active << 2 | in_.direct << 1 | static_cast<int>(in_.busy));
     rtl_->held_i = in_.ratio == 0;
+    rtl_->underrun_i = std::uint64_t{in_.underrun} << 32 | in_.underruns;
     rtl_->fault_i = in_.fault;
     rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
     rtl_->low_i = static_cast<CData>(in_.feed_low << 1 | static_cast<int>(in_.geometry_low));

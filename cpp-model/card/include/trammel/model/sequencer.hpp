@@ -25,6 +25,7 @@ class Sequencer {
     bool feed_empty = true;
     std::uint16_t geometry_word = 0;
     std::uint16_t feed_word = 0;
+    bool wait = false;  // no piece begins
     // direct loader
     bool direct_go = false;
     std::uint8_t direct_mask = 0;
@@ -82,6 +83,9 @@ class Sequencer {
   // An OUTPUT, a MARK is taken in this clock.
   bool takes_output() const { return geometry_.decoded() && geometry_.is_output(); }
   bool takes_mark() const { return geometry_.decoded() && geometry_.is_mark(); }
+  // A tick is taken in this clock.
+  bool takes(const Inputs& in) const;
+  bool piece_waits() const { return feed_.decoded() && feed_.is_feed(); }
 
   const Outputs& outputs() const { return out_; }
   const Record& record() const { return record_; }
@@ -139,7 +143,6 @@ class Sequencer {
 
   void clock_all(const Inputs& in);
   bool calm(const Inputs& in) const;
-  bool takes(const Inputs& in) const;
   Decision decide(const Inputs& in) const;
   bool judged(const Inputs& in) const;
   bool mismatches() const;
