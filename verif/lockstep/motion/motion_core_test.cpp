@@ -163,7 +163,7 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     const model::PathCommands::Config pins{kInputs, kOutputs, output_idle_};
-    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, false, pins);
+    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, false, 0, pins);
     geometry_.reset();
     feed_.reset();
     starting_ = false;
