@@ -19,7 +19,9 @@ const char* text_of(planner::SpeedLimit cause) {
     case planner::SpeedLimit::kPulseShape:
       return "beyond the step length and space of an axis";
     case planner::SpeedLimit::kAcceleration:
-      return "too short, or too strong a curve, for the max_acceleration";
+      return "too short, or too strong a curve or corner, for the max_acceleration";
+    case planner::SpeedLimit::kWindow:
+      return "too short a look-ahead (motion.window)";
     case planner::SpeedLimit::kClock:
       return "beyond the card's clock";
     case planner::SpeedLimit::kNone:
@@ -50,14 +52,20 @@ std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   std::string blending;
   std::string hardware;
   for (const auto& [word, count] : words) {
-    std::string& list = word == "M0" || word == "M1" ? stops : (word == "G64" ? blending : hardware);
+    std::string& list = word == "M0" || word == "M1" ? stops : (word == "G64 P" ? blending : hardware);
     list += fmt::format(" {} ({})", word, count);
   }
   std::string text;
   if (!stops.empty()) text += "  stops for the operator, which a simulation does not make:" + stops + "\n";
-  if (!blending.empty()) text += "  no blending yet, every motion ends in an exact stop:" + blending + "\n";
+  if (!blending.empty()) text += "  no blending yet, corners are kept as with G64 without P:" + blending + "\n";
   if (!hardware.empty()) text += "  accepted, without hardware yet:" + hardware + "\n";
   return text;
+}
+
+nlohmann::ordered_json motion_json(const run::PlannedMotion& motion) {
+  return {{"stops", motion.stops},
+          {"velocity_jump", motion.velocity_jump},
+          {"acceleration_step", motion.acceleration_step}};
 }
 
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds) {
@@ -129,6 +137,7 @@ nlohmann::ordered_json json_of(const RunResult& result) {
   json["segments"] = result.segments;
   json["commands"] = result.commands;
   json["planned_seconds"] = result.planned_seconds;
+  json["motion"] = motion_json(result.motion);
   json["under_runs"] = nullptr;
   if (result.under_runs) json["under_runs"] = *result.under_runs;
   json["feed"] = {{"commanded", nullptr}, {"achieved", nullptr}};

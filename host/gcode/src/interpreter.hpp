@@ -59,6 +59,7 @@ class Interpreter {
   };
 
   void set_feed(const WordSet& words);
+  void set_path_control(const WordSet& words);
   void set_modes(const WordSet& words);
   bool check_leftovers(const Context& context) const;
   bool act(const Context& context);
@@ -92,6 +93,8 @@ class Interpreter {
   FeedMode feed_mode_ = FeedMode::kPerMinute;
   std::optional<double> feed_;  // as written, units or 1 a minute
   bool feed_in_inches_ = false;
+  PathControl path_control_ = PathControl::kContinuous;
+  double tolerance_ = 0;  // mm
 };
 
 }  // namespace trammel::gcode

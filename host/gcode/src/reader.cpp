@@ -78,6 +78,9 @@ class Reader::Impl {
     if (words_.accepted_begin() != words_.accepted_end()) {
       count_accepted();
     }
+    if (words_.code(Group::kPathControl) == 640 && words_.letter('P')) {
+      ++accepted_["G64 P"];  // read, but nothing blends yet
+    }
     const Interpreter::Outcome outcome = interpreter_.execute(words_, number_, motions_, problem_);
     ended_ = outcome == Interpreter::Outcome::kEnded;
     return outcome != Interpreter::Outcome::kFailed || fail();

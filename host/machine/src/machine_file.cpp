@@ -47,6 +47,33 @@ constexpr std::array<Entry, 11> kEntries = {{
 }};
 constexpr const char* kInverted = "inverted";
 
+struct Switch {
+  const char* name;
+  bool MachineAxis::*member;
+};
+constexpr std::array<Switch, 3> kSwitches = {{
+    {kInverted, &MachineAxis::inverted},
+    {"second_motor", &MachineAxis::second_motor},
+    {"second_inverted", &MachineAxis::second_inverted},
+}};
+
+// An entry of the table [motion].
+struct MotionEntry {
+  const char* name;
+  double MotionSettings::*member;
+  double least;
+  double most;
+  bool whole;
+};
+
+constexpr std::array<MotionEntry, 5> kMotionEntries = {{
+    {"junction_deviation", &MotionSettings::junction_deviation, 0, 1000, false},
+    {"max_override", &MotionSettings::max_override, 1, 2, false},
+    {"hold_reserve", &MotionSettings::hold_reserve, 0, 0.9, false},
+    {"window", &MotionSettings::window, 2, 1 << 20, true},
+    {"stale_periods", &MotionSettings::stale_periods, 0, 65535, true},
+}};
+
 // A name or a text within a message; the whole message.
 constexpr std::size_t kLongestQuote = 80;
 constexpr std::size_t kLongestMessage = 1000;
@@ -96,6 +123,9 @@ std::vector<std::string> axis_entries() {
   for (const Entry& entry : kEntries) {
     names.emplace_back(entry.name);
   }
+  for (std::size_t i = 1; i < kSwitches.size(); ++i) {
+    names.emplace_back(kSwitches[i].name);
+  }
   for (std::size_t system = 0; system < kCoordinateSystems; ++system) {
     names.push_back(fmt::format("g{}", 54 + system));
   }
@@ -115,12 +145,14 @@ std::vector<std::string> axis_entries() {
 void set_axis_entry(const Source& source, MachineAxis& axis, const std::string& table, const std::string& key,
                     const toml::value& value) {
   const std::string path = table + key;
-  if (key == kInverted) {
-    if (!value.is_boolean()) {
-      refuse(source.at(value) + path + " must be true or false");
+  for (const Switch& entry : kSwitches) {
+    if (key == entry.name) {
+      if (!value.is_boolean()) {
+        refuse(source.at(value) + path + " must be true or false");
+      }
+      axis.*entry.member = value.as_boolean();
+      return;
     }
-    axis.inverted = value.as_boolean();
-    return;
   }
   if (const auto system = coordinate_system(key)) {
     axis.offsets[*system] = number(source, path, value, Range::kAny);
@@ -145,6 +177,26 @@ void set_axis(const Source& source, MachineAxis& axis, const std::string& name, 
   if (!(axis.min < axis.max)) {
     const toml::value& wrong = table.count("min") != 0 ? table.at("min") : place;
     refuse(fmt::format("{}{}min must be less than {}max: {} and {}", source.at(wrong), path, path, axis.min, axis.max));
+  }
+}
+
+std::vector<std::string> motion_entries() {
+  std::vector<std::string> names;
+  for (const MotionEntry& entry : kMotionEntries) names.emplace_back(entry.name);
+  return names;
+}
+
+void set_motion(const Source& source, MotionSettings& motion, const toml::table& table) {
+  for (const auto& [key, value] : table) {
+    const auto entry = std::find_if(kMotionEntries.begin(), kMotionEntries.end(),
+                                    [&key = key](const MotionEntry& known) { return key == known.name; });
+    if (entry == kMotionEntries.end()) refuse_key(source, value, "motion.", key, motion_entries());
+    const double given = number(source, "motion." + key, value, Range::kAny);
+    if (given < entry->least || given > entry->most || (entry->whole && given != std::floor(given))) {
+      refuse(fmt::format("{}motion.{} must be {}from {} to {}, not {}", source.at(value), key,
+                         entry->whole ? "a whole number " : "", entry->least, entry->most, given));
+    }
+    motion.*entry->member = given;
   }
 }
 
@@ -190,6 +242,21 @@ void check_times(const std::string& where, const Machine& machine) {
     check(axis, axis.step_space_ns, "step_space_ns");
     check(axis, axis.direction_setup_ns, "direction_setup_ns");
     check(axis, axis.direction_hold_ns, "direction_hold_ns");
+  }
+}
+
+void check_motors(const std::string& where, const Machine& machine) {
+  if (machine.axes.size() > card_map::kMaxAxes) {
+    refuse(fmt::format("{}: {} axes, the card has at most {}", where, machine.axes.size(), card_map::kMaxAxes));
+  }
+  if (machine.motors() > card_map::kMaxAxes) {
+    refuse(fmt::format("{}: {} motors, second ones included, the card has at most {}", where, machine.motors(),
+                       card_map::kMaxAxes));
+  }
+  for (const MachineAxis& axis : machine.axes) {
+    if (axis.second_inverted && !axis.second_motor) {
+      refuse(fmt::format("{}: axis {}: second_inverted without second_motor", where, axis.letter));
+    }
   }
 }
 
@@ -244,8 +311,8 @@ toml::value parse(const Source& source, const std::string& text) {
 
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
-    if (key != "card" && key != "axis") {
-      refuse_key(source, value, "", key, {"card", "axis"});
+    if (key != "card" && key != "axis" && key != "motion") {
+      refuse_key(source, value, "", key, {"card", "axis", "motion"});
     }
     for (const auto& [inner_key, inner] : table_of(source, key, value)) {
       if (key == "card" && inner_key != "clock_hz") {
@@ -319,12 +386,11 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   }
   Machine machine;
   set_clock(source, machine, card->at("clock_hz"));
+  if (const toml::table* motion = find_table(root, "motion")) set_motion(source, machine.motion, *motion);
   for (const auto& [key, value] : *axes) {
     machine.axes.push_back(read_axis(source, key, value));
   }
-  if (machine.axes.size() > card_map::kMaxAxes) {
-    refuse(fmt::format("{}:1: {} axes, the card has at most {}", name, machine.axes.size(), card_map::kMaxAxes));
-  }
+  check_motors(name + ":1", machine);
   std::sort(machine.axes.begin(), machine.axes.end(),
             [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
   check_times(name + ":1", machine);
@@ -351,6 +417,10 @@ void apply_override(Machine& machine, const std::string& text) {
     set_clock(source, changed, card->at("clock_hz"));
     any = true;
   }
+  if (const toml::table* motion = find_table(root, "motion")) {
+    set_motion(source, changed.motion, *motion);
+    any = true;
+  }
   if (const toml::table* axes = find_table(root, "axis")) {
     for (const auto& [name, value] : *axes) {
       const toml::table& table = table_of(source, "axis." + name, value);
@@ -365,6 +435,7 @@ void apply_override(Machine& machine, const std::string& text) {
   if (!any) {
     refuse(source.name + ": not an assignment such as axis.x.steps_per_mm=20");
   }
+  check_motors(source.name, changed);
   check_times(source.name, changed);
   machine = changed;
 }

@@ -9,7 +9,7 @@ void FeedMeter::sending(const planner::PlannedBlock& planned) {
   block_ = !planner::moves(block) ? Kind::kBarrier : (block.wanted > 0 ? Kind::kFeed : Kind::kRapid);
   if (block_ != Kind::kFeed) return;
   length_ += block.length;
-  wanted_seconds_ += block.pulses / block.wanted;
+  wanted_seconds_ += block.length / block.wanted;
 }
 
 void FeedMeter::command(std::uint64_t number, const driver::Command& command) {
