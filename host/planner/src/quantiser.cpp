@@ -169,13 +169,33 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
   motion.acceleration = (phase.acceleration + begin * phase.jerk) * rate_a_speed_ / clock_hz_;
   motion.jerk = phase.jerk * rate_a_speed_ / clock_hz_ / clock_hz_;
   motion.clocks = (end - begin) * clock_hz_;
+  // At rest the tick next to it, which would take three times as long, is at the floor.
+  const double floor = cube_root(4.5 * std::abs(motion.jerk));
   if (stop) {
-    // The last tick, which would take three times as long, is at the floor.
-    const double floor = cube_root(4.5 * std::abs(motion.jerk));
     motion.end_rate = std::max(motion.end_rate, floor);
     motion.clocks = std::max(motion.clocks - 2 / floor, ticks / std::max(motion.rate, floor));
+  } else if (phase.speed == 0 && motion.rate < floor) {
+    begin_at(floor, ticks, motion);
   }
   return motion;
+}
+
+// From rest, but from this rate on: the end's rate and acceleration as they are, with the jerk that makes the ticks.
+// None where the end is no higher.
+void Quantiser::begin_at(double rate, double ticks, Motion& motion) {
+  const double acceleration = motion.acceleration + motion.clocks * motion.jerk;
+  const double gain = motion.end_rate - rate;
+  // ticks = (rate + gain / 2) t - (acceleration t - gain) t / 6
+  const double linear = rate + gain * 2 / 3;
+  const double square = linear * linear - acceleration * ticks * 2 / 3;
+  if (!(gain > 0) || !(square > 0)) return;
+  const double clocks = 2 * ticks / (linear + std::sqrt(square));
+  const double jerk = 2 * (acceleration - gain / clocks) / clocks;
+  if (jerk > motion.jerk * 1.001) return;  // too few ticks
+  motion.clocks = clocks;
+  motion.jerk = jerk;
+  motion.acceleration = acceleration - jerk * clocks;
+  motion.rate = rate;
 }
 
 void Quantiser::put_pending(bool stop) {

@@ -61,6 +61,7 @@ class Quantiser {
 
   void portion(const Phase& phase, double begin, double end, std::uint64_t end_tick, bool last, bool stop);
   Motion motion_of(const Phase& phase, double from, double to, double ticks, bool stop) const;
+  static void begin_at(double rate, double ticks, Motion& motion);
   static Motion steady(double rate, double end_rate, double ticks);
   static double turning_rate(const Motion& motion);
   void put_pending(bool stop);
