@@ -82,6 +82,7 @@ class Quantiser {
 
   // Where the phases are.
   bool moving_ = false;
+  bool turns_ = false;    // from a stop that nothing waits at
   std::uint64_t at_ = 0;  // block
   double mm_ = 0;
   double portion_mm_ = 0;  // and where the last portion of a phase ended
