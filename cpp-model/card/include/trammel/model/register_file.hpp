@@ -20,8 +20,8 @@ class RegisterFile {
   static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
   static constexpr std::uint32_t kDefaultEngines =
       kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode |
-      card_map::field::kEnginesUnderrunHold | card_map::field::kEnginesPathCommands |
-      card_map::field::kEnginesClasses | card_map::field::kEnginesWatermarks;
+      card_map::field::kEnginesUnderrunHold | card_map::field::kEnginesPathCommands | card_map::field::kEnginesClasses |
+      card_map::field::kEnginesWatermarks;
   static constexpr std::uint32_t kMostEngines = kDefaultEngines | card_map::field::kEnginesArcGenerator;
 
   struct Config {
