@@ -67,6 +67,7 @@ void tell(const run::Plan& plan, RunResult& result) {
   result.program = plan.file;
   result.segments = plan.segments;
   result.planned_seconds = plan.seconds;
+  result.motion = plan.motion;
   result.accepted = plan.accepted;
   result.feeds_not_reached = plan.feeds_not_reached;
 }

@@ -11,6 +11,9 @@ module card_core #(
     parameter int          UnderrunHold  = 1,     // 0: without
     parameter int          Classes       = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks    = 1,     // 0: without
+    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
+    parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
+    parameter int          Outputs       = 4,
     parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
@@ -31,7 +34,10 @@ module card_core #(
     // straps
     input wire logic [31:0] clock_hz_i,
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
     // pins
+    input wire logic [Inputs-1:0] input_i,
+    output logic [Outputs-1:0] output_o,
     output logic [Axes-1:0] step_o,
     output logic [Axes-1:0] dir_o,
     output logic irq_o,
@@ -49,12 +55,20 @@ module card_core #(
     ERROR_Ports_must_be_1_to_4 error ();
   end
 
+  if (Inputs < 1 || Inputs > 16 || Outputs < 1 || Outputs > 16) begin : gen_wrong_pins
+    ERROR_Inputs_and_Outputs_must_be_1_to_16 error ();
+  end
+
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
       32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
       32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE |
       32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
-      32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS;
+      32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS |
+      32'(PathCommands != 0) << card_map_pkg::ENGINE_PATH_COMMANDS;
+
+  // PORTS: {outputs, inputs, ports}.
+  localparam logic [31:0] PORTS = 32'(Ports) | (PathCommands != 0 ? 32'(Inputs) << 8 | 32'(Outputs) << 16 : 32'd0);
 
   // What parameters and straps decide of the constants, by address.
   logic [511:0] constants;
@@ -67,7 +81,7 @@ module card_core #(
       512'(BuildId) << 8 * card_map_pkg::ADDR_BUILD_ID |
       512'(BuildDirty != 0) << 8 * card_map_pkg::ADDR_BUILD_FLAGS |
       512'(BoardId) << 8 * card_map_pkg::ADDR_BOARD_ID |
-      512'(Ports) << 8 * card_map_pkg::ADDR_PORTS;
+      512'(PORTS) << 8 * card_map_pkg::ADDR_PORTS;
 
   logic [31:0] clear_fault;
   logic [31:0] fault;
@@ -84,6 +98,8 @@ module card_core #(
   logic        cut;
   logic        closed;
   logic        stop;
+  logic        mark;
+  logic [63:0] io;  // {marks, outputs, inputs}
   logic [ 1:0] snapshot;  // {shift, strobe}
   logic [31:0] chain_far;
   logic [31:0] chain_near;
@@ -109,6 +125,7 @@ module card_core #(
       .room_i(room),
       .low_i(low),
       .begun_i(begun),
+      .io_i(io),
       .status_o(status),
       .setting_o(setting),
       .clear_fault_o(clear_fault),
@@ -121,6 +138,8 @@ module card_core #(
       .loader_address_i(loader_address),
       .loader_data_o(loader_data),
       .stop_i(stop),
+      .probe_i(1'b0),
+      .mark_i(mark),
       .snapshot_o(snapshot),
       .chain_o(chain_far),
       .chain_i(chain_near)
@@ -198,12 +217,16 @@ module card_core #(
 
   motion_core #(
       .Axes(Axes),
-      .Engines(ENGINES)
+      .Engines(ENGINES),
+      .Inputs(Inputs),
+      .Outputs(Outputs)
   ) motion (
       .*,
       .setting_i(setting),
       .abort_i(abort),
       .clear_fault_i(clear_fault),
+      .mark_o(mark),
+      .io_o(io),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i(geometry_word),
       .geometry_read_o(geometry_read),

@@ -29,6 +29,7 @@ module register_live #(
     input  wire logic [31:0] fault_i,
     input  wire logic [31:0] room_i,           // {geometry, feed}
     input  wire logic [63:0] begun_i,          // {geometry, feed}
+    input  wire logic [63:0] io_i,             // {marks, outputs, inputs}
     output logic      [31:0] status_o,         // combinational; refused is any port's
     output logic      [31:0] data_o,
     output logic      [31:0] chain_o,
@@ -94,6 +95,9 @@ module register_live #(
         card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_o <= {16'd0, room_i[31:16]};
         card_map_pkg::ADDR_FEED_ROOM[5:2]: data_o <= {16'd0, room_i[15:0]};
         card_map_pkg::ADDR_GEOMETRY_BEGUN[5:2]: data_o <= begun_i[63:32];
+        card_map_pkg::ADDR_INPUTS[5:2]: data_o <= {16'd0, io_i[15:0]};
+        card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, io_i[31:16]};
+        card_map_pkg::ADDR_MARKS[5:2]: data_o <= io_i[63:32];
         card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= begun_i[31:0];
         default: data_o <= underrun_i[31:0];
       endcase

@@ -331,6 +331,7 @@ bool MotionCore::may_jump(const Inputs& in) const {
   const bool fixed = s.piece_class == card_map::constant::kClassFixed;
   if (!stop_.quiet(s.moving, fixed, time_base_.outputs().ratio == 0)) return false;
   if (!engines_.settled() || !time_base_.steady(stop.hold, s.piece_class)) return false;
+  if (!commands_.quiet(in.pins, s.path_active)) return false;
   for (const Axis& axis : axes_) {
     if (!axis.calm()) return false;
   }

@@ -12,12 +12,14 @@ unsigned idle_level_of(std::uint32_t levels, unsigned axes, unsigned axis) {
 
 }  // namespace
 
-MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all, std::uint32_t engines)
+MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all, std::uint32_t engines,
+                       const PathCommands::Config& pins)
     : clock_all_(clock_all),
       has_guard_(card_map::has_engine(engines, card_map::engine::kUnderrunHold)),
       loader_(axes),
       sequencer_(clock_all),
-      engines_(clock_all) {
+      engines_(clock_all),
+      commands_(pins) {
   for (unsigned n = 0; n < axes; ++n) {
     axes_.emplace_back(n, idle_level_of(idle_level, axes, n), clock_all);
     put(out_.step, 1U << n, axes_[n].shaper().outputs().step);
@@ -77,6 +79,7 @@ void MotionCore::clock(const Inputs& in) {
   if (clock_all_ || events || in.setting.set || underrun != stop_.underrun() || !stop_.quiet(s.moving, fixed, at_rest))
     stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, s.moving, fixed,
                  underrun, in.setting});
+  clock_commands(in, stop.cut);
   clock_busy();
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
@@ -85,6 +88,21 @@ void MotionCore::clock(const Inputs& in) {
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
   time_base_.clock({stop.hold, in.setting, s.piece_class});
   sequencer_.clock(sequencer_in);
+}
+
+void MotionCore::clock_commands(const Inputs& in, bool cut) {
+  const Sequencer::Outputs& s = sequencer_.outputs();
+  PathCommands::Inputs c;
+  c.cut = cut;
+  c.output = sequencer_.takes_output();
+  c.mark = sequencer_.takes_mark();
+  c.over = s.over;
+  c.runs = s.path_active;
+  c.pins = in.pins;
+  c.load = sequencer_.load();
+  c.setting = in.setting;
+  const bool events = cut || c.output || c.mark || c.over || c.load.to(load_target::kCommand) || in.setting.set;
+  if (clock_all_ || events || !commands_.quiet(in.pins, s.path_active)) commands_.clock(c);
 }
 
 void MotionCore::clock_axes(const Inputs& in, bool cut) {

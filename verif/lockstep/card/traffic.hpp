@@ -38,6 +38,8 @@ class Traffic {
     chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1U : 0U;
     return true;
   }
+  // OUTPUT and MARK beside one path in so many; 0: none.
+  unsigned commands_every = 0;
   // Pieces of all classes; else feed.
   bool classes = true;
   // One path in so many is an arc in chords; 0: none.
@@ -82,6 +84,11 @@ class Traffic {
     if (one_in(4)) word = static_cast<std::uint32_t>(odd_number(32));
     if (one_in(6)) words.resize(1 + below(words.size()));
   }
+  driver::Command beside_a_path() {
+    if (one_in(2)) return driver::MarkCommand{};
+    return driver::OutputCommand{static_cast<std::uint16_t>(below(0x10000)),
+                                 static_cast<std::uint16_t>(below(0x10000))};
+  }
   static constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
   std::uint32_t any_ratio() { return kRatios[below(3)]; }
   void read_anything();
@@ -99,6 +106,7 @@ inline void Traffic::section(bool faulty) {
   std::uint64_t total = 0;
   const auto random = [this](std::uint64_t count) { return below(count); };
   for (std::uint64_t paths = 1 + below(6); paths != 0; --paths) {
+    while (commands_every != 0 && one_in(commands_every)) driver::encode(beside_a_path(), 0, geometry.emplace_back());
     if (chords_every != 0 && axes_ > 1 && one_in(chords_every))
       geometry.push_back(random_chords(random, axes_, total));
     else
@@ -230,6 +238,7 @@ inline void Traffic::write_anything() {
 }
 
 inline void Traffic::disturb() {
+  if (one_in(3)) host_.set_pins(static_cast<std::uint16_t>(below(0x10000)));
   switch (below(16)) {
     case 0:
       host_.write(reg::kHold, static_cast<std::uint32_t>(below(2)));

@@ -34,6 +34,9 @@ module sequencers #(
     input  wire logic            engine_done_i,
     input  wire logic            elsewhere_i,
     input  wire logic            axes_live_i,
+    // commands that are neither paths nor barriers
+    output logic      [     1:0] instant_o,
+    output logic                 over_o,
     // what begins
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
@@ -92,6 +95,8 @@ module sequencers #(
       .done_i         (engine_done_i),
       .elsewhere_i,
       .axes_live_i,
+      .instant_o,
+      .over_o,
       .feed_at_i      (feed_at),
       .feed_runs_i    (feed_runs),
       .barrier_begin_o(barrier_begin),

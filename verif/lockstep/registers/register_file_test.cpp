@@ -26,6 +26,7 @@ constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
 constexpr std::uint64_t kComparedSignals = 13;
+constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
 constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(7) / 4;  // word of the direct mode's first register
 // RATIO, RATE, FEED_BEGUN and GEOMETRY_BEGUN come before the positions on the snapshot chain.
@@ -35,6 +36,9 @@ RegisterFile::Config configuration() {
   RegisterFile::Config config;
   config.axes = kAxes;
   config.ports = kPorts;
+  config.engines = TRAMMEL_ENGINES;
+  config.inputs = 7;
+  config.outputs = 16;
   config.idle_level = 0x9C35 & ((1U << 2 * kAxes) - 1);
   config.build_id = 0x1234'5678;
   config.build_dirty = true;
@@ -54,7 +58,7 @@ class Bench {
     constants(reg::kBuildId) = config.build_id;
     constants(reg::kBuildFlags) = 1;
     constants(reg::kBoardId) = config.board_id;
-    constants(reg::kPorts) = config.ports;
+    constants(reg::kPorts) = config.ports | (kPathCommands ? 0x10'07'00U : 0);
     rtl_->idle_level_i = static_cast<IdleLevel>(config.idle_level);
     reset();
     in_ = {};
@@ -75,7 +79,7 @@ class Bench {
     start_wait_ = 0;
     flushed_ = streamed_ = false;
     chain_.fill({});
-    in_.request = in_.stop = in_.start_done = in_.checker_refuse = false;
+    in_.request = in_.stop = in_.probe = in_.mark = in_.start_done = in_.checker_refuse = false;
     in_.checker_ready = true;
     compare();
   }
@@ -120,6 +124,13 @@ class Bench {
     // A stop is as likely beside what a write asks for as anywhere else.
     in_.stop = model_.time() > kFilled && chance(model_.outputs().ack ? 20 : 300);
     if (in_.stop) checker_.event("stop");
+    if (chance(1000)) marks_every_ = chance(3) ? 5 + draw() % 20 : 300;
+    in_.mark = kPathCommands && model_.time() > kFilled && chance(marks_every_);
+    if (in_.mark) checker_.event("mark");
+    // Not while the stop's snapshot is under way: the probe is off then.
+    stopped_for_ = in_.stop ? 0 : stopped_for_ + 1;
+    in_.probe = kPathCommands && model_.time() > kFilled && stopped_for_ > kAxes + 11 && chance(300);
+    if (in_.probe) checker_.event("probe");
     if (chance(reset_every())) {
       reset();
     } else {
@@ -175,6 +186,9 @@ class Bench {
     in_.feed_low = (bits & 0x400) != 0;
     in_.geometry_begun = draw();
     in_.feed_begun = draw();
+    in_.inputs = static_cast<std::uint16_t>(draw());
+    in_.outputs = static_cast<std::uint16_t>(draw());
+    in_.marks = draw();
     in_.rate = draw();
     in_.ratio = chance(3) ? 0 : draw() % 0x10001;
     in_.fault = chance(2) ? 0 : draw() & kFaultBits;
@@ -274,6 +288,9 @@ class Bench {
     rtl_->start_answer_i = static_cast<SData>(in_.start_done << 9 | in_.start_error << 8 | in_.start_reason);
     rtl_->loader_address_i = in_.loader_address;
     rtl_->stop_i = in_.stop;
+    rtl_->probe_i = in_.probe;
+    rtl_->mark_i = in_.mark;
+    rtl_->io_i = std::uint64_t{in_.marks} << 32 | std::uint32_t{in_.outputs} << 16 | in_.inputs;
     rtl_->chain_i = chain_.back().word();
   }
 
@@ -316,6 +333,8 @@ class Bench {
   bool refused_ = false;   // the last access
   std::uint32_t checker_wait_ = 0;
   std::uint32_t start_wait_ = 0;
+  std::uint32_t marks_every_ = 300;
+  std::uint32_t stopped_for_ = 0;  // clocks since the last stop
   bool outstanding_ = false;
 };
 

@@ -10,6 +10,7 @@
 #include "trammel/model/buses.hpp"
 #include "trammel/model/direct_loader.hpp"
 #include "trammel/model/feed_generator.hpp"
+#include "trammel/model/path_commands.hpp"
 #include "trammel/model/path_engines.hpp"
 #include "trammel/model/sequencer.hpp"
 #include "trammel/model/step_record.hpp"
@@ -37,6 +38,7 @@ class MotionCore {
     bool start = false;
     std::uint8_t start_mask = 0;
     std::uint32_t loader_data = 0;
+    std::uint16_t pins = 0;  // inputs of the card
   };
   // A bit for each axis.
   struct Outputs {
@@ -53,7 +55,8 @@ class MotionCore {
 
   // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests. `engines`: of ENGINES,
   // what is beside the path engines.
-  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false, std::uint32_t engines = 0);
+  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false, std::uint32_t engines = 0,
+             const PathCommands::Config& pins = {});
 
   // One rising edge.
   void clock(const Inputs& in);
@@ -69,6 +72,7 @@ class MotionCore {
   const UnderrunGuard::Outputs& underrun() const { return guard_.outputs(); }
   const TimeBase::Outputs& time() const { return time_base_.outputs(); }
   const FeedGenerator::Outputs& feed() const { return feed_.outputs(); }
+  const PathCommands& commands() const { return commands_; }
   const PathEngines::Outputs& engines() const { return engines_.outputs(); }
   bool chord_tick() const { return engines_.chord_tick(); }
   std::uint32_t position(unsigned axis) const { return axes_[axis].shaper().outputs().position; }
@@ -80,6 +84,7 @@ class MotionCore {
   static constexpr unsigned kBusyClocks = 11;
 
   void clock_axes(const Inputs& in, bool cut);
+  void clock_commands(const Inputs& in, bool cut);
   void clock_busy();
   void show_axis(unsigned n);
   bool may_jump(const Inputs& in) const;
@@ -97,6 +102,7 @@ class MotionCore {
   FeedGenerator feed_;
   PathEngines engines_;
   WaitTimer wait_timer_;
+  PathCommands commands_;
   std::vector<Axis> axes_;
   bool axes_live_ = false;  // a clock late
   bool running_ = false;    // a clock late
