@@ -58,7 +58,8 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
   Bench whole;
   whole.run(kProgram);
   const double end = static_cast<double>(whole.steps.pins.back().cycle) / kClock;
-  for (double at = 0.03; at < end - 0.05; at += 0.0617) {
+  // Not in the last ramp, which a stop does not shorten.
+  for (double at = 0.03; at < end - 0.2; at += 0.0617) {
     SCOPED_TRACE(at);
     Bench bench;
     MachinePosition position(bench.card.snapshot(), bench.machine);
