@@ -9,11 +9,11 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/increment.hpp"
+#include "trammel/driver/trigonometry.hpp"
 
 namespace trammel::driver {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint64_t kCountLimit =
     card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Arc))->count_maximum + 1;  // also of path ticks
 constexpr std::int64_t kMaxQuadrants = std::numeric_limits<decltype(ArcCommand::quadrants)>::max();

@@ -24,6 +24,9 @@ constexpr unsigned kClockwiseBit = 0;
 constexpr unsigned kAxisXShift = 4;
 constexpr unsigned kAxisYShift = 8;
 constexpr unsigned kAxisMask = 7;
+// Bits of the field `shifts`.
+constexpr unsigned kTickShift = 8;
+constexpr unsigned kShiftMask = 31;
 
 // The layouts of the commands that this driver knows, and their fields, from the card map at compile time: a name that
 // is not there does not compile.
@@ -53,6 +56,19 @@ constexpr map::Field kGradientX = field_of(kArc, "gradient_x");
 constexpr map::Field kGradientY = field_of(kArc, "gradient_y");
 constexpr map::Field kHalfX = field_of(kArc, "half_x");
 constexpr map::Field kHalfY = field_of(kArc, "half_y");
+
+constexpr const map::Command& kArcChord = layout_for(map::Opcode::ArcChord);
+constexpr map::Field kChordPathTicks = field_of(kArcChord, "path_ticks");
+constexpr map::Field kChordPrescale = field_of(kArcChord, "prescale");
+constexpr map::Field kChordPlane = field_of(kArcChord, "plane");
+constexpr map::Field kShifts = field_of(kArcChord, "shifts");
+constexpr map::Field kChordX = field_of(kArcChord, "x");
+constexpr map::Field kChordY = field_of(kArcChord, "y");
+constexpr map::Field kFirstX = field_of(kArcChord, "first_x");
+constexpr map::Field kFirstY = field_of(kArcChord, "first_y");
+constexpr map::Field kClosingX = field_of(kArcChord, "closing_x");
+constexpr map::Field kClosingY = field_of(kArcChord, "closing_y");
+constexpr map::Field kFurther = field_of(kArcChord, "increment");
 
 constexpr const map::Command& kFeed = layout_for(map::Opcode::Feed);
 constexpr map::Field kRate = field_of(kFeed, "rate");
@@ -127,6 +143,21 @@ class Writer {
     put(kPayloadBegin + kField.offset + 4, kField.halfwords - 4, static_cast<std::uint64_t>(value.high()));
   }
 
+  // The field for each axis of `mask`; the others have none.
+  template <const map::Field& kField>
+  void increments(const std::array<std::int64_t, map::kMaxAxes>& increment, std::uint8_t mask) {
+    std::size_t offset = 0;
+    for (unsigned axis = 0; axis < map::kMaxAxes; ++axis) {
+      if ((mask >> axis & 1U) != 0) {
+        field<kField>(increment[axis], offset);
+        offset += kField.halfwords;
+      } else if (increment[axis] != 0) {
+        refuse(layout_,
+               fmt::format("increment {} of axis {}, which is not among 0x{:02X}", increment[axis], axis, mask));
+      }
+    }
+  }
+
   std::size_t length() const { return length_; }
 
  private:
@@ -146,32 +177,29 @@ class Writer {
 std::size_t write(const LineCommand& line, std::uint8_t number, std::uint32_t* words) {
   if (line.mask == 0) refuse(kLine, "axis mask 0x00");
   Writer to(kLine, line.mask, line.ticks, number, words);
-  std::size_t offset = 0;
-  for (unsigned axis = 0; axis < map::kMaxAxes; ++axis) {
-    if ((line.mask >> axis & 1U) != 0) {
-      to.field<kIncrement>(line.increment[axis], offset);
-      offset += kIncrement.halfwords;
-    } else if (line.increment[axis] != 0) {
-      refuse(kLine, fmt::format("increment {} of axis {}, which is not in the mask 0x{:02X}", line.increment[axis],
-                                axis, line.mask));
-    }
-  }
+  to.increments<kIncrement>(line.increment, line.mask);
   return to.length();
 }
 
-std::uint8_t plane_mask(unsigned axis_x, unsigned axis_y) {
+// Of the axes that span a plane; refuses others.
+std::uint8_t plane_mask(const map::Command& layout, unsigned axis_x, unsigned axis_y) {
+  if (axis_x > kAxisMask || axis_y > kAxisMask || axis_x == axis_y) {
+    refuse(layout, fmt::format("plane of axes {} and {}", axis_x, axis_y));
+  }
   return static_cast<std::uint8_t>(1U << axis_x | 1U << axis_y);
 }
 
+template <class Arc>
+std::uint64_t plane_of(const Arc& arc) {
+  return (arc.clockwise ? 1U : 0U) << kClockwiseBit | unsigned{arc.axis_x} << kAxisXShift |
+         unsigned{arc.axis_y} << kAxisYShift;
+}
+
 std::size_t write(const ArcCommand& arc, std::uint8_t number, std::uint32_t* words) {
-  if (arc.axis_x > kAxisMask || arc.axis_y > kAxisMask || arc.axis_x == arc.axis_y) {
-    refuse(kArc, fmt::format("plane of axes {} and {}", arc.axis_x, arc.axis_y));
-  }
-  Writer to(kArc, plane_mask(arc.axis_x, arc.axis_y), arc.ticks, number, words);
+  Writer to(kArc, plane_mask(kArc, arc.axis_x, arc.axis_y), arc.ticks, number, words);
   to.field<kPathTicks>(arc.path_ticks);
   to.field<kPrescale>(arc.prescale);
-  to.field<kPlane>(std::uint64_t{(arc.clockwise ? 1U : 0U) << kClockwiseBit | unsigned{arc.axis_x} << kAxisXShift |
-                                 unsigned{arc.axis_y} << kAxisYShift});
+  to.field<kPlane>(plane_of(arc));
   to.field<kQuadrants>(std::uint64_t{arc.quadrants});
   to.field<kEndX>(std::int64_t{arc.end_x});
   to.field<kEndY>(std::int64_t{arc.end_y});
@@ -180,6 +208,28 @@ std::size_t write(const ArcCommand& arc, std::uint8_t number, std::uint32_t* wor
   to.field<kGradientY>(arc.gradient_y);
   to.field<kHalfX>(arc.half_x);
   to.field<kHalfY>(arc.half_y);
+  return to.length();
+}
+
+std::size_t write(const ArcChordCommand& arc, std::uint8_t number, std::uint32_t* words) {
+  const std::uint8_t plane = plane_mask(kArcChord, arc.axis_x, arc.axis_y);
+  if ((arc.mask & plane) != plane) {
+    refuse(kArcChord,
+           fmt::format("axis mask 0x{:02X} without the axes {} and {} of the plane", arc.mask, arc.axis_x, arc.axis_y));
+  }
+  if (arc.k > kShiftMask || arc.m > kShiftMask) refuse(kArcChord, fmt::format("shifts {} and {}", arc.k, arc.m));
+  Writer to(kArcChord, arc.mask, arc.ticks, number, words);
+  to.field<kChordPathTicks>(arc.path_ticks);
+  to.field<kChordPrescale>(arc.prescale);
+  to.field<kChordPlane>(plane_of(arc));
+  to.field<kShifts>(std::uint64_t{unsigned{arc.k} | unsigned{arc.m} << kTickShift});
+  to.field<kChordX>(arc.x);
+  to.field<kChordY>(arc.y);
+  to.field<kFirstX>(arc.first_x);
+  to.field<kFirstY>(arc.first_y);
+  to.field<kClosingX>(arc.closing_x);
+  to.field<kClosingY>(arc.closing_y);
+  to.increments<kFurther>(arc.increment, static_cast<std::uint8_t>(arc.mask & ~plane));
   return to.length();
 }
 
@@ -210,13 +260,25 @@ class Reader {
   // Sign-extended from its halfwords.
   template <const map::Field& kField>
   std::int64_t signed_field(std::size_t offset = 0) const {
-    const unsigned unused = 64 - kHalfwordBits * static_cast<unsigned>(kField.halfwords);
-    return static_cast<std::int64_t>(unsigned_field<kField>(offset) << unused) / (std::int64_t{1} << unused);
+    constexpr unsigned kUnused = 64 - kHalfwordBits * static_cast<unsigned>(kField.halfwords);
+    const auto value = static_cast<std::int64_t>(unsigned_field<kField>(offset) << kUnused);
+    return value / (std::int64_t{1} << kUnused);
   }
   template <const map::Field& kField>
   std::uint64_t unsigned_field(std::size_t offset = 0) const {
     static_assert(kField.halfwords <= 4);
     return get(kPayloadBegin + kField.offset + offset, kField.halfwords);
+  }
+  template <const map::Field& kField>
+  std::array<std::int64_t, map::kMaxAxes> increments(unsigned mask) const {
+    std::array<std::int64_t, map::kMaxAxes> increment{};
+    std::size_t offset = 0;
+    for (unsigned axis = 0; axis < map::kMaxAxes; ++axis) {
+      if ((mask >> axis & 1U) == 0) continue;
+      increment[axis] = signed_field<kField>(offset);
+      offset += kField.halfwords;
+    }
+    return increment;
   }
   template <const map::Field& kField>
   Int128 wide_field() const {
@@ -242,24 +304,23 @@ Command line_from(const Reader& from, std::uint8_t mask) {
   LineCommand line;
   line.ticks = from.count();
   line.mask = mask;
-  std::size_t offset = 0;
-  for (unsigned axis = 0; axis < map::kMaxAxes; ++axis) {
-    if ((mask >> axis & 1U) == 0) continue;
-    line.increment[axis] = from.signed_field<kIncrement>(offset);
-    offset += kIncrement.halfwords;
-  }
+  line.increment = from.increments<kIncrement>(mask);
   return line;
 }
 
+template <class Arc>
+void set_plane(Arc& arc, std::uint64_t plane) {
+  arc.clockwise = (plane >> kClockwiseBit & 1U) != 0;
+  arc.axis_x = static_cast<std::uint8_t>(plane >> kAxisXShift & kAxisMask);
+  arc.axis_y = static_cast<std::uint8_t>(plane >> kAxisYShift & kAxisMask);
+}
+
 Command arc_from(const Reader& from) {
-  const std::uint64_t plane = from.unsigned_field<kPlane>();
   ArcCommand arc;
   arc.ticks = from.count();
   arc.path_ticks = from.unsigned_field<kPathTicks>();
   arc.prescale = from.unsigned_field<kPrescale>();
-  arc.clockwise = (plane >> kClockwiseBit & 1U) != 0;
-  arc.axis_x = static_cast<std::uint8_t>(plane >> kAxisXShift & kAxisMask);
-  arc.axis_y = static_cast<std::uint8_t>(plane >> kAxisYShift & kAxisMask);
+  set_plane(arc, from.unsigned_field<kPlane>());
   arc.quadrants = static_cast<std::uint16_t>(from.unsigned_field<kQuadrants>());
   arc.end_x = static_cast<std::int32_t>(from.signed_field<kEndX>());
   arc.end_y = static_cast<std::int32_t>(from.signed_field<kEndY>());
@@ -268,6 +329,28 @@ Command arc_from(const Reader& from) {
   arc.gradient_y = from.wide_field<kGradientY>();
   arc.half_x = from.unsigned_field<kHalfX>();
   arc.half_y = from.unsigned_field<kHalfY>();
+  return arc;
+}
+
+Command arc_chord_from(const Reader& from, std::uint8_t mask) {
+  const std::uint64_t shifts = from.unsigned_field<kShifts>();
+  ArcChordCommand arc;
+  arc.ticks = from.count();
+  arc.path_ticks = from.unsigned_field<kChordPathTicks>();
+  arc.prescale = from.unsigned_field<kChordPrescale>();
+  arc.mask = mask;
+  set_plane(arc, from.unsigned_field<kChordPlane>());
+  arc.k = static_cast<std::uint8_t>(shifts & kShiftMask);
+  arc.m = static_cast<std::uint8_t>(shifts >> kTickShift & kShiftMask);
+  arc.x = from.signed_field<kChordX>();
+  arc.y = from.signed_field<kChordY>();
+  arc.first_x = from.signed_field<kFirstX>();
+  arc.first_y = from.signed_field<kFirstY>();
+  arc.closing_x = from.signed_field<kClosingX>();
+  arc.closing_y = from.signed_field<kClosingY>();
+  // Without two axes of a plane in the mask, which encode() refuses, the words do not hold so many increments.
+  const unsigned plane = 1U << arc.axis_x | 1U << arc.axis_y;
+  if (arc.axis_x != arc.axis_y && (mask & plane) == plane) arc.increment = from.increments<kFurther>(mask & ~plane);
   return arc;
 }
 
@@ -288,6 +371,8 @@ Command command_from(map::Opcode opcode, std::uint8_t mask, const Reader& from) 
       return line_from(from, mask);
     case map::Opcode::Arc:
       return arc_from(from);
+    case map::Opcode::ArcChord:
+      return arc_chord_from(from, mask);
     case map::Opcode::Feed:
       return feed_from(from);
     case map::Opcode::Dwell:
@@ -313,13 +398,14 @@ void encode(const Command& command, std::uint8_t number, std::vector<std::uint32
 }
 
 const card_map::Command& layout_of(const Command& command) {
-  constexpr std::array<const map::Command*, 5> kLayouts{&kLine, &kArc, &kFeed, &kDwell, &kEnd};
+  constexpr std::array<const map::Command*, 6> kLayouts{&kLine, &kArc, &kArcChord, &kFeed, &kDwell, &kEnd};
   static_assert(std::variant_size_v<Command> == kLayouts.size() &&
                 std::is_same_v<std::variant_alternative_t<0, Command>, LineCommand> &&
                 std::is_same_v<std::variant_alternative_t<1, Command>, ArcCommand> &&
-                std::is_same_v<std::variant_alternative_t<2, Command>, FeedCommand> &&
-                std::is_same_v<std::variant_alternative_t<3, Command>, DwellCommand> &&
-                std::is_same_v<std::variant_alternative_t<4, Command>, EndCommand>);
+                std::is_same_v<std::variant_alternative_t<2, Command>, ArcChordCommand> &&
+                std::is_same_v<std::variant_alternative_t<3, Command>, FeedCommand> &&
+                std::is_same_v<std::variant_alternative_t<4, Command>, DwellCommand> &&
+                std::is_same_v<std::variant_alternative_t<5, Command>, EndCommand>);
   return *kLayouts[command.index()];
 }
 

@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <limits>
+#include <tuple>
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
@@ -12,6 +13,7 @@ namespace trammel::driver {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
 std::vector<std::uint32_t> words_of(const Command& command, std::uint8_t number = 0) {
@@ -45,6 +47,28 @@ ArcCommand some_arc() {
   return arc;
 }
 
+ArcChordCommand some_arc_chord() {
+  ArcChordCommand arc;
+  arc.ticks = 0x900;
+  arc.path_ticks = 0x800;
+  arc.prescale = 0xE38E38E38E;
+  arc.mask = 0b1111;
+  arc.clockwise = true;
+  arc.axis_x = 2;
+  arc.axis_y = 0;
+  arc.k = 4;
+  arc.m = 9;
+  arc.x = 0x0123456789ABCDEF;
+  arc.y = -2;
+  arc.first_x = 0x111122223;
+  arc.first_y = -1;
+  arc.closing_x = 5;
+  arc.closing_y = -6;
+  arc.increment[1] = 7;
+  arc.increment[3] = -8;
+  return arc;
+}
+
 TEST(Commands, ALineIsLaidOutAsTheLayoutPageSays) {
   LineCommand line;
   line.ticks = 0x0123456789;
@@ -67,6 +91,15 @@ TEST(Commands, APieceIsLaidOutAsTheLayoutPageSays) {
   // Halfwords: 0010 000B | 0005 0000 | 0000 CDEF | 89AB 4567 | 0123 2222 | 1111 4444 | 3333 FFFE | ... | 0003 ...
   EXPECT_THAT(words_of(feed, 0), ElementsAre(0x000B0010U, 0x00000005U, 0xCDEF0000U, 0x456789ABU, 0x22220123U,
                                              0x44441111U, 0xFFFE3333U, 0xFFFFFFFFU, 0x0003FFFFU, 0U, 0U));
+}
+
+TEST(Commands, AnArcInChordsIsLaidOutAsTheLayoutPageSays) {
+  // Header, count, path_ticks, prescale, plane, shifts, x, y, first and closing increments, then those of axes 1 and 3.
+  EXPECT_THAT(words_of(some_arc_chord(), 3),
+              ElementsAreArray<std::uint32_t>({0x03140F03U, 0x00000900U, 0x08000000U, 0x00000000U, 0x8E38E38EU,
+                                               0x002100E3U, 0xCDEF0904U, 0x456789ABU, 0xFFFE0123U, 0xFFFFFFFFU,
+                                               0x2223FFFFU, 0x00011112U, 0xFFFFFFFFU, 0x0005FFFFU, 0x00000000U,
+                                               0xFFFFFFFAU, 0x0007FFFFU, 0x00000000U, 0xFFFFFFF8U, 0x0000FFFFU}));
 }
 
 TEST(Commands, CommandsOfThatThisDriverHasNoneAreNotDecoded) {
@@ -127,6 +160,44 @@ TEST(Commands, LimitsOfAnArcAreKept) {
   EXPECT_THAT(with([](ArcCommand& arc) { arc.deviation = Int128(1) << 79; }), HasSubstr("deviation"));
   EXPECT_EQ(with([](ArcCommand& arc) { arc.deviation = -(Int128(1) << 79); }), "");
   EXPECT_THAT(with([](ArcCommand& arc) { arc.gradient_y = -(Int128(1) << 79) - 1; }), HasSubstr("gradient_y"));
+}
+
+TEST(Commands, LimitsOfAnArcInChordsAreKept) {
+  EXPECT_EQ(refusal_of(some_arc_chord()), "");
+  const auto with = [](auto change) {
+    ArcChordCommand arc = some_arc_chord();
+    change(arc);
+    return refusal_of(arc);
+  };
+  constexpr std::int64_t kMost = std::int64_t{1} << 40;
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.path_ticks = arc.ticks + 1; }), HasSubstr("path_ticks = 2305"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.ticks = arc.path_ticks = std::uint64_t{1} << 37; }),
+              HasSubstr("path_ticks = 137438953472"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.k = 32; }), HasSubstr("shifts 32 and 9"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.m = 32; }), HasSubstr("shifts 4 and 32"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.axis_x = 0; }), HasSubstr("plane"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.axis_x = 8; }), HasSubstr("plane"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.mask = 0b1110; }), HasSubstr("without the axes 2 and 0"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.increment[2] = 1; }), HasSubstr("axis 2"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.increment[4] = 1; }), HasSubstr("axis 4"));
+  EXPECT_EQ(with([](ArcChordCommand& arc) { arc.first_x = -kMost; }), "");
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.first_x = -kMost - 1; }), HasSubstr("first_x"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.closing_y = kMost + 1; }), HasSubstr("closing_y"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.increment[3] = kMost + 1; }), HasSubstr("increment"));
+}
+
+// Words whose mask and plane contradict each other hold fewer increments than their mask says.
+TEST(Commands, AnArcInChordsWithoutItsPlaneIsNotDecoded) {
+  ArcChordCommand arc = some_arc_chord();
+  arc.mask = 0b0101;
+  arc.increment.fill(0);
+  const auto good = words_of(arc);
+  EXPECT_NO_THROW(decode(good.data(), good.size()));
+  for (const std::uint32_t plane : {0x0031U, 0x0220U, 0x0711U}) {
+    auto bad = good;
+    bad[5] = (bad[5] & 0xFFFFU) | plane << 16U;
+    EXPECT_THROW(decode(bad.data(), bad.size()), ArgumentError) << plane;
+  }
 }
 
 TEST(Commands, LimitsOfAFeedPieceAndADwellAreKept) {
@@ -241,6 +312,37 @@ RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
   RC_ASSERT(back.gradient_y == arc.gradient_y);
   RC_ASSERT(back.half_x == arc.half_x);
   RC_ASSERT(back.half_y == arc.half_y);
+}
+
+RC_GTEST_PROP(CommandsProperty, AnArcInChordsComesBack, (std::uint8_t number, bool clockwise)) {
+  ArcChordCommand arc;
+  arc.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
+  arc.path_ticks = *rc::gen::inRange<std::uint64_t>(1, std::min(arc.ticks + 1, std::uint64_t{1} << 37));
+  arc.prescale = *rc::gen::inRange<std::uint64_t>(0, (std::uint64_t{1} << 40) + 1);
+  arc.clockwise = clockwise;
+  arc.axis_x = static_cast<std::uint8_t>(*rc::gen::inRange(0, 8));
+  arc.axis_y = static_cast<std::uint8_t>((arc.axis_x + *rc::gen::inRange(1, 8)) % 8);
+  const unsigned plane = 1U << arc.axis_x | 1U << arc.axis_y;
+  arc.mask = static_cast<std::uint8_t>(plane | static_cast<unsigned>(*rc::gen::inRange(0, 256)));
+  arc.k = static_cast<std::uint8_t>(*rc::gen::inRange(0, 32));
+  arc.m = static_cast<std::uint8_t>(*rc::gen::inRange(0, 32));
+  arc.x = *rc::gen::arbitrary<std::int64_t>();
+  arc.y = *rc::gen::arbitrary<std::int64_t>();
+  arc.first_x = signed_bits(40);
+  arc.first_y = signed_bits(40);
+  arc.closing_x = signed_bits(40);
+  arc.closing_y = signed_bits(40);
+  for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
+    arc.increment[axis] = ((arc.mask & ~plane) >> axis & 1U) != 0 ? signed_bits(40) : 0;
+  }
+  expect_round_trip(arc, number);
+  const auto words = words_of(arc, number);
+  const auto back = std::get<ArcChordCommand>(decode(words.data(), words.size()).command);
+  const auto all = [](const ArcChordCommand& a) {
+    return std::tuple(a.ticks, a.path_ticks, a.prescale, a.mask, a.clockwise, a.axis_x, a.axis_y, a.k, a.m, a.x, a.y,
+                      a.first_x, a.first_y, a.closing_x, a.closing_y, a.increment);
+  };
+  RC_ASSERT(all(back) == all(arc));
 }
 
 RC_GTEST_PROP(CommandsProperty, AFeedPieceComesBack,

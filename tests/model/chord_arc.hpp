@@ -1,5 +1,5 @@
-// From an arc's points to what ARC_CHORD carries, and the path that the fields make by the rule of their increments
-// alone. Floating point for angles; for tests on one machine, until the driver prepares arcs portably.
+// From an arc's points to what ARC_CHORD carries, by the driver, and the path that the fields make by the rule of their
+// increments alone.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "trammel/driver/arc_chord.hpp"
 #include "trammel/model/arc_generator.hpp"
 
 namespace trammel::model {
@@ -24,7 +25,16 @@ struct ArcPoints {
   bool clockwise = false;
   unsigned turns = 0;
   unsigned ticks_a_pulse = 8;  // at least
+  std::uint8_t axis_x = 0;
+  std::uint8_t axis_y = 1;
 
+  // Without the further turns; above 0.
+  long double sweep() const {
+    const long double from = std::atan2(from_centre(start, 1), from_centre(start, 0));
+    const long double to = std::atan2(from_centre(end, 1), from_centre(end, 0));
+    const long double ahead = clockwise ? from - to : to - from;
+    return ahead <= 1e-12L ? ahead + kTurn : ahead;
+  }
   long double from_centre(const std::array<std::int64_t, 2>& point, unsigned axis) const {
     return static_cast<long double>(point[axis] * 256 - centre[axis]) / 256;
   }
@@ -40,76 +50,34 @@ struct ChordFields {
   std::uint64_t path_ticks = 0;
 };
 
-namespace chord_arc {
-
-inline std::int64_t rounded(long double value, int fraction_bits) {
-  return static_cast<std::int64_t>(std::llround(std::ldexp(value, fraction_bits)));
-}
-
-// From a point at `radius` to the circle `mean`, along the radius, at most 3/8 pulse.
-inline long double to_circle(long double radius, long double mean) {
-  return std::max(-0.375L, std::min(0.375L, mean - radius));
-}
-
-// Where the chords are after `chords` chords from the first one's start, for the coordinate whose angle is `at(time)`:
-// on the straight line between the two ends, which lie `late` after whole times.
-template <class At>
-long double on_chords(At at, long double chords, long double late) {
-  const long double whole = std::floor(chords - late);
-  const long double part = chords - late - whole;
-  return at(whole + late) + part * (at(whole + late + 1) - at(whole + late));
-}
-
-}  // namespace chord_arc
-
-// A radius below 2^31, at most half a pulse a tick.
-inline ChordFields prepare_chords(const ArcPoints& arc) {
-  using namespace chord_arc;
-  const long double sense = arc.clockwise ? -1 : 1;
-  const Radii radii = arc.radii();
-  const long double radius = radii.mean();
-  const long double a0 = std::atan2(arc.from_centre(arc.start, 1), arc.from_centre(arc.start, 0));
-  const long double a1 = std::atan2(arc.from_centre(arc.end, 1), arc.from_centre(arc.end, 0));
-  long double sweep = sense * (a1 - a0);
-  while (sweep <= 1e-12L) sweep += kTurn;
-  sweep += kTurn * arc.turns;
-
+inline ChordFields fields_of(const driver::ArcChordCommand& arc) {
   ChordFields fields;
-  ChordRotation::State& state = fields.state;
-  state.clockwise = arc.clockwise;
-  while (std::ldexp(radius, -state.k) > std::min(std::sqrt(radius) / 2, 16.0L)) ++state.k;
-  // A coordinate has 64 bits, and a chord the ticks that its length asks for.
-  while (std::ldexp(1.0L, state.m) < std::ldexp(radius, -state.k) * arc.ticks_a_pulse ||
-         std::ldexp(radius, 40 - state.m) >= 0x1p62L)
-    ++state.m;
-  const long double turn = 2 * std::asin(std::ldexp(1.0L, -state.k - 1));
-  fields.path_ticks = static_cast<std::uint64_t>(std::max<std::int64_t>(1, rounded(sweep / turn, state.m)));
-
-  const int bits = 40 - state.m;
-  state.x = rounded(radius * std::cos(a0), bits);
-  state.y = rounded(radius * std::sin(a0 - sense * turn / 2), bits);
-
-  const auto x_at = [&](long double chords) { return radius * std::cos(a0 + sense * turn * chords); };
-  const auto y_at = [&](long double chords) { return radius * std::sin(a0 + sense * turn * chords); };
-  const long double chords = std::ldexp(static_cast<long double>(fields.path_ticks), -state.m);
-  const long double onto = to_circle(radii.start, radius);
-  const long double off = to_circle(radii.end, radius);
-  const long double preset[2] = {onto * std::cos(a0), onto * std::sin(a0)};
-  const long double moved[2] = {on_chords(x_at, chords, 0) - on_chords(x_at, 0, 0),
-                                on_chords(y_at, chords, 0.5L) - on_chords(y_at, 0, 0.5L)};
-  const long double wanted[2] = {off * std::cos(a1), off * std::sin(a1)};
-  std::int64_t closing[2];
-  for (unsigned i = 0; i < 2; ++i) {
-    const long double left = static_cast<long double>(arc.end[i] - arc.start[i]) + wanted[i] - preset[i] - moved[i];
-    closing[i] = rounded(left / static_cast<long double>(fields.path_ticks), 40);
-  }
-  state.closing_x = closing[0];
-  state.closing_y = closing[1];
-  ChordRotation rotation{state};
-  fields.first[1] = rotation.chord_y() + rounded(preset[1], 40);
-  fields.first[0] = rotation.chord_x() + rounded(preset[0], 40);
+  fields.state = {arc.x, arc.y, arc.closing_x, arc.closing_y, arc.k, arc.m, arc.clockwise};
+  fields.first = {arc.first_x, arc.first_y};
+  fields.path_ticks = arc.path_ticks;
   return fields;
 }
+
+// As a host prepares it, at the density that the arc wants.
+inline driver::ArcChordCommand prepare_command(const ArcPoints& arc, const std::array<std::int64_t, 8>& further = {}) {
+  driver::HelixGeometry helix;
+  driver::ArcGeometry& geometry = helix.arc;
+  geometry.centre_x = arc.centre[0] - arc.start[0] * 256;
+  geometry.centre_y = arc.centre[1] - arc.start[1] * 256;
+  geometry.end_x = static_cast<std::int32_t>(arc.end[0] - arc.start[0]);
+  geometry.end_y = static_cast<std::int32_t>(arc.end[1] - arc.start[1]);
+  geometry.clockwise = arc.clockwise;
+  geometry.sweep = static_cast<double>(arc.sweep());
+  geometry.turns = arc.turns;
+  geometry.axis_x = arc.axis_x;
+  geometry.axis_y = arc.axis_y;
+  helix.further = further;
+  const long double length = (arc.sweep() + kTurn * arc.turns) * arc.radii().mean();
+  const auto ticks = static_cast<std::uint64_t>(length * 2 * arc.ticks_a_pulse);
+  return driver::make_helix(helix, std::max(ticks, driver::least_chord_ticks(helix)));
+}
+
+inline ChordFields prepare_chords(const ArcPoints& arc) { return fields_of(prepare_command(arc)); }
 
 // The path of an arc from one step to the next, and its chords.
 class ChordPath {

@@ -9,8 +9,8 @@
 
 #include "chords.hpp"
 #include "trammel/driver/arc.hpp"
+#include "trammel/driver/trigonometry.hpp"
 #include "trammel/planner/block_builder.hpp"
-#include "trammel/planner/trigonometry.hpp"
 
 namespace trammel::planner {
 namespace {
@@ -25,11 +25,11 @@ ExactArc exact_arc(const gcode::Motion& motion, const gcode::Coordinates& from) 
   const double start_y = from[motion.axis_y] - motion.centre_y;
   const double end_x = motion.target[motion.axis_x] - motion.centre_x;
   const double end_y = motion.target[motion.axis_y] - motion.centre_y;
-  const double angle_start = arc_tangent(start_y, start_x);
-  double sweep = 2 * kPi;
+  const double angle_start = driver::arc_tangent(start_y, start_x);
+  double sweep = 2 * driver::kPi;
   if (!motion.full_circle) {
-    sweep = (arc_tangent(end_y, end_x) - angle_start) * (motion.clockwise ? -1 : 1);
-    sweep += sweep <= 0 ? 2 * kPi : 0;
+    sweep = (driver::arc_tangent(end_y, end_x) - angle_start) * (motion.clockwise ? -1 : 1);
+    sweep += sweep <= 0 ? 2 * driver::kPi : 0;
   }
   return {motion.centre_x, motion.centre_y, hypotenuse(start_x, start_y), hypotenuse(end_x, end_y), angle_start, sweep};
 }
@@ -69,8 +69,8 @@ std::uint64_t chord_count(const ExactArc& arc, double largest_steps_per_mm) {
   constexpr double kChordError = 0.25;  // pulses
   const double radius = std::max(arc.radius_start, arc.radius_end) * largest_steps_per_mm;
   // A chord over the angle d strays r (1 - cos(d / 2)) from its arc; the arc sine keeps its digits where d is small.
-  const double turn = radius > kChordError ? 4 * arc_sine(std::sqrt(kChordError / radius / 2)) : kPi;
-  return static_cast<std::uint64_t>(std::ceil(arc.sweep / std::min(turn, kPi / 4)));
+  const double turn = radius > kChordError ? 4 * driver::arc_sine(std::sqrt(kChordError / radius / 2)) : driver::kPi;
+  return static_cast<std::uint64_t>(std::ceil(arc.sweep / std::min(turn, driver::kPi / 4)));
 }
 
 // The arc's extremes: its start and end are targets, the others lie at whole quarters of a turn.
@@ -82,9 +82,9 @@ bool BlockBuilder::check_arc(const Block& block) {
                   fmt::format("an arc of radius {:.10g} mm is too large", largest_radius(block)));
   }
   for (int quarter = 0; quarter < 4; ++quarter) {
-    double turned = (quarter * (kPi / 2) - arc.angle_start) * (block.clockwise ? -1 : 1);
-    while (turned < 0) turned += 2 * kPi;
-    while (turned >= 2 * kPi) turned -= 2 * kPi;
+    double turned = (quarter * (driver::kPi / 2) - arc.angle_start) * (block.clockwise ? -1 : 1);
+    while (turned < 0) turned += 2 * driver::kPi;
+    while (turned >= 2 * driver::kPi) turned -= 2 * driver::kPi;
     if (turned > arc.sweep) continue;
     const double radius = arc.radius_start + (arc.radius_end - arc.radius_start) * (turned / arc.sweep);
     const double side = quarter < 2 ? radius : -radius;

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "trammel/driver/trigonometry.hpp"
 #include "trammel/planner/block.hpp"
 #include "trammel/planner/block_builder.hpp"
-#include "trammel/planner/trigonometry.hpp"
 
 namespace trammel::planner {
 
@@ -23,7 +23,7 @@ inline Corner corner(const Block& block, std::uint64_t i, double scale_x, double
   if (i == block.chords) return {block.end[block.axis_x], block.end[block.axis_y]};
   const ExactArc& arc = block.exact;
   const double share = static_cast<double>(i) / static_cast<double>(block.chords);
-  const SineCosine at = sine_cosine(arc.angle_start + (block.clockwise ? -1 : 1) * arc.sweep * share);
+  const driver::SineCosine at = driver::sine_cosine(arc.angle_start + (block.clockwise ? -1 : 1) * arc.sweep * share);
   const double radius = arc.radius_start + (arc.radius_end - arc.radius_start) * share;
   return {to_pulses(arc.centre_x + radius * at.cosine, scale_x), to_pulses(arc.centre_y + radius * at.sine, scale_y)};
 }

@@ -99,13 +99,14 @@ void run(Bench& bench, Random& random, std::uint64_t limit) {
   const std::uint64_t gap = random() % 3 == 0 ? random() % 20 : 0;
   const bool cut = random() % 8 == 0;
   const bool stubborn = random() % 4 == 0;  // ticks while not ready, and at the end, change nothing
+  const bool beside = random() % 2 == 0;    // others are loaded meanwhile
   for (std::uint64_t i = 0; i < limit; ++i) {
     const bool ready = bench.outputs().ready;
     if (ready && bench.outputs().at_end) {
       ++bench.ends;
       break;
     }
-    Model::Inputs in;
+    Model::Inputs in = beside ? not_its_own(random) : Model::Inputs{};
     in.tick = stubborn || (ready && (gap == 0 || random() % gap == 0));
     if (cut && random() % 64 == 0) {
       in.clear = random() % 2 == 0;

@@ -1,4 +1,4 @@
-// What an accumulator can be loaded with: circles, ellipses, lines, and values that fill every width.
+// What an accumulator can be loaded with: circles, ellipses, lines, far ends, and values that fill every width.
 #pragma once
 
 #include <array>
@@ -93,12 +93,31 @@ inline Path noise(Random& random) {
   return path;
 }
 
+// Ends beyond half of a coordinate's range, on the near side or the far one, with no quadrant to go: walked to straight
+// as soon as the other coordinate is there, so that the first steps show the sign.
+inline Path far_end(Random& random) {
+  Path path = conic(random, between(random, 1, 60), between(random, 1, 60), 1);
+  const std::int64_t far = between(random, std::int64_t{1} << 30, (std::int64_t{1} << 31) - 1);
+  const std::int64_t near = between(random, -3, 3);
+  const bool in_x = random() % 2 != 0;
+  path.end_x = in_x ? far : near;
+  path.end_y = in_x ? near : far;
+  if (random() % 2 != 0) {
+    path.end_x = -path.end_x;
+    path.end_y = -path.end_y;
+  }
+  path.quadrants = 0;
+  return path;
+}
+
 inline Path any_path(Random& random) {
-  switch (random() % 6) {
+  switch (random() % 7) {
     case 0:
       return line(random);
     case 1:
       return noise(random);
+    case 6:
+      return far_end(random);
     case 2: {
       const std::int64_t r = between(random, 1, 60);
       return conic(random, r, r, 1);

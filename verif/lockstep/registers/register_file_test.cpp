@@ -90,8 +90,8 @@ class Bench {
     compare();
   }
 
-  // A whole access with everything else at rest; the data read.
-  std::uint32_t access(bool write, std::uint32_t address, std::uint32_t data) {
+  // The first clock of an access with everything else at rest.
+  void ask(bool write, std::uint32_t address, std::uint32_t data) {
     in_.request = true;
     in_.write = write;
     in_.address = address;
@@ -100,6 +100,11 @@ class Bench {
     checker_.event(write ? "write" : "read", address);
     clock();
     in_.request = false;
+  }
+
+  // The whole of it; the data read.
+  std::uint32_t access(bool write, std::uint32_t address, std::uint32_t data) {
+    ask(write, address, data);
     while (!model_.outputs().ack) clock();
     const std::uint32_t answer = model_.outputs().data;
     clock();
@@ -320,11 +325,28 @@ void snapshots_around_the_carry(Bench& bench) {
   }
 }
 
+// A reset in each clock of a write: what it asked for never comes out, be it a setting, an event or a refusal.
+void resets_in_writes(Bench& bench) {
+  constexpr std::uint32_t kWritten[] = {reg::kIrqEnable, reg::kControl, reg::kFault, reg::kRefusal, reg::kAxes};
+  constexpr std::uint32_t kLongest = 8;  // clocks, more than such a write takes
+  for (const std::uint32_t address : kWritten) {
+    for (std::uint32_t after = 0; after < kLongest; ++after) {
+      bench.reset();
+      for (std::uint64_t i = 0; i < kFilled; ++i) bench.clock();
+      bench.ask(true, address, 1);
+      for (std::uint32_t i = 0; i < after; ++i) bench.clock();
+      bench.reset();
+      for (std::uint32_t i = 0; i < kLongest; ++i) bench.clock();
+    }
+  }
+}
+
 TEST(RegisterFile, LockstepUnderTraffic) {
   const std::uint64_t seed = trammel::lockstep::seed_from_environment(1);
   EXPECT_EQ("", trammel::lockstep::judge([&] {
               Bench bench(seed);
               snapshots_around_the_carry(bench);
+              resets_in_writes(bench);
               const std::uint64_t length = trammel::lockstep::scaled(400'000);
               for (std::uint64_t i = 0; i < length; ++i) bench.random_clock();
               EXPECT_EQ(bench.checker().comparisons(), bench.expected());

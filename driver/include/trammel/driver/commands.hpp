@@ -39,6 +39,27 @@ struct ArcCommand {
   std::uint64_t half_y = 0;
 };
 
+// An arc in chords on the arc generator; further axes of the mask go along straight lines over the same path ticks.
+struct ArcChordCommand {
+  std::uint64_t ticks = 0;       // N, feed ticks
+  std::uint64_t path_ticks = 0;  // L <= N, L < 2^37
+  std::uint64_t prescale = 0;    // round(L * 2^40 / N), 2^-40 path ticks a feed tick
+  std::uint8_t mask = 0;         // both axes of the plane, and any further ones
+  bool clockwise = false;        // seen with the first axis to the right and the second up
+  std::uint8_t axis_x = 0;       // index of the first axis of the plane
+  std::uint8_t axis_y = 1;       // index of the second
+  std::uint8_t k = 1;            // a chord turns by 2 asin(2^-(k+1)); 1 .. 27 are of use
+  std::uint8_t m = 5;            // 2^m path ticks a chord; 5 .. 31
+  std::int64_t x = 0;            // X at the start, 2^(m-40) pulses
+  std::int64_t y = 0;            // Y half a chord before it
+  // 2^-40 pulses a path tick, |.| <= 2^40. Of the first path tick: preset, first chord and closing together.
+  std::int64_t first_x = 0;
+  std::int64_t first_y = 0;
+  std::int64_t closing_x = 0;
+  std::int64_t closing_y = 0;
+  std::array<std::int64_t, card_map::kMaxAxes> increment{};  // of the further axes, by axis index
+};
+
 // One piece of the feed profile.
 struct FeedCommand {
   std::uint64_t ticks = 0;          // feed ticks of the piece
@@ -57,7 +78,7 @@ struct DwellCommand {
 // Barrier: end of the program.
 struct EndCommand {};
 
-using Command = std::variant<LineCommand, ArcCommand, FeedCommand, DwellCommand, EndCommand>;
+using Command = std::variant<LineCommand, ArcCommand, ArcChordCommand, FeedCommand, DwellCommand, EndCommand>;
 
 // Words of the longest command of the card's, with all axes: enough for every one of encode()'s.
 inline constexpr std::size_t kMaxCommandWords = [] {

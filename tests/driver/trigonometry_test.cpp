@@ -1,4 +1,4 @@
-#include "trammel/planner/trigonometry.hpp"
+#include "trammel/driver/trigonometry.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,16 +6,21 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
-namespace trammel::planner {
+namespace trammel::driver {
 namespace {
 
 // The mathematics library's long double functions judge, where they have more digits than a double.
 long double wide(double x) { return static_cast<long double>(x); }
 
+// No judge where it has no more.
+bool is_judge() { return std::numeric_limits<long double>::digits > std::numeric_limits<double>::digits; }
+
 double error(double is, long double wanted) { return static_cast<double>(std::abs(wide(is) - wanted)); }
 
 TEST(Trigonometry, SineAndCosineKeepTheirBound) {
+  if (!is_judge()) GTEST_SKIP() << "long double is double";
   double largest = 0;
   const auto look = [&](double angle) {
     const SineCosine at = sine_cosine(angle);
@@ -24,11 +29,13 @@ TEST(Trigonometry, SineAndCosineKeepTheirBound) {
   for (int i = -400'000; i <= 400'000; ++i) look(i * 3.1e-5);
   for (int i = -1000; i <= 1000; ++i) look(i * 0.99999);
   for (int i = -600; i <= 600; ++i) look(i * (kPi / 2));
+  for (int i = -1000; i <= 1000; ++i) look(i * 999.9999);
   EXPECT_LE(largest, 0x1p-52);
   EXPECT_GT(largest, 0x1p-56) << "nothing was compared";
 }
 
 TEST(Trigonometry, ArcTangentKeepsItsBound) {
+  if (!is_judge()) GTEST_SKIP() << "long double is double";
   double largest = 0;
   for (int i = -300; i <= 300; ++i) {
     for (int k = -300; k <= 300; ++k) {
@@ -45,6 +52,7 @@ TEST(Trigonometry, ArcTangentKeepsItsBound) {
 }
 
 TEST(Trigonometry, ArcSineKeepsItsBound) {
+  if (!is_judge()) GTEST_SKIP() << "long double is double";
   double largest = 0;
   for (int i = 0; i <= 100'000; ++i) largest = std::max(largest, error(arc_sine(i * 5e-6), std::asin(wide(i * 5e-6))));
   EXPECT_LE(largest, 0x1p-50);
@@ -84,4 +92,4 @@ TEST(Trigonometry, GivesTheSameBitsOnEveryHost) {
 }
 
 }  // namespace
-}  // namespace trammel::planner
+}  // namespace trammel::driver

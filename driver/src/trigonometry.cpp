@@ -1,10 +1,10 @@
-#include "trammel/planner/trigonometry.hpp"
+#include "trammel/driver/trigonometry.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 
-namespace trammel::planner {
+namespace trammel::driver {
 namespace {
 
 // pi/2 in two parts. The first has 33 bits, so that its product with up to 2^20 quarters is exact.
@@ -98,4 +98,4 @@ double arc_tangent(double y, double x) {
 
 double arc_sine(double x) { return arc_tangent(x, std::sqrt((1 - x) * (1 + x))); }
 
-}  // namespace trammel::planner
+}  // namespace trammel::driver

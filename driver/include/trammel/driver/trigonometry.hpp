@@ -3,7 +3,7 @@
 // compiled without contraction (-ffp-contract=off). Pure functions, thread-safe.
 #pragma once
 
-namespace trammel::planner {
+namespace trammel::driver {
 
 inline constexpr double kPi = 3.141592653589793;
 
@@ -12,7 +12,7 @@ struct SineCosine {
   double cosine;
 };
 
-// `angle` in radians, |angle| <= 1000. Each is off by 2^-52 at most.
+// `angle` in radians, |angle| <= 10^6. Each is off by 2^-52 at most.
 SineCosine sine_cosine(double angle);
 
 // The angle of (x, y) from the x axis towards y, -pi .. pi; 0 for (0, 0). Off by 2^-50 at most. The sign of a zero
@@ -22,4 +22,4 @@ double arc_tangent(double y, double x);
 // For 0 <= x <= 1; off by 2^-50 at most for x <= 1/2.
 double arc_sine(double x);
 
-}  // namespace trammel::planner
+}  // namespace trammel::driver
