@@ -2,29 +2,13 @@
 
 #include <cmath>
 
+#include "course.hpp"
 #include "motion_walk.hpp"
 
 namespace trammel::test {
 namespace {
 
 constexpr double kUpdate = 32;  // clocks
-
-using Vector = std::array<double, card_map::kMaxAxes>;
-
-double length(const Vector& v) {
-  double sum = 0;
-  for (const double x : v) sum += x * x;
-  return std::sqrt(sum);
-}
-
-// What the limits say of a path.
-struct Course {
-  Vector pulses_a_tick{};  // by axis, signed
-  Vector mm{};             // from its start to its end
-  double length = 0;       // mm, along X Y Z, or all axes where none of these moves
-  bool spatial = false;    // X, Y or Z moves
-  double error = 0;        // radians: how far rounded ends may have turned it
-};
 
 class Judge {
  public:
@@ -62,27 +46,44 @@ class Judge {
 
   void moving(const Interval& now) {
     const double speed = rate(now);
-    const double acceleration = static_cast<double>(now.gain) * 0x1p-48 / kUpdate;
+    const bool goes_on = !resting_ && !now.begins_piece;
+    const double acceleration = goes_on ? (speed - rate(last_)) / kUpdate : 0;
     const double jerk = static_cast<double>(now.jerk) * 0x1p-64 / (kUpdate * kUpdate);
+    const std::size_t where = now.path->command;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
-      const double pulses = std::abs(course_.pulses_a_tick[a]);
-      verdict.velocity.look(pulses * speed / velocity_[a], now.command);
-      verdict.acceleration.look(pulses * std::abs(acceleration) / acceleration_[a], now.command);
-      if (jerk_[a] > 0) verdict.jerk.look(pulses * std::abs(jerk) / jerk_[a], now.command);
+      const double pulses = course_.pulses_a_tick[a];
+      verdict.velocity.look(pulses * speed / velocity_[a], where);
+      verdict.acceleration.look(std::hypot(pulses * acceleration, centripetal(a, speed)) / acceleration_[a], where);
+      if (jerk_[a] <= 0) continue;
+      verdict.jerk.look(pulses * std::abs(jerk) / jerk_[a], where);
+      verdict.jerk.look(centripetal(a, speed) * turn_rate(a, speed) / jerk_[a], where);
     }
   }
 
-  // First and last rate of a motion: the floor's, and half an update's gain, since rates are those of an update's
-  // middle; at the end the piece may stop an update early.
-  void at_rest(const Interval& now) {
+  // Of an arc's plane axes: radians a clock at a tick rate, and pulses a clock^2 towards the centre.
+  double turn_rate(std::size_t axis, double speed) const {
+    if (course_.curvature == 0 || (axis != course_.plane[0] && axis != course_.plane[1])) return 0;
+    return course_.pulses_a_tick[axis] * speed * course_.curvature / scale(axis);
+  }
+  double centripetal(std::size_t axis, double speed) const {
+    return course_.pulses_a_tick[axis] * speed * turn_rate(axis, speed);
+  }
+
+  // The rate from which a motion may begin, and with which it may end, on the path that it is on.
+  double floor() const {
     double allowed = INFINITY;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
-      const double pulses = std::abs(course_.pulses_a_tick[a]);
+      const double pulses = course_.pulses_a_tick[a];
       if (pulses == 0) continue;
       allowed = std::min(allowed, jerk_[a] > 0 ? std::cbrt(4.5 * jerk_[a] / pulses) : std::sqrt(acceleration_[a] / pulses));
     }
+    return allowed;
+  }
+
+  // First and last rate of a motion: rates are those of an update's middle, and the last may come an update early.
+  void at_rest(const Interval& now) {
     const double gain = std::abs(static_cast<double>(now.gain)) * 0x1p-48;
-    verdict.rest.look(rate(now) / (allowed + 1.5 * gain + 0x1p-31), now.command);
+    verdict.rest.look(rate(now) / (floor() + 1.5 * gain + 0x1p-31), now.path->command);
   }
 
   void border(const Interval& now) {
@@ -92,80 +93,77 @@ class Judge {
     const double allowed = std::abs(gain) + std::abs(last_acceleration_) * kUpdate + 0.001 * std::max(before, after);
     double jump = std::abs(after - before);
     // Where a path ends too, the density of ticks may change with the rate.
-    if (now.begins_path) jump = std::min(jump, std::abs(after - before * density(last_) / density(now)));
-    verdict.rate_jump.look(jump / allowed, now.command);
+    if (now.begins_path) jump = std::min(jump, std::abs(after - before * mm_a_tick(last_course_, last_) / mm_a_tick(course_, now)));
+    verdict.rate_jump.look(jump / allowed, now.path->command);
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       if (jerk_[a] <= 0 || now.begins_path) continue;
-      const double pulses = std::abs(course_.pulses_a_tick[a]);
-      const double step = pulses * std::abs(gain / kUpdate - last_acceleration_) - 2 * kUpdate * jerk_[a];
-      verdict.acceleration_jump.look(step / acceleration_[a], now.command);
+      const double jumped = course_.pulses_a_tick[a] * std::abs(gain / kUpdate - last_acceleration_);
+      verdict.acceleration_jump.look((jumped - 2 * kUpdate * jerk_[a]) / acceleration_[a], now.path->command);
     }
   }
 
-  double density(const Interval& at) const { return course_of(*at.path).length / static_cast<double>(at.path->ticks); }
+  static double mm_a_tick(const Course& course, const Interval& at) {
+    return course.length / static_cast<double>(at.path->ticks);
+  }
 
   void enter(const Interval& now) {
-    const Course next = course_of(*now.path);
-    if (!resting_) corner(next, now);
-    course_ = next;
+    last_course_ = course_;
+    course_ = course_of(*now.path, limits_.machine);
+    if (!resting_) corner(now);
   }
 
-  Course course_of(const driver::LineCommand& line) const {
-    Course course;
-    double finest = 0;
+  // Speed through a corner against what the rules allow for the least turn that rounded ends leave; a corner that
+  // allows no speed is passed at the floor.
+  void corner(const Interval& now) {
+    const double ticks = limits_.clock_hz * rate(last_);
+    const double at_floor = limits_.clock_hz * (floor() + 1.5 * std::abs(last_acceleration_) * kUpdate);
+    others(now, ticks);
+    double allowed = 0;
+    if (last_course_.spatial == course_.spatial) {
+      Vector turn{};
+      double dot = 0;
+      for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
+        if (course_.spatial && !is_spatial(limits_.machine.axes[a])) continue;
+        dot += last_course_.exit[a] * course_.entry[a];
+        turn[a] = course_.entry[a] - last_course_.exit[a];
+      }
+      const double angle = std::acos(std::clamp(dot, -1.0, 1.0)) - last_course_.error - course_.error;
+      if (!(angle > 0)) return;
+      const double most = strongest(turn);
+      const double s = std::cos(angle / 2);
+      const double shorter = std::min(last_course_.length, course_.length) + 2 / scale(0);
+      allowed = std::sqrt(most * std::min(limits_.junction_deviation * s / (1 - s), shorter / angle));
+    }
+    ++verdict.corners;
+    const double speed = ticks * mm_a_tick(last_course_, last_);
+    verdict.corner.look(speed / std::max(allowed, at_floor * mm_a_tick(last_course_, last_)), now.path->command);
+  }
+
+  // Axes outside X Y Z may jump by sqrt(a d); rounded ends may hide half a pulse of each path.
+  void others(const Interval& now, double ticks) {
+    if (!last_course_.spatial || !course_.spatial) return;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
-      course.pulses_a_tick[a] = static_cast<double>(line.increment[a]) * 0x1p-40;
-      course.mm[a] = std::round(course.pulses_a_tick[a] * static_cast<double>(line.ticks)) / scale(a);
-      const bool counts = limits_.machine.axes[a].letter >= 'X';
-      if (counts && course.mm[a] != 0) course.spatial = true;
-      if (course.mm[a] != 0 || counts) finest = std::max(finest, 1 / scale(a));
+      const machine::MachineAxis& axis = limits_.machine.axes[a];
+      if (is_spatial(axis)) continue;
+      const double before = last_course_.exit[a] * mm_a_tick(last_course_, last_);
+      const double after = course_.entry[a] * mm_a_tick(course_, now);
+      const double hidden = (1.0 / static_cast<double>(last_.path->ticks) + 1.0 / static_cast<double>(now.path->ticks)) / scale(a);
+      const double jump = (std::abs(after - before) - hidden) * ticks;
+      const double allowed = std::sqrt(axis.max_acceleration * limits_.junction_deviation) + floor() * limits_.clock_hz * std::max(std::abs(before), std::abs(after));
+      verdict.corner.look(jump / allowed, now.path->command);
     }
-    Vector along = course.mm;
-    for (std::size_t a = 0; a < along.size(); ++a) {
-      if (course.spatial && a < limits_.machine.axes.size() && limits_.machine.axes[a].letter < 'X') along[a] = 0;
-    }
-    course.length = length(along);
-    // Each end is off by half a pulse an axis: across the path by half a pulse times sqrt(3) at most.
-    course.error = course.length > 0 ? std::sqrt(3) * finest / course.length : INFINITY;
-    return course;
   }
 
   double scale(std::size_t axis) const { return limits_.machine.axes[axis].steps_per_mm; }
 
-  // Speed through a corner, mm/s, against what design rules allow for the least turn that the rounded ends leave.
-  void corner(const Course& next, const Interval& now) {
-    if (course_.spatial != next.spatial) {
-      verdict.corner.look(INFINITY, now.command);  // such a border is a stop
-      return;
-    }
-    Vector turn{};
-    double dot = 0;
-    for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
-      if (next.spatial && limits_.machine.axes[a].letter < 'X') continue;
-      const double u0 = course_.mm[a] / course_.length;
-      const double u1 = next.mm[a] / next.length;
-      dot += u0 * u1;
-      turn[a] = u1 - u0;
-    }
-    const double angle = std::acos(std::clamp(dot, -1.0, 1.0)) - course_.error - next.error;
-    if (!(angle > 0)) return;
-    ++verdict.corners;
-    const double shorter = std::min(course_.length, next.length);
-    const double speed = rate(last_) * limits_.clock_hz * course_.length / static_cast<double>(last_.path->ticks);
-    const double most = strongest(turn);
-    const double s = std::cos(angle / 2);
-    const double deviation = most * limits_.junction_deviation * s / (1 - s);
-    const double centripetal = most * (shorter + 2 / scale(0)) / angle;
-    verdict.corner.look(speed / std::sqrt(std::min(deviation, centripetal)), now.command);
-  }
-
   // The largest acceleration in the direction that no axis's limit forbids, mm/s^2.
   double strongest(const Vector& direction) const {
-    const double whole = length(direction);
+    double squares = 0;
+    for (const double x : direction) squares += x * x;
     double most = INFINITY;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       if (direction[a] == 0) continue;
-      most = std::min(most, limits_.machine.axes[a].max_acceleration * whole / std::abs(direction[a]));
+      most = std::min(most, limits_.machine.axes[a].max_acceleration * std::sqrt(squares) / std::abs(direction[a]));
     }
     return most;
   }
@@ -175,6 +173,7 @@ class Judge {
   Vector acceleration_{};  // a clock^2
   Vector jerk_{};          // a clock^3; 0: no limit
   Course course_;
+  Course last_course_;
   bool resting_ = true;
   Interval last_;
   double last_acceleration_ = 0;  // ticks a clock^2

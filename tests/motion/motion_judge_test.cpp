@@ -111,15 +111,106 @@ TEST(MotionJudge, RandomLinesAreWithinTheirLimits) {
   }
 }
 
-TEST(MotionJudge, Debug) {
-  for (const char* p : {"G1 X10 F6000\nM2\n", "G1 X10 F6000\nX10.01\nX10.02\nM2\n", "G1 X10 F6000\nX0\nM2\n"}) {
-    Program program(text(p), machine_of(100, 1000, 0));
-    const MotionVerdict v = program.verdict();
-    auto& r = program.recorder();
-    fmt::print("{} plan {} reading {} steps {} .. {} far {}\n", p, program.seconds(), v.seconds(kClock), r.steps.front().cycle, r.steps.back().cycle, program.farthest());
-    for (auto& c : r.commands) if (auto* f = std::get_if<driver::FeedCommand>(&c)) fmt::print("  {} {} {} {}\n", f->ticks, double(f->rate)*0x1p-64, f->acceleration*0x1p-64, f->floor*0x1p-32);
-    fmt::print("vel {} acc {} rate {} rest {} corner {}\n", v.velocity.share, v.acceleration.share, v.rate_jump.share, v.rest.share, v.corner.share);
+// Points of a curve at equal distances along it, at a feed of 300 mm/s.
+std::string chords(std::size_t count, double chord, double (*x)(double), double (*y)(double)) {
+  std::string program = "G21 G90 G94 F18000\n";
+  double parameter = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    constexpr double kSmall = 1e-6;
+    const double speed = std::hypot(x(parameter + kSmall) - x(parameter), y(parameter + kSmall) - y(parameter)) / kSmall;
+    parameter += chord / speed;
+    program += fmt::format("G1 X{:.5f} Y{:.5f}\n", x(parameter), y(parameter));
   }
+  return program + "M2\n";
+}
+
+std::string line_in_chords() {
+  return chords(5000, 0.02, [](double t) { return t; }, [](double t) { return t / 2; });
+}
+std::string spiral_in_chords() {
+  return chords(10000, 0.02, [](double t) { return (2 + t) * std::cos(t) - 2; }, [](double t) { return (2 + t) * std::sin(t); });
+}
+std::string sine_in_chords() {
+  return chords(5000, 0.02, [](double t) { return t; }, [](double t) { return 5 * std::sin(t / 2); });
+}
+
+// mm/s, mm/s^2, mm/s^3: a fast machine within what a clock of 1 MHz can do.
+machine::Machine fast_machine(double jerk) { return machine_of(300, 3000, jerk); }
+
+TEST(MotionJudge, CurvesInChordsAreWithinTheirLimits) {
+  for (const double jerk : {0.0, 60000.0}) {
+    for (const std::string& program_text : {line_in_chords(), spiral_in_chords(), sine_in_chords()}) {
+      SCOPED_TRACE(fmt::format("jerk {}, {:.60s}", jerk, program_text));
+      Program program(text(program_text), fast_machine(jerk));
+      expect_within_limits(program.verdict());
+      EXPECT_LE(program.farthest(), 0.8);
+    }
+  }
+}
+
+// Judged by other limits than it was planned for.
+class MotionJudgeSaysNo : public testing::Test {
+ protected:
+  static MotionVerdict judged(const std::string& program, const machine::Machine& planned, const machine::Machine& judged) {
+    Program run(text(program), planned);
+    return judge_motion(run.recorder().commands, {judged, kClock, 0.01});
+  }
+  const std::string square_ = "G21 G90 G94 F6000\nG1 X20\nY20\nX0\nY0\nM2\n";
+};
+
+TEST_F(MotionJudgeSaysNo, ToSpeedAboveAnAxissLimit) {
+  EXPECT_GT(judged(square_, machine_of(100, 1000, 0), machine_of(98, 1000, 0)).velocity.share, 1.01);
+}
+
+TEST_F(MotionJudgeSaysNo, ToAccelerationAboveAnAxissLimit) {
+  EXPECT_GT(judged(square_, machine_of(100, 1000, 0), machine_of(100, 980, 0)).acceleration.share, 1.01);
+}
+
+TEST_F(MotionJudgeSaysNo, ToATrapezoidWhereJerkIsLimited) {
+  const MotionVerdict verdict = judged(square_, machine_of(100, 1000, 0), machine_of(100, 1000, 20000));
+  EXPECT_GT(verdict.acceleration_jump.share, 0.5);
+  EXPECT_GT(verdict.rest.share, 1.01);
+}
+
+// A planner that does not know what curves cost plans as for a machine of a hundred times the acceleration.
+TEST_F(MotionJudgeSaysNo, ToArcsThatAreTooFast) {
+  const std::string circle = "G21 G90 G94 F6000\nG2 X0 Y0 I5 J0\nM2\n";
+  EXPECT_GT(judged(circle, machine_of(100, 10000, 0), machine_of(100, 1000, 0)).acceleration.share, 1.5);
+}
+
+TEST_F(MotionJudgeSaysNo, ToCornersThatAreTooFast) {
+  EXPECT_GT(judged(spiral_in_chords(), machine_of(300, 30000, 0), machine_of(300, 3000, 0)).corner.share, 1.5);
+}
+
+TEST_F(MotionJudgeSaysNo, ToARateThatJumps) {
+  Program run(text(square_), machine_of(100, 1000, 0));
+  for (driver::Command& command : run.recorder().commands) {
+    auto* piece = std::get_if<driver::FeedCommand>(&command);
+    if (piece != nullptr && piece->acceleration == 0) piece->rate -= piece->rate / 100;
+  }
+  EXPECT_GT(run.verdict().rate_jump.share, 1.5);
+}
+
+TEST_F(MotionJudgeSaysNo, ToAStreamOfWhichAPieceIsMissing) {
+  Program run(text(square_), machine_of(100, 1000, 0));
+  auto& commands = run.recorder().commands;
+  commands.erase(commands.begin());
+  EXPECT_THROW(static_cast<void>(run.verdict()), std::runtime_error);
+}
+
+TEST_F(MotionJudgeSaysNo, ToStepsThatAreLateMissingOrTooMany) {
+  Program run(text("G21 G90 G94 F6000\nG1 X20 Y7\nG2 X20 Y7 I4 J1\nG1 X0 Y0\nM2\n"), machine_of(100, 1000, 0));
+  std::vector<TimedStep>& steps = run.recorder().steps;
+  ASSERT_LE(run.farthest(), 0.8);
+  const std::vector<TimedStep> right = steps;
+  for (std::size_t i = steps.size() / 3; i < steps.size(); ++i) steps[i].cycle += 60;  // half a pulse at 8,000 a second
+  EXPECT_GT(run.farthest(), 0.8);
+  steps = right;
+  steps.erase(steps.begin() + 500);
+  EXPECT_GT(run.farthest(), 0.8);
+  steps = right;
+  steps.push_back(steps.back());
+  EXPECT_GT(run.farthest(), 0.8);
 }
 
 }  // namespace

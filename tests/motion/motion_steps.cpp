@@ -1,7 +1,10 @@
 #include <cmath>
 #include <deque>
+#include <optional>
+#include <stdexcept>
 
 #include "motion_judge.hpp"
+#include "course.hpp"
 #include "motion_walk.hpp"
 
 namespace trammel::test {
@@ -53,33 +56,44 @@ class StepJudge {
   }
 
   void enter(const Interval& now) {
-    if (path_ == now.path && !now.begins_path) return;
+    if (path_ == now.path) return;
     if (path_ != nullptr) {
-      for (std::size_t a = 0; a < path_begin_.size(); ++a) {
-        path_begin_[a] += std::llround(static_cast<double>(path_->increment[a]) * 0x1p-40 * static_cast<double>(path_->ticks));
-      }
+      const Place end = place(static_cast<double>(path_->ticks));
+      for (std::size_t a = 0; a < end.size(); ++a) path_begin_[a] = std::llround(end[a]);
     }
     path_ = now.path;
+    arc_.reset();
+    if (path_->arc != nullptr) arc_.emplace(*path_->arc);
   }
 
-  double place(std::size_t axis, double ticks_gone) const {
-    return static_cast<double>(path_begin_[axis]) + static_cast<double>(path_->increment[axis]) * 0x1p-40 * ticks_gone;
+  Place place(double feed_ticks) {
+    Place places;
+    const bool arc = path_->arc != nullptr;
+    const double ticks = arc ? feed_ticks * static_cast<double>(path_->arc->prescale) * 0x1p-40 : feed_ticks;
+    const auto& increment = arc ? path_->arc->increment : path_->line->increment;
+    for (std::size_t a = 0; a < places.size(); ++a) {
+      places[a] = static_cast<double>(path_begin_[a]) + static_cast<double>(increment[a]) * 0x1p-40 * ticks;
+    }
+    if (arc) {
+      const std::array<double, 2> plane = arc_->at(ticks);
+      places[path_->arc->axis_x] += plane[0];
+      places[path_->arc->axis_y] += plane[1];
+    }
+    return places;
   }
 
-  // The clock of the first step of any axis in this interval: half a pulse gone, at the next whole tick.
+  // The clock of the first step of any axis, when it comes in this interval: half a pulse gone, at a whole tick.
   std::optional<double> first_step(const Interval& now) {
     enter(now);
-    double earliest = INFINITY;
-    for (std::size_t a = 0; a < counts_.size(); ++a) {
-      if (path_->increment[a] == 0) continue;
-      const double offset = static_cast<double>(path_begin_[a] - counts_[a]);
-      const double per_tick = static_cast<double>(path_->increment[a]) * 0x1p-40;
-      const double half = per_tick > 0 ? 0.5 : -0.5;
-      earliest = std::min(earliest, std::max(std::ceil((half - offset) / per_tick), 1.0));
+    const double gone = ticks(now, 0);
+    for (double tick = std::floor(gone) + 1; tick <= ticks(now, static_cast<double>(now.clocks)); ++tick) {
+      const Place places = place(tick);
+      for (std::size_t a = 0; a < places.size(); ++a) {
+        if (std::abs(places[a] - static_cast<double>(counts_[a])) < 0.5) continue;
+        return static_cast<double>(now.clock) + (tick - gone) / (static_cast<double>(now.rate) * 0x1p-48);
+      }
     }
-    if (earliest > ticks(now, static_cast<double>(now.clocks))) return std::nullopt;
-    const double gone = static_cast<double>(now.ticks) + static_cast<double>(now.phase) * 0x1p-48;
-    return static_cast<double>(now.clock) + (earliest - gone) / (static_cast<double>(now.rate) * 0x1p-48);
+    return std::nullopt;
   }
 
   bool is_before(const TimedStep& step, double clock) const { return static_cast<double>(step.cycle) - offset_ < clock; }
@@ -90,14 +104,10 @@ class StepJudge {
     const double end = begin + static_cast<double>(now.clocks);
     while (next_ < steps_.size() && is_before(steps_[next_], end)) {
       const double at = ticks(now, std::max(0.0, static_cast<double>(steps_[next_].cycle) - offset_ - begin));
-      Place place_now;
-      for (std::size_t a = 0; a < place_now.size(); ++a) place_now[a] = place(a, at);
-      take(place_now);
+      take(place(at));
     }
-    for (std::size_t a = 0; a < end_.size(); ++a) {
-      end_[a] = place(a, ticks(now, static_cast<double>(now.clocks)));
-      look(end_[a], a);
-    }
+    end_ = place(ticks(now, static_cast<double>(now.clocks)));
+    for (std::size_t a = 0; a < end_.size(); ++a) look(end_[a], a);
     stop_clock_ = end;
   }
 
@@ -117,7 +127,8 @@ class StepJudge {
   double offset_ = 0;
   bool found_ = false;
   std::deque<Interval> waiting_;
-  const driver::LineCommand* path_ = nullptr;
+  const Path* path_ = nullptr;
+  std::optional<ArcReading> arc_;
   Counts path_begin_{};
   Counts counts_{};
   Place end_{};

@@ -12,10 +12,17 @@
 
 namespace trammel::test {
 
+// A path of the stream: one of the two.
+struct Path {
+  std::size_t command = 0;  // number of its command, from 0
+  std::uint64_t ticks = 0;  // feed ticks
+  const driver::LineCommand* line = nullptr;
+  const driver::ArcChordCommand* arc = nullptr;
+};
+
 // Clocks at one rate of the feed generator, all on one path.
 struct Interval {
-  const driver::LineCommand* path = nullptr;
-  std::size_t command = 0;     // number of the path's command, from 0
+  const Path* path = nullptr;
   std::uint64_t ticks = 0;     // of the path, before the interval
   std::uint64_t phase = 0;     // 2^-48 ticks, likewise
   std::uint64_t clock = 0;     // of the motion: barriers take no time here
@@ -50,10 +57,6 @@ class MotionWalk {
   std::uint64_t clocks() const { return clock_; }
 
  private:
-  struct Path {
-    const driver::LineCommand* line;
-    std::size_t command;
-  };
   struct Barrier {
     std::size_t paths;  // before it
     std::size_t pieces;
@@ -61,7 +64,9 @@ class MotionWalk {
 
   void add(const driver::Command& command, std::size_t number) {
     if (const auto* line = std::get_if<driver::LineCommand>(&command)) {
-      paths_.push_back({line, number});
+      paths_.push_back({number, line->ticks, line, nullptr});
+    } else if (const auto* arc = std::get_if<driver::ArcChordCommand>(&command)) {
+      paths_.push_back({number, arc->ticks, nullptr, arc});
     } else if (const auto* feed = std::get_if<driver::FeedCommand>(&command)) {
       pieces_.push_back(feed);
     } else if (std::holds_alternative<driver::DwellCommand>(command) ||
@@ -75,7 +80,7 @@ class MotionWalk {
   void match(std::size_t path, std::size_t piece, const Barrier& to) const {
     std::uint64_t geometry = 0;
     std::uint64_t feed = 0;
-    for (; path < to.paths; ++path) geometry += paths_[path].line->ticks;
+    for (; path < to.paths; ++path) geometry += paths_[path].ticks;
     for (; piece < to.pieces; ++piece) feed += pieces_[piece]->ticks;
     if (geometry != feed) throw std::runtime_error("ticks of paths and pieces differ before a barrier");
   }
@@ -85,8 +90,7 @@ class MotionWalk {
     visitor.start();
     Interval at;
     const auto enter = [&] {
-      at.path = paths_[path].line;
-      at.command = paths_[path].command;
+      at.path = &paths_[path];
       at.ticks = 0;
       at.begins_path = true;
     };
@@ -151,8 +155,9 @@ class MotionWalk {
     return most;
   }
 
-  // From the carry that is a piece's last tick to the first clock at the next one's rate: the tick is visible after 3
-  // clocks and taken then, the swap is visible a clock later, and the rate a clock after it.
+  // From the carry that is a piece's last tick to the first clock at the next one's rate: the tick is visible 3 clocks
+  // after its carry, owed a clock later and taken then; the swap is visible a clock after that, and the slope is the next
+  // one's from the clock that follows it.
   static constexpr std::uint64_t kSwapClocks = 6;
 
   // Rates of a piece: R += A, A += J at each 32nd clock, clamped between floor and one tick a clock; the first is taken
