@@ -15,7 +15,7 @@
 
 namespace trammel::app {
 
-ProgramFile::ProgramFile(const std::string& file)
+ProgramFile::ProgramFile(const std::string& file, bool once)
     : name_(file == "-" ? "standard input" : file),
       descriptor_(file == "-" ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
                               : ::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
@@ -25,7 +25,7 @@ ProgramFile::ProgramFile(const std::string& file)
   }
   if (S_ISDIR(status.st_mode)) throw UsageError(fmt::format("{}: is a directory, not a program", name_));
   // Standard input may have been read in part by who gave it.
-  if (!S_ISREG(status.st_mode) || ::lseek(descriptor_, 0, SEEK_CUR) != 0) copy_to_temporary();
+  if (!once && (!S_ISREG(status.st_mode) || ::lseek(descriptor_, 0, SEEK_CUR) != 0)) copy_to_temporary();
 }
 
 ProgramFile::~ProgramFile() { ::close(descriptor_); }

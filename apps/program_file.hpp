@@ -10,8 +10,9 @@ namespace trammel::app {
 
 class ProgramFile {
  public:
-  // "-" is standard input. Throws UsageError when it cannot be read, std::runtime_error when it cannot be copied.
-  explicit ProgramFile(const std::string& file);
+  // "-" is standard input. `once`: it will be read once, and is not copied. Throws UsageError when it cannot be read,
+  // std::runtime_error when it cannot be copied.
+  explicit ProgramFile(const std::string& file, bool once = false);
   ~ProgramFile();
   ProgramFile(const ProgramFile&) = delete;
   ProgramFile& operator=(const ProgramFile&) = delete;

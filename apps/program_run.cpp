@@ -6,6 +6,8 @@
 
 #include "progress_bar.hpp"
 #include "trammel/run/commanded_course.hpp"
+#include "trammel/run/feed_meter.hpp"
+#include "trammel/run/step_fork.hpp"
 #include "trammel/run/step_recorder.hpp"
 
 namespace trammel::app {
@@ -16,8 +18,8 @@ class Watch final : public run::Observer {
  public:
   Watch(const sim::Engine& engine, const run::Plan& plan, double clock_hz, bool progress)
       : engine_(engine), plan_(plan), clock_hz_(clock_hz), bar_(progress) {}
-  void sent() override { progress(); }
-  void progress() override {
+  void sent() override { progress({}); }
+  void progress(const run::Progress& /*progress*/) override {
     const double seconds = static_cast<double>(engine_.cycles()) / clock_hz_;
     bar_.show(plan_.seconds > 0 ? seconds / plan_.seconds : 1.0,
               fmt::format("{:.1f} of {:.1f} s of card time", seconds, plan_.seconds));
@@ -30,6 +32,43 @@ class Watch final : public run::Observer {
   ProgressBar bar_;
 };
 
+// Everything beside the recorder that listens to the steps.
+struct Judges {
+  Judges(run::StepRecorder& recorder, double clock_hz) : feed(clock_hz) {
+    fork.add(recorder);
+    fork.add(path);
+    fork.add(shapers);
+    fork.add(feed);
+  }
+  void tell(RunResult& result) const {
+    shapers.finish();
+    result.path_steps = path.count();
+    result.path_identity = path.text();
+    if (shapers.range()) result.shaper_delay = *shapers.range();
+    result.commanded_feed = feed.commanded();
+    result.achieved_feed = feed.achieved();
+  }
+
+  run::StepFork fork;
+  run::PathIdentity path;
+  run::ShaperDelay shapers;
+  run::FeedMeter feed;
+};
+
+void tell(const run::Plan& plan, RunResult& result) {
+  result.program = plan.file;
+  result.segments = plan.segments;
+  result.planned_seconds = plan.seconds;
+  result.accepted = plan.accepted;
+  result.feeds_not_reached = plan.feeds_not_reached;
+}
+
+void tell(run::StepRecorder& recorder, RunResult& result) {
+  result.steps = recorder.steps();
+  result.largest_line_deviation = recorder.deviation().largest_line();
+  result.largest_arc_deviation = recorder.deviation().largest_arc();
+}
+
 }  // namespace
 
 RunResult run_program(const run::ProgramLines& lines, const machine::Machine& machine,
@@ -41,10 +80,10 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
     recording.steps_per_mm.push_back(axis.steps_per_mm);
     result.axes += axis.letter;
   }
-  run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes, true});
+  run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes, true}, options.settings);
   run::CommandedCourse course(machine);
   if (options.plot) runner.add(course);
-  const run::Plan plan = runner.plan();
+  const run::Plan plan = options.stream ? run::Plan{} : runner.plan();
 
   if (options.planned) options.planned(plan);
 
@@ -56,35 +95,37 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   if (course.detail_command()) recorder.detail_of(*course.detail_command());
 
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);
-  engine->set_sink(&recorder);
-  driver::Card card = driver::Card::open(*engine);
+  Judges judges(recorder, engine_options.clock_hz);
+  engine->set_sink(&judges.fork);
+  sim::TimedBus bus(*engine, engine_options.clock_hz, options.operation.bytes_per_second);
+  OperatorTimeline timeline(options.operation, options.most_percent);
+  timeline.schedule(bus, engine_options.clock_hz);
+  driver::Card card = driver::Card::open(bus);
   Watch watch(*engine, plan, card.identification().clock_hz, options.progress);
   runner.add(recorder);
+  runner.add(judges.feed);
   runner.add(watch);
-  const run::Outcome outcome = runner.run(card);
+  const run::Outcome outcome = options.stream ? runner.stream(card) : runner.run(card);
   recorder.finish();
   recorder.check(outcome.counted);
+  judges.tell(result);
+  tell(recorder, result);
+  result.events = timeline.made();
 
-  result.program = plan.file;
+  tell(runner.last_plan(), result);
   result.engine = engine_options.kind == sim::EngineKind::kRtl ? "rtl" : "model";
   result.final_position = outcome.final_position;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     result.final_millimetres.push_back(static_cast<double>(result.final_position[a]) / machine.axes[a].steps_per_mm);
   }
-  result.steps = recorder.steps();
   result.cycles = engine->cycles();
   result.clock_hz = card.identification().clock_hz;
   result.lockstep_cycles = engine->lockstep_cycles();
   result.comparisons = engine->comparisons();
-  result.largest_line_deviation = recorder.deviation().largest_line();
-  result.largest_arc_deviation = recorder.deviation().largest_arc();
-  result.segments = plan.segments;
   result.commands = outcome.commands;
-  result.planned_seconds = plan.seconds;
-  result.accepted = plan.accepted;
-  result.feeds_not_reached = plan.feeds_not_reached;
+  result.under_runs = outcome.under_runs;
   if (options.plot) {
-    result.plot = {plan.file,       course.points(),   recorder.executed(), recorder.thinned(),
+    result.plot = {result.program,  course.points(),   recorder.executed(), recorder.thinned(),
                    course.detail(), recorder.detail(), recorder.speed()};
   }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "motion_options.hpp"
+#include "operator_timeline.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/run/path_identity.hpp"
 #include "trammel/run/plot.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/run/text_sink.hpp"
@@ -17,11 +20,16 @@
 namespace trammel::app {
 
 struct RunOptions {
+  bool stream = false;  // the program is read once, while it runs
+  run::RunSettings settings;
+  Operation operation;
+  double most_percent = 100;       // largest override
   run::TextSink* steps = nullptr;  // not owned
   run::TextSink* path_steps = nullptr;
   bool plot = false;
-  bool progress = false;                          // also where stderr is no terminal
-  std::function<void(const run::Plan&)> planned;  // when all is checked and nothing has moved yet
+  bool progress = false;  // also where stderr is no terminal
+  // When all is checked and nothing has moved yet; with `stream` of an empty plan.
+  std::function<void(const run::Plan&)> planned;
 };
 
 // Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds` and the picture's
@@ -43,6 +51,13 @@ struct RunResult {
   std::uint64_t segments = 0;                    // of the program
   std::uint64_t commands = 0;                    // sent to the card
   double planned_seconds = 0;                    // estimate
+  std::optional<std::uint32_t> under_runs;       // none where the card does not count them
+  std::uint64_t path_steps = 0;                  // before the shapers
+  std::string path_identity;                     // of their list
+  run::ShaperDelay::Range shaper_delay;          // clocks
+  std::optional<double> commanded_feed;          // mm/min, means
+  std::optional<double> achieved_feed;           // mm/min
+  std::vector<MadeEvent> events;                 // that the card has seen
   double wall_seconds = 0;                       // the simulation took
   std::map<std::string, std::size_t> accepted;   // words without effect yet
   std::vector<run::FeedNotReached> feeds_not_reached;

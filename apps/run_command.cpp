@@ -11,7 +11,9 @@
 #include "engine_options.hpp"
 #include "engine_speed.hpp"
 #include "errors.hpp"
+#include "motion_options.hpp"
 #include "outputs.hpp"
+#include "program_check.hpp"
 #include "program_file.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
@@ -29,11 +31,14 @@ struct Options {
   std::optional<std::string> machine;
   std::vector<std::string> overrides;
   EngineChoice engine;
+  MotionChoice motion;
   std::optional<std::string> json;
   std::optional<std::string> steps;
   std::optional<std::string> path_steps;
   std::optional<std::string> plot;
   bool progress = false;
+  bool check = false;
+  bool stream = false;
 };
 
 machine::Machine machine_of(const Options& options) {
@@ -44,7 +49,22 @@ machine::Machine machine_of(const Options& options) {
 
 void tell(const char* what, const std::string& text) { fmt::print(stderr, "trammel: {}: {}\n", what, text); }
 
+void refuse_contradictions(const Options& options) {
+  const auto refuse = [](const char* option, bool given, const char* why) {
+    if (given) throw UsageError(fmt::format("{}: {}", option, why));
+  };
+  if (options.stream) refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
+  if (!options.check) return;
+  constexpr const char* kWhy = "nothing runs with --check";
+  refuse("--steps", options.steps.has_value(), kWhy);
+  refuse("--path-steps", options.path_steps.has_value(), kWhy);
+  refuse("--plot", options.plot.has_value(), kWhy);
+  refuse("--trace", options.engine.trace.has_value(), kWhy);
+  refuse("--stream", options.stream, kWhy);
+}
+
 void execute(const Options& options) {
+  refuse_contradictions(options);
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
   Output* const plot = outputs.add("--plot", options.plot);
@@ -54,6 +74,9 @@ void execute(const Options& options) {
   run.path_steps = outputs.add("--path-steps", options.path_steps);
   run.plot = options.plot.has_value();
   run.progress = options.progress;
+  run.stream = options.stream;
+  run.settings = options.motion.settings();
+  run.operation = options.motion.operation(run.most_percent);
   outputs.keep("the program", options.program);
   if (options.machine) outputs.keep("the machine file", *options.machine);
   outputs.check();
@@ -62,19 +85,30 @@ void execute(const Options& options) {
   const auto axes = static_cast<unsigned>(machine.axes.size());
   sim::SimulationOptions engine =
       options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);
-  const ProgramFile file(options.program);
+  const ProgramFile file(options.program, options.stream);
   const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
+  if (options.check) {
+    const CheckResult result = check_program(lines, machine, {engine.clock_hz, engine.axes, true}, run.settings);
+    for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached))
+      tell("warning", text);
+    outputs.open();
+    if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
+    return outputs.commit(summary(result));
+  }
   run.planned = [&](const run::Plan& plan) {
     outputs.open();
     if (trace != nullptr) engine.trace->path = trace->path_to_write();
-    for (const std::string& text : feed_warnings(plan)) tell("warning", text);
+    for (const std::string& text : feed_warnings(plan.file, plan.feeds_not_reached)) tell("warning", text);
     if (const auto text = long_run_note(engine, plan.seconds)) tell("note", *text);
     if (engine.axes != axes)
       tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
   };
   const RunResult result = run_program(lines, machine, engine, run);
+  if (options.stream) {
+    for (const std::string& text : feed_warnings(result.program, result.feeds_not_reached)) tell("warning", text);
+  }
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
   if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
   if (plot != nullptr) plot->write(run::svg(result.plot));
@@ -93,6 +127,7 @@ void add_run_command(CLI::App& app) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   options->engine.add_to(*command);
+  options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
@@ -100,6 +135,9 @@ void add_run_command(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
   command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");
+  command->add_flag("--check", options->check, "read, plan and time the program; nothing runs");
+  command->add_flag("--stream", options->stream,
+                    "read the program while it runs: an error in it is a stop on the way, status 1");
   command->footer("One FILE may be '-', standard output; what people read then goes to standard error.");
   command->callback([options] { execute(*options); });
 }

@@ -9,22 +9,6 @@
 namespace trammel::app {
 namespace {
 
-// Words that the reader takes and that have no effect, by the reason why.
-std::string accepted_words(const std::map<std::string, std::size_t>& words) {
-  std::string stops;
-  std::string blending;
-  std::string hardware;
-  for (const auto& [word, count] : words) {
-    std::string& list = word == "M0" || word == "M1" ? stops : (word == "G64" ? blending : hardware);
-    list += fmt::format(" {} ({})", word, count);
-  }
-  std::string text;
-  if (!stops.empty()) text += "  stops for the operator, which a simulation does not make:" + stops + "\n";
-  if (!blending.empty()) text += "  no blending yet, every motion ends in an exact stop:" + blending + "\n";
-  if (!hardware.empty()) text += "  accepted, without hardware yet:" + hardware + "\n";
-  return text;
-}
-
 // Without an exponent, and without digits that nobody reads.
 std::string number(double feed) { return feed < 100 ? fmt::format("{:.3g}", feed) : fmt::format("{:.0f}", feed); }
 
@@ -35,7 +19,9 @@ const char* text_of(planner::SpeedLimit cause) {
     case planner::SpeedLimit::kPulseShape:
       return "beyond the step length and space of an axis";
     case planner::SpeedLimit::kAcceleration:
-      return "too short, or too strong a curve, for the max_acceleration";
+      return "too short, or too strong a curve or corner, for the max_acceleration";
+    case planner::SpeedLimit::kWindow:
+      return "too short a look-ahead (motion.window)";
     case planner::SpeedLimit::kClock:
       return "beyond the card's clock";
     case planner::SpeedLimit::kNone:
@@ -44,13 +30,55 @@ const char* text_of(planner::SpeedLimit cause) {
   return "";
 }
 
+nlohmann::ordered_json events_json(const std::vector<MadeEvent>& events) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const MadeEvent& made : events) {
+    using Kind = OperatorEvent::Kind;
+    const Kind kind = made.event.kind;
+    nlohmann::ordered_json entry;
+    entry["event"] = kind == Kind::kOverride ? "override" : (kind == Kind::kHold ? "hold" : "resume");
+    if (kind == Kind::kOverride) entry["percent"] = made.event.percent;
+    entry["seconds"] = made.event.seconds;
+    entry["cycle"] = made.cycle;
+    list.push_back(entry);
+  }
+  return list;
+}
+
 }  // namespace
 
-std::vector<std::string> feed_warnings(const run::Plan& plan) {
+std::string accepted_words(const std::map<std::string, std::size_t>& words) {
+  std::string stops;
+  std::string blending;
+  std::string hardware;
+  for (const auto& [word, count] : words) {
+    std::string& list = word == "M0" || word == "M1" ? stops : (word == "G64 P" ? blending : hardware);
+    list += fmt::format(" {} ({})", word, count);
+  }
+  std::string text;
+  if (!stops.empty()) text += "  stops for the operator, which a simulation does not make:" + stops + "\n";
+  if (!blending.empty()) text += "  no blending yet, corners are kept as with G64 without P:" + blending + "\n";
+  if (!hardware.empty()) text += "  accepted, without hardware yet:" + hardware + "\n";
+  return text;
+}
+
+nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const run::FeedNotReached& feed : feeds) {
+    list.push_back({{"cause", text_of(feed.cause)},
+                    {"count", feed.count},
+                    {"line", feed.line},
+                    {"commanded", feed.wanted},
+                    {"reached", feed.reached}});
+  }
+  return list;
+}
+
+std::vector<std::string> feed_warnings(const std::string& file, const std::vector<run::FeedNotReached>& feeds) {
   std::vector<std::string> lines;
-  for (const run::FeedNotReached& feed : plan.feeds_not_reached) {
+  for (const run::FeedNotReached& feed : feeds) {
     lines.push_back(fmt::format("{} {} not reach the feed: {}; the furthest off at {}:{}, {} of {} mm/min", feed.count,
-                                feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), plan.file, feed.line,
+                                feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), file, feed.line,
                                 number(feed.reached), number(feed.wanted)));
   }
   return lines;
@@ -66,6 +94,12 @@ std::string summary(const RunResult& result) {
   }
   text += fmt::format("  largest deviation: lines {:.4f} pulses, arcs {:.4f} pulses\n", result.largest_line_deviation,
                       result.largest_arc_deviation);
+  text += fmt::format("  path: {} steps, identity {}; shapers {} to {} clocks late\n", result.path_steps,
+                      result.path_identity, result.shaper_delay.least, result.shaper_delay.most);
+  if (result.achieved_feed) {
+    text += fmt::format("  mean feed {} of {} mm/min\n", number(*result.achieved_feed), number(*result.commanded_feed));
+  }
+  if (!result.events.empty()) text += fmt::format("  {} overrides and holds on the way\n", result.events.size());
   if (result.lockstep_cycles) {
     text += fmt::format("  lockstep: {} cycles, {} comparisons, {} mismatches\n", *result.lockstep_cycles,
                         result.comparisons, result.mismatches);
@@ -91,10 +125,19 @@ nlohmann::ordered_json json_of(const RunResult& result) {
   if (result.lockstep_cycles) json["lockstep_cycles"] = *result.lockstep_cycles;
   json["comparisons"] = result.comparisons;
   json["mismatches"] = result.mismatches;
+  json["path_steps"] = {{"count", result.path_steps}, {"identity", result.path_identity}};
+  json["shaper_delay"] = {{"least", result.shaper_delay.least}, {"most", result.shaper_delay.most}};
   json["max_deviation"] = {{"line", result.largest_line_deviation}, {"arc", result.largest_arc_deviation}};
   json["segments"] = result.segments;
   json["commands"] = result.commands;
   json["planned_seconds"] = result.planned_seconds;
+  json["under_runs"] = nullptr;
+  if (result.under_runs) json["under_runs"] = *result.under_runs;
+  json["feed"] = {{"commanded", nullptr}, {"achieved", nullptr}};
+  if (result.commanded_feed) json["feed"]["commanded"] = *result.commanded_feed;
+  if (result.achieved_feed) json["feed"]["achieved"] = *result.achieved_feed;
+  json["feeds_not_reached"] = feeds_json(result.feeds_not_reached);
+  json["events"] = events_json(result.events);
   json["accepted_words"] = result.accepted;
   return json;
 }

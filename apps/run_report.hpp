@@ -1,6 +1,7 @@
 // A run's result for people and for programs.
 #pragma once
 
+#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -10,10 +11,14 @@
 namespace trammel::app {
 
 // A line a cause for which feeds are not reached.
-std::vector<std::string> feed_warnings(const run::Plan& plan);
+std::vector<std::string> feed_warnings(const std::string& file, const std::vector<run::FeedNotReached>& feeds);
 
 // Some lines of text, units in every one.
 std::string summary(const RunResult& result);
+
+// Words of the program that had no effect, by the reason why; a line each.
+std::string accepted_words(const std::map<std::string, std::size_t>& words);
+nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
 
 nlohmann::ordered_json json_of(const RunResult& result);
 

@@ -1,5 +1,5 @@
-# cmake -D DIR=... -D PREFIX=Vx -P: joins the files that Verilator wrote into Vx__fast.cc and Vx__slow.cc. Their names hold
-# hashes, so a build cannot know them beforehand. Vx__fast.cc also gets the model's rising_edge().
+# cmake -D DIR=... -D PREFIX=Vx -P: joins the files that Verilator wrote into Vx__joined.cc. Their names hold hashes, so
+# a build cannot know them beforehand. The file also gets the model's rising_edge().
 file(GLOB sources "${DIR}/${PREFIX}*.cpp")
 list(SORT sources)
 set(fast "")
@@ -44,5 +44,4 @@ else()
   endif()
   string(APPEND fast "  evaluate_edge(*dut.rootp, &${root}___eval_nba);\n}\n")
 endif()
-file(WRITE "${DIR}/${PREFIX}__fast.cc" "${fast}")
-file(WRITE "${DIR}/${PREFIX}__slow.cc" "${slow}")
+file(WRITE "${DIR}/${PREFIX}__joined.cc" "${fast}${slow}")

@@ -18,16 +18,19 @@ function(trammel_instrument)
     DEPENDS ${sources} ${tool} COMMENT "Instrumenting the RTL in ${A_RTL}" VERBATIM)
 endfunction()
 
-# trammel_add_judge(name OUT folder SOUND target PREFIX Vx TOP top SOURCES a.sv ... [ARGS ...])
+# trammel_add_judge(name OUT folder SOUND target PREFIX Vx TOP top SOURCES a.sv ... [ARGS ...] [LEVEL 0|1])
 # Verilates the instrumented copies in OUT for mutation_<name>, which is linked with a test that was compiled against
 # the Vx.h of SOUND.
 function(trammel_add_judge name)
-  cmake_parse_arguments(A "" "OUT;SOUND;PREFIX;TOP" "SOURCES;ARGS" ${ARGN})
+  cmake_parse_arguments(A "" "OUT;SOUND;PREFIX;TOP;LEVEL" "SOURCES;ARGS" ${ARGN})
   set(target mutation_${name})
   set(copies ${A_SOURCES})
   list(TRANSFORM copies PREPEND "${A_OUT}/")
   # A mutant may leave a signal unused or compare with a constant that is out of reach: the sound sources are linted.
-  trammel_verilate(${target} CHEAP PREFIX ${A_PREFIX} TOP ${A_TOP} SOURCES ${copies}
+  if(NOT DEFINED A_LEVEL)
+    set(A_LEVEL 1)
+  endif()
+  trammel_verilate(${target} LEVEL ${A_LEVEL} PREFIX ${A_PREFIX} TOP ${A_TOP} SOURCES ${copies}
                    ARGS -Wno-lint -Wno-style -Wno-fatal ${A_ARGS})
   target_link_libraries(${target} PRIVATE trammel_mutant_number)
   # The header must be the one that the test knows, but for what calls from SystemVerilog into C include.

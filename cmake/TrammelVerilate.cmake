@@ -22,67 +22,75 @@ target_compile_options(trammel_verilated PRIVATE -w)
 target_include_directories(trammel_verilated SYSTEM PUBLIC "${VERILATOR_ROOT}/include" "${VERILATOR_ROOT}/include/vltstd")
 target_link_libraries(trammel_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
 
-# trammel_verilate(target PREFIX Vx TOP top SOURCES a.sv b.sv [ARGS ...] [TRACE] [CHEAP])
+# Its headers, compiled once for each level at which what Verilator writes is compiled: half the time of compiling a block.
+set(TRAMMEL_VERILATED_LEVELS 0 1 3)
+file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/verilated_headers.cpp" CONTENT "// Headers alone.\n")
+foreach(level IN LISTS TRAMMEL_VERILATED_LEVELS)
+  add_library(trammel_verilated_headers_${level} OBJECT "${CMAKE_CURRENT_BINARY_DIR}/verilated_headers.cpp")
+  target_compile_options(trammel_verilated_headers_${level} PRIVATE -w -O${level})
+  target_link_libraries(trammel_verilated_headers_${level} PRIVATE trammel_verilated)
+  target_precompile_headers(trammel_verilated_headers_${level} PRIVATE <verilated.h>)
+endforeach()
+
+# trammel_verilate(target PREFIX Vx TOP top SOURCES a.sv b.sv [ARGS ...] [TRACE] [LEVEL 0|1|3])
 # Sources are relative to rtl/ unless absolute. The package of the card map always comes first.
 # Verilator runs as a step of the build (its own verilate() runs it while configuring, and again when building), and all
-# that it writes is compiled as two files: the code that runs each clock, and the rest.
-# CHEAP: quick to compile instead of quick to run.
+# that it writes is compiled as one file of the object library <target>_<Vx>, whose objects are the target's.
+# LEVEL is the compiler's -O: 3 by itself, quick to run; 1 or 0 is quick to compile instead.
 # The folder of Vx.h is left in the global property TRAMMEL_VERILATED_<target>_<Vx>.
 function(trammel_verilate target)
-  cmake_parse_arguments(A "TRACE;CHEAP" "PREFIX;TOP" "SOURCES;ARGS" ${ARGN})
+  cmake_parse_arguments(A "TRACE" "PREFIX;TOP;LEVEL" "SOURCES;ARGS" ${ARGN})
+  if(NOT DEFINED A_LEVEL)
+    set(A_LEVEL 3)
+  endif()
   foreach(file IN LISTS TRAMMEL_RTL_PACKAGES A_SOURCES)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${TRAMMEL_RTL_DIR}" NORMALIZE)
     list(APPEND files "${file}")
   endforeach()
   set(harness ${A_ARGS})
   list(FILTER harness INCLUDE REGEX "\\.sv$")
-  set(dir "${CMAKE_CURRENT_BINARY_DIR}/${target}_${A_PREFIX}")
-  set(fast "${dir}/${A_PREFIX}__fast.cc")
-  set(slow "${dir}/${A_PREFIX}__slow.cc")
+  set(model "${target}_${A_PREFIX}")
+  set(dir "${CMAKE_CURRENT_BINARY_DIR}/${model}")
+  set(code "${dir}/${A_PREFIX}__joined.cc")
   set(join "${PROJECT_SOURCE_DIR}/cmake/JoinVerilated.cmake")
-  add_custom_command(OUTPUT "${fast}" "${slow}" "${dir}/${A_PREFIX}.h"
+  add_custom_command(OUTPUT "${code}" "${dir}/${A_PREFIX}.h"
     COMMAND "${CMAKE_COMMAND}" -E rm -rf "${dir}"
     COMMAND "${VERILATOR_BIN}" --cc --compiler gcc --prefix ${A_PREFIX} --top-module ${A_TOP} --Mdir "${dir}"
             $<$<BOOL:${A_TRACE}>:--trace-fst> ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS} ${files}
     COMMAND "${CMAKE_COMMAND}" -D DIR=${dir} -D PREFIX=${A_PREFIX} -P "${join}"
     DEPENDS ${files} ${harness} "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" "${join}"
     COMMENT "Verilating ${A_TOP} for ${target}" VERBATIM COMMAND_EXPAND_LISTS)
-  target_sources(${target} PRIVATE "${fast}" "${slow}" "${dir}/${A_PREFIX}.h")
+  add_library(${model} OBJECT "${code}")
   # What Verilator writes is not the project's: no warnings from it.
-  set(fast_level -O3)
-  set(slow_level -O1)
-  if(A_CHEAP)
-    set(fast_level -O1)
-    set(slow_level -O0)
-  endif()
-  set_property(SOURCE "${fast}" PROPERTY COMPILE_OPTIONS -w ${fast_level})
-  set_property(SOURCE "${slow}" PROPERTY COMPILE_OPTIONS -w ${slow_level})
-  set_property(SOURCE "${fast}" "${slow}" PROPERTY SKIP_PRECOMPILE_HEADERS ON)
-  set_property(SOURCE "${fast}" PROPERTY INCLUDE_DIRECTORIES "${PROJECT_SOURCE_DIR}/verif/lockstep")
+  target_compile_options(${model} PRIVATE -w -O${A_LEVEL})
+  target_include_directories(${model} PRIVATE "${PROJECT_SOURCE_DIR}/verif/lockstep" "${dir}")
+  target_link_libraries(${model} PRIVATE trammel_verilated)
+  target_precompile_headers(${model} REUSE_FROM trammel_verilated_headers_${A_LEVEL})
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:${model}> "${dir}/${A_PREFIX}.h")
   target_include_directories(${target} SYSTEM PRIVATE "${dir}")
   target_link_libraries(${target} PRIVATE trammel_verilated)
-  set_property(GLOBAL PROPERTY TRAMMEL_VERILATED_${target}_${A_PREFIX} "${dir}")
+  set_property(GLOBAL PROPERTY TRAMMEL_VERILATED_${model} "${dir}")
 endfunction()
 
 # trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [HARNESS top.sv] [ARGS ...] [DEFINITIONS ...]
-#                      [INCLUDES ...] [INSIDE inside.cpp] [CHEAP])
+#                      [INCLUDES ...] [INSIDE inside.cpp] [LEVEL 0|1|3])
 # Builds lockstep_<name>: the test runs Vdut (the block) beside its golden model.
 # The test is compiled once (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded
 # bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named after INSIDE and is
 # compiled for each copy. DEFINITIONS and INCLUDES are the test's. HARNESS is a top that joins several blocks for their
 # lockstep alone, beside the test.
 function(trammel_add_lockstep name)
-  cmake_parse_arguments(A "CHEAP" "TOP;TEST;INSIDE;HARNESS" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
+  cmake_parse_arguments(A "" "TOP;TEST;INSIDE;HARNESS;LEVEL" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
   set(target lockstep_${name})
-  set(cheap "")
-  if(A_CHEAP)
-    set(cheap CHEAP)
+  set(level "")
+  if(DEFINED A_LEVEL)
+    set(level LEVEL ${A_LEVEL})
   endif()
   if(A_HARNESS)
     list(APPEND A_ARGS "${CMAKE_CURRENT_SOURCE_DIR}/${A_HARNESS}")
   endif()
   add_executable(${target} ${A_INSIDE})
-  trammel_verilate(${target} ${cheap} PREFIX Vdut TOP ${A_TOP} SOURCES ${A_SOURCES} ARGS ${A_ARGS})
+  trammel_verilate(${target} ${level} PREFIX Vdut TOP ${A_TOP} SOURCES ${A_SOURCES} ARGS ${A_ARGS})
   trammel_lockstep_test(${target} TEST ${A_TEST} HEADERS_OF ${target} PREFIX Vdut)
   target_compile_definitions(${target}_test PRIVATE ${A_DEFINITIONS})
   target_include_directories(${target}_test PRIVATE ${A_INCLUDES})
@@ -159,7 +167,7 @@ function(trammel_add_seeded_bug name bug)
   add_executable(${target} ${L_INSIDE})
   # A seeded bug may leave a signal unused: that warning must not keep the lockstep from judging it. The sources proper are
   # linted by the block's own lockstep, with every warning an error.
-  trammel_verilate(${target} CHEAP PREFIX ${L_PREFIX} TOP ${L_TOP} SOURCES ${L_SOURCES} ARGS -Wno-lint ${L_ARGS})
+  trammel_verilate(${target} LEVEL 1 PREFIX ${L_PREFIX} TOP ${L_TOP} SOURCES ${L_SOURCES} ARGS -Wno-lint ${L_ARGS})
   trammel_same_header(${target} ${L_SOUND} ${L_PREFIX})
   # Objects come before libraries: where a library holds the sound copy (the card's does), this one goes before it.
   target_link_libraries(${target} PRIVATE lockstep_${name}_test)
@@ -179,5 +187,5 @@ function(trammel_lockstep_target target)
   trammel_target(${target})
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/verif/lockstep")
   target_link_libraries(${target} PUBLIC trammel_lockstep_main trammel_lockstep trammel::model GTest::gtest)
-  trammel_test_headers(${target})
+  trammel_test_headers(${target} QUICK)
 endfunction()

@@ -22,6 +22,7 @@ commands/direct_loader.sv
 commands/feed_decoder.sv
 commands/geometry_decoder.sv
 commands/halfword_queue.sv
+commands/queue_watermarks.sv
 host/axi4_lite_port.sv
 host/port_arbiter.sv
 path/arc_generator.sv

@@ -95,6 +95,9 @@ struct StepTimes {
   std::size_t count = 0;
 };
 
+// By PieceClass.
+constexpr std::array<std::uint32_t, kPieceClasses> kRatios{reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
+
 Status status_from(std::uint32_t value) {
   Status status;
   status.busy = (value & field::kStatusBusy) != 0;
@@ -108,6 +111,8 @@ Status status_from(std::uint32_t value) {
   status.snapshot = (value & field::kStatusSnapshot) != 0;
   status.incomplete = (value & field::kStatusIncomplete) != 0;
   status.stopping = (value & field::kStatusStopping) != 0;
+  status.geometry_low = (value & field::kStatusGeometryLow) != 0;
+  status.feed_low = (value & field::kStatusFeedLow) != 0;
   return status;
 }
 
@@ -191,17 +196,30 @@ void Card::configure_axis(unsigned axis, const AxisSettings& settings) {
   timing_.pulse_period[axis] = shortest_pulse_period(accesses[0].data, accesses[1].data);
 }
 
-void Card::set_ratio(std::uint32_t ratio) {
-  check_setting(reg::kRatioFeed, ratio, fmt::format("time base: ratio {} / 65536", ratio));
-  write(reg::kRatioFeed, ratio, "time base: ratio");
-  ratio_ = ratio;
+void Card::set_ratio(PieceClass piece_class, std::uint32_t ratio) {
+  const auto index = static_cast<std::size_t>(piece_class);
+  if (index >= kPieceClasses) throw ArgumentError(fmt::format("time base: class {}", index));
+  if (piece_class != PieceClass::kFeed && !has_engine(map::engine::kClasses)) {
+    throw ArgumentError(fmt::format("time base: a ratio for class {} needs {}, which the card does not have", index,
+                                    map::kEngineNames[map::engine::kClasses]));
+  }
+  check_setting(kRatios[index], ratio, fmt::format("time base: ratio {} / 65536", ratio));
+  write(kRatios[index], ratio, "time base: ratio");
+  ratios_[index] = ratio;
+}
+
+std::uint32_t Card::ratio_of(double percent, double most_percent) {
+  // Written so that no NaN gets through.
+  if (!(most_percent > 0 && percent >= 0 && percent <= most_percent)) {
+    throw ArgumentError(fmt::format("override of {} %: 0 to {} % are possible", percent, most_percent));
+  }
+  return static_cast<std::uint32_t>(percent / most_percent * kFullRatio + 0.5);
 }
 
 void Card::set_slew_time(std::chrono::nanoseconds full_scale) {
   // The ratio moves by `slew` * 2^-28 every 4 clocks, so slew = 4 * 2^28 / clocks.
-  constexpr std::uint64_t kFullScale = std::uint64_t{map::constant::kSlewClocks} << map::constant::kSlewFractionBits;
   const std::uint64_t time = std::max<std::uint64_t>(clocks(full_scale, "time base: slew time"), 1);
-  const std::uint64_t slew = std::min<std::uint64_t>(kFullScale / time, entry(reg::kSlew).maximum);
+  const std::uint64_t slew = std::min<std::uint64_t>(kSlowestSlew / time, entry(reg::kSlew).maximum);
   check_setting(reg::kSlew, slew,
                 fmt::format("time base: slew of {} ns, {} clocks, which gives {} and", full_scale.count(), time, slew));
   write(reg::kSlew, static_cast<std::uint32_t>(slew), "time base: slew");
@@ -272,7 +290,12 @@ Status Card::status_of(const Access& access) const {
 void Card::wait_until_idle(std::chrono::nanoseconds timeout) {
   constexpr const char* kContext = "waiting for the end of motion";
   Patience patience(*this, kContext, 0);
-  patience.allow({clocks(timeout, "timeout"), 0});
+  // Whatever runs is at one of the ratios.
+  PieceClass slowest = PieceClass::kFeed;
+  for (const PieceClass other : {PieceClass::kRapid, PieceClass::kFixed}) {
+    if (ratio(other) != 0 && (ratio(slowest) == 0 || ratio(other) < ratio(slowest))) slowest = other;
+  }
+  patience.allow(PlannedTime::of(clocks(timeout, "timeout"), slowest));
   for (;;) {
     const Status now = status();
     throw_if_faulted(now, kContext);
@@ -280,7 +303,7 @@ void Card::wait_until_idle(std::chrono::nanoseconds timeout) {
       return check_identity();
     }
     serve_requests();
-    patience.pause(now, poll_interval(), true);
+    patience.pause(now, poll_interval(), Patience::kIdle);
   }
 }
 
@@ -289,6 +312,31 @@ std::uint32_t Card::faults() { return read(reg::kFault); }
 void Card::clear_faults() { write(reg::kFault, entry(reg::kFault).mask, "clearing faults"); }
 
 void Card::abort() { write(reg::kControl, field::kControlAbort, "abort"); }
+
+Snapshot Card::stop(std::chrono::nanoseconds patience) {
+  set_hold(true);
+  const std::uint64_t margin = clocks(patience, "stop: patience");
+  wait_for_rest(kSlowestSlew / std::max<std::uint32_t>(read(reg::kSlew), 1) + margin, true);
+  const Snapshot at_rest = snapshot();
+  abort();
+  wait_for_rest(margin, false);  // pulses that the shapers have accepted
+  Snapshot end = snapshot();
+  set_hold(false);
+  end.geometry_begun = at_rest.geometry_begun;
+  end.feed_begun = at_rest.feed_begun;
+  return end;
+}
+
+// Until nothing runs any more, or, with `held_is_rest`, until the time base stands.
+void Card::wait_for_rest(std::uint64_t limit, bool held_is_rest) {
+  for (std::uint64_t waited = 0;; waited += poll_interval()) {
+    const Status now = status();
+    throw_if_faulted(now, "stop");
+    if (!now.busy || (held_is_rest && now.held)) return;
+    if (waited > limit) throw TimeoutError("stop on the path", waited);
+    bus_->sleep(time_of(poll_interval(), identification_.clock_hz));
+  }
+}
 
 void Card::throw_if_faulted(const Status& status, std::string_view context) {
   if (status.faulted) {
@@ -299,12 +347,23 @@ void Card::throw_if_faulted(const Status& status, std::string_view context) {
 void Card::serve_requests() {
   if (requests_->abort.exchange(false)) {
     requests_->hold.store(-1);
+    requests_->stop.store(false);
     abort();
     throw StateError("card: aborted, as another thread has asked for");
+  }
+  if (requests_->stop.exchange(false)) {
+    requests_->hold.store(-1);
+    const Snapshot end = stop();
+    throw StoppedError(end.geometry_begun, "card: stopped on the path, as another thread has asked for");
   }
   const int hold = requests_->hold.exchange(-1);
   if (hold >= 0) {
     set_hold(hold != 0);
+  }
+  for (std::size_t i = 0; i < kPieceClasses; ++i) {
+    const std::uint32_t ratio = requests_->ratio[i].exchange(Requests::kNoRatio);
+    const bool there = i == 0 || has_engine(map::engine::kClasses);
+    if (ratio <= kFullRatio && there) set_ratio(static_cast<PieceClass>(i), ratio);
   }
 }
 
@@ -318,18 +377,38 @@ std::uint64_t Card::poll_interval() const {
   return std::max(identification_.clock_hz / kPollsPerSecond, kFewestClocks);
 }
 
-bool Card::pause(std::uint64_t clocks, bool until_idle) {
+bool Card::pause(std::uint64_t clocks, std::uint32_t wake) {
   if (!bus_->has_interrupt()) {
     bus_->sleep(time_of(clocks, identification_.clock_hz));
     return false;
   }
-  enable_interrupts(until_idle);
+  enable_interrupts(wake);
   return bus_->wait_for_interrupt(time_of(clocks, identification_.clock_hz));
 }
 
-void Card::enable_interrupts(bool until_idle) {
-  // IRQ_ENABLE has the bits of STATUS, but its bit for busy means idle.
-  const std::uint32_t wanted = field::kStatusFaulted | field::kStatusRefused | (until_idle ? field::kStatusBusy : 0);
+// Fewer than depth - room + 1 are queued when there is that much room.
+std::uint32_t Card::wake_at_room(std::uint32_t geometry, std::uint32_t feed) {
+  std::uint32_t wake = 0;
+  const auto mark = [&](std::uint32_t address, std::optional<std::uint32_t>& written, std::uint32_t value,
+                        std::uint32_t bit) {
+    if (written != value) {
+      write(address, value, "watermarks");
+      written = value;
+    }
+    wake |= bit;
+  };
+  if (geometry != 0) {
+    mark(reg::kGeometryWatermark, geometry_watermark_, identification_.geometry_depth - geometry + 1,
+         field::kStatusGeometryLow);
+  }
+  if (feed != 0) {
+    mark(reg::kFeedWatermark, feed_watermark_, identification_.feed_depth - feed + 1, field::kStatusFeedLow);
+  }
+  return wake;
+}
+
+void Card::enable_interrupts(std::uint32_t wake) {
+  const std::uint32_t wanted = field::kStatusFaulted | field::kStatusRefused | wake;
   if (irq_enable_ != wanted) {
     write(reg::kIrqEnable, wanted, "interrupts");
     irq_enable_ = wanted;

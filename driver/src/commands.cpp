@@ -148,7 +148,7 @@ class Writer {
   void increments(const std::array<std::int64_t, map::kMaxAxes>& increment, std::uint8_t mask) {
     std::size_t offset = 0;
     for (unsigned axis = 0; axis < map::kMaxAxes; ++axis) {
-      if ((mask >> axis & 1U) != 0) {
+      if ((std::uint32_t{mask} >> axis & 1U) != 0) {
         field<kField>(increment[axis], offset);
         offset += kField.halfwords;
       } else if (increment[axis] != 0) {
@@ -234,7 +234,9 @@ std::size_t write(const ArcChordCommand& arc, std::uint8_t number, std::uint32_t
 }
 
 std::size_t write(const FeedCommand& feed, std::uint8_t number, std::uint32_t* words) {
-  Writer to(kFeed, 0, feed.ticks, number, words);
+  const auto flags = static_cast<std::uint8_t>(feed.piece_class);
+  if (flags > kFeed.flags_maximum) refuse(kFeed, fmt::format("class {}", flags));
+  Writer to(kFeed, flags, feed.ticks, number, words);
   to.field<kRate>(feed.rate);
   to.field<kFloor>(std::uint64_t{feed.floor});
   to.field<kStopDistance>(std::uint64_t{feed.stop_distance});
@@ -354,8 +356,9 @@ Command arc_chord_from(const Reader& from, std::uint8_t mask) {
   return arc;
 }
 
-Command feed_from(const Reader& from) {
+Command feed_from(const Reader& from, std::uint8_t flags) {
   FeedCommand feed;
+  feed.piece_class = static_cast<PieceClass>(flags);
   feed.ticks = from.count();
   feed.rate = from.unsigned_field<kRate>();
   feed.floor = static_cast<std::uint32_t>(from.unsigned_field<kFloor>());
@@ -374,7 +377,7 @@ Command command_from(map::Opcode opcode, std::uint8_t mask, const Reader& from) 
     case map::Opcode::ArcChord:
       return arc_chord_from(from, mask);
     case map::Opcode::Feed:
-      return feed_from(from);
+      return feed_from(from, mask);
     case map::Opcode::Dwell:
       return DwellCommand{from.count()};
     case map::Opcode::End:

@@ -283,13 +283,13 @@ void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds pati
     const OneShotPart part = plan.part(index);
     start_line(card, part);
     Patience waiting(card, kContext, margin);
-    waiting.allow({part.length, 0});
+    waiting.allow(PlannedTime::of(part.length));
     // The first pause is about as long as the line, the last ones are short.
     Status status;
     std::uint64_t left = part.length;
     do {
       const std::uint64_t pause = std::clamp(left, card.poll_interval(), look);
-      waiting.pause(status, pause, true);
+      waiting.pause(status, pause, Patience::kIdle);
       left -= std::min(left, pause);
       status = card.status();
       card.throw_if_faulted(status, kContext);

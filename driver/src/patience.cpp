@@ -26,30 +26,60 @@ Uint128 at_ratio(Uint128 gated, std::uint32_t ratio) {
 
 void Patience::allow(const PlannedTime& planned) {
   planned_ = planned;
-  gated_left_ = Uint128(planned.gated) << constant::kRatioFractionBits;
+  for (std::size_t i = 0; i < gated_left_.size(); ++i) {
+    gated_left_[i] = Uint128(planned.parts[i].gated) << constant::kRatioFractionBits;
+  }
   real_left_ = saturated(Uint128(planned.real) + Uint128(margin_));
   waited_ = 0;
   slews_counted_ = false;
 }
 
-// Clocks that may still be waited at the ratio that the card is known to have, which is not 0.
-std::uint64_t Patience::left() const { return saturated(at_ratio(gated_left_, card_.ratio()) + Uint128(real_left_)); }
+// What runs now, as far as it is known, has a ratio of 0.
+bool Patience::stands() const {
+  for (std::size_t i = 0; i < gated_left_.size(); ++i) {
+    if (gated_left_[i] > Uint128(0)) return ratio_of(i) == 0;
+  }
+  return false;
+}
+
+// Clocks that may still be waited at the ratios that the card is known to have; what has a ratio of 0 is waited for
+// when its turn comes.
+std::uint64_t Patience::left() const {
+  Uint128 clocks(real_left_);
+  for (std::size_t i = 0; i < gated_left_.size(); ++i) {
+    if (ratio_of(i) != 0) clocks = clocks + at_ratio(gated_left_[i], ratio_of(i));
+  }
+  return saturated(clocks);
+}
+
+bool Patience::ratios_changed(const Access* accesses, std::size_t count) {
+  bool changed = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    Card::check_read(accesses[i]);
+    const auto piece_class = static_cast<PieceClass>(i);
+    changed = changed || card_.ratio(piece_class) != accesses[i].data;
+    card_.note_ratio(piece_class, accesses[i].data);
+  }
+  return changed;
+}
 
 // The card is asked for its time base only once the time has passed: somebody else may have set it, and on the way from
 // one ratio to another it is lower for as long as a full slew at most, down and up again.
 bool Patience::overdue() {
-  std::array<Access, 3> accesses{read_of(reg::kRatioFeed), read_of(reg::kSlew)};
-  card_.transfer(accesses.data(), 2, context_);
-  Card::check_read(accesses[0]);
-  Card::check_read(accesses[1]);
-  if (card_.ratio() != accesses[0].data) {
-    card_.note_ratio(accesses[0].data);
+  const bool classes = card_map::has_engine(card_.identification().engines, card_map::engine::kClasses);
+  const std::size_t ratios = classes ? kPieceClasses : 1;
+  std::array<Access, kPieceClasses + 2> accesses{read_of(reg::kRatioFeed), read_of(reg::kRatioRapid),
+                                                 read_of(reg::kRatioFixed)};
+  accesses[ratios] = read_of(reg::kSlew);
+  card_.transfer(accesses.data(), ratios + 1, context_);
+  Card::check_read(accesses[ratios]);
+  if (ratios_changed(accesses.data(), ratios)) {
     const std::uint64_t waited = waited_;
     allow(planned_);
     waited_ = waited;
     return false;
   }
-  if (card_.ratio() == 0) {
+  if (stands()) {
     return false;
   }
   if (slews_counted_) {
@@ -57,33 +87,36 @@ bool Patience::overdue() {
   }
   slews_counted_ = true;
   real_left_ += 2 * (std::uint64_t{constant::kSlewClocks} << constant::kSlewFractionBits) /
-                std::max<std::uint32_t>(accesses[1].data, 1);
+                std::max<std::uint32_t>(accesses[ratios].data, 1);
   return real_left_ == 0;
 }
 
 void Patience::count(std::uint64_t clocks) {
   waited_ += clocks;
-  const std::uint32_t ratio = card_.ratio();
-  const Uint128 gated = Uint128::product(clocks, ratio);
-  if (gated_left_ > gated) {
-    gated_left_ = gated_left_ - gated;
-    return;
+  for (std::size_t i = 0; i < gated_left_.size(); ++i) {
+    const std::uint32_t ratio = ratio_of(i);
+    const Uint128 gated = Uint128::product(clocks, ratio);
+    if (gated_left_[i] > gated) {
+      gated_left_[i] = gated_left_[i] - gated;
+      return;
+    }
+    if (ratio == 0) continue;
+    clocks -= std::min(clocks, at_ratio(gated_left_[i], ratio).low());
+    gated_left_[i] = Uint128(0);
   }
-  const std::uint64_t used = at_ratio(gated_left_, ratio).low();
-  gated_left_ = Uint128(0);
-  real_left_ -= std::min(real_left_, clocks - used);
+  real_left_ -= std::min(real_left_, clocks);
 }
 
-void Patience::pause(const Status& status, std::uint64_t clocks, bool until_idle) {
+void Patience::pause(const Status& status, std::uint64_t clocks, std::uint32_t wake) {
   // An interrupt tells of the end by itself; looks are for other threads' requests then.
   constexpr std::uint32_t kLooksPerSecond = 100;
   const std::uint32_t clock_hz = card_.identification().clock_hz;
   std::uint64_t longest = clocks;
-  if (until_idle && card_.bus().has_interrupt()) longest = std::max<std::uint64_t>(clocks, clock_hz / kLooksPerSecond);
-  if (!status.held && (card_.ratio() == 0 || left() == 0) && overdue()) {
+  if (wake != 0 && card_.bus().has_interrupt()) longest = std::max<std::uint64_t>(clocks, clock_hz / kLooksPerSecond);
+  if (!status.held && (stands() || left() == 0) && overdue()) {
     throw TimeoutError(context_, waited_);
   }
-  const bool counts = !status.held && card_.ratio() != 0;
+  const bool counts = !status.held && !stands();
   if (counts) {
     longest = std::min(longest, left());
   }
@@ -93,7 +126,7 @@ void Patience::pause(const Status& status, std::uint64_t clocks, bool until_idle
     interrupted_ = false;
     card_.bus().sleep(time_of(longest, clock_hz));
   } else {
-    interrupted_ = card_.pause(longest, until_idle);
+    interrupted_ = card_.pause(longest, wake);
   }
   if (counts && !interrupted_) {
     count(longest);

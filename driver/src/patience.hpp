@@ -2,21 +2,34 @@
 // below 1 stretches what the time base gates. Not thread-safe.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/commands.hpp"
 #include "trammel/driver/wide.hpp"
 
 namespace trammel::driver {
 
 // Clocks that something takes.
 struct PlannedTime {
-  std::uint64_t gated = 0;  // at full ratio of the time base
-  std::uint64_t real = 0;   // whatever the ratio
+  struct Part {
+    std::uint64_t gated = 0;  // at full ratio of the time base
+    PieceClass piece_class = PieceClass::kFeed;
+  };
+  static PlannedTime of(std::uint64_t gated, PieceClass piece_class = PieceClass::kFeed) {
+    return {{Part{gated, piece_class}, Part{}}, 0};
+  }
+
+  std::array<Part, 2> parts;  // one after the other
+  std::uint64_t real = 0;     // whatever the ratio
 };
 
 class Patience {
  public:
+  // What pause() may wake for, by the bits of IRQ_ENABLE.
+  static constexpr std::uint32_t kIdle = card_map::field::kIrqEnableIdle;
+
   // `margin`: clocks beyond what was planned. `context` names what is waited for and must outlive the object.
   Patience(Card& card, const char* context, std::uint64_t margin) : card_(card), context_(context), margin_(margin) {}
 
@@ -24,20 +37,24 @@ class Patience {
   void allow(const PlannedTime& planned);
 
   // Throws TimeoutError when it is overdue, else waits for up to `clocks`, `status` being what the card said last.
-  void pause(const Status& status, std::uint64_t clocks, bool until_idle);
+  // Where the bus has interrupts it waits for what `wake` asks for (0: nothing that tells of the end), and for longer.
+  void pause(const Status& status, std::uint64_t clocks, std::uint32_t wake);
 
  private:
+  std::uint32_t ratio_of(std::size_t part) const { return card_.ratio(planned_.parts[part].piece_class); }
+  bool stands() const;
   std::uint64_t left() const;
   bool overdue();
+  bool ratios_changed(const Access* accesses, std::size_t count);
   void count(std::uint64_t clocks);
 
   Card& card_;
   const char* context_;
   std::uint64_t margin_;
   PlannedTime planned_;
-  Uint128 gated_left_;           // 2^-16 clocks at full ratio
-  std::uint64_t real_left_ = 0;  // clocks, the margin with them
-  std::uint64_t waited_ = 0;     // clocks, without those in holds
+  std::array<Uint128, 2> gated_left_;  // of each part, 2^-16 clocks at full ratio
+  std::uint64_t real_left_ = 0;        // clocks, the margin with them
+  std::uint64_t waited_ = 0;           // clocks, without those in holds
   bool slews_counted_ = false;
   bool interrupted_ = false;  // the pause before ended so
 };

@@ -38,17 +38,27 @@ void require_engine(const Identification& card, std::uint32_t engine, std::strin
 // One wait for the card.
 class Stream::Wait {
  public:
-  Wait(Stream& stream, const char* context, bool until_idle)
-      : stream_(stream), patience_(*stream.card_, context, stream.patience_clocks_), until_idle_(until_idle) {
+  Wait(Stream& stream, const char* context)
+      : stream_(stream), patience_(*stream.card_, context, stream.patience_clocks_) {
     allow();
   }
 
-  // What was planned counts from now on.
+  // What was planned counts from now on: the piece or barrier that the card has begun last, and the one that it is
+  // about to begin.
   void allow() {
-    const Duration planned = stream_.planned();
-    patience_.allow({planned.gated, planned.real});
+    const Count& feed = stream_.feed_;
+    PlannedTime planned;
+    std::size_t part = 0;
+    for (std::uint64_t number = feed.begun - (feed.begun != 0 ? 1 : 0); number < feed.sent && number <= feed.begun;
+         ++number) {
+      const Duration& duration = stream_.durations_[stream_.slot(number)];
+      planned.parts[part++] = {duration.gated, duration.piece_class};
+      planned.real += duration.real;
+    }
+    patience_.allow(planned);
   }
-  void pause(const Status& status) { patience_.pause(status, stream_.poll_clocks_, until_idle_); }
+  // `wake`: as of Patience::pause().
+  void pause(const Status& status, std::uint32_t wake) { patience_.pause(status, stream_.poll_clocks_, wake); }
 
   // Throws StateError when the card has been idle at two looks in a row although it has not begun all.
   void idle(bool without_reason) {
@@ -64,7 +74,6 @@ class Stream::Wait {
  private:
   Stream& stream_;
   Patience patience_;
-  bool until_idle_;
   int idle_looks_ = 0;
 };
 
@@ -160,10 +169,12 @@ Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) 
   const map::Command& layout = layout_of(command);
   const auto mask = static_cast<std::uint8_t>(header >> 8);
   require_engine(card, layout.engine, layout.name);
-  if (const auto* feed = std::get_if<FeedCommand>(&command); feed != nullptr && feed->jerk != 0) {
-    require_engine(card, map::engine::kJerk, layout.name);
+  const auto* feed = std::get_if<FeedCommand>(&command);
+  if (feed != nullptr && feed->jerk != 0) require_engine(card, map::engine::kJerk, layout.name);
+  if (feed != nullptr && feed->piece_class != PieceClass::kFeed) {
+    require_engine(card, map::engine::kClasses, layout.name);
   }
-  if (mask >> card.axes != 0) {
+  if (feed == nullptr && mask >> card.axes != 0) {
     throw ArgumentError(fmt::format("stream: axis mask 0x{:02X}, but the card has {} axes", mask, card.axes));
   }
   const std::uint32_t halfwords = map::queue_halfwords(layout, mask);
@@ -180,6 +191,7 @@ void Stream::keep(const Command& command, const Need& need, const std::uint32_t*
   if (need.feed != 0) {
     Duration duration;
     if (const auto* feed = std::get_if<FeedCommand>(&command)) {
+      duration.piece_class = feed->piece_class;
       constexpr double kLongest = 4e18;  // of what 64 bits hold
       duration.gated = static_cast<std::uint64_t>(std::min(feed_clocks(*feed), kLongest)) + 1;
     } else if (const auto* dwell = std::get_if<DwellCommand>(&command)) {
@@ -200,7 +212,7 @@ void Stream::write_kept() {
 }
 
 void Stream::wait_for_room(const Need& need) {
-  Wait wait(*this, "stream: waiting for room in the card's queues", false);
+  Wait wait(*this, "stream: waiting for room in the card's queues");
   for (;;) {
     refresh_room(need);
     if (has_room(need)) {
@@ -208,8 +220,15 @@ void Stream::wait_for_room(const Need& need) {
     }
     const Status status = look(wait);
     wait.idle(!status.busy && !all_begun());
-    wait.pause(status);
+    wait.pause(status, wake_for(need));
   }
+}
+
+// For room where it is missing.
+std::uint32_t Stream::wake_for(const Need& need) const {
+  if (!card_->tells_of_room()) return 0;
+  return card_->wake_at_room(need.geometry > room_.geometry ? need.geometry : 0,
+                             need.feed > room_.feed ? need.feed : 0);
 }
 
 void Stream::refresh_room(const Need& need) {
@@ -232,11 +251,11 @@ void Stream::refresh_room(const Need& need) {
 Status Stream::finish() {
   flush();
   return closing_at_errors([this] {
-    Wait wait(*this, "stream: waiting for the end", true);
+    Wait wait(*this, "stream: waiting for the end");
     // The first look comes after a pause too: a command is some clocks on its way from the port to the queue.
     Status status;
     for (;;) {
-      wait.pause(status);
+      wait.pause(status, Patience::kIdle);
       status = look(wait);
       if (!status.busy && all_begun() && (status.ended || !last_is_end_)) {
         card_->check_identity();
@@ -284,18 +303,6 @@ void Stream::advance(Count& count, std::uint32_t begun) const {
                     begun, count.sent, count.begun));
   }
   count.begun += more & 0xFFFFFFFF;
-}
-
-// What the card may be with now: the piece or barrier that it has begun last, and the one that it is about to begin.
-Stream::Duration Stream::planned() const {
-  Duration sum;
-  for (std::uint64_t number = feed_.begun - (feed_.begun != 0 ? 1 : 0); number < feed_.sent && number <= feed_.begun;
-       ++number) {
-    const Duration& duration = durations_[slot(number)];
-    sum.gated += duration.gated;
-    sum.real += duration.real;
-  }
-  return sum;
 }
 
 void Stream::require_open() const {

@@ -8,6 +8,8 @@ module card_core #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          Classes       = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks    = 1,     // 0: without
     parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
@@ -49,7 +51,8 @@ module card_core #(
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
       32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
-      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE;
+      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
+      32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS;
 
   // What parameters and straps decide of the constants, by address.
   logic [511:0] constants;
@@ -71,6 +74,7 @@ module card_core #(
   logic        held;
   logic [63:0] begun;  // {geometry, feed}
   logic [31:0] room;  // {geometry, feed}
+  logic [ 1:0] low;  // {feed, geometry}
   logic [40:0] setting;  // {set, address, data}
   logic        abort;
   logic        flush;
@@ -99,6 +103,7 @@ module card_core #(
       .held_i(held),
       .fault_i(fault),
       .room_i(room),
+      .low_i(low),
       .begun_i(begun),
       .status_o(status),
       .setting_o(setting),
@@ -169,6 +174,20 @@ module card_core #(
       .empty_o(feed_empty),
       .room_o (room[15:0])
   );
+
+  if (Watermarks != 0) begin : gen_watermarks
+    queue_watermarks #(
+        .GeometryDepth(GeometryDepth),
+        .FeedDepth(FeedDepth)
+    ) watermarks (
+        .*,
+        .setting_i(setting),
+        .room_i(room),
+        .low_o(low)
+    );
+  end else begin : gen_no_watermarks
+    assign low = '0;
+  end
 
   motion_core #(
       .Axes(Axes),

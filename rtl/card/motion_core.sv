@@ -46,29 +46,26 @@ module motion_core #(
     output logic      [    Axes-1:0] dir_o
 );
   // stops
-  logic               hold;
-  logic               mismatch;
-  logic               incomplete;
-  logic               stopping;
-  logic [   Axes-1:0] step_fault;
+  logic hold;
+  logic mismatch, incomplete;
+  logic            stopping;
+  logic [Axes-1:0] step_fault;
   // ticks
-  logic               take;
-  logic               tick;
-  logic               feed_swap;
-  logic               feed_active;
-  logic               feed_runs;
-  logic               feed_at;
-  logic               feed_idle;
-  logic [       16:0] ratio;
-  logic [       31:0] rate;
+  logic            take;
+  logic            tick;
+  logic            feed_swap;
+  logic            feed_active;
+  logic moving, fixed;
+  logic feed_runs, feed_at, feed_idle;
+  logic [    16:0] ratio;
+  logic [    31:0] rate;
   // geometry
-  logic [       21:0] load;
-  logic               taking;
-  logic               swap;
-  logic [   Axes-1:0] active;
-  logic [        4:0] engine;
-  logic               barrier_begin;
-  logic               barrier_done;
+  logic [    21:0] load;
+  logic            taking;
+  logic            swap;
+  logic [Axes-1:0] active;
+  logic [     4:0] engine;
+  logic barrier_begin, barrier_done;
   logic               path_active;
   logic               ended;
   logic               geometry_idle;
@@ -115,11 +112,15 @@ module motion_core #(
       .incomplete_i(incomplete),
       .clear_i     (clear_fault_i),
       .at_rest_i   (held_o),
+      .moving_i    (moving),
+      .fixed_i     (fixed),
       .hold_o      (hold),
       .stopping_o  (stopping)
   );
 
-  tick_source ticks (
+  tick_source #(
+      .Engines(Engines)
+  ) ticks (
       .*,
       .cut_i          (cut_o),
       .hold_i         (hold),
@@ -137,6 +138,8 @@ module motion_core #(
       .at_barrier_o   (feed_at),
       .runs_o         (feed_runs),
       .active_o       (feed_active),
+      .moving_o       (moving),
+      .fixed_o        (fixed),
       .idle_o         (feed_idle),
       .ratio_o        (ratio),
       .rate_o         (rate),

@@ -7,6 +7,8 @@ module trammel_card #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          Classes       = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks    = 1,     // 0: without
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
     parameter logic [31:0] BoardId       = 0
@@ -88,6 +90,8 @@ module trammel_card #(
       .FeedDepth(FeedDepth),
       .Accumulator(Accumulator),
       .ArcGenerator(ArcGenerator),
+      .Classes(Classes),
+      .Watermarks(Watermarks),
       .DirectMode(DirectMode),
       .Ports(1),
       .BuildId(BuildId),

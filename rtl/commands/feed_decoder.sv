@@ -13,6 +13,7 @@ module feed_decoder (
     output logic             read_o,
     output logic      [19:0] load_o,     // {valid, target, word}
     output logic             piece_o,
+    output logic      [ 1:0] class_o,    // of the piece
     output logic             barrier_o,
     output logic             idle_o,
     output logic             valid_o
@@ -20,10 +21,12 @@ module feed_decoder (
   logic [4:0] field;
   logic [6:0] strobe;  // {of the count, of a field, which one}
   logic [7:0] opcode;
+  logic [7:0] mask;
   logic       is_feed;
   logic       pause;
 
   assign is_feed = opcode == card_map_pkg::OP_FEED;
+  assign class_o = mask[1:0];
 
   assign pause   = active_i && field[2:0] == load_target_pkg::FEED_STOP_DISTANCE;
 
@@ -46,7 +49,7 @@ module feed_decoder (
       .field_o      (field),
       .strobe_o     (strobe),
       .opcode_o     (opcode),
-      .mask_o       ()
+      .mask_o       (mask)
   );
 
   always_ff @(posedge clk_i) begin
@@ -58,7 +61,7 @@ module feed_decoder (
   end
 
   logic unused;
-  assign unused = &{1'b0, strobe[4:3]};
+  assign unused = &{1'b0, strobe[4:3], mask[7:2]};
 endmodule
 
 `default_nettype wire

@@ -24,6 +24,7 @@ module register_file #(
     input  wire logic              held_i,
     input  wire logic [      31:0] fault_i,
     input  wire logic [      31:0] room_i,            // {geometry, feed}
+    input  wire logic [       1:0] low_i,             // {feed, geometry}: below their watermarks
     input  wire logic [      63:0] begun_i,           // {geometry, feed}
     output logic      [      31:0] status_o,          // combinational; refused is any port's
     // what writes do

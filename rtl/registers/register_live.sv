@@ -23,6 +23,7 @@ module register_live #(
     input  wire logic        held_i,
     input  wire logic        snapshotting_i,
     input  wire logic        incomplete_i,
+    input  wire logic [ 1:0] low_i,            // {feed, geometry}: below their watermarks
     // the other live registers
     input  wire logic [31:0] fault_i,
     input  wire logic [31:0] room_i,           // {geometry, feed}
@@ -75,7 +76,9 @@ module register_live #(
       32'(refused != '0) << card_map_pkg::BIT_STATUS_REFUSED |
       32'(snapshotting_i) << card_map_pkg::BIT_STATUS_SNAPSHOT |
       32'(incomplete_i) << card_map_pkg::BIT_STATUS_INCOMPLETE |
-      32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING;
+      32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING |
+      32'(low_i[0]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
+      32'(low_i[1]) << card_map_pkg::BIT_STATUS_FEED_LOW;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin

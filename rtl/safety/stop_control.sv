@@ -2,6 +2,9 @@
 //
 // A fault stops at once, or, where its reaction says so, after the time base has come to rest. Either way the cut leaves
 // nothing that could move, so clearing FAULT never starts motion.
+//
+// A HOLD waits for the end of the fixed pieces that are under way. One that finds nothing moving, or the time base at
+// rest, takes at once and stays until it is taken back: no fixed piece that is sent meanwhile starts motion.
 `default_nettype none
 
 module stop_control #(
@@ -16,6 +19,8 @@ module stop_control #(
     input  wire logic            abort_i,
     input  wire logic [    31:0] clear_i,       // ones written to FAULT
     input  wire logic            at_rest_i,     // the ratio is 0
+    input  wire logic            moving_i,      // pieces are giving ticks
+    input  wire logic            fixed_i,       // the present one is fixed
     output logic      [    31:0] fault_o,
     output logic                 hold_o,        // the time base slows down to rest
     output logic                 cut_o,
@@ -38,11 +43,14 @@ module stop_control #(
   logic   [Faults-1:0] fault_q;
   logic   [Faults-1:0] cause;
   logic                hold_q;
+  logic                stays_q;  // the hold stays whatever begins
+  logic                stays;
   logic   [Faults-1:0] ramped_q;  // causes whose reaction is a ramp
   logic                any;
   logic                immediate;
 
   assign any = cause != '0;
+  assign stays = hold_q && (stays_q || !moving_i || at_rest_i);
   assign immediate = (cause & ~ramped_q) != '0;
 
   always_comb begin
@@ -70,7 +78,8 @@ module stop_control #(
     state_q  <= state_d;
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
     stop_o   <= state_q == RUN && state_d != RUN;
-    hold_o   <= hold_q || state_q == RAMP;
+    stays_q  <= stays;
+    hold_o   <= (hold_q && (stays || !fixed_i)) || state_q == RAMP;
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
       hold_q   <= card_map_pkg::RESET_HOLD[0];

@@ -7,6 +7,9 @@
 // made when the last halfword of J is there: 14 clocks after the swap at the latest, or the 32nd enabled clock could be
 // missed.
 //
+// Once R lies outside -2 .. 2 it stays as it is to the end of the piece, at the floor or at 1: before that A lies within
+// +-4.5 (the difference of two Rs, and a J of half), so that neither has ever left the +-8 of its bits.
+//
 // The phase is 16 + 32 bits with a registered carry: everything of the upper 32 bits (its part of R, the floor, the
 // slope) is taken one clock after the lower part. So the shadow must hold in the clock of a swap and the next. Swaps are
 // 16 clocks apart or more (the decoder takes that long to load a piece); nothing is enabled before the first one.
@@ -27,7 +30,7 @@ module feed_generator (
     output logic      [31:0] rate_o
 );
   localparam int Word = 4;
-  // 64 fraction bits and a nibble: neither R nor A wraps within +-8.
+  // 64 fraction bits and a nibble: +-8.
   localparam int Width = 68;
   localparam logic [4:0] LAST_STEP = 5'd16;
 
@@ -61,6 +64,7 @@ module feed_generator (
   logic [4:0] step_q;
   logic rotate_q, compare_q, judge_q;
   logic waits_q;  // for acceleration and jerk
+  logic away_q;  // R lies outside -2 .. 2
   logic primed_q;  // the next piece has them
   logic load_jerk_q;
   logic loaded;
@@ -87,7 +91,7 @@ module feed_generator (
     end
     if (waits_q ? loaded : load_high_q) begin
       step_q   <= '0;
-      rotate_q <= keep;
+      rotate_q <= keep && !away_q;
     end
     if (rst_i) rotate_q <= 1'b0;
   end
@@ -148,11 +152,13 @@ module feed_generator (
     if (rst_i || swap_i) begin
       below_q <= 1'b0;
       above_q <= 1'b0;
+      away_q  <= 1'b0;
     end else if (judge_q) begin
       negative = rate_high_q[Width-33];
       whole = |rate_high_q[Width-34:32];
       below_q <= negative || (!whole && borrow_q);
       above_q <= !negative && whole;
+      away_q  <= rate_high_q[Width-33-:3] != {3{negative}};
     end
     if (load_low_q) begin
       below_high_q <= below_q;

@@ -1,7 +1,9 @@
 // Runs one feed piece after the other; the next one is swapped in at the last tick of the present one.
 `default_nettype none
 
-module feed_sequencer (
+module feed_sequencer #(
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        cut_i,
@@ -10,12 +12,15 @@ module feed_sequencer (
     input  wire logic [15:0] word_i,
     output logic             read_o,
     // ticks
-    input  wire logic        take_i,           // only while active_o
+    input  wire logic        take_i,
+    input  wire logic        direct_i,         // a direct move is under way
     input  wire logic        barrier_begin_i,
     input  wire logic        barrier_done_i,
     output logic             at_barrier_o,
     output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
     output logic             active_o,         // a piece gives ticks
+    output logic             moving_o,         // and has, or the one before it in one go
+    output logic      [ 1:0] class_o,          // of the piece that was swapped in last
     output logic             idle_o,           // nothing read or decoded
     // feed generator
     output logic             swap_o,
@@ -27,6 +32,7 @@ module feed_sequencer (
     output logic      [31:0] begun_o
 );
   logic piece;
+  logic [1:0] piece_class;
   logic is_barrier;
   logic valid;
   logic swap;
@@ -40,6 +46,7 @@ module feed_sequencer (
       .pop_i    (swap || barrier_done_i),
       .active_i (active_o),
       .piece_o  (piece),
+      .class_o  (piece_class),
       .barrier_o(is_barrier),
       .valid_o  (valid)
   );
@@ -63,6 +70,21 @@ module feed_sequencer (
     if (rst_i || cut_i) active_o <= 1'b0;
     else if (swap) active_o <= 1'b1;
     else if (take_i && last) active_o <= 1'b0;
+    if (rst_i || cut_i) moving_o <= 1'b0;
+    else if (take_i) moving_o <= active_o && (swap || !last);
+  end
+
+  // A direct move has no pieces: it runs as feed, and so does what comes after a cut.
+  if (Engines[card_map_pkg::ENGINE_CLASSES]) begin : gen_classes
+    always_ff @(posedge clk_i) begin
+      if (rst_i || cut_i || direct_i) class_o <= 2'(card_map_pkg::CLASS_FEED);
+      else if (swap) class_o <= piece_class;
+    end
+  end else begin : gen_no_classes
+    assign class_o = 2'(card_map_pkg::CLASS_FEED);
+
+    logic unused;
+    assign unused = &{1'b0, piece_class, direct_i};
   end
 endmodule
 

@@ -1,7 +1,9 @@
 // Where the card's ticks come from: the time base's enabled clocks, the feed pieces, the gate that takes their ticks.
 `default_nettype none
 
-module tick_source (
+module tick_source #(
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        cut_i,
@@ -25,6 +27,8 @@ module tick_source (
     output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
     // status
     output logic             active_o,         // a piece gives ticks
+    output logic             moving_o,         // and has, or the one before it in one go
+    output logic             fixed_o,          // the piece's class is fixed (combinational)
     output logic             idle_o,           // nothing runs, is decoded or queued (combinational)
     output logic      [16:0] ratio_o,
     output logic      [31:0] rate_o,
@@ -33,6 +37,7 @@ module tick_source (
     input  wire logic [31:0] chain_i,
     output logic      [31:0] chain_o
 );
+  logic [ 1:0] class_now;
   logic        enable;
   logic        feed_tick;
   logic        feed_enable;
@@ -42,16 +47,23 @@ module tick_source (
   logic [31:0] ratio_chain;
   logic [31:0] rate_chain;
 
-  assign idle_o = decoder_idle && empty_i && !active_o;
+  assign idle_o  = decoder_idle && empty_i && !active_o;
+  assign fixed_o = class_now == 2'(card_map_pkg::CLASS_FIXED);
 
-  time_base base (
+  time_base #(
+      .Engines(Engines)
+  ) base (
       .*,
+      .class_i (class_now),
       .chain_o (ratio_chain),
       .enable_o(enable)
   );
 
-  feed_sequencer pieces (
+  feed_sequencer #(
+      .Engines(Engines)
+  ) pieces (
       .*,
+      .class_o(class_now),
       .take_i (take_o),
       .idle_o (decoder_idle),
       .load_o (load),

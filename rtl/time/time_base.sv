@@ -1,7 +1,7 @@
 // The time base: a clock enable with a programmable ratio of all clocks, slewed linearly towards its target.
 //
 // Every 4th clock the ratio moves by at most the slew towards its goal and never past it. An update takes 4 clocks:
-//   0  the last update's result becomes the ratio; the goal of this one is sampled (hold, target)
+//   0  the last update's result becomes the ratio; the goal of this one is sampled (hold, the class's target)
 //   1  direction: goal against ratio
 //   2  candidate: ratio + or - slew (the slew is sampled here)
 //   3  whether the candidate reached or passed the goal
@@ -9,11 +9,14 @@
 // comes in between would let the ratio jump.
 `default_nettype none
 
-module time_base (
+module time_base #(
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic [40:0] setting_i,
     input  wire logic        hold_i,
+    input  wire logic [ 1:0] class_i,     // of the piece in force
     input  wire logic [ 1:0] snapshot_i,
     input  wire logic [31:0] chain_i,
     output logic      [31:0] chain_o,
@@ -23,15 +26,41 @@ module time_base (
   // Q1.28: 1 is 2^28. The candidate lies between -2^28 and 2^29 - 1.
   localparam logic [28:0] ONE = 29'h1000_0000;
 
-  logic [16:0] target_q;
+  logic [16:0] feed_q;
+  logic [16:0] rapid_q;
+  logic [16:0] fixed_q;
+  logic [16:0] target;
   logic [27:0] slew_q;
   always_ff @(posedge clk_i) begin
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_FEED[9:2]) target_q <= setting_i[16:0];
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_FEED[9:2]) feed_q <= setting_i[16:0];
     if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_SLEW[9:2]) slew_q <= setting_i[27:0];
     if (rst_i) begin
-      target_q <= card_map_pkg::RESET_RATIO_FEED[16:0];
-      slew_q   <= card_map_pkg::RESET_SLEW[27:0];
+      feed_q <= card_map_pkg::RESET_RATIO_FEED[16:0];
+      slew_q <= card_map_pkg::RESET_SLEW[27:0];
     end
+  end
+
+  if (Engines[card_map_pkg::ENGINE_CLASSES]) begin : gen_classes
+    always_ff @(posedge clk_i) begin
+      if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_RAPID[9:2]) rapid_q <= setting_i[16:0];
+      if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_FIXED[9:2]) fixed_q <= setting_i[16:0];
+      if (rst_i) begin
+        rapid_q <= card_map_pkg::RESET_RATIO_RAPID[16:0];
+        fixed_q <= card_map_pkg::RESET_RATIO_FIXED[16:0];
+      end
+    end
+
+    always_comb begin
+      target = feed_q;
+      if (class_i == 2'(card_map_pkg::CLASS_RAPID)) target = rapid_q;
+      if (class_i == 2'(card_map_pkg::CLASS_FIXED)) target = fixed_q;
+    end
+  end else begin : gen_no_classes
+    assign {rapid_q, fixed_q} = '0;
+    assign target = feed_q;
+
+    logic unused_class;
+    assign unused_class = &{1'b0, class_i, rapid_q, fixed_q};
   end
 
   logic [ 1:0] turn_q;
@@ -56,7 +85,7 @@ module time_base (
       turn_q <= turn_q + 2'd1;
       if (turn_q == 2'd0) begin
         ratio_q <= arrived_q ? goal : candidate_q[28:0];
-        goal_q  <= hold_i ? 17'd0 : target_q;
+        goal_q  <= hold_i ? 17'd0 : target;
       end
       if (turn_q == 2'd1) up_q <= goal >= ratio_q;
       if (turn_q == 2'd2) begin

@@ -130,8 +130,9 @@ void BusEngine::pin_step(std::uint64_t cycle, unsigned axis, int direction) {
   sink_->pin_step({cycle, static_cast<std::uint8_t>(axis), sign(direction)});
 }
 
-void BusEngine::path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) {
-  sink_->path_step({command, tick, static_cast<std::uint8_t>(axis), sign(direction)});
+void BusEngine::path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
+                          int direction) {
+  sink_->path_step({command, tick, static_cast<std::uint8_t>(axis), sign(direction), cycle});
 }
 
 CardModel::Config config_of(const EngineOptions& options) {

@@ -41,7 +41,7 @@ class BusEngine : public Engine, private model::CardSteps {
   void wait_for(Valid valid, const driver::Access& access);
 
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override;
-  void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override;
+  void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override;
 
   std::uint32_t clock_hz_;
   bool interrupt_;

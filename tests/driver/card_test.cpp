@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <thread>
 
 #include "posted_bus.hpp"
@@ -142,6 +143,38 @@ TEST_F(CardTest, BadArgumentsNeverReachTheBus) {
   EXPECT_THAT(argument_error([&] { card_.set_longest_step_wait(1s); }), HasSubstr("1000000 clocks"));
   EXPECT_THAT(argument_error([&] { card_.wait_until_idle(-1ns); }), HasSubstr("timeout"));
   EXPECT_TRUE(bus_.log.empty());
+}
+
+TEST_F(CardTest, EachClassHasItsRatio) {
+  EXPECT_THAT(argument_error([&] { card_.set_ratio(PieceClass::kRapid, 1); }), HasSubstr("needs classes"));
+  EXPECT_TRUE(bus_.log.empty());
+  bus_.values[reg::kEngines] |= field::kEnginesClasses;
+  Card card = Card::open(bus_);
+  bus_.forget();
+  card.set_ratio(PieceClass::kFixed, 0xF000);
+  card.set_override(PieceClass::kFeed, 37);
+  card.set_override(PieceClass::kRapid, 50, 200);
+  EXPECT_THAT(bus_.log, ElementsAre(wrote(reg::kRatioFixed, 0xF000), wrote(reg::kRatioFeed, 24248),
+                                    wrote(reg::kRatioRapid, 0x4000)));
+  EXPECT_EQ(card.ratio(), 24248U) << "37 % of 65,536, rounded";
+  EXPECT_EQ(card.ratio(PieceClass::kRapid), 0x4000U);
+  EXPECT_EQ(card.ratio(PieceClass::kFixed), 0xF000U);
+  EXPECT_THAT(argument_error([&] { card.set_ratio(PieceClass::kRapid, 0x10001); }), HasSubstr("65537"));
+  for (const double percent : {-0.1, 200.1, std::nan("")})
+    EXPECT_THAT(argument_error([&] { card.set_override(PieceClass::kFeed, percent, 200); }), HasSubstr("0 to 200 %"));
+  EXPECT_THAT(argument_error([&] { Card::ratio_of(1, 0); }), HasSubstr("override"));
+}
+
+// Every step of half a percent is one of its own, from 0 to the largest override.
+TEST(Override, IsFineEnough) {
+  std::uint32_t before = 0;
+  for (int half = 1; half <= 400; ++half) {
+    const std::uint32_t ratio = Card::ratio_of(half * 0.5, 200);
+    EXPECT_NEAR(ratio, half * 65536.0 / 400, 0.5);
+    EXPECT_GT(ratio, before);
+    before = ratio;
+  }
+  EXPECT_EQ(before, Card::kFullRatio);
 }
 
 TEST_F(CardTest, TimeBase) {

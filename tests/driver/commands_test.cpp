@@ -105,8 +105,22 @@ TEST(Commands, AnArcInChordsIsLaidOutAsTheLayoutPageSays) {
 TEST(Commands, CommandsOfThatThisDriverHasNoneAreNotDecoded) {
   const std::vector<std::uint32_t> mark{0x00030023U, 0, 0};
   EXPECT_THROW(decode(mark.data(), mark.size()), ArgumentError);
-  const std::vector<std::uint32_t> rapid{0x000B0110U, 5, 0, 0, 0x00010000U, 0, 0, 0, 0, 0, 0};
-  EXPECT_THROW(decode(rapid.data(), rapid.size()), ArgumentError) << "a class";
+  const std::vector<std::uint32_t> fourth{0x000B0310U, 5, 0, 0, 0x00010000U, 0, 0, 0, 0, 0, 0};
+  EXPECT_THROW(decode(fourth.data(), fourth.size()), ArgumentError) << "a fourth class";
+}
+
+TEST(Commands, TheClassOfAPieceIsInItsFlags) {
+  FeedCommand feed;
+  feed.ticks = 5;
+  feed.floor = 1;
+  for (const PieceClass piece_class : {PieceClass::kFeed, PieceClass::kRapid, PieceClass::kFixed}) {
+    feed.piece_class = piece_class;
+    const std::vector<std::uint32_t> words = words_of(feed, 0);
+    EXPECT_EQ(words[0], 0x000B0010U | static_cast<std::uint32_t>(piece_class) << 8);
+    EXPECT_EQ(std::get<FeedCommand>(decode(words.data(), words.size()).command).piece_class, piece_class);
+  }
+  feed.piece_class = static_cast<PieceClass>(3);
+  EXPECT_THROW(words_of(feed, 0), ArgumentError);
 }
 
 // Not the longest that this driver has, but that of the card's layouts: a later command still fits.
@@ -269,7 +283,7 @@ RC_GTEST_PROP(CommandsProperty, ALineComesBack, (std::uint8_t number)) {
   line.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   line.mask = static_cast<std::uint8_t>(*rc::gen::inRange(1, 256));
   for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
-    line.increment[axis] = (line.mask >> axis & 1U) != 0 ? signed_bits(40) : 0;
+    line.increment[axis] = (std::uint32_t{line.mask} >> axis & 1U) != 0 ? signed_bits(40) : 0;
   }
   expect_round_trip(line, number);
   const auto words = words_of(line, number);

@@ -126,6 +126,98 @@ TEST(StreamOnModel, LongCommandsAreNoTimeOuts) {
   EXPECT_EQ(engine->positions()[0], 2);
 }
 
+// A rapid piece at a sixteenth of its ratio, beside feed pieces at the full one.
+TEST(StreamOnModel, ASlowClassIsNoTimeOut) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 1ms;
+  card.set_ratio(PieceClass::kRapid, Card::kFullRatio / 16);
+  Stream stream(card, options);
+  FeedCommand rapid = feed_of(1000);
+  rapid.piece_class = PieceClass::kRapid;
+  stream.send({rapid, line_of(1000, 10), feed_of(1000), line_of(1000, 10), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_GE(engine->cycles(), 17U * 16'000U);
+  EXPECT_LE(engine->cycles(), 17U * 16'000U + 2000U);
+  EXPECT_EQ(engine->positions()[0], 20);
+}
+
+// A bus that counts what the driver does: transfers, and how its pauses end.
+class Counting final : public Bus {
+ public:
+  explicit Counting(Bus& bus) : bus_(bus) {}
+  std::size_t transfer(Access* accesses, std::size_t count) override {
+    ++transfers;
+    return bus_.transfer(accesses, count);
+  }
+  void sleep(std::chrono::nanoseconds time) override {
+    ++sleeps;
+    bus_.sleep(time);
+  }
+  bool reports_refusals() const override { return bus_.reports_refusals(); }
+  bool has_interrupt() const override { return bus_.has_interrupt(); }
+  bool wait_for_interrupt(std::chrono::nanoseconds longest) override {
+    const bool raised = bus_.wait_for_interrupt(longest);
+    ++(raised ? interrupts : late);
+    return raised;
+  }
+
+  std::uint64_t transfers = 0;
+  std::uint64_t sleeps = 0;
+  std::uint64_t interrupts = 0;
+  std::uint64_t late = 0;
+
+ private:
+  Bus& bus_;
+};
+
+// Long commands, of which a few fit: the waits for room end by the watermarks' interrupt, none by its time.
+TEST(StreamOnModel, AWatermarkEndsAWaitForRoom) {
+  for (const bool watermarks : {true, false}) {
+    sim::ModelOptions small;
+    small.interrupt = true;
+    small.geometry_depth = 64;
+    small.feed_depth = 64;
+    if (!watermarks) small.engines = field::kEnginesLines | field::kEnginesJerk;
+    const auto engine = sim::make_model_engine(small);
+    Counting bus(*engine);
+    Card card = Card::open(bus);
+    Stream stream(card);
+    for (int i = 0; i < 100; ++i) {
+      stream.put(feed_of(500));
+      stream.put(line_of(500, 5));
+    }
+    EXPECT_EQ(bus.late == 0, watermarks);
+    if (watermarks) {
+      EXPECT_GE(bus.interrupts, 50U);
+      EXPECT_EQ(bus.sleeps, 0U);
+    }
+    stream.put(EndCommand{});
+    EXPECT_TRUE(stream.finish().ended);
+    EXPECT_EQ(engine->positions()[0], 500);
+    // 100 pieces of 8,000 clocks, and no waits beyond.
+    EXPECT_GE(engine->cycles(), 800'000U);
+    EXPECT_LE(engine->cycles(), 803'000U);
+  }
+}
+
+// From another thread: the class's ratio, at the stream's next look.
+TEST(StreamOnModel, ARatioIsAskedForFromElsewhere) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.progress = [&card](const StreamProgress&) { card.request_ratio(PieceClass::kRapid, Card::kFullRatio / 8); };
+  Stream stream(card, options);
+  FeedCommand rapid = feed_of(1000);
+  rapid.piece_class = PieceClass::kRapid;
+  stream.send({rapid, line_of(1000, 10), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_EQ(card.ratio(PieceClass::kRapid), Card::kFullRatio / 8);
+  EXPECT_EQ(card.ratio(), Card::kFullRatio);
+  EXPECT_GE(engine->cycles(), 100'000U);
+}
+
 // Slow for long, then fast: what was slow before counts as slow.
 TEST(StreamOnModel, ARatioChangedInAPieceIsNoTimeOut) {
   const auto engine = sim::make_model_engine({});

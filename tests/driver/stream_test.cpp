@@ -192,6 +192,29 @@ TEST_F(StreamOrder, AHangTimesOutInTheTimePlannedAndAHoldDoesNot) {
   EXPECT_LE(bus_.slept, 16s + 10ms + 102 * 100us);
 }
 
+// The time that a piece may take is that of its own class's ratio, the next one's of its own.
+TEST_F(StreamOrder, AHangTimesOutByTheRatiosOfTheClasses) {
+  options_.patience = 10ms;
+  bus_.values[reg::kEngines] |= field::kEnginesClasses;
+  card_ = Card::open(bus_);
+  card_.set_ratio(PieceClass::kFeed, 0x10);
+  card_.set_ratio(PieceClass::kRapid, 0x4000);
+  card_.set_ratio(PieceClass::kFixed, 0x8000);
+  Stream stream = open_stream();
+  FeedCommand rapid = feed_of(100'000);  // 1.6 s at the full ratio
+  rapid.piece_class = PieceClass::kRapid;
+  FeedCommand fixed = feed_of(100'000);
+  fixed.piece_class = PieceClass::kFixed;
+  stream.send({rapid, fixed, line_of(200'000), EndCommand{}});
+  bus_.forget();
+  bus_.values[reg::kGeometryBegun] = 1;
+  bus_.values[reg::kFeedBegun] = 1;
+  bus_.values[reg::kStatus] = field::kStatusBusy;
+  EXPECT_THROW(stream.finish(), TimeoutError);
+  EXPECT_GE(bus_.slept, 4 * 1600ms + 2 * 1600ms + 10ms);
+  EXPECT_LE(bus_.slept, 4 * 1600ms + 2 * 1600ms + 10ms + 1ms);
+}
+
 TEST_F(StreamOrder, ALinkThatDiesInMidBatchClosesTheStream) {
   Stream stream = open_stream();
   int words = 0;
@@ -264,6 +287,16 @@ TEST_F(StreamOrder, HonoursTheCardsEngines) {
   EXPECT_EQ(message(feed), "");
   feed.jerk = 1;
   EXPECT_THAT(message(feed), HasSubstr("FEED needs jerk"));
+  feed.jerk = 0;
+  feed.piece_class = PieceClass::kRapid;
+  EXPECT_THAT(message(feed), HasSubstr("FEED needs classes"));
+  // A class is no axis.
+  bus_.values[reg::kEngines] |= field::kEnginesClasses;
+  bus_.values[reg::kAxes] = 1;
+  Card with_classes = Card::open(bus_);
+  Stream again(with_classes);
+  feed.piece_class = PieceClass::kFixed;
+  again.send(feed);
 }
 
 }  // namespace

@@ -114,17 +114,18 @@ TEST(Gcode, RefusesNumbersBeyondReason) {
 }
 
 TEST(Gcode, RefusesWordsItDoesNotKnow) {
-  for (const char* word : {"G5",   "G10",   "G30", "G33", "G38.2", "G41",  "G43", "G28.1", "G59.1", "G61.1",
-                           "G81",  "G92.2", "G95", "G96", "G99",   "G1.5", "M6",  "M19",   "M48",   "M98",
-                           "M104", "M84.5", "D1",  "H1",  "L2",    "O100", "Q1",  "G-1",   "G10000"}) {
+  for (const char* word : {"G5",    "G10", "G30", "G33", "G38.2", "G41", "G43", "G28.1", "G59.1", "G81",
+                           "G92.2", "G95", "G96", "G99", "G1.5",  "M6",  "M19", "M48",   "M98",   "M104",
+                           "M84.5", "D1",  "H1",  "L2",  "O100",  "Q1",  "G-1", "G10000"}) {
     EXPECT_EQ(refusal(std::string("G21\n") + word), std::string("2: unsupported word '") + word + "'");
   }
   EXPECT_EQ(refusal("G0 A5"), "1: 'A5': the machine has no axis A");
 }
 
 TEST(Gcode, RefusesTwoWordsOfAModalGroup) {
-  for (const char* line : {"G0 G1 X1", "G1 G1 X1 F1", "G17 G18", "G20 G21", "G90 G91", "G90.1 G91.1", "G93 G94",
-                           "G54 G55", "G61 G64", "G4 G28 P1", "M3 M5", "M7 M9", "M0 M2", "M82 M83", "M18 M84"}) {
+  for (const char* line :
+       {"G0 G1 X1", "G1 G1 X1 F1", "G17 G18", "G20 G21", "G90 G91", "G90.1 G91.1", "G93 G94", "G54 G55", "G61 G64",
+        "G61 G61.1", "G4 G28 P1", "M3 M5", "M7 M9", "M0 M2", "M82 M83", "M18 M84"}) {
     EXPECT_THAT(refusal(line), HasSubstr("beside another word of its modal group")) << line;
   }
   EXPECT_EQ(refusal("G0 X1 X2"), "1: 'X2': X stands twice");
@@ -136,12 +137,26 @@ TEST(Gcode, RefusesTwoWordsOfAModalGroup) {
 
 TEST(Gcode, ListsWhatHasNoEffectYet) {
   const Reading program = read("M3 S100 T2\nM8\nG64 P0.1\nG40 G49 G61 G80\nM0\nM1\nM5 M9\nM3 S5\nM84\nM18\nM30\n");
-  const std::map<std::string, std::size_t> expected = {{"M3", 2},  {"S", 2},   {"T", 1},  {"M8", 1},
-                                                       {"G64", 1}, {"M0", 1},  {"M1", 1}, {"M5", 1},
-                                                       {"M9", 1},  {"M84", 1}, {"M18", 1}};
+  const std::map<std::string, std::size_t> expected = {{"M3", 2},    {"S", 2},   {"T", 1},  {"M8", 1},
+                                                       {"G64 P", 1}, {"M0", 1},  {"M1", 1}, {"M5", 1},
+                                                       {"M9", 1},    {"M84", 1}, {"M18", 1}};
   EXPECT_EQ(program.accepted, expected);
-  ASSERT_EQ(program.motions.size(), 1U);
-  EXPECT_EQ(program.motions[0].line, 11U);
+  ASSERT_EQ(program.motions.size(), 3U) << "M0 and M1 stop";
+  EXPECT_EQ(program.motions[0].kind, MotionKind::kDwell);
+  EXPECT_EQ(program.motions[1].seconds, 0);
+  EXPECT_EQ(program.motions[2].line, 11U);
+}
+
+TEST(Gcode, PathControlIsModal) {
+  const Reading program = read("G1 X1 F60\nG61 X2\nG61.1\nX3\nG64 P0.05\nX4\nG20 G64 P0.1\nX1\nG21 G64\nG2 I1\n");
+  const std::vector<std::pair<PathControl, double>> expected = {
+      {PathControl::kContinuous, 0},    {PathControl::kExactPath, 0},     {PathControl::kExactStop, 0},
+      {PathControl::kContinuous, 0.05}, {PathControl::kContinuous, 2.54}, {PathControl::kContinuous, 0}};
+  ASSERT_EQ(program.motions.size(), expected.size() + 1);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(program.motions[i].path_control, expected[i].first) << i;
+    EXPECT_DOUBLE_EQ(program.motions[i].tolerance, expected[i].second) << i;
+  }
 }
 
 TEST(Gcode, EndsAtM2OrM30OrSecondPercent) {

@@ -17,15 +17,16 @@ using model::CardModel;
 namespace reg = card_map::reg;
 
 using PinRow = std::tuple<std::uint64_t, unsigned, int>;
-using PathRow = std::tuple<std::uint64_t, std::uint64_t, unsigned, int>;
+using PathRow = std::tuple<std::uint64_t, std::uint64_t, unsigned, int, std::uint64_t>;
 
 class Recorder : public model::CardSteps {
  public:
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override {
     pins.emplace_back(cycle, axis, direction);
   }
-  void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override {
-    path.emplace_back(command, tick, axis, direction);
+  void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
+                 int direction) override {
+    path.emplace_back(command, tick, axis, direction, cycle);
   }
   std::vector<PinRow> pins;
   std::vector<PathRow> path;

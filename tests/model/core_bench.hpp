@@ -52,12 +52,13 @@ inline std::vector<std::uint32_t> command_words(card_map::Opcode opcode, std::ui
 class StepRecorder : public model::CardSteps {
  public:
   using Pin = std::tuple<std::uint64_t, unsigned, int>;
-  using Path = std::tuple<std::uint64_t, std::uint64_t, unsigned, int>;
+  using Path = std::tuple<std::uint64_t, std::uint64_t, unsigned, int, std::uint64_t>;
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override {
     pins.emplace_back(cycle, axis, direction);
   }
-  void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override {
-    path.emplace_back(command, tick, axis, direction);
+  void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
+                 int direction) override {
+    path.emplace_back(command, tick, axis, direction, cycle);
   }
   std::vector<Pin> pins;
   std::vector<Path> path;
@@ -116,8 +117,8 @@ class CoreBench {
     return send(command_words(card_map::Opcode::Line, mask, number++, ticks, {}, increments));
   }
   bool feed(std::uint64_t ticks, std::uint64_t rate, std::int64_t acceleration = 0, std::int64_t jerk = 0,
-            std::uint32_t floor = 1) {
-    return send(command_words(card_map::Opcode::Feed, 0, number++, ticks,
+            std::uint32_t floor = 1, std::uint8_t piece_class = card_map::constant::kClassFeed) {
+    return send(command_words(card_map::Opcode::Feed, piece_class, number++, ticks,
                               {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
   }
   // A circle of radius r, all of it, from its rightmost point, over `ticks`; 8 r path ticks.

@@ -34,7 +34,7 @@ class PageHost : public model::CardSteps {
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override {
     pins.push_back({cycle, axis, direction});
   }
-  void path_step(std::uint64_t, std::uint64_t tick, unsigned axis, int direction) override {
+  void path_step(std::uint64_t, std::uint64_t, std::uint64_t tick, unsigned axis, int direction) override {
     path.push_back({tick, axis, direction});
   }
 

@@ -116,7 +116,11 @@ class Program {
       p_.write(reg::dir_hold(n), times(most));
       p_.write(reg::mode(n), static_cast<std::uint32_t>(p_.one_in(2) ? 0 : p_.any(0, 3) << 2 | p_.any(0, 2)));
     }
-    p_.write(reg::kRatioFeed, static_cast<std::uint32_t>(p_.one_in(2) ? 0x10000 : p_.any(0x100, 0x10000)));
+    for (const std::uint32_t ratio : {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed})
+      p_.write(ratio, static_cast<std::uint32_t>(p_.one_in(2) ? 0x10000 : p_.any(0x100, 0x10000)));
+    if (p_.one_in(2)) p_.write(reg::kGeometryWatermark, static_cast<std::uint32_t>(p_.any(1, 60)));
+    if (p_.one_in(2)) p_.write(reg::kFeedWatermark, static_cast<std::uint32_t>(p_.any(1, 60)));
+    if (p_.one_in(2)) p_.write(reg::kIrqEnable, static_cast<std::uint32_t>(p_.any(0, (1U << 18) - 1)));
     if (p_.one_in(3)) p_.write(reg::kHoldLimit, static_cast<std::uint32_t>(p_.any(1, p_.one_in(2) ? 60 : 2000)));
     if (p_.one_in(3)) p_.write(reg::kStopReaction, static_cast<std::uint32_t>(p_.any(0, 255)));
   }
@@ -138,6 +142,14 @@ class Program {
       ticks -= n;
     }
     if (p_.one_in(2)) barrier();
+  }
+
+  // Arcs in chords alone, at a path tick for nearly each feed tick.
+  void arcs(double pace) {
+    std::uint64_t ticks = 0;
+    for (int i = 0; i < 4; ++i) ticks += chord_arc(p_.any(500, 3000));
+    piece(ticks, pace);
+    barrier();
   }
 
   // Refused where anything runs still.
@@ -180,7 +192,7 @@ class Program {
       const auto magnitude = static_cast<std::int64_t>(p_.sized(bits));
       return p_.one_in(2) ? magnitude : -magnitude;
     };
-    const std::uint64_t path_ticks = p_.any(1, ticks);
+    const std::uint64_t path_ticks = p_.any(p_.one_in(2) ? 1 : ticks / 2, ticks);
     const auto k = static_cast<unsigned>(p_.any(1, 24));
     std::vector<std::int64_t> further;
     for (unsigned n = 2; n < card_map::axes_in(mask); ++n) further.push_back(any(36));
@@ -188,7 +200,7 @@ class Program {
                                              {{"path_ticks", path_ticks},
                                               {"prescale", ((int128{path_ticks} << 40) + ticks / 2) / ticks},
                                               {"plane", y << 8 | x << 4 | p_.any(0, 1)},
-                                              {"shifts", k | p_.any(5, 8) << 8},
+                                              {"shifts", k | p_.any(5, 13) << 8},
                                               {"x", any(k + 38)},
                                               {"y", any(k + 38)},
                                               {"first_x", any(38)},
@@ -209,7 +221,8 @@ class Program {
       acceleration = static_cast<std::int64_t>(p_.random()) / static_cast<std::int64_t>(pace * pace * 900);
       if (p_.one_in(2)) jerk = acceleration / -97;
     }
-    p_.send(command_words(card_map::Opcode::Feed, 0, number_++, ticks,
+    const auto piece_class = static_cast<std::uint8_t>(p_.one_in(2) ? 0 : p_.any(0, 2));
+    p_.send(command_words(card_map::Opcode::Feed, piece_class, number_++, ticks,
                           {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
   }
 
@@ -237,9 +250,11 @@ void disturb(Pair& pair) {
     case 1:
       pair.write(reg::kControl, card_map::field::kControlAbort);
       break;
-    case 2:
-      pair.write(reg::kRatioFeed, static_cast<std::uint32_t>(pair.any(1, 0x10000)));
+    case 2: {
+      constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
+      pair.write(kRatios[pair.any(0, 2)], static_cast<std::uint32_t>(pair.any(1, 0x10000)));
       break;
+    }
     case 3:
       pair.write(reg::kControl, card_map::field::kControlSnapshot);
       break;
@@ -304,6 +319,28 @@ TEST(Run, EqualsClock) {
   EXPECT_GT(compared.waits, 20 * programs);
   EXPECT_GT(compared.steps, 20 * programs);
   EXPECT_GT(compared.chord_arcs, programs / 4);
+}
+
+// Jumps that end anywhere between a feed tick and the step of its path tick.
+TEST(Run, EqualsClockOnArcsInChords) {
+  const std::uint64_t programs = long_run() ? 1000 : 40;
+  std::uint64_t steps = 0;
+  for (std::uint64_t i = 0; i < programs && !HasFailure(); ++i) {
+    SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
+    model::CardConfig config;
+    config.engines |= card_map::field::kEnginesArcGenerator;
+    Pair pair(Pair::Of::ClockAndRun, config, seed() * 1'000'003 + i);
+    Program program(pair);
+    const double paces[] = {5, 9.7, 31, 120};
+    const double pace = paces[i % 4];
+    program.arcs(pace);
+    for (std::uint64_t left = 1500; left != 0 && !HasFatalFailure(); --left) {
+      pair.wait(pair.any(1, static_cast<std::uint64_t>(8 * pace)));
+      pair.compare();
+    }
+    steps += pair.steps;
+  }
+  EXPECT_GT(steps, 30 * programs);
 }
 
 // A jump that ends while a step waits for a reversal: a hold tick that has passed must count when the next one comes.

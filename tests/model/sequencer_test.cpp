@@ -24,9 +24,9 @@ Halfwords command(Opcode opcode, unsigned mask, std::uint64_t count, std::size_t
 Halfwords line(unsigned axes, std::uint64_t ticks) {
   return command(Opcode::Line, (1U << axes) - 1, ticks, 3 * std::size_t{axes});
 }
-Halfwords piece(std::uint64_t ticks) {
+Halfwords piece(std::uint64_t ticks, std::uint8_t piece_class = card_map::constant::kClassFeed) {
   const card_map::Command& layout = *card_map::find_command(static_cast<std::uint8_t>(Opcode::Feed));
-  return command(Opcode::Feed, 0, ticks, card_map::queue_halfwords(layout, 0) - 4);
+  return command(Opcode::Feed, piece_class, ticks, card_map::queue_halfwords(layout, 0) - 4);
 }
 Halfwords dwell(std::uint64_t clocks) { return command(Opcode::Dwell, 0, clocks, 0); }
 
@@ -153,6 +153,48 @@ TEST(Sequencer, BegunCountsBothQueues) {
   EXPECT_EQ(bench.sequencer.outputs().feed_begun, 4U);
   EXPECT_EQ(bench.pieces.size(), 3U);
   EXPECT_EQ(bench.mismatches, 0U);
+}
+
+// The class changes with the swap that makes a piece the one in force, and stays between pieces and at barriers.
+TEST(Sequencer, TheClassIsThatOfThePieceInForce) {
+  constexpr std::uint8_t kFeed = card_map::constant::kClassFeed;
+  constexpr std::uint8_t kRapid = card_map::constant::kClassRapid;
+  constexpr std::uint8_t kFixed = card_map::constant::kClassFixed;
+  Bench bench;
+  bench.queue({line(1, 120), dwell(200), line(1, 120)},
+              {piece(40, kRapid), piece(40, kFixed), piece(40, kFixed), dwell(200), piece(80), piece(40, kRapid)});
+  const std::vector<std::uint8_t> classes{kRapid, kFixed, kFixed, kFeed, kRapid};
+  for (int clock = 0; clock < 900; ++clock) {
+    bench.run(1);
+    const Sequencer::Outputs& out = bench.sequencer.outputs();
+    const std::uint8_t expected = bench.pieces.empty() ? kFeed : classes[bench.pieces.size() - 1];
+    ASSERT_EQ(out.piece_class, expected) << clock;
+    // Moving: from the tick after which a piece has given one to the one that ends the last of those without a gap.
+    const bool moved = bench.ticks != 0 && bench.ticks != 120 && bench.ticks != 240;
+    ASSERT_EQ(out.moving, moved) << clock << ", " << bench.ticks << " ticks";
+  }
+  EXPECT_EQ(bench.pieces.size(), 5U);
+  EXPECT_EQ(bench.ticks, 240U);
+}
+
+TEST(Sequencer, ACutAndADirectMoveAreFeed) {
+  constexpr std::uint8_t kRapid = card_map::constant::kClassRapid;
+  for (const bool cut : {false, true}) {
+    Bench bench;
+    bench.queue({line(1, 100)}, {piece(100, kRapid)});
+    bench.run(cut ? 60 : 300);
+    EXPECT_EQ(bench.sequencer.outputs().piece_class, kRapid);
+    EXPECT_EQ(bench.sequencer.outputs().moving, cut);
+    Sequencer::Inputs in;
+    in.cut = cut;
+    in.direct_go = !cut;
+    bench.sequencer.clock(in);
+    in = {};
+    bench.sequencer.clock(in);
+    EXPECT_EQ(bench.sequencer.outputs().piece_class, card_map::constant::kClassFeed);
+    EXPECT_FALSE(bench.sequencer.outputs().moving);
+    EXPECT_EQ(bench.sequencer.outputs().direct, !cut);
+  }
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(StopControl, NothingHappensByItself) {
   for (int i = 0; i < 20; ++i) {
     const auto& o = stop.outputs();
     EXPECT_TRUE(!stop.stopped() && !o.hold && !o.cut && !o.stop && !o.closed && !o.stopping && o.fault == 0);
-    EXPECT_TRUE(stop.quiet());
+    EXPECT_TRUE(stop.quiet(false, false, false));
     stop.clock(none());
   }
 }
@@ -178,6 +178,72 @@ TEST(StopControl, HoldFollowsItsSettingTwoClocksLater) {
   stop.clock(set(reg::kHold, 0));
   stop.clock(none());
   EXPECT_FALSE(stop.outputs().hold);
+}
+
+struct Course {
+  bool moving;
+  bool fixed;
+  bool at_rest;
+};
+constexpr Course kNothing{false, false, false};
+constexpr Course kFeedPiece{true, false, false};
+constexpr Course kFixedPiece{true, true, false};
+constexpr Course kFixedAtRest{true, true, true};
+
+// Clocks with these pieces; whether it holds after the last.
+bool holds(StopControl& stop, const Course& course, int clocks = 2) {
+  for (; clocks != 0; --clocks) {
+    StopControl::Inputs in;
+    in.moving = course.moving;
+    in.fixed = course.fixed;
+    in.at_rest = course.at_rest;
+    stop.clock(in);
+  }
+  return stop.outputs().hold;
+}
+
+TEST(StopControl, AHoldWaitsForTheEndOfFixedPieces) {
+  StopControl stop;
+  EXPECT_FALSE(holds(stop, kFixedPiece));
+  stop.clock(set(reg::kHold, 1));  // nothing moves in this clock, but the hold is not there yet
+  EXPECT_FALSE(holds(stop, kFixedPiece, 1000));
+  EXPECT_TRUE(stop.quiet(true, true, false));
+  EXPECT_FALSE(stop.quiet(true, false, false));
+  EXPECT_TRUE(holds(stop, kFeedPiece, 1)) << "in the clock after the piece's end";
+  EXPECT_FALSE(holds(stop, kFixedPiece, 1)) << "on the way down another one is let end";
+  EXPECT_TRUE(holds(stop, kNothing, 1));
+  EXPECT_TRUE(holds(stop, kFixedPiece, 100)) << "once nothing moved, the hold stays";
+  stop.clock(set(reg::kHold, 0));
+  EXPECT_FALSE(holds(stop, kFixedPiece));
+}
+
+TEST(StopControl, AHoldAtRestStaysWhateverBegins) {
+  for (const Course& rest : {kFixedAtRest, Course{true, false, true}, kNothing}) {
+    StopControl stop;
+    stop.clock(set(reg::kHold, 1));
+    EXPECT_TRUE(holds(stop, rest));
+    EXPECT_TRUE(stop.quiet(rest.moving, rest.fixed, rest.at_rest));
+    EXPECT_TRUE(holds(stop, kFixedPiece, 50));
+    // Taken back and set again it begins anew.
+    stop.clock(set(reg::kHold, 0));
+    EXPECT_FALSE(holds(stop, kFixedPiece));
+    stop.clock(set(reg::kHold, 1));
+    EXPECT_TRUE(holds(stop, kNothing)) << "the setting's clock had nothing moving in it";
+  }
+}
+
+TEST(StopControl, ARampedFaultAndAnAbortDoNotWaitForAFixedPiece) {
+  StopControl stop;
+  stop.clock(set(reg::kStopReaction, 1));
+  holds(stop, kFixedPiece);
+  StopControl::Inputs in = step_fault(1);
+  in.moving = in.fixed = true;
+  stop.clock(in);
+  EXPECT_TRUE(holds(stop, kFixedPiece, 1));
+  in = abort_now();
+  in.moving = in.fixed = true;
+  stop.clock(in);
+  EXPECT_TRUE(stop.outputs().cut);
 }
 
 }  // namespace

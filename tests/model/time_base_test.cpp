@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <random>
 
 namespace trammel::model {
@@ -136,6 +137,38 @@ TEST(TimeBase, AZeroSlewKeepsTheRatio) {
   run(base, 1000);
   EXPECT_EQ(base.outputs().ratio, 0x1234U);
   EXPECT_FALSE(base.steady(false));
+}
+
+// From one class to another the ratio goes as after an override: linear, and to the new class's ratio exactly.
+TEST(TimeBase, AChangeOfClassSlewsToItsRatio) {
+  constexpr std::uint32_t kSlew = 0x2468;
+  constexpr std::uint32_t kRatios[] = {0x3000, 0xC000, 0x8001};
+  constexpr std::uint32_t kAddresses[] = {card_map::reg::kRatioFeed, card_map::reg::kRatioRapid,
+                                          card_map::reg::kRatioFixed};
+  const auto in_class = [](TimeBase& base, std::uint8_t piece_class, std::uint64_t clocks) {
+    for (; clocks != 0; --clocks) base.clock({false, {}, piece_class});
+  };
+  for (std::uint8_t from = 0; from < 3; ++from) {
+    for (std::uint8_t to = 0; to < 3; ++to) {
+      TimeBase base;
+      for (std::size_t i = 0; i < 3; ++i) base.clock({false, {true, kAddresses[i], kRatios[i]}, from});
+      in_class(base, from, 40);
+      ASSERT_EQ(base.outputs().ratio, kRatios[from]);
+      base.clock({false, {true, card_map::reg::kSlew, kSlew}, from});
+      in_class(base, from, 7);  // 52 clocks: the goal is sampled in the next one
+      const std::int64_t start = std::int64_t{kRatios[from]} << 12;
+      const std::int64_t goal = std::int64_t{kRatios[to]} << 12;
+      in_class(base, to, 4);
+      for (std::int64_t moves = 0; moves < 30'000; ++moves) {
+        const std::int64_t gone = std::min(moves * kSlew, std::abs(goal - start));
+        const std::int64_t expected = goal > start ? start + gone : start - gone;
+        ASSERT_EQ(base.outputs().ratio, expected >> 12) << from << " to " << to << ", move " << moves;
+        in_class(base, to, 4);
+      }
+      EXPECT_TRUE(base.steady(false, to));
+      EXPECT_EQ(base.outputs().ratio, kRatios[to]);
+    }
+  }
 }
 
 TEST(TimeBase, AdvanceAndItsInverseAgreeWithClocks) {

@@ -86,12 +86,49 @@ TEST(Blocks, HaveLengthAndLimitsOfTheirPath) {
   const Plan plan = plan_text("G1 X30 Y40 F600\nG1 Z1\n", machine, kCard);
   const Block& block = plan.blocks.at(0).planned.block;
   EXPECT_DOUBLE_EQ(block.length, 50);
-  EXPECT_DOUBLE_EQ(block.pulses, 4000);
-  EXPECT_DOUBLE_EQ(block.speed, 800) << "10 mm/s";
-  EXPECT_DOUBLE_EQ(block.wanted, 800);
+  EXPECT_DOUBLE_EQ(block.steps_per_mm, 80);
+  EXPECT_DOUBLE_EQ(block.speed, 10);
+  EXPECT_DOUBLE_EQ(block.wanted, 10);
   EXPECT_DOUBLE_EQ(block.feed, 10);
-  EXPECT_DOUBLE_EQ(block.acceleration, machine.axes[1].max_acceleration * 80 / 0.8) << "Y makes four fifths";
-  EXPECT_DOUBLE_EQ(block.jerk, 5000 * 80 / 0.6) << "X makes three";
+  EXPECT_DOUBLE_EQ(block.acceleration, machine.axes[1].max_acceleration / 0.8) << "Y makes four fifths";
+  EXPECT_DOUBLE_EQ(block.jerk, 5000 / 0.6) << "X makes three";
+  EXPECT_EQ(block.entry, (Direction{0.6, 0.8}));
+  EXPECT_EQ(block.exit, block.entry);
+}
+
+TEST(Blocks, AreThoseOfThePathBeforeRounding) {
+  const Plan plan = plan_text("G1 X0.021 Y0.004 F600\n", machine::default_machine(), kCard);
+  const Block& block = plan.blocks.at(0).planned.block;
+  EXPECT_EQ(block.end, (Pulses{2, 0}));
+  EXPECT_DOUBLE_EQ(block.length, std::sqrt(0.021 * 0.021 + 0.004 * 0.004));
+  EXPECT_DOUBLE_EQ(block.entry[1], 0.004 / block.length);
+}
+
+// What is too short for a step is part of the line behind it.
+TEST(Blocks, BeginWhereTheLastOneEnded) {
+  const Plan plan = plan_text("G1 X1 F600\nX1.003 Y0.004\nX1.006 Y0.008\nX2\n", machine::default_machine(), kCard);
+  ASSERT_EQ(plan.blocks.size(), 4U);
+  EXPECT_DOUBLE_EQ(plan.blocks[1]->length, 0.01) << "a pulse in Y";
+  EXPECT_EQ(plan.blocks[1]->end, (Pulses{80, 1}));
+  EXPECT_DOUBLE_EQ(plan.blocks[2]->length, 0.994);
+}
+
+// Along X Y Z where one of these moves; as long as the finest of these would be where another axis has more pulses.
+TEST(Blocks, HaveALengthThatTheirPulsesFitIn) {
+  const Plan plan = plan_text("G1 X3 Y4 E2 F600\nX3.1 E12\n", machine::default_machine(), kCard);
+  EXPECT_DOUBLE_EQ(plan.blocks.at(0)->length, 5);
+  EXPECT_DOUBLE_EQ(plan.blocks[0]->entry[3], 0.4);
+  EXPECT_DOUBLE_EQ(plan.blocks.at(1)->length, 10);
+  EXPECT_DOUBLE_EQ(plan.blocks[1]->entry[3], 1);
+}
+
+TEST(Blocks, LeaveRoomForOverridesAndHolds) {
+  const machine::Machine machine =
+      machine_with({"motion.max_override=2", "motion.hold_reserve=0.25", "axis.x.max_jerk=8000"});
+  const Plan plan = plan_text("G0 X100\n", machine, kCard);
+  EXPECT_DOUBLE_EQ(plan.blocks.at(0)->speed, machine.axes[0].max_velocity / 2);
+  EXPECT_DOUBLE_EQ(plan.blocks[0]->acceleration, machine.axes[0].max_acceleration * 0.75 / 4);
+  EXPECT_DOUBLE_EQ(plan.blocks[0]->jerk, 1000);
 }
 
 TEST(Blocks, EndAtAnError) {
@@ -134,23 +171,20 @@ TEST(FeedsNotReached, HaveACause) {
 
 TEST(FeedsNotReached, SayHowFarTheyCome) {
   const machine::Machine machine = machine::default_machine();
-  const Plan plan = plan_text("G1 X100 F60000\nG1 X100.1 F6000\n", machine, kCard);
+  const Plan plan = plan_text("G1 X100 F60000\nG4 P0\nG1 X100.1 F6000\n", machine, kCard);
   EXPECT_NEAR(plan.blocks[0].planned.speed, machine.axes[0].max_velocity, 1e-6);
   // v^2 = a s for half the way each.
-  EXPECT_NEAR(plan.blocks[1].planned.speed, std::sqrt(machine.axes[0].max_acceleration * 0.1), 0.1);
+  EXPECT_NEAR(plan.blocks[2].planned.speed, std::sqrt(machine.axes[0].max_acceleration * 0.1), 0.1);
 }
 
-// So fast for the clock that evenness would have one tick.
+// 128 ticks for each pulse of length would be 15.
 TEST(ShortLines, TakeWhatTheCardNeedsToDecodeTheNext) {
-  machine::Machine machine = machine_with({"axis.x.max_velocity=10000", "axis.x.max_acceleration=1e9"});
-  const auto shortest = [&](unsigned axes) {
-    const Plan plan = plan_text("G0 X0.0125\n", machine, {100'000, axes, true});
+  const auto ticks = [](unsigned axes) {
+    const Plan plan = plan_text("G0 X0.0055\nX0.007\n", machine::default_machine(), {100'000'000, axes, true});
     return commands<driver::LineCommand>(plan.blocks.at(0)).at(0).ticks;
   };
-  EXPECT_EQ(shortest(1), 22U);
-  EXPECT_EQ(shortest(4), 22U);
-  EXPECT_EQ(shortest(5), driver::gap_free_ticks(5));
-  EXPECT_EQ(shortest(8), 34U);
+  const Plan plan = plan_text("G1 F6 X0.006\nG4 P0\nX0.0075\n", machine::default_machine(), kCard);
+  EXPECT_EQ(ticks(4), 72U);
 }
 
 TEST(Arcs, GoOutAsChordsWhereTheCardHasNoAccumulator) {

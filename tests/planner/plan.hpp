@@ -60,4 +60,41 @@ std::vector<T> commands(const Planned& planned) {
   return found;
 }
 
+// The blocks between two stops have their feed ticks together.
+struct Stretch {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  std::uint64_t feed_ticks = 0;
+  std::uint64_t path_ticks = 0;
+  bool piece_first = true;  // each command of geometry comes when a piece for its first tick has come
+};
+
+inline std::uint64_t path_ticks_of(const driver::Command& command) {
+  if (const auto* line = std::get_if<driver::LineCommand>(&command)) return line->ticks;
+  if (const auto* arc = std::get_if<driver::ArcCommand>(&command)) return arc->ticks;
+  if (const auto* arc = std::get_if<driver::ArcChordCommand>(&command)) return arc->ticks;
+  return 0;
+}
+
+inline std::vector<Stretch> stretches_of(const std::vector<Planned>& blocks) {
+  std::vector<Stretch> stretches;
+  bool open = false;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!moves(blocks[i].planned.block)) continue;
+    if (!open) stretches.push_back({i});
+    Stretch& stretch = stretches.back();
+    stretch.last = i;
+    for (const driver::Command& command : blocks[i].commands) {
+      if (const auto* piece = std::get_if<driver::FeedCommand>(&command)) {
+        stretch.feed_ticks += piece->ticks;
+      } else {
+        stretch.piece_first = stretch.piece_first && stretch.feed_ticks > stretch.path_ticks;
+        stretch.path_ticks += path_ticks_of(command);
+      }
+    }
+    open = !blocks[i].planned.stop;
+  }
+  return stretches;
+}
+
 }  // namespace trammel::planner

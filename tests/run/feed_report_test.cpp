@@ -12,8 +12,7 @@ planner::PlannedBlock block(std::size_t line, SpeedLimit limit, double speed) {
   planner::PlannedBlock planned;
   planned.block.line = line;
   planned.block.length = 10;
-  planned.block.pulses = 800;
-  planned.block.wanted = 800;  // path pulses a second
+  planned.block.wanted = 10;  // mm/s
   planned.block.feed = 10;     // mm/s
   planned.limit = limit;
   planned.speed = speed;

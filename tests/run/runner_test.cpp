@@ -101,6 +101,19 @@ TEST_F(RunnerTest, ConfiguresTheCard) {
   EXPECT_EQ(card_.timing().pulse_period[0], driver::shortest_pulse_period(10, 20));
 }
 
+// Full speed goes to rest in 2 v / a of the axis that takes longest: 0.3 s, or as slowly as the card can.
+TEST_F(RunnerTest, SlewFollowsFromTheAxes) {
+  const auto slew = [this] { return card_.read(card_map::reg::kSlew); };
+  run("G0 X1\n");
+  EXPECT_EQ(slew(), driver::Card::kSlowestSlew / 300'000);
+  machine::apply_override(machine_, "axis.y.max_acceleration=500");
+  run("G0 X1\n");
+  EXPECT_EQ(slew(), driver::Card::kSlowestSlew / 600'000);
+  machine::apply_override(machine_, "axis.y.max_acceleration=0.1");
+  run("G0 X1\n");
+  EXPECT_EQ(slew(), 1U);
+}
+
 struct Event {
   std::string what;
   std::size_t line = 0;
@@ -120,7 +133,7 @@ class Events final : public Observer {
     list.push_back({"command", 0, number});
   }
   void sent() override { list.push_back({"sent", 0, 0}); }
-  void progress() override { ++looks; }
+  void progress(const Progress& /*progress*/) override { ++looks; }
   std::vector<Event> list;
   int looks = 0;
 };
@@ -163,6 +176,22 @@ TEST_F(RunnerTest, RefusesAProgramThatChangesBetweenThePasses) {
   EXPECT_THAT(error_of([&] { runner.run(card_); }), HasSubstr("has changed"));
 }
 
+// Read once: what stands before the error is made, and the card is at rest.
+TEST_F(RunnerTest, StreamsWithoutAFirstPass) {
+  Runner runner = make("F600\nG1 X1\nG1 Y2\nM3\n");
+  const Outcome outcome = runner.stream(card_);
+  EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{80, 160, 0, 0}));
+  EXPECT_EQ(runner.last_plan().segments, 2U);
+  EXPECT_EQ(runner.last_plan().commands, outcome.commands);
+  EXPECT_EQ(runner.last_plan().accepted.count("M3"), 1U);
+  RunSettings there;
+  there.start = {1, 2};
+  Runner wrong(lines_of("F600\nG1 X2\nG1 Y2.5\nX\nX0\n"), machine_, planner::limits_of(card_.identification()), there);
+  EXPECT_THAT(error_of([&] { wrong.stream(card_); }), HasSubstr("p.ngc:4: malformed number"));
+  EXPECT_TRUE(card_.in_position());
+  EXPECT_EQ(engine_->positions(), (std::vector<std::int64_t>{160, 200, 0, 0}));
+}
+
 TEST_F(RunnerTest, RefusesAnotherCardThanThePlanned) {
   Runner runner(lines_of("G0 X1\n"), machine_, {2 * kClock, 4, true});
   runner.plan();
@@ -199,7 +228,7 @@ TEST_F(RunnerTest, NamesTheLineOfARefusal) {
   class Meddler final : public Observer {
    public:
     explicit Meddler(sim::Engine& engine) : engine_(engine) {}
-    void progress() override {
+    void progress(const Progress& /*progress*/) override {
       if (engine_.cycles() < 2'500'000 || std::exchange(done_, true)) return;
       try {
         engine_.write(0xFF0, 0);  // no register

@@ -54,6 +54,8 @@ class Programs {
   bool arcs = true;
   // In chords, on the arc generator.
   bool chords = false;
+  // Pieces of all classes; else feed.
+  bool classes = false;
   // The most ticks of a stretch, and of its paths and pieces.
   unsigned longest = 600;
 
@@ -174,7 +176,7 @@ class Programs {
       return dice_.chance(2) ? int128{magnitude} : -int128{magnitude};
     };
     const bool constant = dice_.chance(3);
-    to.push_back(stored_command(card_map::Opcode::Feed, 0, ticks,
+    to.push_back(stored_command(card_map::Opcode::Feed, classes ? dice_.below(3) : 0, ticks,
                                 {{"rate", static_cast<int128>(rate)},
                                  {"floor", static_cast<int128>(std::uint64_t{1} << 26 | dice_.draw() >> 2)},
                                  {"stop_distance", static_cast<int128>(dice_.draw())},

@@ -50,6 +50,7 @@ CoreModel::CoreModel(const Config& config)
       checker_(config.axes, register_config(config).engines),
       geometry_queue_(config.geometry_depth),
       feed_queue_(config.feed_depth),
+      watermarks_(config.geometry_depth, config.feed_depth),
       motion_(config.axes, config.idle_level, config.clock_all) {
   reset();
 }
@@ -59,6 +60,7 @@ void CoreModel::reset() {
   checker_ = CommandChecker(config_.axes, register_config(config_).engines);
   geometry_queue_ = HalfwordQueue(config_.geometry_depth);
   feed_queue_ = HalfwordQueue(config_.feed_depth);
+  watermarks_ = QueueWatermarks(config_.geometry_depth, config_.feed_depth);
   motion_ = MotionCore(config_.axes, config_.idle_level, config_.clock_all);
   cycles_ = 0;
   record_.reset();
@@ -74,8 +76,11 @@ void CoreModel::clock(const Inputs& in) {
   ++cycles_;
   const bool cut = motion_.stop().cut;
   const MotionCore::Inputs motion_in = motion_inputs();
+  const QueueWatermarks::Inputs watermark_in = watermark_inputs();
   clock_commands(cut);
   clock_registers(in);
+  if (config_.clock_all || watermark_in.setting.set || !watermarks_.quiet(watermark_in))
+    watermarks_.clock(watermark_in);
   motion_.clock(motion_in);
   record(cut);
   show();
@@ -102,9 +107,18 @@ std::uint64_t CoreModel::watched() const {
   const Sequencer::Outputs& s = motion_.sequencer().outputs();
   const StopControl::Outputs& stop = motion_.stop();
   const CommandChecker::Outputs& checker = checker_.outputs();
-  const bool flags[] = {
-      motion_.outputs().busy, s.direct,        s.path_active,  s.feed_active, s.ended,
-      stop.stopping,          checker.partial, checker.refuse, stop.stop,     motion_.time().ratio == 0};
+  const bool flags[] = {motion_.outputs().busy,
+                        s.direct,
+                        s.path_active,
+                        s.feed_active,
+                        s.ended,
+                        stop.stopping,
+                        checker.partial,
+                        checker.refuse,
+                        stop.stop,
+                        motion_.time().ratio == 0,
+                        watermarks_.outputs().geometry_low,
+                        watermarks_.outputs().feed_low};
   std::uint64_t bits = stop.fault;
   for (const bool flag : flags) bits = bits << 1 | (flag ? 1 : 0);
   return bits;
@@ -120,7 +134,7 @@ void CoreModel::run(std::uint64_t clocks) {
 
 std::uint64_t CoreModel::jump(std::uint64_t limit) {
   if (reset_due_ || awake_ != 0 || !checker_.quiet()) return 0;
-  if (!geometry_queue_.quiet() || !feed_queue_.quiet()) return 0;
+  if (!geometry_queue_.quiet() || !feed_queue_.quiet() || !watermarks_.quiet(watermark_inputs())) return 0;
   const std::uint64_t gone = motion_.jump(limit, motion_inputs(), cycles_, record_);
   if (gone == 0) return 0;
   cycles_ += gone;
@@ -143,6 +157,10 @@ MotionCore::Inputs CoreModel::motion_inputs() const {
   in.start_mask = set.start_mask;
   in.loader_data = set.loader_data;
   return in;
+}
+
+QueueWatermarks::Inputs CoreModel::watermark_inputs() const {
+  return {registers_.outputs().setting, geometry_queue_.outputs().room, feed_queue_.outputs().room};
 }
 
 // The queues take the checker's outputs as they stood before the edge, the checker the queues' rooms.
@@ -181,6 +199,8 @@ void CoreModel::gather() {
   in.incomplete = checker_.outputs().partial;
   in.geometry_room = geometry_queue_.outputs().room;
   in.feed_room = feed_queue_.outputs().room;
+  in.geometry_low = watermarks_.outputs().geometry_low;
+  in.feed_low = watermarks_.outputs().feed_low;
   in.geometry_begun = s.geometry_begun;
   in.feed_begun = s.feed_begun;
   in.rate = motion_.feed().rate;
@@ -237,7 +257,9 @@ void CoreModel::record(bool cut) {
     for (unsigned n = 0; n < config_.axes; ++n) record_.pin(cycles_, n, motion_.position(n));
   }
   if (motion_.engines().path_tick) record_.arc_tick();
-  // The last tick of a path is its own, though the next one begins in the same clock.
+  if (motion_.chord_tick()) record_.chord_tick(cycles_);
+  // The last tick of a path is its own, though the next one begins in the same clock. On an arc in chords feed ticks
+  // make no step.
   const Sequencer& s = motion_.sequencer();
   if (s.outputs().tick) record_.tick(cycles_);
   const MotionCore::Outputs& m = motion_.outputs();
@@ -245,7 +267,7 @@ void CoreModel::record(bool cut) {
     if ((left & 1) == 0) continue;
     const bool backwards = (m.path_dir >> n & 1) != 0;
     if ((m.engine_step >> n & 1) != 0)
-      record_.arc_step(n, backwards);
+      record_.arc_step(cycles_, n, backwards);
     else
       record_.line_step(cycles_, n, backwards);
   }

@@ -25,6 +25,8 @@ Jump::Jump(MotionCore& core, StepRecord& record, std::uint64_t cycle, std::uint6
       cycle_(cycle),
       end_(static_cast<std::int64_t>(std::min(limit, core.sequencer_.settled_clocks()))),
       ticking_(core.sequencer_.ticking()),
+      chords_(ticking_ && core.engines_.on_chords()),
+      to_axis_(chords_ ? 10 : 9),
       first_(core.sequencer_.outputs().feed_enable ? 1 : 0),
       second_(core.time_base_.outputs().enable ? 1 : 0),
       axes_(static_cast<unsigned>(core.axes_.size())) {
@@ -60,17 +62,28 @@ std::int64_t Jump::edge_of(std::uint64_t accumulation) const {
 // The first tick that must not be taken, or not reach the prescaler.
 std::uint64_t Jump::first_that_stops() const {
   const std::uint64_t last = core_.sequencer_.ticks_left() + count(in_flight_ & kTakenBits);
-  const std::uint64_t silent = core_.engines_.prescaler().silent_ticks();
-  if (silent >= last) return last;
-  return std::min(last, silent + 1 + count(in_flight_ & kPrescaledBits));
+  const std::uint64_t stops = core_.engines_.tick_that_stops();
+  if (stops >= last) return last;
+  return std::min(last, stops + count(in_flight_ & kPrescaledBits));
+}
+
+// The axis's next step: after t.ticks ticks of its own, as the generator stands.
+void Jump::look_ahead(Traveller& t, const PulseGenerator& generator) const {
+  const std::uint64_t silent = generator.silent_ticks();
+  t.next = kNever;
+  if (silent == UINT64_MAX) return;
+  t.at = t.ticks + silent + 1;
+  if (!chords_) {
+    t.next = t.at;
+    return;
+  }
+  const std::uint64_t prescaled = core_.engines_.prescaler().ticks_until(t.at);
+  if (prescaled != UINT64_MAX) t.next = prescaled + count(in_flight_ & kPrescaledBits);
 }
 
 void Jump::travel() {
   const std::uint64_t stop = first_that_stops();
-  for (unsigned n = 0; n < axes_; ++n) {
-    const std::uint64_t silent = core_.axes_[n].generator().silent_ticks();
-    travellers_[n].next = silent == UINT64_MAX ? kNever : silent + 1;
-  }
+  for (unsigned n = 0; n < axes_; ++n) look_ahead(travellers_[n], core_.axes_[n].generator());
   for (;;) {
     std::uint64_t next = stop;
     for (unsigned n = 0; n < axes_; ++n) next = std::min(next, travellers_[n].next);
@@ -83,9 +96,9 @@ void Jump::travel() {
     else if (!find(next, generator, done, edge))
       return;
     if (next == stop) return stop_before(stop);
-    const std::int64_t arrival = edge + kToAxis;
+    const std::int64_t arrival = edge + to_axis_;
     // Ticks are a clock apart at least; one that comes later than this may stop before this one's arrival.
-    const bool close = stop - next < static_cast<std::uint64_t>(kToAxis - kLastTake);
+    const bool close = stop - next < static_cast<std::uint64_t>(to_axis_ - kLastTake);
     if (close || arrival > end_) stop_before(stop);
     if (arrival > end_) return;
     report_until(arrival - 1);
@@ -171,16 +184,16 @@ void Jump::step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::in
     a.place_step(kToShaper, t.backwards);
     t.edge = t.served;
   }
-  a.generator().silent_ticks(tick - 1 - t.ticks);
+  a.generator().silent_ticks(t.at - 1 - t.ticks);
   t.backwards = a.generator().step_at_once();
-  t.ticks = tick;
-  const std::uint64_t silent = a.generator().silent_ticks();
-  t.next = silent == UINT64_MAX ? kNever : tick + silent + 1;
+  t.ticks = t.at;
+  // The tick shows 4 edges before it reaches the axes.
+  record_.place(cycle_ + static_cast<std::uint64_t>(arrival) - 4,
+                chords_ ? record_.path_ticks() + t.at : taken_before_ + tick);
+  look_ahead(t, a.generator());
   t.under_way = t.path_due = t.pin_due = true;
   t.arrival = arrival;
   t.served = served;
-  // The tick shows 4 edges before it reaches the axes.
-  record_.place(cycle_ + static_cast<std::uint64_t>(arrival) - 4, taken_before_ + tick);
   next_report_ = std::min({next_report_, arrival + kToPath, served});
 }
 
@@ -221,13 +234,14 @@ void Jump::land() {
   if (ticking_) {
     in_flight = land_generator();
     const std::uint64_t all = flying_ + made_;
-    at_axes = all - count(in_flight & 0x1FF);
     taken = all - count(in_flight & 0x1F) - count(in_flight_ & kTakenBits);
-    core_.engines_.jump(all - count(in_flight & 0x3F) - count(in_flight_ & kPrescaledBits), in_flight);
+    const std::uint64_t prescaled = all - count(in_flight & 0x3F) - count(in_flight_ & kPrescaledBits);
+    at_axes = chords_ ? land_chords(prescaled, in_flight) : all - count(in_flight & 0x1FF);
+    core_.engines_.jump(prescaled, in_flight);
     const TimeBase& time = core_.time_base_;
     feed_enable = clocks < 2 ? second_ != 0 : time.enabled_in(clocks - 1) != time.enabled_in(clocks - 2);
     record_.take(taken);
-    place_takes(in_flight);
+    if (!chords_) place_takes(in_flight);
   }
   for (unsigned n = 0; n < axes_; ++n) land_axis(n, at_axes);
   core_.sequencer_.jump(clocks, taken, in_flight, feed_enable);
@@ -260,11 +274,19 @@ unsigned Jump::land_generator() {
   return in_flight;
 }
 
+// Path ticks at the axes, of the feed ticks that the prescaler has taken.
+std::uint64_t Jump::land_chords(std::uint64_t prescaled, unsigned in_flight) {
+  const PathEngines::PathTicks made = core_.engines_.jump_chords(prescaled, in_flight);
+  record_.take_path_ticks(made.at_axes);
+  if (made.visible) record_.chord_tick(cycle_ + static_cast<std::uint64_t>(end_));
+  return made.at_axes;
+}
+
 // The record of the ticks that are taken and not yet at the axes.
 void Jump::place_takes(unsigned in_flight) {
   constexpr unsigned kTaken = Sequencer::kTaken;
   std::uint64_t tick = record_.taken();
-  for (unsigned k = kTaken; k < kToAxis; ++k) {
+  for (unsigned k = kTaken; k < static_cast<unsigned>(to_axis_); ++k) {
     if ((in_flight >> k & 1) != 0) record_.place(cycle_ + static_cast<std::uint64_t>(end_) - (k - kTaken), tick--);
   }
 }
@@ -302,8 +324,10 @@ bool MotionCore::may_jump(const Inputs& in) const {
   const StopControl::Outputs& stop = stop_.outputs();
   const Sequencer::Outputs& s = sequencer_.outputs();
   if (s.swap || s.feed_swap || s.direct || out_.path_step != 0 || axes_live_ || out_.step_fault != 0) return false;
-  if (in.setting.set || in.abort || in.clear_fault != 0 || in.start || !stop_.quiet() || !loader_.quiet()) return false;
-  if (!engines_.settled() || !time_base_.steady(stop.hold)) return false;
+  if (in.setting.set || in.abort || in.clear_fault != 0 || in.start || !loader_.quiet()) return false;
+  const bool fixed = s.piece_class == card_map::constant::kClassFixed;
+  if (!stop_.quiet(s.moving, fixed, time_base_.outputs().ratio == 0)) return false;
+  if (!engines_.settled() || !time_base_.steady(stop.hold, s.piece_class)) return false;
   for (const Axis& axis : axes_) {
     if (!axis.calm()) return false;
   }

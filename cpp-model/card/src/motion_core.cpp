@@ -50,16 +50,18 @@ void MotionCore::clock(const Inputs& in) {
   const StopControl::Outputs stop = stop_.outputs();
   loader_.clock({false, out_.busy, stop.closed, in.start, in.start_mask, in.loader_data});
   const bool at_rest = time_base_.outputs().ratio == 0;
+  const bool fixed = s.piece_class == card_map::constant::kClassFixed;
   const bool events = out_.step_fault != 0 || s.mismatch || s.incomplete || in.abort || in.clear_fault != 0;
-  if (clock_all_ || events || in.setting.set || !stop_.quiet())
-    stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, in.setting});
+  if (clock_all_ || events || in.setting.set || !stop_.quiet(s.moving, fixed, at_rest))
+    stop_.clock(
+        {out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, s.moving, fixed, in.setting});
   clock_busy();
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
   wait_timer_.clock(in.setting);
   engines_.clock({stop.cut, s.tick, s.swap, s.engine, sequencer_.load(), sequencer_.engine_taken()});
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
-  time_base_.clock({stop.hold, in.setting});
+  time_base_.clock({stop.hold, in.setting, s.piece_class});
   sequencer_.clock(sequencer_in);
 }
 

@@ -109,6 +109,8 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (snapshot_.busy()) status |= field::kStatusSnapshot;
   if (in.incomplete) status |= field::kStatusIncomplete;
   if (in.stopping) status |= field::kStatusStopping;
+  if (in.geometry_low) status |= field::kStatusGeometryLow;
+  if (in.feed_low) status |= field::kStatusFeedLow;
   return status;
 }
 

@@ -31,6 +31,7 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.barrier_ends = barrier_ == Barrier::Running && now_ == barrier_at_;
   d.barrier_done = barrier_ == Barrier::Done;
   d.piece_runs = out_.feed_active;
+  d.direct = out_.direct;
   // An engine's state is in use until its path's last feed tick has reached it.
   d.payload_ready = in.payload_ready && !engine_taken();
   return d;
@@ -62,6 +63,7 @@ void Sequencer::clock(const Inputs& in) {
   clock_ticks(in, take);
   path_left_ -= take ? 1 : 0;
   piece_left_ -= take ? 1 : 0;
+  out_.moving = out_.moving || take;
   ++now_;
 }
 
@@ -167,6 +169,11 @@ void Sequencer::clock_path(const Inputs& in, const Decision& d) {
 
 void Sequencer::clock_piece(const Decision& d) {
   out_.feed_swap = d.piece_begins;
+  if (d.direct)
+    out_.piece_class = card_map::constant::kClassFeed;
+  else if (d.piece_begins)
+    out_.piece_class = feed_.flags();
+  if (d.take) out_.moving = d.piece_runs && (d.piece_begins || !d.piece_ends);
   if (d.take) --piece_left_;
   if (d.piece_begins) {
     out_.feed_active = true;
@@ -208,6 +215,7 @@ void Sequencer::jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flig
   now_ += clocks;
   if (!ticking()) return;
   path_left_ -= ticks;
+  out_.moving = out_.moving || ticks != 0;
   piece_left_ -= ticks;
   tick_arrives_ = (in_flight >> kArrives & 1) != 0;
   owed_ = in_flight >> kOwed & 1;

@@ -47,6 +47,9 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
     end(line, motions);
     return Outcome::kEnded;
   }
+  if (stopping) {
+    motions.add(MotionKind::kDwell, line).target = here_;  // M0, M1: a stop, without anybody to wait for
+  }
   return Outcome::kGoesOn;
 }
 
@@ -116,6 +119,19 @@ void Interpreter::set_modes(const WordSet& words) {
   if (const auto extruder = words.code(Group::kExtruder)) {
     extruder_absolute_ = extruder == 820;
   }
+  set_path_control(words);
+}
+
+void Interpreter::set_path_control(const WordSet& words) {
+  const std::optional<int> control = words.code(Group::kPathControl);
+  if (!control) {
+    return;
+  }
+  path_control_ = *control == 610   ? PathControl::kExactPath
+                  : *control == 611 ? PathControl::kExactStop
+                                    : PathControl::kContinuous;
+  const std::optional<double> tolerance = words.letter('P');
+  tolerance_ = path_control_ == PathControl::kContinuous && tolerance ? *tolerance * (inches_ ? kMmPerInch : 1) : 0;
 }
 
 void Interpreter::set_feed(const WordSet& words) {
@@ -200,6 +216,8 @@ bool Interpreter::move(const Context& context) {
 
 bool Interpreter::straight(const Context& context, bool rapid) {
   Motion& motion = context.motions.add(rapid ? MotionKind::kTraverse : MotionKind::kLine, line_);
+  motion.path_control = path_control_;
+  motion.tolerance = tolerance_;
   if (!target_of(context, motion.target) || (!rapid && !set_speed(context, motion))) {
     return false;
   }
@@ -218,6 +236,8 @@ bool Interpreter::arc(const Context& context, bool clockwise) {
                                                                 plane.first, plane.second, plane_ / 10));
   }
   Motion& motion = context.motions.add(MotionKind::kArc, line_);
+  motion.path_control = path_control_;
+  motion.tolerance = tolerance_;
   motion.clockwise = clockwise;
   std::size_t x = 0;
   std::size_t y = 0;

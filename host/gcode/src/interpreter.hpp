@@ -37,6 +37,8 @@ class Interpreter {
   enum class Outcome { kGoesOn, kEnded, kFailed };
   // Appends the line's motions. After a failure, of which `problem` tells, the state means nothing.
   Outcome execute(const WordSet& words, std::size_t line, LineMotions& motions, Problem& problem);
+  // Machine coordinates.
+  const Coordinates& position() const { return here_; }
   // Appends the motion kEnd.
   void end(std::size_t line, LineMotions& motions);
 
@@ -57,6 +59,7 @@ class Interpreter {
   };
 
   void set_feed(const WordSet& words);
+  void set_path_control(const WordSet& words);
   void set_modes(const WordSet& words);
   bool check_leftovers(const Context& context) const;
   bool act(const Context& context);
@@ -90,6 +93,8 @@ class Interpreter {
   FeedMode feed_mode_ = FeedMode::kPerMinute;
   std::optional<double> feed_;  // as written, units or 1 a minute
   bool feed_in_inches_ = false;
+  PathControl path_control_ = PathControl::kContinuous;
+  double tolerance_ = 0;  // mm
 };
 
 }  // namespace trammel::gcode

@@ -18,8 +18,8 @@ std::string_view without_blanks_before(std::string_view line) {
 
 class Reader::Impl {
  public:
-  Impl(LineSource& lines, const machine::Machine& machine, const Coordinates& start)
-      : lines_(lines), axes_(machine), interpreter_(machine, start) {}
+  Impl(LineSource& lines, const machine::Machine& machine, const Coordinates& start, const ReaderOptions& options)
+      : lines_(lines), axes_(machine), interpreter_(machine, start), options_(options) {}
 
   bool next(Motion& motion) {
     while (given_ == motions_.size()) {
@@ -34,8 +34,20 @@ class Reader::Impl {
       }
     }
     motion = motions_[given_++];
+    motion.feed *= options_.feed_scale;
+    if (motion.kind != MotionKind::kDwell) motion.seconds /= options_.feed_scale;
     return true;
   }
+
+  bool skip_to(std::size_t line) {
+    first_line_ = line;
+    while (number_ + 1 < line && !ended_ && !error_) {
+      read_line();
+      motions_.clear();
+    }
+    return !error_ && (!ended_ || fail_before_first_line());
+  }
+  const Coordinates& position() const { return interpreter_.position(); }
 
   const std::optional<Error>& error() const { return error_; }
   const std::map<std::string, std::size_t>& accepted() const { return accepted_; }
@@ -48,7 +60,10 @@ class Reader::Impl {
     if (!next_line(line)) {
       ended_ = true;
       interpreter_.end(number_, motions_);
-      return !error_;
+      return !error_ && (number_ >= first_line_ || fail_before_first_line());
+    }
+    if (!options_.block_delete && !line.empty() && line.front() == '/') {
+      line = without_blanks_before(line.substr(1));
     }
     if (line.empty() || line.front() == '/') {
       return !error_;
@@ -62,6 +77,9 @@ class Reader::Impl {
     in_program_ = in_program_ || !words_.empty();
     if (words_.accepted_begin() != words_.accepted_end()) {
       count_accepted();
+    }
+    if (words_.code(Group::kPathControl) == 640 && words_.letter('P')) {
+      ++accepted_["G64 P"];  // read, but nothing blends yet
     }
     const Interpreter::Outcome outcome = interpreter_.execute(words_, number_, motions_, problem_);
     ended_ = outcome == Interpreter::Outcome::kEnded;
@@ -135,6 +153,10 @@ class Reader::Impl {
     }
   }
 
+  bool fail_before_first_line() {
+    return fail(ErrorCode::kNoSuchLine,
+                fmt::format("the program ends before line {}, where it is to begin", first_line_));
+  }
   bool fail() { return fail(problem_.code, problem_.message); }
   bool fail(ErrorCode code, const std::string& message) {
     error_ = Error{code, lines_.name(), number_, message};
@@ -144,7 +166,9 @@ class Reader::Impl {
   LineSource& lines_;
   AxisLetters axes_;
   Interpreter interpreter_;
-  std::size_t number_ = 0;   // of the line
+  ReaderOptions options_;
+  std::size_t number_ = 0;  // of the line
+  std::size_t first_line_ = 0;
   bool in_program_ = false;  // a word or a '%' was there
   bool ended_ = false;
   WordSet words_;
@@ -155,13 +179,16 @@ class Reader::Impl {
   std::map<std::string, std::size_t> accepted_;
 };
 
-Reader::Reader(LineSource& lines, const machine::Machine& machine, const Coordinates& start)
-    : impl_(std::make_unique<Impl>(lines, machine, start)) {}
+Reader::Reader(LineSource& lines, const machine::Machine& machine, const Coordinates& start,
+               const ReaderOptions& options)
+    : impl_(std::make_unique<Impl>(lines, machine, start, options)) {}
 Reader::~Reader() = default;
 Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;
 
 bool Reader::next(Motion& motion) { return impl_->next(motion); }
+bool Reader::skip_to(std::size_t line) { return impl_->skip_to(line); }
+const Coordinates& Reader::position() const { return impl_->position(); }
 const std::optional<Error>& Reader::error() const { return impl_->error(); }
 const std::map<std::string, std::size_t>& Reader::accepted() const { return impl_->accepted(); }
 const std::string& Reader::file() const { return impl_->file(); }

@@ -26,7 +26,7 @@ enum class Group {
   kCutter,       // G40
   kToolLength,   // G49
   kCoordinates,  // G54 .. G59
-  kPathControl,  // G61 G64
+  kPathControl,  // G61 G61.1 G64
   kStopping,     // M0 M1 M2 M30
   kSpindle,      // M3 M4 M5
   kCoolant,      // M7 M8 M9

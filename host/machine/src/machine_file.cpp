@@ -47,6 +47,23 @@ constexpr std::array<Entry, 11> kEntries = {{
 }};
 constexpr const char* kInverted = "inverted";
 
+// An entry of the table [motion].
+struct MotionEntry {
+  const char* name;
+  double MotionSettings::*member;
+  double least;
+  double most;
+  bool whole;
+};
+
+constexpr std::array<MotionEntry, 5> kMotionEntries = {{
+    {"junction_deviation", &MotionSettings::junction_deviation, 0, 1000, false},
+    {"max_override", &MotionSettings::max_override, 1, 2, false},
+    {"hold_reserve", &MotionSettings::hold_reserve, 0, 0.9, false},
+    {"window", &MotionSettings::window, 2, 1 << 20, true},
+    {"stale_periods", &MotionSettings::stale_periods, 0, 65535, true},
+}};
+
 // A name or a text within a message; the whole message.
 constexpr std::size_t kLongestQuote = 80;
 constexpr std::size_t kLongestMessage = 1000;
@@ -148,6 +165,26 @@ void set_axis(const Source& source, MachineAxis& axis, const std::string& name, 
   }
 }
 
+std::vector<std::string> motion_entries() {
+  std::vector<std::string> names;
+  for (const MotionEntry& entry : kMotionEntries) names.emplace_back(entry.name);
+  return names;
+}
+
+void set_motion(const Source& source, MotionSettings& motion, const toml::table& table) {
+  for (const auto& [key, value] : table) {
+    const auto entry = std::find_if(kMotionEntries.begin(), kMotionEntries.end(),
+                                    [&key = key](const MotionEntry& known) { return key == known.name; });
+    if (entry == kMotionEntries.end()) refuse_key(source, value, "motion.", key, motion_entries());
+    const double given = number(source, "motion." + key, value, Range::kAny);
+    if (given < entry->least || given > entry->most || (entry->whole && given != std::floor(given))) {
+      refuse(fmt::format("{}motion.{} must be {}from {} to {}, not {}", source.at(value), key,
+                         entry->whole ? "a whole number " : "", entry->least, entry->most, given));
+    }
+    motion.*entry->member = given;
+  }
+}
+
 void set_clock(const Source& source, Machine& machine, const toml::value& value) {
   const double clock = number(source, "card.clock_hz", value, Range::kAny);
   if (clock != std::floor(clock) || clock < kSlowestClock || clock > kFastestClock) {
@@ -244,8 +281,8 @@ toml::value parse(const Source& source, const std::string& text) {
 
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
-    if (key != "card" && key != "axis") {
-      refuse_key(source, value, "", key, {"card", "axis"});
+    if (key != "card" && key != "axis" && key != "motion") {
+      refuse_key(source, value, "", key, {"card", "axis", "motion"});
     }
     for (const auto& [inner_key, inner] : table_of(source, key, value)) {
       if (key == "card" && inner_key != "clock_hz") {
@@ -319,6 +356,7 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   }
   Machine machine;
   set_clock(source, machine, card->at("clock_hz"));
+  if (const toml::table* motion = find_table(root, "motion")) set_motion(source, machine.motion, *motion);
   for (const auto& [key, value] : *axes) {
     machine.axes.push_back(read_axis(source, key, value));
   }
@@ -349,6 +387,10 @@ void apply_override(Machine& machine, const std::string& text) {
   bool any = false;
   if (const toml::table* card = find_table(root, "card")) {
     set_clock(source, changed, card->at("clock_hz"));
+    any = true;
+  }
+  if (const toml::table* motion = find_table(root, "motion")) {
+    set_motion(source, changed.motion, *motion);
     any = true;
   }
   if (const toml::table* axes = find_table(root, "axis")) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "chords.hpp"
+#include "roots.hpp"
 #include "trammel/driver/arc.hpp"
 #include "trammel/driver/trigonometry.hpp"
 #include "trammel/planner/block_builder.hpp"
@@ -115,68 +116,84 @@ bool BlockBuilder::build_arc(Block& block) {
   return build_chords(block);
 }
 
-void BlockBuilder::limit_speed(Block& block, double speed, SpeedLimit limit) {
-  if (speed >= block.speed) return;
-  block.speed = speed;
-  block.limit = limit;
+// The tangent at a share, 0 or 1, of the arc.
+Direction BlockBuilder::tangent(const Block& block, double share) {
+  const double turn = block.clockwise ? -1 : 1;
+  const driver::SineCosine at = driver::sine_cosine(block.exact.angle_start + turn * block.exact.sweep * share);
+  Direction direction{};
+  direction[block.axis_x] = -turn * at.sine;
+  direction[block.axis_y] = turn * at.cosine;
+  return direction;
 }
 
-// Limits of an arc: the speed changes along it in direction, and on the accumulator in size too (uniform in unit steps,
-// as x'' = V^2 / (r (|sin| + |cos|)^3) at most V^2 / r), so that on either axis the two accelerations may add up; each
-// gets half of the axis's.
-void BlockBuilder::limit_curve(Block& block, double radius, double axis_acceleration) {
-  block.acceleration = axis_acceleration / 2;
-  limit_speed(block, std::sqrt(radius * axis_acceleration / 2), SpeedLimit::kAcceleration);
-}
-
-bool BlockBuilder::build_accumulator_arc(Block& block) {
+// What holds for all ways to make an arc. `unevenness`: largest over planned speed, anywhere in it; `share`: of the
+// axes' acceleration and jerk, for what the way to make it adds.
+void BlockBuilder::limit_arc(Block& block, double unevenness, double share) const {
   const Axis& x = axes_[block.axis_x];
   const Axis& y = axes_[block.axis_y];
   const double radius = largest_radius(block);
-  block.geometry = Geometry::kArc;
+  const double acceleration = std::min(x.acceleration, y.acceleration) * share;
+  const double jerk = std::min(x.jerk, y.jerk) * share;
+  // Of acceleration and jerk so much goes across the path at the most; what is left serves along it.
+  constexpr double kAcross = 0.9;
+  constexpr double kAlong = 0.43588989435406736;  // sqrt(1 - kAcross^2)
+  block.linear = true;
   block.length = radius * block.exact.sweep;
-  block.pulses = static_cast<double>(block.arc.path_ticks);
+  block.steps_per_mm = std::max(x.steps_per_mm, y.steps_per_mm);
+  block.entry = tangent(block, 0);
+  block.exit = tangent(block, 1);
+  block.speed = std::min(x.velocity, y.velocity) / unevenness;
+  block.limit = SpeedLimit::kAxisVelocity;
+  limit_speed(block, std::min(x.pulse_rate / x.steps_per_mm, y.pulse_rate / y.steps_per_mm) / unevenness,
+              SpeedLimit::kPulseShape);
+  limit_speed(block, std::sqrt(radius * acceleration * kAcross), SpeedLimit::kAcceleration);
+  if (jerk < std::numeric_limits<double>::infinity()) {
+    limit_speed(block, cube_root(radius * radius * jerk * kAcross), SpeedLimit::kAcceleration);
+  }
+  apply_feed(block, block.length);
+  const double across = block.speed * block.speed / radius;
+  block.acceleration =
+      std::max(kAlong * acceleration, std::sqrt(std::max(0.0, acceleration * acceleration - across * across)));
+  block.jerk = jerk * kAlong;
+  block.curvature = (block.clockwise ? -1 : 1) / radius;
+}
+
+// Unit steps come evenly: the path's speed changes along it as 1 / (|sin| + |cos|), by 4/pi at the most above its mean,
+// and x'' = V^2 / (r (|sin| + |cos|)^3) adds to what a ramp does.
+bool BlockBuilder::build_accumulator_arc(Block& block) {
+  block.geometry = Geometry::kArc;
+  const double steps = static_cast<double>(block.arc.path_ticks);
+  const double radius = largest_radius(block);
+  const double scale = axes_[block.axis_x].steps_per_mm;
+  const double unevenness = std::max(1.0, steps / (radius * scale * block.exact.sweep));
   // Two feed ticks a unit step at least: the step is then within a tick of its time.
   block.least_ticks = 2 * block.arc.path_ticks;
-  // The speed that the faster axis has where the arc runs along it.
-  block.speed = x.velocity;
-  block.limit = x.limit;
-  limit_speed(block, y.velocity, y.limit);
-  limit_speed(block, card_.clock_hz / kClocksPerPathTick, SpeedLimit::kClock);
-  limit_curve(block, radius * x.steps_per_mm, std::min(x.acceleration, y.acceleration));
-  block.jerk = std::min(x.jerk, y.jerk);
-  apply_feed(block, block.length);
+  limit_arc(block, unevenness, 0.5 / (unevenness * unevenness));
+  const double unit_steps = steps / block.length;
+  limit_speed(block, card_.clock_hz / kClocksPerPathTick / unit_steps, SpeedLimit::kClock);
+  for (Direction* end : {&block.entry, &block.exit}) {
+    double sum = 0;
+    for (const double part : *end) sum += std::abs(part);
+    for (double& part : *end) part *= unevenness / sum;
+  }
   return true;
 }
 
-// One profile over all chords, each the same number of ticks: they cover equal angles.
+// Lines between corners on the arc at equal angles.
 bool BlockBuilder::build_chords(Block& block) {
   const Axis& x = axes_[block.axis_x];
   const Axis& y = axes_[block.axis_y];
-  const double scale = std::max(x.steps_per_mm, y.steps_per_mm);
   block.geometry = Geometry::kChords;
-  block.chords = chord_count(block.exact, scale);
+  block.chords = chord_count(block.exact, std::max(x.steps_per_mm, y.steps_per_mm));
   block.chord_lines = 0;
-  Corner longest{0, 0};
+  std::int64_t longest = 0;
   for_each_chord(block, x.steps_per_mm, y.steps_per_mm, [&](Corner step) {
     ++block.chord_lines;
-    longest = {std::max(longest.x, std::abs(step.x)), std::max(longest.y, std::abs(step.y))};
+    longest = std::max({longest, std::abs(step.x), std::abs(step.y)});
   });
   if (block.chord_lines == 0) return false;
-  const double radius = largest_radius(block);
-  const double lines = static_cast<double>(block.chord_lines);
-  block.length = radius * block.exact.sweep;
-  block.pulses = radius * block.exact.sweep * scale;
-  block.least_ticks = static_cast<std::uint64_t>(std::max(longest.x, longest.y));
-  block.speed = std::numeric_limits<double>::infinity();
-  block.limit = SpeedLimit::kNone;
-  if (longest.x > 0) limit_speed(block, x.velocity * block.pulses / lines / static_cast<double>(longest.x), x.limit);
-  if (longest.y > 0) limit_speed(block, y.velocity * block.pulses / lines / static_cast<double>(longest.y), y.limit);
-  limit_curve(
-      block, radius * scale,
-      scale * std::min(machine_.axes[block.axis_x].max_acceleration, machine_.axes[block.axis_y].max_acceleration));
-  block.jerk = scale * std::min(x.jerk / x.steps_per_mm, y.jerk / y.steps_per_mm);
-  apply_feed(block, block.length);
+  block.least_ticks = static_cast<std::uint64_t>(longest + 1) * block.chord_lines;
+  limit_arc(block, 1, 1);
   return true;
 }
 

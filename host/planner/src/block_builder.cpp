@@ -37,7 +37,7 @@ std::int64_t to_pulses(double mm, double steps_per_mm) {
 
 BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machine, const CardLimits& card,
                            const gcode::Coordinates& start)
-    : reader_(reader), machine_(machine), card_(card), axis_count_(machine.axes.size()), exact_(start) {
+    : reader_(reader), machine_(machine), card_(card), axis_count_(machine.axes.size()), exact_(start), anchor_(start) {
   for (std::size_t i = 0; i < axis_count_; ++i) {
     const machine::MachineAxis& from = machine.axes[i];
     const driver::AxisSettings settings = settings_of(from);
@@ -48,14 +48,17 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
                                                         clocks(settings.step_space, "step space"));
     const double shaper = kShaperShare * card.clock_hz / period;
     Axis& axis = axes_[i];
+    const machine::MotionSettings& motion = machine.motion;
+    const double spare = 1 / motion.max_override;
     axis.steps_per_mm = from.steps_per_mm;
-    axis.velocity = std::min(from.max_velocity * from.steps_per_mm, shaper);
-    axis.acceleration = from.max_acceleration * from.steps_per_mm;
-    axis.jerk = from.max_jerk > 0 ? from.max_jerk * from.steps_per_mm : kNoLimit;
+    axis.pulse_rate = shaper * spare;
+    axis.velocity = from.max_velocity * spare;
+    axis.acceleration = from.max_acceleration * (1 - motion.hold_reserve) * spare * spare;
+    axis.jerk = from.max_jerk > 0 ? from.max_jerk * spare * spare * spare : kNoLimit;
     axis.lowest = from.min;
     axis.highest = from.max;
-    axis.limit = axis.velocity < shaper ? SpeedLimit::kAxisVelocity : SpeedLimit::kPulseShape;
     axis.feed_group = feed_group(from.letter);
+    axis.linear = axis.feed_group == 0;
     start_[i] = to_pulses(start[i], from.steps_per_mm);
   }
   here_ = start_;
@@ -68,6 +71,7 @@ bool BlockBuilder::next(Block& block) {
     if (error_) return false;
     exact_ = motion_.target;
     here_ = block.end;
+    if (moves(block) && any) anchor_ = exact_;
     if (any) return true;
   }
   error_ = reader_.error();
@@ -136,54 +140,88 @@ bool BlockBuilder::build_dwell(Block& block) {
 }
 
 bool BlockBuilder::build_line(Block& block) {
-  double squares = 0;
-  std::array<double, kFeedGroups.size() + 1> feed_squares{};
-  double scale = 0;
-  std::int64_t most = 0;
-  double velocity = kNoLimit;      // paths a second
-  double acceleration = kNoLimit;  // paths a second^2
-  double jerk = kNoLimit;          // paths a second^3
-  SpeedLimit limit = SpeedLimit::kAxisVelocity;
-  for (std::size_t i = 0; i < axis_count_; ++i) {
-    const std::int64_t whole = std::abs(block.end[i] - block.start[i]);
-    if (whole == 0) continue;
-    const Axis& axis = axes_[i];
-    const double pulses = static_cast<double>(whole);
-    const double mm = pulses / axis.steps_per_mm;
-    squares += mm * mm;
-    feed_squares[axis.feed_group] += mm * mm;
-    scale = std::max(scale, axis.steps_per_mm);
-    most = std::max(most, whole);
-    const double share = axis.velocity / pulses;
-    if (share < velocity) {
-      velocity = share;
-      limit = axis.limit;
-    }
-    acceleration = std::min(acceleration, axis.acceleration / pulses);
-    jerk = std::min(jerk, axis.jerk / pulses);
-  }
-  if (most == 0) return false;
+  if (block.end == block.start) return false;
+  gcode::Coordinates way{};
+  for (std::size_t i = 0; i < axis_count_; ++i) way[i] = motion_.target[i] - anchor_[i];
   block.geometry = Geometry::kLine;
-  block.length = std::sqrt(squares);
-  block.pulses = block.length * scale;
-  block.least_ticks = static_cast<std::uint64_t>(most);  // at most one pulse a tick
-  block.acceleration = acceleration * block.pulses;
-  block.jerk = jerk * block.pulses;
-  block.speed = velocity * block.pulses;
-  block.limit = limit;
-  const auto counts = std::find_if(feed_squares.begin(), feed_squares.end(), [](double sum) { return sum > 0; });
-  apply_feed(block, std::sqrt(*counts));
+  block.curvature = 0;
+  const double feed_length = measure_line(block, way);
+  for (std::size_t i = 0; i < axis_count_; ++i) block.entry[i] = way[i] / block.length;
+  block.exit = block.entry;
+  limit_line(block);
+  limit_pulses(block);
+  apply_feed(block, feed_length);
   return true;
 }
 
+// Sets length and scale; gives back the length that F counts for.
+double BlockBuilder::measure_line(Block& block, const gcode::Coordinates& way) const {
+  double squares = 0;
+  std::array<double, kFeedGroups.size() + 1> feed_squares{};
+  double scale = 0;
+  double finest = 0;        // of all that move
+  double other_pulses = 0;  // the most of an axis that the length does not count
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    const Axis& axis = axes_[i];
+    if (way[i] == 0) continue;
+    const double square = way[i] * way[i];
+    squares += square;
+    feed_squares[axis.feed_group] += square;
+    finest = std::max(finest, axis.steps_per_mm);
+    if (axis.linear) scale = std::max(scale, axis.steps_per_mm);
+    if (!axis.linear) other_pulses = std::max(other_pulses, std::abs(way[i]) * axis.steps_per_mm);
+  }
+  block.linear = feed_squares[0] > 0;
+  block.steps_per_mm = block.linear ? scale : finest;
+  block.length = std::sqrt(block.linear ? feed_squares[0] : squares);
+  if (block.linear) block.length = std::max(block.length, other_pulses / scale);
+  const auto counts = std::find_if(feed_squares.begin(), feed_squares.end(), [](double sum) { return sum > 0; });
+  return std::sqrt(*counts);
+}
+
+void BlockBuilder::limit_speed(Block& block, double speed, SpeedLimit limit) {
+  if (speed >= block.speed) return;
+  block.speed = speed;
+  block.limit = limit;
+}
+
+// What each axis allows along a straight path.
+void BlockBuilder::limit_line(Block& block) const {
+  block.speed = kNoLimit;
+  block.acceleration = kNoLimit;
+  block.jerk = kNoLimit;
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    const double share = std::abs(block.entry[i]);
+    if (share == 0) continue;
+    limit_speed(block, axes_[i].velocity / share, SpeedLimit::kAxisVelocity);
+    block.acceleration = std::min(block.acceleration, axes_[i].acceleration / share);
+    block.jerk = std::min(block.jerk, axes_[i].jerk / share);
+  }
+}
+
+// Rounding adds up to a pulse, which may come a little late.
+void BlockBuilder::limit_pulses(Block& block) const {
+  std::int64_t most = 0;
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    const std::int64_t pulses = std::abs(block.end[i] - block.start[i]);
+    most = std::max(most, pulses);
+    if (pulses < 2) continue;
+    limit_speed(block, axes_[i].pulse_rate * block.length / static_cast<double>(pulses - 1), SpeedLimit::kPulseShape);
+  }
+  block.least_ticks = static_cast<std::uint64_t>(most);  // at most one pulse a tick
+}
+
 // What the program asks for, against the limits so far.
-void BlockBuilder::apply_feed(Block& block, double feed_length) {
+void BlockBuilder::apply_feed(Block& block, double feed_length) const {
   const SpeedLimit limit = block.limit;
   block.limit = SpeedLimit::kNone;
   block.wanted = 0;
-  if (motion_.kind == gcode::MotionKind::kTraverse) return;
+  block.rapid = motion_.kind == gcode::MotionKind::kTraverse;
+  block.path_control = motion_.path_control;
+  block.tolerance = motion_.tolerance;
+  if (block.rapid) return;
   const double seconds = motion_.seconds > 0 ? motion_.seconds : feed_length / motion_.feed;
-  block.wanted = block.pulses / seconds;
+  block.wanted = block.length / seconds;
   block.feed = feed_length / seconds;
   if (block.speed < block.wanted * kSameSpeed) block.limit = limit;
   block.speed = std::min(block.speed, block.wanted);

@@ -1,5 +1,6 @@
 #include "trammel/planner/card_limits.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -13,7 +14,17 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 }  // namespace
 
 CardLimits limits_of(const driver::Identification& card) {
-  return {card.clock_hz, card.axes, (card.engines >> card_map::engine::kAccumulator & 1U) != 0};
+  const auto has = [&](unsigned engine) { return (card.engines >> engine & 1U) != 0; };
+  return {card.clock_hz, card.axes, has(card_map::engine::kAccumulator), has(card_map::engine::kClasses)};
+}
+
+double hold_seconds(const machine::Machine& machine) {
+  const double reserve = machine.motion.hold_reserve;
+  double longest = 0;
+  for (const machine::MachineAxis& axis : machine.axes) {
+    longest = std::max(longest, axis.max_velocity / axis.max_acceleration);
+  }
+  return longest * (reserve > 0 ? 1 / reserve : 2);
 }
 
 driver::AxisSettings settings_of(const machine::MachineAxis& axis) {

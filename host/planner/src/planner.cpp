@@ -1,51 +1,58 @@
 #include "trammel/planner/planner.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "chords.hpp"
+#include "look_ahead.hpp"
 #include "trammel/driver/arc.hpp"
-#include "trammel/driver/card_timing.hpp"
 #include "trammel/driver/increment.hpp"
 
 namespace trammel::planner {
 namespace {
 
-constexpr double kTicksPerPulse = 128;  // steps even to 1/64
-constexpr double kMostTicks = 0x1p39;   // half of the command's 40 bits
-constexpr double kLeastRate = 0x1p-30;  // ticks a clock; four times the finest floor
-constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
 constexpr std::uint64_t kMaxDwell = (std::uint64_t{1} << 40) - 1;  // clocks of one command
+constexpr double kReached = 1 - 1e-4;                              // of the speed that a program wants
+
+SpeedLimit limit_of(const PathEntry& entry) {
+  const Block& block = entry.block;
+  if (block.wanted == 0 || entry.speed >= block.wanted * kReached) return SpeedLimit::kNone;
+  if (entry.speed >= block.speed * kReached) return block.limit;
+  return entry.short_sight ? SpeedLimit::kWindow : SpeedLimit::kAcceleration;
+}
 
 }  // namespace
 
-Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card)
-    : blocks_(blocks),
-      machine_(machine),
-      card_(card),
-      least_ticks_(driver::gap_free_ticks(std::max(kFewestAxes, card.axes))) {}
+Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
+                 const PlannerSettings& settings)
+    : machine_(machine), look_ahead_(std::make_unique<LookAhead>(blocks, machine, card, settings)) {}
+
+Planner::~Planner() = default;
 
 bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
-  Block& block = planned.block;
-  if (!blocks_.next(block)) return false;
-  planned.speed = 0;
-  planned.limit = SpeedLimit::kNone;
+  const PathEntry* entry = look_ahead_->first();
+  if (entry == nullptr) return false;
+  planned = PlannedBlock{};
+  planned.block = entry->block;
+  const Block& block = planned.block;
   if (block.geometry == Geometry::kDwell) {
     put_dwell(planned, sink);
-    return true;
-  }
-  if (block.geometry == Geometry::kEnd) {
-    planned.seconds = 0;
+  } else if (block.geometry == Geometry::kEnd) {
     planned.commands = planned.geometry = planned.feed = 1;
     sink.put(other_ = driver::EndCommand{});
-    return true;
+  } else {
+    planned.seconds = entry->seconds;
+    planned.speed = entry->speed;
+    planned.limit = limit_of(*entry);
+    planned.stop = entry->stop;
+    planned.velocity_jump = entry->jump * entry->end_speed;
+    planned.acceleration_step = entry->bend * entry->end_speed * entry->end_speed;
+    planned.feed = look_ahead_->pieces();
+    planned.geometry = block.geometry == Geometry::kChords ? block.chord_lines : 1;
+    planned.commands = planned.feed + planned.geometry;
+    for (auto& piece = std::get<driver::FeedCommand>(piece_); look_ahead_->piece(piece);) sink.put(piece_);
+    put_geometry(block, entry->end_ticks - entry->begin_ticks, sink);
   }
-  plan_move(planned);
-  for (const driver::FeedCommand& piece : profile_) {
-    std::get<driver::FeedCommand>(piece_) = piece;
-    sink.put(piece_);
-  }
-  put_geometry(block, sink);
+  look_ahead_->pop();
   return true;
 }
 
@@ -61,64 +68,47 @@ void Planner::put_dwell(PlannedBlock& planned, driver::CommandSink& sink) {
   }
 }
 
-// Feed ticks of a path: T a pulse, as large as evenness wants and the clock allows; kChords: of each line.
-std::uint64_t Planner::ticks_for(const Block& block) const {
-  double per_pulse = std::min(kTicksPerPulse, kMaxTickRate * card_.clock_hz / block.speed);
-  per_pulse = std::max(per_pulse, kLeastRate * card_.clock_hz / block.speed);
-  double ticks = std::clamp(std::round(per_pulse * block.pulses), static_cast<double>(least_ticks_), kMostTicks);
-  if (block.geometry == Geometry::kChords) ticks = std::round(ticks / static_cast<double>(block.chord_lines));
-  return std::max({static_cast<std::uint64_t>(ticks), block.least_ticks, least_ticks_});
-}
-
-void Planner::plan_move(PlannedBlock& planned) {
-  const Block& block = planned.block;
-  const std::uint64_t lines = block.geometry == Geometry::kChords ? block.chord_lines : 1;
-  ticks_ = ticks_for(block);
-  profile_ = trapezoid(ticks_ * lines, {block.pulses, block.speed, block.acceleration}, card_.clock_hz);
-  planned.seconds = duration(profile_) / card_.clock_hz;
-  planned.geometry = lines;
-  planned.feed = profile_.size();
-  planned.commands = lines + profile_.size();
-  const double mm_a_tick = block.length / static_cast<double>(ticks_ * lines);
-  planned.speed = profile_.top_rate * card_.clock_hz * mm_a_tick;
-  planned.limit = block.limit;
-  if (block.wanted == 0 || profile_.reaches_limit) return;
-  planned.limit = profile_.top_rate >= kMaxTickRate ? SpeedLimit::kClock : SpeedLimit::kAcceleration;
-}
-
-void Planner::put_geometry(const Block& block, driver::CommandSink& sink) {
+void Planner::put_geometry(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
   if (block.geometry == Geometry::kArc) {
-    sink.put(other_ = driver::with_ticks(block.arc, ticks_));
-    return;
+    sink.put(other_ = driver::with_ticks(block.arc, ticks));
+  } else if (block.geometry == Geometry::kChords) {
+    put_chords(block, ticks, sink);
+  } else {
+    put_line(block, ticks, sink);
   }
-  if (block.geometry == Geometry::kChords) {
-    put_chords(block, sink);
-    return;
-  }
+}
+
+void Planner::put_line(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
   auto& line = std::get<driver::LineCommand>(line_);
-  line.ticks = ticks_;
+  line.ticks = ticks;
   unsigned mask = 0;
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
     const std::int64_t pulses = block.end[axis] - block.start[axis];
     line.increment[axis] = 0;
     if (pulses == 0) continue;
     mask |= 1U << axis;
-    line.increment[axis] = driver::rounded_increment(pulses, ticks_);
+    line.increment[axis] = driver::rounded_increment(pulses, ticks);
   }
   line.mask = static_cast<std::uint8_t>(mask);
   sink.put(line_);
 }
 
-void Planner::put_chords(const Block& block, driver::CommandSink& sink) {
+// The ticks are shared out evenly: the chords cover equal angles.
+void Planner::put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
   const auto scale = [&](std::size_t axis) { return machine_.axes[axis].steps_per_mm; };
   auto& line = std::get<driver::LineCommand>(line_);
   line.increment.fill(0);
-  line.ticks = ticks_;
   const auto set = [&](std::size_t axis, std::int64_t pulses) {
-    line.increment[axis] = pulses == 0 ? 0 : driver::rounded_increment(pulses, ticks_);
+    line.increment[axis] = pulses == 0 ? 0 : driver::rounded_increment(pulses, line.ticks);
     return pulses == 0 ? 0U : 1U << axis;
   };
+  const std::uint64_t share = ticks / block.chord_lines;
+  const std::uint64_t more = ticks % block.chord_lines;
+  std::uint64_t rest = 0;
   for_each_chord(block, scale(block.axis_x), scale(block.axis_y), [&](Corner step) {
+    rest += more;
+    line.ticks = share + (rest >= block.chord_lines ? 1 : 0);
+    rest -= rest >= block.chord_lines ? block.chord_lines : 0;
     line.mask = static_cast<std::uint8_t>(set(block.axis_x, step.x) | set(block.axis_y, step.y));
     sink.put(line_);
   });

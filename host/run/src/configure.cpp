@@ -1,5 +1,10 @@
 #include "trammel/run/configure.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+
 #include "trammel/planner/card_limits.hpp"
 
 namespace trammel::run {
@@ -8,6 +13,10 @@ void configure(driver::Card& card, const machine::Machine& machine) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     card.configure_axis(static_cast<unsigned>(i), planner::settings_of(machine.axes[i]));
   }
+  constexpr double kNanoseconds = 1e9;
+  const double slowest = driver::Card::kSlowestSlew * kNanoseconds / card.identification().clock_hz;
+  const double hold = std::min(planner::hold_seconds(machine) * kNanoseconds, std::floor(slowest));
+  card.set_slew_time(std::chrono::nanoseconds(static_cast<std::int64_t>(hold)));
 }
 
 }  // namespace trammel::run

@@ -10,8 +10,7 @@ void FeedReport::add(const planner::PlannedBlock& planned) {
   FeedNotReached& entry = entries_[static_cast<std::size_t>(planned.limit)];
   entry.cause = planned.limit;
   const double wanted = planned.block.feed * kMinute;
-  const double wanted_on_path = planned.block.wanted * planned.block.length / planned.block.pulses;  // mm/s
-  const double reached = wanted * planned.speed / wanted_on_path;
+  const double reached = wanted * planned.speed / planned.block.wanted;
   if (entry.count++ != 0 && reached * entry.wanted >= entry.reached * wanted) return;
   entry.line = planned.block.line;
   entry.wanted = wanted;

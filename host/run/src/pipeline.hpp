@@ -12,8 +12,12 @@ namespace trammel::run {
 
 class Pipeline {
  public:
-  Pipeline(const ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card)
-      : lines_(lines()), reader_(*lines_, machine), blocks_(reader_, machine, card), planner_(blocks_, machine, card) {}
+  Pipeline(const ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card,
+           const RunSettings& settings)
+      : lines_(lines()),
+        reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
+        blocks_(reader_, machine, card, reader_.position()),
+        planner_(blocks_, machine, card, {settings.single_block}) {}
 
   // As planner::Planner::next(), but throws ProgramError.
   bool next(driver::CommandSink& sink, planner::PlannedBlock& planned) {
@@ -26,6 +30,11 @@ class Pipeline {
   const std::map<std::string, std::size_t>& accepted() const { return reader_.accepted(); }
 
  private:
+  static gcode::Reader reader_at(std::size_t line, gcode::Reader reader) {
+    if (line > 1 && !reader.skip_to(line)) throw ProgramError(*reader.error());
+    return reader;
+  }
+
   std::unique_ptr<gcode::LineSource> lines_;
   gcode::Reader reader_;
   planner::BlockBuilder blocks_;

@@ -7,6 +7,7 @@
 
 #include "line_ring.hpp"
 #include "pipeline.hpp"
+#include "plan_gatherer.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/configure.hpp"
 
@@ -22,9 +23,10 @@ class NoSink final : public driver::CommandSink {
 // Streams the plan; errors of the card get the line of the program that was being run.
 class ProgramStream final : private driver::CommandSink {
  public:
-  ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers)
+  ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers, bool single_block)
       : pipeline_(pipeline),
         observers_(observers),
+        single_block_(single_block),
         card_(card),
         // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
         lines_(card.identification().geometry_depth),
@@ -34,13 +36,16 @@ class ProgramStream final : private driver::CommandSink {
   planner::Pulses run() {
     planner::Pulses end = pipeline_.start();
     try {
-      while (pipeline_.next(*this, planned_)) {
+      while (next()) {
         stream_.flush();
         for (Observer* observer : observers_) observer->sent();
         end = planned_.block.end;
         first_of_block_ = true;
       }
       stream_.finish();
+    } catch (const driver::StoppedError& error) {
+      lines_.begun(error.geometry_begun());
+      throw StoppedOnPath(pipeline_.file(), lines_.current(), error.what());
     } catch (const driver::Error& error) {
       look_at_begun(dynamic_cast<const driver::FaultError*>(&error) != nullptr);
       throw RunError(pipeline_.file(), lines_.current(), error.what());
@@ -51,8 +56,19 @@ class ProgramStream final : private driver::CommandSink {
   std::uint64_t sent() const { return stream_.sent(); }
 
  private:
+  // What stands before an error of the program is run to its end, which is a stop.
+  bool next() {
+    try {
+      return pipeline_.next(*this, planned_);
+    } catch (const ProgramError& error) {
+      stream_.finish();
+      throw RunError(error);
+    }
+  }
   void put(const driver::Command& command) override {
     if (first_of_block_) {
+      if (single_block_ && commands_ != 0 && planned_.block.line != line_) stream_.finish();
+      line_ = planned_.block.line;
       for (Observer* observer : observers_) observer->sending(planned_);
       first_of_block_ = false;
     }
@@ -68,7 +84,8 @@ class ProgramStream final : private driver::CommandSink {
     options.poll_clocks = std::max<std::uint64_t>(64, card_.identification().clock_hz / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
       lines_.begun(progress.geometry_begun);
-      for (Observer* observer : observers_) observer->progress();
+      const Progress how_far{progress.geometry_begun, lines_.current(), progress.status};
+      for (Observer* observer : observers_) observer->progress(how_far);
     };
     return options;
   }
@@ -83,6 +100,8 @@ class ProgramStream final : private driver::CommandSink {
 
   Pipeline& pipeline_;
   const std::vector<Observer*>& observers_;
+  bool single_block_;
+  std::size_t line_ = 0;  // of the block under way
   driver::Card& card_;
   planner::PlannedBlock planned_;
   bool first_of_block_ = true;
@@ -95,56 +114,78 @@ class ProgramStream final : private driver::CommandSink {
 
 ProgramError::ProgramError(gcode::Error error) : std::runtime_error(gcode::describe(error)), error_(std::move(error)) {}
 
+RunError::RunError(const ProgramError& error) : std::runtime_error(error.what()), line_(error.error().line) {}
+
 RunError::RunError(const std::string& file, std::size_t line, const std::string& message)
     : std::runtime_error(fmt::format("{}:{}: {}", file, line, message)), line_(line) {}
 
-Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card)
-    : lines_(std::move(lines)), machine_(machine), card_(card) {}
+Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card,
+               const RunSettings& settings)
+    : lines_(std::move(lines)), machine_(machine), card_(card), settings_(settings) {}
 
 const Plan& Runner::plan() {
-  Pipeline pipeline(lines_, machine_, card_);
-  plan_ = Plan{};
-  plan_.file = pipeline.file();
-  plan_.start = plan_.end = pipeline.start();
+  Pipeline pipeline(lines_, machine_, card_, settings_);
+  PlanGatherer gatherer(pipeline);
   NoSink sink;
-  FeedReport feeds;
-  for (planner::PlannedBlock planned; pipeline.next(sink, planned);) {
-    for (Observer* observer : observers_) observer->planned(planned, plan_.commands);
-    feeds.add(planned);
-    if (planner::moves(planned.block)) ++plan_.segments;
-    plan_.commands += planned.commands;
-    plan_.seconds += planned.seconds;
-    plan_.end = planned.block.end;
+  std::uint64_t commands = 0;
+  for (planner::PlannedBlock planned; pipeline.next(sink, planned); commands += planned.commands) {
+    for (Observer* observer : observers_) observer->planned(planned, commands);
+    gatherer.planned(planned, commands);
   }
-  plan_.feeds_not_reached = feeds.entries();
-  plan_.accepted = pipeline.accepted();
-  return plan_;
+  return plan_ = gatherer.plan();
 }
 
-Outcome Runner::run(driver::Card& card) {
+void Runner::require_planned_for(driver::Card& card) const {
   const planner::CardLimits limits = planner::limits_of(card.identification());
   if (limits.clock_hz != card_.clock_hz || limits.axes != card_.axes || limits.accumulator != card_.accumulator) {
     throw std::invalid_argument("the program was planned for another card");
   }
+}
+
+Outcome Runner::run(driver::Card& card) {
+  require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, card_);
-  ProgramStream stream(pipeline, card, observers_);
+  Pipeline pipeline(lines_, machine_, card_, settings_);
+  const driver::Snapshot before = card.snapshot();
+  ProgramStream stream(pipeline, card, observers_, settings_.single_block);
   const planner::Pulses end = stream.run();
-  const driver::Snapshot snapshot = card.snapshot();
   if (stream.sent() != plan_.commands || end != plan_.end) {
     throw ProgramError({gcode::ErrorCode::kCannotRead, plan_.file, 0, "the program has changed while it was run"});
   }
+  return outcome(card, before, stream.sent());
+}
+
+Outcome Runner::stream(driver::Card& card) {
+  require_planned_for(card);
+  configure(card, machine_);
+  Pipeline pipeline(lines_, machine_, card_, settings_);
+  const driver::Snapshot before = card.snapshot();
+  PlanGatherer gatherer(pipeline);
+  std::vector<Observer*> observers = observers_;
+  observers.push_back(&gatherer);
+  ProgramStream stream(pipeline, card, observers, settings_.single_block);
+  stream.run();
+  plan_ = gatherer.plan();
+  return outcome(card, before, stream.sent());
+}
+
+// Throws unless the card has counted what the plan says.
+Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, std::uint64_t commands) const {
+  const driver::Snapshot after = card.snapshot();
   Outcome outcome;
   for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
-    const std::int64_t counted = snapshot.position[a];
-    if (counted != end[a] - plan_.start[a]) {
-      throw std::runtime_error(
-          fmt::format("axis {}: the card ended at pulse {}, the program at {}", a, counted, end[a] - plan_.start[a]));
+    const std::int64_t counted = driver::pulses_between(before.position[a], after.position[a]);
+    if (counted != plan_.end[a] - plan_.start[a]) {
+      throw std::runtime_error(fmt::format("axis {}: the card ended at pulse {}, the program at {}", a, counted,
+                                           plan_.end[a] - plan_.start[a]));
     }
     outcome.counted.push_back(counted);
-    outcome.final_position.push_back(end[a]);
+    outcome.final_position.push_back(plan_.end[a]);
   }
-  outcome.commands = stream.sent();
+  outcome.commands = commands;
+  if (card_map::has_engine(card.identification().engines, card_map::engine::kUnderrunHold)) {
+    outcome.under_runs = card.read(card_map::reg::kUnderruns);
+  }
   return outcome;
 }
 

@@ -38,6 +38,12 @@ package card_map_pkg;
   localparam int ANSWER_CLOCKS = 400;
   // Clocks within which every access is answered with 8 axes
   localparam int ANSWER_CLOCKS_8_AXES = 600;
+  // Class of a feed piece: what the feed override slows down
+  localparam int CLASS_FEED = 0;
+  // Class of a feed piece: rapid positioning, with a ratio of its own
+  localparam int CLASS_RAPID = 1;
+  // Class of a feed piece: threading and the like, which a hold lets end
+  localparam int CLASS_FIXED = 2;
 
   // Bit numbers of ENGINES.
   localparam int ENGINE_LINES = 0;

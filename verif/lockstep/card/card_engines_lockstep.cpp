@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <random>
 
 #include "card_variant.hpp"
 #include "lockstep_card.hpp"
@@ -22,6 +23,8 @@ constexpr unsigned kAxes = 4;
 constexpr std::uint32_t kEngines = TRAMMEL_ENGINES;
 constexpr bool kArcs = card_map::has_engine(kEngines, card_map::engine::kAccumulator);
 constexpr bool kChords = card_map::has_engine(kEngines, card_map::engine::kArcGenerator);
+constexpr bool kClasses = card_map::has_engine(kEngines, card_map::engine::kClasses);
+constexpr bool kWatermarks = card_map::has_engine(kEngines, card_map::engine::kWatermarks);
 constexpr bool kDirectMode = card_map::has_engine(kEngines, card_map::engine::kDirectMode);
 // Where they are refused, since each refusal closes the stream, only now and then.
 constexpr unsigned kArcEvery = kArcs ? 4 : 40;
@@ -45,13 +48,16 @@ void random_traffic(std::uint64_t seed, std::uint64_t clocks) {
   sim::LockstepCard card = card_with_engines(seed);
   AxiHost host(card, seed);
   Traffic traffic(host, kAxes, kArcEvery);
+  traffic.classes = kClasses;
   traffic.chords_every = kChords ? 3 : 60;
   host.wait(300);
   traffic.settings();
   while (host.clocks() < clocks) traffic.run(10, 4);
   traffic.recover();
   traffic.wait_idle(100'000);
-  if (kChords) EXPECT_GT(traffic.chords_taken, clocks / 5000);
+  if (kChords) {
+    EXPECT_GT(traffic.chords_taken, clocks / 5000);
+  }
   expect_all_compared(card, clocks);
 }
 
@@ -91,6 +97,21 @@ void refusals(std::uint64_t seed) {
       EXPECT_EQ(refusal(host), kDirectMode ? Reason::BadValue : Reason::UnknownAddress) << address;
     }
   }
+  for (const auto& [address, there] :
+       {std::pair{reg::kRatioRapid, kClasses}, std::pair{reg::kRatioFixed, kClasses},
+        std::pair{reg::kGeometryWatermark, kWatermarks}, std::pair{reg::kFeedWatermark, kWatermarks}}) {
+    EXPECT_EQ(host.write(address, 0x1234), there) << address;
+    EXPECT_EQ(refusal(host), there ? Reason::None : Reason::UnknownAddress) << address;
+    EXPECT_EQ(host.read(address), there ? std::optional<std::uint32_t>(0x1234) : std::nullopt) << address;
+    EXPECT_EQ(refusal(host), there ? Reason::None : Reason::UnknownAddress) << address;
+  }
+  driver::FeedCommand fixed = test::feed(60, 12);
+  fixed.piece_class = driver::PieceClass::kFixed;
+  EXPECT_EQ(traffic.send(fixed), kClasses);
+  EXPECT_EQ(refusal(host), kClasses ? Reason::None : Reason::BadMask);
+  traffic.abort();
+  host.write(reg::kRatioFixed, 0x10000);
+  host.write(reg::kRefusal, 1);
   // Lines are on every card.
   EXPECT_TRUE(traffic.send(test::line(60, {5, -6, 7, 8})));
   EXPECT_TRUE(traffic.send(test::feed(60, 12)));
@@ -102,6 +123,133 @@ void refusals(std::uint64_t seed) {
 
 TEST(CardEngines, WhatIsMissingIsRefusedByName) {
   EXPECT_EQ(lockstep::judge([] { refusals(lockstep::seed_from_environment(5)); }), "");
+}
+
+// A step of the path, without its clock.
+struct PathStep {
+  std::uint64_t command;
+  std::uint64_t tick;
+  unsigned axis;
+  int direction;
+  bool operator==(const PathStep& o) const {
+    return command == o.command && tick == o.tick && axis == o.axis && direction == o.direction;
+  }
+};
+
+class PathRecorder : public model::CardSteps {
+ public:
+  void pin_step(std::uint64_t, unsigned, int) override {}
+  void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis, int dir) override {
+    path.push_back({command, tick, axis, dir});
+    last = cycle;
+  }
+  std::vector<PathStep> path;
+  std::uint64_t last = 0;  // clock
+};
+
+using Words = std::vector<std::vector<std::uint32_t>>;
+
+// Lines, and arcs on every engine that the card has, in pieces of all classes that go on over their borders; dwells. A
+// tick in 20 to 60 clocks at the full ratio, so that no step waits for long.
+Words random_program(std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  const auto random = [&engine](std::uint64_t count) { return engine() % count; };
+  Words words;
+  const auto put = [&words](const driver::Command& command) { driver::encode(command, 0, words.emplace_back()); };
+  for (int section = 0; section < 4; ++section) {
+    const double pace = 20 + static_cast<double>(random(40));
+    std::uint64_t total = 0;
+    Words paths;
+    for (int path = 0; path < 8; ++path) {
+      if (kChords && random(3) == 0) {
+        paths.push_back(test::random_chords(random, kAxes, total));
+      } else if (kArcs && random(3) == 0) {
+        const driver::ArcCommand arc = test::random_arc(random, kAxes);
+        const std::uint64_t ticks = arc.path_ticks + random(200);
+        driver::encode(driver::with_ticks(arc, ticks), 0, paths.emplace_back());
+        total += ticks;
+      } else {
+        const std::uint64_t ticks = 1 + random(300);
+        std::vector<std::int64_t> pulses(kAxes);
+        for (std::int64_t& p : pulses) p = static_cast<std::int64_t>(random(2 * ticks + 1) - ticks);
+        driver::encode(test::line(ticks, pulses), 0, paths.emplace_back());
+        total += ticks;
+      }
+    }
+    while (total != 0) {
+      const std::uint64_t ticks = 1 + random(total);
+      driver::FeedCommand piece = test::random_piece(random, ticks, pace);
+      if (kClasses) piece.piece_class = static_cast<driver::PieceClass>(random(3));
+      put(piece);
+      total -= ticks;
+    }
+    words.insert(words.end(), paths.begin(), paths.end());
+    put(driver::DwellCommand{random(200)});
+  }
+  put(driver::EndCommand{});
+  return words;
+}
+
+// What is done to the time base while a program runs.
+enum class Doing { kNothing, kSlow, kHolds, kOverrides, kAll, kStarved };
+
+void disturb_time(AxiHost& host, Doing doing) {
+  constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
+  const bool holds = doing == Doing::kHolds || (doing == Doing::kAll && host.below(2) == 0);
+  if (doing == Doing::kAll) host.write(reg::kSlew, static_cast<std::uint32_t>(0x1'0000 << host.below(12)));
+  if (holds) {
+    host.write(reg::kHold, 1);
+    host.wait(host.below(20'000));
+    host.write(reg::kHold, 0);
+  } else {
+    const std::uint64_t most = host.below(4) == 0 ? 0x2000 : 0x10000;
+    host.write(kRatios[kClasses ? host.below(3) : 0], static_cast<std::uint32_t>(0x800 + host.below(most - 0x7FF)));
+  }
+}
+
+PathRecorder run_program(const Words& words, std::uint64_t seed, Doing doing) {
+  sim::LockstepCard card = card_with_engines(seed);
+  PathRecorder recorder;
+  card.model().set_steps(&recorder);
+  AxiHost host(card, seed + static_cast<std::uint64_t>(doing));
+  Traffic traffic(host, kAxes);
+  host.wait(300);
+  if (doing == Doing::kSlow) host.write(reg::kRatioFeed, 0x5EB8);  // 37 %
+  host.write(reg::kHold, doing == Doing::kStarved ? 0 : 1);
+  for (const std::vector<std::uint32_t>& command : words) {
+    if (doing == Doing::kStarved) host.wait(host.below(4000));
+    EXPECT_TRUE(traffic.send_words(command, false));
+  }
+  host.write(reg::kHold, 0);
+  for (int change = 0; change < 10 && doing >= Doing::kHolds && doing <= Doing::kAll; ++change) {
+    host.wait(host.below(15'000));
+    disturb_time(host, doing);
+  }
+  EXPECT_TRUE(traffic.wait_idle(20'000'000));
+  EXPECT_EQ(traffic.status() & (field::kStatusEnded | field::kStatusFaulted), field::kStatusEnded);
+  expect_all_compared(card, 10'000);
+  card.model().set_steps(nullptr);
+  return recorder;
+}
+
+// Command, tick, axis and direction of every step: the same at 100 %, at 37 %, under ten holds or overrides of any
+// class, under both at any slew, and where the queues run dry again and again.
+void same_paths(std::uint64_t seed) {
+  const Words words = random_program(seed);
+  const PathRecorder plain = run_program(words, seed, Doing::kNothing);
+  EXPECT_GT(plain.path.size(), 1000U);
+  for (const Doing doing : {Doing::kSlow, Doing::kHolds, Doing::kOverrides, Doing::kAll, Doing::kStarved}) {
+    const PathRecorder other = run_program(words, seed, doing);
+    ASSERT_TRUE(other.path == plain.path) << "doing " << static_cast<int>(doing) << " seed " << seed;
+    EXPECT_GT(other.last, plain.last) << "its time was another";
+  }
+  EXPECT_FALSE(run_program(random_program(seed + 1), seed, Doing::kNothing).path == plain.path);
+}
+
+TEST(CardEngines, TimeNeverShowsInThePath) {
+  const std::uint64_t seed = lockstep::seed_from_environment(37);
+  for (std::uint64_t program = 0; program < lockstep::scaled(2); ++program)
+    EXPECT_EQ(lockstep::judge([&] { same_paths(seed + program); }), "");
 }
 
 }  // namespace

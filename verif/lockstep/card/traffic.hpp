@@ -35,9 +35,11 @@ class Traffic {
       if (!host_.write(reg::kStream, word)) return false;
     }
     ++number_;
-    chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1 : 0;
+    chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1U : 0U;
     return true;
   }
+  // Pieces of all classes; else feed.
+  bool classes = true;
   // One path in so many is an arc in chords; 0: none.
   unsigned chords_every = 0;
   std::uint64_t chords_taken = 0;
@@ -75,6 +77,8 @@ class Traffic {
     if (one_in(4)) word = static_cast<std::uint32_t>(odd_number(32));
     if (one_in(6)) words.resize(1 + below(words.size()));
   }
+  static constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
+  std::uint32_t any_ratio() { return kRatios[below(3)]; }
   void read_anything();
   void write_anything();
 
@@ -98,7 +102,9 @@ inline void Traffic::section(bool faulty) {
   std::vector<driver::Command> pieces;
   for (std::uint64_t left = total; left != 0;) {
     const std::uint64_t ticks = one_in(3) ? left : 1 + below(left);
-    pieces.push_back(random_piece(random, ticks, pace));
+    driver::FeedCommand piece = random_piece(random, ticks, pace);
+    if (classes) piece.piece_class = static_cast<driver::PieceClass>(one_in(3) ? below(3) : below(2));
+    pieces.emplace_back(piece);
     left -= ticks;
   }
   // Pieces and paths that do not add up are a fault at the next barrier.
@@ -139,6 +145,10 @@ inline void Traffic::settings() {
   }
   if (one_in(2)) host_.write(reg::kHoldLimit, static_cast<std::uint32_t>(one_in(2) ? 1 + below(300) : 0xFFFF));
   if (one_in(2)) host_.write(reg::kIrqEnable, static_cast<std::uint32_t>(below(1U << 18)));
+  if (one_in(2))
+    host_.write(reg::kGeometryWatermark, static_cast<std::uint32_t>(one_in(4) ? odd_number(16) & 0xFFFF : below(300)));
+  if (one_in(2))
+    host_.write(reg::kFeedWatermark, static_cast<std::uint32_t>(one_in(4) ? odd_number(16) & 0xFFFF : below(200)));
   if (one_in(2)) host_.write(reg::kStopReaction, static_cast<std::uint32_t>(below(256)));
 }
 
@@ -184,7 +194,7 @@ inline void Traffic::disturb() {
       host_.write(reg::kHold, static_cast<std::uint32_t>(below(2)));
       break;
     case 1:
-      host_.write(reg::kRatioFeed, static_cast<std::uint32_t>(0x4000 + below(0xC001)));
+      host_.write(any_ratio(), static_cast<std::uint32_t>(one_in(8) ? below(3) : 0x4000 + below(0xC001)));
       break;
     case 2:
       host_.write(reg::kSlew, static_cast<std::uint32_t>(1 + odd_number(28)));
@@ -225,7 +235,7 @@ inline void Traffic::disturb() {
 inline void Traffic::recover() {
   const auto calm = [this] {
     host_.write(reg::kHold, 0);
-    host_.write(reg::kRatioFeed, 0x10000);
+    for (const std::uint32_t ratio : kRatios) host_.write(ratio, 0x10000);
     host_.write(reg::kSlew, 0xFFFFFFF);
   };
   const bool calm_first = one_in(2);

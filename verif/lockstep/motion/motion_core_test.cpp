@@ -24,6 +24,7 @@ constexpr unsigned kAxes = TRAMMEL_AXES;
 constexpr bool kArcs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator);
 constexpr bool kChords = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kArcGenerator);
 constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kDirectMode);
+constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kClasses);
 constexpr std::uint64_t kComparedSignals = 27 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
@@ -50,6 +51,7 @@ class Bench {
       : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.arcs = kArcs;
     programs_.chords = kChords;
+    programs_.classes = kClasses;
     reset();
   }
 
@@ -99,6 +101,7 @@ class Bench {
   void random_setting() {
     const unsigned axis = dice_.below(kAxes);
     const std::uint32_t time = slow_ ? dice_.below(100) : dice_.below(1U << dice_.below(4));
+    constexpr std::uint32_t ratios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
     const std::pair<std::uint32_t, std::uint32_t> settings[] = {
         {reg::step_length(axis), time},
         {reg::step_space(axis), time},
@@ -107,7 +110,8 @@ class Bench {
         {reg::mode(axis), dice_.below(16)},
         {reg::kHoldLimit, 1 + dice_.below(dice_.chance(2) ? 300 : 0xFFFF)},
         {reg::kHold, dice_.chance(8) ? 1U : 0U},
-        {reg::kRatioFeed, !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
+        {kClasses ? ratios[dice_.below(3)] : reg::kRatioFeed,
+         !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
         {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
         {reg::kStopReaction, dice_.chance(2) ? 0xFF : dice_.below(256)}};
     const auto& [address, data] = settings[dice_.below(std::size(settings))];

@@ -13,13 +13,14 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr unsigned kAxes = 4;
-constexpr std::uint64_t kComparedSignals = 20;
+constexpr std::uint64_t kComparedSignals = 22;
 
 class Bench {
  public:
   explicit Bench(std::uint64_t seed)
       : check_("sequencers", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.chords = true;
+    programs_.classes = true;
     reset();
   }
 
@@ -243,6 +244,8 @@ class Bench {
     check_.compare("incomplete_o", dut_->incomplete_o, out.incomplete);
     check_.compare("path_active_o", dut_->path_active_o, out.path_active);
     check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
+    check_.compare("moving_o", dut_->moving_o, out.moving);
+    check_.compare("class_o", dut_->class_o, out.piece_class);
     check_.compare("ended_o", dut_->ended_o, out.ended);
     check_.compare("idle_o", dut_->idle_o, out.idle);
     check_.compare("geometry_begun_o", dut_->geometry_begun_o, out.geometry_begun);

@@ -169,6 +169,8 @@ class Bench {
     in_.stopping = (bits & 0x100) != 0;
     in_.geometry_room = static_cast<std::uint16_t>(draw());
     in_.feed_room = static_cast<std::uint16_t>(draw());
+    in_.geometry_low = (bits & 0x200) != 0;
+    in_.feed_low = (bits & 0x400) != 0;
     in_.geometry_begun = draw();
     in_.feed_begun = draw();
     in_.rate = draw();
@@ -261,6 +263,7 @@ class Bench {
     rtl_->held_i = in_.ratio == 0;
     rtl_->fault_i = in_.fault;
     rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
+    rtl_->low_i = static_cast<CData>(in_.feed_low << 1 | static_cast<int>(in_.geometry_low));
     rtl_->begun_i = std::uint64_t{in_.geometry_begun} << 32 | in_.feed_begun;
     rtl_->checker_i = std::uint32_t{in_.incomplete} << 18 | std::uint32_t{in_.checker_ready} << 17 |
                       std::uint32_t{in_.checker_refuse} << 16 | std::uint32_t{in_.checker_number} << 8 |

@@ -65,6 +65,8 @@ class Bench {
     dut_->abort_i = in.abort;
     dut_->clear_i = in.clear;
     dut_->at_rest_i = in.at_rest;
+    dut_->moving_i = in.moving;
+    dut_->fixed_i = in.fixed;
   }
 
   void compare() {
@@ -154,12 +156,44 @@ void every_order() {
   EXPECT_GT(bench.cuts(), 10'000U);
 }
 
+// HOLD set and taken back in every clock of every course of eight clocks of the pieces: nothing, a fixed one, another
+// one, and the time base coming to rest.
+void holds() {
+  Bench bench(0);
+  constexpr unsigned kClocks = 6;
+  std::uint64_t cycles = 1;
+  std::uint64_t held = 0;
+  std::uint64_t waited = 0;
+  for (unsigned set_at = 0; set_at < kClocks; ++set_at) {
+    for (unsigned course = 0; course < 1U << 2 * kClocks; ++course) {
+      bench.reset({});
+      for (unsigned clock = 0; clock < kClocks; ++clock) {
+        const unsigned now = course >> 2 * clock & 3;
+        Bench::Inputs in;
+        in.moving = now != 0;
+        in.fixed = now == 1 || now == 3;
+        in.at_rest = now == 3;
+        if (clock == set_at) in.setting = {true, reg::kHold, 1};
+        if (clock == set_at + 4) in.setting = {true, reg::kHold, 0};
+        bench.clock(in);
+        if (clock > set_at) ++(bench.outputs().hold ? held : waited);
+      }
+      cycles += kClocks + 1;
+    }
+  }
+  EXPECT_EQ(bench.check().cycles(), cycles);
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * cycles);
+  EXPECT_GT(held, cycles / 10);
+  EXPECT_GT(waited, cycles / 50);
+}
+
 void random_events() {
   const std::uint64_t seed = seed_from_environment(20261119);
   Bench bench(seed);
   Dice dice(seed);
   const std::uint64_t length = scaled(500'000);
   unsigned rest_every = 10;
+  unsigned course = 0;  // of the pieces
   for (std::uint64_t i = 0; i < length; ++i) {
     Bench::Inputs in;
     if (i % 512 == 0) rest_every = 1 + dice.below(40);
@@ -169,6 +203,9 @@ void random_events() {
     in.abort = dice.chance(30);
     if (dice.chance(6)) in.clear = dice.chance(2) ? ~0U : dice.draw();
     in.at_rest = dice.chance(rest_every);
+    if (dice.chance(6)) course = dice.below(4);
+    in.moving = course != 0;
+    in.fixed = course > 1 || (course == 0 && dice.chance(2));
     if (dice.chance(20)) in.setting = {dice.chance(2), dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.below(2)};
     if (dice.chance(20)) in.setting = {dice.chance(2), reg::kStopReaction, dice.draw() & 0xFCFF};
     if (dice.chance(2000))
@@ -181,6 +218,7 @@ void random_events() {
 }
 
 TEST(StopControl, EveryOrderOfThree) { EXPECT_EQ(judge(every_order), ""); }
+TEST(StopControl, Holds) { EXPECT_EQ(judge(holds), ""); }
 TEST(StopControl, RandomEvents) { EXPECT_EQ(judge(random_events), ""); }
 
 }  // namespace

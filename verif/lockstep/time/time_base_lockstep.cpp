@@ -14,6 +14,7 @@ namespace {
 namespace reg = card_map::reg;
 
 constexpr std::uint64_t kComparedSignals = 2;
+constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kClasses);
 
 class Bench {
  public:
@@ -27,15 +28,23 @@ class Bench {
     dut_->rst_i = 0;
     model_ = model::TimeBase();
     snapshot_ = {};
+    class_ = card_map::constant::kClassFeed;
     compare();
+  }
+
+  // The class of the piece in force from now on. A card without classes has one ratio, whatever comes.
+  void piece(std::uint8_t piece_class) {
+    checker_.event("class", piece_class);
+    class_ = piece_class;
   }
 
   // One clock; `setting` arrives in it.
   void clock(bool hold, const model::Setting& setting = {}) {
     dut_->hold_i = hold;
+    dut_->class_i = class_;
     const std::uint32_t ratio = model_.outputs().ratio;
     clock_dut(setting);
-    model_.clock({hold, setting});
+    model_.clock({hold, setting, kClasses ? class_ : std::uint8_t{card_map::constant::kClassFeed}});
     // STATUS and FAULT come through here: 18 bits.
     snapshot_.clock(dut_->snapshot_i, ratio, dut_->chain_i & 0x3FFFF);
     compare();
@@ -82,6 +91,7 @@ class Bench {
   Simulated<Vdut> dut_;
   model::TimeBase model_;
   SnapshotWord snapshot_;
+  std::uint8_t class_ = card_map::constant::kClassFeed;
   std::uint64_t chained_ = 0;
 };
 
@@ -109,24 +119,62 @@ void directed() {
   bench.expect_cycles(cycles);
 }
 
+// Each class's ratio in each clock of an update, with slews of many updates and of one; no class has the other's.
+void classes() {
+  Bench bench(0);
+  std::uint64_t cycles = 1;
+  const auto set = [&](std::uint32_t address, std::uint32_t value) {
+    bench.set(address, value, false);
+    ++cycles;
+  };
+  for (const std::uint32_t slew : {0xFFF'FFFFU, 0x80'0001U}) {
+    set(reg::kSlew, slew);
+    set(reg::kRatioFeed, 0x5EB8);
+    set(reg::kRatioRapid, 0xC001);
+    set(reg::kRatioFixed, 0x10000);
+    for (unsigned clock = 0; clock < 8; ++clock) {
+      for (const unsigned piece : {0U, 1U, 2U, 1U, 0U, 2U, 0U}) {
+        bench.piece(static_cast<std::uint8_t>(piece));
+        bench.run(false, 96 + clock);
+        cycles += 96 + clock;
+      }
+    }
+    // The ratio of the class in force is set while it is.
+    bench.piece(card_map::constant::kClassRapid);
+    set(reg::kRatioRapid, 3);
+    set(reg::kRatioFixed, 0x10000);
+    bench.run(false, 300);
+    bench.piece(card_map::constant::kClassFixed);
+    set(reg::kRatioFixed, 0x8000);
+    bench.run(false, 300);
+    cycles += 600;
+  }
+  bench.expect_cycles(cycles);
+}
+
 void random_inputs() {
   Bench bench(seed_from_environment(1));
   Dice& dice = bench.dice();
   const std::uint64_t length = scaled(2'000'000);
   std::uint64_t cycles = 1;
   bool hold = false;
+  constexpr std::uint32_t ratios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
   while (cycles < length) {
     ++cycles;
     if (dice.chance(4)) hold = !hold;
+    if (dice.chance(3)) bench.piece(static_cast<std::uint8_t>(dice.below(3)));
     const unsigned kind = dice.below(100);
     if (kind == 0)
       bench.reset();
-    else if (kind < 40)
-      bench.set(reg::kRatioFeed, dice.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice.log_uniform(16)), hold);
+    else if (kind < 50)
+      bench.set(ratios[dice.below(3)], dice.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice.log_uniform(16)),
+                hold);
     else if (kind < 80)
       bench.set(reg::kSlew, static_cast<std::uint32_t>(dice.log_uniform(28)), hold);
-    else  // somebody else's setting, or none
-      bench.clock(hold, {dice.chance(2), dice.chance(2) ? reg::kRatioRapid : reg::kHoldLimit, dice.draw()});
+    else if (kind < 90)  // none, whatever lies on the bus
+      bench.clock(hold, {false, dice.chance(4) ? reg::kSlew : ratios[dice.below(3)], dice.draw()});
+    else  // somebody else's
+      bench.clock(hold, {true, dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.draw()});
     // Mostly short: changes then fall on each of the four clocks of an update.
     const std::uint64_t clocks = dice.below(dice.chance(8) ? 5000 : 40);
     bench.run(hold, clocks);
@@ -138,6 +186,7 @@ void random_inputs() {
 TEST(TimeBaseLockstep, DirectedAndRandom) {
   const std::string complaint = judge([] {
     directed();
+    classes();
     random_inputs();
   });
   EXPECT_EQ(complaint, "");

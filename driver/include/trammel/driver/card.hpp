@@ -6,8 +6,8 @@
 // counts as made: where the bus does not report refusals, the driver reads REFUSAL behind it, in the same transfer.
 // After any error the objects stay usable; after a LinkError, a card on a new connection is opened anew.
 //
-// Thread-safety: one thread at a time uses a card, its bus and its streams, but for request_hold() and request_abort(),
-// which any thread may call while another one is in a call that waits.
+// Thread-safety: one thread at a time uses a card, its bus and its streams, but for request_hold(), request_ratio() and
+// request_abort(), which any thread may call while another one is in a call that waits.
 #pragma once
 
 #include <array>
@@ -23,6 +23,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/bus.hpp"
 #include "trammel/driver/card_timing.hpp"
+#include "trammel/driver/commands.hpp"
 #include "trammel/driver/errors.hpp"
 
 namespace trammel::driver {
@@ -55,17 +56,19 @@ struct AxisSettings {
 
 // STATUS.
 struct Status {
-  bool busy = false;         // something runs or is queued
-  bool direct = false;       // a one-shot line runs
-  bool path_active = false;  // a path is under way
-  bool feed_active = false;  // a feed piece is under way
-  bool held = false;         // the time base's ratio is 0
-  bool ended = false;        // END was reached
-  bool faulted = false;      // FAULT is not 0
-  bool refused = false;      // REFUSAL is not 0
-  bool snapshot = false;     // a snapshot is under way
-  bool incomplete = false;   // the stream stands inside a command
-  bool stopping = false;     // on a ramp to a stop
+  bool busy = false;          // something runs or is queued
+  bool direct = false;        // a one-shot line runs
+  bool path_active = false;   // a path is under way
+  bool feed_active = false;   // a feed piece is under way
+  bool held = false;          // the time base's ratio is 0
+  bool ended = false;         // END was reached
+  bool faulted = false;       // FAULT is not 0
+  bool refused = false;       // REFUSAL is not 0
+  bool snapshot = false;      // a snapshot is under way
+  bool incomplete = false;    // the stream stands inside a command
+  bool stopping = false;      // on a ramp to a stop
+  bool geometry_low = false;  // fewer halfwords queued than the queue's watermark
+  bool feed_low = false;
 };
 
 // REFUSAL.
@@ -87,6 +90,11 @@ struct Snapshot {
   std::array<std::int32_t, card_map::kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
 };
 
+// Pulses from one position of an axis to another. The counters wrap: for distances below 2^31.
+constexpr std::int32_t pulses_between(std::int32_t from, std::int32_t to) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
+}
+
 // Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".
 std::string describe_faults(std::uint32_t faults);
 // Name of a refusal reason and what it means.
@@ -96,6 +104,9 @@ class Card {
  public:
   // Full ratio of the time base: every clock is enabled.
   static constexpr std::uint32_t kFullRatio = 0x10000;
+  // Longest time from no ratio to the full one, clocks.
+  static constexpr std::uint64_t kSlowestSlew = std::uint64_t{card_map::constant::kSlewClocks}
+                                                << card_map::constant::kSlewFractionBits;
 
   // Reads who the card is and its step times. Throws IdentificationError, naming what does not fit and what would,
   // unless it is a Trammel card with a map and commands that this driver knows. Writes nothing.
@@ -111,15 +122,25 @@ class Card {
   // one over 65535 clocks.
   void configure_axis(unsigned axis, const AxisSettings& settings);
 
-  // Time base: share of clocks that are enabled, 2^-16, 0 .. kFullRatio; in pieces of the class feed where the card has
-  // classes, else in all.
-  void set_ratio(std::uint32_t ratio);
+  // Time base: share of clocks that are enabled, 2^-16, 0 .. kFullRatio, in pieces of a class; on a card without
+  // classes feed's is that of all pieces, and the others throw ArgumentError.
+  void set_ratio(PieceClass piece_class, std::uint32_t ratio);
+  void set_ratio(std::uint32_t ratio) { set_ratio(PieceClass::kFeed, ratio); }
   // As set_ratio() has set it last, or as somebody else has, where a wait has found that.
-  std::uint32_t ratio() const { return ratio_; }
+  std::uint32_t ratio(PieceClass piece_class = PieceClass::kFeed) const {
+    return ratios_[has_engine(card_map::engine::kClasses) ? static_cast<std::size_t>(piece_class) : 0];
+  }
+  // The ratio of an override. What is 100 % is the host's convention: `most_percent`, the largest override that its
+  // programs are planned for, is the full ratio. Rounded. Throws ArgumentError unless 0 <= percent <= most_percent.
+  static std::uint32_t ratio_of(double percent, double most_percent = 100);
+  void set_override(PieceClass piece_class, double percent, double most_percent = 100) {
+    set_ratio(piece_class, ratio_of(percent, most_percent));
+  }
   // Time that the ratio takes from 0 to full, up to 2^30 clocks; the slew is rounded down, to one that is no faster.
   // Times under 5 clocks give the card's fastest slew, 8 clocks.
   void set_slew_time(std::chrono::nanoseconds full_scale);
-  // A hold: slews the time base to 0 (or back to its ratio). Nothing is lost; time-outs do not run in a hold.
+  // A hold: slews the time base to 0 (or back to its ratio), once the fixed pieces that are under way have ended.
+  // Nothing is lost; time-outs do not run in a hold.
   void set_hold(bool hold);
   // Longest time that a step may wait for the one before it; longer is a step fault. 1 .. 65535 clocks, rounded up.
   void set_longest_step_wait(std::chrono::nanoseconds longest);
@@ -129,6 +150,12 @@ class Card {
   // that does finds the request. Of several holds the last counts; an abort drops them.
   void request_hold(bool hold) noexcept { requests_->hold.store(hold ? 1 : 0); }
   void request_abort() noexcept { requests_->abort.store(true); }
+  // Likewise stop(), after which its call throws StoppedError.
+  void request_stop() noexcept { requests_->stop.store(true); }
+  // Likewise set_ratio(); of several for a class the last counts. A ratio that it would not take is left out.
+  void request_ratio(PieceClass piece_class, std::uint32_t ratio) noexcept {
+    requests_->ratio[static_cast<std::size_t>(piece_class)].store(ratio);
+  }
 
   // All of one clock. Throws TimeoutError if the card does not come up with it.
   Snapshot snapshot();
@@ -155,6 +182,15 @@ class Card {
   // Drops the queues, stops the path and reopens the stream. Positions stay; faults stay latched.
   void abort();
 
+  // Stops on the path: a hold, and when the card is at rest an abort; the hold is then over. Gives back the state at
+  // the end, with the commands begun as they stood before the abort: no pulse comes after it, and a stream may begin
+  // from there. Throws TimeoutError, the card still holding, where it is not at rest `patience` (card time) after the
+  // ramp.
+  Snapshot stop(std::chrono::nanoseconds patience = std::chrono::seconds(1));
+  // In position: the queues and the shapers are empty, and nothing runs. A card that holds with a path under way is
+  // not.
+  bool in_position() { return !busy(); }
+
   // The rest is for what is built on cards: streams, lines.
 
   // Makes the accesses in one transfer, and sees to it that none was refused: else RefusedError, or FaultError.
@@ -175,12 +211,19 @@ class Card {
   // Throws what a refusal means: FaultError for the reason FAULTED, else RefusedError.
   [[noreturn]] void throw_refused(const Refusal& refusal, std::string_view context);
   // Somebody else has set this ratio.
-  void note_ratio(std::uint32_t ratio) { ratio_ = ratio; }
-  // Does what other threads have asked for. Throws StateError after an abort.
+  void note_ratio(PieceClass piece_class, std::uint32_t ratio) {
+    ratios_[static_cast<std::size_t>(piece_class)] = ratio;
+  }
+  // Does what other threads have asked for. Throws StateError after an abort, StoppedError after a stop.
   void serve_requests();
-  // Lets up to `clocks` pass: fewer only where the bus has an interrupt and the card becomes idle (if asked for),
-  // faulted or refuses something. True for the interrupt.
-  bool pause(std::uint64_t clocks, bool until_idle);
+  // Lets up to `clocks` pass: fewer only where the bus has an interrupt and the card is faulted, refuses something or
+  // gets to what `wake` asks for, by the bits of IRQ_ENABLE. True for the interrupt.
+  bool pause(std::uint64_t clocks, std::uint32_t wake);
+  // Whether a wait for room in the queues can end by an interrupt.
+  bool tells_of_room() const { return bus_->has_interrupt() && has_engine(card_map::engine::kWatermarks); }
+  // What to wake for in pause(), so that it ends when the queues have this much room, halfwords (0: whatever they
+  // have). Sets their watermarks. Only where tells_of_room().
+  std::uint32_t wake_at_room(std::uint32_t geometry, std::uint32_t feed);
 
   // Nanoseconds to card clocks, rounded up. Throws ArgumentError for a negative time or one of 2^63 clocks or more;
   // `what` names it in the message.
@@ -190,27 +233,34 @@ class Card {
 
  private:
   struct Requests {
+    static constexpr std::uint32_t kNoRatio = ~std::uint32_t{0};
     std::atomic<int> hold{-1};  // 1 hold, 0 go on, -1 nothing asked
+    std::array<std::atomic<std::uint32_t>, kPieceClasses> ratio{kNoRatio, kNoRatio, kNoRatio};
     std::atomic<bool> abort{false};
+    std::atomic<bool> stop{false};
   };
 
   explicit Card(Bus& bus) : bus_(&bus), requests_(std::make_shared<Requests>()) {}
   void write(std::uint32_t address, std::uint32_t value, std::string_view context);
+  void wait_for_rest(std::uint64_t limit, bool held_is_rest);
   std::size_t checked_transfer(Access* accesses, std::size_t count);
   void confirmed_transfer(Access* accesses, std::size_t count, bool confirm, std::string_view context);
   std::optional<Refusal> latched_refusal();
   void forget_latched_refusal();
   void keep_earlier_refusal();
   [[noreturn]] void throw_refused_access(const Access& access, std::string_view context);
-  void enable_interrupts(bool until_idle);
+  void enable_interrupts(std::uint32_t wake);
+  bool has_engine(std::uint32_t engine) const { return card_map::has_engine(identification_.engines, engine); }
   Snapshot read_area(card_map::Area area);
 
   Bus* bus_;
   Identification identification_;
   CardTiming timing_;
-  std::uint32_t ratio_ = kFullRatio;
+  std::array<std::uint32_t, kPieceClasses> ratios_{kFullRatio, kFullRatio, kFullRatio};
   std::optional<Refusal> earlier_;           // taken from the card and not reported yet
-  std::optional<std::uint32_t> irq_enable_;  // as written last
+  std::optional<std::uint32_t> irq_enable_;  // as written last, and so the watermarks
+  std::optional<std::uint32_t> geometry_watermark_;
+  std::optional<std::uint32_t> feed_watermark_;
   std::shared_ptr<Requests> requests_;
 };
 

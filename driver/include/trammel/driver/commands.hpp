@@ -60,6 +60,14 @@ struct ArcChordCommand {
   std::array<std::int64_t, card_map::kMaxAxes> increment{};  // of the further axes, by axis index
 };
 
+// Which ratio of the time base a piece runs at, where the card has classes. A hold waits for the end of fixed pieces.
+enum class PieceClass : std::uint8_t {
+  kFeed = card_map::constant::kClassFeed,
+  kRapid = card_map::constant::kClassRapid,
+  kFixed = card_map::constant::kClassFixed,  // probing, threading
+};
+inline constexpr std::size_t kPieceClasses = 3;
+
 // One piece of the feed profile.
 struct FeedCommand {
   std::uint64_t ticks = 0;          // feed ticks of the piece
@@ -68,6 +76,7 @@ struct FeedCommand {
   std::int64_t jerk = 0;            // the same unit an update, each update
   std::uint32_t floor = 1;          // 2^-32 ticks an enabled clock, not 0
   std::uint32_t stop_distance = 0;  // feed ticks needed to stop on the path; 0: the piece ends at rest
+  PieceClass piece_class = PieceClass::kFeed;
 };
 
 // Barrier, then `clocks` of real time (0 .. 2^40 - 1).

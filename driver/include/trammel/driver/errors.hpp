@@ -64,6 +64,20 @@ class StateError : public Error {
   using Error::Error;
 };
 
+// A call that waited ended because somebody asked for a stop on the path (Card::request_stop()). The card is at rest
+// and empty, every pulse has come out.
+class StoppedError : public StateError {
+ public:
+  // Commands begun from the geometry queue when it stopped, since the stream was opened.
+  StoppedError(std::uint32_t geometry_begun, const std::string& message)
+      : StateError(message), geometry_begun_(geometry_begun) {}
+
+  std::uint32_t geometry_begun() const { return geometry_begun_; }
+
+ private:
+  std::uint32_t geometry_begun_;
+};
+
 // A value is outside its range. Thrown before any access to the bus.
 class ArgumentError : public Error {
  public:

@@ -18,6 +18,7 @@ struct PathStep {
   std::uint64_t tick;     // of its path, from 1: feed ticks of a line, path ticks of an arc
   std::uint8_t axis;
   std::int8_t direction;
+  std::uint64_t cycle = 0;  // in which it comes to its shaper
 };
 
 // Receives steps in order of time. Called from within bus accesses and waits; must not use the bus or the card.

@@ -32,10 +32,11 @@ struct StreamProgress {
 };
 
 struct StreamOptions {
-  // Pause between two looks at the card, card clocks; 0: Card::poll_interval().
+  // Pause between two looks at the card, card clocks; 0: Card::poll_interval(). Where the bus has interrupts the stream
+  // waits for the end, and where the card has watermarks for room in its queues, without looking so often.
   std::uint64_t poll_clocks = 0;
   // How much longer than planned (in card time) the card may be with what it has begun before it counts as hung. What
-  // was planned is known from the commands: dwells, and pieces at the ratio that the time base has; holds do not count.
+  // was planned is known from the commands: dwells, and pieces at the ratio of their class; holds do not count.
   std::chrono::nanoseconds patience = std::chrono::seconds(1);
   // Called at each look while the stream waits. May throw: the exception passes through, the stream stays usable.
   std::function<void(const StreamProgress&)> progress;
@@ -85,6 +86,7 @@ class Stream final : public CommandSink {
   struct Duration {  // clocks
     std::uint64_t gated = 0;
     std::uint64_t real = 0;
+    PieceClass piece_class = PieceClass::kFeed;
   };
   // Commands of one queue: how many were put, written, and begun as the card said last.
   struct Count {
@@ -98,13 +100,13 @@ class Stream final : public CommandSink {
   Need checked_need(const Command& command, std::uint32_t header) const;
   bool has_room(const Need& need) const { return need.geometry <= room_.geometry && need.feed <= room_.feed; }
   void wait_for_room(const Need& need);
+  std::uint32_t wake_for(const Need& need) const;
   void refresh_room(const Need& need);
   void keep(const Command& command, const Need& need, const std::uint32_t* words, std::size_t count);
   void write_kept();
   Status look(Wait& wait);
   void advance(Count& count, std::uint32_t begun) const;
   bool all_begun() const { return geometry_.begun == geometry_.sent && feed_.begun == feed_.sent; }
-  Duration planned() const;
   std::size_t slot(std::uint64_t number) const { return static_cast<std::size_t>(number % durations_.size()); }
   void require_open() const;
   template <class Call>

@@ -92,6 +92,16 @@ class ArcGenerator {
 
   const Outputs& outputs() const { return out_; }
 
+  // For jumps, only between the start's clocks and those of a half chord. Path ticks up to the one that ends a half
+  // chord, that included; the largest number there is where none does.
+  std::uint64_t ticks_left() const {
+    if (path_.state.m < kLeastChordBits) return UINT64_MAX;
+    const std::uint64_t half = std::uint64_t{1} << (path_.state.m - 1);
+    return half - (ticks_ & (half - 1));
+  }
+  // n path ticks at once, n < ticks_left().
+  void pass(std::uint64_t n) { ticks_ += n; }
+
   // Without load, start or tick clock() changes nothing any more.
   bool quiet() const {
     return out_.load == 0 && out_.swap == 0 && (!under_way_ || (left_ == 0 && begun_ && full_x_ && full_y_));

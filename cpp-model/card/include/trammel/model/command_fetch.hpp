@@ -51,6 +51,7 @@ class CommandFetch {
   bool is_barrier() const { return !is_path() && !is_feed(); }
   std::uint8_t engine() const { return engine_; }  // what a path runs on, by its bit of ENGINES
   std::uint8_t mask() const { return mask_; }
+  std::uint8_t flags() const { return mask_; }  // in place of the mask: a piece's class
 
   // Without inputs that change nothing moves; a path that waits looks at payload_ready.
   bool quiet() const {

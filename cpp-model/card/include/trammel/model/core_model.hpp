@@ -11,6 +11,7 @@
 #include "trammel/model/command_checker.hpp"
 #include "trammel/model/halfword_queue.hpp"
 #include "trammel/model/motion_core.hpp"
+#include "trammel/model/queue_watermarks.hpp"
 #include "trammel/model/register_file.hpp"
 #include "trammel/model/step_record.hpp"
 
@@ -93,6 +94,7 @@ class CoreModel {
  private:
   void reset();
   MotionCore::Inputs motion_inputs() const;
+  QueueWatermarks::Inputs watermark_inputs() const;
   void clock_commands(bool cut);
   void clock_registers(const Inputs& in);
   void gather();
@@ -108,6 +110,7 @@ class CoreModel {
   CommandChecker checker_;
   HalfwordQueue geometry_queue_;
   HalfwordQueue feed_queue_;
+  QueueWatermarks watermarks_;
   MotionCore motion_;
   RegisterFile::Inputs register_in_;  // but for the port's: what stood as it was last awake
   std::uint64_t watched_ = 0;

@@ -3,9 +3,10 @@
 //
 // With the rate r, acceleration a and jerk j of a piece, all in 2^-64 ticks an enabled clock (a and j an update),
 // enabled clocks 32k..32k+31 after its swap add clamp(R_k) to the phase, where
-//   R_k = r + k * a + k * (k - 1) / 2 * j   (mod 2^68, signed)
-// and clamp() keeps it between the floor and 1 - 2^-48; R_0 is taken as it is. The phase has 48 bits and goes on from
-// piece to piece. A piece of k updates thus covers 32 * (k * r + k(k-1)/2 * a + k(k-1)(k-2)/6 * j) ticks: the host
+//   R_k = r + k * a + k * (k - 1) / 2 * j
+// and clamp() keeps it between the floor and 1 - 2^-48; R_0 is taken as it is. The first R_k outside -2 .. 2 (ticks a
+// clock) is that of all that follow in the piece: it stays at the floor, or at 1. The phase has 48 bits and goes on
+// from piece to piece. A piece of k updates thus covers 32 * (k * r + k(k-1)/2 * a + k(k-1)(k-2)/6 * j) ticks: the host
 // sends forward differences, centred on the update (r = v + a/2 for a constant acceleration a an update).
 // Acceleration and jerk come after the swap and have no shadow: they are added first at the 32nd enabled clock.
 // Not thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
@@ -79,7 +80,7 @@ class FeedGenerator {
     return (uint128{high} << 64) | value;
   }
 
-  // R counts modulo 2^68: 4 bits above the point, the uppermost of them the sign. The bits above are not looked at.
+  // Within +-8: 4 bits above the point, the uppermost of them the sign.
   static std::uint64_t clamped(uint128 rate, std::uint64_t floor_rate) {
     const auto whole = static_cast<std::uint64_t>(rate >> 64) & 0xF;
     const auto fraction = static_cast<std::uint64_t>(rate);
@@ -97,10 +98,14 @@ class FeedGenerator {
   }
 
   void update() {
-    rate_ += acceleration_;
-    acceleration_ += jerk_;
+    if (!away_) {
+      rate_ += acceleration_;
+      acceleration_ += jerk_;
+      const auto whole = static_cast<std::int64_t>(static_cast<std::uint64_t>(rate_ >> 64));
+      away_ = whole < -2 || whole >= 2;
+    }
     slope_ = clamped(rate_, floor_rate_);
-    constant_ = acceleration_ == 0 && jerk_ == 0;
+    constant_ = away_ || (acceleration_ == 0 && jerk_ == 0);
   }
 
   void swap() {
@@ -108,6 +113,7 @@ class FeedGenerator {
     floor_rate_ = next_floor_ << 32;
     slope_ = next_rate_ >> 16;
     count_ = 0;
+    away_ = false;
     judge_constant();
   }
 
@@ -146,7 +152,8 @@ class FeedGenerator {
   std::uint64_t slope_ = 0;       // 2^-48, below 1
   std::uint64_t phase_ = 0;       // 2^-48, below 1
   std::uint32_t count_ = 0;       // enabled clocks of this update
-  bool constant_ = true;          // the slope is the rate for ever
+  bool away_ = false;             // the rate lies outside -2 .. 2
+  bool constant_ = true;          // the slope stays to the end of the piece
   Outputs in_flight_[2];
   Outputs outputs_;
 };

@@ -8,6 +8,9 @@
 // t+6 and the axes at t+9; its step shows on the path after edge t+12 and reaches the shaper at t+13. Ticks are
 // numbered from the oldest that was in flight as the jump began; edges are counted from that clock (0), those of ticks
 // in flight backwards. One object a jump; no allocation.
+//
+// On an arc in chords the axes step on the prescaler's path ticks, a clock later (t+10); a jump ends before the tick
+// that ends a half chord.
 #pragma once
 
 #include <array>
@@ -29,7 +32,6 @@ class Jump {
  private:
   static constexpr std::uint64_t kNever = UINT64_MAX;
   static constexpr std::int64_t kLastTake = 4;  // from an accumulation: the last edge before its tick is taken
-  static constexpr std::int64_t kToAxis = 9;
   // From the axis.
   static constexpr std::int64_t kToPath = 3;
   static constexpr std::int64_t kToShaper = 4;
@@ -38,8 +40,9 @@ class Jump {
   // An axis on its way. Its generator stands after `ticks` ticks, its shaper (the core's) at edge `edge`; it may have
   // one step under way from there.
   struct Traveller {
-    std::uint64_t ticks = 0;
-    std::uint64_t next = kNever;  // number of the tick that makes the next step
+    std::uint64_t ticks = 0;      // of the axes: path ticks on an arc in chords
+    std::uint64_t at = 0;         // that which makes the next step
+    std::uint64_t next = kNever;  // number of the feed tick that it comes from
     std::int64_t edge = 0;
     bool under_way = false;
     bool backwards = false;
@@ -53,6 +56,7 @@ class Jump {
   std::uint64_t accumulations_to(std::int64_t edge) const;
   std::int64_t edge_of(std::uint64_t accumulation) const;
   std::uint64_t first_that_stops() const;
+  void look_ahead(Traveller& t, const PulseGenerator& generator) const;
   void travel();
   void stop_before(std::uint64_t tick);
   bool find(std::uint64_t tick, FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const;
@@ -64,12 +68,15 @@ class Jump {
   unsigned land_generator();
   void land_axis(unsigned axis, std::uint64_t ticks);
   void place_takes(unsigned in_flight);
+  std::uint64_t land_chords(std::uint64_t prescaled, unsigned in_flight);
 
   MotionCore& core_;
   StepRecord& record_;
   const std::uint64_t cycle_;
   std::int64_t end_;  // the edge at which the jump ends
   const bool ticking_;
+  const bool chords_;           // ticking on an arc in chords
+  const std::int64_t to_axis_;  // from an accumulation
   const std::uint64_t first_;   // accumulations at edge 1
   const std::uint64_t second_;  // and at edge 2
   unsigned in_flight_ = 0;      // as the jump begins: bit k from an accumulation at edge -k

@@ -65,6 +65,7 @@ class MotionCore {
   const TimeBase::Outputs& time() const { return time_base_.outputs(); }
   const FeedGenerator::Outputs& feed() const { return feed_.outputs(); }
   const PathEngines::Outputs& engines() const { return engines_.outputs(); }
+  bool chord_tick() const { return engines_.chord_tick(); }
   std::uint32_t position(unsigned axis) const { return axes_[axis].shaper().outputs().position; }
 
  private:

@@ -74,11 +74,17 @@ class PathEngines {
 
   const Outputs& outputs() const { return out_; }
 
+  // The tick that shows is a path tick of an arc in chords.
+  bool chord_tick() const { return chord_tick_; }
+
+  // The path runs on the arc generator: its axes step on path ticks.
+  bool on_chords() const { return engine_ == card_map::engine::kArcGenerator; }
+
   // For jumps. settled(): but for ticks on their way through the 3 clocks, nothing moves without inputs.
   bool settled() const {
-    // A path on the arc generator goes clock by clock: its axes step on path ticks.
-    return out_.shadows_free && !out_.chord_load && !out_.chord_swap && swaps_ == 0 && !out_.swap && waiting_ == 0 &&
-           !out_.path_tick && almost_ == 0 && out_.step == 0 && prescaler_.quiet() && accumulator_.quiet();
+    const bool arc = arc_.quiet() && !over_ && !over_next_ && (!on_chords() || own_ticks_ == 0);
+    return arc && swaps_ == 0 && !out_.swap && waiting_ == 0 && !out_.path_tick && almost_ == 0 && out_.step == 0 &&
+           prescaler_.quiet() && accumulator_.quiet();
   }
   // As settled(), and without ticks.
   bool quiet() const {
@@ -87,17 +93,46 @@ class PathEngines {
   }
   // Ticks on their way: bit k belongs to an accumulation of the feed generator k clocks ago.
   unsigned in_flight() const { return (ticks_ >> 2 & 1) << 6 | (ticks_ >> 1 & 1) << 7 | (ticks_ & 1) << 8; }
-  // What shows after clocks in which the prescaler took `ticks` without a step, and these are on their way (bit 9: the
-  // one before).
+  // The feed tick, from the prescaler's present state, before which a jump must end: on an arc in chords that which
+  // ends a half chord, else the first that makes a path tick.
+  std::uint64_t tick_that_stops() const { return prescaler_.ticks_until(on_chords() ? arc_.ticks_left() : 1); }
+
+  // On an arc in chords.
+  struct PathTicks {
+    std::uint64_t at_axes = 0;
+    bool visible = false;  // and one more leaves
+  };
+  // Before jump(): the path ticks of the `ticks` feed ticks that the prescaler took, of which these are on their way.
+  PathTicks jump_chords(std::uint64_t ticks, unsigned in_flight) {
+    PathTicks made;
+    unsigned late = 0;
+    for (unsigned k = kPrescaled; k < kPrescaled + kAtAxes; ++k) late += in_flight >> k & 1;
+    made.at_axes = prescaler_.pass(ticks - late);
+    std::uint32_t steps = 0;
+    for (unsigned k = kAtAxes; k-- > 0;) {
+      if ((in_flight >> (kPrescaled + k) & 1) != 0 && prescaler_.pass(1) != 0) steps |= 1U << k;
+    }
+    for (unsigned k = 0; k + 1 < kAtAxes; ++k) {
+      if ((steps >> k & 1) != 0) prescaler_.place_step(k, false);
+    }
+    made.visible = (steps >> (kAtAxes - 1) & 1) != 0;
+    chord_tick_ = made.visible;
+    own_ticks_ = made.visible ? 1 : 0;
+    arc_.pass(made.at_axes + own_ticks_);
+    return made;
+  }
+  // What shows after clocks in which the prescaler took `ticks`, without a step but on an arc in chords, and these are
+  // on their way (bit 9: the one before).
   void jump(std::uint64_t ticks, unsigned in_flight) {
-    prescaler_.silent_ticks(ticks);
+    if (!on_chords()) prescaler_.silent_ticks(ticks);
     ticks_ = (in_flight >> 6 & 1) << 2 | (in_flight >> 7 & 1) << 1 | (in_flight >> 8 & 1);
-    out_.tick = (ticks_ & 1) != 0;
+    if (!on_chords()) own_ticks_ = ticks_;
+    out_.tick = (own_ticks_ & 1) != 0;
     const bool feed_ticks = (in_flight >> 6 & 0xF) != 0;
     out_.done = !feed_ticks && said().ready;
     out_.elsewhere = !said().at_end;
-    out_.payload_ready = gate_payload_ready_ = !(feed_ticks && on_engine(engine_));
-    own_ticks_ = ticks_;
+    gate_payload_ready_ = !(feed_ticks && on_engine(engine_));
+    out_.payload_ready = gate_payload_ready_ && arc_.outputs().loadable;
   }
 
   const PulseGenerator& prescaler() const { return prescaler_; }
@@ -105,7 +140,10 @@ class PathEngines {
   const DeviationAccumulator& accumulator() const { return accumulator_; }
 
  private:
-  static constexpr unsigned kDelay = 3;   // feed domain to path domain
+  static constexpr unsigned kDelay = 3;  // feed domain to path domain
+  // Clocks from an accumulation of the feed generator to the prescaler; from there to the axes on an arc in chords.
+  static constexpr unsigned kPrescaled = 6;
+  static constexpr unsigned kAtAxes = 4;
   static constexpr unsigned kAlmost = 4;  // clocks after the accumulator's tick in which no load may be asked for
 
   static bool on_engine(std::uint8_t engine) { return engine != card_map::engine::kLines; }
@@ -201,6 +239,7 @@ class PathEngines {
     // The axes' own: feed ticks of lines, and an arc's path ticks, a clock after the generator.
     const bool own = in.tick && engine_ != card_map::engine::kArcGenerator;
     own_ticks_ = in.cut ? 0 : own_ticks_ >> 1 | (own ? 1U << (kDelay - 1) : 0) | (chord_tick ? 1 : 0);
+    chord_tick_ = chord_tick && !in.cut;
     out_.tick = (own_ticks_ & 1) != 0;
     out_.swap = (swaps_ & 1) != 0;
   }
@@ -214,6 +253,7 @@ class PathEngines {
   PulseGenerator prescaler_;
   std::uint32_t ticks_ = 0;      // on their way, bit k leaves in k clocks; bit 0 is visible
   std::uint32_t own_ticks_ = 0;  // those that the axes get
+  bool chord_tick_ = false;      // the one that shows is the arc generator's
   std::uint32_t swaps_ = 0;
   std::uint32_t waiting_ = 0;                       // path ticks
   std::uint8_t engine_ = card_map::engine::kLines;  // of the path swapped in last

@@ -12,6 +12,8 @@
 
 #include <cstdint>
 
+#include "trammel/model/wide.hpp"
+
 namespace trammel::model {
 
 class PulseGenerator {
@@ -80,8 +82,8 @@ class PulseGenerator {
   // A step of a tick taken `clocks_ago` clocks ago (0: in the last one), for the outputs alone.
   void place_step(std::uint64_t clocks_ago, bool backwards) {
     const unsigned event = backwards ? kStep | kBackwards : kStep;
-    if (clocks_ago == 0) pipe_ = event << 4;
-    if (clocks_ago == 1) pipe_ = event;
+    if (clocks_ago == 0) pipe_ |= event << 4;
+    if (clocks_ago == 1) pipe_ |= event;
     if (clocks_ago == 2) out_.step = true;
     if (clocks_ago >= 2) out_.dir = backwards;
   }
@@ -91,6 +93,28 @@ class PulseGenerator {
     if (!open_ || increment_ == 0) return UINT64_MAX;
     if (increment_ > 0) return static_cast<std::uint64_t>((kMask - phase_) / increment_);
     return static_cast<std::uint64_t>(phase_ / -increment_);
+  }
+
+  // For increments that are not negative (a prescaler's). Ticks up to the one that makes the `steps`-th step from now,
+  // that included; the largest number there is where there is none, or that far away.
+  std::uint64_t ticks_until(std::uint64_t steps) const {
+    constexpr unsigned kFirst = 24;
+    if (!open_ || increment_ <= 0 || steps >> kFractionBits != 0) return UINT64_MAX;
+    // ceil((steps * 2^40 - phase) / increment), the quotient in two parts.
+    const auto by = static_cast<std::uint64_t>(increment_);
+    const std::uint64_t first = (steps << kFirst) / by;
+    const std::uint64_t rest = (steps << kFirst) % by << (kFractionBits - kFirst);
+    if (first >> 46 != 0) return UINT64_MAX;
+    const std::int64_t last = static_cast<std::int64_t>(rest % by) - phase_;
+    const std::int64_t more = last > 0 ? 1 : -(-last / increment_);
+    return (first << (kFractionBits - kFirst)) + rest / by + static_cast<std::uint64_t>(more);
+  }
+  // n ticks at once; how many steps they make. None of these is in flight.
+  std::uint64_t pass(std::uint64_t n) {
+    const uint128 sum =
+        uint128{n} * uint128{static_cast<std::uint64_t>(increment_)} + uint128{static_cast<std::uint64_t>(phase_)};
+    phase_ = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) & static_cast<std::uint64_t>(kMask));
+    return static_cast<std::uint64_t>(sum >> kFractionBits);
   }
 
   std::int64_t increment() const { return increment_; }  // of the present line, 2^-40 pulses a tick

@@ -19,7 +19,8 @@ class RegisterFile {
   // ENGINES: what every card has, what one has by default, and what one that is built with everything there is.
   static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
   static constexpr std::uint32_t kDefaultEngines =
-      kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode;
+      kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode |
+      card_map::field::kEnginesClasses | card_map::field::kEnginesWatermarks;
   static constexpr std::uint32_t kMostEngines = kDefaultEngines | card_map::field::kEnginesArcGenerator;
 
   struct Config {
@@ -53,6 +54,8 @@ class RegisterFile {
     bool incomplete = false;          // the stream stands inside a command
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;
+    bool geometry_low = false;  // below its watermark
+    bool feed_low = false;
     std::uint32_t geometry_begun = 0;
     std::uint32_t feed_begun = 0;
     std::uint32_t rate = 0;   // 2^-32 feed ticks an enabled clock

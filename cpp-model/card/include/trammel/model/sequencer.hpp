@@ -53,6 +53,8 @@ class Sequencer {
     bool incomplete = false;
     bool path_active = false;
     bool feed_active = false;
+    bool moving = false;  // the piece has given ticks, or took over from one that had
+    std::uint8_t piece_class = card_map::constant::kClassFeed;  // of the last piece; a direct move's is feed
     bool ended = false;
     bool idle = true;  // nothing runs, is decoded or queued
     std::uint32_t geometry_begun = 0;
@@ -127,6 +129,7 @@ class Sequencer {
     bool barrier_done = false;  // ended in the clock before: both queues go on
     bool payload_ready = false;
     bool piece_runs = false;
+    bool direct = false;  // a direct move is under way
   };
 
   void clock_all(const Inputs& in);

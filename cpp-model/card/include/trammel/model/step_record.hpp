@@ -18,15 +18,17 @@ class CardSteps {
   virtual ~CardSteps() = default;
   // A step at the pins of `axis`; `cycle` counts rising edges since reset, that of the leading edge included.
   virtual void pin_step(std::uint64_t cycle, unsigned axis, int direction) = 0;
-  // A step of the path. `command`: number in the stream, from 0 at reset or a cut, not wrapped, barriers and feed
-  // pieces counted; 0 in direct mode. `tick`: of its path, from 1; feed ticks of a line (enabled clocks in direct
-  // mode), path ticks of an arc.
-  virtual void path_step(std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) = 0;
+  // A step of the path, at its shaper after edge `cycle`. `command`: number in the stream, from 0 at reset or a cut,
+  // not wrapped, barriers and feed pieces counted; 0 in direct mode. `tick`: of its path, from 1; feed ticks of a line
+  // (enabled clocks in direct mode), path ticks of an arc.
+  virtual void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
+                         int direction) = 0;
 };
 
 class StepRecord {
  public:
   static constexpr std::uint64_t kTickToStep = 7;  // clocks from a tick that shows to its step on the path
+  static constexpr std::uint64_t kToAxes = 3;      // of these, to where it leaves for the axes
 
   void set_steps(CardSteps* steps) { steps_ = steps; }
 
@@ -56,6 +58,9 @@ class StepRecord {
   // A tick shows after edge `cycle`.
   void tick(std::uint64_t cycle) { place(cycle, ++taken_); }
   void arc_tick() { ++arc_taken_; }
+  // A path tick of an arc in chords shows after edge `cycle`, on its way to the axes, where a line's comes kToAxes
+  // clocks after it was taken.
+  void chord_tick(std::uint64_t cycle) { place(cycle - kToAxes, ++arc_taken_); }
 
   void pin(std::uint64_t cycle, unsigned axis, std::uint32_t position) {
     if (position == position_[axis]) return;
@@ -64,15 +69,17 @@ class StepRecord {
   }
   void line_step(std::uint64_t cycle, unsigned axis, bool backwards) {
     const Take& take = shown_after(cycle - kTickToStep);
-    if (steps_ != nullptr) steps_->path_step(take.command, take.tick, axis, backwards ? -1 : 1);
+    if (steps_ != nullptr) steps_->path_step(cycle, take.command, take.tick, axis, backwards ? -1 : 1);
   }
-  void arc_step(unsigned axis, bool backwards) {
-    if (steps_ != nullptr) steps_->path_step(command_, arc_taken_, axis, backwards ? -1 : 1);
+  void arc_step(std::uint64_t cycle, unsigned axis, bool backwards) {
+    if (steps_ != nullptr) steps_->path_step(cycle, command_, arc_taken_, axis, backwards ? -1 : 1);
   }
 
   // For jumps: ticks of the present path taken so far; `ticks` more at once; the tick that shows after edge `cycle`.
   std::uint64_t taken() const { return taken_; }
   void take(std::uint64_t ticks) { taken_ += ticks; }
+  std::uint64_t path_ticks() const { return arc_taken_; }
+  void take_path_ticks(std::uint64_t ticks) { arc_taken_ += ticks; }
   void place(std::uint64_t cycle, std::uint64_t tick) { shown_after(cycle) = {command_, tick}; }
 
  private:

@@ -21,6 +21,8 @@ class StopControl {
     bool abort = false;            // event
     std::uint32_t clear = 0;       // event: ones written to FAULT
     bool at_rest = false;          // the ratio is 0
+    bool moving = false;           // pieces are giving ticks
+    bool fixed = false;            // the present one is fixed
     Setting setting;               // HOLD, STOP_REACTION
   };
   struct Outputs {
@@ -37,7 +39,8 @@ class StopControl {
     const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
                                  (in.incomplete ? card_map::field::kFaultPathIncomplete : 0);
     const bool at_once = (events & ~reaction_) != 0;
-    out_.hold = hold_ || state_ == State::Ramp;
+    hold_stays_ = stays(in.moving, in.at_rest);
+    out_.hold = host_holds(in.fixed) || state_ == State::Ramp;
     out_.closed = out_.fault != 0 || state_ != State::Run;
     out_.cut = in.abort;
     out_.stop = state_ == State::Run && events != 0;
@@ -61,15 +64,22 @@ class StopControl {
   const Outputs& outputs() const { return out_; }
   bool stopped() const { return state_ == State::Stopped; }
 
-  // Without an event, a setting, an abort or a clear, clock() changes nothing, whatever the ratio does.
-  bool quiet() const {
-    const bool settled = out_.hold == hold_ && out_.closed == (out_.fault != 0 || state_ != State::Run);
+  // Without an event, a setting, an abort or a clear, clock() changes nothing while these stay; where no hold is asked
+  // for, whatever they do.
+  bool quiet(bool moving, bool fixed, bool at_rest) const {
+    const bool same = stays(moving, at_rest) == hold_stays_ && out_.hold == host_holds(fixed);
+    const bool settled = same && out_.closed == (out_.fault != 0 || state_ != State::Run);
     return settled && !out_.cut && !out_.stop &&
            (state_ == State::Run || (state_ == State::Stopped && out_.fault != 0));
   }
 
  private:
   enum class State : std::uint8_t { Run, Ramp, Stopped };
+
+  // A HOLD waits for the end of fixed pieces, unless it found nothing moving, or the time base at rest, since it was
+  // set.
+  bool stays(bool moving, bool at_rest) const { return hold_ && (hold_stays_ || !moving || at_rest); }
+  bool host_holds(bool fixed) const { return hold_ && (hold_stays_ || !fixed); }
 
   void halt() {
     state_ = State::Stopped;
@@ -83,6 +93,7 @@ class StopControl {
 
   State state_ = State::Run;
   bool hold_ = false;
+  bool hold_stays_ = false;
   std::uint32_t reaction_ = 0;
   Outputs out_;
 };

@@ -1,11 +1,13 @@
 // Golden model of the time base: the clock enable that carries feed override and feed hold.
 //
-// Every 4th clock the ratio moves by at most the slew towards its goal (0 while held, else the target), never past it.
+// Every 4th clock the ratio moves by at most the slew towards its goal (0 while held, else the target of the class),
+// never past it.
 // Every clock adds the ratio to a 16-bit phase; the carry is the enable. So n clocks at a constant ratio give
 // floor((phase + n * ratio) / 2^16) enables, spaced as evenly as whole clocks allow.
 // Not thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -18,7 +20,8 @@ class TimeBase {
  public:
   struct Inputs {
     bool hold = false;  // slew to 0 instead of the target
-    Setting setting;    // RATIO_FEED: the target; SLEW
+    Setting setting;    // RATIO_FEED, RATIO_RAPID, RATIO_FIXED: targets by class; SLEW
+    std::uint8_t piece_class = card_map::constant::kClassFeed;  // whose target it is
   };
   struct Outputs {
     bool enable = false;
@@ -29,17 +32,17 @@ class TimeBase {
   // One rising edge. Clocks are counted from reset (the constructor): at clocks 4k the goal is sampled, at 4k + 2 the
   // slew, and the ratio that follows from them is in use from clock 4k + 5 on (visible after clock 4k + 4).
   void clock(const Inputs& in) {
-    step(in.hold);
+    step(in.hold, in.piece_class);
     if (in.setting.set) set(in.setting);
   }
   // The same without a setting.
-  void step(bool hold) {
+  void step(bool hold, std::uint8_t piece_class = card_map::constant::kClassFeed) {
     const std::uint32_t sum = phase_ + outputs_.ratio;
     outputs_.enable = (sum >> 16) != 0;
     phase_ = sum & 0xFFFF;
     if (turn_ == 0) {
       ratio_ = next_ratio_;
-      goal_ = goal(hold);
+      goal_ = goal(hold, piece_class);
     } else if (turn_ == 2) {
       next_ratio_ = moved(ratio_, goal_, slew_);
     }
@@ -49,9 +52,10 @@ class TimeBase {
 
   const Outputs& outputs() const { return outputs_; }
 
-  // True when the ratio has arrived and stays what it is for as long as `hold` stays and nothing is set.
-  bool steady(bool hold) const {
-    return ratio_ == goal(hold) && goal_ == ratio_ && next_ratio_ == ratio_ && outputs_.ratio == ratio_ >> 12;
+  // True when the ratio has arrived and stays what it is for as long as `hold` and the class stay and nothing is set.
+  bool steady(bool hold, std::uint8_t piece_class = card_map::constant::kClassFeed) const {
+    return ratio_ == goal(hold, piece_class) && goal_ == ratio_ && next_ratio_ == ratio_ &&
+           outputs_.ratio == ratio_ >> 12;
   }
 
   // Enables that the next `clocks` clocks give; only while steady. clocks < 2^47.
@@ -77,18 +81,20 @@ class TimeBase {
 
  private:
   void set(const Setting& setting) {
-    if (setting.address == card_map::reg::kRatioFeed) target_ = setting.data;
+    if (setting.address == card_map::reg::kRatioFeed) targets_[card_map::constant::kClassFeed] = setting.data;
+    if (setting.address == card_map::reg::kRatioRapid) targets_[card_map::constant::kClassRapid] = setting.data;
+    if (setting.address == card_map::reg::kRatioFixed) targets_[card_map::constant::kClassFixed] = setting.data;
     if (setting.address == card_map::reg::kSlew) slew_ = setting.data;
   }
 
-  std::uint32_t goal(bool hold) const { return hold ? 0 : target_ << 12; }
+  std::uint32_t goal(bool hold, std::uint8_t piece_class) const { return hold ? 0 : targets_[piece_class] << 12; }
 
   static std::uint32_t moved(std::uint32_t from, std::uint32_t to, std::uint32_t step) {
     if (from < to) return to - from < step ? to : from + step;
     return from - to < step ? to : from - step;
   }
 
-  std::uint32_t target_ = 0x10000;   // ratio, 2^-16, 0..65536
+  std::array<std::uint32_t, 3> targets_{0x10000, 0x10000, 0x10000};  // ratios by class, 2^-16, 0..65536
   std::uint32_t slew_ = 0xFFF'FFFF;  // 2^-28 of ratio an update (4 clocks), 28 bits; 0 keeps the ratio
   // Q1.28, at most 1 = 2^28.
   std::uint32_t ratio_ = 1U << 28;

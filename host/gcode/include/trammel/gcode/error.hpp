@@ -21,6 +21,7 @@ enum class ErrorCode : std::uint16_t {
   kExponent = 8,
   kTextBesidePercent = 9,
   kUnsupportedWord = 10,
+  kNoSuchLine = 11,  // to begin from
   // Words of one line against each other
   kModalGroupTwice = 20,
   kLetterTwice = 21,

@@ -14,12 +14,21 @@ using Coordinates = std::array<double, card_map::kMaxAxes>;
 
 enum class MotionKind { kTraverse, kLine, kArc, kDwell, kEnd };
 
+// What the motion asks of the corner where it ends.
+enum class PathControl : std::uint8_t {
+  kContinuous,  // G64: passed at speed
+  kExactPath,   // G61: passed at speed where the path has no corner, else a stop
+  kExactStop,   // G61.1
+};
+
 struct Motion {
   MotionKind kind = MotionKind::kLine;
-  std::size_t line = 0;    // of the source, from 1
-  Coordinates target{};    // where it ends; kDwell and kEnd: where the one before ended
-  double feed = 0;         // mm/s along the path; 0 for kTraverse and where `seconds` counts
-  double seconds = 0;      // kDwell, or the duration of a motion under G93
+  std::size_t line = 0;  // of the source, from 1
+  Coordinates target{};  // where it ends; kDwell and kEnd: where the one before ended
+  double feed = 0;       // mm/s along the path; 0 for kTraverse and where `seconds` counts
+  double seconds = 0;    // kDwell, or the duration of a motion under G93
+  PathControl path_control = PathControl::kContinuous;
+  double tolerance = 0;    // mm, G64 P: how far the path may be left in corners
   bool clockwise = false;  // the rest: kArc; seen with the plane's first axis to the right and the second up
   bool full_circle = false;
   std::uint8_t axis_x = 0;  // of the plane: X Y, Z X or Y Z

@@ -34,7 +34,7 @@ struct MachineAxis {
   double steps_per_mm = 0;        // pulses, > 0
   double max_velocity = 0;        // mm/s, > 0
   double max_acceleration = 0;    // mm/s^2, > 0
-  double max_jerk = 0;            // mm/s^3, > 0; 0: none given. Nothing uses it yet.
+  double max_jerk = 0;            // mm/s^3, > 0; 0: none given
   double step_length_ns = 0;      // > 0
   double step_space_ns = 0;       // > 0
   double direction_setup_ns = 0;  // >= 0
@@ -47,9 +47,19 @@ struct MachineAxis {
   std::array<double, kCoordinateSystems> offsets{};  // of G54 .. G59, machine coordinates
 };
 
+// How the host plans; the table [motion], each entry of which may be left out.
+struct MotionSettings {
+  double junction_deviation = 0.01;  // mm, >= 0; 0: every corner is a stop
+  double max_override = 1;           // 1 .. 2: limits hold up to this feed override
+  double hold_reserve = 0;           // 0 .. 0.9: share of each acceleration kept for holds and changes of the override
+  double window = 16384;             // blocks that look-ahead sees at most; whole, 2 .. 2^20
+  double stale_periods = 1;          // position streaming: periods that the card goes on alone; whole, 0 .. 65535
+};
+
 struct Machine {
   std::uint32_t clock_hz = 0;     // kSlowestClock .. kFastestClock
   std::vector<MachineAxis> axes;  // in the card's order
+  MotionSettings motion;
 
   // Index of the axis on the card; `letter` in upper case.
   std::optional<std::size_t> axis(char letter) const;

@@ -19,10 +19,14 @@ enum class SpeedLimit : std::uint8_t {
   kNone,          // it is reached
   kAxisVelocity,  // max_velocity of an axis
   kPulseShape,    // step length and space of an axis
-  kAcceleration,  // too short to reach it, or too strong a curve
+  kAcceleration,  // too short to reach it, too strong a curve, a corner
   kClock,         // the card's clock
+  kWindow,        // look-ahead ends before a stop could
 };
-inline constexpr std::size_t kSpeedLimits = 5;
+inline constexpr std::size_t kSpeedLimits = 6;
+
+// By axis index, mm a mm of path.
+using Direction = std::array<double, card_map::kMaxAxes>;
 
 // What goes to the card's geometry queue.
 enum class Geometry : std::uint8_t { kLine, kArc, kChords, kDwell, kEnd };
@@ -37,18 +41,27 @@ struct ExactArc {
   double sweep = 0;        // radians, > 0
 };
 
-// Lengths in mm; for moves of rotary axes alone read degrees. Of the fields that a kind of geometry does not name, the
-// content means nothing.
+// Lengths, directions and limits are those of the path before rounding, along it, in mm and seconds; for moves of
+// rotary axes alone read degrees. A path with X, Y or Z has their length, one without that of all axes; where an axis
+// outside would make more than a pulse for each of the finest of these, its pulses count instead. Of the fields that a
+// kind of geometry does not name, the content means nothing.
 struct Block {
   std::size_t line = 0;  // of the program
   Geometry geometry = Geometry::kEnd;
   Pulses start{};
   Pulses end{};
 
-  // Motions: kLine, kArc, kChords. Limits along the path are in path pulses, of which `pulses` make `length` mm.
-  double length = 0;                     // mm, of the path of all axes
-  double pulses = 0;                     // the length in pulses of the finest axis; kArc: in unit steps
-  std::uint64_t least_ticks = 0;         // feed ticks that the geometry needs; kChords: for each of its lines
+  // Motions: kLine, kArc, kChords.
+  bool rapid = false;
+  bool linear = false;  // X, Y or Z moves
+  gcode::PathControl path_control = gcode::PathControl::kContinuous;
+  double tolerance = 0;                  // mm, of G64 P
+  Direction entry{};                     // where it begins
+  Direction exit{};                      // where it ends
+  double length = 0;                     // mm
+  double curvature = 0;                  // 1/mm, of an arc; below 0 where it runs clockwise
+  double steps_per_mm = 0;               // pulses a mm of path, of the finest axis that its length counts
+  std::uint64_t least_ticks = 0;         // feed ticks that the geometry needs
   double speed = 0;                      // a second, the most that axes, card and program allow
   double acceleration = 0;               // a second^2
   double jerk = 0;                       // a second^3, infinite where no axis has one

@@ -2,8 +2,8 @@
 // the range of the position counters, dwells. Pulls from the reader and holds one motion. Not thread-safe.
 //
 // Targets become pulses by rounding the absolute target, half away from zero: nothing drifts. Lengths and limits are
-// those of the path between rounded ends. Feeds hold along X Y Z; without those along U V W, then A B C, then E (as
-// LinuxCNC).
+// those of the path before rounding. Limits are smaller by max_override, its square and cube, and by hold_reserve.
+// Feeds hold along X Y Z; without those along U V W, then A B C, then E (as LinuxCNC).
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ class BlockBuilder {
                const gcode::Coordinates& start = {});
 
   // The next block; false after the one of kEnd, and at the first thing that reader, machine or card does not allow:
-  // then error() says what. Motions of less than a pulse give no block.
+  // then error() says what. A motion
+  // without a step gives no block: the line after it begins where it began.
   bool next(Block& block);
   const std::optional<gcode::Error>& error() const { return error_; }
 
@@ -33,12 +34,13 @@ class BlockBuilder {
  private:
   struct Axis {
     double steps_per_mm;
-    double velocity;      // pulses/s
-    double acceleration;  // pulses/s^2
-    double jerk;          // pulses/s^3
+    double velocity;      // mm/s
+    double acceleration;  // mm/s^2
+    double jerk;          // mm/s^3
+    double pulse_rate;    // pulses/s, the most that the shaper makes without a pause
     double lowest;        // mm, soft limits
     double highest;
-    SpeedLimit limit;     // what `velocity` comes from
+    bool linear;          // X, Y or Z
     unsigned feed_group;  // which feed it counts for: 0 X Y Z, 1 U V W, 2 A B C, 3 E
   };
   bool build(Block& block);
@@ -48,9 +50,13 @@ class BlockBuilder {
   bool build_accumulator_arc(Block& block);
   bool build_chords(Block& block);
   bool build_dwell(Block& block);
+  double measure_line(Block& block, const gcode::Coordinates& way) const;
   static void limit_speed(Block& block, double speed, SpeedLimit limit);
-  static void limit_curve(Block& block, double radius, double axis_acceleration);
-  void apply_feed(Block& block, double feed_length);
+  void limit_line(Block& block) const;
+  void limit_arc(Block& block, double unevenness, double share) const;
+  static Direction tangent(const Block& block, double share);
+  void limit_pulses(Block& block) const;
+  void apply_feed(Block& block, double feed_length) const;
   bool check(std::size_t axis, double mm);
   bool check_arc(const Block& block);
   bool refuse(gcode::ErrorCode code, std::string message);
@@ -63,7 +69,8 @@ class BlockBuilder {
   gcode::Motion motion_;
   Pulses start_{};
   Pulses here_{};
-  gcode::Coordinates exact_{};  // unrounded
+  gcode::Coordinates exact_{};   // where the program is, unrounded
+  gcode::Coordinates anchor_{};  // where the last block ended, unrounded
   std::optional<gcode::Error> error_;
 };
 

@@ -12,9 +12,15 @@ struct CardLimits {
   std::uint32_t clock_hz = 0;  // > 0
   unsigned axes = 4;           // of the card, 1 .. 8
   bool accumulator = true;     // arcs go to the deviation accumulator; without it out as lines
+  bool classes = false;        // pieces of rapids say so, for an override of their own
 };
 
 CardLimits limits_of(const driver::Identification& card);
+
+// Seconds that a hold takes from full speed to a stop: v / (a / 2) of the axis where that is longest, so that a hold's
+// deceleration is half of every axis's acceleration at most; v / (h a) where h of it is kept for holds (hold_reserve).
+// The card's slew follows from it.
+double hold_seconds(const machine::Machine& machine);
 
 // An axis's settings on the card: step times rounded up to whole nanoseconds.
 driver::AxisSettings settings_of(const machine::MachineAxis& axis);

@@ -1,11 +1,14 @@
-// Planner: from blocks to the card's stream commands, exact stop at the end of every block. Not thread-safe.
+// Planner: from blocks to the card's stream commands, over as many blocks as look-ahead sees. Not thread-safe.
 //
-// A path has N feed ticks: T ticks for each pulse of path length (length in mm times the largest steps/mm of the moving
-// axes), T up to 128 for even steps, less where the clock or the speed does not allow it. The profile keeps every axis
-// within its velocity and acceleration (a feed override above 100 % is not planned for).
+//     BlockBuilder -> ring of blocks -> junctions -> SpeedPlan -> Quantiser -> CommandSink
+//
+// A path has N feed ticks: T for each pulse of its length, T up to 128 for even steps, less where the clock does not
+// allow it; the same T for all paths that a feed piece spans. The plan is a function of the program and the settings
+// alone, never of how fast it is read.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "trammel/driver/command_sink.hpp"
 #include "trammel/driver/commands.hpp"
@@ -13,9 +16,12 @@
 #include "trammel/planner/block.hpp"
 #include "trammel/planner/block_builder.hpp"
 #include "trammel/planner/card_limits.hpp"
-#include "trammel/planner/profile.hpp"
 
 namespace trammel::planner {
+
+struct PlannerSettings {
+  bool exact_stop = false;  // a stop after every line of the program
+};
 
 // What the commands came from.
 struct PlannedBlock {
@@ -23,6 +29,9 @@ struct PlannedBlock {
   double seconds = 0;                    // planned duration
   double speed = 0;                      // mm/s along the path, the highest planned; 0 for what does not move
   SpeedLimit limit = SpeedLimit::kNone;  // what keeps it below what the program wants
+  bool stop = false;                     // moves, and ends at rest
+  double velocity_jump = 0;              // mm/s, the largest of an axis at its end, where it has a corner
+  double acceleration_step = 0;          // mm/s^2, at its end, where it has no corner and the curvature changes
   std::uint64_t commands = 0;            // put
   std::uint64_t geometry = 0;            // of these, into the geometry queue: paths and barriers
   std::uint64_t feed = 0;                // and into the feed queue: pieces and barriers
@@ -31,26 +40,26 @@ struct PlannedBlock {
 class Planner {
  public:
   // Blocks and machine must outlive the planner.
-  Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card);
+  Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
+          const PlannerSettings& settings = {});
+  ~Planner();
 
-  // Plans the next block and puts its commands; false after the last (kEnd) and at an error, which the builder has.
-  // The feed pieces of a path come before its geometry, so that neither queue can fill up with what waits for the
-  // other. What the sink throws passes through; the planner is then of no further use.
+  // Puts the commands of the next block: the feed pieces that begin in it, then its geometry, so that neither queue can
+  // fill up with what waits for the other. False after the last (kEnd), and when all before an error is given, which
+  // the builder has: the motion ends at rest there. What the sink throws passes through; the planner is then of no
+  // further use.
   bool next(driver::CommandSink& sink, PlannedBlock& planned);
 
  private:
-  std::uint64_t ticks_for(const Block& block) const;
-  void plan_move(PlannedBlock& planned);
-  void put_dwell(PlannedBlock& planned, driver::CommandSink& sink);
-  void put_geometry(const Block& block, driver::CommandSink& sink);
-  void put_chords(const Block& block, driver::CommandSink& sink);
+  class LookAhead;
 
-  BlockBuilder& blocks_;
+  void put_dwell(PlannedBlock& planned, driver::CommandSink& sink);
+  void put_geometry(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
+  void put_line(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
+  void put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
+
   const machine::Machine& machine_;
-  CardLimits card_;
-  std::uint64_t least_ticks_;
-  std::uint64_t ticks_ = 0;  // of the block; kChords: of each line
-  Profile profile_;
+  std::unique_ptr<LookAhead> look_ahead_;
   driver::Command line_{driver::LineCommand{}};
   driver::Command piece_{driver::FeedCommand{}};
   driver::Command other_{driver::EndCommand{}};

@@ -21,6 +21,8 @@ struct Phase {
   double speed = 0;
   double acceleration = 0;
   double jerk = 0;
+  bool stop = false;         // ends where finish() said
+  bool short_sight = false;  // slower than the path allows, because of what `window` does not show
 };
 
 // Speeds along a path that is not known to its end. A function of the sequence of spans alone. Not thread-safe.

@@ -1,12 +1,21 @@
 // What a run tells of itself while it goes. Called from the thread that runs; must not use the card.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
+#include "trammel/driver/card.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/planner/planner.hpp"
 
 namespace trammel::run {
+
+// How far the card is.
+struct Progress {
+  std::uint32_t begun = 0;  // commands begun from the geometry queue, barriers too; wraps
+  std::size_t line = 0;     // of the program, that has begun last
+  driver::Status status;
+};
 
 class Observer {
  public:
@@ -19,7 +28,7 @@ class Observer {
   // When the block's commands are written.
   virtual void sent() {}
   // Every now and then while the card runs.
-  virtual void progress() {}
+  virtual void progress(const Progress& /*progress*/) {}
 };
 
 }  // namespace trammel::run

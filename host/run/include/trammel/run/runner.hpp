@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "trammel/planner/planner.hpp"
 #include "trammel/run/feed_report.hpp"
 #include "trammel/run/observer.hpp"
+#include "trammel/run/run_settings.hpp"
 
 namespace trammel::run {
 
@@ -36,10 +38,18 @@ class ProgramError : public std::runtime_error {
 class RunError : public std::runtime_error {
  public:
   RunError(const std::string& file, std::size_t line, const std::string& message);
+  explicit RunError(const ProgramError& error);
   std::size_t line() const { return line_; }
 
  private:
   std::size_t line_;
+};
+
+// It was asked to stop on the path (driver::Card::request_stop()): the card is at rest, its position is known, and a
+// program may begin there.
+class StoppedOnPath : public RunError {
+ public:
+  using RunError::RunError;
 };
 
 // From the first pass.
@@ -48,7 +58,7 @@ struct Plan {
   double seconds = 0;          // estimate
   std::uint64_t segments = 0;  // paths
   std::uint64_t commands = 0;  // for the card
-  planner::Pulses start{};     // machine coordinates
+  planner::Pulses start{};     // machine coordinates; where the first line begins
   planner::Pulses end{};
   std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first
   std::map<std::string, std::size_t> accepted;    // words without effect yet and how often
@@ -58,27 +68,39 @@ struct Outcome {
   std::vector<std::int64_t> counted;         // pulses from the start, by axis, as the card counted them
   std::vector<std::int64_t> final_position;  // pulses, machine coordinates
   std::uint64_t commands = 0;                // sent
+  std::optional<std::uint32_t> under_runs;   // holds for want of commands; none where the card has no such hold
 };
 
 class Runner {
  public:
   // `machine` must outlive the runner. `card`: limits_of() the card that will run the program.
-  Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card);
+  Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card,
+         const RunSettings& settings = {});
 
   // `observer` must outlive the runner; they are called in the order in which they were added.
   void add(Observer& observer) { observers_.push_back(&observer); }
 
   // First pass. Throws ProgramError, and driver::ArgumentError for step times that the card cannot keep.
   const Plan& plan();
-  // Second pass, after the first, to the end of the motion: configures the card and streams. Throws RunError for what
+  // Second pass, after the first, to the end of the motion: configures the card and streams. Throws StoppedOnPath when
+  // another thread has asked the card for it, RunError for what
   // the card or its bus reports, ProgramError when the program is not the one that was planned, and std::runtime_error
   // when the card does not end where the program does.
   Outcome run(driver::Card& card);
+  // In place of both: the program is read once, while it runs, and last_plan() tells what was read. What is wrong in it
+  // is a RunError then; the motion before it is made and ends at rest.
+  Outcome stream(driver::Card& card);
+  // Of the last pass.
+  const Plan& last_plan() const { return plan_; }
 
  private:
+  void require_planned_for(driver::Card& card) const;
+  Outcome outcome(driver::Card& card, const driver::Snapshot& before, std::uint64_t commands) const;
+
   ProgramLines lines_;
   const machine::Machine& machine_;
   planner::CardLimits card_;
+  RunSettings settings_;
   std::vector<Observer*> observers_;
   Plan plan_;
 };

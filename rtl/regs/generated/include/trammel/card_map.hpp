@@ -42,6 +42,9 @@ inline constexpr std::uint32_t kCentreFractionBits = 8;  // Fraction bits of a c
 inline constexpr std::uint32_t kPathDelayClocks = 3;     // Clocks from a feed tick to the path tick that it is
 inline constexpr std::uint32_t kAnswerClocks = 400;  // Clocks within which every access is answered with up to 7 axes
 inline constexpr std::uint32_t kAnswerClocks8Axes = 600;  // Clocks within which every access is answered with 8 axes
+inline constexpr std::uint32_t kClassFeed = 0;            // Class of a feed piece: what the feed override slows down
+inline constexpr std::uint32_t kClassRapid = 1;  // Class of a feed piece: rapid positioning, with a ratio of its own
+inline constexpr std::uint32_t kClassFixed = 2;  // Class of a feed piece: threading and the like, which a hold lets end
 }  // namespace constant
 
 // Bit numbers of ENGINES.

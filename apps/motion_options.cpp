@@ -1,0 +1,136 @@
+#include "motion_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "engine_options.hpp"
+#include "errors.hpp"
+
+namespace trammel::app {
+namespace {
+
+constexpr double kLongest = 1e9;  // s, as for --trace-window
+
+std::optional<double> number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+CLI::Validator between(double least, double most, const std::string& what) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const auto value = number(text);
+        if (value && *value >= least && *value <= most) return std::string();
+        return fmt::format("must be {} from {} to {:.0f}, not {}", what, least, most, text);
+      },
+      "");
+}
+
+double percent_of(const std::string& option, std::string_view text, double most) {
+  const auto value = number(text);
+  if (!value || !(*value >= 0) || *value > most) {
+    throw UsageError(fmt::format("{}: {} is no override from 0 to {:g} percent{}", option, text, most,
+                                 value && *value > most ? " (max_override of the machine file sets the most)" : ""));
+  }
+  return *value;
+}
+
+double seconds_of(const std::string& option, std::string_view text, const char* what) {
+  const auto value = number(text);
+  if (!value || !(*value >= 0) || *value > kLongest) {
+    throw UsageError(fmt::format("{}: {} is no {} from 0 to {:g} seconds of card time", option, text, what, kLongest));
+  }
+  return *value;
+}
+
+std::pair<std::string_view, std::string_view> halves(const std::string& option, const std::string& text,
+                                                     const char* form) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) throw UsageError(fmt::format("{}: {} must be {}", option, text, form));
+  return {std::string_view(text).substr(0, colon), std::string_view(text).substr(colon + 1)};
+}
+
+// A resume ends the latest hold alone: two that overlap have no meaning that all would guess.
+void refuse_overlaps(const std::vector<OperatorEvent>& events) {
+  const OperatorEvent* hold = nullptr;
+  for (const OperatorEvent& event : events) {
+    if (event.kind == OperatorEvent::Kind::kHold) {
+      if (hold != nullptr) {
+        throw UsageError(fmt::format("--hold-at: the hold at {:g} s begins before the one at {:g} s is over",
+                                     event.seconds, hold->seconds));
+      }
+      hold = &event;
+    } else if (event.kind == OperatorEvent::Kind::kResume) {
+      hold = nullptr;
+    }
+  }
+}
+
+}  // namespace
+
+void MotionChoice::add_to(CLI::App& command) {
+  command.add_option("--override", percent, "share of the planned speed, from the start on (default: 100)")
+      ->type_name("PERCENT");
+  command.add_option("--override-at", override_at, "change the override at a time of the card (repeatable)")
+      ->type_name("SECONDS:PERCENT")
+      ->allow_extra_args(false);
+  command.add_option("--hold-at", hold_at, "hold at a time of the card, for so long from the request on (repeatable)")
+      ->type_name("SECONDS:DURATION")
+      ->allow_extra_args(false);
+  command.add_option("--feed-scale", feed_scale, "factor on every programmed feed (default: 1)")
+      ->check(between(0.001, 1000, "a factor"))
+      ->type_name("FACTOR");
+  command.add_option("--limit-bus", bytes_per_second, "bytes a second of the bus, 4 a word, both ways, in card time")
+      ->check(between(1, 1e9, "bytes a second"))
+      ->type_name("BYTES_PER_SECOND");
+  command.add_option("--from-line", first_line, "begin at this line; those before it set modes and position alone")
+      ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()).description(""))
+      ->type_name("N");
+  command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
+  command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
+}
+
+Operation MotionChoice::operation(double most_percent) const {
+  Operation result;
+  result.percent = percent_of("--override", percent, most_percent);
+  result.bytes_per_second = bytes_per_second.value_or(std::numeric_limits<double>::infinity());
+  for (const std::string& text : override_at) {
+    const auto [at, to] = halves("--override-at", text, "SECONDS:PERCENT");
+    const double seconds = seconds_of("--override-at", at, "time");
+    result.events.push_back({OperatorEvent::Kind::kOverride, seconds, percent_of("--override-at", to, most_percent)});
+  }
+  for (const std::string& text : hold_at) {
+    const auto [at, duration] = halves("--hold-at", text, "SECONDS:DURATION, both in seconds");
+    const double begin = seconds_of("--hold-at", at, "time");
+    const double end = begin + seconds_of("--hold-at", duration, "duration");
+    result.events.push_back({OperatorEvent::Kind::kHold, begin, 0});
+    result.events.push_back({OperatorEvent::Kind::kResume, end, 0});
+  }
+  std::stable_sort(result.events.begin(), result.events.end(),
+                   [](const OperatorEvent& a, const OperatorEvent& b) { return a.seconds < b.seconds; });
+  refuse_overlaps(result.events);
+  double last = result.percent;
+  for (const OperatorEvent& event : result.events) {
+    if (event.kind == OperatorEvent::Kind::kOverride) last = event.percent;
+  }
+  if (last == 0) throw UsageError("--override: 0 percent to the end, and the program would never end");
+  return result;
+}
+
+run::RunSettings MotionChoice::settings() const {
+  run::RunSettings settings;
+  settings.reader.block_delete = !run_deleted;
+  settings.reader.feed_scale = feed_scale;
+  settings.first_line = first_line;
+  settings.single_block = single_block;
+  return settings;
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,28 @@
+// `trammel run --check`: reads, plans and times a program; nothing runs.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "trammel/machine/machine.hpp"
+#include "trammel/run/runner.hpp"
+
+namespace trammel::app {
+
+struct CheckResult {
+  run::Plan plan;
+  std::string axes;  // letters in the card's order
+  std::vector<double> final_millimetres;
+  std::uint32_t clock_hz = 0;
+};
+
+// Throws run::ProgramError.
+CheckResult check_program(const run::ProgramLines& lines, const machine::Machine& machine,
+                          const planner::CardLimits& card, const run::RunSettings& settings);
+
+// Some lines of text, units in every one.
+std::string summary(const CheckResult& result);
+// What it has in common with a run's result, under the same names.
+nlohmann::ordered_json json_of(const CheckResult& result);
+
+}  // namespace trammel::app

@@ -1,0 +1,92 @@
+#include "junction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "trammel/driver/trigonometry.hpp"
+
+namespace trammel::planner {
+namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+// Directions that differ by less are the same: a program's numbers have some five digits.
+constexpr double kTangentSquare = 1e-4 * 1e-4;
+constexpr double kReversal = -0.9999;  // cosine; less than a degree off
+constexpr double kEven = 1e-6;
+
+}  // namespace
+
+Junctions::Junctions(const machine::Machine& machine)
+    : axes_(machine.axes.size()), deviation_(machine.motion.junction_deviation) {
+  const machine::MotionSettings& motion = machine.motion;
+  const double share = (1 - motion.hold_reserve) / (motion.max_override * motion.max_override);
+  for (std::size_t i = 0; i < axes_; ++i) {
+    const char letter = machine.axes[i].letter;
+    linear_[i] = letter >= 'X' && letter <= 'Z';
+    acceleration_[i] = machine.axes[i].max_acceleration * share;
+  }
+}
+
+Junctions::Turn Junctions::turn(const Block& from, const Block& to) const {
+  double square = 0;
+  double dot = 0;
+  double before = 0;
+  double after = 0;
+  for (std::size_t i = 0; i < axes_; ++i) {
+    if (!in_angle(i, from)) continue;
+    const double change = to.entry[i] - from.exit[i];
+    square += change * change;
+    dot += to.entry[i] * from.exit[i];
+    before += from.exit[i] * from.exit[i];
+    after += to.entry[i] * to.entry[i];
+  }
+  const double lengths = std::sqrt(before * after);
+  return {square, lengths > 0 ? dot / lengths : -1, std::abs(before - 1) <= kEven && std::abs(after - 1) <= kEven};
+}
+
+// Deviation formula and centripetal limit.
+double Junctions::corner_square(const Block& from, const Block& to, const Turn& turn) const {
+  double acceleration = kNoLimit;
+  const double size = std::sqrt(turn.square);
+  for (std::size_t i = 0; i < axes_; ++i) {
+    const double part = std::abs(to.entry[i] - from.exit[i]);
+    if (in_angle(i, from) && part > 0) acceleration = std::min(acceleration, acceleration_[i] * size / part);
+  }
+  // The sine and the cosine of half the angle.
+  const double sine = std::min(1.0, size / 2);
+  const double cosine = std::sqrt(1 - sine * sine);
+  const double angle = 2 * driver::arc_tangent(sine, cosine);
+  // 1 - cosine without its rounding.
+  const double formula = acceleration * deviation_ * cosine * (1 + cosine) / (sine * sine);
+  return std::min(formula, acceleration * std::min(from.length, to.length) / angle);
+}
+
+// The speed at which no axis outside the angle, or no axis at all, jumps by more than it may.
+double Junctions::jump_speed(const Block& from, const Block& to, bool all) const {
+  double speed = kNoLimit;
+  for (std::size_t i = 0; i < axes_; ++i) {
+    const double part = std::abs(to.entry[i] - from.exit[i]);
+    if (part == 0 || (!all && in_angle(i, from))) continue;
+    speed = std::min(speed, std::sqrt(acceleration_[i] * deviation_) / part);
+  }
+  return speed;
+}
+
+Junction Junctions::between(const Block& from, const Block& to) const {
+  Junction junction;
+  if (from.path_control == gcode::PathControl::kExactStop || from.linear != to.linear) return junction;
+  const Turn corner = turn(from, to);
+  if (corner.cosine < kReversal) return junction;
+  for (std::size_t i = 0; i < axes_; ++i) junction.jump = std::max(junction.jump, std::abs(to.entry[i] - from.exit[i]));
+  const bool tangent = corner.square <= kTangentSquare;
+  if (!tangent && (deviation_ == 0 || from.path_control == gcode::PathControl::kExactPath)) return junction;
+  if (tangent) junction.bend = std::abs(to.curvature - from.curvature);
+  junction.speed = std::min({from.speed, to.speed, jump_speed(from, to, !corner.even)});
+  if (corner.even && corner.square > 0) {
+    junction.speed = std::min(junction.speed, std::sqrt(corner_square(from, to, corner)));
+  }
+  return junction;
+}
+
+}  // namespace trammel::planner

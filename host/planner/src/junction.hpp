@@ -1,0 +1,41 @@
+// How fast the corner between two blocks may be passed. Internal to the planner; pure.
+#pragma once
+
+#include <array>
+
+#include "trammel/machine/machine.hpp"
+#include "trammel/planner/block.hpp"
+
+namespace trammel::planner {
+
+struct Junction {
+  double speed = 0;  // mm/s, the most; 0: a stop
+  double jump = 0;   // the largest jump of an axis's velocity at a speed of 1
+  double bend = 0;   // 1/mm, the jump of curvature; the acceleration's at a speed of 1 where the path has no corner
+};
+
+class Junctions {
+ public:
+  explicit Junctions(const machine::Machine& machine);
+  // Both move.
+  Junction between(const Block& from, const Block& to) const;
+
+ private:
+  // Of the axes whose directions make the angle, or of the others: all that the two rules need.
+  struct Turn {
+    double square;  // of the difference of the directions
+    double cosine;
+    bool even;  // both directions are as long as the path
+  };
+  bool in_angle(std::size_t axis, const Block& block) const { return linear_[axis] || !block.linear; }
+  Turn turn(const Block& from, const Block& to) const;
+  double corner_square(const Block& from, const Block& to, const Turn& turn) const;
+  double jump_speed(const Block& from, const Block& to, bool all) const;
+
+  std::size_t axes_;
+  std::array<bool, card_map::kMaxAxes> linear_{};          // X Y Z
+  std::array<double, card_map::kMaxAxes> acceleration_{};  // mm/s^2
+  double deviation_;                                       // mm
+};
+
+}  // namespace trammel::planner

@@ -1,0 +1,145 @@
+#include "look_ahead.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "trammel/driver/card_timing.hpp"
+#include "trapezoid_plan.hpp"
+
+namespace trammel::planner {
+namespace {
+
+constexpr double kTicksPerPulse = 128;  // steps even to 1/64
+constexpr double kMostTicks = 0x1p38;   // of a block; a command has 40 bits, and pieces span blocks
+constexpr double kLeastRate = 0x1p-30;  // ticks a clock; four times the finest floor
+constexpr double kMaxTickRate = 0.9;    // ticks a clock; above it shapers have no jitter left, holds no evenness
+constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
+// Blocks that are planned, but whose stop distances wait for what follows.
+constexpr std::size_t kSpare = 4096;
+
+}  // namespace
+
+Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
+                              const PlannerSettings& settings)
+    : blocks_(blocks),
+      settings_(settings),
+      clock_hz_(card.clock_hz / machine.motion.max_override),
+      gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kFewestAxes, card.axes)))),
+      junctions_(machine),
+      path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
+      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, false, card.classes),
+      plan_(std::make_unique<TrapezoidPlan>(static_cast<std::size_t>(machine.motion.window))) {}
+
+PathEntry* Planner::LookAhead::first() {
+  while (path_.begin() == path_.end() || (moves(path_[path_.begin()].block) && !quantiser_.ready())) {
+    if (ended_ && !draining_) return nullptr;
+    go_on();
+  }
+  return &path_[path_.begin()];
+}
+
+void Planner::LookAhead::go_on() {
+  if (draining_ || plan_->full()) {
+    Phase phase;
+    if (plan_->next(phase)) {
+      quantiser_.add(phase);
+    } else {
+      draining_ = false;
+    }
+    return;
+  }
+  if (path_.full()) {
+    quantiser_.force();
+    return;
+  }
+  read_block();
+}
+
+void Planner::LookAhead::read_block() {
+  PathEntry& entry = path_.push();
+  entry.timed = false;
+  if (!blocks_.next(entry.block)) {
+    path_.unpush();
+    ended_ = true;
+    if (tail_ != nullptr) end_run(*tail_);
+    return;
+  }
+  if (moves(entry.block)) {
+    add_motion(entry);
+  } else if (tail_ != nullptr) {
+    end_run(*tail_);
+  }
+}
+
+void Planner::LookAhead::add_motion(PathEntry& entry) {
+  entry.cut = entry.stop = false;
+  entry.jump = entry.bend = 0;
+  const Junction junction =
+      tail_ != nullptr && !settings_.exact_stop ? junctions_.between(tail_->block, entry.block) : Junction{};
+  if (tail_ != nullptr && junction.speed == 0) end_run(*tail_);
+  const bool same_class = rapid_ == entry.block.rapid;
+  const double density = same_class && suits(density_, entry.block) ? density_ : wanted_density(entry.block);
+  if (tail_ != nullptr) {
+    tail_->jump = junction.bend == 0 ? junction.jump : 0;
+    tail_->bend = junction.bend;
+    tail_->cut = !same_class || density != density_;
+    push_span(*tail_, junction.speed);
+  }
+  place(entry, density);
+  rapid_ = entry.block.rapid;
+  tail_ = &entry;
+}
+
+void Planner::LookAhead::end_run(PathEntry& last) {
+  last.cut = last.stop = true;
+  push_span(last, 0);
+  plan_->finish();
+  tail_ = nullptr;
+  draining_ = true;
+}
+
+void Planner::LookAhead::push_span(const PathEntry& entry, double exit_speed) {
+  const Block& block = entry.block;
+  plan_->push({block.length, block.speed, block.acceleration, block.jerk, exit_speed});
+}
+
+// Length and ticks go on through stops: a path has the same ticks wherever the program stops.
+void Planner::LookAhead::place(PathEntry& entry, double density) {
+  if (density != density_) {
+    density_ = density;
+    base_mm_ = end_mm_;
+    base_tick_ = end_tick_;
+  }
+  entry.density = density;
+  entry.begin = end_mm_;
+  entry.begin_ticks = end_tick_;
+  entry.end = end_mm_ += entry.block.length;
+  const auto ticks = static_cast<std::uint64_t>((entry.end - base_mm_) * density + 0.5);
+  const std::uint64_t least = end_tick_ + std::max<std::uint64_t>(1, entry.block.least_ticks);
+  entry.end_ticks = end_tick_ = std::max(base_tick_ + ticks, least);
+}
+
+// Ticks a mm: as many as evenness wants and the clock allows.
+double Planner::LookAhead::wanted_density(const Block& block) const {
+  const double density = std::min(even_density(block), kMaxTickRate * clock_hz_ / block.speed);
+  return std::min(std::max(density, least_density(block)), kMostTicks / block.length);
+}
+
+// Steps even to 1/64, and a line that lasts until the next one is decoded.
+double Planner::LookAhead::even_density(const Block& block) const {
+  return std::max(kTicksPerPulse * block.steps_per_mm, gap_free_ticks_ / block.length);
+}
+
+// What the pulses and the finest rate need.
+double Planner::LookAhead::least_density(const Block& block) const {
+  return std::max(kLeastRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length);
+}
+
+// Each change of density costs a piece: where the clock is the limit, half of what it allows serves too.
+bool Planner::LookAhead::suits(double density, const Block& block) const {
+  const double most = std::min(kMaxTickRate * clock_hz_ / block.speed, kMostTicks / block.length);
+  const double least = std::max(std::min(even_density(block), most / 2), least_density(block) / 2);
+  return density >= least * (1 - 1e-9) && density <= most * (1 + 1e-9);
+}
+
+}  // namespace trammel::planner

@@ -1,0 +1,60 @@
+// Holds the blocks that the speed of the first one depends on. Internal to the planner.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "junction.hpp"
+#include "path_ring.hpp"
+#include "quantiser.hpp"
+#include "trammel/planner/planner.hpp"
+#include "trammel/planner/speed_plan.hpp"
+
+namespace trammel::planner {
+
+class Planner::LookAhead {
+ public:
+  LookAhead(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
+            const PlannerSettings& settings);
+
+  // Plans until the first block is known, reading as many as it takes; none after the last.
+  PathEntry* first();
+  // How many pieces begin in the first block.
+  std::uint64_t pieces() const { return quantiser_.count(path_.begin()); }
+  // A piece that begins in the first block, in order; false after its last.
+  bool piece(driver::FeedCommand& piece) { return quantiser_.take(path_.begin(), piece); }
+  void pop() { path_.pop(); }
+
+ private:
+  void go_on();
+  void read_block();
+  void add_motion(PathEntry& entry);
+  void end_run(PathEntry& last);
+  void push_span(const PathEntry& entry, double exit_speed);
+  void place(PathEntry& entry, double density);
+  double wanted_density(const Block& block) const;
+  double even_density(const Block& block) const;
+  double least_density(const Block& block) const;
+  bool suits(double density, const Block& block) const;
+
+  BlockBuilder& blocks_;
+  PlannerSettings settings_;
+  double clock_hz_;  // enabled clocks a second
+  double gap_free_ticks_;
+  Junctions junctions_;
+  PathRing path_;
+  Quantiser quantiser_;
+  std::unique_ptr<SpeedPlan> plan_;
+  PathEntry* tail_ = nullptr;  // moves, and its span waits for the corner at its end
+  // Of the last motion: where it ends; its density, and where that is what it is from; its class.
+  double end_mm_ = 0;
+  std::uint64_t end_tick_ = 0;
+  double density_ = 0;
+  double base_mm_ = 0;
+  std::uint64_t base_tick_ = 0;
+  bool rapid_ = false;
+  bool draining_ = false;  // a run has ended
+  bool ended_ = false;
+};
+
+}  // namespace trammel::planner

@@ -1,0 +1,52 @@
+// The blocks on their way through look-ahead and quantiser, by the order in which they came. Internal to the planner.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "trammel/planner/block.hpp"
+
+namespace trammel::planner {
+
+// Length and feed ticks are counted from the start of the program.
+struct PathEntry {
+  Block block;
+  double begin = 0;  // mm
+  double end = 0;
+  double density = 0;  // feed ticks a mm
+  std::uint64_t begin_ticks = 0;
+  std::uint64_t end_ticks = 0;
+  bool cut = false;   // a piece ends with it: another class or density follows, or a stop
+  bool stop = false;  // ends at rest
+  double jump = 0;    // at its end, at a speed of 1 mm/s: of an axis's velocity, mm/s
+  double bend = 0;    // and of the acceleration, mm/s^2
+  // From the quantiser.
+  bool timed = false;  // the rest is known
+  bool short_sight = false;
+  double seconds = 0;
+  double speed = 0;      // mm/s, the highest
+  double end_speed = 0;  // mm/s
+};
+
+class PathRing {
+ public:
+  explicit PathRing(std::size_t capacity) : entries_(capacity) {}
+
+  // Counted from the first block of all.
+  std::uint64_t begin() const { return begin_; }
+  std::uint64_t end() const { return end_; }
+  bool full() const { return end_ - begin_ == entries_.size(); }
+  PathEntry& operator[](std::uint64_t i) { return entries_[i % entries_.size()]; }
+  // The next one, with the content of an old one.
+  PathEntry& push() { return entries_[end_++ % entries_.size()]; }
+  void pop() { ++begin_; }
+  void unpush() { --end_; }
+
+ private:
+  std::vector<PathEntry> entries_;
+  std::uint64_t begin_ = 0;
+  std::uint64_t end_ = 0;
+};
+
+}  // namespace trammel::planner

@@ -1,0 +1,303 @@
+#include "quantiser.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "roots.hpp"
+#include "trammel/card_map.hpp"
+
+namespace trammel::planner {
+namespace {
+
+constexpr double kUpdate = card_map::constant::kUpdateClocks;
+constexpr double kShortest = 4 * kUpdate;  // clocks; what is shorter makes one piece with what follows
+// The card's own rule for under-run is looked at every so many clocks at the latest.
+constexpr double kRuleClocks = 64;
+constexpr std::size_t kPieces = 16384;
+// The card goes on at a piece's last rate for so many clocks after its last tick; these ticks are the next piece's.
+constexpr double kSwapClocks = 6;
+constexpr double kLeastRate = 0x1p-32;
+
+std::uint64_t fixed64(double rate) { return static_cast<std::uint64_t>(std::min(rate, 1 - 0x1p-53) * 0x1p64); }
+std::int64_t signed64(double change) { return static_cast<std::int64_t>(change * 0x1p64); }
+std::uint32_t fixed32(double rate) { return static_cast<std::uint32_t>(std::clamp(rate, kLeastRate, 0.5) * 0x1p32); }
+std::uint32_t ticks32(double ticks) { return static_cast<std::uint32_t>(std::min(std::ceil(ticks), 4294967295.0)); }
+
+// When the distance has been gone from speed, acceleration and jerk on; Newton's method from `guess`.
+double time_at(double distance, double speed, double acceleration, double jerk, double guess) {
+  if (jerk == 0) {
+    const double end = std::sqrt(std::max(0.0, speed * speed + 2 * acceleration * distance));
+    const double sum = speed + end;
+    return sum > 0 ? 2 * distance / sum : 0;
+  }
+  constexpr int kMostSteps = 60;
+  constexpr double kExact = 1e-15;
+  double time = guess;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double gone = time * (speed + time * (acceleration / 2 + time * jerk / 6));
+    const double now = speed + time * (acceleration + time * jerk / 2);
+    if (!(now > 0)) return time;
+    const double step = (distance - gone) / now;
+    time += std::clamp(step, -0.5 * time - guess, 0.5 * time + guess);
+    if (std::abs(step) <= kExact * time) break;
+  }
+  return time;
+}
+
+}  // namespace
+
+Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth, bool classes)
+    : path_(path),
+      smooth_(smooth),
+      classes_(classes),
+      clock_hz_(clock_hz),
+      stop_clocks_(stop_clocks),
+      pieces_(kPieces),
+      highest_(kPieces) {}
+
+void Quantiser::add(const Phase& phase) {
+  while (!moves(path_[at_].block)) ++at_;
+  if (!moving_) {
+    moving_ = true;
+    // Where the density is what it is from does not matter: lengths go on from any place.
+    mm_ = base_mm_ = portion_mm_ = path_[at_].begin;
+    base_tick_ = tick_ = pending_.end = path_[at_].begin_ticks;
+    lead_ = 0;
+    rate_a_speed_ = path_[at_].density / clock_hz_;
+  }
+  const double begin = mm_;
+  mm_ += phase.length;
+  short_sight_ = phase.short_sight;
+  for (; !path_[at_].stop && (phase.stop || path_[at_].end <= mm_); ++at_) {
+    const PathEntry& block = path_[at_];
+    if (!block.cut) continue;
+    portion(phase, begin, block.end, block.end_ticks, true, false);
+    base_mm_ = block.end;
+    base_tick_ = block.end_ticks;
+    rate_a_speed_ = path_[at_ + 1].density / clock_hz_;
+  }
+  PathEntry& block = path_[at_];
+  if (phase.stop) {
+    portion(phase, begin, mm_, block.end_ticks, true, true);
+    moving_ = false;
+    ++at_;
+  } else {
+    // A ramp whose acceleration begins and ends at once gets the tick that it shares with a constant speed.
+    const double share = smooth_ ? 0.5 : phase.acceleration == 0 ? 0 : 1 - 1e-9;
+    const std::uint64_t tick =
+        base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
+    // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
+    portion(phase, begin, mm_, std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks)), false, false);
+  }
+  complete();
+}
+
+// Of a phase that begins at `begin`, from the last portion's end to `end`, which is about at `end_tick`.
+void Quantiser::portion(const Phase& phase, double begin, double end, std::uint64_t end_tick, bool last, bool stop) {
+  const auto place = [&](std::uint64_t tick) {
+    const double ticks =
+        tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
+    return base_mm_ + ticks / (rate_a_speed_ * clock_hz_) - begin;
+  };
+  // Smooth motion goes on beyond a border as it was: its speeds are those at the ticks. Else they are those at the
+  // borders, so that the speed has no jump where the acceleration has one.
+  const double from = smooth_ ? place(pending_.end) : std::max(0.0, portion_mm_ - begin);
+  const double to = smooth_ ? place(end_tick) : end - begin;
+  portion_mm_ = end;
+  const std::uint64_t ticks = end_tick > pending_.end ? end_tick - pending_.end : 0;
+  Motion motion;
+  if (ticks != 0) {
+    const bool empty = pending_.end == tick_;
+    const double lead = empty ? std::min(lead_, static_cast<double>(ticks) / 2) : 0;
+    motion = motion_of(phase, from + lead / (rate_a_speed_ * clock_hz_), to, static_cast<double>(ticks) - lead, stop);
+    if (motion.clocks >= kShortest || (empty && last)) {
+      if (!empty) put_pending(false);
+      put(motion, end_tick, stop);
+      return;
+    }
+    if (empty) pending_.motion.rate = motion.rate;
+    pending_.motion.end_rate = motion.end_rate;
+    pending_.motion.clocks = motion.clocks + (empty ? 0 : pending_.motion.clocks);
+    pending_.end = end_tick;
+  }
+  if (pending_.end != tick_) {
+    if (last || pending_.motion.clocks >= kShortest) put_pending(stop);
+  } else if (stop && last_ != first_) {
+    piece(last_ - 1).stop = true;
+  }
+}
+
+Quantiser::Motion Quantiser::steady(double rate, double end_rate, double ticks) {
+  Motion motion;
+  motion.rate = rate;
+  motion.end_rate = end_rate;
+  motion.acceleration = (end_rate - rate) * (end_rate + rate) / (2 * ticks);
+  motion.clocks = 2 * ticks / (rate + end_rate);
+  return motion;
+}
+
+// `from` and `to`: mm from where the phase begins; a part of a tick outside it, or one block's ticks too many.
+Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double to, double ticks, bool stop) const {
+  if (phase.jerk == 0) {
+    const auto rate_at = [&](double place) {
+      return rate_a_speed_ * std::sqrt(std::max(0.0, phase.speed * phase.speed + 2 * phase.acceleration * place));
+    };
+    const double rate = rate_at(std::min(from, to));
+    const double end_rate = rate_at(to);
+    const double rest = std::sqrt(std::abs(phase.acceleration) * rate_a_speed_ / clock_hz_);
+    const double most = std::max(rate, end_rate);
+    const double least = most > 0 ? std::min(rest, most) : rest;
+    return steady(std::max(rate, least), std::max(end_rate, least), ticks);
+  }
+  const double scale = phase.duration / phase.length;
+  const double begin = time_at(from, phase.speed, phase.acceleration, phase.jerk, from * scale);
+  const double end = stop ? phase.duration : time_at(to, phase.speed, phase.acceleration, phase.jerk, to * scale);
+  const auto rate_at = [&](double time) {
+    return std::max(0.0, phase.speed + time * (phase.acceleration + time * phase.jerk / 2)) * rate_a_speed_;
+  };
+  Motion motion;
+  motion.rate = rate_at(begin);
+  motion.end_rate = rate_at(end);
+  motion.acceleration = (phase.acceleration + begin * phase.jerk) * rate_a_speed_ / clock_hz_;
+  motion.jerk = phase.jerk * rate_a_speed_ / clock_hz_ / clock_hz_;
+  motion.clocks = (end - begin) * clock_hz_;
+  if (stop) motion.end_rate = std::max(motion.end_rate, cube_root(4.5 * std::abs(motion.jerk)));
+  return motion;
+}
+
+void Quantiser::put_pending(bool stop) {
+  const double ticks = static_cast<double>(pending_.end - tick_);
+  put(steady(pending_.motion.rate, pending_.motion.end_rate, ticks - std::min(lead_, ticks / 2)), pending_.end, stop);
+}
+
+// The highest or lowest rate lies inside where the acceleration changes its sign.
+double Quantiser::turning_rate(const Motion& motion) {
+  if (motion.jerk == 0) return motion.rate;
+  const double time = -motion.acceleration / motion.jerk;
+  if (!(time > 0 && time < motion.clocks)) return motion.rate;
+  return motion.rate + motion.acceleration * time / 2;
+}
+
+void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
+  while (!moves(path_[timed_].block)) ++timed_;
+  Piece& put = piece(last_++);
+  put = Piece{};
+  put.block = timed_;
+  put.stop = stop;
+  put.clocks = motion.clocks;
+  const double turning = turning_rate(motion);
+  put.most = std::max({motion.rate, motion.end_rate, turning});
+  driver::FeedCommand& command = put.command;
+  command.ticks = end_tick - tick_;
+  const bool one_rate = motion.clocks < kUpdate;
+  const double lead = std::min(lead_, static_cast<double>(command.ticks) / 2);
+  const double rate = one_rate ? (static_cast<double>(command.ticks) - lead) / motion.clocks
+                               : motion.rate + kUpdate / 2 * motion.acceleration + kUpdate * kUpdate / 6 * motion.jerk;
+  command.rate = fixed64(std::max(rate, kLeastRate));
+  command.acceleration = one_rate ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
+  command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);
+  if (classes_ && path_[timed_].block.rapid) command.piece_class = driver::PieceClass::kRapid;
+  command.floor = fixed32(std::min({motion.rate, motion.end_rate, turning, rate}));
+  if (stop && motion.jerk != 0) command.floor = fixed32(std::min(motion.end_rate, put.most));
+  time_blocks(motion, lead, end_tick, stop);
+  tick_ = pending_.end = end_tick;
+  lead_ = kSwapClocks * motion.end_rate;
+}
+
+// Durations and speeds of the blocks that the piece from tick_ to `end_tick` covers; the first `lead` ticks pass at the
+// rate of the piece before.
+void Quantiser::time_blocks(const Motion& motion, double lead, std::uint64_t end_tick, bool stop) {
+  const double swap = lead > 0 ? kSwapClocks : 0;
+  const double ticks = static_cast<double>(end_tick - tick_);
+  double before = -swap;
+  block_rate_ = std::max(block_rate_, motion.rate);
+  for (bool more = true; more;) {
+    PathEntry& block = path_[timed_];
+    block.short_sight = short_sight_ || (block_clocks_ != 0 && block.short_sight);
+    const bool ends = block.end_ticks <= end_tick;
+    const double share = ends ? static_cast<double>(block.end_ticks - tick_) : ticks;
+    Instant at{motion.clocks, motion.end_rate};
+    if (share <= lead) {
+      at = {swap * (share / lead - 1), motion.rate};
+    } else if (share < ticks) {
+      at = instant(motion, share - lead, ticks - lead);
+    }
+    block_rate_ = std::max(block_rate_, at.rate);
+    const double turning = motion.acceleration + before * motion.jerk > 0 ? turning_rate(motion) : 0;
+    if (motion.acceleration + at.clocks * motion.jerk < 0) block_rate_ = std::max(block_rate_, turning);
+    block_clocks_ += at.clocks - before;
+    before = at.clocks;
+    if (!ends) break;
+    block.seconds = block_clocks_ / clock_hz_;
+    block.speed = block_rate_ * clock_hz_ / block.density;
+    block.end_speed = block.stop ? 0 : at.rate * clock_hz_ / block.density;
+    block.timed = true;
+    block_clocks_ = 0;
+    block_rate_ = block.stop ? 0 : at.rate;
+    more = share < ticks && !block.stop;
+    ++timed_;
+  }
+  if (stop) block_rate_ = 0;
+}
+
+// Where `distance` of the motion's `ticks` are over.
+Quantiser::Instant Quantiser::instant(const Motion& motion, double distance, double ticks) {
+  const double time =
+      time_at(distance, motion.rate, motion.acceleration, motion.jerk, motion.clocks * distance / ticks);
+  return {time, motion.rate + time * (motion.acceleration + time * motion.jerk / 2)};
+}
+
+bool Quantiser::ready() const {
+  return path_[path_.begin()].timed && (completed_ == last_ || piece(completed_).block > path_.begin());
+}
+
+std::uint64_t Quantiser::count(std::uint64_t index) const {
+  std::uint64_t next = first_;
+  while (next != completed_ && piece(next).block == index) ++next;
+  return next - first_;
+}
+
+bool Quantiser::take(std::uint64_t index, driver::FeedCommand& command) {
+  if (first_ == completed_ || piece(first_).block != index) return false;
+  command = piece(first_++).command;
+  return true;
+}
+
+// Stop distances: a piece is complete when all is known that follows within T_s, or to the stop.
+void Quantiser::complete() {
+  while (completed_ != last_) {
+    if (seen_ == completed_) see_next();
+    while (seen_ != last_ && !piece(seen_ - 1).stop && seen_clocks_ < stop_clocks_) see_next();
+    const bool known = piece(seen_ - 1).stop || seen_clocks_ >= stop_clocks_;
+    if (!known && last_ - completed_ < kPieces / 2) return;
+    complete_first();
+  }
+}
+
+void Quantiser::force() {
+  if (last_ - completed_ >= 2) complete_first();
+}
+
+void Quantiser::see_next() {
+  const Piece& next = piece(seen_);
+  const auto slot = [](std::uint64_t i) { return i % kPieces; };
+  while (highest_last_ != highest_first_ && piece(highest_[slot(highest_last_ - 1)]).most <= next.most) --highest_last_;
+  highest_[slot(highest_last_++)] = seen_;
+  seen_clocks_ = seen_ == completed_ ? 0 : seen_clocks_ + next.clocks;
+  ++seen_;
+}
+
+void Quantiser::complete_first() {
+  Piece& first = piece(completed_);
+  const std::uint64_t highest = highest_[highest_first_ % kPieces];
+  const double rate = piece(highest).most;
+  // At least 1: 0 says that the piece ends at rest.
+  if (!first.stop)
+    first.command.stop_distance = std::max(1U, ticks32(std::ceil(stop_clocks_ * rate) + std::ceil(kRuleClocks * rate)));
+  if (highest == completed_) ++highest_first_;
+  ++completed_;
+  seen_clocks_ -= completed_ < seen_ ? piece(completed_).clocks : seen_clocks_;
+}
+
+}  // namespace trammel::planner

@@ -1,0 +1,52 @@
+// Speeds whose acceleration may jump: as fast as every span and corner allows with the acceleration of each span, seen
+// over `window` spans. Backward pass over v^2 when the window is full, forward pass for its first sixteenth, which then
+// leaves it. Internal to the planner.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "trammel/planner/speed_plan.hpp"
+
+namespace trammel::planner {
+
+class TrapezoidPlan final : public SpeedPlan {
+ public:
+  explicit TrapezoidPlan(std::size_t window);
+
+  bool full() const override { return count_ == nodes_.size() || due_ != 0 || given_ != made_; }
+  void push(const Span& span) override;
+  void finish() override;
+  bool next(Phase& phase) override;
+
+ private:
+  // Squares of speeds.
+  struct Node {
+    double length;
+    double acceleration;
+    double top;
+    double exit;    // the most at its end
+    double entry;   // the most at its start, so that all after it can be kept; below 0: not known yet
+    bool in_sight;  // `entry` does not come from the window's end
+  };
+  Node& node(std::size_t i) { return nodes_[(first_ + i) % nodes_.size()]; }
+  void look_back();
+  void plan_first();
+  void add(double length, double speed, double end_speed, double acceleration, bool in_sight);
+  void give_pending();
+
+  std::vector<Node> nodes_;
+  std::size_t chunk_;
+  std::size_t first_ = 0;
+  std::size_t count_ = 0;
+  std::size_t due_ = 0;  // spans whose phases are wanted before the next push
+  bool finished_ = false;
+  double speed_ = 0;  // squared, where the first span begins
+  Phase pending_;     // may go on in the next span
+  std::array<Phase, 4> phases_;
+  std::size_t made_ = 0;  // of phases_
+  std::size_t given_ = 0;
+};
+
+}  // namespace trammel::planner

@@ -1,0 +1,60 @@
+// Tells whether two runs made the same path: the steps of the path, and how late each comes out of its shaper.
+// Not thread-safe.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/steps.hpp"
+
+namespace trammel::run {
+
+// A number for the list of path steps (command, tick, axis, direction), in their order, without the times. Equal lists
+// have equal numbers; lists that differ have different ones, but for one pair of lists in 2^64.
+class PathIdentity final : public driver::StepSink {
+ public:
+  void pin_step(const driver::PinStep& /*step*/) override {}
+  void path_step(const driver::PathStep& step) override {
+    add(step.command);
+    add(step.tick << 8 | static_cast<std::uint64_t>(step.axis) << 1 | (step.direction < 0 ? 1U : 0U));
+    ++count_;
+  }
+  std::uint64_t count() const { return count_; }
+  std::string text() const;  // 16 hexadecimal digits
+
+ private:
+  void add(std::uint64_t word) {
+    hash_ = (hash_ ^ word) * 0x9E3779B97F4A7C15U;
+    hash_ ^= hash_ >> 32;
+  }
+
+  std::uint64_t hash_ = 0;
+  std::uint64_t count_ = 0;
+};
+
+// Clocks from a step of the path to its leading edge at the pins: what the shaper takes at least, and what it holds
+// steps back for pulse, space and direction times. The n-th pulse of an axis is its n-th step of the path.
+class ShaperDelay final : public driver::StepSink {
+ public:
+  struct Range {
+    std::uint64_t least = 0;
+    std::uint64_t most = 0;
+  };
+  void path_step(const driver::PathStep& step) override { waiting_[step.axis].push_back(step); }
+  // Throws std::runtime_error for a pulse that no step of the path asked for, or in the other direction.
+  void pin_step(const driver::PinStep& step) override;
+  // None before the first step.
+  const std::optional<Range>& range() const { return range_; }
+  // Throws std::runtime_error when a step of the path has not come out.
+  void finish() const;
+
+ private:
+  std::array<std::deque<driver::PathStep>, card_map::kMaxAxes> waiting_;  // in the shapers: a few
+  std::optional<Range> range_;
+};
+
+}  // namespace trammel::run

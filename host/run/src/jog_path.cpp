@@ -1,0 +1,128 @@
+#include "trammel/run/jog_path.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "jog_profile.hpp"
+#include "trammel/driver/errors.hpp"
+#include "trammel/driver/increment.hpp"
+
+namespace trammel::run {
+namespace {
+
+constexpr double kShaperShare = 0.95;       // of the rate at which the shaper makes pulses without a pause
+constexpr double kTicksPerPulse = 128;      // steps even to 1/64
+constexpr double kMostPulses = 0x1p30;      // of one jog and axis: half of what the counters hold each way
+constexpr double kMostTicks = 0x1p39;       // half of a command's 40 bits
+constexpr double kLeastTicks = 64;          // of a path
+constexpr double kLeastTickRate = 0x1p-30;  // ticks a clock
+
+// What the axes allow along a direction; all of them that it has.
+struct Allowed {
+  double speed = std::numeric_limits<double>::infinity();         // mm/s along the path
+  double acceleration = std::numeric_limits<double>::infinity();  // mm/s^2
+  double length = std::numeric_limits<double>::infinity();        // mm to the first end
+  double pulses = 0;                                              // of the finest axis, a mm of path
+};
+
+// How far an axis may go in a direction, pulses; whole ones within the soft limits.
+double room(const machine::MachineAxis& axis, std::int64_t here, bool upwards) {
+  const double limit = upwards ? std::floor(axis.max * axis.steps_per_mm) : -std::ceil(axis.min * axis.steps_per_mm);
+  return std::min(limit - static_cast<double>(upwards ? here : -here), kMostPulses);
+}
+
+Allowed allowed(const machine::Machine& machine, const driver::CardTiming& card, const planner::Pulses& here,
+                const gcode::Coordinates& direction) {
+  Allowed result;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    if (direction[a] == 0) continue;
+    const machine::MachineAxis& axis = machine.axes[a];
+    const double share = std::abs(direction[a]);
+    const double shaper = kShaperShare * card.clock_hz / card.pulse_period[a] / axis.steps_per_mm;
+    const double pulses = room(axis, here[a], direction[a] > 0);
+    if (pulses < 1) {
+      throw driver::ArgumentError(fmt::format("jog: axis {} stands at its soft limit, {:g} mm", axis.letter,
+                                              direction[a] > 0 ? axis.max : axis.min));
+    }
+    result.speed = std::min(result.speed, std::min(axis.max_velocity, shaper) / share);
+    result.acceleration = std::min(result.acceleration, axis.max_acceleration / share);
+    result.length = std::min(result.length, pulses / axis.steps_per_mm / share);
+    result.pulses = std::max(result.pulses, share * axis.steps_per_mm);
+  }
+  return result;
+}
+
+double norm(const machine::Machine& machine, const gcode::Coordinates& vector) {
+  double sum = 0;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) sum += vector[a] * vector[a];
+  if (!(sum > 0) || !std::isfinite(sum)) throw driver::ArgumentError("jog: no axis is told to move");
+  return std::sqrt(sum);
+}
+
+// At rest at its end; `length` is the path's, `limits` what holds along it.
+JogPath made(const machine::Machine& machine, const driver::CardTiming& card, const gcode::Coordinates& direction,
+             double length, double speed, const Allowed& limits) {
+  JogPath path;
+  path.length = length;
+  path.speed = speed;
+  path.ramp_seconds = 2 * speed / limits.acceleration;
+  const double rate = speed * limits.pulses;  // pulses/s
+  const double per_pulse =
+      std::max(std::min(kTicksPerPulse, kMostTickRate * card.clock_hz / rate), kLeastTickRate * card.clock_hz / rate);
+  const double ticks = std::clamp(std::round(per_pulse * limits.pulses * length), kLeastTicks, kMostTicks);
+  path.line.ticks = static_cast<std::uint64_t>(ticks);
+  bool any = false;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    // Towards zero: never beyond a limit.
+    const double slack = 1e-9;
+    const auto pulses = static_cast<std::int64_t>(direction[a] * length * machine.axes[a].steps_per_mm * (1 + slack));
+    if (pulses == 0) continue;
+    any = true;
+    path.line.mask = static_cast<std::uint8_t>(path.line.mask | 1U << a);
+    path.line.increment[a] = driver::rounded_increment(pulses, path.line.ticks);
+  }
+  if (!any) throw driver::ArgumentError(fmt::format("jog: {:g} mm are less than a pulse of any axis", length));
+  const double density = static_cast<double>(path.line.ticks) / length / card.clock_hz;
+  path.pieces = jog_profile(path.line.ticks, std::min(speed * density, kMostTickRate),
+                            limits.acceleration * density / card.clock_hz);
+  return path;
+}
+
+}  // namespace
+
+JogPath jog_path(const machine::Machine& machine, const driver::CardTiming& card, const planner::Pulses& here,
+                 const gcode::Coordinates& velocity) {
+  const double speed = norm(machine, velocity);
+  gcode::Coordinates direction{};
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) direction[a] = velocity[a] / speed;
+  const Allowed limits = allowed(machine, card, here, direction);
+  const double ramps = limits.speed * limits.speed / limits.acceleration;  // mm, both of them
+  if (limits.length < 2 * ramps) {
+    return made(machine, card, direction, limits.length, std::min(speed, limits.speed), limits);
+  }
+  JogPath path = made(machine, card, direction, limits.length, limits.speed, limits);
+  if (path.pieces.size() == 3) {
+    // At full rate from the first tick on: the ratio rises from 0.
+    path.pieces[1].ticks += path.pieces[0].ticks;
+    path.pieces.erase(path.pieces.begin());
+    path.ramped_by_time_base = true;
+  }
+  return path;
+}
+
+JogPath jog_path(const machine::Machine& machine, const driver::CardTiming& card, const planner::Pulses& here,
+                 const gcode::Coordinates& distance, double speed) {
+  if (!(speed > 0) || !std::isfinite(speed)) {
+    throw driver::ArgumentError(fmt::format("jog: a speed of {:g} mm/s", speed));
+  }
+  const double length = norm(machine, distance);
+  gcode::Coordinates direction{};
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) direction[a] = distance[a] / length;
+  const Allowed limits = allowed(machine, card, here, direction);
+  return made(machine, card, direction, std::min(length, limits.length), std::min(speed, limits.speed), limits);
+}
+
+}  // namespace trammel::run

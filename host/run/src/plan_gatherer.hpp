@@ -1,0 +1,43 @@
+// Makes the plan of what a pass tells. Internal to the runner.
+#pragma once
+
+#include "pipeline.hpp"
+#include "trammel/run/feed_report.hpp"
+#include "trammel/run/observer.hpp"
+
+namespace trammel::run {
+
+class PlanGatherer final : public Observer {
+ public:
+  explicit PlanGatherer(const Pipeline& pipeline) : pipeline_(pipeline) {
+    plan_.file = pipeline.file();
+    plan_.start = plan_.end = pipeline.start();
+  }
+
+  // A block of the one pass or the other, each once.
+  void planned(const planner::PlannedBlock& block, std::uint64_t /*first*/) override { add(block); }
+  void sending(const planner::PlannedBlock& block) override { add(block); }
+
+  // So far.
+  Plan plan() const {
+    Plan plan = plan_;
+    plan.feeds_not_reached = feeds_.entries();
+    plan.accepted = pipeline_.accepted();
+    return plan;
+  }
+
+ private:
+  void add(const planner::PlannedBlock& planned) {
+    feeds_.add(planned);
+    if (planner::moves(planned.block)) ++plan_.segments;
+    plan_.commands += planned.commands;
+    plan_.seconds += planned.seconds;
+    plan_.end = planned.block.end;
+  }
+
+  const Pipeline& pipeline_;
+  Plan plan_;
+  FeedReport feeds_;
+};
+
+}  // namespace trammel::run

@@ -1,0 +1,245 @@
+// What an operator does to a run: overrides, holds, a slow bus, a start in the middle. The path stays the same, step by
+// step; only times differ.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "command.hpp"
+
+namespace trammel::test {
+namespace {
+
+// What one run made.
+struct Made {
+  nlohmann::json json;
+  std::string path;  // the file of --path-steps
+  std::vector<Step> pins;
+};
+
+// Arcs, lines of three axes and reversals.
+constexpr char kProgram[] =
+    "F1500\nG1 X8 Y3\nG2 X12 Y7 I4\nG1 X2 Y9.3 Z1.7\nG3 X2 Y9.3 J-3\nG1 X9\nX3\nX4.1\nG4 P0.05\nG0 X0 Y0 Z0\nM2\n";
+
+class Operator : public testing::Test {
+ protected:
+  Made run(const std::string& program, const std::string& options) {
+    const Outcome outcome =
+        command_.run("run " + program + " --clock 250000 --engine model " + options + " --json " + command_.path("j") +
+                     " --steps " + command_.path("s") + " --path-steps " + command_.path("p"));
+    EXPECT_EQ(outcome.status, 0) << options << ": " << outcome.err;
+    return {read_json(command_.path("j")), contents(command_.path("p")), read_steps(command_.path("s"))};
+  }
+  // The directions of each axis's pulses, in order: the pins without their times.
+  static std::map<unsigned, std::string> order(const std::vector<Step>& pins) {
+    std::map<unsigned, std::string> result;
+    for (const Step& step : pins) result[step.axis] += step.direction > 0 ? '+' : '-';
+    return result;
+  }
+  void expect_same_path(const Made& made, const Made& other, const std::string& what) {
+    EXPECT_TRUE(made.path == other.path) << what;
+    EXPECT_EQ(made.json["path_steps"], other.json["path_steps"]) << what;
+    EXPECT_EQ(made.json["final_position"], other.json["final_position"]) << what;
+    EXPECT_EQ(made.json["shaper_delay"], other.json["shaper_delay"]) << what;
+    EXPECT_TRUE(order(made.pins) == order(other.pins)) << what;
+  }
+
+  Command command_;
+};
+
+// Ten moments in the run, in order, far enough apart for a hold each.
+std::vector<double> ten_moments(unsigned seed, double seconds) {
+  std::mt19937_64 random(seed);
+  std::vector<double> result;
+  for (int i = 0; i < 10; ++i) result.push_back((i + std::uniform_real_distribution<>(0, 0.5)(random)) * seconds / 10);
+  return result;
+}
+
+TEST_F(Operator, NothingThatHappensInTimeMovesThePath) {
+  const std::string program = command_.write("a.ngc", kProgram);
+  const Made plain = run(program, "");
+  const double seconds = plain.json["seconds"];
+  ASSERT_GT(plain.json["path_steps"]["count"], 4000);
+  std::string holds;
+  for (const double at : ten_moments(1, seconds)) holds += fmt::format(" --hold-at {}:{}", at, seconds / 40);
+  std::string overrides;
+  int percent = 20;
+  for (const double at : ten_moments(2, seconds)) {
+    overrides += fmt::format(" --override-at {}:{}", at, percent);
+    percent = (percent + 67) % 100 + 1;
+  }
+  for (const std::string& options :
+       {std::string("--override 37"), holds, overrides, holds + overrides, std::string("--limit-bus 150")}) {
+    const Made other = run(program, options);
+    expect_same_path(plain, other, options);
+    EXPECT_GT(other.json["seconds"], seconds * 1.03) << options << " took time";
+    EXPECT_LT(other.json["feed"]["achieved"], plain.json["feed"]["achieved"]) << options;
+    EXPECT_EQ(other.json["feed"]["commanded"], plain.json["feed"]["commanded"]) << options;
+  }
+  EXPECT_NEAR(run(program, "--override 37").json["feed"]["achieved"].get<double>(),
+              0.37 * plain.json["feed"]["achieved"].get<double>(), 2);
+}
+
+// The list's number tells paths apart that end on the same point with as many steps.
+TEST_F(Operator, AnotherPathHasAnotherIdentity) {
+  const Made one = run(command_.write("a.ngc", "G1 X3 Y1 F900\nX0 Y0\n"), "");
+  const Made other = run(command_.write("b.ngc", "G1 X3 F900\nX0\nY1\nY0\n"), "");
+  EXPECT_EQ(one.json["path_steps"]["count"], other.json["path_steps"]["count"]);
+  EXPECT_NE(one.json["path_steps"]["identity"], other.json["path_steps"]["identity"]);
+}
+
+TEST_F(Operator, EventsComeAtTheirClockOnBothEngines) {
+  const std::string program = command_.write("a.ngc", "G1 X4 F1200\nX2 Y1\n");
+  for (const std::string bus : {"", " --limit-bus 2000"}) {
+    std::vector<std::string> lists;
+    for (const std::string engine : {"rtl", "model"}) {
+      const Outcome outcome =
+          command_.run("run " + program + " --clock 1000000 --engine " + engine + bus +
+                       " --override-at 0.0005:80 --hold-at 0.1:0.05 --override-at 0.2:55.5 --json " +
+                       command_.path("j") + " --steps " + command_.path(engine));
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+      const nlohmann::json json = read_json(command_.path("j"));
+      ASSERT_EQ(json["events"].size(), 4U);
+      std::string text;
+      for (const nlohmann::json& event : json["events"]) {
+        const double due = event["seconds"].get<double>() * 1e6;
+        EXPECT_GE(event["cycle"], due);
+        EXPECT_LE(event["cycle"], due + 20);
+        text += event.dump();
+      }
+      EXPECT_EQ(json["events"][1]["event"], "hold");
+      EXPECT_EQ(json["events"][2]["event"], "resume");
+      EXPECT_EQ(json["events"][3]["percent"], 55.5);
+      lists.push_back(text + contents(command_.path(engine)));
+    }
+    EXPECT_TRUE(lists[0] == lists[1]) << bus;
+  }
+}
+
+// 20 mm/s on a machine whose slew takes 2 * 150 / 1000 s from full speed: the ramp goes 3 mm on, there and back.
+TEST_F(Operator, AHoldIsARampOnThePathAndItsTimeCountsFromTheRequest) {
+  const std::string program = command_.write("a.ngc", "G1 X20 F1200\n");
+  const Made plain = run(program, "");
+  const Made held = run(program, "--hold-at 0.3:0.5");
+  std::uint64_t gap = 0;
+  std::uint64_t begin = 0;
+  for (std::size_t i = 1; i < held.pins.size(); ++i) {
+    const std::uint64_t between = held.pins[i].cycle - held.pins[i - 1].cycle;
+    if (between > gap) {
+      gap = between;
+      begin = held.pins[i - 1].cycle;
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(begin) / 250000, 0.6, 0.02) << "at rest a slew after the request";
+  EXPECT_NEAR(static_cast<double>(begin + gap) / 250000, 0.8, 0.02) << "resumed half a second after the request";
+  EXPECT_NEAR(held.json["seconds"].get<double>() - plain.json["seconds"].get<double>(), 0.5, 0.01)
+      << "both slews at half the speed on the mean";
+}
+
+TEST_F(Operator, FeedScaleIsAFactorOnEveryFeed) {
+  const std::string once = command_.write("a.ngc", "G1 X8 F600\nY3 F300\nG93 G2 X9 Y4 I1 F60\nG94 G4 P0.1\n");
+  const std::string thrice = command_.write("b.ngc", "G1 X8 F1800\nY3 F900\nG93 G2 X9 Y4 I1 F180\nG94 G4 P0.1\n");
+  const Made scaled = run(once, "--feed-scale 3");
+  const Made written = run(thrice, "");
+  EXPECT_TRUE(scaled.path == written.path);
+  EXPECT_EQ(scaled.json["planned_seconds"], written.json["planned_seconds"]);
+  EXPECT_LT(scaled.json["planned_seconds"], run(once, "").json["planned_seconds"]);
+}
+
+TEST_F(Operator, FromALineOnModesAndPositionAreRestored) {
+  // Inches, relative, plane ZX and a feed come from above line 6.
+  const std::string program =
+      command_.write("a.ngc", "G20 G1 X1 Y0.5 F40\nG91\nG18\nZ0.25\nF30\nX0.2 Z0.1\nG2 X0.1 Z0.1 K0.1\nM2\n");
+  const Made whole = run(program, "");
+  const Made rest = run(program, "--from-line 6");
+  EXPECT_EQ(rest.json["final_position"], whole.json["final_position"]);
+  EXPECT_EQ(rest.json["segments"], 2);
+  EXPECT_EQ(rest.json["steps"][0], 610) << "0.3 inches from 1 inch on, at 80 steps/mm";
+  EXPECT_EQ(rest.json["steps"][1], 0);
+  const std::map<unsigned, std::string> all = order(whole.pins);
+  for (const auto& [axis, directions] : order(rest.pins)) {
+    EXPECT_EQ(directions, all.at(axis).substr(all.at(axis).size() - directions.size()));
+  }
+}
+
+TEST_F(Operator, SingleBlockStopsBehindEachLine) {
+  const std::string program = command_.write("a.ngc", kProgram);
+  const Made plain = run(program, "");
+  const Made single = run(program, "--single-block");
+  expect_same_path(plain, single, "single block");
+  EXPECT_GT(single.json["seconds"], plain.json["seconds"]) << "the card is idle between lines";
+}
+
+TEST_F(Operator, BlockDeleteSwitch) {
+  const std::string program = command_.write("a.ngc", "G1 X1 F600\n / Y1\n/X2\n");
+  EXPECT_EQ(run(program, "").json["final_position"], nlohmann::json({80, 0, 0, 0}));
+  EXPECT_EQ(run(program, "--no-block-delete").json["final_position"], nlohmann::json({160, 80, 0, 0}));
+}
+
+TEST_F(Operator, CheckTellsTheTimeOfTheRunAndRunsNothing) {
+  const std::string program = command_.write("a.ngc", std::string("G1 X100 F1200\n") + kProgram);
+  const Made made = run(program, "--feed-scale 0.5");
+  const Outcome outcome =
+      command_.run("run " + program + " --check --feed-scale 0.5 --clock 250000 --json " + command_.path("check"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("nothing was run"), std::string::npos);
+  const nlohmann::json check = read_json(command_.path("check"));
+  EXPECT_NEAR(check["planned_seconds"].get<double>() / made.json["seconds"].get<double>(), 1, 0.001);
+  for (const char* key : {"final_position", "segments", "commands", "axes", "program", "planned_seconds"}) {
+    EXPECT_EQ(check[key], made.json[key]) << key;
+  }
+  EXPECT_FALSE(check.contains("cycles"));
+  const Outcome bad = command_.run("run " + command_.write("b.ngc", "G1 X1 F600\nG1 Q\n") + " --check");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(bad.err.find("b.ngc:2: "), std::string::npos) << bad.err;
+}
+
+// The same run, read once; standard input needs no copy.
+TEST_F(Operator, StreamRunsWhatIsReadAndEndsAtRestWhereItIsWrong) {
+  const Made whole = run(command_.write("a.ngc", kProgram), "");
+  const Made streamed = run("- --stream <" + command_.path("a.ngc"), "");
+  expect_same_path(whole, streamed, "stream");
+  for (const char* key : {"segments", "commands", "planned_seconds", "cycles"}) {
+    EXPECT_EQ(streamed.json[key], whole.json[key]) << key;
+  }
+  const Outcome outcome =
+      command_.run("run - --stream --engine model --clock 250000 < <(printf 'G1 X3 F600\\nY2\\nG1 Q7\\nX0\\n')");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+  EXPECT_NE(outcome.err.find("standard input:3: "), std::string::npos) << outcome.err;
+  EXPECT_EQ(command_.run("run - <<< 'G1 Q7'").status, 2) << "without it nothing begins";
+}
+
+TEST_F(Operator, BadValuesAreRefusedWithTheirUnits) {
+  const std::string program = command_.write("a.ngc", "G1 X1 F600\n");
+  const std::map<std::string, std::string> wrong{
+      {"--override 101", "101 is no override from 0 to 100 percent (max_override"},
+      {"--override fast", "fast is no override from 0 to 100 percent"},
+      {"--override=-1", "-1 is no override from 0 to 100 percent"},
+      {"--override 0", "0 percent to the end"},
+      {"--override-at 1:50 --override-at 2:0", "0 percent to the end"},
+      {"--override-at 1", "1 must be SECONDS:PERCENT"},
+      {"--override-at x:5", "x is no time from 0 to 1e+09 seconds of card time"},
+      {"--override-at 1:500", "500 is no override from 0 to 100 percent"},
+      {"--hold-at 1", "1 must be SECONDS:DURATION, both in seconds"},
+      {"--hold-at 1:-2", "-2 is no duration from 0 to 1e+09 seconds of card time"},
+      {"--hold-at 1:2 --hold-at 2:1", "begins before the one at 1 s is over"},
+      {"--feed-scale 0", "must be a factor from 0.001 to 1000, not 0"},
+      {"--limit-bus 0.5", "must be bytes a second from 1 to 1000000000, not 0.5"},
+      {"--from-line 0", "must be a whole number, 1 to 4294967295, not 0"},
+      {"--from-line 2", "a.ngc:1: the program ends before line 2"},
+      {"--check --steps -", "--steps: nothing runs with --check"},
+      {"--stream --check", "--stream: nothing runs with --check"},
+      {"--stream --plot x.svg", "--plot: needs the whole program first"},
+  };
+  for (const auto& [options, message] : wrong) {
+    const Outcome outcome = command_.run("run " + program + " " + options);
+    EXPECT_EQ(outcome.status, 2) << options;
+    EXPECT_NE(outcome.err.find(message), std::string::npos) << options << ": " << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace trammel::test

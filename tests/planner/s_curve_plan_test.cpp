@@ -1,0 +1,343 @@
+#include "trammel/planner/s_curve_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "counted_allocations.hpp"
+#include "speed_plan_judge.hpp"
+
+namespace trammel::planner {
+namespace {
+
+using Spans = std::vector<Span>;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t kWindows[] = {1, 2, 16, 256, 16'384};
+
+std::vector<Phase> plan(const Spans& spans, std::size_t window = 16'384) {
+  SCurvePlan plan(window);
+  return test::plan_all(plan, spans);
+}
+
+double seconds(const Spans& spans, std::size_t window = 16'384) { return test::duration_of(plan(spans, window)); }
+
+// The same numbers on every host.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(next() >> 11) * 0x1p-53; }
+  double logarithmic(double low, double high) { return low * std::pow(high / low, uniform(0, 1)); }
+  std::size_t below(std::size_t end) { return static_cast<std::size_t>(next() % end); }
+
+ private:
+  std::uint64_t next() {  // splitmix64
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+    return z ^ (z >> 31);
+  }
+  std::uint64_t state_;
+};
+
+struct Limits {
+  double speed;
+  double acceleration;
+  double jerk;
+};
+
+Limits random_limits(Random& random) {
+  return {random.logarithmic(5, 500), random.logarithmic(100, 10'000), random.logarithmic(1'000, 1e6)};
+}
+
+// Lengths over four decades, corners of any speed, stops; speeds that differ when told.
+Spans moves(Random& random, const Limits& limits, bool speeds) {
+  Spans spans;
+  const std::size_t count = 1 + random.below(60);
+  const std::size_t stops = 2 + random.below(12);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double speed = speeds ? random.logarithmic(limits.speed / 50, limits.speed) : limits.speed;
+    const std::size_t kind = random.below(4 * stops);
+    const double exit = kind == 0 ? 0 : kind % 4 == 1 ? random.uniform(0, limits.speed) : kInfinite;
+    spans.push_back({random.logarithmic(0.005, 50), speed, limits.acceleration, limits.jerk, exit});
+  }
+  return spans;
+}
+
+Spans with_limits(Random& random, Spans spans, double factor) {
+  for (Span& span : spans) {
+    span.acceleration *= random.logarithmic(1, factor);
+    span.jerk *= random.logarithmic(1, factor);
+  }
+  return spans;
+}
+
+// Chords of a curve, corners by their centripetal limit; `noise` of the angles, as rounded ends have it.
+Spans chords(Random& random, const Limits& limits, const std::function<double(double)>& curvature, double noise) {
+  Spans spans;
+  const double chord = random.below(2) == 0 ? 0.02 : random.logarithmic(0.02, 1);
+  const double length = random.logarithmic(5, 200);
+  for (double at = 0; at < length; at += chord) {
+    const double angle = std::abs(curvature(at)) * chord * (1 + noise * random.uniform(-1, 1));
+    const double exit = angle > 1e-12 ? std::sqrt(limits.acceleration * chord / angle) : kInfinite;
+    spans.push_back({chord, limits.speed, limits.acceleration, limits.jerk, exit});
+  }
+  return spans;
+}
+
+Spans random_chords(Random& random, const Limits& limits) {
+  const double radius = random.logarithmic(1, 50);
+  const double noise = random.below(2) == 0 ? 0 : 1;
+  switch (random.below(3)) {
+    case 0:
+      return chords(
+          random, limits, [=](double) { return 1 / radius; }, noise);
+    case 1:
+      return chords(
+          random, limits, [=](double at) { return 1 / (radius + std::sqrt(at)); }, noise);
+    default:
+      return chords(
+          random, limits, [=](double at) { return std::sin(at / radius) / radius; }, noise);
+  }
+}
+
+// One acceleration and jerk for all spans of a program.
+Spans random_program(Random& random) {
+  const Limits limits = random_limits(random);
+  switch (random.below(3)) {
+    case 0:
+      return moves(random, limits, false);
+    case 1:
+      return moves(random, limits, true);
+    default:
+      return random_chords(random, limits);
+  }
+}
+
+double lone_move(double length, const Limits& limits) {
+  const double rise = limits.acceleration / limits.jerk;
+  const auto ramp = [&](double speed) {
+    return speed >= limits.acceleration * rise ? speed / limits.acceleration + rise
+                                               : 2 * std::sqrt(speed / limits.jerk);
+  };
+  if (limits.speed * ramp(limits.speed) <= length) return length / limits.speed + ramp(limits.speed);
+  if (length >= 2 * limits.acceleration * rise * rise) {  // v (v / a + a / j) = length
+    const double top = (std::sqrt(rise * rise + 4 * length / limits.acceleration) - rise) * limits.acceleration / 2;
+    return 2 * ramp(top);
+  }
+  return 4 * std::cbrt(length / (2 * limits.jerk));
+}
+
+TEST(SCurvePlan, LoneMovesTakeTheirClosedFormTime) {
+  const Limits limits = {100, 1'000, 10'000};  // a rise takes 0.1 s, a ramp to full speed 0.2 s and 10 mm
+  struct {
+    double length;
+    std::size_t phases;
+  } const cases[] = {{100, 5}, {20, 4}, {15, 4}, {1, 4}, {1e-6, 4}, {1e4, 5}};
+  for (const auto& lone : cases) {
+    const std::vector<Phase> phases = plan({{lone.length, limits.speed, limits.acceleration, limits.jerk, 0}});
+    EXPECT_EQ(phases.size(), lone.phases) << lone.length;
+    EXPECT_NEAR(test::duration_of(phases) / lone_move(lone.length, limits), 1, 1e-9) << lone.length;
+  }
+  Random random(1);
+  for (int i = 0; i < 10'000; ++i) {
+    const Limits some = random_limits(random);
+    const double length = random.logarithmic(1e-3, 1e3);
+    const Spans spans = {{length, some.speed, some.acceleration, some.jerk, 0}};
+    ASSERT_NEAR(seconds(spans) / lone_move(length, some), 1, 1e-9) << i;
+  }
+}
+
+TEST(SCurvePlan, RandomProgramsKeepTheirLimits) {
+  Random random(2);
+  for (int i = 0; i < 600; ++i) {
+    Spans spans = random_program(random);
+    if (random.below(2) == 0) spans = with_limits(random, spans, random.below(2) == 0 ? 1.4 : 100);
+    for (const std::size_t window : kWindows) {
+      ASSERT_EQ(test::fault_of(plan(spans, window), spans), "") << "program " << i << " window " << window;
+    }
+  }
+}
+
+TEST(SCurvePlan, TakesAtMostOneRiseMoreThanTheTrapezoidARamp) {
+  Random random(3);
+  for (int i = 0; i < 4'000; ++i) {
+    const Spans spans = random_program(random);
+    const test::Trapezoid best = test::trapezoid_of(spans);
+    const double time = seconds(spans);
+    ASSERT_GE(time, best.duration * (1 - 1e-9)) << i;
+    ASSERT_LE(time, best.duration + best.bends) << i;
+  }
+}
+
+TEST(SCurvePlan, ATrapezoidFailsItsJudge) {
+  Random random(4);
+  for (int i = 0; i < 300; ++i) {
+    const Spans spans = random_program(random);
+    const std::vector<Phase> phases = test::trapezoid_of(spans).phases;
+    ASSERT_EQ(test::fault_of(phases, spans, true), "") << i;
+    ASSERT_NE(test::fault_of(phases, spans).find("acceleration jumps"), std::string::npos) << i;
+  }
+}
+
+TEST(SCurvePlan, ItsJudgeSeesEachLimit) {
+  Random random(5);
+  const Span span = {30, 100, 1'000, 10'000, 0};
+  const std::vector<Phase> phases = plan({span, span, span});
+  ASSERT_EQ(test::fault_of(phases, {span, span, span}), "");
+  for (int i = 1; i < 4; ++i) {
+    Span less = span;
+    (i == 1 ? less.speed : i == 2 ? less.acceleration : less.jerk) *= 0.999;
+    EXPECT_NE(test::fault_of(phases, {i == 1 ? span : less, less, span}), "") << i;
+  }
+  Span corner = span;
+  corner.exit_speed = 99.9;
+  const Span free = {30, 100, 1'000, 10'000, kInfinite};
+  EXPECT_EQ(test::fault_of(plan({free, free}), {free, free}), "");
+  EXPECT_NE(test::fault_of(plan({free, free}), {corner, free}), "");
+  EXPECT_NE(test::fault_of(plan({free, free}), {free, free, free}), "");
+}
+
+TEST(SCurvePlan, OneRampSpansThousandsOfChords) {
+  const Spans spans(5'000, {0.02, 300, 3'000, 100'000, kInfinite});
+  const std::vector<Phase> phases = plan(spans);
+  EXPECT_EQ(phases.size(), 7U);
+  EXPECT_NEAR(test::duration_of(phases) / lone_move(100, {300, 3'000, 100'000}), 1, 1e-9);
+}
+
+TEST(SCurvePlan, NoAccelerationIsLostAtABorderInsideARamp) {
+  const Span half = {5, 100, 1'000, 10'000, kInfinite};
+  const std::vector<Phase> whole = plan({{10, 100, 1'000, 10'000, 0}});
+  const std::vector<Phase> halves = plan({half, half});
+  ASSERT_EQ(halves.size(), whole.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_NEAR(halves[i].length, whole[i].length, 1e-9);
+  const Span quarter = {2.5, 100, 1'000, 10'000, kInfinite};
+  EXPECT_NEAR(seconds({quarter, quarter, quarter, quarter}), test::duration_of(whole), 1e-9);
+}
+
+TEST(SCurvePlan, NoiseOfCornersCostsNoRamps) {
+  Spans spans(5'000, {0.02, 300, 3'000, 100'000, 54.77});
+  for (std::size_t i = 0; i < spans.size(); i += 3) spans[i].exit_speed *= 1.0001;
+  EXPECT_LE(plan(spans).size(), 7U);
+}
+
+TEST(SCurvePlan, WithoutALimitOfJerkItIsATrapezoid) {
+  Random random(6);
+  for (int i = 0; i < 500; ++i) {
+    Spans spans = moves(random, random_limits(random), true);
+    for (Span& span : spans) span.jerk = kInfinite;
+    const std::vector<Phase> phases = plan(spans);
+    ASSERT_EQ(test::fault_of(phases, spans, true), "") << i;
+    // Peaks of less than 1/256 are left out.
+    ASSERT_NEAR(test::duration_of(phases) / test::trapezoid_of(spans).duration, 1, 1.0 / 256) << i;
+  }
+}
+
+TEST(SCurvePlan, LongerWindowsAreNotSlower) {
+  const Spans spans(5'000, {0.02, 300, 3'000, 100'000, kInfinite});
+  const double whole = seconds(spans);
+  double before = kInfinite;
+  for (const std::size_t window : {16U, 64U, 256U, 1'024U, 4'096U}) {
+    const double time = seconds(spans, window);
+    EXPECT_LT(time, before) << window;
+    before = time;
+  }
+  EXPECT_LT(before, whole * 1.001);
+}
+
+// A window that is some stopping distances long takes the time of the whole path, and stops nowhere.
+TEST(SCurvePlan, AWindowOfSomeStoppingDistancesIsEnough) {
+  Spans spans;
+  for (int i = 0; i < 20'000; ++i) {
+    const double corner = 150 + 120 * std::sin(i * 0.001) + (i % 7);
+    spans.push_back({0.02, 300, 3'000, 100'000, corner});
+  }
+  const std::vector<Phase> phases = plan(spans, 4'096);
+  EXPECT_NEAR(test::duration_of(phases) / seconds(spans, 20'000), 1, 1e-3);
+  for (std::size_t i = 2; i < phases.size(); ++i) EXPECT_GT(phases[i].speed + (i + 1 == phases.size()) * 10, 10) << i;
+  EXPECT_EQ(std::count_if(phases.begin(), phases.end(), [](const Phase& phase) { return phase.short_sight; }), 0);
+}
+
+TEST(SCurvePlan, IsAFunctionOfTheSpansAlone) {
+  Random random(7);
+  for (int i = 0; i < 200; ++i) {
+    const Spans spans = random_program(random);
+    const std::vector<Phase> wanted = plan(spans, 16);
+    SCurvePlan other(16);
+    std::vector<Phase> phases;
+    Phase phase;
+    for (const Span& span : spans) {
+      while (other.full()) {
+        ASSERT_TRUE(other.next(phase));
+        phases.push_back(phase);
+      }
+      if (random.below(3) == 0 && other.next(phase)) phases.push_back(phase);
+      other.push(span);
+    }
+    other.finish();
+    while (other.next(phase)) phases.push_back(phase);
+    ASSERT_EQ(phases.size(), wanted.size());
+    for (std::size_t k = 0; k < phases.size(); ++k) {
+      ASSERT_EQ(phases[k].duration, wanted[k].duration);
+      ASSERT_EQ(phases[k].length, wanted[k].length);
+    }
+  }
+}
+
+TEST(SCurvePlan, AfterAStopItBeginsFromRest) {
+  const Span span = {30, 100, 1'000, 10'000, kInfinite};
+  SCurvePlan plan(4);
+  const std::vector<Phase> first = test::plan_all(plan, {span});
+  const std::vector<Phase> second = test::plan_all(plan, {span});
+  ASSERT_EQ(first.size(), second.size());
+  EXPECT_EQ(test::fault_of(first, {span}), "");
+  EXPECT_EQ(test::fault_of(second, {span}), "");
+  for (std::size_t i = 0; i < first.size(); ++i) EXPECT_EQ(first[i].stop, i + 1 == first.size());
+}
+
+TEST(SCurvePlan, AStopInMidPathIsNotOneThatFinishAskedFor) {
+  const Span span = {30, 100, 1'000, 10'000, 0};
+  const std::vector<Phase> phases = plan({span, span});
+  EXPECT_EQ(std::count_if(phases.begin(), phases.end(), [](const Phase& phase) { return phase.stop; }), 1);
+  EXPECT_TRUE(phases.back().stop);
+}
+
+TEST(SCurvePlan, SaysWhereTheWindowIsTooShort) {
+  const Spans spans(2'000, {0.02, 300, 3'000, 100'000, kInfinite});
+  const auto short_sighted = [&](std::size_t window) {
+    const std::vector<Phase> phases = plan(spans, window);
+    return std::count_if(phases.begin(), phases.end(), [](const Phase& phase) { return phase.short_sight; });
+  };
+  EXPECT_GT(short_sighted(16), 0);
+  EXPECT_EQ(short_sighted(16'384), 0);
+}
+
+TEST(SCurvePlan, AllocatesNothingASpan) {
+  Random random(8);
+  Spans spans;
+  while (spans.size() < 20'000) {
+    const Spans more = random_program(random);
+    spans.insert(spans.end(), more.begin(), more.end());
+  }
+  SCurvePlan plan(256);
+  Phase phase;
+  std::size_t phases = 0;
+  const std::size_t before = test::allocations();
+  for (const Span& span : spans) {
+    while (plan.full() && plan.next(phase)) ++phases;
+    plan.push(span);
+  }
+  plan.finish();
+  while (plan.next(phase)) ++phases;
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_GT(phases, 1'000U);
+}
+
+}  // namespace
+}  // namespace trammel::planner

@@ -1,0 +1,211 @@
+#include "trammel/run/jog.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "trammel/run/configure.hpp"
+#include "trammel/run/runner.hpp"
+#include "trammel/sim/timed_bus.hpp"
+
+namespace trammel::run {
+namespace {
+
+constexpr std::uint32_t kClock = 1'000'000;
+
+class Pins final : public driver::StepSink {
+ public:
+  void pin_step(const driver::PinStep& step) override { steps.push_back(step); }
+  void path_step(const driver::PathStep& /*step*/) override {}
+  std::vector<driver::PinStep> steps;
+};
+
+class JogTest : public testing::Test {
+ protected:
+  JogTest() {
+    machine::apply_override(machine_, "axis.x.max=40");
+    machine::apply_override(machine_, "axis.x.min=-10.004");  // between two pulses
+    machine::apply_override(machine_, "axis.y.max=30");
+    configure(card_, machine_);
+    engine_->set_sink(&pins_);
+  }
+  void pass(double seconds) { bus_.sleep(std::chrono::nanoseconds(static_cast<std::int64_t>(seconds * 1e9))); }
+  double seconds() const { return static_cast<double>(engine_->cycles()) / kClock; }
+  // Mean speed of an axis over the last so many seconds, mm/s.
+  double speed(unsigned axis, double window = 0.02) const {
+    const std::uint64_t now = engine_->cycles();
+    int pulses = 0;
+    for (const driver::PinStep& step : pins_.steps) {
+      if (step.axis == axis && step.cycle + static_cast<std::uint64_t>(window * kClock) > now) pulses += step.direction;
+    }
+    return pulses / 80.0 / window;
+  }
+  // The largest acceleration of an axis, over windows of 20 ms, mm/s^2.
+  double largest_acceleration(unsigned axis) const {
+    constexpr std::uint64_t kWindow = kClock / 50;
+    std::vector<double> counts(engine_->cycles() / kWindow + 2);
+    for (const driver::PinStep& step : pins_.steps) {
+      if (step.axis == axis) counts[step.cycle / kWindow] += step.direction;
+    }
+    double largest = 0;
+    for (std::size_t i = 1; i < counts.size(); ++i) {
+      // Counts are off by a pulse each.
+      largest = std::max(largest, std::abs(counts[i] - counts[i - 1]) - 2);
+    }
+    return largest / 80 * 50 * 50;
+  }
+
+  machine::Machine machine_ = machine::default_machine();
+  std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
+  sim::TimedBus bus_{*engine_, kClock, 8000};
+  driver::Card card_ = driver::Card::open(bus_);
+  Pins pins_;
+  MachinePosition position_{card_.snapshot(), machine_};
+  Jog jog_{card_, machine_, position_};
+};
+
+TEST_F(JogTest, SeveralAxesByADistance) {
+  jog_.start({3, -4}, 20);
+  const double begun = seconds();
+  EXPECT_TRUE(jog_.moving());
+  EXPECT_FALSE(card_.in_position());
+  jog_.wait();
+  EXPECT_TRUE(card_.in_position());
+  EXPECT_NEAR(seconds() - begun, 0.25 + 0.02, 0.03) << "5 mm at 20 mm/s, and a ramp";
+  EXPECT_EQ(position_.pulses(), (planner::Pulses{240, -320}));
+  EXPECT_LT(largest_acceleration(1), 1100);
+  jog_.start({-3, 4}, 20);
+  jog_.wait();
+  EXPECT_EQ(position_.pulses(), planner::Pulses{});
+}
+
+TEST_F(JogTest, StopsBeforeTheFirstSoftLimit) {
+  jog_.start({30, 10});  // x gets to 40 mm where y is at 13.3
+  jog_.wait();
+  EXPECT_EQ(position_.pulses()[0], 3200);
+  EXPECT_NEAR(static_cast<double>(position_.pulses()[1]), 1066.7, 1);
+  EXPECT_LT(largest_acceleration(0), 1100);
+  EXPECT_THROW(jog_.start({1, 0}), driver::ArgumentError) << "it stands there";
+  jog_.start({-500, 0}, 60);
+  jog_.wait();
+  EXPECT_EQ(position_.pulses()[0], -800) << "not beyond -10.004 mm";
+  jog_.start({0, 0, 1}, 5);
+  jog_.wait();
+  EXPECT_EQ(position_.pulses()[2], 80) << "without limits";
+}
+
+TEST_F(JogTest, RunsUntilItIsStoppedAndRampsDown) {
+  machine::apply_override(machine_, "axis.x.max=1e4");
+  jog_.start({30, 0});
+  pass(1);
+  EXPECT_NEAR(speed(0), 30, 1);
+  const std::size_t before = pins_.steps.size();
+  jog_.stop();
+  jog_.wait();
+  // 30 mm/s at half of 1000 mm/s^2: 60 ms, 0.9 mm.
+  EXPECT_NEAR(static_cast<double>(pins_.steps.size() - before), 0.9 * 80, 4);
+  EXPECT_LT(largest_acceleration(0), 600);
+  const std::int64_t stood = position_.pulses()[0];
+  EXPECT_EQ(stood, static_cast<std::int64_t>(pins_.steps.size()));
+  pass(1);
+  EXPECT_EQ(static_cast<std::int64_t>(pins_.steps.size()), stood) << "nothing comes after it";
+}
+
+TEST_F(JogTest, ItsSpeedIsChangedWithinLimits) {
+  machine::apply_override(machine_, "axis.x.max=1e4");
+  jog_.start({30, 0});
+  pass(0.5);
+  EXPECT_NEAR(jog_.set_speed(80), 80, 0.01);
+  pass(0.5);
+  EXPECT_NEAR(speed(0), 80, 1);
+  EXPECT_DOUBLE_EQ(jog_.set_speed(1000), 150) << "max_velocity";
+  pass(0.5);
+  EXPECT_NEAR(speed(0), 150, 2);
+  jog_.set_speed(5);
+  pass(0.5);
+  EXPECT_NEAR(speed(0, 0.2), 5, 0.2);
+  EXPECT_LT(largest_acceleration(0), 600);
+  jog_.stop();
+  EXPECT_EQ(jog_.set_speed(50), 0) << "it stops";
+  jog_.wait();
+}
+
+// Reaction: a look at the card 10 ms after the call, on a bus of 8 kB/s.
+TEST_F(JogTest, ReactsWithinTenMilliseconds) {
+  machine::apply_override(machine_, "axis.x.max=1e4");
+  const auto ratio_after = [&](double begun) {
+    pass(std::max(0.0, begun + 0.01 - seconds()));
+    return engine_->read(card_map::reg::kStatus), card_.snapshot().ratio;
+  };
+  double begun = seconds();
+  jog_.start({75, 0});
+  pass(0.5);
+  EXPECT_GT(pins_.steps.front().cycle, begun * kClock);
+  std::uint32_t ratio = card_.snapshot().ratio;
+  EXPECT_NEAR(ratio, 0x8000, 2);
+  begun = seconds();
+  jog_.set_speed(140);
+  EXPECT_LE(seconds() - begun, 0.002);
+  EXPECT_GT(ratio_after(begun), ratio + 1000) << "faster";
+  pass(0.5);
+  ratio = card_.snapshot().ratio;
+  begun = seconds();
+  jog_.stop();
+  EXPECT_LT(ratio_after(begun), ratio - 1000) << "slower";
+  jog_.wait();
+  // The start: the stream is opened and three commands written, 40 words or so; with what a bus of 100 kB/s takes.
+  sim::TimedBus fast(*engine_, kClock, 100'000);
+  driver::Card card = driver::Card::open(fast);
+  MachinePosition position(card.snapshot(), machine_);
+  Jog jog(card, machine_, position);
+  begun = seconds();
+  const std::size_t made = pins_.steps.size();
+  jog.start({75, 0});
+  fast.sleep(std::chrono::milliseconds(10));
+  EXPECT_GT(pins_.steps.size(), made);
+  EXPECT_LT(static_cast<double>(pins_.steps[made].cycle) / kClock - begun, 0.01);
+  jog.stop();
+  jog.wait();
+}
+
+TEST_F(JogTest, GivesTheTimeBaseBackAndProgramsGoOnFromThere) {
+  card_.set_ratio(0x6000);
+  const std::uint32_t slew = card_.read(card_map::reg::kSlew);
+  position_.set(0, 25);
+  jog_.start({0, 30});
+  pass(0.2);
+  jog_.stop();
+  jog_.wait();
+  EXPECT_EQ(card_.read(card_map::reg::kRatioFeed), 0x6000U);
+  EXPECT_EQ(card_.read(card_map::reg::kSlew), slew);
+  EXPECT_EQ(card_.read(card_map::reg::kHold), 0U);
+  RunSettings there;
+  there.start = position_.millimetres();
+  Runner runner([] { return std::make_unique<gcode::TextLines>("G0 X24\nG1 Y0 F900\n", "p.ngc"); }, machine_,
+                planner::limits_of(card_.identification()), there);
+  runner.plan();
+  EXPECT_EQ(runner.run(card_).final_position[0], 24 * 80);
+  position_.look(card_.snapshot());
+  EXPECT_EQ(position_.pulses(), (planner::Pulses{24 * 80, 0}));
+}
+
+TEST_F(JogTest, RefusesWhatIsNoJog) {
+  EXPECT_THROW(jog_.start({0, 0}), driver::ArgumentError);
+  EXPECT_THROW(jog_.start({NAN, 0}), driver::ArgumentError);
+  EXPECT_THROW(jog_.start({1, 0}, 0), driver::ArgumentError);
+  EXPECT_THROW(jog_.start({0.001, 0}, 10), driver::ArgumentError) << "less than a pulse";
+  EXPECT_FALSE(jog_.moving());
+  jog_.start({1, 0});
+  EXPECT_THROW(jog_.start({1, 0}), driver::StateError);
+  jog_.stop();
+  jog_.wait();
+  driver::Stream stream(card_);
+  stream.send(driver::DwellCommand{kClock});
+  EXPECT_THROW(jog_.start({1, 0}), driver::StateError) << "the card is busy";
+}
+
+}  // namespace
+}  // namespace trammel::run

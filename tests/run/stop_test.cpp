@@ -1,0 +1,157 @@
+// A run that is stopped on its path, and the next program right from there.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "trammel/driver/stream.hpp"
+#include "trammel/run/machine_position.hpp"
+#include "trammel/run/path_identity.hpp"
+#include "trammel/run/runner.hpp"
+#include "trammel/run/step_fork.hpp"
+#include "trammel/sim/timed_bus.hpp"
+
+namespace trammel::run {
+namespace {
+
+constexpr std::uint32_t kClock = 400'000;
+constexpr char kProgram[] =
+    "F3000\nG1 X8 Y3\nG2 X12 Y7 I4\nG4 P0.1\nG1 X2 Y9.3 Z1.7\nG3 X2 Y9.3 J-3\nG1 X30\nG0 X0 Y0 Z0\n";
+
+class Steps final : public driver::StepSink {
+ public:
+  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
+  void path_step(const driver::PathStep& step) override { path.push_back(step); }
+  std::vector<driver::PinStep> pins;
+  std::vector<driver::PathStep> path;
+};
+
+// A card on a bus of its own, where programs are run one after another.
+class Bench {
+ public:
+  Bench() { engine->set_sink(&steps); }
+
+  ProgramLines lines(const std::string& text) {
+    return [text = std::make_shared<const std::string>(text)]() -> std::unique_ptr<gcode::LineSource> {
+      return std::make_unique<gcode::TextLines>(*text, "p.ngc");
+    };
+  }
+  Outcome run(const std::string& text, const RunSettings& settings = {}) {
+    Runner runner(lines(text), machine, planner::limits_of(card.identification()), settings);
+    runner.plan();
+    return runner.run(card);
+  }
+
+  machine::Machine machine = machine::default_machine();
+  std::unique_ptr<sim::Engine> engine = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
+  sim::TimedBus bus{*engine, kClock, 1e9};
+  driver::Card card = driver::Card::open(bus);
+  Steps steps;
+};
+
+bool same(const driver::PathStep& a, const driver::PathStep& b) {
+  return a.command == b.command && a.tick == b.tick && a.axis == b.axis && a.direction == b.direction;
+}
+
+TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
+  Bench whole;
+  whole.run(kProgram);
+  for (double at = 0.03; at < 2.3; at += 0.0617) {
+    SCOPED_TRACE(at);
+    Bench bench;
+    MachinePosition position(bench.card.snapshot(), bench.machine);
+    const auto due = static_cast<std::uint64_t>(at * kClock);
+    bench.bus.at(due, [&](sim::Engine&) { bench.card.request_stop(); });
+    std::optional<std::size_t> line;
+    try {
+      bench.run(kProgram);
+    } catch (const StoppedOnPath& stopped) {
+      line = stopped.line();
+    }
+    ASSERT_TRUE(line);
+    const std::size_t made = bench.steps.path.size();
+    ASSERT_LT(made, whole.steps.path.size());
+    for (std::size_t i = 0; i < made; ++i) ASSERT_TRUE(same(bench.steps.path[i], whole.steps.path[i])) << i;
+    EXPECT_EQ(bench.steps.pins.size(), made) << "every step of the path came out, and none after it";
+    EXPECT_TRUE(bench.card.in_position());
+    EXPECT_FALSE(bench.card.status().held) << "the hold is over, or soon will be";
+    // 0.3 s of ramp from full speed; 50 mm/s of 150 take a third of it.
+    EXPECT_LE(
+        static_cast<double>(bench.steps.pins.back().cycle - std::min(due, bench.steps.pins.back().cycle)) / kClock,
+        0.32);
+    position.look(bench.card.snapshot());
+    planner::Pulses counted{};
+    for (const driver::PinStep& step : bench.steps.pins) counted[step.axis] += step.direction;
+    EXPECT_EQ(position.pulses(), counted);
+
+    RunSettings there;
+    there.start = position.millimetres();
+    const Outcome outcome = bench.run("G91 G1 X1 F600\nG90 Y5\nG0 X0 Y0 Z0\n", there);
+    EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{0, 0, 0, 0}));
+    position.look(bench.card.snapshot());
+    EXPECT_EQ(position.pulses(), planner::Pulses{}) << "as the card counts";
+  }
+}
+
+TEST(Stop, TellsTheLineThatTheCardWasAt) {
+  Bench bench;
+  bench.bus.at(std::uint64_t{7} * kClock / 2, [&](sim::Engine&) { bench.card.request_stop(); });
+  try {
+    bench.run("F600\nG1 X10\nY10\nX20\nY20\nX30\n");  // a second each
+    FAIL() << "not stopped";
+  } catch (const StoppedOnPath& stopped) {
+    EXPECT_EQ(stopped.line(), 5U);
+  }
+}
+
+// In a dwell, with a hold standing, and when there is nothing to stop.
+TEST(Stop, AtRest) {
+  Bench bench;
+  bench.bus.at(kClock / 2, [&](sim::Engine&) { bench.card.request_stop(); });
+  EXPECT_THROW(bench.run("G4 P100\nG0 X1\n"), StoppedOnPath);
+  EXPECT_TRUE(bench.steps.pins.empty());
+  bench.card.set_hold(true);
+  bench.bus.at(bench.engine->cycles() + kClock, [&](sim::Engine&) { bench.card.request_stop(); });
+  EXPECT_THROW(bench.run("G0 X1\n"), StoppedOnPath);
+  EXPECT_TRUE(bench.steps.pins.empty());
+  bench.card.stop();
+  EXPECT_EQ(bench.run("G0 X1\n").final_position[0], 80);
+}
+
+// The ramp takes 0.3 s from full ratio; a slew of the slowest kind would take 45 minutes at this clock.
+TEST(Stop, GivesUpWhereTheRampDoesNotEnd) {
+  Bench bench;
+  bench.card.set_longest_step_wait(std::chrono::milliseconds(1));
+  driver::Stream stream(bench.card);
+  bench.card.set_slew_time(std::chrono::milliseconds(300));
+  stream.send(driver::FeedCommand{std::uint64_t{1} << 39, std::uint64_t{1} << 60, 0, 0, 1, 0});
+  stream.send(driver::LineCommand{std::uint64_t{1} << 39, 1, {std::int64_t{1} << 34}});
+  const std::uint64_t before = bench.engine->cycles();
+  // Somebody takes the hold away again.
+  for (unsigned i = 1; i < 3000; ++i) {
+    bench.bus.at(before + i * 400, [](sim::Engine& engine) { engine.write(card_map::reg::kHold, 0); });
+  }
+  EXPECT_THROW(bench.card.stop(std::chrono::milliseconds(200)), driver::TimeoutError);
+}
+
+TEST(MachinePosition, IsSetByTheHostAndFollowsTheCardThroughItsWrap) {
+  const machine::Machine machine = machine::default_machine();
+  driver::Snapshot card;
+  card.position[0] = 2'147'483'600;
+  MachinePosition position(card, machine);
+  EXPECT_EQ(position.pulses(), planner::Pulses{});
+  position.set(0, -12.5);
+  position.set(1, 3.00625);  // 240.5 pulses
+  EXPECT_EQ(position.pulses()[0], -1000);
+  EXPECT_EQ(position.pulses()[1], 241);
+  card.position[0] = -2'147'483'596;  // 100 further, across the wrap
+  card.position[1] = -41;
+  position.look(card);
+  EXPECT_EQ(position.pulses()[0], -900);
+  EXPECT_DOUBLE_EQ(position.millimetres()[0], -11.25);
+  EXPECT_DOUBLE_EQ(position.millimetres()[1], 2.5);
+}
+
+}  // namespace
+}  // namespace trammel::run
