@@ -28,7 +28,8 @@ Course line_course(const Path& path, const machine::Machine& machine) {
   double coarsest = 0;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     const double per_tick = static_cast<double>(path.line->increment[a]) * 0x1p-40;
-    course.pulses_a_tick[a] = std::abs(per_tick);
+    // Limits hold on the path before its ends were rounded, each by half a pulse.
+    course.pulses_a_tick[a] = std::max(0.0, std::abs(per_tick) - 1 / static_cast<double>(path.ticks));
     mm[a] = std::round(per_tick * static_cast<double>(path.ticks)) / machine.axes[a].steps_per_mm;
     if (mm[a] != 0 || is_spatial(machine.axes[a])) coarsest = std::max(coarsest, 1 / machine.axes[a].steps_per_mm);
   }

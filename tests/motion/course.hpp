@@ -13,7 +13,9 @@ namespace trammel::test {
 using Vector = std::array<double, card_map::kMaxAxes>;  // by axis
 
 struct Course {
-  Vector pulses_a_tick{};  // feed tick, magnitude; of an arc's plane its path speed
+  // Feed tick, magnitude, the least that the path may have had before its ends were rounded; of an arc's plane its path
+  // speed.
+  Vector pulses_a_tick{};
   Vector entry{};          // direction at the start and at the end, mm a mm of `length`
   Vector exit{};
   double length = 0;       // mm, along X Y Z, or all axes where none of these moves
@@ -21,7 +23,7 @@ struct Course {
   double plane_share = 0;  // of the path's speed in the plane
   std::array<std::size_t, 2> plane{};
   bool spatial = false;  // X, Y or Z moves
-  double error = 0;      // radians: how far rounded ends may have turned a direction
+  double error = 0;      // how far rounded ends may have turned a direction (radians), and changed the length (share)
 };
 
 Course course_of(const Path& path, const machine::Machine& machine);

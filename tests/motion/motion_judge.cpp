@@ -28,9 +28,12 @@ class Judge {
 
   void interval(const Interval& now) {
     if (now.begins_path) enter(now);
+    // Path and rate do not change in the same clock: in between the piece before goes on for some clocks, a few ticks at
+    // most, on the new path.
+    handing_over_ = !resting_ && now.clock - path_clock_ < MotionWalk::kSwapClocks;
     if (resting_) at_rest(now);
     else if (now.begins_piece) border(now);
-    moving(now);
+    if (!handing_over_) moving(now);
     resting_ = false;
     last_ = now;
     last_acceleration_ = static_cast<double>(now.gain) * 0x1p-48 / kUpdate;
@@ -92,11 +95,15 @@ class Judge {
     const double gain = static_cast<double>(now.gain) * 0x1p-48;
     const double allowed = std::abs(gain) + std::abs(last_acceleration_) * kUpdate + 0.001 * std::max(before, after);
     double jump = std::abs(after - before);
-    // Where a path ends too, the density of ticks may change with the rate.
-    if (now.begins_path) jump = std::min(jump, std::abs(after - before * mm_a_tick(last_course_, last_) / mm_a_tick(course_, now)));
+    const bool new_path = now.clock - path_clock_ <= MotionWalk::kSwapClocks;
+    // Where a path ends too, the density of ticks may change with the rate; it is known as well as the rounded lengths.
+    if (new_path) {
+      const double scaled = before * mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
+      jump = std::min(jump, std::abs(after - scaled) - scaled * (last_course_.error + course_.error));
+    }
     verdict.rate_jump.look(jump / allowed, now.path->command);
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
-      if (jerk_[a] <= 0 || now.begins_path) continue;
+      if (jerk_[a] <= 0 || new_path) continue;
       const double jumped = course_.pulses_a_tick[a] * std::abs(gain / kUpdate - last_acceleration_);
       verdict.acceleration_jump.look((jumped - 2 * kUpdate * jerk_[a]) / acceleration_[a], now.path->command);
     }
@@ -109,6 +116,8 @@ class Judge {
   void enter(const Interval& now) {
     last_course_ = course_;
     course_ = course_of(*now.path, limits_.machine);
+    path_clock_ = now.clock;
+    before_ = last_;
     if (!resting_) corner(now);
   }
 
@@ -135,7 +144,7 @@ class Judge {
       allowed = std::sqrt(most * std::min(limits_.junction_deviation * s / (1 - s), shorter / angle));
     }
     ++verdict.corners;
-    const double speed = ticks * mm_a_tick(last_course_, last_);
+    const double speed = ticks * mm_a_tick(last_course_, last_) * (1 - last_course_.error);
     verdict.corner.look(speed / std::max(allowed, at_floor * mm_a_tick(last_course_, last_)), now.path->command);
   }
 
@@ -176,6 +185,9 @@ class Judge {
   Course last_course_;
   bool resting_ = true;
   Interval last_;
+  Interval before_;            // the last one on the path before
+  std::uint64_t path_clock_ = 0;  // of this path's first clock
+  bool handing_over_ = false;
   double last_acceleration_ = 0;  // ticks a clock^2
 };
 

@@ -111,6 +111,20 @@ TEST(MotionJudge, RandomLinesAreWithinTheirLimits) {
   }
 }
 
+TEST(MotionJudge, DISABLED_Debug) {
+  Program program(text(random_lines(std::atoi(std::getenv("S")))), machine_of(100, 1000, 0));
+  const MotionVerdict v = program.verdict();
+  auto& r = program.recorder();
+  const auto worst = v.rate_jump.command;
+  fmt::print("acc {} at {}, rate {} at {} rest {} at {} corner {} at {}\n", v.acceleration.share, v.acceleration.command, v.rate_jump.share, worst, v.rest.share, v.rest.command, v.corner.share, v.corner.command);
+  for (std::size_t w : {v.rest.command, v.acceleration.command})
+  for (std::size_t i = w > 12 ? w - 12 : 0; i < std::min(w + 12, r.commands.size()); ++i) {
+    auto& c = r.commands[i];
+    if (auto* f = std::get_if<driver::FeedCommand>(&c)) fmt::print("{} FEED {} class {} rate {} acc {} floor {} end rate? {}\n", i, f->ticks, int(f->piece_class), double(f->rate)*0x1p-64, double(f->acceleration)*0x1p-64, f->floor*0x1p-32, std::sqrt(std::max(0.0,std::pow(double(f->rate)*0x1p-64,2)+2*double(f->acceleration)*0x1p-64/32*double(f->ticks))));
+    if (auto* f = std::get_if<driver::LineCommand>(&c)) fmt::print("{} LINE {} inc {} {} {}\n", i, f->ticks, double(f->increment[0])*0x1p-40, double(f->increment[1])*0x1p-40, double(f->increment[2])*0x1p-40);
+  }
+}
+
 // Points of a curve at equal distances along it, at a feed of 300 mm/s.
 std::string chords(std::size_t count, double chord, double (*x)(double), double (*y)(double)) {
   std::string program = "G21 G90 G94 F18000\n";

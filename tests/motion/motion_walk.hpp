@@ -36,6 +36,11 @@ struct Interval {
 
 class MotionWalk {
  public:
+  // From the carry that is a piece's last tick to the first clock at the next one's rate: the tick is visible 3 clocks
+  // after its carry, owed a clock later and taken then; the swap is visible a clock after that, and the slope is the next
+  // one's from the clock that follows it.
+  static constexpr std::uint64_t kSwapClocks = 6;
+
   explicit MotionWalk(const std::vector<driver::Command>& commands) {
     for (std::size_t i = 0; i < commands.size(); ++i) add(commands[i], i);
   }
@@ -154,11 +159,6 @@ class MotionWalk {
     at.clocks = ((most << 48) - at.phase + at.rate - 1) / at.rate;  // at most 32 ticks a call: 53 bits
     return most;
   }
-
-  // From the carry that is a piece's last tick to the first clock at the next one's rate: the tick is visible 3 clocks
-  // after its carry, owed a clock later and taken then; the swap is visible a clock after that, and the slope is the next
-  // one's from the clock that follows it.
-  static constexpr std::uint64_t kSwapClocks = 6;
 
   // Rates of a piece: R += A, A += J at each 32nd clock, clamped between floor and one tick a clock; the first is taken
   // as it is.
