@@ -28,9 +28,11 @@ class Judge {
 
   void interval(const Interval& now) {
     if (now.begins_path) enter(now);
-    // Path and rate do not change in the same clock: in between the piece before goes on for some clocks, a few ticks at
-    // most, on the new path.
-    handing_over_ = !resting_ && now.clock - path_clock_ < MotionWalk::kSwapClocks;
+    // Path and rate do not change in the same clock: borders of pieces are at whole ticks, and a piece goes on for some
+    // clocks after its last one. Until then the new path is run at the rates of the piece before.
+    if (now.begins_piece) piece_clock_ = now.clock;
+    handing_over_ = !resting_ && piece_clock_ < path_clock_ &&
+                    (now.ticks <= 1 || now.clock - path_clock_ < 2 * MotionWalk::kSwapClocks);
     if (resting_) at_rest(now);
     else if (now.begins_piece) border(now);
     if (!handing_over_) moving(now);
@@ -83,10 +85,12 @@ class Judge {
     return allowed;
   }
 
-  // First and last rate of a motion: rates are those of an update's middle, and the last may come an update early.
+  // First and last rate of a motion: rates are those of an update's middle, and the last may come an update and, since
+  // pieces have whole ticks, a tick early.
   void at_rest(const Interval& now) {
     const double gain = std::abs(static_cast<double>(now.gain)) * 0x1p-48;
-    verdict.rest.look(rate(now) / (floor() + 1.5 * gain + 0x1p-31), now.path->command);
+    const double tick = resting_ ? 0 : 2 * std::max(gain, std::abs(last_acceleration_) * kUpdate) / kUpdate;
+    verdict.rest.look(rate(now) / (std::sqrt(floor() * floor() + tick) + 1.5 * gain + 0x1p-31), now.path->command);
   }
 
   void border(const Interval& now) {
@@ -95,7 +99,7 @@ class Judge {
     const double gain = static_cast<double>(now.gain) * 0x1p-48;
     const double allowed = std::abs(gain) + std::abs(last_acceleration_) * kUpdate + 0.001 * std::max(before, after);
     double jump = std::abs(after - before);
-    const bool new_path = now.clock - path_clock_ <= MotionWalk::kSwapClocks;
+    const bool new_path = now.ticks <= 1 || now.clock - path_clock_ <= 2 * MotionWalk::kSwapClocks;
     // Where a path ends too, the density of ticks may change with the rate; it is known as well as the rounded lengths.
     if (new_path) {
       const double scaled = before * mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
@@ -144,8 +148,11 @@ class Judge {
       allowed = std::sqrt(most * std::min(limits_.junction_deviation * s / (1 - s), shorter / angle));
     }
     ++verdict.corners;
-    const double speed = ticks * mm_a_tick(last_course_, last_) * (1 - last_course_.error);
-    verdict.corner.look(speed / std::max(allowed, at_floor * mm_a_tick(last_course_, last_)), now.path->command);
+    const double scale = limits_.clock_hz * mm_a_tick(last_course_, last_) * (1 - last_course_.error);  // mm/s
+    // Half an update, and a tick of the ramp to the corner, may be left.
+    const double gain = std::abs(last_acceleration_) * kUpdate;
+    const double most_rate = std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate) + gain / 2;
+    verdict.corner.look(rate(last_) / std::max(most_rate, at_floor / limits_.clock_hz), now.path->command);
   }
 
   // Axes outside X Y Z may jump by sqrt(a d); rounded ends may hide half a pulse of each path.
@@ -187,6 +194,7 @@ class Judge {
   Interval last_;
   Interval before_;            // the last one on the path before
   std::uint64_t path_clock_ = 0;  // of this path's first clock
+  std::uint64_t piece_clock_ = 0;  // of this piece's
   bool handing_over_ = false;
   double last_acceleration_ = 0;  // ticks a clock^2
 };

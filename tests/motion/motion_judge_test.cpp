@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <random>
 
 #include "trammel/driver/card.hpp"
@@ -74,6 +77,9 @@ machine::Machine machine_of(double velocity, double acceleration, double jerk) {
   return machine;
 }
 
+// mm/s, mm/s^2, mm/s^3: a fast machine within what a clock of 1 MHz can do.
+machine::Machine fast_machine(double jerk) { return machine_of(300, 3000, jerk); }
+
 void expect_within_limits(const MotionVerdict& verdict) {
   EXPECT_LE(verdict.velocity.share, kTight) << "command " << verdict.velocity.command;
   EXPECT_LE(verdict.acceleration.share, kTight) << "command " << verdict.acceleration.command;
@@ -102,31 +108,68 @@ std::string random_lines(unsigned seed) {
   return program + "M2\n";
 }
 
-TEST(MotionJudge, RandomLinesAreWithinTheirLimits) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    SCOPED_TRACE(fmt::format("seed {}", seed));
-    Program program(text(random_lines(seed)), machine_of(100, 1000, 0));
-    const MotionVerdict verdict = program.verdict();
+// A program's commands and its planned seconds, nothing run.
+struct Planned final : driver::CommandSink {
+  Planned(gcode::LineSource& lines, const machine::Machine& machine, std::uint32_t clock_hz, double feed_scale = 1) {
+    gcode::Reader reader(lines, machine, {}, gcode::ReaderOptions{true, feed_scale});
+    planner::CardLimits card;
+    card.clock_hz = clock_hz;
+    card.axes = static_cast<unsigned>(std::max<std::size_t>(4, machine.axes.size()));
+    card.classes = true;
+    planner::BlockBuilder blocks(reader, machine, card);
+    planner::Planner planner(blocks, machine, card);
+    for (planner::PlannedBlock block; planner.next(*this, block);) seconds += block.seconds;
+    error = blocks.error();
+  }
+  void put(const driver::Command& command) override { commands.push_back(command); }
+
+  std::vector<driver::Command> commands;
+  double seconds = 0;
+  std::optional<gcode::Error> error;
+};
+
+// TRAMMEL_LONG: all thousand.
+unsigned random_programs() { return std::getenv("TRAMMEL_LONG") != nullptr ? 1000 : 100; }
+
+TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
+  for (unsigned seed = 1; seed <= random_programs(); ++seed) {
+    const double jerk = seed % 2 == 0 ? 20000 : 0;
+    SCOPED_TRACE(fmt::format("seed {}, jerk {}", seed, jerk));
+    const std::string program = random_lines(seed);
+    gcode::TextLines lines(program, "program");
+    const machine::Machine machine = machine_of(100, 1000, jerk);
+    const Planned planned(lines, machine, kClock);
+    const MotionVerdict verdict = judge_motion(planned.commands, {machine, kClock, 0.01});
     expect_within_limits(verdict);
-    EXPECT_GT(verdict.acceleration.share, 0.9);
-    EXPECT_NEAR(verdict.seconds(kClock), program.seconds(), 0.001 * program.seconds());
-    EXPECT_LE(program.farthest(), 0.8);
+    EXPECT_GT(verdict.acceleration.share, 0.8);
+    EXPECT_NEAR(verdict.seconds(kClock), planned.seconds, 0.001 * planned.seconds);
   }
 }
 
-TEST(MotionJudge, DISABLED_Debug) {
-  Program program(text(random_lines(std::atoi(std::getenv("S")))), machine_of(100, 1000, 0));
-  const MotionVerdict v = program.verdict();
-  auto& r = program.recorder();
-  const auto worst = v.rate_jump.command;
-  fmt::print("acc {} at {}, rate {} at {} rest {} at {} corner {} at {}\n", v.acceleration.share, v.acceleration.command, v.rate_jump.share, worst, v.rest.share, v.rest.command, v.corner.share, v.corner.command);
-  for (std::size_t w : {v.rest.command, v.acceleration.command})
-  for (std::size_t i = w > 12 ? w - 12 : 0; i < std::min(w + 12, r.commands.size()); ++i) {
-    auto& c = r.commands[i];
-    if (auto* f = std::get_if<driver::FeedCommand>(&c)) fmt::print("{} FEED {} class {} rate {} acc {} floor {} end rate? {}\n", i, f->ticks, int(f->piece_class), double(f->rate)*0x1p-64, double(f->acceleration)*0x1p-64, f->floor*0x1p-32, std::sqrt(std::max(0.0,std::pow(double(f->rate)*0x1p-64,2)+2*double(f->acceleration)*0x1p-64/32*double(f->ticks))));
-    if (auto* f = std::get_if<driver::LineCommand>(&c)) fmt::print("{} LINE {} inc {} {} {}\n", i, f->ticks, double(f->increment[0])*0x1p-40, double(f->increment[1])*0x1p-40, double(f->increment[2])*0x1p-40);
+TEST(MotionJudge, StepsFollowTheCommandedMotion) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    EXPECT_LE(Program(text(random_lines(seed)), machine_of(100, 1000, 0)).farthest(), 0.8);
   }
 }
+
+#ifdef TRAMMEL_SHARED_GCODE_DIR
+TEST(MotionJudge, RealProgramsAreWithinTheirLimits) {
+  for (const auto& entry : std::filesystem::directory_iterator(TRAMMEL_SHARED_GCODE_DIR)) {
+    if (entry.path().extension() != ".gcode") continue;
+    for (const double jerk : {0.0, 30000.0}) {
+      SCOPED_TRACE(fmt::format("{}, jerk {}", entry.path().filename().string(), jerk));
+      gcode::FileLines lines(entry.path());
+      machine::Machine machine = fast_machine(jerk);
+      machine.motion.junction_deviation = 0.02;
+      const Planned planned(lines, machine, kClock, 15);
+      const MotionVerdict verdict = judge_motion(planned.commands, {machine, kClock, 0.02});
+      expect_within_limits(verdict);
+      EXPECT_NEAR(verdict.seconds(kClock), planned.seconds, 0.001 * planned.seconds);
+    }
+  }
+}
+#endif
 
 // Points of a curve at equal distances along it, at a feed of 300 mm/s.
 std::string chords(std::size_t count, double chord, double (*x)(double), double (*y)(double)) {
@@ -150,9 +193,6 @@ std::string spiral_in_chords() {
 std::string sine_in_chords() {
   return chords(5000, 0.02, [](double t) { return t; }, [](double t) { return 5 * std::sin(t / 2); });
 }
-
-// mm/s, mm/s^2, mm/s^3: a fast machine within what a clock of 1 MHz can do.
-machine::Machine fast_machine(double jerk) { return machine_of(300, 3000, jerk); }
 
 TEST(MotionJudge, CurvesInChordsAreWithinTheirLimits) {
   for (const double jerk : {0.0, 60000.0}) {
@@ -196,7 +236,7 @@ TEST_F(MotionJudgeSaysNo, ToArcsThatAreTooFast) {
 }
 
 TEST_F(MotionJudgeSaysNo, ToCornersThatAreTooFast) {
-  EXPECT_GT(judged(spiral_in_chords(), machine_of(300, 30000, 0), machine_of(300, 3000, 0)).corner.share, 1.5);
+  EXPECT_GT(judged(random_lines(1), machine_of(100, 10000, 0), machine_of(100, 1000, 0)).corner.share, 1.5);
 }
 
 TEST_F(MotionJudgeSaysNo, ToARateThatJumps) {

@@ -120,7 +120,6 @@ class StepJudge {
 
   void look(double motion, std::size_t axis) {
     const double off = std::abs(motion - static_cast<double>(counts_[axis])); if (off > 0.8 && off > farthest + 0.1) std::printf("step %zu of %zu axis %zu off %g clock %g command %zu\n", next_, steps_.size(), axis, off, stop_clock_, path_->command);
-    if (double off = std::abs(motion - static_cast<double>(counts_[axis])); off > 0.8 && off > farthest + 0.05) std::printf("step %zu of %zu axis %zu off %g clock %g command %zu\n", next_, steps_.size(), axis, off, stop_clock_, path_->command);
     farthest = std::max(farthest, std::abs(motion - static_cast<double>(counts_[axis])));
   }
 
