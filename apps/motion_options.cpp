@@ -93,6 +93,11 @@ void MotionChoice::add_to(CLI::App& command) {
   command.add_option("--from-line", first_line, "begin at this line; those before it set modes and position alone")
       ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()).description(""))
       ->type_name("N");
+  command
+      .add_option("--profile", profile,
+                  "how the speed changes: trapezoid or s-curve (default: s-curve where every axis has a max_jerk)")
+      ->check(CLI::IsMember({"trapezoid", "s-curve"}).description(""))
+      ->type_name("PROFILE");
   command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
   command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
 }
@@ -130,6 +135,9 @@ run::RunSettings MotionChoice::settings() const {
   settings.reader.feed_scale = feed_scale;
   settings.first_line = first_line;
   settings.single_block = single_block;
+  if (profile) {
+    settings.profile = *profile == "s-curve" ? planner::SpeedProfile::kSCurve : planner::SpeedProfile::kTrapezoid;
+  }
   return settings;
 }
 

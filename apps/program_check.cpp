@@ -42,6 +42,7 @@ nlohmann::ordered_json json_of(const CheckResult& result) {
   json["segments"] = plan.segments;
   json["commands"] = plan.commands;
   json["planned_seconds"] = plan.seconds;
+  json["motion"] = motion_json(plan.motion);
   json["feeds_not_reached"] = feeds_json(plan.feeds_not_reached);
   json["accepted_words"] = plan.accepted;
   return json;

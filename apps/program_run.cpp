@@ -59,6 +59,7 @@ void tell(const run::Plan& plan, RunResult& result) {
   result.program = plan.file;
   result.segments = plan.segments;
   result.planned_seconds = plan.seconds;
+  result.motion = plan.motion;
   result.accepted = plan.accepted;
   result.feeds_not_reached = plan.feeds_not_reached;
 }
@@ -87,6 +88,9 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
 
   if (options.planned) options.planned(plan);
 
+  for (const std::size_t axis : machine.second_motors()) {
+    recording.steps_per_mm.push_back(machine.axes[axis].steps_per_mm);
+  }
   recording.steps = options.steps;
   recording.path_steps = options.path_steps;
   recording.plot = options.plot;

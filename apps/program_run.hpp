@@ -32,8 +32,8 @@ struct RunOptions {
   std::function<void(const run::Plan&)> planned;
 };
 
-// Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds` and the picture's
-// commanded path.
+// Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds`, `motion` and the
+// picture's commanded path.
 struct RunResult {
   std::string program;
   std::string engine;
@@ -51,15 +51,16 @@ struct RunResult {
   std::uint64_t segments = 0;                    // of the program
   std::uint64_t commands = 0;                    // sent to the card
   double planned_seconds = 0;                    // estimate
-  std::optional<std::uint32_t> under_runs;       // none where the card does not count them
-  std::uint64_t path_steps = 0;                  // before the shapers
-  std::string path_identity;                     // of their list
-  run::ShaperDelay::Range shaper_delay;          // clocks
-  std::optional<double> commanded_feed;          // mm/min, means
-  std::optional<double> achieved_feed;           // mm/min
-  std::vector<MadeEvent> events;                 // that the card has seen
-  double wall_seconds = 0;                       // the simulation took
-  std::map<std::string, std::size_t> accepted;   // words without effect yet
+  run::PlannedMotion motion;
+  std::optional<std::uint32_t> under_runs;      // none where the card does not count them
+  std::uint64_t path_steps = 0;                 // before the shapers
+  std::string path_identity;                    // of their list
+  run::ShaperDelay::Range shaper_delay;         // clocks
+  std::optional<double> commanded_feed;         // mm/min, means
+  std::optional<double> achieved_feed;          // mm/min
+  std::vector<MadeEvent> events;                // that the card has seen
+  double wall_seconds = 0;                      // the simulation took
+  std::map<std::string, std::size_t> accepted;  // words without effect yet
   std::vector<run::FeedNotReached> feeds_not_reached;
   run::Plot plot;  // filled when asked for
 };

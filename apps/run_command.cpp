@@ -82,7 +82,7 @@ void execute(const Options& options) {
   outputs.check();
 
   const machine::Machine machine = machine_of(options);
-  const auto axes = static_cast<unsigned>(machine.axes.size());
+  const auto axes = static_cast<unsigned>(machine.motors());
   sim::SimulationOptions engine =
       options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);
   const ProgramFile file(options.program, options.stream);

@@ -62,6 +62,12 @@ std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   return text;
 }
 
+nlohmann::ordered_json motion_json(const run::PlannedMotion& motion) {
+  return {{"stops", motion.stops},
+          {"velocity_jump", motion.velocity_jump},
+          {"acceleration_step", motion.acceleration_step}};
+}
+
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const run::FeedNotReached& feed : feeds) {
@@ -131,6 +137,7 @@ nlohmann::ordered_json json_of(const RunResult& result) {
   json["segments"] = result.segments;
   json["commands"] = result.commands;
   json["planned_seconds"] = result.planned_seconds;
+  json["motion"] = motion_json(result.motion);
   json["under_runs"] = nullptr;
   if (result.under_runs) json["under_runs"] = *result.under_runs;
   json["feed"] = {{"commanded", nullptr}, {"achieved", nullptr}};

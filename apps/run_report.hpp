@@ -18,6 +18,7 @@ std::string summary(const RunResult& result);
 
 // Words of the program that had no effect, by the reason why; a line each.
 std::string accepted_words(const std::map<std::string, std::size_t>& words);
+nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
 
 nlohmann::ordered_json json_of(const RunResult& result);

@@ -2,26 +2,19 @@
 include(GoogleTest)
 find_package(fmt REQUIRED)
 
-# GoogleTest's headers, compiled once for all tests, and once more for those that are not worth -O3: optimising takes half
-# the time of compiling a test.
-set(trammel_quick "$<$<NOT:$<CONFIG:Debug>>:-O1>")
-foreach(headers IN ITEMS trammel_test_headers trammel_quick_test_headers)
-  add_library(${headers} OBJECT "${PROJECT_SOURCE_DIR}/tests/headers.cpp")
-  trammel_target(${headers})
-  target_link_libraries(${headers} PRIVATE fmt::fmt GTest::gmock)
-  target_precompile_headers(${headers} PRIVATE <gmock/gmock.h> <gtest/gtest.h> <fmt/format.h> <fstream> <sstream>)
-endforeach()
-target_compile_options(trammel_quick_test_headers PRIVATE "${trammel_quick}")
+# GoogleTest's headers, compiled once for all tests. Tests are not worth -O3: optimising takes half the time of compiling one,
+# and most of what they try is in libraries.
+set(trammel_test_level "$<$<NOT:$<CONFIG:Debug>>:-O1>")
+add_library(trammel_test_headers OBJECT "${PROJECT_SOURCE_DIR}/tests/headers.cpp")
+trammel_target(trammel_test_headers)
+target_compile_options(trammel_test_headers PRIVATE "${trammel_test_level}")
+target_link_libraries(trammel_test_headers PRIVATE fmt::fmt GTest::gmock)
+target_precompile_headers(trammel_test_headers PRIVATE <gmock/gmock.h> <gtest/gtest.h> <fmt/format.h> <fstream> <sstream>)
 
-# trammel_test_headers(target [QUICK]): for targets of the project's usual compile options that link GTest and fmt.
-# QUICK: tests that spend their time in the libraries; compiled with -O1.
+# trammel_test_headers(target): for targets of the project's usual compile options that link GTest and fmt.
 function(trammel_test_headers target)
-  if("QUICK" IN_LIST ARGN)
-    target_compile_options(${target} PRIVATE "${trammel_quick}")
-    target_precompile_headers(${target} REUSE_FROM trammel_quick_test_headers)
-  else()
-    target_precompile_headers(${target} REUSE_FROM trammel_test_headers)
-  endif()
+  target_compile_options(${target} PRIVATE "${trammel_test_level}")
+  target_precompile_headers(${target} REUSE_FROM trammel_test_headers)
 endfunction()
 
 # Real programs from elsewhere, beside the checkout: TRAMMEL_SHARED_GCODE is their folder, or empty where it is missing.
@@ -61,6 +54,6 @@ function(trammel_library_tests name)
   target_include_directories(test_${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests/support")
   target_compile_definitions(test_${name} PRIVATE TRAMMEL_EXAMPLES_DIR="${PROJECT_SOURCE_DIR}/examples")
   trammel_shared_gcode(test_${name})
-  trammel_test_headers(test_${name} QUICK)
+  trammel_test_headers(test_${name})
   trammel_discover_tests(test_${name} ${name})
 endfunction()

@@ -13,6 +13,7 @@ axis/waiting_steps.sv
 card/busy_timer.sv
 card/card_core.sv
 card/motion_core.sv
+card/path_to_pins.sv
 card/trammel_card.sv
 commands/command_checker.sv
 commands/command_fetch.sv
@@ -25,6 +26,8 @@ commands/halfword_queue.sv
 commands/queue_watermarks.sv
 host/axi4_lite_port.sv
 host/port_arbiter.sv
+io/input_pins.sv
+io/output_pins.sv
 path/arc_generator.sv
 path/barrier.sv
 path/begun_counter.sv
@@ -32,6 +35,8 @@ path/chord_counter.sv
 path/chord_rotation.sv
 path/deviation_accumulator.sv
 path/geometry_sequencer.sv
+path/instant_commands.sv
+path/path_commands.sv
 path/path_engines.sv
 path/path_sequencer.sv
 path/path_tick_gate.sv
@@ -45,6 +50,9 @@ registers/snapshot_writer.sv
 safety/stop_control.sv
 time/feed_generator.sv
 time/feed_sequencer.sv
+time/queued_ticks.sv
+time/stop_ticks.sv
 time/tick_gate.sv
 time/tick_source.sv
 time/time_base.sv
+time/underrun_guard.sv

@@ -80,6 +80,19 @@ constexpr map::Field kJerk = field_of(kFeed, "jerk");
 constexpr const map::Command& kDwell = layout_for(map::Opcode::Dwell);
 constexpr const map::Command& kEnd = layout_for(map::Opcode::End);
 
+constexpr const map::Command& kOutput = layout_for(map::Opcode::Output);
+constexpr map::Field kSet = field_of(kOutput, "set");
+constexpr map::Field kClear = field_of(kOutput, "clear");
+constexpr const map::Command& kMark = layout_for(map::Opcode::Mark);
+constexpr const map::Command& kWaitInput = layout_for(map::Opcode::WaitInput);
+constexpr map::Field kWaitCondition = field_of(kWaitInput, "condition");
+constexpr const map::Command& kProbe = layout_for(map::Opcode::Probe);
+constexpr map::Field kProbeCondition = field_of(kProbe, "condition");
+constexpr const map::Command& kProbeEnd = layout_for(map::Opcode::ProbeEnd);
+// Bits of the field `condition`.
+constexpr unsigned kInputMask = 0xF;
+constexpr unsigned kLevelBit = 4;
+
 [[noreturn]] void refuse(const map::Command& layout, const std::string& what) {
   throw ArgumentError(fmt::format("{}: {}", layout.name, what));
 }
@@ -253,6 +266,38 @@ std::size_t write(const EndCommand&, std::uint8_t number, std::uint32_t* words) 
   return Writer(kEnd, 0, 0, number, words).length();
 }
 
+std::size_t write(const OutputCommand& output, std::uint8_t number, std::uint32_t* words) {
+  Writer to(kOutput, 0, 0, number, words);
+  to.field<kSet>(std::uint64_t{output.set});
+  to.field<kClear>(std::uint64_t{output.clear});
+  return to.length();
+}
+
+std::size_t write(const MarkCommand&, std::uint8_t number, std::uint32_t* words) {
+  return Writer(kMark, 0, 0, number, words).length();
+}
+
+std::uint64_t condition_of(const map::Command& layout, std::uint8_t input, bool level) {
+  if (input > kInputMask) refuse(layout, fmt::format("input {}", input));
+  return std::uint64_t{input} | (level ? 1U << kLevelBit : 0);
+}
+
+std::size_t write(const WaitInputCommand& wait, std::uint8_t number, std::uint32_t* words) {
+  Writer to(kWaitInput, 0, wait.timeout, number, words);
+  to.field<kWaitCondition>(condition_of(kWaitInput, wait.input, wait.level));
+  return to.length();
+}
+
+std::size_t write(const ProbeCommand& probe, std::uint8_t number, std::uint32_t* words) {
+  Writer to(kProbe, 0, 0, number, words);
+  to.field<kProbeCondition>(condition_of(kProbe, probe.input, probe.level));
+  return to.length();
+}
+
+std::size_t write(const ProbeEndCommand&, std::uint8_t number, std::uint32_t* words) {
+  return Writer(kProbeEnd, 0, 0, number, words).length();
+}
+
 // What a command's words say, taken as they are.
 class Reader {
  public:
@@ -368,6 +413,21 @@ Command feed_from(const Reader& from, std::uint8_t flags) {
   return feed;
 }
 
+template <const map::Field& kField>
+std::uint8_t input_of(const Reader& from) {
+  return static_cast<std::uint8_t>(from.unsigned_field<kField>() & kInputMask);
+}
+
+template <const map::Field& kField>
+bool level_of(const Reader& from) {
+  return (from.unsigned_field<kField>() >> kLevelBit & 1U) != 0;
+}
+
+OutputCommand output_from(const Reader& from) {
+  return {static_cast<std::uint16_t>(from.unsigned_field<kSet>()),
+          static_cast<std::uint16_t>(from.unsigned_field<kClear>())};
+}
+
 Command command_from(map::Opcode opcode, std::uint8_t mask, const Reader& from) {
   switch (opcode) {
     case map::Opcode::Line:
@@ -382,6 +442,16 @@ Command command_from(map::Opcode opcode, std::uint8_t mask, const Reader& from) 
       return DwellCommand{from.count()};
     case map::Opcode::End:
       return EndCommand{};
+    case map::Opcode::Output:
+      return output_from(from);
+    case map::Opcode::Mark:
+      return MarkCommand{};
+    case map::Opcode::WaitInput:
+      return WaitInputCommand{input_of<kWaitCondition>(from), level_of<kWaitCondition>(from), from.count()};
+    case map::Opcode::Probe:
+      return ProbeCommand{input_of<kProbeCondition>(from), level_of<kProbeCondition>(from)};
+    case map::Opcode::ProbeEnd:
+      return ProbeEndCommand{};
     default:
       break;
   }
@@ -401,14 +471,20 @@ void encode(const Command& command, std::uint8_t number, std::vector<std::uint32
 }
 
 const card_map::Command& layout_of(const Command& command) {
-  constexpr std::array<const map::Command*, 6> kLayouts{&kLine, &kArc, &kArcChord, &kFeed, &kDwell, &kEnd};
+  constexpr std::array<const map::Command*, 11> kLayouts{&kLine,   &kArc,  &kArcChord,  &kFeed,  &kDwell,   &kEnd,
+                                                         &kOutput, &kMark, &kWaitInput, &kProbe, &kProbeEnd};
   static_assert(std::variant_size_v<Command> == kLayouts.size() &&
                 std::is_same_v<std::variant_alternative_t<0, Command>, LineCommand> &&
                 std::is_same_v<std::variant_alternative_t<1, Command>, ArcCommand> &&
                 std::is_same_v<std::variant_alternative_t<2, Command>, ArcChordCommand> &&
                 std::is_same_v<std::variant_alternative_t<3, Command>, FeedCommand> &&
                 std::is_same_v<std::variant_alternative_t<4, Command>, DwellCommand> &&
-                std::is_same_v<std::variant_alternative_t<5, Command>, EndCommand>);
+                std::is_same_v<std::variant_alternative_t<5, Command>, EndCommand> &&
+                std::is_same_v<std::variant_alternative_t<6, Command>, OutputCommand> &&
+                std::is_same_v<std::variant_alternative_t<7, Command>, MarkCommand> &&
+                std::is_same_v<std::variant_alternative_t<8, Command>, WaitInputCommand> &&
+                std::is_same_v<std::variant_alternative_t<9, Command>, ProbeCommand> &&
+                std::is_same_v<std::variant_alternative_t<10, Command>, ProbeEndCommand>);
   return *kLayouts[command.index()];
 }
 

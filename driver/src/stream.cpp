@@ -187,7 +187,10 @@ void Stream::keep(const Command& command, const Need& need, const std::uint32_t*
   ++kept_;
   room_.geometry -= need.geometry;
   room_.feed -= need.feed;
-  if (need.geometry != 0) ++geometry_.put;
+  // The card counts paths and barriers as begun, not what takes effect beside them.
+  const bool beside = std::holds_alternative<OutputCommand>(command) || std::holds_alternative<MarkCommand>(command) ||
+                      std::holds_alternative<ProbeCommand>(command);
+  if (need.geometry != 0 && !beside) ++geometry_.put;
   if (need.feed != 0) {
     Duration duration;
     if (const auto* feed = std::get_if<FeedCommand>(&command)) {

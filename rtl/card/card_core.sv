@@ -8,8 +8,12 @@ module card_core #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          UnderrunHold  = 1,     // 0: without
     parameter int          Classes       = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks    = 1,     // 0: without
+    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
+    parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
+    parameter int          Outputs       = 4,
     parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
@@ -30,7 +34,10 @@ module card_core #(
     // straps
     input wire logic [31:0] clock_hz_i,
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
     // pins
+    input wire logic [Inputs-1:0] input_i,
+    output logic [Outputs-1:0] output_o,
     output logic [Axes-1:0] step_o,
     output logic [Axes-1:0] dir_o,
     output logic irq_o,
@@ -48,11 +55,20 @@ module card_core #(
     ERROR_Ports_must_be_1_to_4 error ();
   end
 
+  if (Inputs < 1 || Inputs > 16 || Outputs < 1 || Outputs > 16) begin : gen_wrong_pins
+    ERROR_Inputs_and_Outputs_must_be_1_to_16 error ();
+  end
+
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
       32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
-      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
-      32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS;
+      32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE |
+      32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
+      32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS |
+      32'(PathCommands != 0) << card_map_pkg::ENGINE_PATH_COMMANDS;
+
+  // PORTS: {outputs, inputs, ports}.
+  localparam logic [31:0] PORTS = 32'(Ports) | (PathCommands != 0 ? 32'(Inputs) << 8 | 32'(Outputs) << 16 : 32'd0);
 
   // What parameters and straps decide of the constants, by address.
   logic [511:0] constants;
@@ -65,13 +81,14 @@ module card_core #(
       512'(BuildId) << 8 * card_map_pkg::ADDR_BUILD_ID |
       512'(BuildDirty != 0) << 8 * card_map_pkg::ADDR_BUILD_FLAGS |
       512'(BoardId) << 8 * card_map_pkg::ADDR_BOARD_ID |
-      512'(Ports) << 8 * card_map_pkg::ADDR_PORTS;
+      512'(PORTS) << 8 * card_map_pkg::ADDR_PORTS;
 
   logic [31:0] clear_fault;
   logic [31:0] fault;
   logic [31:0] status;
   logic [ 5:0] motion_status;
   logic        held;
+  logic [32:0] underrun;  // {held, how often}
   logic [63:0] begun;  // {geometry, feed}
   logic [31:0] room;  // {geometry, feed}
   logic [ 1:0] low;  // {feed, geometry}
@@ -81,6 +98,8 @@ module card_core #(
   logic        cut;
   logic        closed;
   logic        stop;
+  logic        mark;
+  logic [63:0] io;  // {marks, outputs, inputs}
   logic [ 1:0] snapshot;  // {shift, strobe}
   logic [31:0] chain_far;
   logic [31:0] chain_near;
@@ -101,10 +120,12 @@ module card_core #(
       .access_i({port_i, write_i, partial_i, address_i, data_i}),
       .motion_i(motion_status),
       .held_i(held),
+      .underrun_i(underrun),
       .fault_i(fault),
       .room_i(room),
       .low_i(low),
       .begun_i(begun),
+      .io_i(io),
       .status_o(status),
       .setting_o(setting),
       .clear_fault_o(clear_fault),
@@ -117,6 +138,8 @@ module card_core #(
       .loader_address_i(loader_address),
       .loader_data_o(loader_data),
       .stop_i(stop),
+      .probe_i(1'b0),
+      .mark_i(mark),
       .snapshot_o(snapshot),
       .chain_o(chain_far),
       .chain_i(chain_near)
@@ -132,6 +155,9 @@ module card_core #(
   logic        feed_empty;
   logic [15:0] feed_word;
   logic        drop;
+  logic        full;  // no room for the largest command: 50 halfwords of geometry, 20 of feed
+
+  assign full = room[31:22] == 10'd0 || room[15:5] == 11'd0;
 
   command_checker #(
       .Axes(Axes),
@@ -191,18 +217,23 @@ module card_core #(
 
   motion_core #(
       .Axes(Axes),
-      .Engines(ENGINES)
+      .Engines(ENGINES),
+      .Inputs(Inputs),
+      .Outputs(Outputs)
   ) motion (
       .*,
       .setting_i(setting),
       .abort_i(abort),
       .clear_fault_i(clear_fault),
+      .mark_o(mark),
+      .io_o(io),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i(geometry_word),
       .geometry_read_o(geometry_read),
       .feed_empty_i(feed_empty),
       .feed_word_i(feed_word),
       .feed_read_o(feed_read),
+      .arrive_i({full, drop, geometry_store, feed_store, halfword}),
       .start_i(start),
       .start_mask_i(setting[7:0]),
       .start_done_o(start_answer[9]),
@@ -219,6 +250,7 @@ module card_core #(
       .stop_o(stop),
       .status_o(motion_status),
       .held_o(held),
+      .underrun_o(underrun),
       .geometry_begun_o(begun[63:32]),
       .feed_begun_o(begun[31:0]),
       .observe_o(observe_o[34*Axes+52:0])

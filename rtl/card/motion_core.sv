@@ -3,7 +3,9 @@
 
 module motion_core #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+    parameter logic [31:0] Engines = '1,  // what is built in, as the register ENGINES shows it
+    parameter int          Inputs  = 4,
+    parameter int          Outputs = 4
 ) (
     input  wire logic                clk_i,
     input  wire logic                rst_i,
@@ -11,6 +13,12 @@ module motion_core #(
     input  wire logic [        40:0] setting_i,         // {set, address[9:2], data}
     input  wire logic                abort_i,
     input  wire logic [        31:0] clear_fault_i,
+    // pins of path commands
+    input  wire logic [  Inputs-1:0] input_i,
+    input  wire logic [ Outputs-1:0] output_idle_i,     // levels in reset
+    output logic      [ Outputs-1:0] output_o,
+    output logic                     mark_o,
+    output logic      [        63:0] io_o,              // {marks, outputs, inputs}
     // queues
     input  wire logic                geometry_empty_i,
     input  wire logic [        15:0] geometry_word_i,
@@ -18,6 +26,7 @@ module motion_core #(
     input  wire logic                feed_empty_i,
     input  wire logic [        15:0] feed_word_i,
     output logic                     feed_read_o,
+    input  wire logic [        21:0] arrive_i,          // as tick_source has it
     // START
     input  wire logic                start_i,
     input  wire logic [         7:0] start_mask_i,
@@ -38,6 +47,7 @@ module motion_core #(
     // status
     output logic      [         5:0] status_o,          // {stopping, ended, feed active, path active, direct, busy}
     output logic                     held_o,            // the ratio is 0 (combinational)
+    output logic      [        32:0] underrun_o,        // {held by it, or a piece waits for more; how often}
     output logic      [        31:0] geometry_begun_o,
     output logic      [        31:0] feed_begun_o,
     // {rate, ratio, position, path dir, path step, feed swap, path swap, path tick, tick}
@@ -46,7 +56,7 @@ module motion_core #(
     output logic      [    Axes-1:0] dir_o
 );
   // stops
-  logic hold;
+  logic hold, underrun_hold;
   logic mismatch, incomplete;
   logic            stopping;
   logic [Axes-1:0] step_fault;
@@ -65,27 +75,17 @@ module motion_core #(
   logic            swap;
   logic [Axes-1:0] active;
   logic [     4:0] engine;
+  logic [     1:0] instant;
+  logic            path_over;
   logic barrier_begin, barrier_done;
-  logic               path_active;
-  logic               ended;
-  logic               geometry_idle;
-  logic               direct;
-  logic               direct_go;
-  logic [   Axes-1:0] direct_mask;
-  logic [       21:0] direct_load;
+  logic path_active, ended, geometry_idle;
+  logic            direct;
+  logic            direct_go;
+  logic [Axes-1:0] direct_mask;
+  logic [    21:0] direct_load;
   // path engines
-  logic               path_tick;
-  logic               path_swap;
-  logic               engine_tick;
-  logic [   Axes-1:0] engine_step;
-  logic [   Axes-1:0] engine_dir;
-  logic               engine_ready;
-  logic               payload_ready;
-  logic               shadows_free;
-  logic               engine_taken;
-  logic [       15:0] chord_word;
-  logic [   Axes-1:0] chord_load;
-  logic [   Axes-1:0] chord_swap;
+  logic            engine_tick;
+  logic engine_ready, payload_ready, shadows_free, engine_taken;
   logic               engine_done;
   logic               elsewhere;
   // axes
@@ -114,6 +114,7 @@ module motion_core #(
       .at_rest_i   (held_o),
       .moving_i    (moving),
       .fixed_i     (fixed),
+      .underrun_i  (underrun_hold),
       .hold_o      (hold),
       .stopping_o  (stopping)
   );
@@ -122,6 +123,7 @@ module motion_core #(
       .Engines(Engines)
   ) ticks (
       .*,
+      .underrun_hold_o(underrun_hold),
       .cut_i          (cut_o),
       .hold_i         (hold),
       .empty_i        (feed_empty_i),
@@ -172,6 +174,8 @@ module motion_core #(
       .done_i         (engine_done),
       .elsewhere_i    (elsewhere),
       .axes_live_i    (axes_live),
+      .instant_o      (instant),
+      .over_o         (path_over),
       .feed_at_i      (feed_at),
       .feed_runs_i    (feed_runs),
       .barrier_begin_o(barrier_begin),
@@ -186,53 +190,43 @@ module motion_core #(
       .begun_o        (geometry_begun_o)
   );
 
-  path_engines #(
+  path_to_pins #(
       .Axes   (Axes),
       .Engines(Engines)
-  ) engines (
+  ) moves (
       .*,
       .cut_i          (cut_o),
+      .load_i         (load),
       .tick_i         (tick),
       .swap_i         (swap),
+      .active_i       (active),
       .engine_i       (engine),
       .engine_taken_i (engine_taken),
-      .load_i         (load),
-      .tick_o         (path_tick),
-      .swap_o         (path_swap),
-      .path_tick_o    (engine_tick),
-      .step_o         (engine_step),
-      .dir_o          (engine_dir),
-      .chord_word_o   (chord_word),
-      .chord_load_o   (chord_load),
-      .chord_swap_o   (chord_swap),
+      .direct_i       (direct),
       .ready_o        (engine_ready),
       .payload_ready_o(payload_ready),
       .shadows_free_o (shadows_free),
       .done_o         (engine_done),
-      .elsewhere_o    (elsewhere)
+      .elsewhere_o    (elsewhere),
+      .path_tick_o    (engine_tick),
+      .live_o         (axes_live),
+      .busy_o         (axes_busy),
+      .fault_o        (step_fault),
+      .chain_i        (geometry_chain),
+      .observe_o      (axes_observe)
   );
 
-  axes #(
-      .Axes   (Axes),
-      .Counted(Engines[card_map_pkg::ENGINE_DIRECT_MODE])
-  ) all_axes (
+  path_commands #(
+      .Engines(Engines),
+      .Inputs (Inputs),
+      .Outputs(Outputs)
+  ) commands (
       .*,
-      .cut_i        (cut_o),
-      .load_i       (load),
-      .tick_i       (path_tick),
-      .swap_i       (path_swap),
-      .active_i     (active),
-      .direct_i     (direct),
-      .chord_word_i (chord_word),
-      .chord_load_i (chord_load),
-      .chord_swap_i (chord_swap),
-      .engine_step_i(engine_step),
-      .engine_dir_i (engine_dir),
-      .chain_i      (geometry_chain),
-      .live_o       (axes_live),
-      .busy_o       (axes_busy),
-      .fault_o      (step_fault),
-      .observe_o    (axes_observe)
+      .cut_i  (cut_o),
+      .load_i (load),
+      .taken_i(instant),
+      .over_i (path_over),
+      .runs_i (path_active)
   );
 
   if (Engines[card_map_pkg::ENGINE_DIRECT_MODE]) begin : gen_direct_mode

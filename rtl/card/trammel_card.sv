@@ -7,8 +7,12 @@ module trammel_card #(
     parameter int          Accumulator   = 1,     // 0: without arcs and conics
     parameter int          ArcGenerator  = 0,     // 1: arcs in chords
     parameter int          DirectMode    = 1,     // 0: without
+    parameter int          UnderrunHold  = 1,     // 0: without
     parameter int          Classes       = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks    = 1,     // 0: without
+    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
+    parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
+    parameter int          Outputs       = 4,
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
     parameter logic [31:0] BoardId       = 0
@@ -18,6 +22,7 @@ module trammel_card #(
     // straps
     input wire logic [31:0] clock_hz_i,
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
     // AXI4-Lite
     input wire logic awvalid_i,
     output logic awready_o,
@@ -37,6 +42,8 @@ module trammel_card #(
     output logic [31:0] rdata_o,
     output logic [1:0] rresp_o,
     // pins
+    input wire logic [Inputs-1:0] input_i,
+    output logic [Outputs-1:0] output_o,
     output logic [Axes-1:0] step_o,
     output logic [Axes-1:0] dir_o,
     output logic irq_o,
@@ -93,6 +100,10 @@ module trammel_card #(
       .Classes(Classes),
       .Watermarks(Watermarks),
       .DirectMode(DirectMode),
+      .UnderrunHold(UnderrunHold),
+      .PathCommands(PathCommands),
+      .Inputs(Inputs),
+      .Outputs(Outputs),
       .Ports(1),
       .BuildId(BuildId),
       .BuildDirty(BuildDirty),

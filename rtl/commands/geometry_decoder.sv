@@ -1,6 +1,8 @@
 // Decodes the next geometry command onto the load bus: a line's increments to the axes, an arc's state to the path
 // engines, the count to the count chain. The direct loader's halfwords go through the same register.
 //
+// OUTPUT's masks go to the path commands.
+//
 // The engines have no second set of registers: what follows an arc's prescaler waits until the engine takes it. A line's
 // increments wait while the axes' shadows are the arc generator's.
 `default_nettype none
@@ -24,6 +26,7 @@ module geometry_decoder #(
     output logic      [Axes-1:0] mask_o,
     output logic      [     4:0] engine_o,         // what a path runs on, by its bit of ENGINES
     output logic                 barrier_o,
+    output logic      [     1:0] instant_o,        // {MARK, OUTPUT}
     output logic                 end_o,
     output logic                 idle_o,
     output logic                 valid_o
@@ -34,6 +37,9 @@ module geometry_decoder #(
   logic [4:0] next;
   logic [2:0] next_length;
   logic [4:0] lowest;
+  logic [7:0] first_field;  // {field, its halfwords less one}
+  logic [7:0] next_field;
+  logic       last_field;
   logic       header;
   logic [6:0] strobe;  // {of the count, of a field, which one}
   logic [4:0] target;  // of that field
@@ -44,6 +50,8 @@ module geometry_decoder #(
   logic       is_line;
   logic       is_arc;
   logic       is_chord;
+  logic       is_output;
+  logic       is_mark;
   logic       at_axes;  // of an arc in chords only increments of further axes are left
   logic       to_axis;  // the next field is an axis's increment
   logic       on_engine;
@@ -56,6 +64,8 @@ module geometry_decoder #(
   assign is_line   = opcode == card_map_pkg::OP_LINE;
   assign is_arc    = Engines[card_map_pkg::ENGINE_ACCUMULATOR] && opcode == card_map_pkg::OP_ARC;
   assign is_chord  = Engines[card_map_pkg::ENGINE_ARC_GENERATOR] && opcode == card_map_pkg::OP_ARC_CHORD;
+  assign is_output = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_OUTPUT;
+  assign is_mark   = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_MARK;
   assign on_engine = is_arc || is_chord;  // another than lines: fields go by their number
   assign mask_o    = mask[Axes-1:0];
 
@@ -100,6 +110,9 @@ module geometry_decoder #(
     endcase
   endfunction
 
+  // The fields of a command that is no path are numbered from here: none that waits has such a number.
+  localparam logic [4:0] FIRST_OF_COMMAND = 5'd8;
+
   // All paths begin with a field of three halfwords, those on an engine with path ticks, prescale, plane. A line's fields
   // are its axes. An arc's in chords end with the axes outside its plane.
   assign lowest = lowest_axis(rest_q);
@@ -118,12 +131,23 @@ module geometry_decoder #(
     else if ((first && is_line) || (advance && to_axis)) rest_q <= rest_q & (rest_q - 8'd1);
   end
 
+  always_comb begin
+    first_field = {on_engine ? 5'd0 : lowest, 3'd2};
+    next_field  = to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length};
+    last_field  = is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
+    if (is_output) begin
+      first_field = {FIRST_OF_COMMAND, 3'd0};
+      next_field  = {FIRST_OF_COMMAND + 5'd1, 3'd0};
+      last_field  = field[0];
+    end
+  end
+
   command_fetch fetch (
       .*,
-      .has_payload_i(is_line || on_engine),
-      .first_i      ({on_engine ? 5'd0 : lowest, 3'd2}),
-      .next_i       (to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length}),
-      .last_field_i (is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0),
+      .has_payload_i(is_line || on_engine || is_output),
+      .first_i      (first_field),
+      .next_i       (next_field),
+      .last_field_i (last_field),
       .rest_i       (1'b0),
       // Before an engine's first field nothing waits: the command before was an engine's, whose last field this is not, or
       // runs on lines, and the engine is free.
@@ -139,7 +163,7 @@ module geometry_decoder #(
 
   assign of_arc   = arc_target(strobe[4:0]);
   assign of_chord = chord_target(strobe[4:0], axis_x_q, axis_y_q);
-  assign target   = is_arc ? of_arc : is_chord ? of_chord : strobe[4:0];
+  assign target   = is_arc ? of_arc : is_chord ? of_chord : is_output ? load_target_pkg::COMMAND : strobe[4:0];
 
   always_ff @(posedge clk_i) begin
     load_o[21]    <= (strobe[6:5] != 2'd0 || direct_load_i[21]) && !rst_i;
@@ -149,7 +173,8 @@ module geometry_decoder #(
     engine_o      <= 5'(card_map_pkg::ENGINE_LINES);
     if (is_arc) engine_o <= 5'(card_map_pkg::ENGINE_ACCUMULATOR);
     if (is_chord) engine_o <= 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
-    barrier_o <= !is_line && !on_engine;
+    barrier_o <= !is_line && !on_engine && !is_output && !is_mark;
+    instant_o <= {is_mark, is_output};
     end_o     <= opcode == card_map_pkg::OP_END;
   end
 endmodule

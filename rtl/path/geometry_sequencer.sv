@@ -31,6 +31,9 @@ module geometry_sequencer #(
     input  wire logic            done_i,
     input  wire logic            elsewhere_i,
     input  wire logic            axes_live_i,
+    // commands that are neither paths nor barriers
+    output logic      [     1:0] instant_o,        // {MARK, OUTPUT} is taken now (combinational)
+    output logic                 over_o,           // event: a path has ended
     // barriers
     input  wire logic            feed_at_i,
     input  wire logic            feed_runs_i,
@@ -51,6 +54,7 @@ module geometry_sequencer #(
   logic [Axes-1:0] mask;
   logic [     4:0] engine;
   logic            is_barrier;
+  logic [     1:0] instant;
   logic            is_end;
   logic            valid;
   logic            pop;
@@ -62,7 +66,8 @@ module geometry_sequencer #(
   logic            at_barrier;
   logic            counting;
 
-  assign runs = taking_o || (valid && !is_barrier);
+  assign runs = taking_o || (valid && !is_barrier && instant == 2'd0);
+  assign instant_o = {2{valid}} & instant;
 
   geometry_decoder #(
       .Axes   (Axes),
@@ -74,6 +79,7 @@ module geometry_sequencer #(
       .mask_o         (mask),
       .engine_o       (engine),
       .barrier_o      (is_barrier),
+      .instant_o      (instant),
       .end_o          (is_end),
       .idle_o         (decoder_idle),
       .valid_o        (valid)
@@ -95,6 +101,7 @@ module geometry_sequencer #(
       .valid_i       (valid),
       .engine_i      (engine),
       .barrier_i     (is_barrier),
+      .instant_i     (instant != 2'd0),
       .mask_i        (mask),
       .pop_o         (pop),
       .last_i        (last),

@@ -18,6 +18,7 @@ package load_target_pkg;
   localparam logic [4:0] SHIFTS = 5'd27;  // the arc generator's
   localparam logic [4:0] STATE = 5'd28;  // X, then Y
   localparam logic [4:0] CLOSING = 5'd29;  // of x, then of y
+  localparam logic [4:0] COMMAND = 5'd30;  // fields of commands that are no paths
   localparam logic [4:0] NOWHERE = 5'd31;
 
   localparam logic [2:0] FEED_TICKS = 3'd0;

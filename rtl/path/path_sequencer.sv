@@ -15,6 +15,7 @@ module path_sequencer #(
     input  wire logic            valid_i,
     input  wire logic [     4:0] engine_i,        // what a path runs on, by its bit of ENGINES
     input  wire logic            barrier_i,
+    input  wire logic            instant_i,       // neither path nor barrier: taken at once
     input  wire logic [Axes-1:0] mask_i,
     output logic                 pop_o,           // taken now (combinational)
     // direct move: the chains are loaded
@@ -35,6 +36,7 @@ module path_sequencer #(
     input  wire logic            elsewhere_i,
     output logic                 engine_taken_o,  // by a path that still takes ticks (combinational)
     output logic                 incomplete_o,    // event: a path ended elsewhere
+    output logic                 over_o,          // event: a path has ended; on lines its last tick was taken
     input  wire logic            barrier_done_i,
     output logic                 at_barrier_o,
     output logic                 path_active_o
@@ -58,18 +60,19 @@ module path_sequencer #(
   logic       swap;
 
   assign on_lines       = engine_i == LINES;
-  assign path_valid     = valid_i && !barrier_i;
+  assign path_valid     = valid_i && !barrier_i && !instant_i;
   assign ending         = take_i && last_i;
   assign over           = on_engine_q ? drained_q && done_i : settled_q && !axes_live_i;
   // After a line the next path takes over in the clock of the last tick. A path that ended elsewhere has no successor.
   assign swap           = path_valid && !incomplete_o && (idle_q || (ending && !on_engine_q));
-  assign pop_o          = swap || barrier_done_i;
+  assign pop_o          = swap || barrier_done_i || (valid_i && instant_i);
   assign begin_o        = swap || direct_go_i;
   assign path_active_o  = !idle_q;
   assign engine_taken_o = on_engine_q && !drained_q;
 
   always_ff @(posedge clk_i) begin
     swap_o       <= begin_o && !cut_i && !rst_i;
+    over_o       <= ((over && drain_q) || (ending && !on_engine_q && !direct_o)) && !cut_i && !rst_i;
     incomplete_o <= over && on_engine_q && elsewhere_i && !cut_i && !rst_i;
     at_barrier_o <= valid_i && barrier_i && idle_q && !barrier_done_i && !cut_i && !rst_i;
     drained_q    <= drain_q;

@@ -22,10 +22,12 @@ module register_file #(
     // the card's state
     input  wire logic [       5:0] motion_i,          // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic              held_i,
+    input  wire logic [      32:0] underrun_i,        // {held, how often}
     input  wire logic [      31:0] fault_i,
     input  wire logic [      31:0] room_i,            // {geometry, feed}
     input  wire logic [       1:0] low_i,             // {feed, geometry}: below their watermarks
     input  wire logic [      63:0] begun_i,           // {geometry, feed}
+    input  wire logic [      63:0] io_i,              // {marks, outputs, inputs}
     output logic      [      31:0] status_o,          // combinational; refused is any port's
     // what writes do
     output logic      [      40:0] setting_o,         // {set, address, data}
@@ -42,6 +44,8 @@ module register_file #(
     output logic      [      31:0] loader_data_o,
     // snapshots
     input  wire logic              stop_i,
+    input  wire logic              probe_i,
+    input  wire logic              mark_i,
     output logic      [       1:0] snapshot_o,        // {shift, strobe}
     output logic      [      31:0] chain_o,           // the far end
     input  wire logic [      31:0] chain_i

@@ -1,5 +1,5 @@
 // The registers that read as the card stands, STATUS and REFUSAL among them, the interrupt, and the far end of the
-// snapshot chain: FAULT and STATUS. data_o is, a clock after sample_i, the live register that is read; three bits of its
+// snapshot chain: FAULT and STATUS. data_o is, a clock after sample_i, the live register that is read; four bits of its
 // address tell the live registers apart.
 //
 // Each port has a REFUSAL of its own, which keeps the port's first refusal until the port clears it. Refusals and clears
@@ -21,6 +21,7 @@ module register_live #(
     // STATUS
     input  wire logic [ 5:0] motion_i,         // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic        held_i,
+    input  wire logic [32:0] underrun_i,       // {held, how often}
     input  wire logic        snapshotting_i,
     input  wire logic        incomplete_i,
     input  wire logic [ 1:0] low_i,            // {feed, geometry}: below their watermarks
@@ -28,6 +29,7 @@ module register_live #(
     input  wire logic [31:0] fault_i,
     input  wire logic [31:0] room_i,           // {geometry, feed}
     input  wire logic [63:0] begun_i,          // {geometry, feed}
+    input  wire logic [63:0] io_i,             // {marks, outputs, inputs}
     output logic      [31:0] status_o,         // combinational; refused is any port's
     output logic      [31:0] data_o,
     output logic      [31:0] chain_o,
@@ -78,21 +80,26 @@ module register_live #(
       32'(incomplete_i) << card_map_pkg::BIT_STATUS_INCOMPLETE |
       32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING |
       32'(low_i[0]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
-      32'(low_i[1]) << card_map_pkg::BIT_STATUS_FEED_LOW;
+      32'(low_i[1]) << card_map_pkg::BIT_STATUS_FEED_LOW |
+      32'(underrun_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin
-      case (access_i[4:2])
-        card_map_pkg::ADDR_STATUS[4:2]: begin
+      case (access_i[5:2])
+        card_map_pkg::ADDR_STATUS[5:2]: begin
           data_o <= status_o;
           data_o[card_map_pkg::BIT_STATUS_REFUSED] <= refused[access_i[13:12]];
         end
-        card_map_pkg::ADDR_FAULT[4:2]: data_o <= fault_i;
-        card_map_pkg::ADDR_REFUSAL[4:2]: data_o <= {4'd0, refusal[28*access_i[13:12]+:28]};
-        card_map_pkg::ADDR_GEOMETRY_ROOM[4:2]: data_o <= {16'd0, room_i[31:16]};
-        card_map_pkg::ADDR_FEED_ROOM[4:2]: data_o <= {16'd0, room_i[15:0]};
-        card_map_pkg::ADDR_GEOMETRY_BEGUN[4:2]: data_o <= begun_i[63:32];
-        default: data_o <= begun_i[31:0];
+        card_map_pkg::ADDR_FAULT[5:2]: data_o <= fault_i;
+        card_map_pkg::ADDR_REFUSAL[5:2]: data_o <= {4'd0, refusal[28*access_i[13:12]+:28]};
+        card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_o <= {16'd0, room_i[31:16]};
+        card_map_pkg::ADDR_FEED_ROOM[5:2]: data_o <= {16'd0, room_i[15:0]};
+        card_map_pkg::ADDR_GEOMETRY_BEGUN[5:2]: data_o <= begun_i[63:32];
+        card_map_pkg::ADDR_INPUTS[5:2]: data_o <= {16'd0, io_i[15:0]};
+        card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, io_i[31:16]};
+        card_map_pkg::ADDR_MARKS[5:2]: data_o <= io_i[63:32];
+        card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= begun_i[31:0];
+        default: data_o <= underrun_i[31:0];
       endcase
     end
   end

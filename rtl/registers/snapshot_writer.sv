@@ -2,8 +2,10 @@
 // whoever asked, a word a clock.
 //
 // The strobe is given in the clock after the request. The words follow two clocks later, the time first: an access that
-// was let through just before a stop's request has written its setting by then. A stop's request goes before the host's
-// and breaks into its snapshot, which is then taken anew.
+// was let through just before a stop's request has written its setting by then. Requests go in the order stop, probe,
+// MARK, host. A stop or the probe's edge breaks into the others' snapshots, a MARK into the host's; those of a MARK and of
+// the host are then taken anew. A MARK does not break into a snapshot that is taken anew, and follows on no other without
+// a clock between, in which an access gets through: so no row of MARKs keeps the host waiting.
 // The chain's words go down from the last position; the words below the time follow those above it.
 `default_nettype none
 module snapshot_writer #(
@@ -13,6 +15,8 @@ module snapshot_writer #(
     input  wire logic        rst_i,
     input  wire logic        host_i,      // events: a snapshot is wanted
     input  wire logic        stop_i,
+    input  wire logic        probe_i,
+    input  wire logic        mark_i,
     input  wire logic [31:0] chain_i,
     output logic      [ 1:0] snapshot_o,  // {shift, strobe}
     output logic             active_o,    // from the strobe until the last word is in the RAM
@@ -26,6 +30,11 @@ module snapshot_writer #(
   localparam logic [3:0] TIME_LO = card_map_pkg::IN_AREA_TIME_LO[5:2];
   localparam logic [3:0] FIRST_POSITION = card_map_pkg::IN_AREA_POSITION[5:2];
   localparam logic [3:0] LAST_POSITION = FIRST_POSITION + 4'(Axes - 1);
+
+  localparam logic [3:0] SNAP = card_map_pkg::AREA_SNAP[9:6];
+  localparam logic [3:0] STOP = card_map_pkg::AREA_STOP[9:6];
+  localparam logic [3:0] PROBE = card_map_pkg::AREA_PROBE[9:6];
+  localparam logic [3:0] MARK = card_map_pkg::AREA_MARK[9:6];
 
   // Clocks since reset as they are written down: two clocks late, the high word three.
   logic        carry_q;
@@ -43,23 +52,32 @@ module snapshot_writer #(
   end
 
   logic       host_q;  // the host's request is not served yet
-  logic       for_stop_q;
+  logic       mark_q;  // a MARK's
+  logic [3:0] area_q;
+  logic       again_q;  // a snapshot taken anew
   logic       settle_q;  // the clock between the strobe and the first word
   logic       write_q;
   logic [3:0] word_q;
   logic       last_q;  // the last word is on its way into the RAM
-  logic       begin_stop;
+  logic       for_host;  // the snapshot under way
+  logic       begin_first;  // a stop's or the probe's
+  logic       begin_mark;
   logic       begin_host;
+  logic       breaks;
 
-  assign begin_stop = stop_i;
-  assign begin_host = (host_i && !active_o) || (last_q && for_stop_q && host_q);
+  assign for_host = area_q == SNAP;
+  assign begin_first = stop_i || probe_i;
+  assign begin_mark = !begin_first && (active_o ? mark_i && for_host && !again_q : mark_i || mark_q);
+  assign begin_host = !begin_first && !begin_mark && (active_o ? last_q && !for_host && host_q : host_i);
+  assign breaks = begin_first || begin_mark;
 
   always_ff @(posedge clk_i) begin
-    if (begin_stop || active_o || host_i) begin
-      snapshot_o[0] <= begin_stop || begin_host;
-      settle_q <= snapshot_o[0] && !begin_stop;
-      last_q <= write_q && word_q == FAULT && !begin_stop;
-      host_q <= host_i || (host_q && !(last_q && !for_stop_q && !begin_stop));
+    if (breaks || active_o || host_i) begin
+      snapshot_o[0] <= breaks || begin_host;
+      settle_q <= snapshot_o[0] && !breaks;
+      last_q <= write_q && word_q == FAULT && !breaks;
+      host_q <= host_i || (host_q && !(last_q && for_host && !breaks));
+      mark_q <= begin_first ? mark_i || mark_q || (active_o && area_q == MARK) : (mark_i || mark_q) && !begin_mark;
       if (settle_q) begin
         write_q <= 1'b1;
         word_q  <= TIME_LO;
@@ -76,9 +94,10 @@ module snapshot_writer #(
         end
       end
       if (last_q) active_o <= 1'b0;
-      if (begin_stop || begin_host) begin
+      if (breaks || begin_host) begin
         active_o <= 1'b1;
-        for_stop_q <= begin_stop;
+        area_q <= stop_i ? STOP : probe_i ? PROBE : begin_mark ? MARK : SNAP;
+        again_q <= begin_host && active_o;
         write_q <= 1'b0;
         snapshot_o[1] <= 1'b0;
       end
@@ -89,16 +108,15 @@ module snapshot_writer #(
       write_q <= 1'b0;
       last_q <= 1'b0;
       host_q <= 1'b0;
+      mark_q <= 1'b0;
       active_o <= 1'b0;
     end
   end
 
-  logic [ 3:0] area;
   logic [31:0] data;
 
-  assign area = for_stop_q ? card_map_pkg::AREA_STOP[9:6] : card_map_pkg::AREA_SNAP[9:6];
   assign data = word_q == TIME_LO ? time_q[31:0] : word_q == TIME_HI ? time_q[63:32] : chain_i;
-  assign store_o = write_q ? {1'b1, area, word_q, data} : '0;
+  assign store_o = write_q ? {1'b1, area_q, word_q, data} : '0;
 
 endmodule
 `default_nettype wire

@@ -14,11 +14,13 @@ module feed_sequencer #(
     // ticks
     input  wire logic        take_i,
     input  wire logic        direct_i,         // a direct move is under way
+    input  wire logic        wait_i,           // no piece begins
     input  wire logic        barrier_begin_i,
     input  wire logic        barrier_done_i,
     output logic             at_barrier_o,
     output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
     output logic             active_o,         // a piece gives ticks
+    output logic             decoded_o,        // a piece waits (combinational)
     output logic             moving_o,         // and has, or the one before it in one go
     output logic      [ 1:0] class_o,          // of the piece that was swapped in last
     output logic             idle_o,           // nothing read or decoded
@@ -38,8 +40,9 @@ module feed_sequencer #(
   logic swap;
   logic last;
 
-  assign swap   = valid && piece && (!active_o || (take_i && last));
-  assign runs_o = active_o || (valid && piece);
+  assign decoded_o = valid && piece;
+  assign swap      = decoded_o && !wait_i && (!active_o || (take_i && last));
+  assign runs_o    = active_o || decoded_o;
 
   feed_decoder decoder (
       .*,

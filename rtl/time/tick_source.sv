@@ -13,6 +13,9 @@ module tick_source #(
     input  wire logic        empty_i,
     input  wire logic [15:0] word_i,
     output logic             read_o,
+    // what is queued
+    // {a queue may have no room for the next command, drop, geometry {commit, write}, feed {commit, write}, halfword}
+    input  wire logic [21:0] arrive_i,
     // ticks
     input  wire logic        direct_i,         // a direct move is under way
     input  wire logic        taking_i,         // a path takes ticks
@@ -25,6 +28,9 @@ module tick_source #(
     input  wire logic        barrier_done_i,
     output logic             at_barrier_o,
     output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
+    // under-run
+    output logic             underrun_hold_o,
+    output logic      [32:0] underrun_o,       // {it holds, or keeps a piece waiting; how often it has held}
     // status
     output logic             active_o,         // a piece gives ticks
     output logic             moving_o,         // and has, or the one before it in one go
@@ -44,6 +50,8 @@ module tick_source #(
   logic        feed_clear;
   logic [19:0] load;
   logic        decoder_idle;
+  logic        decoded;
+  logic        piece_waits;
   logic [31:0] ratio_chain;
   logic [31:0] rate_chain;
 
@@ -63,12 +71,38 @@ module tick_source #(
       .Engines(Engines)
   ) pieces (
       .*,
-      .class_o(class_now),
-      .take_i (take_o),
-      .idle_o (decoder_idle),
-      .load_o (load),
-      .chain_i(rate_chain)
+      .class_o  (class_now),
+      .take_i   (take_o),
+      .wait_i   (piece_waits),
+      .decoded_o(decoded),
+      .idle_o   (decoder_idle),
+      .load_o   (load),
+      .chain_i  (rate_chain)
   );
+
+  if (Engines[card_map_pkg::ENGINE_UNDERRUN_HOLD]) begin : gen_underrun_hold
+    underrun_guard guard (
+        .*,
+        .off_i      (1'b0),
+        .arrive_i   (arrive_i[20:0]),
+        .full_i     (arrive_i[21]),
+        .load_i     (load),
+        .take_i     (take_o && active_o),
+        .swap_i     (swap_o),
+        .active_i   (active_o),
+        .ratio_i    (ratio_o),
+        .decoded_i  (decoded),
+        .wait_o     (piece_waits),
+        .hold_o     (underrun_hold_o),
+        .shown_o    (underrun_o[32]),
+        .underruns_o(underrun_o[31:0])
+    );
+  end else begin : gen_no_underrun_hold
+    assign {piece_waits, underrun_hold_o, underrun_o} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, arrive_i, decoded};
+  end
 
   feed_generator generator (
       .*,

@@ -7,6 +7,9 @@
 
 namespace trammel::sim {
 
+// Inputs, and outputs, of the simulated card: the RTL's default.
+inline constexpr unsigned kPins = 4;
+
 template <class Dut>
 void set_inputs(Dut& dut, const model::CardModel::Inputs& in) {
   dut.rst_i = in.rst;
@@ -19,6 +22,7 @@ void set_inputs(Dut& dut, const model::CardModel::Inputs& in) {
   dut.arvalid_i = in.arvalid;
   dut.araddr_i = static_cast<std::uint16_t>(in.araddr);
   dut.rready_i = in.rready;
+  dut.input_i = static_cast<std::uint8_t>(in.pins & ((1U << kPins) - 1));
 }
 
 }  // namespace trammel::sim

@@ -24,6 +24,7 @@
   SIGNAL(path_dir, seen.path_dir(), out.path_dir, true)                   \
   SIGNAL(step_o, rtl.step_o, out.step, true)                              \
   SIGNAL(dir_o, rtl.dir_o, out.dir, true)                                 \
+  SIGNAL(output_o, rtl.output_o, out.output, true)                        \
   SIGNAL(irq_o, rtl.irq_o, out.irq, true)                                 \
   SIGNAL(status, seen.status(), out.status, true)                         \
   SIGNAL(fault, seen.fault(), out.fault, true)                            \

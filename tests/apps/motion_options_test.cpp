@@ -186,7 +186,7 @@ TEST_F(Operator, CheckTellsTheTimeOfTheRunAndRunsNothing) {
   EXPECT_NE(outcome.out.find("nothing was run"), std::string::npos);
   const nlohmann::json check = read_json(command_.path("check"));
   EXPECT_NEAR(check["planned_seconds"].get<double>() / made.json["seconds"].get<double>(), 1, 0.001);
-  for (const char* key : {"final_position", "segments", "commands", "axes", "program", "planned_seconds"}) {
+  for (const char* key : {"final_position", "segments", "commands", "axes", "program", "planned_seconds", "motion"}) {
     EXPECT_EQ(check[key], made.json[key]) << key;
   }
   EXPECT_FALSE(check.contains("cycles"));

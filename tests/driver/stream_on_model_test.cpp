@@ -143,6 +143,22 @@ TEST(StreamOnModel, ASlowClassIsNoTimeOut) {
   EXPECT_EQ(engine->positions()[0], 20);
 }
 
+// Who waits for the end alone does not know what runs: the slowest class's ratio counts, one of 0 is a hold.
+TEST(StreamOnModel, AWaitForTheEndIsStretchedByTheSlowestClass) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  card.set_ratio(PieceClass::kRapid, Card::kFullRatio / 16);
+  card.set_ratio(PieceClass::kFixed, 0);
+  Stream stream(card);
+  FeedCommand rapid = feed_of(1000);
+  rapid.piece_class = PieceClass::kRapid;
+  stream.send({rapid, line_of(1000, 10)});
+  card.wait_until_idle(20ms);  // 16 ms at the full ratio
+  EXPECT_GE(engine->cycles(), 16U * 16'000U);
+  stream.send({rapid, line_of(1000, 10)});
+  EXPECT_THROW(card.wait_until_idle(5ms), TimeoutError);
+}
+
 // A bus that counts what the driver does: transfers, and how its pauses end.
 class Counting final : public Bus {
  public:

@@ -81,7 +81,8 @@ class CoreBench {
   explicit CoreBench(const model::CardConfig& config = {}) : core(config) { core.set_steps(&steps); }
 
   // Every clock goes through here.
-  void clock(const model::CoreModel::Inputs& in) {
+  void clock(model::CoreModel::Inputs in) {
+    in.pins = pins;
     core.clock(in);
     if (!logs) return;
     Shown shown{core.outputs(), core.answer(), {}};
@@ -140,6 +141,10 @@ class CoreBench {
     return send(circle_words(number++, ticks, r, clockwise));
   }
   bool dwell(std::uint64_t clocks) { return send(command_words(card_map::Opcode::Dwell, 0, number++, clocks, {})); }
+  bool output(std::uint16_t set, std::uint16_t clear) {
+    return send(command_words(card_map::Opcode::Output, 0, number++, 0, {{"set", set}, {"clear", clear}}));
+  }
+  bool mark() { return send(command_words(card_map::Opcode::Mark, 0, number++, 0, {})); }
   bool end() { return send(command_words(card_map::Opcode::End, 0, number++, 0, {})); }
   // Until not busy; false when that does not come.
   bool finish(std::uint64_t limit) {
@@ -151,6 +156,7 @@ class CoreBench {
   model::CoreModel core;
   StepRecorder steps;
   std::uint8_t number = 0;
+  std::uint16_t pins = 0;  // at the card's inputs
   bool logs = false;
   std::vector<Shown> log;
 };

@@ -133,6 +133,31 @@ ArcPoints short_arc(std::int64_t radius, bool clockwise) {
   return arc;
 }
 
+// The path's steps and their path ticks are the arc's, whatever the clocks between the ticks are.
+TEST(CoreModel, AChordArcsStepsCarryTheirPathTicks) {
+  std::vector<StepRecorder::Path> lists[2];
+  const ArcPoints arc = short_arc(90, false);
+  const std::uint64_t ticks = prepare_chords(arc).path_ticks;
+  for (const unsigned slow : {0U, 1U}) {
+    model::CardConfig config;
+    config.engines |= card_map::field::kEnginesArcGenerator;
+    CoreBench bench(config);
+    ASSERT_TRUE(bench.line(50, {kOnePulse / 10}));
+    ASSERT_TRUE(bench.send(chord_words(bench.number++, arc, ticks)));
+    ASSERT_TRUE(bench.line(50, {kOnePulse / 10}));
+    ASSERT_TRUE(bench.feed(ticks + 100, slow != 0 ? kWhole / 37 : kWhole));
+    ASSERT_TRUE(bench.finish(100'000));
+    for (auto [command, tick, axis, direction, cycle] : bench.steps.path)
+      lists[slow].emplace_back(command, tick, axis, direction, 0);
+  }
+  EXPECT_GT(lists[0].size(), 40U);
+  EXPECT_EQ(lists[0], lists[1]);
+  for (const auto& step : lists[0]) {
+    EXPECT_GE(std::get<1>(step), 1U);
+    EXPECT_LE(std::get<1>(step), std::get<0>(step) == 1 ? ticks : 50U);
+  }
+}
+
 // The gaps between ticks: within an arc in chords, and from one path to the next.
 struct ChordGaps {
   std::uint64_t longest =

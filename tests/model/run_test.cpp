@@ -47,7 +47,7 @@ class Pair {
   void wait(std::uint64_t clocks) {
     clocked.idle(clocks);
     if (of_ == Of::ClockAndRun)
-      jumping.core.run(clocks);
+      jumping.core.run(clocks, jumping.pins);
     else
       jumping.idle(clocks);
     waits += 1;
@@ -129,6 +129,7 @@ class Program {
   void paths_and_pieces(double pace) {
     std::uint64_t ticks = 0;
     for (std::uint64_t paths = p_.any(1, 5); paths != 0; --paths) {
+      instants();
       const std::uint64_t n = p_.one_in(4) ? p_.any(1, 40) : p_.any(100, 3000);
       const bool chords = card_map::has_engine(p_.clocked.core.config().engines, card_map::engine::kArcGenerator);
       if (axes_ >= 2 && chords && p_.one_in(2))
@@ -141,7 +142,9 @@ class Program {
       piece(n, pace);
       ticks -= n;
     }
+    instants();
     if (p_.one_in(2)) barrier();
+    instants();
   }
 
   // Arcs in chords alone, at a path tick for nearly each feed tick.
@@ -165,6 +168,17 @@ class Program {
   }
 
  private:
+  // Commands that are neither paths nor barriers.
+  void instants() {
+    while (p_.one_in(3)) {
+      if (p_.one_in(2))
+        p_.send(command_words(card_map::Opcode::Mark, 0, number_++, 0, {}));
+      else
+        p_.send(command_words(card_map::Opcode::Output, 0, number_++, 0,
+                              {{"set", p_.any(0, 0xFFFF)}, {"clear", p_.any(0, 0xFFFF)}}));
+    }
+  }
+
   std::uint64_t line(std::uint64_t ticks) {
     const auto mask = static_cast<std::uint8_t>(p_.any(1, (1U << axes_) - 1));
     std::vector<std::int64_t> increments;
@@ -223,7 +237,11 @@ class Program {
     }
     const auto piece_class = static_cast<std::uint8_t>(p_.one_in(2) ? 0 : p_.any(0, 2));
     p_.send(command_words(card_map::Opcode::Feed, piece_class, number_++, ticks,
-                          {{"rate", rate}, {"acceleration", acceleration}, {"jerk", jerk}, {"floor", floor}}));
+                          {{"rate", rate},
+                           {"acceleration", acceleration},
+                           {"jerk", jerk},
+                           {"floor", floor},
+                           {"stop_distance", p_.one_in(2) ? 0 : p_.any(1, p_.one_in(4) ? 5000 : 400)}}));
   }
 
   void barrier() {
@@ -240,7 +258,7 @@ class Program {
 
 void disturb(Pair& pair) {
   const auto clocks = [&pair] { return pair.any(1, 3000); };
-  switch (pair.any(0, 6)) {
+  switch (pair.any(0, 8)) {
     case 0:
       pair.write(reg::kSlew, static_cast<std::uint32_t>(pair.any(0x1'0000, 0xFFF'FFFF)));
       pair.write(reg::kHold, 1);
@@ -268,6 +286,13 @@ void disturb(Pair& pair) {
       }
       break;
     }
+    case 5:
+      pair.clocked.pins = pair.jumping.pins = static_cast<std::uint16_t>(pair.any(0, 0xFFFF));
+      break;
+    case 6:
+      pair.write(reg::kOutputSafe, static_cast<std::uint32_t>(pair.random()));
+      pair.write(reg::kInputPolarity, static_cast<std::uint32_t>(pair.any(0, 0xFFFF)));
+      break;
     default:
       break;
   }
@@ -279,6 +304,8 @@ struct Compared {
   std::uint64_t steps = 0;
   std::uint64_t clocks = 0;
   std::uint64_t chord_arcs = 0;
+  std::uint64_t marks = 0;
+  std::uint64_t underruns = 0;
 };
 
 Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t longest) {
@@ -306,6 +333,10 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     compared.waits += pair.waits;
     compared.steps += pair.steps;
     compared.chord_arcs += pair.chord_arcs;
+    const std::uint32_t marks = pair.clocked.read(reg::kMarks);
+    EXPECT_EQ(pair.jumping.read(reg::kMarks), marks);
+    compared.marks += marks;
+    compared.underruns += pair.clocked.read(reg::kUnderruns);
     compared.clocks += pair.one_by_one / 2;
   }
   return compared;
@@ -319,6 +350,7 @@ TEST(Run, EqualsClock) {
   EXPECT_GT(compared.waits, 20 * programs);
   EXPECT_GT(compared.steps, 20 * programs);
   EXPECT_GT(compared.chord_arcs, programs / 4);
+  EXPECT_GT(compared.marks, programs / 5);
 }
 
 // Jumps that end anywhere between a feed tick and the step of its path tick.
@@ -376,6 +408,7 @@ TEST(RestingBlocks, ChangeNothing) {
   EXPECT_GT(compared.clocks, 22'000 * programs);
   EXPECT_GT(compared.steps, 20 * programs);
   EXPECT_GT(compared.chord_arcs, programs / 4);
+  EXPECT_GT(compared.marks, programs / 5);
 }
 
 }  // namespace

@@ -176,6 +176,18 @@ TEST(SCurvePlan, TakesAtMostOneRiseMoreThanTheTrapezoidARamp) {
   }
 }
 
+// Where the limits change within a ramp, it need not keep the lower ones all along.
+TEST(SCurvePlan, LimitsThatDifferCostLittleMore) {
+  Random random(9);
+  for (int i = 0; i < 2'000; ++i) {
+    const Spans spans = with_limits(random, moves(random, random_limits(random), true), i % 2 == 0 ? 1.4 : 100);
+    const test::Trapezoid best = test::trapezoid_of(spans);
+    const double time = seconds(spans);
+    ASSERT_GE(time, best.duration * (1 - 1e-9)) << i;
+    ASSERT_LE(time, best.duration * 1.05 + best.bends) << i;
+  }
+}
+
 TEST(SCurvePlan, ATrapezoidFailsItsJudge) {
   Random random(4);
   for (int i = 0; i < 300; ++i) {

@@ -73,8 +73,8 @@ TEST_P(EveryAxisCount, DescribesItself) {
   EXPECT_EQ(bench_.read(reg::kFeedDepth).data, 512u);
   EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x20000u);
   EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, 2u);
-  EXPECT_EQ(bench_.read(reg::kEngines).data, 0x633u);
-  EXPECT_EQ(bench_.read(reg::kPorts).data, 1u);
+  EXPECT_EQ(bench_.read(reg::kEngines).data, 0x6F3u);
+  EXPECT_EQ(bench_.read(reg::kPorts).data, 0x04'04'01u);
 }
 
 TEST(Identity, ComesFromTheParameters) {
@@ -113,11 +113,11 @@ TEST(Identity, WithoutDirectModeItsRegistersAreUnknown) {
 }
 
 TEST(Identity, ProbeClearNeedsItsEngine) {
-  RegisterBench without(1);
-  EXPECT_EQ(without.refusal_of_write(reg::kControl, field::kControlProbeClear), Reason::BadValue);
   RegisterFile::Config config = RegisterBench::config_of(1);
-  config.engines |= 1U << card_map::engine::kPathCommands;
-  RegisterBench with(config);
+  config.engines &= ~field::kEnginesPathCommands;
+  RegisterBench without(config);
+  EXPECT_EQ(without.refusal_of_write(reg::kControl, field::kControlProbeClear), Reason::BadValue);
+  RegisterBench with(1);
   EXPECT_EQ(with.refusal_of_write(reg::kControl, field::kControlProbeClear), Reason::None);
 }
 

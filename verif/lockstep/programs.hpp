@@ -54,6 +54,8 @@ class Programs {
   bool arcs = true;
   // In chords, on the arc generator.
   bool chords = false;
+  // OUTPUT and MARK between paths.
+  bool path_commands = false;
   // Pieces of all classes; else feed.
   bool classes = false;
   // The most ticks of a stretch, and of its paths and pieces.
@@ -70,7 +72,11 @@ class Programs {
     std::uint64_t piece_ticks = 0;
     const unsigned paths = dice_.below(6);
     const bool single = dice_.chance(4);  // paths and pieces of one tick each, one after the other
-    for (unsigned i = 0; i < paths; ++i) path_ticks += path(s.geometry, single);
+    for (unsigned i = 0; i < paths; ++i) {
+      instants(s.geometry);
+      path_ticks += path(s.geometry, single);
+    }
+    instants(s.geometry);
     while (piece_ticks < path_ticks) {
       const std::uint64_t left = path_ticks - piece_ticks;
       const std::uint64_t ticks = single ? 1 : dice_.chance(3) ? left : 1 + dice_.below(static_cast<unsigned>(left));
@@ -83,7 +89,10 @@ class Programs {
       else
         path(s.geometry, true);
     }
-    for (unsigned i = dice_.below(3); i != 0; --i) barrier(s);
+    for (unsigned i = dice_.below(3); i != 0; --i) {
+      barrier(s);
+      instants(s.geometry);
+    }
     return s;
   }
 
@@ -97,6 +106,17 @@ class Programs {
   }
 
  private:
+  // Commands that are neither paths nor barriers, some in a row now and then.
+  void instants(std::vector<Halfwords>& to) {
+    while (path_commands && dice_.chance(3)) {
+      if (dice_.chance(2))
+        to.push_back(stored_command(card_map::Opcode::Mark, 0, 0));
+      else
+        to.push_back(stored_command(card_map::Opcode::Output, 0, 0,
+                                    {{"set", dice_.draw() & 0xFFFF}, {"clear", dice_.draw() & 0xFFFF}}));
+    }
+  }
+
   std::uint64_t path(std::vector<Halfwords>& to, bool single) {
     if (arcs && axes_ > 1 && dice_.chance(4)) return arc(to);
     if (chords && axes_ > 1 && dice_.chance(3)) return chord_arc(to);

@@ -13,6 +13,7 @@ void CardModel::clock(const Inputs& in) {
   core.partial = port.partial;
   core.address = port.address;
   core.data = port.data;
+  core.pins = in.pins;
   const CoreModel::Answer answer = core_.answer();
   core_.clock(core);
   if (reset_now) return port_.reset();
@@ -32,12 +33,13 @@ void CardModel::clock(const Inputs& in) {
   port_.clock(bus);
 }
 
-void CardModel::run(std::uint64_t clocks) {
-  const Inputs none;
+void CardModel::run(std::uint64_t clocks, std::uint16_t pins) {
+  Inputs none;
+  none.pins = pins;
   const Axi4LitePort::Inputs no_bus;
   while (clocks != 0) {
     const bool still = !reset_due_ && !core_.answer().ack && port_.quiet(no_bus);
-    const std::uint64_t gone = still ? core_.jump(clocks) : 0;
+    const std::uint64_t gone = still ? core_.jump(clocks, pins) : 0;
     if (gone == 0) clock(none);
     clocks -= gone == 0 ? 1 : gone;
   }

@@ -69,6 +69,8 @@ std::array<Layout, 256> all_layouts() {
                                                                 {"closing_x", path::kClosing},
                                                                 {"closing_y", path::kClosing}},
                                                                "plane");
+  all[static_cast<std::uint8_t>(Opcode::Output)] =
+      layout_of(Opcode::Output, {{"set", path::kCommand}, {"clear", path::kCommand}}, "");
   all[static_cast<std::uint8_t>(Opcode::Line)].pause_at = kHeader;
   all[static_cast<std::uint8_t>(Opcode::Feed)] = layout_of(Opcode::Feed,
                                                            {{"rate", feed::kRate},

@@ -10,10 +10,15 @@ namespace {
 
 // Clocks that the register file stays awake after its last activity.
 constexpr int kAwake = 2;
+// A queue with less room than this, in halfwords, may have none for the next command.
+constexpr std::uint16_t kMostGeometry = 64;
+constexpr std::uint16_t kMostFeed = 32;
 
 const CardConfig& checked(const CardConfig& config) {
   if (config.axes < 1 || config.axes > card_map::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   if (config.ports < 1 || config.ports > 4) throw std::invalid_argument("a card has 1 to 4 ports");
+  if (config.inputs < 1 || config.inputs > 16 || config.outputs < 1 || config.outputs > 16)
+    throw std::invalid_argument("a card has 1 to 16 inputs and outputs");
   constexpr std::uint32_t kLeast = RegisterFile::kLeastEngines;
   if ((config.engines & kLeast) != kLeast || (config.engines & ~RegisterFile::kMostEngines) != 0)
     throw std::invalid_argument("no card has these engines");
@@ -32,16 +37,21 @@ RegisterFile::Config register_config(const CardConfig& config) {
   result.board_id = config.board_id;
   result.ports = config.ports;
   result.idle_level = config.idle_level;
+  result.inputs = config.inputs;
+  result.outputs = config.outputs;
   return result;
 }
+
+PathCommands::Config pins_of(const CardConfig& config) { return {config.inputs, config.outputs, config.output_idle}; }
 
 }  // namespace
 
 bool CoreModel::Outputs::operator==(const Outputs& o) const {
-  return step == o.step && dir == o.dir && irq == o.irq && tick == o.tick && path_tick == o.path_tick &&
-         path_swap == o.path_swap && feed_swap == o.feed_swap && path_step == o.path_step && path_dir == o.path_dir &&
-         geometry_room == o.geometry_room && feed_room == o.feed_room && status == o.status && fault == o.fault &&
-         geometry_begun == o.geometry_begun && feed_begun == o.feed_begun && ratio == o.ratio && rate == o.rate;
+  return step == o.step && dir == o.dir && output == o.output && irq == o.irq && tick == o.tick &&
+         path_tick == o.path_tick && path_swap == o.path_swap && feed_swap == o.feed_swap && path_step == o.path_step &&
+         path_dir == o.path_dir && geometry_room == o.geometry_room && feed_room == o.feed_room && status == o.status &&
+         fault == o.fault && geometry_begun == o.geometry_begun && feed_begun == o.feed_begun && ratio == o.ratio &&
+         rate == o.rate;
 }
 
 CoreModel::CoreModel(const Config& config)
@@ -51,7 +61,7 @@ CoreModel::CoreModel(const Config& config)
       geometry_queue_(config.geometry_depth),
       feed_queue_(config.feed_depth),
       watermarks_(config.geometry_depth, config.feed_depth),
-      motion_(config.axes, config.idle_level, config.clock_all) {
+      motion_(config.axes, config.idle_level, config.clock_all, config.engines, pins_of(config)) {
   reset();
 }
 
@@ -61,7 +71,7 @@ void CoreModel::reset() {
   geometry_queue_ = HalfwordQueue(config_.geometry_depth);
   feed_queue_ = HalfwordQueue(config_.feed_depth);
   watermarks_ = QueueWatermarks(config_.geometry_depth, config_.feed_depth);
-  motion_ = MotionCore(config_.axes, config_.idle_level, config_.clock_all);
+  motion_ = MotionCore(config_.axes, config_.idle_level, config_.clock_all, config_.engines, pins_of(config_));
   cycles_ = 0;
   record_.reset();
   answer_ = {};
@@ -75,7 +85,7 @@ void CoreModel::clock(const Inputs& in) {
   if (reset_now) return reset();
   ++cycles_;
   const bool cut = motion_.stop().cut;
-  const MotionCore::Inputs motion_in = motion_inputs();
+  const MotionCore::Inputs motion_in = motion_inputs(in.pins);
   const QueueWatermarks::Inputs watermark_in = watermark_inputs();
   clock_commands(cut);
   clock_registers(in);
@@ -117,25 +127,29 @@ std::uint64_t CoreModel::watched() const {
                         checker.refuse,
                         stop.stop,
                         motion_.time().ratio == 0,
+                        motion_.commands().mark(),
                         watermarks_.outputs().geometry_low,
-                        watermarks_.outputs().feed_low};
+                        watermarks_.outputs().feed_low,
+                        motion_.underrun().shown};
   std::uint64_t bits = stop.fault;
   for (const bool flag : flags) bits = bits << 1 | (flag ? 1 : 0);
   return bits;
 }
 
-void CoreModel::run(std::uint64_t clocks) {
+void CoreModel::run(std::uint64_t clocks, std::uint16_t pins) {
+  Inputs none;
+  none.pins = pins;
   while (clocks != 0) {
-    const std::uint64_t gone = jump(clocks);
-    if (gone == 0) clock({});
+    const std::uint64_t gone = jump(clocks, pins);
+    if (gone == 0) clock(none);
     clocks -= gone == 0 ? 1 : gone;
   }
 }
 
-std::uint64_t CoreModel::jump(std::uint64_t limit) {
+std::uint64_t CoreModel::jump(std::uint64_t limit, std::uint16_t pins) {
   if (reset_due_ || awake_ != 0 || !checker_.quiet()) return 0;
   if (!geometry_queue_.quiet() || !feed_queue_.quiet() || !watermarks_.quiet(watermark_inputs())) return 0;
-  const std::uint64_t gone = motion_.jump(limit, motion_inputs(), cycles_, record_);
+  const std::uint64_t gone = motion_.jump(limit, motion_inputs(pins), cycles_, record_);
   if (gone == 0) return 0;
   cycles_ += gone;
   registers_.advance(gone);
@@ -143,7 +157,7 @@ std::uint64_t CoreModel::jump(std::uint64_t limit) {
   return gone;
 }
 
-MotionCore::Inputs CoreModel::motion_inputs() const {
+MotionCore::Inputs CoreModel::motion_inputs(std::uint16_t pins) const {
   const RegisterFile::Outputs& set = registers_.outputs();
   MotionCore::Inputs in;
   in.setting = set.setting;
@@ -153,9 +167,14 @@ MotionCore::Inputs CoreModel::motion_inputs() const {
   in.feed_empty = feed_queue_.outputs().empty;
   in.geometry_word = geometry_queue_.outputs().word;
   in.feed_word = feed_queue_.outputs().word;
+  const CommandChecker::Outputs& checker = checker_.outputs();
+  in.arrival = {checker.drop,        checker.geometry_commit, checker.geometry_write,
+                checker.feed_commit, checker.feed_write,      checker.halfword};
+  in.full = geometry_queue_.outputs().room < kMostGeometry || feed_queue_.outputs().room < kMostFeed;
   in.start = set.start;
   in.start_mask = set.start_mask;
   in.loader_data = set.loader_data;
+  in.pins = pins;
   return in;
 }
 
@@ -196,6 +215,8 @@ void CoreModel::gather() {
   in.feed_active = s.feed_active;
   in.ended = s.ended;
   in.stopping = motion_.stop().stopping;
+  in.underrun = motion_.underrun().shown;
+  in.underruns = motion_.underrun().underruns;
   in.incomplete = checker_.outputs().partial;
   in.geometry_room = geometry_queue_.outputs().room;
   in.feed_room = feed_queue_.outputs().room;
@@ -208,6 +229,10 @@ void CoreModel::gather() {
   for (unsigned n = 0; n < config_.axes; ++n) in.position[n] = motion_.position(n);
   in.fault = motion_.stop().fault;
   in.stop = motion_.stop().stop;
+  in.mark = motion_.commands().mark();
+  in.inputs = motion_.commands().levels();
+  in.outputs = motion_.commands().outputs();
+  in.marks = motion_.commands().marks();
   in.checker_ready = checker_.outputs().ready;
   in.checker_refuse = checker_.outputs().refuse;
   in.checker_reason = checker_.outputs().reason;
@@ -225,6 +250,7 @@ void CoreModel::show() {
   answer_ = {registers_.outputs().ack, registers_.outputs().error, registers_.outputs().data};
   out_.step = m.step;
   out_.dir = m.dir;
+  out_.output = motion_.commands().outputs();
   out_.irq = registers_.outputs().irq;
   out_.tick = s.tick;
   out_.path_tick = motion_.engines().path_tick;
@@ -251,7 +277,7 @@ void CoreModel::show() {
 void CoreModel::record(bool cut) {
   if (cut) record_.cut();
   const CommandChecker::Outputs& checker = checker_.outputs();
-  if (checker.geometry_commit || checker.feed_commit) record_.accepted(checker.geometry_commit);
+  if (checker.geometry_commit || checker.feed_commit) record_.accepted(checker_.counts_in_geometry());
   // Positions change only while an axis is busy.
   if (motion_.outputs().axis_busy != 0 || config_.clock_all) {
     for (unsigned n = 0; n < config_.axes; ++n) record_.pin(cycles_, n, motion_.position(n));

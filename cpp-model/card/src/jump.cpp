@@ -61,7 +61,9 @@ std::int64_t Jump::edge_of(std::uint64_t accumulation) const {
 
 // The first tick that must not be taken, or not reach the prescaler.
 std::uint64_t Jump::first_that_stops() const {
-  const std::uint64_t last = core_.sequencer_.ticks_left() + count(in_flight_ & kTakenBits);
+  std::uint64_t left = core_.sequencer_.ticks_left();
+  if (core_.has_guard_) left = std::min(left, core_.guard_.ticks_to_change());
+  const std::uint64_t last = left + count(in_flight_ & kTakenBits);
   const std::uint64_t stops = core_.engines_.tick_that_stops();
   if (stops >= last) return last;
   return std::min(last, stops + count(in_flight_ & kPrescaledBits));
@@ -245,6 +247,7 @@ void Jump::land() {
   }
   for (unsigned n = 0; n < axes_; ++n) land_axis(n, at_axes);
   core_.sequencer_.jump(clocks, taken, in_flight, feed_enable);
+  core_.guard_.jump(clocks, taken, in_flight >> Sequencer::kTaken);
   core_.time_base_.advance(clocks);
   core_.wait_timer_.advance(clocks);
   core_.out_.engine_step = 0;
@@ -328,12 +331,16 @@ bool MotionCore::may_jump(const Inputs& in) const {
   const bool fixed = s.piece_class == card_map::constant::kClassFixed;
   if (!stop_.quiet(s.moving, fixed, time_base_.outputs().ratio == 0)) return false;
   if (!engines_.settled() || !time_base_.steady(stop.hold, s.piece_class)) return false;
+  if (!commands_.quiet(in.pins, s.path_active)) return false;
   for (const Axis& axis : axes_) {
     if (!axis.calm()) return false;
   }
   if (running_ != (!s.idle || out_.axis_busy != 0) || busy_left_ != (running_ ? kBusyClocks : 0)) return false;
   if (s.idle && out_.axis_busy != 0) return false;
-  if (!sequencer_.settled(sequencer_inputs(in))) return false;
+  const Sequencer::Inputs sequencer_in = sequencer_inputs(in);
+  if (!sequencer_.settled(sequencer_in)) return false;
+  if (has_guard_ && (guard_.outputs().hold != stop_.underrun() || !guard_.settled(guard_inputs(in, sequencer_in))))
+    return false;
   return sequencer_.ticking() || (feed_.quiet() && engines_.quiet() && (!s.feed_clear || feed_.phase() == 0));
 }
 

@@ -12,8 +12,14 @@ unsigned idle_level_of(std::uint32_t levels, unsigned axes, unsigned axis) {
 
 }  // namespace
 
-MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all)
-    : clock_all_(clock_all), loader_(axes), sequencer_(clock_all), engines_(clock_all) {
+MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all, std::uint32_t engines,
+                       const PathCommands::Config& pins)
+    : clock_all_(clock_all),
+      has_guard_(card_map::has_engine(engines, card_map::engine::kUnderrunHold)),
+      loader_(axes),
+      sequencer_(clock_all),
+      engines_(clock_all),
+      commands_(pins) {
   for (unsigned n = 0; n < axes; ++n) {
     axes_.emplace_back(n, idle_level_of(idle_level, axes, n), clock_all);
     put(out_.step, 1U << n, axes_[n].shaper().outputs().step);
@@ -28,6 +34,7 @@ Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
   s.feed_empty = in.feed_empty;
   s.geometry_word = in.geometry_word;
   s.feed_word = in.feed_word;
+  s.wait = has_guard_ && guard_.waits(sequencer_.outputs().feed_active, false);
   s.direct_go = loader_.outputs().go;
   s.direct_mask = loader_.outputs().mask;
   s.direct_load = loader_.outputs().load;
@@ -43,6 +50,21 @@ Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
   return s;
 }
 
+UnderrunGuard::Inputs MotionCore::guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const {
+  const Sequencer::Outputs& s = sequencer_.outputs();
+  UnderrunGuard::Inputs guard;
+  guard.cut = stop_.outputs().cut;
+  guard.arrival = in.arrival;
+  guard.full = in.full;
+  guard.load = sequencer_.feed_load();
+  guard.take = s.feed_active && sequencer_.takes(sequencer_in);
+  guard.swap = s.feed_swap;
+  guard.active = s.feed_active;
+  guard.decoded = sequencer_.piece_waits();
+  guard.ratio = time_base_.outputs().ratio;
+  return guard;
+}
+
 // Each consumer before its producer: what a block sees is what stood before this edge.
 void MotionCore::clock(const Inputs& in) {
   const Sequencer::Inputs sequencer_in = sequencer_inputs(in);
@@ -52,9 +74,12 @@ void MotionCore::clock(const Inputs& in) {
   const bool at_rest = time_base_.outputs().ratio == 0;
   const bool fixed = s.piece_class == card_map::constant::kClassFixed;
   const bool events = out_.step_fault != 0 || s.mismatch || s.incomplete || in.abort || in.clear_fault != 0;
-  if (clock_all_ || events || in.setting.set || !stop_.quiet(s.moving, fixed, at_rest))
-    stop_.clock(
-        {out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, s.moving, fixed, in.setting});
+  const bool underrun = guard_.outputs().hold;
+  if (has_guard_) guard_.clock(guard_inputs(in, sequencer_in));
+  if (clock_all_ || events || in.setting.set || underrun != stop_.underrun() || !stop_.quiet(s.moving, fixed, at_rest))
+    stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, s.moving, fixed,
+                 underrun, in.setting});
+  clock_commands(in, stop.cut);
   clock_busy();
   axes_live_ = out_.live != 0;
   clock_axes(in, stop.cut);
@@ -63,6 +88,21 @@ void MotionCore::clock(const Inputs& in) {
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
   time_base_.clock({stop.hold, in.setting, s.piece_class});
   sequencer_.clock(sequencer_in);
+}
+
+void MotionCore::clock_commands(const Inputs& in, bool cut) {
+  const Sequencer::Outputs& s = sequencer_.outputs();
+  PathCommands::Inputs c;
+  c.cut = cut;
+  c.output = sequencer_.takes_output();
+  c.mark = sequencer_.takes_mark();
+  c.over = s.over;
+  c.runs = s.path_active;
+  c.pins = in.pins;
+  c.load = sequencer_.load();
+  c.setting = in.setting;
+  const bool events = cut || c.output || c.mark || c.over || c.load.to(load_target::kCommand) || in.setting.set;
+  if (clock_all_ || events || !commands_.quiet(in.pins, s.path_active)) commands_.clock(c);
 }
 
 void MotionCore::clock_axes(const Inputs& in, bool cut) {

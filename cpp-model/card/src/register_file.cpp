@@ -43,7 +43,9 @@ RegisterFile::RegisterFile(const Config& config) : config_(config), snapshot_(co
   stored(reg::kBuildId) = config_.build_id;
   stored(reg::kBuildFlags) = config_.build_dirty ? field::kBuildFlagsDirty : 0;
   stored(reg::kBoardId) = config_.board_id;
-  stored(reg::kPorts) = config_.ports;
+  const bool pins = card_map::has_engine(config_.engines, card_map::engine::kPathCommands);
+  stored(reg::kPorts) = config_.ports | (pins ? config_.inputs << field::kPortsInputsShift : 0) |
+                        (pins ? config_.outputs << field::kPortsOutputsShift : 0);
   for (std::uint32_t n = 0; n < config_.axes; ++n) {
     const bool first = (config_.idle_level >> n & 1) != 0;
     const bool second = (config_.idle_level >> (config_.axes + n) & 1) != 0;
@@ -73,7 +75,7 @@ bool RegisterFile::quiet(const Inputs& in) const {
   const bool events = out_.ack || out_.setting.set || out_.stream_write || out_.abort || out_.flush || out_.start ||
                       out_.clear_fault != 0 || snapshot_asked_;
   const bool underway = snapshot_.busy() || loading_ || loader_read_.valid || out_.loader_valid;
-  const bool asked = in.request || in.checker_refuse || in.stop;
+  const bool asked = in.request || in.checker_refuse || in.stop || in.probe || in.mark;
   return stage_ == Stage::Idle && !events && !underway && !asked && out_.irq == interrupt(in);
 }
 
@@ -111,6 +113,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (in.stopping) status |= field::kStatusStopping;
   if (in.geometry_low) status |= field::kStatusGeometryLow;
   if (in.feed_low) status |= field::kStatusFeedLow;
+  if (in.underrun) status |= field::kStatusUnderrun;
   return status;
 }
 
@@ -133,8 +136,16 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.feed_room;
     case reg::kGeometryBegun:
       return in.geometry_begun;
-    default:
+    case reg::kInputs:
+      return in.inputs;
+    case reg::kOutputs:
+      return in.outputs;
+    case reg::kMarks:
+      return in.marks;
+    case reg::kFeedBegun:
       return in.feed_begun;
+    default:
+      return in.underruns;
   }
 }
 
@@ -274,11 +285,27 @@ void RegisterFile::refuse_checked(const Inputs& in) {
 }
 
 void RegisterFile::step_snapshot(const Inputs& in, bool host) {
-  if (snapshot_.clock(host, in.stop)) {
-    const auto base = static_cast<std::uint32_t>(snapshot_.finished());
-    for (std::size_t i = 0; i < config_.axes + 8; ++i) stored_[base / 4 + i] = latched_[i];
+  if (const std::optional<std::uint32_t> word = snapshot_.word()) {
+    const std::size_t place = written_at(*word);
+    stored_[static_cast<std::uint32_t>(snapshot_.area()) / 4 + place] = latched_[place];
   }
+  SnapshotWriter::Requests requests;
+  requests.host = host;
+  requests.stop = in.stop;
+  requests.probe = in.probe;
+  requests.mark = in.mark;
+  snapshot_.clock(requests);
   out_.strobe = snapshot_.strobe();
+}
+
+// The place in its area of the word that is written as the `word`th: the time, the positions from the last one down,
+// then what stands below the time.
+std::size_t RegisterFile::written_at(std::uint32_t word) const {
+  const std::size_t time = in_area(reg::time_lo(Area::Snap));
+  if (word < 2) return time - word;
+  const std::size_t below =
+      word - 2 < config_.axes ? in_area(reg::position(Area::Snap, config_.axes - 1)) : time - 2 + config_.axes;
+  return below - (word - 2);
 }
 
 void RegisterFile::take_values(const Inputs& in) {

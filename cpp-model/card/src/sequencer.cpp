@@ -6,7 +6,7 @@ namespace trammel::model {
 
 // A path on an engine or a direct move whose last tick was taken.
 bool Sequencer::judged(const Inputs& in) const {
-  if (!drained_) return false;
+  if (!drained_ || path_ == Path::None) return false;
   if (path_ == Path::Engine) return now_ >= drained_at_ + kEngineJudged && in.engine_done;
   return now_ >= drained_at_ + kDirectJudged && !in.axes_live;
 }
@@ -23,10 +23,8 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.path_over = judged(in);
   d.piece_ends = d.take && out_.feed_active && piece_left_ == 1;
   const bool free = path_ == Path::None || (path_ == Path::Line && d.path_ends);
-  const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
-  const bool piece_waits = feed_.decoded() && feed_.is_feed();
-  d.path_begins = path_waits && free && !out_.incomplete;
-  d.piece_begins = piece_waits && (!out_.feed_active || d.piece_ends);
+  d.path_begins = path_waits() && free && !out_.incomplete;
+  d.piece_begins = piece_waits() && !in.wait && (!out_.feed_active || d.piece_ends);
   d.barrier_begins = barrier_ == Barrier::Beginning && now_ == barrier_at_;
   d.barrier_ends = barrier_ == Barrier::Running && now_ == barrier_at_;
   d.barrier_done = barrier_ == Barrier::Done;
@@ -39,17 +37,15 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
 
 // One queue at a barrier while the other still has ticks to give or to take.
 bool Sequencer::mismatches() const {
-  const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
-  const bool piece_waits = feed_.decoded() && feed_.is_feed();
   const bool path_ticks = (path_ == Path::Line || path_ == Path::Engine) && !drained_;
-  const bool geometry_alone = geometry_stands_ && (out_.feed_active || piece_waits);
-  const bool feed_alone = feed_stands_ && (path_ticks || path_waits);
+  const bool geometry_alone = geometry_stands_ && (out_.feed_active || piece_waits());
+  const bool feed_alone = feed_stands_ && (path_ticks || path_waits());
   return (geometry_alone || feed_alone) && barrier_ != Barrier::Done;
 }
 
 void Sequencer::clock(const Inputs& in) {
   const unsigned inputs = (in.cut ? 1U : 0) | (in.geometry_empty ? 2U : 0) | (in.feed_empty ? 4U : 0) |
-                          (in.direct_go ? 8U : 0) | (in.direct_load.valid ? 16U : 0);
+                          (in.direct_go ? 8U : 0) | (in.direct_load.valid ? 16U : 0) | (in.wait ? 32U : 0);
   if (!calm_ || inputs != calm_inputs_) {
     calm_ = !clock_all_ && calm(in);
     calm_inputs_ = inputs;
@@ -74,6 +70,7 @@ void Sequencer::clock_all(const Inputs& in) {
   out_.idle = geometry_idle_ && feed_idle && in.feed_empty && !out_.feed_active;
   geometry_idle_ = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
   out_.mismatch = mismatch;
+  out_.over = d.path_over || (d.path_ends && path_ == Path::Line);
   out_.incomplete = d.path_over && path_ == Path::Engine && in.elsewhere;
   record_ = {d.path_begins || d.barrier_begins, in.direct_go};
   count_begun(in, d);
@@ -120,8 +117,8 @@ void Sequencer::stand(const Decision& d) {
 // The fetches see a command as taken when it begins, a barrier in the clock after its last one.
 void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
   if (load_.to(load_target::kTicks)) shift_in<48>(path_count_, load_.word);
-  geometry_.clock(
-      {in.cut, d.path_begins || d.barrier_done, d.payload_ready, in.shadows_free, in.geometry_empty, in.geometry_word});
+  geometry_.clock({in.cut, d.path_begins || d.barrier_done || instant(), d.payload_ready, in.shadows_free,
+                   in.geometry_empty, in.geometry_word});
   load_ = in.direct_load.valid ? in.direct_load : geometry_.bus();
   if (feed_.bus().to(feed_target::kTicks)) shift_in<48>(piece_count_, feed_.bus().word);
   feed_.clock({in.cut, d.piece_begins || d.barrier_done, !d.piece_runs, true, in.feed_empty, in.feed_word});
@@ -192,15 +189,15 @@ bool Sequencer::settled(const Inputs& in) const {
 
 // With inputs as these nothing is decided but ticks, and a dwell's end.
 bool Sequencer::calm(const Inputs& in) const {
-  const bool nothing_shows = !(out_.swap || out_.feed_swap || out_.mismatch || out_.incomplete) &&
+  const bool nothing_shows = !(out_.swap || out_.feed_swap || out_.mismatch || out_.incomplete || out_.over) &&
                              !(path_begun_ || piece_begun_ || cut_before_ || in.cut || in.direct_go) &&
                              !(load_.valid || in.direct_load.valid || record_.command || record_.direct);
   if (!nothing_shows || drained_ || path_ == Path::Direct || !(geometry_.quiet() && feed_.quiet())) return false;
   if ((geometry_.idle() && !in.geometry_empty) || (feed_.idle() && !in.feed_empty)) return false;
   if (geometry_.waiting() && path_ != Path::Engine) return false;
-  const bool path_waits = geometry_.decoded() && !geometry_.is_barrier();
-  const bool piece_waits = feed_.decoded() && feed_.is_feed();
-  if ((path_waits && path_ == Path::None) || (piece_waits && !out_.feed_active)) return false;
+  if (instant()) return false;
+  const bool piece_may_begin = piece_waits() && !in.wait;
+  if ((path_waits() && path_ == Path::None) || (piece_may_begin && !out_.feed_active)) return false;
   if (barrier_ == Barrier::Beginning || barrier_ == Barrier::Done || mismatches()) return false;
   const bool geometry_stands = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None;
   const bool feed_stands = feed_.decoded() && feed_.is_barrier() && !out_.feed_active;

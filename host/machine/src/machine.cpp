@@ -11,4 +11,12 @@ std::optional<std::size_t> Machine::axis(char letter) const {
   return std::nullopt;
 }
 
+std::vector<std::size_t> Machine::second_motors() const {
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (axes[i].second_motor) result.push_back(i);
+  }
+  return result;
+}
+
 }  // namespace trammel::machine

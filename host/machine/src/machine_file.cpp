@@ -47,6 +47,16 @@ constexpr std::array<Entry, 11> kEntries = {{
 }};
 constexpr const char* kInverted = "inverted";
 
+struct Switch {
+  const char* name;
+  bool MachineAxis::*member;
+};
+constexpr std::array<Switch, 3> kSwitches = {{
+    {kInverted, &MachineAxis::inverted},
+    {"second_motor", &MachineAxis::second_motor},
+    {"second_inverted", &MachineAxis::second_inverted},
+}};
+
 // An entry of the table [motion].
 struct MotionEntry {
   const char* name;
@@ -113,6 +123,9 @@ std::vector<std::string> axis_entries() {
   for (const Entry& entry : kEntries) {
     names.emplace_back(entry.name);
   }
+  for (std::size_t i = 1; i < kSwitches.size(); ++i) {
+    names.emplace_back(kSwitches[i].name);
+  }
   for (std::size_t system = 0; system < kCoordinateSystems; ++system) {
     names.push_back(fmt::format("g{}", 54 + system));
   }
@@ -132,12 +145,14 @@ std::vector<std::string> axis_entries() {
 void set_axis_entry(const Source& source, MachineAxis& axis, const std::string& table, const std::string& key,
                     const toml::value& value) {
   const std::string path = table + key;
-  if (key == kInverted) {
-    if (!value.is_boolean()) {
-      refuse(source.at(value) + path + " must be true or false");
+  for (const Switch& entry : kSwitches) {
+    if (key == entry.name) {
+      if (!value.is_boolean()) {
+        refuse(source.at(value) + path + " must be true or false");
+      }
+      axis.*entry.member = value.as_boolean();
+      return;
     }
-    axis.inverted = value.as_boolean();
-    return;
   }
   if (const auto system = coordinate_system(key)) {
     axis.offsets[*system] = number(source, path, value, Range::kAny);
@@ -227,6 +242,21 @@ void check_times(const std::string& where, const Machine& machine) {
     check(axis, axis.step_space_ns, "step_space_ns");
     check(axis, axis.direction_setup_ns, "direction_setup_ns");
     check(axis, axis.direction_hold_ns, "direction_hold_ns");
+  }
+}
+
+void check_motors(const std::string& where, const Machine& machine) {
+  if (machine.axes.size() > card_map::kMaxAxes) {
+    refuse(fmt::format("{}: {} axes, the card has at most {}", where, machine.axes.size(), card_map::kMaxAxes));
+  }
+  if (machine.motors() > card_map::kMaxAxes) {
+    refuse(fmt::format("{}: {} motors, second ones included, the card has at most {}", where, machine.motors(),
+                       card_map::kMaxAxes));
+  }
+  for (const MachineAxis& axis : machine.axes) {
+    if (axis.second_inverted && !axis.second_motor) {
+      refuse(fmt::format("{}: axis {}: second_inverted without second_motor", where, axis.letter));
+    }
   }
 }
 
@@ -360,9 +390,7 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   for (const auto& [key, value] : *axes) {
     machine.axes.push_back(read_axis(source, key, value));
   }
-  if (machine.axes.size() > card_map::kMaxAxes) {
-    refuse(fmt::format("{}:1: {} axes, the card has at most {}", name, machine.axes.size(), card_map::kMaxAxes));
-  }
+  check_motors(name + ":1", machine);
   std::sort(machine.axes.begin(), machine.axes.end(),
             [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
   check_times(name + ":1", machine);
@@ -407,6 +435,7 @@ void apply_override(Machine& machine, const std::string& text) {
   if (!any) {
     refuse(source.name + ": not an assignment such as axis.x.steps_per_mm=20");
   }
+  check_motors(source.name, changed);
   check_times(source.name, changed);
   machine = changed;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "trammel/driver/card_timing.hpp"
+#include "trammel/planner/s_curve_plan.hpp"
 #include "trapezoid_plan.hpp"
 
 namespace trammel::planner {
@@ -17,6 +18,11 @@ constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes d
 // Blocks that are planned, but whose stop distances wait for what follows.
 constexpr std::size_t kSpare = 4096;
 
+std::unique_ptr<SpeedPlan> plan_for(SpeedProfile profile, std::size_t window) {
+  if (profile == SpeedProfile::kSCurve) return std::make_unique<SCurvePlan>(window);
+  return std::make_unique<TrapezoidPlan>(window);
+}
+
 }  // namespace
 
 Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
@@ -27,8 +33,9 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kFewestAxes, card.axes)))),
       junctions_(machine),
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
-      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, false, card.classes),
-      plan_(std::make_unique<TrapezoidPlan>(static_cast<std::size_t>(machine.motion.window))) {}
+      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz,
+                 profile_of(machine, settings) == SpeedProfile::kSCurve, card.classes),
+      plan_(plan_for(profile_of(machine, settings), static_cast<std::size_t>(machine.motion.window))) {}
 
 PathEntry* Planner::LookAhead::first() {
   while (path_.begin() == path_.end() || (moves(path_[path_.begin()].block) && !quantiser_.ready())) {
@@ -39,13 +46,13 @@ PathEntry* Planner::LookAhead::first() {
 }
 
 void Planner::LookAhead::go_on() {
-  if (draining_ || plan_->full()) {
-    Phase phase;
-    if (plan_->next(phase)) {
-      quantiser_.add(phase);
-    } else {
-      draining_ = false;
-    }
+  Phase phase;
+  if (plan_->next(phase)) {
+    quantiser_.add(phase);
+    return;
+  }
+  if (draining_) {
+    draining_ = false;
     return;
   }
   if (path_.full()) {

@@ -22,6 +22,13 @@ SpeedLimit limit_of(const PathEntry& entry) {
 
 }  // namespace
 
+SpeedProfile profile_of(const machine::Machine& machine, const PlannerSettings& settings) {
+  if (settings.profile != SpeedProfile::kByMachine) return settings.profile;
+  const auto limited = [](const machine::MachineAxis& axis) { return axis.max_jerk > 0; };
+  const bool all = std::all_of(machine.axes.begin(), machine.axes.end(), limited);
+  return all ? SpeedProfile::kSCurve : SpeedProfile::kTrapezoid;
+}
+
 Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
                  const PlannerSettings& settings)
     : machine_(machine), look_ahead_(std::make_unique<LookAhead>(blocks, machine, card, settings)) {}

@@ -24,23 +24,30 @@ std::int64_t signed64(double change) { return static_cast<std::int64_t>(change *
 std::uint32_t fixed32(double rate) { return static_cast<std::uint32_t>(std::clamp(rate, kLeastRate, 0.5) * 0x1p32); }
 std::uint32_t ticks32(double ticks) { return static_cast<std::uint32_t>(std::min(std::ceil(ticks), 4294967295.0)); }
 
-// When the distance has been gone from speed, acceleration and jerk on; Newton's method from `guess`.
-double time_at(double distance, double speed, double acceleration, double jerk, double guess) {
+// When the distance has been gone from speed, acceleration and jerk on, of a motion that takes `duration` for `length`;
+// a little outside it at the speed that it has there. Newton's method between bounds.
+double time_at(double distance, double speed, double acceleration, double jerk, double duration, double length) {
   if (jerk == 0) {
     const double end = std::sqrt(std::max(0.0, speed * speed + 2 * acceleration * distance));
     const double sum = speed + end;
     return sum > 0 ? 2 * distance / sum : 0;
   }
-  constexpr int kMostSteps = 60;
-  constexpr double kExact = 1e-15;
-  double time = guess;
-  for (int i = 0; i < kMostSteps; ++i) {
-    const double gone = time * (speed + time * (acceleration / 2 + time * jerk / 6));
-    const double now = speed + time * (acceleration + time * jerk / 2);
-    if (!(now > 0)) return time;
-    const double step = (distance - gone) / now;
-    time += std::clamp(step, -0.5 * time - guess, 0.5 * time + guess);
-    if (std::abs(step) <= kExact * time) break;
+  const auto speed_at = [&](double time) { return speed + time * (acceleration + time * jerk / 2); };
+  if (distance <= 0) return speed > 0 ? distance / speed : 0;
+  if (distance >= length) {
+    const double end = speed_at(duration);
+    return duration + (end > 0 ? (distance - length) / end : 0);
+  }
+  double low = 0;
+  double high = duration;
+  double time = duration * (distance / length);
+  for (int i = 0; i < 100; ++i) {
+    const double rest = distance - time * (speed + time * (acceleration / 2 + time * jerk / 6));
+    (rest < 0 ? high : low) = time;
+    double next = time + rest / speed_at(time);
+    if (!(next > low && next < high)) next = (low + high) / 2;
+    if (std::abs(next - time) <= 1e-15 * duration) break;
+    time = next;
   }
   return time;
 }
@@ -150,9 +157,9 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
     const double least = most > 0 ? std::min(rest, most) : rest;
     return steady(std::max(rate, least), std::max(end_rate, least), ticks);
   }
-  const double scale = phase.duration / phase.length;
-  const double begin = time_at(from, phase.speed, phase.acceleration, phase.jerk, from * scale);
-  const double end = stop ? phase.duration : time_at(to, phase.speed, phase.acceleration, phase.jerk, to * scale);
+  const double begin = time_at(from, phase.speed, phase.acceleration, phase.jerk, phase.duration, phase.length);
+  const double end =
+      stop ? phase.duration : time_at(to, phase.speed, phase.acceleration, phase.jerk, phase.duration, phase.length);
   const auto rate_at = [&](double time) {
     return std::max(0.0, phase.speed + time * (phase.acceleration + time * phase.jerk / 2)) * rate_a_speed_;
   };
@@ -162,7 +169,12 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
   motion.acceleration = (phase.acceleration + begin * phase.jerk) * rate_a_speed_ / clock_hz_;
   motion.jerk = phase.jerk * rate_a_speed_ / clock_hz_ / clock_hz_;
   motion.clocks = (end - begin) * clock_hz_;
-  if (stop) motion.end_rate = std::max(motion.end_rate, cube_root(4.5 * std::abs(motion.jerk)));
+  if (stop) {
+    // The last tick, which would take three times as long, is at the floor.
+    const double floor = cube_root(4.5 * std::abs(motion.jerk));
+    motion.end_rate = std::max(motion.end_rate, floor);
+    motion.clocks = std::max(motion.clocks - 2 / floor, ticks / std::max(motion.rate, floor));
+  }
   return motion;
 }
 
@@ -243,8 +255,7 @@ void Quantiser::time_blocks(const Motion& motion, double lead, std::uint64_t end
 
 // Where `distance` of the motion's `ticks` are over.
 Quantiser::Instant Quantiser::instant(const Motion& motion, double distance, double ticks) {
-  const double time =
-      time_at(distance, motion.rate, motion.acceleration, motion.jerk, motion.clocks * distance / ticks);
+  const double time = time_at(distance, motion.rate, motion.acceleration, motion.jerk, motion.clocks, ticks);
   return {time, motion.rate + time * (motion.acceleration + time * motion.jerk / 2)};
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "s_ramp.hpp"
@@ -34,6 +36,7 @@ class SCurvePlan::Impl {
  public:
   explicit Impl(std::size_t window) : window_(window), caps_(window) {
     gaps_.reserve(4 * window + 4);
+    ramps_.reserve(2 * window + 2);
     for (std::vector<Ramp>* ramps : {&planned_, &tail_, &given_}) ramps->reserve(8 * window + 8);
   }
 
@@ -47,11 +50,12 @@ class SCurvePlan::Impl {
 
  private:
   bool plan();
+  bool passes(double begin, double end, double low, double high) const;
   bool divide(Gap gap);
   bool divide_below(Gap gap);
   bool hop(const Gap& gap);
-  bool peak(const Gap& gap, Hop& hop, double& speed) const;
-  void put(double length, double from, double to, RampLimits limits);
+  double peak(const Gap& gap, const SpeedWindow::Walk& forwards, const SpeedWindow::Walk& backwards) const;
+  void put(const Ramp& ramp);
   void open_phases();
   void give();
   std::size_t ramps_until(double position) const;
@@ -60,6 +64,7 @@ class SCurvePlan::Impl {
 
   SpeedWindow window_;
   SpeedCaps caps_;
+  std::vector<Ramp> ramps_;    // of one way down
   std::vector<Gap> gaps_;      // still to plan, the next one last
   std::vector<Ramp> planned_;  // what plan() makes
   std::vector<Ramp> tail_;     // the last plan from the window's beginning on, from tail_begin_
@@ -161,16 +166,19 @@ bool SCurvePlan::Impl::plan() {
   return true;
 }
 
+// Whether no motion gets from `low` at one end to `high` within begin .. end. The highest limits of all decide most.
+bool SCurvePlan::Impl::passes(double begin, double end, double low, double high) const {
+  const double length = end - begin;
+  return reach_length(low, high, window_.most()) >= length ||
+         (!window_.uniform() && reach_length(low, high, window_.range(begin, end).most) >= length);
+}
+
 bool SCurvePlan::Impl::divide(Gap gap) {
   while (gap.cap != kNoCap) {
     const Cap& cap = caps_[gap.cap];
-    // The quick look with the highest limits decides most of them.
-    const auto far = [&](double low, double room, auto reach) {
-      return reach_length(low, cap.speed, window_.most()) >= room || (!window_.uniform() && reach() >= room);
-    };
-    if (far(gap.from, cap.end - gap.begin, [&] { return window_.reach_rising(gap.begin, gap.from, cap.speed); })) {
+    if (passes(gap.begin, cap.end, gap.from, cap.speed)) {
       gap.cap = cap.after;
-    } else if (far(gap.to, gap.end - cap.begin, [&] { return window_.reach_falling(gap.end, cap.speed, gap.to); })) {
+    } else if (passes(cap.begin, gap.end, gap.to, cap.speed)) {
       gap.cap = cap.before;
     } else {
       break;
@@ -179,8 +187,8 @@ bool SCurvePlan::Impl::divide(Gap gap) {
   if (gap.cap == kNoCap) return hop(gap);
   const Cap& cap = caps_[gap.cap];
   if (gap.from > cap.speed) return divide_below(gap);
-  const double risen = gap.begin + window_.rising(gap.begin, gap.from, cap.speed).length;
-  const double falls = gap.end - window_.falling(gap.end, cap.speed, gap.to).length;
+  const double risen = gap.begin + window_.rising(gap.begin, gap.from, cap.speed);
+  const double falls = gap.end - window_.falling(gap.end, cap.speed, gap.to);
   if (risen > falls) {
     gap.most = cap.speed;
     gap.cap = kNoCap;
@@ -200,11 +208,11 @@ bool SCurvePlan::Impl::divide(Gap gap) {
 // The window begins above the cap.
 bool SCurvePlan::Impl::divide_below(Gap gap) {
   const Cap& cap = caps_[gap.cap];
-  const double falls = gap.end - window_.falling(gap.end, cap.speed, gap.to).length;
+  const double falls = gap.end - window_.falling(gap.end, cap.speed, gap.to);
   const bool late = falls > cap.end;
   const double first = std::min(cap.begin, falls);
   const double last = late ? cap.end : falls;
-  if (first - window_.falling(first, gap.from, cap.speed).length < gap.begin - rounding()) return false;
+  if (first - window_.falling(first, gap.from, cap.speed) < gap.begin - rounding()) return false;
   gaps_.push_back({last, gap.end, cap.speed, gap.to, late ? gap.most : cap.speed, late ? cap.after : kNoCap});
   gaps_.push_back({first, last, cap.speed, cap.speed, cap.speed, kNoCap});
   gaps_.push_back({gap.begin, first, gap.from, cap.speed, gap.most, cap.before});
@@ -212,69 +220,72 @@ bool SCurvePlan::Impl::divide_below(Gap gap) {
 }
 
 bool SCurvePlan::Impl::hop(const Gap& gap) {
-  const double length = gap.end - gap.begin;
-  if (!(length > 0)) return true;
-  Hop limits;
-  double top = 0;
-  const bool goes_up = peak(gap, limits, top);
-  short_sight_ = !finishing_ && gap.end == window_.length() && top < gap.most;
-  if (goes_up) {
-    const double up = ramp_length(gap.from, top, limits.up);
-    const double down = ramp_length(gap.to, top, limits.down);
-    const double steady = length - up - down;
-    const bool none = steady < rounding();
-    put(none ? up + steady : up, gap.from, top, limits.up);
-    if (!none) put(steady, top, top, limits.up);
-    put(down, top, gap.to, limits.down);
-    return true;
+  if (!(gap.end > gap.begin)) return true;
+  const SpeedWindow::Walk forwards = window_.from(gap.begin);
+  const SpeedWindow::Walk backwards = window_.back_from(gap.end);
+  const double speed = peak(gap, forwards, backwards);
+  short_sight_ = !finishing_ && gap.end == window_.length() && speed < gap.most;
+  ramps_.clear();
+  const double down = window_.ramps(backwards, gap.to, speed, &ramps_);
+  const std::size_t falling = ramps_.size();
+  const double up = window_.ramps(forwards, gap.from, speed, &ramps_);
+  const double steady = gap.end - gap.begin - up - down;
+  if (steady < -rounding()) return false;
+  // What rounding leaves goes to a ramp.
+  const bool none = steady < rounding() && up + down > 0;
+  if (none) (up > 0 ? ramps_.back() : ramps_[falling - 1]).length += steady;
+  for (std::size_t i = falling; i < ramps_.size(); ++i) put(ramps_[i]);
+  if (!none) put({steady, speed, speed, {}});
+  for (std::size_t i = falling; i > 0; --i) {
+    Ramp ramp = ramps_[i - 1];
+    std::swap(ramp.from, ramp.to);
+    put(ramp);
   }
-  const bool rises = gap.from < gap.to;
-  const SpeedWindow::Fit ramp =
-      rises ? window_.rising(gap.begin, gap.from, gap.to) : window_.falling(gap.end, gap.from, gap.to);
-  const double rest = length - ramp.length;
-  if (rest < -rounding()) return false;
-  const bool whole = rest < rounding() && gap.from != gap.to;
-  if (!rises && !whole) put(rest, gap.from, gap.from, ramp.limits);
-  put(whole ? length : ramp.length, gap.from, gap.to, ramp.limits);
-  if (rises && !whole) put(rest, gap.to, gap.to, ramp.limits);
   return true;
 }
 
-// Whether going up and down again is worth it, with which limits, and up to which speed.
-bool SCurvePlan::Impl::peak(const Gap& gap, Hop& hop, double& speed) const {
+// The highest speed in the gap: that of one of its ends where going up and down again is not worth it.
+double SCurvePlan::Impl::peak(const Gap& gap, const SpeedWindow::Walk& forwards,
+                              const SpeedWindow::Walk& backwards) const {
   constexpr double kWorth = 1 + 0x1p-8;
   const double least = std::max(gap.from, gap.to);
-  if (!(gap.most > least)) return false;
-  // Most are not, which the highest limits show.
   const double worth = std::min(gap.most, least * kWorth);
-  const RampLimits highest = window_.most();
-  if (ramp_length(gap.from, worth, highest) + ramp_length(gap.to, worth, highest) > gap.end - gap.begin) return false;
-  hop = {gap.end - gap.begin, gap.from, gap.to, window_.limits(gap.begin, gap.end), {}};
-  hop.down = hop.up;
-  speed = peak_speed(hop, gap.most);
-  // What the ramps do not touch does not limit them.
-  double higher = speed;
-  for (int i = 0; i < 4 && !window_.uniform(); ++i) {
-    const SpeedWindow::Fit up = window_.rising(gap.begin, gap.from, higher);
-    const SpeedWindow::Fit down = window_.falling(gap.end, higher, gap.to);
-    if (up.length + down.length > hop.length) break;
-    speed = higher;
-    hop.up = up.limits;
-    hop.down = down.limits;
-    higher = peak_speed(hop, gap.most);
-    if (!(higher > speed)) break;
-  }
-  return speed >= worth;
+  const double length = gap.end - gap.begin;
+  if (!(gap.most > least)) return least;
+  const auto excess_of = [&](RampLimits limits) {
+    return [&gap, limits, length](double speed) {
+      return ramp_length(gap.from, speed, limits) + ramp_length(gap.to, speed, limits) - length;
+    };
+  };
+  if (excess_of(window_.most())(worth) > 0) return least;
+  // Limits that are the same all along give a peak that is simple; others one between those of the least and the most.
+  const SpeedWindow::Range range = window_.range(gap.begin, gap.end);
+  const auto simple = [&](RampLimits limits) {
+    const auto excess = excess_of(limits);
+    const double square = (gap.from * gap.from + gap.to * gap.to) / 2;
+    const double top = std::min(gap.most, std::sqrt(square + length * limits.acceleration));
+    return top > least && excess(least) < 0 ? highest_speed(least, top, excess) : least;
+  };
+  const auto excess = [&](double speed) {
+    return window_.ramps(forwards, gap.from, speed) + window_.ramps(backwards, gap.to, speed) - length;
+  };
+  const double speed = simple(range.least);
+  if (range.uniform()) return speed >= worth && excess(speed) <= rounding() ? speed : least;
+  if (!(excess(worth) < 0)) return least;
+  const double high = std::max(worth, simple(range.most));
+  return speed > worth && excess(speed) < 0 ? highest_speed(speed, high, excess) : highest_speed(worth, high, excess);
 }
 
-void SCurvePlan::Impl::put(double length, double from, double to, RampLimits limits) {
-  if (!(length > 0)) return;
-  if (from == to && !planned_.empty() && planned_.back().to == from && planned_.back().from == from) {
-    planned_.back().length += length;
+void SCurvePlan::Impl::put(const Ramp& ramp) {
+  if (!(ramp.length > 0)) return;
+  if (ramp.from == ramp.to && !planned_.empty() && planned_.back().to == ramp.from &&
+      planned_.back().from == ramp.from) {
+    planned_.back().length += ramp.length;
     planned_.back().short_sight |= short_sight_;
     return;
   }
-  planned_.push_back({length, from, to, limits, short_sight_});
+  planned_.push_back(ramp);
+  planned_.back().short_sight = short_sight_;
 }
 
 SCurvePlan::SCurvePlan(std::size_t window) : impl_(std::make_unique<Impl>(std::max<std::size_t>(window, 1))) {}

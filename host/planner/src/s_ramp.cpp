@@ -32,37 +32,22 @@ double reach_length(double low, double high, RampLimits limits) {
   return (low + gain / 3) * rise + (high - middle) * (high + middle) / (2 * limits.acceleration);
 }
 
-double peak_speed(const Hop& hop, double most) {
-  const auto excess = [&hop](double speed) {
-    return ramp_length(hop.from, speed, hop.up) + ramp_length(hop.to, speed, hop.down) - hop.length;
-  };
-  // Without a limit of jerk the peak is not lower.
-  const double up = hop.up.acceleration;
-  const double down = hop.down.acceleration;
-  const double squared = (2 * hop.length * up * down + hop.from * hop.from * down + hop.to * hop.to * up) / (up + down);
-  double low = std::max(hop.from, hop.to);
-  double high = std::min(most, std::sqrt(squared));
-  if (high <= low) return low;
-  double above = excess(high);
-  if (above <= 0) return high;
-  double below = excess(low);
-  if (below >= 0) return low;
-  // Regula falsi; the end that stays counts half (Illinois), every fourth step halves.
-  for (int i = 0; i < 200 && high - low > 1e-13 * high; ++i) {
-    double middle = i % 4 == 3 ? (low + high) / 2 : low + (high - low) * (below / (below - above));
-    if (!(middle > low && middle < high)) middle = (low + high) / 2;
-    const double value = excess(middle);
-    if (value > 0) {
-      high = middle;
-      above = value;
-      below /= 2;
-    } else {
-      low = middle;
-      below = value;
-      above /= 2;
-    }
+double ramp_end(double low, double length, RampLimits limits) {
+  const double rise = rise_time(limits);
+  const double least = limits.acceleration * rise;  // gained where the whole acceleration is reached
+  if (ramp_length(low, low + least, limits) <= length) {
+    const double square = least * least + 4 * (low * low - least * low + 2 * limits.acceleration * length);
+    return std::max(low, (std::sqrt(square) - least) / 2);
   }
-  return low;
+  // Half the ramp's time: (2 low + jerk t^2) t = length, from above.
+  double time = rise;
+  for (int i = 0; i < 100; ++i) {
+    const double square = limits.jerk * time * time;
+    const double step = ((2 * low + square) * time - length) / (2 * low + 3 * square);
+    time -= step;
+    if (!(step > 1e-15 * time)) break;
+  }
+  return low + limits.jerk * time * time;
 }
 
 unsigned phases_of(const Ramp& ramp, std::array<Phase, 3>& phases) {

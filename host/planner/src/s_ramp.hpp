@@ -30,17 +30,32 @@ double ramp_length(double low, double high, RampLimits limits);
 // rising. At most ramp_length().
 double reach_length(double low, double high, RampLimits limits);
 
-// The two ends of a path and what holds on the way up from the first and down to the second.
-struct Hop {
-  double length = 0;
-  double from = 0;
-  double to = 0;
-  RampLimits up;
-  RampLimits down;
-};
+// The speed that a ramp of the length ends at.
+double ramp_end(double low, double length, RampLimits limits);
 
-// The highest speed, at most `most`, that ramps up and down leave room for. At least the higher of from and to.
-double peak_speed(const Hop& hop, double most);
+// The highest speed from `low` to `high` at which `excess`, which rises with it, is not above 0. It is not at `low`.
+template <typename Excess>
+double highest_speed(double low, double high, Excess excess) {
+  double above = excess(high);
+  if (above <= 0) return high;
+  double below = excess(low);
+  // Regula falsi; the end that stays counts half (Illinois), every fourth step halves.
+  for (int i = 0; i < 100 && high - low > 1e-13 * high; ++i) {
+    double middle = i % 4 == 3 ? (low + high) / 2 : low + (high - low) * (below / (below - above));
+    if (!(middle > low && middle < high)) middle = (low + high) / 2;
+    const double value = excess(middle);
+    if (value > 0) {
+      high = middle;
+      above = value;
+      below /= 2;
+    } else {
+      low = middle;
+      below = value;
+      above /= 2;
+    }
+  }
+  return low;
+}
 
 // Parts of constant jerk, as many as are returned.
 unsigned phases_of(const Ramp& ramp, std::array<Phase, 3>& phases);

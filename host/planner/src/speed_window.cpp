@@ -5,13 +5,26 @@
 namespace trammel::planner {
 namespace {
 
-RampLimits limits_of(const Span& span) { return {span.acceleration, span.jerk}; }
+using Range = SpeedWindow::Range;
 
-// Whether `limits` became lower.
-bool lower(RampLimits& limits, RampLimits other) {
-  const bool lowers = other.acceleration < limits.acceleration || other.jerk < limits.jerk;
-  limits = {std::min(limits.acceleration, other.acceleration), std::min(limits.jerk, other.jerk)};
-  return lowers;
+Range range_of(const Span& span) {
+  const RampLimits limits = {span.acceleration, span.jerk};
+  return {limits, limits};
+}
+
+RampLimits lower(RampLimits a, RampLimits b) {
+  return {std::min(a.acceleration, b.acceleration), std::min(a.jerk, b.jerk)};
+}
+
+Range joined(const Range& a, const Range& b) {
+  const RampLimits most = {std::max(a.most.acceleration, b.most.acceleration), std::max(a.most.jerk, b.most.jerk)};
+  return {lower(a.least, b.least), most};
+}
+
+// Not worth ramps of their own.
+bool alike(const Range& range) {
+  constexpr double kAlike = 1.05;
+  return range.most.acceleration <= kAlike * range.least.acceleration && range.most.jerk <= kAlike * range.least.jerk;
 }
 
 }  // namespace
@@ -35,77 +48,84 @@ std::size_t SpeedWindow::drop_before(double position) {
 void SpeedWindow::index() {
   positions_.assign(1, 0);
   blocks_.clear();
-  lowest_ = highest_ = limits_of(spans_.front());
+  all_ = range_of(spans_.front());
   for (std::size_t i = 0; i < spans_.size(); ++i) {
     positions_.push_back(positions_.back() + spans_[i].length);
-    const RampLimits limits = limits_of(spans_[i]);
-    if (i % kBlock == 0) blocks_.push_back(limits);
-    lower(blocks_.back(), limits);
-    lower(lowest_, limits);
-    highest_ = {std::max(highest_.acceleration, limits.acceleration), std::max(highest_.jerk, limits.jerk)};
+    const Range range = range_of(spans_[i]);
+    if (i % kBlock == 0) blocks_.push_back(range);
+    blocks_.back() = joined(blocks_.back(), range);
+    all_ = joined(all_, range);
   }
-  uniform_ = lowest_.acceleration == highest_.acceleration && lowest_.jerk == highest_.jerk;
 }
 
-template <typename Length>
-SpeedWindow::Fit SpeedWindow::forwards(double begin, Length wanted) const {
-  if (uniform_) return {wanted(lowest_), lowest_};
-  std::size_t i = static_cast<std::size_t>(std::upper_bound(positions_.begin() + 1, positions_.end() - 1, begin) -
-                                           positions_.begin()) -
-                  1;
-  Fit fit;
-  fit.limits = limits_of(spans_[i]);
-  fit.length = wanted(fit.limits);
-  while (positions_[i + 1] - begin < fit.length && ++i < spans_.size()) {
-    RampLimits next = limits_of(spans_[i]);
-    if (i % kBlock == 0 && i + kBlock <= spans_.size() && positions_[i + kBlock] - begin < fit.length) {
-      next = blocks_[i / kBlock];
-      i += kBlock - 1;
+SpeedWindow::Walk::Walk(const SpeedWindow& window, double from, bool forwards)
+    : window_(&window), from_(from), forwards_(forwards) {
+  if (window.uniform()) {  // nothing to look for
+    at_ = forwards ? window.size() : 0;
+    range_ = window.all_;
+    end_ = window.length();
+    return;
+  }
+  const auto begin = window.positions_.begin();
+  const auto last = window.positions_.end() - 1;
+  const auto border = forwards ? std::upper_bound(begin + 1, last, from) - 1 : std::lower_bound(begin + 1, last, from);
+  at_ = static_cast<std::size_t>(border - begin);
+  next(0);
+}
+
+bool SpeedWindow::Walk::next(double need) {
+  if (at_ == (forwards_ ? window_->size() : 0)) return false;
+  const std::size_t blocks_end = forwards_ ? at_ + kBlock : at_ - std::min(at_, kBlock);
+  const bool block = at_ % kBlock == 0 && blocks_end <= window_->size() && distance(blocks_end) < need;
+  const std::size_t before = at_;
+  at_ = block ? blocks_end : forwards_ ? at_ + 1 : at_ - 1;
+  const std::size_t first = std::min(before, at_);
+  range_ = block ? window_->blocks_[first / kBlock] : range_of((*window_)[first]);
+  end_ = distance(at_);
+  return true;
+}
+
+// At a border where the limits change much, either the ramp ends there, or it goes on with the lower ones: whichever is
+// over sooner should nothing change behind. One ramp all along, where that is better after all.
+double SpeedWindow::ramps(Walk walk, double low, double high, std::vector<Ramp>* ramps) const {
+  const std::size_t before = ramps == nullptr ? 0 : ramps->size();
+  Stretch now{0, low, walk.range().least};
+  Range like = walk.range();
+  RampLimits least = now.limits;
+  double end = walk.end();
+  double length = ramp_length(low, high, now.limits);
+  while (length > end && walk.next(length)) {
+    const Range next = walk.range();
+    const RampLimits both = lower(now.limits, next.least);
+    const Range wider = joined(like, next);
+    like = alike(wider) ? wider : next;
+    length = now.begin + ramp_length(now.low, high, both);
+    const double middle = alike(wider) ? now.low : ramp_end(now.low, end - now.begin, now.limits);
+    const double split = end + ramp_length(middle, high, next.least);
+    if (!alike(wider) && split < length) {
+      if (ramps != nullptr) ramps->push_back({end - now.begin, now.low, middle, now.limits});
+      now = {end, middle, next.least};
+      length = split;
+    } else {
+      now.limits = both;
     }
-    if (lower(fit.limits, next)) fit.length = wanted(fit.limits);
+    least = lower(least, next.least);
+    end = walk.end();
   }
-  return fit;
+  const double one = now.begin == 0 ? length : ramp_length(low, high, least);
+  if (one <= length) now = {0, low, least};
+  if (ramps != nullptr && now.begin == 0) ramps->resize(before);
+  length = std::min(length, one);
+  if (ramps != nullptr) ramps->push_back({length - now.begin, now.low, high, now.limits});
+  return length;
 }
 
-template <typename Length>
-SpeedWindow::Fit SpeedWindow::backwards(double end, Length wanted) const {
-  if (uniform_) return {wanted(lowest_), lowest_};
-  std::size_t i = static_cast<std::size_t>(std::lower_bound(positions_.begin() + 1, positions_.end() - 1, end) -
-                                           positions_.begin()) -
-                  1;
-  Fit fit;
-  fit.limits = limits_of(spans_[i]);
-  fit.length = wanted(fit.limits);
-  while (end - positions_[i] < fit.length && i > 0) {
-    --i;
-    RampLimits next = limits_of(spans_[i]);
-    if ((i + 1) % kBlock == 0 && end - positions_[i + 1 - kBlock] < fit.length) {
-      next = blocks_[i / kBlock];
-      i -= kBlock - 1;
-    }
-    if (lower(fit.limits, next)) fit.length = wanted(fit.limits);
-  }
-  return fit;
-}
-
-RampLimits SpeedWindow::limits(double begin, double end) const {
-  return forwards(begin, [=](RampLimits) { return end - begin; }).limits;
-}
-
-SpeedWindow::Fit SpeedWindow::rising(double begin, double low, double high) const {
-  return forwards(begin, [=](RampLimits limits) { return ramp_length(low, high, limits); });
-}
-
-SpeedWindow::Fit SpeedWindow::falling(double end, double high, double low) const {
-  return backwards(end, [=](RampLimits limits) { return ramp_length(low, high, limits); });
-}
-
-double SpeedWindow::reach_rising(double begin, double low, double high) const {
-  return forwards(begin, [=](RampLimits limits) { return reach_length(low, high, limits); }).length;
-}
-
-double SpeedWindow::reach_falling(double end, double high, double low) const {
-  return backwards(end, [=](RampLimits limits) { return reach_length(low, high, limits); }).length;
+Range SpeedWindow::range(double begin, double end) const {
+  if (uniform()) return all_;
+  Walk walk(*this, begin, true);
+  Range range = walk.range();
+  while (walk.end() < end - begin && walk.next(end - begin)) range = joined(range, walk.range());
+  return range;
 }
 
 }  // namespace trammel::planner

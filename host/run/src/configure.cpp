@@ -13,6 +13,12 @@ void configure(driver::Card& card, const machine::Machine& machine) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     card.configure_axis(static_cast<unsigned>(i), planner::settings_of(machine.axes[i]));
   }
+  std::size_t motor = machine.axes.size();
+  for (const std::size_t axis : machine.second_motors()) {
+    driver::AxisSettings settings = planner::settings_of(machine.axes[axis]);
+    settings.invert_second = machine.axes[axis].second_inverted;
+    card.configure_axis(static_cast<unsigned>(motor++), settings);
+  }
   constexpr double kNanoseconds = 1e9;
   const double slowest = driver::Card::kSlowestSlew * kNanoseconds / card.identification().clock_hz;
   const double hold = std::min(planner::hold_seconds(machine) * kNanoseconds, std::floor(slowest));

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "second_motors.hpp"
 #include "trammel/card_map.hpp"
 
 namespace trammel::run {
@@ -35,7 +36,7 @@ void Jog::begin(const JogPath& path, double speed) {
   // Where the time base makes the ramp, the path waits for it at ratio 0.
   set_ratio_at_once(path.ramped_by_time_base ? 0 : driver::Card::kFullRatio);
   for (const driver::FeedCommand& piece : path.pieces) stream.put(piece);
-  stream.put(path.line);
+  stream.put(SecondMotors(machine_).with(path.line));
   const auto ramp = std::chrono::nanoseconds(static_cast<std::int64_t>(path.ramp_seconds * 1e9));
   card_.set_slew_time(std::min(ramp, driver::time_of(driver::Card::kSlowestSlew, card_.timing().clock_hz)));
   stream.flush();

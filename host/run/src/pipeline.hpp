@@ -17,7 +17,7 @@ class Pipeline {
       : lines_(lines()),
         reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
         blocks_(reader_, machine, card, reader_.position()),
-        planner_(blocks_, machine, card, {settings.single_block}) {}
+        planner_(blocks_, machine, card, {settings.single_block, settings.profile}) {}
 
   // As planner::Planner::next(), but throws ProgramError.
   bool next(driver::CommandSink& sink, planner::PlannedBlock& planned) {

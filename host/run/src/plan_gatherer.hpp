@@ -1,6 +1,8 @@
 // Makes the plan of what a pass tells. Internal to the runner.
 #pragma once
 
+#include <algorithm>
+
 #include "pipeline.hpp"
 #include "trammel/run/feed_report.hpp"
 #include "trammel/run/observer.hpp"
@@ -32,6 +34,10 @@ class PlanGatherer final : public Observer {
     if (planner::moves(planned.block)) ++plan_.segments;
     plan_.commands += planned.commands;
     plan_.seconds += planned.seconds;
+    PlannedMotion& motion = plan_.motion;
+    motion.stops += planned.stop ? 1 : 0;
+    motion.velocity_jump = std::max(motion.velocity_jump, planned.velocity_jump);
+    motion.acceleration_step = std::max(motion.acceleration_step, planned.acceleration_step);
     plan_.end = planned.block.end;
   }
 

@@ -8,6 +8,7 @@
 #include "line_ring.hpp"
 #include "pipeline.hpp"
 #include "plan_gatherer.hpp"
+#include "second_motors.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/configure.hpp"
 
@@ -23,9 +24,11 @@ class NoSink final : public driver::CommandSink {
 // Streams the plan; errors of the card get the line of the program that was being run.
 class ProgramStream final : private driver::CommandSink {
  public:
-  ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers, bool single_block)
+  ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers,
+                const machine::Machine& machine, bool single_block)
       : pipeline_(pipeline),
         observers_(observers),
+        seconds_(machine),
         single_block_(single_block),
         card_(card),
         // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
@@ -72,6 +75,14 @@ class ProgramStream final : private driver::CommandSink {
       for (Observer* observer : observers_) observer->sending(planned_);
       first_of_block_ = false;
     }
+    const auto* line = std::get_if<driver::LineCommand>(&command);
+    if (line != nullptr && !seconds_.empty()) {
+      send(driver::Command(seconds_.with(*line)));
+    } else {
+      send(command);
+    }
+  }
+  void send(const driver::Command& command) {
     for (Observer* observer : observers_) observer->command(commands_, command);
     ++commands_;
     if (!std::holds_alternative<driver::FeedCommand>(command)) lines_.put(planned_.block.line);
@@ -100,6 +111,7 @@ class ProgramStream final : private driver::CommandSink {
 
   Pipeline& pipeline_;
   const std::vector<Observer*>& observers_;
+  SecondMotors seconds_;
   bool single_block_;
   std::size_t line_ = 0;  // of the block under way
   driver::Card& card_;
@@ -124,7 +136,7 @@ Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planne
     : lines_(std::move(lines)), machine_(machine), card_(card), settings_(settings) {}
 
 const Plan& Runner::plan() {
-  Pipeline pipeline(lines_, machine_, card_, settings_);
+  Pipeline pipeline(lines_, machine_, planning_limits(card_, machine_), settings_);
   PlanGatherer gatherer(pipeline);
   NoSink sink;
   std::uint64_t commands = 0;
@@ -145,9 +157,9 @@ void Runner::require_planned_for(driver::Card& card) const {
 Outcome Runner::run(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, card_, settings_);
+  Pipeline pipeline(lines_, machine_, planning_limits(card_, machine_), settings_);
   const driver::Snapshot before = card.snapshot();
-  ProgramStream stream(pipeline, card, observers_, settings_.single_block);
+  ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block);
   const planner::Pulses end = stream.run();
   if (stream.sent() != plan_.commands || end != plan_.end) {
     throw ProgramError({gcode::ErrorCode::kCannotRead, plan_.file, 0, "the program has changed while it was run"});
@@ -158,12 +170,12 @@ Outcome Runner::run(driver::Card& card) {
 Outcome Runner::stream(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, card_, settings_);
+  Pipeline pipeline(lines_, machine_, planning_limits(card_, machine_), settings_);
   const driver::Snapshot before = card.snapshot();
   PlanGatherer gatherer(pipeline);
   std::vector<Observer*> observers = observers_;
   observers.push_back(&gatherer);
-  ProgramStream stream(pipeline, card, observers, settings_.single_block);
+  ProgramStream stream(pipeline, card, observers, machine_, settings_.single_block);
   stream.run();
   plan_ = gatherer.plan();
   return outcome(card, before, stream.sent());
@@ -172,15 +184,18 @@ Outcome Runner::stream(driver::Card& card) {
 // Throws unless the card has counted what the plan says.
 Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, std::uint64_t commands) const {
   const driver::Snapshot after = card.snapshot();
+  const SecondMotors motors(machine_);
   Outcome outcome;
-  for (std::size_t a = 0; a < machine_.axes.size(); ++a) {
-    const std::int64_t counted = driver::pulses_between(before.position[a], after.position[a]);
-    if (counted != plan_.end[a] - plan_.start[a]) {
-      throw std::runtime_error(fmt::format("axis {}: the card ended at pulse {}, the program at {}", a, counted,
-                                           plan_.end[a] - plan_.start[a]));
+  for (std::size_t motor = 0; motor < machine_.motors(); ++motor) {
+    const std::size_t axis = motors.axis_of(motor);
+    const std::int64_t counted = driver::pulses_between(before.position[motor], after.position[motor]);
+    const std::int64_t planned = plan_.end[axis] - plan_.start[axis];
+    if (counted != planned) {
+      throw std::runtime_error(
+          fmt::format("axis {}: the card ended at pulse {}, the program at {}", motor, counted, planned));
     }
     outcome.counted.push_back(counted);
-    outcome.final_position.push_back(plan_.end[a]);
+    if (motor == axis) outcome.final_position.push_back(plan_.end[axis]);
   }
   outcome.commands = commands;
   if (card_map::has_engine(card.identification().engines, card_map::engine::kUnderrunHold)) {

@@ -18,6 +18,8 @@ package card_map_pkg;
   localparam int SLEW_FRACTION_BITS = 28;
   // Clocks from one move of the ratio to the next
   localparam int SLEW_CLOCKS = 4;
+  // Feed ticks that the under-run hold keeps queued beyond what a stop takes
+  localparam int UNDERRUN_RESERVE_TICKS = 256;
   // Clocks that the shaper adds to max(1, length) + space from pulse to pulse; one less for length 0
   localparam int SHAPER_TURNOVER_CLOCKS = 6;
   // Clocks that the shaper adds to space + hold + setup from trailing to leading edge at a reversal

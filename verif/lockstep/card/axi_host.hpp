@@ -36,6 +36,8 @@ class AxiHost {
   std::optional<std::uint32_t> read(std::uint32_t address) { return perform(nullptr, &address).read; }
   Answers write_beside_read(const Write& write, std::uint32_t address) { return perform(&write, &address); }
 
+  // Levels at the card's inputs from now on.
+  void set_pins(std::uint16_t pins) { pins_ = pins; }
   void wait(std::uint64_t clocks) { run({}, clocks); }
   void reset(std::uint64_t clocks) {
     model::CardModel::Inputs in;
@@ -51,7 +53,8 @@ class AxiHost {
   std::uint64_t below(std::uint64_t count) { return random_() % count; }
 
  private:
-  void run(const model::CardModel::Inputs& in, std::uint64_t clocks) {
+  void run(model::CardModel::Inputs in, std::uint64_t clocks) {
+    in.pins = pins_;
     card_.run(in, clocks);
     clocks_ += clocks;
   }
@@ -111,6 +114,7 @@ class AxiHost {
   sim::LockstepCard& card_;
   std::mt19937_64 random_;
   unsigned most_delay_ = 0;
+  std::uint16_t pins_ = 0;
   std::uint64_t slowest_ = 0;
   std::uint64_t clocks_ = 0;
 };

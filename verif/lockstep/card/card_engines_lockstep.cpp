@@ -23,6 +23,7 @@ constexpr unsigned kAxes = 4;
 constexpr std::uint32_t kEngines = TRAMMEL_ENGINES;
 constexpr bool kArcs = card_map::has_engine(kEngines, card_map::engine::kAccumulator);
 constexpr bool kChords = card_map::has_engine(kEngines, card_map::engine::kArcGenerator);
+constexpr bool kCommands = card_map::has_engine(kEngines, card_map::engine::kPathCommands);
 constexpr bool kClasses = card_map::has_engine(kEngines, card_map::engine::kClasses);
 constexpr bool kWatermarks = card_map::has_engine(kEngines, card_map::engine::kWatermarks);
 constexpr bool kDirectMode = card_map::has_engine(kEngines, card_map::engine::kDirectMode);
@@ -34,7 +35,8 @@ sim::LockstepCard card_with_engines(std::uint64_t seed) {
   config.axes = kAxes;
   config.engines = kEngines;
   config.idle_level = static_cast<std::uint32_t>(seed * 0x9E37 & 0xFF);
-  const sim::CardStraps straps{config.clock_hz, config.idle_level};
+  config.output_idle = static_cast<std::uint16_t>(seed & 0xF);
+  const sim::CardStraps straps{config.clock_hz, config.idle_level, config.output_idle};
   return {std::make_unique<sim::CardVariant<Vdut, kAxes>>(straps), config, seed};
 }
 
@@ -50,6 +52,7 @@ void random_traffic(std::uint64_t seed, std::uint64_t clocks) {
   Traffic traffic(host, kAxes, kArcEvery);
   traffic.classes = kClasses;
   traffic.chords_every = kChords ? 3 : 60;
+  traffic.commands_every = kCommands ? 3 : 60;
   host.wait(300);
   traffic.settings();
   while (host.clocks() < clocks) traffic.run(10, 4);
@@ -82,6 +85,12 @@ void refusals(std::uint64_t seed) {
   const driver::ArcCommand arc = test::random_arc(random, kAxes);
   EXPECT_EQ(traffic.send(driver::with_ticks(arc, 3 * arc.path_ticks)), kArcs);
   EXPECT_EQ(refusal(host), kArcs ? Reason::None : Reason::UnknownOpcode);
+  traffic.abort();
+  EXPECT_EQ(traffic.send(driver::OutputCommand{3, 0}), kCommands);
+  EXPECT_EQ(refusal(host), kCommands ? Reason::None : Reason::UnknownOpcode);
+  host.wait(30);
+  EXPECT_EQ(host.read(reg::kOutputs).has_value(), kCommands);
+  EXPECT_EQ(refusal(host), kCommands ? Reason::None : Reason::UnknownAddress);
   traffic.abort();
   // From the last axis's FREQUENCY_LO to START.
   for (std::uint32_t address = reg::frequency_lo(kAxes - 1); address <= reg::kStart; address += 4) {

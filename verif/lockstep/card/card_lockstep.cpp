@@ -46,6 +46,7 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   sim::LockstepCard card = test::card_under_test(axes, seed, static_cast<std::uint32_t>(seed * 0x9E37 & 0xFFFF));
   AxiHost host(card, seed);
   Traffic traffic(host, axes);
+  traffic.commands_every = 4;
   host.wait(300);
   // The constants; the random reads seldom meet one.
   for (std::uint32_t address = 0; address < 0x40; address += 4) host.read(address);
@@ -61,6 +62,7 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   traffic.recover();
   traffic.wait_idle(100'000);
   EXPECT_LE(host.slowest_answer(), answer_bound(axes));
+  EXPECT_GT(traffic.underruns, clocks / 200'000);
   expect_all_compared(card, axes, clocks);
 }
 

@@ -125,6 +125,7 @@ driver::FeedCommand random_piece(Random&& random, std::uint64_t ticks, double pa
     result.acceleration = static_cast<std::int64_t>(change * 0x1p64 / pace / pace / static_cast<double>(ticks));
     result.jerk = -result.acceleration / static_cast<std::int64_t>(1 + random(100));
   }
+  if (random(3) == 0) result.stop_distance = static_cast<std::uint32_t>(1 + random(random(8) == 0 ? 1U << 31 : 2000));
   return result;
 }
 

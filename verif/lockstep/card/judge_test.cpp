@@ -210,7 +210,7 @@ TEST(CardJudgeDeathTest, MismatchAtTheEndIsNotLost) {
   }
 }
 
-// Signals a cycle that all cards have: 17 of the core, 8 of the bus (docs/developer/architecture.md); the positions are
+// Signals a cycle that all cards have: 18 of the core, 8 of the bus (docs/developer/architecture.md); the positions are
 // one an axis.
 TEST_P(CardJudgeThreads, EverySignalIsComparedInEveryCycle) {
   for (const unsigned axes : {4U, 8U}) {
@@ -224,7 +224,7 @@ TEST_P(CardJudgeThreads, EverySignalIsComparedInEveryCycle) {
     card->wait(3000);
     EXPECT_GT(card->cycles() - begin, 6000U);
     EXPECT_EQ(*card->lockstep_cycles(), card->cycles() - begin);
-    EXPECT_EQ(card->comparisons(), (card->cycles() - begin) * (25 + axes));
+    EXPECT_EQ(card->comparisons(), (card->cycles() - begin) * (26 + axes));
   }
 }
 
@@ -259,6 +259,7 @@ TEST(CardJudge, EveryBitOfEveryOutputIsCompared) {
   turn(rtl.rresp_o, 0, 2, "rresp_o");
   turn(rtl.step_o, 0, 4, "step_o");
   turn(rtl.dir_o, 0, 4, "dir_o");
+  turn(rtl.output_o, 0, 4, "output_o");
   turn(rtl.irq_o, 0, 1, "irq_o");
   constexpr unsigned kObserved = 34 * 4 + 213;
   for (unsigned low = 0; low < kObserved; low += 32) {

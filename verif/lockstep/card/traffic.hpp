@@ -38,6 +38,8 @@ class Traffic {
     chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1U : 0U;
     return true;
   }
+  // OUTPUT and MARK beside one path in so many; 0: none.
+  unsigned commands_every = 0;
   // Pieces of all classes; else feed.
   bool classes = true;
   // One path in so many is an arc in chords; 0: none.
@@ -49,6 +51,11 @@ class Traffic {
   }
   // A few paths and the pieces for them in any order between, sometimes a barrier.
   void section(bool faulty);
+  // A stream whose pieces have stop distances and go on, with stalls, holds and overrides in it; sometimes left
+  // unfinished.
+  void starved();
+  // How often it was held for under-run; a reset begins anew.
+  std::uint64_t underruns = 0;
   // Sections until `commands` were tried; disturbed after each with the given chance of one in `calm`.
   void run(std::uint64_t commands, std::uint64_t calm);
   // One act of a host: a setting, a read, a hold, a START, an abort, a reset ...
@@ -77,6 +84,11 @@ class Traffic {
     if (one_in(4)) word = static_cast<std::uint32_t>(odd_number(32));
     if (one_in(6)) words.resize(1 + below(words.size()));
   }
+  driver::Command beside_a_path() {
+    if (one_in(2)) return driver::MarkCommand{};
+    return driver::OutputCommand{static_cast<std::uint16_t>(below(0x10000)),
+                                 static_cast<std::uint16_t>(below(0x10000))};
+  }
   static constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
   std::uint32_t any_ratio() { return kRatios[below(3)]; }
   void read_anything();
@@ -94,6 +106,7 @@ inline void Traffic::section(bool faulty) {
   std::uint64_t total = 0;
   const auto random = [this](std::uint64_t count) { return below(count); };
   for (std::uint64_t paths = 1 + below(6); paths != 0; --paths) {
+    while (commands_every != 0 && one_in(commands_every)) driver::encode(beside_a_path(), 0, geometry.emplace_back());
     if (chords_every != 0 && axes_ > 1 && one_in(chords_every))
       geometry.push_back(random_chords(random, axes_, total));
     else
@@ -132,6 +145,42 @@ inline void Traffic::section(bool faulty) {
     default:
       break;
   }
+}
+
+inline void Traffic::starved() {
+  if (!one_in(4)) recover();
+  const double pace = 1.01 + static_cast<double>(below(40)) * 0.1;
+  const std::uint32_t slew = std::uint32_t{1} << (14 + below(14));
+  const std::uint64_t before = host_.read(reg::kUnderruns).value_or(0);
+  host_.write(reg::kSlew, slew);
+  // A stop takes 2^29 / slew / pace ticks.
+  const auto stop = static_cast<std::uint32_t>(0x1p29 / slew / pace);
+  const auto random = [this](std::uint64_t count) { return below(count); };
+  std::uint64_t paths = 0;
+  std::uint64_t pieces = 0;
+  for (std::uint64_t left = 2 + below(30); left != 0; --left) {
+    std::uint64_t ticks = 0;
+    const bool chords = chords_every != 0 && axes_ > 1 && one_in(chords_every);
+    if (!(chords ? send_words(random_chords(random, axes_, ticks), false)
+                 : send(random_path(random, axes_, pace, ticks, arc_every_))))
+      return abort();
+    paths += ticks;
+    if (one_in(3)) host_.wait(below(one_in(4) ? 8000 : 600));
+    while (pieces < paths && (left == 1 || !one_in(3))) {
+      driver::FeedCommand piece =
+          random_piece(random, left == 1 ? paths - pieces : 1 + below(2 * (paths - pieces)), pace);
+      piece.stop_distance = left == 1 && !one_in(4) ? 0 : 1 + stop / (one_in(6) ? 10 : 1);
+      if (!send(piece)) return abort();
+      pieces += piece.ticks;
+    }
+    if (one_in(12)) host_.write(reg::kHold, static_cast<std::uint32_t>(below(2)));
+    if (one_in(12)) host_.write(reg::kRatioFeed, static_cast<std::uint32_t>(below(0x10001)));
+  }
+  host_.write(reg::kHold, 0);
+  host_.wait(below(4000));
+  if (one_in(3)) send(driver::EndCommand{});
+  if (one_in(3)) abort();
+  underruns += host_.read(reg::kUnderruns).value_or(0) - before;
 }
 
 inline void Traffic::settings() {
@@ -189,6 +238,7 @@ inline void Traffic::write_anything() {
 }
 
 inline void Traffic::disturb() {
+  if (one_in(3)) host_.set_pins(static_cast<std::uint16_t>(below(0x10000)));
   switch (below(16)) {
     case 0:
       host_.write(reg::kHold, static_cast<std::uint32_t>(below(2)));
@@ -265,7 +315,10 @@ inline bool Traffic::wait_idle(std::uint64_t clocks) {
 
 inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
   for (; sections != 0; --sections) {
-    section(one_in(4));
+    if (one_in(5))
+      starved();
+    else
+      section(one_in(4));
     host_.wait(below(one_in(4) ? 6000 : 600));
     while (one_in(calm)) disturb();
     if (one_in(6)) {

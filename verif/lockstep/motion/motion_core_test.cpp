@@ -25,7 +25,10 @@ constexpr bool kArcs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::k
 constexpr bool kChords = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kArcGenerator);
 constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kDirectMode);
 constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kClasses);
-constexpr std::uint64_t kComparedSignals = 27 + kAxes;
+constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
+constexpr unsigned kInputs = 5;
+constexpr unsigned kOutputs = 3;
+constexpr std::uint64_t kComparedSignals = 32 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
@@ -51,6 +54,7 @@ class Bench {
       : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.arcs = kArcs;
     programs_.chords = kChords;
+    programs_.path_commands = kPathCommands;
     programs_.classes = kClasses;
     reset();
   }
@@ -66,6 +70,8 @@ class Bench {
     }
     in_ = {};
     in_.abort = dice_.chance(abort_every_);
+    if (dice_.chance(50)) pins_ = static_cast<std::uint16_t>(dice_.draw());
+    in_.pins = pins_;
     if (in_.abort) check_.event("abort");
     if (model_->stop().fault != 0 ? dice_.chance(40) : dice_.chance(5000)) {
       in_.clear_fault = dice_.chance(3) ? dice_.draw() : ~0U;
@@ -84,6 +90,7 @@ class Bench {
   std::uint64_t steps() const { return steps_; }
   std::uint64_t moves() const { return moves_; }
   std::uint64_t faults() const { return faults_; }
+  std::uint64_t marks() const { return marks_; }
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
  private:
@@ -113,7 +120,9 @@ class Bench {
         {kClasses ? ratios[dice_.below(3)] : reg::kRatioFeed,
          !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
         {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
-        {reg::kStopReaction, dice_.chance(2) ? 0xFF : dice_.below(256)}};
+        {reg::kStopReaction, dice_.chance(2) ? 0xFF : dice_.below(256)},
+        {reg::kInputPolarity, kPathCommands ? dice_.draw() & 0xFFFF : 0},
+        {reg::kOutputSafe, kPathCommands ? dice_.draw() : 0}};
     const auto& [address, data] = settings[dice_.below(std::size(settings))];
     in_.setting = {true, address, data};
     check_.event("setting", std::uint64_t{address} << 32 | data);
@@ -147,12 +156,14 @@ class Bench {
   // One clock of reset, whatever comes in it; the pins stand at the strap's levels.
   void reset() {
     idle_level_ = dice_.draw() & ((1U << 2 * kAxes) - 1);
+    output_idle_ = static_cast<std::uint16_t>(dice_.below(1U << kOutputs));
     check_.event("reset", idle_level_);
     dut_->rst_i = 1;
     apply();
     dut_.clock();
     dut_->rst_i = 0;
-    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_);
+    const model::PathCommands::Config pins{kInputs, kOutputs, output_idle_};
+    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, false, 0, pins);
     geometry_.reset();
     feed_.reset();
     starting_ = false;
@@ -179,6 +190,7 @@ class Bench {
     compare();
     note_events();
     steps_ += model_->outputs().path_step != 0 ? 1U : 0U;
+    marks_ += model_->commands().mark() ? 1U : 0U;
     moves_ += model_->loader().go ? 1U : 0U;
     faults_ += model_->stop().stop ? 1U : 0U;
   }
@@ -217,6 +229,8 @@ class Bench {
     in_.start_mask = static_cast<std::uint8_t>(mask_);
     in_.loader_data = model_ram_.data();
     dut_->idle_level_i = static_cast<IdleLevel>(idle_level_);
+    dut_->output_idle_i = static_cast<CData>(output_idle_);
+    dut_->input_i = static_cast<CData>(in_.pins & ((1U << kInputs) - 1));
     dut_->setting_i = wire(in_.setting);
     dut_->abort_i = in_.abort;
     dut_->clear_fault_i = in_.clear_fault;
@@ -269,6 +283,12 @@ class Bench {
       check_.compare("position", observed(4 + 2 * kAxes + 32 * axis, 32), model_->position(axis));
     check_.compare("ratio", observed(4 + 34 * kAxes, 17), model_->time().ratio);
     check_.compare("rate", observed(21 + 34 * kAxes, 32), model_->feed().rate);
+    const auto& commands = model_->commands();
+    check_.compare("output_o", dut_->output_o, commands.outputs());
+    check_.compare("mark_o", dut_->mark_o, commands.mark());
+    check_.compare("inputs", dut_->io_o & 0xFFFF, kPathCommands ? commands.levels() : 0);
+    check_.compare("outputs", dut_->io_o >> 16 & 0xFFFF, kPathCommands ? commands.outputs() : 0);
+    check_.compare("marks", dut_->io_o >> 32, commands.marks());
     check_.compare("step_o", dut_->step_o, out.step);
     check_.compare("dir_o", dut_->dir_o, out.dir);
     check_.compare("start_error_o, with done", dut_->start_done_o & dut_->start_error_o,
@@ -295,6 +315,8 @@ class Bench {
   LoaderRam model_ram_;
   std::array<SnapshotWord, 4 + kAxes> chain_;
   std::uint32_t idle_level_ = 0;
+  std::uint16_t output_idle_ = 0;
+  std::uint16_t pins_ = 0;
   std::uint32_t mask_ = 0;
   bool starting_ = false;
   bool slow_ = false;
@@ -305,6 +327,7 @@ class Bench {
   std::uint64_t steps_ = 0;
   std::uint64_t moves_ = 0;
   std::uint64_t faults_ = 0;
+  std::uint64_t marks_ = 0;
   std::uint64_t more_ = 0;
 };
 
@@ -318,6 +341,9 @@ void random_programs() {
     EXPECT_GT(bench.moves(), length / 20'000);
   }
   EXPECT_GT(bench.faults(), length / 20'000);
+  if (kPathCommands) {
+    EXPECT_GT(bench.marks(), length / 5000);
+  }
 }
 
 TEST(MotionCore, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }

@@ -23,6 +23,7 @@ module sequencers #(
     // ticks
     input  wire logic            enable_i,
     input  wire logic            feed_tick_i,
+    input  wire logic            wait_i,
     output logic                 feed_enable_o,
     output logic                 feed_clear_o,
     output logic                 tick_o,
@@ -33,6 +34,9 @@ module sequencers #(
     input  wire logic            engine_done_i,
     input  wire logic            elsewhere_i,
     input  wire logic            axes_live_i,
+    // commands that are neither paths nor barriers
+    output logic      [     1:0] instant_o,
+    output logic                 over_o,
     // what begins
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
@@ -91,6 +95,8 @@ module sequencers #(
       .done_i         (engine_done_i),
       .elsewhere_i,
       .axes_live_i,
+      .instant_o,
+      .over_o,
       .feed_at_i      (feed_at),
       .feed_runs_i    (feed_runs),
       .barrier_begin_o(barrier_begin),
@@ -119,7 +125,9 @@ module sequencers #(
       .barrier_done_i (barrier_done),
       .at_barrier_o   (feed_at),
       .runs_o         (feed_runs),
+      .wait_i,
       .active_o       (feed_active_o),
+      .decoded_o      (),
       .moving_o,
       .class_o,
       .idle_o         (feed_decoder_idle),

@@ -26,6 +26,7 @@ constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
 constexpr std::uint64_t kComparedSignals = 13;
+constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
 constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(7) / 4;  // word of the direct mode's first register
 // RATIO, RATE, FEED_BEGUN and GEOMETRY_BEGUN come before the positions on the snapshot chain.
@@ -35,6 +36,9 @@ RegisterFile::Config configuration() {
   RegisterFile::Config config;
   config.axes = kAxes;
   config.ports = kPorts;
+  config.engines = TRAMMEL_ENGINES;
+  config.inputs = 7;
+  config.outputs = 16;
   config.idle_level = 0x9C35 & ((1U << 2 * kAxes) - 1);
   config.build_id = 0x1234'5678;
   config.build_dirty = true;
@@ -54,7 +58,7 @@ class Bench {
     constants(reg::kBuildId) = config.build_id;
     constants(reg::kBuildFlags) = 1;
     constants(reg::kBoardId) = config.board_id;
-    constants(reg::kPorts) = config.ports;
+    constants(reg::kPorts) = config.ports | (kPathCommands ? 0x10'07'00U : 0);
     rtl_->idle_level_i = static_cast<IdleLevel>(config.idle_level);
     reset();
     in_ = {};
@@ -75,7 +79,7 @@ class Bench {
     start_wait_ = 0;
     flushed_ = streamed_ = false;
     chain_.fill({});
-    in_.request = in_.stop = in_.start_done = in_.checker_refuse = false;
+    in_.request = in_.stop = in_.probe = in_.mark = in_.start_done = in_.checker_refuse = false;
     in_.checker_ready = true;
     compare();
   }
@@ -120,6 +124,13 @@ class Bench {
     // A stop is as likely beside what a write asks for as anywhere else.
     in_.stop = model_.time() > kFilled && chance(model_.outputs().ack ? 20 : 300);
     if (in_.stop) checker_.event("stop");
+    if (chance(1000)) marks_every_ = chance(3) ? 5 + draw() % 20 : 300;
+    in_.mark = kPathCommands && model_.time() > kFilled && chance(marks_every_);
+    if (in_.mark) checker_.event("mark");
+    // Not while the stop's snapshot is under way: the probe is off then.
+    stopped_for_ = in_.stop ? 0 : stopped_for_ + 1;
+    in_.probe = kPathCommands && model_.time() > kFilled && stopped_for_ > kAxes + 11 && chance(300);
+    if (in_.probe) checker_.event("probe");
     if (chance(reset_every())) {
       reset();
     } else {
@@ -167,12 +178,17 @@ class Bench {
     in_.ended = (bits & 0x40) != 0;
     in_.incomplete = streamed_ && (bits & 0x80) != 0;
     in_.stopping = (bits & 0x100) != 0;
+    in_.underrun = (bits & 0x200) != 0;
+    in_.underruns = draw();
     in_.geometry_room = static_cast<std::uint16_t>(draw());
     in_.feed_room = static_cast<std::uint16_t>(draw());
     in_.geometry_low = (bits & 0x200) != 0;
     in_.feed_low = (bits & 0x400) != 0;
     in_.geometry_begun = draw();
     in_.feed_begun = draw();
+    in_.inputs = static_cast<std::uint16_t>(draw());
+    in_.outputs = static_cast<std::uint16_t>(draw());
+    in_.marks = draw();
     in_.rate = draw();
     in_.ratio = chance(3) ? 0 : draw() % 0x10001;
     in_.fault = chance(2) ? 0 : draw() & kFaultBits;
@@ -261,6 +277,7 @@ class Bench {
     rtl_->motion_i = static_cast<CData>(in_.stopping << 5 | in_.ended << 4 | in_.feed_active << 3 |
                                         in_.path_active << 2 | in_.direct << 1 | static_cast<int>(in_.busy));
     rtl_->held_i = in_.ratio == 0;
+    rtl_->underrun_i = std::uint64_t{in_.underrun} << 32 | in_.underruns;
     rtl_->fault_i = in_.fault;
     rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
     rtl_->low_i = static_cast<CData>(in_.feed_low << 1 | static_cast<int>(in_.geometry_low));
@@ -271,6 +288,9 @@ class Bench {
     rtl_->start_answer_i = static_cast<SData>(in_.start_done << 9 | in_.start_error << 8 | in_.start_reason);
     rtl_->loader_address_i = in_.loader_address;
     rtl_->stop_i = in_.stop;
+    rtl_->probe_i = in_.probe;
+    rtl_->mark_i = in_.mark;
+    rtl_->io_i = std::uint64_t{in_.marks} << 32 | std::uint32_t{in_.outputs} << 16 | in_.inputs;
     rtl_->chain_i = chain_.back().word();
   }
 
@@ -313,6 +333,8 @@ class Bench {
   bool refused_ = false;   // the last access
   std::uint32_t checker_wait_ = 0;
   std::uint32_t start_wait_ = 0;
+  std::uint32_t marks_every_ = 300;
+  std::uint32_t stopped_for_ = 0;  // clocks since the last stop
   bool outstanding_ = false;
 };
 

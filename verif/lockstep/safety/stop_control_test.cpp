@@ -67,6 +67,7 @@ class Bench {
     dut_->at_rest_i = in.at_rest;
     dut_->moving_i = in.moving;
     dut_->fixed_i = in.fixed;
+    dut_->underrun_i = in.underrun;
   }
 
   void compare() {
@@ -206,6 +207,7 @@ void random_events() {
     if (dice.chance(6)) course = dice.below(4);
     in.moving = course != 0;
     in.fixed = course > 1 || (course == 0 && dice.chance(2));
+    in.underrun = dice.chance(6);
     if (dice.chance(20)) in.setting = {dice.chance(2), dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.below(2)};
     if (dice.chance(20)) in.setting = {dice.chance(2), reg::kStopReaction, dice.draw() & 0xFCFF};
     if (dice.chance(2000))

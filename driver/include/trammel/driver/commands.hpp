@@ -87,7 +87,34 @@ struct DwellCommand {
 // Barrier: end of the program.
 struct EndCommand {};
 
-using Command = std::variant<LineCommand, ArcCommand, ArcChordCommand, FeedCommand, DwellCommand, EndCommand>;
+// Commands at their place on the path (cards with path commands). Outputs that are set and cleared with the last tick
+// of the path before, at once where none runs; bit n: output n. One that is in both is set.
+struct OutputCommand {
+  std::uint16_t set = 0;
+  std::uint16_t clear = 0;
+};
+
+// Counts MARKS and latches the MARK area, likewise.
+struct MarkCommand {};
+
+// Barrier, then until an input has a level.
+struct WaitInputCommand {
+  std::uint8_t input = 0;     // 0 .. 15
+  bool level = true;          // that ends the wait
+  std::uint64_t timeout = 0;  // clocks, up to 2^40 - 1; 0: none
+};
+
+// Arms the probe for the paths up to PROBE_END.
+struct ProbeCommand {
+  std::uint8_t input = 0;  // 0 .. 15
+  bool level = true;       // that trips
+};
+
+// Barrier: end of the probing paths.
+struct ProbeEndCommand {};
+
+using Command = std::variant<LineCommand, ArcCommand, ArcChordCommand, FeedCommand, DwellCommand, EndCommand,
+                             OutputCommand, MarkCommand, WaitInputCommand, ProbeCommand, ProbeEndCommand>;
 
 // Words of the longest command of the card's, with all axes: enough for every one of encode()'s.
 inline constexpr std::size_t kMaxCommandWords = [] {

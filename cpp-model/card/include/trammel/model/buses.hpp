@@ -41,6 +41,7 @@ inline constexpr unsigned kPlane = 26;
 inline constexpr unsigned kShifts = 27;
 inline constexpr unsigned kState = 28;    // X, then Y
 inline constexpr unsigned kClosing = 29;  // of x, then of y
+inline constexpr unsigned kCommand = 30;  // fields of commands that are no paths
 inline constexpr unsigned kNowhere = 31;
 }  // namespace load_target
 

@@ -28,6 +28,7 @@ class CardModel {
     std::uint32_t awaddr = 0;
     std::uint32_t araddr = 0;
     std::uint32_t wdata = 0;
+    std::uint16_t pins = 0;  // inputs of the card, bit n: input n
   };
 
   // Throws std::invalid_argument for numbers out of range.
@@ -35,8 +36,8 @@ class CardModel {
 
   // One rising edge.
   void clock(const Inputs& in);
-  // `clocks` rising edges with all valid and ready inputs low.
-  void run(std::uint64_t clocks);
+  // `clocks` rising edges with all valid and ready inputs low, with these levels at the card's inputs.
+  void run(std::uint64_t clocks, std::uint16_t pins = 0);
 
   const Axi4LitePort::Outputs& bus() const { return port_.outputs(); }
   const Outputs& outputs() const { return core_.outputs(); }

@@ -48,6 +48,13 @@ class CommandChecker {
   void clock(const Inputs& in);
   const Outputs& outputs() const { return outputs_; }
 
+  // Of the command that is committed: a path or a barrier, and so one that the sequencer counts.
+  bool counts_in_geometry() const {
+    using card_map::Opcode;
+    const bool instant = command_->opcode == Opcode::Output || command_->opcode == Opcode::Mark;
+    return outputs_.geometry_commit && !instant;
+  }
+
   // True when a clock without inputs changes nothing.
   bool quiet() const {
     const Outputs& o = outputs_;

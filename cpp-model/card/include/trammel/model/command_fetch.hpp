@@ -48,7 +48,10 @@ class CommandFetch {
   bool is_chord() const { return opcode_ == card_map::Opcode::ArcChord; }
   bool is_feed() const { return opcode_ == card_map::Opcode::Feed; }
   bool is_end() const { return opcode_ == card_map::Opcode::End; }
-  bool is_barrier() const { return !is_path() && !is_feed(); }
+  bool is_output() const { return opcode_ == card_map::Opcode::Output; }
+  bool is_mark() const { return opcode_ == card_map::Opcode::Mark; }
+  bool is_instant() const { return is_output() || is_mark(); }  // neither path nor barrier
+  bool is_barrier() const { return !is_path() && !is_feed() && !is_instant(); }
   std::uint8_t engine() const { return engine_; }  // what a path runs on, by its bit of ENGINES
   std::uint8_t mask() const { return mask_; }
   std::uint8_t flags() const { return mask_; }  // in place of the mask: a piece's class

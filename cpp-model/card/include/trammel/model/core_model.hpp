@@ -24,7 +24,10 @@ struct CardConfig {
   std::uint32_t clock_hz = 1'000'000;
   std::uint32_t engines = RegisterFile::kDefaultEngines;  // ENGINES
   unsigned ports = 1;                                     // 1 .. 4
-  std::uint32_t idle_level = 0;                           // strap: {second pins, first pins}, `axes` bits each
+  unsigned inputs = 4;                                    // 1 .. 16, of a card with path commands
+  unsigned outputs = 4;
+  std::uint16_t output_idle = 0;  // strap: levels of the outputs in reset
+  std::uint32_t idle_level = 0;   // strap: {second pins, first pins}, `axes` bits each
   std::uint32_t build_id = 0;
   bool build_dirty = false;
   std::uint32_t board_id = 0;
@@ -45,6 +48,7 @@ class CoreModel {
     std::uint8_t port = 0;
     std::uint32_t address = 0;  // bytes, 12 bits
     std::uint32_t data = 0;
+    std::uint16_t pins = 0;  // inputs of the card
   };
   struct Answer {
     bool ack = false;
@@ -55,6 +59,7 @@ class CoreModel {
   struct Outputs {
     std::uint32_t step = 0;  // pins, by axis
     std::uint32_t dir = 0;
+    std::uint32_t output = 0;  // outputs of the card
     bool irq = false;
     bool tick = false;  // feed domain, as path_swap
     bool path_tick = false;
@@ -79,10 +84,10 @@ class CoreModel {
   // One rising edge.
   void clock(const Inputs& in);
 
-  // `clocks` edges without requests.
-  void run(std::uint64_t clocks);
+  // `clocks` edges without requests, with these levels at the inputs.
+  void run(std::uint64_t clocks, std::uint16_t pins = 0);
   // Edges at once without requests, `limit` at most; 0 where it is not worth it.
-  std::uint64_t jump(std::uint64_t limit);
+  std::uint64_t jump(std::uint64_t limit, std::uint16_t pins = 0);
 
   const Answer& answer() const { return answer_; }
   const Outputs& outputs() const { return out_; }
@@ -93,7 +98,7 @@ class CoreModel {
 
  private:
   void reset();
-  MotionCore::Inputs motion_inputs() const;
+  MotionCore::Inputs motion_inputs(std::uint16_t pins) const;
   QueueWatermarks::Inputs watermark_inputs() const;
   void clock_commands(bool cut);
   void clock_registers(const Inputs& in);

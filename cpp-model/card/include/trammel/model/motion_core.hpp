@@ -10,11 +10,13 @@
 #include "trammel/model/buses.hpp"
 #include "trammel/model/direct_loader.hpp"
 #include "trammel/model/feed_generator.hpp"
+#include "trammel/model/path_commands.hpp"
 #include "trammel/model/path_engines.hpp"
 #include "trammel/model/sequencer.hpp"
 #include "trammel/model/step_record.hpp"
 #include "trammel/model/stop_control.hpp"
 #include "trammel/model/time_base.hpp"
+#include "trammel/model/underrun_guard.hpp"
 #include "trammel/model/wait_timer.hpp"
 
 namespace trammel::model {
@@ -30,10 +32,13 @@ class MotionCore {
     bool feed_empty = true;
     std::uint16_t geometry_word = 0;
     std::uint16_t feed_word = 0;
+    UnderrunGuard::Arrival arrival;
+    bool full = false;  // a queue may have no room for the next command
     // direct mode
     bool start = false;
     std::uint8_t start_mask = 0;
     std::uint32_t loader_data = 0;
+    std::uint16_t pins = 0;  // inputs of the card
   };
   // A bit for each axis.
   struct Outputs {
@@ -48,8 +53,10 @@ class MotionCore {
     bool busy = false;
   };
 
-  // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests.
-  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false);
+  // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests. `engines`: of ENGINES,
+  // what is beside the path engines.
+  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false, std::uint32_t engines = 0,
+             const PathCommands::Config& pins = {});
 
   // One rising edge.
   void clock(const Inputs& in);
@@ -62,8 +69,10 @@ class MotionCore {
   const Sequencer& sequencer() const { return sequencer_; }
   const StopControl::Outputs& stop() const { return stop_.outputs(); }
   const DirectLoader::Outputs& loader() const { return loader_.outputs(); }
+  const UnderrunGuard::Outputs& underrun() const { return guard_.outputs(); }
   const TimeBase::Outputs& time() const { return time_base_.outputs(); }
   const FeedGenerator::Outputs& feed() const { return feed_.outputs(); }
+  const PathCommands& commands() const { return commands_; }
   const PathEngines::Outputs& engines() const { return engines_.outputs(); }
   bool chord_tick() const { return engines_.chord_tick(); }
   std::uint32_t position(unsigned axis) const { return axes_[axis].shaper().outputs().position; }
@@ -75,20 +84,25 @@ class MotionCore {
   static constexpr unsigned kBusyClocks = 11;
 
   void clock_axes(const Inputs& in, bool cut);
+  void clock_commands(const Inputs& in, bool cut);
   void clock_busy();
   void show_axis(unsigned n);
   bool may_jump(const Inputs& in) const;
   Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
+  UnderrunGuard::Inputs guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;
 
   bool clock_all_;
+  bool has_guard_;
   std::uint32_t restless_ = ~0U;  // axes that the next clock moves whatever it brings
   StopControl stop_;
+  UnderrunGuard guard_;
   DirectLoader loader_;
   Sequencer sequencer_;
   TimeBase time_base_;
   FeedGenerator feed_;
   PathEngines engines_;
   WaitTimer wait_timer_;
+  PathCommands commands_;
   std::vector<Axis> axes_;
   bool axes_live_ = false;  // a clock late
   bool running_ = false;    // a clock late

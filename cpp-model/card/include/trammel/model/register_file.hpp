@@ -20,7 +20,8 @@ class RegisterFile {
   static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
   static constexpr std::uint32_t kDefaultEngines =
       kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode |
-      card_map::field::kEnginesClasses | card_map::field::kEnginesWatermarks;
+      card_map::field::kEnginesUnderrunHold | card_map::field::kEnginesPathCommands | card_map::field::kEnginesClasses |
+      card_map::field::kEnginesWatermarks;
   static constexpr std::uint32_t kMostEngines = kDefaultEngines | card_map::field::kEnginesArcGenerator;
 
   struct Config {
@@ -32,7 +33,9 @@ class RegisterFile {
     std::uint32_t build_id = 0;
     bool build_dirty = false;
     std::uint32_t board_id = 0;
-    std::uint32_t ports = 1;       // 1 .. 4
+    std::uint32_t ports = 1;   // 1 .. 4
+    std::uint32_t inputs = 4;  // 1 .. 16, of a card with path commands
+    std::uint32_t outputs = 4;
     std::uint32_t idle_level = 0;  // {second pins, first pins}, a bit an axis each
   };
 
@@ -51,6 +54,8 @@ class RegisterFile {
     bool feed_active = false;
     bool ended = false;
     bool stopping = false;
+    bool underrun = false;  // held by it, or a piece waits for more
+    std::uint32_t underruns = 0;
     bool incomplete = false;          // the stream stands inside a command
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;
@@ -62,7 +67,12 @@ class RegisterFile {
     std::uint32_t ratio = 0;  // 2^-16, 17 bits
     std::array<std::uint32_t, card_map::kMaxAxes> position{};
     std::uint32_t fault = 0;  // FAULT as it stands
-    bool stop = false;        // event: the first cause of a stop asks for a snapshot
+    bool stop = false;        // events that ask for a snapshot: the first cause of a stop,
+    bool probe = false;       // the probe's edge,
+    bool mark = false;        // a MARK
+    std::uint16_t inputs = 0;
+    std::uint16_t outputs = 0;
+    std::uint32_t marks = 0;
     // the command checker
     bool checker_ready = true;
     bool checker_refuse = false;
@@ -131,6 +141,7 @@ class RegisterFile {
   void finish(bool error, std::uint32_t data = 0);
   void refuse(std::uint8_t reason, std::uint8_t number = 0);
   void step_snapshot(const Inputs& in, bool host);
+  std::size_t written_at(std::uint32_t word) const;
   void take_values(const Inputs& in);
   void step_loader(const Inputs& in);
   void refuse_checked(const Inputs& in);

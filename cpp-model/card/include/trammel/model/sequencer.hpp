@@ -25,6 +25,7 @@ class Sequencer {
     bool feed_empty = true;
     std::uint16_t geometry_word = 0;
     std::uint16_t feed_word = 0;
+    bool wait = false;  // no piece begins
     // direct loader
     bool direct_go = false;
     std::uint8_t direct_mask = 0;
@@ -51,6 +52,7 @@ class Sequencer {
     bool feed_swap = false;  // a piece begins
     bool mismatch = false;   // events
     bool incomplete = false;
+    bool over = false;  // a path has ended; on lines its last tick was taken
     bool path_active = false;
     bool feed_active = false;
     bool moving = false;  // the piece has given ticks, or took over from one that had
@@ -77,6 +79,13 @@ class Sequencer {
 
   // The path is on an engine and still takes feed ticks.
   bool engine_taken() const { return path_ == Path::Engine && (!drained_ || now_ < drained_at_ + kEngineJudged); }
+
+  // An OUTPUT, a MARK is taken in this clock.
+  bool takes_output() const { return geometry_.decoded() && geometry_.is_output(); }
+  bool takes_mark() const { return geometry_.decoded() && geometry_.is_mark(); }
+  // A tick is taken in this clock.
+  bool takes(const Inputs& in) const;
+  bool piece_waits() const { return feed_.decoded() && feed_.is_feed(); }
 
   const Outputs& outputs() const { return out_; }
   const Record& record() const { return record_; }
@@ -134,10 +143,11 @@ class Sequencer {
 
   void clock_all(const Inputs& in);
   bool calm(const Inputs& in) const;
-  bool takes(const Inputs& in) const;
   Decision decide(const Inputs& in) const;
   bool judged(const Inputs& in) const;
   bool mismatches() const;
+  bool path_waits() const { return geometry_.decoded() && geometry_.is_path(); }
+  bool instant() const { return geometry_.decoded() && geometry_.is_instant(); }
   void stand(const Decision& d);
   void clock_path(const Inputs& in, const Decision& d);
   void clock_piece(const Decision& d);

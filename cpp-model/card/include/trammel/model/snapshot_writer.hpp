@@ -1,11 +1,13 @@
 // Golden model of the snapshot's sequence: who is served when (docs/developer/architecture.md, Registers).
 //
-// A request in clock r strobes in r+1 and keeps the RAM from r+1 to r+axes+11. The stop's request goes before the
-// host's: it breaks into one under way, and the host's is then taken anew, in the clock after the stop's last.
-// One instance for each card; not thread-safe.
+// A request in clock r strobes in r+1 and keeps the RAM from r+1 to r+axes+11. The stop's and the probe's break into
+// any other's, a MARK's into the host's, but not where that is taken anew already. The host's is then taken anew in the
+// clock after the last; a MARK's, or one that had to wait, follows when the RAM was free for a clock. One instance for
+// each card; not thread-safe.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "trammel/card_map.hpp"
 
@@ -16,31 +18,43 @@ class SnapshotWriter {
   // axes: 1 .. 8
   explicit SnapshotWriter(std::uint32_t axes) : length_(axes + 11) {}
 
-  // One rising edge, with the requests of the clock that it ends. True when the last word of finished() was written.
-  bool clock(bool host, bool stop) {
-    const bool last = left_ == 1;
+  struct Requests {
+    bool host = false;
+    bool stop = false;
+    bool probe = false;
+    bool mark = false;
+  };
+  // One rising edge, with the requests of the clock that it ends.
+  void clock(const Requests& in) {
+    using card_map::Area;
     strobe_ = false;
-    if (stop) {
-      host_waits_ = host_waits_ || host || (left_ != 0 && area_ == card_map::Area::Snap);
-      begin(card_map::Area::Stop);
-      return false;
-    }
-    host_waits_ = host_waits_ || host;
-    finished_ = area_;
+    const bool under_way = left_ != 0;
+    const bool hosts = under_way && area_ == Area::Snap;
+    const bool breaks = in.stop || in.probe;
+    const bool mark = !breaks && (under_way ? in.mark && hosts && !again_ : in.mark || mark_waits_);
+    host_waits_ = host_waits_ || in.host || ((breaks || mark) && hosts);
+    mark_waits_ = (mark_waits_ || in.mark || (breaks && under_way && area_ == Area::Mark)) && !mark;
     if (left_ != 0) --left_;
-    if (left_ == 0 && host_waits_) {
+    if (breaks || mark) {
+      begin(in.stop ? Area::Stop : in.probe ? Area::Probe : Area::Mark);
+    } else if (left_ == 0 && host_waits_) {
       host_waits_ = false;
-      begin(card_map::Area::Snap);
+      again_ = under_way;
+      begin(Area::Snap);
     }
-    return last;
   }
 
   // Values and time of this clock are the snapshot's.
   bool strobe() const { return strobe_; }
   // STATUS.snapshot: the RAM is taken.
   bool busy() const { return left_ != 0; }
-  // The area that was finished last.
-  card_map::Area finished() const { return finished_; }
+  card_map::Area area() const { return area_; }
+  // The words of the area are written a word a clock: the number of the one that is written in this clock, from 0; else
+  // none. What breaks in comes too late for it.
+  std::optional<std::uint32_t> word() const {
+    if (left_ < 2 || left_ > length_ - 2) return std::nullopt;
+    return length_ - 2 - left_;
+  }
 
  private:
   void begin(card_map::Area area) {
@@ -53,8 +67,9 @@ class SnapshotWriter {
   std::uint32_t left_ = 0;  // clocks for which the RAM is still taken
   bool strobe_ = false;
   bool host_waits_ = false;
+  bool mark_waits_ = false;
+  bool again_ = false;  // the host's is taken anew
   card_map::Area area_ = card_map::Area::Snap;
-  card_map::Area finished_ = card_map::Area::Snap;
 };
 
 }  // namespace trammel::model

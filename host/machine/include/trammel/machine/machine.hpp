@@ -40,6 +40,9 @@ struct MachineAxis {
   double direction_setup_ns = 0;  // >= 0
   double direction_hold_ns = 0;   // >= 0
   bool inverted = false;
+  // A second motor on the letter (gantry): its pins are those of a further axis of the card and make the same steps.
+  bool second_motor = false;
+  bool second_inverted = false;  // its direction
   // Soft limits, machine coordinates, min < max; infinite where none is given. Nothing checks them here.
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -63,6 +66,10 @@ struct Machine {
 
   // Index of the axis on the card; `letter` in upper case.
   std::optional<std::size_t> axis(char letter) const;
+  // The axes that have a second motor, by index. On the card these motors follow the axes, in this order.
+  std::vector<std::size_t> second_motors() const;
+  // Axes of the card that it takes, at most 8.
+  std::size_t motors() const { return axes.size() + second_motors().size(); }
 };
 
 // Each throws MachineError for the first missing, unknown, non-numeric or out-of-range entry, and for a text of more

@@ -19,9 +19,19 @@
 
 namespace trammel::planner {
 
+enum class SpeedProfile {
+  kByMachine,  // S-curve where every axis has a max_jerk, else trapezoid
+  kTrapezoid,  // acceleration jumps
+  kSCurve,     // jerk is limited where an axis that moves has a max_jerk
+};
+
 struct PlannerSettings {
   bool exact_stop = false;  // a stop after every line of the program
+  SpeedProfile profile = SpeedProfile::kByMachine;
 };
+
+// kTrapezoid or kSCurve.
+SpeedProfile profile_of(const machine::Machine& machine, const PlannerSettings& settings);
 
 // What the commands came from.
 struct PlannedBlock {

@@ -6,7 +6,7 @@
 
 namespace trammel::run {
 
-// Gives each of the machine's axes its step times and direction, and the time base its slew (planner::hold_seconds(),
+// Gives each of the machine's motors its step times and direction, and the time base its slew (planner::hold_seconds(),
 // or the slowest that the card has). The card must stand. Throws driver::Error as driver::Card::configure_axis() does.
 void configure(driver::Card& card, const machine::Machine& machine);
 

@@ -52,20 +52,28 @@ class StoppedOnPath : public RunError {
   using RunError::RunError;
 };
 
+// Where the motion is not smooth.
+struct PlannedMotion {
+  std::uint64_t stops = 0;       // motions that end at rest
+  double velocity_jump = 0;      // mm/s, the largest of an axis at a corner that is passed
+  double acceleration_step = 0;  // mm/s^2, the largest where curvature changes without a corner
+};
+
 // From the first pass.
 struct Plan {
   std::string file;
   double seconds = 0;          // estimate
   std::uint64_t segments = 0;  // paths
   std::uint64_t commands = 0;  // for the card
-  planner::Pulses start{};     // machine coordinates; where the first line begins
+  PlannedMotion motion;
+  planner::Pulses start{};  // machine coordinates; where the first line begins
   planner::Pulses end{};
   std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first
   std::map<std::string, std::size_t> accepted;    // words without effect yet and how often
 };
 
 struct Outcome {
-  std::vector<std::int64_t> counted;         // pulses from the start, by axis, as the card counted them
+  std::vector<std::int64_t> counted;         // pulses from the start, by axis of the card, as it counted them
   std::vector<std::int64_t> final_position;  // pulses, machine coordinates
   std::uint64_t commands = 0;                // sent
   std::optional<std::uint32_t> under_runs;   // holds for want of commands; none where the card has no such hold

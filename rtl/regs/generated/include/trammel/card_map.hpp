@@ -28,6 +28,8 @@ inline constexpr std::uint32_t kRatioFractionBits =
     16;  // Fraction bits of the time base's ratio as the registers have it
 inline constexpr std::uint32_t kSlewFractionBits = 28;  // Fraction bits of the time base's ratio inside, and of SLEW
 inline constexpr std::uint32_t kSlewClocks = 4;         // Clocks from one move of the ratio to the next
+inline constexpr std::uint32_t kUnderrunReserveTicks =
+    256;  // Feed ticks that the under-run hold keeps queued beyond what a stop takes
 inline constexpr std::uint32_t kShaperTurnoverClocks =
     6;  // Clocks that the shaper adds to max(1, length) + space from pulse to pulse; one less for length 0
 inline constexpr std::uint32_t kShaperReversalClocks =

@@ -1,0 +1,84 @@
+// What commands do at their place on the path beside motion: OUTPUT and MARK.
+//
+// They wait for the end of the path that runs as they are decoded, and then for as long as its last tick takes to the
+// axes' steps; where none runs for that long alone. Nothing is decoded between a path's end and its effect, since a
+// command takes 8 clocks: one set of masks is enough.
+`default_nettype none
+
+module instant_commands #(
+    parameter int Outputs = 4  // 1 to 16
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    // commands
+    input wire logic [21:0] load_i,
+    input wire logic [1:0] taken_i,  // {MARK, OUTPUT} is taken now; its last halfword is on load_i
+    input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
+    input wire logic runs_i,  // a path is under way
+    output logic mark_o,  // event: a snapshot is wanted
+    output logic [31:0] marks_o,  // those that have taken effect
+    // the outputs' change
+    output logic change_o,  // combinational
+    output logic [Outputs-1:0] set_o,
+    output logic [Outputs-1:0] clear_o
+);
+  // From a path's last tick taken to its step on the path.
+  localparam logic [2:0] TO_STEP = 3'd6;
+
+  // Set, then clear.
+  logic [2*Outputs-1:0] words_q;
+  logic                 merge_q;
+  logic                 output_waits_q;
+  logic                 mark_waits_q;
+  logic                 mark_due_q;
+  logic [          2:0] delay_q;
+  logic                 fire;
+  logic [  Outputs-1:0] set;
+  logic [  Outputs-1:0] clear;
+
+  assign fire = (output_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
+  assign change_o = delay_q == 3'd1;
+  assign set = change_o ? '0 : set_o;
+  assign clear = change_o ? '0 : clear_o;
+
+  always_ff @(posedge clk_i) begin
+    if (load_i[21] && load_i[20:16] == load_target_pkg::COMMAND)
+      words_q <= {load_i[Outputs-1:0], words_q[2*Outputs-1:Outputs]};
+    merge_q <= taken_i[0];
+    set_o <= merge_q ? (set & ~words_q[2*Outputs-1:Outputs]) | words_q[Outputs-1:0] : set;
+    clear_o <= merge_q ? (clear & ~words_q[Outputs-1:0]) | words_q[2*Outputs-1:Outputs] : clear;
+    output_waits_q <= taken_i[0] || (output_waits_q && !fire);
+    mark_waits_q <= taken_i[1] || (mark_waits_q && !fire);
+    if (fire) mark_due_q <= mark_waits_q;
+    if (fire) delay_q <= TO_STEP;
+    else if (delay_q != 3'd0) delay_q <= delay_q - 3'd1;
+    if (cut_i || rst_i) begin
+      merge_q <= 1'b0;
+      set_o <= '0;
+      clear_o <= '0;
+      output_waits_q <= 1'b0;
+      mark_waits_q <= 1'b0;
+      delay_q <= 3'd0;
+    end
+  end
+
+  // Those taken, and those that have taken effect.
+  logic [31:0] taken_q;
+
+  always_ff @(posedge clk_i) begin
+    mark_o <= change_o && mark_due_q && !cut_i && !rst_i;
+    if (change_o && mark_due_q && !cut_i) marks_o <= taken_q;
+    if (cut_i) taken_q <= marks_o;
+    else if (taken_i[1]) taken_q <= taken_q + 32'd1;
+    if (rst_i) begin
+      taken_q <= '0;
+      marks_o <= '0;
+    end
+  end
+
+  logic unused;
+  assign unused = &{1'b0, load_i};
+endmodule
+
+`default_nettype wire

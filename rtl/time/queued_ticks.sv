@@ -1,0 +1,142 @@
+// Counts the feed ticks that are queued, for paths and for pieces, and compares both with a limit.
+//
+// 56 bits each: no queue holds 2^14 commands, none of them has more than 2^40 - 1 ticks. Four words of 14 bits go round,
+// one a clock, in passes of four clocks that begin with word_i = 0. A pass takes away the ticks taken before it, or adds
+// the count of a command that has arrived: so what the counters say is at most 12 clocks old. A command has passed long
+// before the count of the next one comes (a word of the stream takes longer than a pass).
+//
+// The counters begin at -Reserve instead of 0, so that `count <= limit` says `queued <= limit + Reserve`.
+// The limit is compared with what the pass of the clock before made: word 0 in the clock with word_i = 1.
+`default_nettype none
+
+module queued_ticks #(
+    parameter int Reserve = 256
+) (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic [20:0] arrive_i,          // {drop, geometry {commit, write}, feed {commit, write}, halfword}
+    input  wire logic        take_i,
+    input  wire logic [ 1:0] word_i,            // of the pass
+    input  wire logic [13:0] limit_i,           // a word of the limit, a clock behind word_i
+    output logic             geometry_short_o,  // a clock after the limit's last word
+    output logic             feed_short_o,
+    output logic             covered_o,         // paths have all the ticks that pieces have, or more
+    output logic             at_rest_o,         // the last piece ends at rest
+    output logic             at_barrier_o       // what arrived last is a barrier
+);
+  localparam logic [55:0] EMPTY = 56'd0 - 56'(Reserve);
+
+  logic drop, geometry_commit, geometry_write, feed_commit, feed_write;
+  logic reset;
+  assign {drop, geometry_commit, geometry_write, feed_commit, feed_write} = arrive_i[20:16];
+  assign reset = rst_i || cut_i;
+
+  // The command on its way in: header, three halfwords of count, the payload, of which a piece's stop distance counts.
+  localparam logic [3:0] STOP_DISTANCE = 4'd10;
+  logic [ 3:0] index_q;
+  logic [39:0] count_q;
+  logic        zero_q;  // the stop distance is
+  logic        adding_q;
+  always_ff @(posedge clk_i) begin
+    if (reset || drop || geometry_commit || feed_commit) index_q <= 4'd0;
+    else if ((geometry_write || feed_write) && index_q != 4'd12) index_q <= index_q + 4'd1;
+    if (geometry_write || feed_write) begin
+      if (index_q == 4'd1) count_q[15:0] <= arrive_i[15:0];
+      if (index_q == 4'd2) count_q[31:16] <= arrive_i[15:0];
+      if (index_q == 4'd3) count_q[39:32] <= arrive_i[7:0];
+      if (index_q[3:1] == STOP_DISTANCE[3:1]) zero_q <= arrive_i[15:0] == 16'd0 && (zero_q || !index_q[0]);
+    end else if (adding_q) count_q <= {14'd0, count_q[39:14]};
+  end
+
+  // What the next pass does. A barrier's count is clocks, not ticks.
+  logic pending_q, of_paths_q, of_pieces_q, zero_pending_q;
+  logic add_paths_q, add_pieces_q;
+  logic [3:0] owed_q, taken_q;
+  logic [3:0] owed;
+  assign owed = owed_q + {3'd0, take_i};
+  always_ff @(posedge clk_i) begin
+    owed_q <= owed;
+    if (word_i == 2'd3) begin
+      adding_q <= pending_q;
+      pending_q <= 1'b0;
+      add_paths_q <= of_paths_q && !of_pieces_q;
+      add_pieces_q <= of_pieces_q && !of_paths_q;
+      if (pending_q) begin
+        at_barrier_o <= of_paths_q && of_pieces_q;
+        if (!of_paths_q) at_rest_o <= zero_pending_q;
+      end else begin
+        owed_q  <= 4'd0;
+        taken_q <= owed;
+      end
+    end
+    if (geometry_commit || feed_commit) begin
+      pending_q <= 1'b1;
+      of_paths_q <= geometry_commit;
+      of_pieces_q <= feed_commit;
+      zero_pending_q <= zero_q;
+    end
+    if (reset) begin
+      owed_q <= 4'd0;
+      taken_q <= 4'd0;
+      adding_q <= 1'b0;
+      pending_q <= 1'b0;
+      at_rest_o <= 1'b0;
+      at_barrier_o <= 1'b0;
+    end
+  end
+
+  // The words go round: only at a pass's end does the lowest one stand where it belongs.
+  logic clearing_q;
+  always_ff @(posedge clk_i) clearing_q <= reset || (clearing_q && word_i != 2'd3);
+
+  logic [55:0] paths_q, pieces_q;
+  logic paths_carry_q, pieces_carry_q;
+  always_ff @(posedge clk_i) begin : p_count
+    logic [13:0] change;
+    logic [14:0] paths_sum, pieces_sum;
+    logic first;
+
+    first = word_i == 2'd0;
+    change = adding_q ? count_q[13:0] : ~(first ? {10'd0, taken_q} : 14'd0);
+    paths_sum = {1'b0, paths_q[13:0]} + {1'b0, adding_q && !add_paths_q ? 14'd0 : change} +
+        {14'd0, first ? !adding_q : paths_carry_q};
+    pieces_sum = {1'b0, pieces_q[13:0]} + {1'b0, adding_q && !add_pieces_q ? 14'd0 : change} +
+        {14'd0, first ? !adding_q : pieces_carry_q};
+    paths_carry_q <= paths_sum[14];
+    pieces_carry_q <= pieces_sum[14];
+    paths_q <= {paths_sum[13:0], paths_q[55:14]};
+    pieces_q <= {pieces_sum[13:0], pieces_q[55:14]};
+    if (word_i == 2'd3 && (reset || clearing_q)) begin
+      paths_q  <= EMPTY;
+      pieces_q <= EMPTY;
+    end
+  end
+
+  // count - limit - 1 is negative; so is paths - pieces. The sign lies in the last word.
+  logic paths_less_q, pieces_less_q, uncovered_q;
+  always_ff @(posedge clk_i) begin : p_compare
+    logic [13:0] paths_word, pieces_word, limit_word;
+    logic first, last;
+    logic paths_less, pieces_less, uncovered;
+
+    first = word_i == 2'd1;
+    last = word_i == 2'd0;
+    paths_word = {paths_q[55] ^ last, paths_q[54:42]};
+    pieces_word = {pieces_q[55] ^ last, pieces_q[54:42]};
+    limit_word = {limit_i[13] ^ last, limit_i[12:0]};
+    paths_less = {paths_word, 1'b0} < {limit_word, first || paths_less_q};
+    pieces_less = {pieces_word, 1'b0} < {limit_word, first || pieces_less_q};
+    uncovered = {paths_word, 1'b0} < {pieces_word, !first && uncovered_q};
+    paths_less_q  <= paths_less;
+    pieces_less_q <= pieces_less;
+    uncovered_q   <= uncovered;
+    if (last) begin
+      geometry_short_o <= paths_less;
+      feed_short_o <= pieces_less;
+      covered_o <= !uncovered;
+    end
+  end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,91 @@
+// The ticks that a stop takes from the present ratio: stop distance * ratio^2, from above, anew every 32 clocks.
+//
+// The ratio is taken in 256ths, rounded up, and so is its square: at full ratio the product is exact, and never too small.
+// By step_i: 0 the ratio is taken (but while keep_i), 1 to 10 squared, 12 to 21 multiplied with the stop distance, 25 to
+// 28 the product leaves in words of 14 bits. While 12 to 21 the stop distance stands still.
+//
+// The stop distance in force is that of the piece in force; a piece that ends at rest (0) goes on with that of the piece
+// before, which has its speed. Where the next piece begins from rest, follow_i, it is the next one's.
+`default_nettype none
+
+module stop_ticks (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic [ 4:0] step_i,
+    input  wire logic [16:0] ratio_i,
+    input  wire logic        keep_i,       // the ratio taken stays
+    input  wire logic        twice_i,      // twice the product
+    input  wire logic        none_i,       // 0 instead: the card stands
+    input  wire logic [19:0] load_i,       // feed load
+    input  wire logic        swap_i,       // a piece began in the clock before
+    input  wire logic        from_rest_i,  // nothing was in force before it, or what ends at rest
+    input  wire logic        follow_i,
+    output logic             next_zero_o,  // the next piece's stop distance is 0: it ends at rest
+    output logic             ruled_o,      // the stop distance in force is not 0
+    output logic      [13:0] word_o
+);
+  logic        load;
+  logic        half_q;  // the lower halfword is there
+  logic        low_zero_q;
+  logic [31:0] next_q;
+  assign load = load_i[19] && load_i[18:16] == load_target_pkg::FEED_STOP_DISTANCE;
+  always_ff @(posedge clk_i) begin
+    if (load) begin
+      next_q <= {load_i[15:0], next_q[31:16]};
+      low_zero_q <= load_i[15:0] == 16'd0;
+      next_zero_o <= half_q && low_zero_q && load_i[15:0] == 16'd0;
+      half_q <= !half_q;
+    end
+    if (rst_i || cut_i) begin
+      half_q <= 1'b0;
+      next_zero_o <= 1'b1;
+    end
+  end
+
+  logic [31:0] distance_q;
+  logic        due_q;
+  logic        still;
+  logic        take;
+  // The next piece's comes no earlier than 14 clocks after a swap: what is due is taken before.
+  assign still = step_i >= 5'd12 && step_i <= 5'd21;
+  assign take  = !still && (due_q || follow_i);
+  always_ff @(posedge clk_i) begin
+    if (take) begin
+      distance_q <= next_q;
+      ruled_o <= !next_zero_o;
+      due_q <= 1'b0;
+    end
+    if (swap_i && (from_rest_i || !next_zero_o)) due_q <= 1'b1;
+    if (rst_i || cut_i) begin
+      due_q   <= 1'b0;
+      ruled_o <= 1'b0;
+    end
+  end
+
+  // One register for both products' lower parts: what is multiplied with leaves at its lower end.
+  logic [ 8:0] ratio_q;
+  logic [17:0] square_q;
+  logic [33:0] product_q;
+  always_ff @(posedge clk_i) begin : p_product
+    logic [ 9:0] square_sum;
+    logic [ 8:0] square;
+    logic [32:0] sum;
+
+    square_sum = {1'b0, square_q[17:9]} + {1'b0, ratio_q & {9{square_q[0]}}};
+    square = square_q[16:8] + {8'd0, square_q[7:0] != 8'd0};
+    sum = {1'b0, product_q[33:2]} + {1'b0, distance_q & {32{square_q[0]}}};
+    if (step_i == 5'd0 && !keep_i) ratio_q <= ratio_i[16:8] + {8'd0, ratio_i[7:0] != 8'd0};
+    if (step_i == 5'd1) square_q <= {9'd0, ratio_q};
+    else if (step_i <= 5'd10) square_q <= {square_sum, square_q[8:1]};
+    else if (step_i == 5'd11) square_q <= none_i ? 18'd0 : twice_i ? {8'd0, square, 1'b0} : {9'd0, square};
+    else square_q <= square_q >> 1;
+    if (step_i == 5'd11) product_q <= '0;
+    else if (still) product_q <= {sum, product_q[1]};
+    else if (step_i >= 5'd25 && step_i <= 5'd28) product_q <= product_q >> 14;
+  end
+
+  assign word_o = product_q[13:0];
+endmodule
+
+`default_nettype wire

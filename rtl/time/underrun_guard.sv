@@ -1,0 +1,113 @@
+// Under-run hold: the card slows down along its path early enough to stand before what is queued ends, and goes on by
+// itself. A piece that would begin from rest waits for as much.
+//
+// Every 32 clocks: short is what is queued <= stop distance * ratio^2 + Reserve, but where the last piece ends at rest
+// with its paths queued, or a barrier comes last. The guard begins to hold when it is short in motion, and ends when there
+// is twice as much for the ratio at which it began: so it does not chatter. Where the card stands and a queue is full,
+// more will not come: then anything beyond the reserve is enough, and it goes on as fast as that allows.
+`default_nettype none
+
+module underrun_guard (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic        off_i,       // no rule
+    input  wire logic [20:0] arrive_i,    // {drop, geometry {commit, write}, feed {commit, write}, halfword}
+    input  wire logic        full_i,      // a queue may have no room for the next command
+    input  wire logic [19:0] load_i,      // feed load
+    input  wire logic        take_i,      // a feed tick is taken
+    input  wire logic        swap_i,      // a piece began in the clock before
+    input  wire logic        active_i,    // a piece gives ticks
+    input  wire logic        decoded_i,   // a piece waits
+    input  wire logic [16:0] ratio_i,
+    output logic             wait_o,      // a piece that is decoded must not begin (combinational)
+    output logic             hold_o,
+    output logic             shown_o,     // holds, or keeps a piece waiting
+    output logic      [31:0] underruns_o
+);
+  localparam int Reserve = card_map_pkg::UNDERRUN_RESERVE_TICKS;
+  localparam logic [4:0] LOOK = 5'd11;  // the stop distance that is taken now is judged
+  localparam logic [4:0] DECIDE = 5'd29;
+
+  logic [4:0] step_q;
+  always_ff @(posedge clk_i) step_q <= rst_i ? 5'd0 : step_q + 5'd1;
+
+  logic [13:0] limit_word;
+  logic geometry_short, feed_short, covered, at_rest, at_barrier;
+  logic next_zero, ruled;
+  logic standing;
+  logic ends_q;  // the piece in force ends at rest
+  logic covered_q;  // all its ticks have their paths
+  logic from_rest, from_rest_q;
+  logic follow;
+  assign standing = ratio_i == 17'd0;
+  assign from_rest = !active_i || ends_q;
+  assign follow = !active_i || (ends_q && covered_q);
+
+  queued_ticks #(
+      .Reserve(Reserve)
+  ) queued (
+      .*,
+      .word_i          (step_q[1:0]),
+      .limit_i         (limit_word),
+      .geometry_short_o(geometry_short),
+      .feed_short_o    (feed_short),
+      .covered_o       (covered),
+      .at_rest_o       (at_rest),
+      .at_barrier_o    (at_barrier)
+  );
+
+  stop_ticks stop (
+      .*,
+      .step_i     (step_q),
+      .keep_i     (hold_o),
+      .twice_i    (hold_o),
+      .none_i     (hold_o && standing && full_i),
+      .from_rest_i(from_rest_q),
+      .follow_i   (follow),
+      .next_zero_o(next_zero),
+      .ruled_o    (ruled),
+      .word_o     (limit_word)
+  );
+
+  logic decoded_q;
+  logic judged_q;  // the next piece is what is judged
+  logic enough_q;  // for it
+  logic waits_q;
+  logic short;
+  assign short = ruled && !at_barrier && !off_i &&
+      ((geometry_short && !(at_rest && covered)) || (feed_short && !at_rest));
+
+  always_ff @(posedge clk_i) begin
+    from_rest_q <= from_rest;
+    decoded_q   <= decoded_i;
+    if (step_q == LOOK) judged_q <= decoded_q && follow;
+    if (step_q == DECIDE) begin
+      hold_o <= short && (hold_o || !follow || (judged_q && full_i));
+      if (short && !hold_o && (!follow || (judged_q && full_i))) underruns_o <= underruns_o + 32'd1;
+      enough_q <= judged_q && !short;
+      waits_q  <= judged_q && !active_i && short;
+      if (covered) covered_q <= 1'b1;
+    end
+    if (swap_i) begin
+      ends_q <= next_zero;
+      covered_q <= 1'b0;
+    end
+    if (swap_i || cut_i || rst_i) begin
+      judged_q <= 1'b0;
+      enough_q <= 1'b0;
+      waits_q  <= 1'b0;
+    end
+    if (cut_i || rst_i) begin
+      hold_o <= 1'b0;
+      ends_q <= 1'b0;
+      covered_q <= 1'b0;
+    end
+    if (rst_i) underruns_o <= 32'd0;
+  end
+
+  assign wait_o  = from_rest && !next_zero && !enough_q && !off_i;
+  assign shown_o = hold_o || waits_q;
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,246 @@
+// Lockstep of the under-run hold: commands arrive, pieces are decoded, begin and take ticks at any clock, with stop
+// distances and ratios of every size, cuts and resets; every output in every cycle.
+#include "trammel/model/underrun_guard.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+constexpr std::uint64_t kComparedSignals = 4;
+// What the rest of the card keeps to: clocks from a commit to the next command's count, from a swap to the next piece's
+// stop distance, from a swap to the next one.
+constexpr unsigned kAfterCommit = 13;
+constexpr unsigned kAfterSwap = 14;
+constexpr unsigned kSwaps = 24;
+
+class Bench {
+ public:
+  using Inputs = model::UnderrunGuard::Inputs;
+
+  explicit Bench(std::uint64_t seed) : check_("underrun_guard", seed), dice_(seed) { reset(); }
+
+  void random_clock() {
+    if (dice_.chance(5000)) random_pace();
+    in_.cut = dice_.chance(cut_every_);
+    in_.off = dice_.chance(300) ? !in_.off : in_.off && !dice_.chance(50);
+    if (dice_.chance(400)) in_.full = dice_.chance(3);
+    random_ratio();
+    random_arrival();
+    random_piece();
+    if (dice_.chance(50 * cut_every_))
+      reset();
+    else
+      clock();
+  }
+
+  Checker& check() { return check_; }
+  std::uint64_t holds() const { return holds_; }
+  std::uint64_t ends() const { return ends_; }
+  std::uint64_t waits() const { return waits_; }
+
+ private:
+  void random_pace() {
+    cut_every_ = dice_.chance(3) ? 100 + dice_.below(300) : 5000;
+    take_every_ = 1 + dice_.below(dice_.chance(2) ? 2 : 30);
+    count_bits_ = dice_.chance(4) ? 40 : 6 + dice_.below(8);
+    distance_bits_ = dice_.chance(4) ? 32 : 4 + dice_.below(10);
+    zero_every_ = 1 + dice_.below(12);
+    arrive_every_ = 1 + dice_.below(dice_.chance(2) ? 2 : 100);
+  }
+
+  void random_ratio() {
+    if (!dice_.chance(8)) return;
+    if (dice_.chance(20)) in_.ratio = dice_.chance(2) ? 0 : 0x10000;
+    const std::uint32_t step = dice_.below(0x800);
+    if (model_.outputs().hold)
+      in_.ratio = in_.ratio > step ? in_.ratio - step : 0;
+    else
+      in_.ratio = in_.ratio + step > 0x10000 ? 0x10000 : in_.ratio + step;
+  }
+
+  // Halfword by halfword; now and then a command is dropped, by a refusal before its end.
+  void random_arrival() {
+    in_.arrival = {};
+    ++since_commit_;
+    if (left_.empty() && !committing_) {
+      if (since_commit_ < kAfterCommit || !dice_.chance(arrive_every_)) return;
+      random_command();
+    }
+    if (dice_.chance(2)) return;
+    if (dice_.chance(200)) {
+      in_.arrival.drop = true;
+      left_.clear();
+      committing_ = false;
+      since_commit_ = 0;
+    } else if (!left_.empty()) {
+      in_.arrival.halfword = left_.back();
+      in_.arrival.geometry_write = to_geometry_;
+      in_.arrival.feed_write = to_feed_;
+      left_.pop_back();
+    } else {
+      in_.arrival.geometry_commit = to_geometry_;
+      in_.arrival.feed_commit = to_feed_;
+      committing_ = false;
+      since_commit_ = 0;
+    }
+  }
+  void random_command() {
+    const unsigned kind = dice_.below(10);
+    to_geometry_ = kind < 6;
+    to_feed_ = kind > 4;
+    const std::uint64_t count = dice_.log_uniform(count_bits_);
+    const std::uint32_t distance = random_distance();
+    const std::size_t halfwords = kind == 5 ? 4 : kind < 5 ? 7 + 3 * dice_.below(4) : 20;
+    left_.assign(halfwords, 0);
+    for (std::uint16_t& word : left_) word = static_cast<std::uint16_t>(dice_.draw());
+    const auto put = [&](std::size_t index, std::uint64_t value) {
+      left_[halfwords - 1 - index] = static_cast<std::uint16_t>(value);
+    };
+    for (unsigned i = 0; i < 3; ++i) put(1 + i, count >> 16 * i);
+    if (halfwords == 20) {
+      put(10, distance);
+      put(11, distance >> 16);
+    }
+    committing_ = true;
+    check_.event(kind == 5 ? "barrier" : to_feed_ ? "piece" : "path", count);
+  }
+  std::uint32_t random_distance() {
+    return dice_.chance(zero_every_) ? 0 : static_cast<std::uint32_t>(dice_.log_uniform(distance_bits_));
+  }
+
+  // A piece is loaded, decoded a few clocks later, and begins: at once where none gives ticks, else with a last tick.
+  void random_piece() {
+    ++since_swap_;
+    in_.swap = swaps_;
+    if (swaps_) in_.active = true;
+    if (ended_) in_.active = false;
+    swaps_ = ended_ = false;
+    if (in_.swap) in_.decoded = false;
+    in_.load = {};
+    in_.take = in_.active && dice_.chance(take_every_);
+    if (loaded_ < 2 && since_swap_ >= kAfterSwap && (loaded_ == 1 || dice_.chance(20))) {
+      if (loaded_ == 0) distance_ = random_distance();
+      in_.load = halfword(model::feed_target::kStopDistance, distance_, loaded_++);
+      if (loaded_ == 2 && dice_.chance(2)) in_.decoded = true;
+    } else if (loaded_ == 2 && !in_.decoded) {
+      in_.decoded = dice_.chance(8);
+    }
+    const bool last = in_.take && dice_.chance(30);
+    const bool may_begin = in_.decoded && since_swap_ >= kSwaps && !model_.waits(in_.active, in_.off);
+    if (may_begin && (!in_.active || last)) {
+      swaps_ = true;
+      loaded_ = 0;
+      since_swap_ = 0;
+    } else {
+      ended_ = last;
+    }
+  }
+
+  void reset() {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    apply();
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::UnderrunGuard();
+    forget();
+    compare();
+  }
+  void forget() {
+    left_.clear();
+    committing_ = swaps_ = ended_ = false;
+    since_commit_ = since_swap_ = 0;
+    loaded_ = 0;
+    in_.active = in_.decoded = in_.swap = false;
+    in_.load = {};
+    in_.arrival = {};
+  }
+
+  void clock() {
+    apply();
+    const bool held = model_.outputs().hold;
+    dut_.clock();
+    model_.clock(in_);
+    compare();
+    holds_ += !held && model_.outputs().hold ? 1U : 0U;
+    ends_ += held && !model_.outputs().hold && !in_.cut ? 1U : 0U;
+    waits_ += model_.outputs().shown && !model_.outputs().hold ? 1U : 0U;
+    if (!held && model_.outputs().hold) check_.event("hold begins");
+    if (in_.cut) {
+      check_.event("cut");
+      forget();
+    }
+  }
+
+  void apply() {
+    const model::UnderrunGuard::Arrival& a = in_.arrival;
+    dut_->cut_i = in_.cut;
+    dut_->off_i = in_.off;
+    dut_->arrive_i = std::uint32_t{a.drop} << 20 | std::uint32_t{a.geometry_commit} << 19 |
+                     std::uint32_t{a.geometry_write} << 18 | std::uint32_t{a.feed_commit} << 17 |
+                     std::uint32_t{a.feed_write} << 16 | a.halfword;
+    dut_->full_i = in_.full;
+    dut_->load_i = feed_wire(in_.load);
+    dut_->take_i = in_.take;
+    dut_->swap_i = in_.swap;
+    dut_->active_i = in_.active;
+    dut_->decoded_i = in_.decoded;
+    dut_->ratio_i = in_.ratio;
+  }
+
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_.outputs();
+    check_.compare("wait_o", dut_->wait_o, model_.waits(dut_->active_i != 0, in_.off));
+    check_.compare("hold_o", dut_->hold_o, out.hold);
+    check_.compare("shown_o", dut_->shown_o, out.shown);
+    check_.compare("underruns_o", dut_->underruns_o, out.underruns);
+  }
+
+  Checker check_;
+  Dice dice_;
+  Simulated<Vdut> dut_;
+  model::UnderrunGuard model_;
+  Inputs in_;
+  std::vector<std::uint16_t> left_;  // halfwords to come, the next one last
+  bool committing_ = false;
+  bool to_geometry_ = false;
+  bool to_feed_ = false;
+  unsigned since_commit_ = 0;
+  unsigned since_swap_ = 0;
+  unsigned loaded_ = 0;  // halfwords of the next piece's stop distance
+  std::uint32_t distance_ = 0;
+  bool swaps_ = false;
+  bool ended_ = false;
+  unsigned cut_every_ = 5000;
+  unsigned take_every_ = 2;
+  unsigned count_bits_ = 10;
+  unsigned distance_bits_ = 12;
+  unsigned zero_every_ = 6;
+  unsigned arrive_every_ = 20;
+  std::uint64_t holds_ = 0;
+  std::uint64_t ends_ = 0;
+  std::uint64_t waits_ = 0;
+};
+
+void random_inputs() {
+  Bench bench(seed_from_environment(20261122));
+  const std::uint64_t length = scaled(3'000'000);
+  while (bench.check().cycles() < length) bench.random_clock();
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * bench.check().cycles());
+  EXPECT_GT(bench.holds(), length / 10'000);
+  EXPECT_GT(bench.ends(), length / 20'000);
+  EXPECT_GT(bench.waits(), length / 100);
+}
+
+TEST(UnderrunGuard, RandomInputs) { EXPECT_EQ(judge(random_inputs), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep
