@@ -38,7 +38,6 @@ class Judge {
     if (!handing_over_) moving(now);
     resting_ = false;
     last_ = now;
-    last_acceleration_ = static_cast<double>(now.gain) * 0x1p-48 / kUpdate;
     ++verdict.updates;
   }
 
@@ -47,18 +46,20 @@ class Judge {
   MotionVerdict verdict;
 
  private:
+  // Ticks a clock^2, as the piece has it: its floor may cut an update short.
+  static double acceleration(const Interval& now) { return static_cast<double>(now.acceleration) * 0x1p-64 / kUpdate; }
   static double rate(const Interval& now) { return static_cast<double>(now.rate) * 0x1p-48; }
 
   void moving(const Interval& now) {
     const double speed = rate(now);
     const bool goes_on = !resting_ && !now.begins_piece;
-    const double acceleration = goes_on ? (speed - rate(last_)) / kUpdate : 0;
+    const double change = goes_on ? (speed - rate(last_)) / kUpdate : 0;
     const double jerk = static_cast<double>(now.jerk) * 0x1p-64 / (kUpdate * kUpdate);
     const std::size_t where = now.path->command;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       const double pulses = course_.pulses_a_tick[a];
       verdict.velocity.look(pulses * speed / velocity_[a], where);
-      verdict.acceleration.look(std::hypot(pulses * acceleration, centripetal(a, speed)) / acceleration_[a], where);
+      verdict.acceleration.look(std::hypot(pulses * change, centripetal(a, speed)) / acceleration_[a], where);
       if (jerk_[a] <= 0) continue;
       verdict.jerk.look(pulses * std::abs(jerk) / jerk_[a], where);
       verdict.jerk.look(centripetal(a, speed) * turn_rate(a, speed) / jerk_[a], where);
@@ -89,7 +90,7 @@ class Judge {
   // pieces have whole ticks, a tick early.
   void at_rest(const Interval& now) {
     const double gain = std::abs(static_cast<double>(now.gain)) * 0x1p-48;
-    const double tick = resting_ ? 0 : 2 * std::max(gain, std::abs(last_acceleration_) * kUpdate) / kUpdate;
+    const double tick = resting_ ? 0 : 2 * std::max(gain, std::abs(acceleration(last_)) * kUpdate) / kUpdate;
     verdict.rest.look(rate(now) / (std::sqrt(floor() * floor() + tick) + 1.5 * gain + 0x1p-31), now.path->command);
   }
 
@@ -97,7 +98,10 @@ class Judge {
     const double before = rate(last_);
     const double after = rate(now);
     const double gain = static_cast<double>(now.gain) * 0x1p-48;
-    const double allowed = std::abs(gain) + std::abs(last_acceleration_) * kUpdate + 0.001 * std::max(before, after);
+    const double most = std::max(before, after);
+    const bool stop = most <= 2 * floor();  // and a start
+    const double allowed =
+        std::abs(gain) + std::abs(acceleration(last_)) * kUpdate + 0.001 * most + (stop ? floor() : 0);
     double jump = std::abs(after - before);
     const bool new_path = now.ticks <= 1 || now.clock - path_clock_ <= 2 * MotionWalk::kSwapClocks;
     // Where a path ends too, the density of ticks may change with the rate; it is known as well as the rounded lengths.
@@ -108,7 +112,7 @@ class Judge {
     verdict.rate_jump.look(jump / allowed, now.path->command);
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       if (jerk_[a] <= 0 || new_path) continue;
-      const double jumped = course_.pulses_a_tick[a] * std::abs(gain / kUpdate - last_acceleration_);
+      const double jumped = course_.pulses_a_tick[a] * std::abs(acceleration(now) - acceleration(last_));
       verdict.acceleration_jump.look((jumped - 2 * kUpdate * jerk_[a]) / acceleration_[a], now.path->command);
     }
   }
@@ -129,7 +133,7 @@ class Judge {
   // allows no speed is passed at the floor.
   void corner(const Interval& now) {
     const double ticks = limits_.clock_hz * rate(last_);
-    const double at_floor = limits_.clock_hz * (floor() + 1.5 * std::abs(last_acceleration_) * kUpdate);
+    const double at_floor = limits_.clock_hz * (floor() + 1.5 * std::abs(acceleration(last_)) * kUpdate);
     others(now, ticks);
     double allowed = 0;
     if (last_course_.spatial == course_.spatial) {
@@ -150,7 +154,7 @@ class Judge {
     ++verdict.corners;
     const double scale = limits_.clock_hz * mm_a_tick(last_course_, last_) * (1 - last_course_.error);  // mm/s
     // Half an update, and a tick of the ramp to the corner, may be left.
-    const double gain = std::abs(last_acceleration_) * kUpdate;
+    const double gain = std::abs(acceleration(last_)) * kUpdate;
     const double most_rate = std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate) + gain / 2;
     verdict.corner.look(rate(last_) / std::max(most_rate, at_floor / limits_.clock_hz), now.path->command);
   }
@@ -196,7 +200,6 @@ class Judge {
   std::uint64_t path_clock_ = 0;  // of this path's first clock
   std::uint64_t piece_clock_ = 0;  // of this piece's
   bool handing_over_ = false;
-  double last_acceleration_ = 0;  // ticks a clock^2
 };
 
 }  // namespace

@@ -146,6 +146,22 @@ TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
   }
 }
 
+TEST(MotionJudge, DISABLED_Debug) {
+  const auto seed = static_cast<unsigned>(std::atoi(std::getenv("S")));
+  const std::string program = random_lines(seed);
+  gcode::TextLines lines(program, "program");
+  const machine::Machine machine = machine_of(100, 1000, seed % 2 == 0 ? 20000 : 0);
+  const Planned planned(lines, machine, kClock);
+  const MotionVerdict v = judge_motion(planned.commands, {machine, kClock, 0.01});
+  auto& r = planned;
+  for (std::size_t w : {v.acceleration_jump.command, v.rate_jump.command})
+  for (std::size_t i = w > 12 ? w - 12 : 0; i < std::min(w + 12, r.commands.size()); ++i) {
+    auto& c = r.commands[i];
+    if (auto* f = std::get_if<driver::FeedCommand>(&c)) fmt::print("{} FEED {} class {} rate {} acc {} jerk {} floor {}\n", i, f->ticks, int(f->piece_class), double(f->rate)*0x1p-64, double(f->acceleration)*0x1p-64, double(f->jerk)*0x1p-64, f->floor*0x1p-32);
+    if (auto* f = std::get_if<driver::LineCommand>(&c)) fmt::print("{} LINE {} inc {} {} {}\n", i, f->ticks, double(f->increment[0])*0x1p-40, double(f->increment[1])*0x1p-40, double(f->increment[2])*0x1p-40);
+  }
+}
+
 TEST(MotionJudge, StepsFollowTheCommandedMotion) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(fmt::format("seed {}", seed));

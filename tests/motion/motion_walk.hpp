@@ -29,6 +29,7 @@ struct Interval {
   std::uint64_t clocks = 0;
   std::uint64_t rate = 0;      // 2^-48 ticks a clock
   std::int64_t gain = 0;       // rate of the piece's next update, if it comes, less this one's
+  std::int64_t acceleration = 0;  // 2^-64 ticks a clock, an update
   std::int64_t jerk = 0;       // 2^-64 ticks a clock, an update, an update
   bool begins_path = false;
   bool begins_piece = false;
@@ -110,6 +111,7 @@ class MotionWalk {
       const auto hold = [&](std::uint64_t most, std::uint64_t& ticks) {
         at.rate = rate.slope();
         at.gain = static_cast<std::int64_t>(rate.next_slope()) - static_cast<std::int64_t>(at.rate);
+        at.acceleration = rate.acceleration();
         at.jerk = pieces_[piece]->jerk;
         while (most != 0 && ticks != 0 && path < to.paths) {
           const std::uint64_t path_left = at.path->ticks - at.ticks;
@@ -170,6 +172,7 @@ class MotionWalk {
       slope_ = piece.rate >> 16;
     }
     std::uint64_t slope() const { return slope_; }
+    std::int64_t acceleration() const { return static_cast<std::int64_t>(acceleration_); }
     std::uint64_t next_slope() const { return clamped(rate_ + acceleration_); }
     void update() {
       rate_ += acceleration_;
