@@ -55,6 +55,14 @@ struct Judges {
   run::FeedMeter feed;
 };
 
+// By axis of the card.
+std::vector<double> scales(const machine::Machine& machine) {
+  std::vector<double> result;
+  for (const machine::MachineAxis& axis : machine.axes) result.push_back(axis.steps_per_mm);
+  for (const std::size_t axis : machine.second_motors()) result.push_back(machine.axes[axis].steps_per_mm);
+  return result;
+}
+
 void tell(const run::Plan& plan, RunResult& result) {
   result.program = plan.file;
   result.segments = plan.segments;
@@ -77,10 +85,8 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   const auto begun = std::chrono::steady_clock::now();
   RunResult result;
   run::StepRecorder::Options recording;
-  for (const machine::MachineAxis& axis : machine.axes) {
-    recording.steps_per_mm.push_back(axis.steps_per_mm);
-    result.axes += axis.letter;
-  }
+  recording.steps_per_mm = scales(machine);
+  for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
   run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes, true}, options.settings);
   run::CommandedCourse course(machine);
   if (options.plot) runner.add(course);
@@ -88,9 +94,6 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
 
   if (options.planned) options.planned(plan);
 
-  for (const std::size_t axis : machine.second_motors()) {
-    recording.steps_per_mm.push_back(machine.axes[axis].steps_per_mm);
-  }
   recording.steps = options.steps;
   recording.path_steps = options.path_steps;
   recording.plot = options.plot;

@@ -76,12 +76,13 @@ void execute(const Options& options) {
   run.progress = options.progress;
   run.stream = options.stream;
   run.settings = options.motion.settings();
-  run.operation = options.motion.operation(run.most_percent);
   outputs.keep("the program", options.program);
   if (options.machine) outputs.keep("the machine file", *options.machine);
   outputs.check();
 
   const machine::Machine machine = machine_of(options);
+  run.most_percent = 100 * machine.motion.max_override;
+  run.operation = options.motion.operation(run.most_percent);
   const auto axes = static_cast<unsigned>(machine.motors());
   sim::SimulationOptions engine =
       options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);

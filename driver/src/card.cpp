@@ -240,6 +240,42 @@ Snapshot Card::snapshot() {
 
 Snapshot Card::stop_snapshot() { return read_area(map::Area::Stop); }
 
+void Card::require_path_commands(std::string_view what) const {
+  if (map::has_engine(identification_.engines, map::engine::kPathCommands)) return;
+  throw ArgumentError(fmt::format("{}: needs {}, which the card does not have (engines 0x{:X})", what,
+                                  map::kEngineNames[map::engine::kPathCommands], identification_.engines));
+}
+
+std::uint16_t Card::inputs() {
+  require_path_commands("inputs");
+  return static_cast<std::uint16_t>(read(reg::kInputs));
+}
+
+std::uint16_t Card::outputs() {
+  require_path_commands("outputs");
+  return static_cast<std::uint16_t>(read(reg::kOutputs));
+}
+
+void Card::set_input_polarity(std::uint16_t inverted) {
+  require_path_commands("input polarity");
+  write(reg::kInputPolarity, inverted, "input polarity");
+}
+
+void Card::set_output_safe(std::uint16_t levels, std::uint16_t change) {
+  require_path_commands("safe outputs");
+  write(reg::kOutputSafe, levels | std::uint32_t{change} << field::kOutputSafeChangeShift, "safe outputs");
+}
+
+std::uint32_t Card::marks() {
+  require_path_commands("marks");
+  return read(reg::kMarks);
+}
+
+Snapshot Card::mark_snapshot() {
+  require_path_commands("mark");
+  return read_area(map::Area::Mark);
+}
+
 Snapshot Card::read_area(map::Area area) {
   constexpr std::uint64_t kPause = 16;    // clocks; a snapshot is a few dozen register words
   constexpr std::uint64_t kLimit = 4096;  // clocks

@@ -40,7 +40,7 @@ module queued_ticks #(
   logic        adding_q;
   always_ff @(posedge clk_i) begin
     if (reset || drop || geometry_commit || feed_commit) index_q <= 4'd0;
-    else if ((geometry_write || feed_write) && index_q != 4'd12) index_q <= index_q + 4'd1;
+    else if ((geometry_write || feed_write) && index_q[3:2] != 2'd3) index_q <= index_q + 4'd1;
     if (geometry_write || feed_write) begin
       if (index_q == 4'd1) count_q[15:0] <= arrive_i[15:0];
       if (index_q == 4'd2) count_q[31:16] <= arrive_i[15:0];
@@ -60,8 +60,8 @@ module queued_ticks #(
     if (word_i == 2'd3) begin
       adding_q <= pending_q;
       pending_q <= 1'b0;
-      add_paths_q <= of_paths_q && !of_pieces_q;
-      add_pieces_q <= of_pieces_q && !of_paths_q;
+      add_paths_q <= !of_pieces_q;
+      add_pieces_q <= !of_paths_q;
       if (pending_q) begin
         at_barrier_o <= of_paths_q && of_pieces_q;
         if (!of_paths_q) at_rest_o <= zero_pending_q;
@@ -78,8 +78,6 @@ module queued_ticks #(
     end
     if (reset) begin
       owed_q <= 4'd0;
-      taken_q <= 4'd0;
-      adding_q <= 1'b0;
       pending_q <= 1'b0;
       at_rest_o <= 1'b0;
       at_barrier_o <= 1'b0;
@@ -107,7 +105,7 @@ module queued_ticks #(
     pieces_carry_q <= pieces_sum[14];
     paths_q <= {paths_sum[13:0], paths_q[55:14]};
     pieces_q <= {pieces_sum[13:0], pieces_q[55:14]};
-    if (word_i == 2'd3 && (reset || clearing_q)) begin
+    if (clearing_q) begin
       paths_q  <= EMPTY;
       pieces_q <= EMPTY;
     end
@@ -124,19 +122,17 @@ module queued_ticks #(
     last = word_i == 2'd0;
     paths_word = {paths_q[55] ^ last, paths_q[54:42]};
     pieces_word = {pieces_q[55] ^ last, pieces_q[54:42]};
-    limit_word = {limit_i[13] ^ last, limit_i[12:0]};
+    limit_word = {limit_i[13] | last, limit_i[12:0]};
     paths_less = {paths_word, 1'b0} < {limit_word, first || paths_less_q};
     pieces_less = {pieces_word, 1'b0} < {limit_word, first || pieces_less_q};
     uncovered = {paths_word, 1'b0} < {pieces_word, !first && uncovered_q};
     paths_less_q  <= paths_less;
     pieces_less_q <= pieces_less;
     uncovered_q   <= uncovered;
-    if (last) begin
-      geometry_short_o <= paths_less;
-      feed_short_o <= pieces_less;
-      covered_o <= !uncovered;
-    end
   end
+  assign geometry_short_o = paths_less_q;
+  assign feed_short_o = pieces_less_q;
+  assign covered_o = !uncovered_q;
 endmodule
 
 `default_nettype wire

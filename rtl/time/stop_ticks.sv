@@ -57,10 +57,6 @@ module stop_ticks (
       due_q <= 1'b0;
     end
     if (swap_i && (from_rest_i || !next_zero_o)) due_q <= 1'b1;
-    if (rst_i || cut_i) begin
-      due_q   <= 1'b0;
-      ruled_o <= 1'b0;
-    end
   end
 
   // One register for both products' lower parts: what is multiplied with leaves at its lower end.
@@ -78,11 +74,11 @@ module stop_ticks (
     if (step_i == 5'd0 && !keep_i) ratio_q <= ratio_i[16:8] + {8'd0, ratio_i[7:0] != 8'd0};
     if (step_i == 5'd1) square_q <= {9'd0, ratio_q};
     else if (step_i <= 5'd10) square_q <= {square_sum, square_q[8:1]};
-    else if (step_i == 5'd11) square_q <= none_i ? 18'd0 : twice_i ? {8'd0, square, 1'b0} : {9'd0, square};
+    else if (step_i == 5'd11) square_q[9:0] <= none_i ? 10'd0 : twice_i ? {square, 1'b0} : {1'b0, square};
     else square_q <= square_q >> 1;
-    if (step_i == 5'd11) product_q <= '0;
-    else if (still) product_q <= {sum, product_q[1]};
-    else if (step_i >= 5'd25 && step_i <= 5'd28) product_q <= product_q >> 14;
+    // It is 0 when all of it has left.
+    if (still) product_q <= {sum, product_q[1]};
+    else if (step_i >= 5'd25) product_q <= product_q >> 14;
   end
 
   assign word_o = product_q[13:0];

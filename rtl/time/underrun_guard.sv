@@ -62,7 +62,7 @@ module underrun_guard (
       .step_i     (step_q),
       .keep_i     (hold_o),
       .twice_i    (hold_o),
-      .none_i     (hold_o && standing && full_i),
+      .none_i     (standing && full_i),
       .from_rest_i(from_rest_q),
       .follow_i   (follow),
       .next_zero_o(next_zero),
@@ -75,8 +75,7 @@ module underrun_guard (
   logic enough_q;  // for it
   logic waits_q;
   logic short;
-  assign short = ruled && !at_barrier && !off_i &&
-      ((geometry_short && !(at_rest && covered)) || (feed_short && !at_rest));
+  assign short = ruled && !at_barrier && !off_i && ((geometry_short && !covered) || (feed_short && !at_rest));
 
   always_ff @(posedge clk_i) begin
     from_rest_q <= from_rest;
@@ -98,11 +97,7 @@ module underrun_guard (
       enough_q <= 1'b0;
       waits_q  <= 1'b0;
     end
-    if (cut_i || rst_i) begin
-      hold_o <= 1'b0;
-      ends_q <= 1'b0;
-      covered_q <= 1'b0;
-    end
+    if (cut_i || rst_i) hold_o <= 1'b0;
     if (rst_i) underruns_o <= 32'd0;
   end
 

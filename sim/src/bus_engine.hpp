@@ -18,13 +18,17 @@ class BusEngine : public Engine, private model::CardSteps {
   bool has_interrupt() const override { return interrupt_; }
   bool wait_for_interrupt(std::chrono::nanoseconds longest) override;
 
+  void set_inputs(std::uint16_t levels) override { pins_ = levels; }
   void reset() override;
   void set_sink(driver::StepSink* sink) override;
   std::uint64_t cycles() const override { return card().cycles(); }
   std::vector<std::int64_t> positions() const override;
 
  protected:
-  virtual void clock(const model::CardModel::Inputs& in) = 0;
+  // One clock.
+  virtual void clock_card(const model::CardModel::Inputs& in) = 0;
+  // Levels at the inputs, for wait().
+  std::uint16_t pins() const { return pins_; }
   virtual model::CardModel& card() = 0;
   virtual const model::CardModel& card() const = 0;
 
@@ -32,6 +36,10 @@ class BusEngine : public Engine, private model::CardSteps {
   virtual void note(const driver::Access& access) = 0;
 
  private:
+  void clock(model::CardModel::Inputs in) {
+    in.pins = pins_;
+    clock_card(in);
+  }
   bool make(driver::Access& access);
   bool read_register(driver::Access& access);
   bool write_register(const driver::Access& access);
@@ -45,6 +53,7 @@ class BusEngine : public Engine, private model::CardSteps {
 
   std::uint32_t clock_hz_;
   bool interrupt_;
+  std::uint16_t pins_ = 0;
   driver::StepSink* sink_ = nullptr;
 };
 

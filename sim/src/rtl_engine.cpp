@@ -18,7 +18,11 @@ class RtlEngine final : public BusEngine {
         card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch,
               options.rtl_thread && !options.trace ? RtlThread::kOwn : RtlThread::kCallers) {}
 
-  void wait(std::uint64_t card_clocks) override { card_.run(CardModel::Inputs{}, card_clocks); }
+  void wait(std::uint64_t card_clocks) override {
+    CardModel::Inputs none;
+    none.pins = pins();
+    card_.run(none, card_clocks);
+  }
   std::optional<std::uint64_t> lockstep_cycles() const override {
     card_.settle();
     return card_.cycles();
@@ -37,7 +41,7 @@ class RtlEngine final : public BusEngine {
       card_.event("read", access.address);
     }
   }
-  void clock(const CardModel::Inputs& in) override { card_.run(in, 1); }
+  void clock_card(const CardModel::Inputs& in) override { card_.run(in, 1); }
   CardModel& card() override { return card_.model(); }
   const CardModel& card() const override { return card_.model(); }
 

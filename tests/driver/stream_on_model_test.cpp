@@ -73,6 +73,42 @@ TEST(StreamOnModel, RunsAProgramThroughSmallQueues) {
   EXPECT_GE(engine->cycles(), 300U * 512U * 16U + 1000U);
 }
 
+TEST(StreamOnModel, OutputsAndMarksAtTheirPlaceOnThePath) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  card.set_output_safe(0b0010, 0b0010);
+  card.set_input_polarity(0b0001);
+  engine->set_inputs(0b1001);
+  engine->wait(10);
+  EXPECT_EQ(card.inputs(), 0b1000);
+  Stream stream(card);  // its abort gives the outputs their safe levels
+  EXPECT_EQ(card.outputs(), 0b0010);
+  LineCommand line;
+  line.ticks = 100;
+  line.mask = 1;
+  line.increment[0] = std::int64_t{1} << 38;
+  FeedCommand feed;
+  feed.ticks = 200;
+  feed.rate = std::uint64_t{1} << 62;
+  feed.floor = 1;
+  stream.send({line, OutputCommand{0b0101, 0b0010}, MarkCommand{}, line, feed, MarkCommand{}});
+  stream.finish();
+  EXPECT_EQ(card.outputs(), 0b0101);
+  EXPECT_EQ(card.marks(), 2U);
+  EXPECT_EQ(card.mark_snapshot().geometry_begun, 2U);
+  EXPECT_THROW(stream.send(WaitInputCommand{}), ArgumentError);
+  EXPECT_THROW(stream.send(ProbeCommand{}), ArgumentError);
+  EXPECT_THROW(stream.send(ProbeEndCommand{}), ArgumentError);
+  sim::ModelOptions without;
+  without.engines = 0x33;
+  const auto other = sim::make_model_engine(without);
+  Card plain = Card::open(*other);
+  EXPECT_THROW(plain.outputs(), ArgumentError);
+  EXPECT_THROW(plain.set_output_safe(0, 0), ArgumentError);
+  Stream closed(plain);
+  EXPECT_THROW(closed.send(MarkCommand{}), ArgumentError);
+}
+
 TEST(StreamOnModel, AStreamThatStarvesTheCardTimesOut) {
   sim::ModelOptions small;
   small.geometry_depth = 64;

@@ -286,6 +286,7 @@ using Lines = std::vector<std::size_t>;
 TEST(Stops, AreWhereTheyMustBe) {
   const machine::Machine machine = machine::default_machine();
   EXPECT_EQ(stops_of("G1 F600 X10\nX0\nX10\nX20\n", machine), (Lines{1, 2, 4})) << "reversals, the end";
+  EXPECT_EQ(stops_of("G1 F600 X10\nX0 Y0.05\n", machine), (Lines{1, 2})) << "a reversal but for a third of a degree";
   EXPECT_EQ(stops_of("G1 F600 X10\nE1\nE2\nX20\nX30 E5\n", machine), (Lines{1, 3, 5})) << "moves without X Y Z";
   EXPECT_EQ(stops_of("G1 F600 X10\nG4 P1\nX20\nM0\nX30\nM1\nX40\nM2\n", machine), (Lines{1, 3, 5, 7}));
   EXPECT_EQ(stops_of("G1 F600 X10\nF1200 X20\nS100\nM3\nM8\nX30\n(c)\nG92 X0\nX10\nG0 X20\n", machine), (Lines{10}))

@@ -64,8 +64,10 @@ Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool s
       highest_(kPieces) {}
 
 void Quantiser::add(const Phase& phase) {
-  while (!moves(path_[at_].block)) ++at_;
+  bool waits = at_ == 0;
+  for (; !moves(path_[at_].block); ++at_) waits = true;
   if (!moving_) {
+    turns_ = !waits;
     moving_ = true;
     // Where the density is what it is from does not matter: lengths go on from any place.
     mm_ = base_mm_ = portion_mm_ = path_[at_].begin;
@@ -92,8 +94,11 @@ void Quantiser::add(const Phase& phase) {
   } else {
     // A ramp whose acceleration begins and ends at once gets the tick that it shares with a constant speed.
     const double share = smooth_ ? 0.5 : phase.acceleration == 0 ? 0 : 1 - 1e-9;
-    const std::uint64_t tick =
-        base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
+    std::uint64_t tick = base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
+    // A phase that ends with a block does so at its tick: the next one may be for the next block's limits alone.
+    constexpr double kSame = 1e-9;  // mm
+    if (smooth_ && mm_ - block.begin < kSame) tick = block.begin_ticks;
+    if (smooth_ && block.end - mm_ < kSame) tick = block.end_ticks;
     // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
     portion(phase, begin, mm_, std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks)), false, false);
   }
@@ -107,6 +112,8 @@ void Quantiser::portion(const Phase& phase, double begin, double end, std::uint6
         tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
     return base_mm_ + ticks / (rate_a_speed_ * clock_hz_) - begin;
   };
+  // Less than two updates are not worth a piece: the next one begins earlier.
+  if (smooth_ && end_tick > pending_.end && pending_.motion.clocks < 2 * kUpdate) pending_.end = tick_;
   // Smooth motion goes on beyond a border as it was: its speeds are those at the ticks. Else they are those at the
   // borders, so that the speed has no jump where the acceleration has one.
   const double from = smooth_ ? place(pending_.end) : std::max(0.0, portion_mm_ - begin);
@@ -169,13 +176,34 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
   motion.acceleration = (phase.acceleration + begin * phase.jerk) * rate_a_speed_ / clock_hz_;
   motion.jerk = phase.jerk * rate_a_speed_ / clock_hz_ / clock_hz_;
   motion.clocks = (end - begin) * clock_hz_;
+  // At rest the tick next to it, which would take three times as long, is at the floor.
+  const double floor = cube_root(4.5 * std::abs(motion.jerk));
   if (stop) {
-    // The last tick, which would take three times as long, is at the floor.
-    const double floor = cube_root(4.5 * std::abs(motion.jerk));
     motion.end_rate = std::max(motion.end_rate, floor);
     motion.clocks = std::max(motion.clocks - 2 / floor, ticks / std::max(motion.rate, floor));
+  } else if (turns_ && phase.speed == 0 && motion.rate < floor) {
+    begin_at(floor, ticks, motion);
   }
   return motion;
+}
+
+// From the rate that the stop before ends at, to the end's rate, with the jerk that makes the ticks: a little less
+// acceleration at the end keeps it below the planned one. Not where the ticks are too few.
+void Quantiser::begin_at(double rate, double ticks, Motion& motion) {
+  constexpr double kLess = 0.001;
+  const double gain = motion.end_rate - rate;
+  double acceleration = motion.acceleration + motion.clocks * motion.jerk;
+  // ticks = (rate + gain / 2) t - (acceleration t - gain) t / 6
+  const double linear = rate + gain * 2 / 3;
+  for (int i = 0; i < 9; ++i, acceleration *= 1 - kLess) {
+    const double square = linear * linear - acceleration * ticks * 2 / 3;
+    if (!(gain > 0) || !(square > 0)) return;
+    const double clocks = 2 * ticks / (linear + std::sqrt(square));
+    const double jerk = 2 * (acceleration - gain / clocks) / clocks;
+    if (jerk > motion.jerk) continue;
+    motion = {rate, acceleration - jerk * clocks, jerk, clocks, motion.end_rate};
+    return;
+  }
 }
 
 void Quantiser::put_pending(bool stop) {
@@ -210,7 +238,10 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   command.acceleration = one_rate ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
   command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);
   if (classes_ && path_[timed_].block.rapid) command.piece_class = driver::PieceClass::kRapid;
-  command.floor = fixed32(std::min({motion.rate, motion.end_rate, turning, rate}));
+  // Smooth motion does not reach it before the piece is over.
+  const double spare =
+      smooth_ && !stop ? 4 * std::abs(kUpdate * (motion.acceleration + motion.clocks * motion.jerk)) : 0;
+  command.floor = fixed32(std::min({motion.rate, motion.end_rate, turning, rate}) - spare);
   if (stop && motion.jerk != 0) command.floor = fixed32(std::min(motion.end_rate, put.most));
   time_blocks(motion, lead, end_tick, stop);
   tick_ = pending_.end = end_tick;

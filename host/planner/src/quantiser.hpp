@@ -61,6 +61,7 @@ class Quantiser {
 
   void portion(const Phase& phase, double begin, double end, std::uint64_t end_tick, bool last, bool stop);
   Motion motion_of(const Phase& phase, double from, double to, double ticks, bool stop) const;
+  static void begin_at(double rate, double ticks, Motion& motion);
   static Motion steady(double rate, double end_rate, double ticks);
   static double turning_rate(const Motion& motion);
   void put_pending(bool stop);
@@ -81,6 +82,7 @@ class Quantiser {
 
   // Where the phases are.
   bool moving_ = false;
+  bool turns_ = false;    // from a stop that nothing waits at
   std::uint64_t at_ = 0;  // block
   double mm_ = 0;
   double portion_mm_ = 0;  // and where the last portion of a phase ended

@@ -53,11 +53,14 @@ class Bench {
     distance_bits_ = dice_.chance(4) ? 32 : 4 + dice_.below(10);
     zero_every_ = 1 + dice_.below(12);
     arrive_every_ = 1 + dice_.below(dice_.chance(2) ? 2 : 100);
+    near_ = dice_.chance(3);
+    if (near_) take_every_ = 10 + dice_.below(90);
   }
 
   void random_ratio() {
     if (!dice_.chance(8)) return;
     if (dice_.chance(20)) in_.ratio = dice_.chance(2) ? 0 : 0x10000;
+    if (dice_.chance(20)) in_.ratio = (dice_.below(256) << 8) + dice_.below(2);
     const std::uint32_t step = dice_.below(0x800);
     if (model_.outputs().hold)
       in_.ratio = in_.ratio > step ? in_.ratio - step : 0;
@@ -95,7 +98,14 @@ class Bench {
     const unsigned kind = dice_.below(10);
     to_geometry_ = kind < 6;
     to_feed_ = kind > 4;
-    const std::uint64_t count = dice_.log_uniform(count_bits_);
+    std::uint64_t count = dice_.log_uniform(count_bits_);
+    if (dice_.chance(20) && count_bits_ == 40) count = std::uint64_t{1} << 32;
+    // Around what makes them short.
+    const std::uint64_t queued = (to_geometry_ ? paths_ : pieces_) - taken_;
+    const std::uint64_t limit = card_map::constant::kUnderrunReserveTicks + dice_.below(4);
+    if (near_ && queued < limit) count = limit - queued;
+    if (kind < 5) paths_ += count;
+    if (kind > 5) pieces_ += count;
     const std::uint32_t distance = random_distance();
     const std::size_t halfwords = kind == 5 ? 4 : kind < 5 ? 7 + 3 * dice_.below(4) : 20;
     left_.assign(halfwords, 0);
@@ -112,6 +122,8 @@ class Bench {
     check_.event(kind == 5 ? "barrier" : to_feed_ ? "piece" : "path", count);
   }
   std::uint32_t random_distance() {
+    if (near_ && !dice_.chance(4)) return 1 + dice_.below(4);
+    if (dice_.chance(20)) return (1 + dice_.below(9)) << 16;
     return dice_.chance(zero_every_) ? 0 : static_cast<std::uint32_t>(dice_.log_uniform(distance_bits_));
   }
 
@@ -131,6 +143,13 @@ class Bench {
       if (loaded_ == 2 && dice_.chance(2)) in_.decoded = true;
     } else if (loaded_ == 2 && !in_.decoded) {
       in_.decoded = dice_.chance(8);
+    }
+    taken_ += in_.take ? 1U : 0U;
+    // What is loaded for others, and what is no load.
+    if (!in_.load.valid && dice_.chance(3)) {
+      const auto target = static_cast<std::uint8_t>(dice_.below(8));
+      in_.load = {target != model::feed_target::kStopDistance && dice_.chance(2), target,
+                  static_cast<std::uint16_t>(dice_.draw())};
     }
     const bool last = in_.take && dice_.chance(30);
     const bool may_begin = in_.decoded && since_swap_ >= kSwaps && !model_.waits(in_.active, in_.off);
@@ -157,6 +176,7 @@ class Bench {
     left_.clear();
     committing_ = swaps_ = ended_ = false;
     since_commit_ = since_swap_ = 0;
+    paths_ = pieces_ = taken_ = 0;
     loaded_ = 0;
     in_.active = in_.decoded = in_.swap = false;
     in_.load = {};
@@ -219,6 +239,10 @@ class Bench {
   std::uint32_t distance_ = 0;
   bool swaps_ = false;
   bool ended_ = false;
+  bool near_ = false;
+  std::uint64_t paths_ = 0;  // ticks that arrived, were taken
+  std::uint64_t pieces_ = 0;
+  std::uint64_t taken_ = 0;
   unsigned cut_every_ = 5000;
   unsigned take_every_ = 2;
   unsigned count_bits_ = 10;

@@ -169,6 +169,17 @@ class Card {
   // timeout is stretched by as much; a ratio of 0 is a hold.
   void wait_until_idle(std::chrono::nanoseconds timeout);
 
+  // Inputs and outputs, of a card with path commands; else ArgumentError. Bit n: input n after its polarity, output n.
+  std::uint16_t inputs();
+  std::uint16_t outputs();
+  // Which inputs are inverted.
+  void set_input_polarity(std::uint16_t inverted);
+  // Levels that the outputs in `change` take at an abort and at a fault.
+  void set_output_safe(std::uint16_t levels, std::uint16_t change);
+  // MARKs passed since reset, and what the last one latched.
+  std::uint32_t marks();
+  Snapshot mark_snapshot();
+
   // FAULT, 0 if there is none.
   std::uint32_t faults();
   // Clears all faults. Nothing moves by it: a fault has dropped all that the card had, and an abort may come before,
@@ -252,6 +263,7 @@ class Card {
   void enable_interrupts(std::uint32_t wake);
   bool has_engine(std::uint32_t engine) const { return card_map::has_engine(identification_.engines, engine); }
   Snapshot read_area(card_map::Area area);
+  void require_path_commands(std::string_view what) const;
 
   Bus* bus_;
   Identification identification_;

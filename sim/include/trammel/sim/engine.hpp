@@ -35,10 +35,11 @@ class Engine : public driver::Bus {
   std::uint32_t read(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t value);
 
-  virtual void wait(std::uint64_t clocks) = 0;                       // runs so many clocks
-  virtual void reset() = 0;                                          // as by the card's reset input
-  virtual void set_sink(driver::StepSink* sink) = 0;                 // nullptr: none; not owned
-  virtual std::uint64_t cycles() const = 0;                          // clocks since reset
+  virtual void wait(std::uint64_t clocks) = 0;        // runs so many clocks
+  virtual void set_inputs(std::uint16_t levels) = 0;  // at the card's input pins from now on; bit n: input n
+  virtual void reset() = 0;                           // as by the card's reset input
+  virtual void set_sink(driver::StepSink* sink) = 0;  // nullptr: none; not owned
+  virtual std::uint64_t cycles() const = 0;           // clocks since reset
   virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
   virtual std::uint64_t comparisons() const = 0;                     // signals compared
   virtual std::vector<std::int64_t> positions() const = 0;  // pulses, by axis, as the position counters have them

@@ -154,11 +154,11 @@ class UnderrunGuard {
   bool follows(bool active) const { return !active || (ends_ && covered_); }
   bool next_zero() const { return next_whole_ && next_ == 0; }
 
-  // Of the square, rounded up; twice while it holds, none where it stands and no more will come.
+  // Of the square, rounded up; none where it stands and no more will come, twice while it holds.
   std::uint32_t factor(bool standing, bool full) const {
     const std::uint32_t square = (ratio_ * ratio_ + 255) / 256;
-    if (!out_.hold) return square;
-    return standing && full ? 0 : 2 * square;
+    if (standing && full) return 0;
+    return out_.hold ? 2 * square : square;
   }
   std::uint64_t product() const { return std::uint64_t{distance_} * factor_ / 256; }
   std::int64_t reserved() const {

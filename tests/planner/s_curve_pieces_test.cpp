@@ -1,0 +1,101 @@
+// S-curves as the card's pieces: from the program to what the feed generator does with them, by its page's rules.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "plan.hpp"
+
+namespace trammel::planner {
+namespace {
+
+constexpr std::uint32_t kClock = 100'000'000;
+constexpr double kUpdate = 32;
+
+machine::Machine machine_with_jerk(double jerk) {
+  machine::Machine machine = machine::default_machine();
+  for (machine::MachineAxis& axis : machine.axes) axis.max_jerk = jerk;
+  return machine;
+}
+
+std::vector<driver::FeedCommand> pieces_of(const std::string& text, const machine::Machine& machine) {
+  const Plan plan = plan_text(text, machine, {kClock, 4, true});
+  std::vector<driver::FeedCommand> pieces;
+  for (const Planned& block : plan.blocks) {
+    for (const driver::FeedCommand& piece : commands<driver::FeedCommand>(block)) pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+// What the feed generator makes of a piece.
+struct Made {
+  double first = 0;  // ticks a clock
+  double last = 0;
+  double gain = 0;  // of the last update
+  double clocks = 0;
+};
+
+Made make(const driver::FeedCommand& piece) {
+  double rate = static_cast<double>(piece.rate) * 0x1p-64;
+  double gain = static_cast<double>(piece.acceleration) * 0x1p-64;
+  const double jerk = static_cast<double>(piece.jerk) * 0x1p-64;
+  const double floor = piece.floor * 0x1p-32;
+  Made made;
+  made.first = rate;
+  for (double left = static_cast<double>(piece.ticks);;) {
+    made.last = made.clocks == 0 ? rate : std::max(rate, floor);
+    const double clocks = std::min(kUpdate, left / made.last);
+    made.clocks += clocks;
+    left -= clocks * made.last;
+    if (left <= 1e-9) return made;
+    made.gain = gain;
+    rate += gain;
+    gain += jerk;
+  }
+}
+
+TEST(SCurvePieces, AMoveHasSevenOfThemAndItsTime) {
+  // 100 mm/s after 0.12 s and 6 mm.
+  const machine::Machine machine = machine_with_jerk(50'000);
+  const std::vector<driver::FeedCommand> pieces = pieces_of("G1 X100 F6000", machine);
+  ASSERT_EQ(pieces.size(), 7U);
+  double clocks = 0;
+  for (const driver::FeedCommand& piece : pieces) clocks += make(piece).clocks;
+  const double seconds = 100.0 / 100 + 100.0 / 1000 + 1000.0 / 50'000;
+  // The last tick is at the floor, 1.5 ms sooner than on the curve.
+  EXPECT_NEAR(clocks / kClock, seconds - 0.0015, 1e-4);
+  const Plan plan = plan_text("G1 X100 F6000", machine, {kClock, 4, true});
+  EXPECT_NEAR(plan.blocks[0].planned.seconds, clocks / kClock, 1e-5);
+}
+
+TEST(SCurvePieces, OneGoesOnWhereTheOtherEnded) {
+  const std::string program = "G1 X100 F6000\nX60\nY0.3\nY20\nX60.05 Y20.05\nX90 Y50\nG1 X0 Y0 F600\nM2\n";
+  const std::vector<driver::FeedCommand> pieces = pieces_of(program, machine_with_jerk(50'000));
+  ASSERT_GT(pieces.size(), 30U);
+  Made before;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Made made = make(pieces[i]);
+    const bool rests = i == 0 || pieces[i - 1].stop_distance == 0;
+    const double gain = std::abs(static_cast<double>(pieces[i].acceleration)) * 0x1p-64;
+    const double allowed = std::abs(before.gain) + gain + 0.001 * std::max(made.first, before.last);
+    if (!rests) {
+      EXPECT_LE(std::abs(made.first - before.last), allowed) << i;
+    }
+    before = made;
+  }
+}
+
+TEST(SCurvePieces, AreMadeWhereEveryAxisHasAJerk) {
+  machine::Machine machine = machine_with_jerk(50'000);
+  EXPECT_EQ(profile_of(machine, {}), SpeedProfile::kSCurve);
+  EXPECT_EQ(profile_of(machine, {false, SpeedProfile::kTrapezoid}), SpeedProfile::kTrapezoid);
+  machine.axes.back().max_jerk = 0;
+  EXPECT_EQ(profile_of(machine, {}), SpeedProfile::kTrapezoid);
+  EXPECT_EQ(profile_of(machine, {false, SpeedProfile::kSCurve}), SpeedProfile::kSCurve);
+  EXPECT_EQ(pieces_of("G1 X100 F6000", machine).size(), 3U);
+}
+
+}  // namespace
+}  // namespace trammel::planner

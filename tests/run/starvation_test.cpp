@@ -1,0 +1,179 @@
+// A card that gets its commands too late, or no more: it holds on the path, goes on by itself, and stays where it is
+// when the host has died.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "trammel/run/path_identity.hpp"
+#include "trammel/run/runner.hpp"
+#include "trammel/run/step_fork.hpp"
+#include "trammel/sim/timed_bus.hpp"
+
+namespace trammel::run {
+namespace {
+
+constexpr std::uint32_t kClock = 1'000'000;
+
+// A circle of R 10 mm in 3000 chords of 0.02 mm, at 20 mm/s: a line a millisecond.
+std::string circle() {
+  std::string text = "F1200\n";
+  for (int i = 1; i <= 3000; ++i) {
+    const double angle = i * 2 * 3.141592653589793 / 3000;
+    text += fmt::format("G1 X{:.5f} Y{:.5f}\n", 10 - 10 * std::cos(angle), 10 * std::sin(angle));
+  }
+  return text;
+}
+
+class Steps final : public driver::StepSink {
+ public:
+  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
+  void path_step(const driver::PathStep& step) override { path.push_back(step); }
+  std::vector<driver::PinStep> pins;
+  std::vector<driver::PathStep> path;
+};
+
+class DyingBus final : public driver::Bus {
+ public:
+  DyingBus(sim::Engine& engine, std::uint64_t last_cycle) : engine_(engine), last_cycle_(last_cycle) {}
+  std::size_t transfer(driver::Access* accesses, std::size_t count) override {
+    if (engine_.cycles() > last_cycle_) throw driver::LinkError("the cable is out");
+    return engine_.transfer(accesses, count);
+  }
+  void sleep(std::chrono::nanoseconds time) override { engine_.sleep(time); }
+  bool reports_refusals() const override { return engine_.reports_refusals(); }
+
+ private:
+  sim::Engine& engine_;
+  std::uint64_t last_cycle_;
+};
+
+// The host does nothing for a while, now and then.
+class Stalls final : public Observer {
+ public:
+  Stalls(sim::Engine& engine, std::uint64_t every, double seconds)
+      : engine_(engine), every_(every), seconds_(seconds) {}
+  void sending(const planner::PlannedBlock& /*block*/) override {
+    if (++blocks_ % every_ == 0) engine_.wait(static_cast<std::uint64_t>(seconds_ * kClock));
+  }
+
+ private:
+  sim::Engine& engine_;
+  std::uint64_t every_;
+  double seconds_;
+  std::uint64_t blocks_ = 0;
+};
+
+class StarvationTest : public testing::Test {
+ protected:
+  struct Made {
+    std::string identity;
+    std::uint32_t under_runs = 0;
+    std::uint64_t cycles = 0;
+  };
+  StarvationTest() {
+    machine::apply_override(machine_, "motion.window=256");
+    machine::apply_override(machine_, "motion.junction_deviation=0.05");
+    fork_.add(steps_);
+    fork_.add(identity_);
+    engine_->set_sink(&fork_);
+  }
+  static ProgramLines lines() {
+    return [text = std::make_shared<const std::string>(circle())]() -> std::unique_ptr<gcode::LineSource> {
+      return std::make_unique<gcode::TextLines>(*text, "p.ngc");
+    };
+  }
+  Made run(driver::Bus& bus, Observer* observer = nullptr) {
+    driver::Card card = driver::Card::open(bus);
+    Runner runner(lines(), machine_, planner::limits_of(card.identification()));
+    if (observer != nullptr) runner.add(*observer);
+    runner.plan();
+    const Outcome outcome = runner.run(card);
+    EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{0, 0, 0, 0}));
+    EXPECT_TRUE(outcome.under_runs);
+    return {identity_.text(), outcome.under_runs.value_or(0), engine_->cycles()};
+  }
+  static Made plain() {
+    class Fresh final : public StarvationTest {
+     public:
+      void TestBody() override {}
+      Made made() { return run(*engine_); }
+    };
+    return Fresh().made();
+  }
+
+  machine::Machine machine_ = machine::default_machine();
+  std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
+  Steps steps_;
+  PathIdentity identity_;
+  StepFork fork_;
+};
+
+TEST_F(StarvationTest, SlowBus) {
+  const Made whole = plain();
+  EXPECT_EQ(whole.under_runs, 0U);
+  sim::TimedBus bus(*engine_, kClock, 8000);
+  const Made starved = run(bus);
+  EXPECT_EQ(starved.identity, whole.identity);
+  EXPECT_GT(starved.under_runs, 0U);
+  EXPECT_GT(starved.cycles, whole.cycles * 3 / 2);
+}
+
+TEST_F(StarvationTest, HostThatStalls) {
+  const Made whole = plain();
+  Stalls stalls(*engine_, 700, 2);
+  const Made stalled = run(*engine_, &stalls);
+  EXPECT_EQ(stalled.identity, whole.identity);
+  EXPECT_GE(stalled.under_runs, 2U);
+  EXPECT_GT(stalled.cycles, whole.cycles + 2 * kClock);
+}
+
+TEST_F(StarvationTest, HostThatDiesInTheMiddle) {
+  class Fresh final : public StarvationTest {
+   public:
+    void TestBody() override {}
+    std::vector<driver::PathStep> path() {
+      run(*engine_);
+      return steps_.path;
+    }
+  };
+  const std::vector<driver::PathStep> whole = Fresh().path();
+  DyingBus bus(*engine_, kClock * 3 / 2);
+  EXPECT_THROW(run(bus), RunError);
+  engine_->wait(std::uint64_t{20} * kClock);
+  const std::size_t made = steps_.path.size();
+  ASSERT_GT(made, 300U);
+  ASSERT_LT(made, whole.size());
+  for (std::size_t i = 0; i < made; ++i) {
+    ASSERT_TRUE(steps_.path[i].tick == whole[i].tick && steps_.path[i].command == whole[i].command &&
+                steps_.path[i].axis == whole[i].axis && steps_.path[i].direction == whole[i].direction)
+        << i;
+  }
+  EXPECT_EQ(steps_.pins.size(), made);
+  EXPECT_EQ(engine_->read(card_map::reg::kFault), 0U);
+  EXPECT_EQ(engine_->read(card_map::reg::kUnderruns), 1U);
+  EXPECT_NE(engine_->read(card_map::reg::kStatus) & card_map::field::kStatusUnderrun, 0U) << "held by it still";
+  // A ramp: the last pulses are farther apart than those in the constant phase, by more than a turn of the circle
+  // makes.
+  const std::uint64_t last_tenth = steps_.pins[made - 1].cycle - steps_.pins[made - 11].cycle;
+  const std::uint64_t before = steps_.pins[made - 300].cycle - steps_.pins[made - 310].cycle;
+  EXPECT_GT(last_tenth, 2 * before);
+  // Somebody else finds it: the position is known, and a program goes on from there.
+  driver::Card card = driver::Card::open(*engine_);
+  card.stop();
+  EXPECT_EQ(steps_.path.size(), made);
+  RunSettings there;
+  const std::vector<std::int64_t> here = engine_->positions();
+  for (std::size_t a = 0; a < 4; ++a) there.start[a] = static_cast<double>(here[a]) / 80;
+  Runner home([] { return std::make_unique<gcode::TextLines>("G0 X0 Y0\n", "p.ngc"); }, machine_,
+              planner::limits_of(card.identification()), there);
+  home.plan();
+  home.run(card);
+  EXPECT_EQ(engine_->positions(), (std::vector<std::int64_t>{0, 0, 0, 0}));
+}
+
+}  // namespace
+}  // namespace trammel::run
