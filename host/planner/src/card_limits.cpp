@@ -15,7 +15,8 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 
 CardLimits limits_of(const driver::Identification& card) {
   const auto has = [&](unsigned engine) { return (card.engines >> engine & 1U) != 0; };
-  return {card.clock_hz, card.axes, has(card_map::engine::kAccumulator), has(card_map::engine::kClasses)};
+  return {card.clock_hz, card.axes, has(card_map::engine::kAccumulator), has(card_map::engine::kClasses),
+          card.geometry_depth, card.feed_depth};
 }
 
 double hold_seconds(const machine::Machine& machine) {

@@ -13,6 +13,8 @@ struct CardLimits {
   unsigned axes = 4;           // of the card, 1 .. 8
   bool accumulator = true;     // arcs go to the deviation accumulator; without it out as lines
   bool classes = false;        // pieces of rapids say so, for an override of their own
+  std::uint32_t geometry_depth = 4096;  // halfwords of the queues
+  std::uint32_t feed_depth = 2560;
 };
 
 CardLimits limits_of(const driver::Identification& card);
