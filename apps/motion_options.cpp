@@ -94,6 +94,12 @@ void MotionChoice::add_to(CLI::App& command) {
       ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()).description(""))
       ->type_name("N");
   command
+      .add_option("--arcs", arcs,
+                  "what makes arcs: generator, accumulator (helices and other scales: chords), or chords; the next of "
+                  "these where one cannot")
+      ->check(CLI::IsMember({"generator", "accumulator", "chords"}))
+      ->capture_default_str();
+  command
       .add_option("--profile", profile,
                   "how the speed changes: trapezoid or s-curve (default: s-curve where every axis has a max_jerk)")
       ->check(CLI::IsMember({"trapezoid", "s-curve"}).description(""))
@@ -135,6 +141,9 @@ run::RunSettings MotionChoice::settings() const {
   settings.reader.feed_scale = feed_scale;
   settings.first_line = first_line;
   settings.single_block = single_block;
+  settings.arcs = arcs == "chords"        ? planner::ArcsBy::kChords
+                  : arcs == "accumulator" ? planner::ArcsBy::kAccumulator
+                                          : planner::ArcsBy::kGenerator;
   if (profile) {
     settings.profile = *profile == "s-curve" ? planner::SpeedProfile::kSCurve : planner::SpeedProfile::kTrapezoid;
   }

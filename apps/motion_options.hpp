@@ -33,6 +33,7 @@ struct MotionChoice {
   double feed_scale = 1;
   std::optional<double> bytes_per_second;
   std::size_t first_line = 1;
+  std::string arcs = "generator";
   std::optional<std::string> profile;
   bool single_block = false;
   bool run_deleted = false;

@@ -87,7 +87,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   run::StepRecorder::Options recording;
   recording.steps_per_mm = scales(machine);
   for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
-  run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes, true}, options.settings);
+  run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes}, options.settings);
   run::CommandedCourse course(machine);
   if (options.plot) runner.add(course);
   const run::Plan plan = options.stream ? run::Plan{} : runner.plan();

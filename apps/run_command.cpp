@@ -91,7 +91,7 @@ void execute(const Options& options) {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
   if (options.check) {
-    const CheckResult result = check_program(lines, machine, {engine.clock_hz, engine.axes, true}, run.settings);
+    const CheckResult result = check_program(lines, machine, {engine.clock_hz, engine.axes}, run.settings);
     for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached))
       tell("warning", text);
     outputs.open();

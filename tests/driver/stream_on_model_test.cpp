@@ -458,7 +458,7 @@ TEST(StreamOnModel, AnotherThreadHoldsGoesOnAndAborts) {
 
 RC_GTEST_PROP(StreamProperty, AnyMatchedProgramArrivesInOrderAndWhole, ()) {
   sim::ModelOptions small;
-  small.geometry_depth = *rc::gen::inRange<std::uint32_t>(37, 200);
+  small.geometry_depth = *rc::gen::inRange<std::uint32_t>(38, 200);
   small.feed_depth = *rc::gen::inRange<std::uint32_t>(20, 200);
   const auto engine = sim::make_model_engine(small);
   Noting bus(*engine);

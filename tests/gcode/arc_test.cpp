@@ -97,13 +97,32 @@ TEST(GcodeArc, Refusals) {
   EXPECT_THAT(refusal("G2 X10 I5 K1"), HasSubstr("K in the plane XY (G17)"));
   EXPECT_THAT(refusal("G18 G2 X10 I5 J1"), HasSubstr("J in the plane ZX (G18)"));
   EXPECT_THAT(refusal("G90.1 G2 X10 I5"), HasSubstr("both words"));
-  EXPECT_THAT(refusal("G2 X10 Y10 Z1 I10"), HasSubstr("axis Z moves during an arc"));
-  EXPECT_THAT(refusal("G2 X10 Y10 E1 I10"), HasSubstr("axis E moves during an arc"));
-  EXPECT_EQ(refusal("G2 X10 Y10 Z0 I10"), "accepted");
   EXPECT_EQ(refusal("G53 G2 X10 Y10 I10"), "G53 needs G0 or G1");
   EXPECT_EQ(refusal("G1 X1 I5"), "I without G2 or G3");
   EXPECT_EQ(refusal("G0 R5"), "R without G2 or G3");
-  EXPECT_THAT(refusal("G2 X10 Y10 I10 P2"), HasSubstr("P without"));
+  EXPECT_THAT(refusal("G1 X10 P2"), HasSubstr("P without"));
+  EXPECT_THAT(refusal("G2 X10 Y10 I10\nP2"), HasSubstr("P without")) << "no arc on this line";
+  EXPECT_EQ(refusal("G2 X10 Y10 I10 P0"), "P0: an arc makes a whole number of turns, 1 to 10000");
+}
+
+// Axes outside the plane go along: a helix. P counts all turns that it begins.
+TEST(GcodeArc, Helices) {
+  const Motion thread = last_arc("G2 X10 Y10 Z-3 E1 I10 P3");
+  EXPECT_EQ(thread.kind, MotionKind::kArc);
+  EXPECT_EQ(thread.target[2], -3);
+  EXPECT_EQ(thread.target[3], 1);
+  EXPECT_EQ(thread.turns, 2U);
+  EXPECT_FALSE(thread.full_circle);
+  EXPECT_EQ(last_arc("G2 X10 Y10 Z-3 I10").turns, 0U);
+  EXPECT_EQ(last_arc("G2 X10 Y10 Z-3 I10 P1").turns, 0U);
+  const Motion circles = last_arc("G3 Z2 I5 P4");
+  EXPECT_TRUE(circles.full_circle);
+  EXPECT_EQ(circles.turns, 3U);
+  const Motion side = last_arc("G18 G3 X20 Y7 Z0 I10 K0");
+  EXPECT_EQ(side.target[1], 7);
+  EXPECT_EQ(last_arc("G2 X5 I2.5\nX10 I2.5 P2").turns, 1U) << "G2 is modal";
+  // Where the line has another use of P, that takes it.
+  EXPECT_EQ(last_arc("G2 I5 G64 P2").turns, 0U);
 }
 
 TEST(GcodeArc, NeedsTheAxesOfThePlane) {

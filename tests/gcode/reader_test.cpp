@@ -244,7 +244,7 @@ TEST(Gcode, DwellIsInSeconds) {
   EXPECT_EQ(program.motions[0].seconds, 0.5);
   EXPECT_EQ(refusal("G4"), "1: G4 needs P, its seconds");
   EXPECT_EQ(refusal("G4 P-1"), "1: 'P-1' must not be negative");
-  EXPECT_EQ(refusal("G0 P1"), "1: P without G4 or G64");
+  EXPECT_EQ(refusal("G0 P1"), "1: P without G2, G3, G4 or G64");
 }
 
 TEST(Gcode, FeedModes) {
@@ -315,7 +315,9 @@ TEST(Gcode, EveryKindOfErrorHasItsCode) {
       {"G2 X1 F1", Code::kArcNoCentre},
       {"G2 X1 I9 F1", Code::kArcOffCircle},
       {"G2 X1 K1 F1", Code::kArcOutsidePlane},
-      {"G2 X2 I1 Z1 F1", Code::kHelix},
+      {"G2 X2 I1 P1.5 F1", Code::kArcTurns},
+      {"G2 X2 I1 P0 F1", Code::kArcTurns},
+      {"G2 X2 I1 P10001 F1", Code::kArcTurns},
   };
   for (const auto& [text, code] : programs) {
     const Reading program = read_text(text);

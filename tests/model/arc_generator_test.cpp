@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
 
 #include "chord_arc.hpp"
@@ -13,7 +14,7 @@ namespace trammel::model {
 namespace {
 
 // How far a path goes beyond the radii of its start and end, pulses; -1 where it misses its end.
-long double outside(const ArcPoints& arc) {
+long double outside(const ArcPoints& arc, const ChordFields& fields) {
   const Radii radii = arc.radii();
   const long double low = std::min(radii.start, radii.end);
   const long double high = std::max(radii.start, radii.end);
@@ -21,7 +22,7 @@ long double outside(const ArcPoints& arc) {
   const auto low_square = static_cast<std::int64_t>(low * low * 65536);
   const auto high_square = static_cast<std::int64_t>(high * high * 65536);
   long double worst = 0;
-  ChordPath path(prepare_chords(arc));
+  ChordPath path(fields);
   const auto look = [&] {
     const std::int64_t x = (arc.start[0] + path.position()[0]) * 256 - arc.centre[0];
     const std::int64_t y = (arc.start[1] + path.position()[1]) * 256 - arc.centre[1];
@@ -36,6 +37,10 @@ long double outside(const ArcPoints& arc) {
       arc.start[0] + path.position()[0] != arc.end[0] || arc.start[1] + path.position()[1] != arc.end[1];
   return misses ? -1 : worst;
 }
+
+long double outside(const ArcPoints& arc) { return outside(arc, prepare_chords(arc)); }
+
+bool long_run() { return std::getenv("TRAMMEL_LONG") != nullptr; }
 
 class RandomArcs {
  public:
@@ -82,7 +87,7 @@ TEST(ArcGenerator, RandomArcsEndWhereTheyShould) {
   RandomArcs random(20261122);
   long double worst = 0;
   for (int i = 0; i < 100'000; ++i) {
-    const ArcPoints arc = random.next(2000);
+    const ArcPoints arc = random.next(long_run() ? 1e9L : 2000);
     const long double distance = outside(arc);
     ASSERT_GE(distance, 0) << "arc " << i << " misses its end: radius " << arc.radii().mean();
     ASSERT_LE(distance, 0.8L) << "arc " << i << ": radius " << arc.radii().mean();
@@ -90,6 +95,40 @@ TEST(ArcGenerator, RandomArcsEndWhereTheyShould) {
   }
   RecordProperty("outside", std::to_string(worst));
   EXPECT_GT(worst, 0.5L);  // the judge sees something
+}
+
+// Any plane, up to six axes beside it, each of which makes its pulses on the line's closed form.
+TEST(ArcGenerator, RandomHelicesEndWhereTheyShould) {
+  RandomArcs random(20261123);
+  std::mt19937_64 any(5);
+  std::uint64_t moved = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    ArcPoints arc = random.next(long_run() ? 1e9L : 2000);
+    arc.axis_x = static_cast<std::uint8_t>(any() % 8);
+    arc.axis_y = static_cast<std::uint8_t>((arc.axis_x + 1 + any() % 7) % 8);
+    std::array<std::int64_t, 8> further{};
+    const auto most = static_cast<std::uint64_t>(arc.sweep() * arc.radii().mean()) + 10;
+    for (unsigned axis = 0; axis < 8; ++axis) {
+      if (axis == arc.axis_x || axis == arc.axis_y || any() % 3 == 0) continue;
+      further[axis] = static_cast<std::int64_t>(any() % (2 * most)) - static_cast<std::int64_t>(most);
+    }
+    const driver::ArcChordCommand command = prepare_command(arc, further);
+    const long double distance = outside(arc, fields_of(command));
+    ASSERT_GE(distance, 0) << "helix " << i << " misses its end: radius " << arc.radii().mean();
+    ASSERT_LE(distance, 0.8L) << "helix " << i << ": radius " << arc.radii().mean();
+    for (unsigned axis = 0; axis < 8; ++axis) {
+      // floor(1/2 + L increment / 2^40), in two parts.
+      const std::int64_t increment = command.increment[axis];
+      const auto length = static_cast<std::int64_t>(command.path_ticks);
+      const std::int64_t high = (increment >> 20) * length;
+      const std::int64_t low =
+          (increment & 0xFFFFF) * (length & 0xFFFFF) + ((increment & 0xFFFFF) * (length >> 20) << 20);
+      const std::int64_t made = (high + (low >> 20) + (std::int64_t{1} << 19)) >> 20;
+      ASSERT_EQ(made, further[axis]) << "helix " << i << " axis " << axis;
+      moved += further[axis] != 0 ? 1U : 0U;
+    }
+  }
+  EXPECT_GT(moved, 30'000U);
 }
 
 // The judge fails where the phase is not preset, and where the closing increment is left out.

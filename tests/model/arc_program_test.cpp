@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include "chord_arc.hpp"
 #include "core_bench.hpp"
+#include "trammel/driver/increment.hpp"
 
 namespace trammel::testing {
 namespace {
@@ -100,38 +102,28 @@ class ArcProgram {
     return send(arc);
   }
 
-  std::uint64_t send(const ArcPoints& arc) {
-    const model::ChordFields fields = model::prepare_chords(arc);
-    const model::ChordRotation::State& state = fields.state;
-    const auto x = static_cast<unsigned>(any(0, kAxes - 1));
-    const auto y = static_cast<unsigned>((x + any(1, kAxes - 1)) % kAxes);
-    const auto mask = static_cast<std::uint8_t>(1U << x | 1U << y | static_cast<unsigned>(any(0, (1 << kAxes) - 1)));
-    const auto path_ticks = static_cast<std::int64_t>(fields.path_ticks);
-    const std::int64_t ticks = any(0, 1) == 0 ? path_ticks : path_ticks + any(0, path_ticks);
-    const std::int64_t most = path_ticks / 16;
-    std::vector<std::int64_t> further;
+  std::uint64_t send(ArcPoints arc) {
+    arc.axis_x = static_cast<std::uint8_t>(any(0, kAxes - 1));
+    arc.axis_y = static_cast<std::uint8_t>((arc.axis_x + any(1, kAxes - 1)) % kAxes);
+    // A sixteenth of a pulse a path tick at most.
+    const std::int64_t most = static_cast<std::int64_t>(prepare_command(arc).path_ticks) / 16;
+    std::array<std::int64_t, card_map::kMaxAxes> further{};
     for (unsigned n = 0; n < kAxes; ++n) {
-      if (n != x && n != y && (mask >> n & 1) != 0) further.push_back(increment(n, any(-most, most), path_ticks));
+      if (n != arc.axis_x && n != arc.axis_y && any(0, 1) == 0) further[n] = any(-most, most);
+      position_[n] += static_cast<std::int32_t>(further[n]);
     }
-    position_[x] += static_cast<std::int32_t>(arc.end[0] - arc.start[0]);
-    position_[y] += static_cast<std::int32_t>(arc.end[1] - arc.start[1]);
-    const int128 prescale = ((int128{path_ticks} << 40) + ticks / 2) / ticks;
-    EXPECT_TRUE(
-        bench_.send(command_words(card_map::Opcode::ArcChord, mask, bench_.number++, static_cast<std::uint64_t>(ticks),
-                                  {{"path_ticks", path_ticks},
-                                   {"prescale", prescale},
-                                   {"plane", y << 8 | x << 4 | (state.clockwise ? 1 : 0)},
-                                   {"shifts", state.k | state.m << 8},
-                                   {"x", state.x},
-                                   {"y", state.y},
-                                   {"first_x", fields.first[0]},
-                                   {"first_y", fields.first[1]},
-                                   {"closing_x", state.closing_x},
-                                   {"closing_y", state.closing_y}},
-                                  further)));
+    driver::ArcChordCommand command = prepare_command(arc, further);
+    const auto path_ticks = static_cast<std::int64_t>(command.path_ticks);
+    command.ticks = static_cast<std::uint64_t>(any(0, 1) == 0 ? path_ticks : path_ticks + any(0, path_ticks));
+    command.prescale = driver::rounded_share(command.path_ticks, command.ticks);
+    position_[arc.axis_x] += static_cast<std::int32_t>(arc.end[0] - arc.start[0]);
+    position_[arc.axis_y] += static_cast<std::int32_t>(arc.end[1] - arc.start[1]);
+    std::vector<std::uint32_t> words;
+    driver::encode(command, bench_.number++, words);
+    EXPECT_TRUE(bench_.send(words));
     ++arcs;
-    helices += further.empty() ? 0 : 1;
-    return static_cast<std::uint64_t>(ticks);
+    helices += further == std::array<std::int64_t, card_map::kMaxAxes>{} ? 0 : 1;
+    return command.ticks;
   }
 
   std::mt19937_64 random_;
@@ -141,12 +133,14 @@ class ArcProgram {
 
 TEST(ArcProgram, EveryArcAndHelixEndsWhereItShould) {
   ArcProgram program(20261122);
-  for (int i = 0; i < 300 && !HasFatalFailure(); ++i) {
+  // 10,000 helices and more.
+  const int programs = std::getenv("TRAMMEL_LONG") != nullptr ? 15'000 : 300;
+  for (int i = 0; i < programs && !HasFatalFailure(); ++i) {
     SCOPED_TRACE(i);
     program.run();
   }
-  EXPECT_GT(program.arcs, 300U);
-  EXPECT_GT(program.helices, 150U);
+  EXPECT_GT(program.arcs, static_cast<unsigned>(programs));
+  EXPECT_GT(program.helices, static_cast<unsigned>(programs) * 2 / 3);
 }
 
 }  // namespace

@@ -166,7 +166,7 @@ TEST(FeedsNotReached, HaveACause) {
                                          "axis.y.step_length_ns=100",      "axis.y.step_space_ns=100",
                                          "axis.x.max_velocity=2000",       "axis.y.max_velocity=2000",
                                          "axis.x.max_acceleration=100000", "axis.y.max_acceleration=100000"};
-  EXPECT_EQ(limit_of("G2 I300 F100000\n", machine_with(fast), {1'000'000, 4, true}), SpeedLimit::kClock);
+  EXPECT_EQ(limit_of("G2 I300 F100000\n", machine_with(fast), {1'000'000, 4, true, false, false}), SpeedLimit::kClock);
 }
 
 TEST(FeedsNotReached, SayHowFarTheyCome) {
@@ -187,14 +187,46 @@ TEST(ShortLines, TakeWhatTheCardNeedsToDecodeTheNext) {
   EXPECT_EQ(ticks(4), 72U);
 }
 
-TEST(Arcs, GoOutAsChordsWhereTheCardHasNoAccumulator) {
-  const std::string text = "G1 X10 F600\nG2 X20 I5\n";
-  const Plan with = plan_text(text, machine::default_machine(), kCard);
-  const Plan without = plan_text(text, machine::default_machine(), {kCard.clock_hz, 4, false});
-  EXPECT_EQ(commands<driver::ArcCommand>(with.blocks.at(1)).size(), 1U);
-  EXPECT_TRUE(commands<driver::ArcCommand>(without.blocks.at(1)).empty());
-  EXPECT_GT(commands<driver::LineCommand>(without.blocks.at(1)).size(), 20U);
-  EXPECT_EQ(without.blocks.at(1)->end, with.blocks.at(1)->end);
+// The generator, else the accumulator, else chords; helices and other scales where these can.
+TEST(Arcs, GoToWhatTheCardHas) {
+  const std::string flat = "G1 X10 F600\nG2 X20 I5\n";
+  const std::string helix = "G1 X10 F600\nG2 X20 I5 Z1\n";
+  const machine::Machine equal = machine::default_machine();
+  const machine::Machine unequal = machine_with({"axis.y.steps_per_mm=100"});
+  const auto geometry = [](const std::string& text, const machine::Machine& machine, bool accumulator, bool generator) {
+    const Plan plan = plan_text(text, machine, {kCard.clock_hz, 4, accumulator, false, generator});
+    const Planned& arc = plan.blocks.at(1);
+    EXPECT_EQ(arc->end[0], 1600);
+    const std::size_t lines = commands<driver::LineCommand>(arc).size();
+    switch (arc->geometry) {
+      case Geometry::kArcChord:
+        EXPECT_EQ(commands<driver::ArcChordCommand>(arc).size(), 1U);
+        break;
+      case Geometry::kArc:
+        EXPECT_EQ(commands<driver::ArcCommand>(arc).size(), 1U);
+        break;
+      default:
+        EXPECT_GT(lines, 20U);
+    }
+    return arc->geometry;
+  };
+  for (const bool accumulator : {false, true}) {
+    EXPECT_EQ(geometry(flat, equal, accumulator, true), Geometry::kArcChord);
+    EXPECT_EQ(geometry(helix, equal, accumulator, true), Geometry::kArcChord);
+    EXPECT_EQ(geometry(helix, equal, accumulator, false), Geometry::kChords);
+    EXPECT_EQ(geometry(flat, unequal, accumulator, true), Geometry::kChords);
+  }
+  EXPECT_EQ(geometry(flat, equal, true, false), Geometry::kArc);
+  EXPECT_EQ(geometry(flat, equal, false, false), Geometry::kChords);
+}
+
+TEST(Arcs, MayBeAskedForOtherwise) {
+  const CardLimits all{100'000'000, 4};
+  EXPECT_TRUE(with_arcs_by(all, ArcsBy::kGenerator).arc_generator);
+  EXPECT_TRUE(with_arcs_by(all, ArcsBy::kAccumulator).accumulator);
+  EXPECT_FALSE(with_arcs_by(all, ArcsBy::kAccumulator).arc_generator);
+  EXPECT_FALSE(with_arcs_by(all, ArcsBy::kChords).accumulator);
+  EXPECT_FALSE(with_arcs_by(all, ArcsBy::kChords).arc_generator);
 }
 
 TEST(PlannedBlock, CountsItsCommandsBeforeTheyArePut) {

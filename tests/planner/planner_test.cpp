@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "chord_arc.hpp"
 #include "plan.hpp"
 
 namespace trammel::planner {
@@ -25,14 +26,14 @@ using ::testing::HasSubstr;
 constexpr std::uint32_t kClock = 100'000'000;
 
 std::vector<Planned> plan(const std::string& text, const Machine& machine = default_machine(),
-                          std::uint32_t clock_hz = kClock) {
-  const Plan result = plan_text(text, machine, {clock_hz, 4, true});
+                          std::uint32_t clock_hz = kClock, ArcsBy arcs = ArcsBy::kGenerator) {
+  const Plan result = plan_text(text, machine, with_arcs_by({clock_hz, 4}, arcs));
   if (result.error) throw std::runtime_error(describe(*result.error));
   return result.blocks;
 }
 
 std::string refusal(const std::string& text) {
-  const Plan result = plan_text(text, default_machine(), {kClock, 4, true});
+  const Plan result = plan_text(text, default_machine(), {kClock, 4});
   return result.error ? describe(*result.error) : "accepted";
 }
 
@@ -42,6 +43,9 @@ std::uint64_t path_ticks(const Planned& segment) {
     sum += line.ticks;
   }
   for (const ArcCommand& arc : commands<ArcCommand>(segment)) {
+    sum += arc.ticks;
+  }
+  for (const ArcChordCommand& arc : commands<ArcChordCommand>(segment)) {
     sum += arc.ticks;
   }
   return sum;
@@ -55,6 +59,25 @@ Pulses line_pulses(const Planned& segment) {
       const int128 phase = (int128{1} << 39) + static_cast<int128>(line.ticks) * line.increment[axis];
       sum[axis] += static_cast<std::int64_t>(phase >> 40);
     }
+  }
+  return sum;
+}
+
+// And the arcs in chords: in their plane by the rule of their increments, outside it as lines.
+Pulses pulses_of(const Planned& segment) {
+  Pulses sum = line_pulses(segment);
+  for (const ArcChordCommand& arc : commands<ArcChordCommand>(segment)) {
+    model::ChordPath path(model::fields_of(arc));
+    path.finish([] {});
+    sum[arc.axis_x] += path.position()[0];
+    sum[arc.axis_y] += path.position()[1];
+    Planned further;
+    LineCommand line;
+    line.ticks = arc.path_ticks;
+    line.increment = arc.increment;
+    further.commands.emplace_back(line);
+    const Pulses made = line_pulses(further);
+    for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) sum[axis] += made[axis];
   }
   return sum;
 }
@@ -79,7 +102,7 @@ void expect_sound(const Planned& segment) {
     geometry = geometry || !feed;
   }
   if (commands<ArcCommand>(segment).empty()) {
-    const Pulses made = line_pulses(segment);
+    const Pulses made = pulses_of(segment);
     for (std::size_t axis = 0; axis < card_map::kMaxAxes; ++axis) {
       EXPECT_EQ(made[axis], segment->end[axis] - segment->start[axis]);
     }
@@ -196,7 +219,7 @@ TEST(Planner, DwellIsSplitAtTheCommandsWidth) {
 }
 
 TEST(Planner, ArcsGoToTheAccumulator) {
-  const auto segments = plan("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-5\n");
+  const auto segments = plan("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-5\n", default_machine(), kClock, ArcsBy::kAccumulator);
   ASSERT_EQ(segments.size(), 4U);
   for (const std::size_t i : {1U, 2U}) {
     const Planned& arc = segments[i];
@@ -217,7 +240,7 @@ TEST(Planner, ArcsGoToTheAccumulator) {
 }
 
 TEST(Planner, CentripetalAccelerationIsLimited) {
-  const auto arc = plan("G2 I1 F60000")[0];
+  const auto arc = plan("G2 I1 F60000", default_machine(), kClock, ArcsBy::kAccumulator)[0];
   const ArcCommand command = commands<ArcCommand>(arc).at(0);
   const double unit_steps =
       top_rate(arc) * static_cast<double>(command.path_ticks) / static_cast<double>(command.ticks);
@@ -262,9 +285,11 @@ TEST(Planner, TinyAndHugeArcsEndWhereTheyShould) {
   for (const char* text : {"G2 X0.01 I0.005 F60", "G2 I0.01 F60", "G2 X0.02 Y0.02 R0.02 F60", "G2 X100 R3000000 F60",
                            "G2 I0.001 F60", "G3 X0.0001 Y0.0001 R-1 F60"}) {
     SCOPED_TRACE(text);
-    for (const Planned& segment : plan(text)) {
-      if (moves(segment.planned.block)) {
-        expect_sound(segment);
+    for (const ArcsBy arcs : {ArcsBy::kGenerator, ArcsBy::kAccumulator, ArcsBy::kChords}) {
+      for (const Planned& segment : plan(text, default_machine(), kClock, arcs)) {
+        if (moves(segment.planned.block)) {
+          expect_sound(segment);
+        }
       }
     }
   }
@@ -295,7 +320,7 @@ TEST(Planner, RandomTextIsRefusedOrPlanned) {
       }
       text += "\n";
     }
-    const Plan result = plan_text(text, default_machine(), {kClock, 4, true});
+    const Plan result = plan_text(text, default_machine(), {kClock, 4});
     for (const Planned& segment : result.blocks) {
       encode_all(segment);
       planned += moves(segment.planned.block);
@@ -343,7 +368,7 @@ TEST(Planner, RandomLinesAreSound) {
 TEST(PlannerShared, OctocatIsSound) {
   const Machine machine = default_machine();
   gcode::FileLines lines(TRAMMEL_SHARED_GCODE_DIR "/octocat.gcode");
-  const Plan result = plan_lines(lines, machine, {kClock, 4, true});
+  const Plan result = plan_lines(lines, machine, {kClock, 4});
   ASSERT_FALSE(result.error);
   Pulses here = result.start;
   for (const Planned& segment : result.blocks) {

@@ -59,6 +59,29 @@ TEST(DeviationMeter, MeasuresAnArcOutsideItsAnnulus) {
   EXPECT_NEAR(meter.largest_arc(), 100 - std::hypot(98, 1), 1e-9);
 }
 
+// The centre comes from the block, in machine coordinates, whatever its command says.
+TEST(DeviationMeter, MeasuresAnArcInChordsByItsBlock) {
+  planner::Block block;
+  block.start = {7, 5, 300, 0};
+  block.end = {0, 5, 500, 0};
+  block.axis_x = 2;
+  block.axis_y = 1;
+  block.centre_x = 400 * driver::kCentreUnitsPerPulse;
+  block.centre_y = 5 * driver::kCentreUnitsPerPulse;
+  DeviationMeter meter;
+  meter.sending(block);
+  meter.command(0, driver::ArcChordCommand{});
+  meter.command(1, driver::ArcChordCommand{});
+  meter.step(0, 1, 1, -1);  // (-100, -1) about the centre
+  meter.step(0, 2, 0, -1);  // outside the plane
+  meter.finish();
+  EXPECT_NEAR(meter.largest_arc(), std::hypot(100, 1) - 100, 1e-9);
+  meter.step(1, 1, 2, 1);
+  meter.step(1, 1, 2, 1);  // (-98, -1): the second part goes on where the first one ended
+  meter.finish();
+  EXPECT_NEAR(meter.largest_arc(), 100 - std::hypot(98, 1), 1e-9);
+}
+
 TEST(DeviationMeter, RefusesStepsOfCommandsThatWereNeverSent) {
   DeviationMeter meter;
   meter.command(4, line(1, 1, 30));

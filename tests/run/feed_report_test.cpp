@@ -13,7 +13,7 @@ planner::PlannedBlock block(std::size_t line, SpeedLimit limit, double speed) {
   planned.block.line = line;
   planned.block.length = 10;
   planned.block.wanted = 10;  // mm/s
-  planned.block.feed = 10;     // mm/s
+  planned.block.feed = 10;    // mm/s
   planned.limit = limit;
   planned.speed = speed;
   return planned;

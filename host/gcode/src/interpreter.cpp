@@ -10,6 +10,7 @@ namespace trammel::gcode {
 namespace {
 
 constexpr double kMmPerInch = 25.4;
+
 constexpr double kStill = 1e-9;  // mm: what is left of a sum that should be 0
 
 constexpr double kLeastFeed = 1e-6;  // a minute; a millimetre in two years
@@ -80,9 +81,6 @@ bool Interpreter::check_leftovers(const Context& context) const {
   if (uses_axes && motion && motion != kCancel) {
     return problem.set(ErrorCode::kTwoUsesOfAxisWords, "G28 and G92 cannot share a line with a motion");
   }
-  if (words.letter('P') && action != kDwell && words.code(Group::kPathControl) != 640) {
-    return problem.set(ErrorCode::kUnusedWord, "P without G4 or G64");
-  }
   if (action == kDwell && !words.letter('P')) {
     return problem.set(ErrorCode::kMissingWord, "G4 needs P, its seconds");
   }
@@ -92,6 +90,11 @@ bool Interpreter::check_leftovers(const Context& context) const {
   }
   const std::optional<int> effective = uses_axes ? std::nullopt : (motion ? motion : motion_);
   const bool is_arc = effective == kArcClockwise || effective == kArcCounterClockwise;
+  const bool has_centre = words.letter('I') || words.letter('J') || words.letter('K') || words.letter('R');
+  const bool makes_arc = is_arc && (motion || has_centre || words.has_axis_words());
+  if (words.letter('P') && action != kDwell && words.code(Group::kPathControl) != 640 && !makes_arc) {
+    return problem.set(ErrorCode::kUnusedWord, "P without G2, G3, G4 or G64");
+  }
   for (const char letter : {'I', 'J', 'K', 'R'}) {
     if (words.letter(letter) && !is_arc) {
       return problem.set(ErrorCode::kUnusedWord, fmt::format("{} without G2 or G3", letter));
@@ -242,7 +245,7 @@ bool Interpreter::arc(const Context& context, bool clockwise) {
   std::size_t x = 0;
   std::size_t y = 0;
   if (!target_of(context, motion.target) || !plane_axis(plane.first, x, problem) ||
-      !plane_axis(plane.second, y, problem) || !check_helix(motion.target, x, y, problem)) {
+      !plane_axis(plane.second, y, problem) || !set_turns(context, motion)) {
     return false;
   }
   motion.axis_x = static_cast<std::uint8_t>(x);
@@ -282,13 +285,20 @@ bool Interpreter::arc_geometry(const Context& context, const Plane& plane, Motio
   return true;
 }
 
-bool Interpreter::check_helix(const Coordinates& target, std::size_t x, std::size_t y, Problem& problem) const {
-  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    if (axis != x && axis != y && std::abs(target[axis] - here_[axis]) > kStill) {
-      return problem.set(ErrorCode::kHelix, fmt::format("axis {} moves during an arc: helices are not supported",
-                                                        machine_.axes[axis].letter));
-    }
+// P, where neither G4 nor G64 takes it: all turns, the last one perhaps not a whole one.
+bool Interpreter::set_turns(const Context& context, Motion& motion) const {
+  constexpr double kMostTurns = 10'000;
+  const WordSet& words = context.words;
+  const auto turns = words.letter('P');
+  if (!turns || words.code(Group::kNonModal) == kDwell || words.code(Group::kPathControl)) {
+    return true;
   }
+  if (*turns < 1 || *turns > kMostTurns || *turns != std::floor(*turns)) {
+    return context.problem.set(
+        ErrorCode::kArcTurns,
+        fmt::format("P{:.10g}: an arc makes a whole number of turns, 1 to {:.0f}", *turns, kMostTurns));
+  }
+  motion.turns = static_cast<std::uint32_t>(*turns) - 1;
   return true;
 }
 

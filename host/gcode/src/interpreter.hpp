@@ -70,7 +70,7 @@ class Interpreter {
   bool straight(const Context& context, bool rapid);
   bool arc(const Context& context, bool clockwise);
   bool plane_axis(char letter, std::size_t& axis, Problem& problem) const;
-  bool check_helix(const Coordinates& target, std::size_t x, std::size_t y, Problem& problem) const;
+  bool set_turns(const Context& context, Motion& motion) const;
   bool arc_geometry(const Context& context, const Plane& plane, Motion& motion) const;
 
   bool is_rotary(std::size_t axis) const;

@@ -1,4 +1,5 @@
-// Blocks of arcs: on the accumulator where the scales are equal and it reaches, else as chords.
+// Blocks of arcs and helices: on the arc generator, arcs also on the accumulator, where these are built in, the scales
+// are equal and they reach; else as chords.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "chords.hpp"
 #include "roots.hpp"
 #include "trammel/driver/arc.hpp"
+#include "trammel/driver/arc_chord.hpp"
 #include "trammel/driver/trigonometry.hpp"
 #include "trammel/planner/block_builder.hpp"
 
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double kMaxRadius = 0x1p44;      // pulses; the centre in 1/256 pulses fits 64 bits
 constexpr double kClocksPerPathTick = 10;  // the accumulator takes 9
+constexpr std::uint64_t kMostParts = 1'000'000;
 
 double hypotenuse(double x, double y) { return std::sqrt(x * x + y * y); }
 
@@ -32,6 +35,7 @@ ExactArc exact_arc(const gcode::Motion& motion, const gcode::Coordinates& from) 
     sweep = (driver::arc_tangent(end_y, end_x) - angle_start) * (motion.clockwise ? -1 : 1);
     sweep += sweep <= 0 ? 2 * driver::kPi : 0;
   }
+  sweep += 2 * driver::kPi * motion.turns;
   return {motion.centre_x, motion.centre_y, hypotenuse(start_x, start_y), hypotenuse(end_x, end_y), angle_start, sweep};
 }
 
@@ -41,24 +45,35 @@ std::int64_t centre_units(double mm, double steps_per_mm) {
 
 double largest_radius(const Block& block) { return std::max(block.exact.radius_start, block.exact.radius_end); }
 
-// None where the accumulator's bounds do not admit the arc.
-std::optional<driver::ArcCommand> accumulator_arc(const Block& block) {
-  const std::int64_t start_x = block.start[block.axis_x];
-  const std::int64_t start_y = block.start[block.axis_y];
+// The block's arc between two points on it. Throws std::invalid_argument where they are too far apart.
+driver::ArcGeometry geometry_of(const Block& block, const Pulses& start, const Pulses& end, double sweep) {
   driver::ArcGeometry geometry;
-  geometry.centre_x = block.centre_x - start_x * driver::kCentreUnitsPerPulse;
-  geometry.centre_y = block.centre_y - start_y * driver::kCentreUnitsPerPulse;
-  const std::int64_t end_x = block.end[block.axis_x] - start_x;
-  const std::int64_t end_y = block.end[block.axis_y] - start_y;
-  if (end_x != static_cast<std::int32_t>(end_x) || end_y != static_cast<std::int32_t>(end_y)) return std::nullopt;
+  geometry.centre_x = block.centre_x - start[block.axis_x] * driver::kCentreUnitsPerPulse;
+  geometry.centre_y = block.centre_y - start[block.axis_y] * driver::kCentreUnitsPerPulse;
+  const std::int64_t end_x = end[block.axis_x] - start[block.axis_x];
+  const std::int64_t end_y = end[block.axis_y] - start[block.axis_y];
   geometry.end_x = static_cast<std::int32_t>(end_x);
   geometry.end_y = static_cast<std::int32_t>(end_y);
+  if (geometry.end_x != end_x || geometry.end_y != end_y)
+    throw std::invalid_argument("arc: its ends are too far apart");
   geometry.clockwise = block.clockwise;
-  geometry.sweep = block.exact.sweep;
+  geometry.sweep = sweep;
   geometry.axis_x = block.axis_x;
   geometry.axis_y = block.axis_y;
+  return geometry;
+}
+
+bool is_helix(const Block& block) {
+  for (std::size_t axis = 0; axis < block.start.size(); ++axis) {
+    if (axis != block.axis_x && axis != block.axis_y && block.start[axis] != block.end[axis]) return true;
+  }
+  return false;
+}
+
+// None where the accumulator's bounds do not admit the arc.
+std::optional<driver::ArcCommand> accumulator_arc(const Block& block) {
   try {
-    return driver::prepare(geometry);
+    return driver::prepare(geometry_of(block, block.start, block.end, block.exact.sweep));
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
@@ -74,6 +89,17 @@ std::uint64_t chord_count(const ExactArc& arc, double largest_steps_per_mm) {
   return static_cast<std::uint64_t>(std::ceil(arc.sweep / std::min(turn, driver::kPi / 4)));
 }
 
+driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, PlaneScale scale) {
+  const Pulses start = corner(block, i, block.parts, scale);
+  const Pulses end = corner(block, i + 1, block.parts, scale);
+  driver::HelixGeometry helix;
+  helix.arc = geometry_of(block, start, end, block.exact.sweep / static_cast<double>(block.parts));
+  for (std::size_t axis = 0; axis < start.size(); ++axis) {
+    if (axis != block.axis_x && axis != block.axis_y) helix.further[axis] = end[axis] - start[axis];
+  }
+  return helix;
+}
+
 // The arc's extremes: its start and end are targets, the others lie at whole quarters of a turn.
 bool BlockBuilder::check_arc(const Block& block) {
   const ExactArc& arc = block.exact;
@@ -87,11 +113,14 @@ bool BlockBuilder::check_arc(const Block& block) {
     while (turned < 0) turned += 2 * driver::kPi;
     while (turned >= 2 * driver::kPi) turned -= 2 * driver::kPi;
     if (turned > arc.sweep) continue;
-    const double radius = arc.radius_start + (arc.radius_end - arc.radius_start) * (turned / arc.sweep);
-    const double side = quarter < 2 ? radius : -radius;
-    const bool fits =
-        quarter % 2 == 0 ? check(block.axis_x, arc.centre_x + side) : check(block.axis_y, arc.centre_y + side);
-    if (!fits) return false;
+    // Where it gets there first, and last.
+    for (const double at : {turned, turned + 2 * driver::kPi * std::floor((arc.sweep - turned) / (2 * driver::kPi))}) {
+      const double radius = arc.radius_start + (arc.radius_end - arc.radius_start) * (at / arc.sweep);
+      const double side = quarter < 2 ? radius : -radius;
+      const bool fits =
+          quarter % 2 == 0 ? check(block.axis_x, arc.centre_x + side) : check(block.axis_y, arc.centre_y + side);
+      if (!fits) return false;
+    }
   }
   return true;
 }
@@ -106,8 +135,9 @@ bool BlockBuilder::build_arc(Block& block) {
   const double scale_y = axes_[block.axis_y].steps_per_mm;
   block.centre_x = centre_units(motion_.centre_x, scale_x);
   block.centre_y = centre_units(motion_.centre_y, scale_y);
-  // Radius and bounds of the accumulator are checked where the command is made.
-  if (card_.accumulator && scale_x == scale_y) {
+  // Radius and bounds are checked where the commands are made.
+  if (card_.arc_generator && scale_x == scale_y && build_generator_arc(block)) return true;
+  if (card_.accumulator && scale_x == scale_y && !is_helix(block)) {
     if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block)) {
       block.arc = *arc;
       return build_accumulator_arc(block);
@@ -116,7 +146,7 @@ bool BlockBuilder::build_arc(Block& block) {
   return build_chords(block);
 }
 
-// The tangent at a share, 0 or 1, of the arc.
+// In the plane, at a share, 0 or 1, of the arc.
 Direction BlockBuilder::tangent(const Block& block, double share) {
   const double turn = block.clockwise ? -1 : 1;
   const driver::SineCosine at = driver::sine_cosine(block.exact.angle_start + turn * block.exact.sweep * share);
@@ -126,36 +156,93 @@ Direction BlockBuilder::tangent(const Block& block, double share) {
   return direction;
 }
 
+// Sets length, scale and directions; gives back the length that F counts for. The arc, unrolled, and the axes outside
+// its plane are the sides of a straight line.
+double BlockBuilder::measure_arc(Block& block) const {
+  const double in_plane = largest_radius(block) * block.exact.sweep;
+  gcode::Coordinates way{};
+  for (std::size_t i = 0; i < axis_count_; ++i) way[i] = motion_.target[i] - anchor_[i];
+  way[block.axis_x] = in_plane;
+  way[block.axis_y] = 0;
+  const double feed_length = measure_line(block, way);
+  block.steps_per_mm = std::max(block.steps_per_mm, axes_[block.axis_y].steps_per_mm);
+  block.entry = tangent(block, 0);
+  block.exit = tangent(block, 1);
+  for (Direction* end : {&block.entry, &block.exit}) {
+    for (std::size_t i = 0; i < axis_count_; ++i) {
+      const bool of_plane = i == block.axis_x || i == block.axis_y;
+      (*end)[i] = of_plane ? (*end)[i] * (in_plane / block.length) : way[i] / block.length;
+    }
+  }
+  return feed_length;
+}
+
+// What the axes outside the plane allow.
+void BlockBuilder::limit_further(Block& block) const {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    const double share = std::abs(block.entry[i]);
+    if (i == block.axis_x || i == block.axis_y || share == 0) continue;
+    limit_speed(block, axes_[i].velocity / share, SpeedLimit::kAxisVelocity);
+    limit_speed(block, axes_[i].pulse_rate / axes_[i].steps_per_mm / share, SpeedLimit::kPulseShape);
+    block.acceleration = std::min(block.acceleration, axes_[i].acceleration / share);
+    block.jerk = std::min(block.jerk, axes_[i].jerk / share);
+  }
+}
+
 // What holds for all ways to make an arc. `unevenness`: largest over planned speed, anywhere in it; `share`: of the
 // axes' acceleration and jerk, for what the way to make it adds.
 void BlockBuilder::limit_arc(Block& block, double unevenness, double share) const {
   const Axis& x = axes_[block.axis_x];
   const Axis& y = axes_[block.axis_y];
   const double radius = largest_radius(block);
+  const double feed_length = measure_arc(block);
+  const double slope = radius * block.exact.sweep / block.length;  // mm in the plane a mm of path
   const double acceleration = std::min(x.acceleration, y.acceleration) * share;
   const double jerk = std::min(x.jerk, y.jerk) * share;
   // Of acceleration and jerk so much goes across the path at the most; what is left serves along it.
   constexpr double kAcross = 0.9;
   constexpr double kAlong = 0.43588989435406736;  // sqrt(1 - kAcross^2)
-  block.linear = true;
-  block.length = radius * block.exact.sweep;
-  block.steps_per_mm = std::max(x.steps_per_mm, y.steps_per_mm);
-  block.entry = tangent(block, 0);
-  block.exit = tangent(block, 1);
-  block.speed = std::min(x.velocity, y.velocity) / unevenness;
+  block.speed = std::min(x.velocity, y.velocity) / unevenness / slope;
   block.limit = SpeedLimit::kAxisVelocity;
-  limit_speed(block, std::min(x.pulse_rate / x.steps_per_mm, y.pulse_rate / y.steps_per_mm) / unevenness,
+  limit_speed(block, std::min(x.pulse_rate / x.steps_per_mm, y.pulse_rate / y.steps_per_mm) / unevenness / slope,
               SpeedLimit::kPulseShape);
-  limit_speed(block, std::sqrt(radius * acceleration * kAcross), SpeedLimit::kAcceleration);
+  limit_speed(block, std::sqrt(radius * acceleration * kAcross) / slope, SpeedLimit::kAcceleration);
   if (jerk < std::numeric_limits<double>::infinity()) {
-    limit_speed(block, cube_root(radius * radius * jerk * kAcross), SpeedLimit::kAcceleration);
+    limit_speed(block, cube_root(radius * radius * jerk * kAcross) / slope, SpeedLimit::kAcceleration);
   }
-  apply_feed(block, block.length);
-  const double across = block.speed * block.speed / radius;
-  block.acceleration =
+  block.acceleration = block.jerk = std::numeric_limits<double>::infinity();
+  limit_further(block);
+  apply_feed(block, feed_length);
+  const double across = block.speed * slope * (block.speed * slope) / radius;
+  const double along =
       std::max(kAlong * acceleration, std::sqrt(std::max(0.0, acceleration * acceleration - across * across)));
-  block.jerk = jerk * kAlong;
-  block.curvature = (block.clockwise ? -1 : 1) / radius;
+  block.acceleration = std::min(block.acceleration, along / slope);
+  block.jerk = std::min(block.jerk, jerk * kAlong / slope);
+  block.curvature = (block.clockwise ? -1 : 1) * slope * slope / radius;
+}
+
+// False where the generator cannot make it.
+bool BlockBuilder::build_generator_arc(Block& block) const {
+  constexpr double kMostTurns = 50'000;   // of a command: half of what the driver takes
+  constexpr double kMostPulses = 0x1p30;  // along the path of a command: at 64 path ticks a pulse half of 2^37
+  const PlaneScale scale{axes_[block.axis_x].steps_per_mm, axes_[block.axis_y].steps_per_mm};
+  const double turns = block.exact.sweep / (2 * driver::kPi);
+  const double pulses = largest_radius(block) * block.exact.sweep * scale.x;
+  block.geometry = Geometry::kArcChord;
+  block.parts = static_cast<std::uint64_t>(std::ceil(std::max(turns / kMostTurns, pulses / kMostPulses)));
+  block.parts = std::max<std::uint64_t>(block.parts, 1);
+  if (block.parts > kMostParts) return false;
+  try {
+    std::uint64_t most = 0;
+    for (std::uint64_t i = 0; i < block.parts; ++i) {
+      most = std::max(most, driver::least_chord_ticks(helix_part(block, i, scale)));
+    }
+    block.least_ticks = most * block.parts;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  limit_arc(block, 1, 1);
+  return true;
 }
 
 // Unit steps come evenly: the path's speed changes along it as 1 / (|sin| + |cos|), by 4/pi at the most above its mean,
@@ -187,9 +274,9 @@ bool BlockBuilder::build_chords(Block& block) {
   block.chords = chord_count(block.exact, std::max(x.steps_per_mm, y.steps_per_mm));
   block.chord_lines = 0;
   std::int64_t longest = 0;
-  for_each_chord(block, x.steps_per_mm, y.steps_per_mm, [&](Corner step) {
+  for_each_chord(block, {x.steps_per_mm, y.steps_per_mm}, [&](const Pulses& step) {
     ++block.chord_lines;
-    longest = std::max({longest, std::abs(step.x), std::abs(step.y)});
+    for (const std::int64_t pulses : step) longest = std::max(longest, std::abs(pulses));
   });
   if (block.chord_lines == 0) return false;
   block.least_ticks = static_cast<std::uint64_t>(longest + 1) * block.chord_lines;

@@ -14,9 +14,15 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 }  // namespace
 
 CardLimits limits_of(const driver::Identification& card) {
-  const auto has = [&](unsigned engine) { return (card.engines >> engine & 1U) != 0; };
+  const auto has = [&](unsigned engine) { return card_map::has_engine(card.engines, engine); };
   return {card.clock_hz, card.axes, has(card_map::engine::kAccumulator), has(card_map::engine::kClasses),
-          card.geometry_depth, card.feed_depth};
+          has(card_map::engine::kArcGenerator), card.geometry_depth, card.feed_depth};
+}
+
+CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {
+  if (arcs != ArcsBy::kGenerator) card.arc_generator = false;
+  if (arcs == ArcsBy::kChords) card.accumulator = false;
+  return card;
 }
 
 double hold_seconds(const machine::Machine& machine) {

@@ -1,43 +1,59 @@
-// An arc as straight lines between whole pulses, corner by corner. Internal to the planner.
+// An arc, or a helix, in parts: straight lines between whole pulses, or shorter arcs. Internal to the planner.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
+#include "trammel/driver/arc_chord.hpp"
 #include "trammel/driver/trigonometry.hpp"
 #include "trammel/planner/block.hpp"
 #include "trammel/planner/block_builder.hpp"
 
 namespace trammel::planner {
 
-// Where a chord ends, in the axes of the plane.
-struct Corner {
-  std::int64_t x;
-  std::int64_t y;
+// Steps/mm of the axes of an arc's plane.
+struct PlaneScale {
+  double x;
+  double y;
 };
 
 // Chords of equal angles so many that none strays more than a quarter of a pulse from its arc.
 std::uint64_t chord_count(const ExactArc& arc, double largest_steps_per_mm);
 
-// Corner `i` of a block's `chords`; the last is the block's end.
-inline Corner corner(const Block& block, std::uint64_t i, double scale_x, double scale_y) {
-  if (i == block.chords) return {block.end[block.axis_x], block.end[block.axis_y]};
+// Where part `i` of `count`, of equal angles, ends; the last one at the block's end. Axes outside the plane go evenly.
+inline Pulses corner(const Block& block, std::uint64_t i, std::uint64_t count, PlaneScale scale) {
+  if (i == 0) return block.start;
+  if (i == count) return block.end;
   const ExactArc& arc = block.exact;
-  const double share = static_cast<double>(i) / static_cast<double>(block.chords);
-  const driver::SineCosine at = driver::sine_cosine(arc.angle_start + (block.clockwise ? -1 : 1) * arc.sweep * share);
+  const double share = static_cast<double>(i) / static_cast<double>(count);
+  Pulses at = block.start;
+  for (std::size_t axis = 0; axis < at.size(); ++axis) {
+    const std::int64_t way = block.end[axis] - block.start[axis];
+    if (way != 0) at[axis] += std::llround(static_cast<double>(way) * share);
+  }
+  const driver::SineCosine to = driver::sine_cosine(arc.angle_start + (block.clockwise ? -1 : 1) * arc.sweep * share);
   const double radius = arc.radius_start + (arc.radius_end - arc.radius_start) * share;
-  return {to_pulses(arc.centre_x + radius * at.cosine, scale_x), to_pulses(arc.centre_y + radius * at.sine, scale_y)};
+  at[block.axis_x] = to_pulses(arc.centre_x + radius * to.cosine, scale.x);
+  at[block.axis_y] = to_pulses(arc.centre_y + radius * to.sine, scale.y);
+  return at;
 }
 
 // Calls take(step) with the displacement of each chord that has steps, in order.
 template <class Take>
-void for_each_chord(const Block& block, double scale_x, double scale_y, Take take) {
-  Corner here{block.start[block.axis_x], block.start[block.axis_y]};
+void for_each_chord(const Block& block, PlaneScale scale, Take take) {
+  Pulses here = block.start;
   for (std::uint64_t i = 1; i <= block.chords; ++i) {
-    const Corner next = corner(block, i, scale_x, scale_y);
-    if (next.x == here.x && next.y == here.y) continue;
-    take(Corner{next.x - here.x, next.y - here.y});
+    const Pulses next = corner(block, i, block.chords, scale);
+    if (next == here) continue;
+    Pulses step{};
+    for (std::size_t axis = 0; axis < step.size(); ++axis) step[axis] = next[axis] - here[axis];
+    take(step);
     here = next;
   }
 }
+
+// Part `i` of the block's parts for the arc generator. Throws std::invalid_argument where the command has no room for
+// it.
+driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, PlaneScale scale);
 
 }  // namespace trammel::planner

@@ -20,6 +20,24 @@ SpeedLimit limit_of(const PathEntry& entry) {
   return entry.short_sight ? SpeedLimit::kWindow : SpeedLimit::kAcceleration;
 }
 
+// `ticks` shared out evenly over `count` paths.
+class Shares {
+ public:
+  Shares(std::uint64_t ticks, std::uint64_t count) : share_(ticks / count), more_(ticks % count), count_(count) {}
+  std::uint64_t next() {
+    rest_ += more_;
+    if (rest_ < count_) return share_;
+    rest_ -= count_;
+    return share_ + 1;
+  }
+
+ private:
+  std::uint64_t share_;
+  std::uint64_t more_;
+  std::uint64_t count_;
+  std::uint64_t rest_ = 0;
+};
+
 }  // namespace
 
 SpeedProfile profile_of(const machine::Machine& machine, const PlannerSettings& settings) {
@@ -54,7 +72,9 @@ bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
     planned.velocity_jump = entry->jump * entry->end_speed;
     planned.acceleration_step = entry->bend * entry->end_speed * entry->end_speed;
     planned.feed = look_ahead_->pieces();
-    planned.geometry = block.geometry == Geometry::kChords ? block.chord_lines : 1;
+    planned.geometry = block.geometry == Geometry::kChords     ? block.chord_lines
+                       : block.geometry == Geometry::kArcChord ? block.parts
+                                                               : 1;
     planned.commands = planned.feed + planned.geometry;
     for (auto& piece = std::get<driver::FeedCommand>(piece_); look_ahead_->piece(piece);) sink.put(piece_);
     put_geometry(block, entry->end_ticks - entry->begin_ticks, sink);
@@ -78,6 +98,8 @@ void Planner::put_dwell(PlannedBlock& planned, driver::CommandSink& sink) {
 void Planner::put_geometry(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
   if (block.geometry == Geometry::kArc) {
     sink.put(other_ = driver::with_ticks(block.arc, ticks));
+  } else if (block.geometry == Geometry::kArcChord) {
+    put_arc_chords(block, ticks, sink);
   } else if (block.geometry == Geometry::kChords) {
     put_chords(block, ticks, sink);
   } else {
@@ -100,25 +122,31 @@ void Planner::put_line(const Block& block, std::uint64_t ticks, driver::CommandS
   sink.put(line_);
 }
 
-// The ticks are shared out evenly: the chords cover equal angles.
+void Planner::put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
+  Shares shares(ticks, block.parts);
+  for (std::uint64_t i = 0; i < block.parts; ++i) {
+    sink.put(other_ = driver::make_helix(helix_part(block, i, scale_of(block)), shares.next()));
+  }
+}
+
+// Chords cover equal angles.
 void Planner::put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
-  const auto scale = [&](std::size_t axis) { return machine_.axes[axis].steps_per_mm; };
   auto& line = std::get<driver::LineCommand>(line_);
-  line.increment.fill(0);
-  const auto set = [&](std::size_t axis, std::int64_t pulses) {
-    line.increment[axis] = pulses == 0 ? 0 : driver::rounded_increment(pulses, line.ticks);
-    return pulses == 0 ? 0U : 1U << axis;
-  };
-  const std::uint64_t share = ticks / block.chord_lines;
-  const std::uint64_t more = ticks % block.chord_lines;
-  std::uint64_t rest = 0;
-  for_each_chord(block, scale(block.axis_x), scale(block.axis_y), [&](Corner step) {
-    rest += more;
-    line.ticks = share + (rest >= block.chord_lines ? 1 : 0);
-    rest -= rest >= block.chord_lines ? block.chord_lines : 0;
-    line.mask = static_cast<std::uint8_t>(set(block.axis_x, step.x) | set(block.axis_y, step.y));
+  Shares shares(ticks, block.chord_lines);
+  for_each_chord(block, scale_of(block), [&](const Pulses& step) {
+    line.ticks = shares.next();
+    unsigned mask = 0;
+    for (std::size_t axis = 0; axis < step.size(); ++axis) {
+      line.increment[axis] = step[axis] == 0 ? 0 : driver::rounded_increment(step[axis], line.ticks);
+      mask |= (step[axis] == 0 ? 0U : 1U) << axis;
+    }
+    line.mask = static_cast<std::uint8_t>(mask);
     sink.put(line_);
   });
+}
+
+PlaneScale Planner::scale_of(const Block& block) const {
+  return {machine_.axes[block.axis_x].steps_per_mm, machine_.axes[block.axis_y].steps_per_mm};
 }
 
 }  // namespace trammel::planner

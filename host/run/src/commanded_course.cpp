@@ -73,12 +73,14 @@ CommandedCourse::CommandedCourse(const machine::Machine& machine) {
 }
 
 void CommandedCourse::planned(const planner::PlannedBlock& planned, std::uint64_t first) {
-  constexpr double kArcPoints = 64;
+  constexpr double kArcPoints = 64;  // a turn
+  constexpr double kMostTurns = 100;
   const planner::Block& block = planned.block;
   if (!planner::moves(block)) return;
   const CommandedPath path(block, steps_per_mm_);
   if (points_.given() == 0) points_.add(path.at(0));
-  const double points = block.geometry == planner::Geometry::kLine ? 1 : kArcPoints;
+  const double turns = std::min(std::ceil(block.exact.sweep / 6.28), kMostTurns);
+  const double points = block.geometry == planner::Geometry::kLine ? 1 : kArcPoints * turns;
   for (double i = 1; i <= points; ++i) points_.add(path.at(i / points));
   const int rank = detail_rank(block);
   if (rank <= best_rank_) return;

@@ -27,6 +27,28 @@ double to_double(driver::Int128 value) {
 
 }  // namespace
 
+void DeviationMeter::sending(const planner::Block& block) {
+  if (!machine_) machine_ = block.start;
+  block_ = block;
+}
+
+DeviationMeter::Path DeviationMeter::arc_in_chords() const {
+  Path path;
+  path.arc = path.of_machine = true;
+  path.axis_count = 2;
+  path.axes[0] = block_.axis_x;
+  path.axes[1] = block_.axis_y;
+  path.target[0] = static_cast<double>(block_.centre_x) / kCentreScale;
+  path.target[1] = static_cast<double>(block_.centre_y) / kCentreScale;
+  const auto radius = [&](const planner::Pulses& at) {
+    return std::hypot(static_cast<double>(at[path.axes[0]]) - path.target[0],
+                      static_cast<double>(at[path.axes[1]]) - path.target[1]);
+  };
+  path.inner = std::min(radius(block_.start), radius(block_.end));
+  path.outer = std::max(radius(block_.start), radius(block_.end));
+  return path;
+}
+
 void DeviationMeter::command(std::uint64_t number, const driver::Command& command) {
   Path path;
   path.number = number;
@@ -51,6 +73,9 @@ void DeviationMeter::command(std::uint64_t number, const driver::Command& comman
     const double end = std::hypot(arc->end_x - path.target[0], arc->end_y - path.target[1]);
     path.inner = std::min(start, end);
     path.outer = std::max(start, end);
+  } else if (std::holds_alternative<driver::ArcChordCommand>(command)) {
+    path = arc_in_chords();
+    path.number = number;
   } else {
     return;
   }
@@ -71,8 +96,13 @@ void DeviationMeter::step(std::uint64_t command, std::uint64_t tick, unsigned ax
   const bool same_path = !paths_.empty() && paths_.front().number == command;
   if (tick_ && !(same_path && *tick_ == tick)) measure();
   if (!same_path) enter(command);
+  if (Path& path = paths_.front(); path.of_machine) {
+    path.of_machine = false;
+    for (unsigned i = 0; i < path.axis_count; ++i) path.target[i] -= static_cast<double>((*machine_)[path.axes[i]]);
+  }
   tick_ = tick;
   position_[axis] += direction;
+  if (machine_) (*machine_)[axis] += direction;
 }
 
 void DeviationMeter::finish() {

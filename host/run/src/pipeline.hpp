@@ -16,7 +16,7 @@ class Pipeline {
            const RunSettings& settings)
       : lines_(lines()),
         reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
-        blocks_(reader_, machine, card, reader_.position()),
+        blocks_(reader_, machine, planner::with_arcs_by(card, settings.arcs), reader_.position()),
         planner_(blocks_, machine, card, {settings.single_block, settings.profile}) {}
 
   // As planner::Planner::next(), but throws ProgramError.

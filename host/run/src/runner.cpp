@@ -149,7 +149,8 @@ const Plan& Runner::plan() {
 
 void Runner::require_planned_for(driver::Card& card) const {
   const planner::CardLimits limits = planner::limits_of(card.identification());
-  if (limits.clock_hz != card_.clock_hz || limits.axes != card_.axes || limits.accumulator != card_.accumulator) {
+  if (limits.clock_hz != card_.clock_hz || limits.axes != card_.axes || limits.accumulator != card_.accumulator ||
+      limits.arc_generator != card_.arc_generator) {
     throw std::invalid_argument("the program was planned for another card");
   }
 }

@@ -12,8 +12,7 @@ namespace trammel::run {
 
 // What the planner may use: arcs turn two axes of the card, so where motors follow axes they go out as lines.
 inline planner::CardLimits planning_limits(planner::CardLimits card, const machine::Machine& machine) {
-  if (!machine.second_motors().empty()) card.accumulator = false;
-  return card;
+  return machine.second_motors().empty() ? card : planner::with_arcs_by(card, planner::ArcsBy::kChords);
 }
 
 class SecondMotors {

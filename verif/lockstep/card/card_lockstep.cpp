@@ -46,7 +46,7 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   sim::LockstepCard card = test::card_under_test(axes, seed, static_cast<std::uint32_t>(seed * 0x9E37 & 0xFFFF));
   AxiHost host(card, seed);
   Traffic traffic(host, axes);
-  traffic.commands_every = 4;
+  traffic.commands_every = 6;
   host.wait(300);
   // The constants; the random reads seldom meet one.
   for (std::uint32_t address = 0; address < 0x40; address += 4) host.read(address);

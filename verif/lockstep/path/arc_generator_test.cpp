@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iostream>
 
 #include "trammel/model/axis.hpp"
 #include "trammel/sim/lockstep.hpp"
@@ -305,7 +306,7 @@ Arc noise(Dice& dice) {
 void random_arcs() {
   Bench bench(seed_from_environment(20261122));
   Dice& dice = bench.dice();
-  const std::uint64_t length = scaled(4'000'000);
+  const std::uint64_t length = scaled(10'000'000);
   while (bench.check().cycles() < length) {
     const bool is_noise = dice.chance(4);
     const unsigned m = dice.chance(2) ? 5 : dice.chance(8) ? dice.below(32) : 5 + dice.below(6);
@@ -314,8 +315,10 @@ void random_arcs() {
     bench.run(arc, 1 + dice.word() % (chord * (1 + dice.below(12))), dice.chance(2) ? 1 : 1 + dice.below(20),
               dice.chance(3) ? 1 + dice.below(100) : 0);
   }
+  EXPECT_GE(bench.check().cycles(), length);
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 8);
   EXPECT_GT(bench.steps(), bench.check().cycles() / 20);
+  std::cout << bench.check().cycles() << " cycles of arcs compared, " << bench.steps() << " with steps\n";
 }
 
 // One arc at a path tick every clock and the shortest chords, for thousands of chords: no stall after the start.

@@ -46,7 +46,7 @@ enum class ErrorCode : std::uint16_t {
   kArcOffCircle = 55,
   kArcOutsidePlane = 56,  // a centre word that the plane has not
   kArcPlaneAxis = 57,     // the machine lacks an axis of the plane
-  kHelix = 58,
+  kArcTurns = 59,         // P of an arc
   // Against machine and card: found where motions become pulses
   kSoftLimit = 70,
   kPositionRange = 71,

@@ -35,6 +35,7 @@ struct Motion {
   std::uint8_t axis_y = 0;
   double centre_x = 0;  // machine coordinates
   double centre_y = 0;
+  std::uint32_t turns = 0;  // full turns beyond the first way to the end; axes outside the plane move evenly: a helix
 };
 
 }  // namespace trammel::gcode

@@ -29,7 +29,14 @@ inline constexpr std::size_t kSpeedLimits = 6;
 using Direction = std::array<double, card_map::kMaxAxes>;
 
 // What goes to the card's geometry queue.
-enum class Geometry : std::uint8_t { kLine, kArc, kChords, kDwell, kEnd };
+enum class Geometry : std::uint8_t {
+  kLine,
+  kArc,       // on the deviation accumulator
+  kArcChord,  // on the arc generator; axes outside the plane may go along
+  kChords,    // as lines; likewise
+  kDwell,
+  kEnd,
+};
 
 // An arc before rounding: machine coordinates in mm.
 struct ExactArc {
@@ -38,7 +45,7 @@ struct ExactArc {
   double radius_start = 0;
   double radius_end = 0;
   double angle_start = 0;  // radians, from the plane's first axis towards its second
-  double sweep = 0;        // radians, > 0
+  double sweep = 0;        // radians, > 0, with all turns
 };
 
 // Lengths, directions and limits are those of the path before rounding, along it, in mm and seconds; for moves of
@@ -51,7 +58,7 @@ struct Block {
   Pulses start{};
   Pulses end{};
 
-  // Motions: kLine, kArc, kChords.
+  // Motions: kLine, kArc, kArcChord, kChords.
   bool rapid = false;
   bool linear = false;  // X, Y or Z moves
   gcode::PathControl path_control = gcode::PathControl::kContinuous;
@@ -69,7 +76,7 @@ struct Block {
   double feed = 0;                       // the same as the program has it, mm/s along the axes that F counts for
   SpeedLimit limit = SpeedLimit::kNone;  // what puts `speed` below `wanted`
 
-  // Arcs: kArc, kChords.
+  // Arcs: kArc, kArcChord, kChords.
   bool clockwise = false;
   std::uint8_t axis_x = 0;
   std::uint8_t axis_y = 0;
@@ -77,6 +84,7 @@ struct Block {
   std::int64_t centre_y = 0;
   ExactArc exact;
   driver::ArcCommand arc;         // kArc: all but its ticks
+  std::uint64_t parts = 0;        // kArcChord: commands, of equal angles
   std::uint64_t chords = 0;       // kChords: of equal angles; some may have no step
   std::uint64_t chord_lines = 0;  // those with steps
 

@@ -47,6 +47,7 @@ class BlockBuilder {
   bool set_targets(Block& block);
   bool build_line(Block& block);
   bool build_arc(Block& block);
+  bool build_generator_arc(Block& block) const;
   bool build_accumulator_arc(Block& block);
   bool build_chords(Block& block);
   bool build_dwell(Block& block);
@@ -54,6 +55,8 @@ class BlockBuilder {
   static void limit_speed(Block& block, double speed, SpeedLimit limit);
   void limit_line(Block& block) const;
   void limit_arc(Block& block, double unevenness, double share) const;
+  double measure_arc(Block& block) const;
+  void limit_further(Block& block) const;
   static Direction tangent(const Block& block, double share);
   void limit_pulses(Block& block) const;
   void apply_feed(Block& block, double feed_length) const;

@@ -11,11 +11,18 @@ namespace trammel::planner {
 struct CardLimits {
   std::uint32_t clock_hz = 0;  // > 0
   unsigned axes = 4;           // of the card, 1 .. 8
-  bool accumulator = true;     // arcs go to the deviation accumulator; without it out as lines
+  bool accumulator = true;     // the deviation accumulator is there
   bool classes = false;        // pieces of rapids say so, for an override of their own
+  bool arc_generator = true;   // the arc generator is there
   std::uint32_t geometry_depth = 4096;  // halfwords of the queues
   std::uint32_t feed_depth = 2560;
 };
+
+// Where arcs go: to what is there, the first of these that can; helices to the generator or out as lines.
+enum class ArcsBy { kGenerator, kAccumulator, kChords };
+
+// As if the card had nothing for arcs that comes before `arcs`.
+CardLimits with_arcs_by(CardLimits card, ArcsBy arcs);
 
 CardLimits limits_of(const driver::Identification& card);
 

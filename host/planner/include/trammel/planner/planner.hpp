@@ -19,6 +19,8 @@
 
 namespace trammel::planner {
 
+struct PlaneScale;
+
 enum class SpeedProfile {
   kByMachine,  // S-curve where every axis has a max_jerk, else trapezoid
   kTrapezoid,  // acceleration jumps
@@ -66,7 +68,9 @@ class Planner {
   void put_dwell(PlannedBlock& planned, driver::CommandSink& sink);
   void put_geometry(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_line(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
+  void put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
+  PlaneScale scale_of(const Block& block) const;
 
   const machine::Machine& machine_;
   std::unique_ptr<LookAhead> look_ahead_;

@@ -1,4 +1,5 @@
-// Measures how far the executed path strays from the commanded one, from path steps and commands alone.
+// Measures how far the executed path strays from the commanded one, from path steps and commands alone; of an arc in
+// chords, whose command does not say its centre, from the block that it comes from. A helix is judged in its plane.
 // Definitions (design of the JSON summary): positions are compared after all steps of a tick; a line's deviation is
 // the perpendicular distance from the straight line between its integer end points, in the space of its moving axes;
 // an arc's is the distance outside the annulus between the radii of its integer start and end. Unit: pulses.
@@ -12,12 +13,16 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/commands.hpp"
+#include "trammel/planner/block.hpp"
 
 namespace trammel::run {
 
 class DeviationMeter {
  public:
-  // Announces a command in stream order; `number` is its unwrapped number. Only LINE and ARC are kept.
+  // The block whose commands follow.
+  void sending(const planner::Block& block);
+
+  // Announces a command in stream order; `number` is its unwrapped number. Only paths are kept.
   void command(std::uint64_t number, const driver::Command& command);
 
   // One step of the path: command number, tick within the path, axis, direction (+1 or -1).
@@ -35,6 +40,7 @@ class DeviationMeter {
     bool arc = false;
     std::array<unsigned, card_map::kMaxAxes> axes{};  // indices of the moving axes
     unsigned axis_count = 0;
+    bool of_machine = false;                          // the arc's centre is not yet relative to the start
     std::array<double, card_map::kMaxAxes> target{};  // line: displacement; arc: centre relative to the start (x, y)
     double inner = 0;                                 // arc: radii of the annulus
     double outer = 0;
@@ -42,9 +48,12 @@ class DeviationMeter {
   };
   void measure();
   void enter(std::uint64_t command);
+  Path arc_in_chords() const;
 
   std::deque<Path> paths_;
   std::array<std::int64_t, card_map::kMaxAxes> position_{};  // relative to the current path's start
+  std::optional<planner::Pulses> machine_;                   // the same in machine coordinates; from the first block on
+  planner::Block block_;                                     // being sent
   std::optional<std::uint64_t> tick_;
   double largest_line_ = 0;
   double largest_arc_ = 0;

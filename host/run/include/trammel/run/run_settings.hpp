@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "trammel/gcode/reader.hpp"
+#include "trammel/planner/card_limits.hpp"
 #include "trammel/planner/planner.hpp"
 
 namespace trammel::run {
@@ -14,6 +15,7 @@ struct RunSettings {
   gcode::Coordinates start{};
   // Lines before it are read for their modes and positions alone: the machine stands where they end.
   std::size_t first_line = 1;
+  planner::ArcsBy arcs = planner::ArcsBy::kGenerator;  // and what the card has
   planner::SpeedProfile profile = planner::SpeedProfile::kByMachine;
   bool single_block = false;  // each line of the program ends in a stop, and the next is sent when the card is idle
 };

@@ -31,6 +31,9 @@ class StepRecorder final : public driver::StepSink, public Observer {
   explicit StepRecorder(const Options& options);
   ~StepRecorder() override;
 
+  void sending(const planner::PlannedBlock& planned) override {
+    if (planner::moves(planned.block)) deviation_.sending(planned.block);
+  }
   void command(std::uint64_t number, const driver::Command& command) override { deviation_.command(number, command); }
   void pin_step(const driver::PinStep& step) override;
   void path_step(const driver::PathStep& step) override;
