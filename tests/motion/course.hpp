@@ -16,7 +16,7 @@ struct Course {
   // Feed tick, magnitude, the least that the path may have had before its ends were rounded; of an arc's plane its path
   // speed.
   Vector pulses_a_tick{};
-  Vector entry{};          // direction at the start and at the end, mm a mm of `length`
+  Vector entry{};  // direction at the start and at the end, mm a mm of `length`
   Vector exit{};
   double length = 0;       // mm, along X Y Z, or all axes where none of these moves
   double curvature = 0;    // 1/mm, in the plane of an arc

@@ -31,10 +31,14 @@ class Judge {
     // Path and rate do not change in the same clock: borders of pieces are at whole ticks, and a piece goes on for some
     // clocks after its last one. Until then the new path is run at the rates of the piece before.
     if (now.begins_piece) piece_clock_ = now.clock;
-    handing_over_ = !resting_ && piece_clock_ < path_clock_ &&
-                    (now.ticks <= 1 || now.clock - path_clock_ < 2 * MotionWalk::kSwapClocks);
-    if (resting_) at_rest(now);
-    else if (now.begins_piece) border(now);
+    handing_over_ =
+        !resting_ &&
+        ((piece_clock_ < path_clock_ && (now.ticks <= 1 || now.clock - path_clock_ < 2 * MotionWalk::kSwapClocks)) ||
+         now.path->ticks - now.ticks <= 2);
+    if (resting_)
+      at_rest(now);
+    else if (now.begins_piece)
+      border(now);
     if (!handing_over_) moving(now);
     resting_ = false;
     last_ = now;
@@ -56,10 +60,13 @@ class Judge {
     const double change = goes_on ? (speed - rate(last_)) / kUpdate : 0;
     const double jerk = static_cast<double>(now.jerk) * 0x1p-64 / (kUpdate * kUpdate);
     const std::size_t where = now.path->command;
+    // A piece of a few updates is fitted to its ticks by its acceleration.
+    const double tolerance = now.clock - piece_clock_ <= 4 * 32 ? 1.15 : 1;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       const double pulses = course_.pulses_a_tick[a];
       verdict.velocity.look(pulses * speed / velocity_[a], where);
-      verdict.acceleration.look(std::hypot(pulses * change, centripetal(a, speed)) / acceleration_[a], where);
+      const double whole = std::hypot(pulses * change, centripetal(a, speed));
+      verdict.acceleration.look(whole / acceleration_[a] / tolerance, where);
       if (jerk_[a] <= 0) continue;
       verdict.jerk.look(pulses * std::abs(jerk) / jerk_[a], where);
       verdict.jerk.look(centripetal(a, speed) * turn_rate(a, speed) / jerk_[a], where);
@@ -76,12 +83,14 @@ class Judge {
   }
 
   // The rate from which a motion may begin, and with which it may end, on the path that it is on.
-  double floor() const {
+  double floor() const { return floor(course_); }
+  double floor(const Course& course) const {
     double allowed = INFINITY;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
-      const double pulses = course_.pulses_a_tick[a];
+      const double pulses = course.pulses_a_tick[a];
       if (pulses == 0) continue;
-      allowed = std::min(allowed, jerk_[a] > 0 ? std::cbrt(4.5 * jerk_[a] / pulses) : std::sqrt(acceleration_[a] / pulses));
+      allowed =
+          std::min(allowed, jerk_[a] > 0 ? std::cbrt(4.5 * jerk_[a] / pulses) : std::sqrt(acceleration_[a] / pulses));
     }
     return allowed;
   }
@@ -99,9 +108,9 @@ class Judge {
     const double after = rate(now);
     const double gain = static_cast<double>(now.gain) * 0x1p-48;
     const double most = std::max(before, after);
-    const bool stop = most <= 2 * floor();  // and a start
-    const double allowed =
-        std::abs(gain) + std::abs(acceleration(last_)) * kUpdate + 0.001 * most + (stop ? floor() : 0);
+    const double rest = std::max(floor(course_), floor(last_course_));
+    const bool stop = most <= 2 * rest;  // and a start
+    const double allowed = std::abs(gain) + std::abs(acceleration(last_)) * kUpdate + 0.001 * most + (stop ? rest : 0);
     double jump = std::abs(after - before);
     const bool new_path = now.ticks <= 1 || now.clock - path_clock_ <= 2 * MotionWalk::kSwapClocks;
     // Where a path ends too, the density of ticks may change with the rate; it is known as well as the rounded lengths.
@@ -133,8 +142,8 @@ class Judge {
   // allows no speed is passed at the floor.
   void corner(const Interval& now) {
     const double ticks = limits_.clock_hz * rate(last_);
-    const double at_floor = limits_.clock_hz * (floor() + 1.5 * std::abs(acceleration(last_)) * kUpdate);
-    others(now, ticks);
+    const double at_floor = limits_.clock_hz * (floor(last_course_) + 1.5 * std::abs(acceleration(last_)) * kUpdate);
+    if (last_course_.spatial && course_.spatial) verdict.corner.look(jump(now, ticks, false), now.path->command);
     double allowed = 0;
     if (last_course_.spatial == course_.spatial) {
       Vector turn{};
@@ -156,22 +165,28 @@ class Judge {
     // Half an update, and a tick of the ramp to the corner, may be left.
     const double gain = std::abs(acceleration(last_)) * kUpdate;
     const double most_rate = std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate) + gain / 2;
-    verdict.corner.look(rate(last_) / std::max(most_rate, at_floor / limits_.clock_hz), now.path->command);
+    double share = rate(last_) / std::max(most_rate, at_floor / limits_.clock_hz);
+    // A way of X Y Z below a pulse may be hidden in the other: then it is no stop, but no axis may jump.
+    if (last_course_.spatial != course_.spatial) share = std::min(share, jump(now, ticks, true));
+    verdict.corner.look(share, now.path->command);
   }
 
-  // Axes outside X Y Z may jump by sqrt(a d); rounded ends may hide half a pulse of each path.
-  void others(const Interval& now, double ticks) {
-    if (!last_course_.spatial || !course_.spatial) return;
+  // Axes outside X Y Z, or `all`, may jump by sqrt(a d); rounded ends may hide half a pulse of each path.
+  double jump(const Interval& now, double ticks, bool all) const {
+    double share = 0;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       const machine::MachineAxis& axis = limits_.machine.axes[a];
-      if (is_spatial(axis)) continue;
+      if (!all && is_spatial(axis)) continue;
       const double before = last_course_.exit[a] * mm_a_tick(last_course_, last_);
       const double after = course_.entry[a] * mm_a_tick(course_, now);
-      const double hidden = (1.0 / static_cast<double>(last_.path->ticks) + 1.0 / static_cast<double>(now.path->ticks)) / scale(a);
-      const double jump = (std::abs(after - before) - hidden) * ticks;
-      const double allowed = std::sqrt(axis.max_acceleration * limits_.junction_deviation) + floor() * limits_.clock_hz * std::max(std::abs(before), std::abs(after));
-      verdict.corner.look(jump / allowed, now.path->command);
+      const double hidden =
+          (1.0 / static_cast<double>(last_.path->ticks) + 1.0 / static_cast<double>(now.path->ticks)) / scale(a);
+      const double jumped = (std::abs(after - before) - hidden) * ticks;
+      const double allowed = std::sqrt(axis.max_acceleration * limits_.junction_deviation) +
+                             floor(last_course_) * limits_.clock_hz * std::max(std::abs(before), std::abs(after));
+      share = std::max(share, jumped / allowed);
     }
+    return share;
   }
 
   double scale(std::size_t axis) const { return limits_.machine.axes[axis].steps_per_mm; }
@@ -196,8 +211,8 @@ class Judge {
   Course last_course_;
   bool resting_ = true;
   Interval last_;
-  Interval before_;            // the last one on the path before
-  std::uint64_t path_clock_ = 0;  // of this path's first clock
+  Interval before_;                // the last one on the path before
+  std::uint64_t path_clock_ = 0;   // of this path's first clock
   std::uint64_t piece_clock_ = 0;  // of this piece's
   bool handing_over_ = false;
 };

@@ -3,8 +3,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "motion_judge.hpp"
 #include "course.hpp"
+#include "motion_judge.hpp"
 #include "motion_walk.hpp"
 
 namespace trammel::test {
@@ -96,7 +96,9 @@ class StepJudge {
     return std::nullopt;
   }
 
-  bool is_before(const TimedStep& step, double clock) const { return static_cast<double>(step.cycle) - offset_ < clock; }
+  bool is_before(const TimedStep& step, double clock) const {
+    return static_cast<double>(step.cycle) - offset_ < clock;
+  }
 
   void follow(const Interval& now) {
     enter(now);
@@ -119,7 +121,6 @@ class StepJudge {
   }
 
   void look(double motion, std::size_t axis) {
-    const double off = std::abs(motion - static_cast<double>(counts_[axis])); if (off > 0.8 && off > farthest + 0.1) std::printf("step %zu of %zu axis %zu off %g clock %g command %zu\n", next_, steps_.size(), axis, off, stop_clock_, path_->command);
     farthest = std::max(farthest, std::abs(motion - static_cast<double>(counts_[axis])));
   }
 

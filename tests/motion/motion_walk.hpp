@@ -23,14 +23,14 @@ struct Path {
 // Clocks at one rate of the feed generator, all on one path.
 struct Interval {
   const Path* path = nullptr;
-  std::uint64_t ticks = 0;     // of the path, before the interval
-  std::uint64_t phase = 0;     // 2^-48 ticks, likewise
-  std::uint64_t clock = 0;     // of the motion: barriers take no time here
+  std::uint64_t ticks = 0;  // of the path, before the interval
+  std::uint64_t phase = 0;  // 2^-48 ticks, likewise
+  std::uint64_t clock = 0;  // of the motion: barriers take no time here
   std::uint64_t clocks = 0;
-  std::uint64_t rate = 0;      // 2^-48 ticks a clock
-  std::int64_t gain = 0;       // rate of the piece's next update, if it comes, less this one's
+  std::uint64_t rate = 0;         // 2^-48 ticks a clock
+  std::int64_t gain = 0;          // rate of the piece's next update, if it comes, less this one's
   std::int64_t acceleration = 0;  // 2^-64 ticks a clock, an update
-  std::int64_t jerk = 0;       // 2^-64 ticks a clock, an update, an update
+  std::int64_t jerk = 0;          // 2^-64 ticks a clock, an update, an update
   bool begins_path = false;
   bool begins_piece = false;
 };
@@ -38,8 +38,8 @@ struct Interval {
 class MotionWalk {
  public:
   // From the carry that is a piece's last tick to the first clock at the next one's rate: the tick is visible 3 clocks
-  // after its carry, owed a clock later and taken then; the swap is visible a clock after that, and the slope is the next
-  // one's from the clock that follows it.
+  // after its carry, owed a clock later and taken then; the swap is visible a clock after that, and the slope is the
+  // next one's from the clock that follows it.
   static constexpr std::uint64_t kSwapClocks = 6;
 
   explicit MotionWalk(const std::vector<driver::Command>& commands) {
