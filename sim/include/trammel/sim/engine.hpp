@@ -1,6 +1,6 @@
-// The simulated card (with all that is built, the arc generator too), in two engines with the same step lists, cycle by cycle the same numbers: the golden model alone
-// (here), and the Verilated card in lockstep with it (rtl_engine.hpp). Both take bus accesses in the same number of
-// clocks. One engine, one thread; several engines may live side by side.
+// The simulated card (with all that is built, the arc generator too), in two engines with the same step lists, cycle by
+// cycle the same numbers: the golden model alone (here), and the Verilated card in lockstep with it (rtl_engine.hpp).
+// Both take bus accesses in the same number of clocks. One engine, one thread; several engines may live side by side.
 #pragma once
 
 #include <cstdint>
