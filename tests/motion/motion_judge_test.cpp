@@ -22,7 +22,6 @@ namespace {
 
 constexpr std::uint32_t kClock = 1'000'000;
 constexpr std::uint32_t kFastClock = 50'000'000;  // where the bus has to bring 15,000 lines a second
-constexpr double kTight = 1.005;                  // pieces are fitted to whole ticks
 
 class Recorder final : public run::Observer, public driver::StepSink {
  public:
