@@ -18,6 +18,16 @@ constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes d
 // Blocks that are planned, but whose stop distances wait for what follows.
 constexpr std::size_t kSpare = 4096;
 
+// Lines of all axes and feed pieces.
+QueueLimits queues_of(const CardLimits& card) {
+  const auto halfwords = [&](card_map::Opcode opcode) {
+    const auto mask = static_cast<std::uint8_t>((1U << card.axes) - 1);
+    return card_map::queue_halfwords(*card_map::find_command(static_cast<std::uint8_t>(opcode)), mask);
+  };
+  return {std::max(1U, card.geometry_depth / halfwords(card_map::Opcode::Line)),
+          std::max(1U, card.feed_depth / halfwords(card_map::Opcode::Feed))};
+}
+
 std::unique_ptr<SpeedPlan> plan_for(SpeedProfile profile, std::size_t window) {
   if (profile == SpeedProfile::kSCurve) return std::make_unique<SCurvePlan>(window);
   return std::make_unique<TrapezoidPlan>(window);
@@ -33,7 +43,7 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kFewestAxes, card.axes)))),
       junctions_(machine),
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
-      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz,
+      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, queues_of(card),
                  profile_of(machine, settings) == SpeedProfile::kSCurve, card.classes),
       plan_(plan_for(profile_of(machine, settings), static_cast<std::size_t>(machine.motion.window))) {}
 

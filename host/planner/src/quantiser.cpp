@@ -12,8 +12,10 @@ namespace {
 
 constexpr double kUpdate = card_map::constant::kUpdateClocks;
 constexpr double kShortest = 4 * kUpdate;  // clocks; what is shorter makes one piece with what follows
-// The card's own rule for under-run is looked at every so many clocks at the latest.
-constexpr double kRuleClocks = 64;
+// A card that holds for want of paths goes on with twice the stop distance and a reserve. What it needs must be there
+// while the host fills a queue that is half empty: no stop distance is more than this part of full queues.
+constexpr double kFillOfReach = 4;
+constexpr double kReserve = card_map::constant::kUnderrunReserveTicks;
 constexpr std::size_t kPieces = 16384;
 // The card goes on at a piece's last rate for so many clocks after its last tick; these ticks are the next piece's.
 constexpr double kSwapClocks = 6;
@@ -54,12 +56,14 @@ double time_at(double distance, double speed, double acceleration, double jerk, 
 
 }  // namespace
 
-Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth, bool classes)
+Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, const QueueLimits& queues, bool smooth,
+                     bool classes)
     : path_(path),
       smooth_(smooth),
       classes_(classes),
       clock_hz_(clock_hz),
       stop_clocks_(stop_clocks),
+      queues_(queues),
       pieces_(kPieces),
       highest_(kPieces) {}
 
@@ -224,6 +228,7 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   Piece& put = piece(last_++);
   put = Piece{};
   put.block = timed_;
+  put.begin = tick_;
   put.stop = stop;
   put.clocks = motion.clocks;
   const double turning = turning_rate(motion);
@@ -330,13 +335,23 @@ void Quantiser::see_next() {
   ++seen_;
 }
 
+// Ticks that are queued behind a piece's begin when queues are full, as far as the path is known.
+double Quantiser::reach(const Piece& first) {
+  const std::uint64_t path = std::min(first.block + queues_.paths, path_.end()) - 1;
+  const Piece& last = piece(std::min(completed_ + queues_.pieces, last_) - 1);
+  const std::uint64_t end = std::min(path_[path].end_ticks, last.begin + last.command.ticks);
+  return end > first.begin ? static_cast<double>(end - first.begin) : 0;
+}
+
 void Quantiser::complete_first() {
   Piece& first = piece(completed_);
   const std::uint64_t highest = highest_[highest_first_ % kPieces];
   const double rate = piece(highest).most;
   // At least 1: 0 says that the piece ends at rest.
-  if (!first.stop)
-    first.command.stop_distance = std::max(1U, ticks32(std::ceil(stop_clocks_ * rate) + std::ceil(kRuleClocks * rate)));
+  if (!first.stop) {
+    const double wanted = std::min(std::ceil(stop_clocks_ * rate), reach(first) / kFillOfReach - kReserve);
+    first.command.stop_distance = wanted > 1 ? ticks32(wanted) : 1;
+  }
   if (highest == completed_) ++highest_first_;
   ++completed_;
   seen_clocks_ -= completed_ < seen_ ? piece(completed_).clocks : seen_clocks_;

@@ -16,11 +16,17 @@
 
 namespace trammel::planner {
 
+// What the card's queues hold of the shortest commands.
+struct QueueLimits {
+  std::uint64_t paths = 0;
+  std::uint64_t pieces = 0;
+};
+
 class Quantiser {
  public:
   // `clock_hz`: enabled clocks a second; `stop_clocks`: T_s, how long the fastest rate counts for stop distances.
   // `smooth`: acceleration has no jumps; `classes`: pieces say theirs.
-  Quantiser(PathRing& path, double clock_hz, double stop_clocks, bool smooth, bool classes);
+  Quantiser(PathRing& path, double clock_hz, double stop_clocks, const QueueLimits& queues, bool smooth, bool classes);
 
   // In order. The blocks that the phase covers are in the ring, with all but what comes from here.
   void add(const Phase& phase);
@@ -51,6 +57,7 @@ class Quantiser {
     double most = 0;  // the highest rate
     double clocks = 0;
     std::uint64_t block = 0;  // where it begins
+    std::uint64_t begin = 0;  // tick
     bool stop = false;
   };
   // Phases too short for a piece each.
@@ -71,6 +78,7 @@ class Quantiser {
   void complete();
   void see_next();
   void complete_first();
+  double reach(const Piece& first);
   Piece& piece(std::uint64_t i) { return pieces_[i % pieces_.size()]; }
   const Piece& piece(std::uint64_t i) const { return pieces_[i % pieces_.size()]; }
 
@@ -79,6 +87,7 @@ class Quantiser {
   bool classes_;
   double clock_hz_;
   double stop_clocks_;
+  QueueLimits queues_;
 
   // Where the phases are.
   bool moving_ = false;

@@ -9,11 +9,13 @@
 namespace trammel::planner {
 
 struct CardLimits {
-  std::uint32_t clock_hz = 0;  // > 0
-  unsigned axes = 4;           // of the card, 1 .. 8
-  bool accumulator = true;     // the deviation accumulator is there
-  bool classes = false;        // pieces of rapids say so, for an override of their own
-  bool arc_generator = true;   // the arc generator is there
+  std::uint32_t clock_hz = 0;           // > 0
+  unsigned axes = 4;                    // of the card, 1 .. 8
+  bool accumulator = true;              // the deviation accumulator is there
+  bool classes = false;                 // pieces of rapids say so, for an override of their own
+  bool arc_generator = true;            // the arc generator is there
+  std::uint32_t geometry_depth = 4096;  // halfwords of the queues
+  std::uint32_t feed_depth = 2560;
 };
 
 // Where arcs go: to what is there, the first of these that can; helices to the generator or out as lines.

@@ -1,0 +1,230 @@
+#include "motion_judge.hpp"
+
+#include <cmath>
+
+#include "course.hpp"
+#include "motion_walk.hpp"
+
+namespace trammel::test {
+namespace {
+
+constexpr double kUpdate = 32;  // clocks
+
+class Judge {
+ public:
+  explicit Judge(const MotionLimits& limits) : limits_(limits) {
+    for (std::size_t a = 0; a < limits.machine.axes.size(); ++a) {
+      const machine::MachineAxis& axis = limits.machine.axes[a];
+      velocity_[a] = axis.max_velocity * axis.steps_per_mm / limits.clock_hz;
+      acceleration_[a] = axis.max_acceleration * axis.steps_per_mm / (limits.clock_hz * limits.clock_hz);
+      jerk_[a] = axis.max_jerk * axis.steps_per_mm / (limits.clock_hz * limits.clock_hz * limits.clock_hz);
+    }
+  }
+
+  void start() {
+    resting_ = true;
+    ++verdict.stops;
+  }
+
+  void interval(const Interval& now) {
+    if (now.begins_path) enter(now);
+    // Path and rate do not change in the same clock: borders of pieces are at whole ticks, and a piece goes on for some
+    // clocks after its last one. Until then the new path is run at the rates of the piece before.
+    if (now.begins_piece) piece_clock_ = now.clock;
+    handing_over_ =
+        !resting_ &&
+        ((piece_clock_ < path_clock_ && (now.ticks <= 1 || now.clock - path_clock_ < 2 * MotionWalk::kSwapClocks)) ||
+         now.path->ticks - now.ticks <= 2);
+    if (resting_)
+      at_rest(now);
+    else if (now.begins_piece)
+      border(now);
+    if (!handing_over_) moving(now);
+    resting_ = false;
+    last_ = now;
+    ++verdict.updates;
+  }
+
+  void stop() { at_rest(last_); }
+
+  MotionVerdict verdict;
+
+ private:
+  // Ticks a clock^2, as the piece has it: its floor may cut an update short.
+  static double acceleration(const Interval& now) { return static_cast<double>(now.acceleration) * 0x1p-64 / kUpdate; }
+  static double rate(const Interval& now) { return static_cast<double>(now.rate) * 0x1p-48; }
+
+  void moving(const Interval& now) {
+    const double speed = rate(now);
+    const bool goes_on = !resting_ && !now.begins_piece;
+    const double change = goes_on ? (speed - rate(last_)) / kUpdate : 0;
+    const double jerk = static_cast<double>(now.jerk) * 0x1p-64 / (kUpdate * kUpdate);
+    const std::size_t where = now.path->command;
+    // A piece of a few updates is fitted to its ticks by its acceleration.
+    const double tolerance = now.clock - piece_clock_ <= 4 * 32 ? 1.15 : 1;
+    for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
+      const double pulses = course_.pulses_a_tick[a];
+      verdict.velocity.look(pulses * speed / velocity_[a], where);
+      const double whole = std::hypot(pulses * change, centripetal(a, speed));
+      verdict.acceleration.look(whole / acceleration_[a] / tolerance, where);
+      if (jerk_[a] <= 0) continue;
+      verdict.jerk.look(pulses * std::abs(jerk) / jerk_[a], where);
+      verdict.jerk.look(centripetal(a, speed) * turn_rate(a, speed) / jerk_[a], where);
+    }
+  }
+
+  // Of an arc's plane axes: radians a clock at a tick rate, and pulses a clock^2 towards the centre.
+  double turn_rate(std::size_t axis, double speed) const {
+    if (course_.curvature == 0 || (axis != course_.plane[0] && axis != course_.plane[1])) return 0;
+    return course_.pulses_a_tick[axis] * speed * course_.curvature / scale(axis);
+  }
+  double centripetal(std::size_t axis, double speed) const {
+    return course_.pulses_a_tick[axis] * speed * turn_rate(axis, speed);
+  }
+
+  // The rate from which a motion may begin, and with which it may end, on the path that it is on.
+  double floor() const { return floor(course_); }
+  double floor(const Course& course) const {
+    double allowed = INFINITY;
+    for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
+      const double pulses = course.pulses_a_tick[a];
+      if (pulses == 0) continue;
+      allowed =
+          std::min(allowed, jerk_[a] > 0 ? std::cbrt(4.5 * jerk_[a] / pulses) : std::sqrt(acceleration_[a] / pulses));
+    }
+    return allowed;
+  }
+
+  // First and last rate of a motion: rates are those of an update's middle, and the last may come an update and, since
+  // pieces have whole ticks, a tick early.
+  void at_rest(const Interval& now) {
+    const double gain = std::abs(static_cast<double>(now.gain)) * 0x1p-48;
+    const double tick = resting_ ? 0 : 2 * std::max(gain, std::abs(acceleration(last_)) * kUpdate) / kUpdate;
+    verdict.rest.look(rate(now) / (std::sqrt(floor() * floor() + tick) + 1.5 * gain + 0x1p-31), now.path->command);
+  }
+
+  void border(const Interval& now) {
+    const double before = rate(last_);
+    const double after = rate(now);
+    const double gain = static_cast<double>(now.gain) * 0x1p-48;
+    const double most = std::max(before, after);
+    const double rest = std::max(floor(course_), floor(last_course_));
+    const bool stop = most <= 2 * rest;  // and a start
+    const double allowed = std::abs(gain) + std::abs(acceleration(last_)) * kUpdate + 0.001 * most + (stop ? rest : 0);
+    double jump = std::abs(after - before);
+    const bool new_path = now.ticks <= 1 || now.clock - path_clock_ <= 2 * MotionWalk::kSwapClocks;
+    // Where a path ends too, the density of ticks may change with the rate; it is known as well as the rounded lengths.
+    if (new_path) {
+      const double scaled = before * mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
+      jump = std::min(jump, std::abs(after - scaled) - scaled * (last_course_.error + course_.error));
+    }
+    verdict.rate_jump.look(jump / allowed, now.path->command);
+    for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
+      if (jerk_[a] <= 0 || new_path) continue;
+      const double jumped = course_.pulses_a_tick[a] * std::abs(acceleration(now) - acceleration(last_));
+      verdict.acceleration_jump.look((jumped - 2 * kUpdate * jerk_[a]) / acceleration_[a], now.path->command);
+    }
+  }
+
+  static double mm_a_tick(const Course& course, const Interval& at) {
+    return course.length / static_cast<double>(at.path->ticks);
+  }
+
+  void enter(const Interval& now) {
+    last_course_ = course_;
+    course_ = course_of(*now.path, limits_.machine);
+    path_clock_ = now.clock;
+    before_ = last_;
+    if (!resting_) corner(now);
+  }
+
+  // Speed through a corner against what the rules allow for the least turn that rounded ends leave; a corner that
+  // allows no speed is passed at the floor.
+  void corner(const Interval& now) {
+    const double ticks = limits_.clock_hz * rate(last_);
+    const double at_floor = limits_.clock_hz * (floor(last_course_) + 1.5 * std::abs(acceleration(last_)) * kUpdate);
+    if (last_course_.spatial && course_.spatial) verdict.corner.look(jump(now, ticks, false), now.path->command);
+    double allowed = 0;
+    if (last_course_.spatial == course_.spatial) {
+      Vector turn{};
+      double dot = 0;
+      for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
+        if (course_.spatial && !is_spatial(limits_.machine.axes[a])) continue;
+        dot += last_course_.exit[a] * course_.entry[a];
+        turn[a] = course_.entry[a] - last_course_.exit[a];
+      }
+      const double angle = std::acos(std::clamp(dot, -1.0, 1.0)) - last_course_.error - course_.error;
+      if (!(angle > 0)) return;
+      const double most = strongest(turn);
+      const double s = std::cos(angle / 2);
+      const double shorter = std::min(last_course_.length, course_.length) + 2 / scale(0);
+      allowed = std::sqrt(most * std::min(limits_.junction_deviation * s / (1 - s), shorter / angle));
+    }
+    ++verdict.corners;
+    const double scale = limits_.clock_hz * mm_a_tick(last_course_, last_) * (1 - last_course_.error);  // mm/s
+    // Half an update, and a tick of the ramp to the corner, may be left.
+    const double gain = std::abs(acceleration(last_)) * kUpdate;
+    const double most_rate = std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate) + gain / 2;
+    double share = rate(last_) / std::max(most_rate, at_floor / limits_.clock_hz);
+    // A way of X Y Z below a pulse may be hidden in the other: then it is no stop, but no axis may jump.
+    if (last_course_.spatial != course_.spatial) share = std::min(share, jump(now, ticks, true));
+    verdict.corner.look(share, now.path->command);
+  }
+
+  // Axes outside X Y Z, or `all`, may jump by sqrt(a d); rounded ends may hide half a pulse of each path.
+  double jump(const Interval& now, double ticks, bool all) const {
+    double share = 0;
+    for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
+      const machine::MachineAxis& axis = limits_.machine.axes[a];
+      if (!all && is_spatial(axis)) continue;
+      const double before = last_course_.exit[a] * mm_a_tick(last_course_, last_);
+      const double after = course_.entry[a] * mm_a_tick(course_, now);
+      const double hidden =
+          (1.0 / static_cast<double>(last_.path->ticks) + 1.0 / static_cast<double>(now.path->ticks)) / scale(a);
+      const double jumped = (std::abs(after - before) - hidden) * ticks;
+      const double allowed = std::sqrt(axis.max_acceleration * limits_.junction_deviation) +
+                             floor(last_course_) * limits_.clock_hz * std::max(std::abs(before), std::abs(after));
+      share = std::max(share, jumped / allowed);
+    }
+    return share;
+  }
+
+  double scale(std::size_t axis) const { return limits_.machine.axes[axis].steps_per_mm; }
+
+  // The largest acceleration in the direction that no axis's limit forbids, mm/s^2.
+  double strongest(const Vector& direction) const {
+    double squares = 0;
+    for (const double x : direction) squares += x * x;
+    double most = INFINITY;
+    for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
+      if (direction[a] == 0) continue;
+      most = std::min(most, limits_.machine.axes[a].max_acceleration * std::sqrt(squares) / std::abs(direction[a]));
+    }
+    return most;
+  }
+
+  const MotionLimits& limits_;
+  Vector velocity_{};      // pulses a clock
+  Vector acceleration_{};  // a clock^2
+  Vector jerk_{};          // a clock^3; 0: no limit
+  Course course_;
+  Course last_course_;
+  bool resting_ = true;
+  Interval last_;
+  Interval before_;                // the last one on the path before
+  std::uint64_t path_clock_ = 0;   // of this path's first clock
+  std::uint64_t piece_clock_ = 0;  // of this piece's
+  bool handing_over_ = false;
+};
+
+}  // namespace
+
+MotionVerdict judge_motion(const std::vector<driver::Command>& commands, const MotionLimits& limits) {
+  MotionWalk walk(commands);
+  Judge judge(limits);
+  walk.visit(judge);
+  judge.verdict.clocks = walk.clocks();
+  return judge.verdict;
+}
+
+}  // namespace trammel::test
