@@ -31,7 +31,7 @@ void check_setting(std::uint32_t address, std::uint64_t value, const std::string
 std::uint32_t longest_command(bool map::Command::*queue, const Identification& card) {
   std::uint32_t result = 0;
   for (const map::Command& command : map::kCommands) {
-    if (!map::has_engine(card.engines, command.engine)) {
+    if (!map::is_known(command, card.engines)) {
       continue;
     }
     const auto mask = static_cast<std::uint8_t>(command.axis_halfwords != 0 ? (1U << card.axes) - 1 : 0);

@@ -62,6 +62,7 @@ class Command:
     queues: List[str]
     mask: str  # one of MASK_RULES
     engine: str  # field of ENGINES without which the opcode is unknown; empty: always there
+    built: bool  # false: only laid out, and unknown whatever the engines are
     flags: Optional[Flags]  # with the mask rule `flags`
     brief: str
     count: Count
@@ -124,6 +125,7 @@ def _command(entry):
         queues=entry["queues"],
         mask=entry["mask"],
         engine=entry.get("engine", ""),
+        built=entry.get("built", True),
         flags=Flags(flags["max"], flags["engine"], flags["brief"]) if flags else None,
         brief=entry["brief"],
         count=Count(

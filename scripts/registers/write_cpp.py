@@ -82,6 +82,7 @@ struct Command {
   bool to_geometry;
   bool to_feed;
   std::uint32_t engine;  // bit of ENGINES without which the opcode is unknown; 0 (lines): always known
+  bool built;            // false: only laid out yet, and unknown whatever the engines are
   MaskRule mask_rule;
   std::uint32_t flags_maximum;
   std::uint32_t flags_engine;
@@ -120,6 +121,11 @@ constexpr std::uint32_t halfwords(const Command& command, std::uint8_t mask) {
 constexpr std::uint32_t words(const Command& command, std::uint8_t mask) { return (halfwords(command, mask) + 1) / 2; }
 
 constexpr bool has_engine(std::uint32_t engines, std::uint32_t engine) { return (engines >> engine & 1) != 0; }
+
+// The opcode has a meaning on a card with these engines.
+constexpr bool is_known(const Command& command, std::uint32_t engines) {
+  return command.built && has_engine(engines, command.engine);
+}
 
 // With MaskRule::Flags: the mask byte has a meaning on a card with these engines.
 constexpr bool flags_good(const Command& command, std::uint8_t flags, std::uint32_t engines) {
@@ -308,7 +314,7 @@ def _command_table(commands, register_map):
         flags = (c.flags.maximum, register_map.engine_bit(c.flags.engine)) if c.flags else (0, 0)
         queues = f'{_bool("geometry" in c.queues)}, {_bool("feed" in c.queues)}'
         yield (f'{{"{c.name}", Opcode::{camel(c.name)}, {queues}, '
-               f"{register_map.engine_bit(c.engine)}, MaskRule::{camel(c.mask)}, {flags[0]}, {flags[1]}, "
+               f"{register_map.engine_bit(c.engine)}, {_bool(c.built)}, MaskRule::{camel(c.mask)}, {flags[0]}, {flags[1]}, "
                f"{c.count.minimum}, 0x{c.count.maximum:X}, {c.base_halfwords}, "
                f"{c.axis_halfwords}, {c.axes_in_base}, {len(c.fields)}, {{{{{fields}}}}}}},\n")
     yield "}};\n"

@@ -137,14 +137,18 @@ def _halfwords(command):
 
 def _command_row(command):
     return (f"| {command.opcode} | [`{command.name}`](#{command.name.lower()}) | {' and '.join(command.queues)} "
-            f"| {_halfwords(command)} | {command.engine} | {command.brief} |\n")
+            f"| {_halfwords(command)} | {command.engine} | {_not_built(command)}{command.brief} |\n")
+
+
+def _not_built(command):
+    return "" if command.built else "Not built yet: `UNKNOWN_OPCODE`. "
 
 
 def _command(command):
     count = command.count
     top = "0" if count.maximum == 0 else "2^40 - 1"
     lines = [
-        f"\n## {command.name}\n\n{command.brief}\n\n",
+        f"\n## {command.name}\n\n{_not_built(command)}{command.brief}\n\n",
         f"- Opcode {command.opcode}, to the {' and the '.join(command.queues)} queue"
         f"{'s' if len(command.queues) > 1 else ''}.\n",
         f"- Axis mask: {_mask(command)}.\n",

@@ -37,7 +37,7 @@ def package_text(register_map, commands, constants):
     parts += _reasons(register_map)
     parts += _command_constants(commands)
     parts += _register_functions(register_map.registers, commands.version)
-    parts += _command_functions(commands.commands)
+    parts += _command_functions([c for c in commands.commands if c.built])
     parts.append(TAIL)
     return "".join(parts)
 

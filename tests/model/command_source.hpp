@@ -80,7 +80,7 @@ class CommandSource {
   static bool possible(const card_map::Command& layout, unsigned axes, std::uint32_t engines) {
     const bool plane =
         layout.mask_rule == card_map::MaskRule::Plane || layout.mask_rule == card_map::MaskRule::PlaneAndAxes;
-    return card_map::has_engine(engines, layout.engine) && (axes >= 2 || !plane);
+    return card_map::is_known(layout, engines) && (axes >= 2 || !plane);
   }
 
   std::mt19937_64& random() { return random_; }
@@ -234,7 +234,7 @@ inline void add_header_violations(std::vector<Violation>& list, const WireComman
   };
   for (unsigned opcode = 0; opcode < 256; ++opcode) {
     const card_map::Command* known = card_map::find_command(static_cast<std::uint8_t>(opcode));
-    if (known != nullptr && card_map::has_engine(engines, known->engine)) continue;
+    if (known != nullptr && card_map::is_known(*known, engines)) continue;
     add("opcode " + std::to_string(opcode), 0, opcode ^ (good.halfwords[0] & 0xFFU), card_map::Reason::UnknownOpcode);
   }
   for (unsigned flip = 1; flip < 256; ++flip) {

@@ -100,7 +100,7 @@ void CommandChecker::go_on(const Inputs& in) {
   if (age_ == kStoreLow && !header) store(received_ - 2);
   if (age_ == kReadNumber && header) {
     command_ = card_map::find_command(static_cast<std::uint8_t>(halfwords_[0]));
-    if (command_ != nullptr && !card_map::has_engine(engines_, command_->engine)) command_ = nullptr;
+    if (command_ != nullptr && !card_map::is_known(*command_, engines_)) command_ = nullptr;
     outputs_.number = static_cast<std::uint8_t>(halfwords_[1] >> 8);
   }
   if (age_ == kStoreHigh) {

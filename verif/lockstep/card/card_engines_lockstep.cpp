@@ -92,6 +92,14 @@ void refusals(std::uint64_t seed) {
   EXPECT_EQ(host.read(reg::kOutputs).has_value(), kCommands);
   EXPECT_EQ(refusal(host), kCommands ? Reason::None : Reason::UnknownAddress);
   traffic.abort();
+  // Laid out, but on no card yet, whatever its engines are.
+  for (const driver::Command& command :
+       {driver::Command(driver::WaitInputCommand{}), driver::Command(driver::ProbeCommand{}),
+        driver::Command(driver::ProbeEndCommand{})}) {
+    EXPECT_FALSE(traffic.send(command)) << command.index();
+    EXPECT_EQ(refusal(host), Reason::UnknownOpcode) << command.index();
+    traffic.abort();
+  }
   // From the last axis's FREQUENCY_LO to START.
   for (std::uint32_t address = reg::frequency_lo(kAxes - 1); address <= reg::kStart; address += 4) {
     const bool reads = host.read(address).has_value();

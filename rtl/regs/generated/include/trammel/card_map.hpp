@@ -58,7 +58,7 @@ inline constexpr std::uint32_t kArcGenerator = 3;  // ARC_CHORD: arc generator.
 inline constexpr std::uint32_t kJerk = 4;          // Jerk in the feed generator.
 inline constexpr std::uint32_t kDirectMode = 5;    // Direct mode.
 inline constexpr std::uint32_t kUnderrunHold = 6;  // Hold on the path when the queues run dry.
-inline constexpr std::uint32_t kPathCommands = 7;  // OUTPUT, MARK, WAIT_INPUT, PROBE, PROBE_END.
+inline constexpr std::uint32_t kPathCommands = 7;  // OUTPUT, MARK; not built yet: WAIT_INPUT, PROBE, PROBE_END.
 inline constexpr std::uint32_t kStreaming = 8;     // Position streaming.
 inline constexpr std::uint32_t kClasses = 9;       // Classes of pieces: ratios for rapid and fixed.
 inline constexpr std::uint32_t kWatermarks = 10;   // Watermarks of the queues.
@@ -552,6 +552,7 @@ struct Command {
   bool to_geometry;
   bool to_feed;
   std::uint32_t engine;  // bit of ENGINES without which the opcode is unknown; 0 (lines): always known
+  bool built;            // false: only laid out yet, and unknown whatever the engines are
   MaskRule mask_rule;
   std::uint32_t flags_maximum;
   std::uint32_t flags_engine;
@@ -570,6 +571,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      true,
      false,
      0,
+     true,
      MaskRule::Any,
      0,
      0,
@@ -585,6 +587,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      true,
      false,
      1,
+     true,
      MaskRule::Plane,
      0,
      0,
@@ -610,6 +613,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      true,
      false,
      3,
+     true,
      MaskRule::PlaneAndAxes,
      0,
      0,
@@ -635,6 +639,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      false,
      true,
      0,
+     true,
      MaskRule::Flags,
      2,
      9,
@@ -649,13 +654,14 @@ inline constexpr std::array<Command, 11> kCommands{{
        Field{"stop_distance", FieldKind::Unsigned, 32, 6, 2, false, 0, 0x0, 0x0, 0x0, 0, false},
        Field{"acceleration", FieldKind::Signed, 64, 8, 4, false, 0, 0x0, 0x0, 0x0, 0, false},
        Field{"jerk", FieldKind::Signed, 64, 12, 4, false, 0, 0x0, 0x0, 0x0, 0, false}}}},
-    {"DWELL", Opcode::Dwell, true, true, 0, MaskRule::None, 0, 0, 0, 0xFFFFFFFFFF, 5, 0, 0, 0, {{}}},
-    {"END", Opcode::End, true, true, 0, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
+    {"DWELL", Opcode::Dwell, true, true, 0, true, MaskRule::None, 0, 0, 0, 0xFFFFFFFFFF, 5, 0, 0, 0, {{}}},
+    {"END", Opcode::End, true, true, 0, true, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
     {"OUTPUT",
      Opcode::Output,
      true,
      false,
      7,
+     true,
      MaskRule::None,
      0,
      0,
@@ -667,12 +673,13 @@ inline constexpr std::array<Command, 11> kCommands{{
      2,
      {{Field{"set", FieldKind::Unsigned, 16, 0, 1, false, 0, 0x0, 0x0, 0x0, 0, false},
        Field{"clear", FieldKind::Unsigned, 16, 1, 1, false, 0, 0x0, 0x0, 0x0, 0, false}}}},
-    {"MARK", Opcode::Mark, true, false, 7, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
+    {"MARK", Opcode::Mark, true, false, 7, true, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
     {"WAIT_INPUT",
      Opcode::WaitInput,
      true,
      true,
      7,
+     false,
      MaskRule::None,
      0,
      0,
@@ -688,6 +695,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      true,
      false,
      7,
+     false,
      MaskRule::None,
      0,
      0,
@@ -698,7 +706,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      0,
      1,
      {{Field{"condition", FieldKind::Unsigned, 5, 0, 1, false, 0, 0x0, 0x1F, 0x0, 0, false}}}},
-    {"PROBE_END", Opcode::ProbeEnd, true, true, 7, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
+    {"PROBE_END", Opcode::ProbeEnd, true, true, 7, false, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
 }};
 
 // Layout of a command, nullptr when the opcode has no meaning.
@@ -725,6 +733,11 @@ constexpr std::uint32_t halfwords(const Command& command, std::uint8_t mask) {
 constexpr std::uint32_t words(const Command& command, std::uint8_t mask) { return (halfwords(command, mask) + 1) / 2; }
 
 constexpr bool has_engine(std::uint32_t engines, std::uint32_t engine) { return (engines >> engine & 1) != 0; }
+
+// The opcode has a meaning on a card with these engines.
+constexpr bool is_known(const Command& command, std::uint32_t engines) {
+  return command.built && has_engine(engines, command.engine);
+}
 
 // With MaskRule::Flags: the mask byte has a meaning on a card with these engines.
 constexpr bool flags_good(const Command& command, std::uint8_t flags, std::uint32_t engines) {
