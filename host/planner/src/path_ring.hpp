@@ -37,9 +37,9 @@ class PathRing {
   std::uint64_t begin() const { return begin_; }
   std::uint64_t end() const { return end_; }
   bool full() const { return end_ - begin_ == entries_.size(); }
-  PathEntry& operator[](std::uint64_t i) { return entries_[i % entries_.size()]; }
+  PathEntry& operator[](std::uint64_t i) { return entries_[static_cast<std::size_t>(i % entries_.size())]; }
   // The next one, with the content of an old one.
-  PathEntry& push() { return entries_[end_++ % entries_.size()]; }
+  PathEntry& push() { return (*this)[end_++]; }
   void pop() { ++begin_; }
   void unpush() { --end_; }
 

@@ -16,7 +16,6 @@ constexpr double kShortest = 4 * kUpdate;  // clocks; what is shorter makes one 
 // while the host fills a queue that is half empty: no stop distance is more than this part of full queues.
 constexpr double kFillOfReach = 4;
 constexpr double kReserve = card_map::constant::kUnderrunReserveTicks;
-constexpr std::size_t kPieces = 16384;
 // The card goes on at a piece's last rate for so many clocks after its last tick; these ticks are the next piece's.
 constexpr double kSwapClocks = 6;
 constexpr double kLeastRate = 0x1p-32;
@@ -328,7 +327,6 @@ void Quantiser::force() {
 
 void Quantiser::see_next() {
   const Piece& next = piece(seen_);
-  const auto slot = [](std::uint64_t i) { return i % kPieces; };
   while (highest_last_ != highest_first_ && piece(highest_[slot(highest_last_ - 1)]).most <= next.most) --highest_last_;
   highest_[slot(highest_last_++)] = seen_;
   seen_clocks_ = seen_ == completed_ ? 0 : seen_clocks_ + next.clocks;
@@ -353,7 +351,7 @@ double Quantiser::reach(const Piece& first) {
 
 void Quantiser::complete_first() {
   Piece& first = piece(completed_);
-  const std::uint64_t highest = highest_[highest_first_ % kPieces];
+  const std::uint64_t highest = highest_[slot(highest_first_)];
   const double rate = piece(highest).most;
   // At least 1: 0 says that the piece ends at rest.
   if (!first.stop) {

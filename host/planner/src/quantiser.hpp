@@ -79,8 +79,10 @@ class Quantiser {
   void see_next();
   void complete_first();
   double reach(const Piece& first);
-  Piece& piece(std::uint64_t i) { return pieces_[i % pieces_.size()]; }
-  const Piece& piece(std::uint64_t i) const { return pieces_[i % pieces_.size()]; }
+  // Of what is numbered on, in a ring.
+  static std::size_t slot(std::uint64_t i) { return static_cast<std::size_t>(i % kPieces); }
+  Piece& piece(std::uint64_t i) { return pieces_[slot(i)]; }
+  const Piece& piece(std::uint64_t i) const { return pieces_[slot(i)]; }
 
   PathRing& path_;
   bool smooth_;
@@ -107,6 +109,8 @@ class Quantiser {
   std::uint64_t timed_ = 0;  // block that is not timed yet
   double block_clocks_ = 0;  // of it, so far
   double block_rate_ = 0;
+
+  static constexpr std::size_t kPieces = 16384;
 
   std::vector<Piece> pieces_;  // a ring
   std::uint64_t first_ = 0;
