@@ -12,6 +12,7 @@ CheckResult check_program(const run::ProgramLines& lines, const machine::Machine
                           const planner::CardLimits& card, const run::RunSettings& settings) {
   CheckResult result;
   result.plan = run::Runner(lines, machine, card, settings).plan();
+  result.profile = profile_of(machine, settings);
   result.clock_hz = card.clock_hz;
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     result.axes += machine.axes[a].letter;
@@ -28,7 +29,7 @@ std::string summary(const CheckResult& result) {
     text +=
         fmt::format("  {}: ends at pulse {} ({:.4f} mm)\n", result.axes[a], plan.end[a], result.final_millimetres[a]);
   }
-  return text + accepted_words(plan.accepted);
+  return text + summary(result.profile) + accepted_words(plan.accepted);
 }
 
 nlohmann::ordered_json json_of(const CheckResult& result) {
@@ -42,6 +43,7 @@ nlohmann::ordered_json json_of(const CheckResult& result) {
   json["segments"] = plan.segments;
   json["commands"] = plan.commands;
   json["planned_seconds"] = plan.seconds;
+  json["profile"] = name_of(result.profile);
   json["motion"] = motion_json(plan.motion);
   json["feeds_not_reached"] = feeds_json(plan.feeds_not_reached);
   json["accepted_words"] = plan.accepted;

@@ -4,6 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "profile_report.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/runner.hpp"
 
@@ -11,6 +12,7 @@ namespace trammel::app {
 
 struct CheckResult {
   run::Plan plan;
+  ProfileReport profile;
   std::string axes;  // letters in the card's order
   std::vector<double> final_millimetres;
   std::uint32_t clock_hz = 0;

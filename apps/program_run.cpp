@@ -63,6 +63,16 @@ std::vector<double> scales(const machine::Machine& machine) {
   return result;
 }
 
+run::StepRecorder::Options recording_of(const machine::Machine& machine, const RunOptions& options, double clock_hz) {
+  run::StepRecorder::Options recording;
+  recording.steps_per_mm = scales(machine);
+  recording.steps = options.steps;
+  recording.path_steps = options.path_steps;
+  recording.plot = options.plot;
+  recording.clock_hz = clock_hz;
+  return recording;
+}
+
 void tell(const run::Plan& plan, RunResult& result) {
   result.program = plan.file;
   result.segments = plan.segments;
@@ -70,6 +80,21 @@ void tell(const run::Plan& plan, RunResult& result) {
   result.motion = plan.motion;
   result.accepted = plan.accepted;
   result.feeds_not_reached = plan.feeds_not_reached;
+}
+
+void tell(const run::Outcome& outcome, const machine::Machine& machine, RunResult& result) {
+  result.final_position = outcome.final_position;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    result.final_millimetres.push_back(static_cast<double>(result.final_position[a]) / machine.axes[a].steps_per_mm);
+  }
+  result.commands = outcome.commands;
+  result.under_runs = outcome.under_runs;
+}
+
+void tell(const sim::Engine& engine, RunResult& result) {
+  result.cycles = engine.cycles();
+  result.lockstep_cycles = engine.lockstep_cycles();
+  result.comparisons = engine.comparisons();
 }
 
 void tell(run::StepRecorder& recorder, RunResult& result) {
@@ -84,8 +109,6 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
                       const sim::SimulationOptions& engine_options, const RunOptions& options) {
   const auto begun = std::chrono::steady_clock::now();
   RunResult result;
-  run::StepRecorder::Options recording;
-  recording.steps_per_mm = scales(machine);
   for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
   run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes}, options.settings);
   run::CommandedCourse course(machine);
@@ -94,11 +117,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
 
   if (options.planned) options.planned(plan);
 
-  recording.steps = options.steps;
-  recording.path_steps = options.path_steps;
-  recording.plot = options.plot;
-  recording.clock_hz = engine_options.clock_hz;
-  run::StepRecorder recorder(recording);
+  run::StepRecorder recorder(recording_of(machine, options, engine_options.clock_hz));
   if (course.detail_command()) recorder.detail_of(*course.detail_command());
 
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);
@@ -121,16 +140,10 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
 
   tell(runner.last_plan(), result);
   result.engine = engine_options.kind == sim::EngineKind::kRtl ? "rtl" : "model";
-  result.final_position = outcome.final_position;
-  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    result.final_millimetres.push_back(static_cast<double>(result.final_position[a]) / machine.axes[a].steps_per_mm);
-  }
-  result.cycles = engine->cycles();
+  tell(outcome, machine, result);
+  tell(*engine, result);
   result.clock_hz = card.identification().clock_hz;
-  result.lockstep_cycles = engine->lockstep_cycles();
-  result.comparisons = engine->comparisons();
-  result.commands = outcome.commands;
-  result.under_runs = outcome.under_runs;
+  result.profile = profile_of(machine, options.settings);
   if (options.plot) {
     result.plot = {result.program,  course.points(),   recorder.executed(), recorder.thinned(),
                    course.detail(), recorder.detail(), recorder.speed()};

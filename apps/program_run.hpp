@@ -10,6 +10,7 @@
 
 #include "motion_options.hpp"
 #include "operator_timeline.hpp"
+#include "profile_report.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/path_identity.hpp"
 #include "trammel/run/plot.hpp"
@@ -32,8 +33,8 @@ struct RunOptions {
   std::function<void(const run::Plan&)> planned;
 };
 
-// Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds`, `motion` and the
-// picture's commanded path.
+// Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds`, `motion`, `profile` and
+// the picture's commanded path.
 struct RunResult {
   std::string program;
   std::string engine;
@@ -52,6 +53,7 @@ struct RunResult {
   std::uint64_t commands = 0;                    // sent to the card
   double planned_seconds = 0;                    // estimate
   run::PlannedMotion motion;
+  ProfileReport profile;
   std::optional<std::uint32_t> under_runs;      // none where the card does not count them
   std::uint64_t path_steps = 0;                 // before the shapers
   std::string path_identity;                    // of their list

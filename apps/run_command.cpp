@@ -13,6 +13,7 @@
 #include "errors.hpp"
 #include "motion_options.hpp"
 #include "outputs.hpp"
+#include "profile_report.hpp"
 #include "program_check.hpp"
 #include "program_file.hpp"
 #include "program_run.hpp"
@@ -81,6 +82,7 @@ void execute(const Options& options) {
   outputs.check();
 
   const machine::Machine machine = machine_of(options);
+  for (const std::string& text : jerk_warnings(machine)) tell("warning", text);
   run.most_percent = 100 * machine.motion.max_override;
   run.operation = options.motion.operation(run.most_percent);
   const auto axes = static_cast<unsigned>(machine.motors());

@@ -98,6 +98,7 @@ std::string summary(const RunResult& result) {
     text += fmt::format("  {}: {} pulses made, ends at pulse {} ({:.4f} mm)\n", result.axes[a], result.steps[a],
                         result.final_position[a], result.final_millimetres[a]);
   }
+  text += summary(result.profile);
   text += fmt::format("  largest deviation: lines {:.4f} pulses, arcs {:.4f} pulses\n", result.largest_line_deviation,
                       result.largest_arc_deviation);
   text += fmt::format("  path: {} steps, identity {}; shapers {} to {} clocks late\n", result.path_steps,
@@ -137,6 +138,7 @@ nlohmann::ordered_json json_of(const RunResult& result) {
   json["segments"] = result.segments;
   json["commands"] = result.commands;
   json["planned_seconds"] = result.planned_seconds;
+  json["profile"] = name_of(result.profile);
   json["motion"] = motion_json(result.motion);
   json["under_runs"] = nullptr;
   if (result.under_runs) json["under_runs"] = *result.under_runs;

@@ -215,6 +215,67 @@ TEST_F(Operator, CheckTellsTheTimeOfTheRunAndRunsNothing) {
   EXPECT_NE(bad.err.find("b.ngc:2: "), std::string::npos) << bad.err;
 }
 
+// 1,000 mm/s^2 of the default machine: at 50,000 mm/s^3 the acceleration rises in 0.02 s, which a lone move of an
+// S-curve takes longer than a trapezoid.
+TEST_F(Operator, TheProfileIsNamed) {
+  const std::string program = command_.write("a.ngc", "G1 X20 F1200\n");
+  std::string jerks;
+  for (const std::string axis : {"x", "y", "z", "e"}) jerks += " --set axis." + axis + ".max_jerk=50000";
+  struct Case {
+    std::string options;
+    std::string name;
+    std::string text;
+    double seconds;
+  };
+  for (const auto& [options, name, text, seconds] : std::vector<Case>{
+           {"", "trapezoid", "  profile: trapezoid; max_jerk is missing for X Y Z E\n", 1.02},
+           {jerks, "s-curve", "  profile: s-curve\n", 1.04},
+           {jerks + " --profile trapezoid", "trapezoid", "  profile: trapezoid\n", 1.02},
+           {"--set axis.x.max_jerk=50000", "trapezoid", "  profile: trapezoid; max_jerk is missing for Y Z E\n", 1.02},
+           {"--set axis.x.max_jerk=50000 --profile s-curve", "s-curve", "  profile: s-curve\n", 1.04},
+       }) {
+    SCOPED_TRACE(options);
+    for (const std::string mode : {" --engine model --clock 1000000", " --check --clock 1000000"}) {
+      const Outcome outcome = command_.run("run " + program + mode + " " + options + " --json " + command_.path("j"));
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+      EXPECT_NE(outcome.out.find(text), std::string::npos) << outcome.out;
+      EXPECT_EQ(outcome.err.find("max_jerk"), std::string::npos) << outcome.err;
+      const nlohmann::json json = read_json(command_.path("j"));
+      EXPECT_EQ(json["profile"], name);
+      EXPECT_NEAR(json["planned_seconds"], seconds, 0.002);
+    }
+  }
+}
+
+TEST_F(Operator, SCurvesNeedTheJerkOfEachAxisThatMoves) {
+  const std::string s_curve = " --check --profile s-curve --set axis.x.max_jerk=50000";
+  // Among them half a circle that ends where its Y began, and a full one.
+  const std::map<std::string, std::string> wrong{
+      {"G1 X1 F600\nX2 Y1\n", "a.ngc:2: axis Y moves"}, {"G1 X1 F600\nG2 X3 I1\n", "a.ngc:2: axis Y moves"},
+      {"G2 I1 F600\n", "a.ngc:1: axis Y moves"},        {"G18 G2 X1 Z1 I1 F600\n", "a.ngc:1: axis Z moves"},
+      {"G1 X1 F600\nE1\n", "a.ngc:2: axis E moves"},
+  };
+  for (const auto& [text, message] : wrong) {
+    const Outcome outcome = command_.run("run " + command_.write("a.ngc", text) + s_curve);
+    EXPECT_EQ(outcome.status, 2) << text;
+    EXPECT_NE(outcome.err.find(message + " and has no max_jerk"), std::string::npos) << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+  }
+  EXPECT_EQ(command_.run("run " + command_.write("a.ngc", "G1 X1 Y0 F600\nG4 P0.1\n") + s_curve).status, 0)
+      << "Y stands";
+}
+
+TEST_F(Operator, AJerkThatIsNotPerCubicSecondIsToldOf) {
+  const std::string run = "run " + command_.write("a.ngc", "G1 X1 F600\n") + " --check --set axis.x.max_jerk=";
+  const Outcome slow = command_.run(run + "999");
+  EXPECT_EQ(slow.status, 0);
+  EXPECT_NE(slow.err.find("warning: axis X: at a max_jerk of 999 its acceleration takes 1 s to rise to 1000; max_jerk "
+                          "is in mm/s^3"),
+            std::string::npos)
+      << slow.err;
+  EXPECT_EQ(command_.run(run + "1000").err, "");
+}
+
 // The same run, read once; standard input needs no copy.
 TEST_F(Operator, StreamRunsWhatIsReadAndEndsAtRestWhereItIsWrong) {
   const Made whole = run(command_.write("a.ngc", kProgram), "");

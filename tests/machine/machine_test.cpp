@@ -220,7 +220,8 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
   const std::string brackets = repeated("[{", 50);
   EXPECT_EQ(parse_machine("# " + brackets + "\n" + defaults(), "m.toml").axes.size(), 4U);
   for (const std::string quote : {"\"", "'", "\"\"\"", "'''"}) {
-    EXPECT_EQ(error_of("a = " + quote + brackets + quote), "m.toml:1: unknown entry a; known are card, axis, motion") << quote;
+    EXPECT_EQ(error_of("a = " + quote + brackets + quote), "m.toml:1: unknown entry a; known are card, axis, motion")
+        << quote;
     // A string of one line that is not closed hides nothing behind it.
     const bool found = error_of("a = " + quote + "\nb = " + brackets) == "m.toml:2: nested deeper than 16";
     EXPECT_EQ(found, quote.size() == 1) << quote;

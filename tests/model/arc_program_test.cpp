@@ -122,7 +122,7 @@ class ArcProgram {
     driver::encode(command, bench_.number++, words);
     EXPECT_TRUE(bench_.send(words));
     ++arcs;
-    helices += further == std::array<std::int64_t, card_map::kMaxAxes>{} ? 0 : 1;
+    helices += further == std::array<std::int64_t, card_map::kMaxAxes>{} ? 0U : 1U;
     return command.ticks;
   }
 

@@ -101,9 +101,14 @@ bool BlockBuilder::refuse(gcode::ErrorCode code, std::string message) {
   return false;
 }
 
+// Comes by each axis that moves: an arc changes a coordinate at its end, or passes its extreme.
 bool BlockBuilder::check(std::size_t axis, double mm) {
   const Axis& limits = axes_[axis];
   const char letter = machine_.axes[axis].letter;
+  if (jerk_required_ && limits.jerk == kNoLimit) {
+    return refuse(gcode::ErrorCode::kNoJerk,
+                  fmt::format("axis {} moves and has no max_jerk in the machine file, which S-curves need", letter));
+  }
   if (!(std::abs(mm * limits.steps_per_mm) <= kMostPulses)) {
     return refuse(gcode::ErrorCode::kPositionRange,
                   fmt::format("{}{:.10g} is beyond the card's 32-bit position counter ({:.10g} steps/mm)", letter, mm,

@@ -15,8 +15,13 @@ std::chrono::nanoseconds rounded_up(double nanoseconds) {
 
 CardLimits limits_of(const driver::Identification& card) {
   const auto has = [&](unsigned engine) { return card_map::has_engine(card.engines, engine); };
-  return {card.clock_hz, card.axes, has(card_map::engine::kAccumulator), has(card_map::engine::kClasses),
-          has(card_map::engine::kArcGenerator), card.geometry_depth, card.feed_depth};
+  return {card.clock_hz,
+          card.axes,
+          has(card_map::engine::kAccumulator),
+          has(card_map::engine::kClasses),
+          has(card_map::engine::kArcGenerator),
+          card.geometry_depth,
+          card.feed_depth};
 }
 
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {

@@ -335,12 +335,20 @@ void Quantiser::see_next() {
   ++seen_;
 }
 
-// Ticks that are queued behind a piece's begin when queues are full, as far as the path is known.
+// Ticks that are queued behind a piece's begin when queues are full; where fewer paths or pieces are known than fit,
+// the others are taken to be as long.
 double Quantiser::reach(const Piece& first) {
-  const std::uint64_t path = std::min(first.block + queues_.paths, path_.end()) - 1;
-  const Piece& last = piece(std::min(completed_ + queues_.pieces, last_) - 1);
-  const std::uint64_t end = std::min(path_[path].end_ticks, last.begin + last.command.ticks);
-  return end > first.begin ? static_cast<double>(end - first.begin) : 0;
+  const auto all = [&first](std::uint64_t end, std::uint64_t known, std::uint64_t fit) {
+    const double ticks = end > first.begin ? static_cast<double>(end - first.begin) : 0;
+    return ticks * static_cast<double>(fit) / static_cast<double>(known);
+  };
+  const std::uint64_t paths = std::min(queues_.paths, path_.end() - first.block);
+  std::uint64_t path = first.block + paths - 1;
+  while (!moves(path_[path].block)) --path;  // a barrier has no ticks
+  const std::uint64_t pieces = std::min(queues_.pieces, last_ - completed_);
+  const Piece& last = piece(completed_ + pieces - 1);
+  return std::min(all(path_[path].end_ticks, paths, queues_.paths),
+                  all(last.begin + last.command.ticks, pieces, queues_.pieces));
 }
 
 void Quantiser::complete_first() {

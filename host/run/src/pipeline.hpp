@@ -17,7 +17,9 @@ class Pipeline {
       : lines_(lines()),
         reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
         blocks_(reader_, machine, planner::with_arcs_by(card, settings.arcs), reader_.position()),
-        planner_(blocks_, machine, card, {settings.single_block, settings.profile}) {}
+        planner_(blocks_, machine, card, {settings.single_block, settings.profile}) {
+    if (settings.profile == planner::SpeedProfile::kSCurve) blocks_.require_jerk();
+  }
 
   // As planner::Planner::next(), but throws ProgramError.
   bool next(driver::CommandSink& sink, planner::PlannedBlock& planned) {

@@ -76,6 +76,23 @@ Reason refusal(AxiHost& host) {
   return reason;
 }
 
+// From the last axis's FREQUENCY_LO to START.
+void direct_mode_refusals(AxiHost& host) {
+  for (std::uint32_t address = reg::frequency_lo(kAxes - 1); address <= reg::kStart; address += 4) {
+    const bool reads = host.read(address).has_value();
+    EXPECT_EQ(reads, kDirectMode && address != reg::kStart) << address;
+    if (!reads) {
+      EXPECT_EQ(refusal(host), kDirectMode ? Reason::WriteOnly : Reason::UnknownAddress) << address;
+    }
+    // No axis: START has nothing to move.
+    const bool writes = host.write(address, 0);
+    EXPECT_EQ(writes, kDirectMode && address != reg::kStart) << address;
+    if (!writes) {
+      EXPECT_EQ(refusal(host), kDirectMode ? Reason::BadValue : Reason::UnknownAddress) << address;
+    }
+  }
+}
+
 void refusals(std::uint64_t seed) {
   sim::LockstepCard card = card_with_engines(seed);
   AxiHost host(card, seed);
@@ -100,20 +117,7 @@ void refusals(std::uint64_t seed) {
     EXPECT_EQ(refusal(host), Reason::UnknownOpcode) << command.index();
     traffic.abort();
   }
-  // From the last axis's FREQUENCY_LO to START.
-  for (std::uint32_t address = reg::frequency_lo(kAxes - 1); address <= reg::kStart; address += 4) {
-    const bool reads = host.read(address).has_value();
-    EXPECT_EQ(reads, kDirectMode && address != reg::kStart) << address;
-    if (!reads) {
-      EXPECT_EQ(refusal(host), kDirectMode ? Reason::WriteOnly : Reason::UnknownAddress) << address;
-    }
-    // No axis: START has nothing to move.
-    const bool writes = host.write(address, 0);
-    EXPECT_EQ(writes, kDirectMode && address != reg::kStart) << address;
-    if (!writes) {
-      EXPECT_EQ(refusal(host), kDirectMode ? Reason::BadValue : Reason::UnknownAddress) << address;
-    }
-  }
+  direct_mode_refusals(host);
   for (const auto& [address, there] :
        {std::pair{reg::kRatioRapid, kClasses}, std::pair{reg::kRatioFixed, kClasses},
         std::pair{reg::kGeometryWatermark, kWatermarks}, std::pair{reg::kFeedWatermark, kWatermarks}}) {

@@ -52,6 +52,7 @@ enum class ErrorCode : std::uint16_t {
   kPositionRange = 71,
   kDwellTooLong = 72,
   kArcTooLarge = 73,
+  kNoJerk = 74,  // of an axis that moves, where S-curves were asked for
 };
 
 struct Error {

@@ -30,6 +30,8 @@ class BlockBuilder {
   const std::optional<gcode::Error>& error() const { return error_; }
 
   const Pulses& start() const { return start_; }
+  // From the next block on, a motion of an axis without max_jerk is refused.
+  void require_jerk() { jerk_required_ = true; }
 
  private:
   struct Axis {
@@ -68,6 +70,7 @@ class BlockBuilder {
   const machine::Machine& machine_;
   CardLimits card_;
   std::size_t axis_count_;
+  bool jerk_required_ = false;
   std::array<Axis, card_map::kMaxAxes> axes_{};
   gcode::Motion motion_;
   Pulses start_{};

@@ -24,7 +24,7 @@ struct PlaneScale;
 enum class SpeedProfile {
   kByMachine,  // S-curve where every axis has a max_jerk, else trapezoid
   kTrapezoid,  // acceleration jumps
-  kSCurve,     // jerk is limited where an axis that moves has a max_jerk
+  kSCurve,     // jerk is limited where an axis that moves has a max_jerk; BlockBuilder::require_jerk() asks for all
 };
 
 struct PlannerSettings {
