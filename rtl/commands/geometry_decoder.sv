@@ -137,7 +137,6 @@ module geometry_decoder #(
     last_field  = is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
     if (is_output) begin
       first_field = {FIRST_OF_COMMAND, 3'd0};
-      next_field  = {FIRST_OF_COMMAND + 5'd1, 3'd0};
       last_field  = field[0];
     end
   end

@@ -13,7 +13,7 @@ module instant_commands #(
     input wire logic cut_i,
     // commands
     input wire logic [21:0] load_i,
-    input wire logic [1:0] taken_i,  // {MARK, OUTPUT} is taken now; its last halfword is on load_i
+    input wire logic [1:0] taken_i,  // {MARK, OUTPUT} is taken now; its last halfword is on load_i, after the one before
     input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
     input wire logic runs_i,  // a path is under way
     output logic mark_o,  // event: a snapshot is wanted
@@ -34,22 +34,21 @@ module instant_commands #(
   logic                 mark_due_q;
   logic [          2:0] delay_q;
   logic                 fire;
-  logic [  Outputs-1:0] set;
-  logic [  Outputs-1:0] clear;
 
   assign fire = (output_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
   assign change_o = delay_q == 3'd1;
-  assign set = change_o ? '0 : set_o;
-  assign clear = change_o ? '0 : clear_o;
 
+  // What has taken effect stays in the masks, where it changes nothing more: set goes before clear, a later command takes
+  // what it clears out of set_o, and a cut empties both.
   always_ff @(posedge clk_i) begin
-    if (load_i[21] && load_i[20:16] == load_target_pkg::COMMAND)
-      words_q <= {load_i[Outputs-1:0], words_q[2*Outputs-1:Outputs]};
+    words_q <= {load_i[Outputs-1:0], words_q[2*Outputs-1:Outputs]};
     merge_q <= taken_i[0];
-    set_o <= merge_q ? (set & ~words_q[2*Outputs-1:Outputs]) | words_q[Outputs-1:0] : set;
-    clear_o <= merge_q ? (clear & ~words_q[Outputs-1:0]) | words_q[2*Outputs-1:Outputs] : clear;
+    if (merge_q) begin
+      set_o   <= (set_o & ~words_q[2*Outputs-1:Outputs]) | words_q[Outputs-1:0];
+      clear_o <= clear_o | words_q[2*Outputs-1:Outputs];
+    end
     output_waits_q <= taken_i[0] || (output_waits_q && !fire);
-    mark_waits_q <= taken_i[1] || (mark_waits_q && !fire);
+    mark_waits_q   <= taken_i[1] || (mark_waits_q && !fire);
     if (fire) mark_due_q <= mark_waits_q;
     if (fire) delay_q <= TO_STEP;
     else if (delay_q != 3'd0) delay_q <= delay_q - 3'd1;

@@ -54,21 +54,21 @@ module snapshot_writer #(
   logic       host_q;  // the host's request is not served yet
   logic       mark_q;  // a MARK's
   logic [3:0] area_q;
-  logic       again_q;  // a snapshot taken anew
+  logic       again_q;  // of the host's: a snapshot taken anew
   logic       settle_q;  // the clock between the strobe and the first word
   logic       write_q;
   logic [3:0] word_q;
   logic       last_q;  // the last word is on its way into the RAM
   logic       for_host;  // the snapshot under way
   logic       begin_first;  // a stop's or the probe's
-  logic       begin_mark;
-  logic       begin_host;
+  logic       begin_mark;  // where these do not begin
+  logic       begin_host;  // where none of them begins
   logic       breaks;
 
   assign for_host = area_q == SNAP;
   assign begin_first = stop_i || probe_i;
-  assign begin_mark = !begin_first && (active_o ? mark_i && for_host && !again_q : mark_i || mark_q);
-  assign begin_host = !begin_first && !begin_mark && (active_o ? last_q && !for_host && host_q : host_i);
+  assign begin_mark = active_o ? mark_i && for_host && !again_q : mark_i || mark_q;
+  assign begin_host = active_o ? last_q && !for_host && host_q : host_i;
   assign breaks = begin_first || begin_mark;
 
   always_ff @(posedge clk_i) begin
@@ -97,7 +97,7 @@ module snapshot_writer #(
       if (breaks || begin_host) begin
         active_o <= 1'b1;
         area_q <= stop_i ? STOP : probe_i ? PROBE : begin_mark ? MARK : SNAP;
-        again_q <= begin_host && active_o;
+        again_q <= active_o;
         write_q <= 1'b0;
         snapshot_o[1] <= 1'b0;
       end

@@ -96,6 +96,12 @@ class Programs {
     return s;
   }
 
+  static Halfwords mark() { return stored_command(card_map::Opcode::Mark, 0, 0); }
+  Halfwords output() {
+    return stored_command(card_map::Opcode::Output, 0, 0,
+                          {{"set", dice_.draw() & 0xFFFF}, {"clear", dice_.draw() & 0xFFFF}});
+  }
+
   void barrier(Stretch& s) {
     constexpr unsigned kDwells[] = {0, 1, 2, 3, 4, 15, 16, 17, 18, 33, 100};
     const bool end = dice_.chance(3);
@@ -109,11 +115,7 @@ class Programs {
   // Commands that are neither paths nor barriers, some in a row now and then.
   void instants(std::vector<Halfwords>& to) {
     while (path_commands && dice_.chance(3)) {
-      if (dice_.chance(2))
-        to.push_back(stored_command(card_map::Opcode::Mark, 0, 0));
-      else
-        to.push_back(stored_command(card_map::Opcode::Output, 0, 0,
-                                    {{"set", dice_.draw() & 0xFFFF}, {"clear", dice_.draw() & 0xFFFF}}));
+      to.push_back(dice_.chance(2) ? mark() : output());
     }
   }
 

@@ -105,7 +105,7 @@ void joins(unsigned axes) {
   AxiHost host(card, 5);
   Traffic traffic(host, axes);
   const auto read_live = [&host] {
-    for (std::uint32_t address = reg::kStatus; address <= reg::kFeedBegun; address += 4) host.read(address);
+    for (std::uint32_t address = reg::kStatus; address <= reg::kMarks; address += 4) host.read(address);
   };
   host.wait(300);
   for (std::uint32_t address = 0; address < 0x40; address += 4) host.read(address);
@@ -132,6 +132,7 @@ void joins(unsigned axes) {
   EXPECT_GT(lines, 100U);
   EXPECT_GT(pieces, 50U);
   traffic.recover();
+  traffic.send(driver::OutputCommand{1, 0});
   short_program(traffic, axes, host);
   for (int i = 0; i < 20; ++i) {
     read_live();

@@ -86,6 +86,27 @@ class Bench {
       clock();
   }
 
+  // OUTPUT and MARK wait for the end of a path of every length round their decoding; they, their effect and what is
+  // decoded meanwhile meet an abort and a reset in every clock.
+  void commands_around_ends() {
+    for (unsigned ticks = 1; ticks < 60; ++ticks) {
+      commands_behind(ticks, 100, Programs::mark());
+      commands_behind(ticks, 100, programs_.output());
+    }
+    for (const unsigned ticks : {1U, 20U}) {
+      for (unsigned clocks = 0; clocks < 80; ++clocks) {
+        commands_behind(ticks, clocks, Programs::mark());
+        in_.abort = true;
+        clock();
+        in_.abort = false;
+        commands_alone();
+        commands_behind(ticks, clocks, Programs::mark());
+        reset();
+        commands_alone();
+      }
+    }
+  }
+
   Checker& check() { return check_; }
   std::uint64_t steps() const { return steps_; }
   std::uint64_t moves() const { return moves_; }
@@ -94,6 +115,22 @@ class Bench {
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
  private:
+  void commands_behind(unsigned ticks, unsigned clocks, const Halfwords& second) {
+    reset();
+    in_ = {};
+    write_every_ = 1;
+    geometry_.add({stored_command(card_map::Opcode::Line, 1, ticks, {}, {kOnePulse / 2}), programs_.output(), second,
+                   programs_.output(), Programs::mark()});
+    feed_.add({stored_command(card_map::Opcode::Feed, 0, ticks, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}})});
+    for (unsigned i = 0; i < clocks; ++i) clock();
+  }
+
+  void commands_alone() {
+    for (unsigned i = 0; i < 4; ++i) clock();
+    geometry_.add({Programs::mark(), programs_.output()});
+    for (unsigned i = 0; i < 40; ++i) clock();
+  }
+
   void random_pace() {
     abort_every_ = dice_.chance(3) ? 200 + dice_.below(500) : 20'000;
     start_every_ = dice_.chance(2) ? 100 : 2000;
@@ -124,8 +161,8 @@ class Bench {
         {reg::kInputPolarity, kPathCommands ? dice_.draw() & 0xFFFF : 0},
         {reg::kOutputSafe, kPathCommands ? dice_.draw() : 0}};
     const auto& [address, data] = settings[dice_.below(std::size(settings))];
-    in_.setting = {true, address, data};
-    check_.event("setting", std::uint64_t{address} << 32 | data);
+    in_.setting = {!dice_.chance(4), address, data};
+    if (in_.setting.set) check_.event("setting", std::uint64_t{address} << 32 | data);
   }
 
   // Mostly a move that can be made; else one value is off.
@@ -334,6 +371,7 @@ class Bench {
 void random_programs() {
   Bench bench(seed_from_environment(20261115));
   const std::uint64_t length = scaled(1'000'000);
+  if (kPathCommands) bench.commands_around_ends();
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.steps(), length / 200);
