@@ -13,7 +13,7 @@ module instant_commands #(
     input wire logic cut_i,
     // commands
     input wire logic [21:0] load_i,
-    input wire logic [1:0] taken_i,  // {MARK, OUTPUT} is taken now; its last halfword is on load_i, after the one before
+    input wire logic [1:0] taken_i,  // {MARK, OUTPUT} is taken now; its last halfword is on load_i
     input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
     input wire logic runs_i,  // a path is under way
     output logic mark_o,  // event: a snapshot is wanted
