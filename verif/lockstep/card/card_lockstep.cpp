@@ -147,7 +147,46 @@ void joins(unsigned axes) {
   expect_all_compared(card, axes, 10'000);
 }
 
+// Pieces that want more ticks queued than the queues hold: the card stands until one of them is full, and goes on then.
+void full_queues(unsigned axes) {
+  sim::LockstepCard card = test::card_under_test(axes, 7, 0);
+  AxiHost host(card, 7);
+  Traffic traffic(host, axes);
+  constexpr std::uint64_t kLook = 150;  // clocks; the guard looks at its rule in fewer
+  const auto send = [&](bool geometry, std::uint64_t ticks) {
+    driver::FeedCommand piece = feed(ticks, 2);
+    piece.stop_distance = 0xFFFFFFFF;
+    return geometry ? traffic.send(line(ticks, std::vector<std::int64_t>(axes, 1))) : traffic.send(piece);
+  };
+  host.wait(300);
+  for (const bool geometry : {true, false}) {
+    traffic.recover();
+    // Clocks of a direct move are no ticks of a piece: more of them than all lines together have ticks.
+    host.write(reg::frequency_hi(0), 0x80);
+    host.write(reg::count(0), 3);
+    host.write(reg::kLengthLo, 2000);
+    host.write(reg::kStart, 1);
+    EXPECT_TRUE(traffic.wait_idle(5000));
+    EXPECT_TRUE(send(!geometry, 1'000'000));
+    unsigned sent = 0;
+    unsigned moving = 0;
+    while (moving < 3 && sent < 1000 && send(geometry, geometry ? 4 : 10)) {
+      ++sent;
+      host.wait(kLook);
+      moving += host.read(geometry ? reg::kGeometryBegun : reg::kFeedBegun).value_or(0) > 3 ? 1U : 0U;
+    }
+    EXPECT_GT(sent, 50U);
+    EXPECT_GT(moving, 0U);
+    traffic.abort();
+  }
+  expect_all_compared(card, axes, 10'000);
+}
+
 class CardJoins : public testing::TestWithParam<unsigned> {};
+
+TEST_P(CardJoins, AFullQueueMoves) {
+  EXPECT_EQ(lockstep::judge([] { full_queues(GetParam()); }), "");
+}
 
 TEST_P(CardJoins, Once) {
   EXPECT_EQ(lockstep::judge([] { joins(GetParam()); }), "");
