@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dying_bus.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/step_recorder.hpp"
 #include "trammel/sim/engine.hpp"
@@ -23,22 +24,6 @@ ProgramLines lines_of(const std::string& text) {
     return std::make_unique<gcode::TextLines>(*text, "p.ngc");
   };
 }
-
-// A card's bus that dies at a given time.
-class DyingBus final : public driver::Bus {
- public:
-  DyingBus(sim::Engine& engine, std::uint64_t last_cycle) : engine_(engine), last_cycle_(last_cycle) {}
-  std::size_t transfer(driver::Access* accesses, std::size_t count) override {
-    if (engine_.cycles() > last_cycle_) throw driver::LinkError("the cable is out");
-    return engine_.transfer(accesses, count);
-  }
-  void sleep(std::chrono::nanoseconds time) override { engine_.sleep(time); }
-  bool reports_refusals() const override { return engine_.reports_refusals(); }
-
- private:
-  sim::Engine& engine_;
-  std::uint64_t last_cycle_;
-};
 
 class RunnerTest : public testing::Test {
  protected:

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "dying_bus.hpp"
 #include "trammel/run/path_identity.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/run/step_fork.hpp"
@@ -38,21 +39,6 @@ class Steps final : public driver::StepSink {
   void path_step(const driver::PathStep& step) override { path.push_back(step); }
   std::vector<driver::PinStep> pins;
   std::vector<driver::PathStep> path;
-};
-
-class DyingBus final : public driver::Bus {
- public:
-  DyingBus(sim::Engine& engine, std::uint64_t last_cycle) : engine_(engine), last_cycle_(last_cycle) {}
-  std::size_t transfer(driver::Access* accesses, std::size_t count) override {
-    if (engine_.cycles() > last_cycle_) throw driver::LinkError("the cable is out");
-    return engine_.transfer(accesses, count);
-  }
-  void sleep(std::chrono::nanoseconds time) override { engine_.sleep(time); }
-  bool reports_refusals() const override { return engine_.reports_refusals(); }
-
- private:
-  sim::Engine& engine_;
-  std::uint64_t last_cycle_;
 };
 
 // The host does nothing for a while, now and then.
