@@ -25,6 +25,13 @@ module geometry_sequencer #(
     output logic      [Axes-1:0] active_o,
     output logic      [     4:0] engine_o,
     output logic                 engine_taken_o,   // by a path that still takes ticks (combinational)
+    // position streaming
+    input  wire logic [    40:0] setting_i,
+    input  wire logic [    21:0] arrive_i,         // as tick_source has it
+    input  wire logic            rest_i,           // nothing is queued or runs
+    output logic                 streaming_o,      // the mode
+    output logic                 missing_o,        // event
+    output logic      [    32:0] stale_o,          // {a line goes on beyond its end, ticks}
     // ends
     input  wire logic            payload_ready_i,
     input  wire logic            shadows_free_i,
@@ -63,8 +70,10 @@ module geometry_sequencer #(
   logic            runs;
   logic            zero;
   logic            last;
-  logic            at_barrier;
-  logic            counting;
+  logic [    39:0] count;
+  logic period, goes_on, lost;
+  logic at_barrier;
+  logic counting;
 
   assign runs = taking_o || (valid && !is_barrier && instant == 2'd0);
   assign instant_o = {2{valid}} & instant;
@@ -87,11 +96,12 @@ module geometry_sequencer #(
 
   tick_counter ticks (
       .*,
-      .next_i({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
-      .zero_o(zero),
-      .load_i(path_begin || barrier_begin_o),
-      .take_i(take_i || counting),
-      .last_o(last)
+      .next_i ({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
+      .count_o(count),
+      .zero_o (zero),
+      .load_i (path_begin || barrier_begin_o),
+      .take_i ((take_i && !stale_o[32]) || counting),
+      .last_o (last)
   );
 
   path_sequencer #(
@@ -105,10 +115,37 @@ module geometry_sequencer #(
       .mask_i        (mask),
       .pop_o         (pop),
       .last_i        (last),
+      .streaming_i   (streaming_o),
+      .lost_i        (lost),
+      .period_o      (period),
+      .goes_on_o     (goes_on),
+      .stale_o       (stale_o[32]),
       .begin_o       (path_begin),
       .barrier_done_i(barrier_done_o),
       .at_barrier_o  (at_barrier)
   );
+
+  if (Engines[card_map_pkg::ENGINE_STREAMING]) begin : gen_streaming
+    position_streaming periods (
+        .*,
+        .arrive_i    (arrive_i[20:16]),
+        .begin_i     (path_begin),
+        .count_i     (count),
+        .period_i    (period),
+        .goes_on_i   (goes_on),
+        .stale_tick_i(take_i && stale_o[32]),
+        .lost_o      (lost),
+        .ticks_o     (stale_o[31:0])
+    );
+  end else begin : gen_no_streaming
+    assign {streaming_o, missing_o, lost, stale_o[31:0]} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, setting_i, rest_i, count, period, goes_on};
+  end
+
+  logic unused_arrivals;
+  assign unused_arrivals = &{1'b0, arrive_i};
 
   barrier both_queues (
       .*,

@@ -1,6 +1,9 @@
 // Runs one path after the other: swaps the decoded command in at the last tick of a line, waits for a path's engine
 // or for the axes of a direct move to finish, and stops at barriers.
 //
+// In position streaming a line with nothing behind it goes on beyond its last tick (`stale_o`), until a path or a barrier
+// is decoded; not once the next period is missing (`lost_i`): then only a cut ends it.
+//
 // A swap is decided in one clock and carried out in the next, together with the tick (both leave as registers), so that
 // the last tick still meets the old increments and the next one the new.
 `default_nettype none
@@ -21,6 +24,12 @@ module path_sequencer #(
     // direct move: the chains are loaded
     input  wire logic            direct_go_i,
     input  wire logic [Axes-1:0] direct_mask_i,
+    // position streaming
+    input  wire logic            streaming_i,
+    input  wire logic            lost_i,          // the next period is missing
+    output logic                 period_o,        // a period's last tick is taken (combinational)
+    output logic                 goes_on_o,       // the line goes on beyond it (combinational)
+    output logic                 stale_o,         // it has gone on
     // ticks
     input  wire logic            take_i,
     input  wire logic            last_i,
@@ -58,23 +67,28 @@ module path_sequencer #(
   logic       ending;
   logic       path_valid;
   logic       swap;
+  logic       stale_ends;
 
   assign on_lines       = engine_i == LINES;
   assign path_valid     = valid_i && !barrier_i && !instant_i;
-  assign ending         = take_i && last_i;
+  assign ending         = take_i && last_i && !stale_o;
   assign over           = on_engine_q ? drained_q && done_i : settled_q && !axes_live_i;
   // After a line the next path takes over in the clock of the last tick. A path that ended elsewhere has no successor.
-  assign swap           = path_valid && !incomplete_o && (idle_q || (ending && !on_engine_q));
+  assign swap           = path_valid && !incomplete_o && !lost_i && (idle_q || stale_o || (ending && !on_engine_q));
   assign pop_o          = swap || barrier_done_i || (valid_i && instant_i);
   assign begin_o        = swap || direct_go_i;
   assign path_active_o  = !idle_q;
   assign engine_taken_o = on_engine_q && !drained_q;
+  assign period_o       = streaming_i && ending && !on_engine_q && !direct_o;
+  assign goes_on_o      = streaming_i && (period_o || stale_o) && !swap && (lost_i || !(valid_i && barrier_i));
+  assign stale_ends     = stale_o && !goes_on_o;
 
   always_ff @(posedge clk_i) begin
     swap_o       <= begin_o && !cut_i && !rst_i;
-    over_o       <= ((over && drain_q) || (ending && !on_engine_q && !direct_o)) && !cut_i && !rst_i;
+    over_o       <= ((over && drain_q) || (ending && !on_engine_q && !direct_o) || stale_ends) && !cut_i && !rst_i;
     incomplete_o <= over && on_engine_q && elsewhere_i && !cut_i && !rst_i;
     at_barrier_o <= valid_i && barrier_i && idle_q && !barrier_done_i && !cut_i && !rst_i;
+    stale_o      <= goes_on_o && !cut_i && !rst_i;
     drained_q    <= drain_q;
     settled_q    <= drain_q && settle_q == 3'd0;
     if (!drain_q) settle_q <= SETTLE_CLOCKS;
@@ -96,9 +110,9 @@ module path_sequencer #(
       taking_o <= 1'b1;
       on_engine_q <= swap && !on_lines;
       direct_o <= direct_go_i;
-    end else if (ending) begin
-      idle_q   <= !on_engine_q && !direct_o;
-      taking_o <= direct_o;
+    end else if (ending || stale_ends) begin
+      idle_q   <= !on_engine_q && !direct_o && !goes_on_o;
+      taking_o <= direct_o || goes_on_o;
       drain_q  <= on_engine_q || direct_o;
     end else if (over) begin
       idle_q <= 1'b1;

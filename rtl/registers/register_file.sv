@@ -23,6 +23,7 @@ module register_file #(
     input  wire logic [       5:0] motion_i,          // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic              held_i,
     input  wire logic [      32:0] underrun_i,        // {held, how often}
+    input  wire logic [      32:0] stale_i,           // {a line goes on beyond its period, ticks}
     input  wire logic [      31:0] fault_i,
     input  wire logic [      31:0] room_i,            // {geometry, feed}
     input  wire logic [       1:0] low_i,             // {feed, geometry}: below their watermarks
@@ -81,7 +82,8 @@ module register_file #(
   );
 
   register_live #(
-      .Ports(Ports)
+      .Ports  (Ports),
+      .Engines(Engines)
   ) i_live (
       .*,
       .setting_i(setting_o),

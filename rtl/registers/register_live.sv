@@ -6,7 +6,8 @@
 // never meet: one access is carried through at a time.
 `default_nettype none
 module register_live #(
-    parameter int Ports = 1  // 1 to 4
+    parameter int          Ports   = 1,  // 1 to 4
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
@@ -22,6 +23,7 @@ module register_live #(
     input  wire logic [ 5:0] motion_i,         // {stopping, ended, feed active, path active, direct, busy}
     input  wire logic        held_i,
     input  wire logic [32:0] underrun_i,       // {held, how often}
+    input  wire logic [32:0] stale_i,          // {a line goes on beyond its period, ticks}
     input  wire logic        snapshotting_i,
     input  wire logic        incomplete_i,
     input  wire logic [ 1:0] low_i,            // {feed, geometry}: below their watermarks
@@ -81,7 +83,7 @@ module register_live #(
       32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING |
       32'(low_i[0]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
       32'(low_i[1]) << card_map_pkg::BIT_STATUS_FEED_LOW |
-      32'(underrun_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN;
+      32'(underrun_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN | 32'(stale_i[32]) << card_map_pkg::BIT_STATUS_STALE;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin
@@ -99,7 +101,10 @@ module register_live #(
         card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, io_i[31:16]};
         card_map_pkg::ADDR_MARKS[5:2]: data_o <= io_i[63:32];
         card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= begun_i[31:0];
-        default: data_o <= underrun_i[31:0];
+        default:
+        if (Engines[card_map_pkg::ENGINE_STREAMING] && access_i[5:2] == card_map_pkg::ADDR_STALE_TICKS[5:2])
+          data_o <= stale_i[31:0];
+        else data_o <= underrun_i[31:0];
       endcase
     end
   end

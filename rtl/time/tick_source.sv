@@ -23,6 +23,7 @@ module tick_source #(
     output logic             take_o,           // combinational
     output logic             tick_o,
     output logic             swap_o,           // of the feed piece
+    input  wire logic        streaming_i,      // position streaming
     // barriers
     input  wire logic        barrier_begin_i,
     input  wire logic        barrier_done_i,
@@ -51,6 +52,7 @@ module tick_source #(
   logic [19:0] load;
   logic        decoder_idle;
   logic        decoded;
+  logic        spent;
   logic        piece_waits;
   logic [31:0] ratio_chain;
   logic [31:0] rate_chain;
@@ -75,6 +77,7 @@ module tick_source #(
       .take_i   (take_o),
       .wait_i   (piece_waits),
       .decoded_o(decoded),
+      .spent_o  (spent),
       .idle_o   (decoder_idle),
       .load_o   (load),
       .chain_i  (rate_chain)
@@ -83,7 +86,7 @@ module tick_source #(
   if (Engines[card_map_pkg::ENGINE_UNDERRUN_HOLD]) begin : gen_underrun_hold
     underrun_guard guard (
         .*,
-        .off_i      (1'b0),
+        .cut_i      (cut_i || streaming_i),
         .arrive_i   (arrive_i[20:0]),
         .full_i     (arrive_i[21]),
         .load_i     (load),
@@ -108,6 +111,7 @@ module tick_source #(
       .*,
       .clear_i (feed_clear),
       .enable_i(feed_enable),
+      .freeze_i(spent),
       .load_i  (load),
       .swap_i  (swap_o),
       .chain_i (ratio_chain),

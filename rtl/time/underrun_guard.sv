@@ -10,8 +10,7 @@
 module underrun_guard (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic        off_i,       // no rule
+    input  wire logic        cut_i,       // and where there is no rule: nothing is counted
     input  wire logic [20:0] arrive_i,    // {drop, geometry {commit, write}, feed {commit, write}, halfword}
     input  wire logic        full_i,      // a queue may have no room for the next command
     input  wire logic [19:0] load_i,      // feed load
@@ -75,7 +74,7 @@ module underrun_guard (
   logic enough_q;  // for it
   logic waits_q;
   logic short;
-  assign short = ruled && !at_barrier && !off_i && ((geometry_short && !covered) || (feed_short && !at_rest));
+  assign short = ruled && !at_barrier && ((geometry_short && !covered) || (feed_short && !at_rest));
 
   always_ff @(posedge clk_i) begin
     from_rest_q <= from_rest;
@@ -101,7 +100,7 @@ module underrun_guard (
     if (rst_i) underruns_o <= 32'd0;
   end
 
-  assign wait_o  = from_rest && !next_zero && !enough_q && !off_i;
+  assign wait_o  = from_rest && !next_zero && !enough_q;
   assign shown_o = hold_o || waits_q;
 endmodule
 

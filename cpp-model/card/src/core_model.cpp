@@ -130,7 +130,8 @@ std::uint64_t CoreModel::watched() const {
                         motion_.commands().mark(),
                         watermarks_.outputs().geometry_low,
                         watermarks_.outputs().feed_low,
-                        motion_.underrun().shown};
+                        motion_.underrun().shown,
+                        s.stale};
   std::uint64_t bits = stop.fault;
   for (const bool flag : flags) bits = bits << 1 | (flag ? 1 : 0);
   return bits;
@@ -217,6 +218,8 @@ void CoreModel::gather() {
   in.stopping = motion_.stop().stopping;
   in.underrun = motion_.underrun().shown;
   in.underruns = motion_.underrun().underruns;
+  in.stale = s.stale;
+  in.stale_ticks = motion_.sequencer().streaming().ticks;
   in.incomplete = checker_.outputs().partial;
   in.geometry_room = geometry_queue_.outputs().room;
   in.feed_room = feed_queue_.outputs().room;

@@ -114,6 +114,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (in.geometry_low) status |= field::kStatusGeometryLow;
   if (in.feed_low) status |= field::kStatusFeedLow;
   if (in.underrun) status |= field::kStatusUnderrun;
+  if (in.stale) status |= field::kStatusStale;
   return status;
 }
 
@@ -144,6 +145,8 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.marks;
     case reg::kFeedBegun:
       return in.feed_begun;
+    case reg::kStaleTicks:
+      return in.stale_ticks;
     default:
       return in.underruns;
   }

@@ -26,9 +26,10 @@ constexpr bool kChords = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine:
 constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kDirectMode);
 constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kClasses);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
+constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr unsigned kInputs = 5;
 constexpr unsigned kOutputs = 3;
-constexpr std::uint64_t kComparedSignals = 32 + kAxes;
+constexpr std::uint64_t kComparedSignals = 34 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
@@ -157,7 +158,8 @@ class Bench {
         {kClasses ? ratios[dice_.below(3)] : reg::kRatioFeed,
          !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
         {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
-        {reg::kStopReaction, dice_.chance(2) ? 0xFF : dice_.below(256)},
+        {reg::kStopReaction, dice_.chance(2) ? 0x4FF : dice_.below(256) | dice_.below(2) << 10},
+        {kStreaming ? reg::kStreaming : reg::kHoldLimit, kStreaming ? dice_.below(2) | dice_.below(4) << 8 : 7},
         {reg::kInputPolarity, kPathCommands ? dice_.draw() & 0xFFFF : 0},
         {reg::kOutputSafe, kPathCommands ? dice_.draw() : 0}};
     const auto& [address, data] = settings[dice_.below(std::size(settings))];
@@ -200,7 +202,7 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     const model::PathCommands::Config pins{kInputs, kOutputs, output_idle_};
-    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, false, 0, pins);
+    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, false, TRAMMEL_ENGINES, pins);
     geometry_.reset();
     feed_.reset();
     starting_ = false;
@@ -326,6 +328,8 @@ class Bench {
     check_.compare("inputs", dut_->io_o & 0xFFFF, kPathCommands ? commands.levels() : 0);
     check_.compare("outputs", dut_->io_o >> 16 & 0xFFFF, kPathCommands ? commands.outputs() : 0);
     check_.compare("marks", dut_->io_o >> 32, commands.marks());
+    check_.compare("stale_o", dut_->stale_o >> 32, s.stale);
+    check_.compare("stale_o, ticks", dut_->stale_o & 0xFFFFFFFF, model_->sequencer().streaming().ticks);
     check_.compare("step_o", dut_->step_o, out.step);
     check_.compare("dir_o", dut_->dir_o, out.dir);
     check_.compare("start_error_o, with done", dut_->start_done_o & dut_->start_error_o,

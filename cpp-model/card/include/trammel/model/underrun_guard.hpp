@@ -30,8 +30,7 @@ class UnderrunGuard {
     bool any() const { return drop || geometry_commit || geometry_write || feed_commit || feed_write; }
   };
   struct Inputs {
-    bool cut = false;
-    bool off = false;  // no rule
+    bool cut = false;  // and where there is no rule: nothing is counted
     Arrival arrival;
     bool full = false;        // a queue may have no room for the next command
     LoadWord load;            // feed load
@@ -87,7 +86,7 @@ class UnderrunGuard {
   const Outputs& outputs() const { return out_; }
 
   // A piece that is decoded must not begin.
-  bool waits(bool active, bool off) const { return (!active || ends_) && !next_zero() && !enough_ && !off; }
+  bool waits(bool active) const { return (!active || ends_) && !next_zero() && !enough_; }
 
   // With these inputs nothing changes but counts, as long as fewer ticks are taken than ticks_to_change().
   bool settled(const Inputs& in) const {
@@ -98,7 +97,7 @@ class UnderrunGuard {
     if (judged_ != (in.decoded && follow) || (flags_.covered && !covered_)) return false;
     if ((!out_.hold && ratio_ != in_256ths(in.ratio)) || factor_ != factor(in.ratio == 0, in.full)) return false;
     if (product_ != product() || !(flags_ == compared(owed_))) return false;
-    const bool is_short = ruled_ && judged_short(in.off);
+    const bool is_short = ruled_ && judged_short();
     return out_.hold == holds(is_short, follow, in.full) && enough_ == (judged_ && !is_short) &&
            waits_ == (judged_ && !in.active && is_short);
   }
@@ -169,15 +168,15 @@ class UnderrunGuard {
     return {paths_ - gone <= reserved(), pieces_ - gone <= reserved(), paths_ >= pieces_};
   }
 
-  bool judged_short(bool off) const {
+  bool judged_short() const {
     const bool geometry = flags_.geometry_short && !(at_rest_ && flags_.covered);
-    return !at_barrier_ && !off && (geometry || (flags_.feed_short && !at_rest_));
+    return !at_barrier_ && (geometry || (flags_.feed_short && !at_rest_));
   }
   bool holds(bool is_short, bool follow, bool full) const {
     return is_short && (out_.hold || !follow || (judged_ && full));
   }
   void decide(const Inputs& in, bool follow) {
-    const bool is_short = ruled_ && judged_short(in.off);
+    const bool is_short = ruled_ && judged_short();
     const bool held = out_.hold;
     out_.hold = holds(is_short, follow, in.full);
     if (out_.hold && !held) ++out_.underruns;
