@@ -113,6 +113,8 @@ class Bench {
   std::uint64_t moves() const { return moves_; }
   std::uint64_t faults() const { return faults_; }
   std::uint64_t marks() const { return marks_; }
+  std::uint64_t missing() const { return missing_; }
+  std::uint64_t stale() const { return stale_; }
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
  private:
@@ -232,6 +234,8 @@ class Bench {
     marks_ += model_->commands().mark() ? 1U : 0U;
     moves_ += model_->loader().go ? 1U : 0U;
     faults_ += model_->stop().stop ? 1U : 0U;
+    missing_ += model_->sequencer().streaming().missing ? 1U : 0U;
+    stale_ += model_->sequencer().outputs().stale ? 1U : 0U;
   }
 
   void note_events() {
@@ -369,6 +373,8 @@ class Bench {
   std::uint64_t moves_ = 0;
   std::uint64_t faults_ = 0;
   std::uint64_t marks_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t stale_ = 0;  // clocks
   std::uint64_t more_ = 0;
 };
 
@@ -385,6 +391,10 @@ void random_programs() {
   EXPECT_GT(bench.faults(), length / 20'000);
   if (kPathCommands) {
     EXPECT_GT(bench.marks(), length / 5000);
+  }
+  if (kStreaming) {
+    EXPECT_GT(bench.missing(), length / 20'000);
+    EXPECT_GT(bench.stale(), length / 300);
   }
 }
 

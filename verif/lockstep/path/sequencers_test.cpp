@@ -133,9 +133,7 @@ class Bench {
 
   // Position streaming: a period of so many ticks, the next one so many clocks later, two more, and an END or a cut.
   void stream(unsigned ticks, unsigned stale_periods, unsigned clocks) {
-    const auto period = [&] {
-      return stored_command(card_map::Opcode::Line, 7, ticks, {}, {kOnePulse, 1, -1});
-    };
+    const auto period = [&] { return stored_command(card_map::Opcode::Line, 7, ticks, {}, {kOnePulse, 1, -1}); };
     const auto run = [this](unsigned n) {
       for (; n != 0; --n) clock();
     };
