@@ -337,6 +337,7 @@ void late_periods(unsigned way, std::uint64_t seed) {
   sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
   AxiHost host(card, seed);
   Traffic traffic(host, kAxes);
+  traffic.streams = false;  // the mode stays on
   Lateness seen;
   host.wait(300);
   for (std::uint32_t stale_periods = 0; stale_periods < 3; ++stale_periods) {

@@ -214,12 +214,17 @@ inline void Traffic::streamed() {
     if (one_in(4)) p.acceleration = static_cast<std::int64_t>(odd_number(54));
     return send(p);
   };
-  if (!piece()) return abort();
+  const auto refused = [&] {
+    missing += (host_.read(reg::kFault).value_or(0) & field::kFaultMissingPeriod) != 0 ? 1U : 0U;
+    host_.read(reg::kStaleTicks);
+    abort();
+  };
+  if (!piece()) return refused();
   for (std::uint64_t left = 2 + below(12); left != 0; --left) {
-    if (!single && !piece()) return abort();
+    if (!single && !piece()) return refused();
     const std::vector<std::uint32_t> words = period_words(one_in(4) ? 1 + below(period) : period);
     for (const std::uint32_t word : words) {
-      if (!host_.write(reg::kStream, word)) return abort();
+      if (!host_.write(reg::kStream, word)) return refused();
       if (one_in(words.size())) host_.wait(below(one_in(4) ? 4 * period : one_in(2) ? period : 20));
     }
     if (commands_every != 0 && one_in(8)) send(beside_a_path());
@@ -346,6 +351,7 @@ inline void Traffic::recover() {
     host_.write(reg::kHold, 0);
     for (const std::uint32_t ratio : kRatios) host_.write(ratio, 0x10000);
     host_.write(reg::kSlew, 0xFFFFFFF);
+    if (streams) host_.write(reg::kStreaming, 0);
   };
   const bool calm_first = one_in(2);
   if (calm_first) calm();
@@ -374,10 +380,10 @@ inline bool Traffic::wait_idle(std::uint64_t clocks) {
 
 inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
   for (; sections != 0; --sections) {
-    if (streams && one_in(5))
-      streamed();
-    else if (one_in(5))
+    if (one_in(5))
       starved();
+    else if (streams && one_in(5))
+      streamed();
     else
       section(one_in(4));
     host_.wait(below(one_in(4) ? 6000 : 600));
