@@ -24,7 +24,8 @@ def arguments_of(argv):
     parser.add_argument("--seed", type=int, default=1, metavar="S", help="of the random choice (default 1)")
     parser.add_argument("--module", action="append", metavar="NAME", help="only mutants of this module; may be repeated")
     parser.add_argument("--list", action="store_true", help="list the mutants, try none")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="runs at a time (default: all cores)")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)), metavar="N",
+                        help="runs at a time (default: all cores that it may use)")
     parser.add_argument("--resume", action="store_true",
                         help="keep the verdicts of an interrupted run of the same build")
     places = parser.add_argument_group("places, for the tool's own test")
@@ -153,8 +154,8 @@ def main(argv=None) -> int:
     all_judges = [judge for judge in judges.read_judges(arguments.judges) if files & set(judge.sources)]
     results = Results(arguments.out, judges.fingerprint(all_judges), arguments.resume)
     try:
-        for judge in all_judges:
-            judges.try_sound_design(judge)
+        with ThreadPoolExecutor(arguments.jobs) as pool:
+            list(pool.map(judges.try_sound_design, all_judges))
     except judges.SoundDesignRefused as error:
         sys.exit(f"mutate: {error}")
     start = time.monotonic()
