@@ -11,7 +11,7 @@ import threading
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Dict, List
+from typing import Dict, List, Optional
 
 MISMATCH = "repeat with TRAMMEL_SEED="  # the line that every report of a lockstep has
 TESTS_PASSED = re.compile(r"\[  PASSED  \] [1-9]")  # a filter that matches no test passes as well
@@ -29,10 +29,14 @@ class Judge:
     arguments: List[str] = field(default_factory=list)  # GoogleTest's, to choose among its tests
     length: str = ""  # of its random scenarios, as a factor: TRAMMEL_LONG
     last_resort: bool = False  # a long run: tries no mutant that is listed as equivalent
-    seconds: float = 0.0  # of processor time for the sound design
+    seconds: Optional[float] = None  # of processor time for the sound design
+    first: threading.Lock = field(default_factory=threading.Lock)
 
     def limit(self) -> int:
         """Processor seconds after which a run has hung: no other work on the machine uses them up."""
+        with self.first:
+            if self.seconds is None:  # a last resort that is asked for the first time
+                try_sound_design(self)
         return math.ceil(5 * self.seconds + 2)
 
 
