@@ -114,19 +114,16 @@ module queued_ticks #(
   // where its inverse makes the carry tell which number is larger; the limit has none.
   logic [15:0] paths_over, pieces_over, covered;  // {carry, difference, carry in's place}
   logic paths_over_q, pieces_over_q;
-  always_comb begin : p_difference
-    logic [13:0] paths_word, pieces_word, inverted_limit;
-    logic first, last;
-
-    first = word_i == 2'd1;
-    last = word_i == 2'd0;
-    paths_word = {paths_q[55] ^ last, paths_q[54:42]};
-    pieces_word = {pieces_q[55] ^ last, pieces_q[54:42]};
-    inverted_limit = {inverted_limit_i[13] & ~last, inverted_limit_i[12:0]};
-    paths_over = {1'b0, paths_word, 1'b1} + {1'b0, inverted_limit, !first && paths_over_q};
-    pieces_over = {1'b0, pieces_word, 1'b1} + {1'b0, inverted_limit, !first && pieces_over_q};
-    covered = {1'b0, paths_word, 1'b1} + {1'b0, ~pieces_word, first || covered_o};
-  end
+  logic [13:0] paths_word, pieces_word, inverted_limit;
+  logic begins, ends;
+  assign begins = word_i == 2'd1;
+  assign ends = word_i == 2'd0;
+  assign paths_word = {paths_q[55] ^ ends, paths_q[54:42]};
+  assign pieces_word = {pieces_q[55] ^ ends, pieces_q[54:42]};
+  assign inverted_limit = {inverted_limit_i[13] & ~ends, inverted_limit_i[12:0]};
+  assign paths_over = {1'b0, paths_word, 1'b1} + {1'b0, inverted_limit, !begins && paths_over_q};
+  assign pieces_over = {1'b0, pieces_word, 1'b1} + {1'b0, inverted_limit, !begins && pieces_over_q};
+  assign covered = {1'b0, paths_word, 1'b1} + {1'b0, ~pieces_word, begins || covered_o};
   always_ff @(posedge clk_i) begin
     paths_over_q <= paths_over[15];
     pieces_over_q <= pieces_over[15];

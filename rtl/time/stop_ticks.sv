@@ -91,14 +91,8 @@ module stop_ticks (
     end
   end
 
-  always_comb begin
-    case (step_i[1:0])
-      2'd1: inverted_o = ~product_q[13:0];
-      2'd2: inverted_o = ~product_q[27:14];
-      2'd3: inverted_o = {8'hFF, ~product_q[33:28]};
-      default: inverted_o = '1;
-    endcase
-  end
+  assign inverted_o = ~(step_i[1:0] == 2'd1 ? product_q[13:0] : step_i[1:0] == 2'd2 ? product_q[27:14] :
+                        step_i[1:0] == 2'd3 ? {8'd0, product_q[33:28]} : 14'd0);
 endmodule
 
 `default_nettype wire
