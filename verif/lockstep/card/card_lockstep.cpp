@@ -68,8 +68,8 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   EXPECT_GT(traffic.holds, clocks / 100'000);
   EXPECT_GT(traffic.overrides, clocks / 100'000);
   expect_all_compared(card, axes, clocks);
-  std::cout << card.cycles() << " clocks of random traffic compared, " << traffic.holds << " holds, " << traffic.overrides
-            << " overrides, " << traffic.underruns << " under-runs\n";
+  std::cout << card.cycles() << " clocks of random traffic compared, " << traffic.holds << " holds, "
+            << traffic.overrides << " overrides, " << traffic.underruns << " under-runs\n";
 }
 
 class CardLockstep : public testing::TestWithParam<TrafficRun> {};
