@@ -147,11 +147,21 @@ PositionStream::Sent PositionStream::send(const Positions& targets, std::uint64_
     pulses[n] = whole_pulses(targets[n]);
   }
   const Step step = step_to(pulses, (odd_clocks_ + clocks) / kClocksPerTick);
+  require_room();
   return closing_at_errors([&] {
     const Sent sent = send_line(step);
     odd_clocks_ = (odd_clocks_ + clocks) % kClocksPerTick;
     return sent;
   });
+}
+
+// For a line, as of the last look, or as of now where that is too little.
+void PositionStream::require_room() {
+  const std::uint32_t need = map::queue_halfwords(layout_of(LineCommand{}), line_mask());
+  if (need > geometry_room_) geometry_room_ = card_->read(reg::kGeometryRoom);
+  if (need > geometry_room_) {
+    throw StateError(fmt::format("position stream: the card's queue is full, {} periods ahead", lines_ - begun_));
+  }
 }
 
 // The line to there, shorter by what the card is behind, where that is not too fast.
@@ -165,10 +175,6 @@ PositionStream::Step PositionStream::step_to(const Pulses& told, std::uint64_t t
                     "most {} pulses/s",
                     *axis, step.line.pulses[*axis], kClocksPerTick * step.line.ticks, least_clocks_[*axis],
                     options_.max_speed[*axis] == 0 ? "any" : fmt::format("{}", options_.max_speed[*axis])));
-  }
-  const std::uint32_t need = map::queue_halfwords(layout_of(LineCommand{}), line_mask());
-  if (need > geometry_room_) {
-    throw StateError(fmt::format("position stream: the card's queue is full, {} periods ahead", lines_ - begun_));
   }
   return step;
 }

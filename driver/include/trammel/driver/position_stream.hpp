@@ -115,6 +115,7 @@ class PositionStream {
   };
 
   void start();
+  void require_room();
   Step step_to(const Pulses& told, std::uint64_t ticks) const;
   Step step_to(const Pulses& told, std::uint64_t ticks, std::uint64_t caught_up) const;
   std::optional<unsigned> fastest_axis(const Line& line) const;
