@@ -2,12 +2,12 @@
 // and what the machine's inputs do.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
 #include "trammel/run/run_settings.hpp"
 
 namespace trammel::app {

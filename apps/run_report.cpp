@@ -170,7 +170,7 @@ std::string summary(const RunResult& result) {
   return text + accepted_words(result.accepted);
 }
 
-nlohmann::ordered_json json_of(const RunResult& result) {
+std::string json_text(const RunResult& result) {
   nlohmann::ordered_json json;
   json["program"] = result.program;
   json["engine"] = result.engine;
@@ -203,7 +203,7 @@ nlohmann::ordered_json json_of(const RunResult& result) {
   json["inputs"] = nullptr;
   if (result.inputs) json["inputs"] = *result.inputs;
   json["accepted_words"] = result.accepted;
-  return json;
+  return json.dump(2) + "\n";
 }
 
 }  // namespace trammel::app
