@@ -51,7 +51,7 @@ class Stream {
   void to_the_end(std::uint64_t ticks) {
     while (ticks != 0) {
       bench.idle(1);
-      ticks -= bench.core.outputs().tick ? 1 : 0;
+      ticks -= bench.core.outputs().tick ? 1U : 0U;
     }
   }
   bool stale() const { return (bench.core.outputs().status & field::kStatusStale) != 0; }
@@ -104,7 +104,7 @@ TEST(PositionStreaming, AMissingPeriodStopsOnTheLine) {
       while ((s.bench.core.outputs().status & field::kStatusBusy) != 0) {
         if (s.fault() == 0) at_fault = ticks;
         s.bench.idle(1);
-        ticks += s.bench.core.outputs().tick ? 1 : 0;
+        ticks += s.bench.core.outputs().tick ? 1U : 0U;
       }
       EXPECT_EQ(s.fault(), field::kFaultMissingPeriod);
       // A tick and the fault are both seen two clocks after they are decided, and a tick comes in two clocks.
