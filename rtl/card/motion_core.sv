@@ -18,7 +18,9 @@ module motion_core #(
     input  wire logic [ Outputs-1:0] output_idle_i,     // levels in reset
     output logic      [ Outputs-1:0] output_o,
     output logic                     mark_o,
-    output logic      [        63:0] io_o,              // {marks, outputs, inputs}
+    output logic                     probe_o,           // event: a snapshot is wanted (combinational)
+    input  wire logic                probe_clear_i,
+    output logic      [        66:0] io_o,              // {waiting, probe missed, probed, marks, outputs, inputs}
     // queues
     input  wire logic                geometry_empty_i,
     input  wire logic [        15:0] geometry_word_i,
@@ -77,6 +79,10 @@ module motion_core #(
   logic [     4:0] engine;
   logic [     1:0] instant;
   logic            path_over;
+  // probe
+  logic met, probe_waits, probe_ends, waiting;
+  logic probe_taken, probe_stays, probe_hold, halt, drop, probing;
+  logic barrier_counts;
   logic barrier_begin, barrier_done;
   logic path_active, ended, geometry_idle;
   logic            direct;
@@ -115,6 +121,7 @@ module motion_core #(
       .moving_i    (moving),
       .fixed_i     (fixed),
       .underrun_i  (underrun_hold),
+      .probe_i     (probe_hold),
       .hold_o      (hold),
       .stopping_o  (stopping)
   );
@@ -123,30 +130,34 @@ module motion_core #(
       .Engines(Engines)
   ) ticks (
       .*,
-      .underrun_hold_o(underrun_hold),
-      .cut_i          (cut_o),
-      .hold_i         (hold),
-      .empty_i        (feed_empty_i),
-      .word_i         (feed_word_i),
-      .read_o         (feed_read_o),
-      .direct_i       (direct),
-      .taking_i       (taking),
-      .ready_i        (engine_ready),
-      .take_o         (take),
-      .tick_o         (tick),
-      .swap_o         (feed_swap),
-      .barrier_begin_i(barrier_begin),
-      .barrier_done_i (barrier_done),
-      .at_barrier_o   (feed_at),
-      .runs_o         (feed_runs),
-      .active_o       (feed_active),
-      .moving_o       (moving),
-      .fixed_o        (fixed),
-      .idle_o         (feed_idle),
-      .ratio_o        (ratio),
-      .rate_o         (rate),
-      .begun_o        (feed_begun_o),
-      .chain_o        (feed_chain)
+      .underrun_hold_o (underrun_hold),
+      .cut_i           (cut_o),
+      .hold_i          (hold),
+      .empty_i         (feed_empty_i),
+      .word_i          (feed_word_i),
+      .read_o          (feed_read_o),
+      .direct_i        (direct),
+      .taking_i        (taking),
+      .ready_i         (engine_ready),
+      .take_o          (take),
+      .tick_o          (tick),
+      .swap_o          (feed_swap),
+      .halt_i          (halt),
+      .drop_i          (drop),
+      .card_idle_i     (idle_q),
+      .barrier_begin_i (barrier_begin),
+      .barrier_done_i  (barrier_done),
+      .barrier_counts_i(barrier_counts),
+      .at_barrier_o    (feed_at),
+      .runs_o          (feed_runs),
+      .active_o        (feed_active),
+      .moving_o        (moving),
+      .fixed_o         (fixed),
+      .idle_o          (feed_idle),
+      .ratio_o         (ratio),
+      .rate_o          (rate),
+      .begun_o         (feed_begun_o),
+      .chain_o         (feed_chain)
   );
 
   geometry_sequencer #(
@@ -154,40 +165,49 @@ module motion_core #(
       .Engines(Engines)
   ) geometry (
       .*,
-      .cut_i          (cut_o),
-      .empty_i        (geometry_empty_i),
-      .word_i         (geometry_word_i),
-      .read_o         (geometry_read_o),
-      .direct_load_i  (direct_load),
-      .direct_go_i    (direct_go),
-      .direct_mask_i  (direct_mask),
-      .direct_o       (direct),
-      .load_o         (load),
-      .take_i         (take),
-      .taking_o       (taking),
-      .swap_o         (swap),
-      .active_o       (active),
-      .engine_o       (engine),
-      .engine_taken_o (engine_taken),
-      .payload_ready_i(payload_ready),
-      .shadows_free_i (shadows_free),
-      .done_i         (engine_done),
-      .elsewhere_i    (elsewhere),
-      .axes_live_i    (axes_live),
-      .instant_o      (instant),
-      .over_o         (path_over),
-      .feed_at_i      (feed_at),
-      .feed_runs_i    (feed_runs),
-      .barrier_begin_o(barrier_begin),
-      .barrier_done_o (barrier_done),
-      .mismatch_o     (mismatch),
-      .incomplete_o   (incomplete),
-      .path_active_o  (path_active),
-      .ended_o        (ended),
-      .idle_o         (geometry_idle),
-      .chain_i        (feed_chain),
-      .chain_o        (geometry_chain),
-      .begun_o        (geometry_begun_o)
+      .cut_i           (cut_o),
+      .empty_i         (geometry_empty_i),
+      .word_i          (geometry_word_i),
+      .read_o          (geometry_read_o),
+      .direct_load_i   (direct_load),
+      .direct_go_i     (direct_go),
+      .direct_mask_i   (direct_mask),
+      .direct_o        (direct),
+      .load_o          (load),
+      .take_i          (take),
+      .taking_o        (taking),
+      .swap_o          (swap),
+      .active_o        (active),
+      .engine_o        (engine),
+      .engine_taken_o  (engine_taken),
+      .payload_ready_i (payload_ready),
+      .shadows_free_i  (shadows_free),
+      .done_i          (engine_done),
+      .elsewhere_i     (elsewhere),
+      .axes_live_i     (axes_live),
+      .instant_o       (instant),
+      .over_o          (path_over),
+      .met_i           (met),
+      .probe_taken_i   (probe_taken),
+      .probe_stays_i   (probe_stays),
+      .halt_i          (halt),
+      .drop_i          (drop),
+      .probe_waits_o   (probe_waits),
+      .probe_ends_o    (probe_ends),
+      .waiting_o       (waiting),
+      .barrier_counts_o(barrier_counts),
+      .feed_at_i       (feed_at),
+      .feed_runs_i     (feed_runs),
+      .barrier_begin_o (barrier_begin),
+      .barrier_done_o  (barrier_done),
+      .mismatch_o      (mismatch),
+      .incomplete_o    (incomplete),
+      .path_active_o   (path_active),
+      .ended_o         (ended),
+      .idle_o          (geometry_idle),
+      .chain_i         (feed_chain),
+      .chain_o         (geometry_chain),
+      .begun_o         (geometry_begun_o)
   );
 
   path_to_pins #(
@@ -195,7 +215,7 @@ module motion_core #(
       .Engines(Engines)
   ) moves (
       .*,
-      .cut_i          (cut_o),
+      .cut_i          (cut_o || halt),
       .load_i         (load),
       .tick_i         (tick),
       .swap_i         (swap),
@@ -222,11 +242,23 @@ module motion_core #(
       .Outputs(Outputs)
   ) commands (
       .*,
-      .cut_i  (cut_o),
-      .load_i (load),
-      .taken_i(instant),
-      .over_i (path_over),
-      .runs_i (path_active)
+      .cut_i        (cut_o),
+      .load_i       (load),
+      .taken_i      (instant),
+      .over_i       (path_over),
+      .runs_i       (path_active),
+      .met_o        (met),
+      .at_rest_i    (held_o),
+      .stopping_i   (stopping),
+      .probe_waits_i(probe_waits),
+      .probe_ends_i (probe_ends),
+      .waiting_i    (waiting),
+      .probe_taken_o(probe_taken),
+      .probe_stays_o(probe_stays),
+      .probe_hold_o (probe_hold),
+      .halt_o       (halt),
+      .drop_o       (drop),
+      .probing_o    (probing)
   );
 
   if (Engines[card_map_pkg::ENGINE_DIRECT_MODE]) begin : gen_direct_mode
@@ -255,7 +287,7 @@ module motion_core #(
   end
 
   always_ff @(posedge clk_i) begin
-    idle_q    <= (geometry_idle && feed_idle) || rst_i;
+    idle_q    <= (geometry_idle && feed_idle && !probing) || rst_i;
     running_q <= (!idle_q || direct || axes_busy) && !rst_i;
   end
 
