@@ -130,7 +130,7 @@ module geometry_sequencer #(
   // A barrier that has begun is over where the others are dropped.
   barrier both_queues (
       .*,
-      .cut_i          (cut_i || (halt_i && !is_probe_end)),
+      .cut_i          (cut_i || (halt_i && !(valid && is_probe_end))),
       .geometry_at_i  (at_barrier),
       .geometry_runs_i(runs),
       .zero_i         (zero),

@@ -51,11 +51,13 @@ module underrun_guard #(
   assign follow = !active_i || (ends_q && covered_q);
 
   logic lost;
+  logic unknown;  // or was lost while the counts were compared that are decided on next
   logic off;
   assign off = off_i || lost;
 
   if (Probing) begin : gen_probing
     logic lost_q;
+    logic unknown_q;
     logic inside_q;  // of a command on its way in
     logic [2:0] since_q;  // the last command came; 7: long ago
 
@@ -66,14 +68,17 @@ module underrun_guard #(
         since_q  <= 3'd0;
       end else if (since_q != 3'd7) since_q <= since_q + 3'd1;
       lost_q <= lost_i || (lost_q && !(idle_i && !inside_q && since_q == 3'd7));
+      unknown_q <= lost_q || (unknown_q && step_q != DECIDE);
       if (cut_i || rst_i) begin
         inside_q <= 1'b0;
         lost_q   <= 1'b0;
       end
     end
     assign lost = lost_q;
+    assign unknown = lost_q || unknown_q;
   end else begin : gen_no_probing
     assign lost = 1'b0;
+    assign unknown = 1'b0;
 
     logic unused;
     assign unused = &{1'b0, lost_i, idle_i};
@@ -111,7 +116,7 @@ module underrun_guard #(
   logic enough_q;  // for it
   logic waits_q;
   logic short;
-  assign short = ruled && !at_barrier && !off && ((geometry_short && !covered) || (feed_short && !at_rest));
+  assign short = ruled && !at_barrier && !off && !unknown && ((geometry_short && !covered) || (feed_short && !at_rest));
 
   always_ff @(posedge clk_i) begin
     from_rest_q <= from_rest;

@@ -37,6 +37,15 @@ module sequencers #(
     // commands that are neither paths nor barriers
     output logic      [     1:0] instant_o,
     output logic                 over_o,
+    // probe
+    input  wire logic            met_i,
+    input  wire logic            probe_taken_i,
+    input  wire logic            probe_stays_i,
+    input  wire logic            halt_i,
+    input  wire logic            drop_i,
+    output logic                 probe_waits_o,
+    output logic                 probe_ends_o,
+    output logic                 waiting_o,
     // what begins
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
@@ -64,6 +73,7 @@ module sequencers #(
   logic        taking;
   logic        barrier_begin;
   logic        barrier_done;
+  logic        barrier_counts;
   logic        feed_at;
   logic        feed_runs;
   logic        feed_decoder_idle;
@@ -97,6 +107,15 @@ module sequencers #(
       .axes_live_i,
       .instant_o,
       .over_o,
+      .met_i,
+      .probe_taken_i,
+      .probe_stays_i,
+      .halt_i,
+      .drop_i,
+      .probe_waits_o,
+      .probe_ends_o,
+      .waiting_o,
+      .barrier_counts_o(barrier_counts),
       .feed_at_i      (feed_at),
       .feed_runs_i    (feed_runs),
       .barrier_begin_o(barrier_begin),
@@ -126,6 +145,9 @@ module sequencers #(
       .at_barrier_o   (feed_at),
       .runs_o         (feed_runs),
       .wait_i,
+      .halt_i,
+      .drop_i,
+      .barrier_counts_i(barrier_counts),
       .active_o       (feed_active_o),
       .decoded_o      (),
       .moving_o,

@@ -32,11 +32,16 @@ class Probe {
     const bool edge = edges(in);
     const bool take = takes(in);
     const bool tripped_already = take && met(in.levels);
+    const bool over = in.ends && !probed_;
     halt_ = false;
     if (in.clear) probed_ = missed_ = false;
     if (take) missed_ = false;
     if (edge || tripped_already) probed_ = true;
-    step(in, edge, take, tripped_already);
+    step(in, edge, take, over);
+    if (tripped_already) {
+      state_ = State::Dropping;
+      halt_ = true;
+    }
     if (in.cut) {
       state_ = State::Off;
       halt_ = false;
@@ -83,15 +88,14 @@ class Probe {
   bool edges(const Inputs& in) const {
     return state_ == State::Armed && meets(armed_for_, in.levels) && !in.stopping && !in.cut;
   }
-  void step(const Inputs& in, bool edge, bool take, bool tripped_already) {
+  void step(const Inputs& in, bool edge, bool take, bool over) {
     switch (state_) {
       case State::Off:
       case State::Armed:
         if (edge) {
           state_ = State::Ramp;
         } else if (take) {
-          halt_ = tripped_already;
-          state_ = tripped_already ? State::Dropping : State::Armed;
+          state_ = State::Armed;
         } else if (in.ends && state_ == State::Armed) {
           state_ = State::Off;
           missed_ = true;
@@ -102,12 +106,10 @@ class Probe {
         if (in.at_rest) state_ = State::Dropping;
         break;
       case State::Dropping:
-        if (in.ends && !probed_before(in)) state_ = State::Off;
+        if (over) state_ = State::Off;
         break;
     }
   }
-  // As it stood before this clock.
-  bool probed_before(const Inputs& in) const { return probed_ || in.clear; }
 
   State state_ = State::Off;
   std::uint8_t condition_ = 0;  // {level, input}, decoded last

@@ -68,8 +68,8 @@ class StopControl {
   bool stopped() const { return state_ == State::Stopped; }
   bool made_to_hold() const { return made_to_hold_; }  // as of the last clock: by under-run or probe
 
-  // Without an event, a setting, an abort, a clear or a change of made_to_hold(), clock() changes nothing while these stay;
-  // where no hold is asked for, whatever they do.
+  // Without an event, a setting, an abort, a clear or a change of made_to_hold(), clock() changes nothing while these
+  // stay; where no hold is asked for, whatever they do.
   bool quiet(bool moving, bool fixed, bool at_rest) const {
     const bool same = stays(moving, at_rest) == hold_stays_ && out_.hold == (host_holds(fixed) || made_to_hold_);
     const bool settled = same && out_.closed == (out_.fault != 0 || state_ != State::Run);
