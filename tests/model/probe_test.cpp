@@ -105,7 +105,7 @@ TEST(Probe, WhatIsQueuedUpToProbeEndIsDroppedAndCounted) {
   EXPECT_TRUE(card.feed(10, kWhole));  // ticks without a path: no fault where it is dropped
   EXPECT_TRUE(card.probe_end());
   EXPECT_TRUE(card.line(100, {0, kOnePulse / 2}));
-  EXPECT_TRUE(card.feed(100, kWhole));
+  EXPECT_TRUE(card.feed(100, kWhole / 16));
   EXPECT_TRUE(card.has(field::kStatusPathActive));
   card.pins = 0b0100;
   card.idle(3000);
@@ -145,7 +145,7 @@ TEST(Probe, AnInputThatIsTrippedAlreadyEndsItBeforeTheFirstStep) {
 TEST(Probe, ItIsArmedWhenThePathBeforeItHasEnded) {
   Probing card;
   ASSERT_TRUE(card.line(200, {kOnePulse / 2}));
-  ASSERT_TRUE(card.feed(200, kWhole));
+  ASSERT_TRUE(card.feed(200, kWhole / 16));
   card.write(reg::kHold, 1);
   card.start(400, 2);
   card.pins = 0b0100;
@@ -153,7 +153,7 @@ TEST(Probe, ItIsArmedWhenThePathBeforeItHasEnded) {
   card.write(reg::kHold, 0);
   // While the first path runs the input is not looked at.
   std::uint64_t last = 0;
-  for (int i = 0; i < 2000 && !card.has(field::kStatusProbed); ++i) {
+  for (int i = 0; i < 5000 && !card.has(field::kStatusProbed); ++i) {
     card.idle(1);
     if (card.core.outputs().tick) last = card.core.cycles();
   }
@@ -230,7 +230,7 @@ TEST(Probe, AnAbortEndsItInEveryStateAndTheEdgeStaysKnown) {
     card.number = 0;
     const auto from = card.core.position(0);
     ASSERT_TRUE(card.line(100, {kOnePulse / 2}));
-    ASSERT_TRUE(card.feed(100, kWhole));
+    ASSERT_TRUE(card.feed(100, kWhole / 16));
     EXPECT_TRUE(card.finish(400'000)) << state;
     EXPECT_EQ(card.core.position(0), from + 50) << state;
     EXPECT_EQ(card.has(field::kStatusProbed), state > 1);
@@ -319,7 +319,7 @@ TEST(WaitInput, EndsWithItsLevelOrItsTime) {
   ASSERT_TRUE(card.wait_input(1, 0));
   card.pins = 0b0010;
   ASSERT_TRUE(card.line(100, {kOnePulse / 2}));
-  ASSERT_TRUE(card.feed(100, kWhole));
+  ASSERT_TRUE(card.feed(100, kWhole / 16));
   card.idle(100'000);
   EXPECT_NE(card.core.outputs().status & field::kStatusWaiting, 0U);
   EXPECT_EQ(card.core.position(0), 0);
@@ -328,7 +328,7 @@ TEST(WaitInput, EndsWithItsLevelOrItsTime) {
   EXPECT_NE(card.core.outputs().status & field::kStatusWaiting, 0U);
   card.idle(1);
   EXPECT_EQ(card.core.outputs().status & field::kStatusWaiting, 0U);
-  EXPECT_TRUE(card.finish(1000));
+  EXPECT_TRUE(card.finish(3000));
   EXPECT_EQ(card.core.position(0), 50);
   // The input has its level already: one clock.
   ASSERT_TRUE(card.wait_input(1, 0));
