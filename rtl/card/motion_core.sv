@@ -63,47 +63,30 @@ module motion_core #(
   logic            stopping;
   logic [Axes-1:0] step_fault;
   // ticks
-  logic            take;
-  logic            tick;
-  logic            feed_swap;
-  logic            feed_active;
-  logic moving, fixed;
+  logic take, tick, feed_swap, feed_active, moving, fixed;
   logic feed_runs, feed_at, feed_idle;
-  logic [    16:0] ratio;
-  logic [    31:0] rate;
+  logic [16:0] ratio;
+  logic [31:0] rate;
   // geometry
-  logic [    21:0] load;
-  logic            taking;
-  logic            swap;
+  logic [21:0] load;
+  logic taking, swap, path_over;
   logic [Axes-1:0] active;
   logic [     4:0] engine;
   logic [     1:0] instant;
-  logic            path_over;
-  // probe
-  logic met, probe_waits, probe_ends, waiting;
-  logic probe_taken, probe_stays, probe_hold, halt, drop, probing;
-  logic barrier_counts;
-  logic barrier_begin, barrier_done;
-  logic path_active, ended, geometry_idle;
-  logic            direct;
-  logic            direct_go;
+  logic [2:0] barrier, probe_at, probe_says;
+  logic [1:0] drop;
+  logic probe_hold, probing;
+  logic path_active, ended, geometry_idle, direct, direct_go;
   logic [Axes-1:0] direct_mask;
   logic [    21:0] direct_load;
   // path engines
-  logic            engine_tick;
-  logic engine_ready, payload_ready, shadows_free, engine_taken;
-  logic               engine_done;
-  logic               elsewhere;
+  logic engine_tick, engine_ready, payload_ready, shadows_free, engine_taken, engine_done, elsewhere;
   // axes
-  logic               axes_live;
-  logic               axes_busy;
+  logic axes_live, axes_busy;
   logic [34*Axes-1:0] axes_observe;
   // status
-  logic               idle_q;
-  logic               running_q;
-  logic               busy;
-  logic [       31:0] feed_chain;
-  logic [       31:0] geometry_chain;
+  logic idle_q, running_q, busy;
+  logic [31:0] feed_chain, geometry_chain;
 
   assign held_o    = ratio == 17'd0;
   assign status_o  = {stopping, ended, feed_active, path_active, direct, busy};
@@ -130,34 +113,31 @@ module motion_core #(
       .Engines(Engines)
   ) ticks (
       .*,
-      .underrun_hold_o (underrun_hold),
-      .cut_i           (cut_o),
-      .hold_i          (hold),
-      .empty_i         (feed_empty_i),
-      .word_i          (feed_word_i),
-      .read_o          (feed_read_o),
-      .direct_i        (direct),
-      .taking_i        (taking),
-      .ready_i         (engine_ready),
-      .take_o          (take),
-      .tick_o          (tick),
-      .swap_o          (feed_swap),
-      .halt_i          (halt),
-      .drop_i          (drop),
-      .card_idle_i     (idle_q),
-      .barrier_begin_i (barrier_begin),
-      .barrier_done_i  (barrier_done),
-      .barrier_counts_i(barrier_counts),
-      .at_barrier_o    (feed_at),
-      .runs_o          (feed_runs),
-      .active_o        (feed_active),
-      .moving_o        (moving),
-      .fixed_o         (fixed),
-      .idle_o          (feed_idle),
-      .ratio_o         (ratio),
-      .rate_o          (rate),
-      .begun_o         (feed_begun_o),
-      .chain_o         (feed_chain)
+      .underrun_hold_o(underrun_hold),
+      .cut_i          (cut_o),
+      .hold_i         (hold),
+      .empty_i        (feed_empty_i),
+      .word_i         (feed_word_i),
+      .read_o         (feed_read_o),
+      .direct_i       (direct),
+      .taking_i       (taking),
+      .ready_i        (engine_ready),
+      .take_o         (take),
+      .tick_o         (tick),
+      .swap_o         (feed_swap),
+      .drop_i         (drop),
+      .card_idle_i    (idle_q),
+      .barrier_i      (barrier),
+      .at_barrier_o   (feed_at),
+      .runs_o         (feed_runs),
+      .active_o       (feed_active),
+      .moving_o       (moving),
+      .fixed_o        (fixed),
+      .idle_o         (feed_idle),
+      .ratio_o        (ratio),
+      .rate_o         (rate),
+      .begun_o        (feed_begun_o),
+      .chain_o        (feed_chain)
   );
 
   geometry_sequencer #(
@@ -165,49 +145,42 @@ module motion_core #(
       .Engines(Engines)
   ) geometry (
       .*,
-      .cut_i           (cut_o),
-      .empty_i         (geometry_empty_i),
-      .word_i          (geometry_word_i),
-      .read_o          (geometry_read_o),
-      .direct_load_i   (direct_load),
-      .direct_go_i     (direct_go),
-      .direct_mask_i   (direct_mask),
-      .direct_o        (direct),
-      .load_o          (load),
-      .take_i          (take),
-      .taking_o        (taking),
-      .swap_o          (swap),
-      .active_o        (active),
-      .engine_o        (engine),
-      .engine_taken_o  (engine_taken),
-      .payload_ready_i (payload_ready),
-      .shadows_free_i  (shadows_free),
-      .done_i          (engine_done),
-      .elsewhere_i     (elsewhere),
-      .axes_live_i     (axes_live),
-      .instant_o       (instant),
-      .over_o          (path_over),
-      .met_i           (met),
-      .probe_taken_i   (probe_taken),
-      .probe_stays_i   (probe_stays),
-      .halt_i          (halt),
-      .drop_i          (drop),
-      .probe_waits_o   (probe_waits),
-      .probe_ends_o    (probe_ends),
-      .waiting_o       (waiting),
-      .barrier_counts_o(barrier_counts),
-      .feed_at_i       (feed_at),
-      .feed_runs_i     (feed_runs),
-      .barrier_begin_o (barrier_begin),
-      .barrier_done_o  (barrier_done),
-      .mismatch_o      (mismatch),
-      .incomplete_o    (incomplete),
-      .path_active_o   (path_active),
-      .ended_o         (ended),
-      .idle_o          (geometry_idle),
-      .chain_i         (feed_chain),
-      .chain_o         (geometry_chain),
-      .begun_o         (geometry_begun_o)
+      .cut_i          (cut_o),
+      .empty_i        (geometry_empty_i),
+      .word_i         (geometry_word_i),
+      .read_o         (geometry_read_o),
+      .direct_load_i  (direct_load),
+      .direct_go_i    (direct_go),
+      .direct_mask_i  (direct_mask),
+      .direct_o       (direct),
+      .load_o         (load),
+      .take_i         (take),
+      .taking_o       (taking),
+      .swap_o         (swap),
+      .active_o       (active),
+      .engine_o       (engine),
+      .engine_taken_o (engine_taken),
+      .payload_ready_i(payload_ready),
+      .shadows_free_i (shadows_free),
+      .done_i         (engine_done),
+      .elsewhere_i    (elsewhere),
+      .axes_live_i    (axes_live),
+      .instant_o      (instant),
+      .over_o         (path_over),
+      .probe_at_o     (probe_at),
+      .probe_says_i   (probe_says),
+      .drop_i         (drop),
+      .feed_at_i      (feed_at),
+      .feed_runs_i    (feed_runs),
+      .barrier_o      (barrier),
+      .mismatch_o     (mismatch),
+      .incomplete_o   (incomplete),
+      .path_active_o  (path_active),
+      .ended_o        (ended),
+      .idle_o         (geometry_idle),
+      .chain_i        (feed_chain),
+      .chain_o        (geometry_chain),
+      .begun_o        (geometry_begun_o)
   );
 
   path_to_pins #(
@@ -215,7 +188,7 @@ module motion_core #(
       .Engines(Engines)
   ) moves (
       .*,
-      .cut_i          (cut_o || halt),
+      .cut_i          (cut_o || drop[0]),
       .load_i         (load),
       .tick_i         (tick),
       .swap_i         (swap),
@@ -242,23 +215,18 @@ module motion_core #(
       .Outputs(Outputs)
   ) commands (
       .*,
-      .cut_i        (cut_o),
-      .load_i       (load),
-      .taken_i      (instant),
-      .over_i       (path_over),
-      .runs_i       (path_active),
-      .met_o        (met),
-      .at_rest_i    (held_o),
-      .stopping_i   (stopping),
-      .probe_waits_i(probe_waits),
-      .probe_ends_i (probe_ends),
-      .waiting_i    (waiting),
-      .probe_taken_o(probe_taken),
-      .probe_stays_o(probe_stays),
-      .probe_hold_o (probe_hold),
-      .halt_o       (halt),
-      .drop_o       (drop),
-      .probing_o    (probing)
+      .cut_i       (cut_o),
+      .load_i      (load),
+      .taken_i     (instant),
+      .over_i      (path_over),
+      .runs_i      (path_active),
+      .at_rest_i   (held_o),
+      .stopping_i  (stopping),
+      .probe_at_i  (probe_at),
+      .probe_says_o(probe_says),
+      .probe_hold_o(probe_hold),
+      .drop_o      (drop),
+      .probing_o   (probing)
   );
 
   if (Engines[card_map_pkg::ENGINE_DIRECT_MODE]) begin : gen_direct_mode

@@ -24,7 +24,7 @@ module geometry_sequencer #(
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
     output logic      [     4:0] engine_o,
-    output logic                 engine_taken_o,    // by a path that still takes ticks (combinational)
+    output logic                 engine_taken_o,   // by a path that still takes ticks (combinational)
     // ends
     input  wire logic            payload_ready_i,
     input  wire logic            shadows_free_i,
@@ -32,23 +32,16 @@ module geometry_sequencer #(
     input  wire logic            elsewhere_i,
     input  wire logic            axes_live_i,
     // commands that are neither paths nor barriers
-    output logic      [     1:0] instant_o,         // {MARK, OUTPUT} is taken now (combinational)
-    output logic                 over_o,            // event: a path has ended
+    output logic      [     1:0] instant_o,        // {MARK, OUTPUT} is taken now (combinational)
+    output logic                 over_o,           // event: a path has ended
     // probe
-    input  wire logic            met_i,             // the condition decoded last is met
-    input  wire logic            probe_taken_i,
-    input  wire logic            probe_stays_i,     // PROBE_END must wait
-    input  wire logic            halt_i,            // event: the path ends here
-    input  wire logic            drop_i,            // commands up to PROBE_END are not carried out
-    output logic                 probe_waits_o,     // a PROBE is decoded and no path runs (combinational)
-    output logic                 probe_ends_o,      // PROBE_END has begun (combinational)
-    output logic                 waiting_o,         // WAIT_INPUT has begun (combinational)
+    output logic      [     2:0] probe_at_o,       // as path_commands has them
+    input  wire logic [     2:0] probe_says_i,
+    input  wire logic [     1:0] drop_i,
     // barriers
     input  wire logic            feed_at_i,
     input  wire logic            feed_runs_i,
-    output logic                 barrier_begin_o,
-    output logic                 barrier_done_o,
-    output logic                 barrier_counts_o,
+    output logic      [     2:0] barrier_o,        // {done, counts, begins}
     // faults and status
     output logic                 mismatch_o,
     output logic                 incomplete_o,
@@ -79,18 +72,16 @@ module geometry_sequencer #(
   logic            at_barrier;
 
   assign runs = taking_o || (valid && !is_barrier && instant == 3'd0);
-  assign dropped = valid && drop_i && !is_probe_end;
-  assign instant_o = {2{valid && !drop_i}} & instant[1:0];
-  assign probe_waits_o = valid && instant[2] && !path_active_o;
-  assign probe_ends_o = barrier_counts_o && is_probe_end;
-  assign waiting_o = barrier_counts_o && is_wait;
+  assign dropped = valid && drop_i[1] && !is_probe_end;
+  assign instant_o = {2{valid && !drop_i[1]}} & instant[1:0];
+  assign probe_at_o = {barrier_o[1] && is_wait, barrier_o[1] && is_probe_end, valid && instant[2] && !path_active_o};
 
   geometry_decoder #(
       .Axes   (Axes),
       .Engines(Engines)
   ) decoder (
       .*,
-      .pop_i          (path_pop || instant_o != 2'd0 || probe_taken_i || dropped),
+      .pop_i          (path_pop || instant_o != 2'd0 || probe_says_i[1] || dropped),
       .payload_ready_i(payload_ready_i && !engine_taken_o),
       .mask_o         (mask),
       .engine_o       (engine),
@@ -107,8 +98,8 @@ module geometry_sequencer #(
       .*,
       .next_i({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
       .zero_o(zero),
-      .load_i(path_begin || barrier_begin_o),
-      .take_i(take_i || barrier_counts_o),
+      .load_i(path_begin || barrier_o[0]),
+      .take_i(take_i || barrier_o[1]),
       .last_o(last)
   );
 
@@ -123,34 +114,37 @@ module geometry_sequencer #(
       .pop_o         (path_pop),
       .last_i        (last),
       .begin_o       (path_begin),
-      .barrier_done_i(barrier_done_o),
+      .halt_i        (drop_i[0]),
+      .barrier_done_i(barrier_o[2]),
       .at_barrier_o  (at_barrier)
   );
 
   // A barrier that has begun is over where the others are dropped.
   barrier both_queues (
       .*,
-      .cut_i          (cut_i || (halt_i && !(valid && is_probe_end))),
+      .cut_i          (cut_i || (drop_i[0] && !(valid && is_probe_end))),
       .geometry_at_i  (at_barrier),
       .geometry_runs_i(runs),
       .zero_i         (zero),
       .end_i          (is_end),
       .wait_i         (is_wait),
-      .stays_i        (is_probe_end && probe_stays_i),
+      .stays_i        (is_probe_end && probe_says_i[2]),
+      .met_i          (probe_says_i[0]),
+      .drop_i         (drop_i[1]),
       .last_i         (last),
       .begin_i        (path_begin),
-      .load_o         (barrier_begin_o),
-      .counting_o     (barrier_counts_o),
-      .done_o         (barrier_done_o)
+      .load_o         (barrier_o[0]),
+      .counting_o     (barrier_o[1]),
+      .done_o         (barrier_o[2])
   );
 
   // A direct move does not count, nor what is neither path nor barrier. A barrier that had begun has counted.
   logic drop_counts;
-  assign drop_counts = dropped && instant == 3'd0 && !barrier_counts_o && !barrier_done_o;
+  assign drop_counts = dropped && instant == 3'd0 && barrier_o[2:1] == 2'd0;
 
   begun_counter begun (
       .*,
-      .begin_i((swap_o && !direct_o) || barrier_begin_o || drop_counts)
+      .begin_i((swap_o && !direct_o) || barrier_o[0] || drop_counts)
   );
 
   // A barrier is over before its command is.

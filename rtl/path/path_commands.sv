@@ -21,20 +21,16 @@ module path_commands #(
     input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
     input wire logic runs_i,  // a path is under way
     output logic mark_o,  // event: a snapshot is wanted
-    output logic met_o,  // the condition decoded last is met (combinational)
     // probe
     input wire logic at_rest_i,  // the ratio is 0
     input wire logic stopping_i,  // a fault's ramp
     input wire logic probe_clear_i,  // event
-    input wire logic probe_waits_i,  // a PROBE is decoded and no path runs
-    input wire logic probe_ends_i,  // PROBE_END has begun
-    input wire logic waiting_i,  // WAIT_INPUT has begun
-    output logic probe_taken_o,  // combinational
-    output logic probe_stays_o,  // PROBE_END must wait (combinational)
+    input wire logic [2:0] probe_at_i,  // {WAIT_INPUT has begun, so has PROBE_END, a PROBE is decoded and no path runs}
+    // combinational: {PROBE_END must wait, the PROBE is taken, the condition decoded last is met}
+    output logic [2:0] probe_says_o,
     output logic probe_o,  // event: a snapshot is wanted (combinational)
     output logic probe_hold_o,
-    output logic halt_o,  // event: what runs ends here
-    output logic drop_o,  // commands up to PROBE_END are not carried out
+    output logic [1:0] drop_o,  // {commands up to PROBE_END are not carried out, event: what runs ends here}
     output logic probing_o,
     // registers
     output logic [66:0] io_o  // {waiting, probe missed, probed, marks, outputs, inputs}
@@ -59,7 +55,7 @@ module path_commands #(
         .Outputs(Outputs)
     ) instants (
         .*,
-        .cut_i   (cut_i || halt_o),
+        .cut_i   (cut_i || drop_o[0]),
         .marks_o (marks),
         .change_o(change),
         .set_o   (set),
@@ -80,26 +76,28 @@ module path_commands #(
     probe edges (
         .*,
         .level_i (levels),
-        .waits_i (probe_waits_i),
-        .ends_i  (probe_ends_i),
+        .waits_i (probe_at_i[0]),
+        .ends_i  (probe_at_i[1]),
         .clear_i (probe_clear_i),
-        .taken_o (probe_taken_o),
-        .stays_o (probe_stays_o),
+        .met_o   (probe_says_o[0]),
+        .taken_o (probe_says_o[1]),
+        .stays_o (probe_says_o[2]),
         .trip_o  (probe_o),
         .hold_o  (probe_hold_o),
+        .halt_o  (drop_o[0]),
+        .drop_o  (drop_o[1]),
         .busy_o  (probing_o),
         .status_o(probe_status)
     );
 
-    assign io_o = {waiting_i, probe_status, marks, 16'(output_o), levels};
+    assign io_o = {probe_at_i[2], probe_status, marks, 16'(output_o), levels};
   end else begin : gen_without
     assign output_o = output_idle_i;
-    assign {mark_o, met_o, io_o} = '0;
-    assign {probe_taken_o, probe_stays_o, probe_o, probe_hold_o, halt_o, drop_o, probing_o} = '0;
+    assign {mark_o, io_o, probe_says_o, probe_o, probe_hold_o, drop_o, probing_o} = '0;
 
     logic unused;
     assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, taken_i, over_i, runs_i, at_rest_i,
-                       stopping_i, probe_clear_i, probe_waits_i, probe_ends_i, waiting_i};
+                       stopping_i, probe_clear_i, probe_at_i};
   end
 endmodule
 

@@ -17,30 +17,27 @@ module tick_source #(
     // {a queue may have no room for the next command, drop, geometry {commit, write}, feed {commit, write}, halfword}
     input  wire logic [21:0] arrive_i,
     // ticks
-    input  wire logic        direct_i,          // a direct move is under way
-    input  wire logic        taking_i,          // a path takes ticks
-    input  wire logic        ready_i,           // and so does its engine
-    output logic             take_o,            // combinational
+    input  wire logic        direct_i,         // a direct move is under way
+    input  wire logic        taking_i,         // a path takes ticks
+    input  wire logic        ready_i,          // and so does its engine
+    output logic             take_o,           // combinational
     output logic             tick_o,
-    output logic             swap_o,            // of the feed piece
+    output logic             swap_o,           // of the feed piece
     // probe
-    input  wire logic        halt_i,            // event: the piece ends here
-    input  wire logic        drop_i,            // commands up to PROBE_END are not carried out
-    input  wire logic        card_idle_i,       // nothing runs, is decoded or queued; up to four clocks late
+    input  wire logic [ 1:0] drop_i,           // {commands up to PROBE_END are dropped, event: the piece ends here}
+    input  wire logic        card_idle_i,      // nothing runs, is decoded or queued; up to four clocks late
     // barriers
-    input  wire logic        barrier_begin_i,
-    input  wire logic        barrier_done_i,
-    input  wire logic        barrier_counts_i,
+    input  wire logic [ 2:0] barrier_i,        // {done, counts, begins}
     output logic             at_barrier_o,
-    output logic             runs_o,            // a piece gives ticks, or a decoded one waits (combinational)
+    output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
     // under-run
     output logic             underrun_hold_o,
-    output logic      [32:0] underrun_o,        // {it holds, or keeps a piece waiting; how often it has held}
+    output logic      [32:0] underrun_o,       // {it holds, or keeps a piece waiting; how often it has held}
     // status
-    output logic             active_o,          // a piece gives ticks
-    output logic             moving_o,          // and has, or the one before it in one go
-    output logic             fixed_o,           // the piece's class is fixed (combinational)
-    output logic             idle_o,            // nothing runs, is decoded or queued (combinational)
+    output logic             active_o,         // a piece gives ticks
+    output logic             moving_o,         // and has, or the one before it in one go
+    output logic             fixed_o,          // the piece's class is fixed (combinational)
+    output logic             idle_o,           // nothing runs, is decoded or queued (combinational)
     output logic      [16:0] ratio_o,
     output logic      [31:0] rate_o,
     output logic      [31:0] begun_o,
@@ -90,7 +87,7 @@ module tick_source #(
         .Probing(Engines[card_map_pkg::ENGINE_PATH_COMMANDS])
     ) guard (
         .*,
-        .lost_i     (halt_i),
+        .lost_i     (drop_i[0]),
         .idle_i     (card_idle_i),
         .off_i      (1'b0),
         .arrive_i   (arrive_i[20:0]),

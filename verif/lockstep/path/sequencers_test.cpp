@@ -247,11 +247,9 @@ class Bench {
 
   void apply() {
     dut_->cut_i = in_.cut;
-    dut_->halt_i = in_.halt;
-    dut_->drop_i = in_.drop;
-    dut_->probe_taken_i = in_.probe_taken;
-    dut_->met_i = in_.met;
-    dut_->probe_stays_i = in_.stays;
+    dut_->drop_i = static_cast<CData>(unsigned{in_.drop} << 1 | unsigned{in_.halt});
+    dut_->probe_says_i =
+        static_cast<CData>(unsigned{in_.stays} << 2 | unsigned{in_.probe_taken} << 1 | unsigned{in_.met});
     dut_->geometry_empty_i = in_.geometry_empty;
     dut_->geometry_word_i = in_.geometry_word;
     dut_->feed_empty_i = in_.feed_empty;
@@ -288,12 +286,12 @@ class Bench {
     check_.compare("feed_load_o, valid", dut_->feed_load_o >> 19, model_.feed_load().valid);
     check_.compare("mismatch_o", dut_->mismatch_o, out.mismatch);
     check_.compare("incomplete_o", dut_->incomplete_o, out.incomplete);
-    const bool dropping = dut_->drop_i != 0;  // combinational: of the clock that is over
+    const bool dropping = in_.drop;  // combinational: of the clock that is over
     check_.compare("instant_o", dut_->instant_o,
                    unsigned{model_.takes_mark(dropping)} << 1 | unsigned{model_.takes_output(dropping)});
-    check_.compare("probe_waits_o", dut_->probe_waits_o, model_.probe_waits());
-    check_.compare("probe_ends_o", dut_->probe_ends_o, model_.probe_ends());
-    check_.compare("waiting_o", dut_->waiting_o, model_.waits_for_input());
+    check_.compare("PROBE waits", dut_->probe_at_o & 1, model_.probe_waits());
+    check_.compare("PROBE_END has begun", dut_->probe_at_o >> 1 & 1, model_.probe_ends());
+    check_.compare("WAIT_INPUT has begun", dut_->probe_at_o >> 2, model_.waits_for_input());
     check_.compare("over_o", dut_->over_o, out.over);
     check_.compare("path_active_o", dut_->path_active_o, out.path_active);
     check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
