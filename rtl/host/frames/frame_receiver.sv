@@ -85,7 +85,7 @@ module frame_receiver (
           address_o[5:0] <= byte_o[7:2];
           strange_q <= strange_q || byte_o[1:0] != 2'd0;
         end
-        default: begin
+        3'd7: begin
           address_o[9:6] <= byte_o[3:0];
           strange_q <= strange_q || byte_o[7:4] != 4'd0;
         end
@@ -98,8 +98,8 @@ module frame_receiver (
   logic good;
 
   assign writes = kind_o == 2'd3;
-  // In words: header, data, CRC.
-  assign long_enough = place_q == (writes ? {count_o, 2'b00} : 8'd0) + 8'd12;
+  // Header, data, CRC.
+  assign long_enough = {1'b0, place_q} == {1'b0, writes ? count_o : 6'd0, 2'b00} + 9'd12;
   assign good = crc_whole_i && long_enough && !(writes && large_q) && !bad_q && !escaped_q && listen_i;
 
   always_ff @(posedge clk_i) frame_o <= ends && good && !restart_i && !rst_i;

@@ -74,7 +74,7 @@ module frame_sender (
         chosen = crc_i;
         last   = (low | 3'd4) == 3'd7;
       end
-      default: begin
+      FINISH: begin
         chosen = END;
         last   = 1'b0;
       end

@@ -99,6 +99,8 @@ class FrameSource {
     if (dice_.chance(6)) words = dice_.below(64);
     for (std::size_t i = 0; i < 4 * words; ++i) b.push_back(static_cast<std::uint8_t>(dice_.below(256)));
     if (dice_.chance(6)) b.resize(b.size() - 1 - dice_.below(8));
+    // Shorter than any, with a count of which 4 words more than a byte counts.
+    if (dice_.chance(8)) b = {static_cast<std::uint8_t>(dice_.chance(2) ? 3 : 0x13), 63, b[2], b[3]};
     frames::append_frame(stream, b);
   }
   void damage(frames::Bytes& stream) {
