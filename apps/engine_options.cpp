@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 
@@ -75,6 +76,15 @@ void EngineChoice::add_to(CLI::App& command) {
       .add_option("--trace-window", trace_window,
                   "trace only this stretch, seconds of card time; either may be left out")
       ->type_name("FROM:TO");
+}
+
+planner::CardLimits limits_of(const sim::EngineOptions& engine) {
+  planner::CardLimits card;
+  card.clock_hz = engine.clock_hz;
+  card.axes = engine.axes;
+  card.classes = true;
+  card.outputs = sim::kPins;
+  return card;
 }
 
 unsigned traced_axes(unsigned axes) { return axes <= 4 ? 4 : 8; }

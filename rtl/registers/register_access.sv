@@ -207,7 +207,7 @@ module register_access #(
   assign act = acting_q && good_q && write;
   assign setting_o = {set_q, access_i[41:34], data};
   assign clear_refusal_o = act && refusal_q;
-  assign flush_o = act && flush_q;
+  assign flush_o = acting_q && good_q && flush_q;  // only a write of CONTROL is good
 
   always_ff @(posedge clk_i) begin
     set_q <= act && kind_q == card_map_pkg::ACCESS_SETTING;
