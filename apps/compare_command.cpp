@@ -39,7 +39,7 @@ struct Options {
   std::int64_t largest = 1000;
   unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   std::string drive = "full";
-  bool standstill = false;
+  bool no_ramps = false;
   bool progress = false;
   std::optional<std::string> json;
   std::optional<std::string> plot;
@@ -90,7 +90,7 @@ Comparison compare(const Options& options, std::vector<measure::Trace>& traces) 
   }
   if (result.methods.empty()) throw UsageError(result.refused.front().reason);
   result.motor.drive = options.drive == "half" ? measure::Drive::kHalfStep : measure::Drive::kFullStep;
-  result.motor.from_standstill = options.standstill;
+  if (options.no_ramps) result.motor.ramp_time = 0;
   result.speeds = measure::sweep_speeds();
   ProgressBar bar(options.progress);
   result.sweeps = measure::sweep_motors(traces, ideal, result.motor, result.speeds, options.threads,
@@ -163,7 +163,8 @@ void add_compare_command(CLI::App& app) {
   command->add_option("--threads", options->threads, "threads (default: one a core)")->transform(whole_number(1, 256));
   command->add_option("--drive", options->drive, "steps of the simulated motor: full or half (default full)")
       ->check(CLI::IsMember({"full", "half"}));
-  command->add_flag("--standstill", options->standstill, "start the simulated motor from rest, not at speed");
+  command->add_flag("--no-ramps", options->no_ramps,
+                    "start and stop the simulated motors at full speed, not on ramps of 50 ms");
   command->add_flag("--progress", options->progress, "show a progress bar even if stderr is no terminal");
   command->add_option("--json", options->json, "everything measured as JSON ('-': standard output)")->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")->type_name("FILE.svg");

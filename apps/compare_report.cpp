@@ -15,7 +15,7 @@ using nlohmann::ordered_json;
 
 constexpr std::array<char, measure::kTraceAxes> kAxisNames = {'x', 'y', 'z', 'a'};
 // Every octave of the sweep is a column.
-constexpr std::size_t kColumnStride = 3;
+constexpr std::size_t kColumnStride = measure::kSpeedsAnOctave;
 
 std::string_view name_of(Method method) { return interpolation::info(method).name; }
 
@@ -101,13 +101,23 @@ std::string evenness_table(const Comparison& comparison) {
          table.text();
 }
 
+std::string lost_text(const Comparison& comparison, std::size_t method) {
+  std::string text;
+  for (const measure::SpeedRange& range : measure::lost_at(comparison.speeds, comparison.sweeps[method])) {
+    if (!text.empty()) text += ", ";
+    text += fmt::format("{:.0f}", range.first);
+    if (range.last > range.first) text += fmt::format(" .. {:.0f}", range.last);
+  }
+  return text.empty() ? "-" : text;
+}
+
 template <class Cell>
 std::string motor_table(const Comparison& comparison, const std::string& title, Cell cell) {
   std::vector<std::string> head = {"method"};
   for (std::size_t i = 0; i < comparison.speeds.size(); i += kColumnStride) {
     head.push_back(fmt::format("{:.0f}/s", comparison.speeds[i]));
   }
-  head.push_back("lost from");
+  head.push_back("lost at");
   Table table(head);
   for (std::size_t m = 0; m < comparison.methods.size(); ++m) {
     std::vector<std::string> row = {std::string(name_of(comparison.methods[m].method))};
@@ -115,8 +125,7 @@ std::string motor_table(const Comparison& comparison, const std::string& title, 
       const measure::Vibration& vibration = comparison.sweeps[m][i];
       row.push_back(vibration.lost_steps ? "lost" : cell(vibration));
     }
-    const auto lost = measure::lost_from(comparison.speeds, comparison.sweeps[m]);
-    row.push_back(lost ? fmt::format("{:.0f}/s", *lost) : "-");
+    row.push_back(lost_text(comparison, m));
     table.add(row);
   }
   return title + table.text();
@@ -192,7 +201,7 @@ std::string table_of(const Comparison& comparison) {
       fmt::format(
           "\nsimulated motors, {} steps{}: rms speed ripple in % of the speed along the path, by pulses/s along "
           "the path\n",
-          drive_name(comparison), comparison.motor.from_standstill ? ", from a standstill" : ""),
+          drive_name(comparison), comparison.motor.ramp_time == 0 ? ", without ramps" : ""),
       [](const measure::Vibration& vibration) { return percent(vibration.rms_ripple); });
   text += motor_table(comparison, "\nsimulated motors: largest lag of a rotor in full steps\n",
                       [](const measure::Vibration& vibration) { return fmt::format("{:.2f}", vibration.largest_lag); });
@@ -207,7 +216,7 @@ ordered_json json_of(const Comparison& comparison) {
   json["velocity"] =
       static_cast<double>(comparison.options.velocity) / static_cast<double>(comparison.options.velocity_divisor);
   json["drive"] = drive_name(comparison);
-  json["from_standstill"] = comparison.motor.from_standstill;
+  json["motor_ramp_seconds"] = comparison.motor.ramp_time;
   json["methods"] = ordered_json::array();
   for (std::size_t m = 0; m < comparison.methods.size(); ++m) {
     ordered_json method = json_of(comparison.methods[m], comparison.axes);
@@ -215,9 +224,10 @@ ordered_json json_of(const Comparison& comparison) {
     for (std::size_t i = 0; i < comparison.speeds.size(); ++i) {
       method["motor"].push_back(json_of(comparison.sweeps[m][i], comparison.speeds[i], comparison.axes));
     }
-    const auto lost = measure::lost_from(comparison.speeds, comparison.sweeps[m]);
-    method["lost_from"] = nullptr;
-    if (lost) method["lost_from"] = *lost;
+    method["lost_at"] = ordered_json::array();
+    for (const measure::SpeedRange& range : measure::lost_at(comparison.speeds, comparison.sweeps[m])) {
+      method["lost_at"].push_back({range.first, range.last});
+    }
     json["methods"].push_back(method);
   }
   json["refused"] = ordered_json::array();
