@@ -470,6 +470,11 @@ void encode(const Command& command, std::uint8_t number, std::vector<std::uint32
   words.insert(words.end(), encoded.data(), encoded.data() + count);
 }
 
+bool counts_as_begun(const Command& command) {
+  return !std::holds_alternative<OutputCommand>(command) && !std::holds_alternative<MarkCommand>(command) &&
+         !std::holds_alternative<ProbeCommand>(command);
+}
+
 const card_map::Command& layout_of(const Command& command) {
   constexpr std::array<const map::Command*, 11> kLayouts{&kLine,   &kArc,  &kArcChord,  &kFeed,  &kDwell,   &kEnd,
                                                          &kOutput, &kMark, &kWaitInput, &kProbe, &kProbeEnd};
