@@ -54,11 +54,6 @@ std::string title_of(const CurveChoice& choice) {
   return fmt::format("ellipse {}{}", *choice.ellipse, turn);
 }
 
-void check_velocity(const VelocityChoice& choice) {
-  if (choice.clock_hz == 0U) throw UsageError("--clock 0: not a clock");
-  if (choice.velocity == 0U) throw UsageError("--velocity 0: a line that never ends");
-}
-
 void check_size(const interpolation::Curve& curve) {
   const std::uint64_t pulses = measure::pulses_along(curve);
   if (pulses == 0) throw UsageError("a line without length: nothing to compare");
@@ -115,12 +110,6 @@ void compare_curve(const Options& options) {
 void compare_random(const Options& options) {
   if (options.curve.given()) throw UsageError("--random takes no curve of its own");
   if (options.plot) throw UsageError("--plot: a picture is made of one curve, not of --random lines");
-  if (*options.random < 1 || *options.random > kMostLines) {
-    throw UsageError(fmt::format("--random {}: 1 to {} lines", *options.random, kMostLines));
-  }
-  if (options.largest < 1 || static_cast<std::uint64_t>(options.largest) > measure::kMostPulses / 2) {
-    throw UsageError(fmt::format("--largest {}: 1 to {} pulses", options.largest, measure::kMostPulses / 2));
-  }
   measure::RandomLines lines;
   lines.count = *options.random;
   lines.seed = options.seed;
@@ -158,9 +147,14 @@ void add_compare_command(CLI::App& app) {
       "all methods on one curve, or over random lines: distances, host cost, evenness, vibration of a motor");
   options->curve.add_to(*command);
   options->velocity.add_to(*command);
-  command->add_option("--random", options->random, "so many random lines instead of one curve")->type_name("N");
-  command->add_option("--seed", options->seed, "of the random lines (default 1)");
-  command->add_option("--largest", options->largest, "pulses of an axis of a random line, at most (default 1000)");
+  command->add_option("--random", options->random, "so many random lines instead of one curve")
+      ->transform(whole_number(1, kMostLines, "lines"))
+      ->type_name("N");
+  // As far as every whole number is a double.
+  command->add_option("--seed", options->seed, "of the random lines (default 1)")
+      ->transform(whole_number(0, std::uint64_t{1} << 53));
+  command->add_option("--largest", options->largest, "pulses of an axis of a random line, at most (default 1000)")
+      ->transform(whole_number(1, measure::kMostPulses / 2, "pulses"));
   command->add_option("--threads", options->threads, "threads (default: one a core)")->transform(whole_number(1, 256));
   command->add_option("--drive", options->drive, "steps of the simulated motor: full or half (default full)")
       ->check(CLI::IsMember({"full", "half"}));
@@ -169,10 +163,7 @@ void add_compare_command(CLI::App& app) {
   command->add_flag("--progress", options->progress, "show a progress bar even if stderr is no terminal");
   command->add_option("--json", options->json, "everything measured as JSON ('-': standard output)")->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")->type_name("FILE.svg");
-  command->callback([options] {
-    check_velocity(options->velocity);
-    options->random ? compare_random(*options) : compare_curve(*options);
-  });
+  command->callback([options] { options->random ? compare_random(*options) : compare_curve(*options); });
 }
 
 }  // namespace trammel::app

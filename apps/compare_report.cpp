@@ -47,6 +47,20 @@ class Table {
 std::string decimals(double value) { return fmt::format("{:.3f}", value); }
 std::string percent(double value) { return fmt::format("{:.1f}", 100 * value); }
 
+// What strays farther than rounding and a step explain has left the curve.
+std::string left_curves(const Comparison& comparison) {
+  constexpr double kStep = 1.5;
+  std::string text;
+  for (const measure::MethodMeasures& method : comparison.methods) {
+    const double largest = method.distances.perpendicular.largest;
+    if (largest <= kStep) continue;
+    const bool spiral = !comparison.is_line && (method.method == Method::kDda || method.method == Method::kDdaHalf);
+    text += fmt::format("{} leaves its curve: {:.3f} pulses off{}\n", name_of(method.method), largest,
+                        spiral ? "; digital integration of a circle spirals outward along its tangents" : "");
+  }
+  return text;
+}
+
 std::string distances_table(const Comparison& comparison) {
   std::vector<std::string> head = {"method", "steps",      "time", "host operations", "register writes", "largest",
                                    "mean",   "horizontal", "mean"};
@@ -67,10 +81,15 @@ std::string distances_table(const Comparison& comparison) {
     for (std::size_t a = 0; a < comparison.axes; ++a) row.push_back(decimals(d.axis[a].largest));
     table.add(row);
   }
-  return "\ncost, and distance from the curve in pulses: perpendicular (largest, mean), horizontal (lines), on each "
-         "axis "
-         "from\nthe point at constant speed\n" +
-         table.text();
+  return "\nCost, and distance from the curve in pulses\n"
+         "  steps, time      times with a step; the curve's length in the method's own time unit\n"
+         "  host operations  how often the host computes (once where the card runs the method); register writes: words "
+         "sent\n"
+         "  largest, mean    perpendicular distance after each step\n"
+         "  horizontal, mean along x to the point of the line at the same y, largest and mean (lines alone)\n"
+         "  on x, on y ...   largest distance on one axis from the point that runs along the curve at constant "
+         "speed\n" +
+         table.text() + left_curves(comparison);
 }
 
 std::string evenness_table(const Comparison& comparison) {
@@ -96,9 +115,10 @@ std::string evenness_table(const Comparison& comparison) {
     row.push_back(percent(method.ripple.largest));
     table.add(row);
   }
-  return "\nstep intervals of each axis, deviation in % of the even interval: largest, rms, highest spectral line at "
-         "its "
-         "frequency\nin cycles a pulse; speed ripple along the path in % of the mean speed\n" +
+  return "\nEvenness\n"
+         "  x largest, x rms  deviation of the axis's step intervals in % of the even one\n"
+         "  x line, x at      highest line of their spectrum in %, and its frequency in cycles a pulse\n"
+         "  ripple rms, largest  speed along the path, deviation in % of the mean speed\n" +
          table.text();
 }
 
@@ -197,14 +217,13 @@ std::string table_of(const Comparison& comparison) {
   }
   text += distances_table(comparison);
   text += evenness_table(comparison);
-  text += motor_table(
-      comparison,
-      fmt::format(
-          "\nsimulated motors, {} steps{}: rms speed ripple in % of the speed along the path, by pulses/s along "
-          "the path\n",
-          drive_name(comparison), comparison.motor.ramp_time == 0 ? ", without ramps" : ""),
-      [](const measure::Vibration& vibration) { return percent(vibration.rms_ripple); });
-  text += motor_table(comparison, "\nsimulated motors: largest lag of a rotor in full steps\n",
+  text += motor_table(comparison,
+                      fmt::format("\nSimulated motors, {} steps{}: rms speed ripple in % of the speed, by pulses/s "
+                                  "along the path; lost at: speeds "
+                                  "of\nthe sweep at which steps were lost\n",
+                                  drive_name(comparison), comparison.motor.ramp_time == 0 ? ", without ramps" : ""),
+                      [](const measure::Vibration& vibration) { return percent(vibration.rms_ripple); });
+  text += motor_table(comparison, "\nThe same: largest lag of a rotor behind its field, in full steps\n",
                       [](const measure::Vibration& vibration) { return fmt::format("{:.2f}", vibration.largest_lag); });
   return text;
 }

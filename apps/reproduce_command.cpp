@@ -54,8 +54,10 @@ std::string entry_page(const std::vector<Page>& pages) {
   std::string text =
       "# Both papers, made again\n\n"
       "Every table, figure and claim of the two papers behind this project, made again by `trammel reproduce`, which\n"
-      "wrote these pages. PASS: as the paper has it. CORRECTED: the paper is wrong there, and what is right was found.\n"
-      "ADDED: the paper is silent there, and what it leaves open was found. FAIL: none of these; the command then ends\n"
+      "wrote these pages. PASS: as the paper has it. CORRECTED: the paper is wrong there, and what is right was "
+      "found.\n"
+      "ADDED: the paper is silent there, and what it leaves open was found. FAIL: none of these; the command then "
+      "ends\n"
       "with status 1.\n";
   for (const Page& page : pages) {
     text += fmt::format(

@@ -9,13 +9,8 @@ include(CMakePackageConfigHelpers)
 
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
-<<<<<<< HEAD
-install(TARGETS trammel_card_map trammel_model trammel_methods trammel_driver trammel_machine trammel_gcode
-  trammel_planner trammel_chart trammel_run trammel_sim EXPORT trammel-targets
-=======
 install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_machine trammel_gcode
-  trammel_planner trammel_run trammel_sim EXPORT trammel-targets
->>>>>>> next
+  trammel_planner trammel_chart trammel_run trammel_sim EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
 install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/rtl/regs/generated/include/"
