@@ -10,7 +10,7 @@ module trammel_card #(
     parameter int          UnderrunHold      = 1,     // 0: without
     parameter int          Classes           = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks        = 1,     // 0: without
-    parameter int          PathCommands      = 0,     // 1: OUTPUT, MARK; inputs and outputs
+    parameter int          PathCommands      = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
     parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
     parameter int          Inputs            = 4,     // 1 to 16, of a card with path commands
     parameter int          Outputs           = 4,
