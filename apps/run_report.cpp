@@ -52,12 +52,12 @@ std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   std::string blending;
   std::string hardware;
   for (const auto& [word, count] : words) {
-    std::string& list = word == "M0" || word == "M1" ? stops : (word == "G64 P" ? blending : hardware);
+    std::string& list = word == "M0" || word == "M1" ? stops : (word == "G64 Q" ? blending : hardware);
     list += fmt::format(" {} ({})", word, count);
   }
   std::string text;
   if (!stops.empty()) text += "  stops for the operator, which a simulation does not make:" + stops + "\n";
-  if (!blending.empty()) text += "  no blending yet, corners are kept as with G64 without P:" + blending + "\n";
+  if (!blending.empty()) text += "  no lines are joined to fewer (naive cam):" + blending + "\n";
   if (!hardware.empty()) text += "  accepted, without hardware yet:" + hardware + "\n";
   return text;
 }
@@ -66,6 +66,33 @@ nlohmann::ordered_json motion_json(const run::PlannedMotion& motion) {
   return {{"stops", motion.stops},
           {"velocity_jump", motion.velocity_jump},
           {"acceleration_step", motion.acceleration_step}};
+}
+
+std::string blends_text(const run::Blends& blends) {
+  const auto count = [&](planner::Corner corner) { return blends.corners[static_cast<std::size_t>(corner)]; };
+  std::string text;
+  if (count(planner::Corner::kBlended) != 0) {
+    text += fmt::format("  blends (G64 P): {}, at most {:.4g} mm from the programmed path\n",
+                        count(planner::Corner::kBlended), blends.distance);
+  }
+  std::string kept;
+  const auto say = [&](planner::Corner corner, const char* why) {
+    if (count(corner) != 0) kept += fmt::format("{} {} ({})", kept.empty() ? "" : ",", count(corner), why);
+  };
+  say(planner::Corner::kReversal, "reversals");
+  say(planner::Corner::kNoCurve, "with an arc or helix in another plane, or without room for an arc");
+  say(planner::Corner::kInvisible, "a blend would stay within a quarter of a pulse");
+  return kept.empty() ? text : text + "  corners kept under G64 P:" + kept + "\n";
+}
+
+nlohmann::ordered_json blends_json(const run::Blends& blends) {
+  const auto count = [&](planner::Corner corner) { return blends.corners[static_cast<std::size_t>(corner)]; };
+  return {{"count", count(planner::Corner::kBlended)},
+          {"distance", blends.distance},
+          {"kept",
+           {{"reversal", count(planner::Corner::kReversal)},
+            {"no_curve", count(planner::Corner::kNoCurve)},
+            {"invisible", count(planner::Corner::kInvisible)}}}};
 }
 
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds) {
@@ -106,6 +133,7 @@ std::string summary(const RunResult& result) {
   if (result.achieved_feed) {
     text += fmt::format("  mean feed {} of {} mm/min\n", number(*result.achieved_feed), number(*result.commanded_feed));
   }
+  text += blends_text(result.blends);
   if (!result.events.empty()) text += fmt::format("  {} overrides and holds on the way\n", result.events.size());
   if (result.lockstep_cycles) {
     text += fmt::format("  lockstep: {} cycles, {} comparisons, {} mismatches\n", *result.lockstep_cycles,
@@ -140,6 +168,7 @@ nlohmann::ordered_json json_of(const RunResult& result) {
   json["planned_seconds"] = result.planned_seconds;
   json["profile"] = name_of(result.profile);
   json["motion"] = motion_json(result.motion);
+  json["blends"] = blends_json(result.blends);
   json["under_runs"] = nullptr;
   if (result.under_runs) json["under_runs"] = *result.under_runs;
   json["feed"] = {{"commanded", nullptr}, {"achieved", nullptr}};

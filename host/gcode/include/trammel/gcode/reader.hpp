@@ -6,7 +6,7 @@
 //   - M2, M30 or a '%' that does not open the program end it. What follows M2 and M30 is not read; beside a '%' and
 //     behind the last one only blanks and comments may stand;
 //   - a lower-case e right behind a number is taken for an exponent, which G-code has not, and refused;
-//   - G61 and G64 are accepted: the planner stops exactly at every end of a motion, which satisfies both.
+//   - Q of G64 (naive cam) has no effect and is told.
 #pragma once
 
 #include <cstddef>
