@@ -24,6 +24,6 @@ nlohmann::ordered_json blends_json(const run::Blends& blends);
 nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
 
-nlohmann::ordered_json json_of(const RunResult& result);
+std::string json_text(const RunResult& result);
 
 }  // namespace trammel::app
