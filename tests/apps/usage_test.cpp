@@ -114,6 +114,22 @@ TEST(Notes, WordsWithoutEffectByTheReason) {
   EXPECT_EQ(outcome.out.find("G64", hardware), std::string::npos);
 }
 
+TEST(Notes, BlendsAndCornersThatAreKept) {
+  const Command command;
+  const std::string program = command.write("a.ngc", "G64 P0.1\nG1 F600 X10\nY10\nX5\nX9\nM2\n");
+  for (const char* mode : {"", " --check"}) {
+    const Outcome outcome = command.run("run " + program + " --engine model --json " + command.path("a.json") + mode);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("blends (G64 P): 2, at most 0.1 mm from the programmed path\n"), std::string::npos)
+        << outcome.out;
+    EXPECT_NE(outcome.out.find("corners kept under G64 P: 1 (reversals)\n"), std::string::npos) << outcome.out;
+    EXPECT_NE(contents(command.path("a.json")).find("\"blends\": {\n    \"count\": 2,"), std::string::npos);
+  }
+  // Every line ends in a stop.
+  const Outcome single = command.run("run " + program + " --engine model --single-block");
+  EXPECT_EQ(single.out.find("G64 P"), std::string::npos) << single.out;
+}
+
 TEST(Program, FromStandardInputAndPipes) {
   const Command command;
   const std::string program = command.write("a.ngc", "G1 X1 F600\nG1 X0\n");
