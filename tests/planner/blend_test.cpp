@@ -316,5 +316,25 @@ TEST(Blend, KeepsCornersThatItCannotOrNeedNotRound) {
   EXPECT_EQ(corners("G64 P0.1\nG1 X10\nG4 P0\nY10\nE5\nX0\nM2\n"), (List(4, Corner::kNone)));
 }
 
+// They change nothing of the motion.
+TEST(Blend, OutputsAreSwitchedWhereItsBlendBegins) {
+  machine::Machine machine = fine_machine();
+  machine.outputs.m3 = 1;
+  machine.outputs.m8 = 2;
+  CardLimits card = fast_card();
+  card.outputs = 2;
+  const auto planned = [&](const std::string& words) {
+    return plan_text("F600 G64 P0.1\nG1 X10\n" + words + "Y10\nM2\n", machine, card);
+  };
+  const Plan without = planned("");
+  const Plan with = planned("M3\nM8\nM5\n");
+  ASSERT_EQ(with.blocks.size(), without.blocks.size());
+  for (std::size_t i = 0; i < with.blocks.size(); ++i) EXPECT_EQ(with.blocks[i]->end, without.blocks[i]->end);
+  ASSERT_EQ(with.blocks[1]->corner, Corner::kBlended);
+  EXPECT_EQ(with.blocks[1]->outputs.set, 2U);
+  EXPECT_EQ(with.blocks[1]->outputs.clear, 1U);
+  EXPECT_FALSE(switches(with.blocks[2].planned.block));
+}
+
 }  // namespace
 }  // namespace trammel::planner

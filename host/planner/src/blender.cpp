@@ -52,6 +52,10 @@ bool Blender::next(PathMotion& motion) {
     }
     Way& to = ways_[1 - first_];
     held_ = pull(to);
+    std::size_t outputs = 0;
+    for (; held_ && to.motion.kind == gcode::MotionKind::kOutput && outputs < kMostOutputs; held_ = pull(to)) {
+      outputs_[outputs++] = to.motion;
+    }
     PathMotion made;
     if (held_) {
       const Corner corner = blend(from, to, made);
@@ -61,6 +65,10 @@ bool Blender::next(PathMotion& motion) {
     if (from.taken_before + from.taken_behind < 1 - kLeastShare) {
       trim(from);
       given_[given_count_++] = from.motion;
+    }
+    for (std::size_t i = 0; i < outputs; ++i) {
+      PathMotion& output = given_[given_count_++] = outputs_[i];
+      if (from.taken_behind > 0) output.target = output.programmed = point(from, 1 - from.taken_behind);
     }
     if (made.corner == Corner::kBlended) given_[given_count_++] = made;
   }
@@ -72,7 +80,8 @@ bool Blender::next(PathMotion& motion) {
 bool Blender::pull(Way& way) {
   gcode::Motion& motion = way.motion;
   while (reader_.next(motion)) {
-    const bool path = motion.kind != gcode::MotionKind::kDwell && motion.kind != gcode::MotionKind::kEnd;
+    const bool path = motion.kind == gcode::MotionKind::kTraverse || motion.kind == gcode::MotionKind::kLine ||
+                      motion.kind == gcode::MotionKind::kArc;
     const bool still = path && motion.kind != gcode::MotionKind::kArc && motion.target == here_;
     if (still) continue;
     way.start = here_;

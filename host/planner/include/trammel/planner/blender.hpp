@@ -3,7 +3,8 @@
 //
 // A blend leaves the programmed path by at most P: that is how far the corner lies from it, and no other point of
 // either path is farther from the other one. It takes at most half of either motion, so that what it does depends on
-// these two alone. Two lines make an arc in their plane, lines and arcs in one main plane an arc in that. Axes other
+// these two alone. Outputs that are switched at a corner are switched where its blend begins (eight words; a corner
+// with more is kept). Two lines make an arc in their plane, lines and arcs in one main plane an arc in that. Axes other
 // than X, Y and Z go evenly along it; how far they stray does not count.
 #pragma once
 
@@ -106,6 +107,7 @@ class Blender {
   }
 
   static constexpr std::size_t kNone = ~std::size_t{0};
+  static constexpr std::size_t kMostOutputs = 8;
 
   gcode::Reader& reader_;
   std::size_t axes_;
@@ -117,7 +119,8 @@ class Blender {
   std::array<Way, 2> ways_;  // the one that may lose its end, and the one behind it
   std::size_t first_ = 0;
   bool held_ = false;
-  std::array<PathMotion, 2> given_;  // to be given, in order
+  std::array<PathMotion, kMostOutputs> outputs_;    // between the two
+  std::array<PathMotion, kMostOutputs + 2> given_;  // to be given, in order
   std::size_t given_first_ = 0;
   std::size_t given_count_ = 0;
 };

@@ -58,6 +58,7 @@ struct Block {
   Geometry geometry = Geometry::kEnd;
   Pulses start{};
   Pulses end{};
+  driver::OutputCommand outputs;  // what is switched where it begins
 
   // Motions: kLine, kArc, kArcChord, kChords.
   bool rapid = false;
@@ -104,6 +105,7 @@ inline bool in_plane(const Block& block, std::size_t axis) {
   return axis == block.space.axes[0] || axis == block.space.axes[1] || axis == block.space.axes[2];
 }
 
+inline bool switches(const Block& block) { return (block.outputs.set | block.outputs.clear) != 0; }
 inline bool moves(const Block& block) { return block.geometry != Geometry::kDwell && block.geometry != Geometry::kEnd; }
 
 }  // namespace trammel::planner
