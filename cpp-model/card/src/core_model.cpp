@@ -73,7 +73,7 @@ void CoreModel::reset() {
   watermarks_ = QueueWatermarks(config_.geometry_depth, config_.feed_depth);
   motion_ = MotionCore(config_.axes, config_.idle_level, config_.clock_all, config_.engines, pins_of(config_));
   cycles_ = 0;
-  record_.reset();
+  record_.reset(motion_.commands().outputs());
   answer_ = {};
   awake_ = kAwake;
   show();
@@ -297,6 +297,7 @@ void CoreModel::record(bool cut) {
     else
       record_.line_step(cycles_, n, backwards);
   }
+  record_.outputs(cycles_, motion_.commands().outputs());
   if (s.record().command) record_.command_begins();
   if (s.record().direct) record_.direct_begins();
 }
