@@ -170,19 +170,19 @@ std::string bends_with_feeds(unsigned seed) {
   return program + "M2\n";
 }
 
-// A window too short for smooth ramps makes the motion stop in mid path now and then: at rest, and on from rest.
-TEST(MotionJudge, ShortWindowsAreWithinTheirLimits) {
-  for (const double jerk : {20000.0, 100000.0}) {
-    for (unsigned seed = 1; seed <= 20; ++seed) {
-      const std::uint32_t clock = seed % 2 == 0 ? kClock : 10 * kClock;
-      SCOPED_TRACE(fmt::format("seed {}, jerk {}", seed, jerk));
-      const std::string program = bends_with_feeds(seed);
-      gcode::TextLines lines(program, "program");
-      machine::Machine machine = fast_machine(jerk);
-      machine.motion.window = 16;
-      const Planned planned(lines, machine, clock);
-      expect_within_limits(judge_motion(planned.commands, {machine, static_cast<double>(clock), 0.01}));
-    }
+// A window too short for smooth ramps makes the motion stop in mid path: at rest, and on from rest. Of 240 seeds these
+// four stop a part of a tick beside a tick.
+TEST(MotionJudge, StopsOfAShortWindowAreWithinTheirLimits) {
+  constexpr double kJerk = 100'000;
+  for (const unsigned seed : {1U, 2U, 42U, 78U, 110U, 159U}) {
+    SCOPED_TRACE(seed);
+    const std::uint32_t clock = seed % 2 == 0 ? kClock : 10 * kClock;
+    const std::string program = bends_with_feeds(seed);
+    gcode::TextLines lines(program, "program");
+    machine::Machine machine = fast_machine(kJerk);
+    machine.motion.window = 16;
+    const Planned planned(lines, machine, clock);
+    expect_within_limits(judge_motion(planned.commands, {machine, static_cast<double>(clock), 0.01}));
   }
 }
 
