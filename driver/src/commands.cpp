@@ -21,6 +21,7 @@ constexpr std::size_t kCountHalfwords = 3;
 constexpr std::size_t kPayloadBegin = kCountBegin + kCountHalfwords;
 // Bits of the field `plane`.
 constexpr unsigned kClockwiseBit = 0;
+constexpr unsigned kEightBit = 1;
 constexpr unsigned kAxisXShift = 4;
 constexpr unsigned kAxisYShift = 8;
 constexpr unsigned kAxisMask = 7;
@@ -130,7 +131,9 @@ class Writer {
     constexpr std::uint64_t kBits =
         kField.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (kField.bits % 64)) - 1;
     constexpr std::uint64_t kMost = kField.limit != 0 ? kField.limit : kBits;
-    const bool bits_good = kField.mask == 0 || (value & ~std::uint64_t{kField.mask}) == 0;
+    constexpr std::uint64_t kMask =
+        kField.mask | kField.optional;  // whether the card has the engine is the stream's question
+    const bool bits_good = kField.mask == 0 || (value & ~kMask) == 0;
     if (value < kField.minimum || value > kMost || !bits_good || (kField.at_most_count && value > count_)) {
       refuse_field<kField>(layout_, value, count_);
     }
@@ -212,7 +215,7 @@ std::size_t write(const ArcCommand& arc, std::uint8_t number, std::uint32_t* wor
   Writer to(kArc, plane_mask(kArc, arc.axis_x, arc.axis_y), arc.ticks, number, words);
   to.field<kPathTicks>(arc.path_ticks);
   to.field<kPrescale>(arc.prescale);
-  to.field<kPlane>(plane_of(arc));
+  to.field<kPlane>(plane_of(arc) | (arc.eight_directions ? 1U : 0U) << kEightBit);
   to.field<kQuadrants>(std::uint64_t{arc.quadrants});
   to.field<kEndX>(std::int64_t{arc.end_x});
   to.field<kEndY>(std::int64_t{arc.end_y});
@@ -367,7 +370,9 @@ Command arc_from(const Reader& from) {
   arc.ticks = from.count();
   arc.path_ticks = from.unsigned_field<kPathTicks>();
   arc.prescale = from.unsigned_field<kPrescale>();
-  set_plane(arc, from.unsigned_field<kPlane>());
+  const std::uint64_t plane = from.unsigned_field<kPlane>();
+  set_plane(arc, plane);
+  arc.eight_directions = (plane >> kEightBit & 1U) != 0;
   arc.quadrants = static_cast<std::uint16_t>(from.unsigned_field<kQuadrants>());
   arc.end_x = static_cast<std::int32_t>(from.signed_field<kEndX>());
   arc.end_y = static_cast<std::int32_t>(from.signed_field<kEndY>());

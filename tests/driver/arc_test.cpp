@@ -41,6 +41,7 @@ DeviationPath path_of(const ArcCommand& arc) {
   path.state.left_y = static_cast<std::uint32_t>(arc.end_y);
   path.state.quadrants = arc.quadrants;
   path.state.clockwise = arc.clockwise;
+  path.state.eight_directions = arc.eight_directions;
   path.begin();
   return path;
 }
@@ -55,7 +56,8 @@ bool walk(const ArcCommand& arc, Visit&& visit) {
   for (std::uint64_t i = 0; i < arc.path_ticks; ++i) {
     if (path.at_end()) return false;
     const auto step = path.step();
-    (step.in_x ? x : y) += step.negative ? -1 : 1;
+    if (step.in_x) x += step.negative_x ? -1 : 1;
+    if (step.in_y) y += step.negative_y ? -1 : 1;
     visit(x, y);
   }
   return path.at_end() && x == arc.end_x && y == arc.end_y;

@@ -1,0 +1,80 @@
+// Which way the deviation accumulator steps next, renewed at rest and held while the step is made. Pairs are {y, x}.
+//
+// One axis moves inward, towards its zero, the other outward. In 4 directions the one steps on and outside the curve, the
+// other inside it. In 8 the inward axis rests where F lies nearer to 0 after the outward step alone, the outward one
+// where it does after the inward step alone: F with both lies between, so signs of sums say it (deviation_compare).
+// Outside the curve and where its gradient is the larger the outward axis never steps alone (docs/decisions/0003).
+`default_nettype none
+
+module deviation_choice #(
+    parameter int EightDirections = 0  // 1: built in
+) (
+    input  wire logic       clk_i,
+    input  wire logic       rest_i,       // all inputs are of the present point
+    input  wire logic       eight_i,      // the path's step rule
+    input  wire logic       clockwise_i,
+    input  wire logic       inside_i,     // F is negative
+    input  wire logic [1:0] gradient_i,   // signs of GX and GY
+    input  wire logic       compare_i,    // both axes are tried next: which way, these say:
+    input  wire logic [1:0] next_i,       // signs of GX and GY as the step leaves them
+    input  wire logic [1:0] sides_i,      // the sum of F with the axis's step and with both is negative
+    input  wire logic       last_i,       // no quadrants left
+    input  wire logic [1:0] arrived_i,    // no displacement is left,
+    input  wire logic [1:0] left_i,       // or its sign
+    input  wire logic       finishing_i,
+    output logic            finish_o,     // straight to the end (combinational, at rest)
+    output logic      [1:0] take_o,
+    output logic      [1:0] negative_o,   // in 4 directions alone: both of the axis that steps
+    output logic      [1:0] old_sign_o    // of the gradients before the step
+);
+  logic [1:0] ahead, reached, tabled, least, choice;
+  logic inward_x;
+
+  // Directions on the curve, by the 16-entry table.
+  function [1:0] heading(input logic clockwise, input logic [1:0] signs);
+    heading = {clockwise ^ signs[0], clockwise ^ ~signs[1]};
+  endfunction
+
+  always_comb begin
+    ahead = heading(clockwise_i, gradient_i);
+    inward_x = ahead[0] ^ gradient_i[0];
+    tabled = {~(inward_x ^ inside_i), inward_x ^ inside_i};
+    least = inward_x ? {sides_i[0], ~&sides_i} : {~&sides_i, sides_i[1]};
+    reached = arrived_i | (left_i ^ ahead);
+    finish_o = finishing_i | (last_i & (|reached));
+    choice = finish_o ? {~arrived_i[1] & (eight_i | arrived_i[0]), ~arrived_i[0]} : eight_i ? least : tabled;
+  end
+
+  if (EightDirections != 0) begin : gen_eight_directions
+    always_ff @(posedge clk_i) begin
+      if (rest_i) begin
+        take_o <= choice;
+        negative_o <= finish_o ? left_i : ahead;
+        old_sign_o <= gradient_i;
+      end
+      if (compare_i) begin
+        take_o <= 2'b11;
+        negative_o <= heading(clockwise_i, next_i);
+      end
+    end
+  end else begin : gen_four_directions
+    logic take_x_q, negative_q, old_sign_q;
+
+    always_ff @(posedge clk_i) begin
+      if (rest_i) begin
+        take_x_q   <= choice[0];
+        negative_q <= finish_o ? (choice[0] ? left_i[0] : left_i[1]) : (choice[0] ? ahead[0] : ahead[1]);
+        old_sign_q <= choice[0] ? gradient_i[0] : gradient_i[1];
+      end
+    end
+
+    assign take_o = {~take_x_q, take_x_q};
+    assign negative_o = {2{negative_q}};
+    assign old_sign_o = {2{old_sign_q}};
+
+    logic unused;
+    assign unused = &{1'b0, compare_i, next_i, choice[1]};
+  end
+endmodule
+
+`default_nettype wire
