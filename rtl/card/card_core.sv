@@ -2,23 +2,23 @@
 // Ports and latencies: docs/developer/architecture.md.
 `default_nettype none
 module card_core #(
-    parameter int          Axes          = 4,     // 1 to 8
-    parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
-    parameter int          FeedDepth     = 2560,
-    parameter int          Accumulator   = 1,     // 0: without arcs and conics
-    parameter int          EightDirections = 0,   // 1: the accumulator's second step rule
-    parameter int          ArcGenerator  = 0,     // 1: arcs in chords
-    parameter int          DirectMode    = 1,     // 0: without
-    parameter int          UnderrunHold  = 1,     // 0: without
-    parameter int          Classes       = 1,     // 0: one ratio for all pieces
-    parameter int          Watermarks    = 1,     // 0: without
-    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
-    parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
-    parameter int          Outputs       = 4,
-    parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
-    parameter logic [31:0] BuildId       = 0,
-    parameter int          BuildDirty    = 0,
-    parameter logic [31:0] BoardId       = 0
+    parameter int          Axes            = 4,     // 1 to 8
+    parameter int          GeometryDepth   = 4096,  // halfwords, 2 to 32,768
+    parameter int          FeedDepth       = 2560,
+    parameter int          Accumulator     = 1,     // 0: without arcs and conics
+    parameter int          EightDirections = 0,     // 1: the accumulator's second step rule
+    parameter int          ArcGenerator    = 0,     // 1: arcs in chords
+    parameter int          DirectMode      = 1,     // 0: without
+    parameter int          UnderrunHold    = 1,     // 0: without
+    parameter int          Classes         = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks      = 1,     // 0: without
+    parameter int          PathCommands    = 0,     // 1: OUTPUT, MARK; inputs and outputs
+    parameter int          Inputs          = 4,     // 1 to 16, of a card with path commands
+    parameter int          Outputs         = 4,
+    parameter int          Ports           = 1,     // 1 to 4: what is joined in front of the inner port
+    parameter logic [31:0] BuildId         = 0,
+    parameter int          BuildDirty      = 0,
+    parameter logic [31:0] BoardId         = 0
 ) (
     input wire logic clk_i,
     input wire logic rst_i,

@@ -92,10 +92,11 @@ module deviation_accumulator #(
 
   // Choice of the next step, and what it makes of the words at the chains' ends. Pairs are {y, x}.
   logic x_zero_q, y_zero_q, done_q, finish, finish_q;
-  logic [ 1:0] take, negative, old_sign, new_sign, sides;
+  logic [1:0] take, negative, old_sign, sides;
+  logic [ 1:0] came;  // the step's last word of this axis's gradient, with its sign
   logic [15:0] f_back;
   logic [31:0] g_back, e_back;
-  assign new_sign = {g_back[31], g_back[15]};
+  assign came = take & {2{phase_q[LAST]}};
 
   deviation_choice #(
       .EightDirections(EightDirections)
@@ -107,7 +108,7 @@ module deviation_accumulator #(
       .inside_i   (f_q[79]),
       .gradient_i ({gy_q[79], gx_q[79]}),
       .compare_i  (compare),
-      .next_i     ((take & {2{phase_q[LAST]}} & new_sign) | (~(take & {2{phase_q[LAST]}}) & {gy_q[79], gx_q[79]})),
+      .next_i     ({came[1] ? g_back[31] : gy_q[79], came[0] ? g_back[15] : gx_q[79]}),
       .sides_i    (sides),
       .last_i     (done_q),
       .arrived_i  ({y_zero_q, x_zero_q}),
@@ -168,7 +169,7 @@ module deviation_accumulator #(
   // Quadrants: the last one is foreseen, so that at_end_o and the next choice know of it with the sign itself. With
   // the upper bits 0 the change takes the last one: at 0 done_q is set already, and the count no longer matters.
   logic upper_zero_q, change, done;
-  assign change = phase_q[LAST] & (|(take & (new_sign ^ old_sign)));
+  assign change = |(came & ({g_back[31], g_back[15]} ^ old_sign));
   assign done   = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
   always_ff @(posedge clk_i) begin
     if (load[7]) quadrants_q <= word;

@@ -31,19 +31,17 @@ module deviation_choice #(
   logic inward_x;
 
   // Directions on the curve, by the 16-entry table.
-  function [1:0] heading(input logic clockwise, input logic [1:0] signs);
+  function automatic logic [1:0] heading(input logic clockwise, input logic [1:0] signs);
     heading = {clockwise ^ signs[0], clockwise ^ ~signs[1]};
   endfunction
 
-  always_comb begin
-    ahead = heading(clockwise_i, gradient_i);
-    inward_x = ahead[0] ^ gradient_i[0];
-    tabled = {~(inward_x ^ inside_i), inward_x ^ inside_i};
-    least = inward_x ? {sides_i[0], ~&sides_i} : {~&sides_i, sides_i[1]};
-    reached = arrived_i | (left_i ^ ahead);
-    finish_o = finishing_i | (last_i & (|reached));
-    choice = finish_o ? {~arrived_i[1] & (eight_i | arrived_i[0]), ~arrived_i[0]} : eight_i ? least : tabled;
-  end
+  assign ahead = heading(clockwise_i, gradient_i);
+  assign inward_x = ahead[0] ^ gradient_i[0];
+  assign tabled = {~(inward_x ^ inside_i), inward_x ^ inside_i};
+  assign least = inward_x ? {sides_i[0], ~&sides_i} : {~&sides_i, sides_i[1]};
+  assign reached = arrived_i | (left_i ^ ahead);
+  assign finish_o = finishing_i | (last_i & (|reached));
+  assign choice = finish_o ? {~arrived_i[1] & (eight_i | arrived_i[0]), ~arrived_i[0]} : eight_i ? least : tabled;
 
   if (EightDirections != 0) begin : gen_eight_directions
     always_ff @(posedge clk_i) begin

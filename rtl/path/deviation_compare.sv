@@ -9,13 +9,13 @@ module deviation_compare (
     input  wire logic        clk_i,
     input  wire logic        run_i,
     input  wire logic [ 2:1] phase_i,
-    input  wire logic [ 1:0] minus_i,      // {y, x}: the one that the lane left to the carry
+    input  wire logic [ 1:0] minus_i,       // {y, x}: the one that the lane left to the carry
     input  wire logic [15:0] deviation_i,
     input  wire logic [15:0] change_x_i,
     input  wire logic [15:0] change_y_i,
-    input  wire logic [15:0] after_x_i,    // FX
+    input  wire logic [15:0] after_x_i,     // FX
     output logic      [15:0] after_both_o,
-    output logic      [ 1:0] sides_o       // {y, x}: 1 where the sum with FY, with FX is negative
+    output logic      [ 1:0] sides_o        // {y, x}: 1 where the sum with FY, with FX is negative
 );
   logic [15:0] change_x_q, change_y_q, after_y_q;
   logic top_x_q, top_y_q;  // bits that the doubling hands on to the next word
