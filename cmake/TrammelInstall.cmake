@@ -9,11 +9,12 @@ include(CMakePackageConfigHelpers)
 
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
-install(TARGETS trammel_card_map trammel_model trammel_methods trammel_driver trammel_machine trammel_gcode
+install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_machine trammel_gcode
   trammel_planner trammel_run trammel_sim EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
 install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/rtl/regs/generated/include/"
+  "${PROJECT_SOURCE_DIR}/frames/include/"
   "${PROJECT_SOURCE_DIR}/cpp-model/card/include/"
   "${PROJECT_SOURCE_DIR}/cpp-model/methods/include/"
   "${PROJECT_SOURCE_DIR}/driver/include/"

@@ -26,6 +26,7 @@ commands/halfword_queue.sv
 commands/queue_watermarks.sv
 host/axi4_lite_port.sv
 host/port_arbiter.sv
+host/wishbone/wishbone_port.sv
 io/input_pins.sv
 io/output_pins.sv
 path/arc_generator.sv

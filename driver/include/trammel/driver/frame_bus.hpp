@@ -1,0 +1,75 @@
+// A Bus over a stream of bytes. Every request has a number and runs once, whatever the link does to it: a frame that
+// was damaged or lost is sent again, and a connection that broke is made anew.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "trammel/driver/bus.hpp"
+#include "trammel/driver/byte_link.hpp"
+#include "trammel/frames/frame.hpp"
+
+namespace trammel::driver {
+
+class FrameBus final : public Bus {
+ public:
+  struct Options {
+    // How long the card may take beside the bytes' own time: 600 clocks an access, and what the operating system adds.
+    std::chrono::nanoseconds answer = std::chrono::milliseconds(50);
+    unsigned sends = 4;     // of a request, before the connection is made anew
+    unsigned restarts = 3;  // of the connection, before transfer() gives up
+  };
+
+  // What the link did, for who wants to know.
+  struct Counts {
+    std::uint64_t requests = 0;
+    std::uint64_t sent_again = 0;
+    std::uint64_t restarts = 0;
+    std::uint64_t strange = 0;  // whole replies to something else: late, or repeated
+  };
+
+  // `link` must outlive it. Connects; throws LinkError when no card answers.
+  explicit FrameBus(ByteLink& link) : FrameBus(link, Options()) {}
+  FrameBus(ByteLink& link, const Options& options);
+
+  std::size_t transfer(Access* accesses, std::size_t count) override;
+  void sleep(std::chrono::nanoseconds time) override { link_.sleep(time); }
+  bool reports_refusals() const override { return true; }
+
+  // After transfer() has thrown a LinkError: connects again, and says how many of its accesses were made; the data of
+  // reads among them are lost. Throws LinkError when the card does not answer, or was reset or used by somebody else
+  // meanwhile: then nothing is known, and the next transfer() begins anew.
+  std::size_t resume();
+
+  // What the last reply said of the card.
+  const frames::CardState& state() const { return state_; }
+  const Counts& counts() const { return counts_; }
+
+ private:
+  frames::Request request_for(const Access* accesses, std::size_t count) const;
+  frames::Reply exchange(frames::Request request);
+  std::optional<frames::Reply> send_and_wait(const frames::Request& request);
+  std::optional<frames::Reply> wait_for(const frames::Request& request, std::size_t bytes);
+  std::optional<frames::Reply> try_open();
+  bool connect();
+  void reconnect();
+  void begin_anew();
+  bool known() const;
+
+  ByteLink& link_;
+  Options options_;
+  frames::Deframer deframer_{frames::kMaxReplyBody};
+  frames::CardState state_;
+  Counts counts_;
+  std::uint16_t epoch_ = 0;
+  std::uint16_t number_ = 0;             // executed last, as far as replies have said
+  std::uint16_t card_last_ = 0;          // executed last, as the card said when it was connected last
+  bool went_back_ = false;               // the card's epoch, since this side has begun anew
+  std::uint16_t tag_ = 0;                // of requests without a number
+  std::size_t made_ = 0;                 // accesses of the transfer that replies have said were made
+  std::optional<frames::Request> open_;  // sent, and not known to have run or not
+};
+
+}  // namespace trammel::driver

@@ -1,0 +1,212 @@
+#include "trammel/driver/frame_bus.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "trammel/driver/errors.hpp"
+
+namespace trammel::driver {
+
+namespace {
+
+using frames::Bytes;
+using frames::Kind;
+using frames::Reply;
+using frames::Request;
+using frames::Result;
+
+std::uint16_t next(std::uint16_t number) { return static_cast<std::uint16_t>(number + 1); }
+
+// How many accesses from the first on go as one request: all reads or all writes, at rising addresses or at one.
+std::size_t run_length(const Access* accesses, std::size_t count, bool fixed) {
+  const std::size_t most = std::min(count, frames::kMaxWords);
+  std::size_t length = 1;
+  while (length < most && accesses[length].write == accesses[0].write &&
+         accesses[length].address == accesses[length - 1].address + (fixed ? 0 : 4)) {
+    ++length;
+  }
+  return length;
+}
+
+// Whether the reply is one to this very request. Requests that run and others have numbers of their own that may meet,
+// but only what runs has accesses to tell of.
+bool answers(const Reply& reply, const Request& request) {
+  if (reply.number != request.number) return false;
+  const bool runs = request.kind == Kind::Read || request.kind == Kind::Write;
+  if (!runs) return reply.made == 0 && !reply.has_data && reply.result != Result::Refused;
+  const bool ran = reply.result == Result::Done || reply.result == Result::Refused;
+  return !ran || (reply.has_data == (request.kind == Kind::Read) && reply.epoch == request.epoch);
+}
+
+constexpr const char* kUnknown =
+    "the card was reset, or used by somebody else: what became of the last request is not known";
+
+}  // namespace
+
+FrameBus::FrameBus(ByteLink& link, const Options& options) : link_(link), options_(options) { begin_anew(); }
+
+void FrameBus::begin_anew() {
+  reconnect();
+  number_ = card_last_;
+  went_back_ = false;
+}
+
+std::size_t FrameBus::transfer(Access* accesses, std::size_t count) {
+  made_ = 0;
+  while (made_ < count) {
+    Access* first = accesses + made_;
+    const Reply reply = exchange(request_for(first, count - made_));
+    for (std::size_t i = 0; i < reply.data.size(); ++i) first[i].data = reply.data[i];
+    made_ += reply.made;
+    if (reply.result == Result::Refused) break;
+  }
+  return made_;
+}
+
+Request FrameBus::request_for(const Access* accesses, std::size_t count) const {
+  const std::size_t rising = run_length(accesses, count, false);
+  const std::size_t standing = run_length(accesses, count, true);
+  Request request;
+  request.kind = accesses[0].write ? Kind::Write : Kind::Read;
+  request.fixed = standing > rising;
+  request.count = static_cast<std::uint8_t>(std::max(rising, standing));
+  request.address = static_cast<std::uint16_t>(accesses[0].address);
+  for (std::size_t i = 0; request.kind == Kind::Write && i < request.count; ++i) {
+    request.data.push_back(accesses[i].data);
+  }
+  return request;
+}
+
+// Sends until the reply says what became of the request. The number makes it run once: a card that has run it only
+// replies again, and one that has not takes it after a new connection as before.
+Reply FrameBus::exchange(Request request) {
+  // A number comes again after 65,536 requests: by then nothing of this connection may be on its way.
+  if (open_ || next(number_) == 0) {
+    open_.reset();
+    begin_anew();
+  }
+  ++counts_.requests;
+  request.number = next(number_);
+  open_ = request;
+  for (unsigned attempt = 0;; ++attempt) {
+    open_->epoch = epoch_;
+    if (const std::optional<Reply> reply = try_open()) {
+      open_.reset();
+      number_ = request.number;
+      if (reply->made != request.count && reply->result == Result::Done) {
+        throw LinkError(fmt::format("the card made {} of {} accesses and refused none", reply->made, request.count));
+      }
+      return *reply;
+    }
+    if (attempt == options_.restarts) {
+      throw LinkError(fmt::format("no answer to a request, sent {} times on each of {} connections", options_.sends,
+                                  options_.restarts + 1));
+    }
+    reconnect();
+    if (!known()) throw LinkError(kUnknown);
+  }
+}
+
+// A link that is gone is one without an answer: what comes next is a new connection.
+std::optional<Reply> FrameBus::try_open() {
+  try {
+    return send_and_wait(*open_);
+  } catch (const LinkError&) {
+    return std::nullopt;
+  }
+}
+
+// The card stands where it can stand after the open request: it has run it, or not yet.
+bool FrameBus::known() const { return !went_back_ && (card_last_ == number_ || card_last_ == next(number_)); }
+
+std::size_t FrameBus::resume() {
+  if (!open_) return made_;
+  reconnect();
+  if (!known()) throw LinkError(kUnknown);
+  if (card_last_ == number_) {
+    open_.reset();
+    return made_;
+  }
+  // It ran: its reply, which the card keeps, says how far.
+  open_->epoch = epoch_;
+  const std::optional<Reply> reply = send_and_wait(*open_);
+  if (!reply) throw LinkError("the card connects, but does not answer");
+  number_ = open_->number;
+  open_.reset();
+  return made_ += reply->made;
+}
+
+std::optional<Reply> FrameBus::send_and_wait(const Request& request) {
+  // The first end closes whatever the card has taken for a frame's beginning.
+  Bytes bytes{frames::kEnd};
+  frames::append_request(bytes, request);
+  for (unsigned send = 0; send < options_.sends; ++send) {
+    if (send != 0) ++counts_.sent_again;
+    link_.send(bytes.data(), bytes.size());
+    std::optional<Reply> reply = wait_for(request, bytes.size());
+    if (!reply) continue;
+    state_ = reply->state;
+    // Anything else than its execution: the connection is no longer the one that this side has in mind.
+    const bool executed = reply->result == Result::Done || reply->result == Result::Refused;
+    if (!executed) return std::nullopt;
+    return reply;
+  }
+  return std::nullopt;
+}
+
+std::optional<Reply> FrameBus::wait_for(const Request& request, std::size_t bytes) {
+  const auto back = static_cast<std::size_t>(request.kind == Kind::Read ? request.count : 0) * 8 + 80;
+  const auto until = link_.now() + link_.time_of(bytes) + link_.time_of(back) + options_.answer;
+  std::uint8_t buffer[256];
+  // Bytes behind the end of this reply belong to nothing that is waited for.
+  for (auto left = until - link_.now(); left.count() > 0; left = until - link_.now()) {
+    const std::size_t count = link_.receive(buffer, sizeof(buffer), left);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!deframer_.take(buffer[i])) continue;
+      std::optional<Reply> reply = frames::parse_reply(deframer_.body());
+      if (reply && answers(*reply, request)) return reply;
+      ++counts_.strange;
+    }
+  }
+  return std::nullopt;
+}
+
+// A new epoch, so that nothing sent before can run any more.
+bool FrameBus::connect() {
+  Request ask;
+  ask.number = ++tag_;
+  const std::optional<Reply> card = send_and_wait(ask);
+  if (!card) return false;
+  // An epoch only moves on; one that went back is that of a card that was reset.
+  if (static_cast<std::uint16_t>(card->epoch - epoch_) >= 0x8000) went_back_ = true;
+  Request request;
+  request.kind = Kind::Connect;
+  request.number = ++tag_;
+  request.epoch = card->epoch;
+  const std::optional<Reply> reply = send_and_wait(request);
+  if (!reply) return false;
+  epoch_ = reply->epoch;
+  card_last_ = reply->last;
+  return true;
+}
+
+void FrameBus::reconnect() {
+  std::string failure =
+      fmt::format("no card answers: asked {} times on each of {} connections", options_.sends, options_.restarts + 1);
+  for (unsigned attempt = 0; attempt <= options_.restarts; ++attempt) {
+    ++counts_.restarts;
+    deframer_.clear();
+    try {
+      link_.restart();
+      if (connect()) return;
+    } catch (const LinkError& error) {
+      failure = error.what();
+    }
+  }
+  throw LinkError(failure);
+}
+
+}  // namespace trammel::driver

@@ -1,0 +1,72 @@
+// Wishbone B4 slave in front of the card's inner port: classic, or pipelined with one access at a time.
+// What is asked for is registered, so a master may give an access up by taking CYC (classic: or STB) away: it is still
+// made, since the inner port has it, but it is not answered.
+`default_nettype none
+module wishbone_port #(
+    parameter int Pipelined = 0  // 1: pipelined
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cyc_i,
+    input wire logic stb_i,
+    input wire logic we_i,
+    input wire logic [11:0] adr_i,  // bytes
+    input wire logic [3:0] sel_i,
+    input wire logic [31:0] dat_i,
+    output logic [31:0] dat_o,
+    output logic ack_o,
+    output logic err_o,
+    output logic stall_o,  // 0 where it is classic
+    // to the inner port
+    output logic [47:0] access_o,  // {request, write, partial, 0, address, data}
+    input wire logic ack_i,
+    input wire logic error_i,
+    input wire logic [31:0] data_i
+);
+  logic        busy_q;
+  logic        wanted_q;  // the master still waits for the answer
+  logic        request_q;
+  logic        write_q;
+  logic        partial_q;
+  logic [11:0] address_q;
+  logic [31:0] data_q;
+  logic        stays;
+  logic        take;
+
+  // A classic master's STB stands until the answer, which is in the clock of the answer as well.
+  if (Pipelined != 0) begin : gen_pipelined
+    assign take = cyc_i && stb_i && !busy_q;
+    assign stays = cyc_i;
+    assign stall_o = busy_q;
+  end else begin : gen_classic
+    assign take = cyc_i && stb_i && !busy_q && !ack_o && !err_o;
+    assign stays = cyc_i && stb_i;
+    assign stall_o = 1'b0;
+  end
+
+  assign access_o = {request_q, write_q, partial_q, 1'b0, address_q, data_q};
+
+  always_ff @(posedge clk_i) begin
+    request_q <= take;
+    wanted_q  <= take || (wanted_q && stays);
+    if (ack_i) busy_q <= 1'b0;
+    if (take) begin
+      busy_q <= 1'b1;
+      write_q <= we_i;
+      partial_q <= we_i && sel_i != 4'b1111;
+      address_q <= adr_i;
+      data_q <= dat_i;
+    end
+    if (rst_i) begin
+      request_q <= 1'b0;
+      busy_q <= 1'b0;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    ack_o <= ack_i && !error_i && wanted_q && stays && !rst_i;
+    err_o <= ack_i && error_i && wanted_q && stays && !rst_i;
+    if (ack_i) dat_o <= data_i;
+  end
+endmodule
+`default_nettype wire
