@@ -67,16 +67,19 @@ struct HandOver {
   std::uint64_t first = 0;
 };
 
-HandOver hand_over(std::int64_t radius, std::uint64_t each, bool to_arc) {
-  CoreBench bench;
-  const std::uint64_t ticks = 8 * static_cast<std::uint64_t>(radius) * each;
+HandOver hand_over(std::int64_t radius, std::uint64_t each, bool to_arc, bool eight = false) {
+  model::CardConfig config;
+  config.engines = model::RegisterFile::kMostEngines;
+  CoreBench bench(config);
+  const auto steps = static_cast<std::uint64_t>(eight ? CoreBench::steps_in_eight(radius) : 8 * radius);
+  const std::uint64_t ticks = steps * each;
   bench.logs = true;
   EXPECT_TRUE(bench.write(reg::kHold, 1));
-  EXPECT_TRUE(bench.circle(ticks, radius));
-  EXPECT_TRUE(to_arc ? bench.circle(400, radius) : bench.line(400, {kOnePulse / 3, kOnePulse / 5}));
+  EXPECT_TRUE(bench.circle(ticks, radius, false, eight));
+  EXPECT_TRUE(to_arc ? bench.circle(400, radius, false, eight) : bench.line(400, {kOnePulse / 3, kOnePulse / 5}));
   EXPECT_TRUE(bench.feed(ticks + 400, ~std::uint64_t{0}));
   EXPECT_TRUE(bench.write(reg::kHold, 0));
-  bench.idle(16 * ticks + 2000);
+  bench.idle((eight ? 32 : 16) * ticks + 2000);
   HandOver result;
   unsigned swaps = 0;
   for (std::size_t i = 0; i < bench.log.size() && result.first == 0; ++i) {
@@ -88,7 +91,8 @@ HandOver hand_over(std::int64_t radius, std::uint64_t each, bool to_arc) {
   return result;
 }
 
-// docs/developer/architecture.md, Sequencers; 29 clocks from where the accumulator is ready, 9 after its last tick.
+// docs/developer/architecture.md, Sequencers; 29 clocks from where the accumulator is ready, 9 after its last tick, 17
+// in 8 directions.
 TEST(CoreModel, HandOverAfterAnArc) {
   for (const std::int64_t radius : {1, 5, 20}) {
     for (const std::uint64_t each : {1U, 2U, 3U, 5U, 9U, 10U, 11U, 14U, 20U, 100U}) {
@@ -96,6 +100,11 @@ TEST(CoreModel, HandOverAfterAnArc) {
       EXPECT_EQ(arc.first, std::max(arc.path_tick + 9 + 29, arc.tick + 37)) << radius << ", " << each;
       const HandOver line = hand_over(radius, each, false);
       EXPECT_EQ(line.first, std::max(line.path_tick + 9 + 4, line.tick + 8)) << radius << ", " << each;
+      const HandOver eight = hand_over(radius, each, true, true);
+      EXPECT_EQ(eight.first, std::max(eight.path_tick + 17 + 29, eight.tick + 37)) << radius << ", " << each;
+      const HandOver line_after = hand_over(radius, each, false, true);
+      EXPECT_EQ(line_after.first, std::max(line_after.path_tick + 17 + 4, line_after.tick + 8))
+          << radius << ", " << each;
     }
   }
   // A path tick in 20 ticks or more is long finished: 37 and 8 clocks are what remains.

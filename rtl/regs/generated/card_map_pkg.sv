@@ -32,7 +32,7 @@ package card_map_pkg;
   localparam int ACCUMULATOR_TICK_CLOCKS = 9;
   // The same in 8 directions
   localparam int ACCUMULATOR_8_TICK_CLOCKS = 17;
-  // Clocks within which an arc begins once the accumulator is free; 8 more for one in 8 directions
+  // Clocks within which an arc begins once the accumulator is free
   localparam int ACCUMULATOR_HANDOVER_CLOCKS = 30;
   // Fraction bits of a centre in ARC's deviation and gradients
   localparam int CENTRE_FRACTION_BITS = 8;

@@ -40,7 +40,7 @@ inline constexpr std::uint32_t kAccumulatorTickClocks =
     9;  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
 inline constexpr std::uint32_t kAccumulator8TickClocks = 17;  // The same in 8 directions
 inline constexpr std::uint32_t kAccumulatorHandoverClocks =
-    30;  // Clocks within which an arc begins once the accumulator is free; 8 more for one in 8 directions
+    30;  // Clocks within which an arc begins once the accumulator is free
 inline constexpr std::uint32_t kCentreFractionBits = 8;  // Fraction bits of a centre in ARC's deviation and gradients
 inline constexpr std::uint32_t kPathDelayClocks = 3;     // Clocks from a feed tick to the path tick that it is
 inline constexpr std::uint32_t kAnswerClocks = 400;  // Clocks within which every access is answered with up to 7 axes
