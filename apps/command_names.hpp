@@ -1,9 +1,10 @@
 // The command line's first word, before the options are read.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "command_line.hpp"
 
 namespace trammel::app {
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -106,7 +107,7 @@ void compare_curve(const Options& options) {
   std::vector<measure::Trace> traces;
   const Comparison comparison = compare(options, traces);
   outputs.open();
-  if (json != nullptr) json->write(json_of(comparison).dump(2) + "\n");
+  if (json != nullptr) json->write(json_text(comparison));
   if (plot != nullptr) plot->write(comparison_svg(comparison, traces, measure::ideal_of(options.curve.curve())));
   outputs.commit(table_of(comparison));
 }
@@ -138,7 +139,7 @@ void compare_random(const Options& options) {
     throw UsageError(error.what());
   }
   outputs.open();
-  if (json != nullptr) json->write(json_of(lines, measures).dump(2) + "\n");
+  if (json != nullptr) json->write(json_text(lines, measures));
   outputs.commit(table_of(lines, measures));
   for (const measure::RandomMeasures& method : measures) {
     if (method.wrong_ends > 0) {

@@ -1,7 +1,7 @@
 // trammel compare: all methods side by side, on one curve or over random lines.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command_line.hpp"
 
 namespace trammel::app {
 

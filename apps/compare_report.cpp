@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
 namespace trammel::app {
 namespace {
@@ -199,7 +200,7 @@ std::string table_of(const Comparison& comparison) {
   return text;
 }
 
-ordered_json json_of(const Comparison& comparison) {
+std::string json_text(const Comparison& comparison) {
   ordered_json json;
   json["curve"] = comparison.title;
   json["length"] = comparison.length;
@@ -224,7 +225,7 @@ ordered_json json_of(const Comparison& comparison) {
   for (const Refusal& refusal : comparison.refused) {
     json["refused"].push_back({{"name", name_of(refusal.method)}, {"reason", refusal.reason}});
   }
-  return json;
+  return json.dump(2) + "\n";
 }
 
 std::string table_of(const measure::RandomLines& lines, const std::vector<measure::RandomMeasures>& measures) {
@@ -246,7 +247,7 @@ std::string table_of(const measure::RandomLines& lines, const std::vector<measur
          table.text();
 }
 
-ordered_json json_of(const measure::RandomLines& lines, const std::vector<measure::RandomMeasures>& measures) {
+std::string json_text(const measure::RandomLines& lines, const std::vector<measure::RandomMeasures>& measures) {
   ordered_json json = {{"lines", lines.count},
                        {"seed", lines.seed},
                        {"largest", lines.largest},
@@ -270,7 +271,7 @@ ordered_json json_of(const measure::RandomLines& lines, const std::vector<measur
            {"mean_rms", method.mean_rms_interval}}},
          {"speed_ripple", {{"largest", method.largest_ripple}, {"mean_rms", method.mean_rms_ripple}}}});
   }
-  return json;
+  return json.dump(2) + "\n";
 }
 
 }  // namespace trammel::app

@@ -2,7 +2,6 @@
 // docs/user/compare.md.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -31,9 +30,9 @@ struct Comparison {
 };
 
 std::string table_of(const Comparison& comparison);
-nlohmann::ordered_json json_of(const Comparison& comparison);
+std::string json_text(const Comparison& comparison);
 
 std::string table_of(const measure::RandomLines& lines, const std::vector<measure::RandomMeasures>& measures);
-nlohmann::ordered_json json_of(const measure::RandomLines& lines, const std::vector<measure::RandomMeasures>& measures);
+std::string json_text(const measure::RandomLines& lines, const std::vector<measure::RandomMeasures>& measures);
 
 }  // namespace trammel::app

@@ -1,10 +1,10 @@
 // The options that name a curve, for every subcommand that takes one.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
+#include "command_line.hpp"
 #include "trammel/interpolation/curve.hpp"
 
 namespace trammel::app {

@@ -1,11 +1,11 @@
 // Options that every subcommand with a simulated card shares.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "command_line.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {

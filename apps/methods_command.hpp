@@ -1,7 +1,7 @@
 // trammel methods: the interpolators and what each can do.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command_line.hpp"
 
 namespace trammel::app {
 

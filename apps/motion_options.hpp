@@ -1,12 +1,12 @@
 // Options of `trammel run` that an operator has at the machine: overrides, holds, where to begin, what to leave out.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
 #include "trammel/run/run_settings.hpp"
 
 namespace trammel::app {

@@ -32,7 +32,7 @@ std::string summary(const CheckResult& result) {
   return text + summary(result.profile) + accepted_words(plan.accepted);
 }
 
-nlohmann::ordered_json json_of(const CheckResult& result) {
+std::string json_text(const CheckResult& result) {
   const run::Plan& plan = result.plan;
   nlohmann::ordered_json json;
   json["program"] = plan.file;
@@ -47,7 +47,7 @@ nlohmann::ordered_json json_of(const CheckResult& result) {
   json["motion"] = motion_json(plan.motion);
   json["feeds_not_reached"] = feeds_json(plan.feeds_not_reached);
   json["accepted_words"] = plan.accepted;
-  return json;
+  return json.dump(2) + "\n";
 }
 
 }  // namespace trammel::app

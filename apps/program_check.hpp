@@ -1,7 +1,6 @@
 // `trammel run --check`: reads, plans and times a program; nothing runs.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "profile_report.hpp"
@@ -25,6 +24,6 @@ CheckResult check_program(const run::ProgramLines& lines, const machine::Machine
 // Some lines of text, units in every one.
 std::string summary(const CheckResult& result);
 // What it has in common with a run's result, under the same names.
-nlohmann::ordered_json json_of(const CheckResult& result);
+std::string json_text(const CheckResult& result);
 
 }  // namespace trammel::app

@@ -1,7 +1,7 @@
 // trammel reproduce: every table and figure of both papers made again.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command_line.hpp"
 
 namespace trammel::app {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -97,7 +97,7 @@ void execute(const Options& options) {
     for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached))
       tell("warning", text);
     outputs.open();
-    if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
+    if (json != nullptr) json->write(json_text(result));
     return outputs.commit(summary(result));
   }
   run.planned = [&](const run::Plan& plan) {
@@ -113,7 +113,7 @@ void execute(const Options& options) {
     for (const std::string& text : feed_warnings(result.program, result.feeds_not_reached)) tell("warning", text);
   }
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
-  if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
+  if (json != nullptr) json->write(json_text(result));
   if (plot != nullptr) plot->write(run::svg(result.plot));
   outputs.commit(summary(result));
 }

@@ -118,7 +118,7 @@ std::string summary(const RunResult& result) {
   return text + accepted_words(result.accepted);
 }
 
-nlohmann::ordered_json json_of(const RunResult& result) {
+std::string json_text(const RunResult& result) {
   nlohmann::ordered_json json;
   json["program"] = result.program;
   json["engine"] = result.engine;
@@ -148,7 +148,7 @@ nlohmann::ordered_json json_of(const RunResult& result) {
   json["feeds_not_reached"] = feeds_json(result.feeds_not_reached);
   json["events"] = events_json(result.events);
   json["accepted_words"] = result.accepted;
-  return json;
+  return json.dump(2) + "\n";
 }
 
 }  // namespace trammel::app

@@ -21,6 +21,6 @@ std::string accepted_words(const std::map<std::string, std::size_t>& words);
 nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
 
-nlohmann::ordered_json json_of(const RunResult& result);
+std::string json_text(const RunResult& result);
 
 }  // namespace trammel::app

@@ -1,7 +1,7 @@
 // trammel steps: the steps of one method on one curve.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "command_line.hpp"
 
 namespace trammel::app {
 

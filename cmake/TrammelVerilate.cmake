@@ -60,7 +60,7 @@ function(trammel_verilate target)
     COMMAND "${CMAKE_COMMAND}" -D DIR=${dir} -D PREFIX=${A_PREFIX} -P "${join}"
     DEPENDS ${files} ${harness} "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" "${join}"
     COMMENT "Verilating ${A_TOP} for ${target}" VERBATIM COMMAND_EXPAND_LISTS)
-  add_library(${model} OBJECT "${code}")
+  add_library(${model} OBJECT EXCLUDE_FROM_ALL "${code}")
   # What Verilator writes is not the project's: no warnings from it.
   target_compile_options(${model} PRIVATE -w -O${A_LEVEL})
   target_include_directories(${model} PRIVATE "${PROJECT_SOURCE_DIR}/verif/lockstep" "${dir}")

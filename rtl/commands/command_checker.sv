@@ -1,7 +1,7 @@
 // Takes the words of the stream, judges them halfword by halfword against the layouts of rtl/regs/commands.toml and
 // passes good commands on in their stored form: halfword 1 and padding left out.
 //
-// A word written at c is answered at c+6, when it is ready again: refuse says that it is refused. A refusal drops the
+// A word written at c stands on word_i until it is answered, at c+6, when it is ready again: refuse says that it is refused. A refusal drops the
 // command whole and closes the stream until clear_i; a closed stream answers at c+2. So does a fault (closed_i), whose
 // refusal changes nothing else: the cut that comes with it clears all there is. A write while it is not ready is ignored.
 // flush_i waits for a word under way and comes before one beside it. A word under way at clear_i is dropped without a
@@ -33,7 +33,7 @@ module command_checker #(
   logic high_judge_q;
   logic answer_q;
 
-  logic [31:0] word_q;  // goes round by a halfword with each judgement
+  logic [15:0] halfword_q;  // under way: the lower one, but while the upper one is examined and judged
   logic ready_q;
   logic partial_q;
   logic refuse_q;
@@ -87,7 +87,7 @@ module command_checker #(
       .restart_i(restart),
       .phase_i(partial_q ? 4'd0 : {high_judge_q, high_q, low_judge_q, low_q}),
       .accept_i(accepted),
-      .halfword_i(word_q[15:0]),
+      .halfword_i(halfword_q),
       .op_o(op),
       .mask_o(mask),
       .to_geometry_o(to_geometry),
@@ -107,7 +107,7 @@ module command_checker #(
       .judge_i((low_judge_q || high_judge_q) && partial_q),
       .read_ahead_i(low_judge_q || high_judge_q),
       .padding_i(padding && partial_q),
-      .halfword_i(word_q[15:0]),
+      .halfword_i(halfword_q),
       .op_i(op),
       .mask_i(mask),
       .bad_o(field_bad),
@@ -116,9 +116,7 @@ module command_checker #(
 
   always_ff @(posedge clk_i) begin
     if (awake) begin
-      if (ready_q) word_q <= word_i;
-      else if (low_judge_q || high_judge_q) word_q <= {word_q[15:0], word_q[31:16]};
-
+      halfword_q <= low_judge_q || high_q ? word_i[31:16] : word_i[15:0];
       if (judged) left_q <= partial_q ? left_q - 5'd1 : stored[5:1];
     end
   end
@@ -156,7 +154,7 @@ module command_checker #(
         refuse_q <= 1'b0;
         reason_q <= card_map_pkg::REFUSE_NONE;
       end else begin
-        if (store) halfword_o <= word_q[15:0];
+        if (store) halfword_o <= halfword_q;
         geometry_o <= {accepted && to_geometry, store && to_geometry};
         feed_o <= {accepted && to_feed, store && to_feed};
         drop_o <= refused || truncate;

@@ -85,11 +85,11 @@ module direct_loader #(
       axis_done = !rest_q[0] || step_q == TAKE_COUNT_1;
       take_high = (state_q == AXIS) ? (step_q == TAKE_FREQUENCY_1 || step_q == TAKE_COUNT_1) : step_q == TAKE_LENGTH_1;
       raw_any = raw_q != 16'd0;
-      negated = (raw_q ^ {16{negative_q}}) + {15'd0, carry_q};
+      negated = (raw_q ^ {16{negative_q && frequency_q}}) + {15'd0, carry_q && frequency_q};
 
       // Each stage before the one that feeds it.
       load_o[21]   <= (frequency_q || count_q || length_q) && !rst_i;
-      load_o[15:0] <= frequency_q ? negated : raw_q;
+      load_o[15:0] <= negated;
       if (length_q) load_o[20:16] <= load_target_pkg::TICKS;
       else load_o[20:16] <= (count_q ? load_target_pkg::COUNT : load_target_pkg::INCREMENT) + {2'd0, raw_axis_q};
 

@@ -46,17 +46,19 @@ module halfword_queue #(
   assign take = read_i && !empty_o;
   assign reset = rst_i || clear_i;
 
-  // In nibbles, so that a block RAM is deep and narrow: then none, or few, are chosen between after the RAM's slow output.
+  // In slices, so that a block RAM is deep and narrow: then none, or few, are chosen between after the RAM's slow output. The
+  // largest RAM meant has 16,384 bits, each an address.
   // Nothing is read that is not committed, so no location is read and written in one clock.
-  for (genvar n = 0; n < 4; n++) begin : gen_nibble
-    (* no_rw_check *) logic [3:0] memory[0:Depth-1];
-    logic [3:0] memory_q;
+  localparam int Slice = Depth <= 4096 ? 4 : Depth <= 8192 ? 2 : 1;
+  for (genvar n = 0; n < 16 / Slice; n++) begin : gen_slice
+    (* no_rw_check *) logic [Slice-1:0] memory[0:Depth-1];
+    logic [Slice-1:0] memory_q;
 
     always_ff @(posedge clk_i) begin
-      if (write) memory[write_q[AddressWidth-1:0]] <= store_i[4*n+:4];
+      if (write) memory[write_q[AddressWidth-1:0]] <= store_i[Slice*n+:Slice];
       if (take) memory_q <= memory[read_q[AddressWidth-1:0]];
       // A bare flip-flop right after the RAM.
-      word_o[4*n+:4] <= memory_q;
+      word_o[Slice*n+:Slice] <= memory_q;
     end
   end
 

@@ -89,7 +89,7 @@ module register_access #(
       in_limits_q <= card_map_pkg::register_in_limits(word, data);
       control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
       // An abort beside it does more than a flush.
-      flush_q <= word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&
+      flush_q <= write && word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&
           !data[card_map_pkg::BIT_CONTROL_ABORT];
       fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
       refusal_q <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data != 32'd0;
@@ -207,7 +207,7 @@ module register_access #(
   assign act = acting_q && good_q && write;
   assign setting_o = {set_q, access_i[41:34], data};
   assign clear_refusal_o = act && refusal_q;
-  assign flush_o = act && flush_q;
+  assign flush_o = acting_q && good_q && flush_q;
 
   always_ff @(posedge clk_i) begin
     set_q <= act && kind_q == card_map_pkg::ACCESS_SETTING;

@@ -18,7 +18,7 @@ module queued_ticks #(
     input  wire logic [20:0] arrive_i,          // {drop, geometry {commit, write}, feed {commit, write}, halfword}
     input  wire logic        take_i,
     input  wire logic [ 1:0] word_i,            // of the pass
-    input  wire logic [13:0] limit_i,           // a word of the limit, a clock behind word_i
+    input  wire logic [13:0] inverted_limit_i,  // a word of the limit, inverted, a clock behind word_i
     output logic             geometry_short_o,  // a clock after the limit's last word
     output logic             feed_short_o,
     output logic             covered_o,         // paths have all the ticks that pieces have, or more
@@ -97,42 +97,43 @@ module queued_ticks #(
 
     first = word_i == 2'd0;
     change = adding_q ? count_q[13:0] : ~(first ? {10'd0, taken_q} : 14'd0);
-    paths_sum = {1'b0, paths_q[13:0]} + {1'b0, adding_q && !add_paths_q ? 14'd0 : change} +
-        {14'd0, first ? !adding_q : paths_carry_q};
-    pieces_sum = {1'b0, pieces_q[13:0]} + {1'b0, adding_q && !add_pieces_q ? 14'd0 : change} +
-        {14'd0, first ? !adding_q : pieces_carry_q};
+    paths_sum = {1'b0, paths_q[13:0]} + {1'b0, change} + {14'd0, first ? !adding_q : paths_carry_q};
+    pieces_sum = {1'b0, pieces_q[13:0]} + {1'b0, change} + {14'd0, first ? !adding_q : pieces_carry_q};
     paths_carry_q <= paths_sum[14];
     pieces_carry_q <= pieces_sum[14];
-    paths_q <= {paths_sum[13:0], paths_q[55:14]};
-    pieces_q <= {pieces_sum[13:0], pieces_q[55:14]};
+    // Whom a command does not concern is asked after the addition: a table of the adder has room for that.
+    paths_q <= {adding_q && !add_paths_q ? paths_q[13:0] : paths_sum[13:0], paths_q[55:14]};
+    pieces_q <= {adding_q && !add_pieces_q ? pieces_q[13:0] : pieces_sum[13:0], pieces_q[55:14]};
     if (clearing_q) begin
       paths_q  <= EMPTY;
       pieces_q <= EMPTY;
     end
   end
 
-  // count - limit - 1 is negative; so is paths - pieces. The sign lies in the last word.
-  logic paths_less_q, pieces_less_q, uncovered_q;
-  always_ff @(posedge clk_i) begin : p_compare
-    logic [13:0] paths_word, pieces_word, limit_word;
-    logic first, last;
-    logic paths_less, pieces_less, uncovered;
-
-    first = word_i == 2'd1;
-    last = word_i == 2'd0;
-    paths_word = {paths_q[55] ^ last, paths_q[54:42]};
-    pieces_word = {pieces_q[55] ^ last, pieces_q[54:42]};
-    limit_word = {limit_i[13] | last, limit_i[12:0]};
-    paths_less = {paths_word, 1'b0} < {limit_word, first || paths_less_q};
-    pieces_less = {pieces_word, 1'b0} < {limit_word, first || pieces_less_q};
-    uncovered = {paths_word, 1'b0} < {pieces_word, !first && uncovered_q};
-    paths_less_q  <= paths_less;
-    pieces_less_q <= pieces_less;
-    uncovered_q   <= uncovered;
+  // Carries of count - limit - 1 and of paths - pieces: what is taken away is added inverted. The sign lies in the last word,
+  // where its inverse makes the carry tell which number is larger; the limit has none.
+  logic [15:0] paths_over, pieces_over, covered;  // {carry, difference, carry in's place}
+  logic paths_over_q, pieces_over_q;
+  logic [13:0] paths_word, pieces_word, inverted_limit;
+  logic begins, ends;
+  assign begins = word_i == 2'd1;
+  assign ends = word_i == 2'd0;
+  assign paths_word = {paths_q[55] ^ ends, paths_q[54:42]};
+  assign pieces_word = {pieces_q[55] ^ ends, pieces_q[54:42]};
+  assign inverted_limit = {inverted_limit_i[13] & ~ends, inverted_limit_i[12:0]};
+  assign paths_over = {1'b0, paths_word, 1'b1} + {1'b0, inverted_limit, !begins && paths_over_q};
+  assign pieces_over = {1'b0, pieces_word, 1'b1} + {1'b0, inverted_limit, !begins && pieces_over_q};
+  assign covered = {1'b0, paths_word, 1'b1} + {1'b0, ~pieces_word, begins || covered_o};
+  always_ff @(posedge clk_i) begin
+    paths_over_q <= paths_over[15];
+    pieces_over_q <= pieces_over[15];
+    covered_o <= covered[15];
   end
-  assign geometry_short_o = paths_less_q;
-  assign feed_short_o = pieces_less_q;
-  assign covered_o = !uncovered_q;
+  assign geometry_short_o = !paths_over_q;
+  assign feed_short_o = !pieces_over_q;
+
+  logic unused;
+  assign unused = &{1'b0, paths_over[14:0], pieces_over[14:0], covered[14:0]};
 endmodule
 
 `default_nettype wire

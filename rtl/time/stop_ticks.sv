@@ -2,7 +2,7 @@
 //
 // The ratio is taken in 256ths, rounded up, and so is its square: at full ratio the product is exact, and never too small.
 // By step_i: 0 the ratio is taken (but while keep_i), 1 to 10 squared, 12 to 21 multiplied with the stop distance, 25 to
-// 28 the product leaves in words of 14 bits. While 12 to 21 the stop distance stands still.
+// 28 it leaves in words of 14 bits. While 12 to 21 the stop distance stands still.
 //
 // The stop distance in force is that of the piece in force; a piece that ends at rest (0) goes on with that of the piece
 // before, which has its speed. Where the next piece begins from rest, follow_i, it is the next one's.
@@ -23,7 +23,7 @@ module stop_ticks (
     input  wire logic        follow_i,
     output logic             next_zero_o,  // the next piece's stop distance is 0: it ends at rest
     output logic             ruled_o,      // the stop distance in force is not 0
-    output logic      [13:0] word_o
+    output logic      [13:0] inverted_o    // a word, inverted: who compares with it needs it so
 );
   logic        load;
   logic        half_q;  // the lower halfword is there
@@ -59,29 +59,40 @@ module stop_ticks (
     if (swap_i && (from_rest_i || !next_zero_o)) due_q <= 1'b1;
   end
 
-  // One register for both products' lower parts: what is multiplied with leaves at its lower end.
+  // The square is made in the register that the ratio's bits leave at the lower end; later its own bits pass place 7, where
+  // the product asks for them. It begins with 255, shifted in at the upper end in the eight clocks before: so 256ths of it
+  // are rounded up.
   logic [ 8:0] ratio_q;
   logic [17:0] square_q;
-  logic [33:0] product_q;
-  always_ff @(posedge clk_i) begin : p_product
-    logic [ 9:0] square_sum;
-    logic [ 8:0] square;
-    logic [32:0] sum;
-
-    square_sum = {1'b0, square_q[17:9]} + {1'b0, ratio_q & {9{square_q[0]}}};
-    square = square_q[16:8] + {8'd0, square_q[7:0] != 8'd0};
-    sum = {1'b0, product_q[33:2]} + {1'b0, distance_q & {32{square_q[0]}}};
+  logic [ 9:0] square_sum;
+  logic        add;
+  logic        round;
+  assign add = step_i >= 5'd2 && step_i <= 5'd10 && square_q[0];
+  assign round = step_i >= 5'd25 || step_i == 5'd0;
+  assign square_sum = {1'b0, square_q[17:9]} + {1'b0, ratio_q};
+  always_ff @(posedge clk_i) begin
     if (step_i == 5'd0 && !keep_i) ratio_q <= ratio_i[16:8] + {8'd0, ratio_i[7:0] != 8'd0};
-    if (step_i == 5'd1) square_q <= {9'd0, ratio_q};
-    else if (step_i <= 5'd10) square_q <= {square_sum, square_q[8:1]};
-    else if (step_i == 5'd11) square_q[9:0] <= none_i ? 10'd0 : twice_i ? {square, 1'b0} : {1'b0, square};
-    else square_q <= square_q >> 1;
-    // It is 0 when all of it has left.
-    if (still) product_q <= {sum, product_q[1]};
-    else if (step_i >= 5'd25) product_q <= product_q >> 14;
+    square_q <= {add ? square_sum : {round, square_q[17:9]}, square_q[8:1]};
+    if (step_i == 5'd1) square_q[8:0] <= ratio_q;
   end
 
-  assign word_o = product_q[13:0];
+  // The square has nine bits: the tenth step halves, or does not where twice the product is wanted. Whether a bit counts is
+  // asked after the addition: a table of the adder has room for that.
+  logic        none_q;
+  logic [33:0] product_q;
+  logic [32:0] sum;
+  assign sum = {1'b0, product_q[33:2]} + {1'b0, distance_q};
+  always_ff @(posedge clk_i) begin
+    if (step_i == 5'd11) begin
+      none_q <= none_i;
+      product_q <= '0;
+    end else if (still && !none_q && !(step_i == 5'd21 && twice_i)) begin
+      product_q <= square_q[7] ? {sum, product_q[1]} : product_q >> 1;
+    end
+  end
+
+  assign inverted_o = ~(step_i[1:0] == 2'd1 ? product_q[13:0] : step_i[1:0] == 2'd2 ? product_q[27:14] :
+                        step_i[1:0] == 2'd3 ? {8'd0, product_q[33:28]} : 14'd0);
 endmodule
 
 `default_nettype wire

@@ -65,37 +65,37 @@ module time_base #(
 
   logic [ 1:0] turn_q;
   logic [28:0] ratio_q;
-  logic [16:0] goal_q;
+  logic [16:0] inverted_goal_q;  // so an adder compares with it: X - goal - 1 = X + ~goal
   logic up_q, arrived_q;
   logic [29:0] candidate_q;
 
+  // Ratio and candidate less the goal less one, below which 12 bits are 0. The lowest bits make the carry in: 1 where the
+  // number has something below, and, so that a candidate on its way up arrives when it equals the goal.
+  logic [18:0] ratio_sum;
+  logic [18:0] candidate_sum;
+  assign ratio_sum = {1'b0, ratio_q[28:12], 1'b1} + {1'b1, inverted_goal_q, ratio_q[11:0] != 12'd0};
+  assign candidate_sum = {candidate_q[29:12], 1'b1} + {1'b1, inverted_goal_q, up_q || candidate_q[11:0] != 12'd0};
+
   logic [28:0] goal;
-  assign goal = {goal_q, 12'd0};
+  assign goal = {~inverted_goal_q, 12'd0};
 
-  always_ff @(posedge clk_i) begin : p_ratio
-    logic at_least;
-    logic at_most;
-
+  always_ff @(posedge clk_i) begin
     if (rst_i) begin
       turn_q <= 2'd0;
       ratio_q <= ONE;
-      goal_q <= 17'h1_0000;
+      inverted_goal_q <= ~17'h1_0000;
       arrived_q <= 1'b1;
     end else begin
       turn_q <= turn_q + 2'd1;
       if (turn_q == 2'd0) begin
         ratio_q <= arrived_q ? goal : candidate_q[28:0];
-        goal_q  <= hold_i ? 17'd0 : target;
+        inverted_goal_q <= hold_i ? '1 : ~target;
       end
-      if (turn_q == 2'd1) up_q <= goal >= ratio_q;
+      if (turn_q == 2'd1) up_q <= ratio_sum[18];
       if (turn_q == 2'd2) begin
         candidate_q <= {1'b0, ratio_q} + ({2'b00, slew_q} ^ {30{!up_q}}) + {29'd0, !up_q};
       end
-      if (turn_q == 2'd3) begin
-        at_least = $signed(candidate_q) >= $signed({1'b0, goal});
-        at_most  = $signed(candidate_q) <= $signed({1'b0, goal});
-        arrived_q <= up_q ? at_least : at_most;
-      end
+      if (turn_q == 2'd3) arrived_q <= candidate_sum[18] ^ up_q;
     end
   end
 
@@ -118,7 +118,7 @@ module time_base #(
   );
 
   logic unused;
-  assign unused = &{1'b0, setting_i[31:28]};
+  assign unused = &{1'b0, setting_i[31:28], ratio_sum[17:0], candidate_sum[17:0]};
 endmodule
 
 `default_nettype wire

@@ -32,7 +32,7 @@ module underrun_guard (
   logic [4:0] step_q;
   always_ff @(posedge clk_i) step_q <= rst_i ? 5'd0 : step_q + 5'd1;
 
-  logic [13:0] limit_word;
+  logic [13:0] inverted_limit;
   logic geometry_short, feed_short, covered, at_rest, at_barrier;
   logic next_zero, ruled;
   logic standing;
@@ -49,7 +49,7 @@ module underrun_guard (
   ) queued (
       .*,
       .word_i          (step_q[1:0]),
-      .limit_i         (limit_word),
+      .inverted_limit_i(inverted_limit),
       .geometry_short_o(geometry_short),
       .feed_short_o    (feed_short),
       .covered_o       (covered),
@@ -67,7 +67,7 @@ module underrun_guard (
       .follow_i   (follow),
       .next_zero_o(next_zero),
       .ruled_o    (ruled),
-      .word_o     (limit_word)
+      .inverted_o (inverted_limit)
   );
 
   logic decoded_q;

@@ -7,10 +7,11 @@ import os
 import re
 import resource
 import subprocess
+import threading
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Dict, List
+from typing import Dict, List, Optional
 
 MISMATCH = "repeat with TRAMMEL_SEED="  # the line that every report of a lockstep has
 TESTS_PASSED = re.compile(r"\[  PASSED  \] [1-9]")  # a filter that matches no test passes as well
@@ -28,10 +29,14 @@ class Judge:
     arguments: List[str] = field(default_factory=list)  # GoogleTest's, to choose among its tests
     length: str = ""  # of its random scenarios, as a factor: TRAMMEL_LONG
     last_resort: bool = False  # a long run: tries no mutant that is listed as equivalent
-    seconds: float = 0.0  # of processor time for the sound design
+    seconds: Optional[float] = None  # of processor time for the sound design
+    first: threading.Lock = field(default_factory=threading.Lock)
 
     def limit(self) -> int:
         """Processor seconds after which a run has hung: no other work on the machine uses them up."""
+        with self.first:
+            if self.seconds is None:  # a last resort that is asked for the first time
+                try_sound_design(self)
         return math.ceil(5 * self.seconds + 2)
 
 
@@ -40,6 +45,7 @@ class Verdict:
     how: str  # lived, mismatch, failed, crashed, timed out
     judge: str = ""
     seconds: float = 0.0
+    processor_seconds: float = 0.0
 
     @property
     def killed(self) -> bool:
@@ -71,15 +77,19 @@ def run(judge: Judge, number: int, limit: int) -> Verdict:
     if judge.length:
         environment["TRAMMEL_LONG"] = judge.length
     start = time.monotonic()
-    try:
-        # One that sleeps uses no processor time; it is given ten times as long.
-        done = subprocess.run([judge.executable, "--gtest_fail_fast", "--gtest_brief=1", *judge.arguments], env=environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=10 * limit, preexec_fn=limits,
-                              errors="replace")
-        how = judged(done.returncode, done.stdout)
-    except subprocess.TimeoutExpired:
-        how = "timed out"
-    return Verdict(how, judge.name, time.monotonic() - start)
+    process = subprocess.Popen([judge.executable, "--gtest_fail_fast", "--gtest_brief=1", *judge.arguments],
+                               env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, preexec_fn=limits,
+                               errors="replace")
+    # One that sleeps uses no processor time; it is given ten times as long.
+    watch = threading.Timer(10 * limit, process.kill)
+    watch.start()
+    with process.stdout:
+        output = process.stdout.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    watch.cancel()
+    process.returncode = os.waitstatus_to_exitcode(status)
+    return Verdict(judged(process.returncode, output), judge.name, time.monotonic() - start,
+                   usage.ru_utime + usage.ru_stime)
 
 
 def judged(status: int, output: str) -> str:
@@ -94,13 +104,11 @@ def judged(status: int, output: str) -> str:
 
 def try_sound_design(judge: Judge):
     """Mutant 0 must pass; how long it takes is the measure for the others."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     verdict = run(judge, 0, 3600)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if verdict.killed:
         raise SoundDesignRefused(f"judge {judge.name} finds fault with the sound design ({verdict.how}): "
                                  f"TRAMMEL_MUTANT=0 {judge.executable}")
-    judge.seconds = (after.ru_utime + after.ru_stime) - (before.ru_utime + before.ru_stime)
+    judge.seconds = verdict.processor_seconds
 
 
 def try_mutant(judges: List[Judge], number: int, file: str, listed: bool) -> Verdict:

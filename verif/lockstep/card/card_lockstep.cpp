@@ -2,6 +2,8 @@
 // are cut short at every clock.
 #include <gtest/gtest.h>
 
+#include <iostream>
+
 #include "card_under_test.hpp"
 #include "traffic.hpp"
 
@@ -25,8 +27,8 @@ void expect_all_compared(sim::LockstepCard& card, unsigned axes, std::uint64_t a
   EXPECT_EQ(card.comparisons(), card.cycles() * sim::signals_compared(axes));
 }
 
-// One run of random traffic; together 5 * 10^7 clocks. Several runs instead of a longer one: ctest spreads them over
-// the cores.
+// One run of random traffic; together 10^8 clocks, which scripts/test adds up. Several runs instead of a longer one:
+// ctest spreads them over the cores.
 struct TrafficRun {
   unsigned axes;
   unsigned index;
@@ -37,7 +39,7 @@ std::vector<TrafficRun> runs() {
   std::vector<TrafficRun> result;
   for (unsigned axes = 1; axes <= 8; ++axes) {
     const unsigned count = axes == 4 ? 6 : axes == 8 ? 2 : 1;
-    for (unsigned i = 0; i < count; ++i) result.push_back({axes, i, axes % 4 == 0 ? 5'600'000U : 1'000'000U});
+    for (unsigned i = 0; i < count; ++i) result.push_back({axes, i, axes % 4 == 0 ? 11'600'000U : 1'300'000U});
   }
   return result;
 }
@@ -63,7 +65,11 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   traffic.wait_idle(100'000);
   EXPECT_LE(host.slowest_answer(), answer_bound(axes));
   EXPECT_GT(traffic.underruns, clocks / 500'000);
+  EXPECT_GT(traffic.holds, clocks / 100'000);
+  EXPECT_GT(traffic.overrides, clocks / 100'000);
   expect_all_compared(card, axes, clocks);
+  std::cout << card.cycles() << " clocks of random traffic compared, " << traffic.holds << " holds, "
+            << traffic.overrides << " overrides, " << traffic.underruns << " under-runs\n";
 }
 
 class CardLockstep : public testing::TestWithParam<TrafficRun> {};

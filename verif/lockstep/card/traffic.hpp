@@ -56,6 +56,9 @@ class Traffic {
   void starved();
   // How often it was held for under-run; a reset begins anew.
   std::uint64_t underruns = 0;
+  // Requests in disturb() and starved().
+  std::uint64_t holds = 0;
+  std::uint64_t overrides = 0;
   // Sections until `commands` were tried; disturbed after each with the given chance of one in `calm`.
   void run(std::uint64_t commands, std::uint64_t calm);
   // One act of a host: a setting, a read, a hold, a START, an abort, a reset ...
@@ -91,6 +94,16 @@ class Traffic {
   }
   static constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
   std::uint32_t any_ratio() { return kRatios[below(3)]; }
+  // A hold, or the end of one.
+  void hold() {
+    const auto wanted = static_cast<std::uint32_t>(below(2));
+    holds += wanted;
+    host_.write(reg::kHold, wanted);
+  }
+  void set_ratio(std::uint32_t address, std::uint32_t ratio) {
+    ++overrides;
+    host_.write(address, ratio);
+  }
   void read_anything();
   void write_anything();
 
@@ -173,8 +186,8 @@ inline void Traffic::starved() {
       if (!send(piece)) return abort();
       pieces += piece.ticks;
     }
-    if (one_in(12)) host_.write(reg::kHold, static_cast<std::uint32_t>(below(2)));
-    if (one_in(12)) host_.write(reg::kRatioFeed, static_cast<std::uint32_t>(below(0x10001)));
+    if (one_in(12)) hold();
+    if (one_in(12)) set_ratio(reg::kRatioFeed, static_cast<std::uint32_t>(below(0x10001)));
   }
   host_.write(reg::kHold, 0);
   host_.wait(below(4000));
@@ -241,10 +254,10 @@ inline void Traffic::disturb() {
   if (one_in(3)) host_.set_pins(static_cast<std::uint16_t>(below(0x10000)));
   switch (below(16)) {
     case 0:
-      host_.write(reg::kHold, static_cast<std::uint32_t>(below(2)));
+      hold();
       break;
     case 1:
-      host_.write(any_ratio(), static_cast<std::uint32_t>(one_in(8) ? below(3) : 0x4000 + below(0xC001)));
+      set_ratio(any_ratio(), static_cast<std::uint32_t>(one_in(8) ? below(3) : 0x4000 + below(0xC001)));
       break;
     case 2:
       host_.write(reg::kSlew, static_cast<std::uint32_t>(1 + odd_number(28)));

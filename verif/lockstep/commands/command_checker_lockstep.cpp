@@ -34,7 +34,9 @@ class Bench {
   void clock(const CommandChecker::Inputs& in) {
     rtl_->rst_i = in.reset;
     rtl_->write_i = in.write;
-    rtl_->word_i = in.word;
+    // A word stands still until it is answered.
+    if (model_.outputs().ready) word_ = in.word;
+    rtl_->word_i = word_;
     rtl_->flush_i = in.flush;
     rtl_->clear_i = in.clear;
     rtl_->closed_i = in.closed;
@@ -73,6 +75,7 @@ class Bench {
   Checker checker_;
   trammel::lockstep::Simulated<Vdut> rtl_;
   CommandChecker model_;
+  std::uint32_t word_ = 0;
   std::uint64_t commits_ = 0;
   std::uint64_t refusals_ = 0;
 };

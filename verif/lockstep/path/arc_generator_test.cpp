@@ -366,10 +366,20 @@ void long_chords() {
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 8);
 }
 
+// Where m is below 5 no half chord ever ends: both axes keep their first chords.
+void no_half_ends() {
+  Bench bench(seed_from_environment(20261127));
+  for (unsigned m = 0; m < 5; ++m)
+    for (const unsigned k : {3U, 20U}) bench.run(circle(bench.dice(), k, m), 200, 1, 0);
+  EXPECT_EQ(bench.check().comparisons(), bench.check().cycles() * 8);
+  EXPECT_EQ(bench.ticks(), 2'000U);
+}
+
 TEST(ArcGenerator, RandomArcs) { EXPECT_EQ(judge(random_arcs), ""); }
 TEST(ArcGenerator, ATickEveryClock) { EXPECT_EQ(judge(every_clock), ""); }
 TEST(ArcGenerator, EndsAtEveryClock) { EXPECT_EQ(judge(ends_at_every_clock), ""); }
 TEST(ArcGenerator, Pauses) { EXPECT_EQ(judge(pauses), ""); }
+TEST(ArcGenerator, NoHalfEnds) { EXPECT_EQ(judge(no_half_ends), ""); }
 TEST(ArcGenerator, LongChords) { EXPECT_EQ(judge(long_chords), ""); }
 
 }  // namespace

@@ -102,6 +102,11 @@ class Campaign(Folder):
         self.assertEqual(chosen[0], chosen[1])
         self.assertNotEqual(chosen[0], chosen[2])
 
+    def test_a_sample_has_none_that_is_listed(self):
+        whole = len(json.loads((BUILD / "mutants.json").read_text()))
+        self.assertEqual(self.run_with(self.entries(LIVING), "--sample", str(whole - 1)), 0)
+        self.assertEqual(len(self.results()), whole - len(LIVING))
+
     def test_resumes_behind_what_is_there(self):
         self.run_with("")
         lines = (self.folder / "results.csv").read_text().splitlines(True)
@@ -147,13 +152,24 @@ class Verdicts(Folder):
         judge.seconds = 10
         self.assertEqual(judge.limit(), 52)
 
+    def test_a_last_resort_runs_the_sound_design_when_it_is_asked(self):
+        text = "[ $TRAMMEL_MUTANT = 0 ] && echo '[  PASSED  ] 1 test.'"
+        sound = judges.Judge("sound", self.script("sound", text), ["a.sv"], last_resort=True)
+        self.assertEqual(judges.try_mutant([sound], 1, "b.sv", False).how, "lived")
+        self.assertIsNone(sound.seconds)
+        self.assertEqual(judges.try_mutant([sound], 1, "a.sv", False).how, "failed")
+        self.assertIsNotNone(sound.seconds)
+        refuses = judges.Judge("refuses", self.script("refuses", "exit 1"), ["a.sv"], last_resort=True)
+        with self.assertRaises(judges.SoundDesignRefused):
+            judges.try_mutant([refuses], 1, "a.sv", False)
+
     def test_a_judge_that_refuses_the_sound_design_is_an_error(self):
         with self.assertRaises(judges.SoundDesignRefused):
             judges.try_sound_design(judges.Judge("fake", self.script("judge", "exit 1"), []))
 
     def test_only_judges_of_the_file_are_asked(self):
-        never = judges.Judge("never", self.script("never", "exit 1"), ["b.sv"])
-        own = judges.Judge("own", self.script("own", "exit 1"), ["a.sv"])
+        never = judges.Judge("never", self.script("never", "exit 1"), ["b.sv"], seconds=0.0)
+        own = judges.Judge("own", self.script("own", "exit 1"), ["a.sv"], seconds=0.0)
         self.assertEqual(judges.try_mutant([never, own], 1, "a.sv", False).judge, "own")
         self.assertEqual(judges.try_mutant([never, own], 1, "c.sv", False).how, "lived")
         own.last_resort = True
