@@ -59,6 +59,69 @@ TEST(CoreModel, ACircleComesBack) {
   EXPECT_EQ(bench.steps.path.size(), 888U + 5U);
 }
 
+model::CardConfig with_eight_directions() {
+  model::CardConfig config;
+  config.engines = model::RegisterFile::kMostEngines;
+  return config;
+}
+
+TEST(CoreModel, ACircleInEightDirectionsComesBack) {
+  CoreBench bench(with_eight_directions());
+  for (const std::int64_t r : {1, 10, 100}) {
+    ASSERT_TRUE(bench.circle(static_cast<std::uint64_t>(r) * 8 * 20, r, r == 10, true));
+    ASSERT_TRUE(bench.feed(static_cast<std::uint64_t>(r) * 8 * 20, kWhole / 2));
+  }
+  ASSERT_TRUE(bench.end());
+  ASSERT_TRUE(bench.finish(100000));
+  EXPECT_EQ(bench.core.outputs().fault, 0U);
+  EXPECT_EQ(bench.core.position(0), 0U);
+  EXPECT_EQ(bench.core.position(1), 0U);
+  // Each coordinate goes 4 R, whatever the rule; two in one tick are two steps.
+  EXPECT_EQ(bench.steps.path.size(), 888U);
+}
+
+// A circle of radius 10 in 8 directions with one field as it must not be.
+std::vector<std::uint32_t> wrong_circle(const char* name, int128 value) {
+  std::vector<std::pair<std::string_view, int128>> fields = {{"path_ticks", 56},    {"prescale", kOnePulse / 10},
+                                                             {"plane", 1 << 8 | 2}, {"quadrants", 4},
+                                                             {"gradient_x", 20},    {"half_x", 1},
+                                                             {"half_y", 1}};
+  for (auto& field : fields) {
+    if (field.first == name) field.second = value;
+  }
+  return command_words(card_map::Opcode::Arc, 3, 0, 560, fields);
+}
+
+// What a field can be told from is refused; where ticks and quadrants do not fit the curve, the arc is not at its end.
+TEST(CoreModel, MalformedArcsInEightDirections) {
+  const auto refused = [](const std::vector<std::uint32_t>& words, const model::CardConfig& config) {
+    CoreBench bench(config);
+    return !bench.send(words) &&
+           (bench.read(reg::kRefusal) & 0xFF) == static_cast<unsigned>(card_map::Reason::BadField);
+  };
+  const model::CardConfig eight = with_eight_directions();
+  EXPECT_FALSE(refused(wrong_circle("quadrants", 4), eight));
+  EXPECT_TRUE(refused(wrong_circle("quadrants", 4), {})) << "no 8 directions built in";
+  EXPECT_TRUE(refused(wrong_circle("path_ticks", 0), eight));
+  EXPECT_TRUE(refused(wrong_circle("path_ticks", 561), eight)) << "more than the feed's";
+  EXPECT_TRUE(refused(wrong_circle("prescale", kOnePulse + 1), eight));
+  EXPECT_TRUE(refused(wrong_circle("plane", 1 << 8 | 6), eight));
+  const auto fault = [&eight](const std::vector<std::uint32_t>& words) {
+    CoreBench bench(eight);
+    EXPECT_TRUE(bench.send(words));
+    bench.number = 1;
+    EXPECT_TRUE(bench.feed(560, kWhole / 2));
+    EXPECT_TRUE(bench.finish(100000));
+    return bench.core.outputs().fault;
+  };
+  constexpr std::uint32_t kIncomplete = card_map::field::kFaultPathIncomplete;
+  EXPECT_EQ(fault(wrong_circle("quadrants", 4)), 0U);
+  EXPECT_EQ(fault(wrong_circle("quadrants", 5)), kIncomplete) << "round again";
+  EXPECT_EQ(fault(wrong_circle("prescale", kOnePulse / 11)), kIncomplete) << "too few path ticks";
+  EXPECT_EQ(fault(wrong_circle("prescale", kOnePulse / 8)), 0U) << "too many do no harm";
+  EXPECT_EQ(fault(wrong_circle("quadrants", 0)), 0U) << "start and end are one: no step";
+}
+
 // A circle at a tick a clock with a path tick in `each` ticks, and a path after it: the clocks of the circle's last
 // path tick and last feed tick, and of the next path's first tick.
 struct HandOver {
@@ -68,9 +131,7 @@ struct HandOver {
 };
 
 HandOver hand_over(std::int64_t radius, std::uint64_t each, bool to_arc, bool eight = false) {
-  model::CardConfig config;
-  config.engines = model::RegisterFile::kMostEngines;
-  CoreBench bench(config);
+  CoreBench bench(with_eight_directions());
   const auto steps = static_cast<std::uint64_t>(eight ? CoreBench::steps_in_eight(radius) : 8 * radius);
   const std::uint64_t ticks = steps * each;
   bench.logs = true;
