@@ -78,6 +78,15 @@ void EngineChoice::add_to(CLI::App& command) {
       ->type_name("FROM:TO");
 }
 
+planner::CardLimits limits_of(const sim::EngineOptions& engine) {
+  planner::CardLimits card;
+  card.clock_hz = engine.clock_hz;
+  card.axes = engine.axes;
+  card.classes = true;
+  card.outputs = sim::kPins;
+  return card;
+}
+
 unsigned traced_axes(unsigned axes) { return axes <= 4 ? 4 : 8; }
 
 sim::SimulationOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const {

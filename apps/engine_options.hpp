@@ -6,6 +6,7 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "trammel/planner/card_limits.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
@@ -28,6 +29,9 @@ struct EngineChoice {
   // Throws UsageError for what does not go together.
   sim::SimulationOptions options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const;
 };
+
+// What the simulated card has.
+planner::CardLimits limits_of(const sim::EngineOptions& engine);
 
 // Axes of the card that can be traced and serves so many.
 unsigned traced_axes(unsigned axes);

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -34,11 +35,11 @@ CLI::Validator between(double least, double most, const std::string& what) {
       "");
 }
 
-double percent_of(const std::string& option, std::string_view text, double most) {
+double percent_of(const std::string& option, std::string_view text, double most, const char* why = "") {
   const auto value = number(text);
   if (!value || !(*value >= 0) || *value > most) {
     throw UsageError(fmt::format("{}: {} is no override from 0 to {:g} percent{}", option, text, most,
-                                 value && *value > most ? " (max_override of the machine file sets the most)" : ""));
+                                 value && *value > most ? why : ""));
   }
   return *value;
 }
@@ -51,11 +52,25 @@ double seconds_of(const std::string& option, std::string_view text, const char* 
   return *value;
 }
 
-std::pair<std::string_view, std::string_view> halves(const std::string& option, const std::string& text,
+std::pair<std::string_view, std::string_view> halves(const std::string& option, std::string_view text,
                                                      const char* form) {
   const std::size_t colon = text.find(':');
-  if (colon == std::string::npos) throw UsageError(fmt::format("{}: {} must be {}", option, text, form));
-  return {std::string_view(text).substr(0, colon), std::string_view(text).substr(colon + 1)};
+  if (colon == std::string_view::npos) throw UsageError(fmt::format("{}: {} must be {}", option, text, form));
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+OperatorEvent input_of(const std::string& text) {
+  constexpr const char* kOption = "--input-at";
+  constexpr const char* kForm = "SECONDS:INPUT:LEVEL";
+  const auto [at, pin_and_level] = halves(kOption, text, kForm);
+  const auto [pin, level] = halves(kOption, pin_and_level, kForm);
+  const double seconds = seconds_of(kOption, at, "time");
+  const auto input = number(pin);
+  if (!input || !(*input >= 0) || *input >= sim::kPins || *input != std::floor(*input)) {
+    throw UsageError(fmt::format("{}: {} is no input of the simulated card, 0 to {}", kOption, pin, sim::kPins - 1));
+  }
+  if (level != "0" && level != "1") throw UsageError(fmt::format("{}: {} is no level, 0 or 1", kOption, level));
+  return {OperatorEvent::Kind::kInput, seconds, 0, static_cast<unsigned>(*input), level == "1"};
 }
 
 // A resume ends the latest hold alone: two that overlap have no meaning that all would guess.
@@ -79,11 +94,21 @@ void refuse_overlaps(const std::vector<OperatorEvent>& events) {
 void MotionChoice::add_to(CLI::App& command) {
   command.add_option("--override", percent, "share of the planned speed, from the start on (default: 100)")
       ->type_name("PERCENT");
+  command
+      .add_option("--rapid-override", rapid_percent, "share of the planned speed of rapids, 0 to 100 (default: 100)")
+      ->type_name("PERCENT");
   command.add_option("--override-at", override_at, "change the override at a time of the card (repeatable)")
       ->type_name("SECONDS:PERCENT")
       ->allow_extra_args(false);
   command.add_option("--hold-at", hold_at, "hold at a time of the card, for so long from the request on (repeatable)")
       ->type_name("SECONDS:DURATION")
+      ->allow_extra_args(false);
+  command
+      .add_option("--input-at", input_at,
+                  fmt::format("set an input of the simulated card (0 to {}) to a level (0 or 1) at a time of the card "
+                              "(repeatable; before, all are 0)",
+                              sim::kPins - 1))
+      ->type_name("SECONDS:INPUT:LEVEL")
       ->allow_extra_args(false);
   command.add_option("--feed-scale", feed_scale, "factor on every programmed feed (default: 1)")
       ->check(between(0.001, 1000, "a factor"))
@@ -111,12 +136,15 @@ void MotionChoice::add_to(CLI::App& command) {
 
 Operation MotionChoice::operation(double most_percent) const {
   Operation result;
-  result.percent = percent_of("--override", percent, most_percent);
+  constexpr const char* kMost = " (max_override of the machine file sets the most)";
+  result.percent = percent_of("--override", percent, most_percent, kMost);
+  result.rapid_percent = percent_of("--rapid-override", rapid_percent, 100);
   result.bytes_per_second = bytes_per_second.value_or(std::numeric_limits<double>::infinity());
   for (const std::string& text : override_at) {
     const auto [at, to] = halves("--override-at", text, "SECONDS:PERCENT");
     const double seconds = seconds_of("--override-at", at, "time");
-    result.events.push_back({OperatorEvent::Kind::kOverride, seconds, percent_of("--override-at", to, most_percent)});
+    result.events.push_back(
+        {OperatorEvent::Kind::kOverride, seconds, percent_of("--override-at", to, most_percent, kMost)});
   }
   for (const std::string& text : hold_at) {
     const auto [at, duration] = halves("--hold-at", text, "SECONDS:DURATION, both in seconds");
@@ -125,6 +153,7 @@ Operation MotionChoice::operation(double most_percent) const {
     result.events.push_back({OperatorEvent::Kind::kHold, begin, 0});
     result.events.push_back({OperatorEvent::Kind::kResume, end, 0});
   }
+  for (const std::string& text : input_at) result.events.push_back(input_of(text));
   std::stable_sort(result.events.begin(), result.events.end(),
                    [](const OperatorEvent& a, const OperatorEvent& b) { return a.seconds < b.seconds; });
   refuse_overlaps(result.events);

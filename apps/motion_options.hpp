@@ -1,4 +1,5 @@
-// Options of `trammel run` that an operator has at the machine: overrides, holds, where to begin, what to leave out.
+// Options of `trammel run` that an operator has at the machine: overrides, holds, where to begin, what to leave out;
+// and what the machine's inputs do.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +12,20 @@
 
 namespace trammel::app {
 
-// What the operator does at a time of the card's.
+// What the operator, or the machine, does at a time of the card's.
 struct OperatorEvent {
-  enum class Kind { kOverride, kHold, kResume };
+  enum class Kind { kOverride, kHold, kResume, kInput };
   Kind kind = Kind::kOverride;
   double seconds = 0;  // of card time, asked for
   double percent = 0;  // kOverride
+  unsigned input = 0;  // kInput
+  bool level = false;
 };
 
 // How the operator and the bus treat the run.
 struct Operation {
   double percent = 100;               // override from the start on
+  double rapid_percent = 100;         // of rapids
   std::vector<OperatorEvent> events;  // in order of time
   double bytes_per_second = 0;        // of the bus, infinite without a limit
 };
@@ -30,6 +34,8 @@ struct MotionChoice {
   std::string percent = "100";
   std::vector<std::string> override_at;  // SECONDS:PERCENT
   std::vector<std::string> hold_at;      // SECONDS:DURATION
+  std::vector<std::string> input_at;     // SECONDS:INPUT:LEVEL
+  std::string rapid_percent = "100";
   double feed_scale = 1;
   std::optional<double> bytes_per_second;
   std::size_t first_line = 1;

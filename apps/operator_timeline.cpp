@@ -13,9 +13,8 @@ void OperatorTimeline::schedule(sim::TimedBus& bus, std::uint32_t clock_hz) {
   bus.at(0, [this](sim::Engine& engine) {
     engine.write(reg::kRatioFeed, driver::Card::ratio_of(operation_.percent, most_));
     if (!card_map::has_engine(engine.read(reg::kEngines), card_map::engine::kClasses)) return;
-    for (const std::uint32_t other : {reg::kRatioRapid, reg::kRatioFixed}) {
-      engine.write(other, driver::Card::ratio_of(100, most_));
-    }
+    engine.write(reg::kRatioRapid, driver::Card::ratio_of(operation_.rapid_percent, most_));
+    engine.write(reg::kRatioFixed, driver::Card::ratio_of(100, most_));
   });
   for (const OperatorEvent& event : operation_.events) {
     bus.at(static_cast<std::uint64_t>(std::llround(event.seconds * clock_hz)),
@@ -24,7 +23,11 @@ void OperatorTimeline::schedule(sim::TimedBus& bus, std::uint32_t clock_hz) {
 }
 
 void OperatorTimeline::make(const OperatorEvent& event, sim::Engine& engine) {
-  if (event.kind == OperatorEvent::Kind::kOverride) {
+  if (event.kind == OperatorEvent::Kind::kInput) {
+    const auto pin = static_cast<std::uint16_t>(1U << event.input);
+    inputs_ = static_cast<std::uint16_t>(event.level ? inputs_ | pin : inputs_ & ~pin);
+    engine.set_inputs(inputs_);
+  } else if (event.kind == OperatorEvent::Kind::kOverride) {
     engine.write(reg::kRatioFeed, driver::Card::ratio_of(event.percent, most_));
   } else {
     engine.write(reg::kHold, event.kind == OperatorEvent::Kind::kHold ? 1 : 0);

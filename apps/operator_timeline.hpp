@@ -11,7 +11,8 @@ namespace trammel::app {
 
 struct MadeEvent {
   OperatorEvent event;
-  std::uint64_t cycle = 0;  // clock of the card in which the write was answered, and had taken effect
+  // Clock of the card in which the write was answered, and had taken effect; of an input, in which it changed.
+  std::uint64_t cycle = 0;
 };
 
 class OperatorTimeline {
@@ -19,8 +20,8 @@ class OperatorTimeline {
   OperatorTimeline(const Operation& operation, double most_percent) : operation_(operation), most_(most_percent) {}
 
   // Before the first access: the card has its overrides before anybody else writes to it. What is overridden are
-  // motions with a feed (all motions where the card has no classes of pieces); rapids and fixed pieces run at 100 %.
-  // `bus` calls this object until it is gone.
+  // motions with a feed (all motions where the card has no classes of pieces), by another share rapids; fixed pieces
+  // run at 100 %. `bus` calls this object until it is gone.
   void schedule(sim::TimedBus& bus, std::uint32_t clock_hz);
   // Those whose time has come, in order.
   const std::vector<MadeEvent>& made() const { return made_; }
@@ -31,6 +32,7 @@ class OperatorTimeline {
   const Operation& operation_;
   double most_;
   std::vector<MadeEvent> made_;
+  std::uint16_t inputs_ = 0;  // levels at the card's pins
 };
 
 }  // namespace trammel::app

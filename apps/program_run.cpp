@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
+#include "engine_options.hpp"
 #include "progress_bar.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/feed_meter.hpp"
@@ -34,14 +36,17 @@ class Watch final : public run::Observer {
 
 // Everything beside the recorder that listens to the steps.
 struct Judges {
-  Judges(run::StepRecorder& recorder, double clock_hz) : feed(clock_hz) {
+  Judges(run::StepRecorder& recorder, run::TextSink* output_list, double clock_hz)
+      : feed(clock_hz), outputs(output_list) {
     fork.add(recorder);
     fork.add(path);
     fork.add(shapers);
     fork.add(feed);
+    fork.add(outputs);
   }
-  void tell(RunResult& result) const {
+  void tell(RunResult& result) {
     shapers.finish();
+    outputs.finish();
     result.path_steps = path.count();
     result.path_identity = path.text();
     if (shapers.range()) result.shaper_delay = *shapers.range();
@@ -53,7 +58,29 @@ struct Judges {
   run::PathIdentity path;
   run::ShaperDelay shapers;
   run::FeedMeter feed;
+  run::OutputRecorder outputs;
 };
+
+std::vector<OutputResult> outputs_of(const machine::MachineOutputs& named, const run::OutputRecorder& recorder) {
+  std::vector<OutputResult> result;
+  for (unsigned n = 0; n < machine::kMostOutputs; ++n) {
+    OutputResult output{n, {}, recorder.outputs()[n]};
+    const auto word = [&](const char* name, std::uint16_t outputs) {
+      if ((outputs >> n & 1) != 0) output.words.emplace_back(name);
+    };
+    word("M3", named.m3);
+    word("M4", named.m4);
+    word("M7", named.m7);
+    word("M8", named.m8);
+    if (!output.words.empty()) result.push_back(output);
+  }
+  return result;
+}
+
+bool scripts_inputs(const Operation& operation) {
+  return std::any_of(operation.events.begin(), operation.events.end(),
+                     [](const OperatorEvent& event) { return event.kind == OperatorEvent::Kind::kInput; });
+}
 
 // By axis of the card.
 std::vector<double> scales(const machine::Machine& machine) {
@@ -110,7 +137,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   const auto begun = std::chrono::steady_clock::now();
   RunResult result;
   for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
-  run::Runner runner(lines, machine, {engine_options.clock_hz, engine_options.axes}, options.settings);
+  run::Runner runner(lines, machine, limits_of(engine_options), options.settings);
   run::CommandedCourse course(machine);
   if (options.plot) runner.add(course);
   const run::Plan plan = options.stream ? run::Plan{} : runner.plan();
@@ -121,7 +148,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   if (course.detail_command()) recorder.detail_of(*course.detail_command());
 
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);
-  Judges judges(recorder, engine_options.clock_hz);
+  Judges judges(recorder, options.outputs, engine_options.clock_hz);
   engine->set_sink(&judges.fork);
   sim::TimedBus bus(*engine, engine_options.clock_hz, options.operation.bytes_per_second);
   OperatorTimeline timeline(options.operation, options.most_percent);
@@ -137,6 +164,8 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   judges.tell(result);
   tell(recorder, result);
   result.events = timeline.made();
+  result.outputs = outputs_of(machine.outputs, judges.outputs);
+  if (scripts_inputs(options.operation)) result.inputs = card.inputs();
 
   tell(runner.last_plan(), result);
   result.engine = engine_options.kind == sim::EngineKind::kRtl ? "rtl" : "model";

@@ -12,6 +12,7 @@
 #include "operator_timeline.hpp"
 #include "profile_report.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/run/output_recorder.hpp"
 #include "trammel/run/path_identity.hpp"
 #include "trammel/run/plot.hpp"
 #include "trammel/run/runner.hpp"
@@ -27,10 +28,18 @@ struct RunOptions {
   double most_percent = 100;       // largest override
   run::TextSink* steps = nullptr;  // not owned
   run::TextSink* path_steps = nullptr;
+  run::TextSink* outputs = nullptr;
   bool plot = false;
   bool progress = false;  // also where stderr is no terminal
   // When all is checked and nothing has moved yet; with `stream` of an empty plan.
   std::function<void(const run::Plan&)> planned;
+};
+
+// An output that the machine file names.
+struct OutputResult {
+  unsigned number = 0;
+  std::vector<std::string> words;  // that switch it on
+  run::OutputRecorder::Output at_pin;
 };
 
 // Measured by the run; nothing here is taken from the plan but `segments`, `planned_seconds`, `motion`, `profile` and
@@ -61,6 +70,8 @@ struct RunResult {
   std::optional<double> commanded_feed;         // mm/min, means
   std::optional<double> achieved_feed;          // mm/min
   std::vector<MadeEvent> events;                // that the card has seen
+  std::vector<OutputResult> outputs;            // that the machine file names
+  std::optional<std::uint16_t> inputs;          // as they stand at the end, where they are scripted; bit n: input n
   double wall_seconds = 0;                      // the simulation took
   std::map<std::string, std::size_t> accepted;  // words without effect yet
   std::vector<run::FeedNotReached> feeds_not_reached;

@@ -36,6 +36,7 @@ struct Options {
   std::optional<std::string> json;
   std::optional<std::string> steps;
   std::optional<std::string> path_steps;
+  std::optional<std::string> outputs;
   std::optional<std::string> plot;
   bool progress = false;
   bool check = false;
@@ -59,6 +60,7 @@ void refuse_contradictions(const Options& options) {
   constexpr const char* kWhy = "nothing runs with --check";
   refuse("--steps", options.steps.has_value(), kWhy);
   refuse("--path-steps", options.path_steps.has_value(), kWhy);
+  refuse("--outputs", options.outputs.has_value(), kWhy);
   refuse("--plot", options.plot.has_value(), kWhy);
   refuse("--trace", options.engine.trace.has_value(), kWhy);
   refuse("--stream", options.stream, kWhy);
@@ -73,6 +75,7 @@ void execute(const Options& options) {
   RunOptions run;
   run.steps = outputs.add("--steps", options.steps);
   run.path_steps = outputs.add("--path-steps", options.path_steps);
+  run.outputs = outputs.add("--outputs", options.outputs);
   run.plot = options.plot.has_value();
   run.progress = options.progress;
   run.stream = options.stream;
@@ -93,14 +96,19 @@ void execute(const Options& options) {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
   if (options.check) {
-    const CheckResult result = check_program(lines, machine, {engine.clock_hz, engine.axes}, run.settings);
+    const CheckResult result = check_program(lines, machine, limits_of(engine), run.settings);
     for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached))
       tell("warning", text);
     outputs.open();
     if (json != nullptr) json->write(json_text(result));
     return outputs.commit(summary(result));
   }
+  const bool no_rapids = run.operation.rapid_percent == 0;
+  if (no_rapids && options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   run.planned = [&](const run::Plan& plan) {
+    if (no_rapids && plan.rapids != 0) {
+      throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
+    }
     outputs.open();
     if (trace != nullptr) engine.trace->path = trace->path_to_write();
     for (const std::string& text : feed_warnings(plan.file, plan.feeds_not_reached)) tell("warning", text);
@@ -135,6 +143,8 @@ void add_run_command(CLI::App& app) {
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
   command->add_option("--path-steps", options->path_steps, "every step of the path: command,tick,axis,direction")
+      ->type_name("FILE");
+  command->add_option("--outputs", options->outputs, "every change of an output: cycle,output,level")
       ->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
   command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 namespace trammel::app {
 namespace {
@@ -30,14 +33,54 @@ const char* text_of(planner::SpeedLimit cause) {
   return "";
 }
 
+const char* name_of(OperatorEvent::Kind kind) {
+  switch (kind) {
+    case OperatorEvent::Kind::kOverride:
+      return "override";
+    case OperatorEvent::Kind::kHold:
+      return "hold";
+    case OperatorEvent::Kind::kResume:
+      return "resume";
+    case OperatorEvent::Kind::kInput:
+      break;
+  }
+  return "input";
+}
+
+nlohmann::ordered_json outputs_json(const std::vector<OutputResult>& outputs) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const OutputResult& output : outputs) {
+    list.push_back({{"output", output.number},
+                    {"words", output.words},
+                    {"on", output.at_pin.on},
+                    {"off", output.at_pin.off},
+                    {"level", output.at_pin.level ? 1 : 0}});
+  }
+  return list;
+}
+
+std::string outputs_text(const std::vector<OutputResult>& outputs) {
+  std::string text;
+  for (const OutputResult& output : outputs) {
+    text += fmt::format("  output {} ({}): switched on {} times, off {} times, {} at the end\n", output.number,
+                        fmt::join(output.words, ", "), output.at_pin.on, output.at_pin.off,
+                        output.at_pin.level ? "on" : "off");
+  }
+  return text;
+}
+
 nlohmann::ordered_json events_json(const std::vector<MadeEvent>& events) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const MadeEvent& made : events) {
     using Kind = OperatorEvent::Kind;
     const Kind kind = made.event.kind;
     nlohmann::ordered_json entry;
-    entry["event"] = kind == Kind::kOverride ? "override" : (kind == Kind::kHold ? "hold" : "resume");
+    entry["event"] = name_of(kind);
     if (kind == Kind::kOverride) entry["percent"] = made.event.percent;
+    if (kind == Kind::kInput) {
+      entry["input"] = made.event.input;
+      entry["level"] = made.event.level ? 1 : 0;
+    }
     entry["seconds"] = made.event.seconds;
     entry["cycle"] = made.cycle;
     list.push_back(entry);
@@ -48,17 +91,24 @@ nlohmann::ordered_json events_json(const std::vector<MadeEvent>& events) {
 }  // namespace
 
 std::string accepted_words(const std::map<std::string, std::size_t>& words) {
-  std::string stops;
-  std::string blending;
-  std::string hardware;
+  const std::array<std::pair<std::string_view, const char*>, 5> reasons{{
+      {" M0 M1 ", "stops for the operator, which a simulation does not make:"},
+      {" G64 P ", "no blending yet, corners are kept as with G64 without P:"},
+      {" M3 M4 M5 M7 M8 M9 ", "no output for them in [outputs] of the machine file:"},
+      {" S ", "a value that waits for modulated outputs:"},
+      {"", "accepted, without hardware yet:"},
+  }};
+  std::array<std::string, reasons.size()> lists;
   for (const auto& [word, count] : words) {
-    std::string& list = word == "M0" || word == "M1" ? stops : (word == "G64 P" ? blending : hardware);
-    list += fmt::format(" {} ({})", word, count);
+    const std::string name = " " + word + " ";
+    std::size_t i = 0;
+    while (!reasons[i].first.empty() && reasons[i].first.find(name) == std::string_view::npos) ++i;
+    lists[i] += fmt::format(" {} ({})", word, count);
   }
   std::string text;
-  if (!stops.empty()) text += "  stops for the operator, which a simulation does not make:" + stops + "\n";
-  if (!blending.empty()) text += "  no blending yet, corners are kept as with G64 without P:" + blending + "\n";
-  if (!hardware.empty()) text += "  accepted, without hardware yet:" + hardware + "\n";
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    if (!lists[i].empty()) text += fmt::format("  {}{}\n", reasons[i].second, lists[i]);
+  }
   return text;
 }
 
@@ -106,7 +156,9 @@ std::string summary(const RunResult& result) {
   if (result.achieved_feed) {
     text += fmt::format("  mean feed {} of {} mm/min\n", number(*result.achieved_feed), number(*result.commanded_feed));
   }
-  if (!result.events.empty()) text += fmt::format("  {} overrides and holds on the way\n", result.events.size());
+  text += outputs_text(result.outputs);
+  if (!result.events.empty())
+    text += fmt::format("  {} overrides, holds and inputs on the way\n", result.events.size());
   if (result.lockstep_cycles) {
     text += fmt::format("  lockstep: {} cycles, {} comparisons, {} mismatches\n", *result.lockstep_cycles,
                         result.comparisons, result.mismatches);
@@ -147,6 +199,9 @@ std::string json_text(const RunResult& result) {
   if (result.achieved_feed) json["feed"]["achieved"] = *result.achieved_feed;
   json["feeds_not_reached"] = feeds_json(result.feeds_not_reached);
   json["events"] = events_json(result.events);
+  json["outputs"] = outputs_json(result.outputs);
+  json["inputs"] = nullptr;
+  if (result.inputs) json["inputs"] = *result.inputs;
   json["accepted_words"] = result.accepted;
   return json.dump(2) + "\n";
 }

@@ -25,7 +25,18 @@ commands/geometry_decoder.sv
 commands/halfword_queue.sv
 commands/queue_watermarks.sv
 host/axi4_lite_port.sv
+host/frames/frame_crc.sv
+host/frames/frame_engine.sv
+host/frames/frame_executor.sv
+host/frames/frame_receiver.sv
+host/frames/frame_sender.sv
+host/frames/frame_session.sv
 host/port_arbiter.sv
+host/uart/uart_baud.sv
+host/uart/uart_port.sv
+host/uart/uart_receiver.sv
+host/uart/uart_timer.sv
+host/uart/uart_transmitter.sv
 host/wishbone/wishbone_port.sv
 io/input_pins.sv
 io/output_pins.sv
@@ -45,6 +56,7 @@ path/path_commands.sv
 path/path_engines.sv
 path/path_sequencer.sv
 path/path_tick_gate.sv
+path/probe.sv
 path/tick_counter.sv
 registers/register_access.sv
 registers/register_file.sv

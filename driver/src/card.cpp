@@ -256,6 +256,11 @@ std::uint16_t Card::outputs() {
   return static_cast<std::uint16_t>(read(reg::kOutputs));
 }
 
+unsigned Card::outputs_present() {
+  require_path_commands("outputs");
+  return bits(read(reg::kPorts), field::kPortsOutputs, field::kPortsOutputsShift);
+}
+
 void Card::set_input_polarity(std::uint16_t inverted) {
   require_path_commands("input polarity");
   write(reg::kInputPolarity, inverted, "input polarity");

@@ -190,10 +190,7 @@ void Stream::keep(const Command& command, const Need& need, const std::uint32_t*
   ++kept_;
   room_.geometry -= need.geometry;
   room_.feed -= need.feed;
-  // The card counts paths and barriers as begun, not what takes effect beside them.
-  const bool beside = std::holds_alternative<OutputCommand>(command) || std::holds_alternative<MarkCommand>(command) ||
-                      std::holds_alternative<ProbeCommand>(command);
-  if (need.geometry != 0 && !beside) ++geometry_.put;
+  if (need.geometry != 0 && counts_as_begun(command)) ++geometry_.put;
   if (need.feed != 0) {
     Duration duration;
     if (const auto* feed = std::get_if<FeedCommand>(&command)) {

@@ -135,6 +135,10 @@ void BusEngine::path_step(std::uint64_t cycle, std::uint64_t command, std::uint6
   sink_->path_step({command, tick, static_cast<std::uint8_t>(axis), sign(direction), cycle});
 }
 
+void BusEngine::outputs(std::uint64_t cycle, std::uint16_t before, std::uint16_t levels) {
+  sink_->outputs_changed({cycle, static_cast<std::uint16_t>(before ^ levels), levels});
+}
+
 CardModel::Config config_of(const EngineOptions& options) {
   if (options.axes < 1 || options.axes > card_map::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   CardModel::Config config;

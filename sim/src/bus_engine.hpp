@@ -50,6 +50,7 @@ class BusEngine : public Engine, private model::CardSteps {
 
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override;
   void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis, int direction) override;
+  void outputs(std::uint64_t cycle, std::uint16_t before, std::uint16_t levels) override;
 
   std::uint32_t clock_hz_;
   bool interrupt_;

@@ -4,11 +4,9 @@
 #include <cstdint>
 
 #include "trammel/model/card_model.hpp"
+#include "trammel/sim/engine.hpp"
 
 namespace trammel::sim {
-
-// Inputs, and outputs, of the simulated card: the RTL's default.
-inline constexpr unsigned kPins = 4;
 
 template <class Dut>
 void set_inputs(Dut& dut, const model::CardModel::Inputs& in) {

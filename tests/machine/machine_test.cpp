@@ -220,14 +220,15 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
   const std::string brackets = repeated("[{", 50);
   EXPECT_EQ(parse_machine("# " + brackets + "\n" + defaults(), "m.toml").axes.size(), 4U);
   for (const std::string quote : {"\"", "'", "\"\"\"", "'''"}) {
-    EXPECT_EQ(error_of("a = " + quote + brackets + quote), "m.toml:1: unknown entry a; known are card, axis, motion")
+    EXPECT_EQ(error_of("a = " + quote + brackets + quote),
+              "m.toml:1: unknown entry a; known are card, axis, motion, outputs")
         << quote;
     // A string of one line that is not closed hides nothing behind it.
     const bool found = error_of("a = " + quote + "\nb = " + brackets) == "m.toml:2: nested deeper than 16";
     EXPECT_EQ(found, quote.size() == 1) << quote;
   }
-  EXPECT_EQ(error_of("a = \"\\\"\" # " + brackets), "m.toml:1: unknown entry a; known are card, axis, motion");
-  EXPECT_EQ(error_of("a = '\\' # " + brackets), "m.toml:1: unknown entry a; known are card, axis, motion");
+  EXPECT_EQ(error_of("a = \"\\\"\" # " + brackets), "m.toml:1: unknown entry a; known are card, axis, motion, outputs");
+  EXPECT_EQ(error_of("a = '\\' # " + brackets), "m.toml:1: unknown entry a; known are card, axis, motion, outputs");
 }
 
 TEST(Machine, RefusesEndlessText) {
@@ -293,7 +294,7 @@ TEST(Machine, RefusesBadOverrides) {
   EXPECT_EQ(override_error("axis.x.min=1\naxis.x.max=1"),
             "--set axis.x.min=1\\x0aaxis.x.max=1: axis.x.min must be less than axis.x.max: 1 and 1");
   EXPECT_EQ(override_error("axis.x=1"), "--set axis.x=1: axis.x must be a table");
-  EXPECT_EQ(override_error("speed=1"), "--set speed=1: unknown entry speed; known are card, axis, motion");
+  EXPECT_EQ(override_error("speed=1"), "--set speed=1: unknown entry speed; known are card, axis, motion, outputs");
   EXPECT_THAT(override_error("axis.x.steps_per_mm"), StartsWith("--set axis.x.steps_per_mm: "));
   EXPECT_THAT(override_error(""), HasSubstr("not an assignment"));
   EXPECT_THAT(override_error("axis.x.steps_per_mm=eighty"), HasSubstr("not TOML"));
@@ -308,6 +309,29 @@ TEST(Machine, StepTimesFitTheCardsRegistersAtItsClock) {
   EXPECT_THROW(apply_override(machine, "card.clock_hz=100000001"), MachineError);
   EXPECT_NO_THROW(apply_override(machine, "card.clock_hz=1000"));
   EXPECT_THAT(override_error("axis.e.direction_hold_ns=1e300"), HasSubstr("axis E: direction_hold_ns: "));
+}
+
+TEST(MachineFile, Outputs) {
+  EXPECT_EQ(default_machine().outputs.all(), 0) << "none by default";
+  const std::string text = default_machine_text() + "[outputs]\nm3 = 0\nm4 = [0, 15]\nm8 = []\n";
+  const MachineOutputs outputs = parse_machine(text, "m.toml").outputs;
+  EXPECT_EQ(outputs.m3, 1);
+  EXPECT_EQ(outputs.m4, 0x8001);
+  EXPECT_EQ(outputs.coolant(), 0);
+  Machine machine = parse_machine(text, "m.toml");
+  apply_override(machine, "outputs.m4=2");
+  EXPECT_EQ(machine.outputs.all(), 5) << "instead of what it had";
+  apply_override(machine, "outputs.m3=[]");
+  EXPECT_EQ(machine.outputs.all(), 4);
+
+  const auto error = [](const std::string& entry) { return error_of(default_machine_text() + "[outputs]\n" + entry); };
+  for (const char* value : {"16", "-1", "1.0", "true", "\"0\"", "[0, 16]", "[[0]]"}) {
+    EXPECT_THAT(error(std::string("m7 = ") + value), HasSubstr("outputs.m7 must be an output's number, 0 to 15"))
+        << value;
+  }
+  EXPECT_THAT(error("m5 = 1"), HasSubstr("unknown entry outputs.m5"));
+  EXPECT_THAT(error("m3 = 1\nm7 = 1"), HasSubstr("output 1 is named for the spindle (m3, m4) and for coolant"));
+  EXPECT_THAT(override_error("outputs.m9=1"), HasSubstr("unknown entry outputs.m9"));
 }
 
 }  // namespace

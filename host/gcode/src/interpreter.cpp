@@ -23,6 +23,11 @@ constexpr int kCancel = 800;
 constexpr int kDwell = 40;
 constexpr int kHome = 280;
 constexpr int kMachineCoordinates = 530;
+constexpr int kSpindleClockwise = 30;
+constexpr int kSpindleCounterClockwise = 40;
+constexpr int kMist = 70;
+constexpr int kFlood = 80;
+constexpr int kCoolantOff = 90;
 constexpr int kOrigin = 920;
 constexpr int kOriginReset = 921;
 
@@ -38,6 +43,7 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
       return Outcome::kFailed;
     }
     set_modes(words);
+    switch_outputs(context);
   }
   set_feed(words);
   if (!act(context)) {
@@ -45,6 +51,7 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
   }
   const std::optional<int> stopping = words.code(Group::kStopping);
   if (stopping == 20 || stopping == 300) {
+    change_outputs(0, machine_.outputs.all(), motions);
     end(line, motions);
     return Outcome::kEnded;
   }
@@ -149,6 +156,60 @@ void Interpreter::set_feed(const WordSet& words) {
     feed_ = *feed;
     feed_in_inches_ = inches_;
   }
+}
+
+bool Interpreter::switches(int number) const {
+  const machine::MachineOutputs& outputs = machine_.outputs;
+  switch (number) {
+    case 3:
+      return outputs.m3 != 0;
+    case 4:
+      return outputs.m4 != 0;
+    case 5:
+      return outputs.spindle() != 0;
+    case 7:
+      return outputs.m7 != 0;
+    case 8:
+      return outputs.m8 != 0;
+    case 9:
+      return outputs.coolant() != 0;
+    default:
+      return false;
+  }
+}
+
+// Before the line's motion, as spindle and coolant are switched in RS274/NGC.
+void Interpreter::switch_outputs(const Context& context) {
+  const machine::MachineOutputs& outputs = machine_.outputs;
+  std::uint16_t set = 0;
+  std::uint16_t clear = 0;
+  if (const auto spindle = context.words.code(Group::kSpindle)) {
+    set = spindle == kSpindleClockwise ? outputs.m3 : spindle == kSpindleCounterClockwise ? outputs.m4 : 0;
+    clear = static_cast<std::uint16_t>(outputs.spindle() & ~set);
+  }
+  if (const auto coolant = context.words.code(Group::kCoolant)) {
+    set |= coolant == kMist ? outputs.m7 : coolant == kFlood ? outputs.m8 : 0;
+    if (coolant == kCoolantOff) clear |= outputs.coolant();
+  }
+  change_outputs(set, clear, context.motions);
+}
+
+void Interpreter::change_outputs(std::uint16_t set, std::uint16_t clear, LineMotions& motions) {
+  if ((set | clear) == 0) return;
+  Motion& motion = motions.add(MotionKind::kOutput, line_);
+  motion.target = here_;
+  motion.set = set;
+  motion.clear = clear;
+  switched_ |= set | clear;
+  on_ = static_cast<std::uint16_t>((on_ & ~clear) | set);
+}
+
+void Interpreter::restore_outputs(std::size_t line, LineMotions& motions) const {
+  if (switched_ == 0) return;
+  Motion& motion = motions.add(MotionKind::kOutput, line);
+  motion.target = here_;
+  motion.set = on_;
+  motion.clear = static_cast<std::uint16_t>(switched_ & ~on_);
 }
 
 void Interpreter::dwell(const Context& context) {

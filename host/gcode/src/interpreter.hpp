@@ -26,7 +26,7 @@ class LineMotions {
   const Motion& operator[](std::size_t i) const { return motions_[i]; }
 
  private:
-  std::array<Motion, 3> motions_;  // the most: G28 by way of a point, and the end
+  std::array<Motion, 5> motions_;  // the most: outputs, G28 by way of a point, outputs off, the end
   std::size_t count_ = 0;
 };
 
@@ -41,6 +41,10 @@ class Interpreter {
   const Coordinates& position() const { return here_; }
   // Appends the motion kEnd.
   void end(std::size_t line, LineMotions& motions);
+  // Appends what makes the outputs what the lines so far have made them, where they have.
+  void restore_outputs(std::size_t line, LineMotions& motions) const;
+  // Whether a word of the groups spindle and coolant switches an output of this machine.
+  bool switches(int number) const;
 
  private:
   enum class FeedMode { kPerMinute, kInverseTime };
@@ -63,6 +67,8 @@ class Interpreter {
   void set_modes(const WordSet& words);
   bool check_leftovers(const Context& context) const;
   bool act(const Context& context);
+  void switch_outputs(const Context& context);
+  void change_outputs(std::uint16_t set, std::uint16_t clear, LineMotions& motions);
   void dwell(const Context& context);
   bool go_home(const Context& context);
   bool set_origin(const Context& context);
@@ -94,7 +100,9 @@ class Interpreter {
   std::optional<double> feed_;  // as written, units or 1 a minute
   bool feed_in_inches_ = false;
   PathControl path_control_ = PathControl::kContinuous;
-  double tolerance_ = 0;  // mm
+  double tolerance_ = 0;        // mm
+  std::uint16_t switched_ = 0;  // outputs, bit n: output n
+  std::uint16_t on_ = 0;        // of these
 };
 
 }  // namespace trammel::gcode

@@ -45,7 +45,11 @@ class Reader::Impl {
       read_line();
       motions_.clear();
     }
-    return !error_ && (!ended_ || fail_before_first_line());
+    if (error_ || (ended_ && !fail_before_first_line())) {
+      return false;
+    }
+    interpreter_.restore_outputs(line, motions_);
+    return true;
   }
   const Coordinates& position() const { return interpreter_.position(); }
 
@@ -145,6 +149,9 @@ class Reader::Impl {
 
   void count_accepted() {
     for (const WordSet::Accepted* word = words_.accepted_begin(); word != words_.accepted_end(); ++word) {
+      if (word->letter == 'M' && interpreter_.switches(word->number)) {
+        continue;
+      }
       std::string name(1, word->letter);
       if (word->number >= 0) {
         name += std::to_string(word->number);

@@ -11,7 +11,7 @@ struct Code {
   char letter;
   int tenths;
   Group group;
-  bool effect;  // false: accepted, listed in the summary
+  bool effect;  // false: accepted, listed in the summary; M3 to M9 where they switch no output
 };
 
 constexpr std::array<Code, 46> kCodes = {{

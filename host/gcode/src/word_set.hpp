@@ -65,7 +65,7 @@ class WordSet {
   bool has_axis(std::size_t axis) const { return (axes_present_ >> axis & 1U) != 0; }
   double axis(std::size_t axis) const { return axes_[axis]; }  // as written
 
-  // Words without effect: "M3".
+  // Words without effect, where the machine has no output for them: "M3".
   struct Accepted {
     char letter;
     int number;  // -1: the letter alone

@@ -74,6 +74,17 @@ constexpr std::array<MotionEntry, 5> kMotionEntries = {{
     {"stale_periods", &MotionSettings::stale_periods, 0, 65535, true},
 }};
 
+struct OutputEntry {
+  const char* name;
+  std::uint16_t MachineOutputs::*member;
+};
+constexpr std::array<OutputEntry, 4> kOutputEntries = {{
+    {"m3", &MachineOutputs::m3},
+    {"m4", &MachineOutputs::m4},
+    {"m7", &MachineOutputs::m7},
+    {"m8", &MachineOutputs::m8},
+}};
+
 // A name or a text within a message; the whole message.
 constexpr std::size_t kLongestQuote = 80;
 constexpr std::size_t kLongestMessage = 1000;
@@ -200,6 +211,39 @@ void set_motion(const Source& source, MotionSettings& motion, const toml::table&
   }
 }
 
+std::uint16_t output_bit(const Source& source, const std::string& path, const toml::value& value) {
+  if (!value.is_integer() || value.as_integer() < 0 || value.as_integer() >= kMostOutputs) {
+    refuse(fmt::format("{}{} must be an output's number, 0 to {}, or a list of such", source.at(value), path,
+                       kMostOutputs - 1));
+  }
+  return static_cast<std::uint16_t>(1U << value.as_integer());
+}
+
+void set_outputs(const Source& source, MachineOutputs& outputs, const toml::table& table) {
+  for (const auto& [key, value] : table) {
+    const auto entry = std::find_if(kOutputEntries.begin(), kOutputEntries.end(),
+                                    [&key = key](const OutputEntry& known) { return key == known.name; });
+    if (entry == kOutputEntries.end()) refuse_key(source, value, "outputs.", key, {"m3", "m4", "m7", "m8"});
+    const std::string path = "outputs." + key;
+    std::uint16_t bits = 0;
+    if (value.is_array()) {
+      for (const toml::value& one : value.as_array()) bits |= output_bit(source, path, one);
+    } else {
+      bits = output_bit(source, path, value);
+    }
+    outputs.*entry->member = bits;
+  }
+}
+
+// M5 and M9 could not tell them apart.
+void check_outputs(const std::string& where, const MachineOutputs& outputs) {
+  const unsigned both = unsigned{outputs.spindle()} & outputs.coolant();
+  if (both == 0) return;
+  unsigned output = 0;
+  while ((both >> output & 1U) == 0) ++output;
+  refuse(fmt::format("{}: output {} is named for the spindle (m3, m4) and for coolant (m7, m8)", where, output));
+}
+
 void set_clock(const Source& source, Machine& machine, const toml::value& value) {
   const double clock = number(source, "card.clock_hz", value, Range::kAny);
   if (clock != std::floor(clock) || clock < kSlowestClock || clock > kFastestClock) {
@@ -311,8 +355,8 @@ toml::value parse(const Source& source, const std::string& text) {
 
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
-    if (key != "card" && key != "axis" && key != "motion") {
-      refuse_key(source, value, "", key, {"card", "axis", "motion"});
+    if (key != "card" && key != "axis" && key != "motion" && key != "outputs") {
+      refuse_key(source, value, "", key, {"card", "axis", "motion", "outputs"});
     }
     for (const auto& [inner_key, inner] : table_of(source, key, value)) {
       if (key == "card" && inner_key != "clock_hz") {
@@ -387,6 +431,7 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   Machine machine;
   set_clock(source, machine, card->at("clock_hz"));
   if (const toml::table* motion = find_table(root, "motion")) set_motion(source, machine.motion, *motion);
+  if (const toml::table* outputs = find_table(root, "outputs")) set_outputs(source, machine.outputs, *outputs);
   for (const auto& [key, value] : *axes) {
     machine.axes.push_back(read_axis(source, key, value));
   }
@@ -394,6 +439,7 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   std::sort(machine.axes.begin(), machine.axes.end(),
             [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
   check_times(name + ":1", machine);
+  check_outputs(name + ":1", machine.outputs);
   return machine;
 }
 
@@ -421,6 +467,10 @@ void apply_override(Machine& machine, const std::string& text) {
     set_motion(source, changed.motion, *motion);
     any = true;
   }
+  if (const toml::table* outputs = find_table(root, "outputs")) {
+    set_outputs(source, changed.outputs, *outputs);
+    any = true;
+  }
   if (const toml::table* axes = find_table(root, "axis")) {
     for (const auto& [name, value] : *axes) {
       const toml::table& table = table_of(source, "axis." + name, value);
@@ -437,6 +487,7 @@ void apply_override(Machine& machine, const std::string& text) {
   }
   check_motors(source.name, changed);
   check_times(source.name, changed);
+  check_outputs(source.name, changed.outputs);
   machine = changed;
 }
 

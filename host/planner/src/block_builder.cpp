@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "trammel/driver/card_timing.hpp"
 
@@ -72,7 +73,9 @@ bool BlockBuilder::next(Block& block) {
     exact_ = motion_.target;
     here_ = block.end;
     if (moves(block) && any) anchor_ = exact_;
-    if (any) return true;
+    if (!any) continue;
+    block.outputs = std::exchange(outputs_, {});
+    return true;
   }
   error_ = reader_.error();
   return false;
@@ -86,6 +89,9 @@ bool BlockBuilder::build(Block& block) {
   switch (motion_.kind) {
     case gcode::MotionKind::kDwell:
       return build_dwell(block);
+    case gcode::MotionKind::kOutput:
+      switch_outputs();
+      return false;
     case gcode::MotionKind::kEnd:
       block.geometry = Geometry::kEnd;
       return true;
@@ -131,6 +137,22 @@ bool BlockBuilder::set_targets(Block& block) {
     block.end[axis] = to_pulses(mm, axes_[axis].steps_per_mm);
   }
   return true;
+}
+
+// What a card cannot switch is not on, so nothing is wrong with switching it off.
+void BlockBuilder::switch_outputs() {
+  unsigned output = 0;
+  for (; output < card_.outputs || motion_.set >> output != 0; ++output) {
+    if (output < card_.outputs || (motion_.set >> output & 1U) == 0) continue;
+    refuse(gcode::ErrorCode::kNoOutput,
+           card_.outputs == 0
+               ? fmt::format("output {} of the machine file cannot be switched: the card has no path commands", output)
+               : fmt::format("output {} of the machine file: the card has {}", output, card_.outputs));
+    return;
+  }
+  outputs_.set = static_cast<std::uint16_t>((outputs_.set & ~motion_.clear) | motion_.set);
+  outputs_.clear = static_cast<std::uint16_t>((outputs_.clear & ~motion_.set) | motion_.clear);
+  if (card_.outputs == 0) outputs_ = {};
 }
 
 bool BlockBuilder::build_dwell(Block& block) {

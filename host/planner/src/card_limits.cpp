@@ -21,7 +21,8 @@ CardLimits limits_of(const driver::Identification& card) {
           has(card_map::engine::kClasses),
           has(card_map::engine::kArcGenerator),
           card.geometry_depth,
-          card.feed_depth};
+          card.feed_depth,
+          has(card_map::engine::kPathCommands) ? machine::kMostOutputs : 0};
 }
 
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {

@@ -63,6 +63,7 @@ bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
     put_dwell(planned, sink);
   } else if (block.geometry == Geometry::kEnd) {
     planned.commands = planned.geometry = planned.feed = 1;
+    put_outputs(planned, sink);
     sink.put(other_ = driver::EndCommand{});
   } else {
     planned.seconds = entry->seconds;
@@ -76,6 +77,7 @@ bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
                        : block.geometry == Geometry::kArcChord ? block.parts
                                                                : 1;
     planned.commands = planned.feed + planned.geometry;
+    put_outputs(planned, sink);
     for (auto& piece = std::get<driver::FeedCommand>(piece_); look_ahead_->piece(piece);) sink.put(piece_);
     put_geometry(block, entry->end_ticks - entry->begin_ticks, sink);
   }
@@ -83,12 +85,21 @@ bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
   return true;
 }
 
+// Before the block's other commands: they take effect where the path before ends.
+void Planner::put_outputs(PlannedBlock& planned, driver::CommandSink& sink) {
+  if (!switches(planned.block)) return;
+  ++planned.commands;
+  ++planned.geometry;
+  sink.put(other_ = planned.block.outputs);
+}
+
 void Planner::put_dwell(PlannedBlock& planned, driver::CommandSink& sink) {
   std::uint64_t left = planned.block.dwell_clocks;
   planned.seconds = planned.block.dwell_seconds;
   planned.commands = std::max<std::uint64_t>(1, (left + kMaxDwell - 1) / kMaxDwell);
   planned.geometry = planned.feed = planned.commands;
-  for (std::uint64_t i = 0; i < planned.commands; ++i) {
+  put_outputs(planned, sink);
+  for (std::uint64_t i = 0; i < planned.feed; ++i) {
     const std::uint64_t part = std::min(left, kMaxDwell);
     sink.put(other_ = driver::DwellCommand{part});
     left -= part;

@@ -1,15 +1,34 @@
 #include "trammel/run/configure.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 
+#include "trammel/card_map.hpp"
+#include "trammel/driver/errors.hpp"
 #include "trammel/planner/card_limits.hpp"
 
 namespace trammel::run {
 
+namespace {
+
+// Outputs that the card lacks would be switched in silence.
+void check_outputs(driver::Card& card, std::uint16_t named) {
+  if (named == 0 || !card_map::has_engine(card.identification().engines, card_map::engine::kPathCommands)) return;
+  const unsigned outputs = card.outputs_present();
+  if (named >> outputs == 0) return;
+  unsigned highest = outputs;
+  while (named >> highest > 1) ++highest;
+  throw driver::ArgumentError(fmt::format("output {} of the machine file: the card has {} outputs", highest, outputs));
+}
+
+}  // namespace
+
 void configure(driver::Card& card, const machine::Machine& machine) {
+  check_outputs(card, machine.outputs.all());
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     card.configure_axis(static_cast<unsigned>(i), planner::settings_of(machine.axes[i]));
   }

@@ -13,7 +13,8 @@ void FeedMeter::sending(const planner::PlannedBlock& planned) {
 }
 
 void FeedMeter::command(std::uint64_t number, const driver::Command& command) {
-  if (!std::holds_alternative<driver::FeedCommand>(command)) sent_.push_back({number, block_});
+  const bool moves_or_waits = driver::counts_as_begun(command) && !std::holds_alternative<driver::FeedCommand>(command);
+  if (moves_or_waits) sent_.push_back({number, block_});
 }
 
 void FeedMeter::path_step(const driver::PathStep& step) {

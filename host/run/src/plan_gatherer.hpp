@@ -31,7 +31,10 @@ class PlanGatherer final : public Observer {
  private:
   void add(const planner::PlannedBlock& planned) {
     feeds_.add(planned);
-    if (planner::moves(planned.block)) ++plan_.segments;
+    if (planner::moves(planned.block)) {
+      ++plan_.segments;
+      plan_.rapids += planned.block.rapid ? 1 : 0;
+    }
     plan_.commands += planned.commands;
     plan_.seconds += planned.seconds;
     PlannedMotion& motion = plan_.motion;

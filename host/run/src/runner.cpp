@@ -85,7 +85,8 @@ class ProgramStream final : private driver::CommandSink {
   void send(const driver::Command& command) {
     for (Observer* observer : observers_) observer->command(commands_, command);
     ++commands_;
-    if (!std::holds_alternative<driver::FeedCommand>(command)) lines_.put(planned_.block.line);
+    const bool geometry = !std::holds_alternative<driver::FeedCommand>(command);
+    if (geometry && driver::counts_as_begun(command)) lines_.put(planned_.block.line);
     stream_.put(command);
   }
   driver::StreamOptions options() {
@@ -150,7 +151,7 @@ const Plan& Runner::plan() {
 void Runner::require_planned_for(driver::Card& card) const {
   const planner::CardLimits limits = planner::limits_of(card.identification());
   if (limits.clock_hz != card_.clock_hz || limits.axes != card_.axes || limits.accumulator != card_.accumulator ||
-      limits.arc_generator != card_.arc_generator) {
+      limits.arc_generator != card_.arc_generator || (limits.outputs == 0 && card_.outputs != 0)) {
     throw std::invalid_argument("the program was planned for another card");
   }
 }

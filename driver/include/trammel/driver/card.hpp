@@ -172,6 +172,7 @@ class Card {
   // Inputs and outputs, of a card with path commands; else ArgumentError. Bit n: input n after its polarity, output n.
   std::uint16_t inputs();
   std::uint16_t outputs();
+  unsigned outputs_present();  // how many it has, 1 .. 16
   // Which inputs are inverted.
   void set_input_polarity(std::uint16_t inverted);
   // Levels that the outputs in `change` take at an abort and at a fault.

@@ -135,6 +135,10 @@ std::size_t encode(const Command& command, std::uint8_t number, std::uint32_t* w
 // Likewise, appended to `words`, which stay as they were when it throws.
 void encode(const Command& command, std::uint8_t number, std::vector<std::uint32_t>& words);
 
+// Whether the card counts it in GEOMETRY_BEGUN or FEED_BEGUN: paths, pieces and barriers, not what takes effect beside
+// them.
+bool counts_as_begun(const Command& command);
+
 // The layout of the command's kind.
 const card_map::Command& layout_of(const Command& command);
 

@@ -21,12 +21,21 @@ struct PathStep {
   std::uint64_t cycle = 0;  // in which it comes to its shaper
 };
 
-// Receives steps in order of time. Called from within bus accesses and waits; must not use the bus or the card.
+// Outputs that changed at their pins in one clock, bit n: output n.
+struct OutputChange {
+  std::uint64_t cycle;  // in which they have their new levels
+  std::uint16_t changed;
+  std::uint16_t levels;  // of all outputs
+};
+
+// Receives steps in order of time, those of one clock before its changes of outputs. Called from within bus accesses
+// and waits; must not use the bus or the card.
 class StepSink {
  public:
   virtual ~StepSink() = default;
   virtual void pin_step(const PinStep& step) = 0;
   virtual void path_step(const PathStep& step) = 0;
+  virtual void outputs_changed(const OutputChange& /*change*/) {}
 };
 
 }  // namespace trammel::driver

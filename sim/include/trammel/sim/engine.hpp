@@ -13,6 +13,9 @@
 
 namespace trammel::sim {
 
+// Inputs, and outputs, of the simulated card: the RTL's default.
+inline constexpr unsigned kPins = 4;
+
 struct EngineOptions {
   unsigned axes = 4;                   // 1 .. 8
   std::uint32_t clock_hz = 1'000'000;  // what the card says of itself; 1 cycle is 1 / clock_hz seconds

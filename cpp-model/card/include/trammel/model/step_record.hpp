@@ -23,6 +23,8 @@ class CardSteps {
   // (enabled clocks in direct mode), path ticks of an arc.
   virtual void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
                          int direction) = 0;
+  // Outputs after edge `cycle`, where they are not what they were.
+  virtual void outputs(std::uint64_t /*cycle*/, std::uint16_t /*before*/, std::uint16_t /*levels*/) {}
 };
 
 class StepRecord {
@@ -32,12 +34,13 @@ class StepRecord {
 
   void set_steps(CardSteps* steps) { steps_ = steps; }
 
-  // All but the receiver as after reset.
-  void reset() {
+  // All but the receiver as after reset; `output_idle`: levels of the outputs then.
+  void reset(std::uint16_t output_idle) {
     accepted_ = command_ = taken_ = arc_taken_ = 0;
     geometry_.clear();
     takes_ = {};
     position_ = {};
+    outputs_ = output_idle;
   }
 
   void cut() {
@@ -66,6 +69,11 @@ class StepRecord {
     if (position == position_[axis]) return;
     if (steps_ != nullptr) steps_->pin_step(cycle, axis, static_cast<std::int32_t>(position - position_[axis]));
     position_[axis] = position;
+  }
+  void outputs(std::uint64_t cycle, std::uint16_t levels) {
+    if (levels == outputs_) return;
+    if (steps_ != nullptr) steps_->outputs(cycle, outputs_, levels);
+    outputs_ = levels;
   }
   void line_step(std::uint64_t cycle, unsigned axis, bool backwards) {
     const Take& take = shown_after(cycle - kTickToStep);
@@ -97,6 +105,7 @@ class StepRecord {
   std::uint64_t arc_taken_ = 0;                               // path ticks of the arc
   std::array<Take, 16> takes_{};                              // by the cycle in which the tick shows
   std::array<std::uint32_t, card_map::kMaxAxes> position_{};  // as shown
+  std::uint16_t outputs_ = 0;                                 // as shown
 };
 
 }  // namespace trammel::model

@@ -52,7 +52,8 @@ enum class ErrorCode : std::uint16_t {
   kPositionRange = 71,
   kDwellTooLong = 72,
   kArcTooLarge = 73,
-  kNoJerk = 74,  // of an axis that moves, where S-curves were asked for
+  kNoJerk = 74,    // of an axis that moves, where S-curves were asked for
+  kNoOutput = 75,  // that the machine file names for a word
 };
 
 struct Error {

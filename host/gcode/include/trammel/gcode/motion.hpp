@@ -12,7 +12,7 @@ namespace trammel::gcode {
 // By axis index of the machine; machine coordinates in mm (degrees for A, B and C).
 using Coordinates = std::array<double, card_map::kMaxAxes>;
 
-enum class MotionKind { kTraverse, kLine, kArc, kDwell, kEnd };
+enum class MotionKind { kTraverse, kLine, kArc, kDwell, kEnd, kOutput };
 
 // What the motion asks of the corner where it ends.
 enum class PathControl : std::uint8_t {
@@ -24,7 +24,7 @@ enum class PathControl : std::uint8_t {
 struct Motion {
   MotionKind kind = MotionKind::kLine;
   std::size_t line = 0;  // of the source, from 1
-  Coordinates target{};  // where it ends; kDwell and kEnd: where the one before ended
+  Coordinates target{};  // where it ends; kDwell, kEnd and kOutput: where the one before ended
   double feed = 0;       // mm/s along the path; 0 for kTraverse and where `seconds` counts
   double seconds = 0;    // kDwell, or the duration of a motion under G93
   PathControl path_control = PathControl::kContinuous;
@@ -36,6 +36,8 @@ struct Motion {
   double centre_x = 0;  // machine coordinates
   double centre_y = 0;
   std::uint32_t turns = 0;  // full turns beyond the first way to the end; axes outside the plane move evenly: a helix
+  std::uint16_t set = 0;    // kOutput: outputs that are switched on, before the motion behind it; bit n: output n
+  std::uint16_t clear = 0;  // and off
 };
 
 }  // namespace trammel::gcode

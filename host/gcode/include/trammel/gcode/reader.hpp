@@ -5,6 +5,8 @@
 //   - G4 P is in seconds; a line with '/' is skipped (ReaderOptions);
 //   - M2, M30 or a '%' that does not open the program end it. What follows M2 and M30 is not read; beside a '%' and
 //     behind the last one only blanks and comments may stand;
+//   - M3 to M5 and M7 to M9 switch the outputs that the machine file names for them, before the line's motion, and M2
+//     and M30 switch all of these off; other ends of the program leave them;
 //   - a lower-case e right behind a number is taken for an exponent, which G-code has not, and refused;
 //   - G61 and G64 are accepted: the planner stops exactly at every end of a motion, which satisfies both.
 #pragma once
@@ -43,8 +45,9 @@ class Reader {
   bool next(Motion& motion);
   const std::optional<Error>& error() const;
 
-  // Before the first next(): reads up to line `line`, which comes next, for modes and position alone. False, with an
-  // error, at the first thing that is not understood, and where the program ends before that line.
+  // Before the first next(): reads up to line `line`, which comes next, for modes, position and outputs alone (a first
+  // motion kOutput makes these what they would be). False, with an error, at the first thing that is not understood,
+  // and where the program ends before that line.
   bool skip_to(std::size_t line);
   // Where the motions read so far end, machine coordinates.
   const Coordinates& position() const;

@@ -59,10 +59,25 @@ struct MotionSettings {
   double stale_periods = 1;          // position streaming: periods that the card goes on alone; whole, 0 .. 65535
 };
 
+// Outputs of the card that words of a program switch on, bit n: output n; the table [outputs]. None where it names
+// none. M3 and M4 switch off what the other has, M5 both; M9 switches off what M7 and M8 have.
+inline constexpr unsigned kMostOutputs = 16;
+struct MachineOutputs {
+  std::uint16_t m3 = 0;  // spindle clockwise
+  std::uint16_t m4 = 0;  // and counter-clockwise
+  std::uint16_t m7 = 0;  // mist
+  std::uint16_t m8 = 0;  // flood
+
+  std::uint16_t spindle() const { return m3 | m4; }
+  std::uint16_t coolant() const { return m7 | m8; }
+  std::uint16_t all() const { return spindle() | coolant(); }
+};
+
 struct Machine {
   std::uint32_t clock_hz = 0;     // kSlowestClock .. kFastestClock
   std::vector<MachineAxis> axes;  // in the card's order
   MotionSettings motion;
+  MachineOutputs outputs;
 
   // Index of the axis on the card; `letter` in upper case.
   std::optional<std::size_t> axis(char letter) const;

@@ -57,6 +57,7 @@ struct Block {
   Geometry geometry = Geometry::kEnd;
   Pulses start{};
   Pulses end{};
+  driver::OutputCommand outputs;  // what is switched where it begins
 
   // Motions: kLine, kArc, kArcChord, kChords.
   bool rapid = false;
@@ -93,6 +94,7 @@ struct Block {
   double dwell_seconds = 0;
 };
 
+inline bool switches(const Block& block) { return (block.outputs.set | block.outputs.clear) != 0; }
 inline bool moves(const Block& block) { return block.geometry != Geometry::kDwell && block.geometry != Geometry::kEnd; }
 
 }  // namespace trammel::planner

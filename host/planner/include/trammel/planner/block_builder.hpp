@@ -23,6 +23,8 @@ class BlockBuilder {
   BlockBuilder(gcode::Reader& reader, const machine::Machine& machine, const CardLimits& card,
                const gcode::Coordinates& start = {});
 
+  // Outputs that are switched go with the next block; of several before it the last one wins, output by output.
+  //
   // The next block; false after the one of kEnd, and at the first thing that reader, machine or card does not allow:
   // then error() says what. A motion
   // without a step gives no block: the line after it begins where it began.
@@ -46,6 +48,7 @@ class BlockBuilder {
     unsigned feed_group;  // which feed it counts for: 0 X Y Z, 1 U V W, 2 A B C, 3 E
   };
   bool build(Block& block);
+  void switch_outputs();
   bool set_targets(Block& block);
   bool build_line(Block& block);
   bool build_arc(Block& block);
@@ -75,8 +78,9 @@ class BlockBuilder {
   gcode::Motion motion_;
   Pulses start_{};
   Pulses here_{};
-  gcode::Coordinates exact_{};   // where the program is, unrounded
-  gcode::Coordinates anchor_{};  // where the last block ended, unrounded
+  gcode::Coordinates exact_{};     // where the program is, unrounded
+  gcode::Coordinates anchor_{};    // where the last block ended, unrounded
+  driver::OutputCommand outputs_;  // for the next block
   std::optional<gcode::Error> error_;
 };
 

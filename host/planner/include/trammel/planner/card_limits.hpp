@@ -16,6 +16,7 @@ struct CardLimits {
   bool arc_generator = true;            // the arc generator is there
   std::uint32_t geometry_depth = 4096;  // halfwords of the queues
   std::uint32_t feed_depth = 2560;
+  unsigned outputs = 0;  // that commands on the path can switch, up to 16; 0: it has no such commands
 };
 
 // Where arcs go: to what is there, the first of these that can; helices to the generator or out as lines.
@@ -24,6 +25,7 @@ enum class ArcsBy { kGenerator, kAccumulator, kChords };
 // As if the card had nothing for arcs that comes before `arcs`.
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs);
 
+// Of outputs it knows whether there are any, not how many: run::configure() asks the card for that.
 CardLimits limits_of(const driver::Identification& card);
 
 // Seconds that a hold takes from full speed to a stop: v / (a / 2) of the axis where that is longest, so that a hold's

@@ -45,7 +45,7 @@ struct PlannedBlock {
   double velocity_jump = 0;              // mm/s, the largest of an axis at its end, where it has a corner
   double acceleration_step = 0;          // mm/s^2, at its end, where it has no corner and the curvature changes
   std::uint64_t commands = 0;            // put
-  std::uint64_t geometry = 0;            // of these, into the geometry queue: paths and barriers
+  std::uint64_t geometry = 0;            // of these, into the geometry queue: paths, barriers, outputs
   std::uint64_t feed = 0;                // and into the feed queue: pieces and barriers
 };
 
@@ -56,15 +56,16 @@ class Planner {
           const PlannerSettings& settings = {});
   ~Planner();
 
-  // Puts the commands of the next block: the feed pieces that begin in it, then its geometry, so that neither queue can
-  // fill up with what waits for the other. False after the last (kEnd), and when all before an error is given, which
-  // the builder has: the motion ends at rest there. What the sink throws passes through; the planner is then of no
-  // further use.
+  // Puts the commands of the next block: what it switches, the feed pieces that begin in it, then its geometry, so that
+  // neither queue can fill up with what waits for the other. False after the last (kEnd), and when all before an error
+  // is given, which the builder has: the motion ends at rest there. What the sink throws passes through; the planner is
+  // then of no further use.
   bool next(driver::CommandSink& sink, PlannedBlock& planned);
 
  private:
   class LookAhead;
 
+  void put_outputs(PlannedBlock& planned, driver::CommandSink& sink);
   void put_dwell(PlannedBlock& planned, driver::CommandSink& sink);
   void put_geometry(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_line(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);

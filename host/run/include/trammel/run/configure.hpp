@@ -7,7 +7,8 @@
 namespace trammel::run {
 
 // Gives each of the machine's motors its step times and direction, and the time base its slew (planner::hold_seconds(),
-// or the slowest that the card has). The card must stand. Throws driver::Error as driver::Card::configure_axis() does.
+// or the slowest that the card has). The card must stand. Throws driver::Error as driver::Card::configure_axis() does,
+// and driver::ArgumentError where the machine names an output that the card lacks.
 void configure(driver::Card& card, const machine::Machine& machine);
 
 }  // namespace trammel::run

@@ -64,6 +64,7 @@ struct Plan {
   std::string file;
   double seconds = 0;          // estimate
   std::uint64_t segments = 0;  // paths
+  std::uint64_t rapids = 0;    // of these, the rapids
   std::uint64_t commands = 0;  // for the card
   PlannedMotion motion;
   planner::Pulses start{};  // machine coordinates; where the first line begins

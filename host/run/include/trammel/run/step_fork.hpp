@@ -18,6 +18,9 @@ class StepFork final : public driver::StepSink {
   void path_step(const driver::PathStep& step) override {
     for (driver::StepSink* sink : sinks_) sink->path_step(step);
   }
+  void outputs_changed(const driver::OutputChange& change) override {
+    for (driver::StepSink* sink : sinks_) sink->outputs_changed(change);
+  }
 
  private:
   std::vector<driver::StepSink*> sinks_;

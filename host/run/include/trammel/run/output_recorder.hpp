@@ -1,0 +1,42 @@
+// What a card's outputs did: how often each was switched, and how they stand. Not thread-safe.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "trammel/driver/steps.hpp"
+#include "trammel/machine/machine.hpp"
+#include "trammel/run/text_sink.hpp"
+
+namespace trammel::run {
+
+class CsvWriter;
+
+class OutputRecorder final : public driver::StepSink {
+ public:
+  struct Output {
+    std::uint64_t on = 0;   // how often it rose
+    std::uint64_t off = 0;  // and fell
+    bool level = false;     // as it stands
+  };
+
+  // `list`: where every change goes as a row cycle,output,level; not owned, may be nullptr.
+  explicit OutputRecorder(TextSink* list = nullptr);
+  ~OutputRecorder() override;
+
+  void pin_step(const driver::PinStep& /*step*/) override {}
+  void path_step(const driver::PathStep& /*step*/) override {}
+  void outputs_changed(const driver::OutputChange& change) override;
+  // Writes what is left of the list.
+  void finish();
+
+  const std::array<Output, machine::kMostOutputs>& outputs() const { return outputs_; }
+
+ private:
+  std::array<Output, machine::kMostOutputs> outputs_{};
+  std::unique_ptr<CsvWriter> list_;
+};
+
+}  // namespace trammel::run

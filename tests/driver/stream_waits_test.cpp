@@ -1,0 +1,202 @@
+// Waits of the stream on the golden model: for how long, and what ends them.
+#include <gtest/gtest.h>
+
+#include "stream_commands.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/stream.hpp"
+#include "trammel/sim/engine.hpp"
+
+namespace trammel::driver {
+namespace {
+
+using namespace std::chrono_literals;
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+
+TEST(StreamWaits, AStreamThatStarvesTheCardTimesOut) {
+  sim::ModelOptions small;
+  small.geometry_depth = 64;
+  const auto engine = sim::make_model_engine(small);
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 10ms;
+  Stream stream(card, options);
+  EXPECT_THROW(stream.send(std::vector<Command>(100, line_of(10))), TimeoutError);
+  EXPECT_LT(engine->cycles(), 20'000U);
+}
+
+// Each piece has its own time.
+TEST(StreamWaits, ManyPiecesAreNoTimeOut) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 1ms;
+  Stream stream(card, options);
+  for (int i = 0; i < 50; ++i) {
+    stream.put(feed_of(1000));
+    stream.put(line_of(1000, 1));
+  }
+  stream.put(EndCommand{});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_EQ(engine->positions()[0], 50);
+  EXPECT_GE(engine->cycles(), 800'000U);
+}
+
+// 700 s each, beyond every constant: a dwell, a slow piece, and one at a sixteenth of the ratio.
+TEST(StreamWaits, LongCommandsAreNoTimeOuts) {
+  sim::EngineOptions slow;
+  slow.clock_hz = 10'000;
+  const auto engine = sim::make_model_engine(slow);
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 10ms;
+  options.poll_clocks = 5000;
+  Stream stream(card, options);
+  stream.send({DwellCommand{7'000'000}, EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_GE(engine->cycles(), 7'000'000U);
+  // 128 ticks at 2^46 / 2^64 a clock: 33.5 million clocks.
+  stream.send({feed_of(128, std::uint64_t{1} << 46), line_of(128, 1), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_GE(engine->cycles(), 40'000'000U);
+  card.set_ratio(Card::kFullRatio / 16);
+  stream.send({feed_of(4, std::uint64_t{1} << 46), line_of(4, 1), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_GE(engine->cycles(), 56'000'000U);
+  EXPECT_EQ(engine->positions()[0], 2);
+}
+
+// A rapid piece at a sixteenth of its ratio, beside feed pieces at the full one.
+TEST(StreamWaits, ASlowClassIsNoTimeOut) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 1ms;
+  card.set_ratio(PieceClass::kRapid, Card::kFullRatio / 16);
+  Stream stream(card, options);
+  FeedCommand rapid = feed_of(1000);
+  rapid.piece_class = PieceClass::kRapid;
+  stream.send({rapid, line_of(1000, 10), feed_of(1000), line_of(1000, 10), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_GE(engine->cycles(), 17U * 16'000U);
+  EXPECT_LE(engine->cycles(), 17U * 16'000U + 2000U);
+  EXPECT_EQ(engine->positions()[0], 20);
+}
+
+// Who waits for the end alone does not know what runs: the slowest class's ratio counts, one of 0 is a hold.
+TEST(StreamWaits, AWaitForTheEndIsStretchedByTheSlowestClass) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  card.set_ratio(PieceClass::kRapid, Card::kFullRatio / 16);
+  card.set_ratio(PieceClass::kFixed, 0);
+  Stream stream(card);
+  FeedCommand rapid = feed_of(1000);
+  rapid.piece_class = PieceClass::kRapid;
+  stream.send({rapid, line_of(1000, 10)});
+  card.wait_until_idle(20ms);  // 16 ms at the full ratio
+  EXPECT_GE(engine->cycles(), 16U * 16'000U);
+  stream.send({rapid, line_of(1000, 10)});
+  EXPECT_THROW(card.wait_until_idle(5ms), TimeoutError);
+}
+
+// A bus that counts what the driver does: transfers, and how its pauses end.
+class Counting final : public Bus {
+ public:
+  explicit Counting(Bus& bus) : bus_(bus) {}
+  std::size_t transfer(Access* accesses, std::size_t count) override {
+    ++transfers;
+    return bus_.transfer(accesses, count);
+  }
+  void sleep(std::chrono::nanoseconds time) override {
+    ++sleeps;
+    bus_.sleep(time);
+  }
+  bool reports_refusals() const override { return bus_.reports_refusals(); }
+  bool has_interrupt() const override { return bus_.has_interrupt(); }
+  bool wait_for_interrupt(std::chrono::nanoseconds longest) override {
+    const bool raised = bus_.wait_for_interrupt(longest);
+    ++(raised ? interrupts : late);
+    return raised;
+  }
+
+  std::uint64_t transfers = 0;
+  std::uint64_t sleeps = 0;
+  std::uint64_t interrupts = 0;
+  std::uint64_t late = 0;
+
+ private:
+  Bus& bus_;
+};
+
+// Long commands, of which a few fit: the waits for room end by the watermarks' interrupt, none by its time.
+TEST(StreamWaits, AWatermarkEndsAWaitForRoom) {
+  for (const bool watermarks : {true, false}) {
+    sim::ModelOptions small;
+    small.interrupt = true;
+    small.geometry_depth = 64;
+    small.feed_depth = 64;
+    if (!watermarks) small.engines = field::kEnginesLines | field::kEnginesJerk;
+    const auto engine = sim::make_model_engine(small);
+    Counting bus(*engine);
+    Card card = Card::open(bus);
+    Stream stream(card);
+    for (int i = 0; i < 100; ++i) {
+      stream.put(feed_of(500));
+      stream.put(line_of(500, 5));
+    }
+    EXPECT_EQ(bus.late == 0, watermarks);
+    if (watermarks) {
+      EXPECT_GE(bus.interrupts, 50U);
+      EXPECT_EQ(bus.sleeps, 0U);
+    }
+    stream.put(EndCommand{});
+    EXPECT_TRUE(stream.finish().ended);
+    EXPECT_EQ(engine->positions()[0], 500);
+    // 100 pieces of 8,000 clocks, and no waits beyond.
+    EXPECT_GE(engine->cycles(), 800'000U);
+    EXPECT_LE(engine->cycles(), 803'000U);
+  }
+}
+
+// From another thread: the class's ratio, at the stream's next look.
+TEST(StreamWaits, ARatioIsAskedForFromElsewhere) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.progress = [&card](const StreamProgress&) { card.request_ratio(PieceClass::kRapid, Card::kFullRatio / 8); };
+  Stream stream(card, options);
+  FeedCommand rapid = feed_of(1000);
+  rapid.piece_class = PieceClass::kRapid;
+  stream.send({rapid, line_of(1000, 10), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_EQ(card.ratio(PieceClass::kRapid), Card::kFullRatio / 8);
+  EXPECT_EQ(card.ratio(), Card::kFullRatio);
+  EXPECT_GE(engine->cycles(), 100'000U);
+}
+
+// Slow for long, then fast: what was slow before counts as slow.
+TEST(StreamWaits, ARatioChangedInAPieceIsNoTimeOut) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 1ms;
+  std::uint64_t looks = 0;
+  options.progress = [&](const StreamProgress&) {
+    if (++looks == 20'000) card.set_ratio(Card::kFullRatio);
+  };
+  card.set_ratio(Card::kFullRatio / 16);
+  Stream stream(card, options);
+  stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});  // 160,000 clocks at full ratio
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_GT(looks, 20'000U);
+  EXPECT_GE(engine->cycles(), 20'000U * 64U);
+  // Set by somebody else, and never told to this driver.
+  engine->write(reg::kRatioFeed, Card::kFullRatio / 16);
+  stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_EQ(card.ratio(), Card::kFullRatio / 16);
+  EXPECT_EQ(engine->positions()[0], 20);
+}
+
+}  // namespace
+}  // namespace trammel::driver
