@@ -32,6 +32,7 @@ host/frames/frame_receiver.sv
 host/frames/frame_sender.sv
 host/frames/frame_session.sv
 host/port_arbiter.sv
+host/spi/spi_port.sv
 host/uart/uart_baud.sv
 host/uart/uart_port.sv
 host/uart/uart_receiver.sv
