@@ -94,8 +94,11 @@ module deviation_accumulator #(
   logic x_zero_q, y_zero_q, done_q, finish, finish_q;
   logic [1:0] take, negative, old_sign, sides;
   logic [ 1:0] came;  // the step's last word of this axis's gradient, with its sign
+  logic [79:0] back;
   logic [15:0] f_back;
-  logic [31:0] g_back, e_back;
+  logic [31:0] g_back, e_back, halves;
+  assign {e_back, g_back, f_back} = back;
+  assign halves = {hy_q[15:0], hx_q[15:0]} & {32{h_shift_q}};
   assign came = take & {2{phase_q[LAST]}};
 
   deviation_choice #(
@@ -103,16 +106,14 @@ module deviation_accumulator #(
   ) next_step (
       .*,
       .rest_i     (ready_o),
-      .eight_i    (eight_q),
-      .clockwise_i(clockwise_q),
+      .rule_i     ({eight_q, clockwise_q}),
       .inside_i   (f_q[79]),
       .gradient_i ({gy_q[79], gx_q[79]}),
       .compare_i  (compare),
       .next_i     ({came[1] ? g_back[31] : gy_q[79], came[0] ? g_back[15] : gx_q[79]}),
       .sides_i    (sides),
       .last_i     (done_q),
-      .arrived_i  ({y_zero_q, x_zero_q}),
-      .left_i     ({ey_q[31], ex_q[31]}),
+      .left_i     ({ey_q[31], ex_q[31], y_zero_q, x_zero_q}),
       .finishing_i(finish_q),
       .finish_o   (finish),
       .take_o     (take),
@@ -129,19 +130,14 @@ module deviation_accumulator #(
       .EightDirections(EightDirections)
   ) steps (
       .*,
-      .run_i      (run_q),
-      .phase_i    (phase_q[2:0] | compare_q[2:0]),
-      .eight_i    (eight_q),
-      .take_i     (take),
-      .negative_i (negative),
-      .deviation_i(f_q[15:0]),
-      .gradient_i ({gy_q[15:0], gx_q[15:0]}),
-      .half_i     ({hy_q[15:0], hx_q[15:0]} & {32{h_shift_q}}),
-      .left_i     ({ey_q[15:0], ex_q[15:0]}),
-      .deviation_o(f_back),
-      .gradient_o (g_back),
-      .left_o     (e_back),
-      .sides_o    (sides)
+      .run_i     (run_q),
+      .phase_i   (phase_q[2:0] | compare_q[2:0]),
+      .eight_i   (eight_q),
+      .take_i    (take),
+      .negative_i(negative),
+      .words_i   ({ey_q[15:0], ex_q[15:0], halves, gy_q[15:0], gx_q[15:0], f_q[15:0]}),
+      .words_o   (back),
+      .sides_o   (sides)
   );
 
   // State: shift chains; a chain that travels is full again when its last word is back.
