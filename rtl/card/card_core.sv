@@ -6,6 +6,7 @@ module card_core #(
     parameter int          GeometryDepth     = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth         = 2560,
     parameter int          Accumulator       = 1,     // 0: without arcs and conics
+    parameter int          EightDirections   = 0,     // 1: the accumulator's second step rule
     parameter int          ArcGenerator      = 0,     // 1: arcs in chords
     parameter int          DirectMode        = 1,     // 0: without
     parameter int          UnderrunHold      = 1,     // 0: without
@@ -59,9 +60,13 @@ module card_core #(
   if (Inputs < 1 || Inputs > 16 || Outputs < 1 || Outputs > 16) begin : gen_wrong_pins
     ERROR_Inputs_and_Outputs_must_be_1_to_16 error ();
   end
+  if (EightDirections != 0 && Accumulator == 0) begin : gen_wrong_accumulator
+    ERROR_EightDirections_needs_Accumulator error ();
+  end
 
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
+      32'(EightDirections != 0) << card_map_pkg::ENGINE_ACCUMULATOR_8 |
       32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
       32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE |
       32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
@@ -90,8 +95,7 @@ module card_core #(
   logic [31:0] status;
   logic [ 5:0] motion_status;
   logic        held;
-  logic [32:0] underrun;  // {held, how often}
-  logic [32:0] stale;  // {a line goes on, ticks}
+  logic [65:0] late;  // {a line goes on beyond its period, ticks; held for under-run, how often}
   logic [63:0] begun;  // {geometry, feed}
   logic [31:0] room;  // {geometry, feed}
   logic [ 1:0] low;  // {feed, geometry}
@@ -125,8 +129,7 @@ module card_core #(
       .access_i({port_i, write_i, partial_i, address_i, data_i}),
       .motion_i(motion_status),
       .held_i(held),
-      .underrun_i(underrun),
-      .stale_i(stale),
+      .late_i(late),
       .fault_i(fault),
       .room_i(room),
       .low_i(low),
@@ -259,8 +262,8 @@ module card_core #(
       .stop_o(stop),
       .status_o(motion_status),
       .held_o(held),
-      .underrun_o(underrun),
-      .stale_o(stale),
+      .underrun_o(late[32:0]),
+      .stale_o(late[65:33]),
       .geometry_begun_o(begun[63:32]),
       .feed_begun_o(begun[31:0]),
       .observe_o(observe_o[34*Axes+52:0])

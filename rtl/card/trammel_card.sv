@@ -5,6 +5,7 @@ module trammel_card #(
     parameter int          GeometryDepth     = 4096,  // halfwords, 2 to 32,768
     parameter int          FeedDepth         = 2560,
     parameter int          Accumulator       = 1,     // 0: without arcs and conics
+    parameter int          EightDirections   = 0,     // 1: the accumulator's second step rule
     parameter int          ArcGenerator      = 0,     // 1: arcs in chords
     parameter int          DirectMode        = 1,     // 0: without
     parameter int          UnderrunHold      = 1,     // 0: without
@@ -97,6 +98,7 @@ module trammel_card #(
       .GeometryDepth(GeometryDepth),
       .FeedDepth(FeedDepth),
       .Accumulator(Accumulator),
+      .EightDirections(EightDirections),
       .ArcGenerator(ArcGenerator),
       .Classes(Classes),
       .Watermarks(Watermarks),

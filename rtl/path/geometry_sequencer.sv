@@ -77,8 +77,9 @@ module geometry_sequencer #(
   logic            zero;
   logic            last;
   logic [    39:0] count;
-  logic period, goes_on, lost;
-  logic at_barrier;
+  logic [     2:0] period;  // {the line goes on, has gone on, a period's last tick is taken}
+  logic            lost;  // the next one is missing
+  logic            at_barrier;
 
   assign runs = taking_o || (valid && !is_barrier && instant == 3'd0);
   assign dropped = valid && drop_i[1] && !is_probe_end;
@@ -123,38 +124,32 @@ module geometry_sequencer #(
       .mask_i        (mask),
       .pop_o         (path_pop),
       .last_i        (last),
-      .streaming_i   (streaming_o),
-      .lost_i        (lost),
+      .streaming_i   ({lost, streaming_o}),
       .period_o      (period),
-      .goes_on_o     (goes_on),
-      .stale_o       (stale_o[32]),
       .begin_o       (path_begin),
       .halt_i        (drop_i[0]),
       .barrier_done_i(barrier_o[2]),
       .at_barrier_o  (at_barrier)
   );
 
+  assign stale_o[32] = period[1];
+
   if (Engines[card_map_pkg::ENGINE_STREAMING]) begin : gen_streaming
     position_streaming periods (
         .*,
-        .arrive_i    (arrive_i[20:16]),
-        .begin_i     (path_begin),
-        .count_i     (count),
-        .period_i    (period),
-        .goes_on_i   (goes_on),
-        .stale_tick_i(take_i && stale_o[32]),
-        .lost_o      (lost),
-        .ticks_o     (stale_o[31:0])
+        .begin_i (path_begin),
+        .count_i (count),
+        .period_i(period),
+        .lost_o  (lost),
+        .ticks_o (stale_o[31:0])
     );
   end else begin : gen_no_streaming
     assign {streaming_o, missing_o, lost, stale_o[31:0]} = '0;
 
     logic unused;
-    assign unused = &{1'b0, setting_i, rest_i, count, period, goes_on};
+    assign unused = &{1'b0, setting_i, arrive_i, rest_i, count, period};
   end
 
-  logic unused_arrivals;
-  assign unused_arrivals = &{1'b0, arrive_i};
 
   // A barrier that has begun is over where the others are dropped.
   barrier both_queues (

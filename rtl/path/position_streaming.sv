@@ -14,25 +14,24 @@ module position_streaming (
     input  wire logic        rst_i,
     input  wire logic        cut_i,
     input  wire logic [40:0] setting_i,
-    input  wire logic [ 4:0] arrive_i,      // {drop, geometry {commit, write}, feed {commit, write}}
-    input  wire logic        rest_i,        // nothing is queued or runs
-    input  wire logic        begin_i,       // a path begins
-    input  wire logic [39:0] count_i,       // its ticks, in the clock after begin_i
-    input  wire logic        period_i,      // a period's last tick is taken
-    input  wire logic        goes_on_i,     // and nothing follows, or nothing has followed yet
-    input  wire logic        stale_tick_i,  // a tick beyond it is taken
-    output logic             streaming_o,   // the mode
-    output logic             missing_o,     // event
-    output logic             lost_o,        // since then, until the cut
-    output logic      [31:0] ticks_o        // beyond the end of the last period that ended
+    input  wire logic [21:0] arrive_i,     // as tick_source has it
+    input  wire logic        rest_i,       // nothing is queued or runs
+    input  wire logic        begin_i,      // a path begins
+    input  wire logic [39:0] count_i,      // its ticks, in the clock after begin_i
+    input  wire logic [ 2:0] period_i,     // {the line goes on, has gone on, a period's last tick is taken}
+    input  wire logic        take_i,
+    output logic             streaming_o,  // the mode
+    output logic             missing_o,    // event
+    output logic             lost_o,       // since then, until the cut
+    output logic      [31:0] ticks_o       // beyond the end of the last period that ended
 );
   logic       on_q;
   logic [7:0] stale_periods_q;
   logic       inside_q;
   logic       writes;
   logic       ends;
-  assign writes = arrive_i[2] || arrive_i[0];
-  assign ends   = arrive_i[4] || arrive_i[3] || arrive_i[1];
+  assign writes = arrive_i[18] || arrive_i[16];
+  assign ends   = arrive_i[20] || arrive_i[19] || arrive_i[17];
 
   always_ff @(posedge clk_i) begin
     if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_STREAMING[9:2])
@@ -54,29 +53,31 @@ module position_streaming (
   logic [ 7:0] rounds_q;  // left
   logic        one;
   logic        missing;
+  logic        stale_tick;  // beyond the end of the line
+  assign stale_tick = take_i && period_i[1];
   assign one = count_i == 40'd1;
-  assign missing = goes_on_i && !lost_o &&
-      (period_i ? stale_periods_q == 8'd0 : stale_tick_i && last_q && rounds_q == 8'd1);
+  assign missing = period_i[2] && !lost_o &&
+      (period_i[0] ? stale_periods_q == 8'd0 : stale_tick && last_q && rounds_q == 8'd1);
 
   always_ff @(posedge clk_i) begin
     begin_q <= begin_i;
     if (begin_q) begin
       {length_q, short_q} <= {count_i, one};
       {left_q, last_q}    <= {count_i, one};
-    end else if (stale_tick_i) begin
+    end else if (stale_tick) begin
       left_q <= last_q ? length_q : left_q - 40'd1;
       last_q <= last_q ? short_q : left_q == 40'd2;
       if (last_q) rounds_q <= rounds_q - 8'd1;
     end
-    if (period_i) rounds_q <= stale_periods_q;
-    if (rst_i || period_i) ticks_o <= 32'd0;
-    else if (stale_tick_i) ticks_o <= ticks_o + 32'd1;
+    if (period_i[0]) rounds_q <= stale_periods_q;
+    if (rst_i || period_i[0]) ticks_o <= 32'd0;
+    else if (stale_tick) ticks_o <= ticks_o + 32'd1;
     missing_o <= missing && !cut_i && !rst_i;
     lost_o    <= (lost_o || missing) && !cut_i && !rst_i;
   end
 
   logic unused;
-  assign unused = &{1'b0, setting_i[31:16], setting_i[7:1]};
+  assign unused = &{1'b0, setting_i[31:16], setting_i[7:1], arrive_i[21], arrive_i[15:0]};
 endmodule
 
 `default_nettype wire

@@ -44,6 +44,7 @@ class Bench {
  private:
   // A path begins, comes to its end, goes on for a while.
   void random_path() {
+    was_stale_ = stale_;
     if (stale_) {
       in_.stale_tick = dice_.chance(pace_);
       in_.goes_on = !dice_.chance(200);
@@ -101,13 +102,14 @@ class Bench {
     dut_->setting_i = wire(in_.setting);
     const unsigned writes = in_.write ? 1U << (dice_.chance(2) ? 2 : 0) : 0;
     const unsigned ends = in_.whole ? (dice_.chance(3) ? 1U << 4 : dice_.chance(2) ? 1U << 3 : 1U << 1) : 0;
-    dut_->arrive_i = static_cast<CData>(writes | ends);
+    dut_->arrive_i = (writes | ends) << 16 | (dice_.draw() & 0x20FFFF);
     dut_->rest_i = in_.rest;
     dut_->begin_i = in_.begin;
     dut_->count_i = began_with_ != 0 ? began_with_ : dice_.word() & kMost;
-    dut_->period_i = in_.period;
-    dut_->goes_on_i = in_.goes_on;
-    dut_->stale_tick_i = in_.stale_tick;
+    // A tick that is not beyond the line's end is none of its business.
+    const bool gone_on = in_.stale_tick || (was_stale_ && dice_.chance(2));
+    dut_->take_i = in_.stale_tick || (!gone_on && dice_.chance(2));
+    dut_->period_i = static_cast<CData>(unsigned{in_.goes_on} << 2 | unsigned{gone_on} << 1 | unsigned{in_.period});
   }
 
   void compare() {
@@ -128,6 +130,7 @@ class Bench {
   std::uint64_t began_with_ = 0;  // ticks of the path that began in the clock before; 0: none did
   bool running_ = false;
   bool stale_ = false;
+  bool was_stale_ = false;
   std::uint64_t missing_ = 0;
   std::uint64_t modes_ = 0;
 };

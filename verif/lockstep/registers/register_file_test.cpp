@@ -283,8 +283,9 @@ class Bench {
     rtl_->motion_i = static_cast<CData>(in_.stopping << 5 | in_.ended << 4 | in_.feed_active << 3 |
                                         in_.path_active << 2 | in_.direct << 1 | static_cast<int>(in_.busy));
     rtl_->held_i = in_.ratio == 0;
-    rtl_->underrun_i = std::uint64_t{in_.underrun} << 32 | in_.underruns;
-    rtl_->stale_i = std::uint64_t{in_.stale} << 32 | in_.stale_ticks;
+    rtl_->late_i[0] = in_.underruns;
+    rtl_->late_i[1] = std::uint32_t{in_.underrun} | in_.stale_ticks << 1;
+    rtl_->late_i[2] = std::uint32_t{in_.stale} << 1 | in_.stale_ticks >> 31;
     rtl_->fault_i = in_.fault;
     rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
     rtl_->low_i = static_cast<CData>(in_.feed_low << 1 | static_cast<int>(in_.geometry_low));
