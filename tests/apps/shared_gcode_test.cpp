@@ -68,6 +68,28 @@ INSTANTIATE_TEST_SUITE_P(Gcode, Jobs,
                                          Job{"circle-inch", "200000", {0, 0, 508, 0}, 3}),
                          job_name);
 
+// 300 mm/s and 3,000 mm/s^2: 887 s of motion, 73,118 commands.
+TEST(Gcode, OctocatOnASlowBusHasNoUnderRun) {
+  const Command command;
+  std::string options = " --feed-scale 15 --set motion.junction_deviation=0.02";
+  for (const char* axis : {"x", "y", "z", "e"}) {
+    options += std::string(" --set axis.") + axis + ".max_velocity=300 --set axis." + axis + ".max_acceleration=3000";
+  }
+  const auto run = [&](const std::string& more) {
+    const Outcome outcome = command.run("run " + kFolder + "octocat.gcode --engine model --clock 10000000" + options +
+                                        " --json " + command.path("o.json") + more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return read_json(command.path("o.json"));
+  };
+  const nlohmann::json enough = run(" --limit-bus 8000");
+  EXPECT_EQ(enough["under_runs"], 0);
+  EXPECT_NEAR(enough["seconds"].get<double>(), enough["planned_seconds"].get<double>(), 0.5);
+  // A bus that is too slow is seen.
+  const nlohmann::json starved = run(" --limit-bus 3000");
+  EXPECT_GT(starved["under_runs"], 0);
+  EXPECT_EQ(starved["path_steps"], enough["path_steps"]);
+}
+
 void expect_refused(const std::string& name, const std::string& line) {
   const Command command;
   const Outcome outcome = command.run("run " + kFolder + name + " --steps " + command.path("steps.csv"));
