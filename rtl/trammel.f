@@ -31,9 +31,12 @@ host/frames/frame_executor.sv
 host/frames/frame_receiver.sv
 host/frames/frame_sender.sv
 host/frames/frame_session.sv
+host/host_ports.sv
 host/port_arbiter.sv
+host/spi/spi_frames.sv
 host/spi/spi_port.sv
 host/uart/uart_baud.sv
+host/uart/uart_frames.sv
 host/uart/uart_port.sv
 host/uart/uart_receiver.sv
 host/uart/uart_timer.sv
