@@ -50,6 +50,10 @@ path/begun_counter.sv
 path/chord_counter.sv
 path/chord_rotation.sv
 path/deviation_accumulator.sv
+path/deviation_choice.sv
+path/deviation_compare.sv
+path/deviation_lane.sv
+path/deviation_steps.sv
 path/geometry_sequencer.sv
 path/instant_commands.sv
 path/path_commands.sv
