@@ -12,6 +12,7 @@ axis/wait_timer.sv
 axis/waiting_steps.sv
 card/busy_timer.sv
 card/card_core.sv
+card/card_with_ports.sv
 card/motion_core.sv
 card/path_to_pins.sv
 card/trammel_card.sv
