@@ -68,30 +68,20 @@ INSTANTIATE_TEST_SUITE_P(Gcode, Jobs,
                                          Job{"circle-inch", "200000", {0, 0, 508, 0}, 3}),
                          job_name);
 
-// octocat at 15 times its feeds on a machine of 300 mm/s and 3,000 mm/s^2, behind a bus of so many bytes a second.
-nlohmann::json fast_octocat(unsigned bytes_per_second) {
+// 300 mm/s and 3,000 mm/s^2: 887 s of motion, 73,118 commands.
+TEST(Gcode, OctocatOnASlowBusHasNoUnderRun) {
   const Command command;
-  std::string arguments =
-      "run " + kFolder + "octocat.gcode --engine model --clock 10000000 --feed-scale 15 --limit-bus " +
-      std::to_string(bytes_per_second) + " --set motion.junction_deviation=0.02 --json " + command.path("json");
-  for (const std::string axis : {"x", "y", "z", "e"}) {
-    arguments += " --set axis." + axis + ".max_velocity=300 --set axis." + axis + ".max_acceleration=3000";
+  std::string options = " --feed-scale 15 --set motion.junction_deviation=0.02";
+  for (const char* axis : {"x", "y", "z", "e"}) {
+    options += std::string(" --set axis.") + axis + ".max_velocity=300 --set axis." + axis + ".max_acceleration=3000";
   }
-  const Outcome outcome = command.run(arguments);
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  return outcome.status == 0 ? read_json(command.path("json")) : nlohmann::json();
-}
-
-TEST(Gcode, FastOctocatNeedsEightKilobytesASecondAtMost) {
-  const nlohmann::json json = fast_octocat(8000);
-  ASSERT_FALSE(json.is_null());
+  const Outcome outcome =
+      command.run("run " + kFolder + "octocat.gcode --engine model --clock 10000000 --limit-bus 8000" + options +
+                  " --json " + command.path("o.json"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json json = read_json(command.path("o.json"));
   EXPECT_EQ(json["under_runs"], 0);
-  EXPECT_NEAR(json["seconds"].get<double>() / json["planned_seconds"].get<double>(), 1, 0.001);
-  if (std::getenv("TRAMMEL_LONG") == nullptr) return;
-  const nlohmann::json starved = fast_octocat(1000);
-  ASSERT_FALSE(starved.is_null());
-  EXPECT_GT(starved["under_runs"], 0);
-  EXPECT_EQ(starved["path_steps"], json["path_steps"]);
+  EXPECT_NEAR(json["seconds"].get<double>(), json["planned_seconds"].get<double>(), 0.5);
 }
 
 void expect_refused(const std::string& name, const std::string& line) {
