@@ -52,6 +52,7 @@ path/path_commands.sv
 path/path_engines.sv
 path/path_sequencer.sv
 path/path_tick_gate.sv
+path/probe.sv
 path/tick_counter.sv
 registers/register_access.sv
 registers/register_file.sv

@@ -11,7 +11,7 @@ module card_core #(
     parameter int          UnderrunHold  = 1,     // 0: without
     parameter int          Classes       = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks    = 1,     // 0: without
-    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
+    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
     parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
     parameter int          Outputs       = 4,
     parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
@@ -99,7 +99,9 @@ module card_core #(
   logic        closed;
   logic        stop;
   logic        mark;
-  logic [63:0] io;  // {marks, outputs, inputs}
+  logic        probe;
+  logic        probe_clear;
+  logic [66:0] io;  // {waiting, probe missed, probed, marks, outputs, inputs}
   logic [ 1:0] snapshot;  // {shift, strobe}
   logic [31:0] chain_far;
   logic [31:0] chain_near;
@@ -130,6 +132,7 @@ module card_core #(
       .setting_o(setting),
       .clear_fault_o(clear_fault),
       .abort_o(abort),
+      .probe_clear_o(probe_clear),
       .flush_o(flush),
       .stream_write_o(stream_write),
       .checker_i(checked),
@@ -138,7 +141,7 @@ module card_core #(
       .loader_address_i(loader_address),
       .loader_data_o(loader_data),
       .stop_i(stop),
-      .probe_i(1'b0),
+      .probe_i(probe),
       .mark_i(mark),
       .snapshot_o(snapshot),
       .chain_o(chain_far),
@@ -226,6 +229,8 @@ module card_core #(
       .abort_i(abort),
       .clear_fault_i(clear_fault),
       .mark_o(mark),
+      .probe_o(probe),
+      .probe_clear_i(probe_clear),
       .io_o(io),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i(geometry_word),

@@ -10,7 +10,7 @@ module trammel_card #(
     parameter int          UnderrunHold  = 1,     // 0: without
     parameter int          Classes       = 1,     // 0: one ratio for all pieces
     parameter int          Watermarks    = 1,     // 0: without
-    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
+    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
     parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
     parameter int          Outputs       = 4,
     parameter logic [31:0] BuildId       = 0,

@@ -26,6 +26,7 @@ module register_access #(
     output logic             clear_refusal_o,  // combinational
     output logic             snapshot_o,
     output logic             abort_o,
+    output logic             probe_clear_o,
     output logic             flush_o,          // combinational
     // who answers a word of the stream and START
     output logic             stream_write_o,
@@ -214,11 +215,14 @@ module register_access #(
     clear_fault_o <= act && fault_q ? data : '0;
     snapshot_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
     abort_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_ABORT];
+    probe_clear_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_PROBE_CLEAR] &&
+        Engines[card_map_pkg::ENGINE_PATH_COMMANDS];
     if (rst_i) begin
       set_q <= 1'b0;
       clear_fault_o <= '0;
       snapshot_o <= 1'b0;
       abort_o <= 1'b0;
+      probe_clear_o <= 1'b0;
     end
   end
 

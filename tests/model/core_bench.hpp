@@ -145,6 +145,14 @@ class CoreBench {
     return send(command_words(card_map::Opcode::Output, 0, number++, 0, {{"set", set}, {"clear", clear}}));
   }
   bool mark() { return send(command_words(card_map::Opcode::Mark, 0, number++, 0, {})); }
+  // Conditions: {level, input}.
+  bool probe(unsigned condition) {
+    return send(command_words(card_map::Opcode::Probe, 0, number++, 0, {{"condition", condition}}));
+  }
+  bool probe_end() { return send(command_words(card_map::Opcode::ProbeEnd, 0, number++, 0, {})); }
+  bool wait_input(unsigned condition, std::uint64_t clocks) {
+    return send(command_words(card_map::Opcode::WaitInput, 0, number++, clocks, {{"condition", condition}}));
+  }
   bool end() { return send(command_words(card_map::Opcode::End, 0, number++, 0, {})); }
   // Until not busy; false when that does not come.
   bool finish(std::uint64_t limit) {

@@ -128,6 +128,8 @@ class Program {
   // A tick every `pace` clocks.
   void paths_and_pieces(double pace) {
     std::uint64_t ticks = 0;
+    const bool probing = p_.one_in(3);
+    if (probing) conditional(card_map::Opcode::Probe, 0);
     for (std::uint64_t paths = p_.any(1, 5); paths != 0; --paths) {
       instants();
       const std::uint64_t n = p_.one_in(4) ? p_.any(1, 40) : p_.any(100, 3000);
@@ -145,6 +147,8 @@ class Program {
     instants();
     if (p_.one_in(2)) barrier();
     instants();
+    if (p_.one_in(6)) conditional(card_map::Opcode::WaitInput, p_.one_in(3) ? 0 : p_.sized(12));
+    if (probing && !p_.one_in(6)) p_.send(command_words(card_map::Opcode::ProbeEnd, 0, number_++, 0, {}));
   }
 
   // Arcs in chords alone, at a path tick for nearly each feed tick.
@@ -177,6 +181,10 @@ class Program {
         p_.send(command_words(card_map::Opcode::Output, 0, number_++, 0,
                               {{"set", p_.any(0, 0xFFFF)}, {"clear", p_.any(0, 0xFFFF)}}));
     }
+  }
+
+  void conditional(card_map::Opcode opcode, std::uint64_t count) {
+    p_.send(command_words(opcode, 0, number_++, count, {{"condition", p_.any(0, 1) << 4 | p_.any(0, 3)}}));
   }
 
   std::uint64_t line(std::uint64_t ticks) {
@@ -258,7 +266,7 @@ class Program {
 
 void disturb(Pair& pair) {
   const auto clocks = [&pair] { return pair.any(1, 3000); };
-  switch (pair.any(0, 8)) {
+  switch (pair.any(0, 9)) {
     case 0:
       pair.write(reg::kSlew, static_cast<std::uint32_t>(pair.any(0x1'0000, 0xFFF'FFFF)));
       pair.write(reg::kHold, 1);
@@ -290,6 +298,9 @@ void disturb(Pair& pair) {
       pair.clocked.pins = pair.jumping.pins = static_cast<std::uint16_t>(pair.any(0, 0xFFFF));
       break;
     case 6:
+      pair.write(reg::kControl, card_map::field::kControlProbeClear);
+      break;
+    case 7:
       pair.write(reg::kOutputSafe, static_cast<std::uint32_t>(pair.random()));
       pair.write(reg::kInputPolarity, static_cast<std::uint32_t>(pair.any(0, 0xFFFF)));
       break;
@@ -305,6 +316,7 @@ struct Compared {
   std::uint64_t clocks = 0;
   std::uint64_t chord_arcs = 0;
   std::uint64_t marks = 0;
+  std::uint64_t probed = 0;
   std::uint64_t underruns = 0;
 };
 
@@ -336,6 +348,8 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     const std::uint32_t marks = pair.clocked.read(reg::kMarks);
     EXPECT_EQ(pair.jumping.read(reg::kMarks), marks);
     compared.marks += marks;
+    // A probe that tripped has latched its time.
+    compared.probed += pair.clocked.read(reg::time_lo(card_map::Area::Probe)) != 0 ? 1U : 0U;
     compared.underruns += pair.clocked.read(reg::kUnderruns);
     compared.clocks += pair.one_by_one / 2;
   }
@@ -351,6 +365,7 @@ TEST(Run, EqualsClock) {
   EXPECT_GT(compared.steps, 20 * programs);
   EXPECT_GT(compared.chord_arcs, programs / 4);
   EXPECT_GT(compared.marks, programs / 5);
+  EXPECT_GT(compared.probed, programs / 10);
 }
 
 // Jumps that end anywhere between a feed tick and the step of its path tick.
@@ -409,6 +424,7 @@ TEST(RestingBlocks, ChangeNothing) {
   EXPECT_GT(compared.steps, 20 * programs);
   EXPECT_GT(compared.chord_arcs, programs / 4);
   EXPECT_GT(compared.marks, programs / 5);
+  EXPECT_GT(compared.probed, programs / 10);
 }
 
 }  // namespace

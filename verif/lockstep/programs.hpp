@@ -56,6 +56,9 @@ class Programs {
   bool chords = false;
   // OUTPUT and MARK between paths.
   bool path_commands = false;
+  // PROBE, PROBE_END and WAIT_INPUT among them, on inputs below `inputs`.
+  bool probes = false;
+  unsigned inputs = 16;
   // Pieces of all classes; else feed.
   bool classes = false;
   // The most ticks of a stretch, and of its paths and pieces.
@@ -72,8 +75,11 @@ class Programs {
     std::uint64_t piece_ticks = 0;
     const unsigned paths = dice_.below(6);
     const bool single = dice_.chance(4);  // paths and pieces of one tick each, one after the other
+    const bool probing = probes && dice_.chance(3);
+    if (probing) s.geometry.push_back(conditional(card_map::Opcode::Probe, 0));
     for (unsigned i = 0; i < paths; ++i) {
       instants(s.geometry);
+      if (probing && dice_.chance(10)) s.geometry.push_back(conditional(card_map::Opcode::Probe, 0));
       path_ticks += path(s.geometry, single);
     }
     instants(s.geometry);
@@ -93,6 +99,7 @@ class Programs {
       barrier(s);
       instants(s.geometry);
     }
+    if (probing ? !dice_.chance(8) : probes && dice_.chance(8)) both(s, probe_end());
     return s;
   }
 
@@ -102,16 +109,27 @@ class Programs {
                           {{"set", dice_.draw() & 0xFFFF}, {"clear", dice_.draw() & 0xFFFF}});
   }
 
+  static Halfwords probe_end() { return stored_command(card_map::Opcode::ProbeEnd, 0, 0); }
+  Halfwords conditional(card_map::Opcode opcode, std::uint64_t count) {
+    return stored_command(opcode, 0, count, {{"condition", dice_.below(2) << 4 | dice_.below(inputs)}});
+  }
+
   void barrier(Stretch& s) {
+    if (probes && dice_.chance(3))
+      return both(s, conditional(card_map::Opcode::WaitInput, dice_.chance(4) ? 0 : 1 + dice_.below(60)));
     constexpr unsigned kDwells[] = {0, 1, 2, 3, 4, 15, 16, 17, 18, 33, 100};
     const bool end = dice_.chance(3);
     const Halfwords command = stored_command(end ? card_map::Opcode::End : card_map::Opcode::Dwell, 0,
                                              end ? 0 : kDwells[dice_.below(std::size(kDwells))]);
+    both(s, command);
+  }
+
+ private:
+  static void both(Stretch& s, const Halfwords& command) {
     s.geometry.push_back(command);
     s.feed.push_back(command);
   }
 
- private:
   // Commands that are neither paths nor barriers, some in a row now and then.
   void instants(std::vector<Halfwords>& to) {
     while (path_commands && dice_.chance(3)) {

@@ -60,6 +60,9 @@ class RegisterFile {
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;
     bool geometry_low = false;  // below its watermark
+    bool probed = false;
+    bool probe_missed = false;
+    bool waiting = false;  // for an input
     bool feed_low = false;
     std::uint32_t geometry_begun = 0;
     std::uint32_t feed_begun = 0;
@@ -96,6 +99,7 @@ class RegisterFile {
     bool stream_write = false;
     std::uint32_t stream_word = 0;
     bool abort = false;
+    bool probe_clear = false;
     bool flush = false;
     bool start = false;
     std::uint8_t start_mask = 0;
