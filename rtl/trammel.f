@@ -32,6 +32,7 @@ host/frames/frame_receiver.sv
 host/frames/frame_sender.sv
 host/frames/frame_session.sv
 host/port_arbiter.sv
+host/spi/spi_port.sv
 host/uart/uart_baud.sv
 host/uart/uart_port.sv
 host/uart/uart_receiver.sv
@@ -46,6 +47,10 @@ path/begun_counter.sv
 path/chord_counter.sv
 path/chord_rotation.sv
 path/deviation_accumulator.sv
+path/deviation_choice.sv
+path/deviation_compare.sv
+path/deviation_lane.sv
+path/deviation_steps.sv
 path/geometry_sequencer.sv
 path/instant_commands.sv
 path/path_commands.sv

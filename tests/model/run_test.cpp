@@ -201,7 +201,9 @@ class Program {
   std::uint64_t circle(std::uint64_t ticks) {
     const std::int64_t r = static_cast<std::int64_t>(p_.any(1, 6));
     ticks = std::max<std::uint64_t>(ticks, static_cast<std::uint64_t>(8 * r));
-    p_.send(CoreBench::circle_words(number_++, ticks, r, p_.one_in(2)));
+    const bool can = card_map::has_engine(p_.clocked.core.config().engines, card_map::engine::kAccumulator8);
+    const bool eight = can && p_.one_in(2);
+    p_.send(CoreBench::circle_words(number_++, ticks, r, p_.one_in(2), eight));
     return ticks;
   }
 
@@ -329,6 +331,7 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     config.axes = 1 + static_cast<unsigned>(random() % 8);
     config.idle_level = static_cast<std::uint32_t>(random() & ((1U << 2 * config.axes) - 1));
     if (random() % 2 == 0) config.engines |= card_map::field::kEnginesArcGenerator;
+    if (random() % 2 == 0) config.engines |= card_map::field::kEnginesAccumulator8;
     Pair pair(of, config, random());
     Program program(pair);
     program.settings();
@@ -376,6 +379,7 @@ TEST(Run, EqualsClockOnArcsInChords) {
     SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
     model::CardConfig config;
     config.engines |= card_map::field::kEnginesArcGenerator;
+    config.engines |= card_map::field::kEnginesAccumulator8;
     Pair pair(Pair::Of::ClockAndRun, config, seed() * 1'000'003 + i);
     Program program(pair);
     const double paces[] = {5, 9.7, 31, 120};

@@ -52,6 +52,8 @@ class Programs {
   unsigned wrong_every = 100;
   // Without them all paths are lines.
   bool arcs = true;
+  // Every other arc in 8 directions.
+  bool eight_directions = false;
   // In chords, on the arc generator.
   bool chords = false;
   // OUTPUT and MARK between paths.
@@ -154,10 +156,12 @@ class Programs {
     return ticks;
   }
 
-  // A full circle in unit steps, with as many path ticks as it has steps.
+  // A full circle, with as many path ticks as it has steps.
   std::uint64_t arc(std::vector<Halfwords>& to) {
+    constexpr std::int64_t kStepsInEight[] = {6, 12, 16, 24, 28, 32, 40, 44};  // 4 round(sqrt(2) R) from R = 2 on
     const std::int64_t radius = 1 + dice_.below(8);
-    const std::int64_t steps = 8 * radius;
+    const bool eight = eight_directions && dice_.chance(2);
+    const std::int64_t steps = eight ? kStepsInEight[radius - 1] : 8 * radius;
     const std::int64_t ticks = steps + dice_.below(dice_.chance(2) ? 4 : 300);
     const bool wrong = dice_.chance(wrong_every);
     const auto prescale = static_cast<std::int64_t>((int128{steps} * kOnePulse + ticks / 2) / ticks);
@@ -166,7 +170,7 @@ class Programs {
     to.push_back(stored_command(card_map::Opcode::Arc, 1U << x | 1U << y, static_cast<std::uint64_t>(ticks),
                                 {{"path_ticks", steps},
                                  {"prescale", prescale},
-                                 {"plane", y << 8 | x << 4 | dice_.below(2)},
+                                 {"plane", y << 8 | x << 4 | (eight ? 2U : 0U) | dice_.below(2)},
                                  {"quadrants", wrong ? 5 : 4},
                                  {"gradient_x", 2 * radius},
                                  {"half_x", 1},

@@ -105,10 +105,11 @@ void Quantiser::add(const Phase& phase) {
     // A ramp whose acceleration begins and ends at once gets the tick that it shares with a constant speed.
     const double share = smooth_ ? 0.5 : phase.acceleration == 0 ? 0 : 1 - 1e-9;
     std::uint64_t tick = base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
-    // A phase that ends with a block does so at its tick: the next one may be for the next block's limits alone.
+    // A phase that ends with a block does so at its tick: the next one may be for the next block's limits alone, and
+    // what rounding leaves beyond a cut is no piece.
     constexpr double kSame = 1e-9;  // mm
-    if (smooth_ && mm_ - block.begin < kSame) tick = block.begin_ticks;
-    if (smooth_ && block.end - mm_ < kSame) tick = block.end_ticks;
+    if ((smooth_ || block.begin == base_mm_) && mm_ - block.begin < kSame) tick = block.begin_ticks;
+    if ((smooth_ || block.cut) && block.end - mm_ < kSame) tick = block.end_ticks;
     // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
     portion(phase, begin, mm_, std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks)), false, false);
   }

@@ -28,8 +28,10 @@ package card_map_pkg;
   localparam int DECODE_CLOCKS = 8;
   // Clocks to decode a line, for each of its axes
   localparam int DECODE_AXIS_CLOCKS = 3;
-  // Clocks from one path tick of the deviation accumulator to the next at least
+  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
   localparam int ACCUMULATOR_TICK_CLOCKS = 9;
+  // The same in 8 directions
+  localparam int ACCUMULATOR_8_TICK_CLOCKS = 17;
   // Clocks within which an arc begins once the accumulator is free
   localparam int ACCUMULATOR_HANDOVER_CLOCKS = 30;
   // Fraction bits of a centre in ARC's deviation and gradients

@@ -53,6 +53,7 @@ class Bench {
   explicit Bench(std::uint64_t seed)
       : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.arcs = kArcs;
+    programs_.eight_directions = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator8);
     programs_.chords = kChords;
     programs_.path_commands = kPathCommands;
     programs_.probes = kPathCommands;

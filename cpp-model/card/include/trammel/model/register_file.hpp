@@ -22,7 +22,8 @@ class RegisterFile {
       kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode |
       card_map::field::kEnginesUnderrunHold | card_map::field::kEnginesPathCommands | card_map::field::kEnginesClasses |
       card_map::field::kEnginesWatermarks;
-  static constexpr std::uint32_t kMostEngines = kDefaultEngines | card_map::field::kEnginesArcGenerator;
+  static constexpr std::uint32_t kMostEngines =
+      kDefaultEngines | card_map::field::kEnginesArcGenerator | card_map::field::kEnginesAccumulator8;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8

@@ -37,7 +37,8 @@ inline constexpr std::uint32_t kShaperReversalClocks =
 inline constexpr std::uint32_t kDecodeClocks = 8;      // Clocks to decode a line, without those for each axis
 inline constexpr std::uint32_t kDecodeAxisClocks = 3;  // Clocks to decode a line, for each of its axes
 inline constexpr std::uint32_t kAccumulatorTickClocks =
-    9;  // Clocks from one path tick of the deviation accumulator to the next at least
+    9;  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
+inline constexpr std::uint32_t kAccumulator8TickClocks = 17;  // The same in 8 directions
 inline constexpr std::uint32_t kAccumulatorHandoverClocks =
     30;  // Clocks within which an arc begins once the accumulator is free
 inline constexpr std::uint32_t kCentreFractionBits = 8;  // Fraction bits of a centre in ARC's deviation and gradients
