@@ -61,6 +61,7 @@ path/path_commands.sv
 path/path_engines.sv
 path/path_sequencer.sv
 path/path_tick_gate.sv
+path/position_streaming.sv
 path/probe.sv
 path/tick_counter.sv
 registers/register_access.sv
