@@ -40,7 +40,7 @@ struct Options {
   std::int64_t largest = 1000;
   unsigned threads = std::max(1U, std::thread::hardware_concurrency());
   std::string drive = "full";
-  bool standstill = false;
+  bool no_ramps = false;
   bool progress = false;
   std::optional<std::string> json;
   std::optional<std::string> plot;
@@ -52,11 +52,6 @@ std::string title_of(const CurveChoice& choice) {
   if (choice.circle) return fmt::format("circle {}{}", *choice.circle, turn);
   if (choice.arc) return fmt::format("arc {}{}", *choice.arc, turn);
   return fmt::format("ellipse {}{}", *choice.ellipse, turn);
-}
-
-void check_velocity(const VelocityChoice& choice) {
-  if (choice.clock_hz == 0U) throw UsageError("--clock 0: not a clock");
-  if (choice.velocity == 0U) throw UsageError("--velocity 0: a line that never ends");
 }
 
 void check_size(const interpolation::Curve& curve) {
@@ -91,7 +86,7 @@ Comparison compare(const Options& options, std::vector<measure::Trace>& traces) 
   }
   if (result.methods.empty()) throw UsageError(result.refused.front().reason);
   result.motor.drive = options.drive == "half" ? measure::Drive::kHalfStep : measure::Drive::kFullStep;
-  result.motor.from_standstill = options.standstill;
+  if (options.no_ramps) result.motor.ramp_time = 0;
   result.speeds = measure::sweep_speeds();
   ProgressBar bar(options.progress);
   result.sweeps = measure::sweep_motors(traces, ideal, result.motor, result.speeds, options.threads,
@@ -115,12 +110,6 @@ void compare_curve(const Options& options) {
 void compare_random(const Options& options) {
   if (options.curve.given()) throw UsageError("--random takes no curve of its own");
   if (options.plot) throw UsageError("--plot: a picture is made of one curve, not of --random lines");
-  if (*options.random < 1 || *options.random > kMostLines) {
-    throw UsageError(fmt::format("--random {}: 1 to {} lines", *options.random, kMostLines));
-  }
-  if (options.largest < 1 || static_cast<std::uint64_t>(options.largest) > measure::kMostPulses / 2) {
-    throw UsageError(fmt::format("--largest {}: 1 to {} pulses", options.largest, measure::kMostPulses / 2));
-  }
   measure::RandomLines lines;
   lines.count = *options.random;
   lines.seed = options.seed;
@@ -158,20 +147,23 @@ void add_compare_command(CLI::App& app) {
       "all methods on one curve, or over random lines: distances, host cost, evenness, vibration of a motor");
   options->curve.add_to(*command);
   options->velocity.add_to(*command);
-  command->add_option("--random", options->random, "so many random lines instead of one curve")->type_name("N");
-  command->add_option("--seed", options->seed, "of the random lines (default 1)");
-  command->add_option("--largest", options->largest, "pulses of an axis of a random line, at most (default 1000)");
+  command->add_option("--random", options->random, "so many random lines instead of one curve")
+      ->transform(whole_number(1, kMostLines, "lines"))
+      ->type_name("N");
+  // As far as every whole number is a double.
+  command->add_option("--seed", options->seed, "of the random lines (default 1)")
+      ->transform(whole_number(0, std::uint64_t{1} << 53));
+  command->add_option("--largest", options->largest, "pulses of an axis of a random line, at most (default 1000)")
+      ->transform(whole_number(1, measure::kMostPulses / 2, "pulses"));
   command->add_option("--threads", options->threads, "threads (default: one a core)")->transform(whole_number(1, 256));
   command->add_option("--drive", options->drive, "steps of the simulated motor: full or half (default full)")
       ->check(CLI::IsMember({"full", "half"}));
-  command->add_flag("--standstill", options->standstill, "start the simulated motor from rest, not at speed");
+  command->add_flag("--no-ramps", options->no_ramps,
+                    "start and stop the simulated motors at full speed, not on ramps of 50 ms");
   command->add_flag("--progress", options->progress, "show a progress bar even if stderr is no terminal");
   command->add_option("--json", options->json, "everything measured as JSON ('-': standard output)")->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")->type_name("FILE.svg");
-  command->callback([options] {
-    check_velocity(options->velocity);
-    options->random ? compare_random(*options) : compare_curve(*options);
-  });
+  command->callback([options] { options->random ? compare_random(*options) : compare_curve(*options); });
 }
 
 }  // namespace trammel::app

@@ -1,11 +1,9 @@
 #include "compare_plot.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <stdexcept>
+#include <string>
+
+#include "trammel/chart/chart.hpp"
 
 namespace trammel::app {
 namespace {
@@ -13,77 +11,33 @@ namespace {
 namespace measure = measure;
 
 constexpr double kWidth = 1100;
-constexpr double kLeft = 150;  // of the small panels
-constexpr double kPanelWidth = 440;
-constexpr double kRight = kLeft + kPanelWidth + 50;
-constexpr double kRowHeight = 56;
-constexpr double kTop = 90;
-constexpr double kMotorHeight = 300;
+constexpr double kTop = 40;
+constexpr double kRowHeight = 190;
+constexpr double kMotorHeight = 460;
 // Points of one polyline at most: two panels of ten methods stay below 1 MB.
 constexpr std::size_t kMostPoints = 2000;
 
-constexpr std::array<const char*, 10> kColours = {"#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd",
-                                                  "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf"};
-
-constexpr const char* kStyle = R"(<style>
-text{font:13px sans-serif;fill:#222} .small{font-size:11px;fill:#555} .title{font-size:18px;font-weight:bold}
-.frame{fill:#fcfcfc;stroke:#bbb} .grid{stroke:#ddd} polyline{stroke-width:1.3}
-</style>
-)";
-
-struct Sample {
-  double x;
-  double y;
-};
-
-// A rectangle with linear scales; y upwards.
-struct Panel {
-  double left, top, width, height;
-  double x_low, x_high, y_low, y_high;
-
-  double x(double value) const { return left + width * (value - x_low) / (x_high - x_low); }
-  double y(double value) const { return top + height * (1 - (value - y_low) / (y_high - y_low)); }
-  std::string frame() const {
-    return fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"frame\"/>\n", left, top, width,
-                       height);
-  }
-  // Steps: each value is held until the next one.
-  std::string held(const std::vector<Sample>& samples, const char* colour) const {
-    std::string text = "<polyline fill=\"none\" points=\"";
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (i > 0) text += fmt::format("{:.1f},{:.1f} ", x(samples[i].x), y(samples[i - 1].y));
-      text += fmt::format("{:.1f},{:.1f} ", x(samples[i].x), y(samples[i].y));
-    }
-    return text + fmt::format("\" stroke=\"{}\"/>\n", colour);
-  }
-  std::string line(const std::vector<Sample>& samples, const char* colour) const {
-    std::string text = "<polyline fill=\"none\" points=\"";
-    for (const Sample& sample : samples) text += fmt::format("{:.1f},{:.1f} ", x(sample.x), y(sample.y));
-    return text + fmt::format("\" stroke=\"{}\"/>\n", colour);
-  }
-};
-
 // Of each of at most kMostPoints groups of neighbours, the largest: peaks stay.
-std::vector<Sample> thinned(const std::vector<Sample>& samples) {
-  const std::size_t group = samples.size() / kMostPoints + 1;
-  std::vector<Sample> result;
-  for (std::size_t i = 0; i < samples.size(); i += group) {
-    const auto end = samples.begin() + static_cast<std::ptrdiff_t>(std::min(i + group, samples.size()));
-    result.push_back(*std::max_element(samples.begin() + static_cast<std::ptrdiff_t>(i), end,
-                                       [](const Sample& a, const Sample& b) { return a.y < b.y; }));
+std::vector<chart::Point> thinned(const std::vector<chart::Point>& points) {
+  const std::size_t group = points.size() / kMostPoints + 1;
+  std::vector<chart::Point> result;
+  for (std::size_t i = 0; i < points.size(); i += group) {
+    const auto end = points.begin() + static_cast<std::ptrdiff_t>(std::min(i + group, points.size()));
+    result.push_back(*std::max_element(points.begin() + static_cast<std::ptrdiff_t>(i), end,
+                                       [](const chart::Point& a, const chart::Point& b) { return a[1] < b[1]; }));
   }
   return result;
 }
 
-std::vector<Sample> distance_samples(const measure::Trace& trace, const measure::IdealCurve& curve) {
-  std::vector<Sample> samples = {{0, 0}};
+std::vector<chart::Point> distances(const measure::Trace& trace, const measure::IdealCurve& curve) {
+  std::vector<chart::Point> points = {{0, 0}};
   measure::TracePosition position = trace.start();
   for (const measure::Event& event : trace.events()) {
     for (std::size_t a = 0; a < trace.axes(); ++a) position[a] += event.direction[a];
-    const double time = static_cast<double>(event.time) / static_cast<double>(trace.total_time());
-    samples.push_back({time, curve.distance(position)});
+    const double time = 100 * static_cast<double>(event.time) / static_cast<double>(trace.total_time());
+    points.push_back({time, curve.distance(position)});
   }
-  return thinned(samples);
+  return thinned(points);
 }
 
 // The axis with the most pulses; the first of equals. It is the one a motor is shaken by most often.
@@ -95,114 +49,96 @@ std::size_t busiest_axis(const measure::Trace& trace) {
   return busiest;
 }
 
-std::vector<Sample> interval_samples(const measure::Trace& trace, const measure::IdealCurve& curve) {
-  std::vector<Sample> samples;
+std::vector<chart::Point> intervals(const measure::Trace& trace, const measure::IdealCurve& curve) {
+  std::vector<chart::Point> points;
   const std::vector<double> deviations = measure::interval_deviations(trace, curve, busiest_axis(trace));
   for (std::size_t i = 0; i < deviations.size(); ++i) {
-    samples.push_back({static_cast<double>(i) / static_cast<double>(deviations.size()), 100 * deviations[i]});
+    points.push_back({100 * static_cast<double>(i) / static_cast<double>(deviations.size()), 100 * deviations[i]});
   }
-  return thinned(samples);
+  return thinned(points);
 }
 
-struct Extent {
-  double low = 0;
-  double high = 0;
-  void take(const std::vector<Sample>& samples) {
-    for (const Sample& sample : samples) {
-      low = std::min(low, sample.y);
-      high = std::max(high, sample.y);
+// One row a method: distance over the time of the curve, and the intervals of its busiest axis; all rows at one scale.
+void add_rows(chart::Figure& figure, const Comparison& comparison, const std::vector<measure::Trace>& traces,
+              const measure::IdealCurve& curve) {
+  std::vector<chart::Panel> left;
+  std::vector<chart::Panel> right;
+  double farthest = 0.5;
+  double low = -1;
+  double high = 1;
+  for (std::size_t m = 0; m < traces.size(); ++m) {
+    const std::string name(interpolation::info(comparison.methods[m].method).name);
+    const chart::Series distance{"", chart::colour(m), distances(traces[m], curve), chart::Mark::kStairs, 1.2};
+    const chart::Series interval{"", chart::colour(m), intervals(traces[m], curve), chart::Mark::kLine, 1.2};
+    for (const chart::Point& point : distance.points) farthest = std::max(farthest, point[1]);
+    for (const chart::Point& point : interval.points) {
+      low = std::min(low, point[1]);
+      high = std::max(high, point[1]);
+    }
+    left.push_back({name + ": distance from the curve", {"% of the time"}, {"pulses"}, {distance}});
+    right.push_back(
+        {name + ": intervals of its busiest axis", {"% of its pulses"}, {"% off the even one"}, {interval}});
+  }
+  for (std::size_t m = 0; m < traces.size(); ++m) {
+    left[m].y.low = 0;
+    left[m].y.high = farthest;
+    right[m].y.low = low;
+    right[m].y.high = high;
+    const double top = kTop + kRowHeight * static_cast<double>(m);
+    figure.add(left[m], {0, top, kWidth / 2, kRowHeight});
+    figure.add(right[m], {kWidth / 2, top, kWidth / 2, kRowHeight});
+  }
+}
+
+// Ripple over speed; where steps are lost a cross at the foot instead.
+chart::Panel motor_panel(const Comparison& comparison) {
+  chart::Panel panel{"Simulated motors: rms speed ripple; a cross at the foot: steps lost",
+                     {"pulses/s along the path", true},
+                     {"% of the speed", true},
+                     {}};
+  double least = 100;
+  for (const auto& sweep : comparison.sweeps) {
+    for (const measure::Vibration& vibration : sweep) {
+      if (!vibration.lost_steps && vibration.rms_ripple > 1e-4) least = std::min(least, 100 * vibration.rms_ripple);
     }
   }
-};
-
-// One row a method: distance along the way, and the intervals of its busiest axis; all rows at one scale.
-std::string rows(const Comparison& comparison, const std::vector<measure::Trace>& traces,
-                 const measure::IdealCurve& curve) {
-  std::vector<std::vector<Sample>> distances;
-  std::vector<std::vector<Sample>> intervals;
-  Extent distance{0, 0.5};
-  Extent interval{-1, 1};
-  for (const measure::Trace& trace : traces) {
-    distances.push_back(distance_samples(trace, curve));
-    intervals.push_back(interval_samples(trace, curve));
-    distance.take(distances.back());
-    interval.take(intervals.back());
-  }
-  std::string text = fmt::format(
-      "<text x=\"{}\" y=\"{}\">distance from the curve over time, 0 to {:.2f} pulses</text>\n<text x=\"{}\" "
-      "y=\"{}\">interval deviation of the busiest axis, {:.0f} to {:.0f} %</text>\n",
-      kLeft, kTop - 10, distance.high, kRight, kTop - 10, interval.low, interval.high);
-  for (std::size_t m = 0; m < traces.size(); ++m) {
-    const double top = kTop + kRowHeight * static_cast<double>(m);
-    const char* colour = kColours[m % kColours.size()];
-    const Panel left{kLeft, top, kPanelWidth, kRowHeight - 8, 0, 1, distance.low, 1.05 * distance.high};
-    const Panel right{kRight, top, kPanelWidth, kRowHeight - 8, 0, 1, 1.05 * interval.low, 1.05 * interval.high};
-    text += fmt::format("<text x=\"10\" y=\"{:.1f}\" style=\"fill:{}\">{}</text>\n", top + kRowHeight / 2, colour,
-                        interpolation::info(comparison.methods[m].method).name);
-    text += left.frame() + left.held(distances[m], colour);
-    text += right.frame() + right.line({{0, 0}, {1, 0}}, "#ddd") + right.line(intervals[m], colour);
-  }
-  return text;
-}
-
-// Ripple over speed, both logarithmic, until steps are lost: there the line ends with a cross.
-std::string motor_panel(const Comparison& comparison, double top) {
-  constexpr double kLowest = -4;
-  const Panel panel{kLeft,
-                    top,
-                    kRight + kPanelWidth - kLeft,
-                    kMotorHeight,
-                    std::log10(comparison.speeds.front()),
-                    std::log10(comparison.speeds.back()),
-                    kLowest,
-                    1};
-  std::string text =
-      fmt::format(
-          "<text x=\"{}\" y=\"{}\">rms speed ripple of the simulated motors, relative to the speed along the "
-          "path, over pulses/s along the path (cross: steps lost)</text>\n",
-          kLeft, top - 10) +
-      panel.frame();
-  for (double power = kLowest; power <= 1; ++power) {
-    text += panel.line({{panel.x_low, power}, {panel.x_high, power}}, "#ddd");
-    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"small\" text-anchor=\"end\">{:g} %</text>\n",
-                        kLeft - 6, panel.y(power) + 4, 100 * std::pow(10, power));
-  }
-  for (std::size_t i = 0; i < comparison.speeds.size(); i += 3) {
-    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"small\" text-anchor=\"middle\">{:.0f}/s</text>\n",
-                        panel.x(std::log10(comparison.speeds[i])), top + kMotorHeight + 16, comparison.speeds[i]);
-  }
+  // The crosses stand below what is the least of all, a row a method.
+  double foot = least / 1.15;
   for (std::size_t m = 0; m < comparison.sweeps.size(); ++m) {
-    const char* colour = kColours[m % kColours.size()];
-    std::vector<Sample> samples;
+    chart::Series ripple{std::string(interpolation::info(comparison.methods[m].method).name), chart::colour(m), {}};
+    chart::Series lost{"", chart::colour(m), {}, chart::Mark::kCrosses, 3};
+    const auto finish_line = [&] {
+      if (!ripple.points.empty()) panel.series.push_back(ripple);
+      if (!ripple.points.empty()) ripple.label.clear();
+      ripple.points.clear();
+    };
     for (std::size_t i = 0; i < comparison.speeds.size(); ++i) {
       const measure::Vibration& vibration = comparison.sweeps[m][i];
-      const double speed = std::log10(comparison.speeds[i]);
       if (vibration.lost_steps) {
-        const double height = samples.empty() ? 0 : samples.back().y;
-        text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" style=\"fill:{}\" text-anchor=\"middle\">x</text>\n",
-                            panel.x(speed), panel.y(height) + 4, colour);
-        break;
+        finish_line();
+        lost.points.push_back({comparison.speeds[i], foot});
+      } else {
+        ripple.points.push_back({comparison.speeds[i], 100 * vibration.rms_ripple});
       }
-      samples.push_back({speed, std::log10(std::clamp(vibration.rms_ripple, 1e-4, 10.0))});
     }
-    text += panel.line(samples, colour);
+    finish_line();
+    if (!lost.points.empty()) {
+      panel.series.push_back(lost);
+      foot /= 1.12;
+    }
   }
-  return text;
+  return panel;
 }
 
 }  // namespace
 
 std::string comparison_svg(const Comparison& comparison, const std::vector<measure::Trace>& traces,
                            const measure::IdealCurve& curve) {
-  const double motor_top = kTop + kRowHeight * static_cast<double>(traces.size()) + 40;
-  const double height = motor_top + kMotorHeight + 40;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n{2}"
-      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"10\" y=\"34\" class=\"title\">{3}</text>\n",
-      kWidth + 40, height, kStyle, comparison.title);
-  svg += rows(comparison, traces, curve);
-  svg += motor_panel(comparison, motor_top);
-  return svg + "</svg>\n";
+  const double motor_top = kTop + kRowHeight * static_cast<double>(traces.size());
+  chart::Figure figure(kWidth, motor_top + kMotorHeight, comparison.title);
+  add_rows(figure, comparison, traces, curve);
+  figure.add(motor_panel(comparison), {0, motor_top, kWidth, kMotorHeight});
+  return figure.svg();
 }
 
 }  // namespace trammel::app

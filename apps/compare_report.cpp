@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 
 constexpr std::array<char, measure::kTraceAxes> kAxisNames = {'x', 'y', 'z', 'a'};
 // Every octave of the sweep is a column.
-constexpr std::size_t kColumnStride = 3;
+constexpr std::size_t kColumnStride = measure::kSpeedsAnOctave;
 
 std::string_view name_of(Method method) { return interpolation::info(method).name; }
 
@@ -47,6 +47,20 @@ class Table {
 std::string decimals(double value) { return fmt::format("{:.3f}", value); }
 std::string percent(double value) { return fmt::format("{:.1f}", 100 * value); }
 
+// What strays farther than rounding and a step explain has left the curve.
+std::string left_curves(const Comparison& comparison) {
+  constexpr double kStep = 1.5;
+  std::string text;
+  for (const measure::MethodMeasures& method : comparison.methods) {
+    const double largest = method.distances.perpendicular.largest;
+    if (largest <= kStep) continue;
+    const bool spiral = !comparison.is_line && (method.method == Method::kDda || method.method == Method::kDdaHalf);
+    text += fmt::format("{} leaves its curve: {:.3f} pulses off{}\n", name_of(method.method), largest,
+                        spiral ? "; digital integration of a circle spirals outward along its tangents" : "");
+  }
+  return text;
+}
+
 std::string distances_table(const Comparison& comparison) {
   std::vector<std::string> head = {"method", "steps",      "time", "host operations", "register writes", "largest",
                                    "mean",   "horizontal", "mean"};
@@ -67,10 +81,15 @@ std::string distances_table(const Comparison& comparison) {
     for (std::size_t a = 0; a < comparison.axes; ++a) row.push_back(decimals(d.axis[a].largest));
     table.add(row);
   }
-  return "\ncost, and distance from the curve in pulses: perpendicular (largest, mean), horizontal (lines), on each "
-         "axis "
-         "from\nthe point at constant speed\n" +
-         table.text();
+  return "\nCost, and distance from the curve in pulses\n"
+         "  steps, time      times with a step; the curve's length in the method's own time unit\n"
+         "  host operations  how often the host computes (once where the card runs the method); register writes: words "
+         "sent\n"
+         "  largest, mean    perpendicular distance after each step\n"
+         "  horizontal, mean along x to the point of the line at the same y, largest and mean (lines alone)\n"
+         "  on x, on y ...   largest distance on one axis from the point that runs along the curve at constant "
+         "speed\n" +
+         table.text() + left_curves(comparison);
 }
 
 std::string evenness_table(const Comparison& comparison) {
@@ -96,10 +115,21 @@ std::string evenness_table(const Comparison& comparison) {
     row.push_back(percent(method.ripple.largest));
     table.add(row);
   }
-  return "\nstep intervals of each axis, deviation in % of the even interval: largest, rms, highest spectral line at "
-         "its "
-         "frequency\nin cycles a pulse; speed ripple along the path in % of the mean speed\n" +
+  return "\nEvenness\n"
+         "  x largest, x rms  deviation of the axis's step intervals in % of the even one\n"
+         "  x line, x at      highest line of their spectrum in %, and its frequency in cycles a pulse\n"
+         "  ripple rms, largest  speed along the path, deviation in % of the mean speed\n" +
          table.text();
+}
+
+std::string lost_text(const Comparison& comparison, std::size_t method) {
+  std::string text;
+  for (const measure::SpeedRange& range : measure::lost_at(comparison.speeds, comparison.sweeps[method])) {
+    if (!text.empty()) text += ", ";
+    text += fmt::format("{:.0f}", range.first);
+    if (range.last > range.first) text += fmt::format(" .. {:.0f}", range.last);
+  }
+  return text.empty() ? "-" : text;
 }
 
 template <class Cell>
@@ -108,7 +138,7 @@ std::string motor_table(const Comparison& comparison, const std::string& title, 
   for (std::size_t i = 0; i < comparison.speeds.size(); i += kColumnStride) {
     head.push_back(fmt::format("{:.0f}/s", comparison.speeds[i]));
   }
-  head.push_back("lost from");
+  head.push_back("lost at");
   Table table(head);
   for (std::size_t m = 0; m < comparison.methods.size(); ++m) {
     std::vector<std::string> row = {std::string(name_of(comparison.methods[m].method))};
@@ -116,8 +146,7 @@ std::string motor_table(const Comparison& comparison, const std::string& title, 
       const measure::Vibration& vibration = comparison.sweeps[m][i];
       row.push_back(vibration.lost_steps ? "lost" : cell(vibration));
     }
-    const auto lost = measure::lost_from(comparison.speeds, comparison.sweeps[m]);
-    row.push_back(lost ? fmt::format("{:.0f}/s", *lost) : "-");
+    row.push_back(lost_text(comparison, m));
     table.add(row);
   }
   return title + table.text();
@@ -188,14 +217,13 @@ std::string table_of(const Comparison& comparison) {
   }
   text += distances_table(comparison);
   text += evenness_table(comparison);
-  text += motor_table(
-      comparison,
-      fmt::format(
-          "\nsimulated motors, {} steps{}: rms speed ripple in % of the speed along the path, by pulses/s along "
-          "the path\n",
-          drive_name(comparison), comparison.motor.from_standstill ? ", from a standstill" : ""),
-      [](const measure::Vibration& vibration) { return percent(vibration.rms_ripple); });
-  text += motor_table(comparison, "\nsimulated motors: largest lag of a rotor in full steps\n",
+  text += motor_table(comparison,
+                      fmt::format("\nSimulated motors, {} steps{}: rms speed ripple in % of the speed, by pulses/s "
+                                  "along the path; lost at: speeds "
+                                  "of\nthe sweep at which steps were lost\n",
+                                  drive_name(comparison), comparison.motor.ramp_time == 0 ? ", without ramps" : ""),
+                      [](const measure::Vibration& vibration) { return percent(vibration.rms_ripple); });
+  text += motor_table(comparison, "\nThe same: largest lag of a rotor behind its field, in full steps\n",
                       [](const measure::Vibration& vibration) { return fmt::format("{:.2f}", vibration.largest_lag); });
   return text;
 }
@@ -208,7 +236,7 @@ std::string json_text(const Comparison& comparison) {
   json["velocity"] =
       static_cast<double>(comparison.options.velocity) / static_cast<double>(comparison.options.velocity_divisor);
   json["drive"] = drive_name(comparison);
-  json["from_standstill"] = comparison.motor.from_standstill;
+  json["motor_ramp_seconds"] = comparison.motor.ramp_time;
   json["methods"] = ordered_json::array();
   for (std::size_t m = 0; m < comparison.methods.size(); ++m) {
     ordered_json method = json_of(comparison.methods[m], comparison.axes);
@@ -216,9 +244,10 @@ std::string json_text(const Comparison& comparison) {
     for (std::size_t i = 0; i < comparison.speeds.size(); ++i) {
       method["motor"].push_back(json_of(comparison.sweeps[m][i], comparison.speeds[i], comparison.axes));
     }
-    const auto lost = measure::lost_from(comparison.speeds, comparison.sweeps[m]);
-    method["lost_from"] = nullptr;
-    if (lost) method["lost_from"] = *lost;
+    method["lost_at"] = ordered_json::array();
+    for (const measure::SpeedRange& range : measure::lost_at(comparison.speeds, comparison.sweeps[m])) {
+      method["lost_at"].push_back({range.first, range.last});
+    }
     json["methods"].push_back(method);
   }
   json["refused"] = ordered_json::array();

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine_options.hpp"
 #include "errors.hpp"
 #include "trammel/interpolation/any_interpolator.hpp"
 
@@ -81,8 +82,13 @@ Curve CurveChoice::curve() const {
 }
 
 void VelocityChoice::add_to(CLI::App& command) {
-  command.add_option("--clock", clock_hz, "clock of one-shot and divider methods (default 10000000)")->type_name("HZ");
-  command.add_option("--velocity", velocity, "lines a second, the second paper's v (default 5000)");
+  // As make_interpolator() takes them.
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
+  command.add_option("--clock", clock_hz, "clock of one-shot and divider methods (default 10000000)")
+      ->transform(whole_number(1, kMost, "Hz"))
+      ->type_name("HZ");
+  command.add_option("--velocity", velocity, "lines a second, the second paper's v (default 5000)")
+      ->transform(whole_number(1, kMost, "lines/s"));
 }
 
 interpolation::Options VelocityChoice::options(const Curve& curve) const {

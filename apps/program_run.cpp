@@ -105,6 +105,7 @@ void tell(const run::Plan& plan, RunResult& result) {
   result.segments = plan.segments;
   result.planned_seconds = plan.seconds;
   result.motion = plan.motion;
+  result.blends = plan.blends;
   result.accepted = plan.accepted;
   result.feeds_not_reached = plan.feeds_not_reached;
 }

@@ -62,6 +62,7 @@ struct RunResult {
   std::uint64_t commands = 0;                    // sent to the card
   double planned_seconds = 0;                    // estimate
   run::PlannedMotion motion;
+  run::Blends blends;
   ProfileReport profile;
   std::optional<std::uint32_t> under_runs;      // none where the card does not count them
   std::uint64_t path_steps = 0;                 // before the shapers

@@ -54,13 +54,17 @@ std::string entry_page(const std::vector<Page>& pages) {
   std::string text =
       "# Both papers, made again\n\n"
       "Every table, figure and claim of the two papers behind this project, made again by `trammel reproduce`, which\n"
-      "wrote these pages. PASS: as the paper has it. CORRECTED: the paper is wrong or silent there, and what is right\n"
-      "was found again. FAIL: neither; the command then ends with status 1.\n";
+      "wrote these pages. PASS: as the paper has it. CORRECTED: the paper is wrong there, and what is right was "
+      "found.\n"
+      "ADDED: the paper is silent there, and what it leaves open was found. FAIL: none of these; the command then "
+      "ends\n"
+      "with status 1.\n";
   for (const Page& page : pages) {
     text += fmt::format(
-        "\n## [{}]({})\n\n{} PASS, {} CORRECTED, {} FAIL\n\n| item | verdict | paper | found |\n|---|---|---|---|\n",
+        "\n## [{}]({})\n\n{} PASS, {} CORRECTED, {} ADDED, {} FAIL\n\n"
+        "| item | verdict | paper | found |\n|---|---|---|---|\n",
         page.title(), page.file(), page.count(Verdict::kPass), page.count(Verdict::kCorrected),
-        page.count(Verdict::kFail));
+        page.count(Verdict::kAdded), page.count(Verdict::kFail));
     for (const reproduce::Item& item : page.items()) {
       text += fmt::format("| {} | {} | {} | {} |\n", cell(item.what), name_of(item.verdict), cell(item.paper),
                           cell(item.found));
@@ -111,16 +115,18 @@ void execute(const Options& options) {
   std::size_t failed = 0;
   std::size_t passed = 0;
   std::size_t corrected = 0;
+  std::size_t added = 0;
   std::map<std::string, std::string> files{{"README.md", entry_page(pages)}};
   for (const Page& page : pages) {
     files.merge(page.files());
     passed += page.count(Verdict::kPass);
     corrected += page.count(Verdict::kCorrected);
+    added += page.count(Verdict::kAdded);
     failed += page.count(Verdict::kFail);
   }
   write_all(options.out, files);
-  fmt::print("{} items: {} PASS, {} CORRECTED, {} FAIL; pages in {}\n", passed + corrected + failed, passed, corrected,
-             failed, options.out);
+  fmt::print("{} items: {} PASS, {} CORRECTED, {} ADDED, {} FAIL; pages in {}\n", passed + corrected + added + failed,
+             passed, corrected, added, failed, options.out);
   if (failed != 0) throw std::runtime_error(fmt::format("{} items of the papers were not reproduced", failed));
 }
 

@@ -93,7 +93,7 @@ nlohmann::ordered_json events_json(const std::vector<MadeEvent>& events) {
 std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   const std::array<std::pair<std::string_view, const char*>, 5> reasons{{
       {" M0 M1 ", "stops for the operator, which a simulation does not make:"},
-      {" G64 P ", "no blending yet, corners are kept as with G64 without P:"},
+      {" G64 Q ", "no lines are joined to fewer (naive cam):"},
       {" M3 M4 M5 M7 M8 M9 ", "no output for them in [outputs] of the machine file:"},
       {" S ", "a value that waits for modulated outputs:"},
       {"", "accepted, without hardware yet:"},
@@ -116,6 +116,33 @@ nlohmann::ordered_json motion_json(const run::PlannedMotion& motion) {
   return {{"stops", motion.stops},
           {"velocity_jump", motion.velocity_jump},
           {"acceleration_step", motion.acceleration_step}};
+}
+
+std::string blends_text(const run::Blends& blends) {
+  const auto count = [&](planner::Corner corner) { return blends.corners[static_cast<std::size_t>(corner)]; };
+  std::string text;
+  if (count(planner::Corner::kBlended) != 0) {
+    text += fmt::format("  blends (G64 P): {}, at most {:.4g} mm from the programmed path\n",
+                        count(planner::Corner::kBlended), blends.distance);
+  }
+  std::string kept;
+  const auto say = [&](planner::Corner corner, const char* why) {
+    if (count(corner) != 0) kept += fmt::format("{} {} ({})", kept.empty() ? "" : ",", count(corner), why);
+  };
+  say(planner::Corner::kReversal, "reversals");
+  say(planner::Corner::kNoCurve, "with an arc or helix in another plane, or without room for an arc");
+  say(planner::Corner::kInvisible, "a blend would stay within a quarter of a pulse");
+  return kept.empty() ? text : text + "  corners kept under G64 P:" + kept + "\n";
+}
+
+nlohmann::ordered_json blends_json(const run::Blends& blends) {
+  const auto count = [&](planner::Corner corner) { return blends.corners[static_cast<std::size_t>(corner)]; };
+  return {{"count", count(planner::Corner::kBlended)},
+          {"distance", blends.distance},
+          {"kept",
+           {{"reversal", count(planner::Corner::kReversal)},
+            {"no_curve", count(planner::Corner::kNoCurve)},
+            {"invisible", count(planner::Corner::kInvisible)}}}};
 }
 
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds) {
@@ -156,6 +183,7 @@ std::string summary(const RunResult& result) {
   if (result.achieved_feed) {
     text += fmt::format("  mean feed {} of {} mm/min\n", number(*result.achieved_feed), number(*result.commanded_feed));
   }
+  text += blends_text(result.blends);
   text += outputs_text(result.outputs);
   if (!result.events.empty())
     text += fmt::format("  {} overrides, holds and inputs on the way\n", result.events.size());
@@ -192,6 +220,7 @@ std::string json_text(const RunResult& result) {
   json["planned_seconds"] = result.planned_seconds;
   json["profile"] = name_of(result.profile);
   json["motion"] = motion_json(result.motion);
+  json["blends"] = blends_json(result.blends);
   json["under_runs"] = nullptr;
   if (result.under_runs) json["under_runs"] = *result.under_runs;
   json["feed"] = {{"commanded", nullptr}, {"achieved", nullptr}};

@@ -18,6 +18,9 @@ std::string summary(const RunResult& result);
 
 // Words of the program that had no effect, by the reason why; a line each.
 std::string accepted_words(const std::map<std::string, std::size_t>& words);
+// What G64 P has done; empty where no corner asked for it.
+std::string blends_text(const run::Blends& blends);
+nlohmann::ordered_json blends_json(const run::Blends& blends);
 nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
 

@@ -10,7 +10,7 @@ include(CMakePackageConfigHelpers)
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
 install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_machine trammel_gcode
-  trammel_planner trammel_run trammel_sim EXPORT trammel-targets
+  trammel_planner trammel_chart trammel_run trammel_sim EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
 install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/rtl/regs/generated/include/"
@@ -21,6 +21,7 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/host/machine/include/"
   "${PROJECT_SOURCE_DIR}/host/gcode/include/"
   "${PROJECT_SOURCE_DIR}/host/planner/include/"
+  "${PROJECT_SOURCE_DIR}/host/chart/include/"
   "${PROJECT_SOURCE_DIR}/host/run/include/"
   "${PROJECT_SOURCE_DIR}/sim/include/"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT trammel_development FILES_MATCHING PATTERN "*.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "page.hpp"
-#include "picture.hpp"
+#include "trammel/chart/chart.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/interpolation/any_interpolator.hpp"
 
@@ -68,7 +68,7 @@ using Track = std::vector<TrackPoint>;
 Track track_of(interpolation::Method method, const interpolation::Line& line);
 double largest_distance(const interpolation::Line& line, const Track& track);
 // A panel of Figure 3: the line, the band of one pulse and the track.
-Panel line_panel(std::size_t index, const Track& track, const std::string& label);
+chart::Panel line_panel(std::size_t index, const Track& track, const std::string& label);
 
 // When an axis pulses, in clocks; `period` is the length of one unit of the track's time.
 std::vector<double> pulse_times(const Track& track, std::size_t axis, double period);
@@ -78,6 +78,17 @@ struct Spread {
   double largest = 0;
 };
 Spread spread_of(const std::vector<double>& times);
+
+// Pictures: a walk, what it is measured against, and a plane in pulses at one scale.
+chart::Series walk_series(const std::string& label, std::vector<chart::Point> points = {});
+chart::Series ideal_series(const std::string& label, std::vector<chart::Point> points = {});
+chart::Panel plane(const std::string& title, std::vector<chart::Series> series);
+// Two waveforms over clocks 0 .. end, x above y.
+chart::Panel wave_panel(const std::string& title, double end);
+// Of an axis: high from each rising edge to its falling one; both ascend.
+chart::Series wave(std::size_t axis, const std::vector<double>& rising, const std::vector<double>& falling, double end);
+// A circle's arc about the origin, from angle 0, in steps of two degrees.
+std::vector<chart::Point> circle_points(double radius, int degrees);
 
 // The timing of a card at 10 MHz with which the papers' lines are planned.
 driver::CardTiming paper_card();

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "chapters.hpp"
-#include "picture.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/sim/engines.hpp"
 
@@ -53,7 +52,8 @@ driver::Displacement displacement_of(const Line& line) {
 }
 
 // Runs a line of 2,000 clocks; with `hold`, the time base is ramped to a stop in the middle of it and up again.
-CardRun run_on_card(const Line& line, bool hold) {
+// `step_lengths`: of x and y, clocks; the shortest without them.
+CardRun run_on_card(const Line& line, bool hold, const std::array<double, 2>& step_lengths = {}) {
   sim::SimulationOptions options;
   options.kind = sim::EngineKind::kRtl;
   options.axes = 4;
@@ -62,6 +62,11 @@ CardRun run_on_card(const Line& line, bool hold) {
   driver::Card card = driver::Card::open(*engine);
   CardRun run;
   run.part = driver::plan_line_clocks(card.timing(), displacement_of(line), kPaperClocks).part(0);
+  for (unsigned a = 0; a < 2; ++a) {
+    driver::AxisSettings settings;
+    settings.step_length = std::chrono::nanoseconds(static_cast<std::int64_t>(100 * step_lengths[a]));
+    card.configure_axis(a, settings);
+  }
   if (hold) card.set_slew_time(std::chrono::microseconds(100));
   engine->set_sink(&run.steps);
   const std::uint64_t before = engine->cycles();
@@ -157,7 +162,7 @@ struct LinesOnCard {
   Totals totals;
   Csv track{"line,tick,x,y,distance"};
   Csv pins{"line,axis,direction,clock"};
-  std::vector<Panel> panels;
+  std::vector<chart::Panel> panels;
   std::vector<std::vector<std::string>> rows{{"line", "pulses x, y", "card, pulses", "exact arithmetic, pulses"}};
 };
 
@@ -233,16 +238,19 @@ void lines_on_card(Page& page, const Progress& progress) {
     progress(0.8 * static_cast<double>(i + 1) / 8);
   }
   judge_lines(page, sums);
-  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card made them", draw(sums.panels, {4, 250, 250}),
+  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card made them", chart::grid_of(sums.panels, 3, 330, 330),
                sums.track);
   page.data("one-shot-card-pins", "Leading edges at the STEP pins, clocks from each line's first", sums.pins);
 }
 
+// Clocks of 100 ns: half of the intervals of x and y on the line of Figure 4.
+constexpr std::array<double, 2> kHalfIntervals{100, 50};
+
 void wave_on_card(Page& page) {
   page.heading("Figure 4 (a) on the card");
-  const CardRun run = run_on_card(make_line({0, 0}, {10, 20}), false);
+  const CardRun run = run_on_card(make_line({0, 0}, {10, 20}), false, kHalfIntervals);
   Csv csv("axis,pulse,clock");
-  Panel panel{"STEP pins", {}, false};
+  chart::Panel panel = wave_panel("STEP pins", static_cast<double>(kPaperClocks));
   const auto first = static_cast<double>(run.steps.pins.front().cycle);
   std::array<Spread, 2> spread;
   for (unsigned a = 0; a < 2; ++a) {
@@ -252,16 +260,23 @@ void wave_on_card(Page& page) {
       times[i] -= first;
       csv.row("{},{},{:g}", a == 0 ? 'x' : 'y', i + 1, times[i]);
     }
-    // Leading edges as the card makes them; the drawn width is half an interval for the eye.
-    panel.series.push_back({a == 0 ? "x" : "y", a == 0 ? "#c03" : "#06c",
-                            waveform(times, static_cast<double>(kPaperClocks), a == 0 ? 1.2 : 0.0), 1, false, false});
+    std::vector<double> falling;
+    for (const double time : times) falling.push_back(time + kHalfIntervals[a]);
+    panel.series.push_back(wave(a, times, falling, static_cast<double>(kPaperClocks)));
   }
   page.pass("Figure 4 (a) on the card", "the frequency of both axes stays the same",
             fmt::format("x pulses {:g} to {:g} clocks apart, y {:g} to {:g}", spread[0].least, spread[0].largest,
                         spread[1].least, spread[1].largest),
             spread[0].least >= 199 && spread[0].largest <= 201 && spread[1].least >= 99 && spread[1].largest <= 101);
-  page.picture("one-shot-figure-4-card", "Leading edges at the pins of the line (0,0) to (10,20)",
-               draw({panel}, {1, 900, 170}), csv);
+  page.pass(
+      "Duty ratio on the card", "kept at 50 %",
+      fmt::format(
+          "{:g} of {:g} clocks in x and {:g} of {:g} in y, with step lengths set to half of the intervals; else a "
+          "pulse is as long as the motor's driver wants it, at any frequency",
+          kHalfIntervals[0], spread[0].largest, kHalfIntervals[1], spread[1].largest),
+      2 * kHalfIntervals[0] == spread[0].largest && 2 * kHalfIntervals[1] == spread[1].largest);
+  page.picture("one-shot-figure-4-card", "The STEP pins on the line (0,0) to (10,20), duty ratio 50 %",
+               chart::grid_of({panel}, 1, 900, 190), csv);
 }
 
 void standstill(Page& page) {

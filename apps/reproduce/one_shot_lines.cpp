@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "chapters.hpp"
-#include "picture.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/one_shot.hpp"
 
@@ -29,22 +28,23 @@ double largest_distance(const Line& line, const Track& track) {
   return largest;
 }
 
-Panel line_panel(std::size_t index, const Track& track, const std::string& label) {
+chart::Panel line_panel(std::size_t index, const Track& track, const std::string& label) {
   const Line line = paper_line(index);
   const auto dx = static_cast<double>(line.end[0] - line.start[0]);
   const auto dy = static_cast<double>(line.end[1] - line.start[1]);
-  const PicturePoint normal{-dy / std::hypot(dx, dy), dx / std::hypot(dx, dy)};
-  const PicturePoint start{static_cast<double>(line.start[0]), static_cast<double>(line.start[1])};
-  Panel panel;
-  panel.title =
-      fmt::format("Line {}: ({},{}) to ({},{})", index + 1, line.start[0], line.start[1], line.end[0], line.end[1]);
+  const chart::Point normal{-dy / std::hypot(dx, dy), dx / std::hypot(dx, dy)};
+  const chart::Point start{static_cast<double>(line.start[0]), static_cast<double>(line.start[1])};
+  chart::Panel panel = plane(
+      fmt::format("Line {}: ({},{}) to ({},{})", index + 1, line.start[0], line.start[1], line.end[0], line.end[1]),
+      {});
   for (const int side : {-1, 0, 1}) {
-    const PicturePoint from{start[0] + side * normal[0], start[1] + side * normal[1]};
-    Series ideal{side == 0 ? "line" : "", side == 0 ? "#393" : "#999", {}, 0.8, side != 0, false};
-    ideal.points = {from, {from[0] + dx, from[1] + dy}};
-    panel.series.push_back(ideal);
+    const chart::Point from{start[0] + side * normal[0], start[1] + side * normal[1]};
+    const std::vector<chart::Point> ends{from, {from[0] + dx, from[1] + dy}};
+    panel.series.push_back(ideal_series(side == 0 ? "line" : side < 0 ? "limits 1 and 2" : "", ends));
+    if (side != 0) panel.series.back().colour = "#999999";
+    if (side == 0) panel.series.back().dashed = false;
   }
-  Series path{label, "#c03", {}, 1.2, false, false};
+  chart::Series path = walk_series(label);
   for (const TrackPoint& point : track) {
     path.points.push_back({static_cast<double>(point.position[0]), static_cast<double>(point.position[1])});
   }
@@ -69,7 +69,7 @@ constexpr std::array<std::size_t, 8> kSteerSteps{60, 40, 40, 40, 60, 65, 75, 40}
 void figure_three(Page& page) {
   page.heading("Figure 3: trajectories of Lines 1 to 8");
   Csv csv("line,method,clock_or_step,x,y,distance");
-  std::vector<Panel> panels;
+  std::vector<chart::Panel> panels;
   std::vector<std::vector<std::string>> rows{{"line", "one-shot", "one-shot-zero", "divider", "steer (steps)"}};
   unsigned equal = 0;
   unsigned ends = 0;
@@ -113,7 +113,7 @@ void figure_three(Page& page) {
   page.pass("STEER on Lines 1 to 8", "(the first paper) one unit step at a time",
             fmt::format("{} of 8 step counts |dx| + |dy|", steer_steps), steer_steps == 8);
   page.picture("one-shot-figure-3", "Lines 1 to 8, phase accumulators, with the band of 1 pulse",
-               draw(panels, {4, 250, 250}), csv);
+               chart::grid_of(panels, 3, 330, 330), csv);
 }
 
 void figure_five(Page& page) {
@@ -126,16 +126,49 @@ void figure_five(Page& page) {
                         driver::one_shot_words(paper_card().axes)),
             operations == 60 && plan.size() == 1);
   Csv csv("line,point_by_point,one_shot");
-  std::vector<PicturePoint> operations_of_line;
+  std::vector<chart::Point> operations_of_line;  // the operation's number over the pulses before it
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
     const std::uint64_t count = make_interpolator(Method::kPointByPoint, paper_line(i)).total_time();
     csv.row("{},{},1", i + 1, count);
   }
-  for (std::uint64_t k = 1; k <= operations; ++k) operations_of_line.push_back({static_cast<double>(k), 1});
-  const std::vector<Series> series{{"point by point", "#c03", operations_of_line, 2, false, true},
-                                   {"one-shot", "#06c", {{1, 0}}, 3, false, true}};
-  page.picture("one-shot-figure-5", "Operations for Line 1, a dot each",
-               draw({{"operations", series, false}}, {1, 640, 150}), csv);
+  for (std::uint64_t k = 1; k <= operations; ++k)
+    operations_of_line.push_back({static_cast<double>(k - 1), static_cast<double>(k)});
+  const std::vector<chart::Series> series{
+      {"point by point", chart::colour(1), operations_of_line, chart::Mark::kDots, 2},
+      {"one-shot", chart::colour(0), {{0, 1}}, chart::Mark::kDots, 4}};
+  page.picture(
+      "one-shot-figure-5", "Operations for Line 1, a dot each",
+      chart::grid_of({{"Line 1, (0,0) to (20,40)", {"pulses sent before it"}, {"operation"}, series}}, 1, 560, 320),
+      csv);
+}
+
+// A line of more pulses than a part can hold: the parts' ends, and when the line would be there.
+void split_line(Page& page) {
+  const std::int64_t far = std::int64_t{1} << 34;
+  const Line line = make_line({0, 0}, {far, far / 3});
+  const std::uint64_t duration = std::uint64_t{1} << 42;
+  const driver::OneShotPlan plan = driver::plan_line_clocks(paper_card(), {far, far / 3}, duration);
+  Position at{};
+  std::uint64_t clocks = 0;
+  double stray = 0;
+  double late = 0;  // clocks
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const driver::OneShotPart part = plan.part(i);
+    at[0] += part.count[0];
+    at[1] += part.count[1];
+    clocks += part.length;
+    stray = std::max(stray, distance(line, at));
+    const double due = static_cast<double>(duration) * static_cast<double>(at[0]) / static_cast<double>(far);
+    late = std::max(late, std::fabs(static_cast<double>(clocks) - due));
+  }
+  // A pulse is 256 clocks here: a part that ends within half a pulse of its place is as early or late as that.
+  page.pass("A line too long", "is divided into small lines",
+            fmt::format(
+                "2^34 pulses go out in {} lines: their ends lie within {:.2f} pulses of the line and {:.0f} clocks of "
+                "constant velocity, the last one's on the end {} clocks after the 2^42 asked for",
+                plan.size(), stray, late, clocks - duration),
+            plan.size() > 1 && at == line.end && clocks >= duration && clocks - duration < plan.size() &&
+                stray <= std::sqrt(0.5) && late <= 256);
 }
 
 void limits(Page& page) {
@@ -154,17 +187,7 @@ void limits(Page& page) {
       "Velocity over v_max", "must be entered again",
       fmt::format("Line 1 needs 200,000 pulses/s in y: refused at a limit of 100,000, or slowed to {} clocks", slowed),
       refused && slowed == 2 * kPaperClocks);
-  const std::int64_t far = std::int64_t{1} << 34;
-  const driver::OneShotPlan plan = driver::plan_line_clocks(paper_card(), {far, far / 3}, std::uint64_t{1} << 42);
-  std::int64_t sum_x = 0;
-  std::int64_t sum_y = 0;
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    sum_x += plan.part(i).count[0];
-    sum_y += plan.part(i).count[1];
-  }
-  page.pass("A line too long", "most lines need one operation",
-            fmt::format("2^34 pulses are split into {} parts whose pulses add up", plan.size()),
-            plan.size() > 1 && sum_x == far && sum_y == far / 3);
+  split_line(page);
   const std::uint64_t slow = make_interpolator(Method::kOneShot, paper_line(0), {10'000'000, 1, 60}).total_time();
   page.corrected("v an integer", "v, an integer, in lines a second: a line lasts 1 s at most",
                  fmt::format("v as a ratio of integers: Line 1 at v = 1/60 lasts {} clocks, one minute", slow),
@@ -185,9 +208,46 @@ void error_meant(Page& page) {
     rows.push_back({std::to_string(i + 1), fmt::format("{:.3f}", along), fmt::format("{:.3f}", perpendicular)});
   }
   page.table(rows);
-  page.corrected("Error, its meaning", "the distance, bounded along one axis",
-                 "the perpendicular distance is smaller; both stand in the table, the other tables are perpendicular",
-                 smaller);
+  page.pass(
+      "Error, its meaning", "the distance along one axis is below 1, so the distance from the line is",
+      "true, and weaker than what holds: the perpendicular distance is the smaller one, at most sqrt(1/2); both stand "
+      "in the table, the other tables are perpendicular",
+      smaller);
+}
+
+// "All three send one pulse each time": minimum deviation sends two in a diagonal step; and the bounds of the three.
+void rival_bounds(Page& page) {
+  std::mt19937_64 random(4);
+  struct Rival {
+    Method method;
+    double largest = 0;
+  };
+  std::array<Rival, 3> rivals{{{Method::kPointByPoint}, {Method::kDda}, {Method::kMinDeviation8}}};
+  std::uint64_t diagonal = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Line line = make_line({0, 0}, {uniform(random, -200, 200), uniform(random, -200, 200)});
+    if (longest_axis(line) == 0) continue;
+    // Along the axis in which the line is steepest: what the paper bounds.
+    const double along = std::hypot(static_cast<double>(line.end[0]), static_cast<double>(line.end[1])) /
+                         static_cast<double>(longest_axis(line));
+    for (Rival& rival : rivals) {
+      make_interpolator(rival.method, line).run([&](const Step& step, const auto& walk) {
+        rival.largest = std::max(rival.largest, along * distance(line, walk.position()));
+        if (rival.method == Method::kMinDeviation8) diagonal += step.direction[0] != 0 && step.direction[1] != 0;
+      });
+    }
+  }
+  page.pass("Bound of minimum deviation", "one half of a pulse",
+            fmt::format("at most {:.4f} along the shorter axis on 2,000 random lines", rivals[2].largest),
+            rivals[2].largest <= 0.5 + 1e-12 && rivals[2].largest > 0.49);
+  page.pass("Bounds of the two others", "one pulse",
+            fmt::format("at most {:.4f} point by point and {:.4f} by digital integration, on the same lines",
+                        rivals[0].largest, rivals[1].largest),
+            rivals[0].largest <= 1 + 1e-12 && rivals[1].largest <= 1 + 1e-12 && rivals[0].largest > 0.95);
+  page.corrected(
+      "One pulse each time", "all three algorithms send one pulse each time",
+      fmt::format("minimum deviation in 8 directions sends two at once in {} steps of the same lines", diagonal),
+      diagonal > 0);
 }
 
 void rivals(Page& page) {
@@ -213,9 +273,69 @@ void rivals(Page& page) {
             "each runs here on Lines 1 to 8, ends exact; `trammel compare` has all measures", ends);
   auto circle = make_interpolator(Method::kRotation, make_circle(25));
   circle.run([](const Step&, const auto&) {});
-  page.pass("Coarse stage", "arcs and splines become short lines first",
-            "so do splines here, on the host; the card makes arcs itself, a circle of radius 25 back at its start",
-            circle.position() == Position{25, 0, 0, 0});
+  page.added(
+      "Coarse stage", "arcs and splines become short lines first",
+      "arcs need not: the card's arc generator (rotation) and its deviation accumulator (STEER's rule) make them, a "
+      "circle of radius 25 by rotation back at its start. B-splines and NURBS are not here",
+      circle.position() == Position{25, 0, 0, 0});
+  rival_bounds(page);
+}
+
+// Figures 1 and 2, formulas (1) to (8), and slips of the text.
+void principle(Page& page) {
+  page.heading("Principle: Figures 1 and 2, formulas (1) to (8)");
+  constexpr std::int64_t kVelocity = 5000;
+  std::vector<std::vector<std::string>> rows{{"line", "k (1)", "v_x (6)", "v_y (5)", "p_x (8)", "p_y (7)"}};
+  unsigned on_line = 0;
+  unsigned negative = 0;
+  bool card_agrees = true;
+  for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
+    const Line line = paper_line(i);
+    const std::int64_t px = line.end[0] - line.start[0];
+    const std::int64_t py = line.end[1] - line.start[1];
+    const std::int64_t vx = kVelocity * px;
+    const std::int64_t vy = kVelocity * py;
+    negative += px < 0;
+    // (1) to (4): with v_y = k v_x, and x and y the integrals of both, every point satisfies y - y_s = k (x - x_s). At
+    // tick t of 2,000 both displacements are p t / 2,000; the products are exact.
+    bool every = true;
+    for (std::int64_t t = 0; t <= static_cast<std::int64_t>(kPaperClocks); ++t)
+      every = every && (vy * t) * px == py * (vx * t);
+    on_line += every && vx * py == vy * px;
+    const driver::OneShotPart part = driver::plan_line_clocks(paper_card(), {px, py}, kPaperClocks).part(0);
+    for (const auto& [axis, pulses] : {std::pair{0U, px}, std::pair{1U, py}}) {
+      const bool backwards = (part.negative >> axis & 1U) != 0;
+      card_agrees = card_agrees && part.count[axis] == std::abs(pulses) && backwards == (pulses < 0);
+    }
+    rows.push_back({std::to_string(i + 1), px == 0 ? "-" : fmt::format("{}/{}", py, px), std::to_string(vx),
+                    std::to_string(vy), std::to_string(px), std::to_string(py)});
+  }
+  page.table(rows);
+  page.pass(
+      "Formulas (1) to (8), Figure 1", "the sum of both velocities is parallel to the line, so every point is on it",
+      fmt::format(
+          "{} of 8 lines: y - y_s = k (x - x_s) exactly at each of 2,001 moments, with velocities and pulse counts "
+          "as in the table, which are the driver's",
+          on_line),
+      on_line == 8 && card_agrees);
+  page.pass("Figure 2 (a)", "a CPU, a pulse generator, a driver and a motor an axis",
+            "the card's direct mode: a pulse generator an axis behind one register block; the Verilated card runs "
+            "Lines 1 to 8 "
+            "below, the motors are simulated",
+            driver::plan_line_clocks(paper_card(), {20, 40}, kPaperClocks).size() == 1);
+  page.pass("Figure 2 (b)", "enter points and v; compare with v_max; velocities, pulse counts; send",
+            "the driver's plan_line_clocks and start_line in that order, and a refusal instead of a new entry",
+            card_agrees);
+  page.corrected(
+      "p_x and p_y", "numbers of pulses: (7), (8), and 0 <= x_t <= p_x",
+      fmt::format("negative for {} of the 8 lines (4, 5 and 7), and x_t starts at x_s: the count is |p_x|, the sign "
+                  "is the direction, and |x_t - x_s| <= |p_x|",
+                  negative),
+      negative == 3);
+  page.corrected(
+      "Unit of v", "v in pulses a second",
+      "v is in lines a second: v_x = v (x_e - x_s) has pulses a second only then, and Line 1 at 5000 takes 1/5000 s",
+      kPaperClocks * 5000 == 10'000'000);
 }
 
 }  // namespace
@@ -227,6 +347,7 @@ void one_shot_lines(Page& page, const Progress& progress) {
   figure_five(page);
   limits(page);
   rivals(page);
+  principle(page);
 }
 
 }  // namespace trammel::app::reproduce

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "chapters.hpp"
-#include "picture.hpp"
 
 namespace trammel::app::reproduce {
 
@@ -33,14 +32,19 @@ Spread spread_of(const std::vector<double>& times) {
 
 namespace {
 
-void add_pulses(Csv& csv, Panel& panel, const char* method, const Track& track, double period, double end) {
+void add_pulses(Csv& csv, chart::Panel& panel, const char* method, const Track& track, double period, double end) {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const std::vector<double> times = pulse_times(track, axis, period);
     for (std::size_t i = 0; i < times.size(); ++i) {
       csv.row("{},{},{},{:g}", method, axis == 0 ? 'x' : 'y', i + 1, times[i]);
     }
-    panel.series.push_back({axis == 0 ? "x" : "y", axis == 0 ? "#c03" : "#06c",
-                            waveform(times, end, axis == 0 ? 1.2 : 0.0), 1, false, false});
+    // Half of the way to the next pulse is high, as the paper draws it.
+    std::vector<double> falling;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double interval = i + 1 < times.size() ? times[i + 1] - times[i] : times[i] - times[i - 1];
+      falling.push_back(times[i] + interval / 2);
+    }
+    panel.series.push_back(wave(axis, times, falling, end));
   }
 }
 
@@ -77,9 +81,9 @@ void one_shot_waves(Page& page, const Progress& progress) {
   constexpr double kPeriod = 100;
   const double end = kPeriod * static_cast<double>(by_point.size() - 1);
   Csv csv("method,axis,pulse,clock");
-  std::vector<Panel> panels(2);
-  panels[0] = {"(a) one-shot", {}, false};
-  panels[1] = {"(b) point by point", {}, false};
+  std::vector<chart::Panel> panels(2);
+  panels[0] = wave_panel("(a) one-shot", end);
+  panels[1] = wave_panel("(b) point by point", end);
   add_pulses(csv, panels[0], "one-shot", one_shot, 1, end);
   add_pulses(csv, panels[1], "point-by-point", by_point, kPeriod, end);
   const Spread x = spread_of(pulse_times(one_shot, 0, 1));
@@ -92,7 +96,7 @@ void one_shot_waves(Page& page, const Progress& progress) {
             fmt::format("y pulses {:g} to {:g} clocks apart", other.least, other.largest), other.largest > other.least);
   page.pass("Figure 4, time", "one-shot takes less time at equal velocity",
             fmt::format("{} clocks against {:g}", kPaperClocks, end), end == 3000);
-  page.picture("one-shot-figure-4", "Pulses over clocks at 10 MHz, v = 5000", draw(panels, {1, 900, 170}), csv);
+  page.picture("one-shot-figure-4", "Pulses over clocks at 10 MHz, v = 5000", chart::grid_of(panels, 1, 900, 190), csv);
   progress(0.5);
   const Unevenness even = unevenness(Method::kOneShot);
   const Unevenness uneven = unevenness(Method::kPointByPoint);
@@ -102,9 +106,6 @@ void one_shot_waves(Page& page, const Progress& progress) {
                   "of an axis differ by at most {:.1f} % of their mean, by {:.0f} % point by point",
                   even.units, 100 * even.relative, 100 * uneven.relative),
       even.units == 1 && even.relative < uneven.relative);
-  page.text(
-      "Not measured: the paper's duty ratio of 50 %. The card's pulse is as long as its step length is set, at any "
-      "frequency; the pictures draw half an interval.");
 }
 
 }  // namespace trammel::app::reproduce

@@ -12,6 +12,8 @@ const char* name_of(Verdict verdict) {
       return "PASS";
     case Verdict::kCorrected:
       return "CORRECTED";
+    case Verdict::kAdded:
+      return "ADDED";
     case Verdict::kFail:
       break;
   }
@@ -63,6 +65,10 @@ void Page::pass(const std::string& what, const std::string& paper, const std::st
 
 void Page::corrected(const std::string& what, const std::string& paper, const std::string& found, bool holds) {
   add({what, paper, found, holds ? Verdict::kCorrected : Verdict::kFail});
+}
+
+void Page::added(const std::string& what, const std::string& paper, const std::string& found, bool holds) {
+  add({what, paper, found, holds ? Verdict::kAdded : Verdict::kFail});
 }
 
 std::size_t Page::count(Verdict verdict) const {

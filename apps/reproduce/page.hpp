@@ -14,7 +14,8 @@ namespace trammel::app::reproduce {
 
 enum class Verdict {
   kPass,       // as the paper has it
-  kCorrected,  // the paper is wrong or silent here; what is right was found again
+  kCorrected,  // the paper is wrong here; what is right was found
+  kAdded,      // the paper is silent here; what it leaves open was found
   kFail,       // not what was expected
 };
 
@@ -56,8 +57,11 @@ class Page {
 
   // The paper's own result, found again when `holds`.
   void pass(const std::string& what, const std::string& paper, const std::string& found, bool holds);
-  // A place where the paper is wrong or silent; `found` is right when `holds`.
+  // A place where the paper is wrong; `found` is right when `holds`.
   void corrected(const std::string& what, const std::string& paper, const std::string& found, bool holds);
+
+  // What the paper does not say; `found` is right when `holds`.
+  void added(const std::string& what, const std::string& paper, const std::string& found, bool holds);
 
   // The page, its pictures and its data, by their names beside each other.
   std::map<std::string, std::string> files() const;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "chapters.hpp"
-#include "picture.hpp"
 #include "trammel/interpolation/steer_delay.hpp"
 
 namespace trammel::app::reproduce {
@@ -15,13 +14,25 @@ namespace {
 
 using namespace interpolation;
 
+// The listing's loop `while (++i != (feedrate + drag) / 30)`, i an int of 16 bits from 0 and drag 0: how often it
+// compares.
+unsigned loop_passes(int feedrate) {
+  unsigned passes = 0;
+  std::uint16_t i = 0;  // that compiler's int wraps; today's must not
+  do {
+    ++i;
+    ++passes;
+  } while (i != feedrate / 30);
+  return passes;
+}
+
 void delay_list(Page& page) {
   page.heading("The delay and its ramp");
   const std::vector<std::int32_t> expected{100, 99, 99, 98, 94, 85, 69, 44, 8, 0};
   SteerDelay delay(300);
   delay.arm();
   std::vector<std::int32_t> drags;
-  Series passes{"passes of the loop", "#c03", {}, 2.5, false, true};
+  chart::Series passes{"", chart::colour(1), {}, chart::Mark::kDots, 2.5};
   Csv csv("step,drag,passes");
   for (int step = 0; step < 20; ++step) {
     const std::int32_t drag = delay.drag();
@@ -34,30 +45,30 @@ void delay_list(Page& page) {
             fmt::format("drag {}", fmt::join(drags, " ")), drags == expected);
   page.corrected("Delay list, its shape", "falls off exponentially (comment)",
                  "falls by 1, 0, 1, 4, 9, 16, 25, 36: the squares of a count, a cubic", drags == expected);
-  page.picture("steer-delay", "Loop passes before each step of a line, feedrate 300",
-               draw({{"delay", {passes}, false}}, {1, 480, 240}), csv);
+  page.picture(
+      "steer-delay", "Loop passes before each step of a line, feedrate 300",
+      chart::grid_of({{"Delay before each step", {"step of the line"}, {"passes of the loop"}, {passes}}}, 1, 520, 280),
+      csv);
   const std::int32_t slow = SteerDelay(600).delay().value_or(0);
   const std::int32_t fast = SteerDelay(300).delay().value_or(0);
   page.corrected("Feedrate", "the speed; about steps a minute",
                  fmt::format("a larger number is a longer delay: {} passes at 600, {} at 300", slow, fast),
                  slow > fast);
-  unsigned endless = 0;
-  for (const std::int32_t feedrate : {0, 1, 29}) {
-    SteerDelay small(feedrate);
-    if (small.passes() == 0 && !small.delay()) ++endless;
-  }
-  page.corrected("Feedrate + drag below 30", "no word on it",
-                 fmt::format("0 passes meant, and the loop runs until its int wraps ({} of 3 tried)", endless),
-                 endless == 3 && SteerDelay(30).delay() == 1);
+  page.added(
+      "Feedrate + drag below 30", "no word on it",
+      fmt::format("the listing's loop, run with the 16-bit int of its compiler: {} passes at 29, where 0 are meant, {} "
+                  "at 30",
+                  loop_passes(29), loop_passes(30)),
+      loop_passes(29) == 65'536 && loop_passes(30) == 1 && !SteerDelay(29).delay() && SteerDelay(30).delay() == 1);
   SteerDelay circle(300);
-  SteerDelay after(300);
-  after.arm();
-  for (int i = 0; i < 5; ++i) after.delay();
-  page.corrected("Ramp of a circle", "a ramp allows for inertia at the start-up",
-                 fmt::format("the line routine alone arms it: a circle starts with drag {}, or {} after a line of 5 "
-                             "steps",
-                             circle.drag(), after.drag()),
-                 circle.drag() == 0 && after.drag() == 85);
+  const std::int32_t first = circle.delay().value_or(0);
+  const std::int32_t second = circle.delay().value_or(0);
+  page.added(
+      "Ramp of a circle", "a ramp is useful where inertia matters; said of the line",
+      fmt::format("the line routine alone arms it, and the program runs one command: a circle begins at full speed, {} "
+                  "and {} passes before its first steps at 300",
+                  first, second),
+      first == 10 && second == 10);
 }
 
 // A line walked by Table 2, F = -dy x + dx y with the gradient (-dy, dx), clockwise: that goes along (dx, dy).
@@ -93,11 +104,13 @@ void zero_gradient(Page& page) {
     by_line_routine += direct;
     csv.row("{},{},{:d},{:d}", dx, dy, met, direct);
   }
-  page.corrected("Zero gradient", "zero counts as positive in Table 2",
-                 fmt::format("of the 4 lines along an axis, walked by the signs of their gradient, {} meet their end; "
-                             "with direction bits from the displacement {} do",
-                             by_table, by_line_routine),
-                 by_table < 4 && by_line_routine == 4);
+  page.added(
+      "Lines by Table 2", "the table is given for circles",
+      fmt::format(
+          "zero counts as positive in it, so of the 4 lines along an axis, walked by the signs of their gradient, "
+          "{} meet their end; with direction bits from the displacement, as the line routine has them, {} do",
+          by_table, by_line_routine),
+      by_table < 4 && by_line_routine == 4);
   page.data("steer-zero-gradient", "The four lines", csv);
 }
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "chapters.hpp"
-#include "picture.hpp"
 #include "trammel/interpolation/steer_program.hpp"
 
 namespace trammel::app::reproduce {
@@ -23,7 +22,7 @@ void table_one(Page& page) {
   const Line line = make_line({0, 0}, {3, -7});
   SteerLine walk(line);
   Csv csv("step,f,x2,y2,axis,direction,x,y");
-  Series path{"STEER", "#c03", {{0, 0}}, 1.5, false, false};
+  chart::Series path = walk_series("STEER", {{0, 0}});
   unsigned equal = 0;
   bool zero_steps_y = false;
   for (std::size_t row = 0; !walk.done(); ++row) {
@@ -41,8 +40,8 @@ void table_one(Page& page) {
             equal == 10 && walk.time() == 10 && walk.position() == line.end);
   page.corrected("Line, step rule in the text", "y steps when F becomes negative",
                  "y steps at F = 0 too (row 8 of Table 1, and the listing's F > 0)", zero_steps_y);
-  const Series ideal{"line", "#393", {{0, 0}, {3, -7}}, 1, true, false};
-  page.picture("steer-table-1", "Table 1 as a path", draw({{"(0,0) to (3,-7)", {ideal, path}, true}}, {1, 240, 400}),
+  page.picture("steer-table-1", "Table 1 as a path",
+               chart::grid_of({plane("(0,0) to (3,-7)", {ideal_series("line", {{0, 0}, {3, -7}}), path})}, 1, 320, 420),
                csv);
 }
 
@@ -107,7 +106,7 @@ void table_three(Page& page) {
        {19, 15, -39}, {19, 16, -8}, {19, 17, 25},  {18, 17, -12}, {13, 18, 23}}};
   SteerProgram walk({25, 0}, 25, false);
   Csv csv("step,x,y,f,dx,dy,x_step,y_step");
-  Series path{"STEER", "#c03", {}, 1.5, false, false};
+  chart::Series path = walk_series("STEER");
   unsigned equal = 0;
   Point last;
   bool last_differs_in_x_alone = false;
@@ -135,13 +134,10 @@ void table_three(Page& page) {
                  fmt::format("x = {}: F = 23 and DX = 36 fit ({},{}) only", last.x, last.x, last.y),
                  last_differs_in_x_alone && last == Point{18, 18});
   page.pass("Table 3, the full turn", "back at (25,0)", fmt::format("back after {} steps", steps), steps == 200);
-  Series ideal{"circle", "#393", {}, 1, true, false};
-  for (int i = 0; i <= 180; ++i) {
-    const double angle = i * std::acos(-1.0) / 90;
-    ideal.points.push_back({25 * std::cos(angle), 25 * std::sin(angle)});
-  }
-  page.picture("steer-table-3", "The full circle that Table 3 begins",
-               draw({{"radius 25, D = 0", {ideal, path}, true}}, {1, 480, 480}), csv);
+  page.picture(
+      "steer-table-3", "The full circle that Table 3 begins",
+      chart::grid_of({plane("Radius 25, D = 0", {ideal_series("circle", circle_points(25, 360)), path})}, 1, 480, 500),
+      csv);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -113,9 +114,116 @@ std::uint64_t steps_between(const Conic& conic, const Point& p, const Point& q) 
   return static_cast<std::uint64_t>((std::llabs(p.x - q.x) + std::llabs(p.y - q.y)) / conic.step);
 }
 
-// L: both coordinates are monotone in a quadrant, and from the last entry to the end, so distances along the axes add.
-std::uint64_t path_length(const Conic& conic, const Point& start, const Point& end, bool clockwise,
-                          std::int64_t changes) {
+// The walk in 8 directions, as the card makes it: a step inward (towards the zero of its coordinate), outward or both
+// at once. Word holds twice F and the changes of one step.
+template <class Word>
+class EightDirections {
+ public:
+  EightDirections(const Conic& conic, const Point& start, bool clockwise)
+      : unit_(conic.step),
+        clockwise_(clockwise),
+        a_(Word(conic.a)),
+        b_(Word(conic.b)),
+        f_(Word(conic.deviation(start))),
+        at_(start) {}
+
+  const Point& at() const { return at_; }
+  std::uint64_t steps() const { return steps_; }
+
+  // Through the next change of quadrant; with `end`, up to where either coordinate reaches or passes the end's.
+  void walk_quadrant(const Point* end) {
+    const int side = quadrant(at_);
+    const bool x_inward = (side % 2 == 0) != clockwise_;
+    Axis inward(x_inward ? at_.x : at_.y, x_inward ? a_ : b_, unit_, true);
+    Axis outward(x_inward ? at_.y : at_.x, x_inward ? b_ : a_, unit_, false);
+    const bool positive = inward.at >= 0;
+    const auto over = [&] {
+      if (end == nullptr) return (inward.at >= 0) != positive;
+      return inward.reached(x_inward ? end->x : end->y) || outward.reached(x_inward ? end->y : end->x);
+    };
+    while (!over()) {
+      const Word both = f_ + inward.change + outward.change;
+      const bool inward_alone = f_ + inward.change + both >= Word(0);
+      const bool outward_alone = !inward_alone && f_ + outward.change + both < Word(0);
+      if (!outward_alone) f_ = f_ + inward.take();
+      if (!inward_alone) f_ = f_ + outward.take();
+      ++steps_;
+    }
+    at_ = x_inward ? Point{inward.at, outward.at} : Point{outward.at, inward.at};
+  }
+
+  // Straight to the end, both coordinates at once while both differ.
+  void walk_straight(const Point& end) {
+    steps_ += static_cast<std::uint64_t>(std::max(std::llabs(end.x - at_.x), std::llabs(end.y - at_.y)) / unit_);
+    at_ = end;
+  }
+
+  // `times` walks more of `steps` each that come back to where they begin.
+  void repeat(std::uint64_t steps, std::uint64_t times) { steps_ += steps * times; }
+
+ private:
+  struct Axis {
+    Axis(std::int64_t coordinate, const Word& weight, std::int64_t unit, bool inward)
+        : at(coordinate),
+          step((coordinate >= 0) == inward ? -unit : unit),
+          change(weight * Word(step) * Word(2 * coordinate + step)),
+          twice_half(weight * Word(2 * unit * unit)) {}
+
+    // The change of F that the step makes.
+    Word take() {
+      const Word made = change;
+      change = change + twice_half;
+      at += step;
+      return made;
+    }
+    bool reached(std::int64_t end) const { return step < 0 ? at <= end : at >= end; }
+
+    std::int64_t at;
+    std::int64_t step;
+    Word change;
+    Word twice_half;
+  };
+
+  std::int64_t unit_;
+  bool clockwise_;
+  Word a_;
+  Word b_;
+  Word f_;
+  Point at_;
+  std::uint64_t steps_ = 0;
+};
+
+template <class Word>
+std::uint64_t walked_length(const Conic& conic, const Point& start, const Point& end, bool clockwise,
+                            std::int64_t changes) {
+  EightDirections<Word> walk(conic, start, clockwise);
+  Point turn_ago = start;
+  std::uint64_t steps_ago = 0;
+  std::int64_t left = changes;
+  while (left != 0) {
+    // F belongs to the point alone: a turn that ends where the last one did repeats itself.
+    const bool turn_over = left != changes && (changes - left) % 4 == 0;
+    if (turn_over && walk.at().x == turn_ago.x && walk.at().y == turn_ago.y) {
+      walk.repeat(walk.steps() - steps_ago, static_cast<std::uint64_t>(left / 4));
+      left %= 4;
+      if (left == 0) break;
+    }
+    if (turn_over) {
+      turn_ago = walk.at();
+      steps_ago = walk.steps();
+    }
+    walk.walk_quadrant(nullptr);
+    --left;
+  }
+  walk.walk_quadrant(&end);
+  walk.walk_straight(end);
+  return walk.steps();
+}
+
+// L in 4 directions: both coordinates are monotone in a quadrant, and from the last entry to the end, so distances
+// along the axes add.
+std::uint64_t summed_length(const Conic& conic, const Point& start, const Point& end, bool clockwise,
+                            std::int64_t changes) {
   std::uint64_t length = 0;
   Point at = start;
   for (std::int64_t i = 0; i < changes; ++i) {
@@ -123,7 +231,16 @@ std::uint64_t path_length(const Conic& conic, const Point& start, const Point& e
     length += steps_between(conic, at, entry);
     at = entry;
   }
-  length += steps_between(conic, at, end);
+  return length + steps_between(conic, at, end);
+}
+
+// L, which is neither 0 nor beyond the card's count. A circle's F and changes stay below 2^45, an ellipse's below 2^64.
+std::uint64_t path_length(const Conic& conic, const Point& start, const Point& end, bool clockwise,
+                          std::int64_t changes, StepRule rule) {
+  const bool eight = rule == StepRule::kEightDirections;
+  const std::uint64_t length = !eight            ? summed_length(conic, start, end, clockwise, changes)
+                               : conic.step != 1 ? walked_length<std::int64_t>(conic, start, end, clockwise, changes)
+                                                 : walked_length<Int128>(conic, start, end, clockwise, changes);
   if (length == 0) refuse("start and end are the same point and the sweep is no full turn: no step to make");
   if (length >= kCountLimit) refuse(fmt::format("{} steps, fewer than 2^40 fit", length));
   return length;
@@ -140,10 +257,11 @@ void check_common(const Geometry& geometry) {
 }
 
 template <class Geometry>
-ArcCommand fill(const Geometry& geometry, const Conic& conic, const Point& start, const Point& end) {
+ArcCommand fill(const Geometry& geometry, const Conic& conic, const Point& start, const Point& end, StepRule rule) {
   const std::int64_t changes = quadrant_changes(start, end, geometry.clockwise, geometry.sweep, geometry.turns);
   ArcCommand arc;
-  arc.path_ticks = path_length(conic, start, end, geometry.clockwise, changes);
+  arc.path_ticks = path_length(conic, start, end, geometry.clockwise, changes, rule);
+  arc.eight_directions = rule == StepRule::kEightDirections;
   arc.clockwise = geometry.clockwise;
   arc.axis_x = geometry.axis_x;
   arc.axis_y = geometry.axis_y;
@@ -174,7 +292,7 @@ bool within(const Point& p, std::int64_t limit) { return std::llabs(p.x) <= limi
 
 }  // namespace
 
-ArcCommand prepare(const ArcGeometry& geometry) {
+ArcCommand prepare(const ArcGeometry& geometry, StepRule rule) {
   check_common(geometry);
   constexpr std::int64_t kUnit = kCentreUnitsPerPulse;
   // Compared before the negation, which the most negative value would not survive.
@@ -189,11 +307,12 @@ ArcCommand prepare(const ArcGeometry& geometry) {
   if (mean < kUnit * kUnit) refuse("radius below one pulse: send a line");
   // A step to the side of the circle adds up to 1/2 to R^2 (in pulses), a step inwards takes nothing off it: half a
   // square pulse less makes outside and inside errors alike, 1 + 1/(4 R). About a whole pulse F is then a whole number
-  // and one half, so that every sign is that of STEER's F.
-  return fill(geometry, Conic{1, 1, mean - kUnit * kUnit / 2, kUnit}, start, end);
+  // and one half, so that every sign is that of STEER's F. In 8 directions errors are alike without.
+  const std::int64_t less = rule == StepRule::kEightDirections ? 0 : kUnit * kUnit / 2;
+  return fill(geometry, Conic{1, 1, mean - less, kUnit}, start, end, rule);
 }
 
-ArcCommand prepare(const EllipseGeometry& geometry) {
+ArcCommand prepare(const EllipseGeometry& geometry, StepRule rule) {
   check_common(geometry);
   const std::int64_t a = geometry.semi_x;
   const std::int64_t b = geometry.semi_y;
@@ -212,7 +331,7 @@ ArcCommand prepare(const EllipseGeometry& geometry) {
   const auto on_curve = [&](const Point& p) { return -limit < conic.deviation(p) && conic.deviation(p) < limit; };
   if (!on_curve(start)) refuse("the start is not on the ellipse");
   if (!on_curve(end)) refuse("the end is not on the ellipse");
-  return fill(geometry, conic, start, end);
+  return fill(geometry, conic, start, end, rule);
 }
 
 ArcCommand with_ticks(ArcCommand arc, std::uint64_t ticks) {
@@ -223,10 +342,12 @@ ArcCommand with_ticks(ArcCommand arc, std::uint64_t ticks) {
   return arc;
 }
 
-ArcCommand make_arc(const ArcGeometry& geometry, std::uint64_t ticks) { return with_ticks(prepare(geometry), ticks); }
+ArcCommand make_arc(const ArcGeometry& geometry, std::uint64_t ticks, StepRule rule) {
+  return with_ticks(prepare(geometry, rule), ticks);
+}
 
-ArcCommand make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks) {
-  return with_ticks(prepare(geometry), ticks);
+ArcCommand make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks, StepRule rule) {
+  return with_ticks(prepare(geometry, rule), ticks);
 }
 
 }  // namespace trammel::driver

@@ -21,6 +21,7 @@ inline constexpr std::size_t kCountHalfwords = 3;
 inline constexpr std::size_t kPayloadBegin = kCountBegin + kCountHalfwords;
 // Bits of the field `plane`.
 inline constexpr unsigned kClockwiseBit = 0;
+inline constexpr unsigned kEightBit = 1;
 inline constexpr unsigned kAxisXShift = 4;
 inline constexpr unsigned kAxisYShift = 8;
 inline constexpr unsigned kAxisMask = 7;

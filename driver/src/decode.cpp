@@ -78,7 +78,9 @@ Command arc_from(const Reader& from) {
   arc.ticks = from.count();
   arc.path_ticks = from.unsigned_field<kPathTicks>();
   arc.prescale = from.unsigned_field<kPrescale>();
-  set_plane(arc, from.unsigned_field<kPlane>());
+  const std::uint64_t plane = from.unsigned_field<kPlane>();
+  set_plane(arc, plane);
+  arc.eight_directions = (plane >> kEightBit & 1U) != 0;
   arc.quadrants = static_cast<std::uint16_t>(from.unsigned_field<kQuadrants>());
   arc.end_x = static_cast<std::int32_t>(from.signed_field<kEndX>());
   arc.end_y = static_cast<std::int32_t>(from.signed_field<kEndY>());

@@ -45,7 +45,9 @@ class Writer {
     constexpr std::uint64_t kBits =
         kField.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (kField.bits % 64)) - 1;
     constexpr std::uint64_t kMost = kField.limit != 0 ? kField.limit : kBits;
-    const bool bits_good = kField.mask == 0 || (value & ~std::uint64_t{kField.mask}) == 0;
+    constexpr std::uint64_t kMask =
+        kField.mask | kField.optional;  // whether the card has the engine is the stream's question
+    const bool bits_good = kField.mask == 0 || (value & ~kMask) == 0;
     if (value < kField.minimum || value > kMost || !bits_good || (kField.at_most_count && value > count_)) {
       refuse_field<kField>(layout_, value, count_);
     }
@@ -127,7 +129,7 @@ std::size_t write(const ArcCommand& arc, std::uint8_t number, std::uint32_t* wor
   Writer to(kArc, plane_mask(kArc, arc.axis_x, arc.axis_y), arc.ticks, number, words);
   to.field<kPathTicks>(arc.path_ticks);
   to.field<kPrescale>(arc.prescale);
-  to.field<kPlane>(plane_of(arc));
+  to.field<kPlane>(plane_of(arc) | (arc.eight_directions ? 1U : 0U) << kEightBit);
   to.field<kQuadrants>(std::uint64_t{arc.quadrants});
   to.field<kEndX>(std::int64_t{arc.end_x});
   to.field<kEndY>(std::int64_t{arc.end_y});

@@ -178,6 +178,8 @@ Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) 
   const auto mask = static_cast<std::uint8_t>(header >> 8);
   require_engine(card, layout.engine, layout.name);
   if (!layout.built) throw ArgumentError(fmt::format("stream: {}: no card has this command yet", layout.name));
+  const auto* arc = std::get_if<ArcCommand>(&command);
+  if (arc != nullptr && arc->eight_directions) require_engine(card, map::engine::kAccumulator8, layout.name);
   const auto* feed = std::get_if<FeedCommand>(&command);
   if (feed != nullptr && feed->jerk != 0) {
     require_engine(card, map::engine::kJerk, layout.name);

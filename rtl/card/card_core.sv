@@ -2,22 +2,23 @@
 // Ports and latencies: docs/developer/architecture.md.
 `default_nettype none
 module card_core #(
-    parameter int          Axes          = 4,     // 1 to 8
-    parameter int          GeometryDepth = 4096,  // halfwords, 2 to 32,768
-    parameter int          FeedDepth     = 2560,
-    parameter int          Accumulator   = 1,     // 0: without arcs and conics
-    parameter int          ArcGenerator  = 0,     // 1: arcs in chords
-    parameter int          DirectMode    = 1,     // 0: without
-    parameter int          UnderrunHold  = 1,     // 0: without
-    parameter int          Classes       = 1,     // 0: one ratio for all pieces
-    parameter int          Watermarks    = 1,     // 0: without
-    parameter int          PathCommands  = 0,     // 1: OUTPUT, MARK; inputs and outputs
-    parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
-    parameter int          Outputs       = 4,
-    parameter int          Ports         = 1,     // 1 to 4: what is joined in front of the inner port
-    parameter logic [31:0] BuildId       = 0,
-    parameter int          BuildDirty    = 0,
-    parameter logic [31:0] BoardId       = 0
+    parameter int          Axes            = 4,     // 1 to 8
+    parameter int          GeometryDepth   = 4096,  // halfwords, 2 to 32,768
+    parameter int          FeedDepth       = 2560,
+    parameter int          Accumulator     = 1,     // 0: without arcs and conics
+    parameter int          EightDirections = 0,     // 1: the accumulator's second step rule
+    parameter int          ArcGenerator    = 0,     // 1: arcs in chords
+    parameter int          DirectMode      = 1,     // 0: without
+    parameter int          UnderrunHold    = 1,     // 0: without
+    parameter int          Classes         = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks      = 1,     // 0: without
+    parameter int          PathCommands    = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
+    parameter int          Inputs          = 4,     // 1 to 16, of a card with path commands
+    parameter int          Outputs         = 4,
+    parameter int          Ports           = 1,     // 1 to 4: what is joined in front of the inner port
+    parameter logic [31:0] BuildId         = 0,
+    parameter int          BuildDirty      = 0,
+    parameter logic [31:0] BoardId         = 0
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -58,9 +59,13 @@ module card_core #(
   if (Inputs < 1 || Inputs > 16 || Outputs < 1 || Outputs > 16) begin : gen_wrong_pins
     ERROR_Inputs_and_Outputs_must_be_1_to_16 error ();
   end
+  if (EightDirections != 0 && Accumulator == 0) begin : gen_wrong_accumulator
+    ERROR_EightDirections_needs_Accumulator error ();
+  end
 
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
+      32'(EightDirections != 0) << card_map_pkg::ENGINE_ACCUMULATOR_8 |
       32'(ArcGenerator != 0) << card_map_pkg::ENGINE_ARC_GENERATOR | 32'd1 << card_map_pkg::ENGINE_JERK |
       32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE |
       32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
@@ -99,7 +104,9 @@ module card_core #(
   logic        closed;
   logic        stop;
   logic        mark;
-  logic [63:0] io;  // {marks, outputs, inputs}
+  logic        probe;
+  logic        probe_clear;
+  logic [66:0] io;  // {waiting, probe missed, probed, marks, outputs, inputs}
   logic [ 1:0] snapshot;  // {shift, strobe}
   logic [31:0] chain_far;
   logic [31:0] chain_near;
@@ -130,6 +137,7 @@ module card_core #(
       .setting_o(setting),
       .clear_fault_o(clear_fault),
       .abort_o(abort),
+      .probe_clear_o(probe_clear),
       .flush_o(flush),
       .stream_write_o(stream_write),
       .checker_i(checked),
@@ -138,7 +146,7 @@ module card_core #(
       .loader_address_i(loader_address),
       .loader_data_o(loader_data),
       .stop_i(stop),
-      .probe_i(1'b0),
+      .probe_i(probe),
       .mark_i(mark),
       .snapshot_o(snapshot),
       .chain_o(chain_far),
@@ -226,6 +234,8 @@ module card_core #(
       .abort_i(abort),
       .clear_fault_i(clear_fault),
       .mark_o(mark),
+      .probe_o(probe),
+      .probe_clear_i(probe_clear),
       .io_o(io),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i(geometry_word),

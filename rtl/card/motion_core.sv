@@ -18,7 +18,9 @@ module motion_core #(
     input  wire logic [ Outputs-1:0] output_idle_i,     // levels in reset
     output logic      [ Outputs-1:0] output_o,
     output logic                     mark_o,
-    output logic      [        63:0] io_o,              // {marks, outputs, inputs}
+    output logic                     probe_o,           // event: a snapshot is wanted (combinational)
+    input  wire logic                probe_clear_i,
+    output logic      [        66:0] io_o,              // {waiting, probe missed, probed, marks, outputs, inputs}
     // queues
     input  wire logic                geometry_empty_i,
     input  wire logic [        15:0] geometry_word_i,
@@ -61,43 +63,30 @@ module motion_core #(
   logic            stopping;
   logic [Axes-1:0] step_fault;
   // ticks
-  logic            take;
-  logic            tick;
-  logic            feed_swap;
-  logic            feed_active;
-  logic moving, fixed;
+  logic take, tick, feed_swap, feed_active, moving, fixed;
   logic feed_runs, feed_at, feed_idle;
-  logic [    16:0] ratio;
-  logic [    31:0] rate;
+  logic [16:0] ratio;
+  logic [31:0] rate;
   // geometry
-  logic [    21:0] load;
-  logic            taking;
-  logic            swap;
+  logic [21:0] load;
+  logic taking, swap, path_over;
   logic [Axes-1:0] active;
   logic [     4:0] engine;
   logic [     1:0] instant;
-  logic            path_over;
-  logic barrier_begin, barrier_done;
-  logic path_active, ended, geometry_idle;
-  logic            direct;
-  logic            direct_go;
+  logic [2:0] barrier, probe_at, probe_says;
+  logic [1:0] drop;
+  logic probe_hold, probing;
+  logic path_active, ended, geometry_idle, direct, direct_go;
   logic [Axes-1:0] direct_mask;
   logic [    21:0] direct_load;
   // path engines
-  logic            engine_tick;
-  logic engine_ready, payload_ready, shadows_free, engine_taken;
-  logic               engine_done;
-  logic               elsewhere;
+  logic engine_tick, engine_ready, payload_ready, shadows_free, engine_taken, engine_done, elsewhere;
   // axes
-  logic               axes_live;
-  logic               axes_busy;
+  logic axes_live, axes_busy;
   logic [34*Axes-1:0] axes_observe;
   // status
-  logic               idle_q;
-  logic               running_q;
-  logic               busy;
-  logic [       31:0] feed_chain;
-  logic [       31:0] geometry_chain;
+  logic idle_q, running_q, busy;
+  logic [31:0] feed_chain, geometry_chain;
 
   assign held_o    = ratio == 17'd0;
   assign status_o  = {stopping, ended, feed_active, path_active, direct, busy};
@@ -115,6 +104,7 @@ module motion_core #(
       .moving_i    (moving),
       .fixed_i     (fixed),
       .underrun_i  (underrun_hold),
+      .probe_i     (probe_hold),
       .hold_o      (hold),
       .stopping_o  (stopping)
   );
@@ -135,8 +125,9 @@ module motion_core #(
       .take_o         (take),
       .tick_o         (tick),
       .swap_o         (feed_swap),
-      .barrier_begin_i(barrier_begin),
-      .barrier_done_i (barrier_done),
+      .drop_i         (drop),
+      .card_idle_i    (idle_q),
+      .barrier_i      (barrier),
       .at_barrier_o   (feed_at),
       .runs_o         (feed_runs),
       .active_o       (feed_active),
@@ -176,10 +167,12 @@ module motion_core #(
       .axes_live_i    (axes_live),
       .instant_o      (instant),
       .over_o         (path_over),
+      .probe_at_o     (probe_at),
+      .probe_says_i   (probe_says),
+      .drop_i         (drop),
       .feed_at_i      (feed_at),
       .feed_runs_i    (feed_runs),
-      .barrier_begin_o(barrier_begin),
-      .barrier_done_o (barrier_done),
+      .barrier_o      (barrier),
       .mismatch_o     (mismatch),
       .incomplete_o   (incomplete),
       .path_active_o  (path_active),
@@ -195,7 +188,7 @@ module motion_core #(
       .Engines(Engines)
   ) moves (
       .*,
-      .cut_i          (cut_o),
+      .cut_i          (cut_o || drop[0]),
       .load_i         (load),
       .tick_i         (tick),
       .swap_i         (swap),
@@ -222,11 +215,18 @@ module motion_core #(
       .Outputs(Outputs)
   ) commands (
       .*,
-      .cut_i  (cut_o),
-      .load_i (load),
-      .taken_i(instant),
-      .over_i (path_over),
-      .runs_i (path_active)
+      .cut_i       (cut_o),
+      .load_i      (load),
+      .taken_i     (instant),
+      .over_i      (path_over),
+      .runs_i      (path_active),
+      .at_rest_i   (held_o),
+      .stopping_i  (stopping),
+      .probe_at_i  (probe_at),
+      .probe_says_o(probe_says),
+      .probe_hold_o(probe_hold),
+      .drop_o      (drop),
+      .probing_o   (probing)
   );
 
   if (Engines[card_map_pkg::ENGINE_DIRECT_MODE]) begin : gen_direct_mode
@@ -255,7 +255,7 @@ module motion_core #(
   end
 
   always_ff @(posedge clk_i) begin
-    idle_q    <= (geometry_idle && feed_idle) || rst_i;
+    idle_q    <= (geometry_idle && feed_idle && !probing) || rst_i;
     running_q <= (!idle_q || direct || axes_busy) && !rst_i;
   end
 

@@ -1,20 +1,24 @@
 // Decodes the next feed piece onto the feed load. Acceleration and jerk have no shadow in the generator: while a piece
-// runs they follow when the next one has begun.
+// runs they follow when the next one has begun. WAIT_INPUT's condition goes to a target that is nobody's: the geometry's
+// decoder has it.
 `default_nettype none
 
-module feed_decoder (
+module feed_decoder #(
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        cut_i,
     input  wire logic        pop_i,
-    input  wire logic        active_i,   // a piece runs
+    input  wire logic        active_i,     // a piece runs
     input  wire logic        empty_i,
     input  wire logic [15:0] word_i,
     output logic             read_o,
-    output logic      [19:0] load_o,     // {valid, target, word}
+    output logic      [19:0] load_o,       // {valid, target, word}
     output logic             piece_o,
-    output logic      [ 1:0] class_o,    // of the piece
+    output logic      [ 1:0] class_o,      // of the piece
     output logic             barrier_o,
+    output logic             probe_end_o,
     output logic             idle_o,
     output logic             valid_o
 );
@@ -23,9 +27,11 @@ module feed_decoder (
   logic [7:0] opcode;
   logic [7:0] mask;
   logic       is_feed;
+  logic       is_wait;
   logic       pause;
 
   assign is_feed = opcode == card_map_pkg::OP_FEED;
+  assign is_wait = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_WAIT_INPUT;
   assign class_o = mask[1:0];
 
   assign pause   = active_i && field[2:0] == load_target_pkg::FEED_STOP_DISTANCE;
@@ -37,10 +43,10 @@ module feed_decoder (
 
   command_fetch fetch (
       .*,
-      .has_payload_i(is_feed),
-      .first_i      ({2'd0, load_target_pkg::FEED_RATE, 3'd3}),
+      .has_payload_i(is_feed || is_wait),
+      .first_i      (is_wait ? {2'd0, load_target_pkg::FEED_NOWHERE, 3'd0} : {2'd0, load_target_pkg::FEED_RATE, 3'd3}),
       .next_i       ({field + 5'd1, length_of(field[2:0] + 3'd1)}),
-      .last_field_i (pause || field[2:0] == load_target_pkg::FEED_JERK),
+      .last_field_i (pause || is_wait || field[2:0] == load_target_pkg::FEED_JERK),
       .rest_i       (is_feed && field[2:0] == load_target_pkg::FEED_ACCELERATION),
       .wait_i       (1'b0),
       .header_o     (),
@@ -58,6 +64,7 @@ module feed_decoder (
     load_o[15:0]  <= word_i;
     piece_o       <= is_feed;
     barrier_o     <= !is_feed;
+    probe_end_o   <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_PROBE_END;
   end
 
   logic unused;

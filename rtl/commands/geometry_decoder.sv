@@ -1,7 +1,7 @@
 // Decodes the next geometry command onto the load bus: a line's increments to the axes, an arc's state to the path
 // engines, the count to the count chain. The direct loader's halfwords go through the same register.
 //
-// OUTPUT's masks go to the path commands.
+// OUTPUT's masks and the conditions of PROBE and WAIT_INPUT go to the path commands.
 //
 // The engines have no second set of registers: what follows an arc's prescaler waits until the engine takes it. A line's
 // increments wait while the axes' shadows are the arc generator's.
@@ -26,8 +26,10 @@ module geometry_decoder #(
     output logic      [Axes-1:0] mask_o,
     output logic      [     4:0] engine_o,         // what a path runs on, by its bit of ENGINES
     output logic                 barrier_o,
-    output logic      [     1:0] instant_o,        // {MARK, OUTPUT}
+    output logic      [     2:0] instant_o,        // {PROBE, MARK, OUTPUT}
     output logic                 end_o,
+    output logic                 wait_o,           // WAIT_INPUT
+    output logic                 probe_end_o,
     output logic                 idle_o,
     output logic                 valid_o
 );
@@ -52,6 +54,9 @@ module geometry_decoder #(
   logic       is_chord;
   logic       is_output;
   logic       is_mark;
+  logic       is_probe;
+  logic       is_wait;
+  logic       has_words;  // for the path commands
   logic       at_axes;  // of an arc in chords only increments of further axes are left
   logic       to_axis;  // the next field is an axis's increment
   logic       on_engine;
@@ -66,6 +71,9 @@ module geometry_decoder #(
   assign is_chord  = Engines[card_map_pkg::ENGINE_ARC_GENERATOR] && opcode == card_map_pkg::OP_ARC_CHORD;
   assign is_output = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_OUTPUT;
   assign is_mark   = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_MARK;
+  assign is_probe  = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_PROBE;
+  assign is_wait   = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_WAIT_INPUT;
+  assign has_words = is_output || is_probe || is_wait;
   assign on_engine = is_arc || is_chord;  // another than lines: fields go by their number
   assign mask_o    = mask[Axes-1:0];
 
@@ -135,15 +143,16 @@ module geometry_decoder #(
     first_field = {on_engine ? 5'd0 : lowest, 3'd2};
     next_field  = to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length};
     last_field  = is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
-    if (is_output) begin
-      first_field = {FIRST_OF_COMMAND, 3'd0};
+    // Two masks, or the second number alone: a condition.
+    if (has_words) begin
+      first_field = {FIRST_OF_COMMAND | 5'(!is_output), 3'd0};
       last_field  = field[0];
     end
   end
 
   command_fetch fetch (
       .*,
-      .has_payload_i(is_line || on_engine || is_output),
+      .has_payload_i(is_line || on_engine || has_words),
       .first_i      (first_field),
       .next_i       (next_field),
       .last_field_i (last_field),
@@ -162,7 +171,7 @@ module geometry_decoder #(
 
   assign of_arc   = arc_target(strobe[4:0]);
   assign of_chord = chord_target(strobe[4:0], axis_x_q, axis_y_q);
-  assign target   = is_arc ? of_arc : is_chord ? of_chord : is_output ? load_target_pkg::COMMAND : strobe[4:0];
+  assign target   = is_arc ? of_arc : is_chord ? of_chord : has_words ? load_target_pkg::COMMAND : strobe[4:0];
 
   always_ff @(posedge clk_i) begin
     load_o[21]    <= (strobe[6:5] != 2'd0 || direct_load_i[21]) && !rst_i;
@@ -172,9 +181,11 @@ module geometry_decoder #(
     engine_o      <= 5'(card_map_pkg::ENGINE_LINES);
     if (is_arc) engine_o <= 5'(card_map_pkg::ENGINE_ACCUMULATOR);
     if (is_chord) engine_o <= 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
-    barrier_o <= !is_line && !on_engine && !is_output && !is_mark;
-    instant_o <= {is_mark, is_output};
-    end_o     <= opcode == card_map_pkg::OP_END;
+    barrier_o   <= !is_line && !on_engine && !is_output && !is_mark && !is_probe;
+    instant_o   <= {is_probe, is_mark, is_output};
+    end_o       <= opcode == card_map_pkg::OP_END;
+    wait_o      <= is_wait;
+    probe_end_o <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_PROBE_END;
   end
 endmodule
 

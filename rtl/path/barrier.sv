@@ -1,5 +1,5 @@
-// DWELL and END: waits until both queues stand at the barrier, counts the dwell's clocks, then lets both go on. Where
-// one queue stands and the other still has ticks to give or take, the program is wrong.
+// DWELL, END, WAIT_INPUT and PROBE_END: waits until both queues stand at the barrier, counts clocks or waits for what
+// ends it, then lets both go on. Where one queue stands and the other still has ticks to give or take, the program is wrong.
 //
 // The path's tick counter, free at a barrier, counts the clocks. A dwell of n clocks counts for max(1, n).
 `default_nettype none
@@ -14,6 +14,10 @@ module barrier (
     input  wire logic feed_runs_i,
     input  wire logic zero_i,           // the count is 0
     input  wire logic end_i,            // the barrier is an END
+    input  wire logic wait_i,           // a WAIT_INPUT: the count is a time-out, 0 none
+    input  wire logic met_i,            // its input has come
+    input  wire logic stays_i,          // a PROBE_END that must wait
+    input  wire logic drop_i,           // commands are dropped: what stands where says nothing
     input  wire logic last_i,           // of the tick counter
     input  wire logic begin_i,          // a path or a direct move begins
     output logic      mismatch_o,       // event
@@ -40,7 +44,7 @@ module barrier (
 
   assign together = geometry_at_i && feed_at_i;
   assign alone = (geometry_at_i && feed_runs_i) || (feed_at_i && geometry_runs_i);
-  assign over = state_q == COUNT && (zero_i || last_i);
+  assign over = state_q == COUNT && !stays_i && (wait_i ? met_i || (last_i && !zero_i) : zero_i || last_i);
 
   always_ff @(posedge clk_i) begin : p_barrier
     state_e state_d;
@@ -66,7 +70,7 @@ module barrier (
   end
 
   always_ff @(posedge clk_i) begin
-    mismatch_o <= alone && !cut_i && !rst_i;
+    mismatch_o <= alone && !drop_i && !cut_i && !rst_i;
     if (rst_i || cut_i || begin_i || load_o) ended_o <= 1'b0;
     else if (over && end_i) ended_o <= 1'b1;
   end

@@ -1,15 +1,18 @@
-// Deviation accumulator: a conic or a line, one unit step a path tick, from the sign of the deviation F.
+// Deviation accumulator: a conic or a line, one step a path tick. In 4 directions a unit step from the sign of the
+// deviation F; in 8 (the path's bit of PLANE) a step along x, y or both, what leaves the least deviation.
 //
-// A step of s in x does F += s*GX + CX/2 and GX += s*CX, in y likewise. Only the axis that steps is touched, so one
-// set of three 16-bit adders serves both. With U = s*G + CX/2 the two updates are F + U and s*(U + CX/2); a negative
-// s is an inversion on the way in and on the way out, and its missing one enters as the carry into F.
+// A step of s in x does F += s*GX + CX/2 and GX += s*CX, in y likewise, word by word (deviation_steps). In 8 directions a
+// second pass, in which all words come round unchanged, compares what may come next (deviation_compare).
 //
-// Timing: a tick at c gives its step at c+2 and ready_o again at c+9; start_i at c gives ready_o at c+2.
+// Timing: a tick at c gives its step at c+2 and ready_o again at c+9; start_i at c gives ready_o at c+2. In 8 directions
+// ready_o comes 8 clocks later each time.
 // A load halfword makes the block unready until the next start_i: two clocks after END_X, END_Y, QUADRANTS, else one.
 // load_i and start_i are given only at rest; all nine chains are loaded before a start.
 `default_nettype none
 
-module deviation_accumulator (
+module deviation_accumulator #(
+    parameter int EightDirections = 0  // 1: paths in 8 directions too
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        clear_i,
@@ -21,7 +24,7 @@ module deviation_accumulator (
     output logic             step_y_o,
     output logic             dir_y_o,
     output logic             ready_o,
-    output logic             stepping_o,  // not in the last five clocks before ready_o (combinational)
+    output logic             stepping_o,  // not in the last four clocks before ready_o (combinational)
     output logic             at_end_o
 );
   // Words that travel: 5 words of G enter the adders in phases 0..4 and come back three clocks later, in 3..7.
@@ -32,6 +35,7 @@ module deviation_accumulator (
   logic [31:0] ex_q, ey_q;  // displacement that remains
   logic [15:0] quadrants_q;
   logic        clockwise_q;
+  logic        eight_q;  // this path's step rule
 
   // Its targets on the load bus. The chains take a halfword a clock late: the choice among so many is in no long path.
   logic [15:0] word;
@@ -47,136 +51,150 @@ module deviation_accumulator (
     end
   end
 
-  // Control: one-hot phase of a step, and enables registered a clock ahead.
+  // Control: one-hot phase of a step and of the pass that compares, and enables registered a clock ahead.
   logic [LAST:0] phase_q;
-  logic start_q, g_shift_q, f_shift_q, h_shift_q, e_shift_q;
-  logic drop, accept;
+  logic [LAST:0] compare_q;
+  logic run_q, start_q, turn_q, g_shift_q, f_shift_q, f_turn_q, h_shift_q, e_shift_q;
+  logic drop, accept, compare, settled;
   assign drop = rst_i | clear_i | loading;
   assign accept = ready_o & tick_i & ~at_end_o;
-  assign stepping_o = phase_q[3:0] != '0;
+  assign compare = eight_q & (phase_q[LAST] | start_q);
+  assign settled = ((phase_q[LAST] | start_q) & ~eight_q) | compare_q[LAST];
+  assign stepping_o = phase_q[3:0] != '0 | compare_q[3:0] != '0 | (eight_q & (phase_q[LAST:4] != '0 | start_q));
 
   always_ff @(posedge clk_i) begin
     if (drop) begin
       phase_q   <= '0;
+      compare_q <= '0;
+      run_q     <= 1'b0;
       start_q   <= 1'b0;
       ready_o   <= 1'b0;
+      turn_q    <= 1'b0;
       g_shift_q <= 1'b0;
       f_shift_q <= 1'b0;
+      f_turn_q  <= 1'b0;
       h_shift_q <= 1'b0;
       e_shift_q <= 1'b0;
-    end else if (accept | g_shift_q | start_i | start_q) begin
+    end else if (accept | run_q | start_i | start_q) begin
       phase_q   <= {phase_q[LAST-1:0], accept};
+      compare_q <= {compare_q[LAST-1:0], compare};
       start_q   <= start_i;
-      ready_o   <= phase_q[LAST] | start_q;
-      g_shift_q <= accept | (|phase_q[LAST-1:0]);
-      f_shift_q <= |phase_q[6:1];
-      h_shift_q <= accept | (|phase_q[1:0]);
+      ready_o   <= settled;
+      run_q     <= accept | (|phase_q[LAST-1:0]) | compare | (|compare_q[LAST-1:0]);
+      turn_q    <= compare | (|compare_q[3:0]);
+      g_shift_q <= accept | (|phase_q[LAST-1:0]) | compare | (|compare_q[3:0]);
+      f_shift_q <= |phase_q[6:1] | (eight_q & phase_q[LAST]) | (|compare_q[5:1]);
+      f_turn_q  <= |compare_q[5:1];
+      h_shift_q <= accept | (|phase_q[1:0]) | compare | (|compare_q[1:0]);
       e_shift_q <= accept | (|phase_q[2:0]);
     end
   end
 
-  // Choice of the next step, renewed at rest, held while the step is made.
-  logic x_zero_q, y_zero_q, done_q, finish_q, select_x_q, negative_q, old_sign_q;
-  always_ff @(posedge clk_i) begin : p_choice_of_step
-    logic gx_negative, gy_negative, x_negative, y_negative, x_table, x_reached, y_reached, finish;
+  // Choice of the next step, and what it makes of the words at the chains' ends. Pairs are {y, x}.
+  logic x_zero_q, y_zero_q, done_q, finish, finish_q;
+  logic [1:0] take, negative, old_sign, sides;
+  logic [ 1:0] came;  // the step's last word of this axis's gradient, with its sign
+  logic [79:0] back;
+  logic [15:0] f_back;
+  logic [31:0] g_back, e_back, halves;
+  assign {e_back, g_back, f_back} = back;
+  assign halves = {hy_q[15:0], hx_q[15:0]} & {32{h_shift_q}};
+  assign came = take & {2{phase_q[LAST]}};
 
-    if (ready_o) begin
-      gx_negative = gx_q[79];
-      gy_negative = gy_q[79];
-      x_negative = clockwise_q ^ ~gy_negative;
-      y_negative = clockwise_q ^ gx_negative;
-      x_table = ~(f_q[79] ^ gx_negative ^ gy_negative ^ clockwise_q);  // the 16-entry table's axis
-      x_reached = x_zero_q | (ex_q[31] ^ x_negative);
-      y_reached = y_zero_q | (ey_q[31] ^ y_negative);
-      finish = finish_q | (done_q & (x_reached | y_reached));
-      finish_q <= finish;
-      if (finish ? ~x_zero_q : x_table) begin
-        select_x_q <= 1'b1;
-        negative_q <= finish ? ex_q[31] : x_negative;
-        old_sign_q <= gx_negative;
-      end else begin
-        select_x_q <= 1'b0;
-        negative_q <= finish ? ey_q[31] : y_negative;
-        old_sign_q <= gy_negative;
-      end
-    end
+  deviation_choice #(
+      .EightDirections(EightDirections)
+  ) next_step (
+      .*,
+      .rest_i     (ready_o),
+      .rule_i     ({eight_q, clockwise_q}),
+      .inside_i   (f_q[79]),
+      .gradient_i ({gy_q[79], gx_q[79]}),
+      .compare_i  (compare),
+      .next_i     ({came[1] ? g_back[31] : gy_q[79], came[0] ? g_back[15] : gx_q[79]}),
+      .sides_i    (sides),
+      .last_i     (done_q),
+      .left_i     ({ey_q[31], ex_q[31], y_zero_q, x_zero_q}),
+      .finishing_i(finish_q),
+      .finish_o   (finish),
+      .take_o     (take),
+      .negative_o (negative),
+      .old_sign_o (old_sign)
+  );
+
+  always_ff @(posedge clk_i) begin
+    if (ready_o) finish_q <= finish;
     if (start_q) finish_q <= 1'b0;
   end
 
-  // The words of the stepping axis: inverted gradient, half second difference (3 words, then zeros), displacement.
-  logic [15:0] g_q, h_q, h_late_q, e_q, u_q, v_q, sum_q, rest_q;
-  logic u_carry_q, v_carry_q, f_carry_q, e_carry_q;
-  logic [16:0] u_sum, v_sum, f_sum, e_sum;
-  assign u_sum = {1'b0, g_q} + {1'b0, h_q} + {16'd0, u_carry_q};
-  assign v_sum = {1'b0, u_q} + {1'b0, h_late_q} + {16'd0, v_carry_q};
-  assign f_sum = {1'b0, f_q[15:0]} + {1'b0, u_q} + {16'd0, f_carry_q};
-  assign e_sum = {1'b0, e_q} + {1'b0, {16{~negative_q}}} + {16'd0, e_carry_q};
+  deviation_steps #(
+      .EightDirections(EightDirections)
+  ) steps (
+      .*,
+      .run_i     (run_q),
+      .phase_i   (phase_q[2:0] | compare_q[2:0]),
+      .eight_i   (eight_q),
+      .take_i    (take),
+      .negative_i(negative),
+      .words_i   ({ey_q[15:0], ex_q[15:0], halves, gy_q[15:0], gx_q[15:0], f_q[15:0]}),
+      .words_o   (back),
+      .sides_o   (sides)
+  );
 
+  // State: shift chains; a chain that travels is full again when its last word is back.
   always_ff @(posedge clk_i) begin
-    // Between steps the words rest; what they held before a step's first phase never counts.
-    if (g_shift_q) begin
-      g_q <= (select_x_q ? gx_q[15:0] : gy_q[15:0]) ^ {16{negative_q}};
-      h_q <= h_shift_q ? (select_x_q ? hx_q[15:0] : hy_q[15:0]) : 16'd0;
-      h_late_q <= h_q;
-      e_q <= select_x_q ? ex_q[15:0] : ey_q[15:0];
-      {u_carry_q, u_q} <= u_sum & {~phase_q[0], 16'hFFFF};
-      {v_carry_q, v_q} <= v_sum & {~phase_q[1], 16'hFFFF};
-      {f_carry_q, sum_q} <= f_sum;
-      if (phase_q[1]) f_carry_q <= negative_q;
-      {e_carry_q, rest_q} <= e_sum;
-      if (phase_q[0]) e_carry_q <= negative_q;
+    if (loading_q | run_q) begin
+      if (load[0] | f_shift_q) f_q <= {load[0] ? word : f_turn_q ? f_q[15:0] : f_back, f_q[79:16]};
+      if (load[1] | (g_shift_q & take[0])) gx_q <= {load[1] ? word : turn_q ? gx_q[15:0] : g_back[15:0], gx_q[79:16]};
+      if (load[2] | (g_shift_q & take[1])) gy_q <= {load[2] ? word : turn_q ? gy_q[15:0] : g_back[31:16], gy_q[79:16]};
+      if (load[3] | (h_shift_q & take[0])) hx_q <= {load[3] ? word : hx_q[15:0], hx_q[47:16]};
+      if (load[4] | (h_shift_q & take[1])) hy_q <= {load[4] ? word : hy_q[15:0], hy_q[47:16]};
+      if (load[5] | (e_shift_q & take[0])) ex_q <= {load[5] ? word : e_back[15:0], ex_q[31:16]};
+      if (load[6] | (e_shift_q & take[1])) ey_q <= {load[6] ? word : e_back[31:16], ey_q[31:16]};
+      if (load[8]) clockwise_q <= word[0];
     end
   end
 
-  // State: shift chains; a chain that travels is full again when its last word is back.
-  logic [15:0] g_back;
-  assign g_back = v_q ^ {16{negative_q}};
-  always_ff @(posedge clk_i) begin
-    if (loading_q | g_shift_q) begin
-      if (load[0] | f_shift_q) f_q <= {load[0] ? word : sum_q, f_q[79:16]};
-      if (load[1] | (g_shift_q & select_x_q)) gx_q <= {load[1] ? word : g_back, gx_q[79:16]};
-      if (load[2] | (g_shift_q & ~select_x_q)) gy_q <= {load[2] ? word : g_back, gy_q[79:16]};
-      if (load[3] | (h_shift_q & select_x_q)) hx_q <= {load[3] ? word : hx_q[15:0], hx_q[47:16]};
-      if (load[4] | (h_shift_q & ~select_x_q)) hy_q <= {load[4] ? word : hy_q[15:0], hy_q[47:16]};
-      if (load[5] | (e_shift_q & select_x_q)) ex_q <= {load[5] ? word : rest_q, ex_q[31:16]};
-      if (load[6] | (e_shift_q & ~select_x_q)) ey_q <= {load[6] ? word : rest_q, ey_q[31:16]};
-      if (load[8]) clockwise_q <= word[0];
+  if (EightDirections != 0) begin : gen_eight_directions
+    always_ff @(posedge clk_i) begin
+      if (load[8]) eight_q <= word[1];
     end
+  end else begin : gen_four_directions
+    assign eight_q = 1'b0;
   end
 
   // Quadrants: the last one is foreseen, so that at_end_o and the next choice know of it with the sign itself. With
   // the upper bits 0 the change takes the last one: at 0 done_q is set already, and the count no longer matters.
   logic upper_zero_q, change, done;
-  assign change = phase_q[LAST] & (g_back[15] ^ old_sign_q);
+  assign change = |(came & ({g_back[31], g_back[15]} ^ old_sign));
   assign done   = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
   always_ff @(posedge clk_i) begin
     if (load[7]) quadrants_q <= word;
     else if (change) quadrants_q <= quadrants_q - 16'd1;
     // The flags of what a start finds, and of what a step leaves.
-    if (start_i | g_shift_q) begin
+    if (start_i | run_q) begin
       upper_zero_q <= quadrants_q[15:1] == 15'd0;
       x_zero_q <= ex_q == 32'd0;
       y_zero_q <= ey_q == 32'd0;
     end
     if (start_q | phase_q[LAST]) done_q <= done;
     if (drop) at_end_o <= 1'b0;
-    else if (start_q | phase_q[LAST]) at_end_o <= done & x_zero_q & y_zero_q;
+    else if (settled) at_end_o <= done & x_zero_q & y_zero_q;
   end
 
   always_ff @(posedge clk_i) begin
     if (rst_i | clear_i) begin
       step_x_o <= 1'b0;
       step_y_o <= 1'b0;
-    end else if (g_shift_q) begin
-      step_x_o <= phase_q[0] & select_x_q;
-      step_y_o <= phase_q[0] & ~select_x_q;
+    end else if (run_q) begin
+      step_x_o <= phase_q[0] & take[0];
+      step_y_o <= phase_q[0] & take[1];
     end
     if (rst_i) begin
       dir_x_o <= 1'b0;
       dir_y_o <= 1'b0;
     end else if (phase_q[0] & ~clear_i) begin
-      if (select_x_q) dir_x_o <= negative_q;
-      else dir_y_o <= negative_q;
+      if (take[0]) dir_x_o <= negative[0];
+      if (take[1]) dir_y_o <= negative[1];
     end
   end
 endmodule

@@ -34,11 +34,14 @@ module geometry_sequencer #(
     // commands that are neither paths nor barriers
     output logic      [     1:0] instant_o,        // {MARK, OUTPUT} is taken now (combinational)
     output logic                 over_o,           // event: a path has ended
+    // probe
+    output logic      [     2:0] probe_at_o,       // as path_commands has them
+    input  wire logic [     2:0] probe_says_i,
+    input  wire logic [     1:0] drop_i,
     // barriers
     input  wire logic            feed_at_i,
     input  wire logic            feed_runs_i,
-    output logic                 barrier_begin_o,
-    output logic                 barrier_done_o,
+    output logic      [     2:0] barrier_o,        // {done, counts, begins}
     // faults and status
     output logic                 mismatch_o,
     output logic                 incomplete_o,
@@ -54,33 +57,39 @@ module geometry_sequencer #(
   logic [Axes-1:0] mask;
   logic [     4:0] engine;
   logic            is_barrier;
-  logic [     1:0] instant;
+  logic [     2:0] instant;
   logic            is_end;
+  logic            is_wait;
+  logic            is_probe_end;
+  logic            dropped;
   logic            valid;
-  logic            pop;
+  logic            path_pop;
   logic            decoder_idle;
   logic            path_begin;
   logic            runs;
   logic            zero;
   logic            last;
   logic            at_barrier;
-  logic            counting;
 
-  assign runs = taking_o || (valid && !is_barrier && instant == 2'd0);
-  assign instant_o = {2{valid}} & instant;
+  assign runs = taking_o || (valid && !is_barrier && instant == 3'd0);
+  assign dropped = valid && drop_i[1] && !is_probe_end;
+  assign instant_o = {2{valid && !drop_i[1]}} & instant[1:0];
+  assign probe_at_o = {barrier_o[1] && is_wait, barrier_o[1] && is_probe_end, valid && instant[2] && !path_active_o};
 
   geometry_decoder #(
       .Axes   (Axes),
       .Engines(Engines)
   ) decoder (
       .*,
-      .pop_i          (pop),
+      .pop_i          (path_pop || instant_o != 2'd0 || probe_says_i[1] || dropped),
       .payload_ready_i(payload_ready_i && !engine_taken_o),
       .mask_o         (mask),
       .engine_o       (engine),
       .barrier_o      (is_barrier),
       .instant_o      (instant),
       .end_o          (is_end),
+      .wait_o         (is_wait),
+      .probe_end_o    (is_probe_end),
       .idle_o         (decoder_idle),
       .valid_o        (valid)
   );
@@ -89,8 +98,8 @@ module geometry_sequencer #(
       .*,
       .next_i({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
       .zero_o(zero),
-      .load_i(path_begin || barrier_begin_o),
-      .take_i(take_i || counting),
+      .load_i(path_begin || barrier_o[0]),
+      .take_i(take_i || barrier_o[1]),
       .last_o(last)
   );
 
@@ -98,35 +107,44 @@ module geometry_sequencer #(
       .Axes(Axes)
   ) paths (
       .*,
-      .valid_i       (valid),
+      .valid_i       (valid && !dropped && instant == 3'd0),
       .engine_i      (engine),
       .barrier_i     (is_barrier),
-      .instant_i     (instant != 2'd0),
       .mask_i        (mask),
-      .pop_o         (pop),
+      .pop_o         (path_pop),
       .last_i        (last),
       .begin_o       (path_begin),
-      .barrier_done_i(barrier_done_o),
+      .halt_i        (drop_i[0]),
+      .barrier_done_i(barrier_o[2]),
       .at_barrier_o  (at_barrier)
   );
 
+  // A barrier that has begun is over where the others are dropped.
   barrier both_queues (
       .*,
+      .cut_i          (cut_i || (drop_i[0] && !(valid && is_probe_end))),
       .geometry_at_i  (at_barrier),
       .geometry_runs_i(runs),
       .zero_i         (zero),
       .end_i          (is_end),
+      .wait_i         (is_wait),
+      .stays_i        (is_probe_end && probe_says_i[2]),
+      .met_i          (probe_says_i[0]),
+      .drop_i         (drop_i[1]),
       .last_i         (last),
       .begin_i        (path_begin),
-      .load_o         (barrier_begin_o),
-      .counting_o     (counting),
-      .done_o         (barrier_done_o)
+      .load_o         (barrier_o[0]),
+      .counting_o     (barrier_o[1]),
+      .done_o         (barrier_o[2])
   );
 
-  // A direct move does not count.
+  // A direct move does not count, nor what is neither path nor barrier. A barrier that had begun has counted.
+  logic drop_counts;
+  assign drop_counts = dropped && instant == 3'd0 && barrier_o[2:1] == 2'd0;
+
   begun_counter begun (
       .*,
-      .begin_i((swap_o && !direct_o) || barrier_begin_o)
+      .begin_i((swap_o && !direct_o) || barrier_o[0] || drop_counts)
   );
 
   // A barrier is over before its command is.

@@ -36,7 +36,7 @@ module instant_commands #(
   logic                 fire;
 
   assign fire = (output_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
-  assign change_o = delay_q == 3'd1;
+  assign change_o = delay_q == 3'd1 && !cut_i;
 
   // What has taken effect stays in the masks, where it changes nothing more: set goes before clear, a later command takes
   // what it clears out of set_o, and a cut empties both.
@@ -66,8 +66,8 @@ module instant_commands #(
   logic [31:0] taken_q;
 
   always_ff @(posedge clk_i) begin
-    mark_o <= change_o && mark_due_q && !cut_i && !rst_i;
-    if (change_o && mark_due_q && !cut_i) marks_o <= taken_q;
+    mark_o <= change_o && mark_due_q && !rst_i;
+    if (change_o && mark_due_q) marks_o <= taken_q;
     if (cut_i) taken_q <= marks_o;
     else if (taken_i[1]) taken_q <= taken_q + 32'd1;
     if (rst_i) begin

@@ -27,6 +27,7 @@ package load_target_pkg;
   localparam logic [2:0] FEED_STOP_DISTANCE = 3'd3;
   localparam logic [2:0] FEED_ACCELERATION = 3'd4;
   localparam logic [2:0] FEED_JERK = 3'd5;
+  localparam logic [2:0] FEED_NOWHERE = 3'd6;
 
 endpackage
 `default_nettype wire

@@ -21,8 +21,19 @@ module path_commands #(
     input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
     input wire logic runs_i,  // a path is under way
     output logic mark_o,  // event: a snapshot is wanted
+    // probe
+    input wire logic at_rest_i,  // the ratio is 0
+    input wire logic stopping_i,  // a fault's ramp
+    input wire logic probe_clear_i,  // event
+    input wire logic [2:0] probe_at_i,  // {WAIT_INPUT has begun, so has PROBE_END, a PROBE is decoded and no path runs}
+    // combinational: {PROBE_END must wait, the PROBE is taken, the condition decoded last is met}
+    output logic [2:0] probe_says_o,
+    output logic probe_o,  // event: a snapshot is wanted (combinational)
+    output logic probe_hold_o,
+    output logic [1:0] drop_o,  // {commands up to PROBE_END are not carried out, event: what runs ends here}
+    output logic probing_o,
     // registers
-    output logic [63:0] io_o  // {marks, outputs, inputs}
+    output logic [66:0] io_o  // {waiting, probe missed, probed, marks, outputs, inputs}
 );
   if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_built
     logic [       15:0] levels;
@@ -30,6 +41,7 @@ module path_commands #(
     logic               change;
     logic [Outputs-1:0] set;
     logic [Outputs-1:0] clear;
+    logic [        1:0] probe_status;
 
     input_pins #(
         .Inputs(Inputs)
@@ -43,6 +55,7 @@ module path_commands #(
         .Outputs(Outputs)
     ) instants (
         .*,
+        .cut_i   (cut_i || drop_o[0]),
         .marks_o (marks),
         .change_o(change),
         .set_o   (set),
@@ -60,13 +73,31 @@ module path_commands #(
         .pin_o   (output_o)
     );
 
-    assign io_o = {marks, 16'(output_o), levels};
+    probe edges (
+        .*,
+        .level_i (levels),
+        .waits_i (probe_at_i[0]),
+        .ends_i  (probe_at_i[1]),
+        .clear_i (probe_clear_i),
+        .met_o   (probe_says_o[0]),
+        .taken_o (probe_says_o[1]),
+        .stays_o (probe_says_o[2]),
+        .trip_o  (probe_o),
+        .hold_o  (probe_hold_o),
+        .halt_o  (drop_o[0]),
+        .drop_o  (drop_o[1]),
+        .busy_o  (probing_o),
+        .status_o(probe_status)
+    );
+
+    assign io_o = {probe_at_i[2], probe_status, marks, 16'(output_o), levels};
   end else begin : gen_without
     assign output_o = output_idle_i;
-    assign {mark_o, io_o} = '0;
+    assign {mark_o, io_o, probe_says_o, probe_o, probe_hold_o, drop_o, probing_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, taken_i, over_i, runs_i};
+    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, taken_i, over_i, runs_i, at_rest_i,
+                       stopping_i, probe_clear_i, probe_at_i};
   end
 endmodule
 

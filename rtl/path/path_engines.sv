@@ -133,7 +133,9 @@ module path_engines #(
       logic [     2:0] axis_x_q;
       logic [     2:0] axis_y_q;
 
-      deviation_accumulator deviation (
+      deviation_accumulator #(
+          .EightDirections(32'(Engines[card_map_pkg::ENGINE_ACCUMULATOR_8]))
+      ) deviation (
           .*,
           .clear_i   (cut_i),
           .start_i   (swap_i && engine_i == ACCUMULATOR),

@@ -11,11 +11,11 @@ module path_sequencer #(
     input  wire logic            clk_i,
     input  wire logic            rst_i,
     input  wire logic            cut_i,
+    input  wire logic            halt_i,          // event: the path ends here; no command is valid in this clock
     // decoded command
-    input  wire logic            valid_i,
+    input  wire logic            valid_i,         // a path or a barrier
     input  wire logic [     4:0] engine_i,        // what a path runs on, by its bit of ENGINES
     input  wire logic            barrier_i,
-    input  wire logic            instant_i,       // neither path nor barrier: taken at once
     input  wire logic [Axes-1:0] mask_i,
     output logic                 pop_o,           // taken now (combinational)
     // direct move: the chains are loaded
@@ -60,12 +60,12 @@ module path_sequencer #(
   logic       swap;
 
   assign on_lines       = engine_i == LINES;
-  assign path_valid     = valid_i && !barrier_i && !instant_i;
+  assign path_valid     = valid_i && !barrier_i;
   assign ending         = take_i && last_i;
   assign over           = on_engine_q ? drained_q && done_i : settled_q && !axes_live_i;
   // After a line the next path takes over in the clock of the last tick. A path that ended elsewhere has no successor.
   assign swap           = path_valid && !incomplete_o && (idle_q || (ending && !on_engine_q));
-  assign pop_o          = swap || barrier_done_i || (valid_i && instant_i);
+  assign pop_o          = swap || barrier_done_i;
   assign begin_o        = swap || direct_go_i;
   assign path_active_o  = !idle_q;
   assign engine_taken_o = on_engine_q && !drained_q;
@@ -85,7 +85,7 @@ module path_sequencer #(
       engine_o <= swap ? engine_i : LINES;
     end
 
-    if (rst_i || cut_i) begin
+    if (rst_i || cut_i || halt_i) begin
       idle_q <= 1'b1;
       taking_o <= 1'b0;
       drain_q <= 1'b0;

@@ -26,6 +26,7 @@ module register_access #(
     output logic             clear_refusal_o,  // combinational
     output logic             snapshot_o,
     output logic             abort_o,
+    output logic             probe_clear_o,
     output logic             flush_o,          // combinational
     // who answers a word of the stream and START
     output logic             stream_write_o,
@@ -89,7 +90,7 @@ module register_access #(
       in_limits_q <= card_map_pkg::register_in_limits(word, data);
       control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
       // An abort beside it does more than a flush.
-      flush_q <= write && word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&
+      flush_q <= word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&
           !data[card_map_pkg::BIT_CONTROL_ABORT];
       fault_q <= word == card_map_pkg::ADDR_FAULT[11:2];
       refusal_q <= word == card_map_pkg::ADDR_REFUSAL[11:2] && data != 32'd0;
@@ -207,18 +208,21 @@ module register_access #(
   assign act = acting_q && good_q && write;
   assign setting_o = {set_q, access_i[41:34], data};
   assign clear_refusal_o = act && refusal_q;
-  assign flush_o = acting_q && good_q && flush_q;
+  assign flush_o = acting_q && good_q && flush_q;  // only a write of CONTROL is good
 
   always_ff @(posedge clk_i) begin
     set_q <= act && kind_q == card_map_pkg::ACCESS_SETTING;
     clear_fault_o <= act && fault_q ? data : '0;
     snapshot_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
     abort_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_ABORT];
+    probe_clear_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_PROBE_CLEAR] &&
+        Engines[card_map_pkg::ENGINE_PATH_COMMANDS];
     if (rst_i) begin
       set_q <= 1'b0;
       clear_fault_o <= '0;
       snapshot_o <= 1'b0;
       abort_o <= 1'b0;
+      probe_clear_o <= 1'b0;
     end
   end
 

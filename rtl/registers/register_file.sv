@@ -27,12 +27,13 @@ module register_file #(
     input  wire logic [      31:0] room_i,            // {geometry, feed}
     input  wire logic [       1:0] low_i,             // {feed, geometry}: below their watermarks
     input  wire logic [      63:0] begun_i,           // {geometry, feed}
-    input  wire logic [      63:0] io_i,              // {marks, outputs, inputs}
+    input  wire logic [      66:0] io_i,              // {waiting, probe missed, probed, marks, outputs, inputs}
     output logic      [      31:0] status_o,          // combinational; refused is any port's
     // what writes do
     output logic      [      40:0] setting_o,         // {set, address, data}
     output logic      [      31:0] clear_fault_o,
     output logic                   abort_o,
+    output logic                   probe_clear_o,
     output logic                   flush_o,           // combinational
     // the command checker
     output logic                   stream_write_o,

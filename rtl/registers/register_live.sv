@@ -29,7 +29,7 @@ module register_live #(
     input  wire logic [31:0] fault_i,
     input  wire logic [31:0] room_i,           // {geometry, feed}
     input  wire logic [63:0] begun_i,          // {geometry, feed}
-    input  wire logic [63:0] io_i,             // {marks, outputs, inputs}
+    input  wire logic [66:0] io_i,             // {waiting, probe missed, probed, marks, outputs, inputs}
     output logic      [31:0] status_o,         // combinational; refused is any port's
     output logic      [31:0] data_o,
     output logic      [31:0] chain_o,
@@ -81,7 +81,10 @@ module register_live #(
       32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING |
       32'(low_i[0]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
       32'(low_i[1]) << card_map_pkg::BIT_STATUS_FEED_LOW |
-      32'(underrun_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN;
+      32'(underrun_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN |
+      32'(io_i[64]) << card_map_pkg::BIT_STATUS_PROBED |
+      32'(io_i[65]) << card_map_pkg::BIT_STATUS_PROBE_MISSED |
+      32'(io_i[66]) << card_map_pkg::BIT_STATUS_WAITING;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin

@@ -22,6 +22,7 @@ module stop_control #(
     input  wire logic            moving_i,      // pieces are giving ticks
     input  wire logic            fixed_i,       // the present one is fixed
     input  wire logic            underrun_i,    // what is queued ends: neither a fault nor a cut
+    input  wire logic            probe_i,       // a probe has tripped: likewise
     output logic      [    31:0] fault_o,
     output logic                 hold_o,        // the time base slows down to rest
     output logic                 cut_o,
@@ -80,7 +81,7 @@ module stop_control #(
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
     stop_o   <= state_q == RUN && state_d != RUN;
     stays_q  <= stays;
-    hold_o   <= (hold_q && (stays || !fixed_i)) || underrun_i || state_q == RAMP;
+    hold_o   <= (hold_q && (stays || !fixed_i)) || underrun_i || probe_i || state_q == RAMP;
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
       hold_q   <= card_map_pkg::RESET_HOLD[0];

@@ -13,17 +13,17 @@ module feed_sequencer #(
     output logic             read_o,
     // ticks
     input  wire logic        take_i,
-    input  wire logic        direct_i,         // a direct move is under way
-    input  wire logic        wait_i,           // no piece begins
-    input  wire logic        barrier_begin_i,
-    input  wire logic        barrier_done_i,
+    input  wire logic        direct_i,      // a direct move is under way
+    input  wire logic        wait_i,        // no piece begins
+    input  wire logic [ 1:0] drop_i,        // {commands up to PROBE_END are dropped, event: the piece ends here}
+    input  wire logic [ 2:0] barrier_i,     // {done, counts, begins}
     output logic             at_barrier_o,
-    output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
-    output logic             active_o,         // a piece gives ticks
-    output logic             decoded_o,        // a piece waits (combinational)
-    output logic             moving_o,         // and has, or the one before it in one go
-    output logic      [ 1:0] class_o,          // of the piece that was swapped in last
-    output logic             idle_o,           // nothing read or decoded
+    output logic             runs_o,        // a piece gives ticks, or a decoded one waits (combinational)
+    output logic             active_o,      // a piece gives ticks
+    output logic             decoded_o,     // a piece waits (combinational)
+    output logic             moving_o,      // and has, or the one before it in one go
+    output logic      [ 1:0] class_o,       // of the piece that was swapped in last
+    output logic             idle_o,        // nothing read or decoded
     // feed generator
     output logic             swap_o,
     output logic      [19:0] load_o,
@@ -36,22 +36,28 @@ module feed_sequencer #(
   logic piece;
   logic [1:0] piece_class;
   logic is_barrier;
+  logic is_probe_end;
+  logic dropped;
   logic valid;
   logic swap;
   logic last;
 
   assign decoded_o = valid && piece;
-  assign swap      = decoded_o && !wait_i && (!active_o || (take_i && last));
+  assign dropped   = valid && drop_i[1] && !is_probe_end;
+  assign swap      = decoded_o && !wait_i && !drop_i[1] && (!active_o || (take_i && last));
   assign runs_o    = active_o || decoded_o;
 
-  feed_decoder decoder (
+  feed_decoder #(
+      .Engines(Engines)
+  ) decoder (
       .*,
-      .pop_i    (swap || barrier_done_i),
-      .active_i (active_o),
-      .piece_o  (piece),
-      .class_o  (piece_class),
-      .barrier_o(is_barrier),
-      .valid_o  (valid)
+      .pop_i      (swap || barrier_i[2] || dropped),
+      .active_i   (active_o),
+      .piece_o    (piece),
+      .class_o    (piece_class),
+      .barrier_o  (is_barrier),
+      .probe_end_o(is_probe_end),
+      .valid_o    (valid)
   );
 
   tick_counter ticks (
@@ -62,25 +68,26 @@ module feed_sequencer #(
       .last_o(last)
   );
 
+  // A barrier that had begun has counted.
   begun_counter begun (
       .*,
-      .begin_i(swap_o || barrier_begin_i)
+      .begin_i(swap_o || barrier_i[0] || (dropped && barrier_i[2:1] == 2'd0))
   );
 
   always_ff @(posedge clk_i) begin
     swap_o       <= swap && !cut_i && !rst_i;
-    at_barrier_o <= valid && is_barrier && !active_o && !barrier_done_i && !cut_i && !rst_i;
-    if (rst_i || cut_i) active_o <= 1'b0;
+    at_barrier_o <= valid && is_barrier && !dropped && !active_o && !barrier_i[2] && !cut_i && !rst_i;
+    if (rst_i || cut_i || drop_i[0]) active_o <= 1'b0;
     else if (swap) active_o <= 1'b1;
     else if (take_i && last) active_o <= 1'b0;
-    if (rst_i || cut_i) moving_o <= 1'b0;
+    if (rst_i || cut_i || drop_i[0]) moving_o <= 1'b0;
     else if (take_i) moving_o <= active_o && (swap || !last);
   end
 
   // A direct move has no pieces: it runs as feed, and so does what comes after a cut.
   if (Engines[card_map_pkg::ENGINE_CLASSES]) begin : gen_classes
     always_ff @(posedge clk_i) begin
-      if (rst_i || cut_i || direct_i) class_o <= 2'(card_map_pkg::CLASS_FEED);
+      if (rst_i || cut_i || drop_i[0] || direct_i) class_o <= 2'(card_map_pkg::CLASS_FEED);
       else if (swap) class_o <= piece_class;
     end
   end else begin : gen_no_classes

@@ -15,6 +15,7 @@ module queued_ticks #(
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        cut_i,
+    input  wire logic        forget_i,          // nothing counts as queued; what is on its way in goes on
     input  wire logic [20:0] arrive_i,          // {drop, geometry {commit, write}, feed {commit, write}, halfword}
     input  wire logic        take_i,
     input  wire logic [ 1:0] word_i,            // of the pass
@@ -76,7 +77,7 @@ module queued_ticks #(
       of_pieces_q <= feed_commit;
       zero_pending_q <= zero_q;
     end
-    if (reset) begin
+    if (reset || forget_i) begin
       owed_q <= 4'd0;
       pending_q <= 1'b0;
       at_rest_o <= 1'b0;
@@ -86,7 +87,7 @@ module queued_ticks #(
 
   // The words go round: only at a pass's end does the lowest one stand where it belongs.
   logic clearing_q;
-  always_ff @(posedge clk_i) clearing_q <= reset || (clearing_q && word_i != 2'd3);
+  always_ff @(posedge clk_i) clearing_q <= reset || forget_i || (clearing_q && word_i != 2'd3);
 
   logic [55:0] paths_q, pieces_q;
   logic paths_carry_q, pieces_carry_q;

@@ -67,7 +67,7 @@ module stop_ticks (
   logic [ 9:0] square_sum;
   logic        add;
   logic        round;
-  assign add = step_i >= 5'd2 && step_i <= 5'd10 && square_q[0];
+  assign add = step_i <= 5'd10 && square_q[0];  // in steps 0 and 1 it is 0
   assign round = step_i >= 5'd25 || step_i == 5'd0;
   assign square_sum = {1'b0, square_q[17:9]} + {1'b0, ratio_q};
   always_ff @(posedge clk_i) begin

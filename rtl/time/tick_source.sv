@@ -23,9 +23,11 @@ module tick_source #(
     output logic             take_o,           // combinational
     output logic             tick_o,
     output logic             swap_o,           // of the feed piece
+    // probe
+    input  wire logic [ 1:0] drop_i,           // {commands up to PROBE_END are dropped, event: the piece ends here}
+    input  wire logic        card_idle_i,      // nothing runs, is decoded or queued; up to four clocks late
     // barriers
-    input  wire logic        barrier_begin_i,
-    input  wire logic        barrier_done_i,
+    input  wire logic [ 2:0] barrier_i,        // {done, counts, begins}
     output logic             at_barrier_o,
     output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
     // under-run
@@ -81,8 +83,12 @@ module tick_source #(
   );
 
   if (Engines[card_map_pkg::ENGINE_UNDERRUN_HOLD]) begin : gen_underrun_hold
-    underrun_guard guard (
+    underrun_guard #(
+        .Probing(Engines[card_map_pkg::ENGINE_PATH_COMMANDS])
+    ) guard (
         .*,
+        .lost_i     (drop_i[0]),
+        .idle_i     (card_idle_i),
         .off_i      (1'b0),
         .arrive_i   (arrive_i[20:0]),
         .full_i     (arrive_i[21]),
@@ -101,7 +107,7 @@ module tick_source #(
     assign {piece_waits, underrun_hold_o, underrun_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, arrive_i, decoded};
+    assign unused = &{1'b0, arrive_i, decoded, card_idle_i};
   end
 
   feed_generator generator (

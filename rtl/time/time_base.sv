@@ -23,7 +23,7 @@ module time_base #(
     output logic             enable_o,
     output logic      [16:0] ratio_o
 );
-  // Q1.28: 1 is 2^28. The candidate lies between -2^28 and 2^29 - 1.
+  // Q1.28: 1 is 2^28. The candidate lies between -2^28 and 2^29 - 1, modulo 2^29.
   localparam logic [28:0] ONE = 29'h1000_0000;
 
   logic [16:0] feed_q;
@@ -67,14 +67,15 @@ module time_base #(
   logic [28:0] ratio_q;
   logic [16:0] inverted_goal_q;  // so an adder compares with it: X - goal - 1 = X + ~goal
   logic up_q, arrived_q;
-  logic [29:0] candidate_q;
+  logic [28:0] candidate_q;
 
   // Ratio and candidate less the goal less one, below which 12 bits are 0. The lowest bits make the carry in: 1 where the
-  // number has something below, and, so that a candidate on its way up arrives when it equals the goal.
+  // number has something below, and for a candidate on its way up. Ratio and candidate lie within a slew of each other, and
+  // the goal on the candidate's side or between them: the candidate's difference needs no bit more than the goal.
   logic [18:0] ratio_sum;
-  logic [18:0] candidate_sum;
+  logic [17:0] candidate_sum;
   assign ratio_sum = {1'b0, ratio_q[28:12], 1'b1} + {1'b1, inverted_goal_q, ratio_q[11:0] != 12'd0};
-  assign candidate_sum = {candidate_q[29:12], 1'b1} + {1'b1, inverted_goal_q, up_q || candidate_q[11:0] != 12'd0};
+  assign candidate_sum = {candidate_q[28:12], 1'b1} + {inverted_goal_q, up_q || candidate_q[11:0] != 12'd0};
 
   logic [28:0] goal;
   assign goal = {~inverted_goal_q, 12'd0};
@@ -93,9 +94,9 @@ module time_base #(
       end
       if (turn_q == 2'd1) up_q <= ratio_sum[18];
       if (turn_q == 2'd2) begin
-        candidate_q <= {1'b0, ratio_q} + ({2'b00, slew_q} ^ {30{!up_q}}) + {29'd0, !up_q};
+        candidate_q <= ratio_q + ({1'b0, slew_q} ^ {29{!up_q}}) + {28'd0, !up_q};
       end
-      if (turn_q == 2'd3) arrived_q <= candidate_sum[18] ^ up_q;
+      if (turn_q == 2'd3) arrived_q <= candidate_sum[17] ^ up_q;
     end
   end
 
@@ -118,7 +119,7 @@ module time_base #(
   );
 
   logic unused;
-  assign unused = &{1'b0, setting_i[31:28], ratio_sum[17:0], candidate_sum[17:0]};
+  assign unused = &{1'b0, setting_i[31:28], ratio_sum[17:0], candidate_sum[16:0]};
 endmodule
 
 `default_nettype wire

@@ -5,13 +5,19 @@
 // with its paths queued, or a barrier comes last. The guard begins to hold when it is short in motion, and ends when there
 // is twice as much for the ratio at which it began: so it does not chatter. Where the card stands and a queue is full,
 // more will not come: then anything beyond the reserve is enough, and it goes on as fast as that allows.
+//
+// What a probe drops is taken out of the queues unseen. From then on there is no rule, until nothing is queued once.
 `default_nettype none
 
-module underrun_guard (
+module underrun_guard #(
+    parameter logic Probing = 1'b1  // 0: nothing is ever dropped
+) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
     input  wire logic        cut_i,
     input  wire logic        off_i,       // no rule
+    input  wire logic        lost_i,      // event: what is queued will be dropped
+    input  wire logic        idle_i,      // nothing runs, is decoded or queued; up to four clocks late
     input  wire logic [20:0] arrive_i,    // {drop, geometry {commit, write}, feed {commit, write}, halfword}
     input  wire logic        full_i,      // a queue may have no room for the next command
     input  wire logic [19:0] load_i,      // feed load
@@ -44,10 +50,45 @@ module underrun_guard (
   assign from_rest = !active_i || ends_q;
   assign follow = !active_i || (ends_q && covered_q);
 
+  logic lost;
+  logic unknown;  // or was lost while the counts were compared that are decided on next
+  logic off;
+  assign off = off_i || lost;
+
+  if (Probing) begin : gen_probing
+    logic lost_q;
+    logic unknown_q;
+    logic inside_q;  // of a command on its way in
+    logic [2:0] since_q;  // the last command came; 7: long ago
+
+    always_ff @(posedge clk_i) begin
+      if (arrive_i[16] || arrive_i[18]) inside_q <= 1'b1;
+      if (arrive_i[20] || arrive_i[19] || arrive_i[17]) begin
+        inside_q <= 1'b0;
+        since_q  <= 3'd0;
+      end else if (since_q != 3'd7) since_q <= since_q + 3'd1;
+      lost_q <= lost_i || (lost_q && !(idle_i && !inside_q && since_q == 3'd7));
+      unknown_q <= lost_q || (unknown_q && step_q != DECIDE);
+      if (cut_i || rst_i) begin
+        inside_q <= 1'b0;
+        lost_q   <= 1'b0;
+      end
+    end
+    assign lost = lost_q;
+    assign unknown = lost_q || unknown_q;
+  end else begin : gen_no_probing
+    assign lost = 1'b0;
+    assign unknown = 1'b0;
+
+    logic unused;
+    assign unused = &{1'b0, lost_i, idle_i};
+  end
+
   queued_ticks #(
       .Reserve(Reserve)
   ) queued (
       .*,
+      .forget_i        (lost),
       .word_i          (step_q[1:0]),
       .inverted_limit_i(inverted_limit),
       .geometry_short_o(geometry_short),
@@ -75,7 +116,7 @@ module underrun_guard (
   logic enough_q;  // for it
   logic waits_q;
   logic short;
-  assign short = ruled && !at_barrier && !off_i && ((geometry_short && !covered) || (feed_short && !at_rest));
+  assign short = ruled && !at_barrier && !off && !unknown && ((geometry_short && !covered) || (feed_short && !at_rest));
 
   always_ff @(posedge clk_i) begin
     from_rest_q <= from_rest;
@@ -101,7 +142,7 @@ module underrun_guard (
     if (rst_i) underruns_o <= 32'd0;
   end
 
-  assign wait_o  = from_rest && !next_zero && !enough_q && !off_i;
+  assign wait_o  = from_rest && !next_zero && !enough_q && !off;
   assign shown_o = hold_o || waits_q;
 endmodule
 

@@ -144,7 +144,7 @@ CardModel::Config config_of(const EngineOptions& options) {
   CardModel::Config config;
   config.axes = options.axes;
   config.clock_hz = options.clock_hz;
-  config.engines |= card_map::field::kEnginesArcGenerator;
+  config.engines = model::RegisterFile::kMostEngines;
   return config;
 }
 

@@ -104,14 +104,30 @@ TEST(Notes, FeedsThatAreNotReached) {
 TEST(Notes, WordsWithoutEffectByTheReason) {
   const Command command;
   const Outcome outcome =
-      command.run("run " + command.write("a.ngc", "G64 P0.1\nM3 S100\nG1 X1 F600\nM0\nM1\nM0\nM5 T2\nM84\nM2\n") +
+      command.run("run " + command.write("a.ngc", "G64 P0.1 Q0.05\nM3 S100\nG1 X1 F600\nM0\nM1\nM0\nM5 T2\nM84\nM2\n") +
                   " --engine model");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("which a simulation does not make: M0 (2) M1 (1)\n"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("corners are kept as with G64 without P: G64 P (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("no lines are joined to fewer (naive cam): G64 Q (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("[outputs] of the machine file: M3 (1) M5 (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("waits for modulated outputs: S (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("without hardware yet: M84 (1) T (1)\n"), std::string::npos) << outcome.out;
+}
+
+TEST(Notes, BlendsAndCornersThatAreKept) {
+  const Command command;
+  const std::string program = command.write("a.ngc", "G64 P0.1\nG1 F600 X10\nY10\nX5\nX9\nM2\n");
+  for (const char* mode : {"", " --check"}) {
+    const Outcome outcome = command.run("run " + program + " --engine model --json " + command.path("a.json") + mode);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("blends (G64 P): 2, at most 0.1 mm from the programmed path\n"), std::string::npos)
+        << outcome.out;
+    EXPECT_NE(outcome.out.find("corners kept under G64 P: 1 (reversals)\n"), std::string::npos) << outcome.out;
+    EXPECT_NE(contents(command.path("a.json")).find("\"blends\": {\n    \"count\": 2,"), std::string::npos);
+  }
+  // Every line ends in a stop.
+  const Outcome single = command.run("run " + program + " --engine model --single-block");
+  EXPECT_EQ(single.out.find("G64 P"), std::string::npos) << single.out;
 }
 
 TEST(Program, FromStandardInputAndPipes) {

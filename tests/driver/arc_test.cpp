@@ -41,6 +41,7 @@ DeviationPath path_of(const ArcCommand& arc) {
   path.state.left_y = static_cast<std::uint32_t>(arc.end_y);
   path.state.quadrants = arc.quadrants;
   path.state.clockwise = arc.clockwise;
+  path.state.eight_directions = arc.eight_directions;
   path.begin();
   return path;
 }
@@ -55,7 +56,8 @@ bool walk(const ArcCommand& arc, Visit&& visit) {
   for (std::uint64_t i = 0; i < arc.path_ticks; ++i) {
     if (path.at_end()) return false;
     const auto step = path.step();
-    (step.in_x ? x : y) += step.negative ? -1 : 1;
+    if (step.in_x) x += step.negative_x ? -1 : 1;
+    if (step.in_y) y += step.negative_y ? -1 : 1;
     visit(x, y);
   }
   return path.at_end() && x == arc.end_x && y == arc.end_y;
@@ -137,14 +139,17 @@ struct Extremes {
 constexpr bool kFewCases = sizeof(void*) < 8;
 constexpr int some_of(int count) { return kFewCases ? std::max(1, count / 50) : count; }
 
-void expect_random_arcs(std::uint64_t seed, int count, double smallest, double largest, Extremes& worst) {
+constexpr double kMostInEight = 0.8;
+
+void expect_random_arcs(std::uint64_t seed, int count, double smallest, double largest, Extremes& worst,
+                        StepRule rule = StepRule::kFourDirections) {
   std::mt19937_64 random(seed);
   for (int i = 0; i < some_of(count); ++i) {
     const RandomArc made = random_arc(random, smallest, largest);
     const ArcGeometry& g = made.geometry;
     ArcCommand arc;
     try {
-      arc = prepare(g);
+      arc = prepare(g, rule);
     } catch (const std::invalid_argument&) {
       // Rounding left nothing to walk, or a circle smaller than a pulse.
       ASSERT_TRUE((g.end_x == 0 && g.end_y == 0) || made.radius < 2) << "arc " << i;
@@ -170,8 +175,11 @@ void expect_random_arcs(std::uint64_t seed, int count, double smallest, double l
     });
     ASSERT_TRUE(ended) << "arc " << i << " of seed " << seed << ": radius " << made.radius << " sweep " << g.sweep;
     const double mean = (first + last) / 2;
-    // One pulse, and what a step to the side of a small circle adds.
-    ASSERT_LT(std::max(most - mean, mean - least), 1 + 0.3 / mean) << "arc " << i << " of seed " << seed;
+    // One pulse, and what a step to the side of a small circle adds; in 8 directions half of it, or what lies between
+    // the mean radius and the ends'.
+    const bool eight = rule == StepRule::kEightDirections;
+    ASSERT_LT(std::max(most - mean, mean - least), eight ? kMostInEight : 1 + 0.3 / mean)
+        << "arc " << i << " of seed " << seed;
     worst.ring = std::max({worst.ring, most - std::max(first, last), std::min(first, last) - least});
     worst.mean = std::max({worst.mean, most - mean, mean - least});
     worst.real = std::max({worst.real, real_most - made.radius, made.radius - real_least});
@@ -192,6 +200,19 @@ TEST(ArcCommand, RandomArcsEndExactlyWithinTheirError) {
   EXPECT_LT(large.mean, 1.1);
   // Rounding moves start and end by up to 0.71 pulse, and the circle through them with them.
   EXPECT_LT(large.real, 1.1 + 0.71);
+}
+
+TEST(ArcInEightDirections, RandomArcsEndExactlyWithinTheirError) {
+  Extremes small;
+  expect_random_arcs(21, 30000, 2, 4, small, StepRule::kEightDirections);
+  Extremes large;
+  expect_random_arcs(22, 60000, 4, 500, large, StepRule::kEightDirections);
+  expect_random_arcs(23, 10000, 500, 10000, large, StepRule::kEightDirections);
+  expect_random_arcs(24, 4, 100000, 1000000, large, StepRule::kEightDirections);
+  RecordProperty("small", fmt::format("ring {:.4f} mean {:.4f} real {:.4f}", small.ring, small.mean, small.real));
+  RecordProperty("large", fmt::format("ring {:.4f} mean {:.4f} real {:.4f}", large.ring, large.mean, large.real));
+  EXPECT_LT(small.ring, 0.61);
+  EXPECT_LT(large.ring, 0.56);
 }
 
 // The angle from start to end in the given direction, 0 .. 2 pi.
@@ -386,6 +407,110 @@ TEST(Ellipse, FullTurnReturns) {
       EXPECT_LE(arc.path_ticks, static_cast<std::uint64_t>(4 * (a + b) + 4));
       EXPECT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {})) << a << ' ' << b;
     }
+  }
+}
+
+// By either rule; in 8 directions the driver's own walk says how many steps there are, and the model's comes to the end
+// with them.
+TEST(ArcInEightDirections, SmallArcsAndTurnsEndExactly) {
+  std::mt19937_64 random(31);
+  for (int i = 0; i < some_of(20000); ++i) {
+    RandomArc made = random_arc(random, 1, 60);
+    made.geometry.turns = static_cast<std::uint32_t>(random() % 12);
+    ArcCommand arc;
+    try {
+      arc = prepare(made.geometry, StepRule::kEightDirections);
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+    ASSERT_TRUE(arc.eight_directions);
+    ASSERT_TRUE(walk(arc, [](std::int64_t, std::int64_t) {})) << "arc " << i << ", radius " << made.radius;
+  }
+}
+
+TEST(ArcInEightDirections, FullCirclesHaveTheirSteps) {
+  for (std::int64_t r = 2; r <= 2000; ++r) {
+    const auto steps = 4 * static_cast<std::uint64_t>(std::lround(std::sqrt(2.0) * static_cast<double>(r)));
+    EXPECT_EQ(prepare(full_circle(r, false), StepRule::kEightDirections).path_ticks, steps) << r;
+    EXPECT_EQ(prepare(full_circle(r, true), StepRule::kEightDirections).path_ticks, steps) << r;
+  }
+  // Turns that repeat are not walked: this many would take hours.
+  ArcGeometry g = full_circle(1'000'000, false);
+  g.turns = 16382;
+  const ArcCommand arc = prepare(g, StepRule::kEightDirections);
+  EXPECT_EQ(arc.quadrants, 65532);
+  EXPECT_EQ(arc.path_ticks, std::uint64_t{4} * 1'414'214 * 16383);
+}
+
+TEST(ArcInEightDirections, EllipsesOfEveryShapeEndExactly) {
+  std::mt19937_64 random(32);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int i = 0; i < some_of(3000); ++i) {
+    const auto a = std::llround(std::pow(2.0, 12 * uniform(random)));
+    const auto b = std::llround(std::pow(2.0, 12 * uniform(random)));
+    EllipseGeometry g = random_ellipse_arc(random, a, b);
+    g.turns = static_cast<std::uint32_t>(random() % 3);
+    if (g.end_x == 0 && g.end_y == 0) g.turns = 1;
+    ASSERT_TRUE(walk(prepare(g, StepRule::kEightDirections), [](std::int64_t, std::int64_t) {}))
+        << "ellipse " << a << ' ' << b << ", arc " << i;
+  }
+}
+
+// At the bounds: a quarter of a circle whose centre is 2^24 pulses away and on no whole pulse, and of an ellipse with
+// semi-axes of 2^20. The ends are exact, the circle is kept within its error, and F and the gradients within 66 bits.
+TEST(ArcBounds, LargestCircle) {
+  if (kFewCases) GTEST_SKIP() << "too long for an emulated host";
+  constexpr double kRadius = 0x1p24;
+  for (const StepRule rule : {StepRule::kFourDirections, StepRule::kEightDirections}) {
+    ArcGeometry g;
+    g.centre_x = -kMaxCentreDistance + 77;  // 77/256 pulses to the right
+    g.centre_y = 129;
+    g.end_x = static_cast<std::int32_t>(std::lround(-kRadius + 77.0 / 256));
+    g.end_y = static_cast<std::int32_t>(std::lround(kRadius + 129.0 / 256)) - 1;
+    g.sweep = kPi / 2;
+    const double cx = static_cast<double>(g.centre_x) / 256;
+    const double cy = static_cast<double>(g.centre_y) / 256;
+    const double first = std::hypot(cx, cy);
+    const double last = std::hypot(g.end_x - cx, g.end_y - cy);
+    double worst = 0;
+    std::uint64_t steps = 0;
+    EXPECT_TRUE(walk(prepare(g, rule), [&](std::int64_t x, std::int64_t y) {
+      // One in a thousand, of doubles with 2^-29 to spare.
+      if (++steps % 1009 != 0) return;
+      const double r = std::hypot(static_cast<double>(x) - cx, static_cast<double>(y) - cy);
+      worst = std::max({worst, r - std::max(first, last), std::min(first, last) - r});
+    }));
+    EXPECT_GT(steps, std::uint64_t{23'000'000});
+    EXPECT_LT(worst, rule == StepRule::kEightDirections ? 0.51 : 1.01);
+  }
+}
+
+TEST(ArcBounds, LargestEllipse) {
+  for (const StepRule rule : {StepRule::kFourDirections, StepRule::kEightDirections}) {
+    EllipseGeometry g;
+    g.semi_x = kMaxSemiAxis;
+    g.semi_y = kMaxSemiAxis;
+    g.start_x = kMaxSemiAxis;
+    g.end_x = -kMaxSemiAxis;
+    g.end_y = kMaxSemiAxis;
+    g.sweep = kPi / 2;
+    const ArcCommand arc = prepare(g, rule);
+    DeviationPath path = path_of(arc);
+    __extension__ typedef __int128 int128;
+    int128 largest = 0;
+    const auto see = [&](DeviationPath::Word word) {
+      const int128 value = static_cast<int128>(word) >> DeviationPath::kAlign;
+      largest = std::max(largest, value < 0 ? -value : value);
+    };
+    for (std::uint64_t i = 0; i < arc.path_ticks; ++i) {
+      path.step();
+      see(path.state.deviation);
+      see(path.state.gradient_x);
+      see(path.state.gradient_y);
+    }
+    EXPECT_TRUE(path.at_end());
+    EXPECT_GE(largest, int128{1} << 61);
+    EXPECT_LT(largest, int128{1} << 65);
   }
 }
 

@@ -325,6 +325,7 @@ RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
   arc.path_ticks = *rc::gen::inRange<std::uint64_t>(1, arc.ticks + 1);
   arc.prescale = *rc::gen::inRange<std::uint64_t>(0, (std::uint64_t{1} << 40) + 1);
   arc.clockwise = clockwise;
+  arc.eight_directions = *rc::gen::arbitrary<bool>();
   arc.axis_x = static_cast<std::uint8_t>(*rc::gen::inRange(0, 8));
   arc.axis_y = static_cast<std::uint8_t>((arc.axis_x + *rc::gen::inRange(1, 8)) % 8);
   arc.quadrants = quadrants;
@@ -341,6 +342,7 @@ RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
   RC_ASSERT(back.path_ticks == arc.path_ticks);
   RC_ASSERT(back.prescale == arc.prescale);
   RC_ASSERT(back.clockwise == arc.clockwise);
+  RC_ASSERT(back.eight_directions == arc.eight_directions);
   RC_ASSERT(back.axis_x == arc.axis_x);
   RC_ASSERT(back.axis_y == arc.axis_y);
   RC_ASSERT(back.quadrants == arc.quadrants);

@@ -95,9 +95,6 @@ TEST(StreamOnModel, OutputsAndMarksAtTheirPlaceOnThePath) {
   EXPECT_EQ(card.outputs(), 0b0101);
   EXPECT_EQ(card.marks(), 2U);
   EXPECT_EQ(card.mark_snapshot().geometry_begun, 2U);
-  EXPECT_THROW(stream.send(WaitInputCommand{}), ArgumentError);
-  EXPECT_THROW(stream.send(ProbeCommand{}), ArgumentError);
-  EXPECT_THROW(stream.send(ProbeEndCommand{}), ArgumentError);
   sim::ModelOptions without;
   without.engines = 0x33;
   const auto other = sim::make_model_engine(without);
@@ -106,6 +103,9 @@ TEST(StreamOnModel, OutputsAndMarksAtTheirPlaceOnThePath) {
   EXPECT_THROW(plain.set_output_safe(0, 0), ArgumentError);
   Stream closed(plain);
   EXPECT_THROW(closed.send(MarkCommand{}), ArgumentError);
+  EXPECT_THROW(closed.send(WaitInputCommand{}), ArgumentError);
+  EXPECT_THROW(closed.send(ProbeCommand{}), ArgumentError);
+  EXPECT_THROW(closed.send(ProbeEndCommand{}), ArgumentError);
 }
 
 TEST(StreamOnModel, AFaultWhileWaitingEndsTheWait) {

@@ -290,6 +290,23 @@ TEST_F(StreamOrder, HonoursTheCardsEngines) {
   feed.jerk = 0;
   feed.piece_class = PieceClass::kRapid;
   EXPECT_THAT(message(feed), HasSubstr("FEED needs classes"));
+  // By its step rule too; the whole command is refused before a word of it is written.
+  bus_.values[reg::kEngines] |= field::kEnginesAccumulator;
+  Card in_four = Card::open(bus_);
+  Stream four(in_four);
+  arc.eight_directions = true;
+  bus_.forget();
+  try {
+    four.send(arc);
+    FAIL() << "accepted";
+  } catch (const ArgumentError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("ARC needs accumulator_8"));
+  }
+  EXPECT_TRUE(bus_.log.empty());
+  bus_.values[reg::kEngines] |= field::kEnginesAccumulator8;
+  Card in_eight = Card::open(bus_);
+  Stream eight(in_eight);
+  EXPECT_NO_THROW(eight.send(arc));
   // A class is no axis.
   bus_.values[reg::kEngines] |= field::kEnginesClasses;
   bus_.values[reg::kAxes] = 1;

@@ -97,10 +97,10 @@ TEST(Gcode, RefusesTextBesideAndBehindPercent) {
 TEST(Gcode, MessagesQuoteOneShortLine) {
   EXPECT_EQ(refusal("G0 X\t\x1b[1m"), "1: malformed number in 'X'");
   EXPECT_EQ(refusal("G0 X\t1\t*"), "1: unexpected '*'");
-  EXPECT_EQ(refusal("Q\t\t1"), "1: unsupported word 'Q\\t\\t1'");
+  EXPECT_EQ(refusal("H\t\t1"), "1: unsupported word 'H\\t\\t1'");
   EXPECT_EQ(refusal("%\x1b[2J\xff"), "1: '\\x1b[2J\\xff' beside or behind '%', where nothing is read");
   const std::string zeros(5000, '0');
-  EXPECT_EQ(refusal("Q" + zeros), "1: unsupported word 'Q" + zeros.substr(0, 76) + "...'");
+  EXPECT_EQ(refusal("H" + zeros), "1: unsupported word 'H" + zeros.substr(0, 76) + "...'");
   EXPECT_EQ(refusal("*" + std::string(79, '*')), "1: unexpected '" + std::string(80, '*') + "'");
   EXPECT_EQ(refusal("*" + std::string(80, '*')), "1: unexpected '" + std::string(77, '*') + "...'");
   EXPECT_EQ(describe({ErrorCode::kCannotRead, "a\nb\x1b\xc3\xa4", 3, "message"}), "a\\nb\\x1b\xc3\xa4:3: message");
@@ -116,7 +116,7 @@ TEST(Gcode, RefusesNumbersBeyondReason) {
 TEST(Gcode, RefusesWordsItDoesNotKnow) {
   for (const char* word : {"G5",    "G10", "G30", "G33", "G38.2", "G41", "G43", "G28.1", "G59.1", "G81",
                            "G92.2", "G95", "G96", "G99", "G1.5",  "M6",  "M19", "M48",   "M98",   "M104",
-                           "M84.5", "D1",  "H1",  "L2",  "O100",  "Q1",  "G-1", "G10000"}) {
+                           "M84.5", "D1",  "H1",  "L2",  "O100",  "D2",  "G-1", "G10000"}) {
     EXPECT_EQ(refusal(std::string("G21\n") + word), std::string("2: unsupported word '") + word + "'");
   }
   EXPECT_EQ(refusal("G0 A5"), "1: 'A5': the machine has no axis A");
@@ -136,9 +136,10 @@ TEST(Gcode, RefusesTwoWordsOfAModalGroup) {
 }
 
 TEST(Gcode, ListsWhatHasNoEffectYet) {
-  const Reading program = read("M3 S100 T2\nM8\nG64 P0.1\nG40 G49 G61 G80\nM0\nM1\nM5 M9\nM3 S5\nM84\nM18\nM30\n");
+  const Reading program =
+      read("M3 S100 T2\nM8\nG64 P0.1 Q0.01\nG40 G49 G61 G80\nM0\nM1\nM5 M9\nM3 S5\nM84\nM18\nM30\n");
   const std::map<std::string, std::size_t> expected = {{"M3", 2},    {"S", 2},   {"T", 1},  {"M8", 1},
-                                                       {"G64 P", 1}, {"M0", 1},  {"M1", 1}, {"M5", 1},
+                                                       {"G64 Q", 1}, {"M0", 1},  {"M1", 1}, {"M5", 1},
                                                        {"M9", 1},    {"M84", 1}, {"M18", 1}};
   EXPECT_EQ(program.accepted, expected);
   ASSERT_EQ(program.motions.size(), 3U) << "M0 and M1 stop";
@@ -245,6 +246,8 @@ TEST(Gcode, DwellIsInSeconds) {
   EXPECT_EQ(refusal("G4"), "1: G4 needs P, its seconds");
   EXPECT_EQ(refusal("G4 P-1"), "1: 'P-1' must not be negative");
   EXPECT_EQ(refusal("G0 P1"), "1: P without G2, G3, G4 or G64");
+  EXPECT_EQ(refusal("G61 Q1"), "1: Q without G64");
+  EXPECT_EQ(refusal("G64 P1 Q-1"), "1: 'Q-1' must not be negative");
 }
 
 TEST(Gcode, FeedModes) {
@@ -268,14 +271,14 @@ TEST(Gcode, ModalMotionAndItsEnd) {
 }
 
 TEST(Gcode, ErrorsNameFileAndLine) {
-  const Reading program = read_text("G0 X1\n\nG0 Q1");
+  const Reading program = read_text("G0 X1\n\nG0 H1");
   EXPECT_EQ(program.motions.size(), 1U);
   ASSERT_TRUE(program.error);
   EXPECT_EQ(program.error->code, ErrorCode::kUnsupportedWord);
   EXPECT_EQ(program.error->file, "p.ngc");
   EXPECT_EQ(program.error->line, 3U);
-  EXPECT_EQ(program.error->message, "unsupported word 'Q1'");
-  EXPECT_EQ(describe(*program.error), "p.ngc:3: unsupported word 'Q1'");
+  EXPECT_EQ(program.error->message, "unsupported word 'H1'");
+  EXPECT_EQ(describe(*program.error), "p.ngc:3: unsupported word 'H1'");
 }
 
 TEST(Gcode, ALineGivesAllOfItsMotionsOrNone) {

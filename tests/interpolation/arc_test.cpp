@@ -68,13 +68,35 @@ TEST(Circle, SteerFullCirclesTakeEightRadii) {
 }
 
 TEST(Circle, SteerHangsAtRadiusOneAndZero) {
-  EXPECT_FALSE(SteerProgram({1, 0}, 1, false).steps_to_return());
-  EXPECT_EQ(SteerProgram({1, 0}, 1, true).steps_to_return(), 6u);
+  // By the listing, two of the eight walks of radius 1 hang: it is the start and the direction, not the direction
+  // alone.
+  for (const Point start : {Point{1, 0}, Point{0, 1}, Point{-1, 0}, Point{0, -1}}) {
+    for (const bool clockwise : {false, true}) {
+      const bool hangs = clockwise ? start == Point{0, 1} : start == Point{1, 0};
+      const auto steps = SteerProgram(start, 1, clockwise).steps_to_return();
+      EXPECT_EQ(steps.value_or(0), hangs ? 0U : 6U) << start.x << "," << start.y << " clockwise " << clockwise;
+    }
+  }
   EXPECT_EQ(SteerProgram({0, 0}, 0, false).steps_to_return(), 4u);  // a square
-  EXPECT_THROW(make_interpolator(Method::kSteer, make_circle(1)), std::invalid_argument);
-  EXPECT_EQ(
-      walk_all(make_interpolator(Method::kSteer, make_circle(1, true)), 100, [](const Position&) { return 0; }).steps,
-      6u);
+}
+
+// From a radius above 1 on no walk of small circles passes the centre.
+TEST(Circle, SteerPassesTheCentreAtRadiusOneAlone) {
+  for (std::int64_t x = -4; x <= 4; ++x) {
+    for (std::int64_t y = -4; y <= 4; ++y) {
+      const std::int64_t square = x * x + y * y;
+      if (square == 0) continue;
+      for (const bool clockwise : {false, true}) {
+        bool centre = false;
+        SteerCircle walk(Arc{{0, 0}, {x, y}, {x, y}, clockwise, 0, 0});
+        while (!walk.done()) {
+          walk.next();
+          centre = centre || walk.position() == Position{};
+        }
+        EXPECT_EQ(centre, square == 1) << x << "," << y << " clockwise " << clockwise;
+      }
+    }
+  }
 }
 
 TEST(Circle, SteerHardlyEverReturnsToAStartOffTheCircle) {
@@ -133,7 +155,7 @@ TEST(Arc, ExhaustiveSmallArcsEndExactly) {
           for (const bool clockwise : {false, true}) {
             const Arc arc{{0, 0}, {sx, sy}, {ex, ey}, clockwise, 0, 0};
             for (const Method method : kCircleMethods) {
-              if (method == Method::kSteer && arc.is_full() && radius == 1 && !clockwise) continue;
+              if (method == Method::kSteer && radius == 1) continue;  // refused
               const Walked walked = walk_all(make_interpolator(method, arc), 1000,
                                              [&](const Position& p) { return from_circle(radius, p); });
               ASSERT_EQ(walked.end, (Position{ex, ey, 0, 0}))
@@ -242,6 +264,7 @@ Walked ellipse_walk(Method method, std::int64_t a, std::int64_t b, const Point& 
 TEST(Ellipse, ExhaustiveSmallEllipsesAndNeedlesEndExactly) {
   const auto both = [](std::int64_t a, std::int64_t b) {
     for (const Method method : {Method::kSteer, Method::kMinDeviation8}) {
+      if (method == Method::kSteer && (a == 1 || b == 1)) continue;  // refused
       for (const bool clockwise : {false, true}) {
         const Walked walked = ellipse_walk(method, a, b, {a, 0}, {a, 0}, clockwise);
         ASSERT_EQ(walked.end, (Position{a, 0, 0, 0})) << info(method).name << " " << a << "," << b;
@@ -286,6 +309,7 @@ TEST(Ellipse, RandomArcsEndExactly) {
     const Point start = at(unit(random) * 6.28);
     const Point end = at(unit(random) * 6.28);
     for (const Method method : {Method::kSteer, Method::kMinDeviation8}) {
+      if (method == Method::kSteer && (a == 1 || b == 1)) continue;  // refused
       const Walked walked = ellipse_walk(method, a, b, start, end, i % 2 == 0);
       ASSERT_EQ(walked.end, (Position{end.x, end.y, 0, 0})) << info(method).name << " " << a << "," << b;
     }

@@ -24,9 +24,14 @@ Arc arc(Point start, Point end, bool clockwise = false) { return {{0, 0}, start,
 
 TEST(Refusal, Circles) {
   EXPECT_THAT(reason(Method::kSteer, make_circle(0)), HasSubstr("radius 0"));
-  EXPECT_THAT(reason(Method::kSteer, make_circle(1)), HasSubstr("never comes back"));
-  EXPECT_THAT(reason(Method::kSteer, arc({0, 1}, {0, 1})), HasSubstr("never comes back"));
-  EXPECT_EQ(reason(Method::kSteer, make_circle(1, true)), "accepted");
+  EXPECT_THAT(reason(Method::kSteer, make_circle(1)), HasSubstr("passes the centre"));
+  EXPECT_THAT(reason(Method::kSteer, make_circle(1, true)), HasSubstr("passes the centre"));
+  EXPECT_THAT(reason(Method::kSteer, arc({0, 1}, {1, 0})), HasSubstr("passes the centre"));
+  EXPECT_THAT(reason(Method::kSteer, make_ellipse(5, 1)), HasSubstr("passes the centre"));
+  EXPECT_THAT(reason(Method::kSteer, make_ellipse(1, 5)), HasSubstr("passes the centre"));
+  EXPECT_EQ(reason(Method::kSteer, make_circle(2)), "accepted");
+  EXPECT_EQ(reason(Method::kSteer, arc({1, 1}, {1, 1})), "accepted");
+  EXPECT_EQ(reason(Method::kSteer, make_ellipse(5, 2)), "accepted");
   EXPECT_EQ(reason(Method::kMinDeviation8, make_circle(1)), "accepted");
   EXPECT_EQ(reason(Method::kRotation, make_circle(kMaxRadius)), "accepted");
   EXPECT_THAT(reason(Method::kRotation, make_circle(kMaxRadius + 1)), HasSubstr("2^30"));

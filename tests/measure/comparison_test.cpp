@@ -66,6 +66,19 @@ TEST(Comparison, OperationsOfFigure5) {
   EXPECT_EQ(measures_of(Method::kDda, line).cost.operations, 64U);
 }
 
+TEST(Comparison, WhatTheCardRunsCostsItsBlock) {
+  const Curve circle = make_circle(25);
+  // 38 and 33 halfwords, as docs/reference/commands.md has them.
+  EXPECT_EQ(measures_of(Method::kSteer, circle).cost.operations, 1U);
+  EXPECT_EQ(measures_of(Method::kRotation, circle).cost.operations, 1U);
+  EXPECT_EQ(measures_of(Method::kMinDeviation8, circle).cost.operations, 1U);
+  EXPECT_EQ(measures_of(Method::kSteer, circle).cost.register_writes, 19U);
+  EXPECT_EQ(measures_of(Method::kRotation, circle).cost.register_writes, 17U);
+  // The same rule walks lines on the host, and a DDA circles.
+  EXPECT_EQ(measures_of(Method::kSteer, make_line({0, 0}, {20, 40})).cost.operations, 60U);
+  EXPECT_GT(measures_of(Method::kDda, circle).cost.operations, 200U);
+}
+
 TEST(Comparison, EveryMethodThatCanDoACurveEndsOnIt) {
   const std::vector<Curve> curves = {make_line({3, -4}, {-50, 21}), make_circle(25), make_circle(25, true),
                                      make_ellipse(40, 25, true)};

@@ -81,8 +81,27 @@ TEST(Motor, ConstantVelocityFromAStandstillIsHarder) {
   // The second paper starts at full speed. There are speeds that the motor can run at but not start at.
   MotorRun run = run_at(1800);
   EXPECT_FALSE(simulate_motors(pulses_along_x(400), line_along_x(400), run).lost_steps);
-  run.from_standstill = true;
+  run.ramp_time = 0;
   EXPECT_TRUE(simulate_motors(pulses_along_x(400), line_along_x(400), run).lost_steps);
+}
+
+TEST(Motor, LostStretchesAreNeighbouringSpeeds) {
+  std::vector<Vibration> sweep(6);
+  for (const std::size_t i : {1U, 2U, 5U}) sweep[i].lost_steps = true;
+  const auto ranges = lost_at({1, 2, 3, 4, 5, 6}, sweep);
+  ASSERT_EQ(ranges.size(), 2U);
+  EXPECT_EQ(ranges[0].first, 2);
+  EXPECT_EQ(ranges[0].last, 3);
+  EXPECT_EQ(ranges[1].first, 6);
+  EXPECT_EQ(ranges[1].last, 6);
+}
+
+TEST(Motor, SweepIsLogarithmicWithFortySpeedsOrMore) {
+  const std::vector<double> speeds = sweep_speeds();
+  EXPECT_GE(speeds.size(), 40U);
+  EXPECT_EQ(speeds.front(), 100);
+  EXPECT_EQ(speeds.back(), 6400);
+  for (std::size_t i = 1; i < speeds.size(); ++i) EXPECT_NEAR(speeds[i] / speeds[i - 1], 1.104, 0.006);
 }
 
 TEST(Motor, MirroredAxisVibratesAlike) {

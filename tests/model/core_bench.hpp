@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 #include <string_view>
@@ -124,27 +125,39 @@ class CoreBench {
   }
   // A circle of radius r, all of it, from its rightmost point, over `ticks`; 8 r path ticks.
   static std::vector<std::uint32_t> circle_words(std::uint8_t number, std::uint64_t ticks, std::int64_t r,
-                                                 bool clockwise) {
-    const std::int64_t made = 8 * r;
+                                                 bool clockwise, bool eight = false) {
+    const std::int64_t made = eight ? steps_in_eight(r) : 8 * r;
     const auto n = static_cast<int128>(ticks);
     const int128 prescale = (int128{made} * kOnePulse + n / 2) / n;
     return command_words(card_map::Opcode::Arc, 3, number, ticks,
                          {{"path_ticks", made},
                           {"prescale", prescale},
-                          {"plane", 1 << 8 | (clockwise ? 1 : 0)},
+                          {"plane", 1 << 8 | (eight ? 2 : 0) | (clockwise ? 1 : 0)},
                           {"quadrants", 4},
                           {"gradient_x", 2 * r},
                           {"half_x", 1},
                           {"half_y", 1}});
   }
-  bool circle(std::uint64_t ticks, std::int64_t r, bool clockwise = false) {
-    return send(circle_words(number++, ticks, r, clockwise));
+  bool circle(std::uint64_t ticks, std::int64_t r, bool clockwise = false, bool eight = false) {
+    return send(circle_words(number++, ticks, r, clockwise, eight));
+  }
+  // Of a circle of radius r.
+  static std::int64_t steps_in_eight(std::int64_t r) {
+    return r == 1 ? 6 : 4 * std::llround(std::sqrt(2.0) * static_cast<double>(r));
   }
   bool dwell(std::uint64_t clocks) { return send(command_words(card_map::Opcode::Dwell, 0, number++, clocks, {})); }
   bool output(std::uint16_t set, std::uint16_t clear) {
     return send(command_words(card_map::Opcode::Output, 0, number++, 0, {{"set", set}, {"clear", clear}}));
   }
   bool mark() { return send(command_words(card_map::Opcode::Mark, 0, number++, 0, {})); }
+  // Conditions: {level, input}.
+  bool probe(unsigned condition) {
+    return send(command_words(card_map::Opcode::Probe, 0, number++, 0, {{"condition", condition}}));
+  }
+  bool probe_end() { return send(command_words(card_map::Opcode::ProbeEnd, 0, number++, 0, {})); }
+  bool wait_input(unsigned condition, std::uint64_t clocks) {
+    return send(command_words(card_map::Opcode::WaitInput, 0, number++, clocks, {{"condition", condition}}));
+  }
   bool end() { return send(command_words(card_map::Opcode::End, 0, number++, 0, {})); }
   // Until not busy; false when that does not come.
   bool finish(std::uint64_t limit) {

@@ -59,6 +59,69 @@ TEST(CoreModel, ACircleComesBack) {
   EXPECT_EQ(bench.steps.path.size(), 888U + 5U);
 }
 
+model::CardConfig with_eight_directions() {
+  model::CardConfig config;
+  config.engines = model::RegisterFile::kMostEngines;
+  return config;
+}
+
+TEST(CoreModel, ACircleInEightDirectionsComesBack) {
+  CoreBench bench(with_eight_directions());
+  for (const std::int64_t r : {1, 10, 100}) {
+    ASSERT_TRUE(bench.circle(static_cast<std::uint64_t>(r) * 8 * 20, r, r == 10, true));
+    ASSERT_TRUE(bench.feed(static_cast<std::uint64_t>(r) * 8 * 20, kWhole / 2));
+  }
+  ASSERT_TRUE(bench.end());
+  ASSERT_TRUE(bench.finish(100000));
+  EXPECT_EQ(bench.core.outputs().fault, 0U);
+  EXPECT_EQ(bench.core.position(0), 0U);
+  EXPECT_EQ(bench.core.position(1), 0U);
+  // Each coordinate goes 4 R, whatever the rule; two in one tick are two steps.
+  EXPECT_EQ(bench.steps.path.size(), 888U);
+}
+
+// A circle of radius 10 in 8 directions with one field as it must not be.
+std::vector<std::uint32_t> wrong_circle(const char* name, int128 value) {
+  std::vector<std::pair<std::string_view, int128>> fields = {{"path_ticks", 56},    {"prescale", kOnePulse / 10},
+                                                             {"plane", 1 << 8 | 2}, {"quadrants", 4},
+                                                             {"gradient_x", 20},    {"half_x", 1},
+                                                             {"half_y", 1}};
+  for (auto& field : fields) {
+    if (field.first == name) field.second = value;
+  }
+  return command_words(card_map::Opcode::Arc, 3, 0, 560, fields);
+}
+
+// What a field can be told from is refused; where ticks and quadrants do not fit the curve, the arc is not at its end.
+TEST(CoreModel, MalformedArcsInEightDirections) {
+  const auto refused = [](const std::vector<std::uint32_t>& words, const model::CardConfig& config) {
+    CoreBench bench(config);
+    return !bench.send(words) &&
+           (bench.read(reg::kRefusal) & 0xFF) == static_cast<unsigned>(card_map::Reason::BadField);
+  };
+  const model::CardConfig eight = with_eight_directions();
+  EXPECT_FALSE(refused(wrong_circle("quadrants", 4), eight));
+  EXPECT_TRUE(refused(wrong_circle("quadrants", 4), {})) << "no 8 directions built in";
+  EXPECT_TRUE(refused(wrong_circle("path_ticks", 0), eight));
+  EXPECT_TRUE(refused(wrong_circle("path_ticks", 561), eight)) << "more than the feed's";
+  EXPECT_TRUE(refused(wrong_circle("prescale", kOnePulse + 1), eight));
+  EXPECT_TRUE(refused(wrong_circle("plane", 1 << 8 | 6), eight));
+  const auto fault = [&eight](const std::vector<std::uint32_t>& words) {
+    CoreBench bench(eight);
+    EXPECT_TRUE(bench.send(words));
+    bench.number = 1;
+    EXPECT_TRUE(bench.feed(560, kWhole / 2));
+    EXPECT_TRUE(bench.finish(100000));
+    return bench.core.outputs().fault;
+  };
+  constexpr std::uint32_t kIncomplete = card_map::field::kFaultPathIncomplete;
+  EXPECT_EQ(fault(wrong_circle("quadrants", 4)), 0U);
+  EXPECT_EQ(fault(wrong_circle("quadrants", 5)), kIncomplete) << "round again";
+  EXPECT_EQ(fault(wrong_circle("prescale", kOnePulse / 11)), kIncomplete) << "too few path ticks";
+  EXPECT_EQ(fault(wrong_circle("prescale", kOnePulse / 8)), 0U) << "too many do no harm";
+  EXPECT_EQ(fault(wrong_circle("quadrants", 0)), 0U) << "start and end are one: no step";
+}
+
 // A circle at a tick a clock with a path tick in `each` ticks, and a path after it: the clocks of the circle's last
 // path tick and last feed tick, and of the next path's first tick.
 struct HandOver {
@@ -67,16 +130,17 @@ struct HandOver {
   std::uint64_t first = 0;
 };
 
-HandOver hand_over(std::int64_t radius, std::uint64_t each, bool to_arc) {
-  CoreBench bench;
-  const std::uint64_t ticks = 8 * static_cast<std::uint64_t>(radius) * each;
+HandOver hand_over(std::int64_t radius, std::uint64_t each, bool to_arc, bool eight = false) {
+  CoreBench bench(with_eight_directions());
+  const auto steps = static_cast<std::uint64_t>(eight ? CoreBench::steps_in_eight(radius) : 8 * radius);
+  const std::uint64_t ticks = steps * each;
   bench.logs = true;
   EXPECT_TRUE(bench.write(reg::kHold, 1));
-  EXPECT_TRUE(bench.circle(ticks, radius));
-  EXPECT_TRUE(to_arc ? bench.circle(400, radius) : bench.line(400, {kOnePulse / 3, kOnePulse / 5}));
+  EXPECT_TRUE(bench.circle(ticks, radius, false, eight));
+  EXPECT_TRUE(to_arc ? bench.circle(400, radius, false, eight) : bench.line(400, {kOnePulse / 3, kOnePulse / 5}));
   EXPECT_TRUE(bench.feed(ticks + 400, ~std::uint64_t{0}));
   EXPECT_TRUE(bench.write(reg::kHold, 0));
-  bench.idle(16 * ticks + 2000);
+  bench.idle((eight ? 32 : 16) * ticks + 2000);
   HandOver result;
   unsigned swaps = 0;
   for (std::size_t i = 0; i < bench.log.size() && result.first == 0; ++i) {
@@ -88,7 +152,8 @@ HandOver hand_over(std::int64_t radius, std::uint64_t each, bool to_arc) {
   return result;
 }
 
-// docs/developer/architecture.md, Sequencers; 29 clocks from where the accumulator is ready, 9 after its last tick.
+// docs/developer/architecture.md, Sequencers; 29 clocks from where the accumulator is ready, 9 after its last tick, 17
+// in 8 directions.
 TEST(CoreModel, HandOverAfterAnArc) {
   for (const std::int64_t radius : {1, 5, 20}) {
     for (const std::uint64_t each : {1U, 2U, 3U, 5U, 9U, 10U, 11U, 14U, 20U, 100U}) {
@@ -96,6 +161,11 @@ TEST(CoreModel, HandOverAfterAnArc) {
       EXPECT_EQ(arc.first, std::max(arc.path_tick + 9 + 29, arc.tick + 37)) << radius << ", " << each;
       const HandOver line = hand_over(radius, each, false);
       EXPECT_EQ(line.first, std::max(line.path_tick + 9 + 4, line.tick + 8)) << radius << ", " << each;
+      const HandOver eight = hand_over(radius, each, true, true);
+      EXPECT_EQ(eight.first, std::max(eight.path_tick + 17 + 29, eight.tick + 37)) << radius << ", " << each;
+      const HandOver line_after = hand_over(radius, each, false, true);
+      EXPECT_EQ(line_after.first, std::max(line_after.path_tick + 17 + 4, line_after.tick + 8))
+          << radius << ", " << each;
     }
   }
   // A path tick in 20 ticks or more is long finished: 37 and 8 clocks are what remains.

@@ -112,7 +112,7 @@ TEST(DeviationAccumulator, MakesGoldbergsLine) {
     EXPECT_EQ(value_of(path.state.deviation) + 1, kDeviation[i]) << "row " << i;
     const auto step = path.step();
     EXPECT_EQ(step.in_x, kAxes[i] == 'x') << "row " << i;
-    EXPECT_EQ(step.negative, !step.in_x) << "row " << i;
+    EXPECT_EQ(step.in_x ? step.negative_x : step.negative_y, !step.in_x) << "row " << i;
     const int x = rig.x + (step.in_x ? 1 : 0);
     const int y = rig.y - (step.in_x ? 0 : 1);
     ASSERT_TRUE(rig.tick());
@@ -137,7 +137,8 @@ TEST(DeviationAccumulator, MakesSteersLinesStepByStep) {
         ASSERT_FALSE(path.at_end());
         const auto step = path.step();
         ASSERT_EQ(step.in_x, f > 0) << dx << ' ' << dy << " step " << i;
-        ASSERT_EQ(step.negative, (step.in_x ? dx : dy) < 0);
+        ASSERT_NE(step.in_x, step.in_y);
+        ASSERT_EQ(step.in_x ? step.negative_x : step.negative_y, (step.in_x ? dx : dy) < 0);
         f += f > 0 ? -std::abs(dy) : std::abs(dx);
       }
       ASSERT_TRUE(path.at_end());
@@ -192,7 +193,8 @@ Turn full_turn(int r, bool clockwise, int sx, int sy) {
   int y = sy;
   while (!path.at_end() && turn.steps <= 16 * r) {
     const auto step = path.step();
-    (step.in_x ? x : y) += step.negative ? -1 : 1;
+    if (step.in_x) x += step.negative_x ? -1 : 1;
+    if (step.in_y) y += step.negative_y ? -1 : 1;
     ++turn.steps;
     const double error = std::sqrt(static_cast<double>(x) * x + static_cast<double>(y) * y) - r;
     turn.lowest = std::fmin(turn.lowest, error);

@@ -128,6 +128,8 @@ class Program {
   // A tick every `pace` clocks.
   void paths_and_pieces(double pace) {
     std::uint64_t ticks = 0;
+    const bool probing = p_.one_in(3);
+    if (probing) conditional(card_map::Opcode::Probe, 0);
     for (std::uint64_t paths = p_.any(1, 5); paths != 0; --paths) {
       instants();
       const std::uint64_t n = p_.one_in(4) ? p_.any(1, 40) : p_.any(100, 3000);
@@ -145,6 +147,8 @@ class Program {
     instants();
     if (p_.one_in(2)) barrier();
     instants();
+    if (p_.one_in(6)) conditional(card_map::Opcode::WaitInput, p_.one_in(3) ? 0 : p_.sized(12));
+    if (probing && !p_.one_in(6)) p_.send(command_words(card_map::Opcode::ProbeEnd, 0, number_++, 0, {}));
   }
 
   // Arcs in chords alone, at a path tick for nearly each feed tick.
@@ -179,6 +183,10 @@ class Program {
     }
   }
 
+  void conditional(card_map::Opcode opcode, std::uint64_t count) {
+    p_.send(command_words(opcode, 0, number_++, count, {{"condition", p_.any(0, 1) << 4 | p_.any(0, 3)}}));
+  }
+
   std::uint64_t line(std::uint64_t ticks) {
     const auto mask = static_cast<std::uint8_t>(p_.any(1, (1U << axes_) - 1));
     std::vector<std::int64_t> increments;
@@ -193,7 +201,9 @@ class Program {
   std::uint64_t circle(std::uint64_t ticks) {
     const std::int64_t r = static_cast<std::int64_t>(p_.any(1, 6));
     ticks = std::max<std::uint64_t>(ticks, static_cast<std::uint64_t>(8 * r));
-    p_.send(CoreBench::circle_words(number_++, ticks, r, p_.one_in(2)));
+    const bool can = card_map::has_engine(p_.clocked.core.config().engines, card_map::engine::kAccumulator8);
+    const bool eight = can && p_.one_in(2);
+    p_.send(CoreBench::circle_words(number_++, ticks, r, p_.one_in(2), eight));
     return ticks;
   }
 
@@ -258,7 +268,7 @@ class Program {
 
 void disturb(Pair& pair) {
   const auto clocks = [&pair] { return pair.any(1, 3000); };
-  switch (pair.any(0, 8)) {
+  switch (pair.any(0, 9)) {
     case 0:
       pair.write(reg::kSlew, static_cast<std::uint32_t>(pair.any(0x1'0000, 0xFFF'FFFF)));
       pair.write(reg::kHold, 1);
@@ -290,6 +300,9 @@ void disturb(Pair& pair) {
       pair.clocked.pins = pair.jumping.pins = static_cast<std::uint16_t>(pair.any(0, 0xFFFF));
       break;
     case 6:
+      pair.write(reg::kControl, card_map::field::kControlProbeClear);
+      break;
+    case 7:
       pair.write(reg::kOutputSafe, static_cast<std::uint32_t>(pair.random()));
       pair.write(reg::kInputPolarity, static_cast<std::uint32_t>(pair.any(0, 0xFFFF)));
       break;
@@ -305,6 +318,7 @@ struct Compared {
   std::uint64_t clocks = 0;
   std::uint64_t chord_arcs = 0;
   std::uint64_t marks = 0;
+  std::uint64_t probed = 0;
   std::uint64_t underruns = 0;
 };
 
@@ -317,6 +331,7 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     config.axes = 1 + static_cast<unsigned>(random() % 8);
     config.idle_level = static_cast<std::uint32_t>(random() & ((1U << 2 * config.axes) - 1));
     if (random() % 2 == 0) config.engines |= card_map::field::kEnginesArcGenerator;
+    if (random() % 2 == 0) config.engines |= card_map::field::kEnginesAccumulator8;
     Pair pair(of, config, random());
     Program program(pair);
     program.settings();
@@ -336,6 +351,8 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     const std::uint32_t marks = pair.clocked.read(reg::kMarks);
     EXPECT_EQ(pair.jumping.read(reg::kMarks), marks);
     compared.marks += marks;
+    // A probe that tripped has latched its time.
+    compared.probed += pair.clocked.read(reg::time_lo(card_map::Area::Probe)) != 0 ? 1U : 0U;
     compared.underruns += pair.clocked.read(reg::kUnderruns);
     compared.clocks += pair.one_by_one / 2;
   }
@@ -351,6 +368,7 @@ TEST(Run, EqualsClock) {
   EXPECT_GT(compared.steps, 20 * programs);
   EXPECT_GT(compared.chord_arcs, programs / 4);
   EXPECT_GT(compared.marks, programs / 5);
+  EXPECT_GT(compared.probed, programs / 10);
 }
 
 // Jumps that end anywhere between a feed tick and the step of its path tick.
@@ -361,6 +379,7 @@ TEST(Run, EqualsClockOnArcsInChords) {
     SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
     model::CardConfig config;
     config.engines |= card_map::field::kEnginesArcGenerator;
+    config.engines |= card_map::field::kEnginesAccumulator8;
     Pair pair(Pair::Of::ClockAndRun, config, seed() * 1'000'003 + i);
     Program program(pair);
     const double paces[] = {5, 9.7, 31, 120};
@@ -409,6 +428,7 @@ TEST(RestingBlocks, ChangeNothing) {
   EXPECT_GT(compared.steps, 20 * programs);
   EXPECT_GT(compared.chord_arcs, programs / 4);
   EXPECT_GT(compared.marks, programs / 5);
+  EXPECT_GT(compared.probed, programs / 10);
 }
 
 }  // namespace

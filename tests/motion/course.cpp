@@ -61,12 +61,14 @@ Course arc_course(const Path& path, const machine::Machine& machine) {
     mm[a] = per_tick * static_cast<double>(arc.path_ticks) / machine.axes[a].steps_per_mm;
     course.pulses_a_tick[a] = std::abs(per_tick) * path_ticks;
   }
-  course.pulses_a_tick[arc.axis_x] = course.pulses_a_tick[arc.axis_y] = speed;
+  // As of a line: each end may have been moved along the arc by half a pulse's diagonal, and off its circle.
+  const double least = std::max(0.0, 1 - 2 * std::sqrt(0.5) / (radius * sweep));
+  course.pulses_a_tick[arc.axis_x] = course.pulses_a_tick[arc.axis_y] = speed * least;
   const double in_plane = radius * sweep / scale;
   mm[arc.axis_x] = in_plane;  // any direction in the plane will do for the length
   course.length = counted_length(mm, machine, course.spatial);
   course.plane_share = in_plane / course.length;
-  course.curvature = scale / radius;
+  course.curvature = scale / (radius + std::sqrt(0.5));
   for (std::size_t a = 0; a < mm.size(); ++a) course.entry[a] = course.exit[a] = mm[a] / course.length;
   const double begin = std::atan2(y, x);
   const auto tangent = [&](Vector& direction, double angle) {

@@ -19,7 +19,7 @@ struct Course {
   Vector entry{};  // direction at the start and at the end, mm a mm of `length`
   Vector exit{};
   double length = 0;       // mm, along X Y Z, or all axes where none of these moves
-  double curvature = 0;    // 1/mm, in the plane of an arc
+  double curvature = 0;    // 1/mm, in the plane of an arc; likewise
   double plane_share = 0;  // of the path's speed in the plane
   std::array<std::size_t, 2> plane{};
   bool spatial = false;  // X, Y or Z moves

@@ -116,7 +116,9 @@ class Judge {
     // Where a path ends too, the density of ticks may change with the rate; it is known as well as the rounded lengths.
     if (new_path) {
       const double scaled = before * mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
-      jump = std::min(jump, std::abs(after - scaled) - scaled * (last_course_.error + course_.error));
+      const double least = scaled * (1 - last_course_.error) / (1 + course_.error);
+      const double largest = course_.error < 1 ? scaled * (1 + last_course_.error) / (1 - course_.error) : INFINITY;
+      jump = std::min(jump, std::max({0.0, least - after, after - largest}));
     }
     verdict.rate_jump.look(jump / allowed, now.path->command);
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {

@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <random>
+#include <string>
 
 #include "trammel/driver/card.hpp"
 #include "trammel/gcode/line_source.hpp"
@@ -123,6 +125,7 @@ struct Planned final : driver::CommandSink {
     planner::Planner planner(blocks, machine, card);
     for (planner::PlannedBlock block; planner.next(*this, block);) {
       if (planner::moves(block.block)) seconds += block.seconds;
+      if (block.block.corner == planner::Corner::kBlended) ++blends;
     }
     error = blocks.error();
   }
@@ -130,6 +133,7 @@ struct Planned final : driver::CommandSink {
 
   std::vector<driver::Command> commands;
   double seconds = 0;
+  std::size_t blends = 0;
   std::optional<gcode::Error> error;
 };
 
@@ -151,16 +155,90 @@ TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
   }
 }
 
-TEST(MotionJudge, StepsFollowTheCommandedMotion) {
-  for (unsigned seed = 1; seed <= 10; ++seed) {
-    SCOPED_TRACE(fmt::format("seed {}", seed));
-    EXPECT_LE(
-        Program(text(random_lines(seed)), machine_of(100, 1000, seed % 2 == 0 ? 20000 : 0), 10 * kClock).farthest(),
-        0.8);
+// 40 mm of short chords that bend to and fro, at feeds that change: where the clock is slow, so does the density of
+// ticks.
+std::string bends_with_feeds(unsigned seed) {
+  std::mt19937 random(seed);
+  std::string program = "G21 G90 G94\n";
+  double x = 0, y = 0, heading = 0, turn = 0;
+  for (int i = 0; i < 800; ++i) {
+    if (i % 50 == 0) {
+      turn = std::uniform_real_distribution<>(-0.03, 0.03)(random);
+      program += fmt::format("F{:.0f}\n", std::uniform_real_distribution<>(1000, 18000)(random));
+    }
+    heading += random() % 3 == 0 ? turn : 0;
+    x += 0.05 * std::cos(heading);
+    y += 0.05 * std::sin(heading);
+    program += fmt::format("G1 X{:.4f} Y{:.4f}\n", x, y);
+  }
+  return program + "M2\n";
+}
+
+// A window too short for smooth ramps makes the motion stop in mid path: at rest, and on from rest. Of 240 seeds these
+// four stop a part of a tick beside a tick.
+TEST(MotionJudge, StopsOfAShortWindowAreWithinTheirLimits) {
+  constexpr double kJerk = 100'000;
+  for (const unsigned seed : {1U, 2U, 42U, 78U, 110U, 159U}) {
+    SCOPED_TRACE(seed);
+    const std::uint32_t clock = seed % 2 == 0 ? kClock : 10 * kClock;
+    const std::string program = bends_with_feeds(seed);
+    gcode::TextLines lines(program, "program");
+    machine::Machine machine = fast_machine(kJerk);
+    machine.motion.window = 16;
+    const Planned planned(lines, machine, clock);
+    expect_within_limits(judge_motion(planned.commands, {machine, static_cast<double>(clock), 0.01}));
   }
 }
 
+// With G64 P: arcs in main planes and chords in others take the corners' places.
+TEST(MotionJudge, BlendedProgramsAreWithinTheirLimits) {
+  for (unsigned seed = 1; seed <= random_programs() / 4; ++seed) {
+    const double jerk = seed % 2 == 0 ? 20000 : 0;
+    const std::string program = fmt::format("G64 P{}\n", seed % 3 == 0 ? 1.0 : 0.1) + random_lines(seed);
+    SCOPED_TRACE(fmt::format("seed {}, jerk {}", seed, jerk));
+    gcode::TextLines lines(program, "program");
+    const machine::Machine machine = machine_of(100, 1000, jerk);
+    const Planned planned(lines, machine, 10 * kClock);
+    EXPECT_GT(planned.blends, 20U);
+    const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
+    expect_within_limits(verdict);
+    EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
+  }
+}
+
+TEST(MotionJudge, StepsFollowTheCommandedMotion) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    const machine::Machine machine = machine_of(100, 1000, seed % 2 == 0 ? 20000 : 0);
+    EXPECT_LE(Program(text(random_lines(seed)), machine, 10 * kClock).farthest(), 0.8);
+  }
+}
+
+TEST(MotionJudge, StepsFollowABlendedMotion) {
+  const std::string program = "G21 G90 G94 F3000 G64 P0.5\nG1 X8\nY8\nX2 Y9 Z3\nG2 X5 Y6 I3\nG1 X0 Y1\nM2\n";
+  EXPECT_LE(Program(text(program), machine_of(100, 1000, 0), 10 * kClock).farthest(), 0.8);
+}
+
 #ifdef TRAMMEL_SHARED_GCODE_DIR
+// Where the clock does not change the ticks a pulse between lines and blends.
+TEST(MotionJudge, OctocatBlendedIsWithinItsLimits) {
+  std::ifstream file(std::filesystem::path(TRAMMEL_SHARED_GCODE_DIR) / "octocat.gcode");
+  std::string program = "G64 P0.05\n";
+  std::string line;
+  for (int i = 0; i < 4000 && std::getline(file, line); ++i) program += line + "\n";
+  for (const double jerk : {0.0, 30000.0}) {
+    gcode::TextLines lines(program, "octocat.gcode");
+    machine::Machine machine = fast_machine(jerk);
+    machine.motion.junction_deviation = 0.02;
+    const Planned planned(lines, machine, 4 * kClock, 15);
+    ASSERT_FALSE(planned.error);
+    EXPECT_GT(planned.blends, 1000U);
+    const MotionVerdict verdict = judge_motion(planned.commands, {machine, 4 * kClock, 0.02});
+    expect_within_limits(verdict);
+    EXPECT_NEAR(verdict.seconds(4 * kClock), planned.seconds, 0.001 * planned.seconds);
+  }
+}
+
 TEST(MotionJudge, RealProgramsAreWithinTheirLimits) {
   for (const auto& entry : std::filesystem::directory_iterator(TRAMMEL_SHARED_GCODE_DIR)) {
     if (entry.path().extension() != ".gcode") continue;

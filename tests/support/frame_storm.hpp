@@ -38,8 +38,9 @@ class FrameStorm {
     std::uint64_t lost_replies = 0;
   };
 
-  FrameStorm(std::uint64_t seed, Card card, Restart restart)
-      : random_(seed), card_(std::move(card)), restart_(std::move(restart)) {}
+  // One request in `long_one_in` has up to 59 words, the others up to 4.
+  FrameStorm(std::uint64_t seed, Card card, Restart restart, std::uint32_t long_one_in = 4)
+      : random_(seed), card_(std::move(card)), restart_(std::move(restart)), long_one_in_(long_one_in) {}
 
   // Sends until `frames` have gone; the request under way is finished.
   void run(std::uint64_t frames) {
@@ -93,7 +94,7 @@ class FrameStorm {
     frames::Request r;
     r.kind = chance(3) ? frames::Kind::Read : frames::Kind::Write;
     r.fixed = chance(2);
-    r.count = static_cast<std::uint8_t>(1 + below(chance(4) ? frames::kMaxWords : 4));
+    r.count = static_cast<std::uint8_t>(1 + below(chance(long_one_in_) ? frames::kMaxWords : 4));
     r.address = static_cast<std::uint16_t>(kFirst + 4 * below(0x200));
     for (unsigned i = 0; r.kind == frames::Kind::Write && i < r.count; ++i) r.data.push_back(word());
     r.number = static_cast<std::uint16_t>(last_ + 1);
@@ -118,14 +119,7 @@ class FrameStorm {
     frames::append_request(stream, current_);
     for (bool done = false; !done;) {
       while (chance(2)) disturb(stream);
-      if (restart_ && chance(64)) {
-        restart_();
-        ++epoch_;  // the card's: the frame under way is one of a former connection now
-        connect();
-        current_.epoch = epoch_;
-        stream = {frames::kEnd};
-        frames::append_request(stream, current_);
-      }
+      if (restart_ && chance(64)) restart(stream);
       ++counts_.frames;
       const frames::Bytes reply = card_(stream);
       keep(stream);
@@ -141,6 +135,20 @@ class FrameStorm {
     // A number may come again only in another connection.
     if (last_ == 0xFFFF || chance(5000)) connect();
     choose();
+  }
+
+  // A new connection. If the request has not run, the host may as well want something else; the frame comes late.
+  void restart(frames::Bytes& stream) {
+    const frames::Bytes before = stream;
+    restart_();
+    connect();
+    if (card_last_ != current_.number && chance(2)) choose();
+    current_.epoch = epoch_;
+    stream = {frames::kEnd};
+    frames::append_request(stream, current_);
+    ++counts_.frames;
+    ++counts_.repeated;
+    deliver(before);
   }
 
   // Something else than the frame in one piece.
@@ -275,7 +283,8 @@ class FrameStorm {
         reply.result == frames::Result::Done && reply.epoch == static_cast<std::uint16_t>(card.epoch + 1);
     if (!moved || reply.number != request.number) fail("a connection that was not made");
     epoch_ = reply.epoch;
-    last_ = counts_.connections == 0 ? reply.last : last_;
+    card_last_ = reply.last;
+    if (counts_.connections == 0) last_ = card_last_;
     ++counts_.connections;
   }
   frames::Reply exchange(const frames::Request& request) {
@@ -295,9 +304,11 @@ class FrameStorm {
   std::mt19937_64 random_;
   Card card_;
   Restart restart_;
+  std::uint32_t long_one_in_;
   Counts counts_;
   std::uint16_t epoch_ = 0;
   std::uint16_t last_ = 0;
+  std::uint16_t card_last_ = 0;  // when it was connected last
   frames::Request current_;
   std::uint32_t made_ = 0;       // accesses of it that the card has made
   std::uint32_t refuse_at_ = 0;  // the word that is refused, where there is one

@@ -52,10 +52,15 @@ class Programs {
   unsigned wrong_every = 100;
   // Without them all paths are lines.
   bool arcs = true;
+  // Every other arc in 8 directions.
+  bool eight_directions = false;
   // In chords, on the arc generator.
   bool chords = false;
   // OUTPUT and MARK between paths.
   bool path_commands = false;
+  // PROBE, PROBE_END and WAIT_INPUT among them, on inputs below `inputs`.
+  bool probes = false;
+  unsigned inputs = 16;
   // Pieces of all classes; else feed.
   bool classes = false;
   // The most ticks of a stretch, and of its paths and pieces.
@@ -72,8 +77,11 @@ class Programs {
     std::uint64_t piece_ticks = 0;
     const unsigned paths = dice_.below(6);
     const bool single = dice_.chance(4);  // paths and pieces of one tick each, one after the other
+    const bool probing = probes && dice_.chance(3);
+    if (probing) s.geometry.push_back(conditional(card_map::Opcode::Probe, 0));
     for (unsigned i = 0; i < paths; ++i) {
       instants(s.geometry);
+      if (probing && dice_.chance(10)) s.geometry.push_back(conditional(card_map::Opcode::Probe, 0));
       path_ticks += path(s.geometry, single);
     }
     instants(s.geometry);
@@ -93,6 +101,7 @@ class Programs {
       barrier(s);
       instants(s.geometry);
     }
+    if (probing ? !dice_.chance(8) : probes && dice_.chance(8)) both(s, probe_end());
     return s;
   }
 
@@ -102,16 +111,27 @@ class Programs {
                           {{"set", dice_.draw() & 0xFFFF}, {"clear", dice_.draw() & 0xFFFF}});
   }
 
+  static Halfwords probe_end() { return stored_command(card_map::Opcode::ProbeEnd, 0, 0); }
+  Halfwords conditional(card_map::Opcode opcode, std::uint64_t count) {
+    return stored_command(opcode, 0, count, {{"condition", dice_.below(2) << 4 | dice_.below(inputs)}});
+  }
+
   void barrier(Stretch& s) {
+    if (probes && dice_.chance(3))
+      return both(s, conditional(card_map::Opcode::WaitInput, dice_.chance(4) ? 0 : 1 + dice_.below(60)));
     constexpr unsigned kDwells[] = {0, 1, 2, 3, 4, 15, 16, 17, 18, 33, 100};
     const bool end = dice_.chance(3);
     const Halfwords command = stored_command(end ? card_map::Opcode::End : card_map::Opcode::Dwell, 0,
                                              end ? 0 : kDwells[dice_.below(std::size(kDwells))]);
+    both(s, command);
+  }
+
+ private:
+  static void both(Stretch& s, const Halfwords& command) {
     s.geometry.push_back(command);
     s.feed.push_back(command);
   }
 
- private:
   // Commands that are neither paths nor barriers, some in a row now and then.
   void instants(std::vector<Halfwords>& to) {
     while (path_commands && dice_.chance(3)) {
@@ -136,10 +156,12 @@ class Programs {
     return ticks;
   }
 
-  // A full circle in unit steps, with as many path ticks as it has steps.
+  // A full circle, with as many path ticks as it has steps.
   std::uint64_t arc(std::vector<Halfwords>& to) {
+    constexpr std::int64_t kStepsInEight[] = {6, 12, 16, 24, 28, 32, 40, 44};  // 4 round(sqrt(2) R) from R = 2 on
     const std::int64_t radius = 1 + dice_.below(8);
-    const std::int64_t steps = 8 * radius;
+    const bool eight = eight_directions && dice_.chance(2);
+    const std::int64_t steps = eight ? kStepsInEight[radius - 1] : 8 * radius;
     const std::int64_t ticks = steps + dice_.below(dice_.chance(2) ? 4 : 300);
     const bool wrong = dice_.chance(wrong_every);
     const auto prescale = static_cast<std::int64_t>((int128{steps} * kOnePulse + ticks / 2) / ticks);
@@ -148,7 +170,7 @@ class Programs {
     to.push_back(stored_command(card_map::Opcode::Arc, 1U << x | 1U << y, static_cast<std::uint64_t>(ticks),
                                 {{"path_ticks", steps},
                                  {"prescale", prescale},
-                                 {"plane", y << 8 | x << 4 | dice_.below(2)},
+                                 {"plane", y << 8 | x << 4 | (eight ? 2U : 0U) | dice_.below(2)},
                                  {"quadrants", wrong ? 5 : 4},
                                  {"gradient_x", 2 * radius},
                                  {"half_x", 1},

@@ -71,6 +71,8 @@ std::array<Layout, 256> all_layouts() {
                                                                "plane");
   all[static_cast<std::uint8_t>(Opcode::Output)] =
       layout_of(Opcode::Output, {{"set", path::kCommand}, {"clear", path::kCommand}}, "");
+  for (const Opcode conditional : {Opcode::Probe, Opcode::WaitInput})
+    all[static_cast<std::uint8_t>(conditional)] = layout_of(conditional, {{"condition", path::kCommand}}, "");
   all[static_cast<std::uint8_t>(Opcode::Line)].pause_at = kHeader;
   all[static_cast<std::uint8_t>(Opcode::Feed)] = layout_of(Opcode::Feed,
                                                            {{"rate", feed::kRate},
@@ -90,6 +92,7 @@ unsigned CommandFetch::target_of(int index) const {
   const unsigned ticks = queue_ == Queue::Geometry ? load_target::kTicks : feed_target::kTicks;
   if (index < kHeader) return ticks;
   const auto payload = static_cast<std::size_t>(index - kHeader);
+  if (queue_ == Queue::Feed && !is_feed()) return feed_target::kNowhere;
   if (opcode_ == Opcode::Line) return load_target::kIncrement + axes_[payload / 3];
   if (is_chord() && payload >= kFurtherAxes) return load_target::kIncrement + axes_[2 + (payload - kFurtherAxes) / 3];
   const unsigned target = kLayouts[static_cast<std::uint8_t>(opcode_)].targets[payload];

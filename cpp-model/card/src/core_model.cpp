@@ -88,7 +88,7 @@ void CoreModel::clock(const Inputs& in) {
   const MotionCore::Inputs motion_in = motion_inputs(in.pins);
   const QueueWatermarks::Inputs watermark_in = watermark_inputs();
   clock_commands(cut);
-  clock_registers(in);
+  clock_registers(in, motion_.probe_trips(motion_in));
   if (config_.clock_all || watermark_in.setting.set || !watermarks_.quiet(watermark_in))
     watermarks_.clock(watermark_in);
   motion_.clock(motion_in);
@@ -97,8 +97,8 @@ void CoreModel::clock(const Inputs& in) {
 }
 
 // The register file looks at a few signals in every clock, at all others only while it is at work.
-void CoreModel::clock_registers(const Inputs& in) {
-  if (in.request) awake_ = kAwake;
+void CoreModel::clock_registers(const Inputs& in, bool probe) {
+  if (in.request || probe) awake_ = kAwake;
   if (awake_ == 0 && !config_.clock_all) return registers_.advance(1);
   register_in_.request = in.request;
   register_in_.write = in.write;
@@ -106,6 +106,7 @@ void CoreModel::clock_registers(const Inputs& in) {
   register_in_.port = in.port;
   register_in_.address = in.address;
   register_in_.data = in.data;
+  register_in_.probe = probe;
   const bool quiet = registers_.quiet(register_in_);
   registers_.clock(register_in_);
   register_in_.request = false;
@@ -130,7 +131,10 @@ std::uint64_t CoreModel::watched() const {
                         motion_.commands().mark(),
                         watermarks_.outputs().geometry_low,
                         watermarks_.outputs().feed_low,
-                        motion_.underrun().shown};
+                        motion_.underrun().shown,
+                        motion_.probe().probed(),
+                        motion_.probe().missed(),
+                        motion_.sequencer().waits_for_input()};
   std::uint64_t bits = stop.fault;
   for (const bool flag : flags) bits = bits << 1 | (flag ? 1 : 0);
   return bits;
@@ -163,6 +167,7 @@ MotionCore::Inputs CoreModel::motion_inputs(std::uint16_t pins) const {
   in.setting = set.setting;
   in.abort = set.abort;
   in.clear_fault = set.clear_fault;
+  in.probe_clear = set.probe_clear;
   in.geometry_empty = geometry_queue_.outputs().empty;
   in.feed_empty = feed_queue_.outputs().empty;
   in.geometry_word = geometry_queue_.outputs().word;
@@ -230,6 +235,9 @@ void CoreModel::gather() {
   in.fault = motion_.stop().fault;
   in.stop = motion_.stop().stop;
   in.mark = motion_.commands().mark();
+  in.probed = motion_.probe().probed();
+  in.probe_missed = motion_.probe().missed();
+  in.waiting = motion_.sequencer().waits_for_input();
   in.inputs = motion_.commands().levels();
   in.outputs = motion_.commands().outputs();
   in.marks = motion_.commands().marks();

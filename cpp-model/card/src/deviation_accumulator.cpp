@@ -43,6 +43,7 @@ void DeviationAccumulator::take(const LoadWord& load) {
       return;
     default:
       state.clockwise = (load.word & 1U) != 0;
+      state.eight_directions = (load.word & 2U) != 0;
   }
 }
 

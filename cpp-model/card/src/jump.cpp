@@ -327,20 +327,23 @@ bool MotionCore::may_jump(const Inputs& in) const {
   const StopControl::Outputs& stop = stop_.outputs();
   const Sequencer::Outputs& s = sequencer_.outputs();
   if (s.swap || s.feed_swap || s.direct || out_.path_step != 0 || axes_live_ || out_.step_fault != 0) return false;
-  if (in.setting.set || in.abort || in.clear_fault != 0 || in.start || !loader_.quiet()) return false;
+  if (in.setting.set || in.abort || in.clear_fault != 0 || in.probe_clear || in.start || !loader_.quiet()) return false;
   const bool fixed = s.piece_class == card_map::constant::kClassFixed;
   if (!stop_.quiet(s.moving, fixed, time_base_.outputs().ratio == 0)) return false;
   if (!engines_.settled() || !time_base_.steady(stop.hold, s.piece_class)) return false;
   if (!commands_.quiet(in.pins, s.path_active)) return false;
+  if (!probe_.quiet(probe_inputs(in)) || probing_ != probe_.busy()) return false;
   for (const Axis& axis : axes_) {
     if (!axis.calm()) return false;
   }
-  if (running_ != (!s.idle || out_.axis_busy != 0) || busy_left_ != (running_ ? kBusyClocks : 0)) return false;
+  if (running_ != (!s.idle || probing_ || out_.axis_busy != 0) || busy_left_ != (running_ ? kBusyClocks : 0))
+    return false;
   if (s.idle && out_.axis_busy != 0) return false;
   const Sequencer::Inputs sequencer_in = sequencer_inputs(in);
   if (!sequencer_.settled(sequencer_in)) return false;
-  if (has_guard_ && (guard_.outputs().hold != stop_.underrun() || !guard_.settled(guard_inputs(in, sequencer_in))))
-    return false;
+  const bool held = (has_guard_ && guard_.outputs().hold) || probe_.holds();
+  if (held != stop_.made_to_hold()) return false;
+  if (has_guard_ && !guard_.settled(guard_inputs(in, sequencer_in))) return false;
   return sequencer_.ticking() || (feed_.quiet() && engines_.quiet() && (!s.feed_clear || feed_.phase() == 0));
 }
 

@@ -27,8 +27,27 @@ MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all, 
   }
 }
 
+Probe::Inputs MotionCore::probe_inputs(const Inputs& in) const {
+  Probe::Inputs probe;
+  probe.cut = stop_.outputs().cut;
+  probe.levels = commands_.levels();
+  probe.waits = sequencer_.probe_waits();
+  probe.ends = sequencer_.probe_ends();
+  probe.at_rest = time_base_.outputs().ratio == 0;
+  probe.stopping = stop_.outputs().stopping;
+  probe.clear = in.probe_clear;
+  probe.load = sequencer_.load();
+  return probe;
+}
+
 Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
   Sequencer::Inputs s;
+  const Probe::Inputs probe_in = probe_inputs(in);
+  s.halt = probe_.halt();
+  s.drop = probe_.drops();
+  s.probe_taken = probe_.takes(probe_in);
+  s.met = probe_.met(probe_in.levels);
+  s.stays = probe_.stays(probe_in);
   s.cut = stop_.outputs().cut;
   s.geometry_empty = in.geometry_empty;
   s.feed_empty = in.feed_empty;
@@ -54,6 +73,8 @@ UnderrunGuard::Inputs MotionCore::guard_inputs(const Inputs& in, const Sequencer
   const Sequencer::Outputs& s = sequencer_.outputs();
   UnderrunGuard::Inputs guard;
   guard.cut = stop_.outputs().cut;
+  guard.lost = probe_.halt();
+  guard.idle = s.idle && !probing_;
   guard.arrival = in.arrival;
   guard.full = in.full;
   guard.load = sequencer_.feed_load();
@@ -68,6 +89,7 @@ UnderrunGuard::Inputs MotionCore::guard_inputs(const Inputs& in, const Sequencer
 // Each consumer before its producer: what a block sees is what stood before this edge.
 void MotionCore::clock(const Inputs& in) {
   const Sequencer::Inputs sequencer_in = sequencer_inputs(in);
+  const Probe::Inputs probe_in = probe_inputs(in);
   const Sequencer::Outputs& s = sequencer_.outputs();
   const StopControl::Outputs stop = stop_.outputs();
   loader_.clock({false, out_.busy, stop.closed, in.start, in.start_mask, in.loader_data});
@@ -75,18 +97,22 @@ void MotionCore::clock(const Inputs& in) {
   const bool fixed = s.piece_class == card_map::constant::kClassFixed;
   const bool events = out_.step_fault != 0 || s.mismatch || s.incomplete || in.abort || in.clear_fault != 0;
   const bool underrun = guard_.outputs().hold;
+  const bool probe_holds = probe_.holds();
+  const bool over = stop.cut || probe_.halt();
   if (has_guard_) guard_.clock(guard_inputs(in, sequencer_in));
-  if (clock_all_ || events || in.setting.set || underrun != stop_.underrun() || !stop_.quiet(s.moving, fixed, at_rest))
+  if (clock_all_ || events || in.setting.set || (underrun || probe_holds) != stop_.made_to_hold() ||
+      !stop_.quiet(s.moving, fixed, at_rest))
     stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, s.moving, fixed,
-                 underrun, in.setting});
+                 underrun, probe_holds, in.setting});
   clock_commands(in, stop.cut);
   clock_busy();
   axes_live_ = out_.live != 0;
-  clock_axes(in, stop.cut);
+  clock_axes(in, over);
   wait_timer_.clock(in.setting);
-  engines_.clock({stop.cut, s.tick, s.swap, s.engine, sequencer_.load(), sequencer_.engine_taken()});
+  engines_.clock({over, s.tick, s.swap, s.engine, sequencer_.load(), sequencer_.engine_taken()});
   feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
   time_base_.clock({stop.hold, in.setting, s.piece_class});
+  if (clock_all_ || !probe_.quiet(probe_in)) probe_.clock(probe_in);
   sequencer_.clock(sequencer_in);
 }
 
@@ -94,14 +120,16 @@ void MotionCore::clock_commands(const Inputs& in, bool cut) {
   const Sequencer::Outputs& s = sequencer_.outputs();
   PathCommands::Inputs c;
   c.cut = cut;
-  c.output = sequencer_.takes_output();
-  c.mark = sequencer_.takes_mark();
+  c.halt = probe_.halt();
+  c.output = sequencer_.takes_output(probe_.drops());
+  c.mark = sequencer_.takes_mark(probe_.drops());
   c.over = s.over;
   c.runs = s.path_active;
   c.pins = in.pins;
   c.load = sequencer_.load();
   c.setting = in.setting;
-  const bool events = cut || c.output || c.mark || c.over || c.load.to(load_target::kCommand) || in.setting.set;
+  const bool events =
+      cut || c.halt || c.output || c.mark || c.over || c.load.to(load_target::kCommand) || in.setting.set;
   if (clock_all_ || events || !commands_.quiet(in.pins, s.path_active)) commands_.clock(c);
 }
 
@@ -154,7 +182,8 @@ void MotionCore::clock_busy() {
     --busy_left_;
   out_.busy = busy_left_ != 0;
   const Sequencer::Outputs& s = sequencer_.outputs();
-  running_ = !s.idle || s.direct || out_.axis_busy != 0;
+  running_ = !s.idle || probing_ || s.direct || out_.axis_busy != 0;
+  probing_ = probe_.busy();
 }
 
 }  // namespace trammel::model

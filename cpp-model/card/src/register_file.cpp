@@ -72,8 +72,8 @@ void RegisterFile::clock(const Inputs& in) {
 }
 
 bool RegisterFile::quiet(const Inputs& in) const {
-  const bool events = out_.ack || out_.setting.set || out_.stream_write || out_.abort || out_.flush || out_.start ||
-                      out_.clear_fault != 0 || snapshot_asked_;
+  const bool events = out_.ack || out_.setting.set || out_.stream_write || out_.abort || out_.probe_clear ||
+                      out_.flush || out_.start || out_.clear_fault != 0 || snapshot_asked_;
   const bool underway = snapshot_.busy() || loading_ || loader_read_.valid || out_.loader_valid;
   const bool asked = in.request || in.checker_refuse || in.stop || in.probe || in.mark;
   return stage_ == Stage::Idle && !events && !underway && !asked && out_.irq == interrupt(in);
@@ -87,6 +87,7 @@ void RegisterFile::clear_events() {
   out_.clear_fault = 0;
   out_.stream_write = false;
   out_.abort = false;
+  out_.probe_clear = false;
   out_.flush = false;
   out_.start = false;
   snapshot_asked_ = false;
@@ -114,6 +115,9 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (in.geometry_low) status |= field::kStatusGeometryLow;
   if (in.feed_low) status |= field::kStatusFeedLow;
   if (in.underrun) status |= field::kStatusUnderrun;
+  if (in.probed) status |= field::kStatusProbed;
+  if (in.probe_missed) status |= field::kStatusProbeMissed;
+  if (in.waiting) status |= field::kStatusWaiting;
   return status;
 }
 
@@ -258,6 +262,7 @@ void RegisterFile::take_effect() {
   }
   if (address_ == reg::kControl) {
     out_.abort = (word_ & field::kControlAbort) != 0;
+    out_.probe_clear = (word_ & field::kControlProbeClear) != 0;
     snapshot_asked_ = (word_ & field::kControlSnapshot) != 0;
   }
   if (address_ == reg::kFault) out_.clear_fault = word_;

@@ -23,16 +23,27 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.path_over = judged(in);
   d.piece_ends = d.take && out_.feed_active && piece_left_ == 1;
   const bool free = path_ == Path::None || (path_ == Path::Line && d.path_ends);
-  d.path_begins = path_waits() && free && !out_.incomplete;
-  d.piece_begins = piece_waits() && !in.wait && (!out_.feed_active || d.piece_ends);
+  d.at_probe_end = geometry_.decoded() && geometry_.is_probe_end();
+  d.path_dropped = geometry_drops(in);
+  d.piece_dropped = feed_drops(in);
+  d.path_begins = path_waits() && free && !out_.incomplete && !in.drop;
+  d.piece_begins = piece_waits() && !in.wait && !in.drop && (!out_.feed_active || d.piece_ends);
   d.barrier_begins = barrier_ == Barrier::Beginning && now_ == barrier_at_;
-  d.barrier_ends = barrier_ == Barrier::Running && now_ == barrier_at_;
+  d.barrier_ends = barrier_over(in);
   d.barrier_done = barrier_ == Barrier::Done;
   d.piece_runs = out_.feed_active;
   d.direct = out_.direct;
   // An engine's state is in use until its path's last feed tick has reached it.
   d.payload_ready = in.payload_ready && !engine_taken();
   return d;
+}
+
+// A barrier's last clock: a WAIT_INPUT's count is a time-out (0: none), a PROBE_END stays for as long as it must.
+bool Sequencer::barrier_over(const Inputs& in) const {
+  if (barrier_ != Barrier::Running) return false;
+  if (geometry_.is_wait()) return in.met || ((path_count_ & kCountMask) != 0 && now_ == barrier_at_);
+  if (geometry_.is_probe_end()) return !in.stays;
+  return now_ == barrier_at_;
 }
 
 // One queue at a barrier while the other still has ticks to give or to take.
@@ -45,14 +56,15 @@ bool Sequencer::mismatches() const {
 
 void Sequencer::clock(const Inputs& in) {
   const unsigned inputs = (in.cut ? 1U : 0) | (in.geometry_empty ? 2U : 0) | (in.feed_empty ? 4U : 0) |
-                          (in.direct_go ? 8U : 0) | (in.direct_load.valid ? 16U : 0) | (in.wait ? 32U : 0);
+                          (in.direct_go ? 8U : 0) | (in.direct_load.valid ? 16U : 0) | (in.wait ? 32U : 0) |
+                          (in.halt ? 64U : 0) | (in.drop ? 128U : 0) | (in.probe_taken ? 256U : 0);
   if (!calm_ || inputs != calm_inputs_) {
     calm_ = !clock_all_ && calm(in);
     calm_inputs_ = inputs;
   }
   const bool take = takes(in);
   const bool ends = take && (path_left_ == 1 || piece_left_ == 1);
-  if (!calm_ || ends || (barrier_ == Barrier::Running && now_ == barrier_at_)) {
+  if (!calm_ || ends || barrier_over(in)) {
     calm_ = false;
     return clock_all(in);
   }
@@ -69,28 +81,36 @@ void Sequencer::clock_all(const Inputs& in) {
   const bool feed_idle = feed_.idle();
   out_.idle = geometry_idle_ && feed_idle && in.feed_empty && !out_.feed_active;
   geometry_idle_ = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
-  out_.mismatch = mismatch;
+  out_.mismatch = mismatch && !in.drop;
   out_.over = d.path_over || (d.path_ends && path_ == Path::Line);
   out_.incomplete = d.path_over && path_ == Path::Engine && in.elsewhere;
-  record_ = {d.path_begins || d.barrier_begins, in.direct_go};
-  count_begun(in, d);
+  const bool path_drop_counts = drop_counts(geometry_, d.path_dropped);
+  record_ = {d.path_begins || d.barrier_begins || path_drop_counts, in.direct_go};
+  count_begun(in, d, path_drop_counts, drop_counts(feed_, d.piece_dropped));
   clock_ticks(in, d.take);
   clock_barrier(d);
   stand(d);
   clock_path(in, d);
   clock_piece(d);
   clock_fetches(in, d);
+  if (in.halt) halt(d);
   if (in.cut) cut();
   ++now_;
 }
 
+// What is dropped counts as if it began, but for what never counts and a barrier that has.
+bool Sequencer::drop_counts(const CommandFetch& fetch, bool dropped) const {
+  const bool has_counted = barrier_ == Barrier::Running || barrier_ == Barrier::Done;
+  return dropped && !fetch.is_instant() && !has_counted;
+}
+
 // Paths and pieces count a clock after their swap shows, barriers as they begin; a cut shows in the counters last.
-void Sequencer::count_begun(const Inputs& in, const Decision& d) {
+void Sequencer::count_begun(const Inputs& in, const Decision& d, bool path_drops, bool piece_drops) {
   if (cut_before_) out_.geometry_begun = out_.feed_begun = 0;
   cut_before_ = in.cut;
   if (!in.cut) {
-    if (path_begun_ || d.barrier_begins) ++out_.geometry_begun;
-    if (piece_begun_ || d.barrier_begins) ++out_.feed_begun;
+    if (path_begun_ || d.barrier_begins || path_drops) ++out_.geometry_begun;
+    if (piece_begun_ || d.barrier_begins || piece_drops) ++out_.feed_begun;
   }
   path_begun_ = d.path_begins && !in.cut;
   piece_begun_ = d.piece_begins && !in.cut;
@@ -110,18 +130,22 @@ void Sequencer::clock_ticks(const Inputs& in, bool take) {
 
 // A decoded barrier with nothing before it that runs.
 void Sequencer::stand(const Decision& d) {
-  geometry_stands_ = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None && !d.barrier_done;
-  feed_stands_ = feed_.decoded() && feed_.is_barrier() && !out_.feed_active && !d.barrier_done;
+  const bool geometry_over = d.barrier_done || d.path_dropped;
+  const bool feed_over = d.barrier_done || d.piece_dropped;
+  geometry_stands_ = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None && !geometry_over;
+  feed_stands_ = feed_.decoded() && feed_.is_barrier() && !out_.feed_active && !feed_over;
 }
 
 // The fetches see a command as taken when it begins, a barrier in the clock after its last one.
 void Sequencer::clock_fetches(const Inputs& in, const Decision& d) {
   if (load_.to(load_target::kTicks)) shift_in<48>(path_count_, load_.word);
-  geometry_.clock({in.cut, d.path_begins || d.barrier_done || instant(), d.payload_ready, in.shadows_free,
-                   in.geometry_empty, in.geometry_word});
+  const bool over = d.barrier_done || d.path_dropped || instant() || in.probe_taken;
+  geometry_.clock(
+      {in.cut, d.path_begins || over, d.payload_ready, in.shadows_free, in.geometry_empty, in.geometry_word});
   load_ = in.direct_load.valid ? in.direct_load : geometry_.bus();
   if (feed_.bus().to(feed_target::kTicks)) shift_in<48>(piece_count_, feed_.bus().word);
-  feed_.clock({in.cut, d.piece_begins || d.barrier_done, !d.piece_runs, true, in.feed_empty, in.feed_word});
+  feed_.clock(
+      {in.cut, d.piece_begins || d.barrier_done || d.piece_dropped, !d.piece_runs, true, in.feed_empty, in.feed_word});
 }
 
 // From both queues standing at it to the clock in which they go on.
@@ -181,7 +205,7 @@ void Sequencer::clock_piece(const Decision& d) {
 }
 
 bool Sequencer::settled(const Inputs& in) const {
-  if (!calm(in) || (barrier_ == Barrier::Running && now_ == barrier_at_)) return false;
+  if (!calm(in) || barrier_over(in)) return false;
   if (ticking()) return in.engine_ready && owed_ <= 1;
   return !takes(in) && !tick_arrives_ && !out_.tick && !out_.feed_enable && !in.feed_tick &&
          (out_.feed_active || owed_ == 0);
@@ -195,10 +219,11 @@ bool Sequencer::calm(const Inputs& in) const {
   if (!nothing_shows || drained_ || path_ == Path::Direct || !(geometry_.quiet() && feed_.quiet())) return false;
   if ((geometry_.idle() && !in.geometry_empty) || (feed_.idle() && !in.feed_empty)) return false;
   if (geometry_.waiting() && path_ != Path::Engine) return false;
-  if (instant()) return false;
+  if (instant() || in.halt || in.probe_taken) return false;
+  if (geometry_drops(in) || feed_drops(in)) return false;
   const bool piece_may_begin = piece_waits() && !in.wait;
   if ((path_waits() && path_ == Path::None) || (piece_may_begin && !out_.feed_active)) return false;
-  if (barrier_ == Barrier::Beginning || barrier_ == Barrier::Done || mismatches()) return false;
+  if (barrier_ == Barrier::Beginning || barrier_ == Barrier::Done || (mismatches() && !in.drop)) return false;
   const bool geometry_stands = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None;
   const bool feed_stands = feed_.decoded() && feed_.is_barrier() && !out_.feed_active;
   if (geometry_stands != geometry_stands_ || feed_stands != feed_stands_) return false;
@@ -218,6 +243,17 @@ void Sequencer::jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flig
   owed_ = in_flight >> kOwed & 1;
   out_.tick = (in_flight >> kTaken & 1) != 0;
   out_.feed_enable = feed_enable;
+}
+
+// What runs is over where it stands, a barrier too, unless it is PROBE_END; what is decoded stays.
+void Sequencer::halt(const Decision& d) {
+  out_.direct = out_.path_active = out_.feed_active = out_.moving = false;
+  out_.piece_class = card_map::constant::kClassFeed;
+  path_ = Path::None;
+  drained_ = false;
+  if (d.at_probe_end) return;
+  barrier_ = Barrier::None;
+  out_.ended = false;
 }
 
 // Everything decoded or running is gone; the chains keep what they have.

@@ -102,6 +102,9 @@ bool Interpreter::check_leftovers(const Context& context) const {
   if (words.letter('P') && action != kDwell && words.code(Group::kPathControl) != 640 && !makes_arc) {
     return problem.set(ErrorCode::kUnusedWord, "P without G2, G3, G4 or G64");
   }
+  if (words.letter('Q') && words.code(Group::kPathControl) != 640) {
+    return problem.set(ErrorCode::kUnusedWord, "Q without G64");
+  }
   for (const char letter : {'I', 'J', 'K', 'R'}) {
     if (words.letter(letter) && !is_arc) {
       return problem.set(ErrorCode::kUnusedWord, fmt::format("{} without G2 or G3", letter));

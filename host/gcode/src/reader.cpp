@@ -82,8 +82,8 @@ class Reader::Impl {
     if (words_.accepted_begin() != words_.accepted_end()) {
       count_accepted();
     }
-    if (words_.code(Group::kPathControl) == 640 && words_.letter('P')) {
-      ++accepted_["G64 P"];  // read, but nothing blends yet
+    if (words_.letter('Q')) {
+      ++accepted_["G64 Q"];  // naive cam: no lines are joined
     }
     const Interpreter::Outcome outcome = interpreter_.execute(words_, number_, motions_, problem_);
     ended_ = outcome == Interpreter::Outcome::kEnded;

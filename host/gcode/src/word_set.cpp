@@ -74,8 +74,8 @@ constexpr bool in(char letter, std::uint32_t set) { return (set & bit(letter)) !
 
 constexpr std::uint32_t kCodeLetters = bits("GM");
 constexpr std::uint32_t kAxes = bits(machine::kAxisLetters);
-constexpr std::uint32_t kOthers = bits("FIJKNPRST");
-constexpr std::uint32_t kSignless = bits("FNPST");
+constexpr std::uint32_t kOthers = bits("FIJKNPQRST");
+constexpr std::uint32_t kSignless = bits("FNPQST");
 constexpr std::uint32_t kWhole = bits("NT");
 constexpr std::uint32_t kWithoutEffect = bits("ST");
 

@@ -60,7 +60,7 @@ class WordSet {
   bool is_plain() const { return (codes_present_ & ~kPlainGroups) == 0 && (letters_present_ & ~kPlainLetters) == 0; }
   // In tenths of a group's word, as G2 = 20 or M30 = 300.
   std::optional<int> code(Group group) const;
-  std::optional<double> letter(char name) const;  // F I J K N P R S T
+  std::optional<double> letter(char name) const;  // F I J K N P Q R S T
   bool has_axis_words() const { return axes_present_ != 0; }
   bool has_axis(std::size_t axis) const { return (axes_present_ >> axis & 1U) != 0; }
   double axis(std::size_t axis) const { return axes_[axis]; }  // as written

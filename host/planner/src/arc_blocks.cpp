@@ -18,6 +18,7 @@
 namespace trammel::planner {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kMaxRadius = 0x1p44;      // pulses; the centre in 1/256 pulses fits 64 bits
 constexpr double kClocksPerPathTick = 10;  // the accumulator takes 9
 constexpr std::uint64_t kMostParts = 1'000'000;
@@ -65,7 +66,7 @@ driver::ArcGeometry geometry_of(const Block& block, const Pulses& start, const P
 
 bool is_helix(const Block& block) {
   for (std::size_t axis = 0; axis < block.start.size(); ++axis) {
-    if (axis != block.axis_x && axis != block.axis_y && block.start[axis] != block.end[axis]) return true;
+    if (!in_plane(block, axis) && block.start[axis] != block.end[axis]) return true;
   }
   return false;
 }
@@ -89,9 +90,9 @@ std::uint64_t chord_count(const ExactArc& arc, double largest_steps_per_mm) {
   return static_cast<std::uint64_t>(std::ceil(arc.sweep / std::min(turn, driver::kPi / 4)));
 }
 
-driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, PlaneScale scale) {
-  const Pulses start = corner(block, i, block.parts, scale);
-  const Pulses end = corner(block, i + 1, block.parts, scale);
+driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, const Scales& scales) {
+  const Pulses start = corner(block, i, block.parts, scales);
+  const Pulses end = corner(block, i + 1, block.parts, scales);
   driver::HelixGeometry helix;
   helix.arc = geometry_of(block, start, end, block.exact.sweep / static_cast<double>(block.parts));
   for (std::size_t axis = 0; axis < start.size(); ++axis) {
@@ -126,6 +127,8 @@ bool BlockBuilder::check_arc(const Block& block) {
 }
 
 bool BlockBuilder::build_arc(Block& block) {
+  block.tilted = motion_.tilted;
+  if (motion_.tilted) return build_tilted(block);
   block.clockwise = motion_.clockwise;
   block.axis_x = motion_.axis_x;
   block.axis_y = motion_.axis_y;
@@ -146,8 +149,29 @@ bool BlockBuilder::build_arc(Block& block) {
   return build_chords(block);
 }
 
+// A blend in any plane: no engine of the card makes it.
+bool BlockBuilder::build_tilted(Block& block) {
+  block.clockwise = false;
+  block.space = motion_.space;
+  block.axis_x = block.space.axes[0];
+  block.axis_y = block.space.axes[1];
+  block.exact = {};
+  block.exact.radius_start = block.exact.radius_end = block.space.radius;
+  block.exact.sweep = block.space.sweep;
+  return build_chords(block);
+}
+
 // In the plane, at a share, 0 or 1, of the arc.
 Direction BlockBuilder::tangent(const Block& block, double share) {
+  if (block.tilted) {
+    const SpaceArc& space = block.space;
+    const driver::SineCosine at = driver::sine_cosine(space.sweep * share);
+    Direction direction{};
+    for (std::size_t i = 0; i < space.axes.size(); ++i) {
+      direction[space.axes[i]] = at.cosine * space.second[i] - at.sine * space.first[i];
+    }
+    return direction;
+  }
   const double turn = block.clockwise ? -1 : 1;
   const driver::SineCosine at = driver::sine_cosine(block.exact.angle_start + turn * block.exact.sweep * share);
   Direction direction{};
@@ -159,19 +183,19 @@ Direction BlockBuilder::tangent(const Block& block, double share) {
 // Sets length, scale and directions; gives back the length that F counts for. The arc, unrolled, and the axes outside
 // its plane are the sides of a straight line.
 double BlockBuilder::measure_arc(Block& block) const {
-  const double in_plane = largest_radius(block) * block.exact.sweep;
+  const double length = largest_radius(block) * block.exact.sweep;  // in the plane
   gcode::Coordinates way{};
-  for (std::size_t i = 0; i < axis_count_; ++i) way[i] = motion_.target[i] - anchor_[i];
-  way[block.axis_x] = in_plane;
-  way[block.axis_y] = 0;
+  for (std::size_t i = 0; i < axis_count_; ++i) way[i] = in_plane(block, i) ? 0 : motion_.target[i] - anchor_[i];
+  way[block.axis_x] = length;
   const double feed_length = measure_line(block, way);
-  block.steps_per_mm = std::max(block.steps_per_mm, axes_[block.axis_y].steps_per_mm);
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    if (in_plane(block, i)) block.steps_per_mm = std::max(block.steps_per_mm, scales_[i]);
+  }
   block.entry = tangent(block, 0);
   block.exit = tangent(block, 1);
   for (Direction* end : {&block.entry, &block.exit}) {
     for (std::size_t i = 0; i < axis_count_; ++i) {
-      const bool of_plane = i == block.axis_x || i == block.axis_y;
-      (*end)[i] = of_plane ? (*end)[i] * (in_plane / block.length) : way[i] / block.length;
+      (*end)[i] = in_plane(block, i) ? (*end)[i] * (length / block.length) : way[i] / block.length;
     }
   }
   return feed_length;
@@ -181,7 +205,7 @@ double BlockBuilder::measure_arc(Block& block) const {
 void BlockBuilder::limit_further(Block& block) const {
   for (std::size_t i = 0; i < axis_count_; ++i) {
     const double share = std::abs(block.entry[i]);
-    if (i == block.axis_x || i == block.axis_y || share == 0) continue;
+    if (in_plane(block, i) || share == 0) continue;
     limit_speed(block, axes_[i].velocity / share, SpeedLimit::kAxisVelocity);
     limit_speed(block, axes_[i].pulse_rate / axes_[i].steps_per_mm / share, SpeedLimit::kPulseShape);
     block.acceleration = std::min(block.acceleration, axes_[i].acceleration / share);
@@ -189,28 +213,48 @@ void BlockBuilder::limit_further(Block& block) const {
   }
 }
 
+// In a tilted plane no direction has more of an axis than the two unit vectors have together.
+BlockBuilder::PlaneLimits BlockBuilder::plane_limits(const Block& block) const {
+  PlaneLimits limits{kNoLimit, kNoLimit, kNoLimit, kNoLimit};
+  const auto take = [&limits](const Axis& axis, double share) {
+    limits.velocity = std::min(limits.velocity, axis.velocity / share);
+    limits.pulse_speed = std::min(limits.pulse_speed, axis.pulse_rate / axis.steps_per_mm / share);
+    limits.acceleration = std::min(limits.acceleration, axis.acceleration / share);
+    limits.jerk = std::min(limits.jerk, axis.jerk / share);
+  };
+  if (!block.tilted) {
+    take(axes_[block.axis_x], 1);
+    take(axes_[block.axis_y], 1);
+    return limits;
+  }
+  const SpaceArc& space = block.space;
+  for (std::size_t i = 0; i < space.axes.size(); ++i) {
+    const double share = hypotenuse(space.first[i], space.second[i]);
+    if (share > 0) take(axes_[space.axes[i]], share);
+  }
+  return limits;
+}
+
 // What holds for all ways to make an arc. `unevenness`: largest over planned speed, anywhere in it; `share`: of the
 // axes' acceleration and jerk, for what the way to make it adds.
 void BlockBuilder::limit_arc(Block& block, double unevenness, double share) const {
-  const Axis& x = axes_[block.axis_x];
-  const Axis& y = axes_[block.axis_y];
+  const PlaneLimits plane = plane_limits(block);
   const double radius = largest_radius(block);
   const double feed_length = measure_arc(block);
   const double slope = radius * block.exact.sweep / block.length;  // mm in the plane a mm of path
-  const double acceleration = std::min(x.acceleration, y.acceleration) * share;
-  const double jerk = std::min(x.jerk, y.jerk) * share;
+  const double acceleration = plane.acceleration * share;
+  const double jerk = plane.jerk * share;
   // Of acceleration and jerk so much goes across the path at the most; what is left serves along it.
   constexpr double kAcross = 0.9;
   constexpr double kAlong = 0.43588989435406736;  // sqrt(1 - kAcross^2)
-  block.speed = std::min(x.velocity, y.velocity) / unevenness / slope;
+  block.speed = plane.velocity / unevenness / slope;
   block.limit = SpeedLimit::kAxisVelocity;
-  limit_speed(block, std::min(x.pulse_rate / x.steps_per_mm, y.pulse_rate / y.steps_per_mm) / unevenness / slope,
-              SpeedLimit::kPulseShape);
+  limit_speed(block, plane.pulse_speed / unevenness / slope, SpeedLimit::kPulseShape);
   limit_speed(block, std::sqrt(radius * acceleration * kAcross) / slope, SpeedLimit::kAcceleration);
-  if (jerk < std::numeric_limits<double>::infinity()) {
+  if (jerk < kNoLimit) {
     limit_speed(block, cube_root(radius * radius * jerk * kAcross) / slope, SpeedLimit::kAcceleration);
   }
-  block.acceleration = block.jerk = std::numeric_limits<double>::infinity();
+  block.acceleration = block.jerk = kNoLimit;
   limit_further(block);
   apply_feed(block, feed_length);
   const double across = block.speed * slope * (block.speed * slope) / radius;
@@ -225,9 +269,8 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
 bool BlockBuilder::build_generator_arc(Block& block) const {
   constexpr double kMostTurns = 50'000;   // of a command: half of what the driver takes
   constexpr double kMostPulses = 0x1p30;  // along the path of a command: at 64 path ticks a pulse half of 2^37
-  const PlaneScale scale{axes_[block.axis_x].steps_per_mm, axes_[block.axis_y].steps_per_mm};
   const double turns = block.exact.sweep / (2 * driver::kPi);
-  const double pulses = largest_radius(block) * block.exact.sweep * scale.x;
+  const double pulses = largest_radius(block) * block.exact.sweep * scales_[block.axis_x];
   block.geometry = Geometry::kArcChord;
   block.parts = static_cast<std::uint64_t>(std::ceil(std::max(turns / kMostTurns, pulses / kMostPulses)));
   block.parts = std::max<std::uint64_t>(block.parts, 1);
@@ -235,7 +278,7 @@ bool BlockBuilder::build_generator_arc(Block& block) const {
   try {
     std::uint64_t most = 0;
     for (std::uint64_t i = 0; i < block.parts; ++i) {
-      most = std::max(most, driver::least_chord_ticks(helix_part(block, i, scale)));
+      most = std::max(most, driver::least_chord_ticks(helix_part(block, i, scales_)));
     }
     block.least_ticks = most * block.parts;
   } catch (const std::invalid_argument&) {
@@ -268,13 +311,13 @@ bool BlockBuilder::build_accumulator_arc(Block& block) {
 
 // Lines between corners on the arc at equal angles.
 bool BlockBuilder::build_chords(Block& block) {
-  const Axis& x = axes_[block.axis_x];
-  const Axis& y = axes_[block.axis_y];
+  double scale = 0;
+  for (std::size_t i = 0; i < axis_count_; ++i) scale = in_plane(block, i) ? std::max(scale, scales_[i]) : scale;
   block.geometry = Geometry::kChords;
-  block.chords = chord_count(block.exact, std::max(x.steps_per_mm, y.steps_per_mm));
+  block.chords = chord_count(block.exact, scale);
   block.chord_lines = 0;
   std::int64_t longest = 0;
-  for_each_chord(block, {x.steps_per_mm, y.steps_per_mm}, [&](const Pulses& step) {
+  for_each_chord(block, scales_, [&](const Pulses& step) {
     ++block.chord_lines;
     for (const std::int64_t pulses : step) longest = std::max(longest, std::abs(pulses));
   });

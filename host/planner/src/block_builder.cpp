@@ -38,7 +38,13 @@ std::int64_t to_pulses(double mm, double steps_per_mm) {
 
 BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machine, const CardLimits& card,
                            const gcode::Coordinates& start)
-    : reader_(reader), machine_(machine), card_(card), axis_count_(machine.axes.size()), exact_(start), anchor_(start) {
+    : reader_(reader),
+      machine_(machine),
+      card_(card),
+      axis_count_(machine.axes.size()),
+      blender_(reader, machine, start),
+      exact_(start),
+      anchor_(start) {
   for (std::size_t i = 0; i < axis_count_; ++i) {
     const machine::MachineAxis& from = machine.axes[i];
     const driver::AxisSettings settings = settings_of(from);
@@ -51,7 +57,7 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
     Axis& axis = axes_[i];
     const machine::MotionSettings& motion = machine.motion;
     const double spare = 1 / motion.max_override;
-    axis.steps_per_mm = from.steps_per_mm;
+    axis.steps_per_mm = scales_[i] = from.steps_per_mm;
     axis.pulse_rate = shaper * spare;
     axis.velocity = from.max_velocity * spare;
     axis.acceleration = from.max_acceleration * (1 - motion.hold_reserve) * spare * spare;
@@ -67,7 +73,7 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
 
 bool BlockBuilder::next(Block& block) {
   if (error_) return false;
-  while (reader_.next(motion_)) {
+  while (blender_.next(motion_)) {
     const bool any = build(block);
     if (error_) return false;
     exact_ = motion_.target;
@@ -86,6 +92,8 @@ bool BlockBuilder::build(Block& block) {
   block.line = motion_.line;
   block.start = here_;
   block.end = here_;
+  block.corner = motion_.corner;
+  block.distance = motion_.distance;
   switch (motion_.kind) {
     case gcode::MotionKind::kDwell:
       return build_dwell(block);
@@ -132,6 +140,8 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
 bool BlockBuilder::set_targets(Block& block) {
   for (std::size_t axis = 0; axis < axis_count_; ++axis) {
     const double mm = motion_.target[axis];
+    const double programmed = motion_.programmed[axis];
+    if (programmed != mm && !check(axis, programmed)) return false;
     if (mm == exact_[axis]) continue;
     if (!check(axis, mm)) return false;
     block.end[axis] = to_pulses(mm, axes_[axis].steps_per_mm);
@@ -243,9 +253,8 @@ void BlockBuilder::apply_feed(Block& block, double feed_length) const {
   const SpeedLimit limit = block.limit;
   block.limit = SpeedLimit::kNone;
   block.wanted = 0;
-  block.rapid = motion_.kind == gcode::MotionKind::kTraverse;
+  block.rapid = motion_.rapid;
   block.path_control = motion_.path_control;
-  block.tolerance = motion_.tolerance;
   if (block.rapid) return;
   const double seconds = motion_.seconds > 0 ? motion_.seconds : feed_length / motion_.feed;
   block.wanted = block.length / seconds;

@@ -10,9 +10,6 @@ namespace trammel::planner {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-// Directions that differ by less are the same: a program's numbers have some five digits.
-constexpr double kTangentSquare = 1e-4 * 1e-4;
-constexpr double kReversal = -0.9999;  // cosine; less than a degree off
 constexpr double kEven = 1e-6;
 
 }  // namespace

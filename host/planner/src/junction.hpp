@@ -16,6 +16,10 @@ struct Junction {
 
 class Junctions {
  public:
+  // Directions that differ by less are the same: a program's numbers have some five digits. The square of it.
+  static constexpr double kTangentSquare = 1e-4 * 1e-4;
+  static constexpr double kReversal = -0.9999;  // cosine; less than a degree off
+
   explicit Junctions(const machine::Machine& machine);
   // Both move.
   Junction between(const Block& from, const Block& to) const;

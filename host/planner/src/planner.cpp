@@ -49,7 +49,9 @@ SpeedProfile profile_of(const machine::Machine& machine, const PlannerSettings& 
 
 Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
                  const PlannerSettings& settings)
-    : machine_(machine), look_ahead_(std::make_unique<LookAhead>(blocks, machine, card, settings)) {}
+    : machine_(machine), look_ahead_(std::make_unique<LookAhead>(blocks, machine, card, settings)) {
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) scales_[axis] = machine.axes[axis].steps_per_mm;
+}
 
 Planner::~Planner() = default;
 
@@ -136,7 +138,7 @@ void Planner::put_line(const Block& block, std::uint64_t ticks, driver::CommandS
 void Planner::put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
   Shares shares(ticks, block.parts);
   for (std::uint64_t i = 0; i < block.parts; ++i) {
-    sink.put(other_ = driver::make_helix(helix_part(block, i, scale_of(block)), shares.next()));
+    sink.put(other_ = driver::make_helix(helix_part(block, i, scales_), shares.next()));
   }
 }
 
@@ -144,7 +146,7 @@ void Planner::put_arc_chords(const Block& block, std::uint64_t ticks, driver::Co
 void Planner::put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
   auto& line = std::get<driver::LineCommand>(line_);
   Shares shares(ticks, block.chord_lines);
-  for_each_chord(block, scale_of(block), [&](const Pulses& step) {
+  for_each_chord(block, scales_, [&](const Pulses& step) {
     line.ticks = shares.next();
     unsigned mask = 0;
     for (std::size_t axis = 0; axis < step.size(); ++axis) {
@@ -154,10 +156,6 @@ void Planner::put_chords(const Block& block, std::uint64_t ticks, driver::Comman
     line.mask = static_cast<std::uint8_t>(mask);
     sink.put(line_);
   });
-}
-
-PlaneScale Planner::scale_of(const Block& block) const {
-  return {machine_.axes[block.axis_x].steps_per_mm, machine_.axes[block.axis_y].steps_per_mm};
 }
 
 }  // namespace trammel::planner

@@ -19,11 +19,16 @@ constexpr double kReserve = card_map::constant::kUnderrunReserveTicks;
 // The card goes on at a piece's last rate for so many clocks after its last tick; these ticks are the next piece's.
 constexpr double kSwapClocks = 6;
 constexpr double kLeastRate = 0x1p-32;
+constexpr double kRest = 1e-6;  // mm/s
 
 std::uint64_t fixed64(double rate) { return static_cast<std::uint64_t>(std::min(rate, 1 - 0x1p-53) * 0x1p64); }
 std::int64_t signed64(double change) { return static_cast<std::int64_t>(change * 0x1p64); }
 std::uint32_t fixed32(double rate) { return static_cast<std::uint32_t>(std::clamp(rate, kLeastRate, 0.5) * 0x1p32); }
 std::uint32_t ticks32(double ticks) { return static_cast<std::uint32_t>(std::min(std::ceil(ticks), 4294967295.0)); }
+
+double end_speed(const Phase& phase) {
+  return phase.speed + phase.duration * (phase.acceleration + phase.duration * phase.jerk / 2);
+}
 
 // When the distance has been gone from speed, acceleration and jerk on, of a motion that takes `duration` for `length`;
 // a little outside it at the speed that it has there. Newton's method between bounds.
@@ -77,6 +82,8 @@ void Quantiser::add(const Phase& phase) {
     base_tick_ = tick_ = pending_.end = path_[at_].begin_ticks;
     lead_ = 0;
     rate_a_speed_ = path_[at_].density / clock_hz_;
+  } else if (phase.speed == 0) {
+    turns_ = true;
   }
   const double begin = mm_;
   mm_ += phase.length;
@@ -98,10 +105,11 @@ void Quantiser::add(const Phase& phase) {
     // A ramp whose acceleration begins and ends at once gets the tick that it shares with a constant speed.
     const double share = smooth_ ? 0.5 : phase.acceleration == 0 ? 0 : 1 - 1e-9;
     std::uint64_t tick = base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
-    // A phase that ends with a block does so at its tick: the next one may be for the next block's limits alone.
+    // A phase that ends with a block does so at its tick: the next one may be for the next block's limits alone, and
+    // what rounding leaves beyond a cut is no piece.
     constexpr double kSame = 1e-9;  // mm
-    if (smooth_ && mm_ - block.begin < kSame) tick = block.begin_ticks;
-    if (smooth_ && block.end - mm_ < kSame) tick = block.end_ticks;
+    if ((smooth_ || block.begin == base_mm_) && mm_ - block.begin < kSame) tick = block.begin_ticks;
+    if ((smooth_ || block.cut) && block.end - mm_ < kSame) tick = block.end_ticks;
     // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
     portion(phase, begin, mm_, std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks)), false, false);
   }
@@ -167,9 +175,16 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
     const double least = most > 0 ? std::min(rest, most) : rest;
     return steady(std::max(rate, least), std::max(end_rate, least), ticks);
   }
-  const double begin = time_at(from, phase.speed, phase.acceleration, phase.jerk, phase.duration, phase.length);
-  const double end =
-      stop ? phase.duration : time_at(to, phase.speed, phase.acceleration, phase.jerk, phase.duration, phase.length);
+  // A stop in mid path, for a window that is too short, is at a whole tick, too: the part of a tick beside it would
+  // take as long as thousands of updates.
+  const double tick = 1 / (rate_a_speed_ * clock_hz_);
+  const bool rests = stop || (to > phase.length - tick && end_speed(phase) < kRest);
+  const bool rested = phase.speed == 0 && turns_ && from < tick;
+  const auto when = [&](double place) {
+    return time_at(place, phase.speed, phase.acceleration, phase.jerk, phase.duration, phase.length);
+  };
+  const double begin = rested ? 0 : when(from);
+  const double end = rests ? phase.duration : when(to);
   const auto rate_at = [&](double time) {
     return std::max(0.0, phase.speed + time * (phase.acceleration + time * phase.jerk / 2)) * rate_a_speed_;
   };
@@ -181,10 +196,11 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
   motion.clocks = (end - begin) * clock_hz_;
   // At rest the tick next to it, which would take three times as long, is at the floor.
   const double floor = cube_root(4.5 * std::abs(motion.jerk));
-  if (stop) {
+  motion.rests = rests;
+  if (rests) {
     motion.end_rate = std::max(motion.end_rate, floor);
     motion.clocks = std::max(motion.clocks - 2 / floor, ticks / std::max(motion.rate, floor));
-  } else if (turns_ && phase.speed == 0 && motion.rate < floor) {
+  } else if (rested && motion.rate < floor) {
     begin_at(floor, ticks, motion);
   }
   return motion;
@@ -244,9 +260,9 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   if (classes_ && path_[timed_].block.rapid) command.piece_class = driver::PieceClass::kRapid;
   // Smooth motion does not reach it before the piece is over.
   const double spare =
-      smooth_ && !stop ? 4 * std::abs(kUpdate * (motion.acceleration + motion.clocks * motion.jerk)) : 0;
+      smooth_ && !motion.rests ? 4 * std::abs(kUpdate * (motion.acceleration + motion.clocks * motion.jerk)) : 0;
   command.floor = fixed32(std::min({motion.rate, motion.end_rate, turning, rate}) - spare);
-  if (stop && motion.jerk != 0) command.floor = fixed32(std::min(motion.end_rate, put.most));
+  if (motion.rests && motion.jerk != 0) command.floor = fixed32(std::min(motion.end_rate, put.most));
   time_blocks(motion, lead, end_tick, stop);
   tick_ = pending_.end = end_tick;
   lead_ = kSwapClocks * motion.end_rate;

@@ -47,6 +47,7 @@ class Quantiser {
     double jerk = 0;
     double clocks = 0;
     double end_rate = 0;
+    bool rests = false;  // at its end, whether the program stops there or not
   };
   struct Instant {
     double clocks;
@@ -93,7 +94,7 @@ class Quantiser {
 
   // Where the phases are.
   bool moving_ = false;
-  bool turns_ = false;    // from a stop that nothing waits at
+  bool turns_ = false;    // from a stop that nothing waits at, or in mid path
   std::uint64_t at_ = 0;  // block
   double mm_ = 0;
   double portion_mm_ = 0;  // and where the last portion of a phase ended

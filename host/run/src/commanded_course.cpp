@@ -23,11 +23,17 @@ class CommandedPath {
     }
     pulses_ = std::sqrt(square);
     if (block.geometry == planner::Geometry::kLine) return;
+    turn_ = block.clockwise ? -block.exact.sweep : block.exact.sweep;
+    tilted_ = block.tilted;
+    if (tilted_) {
+      space_ = block.space;
+      pulses_ = space_.radius * space_.sweep * steps_per_mm[axis_x_];
+      return;
+    }
     centre_x_ = static_cast<double>(block.centre_x) / kCentreScale / steps_per_mm[axis_x_];
     centre_y_ = static_cast<double>(block.centre_y) / kCentreScale / steps_per_mm[axis_y_];
     radius_ = std::hypot(start_[axis_x_] - centre_x_, start_[axis_y_] - centre_y_);
     angle_ = std::atan2(start_[axis_y_] - centre_y_, start_[axis_x_] - centre_x_);
-    turn_ = block.clockwise ? -block.exact.sweep : block.exact.sweep;
     pulses_ = radius_ * block.exact.sweep * std::max(steps_per_mm[axis_x_], steps_per_mm[axis_y_]);
   }
   double pulses() const { return pulses_; }  // length, about
@@ -41,6 +47,10 @@ class CommandedPath {
       point[axis_x_] = centre_x_ + radius_ * std::cos(angle);
       point[axis_y_] = centre_y_ + radius_ * std::sin(angle);
     }
+    for (std::size_t i = 0; tilted_ && i < space_.axes.size(); ++i) {
+      const double way = std::cos(share * turn_) * space_.first[i] + std::sin(share * turn_) * space_.second[i];
+      point[space_.axes[i]] = space_.centre[i] + space_.radius * way;
+    }
     return point;
   }
 
@@ -52,7 +62,9 @@ class CommandedPath {
   std::array<double, card_map::kMaxAxes> end_{};
   double centre_x_ = 0;
   double centre_y_ = 0;
-  double radius_ = 0;  // 0: a line
+  double radius_ = 0;  // 0: a line, or tilted
+  bool tilted_ = false;
+  planner::SpaceArc space_;
   double angle_ = 0;
   double turn_ = 0;
   double pulses_ = 0;

@@ -19,6 +19,7 @@ class Pipeline {
         blocks_(reader_, machine, planner::with_arcs_by(card, settings.arcs), reader_.position()),
         planner_(blocks_, machine, card, {settings.single_block, settings.profile}) {
     if (settings.profile == planner::SpeedProfile::kSCurve) blocks_.require_jerk();
+    if (settings.single_block) blocks_.keep_corners();
   }
 
   // As planner::Planner::next(), but throws ProgramError.

@@ -41,6 +41,10 @@ class PlanGatherer final : public Observer {
     motion.stops += planned.stop ? 1 : 0;
     motion.velocity_jump = std::max(motion.velocity_jump, planned.velocity_jump);
     motion.acceleration_step = std::max(motion.acceleration_step, planned.acceleration_step);
+    if (planner::moves(planned.block)) {
+      ++plan_.blends.corners[static_cast<std::size_t>(planned.block.corner)];
+      plan_.blends.distance = std::max(plan_.blends.distance, planned.block.distance);
+    }
     plan_.end = planned.block.end;
   }
 

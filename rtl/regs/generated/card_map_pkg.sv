@@ -28,8 +28,10 @@ package card_map_pkg;
   localparam int DECODE_CLOCKS = 8;
   // Clocks to decode a line, for each of its axes
   localparam int DECODE_AXIS_CLOCKS = 3;
-  // Clocks from one path tick of the deviation accumulator to the next at least
+  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
   localparam int ACCUMULATOR_TICK_CLOCKS = 9;
+  // The same in 8 directions
+  localparam int ACCUMULATOR_8_TICK_CLOCKS = 17;
   // Clocks within which an arc begins once the accumulator is free
   localparam int ACCUMULATOR_HANDOVER_CLOCKS = 30;
   // Fraction bits of a centre in ARC's deviation and gradients
@@ -739,7 +741,7 @@ package card_map_pkg;
         command_known = engines[ENGINE_ACCUMULATOR] ? 1'b1 : 1'b0;
       OP_ARC_CHORD:
         command_known = engines[ENGINE_ARC_GENERATOR] ? 1'b1 : 1'b0;
-      OP_OUTPUT, OP_MARK:
+      OP_OUTPUT, OP_MARK, OP_WAIT_INPUT, OP_PROBE, OP_PROBE_END:
         command_known = engines[ENGINE_PATH_COMMANDS] ? 1'b1 : 1'b0;
       default: command_known = 1'b0;
     endcase
@@ -754,7 +756,7 @@ package card_map_pkg;
         command_to_geometry = engines[ENGINE_ACCUMULATOR] ? 1'b1 : 1'b0;
       OP_ARC_CHORD:
         command_to_geometry = engines[ENGINE_ARC_GENERATOR] ? 1'b1 : 1'b0;
-      OP_OUTPUT, OP_MARK:
+      OP_OUTPUT, OP_MARK, OP_WAIT_INPUT, OP_PROBE, OP_PROBE_END:
         command_to_geometry = engines[ENGINE_PATH_COMMANDS] ? 1'b1 : 1'b0;
       default: command_to_geometry = 1'b0;
     endcase
@@ -765,6 +767,8 @@ package card_map_pkg;
     casez (op)
       OP_FEED, OP_DWELL, OP_END:
         command_to_feed = 1'b1;
+      OP_WAIT_INPUT, OP_PROBE_END:
+        command_to_feed = engines[ENGINE_PATH_COMMANDS] ? 1'b1 : 1'b0;
       default: command_to_feed = 1'b0;
     endcase
   endfunction
@@ -814,7 +818,7 @@ package card_map_pkg;
     casez (op)
       OP_END:
         command_count_zero = 1'b1;
-      OP_OUTPUT, OP_MARK:
+      OP_OUTPUT, OP_MARK, OP_PROBE, OP_PROBE_END:
         command_count_zero = engines[ENGINE_PATH_COMMANDS] ? 1'b1 : 1'b0;
       default: command_count_zero = 1'b0;
     endcase
@@ -835,8 +839,10 @@ package card_map_pkg;
         command_base_halfwords = 6'd21;
       OP_OUTPUT:
         command_base_halfwords = engines[ENGINE_PATH_COMMANDS] ? 6'd7 : 6'd0;
-      OP_MARK:
+      OP_MARK, OP_PROBE_END:
         command_base_halfwords = engines[ENGINE_PATH_COMMANDS] ? 6'd5 : 6'd0;
+      OP_WAIT_INPUT, OP_PROBE:
+        command_base_halfwords = engines[ENGINE_PATH_COMMANDS] ? 6'd6 : 6'd0;
       default: command_base_halfwords = 6'd0;
     endcase
   endfunction
@@ -925,6 +931,8 @@ package card_map_pkg;
         payload_bits = engines[ENGINE_ARC_GENERATOR] ? 16'h1F1F : 16'h0000;
       {OP_OUTPUT, 6'd0}, {OP_OUTPUT, 6'd1}:
         payload_bits = engines[ENGINE_PATH_COMMANDS] ? 16'hFFFF : 16'h0000;
+      {OP_WAIT_INPUT, 6'd0}, {OP_PROBE, 6'd0}:
+        payload_bits = engines[ENGINE_PATH_COMMANDS] ? 16'h001F : 16'h0000;
       default: payload_bits = 16'h0000;
     endcase
   endfunction
@@ -975,7 +983,7 @@ package card_map_pkg;
         payload_checks = 6'b000001;
       {OP_FEED, 6'd5}:
         payload_checks = 6'b000011;
-      {OP_OUTPUT, 6'd0}, {OP_OUTPUT, 6'd1}:
+      {OP_OUTPUT, 6'd0}, {OP_OUTPUT, 6'd1}, {OP_WAIT_INPUT, 6'd0}, {OP_PROBE, 6'd0}:
         payload_checks = engines[ENGINE_PATH_COMMANDS] ? 6'b000001 : 6'b000000;
       default: payload_checks = 6'b000000;
     endcase

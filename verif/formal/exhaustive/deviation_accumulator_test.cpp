@@ -1,5 +1,6 @@
-// Every line and every arc of small curves on the RTL, both directions: the number of steps is the closed form's, the
-// end is the commanded one, and no point strays farther than the rule's bound.
+// Every line and every arc of small curves on the RTL, both directions: the number of steps is the driver's, the end is
+// the commanded one, and no point strays farther than the rule's bound. Where 8 directions are built in
+// (TRAMMEL_EIGHT), by both rules.
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -20,10 +21,14 @@ namespace trammel::lockstep {
 namespace {
 
 using driver::ArcCommand;
+using driver::StepRule;
 namespace load_target = model::load_target;
 using Point = std::pair<int, int>;
 
 constexpr double kPi = 3.14159265358979323846;
+const std::vector<StepRule> kRules = TRAMMEL_EIGHT != 0
+                                         ? std::vector{StepRule::kFourDirections, StepRule::kEightDirections}
+                                         : std::vector{StepRule::kFourDirections};
 
 class Accumulator {
  public:
@@ -42,20 +47,21 @@ class Accumulator {
     load(load_target::kEndX, arc.end_x, 2);
     load(load_target::kEndY, arc.end_y, 2);
     load(load_target::kQuadrants, arc.quadrants, 1);
-    load(load_target::kPlane, arc.clockwise ? 1 : 0, 1);
+    load(load_target::kPlane, (arc.clockwise ? 1 : 0) | (arc.eight_directions ? 2 : 0), 1);
     dut_->start_i = 1;
     dut_.clock();
     dut_->start_i = 0;
-    dut_.clock();
+    for (int clock = arc.eight_directions ? 9 : 1; clock != 0; --clock) dut_.clock();
+    period_ = arc.eight_directions ? 17 : 9;
     position_ = {0, 0};
   }
 
   bool at_end() { return dut_->ready_o && dut_->at_end_o; }
 
-  // One tick and the nine clocks until the next.
+  // One tick and the clocks until the next.
   void tick() {
     dut_->tick_i = 1;
-    for (int clock = 0; clock < 9; ++clock) {
+    for (int clock = 0; clock < period_; ++clock) {
       dut_.clock();
       dut_->tick_i = 0;
       if (dut_->step_x_o) position_.first += dut_->dir_x_o ? -1 : 1;
@@ -77,6 +83,7 @@ class Accumulator {
 
   Simulated<Vdut> dut_;
   Point position_;
+  int period_ = 9;  // clocks
 };
 
 // Walks and calls `see` at every point; false when the steps are not exactly `steps` or the end is another.
@@ -148,77 +155,91 @@ TEST(EveryLine, TakesSteersSteps) {
   RecordProperty("largest_distance", std::to_string(worst));
 }
 
+// Every arc between rounded points of a circle, by one rule.
+void expect_arcs_of_circle(Accumulator& accumulator, int r, StepRule rule, int& arcs) {
+  double worst = 0;
+  const auto expect = [&](const Point& start, const Point& end, bool clockwise) {
+    driver::ArcGeometry geometry;
+    geometry.centre_x = -start.first * driver::kCentreUnitsPerPulse;
+    geometry.centre_y = -start.second * driver::kCentreUnitsPerPulse;
+    geometry.end_x = end.first - start.first;
+    geometry.end_y = end.second - start.second;
+    geometry.clockwise = clockwise;
+    geometry.sweep = sweep_between(start, end, clockwise);
+    const ArcCommand arc = driver::prepare(geometry, rule);
+    const double first = std::hypot(start.first, start.second);
+    const double second = std::hypot(end.first, end.second);
+    const auto see = [&](const Point& at) {
+      const double radius = std::hypot(at.first + start.first, at.second + start.second);
+      worst = std::max({worst, std::min(first, second) - radius, radius - std::max(first, second)});
+    };
+    ASSERT_TRUE(walk(accumulator, arc, arc.path_ticks, see))
+        << "r " << r << " from " << start.first << ", " << start.second << " to " << end.first << ", " << end.second
+        << " clockwise " << clockwise << " eight " << arc.eight_directions;
+    ++arcs;
+  };
+  for (const Point& start : points(r, r)) {
+    for (const Point& end : points(r, r)) {
+      for (const bool clockwise : {false, true}) ASSERT_NO_FATAL_FAILURE(expect(start, end, clockwise));
+    }
+  }
+  // Outside the ring between start's and end's radius.
+  EXPECT_LE(worst, rule == StepRule::kEightDirections ? 0.6 : 1 + 0.3 / r) << "r " << r;
+}
+
 TEST(EveryArc, OfSmallCirclesStaysNearAndEnds) {
   Accumulator accumulator;
   constexpr int kLargest = 9;
   int arcs = 0;
-  for (int r = 2; r <= kLargest; ++r) {
-    double worst = 0;
-    for (const Point& start : points(r, r)) {
-      for (const Point& end : points(r, r)) {
-        for (const bool clockwise : {false, true}) {
-          driver::ArcGeometry geometry;
-          geometry.centre_x = -start.first * driver::kCentreUnitsPerPulse;
-          geometry.centre_y = -start.second * driver::kCentreUnitsPerPulse;
-          geometry.end_x = end.first - start.first;
-          geometry.end_y = end.second - start.second;
-          geometry.clockwise = clockwise;
-          geometry.sweep = sweep_between(start, end, clockwise);
-          const ArcCommand arc = driver::prepare(geometry);
-          const double first = std::hypot(start.first, start.second);
-          const double second = std::hypot(end.first, end.second);
-          const auto see = [&](const Point& at) {
-            const double radius = std::hypot(at.first + start.first, at.second + start.second);
-            worst = std::max({worst, std::min(first, second) - radius, radius - std::max(first, second)});
-          };
-          ASSERT_TRUE(walk(accumulator, arc, arc.path_ticks, see))
-              << "r " << r << " from " << start.first << ", " << start.second << " to " << end.first << ", "
-              << end.second << " clockwise " << clockwise;
-          ++arcs;
-        }
-      }
-    }
-    EXPECT_LE(worst, 1 + 0.3 / r) << "r " << r;
+  for (const StepRule rule : kRules) {
+    for (int r = 2; r <= kLargest; ++r) ASSERT_NO_FATAL_FAILURE(expect_arcs_of_circle(accumulator, r, rule, arcs));
   }
-  EXPECT_GT(arcs, 10000);
+  EXPECT_GT(arcs, 10000 * static_cast<int>(kRules.size()));
   RecordProperty("arcs", std::to_string(arcs));
+}
+
+// Every arc between rounded points of an ellipse, by one rule.
+void expect_arcs_of_ellipse(Accumulator& accumulator, int a, int b, StepRule rule, int& arcs) {
+  const auto expect = [&](const Point& start, const Point& end, bool clockwise) {
+    driver::EllipseGeometry geometry;
+    geometry.semi_x = a;
+    geometry.semi_y = b;
+    geometry.start_x = start.first;
+    geometry.start_y = start.second;
+    geometry.end_x = end.first - start.first;
+    geometry.end_y = end.second - start.second;
+    geometry.clockwise = clockwise;
+    geometry.sweep = sweep_between(start, end, clockwise);
+    const ArcCommand arc = driver::prepare(geometry, rule);
+    // Never more than one pulse outside the bounding box (lemmas deviation_range and eight_directions).
+    const auto see = [&](const Point& at) {
+      ASSERT_LE(std::abs(at.first + start.first), a + 1);
+      ASSERT_LE(std::abs(at.second + start.second), b + 1);
+    };
+    ASSERT_TRUE(walk(accumulator, arc, arc.path_ticks, see))
+        << a << ", " << b << " from " << start.first << ", " << start.second << " to " << end.first << ", "
+        << end.second << " clockwise " << clockwise << " eight " << arc.eight_directions;
+    ++arcs;
+  };
+  for (const Point& start : points(a, b)) {
+    for (const Point& end : points(a, b)) {
+      for (const bool clockwise : {false, true}) ASSERT_NO_FATAL_FAILURE(expect(start, end, clockwise));
+    }
+  }
 }
 
 TEST(EveryArc, OfSmallEllipsesEnds) {
   Accumulator accumulator;
   constexpr int kLargest = 5;
   int arcs = 0;
-  for (int a = 1; a <= kLargest; ++a) {
-    for (int b = 1; b <= kLargest; ++b) {
-      for (const Point& start : points(a, b)) {
-        for (const Point& end : points(a, b)) {
-          for (const bool clockwise : {false, true}) {
-            driver::EllipseGeometry geometry;
-            geometry.semi_x = a;
-            geometry.semi_y = b;
-            geometry.start_x = start.first;
-            geometry.start_y = start.second;
-            geometry.end_x = end.first - start.first;
-            geometry.end_y = end.second - start.second;
-            geometry.clockwise = clockwise;
-            geometry.sweep = sweep_between(start, end, clockwise);
-            const ArcCommand arc = driver::prepare(geometry);
-            // Never more than one pulse outside the bounding box (lemma deviation_range).
-            const auto see = [&](const Point& at) {
-              ASSERT_LE(std::abs(at.first + start.first), a + 1);
-              ASSERT_LE(std::abs(at.second + start.second), b + 1);
-            };
-            ASSERT_TRUE(walk(accumulator, arc, arc.path_ticks, see))
-                << a << ", " << b << " from " << start.first << ", " << start.second << " to " << end.first << ", "
-                << end.second << " clockwise " << clockwise;
-            ASSERT_FALSE(HasFatalFailure());
-            ++arcs;
-          }
-        }
+  for (const StepRule rule : kRules) {
+    for (int a = 1; a <= kLargest; ++a) {
+      for (int b = 1; b <= kLargest; ++b) {
+        ASSERT_NO_FATAL_FAILURE(expect_arcs_of_ellipse(accumulator, a, b, rule, arcs));
       }
     }
   }
-  EXPECT_GT(arcs, 10000);
+  EXPECT_GT(arcs, 10000 * static_cast<int>(kRules.size()));
   RecordProperty("arcs", std::to_string(arcs));
 }
 

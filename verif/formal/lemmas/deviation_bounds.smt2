@@ -1,8 +1,8 @@
 ; expect: sat unsat unsat unsat sat
-; The host's conics against the 2^77 that the proof of the accumulator assumes of |F| at the start and of |G| until the
+; The host's conics against the 2^76 that the proof of the accumulator assumes of |F| at the start and of |G| until the
 ; end is in sight. Gradient of a conic: 2 A |x| unit, |x| <= semi-axis + one pulse (lemma deviation_range).
 (set-logic ALL)
-(define-fun limit () Int 151115727451828646838272) ; 2^77
+(define-fun limit () Int 75557863725914323419136) ; 2^76
 (declare-const p Int)
 (declare-const q Int)
 (define-fun ellipse () Bool (and (<= 1 p) (<= 1 q) (<= p 1048576) (<= q 1048576)))

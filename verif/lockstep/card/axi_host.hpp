@@ -38,6 +38,7 @@ class AxiHost {
 
   // Levels at the card's inputs from now on.
   void set_pins(std::uint16_t pins) { pins_ = pins; }
+  std::uint16_t pins() const { return pins_; }
   void wait(std::uint64_t clocks) { run({}, clocks); }
   void reset(std::uint64_t clocks) {
     model::CardModel::Inputs in;

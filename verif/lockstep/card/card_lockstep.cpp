@@ -65,11 +65,14 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   traffic.wait_idle(100'000);
   EXPECT_LE(host.slowest_answer(), answer_bound(axes));
   EXPECT_GT(traffic.underruns, clocks / 500'000);
+  EXPECT_GT(traffic.probed, clocks / 100'000);
+  EXPECT_GT(traffic.missed, clocks / 1'000'000);
   EXPECT_GT(traffic.holds, clocks / 100'000);
   EXPECT_GT(traffic.overrides, clocks / 100'000);
   expect_all_compared(card, axes, clocks);
   std::cout << card.cycles() << " clocks of random traffic compared, " << traffic.holds << " holds, "
-            << traffic.overrides << " overrides, " << traffic.underruns << " under-runs\n";
+            << traffic.overrides << " overrides, " << traffic.underruns << " under-runs, " << traffic.probed
+            << " probes tripped\n";
 }
 
 class CardLockstep : public testing::TestWithParam<TrafficRun> {};
@@ -268,6 +271,59 @@ INSTANTIATE_TEST_SUITE_P(Program, CardCut,
                                return "Start";
                            }
                          });
+
+// A probe's edge at every clock of a program of lines, an arc, outputs, a dwell and a second PROBE; what stands behind
+// PROBE_END runs when the edge is cleared.
+void edge_at_every_clock(std::uint32_t slew, std::uint64_t seed) {
+  constexpr unsigned kAxes = 4;
+  sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
+  AxiHost host(card, seed);
+  Traffic traffic(host, kAxes);
+  host.wait(300);
+  host.write(reg::kSlew, slew);
+  unsigned probed = 0;
+  unsigned missed = 0;
+  for (std::uint64_t at = 0; at < 1300; ++at) {
+    host.set_pins(0);
+    host.write(reg::kHold, 1);
+    traffic.send(driver::ProbeCommand{2, true});
+    traffic.send(feed(70, 1.5));
+    traffic.send(line(40, {7, -7, 0, 3}));
+    traffic.send(driver::OutputCommand{1, 2});
+    traffic.send(line(30, {-3, 2, 9, 0}));
+    traffic.send(driver::DwellCommand{20});
+    traffic.send(driver::ProbeCommand{static_cast<std::uint8_t>(at % 2 == 0 ? 2 : 1), true});
+    const driver::ArcCommand arc = test::random_arc([&host](std::uint64_t count) { return host.below(count); }, kAxes);
+    const std::uint64_t ticks = 2 * arc.path_ticks;
+    traffic.send(driver::with_ticks(arc, ticks));
+    traffic.send(feed(ticks, 2));
+    traffic.send(driver::MarkCommand{});
+    traffic.send(driver::ProbeEndCommand{});
+    if (at % 3 == 0) traffic.send(driver::WaitInputCommand{3, true, 10});
+    traffic.send(line(20, {1, 2, 3, 4}));
+    traffic.send(feed(20, 2));
+    host.write(reg::kHold, 0);
+    host.wait(at % 400);
+    host.set_pins(at % 5 == 0 ? 0b0110 : 0b0100);
+    host.wait(at / 2);
+    if ((traffic.status() & field::kStatusProbed) == 0) host.wait(2000);
+    probed += (traffic.status() & field::kStatusProbed) != 0 ? 1U : 0U;
+    missed += (traffic.status() & field::kStatusProbeMissed) != 0 ? 1U : 0U;
+    host.write(reg::kControl, field::kControlProbeClear);
+    EXPECT_TRUE(traffic.wait_idle(100'000)) << at;
+    EXPECT_EQ(traffic.status() & (field::kStatusFaulted | field::kStatusProbed), 0U) << at;
+  }
+  EXPECT_GT(probed, 300U);
+  EXPECT_GT(missed, 100U);
+  expect_all_compared(card, kAxes, 100'000);
+}
+
+TEST(CardProbe, AnEdgeAtEveryClock) {
+  EXPECT_EQ(lockstep::judge([] { edge_at_every_clock(0xFFFFFFF, 13); }), "");
+}
+TEST(CardProbe, AnEdgeAtEveryClockOnARamp) {
+  EXPECT_EQ(lockstep::judge([] { edge_at_every_clock(0x400000, 17); }), "");
+}
 
 // Counts at the borders of the counters' parts: 4, 20 and more bits of ticks, 16 bits of a halfword, dwells alike.
 void counts_around(std::uint64_t count, std::uint64_t seed) {

@@ -35,7 +35,7 @@ inline driver::FeedCommand feed(std::uint64_t ticks, double clocks) {
   return result;
 }
 
-// A quarter or a whole circle of up to 20 pulses about an axis crossing, on two axes by chance.
+// A quarter or a whole circle of up to 20 pulses about an axis crossing, on two axes by chance, by either step rule.
 template <class Random>
 driver::ArcCommand random_arc(Random&& random, unsigned axes) {
   driver::ArcGeometry arc;
@@ -48,7 +48,7 @@ driver::ArcCommand random_arc(Random&& random, unsigned axes) {
   arc.sweep = whole ? 6.283185307179586 : 1.5707963267948966;
   arc.axis_x = static_cast<std::uint8_t>(random(axes));
   arc.axis_y = static_cast<std::uint8_t>((arc.axis_x + 1 + random(axes - 1)) % axes);
-  return driver::prepare(arc);
+  return driver::prepare(arc, random(2) == 0 ? driver::StepRule::kFourDirections : driver::StepRule::kEightDirections);
 }
 
 // An arc in chords, with any further axes, as words without their number; adds its ticks to `total`. The increments sum

@@ -54,6 +54,10 @@ class Traffic {
   // A stream whose pieces have stop distances and go on, with stalls, holds and overrides in it; sometimes left
   // unfinished.
   void starved();
+  // Paths between PROBE and PROBE_END, and waits for inputs, while inputs change; sometimes cleared, sometimes not.
+  void probing();
+  std::uint64_t probed = 0;  // how often a probe had tripped, and missed
+  std::uint64_t missed = 0;
   // How often it was held for under-run; a reset begins anew.
   std::uint64_t underruns = 0;
   // Requests in disturb() and starved().
@@ -94,6 +98,7 @@ class Traffic {
   }
   static constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
   std::uint32_t any_ratio() { return kRatios[below(3)]; }
+  void flip_a_pin() { host_.set_pins(static_cast<std::uint16_t>(host_.pins() ^ 1U << below(4))); }
   // A hold, or the end of one.
   void hold() {
     const auto wanted = static_cast<std::uint32_t>(below(2));
@@ -194,6 +199,48 @@ inline void Traffic::starved() {
   if (one_in(3)) send(driver::EndCommand{});
   if (one_in(3)) abort();
   underruns += host_.read(reg::kUnderruns).value_or(0) - before;
+}
+
+inline void Traffic::probing() {
+  const double pace = 1.01 + static_cast<double>(below(40)) * 0.1;
+  const auto random = [this](std::uint64_t count) { return below(count); };
+  const auto input = [this] { return static_cast<std::uint8_t>(below(one_in(20) ? 16 : 4)); };
+  // Mostly for a level that the input does not have yet.
+  const auto probe = [this, input] {
+    const std::uint8_t n = input();
+    const bool now = (host_.pins() >> n & 1) != 0;
+    return driver::ProbeCommand{n, one_in(6) ? now : !now};
+  };
+  if (one_in(3)) host_.write(reg::kSlew, std::uint32_t{1} << (16 + below(12)));
+  if (one_in(2)) host_.write(reg::kControl, field::kControlProbeClear);
+  for (std::uint64_t sections = 1 + below(3); sections != 0; --sections) {
+    if (!send(probe())) return abort();
+    std::uint64_t ticks = 0;
+    for (std::uint64_t paths = below(5); paths != 0; --paths) {
+      const bool chords = chords_every != 0 && axes_ > 1 && one_in(chords_every);
+      const bool good = chords ? send_words(random_chords(random, axes_, ticks), false)
+                               : send(random_path(random, axes_, pace, ticks, arc_every_));
+      if (!good || (one_in(3) && !send(beside_a_path()))) return abort();
+      if (one_in(10) && !send(probe())) return abort();
+      if (one_in(6)) flip_a_pin();
+    }
+    if (ticks != 0 && !send(random_piece(random, ticks, pace))) return abort();
+    if (one_in(3) && !send(driver::WaitInputCommand{input(), one_in(2), one_in(4) ? 0 : below(400)})) return abort();
+    if (one_in(4) && !send(driver::DwellCommand{below(300)})) return abort();
+    if (!one_in(10) && !send(driver::ProbeEndCommand{})) return abort();
+    if (one_in(2)) flip_a_pin();
+  }
+  std::uint64_t ticks = 0;
+  send(random_path(random, axes_, pace, ticks, arc_every_));
+  send(random_piece(random, ticks, pace));
+  for (std::uint64_t waits = below(12); waits != 0; --waits) {
+    host_.wait(below(300));
+    if (one_in(2)) flip_a_pin();
+    const std::uint32_t now = status();
+    probed += (now & field::kStatusProbed) != 0 ? 1U : 0U;
+    missed += (now & field::kStatusProbeMissed) != 0 ? 1U : 0U;
+    if (one_in(2)) host_.write(reg::kControl, field::kControlProbeClear);
+  }
 }
 
 inline void Traffic::settings() {
@@ -330,6 +377,8 @@ inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
   for (; sections != 0; --sections) {
     if (one_in(5))
       starved();
+    else if (commands_every != 0 && one_in(3))
+      probing();
     else
       section(one_in(4));
     host_.wait(below(one_in(4) ? 6000 : 600));

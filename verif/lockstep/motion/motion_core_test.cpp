@@ -28,7 +28,7 @@ constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr unsigned kInputs = 5;
 constexpr unsigned kOutputs = 3;
-constexpr std::uint64_t kComparedSignals = 32 + kAxes;
+constexpr std::uint64_t kComparedSignals = 34 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
@@ -53,8 +53,11 @@ class Bench {
   explicit Bench(std::uint64_t seed)
       : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.arcs = kArcs;
+    programs_.eight_directions = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator8);
     programs_.chords = kChords;
     programs_.path_commands = kPathCommands;
+    programs_.probes = kPathCommands;
+    programs_.inputs = kInputs;
     programs_.classes = kClasses;
     reset();
   }
@@ -72,6 +75,7 @@ class Bench {
     in_.abort = dice_.chance(abort_every_);
     if (dice_.chance(50)) pins_ = static_cast<std::uint16_t>(dice_.draw());
     in_.pins = pins_;
+    in_.probe_clear = kPathCommands && dice_.chance(50);
     if (in_.abort) check_.event("abort");
     if (model_->stop().fault != 0 ? dice_.chance(40) : dice_.chance(5000)) {
       in_.clear_fault = dice_.chance(3) ? dice_.draw() : ~0U;
@@ -112,6 +116,7 @@ class Bench {
   std::uint64_t moves() const { return moves_; }
   std::uint64_t faults() const { return faults_; }
   std::uint64_t marks() const { return marks_; }
+  std::uint64_t halts() const { return halts_; }
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
  private:
@@ -228,6 +233,8 @@ class Bench {
     note_events();
     steps_ += model_->outputs().path_step != 0 ? 1U : 0U;
     marks_ += model_->commands().mark() ? 1U : 0U;
+    halts_ += model_->probe().halt() ? 1U : 0U;
+    if (model_->probe().halt()) check_.event("halt by the probe");
     moves_ += model_->loader().go ? 1U : 0U;
     faults_ += model_->stop().stop ? 1U : 0U;
   }
@@ -270,6 +277,7 @@ class Bench {
     dut_->input_i = static_cast<CData>(in_.pins & ((1U << kInputs) - 1));
     dut_->setting_i = wire(in_.setting);
     dut_->abort_i = in_.abort;
+    dut_->probe_clear_i = in_.probe_clear;
     dut_->clear_fault_i = in_.clear_fault;
     dut_->geometry_empty_i = in_.geometry_empty;
     dut_->geometry_word_i = in_.geometry_word;
@@ -323,9 +331,14 @@ class Bench {
     const auto& commands = model_->commands();
     check_.compare("output_o", dut_->output_o, commands.outputs());
     check_.compare("mark_o", dut_->mark_o, commands.mark());
-    check_.compare("inputs", dut_->io_o & 0xFFFF, kPathCommands ? commands.levels() : 0);
-    check_.compare("outputs", dut_->io_o >> 16 & 0xFFFF, kPathCommands ? commands.outputs() : 0);
-    check_.compare("marks", dut_->io_o >> 32, commands.marks());
+    const auto& probe = model_->probe();
+    check_.compare("probe_o", dut_->probe_o, model_->probe_trips(in_));
+    check_.compare("inputs", dut_->io_o[0] & 0xFFFF, kPathCommands ? commands.levels() : 0);
+    check_.compare("outputs", dut_->io_o[0] >> 16, kPathCommands ? commands.outputs() : 0);
+    check_.compare("marks", dut_->io_o[1], commands.marks());
+    check_.compare("waiting, missed, probed", dut_->io_o[2],
+                   std::uint32_t{model_->sequencer().waits_for_input()} << 2 | std::uint32_t{probe.missed()} << 1 |
+                       std::uint32_t{probe.probed()});
     check_.compare("step_o", dut_->step_o, out.step);
     check_.compare("dir_o", dut_->dir_o, out.dir);
     check_.compare("start_error_o, with done", dut_->start_done_o & dut_->start_error_o,
@@ -365,6 +378,7 @@ class Bench {
   std::uint64_t moves_ = 0;
   std::uint64_t faults_ = 0;
   std::uint64_t marks_ = 0;
+  std::uint64_t halts_ = 0;
   std::uint64_t more_ = 0;
 };
 
@@ -381,6 +395,7 @@ void random_programs() {
   EXPECT_GT(bench.faults(), length / 20'000);
   if (kPathCommands) {
     EXPECT_GT(bench.marks(), length / 5000);
+    EXPECT_GT(bench.halts(), length / 20'000);
   }
 }
 

@@ -23,6 +23,7 @@ struct Path {
   std::int64_t end_y = 0;
   std::uint16_t quadrants = 0;
   bool clockwise = false;
+  bool eight_directions = false;
 };
 
 inline std::int64_t between(Random& random, std::int64_t low, std::int64_t high) {
@@ -110,7 +111,7 @@ inline Path far_end(Random& random) {
   return path;
 }
 
-inline Path any_path(Random& random) {
+inline Path any_path_in_4(Random& random) {
   switch (random() % 7) {
     case 0:
       return line(random);
@@ -133,11 +134,21 @@ inline Path any_path(Random& random) {
   }
 }
 
+// `eight`: every other one in 8 directions.
+inline Path any_path(Random& random, bool eight) {
+  Path path = any_path_in_4(random);
+  path.eight_directions = eight && random() % 2 != 0;
+  return path;
+}
+
+// The bits of the field `plane` beside its axes.
+inline unsigned rule_bits(const Path& path) { return (path.clockwise ? 1U : 0U) | (path.eight_directions ? 2U : 0U); }
+
 // Chains in the order of the load bus's targets, from DEVIATION on: how many halfwords, and what goes in.
 inline constexpr std::array<unsigned, 9> kChainHalfwords{5, 5, 5, 3, 3, 2, 2, 1, 1};
 inline std::array<int128, 9> chains(const Path& path) {
-  return {path.deviation, path.gradient_x, path.gradient_y, path.half_x,           path.half_y,
-          path.end_x,     path.end_y,      path.quadrants,  path.clockwise ? 1 : 0};
+  return {path.deviation, path.gradient_x, path.gradient_y, path.half_x,    path.half_y,
+          path.end_x,     path.end_y,      path.quadrants,  rule_bits(path)};
 }
 
 }  // namespace trammel::lockstep

@@ -32,7 +32,7 @@ class Bench {
     if (!load(load_target::kPrescale, prescale % (kOnePulse + 1), 3)) return;
     if (!wait([this] { return engine_free() && model_.outputs().payload_ready; }, 20'000)) return;
     // What is asked for now arrives three clocks later.
-    if (!idle(2) || !load_path(any_path(random_))) return;
+    if (!idle(2) || !load_path(any_path(random_, true))) return;
     if (finish_path()) begin(kAccumulator);
   }
 
@@ -111,7 +111,7 @@ class Bench {
       for (unsigned i = 0; i < kChainHalfwords[chain] && good; ++i)
         good = load(load_target::kDeviation + chain, static_cast<std::uint64_t>(values[chain] >> (16 * i)), 1);
     }
-    return good && load(load_target::kPlane, y << 8 | x << 4 | (path.clockwise ? 1 : 0), 1);
+    return good && load(load_target::kPlane, y << 8 | x << 4 | rule_bits(path), 1);
   }
 
   // False when a cut or a reset came in between.

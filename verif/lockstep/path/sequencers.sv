@@ -37,6 +37,10 @@ module sequencers #(
     // commands that are neither paths nor barriers
     output logic      [     1:0] instant_o,
     output logic                 over_o,
+    // probe
+    input  wire logic [     2:0] probe_says_i,
+    input  wire logic [     1:0] drop_i,
+    output logic      [     2:0] probe_at_o,
     // what begins
     output logic                 swap_o,
     output logic      [Axes-1:0] active_o,
@@ -62,8 +66,7 @@ module sequencers #(
 );
   logic        take;
   logic        taking;
-  logic        barrier_begin;
-  logic        barrier_done;
+  logic [ 2:0] barrier;
   logic        feed_at;
   logic        feed_runs;
   logic        feed_decoder_idle;
@@ -76,67 +79,69 @@ module sequencers #(
       .clk_i,
       .rst_i,
       .cut_i,
-      .empty_i        (geometry_empty_i),
-      .word_i         (geometry_word_i),
-      .read_o         (geometry_read_o),
+      .empty_i    (geometry_empty_i),
+      .word_i     (geometry_word_i),
+      .read_o     (geometry_read_o),
       .direct_load_i,
       .direct_go_i,
       .direct_mask_i,
       .direct_o,
       .load_o,
-      .take_i         (take),
-      .taking_o       (taking),
+      .take_i     (take),
+      .taking_o   (taking),
       .swap_o,
       .active_o,
       .engine_o,
       .engine_taken_o,
       .payload_ready_i,
       .shadows_free_i,
-      .done_i         (engine_done_i),
+      .done_i     (engine_done_i),
       .elsewhere_i,
       .axes_live_i,
       .instant_o,
       .over_o,
-      .feed_at_i      (feed_at),
-      .feed_runs_i    (feed_runs),
-      .barrier_begin_o(barrier_begin),
-      .barrier_done_o (barrier_done),
+      .probe_says_i,
+      .drop_i,
+      .probe_at_o,
+      .feed_at_i  (feed_at),
+      .feed_runs_i(feed_runs),
+      .barrier_o  (barrier),
       .mismatch_o,
       .incomplete_o,
       .path_active_o,
       .ended_o,
-      .idle_o         (geometry_idle),
+      .idle_o     (geometry_idle),
       .snapshot_i,
-      .chain_i        (chain),
+      .chain_i    (chain),
       .chain_o,
-      .begun_o        (geometry_begun_o)
+      .begun_o    (geometry_begun_o)
   );
 
   feed_sequencer feed (
       .clk_i,
       .rst_i,
       .cut_i,
-      .empty_i        (feed_empty_i),
-      .word_i         (feed_word_i),
-      .read_o         (feed_read_o),
-      .take_i         (take),
-      .direct_i       (direct_o),
-      .barrier_begin_i(barrier_begin),
-      .barrier_done_i (barrier_done),
-      .at_barrier_o   (feed_at),
-      .runs_o         (feed_runs),
+      .empty_i     (feed_empty_i),
+      .word_i      (feed_word_i),
+      .read_o      (feed_read_o),
+      .take_i      (take),
+      .direct_i    (direct_o),
+      .barrier_i   (barrier),
+      .at_barrier_o(feed_at),
+      .runs_o      (feed_runs),
       .wait_i,
-      .active_o       (feed_active_o),
-      .decoded_o      (),
+      .drop_i,
+      .active_o    (feed_active_o),
+      .decoded_o   (),
       .moving_o,
       .class_o,
-      .idle_o         (feed_decoder_idle),
-      .swap_o         (feed_swap_o),
-      .load_o         (feed_load_o),
+      .idle_o      (feed_decoder_idle),
+      .swap_o      (feed_swap_o),
+      .load_o      (feed_load_o),
       .snapshot_i,
       .chain_i,
-      .chain_o        (chain),
-      .begun_o        (feed_begun_o)
+      .chain_o     (chain),
+      .begun_o     (feed_begun_o)
   );
 
   tick_gate gate (

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "programs.hpp"
+#include "trammel/model/probe.hpp"
 #include "trammel/model/sequencer.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
@@ -13,7 +14,7 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr unsigned kAxes = 4;
-constexpr std::uint64_t kComparedSignals = 24;
+constexpr std::uint64_t kComparedSignals = 27;
 
 class Bench {
  public:
@@ -22,6 +23,7 @@ class Bench {
     programs_.chords = true;
     programs_.path_commands = true;
     programs_.classes = true;
+    programs_.probes = true;
     reset();
   }
 
@@ -32,6 +34,7 @@ class Bench {
     unsigned busy = 8;       // engine not ready, not done, its state not free
     unsigned write = 1;      // a halfword into a queue
     unsigned cut = 2000;
+    unsigned input = 100;  // another level at one input
   };
   Pace pace;
 
@@ -41,6 +44,7 @@ class Bench {
     pace.busy = 2 + dice_.below(20);
     pace.write = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
     pace.cut = dice_.chance(2) ? 100 + dice_.below(400) : 20'000;
+    pace.input = 3 + dice_.below(dice_.chance(2) ? 30 : 1000);
     programs_.wrong_every = dice_.chance(4) ? 10 : 1000;
     programs_.longest = dice_.chance(2) ? 20 : 200;
   }
@@ -68,7 +72,7 @@ class Bench {
 
   // Short programs of all kinds, at a tick every other clock.
   void short_programs(unsigned clocks) {
-    pace = {1, 2, 3, 1, 0};
+    pace = {1, 2, 3, 1, 0, 20};
     programs_.longest = 8;
     programs_.wrong_every = 20;
     for (unsigned i = 0; i < clocks; ++i) {
@@ -105,13 +109,17 @@ class Bench {
     const std::uint32_t begun[] = {model_.outputs().feed_begun, model_.outputs().geometry_begun};
     const bool geometry_reads = model_.geometry_read();
     const bool feed_reads = model_.feed_read();
+    const model::Probe::Inputs probe_in = probe_inputs();
     dut_.clock();
+    drops_ += model_.geometry_drops(in_) ? 1U : 0U;
     model_.clock(in_);
+    probe_.clock(probe_in);
     chain_[1].clock(dut_->snapshot_i, begun[1], chain_[0]);
     chain_[0].clock(dut_->snapshot_i, begun[0], dut_->chain_i);
     geometry_.clock(geometry_reads, dice_.chance(pace.write), in_.cut);
     feed_.clock(feed_reads, dice_.chance(pace.write), in_.cut);
-    cut_before_ = in_.cut;
+    cut_before_ = in_.cut || in_.halt;
+    halts_ += in_.halt ? 1U : 0U;
     if (in_.cut) direct_step_ = 0;
     compare();
     ends_ += model_.outputs().swap ? 1U : 0U;
@@ -126,13 +134,15 @@ class Bench {
   }
 
   bool at_rest() const {
-    return model_.outputs().idle && geometry_.done() && feed_.done() && geometry_.outputs().empty &&
+    return !probe_.busy() && model_.outputs().idle && geometry_.done() && feed_.done() && geometry_.outputs().empty &&
            feed_.outputs().empty && direct_step_ == 0 && !model_.outputs().direct && model_.outputs().feed_clear;
   }
 
   Checker& check() { return check_; }
   const model::Sequencer::Outputs& outputs() const { return model_.outputs(); }
   std::uint64_t swaps() const { return ends_; }
+  std::uint64_t halts() const { return halts_; }
+  std::uint64_t drops() const { return drops_; }
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
  private:
@@ -145,6 +155,7 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     model_ = model::Sequencer();
+    probe_ = model::Probe();
     payload_taken_for_ = 0;
     cut_before_ = true;
     geometry_.reset();
@@ -204,12 +215,41 @@ class Bench {
       payload_taken_for_ = 0;
     in_.payload_ready = payload_taken_for_ == 0 && in_.shadows_free;
     in_.axes_live = dice_.chance(2);
+    probe();
     // A piece that is short of ticks behind it; mostly none is.
     if (dice_.chance(in_.wait ? 30 : 300)) in_.wait = !in_.wait;
   }
 
+  // What the probe does with inputs that change now and then.
+  void probe() {
+    if (dice_.chance(pace.input)) levels_ = static_cast<std::uint16_t>(levels_ ^ 1U << dice_.below(16));
+    at_rest_ = dice_.chance(10);
+    clear_ = dice_.chance(40);
+    const model::Probe::Inputs in = probe_inputs();
+    in_.halt = probe_.halt();
+    in_.drop = probe_.drops();
+    in_.probe_taken = probe_.takes(in);
+    in_.met = probe_.met(levels_);
+    in_.stays = probe_.stays(in);
+  }
+
+  model::Probe::Inputs probe_inputs() const {
+    model::Probe::Inputs in;
+    in.cut = in_.cut;
+    in.levels = levels_;
+    in.waits = model_.probe_waits();
+    in.ends = model_.probe_ends();
+    in.at_rest = at_rest_;
+    in.clear = clear_;
+    in.load = model_.load();
+    return in;
+  }
+
   void apply() {
     dut_->cut_i = in_.cut;
+    dut_->drop_i = static_cast<CData>(unsigned{in_.drop} << 1 | unsigned{in_.halt});
+    dut_->probe_says_i =
+        static_cast<CData>(unsigned{in_.stays} << 2 | unsigned{in_.probe_taken} << 1 | unsigned{in_.met});
     dut_->geometry_empty_i = in_.geometry_empty;
     dut_->geometry_word_i = in_.geometry_word;
     dut_->feed_empty_i = in_.feed_empty;
@@ -246,7 +286,12 @@ class Bench {
     check_.compare("feed_load_o, valid", dut_->feed_load_o >> 19, model_.feed_load().valid);
     check_.compare("mismatch_o", dut_->mismatch_o, out.mismatch);
     check_.compare("incomplete_o", dut_->incomplete_o, out.incomplete);
-    check_.compare("instant_o", dut_->instant_o, unsigned{model_.takes_mark()} << 1 | unsigned{model_.takes_output()});
+    const bool dropping = in_.drop;  // combinational: of the clock that is over
+    check_.compare("instant_o", dut_->instant_o,
+                   unsigned{model_.takes_mark(dropping)} << 1 | unsigned{model_.takes_output(dropping)});
+    check_.compare("PROBE waits", dut_->probe_at_o & 1, model_.probe_waits());
+    check_.compare("PROBE_END has begun", dut_->probe_at_o >> 1 & 1, model_.probe_ends());
+    check_.compare("WAIT_INPUT has begun", dut_->probe_at_o >> 2, model_.waits_for_input());
     check_.compare("over_o", dut_->over_o, out.over);
     check_.compare("path_active_o", dut_->path_active_o, out.path_active);
     check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
@@ -272,6 +317,7 @@ class Bench {
   Simulated<Vdut> dut_;
   model::Sequencer model_;
   model::Sequencer::Inputs in_;
+  model::Probe probe_;
   Checker check_;
   Dice dice_;
   Programs programs_;
@@ -286,6 +332,11 @@ class Bench {
   unsigned rest_for_ = 0;     // clocks
   std::uint64_t length_ = 0;
   std::uint64_t ends_ = 0;
+  std::uint16_t levels_ = 0;
+  bool at_rest_ = false;
+  bool clear_ = false;
+  std::uint64_t halts_ = 0;
+  std::uint64_t drops_ = 0;
   std::uint64_t more_ = 0;
 };
 
@@ -340,6 +391,8 @@ void random_programs() {
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.swaps(), length / 500);
+  EXPECT_GT(bench.halts(), length / 10'000);
+  EXPECT_GT(bench.drops(), length / 2000);
 }
 
 // A cut or a reset at each clock of two runs, and what comes next.

@@ -189,6 +189,9 @@ class Bench {
     in_.inputs = static_cast<std::uint16_t>(draw());
     in_.outputs = static_cast<std::uint16_t>(draw());
     in_.marks = draw();
+    in_.probed = chance(2);
+    in_.probe_missed = chance(2);
+    in_.waiting = chance(2);
     in_.rate = draw();
     in_.ratio = chance(3) ? 0 : draw() % 0x10001;
     in_.fault = chance(2) ? 0 : draw() & kFaultBits;
@@ -290,7 +293,9 @@ class Bench {
     rtl_->stop_i = in_.stop;
     rtl_->probe_i = in_.probe;
     rtl_->mark_i = in_.mark;
-    rtl_->io_i = std::uint64_t{in_.marks} << 32 | std::uint32_t{in_.outputs} << 16 | in_.inputs;
+    rtl_->io_i[0] = std::uint32_t{in_.outputs} << 16 | in_.inputs;
+    rtl_->io_i[1] = in_.marks;
+    rtl_->io_i[2] = std::uint32_t{in_.waiting} << 2 | std::uint32_t{in_.probe_missed} << 1 | std::uint32_t{in_.probed};
     rtl_->chain_i = chain_.back().word();
   }
 

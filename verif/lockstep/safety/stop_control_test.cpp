@@ -68,6 +68,7 @@ class Bench {
     dut_->moving_i = in.moving;
     dut_->fixed_i = in.fixed;
     dut_->underrun_i = in.underrun;
+    dut_->probe_i = in.probe;
   }
 
   void compare() {
@@ -208,6 +209,7 @@ void random_events() {
     in.moving = course != 0;
     in.fixed = course > 1 || (course == 0 && dice.chance(2));
     in.underrun = dice.chance(6);
+    in.probe = dice.chance(6);
     if (dice.chance(20)) in.setting = {dice.chance(2), dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.below(2)};
     if (dice.chance(20)) in.setting = {dice.chance(2), reg::kStopReaction, dice.draw() & 0xFCFF};
     if (dice.chance(2000))

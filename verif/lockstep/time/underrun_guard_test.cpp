@@ -29,6 +29,8 @@ class Bench {
   void random_clock() {
     if (dice_.chance(5000)) random_pace();
     in_.cut = dice_.chance(cut_every_);
+    in_.lost = dice_.chance(1500);
+    in_.idle = dice_.chance(20);
     in_.off = dice_.chance(300) ? !in_.off : in_.off && !dice_.chance(50);
     if (dice_.chance(400)) in_.full = dice_.chance(3);
     random_ratio();
@@ -44,6 +46,7 @@ class Bench {
   std::uint64_t holds() const { return holds_; }
   std::uint64_t ends() const { return ends_; }
   std::uint64_t waits() const { return waits_; }
+  std::uint64_t lost() const { return lost_; }
 
  private:
   void random_pace() {
@@ -193,6 +196,16 @@ class Bench {
     ends_ += held && !model_.outputs().hold && !in_.cut ? 1U : 0U;
     waits_ += model_.outputs().shown && !model_.outputs().hold ? 1U : 0U;
     if (!held && model_.outputs().hold) check_.event("hold begins");
+    // Nothing runs, or begins, behind a probe's halt.
+    if (in_.lost) {
+      check_.event("what is queued is lost");
+      swaps_ = false;
+      ended_ = true;
+      in_.decoded = false;
+      loaded_ = since_swap_ = 0;
+      paths_ = pieces_ = taken_ = 0;
+      ++lost_;
+    }
     if (in_.cut) {
       check_.event("cut");
       forget();
@@ -203,6 +216,8 @@ class Bench {
     const model::UnderrunGuard::Arrival& a = in_.arrival;
     dut_->cut_i = in_.cut;
     dut_->off_i = in_.off;
+    dut_->lost_i = in_.lost;
+    dut_->idle_i = in_.idle;
     dut_->arrive_i = std::uint32_t{a.drop} << 20 | std::uint32_t{a.geometry_commit} << 19 |
                      std::uint32_t{a.geometry_write} << 18 | std::uint32_t{a.feed_commit} << 17 |
                      std::uint32_t{a.feed_write} << 16 | a.halfword;
@@ -252,6 +267,7 @@ class Bench {
   std::uint64_t holds_ = 0;
   std::uint64_t ends_ = 0;
   std::uint64_t waits_ = 0;
+  std::uint64_t lost_ = 0;
 };
 
 void random_inputs() {
@@ -262,6 +278,7 @@ void random_inputs() {
   EXPECT_GT(bench.holds(), length / 10'000);
   EXPECT_GT(bench.ends(), length / 20'000);
   EXPECT_GT(bench.waits(), length / 100);
+  EXPECT_GT(bench.lost(), length / 3000);
 }
 
 TEST(UnderrunGuard, RandomInputs) { EXPECT_EQ(judge(random_inputs), ""); }

@@ -94,6 +94,10 @@ void check_velocity(const Line& line, const Options& options) {
   refuse(std::string(info(method).name) + " cannot do " + what);
 }
 
+// Found by walking all of them: from some starts it then never comes back, or turns the wrong way.
+const char* const kThroughCentre =
+    "steer passes the centre at a radius or semi-axis of 1 pulse, where its table has no direction";
+
 template <class Timing>
 AnyInterpolator pulse_trains(const Line& line, const Timing& timing) {
   if (line.axes == 2) return AnyInterpolator(PulseTrainLine<2>(line, timing));
@@ -136,12 +140,10 @@ AnyInterpolator make(Method method, const Line& line, const Options& options) {
 
 AnyInterpolator make_circle_walk(Method method, const Arc& arc) {
   const Point start = relative(arc.start, arc.centre);
-  const bool unit = distance(start) == 1;
+  const bool unit = start.x * start.x + start.y * start.y == 1;
   switch (method) {
     case Method::kSteer:
-      if (unit && arc.is_full() && !arc.clockwise) {
-        refuse("steer on the circle of radius 1 counter-clockwise never comes back to its start");
-      }
+      if (unit) refuse(kThroughCentre);
       return AnyInterpolator(SteerCircle(arc));
     case Method::kMinDeviation8:
       return AnyInterpolator(MinDeviationCircle(arc));
@@ -159,6 +161,7 @@ AnyInterpolator make(Method method, const Arc& arc) {
   if (arc.is_circle()) return make_circle_walk(method, arc);
   switch (method) {
     case Method::kSteer:
+      if (arc.semi_x == 1 || arc.semi_y == 1) refuse(kThroughCentre);
       return AnyInterpolator(SteerEllipse(arc));
     case Method::kMinDeviation8:
       return AnyInterpolator(MinDeviationEllipse(arc));

@@ -20,9 +20,10 @@ std::uint64_t magnitude(std::int64_t value) { return static_cast<std::uint64_t>(
 // The direct-mode registers of a line on a card of 4 axes, one block: FREQUENCY_LO[3] .. START.
 constexpr std::uint64_t kLineBlock = (card_map::reg::kStart - card_map::reg::frequency_lo(3)) / 4 + 1;
 
-// An ARC command of two axes.
-constexpr std::uint64_t kArcBlock =
-    card_map::words(*card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Arc)), 0x3);
+// A command of two axes.
+constexpr std::uint64_t words_of(card_map::Opcode opcode) {
+  return card_map::words(*card_map::find_command(static_cast<std::uint8_t>(opcode)), 0x3);
+}
 
 bool computes_once(Method method) {
   switch (method) {
@@ -90,8 +91,11 @@ void record(Method method, const Curve& curve, const interpolation::Options& opt
   trace.finish(interpolator.total_time());
 }
 
-HostCost cost_of(Method method, const Trace& trace) {
-  if (method == Method::kRotation) return cost_of_one_shot(kArcBlock);
+HostCost cost_of(Method method, const Trace& trace, bool line) {
+  if (!line && method == Method::kRotation) return cost_of_one_shot(words_of(card_map::Opcode::ArcChord));
+  if (!line && (method == Method::kSteer || method == Method::kMinDeviation8)) {
+    return cost_of_one_shot(words_of(card_map::Opcode::Arc));
+  }
   if (computes_once(method)) return cost_of_one_shot(kLineBlock);
   if (method == Method::kDda || method == Method::kDdaHalf) return cost_of_every_iteration(trace);
   return cost_of_every_step(trace);
@@ -103,7 +107,7 @@ MethodMeasures measure_method(Method method, const Trace& trace, const IdealCurv
   result.steps = trace.events().size();
   result.pulses = pulses_of(trace);
   result.total_time = trace.total_time();
-  result.cost = cost_of(method, trace);
+  result.cost = cost_of(method, trace, curve.is_line());
   result.distances = measure_distances(trace, curve);
   for (std::size_t a = 0; a < trace.axes(); ++a) {
     result.evenness[a] = measure_evenness(trace, curve, a);

@@ -64,49 +64,91 @@ bool repeatable(const IdealCurve& curve) { return curve.is_line() || curve.is_cl
 
 // How often the curve is run: whole times, but for a curve of more than the most pulses, which is broken off.
 double repeats_of(const Trace& trace, const IdealCurve& curve, const MotorRun& run) {
-  const std::uint64_t pulses = pulses_of(trace);
-  if (pulses > run.most_pulses) return static_cast<double>(run.most_pulses) / static_cast<double>(pulses);
-  return repeatable(curve) ? std::ceil(static_cast<double>(run.least_pulses) / static_cast<double>(pulses)) : 1;
+  const auto pulses = static_cast<double>(pulses_of(trace));
+  // Of both ramps together, at the mean of pulses along the path.
+  const double ramps = run.speed * run.ramp_time * pulses / curve.length();
+  const double most = static_cast<double>(run.most_pulses) + ramps;
+  if (pulses > most) return most / pulses;
+  return repeatable(curve) ? std::ceil((static_cast<double>(run.least_pulses) + ramps) / pulses) : 1;
 }
+
+// Where the running point is at which time: from rest on a ramp to a speed, and on a ramp to rest.
+class RampedMotion {
+ public:
+  RampedMotion(double way, double speed, double ramp_time)
+      : speed_(speed),
+        ramp_(std::min(ramp_time, 2 * way / (3 * speed))),
+        ramp_way_(speed * ramp_ / 2),
+        way_(way),
+        duration_(way / speed + ramp_) {}
+
+  double duration() const { return duration_; }
+  double ramp() const { return ramp_; }
+
+  double time_of(double way) const {
+    if (way < ramp_way_) return ramp_ * std::sqrt(way / ramp_way_);
+    if (way > way_ - ramp_way_) return duration_ - ramp_ * std::sqrt(std::max(0.0, way_ - way) / ramp_way_);
+    return ramp_ + (way - ramp_way_) / speed_;
+  }
+  double way_at(double time) const {
+    if (time < ramp_) return ramp_way_ * (time / ramp_) * (time / ramp_);
+    const double left = std::max(0.0, duration_ - time);
+    if (left < ramp_) return way_ - ramp_way_ * (left / ramp_) * (left / ramp_);
+    return ramp_way_ + (time - ramp_) * speed_;
+  }
+  double speed_at(double time) const {
+    if (time < ramp_) return speed_ * time / ramp_;
+    const double left = std::max(0.0, duration_ - time);
+    return left < ramp_ ? speed_ * left / ramp_ : speed_;
+  }
+
+ private:
+  double speed_;
+  double ramp_;      // s
+  double ramp_way_;  // pulses along the path
+  double way_;
+  double duration_;
+};
 
 // One axis over all repeats of the curve.
 class AxisRun {
  public:
-  // Repeats the curve until `end` times its duration, which need not be whole.
-  AxisRun(const Trace& trace, const IdealCurve& curve, const MotorRun& run, std::size_t axis, double end)
+  // Runs the curve `repeats` times, which need not be whole.
+  AxisRun(const Trace& trace, const IdealCurve& curve, const MotorRun& run, std::size_t axis, double repeats)
       : trace_(trace),
         curve_(curve),
         run_(run),
         axis_(axis),
         motor_(run.motor),
-        duration_(curve.length() / run.speed),
-        end_(end * duration_),
+        way_(repeats * curve.length()),
+        motion_(way_, run.speed, run.ramp_time),
         full_steps_a_pulse_(run.drive == Drive::kFullStep ? 1.0 : 0.5),
         radians_a_pulse_(kTurn / (4 * run.motor.pole_pairs) * full_steps_a_pulse_) {
-    measured_from_ = end == 1 && !repeatable(curve) ? 0 : end_ / 3;
+    const double at_speed = motion_.duration() - 2 * motion_.ramp();
+    measured_from_ = motion_.ramp() + (repeats == 1 && !repeatable(curve) ? 0 : at_speed / 3);
+    measured_to_ = motion_.ramp() + at_speed;
     // Full-step positions have both phases on: the field stands at 45 degrees.
     turn_field();
     const Currents currents = motor_.reference(field_angle() * run.motor.pole_pairs);
-    state_ = {field_angle(), run.from_standstill ? 0 : ideal_speed(0), currents[0], currents[1]};
+    state_ = {field_angle(), 0, currents[0], currents[1]};
   }
 
   // False: steps were lost.
   bool execute() {
     bool over = false;
     for (std::size_t repeat = 0; !over; ++repeat) {
-      const double offset = duration_ * static_cast<double>(repeat);
-      over = offset + duration_ >= end_;
+      const double offset = curve_.length() * static_cast<double>(repeat);
+      over = offset + curve_.length() >= way_;
       for (const Event& event : trace_.events()) {
         if (event.direction[axis_] == 0) continue;
-        const double time = offset + duration_ * fraction(event.time);
-        if (time > end_) break;
-        if (!advance(time)) return false;
+        const double way = offset + curve_.length() * fraction(event.time);
+        if (way > way_) break;
+        if (!advance(motion_.time_of(way))) return false;
         pulses_ += event.direction[axis_];
         turn_field();
       }
     }
-    if (!advance(end_)) return false;
-    measuring_ = false;
+    if (!advance(motion_.duration())) return false;
     return advance(time_ + kSettle) && std::abs(lag()) < 2;
   }
 
@@ -130,8 +172,8 @@ class AxisRun {
 
   // The running point's speed, as the motor's, rad/s.
   double ideal_speed(double time) const {
-    const double within = std::fmod(time, duration_) / duration_;
-    return curve_.tangent(within)[axis_] * run_.speed * radians_a_pulse_;
+    const double within = std::fmod(motion_.way_at(time), curve_.length()) / curve_.length();
+    return curve_.tangent(within)[axis_] * motion_.speed_at(time) * radians_a_pulse_;
   }
 
   // Integrates until `end`; false when the rotor has slipped by a whole electrical turn (4 full steps).
@@ -140,17 +182,15 @@ class AxisRun {
     if (span <= 0) return true;
     const auto steps = static_cast<std::size_t>(std::ceil(span / run_.step));
     const double step = span / static_cast<double>(steps);
-    double ideal = line_speed();
     // The lag is largest right after a pulse.
-    if (measuring_ && time_ >= measured_from_) largest_lag_ = std::max(largest_lag_, std::abs(lag()));
+    if (measured(time_)) largest_lag_ = std::max(largest_lag_, std::abs(lag()));
     for (std::size_t i = 0; i < steps; ++i) {
       stepper_.do_step(std::cref(motor_), state_, time_, step);
       time_ += step;
       const double angle = std::abs(lag());
       if (!(angle < 4)) return false;
-      if (!measuring_ || time_ < measured_from_) continue;
-      if (!curve_.is_line()) ideal = ideal_speed(time_);
-      const double difference = state_[1] - ideal;
+      if (!measured(time_)) continue;
+      const double difference = state_[1] - ideal_speed(time_);
       squares_ += difference * difference * step;
       measured_time_ += step;
       largest_lag_ = std::max(largest_lag_, angle);
@@ -158,19 +198,19 @@ class AxisRun {
     time_ = end;
     return true;
   }
-  double line_speed() const { return curve_.is_line() ? ideal_speed(0) : 0; }
+  bool measured(double time) const { return time >= measured_from_ && time <= measured_to_; }
 
   const Trace& trace_;
   const IdealCurve& curve_;
   const MotorRun& run_;
   std::size_t axis_;
   Motor motor_;
-  double duration_;  // s, one repeat
-  double end_;       // s
+  double way_;  // pulses along the path
+  RampedMotion motion_;
   double full_steps_a_pulse_;
   double radians_a_pulse_;
   double measured_from_ = 0;
-  bool measuring_ = true;
+  double measured_to_ = 0;
   std::int64_t pulses_ = 0;
   State state_{};
   double time_ = 0;

@@ -7,7 +7,10 @@ namespace trammel::measure {
 
 std::vector<double> sweep_speeds() {
   std::vector<double> speeds;
-  for (int third = 0; third <= 18; ++third) speeds.push_back(std::round(100 * std::exp2(third / 3.0)));
+  constexpr std::size_t kOctaves = 6;
+  for (std::size_t i = 0; i <= kOctaves * kSpeedsAnOctave; ++i) {
+    speeds.push_back(std::round(100 * std::exp2(static_cast<double>(i) / static_cast<double>(kSpeedsAnOctave))));
+  }
   return speeds;
 }
 
@@ -29,11 +32,15 @@ std::vector<std::vector<Vibration>> sweep_motors(const std::vector<Trace>& trace
   return result;
 }
 
-std::optional<double> lost_from(const std::vector<double>& speeds, const std::vector<Vibration>& sweep) {
+std::vector<SpeedRange> lost_at(const std::vector<double>& speeds, const std::vector<Vibration>& sweep) {
+  std::vector<SpeedRange> ranges;
+  bool before = false;
   for (std::size_t i = 0; i < speeds.size(); ++i) {
-    if (sweep[i].lost_steps) return speeds[i];
+    if (sweep[i].lost_steps && !before) ranges.push_back({speeds[i], speeds[i]});
+    if (sweep[i].lost_steps) ranges.back().last = speeds[i];
+    before = sweep[i].lost_steps;
   }
-  return std::nullopt;
+  return ranges;
 }
 
 }  // namespace trammel::measure

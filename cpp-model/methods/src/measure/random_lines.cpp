@@ -58,7 +58,7 @@ void add_line(RandomMeasures& sums, const Line& line, const Trace& trace, const 
   sums.largest_ripple = std::max(sums.largest_ripple, ripple.largest);
   sums.mean_rms_ripple += ripple.rms;
   sums.mean_steps += static_cast<double>(trace.events().size());
-  sums.mean_operations += static_cast<double>(cost_of(sums.method, trace).operations);
+  sums.mean_operations += static_cast<double>(cost_of(sums.method, trace, true).operations);
 }
 
 void add_block(RandomMeasures& total, const RandomMeasures& block) {

@@ -1,11 +1,11 @@
 // Arcs of circles and of axis-parallel ellipses for the deviation accumulator: from pulses to the fields of an Arc.
 //
 // The card walks the conic F = A X^2 + B Y^2 - N from the sign of F (Goldberg & Goldberg, "XY Interpolation
-// Algorithms") and ends on the commanded end point whatever the rounding of start, end and centre. Position is never
-// in floating point; the sweep only tells a short way from the same way and a full turn.
-// Pure functions, thread-safe. Every function throws std::invalid_argument, naming the value, for what the card cannot
-// do: a radius below one pulse or above the bounds here, an ellipse's start or end off the curve, no step to make, or
-// more turns than its counters hold.
+// Algorithms"), or, in 8 directions, to where |F| is least, and ends on the commanded end point whatever the rounding
+// of start, end and centre. Position is never in floating point; the sweep only tells a short way from the same way and
+// a full turn. Pure functions, thread-safe. Every function throws std::invalid_argument, naming the value, for what the
+// card cannot do: a radius below one pulse or above the bounds here, an ellipse's start or end off the curve, no step
+// to make, or more turns than its counters hold.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +23,10 @@ inline constexpr std::int64_t kMaxCentreDistance = std::int64_t{1} << 32;  // 1/
 
 // Largest semi-axis of an ellipse, pulses: |F| < 4ab max(a, b) <= 2^62 on the curve, CX/2 = b^2 <= 2^40.
 inline constexpr std::int64_t kMaxSemiAxis = std::int64_t{1} << 20;
+
+// Steps of an arc: along one axis each, by the papers' rule, or along both at once too, with the least deviation. The
+// second needs a card with accumulator_8.
+enum class StepRule { kFourDirections, kEightDirections };
 
 // An arc of a circle, all but its time. "Right" and "up" are the plane's first and second axis.
 struct ArcGeometry {
@@ -52,15 +56,16 @@ struct EllipseGeometry {
   std::uint8_t axis_y = 1;
 };
 
-// Everything of the command but its time: `ticks` and `prescale` are 0, `path_ticks` is L, the exact number of unit
-// steps. Takes a bisection of 36 rounds for each quadrant change; no walk.
-ArcCommand prepare(const ArcGeometry& geometry);
-ArcCommand prepare(const EllipseGeometry& geometry);
+// Everything of the command but its time: `ticks` and `prescale` are 0, `path_ticks` is L, the exact number of steps.
+// In 4 directions a bisection of 36 rounds for each quadrant change; in 8 the walk itself, but for turns that repeat.
+ArcCommand prepare(const ArcGeometry& geometry, StepRule rule = StepRule::kFourDirections);
+ArcCommand prepare(const EllipseGeometry& geometry, StepRule rule = StepRule::kFourDirections);
 
 // The arc over `ticks` feed ticks; also throws when ticks < path_ticks or ticks >= 2^40.
 ArcCommand with_ticks(ArcCommand arc, std::uint64_t ticks);
 
-ArcCommand make_arc(const ArcGeometry& geometry, std::uint64_t ticks);
-ArcCommand make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks);
+ArcCommand make_arc(const ArcGeometry& geometry, std::uint64_t ticks, StepRule rule = StepRule::kFourDirections);
+ArcCommand make_ellipse(const EllipseGeometry& geometry, std::uint64_t ticks,
+                        StepRule rule = StepRule::kFourDirections);
 
 }  // namespace trammel::driver

@@ -23,14 +23,15 @@ struct LineCommand {
 
 // An arc on the deviation accumulator.
 struct ArcCommand {
-  std::uint64_t ticks = 0;       // N, feed ticks
-  std::uint64_t path_ticks = 0;  // L <= N, unit steps
-  std::uint64_t prescale = 0;    // round(L * 2^40 / N), 2^-40 path ticks a feed tick
-  bool clockwise = false;        // seen with the first axis to the right and the second up
-  std::uint8_t axis_x = 0;       // index of the first axis of the plane
-  std::uint8_t axis_y = 1;       // index of the second
-  std::uint16_t quadrants = 0;   // Q, quadrant changes before the end may be taken
-  std::int32_t end_x = 0;        // displacement start to end, pulses
+  std::uint64_t ticks = 0;        // N, feed ticks
+  std::uint64_t path_ticks = 0;   // L <= N, steps
+  std::uint64_t prescale = 0;     // round(L * 2^40 / N), 2^-40 path ticks a feed tick
+  bool clockwise = false;         // seen with the first axis to the right and the second up
+  bool eight_directions = false;  // a step may be along both axes; only on cards with accumulator_8
+  std::uint8_t axis_x = 0;        // index of the first axis of the plane
+  std::uint8_t axis_y = 1;        // index of the second
+  std::uint16_t quadrants = 0;    // Q, quadrant changes before the end may be taken
+  std::int32_t end_x = 0;         // displacement start to end, pulses
   std::int32_t end_y = 0;
   Int128 deviation;   // F at the start; 80 bits
   Int128 gradient_x;  // GX, GY at the start; 80 bits

@@ -53,6 +53,7 @@ inline constexpr unsigned kFloor = 2;
 inline constexpr unsigned kStopDistance = 3;
 inline constexpr unsigned kAcceleration = 4;
 inline constexpr unsigned kJerk = 5;
+inline constexpr unsigned kNowhere = 6;
 }  // namespace feed_target
 
 // A chain of `Bits` bits (a multiple of 16, at most 64) takes a halfword at its top.

@@ -50,7 +50,10 @@ class CommandFetch {
   bool is_end() const { return opcode_ == card_map::Opcode::End; }
   bool is_output() const { return opcode_ == card_map::Opcode::Output; }
   bool is_mark() const { return opcode_ == card_map::Opcode::Mark; }
-  bool is_instant() const { return is_output() || is_mark(); }  // neither path nor barrier
+  bool is_probe() const { return opcode_ == card_map::Opcode::Probe; }
+  bool is_wait() const { return opcode_ == card_map::Opcode::WaitInput; }
+  bool is_probe_end() const { return opcode_ == card_map::Opcode::ProbeEnd; }
+  bool is_instant() const { return is_output() || is_mark() || is_probe(); }  // neither path nor barrier
   bool is_barrier() const { return !is_path() && !is_feed() && !is_instant(); }
   std::uint8_t engine() const { return engine_; }  // what a path runs on, by its bit of ENGINES
   std::uint8_t mask() const { return mask_; }

@@ -101,7 +101,7 @@ class CoreModel {
   MotionCore::Inputs motion_inputs(std::uint16_t pins) const;
   QueueWatermarks::Inputs watermark_inputs() const;
   void clock_commands(bool cut);
-  void clock_registers(const Inputs& in);
+  void clock_registers(const Inputs& in, bool probe);
   void gather();
   std::uint64_t watched() const;
   void show();

@@ -12,6 +12,7 @@
 #include "trammel/model/feed_generator.hpp"
 #include "trammel/model/path_commands.hpp"
 #include "trammel/model/path_engines.hpp"
+#include "trammel/model/probe.hpp"
 #include "trammel/model/sequencer.hpp"
 #include "trammel/model/step_record.hpp"
 #include "trammel/model/stop_control.hpp"
@@ -27,6 +28,7 @@ class MotionCore {
     Setting setting;
     bool abort = false;
     std::uint32_t clear_fault = 0;
+    bool probe_clear = false;
     // queues
     bool geometry_empty = true;
     bool feed_empty = true;
@@ -73,6 +75,9 @@ class MotionCore {
   const TimeBase::Outputs& time() const { return time_base_.outputs(); }
   const FeedGenerator::Outputs& feed() const { return feed_.outputs(); }
   const PathCommands& commands() const { return commands_; }
+  const Probe& probe() const { return probe_; }
+  // The probe's edge is taken in this clock, and with these inputs.
+  bool probe_trips(const Inputs& in) const { return probe_.trips(probe_inputs(in)); }
   const PathEngines::Outputs& engines() const { return engines_.outputs(); }
   bool chord_tick() const { return engines_.chord_tick(); }
   std::uint32_t position(unsigned axis) const { return axes_[axis].shaper().outputs().position; }
@@ -88,6 +93,7 @@ class MotionCore {
   void clock_busy();
   void show_axis(unsigned n);
   bool may_jump(const Inputs& in) const;
+  Probe::Inputs probe_inputs(const Inputs& in) const;
   Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
   UnderrunGuard::Inputs guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;
 
@@ -103,9 +109,11 @@ class MotionCore {
   PathEngines engines_;
   WaitTimer wait_timer_;
   PathCommands commands_;
+  Probe probe_;
   std::vector<Axis> axes_;
   bool axes_live_ = false;  // a clock late
   bool running_ = false;    // a clock late
+  bool probing_ = false;    // a clock late
   unsigned busy_left_ = 0;  // clocks
   Outputs out_;
 };

@@ -21,6 +21,7 @@ class PathCommands {
   };
   struct Inputs {
     bool cut = false;
+    bool halt = false;    // what waits is dropped, but the outputs stay
     bool output = false;  // an OUTPUT is taken; its last halfword is on the load bus
     bool mark = false;    // a MARK is taken
     bool over = false;    // event: a path has ended
@@ -37,9 +38,9 @@ class PathCommands {
 
   // One rising edge.
   void clock(const Inputs& in) {
-    const bool due = left_ == 1;
+    const bool due = left_ == 1 && !in.cut && !in.halt;
     outputs_.clock(in.cut, due ? set_ : std::uint16_t{0}, due ? clear_ : std::uint16_t{0}, in.setting);
-    mark_ = due && mark_goes_ && !in.cut;
+    mark_ = due && mark_goes_;
     if (mark_) marks_ = marks_taken_;
     if (due) set_ = clear_ = 0;
     const bool goes = left_ == 0 && (output_waits_ || mark_waits_) && (in.over || !in.runs);
@@ -51,7 +52,7 @@ class PathCommands {
     }
     take(in);
     inputs_.clock(in.pins, in.setting);
-    if (in.cut) drop();
+    if (in.cut || in.halt) drop();
   }
 
   std::uint16_t levels() const { return inputs_.level(); }

@@ -6,8 +6,9 @@
 //
 // From a tick at c: path domain at c+3; the accumulator's tick at c+5 at the earliest, its step at c+8 by axis.
 // `done`: no tick is in the 3 clocks, no path tick waits and the accumulator has finished the last one; a clock late.
-// `payload_ready`: as that for an engine's ticks alone, but from the 6th clock after the accumulator's tick on: a load
-// that is asked for then comes after the tick is finished. Not thread-safe; no errors are reported.
+// `payload_ready`: as that for an engine's ticks alone, but already in the last clocks of the accumulator's step (from
+// the 6th clock after its tick on, in 8 directions from the 14th): a load that is asked for then comes after it.
+// Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +58,6 @@ class PathEngines {
     const DeviationAccumulator::Outputs accumulator = accumulator_.outputs();
     const bool tick = out_.path_tick && engine_ == card_map::engine::kAccumulator;
     judge(in, engine);
-    finish_step(in.cut, tick, accumulator);
     const bool start = in.swap && in.engine == card_map::engine::kAccumulator;
     const bool commanded = in.cut || in.load.valid || clock_all_;
     if (commanded || routed_step_ != 0 || !accumulator_.quiet()) route(in.load, accumulator);
@@ -83,7 +83,7 @@ class PathEngines {
   // For jumps. settled(): but for ticks on their way through the 3 clocks, nothing moves without inputs.
   bool settled() const {
     const bool arc = arc_.quiet() && !over_ && !over_next_ && (!on_chords() || own_ticks_ == 0);
-    return arc && swaps_ == 0 && !out_.swap && waiting_ == 0 && !out_.path_tick && almost_ == 0 && out_.step == 0 &&
+    return arc && swaps_ == 0 && !out_.swap && waiting_ == 0 && !out_.path_tick && out_.step == 0 &&
            prescaler_.quiet() && accumulator_.quiet();
   }
   // As settled(), and without ticks.
@@ -144,7 +144,6 @@ class PathEngines {
   // Clocks from an accumulation of the feed generator to the prescaler; from there to the axes on an arc in chords.
   static constexpr unsigned kPrescaled = 6;
   static constexpr unsigned kAtAxes = 4;
-  static constexpr unsigned kAlmost = 4;  // clocks after the accumulator's tick in which no load may be asked for
 
   static bool on_engine(std::uint8_t engine) { return engine != card_map::engine::kLines; }
 
@@ -162,7 +161,8 @@ class PathEngines {
       case card_map::engine::kArcGenerator:  // its steps are the axes' own, and it ends where they do
         return {true, true, false, 0, 0};
       default:
-        return {accumulator_.outputs().ready, accumulator_.outputs().at_end, almost_ != 0, routed_step_, routed_dir_};
+        return {accumulator_.outputs().ready, accumulator_.outputs().at_end, accumulator_.stepping(), routed_step_,
+                routed_dir_};
     }
   }
 
@@ -175,15 +175,6 @@ class PathEngines {
     gate_payload_ready_ = !(feed_ticks && on_engine(engine_)) && !path_ticks && !engine.stepping;
     over_next_ =
         engine_ == card_map::engine::kArcGenerator && !in.engine_taken && !feed_ticks && !arc_.outputs().loadable;
-  }
-
-  void finish_step(bool cut, bool tick, const DeviationAccumulator::Outputs& accumulator) {
-    if (cut)
-      almost_ = 0;
-    else if (tick && accumulator.ready && !accumulator.at_end)  // at its end it makes no step
-      almost_ = kAlmost;
-    else if (almost_ != 0)
-      --almost_;
   }
 
   // The accumulator's two axes are those of its plane.
@@ -257,8 +248,7 @@ class PathEngines {
   std::uint32_t swaps_ = 0;
   std::uint32_t waiting_ = 0;                       // path ticks
   std::uint8_t engine_ = card_map::engine::kLines;  // of the path swapped in last
-  // The accumulator's: clocks in which no load may be asked for, and its steps by axis.
-  unsigned almost_ = 0;
+  // The accumulator's steps by axis.
   unsigned axis_x_ = 0;
   unsigned axis_y_ = 0;
   std::uint8_t routed_step_ = 0;

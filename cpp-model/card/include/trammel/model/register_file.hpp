@@ -22,7 +22,8 @@ class RegisterFile {
       kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode |
       card_map::field::kEnginesUnderrunHold | card_map::field::kEnginesPathCommands | card_map::field::kEnginesClasses |
       card_map::field::kEnginesWatermarks;
-  static constexpr std::uint32_t kMostEngines = kDefaultEngines | card_map::field::kEnginesArcGenerator;
+  static constexpr std::uint32_t kMostEngines =
+      kDefaultEngines | card_map::field::kEnginesArcGenerator | card_map::field::kEnginesAccumulator8;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8
@@ -60,6 +61,9 @@ class RegisterFile {
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;
     bool geometry_low = false;  // below its watermark
+    bool probed = false;
+    bool probe_missed = false;
+    bool waiting = false;  // for an input
     bool feed_low = false;
     std::uint32_t geometry_begun = 0;
     std::uint32_t feed_begun = 0;
@@ -96,6 +100,7 @@ class RegisterFile {
     bool stream_write = false;
     std::uint32_t stream_word = 0;
     bool abort = false;
+    bool probe_clear = false;
     bool flush = false;
     bool start = false;
     std::uint8_t start_mask = 0;

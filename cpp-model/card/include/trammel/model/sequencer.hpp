@@ -4,8 +4,9 @@
 // counts both down, and the last one of either swaps in what is decoded. A tick made by the feed generator (in direct
 // mode: an enabled clock) is owed from two clocks on until a path can take it. A path on an engine is over when
 // that has finished its path ticks, a direct move when no axis is live. A barrier (DWELL, END) begins when both queues
-// stand at it. Everything decided in clock c shows at c+1; other times stand with their constants. Not thread-safe; no
-// errors are reported.
+// stand at it; a WAIT_INPUT ends with its input, a PROBE_END when it may. A halt ends path and piece; while commands
+// are dropped, each is over as it is decoded, and counts as begun. Everything decided in clock c shows at c+1; other
+// times stand with their constants. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,12 @@ class Sequencer {
     std::uint16_t geometry_word = 0;
     std::uint16_t feed_word = 0;
     bool wait = false;  // no piece begins
+    // probe
+    bool halt = false;         // event: path and piece end here
+    bool drop = false;         // commands up to PROBE_END are not carried out
+    bool probe_taken = false;  // the PROBE that is decoded
+    bool met = false;          // the condition decoded last
+    bool stays = false;        // PROBE_END must wait
     // direct loader
     bool direct_go = false;
     std::uint8_t direct_mask = 0;
@@ -81,8 +88,14 @@ class Sequencer {
   bool engine_taken() const { return path_ == Path::Engine && (!drained_ || now_ < drained_at_ + kEngineJudged); }
 
   // An OUTPUT, a MARK is taken in this clock.
-  bool takes_output() const { return geometry_.decoded() && geometry_.is_output(); }
-  bool takes_mark() const { return geometry_.decoded() && geometry_.is_mark(); }
+  bool takes_output(bool drop) const { return geometry_.decoded() && geometry_.is_output() && !drop; }
+  bool takes_mark(bool drop) const { return geometry_.decoded() && geometry_.is_mark() && !drop; }
+  // A PROBE is decoded and no path runs; a WAIT_INPUT, a PROBE_END has begun.
+  bool probe_waits() const { return geometry_.decoded() && geometry_.is_probe() && path_ == Path::None; }
+  bool waits_for_input() const { return barrier_ == Barrier::Running && geometry_.is_wait(); }
+  bool probe_ends() const { return barrier_ == Barrier::Running && geometry_.is_probe_end(); }
+  // A geometry command is dropped in this clock.
+  bool geometry_drops(const Inputs& in) const { return in.drop && geometry_.decoded() && !geometry_.is_probe_end(); }
   // A tick is taken in this clock.
   bool takes(const Inputs& in) const;
   bool piece_waits() const { return feed_.decoded() && feed_.is_feed(); }
@@ -98,7 +111,9 @@ class Sequencer {
   // Ticks until the path or its piece ends, the last one included.
   std::uint64_t ticks_left() const { return path_left_ < piece_left_ ? path_left_ : piece_left_; }
   // Clocks that a settled sequencer may jump over at most, ticks apart.
-  std::uint64_t settled_clocks() const { return barrier_ == Barrier::Running ? barrier_at_ - now_ : kLong; }
+  std::uint64_t settled_clocks() const {
+    return barrier_ == Barrier::Running && barrier_at_ > now_ ? barrier_at_ - now_ : kLong;
+  }
   // Ticks on their way: bit k was made by an accumulation k clocks ago.
   unsigned in_flight() const {
     return (tick_arrives_ ? 1U << kArrives : 0) | (owed_ != 0 ? 1U << kOwed : 0) | (out_.tick ? 1U << kTaken : 0);
@@ -136,6 +151,9 @@ class Sequencer {
     bool barrier_begins = false;
     bool barrier_ends = false;
     bool barrier_done = false;  // ended in the clock before: both queues go on
+    bool at_probe_end = false;
+    bool path_dropped = false;  // the geometry command that is decoded, whatever it is
+    bool piece_dropped = false;
     bool payload_ready = false;
     bool piece_runs = false;
     bool direct = false;  // a direct move is under way
@@ -146,15 +164,20 @@ class Sequencer {
   Decision decide(const Inputs& in) const;
   bool judged(const Inputs& in) const;
   bool mismatches() const;
+  bool barrier_over(const Inputs& in) const;
   bool path_waits() const { return geometry_.decoded() && geometry_.is_path(); }
-  bool instant() const { return geometry_.decoded() && geometry_.is_instant(); }
+  // A command that is taken at once.
+  bool instant() const { return geometry_.decoded() && geometry_.is_instant() && !geometry_.is_probe(); }
   void stand(const Decision& d);
   void clock_path(const Inputs& in, const Decision& d);
   void clock_piece(const Decision& d);
   void clock_barrier(const Decision& d);
   void clock_ticks(const Inputs& in, bool take);
   void clock_fetches(const Inputs& in, const Decision& d);
-  void count_begun(const Inputs& in, const Decision& d);
+  void count_begun(const Inputs& in, const Decision& d, bool path_drops, bool piece_drops);
+  bool drop_counts(const CommandFetch& fetch, bool dropped) const;
+  bool feed_drops(const Inputs& in) const { return in.drop && feed_.decoded() && !feed_.is_probe_end(); }
+  void halt(const Decision& d);
   void cut();
 
   bool clock_all_;

@@ -24,6 +24,7 @@ class StopControl {
     bool moving = false;           // pieces are giving ticks
     bool fixed = false;            // the present one is fixed
     bool underrun = false;         // what is queued ends: neither a fault nor a cut
+    bool probe = false;            // a probe has tripped: likewise
     Setting setting;               // HOLD, STOP_REACTION
   };
   struct Outputs {
@@ -40,9 +41,9 @@ class StopControl {
     const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
                                  (in.incomplete ? card_map::field::kFaultPathIncomplete : 0);
     const bool at_once = (events & ~reaction_) != 0;
-    underrun_ = in.underrun;
+    made_to_hold_ = in.underrun || in.probe;
     hold_stays_ = stays(in.moving, in.at_rest);
-    out_.hold = host_holds(in.fixed) || underrun_ || state_ == State::Ramp;
+    out_.hold = host_holds(in.fixed) || made_to_hold_ || state_ == State::Ramp;
     out_.closed = out_.fault != 0 || state_ != State::Run;
     out_.cut = in.abort;
     out_.stop = state_ == State::Run && events != 0;
@@ -65,12 +66,12 @@ class StopControl {
 
   const Outputs& outputs() const { return out_; }
   bool stopped() const { return state_ == State::Stopped; }
-  bool underrun() const { return underrun_; }  // as of the last clock
+  bool made_to_hold() const { return made_to_hold_; }  // as of the last clock: by under-run or probe
 
-  // Without an event, a setting, an abort, a clear or a change of `underrun`, clock() changes nothing while these stay;
-  // where no hold is asked for, whatever they do.
+  // Without an event, a setting, an abort, a clear or a change of made_to_hold(), clock() changes nothing while these
+  // stay; where no hold is asked for, whatever they do.
   bool quiet(bool moving, bool fixed, bool at_rest) const {
-    const bool same = stays(moving, at_rest) == hold_stays_ && out_.hold == (host_holds(fixed) || underrun_);
+    const bool same = stays(moving, at_rest) == hold_stays_ && out_.hold == (host_holds(fixed) || made_to_hold_);
     const bool settled = same && out_.closed == (out_.fault != 0 || state_ != State::Run);
     return settled && !out_.cut && !out_.stop &&
            (state_ == State::Run || (state_ == State::Stopped && out_.fault != 0));
@@ -97,7 +98,7 @@ class StopControl {
   State state_ = State::Run;
   bool hold_ = false;
   bool hold_stays_ = false;
-  bool underrun_ = false;
+  bool made_to_hold_ = false;
   std::uint32_t reaction_ = 0;
   Outputs out_;
 };

@@ -3,7 +3,8 @@
 //
 // Every 32 clocks (kRound) it decides: short is where the queued ticks, of paths or of pieces, are at most
 // stop distance * ratio^2 + kUnderrunReserveTicks; but not where the last piece ends at rest with its paths queued, nor
-// where a barrier came last. What a round looks at is taken at its clocks kRatio, kFactor, kCount; it decides at
+// where a barrier came last. What a probe drops is not counted off: from then on there is no rule until nothing is
+// queued once. What a round looks at is taken at its clocks kRatio, kFactor, kCount; it decides at
 // kDecide. Not thread-safe; no errors are reported.
 #pragma once
 
@@ -31,7 +32,9 @@ class UnderrunGuard {
   };
   struct Inputs {
     bool cut = false;
-    bool off = false;  // no rule
+    bool off = false;   // no rule
+    bool lost = false;  // event: what is queued will be dropped
+    bool idle = false;  // nothing runs, is decoded or queued; up to four clocks late
     Arrival arrival;
     bool full = false;        // a queue may have no room for the next command
     LoadWord load;            // feed load
@@ -79,6 +82,7 @@ class UnderrunGuard {
     if (in.load.to(feed_target::kStopDistance)) load(in.load.word);
     from_rest_before_ = from_rest;
     decoded_before_ = in.decoded;
+    forget(in);
     if (in.cut) cut();
     out_.shown = out_.hold || waits_;
     round_ = (round_ + 1) % kRound;
@@ -87,12 +91,14 @@ class UnderrunGuard {
   const Outputs& outputs() const { return out_; }
 
   // A piece that is decoded must not begin.
-  bool waits(bool active, bool off) const { return (!active || ends_) && !next_zero() && !enough_ && !off; }
+  bool waits(bool active, bool off) const { return (!active || ends_) && !next_zero() && !enough_ && !(off || lost_); }
 
   // With these inputs nothing changes but counts, as long as fewer ticks are taken than ticks_to_change().
   bool settled(const Inputs& in) const {
     const bool follow = follows(in.active);
-    if (in.cut || in.swap || in.load.valid || in.arrival.any() || pending_.any) return false;
+    if (unknown_ != lost_) return false;
+    if (lost_ && (in.lost || in.idle || since_ < kLag)) return false;
+    if (in.lost || in.cut || in.swap || in.load.valid || in.arrival.any() || pending_.any) return false;
     if (due_ || (follow && (distance_ != next_ || ruled_ == next_zero()))) return false;
     if (decoded_before_ != in.decoded || from_rest_before_ != (!in.active || ends_)) return false;
     if (judged_ != (in.decoded && follow) || (flags_.covered && !covered_)) return false;
@@ -115,6 +121,7 @@ class UnderrunGuard {
     const std::uint64_t to_pass = kPass - 1 - round_ % kPass;
     round_ = static_cast<unsigned>((round_ + clocks) % kRound);
     std::uint64_t owed = owed_ + ticks;
+    if (lost_) owed = 0;
     if (clocks > to_pass) {
       const std::uint64_t all = owed;
       owed = 0;
@@ -171,7 +178,7 @@ class UnderrunGuard {
 
   bool judged_short(bool off) const {
     const bool geometry = flags_.geometry_short && !(at_rest_ && flags_.covered);
-    return !at_barrier_ && !off && (geometry || (flags_.feed_short && !at_rest_));
+    return !at_barrier_ && !off && !lost_ && !unknown_ && (geometry || (flags_.feed_short && !at_rest_));
   }
   bool holds(bool is_short, bool follow, bool full) const {
     return is_short && (out_.hold || !follow || (judged_ && full));
@@ -220,6 +227,24 @@ class UnderrunGuard {
     (pending_.of_paths ? paths_ : pieces_) += static_cast<std::int64_t>(pending_.ticks);
   }
 
+  // While what is queued is not known nothing counts. It is nothing at last when nothing runs and no command came for
+  // longer than it takes to show.
+  void forget(const Inputs& in) {
+    const bool shows = since_ >= kLag && !inside_;
+    unknown_ = lost_ || (unknown_ && round_ != kDecide);
+    if (lost_) {
+      paths_ = pieces_ = 0;
+      owed_ = 0;
+      pending_.any = false;
+      at_rest_ = at_barrier_ = false;
+    }
+    lost_ = in.lost || (lost_ && !(in.idle && shows));
+    const Arrival& a = in.arrival;
+    const bool ends = a.drop || a.geometry_commit || a.feed_commit;
+    inside_ = (inside_ || a.geometry_write || a.feed_write) && !ends;
+    since_ = ends ? 0 : since_ + (since_ < kLag ? 1 : 0);
+  }
+
   // The count lies in halfwords 1 to 3 of what is stored, a piece's stop distance in 10 and 11.
   void arrive(const Arrival& a) {
     if (a.geometry_write || a.feed_write) {
@@ -248,8 +273,14 @@ class UnderrunGuard {
     half_ = false;
     due_ = ruled_ = ends_ = covered_ = judged_ = enough_ = waits_ = false;
     out_.hold = false;
+    lost_ = inside_ = false;
   }
 
+  static constexpr unsigned kLag = 7;
+  bool lost_ = false;
+  bool unknown_ = false;   // was lost while the counts were compared that are decided on next
+  bool inside_ = false;    // of a command on its way in
+  unsigned since_ = kLag;  // clocks since the last command came
   unsigned round_ = 0;
   // queued ticks
   std::int64_t paths_ = 0;

@@ -29,9 +29,10 @@ IdealCurve ideal_of(const interpolation::Curve& curve);
 void record(interpolation::Method method, const interpolation::Curve& curve, const interpolation::Options& options,
             Trace& trace);
 
-// Methods that compute once count the card's blocks: the direct-mode registers for a line (FREQUENCY_LO[0] .. START),
-// the ARC command for an arc. Those that compute step by step are counted as run by the host.
-HostCost cost_of(interpolation::Method method, const Trace& trace);
+// What the card runs itself costs one computation and its block: the direct-mode registers for a line (FREQUENCY_LO[3]
+// .. START), ARC for a conic by STEER's rule or by least deviation (the deviation accumulator in 4 or 8 directions),
+// ARC_CHORD for one by rotation (the arc generator). The rest is counted as run by the host, step by step.
+HostCost cost_of(interpolation::Method method, const Trace& trace, bool line);
 
 struct MethodMeasures {
   interpolation::Method method = interpolation::Method::kSteer;

@@ -9,16 +9,16 @@
 // between, one phase at sqrt(2) I, so that the torque is the same at all of them. A pulse turns the field by a
 // quarter or an eighth of an electrical turn.
 //
-// The rotor starts where the field holds it and, unless from_standstill, at the speed of the running point: so it is
-// the unevenness of the pulses that makes it swing, not the start. All methods get the same duration, that is an equal
-// mean speed. Integrated by Boost.Odeint (fourth-order Runge-Kutta, no step longer than `step`). Pure functions:
-// thread-safe.
+// The rotor starts from rest where the field holds it, and ramps of constant acceleration lead to the speed and back to
+// rest: so it is the unevenness of the pulses that makes it swing or lose steps, not an abrupt start or stop. On a ramp
+// the pulses come where they are on the path, at the time at which the running point passes. All methods get the same
+// duration, that is an equal mean speed. Integrated by Boost.Odeint (fourth-order Runge-Kutta, no step longer than
+// `step`). Pure functions: thread-safe.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "trammel/measure/ideal_curve.hpp"
@@ -51,11 +51,11 @@ enum class Drive { kFullStep, kHalfStep };
 struct MotorRun {
   MotorParameters motor;
   Drive drive = Drive::kFullStep;
-  double speed = 200;  // mean speed along the path, pulses/s, > 0
-  bool from_standstill = false;
+  double speed = 200;              // mean speed along the path, pulses/s, > 0
+  double ramp_time = 0.05;         // s of each ramp, at most a third of the path's way; 0: full speed at once
   double step = 10e-6;             // s, longest integration step, > 0
   std::size_t least_pulses = 240;  // a line or closed curve is repeated until all axes together have made so many
-  std::size_t most_pulses = 1000;  // and the run ends after so many
+  std::size_t most_pulses = 1000;  // and the run ends after so many; both besides the ramps
 };
 
 struct AxisVibration {
@@ -70,14 +70,15 @@ struct Vibration {
   std::array<AxisVibration, kTraceAxes> axis{};
 };
 
-// Runs one motor an axis. What the first third of the pulses make is left out of ripple and lag (lost steps count from
-// the start), unless the curve can be run only once (an open arc) and is run whole. After a loss the run ends, and
+// Runs one motor an axis. Ripple and lag are those of the last two thirds at full speed; of an open arc, which can be
+// run only once, of all of it. Lost steps count from the start to rest after the end. After a loss the run ends, and
 // ripple and lag are what they had become. Precondition: the trace ends at the curve's end, or for closed curves at its
 // start.
 Vibration simulate_motors(const Trace& trace, const IdealCurve& curve, const MotorRun& run);
 
-// A third of an octave apart, 100 to 6,350 pulses/s: from below the resonance of the motor above to beyond its
+// A seventh of an octave apart, 100 to 6,400 pulses/s: from below the resonance of the motor above to beyond its
 // pull-out.
+inline constexpr std::size_t kSpeedsAnOctave = 7;
 std::vector<double> sweep_speeds();
 
 // Every trace at every speed; run.speed is not looked at. The result does not depend on the number of threads.
@@ -86,7 +87,13 @@ std::vector<std::vector<Vibration>> sweep_motors(const std::vector<Trace>& trace
                                                  const MotorRun& run, const std::vector<double>& speeds,
                                                  unsigned threads, const std::function<void(double)>& progress = {});
 
-// The lowest speed of a sweep at which steps were lost; nothing if none were.
-std::optional<double> lost_from(const std::vector<double>& speeds, const std::vector<Vibration>& sweep);
+// First and last speed of a stretch of a sweep.
+struct SpeedRange {
+  double first;
+  double last;
+};
+
+// Where steps were lost: the stretches of neighbouring speeds at all of which they were.
+std::vector<SpeedRange> lost_at(const std::vector<double>& speeds, const std::vector<Vibration>& sweep);
 
 }  // namespace trammel::measure

@@ -8,7 +8,7 @@
 //   - M3 to M5 and M7 to M9 switch the outputs that the machine file names for them, before the line's motion, and M2
 //     and M30 switch all of these off; other ends of the program leave them;
 //   - a lower-case e right behind a number is taken for an exponent, which G-code has not, and refused;
-//   - G61 and G64 are accepted: the planner stops exactly at every end of a motion, which satisfies both.
+//   - Q of G64 (naive cam) has no effect and is told.
 #pragma once
 
 #include <cstddef>

@@ -8,6 +8,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/gcode/motion.hpp"
+#include "trammel/planner/blender.hpp"
 
 namespace trammel::planner {
 
@@ -63,7 +64,8 @@ struct Block {
   bool rapid = false;
   bool linear = false;  // X, Y or Z moves
   gcode::PathControl path_control = gcode::PathControl::kContinuous;
-  double tolerance = 0;                  // mm, of G64 P
+  Corner corner = Corner::kNone;         // kBlended: the block is a blend. Else what became of the corner at its end
+  double distance = 0;                   // mm, a blend's from the corner
   Direction entry{};                     // where it begins
   Direction exit{};                      // where it ends
   double length = 0;                     // mm
@@ -84,6 +86,9 @@ struct Block {
   std::int64_t centre_x = 0;  // 1/256 pulses, machine coordinates
   std::int64_t centre_y = 0;
   ExactArc exact;
+  bool tilted =
+      false;  // kChords: a blend outside the main planes; of `exact` its radii and sweep, the rest from `space`
+  SpaceArc space;
   driver::ArcCommand arc;         // kArc: all but its ticks
   std::uint64_t parts = 0;        // kArcChord: commands, of equal angles
   std::uint64_t chords = 0;       // kChords: of equal angles; some may have no step
@@ -93,6 +98,12 @@ struct Block {
   std::uint64_t dwell_clocks = 0;
   double dwell_seconds = 0;
 };
+
+// Of a block that is an arc.
+inline bool in_plane(const Block& block, std::size_t axis) {
+  if (!block.tilted) return axis == block.axis_x || axis == block.axis_y;
+  return axis == block.space.axes[0] || axis == block.space.axes[1] || axis == block.space.axes[2];
+}
 
 inline bool switches(const Block& block) { return (block.outputs.set | block.outputs.clear) != 0; }
 inline bool moves(const Block& block) { return block.geometry != Geometry::kDwell && block.geometry != Geometry::kEnd; }

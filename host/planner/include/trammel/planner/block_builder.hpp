@@ -11,6 +11,7 @@
 
 #include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/planner/blender.hpp"
 #include "trammel/planner/block.hpp"
 #include "trammel/planner/card_limits.hpp"
 
@@ -34,6 +35,8 @@ class BlockBuilder {
   const Pulses& start() const { return start_; }
   // From the next block on, a motion of an axis without max_jerk is refused.
   void require_jerk() { jerk_required_ = true; }
+  // Before the first block: G64 P makes no blends, as where every line ends in a stop.
+  void keep_corners() { blender_.keep_corners(); }
 
  private:
   struct Axis {
@@ -47,6 +50,13 @@ class BlockBuilder {
     bool linear;          // X, Y or Z
     unsigned feed_group;  // which feed it counts for: 0 X Y Z, 1 U V W, 2 A B C, 3 E
   };
+  // What the axes of an arc's plane allow in any direction of it.
+  struct PlaneLimits {
+    double velocity;
+    double pulse_speed;  // mm/s
+    double acceleration;
+    double jerk;
+  };
   bool build(Block& block);
   void switch_outputs();
   bool set_targets(Block& block);
@@ -55,10 +65,12 @@ class BlockBuilder {
   bool build_generator_arc(Block& block) const;
   bool build_accumulator_arc(Block& block);
   bool build_chords(Block& block);
+  bool build_tilted(Block& block);
   bool build_dwell(Block& block);
   double measure_line(Block& block, const gcode::Coordinates& way) const;
   static void limit_speed(Block& block, double speed, SpeedLimit limit);
   void limit_line(Block& block) const;
+  PlaneLimits plane_limits(const Block& block) const;
   void limit_arc(Block& block, double unevenness, double share) const;
   double measure_arc(Block& block) const;
   void limit_further(Block& block) const;
@@ -75,7 +87,9 @@ class BlockBuilder {
   std::size_t axis_count_;
   bool jerk_required_ = false;
   std::array<Axis, card_map::kMaxAxes> axes_{};
-  gcode::Motion motion_;
+  std::array<double, card_map::kMaxAxes> scales_{};  // steps/mm
+  Blender blender_;
+  PathMotion motion_;
   Pulses start_{};
   Pulses here_{};
   gcode::Coordinates exact_{};     // where the program is, unrounded

@@ -7,6 +7,7 @@
 // alone, never of how fast it is read.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -18,8 +19,6 @@
 #include "trammel/planner/card_limits.hpp"
 
 namespace trammel::planner {
-
-struct PlaneScale;
 
 enum class SpeedProfile {
   kByMachine,  // S-curve where every axis has a max_jerk, else trapezoid
@@ -71,10 +70,10 @@ class Planner {
   void put_line(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
-  PlaneScale scale_of(const Block& block) const;
 
   const machine::Machine& machine_;
   std::unique_ptr<LookAhead> look_ahead_;
+  std::array<double, card_map::kMaxAxes> scales_{};  // steps/mm
   driver::Command line_{driver::LineCommand{}};
   driver::Command piece_{driver::FeedCommand{}};
   driver::Command other_{driver::EndCommand{}};

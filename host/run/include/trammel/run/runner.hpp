@@ -2,6 +2,7 @@
 // once to stream it. Opens nothing and prints nothing. Not thread-safe.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -59,6 +60,12 @@ struct PlannedMotion {
   double acceleration_step = 0;  // mm/s^2, the largest where curvature changes without a corner
 };
 
+// What G64 P has made of corners.
+struct Blends {
+  std::array<std::uint64_t, planner::kCorners> corners{};  // by planner::Corner
+  double distance = 0;                                     // mm, the largest between blended and programmed path
+};
+
 // From the first pass.
 struct Plan {
   std::string file;
@@ -67,6 +74,7 @@ struct Plan {
   std::uint64_t rapids = 0;    // of these, the rapids
   std::uint64_t commands = 0;  // for the card
   PlannedMotion motion;
+  Blends blends;
   planner::Pulses start{};  // machine coordinates; where the first line begins
   planner::Pulses end{};
   std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first

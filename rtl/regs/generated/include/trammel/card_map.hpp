@@ -37,7 +37,8 @@ inline constexpr std::uint32_t kShaperReversalClocks =
 inline constexpr std::uint32_t kDecodeClocks = 8;      // Clocks to decode a line, without those for each axis
 inline constexpr std::uint32_t kDecodeAxisClocks = 3;  // Clocks to decode a line, for each of its axes
 inline constexpr std::uint32_t kAccumulatorTickClocks =
-    9;  // Clocks from one path tick of the deviation accumulator to the next at least
+    9;  // Clocks from one path tick of the deviation accumulator to the next at least, in 4 directions
+inline constexpr std::uint32_t kAccumulator8TickClocks = 17;  // The same in 8 directions
 inline constexpr std::uint32_t kAccumulatorHandoverClocks =
     30;  // Clocks within which an arc begins once the accumulator is free
 inline constexpr std::uint32_t kCentreFractionBits = 8;  // Fraction bits of a centre in ARC's deviation and gradients
@@ -58,7 +59,7 @@ inline constexpr std::uint32_t kArcGenerator = 3;  // ARC_CHORD: arc generator.
 inline constexpr std::uint32_t kJerk = 4;          // Jerk in the feed generator.
 inline constexpr std::uint32_t kDirectMode = 5;    // Direct mode.
 inline constexpr std::uint32_t kUnderrunHold = 6;  // Hold on the path when the queues run dry.
-inline constexpr std::uint32_t kPathCommands = 7;  // OUTPUT, MARK; not built yet: WAIT_INPUT, PROBE, PROBE_END.
+inline constexpr std::uint32_t kPathCommands = 7;  // OUTPUT, MARK, WAIT_INPUT, PROBE, PROBE_END; inputs and outputs.
 inline constexpr std::uint32_t kStreaming = 8;     // Position streaming.
 inline constexpr std::uint32_t kClasses = 9;       // Classes of pieces: ratios for rapid and fixed.
 inline constexpr std::uint32_t kWatermarks = 10;   // Watermarks of the queues.
@@ -510,9 +511,9 @@ enum class Opcode : std::uint8_t {
   End = 33,        // Barrier: end of the program; latches STATUS.ended.
   Output = 34,     // Sets and clears outputs with the last tick of the path before it.
   Mark = 35,       // Counts MARKS and latches the MARK area with the last tick of the path before it.
-  WaitInput = 36,  // Barrier: both queues wait for each other, then for an input.
-  Probe = 37,      // Arms the probe for the paths up to PROBE_END.
-  ProbeEnd = 38,   // Barrier: end of the probing paths.
+  WaitInput = 36,  // Barrier: both queues wait for each other, then for an input or for `count` clocks.
+  Probe = 37,      // Arms the probe for the paths up to PROBE_END, once no path runs.
+  ProbeEnd = 38,   // Barrier: end of the probing paths; where the probe has tripped it waits for CONTROL.probe_clear.
 };
 
 inline constexpr std::size_t kMaxFields = 11;
@@ -679,7 +680,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      true,
      true,
      7,
-     false,
+     true,
      MaskRule::None,
      0,
      0,
@@ -695,7 +696,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      true,
      false,
      7,
-     false,
+     true,
      MaskRule::None,
      0,
      0,
@@ -706,7 +707,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      0,
      1,
      {{Field{"condition", FieldKind::Unsigned, 5, 0, 1, false, 0, 0x0, 0x1F, 0x0, 0, false}}}},
-    {"PROBE_END", Opcode::ProbeEnd, true, true, 7, false, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
+    {"PROBE_END", Opcode::ProbeEnd, true, true, 7, true, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
 }};
 
 // Layout of a command, nullptr when the opcode has no meaning.

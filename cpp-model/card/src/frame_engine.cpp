@@ -1,0 +1,162 @@
+#include "trammel/model/frame_engine.hpp"
+
+#include <utility>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::model {
+
+namespace {
+
+// Clocks from one event to the next that shows: docs/developer/architecture.md, frame_engine.
+constexpr unsigned kFirstWrite = 6;  // start to the first request of a write
+constexpr unsigned kFirst = 1;       // start to any other
+constexpr unsigned kNextWrite = 7;   // answer to the next request
+constexpr unsigned kNextRead = 6;
+constexpr unsigned kAfterWrite = 2;  // the last answer, or a refusal, to the first request for the state
+constexpr unsigned kAfterRead = 6;
+constexpr unsigned kFinish = 5;  // the last answer to the decision whether to reply
+constexpr unsigned kByte = 12;   // that, or a byte's being taken, to the next byte's offer
+
+}  // namespace
+
+void FrameEngine::clock(const Inputs& in) {
+  const bool starts = frame_.has_value() && !in.restart;
+  const bool listened = at_ == At::Listening;
+  if (!listened && in.restart) dropped_ = true;
+  switch (at_) {
+    case At::Listening:
+      if (starts) start();
+      break;
+    case At::Pause:
+      if (--left_ == 0) show_request();
+      break;
+    case At::Ask:
+      out_.request = false;
+      at_ = At::Wait;
+      break;
+    case At::Wait:
+      if (in.ack) answered(in);
+      break;
+    case At::Finish:
+      if (--left_ == 0) finish();
+      break;
+    case At::Prepare:
+      if (in.restart) {
+        at_ = At::Listening;
+      } else if (--left_ == 0) {
+        offer();
+      }
+      break;
+    case At::Offer:
+      if (in.restart) {
+        at_ = At::Listening;
+        out_.valid = false;
+      } else if (in.ready) {
+        taken();
+      }
+      break;
+  }
+  frame_.reset();
+  if (in.restart) {
+    session_.connect();
+    deframer_.clear();
+  } else {
+    receive_as(in, listened);
+  }
+}
+
+// Bytes of the clock; the frame that they end shows in the next one.
+void FrameEngine::receive_as(const Inputs& in, bool listened) {
+  if (!in.byte_valid) return;
+  if (!listened) {
+    deframer_.pass_over();
+    if (in.byte == frames::kEnd) deframer_.clear();
+    return;
+  }
+  if (deframer_.take(in.byte)) frame_ = frames::parse_request(deframer_.body());
+}
+
+void FrameEngine::start() {
+  request_ = frame_->request;
+  dropped_ = false;
+  word_ = 0;
+  read_.clear();
+  if (session_.take(*frame_) == frames::Session::Step::Answer) return begin_state(kFirst);
+  state_pass_ = false;
+  out_.address = request_.address;
+  ask_in(request_.kind == frames::Kind::Write ? kFirstWrite : kFirst);
+}
+
+void FrameEngine::begin_state(unsigned clocks) {
+  state_pass_ = true;
+  word_ = 0;
+  out_.address = card_map::reg::kStatus;
+  ask_in(clocks);
+}
+
+void FrameEngine::ask_in(unsigned clocks) {
+  left_ = clocks - 1;
+  at_ = At::Pause;
+  if (left_ == 0) show_request();
+}
+
+void FrameEngine::show_request() {
+  at_ = At::Ask;
+  out_.request = true;
+  out_.write = !state_pass_ && request_.kind == frames::Kind::Write;
+  if (out_.write) out_.data = request_.data[word_];
+}
+
+void FrameEngine::answered(const Inputs& in) {
+  if (state_pass_) {
+    state_.words[word_++] = in.data;
+    out_.address += 4;
+    if (word_ < frames::kStateWords) return ask_in(kNextRead);
+    left_ = kFinish;
+    at_ = At::Finish;
+    return;
+  }
+  const bool write = request_.kind == frames::Kind::Write;
+  if (!in.error) {
+    if (!write) read_.push_back(in.data);
+    ++word_;
+    if (!request_.fixed) out_.address = (out_.address + 4) % card_map::kWindowBytes;
+    if (word_ < request_.count) return ask_in(write ? kNextWrite : kNextRead);
+  }
+  session_.executed(static_cast<std::uint8_t>(word_), in.error, std::move(read_));
+  begin_state(write || in.error ? kAfterWrite : kAfterRead);
+}
+
+void FrameEngine::finish() {
+  at_ = At::Listening;
+  if (dropped_) return;
+  reply_.clear();
+  frames::append_reply(reply_, session_.reply(state_));
+  place_ = 0;
+  left_ = kByte - 1;
+  at_ = At::Prepare;
+}
+
+void FrameEngine::offer() {
+  at_ = At::Offer;
+  out_.valid = true;
+  out_.byte = reply_[place_];
+}
+
+// The second half of a stuffed byte follows at once.
+void FrameEngine::taken() {
+  const bool half = reply_[place_] == frames::kEscape;
+  if (++place_ == reply_.size()) {
+    out_.valid = false;
+    at_ = At::Listening;
+  } else if (half) {
+    out_.byte = reply_[place_];
+  } else {
+    out_.valid = false;
+    left_ = kByte - 1;
+    at_ = At::Prepare;
+  }
+}
+
+}  // namespace trammel::model

@@ -1,0 +1,105 @@
+// Makes a request's accesses at the inner port, up to the first that is refused, and then reads what every reply says of the
+// card: the five registers from STATUS on. Words lie in the RAM byte by byte: a request's from place 8 of its half on, what
+// was read from place 20 of the reply's half on, after the state.
+`default_nettype none
+module frame_executor (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    // the request stands from start_i on
+    input wire logic start_i,
+    input wire logic execute_i,  // with start_i; 0: the state alone
+    input wire logic write_i,
+    input wire logic fixed_i,
+    input wire logic [5:0] count_i,
+    input wire logic [9:0] address_i,  // in words
+    output logic done_o,  // event
+    // of what was executed last
+    output logic [5:0] made_o,
+    output logic refused_o,
+    output logic read_o,
+    // RAM
+    output logic [7:0] place_o,
+    output logic store_o,
+    output logic [7:0] byte_o,
+    input wire logic [7:0] byte_i,  // of the place a clock ago
+    // to the inner port
+    output logic [47:0] access_o,
+    input wire logic ack_i,
+    input wire logic error_i,
+    input wire logic [31:0] data_i
+);
+  localparam logic [7:0] REQUEST_WORDS = 8'd8;
+  localparam logic [7:0] REPLY_WORDS = 8'd20;
+  localparam logic [5:0] STATE_COUNT = 6'd5;
+  localparam logic [9:0] STATE_ADDRESS = card_map_pkg::ADDR_STATUS[11:2];
+
+  localparam int IDLE = 0;
+  localparam int FETCH = 1;  // a word to write, from the RAM
+  localparam int ASK = 2;
+  localparam int WAIT = 3;
+  localparam int STORE = 4;  // a word that was read, into the RAM
+  localparam int NEXT = 5;
+
+  logic [ 5:0] at_q;  // one-hot
+  logic [ 2:0] byte_q;  // of the word under way
+  logic [ 5:0] word_q;
+  logic        state_q;  // the reply's state is read; else the request runs
+  logic        error_q;
+  logic [ 7:0] place_q;
+  logic [ 9:0] address_q;
+  logic [31:0] data_q;
+  logic        writes;
+  logic        over;
+  logic        answered;
+  logic        moves;
+
+  assign writes   = write_i && !state_q;
+  assign over     = error_q || word_q == (state_q ? STATE_COUNT : count_i);
+  assign answered = at_q[WAIT] && ack_i;
+  assign moves    = at_q[FETCH] || at_q[STORE];
+
+  assign place_o  = place_q;
+  assign store_o  = at_q[STORE];
+  assign byte_o   = data_q[7:0];
+  assign access_o = {at_q[ASK], writes, 2'b00, address_q, 2'b00, data_q};
+  assign done_o   = at_q[NEXT] && state_q && over;
+
+  always_ff @(posedge clk_i) begin
+    at_q[IDLE] <= (at_q[IDLE] && !start_i) || done_o;
+    at_q[FETCH] <= (start_i && execute_i && write_i) || (at_q[FETCH] && !byte_q[2]) || (at_q[NEXT] && writes && !over);
+    at_q[ASK]   <= (start_i && !(execute_i && write_i)) || (at_q[FETCH] && byte_q[2]) ||
+        (at_q[NEXT] && !done_o && (!writes || over));
+    at_q[WAIT] <= at_q[ASK] || (at_q[WAIT] && !ack_i);
+    at_q[STORE] <= (answered && !writes && (state_q || !error_i)) || (at_q[STORE] && byte_q != 3'd3);
+    at_q[NEXT] <= (answered && (writes || (!state_q && error_i))) || (at_q[STORE] && byte_q == 3'd3);
+    if (rst_i) at_q <= 6'(1) << IDLE;
+  end
+
+  always_ff @(posedge clk_i) begin
+    byte_q <= moves ? byte_q + 3'd1 : 3'd0;
+    if (moves) data_q <= {byte_i, data_q[31:8]};
+    if (answered && !writes) data_q <= data_i;
+    // While a word is fetched the place is a clock ahead of the byte.
+    if (moves && !byte_q[2]) place_q <= place_q + 8'd1;
+    if (answered) begin
+      error_q <= error_i && !state_q;
+      word_q  <= word_q + 6'(state_q || !error_i);
+      if (!fixed_i || state_q) address_q <= address_q + 10'd1;
+    end
+    if (at_q[NEXT] && over && !state_q) begin
+      made_o <= word_q;
+      refused_o <= error_q;
+      read_o <= !write_i;
+    end
+    if (start_i || (at_q[NEXT] && over)) begin
+      state_q <= !(start_i && execute_i);
+      error_q <= 1'b0;
+      word_q <= 6'd0;
+      place_q <= !(start_i && execute_i) ? 8'd0 : write_i ? REQUEST_WORDS : REPLY_WORDS;
+      address_q <= start_i && execute_i ? address_i : STATE_ADDRESS;
+    end
+    // What the reply to a repeat would be before anything was executed.
+    if (rst_i) {made_o, refused_o, read_o} <= '0;
+  end
+endmodule
+`default_nettype wire

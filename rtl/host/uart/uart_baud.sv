@@ -1,0 +1,65 @@
+// The baud rate, measured after a break and only then: a break is a line that is low for 2^BreakBits clocks, and the byte
+// 55 (hexadecimal) that follows it has its first and its fifth falling edge 8 bits apart.
+`default_nettype none
+module uart_baud #(
+    parameter int BreakBits = 20  // 8 to 24
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic level_i,  // the line, synchronised
+    input wire logic fall_i,  // it is low, and was high a clock ago
+    output logic restart_o,  // event: a break
+    output logic known_o,  // the rate is; the line has been high since
+    output logic [19:0] period_o  // clocks of 8 bits, 64 or more
+);
+  localparam int IDLE = 0;
+  localparam int HIGH = 1;  // the end of the break
+  localparam int START = 2;  // the first edge
+  localparam int COUNT = 3;
+  localparam int SETTLE = 4;  // the stop bit
+
+  logic [          4:0] at_q;  // one-hot
+  logic [BreakBits-1:0] low_q;
+  logic                 full_q;  // low since 2^BreakBits clocks
+  logic [          2:0] edges_q;  // 4 at the fifth
+  logic                 ends;
+  logic                 fails;
+
+  assign ends  = edges_q[2];
+  // 2^20 clocks are more than the counter has, 64 less than a byte can be taken in.
+  assign fails = &period_o || (ends && period_o[19:6] == 14'd0);
+
+  always_ff @(posedge clk_i) begin
+    low_q <= level_i || full_q ? '0 : low_q + 1'b1;
+    full_q <= !level_i && (full_q || &low_q);
+    restart_o <= !level_i && !full_q && &low_q;
+    if (rst_i) begin
+      low_q <= '0;
+      full_q <= 1'b0;
+      restart_o <= 1'b0;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin
+    at_q[IDLE]   <= at_q[IDLE] || (at_q[COUNT] && fails) || (at_q[SETTLE] && level_i);
+    at_q[HIGH]   <= at_q[HIGH] && !level_i;
+    at_q[START]  <= (at_q[HIGH] && level_i) || (at_q[START] && !fall_i);
+    at_q[COUNT]  <= (at_q[START] && fall_i) || (at_q[COUNT] && !ends && !fails);
+    at_q[SETTLE] <= (at_q[COUNT] && ends && !fails) || (at_q[SETTLE] && !level_i);
+    if (at_q[START]) {edges_q, period_o} <= '0;
+    if (at_q[COUNT] && !ends) begin
+      period_o <= period_o + 20'd1;
+      edges_q  <= edges_q + 3'(fall_i);
+    end
+    if (at_q[SETTLE] && level_i) known_o <= 1'b1;
+    if (restart_o) begin
+      at_q <= 5'(1) << HIGH;
+      known_o <= 1'b0;
+    end
+    if (rst_i) begin
+      at_q <= 5'(1) << IDLE;
+      known_o <= 1'b0;
+    end
+  end
+endmodule
+`default_nettype wire

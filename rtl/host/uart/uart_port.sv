@@ -1,0 +1,69 @@
+// A serial line: bytes to and from the frame engine. Until a break and the byte after it have told the baud rate nothing is
+// taken, and the line out is high.
+`default_nettype none
+module uart_port #(
+    parameter int BreakBits = 20  // a break is 2^BreakBits clocks long: 8 to 24
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    // pins
+    input wire logic rx_i,
+    output logic tx_o,
+    // to the frame engine
+    output logic restart_o,  // event: a break
+    output logic [8:0] byte_o,  // {event, byte}
+    input wire logic valid_i,
+    input wire logic [7:0] byte_i,
+    output logic ready_o  // combinational from registers
+);
+  if (BreakBits < 8 || BreakBits > 24) begin : gen_wrong_break
+    ERROR_BreakBits_must_be_8_to_24 error ();
+  end
+
+  // Marked, so that tools place the two side by side and know that the first one's data has no timing.
+  (* async_reg = "true" *)logic rx_first_q;
+  (* async_reg = "true" *)logic rx_second_q;
+  logic before_q;
+  logic fall;
+
+  always_ff @(posedge clk_i) begin
+    rx_first_q <= rx_i;
+    rx_second_q <= rx_first_q;
+    before_q <= rx_second_q;
+    if (rst_i) begin
+      rx_first_q <= 1'b1;
+      rx_second_q <= 1'b1;
+      before_q <= 1'b1;
+    end
+  end
+
+  assign fall = before_q && !rx_second_q;
+
+  logic        known;
+  logic [19:0] period;
+
+  uart_baud #(
+      .BreakBits(BreakBits)
+  ) baud (
+      .*,
+      .level_i (rx_second_q),
+      .fall_i  (fall),
+      .known_o (known),
+      .period_o(period)
+  );
+
+  uart_receiver receiver (
+      .*,
+      .level_i (rx_second_q),
+      .fall_i  (fall),
+      .known_i (known),
+      .period_i(period)
+  );
+
+  uart_transmitter transmitter (
+      .*,
+      .known_i (known),
+      .period_i(period)
+  );
+endmodule
+`default_nettype wire

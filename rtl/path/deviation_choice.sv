@@ -1,0 +1,80 @@
+// Which way the deviation accumulator steps next, renewed at rest and held while the step is made. Pairs are {y, x}.
+//
+// One axis moves inward, towards its zero, the other outward. In 4 directions the one steps on and outside the curve, the
+// other inside it. In 8 the inward axis rests where F lies nearer to 0 after the outward step alone, the outward one
+// where it does after the inward step alone: F with both lies between, so signs of sums say it (deviation_compare).
+// Outside the curve and where its gradient is the larger the outward axis never steps alone (docs/decisions/0003).
+`default_nettype none
+
+module deviation_choice #(
+    parameter int EightDirections = 0  // 1: built in
+) (
+    input  wire logic       clk_i,
+    input  wire logic       rest_i,       // all inputs are of the present point
+    input  wire logic [1:0] rule_i,       // {8 directions, clockwise}, the path's
+    input  wire logic       inside_i,     // F is negative
+    input  wire logic [1:0] gradient_i,   // signs of GX and GY
+    input  wire logic       compare_i,    // both axes are tried next: which way, these say:
+    input  wire logic [1:0] next_i,       // signs of GX and GY as the step leaves them
+    input  wire logic [1:0] sides_i,      // the sum of F with the axis's step and with both is negative
+    input  wire logic       last_i,       // no quadrants left
+    input  wire logic [3:0] left_i,       // {signs of the displacements that are left, whether there is none}
+    input  wire logic       finishing_i,
+    output logic            finish_o,     // straight to the end (combinational, at rest)
+    output logic      [1:0] take_o,
+    output logic      [1:0] negative_o,   // in 4 directions alone: both of the axis that steps
+    output logic      [1:0] old_sign_o    // of the gradients before the step
+);
+  logic eight, clockwise;
+  logic [1:0] arrived, left;
+  assign {eight, clockwise} = rule_i;
+  assign {left, arrived} = left_i;
+  logic [1:0] ahead, reached, tabled, least, choice;
+  logic inward_x;
+
+  // Directions on the curve, by the 16-entry table.
+  function automatic logic [1:0] heading(input logic backwards, input logic [1:0] signs);
+    heading = {backwards ^ signs[0], backwards ^ ~signs[1]};
+  endfunction
+
+  assign ahead = heading(clockwise, gradient_i);
+  assign inward_x = ahead[0] ^ gradient_i[0];
+  assign tabled = {~(inward_x ^ inside_i), inward_x ^ inside_i};
+  assign least = inward_x ? {sides_i[0], ~&sides_i} : {~&sides_i, sides_i[1]};
+  assign reached = arrived | (left ^ ahead);
+  assign finish_o = finishing_i | (last_i & (|reached));
+  assign choice = finish_o ? {~arrived[1] & (eight | arrived[0]), ~arrived[0]} : eight ? least : tabled;
+
+  if (EightDirections != 0) begin : gen_eight_directions
+    always_ff @(posedge clk_i) begin
+      if (rest_i) begin
+        take_o <= choice;
+        negative_o <= finish_o ? left : ahead;
+        old_sign_o <= gradient_i;
+      end
+      if (compare_i) begin
+        take_o <= 2'b11;
+        negative_o <= heading(clockwise, next_i);
+      end
+    end
+  end else begin : gen_four_directions
+    logic take_x_q, negative_q, old_sign_q;
+
+    always_ff @(posedge clk_i) begin
+      if (rest_i) begin
+        take_x_q   <= choice[0];
+        negative_q <= finish_o ? (choice[0] ? left[0] : left[1]) : (choice[0] ? ahead[0] : ahead[1]);
+        old_sign_q <= choice[0] ? gradient_i[0] : gradient_i[1];
+      end
+    end
+
+    assign take_o = {~take_x_q, take_x_q};
+    assign negative_o = {2{negative_q}};
+    assign old_sign_o = {2{old_sign_q}};
+
+    logic unused;
+    assign unused = &{1'b0, compare_i, next_i, choice[1]};
+  end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,95 @@
+// The deviation accumulator's adders: words of F, gradients, half second differences and displacements in, what a step
+// makes of them out. In 4 directions one lane serves both axes; where 8 are built in, y has its own. Pairs are {y, x},
+// their words too. Phases: those of the lanes; F comes back in phases 3..7, after both steps in 4..8.
+`default_nettype none
+
+module deviation_steps #(
+    parameter int EightDirections = 0  // 1: built in
+) (
+    input  wire logic         clk_i,
+    input  wire logic         run_i,
+    input  wire logic [  2:0] phase_i,
+    input  wire logic         eight_i,     // the path's step rule
+    input  wire logic [  1:0] take_i,
+    input  wire logic [  1:0] negative_i,
+    input  wire logic [111:0] words_i,     // {displacements, halves, gradients, F}
+    output logic      [ 79:0] words_o,     // {displacements, gradients, F}
+    output logic      [  1:0] sides_o      // deviation_compare's
+);
+  // The first lane has x, and y in its place where y steps in 4 directions.
+  logic [15:0] change, after_first, deviation, gradient_x, gradient_y, left_x, left_y;
+  logic on_x, negative, skip, carry_q;
+  logic [16:0] after_sum;
+  logic [15:0] f;
+  logic [31:0] gradient, half, left;
+  assign {left, half, gradient, f} = words_i;
+  assign words_o = {left_y, left_x, gradient_y, gradient_x, deviation};
+  assign after_sum = {1'b0, f} + {1'b0, change} + {16'd0, carry_q};
+
+  deviation_lane first (
+      .*,
+      .phase_i   (phase_i[1:0]),
+      .skip_i    (skip),
+      .negative_i(negative),
+      .gradient_i(on_x ? gradient[15:0] : gradient[31:16]),
+      .half_i    (on_x ? half[15:0] : half[31:16]),
+      .left_i    (on_x ? left[15:0] : left[31:16]),
+      .change_o  (change),
+      .gradient_o(gradient_x),
+      .left_o    (left_x)
+  );
+
+  always_ff @(posedge clk_i) begin
+    if (run_i) begin
+      {carry_q, after_first} <= after_sum;
+      if (phase_i[1]) carry_q <= negative & ~skip;
+    end
+  end
+
+  if (EightDirections != 0) begin : gen_eight_directions
+    logic [15:0] change_y, after_both;
+
+    assign on_x = take_i[0] | eight_i;
+    assign negative = on_x ? negative_i[0] : negative_i[1];
+    assign skip = eight_i & ~take_i[0];
+
+    deviation_lane second (
+        .*,
+        .phase_i   (phase_i[1:0]),
+        .skip_i    (~take_i[1]),
+        .negative_i(negative_i[1]),
+        .gradient_i(gradient[31:16]),
+        .half_i    (half[31:16]),
+        .left_i    (left[31:16]),
+        .change_o  (change_y),
+        .gradient_o(gradient_y),
+        .left_o    (left_y)
+    );
+
+    deviation_compare compare (
+        .*,
+        .deviation_i (f),
+        .phase_i     (phase_i[2:1]),
+        .minus_i     (negative_i & take_i),
+        .change_x_i  (change),
+        .change_y_i  (change_y),
+        .after_x_i   (after_first),
+        .after_both_o(after_both)
+    );
+
+    assign deviation = eight_i ? after_both : after_first;
+  end else begin : gen_four_directions
+    assign on_x = take_i[0];
+    assign negative = negative_i[0];
+    assign skip = 1'b0;
+    assign gradient_y = gradient_x;
+    assign left_y = left_x;
+    assign deviation = after_first;
+    assign sides_o = 2'b00;
+
+    logic unused;
+    assign unused = &{1'b0, phase_i[2], eight_i, take_i[1], negative_i[1]};
+  end
+endmodule
+
+`default_nettype wire

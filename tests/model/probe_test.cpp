@@ -1,0 +1,339 @@
+// Probing and waiting for an input on the golden core, by what the page says of them.
+#include "trammel/model/probe.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core_bench.hpp"
+
+namespace trammel::testing {
+namespace {
+
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+using card_map::Area;
+
+constexpr std::uint64_t kWhole = ~std::uint64_t{0};  // a tick nearly every clock
+constexpr unsigned kHigh = 0x10;                     // of a condition: the level that trips
+
+// A card that probes along +X, a pulse in `ticks_a_pulse` ticks, a tick in four clocks; input 2 trips when it is high.
+class Probing : public CoreBench {
+ public:
+  static constexpr std::uint64_t kClocksATick = 4;
+
+  explicit Probing(std::uint32_t slew = 0xFFFFFFF) {
+    idle(300);
+    write(reg::kSlew, slew);
+  }
+  void start(std::uint64_t ticks, unsigned ticks_a_pulse) {
+    EXPECT_TRUE(probe(kHigh | 2));
+    EXPECT_TRUE(line(ticks, {kOnePulse / ticks_a_pulse}));
+    EXPECT_TRUE(feed(ticks, kWhole / kClocksATick));
+    EXPECT_TRUE(probe_end());
+  }
+  bool has(std::uint32_t bit) { return (core.outputs().status & bit) != 0; }
+  bool clear() { return write(reg::kControl, field::kControlProbeClear); }
+  // Pulses at the pins up to this cycle.
+  std::int64_t pulses_until(std::uint64_t cycle) const {
+    return std::count_if(steps.pins.begin(), steps.pins.end(),
+                         [cycle](const auto& pin) { return std::get<0>(pin) <= cycle; });
+  }
+  // Clocks until `bit` of STATUS is set.
+  std::uint64_t until(std::uint32_t bit, std::uint64_t limit) {
+    std::uint64_t clocks = 0;
+    for (; clocks < limit && !has(bit); ++clocks) idle(1);
+    return clocks;
+  }
+};
+
+TEST(Probe, TheEdgeLatchesPositionsAClockAfterItShows) {
+  for (std::uint64_t at = 0; at < 40; ++at) {
+    Probing card;
+    card.start(4000, 3);
+    card.idle(400 + at);
+    card.pins = 0b0100;
+    card.idle(1);
+    // Two flip-flops, and INPUTS shows it; the strobe is a clock later.
+    const std::uint64_t strobe = card.core.cycles() + 2;
+    card.idle(400);
+    EXPECT_TRUE(card.has(field::kStatusProbed));
+    EXPECT_EQ(card.read(reg::time_lo(Area::Probe)), strobe);
+    EXPECT_EQ(card.read(reg::position(Area::Probe, 0)), card.pulses_until(strobe)) << at;
+    EXPECT_GT(card.pulses_until(strobe), 10);
+    EXPECT_EQ(card.read(reg::geometry_begun(Area::Probe)), 1U);
+  }
+}
+
+// The ratio goes from 1 to 0 in 2^28 / SLEW updates of 4 clocks: ticks of half that time.
+TEST(Probe, TheStopIsARampAlongThePath) {
+  for (const std::uint32_t slew : {0x100000U, 0x20000U, 0x8000U}) {
+    const std::uint64_t ramp = 4 * (std::uint64_t{1} << 28) / slew;
+    Probing card(slew);
+    card.start(10 * ramp, 2);
+    card.idle(2000);
+    const std::uint64_t before = card.core.cycles();
+    card.pins = 0b0100;
+    card.until(field::kStatusHeld, 2 * ramp);
+    EXPECT_NEAR(static_cast<double>(card.core.cycles() - before), static_cast<double>(ramp), 16);
+    card.idle(100);
+    EXPECT_FALSE(card.has(field::kStatusPathActive | field::kStatusFeedActive));
+    const auto pulses = static_cast<double>(card.pulses_until(card.core.cycles()) - card.pulses_until(before));
+    // And those of about 16 clocks: on their way to the pins, and from the edge to the first slower ratio.
+    EXPECT_NEAR(pulses, static_cast<double>(ramp / 2 + 16) / 2 / Probing::kClocksATick, 2);
+    // Nothing follows, and the position is that of the pulses.
+    card.idle(5000);
+    EXPECT_EQ(card.core.position(0), card.pulses_until(card.core.cycles()));
+    EXPECT_EQ(card.core.position(0), card.pulses_until(before) + static_cast<std::int64_t>(pulses));
+    EXPECT_EQ(card.read(reg::kFault), 0U);
+  }
+}
+
+TEST(Probe, WhatIsQueuedUpToProbeEndIsDroppedAndCounted) {
+  Probing card;
+  EXPECT_TRUE(card.probe(kHigh | 2));
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(card.feed(280, kWhole / 64));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(card.line(300, {kOnePulse / 2}));
+    EXPECT_TRUE(card.output(1, 0));
+    EXPECT_TRUE(card.mark());
+  }
+  EXPECT_TRUE(card.circle(500, 4));
+  EXPECT_TRUE(card.dwell(10'000));
+  EXPECT_TRUE(card.probe(2));
+  EXPECT_TRUE(card.wait_input(kHigh | 3, 0));
+  EXPECT_TRUE(card.feed(10, kWhole));  // ticks without a path: no fault where it is dropped
+  EXPECT_TRUE(card.probe_end());
+  EXPECT_TRUE(card.line(100, {0, kOnePulse / 2}));
+  EXPECT_TRUE(card.feed(100, kWhole / 16));
+  EXPECT_TRUE(card.has(field::kStatusPathActive));
+  card.pins = 0b0100;
+  card.idle(3000);
+  EXPECT_TRUE(card.has(field::kStatusProbed));
+  EXPECT_TRUE(card.has(field::kStatusBusy));
+  // Lines, the arc, three barriers; six pieces and the barriers.
+  EXPECT_EQ(card.read(reg::kGeometryBegun), 3U + 1 + 3);
+  EXPECT_EQ(card.read(reg::kFeedBegun), 6U + 3);
+  EXPECT_EQ(card.read(reg::kOutputs), 0U);
+  EXPECT_EQ(card.read(reg::kMarks), 0U);
+  EXPECT_EQ(card.core.position(1), 0);
+  EXPECT_EQ(card.read(reg::kFault), 0U);
+  // What stands behind it goes on when the host has seen the edge.
+  EXPECT_TRUE(card.clear());
+  EXPECT_TRUE(card.finish(2000));
+  EXPECT_FALSE(card.has(field::kStatusProbed));
+  EXPECT_EQ(card.core.position(1), 50);
+  EXPECT_EQ(card.read(reg::kGeometryBegun), 8U);
+}
+
+TEST(Probe, AnInputThatIsTrippedAlreadyEndsItBeforeTheFirstStep) {
+  Probing card;
+  card.pins = 0b0100;
+  card.idle(3);
+  card.start(1000, 2);
+  card.idle(3000);
+  EXPECT_TRUE(card.has(field::kStatusProbed));
+  EXPECT_TRUE(card.steps.pins.empty());
+  EXPECT_EQ(card.read(reg::geometry_begun(Area::Probe)), 0U);
+  EXPECT_EQ(card.read(reg::kGeometryBegun), 2U);
+  EXPECT_TRUE(card.clear());
+  EXPECT_TRUE(card.finish(100));
+  EXPECT_TRUE(card.steps.path.empty());
+}
+
+// 8 clocks without a path, counted from the first one in which the PROBE is decoded.
+TEST(Probe, ItIsArmedWhenThePathBeforeItHasEnded) {
+  Probing card;
+  ASSERT_TRUE(card.line(200, {kOnePulse / 2}));
+  ASSERT_TRUE(card.feed(200, kWhole / 16));
+  card.write(reg::kHold, 1);
+  card.start(400, 2);
+  card.pins = 0b0100;
+  card.idle(20);
+  card.write(reg::kHold, 0);
+  // While the first path runs the input is not looked at.
+  std::uint64_t last = 0;
+  for (int i = 0; i < 5000 && !card.has(field::kStatusProbed); ++i) {
+    card.idle(1);
+    if (card.core.outputs().tick) last = card.core.cycles();
+  }
+  EXPECT_EQ(card.core.cycles(), last + model::Probe::kSettle);
+  EXPECT_EQ(card.steps.path.size(), 100U);
+}
+
+TEST(Probe, WithoutAnEdgeProbeEndSaysSo) {
+  Probing card;
+  card.start(100, 2);
+  EXPECT_TRUE(card.finish(3000));
+  EXPECT_TRUE(card.has(field::kStatusProbeMissed));
+  EXPECT_FALSE(card.has(field::kStatusProbed));
+  EXPECT_EQ(card.core.position(0), 50);
+  card.pins = 0b0100;  // too late
+  card.idle(100);
+  EXPECT_FALSE(card.has(field::kStatusProbed));
+  EXPECT_TRUE(card.clear());
+  card.idle(2);
+  EXPECT_FALSE(card.has(field::kStatusProbeMissed));
+  card.pins = 0;
+  card.idle(3);
+  card.start(100, 2);
+  EXPECT_TRUE(card.finish(3000));
+  EXPECT_TRUE(card.has(field::kStatusProbeMissed));
+  // The next PROBE takes it back as it is armed.
+  card.start(4000, 2);
+  card.idle(200);
+  EXPECT_FALSE(card.has(field::kStatusProbeMissed));
+  // A PROBE_END without a PROBE is a barrier like any other.
+  EXPECT_TRUE(card.finish(30'000));
+  EXPECT_TRUE(card.clear());
+  EXPECT_TRUE(card.probe_end());
+  EXPECT_TRUE(card.finish(100));
+  EXPECT_FALSE(card.has(field::kStatusProbeMissed));
+}
+
+TEST(Probe, ASecondProbeTakesTheFirstOnesPlace) {
+  Probing card;
+  EXPECT_TRUE(card.probe(kHigh | 2));
+  EXPECT_TRUE(card.line(100, {kOnePulse / 2}));
+  EXPECT_TRUE(card.probe(kHigh | 1));
+  EXPECT_TRUE(card.line(2000, {kOnePulse / 2}));
+  EXPECT_TRUE(card.feed(2100, kWhole / 4));
+  EXPECT_TRUE(card.probe_end());
+  card.idle(1500);
+  card.pins = 0b0100;
+  card.idle(100);
+  EXPECT_FALSE(card.has(field::kStatusProbed));
+  card.pins = 0b0010;
+  card.idle(10);
+  EXPECT_TRUE(card.has(field::kStatusProbed));
+}
+
+TEST(Probe, AnAbortEndsItInEveryStateAndTheEdgeStaysKnown) {
+  for (unsigned state = 0; state < 4; ++state) {
+    Probing card(state == 2 ? 0x1000 : 0xFFFFFFF);
+    if (state == 0) {  // the PROBE waits behind a path
+      ASSERT_TRUE(card.line(100'000, {kOnePulse / 4}));
+      ASSERT_TRUE(card.feed(100'000, kWhole / 4));
+    }
+    card.start(100'000, 2);
+    card.idle(500);
+    if (state > 1) card.pins = 0b0100;
+    card.idle(200);
+    EXPECT_EQ(card.has(field::kStatusProbed), state > 1);
+    EXPECT_EQ(card.has(field::kStatusPathActive), state < 3) << state;
+    card.write(reg::kControl, field::kControlAbort);
+    EXPECT_TRUE(card.finish(100)) << state;
+    EXPECT_EQ(card.has(field::kStatusProbed), state > 1);
+    // Off: an edge does nothing, and what comes now runs.
+    card.pins = state > 1 ? 0 : 0b0100;
+    card.idle(20);
+    card.number = 0;
+    const auto from = card.core.position(0);
+    ASSERT_TRUE(card.line(100, {kOnePulse / 2}));
+    ASSERT_TRUE(card.feed(100, kWhole / 16));
+    EXPECT_TRUE(card.finish(400'000)) << state;
+    EXPECT_EQ(card.core.position(0), from + 50) << state;
+    EXPECT_EQ(card.has(field::kStatusProbed), state > 1);
+    EXPECT_TRUE(card.clear());
+    card.idle(2);
+    EXPECT_FALSE(card.has(field::kStatusProbed));
+  }
+}
+
+// A hold of the host waits for the end of a fixed piece; the probe's does not.
+TEST(Probe, FixedPiecesStopToo) {
+  Probing card;
+  EXPECT_TRUE(card.probe(kHigh | 2));
+  EXPECT_TRUE(card.line(50'000, {kOnePulse / 4}));
+  EXPECT_TRUE(card.feed(50'000, kWhole / 4, 0, 0, 1, card_map::constant::kClassFixed));
+  EXPECT_TRUE(card.probe_end());
+  card.idle(500);
+  card.pins = 0b0100;
+  card.idle(100);
+  EXPECT_TRUE(card.has(field::kStatusProbed));
+  EXPECT_FALSE(card.has(field::kStatusPathActive));
+}
+
+// What is dropped is not counted off. Nothing is held for under-run until nothing was queued once, and then again.
+TEST(Probe, TheUnderrunHoldForgetsWhatIsDropped) {
+  Probing card;
+  const auto starve = [&card] {
+    ASSERT_TRUE(card.line(3000, {kOnePulse / 8}));
+    ASSERT_TRUE(card.send(command_words(card_map::Opcode::Feed, 0, card.number++, 3000,
+                                        {{"rate", kWhole / 4}, {"floor", 1}, {"stop_distance", 100}})));
+    card.idle(20'000);
+  };
+  EXPECT_TRUE(card.probe(kHigh | 2));
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(card.line(100'000, {kOnePulse / 8}));
+  ASSERT_TRUE(card.feed(400'000, kWhole / 4));
+  ASSERT_TRUE(card.probe_end());
+  card.idle(500);
+  card.pins = 0b0100;
+  card.idle(400);
+  starve();  // behind PROBE_END
+  EXPECT_TRUE(card.clear());
+  card.idle(20'000);
+  EXPECT_EQ(card.read(reg::kUnderruns), 0U);
+  EXPECT_FALSE(card.has(field::kStatusBusy));
+  starve();
+  EXPECT_EQ(card.read(reg::kUnderruns), 1U);
+  EXPECT_TRUE(card.has(field::kStatusUnderrun));
+}
+
+// While a fault stops the card on a ramp no edge is taken, nor a PROBE: the STOP area's snapshot stays whole.
+TEST(Probe, AFaultsRampTakesNoEdge) {
+  Probing card(0x4000);
+  ASSERT_TRUE(card.write(reg::kStopReaction, 1));
+  ASSERT_TRUE(card.write(reg::kHoldLimit, 50));
+  ASSERT_TRUE(card.write(reg::step_length(0), 400));
+  card.start(100'000, 20);  // a pulse in 80 clocks: too fast
+  card.until(field::kStatusStopping, 100'000);
+  EXPECT_TRUE(card.has(field::kStatusStopping));
+  const std::uint64_t stopped = card.core.cycles();
+  card.pins = 0b0100;
+  card.idle(200'000);
+  EXPECT_FALSE(card.has(field::kStatusProbed));
+  EXPECT_FALSE(card.has(field::kStatusPathActive));
+  EXPECT_NEAR(card.read(reg::time_lo(Area::Stop)), static_cast<double>(stopped), 3);
+  EXPECT_EQ(card.read(reg::time_lo(Area::Probe)), 0U);
+}
+
+TEST(WaitInput, EndsWithItsLevelOrItsTime) {
+  for (const std::uint64_t count : {1U, 2U, 50U, 1000U}) {
+    CoreBench card;
+    card.idle(300);
+    ASSERT_TRUE(card.wait_input(kHigh | 3, count));
+    std::uint64_t waiting = 0;
+    for (int i = 0; i < 1200; ++i) {
+      card.idle(1);
+      waiting += (card.core.outputs().status & field::kStatusWaiting) != 0 ? 1U : 0U;
+    }
+    EXPECT_EQ(waiting, count);
+    EXPECT_EQ(card.core.outputs().status & (field::kStatusBusy | field::kStatusFaulted), 0U);
+    EXPECT_EQ(card.read(reg::kGeometryBegun), 1U);
+    EXPECT_EQ(card.read(reg::kFeedBegun), 1U);
+  }
+  CoreBench card;
+  card.idle(300);
+  // Without a time-out: for as long as it takes, and what is behind it waits with it.
+  ASSERT_TRUE(card.wait_input(1, 0));
+  card.pins = 0b0010;
+  ASSERT_TRUE(card.line(100, {kOnePulse / 2}));
+  ASSERT_TRUE(card.feed(100, kWhole / 16));
+  card.idle(100'000);
+  EXPECT_NE(card.core.outputs().status & field::kStatusWaiting, 0U);
+  EXPECT_EQ(card.core.position(0), 0);
+  card.pins = 0;
+  card.idle(2);
+  EXPECT_NE(card.core.outputs().status & field::kStatusWaiting, 0U);
+  card.idle(1);
+  EXPECT_EQ(card.core.outputs().status & field::kStatusWaiting, 0U);
+  EXPECT_TRUE(card.finish(3000));
+  EXPECT_EQ(card.core.position(0), 50);
+  // The input has its level already: one clock.
+  ASSERT_TRUE(card.wait_input(1, 0));
+  EXPECT_TRUE(card.finish(100));
+}
+
+}  // namespace
+}  // namespace trammel::testing

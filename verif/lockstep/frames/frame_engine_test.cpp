@@ -1,0 +1,138 @@
+// Lockstep of the frame engine: requests of every kind, damaged ones and noise, with a port that takes replies and an
+// inner port that answers at random; new connections and resets at any clock.
+#include "trammel/model/frame_engine.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "byte_ports.hpp"
+#include "trammel/sim/lockstep.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+using model::FrameEngine;
+
+constexpr std::uint64_t kComparedSignals = 2;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed) : check_("frame_engine", seed), dice_(seed), source_(dice_) { reset(); }
+
+  // `gap`: clocks from byte to byte; `pace`: how often the port takes a byte; `delay`: the most that an answer takes.
+  void random_clock(unsigned gap, unsigned pace, unsigned delay) {
+    const FrameEngine::Outputs& out = model_.outputs();
+    if (dice_.chance(20000)) return reset();
+    in_.restart = dice_.chance(5000);
+    if (in_.restart) check_.event("restart");
+    in_.byte_valid = ++since_byte_ >= gap && (listening() || dice_.chance(200));
+    if (in_.byte_valid) {
+      since_byte_ = 0;
+      in_.byte = source_.next(model_.session().last(), model_.session().epoch());
+      check_.event("byte", in_.byte);
+    }
+    in_.ready = dice_.chance(pace);
+    replies_ += out.valid && in_.ready && out.byte == frames::kEnd ? 1U : 0U;
+    if (out.request) {
+      ++requests_;
+      inner_.ask(1 + dice_.below(delay), dice_.chance(30), dice_.draw());
+    }
+    const InnerPort::Answer answer = inner_.now();
+    in_.ack = answer.ack;
+    in_.error = answer.ack ? answer.error : dice_.chance(2);
+    in_.data = answer.ack ? answer.data : dice_.draw();
+    drive();
+    dut_.clock();
+    model_.clock(in_);
+    check_.next_cycle();
+    compare();
+  }
+
+  Checker& check() { return check_; }
+  std::uint64_t requests() const { return requests_; }
+  std::uint64_t replies() const { return replies_; }
+  std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
+
+ private:
+  bool listening() const { return model_.listening(); }
+
+  // One clock, whatever else comes in it.
+  void reset() {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    drive();
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_.reset();
+    inner_.clear();
+    source_.clear();
+    in_ = {};
+    since_byte_ = 0;
+  }
+
+  void drive() {
+    dut_->restart_i = in_.restart;
+    dut_->byte_i = static_cast<SData>(unsigned{in_.byte_valid} << 8 | in_.byte);
+    dut_->ready_i = in_.ready;
+    dut_->ack_i = in_.ack;
+    dut_->error_i = in_.error;
+    dut_->data_i = in_.data;
+  }
+
+  void compare() {
+    const FrameEngine::Outputs& out = model_.outputs();
+    check_.compare("valid_o", dut_->valid_o, out.valid);
+    check_.compare("request_o", dut_->access_o >> 47, out.request);
+    if (out.valid) {
+      check_.compare("byte_o", dut_->byte_o, out.byte);
+      ++more_;
+    }
+    // The access stands from its request to the answer; what no write needs may be anything.
+    if (!out.request && !inner_.open()) return;
+    check_.compare("access_o, without data", dut_->access_o >> 32 & 0x7FFF,
+                   std::uint64_t{out.write} << 14 | out.address);
+    ++more_;
+    if (!out.write) return;
+    check_.compare("access_o, data", dut_->access_o & 0xFFFFFFFF, out.data);
+    ++more_;
+  }
+
+  Simulated<Vdut> dut_;
+  Checker check_;
+  Dice dice_;
+  FrameEngine model_;
+  FrameEngine::Inputs in_;
+  InnerPort inner_;
+  FrameSource source_;
+  unsigned since_byte_ = 0;
+  std::uint64_t requests_ = 0;
+  std::uint64_t replies_ = 0;
+  std::uint64_t more_ = 0;
+};
+
+void random_traffic() {
+  const std::uint64_t seed = seed_from_environment(20261122);
+  Bench bench(seed);
+  Dice dice(seed);
+  const std::uint64_t length = scaled(6'000'000);
+  unsigned gap = 10;
+  unsigned pace = 1;
+  unsigned delay = 1;
+  for (std::uint64_t i = 0; i < length; ++i) {
+    if (i % 5000 == 0) {
+      gap = 10 + (dice.chance(2) ? 0 : dice.below(30));
+      pace = 1 + dice.below(6);
+      delay = 1 + dice.below(20);
+    }
+    bench.random_clock(gap, pace, delay);
+  }
+  EXPECT_GT(bench.check().cycles(), length * 99 / 100);
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+  EXPECT_GT(bench.requests(), length / 250);
+  EXPECT_GT(bench.replies(), length / 2500);
+}
+
+TEST(FrameEngine, RandomTraffic) { EXPECT_EQ(judge(random_traffic), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

@@ -1,0 +1,38 @@
+// The SPI port with its frame engine: pins to inner port.
+`default_nettype none
+module spi_frames (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic sck_i,
+    input wire logic cs_n_i,
+    input wire logic mosi_i,
+    output logic miso_o,
+    output logic miso_enable_o,
+    output logic [47:0] access_o,
+    input wire logic ack_i,
+    input wire logic error_i,
+    input wire logic [31:0] data_i
+);
+  logic [8:0] received;
+  logic       valid;
+  logic [7:0] sent;
+  logic       ready;
+
+  spi_port port (
+      .*,
+      .byte_o (received),
+      .valid_i(valid),
+      .byte_i (sent),
+      .ready_o(ready)
+  );
+
+  frame_engine engine (
+      .*,
+      .restart_i(1'b0),
+      .byte_i(received),
+      .valid_o(valid),
+      .byte_o(sent),
+      .ready_i(ready)
+  );
+endmodule
+`default_nettype wire

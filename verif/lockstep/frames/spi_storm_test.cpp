@@ -1,0 +1,113 @@
+// SPI port and frame engine behind a bad link, at the pins: SCK at a quarter of the clock and slower, modes 0 and 3,
+// exchanges cut within a byte; every access is judged by what the host has sent.
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "byte_ports.hpp"
+#include "frame_storm.hpp"
+#include "spi_master.hpp"
+#include "trammel/sim/lockstep.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+using test::FrameStorm;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed)
+      : dice_(seed),
+        storm_(
+            seed, [this](const frames::Bytes& bytes) { return bring(bytes); }, {}, 20) {
+    dut_->rst_i = 1;
+    dut_->cs_n_i = 1;
+    dut_.clock();
+    dut_->rst_i = 0;
+  }
+
+  void run(std::uint64_t frames) {
+    try {
+      storm_.run(frames);
+    } catch (const std::logic_error& error) {
+      throw Mismatch(error.what());
+    }
+  }
+  const FrameStorm::Counts& counts() const { return storm_.counts(); }
+
+ private:
+  // The request in one exchange or in two; the reply in those after it, until nothing but ends comes.
+  frames::Bytes bring(const frames::Bytes& bytes) {
+    const unsigned mode = dice_.chance(2) ? 0 : 3;
+    master_.set(mode, 4 + (dice_.chance(2) ? 0 : dice_.below(60) / 10.0));
+    if (dice_.chance(10)) exchange({static_cast<std::uint8_t>(dice_.below(256))}, 1 + dice_.below(7));
+    const std::size_t first = dice_.chance(4) ? dice_.below(static_cast<std::uint32_t>(bytes.size() + 1)) : 0;
+    const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(first);
+    if (first != 0) exchange(frames::Bytes(bytes.begin(), middle));
+    if (first != bytes.size()) exchange(frames::Bytes(middle, bytes.end()));
+    frames::Bytes reply;
+    unsigned exchanges = 0;
+    for (unsigned silent = 0; silent < 2;) {
+      if (++exchanges == 100) throw std::logic_error("a card that never falls silent");
+      const frames::Bytes& came = exchange(frames::Bytes(24 + dice_.below(20), frames::kEnd));
+      const bool ends = std::count(came.begin(), came.end(), frames::kEnd) == static_cast<std::ptrdiff_t>(came.size());
+      silent = ends && !at_work_ ? silent + 1 : 0;
+      // An end that follows another only fills.
+      for (const std::uint8_t byte : came) {
+        if (byte != frames::kEnd || (!reply.empty() && reply.back() != frames::kEnd)) reply.push_back(byte);
+      }
+      at_work_ = false;
+    }
+    return reply;
+  }
+  const frames::Bytes& exchange(const frames::Bytes& bytes, unsigned bits = 8) {
+    master_.exchange(bytes, bits);
+    while (master_.busy()) clock();
+    return master_.received();
+  }
+
+  void clock() {
+    const model::SpiPort::Pins pins = master_.next(dut_->miso_o != 0);
+    dut_->sck_i = pins.sck;
+    dut_->cs_n_i = pins.cs_n;
+    dut_->mosi_i = pins.mosi;
+    if (dut_->access_o >> 47 != 0) {
+      at_work_ = true;
+      const FrameStorm::Answer answer =
+          storm_.access((dut_->access_o >> 46 & 1) != 0, static_cast<std::uint32_t>(dut_->access_o >> 32 & 0xFFF),
+                        static_cast<std::uint32_t>(dut_->access_o));
+      inner_.ask(1 + dice_.below(8), answer.refused, answer.data);
+    }
+    const InnerPort::Answer answer = inner_.now();
+    dut_->ack_i = answer.ack;
+    dut_->error_i = answer.error;
+    dut_->data_i = answer.data;
+    dut_.clock();
+  }
+
+  Simulated<Vdut> dut_;
+  Dice dice_;
+  SpiMaster master_;
+  InnerPort inner_;
+  bool at_work_ = false;
+  FrameStorm storm_;
+};
+
+TEST(SpiStorm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
+  const std::uint64_t seed = seed_from_environment(8);
+  const std::uint64_t frames = std::min<std::uint64_t>(scaled(10'000), 100'000);
+  EXPECT_EQ(judge([&] {
+              Bench bench(seed);
+              bench.run(frames);
+              EXPECT_GE(bench.counts().frames, frames);
+              EXPECT_GT(bench.counts().requests, frames / 4);
+              EXPECT_GT(bench.counts().damaged, frames / 4);
+              EXPECT_GE(bench.counts().connections, 1 + frames / 20'000);
+            }),
+            "");
+}
+
+}  // namespace
+}  // namespace trammel::lockstep
