@@ -385,4 +385,41 @@ TEST_P(BadInput, OverflowsOfTheArcEnginesEndAndAreCounted) {
   }
 }
 
+// Nothing behind it begins; the edge is latched where the card stands, and what comes behind PROBE_END runs when it is
+// cleared. Inputs are as they were at the pins: input 2 high.
+TEST_P(BadInput, AProbeThatIsTrippedAlreadyMovesNothing) {
+  Bench bench(GetParam());
+  bench.engine->set_inputs(1U << 2);
+  bench.engine->wait(10);
+  bench.host.send(driver::ProbeCommand{2, true});
+  bench.host.send(line(100, 40));
+  bench.host.send(feed(100));
+  bench.host.send(driver::ProbeEndCommand{});
+  bench.engine->wait(60'000);
+  EXPECT_EQ(bench.engine->read(reg::kFault), 0U);
+  EXPECT_NE(bench.engine->read(reg::kStatus) & field::kStatusProbed, 0U);
+  EXPECT_EQ(bench.engine->positions()[0], kPulses) << "nothing has moved";
+  using card_map::Area;
+  EXPECT_EQ(bench.engine->read(reg::position(Area::Probe, 0)), static_cast<std::uint32_t>(kPulses));
+  EXPECT_EQ(bench.engine->read(reg::geometry_begun(Area::Probe)), 2U) << "the path and the end before it";
+  bench.engine->write(reg::kControl, field::kControlProbeClear);
+  bench.host.send(line(50, kPulses));
+  bench.host.send(feed(50));
+  EXPECT_TRUE(bench.host.wait_idle(100'000));
+  EXPECT_EQ(bench.engine->positions()[0], 2 * kPulses) << "what stands behind PROBE_END runs";
+  EXPECT_EQ(bench.engine->read(reg::kStatus) & field::kStatusProbed, 0U);
+  expect_usable(bench);
+  // With the input low it is armed, and its path runs to the end without an edge.
+  bench.engine->set_inputs(0);
+  bench.engine->wait(10);
+  const std::int64_t here = bench.engine->positions()[0];
+  bench.host.send(driver::ProbeCommand{2, true});
+  bench.host.send(line(100, 40));
+  bench.host.send(feed(100));
+  bench.host.send(driver::ProbeEndCommand{});
+  EXPECT_TRUE(bench.host.wait_idle(100'000));
+  EXPECT_EQ(bench.engine->positions()[0], here + 40);
+  EXPECT_NE(bench.engine->read(reg::kStatus) & field::kStatusProbeMissed, 0U);
+}
+
 }  // namespace
