@@ -17,6 +17,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/one_shot.hpp"
+#include "trammel/run/plot.hpp"
 #include "trammel/run/step_recorder.hpp"
 #include "waveform.hpp"
 
@@ -37,6 +38,7 @@ struct Options {
   EngineChoice engine;
   std::optional<std::string> json;
   std::optional<std::string> steps;
+  std::optional<std::string> plot;
 };
 
 std::vector<std::int64_t> displacement_of(const Options& options) {
@@ -92,7 +94,32 @@ struct Result {
   std::uint64_t comparisons = 0;
   double largest_line_deviation = 0;
   double largest_arc_deviation = 0;
+  run::Plot plot;  // filled when asked for
 };
+
+run::Point point_of(const std::vector<std::int64_t>& pulses, double share) {
+  run::Point point{};
+  for (std::size_t a = 0; a < std::min(point.size(), pulses.size()); ++a) {
+    point[a] = share * static_cast<double>(pulses[a]);
+  }
+  return point;
+}
+
+// The line from its start at (0,0), in pulses, and the beginning of it at most as long as the recorder magnifies.
+run::Plot plot_of(const std::vector<std::int64_t>& pulses, const run::StepRecorder& recorder) {
+  double longest = 1;
+  for (const std::int64_t p : pulses) longest = std::max(longest, std::fabs(static_cast<double>(p)));
+  const double stretch = std::min(1.0, static_cast<double>(run::StepRecorder::kDetailPoints) / longest);
+  const run::Point start{};
+  return {fmt::format("line to {}", fmt::join(pulses, ", ")),
+          "pulses",
+          {{start, false}, {point_of(pulses, 1), false}},
+          recorder.executed(),
+          recorder.thinned(),
+          {start, point_of(pulses, stretch)},
+          recorder.detail(),
+          recorder.speed()};
+}
 
 driver::OneShotPlan plan_of(const Options& options, const driver::CardTiming& timing,
                             const std::vector<std::int64_t>& pulses) {
@@ -125,11 +152,13 @@ Result make_line(const Options& options, const sim::SimulationOptions& engine_op
   run::StepRecorder::Options recording;
   recording.steps = steps;
   recording.clock_hz = engine_options.clock_hz;
+  recording.plot = options.plot.has_value();
   recording.steps_per_mm.assign(engine_options.axes, 1.0);
   run::StepRecorder recorder(recording);
   driver::Card card = driver::Card::open(*engine);
   const driver::OneShotPlan plan = plan_of(options, card.timing(), result.pulses);
   recorder.command(0, as_command(plan, result.pulses));
+  recorder.detail_of(0);
   engine->set_sink(&recorder);
   driver::run_line(card, plan);
   const driver::Snapshot snapshot = card.snapshot();
@@ -143,6 +172,7 @@ Result make_line(const Options& options, const sim::SimulationOptions& engine_op
           fmt::format("axis {}: ended at pulse {}, asked for {}", a, result.final[a], result.pulses[a]));
     }
   }
+  if (options.plot) result.plot = plot_of(result.pulses, recorder);
   result.steps = recorder.steps();
   result.line_clocks = plan.clocks();
   result.parts = plan.size();
@@ -191,6 +221,7 @@ void execute(const Options& options) {
   Output* const json = outputs.add("--json", options.json);
   Output* const steps = outputs.add("--steps", options.steps);
   Output* const trace = outputs.add("--trace", options.engine.trace, true);
+  Output* const plot = outputs.add("--plot", options.plot);
   outputs.check();
   // A card of 4 or of 8 axes, so that the results do not depend on whether it is traced.
   const auto axes = traced_axes(static_cast<unsigned>(displacement_of(options).size()));
@@ -200,6 +231,7 @@ void execute(const Options& options) {
   const Result result = make_line(options, engine, steps);
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
   if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
+  if (plot != nullptr) plot->write(run::svg(result.plot));
   outputs.commit(summary(result));
 }
 
@@ -227,6 +259,7 @@ void add_line_command(CLI::App& app) {
   command->add_flag("--slow", options->slow, "slow down to keep a limit instead of refusing");
   options->engine.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
+  command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
   command->callback([options] { execute(*options); });

@@ -175,8 +175,10 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   result.clock_hz = card.identification().clock_hz;
   result.profile = profile_of(machine, options.settings);
   if (options.plot) {
-    result.plot = {result.program,  course.points(),   recorder.executed(), recorder.thinned(),
-                   course.detail(), recorder.detail(), recorder.speed()};
+    result.plot = {result.program,     "mm",
+                   course.points(),    recorder.executed(),
+                   recorder.thinned(), course.detail(),
+                   recorder.detail(),  recorder.speed()};
   }
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return result;

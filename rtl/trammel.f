@@ -12,6 +12,7 @@ axis/wait_timer.sv
 axis/waiting_steps.sv
 card/busy_timer.sv
 card/card_core.sv
+card/card_with_ports.sv
 card/motion_core.sv
 card/path_to_pins.sv
 card/trammel_card.sv
@@ -31,9 +32,12 @@ host/frames/frame_executor.sv
 host/frames/frame_receiver.sv
 host/frames/frame_sender.sv
 host/frames/frame_session.sv
+host/host_ports.sv
 host/port_arbiter.sv
+host/spi/spi_frames.sv
 host/spi/spi_port.sv
 host/uart/uart_baud.sv
+host/uart/uart_frames.sv
 host/uart/uart_port.sv
 host/uart/uart_receiver.sv
 host/uart/uart_timer.sv
@@ -57,6 +61,7 @@ path/path_commands.sv
 path/path_engines.sv
 path/path_sequencer.sv
 path/path_tick_gate.sv
+path/position_streaming.sv
 path/probe.sv
 path/tick_counter.sv
 registers/register_access.sv

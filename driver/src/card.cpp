@@ -113,6 +113,9 @@ Status status_from(std::uint32_t value) {
   status.stopping = (value & field::kStatusStopping) != 0;
   status.geometry_low = (value & field::kStatusGeometryLow) != 0;
   status.feed_low = (value & field::kStatusFeedLow) != 0;
+  status.probed = (value & field::kStatusProbed) != 0;
+  status.probe_missed = (value & field::kStatusProbeMissed) != 0;
+  status.waiting = (value & field::kStatusWaiting) != 0;
   return status;
 }
 
@@ -256,6 +259,11 @@ std::uint16_t Card::outputs() {
   return static_cast<std::uint16_t>(read(reg::kOutputs));
 }
 
+unsigned Card::inputs_present() {
+  require_path_commands("inputs");
+  return bits(read(reg::kPorts), field::kPortsInputs, field::kPortsInputsShift);
+}
+
 unsigned Card::outputs_present() {
   require_path_commands("outputs");
   return bits(read(reg::kPorts), field::kPortsOutputs, field::kPortsOutputsShift);
@@ -279,6 +287,16 @@ std::uint32_t Card::marks() {
 Snapshot Card::mark_snapshot() {
   require_path_commands("mark");
   return read_area(map::Area::Mark);
+}
+
+Snapshot Card::probe_snapshot() {
+  require_path_commands("probe");
+  return read_area(map::Area::Probe);
+}
+
+void Card::clear_probe() {
+  require_path_commands("probe");
+  write(reg::kControl, field::kControlProbeClear, "probe");
 }
 
 Snapshot Card::read_area(map::Area area) {

@@ -113,10 +113,12 @@ void Patience::pause(const Status& status, std::uint64_t clocks, std::uint32_t w
   const std::uint32_t clock_hz = card_.identification().clock_hz;
   std::uint64_t longest = clocks;
   if (wake != 0 && card_.bus().has_interrupt()) longest = std::max<std::uint64_t>(clocks, clock_hz / kLooksPerSecond);
-  if (!status.held && (stands() || left() == 0) && overdue()) {
+  // An input comes when it comes.
+  const bool stopped = status.held || status.waiting;
+  if (!stopped && (stands() || left() == 0) && overdue()) {
     throw TimeoutError(context_, waited_);
   }
-  const bool counts = !status.held && !stands();
+  const bool counts = !stopped && !stands();
   if (counts) {
     longest = std::min(longest, left());
   }

@@ -1,5 +1,5 @@
-// How long a call waits for the card: as long as what was planned takes, and a margin. A hold stops the clock, a ratio
-// below 1 stretches what the time base gates. Not thread-safe.
+// How long a call waits for the card: as long as what was planned takes, and a margin. A hold and a wait for an input
+// stop the clock, a ratio below 1 stretches what the time base gates. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -29,6 +29,7 @@ class Patience {
  public:
   // What pause() may wake for, by the bits of IRQ_ENABLE.
   static constexpr std::uint32_t kIdle = card_map::field::kIrqEnableIdle;
+  static constexpr std::uint32_t kProbed = card_map::field::kIrqEnableProbed;
 
   // `margin`: clocks beyond what was planned. `context` names what is waited for and must outlive the object.
   Patience(Card& card, const char* context, std::uint64_t margin) : card_(card), context_(context), margin_(margin) {}

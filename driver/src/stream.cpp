@@ -172,7 +172,7 @@ void Stream::send(const std::vector<Command>& commands) {
 }
 
 // What of a command depends on the card; its layout was checked by encode().
-Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) const {
+Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) {
   const Identification& card = card_->identification();
   const map::Command& layout = layout_of(command);
   const auto mask = static_cast<std::uint8_t>(header >> 8);
@@ -191,8 +191,22 @@ Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) 
   if (feed == nullptr && mask >> card.axes != 0) {
     throw ArgumentError(fmt::format("stream: axis mask 0x{:02X}, but the card has {} axes", mask, card.axes));
   }
+  check_input(command);
   const std::uint32_t halfwords = map::queue_halfwords(layout, mask);
   return {layout.to_geometry ? halfwords : 0, layout.to_feed ? halfwords : 0};
+}
+
+// The card looks at inputs that it lacks as at a level of 0: a wait for one might never end.
+void Stream::check_input(const Command& command) {
+  const auto* wait = std::get_if<WaitInputCommand>(&command);
+  const auto* probe = std::get_if<ProbeCommand>(&command);
+  if (wait == nullptr && probe == nullptr) return;
+  if (!inputs_) inputs_ = card_->inputs_present();
+  const unsigned input = wait != nullptr ? wait->input : probe->input;
+  if (input >= *inputs_) {
+    throw ArgumentError(
+        fmt::format("stream: {}: input {}, but the card has {} inputs", layout_of(command).name, input, *inputs_));
+  }
 }
 
 void Stream::keep(const Command& command, const Need& need, const std::uint32_t* words, std::size_t count) {
@@ -277,6 +291,58 @@ Status Stream::finish() {
       }
       wait.idle(!status.busy && !all_begun());
     }
+  });
+}
+
+void Stream::check_probing(const ProbeCommand& condition, const std::vector<Command>& paths) {
+  std::array<std::uint32_t, kMaxCommandWords> words{};
+  encode(condition, 0, words.data());
+  checked_need(condition, words[0]);
+  if (paths.empty()) throw ArgumentError("probe: no paths to move along");
+  for (const Command& command : paths) {
+    const bool ends = std::holds_alternative<ProbeCommand>(command) ||
+                      std::holds_alternative<ProbeEndCommand>(command) || std::holds_alternative<EndCommand>(command);
+    if (ends) throw ArgumentError(fmt::format("probe: {} among the paths", layout_of(command).name));
+    encode(command, 0, words.data());
+    checked_need(command, words[0]);
+  }
+}
+
+// Until the edge is there, or all is done without one.
+Status Stream::wait_for_probe() {
+  Wait wait(*this, "probe: waiting for the edge or the end of the paths");
+  Status status;
+  for (;;) {
+    wait.pause(status, Patience::kIdle | Patience::kProbed);
+    status = look(wait);
+    if (status.probed || (!status.busy && all_begun())) return status;
+    wait.idle(!status.busy && !all_begun());
+  }
+}
+
+ProbeResult Stream::probe(const ProbeCommand& condition, const std::vector<Command>& paths) {
+  require_open();
+  check_probing(condition, paths);
+  finish();
+  const auto begun = static_cast<std::uint32_t>(geometry_.begun);
+  closing_at_errors([this] { card_->clear_probe(); });
+  put(condition);
+  for (const Command& command : paths) put(command);
+  put(ProbeEndCommand{});
+  flush();
+  return closing_at_errors([&] {
+    ProbeResult result;
+    const Status status = wait_for_probe();
+    if (status.probed) {
+      result.edge = card_->probe_snapshot();
+      result.outcome = result.edge.geometry_begun == begun ? ProbeOutcome::kTrippedAlready : ProbeOutcome::kTripped;
+      card_->clear_probe();
+      finish();
+    } else if (!status.probe_missed) {
+      throw StateError("probe: it is over without an edge and without a miss: somebody else has cleared it");
+    }
+    result.rest = card_->snapshot();
+    return result;
   });
 }
 

@@ -2,23 +2,24 @@
 // Ports and latencies: docs/developer/architecture.md.
 `default_nettype none
 module card_core #(
-    parameter int          Axes            = 4,     // 1 to 8
-    parameter int          GeometryDepth   = 4096,  // halfwords, 2 to 32,768
-    parameter int          FeedDepth       = 2560,
-    parameter int          Accumulator     = 1,     // 0: without arcs and conics
-    parameter int          EightDirections = 0,     // 1: the accumulator's second step rule
-    parameter int          ArcGenerator    = 0,     // 1: arcs in chords
-    parameter int          DirectMode      = 1,     // 0: without
-    parameter int          UnderrunHold    = 1,     // 0: without
-    parameter int          Classes         = 1,     // 0: one ratio for all pieces
-    parameter int          Watermarks      = 1,     // 0: without
-    parameter int          PathCommands    = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
-    parameter int          Inputs          = 4,     // 1 to 16, of a card with path commands
-    parameter int          Outputs         = 4,
-    parameter int          Ports           = 1,     // 1 to 4: what is joined in front of the inner port
-    parameter logic [31:0] BuildId         = 0,
-    parameter int          BuildDirty      = 0,
-    parameter logic [31:0] BoardId         = 0
+    parameter int          Axes              = 4,     // 1 to 8
+    parameter int          GeometryDepth     = 4096,  // halfwords, 2 to 32,768
+    parameter int          FeedDepth         = 2560,
+    parameter int          Accumulator       = 1,     // 0: without arcs and conics
+    parameter int          EightDirections   = 0,     // 1: the accumulator's second step rule
+    parameter int          ArcGenerator      = 0,     // 1: arcs in chords
+    parameter int          DirectMode        = 1,     // 0: without
+    parameter int          UnderrunHold      = 1,     // 0: without
+    parameter int          Classes           = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks        = 1,     // 0: without
+    parameter int          PathCommands      = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
+    parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
+    parameter int          Inputs            = 4,     // 1 to 16, of a card with path commands
+    parameter int          Outputs           = 4,
+    parameter int          Ports             = 1,     // 1 to 4: what is joined in front of the inner port
+    parameter logic [31:0] BuildId           = 0,
+    parameter int          BuildDirty        = 0,
+    parameter logic [31:0] BoardId           = 0
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -70,7 +71,8 @@ module card_core #(
       32'(DirectMode != 0) << card_map_pkg::ENGINE_DIRECT_MODE |
       32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
       32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS |
-      32'(PathCommands != 0) << card_map_pkg::ENGINE_PATH_COMMANDS;
+      32'(PathCommands != 0) << card_map_pkg::ENGINE_PATH_COMMANDS |
+      32'(PositionStreaming != 0) << card_map_pkg::ENGINE_STREAMING;
 
   // PORTS: {outputs, inputs, ports}.
   localparam logic [31:0] PORTS = 32'(Ports) | (PathCommands != 0 ? 32'(Inputs) << 8 | 32'(Outputs) << 16 : 32'd0);
@@ -93,7 +95,7 @@ module card_core #(
   logic [31:0] status;
   logic [ 5:0] motion_status;
   logic        held;
-  logic [32:0] underrun;  // {held, how often}
+  logic [65:0] late;  // {a line goes on beyond its period, ticks; held for under-run, how often}
   logic [63:0] begun;  // {geometry, feed}
   logic [31:0] room;  // {geometry, feed}
   logic [ 1:0] low;  // {feed, geometry}
@@ -127,7 +129,7 @@ module card_core #(
       .access_i({port_i, write_i, partial_i, address_i, data_i}),
       .motion_i(motion_status),
       .held_i(held),
-      .underrun_i(underrun),
+      .late_i(late),
       .fault_i(fault),
       .room_i(room),
       .low_i(low),
@@ -260,7 +262,8 @@ module card_core #(
       .stop_o(stop),
       .status_o(motion_status),
       .held_o(held),
-      .underrun_o(underrun),
+      .underrun_o(late[32:0]),
+      .stale_o(late[65:33]),
       .geometry_begun_o(begun[63:32]),
       .feed_begun_o(begun[31:0]),
       .observe_o(observe_o[34*Axes+52:0])

@@ -50,6 +50,7 @@ module motion_core #(
     output logic      [         5:0] status_o,          // {stopping, ended, feed active, path active, direct, busy}
     output logic                     held_o,            // the ratio is 0 (combinational)
     output logic      [        32:0] underrun_o,        // {held by it, or a piece waits for more; how often}
+    output logic      [        32:0] stale_o,           // {a line goes on beyond its period, ticks}
     output logic      [        31:0] geometry_begun_o,
     output logic      [        31:0] feed_begun_o,
     // {rate, ratio, position, path dir, path step, feed swap, path swap, path tick, tick}
@@ -59,11 +60,11 @@ module motion_core #(
 );
   // stops
   logic hold, underrun_hold;
-  logic mismatch, incomplete;
+  logic mismatch, incomplete, missing;
   logic            stopping;
   logic [Axes-1:0] step_fault;
   // ticks
-  logic take, tick, feed_swap, feed_active, moving, fixed;
+  logic take, tick, feed_swap, feed_active, moving, fixed, streaming;
   logic feed_runs, feed_at, feed_idle;
   logic [16:0] ratio;
   logic [31:0] rate;
@@ -93,12 +94,14 @@ module motion_core #(
   assign observe_o = {rate, ratio, axes_observe, feed_swap, swap, engine_tick, tick};
 
   stop_control #(
-      .Axes(Axes)
+      .Axes   (Axes),
+      .Engines(Engines)
   ) stops (
       .*,
       .step_fault_i(step_fault),
       .mismatch_i  (mismatch),
       .incomplete_i(incomplete),
+      .missing_i   (missing),
       .clear_i     (clear_fault_i),
       .at_rest_i   (held_o),
       .moving_i    (moving),
@@ -120,6 +123,7 @@ module motion_core #(
       .word_i         (feed_word_i),
       .read_o         (feed_read_o),
       .direct_i       (direct),
+      .streaming_i    (streaming),
       .taking_i       (taking),
       .ready_i        (engine_ready),
       .take_o         (take),
@@ -167,6 +171,9 @@ module motion_core #(
       .axes_live_i    (axes_live),
       .instant_o      (instant),
       .over_o         (path_over),
+      .rest_i         (idle_q && !busy),
+      .streaming_o    (streaming),
+      .missing_o      (missing),
       .probe_at_o     (probe_at),
       .probe_says_i   (probe_says),
       .drop_i         (drop),

@@ -25,6 +25,13 @@ module geometry_sequencer #(
     output logic      [Axes-1:0] active_o,
     output logic      [     4:0] engine_o,
     output logic                 engine_taken_o,   // by a path that still takes ticks (combinational)
+    // position streaming
+    input  wire logic [    40:0] setting_i,
+    input  wire logic [    21:0] arrive_i,         // as tick_source has it
+    input  wire logic            rest_i,           // nothing is queued or runs
+    output logic                 streaming_o,      // the mode
+    output logic                 missing_o,        // event
+    output logic      [    32:0] stale_o,          // {a line goes on beyond its end, ticks}
     // ends
     input  wire logic            payload_ready_i,
     input  wire logic            shadows_free_i,
@@ -69,6 +76,9 @@ module geometry_sequencer #(
   logic            runs;
   logic            zero;
   logic            last;
+  logic [    39:0] count;
+  logic [     2:0] period;  // {the line goes on, has gone on, a period's last tick is taken}
+  logic            lost;  // the next one is missing
   logic            at_barrier;
 
   assign runs = taking_o || (valid && !is_barrier && instant == 3'd0);
@@ -96,11 +106,12 @@ module geometry_sequencer #(
 
   tick_counter ticks (
       .*,
-      .next_i({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
-      .zero_o(zero),
-      .load_i(path_begin || barrier_o[0]),
-      .take_i(take_i || barrier_o[1]),
-      .last_o(last)
+      .next_i ({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
+      .count_o(count),
+      .zero_o (zero),
+      .load_i (path_begin || barrier_o[0]),
+      .take_i ((take_i && !stale_o[32]) || barrier_o[1]),
+      .last_o (last)
   );
 
   path_sequencer #(
@@ -113,11 +124,32 @@ module geometry_sequencer #(
       .mask_i        (mask),
       .pop_o         (path_pop),
       .last_i        (last),
+      .streaming_i   ({lost, streaming_o}),
+      .period_o      (period),
       .begin_o       (path_begin),
       .halt_i        (drop_i[0]),
       .barrier_done_i(barrier_o[2]),
       .at_barrier_o  (at_barrier)
   );
+
+  assign stale_o[32] = period[1];
+
+  if (Engines[card_map_pkg::ENGINE_STREAMING]) begin : gen_streaming
+    position_streaming periods (
+        .*,
+        .begin_i (path_begin),
+        .count_i (count),
+        .period_i(period),
+        .lost_o  (lost),
+        .ticks_o (stale_o[31:0])
+    );
+  end else begin : gen_no_streaming
+    assign {streaming_o, missing_o, lost, stale_o[31:0]} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, setting_i, arrive_i, rest_i, count, period};
+  end
+
 
   // A barrier that has begun is over where the others are dropped.
   barrier both_queues (

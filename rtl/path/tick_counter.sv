@@ -10,19 +10,21 @@
 module tick_counter (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
-    input  wire logic [16:0] next_i,  // {valid, halfword} of the next count, which is at least 1 where ticks count it
-    output logic             zero_o,  // the next count is 0; two clocks late
-    input  wire logic        load_i,  // take it
+    input  wire logic [16:0] next_i,   // {valid, halfword} of the next count, which is at least 1 where ticks count it
+    output logic      [39:0] count_o,  // the next count; still there in the clock after load_i
+    output logic             zero_o,   // it is 0; two clocks late
+    input  wire logic        load_i,   // take it
     input  wire logic        take_i,
     output logic             last_o
 );
   logic [39:0] count_q;  // the next one
-  logic [ 7:0] top_pass_q;  // of the third halfword nothing counts, but the first two pass here
-  logic        loaded_q;
-  logic        settled_q;
-  logic        next_low_zero_q;  // of bits 3 to 0, 19 to 4, 39 to 20, a clock late
-  logic        next_mid_zero_q;
-  logic        next_top_zero_q;
+  assign count_o = count_q;
+  logic [7:0] top_pass_q;  // of the third halfword nothing counts, but the first two pass here
+  logic       loaded_q;
+  logic       settled_q;
+  logic       next_low_zero_q;  // of bits 3 to 0, 19 to 4, 39 to 20, a clock late
+  logic       next_mid_zero_q;
+  logic       next_top_zero_q;
 
   always_ff @(posedge clk_i) begin
     if (next_i[16]) {top_pass_q, count_q} <= {next_i[15:0], top_pass_q, count_q[39:16]};

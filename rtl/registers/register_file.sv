@@ -8,48 +8,48 @@ module register_file #(
     parameter int          Ports   = 1,  // 1 to 4
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic              clk_i,
-    input  wire logic              rst_i,
-    input  wire logic [     511:0] constants_i,       // what parameters and straps decide, by address
-    input  wire logic [2*Axes-1:0] idle_level_i,
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [511:0] constants_i,  // what parameters and straps decide, by address
+    input wire logic [2*Axes-1:0] idle_level_i,
     // the access
-    input  wire logic              request_i,
-    input  wire logic [      47:0] access_i,
-    output logic                   ack_o,
-    output logic                   error_o,
-    output logic      [      31:0] data_o,            // combinational
-    output logic                   irq_o,
+    input wire logic request_i,
+    input wire logic [47:0] access_i,
+    output logic ack_o,
+    output logic error_o,
+    output logic [31:0] data_o,  // combinational
+    output logic irq_o,
     // the card's state
-    input  wire logic [       5:0] motion_i,          // {stopping, ended, feed active, path active, direct, busy}
-    input  wire logic              held_i,
-    input  wire logic [      32:0] underrun_i,        // {held, how often}
-    input  wire logic [      31:0] fault_i,
-    input  wire logic [      31:0] room_i,            // {geometry, feed}
-    input  wire logic [       1:0] low_i,             // {feed, geometry}: below their watermarks
-    input  wire logic [      63:0] begun_i,           // {geometry, feed}
-    input  wire logic [      66:0] io_i,              // {waiting, probe missed, probed, marks, outputs, inputs}
-    output logic      [      31:0] status_o,          // combinational; refused is any port's
+    input wire logic [5:0] motion_i,  // {stopping, ended, feed active, path active, direct, busy}
+    input wire logic held_i,
+    input wire logic [65:0] late_i,  // {a line goes on beyond its period, ticks; held for under-run, how often}
+    input wire logic [31:0] fault_i,
+    input wire logic [31:0] room_i,  // {geometry, feed}
+    input wire logic [1:0] low_i,  // {feed, geometry}: below their watermarks
+    input wire logic [63:0] begun_i,  // {geometry, feed}
+    input wire logic [66:0] io_i,  // {waiting, probe missed, probed, marks, outputs, inputs}
+    output logic [31:0] status_o,  // combinational; refused is any port's
     // what writes do
-    output logic      [      40:0] setting_o,         // {set, address, data}
-    output logic      [      31:0] clear_fault_o,
-    output logic                   abort_o,
-    output logic                   probe_clear_o,
-    output logic                   flush_o,           // combinational
+    output logic [40:0] setting_o,  // {set, address, data}
+    output logic [31:0] clear_fault_o,
+    output logic abort_o,
+    output logic probe_clear_o,
+    output logic flush_o,  // combinational
     // the command checker
-    output logic                   stream_write_o,
-    input  wire logic [      18:0] checker_i,         // {partial, ready, refuse, number, reason}
+    output logic stream_write_o,
+    input wire logic [18:0] checker_i,  // {partial, ready, refuse, number, reason}
     // the direct loader
-    output logic                   start_o,
-    input  wire logic [       9:0] start_answer_i,    // {done, error, reason}
-    input  wire logic [       7:0] loader_address_i,
-    output logic      [      31:0] loader_data_o,
+    output logic start_o,
+    input wire logic [9:0] start_answer_i,  // {done, error, reason}
+    input wire logic [7:0] loader_address_i,
+    output logic [31:0] loader_data_o,
     // snapshots
-    input  wire logic              stop_i,
-    input  wire logic              probe_i,
-    input  wire logic              mark_i,
-    output logic      [       1:0] snapshot_o,        // {shift, strobe}
-    output logic      [      31:0] chain_o,           // the far end
-    input  wire logic [      31:0] chain_i
+    input wire logic stop_i,
+    input wire logic probe_i,
+    input wire logic mark_i,
+    output logic [1:0] snapshot_o,  // {shift, strobe}
+    output logic [31:0] chain_o,  // the far end
+    input wire logic [31:0] chain_i
 );
 
   logic        live;
@@ -82,7 +82,8 @@ module register_file #(
   );
 
   register_live #(
-      .Ports(Ports)
+      .Ports  (Ports),
+      .Engines(Engines)
   ) i_live (
       .*,
       .setting_i(setting_o),

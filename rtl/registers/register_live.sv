@@ -6,34 +6,35 @@
 // never meet: one access is carried through at a time.
 `default_nettype none
 module register_live #(
-    parameter int Ports = 1  // 1 to 4
+    parameter int          Ports   = 1,  // 1 to 4
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic [40:0] setting_i,
-    input  wire logic [ 1:0] snapshot_i,       // {shift, strobe}
-    input  wire logic        sample_i,
-    input  wire logic [13:0] access_i,         // {port, address}
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [40:0] setting_i,
+    input wire logic [1:0] snapshot_i,  // {shift, strobe}
+    input wire logic sample_i,
+    input wire logic [13:0] access_i,  // {port, address}
     // refusals
-    input  wire logic        clear_refusal_i,
-    input  wire logic        refuse_i,
-    input  wire logic [15:0] reason_i,         // {number, reason}
+    input wire logic clear_refusal_i,
+    input wire logic refuse_i,
+    input wire logic [15:0] reason_i,  // {number, reason}
     // STATUS
-    input  wire logic [ 5:0] motion_i,         // {stopping, ended, feed active, path active, direct, busy}
-    input  wire logic        held_i,
-    input  wire logic [32:0] underrun_i,       // {held, how often}
-    input  wire logic        snapshotting_i,
-    input  wire logic        incomplete_i,
-    input  wire logic [ 1:0] low_i,            // {feed, geometry}: below their watermarks
+    input wire logic [5:0] motion_i,  // {stopping, ended, feed active, path active, direct, busy}
+    input wire logic held_i,
+    input wire logic [65:0] late_i,  // {a line goes on beyond its period, ticks; held for under-run, how often}
+    input wire logic snapshotting_i,
+    input wire logic incomplete_i,
+    input wire logic [1:0] low_i,  // {feed, geometry}: below their watermarks
     // the other live registers
-    input  wire logic [31:0] fault_i,
-    input  wire logic [31:0] room_i,           // {geometry, feed}
-    input  wire logic [63:0] begun_i,          // {geometry, feed}
-    input  wire logic [66:0] io_i,             // {waiting, probe missed, probed, marks, outputs, inputs}
-    output logic      [31:0] status_o,         // combinational; refused is any port's
-    output logic      [31:0] data_o,
-    output logic      [31:0] chain_o,
-    output logic             irq_o
+    input wire logic [31:0] fault_i,
+    input wire logic [31:0] room_i,  // {geometry, feed}
+    input wire logic [63:0] begun_i,  // {geometry, feed}
+    input wire logic [66:0] io_i,  // {waiting, probe missed, probed, marks, outputs, inputs}
+    output logic [31:0] status_o,  // combinational; refused is any port's
+    output logic [31:0] data_o,
+    output logic [31:0] chain_o,
+    output logic irq_o
 );
 
   logic [  3:0] refused;
@@ -81,10 +82,11 @@ module register_live #(
       32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING |
       32'(low_i[0]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
       32'(low_i[1]) << card_map_pkg::BIT_STATUS_FEED_LOW |
-      32'(underrun_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN |
+      32'(late_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN |
       32'(io_i[64]) << card_map_pkg::BIT_STATUS_PROBED |
       32'(io_i[65]) << card_map_pkg::BIT_STATUS_PROBE_MISSED |
-      32'(io_i[66]) << card_map_pkg::BIT_STATUS_WAITING;
+      32'(io_i[66]) << card_map_pkg::BIT_STATUS_WAITING |
+      32'(late_i[65]) << card_map_pkg::BIT_STATUS_STALE;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin
@@ -102,7 +104,10 @@ module register_live #(
         card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, io_i[31:16]};
         card_map_pkg::ADDR_MARKS[5:2]: data_o <= io_i[63:32];
         card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= begun_i[31:0];
-        default: data_o <= underrun_i[31:0];
+        default:
+        if (Engines[card_map_pkg::ENGINE_STREAMING] && access_i[5:2] == card_map_pkg::ADDR_STALE_TICKS[5:2])
+          data_o <= late_i[64:33];
+        else data_o <= late_i[31:0];
       endcase
     end
   end

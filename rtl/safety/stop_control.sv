@@ -8,7 +8,8 @@
 `default_nettype none
 
 module stop_control #(
-    parameter int Axes = 4
+    parameter int          Axes    = 4,
+    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
     input  wire logic            clk_i,
     input  wire logic            rst_i,
@@ -16,6 +17,7 @@ module stop_control #(
     input  wire logic [Axes-1:0] step_fault_i,
     input  wire logic            mismatch_i,
     input  wire logic            incomplete_i,
+    input  wire logic            missing_i,     // position streaming
     input  wire logic            abort_i,
     input  wire logic [    31:0] clear_i,       // ones written to FAULT
     input  wire logic            at_rest_i,     // the ratio is 0
@@ -36,7 +38,8 @@ module stop_control #(
     STOPPED
   } state_e;
 
-  localparam int Faults = card_map_pkg::BIT_FAULT_PATH_INCOMPLETE + 1;
+  localparam int Faults = Engines[card_map_pkg::ENGINE_STREAMING] ?
+      card_map_pkg::BIT_FAULT_MISSING_PERIOD + 1 : card_map_pkg::BIT_FAULT_PATH_INCOMPLETE + 1;
   // The bits that a reaction may be chosen for: no flip-flops for the others.
   localparam logic [Faults-1:0] REACTIONS = card_map_pkg::MASK_STOP_REACTION[Faults-1:0];
 
@@ -59,6 +62,7 @@ module stop_control #(
     cause = Faults'(step_fault_i) << card_map_pkg::BIT_FAULT_STEP;
     cause[card_map_pkg::BIT_FAULT_TICK_MISMATCH] = mismatch_i;
     cause[card_map_pkg::BIT_FAULT_PATH_INCOMPLETE] = incomplete_i;
+    cause = cause | Faults'(32'(missing_i) << card_map_pkg::BIT_FAULT_MISSING_PERIOD);
   end
 
   always_comb begin

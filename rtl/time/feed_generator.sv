@@ -7,6 +7,8 @@
 // made when the last halfword of J is there: 14 clocks after the swap at the latest, or the 32nd enabled clock could be
 // missed.
 //
+// Frozen, the slope stays as it is until the next swap.
+//
 // Once R lies outside -2 .. 2 it stays as it is to the end of the piece, at the floor or at 1: before that A lies within
 // +-4.5 (the difference of two Rs, and a J of half), so that neither has ever left the +-8 of its bits.
 //
@@ -21,6 +23,7 @@ module feed_generator (
     input  wire logic        rst_i,
     input  wire logic        clear_i,
     input  wire logic        enable_i,
+    input  wire logic        freeze_i,
     input  wire logic [19:0] load_i,      // {valid, target, word}
     input  wire logic        swap_i,
     input  wire logic [ 1:0] snapshot_i,
@@ -55,7 +58,7 @@ module feed_generator (
     if (rst_i || swap_i) count_q <= '0;
     else if (enable_i) count_q <= count_q + 5'd1;
     swap_q <= swap_i && !rst_i;
-    load_low_q <= !rst_i && (swap_i || (enable_i && count_q == 5'd31));
+    load_low_q <= !rst_i && (swap_i || (enable_i && !freeze_i && count_q == 5'd31));
     load_high_q <= load_low_q && !rst_i;
   end
 

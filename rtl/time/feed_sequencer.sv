@@ -1,4 +1,7 @@
 // Runs one feed piece after the other; the next one is swapped in at the last tick of the present one.
+//
+// In position streaming a piece with none behind it is spent after its ticks, but goes on at its rate while a path takes
+// ticks, until the next one is decoded.
 `default_nettype none
 
 module feed_sequencer #(
@@ -15,12 +18,15 @@ module feed_sequencer #(
     input  wire logic        take_i,
     input  wire logic        direct_i,      // a direct move is under way
     input  wire logic        wait_i,        // no piece begins
+    input  wire logic        streaming_i,
+    input  wire logic        taking_i,      // a path takes ticks
     input  wire logic [ 1:0] drop_i,        // {commands up to PROBE_END are dropped, event: the piece ends here}
     input  wire logic [ 2:0] barrier_i,     // {done, counts, begins}
     output logic             at_barrier_o,
     output logic             runs_o,        // a piece gives ticks, or a decoded one waits (combinational)
     output logic             active_o,      // a piece gives ticks
     output logic             decoded_o,     // a piece waits (combinational)
+    output logic             spent_o,       // beyond its own
     output logic             moving_o,      // and has, or the one before it in one go
     output logic      [ 1:0] class_o,       // of the piece that was swapped in last
     output logic             idle_o,        // nothing read or decoded
@@ -41,10 +47,14 @@ module feed_sequencer #(
   logic valid;
   logic swap;
   logic last;
+  logic ending;
+  logic goes_on;
 
   assign decoded_o = valid && piece;
   assign dropped   = valid && drop_i[1] && !is_probe_end;
-  assign swap      = decoded_o && !wait_i && !drop_i[1] && (!active_o || (take_i && last));
+  assign ending    = take_i && last && !spent_o;
+  assign swap      = decoded_o && !wait_i && !drop_i[1] && (!active_o || spent_o || ending);
+  assign goes_on   = streaming_i && (ending ? active_o : spent_o && taking_i) && !swap;
   assign runs_o    = active_o || decoded_o;
 
   feed_decoder #(
@@ -62,10 +72,12 @@ module feed_sequencer #(
 
   tick_counter ticks (
       .*,
-      .next_i({load_o[19] && load_o[18:16] == load_target_pkg::FEED_TICKS, load_o[15:0]}),
-      .zero_o(),
-      .load_i(swap),
-      .last_o(last)
+      .next_i ({load_o[19] && load_o[18:16] == load_target_pkg::FEED_TICKS, load_o[15:0]}),
+      .count_o(),
+      .zero_o (),
+      .take_i (take_i && !spent_o),
+      .load_i (swap),
+      .last_o (last)
   );
 
   // A barrier that had begun has counted.
@@ -79,9 +91,10 @@ module feed_sequencer #(
     at_barrier_o <= valid && is_barrier && !dropped && !active_o && !barrier_i[2] && !cut_i && !rst_i;
     if (rst_i || cut_i || drop_i[0]) active_o <= 1'b0;
     else if (swap) active_o <= 1'b1;
-    else if (take_i && last) active_o <= 1'b0;
+    else if ((ending || spent_o) && !goes_on) active_o <= 1'b0;
+    spent_o <= goes_on && !cut_i && !drop_i[0] && !rst_i;
     if (rst_i || cut_i || drop_i[0]) moving_o <= 1'b0;
-    else if (take_i) moving_o <= active_o && (swap || !last);
+    else if (take_i || spent_o) moving_o <= active_o && (swap || goes_on || !(ending || spent_o));
   end
 
   // A direct move has no pieces: it runs as feed, and so does what comes after a cut.

@@ -23,6 +23,7 @@ module tick_source #(
     output logic             take_o,           // combinational
     output logic             tick_o,
     output logic             swap_o,           // of the feed piece
+    input  wire logic        streaming_i,      // position streaming
     // probe
     input  wire logic [ 1:0] drop_i,           // {commands up to PROBE_END are dropped, event: the piece ends here}
     input  wire logic        card_idle_i,      // nothing runs, is decoded or queued; up to four clocks late
@@ -53,6 +54,7 @@ module tick_source #(
   logic [19:0] load;
   logic        decoder_idle;
   logic        decoded;
+  logic        spent;
   logic        piece_waits;
   logic [31:0] ratio_chain;
   logic [31:0] rate_chain;
@@ -77,6 +79,7 @@ module tick_source #(
       .take_i   (take_o),
       .wait_i   (piece_waits),
       .decoded_o(decoded),
+      .spent_o  (spent),
       .idle_o   (decoder_idle),
       .load_o   (load),
       .chain_i  (rate_chain)
@@ -87,9 +90,9 @@ module tick_source #(
         .Probing(Engines[card_map_pkg::ENGINE_PATH_COMMANDS])
     ) guard (
         .*,
+        .cut_i      (cut_i || streaming_i),
         .lost_i     (drop_i[0]),
         .idle_i     (card_idle_i),
-        .off_i      (1'b0),
         .arrive_i   (arrive_i[20:0]),
         .full_i     (arrive_i[21]),
         .load_i     (load),
@@ -114,6 +117,7 @@ module tick_source #(
       .*,
       .clear_i (feed_clear),
       .enable_i(feed_enable),
+      .freeze_i(spent),
       .load_i  (load),
       .swap_i  (swap_o),
       .chain_i (ratio_chain),

@@ -14,8 +14,7 @@ module underrun_guard #(
 ) (
     input  wire logic        clk_i,
     input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic        off_i,       // no rule
+    input  wire logic        cut_i,       // and where there is no rule: nothing is counted
     input  wire logic        lost_i,      // event: what is queued will be dropped
     input  wire logic        idle_i,      // nothing runs, is decoded or queued; up to four clocks late
     input  wire logic [20:0] arrive_i,    // {drop, geometry {commit, write}, feed {commit, write}, halfword}
@@ -52,8 +51,6 @@ module underrun_guard #(
 
   logic lost;
   logic unknown;  // or was lost while the counts were compared that are decided on next
-  logic off;
-  assign off = off_i || lost;
 
   if (Probing) begin : gen_probing
     logic lost_q;
@@ -73,6 +70,7 @@ module underrun_guard #(
         inside_q <= 1'b0;
         lost_q   <= 1'b0;
       end
+      if (rst_i) unknown_q <= 1'b0;
     end
     assign lost = lost_q;
     assign unknown = lost_q || unknown_q;
@@ -116,7 +114,7 @@ module underrun_guard #(
   logic enough_q;  // for it
   logic waits_q;
   logic short;
-  assign short = ruled && !at_barrier && !off && !unknown && ((geometry_short && !covered) || (feed_short && !at_rest));
+  assign short = ruled && !at_barrier && !unknown && ((geometry_short && !covered) || (feed_short && !at_rest));
 
   always_ff @(posedge clk_i) begin
     from_rest_q <= from_rest;
@@ -127,7 +125,7 @@ module underrun_guard #(
       if (short && !hold_o && (!follow || (judged_q && full_i))) underruns_o <= underruns_o + 32'd1;
       enough_q <= judged_q && !short;
       waits_q  <= judged_q && !active_i && short;
-      if (covered) covered_q <= 1'b1;
+      if (covered && !unknown) covered_q <= 1'b1;
     end
     if (swap_i) begin
       ends_q <= next_zero;
@@ -142,7 +140,7 @@ module underrun_guard #(
     if (rst_i) underruns_o <= 32'd0;
   end
 
-  assign wait_o  = from_rest && !next_zero && !enough_q && !off;
+  assign wait_o  = from_rest && !next_zero && !enough_q && !lost;
   assign shown_o = hold_o || waits_q;
 endmodule
 

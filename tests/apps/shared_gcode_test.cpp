@@ -68,6 +68,22 @@ INSTANTIATE_TEST_SUITE_P(Gcode, Jobs,
                                          Job{"circle-inch", "200000", {0, 0, 508, 0}, 3}),
                          job_name);
 
+// 300 mm/s and 3,000 mm/s^2: 887 s of motion, 73,118 commands.
+TEST(Gcode, OctocatOnASlowBusHasNoUnderRun) {
+  const Command command;
+  std::string options = " --feed-scale 15 --set motion.junction_deviation=0.02";
+  for (const char* axis : {"x", "y", "z", "e"}) {
+    options += std::string(" --set axis.") + axis + ".max_velocity=300 --set axis." + axis + ".max_acceleration=3000";
+  }
+  const Outcome outcome =
+      command.run("run " + kFolder + "octocat.gcode --engine model --clock 10000000 --limit-bus 8000" + options +
+                  " --json " + command.path("o.json"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json json = read_json(command.path("o.json"));
+  EXPECT_EQ(json["under_runs"], 0);
+  EXPECT_NEAR(json["seconds"].get<double>(), json["planned_seconds"].get<double>(), 0.5);
+}
+
 void expect_refused(const std::string& name, const std::string& line) {
   const Command command;
   const Outcome outcome = command.run("run " + kFolder + name + " --steps " + command.path("steps.csv"));

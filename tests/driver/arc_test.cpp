@@ -139,7 +139,7 @@ struct Extremes {
 constexpr bool kFewCases = sizeof(void*) < 8;
 constexpr int some_of(int count) { return kFewCases ? std::max(1, count / 50) : count; }
 
-constexpr double kMostInEight = 0.8;
+constexpr double kMostInEight = 0.66;
 
 void expect_random_arcs(std::uint64_t seed, int count, double smallest, double largest, Extremes& worst,
                         StepRule rule = StepRule::kFourDirections) {

@@ -35,10 +35,12 @@ class ArcProgram {
       const auto kind = any(0, 5);
       ticks += kind == 0 ? line() : kind == 1 ? circle() : arc();
     }
+    if (ticks == 0) return;  // of an arc alone that is none
     // At most a tick a clock; the densest arcs make a step in 16 ticks.
     const double pace = any(0, 1) == 0 ? 1.0 : static_cast<double>(any(1000, 5000)) / 1000;
     const std::uint64_t rate = pace > 1 ? static_cast<std::uint64_t>(0x1p64 / pace) : ~std::uint64_t{0};
-    ASSERT_TRUE(bench_.feed(ticks, rate));
+    ASSERT_TRUE(bench_.feed(ticks, rate)) << "refusal " << bench_.read(reg::kRefusal) << ", fault "
+                                          << bench_.read(reg::kFault) << ", " << ticks << " ticks";
     ASSERT_TRUE(bench_.end());
     ASSERT_TRUE(bench_.finish(static_cast<std::uint64_t>(static_cast<double>(ticks) * pace) + 20'000));
     ASSERT_EQ(bench_.core.outputs().fault, 0U);

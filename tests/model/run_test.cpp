@@ -122,7 +122,8 @@ class Program {
     if (p_.one_in(2)) p_.write(reg::kFeedWatermark, static_cast<std::uint32_t>(p_.any(1, 60)));
     if (p_.one_in(2)) p_.write(reg::kIrqEnable, static_cast<std::uint32_t>(p_.any(0, (1U << 18) - 1)));
     if (p_.one_in(3)) p_.write(reg::kHoldLimit, static_cast<std::uint32_t>(p_.any(1, p_.one_in(2) ? 60 : 2000)));
-    if (p_.one_in(3)) p_.write(reg::kStopReaction, static_cast<std::uint32_t>(p_.any(0, 255)));
+    if (p_.one_in(3)) p_.write(reg::kStopReaction, static_cast<std::uint32_t>(p_.any(0, 255) | p_.any(0, 1) << 10));
+    if (p_.one_in(4)) p_.write(reg::kStreaming, 1U | static_cast<std::uint32_t>(p_.any(0, 2)) << 8);
   }
 
   // A tick every `pace` clocks.

@@ -138,7 +138,8 @@ struct Planned final : driver::CommandSink {
 };
 
 // TRAMMEL_LONG: all thousand.
-unsigned random_programs() { return std::getenv("TRAMMEL_LONG") != nullptr ? 1000 : 100; }
+bool long_run() { return std::getenv("TRAMMEL_LONG") != nullptr; }
+unsigned random_programs() { return long_run() ? 1000 : 100; }
 
 TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
   for (unsigned seed = 1; seed <= random_programs(); ++seed) {
@@ -207,12 +208,30 @@ TEST(MotionJudge, BlendedProgramsAreWithinTheirLimits) {
 }
 
 TEST(MotionJudge, StepsFollowTheCommandedMotion) {
-  for (unsigned seed = 1; seed <= 10; ++seed) {
+  for (unsigned seed = 1; seed <= (long_run() ? 1000U : 10U); ++seed) {
     SCOPED_TRACE(fmt::format("seed {}", seed));
     const machine::Machine machine = machine_of(100, 1000, seed % 2 == 0 ? 20000 : 0);
     EXPECT_LE(Program(text(random_lines(seed)), machine, 10 * kClock).farthest(), 0.8);
   }
 }
+
+#ifdef TRAMMEL_SHARED_GCODE_DIR
+// Without TRAMMEL_LONG a short one alone. octocat would not fit in memory.
+TEST(MotionJudge, StepsFollowRealPrograms) {
+  using Names = std::vector<std::string>;
+  for (const std::string& name : long_run()
+                                     ? Names{"tball", "jsdc-laser", "circle-inch", "arc-xz-plane", "arc-yz-plane"}
+                                     : Names{"arc-xz-plane"}) {
+    SCOPED_TRACE(name);
+    const run::ProgramLines lines = [&] {
+      return std::make_unique<gcode::FileLines>(TRAMMEL_SHARED_GCODE_DIR "/" + name + ".gcode");
+    };
+    Program program(lines, machine_of(100, 1000, 20000), 10 * kClock);
+    EXPECT_GT(program.recorder().steps.size(), 1000U);
+    EXPECT_LE(program.farthest(), 0.8);
+  }
+}
+#endif
 
 TEST(MotionJudge, StepsFollowABlendedMotion) {
   const std::string program = "G21 G90 G94 F3000 G64 P0.5\nG1 X8\nY8\nX2 Y9 Z3\nG2 X5 Y6 I3\nG1 X0 Y1\nM2\n";

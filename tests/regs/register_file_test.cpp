@@ -73,7 +73,7 @@ TEST_P(EveryAxisCount, DescribesItself) {
   EXPECT_EQ(bench_.read(reg::kFeedDepth).data, 512u);
   EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x20000u);
   EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, 2u);
-  EXPECT_EQ(bench_.read(reg::kEngines).data, 0x6F3u);
+  EXPECT_EQ(bench_.read(reg::kEngines).data, 0x7F3u);
   EXPECT_EQ(bench_.read(reg::kPorts).data, 0x04'04'01u);
 }
 

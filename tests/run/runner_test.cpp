@@ -253,10 +253,11 @@ TEST_F(RunnerTest, DrawsTheCommandedCourse) {
   CommandedCourse course(machine_);
   runner.add(course);
   runner.plan();
-  const std::vector<Point> points = course.points();
-  ASSERT_EQ(points.size(), 1 + 1 + 64 + 1U);
-  EXPECT_EQ(points[1][0], 10);
-  EXPECT_NEAR(points[33][1], 5, 0.01) << "the top of the arc";
+  const std::vector<PathPoint> points = course.points();
+  ASSERT_EQ(points.size(), 1 + 1 + 64U);
+  EXPECT_EQ(points[1].at[0], 10);
+  EXPECT_NEAR(points[33].at[1], 5, 0.01) << "the top of the arc";
+  EXPECT_FALSE(points[1].rapid);
   ASSERT_TRUE(course.detail_command());
   EXPECT_GT(*course.detail_command(), 3U) << "the arc rather than the line";
   EXPECT_EQ(course.detail().size(), StepRecorder::kDetailPoints + 1);

@@ -85,6 +85,7 @@ void set_halfword(Words& words, std::size_t at, std::uint16_t value) {
   word = at % 2 == 0 ? (word & 0xFFFF0000) | value : (word & 0xFFFF) | std::uint32_t{value} << 16;
 }
 
+// Over a screen: a table, a row for each thing that can be wrong.
 std::vector<Bad> stream_of_bad_input() {
   constexpr std::int64_t kLeast = kFirst;
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();

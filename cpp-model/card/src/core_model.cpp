@@ -132,6 +132,7 @@ std::uint64_t CoreModel::watched() const {
                         watermarks_.outputs().geometry_low,
                         watermarks_.outputs().feed_low,
                         motion_.underrun().shown,
+                        s.stale,
                         motion_.probe().probed(),
                         motion_.probe().missed(),
                         motion_.sequencer().waits_for_input()};
@@ -222,6 +223,8 @@ void CoreModel::gather() {
   in.stopping = motion_.stop().stopping;
   in.underrun = motion_.underrun().shown;
   in.underruns = motion_.underrun().underruns;
+  in.stale = s.stale;
+  in.stale_ticks = motion_.sequencer().streaming().ticks;
   in.incomplete = checker_.outputs().partial;
   in.geometry_room = geometry_queue_.outputs().room;
   in.feed_room = feed_queue_.outputs().room;

@@ -62,7 +62,7 @@ std::int64_t Jump::edge_of(std::uint64_t accumulation) const {
 // The first tick that must not be taken, or not reach the prescaler.
 std::uint64_t Jump::first_that_stops() const {
   std::uint64_t left = core_.sequencer_.ticks_left();
-  if (core_.has_guard_) left = std::min(left, core_.guard_.ticks_to_change());
+  if (core_.guards()) left = std::min(left, core_.guard_.ticks_to_change());
   const std::uint64_t last = left + count(in_flight_ & kTakenBits);
   const std::uint64_t stops = core_.engines_.tick_that_stops();
   if (stops >= last) return last;
@@ -247,7 +247,10 @@ void Jump::land() {
   }
   for (unsigned n = 0; n < axes_; ++n) land_axis(n, at_axes);
   core_.sequencer_.jump(clocks, taken, in_flight, feed_enable);
-  core_.guard_.jump(clocks, taken, in_flight >> Sequencer::kTaken);
+  if (core_.guards())
+    core_.guard_.jump(clocks, taken, in_flight >> Sequencer::kTaken);
+  else
+    core_.guard_.jump(clocks, 0, 0);
   core_.time_base_.advance(clocks);
   core_.wait_timer_.advance(clocks);
   core_.out_.engine_step = 0;
@@ -268,6 +271,7 @@ unsigned Jump::land_generator() {
     FeedGenerator::Inputs in;
     const std::uint64_t done = accumulations_to(++edge_);
     in.enable = done != done_;
+    in.freeze = core_.sequencer_.outputs().spent;
     done_ = done;
     core_.feed_.clock(in);
     const bool carry = core_.feed_.carried(0);
@@ -343,7 +347,7 @@ bool MotionCore::may_jump(const Inputs& in) const {
   if (!sequencer_.settled(sequencer_in)) return false;
   const bool held = (has_guard_ && guard_.outputs().hold) || probe_.holds();
   if (held != stop_.made_to_hold()) return false;
-  if (has_guard_ && !guard_.settled(guard_inputs(in, sequencer_in))) return false;
+  if (guards() && !guard_.settled(guard_inputs(in, sequencer_in))) return false;
   return sequencer_.ticking() || (feed_.quiet() && engines_.quiet() && (!s.feed_clear || feed_.phase() == 0));
 }
 

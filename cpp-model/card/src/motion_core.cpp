@@ -17,7 +17,7 @@ MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all, 
     : clock_all_(clock_all),
       has_guard_(card_map::has_engine(engines, card_map::engine::kUnderrunHold)),
       loader_(axes),
-      sequencer_(clock_all),
+      sequencer_(clock_all, card_map::has_engine(engines, card_map::engine::kStreaming)),
       engines_(clock_all),
       commands_(pins) {
   for (unsigned n = 0; n < axes; ++n) {
@@ -53,7 +53,11 @@ Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
   s.feed_empty = in.feed_empty;
   s.geometry_word = in.geometry_word;
   s.feed_word = in.feed_word;
-  s.wait = has_guard_ && guard_.waits(sequencer_.outputs().feed_active, false);
+  s.wait = has_guard_ && guard_.waits(sequencer_.outputs().feed_active);
+  s.setting = in.setting;
+  s.arrives = in.arrival.geometry_write || in.arrival.feed_write;
+  s.arrived = in.arrival.drop || in.arrival.geometry_commit || in.arrival.feed_commit;
+  s.at_rest = !out_.busy;
   s.direct_go = loader_.outputs().go;
   s.direct_mask = loader_.outputs().mask;
   s.direct_load = loader_.outputs().load;
@@ -72,7 +76,7 @@ Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
 UnderrunGuard::Inputs MotionCore::guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const {
   const Sequencer::Outputs& s = sequencer_.outputs();
   UnderrunGuard::Inputs guard;
-  guard.cut = stop_.outputs().cut;
+  guard.cut = stop_.outputs().cut || sequencer_.streaming().on;
   guard.lost = probe_.halt();
   guard.idle = s.idle && !probing_;
   guard.arrival = in.arrival;
@@ -95,14 +99,15 @@ void MotionCore::clock(const Inputs& in) {
   loader_.clock({false, out_.busy, stop.closed, in.start, in.start_mask, in.loader_data});
   const bool at_rest = time_base_.outputs().ratio == 0;
   const bool fixed = s.piece_class == card_map::constant::kClassFixed;
-  const bool events = out_.step_fault != 0 || s.mismatch || s.incomplete || in.abort || in.clear_fault != 0;
+  const bool missing = sequencer_.streaming().missing;
+  const bool events = out_.step_fault != 0 || s.mismatch || s.incomplete || missing || in.abort || in.clear_fault != 0;
   const bool underrun = guard_.outputs().hold;
   const bool probe_holds = probe_.holds();
   const bool over = stop.cut || probe_.halt();
   if (has_guard_) guard_.clock(guard_inputs(in, sequencer_in));
   if (clock_all_ || events || in.setting.set || (underrun || probe_holds) != stop_.made_to_hold() ||
       !stop_.quiet(s.moving, fixed, at_rest))
-    stop_.clock({out_.step_fault, s.mismatch, s.incomplete, in.abort, in.clear_fault, at_rest, s.moving, fixed,
+    stop_.clock({out_.step_fault, s.mismatch, s.incomplete, missing, in.abort, in.clear_fault, at_rest, s.moving, fixed,
                  underrun, probe_holds, in.setting});
   clock_commands(in, stop.cut);
   clock_busy();
@@ -110,7 +115,7 @@ void MotionCore::clock(const Inputs& in) {
   clock_axes(in, over);
   wait_timer_.clock(in.setting);
   engines_.clock({over, s.tick, s.swap, s.engine, sequencer_.load(), sequencer_.engine_taken()});
-  feed_.clock({s.feed_clear, s.feed_enable, sequencer_.feed_load(), s.feed_swap});
+  feed_.clock({s.feed_clear, s.feed_enable, s.spent, sequencer_.feed_load(), s.feed_swap});
   time_base_.clock({stop.hold, in.setting, s.piece_class});
   if (clock_all_ || !probe_.quiet(probe_in)) probe_.clock(probe_in);
   sequencer_.clock(sequencer_in);

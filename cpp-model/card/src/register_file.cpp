@@ -118,6 +118,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (in.probed) status |= field::kStatusProbed;
   if (in.probe_missed) status |= field::kStatusProbeMissed;
   if (in.waiting) status |= field::kStatusWaiting;
+  if (in.stale) status |= field::kStatusStale;
   return status;
 }
 
@@ -148,6 +149,8 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.marks;
     case reg::kFeedBegun:
       return in.feed_begun;
+    case reg::kStaleTicks:
+      return in.stale_ticks;
     default:
       return in.underruns;
   }

@@ -12,22 +12,26 @@ bool Sequencer::judged(const Inputs& in) const {
 }
 
 bool Sequencer::takes(const Inputs& in) const {
-  const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
-  return owed_ != 0 && ticking && in.engine_ready && (out_.feed_active || out_.direct);
+  return owed_ != 0 && ticking_path() && in.engine_ready && (out_.feed_active || out_.direct);
 }
 
 Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   Decision d;
   d.take = takes(in);
-  d.path_ends = d.take && !drained_ && path_left_ == 1;
+  d.path_ends = d.take && !drained_ && !out_.stale && path_left_ == 1;
   d.path_over = judged(in);
-  d.piece_ends = d.take && out_.feed_active && piece_left_ == 1;
-  const bool free = path_ == Path::None || (path_ == Path::Line && d.path_ends);
+  d.piece_ends = d.take && out_.feed_active && !out_.spent && piece_left_ == 1;
+  const PositionStreaming::Outputs& streaming = streaming_.outputs();
+  const bool free = path_ == Path::None || out_.stale || (path_ == Path::Line && d.path_ends);
   d.at_probe_end = geometry_.decoded() && geometry_.is_probe_end();
   d.path_dropped = geometry_drops(in);
   d.piece_dropped = feed_drops(in);
-  d.path_begins = path_waits() && free && !out_.incomplete && !in.drop;
-  d.piece_begins = piece_waits() && !in.wait && !in.drop && (!out_.feed_active || d.piece_ends);
+  d.path_begins = path_waits() && free && !out_.incomplete && !streaming.lost && !in.drop;
+  d.period = streaming.on && path_ == Path::Line && d.path_ends;
+  const bool barrier = geometry_.decoded() && geometry_.is_barrier() && !d.path_dropped && !streaming.lost;
+  d.goes_on = (d.period || out_.stale) && !d.path_begins && !barrier;
+  d.piece_begins = piece_waits() && !in.wait && !in.drop && (!out_.feed_active || out_.spent || d.piece_ends);
+  d.piece_goes_on = (d.piece_ends ? streaming.on : out_.spent && ticking_path()) && !d.piece_begins;
   d.barrier_begins = barrier_ == Barrier::Beginning && now_ == barrier_at_;
   d.barrier_ends = barrier_over(in);
   d.barrier_done = barrier_ == Barrier::Done;
@@ -57,32 +61,35 @@ bool Sequencer::mismatches() const {
 void Sequencer::clock(const Inputs& in) {
   const unsigned inputs = (in.cut ? 1U : 0) | (in.geometry_empty ? 2U : 0) | (in.feed_empty ? 4U : 0) |
                           (in.direct_go ? 8U : 0) | (in.direct_load.valid ? 16U : 0) | (in.wait ? 32U : 0) |
-                          (in.halt ? 64U : 0) | (in.drop ? 128U : 0) | (in.probe_taken ? 256U : 0);
-  if (!calm_ || inputs != calm_inputs_) {
+                          (in.halt ? 64U : 0) | (in.drop ? 128U : 0) | (in.probe_taken ? 256U : 0) |
+                          (in.at_rest ? 512U : 0);
+  const bool arrivals = in.setting.set || in.arrives || in.arrived;
+  if (!calm_ || arrivals || inputs != calm_inputs_) {
     calm_ = !clock_all_ && calm(in);
     calm_inputs_ = inputs;
   }
   const bool take = takes(in);
-  const bool ends = take && (path_left_ == 1 || piece_left_ == 1);
+  const bool ends = take && ticks_left() == 1;
   if (!calm_ || ends || barrier_over(in)) {
     calm_ = false;
     return clock_all(in);
   }
   clock_ticks(in, take);
   path_left_ -= take ? 1 : 0;
-  piece_left_ -= take ? 1 : 0;
+  piece_left_ -= take && !out_.spent ? 1 : 0;
   out_.moving = out_.moving || take;
   ++now_;
 }
 
 void Sequencer::clock_all(const Inputs& in) {
   const Decision d = decide(in);
+  if (has_streaming_) clock_streaming(in, d);
   const bool mismatch = mismatches();
   const bool feed_idle = feed_.idle();
   out_.idle = geometry_idle_ && feed_idle && in.feed_empty && !out_.feed_active;
   geometry_idle_ = geometry_.idle() && in.geometry_empty && path_ == Path::None && barrier_ == Barrier::None;
   out_.mismatch = mismatch && !in.drop;
-  out_.over = d.path_over || (d.path_ends && path_ == Path::Line);
+  out_.over = d.path_over || (d.path_ends && path_ == Path::Line) || (out_.stale && !d.goes_on);
   out_.incomplete = d.path_over && path_ == Path::Engine && in.elsewhere;
   const bool path_drop_counts = drop_counts(geometry_, d.path_dropped);
   record_ = {d.path_begins || d.barrier_begins || path_drop_counts, in.direct_go};
@@ -119,7 +126,7 @@ void Sequencer::count_begun(const Inputs& in, const Decision& d, bool path_drops
 // Ticks made, owed and taken.
 void Sequencer::clock_ticks(const Inputs& in, bool take) {
   const bool running = out_.feed_active || out_.direct;
-  const bool ticking = path_ == Path::Direct || (path_ != Path::None && !drained_);
+  const bool ticking = ticking_path();
   const bool stall = owed_ > 1;
   out_.tick = take;
   out_.feed_enable = in.enable && out_.feed_active && ticking && !stall;
@@ -165,7 +172,7 @@ void Sequencer::clock_barrier(const Decision& d) {
 
 void Sequencer::clock_path(const Inputs& in, const Decision& d) {
   out_.swap = d.path_begins || in.direct_go;
-  if (d.take) --path_left_;
+  if (d.take && !out_.stale) --path_left_;
   if (out_.swap) {
     out_.engine = in.direct_go ? card_map::engine::kLines : geometry_.engine();
     const bool on_lines = out_.engine == card_map::engine::kLines;
@@ -177,9 +184,10 @@ void Sequencer::clock_path(const Inputs& in, const Decision& d) {
   } else if (d.path_ends && path_ != Path::Line) {
     drained_ = true;
     drained_at_ = now_;
-  } else if (d.path_ends || d.path_over) {
+  } else if ((d.path_ends || d.path_over || out_.stale) && !d.goes_on) {
     path_ = Path::None;
   }
+  out_.stale = d.goes_on;
   out_.direct = path_ == Path::Direct;
   out_.path_active = path_ != Path::None;
   if (out_.swap || d.barrier_begins)
@@ -194,14 +202,16 @@ void Sequencer::clock_piece(const Decision& d) {
     out_.piece_class = card_map::constant::kClassFeed;
   else if (d.piece_begins)
     out_.piece_class = feed_.flags();
-  if (d.take) out_.moving = d.piece_runs && (d.piece_begins || !d.piece_ends);
-  if (d.take) --piece_left_;
+  const bool over = (d.piece_ends || out_.spent) && !d.piece_goes_on && !d.piece_begins;
+  if (d.take || out_.spent) out_.moving = d.piece_runs && !over;
+  if (d.take && !out_.spent) --piece_left_;
   if (d.piece_begins) {
     out_.feed_active = true;
     piece_left_ = piece_count_ & kCountMask;
-  } else if (d.piece_ends) {
+  } else if (over) {
     out_.feed_active = false;
   }
+  out_.spent = d.piece_goes_on;
 }
 
 bool Sequencer::settled(const Inputs& in) const {
@@ -209,6 +219,26 @@ bool Sequencer::settled(const Inputs& in) const {
   if (ticking()) return in.engine_ready && owed_ <= 1;
   return !takes(in) && !tick_arrives_ && !out_.tick && !out_.feed_enable && !in.feed_tick &&
          (out_.feed_active || owed_ == 0);
+}
+
+PositionStreaming::Inputs Sequencer::streaming_inputs(const Inputs& in) const {
+  PositionStreaming::Inputs s;
+  s.cut = in.cut;
+  s.setting = in.setting;
+  s.write = in.arrives;
+  s.whole = in.arrived;
+  s.rest = out_.idle && in.at_rest;
+  return s;
+}
+
+void Sequencer::clock_streaming(const Inputs& in, const Decision& d) {
+  PositionStreaming::Inputs s = streaming_inputs(in);
+  s.begin = d.path_begins || in.direct_go;
+  s.ticks = path_count_ & kCountMask;
+  s.period = d.period;
+  s.goes_on = d.goes_on;
+  s.stale_tick = d.take && out_.stale;
+  streaming_.clock(s);
 }
 
 // With inputs as these nothing is decided but ticks, and a dwell's end.
@@ -220,9 +250,11 @@ bool Sequencer::calm(const Inputs& in) const {
   if ((geometry_.idle() && !in.geometry_empty) || (feed_.idle() && !in.feed_empty)) return false;
   if (geometry_.waiting() && path_ != Path::Engine) return false;
   if (instant() || in.halt || in.probe_taken) return false;
+  if (out_.stale || (out_.spent && !ticking_path())) return false;
+  if (has_streaming_ && !streaming_.quiet(streaming_inputs(in))) return false;
   if (geometry_drops(in) || feed_drops(in)) return false;
   const bool piece_may_begin = piece_waits() && !in.wait;
-  if ((path_waits() && path_ == Path::None) || (piece_may_begin && !out_.feed_active)) return false;
+  if ((path_waits() && path_ == Path::None) || (piece_may_begin && (!out_.feed_active || out_.spent))) return false;
   if (barrier_ == Barrier::Beginning || barrier_ == Barrier::Done || (mismatches() && !in.drop)) return false;
   const bool geometry_stands = geometry_.decoded() && geometry_.is_barrier() && path_ == Path::None;
   const bool feed_stands = feed_.decoded() && feed_.is_barrier() && !out_.feed_active;
@@ -238,7 +270,7 @@ void Sequencer::jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flig
   if (!ticking()) return;
   path_left_ -= ticks;
   out_.moving = out_.moving || ticks != 0;
-  piece_left_ -= ticks;
+  if (!out_.spent) piece_left_ -= ticks;
   tick_arrives_ = (in_flight >> kArrives & 1) != 0;
   owed_ = in_flight >> kOwed & 1;
   out_.tick = (in_flight >> kTaken & 1) != 0;
@@ -247,7 +279,7 @@ void Sequencer::jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flig
 
 // What runs is over where it stands, a barrier too, unless it is PROBE_END; what is decoded stays.
 void Sequencer::halt(const Decision& d) {
-  out_.direct = out_.path_active = out_.feed_active = out_.moving = false;
+  out_.direct = out_.path_active = out_.feed_active = out_.moving = out_.stale = out_.spent = false;
   out_.piece_class = card_map::constant::kClassFeed;
   path_ = Path::None;
   drained_ = false;

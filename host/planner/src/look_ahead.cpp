@@ -18,14 +18,15 @@ constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes d
 // Blocks that are planned, but whose stop distances wait for what follows.
 constexpr std::size_t kSpare = 4096;
 
-// Lines of all axes and feed pieces.
+// In the card's queue, with all its axes.
+std::uint64_t halfwords_of(card_map::Opcode opcode, unsigned axes) {
+  const auto mask = static_cast<std::uint8_t>((1U << axes) - 1);
+  return card_map::queue_halfwords(*card_map::find_command(static_cast<std::uint8_t>(opcode)), mask);
+}
+
 QueueLimits queues_of(const CardLimits& card) {
-  const auto halfwords = [&](card_map::Opcode opcode) {
-    const auto mask = static_cast<std::uint8_t>((1U << card.axes) - 1);
-    return card_map::queue_halfwords(*card_map::find_command(static_cast<std::uint8_t>(opcode)), mask);
-  };
-  return {std::max(1U, card.geometry_depth / halfwords(card_map::Opcode::Line)),
-          std::max(1U, card.feed_depth / halfwords(card_map::Opcode::Feed))};
+  return {card.geometry_depth,
+          std::max<std::uint64_t>(1, card.feed_depth / halfwords_of(card_map::Opcode::Feed, card.axes))};
 }
 
 std::unique_ptr<SpeedPlan> plan_for(SpeedProfile profile, std::size_t window) {
@@ -40,6 +41,8 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
     : blocks_(blocks),
       settings_(settings),
       clock_hz_(card.clock_hz / machine.motion.max_override),
+      axes_(card.axes),
+      line_halfwords_(halfwords_of(card_map::Opcode::Line, card.axes)),
       gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kFewestAxes, card.axes)))),
       junctions_(machine),
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
@@ -75,16 +78,37 @@ void Planner::LookAhead::go_on() {
 void Planner::LookAhead::read_block() {
   PathEntry& entry = path_.push();
   entry.timed = false;
+  entry.queued = queued_;
   if (!blocks_.next(entry.block)) {
     path_.unpush();
     ended_ = true;
     if (tail_ != nullptr) end_run(*tail_);
     return;
   }
+  entry.halfwords = halfwords(entry.block);
+  queued_ += entry.halfwords;
+  entry.begin_ticks = entry.end_ticks = end_tick_;
   if (moves(entry.block)) {
     add_motion(entry);
   } else if (tail_ != nullptr) {
     end_run(*tail_);
+  }
+}
+
+// Of its commands in the geometry queue.
+std::uint64_t Planner::LookAhead::halfwords(const Block& block) const {
+  const std::uint64_t outputs = switches(block) ? halfwords_of(card_map::Opcode::Output, axes_) : 0;
+  switch (block.geometry) {
+    case Geometry::kLine:
+      return outputs + line_halfwords_;
+    case Geometry::kArc:
+      return outputs + halfwords_of(card_map::Opcode::Arc, axes_);
+    case Geometry::kArcChord:
+      return outputs + block.parts * halfwords_of(card_map::Opcode::ArcChord, axes_);
+    case Geometry::kChords:
+      return outputs + block.chord_lines * line_halfwords_;
+    default:
+      return outputs + halfwords_of(card_map::Opcode::Dwell, axes_);
   }
 }
 

@@ -29,6 +29,7 @@ class Planner::LookAhead {
   void go_on();
   void read_block();
   void add_motion(PathEntry& entry);
+  std::uint64_t halfwords(const Block& block) const;
   void end_run(PathEntry& last);
   void push_span(const PathEntry& entry, double exit_speed);
   void place(PathEntry& entry, double density);
@@ -40,6 +41,8 @@ class Planner::LookAhead {
   BlockBuilder& blocks_;
   PlannerSettings settings_;
   double clock_hz_;  // enabled clocks a second
+  unsigned axes_;    // of the card
+  std::uint64_t line_halfwords_;
   double gap_free_ticks_;
   Junctions junctions_;
   PathRing path_;
@@ -49,6 +52,7 @@ class Planner::LookAhead {
   // Of the last motion: where it ends; its density, and where that is what it is from; its class.
   double end_mm_ = 0;
   std::uint64_t end_tick_ = 0;
+  std::uint64_t queued_ = 0;  // halfwords
   double density_ = 0;
   double base_mm_ = 0;
   std::uint64_t base_tick_ = 0;

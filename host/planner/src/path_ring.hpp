@@ -9,7 +9,7 @@
 
 namespace trammel::planner {
 
-// Length and feed ticks are counted from the start of the program.
+// Length and feed ticks are counted from the start of the program. What does not move has ticks too: none.
 struct PathEntry {
   Block block;
   double begin = 0;  // mm
@@ -17,10 +17,12 @@ struct PathEntry {
   double density = 0;  // feed ticks a mm
   std::uint64_t begin_ticks = 0;
   std::uint64_t end_ticks = 0;
-  bool cut = false;   // a piece ends with it: another class or density follows, or a stop
-  bool stop = false;  // ends at rest
-  double jump = 0;    // at its end, at a speed of 1 mm/s: of an axis's velocity, mm/s
-  double bend = 0;    // and of the acceleration, mm/s^2
+  std::uint64_t queued = 0;     // halfwords of the geometry queue, counted likewise: before its commands
+  std::uint64_t halfwords = 0;  // > 0, of these
+  bool cut = false;             // a piece ends with it: another class or density follows, or a stop
+  bool stop = false;            // ends at rest
+  double jump = 0;              // at its end, at a speed of 1 mm/s: of an axis's velocity, mm/s
+  double bend = 0;              // and of the acceleration, mm/s^2
   // From the quantiser.
   bool timed = false;  // the rest is known
   bool short_sight = false;

@@ -349,20 +349,31 @@ void Quantiser::see_next() {
   ++seen_;
 }
 
-// Ticks that are queued behind a piece's begin when queues are full; where fewer paths or pieces are known than fit,
-// the others are taken to be as long.
+// Ticks that are queued behind a piece's begin when queues are full; where less is known than fits, the rest is taken
+// to be as long.
 double Quantiser::reach(const Piece& first) {
-  const auto all = [&first](std::uint64_t end, std::uint64_t known, std::uint64_t fit) {
-    const double ticks = end > first.begin ? static_cast<double>(end - first.begin) : 0;
-    return ticks * static_cast<double>(fit) / static_cast<double>(known);
-  };
-  const std::uint64_t paths = std::min(queues_.paths, path_.end() - first.block);
-  std::uint64_t path = first.block + paths - 1;
-  while (!moves(path_[path].block)) --path;  // a barrier has no ticks
   const std::uint64_t pieces = std::min(queues_.pieces, last_ - completed_);
   const Piece& last = piece(completed_ + pieces - 1);
-  return std::min(all(path_[path].end_ticks, paths, queues_.paths),
-                  all(last.begin + last.command.ticks, pieces, queues_.pieces));
+  const double ticks = static_cast<double>(last.begin + last.command.ticks - first.begin);
+  return std::min(path_reach(first), ticks * static_cast<double>(queues_.pieces) / static_cast<double>(pieces));
+}
+
+// By the paths. The commands of a block have equal ticks, and its pieces begin anywhere in it.
+double Quantiser::path_reach(const Piece& first) {
+  const auto fit = static_cast<double>(queues_.halfwords);
+  const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };
+  const auto before = [](std::uint64_t at, std::uint64_t from) { return static_cast<double>(at - from); };
+  const PathEntry& begin = path_[first.block];
+  const double gone = share(before(first.begin, begin.begin_ticks), before(begin.end_ticks, begin.begin_ticks)) *
+                      static_cast<double>(begin.halfwords);
+  reached_ = std::max(reached_, first.block);
+  while (reached_ + 1 != path_.end() && before(path_[reached_ + 1].queued, begin.queued) - gone < fit) ++reached_;
+  const PathEntry& end = path_[reached_];
+  const double known = std::min(fit, before(end.queued + end.halfwords, begin.queued) - gone);
+  const double part = known - (before(end.queued, begin.queued) - gone);
+  const double ticks = before(end.begin_ticks, begin.begin_ticks) - before(first.begin, begin.begin_ticks) +
+                       part / static_cast<double>(end.halfwords) * before(end.end_ticks, end.begin_ticks);
+  return ticks * fit / known;
 }
 
 void Quantiser::complete_first() {

@@ -16,9 +16,9 @@
 
 namespace trammel::planner {
 
-// What the card's queues hold of the shortest commands.
+// What the card's queues hold.
 struct QueueLimits {
-  std::uint64_t paths = 0;
+  std::uint64_t halfwords = 0;  // of geometry
   std::uint64_t pieces = 0;
 };
 
@@ -80,6 +80,7 @@ class Quantiser {
   void see_next();
   void complete_first();
   double reach(const Piece& first);
+  double path_reach(const Piece& first);
   // Of what is numbered on, in a ring.
   static std::size_t slot(std::uint64_t i) { return static_cast<std::size_t>(i % kPieces); }
   Piece& piece(std::uint64_t i) { return pieces_[slot(i)]; }
@@ -114,6 +115,7 @@ class Quantiser {
   static constexpr std::size_t kPieces = 16384;
 
   std::vector<Piece> pieces_;  // a ring
+  std::uint64_t reached_ = 0;  // block, with whose commands a full queue ends
   std::uint64_t first_ = 0;
   std::uint64_t completed_ = 0;  // from the first: complete
   std::uint64_t seen_ = 0;       // their rates count in `highest_`

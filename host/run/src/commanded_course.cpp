@@ -90,10 +90,11 @@ void CommandedCourse::planned(const planner::PlannedBlock& planned, std::uint64_
   const planner::Block& block = planned.block;
   if (!planner::moves(block)) return;
   const CommandedPath path(block, steps_per_mm_);
-  if (points_.given() == 0) points_.add(path.at(0));
+  if (!begun_) points_.add({path.at(0), false});
+  begun_ = true;
   const double turns = std::min(std::ceil(block.exact.sweep / 6.28), kMostTurns);
   const double points = block.geometry == planner::Geometry::kLine ? 1 : kArcPoints * turns;
-  for (double i = 1; i <= points; ++i) points_.add(path.at(i / points));
+  for (double i = 1; i <= points; ++i) points_.add({path.at(i / points), block.rapid});
   const int rank = detail_rank(block);
   if (rank <= best_rank_) return;
   best_rank_ = rank;

@@ -3,236 +3,146 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "trammel/chart/chart.hpp"
+
 namespace trammel::run {
-
-void ThinnedPath::add(const Point& point) {
-  last_ = point;
-  if (given_++ % stride_ != 0) return;
-  kept_.push_back(point);
-  if (kept_.size() < 2 * limit_) return;
-  for (std::size_t i = 0; i < limit_; ++i) kept_[i] = kept_[2 * i];
-  kept_.resize(limit_);
-  stride_ *= 2;
-}
-
-std::vector<Point> ThinnedPath::points() const {
-  std::vector<Point> all = kept_;
-  if (given_ > 0) all.push_back(last_);
-  return all;
-}
-
-void SpeedOverTime::add(std::uint64_t cycle, std::size_t axis, double millimetres) {
-  while (cycle / bin_width_ >= kBins) {
-    for (std::size_t i = 0; i < kBins / 2; ++i) {
-      for (std::size_t a = 0; a < 3; ++a) bins_[i][a] = bins_[2 * i][a] + bins_[2 * i + 1][a];
-    }
-    std::fill(bins_.begin() + kBins / 2, bins_.end(), Point{});
-    bin_width_ *= 2;
-    used_ = (used_ + 1) / 2;
-  }
-  const auto bin = static_cast<std::size_t>(cycle / bin_width_);
-  bins_[bin][axis] += millimetres;
-  used_ = std::max(used_, bin + 1);
-}
-
-std::vector<SpeedOverTime::Sample> SpeedOverTime::samples() const {
-  std::vector<Sample> result;
-  const double width = static_cast<double>(bin_width_) / clock_hz_;
-  for (std::size_t i = 0; i < used_; ++i) {
-    result.push_back(
-        {(static_cast<double>(i) + 0.5) * width, std::hypot(bins_[i][0], bins_[i][1], bins_[i][2]) / width});
-  }
-  return result;
-}
-
 namespace {
 
+constexpr double kWidth = 1040;
+constexpr double kTop = 40;
+constexpr double kPathHeight = 500;
+constexpr double kSideHeight = 300;
+constexpr double kSpeedHeight = 240;
 constexpr const char* kAxisNames = "XYZ";
-constexpr double kWidth = 1000;
-constexpr double kMargin = 60;
-
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-  void take(double v) {
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  double span() const { return high > low ? high - low : 0; }
-};
 
 struct View {
-  std::size_t across = 0;  // axis drawn to the right
-  std::size_t up = 1;      // axis drawn upwards
+  std::size_t across;
+  std::size_t up;
 };
 
-// The plane in which the path covers the largest area; XY on a tie.
-View choose_view(const std::vector<Point>& points) {
-  std::array<Range, 3> range;
-  for (const Point& p : points) {
-    for (std::size_t i = 0; i < 3; ++i) range[i].take(p[i]);
+std::array<double, 3> spans_of(const std::vector<PathPoint>& points) {
+  std::array<double, 3> spans{};
+  if (points.empty()) return spans;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto [low, high] = std::minmax_element(
+        points.begin(), points.end(), [i](const PathPoint& a, const PathPoint& b) { return a.at[i] < b.at[i]; });
+    spans[i] = high->at[i] - low->at[i];
   }
-  View best;
-  double best_area = range[0].span() * range[1].span();
+  return spans;
+}
+
+// XY, XZ and YZ where three axes move, XY first; else the one plane in which the path lies, XY or XZ for a single axis.
+std::vector<View> views_of(const std::vector<PathPoint>& points) {
+  const std::array<double, 3> spans = spans_of(points);
+  const auto moves = [&](std::size_t i) { return spans[i] > 0; };
+  if (moves(0) && moves(1) && moves(2)) return {{0, 1}, {0, 2}, {1, 2}};
+  if (!moves(2)) return {{0, 1}};
+  return {moves(1) ? View{1, 2} : View{0, 2}};
+}
+
+chart::Point seen(const Point& point, View view) { return {point[view.across], point[view.up]}; }
+
+// The ways of one kind; what is of the other kind interrupts the line.
+std::vector<chart::Point> ways(const std::vector<PathPoint>& points, View view, bool rapid) {
+  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+  std::vector<chart::Point> line;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (points[i].rapid != rapid) continue;
+    const bool goes_on = i > 1 && points[i - 1].rapid == rapid;
+    if (!goes_on && !line.empty()) line.push_back({kGap, kGap});
+    if (!goes_on) line.push_back(seen(points[i - 1].at, view));
+    line.push_back(seen(points[i].at, view));
+  }
+  return line;
+}
+
+chart::Panel plane(const Plot& plot, View view, const std::string& title) {
+  chart::Panel panel{title,
+                     {fmt::format("{}, {}", kAxisNames[view.across], plot.unit)},
+                     {fmt::format("{}, {}", kAxisNames[view.up], plot.unit)},
+                     {}};
+  panel.equal_scale = true;
+  return panel;
+}
+
+chart::Panel path_panel(const Plot& plot, View view, const std::string& title) {
+  chart::Panel panel = plane(plot, view, title);
+  std::vector<chart::Point> made;
+  for (const PathPoint& point : plot.executed) made.push_back(seen(point.at, view));
+  // Rapids last: where the pulses run along them, their dashes show.
+  panel.series = {
+      {"commanded", chart::colour(1), ways(plot.commanded, view, false), chart::Mark::kLine, 2.2},
+      {plot.executed_thinned ? "pulses, thinned" : "pulses", chart::colour(0), made, chart::Mark::kLine, 0.8},
+      {"rapids", "#444444", ways(plot.commanded, view, true), chart::Mark::kLine, 1.2, true}};
+  // A program without rapids, or without anything else, has no such line to explain.
+  for (chart::Series& series : panel.series) {
+    if (series.points.empty()) series.label.clear();
+  }
+  if (made.empty()) return panel;
+  panel.series.push_back({"start", chart::colour(2), {made.front()}, chart::Mark::kCircles, 6});
+  panel.series.push_back({"end", chart::colour(2), {made.back()}, chart::Mark::kDots, 4});
+  return panel;
+}
+
+chart::Panel detail_panel(const Plot& plot, View view) {
+  chart::Panel panel = plane(plot, view, "Magnified: every pulse of one stretch");
+  std::vector<chart::Point> commanded;
+  std::vector<chart::Point> made;
+  for (const Point& point : plot.detail_commanded) commanded.push_back(seen(point, view));
+  for (const Point& point : plot.detail_executed) made.push_back(seen(point, view));
+  panel.series = {{"commanded", chart::colour(1), commanded, chart::Mark::kLine, 2.2},
+                  {"", chart::colour(0), made, chart::Mark::kLine, 0.8},
+                  {"pulses", chart::colour(0), made, chart::Mark::kDots, 2.2}};
+  return panel;
+}
+
+// The plane in which the stretch is largest.
+View detail_view(const Plot& plot) {
+  std::vector<PathPoint> points;
+  for (const Point& point : plot.detail_executed) points.push_back({point, false});
+  const std::array<double, 3> spans = spans_of(points);
+  View best{0, 1};
   for (const View view : {View{0, 2}, View{1, 2}}) {
-    const double area = range[view.across].span() * range[view.up].span();
-    if (area > best_area) {
-      best = view;
-      best_area = area;
-    }
+    if (spans[view.across] * spans[view.up] > spans[best.across] * spans[best.up]) best = view;
   }
+  if (spans[0] == 0 && spans[1] == 0 && spans[2] > 0) return {0, 2};
   return best;
 }
 
-// 1, 2 or 5 times a power of ten, so that 4 to 10 of them make `whole`.
-double round_step(double whole) {
-  const double power = std::pow(10.0, std::floor(std::log10(whole / 4)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * power <= whole / 4) return factor * power;
-  }
-  return power;
+chart::Panel speed_panel(const Plot& plot) {
+  chart::Panel panel{"Speed along the path, from the intervals of the steps",
+                     {"time, s"},
+                     {fmt::format("{}/s", plot.unit)},
+                     {{"", chart::colour(2), {}, chart::Mark::kLine, 1.3}}};
+  for (const PathSpeed::Sample& sample : plot.speed) panel.series[0].points.push_back({sample.seconds, sample.speed});
+  panel.x.low = 0;
+  panel.y.low = 0;
+  return panel;
 }
-
-// Maps millimetres into a panel with equal scales on both axes.
-class Panel {
- public:
-  Panel(const std::vector<Point>& points, View view, double left, double top, double width, double height)
-      : view_(view), left_(left), top_(top), width_(width), height_(height) {
-    for (const Point& p : points) {
-      x_.take(p[view.across]);
-      y_.take(p[view.up]);
-    }
-    const double x_span = std::max(x_.span(), 1e-3);
-    const double y_span = std::max(y_.span(), 1e-3);
-    scale_ = 0.94 * std::min(width / x_span, height / y_span);
-    if (points.empty()) x_ = y_ = Range{0, 0};
-  }
-  std::string point(const Point& p) const {
-    const double x = left_ + width_ / 2 + scale_ * (p[view_.across] - (x_.low + x_.high) / 2);
-    const double y = top_ + height_ / 2 - scale_ * (p[view_.up] - (y_.low + y_.high) / 2);
-    return fmt::format("{:.1f},{:.1f}", x, y);
-  }
-  std::string line(const std::vector<Point>& points, const char* style) const {
-    std::string text = "<polyline points=\"";
-    for (const Point& p : points) {
-      text += point(p);
-      text += ' ';
-    }
-    return text + fmt::format("\" {}/>\n", style);
-  }
-  std::string dots(const std::vector<Point>& points, double radius, const char* style) const {
-    std::string text;
-    for (const Point& p : points) {
-      const std::string at = point(p);
-      const auto comma = at.find(',');
-      text += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {}/>\n", at.substr(0, comma), at.substr(comma + 1),
-                          radius, style);
-    }
-    return text;
-  }
-  std::string frame(const std::string& title) const {
-    return fmt::format(
-        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" class=\"frame\"/>\n<text x=\"{}\" y=\"{}\">{}</text>\n"
-        "<text x=\"{}\" y=\"{}\" class=\"small\">{} {:.2f} .. {:.2f} mm, {} {:.2f} .. {:.2f} mm</text>\n",
-        left_, top_, width_, height_, left_, top_ - 8, title, left_ + 6, top_ + height_ - 8, kAxisNames[view_.across],
-        x_.low, x_.high, kAxisNames[view_.up], y_.low, y_.high);
-  }
-
- private:
-  View view_;
-  double left_, top_, width_, height_;
-  Range x_, y_;
-  double scale_ = 1;
-};
-
-std::string speed_panel(const std::vector<SpeedOverTime::Sample>& speed, double top, double height) {
-  const double width = kWidth - 2 * kMargin;
-  double fastest = 1e-9;
-  double longest = 1e-9;
-  for (const auto& s : speed) {
-    fastest = std::max(fastest, s.speed);
-    longest = std::max(longest, s.seconds);
-  }
-  std::string text = fmt::format(
-      "<text x=\"{0}\" y=\"{1}\">speed along the path, mm/s</text>\n<rect x=\"{0}\" y=\"{2}\" width=\"{3}\" "
-      "height=\"{4}\" class=\"frame\"/>\n",
-      kMargin, top - 8, top, width, height);
-  for (double v = 0; v <= fastest; v += round_step(fastest)) {
-    const double y = top + height * (1 - 0.94 * v / fastest);
-    text += fmt::format(
-        "<line x1=\"{}\" y1=\"{:.1f}\" x2=\"{}\" y2=\"{:.1f}\" class=\"grid\"/><text x=\"{}\" y=\"{:.1f}\" "
-        "class=\"small\" text-anchor=\"end\">{:g}</text>\n",
-        kMargin, y, kMargin + width, y, kMargin - 6, y + 4, v);
-  }
-  for (double t = 0; t <= longest; t += round_step(longest)) {
-    text += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"small\" text-anchor=\"middle\">{:g} s</text>\n",
-                        kMargin + width * t / longest, top + height + 16, t);
-  }
-  text += "<polyline points=\"";
-  for (const auto& s : speed) {
-    text += fmt::format("{:.1f},{:.1f} ", kMargin + width * s.seconds / longest,
-                        top + height * (1 - 0.94 * s.speed / fastest));
-  }
-  return text + "\" class=\"speed\"/>\n";
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&') {
-      result += "&amp;";
-    } else if (c == '<') {
-      result += "&lt;";
-    } else if (c == '>') {
-      result += "&gt;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
-
-constexpr const char* kStyle = R"(<style>
-text{font:14px sans-serif;fill:#222} .small{font-size:11px;fill:#555} .title{font-size:18px;font-weight:bold}
-.frame{fill:#fcfcfc;stroke:#999} .grid{stroke:#ddd} polyline{fill:none}
-.commanded{stroke:#d62728;stroke-width:1.4} .executed{stroke:#1f77b4;stroke-width:0.8}
-.pulse{fill:#1f77b4} .speed{stroke:#2ca02c;stroke-width:1.2}
-</style>
-)";
 
 }  // namespace
 
 std::string svg(const Plot& plot) {
-  constexpr double kPanelTop = 70;
-  constexpr double kPanelHeight = 520;
-  constexpr double kPathWidth = 540;
-  constexpr double kDetailLeft = kMargin + kPathWidth + 30;
-  constexpr double kSpeedTop = kPanelTop + kPanelHeight + 60;
-  constexpr double kSpeedHeight = 180;
-  std::vector<Point> all = plot.commanded;
+  std::vector<PathPoint> all = plot.commanded;
   all.insert(all.end(), plot.executed.begin(), plot.executed.end());
-  const Panel path(all, choose_view(all), kMargin, kPanelTop, kPathWidth, kPanelHeight);
-  std::vector<Point> detail = plot.detail_commanded;
-  detail.insert(detail.end(), plot.detail_executed.begin(), plot.detail_executed.end());
-  const Panel zoom(detail, choose_view(detail), kDetailLeft, kPanelTop, kWidth - kDetailLeft - kMargin, kPanelHeight);
-
-  std::string text = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n{2}"
-      "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<text x=\"{3}\" y=\"30\" class=\"title\">{4}</text>\n",
-      kWidth, kSpeedTop + kSpeedHeight + 40, kStyle, kMargin, escaped(plot.title));
-  text += path.frame(plot.executed_thinned ? "path: commanded (red), pulses (blue, thinned)"
-                                           : "path: commanded (red), pulses (blue)");
-  text += path.line(plot.commanded, "class=\"commanded\"");
-  text += path.line(plot.executed, "class=\"executed\"");
-  text += zoom.frame("magnified: every pulse of one stretch");
-  text += zoom.line(plot.detail_commanded, "class=\"commanded\"");
-  text += zoom.line(plot.detail_executed, "class=\"executed\"");
-  text += zoom.dots(plot.detail_executed, 2.2, "class=\"pulse\"");
-  text += speed_panel(plot.speed, kSpeedTop, kSpeedHeight);
-  return text + "</svg>\n";
+  const std::vector<View> views = views_of(all);
+  const double sides = views.size() > 1 ? kSideHeight : 0;
+  chart::Figure figure(kWidth, kTop + kPathHeight + sides + kSpeedHeight, plot.title);
+  const double detail_left = 0.58 * kWidth;
+  figure.add(path_panel(plot, views.front(), views.size() > 1 ? "Path, from above" : "Path"),
+             {0, kTop, detail_left, kPathHeight});
+  figure.add(detail_panel(plot, detail_view(plot)), {detail_left, kTop, kWidth - detail_left, kPathHeight});
+  double left = 0;
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    chart::Panel side = path_panel(plot, views[i], i == 1 ? "Path, from the front" : "Path, from the right");
+    side.legend = false;
+    figure.add(side, {left, kTop + kPathHeight, kWidth / 2, kSideHeight});
+    left += kWidth / 2;
+  }
+  figure.add(speed_panel(plot), {0, kTop + kPathHeight + sides, kWidth, kSpeedHeight});
+  return figure.svg();
 }
 
 }  // namespace trammel::run

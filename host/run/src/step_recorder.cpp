@@ -18,7 +18,7 @@ StepRecorder::StepRecorder(const Options& options)
   if (options.path_steps != nullptr) {
     path_step_list_ = std::make_unique<CsvWriter>(*options.path_steps, "command,tick,axis,direction");
   }
-  if (options.plot) executed_.add(millimetres());
+  if (options.plot) executed_.add({millimetres(), false});
 }
 
 StepRecorder::~StepRecorder() = default;
@@ -40,7 +40,7 @@ void StepRecorder::pin_step(const driver::PinStep& step) {
 
 void StepRecorder::point_of_path() {
   const Point point = millimetres();
-  executed_.add(point);
+  executed_.add({point, false});
   if (detail_command_ && last_->command >= *detail_command_ && detail_.size() < kDetailPoints) {
     detail_.push_back(point);
   }

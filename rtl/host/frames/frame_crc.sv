@@ -30,7 +30,7 @@ module frame_crc (
   always_ff @(posedge clk_i) begin
     if (busy_o) begin
       count_q <= count_q + 4'd1;
-      shift_q <= {1'b0, shift_q[7:1]};
+      shift_q <= shift_q >> 1;
       state_q <= {1'b0, state_q[31:1]} ^ (feedback ? POLYNOMIAL : 32'd0);
     end
     if (start_i) begin

@@ -72,7 +72,7 @@ module frame_engine (
 
   frame_crc crc (
       .*,
-      .clear_i(receive_clear || send || sent || restart_i),
+      .clear_i(receive_clear || sent || restart_i),
       .start_i(receive_add || send_add),
       .feed_i (!sending || crc_feed),
       .byte_i (sending ? sent_byte : received),
@@ -155,8 +155,9 @@ module frame_engine (
   (* no_rw_check *) logic [7:0] memory[0:511];
 
   always_ff @(posedge clk_i) begin
+    // What stands at the receiver while no byte comes goes to the place of the next one.
     if (execute_store) memory[{1'b1, execute_place}] <= execute_byte;
-    else if (receive_add) memory[{1'b0, receive_place}] <= received;
+    else memory[{1'b0, receive_place}] <= received;
     ram_q <= memory[{sending, sending?send_place : execute_place}];
   end
 endmodule

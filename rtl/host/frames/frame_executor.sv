@@ -33,14 +33,12 @@ module frame_executor (
   localparam logic [5:0] STATE_COUNT = 6'd5;
   localparam logic [9:0] STATE_ADDRESS = card_map_pkg::ADDR_STATUS[11:2];
 
-  localparam int IDLE = 0;
-  localparam int FETCH = 1;  // a word to write, from the RAM
-  localparam int ASK = 2;
-  localparam int WAIT = 3;
-  localparam int STORE = 4;  // a word that was read, into the RAM
-  localparam int NEXT = 5;
+  localparam int FETCH = 0;  // a word to write, from the RAM
+  localparam int ASK = 1;
+  localparam int STORE = 2;  // a word that was read, into the RAM
+  localparam int NEXT = 3;
 
-  logic [ 5:0] at_q;  // one-hot
+  logic [ 3:0] at_q;  // one of them, or none: at rest, or the inner port has the access
   logic [ 2:0] byte_q;  // of the word under way
   logic [ 5:0] word_q;
   logic        state_q;  // the reply's state is read; else the request runs
@@ -50,12 +48,12 @@ module frame_executor (
   logic [31:0] data_q;
   logic        writes;
   logic        over;
-  logic        answered;
   logic        moves;
+  logic        begins;  // the request
 
+  assign begins   = start_i && execute_i;
   assign writes   = write_i && !state_q;
   assign over     = error_q || word_q == (state_q ? STATE_COUNT : count_i);
-  assign answered = at_q[WAIT] && ack_i;
   assign moves    = at_q[FETCH] || at_q[STORE];
 
   assign place_o  = place_q;
@@ -65,41 +63,43 @@ module frame_executor (
   assign done_o   = at_q[NEXT] && state_q && over;
 
   always_ff @(posedge clk_i) begin
-    at_q[IDLE] <= (at_q[IDLE] && !start_i) || done_o;
-    at_q[FETCH] <= (start_i && execute_i && write_i) || (at_q[FETCH] && !byte_q[2]) || (at_q[NEXT] && writes && !over);
-    at_q[ASK]   <= (start_i && !(execute_i && write_i)) || (at_q[FETCH] && byte_q[2]) ||
+    at_q[FETCH] <= (begins && write_i) || (at_q[FETCH] && !byte_q[2]) || (at_q[NEXT] && writes && !over);
+    at_q[ASK]   <= (start_i && !(begins && write_i)) || (at_q[FETCH] && byte_q[2]) ||
         (at_q[NEXT] && !done_o && (!writes || over));
-    at_q[WAIT] <= at_q[ASK] || (at_q[WAIT] && !ack_i);
-    at_q[STORE] <= (answered && !writes && (state_q || !error_i)) || (at_q[STORE] && byte_q != 3'd3);
-    at_q[NEXT] <= (answered && (writes || (!state_q && error_i))) || (at_q[STORE] && byte_q == 3'd3);
-    if (rst_i) at_q <= 6'(1) << IDLE;
+    at_q[STORE] <= (ack_i && !writes && (state_q || !error_i)) || (at_q[STORE] && byte_q != 3'd3);
+    at_q[NEXT] <= (ack_i && (writes || (!state_q && error_i))) || (at_q[STORE] && byte_q == 3'd3);
+    if (rst_i) at_q <= '0;
   end
 
   always_ff @(posedge clk_i) begin
     byte_q <= moves ? byte_q + 3'd1 : 3'd0;
     if (moves) data_q <= {byte_i, data_q[31:8]};
-    if (answered && !writes) data_q <= data_i;
+    if (ack_i) data_q <= data_i;
     // While a word is fetched the place is a clock ahead of the byte.
     if (moves && !byte_q[2]) place_q <= place_q + 8'd1;
-    if (answered) begin
+    if (ack_i) begin
       error_q <= error_i && !state_q;
       word_q  <= word_q + 6'(state_q || !error_i);
       if (!fixed_i || state_q) address_q <= address_q + 10'd1;
     end
-    if (at_q[NEXT] && over && !state_q) begin
+    // The last of these is what the execution came to.
+    if (!state_q) begin
       made_o <= word_q;
       refused_o <= error_q;
       read_o <= !write_i;
     end
     if (start_i || (at_q[NEXT] && over)) begin
-      state_q <= !(start_i && execute_i);
+      state_q <= !begins;
       error_q <= 1'b0;
       word_q <= 6'd0;
-      place_q <= !(start_i && execute_i) ? 8'd0 : write_i ? REQUEST_WORDS : REPLY_WORDS;
-      address_q <= start_i && execute_i ? address_i : STATE_ADDRESS;
+      place_q <= !begins ? 8'd0 : write_i ? REQUEST_WORDS : REPLY_WORDS;
+      address_q <= begins ? address_i : STATE_ADDRESS;
     end
     // What the reply to a repeat would be before anything was executed.
-    if (rst_i) {made_o, refused_o, read_o} <= '0;
+    if (rst_i) begin
+      {made_o, refused_o, read_o} <= '0;
+      state_q <= 1'b1;
+    end
   end
 endmodule
 `default_nettype wire

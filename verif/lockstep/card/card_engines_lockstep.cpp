@@ -26,6 +26,7 @@ constexpr bool kChords = card_map::has_engine(kEngines, card_map::engine::kArcGe
 constexpr bool kCommands = card_map::has_engine(kEngines, card_map::engine::kPathCommands);
 constexpr bool kClasses = card_map::has_engine(kEngines, card_map::engine::kClasses);
 constexpr bool kWatermarks = card_map::has_engine(kEngines, card_map::engine::kWatermarks);
+constexpr bool kStreaming = card_map::has_engine(kEngines, card_map::engine::kStreaming);
 constexpr bool kDirectMode = card_map::has_engine(kEngines, card_map::engine::kDirectMode);
 // Where they are refused, since each refusal closes the stream, only now and then.
 constexpr unsigned kArcEvery = kArcs ? 4 : 40;
@@ -51,6 +52,7 @@ void random_traffic(std::uint64_t seed, std::uint64_t clocks) {
   AxiHost host(card, seed);
   Traffic traffic(host, kAxes, kArcEvery);
   traffic.classes = kClasses;
+  traffic.streams = kStreaming;
   traffic.chords_every = kChords ? 3 : 60;
   traffic.commands_every = kCommands ? 3 : 60;
   host.wait(300);
@@ -124,6 +126,11 @@ void refusals(std::uint64_t seed) {
     EXPECT_EQ(refusal(host), there ? Reason::None : Reason::UnknownAddress) << address;
     EXPECT_EQ(host.read(address), there ? std::optional<std::uint32_t>(0x1234) : std::nullopt) << address;
     EXPECT_EQ(refusal(host), there ? Reason::None : Reason::UnknownAddress) << address;
+  }
+  for (const bool writes : {true, false}) {
+    const std::uint32_t address = writes ? reg::kStreaming : reg::kStaleTicks;
+    EXPECT_EQ(writes ? host.write(address, 0) : host.read(address).has_value(), kStreaming) << address;
+    EXPECT_EQ(refusal(host), kStreaming ? Reason::None : Reason::UnknownAddress) << address;
   }
   driver::FeedCommand fixed = test::feed(60, 12);
   fixed.piece_class = driver::PieceClass::kFixed;

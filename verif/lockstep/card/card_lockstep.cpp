@@ -65,6 +65,8 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   traffic.wait_idle(100'000);
   EXPECT_LE(host.slowest_answer(), answer_bound(axes));
   EXPECT_GT(traffic.underruns, clocks / 500'000);
+  EXPECT_GT(traffic.missing, clocks / 1'000'000);
+  EXPECT_GT(traffic.stale, clocks / 500'000);
   EXPECT_GT(traffic.probed, clocks / 100'000);
   EXPECT_GT(traffic.missed, clocks / 1'000'000);
   EXPECT_GT(traffic.holds, clocks / 100'000);
@@ -114,7 +116,7 @@ void joins(unsigned axes) {
   AxiHost host(card, 5);
   Traffic traffic(host, axes);
   const auto read_live = [&host] {
-    for (std::uint32_t address = reg::kStatus; address <= reg::kMarks; address += 4) host.read(address);
+    for (std::uint32_t address = reg::kStatus; address <= reg::kStaleTicks; address += 4) host.read(address);
   };
   host.wait(300);
   for (std::uint32_t address = 0; address < 0x40; address += 4) host.read(address);
@@ -354,6 +356,77 @@ TEST_P(CardCounts, Around) {
 
 INSTANTIATE_TEST_SUITE_P(Bits, CardCounts, testing::Values(4U, 16U, 20U),
                          [](const auto& bits) { return std::to_string(bits.param); });
+
+// Position streaming: the second of three periods late by so many clocks before each of its words; under the full
+// ratio, in a hold, at a ratio of 0 and at half of it. Either the card goes on without a fault, or the period was
+// missing.
+struct Lateness {
+  std::uint64_t late = 0;
+  std::uint64_t missing = 0;
+};
+
+void late_period(AxiHost& host, Traffic& traffic, std::size_t word, std::uint64_t clocks, unsigned way,
+                 Lateness& seen) {
+  constexpr std::uint64_t kTicks = 110;  // of two clocks: a line's words take 130 clocks or so
+  if (way == 3) host.write(reg::kRatioFeed, 0x8000);
+  traffic.send(feed(kTicks, 2));
+  traffic.send(line(kTicks, {20, -11, 3, 0}));
+  std::vector<std::uint32_t> words;
+  driver::encode(line(kTicks, {-7, 30, 0, 1}), 2, words);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i == word) host.wait(clocks);
+    if (i == word && way == 1) host.write(reg::kHold, 1);
+    if (i == word && way == 2) host.write(reg::kRatioFeed, 0);
+    host.write(reg::kStream, words[i]);
+  }
+  if (way == 1 || way == 2) host.wait(50);
+  if (way == 1) host.write(reg::kHold, 0);
+  if (way == 2) host.write(reg::kRatioFeed, 0x10000);
+  driver::encode(line(kTicks, {1, 1, 1, 1}), 3, words = {});
+  for (const std::uint32_t w : words) host.write(reg::kStream, w);
+  driver::encode(driver::Command(driver::EndCommand{}), 4, words = {});
+  for (const std::uint32_t w : words) host.write(reg::kStream, w);
+  EXPECT_TRUE(traffic.wait_idle(20'000));
+  const bool missing = host.read(reg::kFault) == field::kFaultMissingPeriod;
+  EXPECT_TRUE(missing || (traffic.status() & field::kStatusEnded) != 0);
+  ++(missing ? seen.missing : seen.late);
+  traffic.recover();
+  EXPECT_TRUE(traffic.wait_idle(2000));
+}
+
+void late_periods(unsigned way, std::uint64_t seed) {
+  constexpr unsigned kAxes = 4;
+  sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
+  AxiHost host(card, seed);
+  Traffic traffic(host, kAxes);
+  traffic.streams = false;  // the mode stays on
+  Lateness seen;
+  host.wait(300);
+  for (std::uint32_t stale_periods = 0; stale_periods < 3; ++stale_periods) {
+    host.write(reg::kStreaming, field::kStreamingOn | stale_periods << field::kStreamingStalePeriodsShift);
+    host.write(reg::kStopReaction, stale_periods == 2 ? 0 : field::kStopReactionMissingPeriod);
+    for (std::size_t word = 0; word < 9; ++word) {
+      for (std::uint64_t clocks = 0; clocks < (way == 3 ? 440 : 220) * (stale_periods + 2);
+           clocks += 1 + host.below(30))
+        late_period(host, traffic, word, clocks, way, seen);
+    }
+  }
+  EXPECT_GT(seen.late, 50U);
+  EXPECT_GT(seen.missing, 50U);
+  expect_all_compared(card, kAxes, 100'000);
+}
+
+class CardStreaming : public testing::TestWithParam<unsigned> {};
+
+TEST_P(CardStreaming, LateBeforeEveryWord) {
+  EXPECT_EQ(lockstep::judge([] { late_periods(GetParam(), lockstep::seed_from_environment(13)); }), "");
+}
+
+std::string way_name(const testing::TestParamInfo<unsigned>& way) {
+  constexpr const char* kNames[] = {"Plain", "Hold", "NoRatio", "HalfRatio"};
+  return kNames[way.param];
+}
+INSTANTIATE_TEST_SUITE_P(Way, CardStreaming, testing::Range(0U, 4U), way_name);
 
 // Steps that wait for their shaper, under limits from 1 clock on: some are faults, some are not.
 void waiting_steps(std::uint64_t seed) {

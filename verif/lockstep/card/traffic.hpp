@@ -60,6 +60,14 @@ class Traffic {
   std::uint64_t missed = 0;
   // How often it was held for under-run; a reset begins anew.
   std::uint64_t underruns = 0;
+  // Position streaming: periods that come in time or late, by any clock at any word; holds, overrides, aborts and
+  // faults in it, the mode switched in motion; ended by an END, a missing period or an abort.
+  void streamed();
+  // Without it, and where the card has none, no stream.
+  bool streams = true;
+  // Periods that were missing, and looks at a card that went on without one.
+  std::uint64_t missing = 0;
+  std::uint64_t stale = 0;
   // Requests in disturb() and starved().
   std::uint64_t holds = 0;
   std::uint64_t overrides = 0;
@@ -201,6 +209,62 @@ inline void Traffic::starved() {
   underruns += host_.read(reg::kUnderruns).value_or(0) - before;
 }
 
+inline void Traffic::streamed() {
+  if (!one_in(6)) recover();
+  const std::uint64_t period = 30 + below(one_in(2) ? 60 : 600);  // ticks, of two clocks or so
+  const std::uint32_t stale_periods = static_cast<std::uint32_t>(below(4));
+  const std::uint32_t mode = field::kStreamingOn | stale_periods << field::kStreamingStalePeriodsShift;
+  host_.write(reg::kStopReaction, one_in(3) ? 0 : field::kStopReactionMissingPeriod);
+  host_.write(reg::kSlew, std::uint32_t{1} << (17 + below(11)));
+  if (!one_in(8)) host_.write(reg::kStreaming, mode);
+  const auto period_words = [&](std::uint64_t ticks) {
+    std::vector<std::int64_t> pulses(axes_);
+    for (std::int64_t& p : pulses)
+      p = static_cast<std::int64_t>(below(ticks / 4 + 2)) - static_cast<std::int64_t>(ticks / 8);
+    std::vector<std::uint32_t> words;
+    driver::encode(line(ticks, pulses), number_++, words);
+    return words;
+  };
+  // One piece for all, or one for each; some change their rate.
+  const bool single = one_in(2);
+  const auto piece = [&] {
+    driver::FeedCommand p = feed(one_in(3) ? 1 : period, 2);
+    if (one_in(4)) p.acceleration = static_cast<std::int64_t>(odd_number(54));
+    return send(p);
+  };
+  const auto refused = [&] {
+    missing += (host_.read(reg::kFault).value_or(0) & field::kFaultMissingPeriod) != 0 ? 1U : 0U;
+    host_.read(reg::kStaleTicks);
+    abort();
+  };
+  if (!piece()) return refused();
+  for (std::uint64_t left = 2 + below(12); left != 0; --left) {
+    if (!single && !piece()) return refused();
+    const std::vector<std::uint32_t> words = period_words(one_in(4) ? 1 + below(period) : period);
+    for (const std::uint32_t word : words) {
+      if (!host_.write(reg::kStream, word)) return refused();
+      if (one_in(words.size())) host_.wait(below(one_in(4) ? 4 * period : one_in(2) ? period : 20));
+    }
+    if (commands_every != 0 && one_in(8)) send(beside_a_path());
+    if (one_in(10)) host_.write(reg::kHold, static_cast<std::uint32_t>(below(2)));
+    if (one_in(10)) host_.write(reg::kRatioFeed, static_cast<std::uint32_t>(one_in(2) ? 0 : below(0x10001)));
+    if (one_in(10)) host_.write(reg::kStreaming, one_in(2) ? 0 : mode);
+    if (one_in(30)) disturb();
+    if (one_in(2)) host_.read(reg::kStaleTicks);
+    stale += (status() & field::kStatusStale) != 0 ? 1U : 0U;
+  }
+  host_.write(reg::kHold, 0);
+  host_.write(reg::kRatioFeed, 0x10000);
+  if (one_in(3)) send(driver::EndCommand{});
+  host_.wait(below(8 * period));
+  missing += (host_.read(reg::kFault).value_or(0) & field::kFaultMissingPeriod) != 0 ? 1U : 0U;
+  host_.read(reg::kStaleTicks);
+  host_.write(reg::kStreaming, 0);
+  if (one_in(2)) abort();
+  if (!one_in(3)) host_.write(reg::kFault, 0xFFFF);
+  host_.read(reg::kStreaming);
+}
+
 inline void Traffic::probing() {
   const double pace = 1.01 + static_cast<double>(below(40)) * 0.1;
   const auto random = [this](std::uint64_t count) { return below(count); };
@@ -258,7 +322,7 @@ inline void Traffic::settings() {
     host_.write(reg::kGeometryWatermark, static_cast<std::uint32_t>(one_in(4) ? odd_number(16) & 0xFFFF : below(300)));
   if (one_in(2))
     host_.write(reg::kFeedWatermark, static_cast<std::uint32_t>(one_in(4) ? odd_number(16) & 0xFFFF : below(200)));
-  if (one_in(2)) host_.write(reg::kStopReaction, static_cast<std::uint32_t>(below(256)));
+  if (one_in(2)) host_.write(reg::kStopReaction, static_cast<std::uint32_t>(below(256) | below(2) << 10));
 }
 
 inline void Traffic::start() {
@@ -347,6 +411,7 @@ inline void Traffic::recover() {
     host_.write(reg::kHold, 0);
     for (const std::uint32_t ratio : kRatios) host_.write(ratio, 0x10000);
     host_.write(reg::kSlew, 0xFFFFFFF);
+    if (streams) host_.write(reg::kStreaming, 0);
   };
   const bool calm_first = one_in(2);
   if (calm_first) calm();
@@ -377,6 +442,8 @@ inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
   for (; sections != 0; --sections) {
     if (one_in(5))
       starved();
+    else if (streams && one_in(5))
+      streamed();
     else if (commands_every != 0 && one_in(3))
       probing();
     else

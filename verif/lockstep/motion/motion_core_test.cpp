@@ -26,9 +26,10 @@ constexpr bool kChords = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine:
 constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kDirectMode);
 constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kClasses);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
+constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr unsigned kInputs = 5;
 constexpr unsigned kOutputs = 3;
-constexpr std::uint64_t kComparedSignals = 34 + kAxes;
+constexpr std::uint64_t kComparedSignals = 36 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
@@ -116,6 +117,8 @@ class Bench {
   std::uint64_t moves() const { return moves_; }
   std::uint64_t faults() const { return faults_; }
   std::uint64_t marks() const { return marks_; }
+  std::uint64_t missing() const { return missing_; }
+  std::uint64_t stale() const { return stale_; }
   std::uint64_t halts() const { return halts_; }
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
 
@@ -162,7 +165,8 @@ class Bench {
         {kClasses ? ratios[dice_.below(3)] : reg::kRatioFeed,
          !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
         {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
-        {reg::kStopReaction, dice_.chance(2) ? 0xFF : dice_.below(256)},
+        {reg::kStopReaction, dice_.chance(2) ? 0x4FF : dice_.below(256) | dice_.below(2) << 10},
+        {kStreaming ? reg::kStreaming : reg::kHoldLimit, kStreaming ? dice_.below(2) | dice_.below(4) << 8 : 7},
         {reg::kInputPolarity, kPathCommands ? dice_.draw() & 0xFFFF : 0},
         {reg::kOutputSafe, kPathCommands ? dice_.draw() : 0}};
     const auto& [address, data] = settings[dice_.below(std::size(settings))];
@@ -205,7 +209,7 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     const model::PathCommands::Config pins{kInputs, kOutputs, output_idle_};
-    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, false, 0, pins);
+    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, false, TRAMMEL_ENGINES, pins);
     geometry_.reset();
     feed_.reset();
     starting_ = false;
@@ -237,6 +241,8 @@ class Bench {
     if (model_->probe().halt()) check_.event("halt by the probe");
     moves_ += model_->loader().go ? 1U : 0U;
     faults_ += model_->stop().stop ? 1U : 0U;
+    missing_ += model_->sequencer().streaming().missing ? 1U : 0U;
+    stale_ += model_->sequencer().outputs().stale ? 1U : 0U;
   }
 
   void note_events() {
@@ -339,6 +345,8 @@ class Bench {
     check_.compare("waiting, missed, probed", dut_->io_o[2],
                    std::uint32_t{model_->sequencer().waits_for_input()} << 2 | std::uint32_t{probe.missed()} << 1 |
                        std::uint32_t{probe.probed()});
+    check_.compare("stale_o", dut_->stale_o >> 32, s.stale);
+    check_.compare("stale_o, ticks", dut_->stale_o & 0xFFFFFFFF, model_->sequencer().streaming().ticks);
     check_.compare("step_o", dut_->step_o, out.step);
     check_.compare("dir_o", dut_->dir_o, out.dir);
     check_.compare("start_error_o, with done", dut_->start_done_o & dut_->start_error_o,
@@ -378,6 +386,8 @@ class Bench {
   std::uint64_t moves_ = 0;
   std::uint64_t faults_ = 0;
   std::uint64_t marks_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t stale_ = 0;  // clocks
   std::uint64_t halts_ = 0;
   std::uint64_t more_ = 0;
 };
@@ -396,6 +406,10 @@ void random_programs() {
   if (kPathCommands) {
     EXPECT_GT(bench.marks(), length / 5000);
     EXPECT_GT(bench.halts(), length / 20'000);
+  }
+  if (kStreaming) {
+    EXPECT_GT(bench.missing(), length / 50'000);
+    EXPECT_GT(bench.stale(), length / 300);
   }
 }
 

@@ -7,6 +7,7 @@ module counters (
     // count of the next path
     input  wire logic        load_i,
     input  wire logic [15:0] word_i,
+    output logic      [39:0] count_o,
     output logic             zero_o,
     // ticks
     input  wire logic        swap_i,
@@ -24,6 +25,7 @@ module counters (
       .clk_i,
       .rst_i,
       .next_i({load_i, word_i}),
+      .count_o,
       .zero_o,
       .load_i(swap_i),
       .take_i,

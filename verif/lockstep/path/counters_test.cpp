@@ -97,7 +97,8 @@ class Bench {
     }
     if (settled_ < 3 || dut_->load_i != 0) return;
     check_.compare("zero_o", dut_->zero_o, next_ == 0);
-    ++expected_;
+    check_.compare("count_o", dut_->count_o, next_);
+    expected_ += 2;
   }
 
   Simulated<Vdut> dut_;

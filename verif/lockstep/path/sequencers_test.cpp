@@ -14,7 +14,7 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr unsigned kAxes = 4;
-constexpr std::uint64_t kComparedSignals = 27;
+constexpr std::uint64_t kComparedSignals = 32;
 
 class Bench {
  public:
@@ -52,6 +52,7 @@ class Bench {
   void random_clock() {
     if (dice_.chance(3000)) random_pace();
     commands();
+    random_mode();
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
     if (stand_for_ != 0) --stand_for_;
@@ -125,12 +126,52 @@ class Bench {
     ends_ += model_.outputs().swap ? 1U : 0U;
     in_.direct_load = {};
     in_.direct_go = false;
+    in_.setting = {};
+    in_.arrives = in_.arrived = false;
+    missing_ += model_.streaming().missing ? 1U : 0U;
+    late_ += model_.outputs().swap && stale_before_ ? 1U : 0U;
+    stale_before_ = model_.outputs().stale;
   }
 
   void add(const Programs::Stretch& stretch) {
     check_.event("stretch of commands", stretch.geometry.size());
     geometry_.add(stretch.geometry);
     feed_.add(stretch.feed);
+  }
+
+  // Position streaming: a period of so many ticks, the next one so many clocks later, two more, and an END or a cut.
+  void stream(unsigned ticks, unsigned stale_periods, unsigned clocks) {
+    const auto period = [&] { return stored_command(card_map::Opcode::Line, 7, ticks, {}, {kOnePulse, 1, -1}); };
+    const auto run = [this](unsigned n) {
+      for (; n != 0; --n) clock();
+    };
+    pace = {1, 1 + dice_.below(3), 1'000'000, 1, 1'000'000};
+    reset();
+    in_.setting = {true, card_map::reg::kStreaming, card_map::field::kStreamingOn | stale_periods << 8};
+    run(10);
+    const unsigned given = dice_.chance(2) ? ticks : 1;
+    add({{period()}, {stored_command(card_map::Opcode::Feed, 0, given, {{"rate", int128{1} << 63}, {"floor", 1}})}});
+    run(clocks);
+    add({{period()}, {}});
+    run(dice_.below(40));
+    add({{period()}, {}});
+    run(60 + 8 * ticks * (1 + stale_periods));
+    const Halfwords end = stored_command(card_map::Opcode::End, 0, 0);
+    if (dice_.chance(2)) add({{end}, {end}});
+    run(60);
+    in_.cut = true;
+    clock();
+    in_.cut = false;
+    run(20);
+  }
+
+  // STREAMING, and halfwords on their way in, at any clock: the mode changes at rest alone.
+  void random_mode() {
+    const bool on = dice_.chance(2);
+    in_.setting = {dice_.chance(mode_every_), dice_.chance(8) ? card_map::reg::kHold : card_map::reg::kStreaming,
+                   (on ? card_map::field::kStreamingOn : 0) | dice_.below(4) << 8};
+    in_.arrives = dice_.chance(20);
+    in_.arrived = dice_.chance(10);
   }
 
   bool at_rest() const {
@@ -141,6 +182,8 @@ class Bench {
   Checker& check() { return check_; }
   const model::Sequencer::Outputs& outputs() const { return model_.outputs(); }
   std::uint64_t swaps() const { return ends_; }
+  std::uint64_t missing() const { return missing_; }
+  std::uint64_t late() const { return late_; }
   std::uint64_t halts() const { return halts_; }
   std::uint64_t drops() const { return drops_; }
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
@@ -247,6 +290,8 @@ class Bench {
 
   void apply() {
     dut_->cut_i = in_.cut;
+    dut_->setting_i = wire(in_.setting);
+    dut_->arrive_i = (in_.arrived ? 1U << 20 : 0) | (in_.arrives ? 1U << 18 : 0);
     dut_->drop_i = static_cast<CData>(unsigned{in_.drop} << 1 | unsigned{in_.halt});
     dut_->probe_says_i =
         static_cast<CData>(unsigned{in_.stays} << 2 | unsigned{in_.probe_taken} << 1 | unsigned{in_.met});
@@ -301,6 +346,11 @@ class Bench {
     check_.compare("idle_o", dut_->idle_o, out.idle);
     check_.compare("geometry_begun_o", dut_->geometry_begun_o, out.geometry_begun);
     check_.compare("feed_begun_o", dut_->feed_begun_o, out.feed_begun);
+    check_.compare("streaming_o", dut_->streaming_o, model_.streaming().on);
+    check_.compare("missing_o", dut_->missing_o, model_.streaming().missing);
+    check_.compare("stale_o", dut_->stale_o >> 32, out.stale);
+    check_.compare("stale_o, ticks", dut_->stale_o & 0xFFFFFFFF, model_.streaming().ticks);
+    check_.compare("spent_o", dut_->spent_o, out.spent);
     // What stands beside an event, where there is one.
     const std::uint64_t beside = out.swap ? std::uint64_t{out.engine} << 8 | out.active : 0;
     check_.compare("active_o and engine_o", out.swap ? dut_->engine_o << 8 | dut_->active_o : 0, beside);
@@ -332,6 +382,10 @@ class Bench {
   unsigned rest_for_ = 0;     // clocks
   std::uint64_t length_ = 0;
   std::uint64_t ends_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t late_ = 0;
+  bool stale_before_ = false;
+  unsigned mode_every_ = 200;
   std::uint16_t levels_ = 0;
   bool at_rest_ = false;
   bool clear_ = false;
@@ -393,6 +447,22 @@ void random_programs() {
   EXPECT_GT(bench.swaps(), length / 500);
   EXPECT_GT(bench.halts(), length / 10'000);
   EXPECT_GT(bench.drops(), length / 2000);
+  EXPECT_GT(bench.missing(), length / 20'000);
+  EXPECT_GT(bench.late(), length / 50'000);
+}
+
+// The next period comes in every clock around the end of the one before, and long after.
+void late_periods() {
+  Bench bench(3);
+  for (const unsigned ticks : {1U, 2U, 3U, 17U, 40U}) {
+    for (unsigned stale_periods = 0; stale_periods < 4; ++stale_periods) {
+      for (unsigned clocks = 0; clocks < 60 + 3 * ticks * (1 + stale_periods); ++clocks)
+        bench.stream(ticks, stale_periods, clocks);
+    }
+  }
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+  EXPECT_GT(bench.missing(), 500U);
+  EXPECT_GT(bench.late(), 500U);
 }
 
 // A cut or a reset at each clock of two runs, and what comes next.
@@ -410,6 +480,7 @@ void cuts_at_every_clock() {
   EXPECT_GT(bench.swaps(), 2000U);
 }
 
+TEST(Sequencers, LatePeriods) { EXPECT_EQ(judge(late_periods), ""); }
 TEST(Sequencers, CutsAtEveryClock) { EXPECT_EQ(judge(cuts_at_every_clock), ""); }
 TEST(Sequencers, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }
 TEST(Sequencers, Boundaries) { EXPECT_EQ(judge(boundaries), ""); }

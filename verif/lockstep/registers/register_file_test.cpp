@@ -26,6 +26,7 @@ constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
 constexpr std::uint64_t kComparedSignals = 13;
+constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
 constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(7) / 4;  // word of the direct mode's first register
@@ -180,6 +181,8 @@ class Bench {
     in_.stopping = (bits & 0x100) != 0;
     in_.underrun = (bits & 0x200) != 0;
     in_.underruns = draw();
+    in_.stale = kStreaming && (bits & 0x800) != 0;
+    in_.stale_ticks = kStreaming ? draw() : 0;
     in_.geometry_room = static_cast<std::uint16_t>(draw());
     in_.feed_room = static_cast<std::uint16_t>(draw());
     in_.geometry_low = (bits & 0x200) != 0;
@@ -280,7 +283,9 @@ class Bench {
     rtl_->motion_i = static_cast<CData>(in_.stopping << 5 | in_.ended << 4 | in_.feed_active << 3 |
                                         in_.path_active << 2 | in_.direct << 1 | static_cast<int>(in_.busy));
     rtl_->held_i = in_.ratio == 0;
-    rtl_->underrun_i = std::uint64_t{in_.underrun} << 32 | in_.underruns;
+    rtl_->late_i[0] = in_.underruns;
+    rtl_->late_i[1] = std::uint32_t{in_.underrun} | in_.stale_ticks << 1;
+    rtl_->late_i[2] = std::uint32_t{in_.stale} << 1 | in_.stale_ticks >> 31;
     rtl_->fault_i = in_.fault;
     rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
     rtl_->low_i = static_cast<CData>(in_.feed_low << 1 | static_cast<int>(in_.geometry_low));

@@ -35,6 +35,7 @@ class Bench {
 
   void clock(const Inputs& in) {
     if (in.step_fault != 0) check_.event("step fault", in.step_fault);
+    if (in.missing) check_.event("missing period");
     if (in.mismatch || in.incomplete) check_.event("fault at once", in.mismatch);
     if (in.abort) check_.event("abort");
     if (in.clear != 0) check_.event("clear", in.clear);
@@ -62,6 +63,7 @@ class Bench {
     dut_->step_fault_i = static_cast<CData>(in.step_fault);
     dut_->mismatch_i = in.mismatch;
     dut_->incomplete_i = in.incomplete;
+    dut_->missing_i = in.missing;
     dut_->abort_i = in.abort;
     dut_->clear_i = in.clear;
     dut_->at_rest_i = in.at_rest;
@@ -121,18 +123,21 @@ Bench::Inputs happening(unsigned kind) {
       in.abort = true;
       in.step_fault = 1;
       break;
+    case 9:
+      in.missing = true;
+      break;
     default:
       break;
   }
   return in;
 }
-constexpr unsigned kHappenings = 10;  // the last is nothing
+constexpr unsigned kHappenings = 11;  // the last is nothing
 
 // Three happenings at any distance of 0 to 2 clocks, with each reaction, from reset.
 void every_order() {
   Bench bench(0);
   std::uint64_t cycles = 1;
-  for (const std::uint32_t reaction : {0U, 0xFFU}) {
+  for (const std::uint32_t reaction : {0U, 0x4FFU}) {
     for (unsigned order = 0; order < kHappenings * kHappenings * kHappenings * 9; ++order) {
       unsigned rest = order;
       const auto draw = [&rest](unsigned n) {
@@ -202,6 +207,7 @@ void random_events() {
     if (dice.chance(12)) in.step_fault = dice.draw() & dice.draw() & ((1U << kAxes) - 1);
     in.mismatch = dice.chance(60);
     in.incomplete = dice.chance(60);
+    in.missing = dice.chance(30);
     in.abort = dice.chance(30);
     if (dice.chance(6)) in.clear = dice.chance(2) ? ~0U : dice.draw();
     in.at_rest = dice.chance(rest_every);

@@ -35,7 +35,7 @@ class Bench {
     model::FeedGenerator::Inputs in;
     in.swap = dice_.chance(2);
     in.enable = started_ && dice_.chance(2);
-    started_ = false;
+    started_ = frozen_ = false;
     dut_->rst_i = 1;
     apply(in);
     dut_.clock();
@@ -49,6 +49,10 @@ class Bench {
     in.clear = in.clear || resting_;
     in.enable = started_ && !in.clear && dice_.below(1024) < enable_of_1024_;
     started_ = started_ || in.swap;
+    // From some clock of a piece on to the next swap.
+    if (freeze_in_ != 0 && --freeze_in_ == 0) frozen_ = true;
+    if (in.swap) frozen_ = false;
+    in.freeze = frozen_;
     apply(in);
     const std::uint32_t rate = model_.outputs().rate;
     dut_.clock();
@@ -94,6 +98,8 @@ class Bench {
     since_swap_ = 0;
   }
 
+  void freeze_in(std::uint64_t clocks) { freeze_in_ = clocks; }
+
   std::uint64_t idle(std::uint64_t clocks) {
     for (std::uint64_t i = 0; i < clocks; ++i) clock({});
     return clocks;
@@ -110,6 +116,7 @@ class Bench {
 
  private:
   void apply(const model::FeedGenerator::Inputs& in) {
+    dut_->freeze_i = in.freeze;
     dut_->clear_i = in.clear;
     dut_->enable_i = in.enable;
     // Without its valid bit the bus carries anything.
@@ -144,6 +151,8 @@ class Bench {
   lockstep::Dice dice_;
   unsigned enable_of_1024_;
   bool started_ = false;
+  bool frozen_ = false;
+  std::uint64_t freeze_in_ = 0;   // clocks; 0: not
   bool resting_ = false;          // no piece runs
   std::uint64_t since_swap_ = 0;  // clocks
   std::uint64_t ticks_ = 0;
@@ -214,6 +223,7 @@ void random_pieces(unsigned enable_of_1024, std::uint64_t pieces) {
     // One piece in 16 lasts for about 50 updates, however rare the enables are.
     if (random() % 16 == 0) distance += random() % (1 + 3'000'000 / enable_of_1024);
     if (random() % 5 == 0) bench.piece_at_rest(random_piece(random), random() % 40);
+    if (random() % 5 == 0) bench.freeze_in(1 + random() % distance);
     bench.piece(random_piece(random), distance, random() % 4);
     if (random() % 50 == 0) bench.reset();
   }

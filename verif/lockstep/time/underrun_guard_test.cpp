@@ -31,7 +31,6 @@ class Bench {
     in_.cut = dice_.chance(cut_every_);
     in_.lost = dice_.chance(1500);
     in_.idle = dice_.chance(20);
-    in_.off = dice_.chance(300) ? !in_.off : in_.off && !dice_.chance(50);
     if (dice_.chance(400)) in_.full = dice_.chance(3);
     random_ratio();
     random_arrival();
@@ -155,7 +154,7 @@ class Bench {
                   static_cast<std::uint16_t>(dice_.draw())};
     }
     const bool last = in_.take && dice_.chance(30);
-    const bool may_begin = in_.decoded && since_swap_ >= kSwaps && !model_.waits(in_.active, in_.off);
+    const bool may_begin = in_.decoded && since_swap_ >= kSwaps && !model_.waits(in_.active);
     if (may_begin && (!in_.active || last)) {
       swaps_ = true;
       loaded_ = 0;
@@ -215,7 +214,6 @@ class Bench {
   void apply() {
     const model::UnderrunGuard::Arrival& a = in_.arrival;
     dut_->cut_i = in_.cut;
-    dut_->off_i = in_.off;
     dut_->lost_i = in_.lost;
     dut_->idle_i = in_.idle;
     dut_->arrive_i = std::uint32_t{a.drop} << 20 | std::uint32_t{a.geometry_commit} << 19 |
@@ -233,7 +231,7 @@ class Bench {
   void compare() {
     check_.next_cycle();
     const auto& out = model_.outputs();
-    check_.compare("wait_o", dut_->wait_o, model_.waits(dut_->active_i != 0, in_.off));
+    check_.compare("wait_o", dut_->wait_o, model_.waits(dut_->active_i != 0));
     check_.compare("hold_o", dut_->hold_o, out.hold);
     check_.compare("shown_o", dut_->shown_o, out.shown);
     check_.compare("underruns_o", dut_->underruns_o, out.underruns);

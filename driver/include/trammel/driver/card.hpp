@@ -69,6 +69,9 @@ struct Status {
   bool stopping = false;      // on a ramp to a stop
   bool geometry_low = false;  // fewer halfwords queued than the queue's watermark
   bool feed_low = false;
+  bool probed = false;        // a probe has tripped, until clear_probe()
+  bool probe_missed = false;  // probing paths ended without an edge
+  bool waiting = false;       // for an input
 };
 
 // REFUSAL.
@@ -172,7 +175,8 @@ class Card {
   // Inputs and outputs, of a card with path commands; else ArgumentError. Bit n: input n after its polarity, output n.
   std::uint16_t inputs();
   std::uint16_t outputs();
-  unsigned outputs_present();  // how many it has, 1 .. 16
+  unsigned inputs_present();  // how many it has, 1 .. 16
+  unsigned outputs_present();
   // Which inputs are inverted.
   void set_input_polarity(std::uint16_t inverted);
   // Levels that the outputs in `change` take at an abort and at a fault.
@@ -180,6 +184,11 @@ class Card {
   // MARKs passed since reset, and what the last one latched.
   std::uint32_t marks();
   Snapshot mark_snapshot();
+
+  // What the last probe's edge latched (Stream::probe() gives it); zeros where there was none.
+  Snapshot probe_snapshot();
+  // Leaves the state after a probe: commands behind PROBE_END go on.
+  void clear_probe();
 
   // FAULT, 0 if there is none.
   std::uint32_t faults();

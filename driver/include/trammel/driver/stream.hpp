@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "trammel/driver/card.hpp"
@@ -29,6 +30,17 @@ struct StreamProgress {
   Status status;                     // of the card
   std::uint32_t geometry_begun = 0;  // of these, commands begun from the geometry queue: paths and barriers
   std::uint32_t feed_begun = 0;      // and from the feed queue: pieces and barriers
+};
+
+enum class ProbeOutcome : std::uint8_t {
+  kTripped,         // the edge came on the way
+  kTrippedAlready,  // the input had the level before the first path began: nothing moved
+  kMissed,          // the paths ended without it
+};
+struct ProbeResult {
+  ProbeOutcome outcome = ProbeOutcome::kMissed;
+  Snapshot edge;  // of the clock after the edge showed at the card's synchronised input; zeros when missed
+  Snapshot rest;  // where the card stands now
 };
 
 struct StreamOptions {
@@ -71,6 +83,13 @@ class Stream final : public CommandSink {
   // has ended. Gives back the status. Errors as in put().
   Status finish();
 
+  // Moves along `paths` (paths and the pieces of their time, and what else stands between them) until the condition's
+  // input has its level: from there on a ramp to rest along the path, what is left of them is dropped. Waits for all
+  // before it to be done, and until the card stands; the stream goes on from there. On cards with path commands.
+  // Throws ArgumentError, before anything moves, for an input that the card lacks, no paths, or a PROBE, a PROBE_END or
+  // an END among them; else as finish(). A StateError if the probe ended by another's doing.
+  ProbeResult probe(const ProbeCommand& condition, const std::vector<Command>& paths);
+
   // Drops what the card has queued, stops its path and begins anew at number 0. Throws FaultError if it is faulted.
   void restart();
 
@@ -98,7 +117,10 @@ class Stream final : public CommandSink {
   class Wait;
 
   void reset();
-  Need checked_need(const Command& command, std::uint32_t header) const;
+  Need checked_need(const Command& command, std::uint32_t header);
+  void check_input(const Command& command);
+  void check_probing(const ProbeCommand& condition, const std::vector<Command>& paths);
+  Status wait_for_probe();
   bool has_room(const Need& need) const { return need.geometry <= room_.geometry && need.feed <= room_.feed; }
   void wait_for_room(const Need& need);
   std::uint32_t wake_for(const Need& need) const;
@@ -125,6 +147,7 @@ class Stream final : public CommandSink {
   std::uint64_t sent_ = 0;
   Count geometry_;
   Count feed_;
+  std::optional<unsigned> inputs_;  // of the card, once it was asked
   bool last_is_end_ = false;
   bool broken_ = false;
 };

@@ -8,6 +8,7 @@
 // clock) is that of all that follow in the piece: it stays at the floor, or at 1. The phase has 48 bits and goes on
 // from piece to piece. A piece of k updates thus covers 32 * (k * r + k(k-1)/2 * a + k(k-1)(k-2)/6 * j) ticks: the host
 // sends forward differences, centred on the update (r = v + a/2 for a constant acceleration a an update).
+// Frozen, the slope in use stays.
 // Acceleration and jerk come after the swap and have no shadow: they are added first at the 32nd enabled clock.
 // Not thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
 #pragma once
@@ -26,6 +27,7 @@ class FeedGenerator {
   struct Inputs {
     bool clear = false;   // phase and the ticks in flight become 0; wins over an enable in the same clock
     bool enable = false;  // one accumulation
+    bool freeze = false;  // the slope stays, until the next swap at least
     LoadWord load;      // feed load: rate (4 halfwords) and floor (2) before the swap, acceleration and jerk (4) after
     bool swap = false;  // the next piece's rate and floor are taken; no load in this clock or the 2 after it
   };
@@ -40,6 +42,7 @@ class FeedGenerator {
 
   // One rising edge.
   void clock(const Inputs& in) {
+    if (in.freeze) freeze();
     const bool carry = in.enable && accumulate();
     if (in.swap) swap();
     if (in.load.valid) load(in.load);
@@ -93,7 +96,7 @@ class FeedGenerator {
     const bool carry = phase_ >= kOne;
     if (carry) phase_ -= kOne;
     count_ = (count_ + 1) % kUpdateClocks;
-    if (count_ == 0) update();
+    if (count_ == 0 && !frozen_) update();
     return carry;
   }
 
@@ -113,7 +116,7 @@ class FeedGenerator {
     floor_rate_ = next_floor_ << 32;
     slope_ = next_rate_ >> 16;
     count_ = 0;
-    away_ = false;
+    away_ = frozen_ = false;
     judge_constant();
   }
 
@@ -131,7 +134,11 @@ class FeedGenerator {
     judge_constant();
   }
 
-  void judge_constant() { constant_ = acceleration_ == 0 && jerk_ == 0 && slope_ == clamped(rate_, floor_rate_); }
+  void judge_constant() {
+    constant_ = frozen_ || (acceleration_ == 0 && jerk_ == 0 && slope_ == clamped(rate_, floor_rate_));
+  }
+
+  void freeze() { frozen_ = constant_ = true; }
 
   void clear() {
     phase_ = 0;
@@ -153,7 +160,8 @@ class FeedGenerator {
   std::uint64_t phase_ = 0;       // 2^-48, below 1
   std::uint32_t count_ = 0;       // enabled clocks of this update
   bool away_ = false;             // the rate lies outside -2 .. 2
-  bool constant_ = true;          // the slope stays to the end of the piece
+  bool frozen_ = false;
+  bool constant_ = true;  // the slope stays to the end of the piece
   Outputs in_flight_[2];
   Outputs outputs_;
 };

@@ -93,6 +93,8 @@ class MotionCore {
   void clock_busy();
   void show_axis(unsigned n);
   bool may_jump(const Inputs& in) const;
+  // The guard counts; in position streaming it does not.
+  bool guards() const { return has_guard_ && !sequencer_.streaming().on; }
   Probe::Inputs probe_inputs(const Inputs& in) const;
   Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
   UnderrunGuard::Inputs guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;

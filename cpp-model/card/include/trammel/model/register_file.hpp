@@ -20,8 +20,8 @@ class RegisterFile {
   static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
   static constexpr std::uint32_t kDefaultEngines =
       kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode |
-      card_map::field::kEnginesUnderrunHold | card_map::field::kEnginesPathCommands | card_map::field::kEnginesClasses |
-      card_map::field::kEnginesWatermarks;
+      card_map::field::kEnginesUnderrunHold | card_map::field::kEnginesPathCommands |
+      card_map::field::kEnginesStreaming | card_map::field::kEnginesClasses | card_map::field::kEnginesWatermarks;
   static constexpr std::uint32_t kMostEngines =
       kDefaultEngines | card_map::field::kEnginesArcGenerator | card_map::field::kEnginesAccumulator8;
 
@@ -57,6 +57,8 @@ class RegisterFile {
     bool stopping = false;
     bool underrun = false;  // held by it, or a piece waits for more
     std::uint32_t underruns = 0;
+    bool stale = false;  // a line goes on beyond its period
+    std::uint32_t stale_ticks = 0;
     bool incomplete = false;          // the stream stands inside a command
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;

@@ -4,9 +4,10 @@
 // counts both down, and the last one of either swaps in what is decoded. A tick made by the feed generator (in direct
 // mode: an enabled clock) is owed from two clocks on until a path can take it. A path on an engine is over when
 // that has finished its path ticks, a direct move when no axis is live. A barrier (DWELL, END) begins when both queues
-// stand at it; a WAIT_INPUT ends with its input, a PROBE_END when it may. A halt ends path and piece; while commands
-// are dropped, each is over as it is decoded, and counts as begun. Everything decided in clock c shows at c+1; other
-// times stand with their constants. Not thread-safe; no errors are reported.
+// stand at it; a WAIT_INPUT ends with its input, a PROBE_END when it may. In position streaming a line with nothing
+// behind it goes on beyond its ticks (it is stale), and so does a piece (it is spent). A halt ends path and piece;
+// while commands are dropped, each is over as it is decoded, and counts as begun. Everything decided in clock c shows
+// at c+1; other times stand with their constants. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/model/buses.hpp"
 #include "trammel/model/command_fetch.hpp"
+#include "trammel/model/position_streaming.hpp"
 
 namespace trammel::model {
 
@@ -27,6 +29,11 @@ class Sequencer {
     std::uint16_t geometry_word = 0;
     std::uint16_t feed_word = 0;
     bool wait = false;  // no piece begins
+    // position streaming
+    Setting setting;
+    bool arrives = false;  // a halfword of a command comes in
+    bool arrived = false;  // it is whole, or dropped
+    bool at_rest = true;   // of what runs behind the sequencers
     // probe
     bool halt = false;         // event: path and piece end here
     bool drop = false;         // commands up to PROBE_END are not carried out
@@ -62,6 +69,8 @@ class Sequencer {
     bool over = false;  // a path has ended; on lines its last tick was taken
     bool path_active = false;
     bool feed_active = false;
+    bool stale = false;   // the line has given its ticks and goes on
+    bool spent = false;   // so has the piece
     bool moving = false;  // the piece has given ticks, or took over from one that had
     std::uint8_t piece_class = card_map::constant::kClassFeed;  // of the last piece; a direct move's is feed
     bool ended = false;
@@ -75,9 +84,10 @@ class Sequencer {
     bool direct = false;   // a direct move has begun
   };
 
-  // `clock_all`: it never rests.
-  explicit Sequencer(bool clock_all = false)
+  // `clock_all`: it never rests. `streaming`: it can be switched on.
+  explicit Sequencer(bool clock_all = false, bool streaming = true)
       : clock_all_(clock_all),
+        has_streaming_(streaming),
         geometry_(CommandFetch::Queue::Geometry, clock_all),
         feed_(CommandFetch::Queue::Feed, clock_all) {}
 
@@ -102,6 +112,7 @@ class Sequencer {
 
   const Outputs& outputs() const { return out_; }
   const Record& record() const { return record_; }
+  const PositionStreaming::Outputs& streaming() const { return streaming_.outputs(); }
   bool geometry_read() const { return geometry_.read(); }
   bool feed_read() const { return feed_.read(); }
   // For jumps. settled(): with these inputs, the enables and the ticks made apart, only counters move.
@@ -109,7 +120,7 @@ class Sequencer {
   // A path takes each tick of its piece as it comes.
   bool ticking() const { return (path_ == Path::Line || path_ == Path::Engine) && !drained_ && out_.feed_active; }
   // Ticks until the path or its piece ends, the last one included.
-  std::uint64_t ticks_left() const { return path_left_ < piece_left_ ? path_left_ : piece_left_; }
+  std::uint64_t ticks_left() const { return out_.spent || path_left_ < piece_left_ ? path_left_ : piece_left_; }
   // Clocks that a settled sequencer may jump over at most, ticks apart.
   std::uint64_t settled_clocks() const {
     return barrier_ == Barrier::Running && barrier_at_ > now_ ? barrier_at_ - now_ : kLong;
@@ -146,8 +157,11 @@ class Sequencer {
     bool path_ends = false;  // its last tick is taken
     bool path_over = false;  // on an engine or direct: finished after that
     bool path_begins = false;
+    bool period = false;   // the last tick of a period is taken
+    bool goes_on = false;  // and nothing follows, or nothing has yet
     bool piece_ends = false;
     bool piece_begins = false;
+    bool piece_goes_on = false;
     bool barrier_begins = false;
     bool barrier_ends = false;
     bool barrier_done = false;  // ended in the clock before: both queues go on
@@ -164,6 +178,8 @@ class Sequencer {
   Decision decide(const Inputs& in) const;
   bool judged(const Inputs& in) const;
   bool mismatches() const;
+  bool ticking_path() const { return path_ == Path::Direct || (path_ != Path::None && !drained_); }
+  PositionStreaming::Inputs streaming_inputs(const Inputs& in) const;
   bool barrier_over(const Inputs& in) const;
   bool path_waits() const { return geometry_.decoded() && geometry_.is_path(); }
   // A command that is taken at once.
@@ -171,6 +187,7 @@ class Sequencer {
   void stand(const Decision& d);
   void clock_path(const Inputs& in, const Decision& d);
   void clock_piece(const Decision& d);
+  void clock_streaming(const Inputs& in, const Decision& d);
   void clock_barrier(const Decision& d);
   void clock_ticks(const Inputs& in, bool take);
   void clock_fetches(const Inputs& in, const Decision& d);
@@ -181,6 +198,7 @@ class Sequencer {
   void cut();
 
   bool clock_all_;
+  bool has_streaming_;
   bool calm_ = false;  // as of the last clock, with inputs as these flags say
   unsigned calm_inputs_ = 0;
   std::uint64_t now_ = 0;
@@ -207,6 +225,7 @@ class Sequencer {
   bool piece_begun_ = false;
   bool cut_before_ = false;
 
+  PositionStreaming streaming_;
   Outputs out_;
   Record record_;
 };

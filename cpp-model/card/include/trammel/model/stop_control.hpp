@@ -18,6 +18,7 @@ class StopControl {
     std::uint32_t step_fault = 0;  // events, by axis
     bool mismatch = false;         // event
     bool incomplete = false;       // event
+    bool missing = false;          // event: of position streaming
     bool abort = false;            // event
     std::uint32_t clear = 0;       // event: ones written to FAULT
     bool at_rest = false;          // the ratio is 0
@@ -39,7 +40,8 @@ class StopControl {
   // One rising edge.
   void clock(const Inputs& in) {
     const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
-                                 (in.incomplete ? card_map::field::kFaultPathIncomplete : 0);
+                                 (in.incomplete ? card_map::field::kFaultPathIncomplete : 0) |
+                                 (in.missing ? card_map::field::kFaultMissingPeriod : 0);
     const bool at_once = (events & ~reaction_) != 0;
     made_to_hold_ = in.underrun || in.probe;
     hold_stays_ = stays(in.moving, in.at_rest);

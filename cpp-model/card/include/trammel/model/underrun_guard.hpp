@@ -31,8 +31,7 @@ class UnderrunGuard {
     bool any() const { return drop || geometry_commit || geometry_write || feed_commit || feed_write; }
   };
   struct Inputs {
-    bool cut = false;
-    bool off = false;   // no rule
+    bool cut = false;   // and where there is no rule: nothing is counted
     bool lost = false;  // event: what is queued will be dropped
     bool idle = false;  // nothing runs, is decoded or queued; up to four clocks late
     Arrival arrival;
@@ -91,7 +90,7 @@ class UnderrunGuard {
   const Outputs& outputs() const { return out_; }
 
   // A piece that is decoded must not begin.
-  bool waits(bool active, bool off) const { return (!active || ends_) && !next_zero() && !enough_ && !(off || lost_); }
+  bool waits(bool active) const { return (!active || ends_) && !next_zero() && !enough_ && !lost_; }
 
   // With these inputs nothing changes but counts, as long as fewer ticks are taken than ticks_to_change().
   bool settled(const Inputs& in) const {
@@ -101,10 +100,10 @@ class UnderrunGuard {
     if (in.lost || in.cut || in.swap || in.load.valid || in.arrival.any() || pending_.any) return false;
     if (due_ || (follow && (distance_ != next_ || ruled_ == next_zero()))) return false;
     if (decoded_before_ != in.decoded || from_rest_before_ != (!in.active || ends_)) return false;
-    if (judged_ != (in.decoded && follow) || (flags_.covered && !covered_)) return false;
+    if (judged_ != (in.decoded && follow) || (flags_.covered && !covered_ && !unknown_)) return false;
     if ((!out_.hold && ratio_ != in_256ths(in.ratio)) || factor_ != factor(in.ratio == 0, in.full)) return false;
     if (product_ != product() || !(flags_ == compared(owed_))) return false;
-    const bool is_short = ruled_ && judged_short(in.off);
+    const bool is_short = ruled_ && judged_short();
     return out_.hold == holds(is_short, follow, in.full) && enough_ == (judged_ && !is_short) &&
            waits_ == (judged_ && !in.active && is_short);
   }
@@ -176,21 +175,21 @@ class UnderrunGuard {
     return {paths_ - gone <= reserved(), pieces_ - gone <= reserved(), paths_ >= pieces_};
   }
 
-  bool judged_short(bool off) const {
+  bool judged_short() const {
     const bool geometry = flags_.geometry_short && !(at_rest_ && flags_.covered);
-    return !at_barrier_ && !off && !lost_ && !unknown_ && (geometry || (flags_.feed_short && !at_rest_));
+    return !at_barrier_ && !lost_ && !unknown_ && (geometry || (flags_.feed_short && !at_rest_));
   }
   bool holds(bool is_short, bool follow, bool full) const {
     return is_short && (out_.hold || !follow || (judged_ && full));
   }
   void decide(const Inputs& in, bool follow) {
-    const bool is_short = ruled_ && judged_short(in.off);
+    const bool is_short = ruled_ && judged_short();
     const bool held = out_.hold;
     out_.hold = holds(is_short, follow, in.full);
     if (out_.hold && !held) ++out_.underruns;
     enough_ = judged_ && !is_short;
     waits_ = judged_ && !in.active && is_short;
-    covered_ = covered_ || flags_.covered;
+    covered_ = covered_ || (flags_.covered && !lost_ && !unknown_);
   }
 
   void take_distance() {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "trammel/run/observer.hpp"
-#include "trammel/run/plot.hpp"
+#include "trammel/run/path_points.hpp"
 
 namespace trammel::run {
 
@@ -16,14 +16,15 @@ class CommandedCourse final : public Observer {
   explicit CommandedCourse(const machine::Machine& machine);
   void planned(const planner::PlannedBlock& planned, std::uint64_t first) override;
 
-  std::vector<Point> points() const { return points_.points(); }
+  std::vector<PathPoint> points() const { return points_.points(); }
   // The path that shows single pulses best, an arc rather than a line: its number, and its beginning.
   std::optional<std::uint64_t> detail_command() const { return detail_command_; }
   const std::vector<Point>& detail() const { return detail_; }
 
  private:
   std::vector<double> steps_per_mm_;
-  ThinnedPath points_{10000};
+  PathPoints points_{10000};
+  bool begun_ = false;
   int best_rank_ = 0;
   std::optional<std::uint64_t> detail_command_;
   std::vector<Point> detail_;

@@ -11,7 +11,8 @@
 #include "trammel/driver/steps.hpp"
 #include "trammel/run/deviation_meter.hpp"
 #include "trammel/run/observer.hpp"
-#include "trammel/run/plot.hpp"
+#include "trammel/run/path_points.hpp"
+#include "trammel/run/path_speed.hpp"
 #include "trammel/run/text_sink.hpp"
 
 namespace trammel::run {
@@ -45,10 +46,10 @@ class StepRecorder final : public driver::StepSink, public Observer {
   DeviationMeter& deviation() { return deviation_; }
   const std::vector<std::uint64_t>& steps() const { return steps_; }       // at the pins, by axis
   const std::vector<std::int64_t>& position() const { return position_; }  // sum of the pins' steps
-  std::vector<Point> executed() const { return executed_.points(); }
+  std::vector<PathPoint> executed() const { return executed_.points(); }
   bool thinned() const { return executed_.thinned(); }
   const std::vector<Point>& detail() const { return detail_; }
-  std::vector<SpeedOverTime::Sample> speed() const { return speed_.samples(); }
+  std::vector<PathSpeed::Sample> speed() const { return speed_.samples(); }
 
   // From now on up to kDetailPoints positions are kept one by one for the magnified picture, for path `command`.
   void detail_of(std::uint64_t command) { detail_command_ = command; }
@@ -65,8 +66,8 @@ class StepRecorder final : public driver::StepSink, public Observer {
   std::vector<std::uint64_t> steps_;
   std::vector<std::int64_t> position_;       // at the pins
   std::vector<std::int64_t> path_position_;  // before the shapers
-  ThinnedPath executed_{20000};
-  SpeedOverTime speed_;
+  PathPoints executed_{20000};
+  PathSpeed speed_;
   std::vector<Point> detail_;
   std::optional<std::uint64_t> detail_command_;
   std::optional<driver::PathStep> last_;  // the path step before

@@ -1,0 +1,83 @@
+// Position streaming: periods are lines. A line whose last tick is taken while nothing follows goes on along itself; its
+// ticks beyond its end are counted, and after STREAMING.stale_periods times its own number of them the next period is
+// missing: from then on the line goes on until the card stands.
+//
+// Two counters of 40 bits: ticks left of the present time round, and what they begin at. A tick may come every clock: so
+// whether the next one is a round's last is worked out a tick ahead.
+//
+// The mode changes only at rest, and not inside a command on its way in: so the under-run guard, which counts nothing
+// meanwhile, goes on with the queues empty.
+`default_nettype none
+
+module position_streaming (
+    input  wire logic        clk_i,
+    input  wire logic        rst_i,
+    input  wire logic        cut_i,
+    input  wire logic [40:0] setting_i,
+    input  wire logic [21:0] arrive_i,     // as tick_source has it
+    input  wire logic        rest_i,       // nothing is queued or runs
+    input  wire logic        begin_i,      // a path begins
+    input  wire logic [39:0] count_i,      // its ticks, in the clock after begin_i
+    input  wire logic [ 2:0] period_i,     // {the line goes on, has gone on, a period's last tick is taken}
+    input  wire logic        take_i,
+    output logic             streaming_o,  // the mode
+    output logic             missing_o,    // event
+    output logic             lost_o,       // since then, until the cut
+    output logic      [31:0] ticks_o       // beyond the end of the last period that ended
+);
+  logic       on_q;
+  logic [7:0] stale_periods_q;
+  logic       inside_q;
+  logic       writes;
+  logic       ends;
+  assign writes = arrive_i[18] || arrive_i[16];
+  assign ends   = arrive_i[20] || arrive_i[19] || arrive_i[17];
+
+  always_ff @(posedge clk_i) begin
+    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_STREAMING[9:2])
+      {stale_periods_q, on_q} <= {setting_i[15:8], setting_i[0]};
+    inside_q <= !ends && (inside_q || writes);
+    if (rest_i && !inside_q && !writes) streaming_o <= on_q;
+    if (rst_i || cut_i) inside_q <= 1'b0;
+    if (rst_i) begin
+      {stale_periods_q, on_q} <= {card_map_pkg::RESET_STREAMING[15:8], card_map_pkg::RESET_STREAMING[0]};
+      streaming_o <= card_map_pkg::RESET_STREAMING[0];
+    end
+  end
+
+  logic        begin_q;
+  logic [39:0] length_q;
+  logic [39:0] left_q;
+  logic        short_q;  // the line has one tick
+  logic        last_q;  // the next tick ends a round
+  logic [ 7:0] rounds_q;  // left
+  logic        one;
+  logic        missing;
+  logic        stale_tick;  // beyond the end of the line
+  assign stale_tick = take_i && period_i[1];
+  assign one = count_i == 40'd1;
+  assign missing = period_i[2] && !lost_o &&
+      (period_i[0] ? stale_periods_q == 8'd0 : stale_tick && last_q && rounds_q == 8'd1);
+
+  always_ff @(posedge clk_i) begin
+    begin_q <= begin_i;
+    if (begin_q) begin
+      {length_q, short_q} <= {count_i, one};
+      {left_q, last_q}    <= {count_i, one};
+    end else if (stale_tick) begin
+      left_q <= last_q ? length_q : left_q - 40'd1;
+      last_q <= last_q ? short_q : left_q == 40'd2;
+      if (last_q) rounds_q <= rounds_q - 8'd1;
+    end
+    if (period_i[0]) rounds_q <= stale_periods_q;
+    if (rst_i || period_i[0]) ticks_o <= 32'd0;
+    else if (stale_tick) ticks_o <= ticks_o + 32'd1;
+    missing_o <= missing && !cut_i && !rst_i;
+    lost_o    <= (lost_o || missing) && !cut_i && !rst_i;
+  end
+
+  logic unused;
+  assign unused = &{1'b0, setting_i[31:16], setting_i[7:1], arrive_i[21], arrive_i[15:0]};
+endmodule
+
+`default_nettype wire

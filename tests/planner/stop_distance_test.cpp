@@ -1,0 +1,112 @@
+// Stop distances against what full queues hold, counted from the commands alone.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "plan.hpp"
+
+namespace trammel::planner {
+namespace {
+
+std::uint32_t halfwords_of(const driver::Command& command) {
+  const card_map::Opcode opcode = std::holds_alternative<driver::LineCommand>(command) ? card_map::Opcode::Line
+                                  : std::holds_alternative<driver::ArcChordCommand>(command)
+                                      ? card_map::Opcode::ArcChord
+                                      : card_map::Opcode::Arc;
+  return card_map::queue_halfwords(*card_map::find_command(static_cast<std::uint8_t>(opcode)), 0xf);
+}
+
+struct Path {
+  std::uint64_t begin = 0;  // tick
+  std::uint64_t ticks = 0;
+  std::uint32_t halfwords = 0;
+};
+
+struct Piece {
+  std::uint64_t begin = 0;
+  std::uint32_t stop_distance = 0;
+};
+
+// The most by which a stop distance is above a quarter of the ticks in a full geometry queue behind its piece's begin;
+// of those behind which there is so much.
+double worst_share(const std::string& program, const machine::Machine& machine, const CardLimits& card) {
+  std::vector<Path> paths;
+  std::vector<Piece> pieces;
+  std::uint64_t path_ticks = 0;
+  std::uint64_t piece_ticks = 0;
+  for (const Planned& planned : plan_text(program, machine, card).blocks) {
+    for (const driver::Command& command : planned.commands) {
+      if (const auto* feed = std::get_if<driver::FeedCommand>(&command)) {
+        pieces.push_back({piece_ticks, feed->stop_distance});
+        piece_ticks += feed->ticks;
+      } else if (const std::uint64_t ticks = path_ticks_of(command); ticks != 0) {
+        paths.push_back({path_ticks, ticks, halfwords_of(command)});
+        path_ticks += ticks;
+      }
+    }
+  }
+  double worst = 0;
+  std::size_t first = 0;
+  std::size_t judged = 0;
+  for (const Piece& piece : pieces) {
+    while (paths[first].begin + paths[first].ticks <= piece.begin) ++first;
+    std::uint32_t queued = 0;
+    std::size_t end = first;
+    for (; end < paths.size() && queued < card.geometry_depth; ++end) queued += paths[end].halfwords;
+    if (end == paths.size()) break;
+    if (piece.stop_distance <= 1) continue;
+    const auto ticks = static_cast<double>(paths[end].begin - piece.begin);
+    worst = std::max(worst, (piece.stop_distance + 256.0) / (ticks / 4));
+    ++judged;
+  }
+  EXPECT_GT(judged, 5U);
+  return worst;
+}
+
+// 300 mm/s, 3,000 mm/s^2: stops of 0.1 s and more.
+machine::Machine quick_machine() {
+  machine::Machine machine = machine::default_machine();
+  for (machine::MachineAxis& axis : machine.axes) {
+    axis.max_velocity = 300;
+    axis.max_acceleration = 3000;
+  }
+  return machine;
+}
+
+std::string circles(const char* between) {
+  std::string program = "F18000\n";
+  for (int i = 0; i < 8; ++i) program += fmt::format("F{} G2 X0 Y0 I40 J0\n{}", i % 2 == 0 ? 18000 : 9000, between);
+  return program + "M2\n";
+}
+
+TEST(StopDistance, OfArcsInChordsCountsTheirChords) {
+  CardLimits card;
+  card.clock_hz = 50'000'000;
+  card.geometry_depth = 1024;
+  machine::Machine machine = quick_machine();
+  EXPECT_LE(worst_share(circles(""), machine, with_arcs_by(card, ArcsBy::kChords)), 1.02);
+  machine.axes[1].steps_per_mm = 100;
+  EXPECT_LE(worst_share(circles("G1 X0.01\n"), machine, with_arcs_by(card, ArcsBy::kChords)), 1.02);
+}
+
+// An arc for the generator takes more than two lines.
+TEST(StopDistance, OfShortArcsCountsTheirSize) {
+  CardLimits card;
+  card.clock_hz = 50'000'000;
+  card.geometry_depth = 2048;
+  std::string program = "F18000\n";
+  for (int i = 0; i < 1500; ++i) {
+    program +=
+        fmt::format("F{} {} X{:.2f} R5\n", i / 50 % 2 == 0 ? 6000 : 3000, i % 2 == 0 ? "G2" : "G3", 0.1 * (i + 1));
+  }
+  machine::Machine machine = quick_machine();
+  for (machine::MachineAxis& axis : machine.axes) axis.max = 1e4;
+  machine.motion.junction_deviation = 10;
+  EXPECT_LE(worst_share(program + "M2\n", machine, card), 1.02);
+}
+
+}  // namespace
+}  // namespace trammel::planner

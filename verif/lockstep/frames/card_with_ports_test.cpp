@@ -1,0 +1,202 @@
+// The driver, unchanged, moves the Verilated card over the pins of its serial and of its SPI port, beside the model:
+// pins of ports and axes in every cycle.
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "spi_master.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/frame_bus.hpp"
+#include "trammel/driver/one_shot.hpp"
+#include "trammel/model/core_model.hpp"
+#include "trammel/model/host_ports.hpp"
+#include "trammel/sim/lockstep.hpp"
+#include "uart_line.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+using std::chrono::nanoseconds;
+using namespace std::chrono_literals;
+
+constexpr unsigned kAxes = 2;
+constexpr unsigned kBreakBits = 10;
+constexpr std::uint64_t kComparedSignals = 5;
+constexpr nanoseconds kClock = 1us;  // the card runs at 1 MHz
+
+class CardUnderTest {
+ public:
+  CardUnderTest() : check_("card_with_ports", 0), core_(core_config()), hosts_(host_config()) {
+    dut_->clock_hz_i = 1'000'000;
+    dut_->rst_i = 1;
+    drive();
+    model::CoreModel::Inputs in;
+    in.rst = true;
+    dut_.clock();
+    core_.clock(in);
+    dut_->rst_i = 0;
+    dut_.clock();
+    core_.clock({});
+    hosts_.reset();
+  }
+
+  void clock() {
+    in_.rx = uart_line.next();
+    in_.spi = spi.next(hosts_.spi().miso);
+    if (const std::optional<std::uint8_t> byte = uart_line.take(hosts_.uart().tx)) from_uart.push_back(*byte);
+    drive();
+    const model::CoreModel::Answer answer = core_.answer();
+    const model::PortArbiter::Inner inner = hosts_.inner();
+    model::CoreModel::Inputs in;
+    in.request = inner.access.request;
+    in.write = inner.access.write;
+    in.partial = inner.access.partial;
+    in.port = inner.port;
+    in.address = inner.access.address;
+    in.data = inner.access.data;
+    dut_.clock();
+    core_.clock(in);
+    hosts_.clock(in_, {answer.ack, answer.error, answer.data});
+    check_.next_cycle();
+    compare();
+  }
+
+  std::uint32_t position(unsigned axis) const { return core_.position(axis); }
+  const Checker& check() const { return check_; }
+  std::uint64_t rises() const { return rises_; }
+
+  UartLine uart_line;
+  SpiMaster spi;
+  std::deque<std::uint8_t> from_uart;
+
+ private:
+  static model::CardConfig core_config() {
+    model::CardConfig config;
+    config.axes = kAxes;
+    config.ports = 2;
+    return config;
+  }
+  static model::HostPorts::Config host_config() { return {false, false, false, true, true, kBreakBits}; }
+
+  void drive() {
+    dut_->rx_i = in_.rx;
+    dut_->spi_i = static_cast<CData>(unsigned{in_.spi.mosi} << 2 | unsigned{in_.spi.cs_n} << 1 | unsigned{in_.spi.sck});
+  }
+  void compare() {
+    const model::CoreModel::Outputs& out = core_.outputs();
+    check_.compare("tx_o", dut_->tx_o, hosts_.uart().tx);
+    check_.compare("spi_o", dut_->spi_o, unsigned{hosts_.spi().miso_enable} << 1 | unsigned{hosts_.spi().miso});
+    check_.compare("step_o", dut_->step_o, out.step);
+    check_.compare("dir_o", dut_->dir_o, out.dir);
+    check_.compare("irq_o", dut_->irq_o, out.irq);
+    rises_ += (out.step & ~step_before_ & 1) != 0 ? 1U : 0U;
+    step_before_ = out.step;
+  }
+
+  Simulated<Vdut> dut_;
+  Checker check_;
+  model::CoreModel core_;
+  model::HostPorts hosts_;
+  model::HostPorts::Inputs in_;
+  std::uint32_t step_before_ = 0;
+  std::uint64_t rises_ = 0;
+};
+
+// What both links have in common: time is the card's clocks.
+class ClockedLink : public driver::ByteLink {
+ public:
+  explicit ClockedLink(CardUnderTest& card) : card_(card) {}
+
+  nanoseconds now() const override { return kClock * static_cast<std::int64_t>(card_.check().cycles()); }
+  void sleep(nanoseconds time) override {
+    for (const nanoseconds until = now() + time; now() < until;) card_.clock();
+  }
+
+ protected:
+  static std::size_t move(std::deque<std::uint8_t>& from, std::uint8_t* bytes, std::size_t room) {
+    std::size_t count = 0;
+    for (; count < room && !from.empty(); ++count) {
+      bytes[count] = from.front();
+      from.pop_front();
+    }
+    return count;
+  }
+
+  CardUnderTest& card_;
+};
+
+class SerialLink final : public ClockedLink {
+ public:
+  using ClockedLink::ClockedLink;
+
+  void send(const std::uint8_t* bytes, std::size_t count) override {
+    for (std::size_t i = 0; i < count; ++i) card_.uart_line.send(bytes[i]);
+    while (card_.uart_line.busy()) card_.clock();
+  }
+  std::size_t receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) override {
+    for (const nanoseconds until = now() + longest; card_.from_uart.empty() && now() < until;) card_.clock();
+    return move(card_.from_uart, bytes, room);
+  }
+  void restart() override {
+    card_.uart_line.set_period(69.4);  // 115,200 baud
+    card_.uart_line.break_line(1 << kBreakBits | 20);
+    while (card_.uart_line.busy()) card_.clock();
+    card_.from_uart.clear();
+  }
+  nanoseconds time_of(std::size_t bytes) const override { return 87us * static_cast<std::int64_t>(bytes); }
+};
+
+class SpiLink final : public ClockedLink {
+ public:
+  using ClockedLink::ClockedLink;
+
+  void send(const std::uint8_t* bytes, std::size_t count) override { exchange(frames::Bytes(bytes, bytes + count)); }
+  std::size_t receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) override {
+    for (const nanoseconds until = now() + longest; came_.empty() && now() < until;) {
+      exchange(frames::Bytes(8, frames::kEnd));
+    }
+    return move(came_, bytes, room);
+  }
+  void restart() override { came_.clear(); }
+  nanoseconds time_of(std::size_t bytes) const override { return 40us * static_cast<std::int64_t>(bytes); }
+
+ private:
+  // Ends that only fill are left out, so that silence is nothing.
+  void exchange(const frames::Bytes& bytes) {
+    card_.spi.set(3, 4);
+    card_.spi.exchange(bytes);
+    while (card_.spi.busy()) card_.clock();
+    for (const std::uint8_t byte : card_.spi.received()) {
+      if (byte != frames::kEnd || last_ != frames::kEnd) came_.push_back(byte);
+      last_ = byte;
+    }
+  }
+
+  std::deque<std::uint8_t> came_;
+  std::uint8_t last_ = frames::kEnd;
+};
+
+void a_line_over(CardUnderTest& card, driver::ByteLink& link, std::int32_t pulses) {
+  driver::FrameBus bus(link);
+  driver::Card host = driver::Card::open(bus);
+  const std::uint32_t before = card.position(0);
+  driver::run_line(host, driver::plan_line(host.timing(), {pulses, -100}, 20ms));
+  EXPECT_EQ(card.position(0) - before, static_cast<std::uint32_t>(pulses));
+  EXPECT_EQ(bus.counts().sent_again, 0U);
+}
+
+void lines_over_both() {
+  CardUnderTest card;
+  SerialLink serial(card);
+  a_line_over(card, serial, 200);
+  SpiLink spi(card);
+  a_line_over(card, spi, 300);
+  EXPECT_EQ(card.rises(), 500U);
+  EXPECT_EQ(card.check().comparisons(), kComparedSignals * card.check().cycles());
+}
+
+TEST(CardWithPorts, TheDriverMovesItOverSerialLineAndSpi) { EXPECT_EQ(judge(lines_over_both), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

@@ -1,0 +1,203 @@
+// Lockstep of a card's host ports side by side, a host at each: accesses at random at the buses, requests whole and
+// damaged on the lines; every pin of every port in every cycle, and what comes to the inner port.
+#include "trammel/model/host_ports.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "byte_ports.hpp"
+#include "spi_master.hpp"
+#include "trammel/sim/lockstep.hpp"
+#include "uart_line.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+using model::HostPorts;
+
+constexpr HostPorts::Config kConfig{TRAMMEL_AXI != 0,  TRAMMEL_WISHBONE != 0, TRAMMEL_WISHBONE == 2,
+                                    TRAMMEL_UART != 0, TRAMMEL_SPI != 0,      10};
+constexpr std::uint64_t kComparedSignals = 6;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed)
+      : check_("host_ports", seed), dice_(seed), model_(kConfig), uart_source_(dice_), spi_source_(dice_) {
+    reset();
+  }
+
+  void random_clock() {
+    if (dice_.chance(50'000)) return reset();
+    axi_host();
+    wishbone_host();
+    uart_host();
+    spi_host();
+    const model::PortArbiter::Inner inner = model_.inner();
+    if (inner.access.request) {
+      ++asked_[inner.port];
+      inner_.ask(4 + dice_.below(6), dice_.chance(30), dice_.draw());
+    }
+    const InnerPort::Answer now = inner_.now();
+    const HostPorts::Answer answer{now.ack, now.ack ? now.error : dice_.chance(2), now.ack ? now.data : dice_.draw()};
+    drive(answer);
+    dut_.clock();
+    model_.clock(in_, answer);
+    check_.next_cycle();
+    compare();
+  }
+
+  Checker& check() { return check_; }
+  std::uint64_t asked(std::size_t port) const { return asked_[port]; }
+  std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
+
+ private:
+  // One clock, whatever else comes in it.
+  void reset() {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    drive({});
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_.reset();
+    in_ = {};
+    inner_.clear();
+    line_.clear();
+    line_.set_period(64);
+    line_.break_line(1034);
+  }
+
+  // As masters may: valid stays until ready.
+  void axi_host() {
+    model::Axi4LitePort::Inputs& axi = in_.axi;
+    const model::Axi4LitePort::Outputs& out = model_.axi();
+    if (taken_write_) axi.awvalid = axi.wvalid = false;
+    if (taken_read_) axi.arvalid = false;
+    if (!axi.awvalid && dice_.chance(40)) {
+      axi.awvalid = axi.wvalid = true;
+      axi.awaddr = dice_.below(4096);
+      axi.wdata = dice_.draw();
+      axi.wstrb = dice_.chance(4) ? 7 : 15;
+    }
+    if (!axi.arvalid && dice_.chance(40)) {
+      axi.arvalid = true;
+      axi.araddr = dice_.below(4096);
+    }
+    axi.bready = axi.rready = dice_.chance(2);
+    taken_write_ = axi.awvalid && out.awready;
+    taken_read_ = axi.arvalid && out.arready;
+  }
+  void wishbone_host() {
+    model::WishbonePort::Inputs& bus = in_.wishbone;
+    const model::WishbonePort::Outputs& out = model_.wishbone();
+    const bool over = kConfig.pipelined ? !out.stall : out.ack || out.err;
+    if (bus.stb && over) bus.stb = false;
+    if (dice_.chance(300)) bus.cyc = bus.stb = false;
+    if (bus.stb || !dice_.chance(30)) return;
+    bus.cyc = bus.stb = true;
+    bus.we = dice_.chance(2);
+    bus.adr = dice_.below(4096);
+    bus.sel = dice_.chance(4) ? 3 : 15;
+    bus.dat = dice_.draw();
+  }
+  void uart_host() {
+    const frames::Session& session = model_.uart_engine().session();
+    if (dice_.chance(60'000)) line_.break_line(1034);
+    if (!line_.busy() && model_.uart_engine().listening()) {
+      line_.send(uart_source_.next(session.last(), session.epoch()));
+    }
+    in_.rx = line_.next();
+  }
+  void spi_host() {
+    const frames::Session& session = model_.spi_engine().session();
+    if (!spi_.busy()) {
+      frames::Bytes bytes(1 + dice_.below(8), frames::kEnd);
+      if (model_.spi_engine().listening()) {
+        for (std::uint8_t& byte : bytes) byte = spi_source_.next(session.last(), session.epoch());
+      }
+      spi_.set(dice_.chance(2) ? 0 : 3, 4 + dice_.below(4));
+      spi_.exchange(bytes);
+    }
+    in_.spi = spi_.next(model_.spi().miso);
+  }
+
+  void drive(const HostPorts::Answer& answer) {
+    dut_->awvalid_i = in_.axi.awvalid;
+    dut_->awaddr_i = static_cast<SData>(in_.axi.awaddr);
+    dut_->wvalid_i = in_.axi.wvalid;
+    dut_->wdata_i = in_.axi.wdata;
+    dut_->wstrb_i = in_.axi.wstrb;
+    dut_->bready_i = in_.axi.bready;
+    dut_->arvalid_i = in_.axi.arvalid;
+    dut_->araddr_i = static_cast<SData>(in_.axi.araddr);
+    dut_->rready_i = in_.axi.rready;
+    const model::WishbonePort::Inputs& w = in_.wishbone;
+    dut_->wishbone_i = std::uint64_t{w.cyc} << 50 | std::uint64_t{w.stb} << 49 | std::uint64_t{w.we} << 48 |
+                       std::uint64_t{w.sel} << 44 | std::uint64_t{w.adr} << 32 | w.dat;
+    dut_->rx_i = in_.rx;
+    dut_->spi_i = static_cast<CData>(unsigned{in_.spi.mosi} << 2 | unsigned{in_.spi.cs_n} << 1 | unsigned{in_.spi.sck});
+    dut_->ack_i = answer.ack;
+    dut_->error_i = answer.error;
+    dut_->data_i = answer.data;
+  }
+
+  void compare() {
+    const model::Axi4LitePort::Outputs& axi = model_.axi();
+    const unsigned axi_rtl = dut_->awready_o | dut_->wready_o << 1 | dut_->bvalid_o << 2 | dut_->arready_o << 3 |
+                             dut_->rvalid_o << 4 | dut_->bresp_o << 5 | dut_->rresp_o << 7;
+    const unsigned axi_model = unsigned{axi.awready} | unsigned{axi.wready} << 1 | unsigned{axi.bvalid} << 2 |
+                               unsigned{axi.arready} << 3 | unsigned{axi.rvalid} << 4 | unsigned{axi.bresp} << 5 |
+                               unsigned{axi.rresp} << 7;
+    check_.compare("AXI4-Lite handshakes and responses", axi_rtl, axi_model);
+    const model::WishbonePort::Outputs& w = model_.wishbone();
+    check_.compare("Wishbone ack, err, stall", dut_->wishbone_o >> 32,
+                   unsigned{w.ack} << 2 | unsigned{w.err} << 1 | unsigned{w.stall});
+    check_.compare("tx_o", dut_->tx_o, model_.uart().tx);
+    // A port that is not built drives nothing.
+    const bool miso = kConfig.spi && model_.spi().miso;
+    check_.compare("spi_o", dut_->spi_o, unsigned{model_.spi().miso_enable} << 1 | unsigned{miso});
+    const model::PortArbiter::Inner inner = model_.inner();
+    check_.compare("request_o", dut_->request_o, inner.access.request);
+    check_.compare("access_o, port", dut_->access_o >> 46, dut_->request_o ? inner.port : dut_->access_o >> 46);
+    if (axi.rvalid) differs("rdata_o", dut_->rdata_o, axi.rdata);
+    if (w.ack || w.err) differs("Wishbone data", dut_->wishbone_o & 0xFFFFFFFF, w.dat);
+    if (!inner.access.request) return;
+    const model::PortArbiter::Access& a = inner.access;
+    differs("access_o, write and address", dut_->access_o >> 32 & 0x2FFF, std::uint64_t{a.write} << 13 | a.address);
+    if (a.write)
+      differs("access_o, partial and data", dut_->access_o & 0x1000FFFFFFFF, std::uint64_t{a.partial} << 44 | a.data);
+  }
+  void differs(const char* signal, std::uint64_t rtl, std::uint64_t model) {
+    check_.compare(signal, rtl, model);
+    ++more_;
+  }
+
+  Simulated<Vdut> dut_;
+  Checker check_;
+  Dice dice_;
+  HostPorts model_;
+  HostPorts::Inputs in_;
+  InnerPort inner_;
+  FrameSource uart_source_;
+  FrameSource spi_source_;
+  UartLine line_;
+  SpiMaster spi_;
+  bool taken_write_ = false;
+  bool taken_read_ = false;
+  std::uint64_t asked_[4] = {};
+  std::uint64_t more_ = 0;
+};
+
+void all_hosts() {
+  const std::uint64_t seed = seed_from_environment(20261122);
+  Bench bench(seed);
+  const std::uint64_t length = scaled(600'000);
+  for (std::uint64_t i = 0; i < length; ++i) bench.random_clock();
+  EXPECT_GT(bench.check().cycles(), length * 99 / 100);
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+  for (std::size_t port = 0; port < kConfig.ports(); ++port) EXPECT_GT(bench.asked(port), length / 2500) << port;
+}
+
+TEST(HostPorts, AllHostsAtOnce) { EXPECT_EQ(judge(all_hosts), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

@@ -1,0 +1,150 @@
+// Lockstep of position streaming: periods of any length up to 2^40 - 1 ticks, ticks beyond their ends at any pace, with
+// and without a successor, STREAMING set at any clock, commands that come in part; every output in every cycle.
+#include "trammel/model/position_streaming.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+namespace reg = card_map::reg;
+
+constexpr std::uint64_t kComparedSignals = 4;
+constexpr std::uint64_t kMost = (std::uint64_t{1} << 40) - 1;
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed) : check_("position_streaming", seed), dice_(seed) { reset(); }
+
+  void random_clock() {
+    if (dice_.chance(2000)) pace_ = 1 + dice_.below(6);
+    in_ = {};
+    in_.setting = {dice_.chance(20), dice_.chance(8) ? reg::kHold : reg::kStreaming,
+                   dice_.below(2) | (dice_.chance(8) ? dice_.below(256) : dice_.below(4)) << 8};
+    in_.setting.data |= dice_.draw() & 0xFFFF'00FE;
+    in_.write = dice_.chance(4);
+    in_.whole = dice_.chance(3);
+    in_.rest = !dice_.chance(5);
+    in_.cut = dice_.chance(300);
+    random_path();
+    if (dice_.chance(3000))
+      reset();
+    else
+      clock();
+  }
+
+  Checker& check() { return check_; }
+  std::uint64_t missing() const { return missing_; }
+  std::uint64_t modes() const { return modes_; }
+
+ private:
+  // A path begins, comes to its end, goes on for a while.
+  void random_path() {
+    was_stale_ = stale_;
+    if (stale_) {
+      in_.stale_tick = dice_.chance(pace_);
+      in_.goes_on = !dice_.chance(200);
+      in_.begin = !in_.goes_on && dice_.chance(2);
+      stale_ = in_.goes_on;
+    } else if (running_ && dice_.chance(6)) {
+      in_.period = true;
+      in_.goes_on = !dice_.chance(8);
+      stale_ = in_.goes_on;
+      running_ = false;
+    } else {
+      in_.begin = dice_.chance(10);
+    }
+    if (in_.begin) {
+      in_.ticks = random_ticks();
+      check_.event("begin", in_.ticks);
+      running_ = true;
+    }
+    if (in_.cut) running_ = stale_ = false;
+  }
+
+  // One or two ticks, and what looks like them where a bit goes unseen.
+  std::uint64_t random_ticks() {
+    const std::uint64_t few = 1 + dice_.below(dice_.chance(2) ? 3 : 40);
+    if (dice_.chance(3)) return few;
+    if (dice_.chance(8)) return kMost - dice_.below(2);
+    const std::uint64_t ticks = (std::uint64_t{1} << dice_.below(40)) + few;
+    return ticks > kMost ? kMost : ticks;
+  }
+
+  void reset() {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    apply();
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::PositionStreaming();
+    running_ = stale_ = false;
+    compare();
+  }
+
+  void clock() {
+    apply();
+    const bool on = model_.outputs().on;
+    dut_.clock();
+    model_.clock(in_);
+    began_with_ = in_.begin ? in_.ticks : 0;
+    compare();
+    missing_ += model_.outputs().missing ? 1U : 0U;
+    modes_ += model_.outputs().on != on ? 1U : 0U;
+  }
+
+  void apply() {
+    dut_->cut_i = in_.cut;
+    dut_->setting_i = wire(in_.setting);
+    const unsigned writes = in_.write ? 1U << (dice_.chance(2) ? 2 : 0) : 0;
+    const unsigned ends = in_.whole ? (dice_.chance(3) ? 1U << 4 : dice_.chance(2) ? 1U << 3 : 1U << 1) : 0;
+    dut_->arrive_i = (writes | ends) << 16 | (dice_.draw() & 0x20FFFF);
+    dut_->rest_i = in_.rest;
+    dut_->begin_i = in_.begin;
+    dut_->count_i = began_with_ != 0 ? began_with_ : dice_.word() & kMost;
+    // A tick that is not beyond the line's end is none of its business.
+    const bool gone_on = in_.stale_tick || (was_stale_ && dice_.chance(2));
+    dut_->take_i = in_.stale_tick || (!gone_on && dice_.chance(2));
+    dut_->period_i = static_cast<CData>(unsigned{in_.goes_on} << 2 | unsigned{gone_on} << 1 | unsigned{in_.period});
+  }
+
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_.outputs();
+    check_.compare("streaming_o", dut_->streaming_o, out.on);
+    check_.compare("missing_o", dut_->missing_o, out.missing);
+    check_.compare("lost_o", dut_->lost_o, out.lost);
+    check_.compare("ticks_o", dut_->ticks_o, out.ticks);
+  }
+
+  Simulated<Vdut> dut_;
+  model::PositionStreaming model_;
+  model::PositionStreaming::Inputs in_;
+  Checker check_;
+  Dice dice_;
+  unsigned pace_ = 1;             // a tick in so many clocks
+  std::uint64_t began_with_ = 0;  // ticks of the path that began in the clock before; 0: none did
+  bool running_ = false;
+  bool stale_ = false;
+  bool was_stale_ = false;
+  std::uint64_t missing_ = 0;
+  std::uint64_t modes_ = 0;
+};
+
+void random_periods() {
+  Bench bench(seed_from_environment(20261122));
+  const std::uint64_t length = scaled(1'000'000);
+  for (std::uint64_t i = 0; i < length; ++i) bench.random_clock();
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * bench.check().cycles());
+  EXPECT_GT(bench.missing(), length / 2000);
+  EXPECT_GT(bench.modes(), length / 1000);
+}
+
+TEST(PositionStreaming, RandomPeriods) { EXPECT_EQ(judge(random_periods), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep
