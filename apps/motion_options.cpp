@@ -121,7 +121,7 @@ void MotionChoice::add_to(CLI::App& command) {
       ->type_name("N");
   command
       .add_option("--arcs", arcs,
-                  "what makes arcs: generator, accumulator (helices and other scales: chords), or chords; the next of "
+                  "what makes arcs: generator, accumulator (helices: chords), or chords; the next of "
                   "these where one cannot")
       ->check(CLI::IsMember({"generator", "accumulator", "chords"}))
       ->capture_default_str();

@@ -217,6 +217,8 @@ TEST(Arcs, GoToWhatTheCardHas) {
     EXPECT_EQ(geometry(flat, unequal, accumulator, true), Geometry::kChords);
   }
   EXPECT_EQ(geometry(flat, equal, true, false), Geometry::kArc);
+  EXPECT_EQ(geometry(flat, unequal, true, false), Geometry::kArc);
+  EXPECT_EQ(geometry(flat, unequal, false, false), Geometry::kChords);
   EXPECT_EQ(geometry(flat, equal, false, false), Geometry::kChords);
 }
 

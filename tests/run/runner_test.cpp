@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -71,6 +73,68 @@ TEST_F(RunnerTest, RunsAProgramToItsEnd) {
   EXPECT_NEAR(plan.seconds, seconds, 0.02 * seconds);
   EXPECT_GT(recorder.deviation().largest_line(), 0);
   EXPECT_LE(recorder.deviation().largest_line(), 0.7081);
+}
+
+// Where the path is, seen as a circle: by how many pulses of an axis it strays from it.
+class CircleMeter final : public driver::StepSink {
+ public:
+  CircleMeter(double centre_x, double centre_y, double radius, double scale_x, double scale_y)
+      : centre_{centre_x, centre_y}, radius_(radius), scale_{scale_x, scale_y} {}
+  void pin_step(const driver::PinStep& /*step*/) override {}
+  void path_step(const driver::PathStep& step) override {
+    if (step.axis > 1) return;
+    at_[step.axis] += step.direction;
+    ++steps;
+    const double x = at_[0] / scale_[0] - centre_[0];
+    const double y = at_[1] / scale_[1] - centre_[1];
+    const double off = std::abs(std::hypot(x, y) - radius_) / radius_;  // in mm, along the radius
+    farthest = std::max(farthest, off * std::hypot(x * scale_[0], y * scale_[1]));
+  }
+
+  double farthest = 0;  // pulses
+  int steps = 0;
+
+ private:
+  std::array<double, 2> centre_;
+  double radius_;
+  std::array<double, 2> scale_;
+  std::array<double, 2> at_{};
+};
+
+// On axes of unequal steps/mm: the accumulator's ellipse, whose centre and semi-axes are rounded to whole pulses.
+TEST_F(RunnerTest, ACircleOnUnequalScalesGoesOutAsAnEllipse) {
+  machine::apply_override(machine_, "axis.y.steps_per_mm=123.4");
+  RunSettings settings;
+  settings.arcs = planner::ArcsBy::kAccumulator;
+  Runner runner(lines_of("F1200 G2 X0 Y0 I5.003 J2.007\nG3 X0 Y4.014 I-5.003 J2.007\nM2\n"), machine_,
+                planner::limits_of(card_.identification()), settings);
+  StepRecorder::Options options;
+  options.steps_per_mm = {80, 123.4, 80, 80};
+  StepRecorder recorder(options);
+  engine_->set_sink(&recorder);
+  runner.add(recorder);
+  runner.plan();
+  const Outcome outcome = runner.run(card_);
+  recorder.finish();
+  EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{0, 495, 0, 0}));
+  EXPECT_GT(recorder.deviation().largest_arc(), 0.3);
+  EXPECT_LE(recorder.deviation().largest_arc(), 1.1);
+  EXPECT_EQ(recorder.deviation().largest_line(), 0) << "no chords";
+}
+
+TEST_F(RunnerTest, AnEllipsesPulsesAreNearTheCircle) {
+  machine::apply_override(machine_, "axis.y.steps_per_mm=123.4");
+  RunSettings settings;
+  settings.arcs = planner::ArcsBy::kAccumulator;
+  Runner runner(lines_of("F1200 G2 X0 Y0 I5.003 J2.007\nM2\n"), machine_, planner::limits_of(card_.identification()),
+                settings);
+  CircleMeter circle(5.003, 2.007, std::hypot(5.003, 2.007), 80, 123.4);
+  engine_->set_sink(&circle);
+  runner.plan();
+  runner.run(card_);
+  EXPECT_GT(circle.steps, 4000);
+  EXPECT_LE(circle.farthest, 1.7);  // measured: 1.61
+  EXPECT_GT(circle.farthest, 0.3);
 }
 
 TEST_F(RunnerTest, RunsSeveralPrograms) {

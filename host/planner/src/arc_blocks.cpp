@@ -1,5 +1,5 @@
-// Blocks of arcs and helices: on the arc generator, arcs also on the accumulator, where these are built in, the scales
-// are equal and they reach; else as chords.
+// Blocks of arcs and helices: on the arc generator where the scales are equal, arcs also on the accumulator, where
+// these are built in and they reach; else as chords.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,9 +71,31 @@ bool is_helix(const Block& block) {
   return false;
 }
 
+// On axes of unequal steps/mm the circle is an ellipse of pulses. Its centre and semi-axes are whole ones.
+driver::EllipseGeometry ellipse_of(const Block& block, double scale_x, double scale_y) {
+  const driver::ArcGeometry arc = geometry_of(block, block.start, block.end, block.exact.sweep);
+  const double radius = (block.exact.radius_start + block.exact.radius_end) / 2;
+  const auto whole = [](std::int64_t units) {
+    return std::llround(static_cast<double>(units) / static_cast<double>(driver::kCentreUnitsPerPulse));
+  };
+  driver::EllipseGeometry ellipse;
+  ellipse.semi_x = std::llround(radius * scale_x);
+  ellipse.semi_y = std::llround(radius * scale_y);
+  ellipse.start_x = -whole(arc.centre_x);
+  ellipse.start_y = -whole(arc.centre_y);
+  ellipse.end_x = arc.end_x;
+  ellipse.end_y = arc.end_y;
+  ellipse.clockwise = arc.clockwise;
+  ellipse.sweep = arc.sweep;
+  ellipse.axis_x = arc.axis_x;
+  ellipse.axis_y = arc.axis_y;
+  return ellipse;
+}
+
 // None where the accumulator's bounds do not admit the arc.
-std::optional<driver::ArcCommand> accumulator_arc(const Block& block) {
+std::optional<driver::ArcCommand> accumulator_arc(const Block& block, double scale_x, double scale_y) {
   try {
+    if (scale_x != scale_y) return driver::prepare(ellipse_of(block, scale_x, scale_y));
     return driver::prepare(geometry_of(block, block.start, block.end, block.exact.sweep));
   } catch (const std::invalid_argument&) {
     return std::nullopt;
@@ -140,8 +162,10 @@ bool BlockBuilder::build_arc(Block& block) {
   block.centre_y = centre_units(motion_.centre_y, scale_y);
   // Radius and bounds are checked where the commands are made.
   if (card_.arc_generator && scale_x == scale_y && build_generator_arc(block)) return true;
-  if (card_.accumulator && scale_x == scale_y && !is_helix(block)) {
-    if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block)) {
+  // Beside a generator, chords follow a circle on unequal scales closer than an ellipse of whole pulses.
+  const bool accumulates = card_.accumulator && (scale_x == scale_y || !card_.arc_generator);
+  if (accumulates && !is_helix(block)) {
+    if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block, scale_x, scale_y)) {
       block.arc = *arc;
       return build_accumulator_arc(block);
     }
@@ -288,23 +312,27 @@ bool BlockBuilder::build_generator_arc(Block& block) const {
   return true;
 }
 
-// Unit steps come evenly: the path's speed changes along it as 1 / (|sin| + |cos|), by 4/pi at the most above its mean,
-// and x'' = V^2 / (r (|sin| + |cos|)^3) adds to what a ramp does.
+// Unit steps come evenly: the path's speed changes along it as 1 / g, g = |sin| sx + |cos| sy with the axes' steps/mm,
+// and so its acceleration, V^2 sqrt(sx^2 + sy^2) / (r g^3) with V steps a second, adds to what a ramp does. g is least
+// along the coarser axis; where the scales are equal the speed is 4/pi at the most above its mean.
 bool BlockBuilder::build_accumulator_arc(Block& block) {
   block.geometry = Geometry::kArc;
   const double steps = static_cast<double>(block.arc.path_ticks);
   const double radius = largest_radius(block);
-  const double scale = axes_[block.axis_x].steps_per_mm;
-  const double unevenness = std::max(1.0, steps / (radius * scale * block.exact.sweep));
+  const double scale_x = scales_[block.axis_x];
+  const double scale_y = scales_[block.axis_y];
+  const double least = std::min(scale_x, scale_y);
+  const double mean = std::max(least, steps / (radius * block.exact.sweep));  // steps a mm
+  const double unevenness = mean / least;
+  const double share = std::sqrt(0.5) * least / hypotenuse(scale_x, scale_y);
   // Two feed ticks a unit step at least: the step is then within a tick of its time.
   block.least_ticks = 2 * block.arc.path_ticks;
-  limit_arc(block, unevenness, 0.5 / (unevenness * unevenness));
+  limit_arc(block, unevenness, share / (unevenness * unevenness));
   const double unit_steps = steps / block.length;
   limit_speed(block, card_.clock_hz / kClocksPerPathTick / unit_steps, SpeedLimit::kClock);
   for (Direction* end : {&block.entry, &block.exit}) {
-    double sum = 0;
-    for (const double part : *end) sum += std::abs(part);
-    for (double& part : *end) part *= unevenness / sum;
+    const double here = std::abs((*end)[block.axis_x]) * scale_x + std::abs((*end)[block.axis_y]) * scale_y;
+    for (double& part : *end) part *= mean / here;
   }
   return true;
 }

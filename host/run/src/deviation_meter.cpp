@@ -32,6 +32,12 @@ void DeviationMeter::sending(const planner::Block& block) {
   block_ = block;
 }
 
+double DeviationMeter::Path::level(double x, double y) const {
+  if (semi_x == 0) return std::hypot(x, y);
+  const double slope = std::hypot(x / (semi_x * semi_x), y / (semi_y * semi_y));
+  return slope > 0 ? (std::pow(x / semi_x, 2) + std::pow(y / semi_y, 2) - 1) / (2 * slope) : -std::min(semi_x, semi_y);
+}
+
 DeviationMeter::Path DeviationMeter::arc_in_chords() const {
   Path path;
   path.arc = path.of_machine = true;
@@ -66,11 +72,17 @@ void DeviationMeter::command(std::uint64_t number, const driver::Command& comman
     path.axis_count = 2;
     path.axes[0] = arc->axis_x;
     path.axes[1] = arc->axis_y;
-    // F = X^2 + Y^2 - R^2 with X in 1/256 pulse: GX = 2 * 256 * X, so the centre lies at -GX / 512 / 256 pulses.
-    path.target[0] = -to_double(arc->gradient_x) / (2 * kCentreScale * kCentreScale);
-    path.target[1] = -to_double(arc->gradient_y) / (2 * kCentreScale * kCentreScale);
-    const double start = std::hypot(path.target[0], path.target[1]);
-    const double end = std::hypot(arc->end_x - path.target[0], arc->end_y - path.target[1]);
+    // The gradient of F = A X^2 + B Y^2 - N, X in pulses, is CX X there.
+    const auto half_x = static_cast<double>(arc->half_x);
+    const auto half_y = static_cast<double>(arc->half_y);
+    path.target[0] = -to_double(arc->gradient_x) / (2 * half_x);
+    path.target[1] = -to_double(arc->gradient_y) / (2 * half_y);
+    if (arc->half_x != arc->half_y) {
+      path.semi_x = std::sqrt(half_y);
+      path.semi_y = std::sqrt(half_x);
+    }
+    const double start = path.level(-path.target[0], -path.target[1]);
+    const double end = path.level(arc->end_x - path.target[0], arc->end_y - path.target[1]);
     path.inner = std::min(start, end);
     path.outer = std::max(start, end);
   } else if (std::holds_alternative<driver::ArcChordCommand>(command)) {
@@ -115,8 +127,8 @@ void DeviationMeter::measure() {
   if (path.arc) {
     const double x = static_cast<double>(position_[path.axes[0]]) - path.target[0];
     const double y = static_cast<double>(position_[path.axes[1]]) - path.target[1];
-    const double radius = std::hypot(x, y);
-    largest_arc_ = std::max({largest_arc_, radius - path.outer, path.inner - radius});
+    const double level = path.level(x, y);
+    largest_arc_ = std::max({largest_arc_, level - path.outer, path.inner - level});
     return;
   }
   // |d|^2 - (d.u)^2 loses digits on long lines; the rejection d - (d.u) u does not.

@@ -2,8 +2,9 @@
 // chords, whose command does not say its centre, from the block that it comes from. A helix is judged in its plane.
 // Definitions (design of the JSON summary): positions are compared after all steps of a tick; a line's deviation is
 // the perpendicular distance from the straight line between its integer end points, in the space of its moving axes;
-// an arc's is the distance outside the annulus between the radii of its integer start and end. Unit: pulses.
-// Not thread-safe.
+// an arc's is the distance outside the annulus between the radii of its integer start and end; an ellipse's (a circle
+// on axes of unequal steps/mm) likewise, to the first order, from the ellipse that the card is given. Unit: pulses. Not
+// thread-safe.
 #pragma once
 
 #include <array>
@@ -45,6 +46,10 @@ class DeviationMeter {
     double inner = 0;                                 // arc: radii of the annulus
     double outer = 0;
     double length = 0;  // line: length of the displacement
+    double semi_x = 0;  // of an ellipse; 0: a circle
+    double semi_y = 0;
+    // Of an arc: a point's distance from its centre, or from its ellipse.
+    double level(double x, double y) const;
   };
   void measure();
   void enter(std::uint64_t command);
