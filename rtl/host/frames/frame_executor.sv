@@ -90,7 +90,6 @@ module frame_executor (
     end
     if (start_i || (at_q[NEXT] && over)) begin
       state_q <= !begins;
-      error_q <= 1'b0;
       word_q <= 6'd0;
       place_q <= !begins ? 8'd0 : write_i ? REQUEST_WORDS : REPLY_WORDS;
       address_q <= begins ? address_i : STATE_ADDRESS;

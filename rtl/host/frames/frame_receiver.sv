@@ -48,7 +48,8 @@ module frame_receiver (
   assign escape = byte_i[7:0] == ESCAPE && !escaped_q;
   assign unescaped = byte_i[7:0] == ESCAPED_END || byte_i[7:0] == ESCAPED_ESCAPE;
   assign wrong = !listen_i || (escaped_q && !unescaped) || place_q == MOST;
-  assign add = byte_i[8] && !ends && !escape && !wrong && !bad_q;
+  // What comes of an end, or after a wrong byte, is never looked at.
+  assign add = byte_i[8] && !escape && !wrong;
 
   assign byte_o = !escaped_q ? byte_i[7:0] : byte_i[0] ? ESCAPE : END;
   assign crc_start_o = add;
@@ -58,7 +59,7 @@ module frame_receiver (
   always_ff @(posedge clk_i) begin
     if (byte_i[8]) begin
       escaped_q <= escape;
-      bad_q <= bad_q || (wrong && !escape) || !listen_i;
+      bad_q <= bad_q || wrong;
     end
     if (add) place_q <= place_q + 8'd1;
     if (rst_i || restart_i || ends) begin

@@ -34,13 +34,12 @@ module frame_sender (
   localparam logic [1:0] CRC = 2'd2;
   localparam logic [1:0] FINISH = 2'd3;
 
-  localparam int IDLE = 0;
-  localparam int FETCH = 1;  // the RAM reads
-  localparam int LOAD = 2;
-  localparam int PASS = 3;  // through the CRC
-  localparam int OFFER = 4;
+  localparam int FETCH = 0;  // the RAM reads
+  localparam int LOAD = 1;
+  localparam int PASS = 2;  // through the CRC
+  localparam int OFFER = 3;
 
-  logic [4:0] at_q;  // one-hot
+  logic [3:0] at_q;  // one of them; none: at rest
   logic [1:0] section_q;
   logic [7:0] place_q;  // of the section
   logic [7:0] byte_q;
@@ -61,24 +60,17 @@ module frame_sender (
   assign header = header_i[{low, 3'b000}+:8];
 
   always_comb begin
-    unique case (section_q)
-      HEADER: begin
-        chosen = header;
-        last   = low == 3'd7;
-      end
-      WORDS: begin
-        chosen = ram_i;
-        last   = place_q == {count_i + 6'd4, 2'b11};
-      end
-      CRC: begin
-        chosen = crc_i;
-        last   = (low | 3'd4) == 3'd7;
-      end
-      FINISH: begin
-        chosen = END;
-        last   = 1'b0;
-      end
-    endcase
+    chosen = END;
+    last   = (low | 3'd4) == 3'd7;  // of the CRC's
+    if (section_q == HEADER) begin
+      chosen = header;
+      last   = low == 3'd7;
+    end
+    if (section_q == WORDS) begin
+      chosen = ram_i;
+      last   = place_q == {count_i + 6'd4, 2'b11};
+    end
+    if (section_q == CRC) chosen = crc_i;
   end
 
   assign crc_start_o = at_q[LOAD];
@@ -88,17 +80,16 @@ module frame_sender (
   assign byte_o = !stuffed ? byte_q : !second_q ? ESCAPE : byte_q == END ? ESCAPED_END : ESCAPED_ESCAPE;
 
   always_ff @(posedge clk_i) begin
-    at_q[IDLE]  <= (at_q[IDLE] && !start_i) || done_o;
     at_q[FETCH] <= start_i || (taken && !done_o);
     at_q[LOAD]  <= at_q[FETCH];
     at_q[PASS]  <= at_q[LOAD] || (at_q[PASS] && crc_busy_i);
     at_q[OFFER] <= (at_q[PASS] && !crc_busy_i) || (at_q[OFFER] && !taken);
-    if (rst_i || stop_i) at_q <= 5'(1) << IDLE;
+    if (rst_i || stop_i) at_q <= '0;
   end
 
   always_ff @(posedge clk_i) begin
     if (at_q[LOAD]) byte_q <= chosen;
-    second_q <= at_q[OFFER] && !taken && (second_q || ready_i);
+    second_q <= at_q[OFFER] && (second_q || ready_i);
     if (taken) begin
       place_q   <= last ? 8'd0 : place_q + 8'd1;
       section_q <= section_q + 2'(last);

@@ -42,7 +42,7 @@ module frame_session (
   logic [15:0] ahead;
 
   assign ahead     = number_i - last_o;
-  assign asks      = !malformed_i && kind_i == ASK;
+  assign asks      = kind_i == ASK;
   assign connects  = !malformed_i && kind_i == CONNECT && epoch_good_i;
   assign runs      = !malformed_i && kind_i[1] && epoch_good_i && ahead[15:1] == 15'd0;
 
@@ -67,7 +67,6 @@ module frame_session (
     if (restart_i || (start_o && connects)) epoch_o <= epoch_o + 16'd1;
     if (rst_i) begin
       busy_q <= 1'b0;
-      dropped_q <= 1'b0;
       sending_o <= 1'b0;
       epoch_o <= 16'd0;
       last_o <= 16'd0;

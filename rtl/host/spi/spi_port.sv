@@ -32,9 +32,9 @@ module spi_port (
     second_q <= first_q;
     sck_before_q <= second_q[0];
     if (rst_i) begin
-      first_q <= 3'b011;
-      second_q <= 3'b011;
-      sck_before_q <= 1'b1;
+      // Not selected, so that nothing is taken until what the pins show has come through.
+      first_q  <= '1;
+      second_q <= '1;
     end
   end
 
@@ -60,7 +60,6 @@ module spi_port (
     // Bytes begin with the selection. One that was loaded when it ended stays for the next.
     if (second_q[1]) bit_q <= 3'd0;
     if (rst_i) begin
-      bit_q <= 3'd0;
       out_q <= END;
       byte_o[8] <= 1'b0;
       miso_enable_o <= 1'b0;

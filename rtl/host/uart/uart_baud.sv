@@ -12,13 +12,12 @@ module uart_baud #(
     output logic known_o,  // the rate is; the line has been high since
     output logic [19:0] period_o  // clocks of 8 bits, 64 or more
 );
-  localparam int IDLE = 0;
-  localparam int HIGH = 1;  // the end of the break
-  localparam int START = 2;  // the first edge
-  localparam int COUNT = 3;
-  localparam int SETTLE = 4;  // the stop bit
+  localparam int HIGH = 0;  // the end of the break
+  localparam int START = 1;  // the first edge
+  localparam int COUNT = 2;
+  localparam int SETTLE = 3;  // the stop bit
 
-  logic [          4:0] at_q;  // one-hot
+  logic [          3:0] at_q;  // one of them, or none: no break
   logic [BreakBits-1:0] low_q;
   logic                 full_q;  // low since 2^BreakBits clocks
   logic [          2:0] edges_q;  // 4 at the fifth
@@ -29,19 +28,14 @@ module uart_baud #(
   // 2^20 clocks are more than the counter has, 64 less than a byte can be taken in.
   assign fails = &period_o || (ends && period_o[19:6] == 14'd0);
 
+  // The line seems high in the clock after a reset, which begins both anew.
   always_ff @(posedge clk_i) begin
-    low_q <= level_i || full_q ? '0 : low_q + 1'b1;
+    low_q <= level_i ? '0 : low_q + 1'b1;
     full_q <= !level_i && (full_q || &low_q);
-    restart_o <= !level_i && !full_q && &low_q;
-    if (rst_i) begin
-      low_q <= '0;
-      full_q <= 1'b0;
-      restart_o <= 1'b0;
-    end
+    restart_o <= !level_i && !full_q && &low_q && !rst_i;
   end
 
   always_ff @(posedge clk_i) begin
-    at_q[IDLE]   <= at_q[IDLE] || (at_q[COUNT] && fails) || (at_q[SETTLE] && level_i);
     at_q[HIGH]   <= at_q[HIGH] && !level_i;
     at_q[START]  <= (at_q[HIGH] && level_i) || (at_q[START] && !fall_i);
     at_q[COUNT]  <= (at_q[START] && fall_i) || (at_q[COUNT] && !ends && !fails);
@@ -53,11 +47,11 @@ module uart_baud #(
     end
     if (at_q[SETTLE] && level_i) known_o <= 1'b1;
     if (restart_o) begin
-      at_q <= 5'(1) << HIGH;
+      at_q <= 4'(1) << HIGH;
       known_o <= 1'b0;
     end
     if (rst_i) begin
-      at_q <= 5'(1) << IDLE;
+      at_q <= '0;
       known_o <= 1'b0;
     end
   end

@@ -56,7 +56,7 @@ class FrameSource {
     frames::Bytes stream;
     if (dice_.chance(2)) stream.push_back(frames::kEnd);
     frames::append_request(stream, request(last, epoch));
-    if (dice_.chance(16)) body(stream, last, epoch);
+    if (dice_.chance(6)) body(stream, last, epoch);
     if (dice_.chance(5)) damage(stream);
     waiting_.insert(waiting_.end(), stream.begin(), stream.end());
   }
@@ -97,15 +97,38 @@ class FrameSource {
     const bool write = (b[0] & 3) == 3;
     std::size_t words = write ? b[1] % 64 : 0;
     if (dice_.chance(6)) words = dice_.below(64);
+    // A read of a few words more than a reply has.
+    if (dice_.chance(4)) {
+      b[0] = 2;
+      b[1] = static_cast<std::uint8_t>(59 + dice_.below(6));
+      b[6] = b[7] = 0;
+      words = 0;
+    }
     for (std::size_t i = 0; i < 4 * words; ++i) b.push_back(static_cast<std::uint8_t>(dice_.below(256)));
     if (dice_.chance(6)) b.resize(b.size() - 1 - dice_.below(8));
     // Shorter than any, with a count of which 4 words more than a byte counts.
     if (dice_.chance(8)) b = {static_cast<std::uint8_t>(dice_.chance(2) ? 3 : 0x13), 63, b[2], b[3]};
+    if (dice_.chance(8)) more_than_fits(b);
     frames::append_frame(stream, b);
+  }
+  // 256 bytes, then a whole ask: a place of eight bits has come round.
+  void more_than_fits(frames::Bytes& b) {
+    b.assign(264, 0);
+    for (unsigned i = 0; i < 256; ++i) b[i] = static_cast<std::uint8_t>(dice_.below(256));
   }
   void damage(frames::Bytes& stream) {
     const std::uint32_t place = dice_.below(static_cast<std::uint32_t>(stream.size()));
-    switch (dice_.below(5)) {
+    switch (dice_.below(7)) {
+      case 5:  // an escape of nothing
+        stream.insert(stream.begin() + place, {frames::kEscape, static_cast<std::uint8_t>(dice_.below(256))});
+        break;
+      case 6:  // an escape twice
+        for (std::size_t i = 0; i < stream.size(); ++i) {
+          if (stream[i] != frames::kEscape) continue;
+          stream.insert(stream.begin() + static_cast<std::ptrdiff_t>(i), frames::kEscape);
+          break;
+        }
+        break;
       case 0:
         stream[place] = static_cast<std::uint8_t>(stream[place] ^ 1U << dice_.below(8));
         break;

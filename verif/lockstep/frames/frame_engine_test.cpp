@@ -22,8 +22,10 @@ class Bench {
   // `gap`: clocks from byte to byte; `pace`: how often the port takes a byte; `delay`: the most that an answer takes.
   void random_clock(unsigned gap, unsigned pace, unsigned delay) {
     const FrameEngine::Outputs& out = model_.outputs();
-    if (dice_.chance(20000)) return reset();
-    in_.restart = dice_.chance(5000);
+    // More often where something is just being decided.
+    const bool ends = in_.byte_valid && in_.byte == frames::kEnd;
+    if (dice_.chance(20000) || (inner_.open() && dice_.chance(3000)) || (ends && dice_.chance(300))) return reset();
+    in_.restart = dice_.chance(restart_);
     if (in_.restart) check_.event("restart");
     in_.byte_valid = ++since_byte_ >= gap && (listening() || dice_.chance(200));
     if (in_.byte_valid) {
@@ -31,6 +33,7 @@ class Bench {
       in_.byte = source_.next(model_.session().last(), model_.session().epoch());
       check_.event("byte", in_.byte);
     }
+    if (in_.byte_valid && in_.byte == frames::kEnd) in_.restart = in_.restart || dice_.chance(100);
     in_.ready = dice_.chance(pace);
     replies_ += out.valid && in_.ready && out.byte == frames::kEnd ? 1U : 0U;
     if (out.request) {
@@ -46,6 +49,20 @@ class Bench {
     model_.clock(in_);
     check_.next_cycle();
     compare();
+  }
+
+  void set_restart(unsigned one_in) { restart_ = one_in; }
+  // So many connections one after the other: epochs of all bits.
+  void reset_and_connect(unsigned count) {
+    reset();
+    for (unsigned i = 0; i < count; ++i) {
+      in_.restart = true;
+      drive();
+      dut_.clock();
+      model_.clock(in_);
+      check_.next_cycle();
+      compare();
+    }
   }
 
   Checker& check() { return check_; }
@@ -105,6 +122,7 @@ class Bench {
   InnerPort inner_;
   FrameSource source_;
   unsigned since_byte_ = 0;
+  unsigned restart_ = 5000;  // one in so many clocks
   std::uint64_t requests_ = 0;
   std::uint64_t replies_ = 0;
   std::uint64_t more_ = 0;
@@ -123,6 +141,8 @@ void random_traffic() {
       gap = 10 + (dice.chance(2) ? 0 : dice.below(30));
       pace = 1 + dice.below(6);
       delay = 1 + dice.below(20);
+      bench.set_restart(dice.chance(4) ? 200 : 5000);
+      if (dice.chance(20)) bench.reset_and_connect(dice.below(1U << dice.below(17)));
     }
     bench.random_clock(gap, pace, delay);
   }

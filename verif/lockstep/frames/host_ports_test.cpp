@@ -76,7 +76,7 @@ class Bench {
       axi.awvalid = axi.wvalid = true;
       axi.awaddr = dice_.below(4096);
       axi.wdata = dice_.draw();
-      axi.wstrb = dice_.chance(4) ? 7 : 15;
+      axi.wstrb = static_cast<std::uint8_t>(dice_.chance(3) ? dice_.below(16) : 15);
     }
     if (!axi.arvalid && dice_.chance(40)) {
       axi.arvalid = true;
@@ -92,11 +92,13 @@ class Bench {
     const bool over = kConfig.pipelined ? !out.stall : out.ack || out.err;
     if (bus.stb && over) bus.stb = false;
     if (dice_.chance(300)) bus.cyc = bus.stb = false;
+    if (dice_.chance(100)) bus.cyc = !bus.cyc;
     if (bus.stb || !dice_.chance(30)) return;
-    bus.cyc = bus.stb = true;
+    bus.cyc = !dice_.chance(6);
+    bus.stb = true;
     bus.we = dice_.chance(2);
     bus.adr = dice_.below(4096);
-    bus.sel = dice_.chance(4) ? 3 : 15;
+    bus.sel = static_cast<std::uint8_t>(dice_.chance(3) ? dice_.below(16) : 15);
     bus.dat = dice_.draw();
   }
   void uart_host() {

@@ -40,6 +40,16 @@ class Bench {
     aligned_ = !cut;
   }
 
+  // A reset at any clock of an exchange.
+  void exchange_until_reset() {
+    master_.set(dice_.chance(2) ? 0 : 3, 4);
+    master_.exchange(frames::Bytes(4, static_cast<std::uint8_t>(dice_.below(256))));
+    for (unsigned clocks = dice_.below(140); clocks != 0; --clocks) clock(master_.next(model_.outputs().miso));
+    reset();
+    while (master_.busy()) clock(master_.next(model_.outputs().miso));
+    aligned_ = false;
+  }
+
   void noise(unsigned clocks, bool selected) {
     for (unsigned i = 0; i < clocks; ++i) clock({dice_.chance(2), !selected || dice_.chance(10), dice_.chance(2)});
     for (unsigned i = 0; i < 8; ++i) clock({true, true, false});
@@ -120,6 +130,7 @@ void exchanges() {
     if (bench.dice().chance(6)) bench.noise(40, false);
     if (bench.dice().chance(20)) bench.noise(60, true);
     if (bench.dice().chance(20)) bench.reset();
+    if (bench.dice().chance(4)) bench.exchange_until_reset();
   }
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.bytes(), length * 5);

@@ -122,6 +122,13 @@ void random_lines() {
     if (dice.chance(4)) bench.clocks(dice.below(200));
     if (dice.chance(6)) bench.reset();
     if (dice.chance(6)) {
+      // A break twice as long is one; a reset within one, or just as it is seen, ends it.
+      bench.line().hold(false, 8 * 2.2 * kBreak / 100);
+      if (dice.chance(2)) bench.drain();
+      bench.clocks(dice.chance(4) ? dice.below(1 << kBreakBits) : (1 << kBreakBits) - 4 + dice.below(12));
+      if (dice.chance(2)) bench.reset();
+    }
+    if (dice.chance(6)) {
       bench.line().hold(false, 40);  // no whole break, or one without its byte
       bench.drain();
     }
