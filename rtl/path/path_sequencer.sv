@@ -11,41 +11,42 @@
 module path_sequencer #(
     parameter int Axes = 4
 ) (
-    input wire logic clk_i,
-    input wire logic rst_i,
-    input wire logic cut_i,
-    input wire logic halt_i,  // event: the path ends here; no command is valid in this clock
+    input  wire logic            clk_i,
+    input  wire logic            rst_i,
+    input  wire logic            cut_i,
+    input  wire logic            halt_i,          // event: the path ends here; no command is valid in this clock
     // decoded command
-    input wire logic valid_i,  // a path or a barrier
-    input wire logic [4:0] engine_i,  // what a path runs on, by its bit of ENGINES
-    input wire logic barrier_i,
-    input wire logic [Axes-1:0] mask_i,
-    output logic pop_o,  // taken now (combinational)
+    input  wire logic            valid_i,         // a path or a barrier
+    input  wire logic [     4:0] engine_i,        // what a path runs on, by its bit of ENGINES
+    input  wire logic            barrier_i,
+    input  wire logic [Axes-1:0] mask_i,
+    output logic                 pop_o,           // taken now (combinational)
     // direct move: the chains are loaded
-    input wire logic direct_go_i,
-    input wire logic [Axes-1:0] direct_mask_i,
+    input  wire logic            direct_go_i,
+    input  wire logic [Axes-1:0] direct_mask_i,
     // position streaming
-    input wire logic [1:0] streaming_i,  // {the next period is missing, the mode}
-    output logic      [     2:0] period_o,        // {the line goes on (combinational), it has gone on, a period's last tick is taken (combinational)}
+    input  wire logic [     1:0] streaming_i,     // {the next period is missing, the mode}
+    // {the line goes on (combinational), has gone on, a period's last tick is taken (combinational)}
+    output logic      [     2:0] period_o,
     // ticks
-    input wire logic take_i,
-    input wire logic last_i,
-    output logic taking_o,  // ticks may be taken
-    output logic swap_o,  // a path begins with the next tick
-    output logic begin_o,  // as swap_o, a clock earlier (combinational)
-    output logic [Axes-1:0] active_o,  // sampled with swap_o
-    output logic [4:0] engine_o,  // sampled with swap_o: what the path runs on
-    output logic direct_o,  // a direct move is under way
+    input  wire logic            take_i,
+    input  wire logic            last_i,
+    output logic                 taking_o,        // ticks may be taken
+    output logic                 swap_o,          // a path begins with the next tick
+    output logic                 begin_o,         // as swap_o, a clock earlier (combinational)
+    output logic      [Axes-1:0] active_o,        // sampled with swap_o
+    output logic      [     4:0] engine_o,        // sampled with swap_o: what the path runs on
+    output logic                 direct_o,        // a direct move is under way
     // ends
-    input wire logic axes_live_i,
-    input wire logic done_i,  // every path tick given is finished
-    input wire logic elsewhere_i,
-    output logic engine_taken_o,  // by a path that still takes ticks (combinational)
-    output logic incomplete_o,  // event: a path ended elsewhere
-    output logic over_o,  // event: a path has ended; on lines its last tick was taken
-    input wire logic barrier_done_i,
-    output logic at_barrier_o,
-    output logic path_active_o
+    input  wire logic            axes_live_i,
+    input  wire logic            done_i,          // every path tick given is finished
+    input  wire logic            elsewhere_i,
+    output logic                 engine_taken_o,  // by a path that still takes ticks (combinational)
+    output logic                 incomplete_o,    // event: a path ended elsewhere
+    output logic                 over_o,          // event: a path has ended; on lines its last tick was taken
+    input  wire logic            barrier_done_i,
+    output logic                 at_barrier_o,
+    output logic                 path_active_o
 );
   // Clocks from the last enabled clock of a direct move until the axes are asked whether one is live.
   localparam logic [2:0] SETTLE_CLOCKS = 3'd7;

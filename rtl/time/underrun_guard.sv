@@ -136,7 +136,10 @@ module underrun_guard #(
       enough_q <= 1'b0;
       waits_q  <= 1'b0;
     end
-    if (cut_i || rst_i) hold_o <= 1'b0;
+    if (cut_i || rst_i) begin
+      hold_o <= 1'b0;
+      ends_q <= 1'b0;
+    end
     if (rst_i) underruns_o <= 32'd0;
   end
 

@@ -108,7 +108,8 @@ TEST(Notes, WordsWithoutEffectByTheReason) {
                   " --engine model");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("which a simulation does not make: M0 (2) M1 (1)\n"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("no lines are joined to fewer (naive cam): G64 Q (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("no lines are joined to fewer (naive cam): G64 Q (1)\n"), std::string::npos)
+      << outcome.out;
   EXPECT_NE(outcome.out.find("[outputs] of the machine file: M3 (1) M5 (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("waits for modulated outputs: S (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("without hardware yet: M84 (1) T (1)\n"), std::string::npos) << outcome.out;

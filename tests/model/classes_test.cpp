@@ -11,9 +11,9 @@ namespace {
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-constexpr std::uint8_t kFeed = card_map::constant::kClassFeed;
-constexpr std::uint8_t kRapid = card_map::constant::kClassRapid;
-constexpr std::uint8_t kFixed = card_map::constant::kClassFixed;
+constexpr std::uint8_t kFeedClass = card_map::constant::kClassFeed;
+constexpr std::uint8_t kRapidClass = card_map::constant::kClassRapid;
+constexpr std::uint8_t kFixedClass = card_map::constant::kClassFixed;
 constexpr std::uint32_t kWhole = 0x10000;
 constexpr std::uint64_t kEvery16 = std::uint64_t{1} << 60;  // rate: a tick in 16 enabled clocks
 constexpr std::uint64_t kTicks = 500;
@@ -48,7 +48,7 @@ struct Bench : CoreBench {
 
 // Clocks that a piece takes follow from its class's ratio alone: 16 * 500 / ratio.
 TEST(Classes, EachPieceRunsAtItsOwnRatio) {
-  const std::vector<std::uint8_t> classes{kFeed, kRapid, kFixed, kFixed, kRapid, kFeed};
+  const std::vector<std::uint8_t> classes{kFeedClass, kRapidClass, kFixedClass, kFixedClass, kRapidClass, kFeedClass};
   for (const auto& [feed_ratio, rapid, fixed] :
        {std::tuple{kWhole, kWhole, kWhole}, std::tuple{0x5EB8U, kWhole, kWhole}, std::tuple{kWhole, 0x4000U, 0x8000U},
         std::tuple{0x2000U, 0x4000U, 0x9999U}}) {
@@ -77,7 +77,7 @@ TEST(Classes, EachPieceRunsAtItsOwnRatio) {
 
 // Overrides of the others in the middle of a piece: its ratio stays to the clock, and its time is that of its own.
 TEST(Classes, AnOverrideMovesItsOwnClassAlone) {
-  for (const std::uint8_t running : {kFeed, kRapid, kFixed}) {
+  for (const std::uint8_t running : {kFeedClass, kRapidClass, kFixedClass}) {
     Bench bench({running});
     bench.ratios(0x8000, 0x8000, 0x8000);
     bench.write(reg::kHold, 0);
@@ -85,7 +85,7 @@ TEST(Classes, AnOverrideMovesItsOwnClassAlone) {
     const std::uint64_t begin = bench.core.cycles();
     constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
     for (const std::uint32_t ratio : {0U, 0x1234U, kWhole}) {
-      for (const std::uint8_t other : {kFeed, kRapid, kFixed}) {
+      for (const std::uint8_t other : {kFeedClass, kRapidClass, kFixedClass}) {
         if (other != running) bench.write(kRatios[other], ratio);
       }
       for (int clock = 0; clock < 500; ++clock) {
@@ -101,7 +101,8 @@ TEST(Classes, AnOverrideMovesItsOwnClassAlone) {
 
 // The path-step list knows nothing of ratios, holds and their moments.
 TEST(Classes, ThePathIsTheSameWhateverTheTimeBaseDoes) {
-  const std::vector<std::uint8_t> classes{kFeed, kFixed, kFixed, kRapid, kFeed, kFixed, kRapid};
+  const std::vector<std::uint8_t> classes{kFeedClass, kFixedClass, kFixedClass, kRapidClass,
+                                          kFeedClass, kFixedClass, kRapidClass};
   const auto run = [&](std::uint64_t seed) {
     std::mt19937_64 random(seed);
     Bench bench(classes);
@@ -130,7 +131,7 @@ TEST(Classes, ThePathIsTheSameWhateverTheTimeBaseDoes) {
 
 // Set in a fixed piece, HOLD takes at the end of the last of them in a row; abort does not wait.
 TEST(Classes, AHoldLetsFixedPiecesEnd) {
-  Bench bench({kFeed, kFixed, kFixed, kFixed, kRapid});
+  Bench bench({kFeedClass, kFixedClass, kFixedClass, kFixedClass, kRapidClass});
   bench.write(reg::kHold, 0);
   bench.until(2, 100);
   bench.write(reg::kHold, 1);
@@ -149,7 +150,7 @@ TEST(Classes, AHoldLetsFixedPiecesEnd) {
   bench.idle(12'000);
   EXPECT_EQ(bench.steps.path.size(), 250U);
 
-  Bench cut({kFixed, kFixed});
+  Bench cut({kFixedClass, kFixedClass});
   cut.write(reg::kHold, 0);
   cut.until(1, 100);
   cut.write(reg::kHold, 1);
@@ -164,7 +165,7 @@ TEST(Classes, AHoldLetsFixedPiecesEnd) {
 // Around the border of a feed and a fixed piece, clock by clock: HOLD takes before it or after it, and nothing in
 // between.
 TEST(Classes, AHoldAtTheBorderTakesBeforeOrAfterTheFixedPiece) {
-  Bench probe({kFeed, kFixed, kFeed});
+  Bench probe({kFeedClass, kFixedClass, kFeedClass});
   probe.write(reg::kHold, 0);
   const std::uint64_t begin = probe.core.cycles();
   probe.until(2, 1);
@@ -172,7 +173,7 @@ TEST(Classes, AHoldAtTheBorderTakesBeforeOrAfterTheFixedPiece) {
   unsigned before = 0;
   unsigned after = 0;
   for (std::uint64_t wait = border - 40; wait <= border + 20; ++wait) {
-    Bench bench({kFeed, kFixed, kFeed});
+    Bench bench({kFeedClass, kFixedClass, kFeedClass});
     bench.write(reg::kHold, 0);
     bench.idle(wait);
     bench.write(reg::kHold, 1);
@@ -196,7 +197,7 @@ TEST(Classes, AHoldAtTheBorderTakesBeforeOrAfterTheFixedPiece) {
 
 // On a slow ramp to a hold a fixed piece begins: it is let end, at its own ratio again, and then the hold goes on.
 TEST(Classes, AFixedPieceThatBeginsOnTheWayToAHoldIsLetEnd) {
-  Bench bench({kFeed, kFixed, kFeed});
+  Bench bench({kFeedClass, kFixedClass, kFeedClass});
   bench.write(reg::kHold, 0);
   bench.idle(40);
   bench.write(reg::kSlew, 0x2'0000);  // 8,192 clocks from 1 to 0
@@ -216,7 +217,7 @@ TEST(Classes, AFixedPieceThatBeginsOnTheWayToAHoldIsLetEnd) {
 
 // A hold with nothing moving, or come to rest, is not undone by a fixed piece that is sent then.
 TEST(Classes, AFixedPieceSentInAHoldDoesNotMove) {
-  Bench bench({kFixed, kFixed});
+  Bench bench({kFixedClass, kFixedClass});
   bench.idle(50'000);
   EXPECT_TRUE(bench.held());
   EXPECT_TRUE(bench.steps.path.empty());
@@ -225,7 +226,7 @@ TEST(Classes, AFixedPieceSentInAHoldDoesNotMove) {
   late.idle(300);
   late.write(reg::kSlew, 0x2'0000);
   late.write(reg::kHold, 1);
-  late.feed(kTicks, kEvery16, 0, 0, 1, kFixed);
+  late.feed(kTicks, kEvery16, 0, 0, 1, kFixedClass);
   late.line(kTicks, {kOnePulse / 10});
   late.idle(60'000);
   EXPECT_EQ(late.core.outputs().ratio, 0U);
@@ -235,7 +236,7 @@ TEST(Classes, AFixedPieceSentInAHoldDoesNotMove) {
 
 // A fault that stops on a ramp does so in a fixed piece too.
 TEST(Classes, ARampedFaultDoesNotWait) {
-  Bench bench({kFixed});
+  Bench bench({kFixedClass});
   bench.write(reg::kStopReaction, 1);
   bench.write(reg::kSlew, 0x10'0000);
   bench.write(reg::kHoldLimit, 10);
@@ -267,18 +268,18 @@ TEST(Classes, TheLastClassStaysBetweenPieces) {
   };
   bench.idle(30);
   EXPECT_EQ(bench.core.outputs().ratio, 0x3000U);
-  one(kRapid);
+  one(kRapidClass);
   EXPECT_EQ(bench.core.outputs().ratio, 0x7000U);
   bench.send(command_words(card_map::Opcode::Dwell, 0, bench.number++, 300, {}));
   bench.idle(1000);
   EXPECT_EQ(bench.core.outputs().ratio, 0x7000U);
-  one(kFixed);
+  one(kFixedClass);
   EXPECT_EQ(bench.core.outputs().ratio, 0xB000U);
   bench.write(reg::kControl, field::kControlAbort);
   bench.number = 0;
   bench.idle(30);
   EXPECT_EQ(bench.core.outputs().ratio, 0x3000U) << "after a cut";
-  one(kRapid);
+  one(kRapidClass);
   EXPECT_EQ(bench.core.outputs().ratio, 0x7000U);
   bench.write(reg::frequency_hi(0), 1);
   bench.write(reg::count(0), 3);

@@ -129,7 +129,7 @@ class Program {
   // A tick every `pace` clocks.
   void paths_and_pieces(double pace) {
     std::uint64_t ticks = 0;
-    const bool probing = p_.one_in(3);
+    const bool probing = p_.one_in(2);
     if (probing) conditional(card_map::Opcode::Probe, 0);
     for (std::uint64_t paths = p_.any(1, 5); paths != 0; --paths) {
       instants();
@@ -423,7 +423,7 @@ TEST(Run, EndsWhileAStepWaits) {
 }
 
 TEST(RestingBlocks, ChangeNothing) {
-  const std::uint64_t programs = long_run() ? 1500 : 40;
+  const std::uint64_t programs = long_run() ? 1500 : 60;
   const Compared compared = compare_programs(Pair::Of::AllAndResting, programs, 20'000);
   EXPECT_GT(compared.clocks, 22'000 * programs);
   EXPECT_GT(compared.steps, 20 * programs);

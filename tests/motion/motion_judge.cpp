@@ -30,7 +30,10 @@ class Judge {
     if (now.begins_path) enter(now);
     // Path and rate do not change in the same clock: borders of pieces are at whole ticks, and a piece goes on for some
     // clocks after its last one. Until then the new path is run at the rates of the piece before.
-    if (now.begins_piece) piece_clock_ = now.clock;
+    if (now.begins_piece) {
+      piece_clock_ = now.clock;
+      piece_rate_ = rate(now);
+    }
     handing_over_ =
         !resting_ &&
         ((piece_clock_ < path_clock_ && (now.ticks <= 1 || now.clock - path_clock_ < 2 * MotionWalk::kSwapClocks)) ||
@@ -164,9 +167,11 @@ class Judge {
     }
     ++verdict.corners;
     const double scale = limits_.clock_hz * mm_a_tick(last_course_, last_) * (1 - last_course_.error);  // mm/s
-    // Half an update, and a tick of the ramp to the corner, may be left.
+    // Half an update, and a tick of the ramp to the corner, may be left; and the part of a tick, less than its rate, by
+    // which the piece before the ramp went beyond its last one.
     const double gain = std::abs(acceleration(last_)) * kUpdate;
-    const double most_rate = std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate) + gain / 2;
+    const double most_rate =
+        std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate * (1 + piece_rate_)) + gain / 2;
     double share = rate(last_) / std::max(most_rate, at_floor / limits_.clock_hz);
     // A way of X Y Z below a pulse may be hidden in the other: then it is no stop, but no axis may jump.
     if (last_course_.spatial != course_.spatial) share = std::min(share, jump(now, ticks, true));
@@ -216,6 +221,7 @@ class Judge {
   Interval before_;                // the last one on the path before
   std::uint64_t path_clock_ = 0;   // of this path's first clock
   std::uint64_t piece_clock_ = 0;  // of this piece's
+  double piece_rate_ = 0;          // its first
   bool handing_over_ = false;
 };
 

@@ -191,8 +191,9 @@ void Interpreter::switch_outputs(const Context& context) {
     clear = static_cast<std::uint16_t>(outputs.spindle() & ~set);
   }
   if (const auto coolant = context.words.code(Group::kCoolant)) {
-    set |= coolant == kMist ? outputs.m7 : coolant == kFlood ? outputs.m8 : 0;
-    if (coolant == kCoolantOff) clear |= outputs.coolant();
+    const int switched = coolant == kMist ? outputs.m7 : coolant == kFlood ? outputs.m8 : 0;
+    set = static_cast<std::uint16_t>(set | switched);
+    if (coolant == kCoolantOff) clear = static_cast<std::uint16_t>(clear | outputs.coolant());
   }
   change_outputs(set, clear, context.motions);
 }

@@ -134,10 +134,15 @@ void Quantiser::portion(const Phase& phase, double begin, double end, std::uint6
   Motion motion;
   if (ticks != 0) {
     const bool empty = pending_.end == tick_;
-    const double lead = empty ? std::min(lead_, static_cast<double>(ticks) / 2) : 0;
-    motion = motion_of(phase, from + lead / (rate_a_speed_ * clock_hz_), to, static_cast<double>(ticks) - lead, stop);
+    const auto behind = [&](double lead) {
+      return motion_of(phase, from + lead / (rate_a_speed_ * clock_hz_), to, static_cast<double>(ticks) - lead, stop);
+    };
+    motion = behind(empty ? std::min(lead_, static_cast<double>(ticks) / 2) : 0);
     if (motion.clocks >= kShortest || (empty && last)) {
-      if (!empty) put_pending(false);
+      if (!empty) {
+        put_pending(false);
+        motion = behind(std::min(lead_, static_cast<double>(ticks) / 2));
+      }
       put(motion, end_tick, stop);
       return;
     }

@@ -41,6 +41,24 @@ class Bench {
       clock();
   }
 
+  // A piece that ends at rest, with nothing queued, is cut; the next one, which does not, begins `later` clocks after.
+  void ending_piece_is_cut(unsigned later) {
+    reset();
+    in_ = {};
+    in_.ratio = 0x10000;
+    begin_piece(0);
+    for (unsigned i = 0; i < 70; ++i) clock();
+    in_.cut = true;
+    clock();
+    in_.cut = false;
+    for (unsigned i = 0; i < later; ++i) clock();
+    begin_piece(1000);
+    for (unsigned i = 0; i < 70; ++i) clock();
+    in_.cut = true;
+    clock();
+    in_ = {};
+  }
+
   Checker& check() { return check_; }
   std::uint64_t holds() const { return holds_; }
   std::uint64_t ends() const { return ends_; }
@@ -48,6 +66,19 @@ class Bench {
   std::uint64_t lost() const { return lost_; }
 
  private:
+  // Its stop distance is loaded; it begins from rest.
+  void begin_piece(std::uint32_t distance) {
+    for (unsigned i = 0; i < 2; ++i) {
+      in_.load = halfword(model::feed_target::kStopDistance, distance, i);
+      clock();
+    }
+    in_.load = {};
+    for (unsigned i = 0; i < 2; ++i) clock();
+    in_.active = in_.swap = true;
+    clock();
+    in_.swap = false;
+  }
+
   void random_pace() {
     cut_every_ = dice_.chance(3) ? 100 + dice_.below(300) : 5000;
     take_every_ = 1 + dice_.below(dice_.chance(2) ? 2 : 30);
@@ -279,6 +310,15 @@ void random_inputs() {
   EXPECT_GT(bench.lost(), length / 3000);
 }
 
+// Whatever the clock of a round in which the next piece begins, it is judged by itself.
+void ending_pieces_are_cut() {
+  Bench bench(1);
+  for (unsigned later = 0; later < 32; ++later) bench.ending_piece_is_cut(later);
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * bench.check().cycles());
+  EXPECT_EQ(bench.holds(), 32U);
+}
+
+TEST(UnderrunGuard, EndingPiecesAreCut) { EXPECT_EQ(judge(ending_pieces_are_cut), ""); }
 TEST(UnderrunGuard, RandomInputs) { EXPECT_EQ(judge(random_inputs), ""); }
 
 }  // namespace

@@ -1,0 +1,48 @@
+// Position streaming through the driver on the card in lockstep: in time, late, missing, recovered from.
+#include "trammel/driver/position_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include "trammel/card_map.hpp"
+#include "trammel/sim/engines.hpp"
+
+namespace {
+
+using namespace trammel;
+using namespace std::chrono_literals;
+using driver::PositionStream;
+
+TEST(PositionStreamOnRtl, LateMissingAndRecovered) {
+  sim::SimulationOptions options;
+  options.kind = sim::EngineKind::kRtl;
+  const auto engine = sim::make_engine(options);
+  driver::Card card = driver::Card::open(*engine);
+  card.set_slew_time(20ms);
+  PositionStream stream(card);
+  PositionStream::Positions target{};
+  std::uint64_t due = engine->cycles() + 2000;
+  const auto send = [&](std::uint64_t late) {
+    target[0] += 5 * PositionStream::kPulse / 2;
+    target[3] -= PositionStream::kPulse;
+    if (engine->cycles() < due + late) engine->wait(due + late - engine->cycles());
+    due += 1000;
+    return stream.send(target, 1000).stale_ticks;
+  };
+  std::uint64_t stale = 0;
+  for (int i = 0; i < 60; ++i) stale += send(i % 20 == 10 ? 1700 : 0);
+  EXPECT_GT(stale, 100U);
+  EXPECT_EQ(stream.ticks_behind(), 0U);
+  EXPECT_THROW(send(50'000), driver::FaultError);
+  const PositionStream::Stopped stopped = stream.recover();
+  EXPECT_EQ(stopped.faults, card_map::field::kFaultMissingPeriod);
+  for (unsigned n = 0; n < 4; ++n) EXPECT_EQ(engine->positions()[n] * PositionStream::kPulse, stopped.positions[n]);
+  target = stopped.positions;
+  due = engine->cycles();
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(send(0), 0U);
+  const PositionStream::Positions end = stream.finish();
+  EXPECT_EQ(end[0], stopped.positions[0] + 50 * PositionStream::kPulse);
+  EXPECT_EQ(end[3], stopped.positions[3] - 20 * PositionStream::kPulse);
+  EXPECT_EQ(engine->lockstep_cycles(), engine->cycles());
+}
+
+}  // namespace
