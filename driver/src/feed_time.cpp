@@ -72,4 +72,27 @@ double feed_clocks(const FeedCommand& piece) {
   return course.bend != 0 ? by_bisection(course, ticks) : by_root(course, ticks);
 }
 
+std::optional<double> ticks_to_reversal(const FeedCommand& piece) {
+  constexpr double kSlack = 2;  // ticks
+  constexpr double kFits = 0.999;
+  constexpr double kFloorUpdates = 4;  // and what the floor gives meanwhile
+  const double rate = static_cast<double>(piece.rate) * kRateUnit;
+  const double gain = static_cast<double>(piece.acceleration) * kRateUnit;
+  const double jerk = static_cast<double>(piece.jerk) * kRateUnit;
+  // In update k the rate is rate + k gain + k (k - 1) / 2 jerk; the first k > 0 at which that is 0.
+  const double linear = gain - jerk / 2;
+  const double discriminant = linear * linear - 2 * jerk * rate;
+  if (discriminant < 0) return std::nullopt;
+  const double divisor = -linear + std::sqrt(discriminant);
+  // The smaller positive root of rate + linear k + jerk k^2 / 2, without a difference of equals.
+  if (!(divisor > 0)) return std::nullopt;
+  const double updates = 2 * rate / divisor;
+  const double ticks = kUpdate * updates * (rate + (updates - 1) / 2 * gain + (updates - 1) * (updates - 2) / 6 * jerk);
+  const double last = kUpdate * std::abs(gain + updates * jerk);  // an update's change, over an update
+  const double short_by = static_cast<double>(piece.ticks) * kFits - ticks;
+  const double at_floor = kFloorUpdates * kUpdate * piece.floor * kFloorUnit;
+  if (short_by <= kSlack + last + at_floor) return std::nullopt;
+  return ticks;
+}
+
 }  // namespace trammel::driver

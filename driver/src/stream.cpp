@@ -33,6 +33,14 @@ void require_engine(const Identification& card, std::uint32_t engine, std::strin
   }
 }
 
+// The card would creep to the piece's end at its floor.
+void refuse_reversal(const FeedCommand& feed, std::string_view command) {
+  if (const auto ticks = ticks_to_reversal(feed)) {
+    throw ArgumentError(fmt::format("stream: {}: acceleration and jerk would reverse the feed after {:.0f} of {} ticks",
+                                    command, *ticks, feed.ticks));
+  }
+}
+
 }  // namespace
 
 // One wait for the card.
@@ -173,7 +181,10 @@ Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) 
   const auto* arc = std::get_if<ArcCommand>(&command);
   if (arc != nullptr && arc->eight_directions) require_engine(card, map::engine::kAccumulator8, layout.name);
   const auto* feed = std::get_if<FeedCommand>(&command);
-  if (feed != nullptr && feed->jerk != 0) require_engine(card, map::engine::kJerk, layout.name);
+  if (feed != nullptr && feed->jerk != 0) {
+    require_engine(card, map::engine::kJerk, layout.name);
+    refuse_reversal(*feed, layout.name);
+  }
   if (feed != nullptr && feed->piece_class != PieceClass::kFeed) {
     require_engine(card, map::engine::kClasses, layout.name);
   }

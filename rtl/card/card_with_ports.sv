@@ -1,28 +1,29 @@
 // The card behind the host ports that it is built with; with AXI4-Lite alone it is trammel_card.
 `default_nettype none
 module card_with_ports #(
-    parameter int          Axes            = 4,     // 1 to 8
-    parameter int          GeometryDepth   = 4096,  // halfwords, 2 to 32,768
-    parameter int          FeedDepth       = 2560,
-    parameter int          Accumulator     = 1,     // 0: without arcs and conics
-    parameter int          EightDirections = 0,     // 1: the accumulator's second step rule
-    parameter int          ArcGenerator    = 0,     // 1: arcs in chords
-    parameter int          DirectMode      = 1,     // 0: without
-    parameter int          UnderrunHold    = 1,     // 0: without
-    parameter int          Classes         = 1,     // 0: one ratio for all pieces
-    parameter int          Watermarks      = 1,     // 0: without
-    parameter int          PathCommands    = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
-    parameter int          Inputs          = 4,     // 1 to 16, of a card with path commands
-    parameter int          Outputs         = 4,
-    parameter logic [31:0] BuildId         = 0,
-    parameter int          BuildDirty      = 0,
-    parameter logic [31:0] BoardId         = 0,
+    parameter int          Axes              = 4,     // 1 to 8
+    parameter int          GeometryDepth     = 4096,  // halfwords, 2 to 32,768
+    parameter int          FeedDepth         = 2560,
+    parameter int          Accumulator       = 1,     // 0: without arcs and conics
+    parameter int          EightDirections   = 0,     // 1: the accumulator's second step rule
+    parameter int          ArcGenerator      = 0,     // 1: arcs in chords
+    parameter int          DirectMode        = 1,     // 0: without
+    parameter int          UnderrunHold      = 1,     // 0: without
+    parameter int          Classes           = 1,     // 0: one ratio for all pieces
+    parameter int          Watermarks        = 1,     // 0: without
+    parameter int          PathCommands      = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
+    parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
+    parameter int          Inputs            = 4,     // 1 to 16, of a card with path commands
+    parameter int          Outputs           = 4,
+    parameter logic [31:0] BuildId           = 0,
+    parameter int          BuildDirty        = 0,
+    parameter logic [31:0] BoardId           = 0,
     // host ports
-    parameter int          AxiLite         = 1,     // 1: with
-    parameter int          Wishbone        = 0,     // 1: classic, 2: pipelined
-    parameter int          Uart            = 0,     // 1: with
-    parameter int          Spi             = 0,     // 1: with
-    parameter int          BreakBits       = 20     // of the UART: a break is 2^BreakBits clocks, 8 to 24
+    parameter int          AxiLite           = 1,     // 1: with
+    parameter int          Wishbone          = 0,     // 1: classic, 2: pipelined
+    parameter int          Uart              = 0,     // 1: with
+    parameter int          Spi               = 0,     // 1: with
+    parameter int          BreakBits         = 20     // of the UART: a break is 2^BreakBits clocks, 8 to 24
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -107,6 +108,7 @@ module card_with_ports #(
       .DirectMode(DirectMode),
       .UnderrunHold(UnderrunHold),
       .PathCommands(PathCommands),
+      .PositionStreaming(PositionStreaming),
       .Inputs(Inputs),
       .Outputs(Outputs),
       .Ports(PORTS),

@@ -38,5 +38,57 @@ TEST(FeedTime, IsWhatTheCardTakes) {
   }
 }
 
+// By hand: at constant jerk from rate r the rate is 0 after k updates, k (k - 1) = 2 r / jerk, and 2/3 of r k updates
+// of ticks are given then.
+TEST(FeedTime, KnowsWhereAPieceWouldReverse) {
+  const auto unit = [](double rate) { return static_cast<std::int64_t>(rate * 18446744073709551616.0); };
+  FeedCommand feed;
+  feed.rate = static_cast<std::uint64_t>(unit(0.1));
+  feed.jerk = unit(-2e-7);  // 0 after 1000.5 updates, with 32 * 1000 * 0.1 * 2 / 3 ticks
+  feed.ticks = 2130;
+  EXPECT_FALSE(ticks_to_reversal(feed));
+  feed.ticks = 2160;
+  ASSERT_TRUE(ticks_to_reversal(feed));
+  EXPECT_NEAR(*ticks_to_reversal(feed), 2134, 4);
+  // Held up by its acceleration: it turns later.
+  feed.acceleration = unit(1e-4);
+  EXPECT_FALSE(ticks_to_reversal(feed));
+  // Down, and up again by the jerk: it has reversed between.
+  feed.acceleration = unit(-4e-4);
+  feed.jerk = unit(7e-7);
+  feed.ticks = 700;
+  EXPECT_TRUE(ticks_to_reversal(feed));
+  feed.jerk = unit(9e-7);  // 0.1 - 4e-4^2 / (2 * 9e-7) > 0
+  EXPECT_FALSE(ticks_to_reversal(feed));
+  // Without jerk; upwards; at rest for ever.
+  feed = FeedCommand{10'000, static_cast<std::uint64_t>(unit(0.1)), unit(-1e-4), 0};
+  EXPECT_NEAR(ticks_to_reversal(feed).value_or(0), 1602, 2);
+  feed.acceleration = unit(1e-4);
+  EXPECT_FALSE(ticks_to_reversal(feed));
+  feed.acceleration = 0;
+  EXPECT_FALSE(ticks_to_reversal(feed));
+}
+
+TEST(FeedTime, TheStreamRefusesAJerkThatWouldReverseTheFeed) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  Stream stream(card);
+  FeedCommand feed = feed_of(20'000);
+  feed.jerk = -(std::int64_t{1} << 40);
+  feed.floor = 1U << 28;
+  const std::vector<Command> program{feed_of(100), line_of(100, 10), feed, line_of(20'000, 10)};
+  try {
+    stream.send(program);
+    ADD_FAILURE() << "it would stand after some hundred updates";
+  } catch (const ArgumentError& error) {
+    EXPECT_NE(std::string(error.what()).find("FEED: acceleration and jerk would reverse the feed after "),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(stream.sent(), 0U) << "all are checked before the first is written";
+  stream.send({feed_of(100), line_of(100, 10), EndCommand{}});
+  EXPECT_TRUE(stream.finish().ended);
+}
+
 }  // namespace
 }  // namespace trammel::driver

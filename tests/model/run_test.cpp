@@ -423,7 +423,7 @@ TEST(Run, EndsWhileAStepWaits) {
 }
 
 TEST(RestingBlocks, ChangeNothing) {
-  const std::uint64_t programs = long_run() ? 1500 : 40;
+  const std::uint64_t programs = long_run() ? 1500 : 60;
   const Compared compared = compare_programs(Pair::Of::AllAndResting, programs, 20'000);
   EXPECT_GT(compared.clocks, 22'000 * programs);
   EXPECT_GT(compared.steps, 20 * programs);

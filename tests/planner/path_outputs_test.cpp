@@ -64,7 +64,8 @@ TEST(PathOutputs, ThePlanIsTheSameWithThem) {
   std::string plain = "F3000\n";
   std::string switched = plain;
   for (int i = 0; i < 6000; ++i) {
-    const std::string move = "G1 X" + std::to_string(i * 0.1) + " Y" + std::to_string(random() % 10 * 0.01) + "\n";
+    const std::string move =
+        "G1 X" + std::to_string(i * 0.1) + " Y" + std::to_string(static_cast<double>(random() % 10) * 0.01) + "\n";
     plain += move;
     switched += (i % 2 == 0 ? "M3\nM8\n" : "M5\nM9\n") + move;
   }
@@ -87,7 +88,7 @@ TEST(PathOutputs, ThePlanIsTheSameWithThem) {
       ASSERT_EQ(a, b) << i << ", " << k;
     }
     ASSERT_EQ(with.blocks[i].planned.seconds, without.blocks[i].planned.seconds) << i;
-    stops += with.blocks[i].planned.stop ? 1 : 0;
+    stops += with.blocks[i].planned.stop ? 1U : 0U;
   }
   EXPECT_EQ(stops, 1U) << "at the end";
 }

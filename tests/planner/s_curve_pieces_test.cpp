@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "plan.hpp"
+#include "trammel/driver/feed_time.hpp"
 
 namespace trammel::planner {
 namespace {
@@ -95,6 +97,32 @@ TEST(SCurvePieces, AreMadeWhereEveryAxisHasAJerk) {
   EXPECT_EQ(profile_of(machine, {}), SpeedProfile::kTrapezoid);
   EXPECT_EQ(profile_of(machine, {false, SpeedProfile::kSCurve}), SpeedProfile::kSCurve);
   EXPECT_EQ(pieces_of("G1 X100 F6000", machine).size(), 3U);
+}
+
+// The stream refuses pieces that would reverse: of the planner's there are none, at fast and slow clocks, with short
+// moves among long ones.
+TEST(SCurvePieces, NoneReversesTheFeed) {
+  std::mt19937 random(5);
+  const auto below = [&random](double most) { return std::uniform_real_distribution<>(0, most)(random); };
+  for (int round = 0; round < 60; ++round) {
+    const machine::Machine machine = machine_with_jerk(std::pow(10, 3.5 + below(3)));
+    CardLimits card;
+    card.clock_hz = static_cast<std::uint32_t>(std::pow(10, 5.2 + below(3)));
+    std::string text = "F" + std::to_string(300 + below(8000)) + "\n";
+    for (int i = 0; i < 60; ++i) {
+      text += "G1 X" + std::to_string(below(1) < 0.5 ? below(60) : i * 0.05) + " Y" + std::to_string(below(0.2) * i);
+      text += i % 9 == 0 ? "\nG4 P0\n" : "\n";
+    }
+    const Plan plan = plan_text(text, machine, card);
+    ASSERT_FALSE(plan.error);
+    for (const Planned& block : plan.blocks) {
+      for (const driver::FeedCommand& piece : commands<driver::FeedCommand>(block)) {
+        ASSERT_FALSE(driver::ticks_to_reversal(piece))
+            << *driver::ticks_to_reversal(piece) << " of " << piece.ticks << ", clock " << card.clock_hz << ", line "
+            << block->line << ", round " << round;
+      }
+    }
+  }
 }
 
 }  // namespace

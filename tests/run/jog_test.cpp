@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "dying_bus.hpp"
 #include "trammel/run/configure.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/sim/timed_bus.hpp"
@@ -32,7 +33,15 @@ class JogTest : public testing::Test {
     configure(card_, machine_);
     engine_->set_sink(&pins_);
   }
-  void pass(double seconds) { bus_.sleep(std::chrono::nanoseconds(static_cast<std::int64_t>(seconds * 1e9))); }
+  // The jog is looked at every 20 ms.
+  void pass(double seconds) {
+    const std::uint64_t end = engine_->cycles() + static_cast<std::uint64_t>(seconds * kClock);
+    while (engine_->cycles() < end) {
+      jog_.moving();
+      const std::uint64_t now = std::min(engine_->cycles(), end);
+      bus_.sleep(std::chrono::microseconds(std::min<std::uint64_t>(20'000, end - now)));
+    }
+  }
   double seconds() const { return static_cast<double>(engine_->cycles()) / kClock; }
   // Mean speed of an axis over the last so many seconds, mm/s.
   double speed(unsigned axis, double window = 0.02) const {
@@ -69,12 +78,12 @@ class JogTest : public testing::Test {
 
 TEST_F(JogTest, SeveralAxesByADistance) {
   jog_.start({3, -4}, 20);
-  const double begun = seconds();
   EXPECT_TRUE(jog_.moving());
   EXPECT_FALSE(card_.in_position());
   jog_.wait();
   EXPECT_TRUE(card_.in_position());
-  EXPECT_NEAR(seconds() - begun, 0.25 + 0.02, 0.03) << "5 mm at 20 mm/s, and a ramp";
+  const double took = static_cast<double>(pins_.steps.back().cycle - pins_.steps.front().cycle) / kClock;
+  EXPECT_NEAR(took, 0.25 + 0.02, 0.01) << "5 mm at 20 mm/s, and a ramp";
   EXPECT_EQ(position_.pulses(), (planner::Pulses{240, -320}));
   EXPECT_LT(largest_acceleration(1), 1100);
   jog_.start({-3, 4}, 20);
@@ -169,6 +178,80 @@ TEST_F(JogTest, ReactsWithinTenMilliseconds) {
   EXPECT_LT(static_cast<double>(pins_.steps[made].cycle) / kClock - begun, 0.01);
   jog.stop();
   jog.wait();
+}
+
+// A host that dies, by its bus, leaves a ramp to rest within what was sent ahead, far from the soft limit; whoever
+// comes next finds the position. With one axis and with three, in the middle of a jog and of a jog by a distance.
+TEST_F(JogTest, AHostThatDiesLeavesARampedStop) {
+  machine::apply_override(machine_, "axis.x.max=1e4");
+  const double speed = 100;  // mm/s along the path
+  for (const int kind : {0, 1, 2}) {
+    SCOPED_TRACE(kind);
+    const gcode::Coordinates direction = kind == 0 ? gcode::Coordinates{1, 0, 0} : gcode::Coordinates{0.8, 0, -0.6};
+    const std::uint64_t dies = engine_->cycles() + kClock;
+    DyingBus bus(*engine_, dies);
+    driver::Card card = driver::Card::open(bus);
+    const std::uint32_t under_runs = card.read(card_map::reg::kUnderruns);
+    MachinePosition position(card.snapshot(), machine_);
+    Jog jog(card, machine_, position);
+    const auto times = [&direction](double factor) {
+      return gcode::Coordinates{direction[0] * factor, 0, direction[2] * factor};
+    };
+    kind == 2 ? jog.start(times(5000), speed) : jog.start(times(speed));
+    EXPECT_THROW(
+        for (;;) {
+          jog.moving();
+          bus.sleep(std::chrono::milliseconds(20));
+        },
+        driver::LinkError);
+    const std::size_t before = pins_.steps.size();
+    const std::uint64_t dead = engine_->cycles();
+    engine_->wait(std::uint64_t{5} * kClock);
+    const std::vector<driver::PinStep>& steps = pins_.steps;
+    ASSERT_GT(steps.size(), before);
+    // What was sent ahead: 2.2 stops of a full-speed jog at its ratio, and 0.1 s and some lines.
+    const double stop = static_cast<double>(steps.back().cycle - dead) / kClock;
+    EXPECT_GT(stop, 0.1);
+    EXPECT_LT(stop, 1.0);
+    // A ramp: X gets slower and slower, its last pulses far apart.
+    std::vector<std::uint64_t> x;
+    for (std::size_t i = before; i < steps.size(); ++i) {
+      if (steps[i].axis == 0) x.push_back(steps[i].cycle);
+    }
+    const std::size_t n = x.size();
+    ASSERT_GT(n, 500U);
+    EXPECT_GT(x[n - 1] - x[n - 11], 8 * (x[11] - x[1]));
+    EXPECT_LT(largest_acceleration(0), 1100);
+    EXPECT_EQ(engine_->read(card_map::reg::kFault), 0U);
+    EXPECT_EQ(engine_->read(card_map::reg::kUnderruns), under_runs + 1);
+    EXPECT_NE(engine_->read(card_map::reg::kStatus) & card_map::field::kStatusUnderrun, 0U);
+    // Whoever comes next.
+    const std::size_t stood = steps.size();
+    driver::Card next = driver::Card::open(*engine_);
+    next.stop();
+    EXPECT_EQ(steps.size(), stood);
+    std::vector<std::int64_t> counted(4);
+    for (const driver::PinStep& step : steps) counted[step.axis] += step.direction;
+    EXPECT_EQ(engine_->positions(), counted);
+    configure(next, machine_);
+    next.set_ratio(driver::Card::kFullRatio);
+  }
+}
+
+// Nobody looks for a while: it stops, and goes on when somebody does.
+TEST_F(JogTest, GoesOnWhenItIsLookedAtAgain) {
+  machine::apply_override(machine_, "axis.x.max=1e4");
+  jog_.start({30, 0});
+  pass(0.5);
+  EXPECT_NEAR(speed(0), 30, 1);
+  bus_.sleep(std::chrono::seconds(3));
+  EXPECT_EQ(speed(0), 0);
+  EXPECT_EQ(engine_->read(card_map::reg::kUnderruns), 1U);
+  pass(1);
+  EXPECT_NEAR(speed(0), 30, 1);
+  jog_.stop();
+  jog_.wait();
+  EXPECT_EQ(position_.pulses()[0], static_cast<std::int64_t>(pins_.steps.size()));
 }
 
 TEST_F(JogTest, GivesTheTimeBaseBackAndProgramsGoOnFromThere) {

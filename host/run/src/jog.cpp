@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "second_motors.hpp"
 #include "trammel/card_map.hpp"
@@ -11,6 +12,34 @@
 namespace trammel::run {
 
 namespace reg = card_map::reg;
+
+namespace {
+
+constexpr double kLinesAhead = 24;          // that full speed needs, about
+constexpr std::uint64_t kLeastTicks = 512;  // of a line: more than a decode takes, and than the card's reserve
+constexpr double kFractionOfQueue = 0.5;
+constexpr int kLinesAtOnce = 2;
+
+// More than twice what a stop takes at this ratio, so that an under-run would end when they are there, and some time.
+double ticks_ahead(const JogPath& path, const driver::CardTiming& card, double ratio) {
+  constexpr double kStops = 2.2;
+  constexpr double kReserve = 4 * card_map::constant::kUnderrunReserveTicks;
+  double rate = 0;  // ticks a clock
+  for (const driver::FeedCommand& piece : path.pieces) rate = std::max(rate, static_cast<double>(piece.rate) * 0x1p-64);
+  return kStops * path.stop_distance * ratio * ratio + Jog::kAheadSeconds * card.clock_hz * rate * ratio + kReserve;
+}
+
+// So that what is sent ahead fits well into the queue.
+std::uint64_t line_ticks(const JogPath& path, const driver::CardTiming& card, const driver::Identification& who) {
+  if (!card_map::has_engine(who.engines, card_map::engine::kUnderrunHold)) return path.ticks;
+  const auto all = static_cast<std::uint8_t>((1U << who.axes) - 1);
+  const auto line = card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Line));
+  const double fit = kFractionOfQueue * who.geometry_depth / card_map::queue_halfwords(*line, all);
+  const double lines = std::max(1.0, std::min(kLinesAhead, fit));
+  return std::max(static_cast<std::uint64_t>(ticks_ahead(path, card, 1) / lines), kLeastTicks);
+}
+
+}  // namespace
 
 Jog::Jog(driver::Card& card, const machine::Machine& machine, MachinePosition& position)
     : card_(card), machine_(machine), position_(position) {}
@@ -29,18 +58,47 @@ void Jog::start(const gcode::Coordinates& distance, double speed) {
 
 void Jog::begin(const JogPath& path, double speed) {
   if (path_) throw driver::StateError("jog: one is under way; stop it first");
-  driver::Stream stream(card_);
+  stream_.emplace(card_);
   before_ = {card_.read(reg::kRatioFeed), card_.read(reg::kSlew)};
   path_ = path;
   stopping_ = false;
+  sent_ticks_ = 0;
+  line_ticks_ = line_ticks(path, card_.timing(), card_.identification());
   // Where the time base makes the ramp, the path waits for it at ratio 0.
   set_ratio_at_once(path.ramped_by_time_base ? 0 : driver::Card::kFullRatio);
-  for (const driver::FeedCommand& piece : path.pieces) stream.put(piece);
-  stream.put(SecondMotors(machine_).with(path.line));
+  ratio_ = path.ramped_by_time_base ? 0 : 1;
+  for (const driver::FeedCommand& piece : path.pieces) stream_->put(piece);
+  send_line();
   const auto ramp = std::chrono::nanoseconds(static_cast<std::int64_t>(path.ramp_seconds * 1e9));
   card_.set_slew_time(std::min(ramp, driver::time_of(driver::Card::kSlowestSlew, card_.timing().clock_hz)));
-  stream.flush();
-  if (path.ramped_by_time_base) set_speed(speed);
+  stream_->flush();
+  if (path.ramped_by_time_base) {
+    set_speed(speed);
+  } else {
+    // It begins at full ratio when a stop from there is queued, and holds where that is all.
+    feed(std::numeric_limits<int>::max());
+  }
+}
+
+void Jog::send_line() {
+  const std::uint64_t left = path_->ticks - sent_ticks_;
+  // No line is shorter than the others.
+  const std::uint64_t ticks = left < 2 * line_ticks_ ? left : line_ticks_;
+  stream_->put(SecondMotors(machine_).with(line_of(*path_, sent_ticks_, sent_ticks_ + ticks)));
+  sent_ticks_ += ticks;
+}
+
+// Lines until there are enough of them, but no more at once than leave time for a stop; of those sent, the one that the
+// card is at counts as over.
+void Jog::feed(int most) {
+  if (stopping_ || sent_ticks_ == path_->ticks) return;
+  const std::uint64_t begun = std::uint64_t{card_.read(reg::kGeometryBegun)} * line_ticks_;
+  const double wanted = ticks_ahead(*path_, card_.timing(), ratio_);
+  for (int i = 0; i < most && sent_ticks_ != path_->ticks; ++i) {
+    if (sent_ticks_ > begun && static_cast<double>(sent_ticks_ - begun) >= wanted) break;
+    send_line();
+  }
+  stream_->flush();
 }
 
 // While nothing moves: the ratio is there after some clocks, fewer than an access takes.
@@ -55,6 +113,7 @@ double Jog::set_speed(double speed) {
   const double share = std::min(speed / path_->speed, 1.0);
   const auto ratio = static_cast<std::uint32_t>(std::lround(share * driver::Card::kFullRatio));
   card_.set_ratio(ratio);
+  ratio_ = share;
   return path_->speed * ratio / driver::Card::kFullRatio;
 }
 
@@ -69,7 +128,10 @@ bool Jog::moving() {
   const driver::Status status = card_.status();
   if (status.faulted) path_.reset();
   card_.throw_if_faulted(status, "jog");
-  if (status.busy && !(stopping_ && status.held)) return true;
+  if (status.busy && !(stopping_ && status.held)) {
+    feed(kLinesAtOnce);
+    return true;
+  }
   finish();
   return false;
 }
@@ -80,6 +142,7 @@ void Jog::wait() {
 
 void Jog::finish() {
   path_.reset();
+  stream_.reset();
   position_.look(card_.stop());
   set_ratio_at_once(before_.ratio);
   std::array<driver::Access, 2> slew{driver::write_of(reg::kSlew, before_.slew)};

@@ -73,25 +73,41 @@ JogPath made(const machine::Machine& machine, const driver::CardTiming& card, co
   const double per_pulse =
       std::max(std::min(kTicksPerPulse, kMostTickRate * card.clock_hz / rate), kLeastTickRate * card.clock_hz / rate);
   const double ticks = std::clamp(std::round(per_pulse * limits.pulses * length), kLeastTicks, kMostTicks);
-  path.line.ticks = static_cast<std::uint64_t>(ticks);
-  bool any = false;
+  path.ticks = static_cast<std::uint64_t>(ticks);
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     // Towards zero: never beyond a limit.
     const double slack = 1e-9;
-    const auto pulses = static_cast<std::int64_t>(direction[a] * length * machine.axes[a].steps_per_mm * (1 + slack));
-    if (pulses == 0) continue;
-    any = true;
-    path.line.mask = static_cast<std::uint8_t>(path.line.mask | 1U << a);
-    path.line.increment[a] = driver::rounded_increment(pulses, path.line.ticks);
+    path.pulses[a] = static_cast<std::int64_t>(direction[a] * length * machine.axes[a].steps_per_mm * (1 + slack));
+    if (path.pulses[a] != 0) path.mask = static_cast<std::uint8_t>(path.mask | 1U << a);
   }
-  if (!any) throw driver::ArgumentError(fmt::format("jog: {:g} mm are less than a pulse of any axis", length));
-  const double density = static_cast<double>(path.line.ticks) / length / card.clock_hz;
-  path.pieces = jog_profile(path.line.ticks, std::min(speed * density, kMostTickRate),
-                            limits.acceleration * density / card.clock_hz);
+  if (path.mask == 0)
+    throw driver::ArgumentError(fmt::format("jog: {:g} mm are less than a pulse of any axis", length));
+  const double density = ticks / length / card.clock_hz;
+  const double tick_rate = std::min(speed * density, kMostTickRate);
+  path.pieces = jog_profile(path.ticks, tick_rate, limits.acceleration * density / card.clock_hz);
+  constexpr double kMostStop = std::numeric_limits<std::uint32_t>::max();
+  path.stop_distance = static_cast<std::uint32_t>(
+      std::clamp(std::ceil(path.ramp_seconds / 2 * card.clock_hz * tick_rate), 1.0, kMostStop));
+  for (std::size_t i = 0; i + 1 < path.pieces.size(); ++i) path.pieces[i].stop_distance = path.stop_distance;
   return path;
 }
 
 }  // namespace
+
+driver::LineCommand line_of(const JogPath& path, std::uint64_t from, std::uint64_t to) {
+  driver::LineCommand line;
+  line.ticks = to - from;
+  line.mask = path.mask;
+  const auto pulses_at = [&](std::size_t axis, std::uint64_t tick) {
+    return std::llround(static_cast<double>(path.pulses[axis]) *
+                        (static_cast<double>(tick) / static_cast<double>(path.ticks)));
+  };
+  for (std::size_t a = 0; a < path.pulses.size(); ++a) {
+    const std::int64_t pulses = pulses_at(a, to) - pulses_at(a, from);
+    if (pulses != 0) line.increment[a] = driver::rounded_increment(pulses, line.ticks);
+  }
+  return line;
+}
 
 JogPath jog_path(const machine::Machine& machine, const driver::CardTiming& card, const planner::Pulses& here,
                  const gcode::Coordinates& velocity) {

@@ -45,7 +45,7 @@ module frame_receiver (
   logic       wrong;
 
   assign ends = byte_i == {1'b1, END};
-  assign escape = byte_i[7:0] == ESCAPE && !escaped_q;
+  assign escape = byte_i[7:0] == ESCAPE;
   assign unescaped = byte_i[7:0] == ESCAPED_END || byte_i[7:0] == ESCAPED_ESCAPE;
   assign wrong = !listen_i || (escaped_q && !unescaped) || place_q == MOST;
   // What comes of an end, or after a wrong byte, is never looked at.

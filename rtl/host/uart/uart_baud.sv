@@ -12,12 +12,8 @@ module uart_baud #(
     output logic known_o,  // the rate is; the line has been high since
     output logic [19:0] period_o  // clocks of 8 bits, 64 or more
 );
-  localparam int HIGH = 0;  // the end of the break
-  localparam int START = 1;  // the first edge
-  localparam int COUNT = 2;
-  localparam int SETTLE = 3;  // the stop bit
-
-  logic [          3:0] at_q;  // one of them, or none: no break
+  logic                 wait_q;  // for the first edge, after a break
+  logic                 count_q;
   logic [BreakBits-1:0] low_q;
   logic                 full_q;  // low since 2^BreakBits clocks
   logic [          2:0] edges_q;  // 4 at the fifth
@@ -35,23 +31,23 @@ module uart_baud #(
     restart_o <= !level_i && !full_q && &low_q && !rst_i;
   end
 
+  // The stop bit ends it: from then on a falling edge is a byte's.
   always_ff @(posedge clk_i) begin
-    at_q[HIGH]   <= at_q[HIGH] && !level_i;
-    at_q[START]  <= (at_q[HIGH] && level_i) || (at_q[START] && !fall_i);
-    at_q[COUNT]  <= (at_q[START] && fall_i) || (at_q[COUNT] && !ends && !fails);
-    at_q[SETTLE] <= (at_q[COUNT] && ends && !fails) || (at_q[SETTLE] && !level_i);
-    if (at_q[START]) {edges_q, period_o} <= '0;
-    if (at_q[COUNT] && !ends) begin
+    wait_q  <= restart_o || (wait_q && !fall_i);
+    count_q <= (wait_q && fall_i) || (count_q && !fails && !(ends && level_i));
+    if (wait_q) {edges_q, period_o} <= '0;
+    if (count_q && !ends) begin
       period_o <= period_o + 20'd1;
       edges_q  <= edges_q + 3'(fall_i);
     end
-    if (at_q[SETTLE] && level_i) known_o <= 1'b1;
+    if (count_q && ends && level_i && !fails) known_o <= 1'b1;
     if (restart_o) begin
-      at_q <= 4'(1) << HIGH;
+      count_q <= 1'b0;
       known_o <= 1'b0;
     end
     if (rst_i) begin
-      at_q <= '0;
+      wait_q  <= 1'b0;
+      count_q <= 1'b0;
       known_o <= 1'b0;
     end
   end

@@ -31,9 +31,8 @@ module uart_port #(
     rx_second_q <= rx_first_q;
     before_q <= rx_second_q;
     if (rst_i) begin
-      rx_first_q <= 1'b1;
+      rx_first_q  <= 1'b1;
       rx_second_q <= 1'b1;
-      before_q <= 1'b1;
     end
   end
 

@@ -16,7 +16,7 @@ module uart_receiver (
   logic       sample;
   logic       stop;
 
-  assign start = known_i && fall_i && !run_q;
+  assign start = fall_i && !run_q;
   assign stop  = bit_q[3] && bit_q[0];
 
   uart_timer timer (
@@ -34,7 +34,7 @@ module uart_receiver (
     end else if (sample) begin
       bit_q <= bit_q + 4'd1;
       if (stop || (bit_q == 4'd0 && level_i)) run_q <= 1'b0;
-      if (run_q && !stop) byte_o[7:0] <= {level_i, byte_o[7:1]};
+      if (!stop) byte_o[7:0] <= {level_i, byte_o[7:1]};
     end
     if (rst_i || !known_i) begin
       byte_o[8] <= 1'b0;

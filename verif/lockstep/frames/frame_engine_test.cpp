@@ -33,7 +33,10 @@ class Bench {
       in_.byte = source_.next(model_.session().last(), model_.session().epoch());
       check_.event("byte", in_.byte);
     }
-    if (in_.byte_valid && in_.byte == frames::kEnd) in_.restart = in_.restart || dice_.chance(100);
+    if (in_.byte_valid && in_.byte == frames::kEnd) {
+      if (dice_.chance(100)) return reset();
+      in_.restart = in_.restart || dice_.chance(100);
+    }
     in_.ready = dice_.chance(pace);
     replies_ += out.valid && in_.ready && out.byte == frames::kEnd ? 1U : 0U;
     if (out.request) {

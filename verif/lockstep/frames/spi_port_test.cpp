@@ -67,6 +67,8 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     model_.reset();
+    check_.next_cycle();
+    compare();
     loaded_ = frames::kEnd;
     aligned_ = true;
   }

@@ -55,6 +55,8 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     model_.reset();
+    check_.next_cycle();
+    compare();
     line_.clear();
   }
 
@@ -121,6 +123,13 @@ void random_lines() {
     bytes_at(bench, 30 + dice.below(1000) / 1000.0 * most, 20);
     if (dice.chance(4)) bench.clocks(dice.below(200));
     if (dice.chance(6)) bench.reset();
+    if (bench.period() != 0 && bench.period() < 300 && dice.chance(2)) {
+      // A reset at any clock of a byte.
+      bench.line().set_period(bench.period());
+      bench.line().send(static_cast<std::uint8_t>(dice.draw()));
+      bench.clocks(dice.chance(2) ? dice.below(400) : bench.period() * 76 / 64 + dice.below(8));
+      bench.reset();
+    }
     if (dice.chance(6)) {
       // A break twice as long is one; a reset within one, or just as it is seen, ends it.
       bench.line().hold(false, 8 * 2.2 * kBreak / 100);

@@ -112,6 +112,23 @@ class Bench {
     }
   }
 
+  // A probe's edge at each clock round the begin of PROBE_END, with a line behind it; cleared at once or late.
+  void edges_around_the_end() {
+    for (const unsigned ticks : {0U, 3U}) {
+      for (unsigned edge = 0; edge < 110; ++edge) {
+        for (const unsigned clear : {0U, 40U}) {
+          probe_to_the_end(ticks);
+          for (unsigned i = 0; i < 220; ++i) {
+            in_.pins = i < edge ? 0 : 1;
+            in_.probe_clear = i == edge + clear;
+            clock();
+          }
+        }
+      }
+    }
+    in_ = {};
+  }
+
   Checker& check() { return check_; }
   std::uint64_t steps() const { return steps_; }
   std::uint64_t moves() const { return moves_; }
@@ -131,6 +148,22 @@ class Bench {
                    programs_.output(), Programs::mark()});
     feed_.add({stored_command(card_map::Opcode::Feed, 0, ticks, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}})});
     for (unsigned i = 0; i < clocks; ++i) clock();
+  }
+
+  void probe_to_the_end(unsigned ticks) {
+    reset();
+    in_ = {};
+    write_every_ = 1;
+    const auto line = [](unsigned n) { return stored_command(card_map::Opcode::Line, 1, n, {}, {kOnePulse / 2}); };
+    const auto piece = [](unsigned n) {
+      return stored_command(card_map::Opcode::Feed, 0, n, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}});
+    };
+    const Halfwords probe = stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x10}});
+    geometry_.add({probe});
+    if (ticks != 0) geometry_.add({line(ticks)});
+    if (ticks != 0) feed_.add({piece(ticks)});
+    geometry_.add({Programs::probe_end(), line(20)});
+    feed_.add({Programs::probe_end(), piece(20)});
   }
 
   void commands_alone() {
@@ -396,6 +429,7 @@ void random_programs() {
   Bench bench(seed_from_environment(20261115));
   const std::uint64_t length = scaled(1'000'000);
   if (kPathCommands) bench.commands_around_ends();
+  if (kPathCommands) bench.edges_around_the_end();
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.steps(), length / 200);

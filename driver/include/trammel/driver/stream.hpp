@@ -62,7 +62,8 @@ class Stream final : public CommandSink {
   explicit Stream(Card& card, StreamOptions options = {});
 
   // Takes a command to send, whole or not at all; it is written now or later. Throws ArgumentError when it does not fit
-  // its layout or what the card has (axes, engines): it is not taken then, and those before it stay as they were.
+  // its layout or what the card has (axes, engines), and for a feed piece whose jerk would reverse the feed before its
+  // end: it is not taken then, and those before it stay as they were.
   //
   // When it has to write or to wait for room: LinkError, FaultError; TimeoutError when the card is overdue;
   // RefusedError when it refuses a command, with the reason and the command's number (a refusal may show only at a

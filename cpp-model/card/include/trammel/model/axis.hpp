@@ -79,7 +79,7 @@ class Axis {
   // Ready for a jump: nothing on its way to the shaper, and there no step that waits.
   bool calm() const {
     return generator_.quiet() && !path_step_ && shaper_.calm() && times_.mode == shaper_.mode() &&
-           !generator_.outputs().live;
+           !generator_.outputs().live && generator_.within_a_pulse();
   }
 
   // A step of a tick taken `clocks_ago` clocks ago that is not yet at the shaper, placed in flight.

@@ -117,6 +117,9 @@ class PulseGenerator {
     return static_cast<std::uint64_t>(sum >> kFractionBits);
   }
 
+  // At most a pulse a tick, either way; else ticks go one by one.
+  bool within_a_pulse() const { return increment_ <= kMask + 1 && increment_ >= -kMask - 1; }
+
   std::int64_t increment() const { return increment_; }  // of the present line, 2^-40 pulses a tick
 
  private:
@@ -128,7 +131,8 @@ class PulseGenerator {
 
   void tick() {
     phase_ += increment_;
-    const bool crossed = phase_ < 0 || phase_ > kMask;
+    // A carry or borrow of one; beyond a pulse a tick, which is the host's fault, two at once are none.
+    const bool crossed = (phase_ >> kFractionBits & 1) != 0;
     if (crossed && open_) {
       unsigned event = phase_ < 0 ? kStep | kBackwards : kStep;
       if (counted_ && --count_ == 0) {
@@ -175,7 +179,7 @@ class PulseGenerator {
   }
 
   std::int64_t phase_ = 0;      // 0..2^40-1, 2^-40 pulses
-  std::int64_t increment_ = 0;  // -2^40..2^40
+  std::int64_t increment_ = 0;  // -2^40..2^40, up to twice as much where an arc's fields contradict each other
   std::uint64_t next_ = 0;      // 48 bits shifted in
   std::uint32_t count_ = 0;     // steps left
   std::uint32_t pipe_ = 0;

@@ -51,12 +51,12 @@ class UartPort {
   std::uint32_t period() const { return known_ ? period_ : 0; }
 
  private:
-  enum class Baud : std::uint8_t { Idle, High, Start, Count, Judge, Settle };
+  enum class Baud : std::uint8_t { Idle, Start, Count, Settle };
 
   // Break and baud rate.
   void measure(bool level, bool fall) {
     if (out_.restart) {
-      baud_ = Baud::High;
+      baud_ = Baud::Start;
       known_ = false;
     } else {
       follow(level, fall);
@@ -67,9 +67,6 @@ class UartPort {
   void follow(bool level, bool fall) {
     switch (baud_) {
       case Baud::Idle:
-        break;
-      case Baud::High:
-        if (level) baud_ = Baud::Start;
         break;
       case Baud::Start:
         if (fall) {
@@ -83,15 +80,12 @@ class UartPort {
           baud_ = Baud::Idle;
         } else if (fall && ++edges_ == 4) {
           period_ = static_cast<std::uint32_t>(now_ - first_edge_);
-          baud_ = Baud::Judge;
+          baud_ = Baud::Settle;
         }
         break;
-      case Baud::Judge:
-        baud_ = period_ >= kLeastPeriod && period_ <= kMostPeriod ? Baud::Settle : Baud::Idle;
-        break;
       case Baud::Settle:
-        known_ = level;
-        if (level) baud_ = Baud::Idle;
+        known_ = level && period_ >= kLeastPeriod && period_ <= kMostPeriod;
+        if (level || period_ < kLeastPeriod || period_ > kMostPeriod) baud_ = Baud::Idle;
         break;
     }
   }
