@@ -31,7 +31,7 @@ class Bench {
     in_.rest = !dice_.chance(5);
     in_.cut = dice_.chance(300);
     random_path();
-    if (dice_.chance(3000))
+    if (dice_.chance(in_.period || in_.stale_tick ? 100 : 3000))
       reset();
     else
       clock();
