@@ -37,6 +37,12 @@ class Bench {
       if (dice_.chance(100)) return reset();
       in_.restart = in_.restart || dice_.chance(100);
     }
+    // A new connection after half an escape, with a frame from its beginning; and in the clock in which a reply is
+    // decided.
+    const bool half = last_byte_ == frames::kEscape && since_byte_ == 1 && dice_.chance(30);
+    if (half) source_.clear();
+    in_.restart = in_.restart || half || (++since_answer_ == 5 && dice_.chance(60));
+    last_byte_ = in_.byte_valid ? in_.byte : last_byte_;
     in_.ready = dice_.chance(pace);
     replies_ += out.valid && in_.ready && out.byte == frames::kEnd ? 1U : 0U;
     if (out.request) {
@@ -45,6 +51,7 @@ class Bench {
     }
     const InnerPort::Answer answer = inner_.now();
     in_.ack = answer.ack;
+    if (answer.ack) since_answer_ = 0;
     in_.error = answer.ack ? answer.error : dice_.chance(2);
     in_.data = answer.ack ? answer.data : dice_.draw();
     drive();
@@ -125,6 +132,8 @@ class Bench {
   InnerPort inner_;
   FrameSource source_;
   unsigned since_byte_ = 0;
+  unsigned since_answer_ = 0;
+  std::uint8_t last_byte_ = 0;
   unsigned restart_ = 5000;  // one in so many clocks
   std::uint64_t requests_ = 0;
   std::uint64_t replies_ = 0;

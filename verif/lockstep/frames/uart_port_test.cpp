@@ -120,9 +120,19 @@ void random_lines() {
     bench.disturb(dice.chance(3) ? 20 + dice.below(2000) : ~0U, dice.below(8));
     // From too fast to be taken on; 9 bits must be shorter than a break.
     const double most = dice.chance(8) ? 2000 : 300;
+    if (dice.chance(6)) bytes_at(bench, 8 + dice.below(20), 1);
     bytes_at(bench, 30 + dice.below(1000) / 1000.0 * most, 20);
     if (dice.chance(4)) bench.clocks(dice.below(200));
     if (dice.chance(6)) bench.reset();
+    if (dice.chance(3)) {
+      // A reset within a measurement, after which the line goes on.
+      bench.line().set_period(100);
+      bench.line().break_line(kBreak + 8);
+      bench.clocks((1 << kBreakBits) + 40 + dice.below(120));
+      bench.reset();
+      for (unsigned i = 0; i < 3; ++i) bench.line().send(0x55);
+      bench.drain();
+    }
     if (bench.period() != 0 && bench.period() < 300 && dice.chance(2)) {
       // A reset at any clock of a byte.
       bench.line().set_period(bench.period());
