@@ -71,12 +71,12 @@ inline constexpr map::Field kClosingX = field_of(kArcChord, "closing_x");
 inline constexpr map::Field kClosingY = field_of(kArcChord, "closing_y");
 inline constexpr map::Field kFurther = field_of(kArcChord, "increment");
 
-inline constexpr const map::Command& kFeed = layout_for(map::Opcode::Feed);
-inline constexpr map::Field kRate = field_of(kFeed, "rate");
-inline constexpr map::Field kFloor = field_of(kFeed, "floor");
-inline constexpr map::Field kStopDistance = field_of(kFeed, "stop_distance");
-inline constexpr map::Field kAcceleration = field_of(kFeed, "acceleration");
-inline constexpr map::Field kJerk = field_of(kFeed, "jerk");
+inline constexpr const map::Command& kFeedLayout = layout_for(map::Opcode::Feed);
+inline constexpr map::Field kRate = field_of(kFeedLayout, "rate");
+inline constexpr map::Field kFloor = field_of(kFeedLayout, "floor");
+inline constexpr map::Field kStopDistance = field_of(kFeedLayout, "stop_distance");
+inline constexpr map::Field kAcceleration = field_of(kFeedLayout, "acceleration");
+inline constexpr map::Field kJerk = field_of(kFeedLayout, "jerk");
 
 inline constexpr const map::Command& kDwell = layout_for(map::Opcode::Dwell);
 inline constexpr const map::Command& kEnd = layout_for(map::Opcode::End);

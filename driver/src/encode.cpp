@@ -165,8 +165,8 @@ std::size_t write(const ArcChordCommand& arc, std::uint8_t number, std::uint32_t
 
 std::size_t write(const FeedCommand& feed, std::uint8_t number, std::uint32_t* words) {
   const auto flags = static_cast<std::uint8_t>(feed.piece_class);
-  if (flags > kFeed.flags_maximum) refuse(kFeed, fmt::format("class {}", flags));
-  Writer to(kFeed, flags, feed.ticks, number, words);
+  if (flags > kFeedLayout.flags_maximum) refuse(kFeedLayout, fmt::format("class {}", flags));
+  Writer to(kFeedLayout, flags, feed.ticks, number, words);
   to.field<kRate>(feed.rate);
   to.field<kFloor>(std::uint64_t{feed.floor});
   to.field<kStopDistance>(std::uint64_t{feed.stop_distance});
@@ -233,8 +233,8 @@ bool counts_as_begun(const Command& command) {
 }
 
 const card_map::Command& layout_of(const Command& command) {
-  constexpr std::array<const map::Command*, 11> kLayouts{&kLine,   &kArc,  &kArcChord,  &kFeed,  &kDwell,   &kEnd,
-                                                         &kOutput, &kMark, &kWaitInput, &kProbe, &kProbeEnd};
+  constexpr std::array<const map::Command*, 11> kLayouts{&kLine,   &kArc,  &kArcChord,  &kFeedLayout, &kDwell,   &kEnd,
+                                                         &kOutput, &kMark, &kWaitInput, &kProbe,      &kProbeEnd};
   static_assert(std::variant_size_v<Command> == kLayouts.size() &&
                 std::is_same_v<std::variant_alternative_t<0, Command>, LineCommand> &&
                 std::is_same_v<std::variant_alternative_t<1, Command>, ArcCommand> &&

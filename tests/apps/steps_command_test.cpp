@@ -90,7 +90,7 @@ TEST_F(StepsCommand, RefusesBadInput) {
   EXPECT_THAT(refusal({"--method", "steer"}), HasSubstr("one of"));
   EXPECT_THAT(refusal({"--method", "steer", "--circle", "5", "--line", "0,0,1,1"}), HasSubstr("one of"));
   EXPECT_THAT(refusal({"--method", "steer", "--circle", "0"}), HasSubstr("radius 0"));
-  EXPECT_THAT(refusal({"--method", "steer", "--circle", "1"}), HasSubstr("never comes back"));
+  EXPECT_THAT(refusal({"--method", "steer", "--circle", "1"}), HasSubstr("passes the centre"));
   EXPECT_THAT(refusal({"--method", "steer", "--circle", "-5"}), HasSubstr("negative"));
   EXPECT_THAT(refusal({"--method", "steer", "--circle", "5.5"}), HasSubstr("whole numbers"));
   EXPECT_THAT(refusal({"--method", "steer", "--circle", ""}), HasSubstr("whole numbers"));
