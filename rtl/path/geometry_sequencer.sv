@@ -61,110 +61,97 @@ module geometry_sequencer #(
     output logic      [    31:0] chain_o,
     output logic      [    31:0] begun_o
 );
-  logic [Axes-1:0] mask;
+  logic [Axes-1:0] mask_o;
   logic [     4:0] engine;
   logic            is_barrier;
   logic [     2:0] instant;
-  logic            is_end;
-  logic            is_wait;
-  logic            is_probe_end;
+  logic            end_o;
+  logic            wait_o;
+  logic            probe_end_o;
   logic            dropped;
-  logic            valid;
-  logic            path_pop;
+  logic            valid_o;
+  logic            pop_o;
   logic            decoder_idle;
-  logic            path_begin;
+  logic            begin_o;
   logic            runs;
-  logic            zero;
-  logic            last;
-  logic [    39:0] count;
-  logic [     2:0] period;  // {the line goes on, has gone on, a period's last tick is taken}
-  logic            lost;  // the next one is missing
-  logic            at_barrier;
+  logic            zero_o;
+  logic            last_o;
+  logic [    39:0] count_o;
+  logic [     2:0] period_o;  // {the line goes on, has gone on, a period's last tick is taken}
+  logic            lost_o;  // the next one is missing
+  logic            at_barrier_o;
 
-  assign runs = taking_o || (valid && !is_barrier && instant == 3'd0);
-  assign dropped = valid && drop_i[1] && !is_probe_end;
-  assign instant_o = {2{valid && !drop_i[1]}} & instant[1:0];
-  assign probe_at_o = {barrier_o[1] && is_wait, barrier_o[1] && is_probe_end, valid && instant[2] && !path_active_o};
+  assign runs = taking_o || (valid_o && !is_barrier && instant == 3'd0);
+  assign dropped = valid_o && drop_i[1] && !probe_end_o;
+  assign instant_o = {2{valid_o && !drop_i[1]}} & instant[1:0];
+  assign probe_at_o = {barrier_o[1] && wait_o, barrier_o[1] && probe_end_o, valid_o && instant[2] && !path_active_o};
 
   geometry_decoder #(
       .Axes   (Axes),
       .Engines(Engines)
   ) decoder (
       .*,
-      .pop_i          (path_pop || instant_o != 2'd0 || probe_says_i[1] || dropped),
+      .pop_i          (pop_o || instant_o != 2'd0 || probe_says_i[1] || dropped),
       .payload_ready_i(payload_ready_i && !engine_taken_o),
-      .mask_o         (mask),
       .engine_o       (engine),
       .barrier_o      (is_barrier),
       .instant_o      (instant),
-      .end_o          (is_end),
-      .wait_o         (is_wait),
-      .probe_end_o    (is_probe_end),
-      .idle_o         (decoder_idle),
-      .valid_o        (valid)
+      .idle_o         (decoder_idle)
   );
 
   tick_counter ticks (
       .*,
-      .next_i ({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
-      .count_o(count),
-      .zero_o (zero),
-      .load_i (path_begin || barrier_o[0]),
-      .take_i ((take_i && !stale_o[32]) || barrier_o[1]),
-      .last_o (last)
+      .next_i({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
+      .load_i(begin_o || barrier_o[0]),
+      .take_i((take_i && !stale_o[32]) || barrier_o[1])
   );
 
   path_sequencer #(
       .Axes(Axes)
   ) paths (
       .*,
-      .valid_i       (valid && !dropped && instant == 3'd0),
+      .valid_i       (valid_o && !dropped && instant == 3'd0),
       .engine_i      (engine),
       .barrier_i     (is_barrier),
-      .mask_i        (mask),
-      .pop_o         (path_pop),
-      .last_i        (last),
-      .streaming_i   ({lost, streaming_o}),
-      .period_o      (period),
-      .begin_o       (path_begin),
+      .mask_i        (mask_o),
+      .last_i        (last_o),
+      .streaming_i   ({lost_o, streaming_o}),
       .halt_i        (drop_i[0]),
-      .barrier_done_i(barrier_o[2]),
-      .at_barrier_o  (at_barrier)
+      .barrier_done_i(barrier_o[2])
   );
 
-  assign stale_o[32] = period[1];
+  assign stale_o[32] = period_o[1];
 
   if (Engines[card_map_pkg::ENGINE_STREAMING]) begin : gen_streaming
     position_streaming periods (
         .*,
-        .begin_i (path_begin),
-        .count_i (count),
-        .period_i(period),
-        .lost_o  (lost),
+        .begin_i (begin_o),
+        .count_i (count_o),
+        .period_i(period_o),
         .ticks_o (stale_o[31:0])
     );
   end else begin : gen_no_streaming
-    assign {streaming_o, missing_o, lost, stale_o[31:0]} = '0;
+    assign {streaming_o, missing_o, lost_o, stale_o[31:0]} = '0;
 
     logic unused;
-    assign unused = &{1'b0, setting_i, arrive_i, rest_i, count, period};
+    assign unused = &{1'b0, setting_i, arrive_i, rest_i, count_o, period_o};
   end
 
 
   // A barrier that has begun is over where the others are dropped.
   barrier both_queues (
       .*,
-      .cut_i          (cut_i || (drop_i[0] && !(valid && is_probe_end))),
-      .geometry_at_i  (at_barrier),
+      .cut_i          (cut_i || (drop_i[0] && !(valid_o && probe_end_o))),
+      .geometry_at_i  (at_barrier_o),
       .geometry_runs_i(runs),
-      .zero_i         (zero),
-      .end_i          (is_end),
-      .wait_i         (is_wait),
-      .stays_i        (is_probe_end && probe_says_i[2]),
+      .zero_i         (zero_o),
+      .end_i          (end_o),
+      .wait_i         (wait_o),
+      .stays_i        (probe_end_o && probe_says_i[2]),
       .met_i          (probe_says_i[0]),
       .drop_i         (drop_i[1]),
-      .last_i         (last),
-      .begin_i        (path_begin),
+      .last_i         (last_o),
+      .begin_i        (begin_o),
       .load_o         (barrier_o[0]),
       .counting_o     (barrier_o[1]),
       .done_o         (barrier_o[2])

@@ -52,17 +52,17 @@ module register_file #(
     input wire logic [31:0] chain_i
 );
 
-  logic        live;
-  logic        sample;
-  logic        read;
-  logic        clear_refusal;
-  logic        refuse;
-  logic [15:0] reason;  // {number, reason}
+  logic        live_o;
+  logic        sample_o;
+  logic        read_o;
+  logic        clear_refusal_o;
+  logic        refuse_o;
+  logic [15:0] reason_o;  // {number, reason}
   logic        snapshot;
-  logic        snapshotting;
-  logic [40:0] latched;
-  logic [ 7:0] clocks;
-  logic        writing;
+  logic        active_o;
+  logic [40:0] store_o;
+  logic [ 7:0] clocks_o;
+  logic        writing_o;
   logic [31:0] live_data;
 
   register_access #(
@@ -70,15 +70,9 @@ module register_file #(
       .Engines(Engines)
   ) i_access (
       .*,
-      .writing_i(writing || snapshotting),
-      .direct_i(motion_i[1]),
-      .live_o(live),
-      .sample_o(sample),
-      .read_o(read),
-      .clear_refusal_o(clear_refusal),
-      .snapshot_o(snapshot),
-      .refuse_o(refuse),
-      .reason_o(reason)
+      .writing_i (writing_o || active_o),
+      .direct_i  (motion_i[1]),
+      .snapshot_o(snapshot)
   );
 
   register_live #(
@@ -88,12 +82,12 @@ module register_file #(
       .*,
       .setting_i(setting_o),
       .snapshot_i(snapshot_o),
-      .sample_i(sample),
+      .sample_i(sample_o),
       .access_i({access_i[47:46], access_i[43:32]}),
-      .clear_refusal_i(clear_refusal),
-      .refuse_i(refuse),
-      .reason_i(reason),
-      .snapshotting_i(snapshotting),
+      .clear_refusal_i(clear_refusal_o),
+      .refuse_i(refuse_o),
+      .reason_i(reason_o),
+      .snapshotting_i(active_o),
       .incomplete_i(checker_i[18]),
       .data_o(live_data)
   );
@@ -102,10 +96,7 @@ module register_file #(
       .Axes(Axes)
   ) i_snapshot (
       .*,
-      .host_i  (snapshot),
-      .active_o(snapshotting),
-      .clocks_o(clocks),
-      .store_o (latched)
+      .host_i(snapshot)
   );
 
   // The direct loader owns the RAM's read side from its start to its end; the START write waits all the while.
@@ -121,14 +112,13 @@ module register_file #(
   ) i_ram (
       .*,
       .setting_i(setting_o),
-      .snapshot_i(latched),
-      .clocks_i(clocks),
+      .snapshot_i(store_o),
+      .clocks_i(clocks_o),
       .address_i(loading_q ? loader_address_i : access_i[41:34]),
-      .writing_o(writing),
       .data_o(loader_data_o)
   );
 
-  assign data_o = !read ? '0 : live ? live_data : loader_data_o;
+  assign data_o = !read_o ? '0 : live_o ? live_data : loader_data_o;
 
 endmodule
 `default_nettype wire

@@ -46,43 +46,38 @@ module tick_source #(
     input  wire logic [31:0] chain_i,
     output logic      [31:0] chain_o
 );
-  logic [ 1:0] class_now;
-  logic        enable;
+  logic [ 1:0] class_o;
+  logic        enable_o;
   logic        feed_tick;
-  logic        feed_enable;
-  logic        feed_clear;
-  logic [19:0] load;
+  logic        feed_enable_o;
+  logic        feed_clear_o;
+  logic [19:0] load_o;
   logic        decoder_idle;
-  logic        decoded;
-  logic        spent;
-  logic        piece_waits;
+  logic        decoded_o;
+  logic        spent_o;
+  logic        wait_o;
   logic [31:0] ratio_chain;
   logic [31:0] rate_chain;
 
   assign idle_o  = decoder_idle && empty_i && !active_o;
-  assign fixed_o = class_now == 2'(card_map_pkg::CLASS_FIXED);
+  assign fixed_o = class_o == 2'(card_map_pkg::CLASS_FIXED);
 
   time_base #(
       .Engines(Engines)
   ) base (
       .*,
-      .class_i (class_now),
-      .chain_o (ratio_chain),
-      .enable_o(enable)
+      .class_i(class_o),
+      .chain_o(ratio_chain)
   );
 
   feed_sequencer #(
       .Engines(Engines)
   ) pieces (
       .*,
-      .class_o  (class_now),
-      .take_i   (take_o),
-      .wait_i   (piece_waits),
-      .decoded_o(decoded),
-      .spent_o  (spent),
-      .idle_o   (decoder_idle),
-      .load_o   (load),
-      .chain_i  (rate_chain)
+      .take_i (take_o),
+      .wait_i (wait_o),
+      .idle_o (decoder_idle),
+      .chain_i(rate_chain)
   );
 
   if (Engines[card_map_pkg::ENGINE_UNDERRUN_HOLD]) begin : gen_underrun_hold
@@ -95,30 +90,29 @@ module tick_source #(
         .idle_i     (card_idle_i),
         .arrive_i   (arrive_i[20:0]),
         .full_i     (arrive_i[21]),
-        .load_i     (load),
+        .load_i     (load_o),
         .take_i     (take_o && active_o),
         .swap_i     (swap_o),
         .active_i   (active_o),
         .ratio_i    (ratio_o),
-        .decoded_i  (decoded),
-        .wait_o     (piece_waits),
+        .decoded_i  (decoded_o),
         .hold_o     (underrun_hold_o),
         .shown_o    (underrun_o[32]),
         .underruns_o(underrun_o[31:0])
     );
   end else begin : gen_no_underrun_hold
-    assign {piece_waits, underrun_hold_o, underrun_o} = '0;
+    assign {wait_o, underrun_hold_o, underrun_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, arrive_i, decoded, card_idle_i};
+    assign unused = &{1'b0, arrive_i, decoded_o, card_idle_i};
   end
 
   feed_generator generator (
       .*,
-      .clear_i (feed_clear),
-      .enable_i(feed_enable),
-      .freeze_i(spent),
-      .load_i  (load),
+      .clear_i (feed_clear_o),
+      .enable_i(feed_enable_o),
+      .freeze_i(spent_o),
+      .load_i  (load_o),
       .swap_i  (swap_o),
       .chain_i (ratio_chain),
       .chain_o (rate_chain),
@@ -127,11 +121,9 @@ module tick_source #(
 
   tick_gate gate (
       .*,
-      .enable_i     (enable),
+      .enable_i     (enable_o),
       .feed_tick_i  (feed_tick),
-      .feed_active_i(active_o),
-      .feed_enable_o(feed_enable),
-      .feed_clear_o (feed_clear)
+      .feed_active_i(active_o)
   );
 endmodule
 
