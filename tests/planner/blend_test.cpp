@@ -131,7 +131,9 @@ std::string lines_through(const std::vector<Place>& corners) {
   return text + "M2\n";
 }
 
-constexpr double kRounding = 0.5 / kScale * 1.7320508 + 1e-6;  // of a point to pulses, and of the program's digits
+// Of a point to pulses, of the program's digits, and of what is left of a line or an arc within a pulse: it has no step
+// and is part of the next motion.
+constexpr double kRounding = (0.5 * 1.7320508 + 1) / kScale + 1e-6;
 
 // Directions go on from block to block, wherever a corner is not kept. What is left of an arc may turn within a pulse
 // and have no step.
