@@ -118,7 +118,7 @@ TEST(FrameBus, ARefusalStopsAtItsWord) {
 // What a bad link does to bytes on their way.
 void spoil(frames::Bytes& bytes, std::mt19937_64& random) {
   if (bytes.empty() || random() % 4 != 0) return;
-  const std::size_t place = random() % bytes.size();
+  const auto place = static_cast<std::size_t>(random() % bytes.size());
   switch (random() % 5) {
     case 0:
       bytes.clear();

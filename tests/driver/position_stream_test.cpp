@@ -98,7 +98,7 @@ Host::Judged Host::judge(std::size_t first, std::size_t end) const {
   std::array<std::int64_t, card_map::kMaxAxes> position{};
   for (const PathStep& step : steps) {
     // The FEED has a number too, behind the first lines.
-    const std::size_t period = step.command < ahead_ ? step.command : step.command - 1;
+    const auto period = static_cast<std::size_t>(step.command < ahead_ ? step.command : step.command - 1);
     position[step.axis] += step.direction;
     const std::uint64_t begin = period == 0 ? 0 : ends[period - 1];
     const std::uint64_t at = begin + PositionStream::kClocksPerTick * step.tick;
