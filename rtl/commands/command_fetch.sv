@@ -60,37 +60,52 @@ module command_fetch (
   assign first_o = has_payload_i && state_q == HEADER && step_q == 2'd3;
   assign advance_o = (state_q == PAYLOAD || state_q == REST) && field_done;
 
-  always_ff @(posedge clk_i) begin : p_fetch
+  always_ff @(posedge clk_i) begin : p_state
     state_e state_d;
 
-    // Nothing moves while there is nothing to read and nothing on its way, or what was read waits.
-    if (cut_i || rst_i || !(valid_o || (idle_o && empty_i && !strobe_o[5]))) begin
-      state_d = state_q;
-      case (state_q)
-        IDLE: if (!empty_i) state_d = HEADER;
-        HEADER:
-        if (step_q == 2'd3) begin
-          if (!has_payload_i) state_d = TAIL;
-          else if (wait_i) state_d = WAIT;
-          else state_d = PAYLOAD;
-        end
-        PAYLOAD:
-        if (field_done) begin
-          if (last_field_i) state_d = TAIL;
-          else if (wait_i) state_d = WAIT;
-        end
-        WAIT: if (!wait_i) state_d = PAYLOAD;
-        TAIL: if (step_q == 2'd1) state_d = VALID;
-        REST: if (field_done && last_field_i) state_d = IDLE;
-        default: ;
-      endcase
-      if (cut_i || rst_i) state_d = IDLE;
+    state_d = state_q;
+    case (state_q)
+      IDLE: if (!empty_i) state_d = HEADER;
+      HEADER:
+      if (step_q == 2'd3) begin
+        if (!has_payload_i) state_d = TAIL;
+        else if (wait_i) state_d = WAIT;
+        else state_d = PAYLOAD;
+      end
+      PAYLOAD:
+      if (field_done) begin
+        if (last_field_i) state_d = TAIL;
+        else if (wait_i) state_d = WAIT;
+      end
+      WAIT: if (!wait_i) state_d = PAYLOAD;
+      TAIL: if (step_q == 2'd1) state_d = VALID;
+      REST: if (field_done && last_field_i) state_d = IDLE;
+      default: ;
+    endcase
 
+    if (cut_i || rst_i) begin
+      state_q <= IDLE;
+      read_o  <= 1'b0;
+      valid_o <= 1'b0;
+      idle_o  <= 1'b1;
+    end else if (!valid_o) begin
       state_q <= state_d;
       read_o  <= state_d == HEADER || state_d == PAYLOAD || state_d == REST;
       valid_o <= state_d == VALID;
       idle_o  <= state_d == IDLE;
-      step_q  <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
+    end else if (pop_i) begin  // it comes late: it reaches no more than it must
+      state_q <= rest_i ? REST : IDLE;
+      read_o  <= rest_i;
+      valid_o <= 1'b0;
+      idle_o  <= !rest_i;
+    end
+  end
+
+  always_ff @(posedge clk_i) begin : p_fetch
+    // Nothing moves while there is nothing to read and nothing on its way, or what was read waits.
+    if (cut_i || rst_i || !(valid_o || (idle_o && empty_i && !strobe_o[5]))) begin
+      // 0 in the first clock of either state, without waiting for what comes next: HEADER has four clocks.
+      step_q <= state_q == HEADER || state_q == TAIL ? step_q + 2'd1 : 2'd0;
 
       if (first_o) begin
         {field_o, left_q} <= first_i;
@@ -113,11 +128,6 @@ module command_fetch (
         payload_1_q   <= 1'b0;
         strobe_o[6:5] <= 2'b00;
       end
-    end else if (pop_i) begin  // pop_i comes late: it reaches no more than it must
-      state_q <= rest_i ? REST : IDLE;
-      read_o  <= rest_i;
-      valid_o <= 1'b0;
-      idle_o  <= !rest_i;
     end
   end
 endmodule

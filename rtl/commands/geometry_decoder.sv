@@ -36,7 +36,7 @@ module geometry_decoder #(
   logic       first;
   logic       advance;
   logic [4:0] field;
-  logic [4:0] next;
+  logic [4:0] next_q;  // the field after this one, where fields go by their number
   logic [2:0] next_length;
   logic [4:0] lowest;
   logic [7:0] first_field;  // {field, its halfwords less one}
@@ -49,13 +49,13 @@ module geometry_decoder #(
   logic [4:0] of_chord;
   logic [7:0] opcode;
   logic [7:0] mask;
-  logic       is_line;
-  logic       is_arc;
-  logic       is_chord;
-  logic       is_output;
-  logic       is_mark;
-  logic       is_probe;
-  logic       is_wait;
+  logic       is_line_q;
+  logic       is_arc_q;
+  logic       is_chord_q;
+  logic       is_output_q;
+  logic       is_mark_q;
+  logic       is_probe_q;
+  logic       is_wait_q;
   logic       has_words;  // for the path commands
   logic       at_axes;  // of an arc in chords only increments of further axes are left
   logic       to_axis;  // the next field is an axis's increment
@@ -66,15 +66,20 @@ module geometry_decoder #(
   logic [2:0] axis_y_q;
   logic       plane;  // is on word_i
 
-  assign is_line   = opcode == card_map_pkg::OP_LINE;
-  assign is_arc    = Engines[card_map_pkg::ENGINE_ACCUMULATOR] && opcode == card_map_pkg::OP_ARC;
-  assign is_chord  = Engines[card_map_pkg::ENGINE_ARC_GENERATOR] && opcode == card_map_pkg::OP_ARC_CHORD;
-  assign is_output = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_OUTPUT;
-  assign is_mark   = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_MARK;
-  assign is_probe  = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_PROBE;
-  assign is_wait   = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_WAIT_INPUT;
-  assign has_words = is_output || is_probe || is_wait;
-  assign on_engine = is_arc || is_chord;  // another than lines: fields go by their number
+  // Taken from the header beside the opcode: from that the way to the next field would be the card's longest.
+  always_ff @(posedge clk_i) begin
+    if (header) begin
+      is_line_q   <= word_i[7:0] == card_map_pkg::OP_LINE;
+      is_arc_q    <= Engines[card_map_pkg::ENGINE_ACCUMULATOR] && word_i[7:0] == card_map_pkg::OP_ARC;
+      is_chord_q  <= Engines[card_map_pkg::ENGINE_ARC_GENERATOR] && word_i[7:0] == card_map_pkg::OP_ARC_CHORD;
+      is_output_q <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && word_i[7:0] == card_map_pkg::OP_OUTPUT;
+      is_mark_q   <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && word_i[7:0] == card_map_pkg::OP_MARK;
+      is_probe_q  <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && word_i[7:0] == card_map_pkg::OP_PROBE;
+      is_wait_q   <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && word_i[7:0] == card_map_pkg::OP_WAIT_INPUT;
+    end
+  end
+  assign has_words = is_output_q || is_probe_q || is_wait_q;
+  assign on_engine = is_arc_q || is_chord_q;  // another than lines: fields go by their number
   assign mask_o    = mask[Axes-1:0];
 
   logic unused;  // absent axes: the checker lets no command for them in
@@ -124,42 +129,42 @@ module geometry_decoder #(
   // All paths begin with a field of three halfwords, those on an engine with path ticks, prescale, plane. A line's fields
   // are its axes. An arc's in chords end with the axes outside its plane.
   assign lowest = lowest_axis(rest_q);
-  assign next = field + 5'd1;
-  assign next_length = card_map_pkg::field_halfwords_less_one(opcode, next);
+  assign next_length = card_map_pkg::field_halfwords_less_one(opcode, next_q);
   assign at_prescaler = field == card_map_pkg::FIELD_ARC_PRESCALE || field == card_map_pkg::FIELD_ARC_PLANE;
 
-  assign plane = strobe[5] && is_chord && strobe[4:0] == card_map_pkg::FIELD_ARC_CHORD_PLANE;
-  assign at_axes = is_chord && (field[4] || field == card_map_pkg::FIELD_ARC_CHORD_CLOSING_Y);
-  assign to_axis = is_line || at_axes;
+  assign plane = strobe[5] && is_chord_q && strobe[4:0] == card_map_pkg::FIELD_ARC_CHORD_PLANE;
+  assign at_axes = is_chord_q && (field[4] || field == card_map_pkg::FIELD_ARC_CHORD_CLOSING_Y);
+  assign to_axis = is_line_q || at_axes;
 
   always_ff @(posedge clk_i) begin
+    if (first || advance) next_q <= (advance ? next_q : first_field[7:3]) + 5'd1;
     if (plane) {axis_y_q, axis_x_q} <= {word_i[10:8], word_i[6:4]};
     if (header) rest_q <= word_i[15:8];
     else if (plane) rest_q <= rest_q & ~(8'd1 << word_i[6:4]) & ~(8'd1 << word_i[10:8]);
-    else if ((first && is_line) || (advance && to_axis)) rest_q <= rest_q & (rest_q - 8'd1);
+    else if ((first && is_line_q) || (advance && to_axis)) rest_q <= rest_q & (rest_q - 8'd1);
   end
 
   always_comb begin
     first_field = {on_engine ? 5'd0 : lowest, 3'd2};
-    next_field  = to_axis ? {is_chord ? AXIS | lowest : lowest, 3'd2} : {next, next_length};
-    last_field  = is_arc ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
+    next_field  = to_axis ? {is_chord_q ? AXIS | lowest : lowest, 3'd2} : {next_q, next_length};
+    last_field  = is_arc_q ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
     // Two masks, or the second number alone: a condition.
     if (has_words) begin
-      first_field = {FIRST_OF_COMMAND | 5'(!is_output), 3'd0};
+      first_field = {FIRST_OF_COMMAND | 5'(!is_output_q), 3'd0};
       last_field  = field[0];
     end
   end
 
   command_fetch fetch (
       .*,
-      .has_payload_i(is_line || on_engine || has_words),
+      .has_payload_i(is_line_q || on_engine || has_words),
       .first_i      (first_field),
       .next_i       (next_field),
       .last_field_i (last_field),
       .rest_i       (1'b0),
       // Before an engine's first field nothing waits: the command before was an engine's, whose last field this is not, or
       // runs on lines, and the engine is free.
-      .wait_i       (is_line ? !shadows_free_i : at_prescaler && !payload_ready_i),
+      .wait_i       (is_line_q ? !shadows_free_i : at_prescaler && !payload_ready_i),
       .header_o     (header),
       .first_o      (first),
       .advance_o    (advance),
@@ -171,7 +176,7 @@ module geometry_decoder #(
 
   assign of_arc   = arc_target(strobe[4:0]);
   assign of_chord = chord_target(strobe[4:0], axis_x_q, axis_y_q);
-  assign target   = is_arc ? of_arc : is_chord ? of_chord : has_words ? load_target_pkg::COMMAND : strobe[4:0];
+  assign target   = is_arc_q ? of_arc : is_chord_q ? of_chord : has_words ? load_target_pkg::COMMAND : strobe[4:0];
 
   always_ff @(posedge clk_i) begin
     load_o[21]    <= (strobe[6:5] != 2'd0 || direct_load_i[21]) && !rst_i;
@@ -179,12 +184,12 @@ module geometry_decoder #(
     load_o[15:0]  <= direct_load_i[21] ? direct_load_i[15:0] : word_i;
 
     engine_o      <= 5'(card_map_pkg::ENGINE_LINES);
-    if (is_arc) engine_o <= 5'(card_map_pkg::ENGINE_ACCUMULATOR);
-    if (is_chord) engine_o <= 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
-    barrier_o   <= !is_line && !on_engine && !is_output && !is_mark && !is_probe;
-    instant_o   <= {is_probe, is_mark, is_output};
+    if (is_arc_q) engine_o <= 5'(card_map_pkg::ENGINE_ACCUMULATOR);
+    if (is_chord_q) engine_o <= 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
+    barrier_o   <= !is_line_q && !on_engine && !is_output_q && !is_mark_q && !is_probe_q;
+    instant_o   <= {is_probe_q, is_mark_q, is_output_q};
     end_o       <= opcode == card_map_pkg::OP_END;
-    wait_o      <= is_wait;
+    wait_o      <= is_wait_q;
     probe_end_o <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_PROBE_END;
   end
 endmodule

@@ -19,12 +19,12 @@ module barrier (
     input  wire logic stays_i,          // a PROBE_END that must wait
     input  wire logic drop_i,           // commands are dropped: what stands where says nothing
     input  wire logic last_i,           // of the tick counter
-    input  wire logic begin_i,          // a path or a direct move begins
+    input  wire logic begin_i,          // a path or a direct move began in the clock before
     output logic      mismatch_o,       // event
     output logic      load_o,           // the barrier begins: load the tick counter
     output logic      counting_o,       // one count each clock
     output logic      done_o,           // both queues go on
-    output logic      ended_o           // the last command was an END
+    output logic      ended_o           // the last command was an END (combinational)
 );
   // SETTLE waits for the last tick in the path domain; LEAVE gives the two fetches the clock in which they take back
   // geometry_at_i and feed_at_i.
@@ -64,15 +64,20 @@ module barrier (
       done_o     <= over && !cut_i && !rst_i;
       load_o     <= state_d == LOAD;
       counting_o <= state_d == COUNT;
-      step_q     <= (state_d != state_q) ? 2'd0 : step_q + 2'd1;
+      step_q     <= state_q == SETTLE ? step_q + 2'd1 : 2'd0;
       state_q    <= state_d;
     end
   end
 
+  // That something begins comes late: it is asked a clock after, when it is known.
+  logic ended_q;
+  assign ended_o = ended_q && !begin_i;
+
   always_ff @(posedge clk_i) begin
     mismatch_o <= alone && !drop_i && !cut_i && !rst_i;
-    if (rst_i || cut_i || begin_i || load_o) ended_o <= 1'b0;
-    else if (over && end_i) ended_o <= 1'b1;
+    if (rst_i || cut_i || load_o) ended_q <= 1'b0;
+    else if (over && end_i) ended_q <= 1'b1;
+    else if (begin_i) ended_q <= 1'b0;
   end
 endmodule
 

@@ -151,7 +151,7 @@ module geometry_sequencer #(
       .met_i          (probe_says_i[0]),
       .drop_i         (drop_i[1]),
       .last_i         (last_o),
-      .begin_i        (begin_o),
+      .begin_i        (swap_o),
       .load_o         (barrier_o[0]),
       .counting_o     (barrier_o[1]),
       .done_o         (barrier_o[2])

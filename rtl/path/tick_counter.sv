@@ -57,15 +57,11 @@ module tick_counter (
     if (load_q || mid_borrow_q) mid_q <= load_q ? ~count_q[19:4] : mid_sum;
     if (load_q || top_borrow_q) top_q <= load_q ? ~count_q[39:20] : top_sum;
     if (load_i) begin
-      low_q        <= count_q[3:0];
-      mid_zero_q   <= next_mid_zero_q;
-      top_zero_q   <= next_top_zero_q;
-      mid_borrow_q <= 1'b0;
-      top_borrow_q <= 1'b0;
-      last_o       <= count_q[3:0] == 4'd1 && next_mid_zero_q && next_top_zero_q;
+      low_q      <= count_q[3:0];
+      mid_zero_q <= next_mid_zero_q;
+      top_zero_q <= next_top_zero_q;
+      last_o     <= count_q[3:0] == 4'd1 && next_mid_zero_q && next_top_zero_q;
     end else begin
-      top_borrow_q <= mid_borrow_q && mid_zero_q;
-      mid_borrow_q <= take_i && low_q == 4'd0;
       if (take_i) begin
         last_o <= low_q == 4'd2 && mid_zero_q && top_zero_q;
         low_q  <= low_q - 4'd1;
@@ -75,6 +71,9 @@ module tick_counter (
         end
       end
     end
+    // A borrow beside a load meets the upper parts in the clock in which they are taken, which goes before.
+    mid_borrow_q <= take_i && low_q == 4'd0;
+    top_borrow_q <= mid_borrow_q && mid_zero_q && !load_q;
     load_q <= load_i;
     if (rst_i) begin
       load_q       <= 1'b0;
