@@ -151,7 +151,7 @@ void StreamLink::sleep(nanoseconds time) {
 
 void StreamLink::wait(nanoseconds time) {
   constexpr char kEnd = static_cast<char>(frames::kEnd);
-  const std::string text = fmt::format("{}wait {}{}", kEnd, time.count(), kEnd);
+  const std::string text = fmt::format("wait {}{}", time.count(), kEnd);
   send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   await(std::string("waited") + kEnd);
 }
