@@ -64,7 +64,8 @@ void CardServer::admit() {
   ++counts_.clients;
   settings_.note(fmt::format("{} has come", stream->peer()));
   endpoint_.connect();  // nothing that its predecessor has left of a frame
-  client_ = std::make_unique<Client>(std::move(stream), engine_, endpoint_, settings_);
+  client_ = std::make_unique<Client>(std::move(stream), engine_, endpoint_, settings_,
+                                     [this] { hold("another one has its place"); });
 }
 
 void CardServer::serve_client(std::chrono::nanoseconds longest) {
@@ -82,15 +83,17 @@ void CardServer::serve_client(std::chrono::nanoseconds longest) {
   counts_.dropped = endpoint_.dropped();
 }
 
-// The card holds before anything else happens.
 void CardServer::lose_client(const std::string& why) {
-  const bool held = client_->may_move();
+  const bool could_move = client_->may_move();
   client_.reset();
-  if (held) {
-    engine_.write(reg::kHold, 1);
-    ++counts_.holds;
-  }
-  settings_.note(fmt::format("client gone ({}){}", why, held ? ": the card holds" : ""));
+  if (could_move) return hold(why);
+  settings_.note(fmt::format("client gone ({})", why));
+}
+
+void CardServer::hold(const std::string& why) {
+  engine_.write(reg::kHold, 1);
+  ++counts_.holds;
+  settings_.note(fmt::format("client gone ({}): the card holds", why));
 }
 
 void CardServer::refuse(std::unique_ptr<transport::ByteStream> stream, const std::string& why) {
@@ -99,7 +102,7 @@ void CardServer::refuse(std::unique_ptr<transport::ByteStream> stream, const std
   const std::string line = fmt::format("trammel 1 refused: {}\n", why);
   try {
     stream->write(reinterpret_cast<const std::uint8_t*>(line.data()), line.size());
-    leaving_.push_back({std::move(stream), steady_clock::now() + kFarewell});
+    if (listener_.ends_streams()) leaving_.push_back({std::move(stream), steady_clock::now() + kFarewell});
   } catch (const driver::LinkError&) {
   }
 }

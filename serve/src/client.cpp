@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "trammel/driver/card_timing.hpp"
 
@@ -14,10 +15,10 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr std::uint8_t kMeasured = 0x55;  // with which a serial line begins
-constexpr std::size_t kLongestHello = 128;
+constexpr char kHello[] = "trammel 1";
 constexpr std::uint64_t kMostRubbish = 64 * 1024;  // bytes without a frame among them
 constexpr char kWait[] = "wait ";
-constexpr std::size_t kLongestWait = 24;
+constexpr std::size_t kLongestText = 100;
 
 frames::Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
@@ -34,18 +35,18 @@ bool same(const std::string& a, const std::string& b) {
 }  // namespace
 
 CardServer::Client::Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine,
-                           frames::Endpoint& endpoint, const Settings& settings)
+                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left)
     : stream_(std::move(stream)),
       engine_(engine),
       endpoint_(endpoint),
       settings_(settings),
+      left_(std::move(left)),
       clocks_of_byte_(settings.baud == 0 ? 0 : 10.0 * settings.clock_hz / settings.baud),
       heard_(steady_clock::now()) {}
 
 void CardServer::Client::serve(std::chrono::nanoseconds longest) {
   read(longest);
-  if (!begun_) begin();
-  if (begun_) take_bytes();
+  while (!came_.empty() && take_byte(came_.front())) came_.pop_front();
   send_due();
 }
 
@@ -67,48 +68,47 @@ void CardServer::Client::check_silence() const {
   throw Unwanted(fmt::format("nothing came for {:.1f} s", std::chrono::duration<double>(most).count()));
 }
 
-// A hello, or frames right away, behind a break's byte or not: for reading alone.
-void CardServer::Client::begin() {
-  if (came_.empty()) return;
-  if (came_.front() == 't') return read_hello();
-  begun_ = came_.front() == frames::kEnd || came_.front() == kMeasured;
-  if (!begun_) throw Unwanted("neither a hello nor a frame");
+// Where a frame may begin, a hello may as well, and a wait of who has said one: no frame has their first letters. They
+// take no time on the line. False: the byte is not due yet.
+bool CardServer::Client::take_byte(std::uint8_t byte) {
+  if (text_.empty()) {
+    const bool line_begins = byte == kMeasured;
+    const bool hello = byte == kHello[0];
+    const bool wait = hello_ && byte == kWait[0];
+    if (between_frames_ && (line_begins || hello)) begin_anew();
+    if (!spoken_ && !line_begins && !hello && byte != frames::kEnd) throw Unwanted("neither a hello nor a frame");
+    spoken_ = true;
+    if (!between_frames_ || !(hello || wait)) return deliver(byte);
+  }
+  const bool hello = text_.empty() ? byte == kHello[0] : text_[0] == kHello[0];
+  if (byte == (hello ? '\n' : frames::kEnd)) {
+    const std::string text = std::exchange(text_, {});
+    hello ? take_hello(text) : take_wait(text);
+    return true;
+  }
+  text_ += static_cast<char>(byte);
+  if (text_.size() > kLongestText) throw Unwanted(hello ? "no hello of this version" : "a wait that is none");
+  return true;
 }
 
-void CardServer::Client::read_hello() {
-  const auto end = std::find(came_.begin(), came_.end(), '\n');
-  if (end == came_.end() && came_.size() <= kLongestHello) return;
-  const std::string line(came_.begin(), end);
-  came_.erase(came_.begin(), end == came_.end() ? end : end + 1);
-  const std::string greeting = "trammel 1";
-  const bool plain = line == greeting;
-  const bool with_token = line.rfind(greeting + " ", 0) == 0;
+// On a terminal a client may follow another one unseen.
+void CardServer::Client::begin_anew() {
+  if (may_move_) left_();
+  hello_ = false;
+  may_move_ = false;
+}
+
+void CardServer::Client::take_hello(const std::string& line) {
+  const bool plain = line == kHello;
+  const bool with_token = line.rfind(std::string(kHello) + " ", 0) == 0;
   if (!plain && !with_token) throw Unwanted("no hello of this version");
-  if (with_token && !same(line.substr(greeting.size() + 1), settings_.token)) {
+  if (with_token && !same(line.substr(sizeof(kHello)), settings_.token)) {
     throw Unwanted("wrong token: take the one that the server has printed");
   }
   begun_ = true;
   hello_ = true;
   may_move_ = with_token;
   answer(bytes_of(may_move_ ? "trammel 1 motion\n" : "trammel 1 reading\n"), engine_.cycles());
-}
-
-void CardServer::Client::take_bytes() {
-  while (!came_.empty() && take_byte(came_.front())) came_.pop_front();
-}
-
-// A wait stands between frames, begins with a letter that no frame has there, and takes no time on the line. False: it
-// is not due yet.
-bool CardServer::Client::take_byte(std::uint8_t byte) {
-  const bool of_wait = hello_ && (!text_.empty() || (between_frames_ && byte == kWait[0]));
-  if (!of_wait) return deliver(byte);
-  if (byte == frames::kEnd) {
-    begin_wait();
-    return true;
-  }
-  text_ += static_cast<char>(byte);
-  if (text_.size() > kLongestWait) throw Unwanted("a wait that is none");
-  return true;
 }
 
 bool CardServer::Client::deliver(std::uint8_t byte) {
@@ -123,6 +123,7 @@ bool CardServer::Client::deliver(std::uint8_t byte) {
   if (++since_good_ > kMostRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMostRubbish));
   if (reply.empty()) return true;
   since_good_ = 0;
+  begun_ = true;
   ++requests_;
   line_out_ = std::max(line_out_, std::max(line_in_, static_cast<double>(engine_.cycles()))) +
               clocks_of_byte_ * static_cast<double>(reply.size());
@@ -130,15 +131,14 @@ bool CardServer::Client::deliver(std::uint8_t byte) {
   return true;
 }
 
-void CardServer::Client::begin_wait() {
-  std::int64_t time = 0;
-  const char* first = text_.data() + sizeof(kWait) - 1;
-  const char* last = text_.data() + text_.size();
-  if (text_.rfind(kWait, 0) != 0) throw Unwanted("a wait that is none");
-  const auto [end, error] = std::from_chars(first, last, time);
+void CardServer::Client::take_wait(const std::string& text) {
   constexpr std::int64_t kMost = 1'000'000'000;  // ns
-  if (error != std::errc{} || end != last || time < 0 || time > kMost) throw Unwanted("a wait that is none");
-  text_.clear();
+  const std::string number = text.rfind(kWait, 0) == 0 ? text.substr(sizeof(kWait) - 1) : "";
+  std::int64_t time = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), time);
+  if (number.empty() || error != std::errc{} || end != number.data() + number.size() || time < 0 || time > kMost) {
+    throw Unwanted("a wait that is none");
+  }
   frames::Bytes waited = bytes_of("waited");
   waited.push_back(frames::kEnd);
   answer(std::move(waited),
@@ -160,7 +160,7 @@ std::optional<std::uint64_t> CardServer::Client::clocks_to_next() const {
     next = std::min(next.value_or(clocks), clocks);
   };
   if (!answers_.empty()) look(answers_.front().cycle);
-  if (begun_ && !came_.empty()) look(static_cast<std::uint64_t>(std::ceil(line_in_)));
+  if (!came_.empty()) look(static_cast<std::uint64_t>(std::ceil(line_in_)));
   return next;
 }
 

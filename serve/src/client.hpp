@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -24,8 +25,9 @@ class Unwanted : public std::runtime_error {
 
 class CardServer::Client {
  public:
+  // `left`: called when one who could move the card has gone, and another one has the stream.
   Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine, frames::Endpoint& endpoint,
-         const Settings& settings);
+         const Settings& settings, std::function<void()> left);
 
   // Reads what has come, waiting for at most `longest`; makes what is due at the card's time; sends what is due.
   // Throws driver::LinkError when the client has gone, Unwanted when it cannot stay.
@@ -49,12 +51,11 @@ class CardServer::Client {
 
   void read(std::chrono::nanoseconds longest);
   void check_silence() const;
-  void begin();
-  void read_hello();
-  void take_bytes();
   bool take_byte(std::uint8_t byte);
+  void begin_anew();
+  void take_hello(const std::string& line);
+  void take_wait(const std::string& text);
   bool deliver(std::uint8_t byte);
-  void begin_wait();
   void send_due();
   void answer(frames::Bytes bytes, std::uint64_t cycle) { answers_.push_back({std::move(bytes), cycle}); }
 
@@ -62,17 +63,19 @@ class CardServer::Client {
   sim::Engine& engine_;
   frames::Endpoint& endpoint_;
   const Settings& settings_;
+  std::function<void()> left_;
   double clocks_of_byte_;  // on the line, in card time
   std::chrono::steady_clock::time_point heard_;
   std::deque<std::uint8_t> came_;  // not yet at the card
   std::deque<Answer> answers_;
   double line_in_ = 0;  // clock from which on the line is free, to the card and back
   double line_out_ = 0;
-  std::string text_;              // of a wait, as far as it has come
+  std::string text_;              // of a hello or a wait, as far as it has come
   bool between_frames_ = true;    // the last byte was an end
   std::uint64_t since_good_ = 0;  // bytes
   std::uint64_t requests_ = 0;
-  bool begun_ = false;  // said hello, or began with a frame
+  bool spoken_ = false;  // began as a client may
+  bool begun_ = false;   // said hello, or sent a frame that was one
   bool hello_ = false;
   bool may_move_ = false;
 };

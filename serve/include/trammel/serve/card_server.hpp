@@ -61,6 +61,7 @@ class CardServer {
   frames::Endpoint::Answer make(bool write, std::uint32_t address, std::uint32_t data);
   void serve_client(std::chrono::nanoseconds longest);
   void lose_client(const std::string& why);
+  void hold(const std::string& why);
   void refuse(std::unique_ptr<transport::ByteStream> stream, const std::string& why);
   void drain_leaving();
   void pass_time();
