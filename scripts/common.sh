@@ -21,6 +21,8 @@ debian_packages=(
 )
 # Checks of the sources, other RTL readers, synthesis.
 debian_packages_check=(clang-format universal-ctags iverilog yosys)
+# The documentation as a site.
+debian_packages_site=(doxygen)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
