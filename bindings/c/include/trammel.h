@@ -100,7 +100,9 @@ typedef struct trammel_bus {
   bool reports_refusals;
 } trammel_bus;
 
-// Opens the card that a URL names: "sim:" is a simulated one of 4 axes and 1 MHz. Reads who it is; writes nothing.
+// Opens the card that a URL names (docs/reference/card-url.md of the project): "sim:?axes=4&clock=1000000" is a simulated
+// one, others are "tcp://host:port?token=...", "serial:/dev/ttyUSB0", "spi:/dev/spidev0.0", "mmap:/dev/uio0". Reads who
+// the card is; writes nothing but what begins the connection. TRAMMEL_LINK when nothing answers.
 // On success *card is to be closed; else it is null.
 TRAMMEL_API trammel_result trammel_open(const char* url, trammel_card** card);
 TRAMMEL_API trammel_result trammel_open_simulated(const trammel_simulation* simulation, trammel_card** card);

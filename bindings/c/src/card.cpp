@@ -3,6 +3,8 @@
 
 #include "handle.hpp"
 #include "trammel/driver/one_shot.hpp"
+#include "trammel/transport/card_url.hpp"
+#include "trammel/transport/connection.hpp"
 
 namespace trammel::c {
 
@@ -31,8 +33,10 @@ std::unique_ptr<trammel_card> open_simulated(const trammel_simulation& simulatio
 }
 
 std::unique_ptr<trammel_card> open_url(const std::string& url) {
-  if (url == "sim:") return open_simulated({sim::EngineOptions().axes, sim::EngineOptions().clock_hz});
-  throw driver::ArgumentError("no card is named " + url + ": sim: is the simulated one");
+  const transport::CardUrl place = transport::parse_card_url(url);
+  if (place.kind == transport::CardUrl::Kind::kSim) return open_simulated({place.axes, place.clock_hz});
+  const auto connection = std::make_shared<transport::Connection>(place);
+  return std::make_unique<trammel_card>(std::shared_ptr<driver::Bus>(connection, &connection->bus()), nullptr);
 }
 
 driver::AxisSettings settings_of(const trammel_axis_settings& settings) {

@@ -35,14 +35,14 @@ class StepForwarder final : public trammel::driver::StepSink {
 };
 
 struct trammel_card {
-  trammel_card(std::unique_ptr<trammel::driver::Bus> way, trammel::sim::Engine* simulated)
+  trammel_card(std::shared_ptr<trammel::driver::Bus> way, trammel::sim::Engine* simulated)
       : steps(std::make_unique<StepForwarder>()),
         bus(std::move(way)),
         engine(simulated),
         card(trammel::driver::Card::open(*bus)) {}
 
   std::unique_ptr<StepForwarder> steps;  // outlives the bus that calls it
-  std::unique_ptr<trammel::driver::Bus> bus;
+  std::shared_ptr<trammel::driver::Bus> bus;
   trammel::sim::Engine* engine;  // the bus, where it is a simulated card's
   trammel::driver::Card card;
   std::optional<trammel::driver::Stream> stream;
