@@ -210,9 +210,8 @@ static void raw_accesses(void) {
   trammel_close(card);
 }
 
-// NULL where there must be something, for every function and every pointer.
-static void null_pointers(void) {
-  trammel_card* card = simulated_card();
+// No card, for every function that takes one.
+static void null_cards(void) {
   trammel_access access = {0, 0, false};
   trammel_command command = command_of(TRAMMEL_END);
   trammel_input_condition condition = {0, true, 0};
@@ -264,6 +263,16 @@ static void null_pointers(void) {
   trammel_request_ratio(NULL, TRAMMEL_CLASS_FEED, 0);
   trammel_request_abort(NULL);
   trammel_request_stop(NULL);
+}
+
+// NULL where there must be something else.
+static void null_pointers(void) {
+  trammel_card* card = simulated_card();
+  trammel_access access = {0, 0, false};
+  trammel_command command = command_of(TRAMMEL_END);
+  trammel_input_condition condition = {0, true, 0};
+  trammel_probe_result probe;
+  size_t made;
   FAILS(trammel_transfer(card, NULL, 1, &made), TRAMMEL_ARGUMENT, "accesses is null");
   FAILS(trammel_transfer(card, &access, 1, NULL), TRAMMEL_ARGUMENT, "made is null");
   FAILS(trammel_identify(card, NULL), TRAMMEL_ARGUMENT, "identification is null");
@@ -338,6 +347,7 @@ void test_errors(void) {
   one_shot_arguments();
   command_arguments();
   raw_accesses();
+  null_cards();
   null_pointers();
   errors_are_a_threads_own();
   long_texts_are_cut();
