@@ -16,11 +16,13 @@ debian_packages=(
   g++ cmake ninja-build git python3-venv python3-dev
   verilator zlib1g-dev
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
-  libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev
+  libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev libsystemc-dev
   clang-14 libclang-rt-14-dev  # libFuzzer
 )
 # Checks of the sources, other RTL readers, synthesis.
 debian_packages_check=(clang-format universal-ctags iverilog yosys)
+# The documentation as a site.
+debian_packages_site=(doxygen)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
