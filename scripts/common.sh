@@ -13,16 +13,18 @@ die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 # Everything that building and testing needs; scripts/setup installs what is missing.
 debian_packages=(
-  g++ cmake ninja-build git python3-venv
+  g++ cmake ninja-build git python3-venv python3-dev
   verilator zlib1g-dev
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
-  libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev
+  libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev libsystemc-dev
   clang-14 libclang-rt-14-dev  # libFuzzer
 )
 # The browser that the report's page is tested in.
 debian_packages_page=(chromium)
 # Checks of the sources, other RTL readers, synthesis.
 debian_packages_check=(clang-format universal-ctags iverilog yosys)
+# The documentation as a site.
+debian_packages_site=(doxygen)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
