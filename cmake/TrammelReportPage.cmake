@@ -5,13 +5,13 @@ file(GLOB trammel_venv_node "${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packa
 find_program(TRAMMEL_NODE node HINTS ${trammel_venv_node} DOC "Node 18 or newer")
 
 # TRAMMEL_PAGE: whether the page can be made.
-set(TRAMMEL_PAGE OFF)
+set(TRAMMEL_PAGE OFF CACHE INTERNAL "")
 if(TRAMMEL_NODE AND EXISTS "${PROJECT_SOURCE_DIR}/web/node_modules/.package-lock.json")
   execute_process(COMMAND "${TRAMMEL_NODE}" --version OUTPUT_VARIABLE trammel_node_version OUTPUT_STRIP_TRAILING_WHITESPACE
                   ERROR_QUIET)
   string(REGEX REPLACE "^v" "" trammel_node_version "${trammel_node_version}")
   if(trammel_node_version VERSION_GREATER_EQUAL 18)
-    set(TRAMMEL_PAGE ON)
+    set(TRAMMEL_PAGE ON CACHE INTERNAL "")
   endif()
 endif()
 if(NOT TRAMMEL_PAGE)
