@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "errors.hpp"
+#include "terminal.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/run/take_over.hpp"
 
@@ -74,7 +75,7 @@ void with_card(const transport::CardUrl& url, Purpose purpose,
 void take_over(driver::Card& card) {
   try {
     if (run::take_over(card)) {
-      fmt::print(stderr, "trammel: note: the card held with a motion of before under way; what was left is dropped\n");
+      tell("note", "the card held with a motion of before under way; what was left is dropped");
     }
   } catch (const driver::StateError& error) {
     throw UsageError(error.what());

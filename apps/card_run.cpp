@@ -9,6 +9,7 @@
 #include "errors.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
+#include "terminal.hpp"
 #include "trammel/card_map.hpp"
 
 namespace trammel::app {
@@ -23,7 +24,7 @@ class Watch final : public run::Observer {
   void progress(const run::Progress& /*progress*/) override {
     if (connection_.reconnections() != reconnections_) {
       reconnections_ = connection_.reconnections();
-      fmt::print(stderr, "trammel: note: the connection was lost and is there again; the motion goes on\n");
+      tell("note", "the connection was lost and is there again; the motion goes on");
       card_.request_hold(false);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();

@@ -19,15 +19,17 @@
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
 #include "serve_command.hpp"
+#include "shell_command.hpp"
 #include "steps_command.hpp"
 #include "temporary_files.hpp"
+#include "terminal.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace {
 
 int report(const std::string& message, int status) {
-  fmt::print(stderr, "trammel: error: {}\n", message);
+  trammel::app::tell("error", message);
   return status;
 }
 
@@ -72,6 +74,7 @@ int main(int argc, char** argv) {
   trammel::app::add_methods_command(app);
   trammel::app::add_reproduce_command(app);
   trammel::app::add_compare_command(app);
+  trammel::app::add_shell_commands(app);
   try {
     run(app, argc, argv);
   } catch (const trammel::app::UsageError& error) {

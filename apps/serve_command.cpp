@@ -11,6 +11,7 @@
 
 #include "engine_options.hpp"
 #include "errors.hpp"
+#include "terminal.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/machine/machine.hpp"
@@ -41,7 +42,7 @@ struct Options {
 
 volatile sig_atomic_t g_ended = 0;
 
-void say(const std::string& text) { fmt::print(stderr, "trammel: {}\n", text); }
+void say(const std::string& text) { tell("note", text); }
 
 // The first signal ends the server in order; the next one as it would without this.
 void end_at_signals() {
