@@ -9,7 +9,7 @@ include(CMakePackageConfigHelpers)
 
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
-install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_machine trammel_gcode
+install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_transport trammel_machine trammel_gcode
   trammel_planner trammel_chart trammel_run trammel_sim EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
 install(DIRECTORY
@@ -18,6 +18,7 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/cpp-model/card/include/"
   "${PROJECT_SOURCE_DIR}/cpp-model/methods/include/"
   "${PROJECT_SOURCE_DIR}/driver/include/"
+  "${PROJECT_SOURCE_DIR}/transport/include/"
   "${PROJECT_SOURCE_DIR}/host/machine/include/"
   "${PROJECT_SOURCE_DIR}/host/gcode/include/"
   "${PROJECT_SOURCE_DIR}/host/planner/include/"
