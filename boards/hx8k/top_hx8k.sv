@@ -37,7 +37,7 @@ module top_hx8k #(
       .Axes(4),
       .GeometryDepth(2048),
       .FeedDepth(2560),
-      .ArcGenerator(1),
+      .ArcGenerator(0),
       .PathCommands(1),
       .Accumulator(0),
       .DirectMode(0),

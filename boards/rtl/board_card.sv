@@ -20,11 +20,11 @@ module board_card #(
     parameter int          BuildDirty        = 0,
     parameter logic [31:0] BoardId           = 0,
     parameter logic [31:0] ClockHz           = 0,
-    parameter int          ResetBits         = 11,  // 2^ResetBits clocks from lock to the reset's end
+    parameter int          ResetBits         = 11,    // 2^ResetBits clocks from lock to the reset's end
     // levels while nothing happens, a bit a pin
-    parameter logic [ 7:0] StepIdle          = 0,
-    parameter logic [ 7:0] DirIdle           = 0,
-    parameter logic [15:0] OutputIdle        = 0
+    parameter int          StepIdle          = 0,
+    parameter int          DirIdle           = 0,
+    parameter int          OutputIdle        = 0
 ) (
     input  wire logic               clk_i,
     input  wire logic               locked_i,
@@ -76,22 +76,22 @@ module board_card #(
       .output_idle_i(OutputIdle[Outputs-1:0]),
       .awvalid_i(1'b0),
       .awready_o(),
-      .awaddr_i('0),
+      .awaddr_i(12'd0),
       .wvalid_i(1'b0),
       .wready_o(),
-      .wdata_i('0),
-      .wstrb_i('0),
+      .wdata_i(32'd0),
+      .wstrb_i(4'd0),
       .bvalid_o(),
       .bready_i(1'b0),
       .bresp_o(),
       .arvalid_i(1'b0),
       .arready_o(),
-      .araddr_i('0),
+      .araddr_i(12'd0),
       .rvalid_o(),
       .rready_i(1'b0),
       .rdata_o(),
       .rresp_o(),
-      .wishbone_i('0),
+      .wishbone_i(51'd0),
       .wishbone_o(),
       .rx_i,
       .tx_o,

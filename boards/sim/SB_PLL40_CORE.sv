@@ -1,5 +1,4 @@
-// Stands for the iCE40's PLL in simulation: the reference is the card's clock already, and locked after eight of its clocks until a test
-// says otherwise.
+// Stands for the iCE40's PLL in simulation: the reference is the card's clock already, and locked after eight of its clocks.
 `default_nettype none
 
 module SB_PLL40_CORE #(
@@ -15,12 +14,11 @@ module SB_PLL40_CORE #(
     output logic      PLLOUTGLOBAL,
     output logic      LOCK
 );
-  logic lost  /* verilator public_flat_rw */ = 1'b0;
   logic [3:0] count_q = '0;
   always_ff @(posedge REFERENCECLK) if (!count_q[3]) count_q <= count_q + 4'd1;
 
   assign PLLOUTGLOBAL = REFERENCECLK;
-  assign LOCK = count_q[3] && !lost;
+  assign LOCK = count_q[3];
 
   logic unused;
   assign unused = &{1'b0, RESETB, BYPASS, FEEDBACK_PATH, DIVR, DIVF, DIVQ, FILTER_RANGE};

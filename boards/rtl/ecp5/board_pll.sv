@@ -13,15 +13,15 @@ module board_pll #(
 );
   logic feedback;
   EHXPLLL #(
-      .CLKI_DIV     (1),
-      .CLKFB_DIV    (1),
-      .FEEDBK_PATH  ("CLKOP"),
-      .CLKOP_ENABLE ("ENABLED"),
-      .CLKOP_DIV    (FeedbackDiv),
-      .CLKOP_CPHASE (FeedbackDiv - 1),
-      .CLKOS_ENABLE ("ENABLED"),
-      .CLKOS_DIV    (ClockDiv),
-      .CLKOS_CPHASE (ClockDiv - 1)
+      .CLKI_DIV    (1),
+      .CLKFB_DIV   (1),
+      .FEEDBK_PATH ("CLKOP"),
+      .CLKOP_ENABLE("ENABLED"),
+      .CLKOP_DIV   (FeedbackDiv),
+      .CLKOP_CPHASE(FeedbackDiv - 1),
+      .CLKOS_ENABLE("ENABLED"),
+      .CLKOS_DIV   (ClockDiv),
+      .CLKOS_CPHASE(ClockDiv - 1)
   ) pll (
       .CLKI        (crystal_i),
       .CLKFB       (feedback),
