@@ -11,6 +11,7 @@
 #include "engine_options.hpp"
 #include "engine_speed.hpp"
 #include "errors.hpp"
+#include "machine_choice.hpp"
 #include "motion_options.hpp"
 #include "outputs.hpp"
 #include "profile_report.hpp"
@@ -18,7 +19,9 @@
 #include "program_file.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
-#include "trammel/machine/machine.hpp"
+#include "terminal.hpp"
+#include "trammel/report/page.hpp"
+#include "trammel/report/report_writer.hpp"
 #include "waveform.hpp"
 
 namespace trammel::app {
@@ -29,8 +32,7 @@ constexpr std::uint32_t kSimulatedClock = 1'000'000;
 
 struct Options {
   std::string program;
-  std::optional<std::string> machine;
-  std::vector<std::string> overrides;
+  MachineChoice machine;
   EngineChoice engine;
   MotionChoice motion;
   std::optional<std::string> json;
@@ -38,41 +40,51 @@ struct Options {
   std::optional<std::string> path_steps;
   std::optional<std::string> outputs;
   std::optional<std::string> plot;
+  std::optional<std::string> report;
+  std::optional<std::string> report_window;
   bool progress = false;
   bool check = false;
   bool stream = false;
 };
 
-machine::Machine machine_of(const Options& options) {
-  machine::Machine machine = options.machine ? machine::load_machine(*options.machine) : machine::default_machine();
-  for (const std::string& text : options.overrides) machine::apply_override(machine, text);
-  return machine;
-}
-
-void tell(const char* what, const std::string& text) { fmt::print(stderr, "trammel: {}: {}\n", what, text); }
-
 void refuse_contradictions(const Options& options) {
   const auto refuse = [](const char* option, bool given, const char* why) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
-  if (options.stream) refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
+  if (options.stream) {
+    refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
+    refuse("--report", options.report.has_value(), "needs the whole program first, not --stream");
+  }
+  refuse("--report-window", options.report_window && !options.report, "there is no --report");
+  refuse("--report", options.report && !report::page_is_built(), report::kHowToBuildPage);
   if (!options.check) return;
   constexpr const char* kWhy = "nothing runs with --check";
   refuse("--steps", options.steps.has_value(), kWhy);
   refuse("--path-steps", options.path_steps.has_value(), kWhy);
   refuse("--outputs", options.outputs.has_value(), kWhy);
   refuse("--plot", options.plot.has_value(), kWhy);
+  refuse("--report", options.report.has_value(), kWhy);
   refuse("--trace", options.engine.trace.has_value(), kWhy);
   refuse("--stream", options.stream, kWhy);
+}
+
+void check(const run::ProgramLines& lines, const MachineChoice& choice, const machine::Machine& machine,
+           const planner::CardLimits& card, const run::RunSettings& settings, Outputs& outputs, Output* json) {
+  const CheckResult result = check_program(lines, machine, card, settings);
+  for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached)) tell("warning", text);
+  outputs.open();
+  if (json != nullptr) json->write(json_text(result));
+  outputs.commit(summary(result) + choice.line());
 }
 
 void execute(const Options& options) {
   refuse_contradictions(options);
   Outputs outputs;
+  RunOptions run;
   Output* const json = outputs.add("--json", options.json);
   Output* const plot = outputs.add("--plot", options.plot);
+  run.report = outputs.add("--report", options.report);
   Output* const trace = outputs.add("--trace", options.engine.trace, true);
-  RunOptions run;
   run.steps = outputs.add("--steps", options.steps);
   run.path_steps = outputs.add("--path-steps", options.path_steps);
   run.outputs = outputs.add("--outputs", options.outputs);
@@ -81,28 +93,24 @@ void execute(const Options& options) {
   run.stream = options.stream;
   run.settings = options.motion.settings();
   outputs.keep("the program", options.program);
-  if (options.machine) outputs.keep("the machine file", *options.machine);
+  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
   outputs.check();
 
-  const machine::Machine machine = machine_of(options);
+  const machine::Machine machine = options.machine.load();
   for (const std::string& text : jerk_warnings(machine)) tell("warning", text);
   run.most_percent = 100 * machine.motion.max_override;
   run.operation = options.motion.operation(run.most_percent);
   const auto axes = static_cast<unsigned>(machine.motors());
   sim::SimulationOptions engine =
       options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);
+  if (options.report_window) {
+    run.report_window = window_of("--report-window", *options.report_window, engine.clock_hz);
+  }
   const ProgramFile file(options.program, options.stream);
   const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
-  if (options.check) {
-    const CheckResult result = check_program(lines, machine, limits_of(engine), run.settings);
-    for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached))
-      tell("warning", text);
-    outputs.open();
-    if (json != nullptr) json->write(json_text(result));
-    return outputs.commit(summary(result));
-  }
+  if (options.check) return check(lines, options.machine, machine, limits_of(engine), run.settings, outputs, json);
   const bool no_rapids = run.operation.rapid_percent == 0;
   if (no_rapids && options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   run.planned = [&](const run::Plan& plan) {
@@ -116,14 +124,16 @@ void execute(const Options& options) {
     if (engine.axes != axes)
       tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
   };
-  const RunResult result = run_program(lines, machine, engine, run);
+  std::unique_ptr<report::ReportWriter> report;
+  const RunResult result = run_program(lines, machine, engine, run, &report);
   if (options.stream) {
     for (const std::string& text : feed_warnings(result.program, result.feeds_not_reached)) tell("warning", text);
   }
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
   if (json != nullptr) json->write(json_text(result));
   if (plot != nullptr) plot->write(run::svg(result.plot));
-  outputs.commit(summary(result));
+  if (report) report->finish(report_json(result));
+  outputs.commit(summary(result) + options.machine.line());
 }
 
 }  // namespace
@@ -132,11 +142,7 @@ void add_run_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "run a G-code program on the simulated card");
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
-  command->add_option("--machine", options->machine, "machine file (default: X Y Z E at 80 steps/mm)")
-      ->type_name("TOML");
-  command->add_option("--set", options->overrides, "override an entry of the machine file (repeatable)")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  options->machine.add_to(*command);
   options->engine.add_to(*command);
   options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
@@ -147,6 +153,12 @@ void add_run_command(CLI::App& app) {
   command->add_option("--outputs", options->outputs, "every change of an output: cycle,output,level")
       ->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
+  command->add_option("--report", options->report, "page of the run: path, speeds, pins, program; opens in a browser")
+      ->type_name("FILE");
+  command
+      ->add_option("--report-window", options->report_window,
+                   "only this stretch's pulses in the page, seconds of card time")
+      ->type_name("FROM:TO");
   command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");
   command->add_flag("--check", options->check, "read, plan and time the program; nothing runs");
   command->add_flag("--stream", options->stream,
