@@ -2,6 +2,7 @@
 #   trammel_development  libraries, headers, CMake package; a consumer needs no Python, RTL or Verilator
 #   trammel_command      the trammel command
 #   trammel_rtl          the card's sources, with their file list, FuseSoC core and lint waivers
+#   trammel_python       Python's package, where it is built (bindings/python)
 #   trammel_machine      the default machine file, to be changed
 #   trammel_licence
 include(GNUInstallDirs)
@@ -9,15 +10,19 @@ include(CMakePackageConfigHelpers)
 
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
-install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_machine trammel_gcode
-  trammel_planner trammel_chart trammel_run trammel_sim EXPORT trammel-targets
-  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
+install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_transport trammel_machine trammel_gcode
+  trammel_planner trammel_chart trammel_run trammel_sim trammel_c EXPORT trammel-targets
+  ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development
+  LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
+install(FILES "${PROJECT_SOURCE_DIR}/bindings/c/include/trammel.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+  COMPONENT trammel_development)
 install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/rtl/regs/generated/include/"
   "${PROJECT_SOURCE_DIR}/frames/include/"
   "${PROJECT_SOURCE_DIR}/cpp-model/card/include/"
   "${PROJECT_SOURCE_DIR}/cpp-model/methods/include/"
   "${PROJECT_SOURCE_DIR}/driver/include/"
+  "${PROJECT_SOURCE_DIR}/transport/include/"
   "${PROJECT_SOURCE_DIR}/host/machine/include/"
   "${PROJECT_SOURCE_DIR}/host/gcode/include/"
   "${PROJECT_SOURCE_DIR}/host/planner/include/"

@@ -20,7 +20,7 @@ namespace {
 using std::chrono::nanoseconds;
 using namespace std::chrono_literals;
 
-constexpr unsigned kAxes = 2;
+constexpr unsigned kAxes = 4;
 constexpr unsigned kBreakBits = 10;
 constexpr std::uint64_t kComparedSignals = 5;
 constexpr nanoseconds kClock = 1us;  // the card runs at 1 MHz
@@ -74,10 +74,12 @@ class CardUnderTest {
   static model::CardConfig core_config() {
     model::CardConfig config;
     config.axes = kAxes;
-    config.ports = 2;
+    config.ports = 4;
+    config.inputs = 8;
+    config.engines = model::RegisterFile::kMostEngines;
     return config;
   }
-  static model::HostPorts::Config host_config() { return {false, false, false, true, true, kBreakBits}; }
+  static model::HostPorts::Config host_config() { return {true, true, true, true, true, kBreakBits}; }
 
   void drive() {
     dut_->rx_i = in_.rx;

@@ -16,6 +16,8 @@ namespace {
 constexpr unsigned kAxes = 4;
 constexpr std::uint64_t kComparedSignals = 32;
 
+using Stretch = Programs::Stretch;
+
 class Bench {
  public:
   explicit Bench(std::uint64_t seed)
@@ -34,7 +36,8 @@ class Bench {
     unsigned busy = 8;       // engine not ready, not done, its state not free
     unsigned write = 1;      // a halfword into a queue
     unsigned cut = 2000;
-    unsigned input = 100;  // another level at one input
+    unsigned input = 100;   // another level at one input
+    unsigned at_rest = 10;  // the ratio is 0
   };
   Pace pace;
 
@@ -133,7 +136,7 @@ class Bench {
     stale_before_ = model_.outputs().stale;
   }
 
-  void add(const Programs::Stretch& stretch) {
+  void add(const Stretch& stretch) {
     check_.event("stretch of commands", stretch.geometry.size());
     geometry_.add(stretch.geometry);
     feed_.add(stretch.feed);
@@ -163,6 +166,16 @@ class Bench {
     clock();
     in_.cut = false;
     run(20);
+  }
+
+  // A program with a PROBE for a high level of input 0, which rises after so many clocks.
+  void probed(const Stretch& program, unsigned clocks) {
+    pace = {1, 1 + dice_.below(2), 3, 1 + dice_.below(2), 1'000'000, 1'000'000, 1 + dice_.below(4)};
+    levels_ = 0;
+    add(program);
+    for (unsigned i = 0; i < clocks; ++i) clock();
+    levels_ = 1;
+    for (unsigned i = 0; i < 400; ++i) clock();
   }
 
   // STREAMING, and halfwords on their way in, at any clock: the mode changes at rest alone.
@@ -266,7 +279,7 @@ class Bench {
   // What the probe does with inputs that change now and then.
   void probe() {
     if (dice_.chance(pace.input)) levels_ = static_cast<std::uint16_t>(levels_ ^ 1U << dice_.below(16));
-    at_rest_ = dice_.chance(10);
+    at_rest_ = dice_.chance(pace.at_rest);
     clear_ = dice_.chance(40);
     const model::Probe::Inputs in = probe_inputs();
     in_.halt = probe_.halt();
@@ -480,9 +493,49 @@ void cuts_at_every_clock() {
   EXPECT_GT(bench.swaps(), 2000U);
 }
 
+// Paths and all barriers between PROBE and PROBE_END; or nothing, so that the END before them is the last command.
+Stretch probed_program(bool empty) {
+  const auto barrier = [](card_map::Opcode opcode, std::uint64_t count) { return stored_command(opcode, 0, count); };
+  const auto line = [](std::uint64_t ticks) {
+    return stored_command(card_map::Opcode::Line, 1, ticks, {}, {kOnePulse});
+  };
+  const auto piece = [](std::uint64_t ticks) {
+    return stored_command(card_map::Opcode::Feed, 1, ticks, {{"rate", int128{1} << 63}, {"floor", 1}});
+  };
+  const Halfwords end = barrier(card_map::Opcode::End, 0);
+  const Halfwords dwell = barrier(card_map::Opcode::Dwell, 3);
+  const Halfwords wait = stored_command(card_map::Opcode::WaitInput, 0, 5, {{"condition", 0x11}});
+  const Halfwords probe_end = barrier(card_map::Opcode::ProbeEnd, 0);
+  Stretch program{{end, stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x10}})}, {end}};
+  if (!empty) {
+    program.geometry.insert(program.geometry.end(), {dwell, line(4), Programs::mark(), wait, end, line(1), dwell});
+    program.feed.insert(program.feed.end(), {dwell, piece(4), wait, end, piece(1), dwell});
+  }
+  program.geometry.insert(program.geometry.end(), {probe_end, line(3), end});
+  program.feed.insert(program.feed.end(), {probe_end, piece(3), end});
+  return program;
+}
+
+// A probe's edge at each clock of a program, whose commands stand ahead of it in either queue by chance.
+void edges_at_every_clock() {
+  Bench bench(1);
+  const unsigned clocks[] = {400, 120};
+  for (unsigned empty = 0; empty < 2; ++empty) {
+    for (unsigned run = 0; run < 5 * clocks[empty]; ++run) {
+      bench.restart(1 + run);
+      bench.probed(probed_program(empty != 0), run / 5);
+    }
+  }
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+  EXPECT_GT(bench.halts(), 1000U);
+  EXPECT_GT(bench.drops(), 2000U);
+}
+
+// What finds most comes first.
+TEST(Sequencers, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }
+TEST(Sequencers, EdgesAtEveryClock) { EXPECT_EQ(judge(edges_at_every_clock), ""); }
 TEST(Sequencers, LatePeriods) { EXPECT_EQ(judge(late_periods), ""); }
 TEST(Sequencers, CutsAtEveryClock) { EXPECT_EQ(judge(cuts_at_every_clock), ""); }
-TEST(Sequencers, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }
 TEST(Sequencers, Boundaries) { EXPECT_EQ(judge(boundaries), ""); }
 
 }  // namespace

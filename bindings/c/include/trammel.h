@@ -1,0 +1,430 @@
+// Trammel's driver for C (C99), and for every language that can call C: a card opened, told to move, watched, stopped.
+//
+// Units: positions and ways in pulses; times in nanoseconds of card time (names end in _ns) or in clocks of the card;
+// feed in ticks, as the card's commands have it (docs/reference/commands.md of the project).
+//
+// Errors: a function that can fail gives back a trammel_result, TRAMMEL_OK when it did all that it says. What it writes
+// through a pointer counts only then. Nothing is thrown, nothing ends the program. Every pointer is looked at:
+// a null where none is allowed is a TRAMMEL_ARGUMENT. trammel_last_error() says what went wrong, in words too.
+//
+// Thread-safety: one thread at a time uses a card, in its callbacks as well; several cards may be used by several
+// threads at once. The trammel_request_... functions may be called from any thread, and from a signal handler, while
+// another one is in a call that waits; not while or after the card is closed.
+#ifndef TRAMMEL_H
+#define TRAMMEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define TRAMMEL_API __attribute__((visibility("default")))
+#else
+#define TRAMMEL_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TRAMMEL_MAX_AXES 8
+#define TRAMMEL_FULL_RATIO 0x10000u  // of the time base: every clock is enabled
+
+// ---- Results ----
+
+typedef enum trammel_result {
+  TRAMMEL_OK = 0,
+  TRAMMEL_ARGUMENT = 1,        // a value out of range, or a null pointer; nothing was done
+  TRAMMEL_STATE = 2,           // not in the state that the card or its stream is in; the text says what to do first
+  TRAMMEL_STOPPED = 3,         // a call that waited ended by trammel_request_stop(): at rest on the path, and empty
+  TRAMMEL_TIMEOUT = 4,         // not there within the time allowed; nothing was aborted
+  TRAMMEL_REFUSED = 5,         // the card refused an access or a command
+  TRAMMEL_FAULT = 6,           // the card has stopped with a latched fault
+  TRAMMEL_LINK = 7,            // the link failed: what was under way may have been made or not
+  TRAMMEL_IDENTIFICATION = 8,  // what answers is no card that this driver knows
+  TRAMMEL_CANCELLED = 9,       // a progress callback gave back false
+  TRAMMEL_MEMORY = 10,         // out of memory
+  TRAMMEL_INTERNAL = 11        // a defect of this library
+} trammel_result;
+
+// The last failure in this thread.
+typedef struct trammel_error {
+  trammel_result result;
+  uint8_t reason;           // TRAMMEL_REFUSED: the card's reason, 0 where it did not say
+  uint8_t command_number;   // TRAMMEL_REFUSED: of a stream command, mod 256
+  uint32_t address;         // TRAMMEL_REFUSED: byte address of the access
+  uint32_t faults;          // TRAMMEL_FAULT: the card's FAULT register
+  uint32_t geometry_begun;  // TRAMMEL_STOPPED: paths and barriers begun since the stream was opened
+  uint64_t waited;          // TRAMMEL_TIMEOUT: clocks
+  char text[1024];          // one line, UTF-8, cut where it is longer
+} trammel_error;
+
+// Never null; result is TRAMMEL_OK while nothing has failed in this thread. Stands until the thread's next failure.
+TRAMMEL_API const trammel_error* trammel_last_error(void);
+// "TRAMMEL_ARGUMENT" and so on; "unknown" for another number.
+TRAMMEL_API const char* trammel_result_name(trammel_result result);
+// "0.1.0".
+TRAMMEL_API const char* trammel_version(void);
+
+// ---- Cards ----
+
+// A connection to a card, with the stream of commands that a card has.
+typedef struct trammel_card trammel_card;
+
+// The golden model of the card, with all that can be built into one.
+typedef struct trammel_simulation {
+  unsigned axes;      // 1 .. 8
+  uint32_t clock_hz;  // what the card says of itself
+} trammel_simulation;
+
+// One access to a register: a byte address below 0x1000, a multiple of 4.
+typedef struct trammel_access {
+  uint32_t address;
+  uint32_t data;  // to write, or what was read
+  bool write;
+} trammel_access;
+
+#define TRAMMEL_BUS_FAILED SIZE_MAX
+
+// A way to a card of the caller's own. docs/reference/bus.md has the contract.
+typedef struct trammel_bus {
+  void* context;  // handed to each function
+  // Makes accesses in order; gives back how many: fewer than `count` where the card refused the next one, or
+  // TRAMMEL_BUS_FAILED when the link fails.
+  size_t (*transfer)(void* context, trammel_access* accesses, size_t count);
+  // Returns after at least so long. Null: the thread sleeps.
+  void (*sleep)(void* context, int64_t time_ns);
+  // Why the last transfer failed, for the error's text. May be null.
+  const char* (*failure)(void* context);
+  // Whether a refusal shows in transfer. Where it does not, the driver asks the card.
+  bool reports_refusals;
+} trammel_bus;
+
+// Opens the card that a URL names (docs/reference/card-url.md of the project): "sim:?axes=4&clock=1000000" is a
+// simulated one, others are "tcp://host:port?token=...", "serial:/dev/ttyUSB0", "spi:/dev/spidev0.0", "mmap:/dev/uio0".
+// Reads who the card is; writes nothing but what begins the connection. TRAMMEL_LINK when nothing answers. On success
+// *card is to be closed; else it is null.
+TRAMMEL_API trammel_result trammel_open(const char* url, trammel_card** card);
+TRAMMEL_API trammel_result trammel_open_simulated(const trammel_simulation* simulation, trammel_card** card);
+// `bus` is copied; its context must outlive the card.
+TRAMMEL_API trammel_result trammel_open_bus(const trammel_bus* bus, trammel_card** card);
+// Leaves the card as it is: what it has, it makes. Null: nothing.
+TRAMMEL_API void trammel_close(trammel_card* card);
+
+typedef struct trammel_identification {
+  uint16_t map_major;
+  uint16_t map_minor;
+  uint32_t commands_version;
+  unsigned axes;            // 1 .. 8
+  uint32_t clock_hz;        // Hz
+  uint32_t engines;         // bits of ENGINES
+  uint32_t geometry_depth;  // of the queues, halfwords
+  uint32_t feed_depth;
+} trammel_identification;
+
+// Raw accesses through the card's bus, unchecked: `made` is how many, fewer than `count` where the card refused the
+// next one. What is written so, the driver does not know of.
+TRAMMEL_API trammel_result trammel_transfer(trammel_card* card, trammel_access* accesses, size_t count, size_t* made);
+
+// As read when the card was opened.
+TRAMMEL_API trammel_result trammel_identify(const trammel_card* card, trammel_identification* identification);
+
+typedef enum trammel_step_mode {
+  TRAMMEL_STEP_DIRECTION = 0,
+  TRAMMEL_UP_DOWN = 1,
+  TRAMMEL_QUADRATURE = 2
+} trammel_step_mode;
+
+// Times of the motor driver's data sheet: the card keeps at least these, 0 .. 65535 clocks each.
+typedef struct trammel_axis_settings {
+  int64_t step_length_ns;      // the pulse
+  int64_t step_space_ns;       // trailing edge to the next leading edge
+  int64_t direction_setup_ns;  // direction stable before the leading edge
+  int64_t direction_hold_ns;   // and after the trailing edge
+  trammel_step_mode mode;
+  bool invert_first;   // pin STEP, UP or A
+  bool invert_second;  // pin DIR, DOWN or B
+} trammel_axis_settings;
+
+// Only while the axis stands.
+TRAMMEL_API trammel_result trammel_configure_axis(trammel_card* card, unsigned axis,
+                                                  const trammel_axis_settings* settings);
+
+// ---- State ----
+
+// The STATUS register.
+typedef struct trammel_status {
+  bool busy;          // something runs or is queued
+  bool direct;        // a one-shot line runs
+  bool path_active;   // a path is under way
+  bool feed_active;   // a feed piece is under way
+  bool held;          // the time base's ratio is 0
+  bool ended;         // END was reached
+  bool faulted;       // FAULT is not 0
+  bool refused;       // REFUSAL is not 0
+  bool snapshot;      // a snapshot is under way
+  bool incomplete;    // the stream stands inside a command
+  bool stopping;      // on a ramp to a stop
+  bool geometry_low;  // fewer halfwords queued than the queue's watermark
+  bool feed_low;
+  bool probed;        // a probe has tripped
+  bool probe_missed;  // probing paths ended without an edge
+  bool waiting;       // for an input
+} trammel_status;
+
+// State of one clock.
+typedef struct trammel_snapshot {
+  uint64_t time;  // clocks since reset
+  trammel_status status;
+  uint32_t faults;
+  uint32_t rate;            // 2^-32 feed ticks an enabled clock
+  uint32_t ratio;           // 2^-16, of the time base
+  uint32_t geometry_begun;  // commands begun from the geometry queue since the last cut
+  uint32_t feed_begun;
+  int32_t position[TRAMMEL_MAX_AXES];  // pulses, wrapping; 0 for axes that the card lacks
+} trammel_snapshot;
+
+TRAMMEL_API trammel_result trammel_read_status(trammel_card* card, trammel_status* status);
+TRAMMEL_API trammel_result trammel_read_snapshot(trammel_card* card, trammel_snapshot* snapshot);
+// What the first cause of the present or last fault latched; zeros if there was none.
+TRAMMEL_API trammel_result trammel_read_stop_snapshot(trammel_card* card, trammel_snapshot* snapshot);
+// `timeout_ns`: card time in which it was not held, stretched where the ratio is below 1. TRAMMEL_FAULT once it is
+// faulted, TRAMMEL_STATE if it was reset.
+TRAMMEL_API trammel_result trammel_wait_until_idle(trammel_card* card, int64_t timeout_ns);
+
+// FAULT, 0 if there is none.
+TRAMMEL_API trammel_result trammel_read_faults(trammel_card* card, uint32_t* faults);
+// Nothing moves by it; the stream begins anew (trammel_restart_stream()).
+TRAMMEL_API trammel_result trammel_clear_faults(trammel_card* card);
+// The names of the bits, for messages: at most `size` bytes with the final 0.
+TRAMMEL_API trammel_result trammel_describe_faults(uint32_t faults, char* text, size_t size);
+
+// Of a card with path commands, bit n: input n after its polarity, output n.
+TRAMMEL_API trammel_result trammel_read_inputs(trammel_card* card, uint16_t* levels);
+TRAMMEL_API trammel_result trammel_read_outputs(trammel_card* card, uint16_t* levels);
+TRAMMEL_API trammel_result trammel_set_input_polarity(trammel_card* card, uint16_t inverted);
+// Levels that the outputs in `change` take at an abort and at a fault.
+TRAMMEL_API trammel_result trammel_set_output_safe(trammel_card* card, uint16_t levels, uint16_t change);
+// MARKs passed since reset, and what the last one latched. Either pointer may be null.
+TRAMMEL_API trammel_result trammel_read_marks(trammel_card* card, uint32_t* marks, trammel_snapshot* last);
+
+// ---- Hold, override, stop, abort ----
+
+// Which ratio of the time base a piece of feed runs at.
+typedef enum trammel_piece_class {
+  TRAMMEL_CLASS_FEED = 0,
+  TRAMMEL_CLASS_RAPID = 1,
+  TRAMMEL_CLASS_FIXED = 2  // a hold waits for the end of these
+} trammel_piece_class;
+
+// Slews to rest on the path, or goes on. Nothing is lost.
+TRAMMEL_API trammel_result trammel_set_hold(trammel_card* card, bool hold);
+// Share of enabled clocks, 0 .. TRAMMEL_FULL_RATIO. A card without classes has that of feed alone.
+TRAMMEL_API trammel_result trammel_set_ratio(trammel_card* card, trammel_piece_class piece_class, uint32_t ratio);
+// The ratio `percent` / `most_percent`; the latter is the largest override that programs are planned for.
+TRAMMEL_API trammel_result trammel_set_override(trammel_card* card, trammel_piece_class piece_class, double percent,
+                                                double most_percent);
+// Time that the ratio takes from 0 to full; up to 2^30 clocks.
+TRAMMEL_API trammel_result trammel_set_slew_time(trammel_card* card, int64_t full_scale_ns);
+// Drops what is queued and stops at once; positions stay, faults stay latched. The stream begins anew.
+TRAMMEL_API trammel_result trammel_abort(trammel_card* card);
+// A hold, and at rest an abort: no pulse comes after it. `snapshot` (may be null) has the position.
+TRAMMEL_API trammel_result trammel_stop(trammel_card* card, int64_t patience_ns, trammel_snapshot* snapshot);
+
+// What a call that waits, now or next, shall do at its next look at the card. An abort ends it with TRAMMEL_STATE, a
+// stop with TRAMMEL_STOPPED. A card that is null, and a ratio or class that there is not, are left out.
+TRAMMEL_API void trammel_request_hold(trammel_card* card, bool hold);
+TRAMMEL_API void trammel_request_ratio(trammel_card* card, trammel_piece_class piece_class, uint32_t ratio);
+TRAMMEL_API void trammel_request_abort(trammel_card* card);
+TRAMMEL_API void trammel_request_stop(trammel_card* card);
+
+// ---- One-shot lines: one burst, and the card makes the line by itself ----
+
+typedef struct trammel_one_shot {
+  int64_t pulses[TRAMMEL_MAX_AXES];  // start to end
+  // Either a duration, or a speed along the path: one of the two is 0.
+  int64_t duration_ns;
+  uint64_t speed_pulses;   // in `speed_seconds`
+  uint32_t speed_seconds;  // at least 1 where there is a speed
+  // Pulses/s, 0: what the card's step times allow. A line that is too fast is a TRAMMEL_ARGUMENT, unless slow_down.
+  uint64_t max_velocity[TRAMMEL_MAX_AXES];
+  bool slow_down;
+} trammel_one_shot;
+
+typedef struct trammel_line_plan {
+  size_t parts;     // lines that the card runs one after the other: 1 up to 2^32 pulses and 2^40 clocks
+  uint64_t clocks;  // of all parts
+  bool slowed;
+} trammel_line_plan;
+
+// Starts a line of one part and returns at once. `plan` may be null.
+TRAMMEL_API trammel_result trammel_start_line(trammel_card* card, const trammel_one_shot* line,
+                                              trammel_line_plan* plan);
+// Runs all parts and returns when the last has ended, at most `patience_ns` later than planned.
+TRAMMEL_API trammel_result trammel_run_line(trammel_card* card, const trammel_one_shot* line, int64_t patience_ns,
+                                            trammel_line_plan* plan);
+
+// ---- The stream of commands ----
+//
+// Paths and the feed pieces of their time go into two queues of the card: a piece is put before the path that uses it,
+// and the ticks of the pieces up to a barrier (dwell, end, waiting for an input) are those of its paths.
+
+typedef enum trammel_command_kind {
+  TRAMMEL_LINE = 0,
+  TRAMMEL_ARC = 1,
+  TRAMMEL_ELLIPSE = 2,
+  TRAMMEL_ARC_CHORD = 3,
+  TRAMMEL_FEED = 4,
+  TRAMMEL_DWELL = 5,
+  TRAMMEL_END = 6,
+  TRAMMEL_OUTPUT = 7,
+  TRAMMEL_MARK = 8,
+  TRAMMEL_WAIT_INPUT = 9
+} trammel_command_kind;
+
+// A straight line; an axis that stands has 0. |pulses| <= ticks.
+typedef struct trammel_line_command {
+  uint64_t ticks;  // 1 .. 2^40 - 1
+  int64_t pulses[TRAMMEL_MAX_AXES];
+} trammel_line_command;
+
+// An arc of a circle in the plane of two axes, the first to the right, the second up.
+typedef struct trammel_arc_command {
+  uint64_t ticks;         // at least the arc's steps
+  int64_t centre_x;       // start to centre, 1/256 pulses
+  int64_t centre_y;       //
+  int32_t end_x;          // start to end, pulses
+  int32_t end_y;          //
+  bool clockwise;         //
+  double sweep;           // angle without the extra turns, radians, >= 0; a full turn is 2 pi
+  uint32_t turns;         // full turns beyond it
+  uint8_t axis_x;         //
+  uint8_t axis_y;         //
+  bool eight_directions;  // steps along both axes at once too; on cards with accumulator_8. Not for arcs in chords
+  int64_t further[TRAMMEL_MAX_AXES];  // arcs in chords alone: lines of further axes over the same time, pulses
+} trammel_arc_command;
+
+// An arc of an ellipse with axes along the plane's, about a centre on a whole pulse.
+typedef struct trammel_ellipse_command {
+  uint64_t ticks;
+  int64_t semi_x;  // pulses, 1 .. 2^20
+  int64_t semi_y;
+  int64_t start_x;  // centre to start, pulses
+  int64_t start_y;
+  int32_t end_x;  // start to end, pulses
+  int32_t end_y;
+  bool clockwise;
+  double sweep;  // angle that the ray from the centre sweeps, radians
+  uint32_t turns;
+  uint8_t axis_x;
+  uint8_t axis_y;
+  bool eight_directions;
+} trammel_ellipse_command;
+
+// A piece of the feed profile.
+typedef struct trammel_feed_command {
+  uint64_t ticks;
+  uint64_t rate;           // 2^-64 ticks an enabled clock, at the beginning
+  int64_t acceleration;    // the same unit an update of 32 enabled clocks
+  int64_t jerk;            // the same unit an update, each update
+  uint32_t floor;          // 2^-32 ticks an enabled clock, not 0
+  uint32_t stop_distance;  // ticks needed to stop on the path; 0: the piece ends at rest
+  trammel_piece_class piece_class;
+} trammel_feed_command;
+
+// Outputs switched with the last tick of the path before, at once where none runs; bit n: output n.
+typedef struct trammel_output_command {
+  uint16_t set;
+  uint16_t clear;
+} trammel_output_command;
+
+// Until an input has a level.
+typedef struct trammel_input_condition {
+  uint8_t input;     // 0 .. 15
+  bool level;        //
+  uint64_t timeout;  // clocks, 0: none. Not for probes
+} trammel_input_condition;
+
+typedef struct trammel_command {
+  trammel_command_kind kind;
+  union {
+    trammel_line_command line;
+    trammel_arc_command arc;  // TRAMMEL_ARC and TRAMMEL_ARC_CHORD
+    trammel_ellipse_command ellipse;
+    trammel_feed_command feed;
+    uint64_t dwell_clocks;
+    trammel_output_command output;
+    trammel_input_condition wait_input;
+  } as;
+} trammel_command;
+
+typedef struct trammel_progress {
+  uint64_t commands_sent;  // since the stream was opened or restarted
+  uint32_t geometry_begun;
+  uint32_t feed_begun;
+  trammel_status status;
+} trammel_progress;
+
+typedef struct trammel_stream_options {
+  int64_t patience_ns;  // card time beyond what was planned before a card counts as hung; 0: a second
+  // Called while a call of the stream waits; false ends that call with TRAMMEL_CANCELLED. May be null.
+  bool (*progress)(void* context, const trammel_progress* progress);
+  void* context;
+} trammel_stream_options;
+
+// Opens the card's stream, which must stand idle; one that was open ends. `options` may be null.
+TRAMMEL_API trammel_result trammel_open_stream(trammel_card* card, const trammel_stream_options* options);
+// Takes a command, whole or not at all; written now or later. After TRAMMEL_REFUSED, TRAMMEL_LINK or TRAMMEL_STATE the
+// stream is closed until trammel_restart_stream().
+TRAMMEL_API trammel_result trammel_put(trammel_card* card, const trammel_command* command);
+// Writes what trammel_put() has kept back.
+TRAMMEL_API trammel_result trammel_flush(trammel_card* card);
+// Flushes and waits until all is done. `status` may be null.
+TRAMMEL_API trammel_result trammel_finish(trammel_card* card, trammel_status* status);
+// Drops what the card has queued and begins anew.
+TRAMMEL_API trammel_result trammel_restart_stream(trammel_card* card);
+
+typedef enum trammel_probe_outcome {
+  TRAMMEL_PROBE_MISSED = 0,          // the paths ended without the edge
+  TRAMMEL_PROBE_TRIPPED = 1,         // it came on the way
+  TRAMMEL_PROBE_TRIPPED_ALREADY = 2  // the input had the level before: nothing moved
+} trammel_probe_outcome;
+
+typedef struct trammel_probe_result {
+  trammel_probe_outcome outcome;
+  trammel_snapshot edge;  // zeros when missed
+  trammel_snapshot rest;  // where the card stands now
+} trammel_probe_result;
+
+// Moves along `paths` (with their feed pieces) until the input has the level, then ramps to rest along them; waits for
+// all of it. The stream goes on from there.
+TRAMMEL_API trammel_result trammel_probe(trammel_card* card, const trammel_input_condition* condition,
+                                         const trammel_command* paths, size_t count, trammel_probe_result* result);
+
+// ---- Simulated cards alone: TRAMMEL_STATE for others ----
+
+typedef struct trammel_step {
+  uint64_t cycle;    // clock since reset
+  uint64_t command;  // of a path's step: its command's number, not wrapped; else 0
+  uint64_t tick;     // of a path's step: from 1; else 0
+  uint8_t axis;      //
+  int8_t direction;  // +1 or -1
+  bool at_pin;       // a leading edge at a STEP pin; else a step of the path, before the step times
+} trammel_step;
+
+// Called for each step while the card is used. Must not use the card. Null: no more.
+TRAMMEL_API trammel_result trammel_simulated_listen(trammel_card* card,
+                                                    void (*listener)(void* context, const trammel_step* step),
+                                                    void* context);
+// Lets clocks pass.
+TRAMMEL_API trammel_result trammel_simulated_wait(trammel_card* card, uint64_t clocks);
+// Levels at the input pins from now on.
+TRAMMEL_API trammel_result trammel_simulated_set_inputs(trammel_card* card, uint16_t levels);
+// As by the card's reset input.
+TRAMMEL_API trammel_result trammel_simulated_reset(trammel_card* card);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

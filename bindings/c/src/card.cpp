@@ -1,0 +1,275 @@
+#include <algorithm>
+#include <vector>
+
+#include "handle.hpp"
+#include "trammel/driver/one_shot.hpp"
+#include "trammel/transport/card_url.hpp"
+#include "trammel/transport/connection.hpp"
+
+namespace trammel::c {
+
+static_assert(TRAMMEL_MAX_AXES == card_map::kMaxAxes);
+static_assert(TRAMMEL_FULL_RATIO == driver::Card::kFullRatio);
+
+namespace {
+
+using std::chrono::nanoseconds;
+
+driver::Card& card_of(trammel_card* card) { return required(card, "card").card; }
+
+// `open` makes the card; `out` is null unless it succeeds.
+template <class Open>
+trammel_result open_card(trammel_card** out, Open open) noexcept {
+  return guarded([&] {
+    required(out, "card") = nullptr;
+    *out = open().release();
+  });
+}
+
+std::unique_ptr<trammel_card> open_simulated(const trammel_simulation& simulation) {
+  std::unique_ptr<sim::Engine> engine = make_simulated(simulation);
+  sim::Engine* const simulated = engine.get();
+  return std::make_unique<trammel_card>(std::move(engine), simulated);
+}
+
+std::unique_ptr<trammel_card> open_url(const std::string& url) {
+  const transport::CardUrl place = transport::parse_card_url(url);
+  if (place.kind == transport::CardUrl::Kind::kSim) return open_simulated({place.axes, place.clock_hz});
+  const auto connection = std::make_shared<transport::Connection>(place);
+  return std::make_unique<trammel_card>(std::shared_ptr<driver::Bus>(connection, &connection->bus()), nullptr);
+}
+
+driver::AxisSettings settings_of(const trammel_axis_settings& settings) {
+  if (settings.mode < TRAMMEL_STEP_DIRECTION || settings.mode > TRAMMEL_QUADRATURE) {
+    throw driver::ArgumentError("mode " + std::to_string(settings.mode) + " is none of trammel_step_mode");
+  }
+  driver::AxisSettings out;
+  out.step_length = nanoseconds(settings.step_length_ns);
+  out.step_space = nanoseconds(settings.step_space_ns);
+  out.direction_setup = nanoseconds(settings.direction_setup_ns);
+  out.direction_hold = nanoseconds(settings.direction_hold_ns);
+  out.mode = static_cast<driver::StepMode>(settings.mode);
+  out.invert_first = settings.invert_first;
+  out.invert_second = settings.invert_second;
+  return out;
+}
+
+driver::OneShotPlan plan(const driver::Card& card, const trammel_one_shot& line) {
+  driver::Displacement displacement{};
+  std::copy(std::begin(line.pulses), std::end(line.pulses), displacement.begin());
+  driver::LineLimits limits;
+  std::copy(std::begin(line.max_velocity), std::end(line.max_velocity), limits.max_velocity.begin());
+  limits.policy = line.slow_down ? driver::LimitPolicy::kSlow : driver::LimitPolicy::kRefuse;
+  const bool has_speed = line.speed_pulses != 0 || line.speed_seconds != 0;
+  if (has_speed && line.duration_ns != 0) throw driver::ArgumentError("a line has a duration or a speed, not both");
+  if (has_speed) {
+    return driver::plan_line(card.timing(), displacement, driver::PathSpeed{line.speed_pulses, line.speed_seconds},
+                             limits);
+  }
+  return driver::plan_line(card.timing(), displacement, nanoseconds(line.duration_ns), limits);
+}
+
+void give(trammel_line_plan* out, const driver::OneShotPlan& plan) {
+  if (out != nullptr) *out = {plan.size(), plan.clocks(), plan.slowed()};
+}
+
+}  // namespace
+
+driver::PieceClass piece_class_of(trammel_piece_class piece_class) {
+  if (piece_class < TRAMMEL_CLASS_FEED || piece_class > TRAMMEL_CLASS_FIXED) {
+    throw driver::ArgumentError("class " + std::to_string(piece_class) + " is none of trammel_piece_class");
+  }
+  return static_cast<driver::PieceClass>(piece_class);
+}
+
+trammel_status c_status(const driver::Status& s) {
+  return {s.busy,     s.direct,     s.path_active, s.feed_active,  s.held,     s.ended,  s.faulted,      s.refused,
+          s.snapshot, s.incomplete, s.stopping,    s.geometry_low, s.feed_low, s.probed, s.probe_missed, s.waiting};
+}
+
+trammel_snapshot c_snapshot(const driver::Snapshot& snapshot) {
+  trammel_snapshot out{};
+  out.time = snapshot.time;
+  out.status = c_status(snapshot.status);
+  out.faults = snapshot.faults;
+  out.rate = snapshot.rate;
+  out.ratio = snapshot.ratio;
+  out.geometry_begun = snapshot.geometry_begun;
+  out.feed_begun = snapshot.feed_begun;
+  std::copy(snapshot.position.begin(), snapshot.position.end(), out.position);
+  return out;
+}
+
+}  // namespace trammel::c
+
+using namespace trammel::c;
+namespace driver = trammel::driver;
+
+trammel_result trammel_open(const char* url, trammel_card** card) {
+  return open_card(card, [=] { return open_url(&required(url, "url")); });
+}
+
+trammel_result trammel_open_simulated(const trammel_simulation* simulation, trammel_card** card) {
+  return open_card(card, [=] { return open_simulated(required(simulation, "simulation")); });
+}
+
+trammel_result trammel_open_bus(const trammel_bus* bus, trammel_card** card) {
+  return open_card(card,
+                   [=] { return std::make_unique<trammel_card>(make_callback_bus(required(bus, "bus")), nullptr); });
+}
+
+void trammel_close(trammel_card* card) { delete card; }
+
+trammel_result trammel_transfer(trammel_card* card, trammel_access* accesses, size_t count, size_t* made) {
+  return guarded([=] {
+    driver::Bus& bus = card_of(card).bus();
+    if (count != 0) required(accesses, "accesses");
+    required(made, "made");
+    std::vector<driver::Access> todo(count);
+    for (size_t i = 0; i < count; ++i) {
+      if (accesses[i].address >= trammel::card_map::kWindowBytes || accesses[i].address % 4 != 0) {
+        throw driver::ArgumentError("address " + std::to_string(accesses[i].address) + " is none of a register");
+      }
+      todo[i] = {accesses[i].address, accesses[i].data, accesses[i].write};
+    }
+    *made = bus.transfer(todo.data(), count);
+    for (size_t i = 0; i < *made; ++i) accesses[i].data = todo[i].data;
+  });
+}
+
+trammel_result trammel_identify(const trammel_card* card, trammel_identification* identification) {
+  return guarded([=] {
+    const driver::Identification& is = required(card, "card").card.identification();
+    required(identification, "identification") = {is.map_major, is.map_minor, is.commands_version, is.axes,
+                                                  is.clock_hz,  is.engines,   is.geometry_depth,   is.feed_depth};
+  });
+}
+
+trammel_result trammel_configure_axis(trammel_card* card, unsigned axis, const trammel_axis_settings* settings) {
+  return guarded([=] { card_of(card).configure_axis(axis, settings_of(required(settings, "settings"))); });
+}
+
+trammel_result trammel_read_status(trammel_card* card, trammel_status* status) {
+  return guarded([=] { required(status, "status") = c_status(card_of(card).status()); });
+}
+
+trammel_result trammel_read_snapshot(trammel_card* card, trammel_snapshot* snapshot) {
+  return guarded([=] { required(snapshot, "snapshot") = c_snapshot(card_of(card).snapshot()); });
+}
+
+trammel_result trammel_read_stop_snapshot(trammel_card* card, trammel_snapshot* snapshot) {
+  return guarded([=] { required(snapshot, "snapshot") = c_snapshot(card_of(card).stop_snapshot()); });
+}
+
+trammel_result trammel_wait_until_idle(trammel_card* card, int64_t timeout_ns) {
+  return guarded([=] { card_of(card).wait_until_idle(std::chrono::nanoseconds(timeout_ns)); });
+}
+
+trammel_result trammel_read_faults(trammel_card* card, uint32_t* faults) {
+  return guarded([=] { required(faults, "faults") = card_of(card).faults(); });
+}
+
+trammel_result trammel_clear_faults(trammel_card* card) {
+  return guarded([=] { card_of(card).clear_faults(); });
+}
+
+trammel_result trammel_describe_faults(uint32_t faults, char* text, size_t size) {
+  return guarded([=] {
+    required(text, "text");
+    if (size == 0) throw driver::ArgumentError("no room for a text of 0 bytes");
+    const std::string names = driver::describe_faults(faults);
+    text[names.copy(text, size - 1)] = '\0';
+  });
+}
+
+trammel_result trammel_read_inputs(trammel_card* card, uint16_t* levels) {
+  return guarded([=] { required(levels, "levels") = card_of(card).inputs(); });
+}
+
+trammel_result trammel_read_outputs(trammel_card* card, uint16_t* levels) {
+  return guarded([=] { required(levels, "levels") = card_of(card).outputs(); });
+}
+
+trammel_result trammel_set_input_polarity(trammel_card* card, uint16_t inverted) {
+  return guarded([=] { card_of(card).set_input_polarity(inverted); });
+}
+
+trammel_result trammel_set_output_safe(trammel_card* card, uint16_t levels, uint16_t change) {
+  return guarded([=] { card_of(card).set_output_safe(levels, change); });
+}
+
+trammel_result trammel_read_marks(trammel_card* card, uint32_t* marks, trammel_snapshot* last) {
+  return guarded([=] {
+    driver::Card& read = card_of(card);
+    if (marks != nullptr) *marks = read.marks();
+    if (last != nullptr) *last = c_snapshot(read.mark_snapshot());
+  });
+}
+
+trammel_result trammel_set_hold(trammel_card* card, bool hold) {
+  return guarded([=] { card_of(card).set_hold(hold); });
+}
+
+trammel_result trammel_set_ratio(trammel_card* card, trammel_piece_class piece_class, uint32_t ratio) {
+  return guarded([=] { card_of(card).set_ratio(piece_class_of(piece_class), ratio); });
+}
+
+trammel_result trammel_set_override(trammel_card* card, trammel_piece_class piece_class, double percent,
+                                    double most_percent) {
+  return guarded([=] { card_of(card).set_override(piece_class_of(piece_class), percent, most_percent); });
+}
+
+trammel_result trammel_set_slew_time(trammel_card* card, int64_t full_scale_ns) {
+  return guarded([=] { card_of(card).set_slew_time(std::chrono::nanoseconds(full_scale_ns)); });
+}
+
+trammel_result trammel_abort(trammel_card* card) {
+  return guarded([=] { card_of(card).abort(); });
+}
+
+trammel_result trammel_stop(trammel_card* card, int64_t patience_ns, trammel_snapshot* snapshot) {
+  return guarded([=] {
+    const trammel_snapshot rest = c_snapshot(card_of(card).stop(std::chrono::nanoseconds(patience_ns)));
+    if (snapshot != nullptr) *snapshot = rest;
+  });
+}
+
+void trammel_request_hold(trammel_card* card, bool hold) {
+  if (card != nullptr) card->card.request_hold(hold);
+}
+
+void trammel_request_ratio(trammel_card* card, trammel_piece_class piece_class, uint32_t ratio) {
+  const bool is_class = piece_class >= TRAMMEL_CLASS_FEED && piece_class <= TRAMMEL_CLASS_FIXED;
+  if (card != nullptr && is_class) card->card.request_ratio(static_cast<driver::PieceClass>(piece_class), ratio);
+}
+
+void trammel_request_abort(trammel_card* card) {
+  if (card != nullptr) card->card.request_abort();
+}
+
+void trammel_request_stop(trammel_card* card) {
+  if (card != nullptr) card->card.request_stop();
+}
+
+trammel_result trammel_start_line(trammel_card* card, const trammel_one_shot* line, trammel_line_plan* out) {
+  return guarded([=] {
+    driver::Card& of = card_of(card);
+    const driver::OneShotPlan planned = plan(of, required(line, "line"));
+    if (planned.size() != 1) {
+      throw driver::ArgumentError("the line has " + std::to_string(planned.size()) +
+                                  " parts: trammel_run_line() runs them one after the other");
+    }
+    driver::start_line(of, planned.part(0));
+    give(out, planned);
+  });
+}
+
+trammel_result trammel_run_line(trammel_card* card, const trammel_one_shot* line, int64_t patience_ns,
+                                trammel_line_plan* out) {
+  return guarded([=] {
+    driver::Card& of = card_of(card);
+    const driver::OneShotPlan planned = plan(of, required(line, "line"));
+    driver::run_line(of, planned, std::chrono::nanoseconds(patience_ns));
+    give(out, planned);
+  });
+}

@@ -1,0 +1,88 @@
+// What stands behind trammel.h's handle, and how exceptions become results.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "trammel.h"
+#include "trammel/driver/bus.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/commands.hpp"
+#include "trammel/driver/stream.hpp"
+#include "trammel/sim/engine.hpp"
+
+// Steps of a simulated card on their way to the caller's listener.
+class StepForwarder final : public trammel::driver::StepSink {
+ public:
+  using Listener = void (*)(void* context, const trammel_step* step);
+  void listen(Listener listener, void* context) {
+    listener_ = listener;
+    context_ = context;
+  }
+  void pin_step(const trammel::driver::PinStep& step) override {
+    forward({step.cycle, 0, 0, step.axis, step.direction, true});
+  }
+  void path_step(const trammel::driver::PathStep& step) override {
+    forward({step.cycle, step.command, step.tick, step.axis, step.direction, false});
+  }
+
+ private:
+  void forward(const trammel_step& step) { listener_(context_, &step); }
+
+  Listener listener_ = nullptr;
+  void* context_ = nullptr;
+};
+
+struct trammel_card {
+  trammel_card(std::shared_ptr<trammel::driver::Bus> way, trammel::sim::Engine* simulated)
+      : steps(std::make_unique<StepForwarder>()),
+        bus(std::move(way)),
+        engine(simulated),
+        card(trammel::driver::Card::open(*bus)) {}
+
+  std::unique_ptr<StepForwarder> steps;  // outlives the bus that calls it
+  std::shared_ptr<trammel::driver::Bus> bus;
+  trammel::sim::Engine* engine;  // the bus, where it is a simulated card's
+  trammel::driver::Card card;
+  std::optional<trammel::driver::Stream> stream;
+};
+
+namespace trammel::c {
+
+// What a progress callback that gives back false ends a call with.
+class Cancelled {};
+
+// The exception under way as a result, noted for trammel_last_error(). Only within a catch.
+trammel_result note_exception() noexcept;
+
+template <class Call>
+trammel_result guarded(Call&& call) noexcept {
+  try {
+    call();
+    return TRAMMEL_OK;
+  } catch (...) {
+    return note_exception();
+  }
+}
+
+// Throws ArgumentError for a null pointer.
+template <class T>
+T& required(T* pointer, const char* name) {
+  if (pointer == nullptr) throw driver::ArgumentError(std::string(name) + " is null");
+  return *pointer;
+}
+
+// Throw ArgumentError for a number that is none of the enumeration's.
+driver::PieceClass piece_class_of(trammel_piece_class piece_class);
+driver::Command command_of(const trammel_command& command);
+
+trammel_status c_status(const driver::Status& status);
+trammel_snapshot c_snapshot(const driver::Snapshot& snapshot);
+
+// A card behind the caller's own functions.
+std::unique_ptr<driver::Bus> make_callback_bus(const trammel_bus& bus);
+// The simulated card; its engine is the bus.
+std::unique_ptr<sim::Engine> make_simulated(const trammel_simulation& simulation);
+
+}  // namespace trammel::c

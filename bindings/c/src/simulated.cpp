@@ -1,0 +1,45 @@
+#include "handle.hpp"
+
+namespace trammel::c {
+
+std::unique_ptr<sim::Engine> make_simulated(const trammel_simulation& simulation) {
+  sim::EngineOptions options;
+  options.axes = simulation.axes;
+  options.clock_hz = simulation.clock_hz;
+  return sim::make_model_engine(options);
+}
+
+namespace {
+
+sim::Engine& engine_of(trammel_card* card) {
+  sim::Engine* const engine = required(card, "card").engine;
+  if (engine == nullptr) throw driver::StateError("this is for simulated cards alone");
+  return *engine;
+}
+
+}  // namespace
+}  // namespace trammel::c
+
+using trammel::c::engine_of;
+using trammel::c::guarded;
+
+trammel_result trammel_simulated_listen(trammel_card* card, void (*listener)(void*, const trammel_step*),
+                                        void* context) {
+  return guarded([=] {
+    trammel::sim::Engine& engine = engine_of(card);
+    card->steps->listen(listener, context);
+    engine.set_sink(listener != nullptr ? card->steps.get() : nullptr);
+  });
+}
+
+trammel_result trammel_simulated_wait(trammel_card* card, uint64_t clocks) {
+  return guarded([=] { engine_of(card).wait(clocks); });
+}
+
+trammel_result trammel_simulated_set_inputs(trammel_card* card, uint16_t levels) {
+  return guarded([=] { engine_of(card).set_inputs(levels); });
+}
+
+trammel_result trammel_simulated_reset(trammel_card* card) {
+  return guarded([=] { engine_of(card).reset(); });
+}

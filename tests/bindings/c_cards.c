@@ -1,0 +1,174 @@
+// Cards by trammel.h: who they are, one-shot lines, settings, state, hold and stop.
+#include "check.h"
+
+typedef struct counts {
+  uint64_t at_pins[TRAMMEL_MAX_AXES];
+  uint64_t on_path[TRAMMEL_MAX_AXES];
+  int64_t position[TRAMMEL_MAX_AXES];
+  uint64_t last_cycle;
+} counts;
+
+static void count_step(void* context, const trammel_step* step) {
+  counts* all = (counts*)context;
+  if (!step->at_pin) {
+    ++all->on_path[step->axis];
+    return;
+  }
+  ++all->at_pins[step->axis];
+  all->position[step->axis] += step->direction;
+  all->last_cycle = step->cycle;
+}
+
+static void identification(void) {
+  trammel_simulation simulation = {7, 25000000};
+  trammel_card* card = NULL;
+  trammel_identification is;
+  DONE(trammel_open_simulated(&simulation, &card));
+  DONE(trammel_identify(card, &is));
+  CHECK(is.axes == 7);
+  CHECK(is.clock_hz == 25000000);
+  CHECK(is.geometry_depth == 4096 && is.feed_depth == 2560);
+  CHECK(is.map_major > 0 && is.commands_version > 0 && is.engines != 0);
+  trammel_close(card);
+}
+
+static void one_shot_lines(void) {
+  trammel_card* card = simulated_card();
+  trammel_one_shot line;
+  trammel_line_plan plan;
+  trammel_snapshot snapshot;
+  trammel_status status;
+  counts steps;
+  memset(&steps, 0, sizeof steps);
+  memset(&line, 0, sizeof line);
+  DONE(trammel_simulated_listen(card, count_step, &steps));
+  line.pulses[0] = 20;
+  line.pulses[1] = -40;
+  line.duration_ns = 2000000;
+  DONE(trammel_start_line(card, &line, &plan));
+  CHECK(plan.parts == 1 && plan.clocks == 2000 && !plan.slowed);
+  DONE(trammel_read_status(card, &status));
+  CHECK(status.busy && status.direct && !status.held && !status.faulted);
+  FAILS(trammel_start_line(card, &line, NULL), TRAMMEL_REFUSED, "BUSY");
+  CHECK(trammel_last_error()->reason == 8);
+  DONE(trammel_wait_until_idle(card, 1000000000));
+  DONE(trammel_read_snapshot(card, &snapshot));
+  CHECK(snapshot.position[0] == 20 && snapshot.position[1] == -40 && snapshot.position[2] == 0);
+  CHECK(snapshot.time > 2000 && !snapshot.status.busy && snapshot.ratio == TRAMMEL_FULL_RATIO);
+  CHECK(steps.at_pins[0] == 20 && steps.at_pins[1] == 40 && steps.at_pins[2] == 0);
+  CHECK(steps.position[0] == 20 && steps.position[1] == -40);
+
+  line.duration_ns = 0;  // 3-4-5: 50 pulses of path, 1000 of them a second
+  line.speed_pulses = 1000;
+  line.speed_seconds = 1;
+  line.pulses[0] = 30;
+  line.pulses[1] = 40;
+  DONE(trammel_run_line(card, &line, 1000000000, &plan));
+  CHECK(plan.clocks == 50000);
+  line.max_velocity[1] = 400;
+  FAILS(trammel_run_line(card, &line, 1000000000, &plan), TRAMMEL_ARGUMENT, "axis 1");
+  line.slow_down = true;
+  DONE(trammel_run_line(card, &line, 1000000000, &plan));
+  CHECK(plan.clocks == 100000 && plan.slowed);
+  DONE(trammel_simulated_listen(card, NULL, NULL));
+  DONE(trammel_run_line(card, &line, 1000000000, NULL));
+  CHECK(steps.at_pins[1] == 120);
+  trammel_close(card);
+}
+
+static void settings(void) {
+  trammel_card* card = simulated_card();
+  trammel_axis_settings axis;
+  trammel_one_shot line;
+  memset(&axis, 0, sizeof axis);
+  memset(&line, 0, sizeof line);
+  axis.step_length_ns = 50000;
+  axis.step_space_ns = 50000;
+  DONE(trammel_configure_axis(card, 0, &axis));
+  FAILS(trammel_configure_axis(card, 4, &axis), TRAMMEL_ARGUMENT, "axis");
+  axis.step_space_ns = -1;
+  FAILS(trammel_configure_axis(card, 0, &axis), TRAMMEL_ARGUMENT, "STEP_SPACE");
+  axis.step_space_ns = 0;
+  axis.mode = (trammel_step_mode)3;
+  FAILS(trammel_configure_axis(card, 0, &axis), TRAMMEL_ARGUMENT, "mode 3");
+  line.pulses[0] = 100;  // a pulse takes 100 clocks at least now
+  line.duration_ns = 5000000;
+  FAILS(trammel_start_line(card, &line, NULL), TRAMMEL_ARGUMENT, "axis 0");
+  trammel_close(card);
+}
+
+static void pins(void) {
+  trammel_card* card = simulated_card();
+  uint16_t levels = 0;
+  uint32_t marks = 1;
+  DONE(trammel_simulated_set_inputs(card, 9));
+  DONE(trammel_set_input_polarity(card, 1));
+  DONE(trammel_simulated_wait(card, 10));
+  DONE(trammel_read_inputs(card, &levels));
+  CHECK(levels == 8);
+  DONE(trammel_set_output_safe(card, 2, 2));
+  DONE(trammel_abort(card));
+  DONE(trammel_read_outputs(card, &levels));
+  CHECK(levels == 2);
+  DONE(trammel_read_marks(card, &marks, NULL));
+  CHECK(marks == 0);
+  trammel_close(card);
+}
+
+static void hold_and_stop(void) {
+  trammel_card* card = simulated_card();
+  trammel_one_shot line;
+  trammel_status status;
+  trammel_snapshot rest;
+  trammel_snapshot later;
+  memset(&line, 0, sizeof line);
+  line.pulses[0] = 10000;
+  line.duration_ns = 1000000000;
+  DONE(trammel_set_slew_time(card, 1000000));
+  DONE(trammel_start_line(card, &line, NULL));
+  DONE(trammel_set_hold(card, true));
+  DONE(trammel_simulated_wait(card, 2000));
+  DONE(trammel_read_status(card, &status));
+  CHECK(status.held && status.busy);
+  DONE(trammel_set_hold(card, false));
+  DONE(trammel_set_override(card, TRAMMEL_CLASS_FEED, 50, 100));
+  DONE(trammel_simulated_wait(card, 100000));
+  DONE(trammel_read_snapshot(card, &later));
+  CHECK(later.ratio == TRAMMEL_FULL_RATIO / 2);
+  CHECK(later.position[0] > 450 && later.position[0] < 550);
+  DONE(trammel_stop(card, 1000000000, &rest));
+  DONE(trammel_simulated_wait(card, 100000));
+  DONE(trammel_read_snapshot(card, &later));
+  CHECK(!later.status.busy && later.position[0] == rest.position[0]);
+  FAILS(trammel_set_override(card, TRAMMEL_CLASS_FEED, 101, 100), TRAMMEL_ARGUMENT, "101");
+  FAILS(trammel_set_ratio(card, (trammel_piece_class)3, 0), TRAMMEL_ARGUMENT, "class 3");
+  FAILS(trammel_set_ratio(card, TRAMMEL_CLASS_RAPID, TRAMMEL_FULL_RATIO + 1), TRAMMEL_ARGUMENT, "ratio");
+  trammel_close(card);
+}
+
+static void two_cards(void) {
+  trammel_card* one = simulated_card();
+  trammel_card* other = simulated_card();
+  trammel_one_shot line;
+  trammel_snapshot snapshot;
+  memset(&line, 0, sizeof line);
+  line.pulses[3] = 5;
+  line.duration_ns = 1000000;
+  DONE(trammel_run_line(one, &line, 1000000000, NULL));
+  trammel_close(one);
+  DONE(trammel_read_snapshot(other, &snapshot));
+  CHECK(snapshot.position[3] == 0);
+  trammel_close(other);
+}
+
+void test_cards(void) {
+  CHECK(strcmp(trammel_version(), TRAMMEL_EXPECTED_VERSION) == 0);
+  CHECK(strcmp(trammel_result_name(TRAMMEL_IDENTIFICATION), "TRAMMEL_IDENTIFICATION") == 0);
+  CHECK(strcmp(trammel_result_name((trammel_result)99), "unknown") == 0);
+  identification();
+  one_shot_lines();
+  settings();
+  pins();
+  hold_and_stop();
+  two_cards();
+}

@@ -1,0 +1,41 @@
+// What the tests of trammel.h share: checks that count, and cards.
+#ifndef CHECK_H
+#define CHECK_H
+
+#include <stdio.h>
+#include <string.h>
+
+#include "trammel.h"
+
+extern unsigned long checks_made;
+extern unsigned long checks_failed;
+
+#define CHECK(condition)                                                      \
+  do {                                                                        \
+    ++checks_made;                                                            \
+    if (!(condition)) {                                                       \
+      ++checks_failed;                                                        \
+      fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #condition); \
+    }                                                                         \
+  } while (0)
+
+// A call that must succeed.
+#define DONE(call) check_result((call), TRAMMEL_OK, "", __FILE__, __LINE__)
+// A call that must fail so, with `words` in its text.
+#define FAILS(call, result, words) check_result((call), (result), (words), __FILE__, __LINE__)
+
+void check_result(trammel_result is, trammel_result wanted, const char* words, const char* file, int line);
+
+// A simulated card of 4 axes and 1 MHz.
+trammel_card* simulated_card(void);
+
+trammel_command line_of(uint64_t ticks, int64_t x, int64_t y);
+// A tick every 16 clocks.
+trammel_command feed_of(uint64_t ticks);
+trammel_command command_of(trammel_command_kind kind);
+
+void test_cards(void);
+void test_errors(void);
+void test_stream(void);
+
+#endif

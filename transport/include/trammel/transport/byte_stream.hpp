@@ -1,0 +1,61 @@
+// Streams of bytes between processes and to serial ports, at both ends. What goes over them is others' business.
+// One thread at a time.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace trammel::transport {
+
+class ByteStream {
+ public:
+  virtual ~ByteStream() = default;
+
+  // Sends all of them. Throws driver::LinkError, also when the other end takes nothing for a second.
+  virtual void write(const std::uint8_t* bytes, std::size_t count) = 0;
+  // Waits for at most `longest` until something has come; gives back how many bytes were put into `bytes`, 0 for none.
+  // Throws driver::LinkError when the other end is gone.
+  virtual std::size_t read(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) = 0;
+  // The other end, for messages.
+  virtual std::string peer() const = 0;
+
+ protected:
+  ByteStream() = default;
+  ByteStream(const ByteStream&) = default;
+  ByteStream& operator=(const ByteStream&) = default;
+};
+
+class SerialStream : public ByteStream {
+ public:
+  // The line rests at 0 for a quarter of a second; what has come and was not read is forgotten.
+  virtual void send_break() = 0;
+};
+
+// Where others connect to.
+class Listener {
+ public:
+  virtual ~Listener() = default;
+
+  // The one who has come, without waiting; nullptr for nobody.
+  virtual std::unique_ptr<ByteStream> accept() = 0;
+  // What a client gives as --card, but for the token.
+  virtual std::string url() const = 0;
+
+ protected:
+  Listener() = default;
+  Listener(const Listener&) = default;
+  Listener& operator=(const Listener&) = default;
+};
+
+// All of these throw driver::LinkError, saying what there is to do.
+std::unique_ptr<ByteStream> connect_tcp(const std::string& host, std::uint16_t port, std::chrono::milliseconds longest);
+std::unique_ptr<SerialStream> open_serial(const std::string& device, std::uint32_t baud);
+// A port of 0: one that is free.
+std::unique_ptr<Listener> listen_tcp(const std::string& host, std::uint16_t port);
+// A pseudo-terminal; one client at a time, who may come and go.
+std::unique_ptr<Listener> open_pseudo_terminal();
+
+}  // namespace trammel::transport

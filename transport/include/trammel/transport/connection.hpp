@@ -1,0 +1,41 @@
+// A bus to the card that a URL names. One thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "trammel/driver/bus.hpp"
+#include "trammel/driver/frame_bus.hpp"
+#include "trammel/transport/card_url.hpp"
+
+namespace trammel::transport {
+
+class StreamLink;
+
+class Connection {
+ public:
+  // Connects. Throws driver::LinkError with what to do, and driver::ArgumentError for `sim:`: simulated cards are made
+  // by trammel::sim.
+  explicit Connection(const CardUrl& url);
+  ~Connection();
+  Connection(Connection&&) noexcept;
+  Connection& operator=(Connection&&) = delete;
+
+  driver::Bus& bus() { return *bus_; }
+  // The same, where it goes by frames; nullptr for a window in memory.
+  driver::FrameBus* frames() { return frames_; }
+
+  // False where `trammel serve` gives reading alone, for want of its token.
+  bool may_move() const;
+  // How often a connection to `trammel serve` that was lost has been made anew; each time the card was made to hold.
+  std::uint64_t reconnections() const;
+
+ private:
+  std::unique_ptr<driver::ByteLink> link_;
+  StreamLink* stream_ = nullptr;
+  std::unique_ptr<driver::Bus> bus_;
+  driver::FrameBus* frames_ = nullptr;
+};
+
+}  // namespace trammel::transport

@@ -1,0 +1,71 @@
+#include "trammel/transport/connection.hpp"
+
+#include <utility>
+
+#include "trammel/driver/errors.hpp"
+#include "trammel/transport/byte_stream.hpp"
+#include "trammel/transport/links.hpp"
+#include "trammel/transport/memory_bus.hpp"
+
+namespace trammel::transport {
+namespace {
+
+using namespace std::chrono_literals;
+using Kind = CardUrl::Kind;
+
+std::unique_ptr<StreamLink> stream_link(const CardUrl& url) {
+  std::optional<StreamLink::Hello> hello;
+  if (url.hello) hello = StreamLink::Hello{url.token};
+  return std::make_unique<StreamLink>(
+      [url]() -> std::unique_ptr<ByteStream> {
+        if (url.kind == Kind::kSerial) return open_serial(url.device, url.baud);
+        return connect_tcp(url.host, url.port, 5s);
+      },
+      std::move(hello));
+}
+
+// A stream between computers loses nothing, and the card at its end may be slow: nothing is sent again soon.
+driver::FrameBus::Options frame_options(const CardUrl& url, bool stream) {
+  driver::FrameBus::Options options;
+  if (stream) {
+    options.answer = url.hello ? 20s : 2s;
+    options.sends = 2;
+    options.restarts = 2;
+  }
+  if (url.timeout) options.answer = *url.timeout;
+  return options;
+}
+
+}  // namespace
+
+Connection::Connection(const CardUrl& url) {
+  if (url.kind == Kind::kSim) throw driver::ArgumentError("card sim: a simulated card has no link");
+  if (url.kind == Kind::kMmap) {
+    bus_ = std::make_unique<MemoryBus>(url.device, url.offset, url.interrupt);
+    return;
+  }
+  if (url.kind == Kind::kTcp || !url.token.empty()) {
+    auto link = stream_link(url);
+    stream_ = link.get();
+    link_ = std::move(link);
+  } else if (url.kind == Kind::kSerial) {
+    link_ = std::make_unique<SerialLink>([url] { return open_serial(url.device, url.baud); }, url.baud);
+  } else {
+    link_ = std::make_unique<SpiLink>(url.device, SpiLink::Options{url.sck_hz, url.mode});
+  }
+  try {
+    auto bus = std::make_unique<driver::FrameBus>(*link_, frame_options(url, stream_ != nullptr));
+    frames_ = bus.get();
+    bus_ = std::move(bus);
+  } catch (const driver::LinkError& error) {
+    throw driver::LinkError(url.text + ": " + error.what());
+  }
+}
+
+Connection::~Connection() = default;
+Connection::Connection(Connection&&) noexcept = default;
+
+bool Connection::may_move() const { return stream_ == nullptr || stream_->may_move(); }
+std::uint64_t Connection::reconnections() const { return stream_ == nullptr ? 0 : stream_->reconnections(); }
+
+}  // namespace trammel::transport

@@ -1,0 +1,174 @@
+#include "trammel/transport/links.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "trammel/driver/errors.hpp"
+#include "trammel/frames/stuffing.hpp"
+
+namespace trammel::transport {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::nanoseconds;
+using std::chrono::steady_clock;
+
+constexpr nanoseconds kHelloTime = 5s;
+// What a simulated card may take for one wait; long ones go in pieces.
+constexpr nanoseconds kWaitTime = 60s;
+constexpr nanoseconds kLongestWait = 20ms;
+constexpr nanoseconds kReopenTime = 3s;
+constexpr std::size_t kLongestLine = 200;
+
+// Up to the end of the line, or as much as came.
+std::string read_line(ByteStream& stream) {
+  std::string line;
+  const auto until = steady_clock::now() + kHelloTime;
+  while (line.size() < kLongestLine) {
+    std::uint8_t byte = 0;
+    const nanoseconds left = until - steady_clock::now();
+    if (left.count() <= 0) break;
+    if (stream.read(&byte, 1, left) == 0) continue;
+    if (byte == '\n') return line;
+    line += static_cast<char>(byte);
+  }
+  throw driver::LinkError(
+      fmt::format("{}: what answers is no `trammel serve`{}", stream.peer(),
+                  line.empty() ? ": it says nothing (a bridge to a serial line wants hello=no)" : ""));
+}
+
+template <class Stream, class Call>
+auto dropping_at_errors(std::unique_ptr<Stream>& stream, Call call) {
+  try {
+    return call();
+  } catch (const driver::LinkError&) {
+    stream.reset();
+    throw;
+  }
+}
+
+}  // namespace
+
+nanoseconds HostTimeLink::now() const { return steady_clock::now().time_since_epoch(); }
+void HostTimeLink::sleep(nanoseconds time) { std::this_thread::sleep_for(time); }
+
+// A stream on which something failed is lost.
+template <class Call>
+auto SerialLink::on_stream(Call call) {
+  if (!stream_) throw driver::LinkError("the serial line is lost");
+  return dropping_at_errors(stream_, call);
+}
+
+void SerialLink::send(const std::uint8_t* bytes, std::size_t count) {
+  on_stream([&] { stream_->write(bytes, count); });
+}
+
+std::size_t SerialLink::receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) {
+  return on_stream([&] { return stream_->read(bytes, room, longest); });
+}
+
+void SerialLink::restart() {
+  constexpr std::uint8_t kMeasured = 0x55;
+  if (!stream_) stream_ = open_();
+  on_stream([&] {
+    stream_->send_break();
+    stream_->write(&kMeasured, 1);
+  });
+}
+
+// Start bit, eight data bits, stop bit.
+nanoseconds SerialLink::time_of(std::size_t bytes) const {
+  return nanoseconds(static_cast<std::int64_t>(10'000'000'000 / baud_ + 1) * static_cast<std::int64_t>(bytes));
+}
+
+StreamLink::StreamLink(Open open, std::optional<Hello> hello) : open_(std::move(open)), hello_(std::move(hello)) {
+  connect();
+}
+
+void StreamLink::connect() {
+  stream_ = open_();
+  if (hello_) dropping_at_errors(stream_, [this] { say_hello(); });
+}
+
+void StreamLink::say_hello() {
+  const std::string hello = fmt::format("trammel 1{}{}\n", hello_->token.empty() ? "" : " ", hello_->token);
+  stream_->write(reinterpret_cast<const std::uint8_t*>(hello.data()), hello.size());
+  const std::string line = read_line(*stream_);
+  may_move_ = line == "trammel 1 motion";
+  if (may_move_ || line == "trammel 1 reading") return;
+  constexpr const char* kRefused = "trammel 1 refused: ";
+  if (line.rfind(kRefused, 0) == 0) {
+    throw driver::LinkError(fmt::format("{}: {}", stream_->peer(), line.substr(std::string(kRefused).size())));
+  }
+  throw driver::LinkError(fmt::format("{}: what answers is no `trammel serve` of this version", stream_->peer()));
+}
+
+template <class Call>
+auto StreamLink::on_stream(Call call) {
+  if (!stream_) throw driver::LinkError("the connection is lost");
+  return dropping_at_errors(stream_, call);
+}
+
+void StreamLink::send(const std::uint8_t* bytes, std::size_t count) {
+  on_stream([&] { stream_->write(bytes, count); });
+}
+
+std::size_t StreamLink::receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) {
+  return on_stream([&] { return stream_->read(bytes, room, longest); });
+}
+
+void StreamLink::restart() {
+  if (stream_) {
+    std::uint8_t late[256];
+    while (receive(late, sizeof(late), 0ns) != 0) {
+    }
+    return;
+  }
+  for (const auto until = steady_clock::now() + kReopenTime;;) {
+    try {
+      connect();
+      ++reconnections_;
+      return;
+    } catch (const driver::LinkError&) {
+      if (steady_clock::now() > until) throw;
+    }
+    std::this_thread::sleep_for(50ms);
+  }
+}
+
+nanoseconds StreamLink::now() const { return steady_clock::now().time_since_epoch(); }
+
+void StreamLink::sleep(nanoseconds time) {
+  if (!hello_ || !stream_) return std::this_thread::sleep_for(time);
+  try {
+    for (; time.count() > 0; time -= std::min(time, kLongestWait)) wait(std::min(time, kLongestWait));
+  } catch (const driver::LinkError&) {
+    // Lost: the next transfer connects again, or says so.
+  }
+}
+
+void StreamLink::wait(nanoseconds time) {
+  constexpr char kEnd = static_cast<char>(frames::kEnd);
+  const std::string text = fmt::format("{}wait {}{}", kEnd, time.count(), kEnd);
+  send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  await(std::string("waited") + kEnd);
+}
+
+// What comes before it are late replies, for which nobody waits any more.
+void StreamLink::await(const std::string& text) {
+  const auto until = steady_clock::now() + kWaitTime;
+  std::string came;
+  while (came.size() < text.size() || came.compare(came.size() - text.size(), text.size(), text) != 0) {
+    std::uint8_t bytes[256];
+    const std::size_t count = receive(bytes, sizeof(bytes), std::max<nanoseconds>(until - steady_clock::now(), 0ns));
+    came.append(reinterpret_cast<const char*>(bytes), count);
+    if (came.size() > text.size()) came.erase(0, came.size() - text.size());
+    if (count != 0 || steady_clock::now() < until) continue;
+    stream_.reset();
+    throw driver::LinkError("the server does not answer");
+  }
+}
+
+}  // namespace trammel::transport

@@ -1,0 +1,104 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "trammel/driver/errors.hpp"
+#include "trammel/transport/byte_stream.hpp"
+#include "wait_for_file.hpp"
+
+namespace trammel::transport {
+namespace {
+
+// A terminal's server side, while it is open.
+class Master {
+ public:
+  Master() : file_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
+    char name[128];
+    if (file_ < 0 || ::grantpt(file_) != 0 || ::unlockpt(file_) != 0 || ::ptsname_r(file_, name, sizeof(name)) != 0) {
+      fail();
+    }
+    name_ = name;
+    // Bytes as they are, also before the client has said so. Its end is closed again: an open one is a client.
+    const int client = ::open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios settings{};
+    const bool raw = client >= 0 && ::tcgetattr(client, &settings) == 0 &&
+                     (::cfmakeraw(&settings), ::tcsetattr(client, TCSANOW, &settings) == 0);
+    if (client >= 0) ::close(client);
+    if (!raw) fail();
+  }
+  ~Master() {
+    if (file_ >= 0) ::close(file_);
+  }
+  Master(const Master&) = delete;
+  Master& operator=(const Master&) = delete;
+
+  int file() const { return file_; }
+  const std::string& name() const { return name_; }
+  // Somebody has the other end open, or has left bytes.
+  bool has_client() const {
+    pollfd entry{file_, POLLIN, 0};
+    return ::poll(&entry, 1, 0) == 0 || (entry.revents & POLLHUP) == 0 || (entry.revents & POLLIN) != 0;
+  }
+
+ private:
+  [[noreturn]] static void fail() {
+    throw driver::LinkError(fmt::format("no pseudo-terminal: {}", std::strerror(errno)));
+  }
+
+  int file_;
+  std::string name_;
+};
+
+class TerminalStream final : public ByteStream {
+ public:
+  explicit TerminalStream(std::shared_ptr<Master> master) : master_(std::move(master)) {}
+
+  void write(const std::uint8_t* bytes, std::size_t count) override {
+    while (count != 0) {
+      const bool takes = wait_for_file(master_->file(), POLLOUT, std::chrono::seconds(1));
+      const ssize_t written = takes ? ::write(master_->file(), bytes, count) : 0;
+      if (!takes || (written < 0 && errno != EAGAIN && errno != EINTR)) {
+        throw driver::LinkError(fmt::format("{}: the other end takes no more bytes", peer()));
+      }
+      if (written < 0) continue;
+      bytes += written;
+      count -= static_cast<std::size_t>(written);
+    }
+  }
+  std::size_t read(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) override {
+    if (!wait_for_file(master_->file(), POLLIN, longest)) return 0;
+    const ssize_t count = ::read(master_->file(), bytes, room);
+    if (count > 0) return static_cast<std::size_t>(count);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return 0;
+    throw driver::LinkError(fmt::format("{}: the other end has closed", peer()));
+  }
+  std::string peer() const override { return master_->name(); }
+
+ private:
+  std::shared_ptr<Master> master_;
+};
+
+class Terminal final : public Listener {
+ public:
+  std::unique_ptr<ByteStream> accept() override {
+    // One client at a time: the stream of the one before is gone when the server has let go of it.
+    if (master_.use_count() != 1 || !master_->has_client()) return nullptr;
+    return std::make_unique<TerminalStream>(master_);
+  }
+  std::string url() const override { return "serial:" + master_->name(); }
+
+ private:
+  std::shared_ptr<Master> master_ = std::make_shared<Master>();
+};
+
+}  // namespace
+
+std::unique_ptr<Listener> open_pseudo_terminal() { return std::make_unique<Terminal>(); }
+
+}  // namespace trammel::transport

@@ -1,0 +1,118 @@
+// The card as modules of SystemC, at two levels, the checkers of its ports, and the machine behind it.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <systemc>
+
+#include "bundles.hpp"
+#include "motors.hpp"
+#include "pin_models.hpp"
+#include "tlm_bus.hpp"
+#include "trammel/driver/steps.hpp"
+#include "trammel/model/core_model.hpp"
+
+namespace trammel::platform {
+
+// Told of each leading edge at a STEP pin, with the time, s; cycle: the card's clocks since reset.
+using PulseSink = std::function<void(double time, const driver::PinStep& step)>;
+
+// The ends of everything at the card's pins.
+template <template <class> class MasterEnd, template <class> class CardEnd>
+struct PinPorts {
+  sc_core::sc_in<bool> clk{"clk"};
+  sc_core::sc_in<bool> rst{"rst"};
+  MasterEnd<AxiMaster> axi_master{"axi_master"};
+  CardEnd<AxiCard> axi_card{"axi_card"};
+  MasterEnd<WishboneMaster> wishbone_master{"wishbone_master"};
+  CardEnd<WishboneCard> wishbone_card{"wishbone_card"};
+  MasterEnd<SpiMaster> spi_master{"spi_master"};
+  CardEnd<SpiCard> spi_card{"spi_card"};
+  MasterEnd<bool> rx{"rx"};
+  CardEnd<bool> tx{"tx"};
+
+  CardInputs inputs() const {
+    return {rst.read(), axi_master.read(), wishbone_master.read(), rx.read(), spi_master.read(), 0};
+  }
+};
+
+// Pin-accurate: the Verilated card. Signals are written where they change.
+class PinCardModule final : public sc_core::sc_module, public PinPorts<sc_core::sc_in, sc_core::sc_out> {
+ public:
+  sc_core::sc_in<std::uint32_t> switches{"switches"};
+  sc_core::sc_out<std::uint32_t> step{"step"};
+  sc_core::sc_out<std::uint32_t> dir{"dir"};
+  sc_core::sc_out<std::uint32_t> outputs{"outputs"};
+  sc_core::sc_out<bool> irq{"irq"};
+
+  PinCardModule(const sc_core::sc_module_name& name, std::uint32_t clock_hz);
+  std::uint64_t cycles() const { return cycles_; }
+
+ private:
+  void edge();
+
+  std::unique_ptr<PinCard> card_;
+  CardOutputs shown_;
+  std::uint64_t cycles_ = 0;
+};
+
+// The checkers at the same signals.
+class CheckerModule final : public sc_core::sc_module, public PinPorts<sc_core::sc_in, sc_core::sc_in> {
+ public:
+  // `serial_period`: the card's clocks for 8 bits of the serial line.
+  CheckerModule(const sc_core::sc_module_name& name, std::uint32_t serial_period);
+  PortCheckers& checkers() { return *checkers_; }
+
+ private:
+  void edge();
+
+  std::unique_ptr<PortCheckers> checkers_;
+};
+
+// The machine on a pin-accurate card: pulses from STEP and DIR, switches to the inputs.
+class MachineModule final : public sc_core::sc_module {
+ public:
+  sc_core::sc_in<std::uint32_t> step{"step"};
+  sc_core::sc_in<std::uint32_t> dir{"dir"};
+  sc_core::sc_out<std::uint32_t> switches{"switches"};
+
+  // `machine` must outlive it.
+  MachineModule(const sc_core::sc_module_name& name, Motors& machine);
+  void set_sink(PulseSink sink) { sink_ = std::move(sink); }
+
+ private:
+  void pulses();
+  void time_passes();
+
+  Motors& machine_;
+  PulseSink sink_;
+  std::uint32_t step_before_ = 0;
+};
+
+// Loosely timed: the golden model behind the socket, with the machine on its pins. It runs when it is asked, and once a
+// quantum; so switches and interrupt may be seen a quantum late.
+class LooseCard final : public RegisterTarget, private model::CardSteps {
+ public:
+  sc_core::sc_out<bool> irq{"irq"};
+
+  // `machine` must outlive it.
+  LooseCard(const sc_core::sc_module_name& name, std::uint32_t clock_hz, Motors& machine);
+  void set_sink(PulseSink sink) { sink_ = std::move(sink); }
+  std::uint64_t cycles() const { return card_.cycles(); }
+
+ private:
+  std::size_t transfer(driver::Access* accesses, std::size_t count, sc_core::sc_time& delay) override;
+  bool access(driver::Access& access);
+  void quantum();
+  void run_to(const sc_core::sc_time& time);
+  double time_of(std::uint64_t cycle) const { return static_cast<double>(cycle) / clock_hz_; }
+  void pin_step(std::uint64_t cycle, unsigned axis, int direction) override;
+  void path_step(std::uint64_t, std::uint64_t, std::uint64_t, unsigned, int) override {}
+
+  std::uint32_t clock_hz_;
+  model::CoreModel card_;
+  Motors& machine_;
+  PulseSink sink_;
+};
+
+}  // namespace trammel::platform

@@ -1,0 +1,71 @@
+#include <Vdut.h>
+
+#include "pin_models.hpp"
+#include "trammel/sim/lockstep.hpp"
+
+namespace trammel::platform {
+
+namespace {
+
+QData bits_of(const WishboneMaster& m) {
+  return QData{m.cyc} << 50 | QData{m.stb} << 49 | QData{m.we} << 48 | QData{m.sel} << 44 | QData{m.adr} << 32 | m.dat;
+}
+
+class VerilatedPinCard final : public PinCard {
+ public:
+  explicit VerilatedPinCard(std::uint32_t clock_hz) { dut_->clock_hz_i = clock_hz; }
+
+  void clock(const CardInputs& in, CardOutputs& out) override {
+    drive(in);
+    dut_.clock();
+    show(out);
+  }
+
+ private:
+  void drive(const CardInputs& in) {
+    dut_->rst_i = in.rst;
+    dut_->awvalid_i = in.axi.awvalid;
+    dut_->awaddr_i = in.axi.awaddr;
+    dut_->wvalid_i = in.axi.wvalid;
+    dut_->wdata_i = in.axi.wdata;
+    dut_->wstrb_i = in.axi.wstrb;
+    dut_->bready_i = in.axi.bready;
+    dut_->arvalid_i = in.axi.arvalid;
+    dut_->araddr_i = in.axi.araddr;
+    dut_->rready_i = in.axi.rready;
+    dut_->wishbone_i = bits_of(in.wishbone);
+    dut_->rx_i = in.rx;
+    dut_->spi_i = static_cast<CData>(unsigned{in.spi.mosi} << 2 | unsigned{in.spi.cs_n} << 1 | unsigned{in.spi.sck});
+    dut_->input_i = static_cast<CData>(in.inputs);
+  }
+  void show(CardOutputs& out) {
+    out.axi.awready = dut_->awready_o != 0;
+    out.axi.wready = dut_->wready_o != 0;
+    out.axi.bvalid = dut_->bvalid_o != 0;
+    out.axi.bresp = dut_->bresp_o;
+    out.axi.arready = dut_->arready_o != 0;
+    out.axi.rvalid = dut_->rvalid_o != 0;
+    out.axi.rresp = dut_->rresp_o;
+    out.axi.rdata = dut_->rdata_o;
+    const QData wishbone = dut_->wishbone_o;
+    out.wishbone.ack = (wishbone >> 34 & 1) != 0;
+    out.wishbone.err = (wishbone >> 33 & 1) != 0;
+    out.wishbone.stall = (wishbone >> 32 & 1) != 0;
+    out.wishbone.dat = static_cast<std::uint32_t>(wishbone);
+    out.tx = dut_->tx_o != 0;
+    out.spi.enable = (dut_->spi_o >> 1 & 1) != 0;
+    out.spi.miso = (dut_->spi_o & 1) != 0;
+    out.step = dut_->step_o;
+    out.dir = dut_->dir_o;
+    out.outputs = dut_->output_o;
+    out.irq = dut_->irq_o != 0;
+  }
+
+  lockstep::Simulated<Vdut> dut_;
+};
+
+}  // namespace
+
+std::unique_ptr<PinCard> make_pin_card(std::uint32_t clock_hz) { return std::make_unique<VerilatedPinCard>(clock_hz); }
+
+}  // namespace trammel::platform

@@ -1,0 +1,90 @@
+#include <Vcheckers.h>
+#include <verilated.h>
+
+#include "pin_models.hpp"
+
+namespace trammel::platform {
+
+namespace {
+
+// Where port_rule_broken() notes what it is told; set while the checkers are evaluated.
+thread_local std::vector<std::string>* broken_now = nullptr;
+
+class VerilatedCheckers final : public PortCheckers {
+ public:
+  VerilatedCheckers() : dut_(make()) {}
+  ~VerilatedCheckers() override {
+    Verilated::threadContextp(&context_);
+    dut_->final();
+    dut_.reset();
+  }
+
+  // Assertions look at what stood before the edge, so all that follows from it is evaluated first.
+  void clock(const CardInputs& in, const CardOutputs& out) override {
+    drive(in);
+    drive(out);
+    dut_->period_i = serial_period_;
+    dut_->pipelined_i = pipelined_;
+    broken_now = &broken_;
+    if (Verilated::threadContextp() != &context_) Verilated::threadContextp(&context_);
+    dut_->clk_i = 0;
+    dut_->eval();
+    dut_->clk_i = 1;
+    dut_->eval();
+    broken_now = nullptr;
+  }
+
+ private:
+  // eval() does not select its context by itself.
+  std::unique_ptr<Vcheckers> make() {
+    Verilated::threadContextp(&context_);
+    context_.threads(1);
+    return std::make_unique<Vcheckers>(&context_);
+  }
+  void drive(const CardInputs& in) {
+    dut_->rst_i = in.rst;
+    dut_->awvalid_i = in.axi.awvalid;
+    dut_->awaddr_i = in.axi.awaddr;
+    dut_->wvalid_i = in.axi.wvalid;
+    dut_->wdata_i = in.axi.wdata;
+    dut_->wstrb_i = in.axi.wstrb;
+    dut_->bready_i = in.axi.bready;
+    dut_->arvalid_i = in.axi.arvalid;
+    dut_->araddr_i = in.axi.araddr;
+    dut_->rready_i = in.axi.rready;
+    const WishboneMaster& m = in.wishbone;
+    dut_->wishbone_master_i =
+        QData{m.cyc} << 50 | QData{m.stb} << 49 | QData{m.we} << 48 | QData{m.sel} << 44 | QData{m.adr} << 32 | m.dat;
+    dut_->rx_i = in.rx;
+    dut_->spi_master_i =
+        static_cast<CData>(unsigned{in.spi.mosi} << 2 | unsigned{in.spi.cs_n} << 1 | unsigned{in.spi.sck});
+  }
+  void drive(const CardOutputs& out) {
+    dut_->awready_i = out.axi.awready;
+    dut_->wready_i = out.axi.wready;
+    dut_->bvalid_i = out.axi.bvalid;
+    dut_->bresp_i = out.axi.bresp;
+    dut_->arready_i = out.axi.arready;
+    dut_->rvalid_i = out.axi.rvalid;
+    dut_->rresp_i = out.axi.rresp;
+    dut_->rdata_i = out.axi.rdata;
+    dut_->wishbone_card_i = static_cast<CData>(unsigned{out.wishbone.ack} << 2 | unsigned{out.wishbone.err} << 1 |
+                                               unsigned{out.wishbone.stall});
+    dut_->tx_i = out.tx;
+    dut_->spi_card_i = static_cast<CData>(unsigned{out.spi.enable} << 1 | unsigned{out.spi.miso});
+  }
+
+  VerilatedContext context_;
+  std::unique_ptr<Vcheckers> dut_;
+};
+
+}  // namespace
+
+std::unique_ptr<PortCheckers> make_port_checkers() { return std::make_unique<VerilatedCheckers>(); }
+
+}  // namespace trammel::platform
+
+// What the checkers' assertions call (checkers/*.sv).
+extern "C" void port_rule_broken(const char* rule) {
+  if (trammel::platform::broken_now != nullptr) trammel::platform::broken_now->emplace_back(rule);
+}

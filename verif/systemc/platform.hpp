@@ -1,0 +1,64 @@
+// The virtual prototype: computers with programs, each on a link of its own to a card with a machine behind it.
+// Programs on Port::kLoose share the golden model, those on pins the Verilated card; both cards may be there at once.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "modules.hpp"
+#include "transactors.hpp"
+
+namespace trammel::platform {
+
+enum class Port { kLoose, kAxi, kWishbone, kSpi, kUart };
+// By its name on the command line: loose, axi, wishbone, spi, uart.
+std::optional<Port> port_of(const std::string& name);
+const char* name_of(Port port);
+
+struct PlatformOptions {
+  std::uint32_t clock_hz = 1'000'000;
+  double quantum = 100e-6;  // s, the global quantum of loosely timed models
+  MotorParameters motors;
+  bool checkers = true;  // on the pins
+  std::string vcd;       // trace of the pins, without ".vcd"; empty: none
+};
+
+class Platform {
+ public:
+  explicit Platform(const PlatformOptions& options = {});
+  ~Platform();
+
+  // One program a port. Before run().
+  void add(Port port, Host::Software software);
+  // To the end of all programs; then what the first that failed has thrown. SystemC can be run once a process.
+  void run();
+
+  // The machine on the loosely timed card, and on the pin-accurate one.
+  Motors& machine(bool loose) { return loose ? loose_machine_ : pin_machine_; }
+  void set_sink(bool loose, PulseSink sink);
+  std::uint64_t cycles(bool loose) const;
+  // Broken rules at the pins.
+  std::vector<std::string> broken() const;
+  // For a program that misbehaves at the pins.
+  sc_core::sc_signal<AxiMaster>& axi_master();
+
+ private:
+  struct Pins;
+
+  RegisterTarget& transactor(Port port);
+
+  PlatformOptions options_;
+  Motors loose_machine_;
+  Motors pin_machine_;
+  std::vector<std::unique_ptr<Host>> hosts_;
+  std::vector<std::unique_ptr<RegisterTarget>> transactors_;
+  std::unique_ptr<LooseCard> loose_;
+  // Written by the program that asks and by the quantum, at one time maybe: what both have to say is the same.
+  sc_core::sc_signal<bool, sc_core::SC_UNCHECKED_WRITERS> loose_irq_{"loose_irq"};
+  std::unique_ptr<Pins> pins_;
+};
+
+}  // namespace trammel::platform

@@ -1,0 +1,88 @@
+// The driver's way to a card in SystemC: a TLM-2.0 initiator that is a Bus, and what the targets have in common.
+#pragma once
+
+#include <tlm.h>
+#include <tlm_utils/simple_initiator_socket.h>
+#include <tlm_utils/simple_target_socket.h>
+#include <tlm_utils/tlm_quantumkeeper.h>
+
+#include <chrono>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <string>
+#include <systemc>
+
+#include "trammel/driver/bus.hpp"
+
+namespace trammel::platform {
+
+sc_core::sc_time to_sc(std::chrono::nanoseconds time);
+
+// What the generic payload cannot say of a burst that ended early. A target without it is asked word by word.
+struct BurstEnd : tlm::tlm_extension<BurstEnd> {
+  std::size_t made = 0;  // words
+  std::string failure;   // of the link, where it failed
+
+  tlm_extension_base* clone() const override { return new BurstEnd(*this); }
+  void copy_from(const tlm_extension_base& other) override { *this = static_cast<const BurstEnd&>(other); }
+};
+
+// A computer with a program on it (`software`, in a thread of SystemC) and a link to a card. The program sees it as the
+// driver's Bus. Blocking transport, loosely timed: the program's time may run ahead of SystemC's by the global quantum.
+// Accesses to neighbouring registers, or to one again and again, go out as one burst.
+class Host final : public sc_core::sc_module, public driver::Bus {
+ public:
+  using Software = std::function<void(Host&)>;
+
+  tlm_utils::simple_initiator_socket<Host> socket{"socket"};
+  sc_core::sc_in<bool> irq{"irq"};
+
+  // The program begins at `start`; `finished` is called at its end.
+  Host(const sc_core::sc_module_name& name, Software software, const sc_core::sc_time& start,
+       std::function<void()> finished);
+
+  std::size_t transfer(driver::Access* accesses, std::size_t count) override;
+  void sleep(std::chrono::nanoseconds time) override;
+  bool reports_refusals() const override { return true; }
+  bool has_interrupt() const override { return true; }
+  bool wait_for_interrupt(std::chrono::nanoseconds longest) override;
+
+  // SystemC catches up with the program.
+  void synchronise() { keeper_.sync(); }
+  double now() const { return keeper_.get_current_time().to_seconds(); }  // s
+  std::uint64_t bursts() const { return bursts_; }
+  bool done() const { return done_; }
+  // What the program ended with.
+  std::exception_ptr failure() const { return failure_; }
+
+ private:
+  void run();
+  std::size_t burst(driver::Access* accesses, std::size_t count);
+  void transport(tlm::tlm_generic_payload& payload);
+
+  Software software_;
+  sc_core::sc_time start_;
+  std::function<void()> finished_;
+  tlm_utils::tlm_quantumkeeper keeper_;
+  std::uint64_t bursts_ = 0;
+  bool done_ = false;
+  std::exception_ptr failure_;
+};
+
+// A card's register window as a target: 4 KiB of 32-bit words, little endian.
+class RegisterTarget : public sc_core::sc_module {
+ public:
+  tlm_utils::simple_target_socket<RegisterTarget> socket{"socket"};
+
+  explicit RegisterTarget(const sc_core::sc_module_name& name);
+
+ protected:
+  // As Bus::transfer(), `delay` ahead of SystemC's time; adds what it takes, or waits.
+  virtual std::size_t transfer(driver::Access* accesses, std::size_t count, sc_core::sc_time& delay) = 0;
+
+ private:
+  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+};
+
+}  // namespace trammel::platform
