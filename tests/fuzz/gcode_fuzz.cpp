@@ -85,7 +85,8 @@ void check_motions(const Reading& reading) {
     }
     require(std::isfinite(motion.centre_x) && std::isfinite(motion.centre_y), "a centre that is no number");
     require(motion.feed >= 0 && motion.seconds >= 0, "a negative feed or time");
-    const bool fed = motion.kind == MotionKind::kLine || motion.kind == MotionKind::kArc || motion.kind == MotionKind::kProbe;
+    const bool fed =
+        motion.kind == MotionKind::kLine || motion.kind == MotionKind::kArc || motion.kind == MotionKind::kProbe;
     require(!fed || (motion.feed > 0) != (motion.seconds > 0), "a motion with feed needs a feed or a time");
     require((motion.kind == MotionKind::kEnd) == (&motion == &reading.motions.back() && !reading.error),
             "the end is not at the end");

@@ -55,9 +55,15 @@ TEST(Cycle, DrillsAndRetractsToRByDefault) {
 
 TEST(Cycle, G98RetractsToWhereTheSeriesBegan) {
   // G82 goes on with the series that G81 began, and rises to its R first.
-  expect_steps("G99 G81 X1 Z-1 R2\nG98 G82 X3 Z-2 R3 P0.5",
-               {{kRapid, 1, 0, 10}, {kRapid, 1, 0, 2}, {kFeed, 1, 0, -1}, {kRapid, 1, 0, 2}, {kRapid, 1, 0, 3},
-                {kRapid, 3, 0, 3}, {kFeed, 3, 0, -2}, {kDwell, 3, 0, -2, 0.5}, {kRapid, 3, 0, 10}});
+  expect_steps("G99 G81 X1 Z-1 R2\nG98 G82 X3 Z-2 R3 P0.5", {{kRapid, 1, 0, 10},
+                                                             {kRapid, 1, 0, 2},
+                                                             {kFeed, 1, 0, -1},
+                                                             {kRapid, 1, 0, 2},
+                                                             {kRapid, 1, 0, 3},
+                                                             {kRapid, 3, 0, 3},
+                                                             {kFeed, 3, 0, -2},
+                                                             {kDwell, 3, 0, -2, 0.5},
+                                                             {kRapid, 3, 0, 10}});
 }
 
 TEST(Cycle, PecksAndBreaksChips) {
@@ -94,7 +100,8 @@ TEST(Cycle, RepeatsInIncrements) {
   for (int i = 1; i <= 3; ++i) {
     const double x = i;
     const double y = 2.0 * i;
-    for (const Step& step : {Step{kRapid, x, y, 10}, Step{kRapid, x, y, 7}, Step{kFeed, x, y, 1}, Step{kRapid, x, y, 10}}) {
+    for (const Step& step :
+         {Step{kRapid, x, y, 10}, Step{kRapid, x, y, 7}, Step{kFeed, x, y, 1}, Step{kRapid, x, y, 10}}) {
       steps.push_back(step);
     }
   }
@@ -102,13 +109,15 @@ TEST(Cycle, RepeatsInIncrements) {
 }
 
 TEST(Cycle, RisesToRFirst) {
-  expect_steps("G0 Z1\nG81 X1 Z-1 R3", {{kRapid, 0, 0, 1}, {kRapid, 0, 0, 3}, {kRapid, 1, 0, 3}, {kFeed, 1, 0, -1}, {kRapid, 1, 0, 3}});
+  expect_steps("G0 Z1\nG81 X1 Z-1 R3",
+               {{kRapid, 0, 0, 1}, {kRapid, 0, 0, 3}, {kRapid, 1, 0, 3}, {kFeed, 1, 0, -1}, {kRapid, 1, 0, 3}});
 }
 
 TEST(Cycle, WorksInAllPlanes) {
   expect_steps("G18\nG0 Y10\nG98 G81 X1 Y2 Z-6 R3",
                {{kRapid, 0, 10, 10}, {kRapid, 1, 10, -6}, {kRapid, 1, 3, -6}, {kFeed, 1, 2, -6}, {kRapid, 1, 10, -6}});
-  expect_steps("G19\nG81 X-4 Y3 Z3 R-1", {{kRapid, 0, 3, 3}, {kRapid, -1, 3, 3}, {kFeed, -4, 3, 3}, {kRapid, -1, 3, 3}});
+  expect_steps("G19\nG81 X-4 Y3 Z3 R-1",
+               {{kRapid, 0, 3, 3}, {kRapid, -1, 3, 3}, {kFeed, -4, 3, 3}, {kRapid, -1, 3, 3}});
 }
 
 TEST(Cycle, EndsWithAnotherMotionOrG80) {

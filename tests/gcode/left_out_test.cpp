@@ -33,10 +33,22 @@ TEST(LeftOut, LinesAreListedAndMoveNothing) {
   ASSERT_FALSE(program.error) << describe(*program.error);
   ASSERT_EQ(program.motions.size(), 2U);
   EXPECT_EQ(program.motions[0].target[0], 1);
-  EXPECT_EQ(program.accepted,
-            (Words{{"M104", 3}, {"M105", 1}, {"M106", 2}, {"M107", 1}, {"M109", 1}, {"M110", 1}, {"M117", 1},
-                   {"M140", 1}, {"M190", 1}, {"M73", 1},  {"M201", 1}, {"M202", 1}, {"M203", 1}, {"M204", 1},
-                   {"M205", 1}, {"G29", 2}}));
+  EXPECT_EQ(program.accepted, (Words{{"M104", 3},
+                                     {"M105", 1},
+                                     {"M106", 2},
+                                     {"M107", 1},
+                                     {"M109", 1},
+                                     {"M110", 1},
+                                     {"M117", 1},
+                                     {"M140", 1},
+                                     {"M190", 1},
+                                     {"M73", 1},
+                                     {"M201", 1},
+                                     {"M202", 1},
+                                     {"M203", 1},
+                                     {"M204", 1},
+                                     {"M205", 1},
+                                     {"G29", 2}}));
 }
 
 TEST(LeftOut, MoreAreAskedForByNumber) {

@@ -28,7 +28,7 @@ struct Step {
   std::array<double, 3> end{};     // mm, machine coordinates
   std::array<double, 2> centre{};  // mm, machine coordinates, in the plane's order
   bool clockwise = false;
-  int turns = 0;  // begun
+  int turns = 0;    // begun
   double feed = 0;  // mm/min
   double seconds = 0;
 };
@@ -92,7 +92,8 @@ class Canon {
     if (name == "SET_G5X_OFFSET") set(system_, a, 1);
     if (name == "SET_G92_OFFSET") set(shift_, a, 0);
     if (name == "USE_TOOL_LENGTH_OFFSET") set(tool_, a, 0);
-    if (name == "SELECT_PLANE") plane_ = text.find("XY") != std::string::npos ? 0 : text.find("XZ") != std::string::npos ? 1 : 2;
+    if (name == "SELECT_PLANE")
+      plane_ = text.find("XY") != std::string::npos ? 0 : text.find("XZ") != std::string::npos ? 1 : 2;
     if (name == "SET_FEED_RATE") feed_ = a[0] * unit_;
     if (name == "STRAIGHT_TRAVERSE") go(MotionKind::kTraverse, a);
     if (name == "STRAIGHT_FEED") go(MotionKind::kLine, a);
@@ -268,10 +269,9 @@ TEST(Linuxcnc, RefusesAlike) {
   if (!installed()) GTEST_SKIP() << kSkipped;
   const std::vector<const char*> lines = {
       "G81 X1 Z-1", "G81 X1 R1", "G81 X1 Z3 R2", "G83 X1 Z-1 R2", "G83 X1 Z-1 R2 Q0", "G82 X1 Z-1 R2",
-      "G81 X1 Z-1 R2 L0", "G81 X1 Z-1 R2 Q1", "G43 H9", "G10 L2 P10 X1", "G10 L2 X1", "G5 X1 Y1 I1 J1",
-      "G5.1 X1 Y1", "G38.2 X0 Y0 Z0", "G0 X#<nope>", "G0 X[1/0]", "G0 X[1+]", "G0 Xsqrt[-1]",
-      "G0 X#5603", "#5420=1", "G0 X1 H1", "G0 X1 P1", "G92", "G0 G28 X1", "G93 G81 X1 Z-1 R2", "G80 X1",
-      "G0 Xasin[2]", "G0 X[2 MOD 0]", "G0 X#0",
+      "G81 X1 Z-1 R2 L0", "G81 X1 Z-1 R2 Q1", "G43 H9", "G10 L2 P10 X1", "G10 L2 X1", "G5 X1 Y1 I1 J1", "G5.1 X1 Y1",
+      "G38.2 X0 Y0 Z0", "G0 X#<nope>", "G0 X[1/0]", "G0 X[1+]", "G0 Xsqrt[-1]", "G0 X#5603", "#5420=1", "G0 X1 H1",
+      "G0 X1 P1", "G92", "G0 G28 X1", "G93 G81 X1 Z-1 R2", "G80 X1", "G0 Xasin[2]", "G0 X[2 MOD 0]", "G0 X#0",
       // taken by both
       "G0 X[2**3]", "G0 X-#1", "G0 X##7", "G43 H1", "G43.1 Z1", "G10 L20 P0 X1", "G28.1", "G92.3", "G81 X1 Z-1 R2 L2"};
   for (const char* line : lines) {

@@ -24,7 +24,8 @@ struct Point {
 Point on_curve(std::vector<Point> points, double t) {
   for (; points.size() > 1; points.pop_back()) {
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-      points[i] = {points[i].x + t * (points[i + 1].x - points[i].x), points[i].y + t * (points[i + 1].y - points[i].y)};
+      points[i] = {points[i].x + t * (points[i + 1].x - points[i].x),
+                   points[i].y + t * (points[i + 1].y - points[i].y)};
     }
   }
   return points[0];

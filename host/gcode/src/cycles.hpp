@@ -15,18 +15,18 @@ constexpr bool is_cycle(std::optional<int> code) {
   return code && (*code == 730 || *code == 810 || *code == 820 || *code == 830 || *code == 850 || *code == 890);
 }
 // What a cycle needs beside R and the level of its bottom.
-constexpr bool pecks(int code) { return code == 730 || code == 830; }        // Q
+constexpr bool pecks(int code) { return code == 730 || code == 830; }         // Q
 constexpr bool dwells_below(int code) { return code == 820 || code == 890; }  // P
 
 // One line's holes.
 struct CycleHoles {
   int code = 810;
-  double start = 0;     // level where the tool stands
-  double retract = 0;   // R
+  double start = 0;    // level where the tool stands
+  double retract = 0;  // R
   double bottom = 0;
-  double clear = 0;     // where each hole ends, retract or above
-  double peck = 0;      // G73, G83
-  double seconds = 0;   // G82, G89
+  double clear = 0;               // where each hole ends, retract or above
+  double peck = 0;                // G73, G83
+  double seconds = 0;             // G82, G89
   std::array<double, 2> first{};  // position of the first hole
   std::array<double, 2> next{};   // from each to the next
   std::uint32_t count = 1;

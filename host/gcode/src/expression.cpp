@@ -21,9 +21,7 @@ bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 double truth(bool holds) { return holds ? 1 : 0; }
 
-bool wrong(Problem& problem, std::string message) {
-  return problem.set(ErrorCode::kExpression, std::move(message));
-}
+bool wrong(Problem& problem, std::string message) { return problem.set(ErrorCode::kExpression, std::move(message)); }
 
 struct Function {
   std::string_view name;
@@ -101,9 +99,7 @@ bool ExpressionReader::malformed(Problem& problem) const {
                                      : fmt::format("an expression is not understood from '{}' on", quote(rest)));
 }
 
-bool ExpressionReader::value(Value& value, Problem& problem) {
-  return real(value, problem);
-}
+bool ExpressionReader::value(Value& value, Problem& problem) { return real(value, problem); }
 
 // Values that are not known yet cannot be wrong.
 bool ExpressionReader::real(Value& value, Problem& problem) {
@@ -332,7 +328,8 @@ bool ExpressionReader::name(Problem& problem) {
   for (; at_ < line_.size() && line_[at_] != '>'; ++at_) {
     if (is_space(line_[at_])) continue;
     if (line_[at_] == '(' || line_[at_] == ')' || line_[at_] == ';') return malformed(problem);
-    if (name_size_ == kLongestName) return wrong(problem, fmt::format("a name of more than {} characters", kLongestName));
+    if (name_size_ == kLongestName)
+      return wrong(problem, fmt::format("a name of more than {} characters", kLongestName));
     name_[name_size_++] = lower(line_[at_]);
   }
   if (at_ == line_.size()) return wrong(problem, "a parameter's name without '>'");

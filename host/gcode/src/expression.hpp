@@ -33,7 +33,24 @@ class ExpressionReader {
   std::size_t at() const { return at_; }
 
  private:
-  enum class Operator { kEnd, kPower, kTimes, kOver, kMod, kPlus, kMinus, kEq, kNe, kGt, kGe, kLt, kLe, kAnd, kOr, kXor };
+  enum class Operator {
+    kEnd,
+    kPower,
+    kTimes,
+    kOver,
+    kMod,
+    kPlus,
+    kMinus,
+    kEq,
+    kNe,
+    kGt,
+    kGe,
+    kLt,
+    kLe,
+    kAnd,
+    kOr,
+    kXor
+  };
   static constexpr std::size_t kLongestName = 64;
   static constexpr int kDeepest = 32;
 

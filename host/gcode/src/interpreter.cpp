@@ -159,9 +159,7 @@ bool Interpreter::defer(const Context& context, std::size_t motions_before) {
   return true;
 }
 
-void Interpreter::end(std::size_t line, LineMotions& motions) {
-  motions.add(MotionKind::kEnd, line).target = here_.at;
-}
+void Interpreter::end(std::size_t line, LineMotions& motions) { motions.add(MotionKind::kEnd, line).target = here_.at; }
 
 bool Interpreter::switches(int number) const {
   const machine::MachineOutputs& outputs = machine_.outputs;

@@ -61,8 +61,13 @@ bool Interpreter::arc(const Context& context, bool clockwise) {
 bool Interpreter::arc_geometry(const Context& context, const Plane& plane, Motion& motion) const {
   const std::size_t x = motion.axis_x;
   const std::size_t y = motion.axis_y;
-  ArcWords words{
-      {here_.at[x], here_.at[y]}, {motion.target[x], motion.target[y]}, motion.clockwise, {}, {}, modes_.centre_absolute, {}};
+  ArcWords words{{here_.at[x], here_.at[y]},
+                 {motion.target[x], motion.target[y]},
+                 motion.clockwise,
+                 {},
+                 {},
+                 modes_.centre_absolute,
+                 {}};
   const auto centre = [&](char letter, std::size_t axis) -> std::optional<double> {
     const auto word = context.words.letter(letter);
     if (!word) {
@@ -103,8 +108,7 @@ bool Interpreter::set_turns(const Context& context, Motion& motion) const {
 }
 
 // From the start to the first control point, and from the end to the second, mm.
-bool Interpreter::spline_controls(const Context& context, std::array<double, 2>& first,
-                                  std::array<double, 2>& second) {
+bool Interpreter::spline_controls(const Context& context, std::array<double, 2>& first, std::array<double, 2>& second) {
   const auto& [words, motions, problem] = context;
   const bool i = words.letter('I').has_value();
   const bool j = words.letter('J').has_value();
@@ -227,11 +231,11 @@ bool Interpreter::check_cycle(const Context& context, const PlaneAxes& axes) con
 // `fresh`: the first line of this cycle.
 bool Interpreter::set_sticky(const Context& context, int code, const PlaneAxes& axes, bool fresh) {
   const auto& [words, motions, problem] = context;
-  const char* const missing = !words.has_axis(axes.normal)                   ? "the bottom of its holes"
-                              : !words.letter('R')                         ? "R, the level above its holes"
-                              : pecks(code) && !words.letter('Q')          ? "Q, the depth of a peck"
+  const char* const missing = !words.has_axis(axes.normal)               ? "the bottom of its holes"
+                              : !words.letter('R')                       ? "R, the level above its holes"
+                              : pecks(code) && !words.letter('Q')        ? "Q, the depth of a peck"
                               : dwells_below(code) && !words.letter('P') ? "P, the seconds at the bottom"
-                                                                           : nullptr;
+                                                                         : nullptr;
   if (fresh && missing != nullptr) {
     return problem.set(ErrorCode::kMissingWord, fmt::format("{} needs {}", name_of('G', code), missing));
   }
@@ -274,8 +278,8 @@ bool Interpreter::cycle(const Context& context, std::optional<int> before) {
   }
   holes.count = static_cast<std::uint32_t>(words.letter('L').value_or(1));
   if (holes.retract < holes.bottom) {
-    return problem.set(ErrorCode::kCycleLevels, fmt::format("R of {} is below {}, the bottom of the hole",
-                                                            name_of('G', code), in.normal));
+    return problem.set(ErrorCode::kCycleLevels,
+                       fmt::format("R of {} is below {}, the bottom of the hole", name_of('G', code), in.normal));
   }
   if (pecks(code) && !(holes.peck > 0)) {
     return problem.set(ErrorCode::kCycleLevels, fmt::format("Q of {} must be above 0", name_of('G', code)));

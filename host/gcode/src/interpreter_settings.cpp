@@ -40,19 +40,19 @@ bool Interpreter::set_system(const Context& context) {
   const auto& [words, motions, problem] = context;
   const auto what = words.letter('L');
   if (!what || (*what != 2 && *what != 20)) {
-    return problem.set(ErrorCode::kUnsupportedWord,
-                       what ? fmt::format("G10 L{:.10g}: only L2 and L20 are supported{}", *what,
-                                          *what == 1 || *what == 10 || *what == 11
-                                              ? "; tool lengths come from the machine file"
-                                              : "")
-                            : std::string("G10 needs L2 or L20"));
+    return problem.set(
+        ErrorCode::kUnsupportedWord,
+        what ? fmt::format("G10 L{:.10g}: only L2 and L20 are supported{}", *what,
+                           *what == 1 || *what == 10 || *what == 11 ? "; tool lengths come from the machine file" : "")
+             : std::string("G10 needs L2 or L20"));
   }
   if (words.letter('R')) {
     return problem.set(ErrorCode::kUnsupportedWord, "G10 R: coordinate systems cannot be turned");
   }
   const auto number = words.letter('P');
   if (!number) {
-    return problem.set(ErrorCode::kMissingWord, "G10 needs P, the coordinate system: 1 (G54) to 9 (G59.3), 0: this one");
+    return problem.set(ErrorCode::kMissingWord,
+                       "G10 needs P, the coordinate system: 1 (G54) to 9 (G59.3), 0: this one");
   }
   if (words.later('P') || *number < 0 || *number > static_cast<double>(machine::kCoordinateSystems) ||
       *number != static_cast<double>(static_cast<int>(*number))) {

@@ -69,9 +69,8 @@ bool LeftOut::find(std::string_view line, std::string_view& name, Problem& probl
   std::string_view rest = without_blanks(line.substr(1));
   if (letter == 'G' && rest.substr(0, 2) != "29") return false;
   const int tenths = code_at(rest);
-  const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) {
-    return known.letter == letter && known.tenths == tenths;
-  });
+  const auto entry = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const Entry& known) { return known.letter == letter && known.tenths == tenths; });
   if (entry == entries_.end()) return false;
   name = entry->name;
   failed_ = !look_behind(rest, *entry, problem);
@@ -94,9 +93,8 @@ bool LeftOut::look_behind(std::string_view rest, const Entry& entry, Problem& pr
     if (depth > 0 || !begins || (letter != 'G' && letter != 'M')) continue;
     std::string_view number = without_blanks(rest.substr(i + 1));
     if (code_at(number) < 0) continue;
-    return problem.set(ErrorCode::kBesideLeftOut,
-                       fmt::format("'{}' beside {}, whose line is left out", quote(without_blanks(rest.substr(i))),
-                                   entry.name));
+    return problem.set(ErrorCode::kBesideLeftOut, fmt::format("'{}' beside {}, whose line is left out",
+                                                              quote(without_blanks(rest.substr(i))), entry.name));
   }
   return true;
 }

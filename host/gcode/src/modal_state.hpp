@@ -29,9 +29,9 @@ struct ModalState {
   bool feed_in_inches = false;
   bool feed_later = false;  // depends on a probe that has not run yet
   PathControl path_control = PathControl::kContinuous;
-  double tolerance = 0;              // mm
-  bool retract_to_start = false;     // G98
-  double spindle_speed = 0;          // S
+  double tolerance = 0;           // mm
+  bool retract_to_start = false;  // G98
+  double spindle_speed = 0;       // S
 
  private:
   void set_path_control(const WordSet& words);

@@ -37,15 +37,13 @@ bool Offsets::depends(std::size_t axis) const {
 
 void Offsets::set_system_at(std::size_t system, std::size_t axis, const Place& here, const Value& value) {
   const double others = (shifted_ ? shift_.at[axis] : 0) + tool_.at[axis];
-  const bool probed =
-      here.is_later(axis) || value.later || tool_.is_later(axis) || (shifted_ && shift_.is_later(axis));
+  const bool probed = here.is_later(axis) || value.later || tool_.is_later(axis) || (shifted_ && shift_.is_later(axis));
   set_system(system, axis, {here.at[axis] - others - value.value, probed});
 }
 
 void Offsets::shift_at(std::size_t axis, const Place& here, const Value& value) {
   const double others = systems_[system_].at[axis] + tool_.at[axis];
-  const bool probed =
-      here.is_later(axis) || value.later || tool_.is_later(axis) || systems_[system_].is_later(axis);
+  const bool probed = here.is_later(axis) || value.later || tool_.is_later(axis) || systems_[system_].is_later(axis);
   shift_.set(axis, here.at[axis] - others - value.value, probed);
   any_later_ = any_later_ || probed;
 }
@@ -56,8 +54,7 @@ void Offsets::shift_clear() {
 }
 
 bool Offsets::has_tool() const {
-  return tool_.later != 0 ||
-         std::any_of(tool_.at.begin(), tool_.at.end(), [](double offset) { return offset != 0; });
+  return tool_.later != 0 || std::any_of(tool_.at.begin(), tool_.at.end(), [](double offset) { return offset != 0; });
 }
 
 template <class Self>
@@ -76,7 +73,8 @@ auto Offsets::place_of(Self& self, int number, std::size_t& axis) -> decltype(&s
     place = &self.shift_;
   } else if (number >= kFirstSystem && number <= kLast) {
     nth = (number - kFirstSystem) % kBetweenSystems;
-    if (nth < kParameterAxes) place = &self.systems_[static_cast<std::size_t>((number - kFirstSystem) / kBetweenSystems)];
+    if (nth < kParameterAxes)
+      place = &self.systems_[static_cast<std::size_t>((number - kFirstSystem) / kBetweenSystems)];
   }
   axis = parameter_axis(self.machine_, nth).value_or(card_map::kMaxAxes);
   return place;

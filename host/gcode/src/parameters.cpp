@@ -18,8 +18,8 @@ int index_of(double number) {
 }
 
 bool refuse_index(double number, Problem& problem) {
-  return problem.set(ErrorCode::kParameter, fmt::format("#{:.10g}: parameters have the numbers 1 to {}, or names",
-                                                        number, kLastParameter));
+  return problem.set(ErrorCode::kParameter,
+                     fmt::format("#{:.10g}: parameters have the numbers 1 to {}, or names", number, kLastParameter));
 }
 
 }  // namespace
@@ -69,9 +69,9 @@ bool Parameters::assign(const Value& number, const Value& value, Problem& proble
     return refuse_index(number.value, problem);
   }
   if (index >= kFirstPredefined) {
-    return problem.set(ErrorCode::kParameter,
-                       fmt::format("#{} only tells something: G10, G28.1, G30.1, G92 and T change what it tells",
-                                   index));
+    return problem.set(
+        ErrorCode::kParameter,
+        fmt::format("#{} only tells something: G10, G28.1, G30.1, G92 and T change what it tells", index));
   }
   if (pending_.size() == kMostOfALine) {
     return problem.set(ErrorCode::kParameter, fmt::format("more than {} assignments on a line", kMostOfALine));

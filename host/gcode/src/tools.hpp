@@ -13,7 +13,7 @@ class Tools {
  public:
   explicit Tools(const machine::Machine& machine) : machine_(machine) {}
 
-  void select(unsigned number) { selected_ = number; }     // T
+  void select(unsigned number) { selected_ = number; }        // T
   void change() { current_ = selected_.value_or(current_); }  // M6
   unsigned current() const { return current_; }
   std::optional<unsigned> selected() const { return selected_; }

@@ -23,7 +23,7 @@ enum class ErrorCode : std::uint16_t {
   kUnsupportedWord = 10,
   kNoSuchLine = 11,  // to begin from
   kExpression = 12,
-  kParameter = 13,      // no such number or name, or one that cannot be set
+  kParameter = 13,  // no such number or name, or one that cannot be set
   kOWord = 14,
   kBesideLeftOut = 15,  // a G or M word on a line that is left out
   // Words of one line against each other

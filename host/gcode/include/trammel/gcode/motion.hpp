@@ -25,11 +25,11 @@ struct Motion {
   MotionKind kind = MotionKind::kLine;
   std::size_t line = 0;  // of the source, from 1
   Coordinates target{};  // where it ends, kProbe: at the latest; kDwell, kEnd and kOutput: where the one before ended
-  // Axes whose target depends on a probe that has not run, bit n: axis n. It is what it would be if the probe tripped at
-  // its target.
+  // Axes whose target depends on a probe that has not run, bit n: axis n. It is what it would be if the probe tripped
+  // at its target.
   std::uint8_t later = 0;
-  double feed = 0;       // mm/s along the path; 0 for kTraverse and where `seconds` counts
-  double seconds = 0;    // kDwell, or the duration of a motion under G93
+  double feed = 0;     // mm/s along the path; 0 for kTraverse and where `seconds` counts
+  double seconds = 0;  // kDwell, or the duration of a motion under G93
   PathControl path_control = PathControl::kContinuous;
   double tolerance = 0;    // mm, G64 P: how far the path may be left in corners
   bool clockwise = false;  // the rest: kArc; seen with the plane's first axis to the right and the second up

@@ -78,7 +78,7 @@ struct MachineOutputs {
 
 // How long a tool is; the table [tools.<number>].
 struct Tool {
-  unsigned number = 0;  // 1 .. kLargestTool
+  unsigned number = 0;                               // 1 .. kLargestTool
   std::array<double, card_map::kMaxAxes> offsets{};  // mm, degrees for A, B and C, by axis of the machine
 };
 inline constexpr unsigned kLargestTool = 999'999;
