@@ -32,7 +32,7 @@ constexpr std::uint64_t kRandomVelocity = 100;
 // Hours of work, and 300 MB of sums.
 constexpr std::uint64_t kMostLines = 100'000'000;
 
-struct Options {
+struct CompareOptions {
   CurveChoice curve;
   VelocityChoice velocity;
   std::optional<std::uint64_t> random;
@@ -63,7 +63,7 @@ void check_size(const interpolation::Curve& curve) {
 }
 
 // Every method's measures; fills in the traces, in the same order, for the motor.
-Comparison compare(const Options& options, std::vector<measure::Trace>& traces) {
+Comparison compare(const CompareOptions& options, std::vector<measure::Trace>& traces) {
   const interpolation::Curve curve = options.curve.curve();
   check_size(curve);
   const measure::IdealCurve ideal = measure::ideal_of(curve);
@@ -94,7 +94,7 @@ Comparison compare(const Options& options, std::vector<measure::Trace>& traces) 
   return result;
 }
 
-void compare_curve(const Options& options) {
+void compare_curve(const CompareOptions& options) {
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
   Output* const plot = outputs.add("--plot", options.plot);
@@ -107,7 +107,7 @@ void compare_curve(const Options& options) {
   outputs.commit(table_of(comparison));
 }
 
-void compare_random(const Options& options) {
+void compare_random(const CompareOptions& options) {
   if (options.curve.given()) throw UsageError("--random takes no curve of its own");
   if (options.plot) throw UsageError("--plot: a picture is made of one curve, not of --random lines");
   measure::RandomLines lines;
@@ -141,7 +141,7 @@ void compare_random(const Options& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareOptions>();
   CLI::App* command = app.add_subcommand(
       "compare",
       "all methods on one curve, or over random lines: distances, host cost, evenness, vibration of a motor");

@@ -17,6 +17,7 @@
 #include "outputs.hpp"
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
+#include "shell_command.hpp"
 #include "steps_command.hpp"
 #include "temporary_files.hpp"
 #include "trammel/machine/machine.hpp"
@@ -68,6 +69,7 @@ int main(int argc, char** argv) {
   trammel::app::add_methods_command(app);
   trammel::app::add_reproduce_command(app);
   trammel::app::add_compare_command(app);
+  trammel::app::add_shell_commands(app);
   try {
     run(app, argc, argv);
   } catch (const trammel::app::UsageError& error) {

@@ -20,7 +20,7 @@ std::string abilities(const interpolation::MethodInfo& method) {
   return result;
 }
 
-void execute() {
+void list_methods() {
   fmt::print("{:<16} {:<46} {:<10} {}\n", "method", "can do", "time in", "what it is");
   for (const auto& method : interpolation::methods()) {
     const std::string unit = std::string(method.time_unit) + "s";
@@ -32,7 +32,7 @@ void execute() {
 
 void add_methods_command(CLI::App& app) {
   CLI::App* command = app.add_subcommand("methods", "list the interpolation methods and what each can do");
-  command->callback(execute);
+  command->callback(list_methods);
 }
 
 }  // namespace trammel::app

@@ -24,7 +24,7 @@ using reproduce::Page;
 using reproduce::Progress;
 using reproduce::Verdict;
 
-struct Options {
+struct ReproduceOptions {
   std::string out = "reproduce";
   bool progress = false;
 };
@@ -99,7 +99,7 @@ void write_all(const std::filesystem::path& folder, const std::map<std::string, 
   outputs.commit();
 }
 
-void execute(const Options& options) {
+void reproduce_papers(const ReproduceOptions& options) {
   check_folder(options.out);
   std::vector<Page> pages;
   pages.emplace_back("goldberg-steer.md", "Goldberg & Goldberg: XY Interpolation Algorithms");
@@ -133,14 +133,14 @@ void execute(const Options& options) {
 }  // namespace
 
 void add_reproduce_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReproduceOptions>();
   CLI::App* command =
       app.add_subcommand("reproduce", "make every table and figure of both papers again, with a verdict on each");
   command->add_option("--out", options->out, "folder for the pages, pictures and data")
       ->capture_default_str()
       ->type_name("DIR");
   command->add_flag("--progress", options->progress, "progress bar even if stderr is not a terminal");
-  command->callback([options] { execute(*options); });
+  command->callback([options] { reproduce_papers(*options); });
 }
 
 }  // namespace trammel::app

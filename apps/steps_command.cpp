@@ -22,7 +22,7 @@ using interpolation::AnyInterpolator;
 using interpolation::Position;
 using interpolation::Step;
 
-struct Options {
+struct StepsOptions {
   std::string method;
   CurveChoice curve;
   VelocityChoice velocity;
@@ -99,7 +99,7 @@ void write_json(Output& out, const interpolation::MethodInfo& method, AnyInterpo
         interpolator.total_time());
 }
 
-void execute(const Options& options) {
+void print_steps(const StepsOptions& options) {
   const auto method = interpolation::method_named(options.method);
   if (!method) throw UsageError(fmt::format("no method \"{}\": trammel methods lists them", options.method));
   Outputs outputs;
@@ -123,7 +123,7 @@ void execute(const Options& options) {
 }  // namespace
 
 void add_steps_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StepsOptions>();
   CLI::App* command = app.add_subcommand("steps", "print the steps of one interpolation method on one curve");
   command->add_option("--method", options->method, "interpolation method; trammel methods lists them")
       ->required()
@@ -134,7 +134,7 @@ void add_steps_command(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--json", options->json, "the same and the times, as JSON ('-': standard output)")
       ->type_name("FILE");
-  command->callback([options] { execute(*options); });
+  command->callback([options] { print_steps(*options); });
 }
 
 }  // namespace trammel::app

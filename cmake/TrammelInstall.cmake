@@ -2,6 +2,7 @@
 #   trammel_development  libraries, headers, CMake package; a consumer needs no Python, RTL or Verilator
 #   trammel_command      the trammel command
 #   trammel_rtl          the card's sources, with their file list, FuseSoC core and lint waivers
+#   trammel_python       Python's package, where it is built (bindings/python)
 #   trammel_machine      the default machine file, to be changed
 #   trammel_licence
 include(GNUInstallDirs)

@@ -186,7 +186,7 @@ module geometry_decoder #(
     engine_o      <= 5'(card_map_pkg::ENGINE_LINES);
     if (is_arc_q) engine_o <= 5'(card_map_pkg::ENGINE_ACCUMULATOR);
     if (is_chord_q) engine_o <= 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
-    barrier_o   <= !is_line_q && !on_engine && !is_output_q && !is_mark_q && !is_probe_q;
+    barrier_o   <= !is_line_q && !on_engine;
     instant_o   <= {is_probe_q, is_mark_q, is_output_q};
     end_o       <= opcode == card_map_pkg::OP_END;
     wait_o      <= is_wait_q;

@@ -49,7 +49,7 @@ module deviation_steps #(
   if (EightDirections != 0) begin : gen_eight_directions
     logic [15:0] change_y, after_both;
 
-    assign on_x = take_i[0] | eight_i;
+    assign on_x = take_i[0];
     assign negative = on_x ? negative_i[0] : negative_i[1];
     assign skip = eight_i & ~take_i[0];
 

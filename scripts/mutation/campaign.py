@@ -21,7 +21,7 @@ COLUMNS = ["id", "how", "judge", "seconds", "module", "file", "line", "kind", "n
 def arguments_of(argv):
     parser = argparse.ArgumentParser(prog="scripts/mutate", description=__doc__)
     parser.add_argument("--sample", type=int, metavar="N",
-                        help="N mutants chosen at random instead of all, none of them listed as equivalent")
+                        help="N mutants of blocks with a lockstep of their own, chosen at random, none of them listed as equivalent")
     parser.add_argument("--seed", type=int, default=1, metavar="S", help="of the random choice (default 1)")
     parser.add_argument("--module", action="append", metavar="NAME", help="only mutants of this module; may be repeated")
     parser.add_argument("--list", action="store_true", help="list the mutants, try none")
@@ -37,7 +37,7 @@ def arguments_of(argv):
     return parser.parse_args(argv)
 
 
-def chosen(mutants: List[dict], arguments, listed) -> List[dict]:
+def chosen(mutants: List[dict], all_judges: List[judges.Judge], arguments, listed) -> List[dict]:
     if arguments.module:
         unknown = set(arguments.module) - {mutant["module"] for mutant in mutants}
         if unknown:
@@ -45,8 +45,9 @@ def chosen(mutants: List[dict], arguments, listed) -> List[dict]:
         mutants = [mutant for mutant in mutants if mutant["module"] in arguments.module]
     if arguments.sample is not None and arguments.sample < len(mutants):
         # By name, so that a change of the RTL leaves the rest of the sample as it was. Not what is listed: one that lives
-        # takes as long as twenty others.
-        mutants = [mutant for mutant in mutants if mutant["id"] not in listed]
+        # takes as long as twenty others; and not what joins the blocks, which the whole card alone shows.
+        blocks = {file for judge in all_judges if judge.of_a_block() for file in judge.sources}
+        mutants = [mutant for mutant in mutants if mutant["id"] not in listed and mutant["file"] in blocks]
         drawn = {mutant["id"]: hashlib.sha256(f"{arguments.seed} {mutant['id']}".encode()).digest() for mutant in mutants}
         mutants = sorted(mutants, key=lambda mutant: drawn[mutant["id"]])[:arguments.sample]
     return mutants
@@ -148,13 +149,14 @@ def main(argv=None) -> int:
         listed = equivalents.by_mutant(equivalents.read(arguments.equivalents), mutants)
     except equivalents.EquivalentsError as error:
         sys.exit(f"mutate: {error}")
-    mutants = chosen(mutants, arguments, listed)
+    all_judges = judges.read_judges(arguments.judges)
+    mutants = chosen(mutants, all_judges, arguments, listed)
     if arguments.list:
         for mutant in mutants:
             print(show(mutant))
         return 0
     files = {mutant["file"] for mutant in mutants}
-    all_judges = [judge for judge in judges.read_judges(arguments.judges) if files & set(judge.sources)]
+    all_judges = [judge for judge in all_judges if files & set(judge.sources)]
     results = Results(arguments.out, judges.fingerprint(all_judges), arguments.resume)
     try:
         with ThreadPoolExecutor(arguments.jobs) as pool:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Dict, List, Optional
 
 MISMATCH = "repeat with TRAMMEL_SEED="  # the line that every report of a lockstep has
+BLOCK_SOURCES = 20  # a block's lockstep reads at most so many; that of the motion core reads more than twice as many
 TESTS_PASSED = re.compile(r"\[  PASSED  \] [1-9]")  # a filter that matches no test passes as well
 
 
@@ -31,6 +32,9 @@ class Judge:
     last_resort: bool = False  # a long run: tries no mutant that is listed as equivalent
     seconds: Optional[float] = None  # of processor time for the sound design
     first: threading.Lock = field(default_factory=threading.Lock)
+
+    def of_a_block(self) -> bool:
+        return len(self.sources) <= BLOCK_SOURCES
 
     def limit(self) -> int:
         """Processor seconds after which a run has hung: no other work on the machine uses them up."""

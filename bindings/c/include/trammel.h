@@ -100,10 +100,10 @@ typedef struct trammel_bus {
   bool reports_refusals;
 } trammel_bus;
 
-// Opens the card that a URL names (docs/reference/card-url.md of the project): "sim:?axes=4&clock=1000000" is a simulated
-// one, others are "tcp://host:port?token=...", "serial:/dev/ttyUSB0", "spi:/dev/spidev0.0", "mmap:/dev/uio0". Reads who
-// the card is; writes nothing but what begins the connection. TRAMMEL_LINK when nothing answers.
-// On success *card is to be closed; else it is null.
+// Opens the card that a URL names (docs/reference/card-url.md of the project): "sim:?axes=4&clock=1000000" is a
+// simulated one, others are "tcp://host:port?token=...", "serial:/dev/ttyUSB0", "spi:/dev/spidev0.0", "mmap:/dev/uio0".
+// Reads who the card is; writes nothing but what begins the connection. TRAMMEL_LINK when nothing answers. On success
+// *card is to be closed; else it is null.
 TRAMMEL_API trammel_result trammel_open(const char* url, trammel_card** card);
 TRAMMEL_API trammel_result trammel_open_simulated(const trammel_simulation* simulation, trammel_card** card);
 // `bus` is copied; its context must outlive the card.
@@ -122,8 +122,8 @@ typedef struct trammel_identification {
   uint32_t feed_depth;
 } trammel_identification;
 
-// Raw accesses through the card's bus, unchecked: `made` is how many, fewer than `count` where the card refused the next
-// one. What is written so, the driver does not know of.
+// Raw accesses through the card's bus, unchecked: `made` is how many, fewer than `count` where the card refused the
+// next one. What is written so, the driver does not know of.
 TRAMMEL_API trammel_result trammel_transfer(trammel_card* card, trammel_access* accesses, size_t count, size_t* made);
 
 // As read when the card was opened.

@@ -7,6 +7,7 @@
 #include <array>
 #include <random>
 #include <type_traits>
+#include <utility>
 
 #include "Vdut.h"
 #include "register_file_inside.hpp"
@@ -25,7 +26,7 @@ namespace reg = card_map::reg;
 constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
-constexpr std::uint64_t kComparedSignals = 13;
+constexpr std::uint64_t kComparedSignals = 14;
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
@@ -314,6 +315,7 @@ class Bench {
     checker_.compare("irq_o", rtl_->irq_o, out.irq);
     checker_.compare("clear_fault_o", rtl_->clear_fault_o, out.clear_fault);
     checker_.compare("abort_o", rtl_->abort_o, out.abort);
+    checker_.compare("probe_clear_o", rtl_->probe_clear_o, out.probe_clear);
     checker_.compare("flush_o", rtl_->flush_o, out.flush);
     checker_.compare("stream_write_o", rtl_->stream_write_o, out.stream_write);
     checker_.compare("start_o", rtl_->start_o, out.start);
@@ -362,13 +364,15 @@ void snapshots_around_the_carry(Bench& bench) {
 
 // A reset in each clock of a write: what it asked for never comes out, be it a setting, an event or a refusal.
 void resets_in_writes(Bench& bench) {
-  constexpr std::uint32_t kWritten[] = {reg::kIrqEnable, reg::kControl, reg::kFault, reg::kRefusal, reg::kAxes};
+  constexpr std::pair<std::uint32_t, std::uint32_t> kWritten[] = {
+      {reg::kIrqEnable, 1}, {reg::kControl, 1}, {reg::kControl, card_map::field::kControlProbeClear},
+      {reg::kFault, 1},     {reg::kRefusal, 1}, {reg::kAxes, 1}};
   constexpr std::uint32_t kLongest = 8;  // clocks, more than such a write takes
-  for (const std::uint32_t address : kWritten) {
+  for (const auto& [address, data] : kWritten) {
     for (std::uint32_t after = 0; after < kLongest; ++after) {
       bench.reset();
       for (std::uint64_t i = 0; i < kFilled; ++i) bench.clock();
-      bench.ask(true, address, 1);
+      bench.ask(true, address, data);
       for (std::uint32_t i = 0; i < after; ++i) bench.clock();
       bench.reset();
       for (std::uint32_t i = 0; i < kLongest; ++i) bench.clock();

@@ -59,6 +59,22 @@ class Bench {
     in_ = {};
   }
 
+  // A reset where what is queued was lost; then a piece that waits for more.
+  void reset_while_lost() {
+    reset();
+    in_ = {};
+    in_.ratio = 0x10000;
+    in_.lost = true;
+    clock();
+    in_.lost = false;
+    for (unsigned i = 0; i < 4; ++i) clock();
+    reset();
+    load_distance(1000);
+    in_.decoded = true;
+    for (unsigned i = 0; i < 70; ++i) clock();
+    in_ = {};
+  }
+
   Checker& check() { return check_; }
   std::uint64_t holds() const { return holds_; }
   std::uint64_t ends() const { return ends_; }
@@ -66,13 +82,17 @@ class Bench {
   std::uint64_t lost() const { return lost_; }
 
  private:
-  // Its stop distance is loaded; it begins from rest.
-  void begin_piece(std::uint32_t distance) {
+  void load_distance(std::uint32_t distance) {
     for (unsigned i = 0; i < 2; ++i) {
       in_.load = halfword(model::feed_target::kStopDistance, distance, i);
       clock();
     }
     in_.load = {};
+  }
+
+  // Its stop distance is loaded; it begins from rest.
+  void begin_piece(std::uint32_t distance) {
+    load_distance(distance);
     for (unsigned i = 0; i < 2; ++i) clock();
     in_.active = in_.swap = true;
     clock();
@@ -318,6 +338,15 @@ void ending_pieces_are_cut() {
   EXPECT_EQ(bench.holds(), 32U);
 }
 
+// The first round after a reset has counts like any other.
+void reset_finds_what_is_lost() {
+  Bench bench(1);
+  bench.reset_while_lost();
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * bench.check().cycles());
+  EXPECT_GT(bench.waits(), 30U);
+}
+
+TEST(UnderrunGuard, ResetFindsWhatIsLost) { EXPECT_EQ(judge(reset_finds_what_is_lost), ""); }
 TEST(UnderrunGuard, EndingPiecesAreCut) { EXPECT_EQ(judge(ending_pieces_are_cut), ""); }
 TEST(UnderrunGuard, RandomInputs) { EXPECT_EQ(judge(random_inputs), ""); }
 

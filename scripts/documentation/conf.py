@@ -1,0 +1,9 @@
+# Sphinx's settings for the site (scripts/site).
+project = "Trammel"
+extensions = ["myst_parser", "sphinxcontrib.mermaid"]
+myst_heading_anchors = 4
+myst_fence_as_directive = ["mermaid"]
+html_theme = "furo"
+html_title = "Trammel"
+html_show_sphinx = False
+html_copy_source = False

@@ -1,0 +1,190 @@
+"""The Python package: driver, simulated card, interpolators, and how they fail."""
+import math
+import threading
+import unittest
+
+import trammel
+from trammel import interpolation as ip
+
+SECOND = 1_000_000_000
+TICK_EVERY_16 = 1 << 60
+
+
+class Cards(unittest.TestCase):
+    def test_identification(self):
+        card = trammel.simulate(axes=7, clock_hz=25_000_000)
+        self.assertEqual((card.identification.axes, card.identification.clock_hz), (7, 25_000_000))
+        self.assertEqual(trammel.open("sim:?axes=3").identification.axes, 3)
+
+    def test_lines_in_one_burst(self):
+        card = trammel.simulate()
+        card.record_steps()
+        plan = card.run_line([20, -40], duration_ns=2_000_000)
+        self.assertEqual((plan.parts, plan.clocks, plan.slowed), (1, 2000, False))
+        self.assertEqual(card.snapshot().position, [20, -40, 0, 0, 0, 0, 0, 0])
+        self.assertEqual(sum(1 for _, axis, way in card.pin_steps if axis == 1 and way == -1), 40)
+        self.assertEqual(card.run_line([30, 40], speed=1000).clocks, 50_000)
+        plan = card.run_line([30, 40], speed=1000, max_velocity=[0, 400], slow_down=True)
+        self.assertEqual((plan.clocks, plan.slowed), (100_000, True))
+
+    def test_hold_override_stop(self):
+        card = trammel.simulate()
+        card.set_slew_time(1_000_000)
+        card.start_line([10_000], duration_ns=SECOND)
+        card.hold()
+        card.wait(2000)
+        self.assertTrue(card.status().held)
+        card.hold(False)
+        card.set_override(50)
+        card.wait(100_000)
+        self.assertTrue(450 < card.snapshot().position[0] < 550)
+        rest = card.stop()
+        card.wait(100_000)
+        self.assertEqual(card.snapshot().position, rest.position)
+
+    def test_another_thread_stops(self):
+        card = trammel.simulate()
+        thread = threading.Timer(0.05, card.request_stop)
+        thread.start()
+        with self.assertRaises(trammel.StoppedError):
+            card.run_line([1], duration_ns=(1 << 39) * 1000)
+        thread.join()
+
+
+class Streams(unittest.TestCase):
+    def test_all_commands(self):
+        card = trammel.simulate()
+        card.record_steps()
+        stream = trammel.Stream(card)
+        quarter = {"centre": (-25_600, 0), "end": (-100, 100), "sweep": math.pi / 2}
+        stream.send([
+            trammel.feed(512 + 1000 + 20_000, TICK_EVERY_16),
+            trammel.line(512, [100, -300]),
+            trammel.arc(1000, **quarter),
+            trammel.helix(20_000, **quarter, further=[0, 0, 77]),
+            trammel.output(set=4),
+            trammel.mark(),
+            trammel.dwell(1000),
+            trammel.wait_input(3, level=False),
+            trammel.end(),
+        ])
+        self.assertTrue(stream.finish().ended)
+        self.assertEqual(stream.sent, 9)
+        self.assertEqual(card.snapshot().position[:4], [-100, -100, 77, 0])
+        self.assertEqual((card.outputs(), card.marks(), card.mark_snapshot().position[2]), (4, 1, 77))
+        self.assertEqual(len(card.path_steps), 400 + 200 + len([s for s in card.path_steps if s[0] == 3]))
+        self.assertEqual(trammel.dwell(7).name, "DWELL")
+        self.assertEqual(len(trammel.end().words()), 3)
+
+    def test_probing(self):
+        card = trammel.simulate()
+        card.set_slew_time(1_000_000)
+        stream = trammel.Stream(card, progress=lambda is_: card.set_inputs(2) if is_.status.path_active else None)
+        result = stream.probe(1, [trammel.feed(10_000, TICK_EVERY_16), trammel.line(10_000, [1000])])
+        self.assertEqual(result.outcome, trammel.ProbeOutcome.TRIPPED)
+        self.assertTrue(0 < result.edge.position[0] <= result.rest.position[0] < 1000)
+
+    def test_an_exception_of_progress_passes_through(self):
+        def stop(_):
+            raise KeyError("enough")
+
+        stream = trammel.Stream(trammel.simulate(), progress=stop)
+        stream.send([trammel.feed(10_000, TICK_EVERY_16), trammel.line(10_000, [1000])])
+        with self.assertRaises(KeyError):
+            stream.finish()
+
+    def test_a_stream_keeps_its_card(self):
+        stream = trammel.Stream(trammel.simulate())
+        stream.send([trammel.end()])
+        self.assertTrue(stream.finish().ended)
+
+
+class Errors(unittest.TestCase):
+    def test_classes(self):
+        for name in ("LinkError", "IdentificationError", "RefusedError", "FaultError", "StateError", "ArgumentError", "TimeoutError"):
+            self.assertTrue(issubclass(getattr(trammel, name), trammel.Error), name)
+        self.assertTrue(issubclass(trammel.StoppedError, trammel.StateError))
+        self.assertTrue(issubclass(trammel.ArgumentError, ValueError))
+
+    def test_arguments(self):
+        card = trammel.simulate()
+        for call in (
+            lambda: trammel.simulate(axes=9),
+            lambda: trammel.open("carrier pigeon:"),
+            lambda: card.start_line([1]),
+            lambda: card.start_line([1], duration_ns=1, speed=1),
+            lambda: card.start_line([1] * 9, duration_ns=1_000_000),
+            lambda: card.configure_axis(4),
+            lambda: trammel.line(10, [11]),
+            lambda: trammel.arc(10, centre=(0, 0), end=(1, 1), sweep=1),
+            lambda: trammel.feed(10, 1, floor=0).words(),
+        ):
+            with self.assertRaises(trammel.ArgumentError):
+                call()
+        with self.assertRaises(trammel.IdentificationError):
+            trammel.simulate(clock_hz=0)
+        with self.assertRaises(trammel.LinkError):
+            trammel.open("serial:/dev/trammel-is-not-there")
+
+    def test_what_the_card_says(self):
+        card = trammel.simulate()
+        card.start_line([10], duration_ns=SECOND)
+        with self.assertRaises(trammel.RefusedError) as refused:
+            card.start_line([10], duration_ns=SECOND)
+        self.assertEqual(refused.exception.reason, 8)
+        with self.assertRaises(trammel.TimeoutError) as late:
+            card.wait_until_idle(1000)
+        self.assertGreater(late.exception.waited, 0)
+        with self.assertRaises(trammel.StateError):
+            trammel.Stream(card)
+        card.abort()
+        card.wait_until_idle(SECOND)
+        stream = trammel.Stream(card)
+        stream.send([trammel.feed(100, TICK_EVERY_16), trammel.line(99, [1]), trammel.end()])
+        with self.assertRaises(trammel.FaultError) as fault:
+            stream.finish()
+        self.assertEqual(trammel.describe_faults(fault.exception.faults), "TICK_MISMATCH")
+        card.clear_faults()
+        stream.restart()
+        self.assertEqual(card.faults(), 0)
+
+
+class Interpolators(unittest.TestCase):
+    def test_every_method_comes_to_the_end(self):
+        curves = [(ip.line((0, 0), (7, -3)), lambda m: m.line_axes >= 2, (7, -3)),
+                  (ip.line((0, 0, 0), (9, 5, -2)), lambda m: m.line_axes >= 3, (9, 5, -2)),
+                  (ip.circle(25), lambda m: m.circles, (25, 0)),
+                  (ip.arc((0, 0), (30, 0), (-30, 0), semi_axes=(30, 10)), lambda m: m.ellipses, (-30, 0))]
+        walks = 0
+        for curve, fits, end in curves:
+            for method in ip.methods():
+                if not fits(method):
+                    with self.assertRaises(trammel.ArgumentError):
+                        ip.interpolate(method.name, curve)
+                    continue
+                walk = ip.interpolate(method.name, curve)
+                path = walk.path()
+                self.assertEqual(path, list(walk), method.name)
+                self.assertEqual(walk.position, end, method.name)
+                self.assertTrue(walk.done and walk.time <= walk.total_time)
+                walks += 1
+        self.assertGreater(walks, 15)
+
+    def test_deviation_has_128_bits(self):
+        walk = ip.interpolate("steer", ip.arc((0, 0), (1 << 20, 0), (-(1 << 20), 0), semi_axes=(1 << 20, 1 << 19)))
+        seen = [walk.deviation for _ in zip(range(5), walk)]
+        self.assertTrue(any(abs(f) >= 1 << 40 for f in seen), seen)
+        self.assertIsNone(ip.interpolate("one-shot", ip.line((0, 0), (3, 2))).deviation)
+
+    def test_goldbergs_line(self):
+        walk = ip.interpolate("steer", ip.line((0, 0), (3, 2)))
+        self.assertEqual(walk.deviation, 1)
+        self.assertEqual([place for _, place in walk], [(1, 0), (1, 1), (2, 1), (2, 2), (3, 2)])
+
+    def test_unknown_method(self):
+        with self.assertRaisesRegex(trammel.ArgumentError, "nonsense"):
+            ip.interpolate("nonsense", ip.circle(3))
+
+
+if __name__ == "__main__":
+    unittest.main()
