@@ -10,11 +10,20 @@
 #include "trammel/machine/machine.hpp"
 
 namespace trammel::app {
-namespace {
+CLI::Validator positive() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double value = 0;
+        const bool number = CLI::detail::lexical_cast(text, value);
+        return number && value > 0 && std::isfinite(value) ? std::string()
+                                                           : "must be a number greater than 0, not " + text;
+      },
+      "> 0");
+}
 
-// FROM:TO, seconds, either may be missing; gives back clocks.
-std::pair<std::uint64_t, std::uint64_t> window_of(const std::string& text, std::uint32_t clock_hz) {
-  const auto refuse = [&](const char* why) { throw UsageError(fmt::format("--trace-window {}: {}", text, why)); };
+std::pair<std::uint64_t, std::uint64_t> window_of(const std::string& option, const std::string& text,
+                                                  std::uint32_t clock_hz) {
+  const auto refuse = [&](const char* why) { throw UsageError(fmt::format("{} {}: {}", option, text, why)); };
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) refuse("must be FROM:TO, seconds of card time");
   const auto clocks = [&](const std::string& part, std::uint64_t missing) {
@@ -30,19 +39,6 @@ std::pair<std::uint64_t, std::uint64_t> window_of(const std::string& text, std::
   const std::uint64_t to = clocks(text.substr(colon + 1), UINT64_MAX);
   if (from >= to) refuse("ends before it begins");
   return {from, to};
-}
-
-}  // namespace
-
-CLI::Validator positive() {
-  return CLI::Validator(
-      [](const std::string& text) {
-        double value = 0;
-        const bool number = CLI::detail::lexical_cast(text, value);
-        return number && value > 0 && std::isfinite(value) ? std::string()
-                                                           : "must be a number greater than 0, not " + text;
-      },
-      "> 0");
 }
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::string& unit) {
@@ -101,7 +97,8 @@ sim::SimulationOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_cl
     throw UsageError("--trace: only the rtl engine has waveforms (--engine rtl)");
   }
   options.trace.emplace();
-  if (trace_window) std::tie(options.trace->from, options.trace->to) = window_of(*trace_window, options.clock_hz);
+  if (trace_window)
+    std::tie(options.trace->from, options.trace->to) = window_of("--trace-window", *trace_window, options.clock_hz);
   return options;
 }
 

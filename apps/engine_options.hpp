@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "command_line.hpp"
 #include "trammel/planner/card_limits.hpp"
@@ -16,6 +17,10 @@ CLI::Validator positive();
 
 // For whole numbers between two others; CLI11's own message has them as 4.29497e+09.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::string& unit = "");
+
+// An option's FROM:TO in seconds, either of which may be missing, in clocks. Throws UsageError.
+std::pair<std::uint64_t, std::uint64_t> window_of(const std::string& option, const std::string& text,
+                                                  std::uint32_t clock_hz);
 
 struct EngineChoice {
   std::string engine = "rtl";

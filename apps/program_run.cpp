@@ -129,12 +129,23 @@ void tell(run::StepRecorder& recorder, RunResult& result) {
   result.steps = recorder.steps();
   result.largest_line_deviation = recorder.deviation().largest_line();
   result.largest_arc_deviation = recorder.deviation().largest_arc();
+  result.line_place = recorder.deviation().line_place();
+  result.arc_place = recorder.deviation().arc_place();
+}
+
+std::unique_ptr<report::ReportWriter> report_of(const run::ProgramLines& lines, const machine::Machine& machine,
+                                                std::uint32_t clock_hz, const RunOptions& options) {
+  auto writer = std::make_unique<report::ReportWriter>(*options.report, machine,
+                                                       report::ReportSettings{clock_hz, options.report_window});
+  writer->program(*lines());
+  return writer;
 }
 
 }  // namespace
 
 RunResult run_program(const run::ProgramLines& lines, const machine::Machine& machine,
-                      const sim::SimulationOptions& engine_options, const RunOptions& options) {
+                      const sim::SimulationOptions& engine_options, const RunOptions& options,
+                      std::unique_ptr<report::ReportWriter>* report) {
   const auto begun = std::chrono::steady_clock::now();
   RunResult result;
   for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
@@ -150,6 +161,11 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
 
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);
   Judges judges(recorder, options.outputs, engine_options.clock_hz);
+  if (report != nullptr && options.report != nullptr) {
+    *report = report_of(lines, machine, engine_options.clock_hz, options);
+    judges.fork.add(**report);
+    runner.add(**report);
+  }
   engine->set_sink(&judges.fork);
   sim::TimedBus bus(*engine, engine_options.clock_hz, options.operation.bytes_per_second);
   OperatorTimeline timeline(options.operation, options.most_percent);

@@ -4,14 +4,18 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "motion_options.hpp"
 #include "operator_timeline.hpp"
 #include "profile_report.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/report/report_writer.hpp"
+#include "trammel/run/deviation_meter.hpp"
 #include "trammel/run/output_recorder.hpp"
 #include "trammel/run/path_identity.hpp"
 #include "trammel/run/plot.hpp"
@@ -29,6 +33,8 @@ struct RunOptions {
   run::TextSink* steps = nullptr;  // not owned
   run::TextSink* path_steps = nullptr;
   run::TextSink* outputs = nullptr;
+  run::TextSink* report = nullptr;
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> report_window;  // clocks
   bool plot = false;
   bool progress = false;  // also where stderr is no terminal
   // When all is checked and nothing has moved yet; with `stream` of an empty plan.
@@ -76,13 +82,17 @@ struct RunResult {
   double wall_seconds = 0;                      // the simulation took
   std::map<std::string, std::size_t> accepted;  // words without effect yet
   std::vector<run::FeedNotReached> feeds_not_reached;
-  run::Plot plot;  // filled when asked for
+  run::Plot plot;                         // filled when asked for
+  run::DeviationMeter::Place line_place;  // of the largest deviations
+  run::DeviationMeter::Place arc_place;
 };
 
 // `lines`: the program, opened twice. `engine_options` are used when `options.planned` has returned. Throws
 // run::ProgramError before anything moves, run::RunError while it runs, lockstep::Mismatch, and std::runtime_error when
 // the card does not end where the program says.
+// `report`: made when options.planned has returned, where one is asked for; its finish() is the caller's.
 RunResult run_program(const run::ProgramLines& lines, const machine::Machine& machine,
-                      const sim::SimulationOptions& engine_options, const RunOptions& options);
+                      const sim::SimulationOptions& engine_options, const RunOptions& options,
+                      std::unique_ptr<report::ReportWriter>* report = nullptr);
 
 }  // namespace trammel::app

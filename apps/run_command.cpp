@@ -19,6 +19,8 @@
 #include "program_run.hpp"
 #include "run_report.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/report/page.hpp"
+#include "trammel/report/report_writer.hpp"
 #include "waveform.hpp"
 
 namespace trammel::app {
@@ -38,6 +40,8 @@ struct Options {
   std::optional<std::string> path_steps;
   std::optional<std::string> outputs;
   std::optional<std::string> plot;
+  std::optional<std::string> report;
+  std::optional<std::string> report_window;
   bool progress = false;
   bool check = false;
   bool stream = false;
@@ -55,24 +59,40 @@ void refuse_contradictions(const Options& options) {
   const auto refuse = [](const char* option, bool given, const char* why) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
-  if (options.stream) refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
+  if (options.stream) {
+    refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
+    refuse("--report", options.report.has_value(), "needs the whole program first, not --stream");
+  }
+  refuse("--report-window", options.report_window && !options.report, "there is no --report");
+  refuse("--report", options.report && !report::page_is_built(), report::kHowToBuildPage);
   if (!options.check) return;
   constexpr const char* kWhy = "nothing runs with --check";
   refuse("--steps", options.steps.has_value(), kWhy);
   refuse("--path-steps", options.path_steps.has_value(), kWhy);
   refuse("--outputs", options.outputs.has_value(), kWhy);
   refuse("--plot", options.plot.has_value(), kWhy);
+  refuse("--report", options.report.has_value(), kWhy);
   refuse("--trace", options.engine.trace.has_value(), kWhy);
   refuse("--stream", options.stream, kWhy);
+}
+
+void check(const run::ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card,
+           const run::RunSettings& settings, Outputs& outputs, Output* json) {
+  const CheckResult result = check_program(lines, machine, card, settings);
+  for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached)) tell("warning", text);
+  outputs.open();
+  if (json != nullptr) json->write(json_text(result));
+  outputs.commit(summary(result));
 }
 
 void execute(const Options& options) {
   refuse_contradictions(options);
   Outputs outputs;
+  RunOptions run;
   Output* const json = outputs.add("--json", options.json);
   Output* const plot = outputs.add("--plot", options.plot);
+  run.report = outputs.add("--report", options.report);
   Output* const trace = outputs.add("--trace", options.engine.trace, true);
-  RunOptions run;
   run.steps = outputs.add("--steps", options.steps);
   run.path_steps = outputs.add("--path-steps", options.path_steps);
   run.outputs = outputs.add("--outputs", options.outputs);
@@ -91,18 +111,14 @@ void execute(const Options& options) {
   const auto axes = static_cast<unsigned>(machine.motors());
   sim::SimulationOptions engine =
       options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);
+  if (options.report_window) {
+    run.report_window = window_of("--report-window", *options.report_window, engine.clock_hz);
+  }
   const ProgramFile file(options.program, options.stream);
   const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
-  if (options.check) {
-    const CheckResult result = check_program(lines, machine, limits_of(engine), run.settings);
-    for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached))
-      tell("warning", text);
-    outputs.open();
-    if (json != nullptr) json->write(json_text(result));
-    return outputs.commit(summary(result));
-  }
+  if (options.check) return check(lines, machine, limits_of(engine), run.settings, outputs, json);
   const bool no_rapids = run.operation.rapid_percent == 0;
   if (no_rapids && options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   run.planned = [&](const run::Plan& plan) {
@@ -116,13 +132,15 @@ void execute(const Options& options) {
     if (engine.axes != axes)
       tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
   };
-  const RunResult result = run_program(lines, machine, engine, run);
+  std::unique_ptr<report::ReportWriter> report;
+  const RunResult result = run_program(lines, machine, engine, run, &report);
   if (options.stream) {
     for (const std::string& text : feed_warnings(result.program, result.feeds_not_reached)) tell("warning", text);
   }
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
   if (json != nullptr) json->write(json_text(result));
   if (plot != nullptr) plot->write(run::svg(result.plot));
+  if (report) report->finish(report_json(result));
   outputs.commit(summary(result));
 }
 
@@ -147,6 +165,12 @@ void add_run_command(CLI::App& app) {
   command->add_option("--outputs", options->outputs, "every change of an output: cycle,output,level")
       ->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
+  command->add_option("--report", options->report, "page of the run: path, speeds, pins, program; opens in a browser")
+      ->type_name("FILE");
+  command
+      ->add_option("--report-window", options->report_window,
+                   "only this stretch's pulses in the page, seconds of card time")
+      ->type_name("FROM:TO");
   command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");
   command->add_flag("--check", options->check, "read, plan and time the program; nothing runs");
   command->add_flag("--stream", options->stream,

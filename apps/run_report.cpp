@@ -198,7 +198,16 @@ std::string summary(const RunResult& result) {
   return text + accepted_words(result.accepted);
 }
 
-std::string json_text(const RunResult& result) {
+namespace {
+
+nlohmann::ordered_json place_json(const run::DeviationMeter::Place& place, std::size_t axes) {
+  if (place.line == 0) return nullptr;
+  const std::vector<std::int64_t> position(place.position.begin(),
+                                           place.position.begin() + static_cast<std::ptrdiff_t>(axes));
+  return {{"line", place.line}, {"position", position}};
+}
+
+nlohmann::ordered_json run_json(const RunResult& result) {
   nlohmann::ordered_json json;
   json["program"] = result.program;
   json["engine"] = result.engine;
@@ -232,7 +241,19 @@ std::string json_text(const RunResult& result) {
   json["inputs"] = nullptr;
   if (result.inputs) json["inputs"] = *result.inputs;
   json["accepted_words"] = result.accepted;
-  return json.dump(2) + "\n";
+  return json;
+}
+
+}  // namespace
+
+std::string json_text(const RunResult& result) { return run_json(result).dump(2) + "\n"; }
+
+std::string report_json(const RunResult& result) {
+  nlohmann::ordered_json json = run_json(result);
+  json["deviation_places"] = {{"line", place_json(result.line_place, result.axes.size())},
+                              {"arc", place_json(result.arc_place, result.axes.size())}};
+  // A name may hold any bytes.
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace trammel::app

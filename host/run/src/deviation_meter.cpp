@@ -91,6 +91,7 @@ void DeviationMeter::command(std::uint64_t number, const driver::Command& comman
   } else {
     return;
   }
+  path.line = block_.line;
   paths_.push_back(path);
 }
 
@@ -122,13 +123,19 @@ void DeviationMeter::finish() {
   tick_.reset();
 }
 
+void DeviationMeter::look(double deviation, double& largest, Place& place) const {
+  if (deviation <= largest) return;
+  largest = deviation;
+  place = {paths_.front().line, machine_.value_or(planner::Pulses{})};
+}
+
 void DeviationMeter::measure() {
   const Path& path = paths_.front();
   if (path.arc) {
     const double x = static_cast<double>(position_[path.axes[0]]) - path.target[0];
     const double y = static_cast<double>(position_[path.axes[1]]) - path.target[1];
     const double level = path.level(x, y);
-    largest_arc_ = std::max({largest_arc_, level - path.outer, path.inner - level});
+    look(std::max(level - path.outer, path.inner - level), largest_arc_, arc_place_);
     return;
   }
   // |d|^2 - (d.u)^2 loses digits on long lines; the rejection d - (d.u) u does not.
@@ -142,7 +149,7 @@ void DeviationMeter::measure() {
     const double off = static_cast<double>(position_[path.axes[i]]) - along * path.target[i];
     square += off * off;
   }
-  largest_line_ = std::max(largest_line_, std::sqrt(square));
+  look(std::sqrt(square), largest_line_, line_place_);
 }
 
 }  // namespace trammel::run

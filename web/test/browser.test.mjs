@@ -1,0 +1,144 @@
+// The page in headless Chromium: it draws, the cursor works, the console is silent, a program's text stays text.
+//   TRAMMEL=.../trammel TRAMMEL_EXAMPLES=examples CHROMIUM=... node --test browser.test.mjs
+import assert from 'node:assert/strict'
+import { mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs'
+import { tmpdir } from 'node:os'
+import { join } from 'node:path'
+import { after, before, test } from 'node:test'
+import { chromium } from 'playwright-core'
+import { trammel } from './page.mjs'
+
+const command = process.env.TRAMMEL
+const examples = process.env.TRAMMEL_EXAMPLES
+const folder = mkdtempSync(join(tmpdir(), 'trammel-'))
+let browser
+before(async () => {
+  // Without a graphics card; and as root, in a container, there is no sandbox.
+  browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] })
+})
+after(async () => {
+  await browser?.close()
+  rmSync(folder, { recursive: true })
+})
+
+function report(text, ...options) {
+  const program = join(folder, 'program.ngc'), page = join(folder, 'report.html')
+  if (text.endsWith('.ngc')) trammel(command, 'run', text, '--engine', 'model', '--report', page, ...options)
+  else {
+    writeFileSync(program, text)
+    trammel(command, 'run', program, '--engine', 'model', '--report', page, ...options)
+  }
+  return page
+}
+async function open(file, scheme = 'light') {
+  const page = await browser.newPage({ viewport: { width: 1100, height: 760 }, colorScheme: scheme })
+  const said = []
+  page.on('console', (message) => said.push(message.text()))
+  page.on('pageerror', (error) => said.push(String(error)))
+  page.on('request', (request) => { if (!/^(file|data|blob):/.test(request.url())) said.push(`asks for ${request.url()}`) })
+  const begun = Date.now()
+  await page.goto(`file://${file}`)
+  await page.waitForFunction(() => document.documentElement.dataset.ready === 'true')
+  return { page, said, milliseconds: Date.now() - begun }
+}
+// Pixels of a canvas that differ from its first.
+const drawn = (page, selector) => page.evaluate((name) => {
+  const canvas = document.querySelector(name)
+  const copy = document.createElement('canvas')
+  copy.width = canvas.width
+  copy.height = canvas.height
+  const context = copy.getContext('2d')
+  context.drawImage(canvas, 0, 0)
+  const data = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer)
+  return data.reduce((count, pixel) => count + (pixel !== data[0] ? 1 : 0), 0)
+}, selector)
+const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))))
+
+for (const scheme of ['light', 'dark']) {
+  test(`a part draws, ${scheme}, and the cursor moves tool, line and numbers`, async () => {
+    const { page, said } = await open(report(join(examples, 'part.ngc'), '--clock', '1000000'), scheme)
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), scheme)
+    assert.ok(await drawn(page, '#view canvas') > 5000, 'the path')
+    assert.ok(await drawn(page, '#row-path canvas') > 500, 'the speed')
+    assert.ok(await drawn(page, '#row-pins canvas') > 500, 'the pins')
+    const state = () => page.evaluate(() => ({
+      tool: window.trammel.view.tool.position.toArray(), line: document.querySelector('#program .now')?.dataset.line,
+      clock: document.querySelector('#clock').textContent, cycle: window.trammel.cycle, left: document.querySelector('#cursor').style.left,
+    }))
+    const before = await state()
+    const box = await page.locator('#row-path .plot').boundingBox()
+    await page.mouse.click(box.x + 0.75 * box.width, box.y + 40)
+    await frame(page)
+    const after = await state()
+    for (const what of ['tool', 'line', 'clock', 'left']) assert.notDeepEqual(after[what], before[what], what)
+    assert.ok(after.cycle > 0.6 * 29e6 && after.cycle < 0.8 * 29e6, `${after.cycle}`)
+    // A click on a line puts the cursor where its path begins.
+    await page.evaluate(() => { document.querySelector('#program').scrollTop = 0 })
+    await page.locator('#program .line[data-line="13"]').click()
+    await frame(page)
+    assert.equal((await state()).line, '13')
+    // The next pulse is one pulse on.
+    const pulses = () => page.evaluate(() => window.trammel.run.motors.map((_, m) => window.trammel.run.positionAt(m, window.trammel.cycle + 20)))
+    await page.locator('#charts').focus()
+    const at = await pulses()
+    await page.keyboard.press('.')
+    await page.keyboard.press('.')
+    await frame(page)
+    assert.notDeepEqual(await pulses(), at)
+    for (const key of scheme === 'dark' ? [] : ['k', '1', '2', '3', '4', 'p', 'c', 'c', 'c', 'r', 'r', 'e', 'e', 'g', 'g', 's', 's', 't', 't', '0', 'f', 'n', 'b', '+', '-', 'Home', 'End']) {
+      await page.keyboard.press(key)
+      await frame(page)
+    }
+    assert.deepEqual(said, [])
+    await page.close()
+  })
+}
+
+test('close up, each executed pulse has its dot, and single clocks show', async () => {
+  const { page, said } = await open(report(join(examples, 'part.ngc'), '--clock', '1000000'))
+  await page.locator('#charts').focus()
+  await page.keyboard.press('p')
+  await page.waitForTimeout(200)
+  const seen = await page.evaluate(() => ({ dots: window.trammel.view.dots.geometry.attributes.position.count, of: window.trammel.view.detailCount }))
+  assert.ok(seen.dots > 50 && seen.dots === seen.of, JSON.stringify(seen))
+  await page.keyboard.press('k')
+  await frame(page)
+  const [from, to] = await page.evaluate(() => window.trammel.window)
+  assert.ok(to - from < 300 && to - from >= 24, `${to - from} clocks`)
+  assert.deepEqual(said, [])
+  await page.close()
+})
+
+test('what a program says is text', async () => {
+  const comments = ['</script><script>window.ran = 1</script>', '<img src=x onerror="window.ran = 2">', '<b>bold</b>']
+  const { page, said } = await open(report(`G21\n${comments.map((text) => `; ${text}\n`).join('')}G1 X5 F600\n`))
+  assert.equal(await page.evaluate(() => window.ran), undefined)
+  assert.equal(await page.evaluate(() => document.querySelectorAll('#program img, #program b, #program script').length), 0)
+  for (const text of comments) assert.ok((await page.locator('#program').textContent()).includes(text), text)
+  assert.deepEqual(said, [])
+  await page.close()
+})
+
+for (const [name, text] of [['one line', 'G21 G90\nG1 X10 F600\n'], ['Z alone', 'G21 G90\nG1 Z3 F300\nG0 Z0\n'], ['nothing', '(nothing)\n'], ['a dwell alone', 'G4 P0.1\n'], ['E alone', 'G1 E3 F300\n']]) {
+  test(`a program of ${name} draws`, async () => {
+    const { page, said } = await open(report(text))
+    assert.deepEqual(said, [])
+    assert.equal(await page.evaluate(() => Number.isFinite(window.trammel.view.camera.zoom)), true)
+    await page.close()
+  })
+}
+
+test('a million pulses', async (context) => {
+  // A slow clock has few ticks a pulse: the simulation is quick.
+  const circles = Array.from({ length: 160 }, (_, i) => `G1 X${i % 2 ? 0 : 39} Y${i % 40}\nG2 I${i % 2 ? 8 : -8} F6000\n`).join('')
+  const file = report(`G21 G90 G91.1\nF6000\n${circles}`, '--clock', '100000')
+  const size = statSync(file).size
+  const { page, said, milliseconds } = await open(file)
+  const pulses = await page.evaluate(() => window.trammel.run.pulses)
+  context.diagnostic(`${pulses} pulses, ${(size / 1e6).toFixed(2)} MB, open in ${milliseconds} ms (aim 3000)`)
+  assert.ok(pulses >= 1e6, `${pulses}`)
+  assert.ok(size <= 5e6, `${size} bytes`)
+  assert.ok(milliseconds < 10000, `${milliseconds} ms`)
+  assert.deepEqual(said, [])
+  await page.close()
+})

@@ -1,0 +1,148 @@
+// What the page reads of a report against what the command wrote beside it:
+//   TRAMMEL=.../trammel node --test decoder.test.mjs
+import assert from 'node:assert/strict'
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
+import { tmpdir } from 'node:os'
+import { join } from 'node:path'
+import { after, test } from 'node:test'
+import { Achieved } from '../src/achieved.js'
+import { Bytes } from '../src/decode.js'
+import { sample } from '../src/samples.js'
+import { readPage, trammel } from './page.mjs'
+
+const command = process.env.TRAMMEL
+const examples = process.env.TRAMMEL_EXAMPLES
+const folder = mkdtempSync(join(tmpdir(), 'trammel-'))
+after(() => rmSync(folder, { recursive: true }))
+
+function report(program, ...options) {
+  const page = join(folder, 'report.html'), steps = join(folder, 'steps.csv'), json = join(folder, 'run.json')
+  trammel(command, 'run', program, '--engine', 'model', '--report', page, '--steps', steps, '--json', json, ...options)
+  const list = readFileSync(steps, 'utf8').trimEnd().split('\n').slice(1).map((row) => row.split(',').map(Number))
+  return { ...readPage(page), list, json: JSON.parse(readFileSync(json, 'utf8')) }
+}
+function programOf(text) {
+  const file = join(folder, 'program.ngc')
+  writeFileSync(file, text)
+  return file
+}
+// Each pulse of the list at its clock, by motor.
+function expectPulses({ run, list }) {
+  run.steps.forEach((steps, motor) => {
+    const expected = list.filter((step) => step[1] === motor)
+    assert.equal(steps.count, expected.length, `pulses of motor ${motor}`)
+    let position = run.motors[motor].start
+    expected.forEach(([cycle, , direction], i) => {
+      position += direction
+      assert.equal(steps.pins[i], cycle)
+      assert.equal(steps.positions[i], position)
+    })
+  })
+}
+const part = join(examples, 'part.ngc')
+
+test('every pulse of a part is in the page, at its clock', () => {
+  const made = report(part, '--clock', '1000000')
+  assert.ok(made.list.length > 70000)
+  expectPulses(made)
+})
+
+test('so it is through holds, overrides, a fast clock, and second motors', () => {
+  expectPulses(report(part, '--clock', '1000000', '--hold-at', '2:1.5', '--override-at', '6:30'))
+  expectPulses(report(part, '--clock', '50000000'))
+  const gantry = join(folder, 'gantry.toml')
+  writeFileSync(gantry, readFileSync(join(examples, 'machine.toml'), 'utf8').replace(/^\[axis\.x\]$/m, '[axis.x]\nsecond_motor = true'))
+  const made = report(join(examples, 'relative.ngc'), '--machine', gantry)
+  assert.equal(made.run.motors.length, made.run.axes.length + 1)
+  expectPulses(made)
+})
+
+test('the deviations that the page finds are those that the run measured', () => {
+  const { run, json } = report(part, '--clock', '1000000')
+  let line = 0, arc = 0
+  run.pathDeviation.forEach((deviation, path) => {
+    if ((run.paths.flags[path] & 3) === 0) line = Math.max(line, deviation)
+    else arc = Math.max(arc, deviation)
+  })
+  assert.ok(Math.abs(line - json.max_deviation.line) < 1e-5, `${line} ${json.max_deviation.line}`)
+  assert.ok(Math.abs(arc - json.max_deviation.arc) < 1e-5, `${arc} ${json.max_deviation.arc}`)
+  const place = run.facts.deviation_places.line
+  assert.ok(run.program[place.line - 1].length > 0)
+})
+
+test('commanded speed is the feed, and what the pulses make of it is the same', () => {
+  const { run } = report(programOf('G21 G90 G91.1\nG1 X60 F600\nG2 I-10 F600\n'), '--clock', '1000000')
+  const achieved = new Achieved(run)
+  const samples = sample(run, achieved, 0.2 * run.cycles, 0.4 * run.cycles, 200)
+  for (let i = 0; i < samples.path.length; ++i) {
+    assert.ok(Math.abs(samples.path[i] - 10) < 0.01, `commanded ${samples.path[i]} at ${samples.x[i]}`)
+    assert.ok(Math.abs(samples.mean[i] - 10) < 0.1, `achieved ${samples.mean[i]} at ${samples.x[i]}`)
+  }
+})
+
+test('accelerations and jerks are those of the machine file, on straight lines to the last digit that floats have', () => {
+  const program = programOf('G21 G90\nG1 X60 F6000\nG1 Y20 F6000\n')
+  const machine = ['--set', 'axis.x.max_acceleration=500', '--set', 'axis.y.max_acceleration=800']
+  const { run } = report(program, '--clock', '1000000', ...machine)
+  const peaks = sample(run, new Achieved(run), 0, run.cycles, 2000).axes[1].map((values) => Math.max(...values.map(Math.abs)))
+  assert.ok(Math.abs(peaks[0] / 500 - 1) < 0.01, `${peaks[0]}`)
+  assert.ok(Math.abs(peaks[1] / 800 - 1) < 0.01, `${peaks[1]}`)
+  const jerks = ['x', 'y', 'z', 'e'].flatMap((axis) => ['--set', `axis.${axis}.max_jerk=20000`])
+  const curved = report(program, '--clock', '1000000', ...machine, ...jerks).run
+  const jerk = sample(curved, new Achieved(curved), 0, curved.cycles, 2000).axes[2].map((values) => Math.max(...values.map(Math.abs)))
+  assert.ok(Math.abs(jerk[0] / 20000 - 1) < 0.02, `${jerk[0]}`)
+  assert.ok(jerk[1] / 20000 < 1.02, `${jerk[1]}`)
+})
+
+test('a hold and an override show where they were made', () => {
+  const { run } = report(programOf('G21 G90\nG1 X60 F600\n'), '--clock', '1000000', '--hold-at', '2:1', '--override-at', '4:50')
+  const percent = (seconds) => {
+    const samples = sample(run, new Achieved(run), seconds * run.clockHz, (seconds + 0.2) * run.clockHz, 10)
+    return samples.ratio.reduce((a, b) => a + b) / samples.ratio.length
+  }
+  assert.ok(Math.abs(percent(1) - 100) < 0.1, `${percent(1)}`)
+  assert.ok(percent(2.4) < 1, `${percent(2.4)}`)
+  assert.ok(Math.abs(percent(3.6) - 100) < 0.5, `${percent(3.6)}`)
+  assert.ok(Math.abs(percent(5) - 50) < 0.5, `${percent(5)}`)
+})
+
+test('each line begins when the first pulse of its path comes', () => {
+  const { run } = report(programOf('G21 G90\n(nothing)\nG1 X10 F600\nG4 P0.5\nG1 Y10\n'), '--clock', '1000000')
+  const firstOf = (line) => run.executed.times[run.executed.paths.findIndex((path) => run.paths.lines[path] === line)]
+  for (const line of [3, 5]) assert.ok(Math.abs(run.beginOfLine(line) - firstOf(line)) < 0.02 * run.clockHz, `line ${line}`)
+  assert.equal(run.beginOfLine(2), run.beginOfLine(3))
+  // The dwell lies between them.
+  assert.ok(run.beginOfLine(5) - run.beginOfLine(4) >= 0.5 * run.clockHz)
+})
+
+test('a window has its pulses alone, and the right positions', () => {
+  const all = report(part, '--clock', '1000000')
+  const some = report(part, '--clock', '1000000', '--report-window', '5:8')
+  some.run.steps.forEach((steps, motor) => {
+    const inside = all.run.steps[motor]
+    const first = inside.cycles.findIndex((cycle) => cycle >= 5e6)
+    const count = inside.cycles.filter((cycle) => cycle >= 5e6 && cycle <= 8e6).length
+    assert.equal(steps.count, count)
+    for (let i = 0; i < count; ++i) {
+      assert.equal(steps.pins[i], inside.pins[first + i])
+      assert.equal(steps.positions[i], inside.positions[first + i])
+    }
+    assert.equal(steps.count + some.run.motors[motor].beside, inside.count)
+  })
+  assert.deepEqual(some.run.executed.paths[0], all.run.executed.paths[all.run.executed.times.findIndex((t) => t >= 5e6)])
+})
+
+test('the program is in the page as it is, and nothing in it ends an element', () => {
+  const text = 'G21\n; </script><script>alert(1)</script>\n; <img src=x onerror=alert(2)>\n(<!-- \u00e4 -->)\nG1 X1 F600\n'
+  const file = join(folder, 'report.html')
+  const { run } = report(programOf(text))
+  assert.deepEqual(run.program, text.trimEnd().split('\n'))
+  const html = readFileSync(file, 'utf8')
+  assert.ok(!html.includes('alert('))
+  assert.ok(html.startsWith('<!doctype html>') && html.trimEnd().endsWith('</html>'))
+})
+
+test('numbers of any size', () => {
+  const bytes = new Bytes(Uint8Array.from([0x7f, 0x80, 0x01, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x0f, 3, 4]))
+  assert.deepEqual([bytes.varint(), bytes.varint(), bytes.varint(), bytes.zigzag(), bytes.zigzag()], [127, 128, 2 ** 53 - 1, -2, 2])
+})
