@@ -20,13 +20,14 @@
 #include "shell_command.hpp"
 #include "steps_command.hpp"
 #include "temporary_files.hpp"
+#include "terminal.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace {
 
 int report(const std::string& message, int status) {
-  fmt::print(stderr, "trammel: error: {}\n", message);
+  trammel::app::tell("error", message);
   return status;
 }
 

@@ -121,9 +121,9 @@ void MotionChoice::add_to(CLI::App& command) {
       ->type_name("N");
   command
       .add_option("--arcs", arcs,
-                  "what makes arcs: generator, accumulator (helices: chords), or chords; the next of "
-                  "these where one cannot")
-      ->check(CLI::IsMember({"generator", "accumulator", "chords"}))
+                  "what makes arcs: generator, accumulator-8 (in 8 directions), accumulator (in 4; helices: "
+                  "chords), or chords; the next of these where one cannot")
+      ->check(CLI::IsMember({"generator", "accumulator-8", "accumulator", "chords"}))
       ->capture_default_str();
   command
       .add_option("--profile", profile,
@@ -171,9 +171,10 @@ run::RunSettings MotionChoice::settings() const {
   settings.reader.feed_scale = feed_scale;
   settings.first_line = first_line;
   settings.single_block = single_block;
-  settings.arcs = arcs == "chords"        ? planner::ArcsBy::kChords
-                  : arcs == "accumulator" ? planner::ArcsBy::kAccumulator
-                                          : planner::ArcsBy::kGenerator;
+  settings.arcs = arcs == "chords"          ? planner::ArcsBy::kChords
+                  : arcs == "accumulator"   ? planner::ArcsBy::kAccumulator
+                  : arcs == "accumulator-8" ? planner::ArcsBy::kEightDirections
+                                            : planner::ArcsBy::kGenerator;
   if (profile) {
     settings.profile = *profile == "s-curve" ? planner::SpeedProfile::kSCurve : planner::SpeedProfile::kTrapezoid;
   }

@@ -11,6 +11,7 @@
 #include "engine_options.hpp"
 #include "engine_speed.hpp"
 #include "errors.hpp"
+#include "machine_choice.hpp"
 #include "motion_options.hpp"
 #include "outputs.hpp"
 #include "profile_report.hpp"
@@ -18,7 +19,7 @@
 #include "program_file.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
-#include "trammel/machine/machine.hpp"
+#include "terminal.hpp"
 #include "trammel/report/page.hpp"
 #include "trammel/report/report_writer.hpp"
 #include "waveform.hpp"
@@ -31,8 +32,7 @@ constexpr std::uint32_t kSimulatedClock = 1'000'000;
 
 struct Options {
   std::string program;
-  std::optional<std::string> machine;
-  std::vector<std::string> overrides;
+  MachineChoice machine;
   EngineChoice engine;
   MotionChoice motion;
   std::optional<std::string> json;
@@ -46,14 +46,6 @@ struct Options {
   bool check = false;
   bool stream = false;
 };
-
-machine::Machine machine_of(const Options& options) {
-  machine::Machine machine = options.machine ? machine::load_machine(*options.machine) : machine::default_machine();
-  for (const std::string& text : options.overrides) machine::apply_override(machine, text);
-  return machine;
-}
-
-void tell(const char* what, const std::string& text) { fmt::print(stderr, "trammel: {}: {}\n", what, text); }
 
 void refuse_contradictions(const Options& options) {
   const auto refuse = [](const char* option, bool given, const char* why) {
@@ -76,13 +68,13 @@ void refuse_contradictions(const Options& options) {
   refuse("--stream", options.stream, kWhy);
 }
 
-void check(const run::ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card,
-           const run::RunSettings& settings, Outputs& outputs, Output* json) {
+void check(const run::ProgramLines& lines, const MachineChoice& choice, const machine::Machine& machine,
+           const planner::CardLimits& card, const run::RunSettings& settings, Outputs& outputs, Output* json) {
   const CheckResult result = check_program(lines, machine, card, settings);
   for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached)) tell("warning", text);
   outputs.open();
   if (json != nullptr) json->write(json_text(result));
-  outputs.commit(summary(result));
+  outputs.commit(summary(result) + choice.line());
 }
 
 void execute(const Options& options) {
@@ -101,10 +93,10 @@ void execute(const Options& options) {
   run.stream = options.stream;
   run.settings = options.motion.settings();
   outputs.keep("the program", options.program);
-  if (options.machine) outputs.keep("the machine file", *options.machine);
+  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
   outputs.check();
 
-  const machine::Machine machine = machine_of(options);
+  const machine::Machine machine = options.machine.load();
   for (const std::string& text : jerk_warnings(machine)) tell("warning", text);
   run.most_percent = 100 * machine.motion.max_override;
   run.operation = options.motion.operation(run.most_percent);
@@ -118,7 +110,7 @@ void execute(const Options& options) {
   const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
-  if (options.check) return check(lines, machine, limits_of(engine), run.settings, outputs, json);
+  if (options.check) return check(lines, options.machine, machine, limits_of(engine), run.settings, outputs, json);
   const bool no_rapids = run.operation.rapid_percent == 0;
   if (no_rapids && options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   run.planned = [&](const run::Plan& plan) {
@@ -141,7 +133,7 @@ void execute(const Options& options) {
   if (json != nullptr) json->write(json_text(result));
   if (plot != nullptr) plot->write(run::svg(result.plot));
   if (report) report->finish(report_json(result));
-  outputs.commit(summary(result));
+  outputs.commit(summary(result) + options.machine.line());
 }
 
 }  // namespace
@@ -150,11 +142,7 @@ void add_run_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "run a G-code program on the simulated card");
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
-  command->add_option("--machine", options->machine, "machine file (default: X Y Z E at 80 steps/mm)")
-      ->type_name("TOML");
-  command->add_option("--set", options->overrides, "override an entry of the machine file (repeatable)")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  options->machine.add_to(*command);
   options->engine.add_to(*command);
   options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");

@@ -63,13 +63,11 @@ class Judge {
     const double change = goes_on ? (speed - rate(last_)) / kUpdate : 0;
     const double jerk = static_cast<double>(now.jerk) * 0x1p-64 / (kUpdate * kUpdate);
     const std::size_t where = now.path->command;
-    // A piece of a few updates is fitted to its ticks by its acceleration.
-    const double tolerance = now.clock - piece_clock_ <= 4 * 32 ? 1.15 : 1;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       const double pulses = course_.pulses_a_tick[a];
       verdict.velocity.look(pulses * speed / velocity_[a], where);
       const double whole = std::hypot(pulses * change, centripetal(a, speed));
-      verdict.acceleration.look(whole / acceleration_[a] / tolerance, where);
+      verdict.acceleration.look(whole / acceleration_[a], where);
       if (jerk_[a] <= 0) continue;
       verdict.jerk.look(pulses * std::abs(jerk) / jerk_[a], where);
       verdict.jerk.look(centripetal(a, speed) * turn_rate(a, speed) / jerk_[a], where);

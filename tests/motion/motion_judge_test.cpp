@@ -84,16 +84,15 @@ machine::Machine machine_of(double velocity, double acceleration, double jerk) {
 // mm/s, mm/s^2, mm/s^3: a fast machine within what a clock of 1 MHz can do.
 machine::Machine fast_machine(double jerk) { return machine_of(300, 3000, jerk); }
 
-// Pieces have whole ticks, to which acceleration and jerk are fitted: what that costs was measured over these programs.
-// The judges below say no at a few per cent of the whole motion.
+// What integers cost; at corners, what rounded ends do to directions.
 void expect_within_limits(const MotionVerdict& verdict) {
   EXPECT_LE(verdict.velocity.share, 1.001) << "command " << verdict.velocity.command;
-  EXPECT_LE(verdict.acceleration.share, 1.04) << "command " << verdict.acceleration.command;
-  EXPECT_LE(verdict.jerk.share, 1.15) << "command " << verdict.jerk.command;
+  EXPECT_LE(verdict.acceleration.share, 1.001) << "command " << verdict.acceleration.command;
+  EXPECT_LE(verdict.jerk.share, 1.001) << "command " << verdict.jerk.command;
   EXPECT_LE(verdict.acceleration_jump.share, 0.01) << "command " << verdict.acceleration_jump.command;
-  EXPECT_LE(verdict.rate_jump.share, 1.11) << "command " << verdict.rate_jump.command;
+  EXPECT_LE(verdict.rate_jump.share, 1) << "command " << verdict.rate_jump.command;
   EXPECT_LE(verdict.rest.share, 1.01) << "command " << verdict.rest.command;
-  EXPECT_LE(verdict.corner.share, 1.02) << "command " << verdict.corner.command;
+  EXPECT_LE(verdict.corner.share, 1.005) << "command " << verdict.corner.command;
   EXPECT_GT(verdict.updates, 0U);
 }
 

@@ -248,6 +248,47 @@ TEST(Planner, CentripetalAccelerationIsLimited) {
   EXPECT_GE(unit_steps * unit_steps / 80, 1000.0 * 80 / 2 * 0.89);
 }
 
+// The path between two steps in 8 directions is 1 to sqrt(2) pulses long; its acceleration is largest on the diagonal,
+// v^2 / r there and as much along it.
+TEST(Planner, ArcsGoInEightDirectionsWhereTheCardHasThem) {
+  CardLimits card{kClock, 4};
+  const std::string text = "G2 I1 F60000\nG2 X2 Y2 I2 F600\n";
+  card.eight_directions = true;
+  const Plan without = plan_text(text, default_machine(), with_arcs_by(card, ArcsBy::kAccumulator));
+  EXPECT_FALSE(commands<ArcCommand>(without.blocks[0]).at(0).eight_directions);
+  const Plan eight = plan_text(text, default_machine(), with_arcs_by(card, ArcsBy::kEightDirections));
+  card.eight_directions = false;
+  const Plan lacking = plan_text(text, default_machine(), with_arcs_by(card, ArcsBy::kEightDirections));
+  EXPECT_FALSE(commands<ArcCommand>(lacking.blocks[0]).at(0).eight_directions);
+
+  ASSERT_EQ(eight.blocks.size(), 3U);
+  for (std::size_t i = 0; i < 2; ++i) expect_sound(eight.blocks[i]);
+  const ArcCommand circle = commands<ArcCommand>(eight.blocks[0]).at(0);
+  EXPECT_TRUE(circle.eight_directions);
+  EXPECT_EQ(circle.path_ticks, 4 * 113U) << "4 round(80 sqrt(2))";
+  EXPECT_LT(commands<ArcCommand>(eight.blocks[1]).at(0).path_ticks,
+            commands<ArcCommand>(without.blocks[1]).at(0).path_ticks);
+  const double steps = top_rate(eight.blocks[0]) * static_cast<double>(circle.path_ticks) /
+                       static_cast<double>(circle.ticks);                 // a second
+  const double diagonal = steps * std::sqrt(2.0);                         // pulses a second along the path
+  const double acceleration = std::sqrt(2.0) * diagonal * diagonal / 80;  // across and along the path
+  EXPECT_LE(acceleration, 1000.0 * 80 * 1.001);
+  EXPECT_GE(acceleration, 1000.0 * 80 * 0.6);
+}
+
+TEST(Planner, ArcsInEightDirectionsWaitForTheirSteps) {
+  CardLimits card{1'000'000, 4};
+  Machine machine = default_machine();
+  for (MachineAxis& axis : machine.axes) axis.max_velocity = axis.max_acceleration = 1e6;
+  card.eight_directions = true;
+  const Plan plan = plan_text("G2 I100 F6000000\n", machine, with_arcs_by(card, ArcsBy::kEightDirections));
+  const ArcCommand arc = commands<ArcCommand>(plan.blocks[0]).at(0);
+  const double steps =
+      top_rate(plan.blocks[0], card.clock_hz) * static_cast<double>(arc.path_ticks) / static_cast<double>(arc.ticks);
+  EXPECT_LE(steps, 1e6 / 17);
+  EXPECT_GE(steps, 1e6 / 19);
+}
+
 TEST(Planner, UnequalScalesGoOutAsChords) {
   Machine machine = default_machine();
   apply_override(machine, "axis.x.steps_per_mm=200");

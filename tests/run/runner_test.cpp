@@ -137,6 +137,26 @@ TEST_F(RunnerTest, AnEllipsesPulsesAreNearTheCircle) {
   EXPECT_GT(circle.farthest, 0.3);
 }
 
+// In 8 directions the pulses are nearer to the circle, with fewer of them alone.
+TEST_F(RunnerTest, EightDirectionsAreNearerToTheCircle) {
+  const auto farthest = [&](planner::ArcsBy arcs) {
+    RunSettings settings;
+    settings.arcs = arcs;
+    Runner runner(lines_of("F1200 G2 I5 J2\nM2\n"), machine_, planner::limits_of(card_.identification()), settings);
+    StepRecorder::Options options;
+    options.steps_per_mm.assign(4, 80);
+    StepRecorder recorder(options);
+    engine_->set_sink(&recorder);
+    runner.add(recorder);
+    runner.plan();
+    EXPECT_EQ(runner.run(card_).final_position, (std::vector<std::int64_t>(4, 0)));
+    recorder.finish();
+    return recorder.deviation().largest_arc();
+  };
+  EXPECT_LE(farthest(planner::ArcsBy::kEightDirections), 0.52);
+  EXPECT_GE(farthest(planner::ArcsBy::kAccumulator), 0.7);
+}
+
 TEST_F(RunnerTest, RunsSeveralPrograms) {
   EXPECT_EQ(run("G0 X1\n").final_position[0], 80);
   const driver::Card again = driver::Card::open(*engine_);

@@ -19,8 +19,9 @@ namespace trammel::planner {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-constexpr double kMaxRadius = 0x1p44;      // pulses; the centre in 1/256 pulses fits 64 bits
-constexpr double kClocksPerPathTick = 10;  // the accumulator takes 9
+constexpr double kMaxRadius = 0x1p44;             // pulses; the centre in 1/256 pulses fits 64 bits
+constexpr double kClocksPerPathTick = 10;         // the accumulator takes 9
+constexpr double kClocksPerEightDirections = 18;  // and 17
 constexpr std::uint64_t kMostParts = 1'000'000;
 
 double hypotenuse(double x, double y) { return std::sqrt(x * x + y * y); }
@@ -93,10 +94,11 @@ driver::EllipseGeometry ellipse_of(const Block& block, double scale_x, double sc
 }
 
 // None where the accumulator's bounds do not admit the arc.
-std::optional<driver::ArcCommand> accumulator_arc(const Block& block, double scale_x, double scale_y) {
+std::optional<driver::ArcCommand> accumulator_arc(const Block& block, double scale_x, double scale_y,
+                                                  driver::StepRule rule) {
   try {
-    if (scale_x != scale_y) return driver::prepare(ellipse_of(block, scale_x, scale_y));
-    return driver::prepare(geometry_of(block, block.start, block.end, block.exact.sweep));
+    if (scale_x != scale_y) return driver::prepare(ellipse_of(block, scale_x, scale_y), rule);
+    return driver::prepare(geometry_of(block, block.start, block.end, block.exact.sweep), rule);
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }
@@ -164,8 +166,9 @@ bool BlockBuilder::build_arc(Block& block) {
   if (card_.arc_generator && scale_x == scale_y && build_generator_arc(block)) return true;
   // Beside a generator, chords follow a circle on unequal scales closer than an ellipse of whole pulses.
   const bool accumulates = card_.accumulator && (scale_x == scale_y || !card_.arc_generator);
+  const auto rule = card_.eight_directions ? driver::StepRule::kEightDirections : driver::StepRule::kFourDirections;
   if (accumulates && !is_helix(block)) {
-    if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block, scale_x, scale_y)) {
+    if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block, scale_x, scale_y, rule)) {
       block.arc = *arc;
       return build_accumulator_arc(block);
     }
@@ -312,26 +315,33 @@ bool BlockBuilder::build_generator_arc(Block& block) const {
   return true;
 }
 
-// Unit steps come evenly: the path's speed changes along it as 1 / g, g = |sin| sx + |cos| sy with the axes' steps/mm,
-// and so its acceleration, V^2 sqrt(sx^2 + sy^2) / (r g^3) with V steps a second, adds to what a ramp does. g is least
-// along the coarser axis; where the scales are equal the speed is 4/pi at the most above its mean.
+// Unit steps come evenly: the path's speed changes along it as 1 / g, with the axes' steps/mm sx, sy and V steps a
+// second. In 4 directions g = |sin| sx + |cos| sy, least along the coarser axis, and the path's acceleration, which
+// adds to what a ramp does, is V^2 sqrt(sx^2 + sy^2) / (r g^3); where the scales are equal the speed is 4/pi at the
+// most above its mean. In 8 directions a diagonal is one step: g = max(|sin| sx, |cos| sy), least along the diagonal,
+// and the acceleration V^2 max(sx, sy) / (r g^3) at the most.
 bool BlockBuilder::build_accumulator_arc(Block& block) {
   block.geometry = Geometry::kArc;
+  const bool eight = block.arc.eight_directions;
   const double steps = static_cast<double>(block.arc.path_ticks);
   const double radius = largest_radius(block);
   const double scale_x = scales_[block.axis_x];
   const double scale_y = scales_[block.axis_y];
-  const double least = std::min(scale_x, scale_y);
+  const double both = hypotenuse(scale_x, scale_y);
+  const double least = eight ? scale_x * scale_y / both : std::min(scale_x, scale_y);
   const double mean = std::max(least, steps / (radius * block.exact.sweep));  // steps a mm
   const double unevenness = mean / least;
-  const double share = std::sqrt(0.5) * least / hypotenuse(scale_x, scale_y);
+  const double share = std::sqrt(0.5) * least / (eight ? std::max(scale_x, scale_y) : both);
   // Two feed ticks a unit step at least: the step is then within a tick of its time.
   block.least_ticks = 2 * block.arc.path_ticks;
   limit_arc(block, unevenness, share / (unevenness * unevenness));
   const double unit_steps = steps / block.length;
-  limit_speed(block, card_.clock_hz / kClocksPerPathTick / unit_steps, SpeedLimit::kClock);
+  const double clocks = eight ? kClocksPerEightDirections : kClocksPerPathTick;
+  limit_speed(block, card_.clock_hz / clocks / unit_steps, SpeedLimit::kClock);
   for (Direction* end : {&block.entry, &block.exit}) {
-    const double here = std::abs((*end)[block.axis_x]) * scale_x + std::abs((*end)[block.axis_y]) * scale_y;
+    const double x = std::abs((*end)[block.axis_x]) * scale_x;
+    const double y = std::abs((*end)[block.axis_y]) * scale_y;
+    const double here = eight ? std::max(x, y) : x + y;
     for (double& part : *end) part *= mean / here;
   }
   return true;

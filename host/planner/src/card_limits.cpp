@@ -22,11 +22,14 @@ CardLimits limits_of(const driver::Identification& card) {
           has(card_map::engine::kArcGenerator),
           card.geometry_depth,
           card.feed_depth,
+          has(card_map::engine::kAccumulator8),
           has(card_map::engine::kPathCommands) ? machine::kMostOutputs : 0};
 }
 
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {
   if (arcs != ArcsBy::kGenerator) card.arc_generator = false;
+  // Elsewhere the papers' own 4, as without it.
+  if (arcs != ArcsBy::kEightDirections) card.eight_directions = false;
   if (arcs == ArcsBy::kChords) card.accumulator = false;
   return card;
 }

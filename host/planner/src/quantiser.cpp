@@ -19,7 +19,8 @@ constexpr double kReserve = card_map::constant::kUnderrunReserveTicks;
 // The card goes on at a piece's last rate for so many clocks after its last tick; these ticks are the next piece's.
 constexpr double kSwapClocks = 6;
 constexpr double kLeastRate = 0x1p-32;
-constexpr double kRest = 1e-6;  // mm/s
+constexpr double kSteady = 1e-5;  // change of a rate that is none
+constexpr double kRest = 1e-6;    // mm/s
 
 std::uint64_t fixed64(double rate) { return static_cast<std::uint64_t>(std::min(rate, 1 - 0x1p-53) * 0x1p64); }
 std::int64_t signed64(double change) { return static_cast<std::int64_t>(change * 0x1p64); }
@@ -68,6 +69,7 @@ Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, const 
       clock_hz_(clock_hz),
       stop_clocks_(stop_clocks),
       queues_(queues),
+      fit_(clock_hz),
       pieces_(kPieces),
       highest_(kPieces) {}
 
@@ -78,10 +80,11 @@ void Quantiser::add(const Phase& phase) {
     turns_ = !waits;
     moving_ = true;
     // Where the density is what it is from does not matter: lengths go on from any place.
-    mm_ = base_mm_ = portion_mm_ = path_[at_].begin;
+    mm_ = base_mm_ = path_[at_].begin;
     base_tick_ = tick_ = pending_.end = path_[at_].begin_ticks;
     lead_ = 0;
     rate_a_speed_ = path_[at_].density / clock_hz_;
+    fit_.start(rate_a_speed_);
   } else if (phase.speed == 0) {
     turns_ = true;
   }
@@ -95,6 +98,7 @@ void Quantiser::add(const Phase& phase) {
     base_mm_ = block.end;
     base_tick_ = block.end_ticks;
     rate_a_speed_ = path_[at_ + 1].density / clock_hz_;
+    fit_.change_density(rate_a_speed_);
   }
   PathEntry& block = path_[at_];
   if (phase.stop) {
@@ -102,18 +106,29 @@ void Quantiser::add(const Phase& phase) {
     moving_ = false;
     ++at_;
   } else {
-    // A ramp whose acceleration begins and ends at once gets the tick that it shares with a constant speed.
-    const double share = smooth_ ? 0.5 : phase.acceleration == 0 ? 0 : 1 - 1e-9;
-    std::uint64_t tick = base_tick_ + static_cast<std::uint64_t>((mm_ - base_mm_) * rate_a_speed_ * clock_hz_ + share);
-    // A phase that ends with a block does so at its tick: the next one may be for the next block's limits alone, and
-    // what rounding leaves beyond a cut is no piece.
-    constexpr double kSame = 1e-9;  // mm
-    if ((smooth_ || block.begin == base_mm_) && mm_ - block.begin < kSame) tick = block.begin_ticks;
-    if ((smooth_ || block.cut) && block.end - mm_ < kSame) tick = block.end_ticks;
-    // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
-    portion(phase, begin, mm_, std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks)), false, false);
+    portion(phase, begin, mm_, end_tick(phase, block), false, false);
   }
   complete();
+}
+
+// The tick at which a phase ends at mm_, in the block or where it begins.
+std::uint64_t Quantiser::end_tick(const Phase& phase, const PathEntry& block) const {
+  // A phase that ends with a block does so at its tick: the next one may be for the next block's limits alone, and
+  // what rounding leaves beyond a cut is no piece.
+  constexpr double kSame = 1e-9;  // mm
+  const bool corner = smooth_ || (phase.acceleration < 0 && phase.next > 0);
+  std::uint64_t tick = 0;
+  if ((corner || block.cut) && block.end - mm_ < kSame) {
+    tick = block.end_ticks;
+  } else if ((corner || block.begin == base_mm_) && mm_ - block.begin < kSame) {
+    tick = block.begin_ticks;
+  } else {
+    const double exact = (mm_ - base_mm_) * rate_a_speed_ * clock_hz_;
+    const double from_base = smooth_ ? exact + 0.5 : fit_.end_tick(phase, exact);
+    tick = base_tick_ + static_cast<std::uint64_t>(std::max(0.0, from_base));
+  }
+  // Where a block has more ticks than its length, those before it keep at least one for the piece behind.
+  return std::clamp(tick, pending_.end, std::max(pending_.end, block.end_ticks));
 }
 
 // Of a phase that begins at `begin`, from the last portion's end to `end`, which is about at `end_tick`.
@@ -123,19 +138,23 @@ void Quantiser::portion(const Phase& phase, double begin, double end, std::uint6
         tick < base_tick_ ? -static_cast<double>(base_tick_ - tick) : static_cast<double>(tick - base_tick_);
     return base_mm_ + ticks / (rate_a_speed_ * clock_hz_) - begin;
   };
-  // Less than two updates are not worth a piece: the next one begins earlier.
-  if (smooth_ && end_tick > pending_.end && pending_.motion.clocks < 2 * kUpdate) pending_.end = tick_;
-  // Smooth motion goes on beyond a border as it was: its speeds are those at the ticks. Else they are those at the
-  // borders, so that the speed has no jump where the acceleration has one.
-  const double from = smooth_ ? place(pending_.end) : std::max(0.0, portion_mm_ - begin);
-  const double to = smooth_ ? place(end_tick) : end - begin;
-  portion_mm_ = end;
+  // Less than two updates of a ramp are not worth a piece: the next one begins earlier.
+  const double change = std::abs(pending_.motion.end_rate - pending_.motion.rate);
+  const bool brief = pending_.motion.clocks < 2 * kUpdate && change > kSteady * pending_.motion.rate;
+  if (smooth_ && end_tick > pending_.end && brief) pending_.end = tick_;
+  const double from = place(pending_.end);
   const std::uint64_t ticks = end_tick > pending_.end ? end_tick - pending_.end : 0;
+  if (!smooth_) {
+    const double late = (place(end_tick) - (end - begin)) * rate_a_speed_ * clock_hz_;
+    fit_.advance(phase, end - begin, static_cast<double>(ticks), late, mm_ - end > 1e-9);
+  }
   Motion motion;
   if (ticks != 0) {
     const bool empty = pending_.end == tick_;
     const auto behind = [&](double lead) {
-      return motion_of(phase, from + lead / (rate_a_speed_ * clock_hz_), to, static_cast<double>(ticks) - lead, stop);
+      if (!smooth_) return ramp(phase, static_cast<double>(ticks), lead);
+      const double gone = lead / (rate_a_speed_ * clock_hz_);
+      return motion_of(phase, from + gone, place(end_tick), static_cast<double>(ticks) - lead, stop);
     };
     motion = behind(empty ? std::min(lead_, static_cast<double>(ticks) / 2) : 0);
     if (motion.clocks >= kShortest || (empty && last)) {
@@ -146,7 +165,7 @@ void Quantiser::portion(const Phase& phase, double begin, double end, std::uint6
       put(motion, end_tick, stop);
       return;
     }
-    if (empty) pending_.motion.rate = motion.rate;
+    if (empty) pending_.motion.rate = smooth_ ? motion.rate : behind(0).rate;
     pending_.motion.end_rate = motion.end_rate;
     pending_.motion.clocks = motion.clocks + (empty ? 0 : pending_.motion.clocks);
     pending_.end = end_tick;
@@ -165,6 +184,19 @@ Quantiser::Motion Quantiser::steady(double rate, double end_rate, double ticks) 
   motion.acceleration = (end_rate - rate) * (end_rate + rate) / (2 * ticks);
   motion.clocks = 2 * ticks / (rate + end_rate);
   return motion;
+}
+
+// Of constant acceleration; `lead` ticks are gone when it begins.
+Quantiser::Motion Quantiser::steady_behind(double lead, double rate, double end_rate, double ticks) {
+  const double begin = std::sqrt(rate * rate + (end_rate - rate) * (end_rate + rate) * (lead / ticks));
+  return steady(begin, end_rate, ticks - lead);
+}
+
+Quantiser::Motion Quantiser::ramp(const Phase& phase, double ticks, double lead) const {
+  const double rest = std::sqrt(std::abs(phase.acceleration) * rate_a_speed_ / clock_hz_);
+  const double most = std::max(fit_.rate(), fit_.end_rate());
+  const double least = most > 0 ? std::min(rest, most) : rest;
+  return steady_behind(lead, std::max(fit_.rate(), least), std::max(fit_.end_rate(), least), ticks);
 }
 
 // `from` and `to`: mm from where the phase begins; a part of a tick outside it, or one block's ticks too many.
@@ -232,7 +264,10 @@ void Quantiser::begin_at(double rate, double ticks, Motion& motion) {
 
 void Quantiser::put_pending(bool stop) {
   const double ticks = static_cast<double>(pending_.end - tick_);
-  put(steady(pending_.motion.rate, pending_.motion.end_rate, ticks - std::min(lead_, ticks / 2)), pending_.end, stop);
+  const double lead = std::min(lead_, ticks / 2);
+  const Motion& all = pending_.motion;  // of smooth motion the rate is that behind the lead
+  put(smooth_ ? steady(all.rate, all.end_rate, ticks - lead) : steady_behind(lead, all.rate, all.end_rate, ticks),
+      pending_.end, stop);
 }
 
 // The highest or lowest rate lies inside where the acceleration changes its sign.
@@ -270,7 +305,37 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   if (motion.rests && motion.jerk != 0) command.floor = fixed32(std::min(motion.end_rate, put.most));
   time_blocks(motion, lead, end_tick, stop);
   tick_ = pending_.end = end_tick;
-  lead_ = kSwapClocks * motion.end_rate;
+  lead_ = overshoot(command, motion, lead);
+}
+
+// Ticks, and the part of one, that the card goes beyond the piece's last one before the next piece's rate is in force,
+// when it began `lead` ticks into it: rate, acceleration and jerk as they are sent, update by update.
+double Quantiser::overshoot(const driver::FeedCommand& piece, const Motion& motion, double lead) {
+  constexpr double kUnit = 0x1p-64;
+  const double rate = static_cast<double>(piece.rate) * kUnit;
+  const double acceleration = static_cast<double>(piece.acceleration) * kUnit;
+  const double jerk = static_cast<double>(piece.jerk) * kUnit;
+  const double floor = static_cast<double>(piece.floor) * 0x1p-32;
+  const double ticks = static_cast<double>(piece.ticks) - lead;
+  const auto gone = [&](double clocks) {
+    const double updates = std::floor(clocks / kUpdate);
+    const double before = updates - 1;
+    const double now = rate + updates * (acceleration + before / 2 * jerk);
+    const double whole = updates * (rate + before / 2 * (acceleration + (updates - 2) / 3 * jerk));
+    return kUpdate * whole + (clocks - kUpdate * updates) * std::max(now, floor);
+  };
+  // The first clock in which the last tick has come: from near it, then clock by clock.
+  double clocks = std::floor(motion.clocks);
+  for (int i = 0; i < 4; ++i) {
+    const double step = std::floor((ticks - gone(clocks)) / motion.end_rate);
+    if (step == 0) break;
+    clocks = std::max(0.0, clocks + step);
+  }
+  for (int i = 0; i < 16 && clocks > 0 && gone(clocks - 1) >= ticks; ++i) --clocks;
+  for (int i = 0; i < 16 && gone(clocks) < ticks; ++i) ++clocks;
+  const double beyond = gone(clocks + kSwapClocks) - ticks;
+  const double expected = kSwapClocks * motion.end_rate;
+  return beyond >= 0 && beyond <= expected + 1 + motion.end_rate ? beyond : expected;
 }
 
 // Durations and speeds of the blocks that the piece from tick_ to `end_tick` covers; the first `lead` ticks pass at the

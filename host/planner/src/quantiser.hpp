@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "path_ring.hpp"
+#include "tick_fit.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/planner/speed_plan.hpp"
 
@@ -68,12 +69,16 @@ class Quantiser {
   };
 
   void portion(const Phase& phase, double begin, double end, std::uint64_t end_tick, bool last, bool stop);
+  std::uint64_t end_tick(const Phase& phase, const PathEntry& block) const;
+  Motion ramp(const Phase& phase, double ticks, double lead) const;
   Motion motion_of(const Phase& phase, double from, double to, double ticks, bool stop) const;
   static void begin_at(double rate, double ticks, Motion& motion);
   static Motion steady(double rate, double end_rate, double ticks);
   static double turning_rate(const Motion& motion);
+  static Motion steady_behind(double lead, double rate, double end_rate, double ticks);
   void put_pending(bool stop);
   void put(const Motion& motion, std::uint64_t end_tick, bool stop);
+  static double overshoot(const driver::FeedCommand& piece, const Motion& motion, double lead);
   void time_blocks(const Motion& motion, double lead, std::uint64_t end_tick, bool stop);
   static Instant instant(const Motion& motion, double distance, double ticks);
   void complete();
@@ -92,14 +97,14 @@ class Quantiser {
   double clock_hz_;
   double stop_clocks_;
   QueueLimits queues_;
+  TickFit fit_;  // of motion that is not smooth
 
   // Where the phases are.
   bool moving_ = false;
   bool turns_ = false;    // from a stop that nothing waits at, or in mid path
   std::uint64_t at_ = 0;  // block
   double mm_ = 0;
-  double portion_mm_ = 0;  // and where the last portion of a phase ended
-  double base_mm_ = 0;     // where the density is what it is from
+  double base_mm_ = 0;  // where the density is what it is from
   std::uint64_t base_tick_ = 0;
   double rate_a_speed_ = 0;  // ticks a clock at 1 mm/s
   std::uint64_t tick_ = 0;   // end of the last piece

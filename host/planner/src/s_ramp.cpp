@@ -54,7 +54,7 @@ unsigned phases_of(const Ramp& ramp, std::array<Phase, 3>& phases) {
   unsigned count = 0;
   const auto add = [&](double length, double duration, double speed, double acceleration, double jerk) {
     if (!(length > 0) || !(duration > 0)) return;
-    phases[count++] = {length, duration, speed, acceleration, jerk, false, ramp.short_sight};
+    phases[count++] = {length, duration, speed, acceleration, jerk, 0, false, ramp.short_sight};
   };
   const double sign = ramp.to < ramp.from ? -1 : 1;
   const double change = sign * (ramp.to - ramp.from);

@@ -85,9 +85,11 @@ void TrapezoidPlan::plan_first() {
   --count_;
   if (--due_ != 0) return;
   pending_.stop = finished_;
+  // What follows is not known yet: the same, more often than not.
+  const double next = finished_ ? 0 : pending_.acceleration;
   if (finished_) speed_ = 0;
   finished_ = false;
-  give_pending();
+  give_pending(next);
 }
 
 // A phase from one speed to the other, both squared; one with the phase before it where it goes on.
@@ -97,14 +99,15 @@ void TrapezoidPlan::add(double length, double speed, double end_speed, double ac
   const bool goes_on = pending_.length > 0 && same(pending_.acceleration, acceleration) &&
                        (acceleration != 0 || same(pending_.speed, from)) && pending_.short_sight == !in_sight;
   if (!goes_on) {
-    give_pending();
-    pending_ = Phase{0, 0, from, acceleration, 0, false, !in_sight};
+    give_pending(acceleration);
+    pending_ = Phase{0, 0, from, acceleration, 0, 0, false, !in_sight};
   }
   pending_.length += length;
   pending_.duration += duration;
 }
 
-void TrapezoidPlan::give_pending() {
+void TrapezoidPlan::give_pending(double next_acceleration) {
+  pending_.next = next_acceleration;
   if (pending_.length > 0) phases_[made_++] = pending_;
   pending_ = Phase{};
 }

@@ -34,7 +34,7 @@ class TrapezoidPlan final : public SpeedPlan {
   void look_back();
   void plan_first();
   void add(double length, double speed, double end_speed, double acceleration, bool in_sight);
-  void give_pending();
+  void give_pending(double next_acceleration);
 
   std::vector<Node> nodes_;
   std::size_t chunk_;

@@ -16,11 +16,13 @@ struct CardLimits {
   bool arc_generator = true;            // the arc generator is there
   std::uint32_t geometry_depth = 4096;  // halfwords of the queues
   std::uint32_t feed_depth = 2560;
-  unsigned outputs = 0;  // that commands on the path can switch, up to 16; 0: it has no such commands
+  bool eight_directions = false;  // arcs on the accumulator may go in 8 directions, and shall
+  unsigned outputs = 0;           // that commands on the path can switch, up to 16; 0: it has no such commands
 };
 
 // Where arcs go: to what is there, the first of these that can; helices to the generator or out as lines.
-enum class ArcsBy { kGenerator, kAccumulator, kChords };
+// kEightDirections is the accumulator, in 8 directions where the card has them.
+enum class ArcsBy { kGenerator, kEightDirections, kAccumulator, kChords };
 
 // As if the card had nothing for arcs that comes before `arcs`.
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs);

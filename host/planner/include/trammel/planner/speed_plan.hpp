@@ -21,6 +21,7 @@ struct Phase {
   double speed = 0;
   double acceleration = 0;
   double jerk = 0;
+  double next = 0;           // acceleration of the phase behind it, where acceleration may jump; 0 at a stop
   bool stop = false;         // ends where finish() said
   bool short_sight = false;  // slower than the path allows, because of what `window` does not show
 };

@@ -1,0 +1,68 @@
+#include "tick_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trammel::planner {
+namespace {
+
+constexpr double kMostRounded = 0.5;  // ticks by which a stop or a corner may come before its place
+
+bool goes_on(const Phase& phase) { return phase.acceleration * phase.next > 0; }
+bool is_peak(const Phase& phase) { return phase.acceleration > 0 && phase.next < 0; }
+
+}  // namespace
+
+void TickFit::start(double rate_a_speed) {
+  rate_a_speed_ = rate_a_speed;
+  begin_ = end_ = lag_ = 0;
+}
+
+void TickFit::change_density(double rate_a_speed) {
+  const double change = rate_a_speed / rate_a_speed_;
+  rate_a_speed_ = rate_a_speed;
+  end_ *= change;
+  lag_ *= change;
+}
+
+// A ramp gets at least the ticks that it takes. Constant speed leaves those that a stop may come too early; a peak
+// shares out what both its ramps lack.
+double TickFit::end_tick(const Phase& phase, double exact) const {
+  constexpr double kAlmost = 1e-9;
+  const auto above = [](double tick) { return std::ceil(tick - kAlmost); };
+  if (phase.acceleration == 0) return phase.next > 0 ? above(exact) : std::floor(exact - kMostRounded);
+  if (is_peak(phase)) {
+    const double both = phase.acceleration - phase.next;
+    return std::floor(exact + (phase.acceleration * lag_ + phase.next * kMostRounded) / both);
+  }
+  const double late = exact + lag_;
+  // The part of a tick at the border has the smaller acceleration of the two.
+  const bool weaker = std::abs(phase.acceleration) <= std::abs(phase.next);
+  return goes_on(phase) && !weaker ? std::floor(late + kAlmost) : above(late);
+}
+
+void TickFit::advance(const Phase& phase, double to, double ticks, double late, bool through) {
+  constexpr double kSame = 1e-9;  // of a rate
+  constexpr double kFar = 2;      // ticks: blocks that have more of them than their length
+  begin_ = end_;
+  const double tick = 1 / (rate_a_speed_ * clock_hz_);
+  const auto planned = [&](double place) {
+    return rate_a_speed_ * std::sqrt(std::max(0.0, phase.speed * phase.speed + 2 * phase.acceleration * place));
+  };
+  const double wanted = planned(to);
+  if (std::abs(begin_ - wanted) <= kSame * wanted) begin_ = wanted;
+  if (ticks != 0) end_ = wanted;
+  const bool own = phase.acceleration != 0 && (through || goes_on(phase) || is_peak(phase));
+  if (ticks != 0 && own) {
+    const double one = planned(to - kFar * tick);
+    const double other = planned(to + kFar * tick);
+    const double square = begin_ * begin_ + 2 * of_ticks(phase.acceleration) * ticks;
+    end_ = std::clamp(std::sqrt(std::max(0.0, square)), std::min(one, other), std::max(one, other));
+  }
+  // From here on the plan goes as the next phase does.
+  const double acceleration = is_peak(phase) && !through ? phase.next : phase.acceleration;
+  const double gain = acceleration == 0 ? 0 : (end_ * end_ - wanted * wanted) / (2 * of_ticks(acceleration));
+  lag_ = std::clamp(late - gain, -kFar, kFar);
+}
+
+}  // namespace trammel::planner

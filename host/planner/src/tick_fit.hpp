@@ -1,0 +1,36 @@
+// Speeds whose acceleration may jump, fitted to whole ticks: where phases end, and at which rates, so that no piece has
+// more acceleration than its phase. Internal to the planner.
+#pragma once
+
+#include "trammel/planner/speed_plan.hpp"
+
+namespace trammel::planner {
+
+class TickFit {
+ public:
+  // `rate_a_speed`: ticks a clock at 1 mm/s.
+  explicit TickFit(double clock_hz) : clock_hz_(clock_hz) {}
+  void start(double rate_a_speed);
+  void change_density(double rate_a_speed);
+
+  // The whole tick for the end of a phase that ends at `exact` ticks, where neither a stop nor a corner has one.
+  double end_tick(const Phase& phase, double exact) const;
+  // From the last portion's end `ticks` on, to `to` mm in the phase; `late`: how much later than there. `through`: the
+  // phase goes on behind.
+  void advance(const Phase& phase, double to, double ticks, double late, bool through);
+
+  // Of the last portion, ticks a clock.
+  double rate() const { return begin_; }
+  double end_rate() const { return end_; }
+
+ private:
+  double of_ticks(double acceleration) const { return acceleration * rate_a_speed_ / clock_hz_; }
+
+  double clock_hz_;
+  double rate_a_speed_ = 0;
+  double begin_ = 0;
+  double end_ = 0;
+  double lag_ = 0;  // ticks from where the plan has the rate `end_` to where the motion has it
+};
+
+}  // namespace trammel::planner
