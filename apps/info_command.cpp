@@ -47,6 +47,9 @@ std::string describe(const sim::SimulationOptions& options) {
   fmt::format_to(out, "engines        {}\n", engines(id.engines));
   fmt::format_to(out, "geometry queue {} halfwords\n", id.geometry_depth);
   fmt::format_to(out, "feed queue     {} halfwords\n", id.feed_depth);
+  const driver::Build build = card.build();
+  fmt::format_to(out, "build          {:08x}{}\n", build.id, build.dirty ? ", dirty" : "");
+  fmt::format_to(out, "board          {}\n", build.board);
   const driver::Snapshot now = card.snapshot();
   fmt::format_to(out, "time           {} clocks since reset\n", now.time);
   for (unsigned axis = 0; axis < id.axes; ++axis)

@@ -113,7 +113,7 @@ TEST(Notes, WordsWithoutEffectByTheReason) {
       << outcome.out;
   EXPECT_NE(outcome.out.find("[outputs] of the machine file: M3 (1) M5 (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("waits for modulated outputs: S (1)\n"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("without hardware yet: M84 (1) T (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("no hardware: M84 (1) T (1)\n"), std::string::npos) << outcome.out;
 }
 
 TEST(Notes, BlendsAndCornersThatAreKept) {
