@@ -103,6 +103,8 @@ bool BlockBuilder::build(Block& block) {
     case gcode::MotionKind::kEnd:
       block.geometry = Geometry::kEnd;
       return true;
+    case gcode::MotionKind::kProbe:
+      return refuse(gcode::ErrorCode::kNoProbe, "probing is not supported yet");
     case gcode::MotionKind::kArc:
       return set_targets(block) && build_arc(block);
     default:
