@@ -47,6 +47,20 @@ TEST(CardOpen, ReadsWhoTheCardIsInThreeTransfersAndWritesNothing) {
   EXPECT_EQ(card.timing().pulse_period[1], 506U);
 }
 
+TEST(CardBuild, IsReadWhenAskedFor) {
+  RegisterStub bus;
+  bus.values[reg::kBuildId] = 0x1234ABCD;
+  bus.values[reg::kBuildFlags] = field::kBuildFlagsDirty;
+  bus.values[reg::kBoardId] = 7;
+  Card card = Card::open(bus);
+  const Build build = card.build();
+  EXPECT_EQ(build.id, 0x1234ABCDU);
+  EXPECT_TRUE(build.dirty);
+  EXPECT_EQ(build.board, 7U);
+  bus.values[reg::kBuildFlags] = 0;
+  EXPECT_FALSE(card.build().dirty);
+}
+
 TEST(CardOpen, AsksNothingMoreOfWhatIsNotACard) {
   RegisterStub bus;
   bus.values[reg::kMagic] = 0xFFFFFFFF;
