@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs masters_test.py on the card in Icarus, then on cards with a seeded bug each, which it must find."""
 import argparse
-import logging
+import contextlib
 import pathlib
 import shutil
 import subprocess
@@ -11,8 +11,6 @@ import xml.etree.ElementTree
 
 warnings.filterwarnings("ignore", "Python runners")
 from cocotb.runner import get_runner  # noqa: E402
-
-logging.disable(logging.INFO)  # each command that it runs
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -33,14 +31,19 @@ def sources():
 
 def run(folder, files):
     """(tests, failures) of one simulation."""
+    with (folder / "runner.log").open("w") as log, contextlib.redirect_stdout(log):
+        simulate(folder, files)
+    cases = list(xml.etree.ElementTree.parse(folder / "results.xml").iter("testcase"))
+    return len(cases), sum(case.find("failure") is not None or case.find("error") is not None for case in cases)
+
+
+def simulate(folder, files):
     runner = get_runner("icarus")
     runner.build(verilog_sources=files, hdl_toplevel="card_on_buses", build_args=["-g2012"], build_dir=folder, always=True,
                  log_file=folder / "build.log")
     runner.test(hdl_toplevel="card_on_buses", test_module="masters_test", build_dir=folder, test_dir=HERE,
                 results_xml=str(folder / "results.xml"), log_file=folder / "test.log",
                 extra_env={"TRAMMEL_CARD_MAP": str(ROOT / "rtl/regs/generated/card_map_pkg.sv")})
-    cases = list(xml.etree.ElementTree.parse(folder / "results.xml").iter("testcase"))
-    return len(cases), sum(case.find("failure") is not None or case.find("error") is not None for case in cases)
 
 
 def seeded(name, file, before, after, folder):
@@ -57,7 +60,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path, help="for what is built")
     folder = parser.parse_args().folder.resolve()
     shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    (folder / "card").mkdir(parents=True)
     tests, failures = run(folder / "card", sources())
     print(f"the card: {tests} tests, {failures} failed")
     good = tests == 3 and failures == 0
