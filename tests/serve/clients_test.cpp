@@ -231,6 +231,48 @@ TEST_F(ClientsTest, BaudIsKeptInCardTime) {
   EXPECT_LE(clocks, least * 1.1);
 }
 
+// No faster than life; how much slower is the machine's.
+TEST_F(ClientsTest, RealTimeIsNoFasterThanLife) {
+  Settings real = settings();
+  real.real_time = true;
+  const auto begun = std::chrono::steady_clock::now();
+  serve(real);
+  std::chrono::duration<double> life{};
+  while (life < 300ms) {
+    server_->turn();
+    life = std::chrono::steady_clock::now() - begun;
+    ASSERT_LE(static_cast<double>(engine_->cycles()), life.count() * kClock);
+  }
+  EXPECT_GE(engine_->cycles(), 10'000U);
+  // And a client's wait is the card's time.
+  StreamLink link(opener(), StreamLink::Hello{});
+  const std::uint64_t before = engine_->cycles();
+  link.sleep(50ms);
+  EXPECT_GE(engine_->cycles() - before, 50'000U);
+}
+
+// What a client has left of a request does not meet the next one's.
+TEST_F(ClientsTest, ANewClientIsANewEpoch) {
+  serve(settings());
+  frames::Request ask;
+  frames::Bytes bytes{frames::kEnd};
+  frames::append_request(bytes, ask);
+  std::vector<std::uint16_t> epochs;
+  for (int i = 0; i < 3; ++i) {
+    ClientEnd client(*server_, listener_);
+    client.write(bytes.data(), bytes.size());
+    client.write(bytes.data(), 5);
+    frames::Deframer deframer(frames::kMaxReplyBody);
+    std::uint8_t byte = 0;
+    while (client.read(&byte, 1, 1s) != 0 && !deframer.take(byte)) {
+    }
+    const auto reply = frames::parse_reply(deframer.body());
+    ASSERT_TRUE(reply);
+    epochs.push_back(reply->epoch);
+  }
+  EXPECT_EQ(epochs, (std::vector<std::uint16_t>{1, 2, 3}));
+}
+
 TEST(Token, IsRandomAndFitsAUrl) {
   EXPECT_NE(random_token(), random_token());
   EXPECT_TRUE(is_token(random_token()));
