@@ -8,6 +8,7 @@ import { join } from 'node:path'
 import { after, test } from 'node:test'
 import { Achieved } from '../src/achieved.js'
 import { Bytes } from '../src/decode.js'
+import { lastAtMost } from '../src/run.js'
 import { sample } from '../src/samples.js'
 import { readPage, trammel } from './page.mjs'
 
@@ -70,6 +71,29 @@ test('the deviations that the page finds are those that the run measured', () =>
   const place = run.facts.deviation_places.line
   assert.ok(run.program[place.line - 1].length > 0)
 })
+
+// The commanded place at the clock of each step against what the pulses have made by then: each within half a pulse of the
+// path, the arcs' closing beside it, and what moves in the clocks by which the map of times may be off.
+for (const [name, ...options] of [['at full speed'], ['held and overridden', '--hold-at', '2:1.5', '--override-at', '6:30'], ['S-curves', ...['x', 'y', 'z', 'e'].flatMap((axis) => ['--set', `axis.${axis}.max_jerk=20000`])]]) {
+  test(`at every time the commanded place is the executed one: ${name}`, () => {
+    const { run } = report(part, '--clock', '1000000', ...options)
+    let worst = 0, at = 0
+    for (let i = 0; i < run.executed.count; i += 7) {
+      const cycle = run.executed.times[i]
+      const { motion } = run.motionAt(cycle)
+      const stretch = run.stretchAt(motion)
+      const share = run.shareAt(stretch, motion - run.motion.begins[stretch])
+      run.axes.forEach((axis, a) => {
+        const steps = run.steps[a]
+        const last = lastAtMost(steps.cycles, cycle)
+        const made = last < 0 ? axis.start : steps.positions[last]
+        const off = Math.abs(run.axisAt(run.motion.paths[stretch], a, share)[0] * axis.steps_per_mm - made)
+        if (off > worst) { worst = off; at = run.seconds(cycle) }
+      })
+    }
+    assert.ok(worst < 1.25, `${worst} pulses at ${at} s`)
+  })
+}
 
 test('commanded speed is the feed, and what the pulses make of it is the same', () => {
   const { run } = report(programOf('G21 G90 G91.1\nG1 X60 F600\nG2 I-10 F600\n'), '--clock', '1000000')
