@@ -119,6 +119,32 @@ test('accelerations and jerks are those of the machine file, on straight lines t
   assert.ok(jerk[1] / 20000 < 1.02, `${jerk[1]}`)
 })
 
+test('speed, acceleration and jerk are each the derivative of the one before, on lines, arcs and blends in space', () => {
+  const jerks = ['x', 'y', 'z', 'e'].flatMap((axis) => ['--set', `axis.${axis}.max_jerk=30000`])
+  const { run } = report(programOf('G21 G90 G91.1 G64 P1\nF3000\nG1 X30 Y8\nG3 X30 Y28 J10\nG1 X10 Y20 Z9\nG18 G2 X20 Z9 I5 K0\nG17 G1 X0 Y0 Z0\nG1 X20 Y30 Z10\nG1 X40 Y0 Z12\n'), '--clock', '1000000', ...jerks)
+  const f = run.clockHz * run.fullRatio
+  const kinds = new Set()
+  let compared = 0
+  for (let s = 0; s < run.motion.count; ++s) {
+    const path = run.motion.paths[s]
+    const clocks = run.motion.begins[s + 1] - run.motion.begins[s]
+    if (clocks < 4000) continue
+    const h = 200, t = clocks / 2
+    const [before, now, behind] = [t - h, t, t + h].map((at) => run.axes.map((_, a) => run.axisAt(path, a, run.shareAt(s, at))))
+    kinds.add(run.paths.flags[path] & 3)
+    run.axes.forEach((axis, a) => {
+      const bound = [axis.max_velocity, axis.max_acceleration, axis.max_jerk]
+      for (let d = 0; d < 3; ++d) {
+        const difference = (behind[a][d] - before[a][d]) / (2 * h) * f
+        assert.ok(Math.abs(difference - now[a][d + 1]) < 2e-3 * bound[d], `line ${run.paths.lines[path]} ${axis.letter} ${d + 1}: ${difference} ${now[a][d + 1]}`)
+        ++compared
+      }
+    })
+  }
+  assert.deepEqual([...kinds].sort(), [0, 1, 2])
+  assert.ok(compared > 200, `${compared}`)
+})
+
 test('a hold and an override show where they were made', () => {
   const { run } = report(programOf('G21 G90\nG1 X60 F600\n'), '--clock', '1000000', '--hold-at', '2:1', '--override-at', '4:50')
   const percent = (seconds) => {
