@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "card_choice.hpp"
+#include "card_run.hpp"
 #include "engine_options.hpp"
 #include "engine_speed.hpp"
 #include "errors.hpp"
@@ -32,6 +34,7 @@ constexpr std::uint32_t kSimulatedClock = 1'000'000;
 
 struct Options {
   std::string program;
+  CardChoice card;
   MachineChoice machine;
   EngineChoice engine;
   MotionChoice motion;
@@ -68,6 +71,62 @@ void refuse_contradictions(const Options& options) {
   refuse("--stream", options.stream, kWhy);
 }
 
+void refuse_rapids_at_zero(const Options& options, const Operation& operation, const run::Plan& plan) {
+  if (operation.rapid_percent != 0) return;
+  if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
+  if (plan.rapids == 0) return;
+  throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
+}
+
+// A list of steps, a picture and a time of the operator's need the pins and the clocks of a simulated card.
+void refuse_what_needs_the_simulation(const Options& options) {
+  const CardChoice& card = options.card;
+  options.engine.refuse_with(card);
+  refuse_with_card(card, "--steps", options.steps.has_value());
+  refuse_with_card(card, "--path-steps", options.path_steps.has_value());
+  refuse_with_card(card, "--outputs", options.outputs.has_value());
+  refuse_with_card(card, "--plot", options.plot.has_value());
+  refuse_with_card(card, "--report", options.report.has_value());
+  refuse_with_card(card, "--override-at", !options.motion.override_at.empty());
+  refuse_with_card(card, "--hold-at", !options.motion.hold_at.empty());
+  refuse_with_card(card, "--input-at", !options.motion.input_at.empty());
+  refuse_with_card(card, "--limit-bus", options.motion.bytes_per_second.has_value());
+  if (options.check) throw UsageError("--check: nothing runs, so it takes no --card");
+}
+
+void execute_on_card(const Options& options, const transport::CardUrl& url) {
+  refuse_what_needs_the_simulation(options);
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  outputs.keep("the program", options.program);
+  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
+  outputs.check();
+  const machine::Machine machine = options.machine.load();
+  for (const std::string& text : jerk_warnings(machine)) tell("warning", text);
+  RunOptions run;
+  run.progress = options.progress;
+  run.stream = options.stream;
+  run.settings = options.motion.settings();
+  run.most_percent = 100 * machine.motion.max_override;
+  run.operation = options.motion.operation(run.most_percent);
+  run.planned = [&](const run::Plan& plan) {
+    refuse_rapids_at_zero(options, run.operation, plan);
+    outputs.open();
+    for (const std::string& text : feed_warnings(plan.file, plan.feeds_not_reached)) tell("warning", text);
+  };
+  const ProgramFile file(options.program, options.stream);
+  const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
+    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
+  };
+  CardRunResult result;
+  with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
+    result = run_on_card(lines, machine, card, connection, run);
+  });
+  result.card = url.text;
+  if (json != nullptr) json->write(json_text(result));
+  outputs.commit(summary(result) + options.machine.line());
+}
+
 void check(const run::ProgramLines& lines, const MachineChoice& choice, const machine::Machine& machine,
            const planner::CardLimits& card, const run::RunSettings& settings, Outputs& outputs, Output* json) {
   const CheckResult result = check_program(lines, machine, card, settings);
@@ -79,6 +138,7 @@ void check(const run::ProgramLines& lines, const MachineChoice& choice, const ma
 
 void execute(const Options& options) {
   refuse_contradictions(options);
+  if (const auto url = options.card.url()) return execute_on_card(options, *url);
   Outputs outputs;
   RunOptions run;
   Output* const json = outputs.add("--json", options.json);
@@ -111,12 +171,8 @@ void execute(const Options& options) {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
   if (options.check) return check(lines, options.machine, machine, limits_of(engine), run.settings, outputs, json);
-  const bool no_rapids = run.operation.rapid_percent == 0;
-  if (no_rapids && options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   run.planned = [&](const run::Plan& plan) {
-    if (no_rapids && plan.rapids != 0) {
-      throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
-    }
+    refuse_rapids_at_zero(options, run.operation, plan);
     outputs.open();
     if (trace != nullptr) engine.trace->path = trace->path_to_write();
     for (const std::string& text : feed_warnings(plan.file, plan.feeds_not_reached)) tell("warning", text);
@@ -140,9 +196,11 @@ void execute(const Options& options) {
 
 void add_run_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "run a G-code program on the simulated card");
+  CLI::App* command =
+      app.add_subcommand("run", "run a G-code program on the simulated card, or on one outside (--card)");
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
   options->machine.add_to(*command);
+  options->card.add_to(*command);
   options->engine.add_to(*command);
   options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");

@@ -12,7 +12,7 @@ from board_tools.write import constraints_file
 BUILD = ROOT / "build" / "boards"
 SEEDS = (1, 2, 3)
 HEADROOM = 1.1  # what the median of the seeds must have of the clock
-PLACEMENT_SECONDS = 1500  # a placer that finds no place may look for ever
+PLACEMENT_SECONDS = 2700  # a placer that finds no place may look for ever
 
 
 def files_of(board):

@@ -28,7 +28,8 @@ TEST(Names, MistypedSubcommandAndTheNearest) {
 TEST(Names, HelpOfACommandIsItsHelp) {
   const Command command;
   EXPECT_EQ(command.run("help").out, command.run("--help").out);
-  for (const std::string name : {"run", "line", "info", "steps", "methods", "compare", "reproduce"}) {
+  for (const std::string name :
+       {"run", "line", "info", "monitor", "dump", "selftest", "serve", "steps", "methods", "compare", "reproduce"}) {
     const Outcome outcome = command.run("help " + name);
     EXPECT_EQ(outcome.status, 0) << name;
     EXPECT_EQ(outcome.out, command.run(name + " --help").out);

@@ -17,14 +17,14 @@ export function rowsOf(run) {
   ]
   return [
     {
-      id: 'path', title: 'Path speed', unit: 'mm/s', height: 104, shown: true, least: 0,
+      id: 'path', title: 'Path speed', unit: 'mm/s', height: 98, shown: true, least: 0,
       lines: [
         { label: 'achieved', colour: 'achieved', band: true, data: (s) => s.mean, value: (r) => r.achieved },
         { label: 'commanded', colour: 'commanded', data: (s) => s.path, value: (r) => r.commanded },
       ],
     },
     ...kinds.map(([id, title, unit, derivative, limit, at, shown]) => ({
-      id, title, unit, height: 96, shown,
+      id, title, unit, height: 88, shown,
       limits: [...new Set(axes.map(({ axis }) => axis[limit]).filter((value) => value > 0))],
       lines: axes.map(({ axis, a }) => ({
         label: axis.letter, axis: axis.letter, data: (s) => s.axes[derivative][a], value: (r) => r.axes[a][at],
@@ -32,7 +32,7 @@ export function rowsOf(run) {
       })),
     })),
     {
-      id: 'override', title: 'Override', unit: '%', height: 70, shown: run.facts.events.length > 0, least: 0, room: 100,
+      id: 'override', title: 'Override', unit: '%', height: 64, shown: run.facts.events.length > 0, least: 0, room: 100,
       lines: [{ label: 'in force', colour: 'commanded', data: (s) => s.ratio, value: (r) => r.percent ?? NaN }],
     },
   ]
@@ -46,7 +46,9 @@ export class Chart {
     this.window = [0, 1]  // seconds
     this.values = row.lines.map(() => make('b'))
     this.plotElement = make('div', { class: 'plot' })
-    const limits = row.limits?.length ? make('div', {}, make('em', {}, `limit ${row.limits.map(number).join(', ')}`)) : null
+    const named = (value) => `${number(value)} (${row.lines.filter((line) => line.limit === value).map((line) => line.label).join(' ')})`
+    const limits = row.limits?.length
+      ? make('div', {}, make('em', {}, `limit ${row.limits.length > 1 ? row.limits.map(named).join(', ') : number(row.limits[0])}`)) : null
     this.swatches = row.lines.map(() => make('i'))
     this.element = make('div', { class: 'row', id: `row-${row.id}` },
       make('div', { class: 'label' }, make('h3', {}, row.title, ' ', make('small', {}, row.unit)),
@@ -78,13 +80,13 @@ export class Chart {
         {
           size: 52, font: kFont, stroke: colour('faint'), gap: 4,
           grid: { stroke: colour('grid'), width: 1 }, ticks: { show: false },
-          splits: (_, __, low, high) => ticks(low, high, Math.max(2, row.height / 30)).list,
+          splits: (_, __, low, high) => ticks(low, high, Math.max(2, row.height / 16)).list,
           values: (_, list) => this.labels(list),
         },
       ],
       bands: band ? [{ series: [2, 1], fill: alpha(colour('achieved'), 0.28) }] : [],
       series,
-      hooks: { drawClear: [() => this.under()] },
+      hooks: { drawAxes: [() => this.under()] },
     }, null, this.plotElement)
   }
   labels(list) {
@@ -105,7 +107,7 @@ export class Chart {
     for (const limit of row.limits ?? []) if (limit > most && limit < 1.6 * most) most = limit
     return most > 0 ? [-1.15 * most, 1.15 * most] : [-1, 1]
   }
-  // Limits and pauses, under the lines.
+  // Limits and pauses, above the grid and under the lines.
   under() {
     const { plot, row, run } = this
     const { ctx, bbox } = plot

@@ -155,7 +155,7 @@ bool BlockBuilder::set_targets(Block& block) {
 void BlockBuilder::switch_outputs() {
   unsigned output = 0;
   for (; output < card_.outputs || motion_.set >> output != 0; ++output) {
-    if (output < card_.outputs || (motion_.set >> output & 1U) == 0) continue;
+    if (output < card_.outputs || (unsigned{motion_.set} >> output & 1U) == 0) continue;
     refuse(gcode::ErrorCode::kNoOutput,
            card_.outputs == 0
                ? fmt::format("output {} of the machine file cannot be switched: the card has no path commands", output)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <iterator>
 
 #include "spi_master.hpp"
 #include "trammel/driver/card.hpp"
@@ -151,6 +152,11 @@ void a_line_over(CardUnderTest& card, driver::ByteLink& link, std::int32_t pulse
   driver::run_line(host, driver::plan_line(host.timing(), {pulses, -100}, 20ms));
   EXPECT_EQ(card.position(0) - before, static_cast<std::uint32_t>(pulses));
   EXPECT_EQ(bus.counts().sent_again, 0U);
+  // The card refuses the second one, and the third is not made.
+  driver::Access accesses[] = {driver::read_of(card_map::reg::kAxes), driver::write_of(card_map::reg::kAxes, 1),
+                               driver::read_of(card_map::reg::kAxes)};
+  EXPECT_EQ(bus.transfer(accesses, std::size(accesses)), 1U);
+  EXPECT_EQ(accesses[0].data, kAxes);
 }
 
 void lines_over_both() {
