@@ -74,6 +74,13 @@ void EngineChoice::add_to(CLI::App& command) {
       ->type_name("FROM:TO");
 }
 
+void EngineChoice::refuse_with(const CardChoice& card) const {
+  refuse_with_card(card, "--engine", engine != "rtl");
+  refuse_with_card(card, "--clock", clock_hz.has_value());
+  refuse_with_card(card, "--trace", trace.has_value());
+  refuse_with_card(card, "--trace-window", trace_window.has_value());
+}
+
 planner::CardLimits limits_of(const sim::EngineOptions& engine) {
   planner::CardLimits card;
   card.clock_hz = engine.clock_hz;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "card_choice.hpp"
 #include "command_line.hpp"
 #include "trammel/planner/card_limits.hpp"
 #include "trammel/sim/engines.hpp"
@@ -29,6 +30,8 @@ struct EngineChoice {
   std::optional<std::string> trace_window;  // FROM:TO
 
   void add_to(CLI::App& command);
+  // Throws UsageError where something was chosen: the card is another.
+  void refuse_with(const CardChoice& card) const;
   // The engine's options for a card of `axes` (1 to 8); `rtl_clock` and `model_clock` are the clocks, in Hz, where none
   // was given; `trace_file` is where the waveform goes, if one was asked for.
   // Throws UsageError for what does not go together.

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "card_choice.hpp"
 #include "engine_options.hpp"
 #include "errors.hpp"
 #include "outputs.hpp"
@@ -20,6 +21,7 @@ namespace {
 constexpr std::uint32_t kDefaultClock = 1'000'000;
 
 struct Options {
+  CardChoice card;
   EngineChoice engine;
   unsigned axes = 4;
 };
@@ -34,11 +36,9 @@ std::string engines(std::uint32_t bits) {
   return text;
 }
 
-std::string describe(const sim::SimulationOptions& options) {
+std::string describe(driver::Card& card) {
   std::string text;
   const auto out = std::back_inserter(text);
-  const auto engine = sim::make_engine(options);
-  driver::Card card = driver::Card::open(*engine);
   const driver::Identification& id = card.identification();
   fmt::format_to(out, "register map   {}.{}\n", id.map_major, id.map_minor);
   fmt::format_to(out, "commands       version {}\n", id.commands_version);
@@ -47,6 +47,9 @@ std::string describe(const sim::SimulationOptions& options) {
   fmt::format_to(out, "engines        {}\n", engines(id.engines));
   fmt::format_to(out, "geometry queue {} halfwords\n", id.geometry_depth);
   fmt::format_to(out, "feed queue     {} halfwords\n", id.feed_depth);
+  const driver::Build build = card.build();
+  fmt::format_to(out, "build          {:08x}{}\n", build.id, build.dirty ? ", dirty" : "");
+  fmt::format_to(out, "board          {}\n", build.board);
   const driver::Snapshot now = card.snapshot();
   fmt::format_to(out, "time           {} clocks since reset\n", now.time);
   for (unsigned axis = 0; axis < id.axes; ++axis)
@@ -56,7 +59,16 @@ std::string describe(const sim::SimulationOptions& options) {
   return text;
 }
 
+void execute_on_card(const Options& options, const transport::CardUrl& url) {
+  options.engine.refuse_with(options.card);
+  Outputs outputs;
+  std::string text;
+  with_card(url, Purpose::kRead, [&](driver::Card& card, transport::Connection&) { text = describe(card); });
+  outputs.commit(text);
+}
+
 void execute(const Options& options) {
+  if (const auto url = options.card.url()) return execute_on_card(options, *url);
   Outputs outputs;
   Output* const trace = outputs.add("--trace", options.engine.trace, true);
   outputs.check();
@@ -66,7 +78,9 @@ void execute(const Options& options) {
   }
   outputs.open();
   if (trace != nullptr) engine_options.trace->path = trace->path_to_write();
-  const std::string text = describe(engine_options);
+  const auto engine = sim::make_engine(engine_options);
+  driver::Card card = driver::Card::open(*engine);
+  const std::string text = describe(card);
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
   outputs.commit(text);
 }
@@ -76,6 +90,7 @@ void execute(const Options& options) {
 void add_info_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("info", "what the card says of itself");
+  options->card.add_to(*command);
   options->engine.add_to(*command);
   command->add_option("--axes", options->axes, "axes of the simulated card")
       ->transform(whole_number(1, card_map::kMaxAxes))

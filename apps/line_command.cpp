@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "card_choice.hpp"
 #include "engine_options.hpp"
 #include "errors.hpp"
 #include "outputs.hpp"
@@ -35,6 +36,7 @@ struct Options {
   std::optional<double> speed;
   std::vector<std::uint64_t> max_velocity;
   bool slow = false;
+  CardChoice card;
   EngineChoice engine;
   std::optional<std::string> json;
   std::optional<std::string> steps;
@@ -216,7 +218,67 @@ std::string summary(const Result& result) {
   return text;
 }
 
+// What a card outside says of the line that it has made.
+struct CardResult {
+  std::vector<std::int64_t> moved;
+  std::uint64_t line_clocks = 0;
+  std::size_t parts = 0;
+  bool slowed = false;
+  std::uint32_t clock_hz = 0;
+};
+
+CardResult make_line_on(driver::Card& card, const Options& options) {
+  const std::vector<std::int64_t> pulses = displacement_of(options);
+  if (pulses.size() > card.identification().axes) {
+    throw UsageError(fmt::format("--to: the card has {} axes", card.identification().axes));
+  }
+  const driver::OneShotPlan plan = plan_of(options, card.timing(), pulses);
+  take_over(card);
+  const driver::Snapshot before = card.snapshot();
+  driver::run_line(card, plan);
+  const driver::Snapshot after = card.snapshot();
+  CardResult result;
+  for (std::size_t a = 0; a < pulses.size(); ++a) {
+    result.moved.push_back(driver::pulses_between(before.position[a], after.position[a]));
+    if (result.moved[a] != pulses[a]) {
+      throw std::runtime_error(fmt::format("axis {}: moved by {} pulses, asked for {}", a, result.moved[a], pulses[a]));
+    }
+  }
+  result.line_clocks = plan.clocks();
+  result.parts = plan.size();
+  result.slowed = plan.slowed();
+  result.clock_hz = card.identification().clock_hz;
+  return result;
+}
+
+void execute_on_card(const Options& options, const transport::CardUrl& url) {
+  options.engine.refuse_with(options.card);
+  refuse_with_card(options.card, "--steps", options.steps.has_value());
+  refuse_with_card(options.card, "--plot", options.plot.has_value());
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  outputs.check();
+  outputs.open();
+  CardResult result;
+  with_card(url, Purpose::kMove,
+            [&](driver::Card& card, transport::Connection&) { result = make_line_on(card, options); });
+  if (json != nullptr) {
+    nlohmann::ordered_json text;
+    text["card"] = url.text;
+    text["moved"] = result.moved;
+    text["line_clocks"] = result.line_clocks;
+    text["slowed"] = result.slowed;
+    text["parts"] = result.parts;
+    text["clock_hz"] = result.clock_hz;
+    json->write(text.dump(2) + "\n");
+  }
+  outputs.commit(fmt::format("line in {} clocks ({:g} s at {:g} MHz){} on {}: moved by {} pulses\n", result.line_clocks,
+                             static_cast<double>(result.line_clocks) / result.clock_hz, result.clock_hz * 1e-6,
+                             result.slowed ? ", slowed to keep a limit" : "", url.text, fmt::join(result.moved, ", ")));
+}
+
 void execute(const Options& options) {
+  if (const auto url = options.card.url()) return execute_on_card(options, *url);
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
   Output* const steps = outputs.add("--steps", options.steps);
@@ -257,6 +319,7 @@ void add_line_command(CLI::App& app) {
   command->add_option("--max-velocity", options->max_velocity, "limit of each axis, pulses/s (0: none)")
       ->delimiter(',');
   command->add_flag("--slow", options->slow, "slow down to keep a limit instead of refusing");
+  options->card.add_to(*command);
   options->engine.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");

@@ -8,6 +8,7 @@
 #include <exception>
 #include <iostream>
 
+#include "card_commands.hpp"
 #include "command_names.hpp"
 #include "compare_command.hpp"
 #include "errors.hpp"
@@ -17,16 +18,18 @@
 #include "outputs.hpp"
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
+#include "serve_command.hpp"
 #include "shell_command.hpp"
 #include "steps_command.hpp"
 #include "temporary_files.hpp"
+#include "terminal.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace {
 
 int report(const std::string& message, int status) {
-  fmt::print(stderr, "trammel: error: {}\n", message);
+  trammel::app::tell("error", message);
   return status;
 }
 
@@ -65,6 +68,8 @@ int main(int argc, char** argv) {
   trammel::app::add_run_command(app);
   trammel::app::add_line_command(app);
   trammel::app::add_info_command(app);
+  trammel::app::add_card_commands(app);
+  trammel::app::add_serve_command(app);
   trammel::app::add_steps_command(app);
   trammel::app::add_methods_command(app);
   trammel::app::add_reproduce_command(app);

@@ -73,6 +73,21 @@ OperatorEvent input_of(const std::string& text) {
   return {OperatorEvent::Kind::kInput, seconds, 0, static_cast<unsigned>(*input), level == "1"};
 }
 
+// "M900" or "M862.3", in tenths.
+int m_word_of(const std::string& text) {
+  std::string_view digits = text;
+  const bool letter = !digits.empty() && (digits.front() == 'M' || digits.front() == 'm');
+  if (letter) digits.remove_prefix(1);
+  const bool plain = digits.find_first_not_of("0123456789.") == std::string_view::npos;
+  const auto value = letter && plain ? number(digits) : std::nullopt;
+  constexpr double kLargest = 9999.9;
+  const double tenths = value.value_or(0) * 10;
+  if (!value || *value > kLargest || std::abs(tenths - std::round(tenths)) > 1e-6) {
+    throw UsageError(fmt::format("--accept: {} is no M word such as M900 or M862.3", text));
+  }
+  return static_cast<int>(std::round(tenths));
+}
+
 // A resume ends the latest hold alone: two that overlap have no meaning that all would guess.
 void refuse_overlaps(const std::vector<OperatorEvent>& events) {
   const OperatorEvent* hold = nullptr;
@@ -130,6 +145,9 @@ void MotionChoice::add_to(CLI::App& command) {
                   "how the speed changes: trapezoid or s-curve (default: s-curve where every axis has a max_jerk)")
       ->check(CLI::IsMember({"trapezoid", "s-curve"}).description(""))
       ->type_name("PROFILE");
+  command
+      .add_option("--accept", accept, "leave out the lines that begin with this M word, as those of heaters and fans")
+      ->type_name("M...");
   command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
   command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
 }
@@ -169,6 +187,7 @@ run::RunSettings MotionChoice::settings() const {
   run::RunSettings settings;
   settings.reader.block_delete = !run_deleted;
   settings.reader.feed_scale = feed_scale;
+  for (const std::string& word : accept) settings.reader.left_out.push_back(m_word_of(word));
   settings.first_line = first_line;
   settings.single_block = single_block;
   settings.arcs = arcs == "chords"          ? planner::ArcsBy::kChords

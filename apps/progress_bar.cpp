@@ -6,26 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <string_view>
+
+#include "terminal.hpp"
 
 namespace trammel::app {
-namespace {
-
-bool terminal_with_escapes() {
-  const char* const kind = std::getenv("TERM");
-  return isatty(STDERR_FILENO) != 0 && kind != nullptr && std::string_view(kind) != "dumb";
-}
-
-}  // namespace
-
 std::string duration_text(double seconds) {
   if (seconds < 99.5) return fmt::format("{:.0f} s", std::max(1.0, std::ceil(seconds)));
   if (seconds < 99.5 * 60) return fmt::format("{:.0f} min", seconds / 60);
   return fmt::format("{:.0f} h", seconds / 3600);
 }
 
-ProgressBar::ProgressBar(bool always) : bar_(terminal_with_escapes()), lines_(always && !bar_) {}
+ProgressBar::ProgressBar(bool always) : bar_(has_escapes(STDERR_FILENO)), lines_(always && !bar_) {}
 
 ProgressBar::~ProgressBar() {
   if (drawn_) std::fputs("\r\033[K", stderr);

@@ -8,9 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "card_choice.hpp"
+#include "card_run.hpp"
 #include "engine_options.hpp"
 #include "engine_speed.hpp"
 #include "errors.hpp"
+#include "machine_choice.hpp"
 #include "motion_options.hpp"
 #include "outputs.hpp"
 #include "profile_report.hpp"
@@ -18,7 +21,7 @@
 #include "program_file.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
-#include "trammel/machine/machine.hpp"
+#include "terminal.hpp"
 #include "trammel/report/page.hpp"
 #include "trammel/report/report_writer.hpp"
 #include "waveform.hpp"
@@ -31,8 +34,8 @@ constexpr std::uint32_t kSimulatedClock = 1'000'000;
 
 struct Options {
   std::string program;
-  std::optional<std::string> machine;
-  std::vector<std::string> overrides;
+  CardChoice card;
+  MachineChoice machine;
   EngineChoice engine;
   MotionChoice motion;
   std::optional<std::string> json;
@@ -46,14 +49,6 @@ struct Options {
   bool check = false;
   bool stream = false;
 };
-
-machine::Machine machine_of(const Options& options) {
-  machine::Machine machine = options.machine ? machine::load_machine(*options.machine) : machine::default_machine();
-  for (const std::string& text : options.overrides) machine::apply_override(machine, text);
-  return machine;
-}
-
-void tell(const char* what, const std::string& text) { fmt::print(stderr, "trammel: {}: {}\n", what, text); }
 
 void refuse_contradictions(const Options& options) {
   const auto refuse = [](const char* option, bool given, const char* why) {
@@ -76,17 +71,74 @@ void refuse_contradictions(const Options& options) {
   refuse("--stream", options.stream, kWhy);
 }
 
-void check(const run::ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card,
-           const run::RunSettings& settings, Outputs& outputs, Output* json) {
+void refuse_rapids_at_zero(const Options& options, const Operation& operation, const run::Plan& plan) {
+  if (operation.rapid_percent != 0) return;
+  if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
+  if (plan.rapids == 0) return;
+  throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
+}
+
+// A list of steps, a picture and a time of the operator's need the pins and the clocks of a simulated card.
+void refuse_what_needs_the_simulation(const Options& options) {
+  const CardChoice& card = options.card;
+  options.engine.refuse_with(card);
+  refuse_with_card(card, "--steps", options.steps.has_value());
+  refuse_with_card(card, "--path-steps", options.path_steps.has_value());
+  refuse_with_card(card, "--outputs", options.outputs.has_value());
+  refuse_with_card(card, "--plot", options.plot.has_value());
+  refuse_with_card(card, "--report", options.report.has_value());
+  refuse_with_card(card, "--override-at", !options.motion.override_at.empty());
+  refuse_with_card(card, "--hold-at", !options.motion.hold_at.empty());
+  refuse_with_card(card, "--input-at", !options.motion.input_at.empty());
+  refuse_with_card(card, "--limit-bus", options.motion.bytes_per_second.has_value());
+  if (options.check) throw UsageError("--check: nothing runs, so it takes no --card");
+}
+
+void execute_on_card(const Options& options, const transport::CardUrl& url) {
+  refuse_what_needs_the_simulation(options);
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  outputs.keep("the program", options.program);
+  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
+  outputs.check();
+  const machine::Machine machine = options.machine.load();
+  for (const std::string& text : jerk_warnings(machine)) tell("warning", text);
+  RunOptions run;
+  run.progress = options.progress;
+  run.stream = options.stream;
+  run.settings = options.motion.settings();
+  run.most_percent = 100 * machine.motion.max_override;
+  run.operation = options.motion.operation(run.most_percent);
+  run.planned = [&](const run::Plan& plan) {
+    refuse_rapids_at_zero(options, run.operation, plan);
+    outputs.open();
+    for (const std::string& text : feed_warnings(plan.file, plan.feeds_not_reached)) tell("warning", text);
+  };
+  const ProgramFile file(options.program, options.stream);
+  const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
+    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
+  };
+  CardRunResult result;
+  with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
+    result = run_on_card(lines, machine, card, connection, run);
+  });
+  result.card = url.text;
+  if (json != nullptr) json->write(json_text(result));
+  outputs.commit(summary(result) + options.machine.line());
+}
+
+void check(const run::ProgramLines& lines, const MachineChoice& choice, const machine::Machine& machine,
+           const planner::CardLimits& card, const run::RunSettings& settings, Outputs& outputs, Output* json) {
   const CheckResult result = check_program(lines, machine, card, settings);
   for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached)) tell("warning", text);
   outputs.open();
   if (json != nullptr) json->write(json_text(result));
-  outputs.commit(summary(result));
+  outputs.commit(summary(result) + choice.line());
 }
 
 void execute(const Options& options) {
   refuse_contradictions(options);
+  if (const auto url = options.card.url()) return execute_on_card(options, *url);
   Outputs outputs;
   RunOptions run;
   Output* const json = outputs.add("--json", options.json);
@@ -101,10 +153,10 @@ void execute(const Options& options) {
   run.stream = options.stream;
   run.settings = options.motion.settings();
   outputs.keep("the program", options.program);
-  if (options.machine) outputs.keep("the machine file", *options.machine);
+  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
   outputs.check();
 
-  const machine::Machine machine = machine_of(options);
+  const machine::Machine machine = options.machine.load();
   for (const std::string& text : jerk_warnings(machine)) tell("warning", text);
   run.most_percent = 100 * machine.motion.max_override;
   run.operation = options.motion.operation(run.most_percent);
@@ -118,13 +170,9 @@ void execute(const Options& options) {
   const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
     return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
   };
-  if (options.check) return check(lines, machine, limits_of(engine), run.settings, outputs, json);
-  const bool no_rapids = run.operation.rapid_percent == 0;
-  if (no_rapids && options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
+  if (options.check) return check(lines, options.machine, machine, limits_of(engine), run.settings, outputs, json);
   run.planned = [&](const run::Plan& plan) {
-    if (no_rapids && plan.rapids != 0) {
-      throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
-    }
+    refuse_rapids_at_zero(options, run.operation, plan);
     outputs.open();
     if (trace != nullptr) engine.trace->path = trace->path_to_write();
     for (const std::string& text : feed_warnings(plan.file, plan.feeds_not_reached)) tell("warning", text);
@@ -141,20 +189,18 @@ void execute(const Options& options) {
   if (json != nullptr) json->write(json_text(result));
   if (plot != nullptr) plot->write(run::svg(result.plot));
   if (report) report->finish(report_json(result));
-  outputs.commit(summary(result));
+  outputs.commit(summary(result) + options.machine.line());
 }
 
 }  // namespace
 
 void add_run_command(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "run a G-code program on the simulated card");
+  CLI::App* command =
+      app.add_subcommand("run", "run a G-code program on the simulated card, or on one outside (--card)");
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
-  command->add_option("--machine", options->machine, "machine file (default: X Y Z E at 80 steps/mm)")
-      ->type_name("TOML");
-  command->add_option("--set", options->overrides, "override an entry of the machine file (repeatable)")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  options->machine.add_to(*command);
+  options->card.add_to(*command);
   options->engine.add_to(*command);
   options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");

@@ -91,12 +91,13 @@ nlohmann::ordered_json events_json(const std::vector<MadeEvent>& events) {
 }  // namespace
 
 std::string accepted_words(const std::map<std::string, std::size_t>& words) {
-  const std::array<std::pair<std::string_view, const char*>, 5> reasons{{
+  const std::array<std::pair<std::string_view, const char*>, 6> reasons{{
       {" M0 M1 ", "stops for the operator, which a simulation does not make:"},
       {" G64 Q ", "no lines are joined to fewer (naive cam):"},
       {" M3 M4 M5 M7 M8 M9 ", "no output for them in [outputs] of the machine file:"},
       {" S ", "a value that waits for modulated outputs:"},
-      {"", "accepted, without hardware yet:"},
+      {" M6 ", "tool changes, each a stop:"},
+      {"", "no hardware:"},
   }};
   std::array<std::string, reasons.size()> lists;
   for (const auto& [word, count] : words) {

@@ -1,4 +1,4 @@
-# cmake -D DIR=... -D PREFIX=Vx -P: joins the files that Verilator wrote into Vx__joined.cc. Their names hold hashes, so
+# cmake -D DIR=... -D PREFIX=Vx [-D ANY_EVENT=ON] -P: joins the files that Verilator wrote into Vx__joined.cc. Their names hold hashes, so
 # a build cannot know them beforehand. The file also gets the model's rising_edge().
 file(GLOB sources "${DIR}/${PREFIX}*.cpp")
 list(SORT sources)
@@ -20,7 +20,7 @@ foreach(source IN LISTS sources)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES events)
-if(NOT events STREQUAL "@(posedge clk_i)")
+if(NOT ANY_EVENT AND NOT events STREQUAL "@(posedge clk_i)")
   message(FATAL_ERROR "${PREFIX} triggers on \"${events}\"; rising_edge.hpp evaluates @(posedge clk_i) only")
 endif()
 # A card's clock is more code than a first-level instruction cache holds, and most of what its ifs guard is seldom done.
@@ -35,7 +35,7 @@ set(root "${PREFIX}___024root")
 string(APPEND fast "#include \"rising_edge.hpp\"\n")
 string(FIND "${fast_text}" "vlSelf->__VnbaTriggered.at(0U)" nba)
 string(FIND "${fast_text}" "void ${root}___eval_ico(${root}* vlSelf) {" ico)
-if(nba EQUAL -1)
+if(nba EQUAL -1 OR ANY_EVENT)
   string(APPEND fast "template void trammel::lockstep::rising_edge<${PREFIX}>(${PREFIX}&);\n")
 else()
   string(APPEND fast "template <>\nvoid trammel::lockstep::rising_edge<${PREFIX}>(${PREFIX}& dut) {\n")

@@ -32,14 +32,15 @@ foreach(level IN LISTS TRAMMEL_VERILATED_LEVELS)
   target_precompile_headers(trammel_verilated_headers_${level} PRIVATE <verilated.h>)
 endforeach()
 
-# trammel_verilate(target PREFIX Vx TOP top SOURCES a.sv b.sv [ARGS ...] [TRACE] [LEVEL 0|1|3])
+# trammel_verilate(target PREFIX Vx TOP top SOURCES a.sv b.sv [ARGS ...] [TRACE] [ANY_EVENT] [LEVEL 0|1|3])
+# ANY_EVENT: something happens at other edges than the clock's, and both are evaluated by eval().
 # Sources are relative to rtl/ unless absolute. The package of the card map always comes first.
 # Verilator runs as a step of the build (its own verilate() runs it while configuring, and again when building), and all
 # that it writes is compiled as one file of the object library <target>_<Vx>, whose objects are the target's.
 # LEVEL is the compiler's -O: 3 by itself, quick to run; 1 or 0 is quick to compile instead.
 # The folder of Vx.h is left in the global property TRAMMEL_VERILATED_<target>_<Vx>.
 function(trammel_verilate target)
-  cmake_parse_arguments(A "TRACE" "PREFIX;TOP;LEVEL" "SOURCES;ARGS" ${ARGN})
+  cmake_parse_arguments(A "TRACE;ANY_EVENT" "PREFIX;TOP;LEVEL" "SOURCES;ARGS" ${ARGN})
   if(NOT DEFINED A_LEVEL)
     set(A_LEVEL 3)
   endif()
@@ -57,7 +58,7 @@ function(trammel_verilate target)
     COMMAND "${CMAKE_COMMAND}" -E rm -rf "${dir}"
     COMMAND "${VERILATOR_BIN}" --cc --compiler gcc --prefix ${A_PREFIX} --top-module ${A_TOP} --Mdir "${dir}"
             $<$<BOOL:${A_TRACE}>:--trace-fst> ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS} ${files}
-    COMMAND "${CMAKE_COMMAND}" -D DIR=${dir} -D PREFIX=${A_PREFIX} -P "${join}"
+    COMMAND "${CMAKE_COMMAND}" -D DIR=${dir} -D PREFIX=${A_PREFIX} -D ANY_EVENT=${A_ANY_EVENT} -P "${join}"
     DEPENDS ${files} ${harness} "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" "${join}"
     COMMENT "Verilating ${A_TOP} for ${target}" VERBATIM COMMAND_EXPAND_LISTS)
   add_library(${model} OBJECT EXCLUDE_FROM_ALL "${code}")
@@ -73,24 +74,28 @@ function(trammel_verilate target)
 endfunction()
 
 # trammel_add_lockstep(name TOP top SOURCES ... TEST test.cpp [HARNESS top.sv] [ARGS ...] [DEFINITIONS ...]
-#                      [INCLUDES ...] [INSIDE inside.cpp] [LEVEL 0|1|3])
+#                      [INCLUDES ...] [INSIDE inside.cpp] [ANY_EVENT] [LEVEL 0|1|3])
 # Builds lockstep_<name>: the test runs Vdut (the block) beside its golden model.
 # The test is compiled once (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded
 # bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named after INSIDE and is
 # compiled for each copy. DEFINITIONS and INCLUDES are the test's. HARNESS is a top that joins several blocks for their
 # lockstep alone, beside the test.
 function(trammel_add_lockstep name)
-  cmake_parse_arguments(A "" "TOP;TEST;INSIDE;HARNESS;LEVEL" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
+  cmake_parse_arguments(A "ANY_EVENT" "TOP;TEST;INSIDE;HARNESS;LEVEL" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
   set(target lockstep_${name})
-  set(level "")
+  set(how "")
+  if(A_ANY_EVENT)
+    set(how ANY_EVENT)
+  endif()
+  set_property(GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_HOW "${how}")
   if(DEFINED A_LEVEL)
-    set(level LEVEL ${A_LEVEL})
+    list(APPEND how LEVEL ${A_LEVEL})
   endif()
   if(A_HARNESS)
     list(APPEND A_ARGS "${CMAKE_CURRENT_SOURCE_DIR}/${A_HARNESS}")
   endif()
   add_executable(${target} ${A_INSIDE})
-  trammel_verilate(${target} ${level} PREFIX Vdut TOP ${A_TOP} SOURCES ${A_SOURCES} ARGS ${A_ARGS})
+  trammel_verilate(${target} ${how} PREFIX Vdut TOP ${A_TOP} SOURCES ${A_SOURCES} ARGS ${A_ARGS})
   trammel_lockstep_test(${target} TEST ${A_TEST} HEADERS_OF ${target} PREFIX Vdut)
   target_compile_definitions(${target}_test PRIVATE ${A_DEFINITIONS})
   target_include_directories(${target}_test PRIVATE ${A_INCLUDES})
@@ -126,7 +131,7 @@ endfunction()
 # The same lockstep over a copy of the block in which each text FROM (exactly once in its FILE) reads TO: the test
 # seeded_bug.<name>.<bug>, which passes only when the lockstep reports a mismatch.
 function(trammel_add_seeded_bug name bug)
-  foreach(var TOP PREFIX SOURCES ARGS INSIDE SOUND)
+  foreach(var TOP PREFIX SOURCES ARGS INSIDE SOUND HOW)
     get_property(L_${var} GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_${var})
   endforeach()
   set(target lockstep_${name}_bug_${bug})
@@ -167,7 +172,7 @@ function(trammel_add_seeded_bug name bug)
   add_executable(${target} ${L_INSIDE})
   # A seeded bug may leave a signal unused: that warning must not keep the lockstep from judging it. The sources proper are
   # linted by the block's own lockstep, with every warning an error.
-  trammel_verilate(${target} LEVEL 1 PREFIX ${L_PREFIX} TOP ${L_TOP} SOURCES ${L_SOURCES} ARGS -Wno-lint ${L_ARGS})
+  trammel_verilate(${target} ${L_HOW} LEVEL 1 PREFIX ${L_PREFIX} TOP ${L_TOP} SOURCES ${L_SOURCES} ARGS -Wno-lint ${L_ARGS})
   trammel_same_header(${target} ${L_SOUND} ${L_PREFIX})
   # Objects come before libraries: where a library holds the sound copy (the card's does), this one goes before it.
   target_link_libraries(${target} PRIVATE lockstep_${name}_test)

@@ -1,8 +1,12 @@
 #include "page.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <utility>
+
+#include "terminal.hpp"
 
 namespace trammel::app::reproduce {
 
@@ -19,6 +23,15 @@ const char* name_of(Verdict verdict) {
   }
   return "FAIL";
 }
+
+namespace {
+
+Colour colour_of(Verdict verdict) {
+  if (verdict == Verdict::kPass) return Colour::kGreen;
+  return verdict == Verdict::kFail ? Colour::kRed : Colour::kYellow;
+}
+
+}  // namespace
 
 Page::Page(std::string file, std::string title) : file_(std::move(file)), title_(std::move(title)) {}
 
@@ -51,7 +64,8 @@ void Page::data(const std::string& name, const std::string& caption, const Csv& 
 }
 
 void Page::add(Item item) {
-  fmt::print("{:<10} {}: {}\n", name_of(item.verdict), item.what, item.found);
+  const std::string verdict = fmt::format("{:<10}", name_of(item.verdict));
+  fmt::print("{} {}: {}\n", coloured(STDOUT_FILENO, colour_of(item.verdict), verdict), item.what, item.found);
   if (item.verdict != Verdict::kPass) fmt::print("{:<10} the paper: {}\n", "", item.paper);
   std::fflush(stdout);
   body_ +=

@@ -259,6 +259,12 @@ std::uint16_t Card::outputs() {
   return static_cast<std::uint16_t>(read(reg::kOutputs));
 }
 
+Build Card::build() {
+  std::array<Access, 3> accesses{read_of(reg::kBuildId), read_of(reg::kBuildFlags), read_of(reg::kBoardId)};
+  transfer(accesses.data(), accesses.size(), "build");
+  return {accesses[0].data, (accesses[1].data & field::kBuildFlagsDirty) != 0, accesses[2].data};
+}
+
 unsigned Card::inputs_present() {
   require_path_commands("inputs");
   return bits(read(reg::kPorts), field::kPortsInputs, field::kPortsInputsShift);

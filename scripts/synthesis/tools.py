@@ -10,15 +10,29 @@ from rtl.file_list import ROOT, RTL, listed
 BUILD = ROOT / "build" / "synthesis"
 
 
-def run(command, log):
-    """Runs a tool with its output in a file; the file is named in the error."""
+def run(command, log, seconds=None):
+    """Runs a tool with its output in a file, for so many seconds at most; the file is named in the error."""
     with open(log, "w") as out:
-        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=ROOT).returncode
+        try:
+            code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, cwd=ROOT, timeout=seconds).returncode
+        except subprocess.TimeoutExpired:
+            sys.exit(f"error: {command[0]} had not ended after {seconds} s, see {log.relative_to(ROOT)}")
     text = Path(log).read_text()
     if code:
         tail = "\n".join(text.splitlines()[-15:])
         sys.exit(f"error: {command[0]} failed, exit status {code}, see {log.relative_to(ROOT)}:\n{tail}")
     return text
+
+
+def last_fmax(text):
+    found = re.findall(r"Max frequency for clock[^:]*: ([0-9.]+) MHz", text)
+    if not found:
+        sys.exit("error: the place-and-route log names no clock frequency")
+    return float(found[-1])
+
+
+def used_cells(text, kind):
+    return int(re.findall(rf"{kind}:\s*([0-9]+)\s*/", text)[-1])
 
 
 def venv_tool(name):

@@ -32,8 +32,8 @@ TEST_P(BadProgram, IsRefusedBeforeTheFirstStep) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Programs, BadProgram,
-                         testing::Values(Bad{"UnknownWord", "G1 X1 F100\nH5", "4: unsupported word 'H5'"},
-                                         Bad{"UnknownG", "G99", "3:"}, Bad{"ArcRadius", "F100\nG2 X3 Y1 I5 J0", "4:"},
+                         testing::Values(Bad{"UnknownWord", "G1 X1 F100\nD5", "4: unsupported word 'D5'"},
+                                         Bad{"UnknownG", "G96", "3:"}, Bad{"ArcRadius", "F100\nG2 X3 Y1 I5 J0", "4:"},
                                          Bad{"ArcOfRadiusZero", "F100 G2 X2 I0 J0", "3:"},
                                          Bad{"ArcRTooSmall", "F100\nG2 X9 R1", "4:"}, Bad{"FeedMissing", "G1 X2", "3:"},
                                          Bad{"FeedZero", "G1 X2 F0", "3:"}, Bad{"FeedNegative", "G1 X2 F-5", "3:"},
@@ -98,7 +98,8 @@ TEST(BadInput, FullDisk) {
 
 TEST(Help, OfEverySubcommand) {
   const Command command;
-  for (const std::string subcommand : {"", "run", "line", "info", "steps", "methods", "compare", "reproduce"}) {
+  for (const std::string subcommand : {"", "run", "line", "info", "serve", "monitor", "dump", "selftest", "steps",
+                                       "methods", "compare", "reproduce"}) {
     const Outcome outcome = command.run(subcommand + " --help");
     EXPECT_EQ(outcome.status, 0) << subcommand;
     EXPECT_NE(outcome.out.find("Usage: trammel"), std::string::npos) << outcome.out;

@@ -40,8 +40,10 @@ Outcome Command::run(const std::string& arguments) const { return run_in(".", ""
 
 Outcome Command::run_in(const std::string& folder, const std::string& before, const std::string& arguments) const {
   // Process substitution needs bash; what the arguments lead elsewhere comes last and wins.
-  const std::string script = "cd '" + folder + "' && " + before + " '" + binary() + "' </dev/null >'" + path("stdout") +
-                             "' 2>'" + path("stderr") + "' " + arguments + "\n";
+  // A machine file of the user's own must not change what is tested.
+  const std::string script = "export XDG_CONFIG_HOME='" + path("configuration") + "'\ncd '" + folder + "' && " +
+                             before + " '" + binary() + "' </dev/null >'" + path("stdout") + "' 2>'" + path("stderr") +
+                             "' " + arguments + "\n";
   const std::string file = path("script");
   std::ofstream(file) << script;
   const int status = std::system(("bash '" + file + "'").c_str());
@@ -52,9 +54,10 @@ Outcome Command::run_in(const std::string& folder, const std::string& before, co
   return outcome;
 }
 
-Running::Running(const Command& command, const std::string& arguments, const std::string& err) {
+Running::Running(const Command& command, const std::string& arguments, const std::string& err, const std::string& out) {
+  const std::string output = out.empty() ? "/dev/null" : command.path(out);
   const std::string line =
-      "exec '" + binary() + "' " + arguments + " >/dev/null 2>'" + command.path(err) + "' </dev/null";
+      "exec '" + binary() + "' " + arguments + " >'" + output + "' 2>'" + command.path(err) + "' </dev/null";
   process_ = ::fork();
   if (process_ != 0) return;
   ::execl("/bin/bash", "bash", "-c", line.c_str(), nullptr);

@@ -60,6 +60,7 @@ TEST(Info, NamesAxesAndClock) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("axes           8\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("2500000 Hz"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("build          00000000\nboard          0\n"), std::string::npos) << outcome.out;
 }
 
 TEST(Run, MachineOfThreeAxesOnBothEngines) {

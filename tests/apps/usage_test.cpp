@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "command.hpp"
 
@@ -27,7 +28,8 @@ TEST(Names, MistypedSubcommandAndTheNearest) {
 TEST(Names, HelpOfACommandIsItsHelp) {
   const Command command;
   EXPECT_EQ(command.run("help").out, command.run("--help").out);
-  for (const std::string name : {"run", "line", "info", "steps", "methods", "compare", "reproduce"}) {
+  for (const std::string name :
+       {"run", "line", "info", "monitor", "dump", "selftest", "serve", "steps", "methods", "compare", "reproduce"}) {
     const Outcome outcome = command.run("help " + name);
     EXPECT_EQ(outcome.status, 0) << name;
     EXPECT_EQ(outcome.out, command.run(name + " --help").out);
@@ -112,7 +114,7 @@ TEST(Notes, WordsWithoutEffectByTheReason) {
       << outcome.out;
   EXPECT_NE(outcome.out.find("[outputs] of the machine file: M3 (1) M5 (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("waits for modulated outputs: S (1)\n"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("without hardware yet: M84 (1) T (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("no hardware: M84 (1) T (1)\n"), std::string::npos) << outcome.out;
 }
 
 TEST(Notes, BlendsAndCornersThatAreKept) {
@@ -226,6 +228,43 @@ TEST(Scripts, NamesAreMeantFromTheCallersFolderAndLogsArePlain) {
   const std::string say = "bash -c 'source \"" + scripts + "common.sh\"; say hello' 2>'" + log + "'";
   EXPECT_EQ(std::system(say.c_str()), 0);
   EXPECT_EQ(contents(log), "== hello\n");
+}
+
+// The user's own machine file is taken where none is named, and the summary says so.
+TEST(MachineFile, OfTheUserIsTheDefault) {
+  const Command command;
+  const std::string program = command.write("x.ngc", "G21 G90 G0 X1\n");
+  const std::string check = "run --check " + program;
+  EXPECT_NE(command.run(check).out.find("  machine: built-in\n"), std::string::npos);
+  ASSERT_TRUE(std::filesystem::create_directories(command.path("configuration/trammel")));
+  const std::string own =
+      command.write("configuration/trammel/machine.toml", contents(TRAMMEL_EXAMPLES_DIR "/machine.toml") + "\n");
+  const Outcome taken = command.run(check + " --set axis.x.steps_per_mm=20");
+  EXPECT_NE(taken.out.find("  machine: " + own + ", 1 entries by --set\n"), std::string::npos) << taken.out;
+  EXPECT_NE(taken.out.find("X: ends at pulse 20 "), std::string::npos) << taken.out;
+  EXPECT_NE(command.run(check + " --machine built-in").out.find("  machine: built-in\n"), std::string::npos);
+  command.write("configuration/trammel/machine.toml", "nothing = 1\n");
+  const Outcome refused = command.run(check);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find(own), std::string::npos) << refused.err;
+  EXPECT_EQ(command.run(check + " --machine built-in").status, 0);
+}
+
+// Colour is for terminals, and NO_COLOR is obeyed.
+TEST(Colour, IsForTerminalsThatWantIt) {
+  const Command command;
+  const auto on_terminal = [&](const std::string& environment) {
+    const std::string out = command.path("terminal.txt");
+    const std::string line =
+        environment + " script -qec \"'" TRAMMEL_COMMAND "' run none.ngc\" /dev/null >" + out + " </dev/null";
+    (void)std::system(line.c_str());
+    return contents(out);
+  };
+  EXPECT_NE(on_terminal("TERM=xterm").find("\033[1;31merror\033[0m"), std::string::npos);
+  EXPECT_NE(on_terminal("TERM=xterm NO_COLOR=").find("\033["), std::string::npos) << "an empty one counts as none";
+  EXPECT_EQ(on_terminal("TERM=xterm NO_COLOR=1").find("\033["), std::string::npos);
+  EXPECT_EQ(on_terminal("TERM=dumb").find("\033["), std::string::npos);
+  EXPECT_EQ(command.run("run none.ngc").err.find("\033["), std::string::npos);
 }
 
 }  // namespace

@@ -98,8 +98,8 @@ TEST(GcodeArc, Refusals) {
   EXPECT_THAT(refusal("G18 G2 X10 I5 J1"), HasSubstr("J in the plane ZX (G18)"));
   EXPECT_THAT(refusal("G90.1 G2 X10 I5"), HasSubstr("both words"));
   EXPECT_EQ(refusal("G53 G2 X10 Y10 I10"), "G53 needs G0 or G1");
-  EXPECT_EQ(refusal("G1 X1 I5"), "I without G2 or G3");
-  EXPECT_EQ(refusal("G0 R5"), "R without G2 or G3");
+  EXPECT_EQ(refusal("G1 X1 I5"), "I without G2, G3 or G5");
+  EXPECT_EQ(refusal("G0 R5"), "R without G2, G3 or a drilling cycle");
   EXPECT_THAT(refusal("G1 X10 P2"), HasSubstr("P without"));
   EXPECT_THAT(refusal("G2 X10 Y10 I10\nP2"), HasSubstr("P without")) << "no arc on this line";
   EXPECT_EQ(refusal("G2 X10 Y10 I10 P0"), "P0: an arc makes a whole number of turns, 1 to 10000");

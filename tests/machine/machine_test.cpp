@@ -221,14 +221,16 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
   EXPECT_EQ(parse_machine("# " + brackets + "\n" + defaults(), "m.toml").axes.size(), 4U);
   for (const std::string quote : {"\"", "'", "\"\"\"", "'''"}) {
     EXPECT_EQ(error_of("a = " + quote + brackets + quote),
-              "m.toml:1: unknown entry a; known are card, axis, motion, outputs")
+              "m.toml:1: unknown entry a; known are card, axis, motion, outputs, tools, probe")
         << quote;
     // A string of one line that is not closed hides nothing behind it.
     const bool found = error_of("a = " + quote + "\nb = " + brackets) == "m.toml:2: nested deeper than 16";
     EXPECT_EQ(found, quote.size() == 1) << quote;
   }
-  EXPECT_EQ(error_of("a = \"\\\"\" # " + brackets), "m.toml:1: unknown entry a; known are card, axis, motion, outputs");
-  EXPECT_EQ(error_of("a = '\\' # " + brackets), "m.toml:1: unknown entry a; known are card, axis, motion, outputs");
+  EXPECT_EQ(error_of("a = \"\\\"\" # " + brackets),
+            "m.toml:1: unknown entry a; known are card, axis, motion, outputs, tools, probe");
+  EXPECT_EQ(error_of("a = '\\' # " + brackets),
+            "m.toml:1: unknown entry a; known are card, axis, motion, outputs, tools, probe");
 }
 
 TEST(Machine, RefusesEndlessText) {
@@ -294,7 +296,8 @@ TEST(Machine, RefusesBadOverrides) {
   EXPECT_EQ(override_error("axis.x.min=1\naxis.x.max=1"),
             "--set axis.x.min=1\\x0aaxis.x.max=1: axis.x.min must be less than axis.x.max: 1 and 1");
   EXPECT_EQ(override_error("axis.x=1"), "--set axis.x=1: axis.x must be a table");
-  EXPECT_EQ(override_error("speed=1"), "--set speed=1: unknown entry speed; known are card, axis, motion, outputs");
+  EXPECT_EQ(override_error("speed=1"),
+            "--set speed=1: unknown entry speed; known are card, axis, motion, outputs, tools, probe");
   EXPECT_THAT(override_error("axis.x.steps_per_mm"), StartsWith("--set axis.x.steps_per_mm: "));
   EXPECT_THAT(override_error(""), HasSubstr("not an assignment"));
   EXPECT_THAT(override_error("axis.x.steps_per_mm=eighty"), HasSubstr("not TOML"));
@@ -332,6 +335,48 @@ TEST(MachineFile, Outputs) {
   EXPECT_THAT(error("m5 = 1"), HasSubstr("unknown entry outputs.m5"));
   EXPECT_THAT(error("m3 = 1\nm7 = 1"), HasSubstr("output 1 is named for the spindle (m3, m4) and for coolant"));
   EXPECT_THAT(override_error("outputs.m9=1"), HasSubstr("unknown entry outputs.m9"));
+}
+
+TEST(MachineFile, Tools) {
+  EXPECT_TRUE(default_machine().tools.empty());
+  Machine machine = parse_machine(default_machine_text() + "[tools.2]\nz = 42.5\nx = -1\n[tools.31]\n", "m.toml");
+  ASSERT_EQ(machine.tools.size(), 2U);
+  ASSERT_NE(machine.tool(2), nullptr);
+  EXPECT_EQ(machine.tool(2)->offsets[0], -1);
+  EXPECT_EQ(machine.tool(2)->offsets[2], 42.5);
+  EXPECT_EQ(machine.tool(31)->offsets[2], 0);
+  EXPECT_EQ(machine.tool(3), nullptr);
+  apply_override(machine, "tools.2.z=40");
+  apply_override(machine, "tools.3.e=1");
+  EXPECT_EQ(machine.tool(2)->offsets[2], 40);
+  EXPECT_EQ(machine.tool(2)->offsets[0], -1) << "the rest stays";
+  EXPECT_EQ(machine.tool(3)->offsets[3], 1);
+  EXPECT_THAT(override_error("tools.0.z=1"), HasSubstr("[tools.0]: a tool has a number from 1 to 999999"));
+  EXPECT_THAT(override_error("tools.drill.z=1"), HasSubstr("[tools.drill]: a tool has a number"));
+  EXPECT_THAT(override_error("tools.1.a=1"), HasSubstr("unknown entry tools.1.a"));
+  EXPECT_THAT(override_error("tools.1=1"), HasSubstr("tools.1 must be a table"));
+  EXPECT_THAT(override_error("tools.1.z=true"), HasSubstr("tools.1.z must be a number"));
+}
+
+TEST(MachineFile, Probe) {
+  EXPECT_FALSE(default_machine().probe.input);
+  Machine machine = parse_machine(default_machine_text() + "[probe]\ninput = 3\ntouched_level = 0\n", "m.toml");
+  EXPECT_EQ(machine.probe.input, 3U);
+  EXPECT_FALSE(machine.probe.touched_level);
+  apply_override(machine, "probe.touched_level=1");
+  EXPECT_TRUE(machine.probe.touched_level);
+  EXPECT_THAT(override_error("probe.input=16"), HasSubstr("probe.input must be an input's number, 0 to 15"));
+  EXPECT_THAT(override_error("probe.touched_level=2"), HasSubstr("probe.touched_level must be 0 or 1"));
+  EXPECT_THAT(override_error("probe.pin=2"), HasSubstr("unknown entry probe.pin"));
+}
+
+TEST(MachineFile, HomesAndNineCoordinateSystems) {
+  Machine machine = default_machine();
+  apply_override(machine, "axis.x.second_home=7");
+  apply_override(machine, "axis.x.g59_3=9");
+  EXPECT_EQ(machine.axes[0].second_home, 7);
+  EXPECT_EQ(machine.axes[0].offsets[8], 9);
+  EXPECT_THAT(override_error("axis.x.g59_4=9"), HasSubstr("did you mean g59_"));
 }
 
 }  // namespace

@@ -52,6 +52,17 @@ class Pair {
       jumping.idle(clocks);
     waits += 1;
   }
+  // The same as run(), counting the clocks of jumps over which the ratio changed.
+  void wait_on_ramps(std::uint64_t clocks) {
+    clocked.idle(clocks);
+    while (clocks != 0) {
+      const std::uint32_t ratio = jumping.core.outputs().ratio;
+      const std::uint64_t gone = jumping.core.jump(clocks, jumping.pins);
+      if (gone == 0) jumping.idle(1);
+      if (jumping.core.outputs().ratio != ratio) on_ramps += gone;
+      clocks -= std::max<std::uint64_t>(gone, 1);
+    }
+  }
   void compare() {
     ASSERT_EQ(clocked.core.cycles(), jumping.core.cycles());
     const auto& a = clocked.core.outputs();
@@ -96,6 +107,7 @@ class Pair {
   std::uint64_t waits = 0;
   std::uint64_t steps = 0;
   std::uint64_t chord_arcs = 0;
+  std::uint64_t on_ramps = 0;
   std::uint64_t one_by_one = 0;  // clocks compared, on both
 };
 
@@ -271,7 +283,8 @@ void disturb(Pair& pair) {
   const auto clocks = [&pair] { return pair.any(1, 3000); };
   switch (pair.any(0, 9)) {
     case 0:
-      pair.write(reg::kSlew, static_cast<std::uint32_t>(pair.any(0x1'0000, 0xFFF'FFFF)));
+      pair.write(reg::kSlew, static_cast<std::uint32_t>(pair.one_in(2) ? pair.any(0x400, 0x1'0000)
+                                                                       : pair.any(0x1'0000, 0xFFF'FFFF)));
       pair.write(reg::kHold, 1);
       pair.wait_in_pieces(clocks(), 4000);
       pair.write(reg::kHold, 0);
@@ -393,6 +406,35 @@ TEST(Run, EqualsClockOnArcsInChords) {
     steps += pair.steps;
   }
   EXPECT_GT(steps, 30 * programs);
+}
+
+// Holds and overrides so slow that most of the program is a ramp.
+TEST(Run, EqualsClockWhileTheRatioSlews) {
+  const std::uint64_t programs = long_run() ? 1500 : 30;
+  std::uint64_t steps = 0;
+  std::uint64_t on_ramps = 0;
+  for (std::uint64_t i = 0; i < programs && !HasFailure(); ++i) {
+    SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
+    model::CardConfig config;
+    if (i % 2 == 0) config.engines |= card_map::field::kEnginesArcGenerator;
+    Pair pair(Pair::Of::ClockAndRun, config, seed() * 1'000'003 + i);
+    Program program(pair);
+    program.settings();
+    const double paces[] = {1.5, 7, 40, 300};
+    for (int part = 0; part < 3; ++part) program.paths_and_pieces(paces[i % 4]);
+    for (int part = 0; part < 60 && !HasFatalFailure(); ++part) {
+      constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
+      if (pair.one_in(3)) pair.write(reg::kSlew, static_cast<std::uint32_t>(pair.any(1, 0x400) << pair.any(0, 9)));
+      if (pair.one_in(4)) pair.write(reg::kHold, static_cast<std::uint32_t>(pair.any(0, 1)));
+      if (pair.one_in(2)) pair.write(kRatios[pair.any(0, 2)], static_cast<std::uint32_t>(pair.any(0, 0x10000)));
+      pair.wait_on_ramps(pair.one_in(3) ? pair.any(1, 20'000) : pair.any(1, 500));
+      pair.compare();
+    }
+    steps += pair.steps;
+    on_ramps += pair.on_ramps;
+  }
+  EXPECT_GT(steps, 20 * programs);
+  EXPECT_GT(on_ramps, 20'000 * programs);
 }
 
 // A jump that ends while a step waits for a reversal: a hold tick that has passed must count when the next one comes.

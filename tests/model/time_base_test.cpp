@@ -26,12 +26,16 @@ void set(TimeBase& base, std::uint32_t target, std::uint32_t slew) {
   base.clock({false, {true, card_map::reg::kRatioFeed, target}});
 }
 
+bool arrived(const TimeBase& base, bool hold, std::uint8_t piece_class = card_map::constant::kClassFeed) {
+  return base.clocks_ahead(hold, piece_class) == TimeBase::kNever;
+}
+
 // A time base whose ratio is `ratio`, after an odd number of clocks.
 TimeBase at_ratio(std::uint32_t ratio) {
   TimeBase base;
   set(base, ratio, 0xFFF'FFFF);
   run(base, 17);
-  EXPECT_TRUE(base.steady(false));
+  EXPECT_TRUE(arrived(base, false));
   EXPECT_EQ(base.outputs().ratio, ratio);
   return base;
 }
@@ -94,14 +98,14 @@ TEST(TimeBase, SlewIsLinearAndEndsOnTheTarget) {
     ASSERT_EQ(base.outputs().ratio, expected >> 12) << "clock " << clocks;
     run(base, 1);
   }
-  EXPECT_TRUE(base.steady(false));
+  EXPECT_TRUE(arrived(base, false));
 }
 
 TEST(TimeBase, HoldGoesToZeroAndComesBack) {
   TimeBase base = at_ratio(0xABCD);
   set(base, 0xABCD, 0x4'0000);
   std::uint32_t before = base.outputs().ratio;
-  while (!base.steady(true)) {
+  while (!arrived(base, true)) {
     run(base, 1, true);
     ASSERT_LE(base.outputs().ratio, before);
     before = base.outputs().ratio;
@@ -109,7 +113,7 @@ TEST(TimeBase, HoldGoesToZeroAndComesBack) {
   EXPECT_EQ(before, 0U);
   EXPECT_EQ(run(base, 100'000, true), 0U);
   EXPECT_EQ(base.clocks_for(1), TimeBase::kNever);
-  while (!base.steady(false)) {
+  while (!arrived(base, false)) {
     run(base, 1);
     ASSERT_GE(base.outputs().ratio, before);
     ASSERT_LE(base.outputs().ratio, 0xABCDU);
@@ -124,7 +128,7 @@ TEST(TimeBase, AHoldTakesTheTriangleOfItsSlew) {
     TimeBase base;
     set(base, kWhole, slew);
     std::uint64_t enables = 0;
-    while (!base.steady(true)) enables += run(base, 1, true);
+    while (!arrived(base, true)) enables += run(base, 1, true);
     // Sum over updates of 4 clocks at 1 - i * slew; up to 8 whole clocks go by before the first move.
     const double updates = 268435456.0 / slew;
     EXPECT_NEAR(static_cast<double>(enables), 2 * updates, 12) << "slew " << slew;
@@ -136,7 +140,7 @@ TEST(TimeBase, AZeroSlewKeepsTheRatio) {
   set(base, kWhole, 0);
   run(base, 1000);
   EXPECT_EQ(base.outputs().ratio, 0x1234U);
-  EXPECT_FALSE(base.steady(false));
+  EXPECT_EQ(base.clocks_ahead(false), TimeBase::kNever);
 }
 
 // From one class to another the ratio goes as after an override: linear, and to the new class's ratio exactly.
@@ -165,9 +169,66 @@ TEST(TimeBase, AChangeOfClassSlewsToItsRatio) {
         ASSERT_EQ(base.outputs().ratio, expected >> 12) << from << " to " << to << ", move " << moves;
         in_class(base, to, 4);
       }
-      EXPECT_TRUE(base.steady(false, to));
+      EXPECT_TRUE(arrived(base, false, to));
       EXPECT_EQ(base.outputs().ratio, kRatios[to]);
     }
+  }
+}
+
+// Anywhere on a ramp, at all slews: so far as it is known ahead, enables, their clocks and the state at the end are
+// those of clock().
+TEST(TimeBase, ARampAheadAgreesWithClocks) {
+  std::mt19937_64 random(11);
+  std::uint64_t ahead = 0;
+  for (int i = 0; i < 3000; ++i) {
+    TimeBase clocked = at_ratio(static_cast<std::uint32_t>(random() % (kWhole + 1)));
+    const auto slew = static_cast<std::uint32_t>((1 + (random() & 0xFFF'FFFE)) >> random() % 28);
+    set(clocked, static_cast<std::uint32_t>(random() % 3 == 0 ? 0 : random() % (kWhole + 1)), slew);
+    run(clocked, random() % 5000);
+    const bool hold = random() % 2 == 0;
+    run(clocked, random() % 20, hold);
+    const std::uint64_t known = std::min<std::uint64_t>(clocked.clocks_ahead(hold), 20'000);
+    const std::uint64_t clocks = known == 0 ? 0 : 1 + random() % known;
+    ahead += clocks;
+    const TimeBase before = clocked;
+    TimeBase skipped = clocked;
+    const std::uint64_t enables = skipped.advance(clocks);
+    ASSERT_EQ(enables, before.enabled_in(clocks));
+    std::uint64_t seen = 0;
+    for (std::uint64_t n = 1; n <= clocks; ++n) {
+      if (run(clocked, 1, hold) == 0) continue;
+      ++seen;
+      if (seen != enables && seen % 37 != 1) continue;
+      ASSERT_EQ(before.clocks_for(seen), n) << "slew " << slew << " try " << i;
+    }
+    ASSERT_EQ(seen, enables) << "slew " << slew << " try " << i;
+    for (int k = 0; k < 40; ++k) {
+      ASSERT_EQ(skipped.outputs().enable, clocked.outputs().enable) << "slew " << slew << " try " << i << ", " << k;
+      ASSERT_EQ(skipped.outputs().ratio, clocked.outputs().ratio) << "slew " << slew << " try " << i << ", " << k;
+      run(skipped, 1, hold);
+      run(clocked, 1, hold);
+    }
+  }
+  EXPECT_GT(ahead, 1'000'000U);
+}
+
+// What the under-run guard sees of the ratio stays, and it is not 0 unless it was.
+TEST(TimeBase, ARampAheadStaysInItsPart) {
+  for (const std::uint32_t slew : {1U, 37U, 0x1000U, 0x2'0001U}) {
+    TimeBase base;
+    set(base, kWhole, slew);
+    std::uint64_t parts = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const std::uint64_t known = base.clocks_ahead(true);
+      if (known == TimeBase::kNever) break;
+      const std::uint32_t part = (base.outputs().ratio + 255) / 256;
+      base.advance(known);
+      ASSERT_EQ((base.outputs().ratio + 255) / 256, part);
+      run(base, 1, true);
+      if ((base.outputs().ratio + 255) / 256 != part) ++parts;
+    }
+    EXPECT_EQ(parts, 256U) << "slew " << slew;
+    EXPECT_EQ(base.outputs().ratio, 0U);
   }
 }
 

@@ -116,6 +116,19 @@ TEST(MotionClock, ARampHasItsAccelerationAndBeginsAtItsSpeed) {
   EXPECT_NEAR(found.segments[1].rate, kBegin + kAcceleration * t, 2 * kAcceleration);
 }
 
+// Acceleration is added first at the 32nd clock.
+TEST(MotionClock, APieceWithoutAnUpdateHasOneRate) {
+  Program program;
+  program.piece(10, 0.5, 1e-3, 0, 0x1p-20);
+  program.line(10);
+  program.commands.emplace_back(driver::EndCommand{});
+  const Read found = read(program.commands);
+  ASSERT_EQ(found.segments.size(), 1U);
+  EXPECT_EQ(found.segments[0].clocks, 20U);
+  EXPECT_DOUBLE_EQ(found.segments[0].rate, 0.5);
+  EXPECT_EQ(found.segments[0].acceleration, 0);
+}
+
 TEST(MotionClock, AgreesWithTheSecondReaderOnRandomMotions) {
   std::mt19937_64 random(12);
   const auto share = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };

@@ -66,6 +66,27 @@ TEST(PathSpeed, TwoAxesAreOneSpeedWhateverTheirSlope) {
   for (std::size_t i = 20; i + 20 < samples.size(); ++i) ASSERT_NEAR(samples[i].speed, std::hypot(10, 0.2), 0.01) << i;
 }
 
+// Each sample spans a sixteenth of a turn.
+TEST(PathSpeed, IsConstantOnCirclesThatASampleDoesNotResolve) {
+  PathSpeed speed(1'000'000);
+  constexpr double kRadius = 10;  // mm
+  constexpr double kSpeed = 20;   // mm/s
+  constexpr double kScale = 80;   // steps/mm
+  std::array<double, 2> at{kRadius * kScale, 0};
+  for (std::uint64_t cycle = 0; cycle < 200'000'000; cycle += 50) {
+    const double angle = kSpeed / kRadius * static_cast<double>(cycle) * 1e-6;
+    const std::array<double, 2> now{std::round(kRadius * kScale * std::cos(angle)),
+                                    std::round(kRadius * kScale * std::sin(angle))};
+    for (std::size_t a = 0; a < 2; ++a) {
+      if (now[a] != at[a]) speed.add(cycle, a, 1 / kScale);
+    }
+    at = now;
+  }
+  const auto samples = speed.samples();
+  EXPECT_LE(samples.size(), 1024U);
+  for (std::size_t i = 1; i + 2 < samples.size(); ++i) ASSERT_NEAR(samples[i].speed, kSpeed, 0.04 * kSpeed) << i;
+}
+
 TEST(PathSpeed, IsZeroWhereTheAxisStandsStill) {
   PathSpeed speed(1'000'000);
   for (std::uint64_t i = 0; i < 500; ++i) speed.add(500 + 1'000 * i, 0, 0.01);

@@ -93,7 +93,9 @@ void StreamLink::connect() {
 }
 
 void StreamLink::say_hello() {
-  const std::string hello = fmt::format("trammel 1{}{}\n", hello_->token.empty() ? "" : " ", hello_->token);
+  // The end closes what a client before may have left on a terminal.
+  const std::string hello = fmt::format("{}trammel 1{}{}\n", static_cast<char>(frames::kEnd),
+                                        hello_->token.empty() ? "" : " ", hello_->token);
   stream_->write(reinterpret_cast<const std::uint8_t*>(hello.data()), hello.size());
   const std::string line = read_line(*stream_);
   may_move_ = line == "trammel 1 motion";
@@ -151,7 +153,7 @@ void StreamLink::sleep(nanoseconds time) {
 
 void StreamLink::wait(nanoseconds time) {
   constexpr char kEnd = static_cast<char>(frames::kEnd);
-  const std::string text = fmt::format("{}wait {}{}", kEnd, time.count(), kEnd);
+  const std::string text = fmt::format("wait {}{}", time.count(), kEnd);
   send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   await(std::string("waited") + kEnd);
 }

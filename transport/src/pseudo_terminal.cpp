@@ -91,6 +91,7 @@ class Terminal final : public Listener {
     if (master_.use_count() != 1 || !master_->has_client()) return nullptr;
     return std::make_unique<TerminalStream>(master_);
   }
+  bool ends_streams() const override { return false; }
   std::string url() const override { return "serial:" + master_->name(); }
 
  private:

@@ -17,14 +17,14 @@ export function rowsOf(run) {
   ]
   return [
     {
-      id: 'path', title: 'Path speed', unit: 'mm/s', height: 104, shown: true, least: 0,
+      id: 'path', title: 'Path speed', unit: 'mm/s', height: 98, shown: true, least: 0,
       lines: [
         { label: 'achieved', colour: 'achieved', band: true, data: (s) => s.mean, value: (r) => r.achieved },
         { label: 'commanded', colour: 'commanded', data: (s) => s.path, value: (r) => r.commanded },
       ],
     },
     ...kinds.map(([id, title, unit, derivative, limit, at, shown]) => ({
-      id, title, unit, height: 96, shown,
+      id, title, unit, height: 88, shown,
       limits: [...new Set(axes.map(({ axis }) => axis[limit]).filter((value) => value > 0))],
       lines: axes.map(({ axis, a }) => ({
         label: axis.letter, axis: axis.letter, data: (s) => s.axes[derivative][a], value: (r) => r.axes[a][at],
@@ -32,7 +32,7 @@ export function rowsOf(run) {
       })),
     })),
     {
-      id: 'override', title: 'Override', unit: '%', height: 70, shown: run.facts.events.length > 0, least: 0, room: 100,
+      id: 'override', title: 'Override', unit: '%', height: 64, shown: run.facts.events.length > 0, least: 0, room: 100,
       lines: [{ label: 'in force', colour: 'commanded', data: (s) => s.ratio, value: (r) => r.percent ?? NaN }],
     },
   ]
@@ -78,7 +78,7 @@ export class Chart {
         {
           size: 52, font: kFont, stroke: colour('faint'), gap: 4,
           grid: { stroke: colour('grid'), width: 1 }, ticks: { show: false },
-          splits: (_, __, low, high) => ticks(low, high, Math.max(2, row.height / 30)).list,
+          splits: (_, __, low, high) => ticks(low, high, Math.max(2, row.height / 16)).list,
           values: (_, list) => this.labels(list),
         },
       ],

@@ -21,6 +21,7 @@ export function number(x) {
   return size === 0 ? '0' : fixed(x, 3)
 }
 export const grouped = (n) => String(Math.round(n)).replace(/\B(?=(\d{3})+$)/g, ' ')
+export const millimetres = (x) => x < 1000 ? `${number(x)} mm` : `${grouped(x)} mm`
 export function duration(seconds) {
   if (seconds < 1e-3) return `${number(seconds * 1e6)} µs`
   if (seconds < 1) return `${number(seconds * 1e3)} ms`

@@ -10,7 +10,7 @@ import { Program } from './program.js'
 import { fillSummary, totalsOf } from './summary.js'
 import { byId, make } from './dom.js'
 import { colour, isDark, rampCss, setTheme } from './theme.js'
-import { decimals, duration, fixed, grouped, number, ticks } from './format.js'
+import { decimals, duration, fixed, grouped, millimetres, number, ticks } from './format.js'
 
 const kLabel = 178    // pixels left of the charts
 const kScale = 52     // and of the numbers at them
@@ -50,8 +50,8 @@ class Page {
     const totals = totalsOf(run)
     const say = (label, text) => byId('numbers').append(make('li', {}, make('span', {}, label), make('b', {}, text)))
     say('time', duration(run.seconds(run.cycles)))
-    say('feed', `${number(totals.feed)} mm`)
-    say('rapids', `${number(totals.rapid)} mm`)
+    say('feed', millimetres(totals.feed))
+    say('rapids', millimetres(totals.rapid))
     say('pulses', grouped(run.facts.steps.reduce((a, b) => a + b, 0)))
     say('stops', grouped(totals.stops))
     const { line, arc } = run.facts.max_deviation
@@ -214,7 +214,11 @@ class Page {
     this.setWindow(at - (at - from) * factor, at + (to - at) * factor)
   }
   closeTime() {
-    const half = Math.max(kLeast, 4 * (this.run.motors[0]?.step_length ?? 10)) * 2
+    // A pulse or two in view, where they are not too far.
+    const { times, count } = this.run.executed
+    const next = lastAtMost(times, this.cycle) + 1
+    const way = Math.min(next < count ? times[next] - this.cycle : Infinity, next > 0 ? this.cycle - times[next - 1] : Infinity)
+    const half = Math.min(2000, Math.max(kLeast, 1.5 * way + 10))
     this.setWindow(this.cycle - half, this.cycle + half)
   }
   setCycle(cycle, reveal = false) {

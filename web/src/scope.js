@@ -4,7 +4,7 @@ import { axisColour, colour } from './theme.js'
 import { alpha, moves } from './charts.js'
 import { lastAtMost } from './run.js'
 
-const kRow = 21
+const kRow = 19
 // Clocks from DIR's turn to the pulse beside the setup time: two phases and the way to the pin (the shaper's rules).
 const kTurn = 5
 

@@ -1,6 +1,6 @@
 // What the run comes to, in words and numbers.
 import { make } from './dom.js'
-import { duration, fixed, grouped, number } from './format.js'
+import { duration, fixed, grouped, millimetres, number } from './format.js'
 import { kPause } from './decode.js'
 
 // Seconds and millimetres with a feed, by rapids, and at rest.
@@ -30,8 +30,8 @@ export function fillSummary(element, run, goToLine, goTo) {
   add('Run', table(null, [
     ['Time', duration(run.seconds(run.cycles))],
     ['Planned', duration(facts.planned_seconds)],
-    ['With a feed', `${number(totals.feed)} mm`],
-    ['Rapids', `${number(totals.rapid)} mm`],
+    ['With a feed', millimetres(totals.feed)],
+    ['Rapids', millimetres(totals.rapid)],
     ['Pauses', duration(totals.pauses)],
     ['Stops', grouped(totals.stops)],
     ['Path segments', grouped(facts.segments)],

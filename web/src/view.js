@@ -2,7 +2,7 @@
 // apart, and the tool. Orthographic, so that plan views measure; the camera's zoom is pixels a mm.
 import {
   BufferAttribute, BufferGeometry, Color, ConeGeometry, LineBasicMaterial, LineDashedMaterial, LineSegments, Line, Mesh,
-  MeshBasicMaterial, MOUSE, OrthographicCamera, Points, PointsMaterial, Scene, Vector3, WebGLRenderer,
+  MeshBasicMaterial, MOUSE, OrthographicCamera, Points, PointsMaterial, Scene, CanvasTexture, Vector3, WebGLRenderer,
 } from 'three'
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js'
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js'
@@ -28,6 +28,17 @@ export const coloured = {
   speed: { label: 'Speed', unit: 'mm/s' },
   load: { label: 'Axis load', unit: '% of max_acceleration' },
   deviation: { label: 'Deviation', unit: 'pulses' },
+}
+
+// A round dot.
+function disc() {
+  const canvas = document.createElement('canvas')
+  canvas.width = canvas.height = 32
+  const context = canvas.getContext('2d')
+  context.fillStyle = '#fff'
+  context.arc(16, 16, 15, 0, 7)
+  context.fill()
+  return new CanvasTexture(canvas)
 }
 
 export class View {
@@ -76,11 +87,21 @@ export class View {
     this.rapid.frustumCulled = false
     this.thin = new Line(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.3 }))
     this.detail = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.85 }))
-    this.dots = new Points(new BufferGeometry(), new PointsMaterial({ size: 5, sizeAttenuation: false }))
+    this.dots = new Points(new BufferGeometry(), new PointsMaterial({ size: 5, sizeAttenuation: false, map: disc(), alphaTest: 0.5, transparent: true }))
     this.grid = new LineSegments(new BufferGeometry(), new LineBasicMaterial())
+    this.near = new LineSegments(new BufferGeometry(), new LineBasicMaterial())
     this.tool = new Mesh(new ConeGeometry(0.36, 1, 24).rotateX(-Math.PI / 2).translate(0, 0, 0.5), new MeshBasicMaterial({ transparent: true, opacity: 0.92 }))
-    for (const object of [this.thin, this.detail, this.dots, this.grid, this.tool]) object.frustumCulled = false
-    this.scene.add(this.grid, this.thin, this.rapid, this.feed, this.detail, this.dots, this.tool)
+    // Under the commanded lines over the whole run, above them pulse by pulse.
+    this.thin.material.depthTest = this.thin.material.depthWrite = false
+    for (const object of [this.detail, this.dots]) {
+      object.material.depthTest = object.material.depthWrite = false
+      object.renderOrder = 2
+    }
+    this.thin.renderOrder = this.grid.renderOrder = this.near.renderOrder = -1
+    this.feed.renderOrder = 1
+    this.tool.renderOrder = 3
+    for (const object of [this.thin, this.detail, this.dots, this.grid, this.near, this.tool]) object.frustumCulled = false
+    this.scene.add(this.grid, this.near, this.thin, this.rapid, this.feed, this.detail, this.dots, this.tool)
     this.buildExecuted()
     this.buildGrid()
     this.paint()
@@ -122,8 +143,8 @@ export class View {
     const step = niceStep(span / 10)
     const { centre } = this.run
     const range = [0, 1].map((i) => {
-      const low = Math.floor((this.box.low[i] + centre[i]) / step - 0.25) * step
-      const high = Math.ceil((this.box.high[i] + centre[i]) / step + 0.25) * step
+      const low = Math.floor((this.box.low[i] + centre[i]) / step + 0.02) * step
+      const high = Math.max(low + step, Math.ceil((this.box.high[i] + centre[i]) / step - 0.02) * step)
       return { low, high, count: Math.round((high - low) / step) }
     })
     const z = this.box.low[2]
@@ -139,6 +160,31 @@ export class View {
     }
     this.grid.geometry.setAttribute('position', new BufferAttribute(Float32Array.from(points), 3))
     this.ruled = { step, x, y, z }
+  }
+  // Close up a grid of its own around what is in view, at its height; single pulses where they are wide apart.
+  nearGrid() {
+    const { zoom } = this.camera
+    const target = this.controls.target, { centre } = this.run
+    const near = this.ruled.step * zoom > 320
+    const apart = this.pulse * zoom >= 10
+    const step = apart ? this.pulse : niceStep(48 / zoom)
+    const key = near ? [step, ...['x', 'y', 'z'].map((d) => Math.round(target[d] / step / 8)), Math.round(4 * Math.log2(zoom))].join() : ''
+    if (key === this.nearKey) return
+    this.nearKey = key
+    const points = []
+    if (near) {
+      const half = Math.hypot(this.camera.right, this.camera.top) / zoom * 1.4 + 8 * step
+      const count = Math.min(400, Math.ceil(half / step))
+      const z = apart ? Math.round((target.z + centre[2]) / step) * step - centre[2] : target.z
+      const x0 = Math.round((target.x + centre[0]) / step) * step - centre[0]
+      const y0 = Math.round((target.y + centre[1]) / step) * step - centre[1]
+      for (let i = -count; i <= count; ++i) {
+        points.push(x0 + i * step, y0 - count * step, z, x0 + i * step, y0 + count * step, z)
+        points.push(x0 - count * step, y0 + i * step, z, x0 + count * step, y0 + i * step, z)
+      }
+    }
+    this.near.geometry.dispose()
+    this.near.geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(Float32Array.from(points), 3))
   }
 
   // ---- colours
@@ -171,17 +217,17 @@ export class View {
     this.rapid.material.color.set(colour('rapid'))
     this.thin.material.color.set(colour('executed'))
     this.detail.material.color.set(colour('executed'))
-    this.dots.material.color.set(colour('executed'))
     this.grid.material.color.set(colour('grid'))
+    this.near.material.color.set(colour('grid'))
     this.tool.material.color.set(colour('cursor'))
     this.draw()
   }
-  setMode(mode) { this.mode = mode; this.paint() }
+  setMode(mode) { this.mode = mode; this.paint(); this.detailNow() }
   show(what, on) {
     this.shown[what] = on
     this.rapid.visible = this.shown.rapid
     this.thin.visible = this.detail.visible = this.dots.visible = this.shown.executed
-    this.grid.visible = this.shown.grid
+    this.grid.visible = this.near.visible = this.shown.grid
     if (on && what === 'executed') this.detailNow()
     this.draw()
   }
@@ -220,10 +266,22 @@ export class View {
       high.max(at)
     }
     const width = this.camera.right * 2, height = this.camera.top * 2
-    const middle = new Vector3((low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2).applyMatrix4(this.camera.matrixWorld)
+    // The numbers at the grid too.
+    if (this.shown.grid) {
+      const { x, y, z } = this.ruled
+      const { centre } = this.run
+      for (const px of [x.low, x.high]) for (const py of [y.low, y.high]) {
+        const at = new Vector3(px - centre[0], py - centre[1], z).applyMatrix4(inverse)
+        low.min(at)
+        high.max(at)
+      }
+    }
     const spanX = Math.max(high.x - low.x, 40 * this.pulse), spanY = Math.max(high.y - low.y, 40 * this.pulse)
-    // Room for the tools above and the scale below.
-    this.camera.zoom = Math.min((width - 120) / spanX, (height - 110) / spanY)
+    // Room for the tools above, and for the numbers around the grid.
+    const above = 52, around = 22
+    this.camera.zoom = Math.min((width - 4 * around) / spanX, (height - above - 2 * around) / spanY)
+    const middle = new Vector3((low.x + high.x) / 2, (low.y + high.y) / 2 + above / 2 / this.camera.zoom, (low.z + high.z) / 2)
+      .applyMatrix4(this.camera.matrixWorld)
     this.moveTo(middle)
     this.fitted = true
   }
@@ -267,9 +325,27 @@ export class View {
     this.detail.geometry.dispose()
     this.dots.geometry.dispose()
     this.detail.geometry = stairs(points, list)
+    const byDeviation = this.mode === 'deviation'
+    this.dots.material.vertexColors = byDeviation
+    this.dots.material.color.set(byDeviation ? '#ffffff' : colour('executed'))
+    this.dots.material.needsUpdate = true
     this.dots.geometry = new BufferGeometry().setAttribute('position', apart >= 4 ? attribute : new BufferAttribute(new Float32Array(0), 3))
-    this.dots.material.size = Math.min(7, Math.max(3, apart / 3))
+    if (byDeviation && apart >= 4) this.dots.geometry.setAttribute('color', new BufferAttribute(this.deviationColours(list), 3))
+    this.dots.material.size = Math.min(9, Math.max(3, apart / 2)) * Math.min(window.devicePixelRatio || 1, 2)
     this.draw()
+  }
+  deviationColours(list) {
+    const most = this.scaleOf('deviation')
+    const colours = new Float32Array(3 * list.reduce((sum, [from, to]) => sum + to - from, 0))
+    const rgb = [0, 0, 0], linear = new Color()
+    let at = 0
+    for (const [from, to] of list) {
+      for (let i = from; i < to; ++i, at += 3) {
+        ramp(this.run.executed.deviations[i] / most, rgb)
+        linear.setRGB(rgb[0], rgb[1], rgb[2], 'srgb').toArray(colours, at)
+      }
+    }
+    return colours
   }
   // Ranges of executed places whose boxes are in view, kDetail in all.
   visible() {
@@ -325,6 +401,9 @@ export class View {
     this.tool.scale.setScalar(24 / zoom)
     this.rapid.material.dashSize = 6 / zoom
     this.rapid.material.gapSize = 5 / zoom
+    this.nearGrid()
+    this.grid.visible = this.shown.grid && !this.nearKey
+    this.thin.visible = this.shown.executed && !this.detailCount
     this.renderer.render(this.scene, this.camera)
     this.annotate()
     this.changed?.()
@@ -342,7 +421,7 @@ export class View {
       const p = new Vector3(x, y, z).project(camera)
       return [(p.x + 1) / 2 * width, (1 - p.y) / 2 * height]
     }
-    if (this.shown.grid) this.numberGrid(context, at)
+    if (this.grid.visible) this.numberGrid(context, at)
     this.markEnds(context, at)
     this.drawScale(context, width, height)
     this.drawAxes(context, height)
@@ -363,7 +442,8 @@ export class View {
         const value = range.low + i * step
         if (Math.round(value / step) % every !== 0) continue
         const [px, py] = place(value)
-        context.fillText(fixed(value, digits), px + outward[0], py + outward[1])
+        const last = i + every > range.count
+        context.fillText(`${fixed(value, digits)}${last ? ' mm' : ''}`, px + outward[0], py + outward[1])
       }
     }
     const towards = (from, to) => {

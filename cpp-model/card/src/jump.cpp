@@ -23,7 +23,7 @@ Jump::Jump(MotionCore& core, StepRecord& record, std::uint64_t cycle, std::uint6
     : core_(core),
       record_(record),
       cycle_(cycle),
-      end_(static_cast<std::int64_t>(std::min(limit, core.sequencer_.settled_clocks()))),
+      end_(static_cast<std::int64_t>(std::min({limit, core.sequencer_.settled_clocks(), core.ratio_known_for()}))),
       ticking_(core.sequencer_.ticking()),
       chords_(ticking_ && core.engines_.on_chords()),
       to_axis_(chords_ ? 10 : 9),
@@ -328,13 +328,12 @@ void Jump::land_axis(unsigned axis, std::uint64_t ticks) {
 
 // Nothing is decided, and no host is at work.
 bool MotionCore::may_jump(const Inputs& in) const {
-  const StopControl::Outputs& stop = stop_.outputs();
   const Sequencer::Outputs& s = sequencer_.outputs();
   if (s.swap || s.feed_swap || s.direct || out_.path_step != 0 || axes_live_ || out_.step_fault != 0) return false;
   if (in.setting.set || in.abort || in.clear_fault != 0 || in.probe_clear || in.start || !loader_.quiet()) return false;
   const bool fixed = s.piece_class == card_map::constant::kClassFixed;
   if (!stop_.quiet(s.moving, fixed, time_base_.outputs().ratio == 0)) return false;
-  if (!engines_.settled() || !time_base_.steady(stop.hold, s.piece_class)) return false;
+  if (!engines_.settled() || ratio_known_for() == 0) return false;
   if (!commands_.quiet(in.pins, s.path_active)) return false;
   if (!probe_.quiet(probe_inputs(in)) || probing_ != probe_.busy()) return false;
   for (const Axis& axis : axes_) {

@@ -1,44 +1,50 @@
-// Modal state of a G-code program, and the execution of its lines. Internal to the reader.
+// Execution of a program's lines. Internal to the reader.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <vector>
 
+#include "cycles.hpp"
+#include "modal_state.hpp"
+#include "offsets.hpp"
+#include "parameters.hpp"
+#include "tools.hpp"
 #include "trammel/gcode/motion.hpp"
 #include "word_set.hpp"
 
 namespace trammel::gcode {
 
-// The motions of one line.
+// The motions of one line. Only drilling cycles and splines make many: then memory grows, once.
 class LineMotions {
  public:
-  void clear() { count_ = 0; }
-  // A motion to be filled in.
+  void clear() { motions_.clear(); }
+  // A motion to be filled in, until the next call.
   Motion& add(MotionKind kind, std::size_t line) {
-    Motion& motion = motions_[count_++];
-    motion = Motion{};
+    Motion& motion = motions_.emplace_back();
     motion.kind = kind;
     motion.line = line;
     return motion;
   }
-  std::size_t size() const { return count_; }
+  void cut(std::size_t size) { motions_.resize(size); }
+  std::size_t size() const { return motions_.size(); }
   const Motion& operator[](std::size_t i) const { return motions_[i]; }
 
  private:
-  std::array<Motion, 5> motions_;  // the most: outputs, G28 by way of a point, outputs off, the end
-  std::size_t count_ = 0;
+  std::vector<Motion> motions_;
 };
 
-class Interpreter {
+class Interpreter final : public Predefined {
  public:
-  Interpreter(const machine::Machine& machine, const Coordinates& start) : machine_(machine), here_(start) {}
+  Interpreter(const machine::Machine& machine, const Coordinates& start);
 
   enum class Outcome { kGoesOn, kEnded, kFailed };
   // Appends the line's motions. After a failure, of which `problem` tells, the state means nothing.
   Outcome execute(const WordSet& words, std::size_t line, LineMotions& motions, Problem& problem);
   // Machine coordinates.
-  const Coordinates& position() const { return here_; }
+  const Coordinates& position() const { return here_.at; }
   // Appends the motion kEnd.
   void end(std::size_t line, LineMotions& motions);
   // Appends what makes the outputs what the lines so far have made them, where they have.
@@ -46,14 +52,40 @@ class Interpreter {
   // Whether a word of the groups spindle and coolant switches an output of this machine.
   bool switches(int number) const;
 
+  // Where the last probe ended and what it met, machine coordinates; `rest` is where the machine stands.
+  void probed(const Coordinates& edge, const Coordinates& rest, bool tripped);
+  // The same, at its target and not known yet.
+  void assume_probed();
+  // Lines so far that depend on a probe that has not run.
+  std::size_t lines_on_probes() const { return lines_on_probes_; }
+
+  Value numbered(int number) const override;
+  std::optional<Value> named(std::string_view name) const override;
+  void collect(std::map<int, double>& numbers) const;
+  void preset(int number, double value);
+
  private:
-  enum class FeedMode { kPerMinute, kInverseTime };
   struct Plane {
     char first;
     char second;
+    char normal;
     char first_offset;
     char second_offset;
     char unused_offset;
+  };
+  struct PlaneAxes {
+    std::size_t first;
+    std::size_t second;
+    std::size_t normal;
+  };
+  // What a line of a cycle leaves to the next: mm, from the program's zero or as increments.
+  struct Sticky {
+    double retract = 0;
+    double bottom = 0;
+    double peck = 0;
+    double seconds = 0;
+    double start = 0;  // level before the first of several cycles, machine coordinates
+    bool later = false;
   };
   // Where a line's motions and problems go.
   struct Context {
@@ -61,46 +93,55 @@ class Interpreter {
     LineMotions& motions;
     Problem& problem;
   };
+  class CycleMotions;
 
-  void set_feed(const WordSet& words);
-  void set_path_control(const WordSet& words);
-  void set_modes(const WordSet& words);
-  bool check_leftovers(const Context& context) const;
+  bool set_modes(const Context& context);
   bool act(const Context& context);
+  bool defer(const Context& context, std::size_t motions_before);
+  bool depends(const WordSet& words) const;
   void switch_outputs(const Context& context);
   void change_outputs(std::uint16_t set, std::uint16_t clear, LineMotions& motions);
-  void dwell(const Context& context);
-  bool go_home(const Context& context);
+  void stop(LineMotions& motions, double seconds);
+  bool go_home(const Context& context, bool second);
+  bool set_system(const Context& context);
   bool set_origin(const Context& context);
   bool move(const Context& context);
   bool straight(const Context& context, bool rapid);
   bool arc(const Context& context, bool clockwise);
-  bool plane_axis(char letter, std::size_t& axis, Problem& problem) const;
   bool set_turns(const Context& context, Motion& motion) const;
   bool arc_geometry(const Context& context, const Plane& plane, Motion& motion) const;
+  bool spline(const Context& context);
+  bool spline_controls(const Context& context, std::array<double, 2>& first, std::array<double, 2>& second);
+  bool cycle(const Context& context, std::optional<int> before);
+  bool set_sticky(const Context& context, int code, const PlaneAxes& axes, bool fresh);
+  bool check_cycle(const Context& context, const PlaneAxes& axes) const;
+  bool probe(const Context& context);
+  bool plane_axis(char letter, const char* what, std::size_t& axis, Problem& problem) const;
+  const Plane& plane() const;
 
   bool is_rotary(std::size_t axis) const;
   double to_mm(std::size_t axis, double value) const;
-  double offset(std::size_t axis) const;
-  bool target_of(const Context& context, Coordinates& target) const;
+  double to_program(std::size_t axis, double machine) const;
+  Value word(const WordSet& words, char letter, std::size_t axis) const;
+  bool is_absolute(std::size_t axis) const;
+  bool target_of(const Context& context, Place& target) const;
   bool set_speed(const Context& context, Motion& motion) const;
+  void arrive(const Place& target, Motion& motion);
 
   const machine::Machine& machine_;
   std::size_t line_ = 0;
-  Coordinates here_;      // machine coordinates
-  Coordinates origin_{};  // G92
-  std::size_t coordinate_system_ = 0;
-  std::optional<int> motion_;  // code in tenths; none under G80
-  int plane_ = 170;
-  bool inches_ = false;
-  bool absolute_ = true;
-  std::optional<bool> extruder_absolute_;  // none until M82 or M83
-  bool centre_absolute_ = false;
-  FeedMode feed_mode_ = FeedMode::kPerMinute;
-  std::optional<double> feed_;  // as written, units or 1 a minute
-  bool feed_in_inches_ = false;
-  PathControl path_control_ = PathControl::kContinuous;
-  double tolerance_ = 0;        // mm
+  Place here_;
+  ModalState modes_;
+  Offsets offsets_;
+  Tools tools_;
+  Sticky sticky_;
+  int cycle_plane_ = 0;
+  std::optional<std::array<double, 2>> spline_end_;  // P and Q, mm, where the last motion was a G5
+  Coordinates probe_target_{};
+  unsigned probe_axes_ = 0;  // that it moves
+  std::array<Value, kParameterAxes> probe_results_{};
+  Value probe_success_;
+  std::size_t lines_on_probes_ = 0;
   std::uint16_t switched_ = 0;  // outputs, bit n: output n
   std::uint16_t on_ = 0;        // of these
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "interpreter.hpp"
+#include "left_out.hpp"
 
 namespace trammel::gcode {
 namespace {
@@ -19,11 +20,21 @@ std::string_view without_blanks_before(std::string_view line) {
 class Reader::Impl {
  public:
   Impl(LineSource& lines, const machine::Machine& machine, const Coordinates& start, const ReaderOptions& options)
-      : lines_(lines), axes_(machine), interpreter_(machine, start), options_(options) {}
+      : lines_(lines),
+        axes_(machine),
+        interpreter_(machine, start),
+        parameters_(interpreter_),
+        options_(options),
+        left_out_(options.left_out) {
+    for (const auto& [number, value] : options.parameters) {
+      parameters_.preset(number, value);
+      interpreter_.preset(number, value);
+    }
+  }
 
   bool next(Motion& motion) {
     while (given_ == motions_.size()) {
-      if (ended_ || error_) {
+      if (ended_ || error_ || awaits_probe_) {
         return false;
       }
       motions_.clear();
@@ -34,6 +45,7 @@ class Reader::Impl {
       }
     }
     motion = motions_[given_++];
+    awaits_probe_ = motion.kind == MotionKind::kProbe;
     motion.feed *= options_.feed_scale;
     if (motion.kind != MotionKind::kDwell) motion.seconds /= options_.feed_scale;
     return true;
@@ -43,6 +55,9 @@ class Reader::Impl {
     first_line_ = line;
     while (number_ + 1 < line && !ended_ && !error_) {
       read_line();
+      if (motions_.size() != 0 && motions_[motions_.size() - 1].kind == MotionKind::kProbe) {
+        fail(ErrorCode::kDependsOnProbe, fmt::format("a probe before line {}, where the program is to begin", line));
+      }
       motions_.clear();
     }
     if (error_ || (ended_ && !fail_before_first_line())) {
@@ -52,6 +67,23 @@ class Reader::Impl {
     return true;
   }
   const Coordinates& position() const { return interpreter_.position(); }
+
+  bool awaits_probe() const { return awaits_probe_; }
+  void probed(const Coordinates& edge, const Coordinates& rest, bool tripped) {
+    interpreter_.probed(edge, rest, tripped);
+    awaits_probe_ = false;
+  }
+  void assume_probed() {
+    interpreter_.assume_probed();
+    awaits_probe_ = false;
+  }
+  std::size_t lines_on_probes() const { return interpreter_.lines_on_probes(); }
+  std::map<int, double> parameters() const {
+    std::map<int, double> numbers;
+    parameters_.collect(numbers);
+    interpreter_.collect(numbers);
+    return numbers;
+  }
 
   const std::optional<Error>& error() const { return error_; }
   const std::map<std::string, std::size_t>& accepted() const { return accepted_; }
@@ -75,14 +107,20 @@ class Reader::Impl {
     if (line.front() == '%') {
       return percent(line);
     }
-    if (!words_.read(line, axes_, problem_)) {
+    std::string_view left_out;
+    if (left_out_.find(line, left_out, problem_)) {
+      in_program_ = true;
+      ++accepted_[std::string(left_out)];
+      return !left_out_.failed() || fail();
+    }
+    if (!words_.read(line, axes_, parameters_, problem_)) {
       return fail();
     }
     in_program_ = in_program_ || !words_.empty();
     if (words_.accepted_begin() != words_.accepted_end()) {
       count_accepted();
     }
-    if (words_.letter('Q')) {
+    if (words_.code(Group::kPathControl) && words_.letter('Q')) {
       ++accepted_["G64 Q"];  // naive cam: no lines are joined
     }
     const Interpreter::Outcome outcome = interpreter_.execute(words_, number_, motions_, problem_);
@@ -139,9 +177,10 @@ class Reader::Impl {
 
   // A problem where something but blanks and comments stands beside or behind a '%'.
   bool only_comments(std::string_view text) {
-    WordScanner scanner(text);
+    WordScanner scanner(text, parameters_);
     Word word{};
-    const bool any = scanner.next(word, problem_) || scanner.failed();
+    const bool any = scanner.next(word, problem_) || scanner.failed() || parameters_.any_assigned();
+    parameters_.drop_assigned();
     return !any ||
            problem_.set(ErrorCode::kTextBesidePercent, fmt::format("'{}' beside or behind '%', where nothing is read",
                                                                    quote(without_blanks_before(text))));
@@ -173,11 +212,14 @@ class Reader::Impl {
   LineSource& lines_;
   AxisLetters axes_;
   Interpreter interpreter_;
+  Parameters parameters_;
   ReaderOptions options_;
+  LeftOut left_out_;
   std::size_t number_ = 0;  // of the line
   std::size_t first_line_ = 0;
   bool in_program_ = false;  // a word or a '%' was there
   bool ended_ = false;
+  bool awaits_probe_ = false;
   WordSet words_;
   LineMotions motions_;
   std::size_t given_ = 0;  // of motions_
@@ -194,6 +236,13 @@ Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;
 
 bool Reader::next(Motion& motion) { return impl_->next(motion); }
+bool Reader::awaits_probe() const { return impl_->awaits_probe(); }
+void Reader::probed(const Coordinates& edge, const Coordinates& rest, bool tripped) {
+  impl_->probed(edge, rest, tripped);
+}
+void Reader::assume_probed() { impl_->assume_probed(); }
+std::size_t Reader::lines_on_probes() const { return impl_->lines_on_probes(); }
+std::map<int, double> Reader::parameters() const { return impl_->parameters(); }
 bool Reader::skip_to(std::size_t line) { return impl_->skip_to(line); }
 const Coordinates& Reader::position() const { return impl_->position(); }
 const std::optional<Error>& Reader::error() const { return impl_->error(); }

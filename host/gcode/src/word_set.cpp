@@ -4,6 +4,10 @@
 
 #include <string>
 
+#include "left_out.hpp"
+#include "trammel/gcode/reader.hpp"
+#include "unsupported.hpp"
+
 namespace trammel::gcode {
 namespace {
 
@@ -14,23 +18,31 @@ struct Code {
   bool effect;  // false: accepted, listed in the summary; M3 to M9 where they switch no output
 };
 
-constexpr std::array<Code, 46> kCodes = {{
+constexpr std::array<Code, 72> kCodes = {{
     {'G', 0, Group::kMotion, true},        {'G', 10, Group::kMotion, true},       {'G', 20, Group::kMotion, true},
-    {'G', 30, Group::kMotion, true},       {'G', 40, Group::kNonModal, true},     {'G', 170, Group::kPlane, true},
+    {'G', 30, Group::kMotion, true},       {'G', 40, Group::kNonModal, true},     {'G', 50, Group::kMotion, true},
+    {'G', 51, Group::kMotion, true},       {'G', 100, Group::kNonModal, true},    {'G', 170, Group::kPlane, true},
     {'G', 180, Group::kPlane, true},       {'G', 190, Group::kPlane, true},       {'G', 200, Group::kUnits, true},
-    {'G', 210, Group::kUnits, true},       {'G', 280, Group::kNonModal, true},    {'G', 400, Group::kCutter, true},
+    {'G', 210, Group::kUnits, true},       {'G', 280, Group::kNonModal, true},    {'G', 281, Group::kNonModal, true},
+    {'G', 300, Group::kNonModal, true},    {'G', 301, Group::kNonModal, true},    {'G', 382, Group::kMotion, true},
+    {'G', 383, Group::kMotion, true},      {'G', 384, Group::kMotion, true},      {'G', 385, Group::kMotion, true},
+    {'G', 400, Group::kCutter, true},      {'G', 430, Group::kToolLength, true},  {'G', 431, Group::kToolLength, true},
     {'G', 490, Group::kToolLength, true},  {'G', 530, Group::kNonModal, true},    {'G', 540, Group::kCoordinates, true},
     {'G', 550, Group::kCoordinates, true}, {'G', 560, Group::kCoordinates, true}, {'G', 570, Group::kCoordinates, true},
-    {'G', 580, Group::kCoordinates, true}, {'G', 590, Group::kCoordinates, true}, {'G', 610, Group::kPathControl, true},
-    {'G', 611, Group::kPathControl, true}, {'G', 640, Group::kPathControl, true}, {'G', 800, Group::kMotion, true},
+    {'G', 580, Group::kCoordinates, true}, {'G', 590, Group::kCoordinates, true}, {'G', 591, Group::kCoordinates, true},
+    {'G', 592, Group::kCoordinates, true}, {'G', 593, Group::kCoordinates, true}, {'G', 610, Group::kPathControl, true},
+    {'G', 611, Group::kPathControl, true}, {'G', 640, Group::kPathControl, true}, {'G', 730, Group::kMotion, true},
+    {'G', 800, Group::kMotion, true},      {'G', 810, Group::kMotion, true},      {'G', 820, Group::kMotion, true},
+    {'G', 830, Group::kMotion, true},      {'G', 850, Group::kMotion, true},      {'G', 890, Group::kMotion, true},
     {'G', 900, Group::kDistance, true},    {'G', 901, Group::kArcDistance, true}, {'G', 910, Group::kDistance, true},
     {'G', 911, Group::kArcDistance, true}, {'G', 920, Group::kNonModal, true},    {'G', 921, Group::kNonModal, true},
-    {'G', 930, Group::kFeedMode, true},    {'G', 940, Group::kFeedMode, true},    {'M', 0, Group::kStopping, false},
-    {'M', 10, Group::kStopping, false},    {'M', 20, Group::kStopping, true},     {'M', 300, Group::kStopping, true},
-    {'M', 30, Group::kSpindle, false},     {'M', 40, Group::kSpindle, false},     {'M', 50, Group::kSpindle, false},
-    {'M', 70, Group::kCoolant, false},     {'M', 80, Group::kCoolant, false},     {'M', 90, Group::kCoolant, false},
-    {'M', 180, Group::kMotors, false},     {'M', 840, Group::kMotors, false},     {'M', 820, Group::kExtruder, true},
-    {'M', 830, Group::kExtruder, true},
+    {'G', 922, Group::kNonModal, true},    {'G', 923, Group::kNonModal, true},    {'G', 930, Group::kFeedMode, true},
+    {'G', 940, Group::kFeedMode, true},    {'G', 980, Group::kRetract, true},     {'G', 990, Group::kRetract, true},
+    {'M', 0, Group::kStopping, false},     {'M', 10, Group::kStopping, false},    {'M', 20, Group::kStopping, true},
+    {'M', 300, Group::kStopping, true},    {'M', 30, Group::kSpindle, false},     {'M', 40, Group::kSpindle, false},
+    {'M', 50, Group::kSpindle, false},     {'M', 60, Group::kToolChange, false},  {'M', 70, Group::kCoolant, false},
+    {'M', 80, Group::kCoolant, false},     {'M', 90, Group::kCoolant, false},     {'M', 180, Group::kMotors, false},
+    {'M', 840, Group::kMotors, false},     {'M', 820, Group::kExtruder, true},    {'M', 830, Group::kExtruder, true},
 }};
 
 // Place in kCodes of every G and M word, by its tenths.
@@ -74,9 +86,10 @@ constexpr bool in(char letter, std::uint32_t set) { return (set & bit(letter)) !
 
 constexpr std::uint32_t kCodeLetters = bits("GM");
 constexpr std::uint32_t kAxes = bits(machine::kAxisLetters);
-constexpr std::uint32_t kOthers = bits("FIJKNPQRST");
-constexpr std::uint32_t kSignless = bits("FNPQST");
-constexpr std::uint32_t kWhole = bits("NT");
+constexpr std::uint32_t kOthers = bits("FHIJKLNPQRST");
+constexpr std::uint32_t kSignless = bits("FHLNST");
+constexpr std::uint32_t kWhole = bits("HLNT");
+constexpr std::uint32_t kNow = bits("HLNT");  // values that no probe may decide
 constexpr std::uint32_t kWithoutEffect = bits("ST");
 
 // Numbers of words are at most 1e12.
@@ -84,6 +97,16 @@ bool is_whole(double value) { return value == static_cast<double>(static_cast<st
 
 bool twice(const Word& word, Problem& problem) {
   return problem.set(ErrorCode::kLetterTwice, fmt::format("'{}': {} stands twice", quote(word.text), word.letter));
+}
+
+bool depends_on_probe(const Word& word, Problem& problem) {
+  return problem.set(ErrorCode::kDependsOnProbe, fmt::format("'{}' cannot depend on a probe", quote(word.text)));
+}
+
+bool unsupported(const Word& word, Problem& problem) {
+  const std::string_view why = why_unsupported(word.letter, code_of(word.value));
+  return problem.set(ErrorCode::kUnsupportedWord,
+                     fmt::format("unsupported word '{}'{}{}", quote(word.text), why.empty() ? "" : ": ", why));
 }
 
 }  // namespace
@@ -95,19 +118,27 @@ AxisLetters::AxisLetters(const machine::Machine& machine) {
   }
 }
 
-bool WordSet::read(std::string_view line, const AxisLetters& axes, Problem& problem) {
+bool WordSet::read(std::string_view line, const AxisLetters& axes, Parameters& parameters, Problem& problem) {
   words_ = 0;
   codes_present_ = 0;
   letters_present_ = 0;
   axes_present_ = 0;
+  later_letters_ = 0;
+  later_axes_ = 0;
   accepted_count_ = 0;
-  WordScanner scanner(line);
+  WordScanner scanner(line, parameters);
   for (Word word; scanner.next(word, problem); ++words_) {
     if (!add(word, axes, problem)) {
       return false;
     }
   }
-  return !scanner.failed();
+  if (scanner.failed()) {
+    return false;
+  }
+  if (parameters.any_assigned()) {
+    parameters.take_effect();
+  }
+  return true;
 }
 
 bool WordSet::add(const Word& word, const AxisLetters& axes, Problem& problem) {
@@ -120,16 +151,24 @@ bool WordSet::add(const Word& word, const AxisLetters& axes, Problem& problem) {
   if (in(word.letter, kOthers)) {
     return add_letter(word, problem);
   }
-  return problem.set(ErrorCode::kUnsupportedWord, fmt::format("unsupported word '{}'", quote(word.text)));
+  return unsupported(word, problem);
 }
 
 bool WordSet::add_code(const Word& word, Problem& problem) {
   const Code* code = find_code(word);
+  if (word.later) {
+    return depends_on_probe(word, problem);
+  }
   if (code == nullptr) {
-    return problem.set(ErrorCode::kUnsupportedWord, fmt::format("unsupported word '{}'", quote(word.text)));
+    return unsupported(word, problem);
   }
   const auto place = static_cast<std::size_t>(code->group);
+  constexpr int kCancel = 800;
   if ((codes_present_ >> place & 1U) != 0) {
+    if (code->group == Group::kMotion && (code->tenths == kCancel || codes_[place] == kCancel)) {
+      codes_[place] = code->tenths == kCancel ? codes_[place] : static_cast<std::int16_t>(code->tenths);
+      return true;  // beside G80 the other word counts
+    }
     return problem.set(ErrorCode::kModalGroupTwice,
                        fmt::format("'{}' beside another word of its modal group", quote(word.text)));
   }
@@ -148,14 +187,22 @@ bool WordSet::add_letter(const Word& word, Problem& problem) {
   if (in(word.letter, letters_present_)) {
     return twice(word, problem);
   }
-  if (in(word.letter, kSignless) && word.value < 0) {
-    return problem.set(ErrorCode::kNegative, fmt::format("'{}' must not be negative", quote(word.text)));
+  if (word.later && in(word.letter, kNow)) {
+    return depends_on_probe(word, problem);
   }
-  if (in(word.letter, kWhole) && !is_whole(word.value)) {
+  double value = word.value;
+  if (in(word.letter, kSignless) && value < 0) {
+    if (!word.later) {
+      return problem.set(ErrorCode::kNegative, fmt::format("'{}' must not be negative", quote(word.text)));
+    }
+    value = 0;
+  }
+  if (in(word.letter, kWhole) && !is_whole(value)) {
     return problem.set(ErrorCode::kNotWhole, fmt::format("'{}' must be a whole number", quote(word.text)));
   }
   letters_present_ |= bit(word.letter);
-  letters_[static_cast<std::size_t>(word.letter - 'A')] = word.value;
+  later_letters_ |= word.later ? bit(word.letter) : 0;
+  letters_[static_cast<std::size_t>(word.letter - 'A')] = value;
   if (in(word.letter, kWithoutEffect)) {
     accepted_[accepted_count_++] = {word.letter, -1};
   }
@@ -172,8 +219,20 @@ bool WordSet::add_axis(const Word& word, const AxisLetters& axes, Problem& probl
     return twice(word, problem);
   }
   axes_present_ |= 1U << axis;
+  later_axes_ |= word.later ? 1U << axis : 0;
   axes_[axis] = word.value;
   return true;
+}
+
+std::vector<std::string> known_words() {
+  std::vector<std::string> words;
+  for (const Code& code : kCodes) words.push_back(name_of(code.letter, code.tenths));
+  for (const char letter : machine::kAxisLetters) words.emplace_back(1, letter);
+  for (char letter = 'A'; letter <= 'Z'; ++letter) {
+    if (in(letter, kOthers)) words.emplace_back(1, letter);
+  }
+  add_left_out(words);
+  return words;
 }
 
 }  // namespace trammel::gcode

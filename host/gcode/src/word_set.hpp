@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "problem.hpp"
 #include "trammel/card_map.hpp"
@@ -16,22 +18,24 @@ namespace trammel::gcode {
 
 // Modal groups as in RS274/NGC: at most one word of a group on a line.
 enum class Group {
-  kNonModal,     // G4 G28 G53 G92 G92.1
-  kMotion,       // G0 G1 G2 G3 G80
+  kNonModal,     // G4 G10 G28 G28.1 G30 G30.1 G53 G92 .. G92.3
+  kMotion,       // G0 G1 G2 G3 G5 G5.1 G38.2 .. G38.5 G73 G80 .. G83 G85 G89
   kPlane,        // G17 G18 G19
   kDistance,     // G90 G91
   kArcDistance,  // G90.1 G91.1
   kFeedMode,     // G93 G94
   kUnits,        // G20 G21
   kCutter,       // G40
-  kToolLength,   // G49
-  kCoordinates,  // G54 .. G59
+  kToolLength,   // G43 G43.1 G49
+  kCoordinates,  // G54 .. G59.3
   kPathControl,  // G61 G61.1 G64
   kStopping,     // M0 M1 M2 M30
   kSpindle,      // M3 M4 M5
   kCoolant,      // M7 M8 M9
   kMotors,       // M18 M84
   kExtruder,     // M82 M83
+  kRetract,      // G98 G99
+  kToolChange,   // M6
   kCount
 };
 
@@ -53,17 +57,24 @@ class WordSet {
  public:
   // Sorts the words of a line. False, with a problem, for an unknown word, an axis that the machine lacks, two words of
   // one group, a letter twice, and values that a letter cannot have.
-  bool read(std::string_view line, const AxisLetters& axes, Problem& problem);
+  // Assignments go to `parameters`, which have taken effect there when it gives true.
+  bool read(std::string_view line, const AxisLetters& axes, Parameters& parameters, Problem& problem);
 
   bool empty() const { return words_ == 0; }
   // Nothing but axis words, G0 to G3 or G80, F and N, as most lines of most programs.
   bool is_plain() const { return (codes_present_ & ~kPlainGroups) == 0 && (letters_present_ & ~kPlainLetters) == 0; }
   // In tenths of a group's word, as G2 = 20 or M30 = 300.
   std::optional<int> code(Group group) const;
-  std::optional<double> letter(char name) const;  // F I J K N P Q R S T
+  std::optional<double> letter(char name) const;  // F H I J K L N P Q R S T
   bool has_axis_words() const { return axes_present_ != 0; }
   bool has_axis(std::size_t axis) const { return (axes_present_ >> axis & 1U) != 0; }
   double axis(std::size_t axis) const { return axes_[axis]; }  // as written
+  std::uint32_t axes() const { return axes_present_; }         // bit n: axis n
+
+  // What depends on a probe that has not run yet (see Value): any word, a letter, an axis word.
+  bool later() const { return (later_letters_ | later_axes_) != 0; }
+  bool later(char name) const { return (later_letters_ >> (name - 'A') & 1U) != 0; }
+  bool axis_later(std::size_t axis) const { return (later_axes_ >> axis & 1U) != 0; }
 
   // Words without effect, where the machine has no output for them: "M3".
   struct Accepted {
@@ -86,6 +97,8 @@ class WordSet {
   std::uint32_t codes_present_ = 0;
   std::uint32_t letters_present_ = 0;
   std::uint32_t axes_present_ = 0;
+  std::uint32_t later_letters_ = 0;
+  std::uint32_t later_axes_ = 0;
   std::size_t accepted_count_ = 0;
   std::array<std::int16_t, static_cast<std::size_t>(Group::kCount)> codes_;
   std::array<double, kLetters> letters_;

@@ -6,11 +6,10 @@
 #include <charconv>
 #include <cstdint>
 
+#include "expression.hpp"
+
 namespace trammel::gcode {
 namespace {
-
-// So that no sum or square of coordinates leaves the range of a double.
-constexpr double kLargest = 1e12;
 
 // Whole numbers up to the first and powers of ten up to the second are doubles: their quotient is then rounded once
 // only, so that it is the double nearest to the decimal number.
@@ -58,6 +57,9 @@ const char* add_digits(const char* at, const char* end, std::uint64_t& whole) {
   }
   const std::size_t from = at_;
   at_ = static_cast<std::size_t>((digits == 0 ? number : at) - text);
+  if (digits == 0 && starts_expression(line_.substr(at_))) {
+    return expression(from, word, problem);
+  }
   if (digits == 0 || (at < end && !is_space(*at) && !may_follow(*at))) {
     return at < end && digits != 0 && *at == 'e' ? exponent(from, problem) : malformed(from, problem);
   }
@@ -68,10 +70,10 @@ const char* add_digits(const char* at, const char* end, std::uint64_t& whole) {
   } else if (!convert(static_cast<std::size_t>(first - text), at_, value)) {
     return out_of_range(from, problem);
   }
-  if (value > kLargest) {
+  if (value > kLargestValue) {
     return out_of_range(from, problem);
   }
-  word = Word{upper(text[from]), negative ? -value : value, std::string_view(text + from, at_ - from)};
+  word = Word{upper(text[from]), negative ? -value : value, std::string_view(text + from, at_ - from), false};
   return true;
 }
 
@@ -79,7 +81,7 @@ bool WordScanner::next(Word& word, Problem& problem) {
   while (at_ < line_.size()) {
     const char c = line_[at_];
     if (is_letter(c)) {
-      failed_ = !parse(word, problem);
+      failed_ = c == 'O' || c == 'o' ? !o_word(problem) : !parse(word, problem);
       return !failed_;
     }
     if (c == ';') {
@@ -87,6 +89,11 @@ bool WordScanner::next(Word& word, Problem& problem) {
     }
     if (is_space(c)) {
       ++at_;
+    } else if (c == '#') {
+      if (!assignment(problem)) {
+        failed_ = true;
+        return false;
+      }
     } else if (c != '(') {
       failed_ = true;
       return unexpected(problem);
@@ -108,6 +115,32 @@ bool WordScanner::skip_comment(Problem& problem) {
   }
   at_ = close + 1;
   return true;
+}
+
+// At the value; `from` is the word's letter.
+bool WordScanner::expression(std::size_t from, Word& word, Problem& problem) {
+  ExpressionReader reader(line_, at_, parameters_);
+  Value value;
+  if (!reader.value(value, problem)) {
+    return false;
+  }
+  at_ = reader.at();
+  word = Word{upper(line_[from]), value.value, line_.substr(from, at_ - from), value.later};
+  return true;
+}
+
+bool WordScanner::assignment(Problem& problem) {
+  ExpressionReader reader(line_, at_, parameters_);
+  if (!reader.assignment(parameters_, problem)) {
+    return false;
+  }
+  at_ = reader.at();
+  return true;
+}
+
+bool WordScanner::o_word(Problem& problem) const {
+  return problem.set(ErrorCode::kOWord, fmt::format("O-word '{}': subroutines, loops and branches are not supported",
+                                                    quote(line_.substr(at_, line_.find_first_of("(;", at_) - at_))));
 }
 
 bool WordScanner::unexpected(Problem& problem) const {

@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "parameters.hpp"
 #include "problem.hpp"
 
 namespace trammel::gcode {
@@ -11,13 +12,15 @@ struct Word {
   char letter;            // upper case
   double value;           // finite
   std::string_view text;  // as written, for messages
+  bool later = false;     // the value depends on a probe that has not run yet
 };
 
 // Gives the words of a line one by one, without its comments. Numbers are decimal, without exponent, and become the
-// nearest double, whatever the locale and the machine.
+// nearest double, whatever the locale and the machine. Assignments go to the parameters, which must outlive the
+// scanner, and take effect there when they are told to.
 class WordScanner {
  public:
-  explicit WordScanner(std::string_view line) : line_(line) {}
+  WordScanner(std::string_view line, Parameters& parameters) : line_(line), parameters_(parameters) {}
 
   // False at the end of the line, and where `problem` is set: then failed().
   bool next(Word& word, Problem& problem);
@@ -27,6 +30,9 @@ class WordScanner {
   inline bool parse(Word& word, Problem& problem);
   // What few lines need, out of the way of the rest.
   [[gnu::cold]] bool skip_comment(Problem& problem);
+  [[gnu::cold]] bool expression(std::size_t from, Word& word, Problem& problem);
+  [[gnu::cold]] bool assignment(Problem& problem);
+  [[gnu::cold]] bool o_word(Problem& problem) const;
   [[gnu::cold]] bool unexpected(Problem& problem) const;
   [[gnu::cold]] bool convert(std::size_t from, std::size_t end, double& value) const;
   [[gnu::cold]] bool malformed(std::size_t from, Problem& problem) const;
@@ -35,6 +41,7 @@ class WordScanner {
   [[gnu::cold]] static bool may_follow(char c);
 
   std::string_view line_;
+  Parameters& parameters_;
   std::size_t at_ = 0;
   bool failed_ = false;
 };

@@ -11,6 +11,13 @@ std::optional<std::size_t> Machine::axis(char letter) const {
   return std::nullopt;
 }
 
+const Tool* Machine::tool(unsigned number) const {
+  for (const Tool& tool : tools) {
+    if (tool.number == number) return &tool;
+  }
+  return nullptr;
+}
+
 std::vector<std::size_t> Machine::second_motors() const {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < axes.size(); ++i) {

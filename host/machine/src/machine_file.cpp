@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -32,7 +33,7 @@ struct Entry {
   bool required;
 };
 
-constexpr std::array<Entry, 11> kEntries = {{
+constexpr std::array<Entry, 12> kEntries = {{
     {"steps_per_mm", &MachineAxis::steps_per_mm, Range::kPositive, true},
     {"max_velocity", &MachineAxis::max_velocity, Range::kPositive, true},
     {"max_acceleration", &MachineAxis::max_acceleration, Range::kPositive, true},
@@ -44,6 +45,7 @@ constexpr std::array<Entry, 11> kEntries = {{
     {"min", &MachineAxis::min, Range::kAny, false},
     {"max", &MachineAxis::max, Range::kAny, false},
     {"home", &MachineAxis::home, Range::kAny, false},
+    {"second_home", &MachineAxis::second_home, Range::kAny, false},
 }};
 constexpr const char* kInverted = "inverted";
 
@@ -121,12 +123,14 @@ double number(const Source& source, const std::string& path, const toml::value& 
   return result;
 }
 
-// "g54" .. "g59" to 0 .. 5.
+// A bare key of TOML has no point: G59.1 is g59_1.
+constexpr std::array<const char*, kCoordinateSystems> kSystems = {"g54", "g55",   "g56",   "g57",  "g58",
+                                                                  "g59", "g59_1", "g59_2", "g59_3"};
+
 std::optional<std::size_t> coordinate_system(const std::string& key) {
-  if (key.size() != 3 || key[0] != 'g' || key[1] != '5' || key[2] < '4' || key[2] > '9') {
-    return std::nullopt;
-  }
-  return static_cast<std::size_t>(key[2] - '4');
+  const auto found = std::find(kSystems.begin(), kSystems.end(), key);
+  if (found == kSystems.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - kSystems.begin());
 }
 
 std::vector<std::string> axis_entries() {
@@ -137,9 +141,7 @@ std::vector<std::string> axis_entries() {
   for (std::size_t i = 1; i < kSwitches.size(); ++i) {
     names.emplace_back(kSwitches[i].name);
   }
-  for (std::size_t system = 0; system < kCoordinateSystems; ++system) {
-    names.push_back(fmt::format("g{}", 54 + system));
-  }
+  names.insert(names.end(), kSystems.begin(), kSystems.end());
   return names;
 }
 
@@ -242,6 +244,56 @@ void check_outputs(const std::string& where, const MachineOutputs& outputs) {
   unsigned output = 0;
   while ((both >> output & 1U) == 0) ++output;
   refuse(fmt::format("{}: output {} is named for the spindle (m3, m4) and for coolant (m7, m8)", where, output));
+}
+
+void set_probe(const Source& source, Probe& probe, const toml::table& table) {
+  for (const auto& [key, value] : table) {
+    if (key == "input") {
+      if (!value.is_integer() || value.as_integer() < 0 || value.as_integer() >= kMostInputs) {
+        refuse(fmt::format("{}probe.input must be an input's number, 0 to {}", source.at(value), kMostInputs - 1));
+      }
+      probe.input = static_cast<unsigned>(value.as_integer());
+    } else if (key == "touched_level") {
+      if (!value.is_integer() || (value.as_integer() != 0 && value.as_integer() != 1)) {
+        refuse(source.at(value) + "probe.touched_level must be 0 or 1");
+      }
+      probe.touched_level = value.as_integer() == 1;
+    } else {
+      refuse_key(source, value, "probe.", key, {"input", "touched_level"});
+    }
+  }
+}
+
+unsigned tool_number(const Source& source, const std::string& key, const toml::value& value) {
+  unsigned number = 0;
+  const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), number);
+  if (error != std::errc{} || end != key.data() + key.size() || number == 0 || number > kLargestTool) {
+    refuse(fmt::format("{}[tools.{}]: a tool has a number from 1 to {}", source.at(value), one_line(key, kLongestQuote),
+                       kLargestTool));
+  }
+  return number;
+}
+
+// Those of the machine's axes, which are known by now.
+void set_tools(const Source& source, Machine& machine, const toml::table& table) {
+  for (const auto& [key, value] : table) {
+    const unsigned which = tool_number(source, key, value);
+    if (!value.is_table()) refuse(fmt::format("{}tools.{} must be a table", source.at(value), which));
+    auto tool = std::find_if(machine.tools.begin(), machine.tools.end(),
+                             [&](const Tool& known) { return known.number == which; });
+    if (tool == machine.tools.end()) tool = machine.tools.insert(tool, Tool{which, {}});
+    std::vector<std::string> letters;
+    for (const MachineAxis& axis : machine.axes) {
+      letters.emplace_back(1, static_cast<char>(std::tolower(static_cast<unsigned char>(axis.letter))));
+    }
+    const std::string path = fmt::format("tools.{}.", which);
+    for (const auto& [letter, offset] : value.as_table()) {
+      const auto axis = std::find(letters.begin(), letters.end(), letter);
+      if (axis == letters.end()) refuse_key(source, offset, path, letter, letters);
+      tool->offsets[static_cast<std::size_t>(axis - letters.begin())] =
+          number(source, path + letter, offset, Range::kAny);
+    }
+  }
 }
 
 void set_clock(const Source& source, Machine& machine, const toml::value& value) {
@@ -353,10 +405,12 @@ toml::value parse(const Source& source, const std::string& text) {
   }
 }
 
+constexpr std::array<const char*, 6> kTables = {"card", "axis", "motion", "outputs", "tools", "probe"};
+
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
-    if (key != "card" && key != "axis" && key != "motion" && key != "outputs") {
-      refuse_key(source, value, "", key, {"card", "axis", "motion", "outputs"});
+    if (std::find(kTables.begin(), kTables.end(), key) == kTables.end()) {
+      refuse_key(source, value, "", key, {kTables.begin(), kTables.end()});
     }
     for (const auto& [inner_key, inner] : table_of(source, key, value)) {
       if (key == "card" && inner_key != "clock_hz") {
@@ -438,6 +492,8 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   check_motors(name + ":1", machine);
   std::sort(machine.axes.begin(), machine.axes.end(),
             [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
+  if (const toml::table* tools = find_table(root, "tools")) set_tools(source, machine, *tools);
+  if (const toml::table* probe = find_table(root, "probe")) set_probe(source, machine.probe, *probe);
   check_times(name + ":1", machine);
   check_outputs(name + ":1", machine.outputs);
   return machine;
@@ -469,6 +525,14 @@ void apply_override(Machine& machine, const std::string& text) {
   }
   if (const toml::table* outputs = find_table(root, "outputs")) {
     set_outputs(source, changed.outputs, *outputs);
+    any = true;
+  }
+  if (const toml::table* tools = find_table(root, "tools")) {
+    set_tools(source, changed, *tools);
+    any = true;
+  }
+  if (const toml::table* probe = find_table(root, "probe")) {
+    set_probe(source, changed.probe, *probe);
     any = true;
   }
   if (const toml::table* axes = find_table(root, "axis")) {

@@ -104,6 +104,8 @@ bool BlockBuilder::build(Block& block) {
     case gcode::MotionKind::kEnd:
       block.geometry = Geometry::kEnd;
       return true;
+    case gcode::MotionKind::kProbe:
+      return refuse(gcode::ErrorCode::kNoProbe, "probing is not supported yet");
     case gcode::MotionKind::kArc:
       return set_targets(block) && build_arc(block);
     default:
@@ -154,7 +156,7 @@ bool BlockBuilder::set_targets(Block& block) {
 void BlockBuilder::switch_outputs() {
   unsigned output = 0;
   for (; output < card_.outputs || motion_.set >> output != 0; ++output) {
-    if (output < card_.outputs || (motion_.set >> output & 1U) == 0) continue;
+    if (output < card_.outputs || (unsigned{motion_.set} >> output & 1U) == 0) continue;
     refuse(gcode::ErrorCode::kNoOutput,
            card_.outputs == 0
                ? fmt::format("output {} of the machine file cannot be switched: the card has no path commands", output)

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kUpdate = 32;            // clocks
 constexpr std::uint64_t kSwapClocks = 6;  // from a piece's last tick to the first clock at the next one's rate
+constexpr std::uint64_t kRounding = 2;  // ticks
 constexpr double kFastest = 1 - 0x1p-48;
 
 }  // namespace
@@ -90,8 +91,13 @@ std::uint64_t MotionClock::Piece::clocks_to(double tick) const {
   return reached;
 }
 
-MotionSegment MotionClock::Piece::at(std::uint64_t clocks) const {
+MotionSegment MotionClock::Piece::at(std::uint64_t clocks, std::uint64_t all) const {
   MotionSegment segment;
+  // Over before its first update: it has one rate, whatever acceleration it was sent with.
+  if (static_cast<double>(all) <= kUpdate) {
+    segment.rate = rate_;
+    return segment;
+  }
   const double update = static_cast<double>(clocks) / kUpdate - 0.5;  // an update's rate is that of its middle
   if (update + 0.5 >= bound_from_ && update + 0.5 < bound_to_) {
     segment.rate = bound_rate_;
@@ -138,22 +144,22 @@ void MotionClock::emit_closed() {
     const Closed& now = waiting_.front();
     const Path& path = paths_.front();
     const std::uint64_t path_end = now.piece.clock() + now.piece.clocks_to(static_cast<double>(path.end_tick));
-    const bool path_ends = path_end <= now.end_clock;
-    const std::uint64_t end = std::min(path_end, now.end_clock);
+    // Path and piece end together, but for a tick of rounding: a stretch of that would show the one's acceleration on
+    // the other's geometry.
+    const std::uint64_t piece_end = now.piece.end_tick();
+    const bool together = std::max(path.end_tick, piece_end) - std::min(path.end_tick, piece_end) <= kRounding;
+    const bool path_ends = together || path_end <= now.end_clock;
+    const std::uint64_t end = path_ends ? path_end : now.end_clock;
     if (end > emitted_) {
-      MotionSegment segment = now.piece.at(std::max(emitted_, now.piece.clock()) - now.piece.clock());
+      const std::uint64_t begin = now.piece.clock();
+      MotionSegment segment = now.piece.at(std::max(emitted_, begin) - begin, now.end_clock - begin);
       segment.path = path.path;
       segment.clocks = end - emitted_;
       sink_(segment);
       emitted_ = end;
     }
-    if (path_ends) {
-      paths_.pop_front();
-    } else {
-      waiting_.pop_front();
-    }
-    // A motion's last piece and last path end together.
-    if (path_ends && now.end_clock == end && paths_.empty()) waiting_.pop_front();
+    if (path_ends) paths_.pop_front();
+    if (together || !path_ends) waiting_.pop_front();
   }
 }
 

@@ -48,11 +48,16 @@ std::vector<PathSpeed::Sample> PathSpeed::samples() const {
     if (waiting_[a].any) spread(bins, bin_width_, waiting_[a], a, 0);
   }
   std::vector<Sample> result;
-  const double width = bin_width_ / clock_hz_;
-  for (std::size_t i = 0; i < kBins; ++i) {
-    result.push_back({(static_cast<double>(i) + 0.5) * width, std::hypot(bins[i][0], bins[i][1], bins[i][2]) / width});
+  // A short run has bins of a clock or so: fewer are put together, so that there are samples enough.
+  std::size_t used = kBins;
+  while (used > 0 && bins[used - 1] == std::array<double, kAxes>{}) --used;
+  const std::size_t together = std::max<std::size_t>(1, (used + kBins / kFine - 1) / (kBins / kFine));
+  const double width = bin_width_ * static_cast<double>(together) / clock_hz_;
+  for (std::size_t i = 0; i < used; i += together) {
+    double way = 0;
+    for (std::size_t j = i; j < i + together && j < kBins; ++j) way += std::hypot(bins[j][0], bins[j][1], bins[j][2]);
+    result.push_back({(static_cast<double>(i / together) + 0.5) * width, way / width});
   }
-  while (!result.empty() && result.back().speed == 0) result.pop_back();
   return result;
 }
 

@@ -119,6 +119,12 @@ chart::Panel speed_panel(const Plot& plot) {
   for (const PathSpeed::Sample& sample : plot.speed) panel.series[0].points.push_back({sample.seconds, sample.speed});
   panel.x.low = 0;
   panel.y.low = 0;
+  // A line at the frame would not be seen; and nothing has neither negative times nor negative speeds.
+  constexpr double kRoom = 1.06;
+  double most = 0;
+  for (const PathSpeed::Sample& sample : plot.speed) most = std::max(most, sample.speed);
+  panel.y.high = most > 0 ? kRoom * most : 1;
+  if (plot.speed.empty()) panel.x.high = 1;
   return panel;
 }
 

@@ -193,6 +193,34 @@ void full_queues(unsigned axes) {
   expect_all_compared(card, axes, 10'000);
 }
 
+// What a probe drops the under-run guard does not count off: it has no rule until the card rests, and then has one
+// again.
+void guard_behind_a_probe(unsigned axes) {
+  sim::LockstepCard card = test::card_under_test(axes, 9, 0);
+  AxiHost host(card, 9);
+  Traffic traffic(host, axes);
+  host.wait(300);
+  traffic.send(driver::ProbeCommand{2, true});
+  traffic.send(feed(1000, 2));
+  traffic.send(line(1000, std::vector<std::int64_t>(axes, 1)));
+  traffic.send(driver::ProbeEndCommand{});
+  host.wait(200);
+  host.set_pins(0b100);
+  host.wait(500);
+  EXPECT_NE(traffic.status() & field::kStatusProbed, 0U);
+  host.write(reg::kControl, field::kControlProbeClear);
+  EXPECT_TRUE(traffic.wait_idle(2000));
+  const std::uint32_t begun = host.read(reg::kFeedBegun).value_or(0);
+  driver::FeedCommand piece = feed(100, 2);
+  piece.stop_distance = 1'000'000;
+  traffic.send(piece);
+  traffic.send(line(100, std::vector<std::int64_t>(axes, 1)));
+  host.wait(300);
+  EXPECT_EQ(host.read(reg::kFeedBegun).value_or(0), begun);
+  traffic.abort();
+  expect_all_compared(card, axes, 1000);
+}
+
 class CardJoins : public testing::TestWithParam<unsigned> {};
 
 TEST_P(CardJoins, AFullQueueMoves) {
@@ -201,6 +229,10 @@ TEST_P(CardJoins, AFullQueueMoves) {
 
 TEST_P(CardJoins, Once) {
   EXPECT_EQ(lockstep::judge([] { joins(GetParam()); }), "");
+}
+
+TEST_P(CardJoins, AProbeAndTheGuard) {
+  EXPECT_EQ(lockstep::judge([] { guard_behind_a_probe(GetParam()); }), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Axes, CardJoins, testing::Values(3U, 4U),

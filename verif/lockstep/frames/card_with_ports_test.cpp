@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <iterator>
 
 #include "spi_master.hpp"
 #include "trammel/driver/card.hpp"
@@ -12,7 +13,7 @@
 #include "trammel/model/core_model.hpp"
 #include "trammel/model/host_ports.hpp"
 #include "trammel/sim/lockstep.hpp"
-#include "uart_line.hpp"
+#include "uart_link.hpp"
 
 namespace trammel::lockstep {
 namespace {
@@ -42,9 +43,9 @@ class CardUnderTest {
   }
 
   void clock() {
-    in_.rx = uart_line.next();
+    in_.rx = uart.line.next();
     in_.spi = spi.next(hosts_.spi().miso);
-    if (const std::optional<std::uint8_t> byte = uart_line.take(hosts_.uart().tx)) from_uart.push_back(*byte);
+    uart.take(hosts_.uart().tx);
     drive();
     const model::CoreModel::Answer answer = core_.answer();
     const model::PortArbiter::Inner inner = hosts_.inner();
@@ -66,9 +67,8 @@ class CardUnderTest {
   const Checker& check() const { return check_; }
   std::uint64_t rises() const { return rises_; }
 
-  UartLine uart_line;
+  UartEnd uart;
   SpiMaster spi;
-  std::deque<std::uint8_t> from_uart;
 
  private:
   static model::CardConfig core_config() {
@@ -105,63 +105,28 @@ class CardUnderTest {
   std::uint64_t rises_ = 0;
 };
 
-// What both links have in common: time is the card's clocks.
-class ClockedLink : public driver::ByteLink {
+class SpiLink final : public driver::ByteLink {
  public:
-  explicit ClockedLink(CardUnderTest& card) : card_(card) {}
-
-  nanoseconds now() const override { return kClock * static_cast<std::int64_t>(card_.check().cycles()); }
-  void sleep(nanoseconds time) override {
-    for (const nanoseconds until = now() + time; now() < until;) card_.clock();
-  }
-
- protected:
-  static std::size_t move(std::deque<std::uint8_t>& from, std::uint8_t* bytes, std::size_t room) {
-    std::size_t count = 0;
-    for (; count < room && !from.empty(); ++count) {
-      bytes[count] = from.front();
-      from.pop_front();
-    }
-    return count;
-  }
-
-  CardUnderTest& card_;
-};
-
-class SerialLink final : public ClockedLink {
- public:
-  using ClockedLink::ClockedLink;
-
-  void send(const std::uint8_t* bytes, std::size_t count) override {
-    for (std::size_t i = 0; i < count; ++i) card_.uart_line.send(bytes[i]);
-    while (card_.uart_line.busy()) card_.clock();
-  }
-  std::size_t receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) override {
-    for (const nanoseconds until = now() + longest; card_.from_uart.empty() && now() < until;) card_.clock();
-    return move(card_.from_uart, bytes, room);
-  }
-  void restart() override {
-    card_.uart_line.set_period(69.4);  // 115,200 baud
-    card_.uart_line.break_line(1 << kBreakBits | 20);
-    while (card_.uart_line.busy()) card_.clock();
-    card_.from_uart.clear();
-  }
-  nanoseconds time_of(std::size_t bytes) const override { return 87us * static_cast<std::int64_t>(bytes); }
-};
-
-class SpiLink final : public ClockedLink {
- public:
-  using ClockedLink::ClockedLink;
+  explicit SpiLink(CardUnderTest& card) : card_(card) {}
 
   void send(const std::uint8_t* bytes, std::size_t count) override { exchange(frames::Bytes(bytes, bytes + count)); }
   std::size_t receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) override {
     for (const nanoseconds until = now() + longest; came_.empty() && now() < until;) {
       exchange(frames::Bytes(8, frames::kEnd));
     }
-    return move(came_, bytes, room);
+    std::size_t count = 0;
+    for (; count < room && !came_.empty(); ++count) {
+      bytes[count] = came_.front();
+      came_.pop_front();
+    }
+    return count;
   }
   void restart() override { came_.clear(); }
   nanoseconds time_of(std::size_t bytes) const override { return 40us * static_cast<std::int64_t>(bytes); }
+  nanoseconds now() const override { return kClock * static_cast<std::int64_t>(card_.check().cycles()); }
+  void sleep(nanoseconds time) override {
+    for (const nanoseconds until = now() + time; now() < until;) card_.clock();
+  }
 
  private:
   // Ends that only fill are left out, so that silence is nothing.
@@ -175,6 +140,7 @@ class SpiLink final : public ClockedLink {
     }
   }
 
+  CardUnderTest& card_;
   std::deque<std::uint8_t> came_;
   std::uint8_t last_ = frames::kEnd;
 };
@@ -186,11 +152,19 @@ void a_line_over(CardUnderTest& card, driver::ByteLink& link, std::int32_t pulse
   driver::run_line(host, driver::plan_line(host.timing(), {pulses, -100}, 20ms));
   EXPECT_EQ(card.position(0) - before, static_cast<std::uint32_t>(pulses));
   EXPECT_EQ(bus.counts().sent_again, 0U);
+  // The card refuses the second one, and the third is not made.
+  driver::Access accesses[] = {driver::read_of(card_map::reg::kAxes), driver::write_of(card_map::reg::kAxes, 1),
+                               driver::read_of(card_map::reg::kAxes)};
+  EXPECT_EQ(bus.transfer(accesses, std::size(accesses)), 1U);
+  EXPECT_EQ(accesses[0].data, kAxes);
 }
 
 void lines_over_both() {
   CardUnderTest card;
-  SerialLink serial(card);
+  UartLink::Rate rate;
+  rate.break_clocks = 1 << kBreakBits | 20;
+  UartLink serial(
+      card.uart, rate, [&card] { card.clock(); }, [&card] { return card.check().cycles(); });
   a_line_over(card, serial, 200);
   SpiLink spi(card);
   a_line_over(card, spi, 300);

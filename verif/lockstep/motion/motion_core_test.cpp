@@ -129,6 +129,22 @@ class Bench {
     in_ = {};
   }
 
+  // STREAMING is switched on at each clock round the one in which the first command ends the card's rest.
+  void streaming_set_around_the_begin() {
+    for (unsigned clocks = 0; clocks < 40; ++clocks) {
+      reset();
+      in_ = {};
+      write_every_ = 1;
+      geometry_.add({stored_command(card_map::Opcode::Line, 1, 20, {}, {kOnePulse / 2})});
+      feed_.add({stored_command(card_map::Opcode::Feed, 0, 20, {{"rate", int128{1} << 63}, {"floor", 1}})});
+      for (unsigned i = 0; i < 200; ++i) {
+        in_.setting = {i == clocks, reg::kStreaming, card_map::field::kStreamingOn | 200U << 8};
+        clock();
+      }
+    }
+    in_ = {};
+  }
+
   Checker& check() { return check_; }
   std::uint64_t steps() const { return steps_; }
   std::uint64_t moves() const { return moves_; }
@@ -430,6 +446,7 @@ void random_programs() {
   const std::uint64_t length = scaled(1'000'000);
   if (kPathCommands) bench.commands_around_ends();
   if (kPathCommands) bench.edges_around_the_end();
+  if (kStreaming) bench.streaming_set_around_the_begin();
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.steps(), length / 200);

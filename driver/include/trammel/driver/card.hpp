@@ -40,6 +40,13 @@ struct Identification {
   std::uint32_t feed_depth = 0;      // halfwords
 };
 
+// What it was made of.
+struct Build {
+  std::uint32_t id = 0;     // of the sources; 0 where nobody said
+  bool dirty = false;       // one of them was changed
+  std::uint32_t board = 0;  // docs/user/boards.md; 0 where nobody said
+};
+
 enum class StepMode : std::uint8_t { kStepDirection = 0, kUpDown = 1, kQuadrature = 2 };
 
 // Settings of an axis. Times are those of the motor driver's data sheet; the card keeps at least these: clocks are
@@ -164,6 +171,8 @@ class Card {
   Snapshot snapshot();
   // What the card latched when it was stopped by the first cause of its present or last fault; zeros if there was none.
   Snapshot stop_snapshot();
+
+  Build build();
 
   Status status();
   bool busy() { return status().busy; }

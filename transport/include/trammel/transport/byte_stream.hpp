@@ -41,6 +41,8 @@ class Listener {
 
   // The one who has come, without waiting; nullptr for nobody.
   virtual std::unique_ptr<ByteStream> accept() = 0;
+  // Whether a client sees that the server has let go of its stream.
+  virtual bool ends_streams() const { return true; }
   // What a client gives as --card, but for the token.
   virtual std::string url() const = 0;
 

@@ -1,8 +1,9 @@
 // Going from step to step: many clocks of the motion core at once, exactly as clock() would.
 //
-// A jump begins where nothing is decided: no swap, decode, access or step under way, a steady time base. Ticks may be
-// in flight. Within it a path may make steps on its axes; a jump ends before a path's or piece's last tick is taken,
-// before the prescaler makes a path tick, and before a step that could wait long at its shaper.
+// A jump begins where nothing is decided: no swap, decode, access or step under way, a ratio that stands or slews.
+// Ticks may be in flight. Within it a path may make steps on its axes; a jump ends before a path's or piece's last tick
+// is taken, before the prescaler makes a path tick, before a step that could wait long at its shaper, and before a
+// ratio arrives or is another for the under-run guard.
 //
 // An accumulation of the feed generator at edge t that carries is a tick that is taken at t+5, reaches the prescaler at
 // t+6 and the axes at t+9; its step shows on the path after edge t+12 and reaches the shaper at t+13. Ticks are

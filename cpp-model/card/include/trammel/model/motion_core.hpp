@@ -95,6 +95,10 @@ class MotionCore {
   bool may_jump(const Inputs& in) const;
   // The guard counts; in position streaming it does not.
   bool guards() const { return has_guard_ && !sequencer_.streaming().on; }
+  // Clocks for which the ratio is known ahead, 0 where it is not.
+  std::uint64_t ratio_known_for() const {
+    return time_base_.clocks_ahead(stop_.outputs().hold, sequencer_.outputs().piece_class);
+  }
   Probe::Inputs probe_inputs(const Inputs& in) const;
   Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
   UnderrunGuard::Inputs guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;

@@ -22,6 +22,10 @@ enum class ErrorCode : std::uint16_t {
   kTextBesidePercent = 9,
   kUnsupportedWord = 10,
   kNoSuchLine = 11,  // to begin from
+  kExpression = 12,
+  kParameter = 13,  // no such number or name, or one that cannot be set
+  kOWord = 14,
+  kBesideLeftOut = 15,  // a G or M word on a line that is left out
   // Words of one line against each other
   kModalGroupTwice = 20,
   kLetterTwice = 21,
@@ -34,6 +38,15 @@ enum class ErrorCode : std::uint16_t {
   kMissingWord = 28,         // G4 without P, G92 without an axis
   kNoMotionMode = 29,
   kMachineCoordinates = 30,  // G53 where it means nothing
+  kDependsOnProbe = 31,      // what has to be known before the program begins
+  kNoSuchTool = 32,
+  kCoordinateSystem = 33,  // P of G10
+  kInverseTime = 34,       // G93 where only a feed makes sense
+  kCycleLevels = 35,       // R below the bottom, Q of 0
+  kTooManyMotions = 36,    // of one line
+  kNoProbe = 37,           // in the machine file
+  kProbeWay = 38,          // of length 0
+  kProbeMissed = 39,       // while it runs: G38.2 and G38.4
   // Feed
   kNoFeed = 40,
   kFeedTooSmall = 41,

@@ -12,7 +12,7 @@ namespace trammel::gcode {
 // By axis index of the machine; machine coordinates in mm (degrees for A, B and C).
 using Coordinates = std::array<double, card_map::kMaxAxes>;
 
-enum class MotionKind { kTraverse, kLine, kArc, kDwell, kEnd, kOutput };
+enum class MotionKind { kTraverse, kLine, kArc, kDwell, kEnd, kOutput, kProbe };
 
 // What the motion asks of the corner where it ends.
 enum class PathControl : std::uint8_t {
@@ -24,9 +24,12 @@ enum class PathControl : std::uint8_t {
 struct Motion {
   MotionKind kind = MotionKind::kLine;
   std::size_t line = 0;  // of the source, from 1
-  Coordinates target{};  // where it ends; kDwell, kEnd and kOutput: where the one before ended
-  double feed = 0;       // mm/s along the path; 0 for kTraverse and where `seconds` counts
-  double seconds = 0;    // kDwell, or the duration of a motion under G93
+  Coordinates target{};  // where it ends, kProbe: at the latest; kDwell, kEnd and kOutput: where the one before ended
+  // Axes whose target depends on a probe that has not run, bit n: axis n. It is what it would be if the probe tripped
+  // at its target.
+  std::uint8_t later = 0;
+  double feed = 0;     // mm/s along the path; 0 for kTraverse and where `seconds` counts
+  double seconds = 0;  // kDwell, or the duration of a motion under G93
   PathControl path_control = PathControl::kContinuous;
   double tolerance = 0;    // mm, G64 P: how far the path may be left in corners
   bool clockwise = false;  // the rest: kArc; seen with the plane's first axis to the right and the second up
@@ -38,6 +41,8 @@ struct Motion {
   std::uint32_t turns = 0;  // full turns beyond the first way to the end; axes outside the plane move evenly: a helix
   std::uint16_t set = 0;    // kOutput: outputs that are switched on, before the motion behind it; bit n: output n
   std::uint16_t clear = 0;  // and off
+  bool probe_away = false;  // kProbe: until the probe is free, else until it is touched
+  bool probe_must_trip = false;  // a way to the target without that is an error
 };
 
 }  // namespace trammel::gcode

@@ -5,6 +5,7 @@
 //   - G4 P is in seconds; a line with '/' is skipped (ReaderOptions);
 //   - M2, M30 or a '%' that does not open the program end it. What follows M2 and M30 is not read; beside a '%' and
 //     behind the last one only blanks and comments may stand;
+//   - lines of slicers for hardware that the card does not have are left out and told (ReaderOptions::left_out);
 //   - M3 to M5 and M7 to M9 switch the outputs that the machine file names for them, before the line's motion, and M2
 //     and M30 switch all of these off; other ends of the program leave them;
 //   - a lower-case e right behind a number is taken for an exponent, which G-code has not, and refused;
@@ -16,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "trammel/gcode/error.hpp"
 #include "trammel/gcode/line_source.hpp"
@@ -28,6 +30,10 @@ namespace trammel::gcode {
 struct ReaderOptions {
   bool block_delete = true;  // lines with '/' are skipped; else they are lines like any other
   double feed_scale = 1;     // on every programmed feed, > 0; no motion's path depends on it
+  // M words, in tenths (M862.3 is 8623), whose lines are left out beside those that always are.
+  std::vector<int> left_out;
+  // Numbered parameters before the first line: #1 to #5000, offsets and homes as LinuxCNC numbers them.
+  std::map<int, double> parameters;
 };
 
 // Not thread-safe; allocates nothing after its first lines.
@@ -54,6 +60,18 @@ class Reader {
 
   // Words without effect yet and how often, so far, such as {"M3", 2}.
   const std::map<std::string, std::size_t>& accepted() const;
+  // After a motion kProbe next() gives false, without an error, until one of the next two tells where it ended.
+  bool awaits_probe() const;
+  // Machine coordinates: where the probe's input changed, and where the machine stands. `tripped`: it did change.
+  void probed(const Coordinates& edge, const Coordinates& rest, bool tripped);
+  // For a check of the program before it runs: at the motion's target, but not known yet. What depends on it can only
+  // be checked when it is reached (Motion::later).
+  void assume_probed();
+  // Lines so far that depend on assumed probes.
+  std::size_t lines_on_probes() const;
+  // Parameters, offsets and homes by number, those that are not 0.
+  std::map<int, double> parameters() const;
+
   // For messages.
   const std::string& file() const;
 
@@ -61,5 +79,8 @@ class Reader {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// Every word that the reader understands, as "G38.2", "X" or "M104".
+std::vector<std::string> known_words();
 
 }  // namespace trammel::gcode

@@ -12,11 +12,13 @@
 #include <string_view>
 #include <vector>
 
+#include "trammel/card_map.hpp"
+
 namespace trammel::machine {
 
 // The order of the axes on the card; a machine has a subset of 1 to 8.
 inline constexpr std::string_view kAxisLetters = "XYZABCUVWE";
-inline constexpr std::size_t kCoordinateSystems = 6;  // G54 .. G59
+inline constexpr std::size_t kCoordinateSystems = 9;  // G54 .. G59.3
 
 // Of the card, Hz.
 inline constexpr std::uint32_t kSlowestClock = 1000;
@@ -47,7 +49,8 @@ struct MachineAxis {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   double home = 0;                                   // machine coordinate that G28 goes to
-  std::array<double, kCoordinateSystems> offsets{};  // of G54 .. G59, machine coordinates
+  double second_home = 0;                            // and G30
+  std::array<double, kCoordinateSystems> offsets{};  // of G54 .. G59.3, machine coordinates
 };
 
 // How the host plans; the table [motion], each entry of which may be left out.
@@ -73,12 +76,30 @@ struct MachineOutputs {
   std::uint16_t all() const { return spindle() | coolant(); }
 };
 
+// How long a tool is; the table [tools.<number>].
+struct Tool {
+  unsigned number = 0;                               // 1 .. kLargestTool
+  std::array<double, card_map::kMaxAxes> offsets{};  // mm, degrees for A, B and C, by axis of the machine
+};
+inline constexpr unsigned kLargestTool = 999'999;
+
+inline constexpr unsigned kMostInputs = 16;
+// The card's input that a probe is at; the table [probe].
+struct Probe {
+  std::optional<unsigned> input;
+  bool touched_level = true;  // of the input, when it touches
+};
+
 struct Machine {
   std::uint32_t clock_hz = 0;     // kSlowestClock .. kFastestClock
   std::vector<MachineAxis> axes;  // in the card's order
   MotionSettings motion;
   MachineOutputs outputs;
+  std::vector<Tool> tools;
+  Probe probe;
 
+  // Nothing where the machine file has no such tool.
+  const Tool* tool(unsigned number) const;
   // Index of the axis on the card; `letter` in upper case.
   std::optional<std::size_t> axis(char letter) const;
   // The axes that have a second motor, by index. On the card these motors follow the axes, in this order.

@@ -55,7 +55,8 @@ class MotionClock {
     double ticks_after(std::uint64_t clocks) const;
     // The clocks after which that first reaches a tick.
     std::uint64_t clocks_to(double tick) const;
-    MotionSegment at(std::uint64_t clocks) const;
+    // After so many of the `all` clocks that it lasts.
+    MotionSegment at(std::uint64_t clocks, std::uint64_t all) const;
 
    private:
     double rate_at(double update) const;

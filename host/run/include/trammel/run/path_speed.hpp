@@ -1,7 +1,8 @@
 // The speed along the path over time, from the intervals between the steps of each axis. A step's way is spread from
 // half of the interval before it to half of the one after it, so that a constant speed comes out constant; where one of
 // the two is more than four times the other (the axis stood still), as far as the shorter one. The time is divided into
-// bins of equal width, which doubles when the run outgrows them. Not thread-safe.
+// bins of equal width, which doubles when the run outgrows them; the axes are put together in each, so a sample, which
+// is the mean of kFine bins, is right where the direction turns within it. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -19,12 +20,13 @@ class PathSpeed {
 
   struct Sample {
     double seconds;
-    double speed;  // units/s, the bin's mean
+    double speed;  // units/s, the mean
   };
   std::vector<Sample> samples() const;
 
  private:
-  static constexpr std::size_t kBins = 1024;
+  static constexpr std::size_t kFine = 64;
+  static constexpr std::size_t kBins = 1024 * kFine;
   static constexpr std::size_t kAxes = 3;
 
   // A step that waits for the interval after it.

@@ -1,0 +1,38 @@
+// --card: a card outside this process, for the subcommands that can do with one.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "command_line.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/transport/card_url.hpp"
+#include "trammel/transport/connection.hpp"
+
+namespace trammel::app {
+
+struct CardChoice {
+  std::optional<std::string> text;
+
+  void add_to(CLI::App& command);
+  // None for a simulated card of this process. Throws UsageError for what is no card's URL. A token that the URL does
+  // not have is taken from TRAMMEL_TOKEN.
+  std::optional<transport::CardUrl> url() const;
+};
+
+enum class Purpose { kRead, kMove };
+
+// Opens the card and lets `use` work with it. What keeps it from being opened, or from being moved by this user, is a
+// UsageError.
+void with_card(const transport::CardUrl& url, Purpose purpose,
+               const std::function<void(driver::Card&, transport::Connection&)>& use);
+
+// Makes it ready to be moved by this program, with a note where something of before is dropped; a card that moves is a
+// UsageError.
+void take_over(driver::Card& card);
+
+// Refuses options of the simulated card, by its URL's or its own.
+void refuse_with_card(const CardChoice& card, const char* option, bool given);
+
+}  // namespace trammel::app

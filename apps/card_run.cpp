@@ -1,0 +1,128 @@
+#include "card_run.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "card_choice.hpp"
+#include "errors.hpp"
+#include "progress_bar.hpp"
+#include "run_report.hpp"
+#include "terminal.hpp"
+#include "trammel/card_map.hpp"
+
+namespace trammel::app {
+namespace {
+
+// Shows how far the run is, and lets it go on after a connection that was lost and made anew.
+class Watch final : public run::Observer {
+ public:
+  Watch(driver::Card& card, const transport::Connection& connection, const run::Plan& plan, bool progress)
+      : card_(card), connection_(connection), plan_(plan), bar_(progress) {}
+  void sent() override { progress({}); }
+  void progress(const run::Progress& /*progress*/) override {
+    if (connection_.reconnections() != reconnections_) {
+      reconnections_ = connection_.reconnections();
+      tell("note", "the connection was lost and is there again; the motion goes on");
+      card_.request_hold(false);
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    bar_.show(plan_.seconds > 0 ? std::min(1.0, seconds / plan_.seconds) : 0.0,
+              fmt::format("{:.1f} s, planned {:.1f} s", seconds, plan_.seconds));
+  }
+
+ private:
+  driver::Card& card_;
+  const transport::Connection& connection_;
+  const run::Plan& plan_;
+  ProgressBar bar_;
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+  std::uint64_t reconnections_ = 0;
+};
+
+void set_overrides(driver::Card& card, const RunOptions& options) {
+  card.set_override(driver::PieceClass::kFeed, options.operation.percent, options.most_percent);
+  if (!card_map::has_engine(card.identification().engines, card_map::engine::kClasses)) return;
+  card.set_override(driver::PieceClass::kRapid, options.operation.rapid_percent, options.most_percent);
+  card.set_override(driver::PieceClass::kFixed, 100, options.most_percent);
+}
+
+std::string link_text(const CardRunResult& result) {
+  if (result.link.requests == 0) return {};
+  return fmt::format("  link: {} requests, {} sent again, {} connections made anew\n", result.link.requests,
+                     result.link.sent_again, result.reconnections);
+}
+
+}  // namespace
+
+CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine& machine, driver::Card& card,
+                          transport::Connection& connection, const RunOptions& options) {
+  const driver::Identification& id = card.identification();
+  if (machine.motors() > id.axes) {
+    throw UsageError(fmt::format("--card: it has {} axes, the machine {} motors", id.axes, machine.motors()));
+  }
+  CardRunResult result;
+  for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
+  run::Runner runner(lines, machine, planner::limits_of(id), options.settings);
+  const run::Plan plan = options.stream ? run::Plan{} : runner.plan();
+  if (options.planned) options.planned(plan);
+
+  take_over(card);
+  set_overrides(card, options);
+  const driver::Snapshot before = card.snapshot();
+  Watch watch(card, connection, plan, options.progress);
+  runner.add(watch);
+  result.outcome = options.stream ? runner.stream(card) : runner.run(card);
+  result.plan = runner.last_plan();
+  result.clock_hz = id.clock_hz;
+  result.seconds = static_cast<double>(card.snapshot().time - before.time) / id.clock_hz;
+  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+    result.final_millimetres.push_back(static_cast<double>(result.outcome.final_position[a]) /
+                                       machine.axes[a].steps_per_mm);
+  }
+  result.profile = profile_of(machine, options.settings);
+  if (connection.frames() != nullptr) result.link = connection.frames()->counts();
+  result.reconnections = connection.reconnections();
+  return result;
+}
+
+std::string summary(const CardRunResult& result) {
+  std::string text =
+      fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz on {}\n", result.plan.file,
+                  result.plan.segments, result.outcome.commands, result.seconds, result.clock_hz * 1e-6, result.card);
+  for (std::size_t a = 0; a < result.axes.size(); ++a) {
+    text += fmt::format("  {}: ends at pulse {} ({:.4f} mm)\n", result.axes[a], result.outcome.final_position[a],
+                        result.final_millimetres[a]);
+  }
+  text += summary(result.profile);
+  if (result.outcome.under_runs) text += fmt::format("  under-runs since reset: {}\n", *result.outcome.under_runs);
+  text += link_text(result) + blends_text(result.plan.blends);
+  return text + accepted_words(result.plan.accepted);
+}
+
+std::string json_text(const CardRunResult& result) {
+  nlohmann::ordered_json json;
+  json["program"] = result.plan.file;
+  json["card"] = result.card;
+  json["axes"] = result.axes;
+  json["final_position"] = result.outcome.final_position;
+  json["seconds"] = result.seconds;
+  json["clock_hz"] = result.clock_hz;
+  json["segments"] = result.plan.segments;
+  json["commands"] = result.outcome.commands;
+  json["planned_seconds"] = result.plan.seconds;
+  json["profile"] = name_of(result.profile);
+  json["motion"] = motion_json(result.plan.motion);
+  json["blends"] = blends_json(result.plan.blends);
+  json["under_runs"] = nullptr;
+  if (result.outcome.under_runs) json["under_runs"] = *result.outcome.under_runs;
+  json["feeds_not_reached"] = feeds_json(result.plan.feeds_not_reached);
+  json["link"] = {{"requests", result.link.requests},
+                  {"sent_again", result.link.sent_again},
+                  {"reconnections", result.reconnections}};
+  json["accepted_words"] = result.plan.accepted;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,32 @@
+// Which machine: the file of --machine, else the user's own, else the built-in one; and changes by --set.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line.hpp"
+#include "trammel/machine/machine.hpp"
+
+namespace trammel::app {
+
+class Outputs;
+
+struct MachineChoice {
+  std::optional<std::string> file;     // of --machine
+  std::vector<std::string> overrides;  // of --set
+
+  void add_to(CLI::App& command);
+
+  // The file to read; none for the built-in machine.
+  std::optional<std::string> source() const;
+  // Throws machine::MachineError.
+  machine::Machine load() const;
+  // For the summary: where the machine is from.
+  std::string line() const;
+};
+
+// machine.toml in the folder trammel of $XDG_CONFIG_HOME, by default ~/.config; none where there is no such file.
+std::optional<std::string> user_machine_file();
+
+}  // namespace trammel::app

@@ -1,0 +1,45 @@
+#include "terminal.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string_view>
+
+namespace trammel::app {
+namespace {
+
+// Bold, in the colour's number of ECMA-48's SGR.
+int number_of(Colour colour) {
+  switch (colour) {
+    case Colour::kRed:
+      return 31;
+    case Colour::kGreen:
+      return 32;
+    case Colour::kYellow:
+      return 33;
+    case Colour::kCyan:
+      return 36;
+  }
+  return 39;
+}
+
+}  // namespace
+
+bool has_escapes(int descriptor) {
+  const char* const kind = std::getenv("TERM");
+  return isatty(descriptor) != 0 && kind != nullptr && std::string_view(kind) != "dumb";
+}
+
+std::string coloured(int descriptor, Colour colour, const std::string& text) {
+  const char* const without = std::getenv("NO_COLOR");
+  if (!has_escapes(descriptor) || (without != nullptr && *without != '\0')) return text;
+  return fmt::format("\033[1;{}m{}\033[0m", number_of(colour), text);
+}
+
+void tell(const std::string& kind, const std::string& text) {
+  const Colour colour = kind == "error" ? Colour::kRed : kind == "warning" ? Colour::kYellow : Colour::kCyan;
+  fmt::print(stderr, "trammel: {}: {}\n", coloured(STDERR_FILENO, colour, kind), text);
+}
+
+}  // namespace trammel::app

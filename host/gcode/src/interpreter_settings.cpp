@@ -1,0 +1,90 @@
+// What a line sets: homes, coordinate systems, the origin.
+#include <fmt/format.h>
+
+#include "codes.hpp"
+#include "interpreter.hpp"
+#include "left_out.hpp"
+
+namespace trammel::gcode {
+
+// Through the programmed point to the home position of the axes named; without axes: of all but the extruder, whose
+// position has no home.
+bool Interpreter::go_home(const Context& context, bool second) {
+  const bool all = !context.words.has_axis_words();
+  if (!all) {
+    Place point;
+    if (!target_of(context, point)) {
+      return false;
+    }
+    Motion& motion = context.motions.add(MotionKind::kTraverse, line_);
+    motion.target = point.at;
+    motion.later = static_cast<std::uint8_t>(point.later);
+    here_ = point;
+  }
+  Place target = here_;
+  const Place& home = offsets_.home(second);
+  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+    if (all ? machine_.axes[axis].letter != 'E' : context.words.has_axis(axis)) {
+      target.set(axis, home.at[axis], home.is_later(axis));
+    }
+  }
+  Motion& motion = context.motions.add(MotionKind::kTraverse, line_);
+  motion.target = target.at;
+  motion.later = static_cast<std::uint8_t>(target.later);
+  here_ = target;
+  return true;
+}
+
+// G10 L2 and L20.
+bool Interpreter::set_system(const Context& context) {
+  const auto& [words, motions, problem] = context;
+  const auto what = words.letter('L');
+  if (!what || (*what != 2 && *what != 20)) {
+    return problem.set(
+        ErrorCode::kUnsupportedWord,
+        what ? fmt::format("G10 L{:.10g}: only L2 and L20 are supported{}", *what,
+                           *what == 1 || *what == 10 || *what == 11 ? "; tool lengths come from the machine file" : "")
+             : std::string("G10 needs L2 or L20"));
+  }
+  if (words.letter('R')) {
+    return problem.set(ErrorCode::kUnsupportedWord, "G10 R: coordinate systems cannot be turned");
+  }
+  const auto number = words.letter('P');
+  if (!number) {
+    return problem.set(ErrorCode::kMissingWord,
+                       "G10 needs P, the coordinate system: 1 (G54) to 9 (G59.3), 0: this one");
+  }
+  if (words.later('P') || *number < 0 || *number > static_cast<double>(machine::kCoordinateSystems) ||
+      *number != static_cast<double>(static_cast<int>(*number))) {
+    return problem.set(ErrorCode::kCoordinateSystem,
+                       fmt::format("G10 P{:.10g}: coordinate systems are 1 (G54) to 9 (G59.3), 0: this one", *number));
+  }
+  const std::size_t system = *number == 0 ? offsets_.system() : static_cast<std::size_t>(*number) - 1;
+  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+    if (!words.has_axis(axis)) continue;
+    const Value value{to_mm(axis, words.axis(axis)), words.axis_later(axis)};
+    if (*what == 2) {
+      offsets_.set_system(system, axis, value);
+    } else {
+      offsets_.set_system_at(system, axis, here_, value);
+    }
+  }
+  return true;
+}
+
+// G92: from now on the point where the machine stands has the coordinates given.
+bool Interpreter::set_origin(const Context& context) {
+  const WordSet& words = context.words;
+  if (!words.has_axis_words()) {
+    return context.problem.set(ErrorCode::kMissingWord, "G92 without an axis word");
+  }
+  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+    if (words.has_axis(axis)) {
+      offsets_.shift_at(axis, here_, {to_mm(axis, words.axis(axis)), words.axis_later(axis)});
+    }
+  }
+  offsets_.shift_on();
+  return true;
+}
+
+}  // namespace trammel::gcode

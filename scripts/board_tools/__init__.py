@@ -1,0 +1,1 @@
+"""Boards: their descriptions, what is written from them, and their bitstreams (scripts/boards)."""

@@ -1,0 +1,167 @@
+#include "client.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "trammel/driver/card_timing.hpp"
+
+namespace trammel::serve {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr std::uint8_t kMeasured = 0x55;  // with which a serial line begins
+constexpr char kHello[] = "trammel 1";
+constexpr std::uint64_t kMostRubbish = 64 * 1024;  // bytes without a frame among them
+constexpr char kWait[] = "wait ";
+constexpr std::size_t kLongestText = 100;
+
+frames::Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+// The same time for every token.
+bool same(const std::string& a, const std::string& b) {
+  unsigned difference = a.size() == b.size() ? 0 : 1;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference |=
+        static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(i < b.size() ? b[i] : 0));
+  }
+  return difference == 0;
+}
+
+}  // namespace
+
+CardServer::Client::Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine,
+                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left)
+    : stream_(std::move(stream)),
+      engine_(engine),
+      endpoint_(endpoint),
+      settings_(settings),
+      left_(std::move(left)),
+      clocks_of_byte_(settings.baud == 0 ? 0 : 10.0 * settings.clock_hz / settings.baud),
+      heard_(steady_clock::now()) {}
+
+void CardServer::Client::serve(std::chrono::nanoseconds longest) {
+  read(longest);
+  while (!came_.empty() && take_byte(came_.front())) came_.pop_front();
+  send_due();
+}
+
+// All that has come, so that an end behind it is seen at once: what was not at the card by then does not run.
+void CardServer::Client::read(std::chrono::nanoseconds longest) {
+  std::uint8_t bytes[4096];
+  while (const std::size_t count = stream_->read(bytes, sizeof(bytes), longest)) {
+    came_.insert(came_.end(), bytes, bytes + count);
+    heard_ = steady_clock::now();
+    longest = std::chrono::nanoseconds(0);
+    if (came_.size() > kMostRubbish) throw Unwanted("more bytes than the line carries: a request waits for its reply");
+  }
+  check_silence();
+}
+
+void CardServer::Client::check_silence() const {
+  const auto most = begun_ ? settings_.silence : settings_.hello;
+  if (most.count() == 0 || !answers_.empty() || !came_.empty() || steady_clock::now() - heard_ < most) return;
+  throw Unwanted(fmt::format("nothing came for {:.1f} s", std::chrono::duration<double>(most).count()));
+}
+
+// Where a frame may begin, a hello may as well, and a wait of who has said one: no frame has their first letters. They
+// take no time on the line. False: the byte is not due yet.
+bool CardServer::Client::take_byte(std::uint8_t byte) {
+  if (text_.empty()) {
+    const bool line_begins = byte == kMeasured;
+    const bool hello = byte == kHello[0];
+    const bool wait = hello_ && byte == kWait[0];
+    if (between_frames_ && (line_begins || hello)) begin_anew();
+    if (!spoken_ && !line_begins && !hello && byte != frames::kEnd) throw Unwanted("neither a hello nor a frame");
+    spoken_ = true;
+    if (!between_frames_ || !(hello || wait)) return deliver(byte);
+  }
+  const bool hello = text_.empty() ? byte == kHello[0] : text_[0] == kHello[0];
+  if (byte == (hello ? '\n' : frames::kEnd)) {
+    const std::string text = std::exchange(text_, {});
+    hello ? take_hello(text) : take_wait(text);
+    return true;
+  }
+  text_ += static_cast<char>(byte);
+  if (text_.size() > kLongestText) throw Unwanted(hello ? "no hello of this version" : "a wait that is none");
+  return true;
+}
+
+// On a terminal a client may follow another one unseen.
+void CardServer::Client::begin_anew() {
+  if (may_move_) left_();
+  hello_ = false;
+  may_move_ = false;
+}
+
+void CardServer::Client::take_hello(const std::string& line) {
+  const bool plain = line == kHello;
+  const bool with_token = line.rfind(std::string(kHello) + " ", 0) == 0;
+  if (!plain && !with_token) throw Unwanted("no hello of this version");
+  if (with_token && !same(line.substr(sizeof(kHello)), settings_.token)) {
+    throw Unwanted("wrong token: take the one that the server has printed");
+  }
+  begun_ = true;
+  hello_ = true;
+  may_move_ = with_token;
+  answer(bytes_of(may_move_ ? "trammel 1 motion\n" : "trammel 1 reading\n"), engine_.cycles());
+}
+
+bool CardServer::Client::deliver(std::uint8_t byte) {
+  const auto now = static_cast<double>(engine_.cycles());
+  if (line_in_ > now) return false;
+  // Within the clock in which the line became free the next byte follows without a gap.
+  if (now - line_in_ >= 1) line_in_ = now;
+  line_in_ += clocks_of_byte_;
+  between_frames_ = byte == frames::kEnd;
+  frames::Bytes reply;
+  endpoint_.take(byte, reply);
+  if (++since_good_ > kMostRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMostRubbish));
+  if (reply.empty()) return true;
+  since_good_ = 0;
+  begun_ = true;
+  ++requests_;
+  line_out_ = std::max(line_out_, std::max(line_in_, static_cast<double>(engine_.cycles()))) +
+              clocks_of_byte_ * static_cast<double>(reply.size());
+  answer(std::move(reply), static_cast<std::uint64_t>(std::ceil(line_out_)));
+  return true;
+}
+
+void CardServer::Client::take_wait(const std::string& text) {
+  constexpr std::int64_t kMost = 1'000'000'000;  // ns
+  const std::string number = text.rfind(kWait, 0) == 0 ? text.substr(sizeof(kWait) - 1) : "";
+  std::int64_t time = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), time);
+  if (number.empty() || error != std::errc{} || end != number.data() + number.size() || time < 0 || time > kMost) {
+    throw Unwanted("a wait that is none");
+  }
+  frames::Bytes waited = bytes_of("waited");
+  waited.push_back(frames::kEnd);
+  answer(std::move(waited),
+         engine_.cycles() + driver::clocks_of(std::chrono::nanoseconds(time), settings_.clock_hz, "wait"));
+}
+
+void CardServer::Client::send_due() {
+  while (!answers_.empty() && answers_.front().cycle <= engine_.cycles()) {
+    stream_->write(answers_.front().bytes.data(), answers_.front().bytes.size());
+    answers_.pop_front();
+  }
+}
+
+std::optional<std::uint64_t> CardServer::Client::clocks_to_next() const {
+  const std::uint64_t now = engine_.cycles();
+  std::optional<std::uint64_t> next;
+  const auto look = [&](std::uint64_t cycle) {
+    const std::uint64_t clocks = cycle > now ? cycle - now : 0;
+    next = std::min(next.value_or(clocks), clocks);
+  };
+  if (!answers_.empty()) look(answers_.front().cycle);
+  if (!came_.empty()) look(static_cast<std::uint64_t>(std::ceil(line_in_)));
+  return next;
+}
+
+}  // namespace trammel::serve

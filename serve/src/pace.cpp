@@ -1,0 +1,45 @@
+#include "pace.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace trammel::serve {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::duration;
+
+constexpr std::uint64_t kPiece = 5000;  // clocks; the Verilated card takes some ms for them
+constexpr double kMostBehind = 0.5;     // seconds
+constexpr auto kTellAgain = 10s;
+
+}  // namespace
+
+void CardServer::Pace::anchor() {
+  anchor_time_ = Clock::now();
+  anchor_cycle_ = engine_.cycles();
+}
+
+// A card that is far behind is not made to run faster than life afterwards: what was lost stays lost, and is told.
+std::uint64_t CardServer::Pace::due(std::uint64_t wanted) {
+  if (!settings_.real_time) return wanted;
+  const double life = duration<double>(Clock::now() - anchor_time_).count();
+  const double card = static_cast<double>(engine_.cycles() - anchor_cycle_) / settings_.clock_hz;
+  if (life - card > kMostBehind) {
+    if (told_ == Clock::time_point{} || Clock::now() - told_ > kTellAgain) {
+      told_ = Clock::now();
+      settings_.note(fmt::format("not in real time: the card made {:.2f} s of the last {:.2f} s", card, life));
+    }
+    anchor();
+    return wanted;
+  }
+  const double clocks = (life - card) * settings_.clock_hz;
+  return clocks <= 0 ? 0 : std::min(wanted, static_cast<std::uint64_t>(clocks));
+}
+
+void CardServer::Pace::run(std::uint64_t clocks) {
+  if (clocks != 0) engine_.wait(std::min(clocks, kPiece));
+}
+
+}  // namespace trammel::serve

@@ -1,0 +1,47 @@
+;FLAVOR:Marlin
+;TIME:14
+;Filament used: 0.0033255m
+;Layer height: 0.2
+;MINX:80
+;Generated with Cura_SteamEngine 5.2.1
+M140 S60
+M105
+M190 S60
+M104 S200
+M105
+M109 S200
+M82 ;absolute extrusion mode
+G28 ;Home
+G1 Z15.0 F6000 ;Move the platform down 15mm
+;Prime the extruder
+G92 E0
+G1 F200 E3
+G92 E0
+G92 E0
+G1 F1500 E-6.5
+;LAYER_COUNT:1
+;LAYER:0
+M107
+M204 S5000
+;MESH:cube.stl
+G0 F3600 X80 Y80 Z0.3
+G1 F1500 E0
+;TYPE:WALL-OUTER
+G1 F1200 X100 Y80 E0.6651
+G1 X100 Y100 E1.3302
+G1 X80 Y100 E1.9953
+G1 X80 Y80 E2.6604
+M106 S85
+;TIME_ELAPSED:14
+G1 F1500 E-3.8396
+M140 S0
+M107
+M104 S0
+G91 ;relative
+G1 Z10
+G90
+G28 X0 Y0
+M84
+M82 ;absolute extrusion mode
+M104 S0
+;End of Gcode

@@ -1,0 +1,245 @@
+// What the server makes of clients, and what clients say of servers that refuse them. One thread; no sockets.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "memory_streams.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/frame_bus.hpp"
+#include "trammel/driver/one_shot.hpp"
+#include "trammel/driver/stream.hpp"
+#include "trammel/serve/card_server.hpp"
+#include "trammel/sim/engine.hpp"
+#include "trammel/transport/links.hpp"
+
+namespace trammel::serve {
+namespace {
+
+using namespace std::chrono_literals;
+using test::ClientEnd;
+using ::testing::HasSubstr;
+using transport::StreamLink;
+namespace reg = card_map::reg;
+
+constexpr std::uint32_t kClock = 1'000'000;
+
+class ClientsTest : public ::testing::Test {
+ protected:
+  static Settings settings(std::uint32_t baud = 0) {
+    Settings settings;
+    settings.token = "secret";
+    settings.clock_hz = kClock;
+    settings.real_time = false;
+    settings.baud = baud;
+    return settings;
+  }
+  void serve(Settings settings) {
+    settings.note = [this](const std::string& text) { notes_ += text + "\n"; };
+    server_ = std::make_unique<CardServer>(*engine_, listener_, settings);
+  }
+  StreamLink::Open opener() {
+    return [this] { return std::make_unique<ClientEnd>(*server_, listener_); };
+  }
+  // What a client reads that has sent this.
+  std::string answer_to(const std::string& text) {
+    ClientEnd client(*server_, listener_);
+    client.write(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    for (int i = 0; i < 5; ++i) server_->turn();
+    std::array<std::uint8_t, 256> bytes{};
+    const std::size_t count = client.read(bytes.data(), bytes.size(), 0ns);
+    return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count)};
+  }
+  std::string link_error(const std::string& token) {
+    try {
+      StreamLink link(opener(), StreamLink::Hello{token});
+    } catch (const driver::LinkError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
+  test::MemoryListener listener_;
+  std::unique_ptr<CardServer> server_;
+  std::string notes_;
+};
+
+TEST_F(ClientsTest, Hellos) {
+  serve(settings());
+  EXPECT_EQ(answer_to("trammel 1\n"), "trammel 1 reading\n");
+  EXPECT_EQ(answer_to("trammel 1 secret\n"), "trammel 1 motion\n");
+  EXPECT_EQ(answer_to("\xC0trammel 1 secret\n"), "trammel 1 motion\n");
+  EXPECT_EQ(answer_to("trammel 1 Secret\n"),
+            "trammel 1 refused: wrong token: take the one that the server has printed\n");
+  EXPECT_EQ(answer_to("trammel 1 secret2\n"), answer_to("trammel 1 \n"));
+  EXPECT_EQ(answer_to("trammel 2 secret\n"), "trammel 1 refused: no hello of this version\n");
+  EXPECT_EQ(answer_to("t" + std::string(500, 'x')), "trammel 1 refused: no hello of this version\n");
+  EXPECT_EQ(answer_to("GET / HTTP/1.1\r\n\r\n"), "trammel 1 refused: neither a hello nor a frame\n");
+  EXPECT_EQ(answer_to("trammel 1\nwait 10 minutes\xC0"), "trammel 1 refused: a wait that is none\n");
+  EXPECT_EQ(answer_to("trammel 1\nwait 1000\xC0"), "trammel 1 reading\nwaited\xC0");
+  EXPECT_EQ(engine_->read(reg::kHold), 1U) << "those with the token have gone";
+  EXPECT_EQ(server_->counts().holds, 2U);
+  EXPECT_EQ(server_->counts().refused, 7U);
+}
+
+TEST_F(ClientsTest, OneAtATime) {
+  serve(settings());
+  const StreamLink first(opener(), StreamLink::Hello{"secret"});
+  EXPECT_THAT(link_error("secret"), HasSubstr("another client is connected"));
+  EXPECT_TRUE(server_->has_client());
+  EXPECT_EQ(engine_->read(reg::kHold), 0U) << "the first one is still there";
+}
+
+TEST_F(ClientsTest, WithoutTheTokenNothingIsWrittenThatMoves) {
+  serve(settings());
+  for (const bool hello : {true, false}) {
+    StreamLink link(opener(), hello ? std::optional(StreamLink::Hello{}) : std::nullopt);
+    driver::FrameBus bus(link);
+    driver::Card card = driver::Card::open(bus);
+    EXPECT_EQ(link.may_move(), !hello) << "who says no hello is not told";
+    EXPECT_EQ(card.snapshot().position[0], 0);
+    EXPECT_FALSE(card.refusal());
+    card.clear_refusal();
+    EXPECT_THROW(driver::Stream{card}, driver::RefusedError);
+    EXPECT_THROW(card.set_hold(true), driver::RefusedError);
+    EXPECT_THROW(card.abort(), driver::RefusedError);
+    EXPECT_THROW(card.configure_axis(0, {}), driver::RefusedError);
+    EXPECT_THROW(driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms)), driver::RefusedError);
+    // Every register, whatever is written.
+    for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4) {
+      if (address == reg::kRefusal) continue;
+      const bool control = address == reg::kControl;
+      driver::Access access = driver::write_of(address, control ? card_map::field::kControlAbort : 1);
+      ASSERT_EQ(bus.transfer(&access, 1), 0U) << address;
+    }
+  }
+  engine_->wait(kClock);
+  EXPECT_EQ(engine_->positions()[0], 0);
+  EXPECT_EQ(engine_->read(reg::kHold), 0U) << "who cannot move leaves nothing behind";
+  EXPECT_EQ(engine_->read(reg::kSlew), 0xFFFFFFFU);
+}
+
+TEST_F(ClientsTest, SilenceAndRubbish) {
+  Settings impatient = settings();
+  impatient.hello = 20ms;
+  impatient.silence = 20ms;
+  serve(impatient);
+  const auto until_gone = [&] {
+    const auto begun = std::chrono::steady_clock::now();
+    while (server_->has_client() && std::chrono::steady_clock::now() - begun < 10s) server_->turn();
+    EXPECT_FALSE(server_->has_client());
+  };
+  {
+    const ClientEnd silent(*server_, listener_);
+    until_gone();
+    EXPECT_THAT(notes_, HasSubstr("nothing came for 0.0 s"));
+  }
+  {
+    StreamLink link(opener(), StreamLink::Hello{"secret"});
+    driver::FrameBus bus(link);
+    until_gone();
+    EXPECT_EQ(engine_->read(reg::kHold), 1U) << "who falls silent is gone";
+    driver::Access magic = driver::read_of(reg::kMagic);
+    EXPECT_EQ(bus.transfer(&magic, 1), 1U) << "it comes back by itself";
+    EXPECT_EQ(link.reconnections(), 1U);
+  }
+  ClientEnd loud(*server_, listener_);
+  const frames::Bytes rubbish(10'000, 'x');
+  loud.write(&frames::kEnd, 1);
+  for (int i = 0; i < 7 && server_->has_client(); ++i) {
+    loud.write(rubbish.data(), rubbish.size());
+    server_->turn();
+  }
+  EXPECT_THAT(notes_, HasSubstr("no frame in 65536 bytes"));
+}
+
+// A connection that is cut on the way is made anew; the card was made to hold, and every access was made once.
+TEST_F(ClientsTest, ACutConnectionIsMadeAnewAndNothingRunsTwice) {
+  serve(settings());
+  ClientEnd* end = nullptr;
+  StreamLink link(
+      [&] {
+        auto stream = std::make_unique<ClientEnd>(*server_, listener_);
+        end = stream.get();
+        return stream;
+      },
+      StreamLink::Hello{"secret"});
+  driver::FrameBus bus(link);
+  driver::Card card = driver::Card::open(bus);
+  driver::StreamOptions options;
+  int looks = 0;
+  options.progress = [&](const driver::StreamProgress& progress) {
+    if (progress.status.held) card.request_hold(false);
+    if (++looks % 50 == 0) end->cut();
+  };
+  driver::Stream stream(card, options);
+  driver::LineCommand line;
+  line.ticks = 2000;
+  line.mask = 1;
+  line.increment[0] = std::int64_t{100} * (std::int64_t{1} << 40) / 2000 + 1;
+  driver::FeedCommand feed;
+  feed.ticks = 2000;
+  feed.rate = std::uint64_t{1} << 60;
+  feed.floor = 1;
+  for (int i = 0; i < 60; ++i) {
+    stream.put(line);
+    stream.put(feed);
+  }
+  stream.put(driver::EndCommand{});
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_EQ(engine_->positions()[0], 6000);
+  EXPECT_GE(link.reconnections(), 3U);
+  EXPECT_EQ(server_->counts().holds, link.reconnections());
+}
+
+// A terminal's client may follow another one before the server has seen that one go.
+TEST_F(ClientsTest, AnotherOneOnTheSameStreamHasItsOwnRights) {
+  serve(settings());
+  ClientEnd terminal(*server_, listener_);
+  const auto say = [&](const std::string& text) {
+    terminal.write(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    for (int i = 0; i < 5; ++i) server_->turn();
+    std::array<std::uint8_t, 256> bytes{};
+    const std::size_t count = terminal.read(bytes.data(), bytes.size(), 0ns);
+    return std::string(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  EXPECT_EQ(say("trammel 1 secret\n"), "trammel 1 motion\n");
+  EXPECT_EQ(say("half a frame\xC0trammel 1\n"), "trammel 1 reading\n");
+  EXPECT_EQ(engine_->read(reg::kHold), 1U);
+  engine_->write(reg::kHold, 0);
+  EXPECT_EQ(say("trammel 1 secret\n"), "trammel 1 motion\n");
+  // A serial line's beginning: a card's client without a hello.
+  say("U\xC0");
+  EXPECT_EQ(engine_->read(reg::kHold), 1U);
+  EXPECT_EQ(server_->counts().holds, 2U);
+}
+
+// 10 bits a byte in card time, there and back, and no more.
+TEST_F(ClientsTest, BaudIsKeptInCardTime) {
+  constexpr std::uint32_t kBaud = 115'200;
+  serve(settings(kBaud));
+  StreamLink link(opener(), StreamLink::Hello{"secret"});
+  driver::FrameBus bus(link);
+  std::vector<driver::Access> reads;
+  for (int i = 0; i < 10; ++i) reads.push_back(driver::read_of(reg::kMagic));
+  const std::uint64_t before = engine_->cycles();
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(bus.transfer(reads.data(), reads.size()), reads.size());
+  const auto clocks = static_cast<double>(engine_->cycles() - before);
+  // A request is 14 bytes and what is stuffed, its reply 33 and 40: state words that are C0 or DB are not there.
+  const double least = 100 * (14 + 28 + 4 + 1 + 40) * 10.0 * kClock / kBaud;
+  EXPECT_GE(clocks, least);
+  EXPECT_LE(clocks, least * 1.1);
+}
+
+TEST(Token, IsRandomAndFitsAUrl) {
+  EXPECT_NE(random_token(), random_token());
+  EXPECT_TRUE(is_token(random_token()));
+  EXPECT_EQ(random_token().size(), 32U);
+  EXPECT_FALSE(is_token(""));
+  EXPECT_FALSE(is_token("a b"));
+  EXPECT_FALSE(is_token("a&b"));
+  EXPECT_FALSE(is_token(std::string(65, 'a')));
+}
+
+}  // namespace
+}  // namespace trammel::serve

@@ -1,0 +1,111 @@
+// A board's top, or its card without the PLL, around a card that only shows its pins: when the reset ends, what the
+// pins show before, and that each signal comes to its pin.
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+constexpr std::uint32_t kAll = 0xF;  // four pins of a kind
+constexpr std::uint32_t kResetClocks = (1U << TRAMMEL_RESET_BITS) + 2;
+constexpr std::uint64_t kWho = std::uint64_t{TRAMMEL_BOARD_ID ^ 0x38U} << 32 | TRAMMEL_CLOCK_HZ;
+
+// A level a pin.
+struct Levels {
+  std::uint32_t step = TRAMMEL_STEP_IDLE;
+  std::uint32_t dir = TRAMMEL_DIR_IDLE;
+  std::uint32_t output = TRAMMEL_OUTPUT_IDLE;
+};
+
+// The board by its rules. Reset lasts from the moment in which the lock is lost to kResetClocks clocks after it is
+// back; the card's pins follow its inputs a clock after it, and the board's pins the card's another one later.
+class Board {
+ public:
+  void lose_lock() {
+    since_ = 0;
+    if (TRAMMEL_PINS_AT_ONCE) pins_ = Levels();
+  }
+  void clock(bool locked, std::uint32_t inputs, bool rx) {
+    const bool reset = since_ < kResetClocks;
+    pins_ = reset ? Levels() : card_;
+    card_ = reset ? Levels() : Levels{inputs, ~inputs & kAll, (rx ? kAll : 0U) ^ inputs};
+    told_ = reset ? kWho : told_ << 1 | std::uint64_t{rx};
+    if (locked) ++since_;
+  }
+  const Levels& pins() const { return pins_; }
+  bool tx() const { return (told_ >> 63) != 0; }
+
+ private:
+  std::uint64_t since_ = 0;  // clocks
+  Levels pins_;
+  Levels card_;
+  std::uint64_t told_ = 0;
+};
+
+class BoardUnderTest {
+ public:
+  explicit BoardUnderTest(std::uint64_t seed) : check_("board", seed), dice_(seed) {}
+
+  void clock() {
+    const auto inputs = static_cast<std::uint8_t>(dice_.below(kAll + 1));
+    const bool rx = dice_.chance(2);
+    set_lock();
+    dut_->input_i = inputs;
+    dut_->rx_i = rx;
+    dut_.clock();
+    board_.clock(locked_, inputs, rx);
+    check_.next_cycle();
+    compare();
+    check_.compare("tx_o", dut_->tx_o, board_.tx());
+#ifdef TRAMMEL_STANDS_HIGH
+    check_.compare("stands high", dut_->TRAMMEL_STANDS_HIGH, 1);
+#endif
+  }
+  const Checker& check() const { return check_; }
+
+ private:
+#ifdef TRAMMEL_LOCK_IS_AN_INPUT
+  // Lost now and then, between clocks; sometimes before the reset of the last time is over.
+  void set_lock() {
+    const bool before = locked_;
+    locked_ = locked_ ? !dice_.chance(dice_.chance(2) ? 3 * kResetClocks : kResetClocks) : dice_.chance(4);
+    dut_->locked_i = locked_;
+    dut_->eval();
+    if (!before || locked_) return;
+    check_.event("lock lost");
+    board_.lose_lock();
+    compare();
+  }
+#else
+  // The stand-in for the PLL has its lock after eight clocks.
+  void set_lock() { locked_ = check_.cycles() >= 8; }
+#endif
+  void compare() {
+    check_.compare("step_o", dut_->step_o, board_.pins().step);
+    check_.compare("dir_o", dut_->dir_o, board_.pins().dir);
+    check_.compare("output_o", dut_->output_o, board_.pins().output);
+  }
+
+  Simulated<Vdut> dut_;
+  Checker check_;
+  Dice dice_;
+  Board board_;
+  bool locked_ = false;
+};
+
+void random_pins() {
+  BoardUnderTest board(seed_from_environment(1));
+  const std::uint64_t clocks = scaled(20 * kResetClocks + 2000);
+  for (std::uint64_t i = 0; i < clocks; ++i) board.clock();
+  EXPECT_GE(board.check().comparisons(), 4 * clocks);
+}
+
+TEST(Board, ResetAndPinsAreThoseOfItsRules) { EXPECT_EQ(judge(random_pins), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

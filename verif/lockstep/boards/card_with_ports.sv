@@ -1,0 +1,76 @@
+// Stands for the card behind a board's pins: its pins are idle in reset and then follow inputs and serial line.
+`default_nettype none
+module card_with_ports #(
+    parameter int          Axes              = 4,
+    parameter int          GeometryDepth     = 4096,
+    parameter int          FeedDepth         = 2560,
+    parameter int          Accumulator       = 1,
+    parameter int          EightDirections   = 0,
+    parameter int          ArcGenerator      = 0,
+    parameter int          DirectMode        = 1,
+    parameter int          UnderrunHold      = 1,
+    parameter int          Classes           = 1,
+    parameter int          Watermarks        = 1,
+    parameter int          PathCommands      = 0,
+    parameter int          PositionStreaming = 0,
+    parameter int          Inputs            = 4,
+    parameter int          Outputs           = 4,
+    parameter logic [31:0] BuildId           = 0,
+    parameter int          BuildDirty        = 0,
+    parameter logic [31:0] BoardId           = 0,
+    parameter int          AxiLite           = 1,
+    parameter int          Uart              = 0
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [31:0] clock_hz_i,
+    input wire logic [2*Axes-1:0] idle_level_i,
+    input wire logic [Outputs-1:0] output_idle_i,
+    input wire logic awvalid_i,
+    output logic awready_o,
+    input wire logic [11:0] awaddr_i,
+    input wire logic wvalid_i,
+    output logic wready_o,
+    input wire logic [31:0] wdata_i,
+    input wire logic [3:0] wstrb_i,
+    output logic bvalid_o,
+    input wire logic bready_i,
+    output logic [1:0] bresp_o,
+    input wire logic arvalid_i,
+    output logic arready_o,
+    input wire logic [11:0] araddr_i,
+    output logic rvalid_o,
+    input wire logic rready_i,
+    output logic [31:0] rdata_o,
+    output logic [1:0] rresp_o,
+    input wire logic [50:0] wishbone_i,
+    output logic [34:0] wishbone_o,
+    input wire logic rx_i,
+    output logic tx_o,
+    input wire logic [2:0] spi_i,
+    output logic [1:0] spi_o,
+    input wire logic [Inputs-1:0] input_i,
+    output logic [Outputs-1:0] output_o,
+    output logic [Axes-1:0] step_o,
+    output logic [Axes-1:0] dir_o,
+    output logic irq_o,
+    output logic [34*Axes+212:0] observe_o
+);
+  // Who this is goes out by the serial line, a bit a clock after the reset: nothing else of a board's top shows it.
+  localparam logic [31:0] WHO = BoardId ^ {26'd0, Uart != 0, AxiLite == 0, PathCommands != 0, 3'd0};
+  logic [63:0] told_q;
+
+  always_ff @(posedge clk_i) begin
+    step_o   <= Axes'(input_i);
+    dir_o    <= ~Axes'(input_i);
+    output_o <= {Outputs{rx_i}} ^ Outputs'(input_i);
+    told_q   <= {told_q[62:0], rx_i};
+    if (rst_i) begin
+      {dir_o, step_o} <= idle_level_i;
+      output_o <= output_idle_i;
+      told_q <= {WHO, clock_hz_i};
+    end
+  end
+  assign tx_o = told_q[63];
+endmodule
+`default_nettype wire
