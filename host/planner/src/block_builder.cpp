@@ -20,7 +20,7 @@ constexpr double kShaperShare = 0.95;  // of the rate at which the shaper makes 
 constexpr double kMostPulses = static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);
 constexpr double kMaxDwellTotal = 0x1p48;  // clocks of one G4
 constexpr double kSoftLimitSlack = 1e-6;   // mm; far below a pulse, far above the rounding of sums
-constexpr double kMostOther = 1000;        // pulses of another axis for one of X Y Z: what rounding leaves of these
+constexpr double kLeastWay = 2;            // pulses of X, Y and Z together: less may have no step
 constexpr double kSameSpeed = 1 - 1e-6;    // a feed is reached from this share on
 
 constexpr std::array<std::string_view, 4> kFeedGroups = {"XYZ", "UVW", "ABC", "E"};
@@ -216,7 +216,7 @@ double BlockBuilder::measure_line(Block& block, const gcode::Coordinates& way) c
   block.length = std::sqrt(block.linear ? feed_squares[0] : squares);
   block.steps_per_mm = finest;
   if (block.linear) {
-    block.length = std::max(block.length, other_pulses / scale / kMostOther);
+    if (block.length * scale < kLeastWay) block.length = std::max(block.length, other_pulses / scale);
     block.steps_per_mm = std::max(scale, other_pulses / block.length);
   }
   const auto counts = std::find_if(feed_squares.begin(), feed_squares.end(), [](double sum) { return sum > 0; });

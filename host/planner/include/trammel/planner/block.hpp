@@ -51,9 +51,9 @@ struct ExactArc {
 };
 
 // Lengths, directions and limits are those of the path before rounding, along it, in mm and seconds; for moves of
-// rotary axes alone read degrees. A path with X, Y or Z has their length, one without that of all axes; what rounding
-// leaves of X, Y and Z, less than a thousandth of another axis's pulses, has that thousandth. Of the fields that a
-// kind of geometry does not name, the content means nothing.
+// rotary axes alone read degrees. A path with X, Y or Z has their length, one without that of all axes; where X, Y and
+// Z have less than two pulses, those of an axis beside them count if they are more. Of the fields that a kind of
+// geometry does not name, the content means nothing.
 struct Block {
   std::size_t line = 0;  // of the program
   Geometry geometry = Geometry::kEnd;
