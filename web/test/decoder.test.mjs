@@ -1,7 +1,8 @@
 // What the page reads of a report against what the command wrote beside it:
 //   TRAMMEL=.../trammel node --test decoder.test.mjs
 import assert from 'node:assert/strict'
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
+import { spawnSync } from 'node:child_process'
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { after, test } from 'node:test'
@@ -140,6 +141,21 @@ test('the program is in the page as it is, and nothing in it ends an element', (
   const html = readFileSync(file, 'utf8')
   assert.ok(!html.includes('alert('))
   assert.ok(html.startsWith('<!doctype html>') && html.trimEnd().endsWith('</html>'))
+})
+
+test('what does not go together is refused, and leaves no file', () => {
+  const page = join(folder, 'refused.html')
+  const refused = (...options) => {
+    const { status, stderr } = spawnSync(command, ['run', part, ...options], { encoding: 'utf8' })
+    assert.equal(status, 2, stderr)
+    assert.ok(!existsSync(page))
+    return stderr
+  }
+  assert.match(refused('--report', page, '--check'), /nothing runs/)
+  assert.match(refused('--report', page, '--stream'), /whole program/)
+  assert.match(refused('--report-window', '1:2'), /no --report/)
+  assert.match(refused('--report', page, '--report-window', '2:1'), /ends before it begins/)
+  assert.match(refused('--report', page, '--report-window', '2'), /FROM:TO/)
 })
 
 test('numbers of any size', () => {
