@@ -291,6 +291,7 @@ void Blender::make(const Way& from, const Way& to, const Frame& frame, const Tur
                    PathMotion& made) const {
   made.kind = gcode::MotionKind::kArc;
   made.line = from.motion.line;
+  made.later = static_cast<std::uint8_t>(from.motion.later | to.motion.later);
   made.path_control = from.motion.path_control;
   made.corner = Corner::kBlended;
   made.rapid = from.motion.rapid && to.motion.rapid;

@@ -72,9 +72,36 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
   here_ = start_;
 }
 
+const gcode::Motion& BlockBuilder::begin_probe() {
+  probe_ = Probe::kBegun;
+  return motion_;
+}
+
+void BlockBuilder::resume_at(const Pulses& here) {
+  here_ = here;
+  for (std::size_t i = 0; i < axis_count_; ++i) exact_[i] = static_cast<double>(here[i]) / axes_[i].steps_per_mm;
+  anchor_ = exact_;
+  blender_.resume_at(exact_);
+  probe_ = Probe::kNone;
+}
+
+bool BlockBuilder::next_probe(Block& block) {
+  if (probe_ != Probe::kBegun) return false;
+  probe_ = Probe::kPlanned;
+  if (!build(block)) return false;
+  block.outputs = std::exchange(outputs_, {});
+  return true;
+}
+
 bool BlockBuilder::next(Block& block) {
   if (error_) return false;
+  if (probe_ != Probe::kNone) return next_probe(block);
   while (blender_.next(motion_)) {
+    if (motion_.kind == gcode::MotionKind::kProbe) {
+      probe_ = Probe::kReached;
+      if (card_.outputs == 0) refuse(gcode::ErrorCode::kNoProbe, "a probe: the card has no path commands");
+      return false;
+    }
     const bool any = build(block);
     if (error_) return false;
     exact_ = motion_.target;
@@ -104,8 +131,6 @@ bool BlockBuilder::build(Block& block) {
     case gcode::MotionKind::kEnd:
       block.geometry = Geometry::kEnd;
       return true;
-    case gcode::MotionKind::kProbe:
-      return refuse(gcode::ErrorCode::kNoProbe, "probing is not supported yet");
     case gcode::MotionKind::kArc:
       return set_targets(block) && build_arc(block);
     default:
@@ -118,7 +143,8 @@ bool BlockBuilder::refuse(gcode::ErrorCode code, std::string message) {
   return false;
 }
 
-// Comes by each axis that moves: an arc changes a coordinate at its end, or passes its extreme.
+// Comes by each axis that moves: an arc changes a coordinate at its end, or passes its extreme. Where a probe decides,
+// the limit is for when that is known.
 bool BlockBuilder::check(std::size_t axis, double mm) {
   const Axis& limits = axes_[axis];
   const char letter = machine_.axes[axis].letter;
@@ -131,7 +157,8 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
                   fmt::format("{}{:.10g} is beyond the card's 32-bit position counter ({:.10g} steps/mm)", letter, mm,
                               limits.steps_per_mm));
   }
-  if (mm < limits.lowest - kSoftLimitSlack || mm > limits.highest + kSoftLimitSlack) {
+  const bool later = (motion_.later >> axis & 1U) != 0;
+  if (!later && (mm < limits.lowest - kSoftLimitSlack || mm > limits.highest + kSoftLimitSlack)) {
     const bool low = mm < limits.lowest;
     return refuse(gcode::ErrorCode::kSoftLimit,
                   fmt::format("{}{:.10g} is beyond the axis's {} of {:.10g} (machine coordinates)", letter, mm,

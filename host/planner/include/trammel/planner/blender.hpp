@@ -62,6 +62,8 @@ class Blender {
 
   // False where the reader's is, when all that was held is given.
   bool next(PathMotion& motion);
+  // Behind a probe: the machine stands somewhere else than its target.
+  void resume_at(const gcode::Coordinates& here) { here_ = here; }
   // Before the first next(): no blends.
   void keep_corners() { keep_corners_ = true; }
 
