@@ -5,7 +5,7 @@ module read_magic;
   logic clk = 0;
   logic rst = 1;
   logic rx = 1;
-  wire  tx;
+  wire tx;
   logic [3:0] step;
   logic [3:0] dir;
   always #1 clk = !clk;
