@@ -15,6 +15,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/run/path_identity.hpp"
 #include "trammel/serve/card_server.hpp"
 #include "trammel/sim/engines.hpp"
 #include "trammel/transport/byte_stream.hpp"
@@ -97,6 +98,8 @@ void execute(const Options& options) {
   const serve::Settings settings = settings_of(options);
   const std::unique_ptr<transport::Listener> listener = listener_of(options);
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_of(options));
+  run::PathIdentity path;
+  engine->set_sink(&path);
   serve::CardServer server(*engine, *listener, settings);
   end_at_signals();
   tell_where(*listener, settings.token);
@@ -107,11 +110,12 @@ void execute(const Options& options) {
   }
   const serve::CardServer::Counts& counts = server.counts();
   const double seconds = static_cast<double>(engine->cycles()) / options.clock_hz;
-  std::string lockstep;
+  std::string lockstep;  // asking for it settles what was not compared yet
   if (const auto cycles = engine->lockstep_cycles())
     lockstep = fmt::format("; lockstep: {} cycles, 0 mismatches", *cycles);
   say(fmt::format("served {} clients, {} refused; {} requests, {} damaged; {:.3f} s of card time{}", counts.clients,
                   counts.refused, counts.requests, counts.dropped, seconds, lockstep));
+  say(fmt::format("path: {} steps, identity {}", path.count(), path.text()));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ const licences = packages.map((name) => {
   const { version, license } = JSON.parse(text(`node_modules/${name}/package.json`))
   return { name, version, license, text: text(`node_modules/${name}/LICENSE`) }
 })
-licences.unshift({ name: 'Trammel', version: '', license: 'Apache-2.0', text: text('../LICENSE') })
+licences.push({ name: 'Trammel', version: '', license: 'Apache-2.0', text: text('../LICENSE') })
 
 const bundled = await build({
   entryPoints: [new URL('src/main.js', import.meta.url).pathname],

@@ -51,7 +51,7 @@ frames::Endpoint::Answer CardServer::make(bool write, std::uint32_t address, std
 }
 
 void CardServer::turn() {
-  if (client_) serve_client(0ns);  // whether it is still there counts before who comes next
+  if (client_) serve_client(0ns);
   admit();
   drain_leaving();
   pass_time();
@@ -60,6 +60,8 @@ void CardServer::turn() {
 void CardServer::admit() {
   std::unique_ptr<transport::ByteStream> stream = listener_.accept();
   if (!stream) return;
+  // Who comes when the one before has gone is not a second one: its end is here by now.
+  if (client_) serve_client(0ns);
   if (client_) return refuse(std::move(stream), "another client is connected: one at a time");
   ++counts_.clients;
   settings_.note(fmt::format("{} has come", stream->peer()));

@@ -54,9 +54,10 @@ Outcome Command::run_in(const std::string& folder, const std::string& before, co
   return outcome;
 }
 
-Running::Running(const Command& command, const std::string& arguments, const std::string& err) {
+Running::Running(const Command& command, const std::string& arguments, const std::string& err, const std::string& out) {
+  const std::string output = out.empty() ? "/dev/null" : command.path(out);
   const std::string line =
-      "exec '" + binary() + "' " + arguments + " >/dev/null 2>'" + command.path(err) + "' </dev/null";
+      "exec '" + binary() + "' " + arguments + " >'" + output + "' 2>'" + command.path(err) + "' </dev/null";
   process_ = ::fork();
   if (process_ != 0) return;
   ::execl("/bin/bash", "bash", "-c", line.c_str(), nullptr);

@@ -51,8 +51,8 @@ class Command {
 // The command while it runs.
 class Running {
  public:
-  // Arguments as in a shell; standard error goes to `err`.
-  Running(const Command& command, const std::string& arguments, const std::string& err);
+  // Arguments as in a shell; standard error goes to the file `err`, standard output to `out` where one is named.
+  Running(const Command& command, const std::string& arguments, const std::string& err, const std::string& out = "");
   // Ends it, if it still runs.
   ~Running();
   Running(const Running&) = delete;

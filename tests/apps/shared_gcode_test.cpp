@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 
 #include "command.hpp"
+#include "server.hpp"
 
 namespace trammel::test {
 namespace {
@@ -82,6 +84,50 @@ TEST(Gcode, OctocatOnASlowBusHasNoUnderRun) {
   const nlohmann::json json = read_json(command.path("o.json"));
   EXPECT_EQ(json["under_runs"], 0);
   EXPECT_NEAR(json["seconds"].get<double>(), json["planned_seconds"].get<double>(), 0.5);
+}
+
+// Over a line of 115,200 baud in card time, from which a machine as quick as that (500 mm/s, 20,000 mm/s^2) is starved:
+// it holds on the path and goes on. Frames over TCP, the card at 1 MHz.
+void octocat_over_a_slow_line(const Command& command, const std::string& program, const std::string& engine) {
+  std::string options = " --feed-scale 15 --set motion.junction_deviation=0.05";
+  for (const char* axis : {"x", "y", "z", "e"}) {
+    options += std::string(" --set axis.") + axis + ".max_velocity=500 --set axis." + axis + ".max_acceleration=20000";
+  }
+  const Outcome here =
+      command.run("run " + program + options + " --engine model --clock 1000000 --json " + command.path("here.json"));
+  ASSERT_EQ(here.status, 0) << here.err;
+  Server server(command, "--baud 115200 --clock 1000000 --fast --once --engine " + engine);
+  const Outcome there =
+      command.run("run " + program + options + " --card " + server.moving() + " --json " + command.path("there.json"));
+  ASSERT_EQ(there.status, 0) << there.err;
+  const std::string end = server.wait();
+  const nlohmann::json direct = read_json(command.path("here.json"));
+  const nlohmann::json far = read_json(command.path("there.json"));
+  EXPECT_EQ(far["final_position"], direct["final_position"]);
+  EXPECT_EQ(far["commands"], direct["commands"]);
+  const std::string path = "path: " + std::to_string(direct["path_steps"]["count"].get<std::uint64_t>()) +
+                           " steps, identity " + direct["path_steps"]["identity"].get<std::string>();
+  EXPECT_NE(end.find(path), std::string::npos) << "not the same steps: " << end << path;
+  EXPECT_EQ(direct["under_runs"], 0);
+  EXPECT_GT(far["under_runs"], 0) << "the line was not what held it up";
+  EXPECT_GT(far["seconds"].get<double>(), direct["seconds"].get<double>() + 1);
+  EXPECT_EQ(far["link"]["reconnections"], 0);
+  EXPECT_EQ(end.find("0 mismatches") != std::string::npos, engine == "rtl") << end;
+  testing::Test::RecordProperty("under_runs", far["under_runs"].get<int>());
+}
+
+TEST(Gcode, OctocatsFirstLinesOverASlowLineToTheVerilatedCard) {
+  const Command command;
+  std::ifstream in(kFolder + "octocat.gcode");
+  std::string text;
+  std::string line;
+  for (int i = 0; i < 2000 && std::getline(in, line); ++i) text += line + '\n';
+  octocat_over_a_slow_line(command, command.write("octocat.gcode", text), "rtl");
+}
+
+TEST(Gcode, OctocatOverASlowLine) {
+  if (std::getenv("TRAMMEL_LONG") == nullptr) GTEST_SKIP() << "with --long: some minutes";
+  octocat_over_a_slow_line(Command(), kFolder + "octocat.gcode", "model");
 }
 
 void expect_refused(const std::string& name, const std::string& line) {

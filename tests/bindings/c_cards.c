@@ -89,7 +89,7 @@ static void settings(void) {
   axis.step_space_ns = -1;
   FAILS(trammel_configure_axis(card, 0, &axis), TRAMMEL_ARGUMENT, "STEP_SPACE");
   axis.step_space_ns = 0;
-  axis.mode = (trammel_step_mode)3;
+  axis.mode = 3;
   FAILS(trammel_configure_axis(card, 0, &axis), TRAMMEL_ARGUMENT, "mode 3");
   line.pulses[0] = 100;  // a pulse takes 100 clocks at least now
   line.duration_ns = 5000000;
@@ -141,7 +141,7 @@ static void hold_and_stop(void) {
   DONE(trammel_read_snapshot(card, &later));
   CHECK(!later.status.busy && later.position[0] == rest.position[0]);
   FAILS(trammel_set_override(card, TRAMMEL_CLASS_FEED, 101, 100), TRAMMEL_ARGUMENT, "101");
-  FAILS(trammel_set_ratio(card, (trammel_piece_class)3, 0), TRAMMEL_ARGUMENT, "class 3");
+  FAILS(trammel_set_ratio(card, 3, 0), TRAMMEL_ARGUMENT, "class 3");
   FAILS(trammel_set_ratio(card, TRAMMEL_CLASS_RAPID, TRAMMEL_FULL_RATIO + 1), TRAMMEL_ARGUMENT, "ratio");
   trammel_close(card);
 }
@@ -164,7 +164,7 @@ static void two_cards(void) {
 void test_cards(void) {
   CHECK(strcmp(trammel_version(), TRAMMEL_EXPECTED_VERSION) == 0);
   CHECK(strcmp(trammel_result_name(TRAMMEL_IDENTIFICATION), "TRAMMEL_IDENTIFICATION") == 0);
-  CHECK(strcmp(trammel_result_name((trammel_result)99), "unknown") == 0);
+  CHECK(strcmp(trammel_result_name(99), "unknown") == 0);
   identification();
   one_shot_lines();
   settings();

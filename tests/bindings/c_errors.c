@@ -173,7 +173,7 @@ static void command_arguments(void) {
   command.as.feed.floor = 0;
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "floor");
   command = feed_of(10);
-  command.as.feed.piece_class = (trammel_piece_class)-1;
+  command.as.feed.piece_class = -1;
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "class");
   command = command_of(TRAMMEL_ARC);  // no radius
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "");
@@ -187,7 +187,7 @@ static void command_arguments(void) {
   command = command_of(TRAMMEL_WAIT_INPUT);
   command.as.wait_input.input = 9;
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "input");
-  command = command_of((trammel_command_kind)10);
+  command = command_of(10);
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "kind 10");
   command = command_of(TRAMMEL_END);
   DONE(trammel_put(card, &command));  // after all these the stream is as it was
@@ -291,7 +291,9 @@ static void null_pointers(void) {
   FAILS(trammel_probe(card, NULL, &command, 1, &probe), TRAMMEL_ARGUMENT, "condition is null");
   FAILS(trammel_probe(card, &condition, NULL, 1, &probe), TRAMMEL_ARGUMENT, "paths is null");
   FAILS(trammel_probe(card, &condition, &command, 1, NULL), TRAMMEL_ARGUMENT, "result is null");
+#ifndef TRAMMEL_SANITIZED  // where running out of memory ends the process
   FAILS(trammel_probe(card, &condition, &command, (size_t)1 << 46, &probe), TRAMMEL_MEMORY, "memory");
+#endif
   trammel_close(card);
 }
 

@@ -20,7 +20,7 @@ trammel_card* simulated_card(void) {
   return card;
 }
 
-trammel_command command_of(trammel_command_kind kind) {
+trammel_command command_of(int32_t kind) {
   trammel_command command;
   memset(&command, 0, sizeof command);
   command.kind = kind;

@@ -6,7 +6,7 @@ static void put_all(trammel_card* card, const trammel_command* commands, size_t 
   for (i = 0; i < count; ++i) DONE(trammel_put(card, &commands[i]));
 }
 
-static trammel_command arc_of(trammel_command_kind kind, uint64_t ticks) {
+static trammel_command arc_of(int32_t kind, uint64_t ticks) {
   trammel_command command = command_of(kind);  // a quarter about (-100, 0), anticlockwise, to (-100, 100)
   command.as.arc.ticks = ticks;
   command.as.arc.centre_x = -100 * 256;
@@ -123,7 +123,7 @@ static void ask_hold(trammel_card* card) { trammel_request_hold(card, true); }
 static void ask_stop(trammel_card* card) { trammel_request_stop(card); }
 static void ask_abort(trammel_card* card) { trammel_request_abort(card); }
 static void ask_half(trammel_card* card) {
-  trammel_request_ratio(card, (trammel_piece_class)7, 1);
+  trammel_request_ratio(card, 7, 1);
   trammel_request_ratio(card, TRAMMEL_CLASS_FEED, TRAMMEL_FULL_RATIO / 2);
 }
 

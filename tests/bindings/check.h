@@ -32,7 +32,7 @@ trammel_card* simulated_card(void);
 trammel_command line_of(uint64_t ticks, int64_t x, int64_t y);
 // A tick every 16 clocks.
 trammel_command feed_of(uint64_t ticks);
-trammel_command command_of(trammel_command_kind kind);
+trammel_command command_of(int32_t kind);
 
 void test_cards(void);
 void test_errors(void);

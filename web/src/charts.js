@@ -46,7 +46,9 @@ export class Chart {
     this.window = [0, 1]  // seconds
     this.values = row.lines.map(() => make('b'))
     this.plotElement = make('div', { class: 'plot' })
-    const limits = row.limits?.length ? make('div', {}, make('em', {}, `limit ${row.limits.map(number).join(', ')}`)) : null
+    const named = (value) => `${number(value)} (${row.lines.filter((line) => line.limit === value).map((line) => line.label).join(' ')})`
+    const limits = row.limits?.length
+      ? make('div', {}, make('em', {}, `limit ${row.limits.length > 1 ? row.limits.map(named).join(', ') : number(row.limits[0])}`)) : null
     this.swatches = row.lines.map(() => make('i'))
     this.element = make('div', { class: 'row', id: `row-${row.id}` },
       make('div', { class: 'label' }, make('h3', {}, row.title, ' ', make('small', {}, row.unit)),
@@ -84,7 +86,7 @@ export class Chart {
       ],
       bands: band ? [{ series: [2, 1], fill: alpha(colour('achieved'), 0.28) }] : [],
       series,
-      hooks: { drawClear: [() => this.under()] },
+      hooks: { drawAxes: [() => this.under()] },
     }, null, this.plotElement)
   }
   labels(list) {
@@ -105,7 +107,7 @@ export class Chart {
     for (const limit of row.limits ?? []) if (limit > most && limit < 1.6 * most) most = limit
     return most > 0 ? [-1.15 * most, 1.15 * most] : [-1, 1]
   }
-  // Limits and pauses, under the lines.
+  // Limits and pauses, above the grid and under the lines.
   under() {
     const { plot, row, run } = this
     const { ctx, bbox } = plot

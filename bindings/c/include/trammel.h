@@ -7,6 +7,8 @@
 // through a pointer counts only then. Nothing is thrown, nothing ends the program. Every pointer is looked at:
 // a null where none is allowed is a TRAMMEL_ARGUMENT. trammel_last_error() says what went wrong, in words too.
 //
+// Enumerations come in as int32_t, so that a number that is none of them is an error and nothing worse.
+//
 // Thread-safety: one thread at a time uses a card, in its callbacks as well; several cards may be used by several
 // threads at once. The trammel_request_... functions may be called from any thread, and from a signal handler, while
 // another one is in a call that waits; not while or after the card is closed.
@@ -62,7 +64,7 @@ typedef struct trammel_error {
 // Never null; result is TRAMMEL_OK while nothing has failed in this thread. Stands until the thread's next failure.
 TRAMMEL_API const trammel_error* trammel_last_error(void);
 // "TRAMMEL_ARGUMENT" and so on; "unknown" for another number.
-TRAMMEL_API const char* trammel_result_name(trammel_result result);
+TRAMMEL_API const char* trammel_result_name(int32_t result);
 // "0.1.0".
 TRAMMEL_API const char* trammel_version(void);
 
@@ -141,9 +143,9 @@ typedef struct trammel_axis_settings {
   int64_t step_space_ns;       // trailing edge to the next leading edge
   int64_t direction_setup_ns;  // direction stable before the leading edge
   int64_t direction_hold_ns;   // and after the trailing edge
-  trammel_step_mode mode;
-  bool invert_first;   // pin STEP, UP or A
-  bool invert_second;  // pin DIR, DOWN or B
+  int32_t mode;                // a trammel_step_mode
+  bool invert_first;           // pin STEP, UP or A
+  bool invert_second;          // pin DIR, DOWN or B
 } trammel_axis_settings;
 
 // Only while the axis stands.
@@ -210,7 +212,7 @@ TRAMMEL_API trammel_result trammel_read_marks(trammel_card* card, uint32_t* mark
 
 // ---- Hold, override, stop, abort ----
 
-// Which ratio of the time base a piece of feed runs at.
+// Which ratio of the time base a piece of feed runs at: `piece_class` of the functions here.
 typedef enum trammel_piece_class {
   TRAMMEL_CLASS_FEED = 0,
   TRAMMEL_CLASS_RAPID = 1,
@@ -220,9 +222,9 @@ typedef enum trammel_piece_class {
 // Slews to rest on the path, or goes on. Nothing is lost.
 TRAMMEL_API trammel_result trammel_set_hold(trammel_card* card, bool hold);
 // Share of enabled clocks, 0 .. TRAMMEL_FULL_RATIO. A card without classes has that of feed alone.
-TRAMMEL_API trammel_result trammel_set_ratio(trammel_card* card, trammel_piece_class piece_class, uint32_t ratio);
+TRAMMEL_API trammel_result trammel_set_ratio(trammel_card* card, int32_t piece_class, uint32_t ratio);
 // The ratio `percent` / `most_percent`; the latter is the largest override that programs are planned for.
-TRAMMEL_API trammel_result trammel_set_override(trammel_card* card, trammel_piece_class piece_class, double percent,
+TRAMMEL_API trammel_result trammel_set_override(trammel_card* card, int32_t piece_class, double percent,
                                                 double most_percent);
 // Time that the ratio takes from 0 to full; up to 2^30 clocks.
 TRAMMEL_API trammel_result trammel_set_slew_time(trammel_card* card, int64_t full_scale_ns);
@@ -234,7 +236,7 @@ TRAMMEL_API trammel_result trammel_stop(trammel_card* card, int64_t patience_ns,
 // What a call that waits, now or next, shall do at its next look at the card. An abort ends it with TRAMMEL_STATE, a
 // stop with TRAMMEL_STOPPED. A card that is null, and a ratio or class that there is not, are left out.
 TRAMMEL_API void trammel_request_hold(trammel_card* card, bool hold);
-TRAMMEL_API void trammel_request_ratio(trammel_card* card, trammel_piece_class piece_class, uint32_t ratio);
+TRAMMEL_API void trammel_request_ratio(trammel_card* card, int32_t piece_class, uint32_t ratio);
 TRAMMEL_API void trammel_request_abort(trammel_card* card);
 TRAMMEL_API void trammel_request_stop(trammel_card* card);
 
@@ -329,7 +331,7 @@ typedef struct trammel_feed_command {
   int64_t jerk;            // the same unit an update, each update
   uint32_t floor;          // 2^-32 ticks an enabled clock, not 0
   uint32_t stop_distance;  // ticks needed to stop on the path; 0: the piece ends at rest
-  trammel_piece_class piece_class;
+  int32_t piece_class;     // a trammel_piece_class
 } trammel_feed_command;
 
 // Outputs switched with the last tick of the path before, at once where none runs; bit n: output n.
@@ -346,7 +348,7 @@ typedef struct trammel_input_condition {
 } trammel_input_condition;
 
 typedef struct trammel_command {
-  trammel_command_kind kind;
+  int32_t kind;  // a trammel_command_kind
   union {
     trammel_line_command line;
     trammel_arc_command arc;  // TRAMMEL_ARC and TRAMMEL_ARC_CHORD

@@ -75,7 +75,7 @@ void give(trammel_line_plan* out, const driver::OneShotPlan& plan) {
 
 }  // namespace
 
-driver::PieceClass piece_class_of(trammel_piece_class piece_class) {
+driver::PieceClass piece_class_of(std::int32_t piece_class) {
   if (piece_class < TRAMMEL_CLASS_FEED || piece_class > TRAMMEL_CLASS_FIXED) {
     throw driver::ArgumentError("class " + std::to_string(piece_class) + " is none of trammel_piece_class");
   }
@@ -210,12 +210,11 @@ trammel_result trammel_set_hold(trammel_card* card, bool hold) {
   return guarded([=] { card_of(card).set_hold(hold); });
 }
 
-trammel_result trammel_set_ratio(trammel_card* card, trammel_piece_class piece_class, uint32_t ratio) {
+trammel_result trammel_set_ratio(trammel_card* card, std::int32_t piece_class, uint32_t ratio) {
   return guarded([=] { card_of(card).set_ratio(piece_class_of(piece_class), ratio); });
 }
 
-trammel_result trammel_set_override(trammel_card* card, trammel_piece_class piece_class, double percent,
-                                    double most_percent) {
+trammel_result trammel_set_override(trammel_card* card, std::int32_t piece_class, double percent, double most_percent) {
   return guarded([=] { card_of(card).set_override(piece_class_of(piece_class), percent, most_percent); });
 }
 
@@ -238,7 +237,7 @@ void trammel_request_hold(trammel_card* card, bool hold) {
   if (card != nullptr) card->card.request_hold(hold);
 }
 
-void trammel_request_ratio(trammel_card* card, trammel_piece_class piece_class, uint32_t ratio) {
+void trammel_request_ratio(trammel_card* card, std::int32_t piece_class, uint32_t ratio) {
   const bool is_class = piece_class >= TRAMMEL_CLASS_FEED && piece_class <= TRAMMEL_CLASS_FIXED;
   if (card != nullptr && is_class) card->card.request_ratio(static_cast<driver::PieceClass>(piece_class), ratio);
 }

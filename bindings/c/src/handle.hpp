@@ -74,7 +74,7 @@ T& required(T* pointer, const char* name) {
 }
 
 // Throw ArgumentError for a number that is none of the enumeration's.
-driver::PieceClass piece_class_of(trammel_piece_class piece_class);
+driver::PieceClass piece_class_of(std::int32_t piece_class);
 driver::Command command_of(const trammel_command& command);
 
 trammel_status c_status(const driver::Status& status);

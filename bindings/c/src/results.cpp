@@ -68,7 +68,7 @@ const trammel_error* trammel_last_error() { return &trammel::c::last_error; }
 
 const char* trammel_version() { return TRAMMEL_VERSION; }
 
-const char* trammel_result_name(trammel_result result) {
+const char* trammel_result_name(int32_t result) {
   switch (result) {
     case TRAMMEL_OK:
       return "TRAMMEL_OK";

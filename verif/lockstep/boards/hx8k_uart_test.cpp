@@ -1,28 +1,36 @@
 // The driver and the runner of programs, unchanged, over the UART pins of the HX8K board's top: the whole of it as it
 // is synthesised, but for what stands for PLL and pins. What is judged are the steps at the pins.
 #include <Vdut.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
+#include <cstdio>
+#include <fstream>
 #include <memory>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/errors.hpp"
 #include "trammel/driver/frame_bus.hpp"
-#include "trammel/driver/one_shot.hpp"
-#include "trammel/machine/machine.hpp"
-#include "trammel/run/runner.hpp"
 #include "trammel/sim/lockstep.hpp"
+#include "trammel/transport/byte_stream.hpp"
 #include "uart_link.hpp"
 
 namespace trammel::lockstep {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 constexpr unsigned kAxes = 4;
 constexpr std::uint64_t kClock = 60'000'000;
 constexpr double kBreak = 1 << 20 | 1 << 10;  // clocks
+constexpr double kFast = 2e6;                 // baud
 
 // The board with a host's serial line at its pins and a motor at each pair of pins.
 class Board {
@@ -88,29 +96,84 @@ TEST_F(BoardTest, SaysWhoItIsAt115200Baud) {
   EXPECT_EQ(bus_->counts().sent_again, 0U);
 }
 
-TEST_F(BoardTest, MakesALineAndStreamsAProgramAt2Megabaud) {
-  driver::Card& card = connect(2e6);
-  driver::run_line(card, driver::plan_line(card.timing(), {200, -100, 50, 7}, 5ms));
+// The line as a TCP connection, whose bytes come and go at the pins.
+class Bridge {
+ public:
+  explicit Bridge(Board& board) : board_(board), thread_([this] { serve(); }) {}
+  ~Bridge() {
+    over_ = true;
+    thread_.join();
+  }
+  Bridge(const Bridge&) = delete;
+  Bridge& operator=(const Bridge&) = delete;
+
+  std::string url() const { return listener_->url() + "?hello=no&timeout=20000"; }
+
+ private:
+  void serve() {
+    while (!over_) {
+      if (const auto stream = listener_->accept()) {
+        serve(*stream);
+      } else {
+        std::this_thread::sleep_for(1ms);
+      }
+    }
+  }
+  // The card's time goes on while somebody is there.
+  void serve(transport::ByteStream& stream) {
+    board_.uart.begin(8 * kClock / kFast, kBreak);
+    std::array<std::uint8_t, 256> bytes{};
+    try {
+      while (!over_) {
+        for (std::size_t i = 0, count = stream.read(bytes.data(), bytes.size(), 0ns); i < count; ++i) {
+          board_.uart.line.send(bytes.at(i));
+        }
+        for (unsigned i = 0; i < 2000; ++i) board_.clock();
+        const std::vector<std::uint8_t> back(board_.uart.received.begin(), board_.uart.received.end());
+        board_.uart.received.clear();
+        if (!back.empty()) stream.write(back.data(), back.size());
+      }
+    } catch (const driver::LinkError&) {
+      // It has gone.
+    }
+  }
+
+  Board& board_;
+  std::unique_ptr<transport::Listener> listener_ = transport::listen_tcp("127.0.0.1", 0);
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+// What the trammel command says; it must end well.
+std::string trammel(const std::string& arguments) {
+  std::string out;
+  FILE* const pipe = ::popen((TRAMMEL_COMMAND " " + arguments + " 2>&1").c_str(), "r");
+  std::array<char, 256> part{};
+  while (std::fgets(part.data(), static_cast<int>(part.size()), pipe) != nullptr) out += part.data();
+  EXPECT_EQ(::pclose(pipe), 0) << out;
+  return out;
+}
+
+TEST_F(BoardTest, CommandsMoveItAt2Megabaud) {
+  const Bridge bridge(board_);
+  const std::string card = " --card '" + bridge.url() + "'";
+  EXPECT_THAT(trammel("info" + card), AllOf(HasSubstr("clock          60000000 Hz\n"),
+                                            HasSubstr("build          1234abcd, dirty\nboard          1\n")));
+  trammel("line --to 200,-100,50,7 --duration 0.005" + card);
   EXPECT_EQ(board_.motors(), (std::array<std::int64_t, kAxes>{200, -100, 50, 7}));
 
-  machine::Machine machine = machine::default_machine();
-  for (const char* const axis : {"x", "y", "z"}) {
-    machine::apply_override(machine, "axis." + std::string(axis) + ".max_velocity=200");
-    machine::apply_override(machine, "axis." + std::string(axis) + ".max_acceleration=20000");
-  }
-  machine::apply_override(machine, "outputs.m3=2");
   // Lines, an arc, an output.
-  const auto text = std::make_shared<const std::string>(
-      "G21 G90 G17\nM3\nG1 X1 Y0.5 F12000\nG1 X1.5 Y0.25\nG2 X2.5 Y0.25 I0.5\nG1 X3 Y-0.5 Z0.25\nM2\n");
-  const run::ProgramLines lines = [text] { return std::make_unique<gcode::TextLines>(*text, "board.ngc"); };
-  run::Runner runner(lines, machine, planner::limits_of(card.identification()));
-  runner.plan();
-  const run::Outcome outcome = runner.run(card);
-  EXPECT_EQ(outcome.counted, (std::vector<std::int64_t>{240, -40, 20, 0}));
-  EXPECT_EQ(board_.motors(), (std::array<std::int64_t, kAxes>{440, -140, 70, 7}));
+  const std::string program = testing::TempDir() + "board_test.ngc";
+  std::ofstream(program)
+      << "G21 G90 G17\nM3\nG1 X1 Y0.5 F12000\nG1 X1.5 Y0.25\nG2 X2.5 Y0.25 I0.5\nG1 X3 Y-0.5 Z0.25\nM2\n";
+  std::string quick = " --set outputs.m3=2";
+  for (const std::string axis : {"x", "y", "z"}) {
+    quick += " --set axis." + axis + ".max_velocity=200 --set axis." + axis + ".max_acceleration=20000";
+  }
+  const std::string said = trammel("run " + program + quick + card);
+  EXPECT_THAT(said, HasSubstr(" 0 sent again"));
+  EXPECT_EQ(board_.motors(), (std::array<std::int64_t, kAxes>{440, -140, 70, 7})) << said;
   EXPECT_EQ(board_.outputs_seen(), 1U << 2);
-  EXPECT_EQ(outcome.under_runs.value_or(0), 0U);
-  EXPECT_EQ(bus_->counts().sent_again, 0U);
 }
 
 }  // namespace

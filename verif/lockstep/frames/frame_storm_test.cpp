@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "byte_ports.hpp"
 #include "trammel/sim/lockstep.hpp"
@@ -19,6 +21,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed)
       : check_("frame_engine", seed),
+        dice_(seed),
         storm_(
             seed, [this](const frames::Bytes& bytes) { return bring(bytes); }, [this] { restart(); }, 20) {
     dut_->rst_i = 1;
@@ -29,11 +32,25 @@ class Bench {
   void run(std::uint64_t frames) {
     try {
       storm_.run(frames);
+      std::printf("%s\n", storm_.text().c_str());
     } catch (const std::logic_error& error) {
       throw Mismatch(error.what());
     }
   }
   const FrameStorm::Counts& counts() const { return storm_.counts(); }
+
+  // Bodies of random bytes as long as a request without words, each with its end: what the CRC alone holds off. The
+  // link works on.
+  void garbage(std::uint64_t frames) {
+    for (std::uint64_t i = 0; i < frames; ++i) {
+      frames::Bytes body{static_cast<std::uint8_t>(dice_.below(4) & 2U)};
+      while (body.size() < frames::kHeaderBytes + frames::kCrcBytes) body.push_back(byte_of_no_meaning());
+      body.push_back(frames::kEnd);
+      for (const std::uint8_t byte : body) send(byte);
+      if (signs_ != 0) throw Mismatch("random bytes were taken for a frame");
+    }
+    run(10);
+  }
 
  private:
   static constexpr unsigned kGap = 10;
@@ -42,14 +59,22 @@ class Bench {
 
   frames::Bytes bring(const frames::Bytes& bytes) {
     reply_.clear();
-    for (const std::uint8_t byte : bytes) {
-      dut_->byte_i = static_cast<SData>(0x100U | byte);
-      clock();
-      dut_->byte_i = 0;
-      for (unsigned i = 1; i < kGap; ++i) clock();
-    }
+    for (const std::uint8_t byte : bytes) send(byte);
     for (quiet_ = 0; quiet_ < kQuiet;) clock();
     return reply_;
+  }
+  void send(std::uint8_t byte) {
+    dut_->byte_i = static_cast<SData>(0x100U | byte);
+    clock();
+    dut_->byte_i = 0;
+    for (unsigned i = 1; i < kGap; ++i) clock();
+  }
+  // Neither an end nor an escape, which would change the length.
+  std::uint8_t byte_of_no_meaning() {
+    for (;;) {
+      const auto byte = static_cast<std::uint8_t>(dice_.below(256));
+      if (byte != frames::kEnd && byte != frames::kEscape) return byte;
+    }
   }
   void restart() {
     dut_->restart_i = 1;
@@ -63,9 +88,11 @@ class Bench {
     if (dut_->valid_o) {
       reply_.push_back(dut_->byte_o);
       quiet_ = 0;
+      ++signs_;
     }
     if (dut_->access_o >> 47 != 0) {
       quiet_ = 0;
+      ++signs_;
       const FrameStorm::Answer answer =
           storm_.access((dut_->access_o >> 46 & 1) != 0, static_cast<std::uint32_t>(dut_->access_o >> 32 & 0xFFF),
                         static_cast<std::uint32_t>(dut_->access_o));
@@ -80,10 +107,12 @@ class Bench {
 
   Simulated<Vdut> dut_;
   Checker check_;
+  Dice dice_;
   FrameStorm storm_;
   InnerPort inner_;
   frames::Bytes reply_;
   unsigned quiet_ = 0;
+  std::uint64_t signs_ = 0;  // of life: accesses, clocks with a byte to send
 };
 
 class Storm : public testing::TestWithParam<int> {};
@@ -102,6 +131,18 @@ TEST_P(Storm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
               EXPECT_GT(counts.repeated, frames / 50);
               EXPECT_GT(counts.refused, frames / 100);
               EXPECT_GT(counts.connections, frames / 500);
+            }),
+            "");
+}
+
+// As random frames pass by chance: once in 2^32.
+TEST(Garbage, TheCrcHoldsItOff) {
+  const std::uint64_t frames = scaled(50'000);
+  EXPECT_EQ(judge([&] {
+              Bench bench(seed_from_environment(9));
+              bench.garbage(frames);
+              std::printf("%llu frames of random contents: the engine took 0, by chance %.1e\n",
+                          static_cast<unsigned long long>(frames), std::ldexp(static_cast<double>(frames), -32));
             }),
             "");
 }

@@ -17,6 +17,12 @@ struct UartEnd {
   void take(bool level) {
     if (const std::optional<std::uint8_t> byte = line.take(level)) received.push_back(*byte);
   }
+  // A connection from its beginning: a break, and the byte that tells the rate.
+  void begin(double clocks_of_8_bits, double break_clocks) {
+    line.clear();
+    line.set_period(clocks_of_8_bits);
+    line.break_line(break_clocks);
+  }
   UartLine line;
   std::deque<std::uint8_t> received;
 };
@@ -47,8 +53,7 @@ class UartLink final : public driver::ByteLink {
     return count;
   }
   void restart() override {
-    end_.line.set_period(8 * static_cast<double>(rate_.clock_hz) / rate_.baud);
-    end_.line.break_line(rate_.break_clocks);
+    end_.begin(8 * static_cast<double>(rate_.clock_hz) / rate_.baud, rate_.break_clocks);
     while (end_.line.busy()) clock_();
     end_.received.clear();
   }

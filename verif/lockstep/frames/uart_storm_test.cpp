@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "byte_ports.hpp"
 #include "frame_storm.hpp"
@@ -31,6 +32,7 @@ class Bench {
   void run(std::uint64_t frames) {
     try {
       storm_.run(frames);
+      std::printf("%s\n", storm_.text().c_str());
     } catch (const std::logic_error& error) {
       throw Mismatch(error.what());
     }

@@ -1,0 +1,227 @@
+// Cards outside, from the command line: a served one, and everything that is none.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+#include <memory>
+#include <thread>
+
+#include "command.hpp"
+#include "server.hpp"
+#include "trammel/driver/errors.hpp"
+#include "trammel/transport/byte_stream.hpp"
+#include "trammel/transport/card_url.hpp"
+
+namespace trammel::test {
+namespace {
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// One line, status 2.
+void expect_refused(const Command& command, const std::string& arguments, const std::string& message) {
+  const Outcome outcome = command.run(arguments);
+  EXPECT_EQ(outcome.status, 2) << arguments << '\n' << outcome.err;
+  EXPECT_EQ(count_lines(outcome.err), 1U) << arguments << '\n' << outcome.err;
+  EXPECT_TRUE(has(outcome.err, message)) << arguments << '\n' << outcome.err;
+  EXPECT_EQ(outcome.out, "") << arguments;
+}
+
+TEST(Serve, EveryCommandOnACardBehindAPort) {
+  const Command command;
+  Server server(command, "--engine model --fast --axes 3");
+  EXPECT_TRUE(has(server.url(), "tcp://127.0.0.1:")) << server.url();
+  EXPECT_TRUE(has(command.run("info --card " + server.url()).out, "axes           3\n"));
+  const std::string json = command.path("out.json");
+  ASSERT_EQ(command.run("line --to 200,-100 --speed 20000 --card " + server.moving() + " --json " + json).status, 0);
+  EXPECT_EQ(read_json(json)["moved"], (std::vector<int>{200, -100}));
+  std::string machine = contents(TRAMMEL_EXAMPLES_DIR "/machine.toml");
+  machine.resize(machine.find("[axis.e]"));
+  const std::string program = command.write("ok.ngc", "G1 X1 Y-2 F6000\nG2 X3 Y-2 I1\n");
+  const Outcome run = command.run("run " + program + " --machine " + command.write("machine.toml", machine) +
+                                  " --card " + server.moving() + " --json " + json);
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(read_json(json)["final_position"], (std::vector<int>{240, -160, 0})) << "from where the card stood";
+  const Outcome dump = command.run("dump --card " + server.url());
+  EXPECT_TRUE(has(dump.out, "0x000  MAGIC                0x54524D4C")) << dump.out;
+  EXPECT_TRUE(has(dump.out, "0x0A0  SNAP_POSITION[0]     0x000001B8  440")) << dump.out;
+  EXPECT_TRUE(has(dump.out, "SNAP_POSITION[2]"));
+  EXPECT_FALSE(has(dump.out, "SNAP_POSITION[3]")) << "of an axis that it lacks";
+  const Outcome monitor = command.run("monitor --looks 2 --interval 0.01 --card " + server.url());
+  EXPECT_EQ(monitor.status, 0) << monitor.err;
+  EXPECT_TRUE(has(monitor.out, "axis 1   pulse -260")) << monitor.out;
+  const Outcome selftest = command.run("selftest --card " + server.moving());
+  EXPECT_EQ(selftest.status, 0) << selftest.out << selftest.err;
+  EXPECT_TRUE(has(selftest.out, "pass  nothing has moved")) << selftest.out;
+  EXPECT_TRUE(has(server.end(), "served 6 clients, 0 refused")) << server.errors();
+}
+
+TEST(Serve, WithoutTheTokenNothingMoves) {
+  const Command command;
+  Server server(command, "--engine model --fast");
+  const std::string program = command.write("ok.ngc", "G1 X1 F6000\n");
+  const std::string wrong = " --card '" + server.url() + "?token=other'";
+  expect_refused(command, "run " + program + " --card " + server.url(), "give the token");
+  expect_refused(command, "line --to 10,10 --card " + server.url(), "give the token");
+  expect_refused(command, "selftest --card " + server.url(), "give the token");
+  expect_refused(command, "run " + program + wrong, "wrong token");
+  expect_refused(command, "info" + wrong, "wrong token");
+  EXPECT_EQ(command.run_in(".", "TRAMMEL_TOKEN=secret", "line --to 10,10 --card " + server.url()).status, 0);
+  EXPECT_TRUE(has(server.end(), "path: 20 steps")) << "those of the last line";
+}
+
+TEST(Serve, OnAPseudoTerminal) {
+  const Command command;
+  Server server(command, "--engine model --fast --pty");
+  EXPECT_TRUE(has(server.url(), "serial:/dev/pts/")) << server.url();
+  EXPECT_EQ(command.run("info --card " + server.url()).status, 0);
+  expect_refused(command, "line --to 10,10 --card " + server.url(), "give the token");
+  EXPECT_EQ(command.run("line --to 10,10 --card " + server.moving()).status, 0);
+  EXPECT_TRUE(has(server.end(), "path: 20 steps"));
+}
+
+// A client that is killed while the card moves, by the process; the card holds, and the next client goes on from there.
+TEST(Serve, AClientIsKilled) {
+  const Command command;
+  Server server(command, "--engine model");
+  const std::string program = command.write("long.ngc", "G1 X3 F600\nX0\nX3\n");
+  Running client(command, "run " + program + " --card " + server.moving(), "client.err");
+  ASSERT_TRUE(eventually([&] { return server.said("has come"); })) << server.errors();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  client.signal(SIGKILL);
+  ASSERT_TRUE(client.wait());
+  ASSERT_TRUE(eventually([&] { return server.said("the card holds"); })) << server.errors();
+  ASSERT_TRUE(eventually([&] { return has(command.run("monitor --looks 1 --card " + server.url()).out, "held"); }));
+  const Outcome next = command.run("line --to 10,10 --card " + server.moving());
+  EXPECT_EQ(next.status, 0) << next.err;
+  EXPECT_TRUE(has(next.err, "what was left is dropped")) << next.err;
+}
+
+// Carries bytes between a client and a server, and cuts the first connections after so many.
+class BadCable {
+ public:
+  BadCable(const std::string& server_url, std::uint64_t bytes, unsigned cuts)
+      : server_(transport::parse_card_url(server_url)), bytes_(bytes), cuts_(cuts), thread_([this] { carry(); }) {}
+  ~BadCable() {
+    ended_ = true;
+    thread_.join();
+  }
+  std::string url() const { return listener_->url(); }
+  unsigned cuts() const { return made_; }
+
+ private:
+  using Stream = std::unique_ptr<transport::ByteStream>;
+
+  void carry() {
+    while (!ended_) {
+      Stream client = listener_->accept();
+      if (client) carry(*client);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  void carry(transport::ByteStream& client) {
+    try {
+      const Stream server = transport::connect_tcp(server_.host, server_.port, std::chrono::seconds(5));
+      std::uint64_t carried = 0;
+      while (!ended_ && (made_ == cuts_ || carried < bytes_)) carried += move(client, *server) + move(*server, client);
+      made_ += made_ == cuts_ ? 0 : 1;
+    } catch (const driver::LinkError&) {
+    }
+  }
+  static std::size_t move(transport::ByteStream& from, transport::ByteStream& to) {
+    std::uint8_t bytes[64];
+    const std::size_t count = from.read(bytes, sizeof(bytes), std::chrono::nanoseconds(0));
+    to.write(bytes, count);
+    return count;
+  }
+
+  std::unique_ptr<transport::Listener> listener_ = transport::listen_tcp("127.0.0.1", 0);
+  transport::CardUrl server_;
+  std::uint64_t bytes_;
+  unsigned cuts_;
+  std::atomic<unsigned> made_{0};
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+// The run goes on, and the path is that of a cable that was whole.
+TEST(Serve, ACableThatIsCutThreeTimes) {
+  const Command command;
+  std::string text = "F3000\n";
+  for (int i = 1; i <= 400; ++i) text += "G1 X" + std::to_string(0.1 * i) + " Y" + std::to_string(i % 7 * 0.05) + "\n";
+  const std::string run = "run " + command.write("p.ngc", text);
+  ASSERT_EQ(command.run(run + " --engine model --clock 1000000 --json " + command.path("here.json")).status, 0);
+  Server server(command, "--engine model --fast");
+  const BadCable cable(server.url(), 9'000, 3);
+  const Outcome outcome =
+      command.run(run + " --card '" + cable.url() + "?token=secret' --json " + command.path("there.json"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err << server.errors();
+  EXPECT_EQ(cable.cuts(), 3U);
+  EXPECT_TRUE(has(outcome.err, "the motion goes on")) << outcome.err;
+  const nlohmann::json here = read_json(command.path("here.json"));
+  const nlohmann::json there = read_json(command.path("there.json"));
+  EXPECT_EQ(there["final_position"], here["final_position"]);
+  EXPECT_EQ(there["link"]["reconnections"], 3);
+  const std::string identity = here["path_steps"]["identity"].get<std::string>();
+  EXPECT_TRUE(has(server.end(), "identity " + identity)) << server.errors();
+}
+
+TEST(Serve, SaysThatItCannotKeepRealTime) {
+  const Command command;
+  Server server(command, "--engine rtl --clock 100000000");
+  EXPECT_TRUE(eventually([&] { return server.said("not in real time: the card made"); }));
+}
+
+TEST(Serve, ASecondClientAndASecondServer) {
+  const Command command;
+  Server server(command, "--engine model");
+  const std::string program = command.write("long.ngc", "G4 P20\n");
+  const Running client(command, "run " + program + " --card " + server.moving(), "client.err");
+  ASSERT_TRUE(eventually([&] { return server.said("has come"); }));
+  expect_refused(command, "info --card " + server.url(), "another client is connected");
+  const std::string port = server.url().substr(server.url().rfind(':') + 1);
+  expect_refused(command, "serve --port " + port, "is in use");
+}
+
+TEST(CardOutside, BadInput) {
+  const Command command;
+  const std::string run = "run " + command.write("ok.ngc", "G1 X1 F600\n") + " --card ";
+  for (const std::string& verb : {std::string("info --card "), std::string("line --to 1,1 --card "), run}) {
+    expect_refused(command, verb + "usb:1", "must be sim:, tcp://");
+    expect_refused(command, verb + "tcp://127.0.0.1:1", "is `trammel serve` running there?");
+    expect_refused(command, verb + "tcp://no-such-host.invalid:5", "no such host");
+    expect_refused(command, verb + "serial:/dev/no-such-device", "no such device");
+    expect_refused(command, verb + "serial:/dev/null", "serial line");
+    expect_refused(command, verb + "spi:/dev/no-such-device", "cannot open it");
+    expect_refused(command, verb + "mmap:/dev/no-such-device", "cannot open it");
+    expect_refused(command, verb + "mmap:" + command.write("zeros", std::string(4096, '\0')), "MAGIC reads 0x00000000");
+  }
+  const std::string there = "tcp://127.0.0.1:1";
+  for (const std::string option :
+       {"--steps x", "--path-steps x", "--outputs x", "--plot x", "--trace x.fst", "--engine model", "--clock 1000000",
+        "--limit-bus 100", "--hold-at 1:1", "--override-at 1:50", "--input-at 1:0:1"}) {
+    expect_refused(command, run + there + " " + option, option.substr(0, option.find(' ')));
+  }
+  expect_refused(command, run + there + " --check", "--check");
+  expect_refused(command, "line --to 1,1 --plot x --card " + there, "--plot");
+  expect_refused(command, "info --trace x.fst --card " + there, "--trace");
+  expect_refused(command, "serve --token 'a b'", "--token");
+  expect_refused(command, "serve --port 70000", "--port");
+  expect_refused(command, "serve --listen no-such-host.invalid", "no such address");
+  expect_refused(command, "serve --pty --port 5", "--pty");
+  expect_refused(command, "monitor --interval 0", "--interval");
+}
+
+TEST(CardOutside, ACardOfAnotherMapVersionAndOneThatEndsEarly) {
+  const Command command;
+  std::string window(4096, '\0');
+  const auto put = [&](std::size_t address, std::uint32_t value) {
+    for (std::size_t i = 0; i < 4; ++i) window[address + i] = static_cast<char>(value >> 8 * i);
+  };
+  put(0x000, 0x54524D4C);
+  put(0x004, 0x00030000);
+  expect_refused(command, "info --card mmap:" + command.write("newer", window), "register map version 3.0");
+  EXPECT_EQ(contents(command.path("newer")), window) << "nothing was written";
+}
+
+}  // namespace
+}  // namespace trammel::test
