@@ -29,7 +29,8 @@ std::string summary(const CheckResult& result) {
     text +=
         fmt::format("  {}: ends at pulse {} ({:.4f} mm)\n", result.axes[a], plan.end[a], result.final_millimetres[a]);
   }
-  return text + summary(result.profile) + blends_text(plan.blends) + accepted_words(plan.accepted);
+  return text + summary(result.profile) + blends_text(plan.blends) + probes_planned(plan) +
+         accepted_words(plan.accepted);
 }
 
 std::string json_text(const CheckResult& result) {
@@ -47,6 +48,8 @@ std::string json_text(const CheckResult& result) {
   json["motion"] = motion_json(plan.motion);
   json["blends"] = blends_json(plan.blends);
   json["feeds_not_reached"] = feeds_json(plan.feeds_not_reached);
+  json["probes"] = plan.probes;
+  json["lines_on_probes"] = plan.lines_on_probes;
   json["accepted_words"] = plan.accepted;
   return json.dump(2) + "\n";
 }

@@ -117,6 +117,8 @@ void tell(const run::Outcome& outcome, const machine::Machine& machine, RunResul
   }
   result.commands = outcome.commands;
   result.under_runs = outcome.under_runs;
+  result.probes = outcome.probes;
+  result.parameters = outcome.parameters;
 }
 
 void tell(const sim::Engine& engine, RunResult& result) {

@@ -81,6 +81,8 @@ struct RunResult {
   std::optional<std::uint16_t> inputs;          // as they stand at the end, where they are scripted; bit n: input n
   double wall_seconds = 0;                      // the simulation took
   std::map<std::string, std::size_t> accepted;  // words without effect yet
+  std::vector<run::ProbeMade> probes;
+  std::map<int, double> parameters;  // of the program at its end
   std::vector<run::FeedNotReached> feeds_not_reached;
   run::Plot plot;                         // filled when asked for
   run::DeviationMeter::Place line_place;  // of the largest deviations

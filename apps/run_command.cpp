@@ -16,6 +16,7 @@
 #include "machine_choice.hpp"
 #include "motion_options.hpp"
 #include "outputs.hpp"
+#include "parameter_file.hpp"
 #include "profile_report.hpp"
 #include "program_check.hpp"
 #include "program_file.hpp"
@@ -43,6 +44,7 @@ struct Options {
   std::optional<std::string> path_steps;
   std::optional<std::string> outputs;
   std::optional<std::string> plot;
+  std::optional<std::string> parameters;
   std::optional<std::string> report;
   std::optional<std::string> report_window;
   bool progress = false;
@@ -60,6 +62,7 @@ void refuse_contradictions(const Options& options) {
   }
   refuse("--report-window", options.report_window && !options.report, "there is no --report");
   refuse("--report", options.report && !report::page_is_built(), report::kHowToBuildPage);
+  refuse("--parameters", options.parameters == "-", "needs a file: it is read, too");
   if (!options.check) return;
   constexpr const char* kWhy = "nothing runs with --check";
   refuse("--steps", options.steps.has_value(), kWhy);
@@ -152,6 +155,9 @@ void execute(const Options& options) {
   run.progress = options.progress;
   run.stream = options.stream;
   run.settings = options.motion.settings();
+  if (options.parameters) run.settings.reader.parameters = load_parameters(*options.parameters);
+  Output* const parameters =
+      outputs.add("--parameters", options.check ? std::optional<std::string>() : options.parameters);
   outputs.keep("the program", options.program);
   if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
   outputs.check();
@@ -187,6 +193,7 @@ void execute(const Options& options) {
   }
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
   if (json != nullptr) json->write(json_text(result));
+  if (parameters != nullptr) parameters->write(parameters_text(result.parameters));
   if (plot != nullptr) plot->write(run::svg(result.plot));
   if (report) report->finish(report_json(result));
   outputs.commit(summary(result) + options.machine.line());
@@ -209,6 +216,10 @@ void add_run_command(CLI::App& app) {
   command->add_option("--path-steps", options->path_steps, "every step of the path: command,tick,axis,direction")
       ->type_name("FILE");
   command->add_option("--outputs", options->outputs, "every change of an output: cycle,output,level")
+      ->type_name("FILE");
+  command
+      ->add_option("--parameters", options->parameters,
+                   "parameters, offsets, homes and tool: read before the run, written behind it")
       ->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
   command->add_option("--report", options->report, "page of the run: path, speeds, pins, program; opens in a browser")

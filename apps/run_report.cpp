@@ -90,6 +90,13 @@ nlohmann::ordered_json events_json(const std::vector<MadeEvent>& events) {
 
 }  // namespace
 
+std::string probes_planned(const run::Plan& plan) {
+  if (plan.probes == 0) return {};
+  return fmt::format(
+      "  {} probes, taken to end at their targets; {} lines depend on them and are checked when reached\n", plan.probes,
+      plan.lines_on_probes);
+}
+
 std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   const std::array<std::pair<std::string_view, const char*>, 6> reasons{{
       {" M0 M1 ", "stops for the operator, which a simulation does not make:"},
@@ -133,6 +140,7 @@ std::string blends_text(const run::Blends& blends) {
   say(planner::Corner::kReversal, "reversals");
   say(planner::Corner::kNoCurve, "with an arc or helix in another plane, or without room for an arc");
   say(planner::Corner::kInvisible, "a blend would stay within a quarter of a pulse");
+  say(planner::Corner::kFaster, "a blend would take longer");
   return kept.empty() ? text : text + "  corners kept under G64 P:" + kept + "\n";
 }
 
@@ -143,7 +151,8 @@ nlohmann::ordered_json blends_json(const run::Blends& blends) {
           {"kept",
            {{"reversal", count(planner::Corner::kReversal)},
             {"no_curve", count(planner::Corner::kNoCurve)},
-            {"invisible", count(planner::Corner::kInvisible)}}}};
+            {"invisible", count(planner::Corner::kInvisible)},
+            {"faster", count(planner::Corner::kFaster)}}}};
 }
 
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds) {
@@ -168,6 +177,32 @@ std::vector<std::string> feed_warnings(const std::string& file, const std::vecto
   return lines;
 }
 
+namespace {
+
+// Machine coordinates.
+std::string probes_text(const RunResult& result) {
+  std::string text;
+  for (const run::ProbeMade& probe : result.probes) {
+    text += fmt::format("  probe at line {}: {}", probe.line, probe.tripped ? "edge at" : "no edge, ended at");
+    for (std::size_t a = 0; a < result.axes.size(); ++a)
+      text += fmt::format(" {}{:.4f}", result.axes[a], probe.edge[a]);
+    text += " (machine coordinates, mm)\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json probes_json(const RunResult& result) {
+  auto list = nlohmann::ordered_json::array();
+  for (const run::ProbeMade& probe : result.probes) {
+    const std::vector<double> edge(probe.edge.begin(),
+                                   probe.edge.begin() + static_cast<std::ptrdiff_t>(result.axes.size()));
+    list.push_back({{"line", probe.line}, {"tripped", probe.tripped}, {"position", edge}});
+  }
+  return list;
+}
+
+}  // namespace
+
 std::string summary(const RunResult& result) {
   const double seconds = static_cast<double>(result.cycles) / result.clock_hz;
   std::string text = fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz\n",
@@ -185,6 +220,7 @@ std::string summary(const RunResult& result) {
     text += fmt::format("  mean feed {} of {} mm/min\n", number(*result.achieved_feed), number(*result.commanded_feed));
   }
   text += blends_text(result.blends);
+  text += probes_text(result);
   text += outputs_text(result.outputs);
   if (!result.events.empty())
     text += fmt::format("  {} overrides, holds and inputs on the way\n", result.events.size());
@@ -241,6 +277,7 @@ nlohmann::ordered_json run_json(const RunResult& result) {
   json["outputs"] = outputs_json(result.outputs);
   json["inputs"] = nullptr;
   if (result.inputs) json["inputs"] = *result.inputs;
+  json["probes"] = probes_json(result);
   json["accepted_words"] = result.accepted;
   return json;
 }

@@ -1,11 +1,16 @@
 // Cards outside, from the command line: a served one, and everything that is none.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <csignal>
+#include <memory>
 #include <thread>
 
 #include "command.hpp"
 #include "server.hpp"
+#include "trammel/driver/errors.hpp"
+#include "trammel/transport/byte_stream.hpp"
+#include "trammel/transport/card_url.hpp"
 
 namespace trammel::test {
 namespace {
@@ -89,6 +94,81 @@ TEST(Serve, AClientIsKilled) {
   const Outcome next = command.run("line --to 10,10 --card " + server.moving());
   EXPECT_EQ(next.status, 0) << next.err;
   EXPECT_TRUE(has(next.err, "what was left is dropped")) << next.err;
+}
+
+// Carries bytes between a client and a server, and cuts the first connections after so many.
+class BadCable {
+ public:
+  BadCable(const std::string& server_url, std::uint64_t bytes, unsigned cuts)
+      : server_(transport::parse_card_url(server_url)), bytes_(bytes), cuts_(cuts), thread_([this] { carry(); }) {}
+  ~BadCable() {
+    ended_ = true;
+    thread_.join();
+  }
+  std::string url() const { return listener_->url(); }
+  unsigned cuts() const { return made_; }
+
+ private:
+  using Stream = std::unique_ptr<transport::ByteStream>;
+
+  void carry() {
+    while (!ended_) {
+      Stream client = listener_->accept();
+      if (client) carry(*client);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  void carry(transport::ByteStream& client) {
+    try {
+      const Stream server = transport::connect_tcp(server_.host, server_.port, std::chrono::seconds(5));
+      std::uint64_t carried = 0;
+      while (!ended_ && (made_ == cuts_ || carried < bytes_)) carried += move(client, *server) + move(*server, client);
+      made_ += made_ == cuts_ ? 0 : 1;
+    } catch (const driver::LinkError&) {
+    }
+  }
+  static std::size_t move(transport::ByteStream& from, transport::ByteStream& to) {
+    std::uint8_t bytes[64];
+    const std::size_t count = from.read(bytes, sizeof(bytes), std::chrono::nanoseconds(0));
+    to.write(bytes, count);
+    return count;
+  }
+
+  std::unique_ptr<transport::Listener> listener_ = transport::listen_tcp("127.0.0.1", 0);
+  transport::CardUrl server_;
+  std::uint64_t bytes_;
+  unsigned cuts_;
+  std::atomic<unsigned> made_{0};
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+// The run goes on, and the path is that of a cable that was whole.
+TEST(Serve, ACableThatIsCutThreeTimes) {
+  const Command command;
+  std::string text = "F3000\n";
+  for (int i = 1; i <= 400; ++i) text += "G1 X" + std::to_string(0.1 * i) + " Y" + std::to_string(i % 7 * 0.05) + "\n";
+  const std::string run = "run " + command.write("p.ngc", text);
+  ASSERT_EQ(command.run(run + " --engine model --clock 1000000 --json " + command.path("here.json")).status, 0);
+  Server server(command, "--engine model --fast");
+  const BadCable cable(server.url(), 9'000, 3);
+  const Outcome outcome =
+      command.run(run + " --card '" + cable.url() + "?token=secret' --json " + command.path("there.json"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err << server.errors();
+  EXPECT_EQ(cable.cuts(), 3U);
+  EXPECT_TRUE(has(outcome.err, "the motion goes on")) << outcome.err;
+  const nlohmann::json here = read_json(command.path("here.json"));
+  const nlohmann::json there = read_json(command.path("there.json"));
+  EXPECT_EQ(there["final_position"], here["final_position"]);
+  EXPECT_EQ(there["link"]["reconnections"], 3);
+  const std::string identity = here["path_steps"]["identity"].get<std::string>();
+  EXPECT_TRUE(has(server.end(), "identity " + identity)) << server.errors();
+}
+
+TEST(Serve, SaysThatItCannotKeepRealTime) {
+  const Command command;
+  Server server(command, "--engine rtl --clock 100000000");
+  EXPECT_TRUE(eventually([&] { return server.said("not in real time: the card made"); }));
 }
 
 TEST(Serve, ASecondClientAndASecondServer) {

@@ -62,9 +62,12 @@ class MemoryListener final : public transport::Listener {
 // The client's end.
 class ClientEnd final : public transport::ByteStream {
  public:
-  // `life`: bytes that it sends and reads before it is killed.
-  ClientEnd(serve::CardServer& server, MemoryListener& listener, std::optional<std::uint64_t> life = std::nullopt)
-      : server_(server), life_(life) {
+  // What comes at the end of its life.
+  enum class End { kKilled, kCut };
+  // `life`: bytes that it sends and reads before it is killed, or its connection is cut.
+  ClientEnd(serve::CardServer& server, MemoryListener& listener, std::optional<std::uint64_t> life = std::nullopt,
+            End end = End::kKilled)
+      : server_(server), life_(life), end_(end) {
     listener.arrive(pipe_);
     server_.turn();
   }
@@ -90,22 +93,26 @@ class ClientEnd final : public transport::ByteStream {
     return count;
   }
   std::string peer() const override { return "server"; }
-  // Cuts the connection without an end of the client.
+
+ private:
   void cut() {
     pipe_->client_open = false;
     pipe_->server_open = false;
   }
-
- private:
   void live(std::uint64_t bytes) {
     if (!life_) return;
-    if (*life_ < bytes) throw Killed();
+    if (*life_ < bytes && end_ == End::kKilled) throw Killed();
+    if (*life_ < bytes) {
+      cut();
+      throw driver::LinkError("the cable is cut");
+    }
     *life_ -= bytes;
   }
 
   serve::CardServer& server_;
   std::shared_ptr<Pipe> pipe_ = std::make_shared<Pipe>();
   std::optional<std::uint64_t> life_;
+  End end_;
 };
 
 }  // namespace trammel::test

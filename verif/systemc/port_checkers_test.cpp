@@ -152,6 +152,7 @@ const std::map<std::string, Breaks>& breaks_axi() {
   return all;
 }
 
+// Over a screen: a table, an entry for each rule.
 const std::map<std::string, Breaks>& breaks_axi_card() {
   static const std::map<std::string, Breaks> all = {
       {"AXI4-Lite: BVALID falls before BREADY",

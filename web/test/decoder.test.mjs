@@ -8,6 +8,7 @@ import { join } from 'node:path'
 import { after, test } from 'node:test'
 import { Achieved } from '../src/achieved.js'
 import { Bytes } from '../src/decode.js'
+import { lastAtMost } from '../src/run.js'
 import { sample } from '../src/samples.js'
 import { readPage, trammel } from './page.mjs'
 
@@ -71,6 +72,29 @@ test('the deviations that the page finds are those that the run measured', () =>
   assert.ok(run.program[place.line - 1].length > 0)
 })
 
+// The commanded place at the clock of each step against what the pulses have made by then: each within half a pulse of the
+// path, the arcs' closing beside it, and what moves in the clocks by which the map of times may be off.
+for (const [name, ...options] of [['at full speed'], ['held and overridden', '--hold-at', '2:1.5', '--override-at', '6:30'], ['S-curves', ...['x', 'y', 'z', 'e'].flatMap((axis) => ['--set', `axis.${axis}.max_jerk=20000`])]]) {
+  test(`at every time the commanded place is the executed one: ${name}`, () => {
+    const { run } = report(part, '--clock', '1000000', ...options)
+    let worst = 0, at = 0
+    for (let i = 0; i < run.executed.count; i += 7) {
+      const cycle = run.executed.times[i]
+      const { motion } = run.motionAt(cycle)
+      const stretch = run.stretchAt(motion)
+      const share = run.shareAt(stretch, motion - run.motion.begins[stretch])
+      run.axes.forEach((axis, a) => {
+        const steps = run.steps[a]
+        const last = lastAtMost(steps.cycles, cycle)
+        const made = last < 0 ? axis.start : steps.positions[last]
+        const off = Math.abs(run.axisAt(run.motion.paths[stretch], a, share)[0] * axis.steps_per_mm - made)
+        if (off > worst) { worst = off; at = run.seconds(cycle) }
+      })
+    }
+    assert.ok(worst < 1.25, `${worst} pulses at ${at} s`)
+  })
+}
+
 test('commanded speed is the feed, and what the pulses make of it is the same', () => {
   const { run } = report(programOf('G21 G90 G91.1\nG1 X60 F600\nG2 I-10 F600\n'), '--clock', '1000000')
   const achieved = new Achieved(run)
@@ -93,6 +117,32 @@ test('accelerations and jerks are those of the machine file, on straight lines t
   const jerk = sample(curved, new Achieved(curved), 0, curved.cycles, 2000).axes[2].map((values) => Math.max(...values.map(Math.abs)))
   assert.ok(Math.abs(jerk[0] / 20000 - 1) < 0.02, `${jerk[0]}`)
   assert.ok(jerk[1] / 20000 < 1.02, `${jerk[1]}`)
+})
+
+test('speed, acceleration and jerk are each the derivative of the one before, on lines, arcs and blends in space', () => {
+  const jerks = ['x', 'y', 'z', 'e'].flatMap((axis) => ['--set', `axis.${axis}.max_jerk=30000`])
+  const { run } = report(programOf('G21 G90 G91.1 G64 P1\nF3000\nG1 X30 Y8\nG3 X30 Y28 J10\nG1 X10 Y20 Z9\nG18 G2 X20 Z9 I5 K0\nG17 G1 X0 Y0 Z0\nG1 X20 Y30 Z10\nG1 X40 Y0 Z12\n'), '--clock', '1000000', ...jerks)
+  const f = run.clockHz * run.fullRatio
+  const kinds = new Set()
+  let compared = 0
+  for (let s = 0; s < run.motion.count; ++s) {
+    const path = run.motion.paths[s]
+    const clocks = run.motion.begins[s + 1] - run.motion.begins[s]
+    if (clocks < 4000) continue
+    const h = 200, t = clocks / 2
+    const [before, now, behind] = [t - h, t, t + h].map((at) => run.axes.map((_, a) => run.axisAt(path, a, run.shareAt(s, at))))
+    kinds.add(run.paths.flags[path] & 3)
+    run.axes.forEach((axis, a) => {
+      const bound = [axis.max_velocity, axis.max_acceleration, axis.max_jerk]
+      for (let d = 0; d < 3; ++d) {
+        const difference = (behind[a][d] - before[a][d]) / (2 * h) * f
+        assert.ok(Math.abs(difference - now[a][d + 1]) < 2e-3 * bound[d], `line ${run.paths.lines[path]} ${axis.letter} ${d + 1}: ${difference} ${now[a][d + 1]}`)
+        ++compared
+      }
+    })
+  }
+  assert.deepEqual([...kinds].sort(), [0, 1, 2])
+  assert.ok(compared > 200, `${compared}`)
 })
 
 test('a hold and an override show where they were made', () => {

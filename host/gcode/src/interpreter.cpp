@@ -56,7 +56,7 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
     return Outcome::kFailed;
   }
   modes_.set_feed(words);
-  if (depends(words)) {
+  if ((words.later() || words.has_axis_words()) && depends(words)) {
     ++lines_on_probes_;
   }
   if (!act(context) && !defer(context, before)) {

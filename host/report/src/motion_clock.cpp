@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kUpdate = 32;            // clocks
 constexpr std::uint64_t kSwapClocks = 6;  // from a piece's last tick to the first clock at the next one's rate
-constexpr std::uint64_t kRounding = 2;  // ticks
+constexpr std::uint64_t kRounding = 2;    // ticks
 constexpr double kFastest = 1 - 0x1p-48;
 
 }  // namespace

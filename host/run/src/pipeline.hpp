@@ -1,7 +1,9 @@
 // One pass over a program: lines, reader, blocks, planner. Internal to the runner.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
@@ -17,17 +19,47 @@ class Pipeline {
       : lines_(lines()),
         reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
         blocks_(reader_, machine, planner::with_arcs_by(card, settings.arcs), reader_.position()),
-        planner_(blocks_, machine, card, {settings.single_block, settings.profile}) {
+        machine_(machine),
+        card_(card),
+        planning_({settings.single_block, settings.profile}) {
+    planner_.emplace(blocks_, machine_, card_, planning_);
     if (settings.profile == planner::SpeedProfile::kSCurve) blocks_.require_jerk();
     if (settings.single_block) blocks_.keep_corners();
   }
 
-  // As planner::Planner::next(), but throws ProgramError.
+  // As planner::Planner::next(), but throws ProgramError, and gives false where a probe stands next, too.
   bool next(driver::CommandSink& sink, planner::PlannedBlock& planned) {
-    const bool more = planner_.next(sink, planned);
+    const bool more = planner_->next(sink, planned);
     if (!more && blocks_.error()) throw ProgramError(*blocks_.error());
     return more;
   }
+  bool at_probe() const { return blocks_.at_probe(); }
+  // From here next() gives the probe's way to its target, then false.
+  const gcode::Motion& begin_probe() {
+    const gcode::Motion& motion = blocks_.begin_probe();
+    planner_.emplace(blocks_, machine_, card_, planning_);
+    return motion;
+  }
+  // Goes on behind the probe, machine coordinates in pulses.
+  void end_probe(const planner::Pulses& edge, const planner::Pulses& rest, bool tripped) {
+    reader_.probed(millimetres(edge), millimetres(rest), tripped);
+    go_on_at(rest);
+  }
+  // For the check before the run: at its target, not known yet.
+  void assume_probe(const planner::Pulses& target) {
+    reader_.assume_probed();
+    go_on_at(target);
+  }
+  std::size_t lines_on_probes() const { return reader_.lines_on_probes(); }
+  std::map<int, double> parameters() const { return reader_.parameters(); }
+  gcode::Coordinates millimetres(const planner::Pulses& pulses) const {
+    gcode::Coordinates at{};
+    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+      at[axis] = static_cast<double>(pulses[axis]) / machine_.axes[axis].steps_per_mm;
+    }
+    return at;
+  }
+
   const std::string& file() const { return lines_->name(); }
   const planner::Pulses& start() const { return blocks_.start(); }
   const std::map<std::string, std::size_t>& accepted() const { return reader_.accepted(); }
@@ -38,10 +70,18 @@ class Pipeline {
     return reader;
   }
 
+  void go_on_at(const planner::Pulses& here) {
+    blocks_.resume_at(here);
+    planner_.emplace(blocks_, machine_, card_, planning_);
+  }
+
   std::unique_ptr<gcode::LineSource> lines_;
   gcode::Reader reader_;
   planner::BlockBuilder blocks_;
-  planner::Planner planner_;
+  const machine::Machine& machine_;
+  planner::CardLimits card_;
+  planner::PlannerSettings planning_;
+  std::optional<planner::Planner> planner_;  // of the program up to the next probe
 };
 
 }  // namespace trammel::run

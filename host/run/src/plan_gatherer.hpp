@@ -20,11 +20,13 @@ class PlanGatherer final : public Observer {
   void planned(const planner::PlannedBlock& block, std::uint64_t /*first*/) override { add(block); }
   void sending(const planner::PlannedBlock& block) override { add(block); }
 
+  void probe() { ++plan_.probes; }
   // So far.
   Plan plan() const {
     Plan plan = plan_;
     plan.feeds_not_reached = feeds_.entries();
     plan.accepted = pipeline_.accepted();
+    plan.lines_on_probes = pipeline_.lines_on_probes();
     return plan;
   }
 

@@ -15,6 +15,9 @@
 namespace trammel::run {
 namespace {
 
+// That go with a probe's way: PROBE and PROBE_END.
+constexpr std::uint64_t kProbeCommands = 2;
+
 // The first pass needs the commands' number only.
 class NoSink final : public driver::CommandSink {
  public:
@@ -28,9 +31,11 @@ class ProgramStream final : private driver::CommandSink {
                 const machine::Machine& machine, bool single_block)
       : pipeline_(pipeline),
         observers_(observers),
+        machine_(machine),
         seconds_(machine),
         single_block_(single_block),
         card_(card),
+        before_(card.snapshot()),
         // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
         lines_(card.identification().geometry_depth),
         stream_(card, options()) {}
@@ -39,12 +44,8 @@ class ProgramStream final : private driver::CommandSink {
   planner::Pulses run() {
     planner::Pulses end = pipeline_.start();
     try {
-      while (next()) {
-        stream_.flush();
-        for (Observer* observer : observers_) observer->sent();
-        end = planned_.block.end;
-        first_of_block_ = true;
-      }
+      run_section(end);
+      for (; pipeline_.at_probe(); run_section(end)) probe();
       stream_.finish();
     } catch (const driver::StoppedError& error) {
       lines_.begun(error.geometry_begun());
@@ -57,8 +58,61 @@ class ProgramStream final : private driver::CommandSink {
   }
 
   std::uint64_t sent() const { return stream_.sent(); }
+  const std::vector<ProbeMade>& probes() const { return probes_; }
+  const driver::Snapshot& before() const { return before_; }
 
  private:
+  // Up to the end, or to the next probe.
+  void run_section(planner::Pulses& end) {
+    while (next()) {
+      stream_.flush();
+      for (Observer* observer : observers_) observer->sent();
+      end = planned_.block.end;
+      first_of_block_ = true;
+    }
+  }
+  // All before it is done first. What it sends is kept here until it is whole.
+  void probe() {
+    const gcode::Motion motion = pipeline_.begin_probe();
+    const bool level = machine_.probe.touched_level != motion.probe_away;
+    const driver::ProbeCommand condition{static_cast<std::uint8_t>(machine_.probe.input.value_or(0)), level};
+    std::vector<driver::Command> paths;
+    probe_paths_ = &paths;
+    planned_.block.line = motion.line;
+    announce(condition);
+    while (next()) {
+      for (Observer* observer : observers_) observer->sent();
+      first_of_block_ = true;
+    }
+    announce(driver::ProbeEndCommand{});
+    probe_paths_ = nullptr;
+    if (paths.empty()) throw RunError(pipeline_.file(), motion.line, "a probe that moves by less than a pulse");
+    end_probe(motion, stream_.probe(condition, paths));
+  }
+  void end_probe(const gcode::Motion& motion, const driver::ProbeResult& result) {
+    using driver::ProbeOutcome;
+    if (motion.probe_must_trip && result.outcome != ProbeOutcome::kTripped) {
+      const bool missed = result.outcome == ProbeOutcome::kMissed;
+      const char* const what =
+          missed ? (motion.probe_away ? "the probe is not free at the end of its way"
+                                      : "the probe has met nothing on its way")
+                 : (motion.probe_away ? "the probe is free before it moves" : "the probe touches before it moves");
+      throw RunError(pipeline_.file(), motion.line, what);
+    }
+    const bool tripped = result.outcome != ProbeOutcome::kMissed;
+    const planner::Pulses rest = machine_position(result.rest);
+    const planner::Pulses edge = result.outcome == ProbeOutcome::kTripped ? machine_position(result.edge) : rest;
+    probes_.push_back({motion.line, tripped, pipeline_.millimetres(edge)});
+    pipeline_.end_probe(edge, rest, tripped);
+  }
+  // By axis of the machine.
+  planner::Pulses machine_position(const driver::Snapshot& at) const {
+    planner::Pulses position = pipeline_.start();
+    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+      position[axis] += driver::pulses_between(before_.position[axis], at.position[axis]);
+    }
+    return position;
+  }
   // What stands before an error of the program is run to its end, which is a stop.
   bool next() {
     try {
@@ -83,11 +137,19 @@ class ProgramStream final : private driver::CommandSink {
     }
   }
   void send(const driver::Command& command) {
+    announce(command);
+    if (probe_paths_ != nullptr) {
+      probe_paths_->push_back(command);
+    } else {
+      stream_.put(command);
+    }
+  }
+  // Before it goes to the stream.
+  void announce(const driver::Command& command) {
     for (Observer* observer : observers_) observer->command(commands_, command);
     ++commands_;
     const bool geometry = !std::holds_alternative<driver::FeedCommand>(command);
     if (geometry && driver::counts_as_begun(command)) lines_.put(planned_.block.line);
-    stream_.put(command);
   }
   driver::StreamOptions options() {
     // 200 looks a second: the queues hold far more than 5 ms of motion, and every look costs a simulation bus clocks.
@@ -112,10 +174,14 @@ class ProgramStream final : private driver::CommandSink {
 
   Pipeline& pipeline_;
   const std::vector<Observer*>& observers_;
+  const machine::Machine& machine_;
   SecondMotors seconds_;
   bool single_block_;
   std::size_t line_ = 0;  // of the block under way
   driver::Card& card_;
+  driver::Snapshot before_;
+  std::vector<ProbeMade> probes_;
+  std::vector<driver::Command>* probe_paths_ = nullptr;  // while a probe's commands are gathered
   planner::PlannedBlock planned_;
   bool first_of_block_ = true;
   std::uint64_t commands_ = 0;  // put
@@ -141,9 +207,19 @@ const Plan& Runner::plan() {
   PlanGatherer gatherer(pipeline);
   NoSink sink;
   std::uint64_t commands = 0;
-  for (planner::PlannedBlock planned; pipeline.next(sink, planned); commands += planned.commands) {
-    for (Observer* observer : observers_) observer->planned(planned, commands);
-    gatherer.planned(planned, commands);
+  planner::PlannedBlock planned;
+  const auto plan_section = [&] {
+    for (; pipeline.next(sink, planned); commands += planned.commands) {
+      for (Observer* observer : observers_) observer->planned(planned, commands);
+      gatherer.planned(planned, commands);
+    }
+  };
+  for (plan_section(); pipeline.at_probe(); plan_section()) {
+    gatherer.probe();
+    pipeline.begin_probe();
+    commands += kProbeCommands;
+    plan_section();
+    pipeline.assume_probe(planned.block.end);
   }
   return plan_ = gatherer.plan();
 }
@@ -160,46 +236,52 @@ Outcome Runner::run(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
   Pipeline pipeline(lines_, machine_, planning_limits(card_, machine_), settings_);
-  const driver::Snapshot before = card.snapshot();
   ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block);
   const planner::Pulses end = stream.run();
-  if (stream.sent() != plan_.commands || end != plan_.end) {
+  if (plan_.probes == 0 && (stream.sent() != plan_.commands || end != plan_.end)) {
     throw ProgramError({gcode::ErrorCode::kCannotRead, plan_.file, 0, "the program has changed while it was run"});
   }
-  return outcome(card, before, stream.sent());
+  Outcome made = outcome(card, stream.before(), end);
+  made.commands = stream.sent();
+  made.probes = stream.probes();
+  made.parameters = pipeline.parameters();
+  return made;
 }
 
 Outcome Runner::stream(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
   Pipeline pipeline(lines_, machine_, planning_limits(card_, machine_), settings_);
-  const driver::Snapshot before = card.snapshot();
   PlanGatherer gatherer(pipeline);
   std::vector<Observer*> observers = observers_;
   observers.push_back(&gatherer);
   ProgramStream stream(pipeline, card, observers, machine_, settings_.single_block);
-  stream.run();
+  const planner::Pulses end = stream.run();
   plan_ = gatherer.plan();
-  return outcome(card, before, stream.sent());
+  plan_.probes = stream.probes().size();
+  Outcome made = outcome(card, stream.before(), end);
+  made.commands = stream.sent();
+  made.probes = stream.probes();
+  made.parameters = pipeline.parameters();
+  return made;
 }
 
-// Throws unless the card has counted what the plan says.
-Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, std::uint64_t commands) const {
+// Throws unless the card has counted what the program says.
+Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, const planner::Pulses& end) const {
   const driver::Snapshot after = card.snapshot();
   const SecondMotors motors(machine_);
   Outcome outcome;
   for (std::size_t motor = 0; motor < machine_.motors(); ++motor) {
     const std::size_t axis = motors.axis_of(motor);
     const std::int64_t counted = driver::pulses_between(before.position[motor], after.position[motor]);
-    const std::int64_t planned = plan_.end[axis] - plan_.start[axis];
+    const std::int64_t planned = end[axis] - plan_.start[axis];
     if (counted != planned) {
       throw std::runtime_error(
           fmt::format("axis {}: the card ended at pulse {}, the program at {}", motor, counted, planned));
     }
     outcome.counted.push_back(counted);
-    if (motor == axis) outcome.final_position.push_back(plan_.end[axis]);
+    if (motor == axis) outcome.final_position.push_back(end[axis]);
   }
-  outcome.commands = commands;
   if (card_map::has_engine(card.identification().engines, card_map::engine::kUnderrunHold)) {
     outcome.under_runs = card.read(card_map::reg::kUnderruns);
   }

@@ -51,7 +51,8 @@ class CommandChecker {
   // Of the command that is committed: a path or a barrier, and so one that the sequencer counts.
   bool counts_in_geometry() const {
     using card_map::Opcode;
-    const bool instant = command_->opcode == Opcode::Output || command_->opcode == Opcode::Mark;
+    const Opcode opcode = command_->opcode;
+    const bool instant = opcode == Opcode::Output || opcode == Opcode::Mark || opcode == Opcode::Probe;
     return outputs_.geometry_commit && !instant;
   }
 

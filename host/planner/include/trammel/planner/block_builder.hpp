@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 
 #include "trammel/gcode/reader.hpp"
@@ -31,6 +32,12 @@ class BlockBuilder {
   // without a step gives no block: the line after it begins where it began.
   bool next(Block& block);
   const std::optional<gcode::Error>& error() const { return error_; }
+
+  // A probe stands next: next() has given all before it, and gives false until begin_probe(), then its way to the
+  // target as the only block, then false until resume_at() tells where the machine stands.
+  bool at_probe() const { return probe_ != Probe::kNone; }
+  const gcode::Motion& begin_probe();
+  void resume_at(const Pulses& here);
 
   const Pulses& start() const { return start_; }
   // From the next block on, a motion of an axis without max_jerk is refused.
@@ -57,7 +64,10 @@ class BlockBuilder {
     double acceleration;
     double jerk;
   };
+  enum class Probe : std::uint8_t { kNone, kReached, kBegun, kPlanned };
+
   bool build(Block& block);
+  bool next_probe(Block& block);
   void switch_outputs();
   bool set_targets(Block& block);
   bool build_line(Block& block);
@@ -95,6 +105,7 @@ class BlockBuilder {
   gcode::Coordinates exact_{};     // where the program is, unrounded
   gcode::Coordinates anchor_{};    // where the last block ended, unrounded
   driver::OutputCommand outputs_;  // for the next block
+  Probe probe_ = Probe::kNone;
   std::optional<gcode::Error> error_;
 };
 

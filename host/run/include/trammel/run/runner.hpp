@@ -79,13 +79,24 @@ struct Plan {
   planner::Pulses end{};
   std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first
   std::map<std::string, std::size_t> accepted;    // words without effect yet and how often
+  std::uint64_t probes = 0;                       // taken to end at their targets
+  std::uint64_t lines_on_probes = 0;              // that depend on where they end: checked again when reached
+};
+
+// What a probe of the program has met.
+struct ProbeMade {
+  std::size_t line = 0;
+  bool tripped = false;
+  gcode::Coordinates edge{};  // machine coordinates; where it ended, if it did not trip
 };
 
 struct Outcome {
   std::vector<std::int64_t> counted;         // pulses from the start, by axis of the card, as it counted them
   std::vector<std::int64_t> final_position;  // pulses, machine coordinates
   std::uint64_t commands = 0;                // sent
-  std::optional<std::uint32_t> under_runs;   // holds for want of commands; none where the card has no such hold
+  std::vector<ProbeMade> probes;
+  std::map<int, double> parameters;         // of the program at its end, those that are not 0
+  std::optional<std::uint32_t> under_runs;  // holds for want of commands; none where the card has no such hold
 };
 
 class Runner {
@@ -112,7 +123,7 @@ class Runner {
 
  private:
   void require_planned_for(driver::Card& card) const;
-  Outcome outcome(driver::Card& card, const driver::Snapshot& before, std::uint64_t commands) const;
+  Outcome outcome(driver::Card& card, const driver::Snapshot& before, const planner::Pulses& end) const;
 
   ProgramLines lines_;
   const machine::Machine& machine_;

@@ -1,0 +1,43 @@
+// The page for people lists the words that the reader understands: all of them, and no others.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "trammel/gcode/reader.hpp"
+
+namespace trammel::gcode {
+namespace {
+
+// Words in the first column of the page's tables: | `G0`, `G1` | ...
+std::set<std::string> words_of_page() {
+  std::ifstream page(TRAMMEL_GCODE_PAGE);
+  EXPECT_TRUE(page);
+  std::set<std::string> words;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("| `", 0) != 0) continue;
+    const std::string cell = line.substr(2, line.find(" |", 2) - 2);
+    for (std::size_t at = cell.find('`'); at != std::string::npos; at = cell.find('`', at)) {
+      const std::size_t end = cell.find('`', at + 1);
+      std::string word = cell.substr(at + 1, end - at - 1);
+      EXPECT_TRUE(words.insert(word).second) << word << " stands twice";
+      at = end + 1;
+    }
+  }
+  return words;
+}
+
+TEST(GcodePage, ListsWhatTheReaderUnderstands) {
+  const std::vector<std::string> known = known_words();
+  const std::set<std::string> reader(known.begin(), known.end());
+  EXPECT_EQ(reader.size(), known.size()) << "a word twice";
+  EXPECT_GT(reader.size(), 80U);
+  const std::set<std::string> page = words_of_page();
+  for (const std::string& word : reader) EXPECT_TRUE(page.count(word)) << word << " is not on docs/user/g-code.md";
+  for (const std::string& word : page) EXPECT_TRUE(reader.count(word)) << word << " is on the page alone";
+}
+
+}  // namespace
+}  // namespace trammel::gcode
