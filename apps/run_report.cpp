@@ -140,6 +140,7 @@ std::string blends_text(const run::Blends& blends) {
   say(planner::Corner::kReversal, "reversals");
   say(planner::Corner::kNoCurve, "with an arc or helix in another plane, or without room for an arc");
   say(planner::Corner::kInvisible, "a blend would stay within a quarter of a pulse");
+  say(planner::Corner::kFaster, "a blend would take longer");
   return kept.empty() ? text : text + "  corners kept under G64 P:" + kept + "\n";
 }
 
@@ -150,7 +151,8 @@ nlohmann::ordered_json blends_json(const run::Blends& blends) {
           {"kept",
            {{"reversal", count(planner::Corner::kReversal)},
             {"no_curve", count(planner::Corner::kNoCurve)},
-            {"invisible", count(planner::Corner::kInvisible)}}}};
+            {"invisible", count(planner::Corner::kInvisible)},
+            {"faster", count(planner::Corner::kFaster)}}}};
 }
 
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds) {

@@ -133,6 +133,52 @@ TEST(Notes, BlendsAndCornersThatAreKept) {
   EXPECT_EQ(single.out.find("G64 P"), std::string::npos) << single.out;
 }
 
+TEST(Words, LinesOfFurtherWordsAreLeftOut) {
+  const Command command;
+  const std::string run = "run " + command.write("a.gcode", "M862.3 P \"MK3S\"\nM900 K0.05\nG1 X1 F600\n") + " --check";
+  const Outcome refused = command.run(run);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("a.gcode:1: unsupported word 'M862.3'"), std::string::npos) << refused.err;
+  const Outcome outcome = command.run(run + " --accept M862.3 --accept m900");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("no hardware: M862.3 (1) M900 (1)\n"), std::string::npos) << outcome.out;
+  for (const char* word : {"900", "G1", "M", "M1.25", "M99999", "M-1", "Mx"}) {
+    const Outcome bad = command.run(run + " --accept " + word);
+    EXPECT_EQ(bad.status, 2) << word;
+    EXPECT_NE(bad.err.find("is no M word such as M900 or M862.3"), std::string::npos) << bad.err;
+  }
+}
+
+TEST(Parameters, PersistWhereAFileIsNamed) {
+  const Command command;
+  const std::string first = command.write("a.ngc", "#31=2.5\nG0 X4\nG10 L20 P1 X0\nG30.1\nT3 M6\nM2\n");
+  const std::string second = command.write("b.ngc", "G0 X#31 Y#5400\nM2\n");
+  const std::string file = command.path("machine.var");
+  const std::string with = " --engine model --parameters " + file;
+  EXPECT_EQ(command.run("run " + first + " --check --parameters " + file).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(file)) << "a check leaves nothing";
+  const Outcome outcome = command.run("run " + first + with);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(contents(file), "31\t2.5\n5181\t4\n5220\t1\n5221\t4\n5400\t3\n");
+  const Outcome next = command.run("run " + second + with);
+  ASSERT_EQ(next.status, 0) << next.err;
+  EXPECT_NE(next.out.find("X: 520 pulses made"), std::string::npos) << "6.5 mm: " << next.out;
+  EXPECT_NE(next.out.find("Y: 240 pulses made"), std::string::npos) << next.out;
+  EXPECT_EQ(command.run("run " + second + " --engine model").status, 0);
+
+  const std::string kept = contents(file);
+  EXPECT_NE(command.run("run " + command.write("c.ngc", "#31=9\nG1 X1\n") + with).status, 0);
+  EXPECT_EQ(contents(file), kept) << "after a program that was refused";
+  for (const char* line : {"31", "0 1", "5603 1", "31 x", "31 1 2", "31 1e13", "x 1"}) {
+    command.write("machine.var", std::string("1 2\n\n") + line + "\n");
+    const Outcome bad = command.run("run " + second + with);
+    EXPECT_EQ(bad.status, 2) << line;
+    EXPECT_NE(bad.err.find("machine.var:3: not a parameter's number (1 to 5602) and its value"), std::string::npos)
+        << bad.err;
+  }
+  EXPECT_EQ(command.run("run " + second + " --engine model --parameters -").status, 2);
+}
+
 TEST(Program, FromStandardInputAndPipes) {
   const Command command;
   const std::string program = command.write("a.ngc", "G1 X1 F600\nG1 X0\n");

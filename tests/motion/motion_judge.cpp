@@ -30,14 +30,12 @@ class Judge {
     if (now.begins_path) enter(now);
     // Path and rate do not change in the same clock: borders of pieces are at whole ticks, and a piece goes on for some
     // clocks after its last one. Until then the new path is run at the rates of the piece before.
-    if (now.begins_piece) {
-      piece_clock_ = now.clock;
-      piece_rate_ = rate(now);
-    }
+    if (now.begins_piece) piece_clock_ = now.clock;
     handing_over_ =
         !resting_ &&
         ((piece_clock_ < path_clock_ && (now.ticks <= 1 || now.clock - path_clock_ < 2 * MotionWalk::kSwapClocks)) ||
          now.path->ticks - now.ticks <= 2);
+    if (corner_waits_ && (now.begins_piece || !handing_over_)) corner(now);
     if (resting_)
       at_rest(now);
     else if (now.begins_piece)
@@ -48,7 +46,10 @@ class Judge {
     ++verdict.updates;
   }
 
-  void stop() { at_rest(last_); }
+  void stop() {
+    if (corner_waits_) corner(last_);
+    at_rest(last_);
+  }
 
   MotionVerdict verdict;
 
@@ -105,15 +106,17 @@ class Judge {
   }
 
   void border(const Interval& now) {
+    const bool new_path = now.ticks <= 1 || now.clock - path_clock_ <= 2 * MotionWalk::kSwapClocks;
+    const double change = new_path ? density_change(now) : 1;
     const double before = rate(last_);
     const double after = rate(now);
     const double gain = static_cast<double>(now.gain) * 0x1p-48;
-    const double most = std::max(before, after);
-    const double rest = std::max(floor(course_), floor(last_course_));
+    const double most = std::max(before * change, after);
+    const double rest = std::max(floor(course_), floor(last_course_) * change);
     const bool stop = most <= 2 * rest;  // and a start
-    const double allowed = std::abs(gain) + std::abs(acceleration(last_)) * kUpdate + 0.001 * most + (stop ? rest : 0);
+    const double allowed =
+        std::abs(gain) + std::abs(acceleration(last_)) * kUpdate * change + 0.001 * most + (stop ? rest : 0);
     double jump = std::abs(after - before);
-    const bool new_path = now.ticks <= 1 || now.clock - path_clock_ <= 2 * MotionWalk::kSwapClocks;
     // Where a path ends too, the density of ticks may change with the rate; it is known as well as the rounded lengths.
     if (new_path) {
       const double scaled = before * mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
@@ -129,24 +132,33 @@ class Judge {
     }
   }
 
+  // Of ticks a mm, from the path before to this one, where a piece begins with it: 1 unless the rates say otherwise.
+  double density_change(const Interval& now) const {
+    if (!now.begins_piece) return 1;
+    const double change = mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
+    const double rates = rate(now) / rate(last_);
+    return std::abs(std::log(rates / change)) < std::abs(std::log(rates)) ? change : 1;
+  }
+
   static double mm_a_tick(const Course& course, const Interval& at) {
     return course.length / static_cast<double>(at.path->ticks);
   }
 
   void enter(const Interval& now) {
+    if (corner_waits_) corner(last_);
     last_course_ = course_;
     course_ = course_of(*now.path, limits_.machine);
     path_clock_ = now.clock;
     before_ = last_;
-    if (!resting_) corner(now);
+    corner_waits_ = !resting_;
   }
 
   // Speed through a corner against what the rules allow for the least turn that rounded ends leave; a corner that
   // allows no speed is passed at the floor.
   void corner(const Interval& now) {
-    const double ticks = limits_.clock_hz * rate(last_);
-    const double at_floor = limits_.clock_hz * (floor(last_course_) + 1.5 * std::abs(acceleration(last_)) * kUpdate);
-    if (last_course_.spatial && course_.spatial) verdict.corner.look(jump(now, ticks, false), now.path->command);
+    corner_waits_ = false;
+    const double at_floor = floor(last_course_) + 1.5 * std::abs(acceleration(before_)) * kUpdate;
+    if (last_course_.spatial && course_.spatial) verdict.corner.look(jump(now, false), now.path->command);
     double allowed = 0;
     if (last_course_.spatial == course_.spatial) {
       Vector turn{};
@@ -164,31 +176,33 @@ class Judge {
       allowed = std::sqrt(most * std::min(limits_.junction_deviation * s / (1 - s), shorter / angle));
     }
     ++verdict.corners;
-    const double scale = limits_.clock_hz * mm_a_tick(last_course_, last_) * (1 - last_course_.error);  // mm/s
-    // Half an update, and a tick of the ramp to the corner, may be left; and the part of a tick, less than its rate, by
-    // which the piece before the ramp went beyond its last one.
-    const double gain = std::abs(acceleration(last_)) * kUpdate;
-    const double most_rate =
-        std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate * (1 + piece_rate_)) + gain / 2;
-    double share = rate(last_) / std::max(most_rate, at_floor / limits_.clock_hz);
+    const double scale = limits_.clock_hz * mm_a_tick(last_course_, before_) * (1 - last_course_.error);  // mm/s
+    // Half an update, and a tick of the ramp to the corner, may be left.
+    const double gain = std::abs(acceleration(before_)) * kUpdate;
+    const double most_rate = std::sqrt(allowed * allowed / (scale * scale) + 2 * gain / kUpdate) + gain / 2;
+    double share = rate(before_) / std::max(most_rate, at_floor);
     // A way of X Y Z below a pulse may be hidden in the other: then it is no stop, but no axis may jump.
-    if (last_course_.spatial != course_.spatial) share = std::min(share, jump(now, ticks, true));
+    if (last_course_.spatial != course_.spatial) share = std::min(share, jump(now, true));
     verdict.corner.look(share, now.path->command);
   }
 
   // Axes outside X Y Z, or `all`, may jump by sqrt(a d); rounded ends may hide half a pulse of each path.
-  double jump(const Interval& now, double ticks, bool all) const {
+  double jump(const Interval& now, bool all) const {
+    const double ticks_before = limits_.clock_hz * rate(before_);  // a second
+    const double ticks_after = density_change(now) == 1 ? ticks_before : limits_.clock_hz * rate(now);
     double share = 0;
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       const machine::MachineAxis& axis = limits_.machine.axes[a];
       if (!all && is_spatial(axis)) continue;
-      const double before = last_course_.exit[a] * mm_a_tick(last_course_, last_);
+      const double before = last_course_.exit[a] * mm_a_tick(last_course_, before_);
       const double after = course_.entry[a] * mm_a_tick(course_, now);
-      const double hidden =
-          (1.0 / static_cast<double>(last_.path->ticks) + 1.0 / static_cast<double>(now.path->ticks)) / scale(a);
-      const double jumped = (std::abs(after - before) - hidden) * ticks;
-      const double allowed = std::sqrt(axis.max_acceleration * limits_.junction_deviation) +
-                             floor(last_course_) * limits_.clock_hz * std::max(std::abs(before), std::abs(after));
+      const double hidden = (ticks_before / static_cast<double>(before_.path->ticks) +
+                             ticks_after / static_cast<double>(now.path->ticks)) /
+                            scale(a);
+      const double jumped = std::abs(after * ticks_after - before * ticks_before) - hidden;
+      const double at_floor = std::max(floor(last_course_) * std::abs(before), floor(course_) * std::abs(after));
+      const double allowed =
+          std::sqrt(axis.max_acceleration * limits_.junction_deviation) + at_floor * limits_.clock_hz;
       share = std::max(share, jumped / allowed);
     }
     return share;
@@ -219,8 +233,8 @@ class Judge {
   Interval before_;                // the last one on the path before
   std::uint64_t path_clock_ = 0;   // of this path's first clock
   std::uint64_t piece_clock_ = 0;  // of this piece's
-  double piece_rate_ = 0;          // its first
   bool handing_over_ = false;
+  bool corner_waits_ = false;  // for the rate with which the path goes on
 };
 
 }  // namespace

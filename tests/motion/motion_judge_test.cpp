@@ -97,10 +97,10 @@ void expect_within_limits(const MotionVerdict& verdict) {
 }
 
 // A zigzag of short lines in a cube, with feeds that change.
-std::string random_lines(unsigned seed) {
+std::string random_lines(unsigned seed, bool other_axis = false) {
   std::mt19937 random(seed);
   std::string program = "G21 G90 G94\n";
-  double x = 0, y = 0, z = 0;
+  double x = 0, y = 0, z = 0, e = 0;
   for (int i = 0; i < 60; ++i) {
     const double length = std::exp2(std::uniform_real_distribution<>(-5, 4)(random));
     const double heading = std::uniform_real_distribution<>(0, 6.28)(random);
@@ -108,7 +108,9 @@ std::string random_lines(unsigned seed) {
     y += length * std::sin(heading);
     if (random() % 4 == 0) z += std::uniform_real_distribution<>(-1, 1)(random);
     if (i % 10 == 0) program += fmt::format("F{:.0f}\n", std::uniform_real_distribution<>(300, 9000)(random));
-    program += fmt::format("G{} X{:.4f} Y{:.4f} Z{:.4f}\n", random() % 12 == 0 ? 0 : 1, x, y, z);
+    program += fmt::format("G{} X{:.4f} Y{:.4f} Z{:.4f}", random() % 12 == 0 ? 0 : 1, x, y, z);
+    if (other_axis) e += length * std::exp2(std::uniform_real_distribution<>(-3, 5)(random)) * (random() % 4 ? 1 : -1);
+    program += other_axis ? fmt::format(" E{:.4f}\n", e) : "\n";
   }
   return program + "M2\n";
 }
@@ -160,6 +162,21 @@ TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
   }
 }
 
+// An axis beside X Y Z that goes along, up to 32 times as far: the path is that of X Y Z all the same.
+TEST(MotionJudge, ProgramsWithAFurtherAxisAreWithinTheirLimits) {
+  for (unsigned seed = 1; seed <= random_programs() / 4; ++seed) {
+    const double jerk = seed % 2 == 0 ? 20000 : 0;
+    SCOPED_TRACE(fmt::format("seed {}, jerk {}", seed, jerk));
+    const std::string program = random_lines(seed, true);
+    gcode::TextLines lines(program, "program");
+    const machine::Machine machine = machine_of(100, 1000, jerk);
+    const Planned planned(lines, machine, 10 * kClock);
+    const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
+    expect_within_limits(verdict);
+    EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
+  }
+}
+
 // 40 mm of short chords that bend to and fro, at feeds that change: where the clock is slow, so does the density of
 // ticks.
 std::string bends_with_feeds(unsigned seed) {
@@ -199,12 +216,12 @@ TEST(MotionJudge, StopsOfAShortWindowAreWithinTheirLimits) {
 TEST(MotionJudge, BlendedProgramsAreWithinTheirLimits) {
   for (unsigned seed = 1; seed <= random_programs() / 4; ++seed) {
     const double jerk = seed % 2 == 0 ? 20000 : 0;
-    const std::string program = fmt::format("G64 P{}\n", seed % 3 == 0 ? 1.0 : 0.1) + random_lines(seed);
+    const std::string program = fmt::format("G64 P{}\n", seed % 3 == 0 ? 1.0 : 0.3) + random_lines(seed);
     SCOPED_TRACE(fmt::format("seed {}, jerk {}", seed, jerk));
     gcode::TextLines lines(program, "program");
     const machine::Machine machine = machine_of(100, 1000, jerk);
     const Planned planned(lines, machine, 10 * kClock);
-    EXPECT_GT(planned.blends, 20U);
+    EXPECT_GT(planned.blends, 10U);
     const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
     expect_within_limits(verdict);
     EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
@@ -246,7 +263,7 @@ TEST(MotionJudge, StepsFollowABlendedMotion) {
 // Where the clock does not change the ticks a pulse between lines and blends.
 TEST(MotionJudge, OctocatBlendedIsWithinItsLimits) {
   std::ifstream file(std::filesystem::path(TRAMMEL_SHARED_GCODE_DIR) / "octocat.gcode");
-  std::string program = "G64 P0.05\n";
+  std::string program = "G64 P0.1\n";
   std::string line;
   for (int i = 0; i < 4000 && std::getline(file, line); ++i) program += line + "\n";
   for (const double jerk : {0.0, 30000.0}) {
@@ -315,6 +332,21 @@ TEST(MotionJudge, CurvesInChordsAreWithinTheirLimits) {
       expect_within_limits(program.verdict());
       EXPECT_LE(program.farthest(), 0.8);
     }
+  }
+}
+
+// From rest to rest on arcs alone: the acceleration in all is what the axes have at every speed, never more.
+TEST(MotionJudge, ArcsUseTheirAccelerationAtEverySpeed) {
+  for (const char* text : {"G2 I10\n", "G3 X20 I10\n", "G2 X1 Y1 I1\n", "G17 G2 I10 Z2 P2\n"}) {
+    SCOPED_TRACE(text);
+    const std::string program = std::string("G21 G90 G94 F60000\n") + text + "M2\n";
+    gcode::TextLines lines(program, "program");
+    const machine::Machine machine = machine_of(300, 1000, 0);
+    const Planned planned(lines, machine, 10 * kClock);
+    const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
+    expect_within_limits(verdict);
+    EXPECT_GT(verdict.acceleration.share, 0.98);
+    EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
   }
 }
 

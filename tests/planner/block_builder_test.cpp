@@ -114,12 +114,17 @@ TEST(Blocks, BeginWhereTheLastOneEnded) {
 }
 
 // Along X Y Z where one of these moves; as long as the finest of these would be where another axis has more pulses.
-TEST(Blocks, HaveALengthThatTheirPulsesFitIn) {
-  const Plan plan = plan_text("G1 X3 Y4 E2 F600\nX3.1 E12\n", machine::default_machine(), kCard);
+TEST(Blocks, HaveTheLengthOfXYZWhateverGoesAlong) {
+  const Plan plan = plan_text("G1 X3 Y4 E2 F600\nX3.1 E12\nX3.1001 E22\n", machine::default_machine(), kCard);
   EXPECT_DOUBLE_EQ(plan.blocks.at(0)->length, 5);
   EXPECT_DOUBLE_EQ(plan.blocks[0]->entry[3], 0.4);
-  EXPECT_DOUBLE_EQ(plan.blocks.at(1)->length, 10);
-  EXPECT_DOUBLE_EQ(plan.blocks[1]->entry[3], 1);
+  EXPECT_NEAR(plan.blocks.at(1)->length, 0.1, 1e-12);
+  EXPECT_NEAR(plan.blocks[1]->entry[3], 100, 1e-9);
+  // Its steps are as even: 128 ticks each, in the same length.
+  EXPECT_NEAR(plan.blocks[0]->steps_per_mm, 80, 1e-9);
+  EXPECT_NEAR(plan.blocks[1]->steps_per_mm, 8000, 1e-6);
+  // E's pulses count where X may have none.
+  EXPECT_NEAR(plan.blocks.at(2)->length, 10, 1e-9);
 }
 
 TEST(Blocks, LeaveRoomForOverridesAndHolds) {

@@ -176,16 +176,66 @@ TEST(SCurvePlan, TakesAtMostOneRiseMoreThanTheTrapezoidARamp) {
   }
 }
 
-// Where the limits change within a ramp, it need not keep the lower ones all along.
+// Where the limits change within a ramp, it need not keep the lower ones all along. Few programs take longer than one
+// rise a ramp more.
 TEST(SCurvePlan, LimitsThatDifferCostLittleMore) {
   Random random(9);
-  for (int i = 0; i < 2'000; ++i) {
+  int beyond = 0;
+  double worst = 0;
+  for (int i = 0; i < 20'000; ++i) {
     const Spans spans = with_limits(random, moves(random, random_limits(random), true), i % 2 == 0 ? 1.4 : 100);
     const test::Trapezoid best = test::trapezoid_of(spans);
     const double time = seconds(spans);
     ASSERT_GE(time, best.duration * (1 - 1e-9)) << i;
-    ASSERT_LE(time, best.duration * 1.05 + best.bends) << i;
+    const double share = (time - best.bends) / best.duration;
+    beyond += share > 1 ? 1 : 0;
+    worst = std::max(worst, share);
   }
+  EXPECT_LE(beyond, 40);    // measured: 34
+  EXPECT_LE(worst, 1.025);  // 1.022
+  RecordProperty("beyond", std::to_string(beyond));
+  RecordProperty("worst", std::to_string(worst));
+}
+
+// Chords of a curve on two equal axes: the path has most where it goes at 45 degrees, so limits change all along.
+Spans turning_chords(Random& random, const Limits& limits) {
+  Spans spans;
+  const double radius = random.logarithmic(1, 200);
+  const double chord = random.logarithmic(0.02, 1);
+  const double length = random.logarithmic(5, 200);
+  const std::size_t kind = random.below(3);
+  double heading = random.uniform(0, 6.28);
+  for (double at = 0; at < length; at += chord) {
+    const double curvature = (kind == 0 ? 1 : std::sin(kind == 1 ? at / radius : at)) / radius;
+    heading += curvature * chord;
+    const double share = std::max(std::abs(std::cos(heading)), std::abs(std::sin(heading)));
+    const double angle = std::abs(curvature * chord);
+    const double exit = angle > 1e-12 ? std::sqrt(limits.acceleration / share * chord / angle) : kInfinite;
+    spans.push_back({chord, limits.speed / share, limits.acceleration / share, limits.jerk / share, exit});
+  }
+  return spans;
+}
+
+TEST(SCurvePlan, LimitsThatTurnCostLittleMore) {
+  Random random(11);
+  int beyond = 0;
+  double worst = 0;
+  for (int i = 0; i < 2'000; ++i) {
+    const Limits limits = random_limits(random);
+    const Spans spans = turning_chords(random, limits);
+    const std::vector<Phase> phases = plan(spans);
+    ASSERT_EQ(test::fault_of(phases, spans), "") << i;
+    const test::Trapezoid best = test::trapezoid_of(spans);
+    const double time = test::duration_of(phases);
+    ASSERT_GE(time, best.duration * (1 - 1e-9)) << i;
+    const double share = (time - best.bends) / best.duration;
+    beyond += share > 1 ? 1 : 0;
+    worst = std::max(worst, share);
+  }
+  EXPECT_LE(beyond, 60);
+  EXPECT_LE(worst, 1.08);
+  RecordProperty("beyond", std::to_string(beyond));
+  RecordProperty("worst", std::to_string(worst));
 }
 
 TEST(SCurvePlan, ATrapezoidFailsItsJudge) {

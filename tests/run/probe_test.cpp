@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trammel/run/runner.hpp"
+#include "trammel/run/step_recorder.hpp"
 #include "trammel/sim/timed_bus.hpp"
 
 namespace trammel::run {
@@ -85,6 +86,23 @@ TEST_F(ProbingProgram, ResultIsWhereTheCardWas) {
   EXPECT_EQ(plan_.probes, 1U);
   EXPECT_EQ(plan_.lines_on_probes, 1U) << "the assignment moves nothing";
   EXPECT_EQ(outcome.parameters.at(1), static_cast<double>(edge) / kPulses);
+}
+
+// The recorder refuses a step of a command that nobody announced.
+TEST_F(ProbingProgram, StepsBelongToTheirCommands) {
+  StepRecorder::Options options;
+  options.steps_per_mm.assign(4, kPulses);
+  StepRecorder recorder(options);
+  engine_->set_sink(&recorder);
+  touch_at(2);
+  Runner runner = make("M3\nG38.2 Z-10 F120\nG2 X2 I1 F600\nG38.3 X3\nG1 X0 Y1 Z0\nM2\n");
+  runner.add(recorder);
+  runner.plan();
+  const Outcome outcome = runner.run(card_);
+  recorder.finish();
+  EXPECT_NO_THROW(recorder.check(outcome.counted));
+  EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{0, kPulses, 0, 0}));
+  EXPECT_LE(recorder.deviation().largest_line(), 0.8671) << "three axes, where the probe cut its line, too";
 }
 
 TEST_F(ProbingProgram, OffsetsComeFromWhereItStands) {

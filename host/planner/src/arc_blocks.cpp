@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "axis_limits.hpp"
 #include "chords.hpp"
 #include "roots.hpp"
 #include "trammel/driver/arc.hpp"
@@ -271,8 +272,6 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
   const double slope = radius * block.exact.sweep / block.length;  // mm in the plane a mm of path
   const double acceleration = plane.acceleration * share;
   const double jerk = plane.jerk * share;
-  // Of acceleration and jerk so much goes across the path at the most; what is left serves along it.
-  constexpr double kAcross = 0.9;
   constexpr double kAlong = 0.43588989435406736;  // sqrt(1 - kAcross^2)
   block.speed = plane.velocity / unevenness / slope;
   block.limit = SpeedLimit::kAxisVelocity;
@@ -287,6 +286,7 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
   const double across = block.speed * slope * (block.speed * slope) / radius;
   const double along =
       std::max(kAlong * acceleration, std::sqrt(std::max(0.0, acceleration * acceleration - across * across)));
+  block.curve = {acceleration / slope, slope / radius, std::min(block.acceleration, acceleration / slope)};
   block.acceleration = std::min(block.acceleration, along / slope);
   block.jerk = std::min(block.jerk, jerk * kAlong / slope);
   block.curvature = (block.clockwise ? -1 : 1) * slope * slope / radius;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
+#include "corner_time.hpp"
 #include "fillet.hpp"
 #include "junction.hpp"
 #include "trammel/driver/trigonometry.hpp"
@@ -33,6 +35,7 @@ Blender::Blender(gcode::Reader& reader, const machine::Machine& machine, const g
     : reader_(reader),
       axes_(machine.axes.size()),
       junction_deviation_(machine.motion.junction_deviation),
+      time_(std::make_unique<CornerTime>(machine)),
       here_(start) {
   for (std::size_t letter = 0; letter < space_.size(); ++letter) {
     const auto axis = machine.axis(static_cast<char>('X' + letter));
@@ -41,6 +44,8 @@ Blender::Blender(gcode::Reader& reader, const machine::Machine& machine, const g
     finest_ = std::max(finest_, machine.axes[*axis].steps_per_mm);
   }
 }
+
+Blender::~Blender() = default;
 
 bool Blender::next(PathMotion& motion) {
   while (given_first_ == given_count_) {
@@ -229,6 +234,20 @@ bool Blender::find_frame(const Way& from, const Way& to, const Turn& turn, Frame
   return true;
 }
 
+CornerSide Blender::corner_side(const Way& way, const Vector& going, bool at_end) const {
+  CornerSide side;
+  for (std::size_t axis = 0; axis < axes_; ++axis) {
+    side.direction[axis] = (way.motion.programmed[axis] - way.start[axis]) / way.length;
+  }
+  for (std::size_t letter = 0; letter < going.size(); ++letter) {
+    if (space_[letter] != kNone) side.direction[space_[letter]] = going[letter];
+  }
+  side.length = way.length;
+  if (way.motion.kind == gcode::MotionKind::kArc) side.curvature = 1 / (at_end ? way.radius_end : way.radius_start);
+  side.speed = way.motion.rapid ? std::numeric_limits<double>::infinity() : feed_of(way.motion, way.length);
+  return side;
+}
+
 Corner Blender::blend(Way& from, Way& to, PathMotion& made) const {
   if (from.length == 0 || to.length == 0) return Corner::kNone;
   Turn turn{direction(from, true), direction(to, false), 0};
@@ -251,6 +270,9 @@ Corner Blender::blend(Way& from, Way& to, PathMotion& made) const {
   if (!curve) return Corner::kNoCurve;
   const bool same_path = curve->distance * finest_ < kInvisiblePulses && curve->distance <= junction_deviation_;
   if (same_path || curve->radius * finest_ < kLeastRadius) return Corner::kInvisible;
+  if (time_->is_less_without(*curve, corner_side(from, turn.from, true), corner_side(to, turn.to, false), turn.sine)) {
+    return Corner::kFaster;
+  }
   const auto share = [](const Way& way, double taken, bool at_end) {
     if (way.motion.kind != gcode::MotionKind::kArc) return taken / way.length;
     return taken / (at_end ? way.radius_end : way.radius_start) / way.sweep;

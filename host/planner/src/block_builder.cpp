@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "axis_limits.hpp"
 #include "trammel/driver/card_timing.hpp"
 
 namespace trammel::planner {
@@ -19,6 +20,7 @@ constexpr double kShaperShare = 0.95;  // of the rate at which the shaper makes 
 constexpr double kMostPulses = static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);
 constexpr double kMaxDwellTotal = 0x1p48;  // clocks of one G4
 constexpr double kSoftLimitSlack = 1e-6;   // mm; far below a pulse, far above the rounding of sums
+constexpr double kLeastWay = 2;            // pulses of X, Y and Z together: less may have no step
 constexpr double kSameSpeed = 1 - 1e-6;    // a feed is reached from this share on
 
 constexpr std::array<std::string_view, 4> kFeedGroups = {"XYZ", "UVW", "ABC", "E"};
@@ -55,13 +57,12 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
                                                         clocks(settings.step_space, "step space"));
     const double shaper = kShaperShare * card.clock_hz / period;
     Axis& axis = axes_[i];
-    const machine::MotionSettings& motion = machine.motion;
-    const double spare = 1 / motion.max_override;
+    const AxisLimits limits = limits_of(from, machine.motion);
     axis.steps_per_mm = scales_[i] = from.steps_per_mm;
-    axis.pulse_rate = shaper * spare;
-    axis.velocity = from.max_velocity * spare;
-    axis.acceleration = from.max_acceleration * (1 - motion.hold_reserve) * spare * spare;
-    axis.jerk = from.max_jerk > 0 ? from.max_jerk * spare * spare * spare : kNoLimit;
+    axis.pulse_rate = shaper / machine.motion.max_override;
+    axis.velocity = limits.velocity;
+    axis.acceleration = limits.acceleration;
+    axis.jerk = limits.jerk;
     axis.lowest = from.min;
     axis.highest = from.max;
     axis.feed_group = feed_group(from.letter);
@@ -211,6 +212,7 @@ bool BlockBuilder::build_line(Block& block) {
   for (std::size_t i = 0; i < axis_count_; ++i) way[i] = motion_.target[i] - anchor_[i];
   block.geometry = Geometry::kLine;
   block.curvature = 0;
+  block.curve = {};
   const double feed_length = measure_line(block, way);
   for (std::size_t i = 0; i < axis_count_; ++i) block.entry[i] = way[i] / block.length;
   block.exit = block.entry;
@@ -238,9 +240,12 @@ double BlockBuilder::measure_line(Block& block, const gcode::Coordinates& way) c
     if (!axis.linear) other_pulses = std::max(other_pulses, std::abs(way[i]) * axis.steps_per_mm);
   }
   block.linear = feed_squares[0] > 0;
-  block.steps_per_mm = block.linear ? scale : finest;
   block.length = std::sqrt(block.linear ? feed_squares[0] : squares);
-  if (block.linear) block.length = std::max(block.length, other_pulses / scale);
+  block.steps_per_mm = finest;
+  if (block.linear) {
+    if (block.length * scale < kLeastWay) block.length = std::max(block.length, other_pulses / scale);
+    block.steps_per_mm = std::max(scale, other_pulses / block.length);
+  }
   const auto counts = std::find_if(feed_squares.begin(), feed_squares.end(), [](double sum) { return sum > 0; });
   return std::sqrt(*counts);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "axis_limits.hpp"
 #include "trammel/driver/trigonometry.hpp"
 
 namespace trammel::planner {
@@ -14,14 +15,19 @@ constexpr double kEven = 1e-6;
 
 }  // namespace
 
+double corner_speed_square(double acceleration, double deviation, double sine, double shorter) {
+  const double cosine = std::sqrt(1 - sine * sine);
+  const double angle = 2 * driver::arc_tangent(sine, cosine);
+  // 1 - cosine without its rounding.
+  const double formula = acceleration * deviation * cosine * (1 + cosine) / (sine * sine);
+  return std::min(formula, acceleration * shorter / angle);
+}
+
 Junctions::Junctions(const machine::Machine& machine)
     : axes_(machine.axes.size()), deviation_(machine.motion.junction_deviation) {
-  const machine::MotionSettings& motion = machine.motion;
-  const double share = (1 - motion.hold_reserve) / (motion.max_override * motion.max_override);
   for (std::size_t i = 0; i < axes_; ++i) {
-    const char letter = machine.axes[i].letter;
-    linear_[i] = letter >= 'X' && letter <= 'Z';
-    acceleration_[i] = machine.axes[i].max_acceleration * share;
+    linear_[i] = is_linear(machine.axes[i]);
+    acceleration_[i] = limits_of(machine.axes[i], machine.motion).acceleration;
   }
 }
 
@@ -42,7 +48,6 @@ Junctions::Turn Junctions::turn(const Block& from, const Block& to) const {
   return {square, lengths > 0 ? dot / lengths : -1, std::abs(before - 1) <= kEven && std::abs(after - 1) <= kEven};
 }
 
-// Deviation formula and centripetal limit.
 double Junctions::corner_square(const Block& from, const Block& to, const Turn& turn) const {
   double acceleration = kNoLimit;
   const double size = std::sqrt(turn.square);
@@ -50,13 +55,7 @@ double Junctions::corner_square(const Block& from, const Block& to, const Turn& 
     const double part = std::abs(to.entry[i] - from.exit[i]);
     if (in_angle(i, from) && part > 0) acceleration = std::min(acceleration, acceleration_[i] * size / part);
   }
-  // The sine and the cosine of half the angle.
-  const double sine = std::min(1.0, size / 2);
-  const double cosine = std::sqrt(1 - sine * sine);
-  const double angle = 2 * driver::arc_tangent(sine, cosine);
-  // 1 - cosine without its rounding.
-  const double formula = acceleration * deviation_ * cosine * (1 + cosine) / (sine * sine);
-  return std::min(formula, acceleration * std::min(from.length, to.length) / angle);
+  return corner_speed_square(acceleration, deviation_, std::min(1.0, size / 2), std::min(from.length, to.length));
 }
 
 // The speed at which no axis outside the angle, or no axis at all, jumps by more than it may.

@@ -14,6 +14,10 @@ struct Junction {
   double bend = 0;   // 1/mm, the jump of curvature; the acceleration's at a speed of 1 where the path has no corner
 };
 
+// Of X, Y and Z at a corner: deviation formula and centripetal limit. `acceleration`: the most along the change of
+// direction; `sine`: of half the angle; `shorter`: of the two lengths.
+double corner_speed_square(double acceleration, double deviation, double sine, double shorter);
+
 class Junctions {
  public:
   // Directions that differ by less are the same: a program's numbers have some five digits. The square of it.

@@ -141,7 +141,7 @@ void Planner::LookAhead::end_run(PathEntry& last) {
 
 void Planner::LookAhead::push_span(const PathEntry& entry, double exit_speed) {
   const Block& block = entry.block;
-  plan_->push({block.length, block.speed, block.acceleration, block.jerk, exit_speed});
+  plan_->push({block.length, block.speed, block.acceleration, block.jerk, exit_speed, block.curve});
 }
 
 // Length and ticks go on through stops: a path has the same ticks wherever the program stops.

@@ -27,6 +27,8 @@ std::int64_t signed64(double change) { return static_cast<std::int64_t>(change *
 std::uint32_t fixed32(double rate) { return static_cast<std::uint32_t>(std::clamp(rate, kLeastRate, 0.5) * 0x1p32); }
 std::uint32_t ticks32(double ticks) { return static_cast<std::uint32_t>(std::min(std::ceil(ticks), 4294967295.0)); }
 
+bool same(double a, double b) { return std::abs(a - b) <= 0.01 * std::abs(b); }
+
 double end_speed(const Phase& phase) {
   return phase.speed + phase.duration * (phase.acceleration + phase.duration * phase.jerk / 2);
 }
@@ -150,21 +152,27 @@ void Quantiser::portion(const Phase& phase, double begin, double end, std::uint6
   }
   Motion motion;
   if (ticks != 0) {
-    const bool empty = pending_.end == tick_;
+    bool empty = pending_.end == tick_;
     const auto behind = [&](double lead) {
       if (!smooth_) return ramp(phase, static_cast<double>(ticks), lead);
       const double gone = lead / (rate_a_speed_ * clock_hz_);
       return motion_of(phase, from + gone, place(end_tick), static_cast<double>(ticks) - lead, stop);
     };
     motion = behind(empty ? std::min(lead_, static_cast<double>(ticks) / 2) : 0);
-    if (motion.clocks >= kShortest || (empty && last)) {
-      if (!empty) {
-        put_pending(false);
-        motion = behind(std::min(lead_, static_cast<double>(ticks) / 2));
-      }
+    const bool whole = motion.clocks >= kShortest || (empty && last);
+    // One piece for both would have more than the smaller acceleration.
+    const bool apart = !smooth_ && pending_.acceleration * phase.acceleration > 0 &&
+                       !same(pending_.acceleration, phase.acceleration) && pending_.motion.clocks >= kUpdate;
+    if (!empty && (whole || apart)) {
+      put_pending(false);
+      empty = true;
+      motion = behind(std::min(lead_, static_cast<double>(ticks) / 2));
+    }
+    if (whole) {
       put(motion, end_tick, stop);
       return;
     }
+    pending_.acceleration = phase.acceleration;
     if (empty) pending_.motion.rate = smooth_ ? motion.rate : behind(0).rate;
     pending_.motion.end_rate = motion.end_rate;
     pending_.motion.clocks = motion.clocks + (empty ? 0 : pending_.motion.clocks);

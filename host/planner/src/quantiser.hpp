@@ -66,6 +66,7 @@ class Quantiser {
   struct Pending {
     std::uint64_t end = 0;  // tick; where there are none: that of the piece before
     Motion motion;
+    double acceleration = 0;  // of the last one
   };
 
   void portion(const Phase& phase, double begin, double end, std::uint64_t end_tick, bool last, bool stop);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace trammel::planner {
 namespace {
@@ -19,7 +20,7 @@ TrapezoidPlan::TrapezoidPlan(std::size_t window) : nodes_(window), chunk_(std::m
 void TrapezoidPlan::push(const Span& span) {
   const double top = span.speed * span.speed;
   Node& added = nodes_[(first_ + count_++) % nodes_.size()];
-  added = {span.length, span.acceleration, top, std::min(top, span.exit_speed * span.exit_speed), -1, false};
+  added = {span.length, SpanAcceleration(span), top, std::min(top, span.exit_speed * span.exit_speed), -1, false};
 }
 
 void TrapezoidPlan::finish() {
@@ -36,7 +37,7 @@ void TrapezoidPlan::look_back() {
   for (std::size_t i = count_; i-- != 0;) {
     Node& at = node(i);
     const bool corner = at.exit <= after;
-    const double slowing = (corner ? at.exit : after) + 2 * at.acceleration * at.length;
+    const double slowing = at.acceleration.reached(corner ? at.exit : after, at.length);
     const double entry = std::min(at.top, slowing);
     in_sight = in_sight || corner || at.top <= slowing;
     if (at.entry == entry && at.in_sight == in_sight) return;
@@ -65,21 +66,8 @@ void TrapezoidPlan::plan_first() {
   const bool last = count_ == 1;
   const double after = last ? 0 : node(1).entry;
   const bool in_sight = at.exit <= after || (last ? finished_ : node(1).in_sight);
-  const double gain = 2 * at.acceleration * at.length;
-  const double end = std::max(0.0, std::min({at.exit, after, speed_ + gain}));
-  const double top = std::max({speed_, end, std::min(at.top, (speed_ + end + gain) / 2)});
-  double rising = (top - speed_) / (2 * at.acceleration);
-  double falling = (top - end) / (2 * at.acceleration);
-  if (rising < kNoLength * at.length) rising = 0;
-  if (falling < kNoLength * at.length) falling = 0;
-  double even = at.length - rising - falling;
-  if (even < kNoLength * at.length) {
-    even = 0;
-    (falling > rising ? falling : rising) = at.length - std::min(rising, falling);
-  }
-  if (rising > 0) add(rising, speed_, top, at.acceleration, in_sight);
-  if (even > 0) add(even, top, top, 0, in_sight);
-  if (falling > 0) add(falling, top, end, -at.acceleration, in_sight);
+  const double end = std::max(0.0, std::min({at.exit, after, at.acceleration.reached(speed_, at.length)}));
+  add_span(at, end, in_sight);
   speed_ = end;
   first_ = (first_ + 1) % nodes_.size();
   --count_;
@@ -92,17 +80,45 @@ void TrapezoidPlan::plan_first() {
   give_pending(next);
 }
 
+// Up from the present speed, on, and down to `end`.
+void TrapezoidPlan::add_span(const Node& at, double end, bool in_sight) {
+  const double most = std::max(speed_, end);
+  const double least = std::min(speed_, end);
+  const double more = std::max(0.0, at.length - at.acceleration.length(least, most));
+  const double top = std::max(most, std::min(at.top, at.acceleration.reached(most, more, 2)));
+  count_parts_ = 0;
+  double even = at.length;
+  const auto part = [&](double from, double to, double acceleration, double length) {
+    if (length < kNoLength * at.length) return;
+    even -= length;
+    parts_[count_parts_++] = {length, from, to, acceleration};
+  };
+  at.acceleration.each(speed_, top, part);
+  const std::size_t rising = count_parts_;
+  at.acceleration.each(end, top, [&](double from, double to, double a, double length) { part(to, from, -a, length); });
+  // What rounding leaves is no phase.
+  if (even < kNoLength * at.length && count_parts_ != 0) {
+    const auto longest = std::max_element(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(count_parts_),
+                                          [](const Part& a, const Part& b) { return a.length < b.length; });
+    longest->length += std::exchange(even, 0);
+  }
+  for (std::size_t i = 0; i < rising; ++i) add(parts_[i], in_sight);
+  if (even > 0) add({even, top, top, 0}, in_sight);
+  for (std::size_t i = count_parts_; i-- > rising;) add(parts_[i], in_sight);
+}
+
 // A phase from one speed to the other, both squared; one with the phase before it where it goes on.
-void TrapezoidPlan::add(double length, double speed, double end_speed, double acceleration, bool in_sight) {
-  const double from = std::sqrt(speed);
-  const double duration = 2 * length / (from + std::sqrt(end_speed));
+void TrapezoidPlan::add(const Part& part, bool in_sight) {
+  const double from = std::sqrt(part.from);
+  const double duration = 2 * part.length / (from + std::sqrt(part.to));
+  const double acceleration = part.acceleration;
   const bool goes_on = pending_.length > 0 && same(pending_.acceleration, acceleration) &&
                        (acceleration != 0 || same(pending_.speed, from)) && pending_.short_sight == !in_sight;
   if (!goes_on) {
     give_pending(acceleration);
     pending_ = Phase{0, 0, from, acceleration, 0, 0, false, !in_sight};
   }
-  pending_.length += length;
+  pending_.length += part.length;
   pending_.duration += duration;
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "span_acceleration.hpp"
 #include "trammel/planner/speed_plan.hpp"
 
 namespace trammel::planner {
@@ -24,7 +25,7 @@ class TrapezoidPlan final : public SpeedPlan {
   // Squares of speeds.
   struct Node {
     double length;
-    double acceleration;
+    SpanAcceleration acceleration;
     double top;
     double exit;    // the most at its end
     double entry;   // the most at its start, so that all after it can be kept; below 0: not known yet
@@ -33,7 +34,14 @@ class TrapezoidPlan final : public SpeedPlan {
   Node& node(std::size_t i) { return nodes_[(first_ + i) % nodes_.size()]; }
   void look_back();
   void plan_first();
-  void add(double length, double speed, double end_speed, double acceleration, bool in_sight);
+  struct Part {
+    double length;
+    double from;
+    double to;
+    double acceleration;
+  };
+  void add_span(const Node& at, double end, bool in_sight);
+  void add(const Part& part, bool in_sight);
   void give_pending(double next_acceleration);
 
   std::vector<Node> nodes_;
@@ -42,9 +50,11 @@ class TrapezoidPlan final : public SpeedPlan {
   std::size_t count_ = 0;
   std::size_t due_ = 0;  // spans whose phases are wanted before the next push
   bool finished_ = false;
-  double speed_ = 0;  // squared, where the first span begins
-  Phase pending_;     // may go on in the next span
-  std::array<Phase, 4> phases_;
+  double speed_ = 0;                                            // squared, where the first span begins
+  Phase pending_;                                               // may go on in the next span
+  std::array<Part, 2 * SpanAcceleration::kMostSteps> parts_{};  // of one span: the ramp up, and the one down backwards
+  std::size_t count_parts_ = 0;
+  std::array<Phase, 2 * SpanAcceleration::kMostSteps + 2> phases_;
   std::size_t made_ = 0;  // of phases_
   std::size_t given_ = 0;
 };

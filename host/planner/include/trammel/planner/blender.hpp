@@ -11,12 +11,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
 
 namespace trammel::planner {
 
+struct CornerSide;
+class CornerTime;
 struct Fillet;
 
 // What becomes of a corner under G64 P.
@@ -27,8 +30,9 @@ enum class Corner : std::uint8_t {
   kNoCurve,    // a helix, an arc outside the other motion's plane, or no room for an arc
   kInvisible,  // the blend would keep within a quarter of a pulse and the corner's rules allow its speed, or turns
                // within three
+  kFaster,     // the corner's rules allow a speed at which it takes less time than the blend
 };
-inline constexpr std::size_t kCorners = 5;
+inline constexpr std::size_t kCorners = 6;
 
 // An arc in any plane of three axes: centre + radius (cos(angle) first + sin(angle) second), angle 0 .. sweep.
 struct SpaceArc {
@@ -54,6 +58,7 @@ class Blender {
  public:
   // Reader and machine must outlive the blender.
   Blender(gcode::Reader& reader, const machine::Machine& machine, const gcode::Coordinates& start);
+  ~Blender();
 
   // False where the reader's is, when all that was held is given.
   bool next(PathMotion& motion);
@@ -94,6 +99,7 @@ class Blender {
   bool pull(Way& way);
   void measure(Way& way) const;
   void measure_arc(Way& way) const;
+  CornerSide corner_side(const Way& way, const Vector& going, bool at_end) const;
   Corner blend(Way& from, Way& to, PathMotion& made) const;
   bool find_frame(const Way& from, const Way& to, const Turn& turn, Frame& frame) const;
   Vector direction(const Way& way, bool at_end) const;
@@ -116,6 +122,7 @@ class Blender {
   std::array<std::size_t, 3> space_{kNone, kNone, kNone};  // axis indices of X, Y and Z
   double finest_ = 0;                                      // steps/mm, of these
   double junction_deviation_;                              // mm
+  std::unique_ptr<CornerTime> time_;
   bool keep_corners_ = false;
   gcode::Coordinates here_;
   std::array<Way, 2> ways_;  // the one that may lose its end, and the one behind it

@@ -9,6 +9,7 @@
 #include "trammel/driver/commands.hpp"
 #include "trammel/gcode/motion.hpp"
 #include "trammel/planner/blender.hpp"
+#include "trammel/planner/speed_plan.hpp"
 
 namespace trammel::planner {
 
@@ -50,9 +51,9 @@ struct ExactArc {
 };
 
 // Lengths, directions and limits are those of the path before rounding, along it, in mm and seconds; for moves of
-// rotary axes alone read degrees. A path with X, Y or Z has their length, one without that of all axes; where an axis
-// outside would make more than a pulse for each of the finest of these, its pulses count instead. Of the fields that a
-// kind of geometry does not name, the content means nothing.
+// rotary axes alone read degrees. A path with X, Y or Z has their length, one without that of all axes; where X, Y and
+// Z have less than two pulses, those of an axis beside them count if they are more. Of the fields that a kind of
+// geometry does not name, the content means nothing.
 struct Block {
   std::size_t line = 0;  // of the program
   Geometry geometry = Geometry::kEnd;
@@ -70,10 +71,11 @@ struct Block {
   Direction exit{};                      // where it ends
   double length = 0;                     // mm
   double curvature = 0;                  // 1/mm, of an arc; below 0 where it runs clockwise
-  double steps_per_mm = 0;               // pulses a mm of path, of the finest axis that its length counts
+  double steps_per_mm = 0;               // pulses a mm of path, of the axis that has most
   std::uint64_t least_ticks = 0;         // feed ticks that the geometry needs
   double speed = 0;                      // a second, the most that axes, card and program allow
-  double acceleration = 0;               // a second^2
+  double acceleration = 0;               // a second^2, at any speed up to it
+  Curve curve{};                         // of an arc: what lower speeds leave
   double jerk = 0;                       // a second^3, infinite where no axis has one
   double wanted = 0;                     // a second, the speed that the program asks for; 0: as fast as may be
   double feed = 0;                       // the same as the program has it, mm/s along the axes that F counts for

@@ -4,13 +4,21 @@
 
 namespace trammel::planner {
 
+// Of an arc: acceleration along it and across it, which is turning * v^2, are `whole` together.
+struct Curve {
+  double whole = 0;    // 0: no arc
+  double turning = 0;  // 1/mm
+  double at_rest = 0;  // the most along the path at any speed
+};
+
 // A stretch of path with limits of its own: a block, or a part of one.
 struct Span {
   double length = 0;        // > 0
   double speed = 0;         // > 0, the most in it
-  double acceleration = 0;  // > 0, the most along the path
+  double acceleration = 0;  // > 0, the most along the path at that speed, and so at any
   double jerk = 0;          // > 0, the most along the path; infinite: no limit
   double exit_speed = 0;    // >= 0, the most at its end, where a corner is; 0: a stop
+  Curve curve{};
 };
 
 // A part of the motion at constant jerk. Its borders lie anywhere along the path. Speed and acceleration are those at

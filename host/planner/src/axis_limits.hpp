@@ -1,0 +1,28 @@
+// What planning may use of an axis's limits: less by max_override, its square and cube, and by hold_reserve. Internal
+// to the planner.
+#pragma once
+
+#include <limits>
+
+#include "trammel/machine/machine.hpp"
+
+namespace trammel::planner {
+
+struct AxisLimits {
+  double velocity;      // mm/s
+  double acceleration;  // mm/s^2
+  double jerk;          // mm/s^3, infinite without a limit
+};
+
+inline AxisLimits limits_of(const machine::MachineAxis& axis, const machine::MotionSettings& motion) {
+  const double spare = 1 / motion.max_override;
+  return {axis.max_velocity * spare, axis.max_acceleration * (1 - motion.hold_reserve) * spare * spare,
+          axis.max_jerk > 0 ? axis.max_jerk * spare * spare * spare : std::numeric_limits<double>::infinity()};
+}
+
+inline bool is_linear(const machine::MachineAxis& axis) { return axis.letter >= 'X' && axis.letter <= 'Z'; }
+
+// Of acceleration and jerk on an arc so much goes across the path at the most; what is left serves along it.
+constexpr double kAcross = 0.9;
+
+}  // namespace trammel::planner

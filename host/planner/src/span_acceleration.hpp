@@ -1,0 +1,82 @@
+// The acceleration along a span, by its speed. An arc leaves at each speed what the centripetal one does not take; that
+// is cut into steps of constant acceleration, each what its highest speed leaves. Squares of speeds. Internal to the
+// planner.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "trammel/planner/speed_plan.hpp"
+
+namespace trammel::planner {
+
+class SpanAcceleration {
+ public:
+  static constexpr int kMostSteps = 16;
+
+  SpanAcceleration() = default;
+  explicit SpanAcceleration(const Span& span)
+      : at_rest_(span.acceleration), at_top_(span.acceleration), top_(span.speed * span.speed) {
+    if (span.curve.whole <= 0) return;
+    whole_ = span.curve.whole;
+    turning_ = span.curve.turning;
+    at_rest_ = std::max(at_top_, span.curve.at_rest);
+    // As many as make each some 4 % less than the one before, where the speed is the most that the curve allows.
+    constexpr double kSteps = 28;
+    const double lost = 1 - at_top_ / at_rest_;
+    steps_ = std::clamp(static_cast<int>(std::ceil(kSteps * lost)), 1, kMostSteps);
+  }
+
+  int steps() const { return steps_; }
+  // Up to this square. Narrower where the acceleration falls faster.
+  double top(int step) const {
+    if (step + 1 >= steps_) return whole_ > 0 ? top_ : std::numeric_limits<double>::infinity();
+    const double below = 1 - static_cast<double>(step + 1) / steps_;
+    return top_ * (1 - below * below);
+  }
+  double acceleration(int step) const {
+    if (step + 1 >= steps_) return at_top_;
+    const double across = top(step) * turning_;
+    return std::clamp(std::sqrt(std::max(0.0, whole_ * whole_ - across * across)), at_top_, at_rest_);
+  }
+
+  // Squares between which the acceleration is constant, from `low` up to `high`, with the length that each takes.
+  template <typename Visit>
+  void each(double low, double high, Visit visit) const {
+    for (int i = 0; i < steps_ && low < high; ++i) {
+      const double end = std::min(high, i + 1 == steps_ ? high : top(i));
+      if (end <= low) continue;
+      const double part = acceleration(i);
+      visit(low, end, part, (end - low) / (2 * part));
+      low = end;
+    }
+  }
+  double length(double low, double high) const {
+    double sum = 0;
+    each(low, high, [&](double, double, double, double part) { sum += part; });
+    return sum;
+  }
+  // The square that is reached in `length` from `low` on by `ramps` ramps at once (2: up, and down again).
+  double reached(double low, double length, int ramps = 1) const {
+    for (int i = 0; i < steps_; ++i) {
+      const double end = top(i);
+      if (end <= low) continue;
+      const double gain = 2 * acceleration(i) / ramps;
+      if (length * gain < end - low) return low + length * gain;
+      length -= (end - low) / gain;
+      low = end;
+    }
+    return low;
+  }
+
+ private:
+  double at_rest_ = 0;
+  double at_top_ = 0;
+  double top_ = 0;
+  double whole_ = 0;
+  double turning_ = 0;
+  int steps_ = 1;
+};
+
+}  // namespace trammel::planner
