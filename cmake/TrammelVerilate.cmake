@@ -129,7 +129,8 @@ endfunction()
 
 # trammel_add_seeded_bug(name bug FILE f.sv FROM "text" TO "text" [FROM "text" TO "text" ...] [FILE g.sv FROM ...])
 # The same lockstep over a copy of the block in which each text FROM (exactly once in its FILE) reads TO: the test
-# seeded_bug.<name>.<bug>, which passes only when the lockstep reports a mismatch.
+# seeded_bug.<name>.<bug>, which passes only when the lockstep reports a mismatch. ONLY "filter", last, names the lockstep's
+# tests that are run, where a few show the bug and the rest takes long.
 function(trammel_add_seeded_bug name bug)
   foreach(var TOP PREFIX SOURCES ARGS INSIDE SOUND HOW)
     get_property(L_${var} GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_${var})
@@ -137,17 +138,21 @@ function(trammel_add_seeded_bug name bug)
   set(target lockstep_${name}_bug_${bug})
   set(dir "${CMAKE_CURRENT_BINARY_DIR}/seeded/${name}_${bug}")
   set(file "")
+  set(only "")
   # In steps of two and by number: the texts may hold what CMake's lists are made of.
   foreach(i RANGE 2 ${ARGC} 2)
     math(EXPR next "${i} + 1")
-    if(i EQUAL ARGC OR "${ARGV${i}}" STREQUAL "FILE")
+    if(i EQUAL ARGC OR "${ARGV${i}}" MATCHES "^(FILE|ONLY)$")
       if(file)
         cmake_path(GET file FILENAME file_name)
         file(CONFIGURE OUTPUT "${dir}/${file_name}" CONTENT "${text}" @ONLY)
         list(TRANSFORM L_SOURCES REPLACE "^${file}$" "${dir}/${file_name}")
         list(TRANSFORM TRAMMEL_RTL_PACKAGES REPLACE "^${file}$" "${dir}/${file_name}")
       endif()
-      if(i LESS ARGC)
+      if("${ARGV${i}}" STREQUAL "ONLY")
+        set(only "--gtest_filter=${ARGV${next}}")
+        set(file "")
+      elseif(i LESS ARGC)
         set(file "${ARGV${next}}")
         set_property(GLOBAL APPEND PROPERTY TRAMMEL_RTL_WITH_SEEDED_BUG "${file}")
         if(NOT file IN_LIST L_SOURCES AND NOT file IN_LIST TRAMMEL_RTL_PACKAGES)
@@ -171,12 +176,13 @@ function(trammel_add_seeded_bug name bug)
   endforeach()
   add_executable(${target} ${L_INSIDE})
   # A seeded bug may leave a signal unused: that warning must not keep the lockstep from judging it. The sources proper are
-  # linted by the block's own lockstep, with every warning an error.
-  trammel_verilate(${target} ${L_HOW} LEVEL 1 PREFIX ${L_PREFIX} TOP ${L_TOP} SOURCES ${L_SOURCES} ARGS -Wno-lint ${L_ARGS})
+  # linted by the block's own lockstep, with every warning an error. -O0: compiling takes a quarter of the time of -O1, and
+  # most bugs show within milliseconds.
+  trammel_verilate(${target} ${L_HOW} LEVEL 0 PREFIX ${L_PREFIX} TOP ${L_TOP} SOURCES ${L_SOURCES} ARGS -Wno-lint ${L_ARGS})
   trammel_same_header(${target} ${L_SOUND} ${L_PREFIX})
   # Objects come before libraries: where a library holds the sound copy (the card's does), this one goes before it.
   target_link_libraries(${target} PRIVATE lockstep_${name}_test)
-  add_test(NAME seeded_bug.${name}.${bug} COMMAND ${target} --seeded-bug)
+  add_test(NAME seeded_bug.${name}.${bug} COMMAND ${target} --seeded-bug ${only})
   set_tests_properties(seeded_bug.${name}.${bug} PROPERTIES LABELS seeded_bug)
 endfunction()
 

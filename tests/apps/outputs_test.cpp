@@ -107,7 +107,7 @@ TEST_F(OutputFiles, DashIsStandardOutputAndTheSummaryMoves) {
   const Outcome line = command_.run("line --to 3,4 --json -");
   EXPECT_TRUE(nlohmann::json::accept(line.out)) << line.out;
   EXPECT_NE(line.err.find("line of 3, 4 pulses"), std::string::npos);
-  const Outcome compare = command_.run("compare --line 0,0,9,4 --json -");
+  const Outcome compare = command_.run("compare --random 20 --json -");
   EXPECT_TRUE(nlohmann::json::accept(compare.out));
   EXPECT_NE(compare.err.find("one-shot"), std::string::npos);
 }
@@ -167,7 +167,7 @@ TEST_F(OutputFiles, FullDiskIsAnErrorAndLeavesNothing) {
 TEST_F(OutputFiles, FullStandardOutputIsAnErrorOfEveryCommand) {
   for (const std::string& arguments :
        {"run " + short_, "run " + short_ + " --json -", std::string("line --to 3,4"), std::string("info"),
-        std::string("methods"), std::string("steps --method steer --circle 5"), std::string("compare --line 0,0,9,4"),
+        std::string("methods"), std::string("steps --method steer --circle 5"), std::string("compare --random 20"),
         std::string("--help"), std::string("--version")}) {
     const Outcome outcome = command_.run(arguments + " >/dev/full");
     EXPECT_EQ(outcome.status, 1) << arguments;

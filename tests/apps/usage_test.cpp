@@ -51,7 +51,7 @@ TEST(Limits, AreWrittenAsAPersonWritesThem) {
 TEST(Progress, HasNoEscapesInALog) {
   const Command command;
   const std::string run = "run " + command.write("a.ngc", "G1 X20 F600\n");
-  for (const std::string& arguments : {run, run + " --progress", std::string("compare --circle 25 --progress")}) {
+  for (const std::string& arguments : {run, run + " --progress", std::string("compare --random 3000 --progress")}) {
     const Outcome outcome = command.run(arguments);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err.find('\033'), std::string::npos) << arguments;
@@ -62,7 +62,7 @@ TEST(Progress, HasNoEscapesInALog) {
 
 TEST(Progress, TerminalGetsABarAndATimeLeft) {
   const Command command;
-  const std::string program = command.write("a.ngc", "G1 X60 F600\n");
+  const std::string program = command.write("a.ngc", "G1 X30 F600\n");
   // script(1) gives the command a terminal.
   const std::string line = "TERM=xterm script -qec \"'" TRAMMEL_COMMAND "' run " + program +
                            " --clock 2000000\" /dev/null >'" + command.path("log") + "' </dev/null";
@@ -199,7 +199,7 @@ TEST(Axes, CardHasAsManyAsTheMachine) {
   const Command command;
   std::string machine = contents(TRAMMEL_EXAMPLES_DIR "/machine.toml");
   machine.resize(machine.find("[axis.e]"));
-  const std::string run = "run " + command.write("a.ngc", "G1 X2 Y-3 Z0.5 F600\nG3 X0 I-1\nG0 X0 Y0 Z0\n") +
+  const std::string run = "run " + command.write("a.ngc", "G1 X2 Y-3 Z0.5 F2400\nG3 X0 I-1\nG0 X0 Y0 Z0\n") +
                           " --steps " + command.path("steps") + " --path-steps ";
   const std::string three = " --machine " + command.write("machine.toml", machine);
   ASSERT_EQ(command.run(run + command.path("path4")).status, 0);
