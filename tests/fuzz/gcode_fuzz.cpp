@@ -1,10 +1,12 @@
 // Programs made of anything: the reader neither crashes nor hangs, says one line about what is wrong, makes the same of
 // a program whatever the chunks in which it comes, and leaves out nothing that could be a motion.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -131,11 +133,17 @@ std::string bare(const std::string& line) {
   return !text.empty() && text.front() == '/' ? std::string{} : text;
 }
 
-// M117 and what follows a line's number: a message for people.
-bool is_text(std::string text) {
+// Lines that are left out: of them nothing is read.
+bool is_left_out(std::string text) {
+  static const std::set<std::string> kWords = {"M73",  "M104", "M105", "M106", "M107", "M109", "M110", "M117",
+                                               "M140", "M190", "M201", "M202", "M203", "M204", "M205", "G29"};
   for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  if (text.front() == 'N') text.erase(0, text.find_first_not_of("0123456789.", 1));
-  return text.substr(0, 4) == "M117" && (text.size() == 4 || text[4] < '0' || text[4] > '9');
+  constexpr const char* kNumber = "0123456789.";
+  if (text.front() == 'N') text.erase(0, std::min(text.find_first_not_of(kNumber, 1), text.size()));
+  std::string word = text.substr(0, text.find_first_not_of(kNumber, 1));
+  if (word.size() > 2 && word.compare(word.size() - 2, 2, ".0") == 0) word.resize(word.size() - 2);
+  for (std::size_t zero = 1; word.size() > 2 && word[zero] == '0';) word.erase(zero, 1);
+  return kWords.count(word) != 0;
 }
 
 // Of a program that was accepted: words that a reader might drop or split in silence.
@@ -152,12 +160,12 @@ void check_nothing_dropped(std::string_view program, std::size_t end_line) {
       continue;
     }
     const bool mark = text == "%";
-    require(mark || is_text(text) || text.find('%') == std::string::npos, "words beside a '%' are dropped");
+    require(mark || is_left_out(text) || text.find('%') == std::string::npos, "words beside a '%' are dropped");
     require(!closed || mark, "words behind the last '%' are dropped");
     closed = closed || (mark && in_program);
     in_program = true;
-    // Expressions have operators such as EQ; lines that are left out are text.
-    if (text.find('[') != std::string::npos || is_text(text)) continue;
+    // Expressions have operators such as EQ.
+    if (text.find('[') != std::string::npos || is_left_out(text)) continue;
     for (std::size_t i = 1; i < text.size(); ++i) {
       // Blanks between a number and e make it an axis word: look at the line as it is written.
       const bool digit = line.find(std::string(1, text[i - 1]) + "e") != std::string::npos && text[i - 1] >= '0' &&

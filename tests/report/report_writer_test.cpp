@@ -4,17 +4,12 @@
 
 #include <stdexcept>
 
+#include "text.hpp"
 #include "time_map.hpp"
 #include "trammel/report/page.hpp"
 
 namespace trammel::report {
 namespace {
-
-class Text final : public run::TextSink {
- public:
-  void write(std::string_view text) override { all += text; }
-  std::string all;
-};
 
 TEST(InsideScript, NothingOfTheJsonEndsItsElement) {
   EXPECT_EQ(inside_script(R"({"a":"</script><!--"})"), R"({"a":"\u003c/script>\u003c!--"})");
