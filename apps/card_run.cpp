@@ -97,7 +97,7 @@ std::string summary(const CardRunResult& result) {
   }
   text += summary(result.profile);
   if (result.outcome.under_runs) text += fmt::format("  under-runs since reset: {}\n", *result.outcome.under_runs);
-  text += link_text(result) + blends_text(result.plan.blends);
+  text += link_text(result) + blends_text(result.plan.blends) + probes_text(result.outcome.probes, result.axes);
   return text + accepted_words(result.plan.accepted);
 }
 
@@ -121,6 +121,7 @@ std::string json_text(const CardRunResult& result) {
   json["link"] = {{"requests", result.link.requests},
                   {"sent_again", result.link.sent_again},
                   {"reconnections", result.reconnections}};
+  json["probes"] = probes_json(result.outcome.probes, result.axes);
   json["accepted_words"] = result.plan.accepted;
   return json.dump(2) + "\n";
 }

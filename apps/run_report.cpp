@@ -177,31 +177,24 @@ std::vector<std::string> feed_warnings(const std::string& file, const std::vecto
   return lines;
 }
 
-namespace {
-
-// Machine coordinates.
-std::string probes_text(const RunResult& result) {
+std::string probes_text(const std::vector<run::ProbeMade>& probes, const std::string& axes) {
   std::string text;
-  for (const run::ProbeMade& probe : result.probes) {
+  for (const run::ProbeMade& probe : probes) {
     text += fmt::format("  probe at line {}: {}", probe.line, probe.tripped ? "edge at" : "no edge, ended at");
-    for (std::size_t a = 0; a < result.axes.size(); ++a)
-      text += fmt::format(" {}{:.4f}", result.axes[a], probe.edge[a]);
+    for (std::size_t a = 0; a < axes.size(); ++a) text += fmt::format(" {}{:.4f}", axes[a], probe.edge[a]);
     text += " (machine coordinates, mm)\n";
   }
   return text;
 }
 
-nlohmann::ordered_json probes_json(const RunResult& result) {
+nlohmann::ordered_json probes_json(const std::vector<run::ProbeMade>& probes, const std::string& axes) {
   auto list = nlohmann::ordered_json::array();
-  for (const run::ProbeMade& probe : result.probes) {
-    const std::vector<double> edge(probe.edge.begin(),
-                                   probe.edge.begin() + static_cast<std::ptrdiff_t>(result.axes.size()));
+  for (const run::ProbeMade& probe : probes) {
+    const std::vector<double> edge(probe.edge.begin(), probe.edge.begin() + static_cast<std::ptrdiff_t>(axes.size()));
     list.push_back({{"line", probe.line}, {"tripped", probe.tripped}, {"position", edge}});
   }
   return list;
 }
-
-}  // namespace
 
 std::string summary(const RunResult& result) {
   const double seconds = static_cast<double>(result.cycles) / result.clock_hz;
@@ -220,7 +213,7 @@ std::string summary(const RunResult& result) {
     text += fmt::format("  mean feed {} of {} mm/min\n", number(*result.achieved_feed), number(*result.commanded_feed));
   }
   text += blends_text(result.blends);
-  text += probes_text(result);
+  text += probes_text(result.probes, result.axes);
   text += outputs_text(result.outputs);
   if (!result.events.empty())
     text += fmt::format("  {} overrides, holds and inputs on the way\n", result.events.size());
@@ -277,7 +270,7 @@ nlohmann::ordered_json run_json(const RunResult& result) {
   json["outputs"] = outputs_json(result.outputs);
   json["inputs"] = nullptr;
   if (result.inputs) json["inputs"] = *result.inputs;
-  json["probes"] = probes_json(result);
+  json["probes"] = probes_json(result.probes, result.axes);
   json["accepted_words"] = result.accepted;
   return json;
 }
