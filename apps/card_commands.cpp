@@ -27,7 +27,7 @@ namespace map = card_map;
 namespace reg = card_map::reg;
 using driver::Card;
 
-struct Options {
+struct LookOptions {
   CardChoice card;
   double interval = 0.2;     // monitor: seconds of the card
   std::uint64_t looks = 0;   // monitor: 0 for ever
@@ -112,7 +112,7 @@ std::vector<std::string> table(Card& card) {
 }
 
 // On a terminal the table stays where it is; elsewhere the tables come one below the other.
-void monitor(Card& card, const Options& options) {
+void monitor(Card& card, const LookOptions& options) {
   const bool terminal = ::isatty(STDOUT_FILENO) == 1;
   const std::chrono::nanoseconds pause(static_cast<std::int64_t>(options.interval * 1e9));
   for (std::uint64_t look = 0; options.looks == 0 || look < options.looks; ++look) {
@@ -231,7 +231,7 @@ void try_link(Card& card, transport::Connection* connection, unsigned exchanges,
   checks.add("the link carries", wrong, good);
 }
 
-void selftest(Card& card, transport::Connection* connection, const Options& options) {
+void selftest(Card& card, transport::Connection* connection, const LookOptions& options) {
   const driver::Status status = card.status();
   if (status.busy) throw UsageError("selftest: the card is busy: it is tried when it is idle");
   Checks checks;
@@ -255,7 +255,7 @@ void selftest(Card& card, transport::Connection* connection, const Options& opti
 }  // namespace
 
 void add_card_commands(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<LookOptions>();
   CLI::App* dump_command = app.add_subcommand("dump", "all registers of a card by name");
   options->card.add_to(*dump_command);
   dump_command->callback(

@@ -97,7 +97,8 @@ std::string summary(const CardRunResult& result) {
   }
   text += summary(result.profile);
   if (result.outcome.under_runs) text += fmt::format("  under-runs since reset: {}\n", *result.outcome.under_runs);
-  text += link_text(result) + blends_text(result.plan.blends) + probes_text(result.outcome.probes, result.axes);
+  text += probes_text(result.axes, result.outcome.probes);
+  text += link_text(result) + blends_text(result.plan.blends);
   return text + accepted_words(result.plan.accepted);
 }
 
@@ -118,10 +119,10 @@ std::string json_text(const CardRunResult& result) {
   json["under_runs"] = nullptr;
   if (result.outcome.under_runs) json["under_runs"] = *result.outcome.under_runs;
   json["feeds_not_reached"] = feeds_json(result.plan.feeds_not_reached);
+  json["probes"] = probes_json(result.axes, result.outcome.probes);
   json["link"] = {{"requests", result.link.requests},
                   {"sent_again", result.link.sent_again},
                   {"reconnections", result.reconnections}};
-  json["probes"] = probes_json(result.outcome.probes, result.axes);
   json["accepted_words"] = result.plan.accepted;
   return json.dump(2) + "\n";
 }

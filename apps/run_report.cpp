@@ -177,7 +177,8 @@ std::vector<std::string> feed_warnings(const std::string& file, const std::vecto
   return lines;
 }
 
-std::string probes_text(const std::vector<run::ProbeMade>& probes, const std::string& axes) {
+// Machine coordinates.
+std::string probes_text(const std::string& axes, const std::vector<run::ProbeMade>& probes) {
   std::string text;
   for (const run::ProbeMade& probe : probes) {
     text += fmt::format("  probe at line {}: {}", probe.line, probe.tripped ? "edge at" : "no edge, ended at");
@@ -187,7 +188,7 @@ std::string probes_text(const std::vector<run::ProbeMade>& probes, const std::st
   return text;
 }
 
-nlohmann::ordered_json probes_json(const std::vector<run::ProbeMade>& probes, const std::string& axes) {
+nlohmann::ordered_json probes_json(const std::string& axes, const std::vector<run::ProbeMade>& probes) {
   auto list = nlohmann::ordered_json::array();
   for (const run::ProbeMade& probe : probes) {
     const std::vector<double> edge(probe.edge.begin(), probe.edge.begin() + static_cast<std::ptrdiff_t>(axes.size()));
@@ -213,7 +214,7 @@ std::string summary(const RunResult& result) {
     text += fmt::format("  mean feed {} of {} mm/min\n", number(*result.achieved_feed), number(*result.commanded_feed));
   }
   text += blends_text(result.blends);
-  text += probes_text(result.probes, result.axes);
+  text += probes_text(result.axes, result.probes);
   text += outputs_text(result.outputs);
   if (!result.events.empty())
     text += fmt::format("  {} overrides, holds and inputs on the way\n", result.events.size());
@@ -270,7 +271,7 @@ nlohmann::ordered_json run_json(const RunResult& result) {
   json["outputs"] = outputs_json(result.outputs);
   json["inputs"] = nullptr;
   if (result.inputs) json["inputs"] = *result.inputs;
-  json["probes"] = probes_json(result.probes, result.axes);
+  json["probes"] = probes_json(result.axes, result.probes);
   json["accepted_words"] = result.accepted;
   return json;
 }

@@ -17,14 +17,14 @@ std::vector<std::string> feed_warnings(const std::string& file, const std::vecto
 std::string summary(const RunResult& result);
 
 // Words of the program that had no effect, by the reason why; a line each.
-// A line a probe, machine coordinates; `axes`: their letters.
-std::string probes_text(const std::vector<run::ProbeMade>& probes, const std::string& axes);
-nlohmann::ordered_json probes_json(const std::vector<run::ProbeMade>& probes, const std::string& axes);
 // Of the first pass: nothing, or a line.
 std::string probes_planned(const run::Plan& plan);
 std::string accepted_words(const std::map<std::string, std::size_t>& words);
 // What G64 P has done; empty where no corner asked for it.
 std::string blends_text(const run::Blends& blends);
+// What probes have met.
+std::string probes_text(const std::string& axes, const std::vector<run::ProbeMade>& probes);
+nlohmann::ordered_json probes_json(const std::string& axes, const std::vector<run::ProbeMade>& probes);
 nlohmann::ordered_json blends_json(const run::Blends& blends);
 nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);

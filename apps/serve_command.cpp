@@ -25,11 +25,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint32_t kDefaultClock = 1'000'000;
+constexpr std::uint32_t kServedClock = 1'000'000;
 
-struct Options {
+struct ServeOptions {
   std::string engine = "rtl";
-  std::uint32_t clock_hz = kDefaultClock;
+  std::uint32_t clock_hz = kServedClock;
   unsigned axes = 4;
   std::string listen = "127.0.0.1";
   std::uint16_t port = 0;
@@ -53,7 +53,7 @@ void end_at_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
 }
 
-sim::SimulationOptions engine_of(const Options& options) {
+sim::SimulationOptions engine_of(const ServeOptions& options) {
   sim::SimulationOptions engine;
   engine.kind = options.engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;
   engine.axes = options.axes;
@@ -62,7 +62,7 @@ sim::SimulationOptions engine_of(const Options& options) {
   return engine;
 }
 
-serve::Settings settings_of(const Options& options) {
+serve::Settings settings_of(const ServeOptions& options) {
   if (options.token && !serve::is_token(*options.token)) {
     throw UsageError("--token: 1 to 64 letters, digits, '-' and '_'");
   }
@@ -80,7 +80,7 @@ serve::Settings settings_of(const Options& options) {
   return settings;
 }
 
-std::unique_ptr<transport::Listener> listener_of(const Options& options) {
+std::unique_ptr<transport::Listener> listener_of(const ServeOptions& options) {
   try {
     return options.terminal ? transport::open_pseudo_terminal() : transport::listen_tcp(options.listen, options.port);
   } catch (const driver::LinkError& error) {
@@ -94,7 +94,7 @@ void tell_where(const transport::Listener& listener, const std::string& token) {
   std::fflush(stdout);
 }
 
-void execute(const Options& options) {
+void serve_card(const ServeOptions& options) {
   const serve::Settings settings = settings_of(options);
   const std::unique_ptr<transport::Listener> listener = listener_of(options);
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_of(options));
@@ -121,7 +121,7 @@ void execute(const Options& options) {
 }  // namespace
 
 void add_serve_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ServeOptions>();
   CLI::App* command = app.add_subcommand("serve", "put a simulated card on a TCP port or a pseudo-terminal");
   command
       ->add_option("--engine", options->engine,
@@ -157,7 +157,7 @@ void add_serve_command(CLI::App& app) {
       ->type_name("SECONDS")
       ->capture_default_str();
   command->add_flag("--once", options->once, "end when the first client has gone");
-  command->callback([options] { execute(*options); });
+  command->callback([options] { serve_card(*options); });
 }
 
 }  // namespace trammel::app

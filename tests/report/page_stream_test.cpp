@@ -7,14 +7,10 @@
 #include <random>
 #include <string>
 
+#include "text.hpp"
+
 namespace trammel::report {
 namespace {
-
-class Text final : public run::TextSink {
- public:
-  void write(std::string_view text) override { all += text; }
-  std::string all;
-};
 
 std::string from_base64(const std::string& text) {
   static const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

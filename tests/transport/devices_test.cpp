@@ -1,13 +1,17 @@
 // SPI and memory at their system calls: exact accesses, lengths, errors. No hardware was there; at the other end of the
 // calls is a card's frame engine without time, or memory.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <linux/spi/spidev.h>
 #include <sys/mman.h>
 
 #include <array>
 #include <cerrno>
+#include <deque>
 #include <functional>
+#include <memory>
+#include <string>
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
@@ -21,38 +25,88 @@ namespace {
 
 using namespace std::chrono_literals;
 using driver::Access;
-using ::testing::_;
 using ::testing::HasSubstr;
-using ::testing::InSequence;
-using ::testing::Invoke;
-using ::testing::Return;
-using ::testing::StrEq;
-using ::testing::StrictMock;
 
-class Calls : public SystemCalls {
+// What is expected of the device, call by call: what the call is, and what it gives. A call that is not the next one
+// fails the test, and so does one that does not come.
+class Calls final : public SystemCalls {
  public:
-  MOCK_METHOD(int, open, (const char*, int), (override));
-  MOCK_METHOD(int, close, (int), (override));
-  MOCK_METHOD(int, ioctl, (int, unsigned long, void*), (override));
-  MOCK_METHOD(ssize_t, read, (int, void*, std::size_t), (override));
-  MOCK_METHOD(ssize_t, write, (int, const void*, std::size_t), (override));
-  MOCK_METHOD(int, poll, (pollfd*, int), (override));
-  MOCK_METHOD(void*, mmap, (std::size_t, int, int, int, off_t), (override));
-  MOCK_METHOD(int, munmap, (void*, std::size_t), (override));
-  MOCK_METHOD(std::uint32_t, load, (const volatile std::uint32_t*), (override));
-  MOCK_METHOD(void, store, (volatile std::uint32_t*, std::uint32_t), (override));
+  using Answer = std::function<std::int64_t(const void*)>;
+
+  ~Calls() override {
+    for (const Due& due : due_) ADD_FAILURE() << "did not come: " << due.call;
+  }
+  Calls() = default;
+
+  void expect(const std::string& call, std::int64_t result = 0, int error = 0) {
+    due_.push_back({call, [result, error](const void*) {
+                      errno = error;
+                      return result;
+                    }});
+  }
+  // The answer looks at what the call points to.
+  void expect(const std::string& call, Answer answer) { due_.push_back({call, std::move(answer)}); }
+  // Every further call of an exchange, once nothing else is due.
+  void exchange_with(Answer answer) { exchange_ = std::move(answer); }
+  void map_at(void* memory) { memory_ = static_cast<std::uint8_t*>(memory); }
+
+  int open(const char* path, int flags) override { return make<int>(fmt::format("open {} {}", path, flags)); }
+  int close(int file) override { return make<int>(fmt::format("close {}", file)); }
+  int ioctl(int file, unsigned long request, void* argument) override {
+    if (due_.empty() && exchange_ && request == SPI_IOC_MESSAGE(1)) return static_cast<int>(exchange_(argument));
+    return make<int>(fmt::format("ioctl {} {}", file, request), argument);
+  }
+  ssize_t read(int file, void* bytes, std::size_t count) override {
+    return make<ssize_t>(fmt::format("read {} {}", file, count), bytes);
+  }
+  ssize_t write(int file, const void* bytes, std::size_t count) override {
+    return make<ssize_t>(fmt::format("write {} {}", file, count), bytes);
+  }
+  int poll(pollfd* file, int milliseconds) override {
+    return make<int>(fmt::format("poll {} {} {}", file->fd, file->events, milliseconds));
+  }
+  void* mmap(std::size_t length, int protection, int flags, int file, off_t offset) override {
+    const auto made =
+        make<int>(fmt::format("mmap {} {} {} {} {}", length, protection, flags, file, std::int64_t{offset}));
+    return made < 0 ? MAP_FAILED : memory_;
+  }
+  int munmap(void* address, std::size_t length) override {
+    EXPECT_EQ(address, memory_);
+    return make<int>(fmt::format("munmap {}", length));
+  }
+  std::uint32_t load(const volatile std::uint32_t* word) override {
+    return make<std::uint32_t>(fmt::format("load {}", place(word)));
+  }
+  void store(volatile std::uint32_t* word, std::uint32_t value) override {
+    make<int>(fmt::format("store {} {}", place(word), value));
+  }
+
+ private:
+  struct Due {
+    std::string call;
+    Answer answer;
+  };
+
+  template <class Result>
+  Result make(const std::string& call, const void* argument = nullptr) {
+    const std::string next = due_.empty() ? "nothing" : due_.front().call;
+    EXPECT_EQ(call, next);
+    if (call != next) return Result{};
+    const Answer answer = due_.front().answer;
+    due_.pop_front();
+    return static_cast<Result>(answer(argument));
+  }
+  // Bytes from where the file was mapped.
+  std::ptrdiff_t place(const volatile std::uint32_t* word) const {
+    return reinterpret_cast<const volatile std::uint8_t*>(word) - memory_;
+  }
+
+  std::deque<Due> due_;
+  Answer exchange_;
+  std::uint8_t* memory_ = nullptr;
 };
 
 constexpr int kFile = 7;
-
-// A failing call.
-template <class Result>
-auto fails(Result result, int error) {
-  return Invoke([result, error](auto...) {
-    errno = error;
-    return result;
-  });
-}
 
 std::string message_of(const std::function<void()>& call) {
   try {
@@ -67,33 +121,32 @@ std::string message_of(const std::function<void()>& call) {
 
 class MemoryTest : public ::testing::Test {
  protected:
-  void expect_open(const char* path, std::size_t length, off_t offset) {
-    EXPECT_CALL(calls_, open(StrEq(path), O_RDWR | O_SYNC | O_CLOEXEC)).WillOnce(Return(kFile));
-    EXPECT_CALL(calls_, mmap(length, PROT_READ | PROT_WRITE, MAP_SHARED, kFile, offset))
-        .WillOnce(Return(memory_.data()));
+  MemoryTest() { calls_.map_at(memory_.data()); }
+  void expect_open(const char* path, std::size_t length, std::int64_t offset) {
+    calls_.expect(fmt::format("open {} {}", path, O_RDWR | O_SYNC | O_CLOEXEC), kFile);
+    calls_.expect(fmt::format("mmap {} {} {} {} {}", length, PROT_READ | PROT_WRITE, MAP_SHARED, kFile, offset));
   }
   void expect_close(std::size_t length) {
-    EXPECT_CALL(calls_, munmap(memory_.data(), length)).WillOnce(Return(0));
-    EXPECT_CALL(calls_, close(kFile)).WillOnce(Return(0));
+    calls_.expect(fmt::format("munmap {}", length));
+    calls_.expect("close 7");
   }
   void expect_enable() {
-    EXPECT_CALL(calls_, write(kFile, _, 4)).WillOnce(Invoke([](int, const void* bytes, std::size_t) {
+    calls_.expect("write 7 4", [](const void* bytes) {
       EXPECT_EQ(*static_cast<const std::int32_t*>(bytes), 1);
-      return ssize_t{4};
-    }));
+      return 4;
+    });
   }
 
   std::array<std::uint32_t, 2048> memory_{};
-  StrictMock<Calls> calls_;
-  InSequence in_order_;
+  Calls calls_;
 };
 
 TEST_F(MemoryTest, OneAccessOf32BitsForEachInOrder) {
   expect_open("/dev/mem", 4096, 0x43C00000);
-  EXPECT_CALL(calls_, store(&memory_[0x1C0 / 4], 5));
-  EXPECT_CALL(calls_, load(&memory_[0x04 / 4])).WillOnce(Return(77));
-  EXPECT_CALL(calls_, store(&memory_[0x1C0 / 4], 6));
-  EXPECT_CALL(calls_, load(&memory_[0xFFC / 4])).WillOnce(Return(78));
+  calls_.expect("store 448 5");
+  calls_.expect("load 4", 77);
+  calls_.expect("store 448 6");
+  calls_.expect("load 4092", 78);
   expect_close(4096);
   MemoryBus bus("/dev/mem", 0x43C00000, true, calls_);
   EXPECT_FALSE(bus.reports_refusals());
@@ -108,7 +161,7 @@ TEST_F(MemoryTest, OneAccessOf32BitsForEachInOrder) {
 
 TEST_F(MemoryTest, AnOffsetWithinAPageIsMappedFromThePage) {
   expect_open("/dev/mem", 4096 + 0x804, 0x1000);
-  EXPECT_CALL(calls_, load(&memory_[(0x804 + 0x08) / 4])).WillOnce(Return(4));
+  calls_.expect(fmt::format("load {}", 0x804 + 0x08), 4);
   expect_close(4096 + 0x804);
   MemoryBus bus("/dev/mem", 0x1804, true, calls_);
   Access access = driver::read_of(0x08);
@@ -117,22 +170,19 @@ TEST_F(MemoryTest, AnOffsetWithinAPageIsMappedFromThePage) {
 }
 
 TEST_F(MemoryTest, UioInterrupt) {
+  const auto poll_of = [](int milliseconds) { return fmt::format("poll 7 {} {}", POLLIN, milliseconds); };
   expect_open("/dev/uio0", 4096, 0);
   expect_enable();
   expect_enable();
-  EXPECT_CALL(calls_, poll(_, 3)).WillOnce(Invoke([](pollfd* entry, int) {
-    EXPECT_EQ(entry->fd, kFile);
-    EXPECT_EQ(entry->events, POLLIN);
-    return 1;
-  }));
-  EXPECT_CALL(calls_, read(kFile, _, 4)).WillOnce(Return(4));
+  calls_.expect(poll_of(3), 1);
+  calls_.expect("read 7 4", 4);
   expect_enable();
-  EXPECT_CALL(calls_, poll(_, 0)).WillOnce(Return(0));
+  calls_.expect(poll_of(0), 0);
   expect_enable();
-  EXPECT_CALL(calls_, poll(_, 1)).WillOnce(fails(-1, EINTR));
+  calls_.expect(poll_of(1), -1, EINTR);
   expect_enable();
-  EXPECT_CALL(calls_, poll(_, 1)).WillOnce(Return(1));
-  EXPECT_CALL(calls_, read(kFile, _, 4)).WillOnce(fails(ssize_t{-1}, EIO));
+  calls_.expect(poll_of(1), 1);
+  calls_.expect("read 7 4", -1, EIO);
   expect_close(4096);
   MemoryBus bus("/dev/uio0", 0, true, calls_);
   ASSERT_TRUE(bus.has_interrupt());
@@ -144,7 +194,7 @@ TEST_F(MemoryTest, UioInterrupt) {
 
 TEST_F(MemoryTest, WithoutAnInterruptAWaitIsASleep) {
   expect_open("/dev/uio1", 4096, 0x1000);
-  EXPECT_CALL(calls_, write(kFile, _, 4)).WillOnce(fails(ssize_t{-1}, EIO));
+  calls_.expect("write 7 4", -1, EIO);
   expect_close(4096);
   {
     MemoryBus bus("/dev/uio1", 0x1000, true, calls_);
@@ -158,12 +208,13 @@ TEST_F(MemoryTest, WithoutAnInterruptAWaitIsASleep) {
 }
 
 TEST_F(MemoryTest, Errors) {
-  EXPECT_CALL(calls_, open(_, _)).WillOnce(fails(-1, EACCES));
+  const std::string opened = fmt::format("open /dev/mem {}", O_RDWR | O_SYNC | O_CLOEXEC);
+  calls_.expect(opened, -1, EACCES);
   EXPECT_THAT(message_of([&] { MemoryBus("/dev/mem", 0, true, calls_); }),
               HasSubstr("mmap /dev/mem: cannot open it: Permission denied"));
-  EXPECT_CALL(calls_, open(_, _)).WillOnce(Return(kFile));
-  EXPECT_CALL(calls_, mmap(_, _, _, _, _)).WillOnce(fails(MAP_FAILED, EPERM));
-  EXPECT_CALL(calls_, close(kFile)).WillOnce(fails(-1, EIO));
+  calls_.expect(opened, kFile);
+  calls_.expect(fmt::format("mmap 4096 {} {} 7 0", PROT_READ | PROT_WRITE, MAP_SHARED), -1, EPERM);
+  calls_.expect("close 7", -1, EIO);
   EXPECT_THAT(message_of([&] { MemoryBus("/dev/mem", 0, true, calls_); }),
               HasSubstr("cannot map its window: Operation not permitted"));
 }
@@ -175,7 +226,7 @@ class SpiCard {
  public:
   explicit SpiCard(frames::Endpoint::Access access) : endpoint_(std::move(access)) {}
 
-  int exchange(void* argument) {
+  std::int64_t exchange(const void* argument) {
     const auto& transfer = *static_cast<const spi_ioc_transfer*>(argument);
     EXPECT_EQ(transfer.speed_hz, 12'500'000U);
     EXPECT_EQ(transfer.bits_per_word, 8);
@@ -189,7 +240,7 @@ class SpiCard {
       sent.back().push_back(out[i]);
     }
     for (std::uint32_t i = 0; i < transfer.len; ++i) endpoint_.take(out[i], reply_);
-    return static_cast<int>(transfer.len);
+    return transfer.len;
   }
 
   std::vector<std::uint32_t> lengths;
@@ -203,24 +254,28 @@ class SpiCard {
 
 class SpiTest : public ::testing::Test {
  protected:
-  void expect_open(unsigned mode) {
-    EXPECT_CALL(calls_, open(StrEq("/dev/spidev0.0"), O_RDWR | O_CLOEXEC)).WillOnce(Return(kFile));
-    EXPECT_CALL(calls_, ioctl(kFile, SPI_IOC_WR_MODE, _)).WillOnce(Invoke([mode](int, unsigned long, void* value) {
-      EXPECT_EQ(*static_cast<std::uint8_t*>(value), mode);
+  // Byte or word that the call points to.
+  template <class Value>
+  void expect_setting(unsigned long request, Value due) {
+    calls_.expect(fmt::format("ioctl 7 {}", request), [due](const void* value) {
+      EXPECT_EQ(*static_cast<const Value*>(value), due);
       return 0;
-    }));
-    EXPECT_CALL(calls_, ioctl(kFile, SPI_IOC_WR_BITS_PER_WORD, _)).WillOnce(Invoke([](int, unsigned long, void* value) {
-      EXPECT_EQ(*static_cast<std::uint8_t*>(value), 8);
-      return 0;
-    }));
-    EXPECT_CALL(calls_, ioctl(kFile, SPI_IOC_WR_MAX_SPEED_HZ, _)).WillOnce(Invoke([](int, unsigned long, void* value) {
-      EXPECT_EQ(*static_cast<std::uint32_t*>(value), 12'500'000U);
-      return 0;
-    }));
-    EXPECT_CALL(calls_, close(kFile)).WillOnce(Return(0));
+    });
+  }
+  void expect_open(std::uint8_t mode) {
+    calls_.expect(opened_, kFile);
+    expect_setting<std::uint8_t>(SPI_IOC_WR_MODE, mode);
+    expect_setting<std::uint8_t>(SPI_IOC_WR_BITS_PER_WORD, 8);
+    expect_setting<std::uint32_t>(SPI_IOC_WR_MAX_SPEED_HZ, 12'500'000);
+  }
+  // A link that is closed at the end.
+  std::unique_ptr<SpiLink> link_of(unsigned mode) {
+    return std::make_unique<SpiLink>("/dev/spidev0.0", SpiLink::Options{12'500'000, mode}, calls_);
   }
 
-  StrictMock<Calls> calls_;
+  const std::string opened_ = fmt::format("open /dev/spidev0.0 {}", O_RDWR | O_CLOEXEC);
+  const std::string exchanged_ = fmt::format("ioctl 7 {}", std::uint64_t{SPI_IOC_MESSAGE(1)});
+  Calls calls_;
 };
 
 TEST_F(SpiTest, TheReplyComesInTheNextExchanges) {
@@ -230,9 +285,9 @@ TEST_F(SpiTest, TheReplyComesInTheNextExchanges) {
     if (write) written.push_back(data);
     return frames::Endpoint::Answer{false, address};
   });
-  EXPECT_CALL(calls_, ioctl(kFile, SPI_IOC_MESSAGE(1), _))
-      .WillRepeatedly(Invoke([&](int, unsigned long, void* transfer) { return card.exchange(transfer); }));
-  SpiLink link("/dev/spidev0.0", {12'500'000, 3}, calls_);
+  calls_.exchange_with([&](const void* transfer) { return card.exchange(transfer); });
+  const std::unique_ptr<SpiLink> opened = link_of(3);
+  SpiLink& link = *opened;
   driver::FrameBus bus(link);
   std::vector<Access> accesses;
   for (std::uint32_t i = 0; i < 59; ++i) accesses.push_back(driver::write_of(0x1C0, 0xC0DBC0DB + i));
@@ -262,40 +317,42 @@ TEST_F(SpiTest, TheReplyComesInTheNextExchanges) {
   EXPECT_EQ(card.sent[1], frames::Bytes(48, frames::kEnd)) << "ends flow while there is nothing to say";
   for (std::size_t i = 3; i < card.lengths.size(); ++i) EXPECT_EQ(card.lengths[i], 48U);
   EXPECT_LE(card.lengths.size(), 10U);
+  calls_.expect("close 7");
 }
 
 TEST_F(SpiTest, SilenceIsNothing) {
   expect_open(0);
-  EXPECT_CALL(calls_, ioctl(kFile, SPI_IOC_MESSAGE(1), _))
-      .WillRepeatedly(Invoke([&](int, unsigned long, void* argument) {
-        const auto& transfer = *static_cast<const spi_ioc_transfer*>(argument);
-        auto* in = reinterpret_cast<std::uint8_t*>(static_cast<std::uintptr_t>(transfer.rx_buf));
-        std::fill_n(in, transfer.len, frames::kEnd);
-        return static_cast<int>(transfer.len);
-      }));
-  SpiLink link("/dev/spidev0.0", {12'500'000, 0}, calls_);
+  calls_.exchange_with([](const void* argument) -> std::int64_t {
+    const auto& transfer = *static_cast<const spi_ioc_transfer*>(argument);
+    auto* in = reinterpret_cast<std::uint8_t*>(static_cast<std::uintptr_t>(transfer.rx_buf));
+    std::fill_n(in, transfer.len, frames::kEnd);
+    return transfer.len;
+  });
+  const std::unique_ptr<SpiLink> link = link_of(0);
   std::array<std::uint8_t, 16> bytes{};
-  EXPECT_EQ(link.receive(bytes.data(), bytes.size(), 0ns), 0U);
-  EXPECT_EQ(link.receive(bytes.data(), bytes.size(), 1ms), 0U);
-  EXPECT_EQ(link.time_of(1000), 1000 * 641ns) << "8 bits at 12.5 MHz, rounded up";
+  EXPECT_EQ(link->receive(bytes.data(), bytes.size(), 0ns), 0U);
+  EXPECT_EQ(link->receive(bytes.data(), bytes.size(), 1ms), 0U);
+  EXPECT_EQ(link->time_of(1000), 1000 * 641ns) << "8 bits at 12.5 MHz, rounded up";
+  calls_.expect("close 7");
 }
 
 TEST_F(SpiTest, Errors) {
-  EXPECT_CALL(calls_, open(_, _)).WillOnce(fails(-1, ENOENT));
-  EXPECT_THAT(message_of([&] { SpiLink("/dev/spidev0.0", {}, calls_); }),
-              HasSubstr("spi /dev/spidev0.0: cannot open it: No such file or directory"));
+  calls_.expect(opened_, -1, ENOENT);
+  EXPECT_THAT(message_of([&] { link_of(0); }), HasSubstr("spi /dev/spidev0.0: cannot open it: No such file"));
 
-  EXPECT_CALL(calls_, open(_, _)).WillOnce(Return(kFile));
-  EXPECT_CALL(calls_, ioctl(kFile, SPI_IOC_WR_MODE, _)).WillOnce(fails(-1, ENOTTY));
-  EXPECT_CALL(calls_, close(kFile)).WillOnce(Return(0));
-  EXPECT_THAT(message_of([&] { SpiLink("/dev/spidev0.0", {}, calls_); }), HasSubstr("it takes no mode"));
+  calls_.expect(opened_, kFile);
+  calls_.expect(fmt::format("ioctl 7 {}", std::uint64_t{SPI_IOC_WR_MODE}), -1, ENOTTY);
+  calls_.expect("close 7");
+  EXPECT_THAT(message_of([&] { link_of(0); }), HasSubstr("it takes no mode"));
 
   expect_open(0);
-  SpiLink link("/dev/spidev0.0", {12'500'000, 0}, calls_);
+  const std::unique_ptr<SpiLink> link = link_of(0);
   const std::array<std::uint8_t, 5> bytes{};
-  EXPECT_CALL(calls_, ioctl(kFile, SPI_IOC_MESSAGE(1), _)).WillOnce(fails(-1, EMSGSIZE)).WillOnce(Return(3));
-  EXPECT_THAT(message_of([&] { link.send(bytes.data(), bytes.size()); }), HasSubstr("an exchange failed"));
-  EXPECT_THAT(message_of([&] { link.send(bytes.data(), bytes.size()); }), HasSubstr("3 of 5 bytes were exchanged"));
+  calls_.expect(exchanged_, -1, EMSGSIZE);
+  EXPECT_THAT(message_of([&] { link->send(bytes.data(), bytes.size()); }), HasSubstr("an exchange failed"));
+  calls_.expect(exchanged_, 3);
+  EXPECT_THAT(message_of([&] { link->send(bytes.data(), bytes.size()); }), HasSubstr("3 of 5 bytes were exchanged"));
+  calls_.expect("close 7");
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ export const kLine = 0, kArc = 1, kSpaceArc = 2, kPause = 3
 export function decodePaths(data, axes, start) {
   const bytes = new Bytes(data)
   const flags = [], lines = [], stepClocks = [], ticks = [], lengths = [], wanted = [], speeds = [], ends = []
-  const arcs = new Map(), pauses = new Map()
+  const arcs = new Map(), pauses = new Map(), starts = new Map()
   let line = 0
   const here = Array.from(start)
   while (!bytes.done) {
@@ -85,6 +85,10 @@ export function decodePaths(data, axes, start) {
       stepClocks.push(0); ticks.push(0); lengths.push(0); wanted.push(0); speeds.push(0)
       for (let a = 0; a < axes; ++a) ends.push(here[a])
       continue
+    }
+    if (flag & 512) {
+      for (let a = 0; a < axes; ++a) here[a] += bytes.zigzag()
+      starts.set(index, Array.from(here))
     }
     stepClocks.push(bytes.varint())
     for (let a = 0; a < axes; ++a) ends.push(here[a] += bytes.zigzag())
@@ -108,7 +112,7 @@ export function decodePaths(data, axes, start) {
   return {
     count: flags.length, flags: Uint32Array.from(flags), lines: Uint32Array.from(lines),
     stepClocks: Float64Array.from(stepClocks), ticks: Float64Array.from(ticks), lengths: Float64Array.from(lengths),
-    wanted: Float32Array.from(wanted), speeds: Float32Array.from(speeds), ends: Float64Array.from(ends), arcs, pauses,
+    wanted: Float32Array.from(wanted), speeds: Float32Array.from(speeds), ends: Float64Array.from(ends), arcs, pauses, starts,
   }
 }
 

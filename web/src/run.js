@@ -63,7 +63,11 @@ export class Run {
       const put = (motion, cycle, after) => { motions.push(motion); cycles.push(cycle); slopes.push(after) }
       put(first.begin, from, enter)
       for (let p = i; p < end; ++p) put(points[p].motion, points[p].cycle, inner[p - i] ?? leave)
-      put(stop, last.cycle + Math.max(0, stop - last.motion) / leave, 0)
+      // What a probe has cut off takes no time.
+      const whole = last.cycle + Math.max(0, stop - last.motion) / leave
+      const next = points[end]
+      const latest = next ? next.cycle - (next.motion - next.begin) / this.fullRatio : Infinity
+      put(stop, whole <= latest ? whole : Math.max(last.cycle, Math.min(whole, latest)), 0)
       i = end
     }
     if (cycles.length) this.gaps.push([cycles.at(-1), Math.max(this.cycles, cycles.at(-1))])
@@ -129,6 +133,7 @@ export class Run {
     return motions[i] === motion ? cycles[i] : this.cycleAt(motion)
   }
   startOf(path, axis) {
+    if (this.paths.flags[path] & 512) return this.paths.starts.get(path)[axis]
     const n = this.axes.length
     return path > 0 ? this.paths.ends[(path - 1) * n + axis] : this.start[axis]
   }

@@ -85,7 +85,7 @@ export class View {
     this.rapid.geometry.setAttribute('position', new BufferAttribute(Float32Array.from(rapid.points), 3))
     this.rapid.computeLineDistances()
     this.rapid.frustumCulled = false
-    this.thin = new Line(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.3 }))
+    this.thin = new Line(new BufferGeometry(), new LineBasicMaterial())  // opaque, or it would be drawn last
     this.detail = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.85 }))
     this.dots = new Points(new BufferGeometry(), new PointsMaterial({ size: 5, sizeAttenuation: false, map: disc(), alphaTest: 0.5, transparent: true }))
     this.grid = new LineSegments(new BufferGeometry(), new LineBasicMaterial())
@@ -93,6 +93,7 @@ export class View {
     this.tool = new Mesh(new ConeGeometry(0.36, 1, 24).rotateX(-Math.PI / 2).translate(0, 0, 0.5), new MeshBasicMaterial({ transparent: true, opacity: 0.92 }))
     // Under the commanded lines over the whole run, above them pulse by pulse.
     this.thin.material.depthTest = this.thin.material.depthWrite = false
+    this.grid.material.depthWrite = this.near.material.depthWrite = false
     for (const object of [this.detail, this.dots]) {
       object.material.depthTest = object.material.depthWrite = false
       object.renderOrder = 2
@@ -109,15 +110,20 @@ export class View {
   buildExecuted() {
     const { places, count } = this.run.executed
     const size = this.size()
-    const kept = []
-    const least = Math.max(...size, 1e-6) / 3000
-    let x = Infinity, y = 0, z = 0
-    for (let i = 0; i < count && kept.length < 3 * kThin; ++i) {
-      const dx = places[3 * i] - x, dy = places[3 * i + 1] - y, dz = places[3 * i + 2] - z
-      if (!(dx * dx + dy * dy + dz * dz < least * least) || i + 1 === count) {
-        x = places[3 * i]; y = places[3 * i + 1]; z = places[3 * i + 2]
+    // Each at least a distance from the one before; where that makes too many, twice the distance.
+    let kept
+    for (let least = Math.max(...size, 1e-6) / 3000; ; least *= 2) {
+      kept = []
+      let x = Infinity, y = 0, z = 0
+      for (let i = 0; i < count && kept.length <= 3 * kThin; ++i) {
+        const dx = places[3 * i] - x, dy = places[3 * i + 1] - y, dz = places[3 * i + 2] - z
+        if (dx * dx + dy * dy + dz * dz < least * least && i + 1 < count) continue
+        x = places[3 * i]
+        y = places[3 * i + 1]
+        z = places[3 * i + 2]
         kept.push(x, y, z)
       }
+      if (kept.length <= 3 * kThin) break
     }
     this.thin.geometry.setAttribute('position', new BufferAttribute(Float32Array.from(kept), 3))
     const chunks = Math.ceil(count / kChunk)
@@ -215,7 +221,7 @@ export class View {
     }
     this.scene.background = new Color(colour('panel'))
     this.rapid.material.color.set(colour('rapid'))
-    this.thin.material.color.set(colour('executed'))
+    this.thin.material.color.set(colour('panel')).lerp(new Color(colour('executed')), 0.3)
     this.detail.material.color.set(colour('executed'))
     this.grid.material.color.set(colour('grid'))
     this.near.material.color.set(colour('grid'))
@@ -260,12 +266,18 @@ export class View {
     this.camera.updateMatrixWorld()
     const inverse = this.camera.matrixWorldInverse
     const low = new Vector3(Infinity, Infinity, Infinity), high = new Vector3(-Infinity, -Infinity, -Infinity)
-    for (let corner = 0; corner < 8; ++corner) {
-      const at = new Vector3(...[0, 1, 2].map((i) => (corner >> i & 1 ? this.box.high : this.box.low)[i])).applyMatrix4(inverse)
-      low.min(at)
-      high.max(at)
-    }
     const width = this.camera.right * 2, height = this.camera.top * 2
+    const at = new Vector3()
+    const take = (list, every) => {
+      for (let i = 0; i + 2 < list.length; i += 3 * every) {
+        at.fromArray(list, i).applyMatrix4(inverse)
+        low.min(at)
+        high.max(at)
+      }
+    }
+    const { feed, rapid } = this.course
+    for (const { points } of [feed, rapid]) take(points, Math.max(1, Math.floor(points.length / 15000)))
+    if (low.x > high.x) take([...this.box.low, ...this.box.high], 1)
     // The numbers at the grid too.
     if (this.shown.grid) {
       const { x, y, z } = this.ruled
@@ -427,20 +439,20 @@ export class View {
     this.drawAxes(context, height)
   }
   numberGrid(context, at) {
-    const { step, x, y, z } = this.ruled
+    const { x, y, z } = this.ruled
     const { centre } = this.run
-    const digits = decimals(step)
     context.fillStyle = colour('faint')
     context.textAlign = 'center'
     context.textBaseline = 'middle'
-    const rule = (range, place, outward) => {
+    const rule = (range, place, outward, step = this.ruled.step) => {
+      const digits = decimals(step)
       const p = place(range.low), q = place(range.high)
       const gap = Math.hypot(q[0] - p[0], q[1] - p[1]) / Math.max(1, range.count)
       if (!(gap > 3)) return
       const every = Math.max(1, Math.ceil(34 / gap))
       for (let i = 0; i <= range.count; ++i) {
         const value = range.low + i * step
-        if (Math.round(value / step) % every !== 0) continue
+        if (every > 1 && Math.round(value / step) % every !== 0) continue
         const [px, py] = place(value)
         const last = i + every > range.count
         context.fillText(`${fixed(value, digits)}${last ? ' mm' : ''}`, px + outward[0], py + outward[1])
@@ -453,8 +465,18 @@ export class View {
     const xs = (v) => at(v - centre[0], y.low - centre[1], z)
     const ys = (v) => at(x.low - centre[0], v - centre[1], z)
     const xMiddle = (x.low + x.high) / 2, yMiddle = (y.low + y.high) / 2
-    rule(x, xs, towards(xs(xMiddle), at(xMiddle - centre[0], y.high - centre[1], z)))
-    rule(y, ys, towards(ys(yMiddle), at(x.high - centre[0], yMiddle - centre[1], z)))
+    const size = this.size()
+    if (size[0] > 0) rule(x, xs, towards(xs(xMiddle), at(xMiddle - centre[0], y.high - centre[1], z)))
+    if (size[1] > 0) rule(y, ys, towards(ys(yMiddle), at(x.high - centre[0], yMiddle - centre[1], z)))
+    // Heights, where they matter: at the corner that stands to the left.
+    if (size[2] < 0.25 * Math.max(size[0], size[1])) return
+    const corners = [[x.low, y.low], [x.low, y.high], [x.high, y.low], [x.high, y.high]]
+    if (!(size[0] + size[1] > 0)) corners.splice(0, 4, centre)
+    const left = corners.reduce((p, q) => at(q[0] - centre[0], q[1] - centre[1], z)[0] < at(p[0] - centre[0], p[1] - centre[1], z)[0] ? q : p)
+    const zStep = niceStep(size[2] / 8)
+    const low = Math.ceil((this.box.low[2] + centre[2]) / zStep - 1e-6) * zStep
+    const zs = (v) => at(left[0] - centre[0], left[1] - centre[1], v - centre[2])
+    rule({ low, count: Math.floor(size[2] / zStep + 1e-6), high: low + Math.floor(size[2] / zStep + 1e-6) * zStep }, zs, [-26, 0], zStep)
   }
   markEnds(context, at) {
     const { run } = this

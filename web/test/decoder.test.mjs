@@ -41,6 +41,24 @@ function expectPulses({ run, list }) {
     })
   })
 }
+// How far, in pulses of an axis, the commanded place ever is from the executed one at a step.
+function worstPlace(run, counts = () => true) {
+  let worst = 0
+  for (let i = 0; i < run.executed.count; i += 7) {
+    const cycle = run.executed.times[i]
+    if (!counts(cycle)) continue
+    const { motion } = run.motionAt(cycle)
+    const stretch = run.stretchAt(motion)
+    const share = run.shareAt(stretch, motion - run.motion.begins[stretch])
+    run.axes.forEach((axis, a) => {
+      const steps = run.steps[a]
+      const last = lastAtMost(steps.cycles, cycle)
+      const made = last < 0 ? axis.start : steps.positions[last]
+      worst = Math.max(worst, Math.abs(run.axisAt(run.motion.paths[stretch], a, share)[0] * axis.steps_per_mm - made))
+    })
+  }
+  return worst
+}
 const part = join(examples, 'part.ngc')
 
 test('every pulse of a part is in the page, at its clock', () => {
@@ -77,23 +95,24 @@ test('the deviations that the page finds are those that the run measured', () =>
 for (const [name, ...options] of [['at full speed'], ['held and overridden', '--hold-at', '2:1.5', '--override-at', '6:30'], ['S-curves', ...['x', 'y', 'z', 'e'].flatMap((axis) => ['--set', `axis.${axis}.max_jerk=20000`])]]) {
   test(`at every time the commanded place is the executed one: ${name}`, () => {
     const { run } = report(part, '--clock', '1000000', ...options)
-    let worst = 0, at = 0
-    for (let i = 0; i < run.executed.count; i += 7) {
-      const cycle = run.executed.times[i]
-      const { motion } = run.motionAt(cycle)
-      const stretch = run.stretchAt(motion)
-      const share = run.shareAt(stretch, motion - run.motion.begins[stretch])
-      run.axes.forEach((axis, a) => {
-        const steps = run.steps[a]
-        const last = lastAtMost(steps.cycles, cycle)
-        const made = last < 0 ? axis.start : steps.positions[last]
-        const off = Math.abs(run.axisAt(run.motion.paths[stretch], a, share)[0] * axis.steps_per_mm - made)
-        if (off > worst) { worst = off; at = run.seconds(cycle) }
-      })
-    }
-    assert.ok(worst < 1.25, `${worst} pulses at ${at} s`)
+    const worst = worstPlace(run)
+    assert.ok(worst < 1.25, `${worst} pulses`)
   })
 }
+
+test('behind a probe the path goes on where it stopped', () => {
+  const program = programOf('G21 G90\nG38.2 Z-10 F120\nG1 X4 F600\nG1 Z1\n')
+  const made = report(program, '--clock', '1000000', '--set', 'probe.input=0', '--input-at', '1.5:0:1')
+  expectPulses(made)
+  const { run } = made
+  const z = run.axes.findIndex((axis) => axis.letter === 'Z')
+  const path = run.paths.lines.indexOf(3)
+  const stood = run.startOf(path, z) / run.axes[z].steps_per_mm
+  assert.ok(stood < -2.5 && stood > -3.5, `${stood}`)
+  assert.ok(worstPlace(run, (cycle) => cycle > run.pathBegin[path]) < 1.25)
+  const last = run.positionAt(z, run.cycles)
+  assert.equal(last, made.json.final_position[z])
+})
 
 test('commanded speed is the feed, and what the pulses make of it is the same', () => {
   const { run } = report(programOf('G21 G90 G91.1\nG1 X60 F600\nG2 I-10 F600\n'), '--clock', '1000000')

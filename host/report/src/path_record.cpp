@@ -13,6 +13,9 @@ Kind kind_of(const planner::Block& block) {
 
 }  // namespace
 
+// Where a probe has cut a motion short, the next one begins elsewhere.
+bool PathCoder::goes_on(const planner::Block& block) const { return !end_ || *end_ == block.start; }
+
 void PathCoder::put(const PathRecord& record) {
   const planner::Block& block = record.block;
   const Kind kind = kind_of(block);
@@ -22,6 +25,9 @@ void PathCoder::put(const PathRecord& record) {
   if (block.clockwise) flags |= 16U;
   if (record.stop) flags |= 32U;
   flags |= static_cast<unsigned>(record.limit) << 6U;
+  constexpr unsigned kElsewhere = 512;
+  const bool elsewhere = kind != kPause && !goes_on(block);
+  if (elsewhere) flags |= kElsewhere;
   stream_.varint(flags);
   const auto line = static_cast<std::int64_t>(block.line);
   stream_.zigzag(line - line_);
@@ -30,6 +36,8 @@ void PathCoder::put(const PathRecord& record) {
     stream_.number(block.geometry == planner::Geometry::kDwell ? block.dwell_seconds : 0.0);
     return;
   }
+  for (std::size_t a = 0; elsewhere && a < axes_; ++a) stream_.zigzag(block.start[a] - (*end_)[a]);
+  end_ = block.end;
   stream_.varint(record.step_clocks);
   for (std::size_t a = 0; a < axes_; ++a) stream_.zigzag(block.end[a] - block.start[a]);
   stream_.varint(record.ticks);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "trammel/machine/machine.hpp"
 #include "trammel/planner/planner.hpp"
@@ -29,10 +30,12 @@ class PathCoder {
 
  private:
   void put_arc(const planner::Block& block);
+  bool goes_on(const planner::Block& block) const;
 
   PageStream stream_;
   std::size_t axes_;
   std::int64_t line_ = 0;
+  std::optional<planner::Pulses> end_;  // of the motion before
 };
 
 }  // namespace trammel::report

@@ -81,6 +81,11 @@ class ReportWriter::State {
     anchored = step.cycle;
     new_stretch = false;
   }
+  void barrier() {
+    clock.barrier();
+    barrier_put = true;
+    after_barrier = clock.next_begins();
+  }
   void enter(std::uint64_t command);
   void count_clock(const driver::PathStep& step);
   bool inside(std::uint64_t cycle) const { return cycle >= first_cycle && cycle <= last_cycle; }
@@ -174,6 +179,11 @@ void ReportWriter::sending(const planner::PlannedBlock& planned) {
 
 void ReportWriter::command(std::uint64_t number, const driver::Command& command) {
   State& state = *state_;
+  // A probe's own commands come before and behind its block's.
+  if (std::holds_alternative<driver::ProbeCommand>(command) ||
+      std::holds_alternative<driver::ProbeEndCommand>(command)) {
+    return state.barrier();
+  }
   PathRecord& record = state.under_way.back();
   if (record.first_command == ~std::uint64_t{0}) record.first_command = number;
   CommandTicks ticks{number, state.clock.ticks(), 0, 0};
@@ -190,11 +200,7 @@ void ReportWriter::command(std::uint64_t number, const driver::Command& command)
     ticks.last = arc->ticks;
     ticks.prescale = arc->prescale;
   } else {
-    if (driver::counts_as_begun(command)) {
-      state.clock.barrier();
-      state.barrier_put = true;
-      state.after_barrier = state.clock.next_begins();
-    }
+    if (driver::counts_as_begun(command)) state.barrier();
     return;
   }
   if (state.barrier_put) state.stretches.push_back({number, state.after_barrier});
@@ -246,9 +252,9 @@ std::string ReportWriter::State::machine_json() const {
     const machine::MachineAxis& of = machine.axes[axis];
     list += fmt::format(
         R"({}{{"letter":"{}","axis":{},"steps_per_mm":{:.17g},"max_velocity":{:.17g},"max_acceleration":{:.17g},)"
-        R"("max_jerk":{:.17g},"step_length":{},"setup":{},"inverted":{},"start":{},"before":{},"beside":{}}})",
+        R"("max_jerk":{:.17g},"step_length":{},"dir_lead":{},"inverted":{},"start":{},"before":{},"beside":{}}})",
         motor == 0 ? "" : ",", of.letter, axis, of.steps_per_mm, of.max_velocity, of.max_acceleration, of.max_jerk,
-        clocks(planner::settings_of(of).step_length), clocks(planner::settings_of(of).direction_setup),
+        clocks(planner::settings_of(of).step_length), clocks(planner::settings_of(of).direction_setup) + kTurnClocks,
         motor == axis ? of.inverted : of.second_inverted, start ? (*start)[axis] : 0, before[motor], beside[motor]);
   }
   std::string window = "null";

@@ -23,7 +23,7 @@ using namespace std::chrono_literals;
 
 constexpr unsigned kAxes = 4;
 constexpr unsigned kBreakBits = 10;
-constexpr std::uint64_t kComparedSignals = 5;
+constexpr std::uint64_t kComparedSignals = 6;
 constexpr nanoseconds kClock = 1us;  // the card runs at 1 MHz
 
 class CardUnderTest {
@@ -63,6 +63,19 @@ class CardUnderTest {
     compare();
   }
 
+  // A write of some of a register's bytes over Wishbone: whether the card took it.
+  bool write_in_part(std::uint32_t address) {
+    in_.wishbone = {};
+    in_.wishbone.cyc = in_.wishbone.stb = in_.wishbone.we = true;
+    in_.wishbone.adr = address;
+    in_.wishbone.sel = 0x7;
+    clock();
+    in_.wishbone.stb = false;
+    while (!hosts_.wishbone().ack && !hosts_.wishbone().err) clock();
+    in_.wishbone = {};
+    return hosts_.wishbone().ack;
+  }
+
   std::uint32_t position(unsigned axis) const { return core_.position(axis); }
   const Checker& check() const { return check_; }
   std::uint64_t rises() const { return rises_; }
@@ -84,11 +97,17 @@ class CardUnderTest {
   void drive() {
     dut_->rx_i = in_.rx;
     dut_->spi_i = static_cast<CData>(unsigned{in_.spi.mosi} << 2 | unsigned{in_.spi.cs_n} << 1 | unsigned{in_.spi.sck});
+    const model::WishbonePort::Inputs& w = in_.wishbone;
+    dut_->wishbone_i = std::uint64_t{w.cyc} << 50 | std::uint64_t{w.stb} << 49 | std::uint64_t{w.we} << 48 |
+                       std::uint64_t{w.sel} << 44 | std::uint64_t{w.adr} << 32 | w.dat;
   }
   void compare() {
     const model::CoreModel::Outputs& out = core_.outputs();
     check_.compare("tx_o", dut_->tx_o, hosts_.uart().tx);
     check_.compare("spi_o", dut_->spi_o, unsigned{hosts_.spi().miso_enable} << 1 | unsigned{hosts_.spi().miso});
+    const model::WishbonePort::Outputs& w = hosts_.wishbone();
+    check_.compare("Wishbone ack, err, stall", dut_->wishbone_o >> 32,
+                   unsigned{w.ack} << 2 | unsigned{w.err} << 1 | unsigned{w.stall});
     check_.compare("step_o", dut_->step_o, out.step);
     check_.compare("dir_o", dut_->dir_o, out.dir);
     check_.compare("irq_o", dut_->irq_o, out.irq);
@@ -169,6 +188,7 @@ void lines_over_both() {
   SpiLink spi(card);
   a_line_over(card, spi, 300);
   EXPECT_EQ(card.rises(), 500U);
+  EXPECT_FALSE(card.write_in_part(card_map::reg::kHold));
   EXPECT_EQ(card.check().comparisons(), kComparedSignals * card.check().cycles());
 }
 
