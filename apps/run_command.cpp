@@ -101,6 +101,7 @@ void execute_on_card(const Options& options, const transport::CardUrl& url) {
   refuse_what_needs_the_simulation(options);
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
+  Output* const parameters = outputs.add("--parameters", options.parameters);
   outputs.keep("the program", options.program);
   if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
   outputs.check();
@@ -110,6 +111,7 @@ void execute_on_card(const Options& options, const transport::CardUrl& url) {
   run.progress = options.progress;
   run.stream = options.stream;
   run.settings = options.motion.settings();
+  if (options.parameters) run.settings.reader.parameters = load_parameters(*options.parameters);
   run.most_percent = 100 * machine.motion.max_override;
   run.operation = options.motion.operation(run.most_percent);
   run.planned = [&](const run::Plan& plan) {
@@ -126,6 +128,7 @@ void execute_on_card(const Options& options, const transport::CardUrl& url) {
     result = run_on_card(lines, machine, card, connection, run);
   });
   result.card = url.text;
+  if (parameters != nullptr) parameters->write(parameters_text(result.outcome.parameters));
   if (json != nullptr) json->write(json_text(result));
   outputs.commit(summary(result) + options.machine.line());
 }

@@ -16,9 +16,9 @@ std::vector<std::string> feed_warnings(const std::string& file, const std::vecto
 // Some lines of text, units in every one.
 std::string summary(const RunResult& result);
 
-// Words of the program that had no effect, by the reason why; a line each.
 // Of the first pass: nothing, or a line.
 std::string probes_planned(const run::Plan& plan);
+// Words of the program that had no effect, by the reason why; a line each.
 std::string accepted_words(const std::map<std::string, std::size_t>& words);
 // What G64 P has done; empty where no corner asked for it.
 std::string blends_text(const run::Blends& blends);

@@ -83,10 +83,10 @@ TEST(Serve, OnAPseudoTerminal) {
 TEST(Serve, AClientIsKilled) {
   const Command command;
   Server server(command, "--engine model");
-  const std::string program = command.write("long.ngc", "G1 X3 F600\nX0\nX3\n");
+  const std::string program = command.write("long.ngc", "G1 X100 F600\n");
   Running client(command, "run " + program + " --card " + server.moving(), "client.err");
   ASSERT_TRUE(eventually([&] { return server.said("has come"); })) << server.errors();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
   client.signal(SIGKILL);
   ASSERT_TRUE(client.wait());
   ASSERT_TRUE(eventually([&] { return server.said("the card holds"); })) << server.errors();

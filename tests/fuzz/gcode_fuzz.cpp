@@ -137,12 +137,24 @@ std::string bare(const std::string& line) {
 bool is_left_out(std::string text) {
   static const std::set<std::string> kWords = {"M73",  "M104", "M105", "M106", "M107", "M109", "M110", "M117",
                                                "M140", "M190", "M201", "M202", "M203", "M204", "M205", "G29"};
+  const auto drop = [&](const char* characters) {
+    text.erase(0, std::min(text.find_first_not_of(characters), text.size()));
+  };
   for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-  constexpr const char* kNumber = "0123456789.";
-  if (text.front() == 'N') text.erase(0, std::min(text.find_first_not_of(kNumber, 1), text.size()));
-  std::string word = text.substr(0, text.find_first_not_of(kNumber, 1));
-  if (word.size() > 2 && word.compare(word.size() - 2, 2, ".0") == 0) word.resize(word.size() - 2);
-  for (std::size_t zero = 1; word.size() > 2 && word[zero] == '0';) word.erase(zero, 1);
+  drop(" \t");
+  if (!text.empty() && text.front() == 'N') {
+    text.front() = ' ';
+    drop(" \t");
+    drop("0123456789.");
+    drop(" \t");
+  }
+  if (text.empty()) return false;
+  std::string word(1, text.front());
+  text.front() = ' ';
+  drop(" \t");
+  text.resize(std::min(text.find_first_not_of("0123456789."), text.size()));
+  drop("0");
+  word += text.substr(0, text.find('.'));
   return kWords.count(word) != 0;
 }
 
@@ -152,7 +164,8 @@ void check_nothing_dropped(std::string_view program, std::size_t end_line) {
   bool closed = false;
   std::size_t number = 0;
   for (const std::string& line : split(program)) {
-    const std::string text = bare(++number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0 ? line.substr(3) : line);
+    const std::string written = ++number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0 ? line.substr(3) : line;
+    const std::string text = bare(written);
     if (number > end_line && !closed) {
       return;  // behind M2 or M30 nothing is read
     }
@@ -160,12 +173,13 @@ void check_nothing_dropped(std::string_view program, std::size_t end_line) {
       continue;
     }
     const bool mark = text == "%";
-    require(mark || is_left_out(text) || text.find('%') == std::string::npos, "words beside a '%' are dropped");
+    require(mark || is_left_out(written) || text.find('<') != std::string::npos || text.find('%') == std::string::npos,
+            "words beside a '%' are dropped");
     require(!closed || mark, "words behind the last '%' are dropped");
     closed = closed || (mark && in_program);
     in_program = true;
-    // Expressions have operators such as EQ.
-    if (text.find('[') != std::string::npos || is_left_out(text)) continue;
+    // Expressions have operators such as EQ, and names.
+    if (text.find_first_of("[<") != std::string::npos || is_left_out(written)) continue;
     for (std::size_t i = 1; i < text.size(); ++i) {
       // Blanks between a number and e make it an axis word: look at the line as it is written.
       const bool digit = line.find(std::string(1, text[i - 1]) + "e") != std::string::npos && text[i - 1] >= '0' &&

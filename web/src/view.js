@@ -93,6 +93,7 @@ export class View {
     this.tool = new Mesh(new ConeGeometry(0.36, 1, 24).rotateX(-Math.PI / 2).translate(0, 0, 0.5), new MeshBasicMaterial({ transparent: true, opacity: 0.92 }))
     // Under the commanded lines over the whole run, above them pulse by pulse.
     this.thin.material.depthTest = this.thin.material.depthWrite = false
+    this.grid.material.depthWrite = this.near.material.depthWrite = false
     for (const object of [this.detail, this.dots]) {
       object.material.depthTest = object.material.depthWrite = false
       object.renderOrder = 2

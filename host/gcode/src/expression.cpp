@@ -327,7 +327,8 @@ bool ExpressionReader::name(Problem& problem) {
   name_size_ = 0;
   for (; at_ < line_.size() && line_[at_] != '>'; ++at_) {
     if (is_space(line_[at_])) continue;
-    if (line_[at_] == '(' || line_[at_] == ')' || line_[at_] == ';') return malformed(problem);
+    const bool printable = line_[at_] > ' ' && line_[at_] < '\x7f';
+    if (!printable || line_[at_] == '(' || line_[at_] == ')' || line_[at_] == ';') return malformed(problem);
     if (name_size_ == kLongestName)
       return wrong(problem, fmt::format("a name of more than {} characters", kLongestName));
     name_[name_size_++] = lower(line_[at_]);

@@ -252,9 +252,9 @@ std::string ReportWriter::State::machine_json() const {
     const machine::MachineAxis& of = machine.axes[axis];
     list += fmt::format(
         R"({}{{"letter":"{}","axis":{},"steps_per_mm":{:.17g},"max_velocity":{:.17g},"max_acceleration":{:.17g},)"
-        R"("max_jerk":{:.17g},"step_length":{},"setup":{},"inverted":{},"start":{},"before":{},"beside":{}}})",
+        R"("max_jerk":{:.17g},"step_length":{},"dir_lead":{},"inverted":{},"start":{},"before":{},"beside":{}}})",
         motor == 0 ? "" : ",", of.letter, axis, of.steps_per_mm, of.max_velocity, of.max_acceleration, of.max_jerk,
-        clocks(planner::settings_of(of).step_length), clocks(planner::settings_of(of).direction_setup),
+        clocks(planner::settings_of(of).step_length), clocks(planner::settings_of(of).direction_setup) + kTurnClocks,
         motor == axis ? of.inverted : of.second_inverted, start ? (*start)[axis] : 0, before[motor], beside[motor]);
   }
   std::string window = "null";

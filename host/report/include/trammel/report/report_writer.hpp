@@ -46,6 +46,10 @@ class ReportWriter final : public driver::StepSink, public run::Observer {
   std::unique_ptr<State> state_;
 };
 
+// Clocks by which DIR turns before the pulse that it turns for, beside the setup time: the phases of setup and pulse
+// and their ways to the pin (docs/reference/behaviour.md).
+inline constexpr std::uint64_t kTurnClocks = 5;
+
 // JSON for a script element: nothing in it can end the element or begin another.
 std::string inside_script(const std::string& json);
 
