@@ -24,7 +24,7 @@ module command_fetch (
     input  wire logic        rest_i,         // fields are left when the command is taken
     input  wire logic        wait_i,         // the next field, with first_o the first one, must wait
     output logic             header_o,       // {mask, opcode} is on word_i
-    output logic             first_o,        // the first field is taken up, or the header read (combinational)
+    output logic             first_o,        // the first field is taken up now (combinational)
     output logic             advance_o,      // the next field is taken up now (combinational)
     output logic      [ 4:0] field_o,        // field being read, or the one that waits
     // halfwords on their way, aligned with word_i
@@ -57,8 +57,7 @@ module command_fetch (
   logic   [4:0] field_1_q;
 
   assign field_done = left_q == 3'd0;
-  // For good in its last clock, in which the opcode is there; without a payload nobody asks.
-  assign first_o = state_q == HEADER;
+  assign first_o = has_payload_i && state_q == HEADER && step_q == 2'd3;
   assign advance_o = (state_q == PAYLOAD || state_q == REST) && field_done;
 
   always_ff @(posedge clk_i) begin : p_state
