@@ -130,7 +130,7 @@ void random_lines() {
       bench.line().break_line(kBreak + 8);
       bench.clocks((1 << kBreakBits) + 40 + dice.below(120));
       bench.reset();
-      for (unsigned i = 0; i < 3; ++i) bench.line().send(0x55);
+      for (unsigned sent = 0; sent < 3; ++sent) bench.line().send(0x55);
       bench.drain();
     }
     if (bench.period() != 0 && bench.period() < 300 && dice.chance(2)) {
