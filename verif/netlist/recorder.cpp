@@ -36,6 +36,7 @@ Recorder::Recorder(const std::string& path, std::uint32_t idle_level, std::uint3
     : file_(std::fopen(path.c_str(), "w")), model_(config(idle_level)), seed_(seed) {
   if (file_ == nullptr) throw std::runtime_error("cannot write " + path);
   dut_->clock_hz_i = model::CardModel::Config{}.clock_hz;
+  dut_->output_idle_i = static_cast<std::uint8_t>(idle_level & ((1U << kPins) - 1));
   dut_->idle_level_i = static_cast<std::uint8_t>(idle_level);
   line_ = "";
   for_each_port([this](const char* name, char direction, const auto&, unsigned width) {
@@ -51,6 +52,8 @@ void Recorder::for_each_port(Port&& port) {
   port("rst_i", '<', dut_->rst_i, 1);
   port("clock_hz_i", '<', dut_->clock_hz_i, 32);
   port("idle_level_i", '<', dut_->idle_level_i, 2 * kAxes);
+  port("input_i", '<', dut_->input_i, kPins);
+  port("output_idle_i", '<', dut_->output_idle_i, kPins);
   port("awvalid_i", '<', dut_->awvalid_i, 1);
   port("awaddr_i", '<', dut_->awaddr_i, 12);
   port("wvalid_i", '<', dut_->wvalid_i, 1);
@@ -70,6 +73,7 @@ void Recorder::for_each_port(Port&& port) {
   port("rresp_o", '>', dut_->rresp_o, 2);
   port("step_o", '>', dut_->step_o, kAxes);
   port("dir_o", '>', dut_->dir_o, kAxes);
+  port("output_o", '>', dut_->output_o, kPins);
   port("irq_o", '>', dut_->irq_o, 1);
   port("observe_o", '>', dut_->observe_o, 34 * kAxes + 213);
 }

@@ -18,6 +18,7 @@ namespace trammel::netlist {
 class Recorder {
  public:
   static constexpr unsigned kAxes = 4;
+  static constexpr unsigned kPins = 4;  // inputs, and outputs
 
   // What the recording must have seen to be worth a replay; clocks or edges, counted.
   struct Seen {
