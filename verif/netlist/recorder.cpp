@@ -36,7 +36,6 @@ Recorder::Recorder(const std::string& path, std::uint32_t idle_level, std::uint3
     : file_(std::fopen(path.c_str(), "w")), model_(config(idle_level)), seed_(seed) {
   if (file_ == nullptr) throw std::runtime_error("cannot write " + path);
   dut_->clock_hz_i = model::CardModel::Config{}.clock_hz;
-  dut_->output_idle_i = static_cast<std::uint8_t>(idle_level & ((1U << kPins) - 1));
   dut_->idle_level_i = static_cast<std::uint8_t>(idle_level);
   line_ = "";
   for_each_port([this](const char* name, char direction, const auto&, unsigned width) {
