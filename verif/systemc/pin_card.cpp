@@ -1,15 +1,11 @@
 #include <Vdut.h>
 
+#include "drive_pins.hpp"
 #include "pin_models.hpp"
 #include "trammel/sim/lockstep.hpp"
 
 namespace trammel::platform {
-
 namespace {
-
-QData bits_of(const WishboneMaster& m) {
-  return QData{m.cyc} << 50 | QData{m.stb} << 49 | QData{m.we} << 48 | QData{m.sel} << 44 | QData{m.adr} << 32 | m.dat;
-}
 
 class VerilatedPinCard final : public PinCard {
  public:
@@ -23,19 +19,9 @@ class VerilatedPinCard final : public PinCard {
 
  private:
   void drive(const CardInputs& in) {
-    dut_->rst_i = in.rst;
-    dut_->awvalid_i = in.axi.awvalid;
-    dut_->awaddr_i = in.axi.awaddr;
-    dut_->wvalid_i = in.axi.wvalid;
-    dut_->wdata_i = in.axi.wdata;
-    dut_->wstrb_i = in.axi.wstrb;
-    dut_->bready_i = in.axi.bready;
-    dut_->arvalid_i = in.axi.arvalid;
-    dut_->araddr_i = in.axi.araddr;
-    dut_->rready_i = in.axi.rready;
+    drive_shared(*dut_, in);
     dut_->wishbone_i = bits_of(in.wishbone);
-    dut_->rx_i = in.rx;
-    dut_->spi_i = static_cast<CData>(unsigned{in.spi.mosi} << 2 | unsigned{in.spi.cs_n} << 1 | unsigned{in.spi.sck});
+    dut_->spi_i = bits_of(in.spi);
     dut_->input_i = static_cast<CData>(in.inputs);
   }
   void show(CardOutputs& out) {

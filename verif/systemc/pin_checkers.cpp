@@ -1,6 +1,7 @@
 #include <Vcheckers.h>
 #include <verilated.h>
 
+#include "drive_pins.hpp"
 #include "pin_models.hpp"
 
 namespace trammel::platform {
@@ -42,22 +43,9 @@ class VerilatedCheckers final : public PortCheckers {
     return std::make_unique<Vcheckers>(&context_);
   }
   void drive(const CardInputs& in) {
-    dut_->rst_i = in.rst;
-    dut_->awvalid_i = in.axi.awvalid;
-    dut_->awaddr_i = in.axi.awaddr;
-    dut_->wvalid_i = in.axi.wvalid;
-    dut_->wdata_i = in.axi.wdata;
-    dut_->wstrb_i = in.axi.wstrb;
-    dut_->bready_i = in.axi.bready;
-    dut_->arvalid_i = in.axi.arvalid;
-    dut_->araddr_i = in.axi.araddr;
-    dut_->rready_i = in.axi.rready;
-    const WishboneMaster& m = in.wishbone;
-    dut_->wishbone_master_i =
-        QData{m.cyc} << 50 | QData{m.stb} << 49 | QData{m.we} << 48 | QData{m.sel} << 44 | QData{m.adr} << 32 | m.dat;
-    dut_->rx_i = in.rx;
-    dut_->spi_master_i =
-        static_cast<CData>(unsigned{in.spi.mosi} << 2 | unsigned{in.spi.cs_n} << 1 | unsigned{in.spi.sck});
+    drive_shared(*dut_, in);
+    dut_->wishbone_master_i = bits_of(in.wishbone);
+    dut_->spi_master_i = bits_of(in.spi);
   }
   void drive(const CardOutputs& out) {
     dut_->awready_i = out.axi.awready;
