@@ -59,10 +59,12 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
     const auto due = static_cast<std::uint64_t>(at * kClock);
     bench.bus.at(due, [&](sim::Engine&) { bench.card.request_stop(); });
     std::optional<std::size_t> line;
+    planner::Pulses told{};
     try {
       bench.run(kProgram);
     } catch (const StoppedOnPath& stopped) {
       line = stopped.line();
+      told = stopped.position();
     }
     ASSERT_TRUE(line);
     const std::size_t made = bench.steps.path.size();
@@ -79,6 +81,7 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
     planner::Pulses counted{};
     for (const driver::PinStep& step : bench.steps.pins) counted[step.axis] += step.direction;
     EXPECT_EQ(position.pulses(), counted);
+    EXPECT_EQ(told, counted);
 
     RunSettings there;
     there.start = position.millimetres();
@@ -98,6 +101,33 @@ TEST(Stop, TellsTheLineThatTheCardWasAt) {
   } catch (const StoppedOnPath& stopped) {
     EXPECT_EQ(stopped.line(), 5U);
   }
+}
+
+// Lines of a pulse each, with a rest between them, from somebody who is slower than the card: the queue is never full.
+class SlowLines final : public gcode::LineSource {
+ public:
+  SlowLines(driver::Card& card, unsigned& read) : card_(card), read_(read) {}
+  const std::string& name() const override { return name_; }
+  bool next(std::string_view& line) override {
+    if (read_ == 100) return false;
+    if (++read_ == 50) card_.request_stop();
+    line = read_ % 2 == 0 ? "G4 P0.001" : "G91 G1 X0.0125 F600";
+    return true;
+  }
+
+ private:
+  std::string name_ = "slow.ngc";
+  driver::Card& card_;
+  unsigned& read_;
+};
+
+TEST(Stop, WhileLinesComeSlowly) {
+  Bench bench;
+  unsigned read = 0;
+  Runner runner([&] { return std::make_unique<SlowLines>(bench.card, read); }, bench.machine,
+                planner::limits_of(bench.card.identification()));
+  EXPECT_THROW(runner.stream(bench.card), StoppedOnPath);
+  EXPECT_LT(read, 60U) << "it was not looked for before the end";
 }
 
 // In a dwell, with a hold standing, and when there is nothing to stop.
