@@ -9,6 +9,7 @@
 #include "errors.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
+#include "stop_at_signals.hpp"
 #include "terminal.hpp"
 #include "trammel/card_map.hpp"
 
@@ -73,7 +74,7 @@ CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine
   const driver::Snapshot before = card.snapshot();
   Watch watch(card, connection, plan, options.progress);
   runner.add(watch);
-  result.outcome = options.stream ? runner.stream(card) : runner.run(card);
+  result.outcome = run_until_signal(runner, card, machine, options.stream);
   result.plan = runner.last_plan();
   result.clock_hz = id.clock_hz;
   result.seconds = static_cast<double>(card.snapshot().time - before.time) / id.clock_hz;

@@ -15,6 +15,7 @@
 #include "engine_options.hpp"
 #include "errors.hpp"
 #include "outputs.hpp"
+#include "stop_at_signals.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/one_shot.hpp"
@@ -147,6 +148,26 @@ driver::LineCommand as_command(const driver::OneShotPlan& plan, const std::vecto
   return line;
 }
 
+// Pulses that the card has made since `before`, by axis of the line.
+std::vector<std::int64_t> moved(driver::Card& card, const driver::Snapshot& before, std::size_t axes) {
+  const driver::Snapshot after = card.snapshot();
+  std::vector<std::int64_t> result;
+  for (std::size_t a = 0; a < axes; ++a) {
+    result.push_back(driver::pulses_between(before.position[a], after.position[a]));
+  }
+  return result;
+}
+
+// To the end, or to where a signal stops it.
+void run_line(driver::Card& card, const driver::OneShotPlan& plan, const driver::Snapshot& before, std::size_t axes) {
+  const StopAtSignals signals(card);
+  try {
+    driver::run_line(card, plan);
+  } catch (const driver::StoppedError&) {
+    signals.end(fmt::format("moved by {} pulses", fmt::join(moved(card, before, axes), ", ")));
+  }
+}
+
 Result make_line(const Options& options, const sim::SimulationOptions& engine_options, run::TextSink* steps) {
   Result result;
   result.pulses = displacement_of(options);
@@ -162,7 +183,7 @@ Result make_line(const Options& options, const sim::SimulationOptions& engine_op
   recorder.command(0, as_command(plan, result.pulses));
   recorder.detail_of(0);
   engine->set_sink(&recorder);
-  driver::run_line(card, plan);
+  run_line(card, plan, {}, result.pulses.size());
   const driver::Snapshot snapshot = card.snapshot();
   engine->set_sink(nullptr);
   recorder.finish();
@@ -235,11 +256,10 @@ CardResult make_line_on(driver::Card& card, const Options& options) {
   const driver::OneShotPlan plan = plan_of(options, card.timing(), pulses);
   take_over(card);
   const driver::Snapshot before = card.snapshot();
-  driver::run_line(card, plan);
-  const driver::Snapshot after = card.snapshot();
+  run_line(card, plan, before, pulses.size());
   CardResult result;
+  result.moved = moved(card, before, pulses.size());
   for (std::size_t a = 0; a < pulses.size(); ++a) {
-    result.moved.push_back(driver::pulses_between(before.position[a], after.position[a]));
     if (result.moved[a] != pulses[a]) {
       throw std::runtime_error(fmt::format("axis {}: moved by {} pulses, asked for {}", a, result.moved[a], pulses[a]));
     }
@@ -310,8 +330,8 @@ void add_line_command(CLI::App& app) {
       ->required()
       ->type_name("X,Y,...");
   auto* velocity =
-      command->add_option("--velocity", options->velocity, "lines a second: the paper's v")->check(positive());
-  auto* duration = command->add_option("--duration", options->duration, "seconds")->check(positive());
+      command->add_option("--velocity", options->velocity, "lines a second, the second paper's v")->check(positive());
+  auto* duration = command->add_option("--duration", options->duration, "time of the line, seconds")->check(positive());
   auto* speed =
       command->add_option("--speed", options->speed, "pulses/s along the path (default 1000)")->check(positive());
   velocity->excludes(duration)->excludes(speed);

@@ -21,6 +21,7 @@
 #include "serve_command.hpp"
 #include "shell_command.hpp"
 #include "steps_command.hpp"
+#include "stop_at_signals.hpp"
 #include "temporary_files.hpp"
 #include "terminal.hpp"
 #include "trammel/machine/machine.hpp"
@@ -83,6 +84,9 @@ int main(int argc, char** argv) {
     return report(error.what(), trammel::app::kExitUsage);
   } catch (const trammel::machine::MachineError& error) {
     return report(error.what(), trammel::app::kExitUsage);
+  } catch (const trammel::app::EndedBySignal& ended) {
+    trammel::app::tell("note", ended.what());
+    ended.end_process();
   } catch (const std::exception& error) {
     return report(error.what(), trammel::app::kExitFailure);
   }

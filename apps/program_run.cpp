@@ -7,6 +7,7 @@
 
 #include "engine_options.hpp"
 #include "progress_bar.hpp"
+#include "stop_at_signals.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/feed_meter.hpp"
 #include "trammel/run/step_fork.hpp"
@@ -177,7 +178,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
   runner.add(recorder);
   runner.add(judges.feed);
   runner.add(watch);
-  const run::Outcome outcome = options.stream ? runner.stream(card) : runner.run(card);
+  const run::Outcome outcome = run_until_signal(runner, card, machine, options.stream);
   recorder.finish();
   recorder.check(outcome.counted);
   judges.tell(result);

@@ -25,6 +25,7 @@
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/increment.hpp"
 #include "trammel/driver/one_shot.hpp"
+#include "trammel/driver/position_stream.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/interpolation/any_interpolator.hpp"
 #include "trammel/sim/engine.hpp"
@@ -472,6 +473,42 @@ void bind_stream(nb::module_& m) {
       .def_prop_ro("sent", &driver::Stream::sent);
 }
 
+void bind_position_stream(nb::module_& m) {
+  using driver::PositionStream;
+  nb::class_<PositionStream::Sent>(m, "PositionsSent")
+      .def_ro("ahead", &PositionStream::Sent::ahead)
+      .def_ro("stale_ticks", &PositionStream::Sent::stale_ticks);
+  nb::class_<PositionStream::Stopped>(m, "PositionsStopped")
+      .def_ro("faults", &PositionStream::Stopped::faults)
+      .def_ro("stale_ticks", &PositionStream::Stopped::stale_ticks)
+      .def_ro("positions", &PositionStream::Stopped::positions);
+  auto stream = nb::class_<PositionStream>(m, "PositionStream");
+  stream.attr("PULSE") = PositionStream::kPulse;
+  stream
+      .def(
+          "__init__",
+          [](PositionStream* place, PythonCard& of, unsigned stale_periods, unsigned ahead,
+             const std::vector<double>& max_speed, std::int64_t patience_ns) {
+            new (place) PositionStream(
+                of.card, {stale_periods, ahead, by_axis(max_speed, "max_speed"), nanoseconds(patience_ns)});
+          },
+          "card"_a, nb::kw_only(), "stale_periods"_a = 1, "ahead"_a = 2, "max_speed"_a = std::vector<double>{},
+          "patience_ns"_a = 1'000'000'000, nb::keep_alive<1, 2>())
+      .def(
+          "send",
+          [](PositionStream& s, const std::vector<std::int64_t>& targets, std::int64_t duration_ns) {
+            return s.send(by_axis(targets, "targets"), nanoseconds(duration_ns));
+          },
+          "targets"_a, "duration_ns"_a, Unlocked(),
+          "A period: the axes are at targets (PULSE a pulse, from where they stood at the opening) at its end.")
+      .def("recover", &PositionStream::recover, Unlocked(), "After a FaultError: goes on from where the card stands.")
+      .def("finish", &PositionStream::finish, Unlocked(), "Waits until all is done; where the axes are.")
+      .def_prop_ro("position", &PositionStream::position)
+      .def_prop_ro("stale_ticks", &PositionStream::stale_ticks)
+      .def_prop_ro("ticks_behind", &PositionStream::ticks_behind)
+      .def_prop_ro("shortest_period", &PositionStream::shortest_period);
+}
+
 void bind_driver(nb::module_& m) {
   bind_card_values(m);
   auto card = nb::class_<PythonCard>(m, "Card");
@@ -483,6 +520,7 @@ void bind_driver(nb::module_& m) {
   m.def("describe_faults", driver::describe_faults, "faults"_a);
   bind_commands(m);
   bind_stream(m);
+  bind_position_stream(m);
 }
 
 // ---- Interpolators ----

@@ -187,7 +187,7 @@ TEST_F(OutputFiles, SignalLeavesWhatWasThere) {
     const Names before = command_.names();
     Running running(command_,
                     "run " + long_ + " --steps " + at("steps.csv") + " --json " + at("new.json") + " --plot " +
-                        at("new.svg") + " --trace " + at("new.fst"),
+                        at("new.svg") + " --trace-window 0:0.01 --trace " + at("new.fst"),
                     "stderr");
     ASSERT_TRUE(eventually([&] { return command_.names().size() >= before.size() + 5; })) << "or nothing is proved";
     running.signal(number);
@@ -196,6 +196,32 @@ TEST_F(OutputFiles, SignalLeavesWhatWasThere) {
     EXPECT_TRUE(WIFSIGNALED(*status) && WTERMSIG(*status) == number) << *status;
     EXPECT_EQ(command_.names(), before) << number;
     EXPECT_EQ(contents(at("steps.csv")), "old") << number;
+  }
+}
+
+// While the simulated card moves it is stopped first, so that its place can be told.
+TEST_F(OutputFiles, SignalTellsWhereTheSimulatedCardStands) {
+  const std::string fast = command_.write("fast.ngc", "G1 X1000 F6000\n");
+  for (const std::string engine : {"rtl", "model"}) {
+    const Names before = command_.names();
+    // 80,000 steps a second: what is written of them says that it moves.
+    Running running(command_,
+                    "run " + fast + " --set axis.x.steps_per_mm=800 --card sim: --clock 1000000 --engine " + engine +
+                        " --steps " + at("steps.csv"),
+                    "stderr");
+    const auto moves = [&] {
+      for (const std::string& name : command_.names()) {
+        if (name.rfind(".trammel-", 0) == 0 && std::filesystem::file_size(at(name)) > 0) return true;
+      }
+      return false;
+    };
+    ASSERT_TRUE(eventually(moves)) << contents(at("stderr"));
+    running.signal(SIGINT);
+    const auto status = running.wait();
+    EXPECT_TRUE(status && WIFSIGNALED(*status) && WTERMSIG(*status) == SIGINT) << engine;
+    const std::string said = contents(at("stderr"));
+    EXPECT_NE(said.find("stopped by SIGINT: line 1, X at pulse "), std::string::npos) << said;
+    EXPECT_EQ(command_.names(), before) << engine;
   }
 }
 

@@ -17,6 +17,12 @@ namespace {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
 // One line, status 2.
 void expect_refused(const Command& command, const std::string& arguments, const std::string& message) {
   const Outcome outcome = command.run(arguments);
@@ -94,6 +100,67 @@ TEST(Serve, AClientIsKilled) {
   const Outcome next = command.run("line --to 10,10 --card " + server.moving());
   EXPECT_EQ(next.status, 0) << next.err;
   EXPECT_TRUE(has(next.err, "what was left is dropped")) << next.err;
+}
+
+// The number behind `words` in a text; -1 where it is not there.
+int number_behind(const std::string& text, const std::string& words) {
+  const std::size_t at = text.find(words);
+  return at == std::string::npos ? -1 : std::stoi(text.substr(at + words.size()));
+}
+
+// Ends a client by a signal while it moves the card, and gives back the number behind `words` in what it says then. A
+// client that is slow to begin is ended before; it is given more time then.
+int stop_by(const Command& command, Server& server, const std::string& arguments, int number,
+            const std::string& words) {
+  for (const int milliseconds : {300, 1000, 5000}) {
+    const std::size_t clients = count_of(server.errors(), "has come");
+    Running client(command, arguments + " --card " + server.moving(), "client.err");
+    EXPECT_TRUE(eventually([&] { return count_of(server.errors(), "has come") > clients; })) << server.errors();
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    client.signal(number);
+    const std::optional<int> status = client.wait();
+    const std::string said = contents(command.path("client.err"));
+    EXPECT_TRUE(status && WIFSIGNALED(*status) && WTERMSIG(*status) == number) << said;
+    const int told = number_behind(said, words);
+    if (told <= 0 && status) continue;
+    EXPECT_EQ(count_lines(said), 1U) << said;
+    return told;
+  }
+  ADD_FAILURE() << "it has not stopped in order: " << contents(command.path("client.err"));
+  return 0;
+}
+
+// Ctrl-C stops the card on the path, its place is told, and the next program begins there.
+TEST(Serve, CtrlCStopsInOrder) {
+  const Command command;
+  Server server(command, "--engine model");
+  const std::string json = " --json " + command.path("out.json");
+  int steps = stop_by(command, server, "run " + command.write("long.ngc", "G1 X10 F600\nX100\n") + json, SIGINT,
+                      "stopped by SIGINT: line 1, X at pulse ");
+  steps += stop_by(command, server, "line --to 20000 --speed 1000" + json, SIGTERM, "stopped by SIGTERM: moved by ");
+  const Outcome next = command.run("line --to 10,10 --card " + server.moving());
+  EXPECT_EQ(next.status, 0) << next.err;
+  EXPECT_EQ(next.err, "") << "nothing was left to drop";
+  EXPECT_EQ(number_behind(server.end(), "path: "), steps + 20) << server.errors();
+  EXPECT_FALSE(std::filesystem::exists(command.path("out.json")));
+}
+
+// A ramp that takes long is not waited for at the second one.
+TEST(Serve, ASecondCtrlCLeavesAtOnce) {
+  const Command command;
+  Server server(command, "--engine model");
+  const std::string program = command.write("long.ngc", "G1 X100 F600\n");
+  Running client(command, "run " + program + " --set axis.x.max_acceleration=1 --card " + server.moving(),
+                 "client.err");
+  ASSERT_TRUE(eventually([&] { return server.said("has come"); })) << server.errors();
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  client.signal(SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  client.signal(SIGINT);
+  const std::optional<int> status = client.wait();
+  EXPECT_TRUE(status && WIFSIGNALED(*status) && WTERMSIG(*status) == SIGINT);
+  EXPECT_EQ(contents(command.path("client.err")), "");
+  EXPECT_TRUE(eventually([&] { return server.said("the card holds"); })) << server.errors();
 }
 
 // Carries bytes between a client and a server, and cuts the first connections after so many.

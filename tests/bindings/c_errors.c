@@ -221,6 +221,8 @@ static void null_cards(void) {
   trammel_probe_result probe;
   trammel_identification is;
   trammel_status status;
+  trammel_position_stop stop;
+  int64_t positions[TRAMMEL_MAX_AXES] = {0};
   uint32_t word;
   uint16_t half;
   size_t made;
@@ -255,6 +257,10 @@ static void null_cards(void) {
   NO_CARD(trammel_finish(NULL, NULL));
   NO_CARD(trammel_restart_stream(NULL));
   NO_CARD(trammel_probe(NULL, &condition, &command, 1, &probe));
+  NO_CARD(trammel_open_positions(NULL, NULL));
+  NO_CARD(trammel_send_positions(NULL, positions, 1, NULL));
+  NO_CARD(trammel_recover_positions(NULL, &stop));
+  NO_CARD(trammel_finish_positions(NULL, positions));
   NO_CARD(trammel_simulated_listen(NULL, NULL, NULL));
   NO_CARD(trammel_simulated_wait(NULL, 1));
   NO_CARD(trammel_simulated_set_inputs(NULL, 0));
@@ -286,6 +292,10 @@ static void null_pointers(void) {
   FAILS(trammel_read_outputs(card, NULL), TRAMMEL_ARGUMENT, "levels is null");
   FAILS(trammel_start_line(card, NULL, NULL), TRAMMEL_ARGUMENT, "line is null");
   FAILS(trammel_run_line(card, NULL, 1, NULL), TRAMMEL_ARGUMENT, "line is null");
+  DONE(trammel_open_positions(card, NULL));
+  FAILS(trammel_send_positions(card, NULL, 1000000, NULL), TRAMMEL_ARGUMENT, "targets is null");
+  FAILS(trammel_recover_positions(card, NULL), TRAMMEL_ARGUMENT, "stopped is null");
+  DONE(trammel_finish_positions(card, NULL));
   DONE(trammel_open_stream(card, NULL));
   FAILS(trammel_put(card, NULL), TRAMMEL_ARGUMENT, "command is null");
   FAILS(trammel_probe(card, NULL, &command, 1, &probe), TRAMMEL_ARGUMENT, "condition is null");

@@ -46,6 +46,7 @@ trammel_command feed_of(uint64_t ticks) {
 int main(void) {
   test_cards();
   test_stream();
+  test_positions();
   test_errors();
   printf("%lu checks of trammel.h, %lu failed\n", checks_made, checks_failed);
   return checks_failed == 0 ? 0 : 1;

@@ -99,6 +99,58 @@ class Streams(unittest.TestCase):
         self.assertTrue(stream.finish().ended)
 
 
+class Positions(unittest.TestCase):
+    PERIOD = 1_000_000  # ns, 1000 clocks
+
+    def open(self, **options):
+        card = trammel.simulate()
+        card.set_slew_time(10_000_000)
+        return card, trammel.PositionStream(card, **options)
+
+    def test_periods_in_time_and_late(self):
+        card, stream = self.open(stale_periods=2)
+        late = []
+        for i in range(1, 41):
+            due = 1000 * (i + 5) + (1500 if i == 21 else 0)
+            card.wait(max(0, due - card.snapshot().time))
+            late.append(stream.send([20 * i * stream.PULSE, 5 * i * stream.PULSE], self.PERIOD).stale_ticks)
+        self.assertEqual([i for i, ticks in enumerate(late, 1) if ticks], [21])
+        self.assertEqual((sum(late), stream.ticks_behind), (stream.stale_ticks, 0))
+        stream.send([800 * stream.PULSE, 200 * stream.PULSE], self.PERIOD)
+        self.assertEqual(stream.finish()[:3], [800 * stream.PULSE, 200 * stream.PULSE, 0])
+        self.assertEqual(card.snapshot().position[:3], [800, 200, 0])
+        with self.assertRaises(trammel.StateError):
+            stream.send([0], self.PERIOD)
+
+    def test_a_missing_period(self):
+        card, stream = self.open()
+        for i in range(1, 11):
+            stream.send([20 * i * stream.PULSE], self.PERIOD)
+        card.wait(50_000)
+        with self.assertRaises(trammel.FaultError) as fault:
+            stream.send([220 * stream.PULSE], self.PERIOD)
+        stopped = stream.recover()
+        self.assertEqual(trammel.describe_faults(stopped.faults), "MISSING_PERIOD")
+        self.assertEqual(stopped.faults, fault.exception.faults)
+        self.assertGreater(stopped.stale_ticks, 0)
+        at = card.snapshot().position[0]
+        self.assertEqual(stopped.positions[0], at * stream.PULSE)
+        self.assertEqual(stream.position[0], stopped.positions[0])
+        stream.send([(at + 7) * stream.PULSE], self.PERIOD)
+        stream.finish()
+        self.assertEqual(card.snapshot().position[0], at + 7)
+
+    def test_what_is_refused(self):
+        card, stream = self.open(max_speed=[1000])
+        self.assertEqual(stream.shortest_period, 88)
+        for targets, duration in (([3 * stream.PULSE], self.PERIOD), ([0], 10), ([0] * 9, self.PERIOD)):
+            with self.assertRaises(trammel.ArgumentError):
+                stream.send(targets, duration)
+        with self.assertRaises(trammel.ArgumentError):
+            trammel.PositionStream(card, ahead=0)
+        self.assertEqual(card.snapshot().position[0], 0)
+
+
 class Errors(unittest.TestCase):
     def test_classes(self):
         for name in ("LinkError", "IdentificationError", "RefusedError", "FaultError", "StateError", "ArgumentError", "TimeoutError"):

@@ -64,6 +64,12 @@ class Judge {
     const double change = goes_on ? (speed - rate(last_)) / kUpdate : 0;
     const double jerk = static_cast<double>(now.jerk) * 0x1p-64 / (kUpdate * kUpdate);
     const std::size_t where = now.path->command;
+    if (course_.curvature == 0) {
+      verdict.velocity.look(at_one_.velocity * speed, where);
+      verdict.acceleration.look(at_one_.acceleration * std::abs(change), where);
+      verdict.jerk.look(at_one_.jerk * std::abs(jerk), where);
+      return;
+    }
     for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
       const double pulses = course_.pulses_a_tick[a];
       verdict.velocity.look(pulses * speed / velocity_[a], where);
@@ -73,6 +79,23 @@ class Judge {
       verdict.jerk.look(pulses * std::abs(jerk) / jerk_[a], where);
       verdict.jerk.look(centripetal(a, speed) * turn_rate(a, speed) / jerk_[a], where);
     }
+  }
+
+  // Of a straight path's limits, at a rate of 1 and changes of 1.
+  struct Shares {
+    double velocity = 0;
+    double acceleration = 0;
+    double jerk = 0;
+  };
+  Shares straight() const {
+    Shares most;
+    for (std::size_t a = 0; a < limits_.machine.axes.size(); ++a) {
+      const double pulses = course_.pulses_a_tick[a];
+      most.velocity = std::max(most.velocity, pulses / velocity_[a]);
+      most.acceleration = std::max(most.acceleration, pulses / acceleration_[a]);
+      if (jerk_[a] > 0) most.jerk = std::max(most.jerk, pulses / jerk_[a]);
+    }
+    return most;
   }
 
   // Of an arc's plane axes: radians a clock at a tick rate, and pulses a clock^2 towards the centre.
@@ -106,7 +129,7 @@ class Judge {
   }
 
   void border(const Interval& now) {
-    const bool new_path = now.ticks <= 1 || now.clock - path_clock_ <= 2 * MotionWalk::kSwapClocks;
+    const bool new_path = !started_ && (now.ticks <= 1 || now.clock - path_clock_ <= 2 * MotionWalk::kSwapClocks);
     const double change = new_path ? density_change(now) : 1;
     const double before = rate(last_);
     const double after = rate(now);
@@ -132,10 +155,13 @@ class Judge {
     }
   }
 
-  // Of ticks a mm, from the path before to this one, where a piece begins with it: 1 unless the rates say otherwise.
+  // Of ticks a mm, from the path before to this one, where a piece begins with it. Where rounded lengths leave it open
+  // whether there is one, the rates tell.
   double density_change(const Interval& now) const {
     if (!now.begins_piece) return 1;
     const double change = mm_a_tick(last_course_, before_) / mm_a_tick(course_, now);
+    const double open = (1 + last_course_.error) * (1 + course_.error);
+    if (std::max(change, 1 / change) > open) return change;
     const double rates = rate(now) / rate(last_);
     return std::abs(std::log(rates / change)) < std::abs(std::log(rates)) ? change : 1;
   }
@@ -148,8 +174,10 @@ class Judge {
     if (corner_waits_) corner(last_);
     last_course_ = course_;
     course_ = course_of(*now.path, limits_.machine);
+    at_one_ = straight();
     path_clock_ = now.clock;
     before_ = last_;
+    started_ = resting_;
     corner_waits_ = !resting_;
   }
 
@@ -227,12 +255,14 @@ class Judge {
   Vector acceleration_{};  // a clock^2
   Vector jerk_{};          // a clock^3; 0: no limit
   Course course_;
+  Shares at_one_;
   Course last_course_;
   bool resting_ = true;
   Interval last_;
   Interval before_;                // the last one on the path before
   std::uint64_t path_clock_ = 0;   // of this path's first clock
   std::uint64_t piece_clock_ = 0;  // of this piece's
+  bool started_ = true;            // this path, from rest
   bool handing_over_ = false;
   bool corner_waits_ = false;  // for the rate with which the path goes on
 };

@@ -165,10 +165,13 @@ TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
   }
 }
 
-// An axis beside X Y Z that goes along, up to 32 times as far: the path is that of X Y Z all the same. Of 250 seeds
-// five (the first is 65) have a larger jump of the rate at a corner than is allowed: motion-plan.md.
+// An axis beside X Y Z that goes along, up to 32 times as far: the path is that of X Y Z all the same. Ticks a mm
+// change at corners, by up to as much; in the five that come first the rate would jump there if what passes of the new
+// path at the old rate counted as motion.
 TEST(MotionJudge, ProgramsWithAFurtherAxisAreWithinTheirLimits) {
-  for (unsigned seed = 1; seed <= 25; ++seed) {
+  std::vector<unsigned> seeds = {65, 93, 191, 219, 239};
+  for (unsigned seed = 1; seed <= (long_run() ? 250U : 55U); ++seed) seeds.push_back(seed);
+  for (const unsigned seed : seeds) {
     const double jerk = seed % 2 == 0 ? 20000 : 0;
     SCOPED_TRACE(fmt::format("seed {}, jerk {}", seed, jerk));
     const std::string program = random_lines(seed, true);
@@ -396,6 +399,29 @@ TEST_F(MotionJudgeSaysNo, ToARateThatJumps) {
     if (piece != nullptr && piece->acceleration == 0) piece->rate -= piece->rate / 100;
   }
   EXPECT_GT(run.verdict().rate_jump.share, 1.5);
+}
+
+// Where ticks a mm change too: from X alone to X with 4 times as much of E, above the floor.
+TEST_F(MotionJudgeSaysNo, ToARateThatJumpsWhereTheDensityChanges) {
+  const machine::Machine machine = machine_of(100, 1000, 0);
+  gcode::TextLines lines("G21 G90 G94 F600\nG1 X40\nG1 X80 E-160\nG1 X120\nM2\n", "program");
+  Planned planned(lines, machine, 10 * kClock);
+  const auto judged = [&] { return judge_motion(planned.commands, {machine, 10 * kClock, 0.01}).rate_jump.share; };
+  ASSERT_LE(judged(), 1);
+  std::vector<driver::FeedCommand*> begins;  // of lines
+  bool begin = true;
+  for (driver::Command& command : planned.commands) {
+    auto* piece = std::get_if<driver::FeedCommand>(&command);
+    if (piece != nullptr && begin) begins.push_back(piece);
+    begin = piece == nullptr;
+  }
+  ASSERT_EQ(begins.size(), 3U);
+  for (const std::size_t line : {1U, 2U}) {
+    const std::uint64_t right = begins[line]->rate;
+    begins[line]->rate = right / 50 * 51;
+    EXPECT_GT(judged(), 1.5) << line;
+    begins[line]->rate = right;
+  }
 }
 
 TEST_F(MotionJudgeSaysNo, ToAStreamOfWhichAPieceIsMissing) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "steps.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/machine_position.hpp"
 #include "trammel/run/path_identity.hpp"
@@ -18,14 +19,6 @@ namespace {
 constexpr std::uint32_t kClock = 400'000;
 constexpr char kProgram[] =
     "F3000\nG1 X8 Y3\nG2 X12 Y7 I4\nG4 P0.1\nG1 X2 Y9.3 Z1.7\nG3 X2 Y9.3 J-3\nG1 X30\nG0 X0 Y0 Z0\n";
-
-class Steps final : public driver::StepSink {
- public:
-  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
-  void path_step(const driver::PathStep& step) override { path.push_back(step); }
-  std::vector<driver::PinStep> pins;
-  std::vector<driver::PathStep> path;
-};
 
 // A card on a bus of its own, where programs are run one after another.
 class Bench {
@@ -47,7 +40,7 @@ class Bench {
   std::unique_ptr<sim::Engine> engine = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
   sim::TimedBus bus{*engine, kClock, 1e9};
   driver::Card card = driver::Card::open(bus);
-  Steps steps;
+  test::Steps steps;
 };
 
 bool same(const driver::PathStep& a, const driver::PathStep& b) {
@@ -66,10 +59,12 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
     const auto due = static_cast<std::uint64_t>(at * kClock);
     bench.bus.at(due, [&](sim::Engine&) { bench.card.request_stop(); });
     std::optional<std::size_t> line;
+    planner::Pulses told{};
     try {
       bench.run(kProgram);
     } catch (const StoppedOnPath& stopped) {
       line = stopped.line();
+      told = stopped.position();
     }
     ASSERT_TRUE(line);
     const std::size_t made = bench.steps.path.size();
@@ -86,6 +81,7 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
     planner::Pulses counted{};
     for (const driver::PinStep& step : bench.steps.pins) counted[step.axis] += step.direction;
     EXPECT_EQ(position.pulses(), counted);
+    EXPECT_EQ(told, counted);
 
     RunSettings there;
     there.start = position.millimetres();
@@ -105,6 +101,33 @@ TEST(Stop, TellsTheLineThatTheCardWasAt) {
   } catch (const StoppedOnPath& stopped) {
     EXPECT_EQ(stopped.line(), 5U);
   }
+}
+
+// Lines of a pulse each, with a rest between them, from somebody who is slower than the card: the queue is never full.
+class SlowLines final : public gcode::LineSource {
+ public:
+  SlowLines(driver::Card& card, unsigned& read) : card_(card), read_(read) {}
+  const std::string& name() const override { return name_; }
+  bool next(std::string_view& line) override {
+    if (read_ == 100) return false;
+    if (++read_ == 50) card_.request_stop();
+    line = read_ % 2 == 0 ? "G4 P0.001" : "G91 G1 X0.0125 F600";
+    return true;
+  }
+
+ private:
+  std::string name_ = "slow.ngc";
+  driver::Card& card_;
+  unsigned& read_;
+};
+
+TEST(Stop, WhileLinesComeSlowly) {
+  Bench bench;
+  unsigned read = 0;
+  Runner runner([&] { return std::make_unique<SlowLines>(bench.card, read); }, bench.machine,
+                planner::limits_of(bench.card.identification()));
+  EXPECT_THROW(runner.stream(bench.card), StoppedOnPath);
+  EXPECT_LT(read, 60U) << "it was not looked for before the end";
 }
 
 // In a dwell, with a hold standing, and when there is nothing to stop.

@@ -34,7 +34,7 @@ void show(sc_core::sc_out<T>& port, T& shown, const T& now) {
 }  // namespace
 
 PinCardModule::PinCardModule(const sc_core::sc_module_name& name, std::uint32_t clock_hz)
-    : sc_module(name), card_(make_pin_card(clock_hz)) {
+    : sc_module(name), clock_hz_(clock_hz) {
   SC_HAS_PROCESS(PinCardModule);
   SC_METHOD(edge);
   sensitive << clk.pos();

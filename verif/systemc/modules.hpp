@@ -46,11 +46,16 @@ class PinCardModule final : public sc_core::sc_module, public PinPorts<sc_core::
   sc_core::sc_out<bool> irq{"irq"};
 
   PinCardModule(const sc_core::sc_module_name& name, std::uint32_t clock_hz);
+  // Before the simulation begins: the card with the classic Wishbone port.
+  void set_classic() { classic_ = true; }
   std::uint64_t cycles() const { return cycles_; }
 
  private:
+  void start_of_simulation() override { card_ = make_pin_card(clock_hz_, classic_); }
   void edge();
 
+  std::uint32_t clock_hz_;
+  bool classic_ = false;
   std::unique_ptr<PinCard> card_;
   CardOutputs shown_;
   std::uint64_t cycles_ = 0;

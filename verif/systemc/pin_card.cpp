@@ -1,3 +1,4 @@
+#include <Vclassic.h>
 #include <Vdut.h>
 
 #include "drive_pins.hpp"
@@ -7,6 +8,7 @@
 namespace trammel::platform {
 namespace {
 
+template <class Dut>
 class VerilatedPinCard final : public PinCard {
  public:
   explicit VerilatedPinCard(std::uint32_t clock_hz) { dut_->clock_hz_i = clock_hz; }
@@ -47,11 +49,14 @@ class VerilatedPinCard final : public PinCard {
     out.irq = dut_->irq_o != 0;
   }
 
-  lockstep::Simulated<Vdut> dut_;
+  lockstep::Simulated<Dut> dut_;
 };
 
 }  // namespace
 
-std::unique_ptr<PinCard> make_pin_card(std::uint32_t clock_hz) { return std::make_unique<VerilatedPinCard>(clock_hz); }
+std::unique_ptr<PinCard> make_pin_card(std::uint32_t clock_hz, bool classic) {
+  if (classic) return std::make_unique<VerilatedPinCard<Vclassic>>(clock_hz);
+  return std::make_unique<VerilatedPinCard<Vdut>>(clock_hz);
+}
 
 }  // namespace trammel::platform

@@ -17,7 +17,8 @@ class PinCard {
   // One rising edge with these levels at the inputs; the outputs show what stands after it.
   virtual void clock(const CardInputs& in, CardOutputs& out) = 0;
 };
-std::unique_ptr<PinCard> make_pin_card(std::uint32_t clock_hz);
+// `classic`: its Wishbone port takes classic cycles; otherwise pipelined ones.
+std::unique_ptr<PinCard> make_pin_card(std::uint32_t clock_hz, bool classic);
 
 // The rules are those of checkers/*.sv, which also name them.
 class PortCheckers {

@@ -1,6 +1,7 @@
 #include "platform.hpp"
 
 #include <iterator>
+#include <stdexcept>
 
 namespace trammel::platform {
 
@@ -17,7 +18,7 @@ constexpr double kClocksOfGap = 8;
 constexpr double kReset = 4;
 constexpr double kStart = 10;
 
-constexpr const char* kNames[] = {"loose", "axi", "wishbone", "spi", "uart"};  // as Port
+constexpr const char* kNames[] = {"loose", "axi", "wishbone", "wishbone_classic", "spi", "uart"};  // as Port
 
 sc_time clocks(const PlatformOptions& options, double count) { return sc_time(count / options.clock_hz, SC_SEC); }
 
@@ -77,6 +78,15 @@ struct Platform::Pins final : sc_core::sc_module {
     ends.tx(tx);
   }
 
+  // What the one Wishbone port takes; throws where that is asked for twice.
+  void set_wishbone(bool classic) {
+    if (wishbone_taken) throw std::invalid_argument("the card has one Wishbone port, and it is taken");
+    wishbone_taken = true;
+    if (!classic) return;
+    card.set_classic();
+    if (checkers) checkers->checkers().set_pipelined(false);
+  }
+
   void trace(const std::string& path) {
     file = sc_core::sc_create_vcd_trace_file(path.c_str());
     const auto add = [this](const auto& wire) { sc_trace(file, wire.read(), wire.basename()); };
@@ -104,6 +114,7 @@ struct Platform::Pins final : sc_core::sc_module {
   MachineModule machine;
   sc_time reset_time;
   sc_core::sc_trace_file* file = nullptr;
+  bool wishbone_taken = false;
 };
 
 Platform::Platform(const PlatformOptions& options)
@@ -153,8 +164,11 @@ RegisterTarget& Platform::transactor(Port port) {
       transactors_.push_back(std::move(axi));
       break;
     }
-    case Port::kWishbone: {
-      auto wishbone = std::make_unique<WishboneTransactor>("wishbone");
+    case Port::kWishbone:
+    case Port::kWishboneClassic: {
+      const bool classic = port == Port::kWishboneClassic;
+      pins_->set_wishbone(classic);
+      auto wishbone = std::make_unique<WishboneTransactor>("wishbone", classic);
       wishbone->clk(pins_->clk);
       wishbone->master(pins_->wishbone_master);
       wishbone->card(pins_->wishbone_card);
@@ -202,5 +216,6 @@ std::vector<std::string> Platform::broken() const {
 }
 
 sc_core::sc_signal<AxiMaster>& Platform::axi_master() { return pins_->axi_master; }
+sc_core::sc_signal<WishboneMaster>& Platform::wishbone_master() { return pins_->wishbone_master; }
 
 }  // namespace trammel::platform

@@ -13,8 +13,8 @@
 
 namespace trammel::platform {
 
-enum class Port { kLoose, kAxi, kWishbone, kSpi, kUart };
-// By its name on the command line: loose, axi, wishbone, spi, uart.
+enum class Port { kLoose, kAxi, kWishbone, kWishboneClassic, kSpi, kUart };
+// By its name on the command line: loose, axi, wishbone (pipelined), wishbone_classic, spi, uart.
 std::optional<Port> port_of(const std::string& name);
 const char* name_of(Port port);
 
@@ -31,7 +31,8 @@ class Platform {
   explicit Platform(const PlatformOptions& options = {});
   ~Platform();
 
-  // One program a port. Before run().
+  // One program a port. Before run(). Throws std::invalid_argument for a second on the Wishbone port, which is
+  // pipelined or classic.
   void add(Port port, Host::Software software);
   // To the end of all programs; then what the first that failed has thrown. SystemC can be run once a process.
   void run();
@@ -44,6 +45,7 @@ class Platform {
   std::vector<std::string> broken() const;
   // For a program that misbehaves at the pins.
   sc_core::sc_signal<AxiMaster>& axi_master();
+  sc_core::sc_signal<WishboneMaster>& wishbone_master();
 
  private:
   struct Pins;

@@ -23,7 +23,8 @@ constexpr char kLetters[] = "XYZE";
 constexpr double kRest = 0.5;  // pulses between commanded and actual place at the end
 
 constexpr const char* kUsage =
-    "usage: systemc_run FILE [--port loose|axi|wishbone|spi|uart] [--clock HZ] [--svg OUT.svg] [--vcd OUT]\n"
+    "usage: systemc_run FILE [--port loose|axi|wishbone|wishbone_classic|spi|uart] [--clock HZ] [--svg OUT.svg]\n"
+    "       [--vcd OUT]\n"
     "Runs FILE on the SystemC platform. Exit status 1 when the machine is not where it was sent, or a rule of the port "
     "was\n"
     "broken; 2 for bad input.\n";

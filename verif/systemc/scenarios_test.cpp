@@ -62,7 +62,9 @@ class OverEachLink : public testing::TestWithParam<Port> {
   const bool loose = GetParam() == Port::kLoose;
 };
 INSTANTIATE_TEST_SUITE_P(Systemc, OverEachLink,
-                         Values(Port::kLoose, Port::kAxi, Port::kWishbone, Port::kSpi, Port::kUart), names);
+                         Values(Port::kLoose, Port::kAxi, Port::kWishbone, Port::kWishboneClassic, Port::kSpi,
+                                Port::kUart),
+                         names);
 
 TEST_P(OverEachLink, TheDriverMovesTheMachine) {
   bool interrupted = false;
@@ -222,6 +224,32 @@ TEST(Systemc, ARogueMasterIsFound) {
   });
   platform.run();
   EXPECT_EQ(platform.broken(), std::vector<std::string>{"AXI4-Lite: AWVALID falls before AWREADY"});
+}
+
+// A classic master whose request changes while it waits, which a pipelined one's may.
+TEST(Systemc, ARogueClassicMasterIsFound) {
+  Platform platform;
+  platform.add(Port::kWishboneClassic, [&](Host& host) {
+    WishboneMaster master;
+    master.cyc = master.stb = true;
+    platform.wishbone_master().write(master);
+    host.sleep(2us);
+    host.synchronise();
+    master.adr = 4;
+    platform.wishbone_master().write(master);
+    host.sleep(100us);
+    host.synchronise();
+    platform.wishbone_master().write({});
+    host.sleep(3us);
+  });
+  platform.run();
+  EXPECT_EQ(platform.broken(), std::vector<std::string>{"Wishbone: a request changes before its answer"});
+}
+
+TEST(Systemc, TheWishbonePortIsPipelinedOrClassic) {
+  Platform platform;
+  platform.add(Port::kWishboneClassic, [](Host&) {});
+  EXPECT_THROW(platform.add(Port::kWishbone, [](Host&) {}), std::invalid_argument);
 }
 
 TEST(Systemc, PinsCanBeTraced) {

@@ -78,7 +78,8 @@ std::size_t WishboneTransactor::transfer(driver::Access* accesses, std::size_t c
   return made;
 }
 
-// CYC stays from one access to the next.
+// CYC stays from one access to the next. A classic master's request stands until its answer, a pipelined one's until it
+// is taken.
 bool WishboneTransactor::access(driver::Access& access) {
   WishboneMaster m;
   m.cyc = m.stb = true;
@@ -87,10 +88,12 @@ bool WishboneTransactor::access(driver::Access& access) {
   m.adr = static_cast<std::uint16_t>(access.address);
   m.dat = access.data;
   master.write(m);
-  do wait(clk.posedge_event());
-  while (card.read().stall);
-  m.stb = false;
-  master.write(m);
+  if (!classic_) {
+    do wait(clk.posedge_event());
+    while (card.read().stall);
+    m.stb = false;
+    master.write(m);
+  }
   do wait(clk.posedge_event());
   while (!card.read().ack && !card.read().err);
   if (card.read().ack && !access.write) access.data = card.read().dat;

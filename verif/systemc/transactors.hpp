@@ -26,18 +26,20 @@ class AxiTransactor final : public RegisterTarget {
   bool write(const driver::Access& access);
 };
 
-// A pipelined master, one access after the other under one CYC.
+// A pipelined or a classic master, one access after the other under one CYC.
 class WishboneTransactor final : public RegisterTarget {
  public:
   sc_core::sc_in<bool> clk{"clk"};
   sc_core::sc_out<WishboneMaster> master{"master"};
   sc_core::sc_in<WishboneCard> card{"card"};
 
-  using RegisterTarget::RegisterTarget;
+  WishboneTransactor(const sc_core::sc_module_name& name, bool classic) : RegisterTarget(name), classic_(classic) {}
 
  private:
   std::size_t transfer(driver::Access* accesses, std::size_t count, sc_core::sc_time& delay) override;
   bool access(driver::Access& access);
+
+  bool classic_;
 };
 
 // What SPI and serial line have in common: bytes, and frames of bytes by the driver's own FrameBus.

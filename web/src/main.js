@@ -12,8 +12,7 @@ import { byId, make } from './dom.js'
 import { colour, isDark, rampCss, setTheme } from './theme.js'
 import { decimals, duration, fixed, grouped, millimetres, number, ticks } from './format.js'
 
-const kLabel = 178    // pixels left of the charts
-const kScale = 52     // and of the numbers at them
+const kScale = 52     // pixels of the numbers left of the charts
 const kLeast = 24     // clocks in the closest view
 
 class Page {
@@ -27,8 +26,7 @@ class Page {
     this.scope = new Scope(run)
     this.program = new Program(byId('program'), run, (line) => this.goToLine(line))
     fillSummary(byId('summary'), run, (line) => this.goToLine(line), (cycle) => this.setCycle(cycle, true))
-    this.view = new View(byId('view'), run)
-    this.view.show('rapid', true)
+    this.view = new View(byId('view'), run, ['tools', 'legend', 'place'].map(byId))
     this.buildTools()
     this.buildRows()
     this.buildBar()
@@ -76,8 +74,8 @@ class Page {
     group(...this.modes)
     const toggles = [['rapid', 'Rapids', 'R'], ['executed', 'Executed', 'E'], ['grid', 'Grid', 'G']].map(([what, text, key]) => {
       const one = button(text, `Show or hide (${key})`, () => {
-        this.view.show(what, !this.view.shown[what])
-        one.setAttribute('aria-pressed', this.view.shown[what])
+        this.view.show(what, !this.view.isShown(what))
+        one.setAttribute('aria-pressed', this.view.isShown(what))
       })
       one.setAttribute('aria-pressed', 'true')
       one.dataset.show = what
@@ -323,7 +321,6 @@ class Page {
   theme(dark = !isDark()) {
     setTheme(dark)
     this.view.paint()
-    this.view.draw()
     this.legend()
     this.resizeCharts()
   }

@@ -58,13 +58,47 @@ const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimati
 async function lookClosely(page) {
   await page.keyboard.press('p')
   await page.waitForTimeout(200)
-  const seen = await page.evaluate(() => ({ dots: window.trammel.view.dots.geometry.attributes.position.count, of: window.trammel.view.detailCount }))
+  const seen = await page.evaluate(() => ({ dots: window.trammel.view.executed.dots.geometry.attributes.position.count, of: window.trammel.view.executed.count }))
   assert.ok(seen.dots > 50 && seen.dots === seen.of, JSON.stringify(seen))
   await page.keyboard.press('k')
   await frame(page)
   const [[from, to], times] = await page.evaluate(() => [window.trammel.window, Array.from(window.trammel.run.executed.times)])
   assert.ok(to - from < 4100 && to - from >= 24, `${to - from} clocks`)
   assert.ok(times.some((time) => time > from && time < to), 'a pulse is in view')
+}
+
+// Texts that the next drawing of the path writes, each with its box; and what of the page lies over the path.
+const labels = (page) => page.evaluate(async () => {
+  const written = []
+  const { fillText } = CanvasRenderingContext2D.prototype
+  const canvas = document.querySelector('#view canvas + canvas'), { left, top } = canvas.getBoundingClientRect()
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    const size = this.measureText(text)
+    if (this.canvas === canvas) written.push({ text, box: [x - size.actualBoundingBoxLeft, y - size.actualBoundingBoxAscent, x + size.actualBoundingBoxRight, y + size.actualBoundingBoxDescent] })
+    fillText.call(this, text, x, y)
+  }
+  window.trammel.view.draw()
+  await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))
+  CanvasRenderingContext2D.prototype.fillText = fillText
+  const over = ['tools', 'legend', 'place'].map((id) => ({ text: `#${id}`, box: document.getElementById(id).getBoundingClientRect() }))
+  return [...written, ...over.map(({ text, box }) => ({ text, box: [box.left - left, box.top - top, box.right - left, box.bottom - top] }))]
+})
+async function noLabelCoversAnother(page) {
+  // Wide, start and end leave all twelve numbers of the grid their places.
+  for (const [width, height, view, numbers] of [[1360, 920, '1', 12], [700, 900, '1', 9], [700, 900, '4', 3]]) {
+    await page.setViewportSize({ width, height })
+    await page.keyboard.press(view)
+    await frame(page)
+    const list = await labels(page)
+    const where = `${width} x ${height}, view ${view}`
+    assert.equal(list.filter(({ text }) => text === 'start and end').length, 1, where)
+    assert.ok(list.filter(({ text }) => /^[0-9]+( mm)?$/.test(text)).length >= numbers, where)
+    for (const [i, { text, box: a }] of list.entries()) {
+      for (const { text: other, box: b } of list.slice(i + 1)) {
+        assert.ok(a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1], `${where}: ${text} and ${other}`)
+      }
+    }
+  }
 }
 
 for (const scheme of ['light', 'dark']) {
@@ -99,6 +133,7 @@ for (const scheme of ['light', 'dark']) {
     await frame(page)
     assert.notDeepEqual(await pulses(), at)
     if (scheme === 'light') await lookClosely(page)
+    else await noLabelCoversAnother(page)
     for (const key of scheme === 'dark' ? [] : ['k', '1', '2', '3', '4', 'c', 'c', 'c', 'r', 'e', 'g', 's', 't', '0', 'f', 'n', 'b', '+', '-', 'Home', 'End']) {
       await page.keyboard.press(key)
     }

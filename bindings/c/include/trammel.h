@@ -403,6 +403,49 @@ typedef struct trammel_probe_result {
 TRAMMEL_API trammel_result trammel_probe(trammel_card* card, const trammel_input_condition* condition,
                                          const trammel_command* paths, size_t count, trammel_probe_result* result);
 
+// ---- Position streaming ----
+//
+// For a host with a servo cycle of its own: once a period it says where the axes shall be at the period's end, and the
+// card goes there in a straight line (docs/user/position-streaming.md of the project). Cards with the engine
+// `streaming`, at the full ratio. Positions are 2^-24 pulses from where the axes stood at the opening, by axis.
+
+#define TRAMMEL_POSITION_PULSE (INT64_C(1) << 24)
+
+typedef struct trammel_position_options {
+  unsigned stale_periods;  // that the card may go on for along the last line where the next is late, 0 .. 255
+  unsigned ahead;          // periods sent before the card begins with the first, at least 1
+  // Pulses/s, 0: what the card and its step times allow.
+  double max_speed[TRAMMEL_MAX_AXES];
+  int64_t patience_ns;  // card time beyond what is queued before a card counts as hung; 0: a second
+} trammel_position_options;
+
+typedef struct trammel_position_sent {
+  uint64_t ahead;         // periods queued that have not begun
+  uint64_t stale_ticks;   // ticks (2 clocks each) that the card had gone on for when this one came; 0: it was in time
+  uint64_t ticks_behind;  // still to be taken off coming periods, for those that were late
+} trammel_position_sent;
+
+typedef struct trammel_position_stop {
+  uint32_t faults;                      // FAULT
+  uint64_t stale_ticks;                 // that it went on for after the last period
+  int64_t positions[TRAMMEL_MAX_AXES];  // where the axes stand, whole pulses
+} trammel_position_stop;
+
+// Opens position streaming where the axes stand; the card must be idle, and a stream that was open ends. `options` may
+// be null: 1 stale period, 2 ahead.
+TRAMMEL_API trammel_result trammel_open_positions(trammel_card* card, const trammel_position_options* options);
+// One period: the axes are at the TRAMMEL_MAX_AXES `targets` when `duration_ns` has passed since the end of the period
+// before. `sent` may be null. After TRAMMEL_ARGUMENT (too fast, too short, too far) nothing was sent, and another may
+// be sent in its place; TRAMMEL_FAULT: a period was missing, or whatever else the card has stopped for.
+TRAMMEL_API trammel_result trammel_send_positions(trammel_card* card, const int64_t* targets, int64_t duration_ns,
+                                                  trammel_position_sent* sent);
+// After TRAMMEL_FAULT: waits until the card stands, clears the fault, and goes on from there: the next targets begin at
+// `stopped->positions`.
+TRAMMEL_API trammel_result trammel_recover_positions(trammel_card* card, trammel_position_stop* stopped);
+// Ends it after the last period, which should end at rest, and waits until the card is idle. `positions` (may be null):
+// TRAMMEL_MAX_AXES places where the axes are.
+TRAMMEL_API trammel_result trammel_finish_positions(trammel_card* card, int64_t* positions);
+
 // ---- Simulated cards alone: TRAMMEL_STATE for others ----
 
 typedef struct trammel_step {

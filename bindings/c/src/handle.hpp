@@ -9,6 +9,7 @@
 #include "trammel/driver/bus.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/commands.hpp"
+#include "trammel/driver/position_stream.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/sim/engine.hpp"
 
@@ -45,7 +46,9 @@ struct trammel_card {
   std::shared_ptr<trammel::driver::Bus> bus;
   trammel::sim::Engine* engine;  // the bus, where it is a simulated card's
   trammel::driver::Card card;
+  // One of them at most: each begins the card's commands anew.
   std::optional<trammel::driver::Stream> stream;
+  std::optional<trammel::driver::PositionStream> positions;
 };
 
 namespace trammel::c {

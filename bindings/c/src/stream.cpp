@@ -44,6 +44,7 @@ trammel_result trammel_open_stream(trammel_card* card, const trammel_stream_opti
   return guarded([=] {
     trammel_card& opened = required(card, "card");
     driver::StreamOptions wanted = options_of(options != nullptr ? *options : trammel_stream_options{});
+    opened.positions.reset();
     opened.stream.reset();
     opened.stream.emplace(opened.card, std::move(wanted));
   });

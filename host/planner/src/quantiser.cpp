@@ -99,8 +99,7 @@ void Quantiser::add(const Phase& phase) {
     portion(phase, begin, block.end, block.end_ticks, true, false);
     base_mm_ = block.end;
     base_tick_ = block.end_ticks;
-    rate_a_speed_ = path_[at_ + 1].density / clock_hz_;
-    fit_.change_density(rate_a_speed_);
+    change_density(path_[at_ + 1].density / clock_hz_);
   }
   PathEntry& block = path_[at_];
   if (phase.stop) {
@@ -111,6 +110,15 @@ void Quantiser::add(const Phase& phase) {
     portion(phase, begin, mm_, end_tick(phase, block), false, false);
   }
   complete();
+}
+
+// Where ticks become longer, those that pass at the old rate put the motion ahead of its time. Its speed is still that
+// of its time: what it is ahead by counts as gone.
+void Quantiser::change_density(double rate_a_speed) {
+  const double change = rate_a_speed / rate_a_speed_;
+  rate_a_speed_ = rate_a_speed;
+  ahead_ = change < 1 ? std::max(0.0, lead_ - kSwapClocks * end_rate_ * change) : 0;
+  fit_.change_density(rate_a_speed_, ahead_);
 }
 
 // The tick at which a phase ends at mm_, in the block or where it begins.
@@ -195,8 +203,10 @@ Quantiser::Motion Quantiser::steady(double rate, double end_rate, double ticks) 
 }
 
 // Of constant acceleration; `lead` ticks are gone when it begins.
-Quantiser::Motion Quantiser::steady_behind(double lead, double rate, double end_rate, double ticks) {
-  const double begin = std::sqrt(rate * rate + (end_rate - rate) * (end_rate + rate) * (lead / ticks));
+Quantiser::Motion Quantiser::steady_behind(double lead, double rate, double end_rate, double ticks) const {
+  const double ahead = std::min(ahead_, lead);
+  const double begin =
+      std::sqrt(rate * rate + (end_rate - rate) * (end_rate + rate) * ((lead - ahead) / (ticks - ahead)));
   return steady(begin, end_rate, ticks - lead);
 }
 
@@ -314,6 +324,8 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   time_blocks(motion, lead, end_tick, stop);
   tick_ = pending_.end = end_tick;
   lead_ = overshoot(command, motion, lead);
+  ahead_ = 0;
+  end_rate_ = motion.end_rate;
 }
 
 // Ticks, and the part of one, that the card goes beyond the piece's last one before the next piece's rate is in force,

@@ -69,6 +69,7 @@ class Quantiser {
     double acceleration = 0;  // of the last one
   };
 
+  void change_density(double rate_a_speed);
   void portion(const Phase& phase, double begin, double end, std::uint64_t end_tick, bool last, bool stop);
   std::uint64_t end_tick(const Phase& phase, const PathEntry& block) const;
   Motion ramp(const Phase& phase, double ticks, double lead) const;
@@ -76,7 +77,7 @@ class Quantiser {
   static void begin_at(double rate, double ticks, Motion& motion);
   static Motion steady(double rate, double end_rate, double ticks);
   static double turning_rate(const Motion& motion);
-  static Motion steady_behind(double lead, double rate, double end_rate, double ticks);
+  Motion steady_behind(double lead, double rate, double end_rate, double ticks) const;
   void put_pending(bool stop);
   void put(const Motion& motion, std::uint64_t end_tick, bool stop);
   static double overshoot(const driver::FeedCommand& piece, const Motion& motion, double lead);
@@ -109,7 +110,9 @@ class Quantiser {
   std::uint64_t base_tick_ = 0;
   double rate_a_speed_ = 0;  // ticks a clock at 1 mm/s
   std::uint64_t tick_ = 0;   // end of the last piece
+  double end_rate_ = 0;      // of the last piece, in its ticks
   double lead_ = 0;          // ticks of the next piece that pass at the last one's rate
+  double ahead_ = 0;         // of these, those for which the speed's time does not pass
   Pending pending_;
   bool short_sight_ = false;
 

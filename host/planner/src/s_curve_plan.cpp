@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -13,7 +12,6 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kNoCap = -1;
 
 // A stretch between two places without acceleration. Ramps that start there and the caps of the tree below `cap` are

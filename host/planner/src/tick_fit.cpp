@@ -15,14 +15,16 @@ bool is_peak(const Phase& phase) { return phase.acceleration > 0 && phase.next <
 
 void TickFit::start(double rate_a_speed) {
   rate_a_speed_ = rate_a_speed;
-  begin_ = end_ = lag_ = 0;
+  begin_ = end_ = lag_ = ahead_ = 0;
 }
 
-void TickFit::change_density(double rate_a_speed) {
+void TickFit::change_density(double rate_a_speed, double ahead) {
   const double change = rate_a_speed / rate_a_speed_;
   rate_a_speed_ = rate_a_speed;
   end_ *= change;
   lag_ *= change;
+  ahead_ = ahead;
+  lag_ += ahead;
 }
 
 // A ramp gets at least the ticks that it takes. Constant speed leaves those that a stop may come too early; a peak
@@ -56,13 +58,14 @@ void TickFit::advance(const Phase& phase, double to, double ticks, double late, 
   if (ticks != 0 && own) {
     const double one = planned(to - kFar * tick);
     const double other = planned(to + kFar * tick);
-    const double square = begin_ * begin_ + 2 * of_ticks(phase.acceleration) * ticks;
+    const double square = begin_ * begin_ + 2 * of_ticks(phase.acceleration) * std::max(0.0, ticks - ahead_);
     end_ = std::clamp(std::sqrt(std::max(0.0, square)), std::min(one, other), std::max(one, other));
   }
+  if (ticks != 0) ahead_ = 0;
   // From here on the plan goes as the next phase does.
   const double acceleration = is_peak(phase) && !through ? phase.next : phase.acceleration;
   const double gain = acceleration == 0 ? 0 : (end_ * end_ - wanted * wanted) / (2 * of_ticks(acceleration));
-  lag_ = std::clamp(late - gain, -kFar, kFar);
+  lag_ = std::clamp(late - gain, -kFar, kFar) + ahead_;
 }
 
 }  // namespace trammel::planner

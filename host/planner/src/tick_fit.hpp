@@ -11,7 +11,8 @@ class TickFit {
   // `rate_a_speed`: ticks a clock at 1 mm/s.
   explicit TickFit(double clock_hz) : clock_hz_(clock_hz) {}
   void start(double rate_a_speed);
-  void change_density(double rate_a_speed);
+  // `ahead`: ticks of the new density, in the next portion with any, that pass without a change of speed.
+  void change_density(double rate_a_speed, double ahead);
 
   // The whole tick for the end of a phase that ends at `exact` ticks, where neither a stop nor a corner has one.
   double end_tick(const Phase& phase, double exact) const;
@@ -30,7 +31,8 @@ class TickFit {
   double rate_a_speed_ = 0;
   double begin_ = 0;
   double end_ = 0;
-  double lag_ = 0;  // ticks from where the plan has the rate `end_` to where the motion has it
+  double ahead_ = 0;  // ticks
+  double lag_ = 0;    // ticks from where the plan has the rate `end_` to where the motion has it
 };
 
 }  // namespace trammel::planner

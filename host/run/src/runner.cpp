@@ -49,7 +49,7 @@ class ProgramStream final : private driver::CommandSink {
       stream_.finish();
     } catch (const driver::StoppedError& error) {
       lines_.begun(error.geometry_begun());
-      throw StoppedOnPath(pipeline_.file(), lines_.current(), error.what());
+      throw StoppedOnPath(pipeline_.file(), lines_.current(), error.what(), machine_position(card_.snapshot()));
     } catch (const driver::Error& error) {
       look_at_begun(dynamic_cast<const driver::FaultError*>(&error) != nullptr);
       throw RunError(pipeline_.file(), lines_.current(), error.what());
@@ -62,10 +62,12 @@ class ProgramStream final : private driver::CommandSink {
   const driver::Snapshot& before() const { return before_; }
 
  private:
-  // Up to the end, or to the next probe.
+  // Up to the end, or to the next probe. Where lines come slowly the stream never waits for room: so what others have
+  // asked for is looked at here.
   void run_section(planner::Pulses& end) {
     while (next()) {
       stream_.flush();
+      card_.serve_requests();
       for (Observer* observer : observers_) observer->sent();
       end = planned_.block.end;
       first_of_block_ = true;

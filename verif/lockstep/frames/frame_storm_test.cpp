@@ -1,7 +1,5 @@
 // The frame engine behind a bad link: bytes 10 clocks apart, every access judged by what the host has sent
 // (tests/support/frame_storm.hpp). The model takes no part in it.
-#include "frame_storm.hpp"
-
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -9,8 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "byte_ports.hpp"
-#include "trammel/sim/lockstep.hpp"
+#include "storm_bench.hpp"
 
 namespace trammel::lockstep {
 namespace {
@@ -20,8 +17,7 @@ using test::FrameStorm;
 class Bench {
  public:
   explicit Bench(std::uint64_t seed)
-      : check_("frame_engine", seed),
-        dice_(seed),
+      : dice_(seed),
         storm_(
             seed, [this](const frames::Bytes& bytes) { return bring(bytes); }, [this] { restart(); }, 20) {
     dut_->rst_i = 1;
@@ -29,15 +25,7 @@ class Bench {
     dut_->rst_i = 0;
   }
 
-  void run(std::uint64_t frames) {
-    try {
-      storm_.run(frames);
-      std::printf("%s\n", storm_.text().c_str());
-    } catch (const std::logic_error& error) {
-      throw Mismatch(error.what());
-    }
-  }
-  const FrameStorm::Counts& counts() const { return storm_.counts(); }
+  FrameStorm& storm() { return storm_; }
 
   // Bodies of random bytes as long as a request without words, each with its end: what the CRC alone holds off. The
   // link works on.
@@ -49,7 +37,7 @@ class Bench {
       for (const std::uint8_t byte : body) send(byte);
       if (signs_ != 0) throw Mismatch("random bytes were taken for a frame");
     }
-    run(10);
+    run_storm(storm_, 10);
   }
 
  private:
@@ -90,23 +78,14 @@ class Bench {
       quiet_ = 0;
       ++signs_;
     }
-    if (dut_->access_o >> 47 != 0) {
+    if (serve_access(*dut_, inner_, storm_, [] { return 1U; })) {
       quiet_ = 0;
       ++signs_;
-      const FrameStorm::Answer answer =
-          storm_.access((dut_->access_o >> 46 & 1) != 0, static_cast<std::uint32_t>(dut_->access_o >> 32 & 0xFFF),
-                        static_cast<std::uint32_t>(dut_->access_o));
-      inner_.ask(1, answer.refused, answer.data);
     }
-    const InnerPort::Answer answer = inner_.now();
-    dut_->ack_i = answer.ack;
-    dut_->error_i = answer.error;
-    dut_->data_i = answer.data;
     dut_.clock();
   }
 
   Simulated<Vdut> dut_;
-  Checker check_;
   Dice dice_;
   FrameStorm storm_;
   InnerPort inner_;
@@ -123,8 +102,8 @@ TEST_P(Storm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
   const std::uint64_t frames = std::min<std::uint64_t>(scaled(250'000), 2'500'000);
   EXPECT_EQ(judge([&] {
               Bench bench(seed);
-              bench.run(frames);
-              const FrameStorm::Counts& counts = bench.counts();
+              run_storm(bench.storm(), frames);
+              const FrameStorm::Counts& counts = bench.storm().counts();
               EXPECT_GE(counts.frames, frames);
               EXPECT_GT(counts.requests, frames / 4);
               EXPECT_GT(counts.damaged, frames / 4);

@@ -4,13 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <stdexcept>
 
-#include "byte_ports.hpp"
-#include "frame_storm.hpp"
 #include "spi_master.hpp"
-#include "trammel/sim/lockstep.hpp"
+#include "storm_bench.hpp"
 
 namespace trammel::lockstep {
 namespace {
@@ -29,15 +26,7 @@ class Bench {
     dut_->rst_i = 0;
   }
 
-  void run(std::uint64_t frames) {
-    try {
-      storm_.run(frames);
-      std::printf("%s\n", storm_.text().c_str());
-    } catch (const std::logic_error& error) {
-      throw Mismatch(error.what());
-    }
-  }
-  const FrameStorm::Counts& counts() const { return storm_.counts(); }
+  FrameStorm& storm() { return storm_; }
 
  private:
   // The request in one exchange or in two; the reply in those after it, until nothing but ends comes.
@@ -75,17 +64,7 @@ class Bench {
     dut_->sck_i = pins.sck;
     dut_->cs_n_i = pins.cs_n;
     dut_->mosi_i = pins.mosi;
-    if (dut_->access_o >> 47 != 0) {
-      at_work_ = true;
-      const FrameStorm::Answer answer =
-          storm_.access((dut_->access_o >> 46 & 1) != 0, static_cast<std::uint32_t>(dut_->access_o >> 32 & 0xFFF),
-                        static_cast<std::uint32_t>(dut_->access_o));
-      inner_.ask(1 + dice_.below(8), answer.refused, answer.data);
-    }
-    const InnerPort::Answer answer = inner_.now();
-    dut_->ack_i = answer.ack;
-    dut_->error_i = answer.error;
-    dut_->data_i = answer.data;
+    if (serve_access(*dut_, inner_, storm_, [this] { return 1 + dice_.below(8); })) at_work_ = true;
     dut_.clock();
   }
 
@@ -98,17 +77,7 @@ class Bench {
 };
 
 TEST(SpiStorm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
-  const std::uint64_t seed = seed_from_environment(8);
-  const std::uint64_t frames = std::min<std::uint64_t>(scaled(10'000), 100'000);
-  EXPECT_EQ(judge([&] {
-              Bench bench(seed);
-              bench.run(frames);
-              EXPECT_GE(bench.counts().frames, frames);
-              EXPECT_GT(bench.counts().requests, frames / 4);
-              EXPECT_GT(bench.counts().damaged, frames / 4);
-              EXPECT_GE(bench.counts().connections, 1 + frames / 20'000);
-            }),
-            "");
+  EXPECT_EQ(judge([] { storm_at_pins<Bench>(8, 20'000); }), "");
 }
 
 }  // namespace

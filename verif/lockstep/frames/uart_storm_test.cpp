@@ -3,12 +3,9 @@
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdio>
+#include <optional>
 
-#include "byte_ports.hpp"
-#include "frame_storm.hpp"
-#include "trammel/sim/lockstep.hpp"
+#include "storm_bench.hpp"
 #include "uart_line.hpp"
 
 namespace trammel::lockstep {
@@ -29,15 +26,7 @@ class Bench {
     restart();
   }
 
-  void run(std::uint64_t frames) {
-    try {
-      storm_.run(frames);
-      std::printf("%s\n", storm_.text().c_str());
-    } catch (const std::logic_error& error) {
-      throw Mismatch(error.what());
-    }
-  }
-  const FrameStorm::Counts& counts() const { return storm_.counts(); }
+  FrameStorm& storm() { return storm_; }
 
  private:
   frames::Bytes bring(const frames::Bytes& bytes) {
@@ -62,17 +51,7 @@ class Bench {
       reply_.push_back(*byte);
       quiet_ = 0;
     }
-    if (dut_->access_o >> 47 != 0) {
-      quiet_ = 0;
-      const FrameStorm::Answer answer =
-          storm_.access((dut_->access_o >> 46 & 1) != 0, static_cast<std::uint32_t>(dut_->access_o >> 32 & 0xFFF),
-                        static_cast<std::uint32_t>(dut_->access_o));
-      inner_.ask(1 + dice_.below(8), answer.refused, answer.data);
-    }
-    const InnerPort::Answer answer = inner_.now();
-    dut_->ack_i = answer.ack;
-    dut_->error_i = answer.error;
-    dut_->data_i = answer.data;
+    if (serve_access(*dut_, inner_, storm_, [this] { return 1 + dice_.below(8); })) quiet_ = 0;
     dut_.clock();
   }
 
@@ -86,17 +65,7 @@ class Bench {
 };
 
 TEST(UartStorm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
-  const std::uint64_t seed = seed_from_environment(7);
-  const std::uint64_t frames = std::min<std::uint64_t>(scaled(10'000), 100'000);
-  EXPECT_EQ(judge([&] {
-              Bench bench(seed);
-              bench.run(frames);
-              EXPECT_GE(bench.counts().frames, frames);
-              EXPECT_GT(bench.counts().requests, frames / 4);
-              EXPECT_GT(bench.counts().damaged, frames / 4);
-              EXPECT_GT(bench.counts().connections, frames / 500);
-            }),
-            "");
+  EXPECT_EQ(judge([] { storm_at_pins<Bench>(7, 500); }), "");
 }
 
 }  // namespace

@@ -46,11 +46,16 @@ class RunError : public std::runtime_error {
   std::size_t line_;
 };
 
-// It was asked to stop on the path (driver::Card::request_stop()): the card is at rest, its position is known, and a
-// program may begin there.
+// It was asked to stop on the path (driver::Card::request_stop()): the card is at rest, and a program may begin there.
 class StoppedOnPath : public RunError {
  public:
-  using RunError::RunError;
+  StoppedOnPath(const std::string& file, std::size_t line, const std::string& message, const planner::Pulses& position)
+      : RunError(file, line, message), position_(position) {}
+  // Where it stands, machine coordinates.
+  const planner::Pulses& position() const { return position_; }
+
+ private:
+  planner::Pulses position_;
 };
 
 // Where the motion is not smooth.

@@ -1,0 +1,35 @@
+// A whole board behind its UART, see whole_board.hpp.
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "trammel/sim/lockstep.hpp"
+#include "whole_board.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+class Top final : public BoardTop {
+ public:
+  Top() { dut_->input_i = 0; }
+  Pins clock(bool rx) override {
+    dut_->rx_i = rx;
+    dut_.clock();
+    return {dut_->tx_o != 0, dut_->step_o, dut_->dir_o, dut_->output_o};
+  }
+
+ private:
+  Simulated<Vdut> dut_;
+};
+
+std::string over_uart(void (*scenario)(BoardTop&, const BoardFacts&)) {
+  return judge([scenario] {
+    Top top;
+    scenario(top, {TRAMMEL_BOARD, TRAMMEL_BOARD_ID, TRAMMEL_CLOCK_HZ, TRAMMEL_ARC_GENERATOR != 0, TRAMMEL_BAUD});
+  });
+}
+
+TEST(BoardTest, StreamsAndHolds) { EXPECT_EQ(over_uart(streams_and_holds), ""); }
+TEST(BoardTest, ObeysCommandsAtTheHighestRate) { EXPECT_EQ(over_uart(obeys_commands), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

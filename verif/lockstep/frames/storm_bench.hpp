@@ -1,0 +1,58 @@
+// A storm (tests/support/frame_storm.hpp) through a Verilated port with its frame engine.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <stdexcept>
+
+#include "byte_ports.hpp"
+#include "frame_storm.hpp"
+#include "trammel/sim/lockstep.hpp"
+
+namespace trammel::lockstep {
+
+// What the storm complains of is a mismatch.
+inline void run_storm(test::FrameStorm& storm, std::uint64_t frames) {
+  try {
+    storm.run(frames);
+    std::printf("%s\n", storm.text().c_str());
+  } catch (const std::logic_error& error) {
+    throw Mismatch(error.what());
+  }
+}
+
+// At the engine's inner port: an access is judged by the storm, and answered so many clocks later. Whether there was
+// one.
+template <class Dut, class Clocks>
+bool serve_access(Dut& dut, InnerPort& inner, test::FrameStorm& storm, Clocks clocks) {
+  const std::uint64_t access = dut.access_o;  // {request, write, partial, address, data}
+  const bool request = access >> 47 != 0;
+  if (request) {
+    const test::FrameStorm::Answer answer = storm.access(
+        (access >> 46 & 1) != 0, static_cast<std::uint32_t>(access >> 32 & 0xFFF), static_cast<std::uint32_t>(access));
+    inner.ask(clocks(), answer.refused, answer.data);
+  }
+  const InnerPort::Answer answer = inner.now();
+  dut.ack_i = answer.ack;
+  dut.error_i = answer.error;
+  dut.data_i = answer.data;
+  return request;
+}
+
+// 10^4 frames at a port's pins, 10^5 in the long run; more than one in `connected` of them makes a connection.
+template <class Bench>
+void storm_at_pins(std::uint64_t seed, std::uint64_t connected) {
+  const std::uint64_t frames = std::min<std::uint64_t>(scaled(10'000), 100'000);
+  Bench bench(seed_from_environment(seed));
+  run_storm(bench.storm(), frames);
+  const test::FrameStorm::Counts& counts = bench.storm().counts();
+  EXPECT_GE(counts.frames, frames);
+  EXPECT_GT(counts.requests, frames / 4);
+  EXPECT_GT(counts.damaged, frames / 4);
+  EXPECT_GT(counts.connections, frames / connected);
+}
+
+}  // namespace trammel::lockstep
