@@ -27,10 +27,6 @@ struct Gap {
 
 bool is_level(const Phase& phase) { return phase.acceleration == 0 && phase.jerk == 0; }
 
-double end_speed(const Phase& phase) {
-  return phase.speed + phase.duration * (phase.acceleration + phase.duration / 2 * phase.jerk);
-}
-
 }  // namespace
 
 // The lowest cap first: where ramps from the gap's ends reach it, it splits the gap in two; where they do not, the gap
@@ -64,7 +60,7 @@ class SCurvePlan::Impl {
   void put(const Phase& phase);
   void give();
   std::size_t phases_until(double position) const;
-  double give_until(double position);
+  double give_until(double position, double least);
   double give_phases(std::size_t count);
   double split(double length);
   double rounding() const { return window_.length() * 0x1p-40; }
@@ -98,17 +94,22 @@ bool SCurvePlan::Impl::next(Phase& phase) {
   return true;
 }
 
-// When the motion at the window's beginning does not fit the new plan, what was planned before still holds.
+// When the motion at the window's beginning does not fit the new plan, what was planned before still holds; but the
+// next plan may fit, and so the least is given of it.
 void SCurvePlan::Impl::give() {
   given_.clear();
   given_begin_ = 0;
   window_.index();
+  const double share = std::min(window_.position(window_.size() / 16), window_.length() / 16);
+  const double least = std::max({share, window_.position(1), 2 * rounding()});
+  double position = least;
   if (plan()) {
     tail_.swap(planned_);
     tail_begin_ = 0;
     tail_length_ = window_.length();
+    position = finishing_ ? kInfinite : std::max(least, window_.position(window_.size() / 2));
   }
-  double position = give_until(finishing_ ? kInfinite : window_.position(std::max<std::size_t>(1, window_.size() / 2)));
+  position = give_until(position, least);
   if (tail_begin_ == tail_.size()) position = tail_length_;
   tail_length_ -= position;
   const bool more = tail_begin_ != tail_.size();
@@ -134,10 +135,9 @@ std::size_t SCurvePlan::Impl::phases_until(double position) const {
   return rises != 0 && tail_[tail_begin_ + last].jerk < 0 ? rises : last;
 }
 
-// Up to about `position`, to where there is no acceleration. A fall that goes on there is given for a sixteenth of the
-// window only: the next plan may not want it.
-double SCurvePlan::Impl::give_until(double position) {
-  const double least = std::max(window_.position(std::max<std::size_t>(1, window_.size() / 16)), 2 * rounding());
+// Up to about `position`, to where there is no acceleration. Of a fall that goes on there `least` is given: the next
+// plan may not want it.
+double SCurvePlan::Impl::give_until(double position, double least) {
   double at = give_phases(phases_until(position));
   if (tail_begin_ == tail_.size()) return at;
   const Phase& next = tail_[tail_begin_];
@@ -204,24 +204,24 @@ bool SCurvePlan::Impl::lead(Gap& gap) {
   for (std::size_t i = 0; fall > 0; ++i) {
     if (i == window_.size()) return false;
     const Span& span = window_[i];
-    const double duration = fall / span.jerk;
+    const Span& behind = window_[std::min(i + 1, window_.size() - 1)];
+    const double jerk = std::min(span.jerk, behind.jerk);
+    const double duration = fall / jerk;
     const double speed = gap.from - fall / 2 * duration;
     if (!(speed > 0)) return false;
     const double length = (speed + fall / 6 * duration) * duration;
     const double room = window_.position(i + 1) - gap.begin;
     if (length <= room) {
-      put({length, duration, gap.from, -fall, span.jerk});
+      put({length, duration, gap.from, -fall, jerk});
       gap.begin += length;
       gap.from = speed;
       return true;
     }
-    const double time = duration - rising_time(length - room, speed, 0, span.jerk, duration);
-    put({room, time, gap.from, -fall, span.jerk});
-    gap.from -= (fall - span.jerk / 2 * time) * time;
+    const double time = duration - rising_time(length - room, speed, 0, jerk, duration);
+    put({room, time, gap.from, -fall, jerk});
+    gap.from -= (fall - jerk / 2 * time) * time;
     gap.begin = window_.position(i + 1);
-    fall -= span.jerk * time;
-    if (i + 1 == window_.size()) return false;
-    const Span& behind = window_[i + 1];
+    fall -= jerk * time;
     if (gap.from > std::min(span.exit_speed, behind.speed) || fall > behind.acceleration) return false;
   }
   return true;
@@ -236,14 +236,12 @@ bool SCurvePlan::Impl::passes(double begin, double end, double low, double high)
 
 // Length of a ramp from the gap's beginning on, as planned in rise_.
 double SCurvePlan::Impl::rising(const Gap& gap, double to) {
-  const double most = ramp_length(gap.from, to, window_.least());
-  return rise_.plan(window_.from(gap.begin, std::min(gap.end - gap.begin, most)), gap.from, to);
+  return rise_.plan(window_.from(gap.begin, gap.end), gap.from, to);
 }
 
 // The same to its end.
 double SCurvePlan::Impl::falling(const Gap& gap, double from) {
-  const double most = ramp_length(gap.to, from, window_.least());
-  return rise_.plan(window_.back_from(gap.end, std::min(gap.end - gap.begin, most)), gap.to, from);
+  return rise_.plan(window_.back_from(gap.end, gap.begin), gap.to, from);
 }
 
 bool SCurvePlan::Impl::divide(Gap gap) {

@@ -23,8 +23,8 @@ double ramp_end(double low, double length, RampLimits limits);
 // When a part whose acceleration is not below 0 has gone a length, `most` or less than that after its beginning.
 double rising_time(double length, double speed, double acceleration, double jerk, double most);
 
-// The highest value from `low` to `high`, but for a share, at which `excess`, which rises with it, is not above 0. It is
-// not at `low`.
+// The highest value from `low` to `high`, but for a share, at which `excess`, which rises with it, is not above 0. It
+// is not at `low`.
 template <typename Excess>
 double highest(double low, double high, Excess excess, double share = 1e-13) {
   double above = excess(high);

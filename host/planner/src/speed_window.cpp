@@ -29,6 +29,9 @@ bool alike(const Range& range, double tolerance) {
          range.most.jerk <= kMost * range.least.jerk;
 }
 
+// The least of both, unless the neighbour has much less.
+double near_jerk(double jerk, double neighbour) { return 2.5 * neighbour < jerk ? jerk : std::min(jerk, neighbour); }
+
 bool same(const Range& a, const Range& b) {
   return a.least.acceleration == b.least.acceleration && a.least.jerk == b.least.jerk &&
          a.most.acceleration == b.most.acceleration && a.most.jerk == b.most.jerk;
@@ -65,7 +68,7 @@ void SpeedWindow::index() {
   }
 }
 
-SpeedWindow::Walk::Walk(const SpeedWindow& window, double from, bool forwards, double most)
+SpeedWindow::Walk::Walk(const SpeedWindow& window, double from, bool forwards, double to)
     : window_(&window), from_(from), forwards_(forwards) {
   if (window.uniform()) {  // nothing to look for
     last_ = forwards ? window.size() : 0;
@@ -81,7 +84,7 @@ SpeedWindow::Walk::Walk(const SpeedWindow& window, double from, bool forwards, d
     return static_cast<std::size_t>(std::upper_bound(begin + 1, last, place) - begin - 1);
   };
   at_ = forwards ? down(from) : up(from);
-  last_ = forwards ? std::max(up(from + most), at_ + 1) : std::min(down(from - most), at_ - 1);
+  last_ = forwards ? std::max(up(to), at_ + 1) : std::min(down(to), at_ - 1);
 }
 
 bool SpeedWindow::Walk::take_block(Range& range) {
@@ -94,15 +97,16 @@ bool SpeedWindow::Walk::take_block(Range& range) {
 }
 
 SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
-  constexpr double kBrief = 1.0 / 8;    // of the acceleration's rise
-  constexpr double kShare = 1.0 / 8;     // of it that a whole ramp may lose
-  constexpr double kTolerance = 0.05;    // at most
-  constexpr double kLeast = 0x1p-12;     // at least
+  constexpr double kBrief = 1.0 / 8;   // of the acceleration's rise
+  constexpr double kShare = 1.0 / 8;   // of it that a whole ramp may lose
+  constexpr double kTolerance = 0.05;  // at most
+  constexpr double kLeast = 0x1p-12;   // at least
   if (window_->uniform()) {
     at_ = last_;
     return {distance(at_), window_->least()};
   }
   const double begin = end_;
+  const std::size_t first = at_;
   Range range = range_of((*window_)[span_at(at_)]);
   at_ = forwards_ ? at_ + 1 : at_ - 1;
   while (!ended()) {
@@ -123,7 +127,11 @@ SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
     at_ = behind;
   }
   end_ = distance(at_);
-  return {end_, range.least};
+  // What is too short for a piece of its own is made with what follows or comes before.
+  RampLimits limits = range.least;
+  if (begin > 0) limits.jerk = near_jerk(limits.jerk, (*window_)[forwards_ ? first - 1 : first].jerk);
+  if (!ended()) limits.jerk = near_jerk(limits.jerk, (*window_)[span_at(at_)].jerk);
+  return {end_, limits};
 }
 
 Range SpeedWindow::range(double begin, double end) const {

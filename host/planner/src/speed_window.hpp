@@ -45,14 +45,14 @@ class SpeedWindow {
     RampLimits limits;
   };
 
-  // Away from a place, stretch by stretch, up to the span that `most` from there lies in.
+  // Away from a place, stretch by stretch, up to the span in which the other one lies.
   class Walk {
    public:
-    Walk(const SpeedWindow& window, double from, bool forwards, double most);
+    Walk(const SpeedWindow& window, double from, bool forwards, double to);
 
     bool ended() const { return at_ == last_; }
-    // The next stretch, for a ramp that has `speed` there, `time` after its beginning. Spans make one where their limits
-    // differ so little, or for so short a time, that it costs little of what a rise of the acceleration does.
+    // The next stretch, for a ramp that has `speed` there, `time` after its beginning. Spans make one where their
+    // limits differ so little, or for so short a time, that it costs little of what a rise of the acceleration does.
     Stretch next(double speed, double time);
 
    private:
@@ -69,8 +69,8 @@ class SpeedWindow {
     std::size_t last_;
     double end_ = 0;
   };
-  Walk from(double begin, double most) const { return {*this, begin, true, most}; }
-  Walk back_from(double end, double most) const { return {*this, end, false, most}; }
+  Walk from(double begin, double end) const { return {*this, begin, true, end}; }
+  Walk back_from(double end, double begin) const { return {*this, end, false, begin}; }
 
  private:
   static constexpr std::size_t kBlock = 64;
