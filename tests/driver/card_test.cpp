@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "argument_error.hpp"
 #include "posted_bus.hpp"
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"
@@ -185,16 +186,6 @@ TEST(MalformedCards, HaveMessagesOfTheirOwn) {
 class CardTest : public ::testing::Test {
  protected:
   CardTest() : card_(Card::open(bus_)) { bus_.forget(); }
-
-  template <typename Call>
-  std::string argument_error(Call call) {
-    try {
-      call();
-    } catch (const ArgumentError& error) {
-      return error.what();
-    }
-    return "";
-  }
 
   RegisterStub bus_;  // 1 MHz, 4 axes
   Card card_;
