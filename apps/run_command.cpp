@@ -211,7 +211,7 @@ void add_run_command(CLI::App& app) {
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
   options->machine.add_to(*command);
   options->card.add_to(*command);
-  options->engine.add_to(*command);
+  options->engine.add_to(*command, "1000000 with engine rtl, the machine file's with model");
   options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")

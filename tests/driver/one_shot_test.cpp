@@ -5,6 +5,7 @@
 
 #include <thread>
 
+#include "argument_error.hpp"
 #include "posted_bus.hpp"
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"
@@ -37,16 +38,6 @@ CardTiming timing(std::uint32_t clock_hz, std::uint32_t pulse_period = 2) {
 // x_N = floor(1/2 + N * FREQUENCY / 2^40): the pulses that a generator makes in the part.
 std::uint64_t pulses_made(const OneShotPart& part, std::size_t axis) {
   return ((Uint128::product(part.length, part.frequency[axis]) + Uint128(kOne / 2)) >> 40).low();
-}
-
-template <typename Call>
-std::string argument_error(Call call) {
-  try {
-    call();
-  } catch (const ArgumentError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(OneShot, LineOneOfThePaper) {

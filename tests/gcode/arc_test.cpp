@@ -18,10 +18,7 @@ Motion last_arc(const std::string& text) {
   return program.motions.at(program.motions.size() - 2);
 }
 
-std::string refusal(const std::string& text) {
-  const Reading program = read_text("F60\n" + text);
-  return program.error ? program.error->message : "accepted";
-}
+std::string refusal(const std::string& text) { return read_text("F60\n" + text).message(); }
 
 void expect_arc(const std::string& text, double centre_x, double centre_y, bool clockwise, bool full = false) {
   SCOPED_TRACE(text);

@@ -38,10 +38,7 @@ void expect_steps(const std::string& text, const std::vector<Step>& steps) {
   }
 }
 
-std::string refusal(const std::string& text) {
-  const Reading program = read_text("G90 G21 F60\nG0 Z10\n" + text);
-  return program.error ? describe(*program.error).substr(6) : "accepted";
-}
+std::string refusal(const std::string& text) { return read_text("G90 G21 F60\nG0 Z10\n" + text).refusal(); }
 
 TEST(Cycle, DrillsAndRetractsToRByDefault) {
   expect_steps("G81 X1 Y2 Z-1 R2\nX5", {{kRapid, 1, 2, 10},

@@ -21,10 +21,7 @@ double value_of(const std::string& expression, const std::string& before = "") {
   return program.motions.size() < 2 ? std::nan("") : program.motions[program.motions.size() - 2].target[0];
 }
 
-std::string refusal(const std::string& text) {
-  const Reading program = read_text(text);
-  return program.error ? describe(*program.error).substr(6) : "accepted";
-}
+std::string refusal(const std::string& text) { return read_text(text).refusal(); }
 
 TEST(Expression, OperatorsAndTheirStrength) {
   const std::vector<std::pair<const char*, double>> cases = {

@@ -13,16 +13,10 @@ using ::testing::HasSubstr;
 using Words = std::map<std::string, std::size_t>;
 
 Reading read(const std::string& text, const std::vector<int>& more = {}) {
-  const machine::Machine machine = machine::default_machine();
   ReaderOptions options;
   options.left_out = more;
   TextLines lines(text, "p.gcode");
-  Reader reader(lines, machine, {}, options);
-  Reading reading;
-  for (Motion motion; reader.next(motion);) reading.motions.push_back(motion);
-  reading.accepted = reader.accepted();
-  reading.error = reader.error();
-  return reading;
+  return read_all(lines, machine::default_machine(), {}, options);
 }
 
 TEST(LeftOut, LinesAreListedAndMoveNothing) {

@@ -29,10 +29,7 @@ Coordinates end_of(const std::string& text) {
 double x_of(const std::string& text) { return end_of(text)[0]; }
 double z_of(const std::string& text) { return end_of(text)[2]; }
 
-std::string refusal(const std::string& text) {
-  const Reading program = read_text(text, make_machine());
-  return program.error ? program.error->message : "accepted";
-}
+std::string refusal(const std::string& text) { return read_text(text, make_machine()).message(); }
 
 TEST(Offsets, NineCoordinateSystems) {
   const char* const systems[] = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"};

@@ -20,11 +20,7 @@ Reading read(const std::string& text) {
   return program;
 }
 
-// Message of the refusal, without "p.ngc:".
-std::string refusal(const std::string& text) {
-  const Reading program = read_text(text);
-  return program.error ? describe(*program.error).substr(6) : "accepted";
-}
+std::string refusal(const std::string& text) { return read_text(text).refusal(); }
 
 void expect_at(const Motion& motion, double x, double y, double z = 0, double e = 0) {
   EXPECT_NEAR(motion.target[0], x, 1e-9);

@@ -14,11 +14,15 @@ struct Reading {
   std::vector<Motion> motions;
   std::map<std::string, std::size_t> accepted;
   std::optional<Error> error;
+
+  // What was refused, with its line before it or without.
+  std::string refusal() const { return error ? describe(*error).substr(error->file.size() + 1) : "accepted"; }
+  std::string message() const { return error ? error->message : "accepted"; }
 };
 
 inline Reading read_all(LineSource& lines, const machine::Machine& machine = machine::default_machine(),
-                        const Coordinates& start = {}) {
-  Reader reader(lines, machine, start);
+                        const Coordinates& start = {}, const ReaderOptions& options = {}) {
+  Reader reader(lines, machine, start, options);
   Reading reading;
   for (Motion motion; reader.next(motion);) {
     reading.motions.push_back(motion);

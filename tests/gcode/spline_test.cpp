@@ -62,10 +62,7 @@ std::vector<Motion> lines_of(const std::string& text) {
   return lines;
 }
 
-std::string refusal(const std::string& text) {
-  const Reading program = read_text(text);
-  return program.error ? program.error->message : "accepted";
-}
+std::string refusal(const std::string& text) { return read_text(text).message(); }
 
 TEST(Spline, CubicKeepsToTheTolerance) {
   const std::vector<Point> controls = {{0, 0}, {0, 30}, {40, -20}, {40, 10}};

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <tuple>
 #include <vector>
 
+#include "core_bench.hpp"
 #include "trammel/driver/arc.hpp"
 #include "trammel/driver/commands.hpp"
 
@@ -15,22 +15,6 @@ namespace {
 using namespace trammel;
 using model::CardModel;
 namespace reg = card_map::reg;
-
-using PinRow = std::tuple<std::uint64_t, unsigned, int>;
-using PathRow = std::tuple<std::uint64_t, std::uint64_t, unsigned, int, std::uint64_t>;
-
-class Recorder : public model::CardSteps {
- public:
-  void pin_step(std::uint64_t cycle, unsigned axis, int direction) override {
-    pins.emplace_back(cycle, axis, direction);
-  }
-  void path_step(std::uint64_t cycle, std::uint64_t command, std::uint64_t tick, unsigned axis,
-                 int direction) override {
-    path.emplace_back(command, tick, axis, direction, cycle);
-  }
-  std::vector<PinRow> pins;
-  std::vector<PathRow> path;
-};
 
 // A card with a host; `skips` says how it spends idle time.
 class Card {
@@ -64,7 +48,7 @@ class Card {
     }
   }
   const CardModel& model() const { return model_; }
-  Recorder steps;
+  trammel::testing::StepRecorder steps;
 
  private:
   bool skips_;
@@ -109,7 +93,7 @@ void wait_in_pieces(Pair& pair, std::mt19937_64& random, std::uint64_t clocks) {
   while (clocks != 0) {
     const std::uint64_t piece = std::min<std::uint64_t>(clocks, 1 + random() % (random() % 4 == 0 ? 4000 : 90));
     pair.both([piece](Card& card) { card.wait(piece); });
-    if (testing::Test::HasFatalFailure()) return;
+    if (::testing::Test::HasFatalFailure()) return;
     clocks -= piece;
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dying_bus.hpp"
+#include "steps.hpp"
 #include "trammel/run/configure.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/sim/timed_bus.hpp"
@@ -17,13 +18,6 @@ namespace {
 
 constexpr std::uint32_t kClock = 1'000'000;
 
-class Pins final : public driver::StepSink {
- public:
-  void pin_step(const driver::PinStep& step) override { steps.push_back(step); }
-  void path_step(const driver::PathStep& /*step*/) override {}
-  std::vector<driver::PinStep> steps;
-};
-
 class JogTest : public testing::Test {
  protected:
   JogTest() {
@@ -31,7 +25,7 @@ class JogTest : public testing::Test {
     machine::apply_override(machine_, "axis.x.min=-10.004");  // between two pulses
     machine::apply_override(machine_, "axis.y.max=30");
     configure(card_, machine_);
-    engine_->set_sink(&pins_);
+    engine_->set_sink(&steps_);
   }
   // The jog is looked at every 20 ms.
   void pass(double seconds) {
@@ -47,7 +41,7 @@ class JogTest : public testing::Test {
   double speed(unsigned axis, double window = 0.02) const {
     const std::uint64_t now = engine_->cycles();
     int pulses = 0;
-    for (const driver::PinStep& step : pins_.steps) {
+    for (const driver::PinStep& step : steps_.pins) {
       if (step.axis == axis && step.cycle + static_cast<std::uint64_t>(window * kClock) > now) pulses += step.direction;
     }
     return pulses / 80.0 / window;
@@ -56,7 +50,7 @@ class JogTest : public testing::Test {
   double largest_acceleration(unsigned axis) const {
     constexpr std::uint64_t kWindow = kClock / 50;
     std::vector<double> counts(engine_->cycles() / kWindow + 2);
-    for (const driver::PinStep& step : pins_.steps) {
+    for (const driver::PinStep& step : steps_.pins) {
       if (step.axis == axis) counts[step.cycle / kWindow] += step.direction;
     }
     double largest = 0;
@@ -71,7 +65,7 @@ class JogTest : public testing::Test {
   std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
   sim::TimedBus bus_{*engine_, kClock, 8000};
   driver::Card card_ = driver::Card::open(bus_);
-  Pins pins_;
+  test::Steps steps_;
   MachinePosition position_{card_.snapshot(), machine_};
   Jog jog_{card_, machine_, position_};
 };
@@ -82,7 +76,7 @@ TEST_F(JogTest, SeveralAxesByADistance) {
   EXPECT_FALSE(card_.in_position());
   jog_.wait();
   EXPECT_TRUE(card_.in_position());
-  const double took = static_cast<double>(pins_.steps.back().cycle - pins_.steps.front().cycle) / kClock;
+  const double took = static_cast<double>(steps_.pins.back().cycle - steps_.pins.front().cycle) / kClock;
   EXPECT_NEAR(took, 0.25 + 0.02, 0.01) << "5 mm at 20 mm/s, and a ramp";
   EXPECT_EQ(position_.pulses(), (planner::Pulses{240, -320}));
   EXPECT_LT(largest_acceleration(1), 1100);
@@ -111,16 +105,16 @@ TEST_F(JogTest, RunsUntilItIsStoppedAndRampsDown) {
   jog_.start({30, 0});
   pass(1);
   EXPECT_NEAR(speed(0), 30, 1);
-  const std::size_t before = pins_.steps.size();
+  const std::size_t before = steps_.pins.size();
   jog_.stop();
   jog_.wait();
   // 30 mm/s at half of 1000 mm/s^2: 60 ms, 0.9 mm.
-  EXPECT_NEAR(static_cast<double>(pins_.steps.size() - before), 0.9 * 80, 4);
+  EXPECT_NEAR(static_cast<double>(steps_.pins.size() - before), 0.9 * 80, 4);
   EXPECT_LT(largest_acceleration(0), 600);
   const std::int64_t stood = position_.pulses()[0];
-  EXPECT_EQ(stood, static_cast<std::int64_t>(pins_.steps.size()));
+  EXPECT_EQ(stood, static_cast<std::int64_t>(steps_.pins.size()));
   pass(1);
-  EXPECT_EQ(static_cast<std::int64_t>(pins_.steps.size()), stood) << "nothing comes after it";
+  EXPECT_EQ(static_cast<std::int64_t>(steps_.pins.size()), stood) << "nothing comes after it";
 }
 
 TEST_F(JogTest, ItsSpeedIsChangedWithinLimits) {
@@ -152,7 +146,7 @@ TEST_F(JogTest, ReactsWithinTenMilliseconds) {
   double begun = seconds();
   jog_.start({75, 0});
   pass(0.5);
-  EXPECT_GT(pins_.steps.front().cycle, begun * kClock);
+  EXPECT_GT(steps_.pins.front().cycle, begun * kClock);
   std::uint32_t ratio = card_.snapshot().ratio;
   EXPECT_NEAR(ratio, 0x8000, 2);
   begun = seconds();
@@ -171,11 +165,11 @@ TEST_F(JogTest, ReactsWithinTenMilliseconds) {
   MachinePosition position(card.snapshot(), machine_);
   Jog jog(card, machine_, position);
   begun = seconds();
-  const std::size_t made = pins_.steps.size();
+  const std::size_t made = steps_.pins.size();
   jog.start({75, 0});
   fast.sleep(std::chrono::milliseconds(10));
-  EXPECT_GT(pins_.steps.size(), made);
-  EXPECT_LT(static_cast<double>(pins_.steps[made].cycle) / kClock - begun, 0.01);
+  EXPECT_GT(steps_.pins.size(), made);
+  EXPECT_LT(static_cast<double>(steps_.pins[made].cycle) / kClock - begun, 0.01);
   jog.stop();
   jog.wait();
 }
@@ -204,10 +198,10 @@ TEST_F(JogTest, AHostThatDiesLeavesARampedStop) {
           bus.sleep(std::chrono::milliseconds(20));
         },
         driver::LinkError);
-    const std::size_t before = pins_.steps.size();
+    const std::size_t before = steps_.pins.size();
     const std::uint64_t dead = engine_->cycles();
     engine_->wait(std::uint64_t{5} * kClock);
-    const std::vector<driver::PinStep>& steps = pins_.steps;
+    const std::vector<driver::PinStep>& steps = steps_.pins;
     ASSERT_GT(steps.size(), before);
     // What was sent ahead: 2.2 stops of a full-speed jog at its ratio, and 0.1 s and some lines.
     const double stop = static_cast<double>(steps.back().cycle - dead) / kClock;
@@ -251,7 +245,7 @@ TEST_F(JogTest, GoesOnWhenItIsLookedAtAgain) {
   EXPECT_NEAR(speed(0), 30, 1);
   jog_.stop();
   jog_.wait();
-  EXPECT_EQ(position_.pulses()[0], static_cast<std::int64_t>(pins_.steps.size()));
+  EXPECT_EQ(position_.pulses()[0], static_cast<std::int64_t>(steps_.pins.size()));
 }
 
 TEST_F(JogTest, GivesTheTimeBaseBackAndProgramsGoOnFromThere) {

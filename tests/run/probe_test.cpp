@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "steps.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/run/step_recorder.hpp"
 #include "trammel/sim/timed_bus.hpp"
@@ -20,22 +21,10 @@ constexpr std::uint32_t kClock = 1'000'000;
 constexpr std::int64_t kPulses = 80;  // a mm
 constexpr std::size_t kZ = 2;
 
-class Pins final : public driver::StepSink {
- public:
-  void pin_step(const driver::PinStep& step) override { steps.push_back(step); }
-  void path_step(const driver::PathStep& /*step*/) override {}
-  std::int64_t at(std::size_t axis, std::uint64_t cycle) const {
-    std::int64_t sum = 0;
-    for (const driver::PinStep& step : steps) sum += step.axis == axis && step.cycle <= cycle ? step.direction : 0;
-    return sum;
-  }
-  std::vector<driver::PinStep> steps;
-};
-
 class ProbingProgram : public testing::Test {
  protected:
   ProbingProgram() {
-    engine_->set_sink(&pins_);
+    engine_->set_sink(&steps_);
     machine_.probe.input = 2;
   }
   void touch_at(double seconds, bool touches = true) {
@@ -60,13 +49,13 @@ class ProbingProgram : public testing::Test {
     }
     return "no error";
   }
-  std::int64_t position(std::size_t axis) const { return pins_.at(axis, ~std::uint64_t{0}); }
+  std::int64_t position(std::size_t axis) const { return steps_.position(axis); }
 
   machine::Machine machine_ = machine::default_machine();
   std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
   sim::TimedBus bus_{*engine_, kClock, 1e9};
   driver::Card card_ = driver::Card::open(bus_);
-  Pins pins_;
+  test::Steps steps_;
   Plan plan_;
 };
 
@@ -74,7 +63,7 @@ class ProbingProgram : public testing::Test {
 TEST_F(ProbingProgram, ResultIsWhereTheCardWas) {
   touch_at(2);
   const Outcome outcome = run("G0 X3\nG38.2 Z-10 F120\n#1=#5063\nG0 Z[#1+2] X[#5070*10]\nM2\n");
-  const std::int64_t edge = pins_.at(kZ, 2 * kClock + 8);
+  const std::int64_t edge = steps_.position(kZ, 2 * kClock + 8);
   ASSERT_EQ(outcome.probes.size(), 1U);
   EXPECT_TRUE(outcome.probes[0].tripped);
   EXPECT_EQ(outcome.probes[0].line, 2U);
@@ -111,7 +100,7 @@ TEST_F(ProbingProgram, OffsetsComeFromWhereItStands) {
   const std::int64_t rest = outcome.final_position[kZ];
   EXPECT_LT(rest, -3 * kPulses);
   EXPECT_EQ(position(kZ), rest);
-  EXPECT_LE(rest, pins_.at(kZ, 2 * kClock)) << "it stands behind the edge";
+  EXPECT_LE(rest, steps_.position(kZ, 2 * kClock)) << "it stands behind the edge";
   EXPECT_NEAR(outcome.parameters.at(5243), static_cast<double>(rest) / kPulses - 1, 1e-12);
 }
 
@@ -120,7 +109,7 @@ TEST_F(ProbingProgram, SeveralProbesAndTheWayBack) {
   touch_at(6, false);
   const Outcome outcome = run("G38.2 Z-10 F120\n#1=#5063\nG38.4 Z#1 F1\nG0 Z0\nG91 G38.3 X1 F600\nG0 X[#5070+1]\nM2\n");
   ASSERT_EQ(outcome.probes.size(), 3U);
-  EXPECT_EQ(outcome.probes[1].edge[kZ], static_cast<double>(pins_.at(kZ, 6 * kClock + 8)) / kPulses);
+  EXPECT_EQ(outcome.probes[1].edge[kZ], static_cast<double>(steps_.position(kZ, 6 * kClock + 8)) / kPulses);
   EXPECT_FALSE(outcome.probes[2].tripped);
   EXPECT_EQ(outcome.final_position[0], 2 * kPulses);
 }
@@ -129,14 +118,14 @@ TEST_F(ProbingProgram, StreamedProgramsProbeToo) {
   touch_at(2);
   Runner runner = make("G38.2 Z-10 F120\nG0 Z[#5063+2]\nM2\n");
   const Outcome outcome = runner.stream(card_);
-  EXPECT_EQ(outcome.final_position[kZ], pins_.at(kZ, 2 * kClock + 8) + 2 * kPulses);
+  EXPECT_EQ(outcome.final_position[kZ], steps_.position(kZ, 2 * kClock + 8) + 2 * kPulses);
   EXPECT_EQ(runner.last_plan().probes, 1U);
 }
 
 TEST_F(ProbingProgram, TheSecondMotorProbesAlong) {
   const auto engine = sim::make_model_engine(sim::EngineOptions{5, kClock, false});
-  Pins pins;
-  engine->set_sink(&pins);
+  test::Steps steps;
+  engine->set_sink(&steps);
   sim::TimedBus bus(*engine, kClock, 1e9);
   bus.at(2 * kClock, [](sim::Engine& card) { card.set_inputs(0b100); });
   machine_.axes[kZ].second_motor = true;
@@ -145,8 +134,8 @@ TEST_F(ProbingProgram, TheSecondMotorProbesAlong) {
   Runner runner(lines, machine_, planner::limits_of(card.identification()));
   runner.plan();
   EXPECT_EQ(runner.run(card).counted[4], 0);
-  EXPECT_EQ(pins.at(4, 2 * kClock), pins.at(kZ, 2 * kClock));
-  EXPECT_LT(pins.at(4, 2 * kClock), -3 * kPulses);
+  EXPECT_EQ(steps.position(4, 2 * kClock), steps.position(kZ, 2 * kClock));
+  EXPECT_LT(steps.position(4, 2 * kClock), -3 * kPulses);
 }
 
 TEST_F(ProbingProgram, AMissIsAnErrorWhereTheProgramSaysSo) {
@@ -200,7 +189,7 @@ TEST_F(ProbingProgram, WhatDoesNotDependIsCheckedBefore) {
   EXPECT_THAT(error_of("G38.2 Z-10 F120\nG[#5070] X1\nM2\n"), HasSubstr("p.ngc:2: 'G[#5070]' cannot depend"));
   EXPECT_THAT(error_of("G38.2 Z-10 F120\nG1 X[1/0]\nM2\n"), HasSubstr("p.ngc:2: division by 0"));
   EXPECT_THAT(error_of("G38.2 Z-10 F120\nG10 L2 P[1+#5070] X1\nM2\n"), HasSubstr("p.ngc:2: "));
-  EXPECT_TRUE(pins_.steps.empty());
+  EXPECT_TRUE(steps_.pins.empty());
 }
 
 TEST_F(ProbingProgram, TheProbesOwnWayIsChecked) {

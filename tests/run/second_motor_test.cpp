@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "steps.hpp"
 #include "trammel/run/jog.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/sim/engine.hpp"
@@ -11,26 +12,20 @@
 namespace trammel::run {
 namespace {
 
-class Steps final : public driver::StepSink {
- public:
-  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
-  void path_step(const driver::PathStep& /*step*/) override {}
-  std::vector<driver::PinStep> of(unsigned axis) const {
-    std::vector<driver::PinStep> result;
-    for (const driver::PinStep& step : pins) {
-      if (step.axis == axis) result.push_back(step);
-    }
-    return result;
+std::vector<driver::PinStep> of(const test::Steps& steps, unsigned axis) {
+  std::vector<driver::PinStep> result;
+  for (const driver::PinStep& step : steps.pins) {
+    if (step.axis == axis) result.push_back(step);
   }
-  std::vector<driver::PinStep> pins;
-};
+  return result;
+}
 
 TEST(SecondMotor, MakesItsAxisStepsInTheSameClocks) {
   machine::Machine machine = machine::default_machine();  // X Y Z E
   machine::apply_override(machine, "axis.y.second_motor=true");
   machine::apply_override(machine, "axis.y.second_inverted=true");
   const auto engine = sim::make_model_engine(sim::EngineOptions{5, 1'000'000, false});
-  Steps steps;
+  test::Steps steps;
   engine->set_sink(&steps);
   driver::Card card = driver::Card::open(*engine);
   // Lines and an arc of equal scales, which goes out as lines.
@@ -42,15 +37,15 @@ TEST(SecondMotor, MakesItsAxisStepsInTheSameClocks) {
   EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{0, -80, 0, 0}));
   EXPECT_EQ(outcome.counted, (std::vector<std::int64_t>{0, -80, 0, 0, -80}));
   const auto expect_together = [&] {
-    const auto first = steps.of(1);
-    const auto second = steps.of(4);
+    const auto first = of(steps, 1);
+    const auto second = of(steps, 4);
     ASSERT_EQ(first.size(), second.size());
     for (std::size_t i = 0; i < first.size(); ++i) {
       ASSERT_EQ(first[i].cycle, second[i].cycle);
       ASSERT_EQ(first[i].direction, second[i].direction);
     }
   };
-  EXPECT_GT(steps.of(1).size(), 240U + 160U);
+  EXPECT_GT(of(steps, 1).size(), 240U + 160U);
   expect_together();
   // The pins are its own: its direction is inverted, the axis's is not.
   EXPECT_EQ(card.read(card_map::reg::mode(1)) & card_map::field::kModeInvertSecond, 0U);

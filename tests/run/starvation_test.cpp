@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dying_bus.hpp"
+#include "steps.hpp"
 #include "trammel/run/path_identity.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/run/step_fork.hpp"
@@ -32,14 +33,6 @@ std::string circle(int chords) {
   }
   return text;
 }
-
-class Steps final : public driver::StepSink {
- public:
-  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
-  void path_step(const driver::PathStep& step) override { path.push_back(step); }
-  std::vector<driver::PinStep> pins;
-  std::vector<driver::PathStep> path;
-};
 
 // The host does nothing for a while, now and then.
 class Stalls final : public Observer {
@@ -100,7 +93,7 @@ class StarvationTest : public testing::Test {
 
   machine::Machine machine_ = machine::default_machine();
   std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
-  Steps steps_;
+  test::Steps steps_;
   PathIdentity identity_;
   StepFork fork_;
 };

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "steps.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/machine_position.hpp"
 #include "trammel/run/path_identity.hpp"
@@ -18,14 +19,6 @@ namespace {
 constexpr std::uint32_t kClock = 400'000;
 constexpr char kProgram[] =
     "F3000\nG1 X8 Y3\nG2 X12 Y7 I4\nG4 P0.1\nG1 X2 Y9.3 Z1.7\nG3 X2 Y9.3 J-3\nG1 X30\nG0 X0 Y0 Z0\n";
-
-class Steps final : public driver::StepSink {
- public:
-  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
-  void path_step(const driver::PathStep& step) override { path.push_back(step); }
-  std::vector<driver::PinStep> pins;
-  std::vector<driver::PathStep> path;
-};
 
 // A card on a bus of its own, where programs are run one after another.
 class Bench {
@@ -47,7 +40,7 @@ class Bench {
   std::unique_ptr<sim::Engine> engine = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
   sim::TimedBus bus{*engine, kClock, 1e9};
   driver::Card card = driver::Card::open(bus);
-  Steps steps;
+  test::Steps steps;
 };
 
 bool same(const driver::PathStep& a, const driver::PathStep& b) {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "host.hpp"
+#include "steps.hpp"
 
 namespace {
 
@@ -18,14 +19,6 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr std::uint64_t kLong = 10'000'000;
-
-class Steps : public driver::StepSink {
- public:
-  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
-  void path_step(const driver::PathStep& step) override { path.push_back(step); }
-  std::vector<driver::PinStep> pins;
-  std::vector<driver::PathStep> path;
-};
 
 bool same(const std::vector<driver::PinStep>& a, const std::vector<driver::PinStep>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const driver::PinStep& x, const driver::PinStep& y) {
@@ -54,7 +47,7 @@ class CardScenario : public testing::TestWithParam<sim::EngineKind> {
 
   std::unique_ptr<sim::Engine> card;
   Host host;
-  Steps steps;
+  test::Steps steps;
 };
 
 INSTANTIATE_TEST_SUITE_P(Engines, CardScenario, testing::Values(sim::EngineKind::kRtl, sim::EngineKind::kModel),
@@ -245,7 +238,7 @@ TEST_P(CardScenario, RefusesWholeCommands) {
 }
 
 TEST(Engines, MakeTheSameStepsInTheSameCycles) {
-  Steps steps[2];
+  test::Steps steps[2];
   std::uint64_t cycles[2];
   for (const sim::EngineKind kind : {sim::EngineKind::kRtl, sim::EngineKind::kModel}) {
     const auto index = static_cast<std::size_t>(kind == sim::EngineKind::kModel);

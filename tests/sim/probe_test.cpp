@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "commands.hpp"
+#include "steps.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/sim/engines.hpp"
@@ -24,22 +25,9 @@ using testing::HasSubstr;
 constexpr std::uint32_t kClockHz = 10'000'000;
 constexpr std::uint64_t kClocksATick = 16;
 
-class Pulses : public driver::StepSink {
- public:
-  void pin_step(const driver::PinStep& step) override { pins.push_back(step); }
-  void path_step(const driver::PathStep&) override {}
-  // Of axis 0 up to this cycle.
-  std::int64_t until(std::uint64_t cycle) const {
-    std::int64_t sum = 0;
-    for (const driver::PinStep& step : pins) sum += step.axis == 0 && step.cycle <= cycle ? step.direction : 0;
-    return sum;
-  }
-  std::vector<driver::PinStep> pins;
-};
-
 class DriverProbe : public testing::TestWithParam<sim::EngineKind> {
  protected:
-  DriverProbe() : engine(make(GetParam())), card(driver::Card::open(*engine)) { engine->set_sink(&pulses); }
+  DriverProbe() : engine(make(GetParam())), card(driver::Card::open(*engine)) { engine->set_sink(&steps); }
 
   static std::unique_ptr<sim::Engine> make(sim::EngineKind kind) {
     sim::SimulationOptions options;
@@ -82,7 +70,7 @@ class DriverProbe : public testing::TestWithParam<sim::EngineKind> {
 
   std::unique_ptr<sim::Engine> engine;
   driver::Card card;
-  Pulses pulses;
+  test::Steps steps;
   std::function<void(const driver::StreamProgress&)> look;
   std::uint64_t pressed_at = 0;  // cycle
 };
@@ -99,12 +87,12 @@ TEST_P(DriverProbe, TheEdgeIsLatchedAndTheStopIsARamp) {
   EXPECT_EQ(result.outcome, ProbeOutcome::kTripped);
   // Three clocks from the pin: two flip-flops, and the strobe.
   EXPECT_EQ(result.edge.time, pressed_at + 3);
-  EXPECT_EQ(result.edge.position[0], pulses.until(result.edge.time));
+  EXPECT_EQ(result.edge.position[0], steps.position(0, result.edge.time));
   EXPECT_GE(result.edge.position[0], 500);
   EXPECT_TRUE(result.edge.status.path_active);
   // On the way to rest half the ramp's ticks, a pulse in four.
   EXPECT_NEAR(result.rest.position[0] - result.edge.position[0], kRamp / 2 / kClocksATick / 4, 2);
-  EXPECT_EQ(result.rest.position[0], pulses.until(engine->cycles()));
+  EXPECT_EQ(result.rest.position[0], steps.position(0, engine->cycles()));
   EXPECT_FALSE(result.rest.status.busy);
   EXPECT_FALSE(result.rest.status.probed);
   // Back to the edge: the stream goes on.
@@ -122,7 +110,7 @@ TEST_P(DriverProbe, TrippedAlready) {
   EXPECT_EQ(result.outcome, ProbeOutcome::kTrippedAlready);
   EXPECT_EQ(result.edge.position[0], 10);
   EXPECT_EQ(result.rest.position[0], 10);
-  EXPECT_EQ(pulses.pins.size(), 10U);
+  EXPECT_EQ(steps.pins.size(), 10U);
 }
 
 TEST_P(DriverProbe, Missed) {
@@ -136,7 +124,7 @@ TEST_P(DriverProbe, Missed) {
   switch_at(60);
   const ProbeResult found = stream.probe(ProbeCommand{2, true}, towards(20'000, 5000));
   EXPECT_EQ(found.outcome, ProbeOutcome::kTripped);
-  EXPECT_EQ(found.edge.position[0], pulses.until(found.edge.time));
+  EXPECT_EQ(found.edge.position[0], steps.position(0, found.edge.time));
 }
 
 // More than the queues hold: what the host still sends is dropped as well.
@@ -168,7 +156,7 @@ TEST_P(DriverProbe, WhatItRefuses) {
   EXPECT_THAT(text_of(stream, ProbeCommand{}, {line(5, 1), driver::EndCommand{}}), HasSubstr("END among the paths"));
   EXPECT_THROW(stream.put(driver::WaitInputCommand{9, true, 0}), driver::ArgumentError);
   EXPECT_EQ(stream.sent(), 0U);
-  EXPECT_TRUE(pulses.pins.empty());
+  EXPECT_TRUE(steps.pins.empty());
 }
 
 TEST_P(DriverProbe, AnAbortFromElsewhereEndsIt) {
@@ -188,14 +176,14 @@ TEST_P(DriverProbe, WaitingForAnInputOutlastsAnyPatience) {
   const std::uint64_t begin = engine->cycles();
   constexpr std::uint64_t kLate = 2'000'000;  // 200 ms: 20 times the patience
   look = [this, begin](const driver::StreamProgress& progress) {
-    EXPECT_EQ(pulses.pins.size(), progress.status.waiting ? 10U : pulses.pins.size());
+    EXPECT_EQ(steps.pins.size(), progress.status.waiting ? 10U : steps.pins.size());
     if (engine->cycles() - begin > kLate) engine->set_inputs(0b0010);
   };
   stream.send({line(100, 10), feed(100), driver::WaitInputCommand{1, true, 0}, line(100, 10), feed(100)});
   stream.finish();
   EXPECT_GT(engine->cycles() - begin, kLate);
-  EXPECT_EQ(pulses.pins.size(), 20U);
-  EXPECT_GT(pulses.pins[10].cycle, begin + kLate);
+  EXPECT_EQ(steps.pins.size(), 20U);
+  EXPECT_GT(steps.pins[10].cycle, begin + kLate);
   // A time-out is no error: the input says.
   look = nullptr;
   engine->set_inputs(0);

@@ -21,6 +21,8 @@ constexpr nanoseconds kWaitTime = 60s;
 constexpr nanoseconds kLongestWait = 20ms;
 constexpr nanoseconds kReopenTime = 3s;
 constexpr std::size_t kLongestLine = 200;
+constexpr char kSerial[] = "serial line";
+constexpr char kConnection[] = "connection";
 
 // Up to the end of the line, or as much as came.
 std::string read_line(ByteStream& stream) {
@@ -39,8 +41,10 @@ std::string read_line(ByteStream& stream) {
                   line.empty() ? ": it says nothing (a bridge to a serial line wants hello=no)" : ""));
 }
 
+// A stream on which something failed is lost; one that is lost cannot be used.
 template <class Stream, class Call>
-auto dropping_at_errors(std::unique_ptr<Stream>& stream, Call call) {
+auto on_stream(std::unique_ptr<Stream>& stream, const char* name, Call call) {
+  if (!stream) throw driver::LinkError(fmt::format("the {} is lost", name));
   try {
     return call();
   } catch (const driver::LinkError&) {
@@ -54,25 +58,18 @@ auto dropping_at_errors(std::unique_ptr<Stream>& stream, Call call) {
 nanoseconds HostTimeLink::now() const { return steady_clock::now().time_since_epoch(); }
 void HostTimeLink::sleep(nanoseconds time) { std::this_thread::sleep_for(time); }
 
-// A stream on which something failed is lost.
-template <class Call>
-auto SerialLink::on_stream(Call call) {
-  if (!stream_) throw driver::LinkError("the serial line is lost");
-  return dropping_at_errors(stream_, call);
-}
-
 void SerialLink::send(const std::uint8_t* bytes, std::size_t count) {
-  on_stream([&] { stream_->write(bytes, count); });
+  on_stream(stream_, kSerial, [&] { stream_->write(bytes, count); });
 }
 
 std::size_t SerialLink::receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) {
-  return on_stream([&] { return stream_->read(bytes, room, longest); });
+  return on_stream(stream_, kSerial, [&] { return stream_->read(bytes, room, longest); });
 }
 
 void SerialLink::restart() {
   constexpr std::uint8_t kMeasured = 0x55;
   if (!stream_) stream_ = open_();
-  on_stream([&] {
+  on_stream(stream_, kSerial, [&] {
     stream_->send_break();
     stream_->write(&kMeasured, 1);
   });
@@ -89,7 +86,7 @@ StreamLink::StreamLink(Open open, std::optional<Hello> hello) : open_(std::move(
 
 void StreamLink::connect() {
   stream_ = open_();
-  if (hello_) dropping_at_errors(stream_, [this] { say_hello(); });
+  if (hello_) on_stream(stream_, kConnection, [this] { say_hello(); });
 }
 
 void StreamLink::say_hello() {
@@ -107,18 +104,12 @@ void StreamLink::say_hello() {
   throw driver::LinkError(fmt::format("{}: what answers is no `trammel serve` of this version", stream_->peer()));
 }
 
-template <class Call>
-auto StreamLink::on_stream(Call call) {
-  if (!stream_) throw driver::LinkError("the connection is lost");
-  return dropping_at_errors(stream_, call);
-}
-
 void StreamLink::send(const std::uint8_t* bytes, std::size_t count) {
-  on_stream([&] { stream_->write(bytes, count); });
+  on_stream(stream_, kConnection, [&] { stream_->write(bytes, count); });
 }
 
 std::size_t StreamLink::receive(std::uint8_t* bytes, std::size_t room, nanoseconds longest) {
-  return on_stream([&] { return stream_->read(bytes, room, longest); });
+  return on_stream(stream_, kConnection, [&] { return stream_->read(bytes, room, longest); });
 }
 
 void StreamLink::restart() {

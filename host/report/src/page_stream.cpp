@@ -51,20 +51,22 @@ void PageStream::varint(std::uint64_t value) {
   append(bytes, size);
 }
 
+void PageStream::little_endian(std::uint64_t bits, std::size_t size) {
+  unsigned char bytes[sizeof bits];
+  for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<unsigned char>(bits >> (8 * i));
+  append(bytes, size);
+}
+
 void PageStream::number(float value) {
   std::uint32_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
-  unsigned char bytes[sizeof bits];
-  for (std::size_t i = 0; i < sizeof bits; ++i) bytes[i] = static_cast<unsigned char>(bits >> (8 * i));
-  append(bytes, sizeof bytes);
+  little_endian(bits, sizeof bits);
 }
 
 void PageStream::number(double value) {
   std::uint64_t bits = 0;
   std::memcpy(&bits, &value, sizeof bits);
-  unsigned char bytes[sizeof bits];
-  for (std::size_t i = 0; i < sizeof bits; ++i) bytes[i] = static_cast<unsigned char>(bits >> (8 * i));
-  append(bytes, sizeof bytes);
+  little_endian(bits, sizeof bits);
 }
 
 void PageStream::drain(int flush) {

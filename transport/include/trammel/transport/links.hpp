@@ -38,9 +38,6 @@ class SerialLink final : public HostTimeLink {
   std::chrono::nanoseconds time_of(std::size_t bytes) const override;
 
  private:
-  template <class Call>
-  auto on_stream(Call call);
-
   Open open_;
   std::unique_ptr<SerialStream> stream_;  // nullptr: lost
   std::uint32_t baud_;
@@ -78,8 +75,6 @@ class StreamLink final : public driver::ByteLink {
   void say_hello();
   void wait(std::chrono::nanoseconds time);
   void await(const std::string& text);
-  template <class Call>
-  auto on_stream(Call call);
 
   Open open_;
   std::optional<Hello> hello_;

@@ -42,6 +42,7 @@ class PageStream {
  private:
   struct Deflate;
   void append(const void* data, std::size_t size);
+  void little_endian(std::uint64_t bits, std::size_t size);
   void drain(int flush);
   void write_element();
 
