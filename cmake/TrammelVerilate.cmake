@@ -22,12 +22,19 @@ target_compile_options(trammel_verilated PRIVATE -w)
 target_include_directories(trammel_verilated SYSTEM PUBLIC "${VERILATOR_ROOT}/include" "${VERILATOR_ROOT}/include/vltstd")
 target_link_libraries(trammel_verilated PUBLIC Threads::Threads ZLIB::ZLIB)
 
+# What Verilator writes is not the project's: no warnings from it, and no sanitizers in it, with which each card takes minutes
+# to compile.
+set(TRAMMEL_VERILATED_OPTIONS -w)
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=")
+  list(APPEND TRAMMEL_VERILATED_OPTIONS -fno-sanitize=all)
+endif()
+
 # Its headers, compiled once for each level at which what Verilator writes is compiled: half the time of compiling a block.
 set(TRAMMEL_VERILATED_LEVELS 0 1 3)
 file(CONFIGURE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/verilated_headers.cpp" CONTENT "// Headers alone.\n")
 foreach(level IN LISTS TRAMMEL_VERILATED_LEVELS)
   add_library(trammel_verilated_headers_${level} OBJECT "${CMAKE_CURRENT_BINARY_DIR}/verilated_headers.cpp")
-  target_compile_options(trammel_verilated_headers_${level} PRIVATE -w -O${level})
+  target_compile_options(trammel_verilated_headers_${level} PRIVATE ${TRAMMEL_VERILATED_OPTIONS} -O${level})
   target_link_libraries(trammel_verilated_headers_${level} PRIVATE trammel_verilated)
   target_precompile_headers(trammel_verilated_headers_${level} PRIVATE <verilated.h>)
 endforeach()
@@ -63,8 +70,7 @@ function(trammel_verilate target)
     DEPENDS ${files} ${harness} "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" "${join}"
     COMMENT "Verilating ${A_TOP} for ${target}" VERBATIM COMMAND_EXPAND_LISTS)
   add_library(${model} OBJECT EXCLUDE_FROM_ALL "${code}")
-  # What Verilator writes is not the project's: no warnings from it.
-  target_compile_options(${model} PRIVATE -w -O${A_LEVEL})
+  target_compile_options(${model} PRIVATE ${TRAMMEL_VERILATED_OPTIONS} -O${A_LEVEL})
   target_include_directories(${model} PRIVATE "${PROJECT_SOURCE_DIR}/verif/lockstep" "${dir}")
   target_link_libraries(${model} PRIVATE trammel_verilated)
   target_precompile_headers(${model} REUSE_FROM trammel_verilated_headers_${A_LEVEL})
@@ -175,6 +181,9 @@ function(trammel_add_seeded_bug name bug)
       message(FATAL_ERROR "seeded bug ${name}/${bug}: unknown argument ${ARGV${i}}")
     endif()
   endforeach()
+  if(NOT TRAMMEL_SEEDED_BUGS)
+    return()
+  endif()
   add_executable(${target} ${L_INSIDE})
   # A seeded bug may leave a signal unused: that warning must not keep the lockstep from judging it. The sources proper are
   # linted by the block's own lockstep, with every warning an error. -O0: compiling takes a quarter of the time of -O1, and

@@ -1,5 +1,5 @@
-// Position streaming on the golden model, by closed forms: every step of 30,000 periods (100,000 under TRAMMEL_LONG) against the targets and the
-// clock, late periods, missing ones, what is refused.
+// Position streaming on the golden model, by closed forms: every step of 30,000 periods (100,000 under TRAMMEL_LONG)
+// against the targets and the clock, late periods, missing ones, what is refused.
 #include "trammel/driver/position_stream.hpp"
 
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@
 #include "posted_bus.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/stream.hpp"
+#include "trammel/driver/trigonometry.hpp"
 #include "trammel/sim/engine.hpp"
 
 namespace trammel::driver {
@@ -24,7 +25,6 @@ namespace field = card_map::field;
 using Positions = PositionStream::Positions;
 
 constexpr std::int64_t kPulse = PositionStream::kPulse;
-constexpr double kPi = 3.14159265358979323846;
 
 std::int64_t fraction(double pulses) { return std::llround(pulses * static_cast<double>(kPulse)); }
 double pulses(std::int64_t position) { return static_cast<double>(position) / static_cast<double>(kPulse); }

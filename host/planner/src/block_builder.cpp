@@ -14,7 +14,6 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kShaperShare = 0.95;  // of the rate at which the shaper makes pulses without a pause
 // One pulse less than the counters hold, for the rounding.
 constexpr double kMostPulses = static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);
@@ -157,7 +156,7 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
                   fmt::format("{}{:.10g} is beyond the card's 32-bit position counter ({:.10g} steps/mm)", letter, mm,
                               limits.steps_per_mm));
   }
-  const bool later = (motion_.later >> axis & 1U) != 0;
+  const bool later = (unsigned{motion_.later} >> axis & 1U) != 0;
   if (!later && (mm < limits.lowest - kSoftLimitSlack || mm > limits.highest + kSoftLimitSlack)) {
     const bool low = mm < limits.lowest;
     return refuse(gcode::ErrorCode::kSoftLimit,

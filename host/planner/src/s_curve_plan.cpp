@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -14,7 +13,6 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kNoCap = -1;
 
 // A stretch between two places without acceleration. Ramps that start there and the caps of the tree below `cap` are
