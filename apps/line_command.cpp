@@ -330,8 +330,8 @@ void add_line_command(CLI::App& app) {
       ->required()
       ->type_name("X,Y,...");
   auto* velocity =
-      command->add_option("--velocity", options->velocity, "lines a second: the paper's v")->check(positive());
-  auto* duration = command->add_option("--duration", options->duration, "seconds")->check(positive());
+      command->add_option("--velocity", options->velocity, "lines a second, the second paper's v")->check(positive());
+  auto* duration = command->add_option("--duration", options->duration, "time of the line, seconds")->check(positive());
   auto* speed =
       command->add_option("--speed", options->speed, "pulses/s along the path (default 1000)")->check(positive());
   velocity->excludes(duration)->excludes(speed);

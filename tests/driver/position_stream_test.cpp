@@ -12,6 +12,7 @@
 #include "posted_bus.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/stream.hpp"
+#include "trammel/driver/trigonometry.hpp"
 #include "trammel/sim/engine.hpp"
 
 namespace trammel::driver {
@@ -23,7 +24,6 @@ namespace field = card_map::field;
 using Positions = PositionStream::Positions;
 
 constexpr std::int64_t kPulse = PositionStream::kPulse;
-constexpr double kPi = 3.14159265358979323846;
 
 std::int64_t fraction(double pulses) { return std::llround(pulses * static_cast<double>(kPulse)); }
 double pulses(std::int64_t position) { return static_cast<double>(position) / static_cast<double>(kPulse); }
