@@ -134,12 +134,23 @@ TEST_F(ClientsTest, SilenceAndRubbish) {
   {
     const ClientEnd silent(*server_, listener_);
     until_gone();
-    EXPECT_THAT(notes_, HasSubstr("nothing came for 0.1 s"));
+    EXPECT_THAT(notes_, HasSubstr("neither a hello nor a request in 0.1 s"));
+  }
+  notes_.clear();
+  {
+    ClientEnd slow(*server_, listener_);
+    const auto begun = std::chrono::steady_clock::now();
+    while (server_->has_client() && std::chrono::steady_clock::now() - begun < 1s) {
+      slow.write(&frames::kEnd, 1);
+      for (int i = 0; i < 5 && server_->has_client(); ++i) server_->turn();
+    }
+    EXPECT_THAT(notes_, HasSubstr("neither a hello nor a request in 0.1 s")) << "bytes that say nothing keep a place";
   }
   {
     StreamLink link(opener(), StreamLink::Hello{"secret"});
     driver::FrameBus bus(link);
     until_gone();
+    EXPECT_THAT(notes_, HasSubstr("nothing came for 0.1 s"));
     EXPECT_EQ(engine_->read(reg::kHold), 1U) << "who falls silent is gone";
     driver::Access magic = driver::read_of(reg::kMagic);
     EXPECT_EQ(bus.transfer(&magic, 1), 1U) << "it comes back by itself";
