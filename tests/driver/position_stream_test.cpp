@@ -126,7 +126,8 @@ TEST(PositionStream, FollowsSines) {
   const std::size_t periods = kEmulated ? 5'000 : std::getenv("TRAMMEL_LONG") != nullptr ? 100'000 : 30'000;
   Host host;
   for (std::size_t i = 1; i <= periods; ++i) {
-    const auto sent = host.send(sines(static_cast<double>(i) / periods, static_cast<double>(periods) / 2'500), 1000);
+    const auto sent = host.send(
+        sines(static_cast<double>(i) / static_cast<double>(periods), static_cast<double>(periods) / 2'500), 1000);
     ASSERT_EQ(sent.stale_ticks, 0U) << i;
   }
   const Positions end = host.stream->finish();

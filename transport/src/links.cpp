@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "trammel/driver/errors.hpp"
 #include "trammel/frames/stuffing.hpp"
@@ -19,7 +20,6 @@ constexpr nanoseconds kHelloTime = 5s;
 // What a simulated card may take for one wait; long ones go in pieces.
 constexpr nanoseconds kWaitTime = 60s;
 constexpr nanoseconds kLongestWait = 20ms;
-constexpr nanoseconds kReopenTime = 3s;
 constexpr std::size_t kLongestLine = 200;
 constexpr nanoseconds kDrainTime = 200ms;
 constexpr const char* kIsItThere = "is that its port?";
@@ -98,7 +98,8 @@ nanoseconds SerialLink::time_of(std::size_t bytes) const {
   return nanoseconds(static_cast<std::int64_t>(10'000'000'000 / baud_ + 1) * static_cast<std::int64_t>(bytes));
 }
 
-StreamLink::StreamLink(Open open, std::optional<Hello> hello) : open_(std::move(open)), hello_(std::move(hello)) {
+StreamLink::StreamLink(Open open, std::optional<Hello> hello, nanoseconds reopen)
+    : open_(std::move(open)), hello_(std::move(hello)), reopen_(reopen) {
   connect();
 }
 
@@ -140,13 +141,14 @@ void StreamLink::restart() {
     }
     return;
   }
-  for (const auto until = steady_clock::now() + kReopenTime;;) {
+  for (const auto until = steady_clock::now() + (std::exchange(given_up_, true) ? 0ns : reopen_);;) {
     try {
       connect();
+      given_up_ = false;
       ++reconnections_;
       return;
     } catch (const driver::LinkError&) {
-      if (steady_clock::now() > until) throw;
+      if (steady_clock::now() >= until) throw;
     }
     std::this_thread::sleep_for(50ms);
   }
