@@ -58,13 +58,13 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::
       range);
 }
 
-void EngineChoice::add_to(CLI::App& command) {
+void EngineChoice::add_to(CLI::App& command, const std::string& default_clock) {
   command
       .add_option("--engine", engine,
                   "rtl: the Verilated card in lockstep with the golden model; model: the model alone")
       ->check(CLI::IsMember({"rtl", "model"}))
       ->capture_default_str();
-  command.add_option("--clock", clock_hz, "clock of the simulated card")
+  command.add_option("--clock", clock_hz, fmt::format("clock of the simulated card (default: {})", default_clock))
       ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
       ->type_name("HZ");
   command.add_option("--trace", trace, "waveform of the card as FST file (engine rtl only)")->type_name("FILE");

@@ -29,7 +29,8 @@ struct EngineChoice {
   std::optional<std::string> trace;         // the option's file; who writes it is told a name by options()
   std::optional<std::string> trace_window;  // FROM:TO
 
-  void add_to(CLI::App& command);
+  // `default_clock` says what options() gets.
+  void add_to(CLI::App& command, const std::string& default_clock = "1000000");
   // Throws UsageError where something was chosen: the card is another.
   void refuse_with(const CardChoice& card) const;
   // The engine's options for a card of `axes` (1 to 8); `rtl_clock` and `model_clock` are the clocks, in Hz, where none

@@ -107,15 +107,20 @@ void refuse_overlaps(const std::vector<OperatorEvent>& events) {
 }  // namespace
 
 void MotionChoice::add_to(CLI::App& command) {
-  command.add_option("--override", percent, "share of the planned speed, from the start on (default: 100)")
+  command
+      .add_option("--override", percent,
+                  "percent of the planned speed, from the start on; 0 to 100, or to 100 times the machine file's "
+                  "max_override (default: 100)")
       ->type_name("PERCENT");
   command
-      .add_option("--rapid-override", rapid_percent, "share of the planned speed of rapids, 0 to 100 (default: 100)")
+      .add_option("--rapid-override", rapid_percent, "percent of the planned speed of rapids, 0 to 100 (default: 100)")
       ->type_name("PERCENT");
   command.add_option("--override-at", override_at, "change the override at a time of the card (repeatable)")
       ->type_name("SECONDS:PERCENT")
       ->allow_extra_args(false);
-  command.add_option("--hold-at", hold_at, "hold at a time of the card, for so long from the request on (repeatable)")
+  command
+      .add_option("--hold-at", hold_at,
+                  "hold at a time of the card, for so many seconds from the request on (repeatable)")
       ->type_name("SECONDS:DURATION")
       ->allow_extra_args(false);
   command
@@ -125,13 +130,18 @@ void MotionChoice::add_to(CLI::App& command) {
                               sim::kPins - 1))
       ->type_name("SECONDS:INPUT:LEVEL")
       ->allow_extra_args(false);
-  command.add_option("--feed-scale", feed_scale, "factor on every programmed feed (default: 1)")
+  command.add_option("--feed-scale", feed_scale, "factor on every programmed feed, 0.001 to 1000 (default: 1)")
       ->check(between(0.001, 1000, "a factor"))
       ->type_name("FACTOR");
-  command.add_option("--limit-bus", bytes_per_second, "bytes a second of the bus, 4 a word, both ways, in card time")
+  command
+      .add_option(
+          "--limit-bus", bytes_per_second,
+          "the bus carries so many bytes a second of card time, 4 a word, both ways together (default: no limit)")
       ->check(between(1, 1e9, "bytes a second"))
       ->type_name("BYTES_PER_SECOND");
-  command.add_option("--from-line", first_line, "begin at this line; those before it set modes and position alone")
+  command
+      .add_option("--from-line", first_line,
+                  "begin at this line; those before it set modes, offsets, position and outputs alone")
       ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()).description(""))
       ->type_name("N");
   command
@@ -146,7 +156,8 @@ void MotionChoice::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"trapezoid", "s-curve"}).description(""))
       ->type_name("PROFILE");
   command
-      .add_option("--accept", accept, "leave out the lines that begin with this M word, as those of heaters and fans")
+      .add_option("--accept", accept,
+                  "leave out the lines that begin with this M word, as those of heaters and fans (repeatable)")
       ->type_name("M...");
   command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
   command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");

@@ -33,7 +33,7 @@ namespace {
 // A simulated card at 1 MHz runs programs faster than life; only the resolution in time differs from the real clock.
 constexpr std::uint32_t kSimulatedClock = 1'000'000;
 
-struct Options {
+struct RunArguments {
   std::string program;
   CardChoice card;
   MachineChoice machine;
@@ -52,7 +52,7 @@ struct Options {
   bool stream = false;
 };
 
-void refuse_contradictions(const Options& options) {
+void refuse_contradictions(const RunArguments& options) {
   const auto refuse = [](const char* option, bool given, const char* why) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
@@ -74,7 +74,7 @@ void refuse_contradictions(const Options& options) {
   refuse("--stream", options.stream, kWhy);
 }
 
-void refuse_rapids_at_zero(const Options& options, const Operation& operation, const run::Plan& plan) {
+void refuse_rapids_at_zero(const RunArguments& options, const Operation& operation, const run::Plan& plan) {
   if (operation.rapid_percent != 0) return;
   if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   if (plan.rapids == 0) return;
@@ -82,7 +82,7 @@ void refuse_rapids_at_zero(const Options& options, const Operation& operation, c
 }
 
 // A list of steps, a picture and a time of the operator's need the pins and the clocks of a simulated card.
-void refuse_what_needs_the_simulation(const Options& options) {
+void refuse_what_needs_the_simulation(const RunArguments& options) {
   const CardChoice& card = options.card;
   options.engine.refuse_with(card);
   refuse_with_card(card, "--steps", options.steps.has_value());
@@ -97,35 +97,55 @@ void refuse_what_needs_the_simulation(const Options& options) {
   if (options.check) throw UsageError("--check: nothing runs, so it takes no --card");
 }
 
-void execute_on_card(const Options& options, const transport::CardUrl& url) {
-  refuse_what_needs_the_simulation(options);
-  Outputs outputs;
-  Output* const json = outputs.add("--json", options.json);
-  Output* const parameters = outputs.add("--parameters", options.parameters);
-  outputs.keep("the program", options.program);
-  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
-  outputs.check();
-  const machine::Machine machine = options.machine.load();
-  for (const std::string& text : jerk_warnings(machine)) tell("warning", text);
+void warn(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) tell("warning", text);
+}
+
+// What is the same on every card; the files are still missing.
+RunOptions run_options(const RunArguments& options, const machine::Machine& machine) {
   RunOptions run;
+  run.plot = options.plot.has_value();
   run.progress = options.progress;
   run.stream = options.stream;
   run.settings = options.motion.settings();
   if (options.parameters) run.settings.reader.parameters = load_parameters(*options.parameters);
   run.most_percent = 100 * machine.motion.max_override;
   run.operation = options.motion.operation(run.most_percent);
+  return run;
+}
+
+// From its beginning, each time. `file` must outlive them.
+run::ProgramLines lines_of(const ProgramFile& file) {
+  return [&file]() -> std::unique_ptr<gcode::LineSource> {
+    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
+  };
+}
+
+// Refuses to write over what the run reads.
+void keep_inputs(const RunArguments& options, Outputs& outputs) {
+  outputs.keep("the program", options.program);
+  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
+  outputs.check();
+}
+
+void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
+  refuse_what_needs_the_simulation(options);
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  Output* const parameters = outputs.add("--parameters", options.parameters);
+  keep_inputs(options, outputs);
+  const machine::Machine machine = options.machine.load();
+  warn(jerk_warnings(machine));
+  RunOptions run = run_options(options, machine);
   run.planned = [&](const run::Plan& plan) {
     refuse_rapids_at_zero(options, run.operation, plan);
     outputs.open();
-    for (const std::string& text : feed_warnings(plan.file, plan.feeds_not_reached)) tell("warning", text);
+    warn(feed_warnings(plan.file, plan.feeds_not_reached));
   };
   const ProgramFile file(options.program, options.stream);
-  const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
-    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
-  };
   CardRunResult result;
   with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
-    result = run_on_card(lines, machine, card, connection, run);
+    result = run_on_card(lines_of(file), machine, card, connection, run);
   });
   result.card = url.text;
   if (parameters != nullptr) parameters->write(parameters_text(result.outcome.parameters));
@@ -136,39 +156,34 @@ void execute_on_card(const Options& options, const transport::CardUrl& url) {
 void check(const run::ProgramLines& lines, const MachineChoice& choice, const machine::Machine& machine,
            const planner::CardLimits& card, const run::RunSettings& settings, Outputs& outputs, Output* json) {
   const CheckResult result = check_program(lines, machine, card, settings);
-  for (const std::string& text : feed_warnings(result.plan.file, result.plan.feeds_not_reached)) tell("warning", text);
+  warn(feed_warnings(result.plan.file, result.plan.feeds_not_reached));
   outputs.open();
   if (json != nullptr) json->write(json_text(result));
   outputs.commit(summary(result) + choice.line());
 }
 
-void execute(const Options& options) {
+void run_in_simulation(const RunArguments& options) {
   refuse_contradictions(options);
-  if (const auto url = options.card.url()) return execute_on_card(options, *url);
+  if (const auto url = options.card.url()) return run_on_card(options, *url);
   Outputs outputs;
-  RunOptions run;
   Output* const json = outputs.add("--json", options.json);
   Output* const plot = outputs.add("--plot", options.plot);
-  run.report = outputs.add("--report", options.report);
+  Output* const report_file = outputs.add("--report", options.report);
   Output* const trace = outputs.add("--trace", options.engine.trace, true);
-  run.steps = outputs.add("--steps", options.steps);
-  run.path_steps = outputs.add("--path-steps", options.path_steps);
-  run.outputs = outputs.add("--outputs", options.outputs);
-  run.plot = options.plot.has_value();
-  run.progress = options.progress;
-  run.stream = options.stream;
-  run.settings = options.motion.settings();
-  if (options.parameters) run.settings.reader.parameters = load_parameters(*options.parameters);
+  Output* const steps = outputs.add("--steps", options.steps);
+  Output* const path_steps = outputs.add("--path-steps", options.path_steps);
+  Output* const changes = outputs.add("--outputs", options.outputs);
   Output* const parameters =
       outputs.add("--parameters", options.check ? std::optional<std::string>() : options.parameters);
-  outputs.keep("the program", options.program);
-  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
-  outputs.check();
+  keep_inputs(options, outputs);
 
   const machine::Machine machine = options.machine.load();
-  for (const std::string& text : jerk_warnings(machine)) tell("warning", text);
-  run.most_percent = 100 * machine.motion.max_override;
-  run.operation = options.motion.operation(run.most_percent);
+  warn(jerk_warnings(machine));
+  RunOptions run = run_options(options, machine);
+  run.report = report_file;
+  run.steps = steps;
+  run.path_steps = path_steps;
+  run.outputs = changes;
   const auto axes = static_cast<unsigned>(machine.motors());
   sim::SimulationOptions engine =
       options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);
@@ -176,24 +191,20 @@ void execute(const Options& options) {
     run.report_window = window_of("--report-window", *options.report_window, engine.clock_hz);
   }
   const ProgramFile file(options.program, options.stream);
-  const auto lines = [&file]() -> std::unique_ptr<gcode::LineSource> {
-    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
-  };
+  const run::ProgramLines lines = lines_of(file);
   if (options.check) return check(lines, options.machine, machine, limits_of(engine), run.settings, outputs, json);
   run.planned = [&](const run::Plan& plan) {
     refuse_rapids_at_zero(options, run.operation, plan);
     outputs.open();
     if (trace != nullptr) engine.trace->path = trace->path_to_write();
-    for (const std::string& text : feed_warnings(plan.file, plan.feeds_not_reached)) tell("warning", text);
+    warn(feed_warnings(plan.file, plan.feeds_not_reached));
     if (const auto text = long_run_note(engine, plan.seconds)) tell("note", *text);
     if (engine.axes != axes)
       tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
   };
   std::unique_ptr<report::ReportWriter> report;
   const RunResult result = run_program(lines, machine, engine, run, &report);
-  if (options.stream) {
-    for (const std::string& text : feed_warnings(result.program, result.feeds_not_reached)) tell("warning", text);
-  }
+  if (options.stream) warn(feed_warnings(result.program, result.feeds_not_reached));
   if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
   if (json != nullptr) json->write(json_text(result));
   if (parameters != nullptr) parameters->write(parameters_text(result.parameters));
@@ -205,13 +216,13 @@ void execute(const Options& options) {
 }  // namespace
 
 void add_run_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunArguments>();
   CLI::App* command =
       app.add_subcommand("run", "run a G-code program on the simulated card, or on one outside (--card)");
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
   options->machine.add_to(*command);
   options->card.add_to(*command);
-  options->engine.add_to(*command);
+  options->engine.add_to(*command, "1000000 with engine rtl, the machine file's with model");
   options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
@@ -236,7 +247,7 @@ void add_run_command(CLI::App& app) {
   command->add_flag("--stream", options->stream,
                     "read the program while it runs: an error in it is a stop on the way, status 1");
   command->footer("One FILE may be '-', standard output; what people read then goes to standard error.");
-  command->callback([options] { execute(*options); });
+  command->callback([options] { run_in_simulation(*options); });
 }
 
 }  // namespace trammel::app

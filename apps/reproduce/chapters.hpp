@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "page.hpp"
+#include "paper_lines.hpp"
 #include "trammel/chart/chart.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/interpolation/any_interpolator.hpp"
@@ -30,23 +31,6 @@ void one_shot_waves(Page& page, const Progress& progress);
 void one_shot_motor(Page& page, const Progress& progress);
 void one_shot_bound(Page& page, const Progress& progress);
 void one_shot_card(Page& page, const Progress& progress);
-
-// Lines 1 to 8 of the second paper: x and y of the start, x and y of the end.
-inline constexpr std::array<std::array<std::int64_t, 4>, 8> kPaperLines{{{0, 0, 20, 40},
-                                                                         {10, 10, 40, 20},
-                                                                         {10, -10, 40, -20},
-                                                                         {-10, 10, -40, 20},
-                                                                         {-10, -10, -40, -40},
-                                                                         {-10, -5, 30, 20},
-                                                                         {7, -2, -32, -38},
-                                                                         {-10, 20, 30, 20}}};
-// 10 MHz and 5,000 lines a second.
-inline constexpr std::uint64_t kPaperClocks = 2000;
-
-inline interpolation::Line paper_line(std::size_t index) {
-  const auto& l = kPaperLines[index];
-  return interpolation::make_line({l[0], l[1]}, {l[2], l[3]});
-}
 
 // Perpendicular distance from a line of length > 0.
 inline double distance(const interpolation::Line& line, const interpolation::Position& p) {

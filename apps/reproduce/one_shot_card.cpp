@@ -167,7 +167,7 @@ struct LinesOnCard {
 };
 
 void run_line_of_paper(std::size_t i, LinesOnCard& sums) {
-  const Line line = paper_line(i);
+  const Line line = kPaperLines[i].line();
   const CardRun run = run_on_card(line, false);
   const Track track = track_of_card(line, run);
   const Track exact = track_of(Method::kOneShot, line);
@@ -284,7 +284,7 @@ void standstill(Page& page) {
   unsigned same = 0;
   std::uint64_t longest = 0;
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    const Line line = paper_line(i);
+    const Line line = kPaperLines[i].line();
     const CardRun held = run_on_card(line, true);
     const Track straight = track_of_card(line, run_on_card(line, false));
     const Track ramped = track_of_card(line, held);

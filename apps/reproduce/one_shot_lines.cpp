@@ -29,7 +29,7 @@ double largest_distance(const Line& line, const Track& track) {
 }
 
 chart::Panel line_panel(std::size_t index, const Track& track, const std::string& label) {
-  const Line line = paper_line(index);
+  const Line line = kPaperLines[index].line();
   const auto dx = static_cast<double>(line.end[0] - line.start[0]);
   const auto dy = static_cast<double>(line.end[1] - line.start[1]);
   const chart::Point normal{-dy / std::hypot(dx, dy), dx / std::hypot(dx, dy)};
@@ -54,18 +54,6 @@ chart::Panel line_panel(std::size_t index, const Track& track, const std::string
 
 namespace {
 
-constexpr std::array<Method, 4> kMethods{Method::kOneShot, Method::kOneShotZero, Method::kDivider, Method::kSteer};
-// Exact arithmetic, 2,000 clocks a line; pulses, in the order of kMethods.
-constexpr std::array<std::array<double, 4>, 8> kErrors{{{0.447, 0.447, 0.447, 0.894},
-                                                        {0.316, 0.632, 0.949, 0.632},
-                                                        {0.316, 0.632, 0.949, 0.632},
-                                                        {0.316, 0.632, 0.949, 0.632},
-                                                        {0, 0, 0, 0.707},
-                                                        {0.636, 0.742, 0.742, 0.742},
-                                                        {0.678, 0.678, 0.735, 0.678},
-                                                        {0, 0, 0, 0}}};
-constexpr std::array<std::size_t, 8> kSteerSteps{60, 40, 40, 40, 60, 65, 75, 40};
-
 void figure_three(Page& page) {
   page.heading("Figure 3: trajectories of Lines 1 to 8");
   Csv csv("line,method,clock_or_step,x,y,distance");
@@ -77,22 +65,22 @@ void figure_three(Page& page) {
   unsigned steer_steps = 0;
   double farthest = 0;
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    const Line line = paper_line(i);
+    const Line line = kPaperLines[i].line();
     std::vector<std::string> row{std::to_string(i + 1)};
-    for (std::size_t m = 0; m < kMethods.size(); ++m) {
-      const Track track = track_of(kMethods[m], line);
+    for (std::size_t m = 0; m < kPaperMethods.size(); ++m) {
+      const Track track = track_of(kPaperMethods[m], line);
       const double largest = largest_distance(line, track);
-      equal += std::fabs(largest - kErrors[i][m]) < 0.0005;
+      equal += std::fabs(largest - kPaperLines[i].errors[m]) < 0.0005;
       row.push_back(fmt::format("{:.3f}", largest));
       for (const TrackPoint& point : track) {
-        csv.row("{},{},{},{},{},{:.4f}", i + 1, info(kMethods[m]).name, point.time, point.position[0],
+        csv.row("{},{},{},{},{},{:.4f}", i + 1, info(kPaperMethods[m]).name, point.time, point.position[0],
                 point.position[1], distance(line, point.position));
       }
-      if (kMethods[m] == Method::kSteer) {
+      if (kPaperMethods[m] == Method::kSteer) {
         row.back() += fmt::format(" ({})", track.size() - 1);
-        steer_steps += track.size() - 1 == kSteerSteps[i];
+        steer_steps += track.size() - 1 == kPaperLines[i].steer_steps;
       }
-      if (kMethods[m] != Method::kOneShot) continue;
+      if (kPaperMethods[m] != Method::kOneShot) continue;
       ends += track.back().position == line.end;
       inside += largest < 1;
       farthest = std::max(farthest, largest);
@@ -118,7 +106,7 @@ void figure_three(Page& page) {
 
 void figure_five(Page& page) {
   page.heading("Figure 5: interpolation operations");
-  const auto walk = make_interpolator(Method::kPointByPoint, paper_line(0));
+  const auto walk = make_interpolator(Method::kPointByPoint, kPaperLines[0].line());
   const std::uint64_t operations = walk.total_time();
   const driver::OneShotPlan plan = driver::plan_line_clocks(paper_card(), {20, 40}, kPaperClocks);
   page.pass("Figure 5", "60 operations point by point, 1 for one-shot",
@@ -128,7 +116,7 @@ void figure_five(Page& page) {
   Csv csv("line,point_by_point,one_shot");
   std::vector<chart::Point> operations_of_line;  // the operation's number over the pulses before it
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    const std::uint64_t count = make_interpolator(Method::kPointByPoint, paper_line(i)).total_time();
+    const std::uint64_t count = make_interpolator(Method::kPointByPoint, kPaperLines[i].line()).total_time();
     csv.row("{},{},1", i + 1, count);
   }
   for (std::uint64_t k = 1; k <= operations; ++k)
@@ -188,7 +176,8 @@ void limits(Page& page) {
       fmt::format("Line 1 needs 200,000 pulses/s in y: refused at a limit of 100,000, or slowed to {} clocks", slowed),
       refused && slowed == 2 * kPaperClocks);
   split_line(page);
-  const std::uint64_t slow = make_interpolator(Method::kOneShot, paper_line(0), {10'000'000, 1, 60}).total_time();
+  const std::uint64_t slow =
+      make_interpolator(Method::kOneShot, kPaperLines[0].line(), {10'000'000, 1, 60}).total_time();
   page.corrected("v an integer", "v, an integer, in lines a second: a line lasts 1 s at most",
                  fmt::format("v as a ratio of integers: Line 1 at v = 1/60 lasts {} clocks, one minute", slow),
                  slow == 600'000'000);
@@ -199,7 +188,7 @@ void error_meant(Page& page) {
   std::vector<std::vector<std::string>> rows{{"line", "along the shorter axis", "perpendicular"}};
   bool smaller = true;
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    const Line line = paper_line(i);
+    const Line line = kPaperLines[i].line();
     const double perpendicular = largest_distance(line, track_of(Method::kOneShot, line));
     const auto dx = static_cast<double>(line.end[0] - line.start[0]);
     const auto dy = static_cast<double>(line.end[1] - line.start[1]);
@@ -258,7 +247,7 @@ void rivals(Page& page) {
   for (const Method method : methods) rows[0].push_back(std::string(info(method).name));
   bool ends = true;
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    const Line line = paper_line(i);
+    const Line line = kPaperLines[i].line();
     std::vector<std::string> row{std::to_string(i + 1)};
     for (const Method method : methods) {
       const Track track = track_of(method, line);
@@ -290,7 +279,7 @@ void principle(Page& page) {
   unsigned negative = 0;
   bool card_agrees = true;
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    const Line line = paper_line(i);
+    const Line line = kPaperLines[i].line();
     const std::int64_t px = line.end[0] - line.start[0];
     const std::int64_t py = line.end[1] - line.start[1];
     const std::int64_t vx = kVelocity * px;

@@ -57,7 +57,7 @@ struct Unevenness {
 Unevenness unevenness(Method method) {
   Unevenness worst;
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    const Track track = track_of(method, paper_line(i));
+    const Track track = track_of(method, kPaperLines[i].line());
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const std::vector<double> times = pulse_times(track, axis, 1);
       if (times.size() < 2) continue;

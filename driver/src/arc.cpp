@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <stdexcept>
 
+#include "arc_refusal.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/increment.hpp"
 #include "trammel/driver/trigonometry.hpp"
@@ -34,8 +34,6 @@ struct Conic {
 
   Int128 deviation(const Point& p) const { return Int128(a) * p.x * p.x + Int128(b) * p.y * p.y - n; }
 };
-
-[[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument("arc: " + why); }
 
 std::int64_t square_root(Int128 value) {
   std::int64_t root = 0;
@@ -76,7 +74,7 @@ std::int64_t quadrant_changes(const Point& start, const Point& end, bool clockwi
   std::int64_t changes = (direction * (quadrant(end) - quadrant(start)) + 4) % 4;
   if (changes == 0 && ahead > 2) changes = 4;  // the same quadrant, but behind
   changes += 4 * more;
-  if (changes > kMaxQuadrants) refuse(fmt::format("{} quadrants, at most {} fit", changes, kMaxQuadrants));
+  if (changes > kMaxQuadrants) refuse_arc(fmt::format("{} quadrants, at most {} fit", changes, kMaxQuadrants));
   return changes > 0 ? changes : 0;
 }
 
@@ -241,8 +239,8 @@ std::uint64_t path_length(const Conic& conic, const Point& start, const Point& e
   const std::uint64_t length = !eight            ? summed_length(conic, start, end, clockwise, changes)
                                : conic.step != 1 ? walked_length<std::int64_t>(conic, start, end, clockwise, changes)
                                                  : walked_length<Int128>(conic, start, end, clockwise, changes);
-  if (length == 0) refuse("start and end are the same point and the sweep is no full turn: no step to make");
-  if (length >= kCountLimit) refuse(fmt::format("{} steps, fewer than 2^40 fit", length));
+  if (length == 0) refuse_arc("start and end are the same point and the sweep is no full turn: no step to make");
+  if (length >= kCountLimit) refuse_arc(fmt::format("{} steps, fewer than 2^40 fit", length));
   return length;
 }
 
@@ -250,10 +248,10 @@ template <class Geometry>
 void check_common(const Geometry& geometry) {
   if (geometry.axis_x >= card_map::kMaxAxes || geometry.axis_y >= card_map::kMaxAxes ||
       geometry.axis_x == geometry.axis_y) {
-    refuse(fmt::format("axes {} and {} span no plane", geometry.axis_x, geometry.axis_y));
+    refuse_arc(fmt::format("axes {} and {} span no plane", geometry.axis_x, geometry.axis_y));
   }
   // The upper bound keeps the conversion to turns within range; more than 65,535 quadrants are refused later.
-  if (!(geometry.sweep >= 0 && geometry.sweep < 1e6)) refuse(fmt::format("sweep of {} radians", geometry.sweep));
+  if (!(geometry.sweep >= 0 && geometry.sweep < 1e6)) refuse_arc(fmt::format("sweep of {} radians", geometry.sweep));
 }
 
 template <class Geometry>
@@ -298,13 +296,13 @@ ArcCommand prepare(const ArcGeometry& geometry, StepRule rule) {
   // Compared before the negation, which the most negative value would not survive.
   if (geometry.centre_x < -kMaxCentreDistance || geometry.centre_x > kMaxCentreDistance ||
       geometry.centre_y < -kMaxCentreDistance || geometry.centre_y > kMaxCentreDistance) {
-    refuse("the centre is farther than 2^24 pulses from the start");
+    refuse_arc("the centre is farther than 2^24 pulses from the start");
   }
   const Point start{-geometry.centre_x, -geometry.centre_y};
   const Point end{geometry.end_x * kUnit - geometry.centre_x, geometry.end_y * kUnit - geometry.centre_y};
-  if (!within(end, kMaxCentreDistance)) refuse("the centre is farther than 2^24 pulses from the end");
+  if (!within(end, kMaxCentreDistance)) refuse_arc("the centre is farther than 2^24 pulses from the end");
   const Int128 mean = mean_radius_squared(start, end);
-  if (mean < kUnit * kUnit) refuse("radius below one pulse: send a line");
+  if (mean < kUnit * kUnit) refuse_arc("radius below one pulse: send a line");
   // A step to the side of the circle adds up to 1/2 to R^2 (in pulses), a step inwards takes nothing off it: half a
   // square pulse less makes outside and inside errors alike, 1 + 1/(4 R). About a whole pulse F is then a whole number
   // and one half, so that every sign is that of STEER's F. In 8 directions errors are alike without.
@@ -317,26 +315,26 @@ ArcCommand prepare(const EllipseGeometry& geometry, StepRule rule) {
   const std::int64_t a = geometry.semi_x;
   const std::int64_t b = geometry.semi_y;
   if (a < 1 || b < 1 || a > kMaxSemiAxis || b > kMaxSemiAxis) {
-    refuse(fmt::format("semi-axes {} and {} are not within 1 .. 2^20 pulses", a, b));
+    refuse_arc(fmt::format("semi-axes {} and {} are not within 1 .. 2^20 pulses", a, b));
   }
   const Point start{geometry.start_x, geometry.start_y};
   // A point rounded from the curve is at most one pulse outside its bounding box. Looked at before any arithmetic.
   const auto in_box = [&](const Point& p) { return -a - 1 <= p.x && p.x <= a + 1 && -b - 1 <= p.y && p.y <= b + 1; };
-  if (!in_box(start)) refuse("the start is outside the ellipse's bounding box");
+  if (!in_box(start)) refuse_arc("the start is outside the ellipse's bounding box");
   const Point end{start.x + geometry.end_x, start.y + geometry.end_y};
-  if (!in_box(end)) refuse("the end is outside the ellipse's bounding box");
+  if (!in_box(end)) refuse_arc("the end is outside the ellipse's bounding box");
   const Conic conic{b * b, a * a, Int128(a * a) * (b * b), 1};
   // Rounding moves a point by half a pulse in each coordinate, which changes F by at most ab(a+b) + (a^2+b^2)/4.
   const Int128 limit = Int128(4) * a * b * (a > b ? a : b);
   const auto on_curve = [&](const Point& p) { return -limit < conic.deviation(p) && conic.deviation(p) < limit; };
-  if (!on_curve(start)) refuse("the start is not on the ellipse");
-  if (!on_curve(end)) refuse("the end is not on the ellipse");
+  if (!on_curve(start)) refuse_arc("the start is not on the ellipse");
+  if (!on_curve(end)) refuse_arc("the end is not on the ellipse");
   return fill(geometry, conic, start, end, rule);
 }
 
 ArcCommand with_ticks(ArcCommand arc, std::uint64_t ticks) {
-  if (ticks < arc.path_ticks) refuse(fmt::format("{} feed ticks for {} steps", ticks, arc.path_ticks));
-  if (ticks >= kCountLimit) refuse(fmt::format("{} feed ticks, fewer than 2^40 fit", ticks));
+  if (ticks < arc.path_ticks) refuse_arc(fmt::format("{} feed ticks for {} steps", ticks, arc.path_ticks));
+  if (ticks >= kCountLimit) refuse_arc(fmt::format("{} feed ticks, fewer than 2^40 fit", ticks));
   arc.ticks = ticks;
   arc.prescale = rounded_share(arc.path_ticks, ticks);
   return arc;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
 #include <string>
 
+#include "arc_refusal.hpp"
 #include "trammel/driver/increment.hpp"
 #include "trammel/driver/trigonometry.hpp"
 
@@ -15,7 +15,7 @@ namespace trammel::driver {
 namespace {
 
 constexpr int kFractionBits = card_map::constant::kFractionBits;
-constexpr std::uint64_t kCountLimit =
+constexpr std::uint64_t kChordCountLimit =
     card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::ArcChord))->count_maximum + 1;
 constexpr double kPathTickLimit = 0x1p37;
 constexpr unsigned kLeastK = 1;
@@ -24,8 +24,6 @@ constexpr unsigned kMostM = 31;
 constexpr double kLeastRadius = 0.125;   // pulses
 constexpr double kMostToCircle = 0.375;  // pulses
 constexpr double kMostShift = 0x1p22;    // whole pulses of a coordinate in 2^-40 pulses that 63 bits hold, with room
-
-[[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument("arc: " + why); }
 
 // From the centre, pulses.
 struct Ray {
@@ -83,12 +81,12 @@ class Circle {
  private:
   void check_radii() const {
     for (const Ray& at : {start, end}) {
-      if (!(at.radius >= kLeastRadius)) refuse(fmt::format("radius of {:.4g} pulses: send a line", at.radius));
-      if (!(at.radius <= kMaxChordRadius)) refuse(fmt::format("radius of {:.4g} pulses", at.radius));
+      if (!(at.radius >= kLeastRadius)) refuse_arc(fmt::format("radius of {:.4g} pulses: send a line", at.radius));
+      if (!(at.radius <= kMaxChordRadius)) refuse_arc(fmt::format("radius of {:.4g} pulses", at.radius));
     }
     // Rounding parts them by three pulses at most; a program's own rounding may be coarser than the pulses.
     if (std::abs(start.radius - end.radius) > std::max(3.0, radius / 2)) {
-      refuse(fmt::format("radius {:.4f} pulses at the start, {:.4f} at the end", start.radius, end.radius));
+      refuse_arc(fmt::format("radius {:.4f} pulses at the start, {:.4f} at the end", start.radius, end.radius));
     }
   }
 
@@ -102,10 +100,10 @@ class Circle {
     // Each end lies within about a pulse of where the sweep was taken.
     constexpr double kMostApart = 4;  // pulses
     if (std::abs(nearest - arc.sweep) * std::min(start.radius, end.radius) > kMostApart) {
-      refuse(fmt::format("a sweep of {:.6f} radians, but {:.6f} between the points", arc.sweep, nearest));
+      refuse_arc(fmt::format("a sweep of {:.6f} radians, but {:.6f} between the points", arc.sweep, nearest));
     }
     const double total = nearest + 2 * kPi * arc.turns;
-    if (!(total > 0)) refuse("the end is not ahead of the start: send a line");
+    if (!(total > 0)) refuse_arc("the end is not ahead of the start: send a line");
     return total;
   }
 };
@@ -192,21 +190,21 @@ Increments increments(const ArcChordCommand& arc, const Circle& circle, const Ar
 void check(const HelixGeometry& geometry) {
   const ArcGeometry& arc = geometry.arc;
   if (arc.axis_x >= card_map::kMaxAxes || arc.axis_y >= card_map::kMaxAxes || arc.axis_x == arc.axis_y) {
-    refuse(fmt::format("axes {} and {} span no plane", arc.axis_x, arc.axis_y));
+    refuse_arc(fmt::format("axes {} and {} span no plane", arc.axis_x, arc.axis_y));
   }
   if (geometry.further[arc.axis_x] != 0 || geometry.further[arc.axis_y] != 0) {
-    refuse("an axis of the plane cannot go along a line beside it");
+    refuse_arc("an axis of the plane cannot go along a line beside it");
   }
   if (!(arc.sweep >= 0 && arc.sweep / (2 * kPi) + arc.turns <= kMaxChordTurns)) {
-    refuse(fmt::format("sweep of {} radians and {} turns", arc.sweep, arc.turns));
+    refuse_arc(fmt::format("sweep of {} radians and {} turns", arc.sweep, arc.turns));
   }
   constexpr auto kMost = static_cast<std::int64_t>(kMaxChordRadius) * kCentreUnitsPerPulse;
   if (arc.centre_x < -kMost || arc.centre_x > kMost || arc.centre_y < -kMost || arc.centre_y > kMost) {
-    refuse("the centre is farther than 2^31 pulses from the start");
+    refuse_arc("the centre is farther than 2^31 pulses from the start");
   }
   for (const std::int64_t pulses : geometry.further) {
     constexpr std::int64_t kRange = std::int64_t{1} << 32;  // from one end of the position counter to the other
-    if (pulses < -kRange || pulses > kRange) refuse(fmt::format("{} pulses of a further axis", pulses));
+    if (pulses < -kRange || pulses > kRange) refuse_arc(fmt::format("{} pulses of a further axis", pulses));
   }
 }
 
@@ -252,19 +250,19 @@ std::uint64_t least_chord_ticks(const HelixGeometry& geometry) {
   for (unsigned m = circle.least_m(); m <= kMostM && circle.path_ticks(m) < kPathTickLimit; ++m) {
     if (at_density(arc, m, circle, geometry)) return arc.path_ticks;
   }
-  refuse("too long, or too short for what its ends or further axes ask for");
+  refuse_arc("too long, or too short for what its ends or further axes ask for");
 }
 
 ArcChordCommand make_helix(const HelixGeometry& geometry, std::uint64_t ticks) {
   check(geometry);
-  if (ticks >= kCountLimit) refuse(fmt::format("{} feed ticks, fewer than 2^40 fit", ticks));
+  if (ticks >= kChordCountLimit) refuse_arc(fmt::format("{} feed ticks, fewer than 2^40 fit", ticks));
   const Circle circle(geometry.arc);
   ArcChordCommand arc = on_plane(geometry, circle);
   const double most = std::min(static_cast<double>(ticks), kPathTickLimit - 1);
   unsigned m = circle.least_m();
   while (m < kMostM && circle.path_ticks(m + 1) <= most) ++m;
   if (circle.path_ticks(m) > most || !at_density(arc, m, circle, geometry)) {
-    refuse(fmt::format("{} feed ticks are too few", ticks));
+    refuse_arc(fmt::format("{} feed ticks are too few", ticks));
   }
   arc.ticks = ticks;
   arc.prescale = rounded_share(arc.path_ticks, ticks);

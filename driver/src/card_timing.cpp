@@ -2,15 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "nanoseconds.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/wide.hpp"
 
 namespace trammel::driver {
-namespace {
-
-constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
-
-}  // namespace
 
 std::uint64_t clocks_of(std::chrono::nanoseconds time, std::uint32_t clock_hz, const char* what) {
   if (time.count() < 0) {

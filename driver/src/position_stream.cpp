@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "nanoseconds.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/driver/increment.hpp"
 #include "trammel/driver/wide.hpp"
@@ -17,12 +18,11 @@ namespace map = card_map;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr std::uint64_t kLongestPeriod = std::uint64_t{1} << 32;  // clocks
 constexpr std::int64_t kFarthest = (std::int64_t{1} << 30) * PositionStream::kPulse;
 constexpr unsigned kMostStalePeriods = field::kStreamingStalePeriods >> field::kStreamingStalePeriodsShift;
 // A tick every kClocksPerTick clocks, exactly: 2^-64 ticks a clock.
-constexpr std::uint64_t kRate = ~std::uint64_t{0} / PositionStream::kClocksPerTick + 1;
+constexpr std::uint64_t kStreamRate = ~std::uint64_t{0} / PositionStream::kClocksPerTick + 1;
 
 // Behind a line the card is looked at when it has surely taken it up: its clocks from the commit to STATUS, at no less
 // than so many clocks a read (docs/reference/behaviour.md, Accesses).
@@ -243,7 +243,7 @@ void PositionStream::gone_beyond(std::uint64_t ticks) {
 void PositionStream::put_feed() {
   FeedCommand feed;
   feed.ticks = 1;  // it goes on as long as lines take ticks
-  feed.rate = kRate;
+  feed.rate = kStreamRate;
   put(feed);
   fed_ = true;
 }

@@ -2,26 +2,19 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
-#include <set>
 #include <thread>
 
 #include "argument_error.hpp"
-#include "posted_bus.hpp"
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"
-#include "trammel/driver/frame_bus.hpp"
 #include "trammel/driver/one_shot.hpp"
-#include "trammel/frames/endpoint.hpp"
 #include "trammel/sim/engine.hpp"
 
 namespace trammel::driver {
 namespace {
 
 using namespace std::chrono_literals;
-using test::PostedBus;
 using test::RegisterStub;
 using test::was_read;
 using test::wrote;
@@ -29,158 +22,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
-
-TEST(CardOpen, ReadsWhoTheCardIsInThreeTransfersAndWritesNothing) {
-  RegisterStub bus(2, 100'000'000);
-  bus.values[reg::kMapVersion] = card_map::kMapVersionValue | 5U;
-  bus.values[reg::step_length(1)] = 200;
-  bus.values[reg::step_space(1)] = 300;
-  const Card card = Card::open(bus);
-  EXPECT_THAT(bus.log,
-              ElementsAre(was_read(reg::kMagic), was_read(reg::kMapVersion), was_read(reg::kCommandsVersion),
-                          was_read(reg::kAxes), was_read(reg::kClockHz), was_read(reg::kEngines),
-                          was_read(reg::kGeometryDepth), was_read(reg::kFeedDepth), was_read(reg::step_length(0)),
-                          was_read(reg::step_space(0)), was_read(reg::step_length(1)), was_read(reg::step_space(1))));
-  EXPECT_THAT(bus.transfers, ElementsAre(1U, 7U, 4U));
-  EXPECT_EQ(card.identification().map_major, card_map::kMapVersionValue >> 16);
-  EXPECT_EQ(card.identification().map_minor, 5);
-  EXPECT_EQ(card.identification().axes, 2U);
-  EXPECT_EQ(card.identification().clock_hz, 100'000'000U);
-  EXPECT_EQ(card.identification().engines, 0x33U);
-  EXPECT_EQ(card.identification().geometry_depth, 4096U);
-  EXPECT_EQ(card.identification().feed_depth, 2560U);
-  EXPECT_EQ(card.timing().pulse_period[0], 7U);
-  EXPECT_EQ(card.timing().pulse_period[1], 506U);
-}
-
-TEST(CardBuild, IsReadWhenAskedFor) {
-  RegisterStub bus;
-  bus.values[reg::kBuildId] = 0x1234ABCD;
-  bus.values[reg::kBuildFlags] = field::kBuildFlagsDirty;
-  bus.values[reg::kBoardId] = 7;
-  Card card = Card::open(bus);
-  const Build build = card.build();
-  EXPECT_EQ(build.id, 0x1234ABCDU);
-  EXPECT_TRUE(build.dirty);
-  EXPECT_EQ(build.board, 7U);
-  bus.values[reg::kBuildFlags] = 0;
-  EXPECT_FALSE(card.build().dirty);
-}
-
-TEST(CardOpen, AsksNothingMoreOfWhatIsNotACard) {
-  RegisterStub bus;
-  bus.values[reg::kMagic] = 0xFFFFFFFF;
-  EXPECT_THROW(Card::open(bus), IdentificationError);
-  EXPECT_THAT(bus.log, ElementsAre(was_read(reg::kMagic)));
-  bus.on_access = [](const Access&) { return false; };
-  EXPECT_THROW(Card::open(bus), IdentificationError);
-}
-
-struct Malformed {
-  const char* name;
-  std::uint32_t address;
-  std::optional<std::uint32_t> value;  // none: the read is refused
-  const char* message;
-};
-
-class MalformedCard : public ::testing::TestWithParam<Malformed> {};
-
-std::string message_of(Bus& bus) {
-  try {
-    Card::open(bus);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
-
-RegisterStub malformed(const Malformed& card) {
-  RegisterStub bus;
-  if (card.value) {
-    bus.values[card.address] = *card.value;
-  } else {
-    bus.on_access = [address = card.address](const Access& access) { return access.address != address; };
-  }
-  return bus;
-}
-
-// A stub at the other end of frames.
-class StubLink final : public ByteLink {
- public:
-  explicit StubLink(RegisterStub& stub)
-      : endpoint_([&stub](bool write, std::uint32_t address, std::uint32_t data) {
-          Access access{address, data, write};
-          const bool made = stub.transfer(&access, 1) == 1;
-          return frames::Endpoint::Answer{!made, access.data};
-        }) {}
-  void send(const std::uint8_t* bytes, std::size_t count) override {
-    for (std::size_t i = 0; i < count; ++i) endpoint_.take(bytes[i], reply_);
-  }
-  std::size_t receive(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) override {
-    const std::size_t count = std::min(room, reply_.size());
-    if (count == 0) now_ += longest;
-    std::copy_n(reply_.begin(), count, bytes);
-    reply_.erase(reply_.begin(), reply_.begin() + static_cast<std::ptrdiff_t>(count));
-    return count;
-  }
-  void restart() override { endpoint_.connect(); }
-  std::chrono::nanoseconds time_of(std::size_t) const override { return {}; }
-  std::chrono::nanoseconds now() const override { return now_; }
-  void sleep(std::chrono::nanoseconds time) override { now_ += time; }
-
- private:
-  frames::Endpoint endpoint_;
-  frames::Bytes reply_;
-  std::chrono::nanoseconds now_{0};
-};
-
-TEST_P(MalformedCard, IsRefusedWithTheReason) {
-  RegisterStub bus = malformed(GetParam());
-  EXPECT_THAT(message_of(bus), HasSubstr(GetParam().message));
-  for (const test::Made& made : bus.log) EXPECT_FALSE(std::get<0>(made)) << "nothing is written";
-  RegisterStub far = malformed(GetParam());
-  StubLink link(far);
-  FrameBus frames(link);
-  EXPECT_EQ(message_of(frames), message_of(bus)) << "the same over frames";
-}
-
-const Malformed kMalformed[] = {
-    {"Magic", reg::kMagic, 0x4D4C5254, "0x4D4C5254"},
-    {"NothingThere", reg::kMagic, 0xFFFFFFFF, "MAGIC reads 0xFFFFFFFF"},
-    {"Zeros", reg::kMagic, 0, "MAGIC reads 0x00000000"},
-    {"OlderMap", reg::kMapVersion, 0x00010000, "map version 1.0"},
-    {"NewerMap", reg::kMapVersion, 0x00030003, "map version 3.3"},
-    {"OlderCommands", reg::kCommandsVersion, 1, "layouts of version 1"},
-    {"NewerCommands", reg::kCommandsVersion, 3, "layouts of version 3"},
-    {"NoAxes", reg::kAxes, 0, "0 axes"},
-    {"NineAxes", reg::kAxes, 9, "9 axes"},
-    {"NoClock", reg::kClockHz, 0, "0 Hz"},
-    {"UnknownEngine", reg::kEngines, 0x801, "does not know 0x800"},
-    {"NoLines", reg::kEngines, 0x12, "without lines"},
-    {"ShortGeometry", reg::kGeometryDepth, 36, "geometry queue holds 36"},
-    {"ShortFeed", reg::kFeedDepth, 19, "feed queue holds 19"},
-    {"StepTimes", reg::step_length(3), 0x10000, "STEP_LENGTH reads 0x00010000"},
-    {"StepSpaces", reg::step_space(0), 0x20000, "STEP_SPACE reads 0x00020000"},
-    // An identification that ends early.
-    {"EndsAtMagic", reg::kMagic, std::nullopt, "the read of 0x000 was refused"},
-    {"EndsAtMapVersion", reg::kMapVersion, std::nullopt, "the read of 0x004 was refused"},
-    {"EndsAtClock", reg::kClockHz, std::nullopt, "the read of 0x00C was refused"},
-    {"EndsAtDepths", reg::kFeedDepth, std::nullopt, "the read of 0x018 was refused"},
-    {"FewerAxesThanItSays", reg::step_length(2), std::nullopt, "the read of 0x240 was refused"},
-};
-
-INSTANTIATE_TEST_SUITE_P(CardOpen, MalformedCard, ::testing::ValuesIn(kMalformed),
-                         [](const auto& test) { return std::string(test.param.name); });
-
-TEST(MalformedCards, HaveMessagesOfTheirOwn) {
-  std::set<std::string> messages;
-  for (const Malformed& card : kMalformed) {
-    RegisterStub bus = malformed(card);
-    messages.insert(message_of(bus));
-  }
-  EXPECT_EQ(messages.size(), std::size(kMalformed));
-  EXPECT_EQ(messages.count(""), 0U);
-}
 
 // A card on a stub that has forgotten how it was opened.
 class CardTest : public ::testing::Test {

@@ -4,24 +4,11 @@
 #include <array>
 #include <random>
 
+#include "paper_lines.hpp"
 #include "walks.hpp"
 
 namespace trammel::interpolation {
 namespace {
-
-constexpr std::array<std::array<std::int64_t, 4>, 8> kPaperLines{{{0, 0, 20, 40},
-                                                                  {10, 10, 40, 20},
-                                                                  {10, -10, 40, -20},
-                                                                  {-10, 10, -40, 20},
-                                                                  {-10, -10, -40, -40},
-                                                                  {-10, -5, 30, 20},
-                                                                  {7, -2, -32, -38},
-                                                                  {-10, 20, 30, 20}}};
-
-Line paper_line(std::size_t i) {
-  const auto& l = kPaperLines[i];
-  return make_line({l[0], l[1]}, {l[2], l[3]});
-}
 
 double largest_error(Method method, const Line& line, const Options& options = {}) {
   const Walked walked = walk_all(make_interpolator(method, line, options), 1u << 24,
@@ -47,27 +34,16 @@ TEST(Line, SteerMakesTableOne) {
 }
 
 TEST(Line, ErrorsOfTheSecondPapersLines) {
-  // To three decimals: one-shot, one-shot-zero, divider, steer (source: exact arithmetic, 2,000 clocks a line).
-  constexpr double kErrors[8][4] = {{0.447, 0.447, 0.447, 0.894},
-                                    {0.316, 0.632, 0.949, 0.632},
-                                    {0.316, 0.632, 0.949, 0.632},
-                                    {0.316, 0.632, 0.949, 0.632},
-                                    {0, 0, 0, 0.707},
-                                    {0.636, 0.742, 0.742, 0.742},
-                                    {0.678, 0.678, 0.735, 0.678},
-                                    {0, 0, 0, 0}};
-  constexpr std::array<Method, 4> kMethods{Method::kOneShot, Method::kOneShotZero, Method::kDivider, Method::kSteer};
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
-    for (std::size_t m = 0; m < kMethods.size(); ++m) {
-      EXPECT_NEAR(largest_error(kMethods[m], paper_line(i)), kErrors[i][m], 0.0005)
-          << "line " << i + 1 << " " << info(kMethods[m]).name;
+    for (std::size_t m = 0; m < kPaperMethods.size(); ++m) {
+      EXPECT_NEAR(largest_error(kPaperMethods[m], kPaperLines[i].line()), kPaperLines[i].errors[m], 0.0005)
+          << "line " << i + 1 << " " << info(kPaperMethods[m]).name;
     }
   }
 }
 
 TEST(Line, SteerTakesEveryUnitStep) {
-  constexpr std::uint64_t kSteps[8] = {60, 40, 40, 40, 60, 65, 75, 40};
-  for (std::size_t i = 0; i < kPaperLines.size(); ++i) EXPECT_EQ(SteerLine(paper_line(i)).total_time(), kSteps[i]);
+  for (const PaperLine& paper : kPaperLines) EXPECT_EQ(SteerLine(paper.line()).total_time(), paper.steer_steps);
 }
 
 TEST(Line, IntegerDividersStrayAtFiftyMegahertz) {

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "paper_lines.hpp"
+
 namespace trammel::measure {
 namespace {
 
@@ -24,40 +26,18 @@ MethodMeasures measures_of(Method method, const Curve& curve) {
   return measure_method(method, trace, ideal_of(curve));
 }
 
-struct PaperLine {
-  Line line;
-  double one_shot, one_shot_zero, divider, steer;  // largest perpendicular distance, computed independently
-  std::uint64_t steer_steps;
-};
-
-// Zeng, Zhang & Huang, Lines 1 to 8, 10 MHz, v = 5000: 2,000 clocks a line.
-const std::vector<PaperLine>& paper_lines() {
-  static const std::vector<PaperLine> lines = {
-      {make_line({0, 0}, {20, 40}), 0.447, 0.447, 0.447, 0.894, 60},
-      {make_line({10, 10}, {40, 20}), 0.316, 0.632, 0.949, 0.632, 40},
-      {make_line({10, -10}, {40, -20}), 0.316, 0.632, 0.949, 0.632, 40},
-      {make_line({-10, 10}, {-40, 20}), 0.316, 0.632, 0.949, 0.632, 40},
-      {make_line({-10, -10}, {-40, -40}), 0, 0, 0, 0.707, 60},
-      {make_line({-10, -5}, {30, 20}), 0.636, 0.742, 0.742, 0.742, 65},
-      {make_line({7, -2}, {-32, -38}), 0.678, 0.678, 0.735, 0.678, 75},
-      {make_line({-10, 20}, {30, 20}), 0, 0, 0, 0, 40},
-  };
-  return lines;
-}
-
 TEST(Comparison, SecondPapersLinesToThreeDecimals) {
-  for (const PaperLine& paper : paper_lines()) {
-    const auto largest = [&](Method method) { return measures_of(method, paper.line).distances.perpendicular.largest; };
-    EXPECT_NEAR(largest(Method::kOneShot), paper.one_shot, 5e-4);
-    EXPECT_NEAR(largest(Method::kOneShotZero), paper.one_shot_zero, 5e-4);
-    EXPECT_NEAR(largest(Method::kDivider), paper.divider, 5e-4);
-    EXPECT_NEAR(largest(Method::kSteer), paper.steer, 5e-4);
-    EXPECT_EQ(measures_of(Method::kSteer, paper.line).steps, paper.steer_steps);
+  for (const interpolation::PaperLine& paper : interpolation::kPaperLines) {
+    for (std::size_t m = 0; m < paper.errors.size(); ++m) {
+      const MethodMeasures measures = measures_of(interpolation::kPaperMethods[m], paper.line());
+      EXPECT_NEAR(measures.distances.perpendicular.largest, paper.errors[m], 5e-4);
+    }
+    EXPECT_EQ(measures_of(Method::kSteer, paper.line()).steps, paper.steer_steps);
   }
 }
 
 TEST(Comparison, OperationsOfFigure5) {
-  const Line line = paper_lines()[0].line;
+  const Line line = interpolation::kPaperLines[0].line();
   EXPECT_EQ(measures_of(Method::kPointByPoint, line).cost.operations, 60U);
   EXPECT_EQ(measures_of(Method::kOneShot, line).cost.operations, 1U);
   // 19 words from FREQUENCY_LO[3] to START: 4 axes of 4, LENGTH and START.

@@ -108,5 +108,28 @@ TEST(StopDistance, OfShortArcsCountsTheirSize) {
   EXPECT_LE(worst_share(program + "M2\n", machine, card), 1.02);
 }
 
+// Of pieces that begin in the last path before a stop: all up to it is queued.
+TEST(StopDistance, IsNoneWhereAllUpToTheStopIsQueued) {
+  CardLimits card;
+  card.clock_hz = 50'000'000;
+  const Plan plan =
+      plan_text("F9000\nG1 X5\nX10 Y1\nG61.1 G1 X0\nG1 Y9\nG64 G2 X5 R5\nG1 E3\nM2\n", quick_machine(), card);
+  ASSERT_FALSE(plan.error);
+  std::size_t last = 0;
+  std::size_t others = 0;
+  for (const Planned& planned : plan.blocks) {
+    for (const auto& piece : commands<driver::FeedCommand>(planned)) {
+      if (planned.planned.stop) {
+        EXPECT_LE(piece.stop_distance, 1U) << "line " << planned->line;
+        ++last;
+      } else if (piece.stop_distance > 1) {
+        ++others;
+      }
+    }
+  }
+  EXPECT_GE(last, 10U);
+  EXPECT_GE(others, 2U);
+}
+
 }  // namespace
 }  // namespace trammel::planner

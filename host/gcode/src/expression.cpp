@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "characters.hpp"
 #include "elementary.hpp"
 
 namespace trammel::gcode {
@@ -15,9 +16,6 @@ namespace {
 
 constexpr double kEqual = 1e-4;  // as LinuxCNC: EQ and NE
 
-bool is_space(char c) { return c == ' ' || c == '\t'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 double truth(bool holds) { return holds ? 1 : 0; }
 

@@ -115,6 +115,7 @@ class Interpreter final : public Predefined {
   bool cycle(const Context& context, std::optional<int> before);
   bool set_sticky(const Context& context, int code, const PlaneAxes& axes, bool fresh);
   bool check_cycle(const Context& context, const PlaneAxes& axes) const;
+  CycleHoles holes_to(const Place& target, int code, const PlaneAxes& axes, double repeats) const;
   bool probe(const Context& context);
   bool plane_axis(char letter, const char* what, std::size_t& axis, Problem& problem) const;
   const Plane& plane() const;

@@ -248,6 +248,24 @@ bool Interpreter::set_sticky(const Context& context, int code, const PlaneAxes& 
   return true;
 }
 
+// From where the tool stands; `target` is the first hole.
+CycleHoles Interpreter::holes_to(const Place& target, int code, const PlaneAxes& axes, double repeats) const {
+  CycleHoles holes;
+  holes.code = code;
+  holes.start = here_.at[axes.normal];
+  holes.retract = (modes_.absolute ? offsets_.total(axes.normal) : holes.start) + sticky_.retract;
+  holes.bottom = (modes_.absolute ? offsets_.total(axes.normal) : holes.retract) + sticky_.bottom;
+  holes.clear = modes_.retract_to_start ? std::max(sticky_.start, holes.retract) : holes.retract;
+  holes.peck = sticky_.peck;
+  holes.seconds = sticky_.seconds;
+  holes.first = {target.at[axes.first], target.at[axes.second]};
+  if (!modes_.absolute) {
+    holes.next = {holes.first[0] - here_.at[axes.first], holes.first[1] - here_.at[axes.second]};
+  }
+  holes.count = static_cast<std::uint32_t>(repeats);
+  return holes;
+}
+
 bool Interpreter::cycle(const Context& context, std::optional<int> before) {
   const auto& [words, motions, problem] = context;
   const int code = *modes_.motion;
@@ -264,19 +282,7 @@ bool Interpreter::cycle(const Context& context, std::optional<int> before) {
   cycle_plane_ = modes_.plane;
   Place target;
   if (!target_of(context, target)) return false;
-  CycleHoles holes;
-  holes.code = code;
-  holes.start = here_.at[axes.normal];
-  holes.retract = (modes_.absolute ? offsets_.total(axes.normal) : holes.start) + sticky_.retract;
-  holes.bottom = (modes_.absolute ? offsets_.total(axes.normal) : holes.retract) + sticky_.bottom;
-  holes.clear = modes_.retract_to_start ? std::max(sticky_.start, holes.retract) : holes.retract;
-  holes.peck = sticky_.peck;
-  holes.seconds = sticky_.seconds;
-  holes.first = {target.at[axes.first], target.at[axes.second]};
-  if (!modes_.absolute) {
-    holes.next = {holes.first[0] - here_.at[axes.first], holes.first[1] - here_.at[axes.second]};
-  }
-  holes.count = static_cast<std::uint32_t>(words.letter('L').value_or(1));
+  const CycleHoles holes = holes_to(target, code, axes, words.letter('L').value_or(1));
   if (holes.retract < holes.bottom) {
     return problem.set(ErrorCode::kCycleLevels,
                        fmt::format("R of {} is below {}, the bottom of the hole", name_of('G', code), in.normal));

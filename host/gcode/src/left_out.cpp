@@ -4,17 +4,14 @@
 
 #include <algorithm>
 
+#include "characters.hpp"
+
 namespace trammel::gcode {
 namespace {
 
 constexpr int kBedLevelling = 290;
 constexpr int kMessage = 1170;
 constexpr int kAlways[] = {730, 1040, 1050, 1060, 1070, 1090, 1100, kMessage, 1400, 1900, 2010, 2020, 2030, 2040, 2050};
-
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-bool is_space(char c) { return c == ' ' || c == '\t'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 
 std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && is_space(text.front())) text.remove_prefix(1);

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdint>
 
+#include "characters.hpp"
 #include "expression.hpp"
 
 namespace trammel::gcode {
@@ -17,11 +18,7 @@ constexpr std::uint64_t kExactWhole = std::uint64_t{1} << 53;
 constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                                  1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
-bool is_space(char c) { return c == ' ' || c == '\t'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_printable(char c) { return c > ' ' && c < '\x7f'; }
-bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
 // The digits from `at` on, behind those of `whole`; gives back where they end.
 const char* add_digits(const char* at, const char* end, std::uint64_t& whole) {

@@ -1,23 +1,15 @@
 // Machine files: TOML in, Machine out.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <cstring>
 #include <sstream>
 #include <toml.hpp>
 
+#include "machine_checks.hpp"
 #include "text.hpp"
-#include "trammel/card_map.hpp"
-#include "trammel/driver/card_timing.hpp"
-#include "trammel/driver/errors.hpp"
 #include "trammel/machine/machine.hpp"
 
 namespace trammel::machine {
@@ -86,12 +78,6 @@ constexpr std::array<OutputEntry, 4> kOutputEntries = {{
     {"m7", &MachineOutputs::m7},
     {"m8", &MachineOutputs::m8},
 }};
-
-// A name or a text within a message; the whole message.
-constexpr std::size_t kLongestQuote = 80;
-constexpr std::size_t kLongestMessage = 1000;
-
-[[noreturn]] void refuse(const std::string& message) { throw MachineError(one_line(message, kLongestMessage)); }
 
 // Where a text came from, for messages: a file (with line numbers), or one override.
 struct Source {
@@ -237,15 +223,6 @@ void set_outputs(const Source& source, MachineOutputs& outputs, const toml::tabl
   }
 }
 
-// M5 and M9 could not tell them apart.
-void check_outputs(const std::string& where, const MachineOutputs& outputs) {
-  const unsigned both = unsigned{outputs.spindle()} & outputs.coolant();
-  if (both == 0) return;
-  unsigned output = 0;
-  while ((both >> output & 1U) == 0) ++output;
-  refuse(fmt::format("{}: output {} is named for the spindle (m3, m4) and for coolant (m7, m8)", where, output));
-}
-
 void set_probe(const Source& source, Probe& probe, const toml::table& table) {
   for (const auto& [key, value] : table) {
     if (key == "input") {
@@ -322,40 +299,6 @@ char axis_letter(const Source& source, const std::string& key, const toml::value
   return letter;
 }
 
-// Do the step times fit the card's registers at this clock? Rounded up to whole nanoseconds, as the driver takes them.
-void check_times(const std::string& where, const Machine& machine) {
-  constexpr double kLongest = 1e15;  // ns; more than any register at the slowest clock
-  const auto check = [&](const MachineAxis& axis, double time, const char* what) {
-    const std::chrono::nanoseconds whole(static_cast<std::int64_t>(std::ceil(std::min(time, kLongest))));
-    try {
-      driver::step_time_clocks(whole, machine.clock_hz, what);
-    } catch (const driver::ArgumentError& error) {
-      refuse(fmt::format("{}: axis {}: {}", where, axis.letter, error.what()));
-    }
-  };
-  for (const MachineAxis& axis : machine.axes) {
-    check(axis, axis.step_length_ns, "step_length_ns");
-    check(axis, axis.step_space_ns, "step_space_ns");
-    check(axis, axis.direction_setup_ns, "direction_setup_ns");
-    check(axis, axis.direction_hold_ns, "direction_hold_ns");
-  }
-}
-
-void check_motors(const std::string& where, const Machine& machine) {
-  if (machine.axes.size() > card_map::kMaxAxes) {
-    refuse(fmt::format("{}: {} axes, the card has at most {}", where, machine.axes.size(), card_map::kMaxAxes));
-  }
-  if (machine.motors() > card_map::kMaxAxes) {
-    refuse(fmt::format("{}: {} motors, second ones included, the card has at most {}", where, machine.motors(),
-                       card_map::kMaxAxes));
-  }
-  for (const MachineAxis& axis : machine.axes) {
-    if (axis.second_inverted && !axis.second_motor) {
-      refuse(fmt::format("{}: axis {}: second_inverted without second_motor", where, axis.letter));
-    }
-  }
-}
-
 MachineAxis read_axis(const Source& source, const std::string& name, const toml::value& value) {
   MachineAxis axis;
   const std::string path = "axis." + name;
@@ -428,43 +371,21 @@ const toml::table* find_table(const toml::table& root, const char* name) {
 
 std::size_t card_order(char letter) { return kAxisLetters.find(letter); }
 
-// Closed at the end of the scope.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
-
-// A little more than the longest text where the file is longer: a pipe may never end.
-std::string read_all(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
-    refuse(fmt::format("{}: cannot read the machine file: {}", path, std::strerror(errno)));
-  }
-  // Looked at before it is opened: opening some devices does something.
-  if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) {
-    refuse(fmt::format("{}: is {}, not a machine file", path, S_ISDIR(status.st_mode) ? "a directory" : "a device"));
-  }
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  std::string text;
-  std::array<char, 4096> part{};
-  ssize_t count = file.number() < 0 ? -1 : 1;
-  while (count > 0 && text.size() <= kLongestMachineText) {
-    count = ::read(file.number(), part.data(), part.size());
-    text.append(part.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
-  }
-  if (count < 0) {
-    refuse(fmt::format("{}: cannot read the machine file: {}", path, std::strerror(errno)));
-  }
-  return text;
+// The tables that a file and an override have alike, all but the axes, which are known by now. Whether there was one.
+bool set_tables(const Source& source, Machine& machine, const toml::table& root) {
+  bool any = false;
+  const auto set = [&](const char* name, auto with) {
+    const toml::table* table = find_table(root, name);
+    if (table == nullptr) return;
+    with(*table);
+    any = true;
+  };
+  set("card", [&](const toml::table& card) { set_clock(source, machine, card.at("clock_hz")); });
+  set("motion", [&](const toml::table& motion) { set_motion(source, machine.motion, motion); });
+  set("outputs", [&](const toml::table& outputs) { set_outputs(source, machine.outputs, outputs); });
+  set("tools", [&](const toml::table& tools) { set_tools(source, machine, tools); });
+  set("probe", [&](const toml::table& probe) { set_probe(source, machine.probe, probe); });
+  return any;
 }
 
 }  // namespace
@@ -474,8 +395,7 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   const toml::value document = parse(source, toml_text);
   const toml::table& root = document.as_table();
   check_top_level(source, root);
-  const toml::table* card = find_table(root, "card");
-  if (card == nullptr) {
+  if (find_table(root, "card") == nullptr) {
     refuse(name + ":1: no [card] clock_hz");
   }
   const toml::table* axes = find_table(root, "axis");
@@ -483,17 +403,13 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
     refuse(name + ":1: no axis: at least one table [axis.<letter>]");
   }
   Machine machine;
-  set_clock(source, machine, card->at("clock_hz"));
-  if (const toml::table* motion = find_table(root, "motion")) set_motion(source, machine.motion, *motion);
-  if (const toml::table* outputs = find_table(root, "outputs")) set_outputs(source, machine.outputs, *outputs);
   for (const auto& [key, value] : *axes) {
     machine.axes.push_back(read_axis(source, key, value));
   }
   check_motors(name + ":1", machine);
   std::sort(machine.axes.begin(), machine.axes.end(),
             [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
-  if (const toml::table* tools = find_table(root, "tools")) set_tools(source, machine, *tools);
-  if (const toml::table* probe = find_table(root, "probe")) set_probe(source, machine.probe, *probe);
+  set_tables(source, machine, root);
   check_times(name + ":1", machine);
   check_outputs(name + ":1", machine.outputs);
   return machine;
@@ -505,7 +421,7 @@ Machine load_machine(const std::string& path) {
   if (path.empty()) {
     refuse("the machine file has no name");
   }
-  return parse_machine(read_all(path), path);
+  return parse_machine(text_of_file(path), path);
 }
 
 void apply_override(Machine& machine, const std::string& text) {
@@ -514,27 +430,7 @@ void apply_override(Machine& machine, const std::string& text) {
   const toml::value document = parse(source, text);
   const toml::table& root = document.as_table();
   check_top_level(source, root);
-  bool any = false;
-  if (const toml::table* card = find_table(root, "card")) {
-    set_clock(source, changed, card->at("clock_hz"));
-    any = true;
-  }
-  if (const toml::table* motion = find_table(root, "motion")) {
-    set_motion(source, changed.motion, *motion);
-    any = true;
-  }
-  if (const toml::table* outputs = find_table(root, "outputs")) {
-    set_outputs(source, changed.outputs, *outputs);
-    any = true;
-  }
-  if (const toml::table* tools = find_table(root, "tools")) {
-    set_tools(source, changed, *tools);
-    any = true;
-  }
-  if (const toml::table* probe = find_table(root, "probe")) {
-    set_probe(source, changed.probe, *probe);
-    any = true;
-  }
+  bool any = set_tables(source, changed, root);
   if (const toml::table* axes = find_table(root, "axis")) {
     for (const auto& [name, value] : *axes) {
       const toml::table& table = table_of(source, "axis." + name, value);

@@ -1,9 +1,17 @@
 #include "text.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
 #include <numeric>
+
+#include "trammel/machine/machine.hpp"
 
 namespace trammel::machine {
 namespace {
@@ -45,6 +53,23 @@ std::size_t skip_string(std::string_view text, std::size_t at) {
   }
   return text.size();
 }
+
+constexpr std::size_t kLongestMessage = 1000;
+
+// Closed at the end of the scope.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
 
 bool is_open(char c) { return c == '[' || c == '{'; }
 bool is_close(char c) { return c == ']' || c == '}'; }
@@ -111,6 +136,31 @@ std::size_t too_deep_line(std::string_view toml, std::size_t most) {
     ++at;
   }
   return 0;
+}
+
+void refuse(const std::string& message) { throw MachineError(one_line(message, kLongestMessage)); }
+
+std::string text_of_file(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    refuse(fmt::format("{}: cannot read the machine file: {}", path, std::strerror(errno)));
+  }
+  // Looked at before it is opened: opening some devices does something.
+  if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode)) {
+    refuse(fmt::format("{}: is {}, not a machine file", path, S_ISDIR(status.st_mode) ? "a directory" : "a device"));
+  }
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  std::string text;
+  std::array<char, 4096> part{};
+  ssize_t count = file.number() < 0 ? -1 : 1;
+  while (count > 0 && text.size() <= kLongestMachineText) {
+    count = ::read(file.number(), part.data(), part.size());
+    text.append(part.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  }
+  if (count < 0) {
+    refuse(fmt::format("{}: cannot read the machine file: {}", path, std::strerror(errno)));
+  }
+  return text;
 }
 
 }  // namespace trammel::machine

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -19,7 +18,6 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kMaxRadius = 0x1p44;             // pulses; the centre in 1/256 pulses fits 64 bits
 constexpr double kClocksPerPathTick = 10;         // the accumulator takes 9
 constexpr double kClocksPerEightDirections = 18;  // and 17

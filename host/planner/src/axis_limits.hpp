@@ -8,6 +8,8 @@
 
 namespace trammel::planner {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
 struct AxisLimits {
   double velocity;      // mm/s
   double acceleration;  // mm/s^2
@@ -17,7 +19,7 @@ struct AxisLimits {
 inline AxisLimits limits_of(const machine::MachineAxis& axis, const machine::MotionSettings& motion) {
   const double spare = 1 / motion.max_override;
   return {axis.max_velocity * spare, axis.max_acceleration * (1 - motion.hold_reserve) * spare * spare,
-          axis.max_jerk > 0 ? axis.max_jerk * spare * spare * spare : std::numeric_limits<double>::infinity()};
+          axis.max_jerk > 0 ? axis.max_jerk * spare * spare * spare : kNoLimit};
 }
 
 inline bool is_linear(const machine::MachineAxis& axis) { return axis.letter >= 'X' && axis.letter <= 'Z'; }

@@ -14,7 +14,6 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kShaperShare = 0.95;  // of the rate at which the shaper makes pulses without a pause
 // One pulse less than the counters hold, for the rounding.
 constexpr double kMostPulses = static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);

@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "axis_limits.hpp"
 #include "junction.hpp"
 #include "roots.hpp"
 
 namespace trammel::planner {
-namespace {
-
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
 CornerTime::CornerTime(const machine::Machine& machine)
     : axes_(machine.axes.size()), deviation_(machine.motion.junction_deviation) {
   for (std::size_t i = 0; i < axes_; ++i) {

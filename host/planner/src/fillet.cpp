@@ -11,9 +11,9 @@ namespace {
 // Its centre w, seen from the corner, is a radius r off both sides, to the inside of the turn (s = 1 to the left, n the
 // sides' normals to the left, c their curvatures): w n = s r + c m / 2 with m = w w - r r, for lines and for arcs. The
 // two equations for w are linear in r and m, and w w = m + r r is then quadratic in m alone.
-class Corner {
+class FilletCorner {
  public:
-  Corner(const Side& from, const Side& to, double sine)
+  FilletCorner(const Side& from, const Side& to, double sine)
       : from_(from), to_(to), tangent_square_(sine * sine / (1 - sine * sine)) {
     const double cross = from.x * to.y - from.y * to.x;
     turn_ = cross < 0 ? -1 : 1;
@@ -75,7 +75,7 @@ std::optional<Fillet> fillet(const Side& from, const Side& to, double sine, doub
   constexpr double kLeastSweep = 1e-4;
   constexpr int kHalvings = 50;
   const double cosine = std::sqrt(1 - sine * sine);
-  const Corner corner(from, to, sine);
+  const FilletCorner corner(from, to, sine);
   const auto fits = [&](const std::optional<Fillet>& one) {
     return one && one->distance <= tolerance && one->before > 0 && one->before <= from.most && one->behind > 0 &&
            one->behind <= to.most && one->sweep > kLeastSweep && one->sweep < driver::kPi;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "axis_limits.hpp"
 #include "trammel/driver/trigonometry.hpp"
@@ -10,7 +9,6 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr double kEven = 1e-6;
 
 }  // namespace

@@ -10,10 +10,10 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kTicksPerPulse = 128;  // steps even to 1/64
-constexpr double kMostTicks = 0x1p38;   // of a block; a command has 40 bits, and pieces span blocks
-constexpr double kLeastRate = 0x1p-30;  // ticks a clock; four times the finest floor
-constexpr double kMaxTickRate = 0.9;    // ticks a clock; above it shapers have no jitter left, holds no evenness
+constexpr double kTicksPerPulse = 128;      // steps even to 1/64
+constexpr double kMostTicks = 0x1p38;       // of a block; a command has 40 bits, and pieces span blocks
+constexpr double kLeastTickRate = 0x1p-30;  // ticks a clock; four times the finest floor
+constexpr double kMaxTickRate = 0.9;        // ticks a clock; above it shapers have no jitter left, holds no evenness
 constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
 // Blocks that are planned, but whose stop distances wait for what follows.
 constexpr std::size_t kSpare = 4096;
@@ -173,7 +173,7 @@ double Planner::LookAhead::even_density(const Block& block) const {
 
 // What the pulses and the finest rate need.
 double Planner::LookAhead::least_density(const Block& block) const {
-  return std::max(kLeastRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length);
+  return std::max(kLeastTickRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length);
 }
 
 // Each change of density costs a piece: where the clock is the limit, half of what it allows serves too.

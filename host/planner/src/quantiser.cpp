@@ -29,10 +29,6 @@ std::uint32_t ticks32(double ticks) { return static_cast<std::uint32_t>(std::min
 
 bool same(double a, double b) { return std::abs(a - b) <= 0.01 * std::abs(b); }
 
-double end_speed(const Phase& phase) {
-  return phase.speed + phase.duration * (phase.acceleration + phase.duration * phase.jerk / 2);
-}
-
 // When the distance has been gone from speed, acceleration and jerk on, of a motion that takes `duration` for `length`;
 // a little outside it at the speed that it has there. Newton's method between bounds.
 double time_at(double distance, double speed, double acceleration, double jerk, double duration, double length) {
@@ -466,6 +462,15 @@ double Quantiser::path_reach(const Piece& first) {
   return ticks * fit / known;
 }
 
+// While a piece that begins in the block is in force, all up to the stop is queued: the pieces come before the only
+// path. What follows may come in part; a stop distance beyond the stop would make the card hold until the rest is
+// there.
+bool Quantiser::ends_queued(const PathEntry& entry) {
+  const Geometry geometry = entry.block.geometry;
+  return entry.stop && (geometry == Geometry::kLine || geometry == Geometry::kArc ||
+                        (geometry == Geometry::kArcChord && entry.block.parts == 1));
+}
+
 void Quantiser::complete_first() {
   Piece& first = piece(completed_);
   const std::uint64_t highest = highest_[slot(highest_first_)];
@@ -473,7 +478,7 @@ void Quantiser::complete_first() {
   // At least 1: 0 says that the piece ends at rest.
   if (!first.stop) {
     const double wanted = std::min(std::ceil(stop_clocks_ * rate), reach(first) / kFillOfReach - kReserve);
-    first.command.stop_distance = wanted > 1 ? ticks32(wanted) : 1;
+    first.command.stop_distance = wanted > 1 && !ends_queued(path_[first.block]) ? ticks32(wanted) : 1;
   }
   if (highest == completed_) ++highest_first_;
   ++completed_;

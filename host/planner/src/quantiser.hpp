@@ -85,6 +85,7 @@ class Quantiser {
   static Instant instant(const Motion& motion, double distance, double ticks);
   void complete();
   void see_next();
+  static bool ends_queued(const PathEntry& entry);
   void complete_first();
   double reach(const Piece& first);
   double path_reach(const Piece& first);

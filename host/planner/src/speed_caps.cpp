@@ -1,15 +1,8 @@
 #include "speed_caps.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace trammel::planner {
-namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-}  // namespace
-
 LevelledSpeeds::LevelledSpeeds(std::size_t most) {
   wanted_.reserve(most);
   levelled_.reserve(most);

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "speed_window.hpp"
 
 namespace trammel::planner {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 struct Cap {
   double begin = 0;  // = end: a corner

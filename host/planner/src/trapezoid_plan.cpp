@@ -11,7 +11,7 @@ constexpr std::size_t kChunks = 16;   // of a window
 constexpr double kNoLength = 1e-9;    // share of a span that rounding may leave over
 constexpr double kSameMotion = 1e-6;  // relative: accelerations, or constant speeds, that make one phase
 
-bool same(double a, double b) { return std::abs(a - b) <= kSameMotion * std::abs(b); }
+bool same_motion(double a, double b) { return std::abs(a - b) <= kSameMotion * std::abs(b); }
 
 }  // namespace
 
@@ -112,8 +112,8 @@ void TrapezoidPlan::add(const Part& part, bool in_sight) {
   const double from = std::sqrt(part.from);
   const double duration = 2 * part.length / (from + std::sqrt(part.to));
   const double acceleration = part.acceleration;
-  const bool goes_on = pending_.length > 0 && same(pending_.acceleration, acceleration) &&
-                       (acceleration != 0 || same(pending_.speed, from)) && pending_.short_sight == !in_sight;
+  const bool goes_on = pending_.length > 0 && same_motion(pending_.acceleration, acceleration) &&
+                       (acceleration != 0 || same_motion(pending_.speed, from)) && pending_.short_sight == !in_sight;
   if (!goes_on) {
     give_pending(acceleration);
     pending_ = Phase{0, 0, from, acceleration, 0, 0, false, !in_sight};

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "centre_scale.hpp"
 #include "trammel/run/step_recorder.hpp"
 
 namespace trammel::run {
 namespace {
-
-constexpr double kCentreScale = 256.0;
 
 // The commanded path of a block as points. In mm, where an arc is a circle whatever the axes' scales.
 class CommandedPath {

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "centre_scale.hpp"
 #include "trammel/card_map.hpp"
 
 namespace trammel::run {
 namespace {
-
-constexpr double kCentreScale = 1U << card_map::constant::kCentreFractionBits;
 
 // Pulses that a line makes on an axis: its increment times its ticks, to the nearest.
 double displacement(const driver::LineCommand& line, unsigned axis) {

@@ -17,7 +17,7 @@ constexpr double kShaperShare = 0.95;       // of the rate at which the shaper m
 constexpr double kTicksPerPulse = 128;      // steps even to 1/64
 constexpr double kMostPulses = 0x1p30;      // of one jog and axis: half of what the counters hold each way
 constexpr double kMostTicks = 0x1p39;       // half of a command's 40 bits
-constexpr double kLeastTicks = 64;          // of a path
+constexpr double kLeastPathTicks = 64;      // of a path
 constexpr double kLeastTickRate = 0x1p-30;  // ticks a clock
 
 // What the axes allow along a direction; all of them that it has.
@@ -72,7 +72,7 @@ JogPath made(const machine::Machine& machine, const driver::CardTiming& card, co
   const double rate = speed * limits.pulses;  // pulses/s
   const double per_pulse =
       std::max(std::min(kTicksPerPulse, kMostTickRate * card.clock_hz / rate), kLeastTickRate * card.clock_hz / rate);
-  const double ticks = std::clamp(std::round(per_pulse * limits.pulses * length), kLeastTicks, kMostTicks);
+  const double ticks = std::clamp(std::round(per_pulse * limits.pulses * length), kLeastPathTicks, kMostTicks);
   path.ticks = static_cast<std::uint64_t>(ticks);
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     // Towards zero: never beyond a limit.

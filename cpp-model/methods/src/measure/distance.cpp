@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numbers.hpp"
+
 namespace trammel::measure {
 namespace {
 
@@ -12,9 +14,6 @@ void take(Spread& spread, double distance) {
   spread.largest = larger(spread.largest, distance);
   spread.mean += distance;
 }
-
-// Times are below 2^63; the conversion from unsigned would branch.
-double as_double(std::uint64_t time) { return static_cast<double>(static_cast<std::int64_t>(time)); }
 
 // One axis of a line: how far it is from the running point, at each event and at the whole time unit before it, when
 // it still stands where it stood.

@@ -4,13 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "numbers.hpp"
+
 namespace trammel::measure {
 namespace {
-
-constexpr double kTurn = 6.283185307179586476925;
-
-// Times are below 2^63; the conversion from unsigned would branch.
-double as_double(std::uint64_t time) { return static_cast<double>(static_cast<std::int64_t>(time)); }
 
 // Line: the deviations are linear in the intervals, so integers do, and one division at the end.
 Evenness line_evenness(const Trace& trace, double pulses, std::size_t axis) {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numbers.hpp"
+
 namespace trammel::measure {
 namespace {
 
-constexpr double kTurn = 6.283185307179586476925;
 // Parts of the table of arc length: chords of 1/4,096 turn are short of their arc by 1e-7.
 constexpr std::size_t kParts = 4096;
 

@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <functional>
 
+#include "numbers.hpp"
+
 namespace trammel::measure {
 namespace {
 
-constexpr double kTurn = 6.283185307179586476925;
 constexpr double kSettle = 0.1;  // s of rest after the last pulse
 
 // Rotor angle (rad), speed (rad/s), currents of both phases (A).

@@ -1,0 +1,13 @@
+// What several measures count with. Internal to them.
+#pragma once
+
+#include <cstdint>
+
+namespace trammel::measure {
+
+constexpr double kTurn = 6.283185307179586476925;
+
+// Times are below 2^63; the conversion from unsigned would branch.
+inline double as_double(std::uint64_t time) { return static_cast<double>(static_cast<std::int64_t>(time)); }
+
+}  // namespace trammel::measure

@@ -1,0 +1,57 @@
+#include "machine_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "text.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card_timing.hpp"
+#include "trammel/driver/errors.hpp"
+
+namespace trammel::machine {
+
+void check_motors(const std::string& where, const Machine& machine) {
+  if (machine.axes.size() > card_map::kMaxAxes) {
+    refuse(fmt::format("{}: {} axes, the card has at most {}", where, machine.axes.size(), card_map::kMaxAxes));
+  }
+  if (machine.motors() > card_map::kMaxAxes) {
+    refuse(fmt::format("{}: {} motors, second ones included, the card has at most {}", where, machine.motors(),
+                       card_map::kMaxAxes));
+  }
+  for (const MachineAxis& axis : machine.axes) {
+    if (axis.second_inverted && !axis.second_motor) {
+      refuse(fmt::format("{}: axis {}: second_inverted without second_motor", where, axis.letter));
+    }
+  }
+}
+
+void check_times(const std::string& where, const Machine& machine) {
+  constexpr double kLongest = 1e15;  // ns; more than any register at the slowest clock
+  const auto check = [&](const MachineAxis& axis, double time, const char* what) {
+    const std::chrono::nanoseconds whole(static_cast<std::int64_t>(std::ceil(std::min(time, kLongest))));
+    try {
+      driver::step_time_clocks(whole, machine.clock_hz, what);
+    } catch (const driver::ArgumentError& error) {
+      refuse(fmt::format("{}: axis {}: {}", where, axis.letter, error.what()));
+    }
+  };
+  for (const MachineAxis& axis : machine.axes) {
+    check(axis, axis.step_length_ns, "step_length_ns");
+    check(axis, axis.step_space_ns, "step_space_ns");
+    check(axis, axis.direction_setup_ns, "direction_setup_ns");
+    check(axis, axis.direction_hold_ns, "direction_hold_ns");
+  }
+}
+
+void check_outputs(const std::string& where, const MachineOutputs& outputs) {
+  const unsigned both = unsigned{outputs.spindle()} & outputs.coolant();
+  if (both == 0) return;
+  unsigned output = 0;
+  while ((both >> output & 1U) == 0) ++output;
+  refuse(fmt::format("{}: output {} is named for the spindle (m3, m4) and for coolant (m7, m8)", where, output));
+}
+
+}  // namespace trammel::machine

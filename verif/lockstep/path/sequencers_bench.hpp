@@ -1,0 +1,408 @@
+// Both sequencers beside their models: programs into the queues, time, engines and axes as the dice or a test have
+// them.
+#pragma once
+
+#include <Vdut.h>
+
+#include "programs.hpp"
+#include "trammel/model/probe.hpp"
+#include "trammel/model/sequencer.hpp"
+#include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+
+class SequencersBench {
+ public:
+  static constexpr unsigned kAxes = 4;
+  static constexpr std::uint64_t kComparedSignals = 32;
+  using Stretch = Programs::Stretch;
+
+  explicit SequencersBench(std::uint64_t seed)
+      : check_("sequencers", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
+    programs_.chords = true;
+    programs_.path_commands = true;
+    programs_.classes = true;
+    programs_.probes = true;
+    reset();
+  }
+
+  // How often what comes from outside comes: one clock in so many.
+  struct Pace {
+    unsigned enable = 1;
+    unsigned feed_tick = 1;  // of the enabled clocks
+    unsigned busy = 8;       // engine not ready, not done, its state not free
+    unsigned write = 1;      // a halfword into a queue
+    unsigned cut = 2000;
+    unsigned input = 100;   // another level at one input
+    unsigned at_rest = 10;  // the ratio is 0
+  };
+  Pace pace;
+
+  void random_pace() {
+    pace.enable = 1 + dice_.below(dice_.chance(2) ? 1 : 6);
+    pace.feed_tick = 1 + dice_.below(dice_.chance(2) ? 1 : 6);
+    pace.busy = 2 + dice_.below(20);
+    pace.write = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
+    pace.cut = dice_.chance(2) ? 100 + dice_.below(400) : 20'000;
+    pace.input = 3 + dice_.below(dice_.chance(2) ? 30 : 1000);
+    programs_.wrong_every = dice_.chance(4) ? 10 : 1000;
+    programs_.longest = dice_.chance(2) ? 20 : 200;
+  }
+
+  void random_clock() {
+    if (dice_.chance(3000)) random_pace();
+    commands();
+    random_mode();
+    in_.cut = dice_.chance(pace.cut);
+    if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
+    if (stand_for_ != 0) --stand_for_;
+    in_.elsewhere = dice_.chance(30);
+    if (in_.cut) check_.event("cut");
+    if (dice_.chance(10 * pace.cut))
+      reset();
+    else
+      clock();
+  }
+
+  // Everything from the start again, by other dice.
+  void restart(std::uint64_t seed) {
+    dice_ = Dice(seed);
+    stand_for_ = rest_for_ = payload_taken_for_ = 0;
+    reset();
+  }
+
+  // Short programs of all kinds, at a tick every other clock.
+  void short_programs(unsigned clocks) {
+    pace = {1, 2, 3, 1, 0, 20};
+    programs_.longest = 8;
+    programs_.wrong_every = 20;
+    for (unsigned i = 0; i < clocks; ++i) {
+      commands();
+      clock();
+    }
+  }
+
+  // At whatever is decided in this clock, a path's wrong end among it.
+  void interrupt(bool by_reset) {
+    in_.elsewhere = true;
+    in_.cut = !by_reset;
+    if (by_reset)
+      reset();
+    else
+      clock();
+    in_.elsewhere = in_.cut = false;
+  }
+
+  // Now and then a stretch of commands or, at rest, a direct move.
+  void commands() {
+    // Where ticks may not be taken neither commands nor a START get this far.
+    const bool open = stand_for_ == 0;
+    if (open && direct_step_ == 0 && geometry_.done() && dice_.chance(40)) add(programs_.stretch());
+    // The last command's commit shows in the queue two clocks later and in `idle` after two more.
+    rest_for_ = at_rest() ? rest_for_ + 1 : 0;
+    if (open && rest_for_ > 8 && dice_.chance(100)) direct_step_ = 1;
+    direct();
+  }
+
+  void clock() {
+    surroundings();
+    apply();
+    const std::uint32_t begun[] = {model_.outputs().feed_begun, model_.outputs().geometry_begun};
+    const bool geometry_reads = model_.geometry_read();
+    const bool feed_reads = model_.feed_read();
+    const model::Probe::Inputs probe_in = probe_inputs();
+    dut_.clock();
+    drops_ += model_.geometry_drops(in_) ? 1U : 0U;
+    model_.clock(in_);
+    probe_.clock(probe_in);
+    chain_[1].clock(dut_->snapshot_i, begun[1], chain_[0]);
+    chain_[0].clock(dut_->snapshot_i, begun[0], dut_->chain_i);
+    geometry_.clock(geometry_reads, dice_.chance(pace.write), in_.cut);
+    feed_.clock(feed_reads, dice_.chance(pace.write), in_.cut);
+    cut_before_ = in_.cut || in_.halt;
+    halts_ += in_.halt ? 1U : 0U;
+    if (in_.cut) direct_step_ = 0;
+    compare();
+    ends_ += model_.outputs().swap ? 1U : 0U;
+    in_.direct_load = {};
+    in_.direct_go = false;
+    in_.setting = {};
+    in_.arrives = in_.arrived = false;
+    missing_ += model_.streaming().missing ? 1U : 0U;
+    late_ += model_.outputs().swap && stale_before_ ? 1U : 0U;
+    stale_before_ = model_.outputs().stale;
+  }
+
+  void add(const Stretch& stretch) {
+    check_.event("stretch of commands", stretch.geometry.size());
+    geometry_.add(stretch.geometry);
+    feed_.add(stretch.feed);
+  }
+
+  // Position streaming: a period of so many ticks, the next one so many clocks later, two more, and an END or a cut.
+  void stream(unsigned ticks, unsigned stale_periods, unsigned clocks) {
+    const auto period = [&] { return stored_command(card_map::Opcode::Line, 7, ticks, {}, {kOnePulse, 1, -1}); };
+    const auto run = [this](unsigned n) {
+      for (; n != 0; --n) clock();
+    };
+    pace = {1, 1 + dice_.below(3), 1'000'000, 1, 1'000'000};
+    reset();
+    in_.setting = {true, card_map::reg::kStreaming, card_map::field::kStreamingOn | stale_periods << 8};
+    run(10);
+    const unsigned given = dice_.chance(2) ? ticks : 1;
+    add({{period()}, {stored_command(card_map::Opcode::Feed, 0, given, {{"rate", int128{1} << 63}, {"floor", 1}})}});
+    run(clocks);
+    add({{period()}, {}});
+    run(dice_.below(40));
+    add({{period()}, {}});
+    run(60 + 8 * ticks * (1 + stale_periods));
+    const Halfwords end = stored_command(card_map::Opcode::End, 0, 0);
+    if (dice_.chance(2)) add({{end}, {end}});
+    run(60);
+    in_.cut = true;
+    clock();
+    in_.cut = false;
+    run(20);
+  }
+
+  // A program with a PROBE for a high level of input 0, which rises after so many clocks.
+  void probed(const Stretch& program, unsigned clocks) {
+    pace = {1, 1 + dice_.below(2), 3, 1 + dice_.below(2), 1'000'000, 1'000'000, 1 + dice_.below(4)};
+    levels_ = 0;
+    add(program);
+    for (unsigned i = 0; i < clocks; ++i) clock();
+    levels_ = 1;
+    for (unsigned i = 0; i < 400; ++i) clock();
+  }
+
+  // STREAMING, and halfwords on their way in, at any clock: the mode changes at rest alone.
+  void random_mode() {
+    const bool on = dice_.chance(2);
+    in_.setting = {dice_.chance(mode_every_), dice_.chance(8) ? card_map::reg::kHold : card_map::reg::kStreaming,
+                   (on ? card_map::field::kStreamingOn : 0) | dice_.below(4) << 8};
+    in_.arrives = dice_.chance(20);
+    in_.arrived = dice_.chance(10);
+  }
+
+  bool at_rest() const {
+    return !probe_.busy() && model_.outputs().idle && geometry_.done() && feed_.done() && geometry_.outputs().empty &&
+           feed_.outputs().empty && direct_step_ == 0 && !model_.outputs().direct && model_.outputs().feed_clear;
+  }
+
+  Checker& check() { return check_; }
+  const model::Sequencer::Outputs& outputs() const { return model_.outputs(); }
+  std::uint64_t swaps() const { return ends_; }
+  std::uint64_t missing() const { return missing_; }
+  std::uint64_t late() const { return late_; }
+  std::uint64_t halts() const { return halts_; }
+  std::uint64_t drops() const { return drops_; }
+  std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
+
+ private:
+  // One clock of reset, whatever comes in it.
+  void reset() {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    surroundings();
+    apply();
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::Sequencer();
+    probe_ = model::Probe();
+    payload_taken_for_ = 0;
+    cut_before_ = true;
+    geometry_.reset();
+    feed_.reset();
+    chain_[0] = chain_[1] = {};
+    direct_step_ = 0;
+    feed_ticks_ = 0;
+    in_.direct_load = {};
+    in_.direct_go = false;
+    compare();
+  }
+
+  // The loader: the length's halfwords, then, 8 clocks later, go.
+  void direct() {
+    if (direct_step_ == 0) return;
+    ++direct_step_;
+    if (direct_step_ == 2) length_ = dice_.chance(2) ? 1 + dice_.below(4) : 1 + dice_.below(200);
+    if (direct_step_ >= 3 && direct_step_ < 6) {
+      in_.direct_load = halfword(model::load_target::kTicks, length_, direct_step_ - 3);
+    } else if (direct_step_ == 6) {
+      in_.direct_load = halfword(dice_.below(16), dice_.word(), 0);
+    } else if (direct_step_ == 15) {
+      check_.event("direct move", length_);
+      in_.direct_go = true;
+      in_.direct_mask = static_cast<std::uint8_t>(1 + dice_.below((1U << kAxes) - 1));
+    } else if (direct_step_ > 20 && !model_.outputs().direct) {
+      direct_step_ = 0;
+    }
+  }
+
+  // Ticks come three clocks after their enable and not after a clear.
+  void surroundings() {
+    in_.geometry_empty = geometry_.outputs().empty;
+    in_.geometry_word = geometry_.outputs().word;
+    in_.feed_empty = feed_.outputs().empty;
+    in_.feed_word = feed_.outputs().word;
+    in_.enable = dice_.chance(pace.enable);
+    in_.feed_tick = (feed_ticks_ & 1) != 0;
+    feed_ticks_ >>= 1;
+    if (model_.outputs().feed_enable && dice_.chance(pace.feed_tick)) feed_ticks_ |= 4;
+    if (model_.outputs().feed_clear) feed_ticks_ = 0;
+    // A direct move has no engine to wait for.
+    in_.engine_ready = model_.outputs().direct || !dice_.chance(pace.busy);
+    // Taken from a clock after an arc's tick on, for at least as long as that is on its way.
+    if (model_.outputs().engine != card_map::engine::kLines && model_.outputs().tick)
+      payload_taken_for_ = 4 + dice_.below(pace.busy);
+    else if (payload_taken_for_ != 0)
+      --payload_taken_for_;
+    in_.engine_done = !dice_.chance(pace.busy);
+    // The arc generator has the axes' shadows from its start until it has been over for a while.
+    if (model_.outputs().swap && model_.outputs().engine == card_map::engine::kArcGenerator)
+      in_.shadows_free = false;
+    else if (cut_before_ || (!model_.engine_taken() && dice_.chance(pace.busy)))
+      in_.shadows_free = true;
+    // A path on lines begins when the engine before it has finished; a cut finishes it.
+    if (cut_before_ || (model_.outputs().swap && model_.outputs().engine == card_map::engine::kLines))
+      payload_taken_for_ = 0;
+    in_.payload_ready = payload_taken_for_ == 0 && in_.shadows_free;
+    in_.axes_live = dice_.chance(2);
+    probe();
+    // A piece that is short of ticks behind it; mostly none is.
+    if (dice_.chance(in_.wait ? 30 : 300)) in_.wait = !in_.wait;
+  }
+
+  // What the probe does with inputs that change now and then.
+  void probe() {
+    if (dice_.chance(pace.input)) levels_ = static_cast<std::uint16_t>(levels_ ^ 1U << dice_.below(16));
+    at_rest_ = dice_.chance(pace.at_rest);
+    clear_ = dice_.chance(40);
+    const model::Probe::Inputs in = probe_inputs();
+    in_.halt = probe_.halt();
+    in_.drop = probe_.drops();
+    in_.probe_taken = probe_.takes(in);
+    in_.met = probe_.met(levels_);
+    in_.stays = probe_.stays(in);
+  }
+
+  model::Probe::Inputs probe_inputs() const {
+    model::Probe::Inputs in;
+    in.cut = in_.cut;
+    in.levels = levels_;
+    in.waits = model_.probe_waits();
+    in.ends = model_.probe_ends();
+    in.at_rest = at_rest_;
+    in.clear = clear_;
+    in.load = model_.load();
+    return in;
+  }
+
+  void apply() {
+    dut_->cut_i = in_.cut;
+    dut_->setting_i = wire(in_.setting);
+    dut_->arrive_i = (in_.arrived ? 1U << 20 : 0) | (in_.arrives ? 1U << 18 : 0);
+    dut_->drop_i = static_cast<CData>(unsigned{in_.drop} << 1 | unsigned{in_.halt});
+    dut_->probe_says_i =
+        static_cast<CData>(unsigned{in_.stays} << 2 | unsigned{in_.probe_taken} << 1 | unsigned{in_.met});
+    dut_->geometry_empty_i = in_.geometry_empty;
+    dut_->geometry_word_i = in_.geometry_word;
+    dut_->feed_empty_i = in_.feed_empty;
+    dut_->feed_word_i = in_.feed_word;
+    dut_->direct_load_i = load_wire(in_.direct_load);
+    dut_->direct_go_i = in_.direct_go;
+    dut_->direct_mask_i = in_.direct_mask;
+    dut_->enable_i = in_.enable;
+    dut_->wait_i = in_.wait;
+    dut_->feed_tick_i = in_.feed_tick;
+    dut_->engine_ready_i = in_.engine_ready;
+    dut_->payload_ready_i = in_.payload_ready;
+    dut_->shadows_free_i = in_.shadows_free;
+    dut_->engine_done_i = in_.engine_done;
+    dut_->elsewhere_i = in_.elsewhere;
+    dut_->axes_live_i = in_.axes_live;
+    dut_->snapshot_i = dice_.snapshot();
+    dut_->chain_i = dice_.draw();
+  }
+
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_.outputs();
+    check_.compare("geometry_read_o", dut_->geometry_read_o, model_.geometry_read());
+    check_.compare("engine_taken_o", dut_->engine_taken_o, model_.engine_taken());
+    check_.compare("feed_read_o", dut_->feed_read_o, model_.feed_read());
+    check_.compare("direct_o", dut_->direct_o, out.direct);
+    check_.compare("feed_enable_o", dut_->feed_enable_o, out.feed_enable);
+    check_.compare("feed_clear_o", dut_->feed_clear_o, out.feed_clear);
+    check_.compare("tick_o", dut_->tick_o, out.tick);
+    check_.compare("swap_o", dut_->swap_o, out.swap);
+    check_.compare("feed_swap_o", dut_->feed_swap_o, out.feed_swap);
+    check_.compare("load_o, valid", dut_->load_o >> 21, model_.load().valid);
+    check_.compare("feed_load_o, valid", dut_->feed_load_o >> 19, model_.feed_load().valid);
+    check_.compare("mismatch_o", dut_->mismatch_o, out.mismatch);
+    check_.compare("incomplete_o", dut_->incomplete_o, out.incomplete);
+    const bool dropping = in_.drop;  // combinational: of the clock that is over
+    check_.compare("instant_o", dut_->instant_o,
+                   unsigned{model_.takes_mark(dropping)} << 1 | unsigned{model_.takes_output(dropping)});
+    check_.compare("PROBE waits", dut_->probe_at_o & 1, model_.probe_waits());
+    check_.compare("PROBE_END has begun", dut_->probe_at_o >> 1 & 1, model_.probe_ends());
+    check_.compare("WAIT_INPUT has begun", dut_->probe_at_o >> 2, model_.waits_for_input());
+    check_.compare("over_o", dut_->over_o, out.over);
+    check_.compare("path_active_o", dut_->path_active_o, out.path_active);
+    check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
+    check_.compare("moving_o", dut_->moving_o, out.moving);
+    check_.compare("class_o", dut_->class_o, out.piece_class);
+    check_.compare("ended_o", dut_->ended_o, out.ended);
+    check_.compare("idle_o", dut_->idle_o, out.idle);
+    check_.compare("geometry_begun_o", dut_->geometry_begun_o, out.geometry_begun);
+    check_.compare("feed_begun_o", dut_->feed_begun_o, out.feed_begun);
+    check_.compare("streaming_o", dut_->streaming_o, model_.streaming().on);
+    check_.compare("missing_o", dut_->missing_o, model_.streaming().missing);
+    check_.compare("stale_o", dut_->stale_o >> 32, out.stale);
+    check_.compare("stale_o, ticks", dut_->stale_o & 0xFFFFFFFF, model_.streaming().ticks);
+    check_.compare("spent_o", dut_->spent_o, out.spent);
+    // What stands beside an event, where there is one.
+    const std::uint64_t beside = out.swap ? std::uint64_t{out.engine} << 8 | out.active : 0;
+    check_.compare("active_o and engine_o", out.swap ? dut_->engine_o << 8 | dut_->active_o : 0, beside);
+    if (model_.load().valid) more("load_o", dut_->load_o, load_wire(model_.load()));
+    if (model_.feed_load().valid) more("feed_load_o", dut_->feed_load_o, feed_wire(model_.feed_load()));
+    if (chain_[1].known()) more("chain_o", dut_->chain_o, chain_[1].word());
+  }
+
+  void more(const char* signal, std::uint64_t rtl, std::uint64_t model) {
+    check_.compare(signal, rtl, model);
+    ++more_;
+  }
+
+  Simulated<Vdut> dut_;
+  model::Sequencer model_;
+  model::Sequencer::Inputs in_;
+  model::Probe probe_;
+  Checker check_;
+  Dice dice_;
+  Programs programs_;
+  QueueWriter geometry_;
+  QueueWriter feed_;
+  SnapshotWord chain_[2];
+  unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
+  unsigned payload_taken_for_ = 0;
+  bool cut_before_ = false;   // in the last clock
+  unsigned stand_for_ = 0;    // clocks of a fault
+  unsigned direct_step_ = 0;  // of a direct move; 0: none
+  unsigned rest_for_ = 0;     // clocks
+  std::uint64_t length_ = 0;
+  std::uint64_t ends_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t late_ = 0;
+  bool stale_before_ = false;
+  unsigned mode_every_ = 200;
+  std::uint16_t levels_ = 0;
+  bool at_rest_ = false;
+  bool clear_ = false;
+  std::uint64_t halts_ = 0;
+  std::uint64_t drops_ = 0;
+  std::uint64_t more_ = 0;
+};
+
+}  // namespace trammel::lockstep
