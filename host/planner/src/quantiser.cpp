@@ -246,6 +246,11 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
   Motion motion;
   motion.rate = rate_at(begin);
   motion.end_rate = rate_at(end);
+  // Its jerk is no guide far outside the phase: it would end the feed before the ticks end.
+  const double left = end_speed(phase) * rate_a_speed_;
+  if (!rests && end > phase.duration && std::abs(motion.end_rate - left) > left / 2) {
+    return steady(phase.speed * rate_a_speed_, left, ticks);
+  }
   motion.acceleration = (phase.acceleration + begin * phase.jerk) * rate_a_speed_ / clock_hz_;
   motion.jerk = phase.jerk * rate_a_speed_ / clock_hz_ / clock_hz_;
   motion.clocks = (end - begin) * clock_hz_;
