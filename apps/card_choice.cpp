@@ -28,6 +28,14 @@ auto opening(const transport::CardUrl& url, Call call) {
   }
 }
 
+// Who comes with a token makes the card hold when he goes: so reading does without it.
+transport::CardUrl with_token(transport::CardUrl url, Purpose purpose) {
+  const char* const token = std::getenv("TRAMMEL_TOKEN");
+  const bool wants_one = purpose == Purpose::kMove && url.kind == transport::CardUrl::Kind::kTcp && url.token.empty();
+  if (wants_one && token != nullptr) url.token = token;
+  return url;
+}
+
 }  // namespace
 
 void CardChoice::add_to(CLI::App& command) {
@@ -41,21 +49,20 @@ void CardChoice::add_to(CLI::App& command) {
 std::optional<transport::CardUrl> CardChoice::url() const {
   if (!text) return std::nullopt;
   try {
-    transport::CardUrl url = transport::parse_card_url(*text);
+    const transport::CardUrl url = transport::parse_card_url(*text);
     if (url.kind == transport::CardUrl::Kind::kSim) {
       if (url.text != "sim:") throw UsageError("--card sim: takes no options here: --axes, --clock and --engine do");
       return std::nullopt;
     }
-    const char* token = std::getenv("TRAMMEL_TOKEN");
-    if (url.kind == transport::CardUrl::Kind::kTcp && url.token.empty() && token != nullptr) url.token = token;
     return url;
   } catch (const driver::ArgumentError& error) {
     throw UsageError(fmt::format("--card: {}", error.what()));
   }
 }
 
-void with_card(const transport::CardUrl& url, Purpose purpose,
+void with_card(const transport::CardUrl& place, Purpose purpose,
                const std::function<void(driver::Card&, transport::Connection&)>& use) {
+  const transport::CardUrl url = with_token(place, purpose);
   const auto connection = opening(url, [&] { return std::make_unique<transport::Connection>(url); });
   driver::Card card = opening(url, [&] { return driver::Card::open(connection->bus()); });
   if (purpose == Purpose::kMove && !connection->may_move()) {

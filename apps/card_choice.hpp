@@ -16,14 +16,14 @@ struct CardChoice {
   std::optional<std::string> text;
 
   void add_to(CLI::App& command);
-  // None for a simulated card of this process. Throws UsageError for what is no card's URL. A token that the URL does
-  // not have is taken from TRAMMEL_TOKEN.
+  // None for a simulated card of this process. Throws UsageError for what is no card's URL.
   std::optional<transport::CardUrl> url() const;
 };
 
 enum class Purpose { kRead, kMove };
 
-// Opens the card and lets `use` work with it. What keeps it from being opened, or from being moved by this user, is a
+// Opens the card and lets `use` work with it. To move it, a token that the URL does not have is taken from
+// TRAMMEL_TOKEN. What keeps it from being opened, or from being moved by this user, is a
 // UsageError.
 void with_card(const transport::CardUrl& url, Purpose purpose,
                const std::function<void(driver::Card&, transport::Connection&)>& use);

@@ -69,10 +69,10 @@ run::Outcome run_until_signal(run::Runner& runner, driver::Card& card, const mac
   try {
     return stream ? runner.stream(card) : runner.run(card);
   } catch (const run::StoppedOnPath& stopped) {
-    std::string where = fmt::format("line {},", stopped.line());
+    std::string where = fmt::format("line {}", stopped.line());
     for (std::size_t a = 0; a < machine.axes.size(); ++a) {
       const machine::MachineAxis& axis = machine.axes[a];
-      where += fmt::format(" {} at pulse {} ({:.4f} mm)", axis.letter, stopped.position()[a],
+      where += fmt::format(", {} at pulse {} ({:.4f} mm)", axis.letter, stopped.position()[a],
                            static_cast<double>(stopped.position()[a]) / axis.steps_per_mm);
     }
     signals.end(where);

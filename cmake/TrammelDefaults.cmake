@@ -5,6 +5,12 @@ if(PROJECT_IS_TOP_LEVEL)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
   endif()
   set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+  # There are 360 programs to link: gold, which comes with g++ on Debian, takes half of the time of the default linker.
+  include(CheckLinkerFlag)
+  check_linker_flag(CXX -fuse-ld=gold TRAMMEL_LINKS_WITH_GOLD)
+  if(TRAMMEL_LINKS_WITH_GOLD)
+    add_link_options($<$<CONFIG:Release>:-fuse-ld=gold>)
+  endif()
 endif()
 
 option(TRAMMEL_WERROR "Warnings are errors" OFF)

@@ -46,7 +46,14 @@ constexpr const char* kUnknown =
 
 }  // namespace
 
-FrameBus::FrameBus(ByteLink& link, const Options& options) : link_(link), options_(options) { begin_anew(); }
+FrameBus::FrameBus(ByteLink& link, const Options& options) : link_(link), options_(options) {
+  if (options.opens_at_once) {
+    options_.sends = 1;
+    options_.restarts = 0;
+  }
+  begin_anew();
+  options_ = options;
+}
 
 void FrameBus::begin_anew() {
   reconnect();
@@ -195,7 +202,11 @@ bool FrameBus::connect() {
 
 void FrameBus::reconnect() {
   std::string failure =
-      fmt::format("no card answers: asked {} times on each of {} connections", options_.sends, options_.restarts + 1);
+      options_.sends == 1 && options_.restarts == 0
+          ? fmt::format("no card answers within {} ms",
+                        std::chrono::duration_cast<std::chrono::milliseconds>(options_.answer).count())
+          : fmt::format("no card answers: asked {} times on each of {} connections", options_.sends,
+                        options_.restarts + 1);
   for (unsigned attempt = 0; attempt <= options_.restarts; ++attempt) {
     ++counts_.restarts;
     deframer_.clear();

@@ -55,17 +55,19 @@ void CardServer::Client::read(std::chrono::nanoseconds longest) {
   std::uint8_t bytes[4096];
   while (const std::size_t count = stream_->read(bytes, sizeof(bytes), longest)) {
     came_.insert(came_.end(), bytes, bytes + count);
-    heard_ = steady_clock::now();
+    if (begun_) heard_ = steady_clock::now();
     longest = std::chrono::nanoseconds(0);
     if (came_.size() > kMostRubbish) throw Unwanted("more bytes than the line carries: a request waits for its reply");
   }
   check_silence();
 }
 
+// Who has not begun is not helped by single bytes.
 void CardServer::Client::check_silence() const {
   const auto most = begun_ ? settings_.silence : settings_.hello;
   if (most.count() == 0 || !answers_.empty() || !came_.empty() || steady_clock::now() - heard_ < most) return;
-  throw Unwanted(fmt::format("nothing came for {:.1f} s", std::chrono::duration<double>(most).count()));
+  throw Unwanted(fmt::format("{} {:.1f} s", begun_ ? "nothing came for" : "neither a hello nor a request in",
+                             std::chrono::duration<double>(most).count()));
 }
 
 // Where a frame may begin, a hello may as well, and a wait of who has said one: no frame has their first letters. They
@@ -98,6 +100,11 @@ void CardServer::Client::begin_anew() {
   may_move_ = false;
 }
 
+void CardServer::Client::begin() {
+  if (!begun_) heard_ = steady_clock::now();
+  begun_ = true;
+}
+
 void CardServer::Client::take_hello(const std::string& line) {
   const bool plain = line == kHello;
   const bool with_token = line.rfind(std::string(kHello) + " ", 0) == 0;
@@ -105,7 +112,7 @@ void CardServer::Client::take_hello(const std::string& line) {
   if (with_token && !same(line.substr(sizeof(kHello)), settings_.token)) {
     throw Unwanted("wrong token: take the one that the server has printed");
   }
-  begun_ = true;
+  begin();
   hello_ = true;
   may_move_ = with_token;
   answer(bytes_of(may_move_ ? "trammel 1 motion\n" : "trammel 1 reading\n"), engine_.cycles());
@@ -123,7 +130,7 @@ bool CardServer::Client::deliver(std::uint8_t byte) {
   if (++since_good_ > kMostRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMostRubbish));
   if (reply.empty()) return true;
   since_good_ = 0;
-  begun_ = true;
+  begin();
   ++requests_;
   line_out_ = std::max(line_out_, std::max(line_in_, static_cast<double>(engine_.cycles()))) +
               clocks_of_byte_ * static_cast<double>(reply.size());

@@ -53,6 +53,7 @@ class CardServer::Client {
   void check_silence() const;
   bool take_byte(std::uint8_t byte);
   void begin_anew();
+  void begin();
   void take_hello(const std::string& line);
   void take_wait(const std::string& text);
   bool deliver(std::uint8_t byte);
@@ -64,9 +65,9 @@ class CardServer::Client {
   frames::Endpoint& endpoint_;
   const Settings& settings_;
   std::function<void()> left_;
-  double clocks_of_byte_;  // on the line, in card time
-  std::chrono::steady_clock::time_point heard_;
-  std::deque<std::uint8_t> came_;  // not yet at the card
+  double clocks_of_byte_;                        // on the line, in card time
+  std::chrono::steady_clock::time_point heard_;  // something; before it has begun: when it came
+  std::deque<std::uint8_t> came_;                // not yet at the card
   std::deque<Answer> answers_;
   double line_in_ = 0;  // clock from which on the line is free, to the card and back
   double line_out_ = 0;

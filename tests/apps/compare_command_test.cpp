@@ -56,8 +56,8 @@ TEST(Compare, RandomLinesDoNotDependOnTheThreads) {
 
 TEST(Compare, WritesAPicture) {
   const Command command;
-  const std::string picture = command.path("circle.svg");
-  const Outcome outcome = command.run("compare --circle 12 --plot " + picture);
+  const std::string picture = command.path("arc.svg");
+  const Outcome outcome = command.run("compare --arc 12,0,0,0,0,12 --plot " + picture);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, testing::HasSubstr("min-deviation-8"));
   EXPECT_THAT(contents(picture), testing::HasSubstr("</svg>"));

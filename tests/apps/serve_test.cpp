@@ -71,8 +71,11 @@ TEST(Serve, WithoutTheTokenNothingMoves) {
   expect_refused(command, "selftest --card " + server.url(), "give the token");
   expect_refused(command, "run " + program + wrong, "wrong token");
   expect_refused(command, "info" + wrong, "wrong token");
+  EXPECT_EQ(command.run_in(".", "TRAMMEL_TOKEN=secret", "dump --card " + server.url()).status, 0);
   EXPECT_EQ(command.run_in(".", "TRAMMEL_TOKEN=secret", "line --to 10,10 --card " + server.url()).status, 0);
-  EXPECT_TRUE(has(server.end(), "path: 20 steps")) << "those of the last line";
+  const std::string said = server.end();
+  EXPECT_TRUE(has(said, "path: 20 steps")) << "those of the last line";
+  EXPECT_EQ(count_of(said, "the card holds"), 1U) << "dump does without the token";
 }
 
 TEST(Serve, OnAPseudoTerminal) {
@@ -274,6 +277,7 @@ TEST(CardOutside, BadInput) {
   expect_refused(command, "serve --token 'a b'", "--token");
   expect_refused(command, "serve --port 70000", "--port");
   expect_refused(command, "serve --listen no-such-host.invalid", "no such address");
+  expect_refused(command, "serve --listen ''", "no such address");
   expect_refused(command, "serve --pty --port 5", "--pty");
   expect_refused(command, "monitor --interval 0", "--interval");
 }

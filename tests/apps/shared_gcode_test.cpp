@@ -61,7 +61,7 @@ std::string job_name(const testing::TestParamInfo<Job>& info) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Gcode, Jobs,
-                         testing::Values(Job{"jsdc-laser", "50000", {0, 0, 0, 0}, 2},
+                         testing::Values(Job{"jsdc-laser", "25000", {0, 0, 0, 0}, 2},
                                          Job{"tball", "50000", {12482, -2388, 400, 0}, 2},
                                          Job{"arc-xz-plane", "200000", {1600, 0, 0, 0}, 2},
                                          Job{"arc-yz-plane", "200000", {0, 1600, 0, 0}, 2},

@@ -303,7 +303,8 @@ void expect_round_trip(const Command& command, std::uint8_t number) {
   RC_ASSERT(words_of(back.command, number) == words);
 }
 
-RC_GTEST_PROP(CommandsProperty, ALineComesBack, (std::uint8_t number)) {
+RC_GTEST_PROP(CommandsProperty, ALineComesBack, ()) {
+  const auto number = *rc::gen::arbitrary<std::uint8_t>();
   LineCommand line;
   line.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   line.mask = static_cast<std::uint8_t>(*rc::gen::inRange(1, 256));
@@ -318,8 +319,12 @@ RC_GTEST_PROP(CommandsProperty, ALineComesBack, (std::uint8_t number)) {
   RC_ASSERT(back.increment == line.increment);
 }
 
-RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
-              (std::uint8_t number, bool clockwise, std::uint16_t quadrants, std::int32_t end_x, std::int32_t end_y)) {
+RC_GTEST_PROP(CommandsProperty, AnArcComesBack, ()) {
+  const auto number = *rc::gen::arbitrary<std::uint8_t>();
+  const auto clockwise = *rc::gen::arbitrary<bool>();
+  const auto quadrants = *rc::gen::arbitrary<std::uint16_t>();
+  const auto end_x = *rc::gen::arbitrary<std::int32_t>();
+  const auto end_y = *rc::gen::arbitrary<std::int32_t>();
   ArcCommand arc;
   arc.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   arc.path_ticks = *rc::gen::inRange<std::uint64_t>(1, arc.ticks + 1);
@@ -355,7 +360,9 @@ RC_GTEST_PROP(CommandsProperty, AnArcComesBack,
   RC_ASSERT(back.half_y == arc.half_y);
 }
 
-RC_GTEST_PROP(CommandsProperty, AnArcInChordsComesBack, (std::uint8_t number, bool clockwise)) {
+RC_GTEST_PROP(CommandsProperty, AnArcInChordsComesBack, ()) {
+  const auto number = *rc::gen::arbitrary<std::uint8_t>();
+  const auto clockwise = *rc::gen::arbitrary<bool>();
   ArcChordCommand arc;
   arc.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   arc.path_ticks = *rc::gen::inRange<std::uint64_t>(1, std::min(arc.ticks + 1, std::uint64_t{1} << 37));
@@ -386,8 +393,11 @@ RC_GTEST_PROP(CommandsProperty, AnArcInChordsComesBack, (std::uint8_t number, bo
   RC_ASSERT(all(back) == all(arc));
 }
 
-RC_GTEST_PROP(CommandsProperty, AFeedPieceComesBack,
-              (std::uint8_t number, std::uint64_t rate, std::int64_t acceleration, std::int64_t jerk)) {
+RC_GTEST_PROP(CommandsProperty, AFeedPieceComesBack, ()) {
+  const auto number = *rc::gen::arbitrary<std::uint8_t>();
+  const auto rate = *rc::gen::arbitrary<std::uint64_t>();
+  const auto acceleration = *rc::gen::arbitrary<std::int64_t>();
+  const auto jerk = *rc::gen::arbitrary<std::int64_t>();
   FeedCommand feed;
   feed.ticks = *rc::gen::inRange<std::uint64_t>(1, std::uint64_t{1} << 40);
   feed.rate = rate;

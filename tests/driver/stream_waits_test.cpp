@@ -140,21 +140,21 @@ TEST(StreamWaits, AWatermarkEndsAWaitForRoom) {
     Counting bus(*engine);
     Card card = Card::open(bus);
     Stream stream(card);
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 40; ++i) {
       stream.put(feed_of(500));
       stream.put(line_of(500, 5));
     }
     EXPECT_EQ(bus.late == 0, watermarks);
     if (watermarks) {
-      EXPECT_GE(bus.interrupts, 50U);
+      EXPECT_GE(bus.interrupts, 15U);
       EXPECT_EQ(bus.sleeps, 0U);
     }
     stream.put(EndCommand{});
     EXPECT_TRUE(stream.finish().ended);
-    EXPECT_EQ(engine->positions()[0], 500);
-    // 100 pieces of 8,000 clocks, and no waits beyond.
-    EXPECT_GE(engine->cycles(), 800'000U);
-    EXPECT_LE(engine->cycles(), 803'000U);
+    EXPECT_EQ(engine->positions()[0], 200);
+    // 40 pieces of 8,000 clocks, and no waits beyond.
+    EXPECT_GE(engine->cycles(), 320'000U);
+    EXPECT_LE(engine->cycles(), 323'000U);
   }
 }
 

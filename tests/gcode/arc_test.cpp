@@ -18,7 +18,7 @@ Motion last_arc(const std::string& text) {
   return program.motions.at(program.motions.size() - 2);
 }
 
-std::string refusal(const std::string& text) { return read_text("F60\n" + text).message(); }
+std::string arc_refusal(const std::string& text) { return read_text("F60\n" + text).message(); }
 
 void expect_arc(const std::string& text, double centre_x, double centre_y, bool clockwise, bool full = false) {
   SCOPED_TRACE(text);
@@ -74,32 +74,32 @@ TEST(GcodeArc, InverseTimeAndInches) {
 }
 
 TEST(GcodeArc, RadiusRule) {
-  EXPECT_EQ(refusal("G2 X10 Y10.004 I10"), "accepted");    // below 0.005 mm
-  EXPECT_EQ(refusal("G2 X100 Y100.09 I100"), "accepted");  // below 0.1 %
-  EXPECT_THAT(refusal("G2 X10 Y10.02 I10"), HasSubstr("not on its circle"));
-  EXPECT_THAT(refusal("G2 X100 Y100.11 I100"), HasSubstr("not on its circle"));
-  EXPECT_EQ(refusal("G2 X1000 Y1000.49 I1000"), "accepted");
-  EXPECT_THAT(refusal("G2 X1000 Y1000.51 I1000"), HasSubstr("not on its circle"));
+  EXPECT_EQ(arc_refusal("G2 X10 Y10.004 I10"), "accepted");    // below 0.005 mm
+  EXPECT_EQ(arc_refusal("G2 X100 Y100.09 I100"), "accepted");  // below 0.1 %
+  EXPECT_THAT(arc_refusal("G2 X10 Y10.02 I10"), HasSubstr("not on its circle"));
+  EXPECT_THAT(arc_refusal("G2 X100 Y100.11 I100"), HasSubstr("not on its circle"));
+  EXPECT_EQ(arc_refusal("G2 X1000 Y1000.49 I1000"), "accepted");
+  EXPECT_THAT(arc_refusal("G2 X1000 Y1000.51 I1000"), HasSubstr("not on its circle"));
 }
 
 TEST(GcodeArc, Refusals) {
-  EXPECT_EQ(refusal("G2 I0 J0"), "arc of radius 0");
-  EXPECT_EQ(refusal("G2 X1 R0"), "arc of radius 0");
-  EXPECT_EQ(refusal("G2 X1 I1"), "arc of radius 0");
-  EXPECT_THAT(refusal("G2"), HasSubstr("I, J, K or R"));
-  EXPECT_THAT(refusal("G2 I5\nX1"), HasSubstr("I, J, K or R"));
-  EXPECT_THAT(refusal("G2 X10 R4.9"), HasSubstr("R is too small"));
-  EXPECT_THAT(refusal("G2 R5"), HasSubstr("full circle"));
-  EXPECT_THAT(refusal("G2 X10 R5 I5"), HasSubstr("not both"));
-  EXPECT_THAT(refusal("G2 X10 I5 K1"), HasSubstr("K in the plane XY (G17)"));
-  EXPECT_THAT(refusal("G18 G2 X10 I5 J1"), HasSubstr("J in the plane ZX (G18)"));
-  EXPECT_THAT(refusal("G90.1 G2 X10 I5"), HasSubstr("both words"));
-  EXPECT_EQ(refusal("G53 G2 X10 Y10 I10"), "G53 needs G0 or G1");
-  EXPECT_EQ(refusal("G1 X1 I5"), "I without G2, G3 or G5");
-  EXPECT_EQ(refusal("G0 R5"), "R without G2, G3 or a drilling cycle");
-  EXPECT_THAT(refusal("G1 X10 P2"), HasSubstr("P without"));
-  EXPECT_THAT(refusal("G2 X10 Y10 I10\nP2"), HasSubstr("P without")) << "no arc on this line";
-  EXPECT_EQ(refusal("G2 X10 Y10 I10 P0"), "P0: an arc makes a whole number of turns, 1 to 10000");
+  EXPECT_EQ(arc_refusal("G2 I0 J0"), "arc of radius 0");
+  EXPECT_EQ(arc_refusal("G2 X1 R0"), "arc of radius 0");
+  EXPECT_EQ(arc_refusal("G2 X1 I1"), "arc of radius 0");
+  EXPECT_THAT(arc_refusal("G2"), HasSubstr("I, J, K or R"));
+  EXPECT_THAT(arc_refusal("G2 I5\nX1"), HasSubstr("I, J, K or R"));
+  EXPECT_THAT(arc_refusal("G2 X10 R4.9"), HasSubstr("R is too small"));
+  EXPECT_THAT(arc_refusal("G2 R5"), HasSubstr("full circle"));
+  EXPECT_THAT(arc_refusal("G2 X10 R5 I5"), HasSubstr("not both"));
+  EXPECT_THAT(arc_refusal("G2 X10 I5 K1"), HasSubstr("K in the plane XY (G17)"));
+  EXPECT_THAT(arc_refusal("G18 G2 X10 I5 J1"), HasSubstr("J in the plane ZX (G18)"));
+  EXPECT_THAT(arc_refusal("G90.1 G2 X10 I5"), HasSubstr("both words"));
+  EXPECT_EQ(arc_refusal("G53 G2 X10 Y10 I10"), "G53 needs G0 or G1");
+  EXPECT_EQ(arc_refusal("G1 X1 I5"), "I without G2, G3 or G5");
+  EXPECT_EQ(arc_refusal("G0 R5"), "R without G2, G3 or a drilling cycle");
+  EXPECT_THAT(arc_refusal("G1 X10 P2"), HasSubstr("P without"));
+  EXPECT_THAT(arc_refusal("G2 X10 Y10 I10\nP2"), HasSubstr("P without")) << "no arc on this line";
+  EXPECT_EQ(arc_refusal("G2 X10 Y10 I10 P0"), "P0: an arc makes a whole number of turns, 1 to 10000");
 }
 
 // Axes outside the plane go along: a helix. P counts all turns that it begins.

@@ -38,7 +38,7 @@ void expect_steps(const std::string& text, const std::vector<Step>& steps) {
   }
 }
 
-std::string refusal(const std::string& text) { return read_text("G90 G21 F60\nG0 Z10\n" + text).refusal(); }
+std::string cycle_refusal(const std::string& text) { return read_text("G90 G21 F60\nG0 Z10\n" + text).refusal(); }
 
 TEST(Cycle, DrillsAndRetractsToRByDefault) {
   expect_steps("G81 X1 Y2 Z-1 R2\nX5", {{kRapid, 1, 2, 10},
@@ -121,23 +121,23 @@ TEST(Cycle, EndsWithAnotherMotionOrG80) {
   expect_steps("G81 X1 Z-1 R2\nG80\nG0 X2",
                {{kRapid, 1, 0, 10}, {kRapid, 1, 0, 2}, {kFeed, 1, 0, -1}, {kRapid, 1, 0, 2}, {kRapid, 2, 0, 2}});
   expect_steps("G80 G0 X1\nX2 G1 G80", {{kRapid, 1, 0, 10}, {kFeed, 2, 0, 10}});
-  EXPECT_THAT(refusal("G81 X1 Z-1 R2\nG80\nX2"), HasSubstr("5: axis words without a motion word"));
-  EXPECT_THAT(refusal("G81 X1 Z-1 R2\nG0 X2\nG81 X3"), HasSubstr("5: G81 needs the bottom of its holes"));
+  EXPECT_THAT(cycle_refusal("G81 X1 Z-1 R2\nG80\nX2"), HasSubstr("5: axis words without a motion word"));
+  EXPECT_THAT(cycle_refusal("G81 X1 Z-1 R2\nG0 X2\nG81 X3"), HasSubstr("5: G81 needs the bottom of its holes"));
 }
 
 TEST(Cycle, RefusesWhatMakesNoHole) {
-  EXPECT_EQ(refusal("G81 X1 Z-1"), "3: G81 needs R, the level above its holes");
-  EXPECT_EQ(refusal("G81 X1 R2"), "3: G81 needs the bottom of its holes");
-  EXPECT_EQ(refusal("G83 X1 Z-1 R2"), "3: G83 needs Q, the depth of a peck");
-  EXPECT_EQ(refusal("G73 X1 Z-1 R2 Q0"), "3: Q of G73 must be above 0");
-  EXPECT_EQ(refusal("G82 X1 Z-1 R2"), "3: G82 needs P, the seconds at the bottom");
-  EXPECT_EQ(refusal("G81 X1 Z3 R2"), "3: R of G81 is below Z, the bottom of the hole");
-  EXPECT_EQ(refusal("G81 X1 Z-1 R2 Q1"), "3: Q without G5, G64, G73 or G83");
-  EXPECT_EQ(refusal("G81 X1 Z-1 R2 L0"), "3: L0: a cycle is repeated 1 to 65536 times");
-  EXPECT_EQ(refusal("G81 X1 Z-1 R2 E1"), "3: G81 moves X, Y and Z alone");
-  EXPECT_EQ(refusal("G81"), "3: G81 without an axis word");
-  EXPECT_EQ(refusal("G93 G81 X1 Z-1 R2 F1"), "3: G81 needs a feed: G94, not G93");
-  EXPECT_THAT(refusal("G83 X1 Z-100 R2 Q0.001"), HasSubstr("more than 65536 motions"));
+  EXPECT_EQ(cycle_refusal("G81 X1 Z-1"), "3: G81 needs R, the level above its holes");
+  EXPECT_EQ(cycle_refusal("G81 X1 R2"), "3: G81 needs the bottom of its holes");
+  EXPECT_EQ(cycle_refusal("G83 X1 Z-1 R2"), "3: G83 needs Q, the depth of a peck");
+  EXPECT_EQ(cycle_refusal("G73 X1 Z-1 R2 Q0"), "3: Q of G73 must be above 0");
+  EXPECT_EQ(cycle_refusal("G82 X1 Z-1 R2"), "3: G82 needs P, the seconds at the bottom");
+  EXPECT_EQ(cycle_refusal("G81 X1 Z3 R2"), "3: R of G81 is below Z, the bottom of the hole");
+  EXPECT_EQ(cycle_refusal("G81 X1 Z-1 R2 Q1"), "3: Q without G5, G64, G73 or G83");
+  EXPECT_EQ(cycle_refusal("G81 X1 Z-1 R2 L0"), "3: L0: a cycle is repeated 1 to 65536 times");
+  EXPECT_EQ(cycle_refusal("G81 X1 Z-1 R2 E1"), "3: G81 moves X, Y and Z alone");
+  EXPECT_EQ(cycle_refusal("G81"), "3: G81 without an axis word");
+  EXPECT_EQ(cycle_refusal("G93 G81 X1 Z-1 R2 F1"), "3: G81 needs a feed: G94, not G93");
+  EXPECT_THAT(cycle_refusal("G83 X1 Z-100 R2 Q0.001"), HasSubstr("more than 65536 motions"));
 }
 
 TEST(Cycle, HolesKeepTheirCorners) {

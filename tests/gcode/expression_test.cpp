@@ -21,8 +21,6 @@ double value_of(const std::string& expression, const std::string& before = "") {
   return program.motions.size() < 2 ? std::nan("") : program.motions[program.motions.size() - 2].target[0];
 }
 
-std::string refusal(const std::string& text) { return read_text(text).refusal(); }
-
 TEST(Expression, OperatorsAndTheirStrength) {
   const std::vector<std::pair<const char*, double>> cases = {
       {"[1+2*3]", 7},       {"[[1+2]*3]", 9},      {"[2**3**2]", 64}, {"[-2**2]", 4},    {"[7/2*2]", 7},

@@ -12,7 +12,7 @@ namespace {
 using ::testing::HasSubstr;
 using Words = std::map<std::string, std::size_t>;
 
-Reading read(const std::string& text, const std::vector<int>& more = {}) {
+Reading read_leaving_out(const std::string& text, const std::vector<int>& more = {}) {
   ReaderOptions options;
   options.left_out = more;
   TextLines lines(text, "p.gcode");
@@ -20,7 +20,7 @@ Reading read(const std::string& text, const std::vector<int>& more = {}) {
 }
 
 TEST(LeftOut, LinesAreListedAndMoveNothing) {
-  const Reading program = read(
+  const Reading program = read_leaving_out(
       "M104 S210 T0\nM105\nM106 S255\nm107\nM109 R170 ; wait (for it)\nM110 N0\nM117 G1 X5 (hello; 100%\n"
       "M140 S60\nM190 S60\nM73 P0 R12\nM201 X9000 Y9000 Z500 E10000\nM202 X1\nM203 X200\nM204 P1250 R1250 T1250\n"
       "M205 X8.00 Y8.00 Z0.40 E1.50\nG29\nG29 A X1 Y2\nN7 M106 S0\nM 104 S0\nM104S0\nG0 X1\n");
@@ -46,26 +46,28 @@ TEST(LeftOut, LinesAreListedAndMoveNothing) {
 }
 
 TEST(LeftOut, MoreAreAskedForByNumber) {
-  EXPECT_TRUE(read("M900 K0.05").error);
-  const Reading program = read("M900 K0.05\nM862.3 P \"MK3S G1\"\nG0 X1", {9000, 8623});
+  EXPECT_TRUE(read_leaving_out("M900 K0.05").error);
+  const Reading program = read_leaving_out("M900 K0.05\nM862.3 P \"MK3S G1\"\nG0 X1", {9000, 8623});
   ASSERT_FALSE(program.error) << describe(*program.error);
   EXPECT_EQ(program.accepted, (Words{{"M900", 1}, {"M862.3", 1}}));
-  EXPECT_TRUE(read("M862.1 P0.4", {8623}).error);
+  EXPECT_TRUE(read_leaving_out("M862.1 P0.4", {8623}).error);
 }
 
 TEST(LeftOut, NoMotionIsLost) {
-  EXPECT_EQ(read("M104 S200 G1 X5").error->message, "'G1 X5' beside M104, whose line is left out");
-  EXPECT_EQ(read("M106 M3").error->message, "'M3' beside M106, whose line is left out");
-  EXPECT_FALSE(read("M106 ; G1 X5").error);
-  EXPECT_FALSE(read("M106 (G1 X5)").error);
-  EXPECT_THAT(read("G0 X1 M104 S200").error->message, HasSubstr("unsupported word 'M104'"));
-  EXPECT_THAT(read("M1040 S1").error->message, HasSubstr("unsupported word 'M1040'"));
-  EXPECT_THAT(read("M104.5").error->message, HasSubstr("unsupported word 'M104.5'"));
-  EXPECT_THAT(read("G290").error->message, HasSubstr("unsupported word 'G290'"));
-  EXPECT_TRUE(read("%\nG0 X1\n%\nM104 S0").error) << "behind the end nothing is read";
+  EXPECT_EQ(read_leaving_out("M104 S200 G1 X5").error->message, "'G1 X5' beside M104, whose line is left out");
+  EXPECT_EQ(read_leaving_out("M106 M3").error->message, "'M3' beside M106, whose line is left out");
+  EXPECT_FALSE(read_leaving_out("M106 ; G1 X5").error);
+  EXPECT_FALSE(read_leaving_out("M106 (G1 X5)").error);
+  EXPECT_THAT(read_leaving_out("G0 X1 M104 S200").error->message, HasSubstr("unsupported word 'M104'"));
+  EXPECT_THAT(read_leaving_out("M1040 S1").error->message, HasSubstr("unsupported word 'M1040'"));
+  EXPECT_THAT(read_leaving_out("M104.5").error->message, HasSubstr("unsupported word 'M104.5'"));
+  EXPECT_THAT(read_leaving_out("G290").error->message, HasSubstr("unsupported word 'G290'"));
+  EXPECT_TRUE(read_leaving_out("%\nG0 X1\n%\nM104 S0").error) << "behind the end nothing is read";
 }
 
-TEST(LeftOut, OpensTheProgram) { EXPECT_EQ(read("M104 S0\n%\nG0 X1").error->line, 3U) << "the '%' ends it"; }
+TEST(LeftOut, OpensTheProgram) {
+  EXPECT_EQ(read_leaving_out("M104 S0\n%\nG0 X1").error->line, 3U) << "the '%' ends it";
+}
 
 }  // namespace
 }  // namespace trammel::gcode

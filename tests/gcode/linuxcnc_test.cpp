@@ -23,7 +23,7 @@ constexpr double kMmPerInch = 25.4;
 // What rs274 prints has four decimals: of an inch, after two offsets.
 constexpr double kPrinted = 0.008;
 
-struct Step {
+struct Canonical {
   MotionKind kind = MotionKind::kTraverse;
   std::array<double, 3> end{};     // mm, machine coordinates
   std::array<double, 2> centre{};  // mm, machine coordinates, in the plane's order
@@ -82,7 +82,7 @@ std::vector<double> arguments_of(const std::string& call) {
 // Makes machine coordinates of canonical calls.
 class Canon {
  public:
-  std::vector<Step> steps;
+  std::vector<Canonical> steps;
   bool ended = false;
 
   void call(const std::string& text) {
@@ -100,7 +100,7 @@ class Canon {
     if (name == "STRAIGHT_PROBE") go(MotionKind::kProbe, a);
     if (name == "ARC_FEED") arc(a);
     if (name == "DWELL") {
-      Step& step = steps.emplace_back();
+      Canonical& step = steps.emplace_back();
       step.kind = MotionKind::kDwell;
       step.end = here_;
       step.seconds = a[0];
@@ -116,8 +116,8 @@ class Canon {
   double machine(std::size_t axis, double value) const {
     return value * unit_ + system_[axis] + shift_[axis] + tool_[axis];
   }
-  Step& arrive(MotionKind kind, const Place& end) {
-    Step& step = steps.emplace_back();
+  Canonical& arrive(MotionKind kind, const Place& end) {
+    Canonical& step = steps.emplace_back();
     step.kind = kind;
     step.end = here_ = end;
     step.feed = kind == MotionKind::kTraverse ? 0 : feed_;
@@ -134,7 +134,7 @@ class Canon {
     end[axes[0]] = machine(axes[0], a[0]);
     end[axes[1]] = machine(axes[1], a[1]);
     end[axes[2]] = machine(axes[2], a[5]);
-    Step& step = arrive(MotionKind::kArc, end);
+    Canonical& step = arrive(MotionKind::kArc, end);
     step.centre = {machine(axes[0], a[2]), machine(axes[1], a[3])};
     step.clockwise = a[4] < 0;
     step.turns = static_cast<int>(std::abs(a[4]));
@@ -150,10 +150,10 @@ class Canon {
 };
 
 // Both leave out motions of no length and stops that are not dwells.
-std::vector<Step> without_stills(const std::vector<Step>& steps) {
-  std::vector<Step> moving;
+std::vector<Canonical> without_stills(const std::vector<Canonical>& steps) {
+  std::vector<Canonical> moving;
   std::array<double, 3> here{};
-  for (const Step& step : steps) {
+  for (const Canonical& step : steps) {
     double way = 0;
     for (std::size_t i = 0; i < 3; ++i) way = std::max(way, std::abs(step.end[i] - here[i]));
     const bool still = step.kind == MotionKind::kDwell ? step.seconds == 0 : way < kPrinted;
@@ -171,7 +171,7 @@ machine::Machine make_machine() {
   return machine;
 }
 
-std::vector<Step> read_by_linuxcnc(const std::string& text, bool& ended) {
+std::vector<Canonical> read_by_linuxcnc(const std::string& text, bool& ended) {
   const Folder folder;
   const std::string program = folder.write("program.ngc", text);
   const std::string variables = folder.write("program.var", "");
@@ -192,14 +192,14 @@ std::vector<Step> read_by_linuxcnc(const std::string& text, bool& ended) {
   return without_stills(canon.steps);
 }
 
-std::vector<Step> read_by_trammel(const std::string& text, std::string& error) {
+std::vector<Canonical> read_by_trammel(const std::string& text, std::string& error) {
   const machine::Machine machine = make_machine();
   TextLines lines(text, "p.ngc");
   Reader reader(lines, machine);
-  std::vector<Step> steps;
+  std::vector<Canonical> steps;
   for (Motion motion; reader.next(motion);) {
     if (motion.kind == MotionKind::kEnd) break;
-    Step& step = steps.emplace_back();
+    Canonical& step = steps.emplace_back();
     step.kind = motion.kind;
     step.end = {motion.target[0], motion.target[1], motion.target[2]};
     step.feed = motion.feed * 60;
@@ -218,8 +218,8 @@ std::vector<Step> read_by_trammel(const std::string& text, std::string& error) {
 void expect_same(const std::string& text) {
   bool ended = false;
   std::string error;
-  const std::vector<Step> theirs = read_by_linuxcnc(text, ended);
-  const std::vector<Step> ours = read_by_trammel(text, error);
+  const std::vector<Canonical> theirs = read_by_linuxcnc(text, ended);
+  const std::vector<Canonical> ours = read_by_trammel(text, error);
   ASSERT_TRUE(ended) << "rs274 refuses the program";
   ASSERT_EQ(error, "");
   EXPECT_EQ(ours.size(), theirs.size());

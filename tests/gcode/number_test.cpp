@@ -14,7 +14,7 @@ namespace trammel::gcode {
 namespace {
 
 // What the reader makes of X<text>, in bits; its message where it refuses.
-std::string read(const std::string& text) {
+std::string number_of(const std::string& text) {
   const machine::Machine machine = machine::default_machine();
   const std::string program = "G0 X" + text;
   TextLines lines(program, "p");
@@ -48,11 +48,11 @@ TEST(Number, HardCases) {
            "0.30000000000000004",
            "123456789.12345678901234",
        }) {
-    EXPECT_EQ(read(text), nearest(text)) << text;
+    EXPECT_EQ(number_of(text), nearest(text)) << text;
   }
   // Nearer to 0 than to the least double.
-  EXPECT_EQ(read("0." + std::string(400, '0') + "1"), nearest("0"));
-  EXPECT_EQ(read("0." + std::string(322, '0') + "3"), nearest("3e-323"));
+  EXPECT_EQ(number_of("0." + std::string(400, '0') + "1"), nearest("0"));
+  EXPECT_EQ(number_of("0." + std::string(322, '0') + "3"), nearest("3e-323"));
 }
 
 // Of every length that a word of a program may have, so that each way of conversion and its borders are met: whole

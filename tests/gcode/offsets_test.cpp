@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-machine::Machine make_machine() {
+machine::Machine machine_with_tools() {
   machine::Machine machine = machine::default_machine();
   machine.axes[0].offsets = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   machine.axes[2].home = 30;
@@ -22,14 +22,14 @@ machine::Machine make_machine() {
 }
 
 Coordinates end_of(const std::string& text) {
-  const Reading program = read_text(text, make_machine());
+  const Reading program = read_text(text, machine_with_tools());
   EXPECT_FALSE(program.error) << describe(*program.error);
   return program.motions.back().target;
 }
 double x_of(const std::string& text) { return end_of(text)[0]; }
 double z_of(const std::string& text) { return end_of(text)[2]; }
 
-std::string refusal(const std::string& text) { return read_text(text, make_machine()).message(); }
+std::string offset_refusal(const std::string& text) { return read_text(text, machine_with_tools()).message(); }
 
 TEST(Offsets, NineCoordinateSystems) {
   const char* const systems[] = {"G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3"};
@@ -44,14 +44,14 @@ TEST(Offsets, G10SetsASystem) {
   EXPECT_EQ(x_of("G0 X10\nG10 L20 P1 X0\nG0 X2"), 13);
   EXPECT_EQ(x_of("G0 X10\nG92 X3\nG10 L20 P0 X0\nG0 X2"), 13) << "what stands on the line counts, G92 and all";
   EXPECT_EQ(x_of("G0 X10\nG92 X3\nG10 L20 P0 X0\nG92.1 G0 X2"), 6);
-  EXPECT_THAT(refusal("G10 L1 P1 Z1"), HasSubstr("G10 L1: only L2 and L20 are supported; tool lengths"));
-  EXPECT_THAT(refusal("G10 P1 X1"), HasSubstr("needs L2 or L20"));
-  EXPECT_THAT(refusal("G10 L2 X1"), HasSubstr("G10 needs P"));
-  EXPECT_THAT(refusal("G10 L2 P10 X1"), HasSubstr("coordinate systems are 1 (G54) to 9 (G59.3)"));
-  EXPECT_THAT(refusal("G10 L2 P1.5 X1"), HasSubstr("G10 P1.5"));
-  EXPECT_THAT(refusal("G10 L2 P1 R30"), HasSubstr("cannot be turned"));
-  EXPECT_THAT(refusal("G10 L2 P1 X1 G0"), HasSubstr("G10 cannot share a line with a motion"));
-  EXPECT_THAT(refusal("G0 X1 L2"), HasSubstr("L without G10 or a drilling cycle"));
+  EXPECT_THAT(offset_refusal("G10 L1 P1 Z1"), HasSubstr("G10 L1: only L2 and L20 are supported; tool lengths"));
+  EXPECT_THAT(offset_refusal("G10 P1 X1"), HasSubstr("needs L2 or L20"));
+  EXPECT_THAT(offset_refusal("G10 L2 X1"), HasSubstr("G10 needs P"));
+  EXPECT_THAT(offset_refusal("G10 L2 P10 X1"), HasSubstr("coordinate systems are 1 (G54) to 9 (G59.3)"));
+  EXPECT_THAT(offset_refusal("G10 L2 P1.5 X1"), HasSubstr("G10 P1.5"));
+  EXPECT_THAT(offset_refusal("G10 L2 P1 R30"), HasSubstr("cannot be turned"));
+  EXPECT_THAT(offset_refusal("G10 L2 P1 X1 G0"), HasSubstr("G10 cannot share a line with a motion"));
+  EXPECT_THAT(offset_refusal("G0 X1 L2"), HasSubstr("L without G10 or a drilling cycle"));
 }
 
 TEST(Offsets, TheG92Family) {
@@ -74,15 +74,15 @@ TEST(Offsets, ToolLengths) {
   EXPECT_EQ(z_of("G43 H1\nG91 G0 Z2"), 2) << "increments know no offsets";
   EXPECT_EQ(z_of("G43 H1\nG0 Z1\nG92 Z0\nG49 G0 Z0"), 1);
   EXPECT_EQ(z_of("G0 Z5\nG43 H1\nG10 L20 P1 Z0\nG0 Z1"), 6);
-  EXPECT_EQ(refusal("G43 H3"), "G43 H3: the machine file has no tool 3 ([tools])");
-  EXPECT_EQ(refusal("T3 M6\nG43"), "G43: the machine file has no tool 3 ([tools])");
-  EXPECT_EQ(refusal("G0 X1 H1"), "H without G43");
-  EXPECT_EQ(refusal("G43.1"), "G43.1 without an axis word");
-  EXPECT_EQ(refusal("G43.1 Z1 G0"), "G43.1 cannot share a line with a motion");
+  EXPECT_EQ(offset_refusal("G43 H3"), "G43 H3: the machine file has no tool 3 ([tools])");
+  EXPECT_EQ(offset_refusal("T3 M6\nG43"), "G43: the machine file has no tool 3 ([tools])");
+  EXPECT_EQ(offset_refusal("G0 X1 H1"), "H without G43");
+  EXPECT_EQ(offset_refusal("G43.1"), "G43.1 without an axis word");
+  EXPECT_EQ(offset_refusal("G43.1 Z1 G0"), "G43.1 cannot share a line with a motion");
 }
 
 TEST(Offsets, AToolChangeIsAStop) {
-  const Reading program = read_text("G0 X1\nT1 M6\nX2\n", make_machine());
+  const Reading program = read_text("G0 X1\nT1 M6\nX2\n", machine_with_tools());
   ASSERT_EQ(program.motions.size(), 4U);
   EXPECT_EQ(program.motions[1].kind, MotionKind::kDwell);
   EXPECT_EQ(program.motions[1].seconds, 0);
@@ -97,7 +97,7 @@ TEST(Offsets, Homes) {
   EXPECT_EQ(x_of("G0 X10\nG30.1\nG0 X0\nG30 X3"), 11);
   EXPECT_EQ(z_of("G43 H1 G0 Z1\nG28.1\nG49 G0 Z5\nG28"), 13.5) << "machine coordinates";
   EXPECT_EQ(end_of("G28.1\nG0 E5\nG28")[3], 5);
-  EXPECT_EQ(refusal("G30 G0 X1"), "G30 cannot share a line with a motion");
+  EXPECT_EQ(offset_refusal("G30 G0 X1"), "G30 cannot share a line with a motion");
 }
 
 }  // namespace

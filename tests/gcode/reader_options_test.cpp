@@ -19,7 +19,7 @@ struct Read {
   std::optional<Error> error;
 };
 
-Read read(const std::string& text, const ReaderOptions& options = {}, std::size_t first_line = 0) {
+Read read_from(const std::string& text, const ReaderOptions& options = {}, std::size_t first_line = 0) {
   const machine::Machine machine = machine::default_machine();
   TextLines lines(text, "p.ngc");
   Reader reader(lines, machine, {}, options);
@@ -37,7 +37,7 @@ Read read(const std::string& text, const ReaderOptions& options = {}, std::size_
 TEST(ReaderOptions, FeedScaleIsForFeedsAlone) {
   ReaderOptions options;
   options.feed_scale = 2.5;
-  const Read made = read("F600\nG0 X1\nG1 X2\nG93 G1 X3 F30\nG4 P2\n", options);
+  const Read made = read_from("F600\nG0 X1\nG1 X2\nG93 G1 X3 F30\nG4 P2\n", options);
   ASSERT_EQ(made.motions.size(), 4U);
   EXPECT_EQ(made.motions[0].feed, 0);
   EXPECT_DOUBLE_EQ(made.motions[1].feed, 25);
@@ -47,10 +47,10 @@ TEST(ReaderOptions, FeedScaleIsForFeedsAlone) {
 
 TEST(ReaderOptions, BlockDeleteOff) {
   const std::string text = "G1 X1 F60\n/X2\n / G4 P1\n//\n/\n/(X5\n";
-  EXPECT_EQ(read(text).motions.size(), 1U);
+  EXPECT_EQ(read_from(text).motions.size(), 1U);
   ReaderOptions options;
   options.block_delete = false;
-  const Read made = read(text, options);
+  const Read made = read_from(text, options);
   ASSERT_EQ(made.motions.size(), 3U);
   EXPECT_EQ(made.motions[1].target[0], 2);
   EXPECT_EQ(made.motions[2].kind, MotionKind::kDwell);
@@ -60,8 +60,8 @@ TEST(ReaderOptions, BlockDeleteOff) {
 
 TEST(ReaderSkip, ModesAndPositionOfTheLinesBefore) {
   const std::string text = "G20 G91 F6\nG92 X5\nG1 X1 Y2\nG18\nG4 P9\nX1\nG2 X1 Z1 K1\n";
-  const Read whole = read(text);
-  const Read rest = read(text, {}, 6);
+  const Read whole = read_from(text);
+  const Read rest = read_from(text, {}, 6);
   ASSERT_EQ(rest.motions.size(), 2U);
   EXPECT_DOUBLE_EQ(rest.begin[0], 25.4);
   EXPECT_DOUBLE_EQ(rest.begin[1], 50.8);
@@ -75,11 +75,11 @@ TEST(ReaderSkip, ModesAndPositionOfTheLinesBefore) {
     EXPECT_EQ(a.axis_x, b.axis_x);
     EXPECT_EQ(a.centre_x, b.centre_x);
   }
-  EXPECT_EQ(read(text, {}, 1).motions.size(), whole.motions.size());
+  EXPECT_EQ(read_from(text, {}, 1).motions.size(), whole.motions.size());
 }
 
 TEST(ReaderSkip, WhatIsWrongAboveIsAnError) {
-  const Read made = read("G1 X1 F60\nG1 X\nX2\n", {}, 3);
+  const Read made = read_from("G1 X1 F60\nG1 X\nX2\n", {}, 3);
   ASSERT_TRUE(made.error);
   EXPECT_EQ(made.error->line, 2U);
 }
@@ -87,14 +87,14 @@ TEST(ReaderSkip, WhatIsWrongAboveIsAnError) {
 TEST(ReaderSkip, BehindTheEndIsAnError) {
   for (const std::string text : {"X1 G1 F60\nX2\n", "X1 G1 F60\nM2\nX3\nX4\nX5\n", "%\nG1 X1 F60\n%\n\n\n"}) {
     for (const std::size_t line : {std::size_t{4}, std::size_t{50}}) {
-      const Read made = read(text, {}, line);
+      const Read made = read_from(text, {}, line);
       ASSERT_TRUE(made.error) << text;
       EXPECT_EQ(made.error->code, ErrorCode::kNoSuchLine);
       EXPECT_THAT(made.error->message, HasSubstr("before line " + std::to_string(line)));
       EXPECT_TRUE(made.motions.empty());
     }
   }
-  EXPECT_EQ(read("G1 X1 F60\nX2", {}, 2).motions.size(), 1U);
+  EXPECT_EQ(read_from("G1 X1 F60\nX2", {}, 2).motions.size(), 1U);
 }
 
 }  // namespace

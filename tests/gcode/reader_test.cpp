@@ -20,8 +20,6 @@ Reading read(const std::string& text) {
   return program;
 }
 
-std::string refusal(const std::string& text) { return read_text(text).refusal(); }
-
 void expect_at(const Motion& motion, double x, double y, double z = 0, double e = 0) {
   EXPECT_NEAR(motion.target[0], x, 1e-9);
   EXPECT_NEAR(motion.target[1], y, 1e-9);

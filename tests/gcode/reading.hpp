@@ -38,6 +38,8 @@ inline Reading read_text(const std::string& text, const machine::Machine& machin
   return read_all(lines, machine, start);
 }
 
+inline std::string refusal(const std::string& text) { return read_text(text).refusal(); }
+
 inline Reading read_file(const std::string& path) {
   FileLines lines(path);
   return read_all(lines);

@@ -52,7 +52,7 @@ double largest_distance(const std::vector<Motion>& motions, const std::vector<Po
   return largest;
 }
 
-std::vector<Motion> lines_of(const std::string& text) {
+std::vector<Motion> spline_lines(const std::string& text) {
   Reading program = read_text(text);
   EXPECT_FALSE(program.error) << describe(*program.error);
   std::vector<Motion> lines;
@@ -62,11 +62,11 @@ std::vector<Motion> lines_of(const std::string& text) {
   return lines;
 }
 
-std::string refusal(const std::string& text) { return read_text(text).message(); }
+std::string spline_refusal(const std::string& text) { return read_text(text).message(); }
 
 TEST(Spline, CubicKeepsToTheTolerance) {
   const std::vector<Point> controls = {{0, 0}, {0, 30}, {40, -20}, {40, 10}};
-  const std::vector<Motion> lines = lines_of("F600\nG5 I0 J30 P0 Q-30 X40 Y10");
+  const std::vector<Motion> lines = spline_lines("F600\nG5 I0 J30 P0 Q-30 X40 Y10");
   ASSERT_GT(lines.size(), 20U);
   EXPECT_LE(largest_distance(lines, controls), kTolerance);
   EXPECT_GT(largest_distance(lines, controls), kTolerance / 10) << "far more lines than it needs";
@@ -76,41 +76,41 @@ TEST(Spline, CubicKeepsToTheTolerance) {
 }
 
 TEST(Spline, QuadraticKeepsToTheTolerance) {
-  const std::vector<Motion> lines = lines_of("F600\nG20\nG5.1 X2 I0 J1");
+  const std::vector<Motion> lines = spline_lines("F600\nG20\nG5.1 X2 I0 J1");
   EXPECT_LE(largest_distance(lines, {{0, 0}, {0, 25.4}, {50.8, 0}}), kTolerance);
   EXPECT_GT(lines.size(), 20U);
 }
 
 TEST(Spline, TheNextOneGoesOnSmoothly) {
-  const std::vector<Motion> lines = lines_of("F600\nG5 I0 J10 P-5 Q5 X20 Y0\nP0 Q10 X40\n");
-  const std::vector<Motion> same = lines_of("F600\nG5 I0 J10 P-5 Q5 X20 Y0\nI5 J-5 P0 Q10 X40\n");
+  const std::vector<Motion> lines = spline_lines("F600\nG5 I0 J10 P-5 Q5 X20 Y0\nP0 Q10 X40\n");
+  const std::vector<Motion> same = spline_lines("F600\nG5 I0 J10 P-5 Q5 X20 Y0\nI5 J-5 P0 Q10 X40\n");
   ASSERT_EQ(lines.size(), same.size());
   for (std::size_t i = 0; i < lines.size(); ++i) EXPECT_EQ(lines[i].target, same[i].target);
 }
 
 TEST(Spline, AStraightOneIsALine) {
-  EXPECT_EQ(lines_of("F600\nG5 I10 J10 P-10 Q-10 X30 Y30").size(), 1U);
-  EXPECT_EQ(lines_of("F600\nG91\nG5.1 I5 X10").size(), 1U);
+  EXPECT_EQ(spline_lines("F600\nG5 I10 J10 P-10 Q-10 X30 Y30").size(), 1U);
+  EXPECT_EQ(spline_lines("F600\nG91\nG5.1 I5 X10").size(), 1U);
 }
 
 TEST(Spline, ExactStopIsForItsEnd) {
-  const std::vector<Motion> lines = lines_of("F600 G61.1\nG5 I0 J10 P-5 Q5 X20 Y0");
+  const std::vector<Motion> lines = spline_lines("F600 G61.1\nG5 I0 J10 P-5 Q5 X20 Y0");
   for (std::size_t i = 0; i + 1 < lines.size(); ++i) EXPECT_EQ(lines[i].path_control, PathControl::kContinuous);
   EXPECT_EQ(lines.back().path_control, PathControl::kExactStop);
 }
 
 TEST(Spline, RefusesWhatIsNoCurve) {
-  EXPECT_THAT(refusal("F60 G5 X10 P1 Q1"), HasSubstr("G5 needs I and J"));
-  EXPECT_THAT(refusal("F60 G5 X10 I1 J1"), HasSubstr("G5 needs P and Q"));
-  EXPECT_THAT(refusal("F60 G5 X10 I1 P1 Q1"), HasSubstr("G5 needs I and J"));
-  EXPECT_THAT(refusal("F60 G5 X10 I1 J1 P1 Q1\nG1 X11\nG5 X20 P1 Q1"), HasSubstr("G5 needs I and J"));
-  EXPECT_THAT(refusal("F60 G5.1 X10"), HasSubstr("G5.1 needs I or J"));
-  EXPECT_THAT(refusal("F60 G18 G5 X10 I1 J1 P1 Q1"), HasSubstr("in the plane XY"));
-  EXPECT_THAT(refusal("F60 G5 X10 Z1 I1 J1 P1 Q1"), HasSubstr("X and Y alone"));
-  EXPECT_THAT(refusal("F60 G93 G5 X10 I1 J1 P1 Q1"), HasSubstr("G94, not G93"));
-  EXPECT_THAT(refusal("F60 G5 I1 J1 P1 Q1"), HasSubstr("without an axis word"));
-  EXPECT_THAT(refusal("F60 G5 X10 I1 J1000000000 P1 Q1"), HasSubstr("more than 10000 lines"));
-  EXPECT_THAT(refusal("F60 G1 X10 P-1"), HasSubstr("P without"));
+  EXPECT_THAT(spline_refusal("F60 G5 X10 P1 Q1"), HasSubstr("G5 needs I and J"));
+  EXPECT_THAT(spline_refusal("F60 G5 X10 I1 J1"), HasSubstr("G5 needs P and Q"));
+  EXPECT_THAT(spline_refusal("F60 G5 X10 I1 P1 Q1"), HasSubstr("G5 needs I and J"));
+  EXPECT_THAT(spline_refusal("F60 G5 X10 I1 J1 P1 Q1\nG1 X11\nG5 X20 P1 Q1"), HasSubstr("G5 needs I and J"));
+  EXPECT_THAT(spline_refusal("F60 G5.1 X10"), HasSubstr("G5.1 needs I or J"));
+  EXPECT_THAT(spline_refusal("F60 G18 G5 X10 I1 J1 P1 Q1"), HasSubstr("in the plane XY"));
+  EXPECT_THAT(spline_refusal("F60 G5 X10 Z1 I1 J1 P1 Q1"), HasSubstr("X and Y alone"));
+  EXPECT_THAT(spline_refusal("F60 G93 G5 X10 I1 J1 P1 Q1"), HasSubstr("G94, not G93"));
+  EXPECT_THAT(spline_refusal("F60 G5 I1 J1 P1 Q1"), HasSubstr("without an axis word"));
+  EXPECT_THAT(spline_refusal("F60 G5 X10 I1 J1000000000 P1 Q1"), HasSubstr("more than 10000 lines"));
+  EXPECT_THAT(spline_refusal("F60 G1 X10 P-1"), HasSubstr("P without"));
 }
 
 }  // namespace

@@ -4,18 +4,25 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "one_pulse.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/model/core_model.hpp"
 
 namespace trammel::testing {
 
-inline constexpr std::int64_t kOnePulse = std::int64_t{1} << 40;
+// Of random tests.
+inline std::uint64_t seed() {
+  const char* given = std::getenv("TRAMMEL_SEED");
+  return given != nullptr ? std::stoull(given) : 1;
+}
 
 __extension__ typedef __int128 int128;
 

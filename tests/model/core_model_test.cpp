@@ -16,7 +16,7 @@ namespace reg = card_map::reg;
 using model::ArcPoints;
 using model::prepare_chords;
 
-constexpr std::uint64_t kWhole = ~std::uint64_t{0};  // a tick nearly every clock
+constexpr std::uint64_t kTickEachClock = ~std::uint64_t{0};  // a tick nearly every clock
 
 TEST(CoreModel, AccessesAnswerAfterFourAndFiveClocks) {
   CoreBench bench;
@@ -32,7 +32,7 @@ TEST(CoreModel, AccessesAnswerAfterFourAndFiveClocks) {
 TEST(CoreModel, ALineMovesItsAxes) {
   CoreBench bench;
   ASSERT_TRUE(bench.line(1000, {100 * kOnePulse / 1000, -(50 * kOnePulse / 1000)}));
-  ASSERT_TRUE(bench.feed(1000, kWhole / 4));
+  ASSERT_TRUE(bench.feed(1000, kTickEachClock / 4));
   ASSERT_TRUE(bench.end());
   ASSERT_TRUE(bench.finish(10000));
   EXPECT_EQ(bench.core.position(0), 100U);
@@ -47,10 +47,10 @@ TEST(CoreModel, ACircleComesBack) {
   CoreBench bench;
   for (const std::int64_t r : {1, 10, 100}) {
     ASSERT_TRUE(bench.circle(static_cast<std::uint64_t>(r) * 8 * 20, r));
-    ASSERT_TRUE(bench.feed(static_cast<std::uint64_t>(r) * 8 * 20, kWhole / 2));
+    ASSERT_TRUE(bench.feed(static_cast<std::uint64_t>(r) * 8 * 20, kTickEachClock / 2));
   }
   ASSERT_TRUE(bench.line(10, {kOnePulse / 2}));
-  ASSERT_TRUE(bench.feed(10, kWhole / 20));
+  ASSERT_TRUE(bench.feed(10, kTickEachClock / 20));
   ASSERT_TRUE(bench.end());
   ASSERT_TRUE(bench.finish(100000));
   EXPECT_EQ(bench.core.outputs().fault, 0U);
@@ -69,7 +69,7 @@ TEST(CoreModel, ACircleInEightDirectionsComesBack) {
   CoreBench bench(with_eight_directions());
   for (const std::int64_t r : {1, 10, 100}) {
     ASSERT_TRUE(bench.circle(static_cast<std::uint64_t>(r) * 8 * 20, r, r == 10, true));
-    ASSERT_TRUE(bench.feed(static_cast<std::uint64_t>(r) * 8 * 20, kWhole / 2));
+    ASSERT_TRUE(bench.feed(static_cast<std::uint64_t>(r) * 8 * 20, kTickEachClock / 2));
   }
   ASSERT_TRUE(bench.end());
   ASSERT_TRUE(bench.finish(100000));
@@ -110,7 +110,7 @@ TEST(CoreModel, MalformedArcsInEightDirections) {
     CoreBench bench(eight);
     EXPECT_TRUE(bench.send(words));
     bench.number = 1;
-    EXPECT_TRUE(bench.feed(560, kWhole / 2));
+    EXPECT_TRUE(bench.feed(560, kTickEachClock / 2));
     EXPECT_TRUE(bench.finish(100000));
     return bench.core.outputs().fault;
   };
@@ -215,7 +215,7 @@ TEST(CoreModel, AChordArcsStepsCarryTheirPathTicks) {
     ASSERT_TRUE(bench.line(50, {kOnePulse / 10}));
     ASSERT_TRUE(bench.send(chord_words(bench.number++, arc, ticks)));
     ASSERT_TRUE(bench.line(50, {kOnePulse / 10}));
-    ASSERT_TRUE(bench.feed(ticks + 100, slow != 0 ? kWhole / 37 : kWhole));
+    ASSERT_TRUE(bench.feed(ticks + 100, slow != 0 ? kTickEachClock / 37 : kTickEachClock));
     ASSERT_TRUE(bench.finish(100'000));
     for (auto [command, tick, axis, direction, cycle] : bench.steps.path)
       lists[slow].emplace_back(command, tick, axis, direction, 0);

@@ -48,7 +48,7 @@ State line(std::int32_t dx, std::int32_t dy) {
   return state;
 }
 
-class Rig {
+class DeviationRig {
  public:
   void load(const State& state) {
     for (int i = 0; i < 5; ++i)
@@ -106,7 +106,7 @@ TEST(DeviationAccumulator, MakesGoldbergsLine) {
   DeviationPath path;
   path.state = line(3, -7);
   path.begin();
-  Rig rig;
+  DeviationRig rig;
   rig.load(path.state);
   for (std::size_t i = 0; i < kDeviation.size(); ++i) {
     EXPECT_EQ(value_of(path.state.deviation) + 1, kDeviation[i]) << "row " << i;
@@ -164,7 +164,7 @@ TEST(DeviationAccumulator, MakesGoldbergsCircle) {
   DeviationPath path;
   path.state = circle(25, 0, 625, 25, 0, 4, false);
   path.begin();
-  Rig rig;
+  DeviationRig rig;
   rig.load(path.state);
   rig.x = 25;
   for (const CircleRow& row : kTable3) {
@@ -223,7 +223,7 @@ TEST(DeviationAccumulator, SmallestCircleEnds) {
 
 TEST(DeviationAccumulator, ClockwiseIsG2WithXRightAndYUp) {
   for (const bool clockwise : {false, true}) {
-    Rig rig;
+    DeviationRig rig;
     rig.load(circle(0, 10, 100, 0, -10, 2, clockwise));
     rig.y = 10;
     for (int i = 0; i < 10; ++i) rig.tick();
@@ -232,7 +232,7 @@ TEST(DeviationAccumulator, ClockwiseIsG2WithXRightAndYUp) {
 }
 
 TEST(DeviationAccumulator, KeepsItsLatencies) {
-  Rig rig;
+  DeviationRig rig;
   rig.load(circle(5, 0, 25, 5, 0, 4, false));
   Inputs in;
   in.tick = true;
@@ -251,7 +251,7 @@ TEST(DeviationAccumulator, KeepsItsLatencies) {
 
 TEST(DeviationAccumulator, ClearAndResetDropTheStep) {
   for (const bool reset : {false, true}) {
-    Rig rig;
+    DeviationRig rig;
     rig.load(circle(5, 0, 25, 5, 0, 4, false));
     Inputs in;
     in.tick = true;
@@ -271,9 +271,9 @@ TEST(DeviationAccumulator, ClearAndResetDropTheStep) {
 
 TEST(DeviationAccumulator, AdvanceEqualsClocks) {
   std::mt19937_64 random(7);
-  Rig a;
+  DeviationRig a;
   a.load(circle(50, 0, 2500, 50, 0, 4, true));
-  Rig b = a;
+  DeviationRig b = a;
   for (int i = 0; i < 2000; ++i) {
     Inputs in;
     in.tick = a.block.outputs().ready && random() % 2 == 0;

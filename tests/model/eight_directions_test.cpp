@@ -17,7 +17,7 @@ namespace {
 __extension__ typedef __int128 int128;
 using Step = DeviationPath::Step;
 
-DeviationPath::Word aligned(int128 value) { return static_cast<DeviationPath::Word>(value) << DeviationPath::kAlign; }
+DeviationPath::Word aligned_8(int128 value) { return static_cast<DeviationPath::Word>(value) << DeviationPath::kAlign; }
 
 // F = weight_x x^2 + weight_y y^2 - n about a whole pulse; in 64 bits up to semi-axes of some thousand.
 struct Curve {
@@ -36,9 +36,9 @@ struct Walk {
   Walk(const Curve& along, std::int64_t sx, std::int64_t sy, std::int64_t ex, std::int64_t ey, unsigned quadrants,
        bool clockwise)
       : curve(along), x(sx), y(sy) {
-    path.state.deviation = aligned(curve.f(x, y));
-    path.state.gradient_x = aligned(2 * curve.weight_x * x);
-    path.state.gradient_y = aligned(2 * curve.weight_y * y);
+    path.state.deviation = aligned_8(curve.f(x, y));
+    path.state.gradient_x = aligned_8(2 * curve.weight_x * x);
+    path.state.gradient_y = aligned_8(2 * curve.weight_y * y);
     path.state.half_x = static_cast<std::uint64_t>(curve.weight_x);
     path.state.half_y = static_cast<std::uint64_t>(curve.weight_y);
     path.state.left_x = static_cast<std::uint32_t>(ex - sx);
@@ -203,7 +203,7 @@ TEST(EightDirections, TakesTheLeastDeviation) {
     // Four changes of quadrant; what is then left goes straight.
     while (walk.path.state.quadrants != 0 && walk.goes_on(most)) {
       expect_least(walk, what);
-      if (testing::Test::HasFatalFailure()) return;
+      if (::testing::Test::HasFatalFailure()) return;
     }
     ASSERT_EQ(walk.path.state.quadrants, 0) << what;
     steps += walk.steps;
@@ -235,8 +235,8 @@ TEST(EightDirections, LinesStayWithinHalfAPulse) {
     for (int dy = -40; dy <= 40; ++dy) {
       if (dx == 0 || dy == 0) continue;
       DeviationPath path;
-      path.state.gradient_x = aligned(dx > 0 ? -std::abs(dy) : std::abs(dy));
-      path.state.gradient_y = aligned(dy > 0 ? std::abs(dx) : -std::abs(dx));
+      path.state.gradient_x = aligned_8(dx > 0 ? -std::abs(dy) : std::abs(dy));
+      path.state.gradient_y = aligned_8(dy > 0 ? std::abs(dx) : -std::abs(dx));
       path.state.left_x = static_cast<std::uint32_t>(dx);
       path.state.left_y = static_cast<std::uint32_t>(dy);
       path.state.clockwise = (dx > 0) == (dy > 0);
@@ -264,7 +264,7 @@ TEST(EightDirections, LargestEllipseComesRound) {
   for (const bool eight : {false, true}) {
     DeviationPath path;
     const auto weight = static_cast<int128>(kSemiAxis) * kSemiAxis;
-    path.state.gradient_x = aligned(2 * weight * kSemiAxis);
+    path.state.gradient_x = aligned_8(2 * weight * kSemiAxis);
     path.state.half_x = path.state.half_y = static_cast<std::uint64_t>(weight);
     path.state.quadrants = 4;
     path.state.eight_directions = eight;
@@ -289,9 +289,9 @@ TEST(EightDirections, LargestEllipseComesRound) {
   }
 }
 
-class Rig {
+class EightRig {
  public:
-  explicit Rig(const DeviationPath::State& state) {
+  explicit EightRig(const DeviationPath::State& state) {
     const auto shift = [this](unsigned chain, std::uint64_t word) {
       DeviationAccumulator::Inputs in;
       in.load = {true, static_cast<std::uint8_t>(chain), static_cast<std::uint16_t>(word)};
@@ -319,7 +319,7 @@ class Rig {
 
 TEST(EightDirections, KeepsItsLatencies) {
   Walk walk = full_turn(circle(25 * 25), 25, 0, false);
-  Rig rig(walk.path.state);
+  EightRig rig(walk.path.state);
   DeviationAccumulator::Inputs start;
   start.start = true;
   rig.block.clock(start);

@@ -23,9 +23,9 @@ constexpr unsigned kAxes = 4;
 constexpr unsigned kMarker = 3;  // the axis that steps with every tick: when that tick was
 constexpr std::uint64_t kTickClocks = 20;
 
-class Bench : public CoreBench {
+class EvennessBench : public CoreBench {
  public:
-  Bench() : CoreBench(config()) {
+  EvennessBench() : CoreBench(config()) {
     for (unsigned n = 0; n < kAxes; ++n) {
       EXPECT_TRUE(write(reg::step_length(n), 1));
       for (const auto address : {reg::step_space(n), reg::dir_setup(n), reg::dir_hold(n)})
@@ -66,7 +66,8 @@ struct Lateness {
 
 // The j-th step of p pulses in N ticks is due after (j - 1/2) N / p ticks. Gives also how far its intervals are from N
 // / p, as a share of it.
-double judge_line(Bench& bench, std::uint64_t ticks, const std::array<std::int64_t, 3>& pulses, Lateness& lateness) {
+double judge_line(EvennessBench& bench, std::uint64_t ticks, const std::array<std::int64_t, 3>& pulses,
+                  Lateness& lateness) {
   std::vector<std::int64_t> increments;
   for (const std::int64_t p : pulses)
     increments.push_back(std::llround(std::ldexp(static_cast<long double>(p) / static_cast<long double>(ticks), 40)));
@@ -90,7 +91,7 @@ double judge_line(Bench& bench, std::uint64_t ticks, const std::array<std::int64
 }
 
 TEST(Evenness, StepsOfALineComeWithinATickAndAClock) {
-  Bench bench;
+  EvennessBench bench;
   std::mt19937_64 random(1);
   Lateness lateness;
   double uneven = 0;
@@ -167,7 +168,7 @@ std::optional<double> crossing(const Sum& sum, unsigned axis, double level, int 
 }
 
 // Ticks of an arc that are no path ticks included: the prescaler gives a path tick at feed ticks (i - 1/2) / ratio.
-void judge_arc(Bench& bench, const ArcPoints& points, double ratio, Lateness& lateness) {
+void judge_arc(EvennessBench& bench, const ArcPoints& points, double ratio, Lateness& lateness) {
   driver::ArcChordCommand arc = model::prepare_command(points);
   arc.increment[kMarker] = kOnePulse;  // a step a path tick
   arc.mask |= 1U << kMarker;
@@ -196,7 +197,7 @@ void judge_arc(Bench& bench, const ArcPoints& points, double ratio, Lateness& la
 }
 
 TEST(Evenness, StepsOfAnArcComeWithinAFeedTickAPathTickAndAClock) {
-  Bench bench;
+  EvennessBench bench;
   std::mt19937_64 random(2);
   Lateness lateness;
   for (int i = 0; i < 80; ++i) {

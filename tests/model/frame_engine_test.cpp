@@ -13,7 +13,7 @@ using namespace trammel::frames;
 using trammel::model::FrameEngine;
 
 // An inner port that answers 4 clocks after a request with the address, and refuses the last one.
-class Bench {
+class EngineBench {
  public:
   Bytes bring(const Bytes& bytes, unsigned gap = 10) {
     Bytes reply;
@@ -67,7 +67,7 @@ Bytes stream_of(const Request& request) {
 
 TEST(FrameEngine, RepliesAsTheEndpoint) {
   std::mt19937_64 random(1);
-  Bench bench;
+  EngineBench bench;
   Endpoint endpoint([](bool, std::uint32_t address, std::uint32_t) {
     return Endpoint::Answer{address == 0xFFC, address == 0xFFC ? 0 : address};
   });
@@ -95,7 +95,7 @@ TEST(FrameEngine, RepliesAsTheEndpoint) {
 
 // The page's numbers: END at c.
 TEST(FrameEngine, Clocks) {
-  Bench bench;
+  EngineBench bench;
   Request r;
   bench.bring(stream_of(r));
   const std::uint64_t asked = bench.last_byte;

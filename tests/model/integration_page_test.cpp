@@ -57,7 +57,7 @@ class Diagram {
   std::vector<std::string> rows_;
 };
 
-class IntegrationPage : public testing::Test {
+class IntegrationPage : public ::testing::Test {
  protected:
   explicit IntegrationPage(std::uint32_t idle_level = 0) : card(config(idle_level)) {
     in.rst = true;

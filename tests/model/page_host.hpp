@@ -6,13 +6,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "one_pulse.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/model/card_model.hpp"
 
 namespace trammel::testing {
-
-inline constexpr std::int64_t kOnePulse = std::int64_t{1} << 40;
 
 // Of the path, or of the pins: `tick` is then the clock.
 struct PathStep {

@@ -12,7 +12,7 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 using card_map::Area;
 
-constexpr std::uint64_t kWhole = ~std::uint64_t{0};  // a tick nearly every clock
+constexpr std::uint64_t kFastest = ~std::uint64_t{0};  // a tick nearly every clock
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
 // Clocks until `happened`, at most `limit`; the cycle after which it shows.
@@ -40,7 +40,7 @@ TEST(PathCommands, AnOutputChangesWithTheStepOfTheLastTick) {
     ASSERT_TRUE(line_with_last_step(bench, ticks));
     ASSERT_TRUE(bench.output(0b0101, 0));
     ASSERT_TRUE(line_with_last_step(bench, 500));
-    ASSERT_TRUE(bench.feed(ticks + 500, kWhole / 3));
+    ASSERT_TRUE(bench.feed(ticks + 500, kFastest / 3));
     bench.write(reg::kHold, 0);
     std::uint64_t step = kAll;
     std::uint64_t change = kAll;
@@ -70,7 +70,7 @@ TEST(PathCommands, SeveralInARowMergeAndTheLaterWins) {
   CoreBench bench;
   bench.write(reg::kHold, 1);
   ASSERT_TRUE(line_with_last_step(bench, 30));
-  ASSERT_TRUE(bench.feed(30, kWhole / 3));
+  ASSERT_TRUE(bench.feed(30, kFastest / 3));
   ASSERT_TRUE(bench.output(0b0011, 0));
   ASSERT_TRUE(bench.output(0b0100, 0b0001));
   ASSERT_TRUE(bench.output(0b1000, 0b1100));  // an output that is set and cleared is set
@@ -95,7 +95,7 @@ std::uint64_t largest_gap(std::uint64_t ticks, unsigned outputs, unsigned marks)
     for (unsigned k = 0; k < outputs; ++k) EXPECT_TRUE(bench.output(1, 2));
     for (unsigned k = 0; k < marks; ++k) EXPECT_TRUE(bench.mark());
   }
-  EXPECT_TRUE(bench.feed(kLines * ticks, kWhole));
+  EXPECT_TRUE(bench.feed(kLines * ticks, kFastest));
   bench.write(reg::kHold, 0);
   std::uint64_t last = 0;
   std::uint64_t largest = 0;
@@ -139,7 +139,7 @@ TEST(PathCommands, WhatACutFindsWaitingIsDropped) {
   ASSERT_TRUE(bench.line(1000, {kOnePulse / 8}));
   ASSERT_TRUE(bench.output(0b1111, 0));
   ASSERT_TRUE(bench.mark());
-  ASSERT_TRUE(bench.feed(1000, kWhole / 2));
+  ASSERT_TRUE(bench.feed(1000, kFastest / 2));
   bench.idle(100);
   bench.write(reg::kControl, field::kControlAbort);
   bench.idle(3000);
@@ -158,7 +158,7 @@ TEST(PathCommands, AMarkCountsAndLatchesTimeAndPosition) {
   ASSERT_TRUE(bench.mark());
   ASSERT_TRUE(bench.mark());
   ASSERT_TRUE(bench.line(400, {kOnePulse / 4}));
-  ASSERT_TRUE(bench.feed(450, kWhole / 8));
+  ASSERT_TRUE(bench.feed(450, kFastest / 8));
   bench.write(reg::kHold, 0);
   const std::uint64_t step = cycle_of(bench, 2000, [](const auto& o) { return o.path_step != 0; });
   bench.idle(200);
@@ -181,7 +181,7 @@ TEST(PathCommands, ARowOfMarksKeepsNoAccessWaiting) {
     ASSERT_TRUE(bench.mark());
     sent += 30;
   }
-  ASSERT_TRUE(bench.feed(sent, kWhole));
+  ASSERT_TRUE(bench.feed(sent, kFastest));
   bench.write(reg::kHold, 0);
   std::uint64_t longest = 0;
   for (unsigned i = 0; i < 60; ++i) {

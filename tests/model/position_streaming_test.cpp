@@ -16,7 +16,7 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr std::uint64_t kHalf = std::uint64_t{1} << 63;  // a tick every other clock
-constexpr std::uint64_t kTicks = 200;                    // of a period
+constexpr std::uint64_t kPeriodTicks = 200;              // of a period
 const std::vector<std::int64_t> kIncrements{kOnePulse / 7, -kOnePulse / 3, 12345678, 0};
 
 // Position after k ticks of a line.
@@ -62,17 +62,17 @@ class Stream {
 
 TEST(PositionStreaming, ALateLineGoesOnAlongItself) {
   unsigned stale = 0;
-  for (std::uint64_t clocks = 0; clocks < 2 * kTicks; clocks += 7) {
+  for (std::uint64_t clocks = 0; clocks < 2 * kPeriodTicks; clocks += 7) {
     Stream s(2);
     ASSERT_TRUE(s.bench.feed(1, kHalf));
-    ASSERT_TRUE(s.bench.line(kTicks, kIncrements));
+    ASSERT_TRUE(s.bench.line(kPeriodTicks, kIncrements));
     s.bench.write(reg::kHold, 0);
-    s.to_the_end(kTicks);
+    s.to_the_end(kPeriodTicks);
     s.bench.idle(clocks);
-    ASSERT_TRUE(s.bench.line(kTicks, kIncrements));
+    ASSERT_TRUE(s.bench.line(kPeriodTicks, kIncrements));
     ASSERT_TRUE(s.bench.end());
     const std::uint64_t beyond = s.bench.read(reg::kStaleTicks);
-    ASSERT_TRUE(s.bench.finish(5 * kTicks));
+    ASSERT_TRUE(s.bench.finish(5 * kPeriodTicks));
     EXPECT_EQ(s.fault(), 0U);
     EXPECT_NE(s.bench.core.outputs().status & field::kStatusEnded, 0U);
     // Its words took a while too.
@@ -82,7 +82,7 @@ TEST(PositionStreaming, ALateLineGoesOnAlongItself) {
     EXPECT_EQ(s.bench.read(reg::kStaleTicks), 0U);
     for (unsigned n = 0; n < 4; ++n) {
       const auto position = static_cast<std::int32_t>(s.bench.core.position(n));
-      EXPECT_EQ(position, after(kIncrements[n], kTicks + beyond) + after(kIncrements[n], kTicks)) << clocks;
+      EXPECT_EQ(position, after(kIncrements[n], kPeriodTicks + beyond) + after(kIncrements[n], kPeriodTicks)) << clocks;
     }
     ++stale;
   }
@@ -95,10 +95,10 @@ TEST(PositionStreaming, AMissingPeriodStopsOnTheLine) {
     for (const std::uint32_t slew : {0x10'0000U, 0x40'0000U, 0xFFF'FFFFU}) {
       Stream s(stale_periods);
       s.bench.write(reg::kSlew, slew);
-      ASSERT_TRUE(s.bench.feed(kTicks, kHalf));
-      ASSERT_TRUE(s.bench.line(kTicks, kIncrements));
+      ASSERT_TRUE(s.bench.feed(kPeriodTicks, kHalf));
+      ASSERT_TRUE(s.bench.line(kPeriodTicks, kIncrements));
       s.bench.write(reg::kHold, 0);
-      s.to_the_end(kTicks);
+      s.to_the_end(kPeriodTicks);
       std::uint64_t ticks = 0;
       std::uint64_t at_fault = 0;
       while ((s.bench.core.outputs().status & field::kStatusBusy) != 0) {
@@ -108,14 +108,14 @@ TEST(PositionStreaming, AMissingPeriodStopsOnTheLine) {
       }
       EXPECT_EQ(s.fault(), field::kFaultMissingPeriod);
       // A tick and the fault are both seen two clocks after they are decided, and a tick comes in two clocks.
-      EXPECT_LE(stale_periods * kTicks, at_fault + 1) << stale_periods;
-      EXPECT_LE(at_fault, stale_periods * kTicks + 1) << stale_periods;
+      EXPECT_LE(stale_periods * kPeriodTicks, at_fault + 1) << stale_periods;
+      EXPECT_LE(at_fault, stale_periods * kPeriodTicks + 1) << stale_periods;
       EXPECT_EQ(s.bench.read(reg::kStaleTicks), ticks);
       // The ramp takes 2^28 / slew updates of 4 clocks, at half a tick a clock on average a quarter.
       const double ramp = 0x1p28 / slew * 4 * 0.25;
-      EXPECT_NEAR(static_cast<double>(ticks - stale_periods * kTicks), ramp, 8) << slew;
+      EXPECT_NEAR(static_cast<double>(ticks - stale_periods * kPeriodTicks), ramp, 8) << slew;
       // The last ticks of a slow ramp are far apart.
-      EXPECT_TRUE(on_the_line(s.bench, kTicks + ticks, slew == 0xFFF'FFFFU ? kOnTheWay : 0)) << slew;
+      EXPECT_TRUE(on_the_line(s.bench, kPeriodTicks + ticks, slew == 0xFFF'FFFFU ? kOnTheWay : 0)) << slew;
       EXPECT_EQ(s.bench.read(reg::kStopTimeHi), 0U);
       EXPECT_EQ(s.bench.read(reg::kStopFault), field::kFaultMissingPeriod);
     }
@@ -126,14 +126,14 @@ TEST(PositionStreaming, AnImmediateReactionCutsAtOnce) {
   Stream s(1);
   s.bench.write(reg::kStopReaction, 0);
   s.bench.feed(1, kHalf);
-  s.bench.line(kTicks, kIncrements);
+  s.bench.line(kPeriodTicks, kIncrements);
   s.bench.write(reg::kHold, 0);
-  ASSERT_TRUE(s.bench.finish(10 * kTicks));
+  ASSERT_TRUE(s.bench.finish(10 * kPeriodTicks));
   EXPECT_EQ(s.fault(), field::kFaultMissingPeriod);
   const std::uint32_t ticks = s.bench.read(reg::kStaleTicks);
-  EXPECT_GE(ticks, kTicks);
-  EXPECT_LE(ticks, kTicks + 2);
-  EXPECT_TRUE(on_the_line(s.bench, kTicks + ticks, kOnTheWay));
+  EXPECT_GE(ticks, kPeriodTicks);
+  EXPECT_LE(ticks, kPeriodTicks + 2);
+  EXPECT_TRUE(on_the_line(s.bench, kPeriodTicks + ticks, kOnTheWay));
   // The stream is open again when the fault is cleared; nothing moves by that.
   EXPECT_FALSE(s.bench.end());
   s.bench.write(reg::kFault, field::kFaultMissingPeriod);
@@ -145,7 +145,7 @@ TEST(PositionStreaming, AnImmediateReactionCutsAtOnce) {
 TEST(PositionStreaming, PeriodsInTimeHaveNoSeam) {
   Stream s(1);
   s.bench.feed(1, kHalf);
-  for (int i = 0; i < 20; ++i) ASSERT_TRUE(s.bench.line(kTicks + static_cast<std::uint64_t>(i) % 3, kIncrements));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(s.bench.line(kPeriodTicks + static_cast<std::uint64_t>(i) % 3, kIncrements));
   ASSERT_TRUE(s.bench.end());
   s.bench.write(reg::kHold, 0);
   std::vector<std::uint64_t> ticks;
@@ -155,7 +155,7 @@ TEST(PositionStreaming, PeriodsInTimeHaveNoSeam) {
     EXPECT_FALSE(s.stale());
   }
   // The first ones belong to the ramp out of the hold.
-  ASSERT_EQ(ticks.size(), 20 * kTicks + 19);
+  ASSERT_EQ(ticks.size(), 20 * kPeriodTicks + 19);
   for (std::size_t i = 100; i < ticks.size(); ++i) EXPECT_EQ(ticks[i] - ticks[i - 1], 2U) << i;
   EXPECT_EQ(s.fault(), 0U);
 }
@@ -164,10 +164,10 @@ TEST(PositionStreaming, PeriodsInTimeHaveNoSeam) {
 TEST(PositionStreaming, ASpentPieceKeepsItsRate) {
   Stream s(4);
   const auto acceleration = static_cast<std::int64_t>(0x1p64 / 2000);
-  s.bench.feed(kTicks, kHalf / 4, acceleration);
-  s.bench.line(kTicks, kIncrements);
+  s.bench.feed(kPeriodTicks, kHalf / 4, acceleration);
+  s.bench.line(kPeriodTicks, kIncrements);
   s.bench.write(reg::kHold, 0);
-  s.to_the_end(kTicks);
+  s.to_the_end(kPeriodTicks);
   s.bench.idle(50);
   ASSERT_TRUE(s.stale());
   const std::uint32_t rate = s.bench.core.outputs().rate;
@@ -181,24 +181,24 @@ TEST(PositionStreaming, ASpentPieceKeepsItsRate) {
 TEST(PositionStreaming, TheModeChangesAtRestAlone) {
   CoreBench bench;
   bench.write(reg::kHold, 1);
-  bench.feed(2 * kTicks, kHalf);
-  bench.line(kTicks, kIncrements);
+  bench.feed(2 * kPeriodTicks, kHalf);
+  bench.line(kPeriodTicks, kIncrements);
   bench.write(reg::kStreaming, field::kStreamingOn);
-  bench.line(kTicks, kIncrements);
+  bench.line(kPeriodTicks, kIncrements);
   bench.write(reg::kHold, 0);
   ASSERT_TRUE(bench.finish(10'000));
   EXPECT_EQ(bench.core.outputs().fault, 0U);
   // Now it is on: without another period the next line is the last one.
-  bench.feed(kTicks, kHalf);
-  bench.line(kTicks, kIncrements);
+  bench.feed(kPeriodTicks, kHalf);
+  bench.line(kPeriodTicks, kIncrements);
   // Off, says the host, but the line is under way.
   bench.write(reg::kStreaming, 0);
   ASSERT_TRUE(bench.finish(10'000));
   EXPECT_EQ(bench.core.outputs().fault, field::kFaultMissingPeriod);
   ASSERT_TRUE(bench.write(reg::kFault, field::kFaultMissingPeriod));
   bench.number = 0;
-  bench.feed(kTicks, kHalf);
-  bench.line(kTicks, kIncrements);
+  bench.feed(kPeriodTicks, kHalf);
+  bench.line(kPeriodTicks, kIncrements);
   ASSERT_TRUE(bench.finish(10'000));
   EXPECT_EQ(bench.core.outputs().fault, 0U);
 }
@@ -206,9 +206,9 @@ TEST(PositionStreaming, TheModeChangesAtRestAlone) {
 // Not inside a command either: the rest of it comes under the old mode.
 TEST(PositionStreaming, TheModeWaitsForTheEndOfACommand) {
   CoreBench bench;
-  bench.feed(kTicks, kHalf);
+  bench.feed(kPeriodTicks, kHalf);
   const std::vector<std::uint32_t> words =
-      command_words(card_map::Opcode::Line, 15, bench.number++, kTicks, {}, kIncrements);
+      command_words(card_map::Opcode::Line, 15, bench.number++, kPeriodTicks, {}, kIncrements);
   bench.send({words.begin(), words.begin() + 3});
   bench.write(reg::kStreaming, field::kStreamingOn);
   bench.idle(100);
@@ -222,26 +222,26 @@ TEST(PositionStreaming, NothingIsMissingInAHold) {
   for (const std::uint32_t address : {reg::kHold, reg::kRatioFeed}) {
     Stream s(1);
     s.bench.feed(1, kHalf);
-    s.bench.line(kTicks, kIncrements);
+    s.bench.line(kPeriodTicks, kIncrements);
     s.bench.write(reg::kHold, 0);
-    s.to_the_end(kTicks);
+    s.to_the_end(kPeriodTicks);
     s.bench.idle(10);
     s.bench.write(address, address == reg::kHold ? 1 : 0);
-    s.bench.idle(50 * kTicks);
+    s.bench.idle(50 * kPeriodTicks);
     EXPECT_TRUE(s.stale());
     EXPECT_EQ(s.fault(), 0U);
     const std::uint32_t beyond = s.bench.read(reg::kStaleTicks);
-    EXPECT_LT(beyond, kTicks);
+    EXPECT_LT(beyond, kPeriodTicks);
     // The next one begins at once, before any tick.
     const std::uint32_t begun = s.bench.core.outputs().geometry_begun;
-    s.bench.line(kTicks, kIncrements);
+    s.bench.line(kPeriodTicks, kIncrements);
     s.bench.idle(40);
     EXPECT_EQ(s.bench.core.outputs().geometry_begun, begun + 1);
     EXPECT_FALSE(s.stale());
     EXPECT_EQ(s.bench.read(reg::kStaleTicks), beyond);
     s.bench.end();
     s.bench.write(address, address == reg::kHold ? 0 : 0x10000);
-    ASSERT_TRUE(s.bench.finish(10 * kTicks));
+    ASSERT_TRUE(s.bench.finish(10 * kPeriodTicks));
     EXPECT_EQ(s.fault(), 0U);
   }
 }
@@ -251,13 +251,13 @@ TEST(PositionStreaming, TheGuardIsOff) {
   for (const bool streaming : {false, true}) {
     CoreBench bench;
     bench.write(reg::kStreaming, streaming ? field::kStreamingOn : 0);
-    bench.send(command_words(card_map::Opcode::Feed, 0, bench.number++, kTicks,
+    bench.send(command_words(card_map::Opcode::Feed, 0, bench.number++, kPeriodTicks,
                              {{"rate", kHalf}, {"floor", 1}, {"stop_distance", 5000}}));
-    bench.line(kTicks, kIncrements);
+    bench.line(kPeriodTicks, kIncrements);
     bench.idle(200);
     EXPECT_EQ(bench.core.outputs().geometry_begun, 1U);
     EXPECT_EQ((bench.core.outputs().status & field::kStatusUnderrun) != 0, !streaming);
-    bench.idle(4 * kTicks);
+    bench.idle(4 * kPeriodTicks);
     EXPECT_EQ((bench.core.outputs().status & field::kStatusFaulted) != 0, streaming);
   }
 }
@@ -266,17 +266,17 @@ TEST(PositionStreaming, TheGuardIsOff) {
 TEST(PositionStreaming, ALateEndIsAnEnd) {
   Stream s(3);
   s.bench.feed(1, kHalf);
-  s.bench.line(kTicks, kIncrements);
+  s.bench.line(kPeriodTicks, kIncrements);
   s.bench.write(reg::kHold, 0);
-  s.to_the_end(kTicks);
-  s.bench.idle(kTicks);
+  s.to_the_end(kPeriodTicks);
+  s.bench.idle(kPeriodTicks);
   s.bench.end();
   ASSERT_TRUE(s.bench.finish(1000));
   EXPECT_EQ(s.fault(), 0U);
   const std::uint32_t beyond = s.bench.read(reg::kStaleTicks);
-  EXPECT_GT(beyond, kTicks / 2);
+  EXPECT_GT(beyond, kPeriodTicks / 2);
   for (unsigned n = 0; n < 4; ++n)
-    EXPECT_EQ(static_cast<std::int32_t>(s.bench.core.position(n)), after(kIncrements[n], kTicks + beyond));
+    EXPECT_EQ(static_cast<std::int32_t>(s.bench.core.position(n)), after(kIncrements[n], kPeriodTicks + beyond));
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 using card_map::Area;
 
-constexpr std::uint64_t kWhole = ~std::uint64_t{0};  // a tick nearly every clock
-constexpr unsigned kHigh = 0x10;                     // of a condition: the level that trips
+constexpr std::uint64_t kFullRate = ~std::uint64_t{0};  // a tick nearly every clock
+constexpr unsigned kHigh = 0x10;                        // of a condition: the level that trips
 
 // A card that probes along +X, a pulse in `ticks_a_pulse` ticks, a tick in four clocks; input 2 trips when it is high.
 class Probing : public CoreBench {
@@ -29,7 +29,7 @@ class Probing : public CoreBench {
   void start(std::uint64_t ticks, unsigned ticks_a_pulse) {
     EXPECT_TRUE(probe(kHigh | 2));
     EXPECT_TRUE(line(ticks, {kOnePulse / ticks_a_pulse}));
-    EXPECT_TRUE(feed(ticks, kWhole / kClocksATick));
+    EXPECT_TRUE(feed(ticks, kFullRate / kClocksATick));
     EXPECT_TRUE(probe_end());
   }
   bool has(std::uint32_t bit) { return (core.outputs().status & bit) != 0; }
@@ -92,7 +92,7 @@ TEST(Probe, TheStopIsARampAlongThePath) {
 TEST(Probe, WhatIsQueuedUpToProbeEndIsDroppedAndCounted) {
   Probing card;
   EXPECT_TRUE(card.probe(kHigh | 2));
-  for (int i = 0; i < 5; ++i) EXPECT_TRUE(card.feed(280, kWhole / 64));
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(card.feed(280, kFullRate / 64));
   for (int i = 0; i < 3; ++i) {
     EXPECT_TRUE(card.line(300, {kOnePulse / 2}));
     EXPECT_TRUE(card.output(1, 0));
@@ -102,10 +102,10 @@ TEST(Probe, WhatIsQueuedUpToProbeEndIsDroppedAndCounted) {
   EXPECT_TRUE(card.dwell(10'000));
   EXPECT_TRUE(card.probe(2));
   EXPECT_TRUE(card.wait_input(kHigh | 3, 0));
-  EXPECT_TRUE(card.feed(10, kWhole));  // ticks without a path: no fault where it is dropped
+  EXPECT_TRUE(card.feed(10, kFullRate));  // ticks without a path: no fault where it is dropped
   EXPECT_TRUE(card.probe_end());
   EXPECT_TRUE(card.line(100, {0, kOnePulse / 2}));
-  EXPECT_TRUE(card.feed(100, kWhole / 16));
+  EXPECT_TRUE(card.feed(100, kFullRate / 16));
   EXPECT_TRUE(card.has(field::kStatusPathActive));
   card.pins = 0b0100;
   card.idle(3000);
@@ -145,7 +145,7 @@ TEST(Probe, AnInputThatIsTrippedAlreadyEndsItBeforeTheFirstStep) {
 TEST(Probe, ItIsArmedWhenThePathBeforeItHasEnded) {
   Probing card;
   ASSERT_TRUE(card.line(200, {kOnePulse / 2}));
-  ASSERT_TRUE(card.feed(200, kWhole / 16));
+  ASSERT_TRUE(card.feed(200, kFullRate / 16));
   card.write(reg::kHold, 1);
   card.start(400, 2);
   card.pins = 0b0100;
@@ -197,7 +197,7 @@ TEST(Probe, ASecondProbeTakesTheFirstOnesPlace) {
   EXPECT_TRUE(card.line(100, {kOnePulse / 2}));
   EXPECT_TRUE(card.probe(kHigh | 1));
   EXPECT_TRUE(card.line(2000, {kOnePulse / 2}));
-  EXPECT_TRUE(card.feed(2100, kWhole / 4));
+  EXPECT_TRUE(card.feed(2100, kFullRate / 4));
   EXPECT_TRUE(card.probe_end());
   card.idle(1500);
   card.pins = 0b0100;
@@ -213,7 +213,7 @@ TEST(Probe, AnAbortEndsItInEveryStateAndTheEdgeStaysKnown) {
     Probing card(state == 2 ? 0x1000 : 0xFFFFFFF);
     if (state == 0) {  // the PROBE waits behind a path
       ASSERT_TRUE(card.line(100'000, {kOnePulse / 4}));
-      ASSERT_TRUE(card.feed(100'000, kWhole / 4));
+      ASSERT_TRUE(card.feed(100'000, kFullRate / 4));
     }
     card.start(100'000, 2);
     card.idle(500);
@@ -230,7 +230,7 @@ TEST(Probe, AnAbortEndsItInEveryStateAndTheEdgeStaysKnown) {
     card.number = 0;
     const auto from = card.core.position(0);
     ASSERT_TRUE(card.line(100, {kOnePulse / 2}));
-    ASSERT_TRUE(card.feed(100, kWhole / 16));
+    ASSERT_TRUE(card.feed(100, kFullRate / 16));
     EXPECT_TRUE(card.finish(400'000)) << state;
     EXPECT_EQ(card.core.position(0), from + 50) << state;
     EXPECT_EQ(card.has(field::kStatusProbed), state > 1);
@@ -245,7 +245,7 @@ TEST(Probe, FixedPiecesStopToo) {
   Probing card;
   EXPECT_TRUE(card.probe(kHigh | 2));
   EXPECT_TRUE(card.line(50'000, {kOnePulse / 4}));
-  EXPECT_TRUE(card.feed(50'000, kWhole / 4, 0, 0, 1, card_map::constant::kClassFixed));
+  EXPECT_TRUE(card.feed(50'000, kFullRate / 4, 0, 0, 1, card_map::constant::kClassFixed));
   EXPECT_TRUE(card.probe_end());
   card.idle(500);
   card.pins = 0b0100;
@@ -260,12 +260,12 @@ TEST(Probe, TheUnderrunHoldForgetsWhatIsDropped) {
   const auto starve = [&card] {
     ASSERT_TRUE(card.line(3000, {kOnePulse / 8}));
     ASSERT_TRUE(card.send(command_words(card_map::Opcode::Feed, 0, card.number++, 3000,
-                                        {{"rate", kWhole / 4}, {"floor", 1}, {"stop_distance", 100}})));
+                                        {{"rate", kFullRate / 4}, {"floor", 1}, {"stop_distance", 100}})));
     card.idle(20'000);
   };
   EXPECT_TRUE(card.probe(kHigh | 2));
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(card.line(100'000, {kOnePulse / 8}));
-  ASSERT_TRUE(card.feed(400'000, kWhole / 4));
+  ASSERT_TRUE(card.feed(400'000, kFullRate / 4));
   ASSERT_TRUE(card.probe_end());
   card.idle(500);
   card.pins = 0b0100;
@@ -319,7 +319,7 @@ TEST(WaitInput, EndsWithItsLevelOrItsTime) {
   ASSERT_TRUE(card.wait_input(1, 0));
   card.pins = 0b0010;
   ASSERT_TRUE(card.line(100, {kOnePulse / 2}));
-  ASSERT_TRUE(card.feed(100, kWhole / 16));
+  ASSERT_TRUE(card.feed(100, kFullRate / 16));
   card.idle(100'000);
   EXPECT_NE(card.core.outputs().status & field::kStatusWaiting, 0U);
   EXPECT_EQ(card.core.position(0), 0);

@@ -13,7 +13,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-constexpr std::int64_t kOne = std::int64_t{1} << 40;
+constexpr std::int64_t kPulseLength = std::int64_t{1} << 40;
 
 struct Line {
   std::int64_t increment;
@@ -65,7 +65,7 @@ int tick(PulseGenerator& generator) {
 }
 
 std::int64_t closed_form(std::int64_t k, std::int64_t increment) {
-  return static_cast<std::int64_t>((static_cast<Wide>(k) * increment + kOne / 2) >> 40);
+  return static_cast<std::int64_t>((static_cast<Wide>(k) * increment + kPulseLength / 2) >> 40);
 }
 
 // round(p * 2^40 / L), half away from zero; 1 <= L < 2^40, |p| <= L.
@@ -79,7 +79,7 @@ TEST(PulseGenerator, StandsAtTheClosedFormAtEveryTick) {
   std::mt19937_64 random(1);
   for (int n = 0; n < 300; ++n) {
     const auto magnitude = static_cast<std::int64_t>(random() >> 24) >> (n % 30);
-    const std::int64_t increment = n == 0 ? kOne : n == 1 ? -kOne : (n % 2 != 0 ? -magnitude : magnitude);
+    const std::int64_t increment = n == 0 ? kPulseLength : n == 1 ? -kPulseLength : (n % 2 != 0 ? -magnitude : magnitude);
     PulseGenerator generator;
     begin(generator, {increment});
     std::int64_t x = 0;
@@ -114,8 +114,8 @@ TEST(PulseGenerator, KeepsTheLineWithinItsBoundAndLandsOnTheEnd) {
 TEST(PulseGenerator, LongLinesLandOnTheirEnd) {
   std::mt19937_64 random(3);
   for (int n = 0; n < 30'000; ++n) {
-    const std::int64_t ticks = n == 0 ? kOne - 1 : static_cast<std::int64_t>(random() >> (24 + n % 30)) + 1;
-    const std::int64_t length = std::min(ticks, kOne - 1);
+    const std::int64_t ticks = n == 0 ? kPulseLength - 1 : static_cast<std::int64_t>(random() >> (24 + n % 30)) + 1;
+    const std::int64_t length = std::min(ticks, kPulseLength - 1);
     // Few pulses: the line goes from step to step, however long it is.
     const std::int64_t most = std::min<std::int64_t>(length, 200);
     const auto pulses = static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(2 * most + 1)) - most;
@@ -204,7 +204,7 @@ TEST(PulseGenerator, MirroredLineMakesMirroredSteps) {
 TEST(PulseGenerator, CountEndsTheLine) {
   for (const std::uint32_t count : {0U, 1U, 2U, 3U, 17U, 65'537U}) {
     PulseGenerator generator;
-    begin(generator, {kOne, true}, count);
+    begin(generator, {kPulseLength, true}, count);
     EXPECT_EQ(generator.outputs().live, count != 0);
     PulseGenerator::Inputs in;
     in.tick = true;
@@ -221,11 +221,11 @@ TEST(PulseGenerator, CountEndsTheLine) {
 
 TEST(PulseGenerator, SwapIsSeamless) {
   PulseGenerator generator;
-  begin(generator, {kOne});
+  begin(generator, {kPulseLength});
   PulseGenerator::Inputs in;
   in.load_increment = true;
   in.tick = true;
-  const std::uint64_t next = static_cast<std::uint64_t>(-kOne);
+  const std::uint64_t next = static_cast<std::uint64_t>(-kPulseLength);
   int x = 0;
   for (int i = 0; i < 3; ++i) {
     in.word = static_cast<std::uint16_t>(next >> (16 * i));
@@ -250,7 +250,7 @@ TEST(PulseGenerator, SwapIsSeamless) {
 
 TEST(PulseGenerator, ClearDropsStepsInFlight) {
   PulseGenerator generator;
-  begin(generator, {kOne});
+  begin(generator, {kPulseLength});
   PulseGenerator::Inputs in;
   in.tick = true;
   generator.clock(in);

@@ -14,11 +14,6 @@ namespace {
 
 namespace reg = card_map::reg;
 
-std::uint64_t seed() {
-  const char* given = std::getenv("TRAMMEL_SEED");
-  return given != nullptr ? std::stoull(given) : 1;
-}
-
 class Pair {
  public:
   // What is compared: a core that is clocked with one that jumps, or one that never rests with one that does.

@@ -21,7 +21,7 @@ Halfwords command(Opcode opcode, unsigned mask, std::uint64_t count, std::size_t
   return to;
 }
 
-Halfwords line(unsigned axes, std::uint64_t ticks) {
+Halfwords line_words(unsigned axes, std::uint64_t ticks) {
   return command(Opcode::Line, (1U << axes) - 1, ticks, 3 * std::size_t{axes});
 }
 Halfwords piece(std::uint64_t ticks, std::uint8_t piece_class = card_map::constant::kClassFeed) {
@@ -101,7 +101,7 @@ TEST(Sequencer, ShortLinesFollowAsFastAsTheyAreDecoded) {
   for (unsigned axes = 1; axes <= 8; ++axes) {
     Bench bench;
     // The first line waits for its piece: meanwhile the second one is decoded.
-    bench.queue(std::vector<Halfwords>(6, line(axes, 1)), {piece(6)});
+    bench.queue(std::vector<Halfwords>(6, line_words(axes, 1)), {piece(6)});
     bench.run(500);
     ASSERT_EQ(bench.swaps.size(), 6U);
     for (std::size_t i = 3; i < 6; ++i) EXPECT_EQ(bench.swaps[i] - bench.swaps[i - 1], 8 + 3 * axes);
@@ -111,7 +111,7 @@ TEST(Sequencer, ShortLinesFollowAsFastAsTheyAreDecoded) {
 
 TEST(Sequencer, LongLinesFollowInTheClockOfTheLastTick) {
   Bench bench;
-  bench.queue({line(3, 100), line(3, 50), dwell(0)}, {piece(150), dwell(0)});
+  bench.queue({line_words(3, 100), line_words(3, 50), dwell(0)}, {piece(150), dwell(0)});
   bench.run(600);
   ASSERT_EQ(bench.swaps.size(), 2U);
   EXPECT_EQ(bench.ticks, 150U);
@@ -138,7 +138,7 @@ TEST(Sequencer, ADwellCountsAtLeastOneClock) {
 TEST(Sequencer, PathsAndPiecesThatDisagreeAreAMismatchAtTheBarrier) {
   for (const bool more_feed : {false, true}) {
     Bench bench;
-    bench.queue({line(1, more_feed ? 10 : 11), dwell(0)}, {piece(more_feed ? 11 : 10), dwell(0)});
+    bench.queue({line_words(1, more_feed ? 10 : 11), dwell(0)}, {piece(more_feed ? 11 : 10), dwell(0)});
     bench.run(300);
     EXPECT_GT(bench.mismatches, 0U);
     EXPECT_EQ(bench.ticks, 10U);
@@ -147,7 +147,7 @@ TEST(Sequencer, PathsAndPiecesThatDisagreeAreAMismatchAtTheBarrier) {
 
 TEST(Sequencer, BegunCountsBothQueues) {
   Bench bench;
-  bench.queue({line(1, 4), line(2, 6), dwell(3)}, {piece(5), piece(3), piece(2), dwell(3)});
+  bench.queue({line_words(1, 4), line_words(2, 6), dwell(3)}, {piece(5), piece(3), piece(2), dwell(3)});
   bench.run(500);
   EXPECT_EQ(bench.sequencer.outputs().geometry_begun, 3U);
   EXPECT_EQ(bench.sequencer.outputs().feed_begun, 4U);
@@ -161,7 +161,7 @@ TEST(Sequencer, TheClassIsThatOfThePieceInForce) {
   constexpr std::uint8_t kRapid = card_map::constant::kClassRapid;
   constexpr std::uint8_t kFixed = card_map::constant::kClassFixed;
   Bench bench;
-  bench.queue({line(1, 120), dwell(200), line(1, 120)},
+  bench.queue({line_words(1, 120), dwell(200), line_words(1, 120)},
               {piece(40, kRapid), piece(40, kFixed), piece(40, kFixed), dwell(200), piece(80), piece(40, kRapid)});
   const std::vector<std::uint8_t> classes{kRapid, kFixed, kFixed, kFeed, kRapid};
   for (int clock = 0; clock < 900; ++clock) {
@@ -181,7 +181,7 @@ TEST(Sequencer, ACutAndADirectMoveAreFeed) {
   constexpr std::uint8_t kRapid = card_map::constant::kClassRapid;
   for (const bool cut : {false, true}) {
     Bench bench;
-    bench.queue({line(1, 100)}, {piece(100, kRapid)});
+    bench.queue({line_words(1, 100)}, {piece(100, kRapid)});
     bench.run(cut ? 60 : 300);
     EXPECT_EQ(bench.sequencer.outputs().piece_class, kRapid);
     EXPECT_EQ(bench.sequencer.outputs().moving, cut);

@@ -10,7 +10,7 @@ namespace {
 
 using trammel::model::SpiPort;
 
-class Bench {
+class SpiBench {
  public:
   void clocks(bool sck, bool cs_n, bool mosi, unsigned count) {
     for (unsigned i = 0; i < count; ++i) {
@@ -49,7 +49,7 @@ class Bench {
 
 TEST(SpiPort, BytesBothWays) {
   for (const bool mode3 : {false, true}) {
-    Bench bench;
+    SpiBench bench;
     EXPECT_EQ(bench.exchange(mode3, {1, 0xA5, 0xFF}), (std::vector<std::uint8_t>{0xC0, 0x80, 0x81}));
     // The byte that was loaded at the end of an exchange comes first in the next.
     EXPECT_EQ(bench.exchange(mode3, {7}), std::vector<std::uint8_t>{0x82});
@@ -58,14 +58,14 @@ TEST(SpiPort, BytesBothWays) {
 }
 
 TEST(SpiPort, AByteThatIsCutIsNone) {
-  Bench bench;
+  SpiBench bench;
   bench.exchange(false, {1, 2}, 5);
   bench.exchange(false, {3, 4});
   EXPECT_EQ(bench.received, (std::vector<std::uint8_t>{1, 3, 4}));
 }
 
 TEST(SpiPort, SckForOthersIsNothing) {
-  Bench bench;
+  SpiBench bench;
   for (int i = 0; i < 50; ++i) {
     bench.clocks(false, true, true, 2);
     bench.clocks(true, true, true, 2);
@@ -78,7 +78,7 @@ TEST(SpiPort, SckForOthersIsNothing) {
 // A level that the clock sees first at its edge n shows at MISO after edge n + 2: the bit is there 2 to 3 clocks after
 // SCK rose.
 TEST(SpiPort, MisoIsTwoToThreeClocksLate) {
-  Bench bench;
+  SpiBench bench;
   bench.clocks(false, true, false, 6);
   bench.clocks(false, false, false, 6);
   EXPECT_TRUE(bench.port.outputs().miso);  // C0

@@ -9,7 +9,7 @@ namespace {
 
 using trammel::model::UartPort;
 
-class Bench {
+class UartBench {
  public:
   void clock(bool rx, bool valid = false, std::uint8_t byte = 0) {
     UartPort::Inputs in;
@@ -46,7 +46,7 @@ class Bench {
 };
 
 TEST(UartPort, MeasuresAfterABreakAlone) {
-  Bench bench;
+  UartBench bench;
   bench.send(0x55, 100);
   EXPECT_EQ(bench.port.period(), 0U);
   EXPECT_FALSE(bench.port.outputs().ready);
@@ -67,7 +67,7 @@ TEST(UartPort, MeasuresAfterABreakAlone) {
 }
 
 TEST(UartPort, ARateTooHighIsNotTaken) {
-  Bench bench;
+  UartBench bench;
   bench.connect(63);
   EXPECT_EQ(bench.port.period(), 0U);
   bench.connect(64);
@@ -77,7 +77,7 @@ TEST(UartPort, ARateTooHighIsNotTaken) {
 // The host's clock may be off by 4 % (4 Mbaud at 100 MHz: 25 clocks a bit).
 TEST(UartPort, ToleratesARateThatIsOff) {
   for (const unsigned period : {192U, 208U}) {
-    Bench bench;
+    UartBench bench;
     bench.connect(200);
     for (unsigned byte = 0; byte < 256; ++byte) bench.send(static_cast<std::uint8_t>(byte), period);
     bench.hold(true, 40);
@@ -89,7 +89,7 @@ TEST(UartPort, ToleratesARateThatIsOff) {
 // The k-th bit begins at the whole part of k/8 periods after the start bit.
 TEST(UartPort, BitsLeaveAtTheirTimes) {
   for (const unsigned period : {64U, 87U, 201U, 333U}) {
-    Bench bench;
+    UartBench bench;
     bench.connect(period);
     EXPECT_TRUE(bench.port.outputs().ready);
     bench.clock(true, true, 0xA6);
@@ -108,7 +108,7 @@ TEST(UartPort, BitsLeaveAtTheirTimes) {
 }
 
 TEST(UartPort, ABreakIsTold) {
-  Bench bench;
+  UartBench bench;
   unsigned breaks = 0;
   for (unsigned i = 0; i < 3000; ++i) {
     bench.clock(i >= 1023 && i < 1030);

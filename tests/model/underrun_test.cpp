@@ -22,11 +22,6 @@ namespace field = card_map::field;
 
 constexpr double kFullSlew = 1 << 29;  // SLEW of a stop that takes as long as 2 clocks at full ratio
 
-std::uint64_t seed() {
-  const char* given = std::getenv("TRAMMEL_SEED");
-  return given != nullptr ? std::stoull(given) : 1;
-}
-
 struct Piece {
   std::uint64_t ticks;
   double from;  // ticks a clock
@@ -97,7 +92,7 @@ class Starved {
 };
 
 // A program: pieces of all rates, one after the other at speed, the last one to a stop; lines under them.
-struct Program {
+struct RandomPieces {
   std::vector<Piece> pieces;
   std::vector<std::uint64_t> lines;
   double stop_clocks;  // from full ratio to rest, half of it: T_s
@@ -106,7 +101,7 @@ struct Program {
 };
 
 // S = ceil(T_s * the largest rate in the piece and in all that follows within T_s).
-void give_stop_distances(Program& program, double share) {
+void give_stop_distances(RandomPieces& program, double share) {
   for (std::size_t i = 0; i + 1 < program.pieces.size(); ++i) {
     double fastest = 0;
     double clocks = 0;
@@ -121,11 +116,11 @@ void give_stop_distances(Program& program, double share) {
   program.pieces.back().stop_distance = 0;
 }
 
-Program random_program(std::mt19937_64& random, double share = 1) {
+RandomPieces random_program(std::mt19937_64& random, double share = 1) {
   const auto any = [&random](double low, double high) {
     return low * std::pow(high / low, static_cast<double>(random() >> 11) * 0x1p-53);
   };
-  Program program{};
+  RandomPieces program{};
   program.slew = static_cast<std::uint32_t>(kFullSlew / any(2.1, 10'000));
   program.stop_clocks = kFullSlew / program.slew;
   program.ratio = random() % 3 == 0 ? static_cast<std::uint32_t>(any(0x1000, 0xFFFF)) : 0x10000;
@@ -154,7 +149,7 @@ std::vector<std::int64_t> increments(std::size_t line) {
 
 // `wait` gives the clocks before each command. A piece comes before the first line that it covers, or any time before.
 template <class Wait>
-void run(Starved& card, const Program& program, std::uint64_t ahead, const Wait& wait) {
+void run(Starved& card, const RandomPieces& program, std::uint64_t ahead, const Wait& wait) {
   card.bench.write(reg::kSlew, program.slew);
   card.bench.write(reg::kRatioFeed, program.ratio);
   std::size_t next = 0;
@@ -173,7 +168,7 @@ void run(Starved& card, const Program& program, std::uint64_t ahead, const Wait&
   ASSERT_EQ(card.bench.core.outputs().status & field::kStatusBusy, 0U);
 }
 
-std::uint64_t clocks_of(const Program& program) {
+std::uint64_t clocks_of(const RandomPieces& program) {
   double clocks = 0;
   for (const Piece& p : program.pieces) clocks += 2 * static_cast<double>(p.ticks) / (p.from + p.to);
   return static_cast<std::uint64_t>(clocks);
@@ -197,7 +192,7 @@ Outcome starve(std::uint64_t cases, double share) {
   for (std::uint64_t i = 0; i < cases; ++i) {
     SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " case " + std::to_string(i));
     std::mt19937_64 random(seed() * 1'000'003 + i);
-    const Program program = random_program(random, share);
+    const RandomPieces program = random_program(random, share);
     // All pieces first, or each right before the first line that it covers.
     const std::uint64_t ahead = random() % 2 == 0 ? 0 : 1'000'000'000;
     Starved plenty;

@@ -17,14 +17,6 @@ using driver::ArcChordCommand;
 using driver::FeedCommand;
 using driver::kPi;
 
-constexpr std::uint32_t kClock = 100'000'000;
-
-machine::Machine machine_with(const std::vector<std::string>& overrides) {
-  machine::Machine machine = machine::default_machine();
-  for (const std::string& text : overrides) machine::apply_override(machine, text);
-  return machine;
-}
-
 // The last block but the end, of which there must be one arc in chords.
 Planned last_arc(const std::string& text, const machine::Machine& machine = machine::default_machine()) {
   const Plan plan = plan_text(text, machine, {kClock, 4});

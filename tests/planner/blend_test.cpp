@@ -185,7 +185,9 @@ std::vector<Place> random_corners(std::mt19937& random, bool flat) {
   return corners;
 }
 
-RC_GTEST_PROP(Blend, RandomLinesAreLeftByTheToleranceAtMost, (unsigned seed, bool flat)) {
+RC_GTEST_PROP(Blend, RandomLinesAreLeftByTheToleranceAtMost, ()) {
+  const auto seed = *rc::gen::arbitrary<unsigned>();
+  const auto flat = *rc::gen::arbitrary<bool>();
   std::mt19937 random(seed);
   const std::vector<Place> corners = random_corners(random, flat);
   const double tolerance = std::exp2(std::uniform_real_distribution<>(-7, 2)(random));
@@ -302,7 +304,8 @@ TEST(Blend, AreMadeWhereTheyAreQuicker) {
   RecordProperty("worst_smooth", fmt::format("{:.4f}", worst_smooth));
 }
 
-RC_GTEST_PROP(Blend, RandomArcsAndLinesAreLeftByTheToleranceAtMost, (unsigned seed)) {
+RC_GTEST_PROP(Blend, RandomArcsAndLinesAreLeftByTheToleranceAtMost, ()) {
+  const auto seed = *rc::gen::arbitrary<unsigned>();
   std::mt19937 random(seed);
   const Curves curves = random_curves(random);
   const double tolerance = std::exp2(std::uniform_real_distribution<>(-7, 0)(random));

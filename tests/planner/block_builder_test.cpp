@@ -16,14 +16,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr CardLimits kCard = {100'000'000, 4, true};
-
-machine::Machine machine_with(const std::vector<std::string>& overrides) {
-  machine::Machine machine = machine::default_machine();
-  for (const std::string& text : overrides) machine::apply_override(machine, text);
-  return machine;
-}
-
 std::string refusal(const std::string& text, const machine::Machine& machine, gcode::ErrorCode* code = nullptr,
                     const gcode::Coordinates& start = {}) {
   const Plan plan = plan_text(text, machine, kCard, start);

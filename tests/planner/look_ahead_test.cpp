@@ -13,15 +13,6 @@
 namespace trammel::planner {
 namespace {
 
-constexpr CardLimits kCard = {100'000'000, 4, true};
-constexpr double kPi = 3.14159265358979;
-
-machine::Machine machine_with(const std::vector<std::string>& overrides) {
-  machine::Machine machine = machine::default_machine();
-  for (const std::string& text : overrides) machine::apply_override(machine, text);
-  return machine;
-}
-
 // The limits of the comparison.
 machine::Machine fast_machine(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = {"motion.junction_deviation=0.02"};
@@ -83,10 +74,10 @@ std::string line_of_chords(double length, double chord, double feed) {
 
 std::string circle_of_chords(double radius, double chord, double feed) {
   std::string text = "G0 X" + format(radius) + "\nG1 F" + format(feed) + "\n";
-  const auto count = static_cast<int>(std::lround(2 * kPi * radius / chord));
+  const auto count = static_cast<int>(std::lround(2 * driver::kPi * radius / chord));
   for (int i = 1; i <= count; ++i) {
-    text += "X" + format(radius * std::cos(2 * kPi * i / count)) + "Y" +
-            format(radius * std::sin(2 * kPi * i / count)) + "\n";
+    text += "X" + format(radius * std::cos(2 * driver::kPi * i / count)) + "Y" +
+            format(radius * std::sin(2 * driver::kPi * i / count)) + "\n";
   }
   return text;
 }
@@ -245,7 +236,7 @@ class WholeProgram {
 
   double reach(double from, const Block& over) const {
     if (!is_arc(over)) return std::sqrt(from * from + 2 * over.acceleration * over.length);
-    const double end = std::min(kPi / 2, angle(over, from) + 2 * over.length / over.exact.radius_start);
+    const double end = std::min(driver::kPi / 2, angle(over, from) + 2 * over.length / over.exact.radius_start);
     return std::sqrt(radius_times_acceleration(over) * std::sin(end));
   }
   double length_between(const Block& block, double low, double high) const {
@@ -385,7 +376,7 @@ TEST(Junctions, FollowTheDeviationFormula) {
   const machine::Machine machine = machine_with({"motion.junction_deviation=0.05"});
   const std::vector<Planned> blocks = blocks_of("G1 F6000 X50\nY50\nX100\n", machine);
   // A quarter turn: each axis's acceleration along the difference of the directions is sqrt(2) of its own.
-  const double half = std::cos(kPi / 4);
+  const double half = std::cos(driver::kPi / 4);
   const double expected = std::sqrt(1000 * std::sqrt(2) * 0.05 * half / (1 - half));
   EXPECT_NEAR(blocks[0].planned.velocity_jump, expected, expected * 0.002);
   EXPECT_EQ(blocks[0].planned.acceleration_step, 0);

@@ -12,6 +12,15 @@
 
 namespace trammel::planner {
 
+constexpr std::uint32_t kClock = 100'000'000;
+constexpr CardLimits kCard = {kClock, 4, true};
+
+inline machine::Machine machine_with(const std::vector<std::string>& overrides) {
+  machine::Machine machine = machine::default_machine();
+  for (const std::string& text : overrides) machine::apply_override(machine, text);
+  return machine;
+}
+
 struct Planned {
   PlannedBlock planned;
   std::vector<driver::Command> commands;

@@ -23,10 +23,8 @@ __extension__ typedef __int128 int128;
 
 using ::testing::HasSubstr;
 
-constexpr std::uint32_t kClock = 100'000'000;
-
-std::vector<Planned> plan(const std::string& text, const Machine& machine = default_machine(),
-                          std::uint32_t clock_hz = kClock, ArcsBy arcs = ArcsBy::kGenerator) {
+std::vector<Planned> plan_of(const std::string& text, const Machine& machine = default_machine(),
+                             std::uint32_t clock_hz = kClock, ArcsBy arcs = ArcsBy::kGenerator) {
   const Plan result = plan_text(text, machine, with_arcs_by({clock_hz, 4}, arcs));
   if (result.error) throw std::runtime_error(describe(*result.error));
   return result.blocks;
@@ -124,7 +122,7 @@ double top_rate(const Planned& segment, std::uint32_t clock_hz = kClock) {
 }
 
 TEST(Planner, LineHasFeedThenGeometry) {
-  const auto segments = plan("G1 X10 Y5 F3000\nM2\n");
+  const auto segments = plan_of("G1 X10 Y5 F3000\nM2\n");
   ASSERT_EQ(segments.size(), 2U);
   const Planned& line = segments[0];
   EXPECT_EQ(line->line, 1U);
@@ -141,42 +139,42 @@ TEST(Planner, LineHasFeedThenGeometry) {
 
 TEST(Planner, FeedHoldsAlongThePath) {
   // ticks a second = feed * N / length.
-  const auto xy = plan("G1 X30 Y40 F600");
+  const auto xy = plan_of("G1 X30 Y40 F600");
   EXPECT_NEAR(top_rate(xy[0]) / static_cast<double>(path_ticks(xy[0])), 10.0 / 50, 1e-6);
-  const auto with_e = plan("G1 X30 Y40 E7 F600");
+  const auto with_e = plan_of("G1 X30 Y40 E7 F600");
   EXPECT_NEAR(top_rate(with_e[0]) / static_cast<double>(path_ticks(with_e[0])), 10.0 / 50, 1e-6);
-  const auto e_only = plan("G1 E7 F600");
+  const auto e_only = plan_of("G1 E7 F600");
   EXPECT_NEAR(top_rate(e_only[0]) / static_cast<double>(path_ticks(e_only[0])), 10.0 / 7, 1e-5);
-  const auto inverse_time = plan("G93 G1 X30 Y40 F6");
+  const auto inverse_time = plan_of("G93 G1 X30 Y40 F6");
   EXPECT_NEAR(top_rate(inverse_time[0]) / static_cast<double>(path_ticks(inverse_time[0])), 0.1, 1e-6);
 }
 
 TEST(Planner, AxisLimitsBindTheFeed) {
   // Z may do 100 mm/s: along (3, 0, 4) that is 125 mm/s.
-  const auto segments = plan("G0 X60 Z80");
+  const auto segments = plan_of("G0 X60 Z80");
   EXPECT_NEAR(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])), 100.0 / 80, 1e-4);
-  const auto fast = plan("G1 X100 F60000");
+  const auto fast = plan_of("G1 X100 F60000");
   EXPECT_NEAR(top_rate(fast[0]) / static_cast<double>(path_ticks(fast[0])), 150.0 / 100, 1e-4);
 }
 
 TEST(Planner, PulseShapeBindsTheSpeed) {
   Machine machine = default_machine();
   apply_override(machine, "axis.x.step_length_ns=500000");  // with the space 502 us: 1992 pulses a second
-  const auto segments = plan("G0 X100", machine);
+  const auto segments = plan_of("G0 X100", machine);
   EXPECT_LE(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])) * 8000, 1992.0);
   EXPECT_GE(top_rate(segments[0]) / static_cast<double>(path_ticks(segments[0])) * 8000, 1800.0);
 }
 
 TEST(Planner, RoundsAbsoluteTargetsHalfAwayFromZero) {
   // 0.00625 mm are half a pulse.
-  EXPECT_EQ(plan("G0 X0.00625")[0]->end[0], 1);
-  EXPECT_EQ(plan("G0 X-0.00625")[0]->end[0], -1);
-  EXPECT_EQ(plan("G0 X0.00624").size(), 1U);
+  EXPECT_EQ(plan_of("G0 X0.00625")[0]->end[0], 1);
+  EXPECT_EQ(plan_of("G0 X-0.00625")[0]->end[0], -1);
+  EXPECT_EQ(plan_of("G0 X0.00624").size(), 1U);
   std::string text = "G91 G0\n";
   for (int i = 0; i < 1000; ++i) {
     text += "X0.003\n";
   }
-  const auto segments = plan(text);
+  const auto segments = plan_of(text);
   EXPECT_EQ(segments.at(segments.size() - 2)->end[0], 240);
   Pulses here{};
   for (const Planned& segment : segments) {
@@ -190,7 +188,7 @@ TEST(Planner, ExtremesWork) {
   apply_override(machine, "axis.x.steps_per_mm=1000000");
   for (const std::uint32_t clock_hz : {100'000U, 1'000'000U, kClock}) {
     machine.clock_hz = clock_hz;
-    for (const auto& segment : plan("G0 X0.000001\nX2000 Y0.0125\nG1 X0 F0.0001\nY0 F0.00001", machine, clock_hz)) {
+    for (const auto& segment : plan_of("G0 X0.000001\nX2000 Y0.0125\nG1 X0 F0.0001\nY0 F0.00001", machine, clock_hz)) {
       if (segment->geometry != Geometry::kEnd) {
         expect_sound(segment);
         EXPECT_LE(top_rate(segment, clock_hz), 0.9001 * clock_hz);
@@ -210,7 +208,7 @@ TEST(Planner, RefusesTargetsBeyondTheCounters) {
 }
 
 TEST(Planner, DwellIsSplitAtTheCommandsWidth) {
-  const auto segments = plan("G4 P0.25\nG4 P15000");
+  const auto segments = plan_of("G4 P0.25\nG4 P15000");
   EXPECT_EQ(commands<DwellCommand>(segments[0]).at(0).clocks, 25'000'000U);
   const auto parts = commands<DwellCommand>(segments[1]);
   ASSERT_EQ(parts.size(), 2U);
@@ -219,7 +217,8 @@ TEST(Planner, DwellIsSplitAtTheCommandsWidth) {
 }
 
 TEST(Planner, ArcsGoToTheAccumulator) {
-  const auto segments = plan("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-5\n", default_machine(), kClock, ArcsBy::kAccumulator);
+  const auto segments =
+      plan_of("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-5\n", default_machine(), kClock, ArcsBy::kAccumulator);
   ASSERT_EQ(segments.size(), 4U);
   for (const std::size_t i : {1U, 2U}) {
     const Planned& arc = segments[i];
@@ -240,7 +239,7 @@ TEST(Planner, ArcsGoToTheAccumulator) {
 }
 
 TEST(Planner, CentripetalAccelerationIsLimited) {
-  const auto arc = plan("G2 I1 F60000", default_machine(), kClock, ArcsBy::kAccumulator)[0];
+  const auto arc = plan_of("G2 I1 F60000", default_machine(), kClock, ArcsBy::kAccumulator)[0];
   const ArcCommand command = commands<ArcCommand>(arc).at(0);
   const double unit_steps =
       top_rate(arc) * static_cast<double>(command.path_ticks) / static_cast<double>(command.ticks);
@@ -292,7 +291,7 @@ TEST(Planner, ArcsInEightDirectionsWaitForTheirSteps) {
 TEST(Planner, UnequalScalesGoOutAsChords) {
   Machine machine = default_machine();
   apply_override(machine, "axis.x.steps_per_mm=200");
-  const auto segments = plan("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-10\n", machine);
+  const auto segments = plan_of("G0 X10\nG3 X0 Y10 I-10 F600\nG2 J-10\n", machine);
   for (const std::size_t i : {1U, 2U}) {
     const Planned& arc = segments[i];
     expect_sound(arc);
@@ -327,7 +326,7 @@ TEST(Planner, TinyAndHugeArcsEndWhereTheyShould) {
                            "G2 I0.001 F60", "G3 X0.0001 Y0.0001 R-1 F60"}) {
     SCOPED_TRACE(text);
     for (const ArcsBy arcs : {ArcsBy::kGenerator, ArcsBy::kAccumulator, ArcsBy::kChords}) {
-      for (const Planned& segment : plan(text, default_machine(), kClock, arcs)) {
+      for (const Planned& segment : plan_of(text, default_machine(), kClock, arcs)) {
         if (moves(segment.planned.block)) {
           expect_sound(segment);
         }
@@ -383,7 +382,7 @@ TEST(Planner, RandomLinesAreSound) {
               std::to_string(coordinate()) + "E" + std::to_string(coordinate()) + "\n";
     }
     const std::uint32_t clock_hz = *rc::gen::element(1'000'000U, 25'000'000U, kClock);
-    const std::vector<Planned> segments = plan(text, default_machine(), clock_hz);
+    const std::vector<Planned> segments = plan_of(text, default_machine(), clock_hz);
     for (const Stretch& stretch : stretches_of(segments)) RC_ASSERT(is_sound(stretch));
     for (const Planned& segment : segments) {
       if (segment->geometry == Geometry::kEnd) {

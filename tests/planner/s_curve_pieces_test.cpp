@@ -13,7 +13,6 @@
 namespace trammel::planner {
 namespace {
 
-constexpr std::uint32_t kClock = 100'000'000;
 constexpr double kUpdate = 32;
 
 machine::Machine machine_with_jerk(double jerk) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "clocks.hpp"
 #include "dying_bus.hpp"
 #include "steps.hpp"
 #include "trammel/run/configure.hpp"
@@ -15,8 +16,6 @@
 
 namespace trammel::run {
 namespace {
-
-constexpr std::uint32_t kClock = 1'000'000;
 
 class JogTest : public testing::Test {
  protected:

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "clocks.hpp"
 #include "trammel/run/configure.hpp"
 #include "trammel/run/output_recorder.hpp"
 #include "trammel/run/path_identity.hpp"
@@ -13,16 +14,14 @@
 namespace trammel::run {
 namespace {
 
-constexpr std::uint32_t kClock = 400'000;
-
 ProgramLines lines(const std::string& text) {
   return [text]() -> std::unique_ptr<gcode::LineSource> { return std::make_unique<gcode::TextLines>(text, "p.ngc"); };
 }
 
 class Bench {
  public:
-  explicit Bench(const sim::ModelOptions& options = sim::EngineOptions{4, kClock, false})
-      : engine(sim::make_model_engine(options)), bus(*engine, kClock, 1e9), card(driver::Card::open(bus)) {
+  explicit Bench(const sim::ModelOptions& options = sim::EngineOptions{4, kSlowClock, false})
+      : engine(sim::make_model_engine(options)), bus(*engine, kSlowClock, 1e9), card(driver::Card::open(bus)) {
     machine::apply_override(machine, "outputs.m3=0");
     machine::apply_override(machine, "outputs.m8=2");
     fork.add(recorder);
@@ -64,7 +63,7 @@ TEST(PathOutputs, AreCountedByTheHostAsTheCardDoes) {
 // count.
 TEST(PathOutputs, TheLineThatTheCardIsAtIsKnown) {
   Bench bench;
-  bench.bus.at(std::uint64_t{kClock} * 5, [&](sim::Engine&) { bench.card.request_stop(); });
+  bench.bus.at(std::uint64_t{kSlowClock} * 5, [&](sim::Engine&) { bench.card.request_stop(); });
   std::size_t line = 0;
   try {
     bench.run(program(300));
@@ -90,7 +89,7 @@ TEST(PathOutputs, OutputsThatTheCardLacksAreRefused) {
   machine::apply_override(bench.machine, "outputs.m7=3");
   EXPECT_NO_THROW(configure(bench.card, bench.machine));
 
-  sim::ModelOptions bare(sim::EngineOptions{4, kClock, false});
+  sim::ModelOptions bare(sim::EngineOptions{4, kSlowClock, false});
   bare.engines = card_map::field::kEnginesLines | card_map::field::kEnginesArcGenerator |
                  card_map::field::kEnginesJerk | card_map::field::kEnginesUnderrunHold;
   Bench without(bare);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "clocks.hpp"
 #include "steps.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/run/step_recorder.hpp"
@@ -17,7 +18,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::uint32_t kClock = 1'000'000;
 constexpr std::int64_t kPulses = 80;  // a mm
 constexpr std::size_t kZ = 2;
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "clocks.hpp"
 #include "dying_bus.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/step_recorder.hpp"
@@ -18,8 +19,6 @@ namespace trammel::run {
 namespace {
 
 using ::testing::HasSubstr;
-
-constexpr std::uint32_t kClock = 1'000'000;
 
 ProgramLines lines_of(const std::string& text) {
   return [text = std::make_shared<const std::string>(text)]() -> std::unique_ptr<gcode::LineSource> {

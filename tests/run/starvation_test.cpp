@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "clocks.hpp"
 #include "dying_bus.hpp"
 #include "steps.hpp"
 #include "trammel/run/path_identity.hpp"
@@ -17,8 +18,6 @@
 
 namespace trammel::run {
 namespace {
-
-constexpr std::uint32_t kClock = 1'000'000;
 
 // A circle of R 10 mm at 20 mm/s. In 3000 chords of 0.02 mm it takes a line a millisecond, and a stop, which is 3 mm
 // long, is more than the quarter of full queues that a stop distance may be; in 1000 it is less.

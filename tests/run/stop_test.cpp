@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "clocks.hpp"
 #include "steps.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/machine_position.hpp"
@@ -16,14 +17,13 @@
 namespace trammel::run {
 namespace {
 
-constexpr std::uint32_t kClock = 400'000;
-constexpr char kProgram[] =
+constexpr char kStopProgram[] =
     "F3000\nG1 X8 Y3\nG2 X12 Y7 I4\nG4 P0.1\nG1 X2 Y9.3 Z1.7\nG3 X2 Y9.3 J-3\nG1 X30\nG0 X0 Y0 Z0\n";
 
 // A card on a bus of its own, where programs are run one after another.
-class Bench {
+class StopBench {
  public:
-  Bench() { engine->set_sink(&steps); }
+  StopBench() { engine->set_sink(&steps); }
 
   ProgramLines lines(const std::string& text) {
     return [text = std::make_shared<const std::string>(text)]() -> std::unique_ptr<gcode::LineSource> {
@@ -37,8 +37,8 @@ class Bench {
   }
 
   machine::Machine machine = machine::default_machine();
-  std::unique_ptr<sim::Engine> engine = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
-  sim::TimedBus bus{*engine, kClock, 1e9};
+  std::unique_ptr<sim::Engine> engine = sim::make_model_engine(sim::EngineOptions{4, kSlowClock, false});
+  sim::TimedBus bus{*engine, kSlowClock, 1e9};
   driver::Card card = driver::Card::open(bus);
   test::Steps steps;
 };
@@ -48,20 +48,20 @@ bool same(const driver::PathStep& a, const driver::PathStep& b) {
 }
 
 TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
-  Bench whole;
-  whole.run(kProgram);
-  const double end = static_cast<double>(whole.steps.pins.back().cycle) / kClock;
+  StopBench whole;
+  whole.run(kStopProgram);
+  const double end = static_cast<double>(whole.steps.pins.back().cycle) / kSlowClock;
   // Not in the last ramp, which a stop does not shorten.
   for (double at = 0.03; at < end - 0.2; at += 0.0617) {
     SCOPED_TRACE(at);
-    Bench bench;
+    StopBench bench;
     MachinePosition position(bench.card.snapshot(), bench.machine);
-    const auto due = static_cast<std::uint64_t>(at * kClock);
+    const auto due = static_cast<std::uint64_t>(at * kSlowClock);
     bench.bus.at(due, [&](sim::Engine&) { bench.card.request_stop(); });
     std::optional<std::size_t> line;
     planner::Pulses told{};
     try {
-      bench.run(kProgram);
+      bench.run(kStopProgram);
     } catch (const StoppedOnPath& stopped) {
       line = stopped.line();
       told = stopped.position();
@@ -75,7 +75,7 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
     EXPECT_FALSE(bench.card.status().held) << "the hold is over, or soon will be";
     // 0.3 s of ramp from full speed; 50 mm/s of 150 take a third of it.
     EXPECT_LE(
-        static_cast<double>(bench.steps.pins.back().cycle - std::min(due, bench.steps.pins.back().cycle)) / kClock,
+        static_cast<double>(bench.steps.pins.back().cycle - std::min(due, bench.steps.pins.back().cycle)) / kSlowClock,
         0.32);
     position.look(bench.card.snapshot());
     planner::Pulses counted{};
@@ -93,8 +93,8 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
 }
 
 TEST(Stop, TellsTheLineThatTheCardWasAt) {
-  Bench bench;
-  bench.bus.at(std::uint64_t{7} * kClock / 2, [&](sim::Engine&) { bench.card.request_stop(); });
+  StopBench bench;
+  bench.bus.at(std::uint64_t{7} * kSlowClock / 2, [&](sim::Engine&) { bench.card.request_stop(); });
   try {
     bench.run("F600\nG1 X10\nY10\nX20\nY20\nX30\n");  // a second each
     FAIL() << "not stopped";
@@ -104,9 +104,9 @@ TEST(Stop, TellsTheLineThatTheCardWasAt) {
 }
 
 // Lines of a pulse each, with a rest between them, from somebody who is slower than the card: the queue is never full.
-class SlowLines final : public gcode::LineSource {
+class PausingLines final : public gcode::LineSource {
  public:
-  SlowLines(driver::Card& card, unsigned& read) : card_(card), read_(read) {}
+  PausingLines(driver::Card& card, unsigned& read) : card_(card), read_(read) {}
   const std::string& name() const override { return name_; }
   bool next(std::string_view& line) override {
     if (read_ == 100) return false;
@@ -122,9 +122,9 @@ class SlowLines final : public gcode::LineSource {
 };
 
 TEST(Stop, WhileLinesComeSlowly) {
-  Bench bench;
+  StopBench bench;
   unsigned read = 0;
-  Runner runner([&] { return std::make_unique<SlowLines>(bench.card, read); }, bench.machine,
+  Runner runner([&] { return std::make_unique<PausingLines>(bench.card, read); }, bench.machine,
                 planner::limits_of(bench.card.identification()));
   EXPECT_THROW(runner.stream(bench.card), StoppedOnPath);
   EXPECT_LT(read, 60U) << "it was not looked for before the end";
@@ -132,12 +132,12 @@ TEST(Stop, WhileLinesComeSlowly) {
 
 // In a dwell, with a hold standing, and when there is nothing to stop.
 TEST(Stop, AtRest) {
-  Bench bench;
-  bench.bus.at(kClock / 2, [&](sim::Engine&) { bench.card.request_stop(); });
+  StopBench bench;
+  bench.bus.at(kSlowClock / 2, [&](sim::Engine&) { bench.card.request_stop(); });
   EXPECT_THROW(bench.run("G4 P100\nG0 X1\n"), StoppedOnPath);
   EXPECT_TRUE(bench.steps.pins.empty());
   bench.card.set_hold(true);
-  bench.bus.at(bench.engine->cycles() + kClock, [&](sim::Engine&) { bench.card.request_stop(); });
+  bench.bus.at(bench.engine->cycles() + kSlowClock, [&](sim::Engine&) { bench.card.request_stop(); });
   EXPECT_THROW(bench.run("G0 X1\n"), StoppedOnPath);
   EXPECT_TRUE(bench.steps.pins.empty());
   bench.card.stop();
@@ -146,7 +146,7 @@ TEST(Stop, AtRest) {
 
 // The ramp takes 0.3 s from full ratio; a slew of the slowest kind would take 45 minutes at this clock.
 TEST(Stop, GivesUpWhereTheRampDoesNotEnd) {
-  Bench bench;
+  StopBench bench;
   bench.card.set_longest_step_wait(std::chrono::milliseconds(1));
   driver::Stream stream(bench.card);
   bench.card.set_slew_time(std::chrono::milliseconds(300));

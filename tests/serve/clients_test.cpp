@@ -84,6 +84,33 @@ TEST_F(ClientsTest, Hellos) {
   EXPECT_EQ(server_->counts().refused, 7U);
 }
 
+// What is lost for good is found in that time once, however often the driver asks again.
+TEST_F(ClientsTest, AServerThatIsGone) {
+  serve(settings());
+  bool gone = false;
+  unsigned tries = 0;
+  StreamLink link(
+      [&]() -> std::unique_ptr<transport::ByteStream> {
+        ++tries;
+        if (gone) throw driver::LinkError("nobody there");
+        return std::make_unique<ClientEnd>(*server_, listener_);
+      },
+      StreamLink::Hello{"secret"}, 100ms);
+  driver::FrameBus bus(link);
+  gone = true;
+  server_.reset();
+  driver::Access magic = driver::read_of(reg::kMagic);
+  EXPECT_THROW(bus.transfer(&magic, 1), driver::LinkError);
+  EXPECT_LE(tries, 8U) << "a look each 50 ms, and one for each of the driver's other tries";
+  tries = 0;
+  EXPECT_THROW(link.restart(), driver::LinkError);
+  EXPECT_EQ(tries, 1U);
+  serve(settings());
+  gone = false;
+  link.restart();
+  EXPECT_EQ(bus.transfer(&magic, 1), 1U) << "and it may come back";
+}
+
 TEST_F(ClientsTest, OneAtATime) {
   serve(settings());
   const StreamLink first(opener(), StreamLink::Hello{"secret"});
@@ -134,12 +161,23 @@ TEST_F(ClientsTest, SilenceAndRubbish) {
   {
     const ClientEnd silent(*server_, listener_);
     until_gone();
-    EXPECT_THAT(notes_, HasSubstr("nothing came for 0.1 s"));
+    EXPECT_THAT(notes_, HasSubstr("neither a hello nor a request in 0.1 s"));
+  }
+  notes_.clear();
+  {
+    ClientEnd slow(*server_, listener_);
+    const auto begun = std::chrono::steady_clock::now();
+    while (server_->has_client() && std::chrono::steady_clock::now() - begun < 1s) {
+      slow.write(&frames::kEnd, 1);
+      for (int i = 0; i < 5 && server_->has_client(); ++i) server_->turn();
+    }
+    EXPECT_THAT(notes_, HasSubstr("neither a hello nor a request in 0.1 s")) << "bytes that say nothing keep a place";
   }
   {
     StreamLink link(opener(), StreamLink::Hello{"secret"});
     driver::FrameBus bus(link);
     until_gone();
+    EXPECT_THAT(notes_, HasSubstr("nothing came for 0.1 s"));
     EXPECT_EQ(engine_->read(reg::kHold), 1U) << "who falls silent is gone";
     driver::Access magic = driver::read_of(reg::kMagic);
     EXPECT_EQ(bus.transfer(&magic, 1), 1U) << "it comes back by itself";

@@ -242,6 +242,67 @@ std::string why_not(const std::string& url) {
   return "";
 }
 
+// Says hello, and is no card: `then` is what it makes of what comes behind.
+class FalseServer {
+ public:
+  FalseServer(std::string greeting, std::function<void(transport::ByteStream&)> then)
+      : greeting_(std::move(greeting)), then_(std::move(then)), thread_([this] { serve(); }) {}
+  ~FalseServer() {
+    ended_ = true;
+    thread_.join();
+  }
+  std::string url() const { return listener_->url(); }
+  unsigned clients() const { return clients_; }
+
+ private:
+  void serve() {
+    for (; !ended_; std::this_thread::sleep_for(1ms)) {
+      const std::unique_ptr<transport::ByteStream> stream = listener_->accept();
+      if (stream) serve(*stream);
+    }
+  }
+  void serve(transport::ByteStream& stream) {
+    ++clients_;
+    try {
+      std::uint8_t hello[64];
+      stream.read(hello, sizeof(hello), 1s);
+      stream.write(reinterpret_cast<const std::uint8_t*>(greeting_.data()), greeting_.size());
+      for (; !ended_; stream.read(hello, sizeof(hello), 1ms)) then_(stream);
+    } catch (const driver::LinkError&) {
+    }
+  }
+
+  std::unique_ptr<transport::Listener> listener_ = transport::listen_tcp("127.0.0.1", 0);
+  std::string greeting_;
+  std::function<void(transport::ByteStream&)> then_;
+  std::atomic<bool> ended_{false};
+  std::atomic<unsigned> clients_{0};
+  std::thread thread_;
+};
+
+// Once is enough: what does not answer the first frame is no card. With as many tries as a card under way gets it would
+// take two minutes.
+TEST(NoCard, AServerWithoutOne) {
+  const std::string rubbish(4096, 'x');
+  for (const bool loud : {false, true}) {
+    const FalseServer server("trammel 1 motion\n", [&](transport::ByteStream& stream) {
+      if (loud) stream.write(reinterpret_cast<const std::uint8_t*>(rubbish.data()), rubbish.size());
+    });
+    EXPECT_THAT(why_not(server.url() + "?timeout=30"), HasSubstr("no card answers within 30 ms: what said hello"));
+    EXPECT_EQ(server.clients(), 1U);
+  }
+}
+
+TEST(NoCard, WhatAServerSaysIsFitForATerminal) {
+  const auto nothing = [](transport::ByteStream&) {};
+  const FalseServer server("trammel 1 refused: \x1b[31mred\a\r\n", nothing);
+  EXPECT_THAT(why_not(server.url()), ::testing::EndsWith(": refused: ?[31mred??"));
+  const FalseServer terse("trammel 1 refused: \n", nothing);
+  EXPECT_THAT(why_not(terse.url()), ::testing::EndsWith(": refused: for no reason that it gives"));
+  const FalseServer closes("", [](transport::ByteStream&) { throw driver::LinkError("enough"); });
+  EXPECT_THAT(why_not(closes.url()), HasSubstr("is `trammel serve` running there?"));
+}
+
 TEST(NoCard, SaysWhatIsThere) {
   EXPECT_THAT(why_not("tcp://127.0.0.1:1"), HasSubstr("Connection refused: is `trammel serve` running there?"));
   EXPECT_THAT(why_not("serial:/dev/no-such-device"), HasSubstr("no such device"));

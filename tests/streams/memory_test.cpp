@@ -74,12 +74,12 @@ TEST_F(Memory, OfARunDoesNotGrowWithTheProgram) {
   if (is_long()) {
     EXPECT_LT(growth({TRAMMEL_RUN, "--plot"}, 100'000, 1'000'000), kTolerance);
   } else {
-    EXPECT_LT(growth({TRAMMEL_RUN}, 5'000, 50'000), kTolerance);
+    EXPECT_LT(growth({TRAMMEL_RUN}, 3'000, 30'000), kTolerance);
   }
 }
 
 TEST_F(Memory, OfAnObserverThatKeepsIsSeenToGrow) {
-  EXPECT_GT(growth({TRAMMEL_RUN, "--keep"}, 5'000, 40'000), kTolerance);
+  EXPECT_GT(growth({TRAMMEL_RUN, "--keep"}, 3'000, 15'000), kTolerance);
 }
 
 // A byte kept for each command is seen.

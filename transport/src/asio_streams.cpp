@@ -78,7 +78,10 @@ class TcpListener final : public Listener {
     error_code error;
     tcp::resolver resolver(*io_);
     const auto found = resolver.resolve(host, std::to_string(port), tcp::resolver::passive, error);
-    if (error || found.empty()) throw driver::LinkError(fmt::format("{}: no such address of this machine", host));
+    // An empty name would be every address.
+    if (host.empty() || error || found.empty()) {
+      throw driver::LinkError(fmt::format("\"{}\": no such address of this machine", host));
+    }
     const tcp::endpoint endpoint = *found.begin();
     acceptor_.open(endpoint.protocol(), error);
     if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);

@@ -1,5 +1,7 @@
 #include "trammel/transport/connection.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "trammel/driver/errors.hpp"
@@ -31,9 +33,18 @@ driver::FrameBus::Options frame_options(const CardUrl& url, bool stream) {
     options.answer = url.hello ? 20s : 2s;
     options.sends = 2;
     options.restarts = 2;
+    options.opens_at_once = true;
   }
   if (url.timeout) options.answer = *url.timeout;
   return options;
+}
+
+// What to look at where no card answers.
+const char* hint(const CardUrl& url, bool hello) {
+  if (hello) return "what said hello knows no frames: start `trammel serve` anew";
+  if (url.kind == Kind::kTcp) return "is a card behind that bridge, and does it have power?";
+  if (url.kind == Kind::kSpi) return "does it have power, is it wired, is sck at most a quarter of its clock?";
+  return "does it have power, are RX and TX crossed, does it take that baud rate?";
 }
 
 }  // namespace
@@ -58,7 +69,8 @@ Connection::Connection(const CardUrl& url) {
     frames_ = bus.get();
     bus_ = std::move(bus);
   } catch (const driver::LinkError& error) {
-    throw driver::LinkError(url.text + ": " + error.what());
+    throw driver::LinkError(
+        fmt::format("{}: {}: {}", url.text, error.what(), hint(url, stream_ != nullptr && url.hello)));
   }
 }
 

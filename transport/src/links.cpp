@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "trammel/driver/errors.hpp"
 #include "trammel/frames/stuffing.hpp"
@@ -19,12 +20,29 @@ constexpr nanoseconds kHelloTime = 5s;
 // What a simulated card may take for one wait; long ones go in pieces.
 constexpr nanoseconds kWaitTime = 60s;
 constexpr nanoseconds kLongestWait = 20ms;
-constexpr nanoseconds kReopenTime = 3s;
 constexpr std::size_t kLongestLine = 200;
+constexpr nanoseconds kDrainTime = 200ms;
+constexpr const char* kIsItThere = "is that its port?";
+
+// What another program has sent, fit for a terminal.
+std::string plain(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.empty() ? "for no reason that it gives" : text;
+}
 constexpr char kSerial[] = "serial line";
 constexpr char kConnection[] = "connection";
 
-// Up to the end of the line, or as much as came.
+// Of who may be anybody.
+std::size_t read_byte(ByteStream& stream, std::uint8_t& byte, nanoseconds longest) {
+  try {
+    return stream.read(&byte, 1, longest);
+  } catch (const driver::LinkError& error) {
+    throw driver::LinkError(fmt::format("{}: is `trammel serve` running there?", error.what()));
+  }
+}
+
+// Up to the end of the line.
 std::string read_line(ByteStream& stream) {
   std::string line;
   const auto until = steady_clock::now() + kHelloTime;
@@ -32,13 +50,13 @@ std::string read_line(ByteStream& stream) {
     std::uint8_t byte = 0;
     const nanoseconds left = until - steady_clock::now();
     if (left.count() <= 0) break;
-    if (stream.read(&byte, 1, left) == 0) continue;
+    if (read_byte(stream, byte, left) == 0) continue;
     if (byte == '\n') return line;
     line += static_cast<char>(byte);
   }
   throw driver::LinkError(
-      fmt::format("{}: what answers is no `trammel serve`{}", stream.peer(),
-                  line.empty() ? ": it says nothing (a bridge to a serial line wants hello=no)" : ""));
+      fmt::format("{}: what answers is no `trammel serve`: {}", stream.peer(),
+                  line.empty() ? "it says nothing (a bridge to a serial line wants hello=no)" : kIsItThere));
 }
 
 // A stream on which something failed is lost; one that is lost cannot be used.
@@ -80,7 +98,8 @@ nanoseconds SerialLink::time_of(std::size_t bytes) const {
   return nanoseconds(static_cast<std::int64_t>(10'000'000'000 / baud_ + 1) * static_cast<std::int64_t>(bytes));
 }
 
-StreamLink::StreamLink(Open open, std::optional<Hello> hello) : open_(std::move(open)), hello_(std::move(hello)) {
+StreamLink::StreamLink(Open open, std::optional<Hello> hello, nanoseconds reopen)
+    : open_(std::move(open)), hello_(std::move(hello)), reopen_(reopen) {
   connect();
 }
 
@@ -99,9 +118,11 @@ void StreamLink::say_hello() {
   if (may_move_ || line == "trammel 1 reading") return;
   constexpr const char* kRefused = "trammel 1 refused: ";
   if (line.rfind(kRefused, 0) == 0) {
-    throw driver::LinkError(fmt::format("{}: {}", stream_->peer(), line.substr(std::string(kRefused).size())));
+    throw driver::LinkError(
+        fmt::format("{}: refused: {}", stream_->peer(), plain(line.substr(std::string(kRefused).size()))));
   }
-  throw driver::LinkError(fmt::format("{}: what answers is no `trammel serve` of this version", stream_->peer()));
+  throw driver::LinkError(
+      fmt::format("{}: what answers is no `trammel serve` of this version: {}", stream_->peer(), kIsItThere));
 }
 
 void StreamLink::send(const std::uint8_t* bytes, std::size_t count) {
@@ -115,17 +136,19 @@ std::size_t StreamLink::receive(std::uint8_t* bytes, std::size_t room, nanosecon
 void StreamLink::restart() {
   if (stream_) {
     std::uint8_t late[256];
-    while (receive(late, sizeof(late), 0ns) != 0) {
+    const auto until = steady_clock::now() + kDrainTime;
+    while (receive(late, sizeof(late), 0ns) != 0 && steady_clock::now() < until) {
     }
     return;
   }
-  for (const auto until = steady_clock::now() + kReopenTime;;) {
+  for (const auto until = steady_clock::now() + (std::exchange(given_up_, true) ? 0ns : reopen_);;) {
     try {
       connect();
+      given_up_ = false;
       ++reconnections_;
       return;
     } catch (const driver::LinkError&) {
-      if (steady_clock::now() > until) throw;
+      if (steady_clock::now() >= until) throw;
     }
     std::this_thread::sleep_for(50ms);
   }

@@ -20,6 +20,9 @@ class FrameBus final : public Bus {
     std::chrono::nanoseconds answer = std::chrono::milliseconds(50);
     unsigned sends = 4;     // of a request, before the connection is made anew
     unsigned restarts = 3;  // of the connection, before transfer() gives up
+    // The constructor sends once, on one connection: of a link that loses nothing, where who does not answer is no
+    // card.
+    bool opens_at_once = false;
   };
 
   // What the link did, for who wants to know.

@@ -53,8 +53,9 @@ class StreamLink final : public driver::ByteLink {
     std::string token;  // empty: for reading alone
   };
 
-  // Connects. Throws driver::LinkError: what `open` throws, or why the server refuses.
-  StreamLink(Open open, std::optional<Hello> hello);
+  // Connects. Throws driver::LinkError: what `open` throws, or why the server refuses. `reopen`: how long it is tried
+  // to open again what was lost.
+  StreamLink(Open open, std::optional<Hello> hello, std::chrono::nanoseconds reopen = std::chrono::seconds(3));
 
   // Whether a server takes what moves; otherwise it refuses every write but the order for a snapshot.
   bool may_move() const { return may_move_; }
@@ -63,7 +64,7 @@ class StreamLink final : public driver::ByteLink {
 
   void send(const std::uint8_t* bytes, std::size_t count) override;
   std::size_t receive(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) override;
-  // Opens a stream that was lost, for up to 3 s.
+  // Opens a stream that was lost; where that has failed before, it tries once.
   void restart() override;
   std::chrono::nanoseconds time_of(std::size_t) const override { return {}; }
   std::chrono::nanoseconds now() const override;
@@ -78,6 +79,8 @@ class StreamLink final : public driver::ByteLink {
 
   Open open_;
   std::optional<Hello> hello_;
+  std::chrono::nanoseconds reopen_;
+  bool given_up_ = false;
   std::unique_ptr<ByteStream> stream_;  // nullptr: lost
   bool may_move_ = true;
   std::uint64_t reconnections_ = 0;

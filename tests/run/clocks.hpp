@@ -1,0 +1,11 @@
+// Those of the tests' cards.
+#pragma once
+
+#include <cstdint>
+
+namespace trammel::run {
+
+constexpr std::uint32_t kClock = 1'000'000;
+constexpr std::uint32_t kSlowClock = 400'000;
+
+}  // namespace trammel::run
