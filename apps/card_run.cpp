@@ -17,9 +17,9 @@ namespace trammel::app {
 namespace {
 
 // Shows how far the run is, and lets it go on after a connection that was lost and made anew.
-class Watch final : public run::Observer {
+class CardWatch final : public run::Observer {
  public:
-  Watch(driver::Card& card, const transport::Connection& connection, const run::Plan& plan, bool progress)
+  CardWatch(driver::Card& card, const transport::Connection& connection, const run::Plan& plan, bool progress)
       : card_(card), connection_(connection), plan_(plan), bar_(progress) {}
   void sent() override { progress({}); }
   void progress(const run::Progress& /*progress*/) override {
@@ -72,7 +72,7 @@ CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine
   take_over(card);
   set_overrides(card, options);
   const driver::Snapshot before = card.snapshot();
-  Watch watch(card, connection, plan, options.progress);
+  CardWatch watch(card, connection, plan, options.progress);
   runner.add(watch);
   result.outcome = run_until_signal(runner, card, machine, options.stream);
   result.plan = runner.last_plan();

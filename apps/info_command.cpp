@@ -18,9 +18,9 @@
 namespace trammel::app {
 namespace {
 
-constexpr std::uint32_t kDefaultClock = 1'000'000;
+constexpr std::uint32_t kInfoClock = 1'000'000;
 
-struct Options {
+struct InfoArguments {
   CardChoice card;
   EngineChoice engine;
   unsigned axes = 4;
@@ -59,7 +59,7 @@ std::string describe(driver::Card& card) {
   return text;
 }
 
-void execute_on_card(const Options& options, const transport::CardUrl& url) {
+void info_on_card(const InfoArguments& options, const transport::CardUrl& url) {
   options.engine.refuse_with(options.card);
   Outputs outputs;
   std::string text;
@@ -67,12 +67,12 @@ void execute_on_card(const Options& options, const transport::CardUrl& url) {
   outputs.commit(text);
 }
 
-void execute(const Options& options) {
-  if (const auto url = options.card.url()) return execute_on_card(options, *url);
+void info_in_simulation(const InfoArguments& options) {
+  if (const auto url = options.card.url()) return info_on_card(options, *url);
   Outputs outputs;
   Output* const trace = outputs.add("--trace", options.engine.trace, true);
   outputs.check();
-  sim::SimulationOptions engine_options = options.engine.options(options.axes, kDefaultClock, kDefaultClock);
+  sim::SimulationOptions engine_options = options.engine.options(options.axes, kInfoClock, kInfoClock);
   if (trace != nullptr && traced_axes(options.axes) != options.axes) {
     throw UsageError(fmt::format("--trace: cards of 4 and of 8 axes are built for it, not of {}", options.axes));
   }
@@ -88,14 +88,14 @@ void execute(const Options& options) {
 }  // namespace
 
 void add_info_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoArguments>();
   CLI::App* command = app.add_subcommand("info", "what the card says of itself");
   options->card.add_to(*command);
   options->engine.add_to(*command);
   command->add_option("--axes", options->axes, "axes of the simulated card")
       ->transform(whole_number(1, card_map::kMaxAxes))
       ->capture_default_str();
-  command->callback([options] { execute(*options); });
+  command->callback([options] { info_in_simulation(*options); });
 }
 
 }  // namespace trammel::app

@@ -29,7 +29,7 @@ namespace {
 constexpr std::uint32_t kDefaultClock = 1'000'000;
 constexpr double kDefaultSpeed = 1000;  // pulses/s
 
-struct Options {
+struct LineArguments {
   std::vector<std::int64_t> from;
   std::vector<std::int64_t> to;
   std::optional<double> velocity;
@@ -44,7 +44,7 @@ struct Options {
   std::optional<std::string> plot;
 };
 
-std::vector<std::int64_t> displacement_of(const Options& options) {
+std::vector<std::int64_t> displacement_of(const LineArguments& options) {
   std::vector<std::int64_t> result = options.to;
   if (!options.from.empty() && options.from.size() != options.to.size()) {
     throw UsageError("--from and --to: must name the same number of axes");
@@ -59,7 +59,7 @@ std::vector<std::int64_t> displacement_of(const Options& options) {
 }
 
 // The line's duration in clocks, rounded to the nearest.
-std::uint64_t clocks_of(const Options& options, const std::vector<std::int64_t>& displacement, double clock_hz) {
+std::uint64_t clocks_of(const LineArguments& options, const std::vector<std::int64_t>& displacement, double clock_hz) {
   double seconds = 0;
   if (options.velocity) {
     seconds = 1 / *options.velocity;
@@ -75,7 +75,7 @@ std::uint64_t clocks_of(const Options& options, const std::vector<std::int64_t>&
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(clocks));
 }
 
-driver::LineLimits limits_of(const Options& options) {
+driver::LineLimits line_limits(const LineArguments& options) {
   driver::LineLimits limits;
   if (options.max_velocity.size() > card_map::kMaxAxes) throw UsageError("--max-velocity: a card has at most 8 axes");
   std::copy(options.max_velocity.begin(), options.max_velocity.end(), limits.max_velocity.begin());
@@ -124,13 +124,13 @@ run::Plot plot_of(const std::vector<std::int64_t>& pulses, const run::StepRecord
           recorder.speed()};
 }
 
-driver::OneShotPlan plan_of(const Options& options, const driver::CardTiming& timing,
+driver::OneShotPlan plan_of(const LineArguments& options, const driver::CardTiming& timing,
                             const std::vector<std::int64_t>& pulses) {
   driver::Displacement displacement{};
   std::copy(pulses.begin(), pulses.end(), displacement.begin());
   try {
     return driver::plan_line_clocks(timing, displacement, clocks_of(options, pulses, timing.clock_hz),
-                                    limits_of(options));
+                                    line_limits(options));
   } catch (const driver::ArgumentError& error) {
     throw UsageError(error.what());
   }
@@ -168,7 +168,7 @@ void run_line(driver::Card& card, const driver::OneShotPlan& plan, const driver:
   }
 }
 
-Result make_line(const Options& options, const sim::SimulationOptions& engine_options, run::TextSink* steps) {
+Result make_line(const LineArguments& options, const sim::SimulationOptions& engine_options, run::TextSink* steps) {
   Result result;
   result.pulses = displacement_of(options);
   const auto engine = sim::make_engine(engine_options);
@@ -248,7 +248,7 @@ struct CardResult {
   std::uint32_t clock_hz = 0;
 };
 
-CardResult make_line_on(driver::Card& card, const Options& options) {
+CardResult make_line_on(driver::Card& card, const LineArguments& options) {
   const std::vector<std::int64_t> pulses = displacement_of(options);
   if (pulses.size() > card.identification().axes) {
     throw UsageError(fmt::format("--to: the card has {} axes", card.identification().axes));
@@ -271,7 +271,7 @@ CardResult make_line_on(driver::Card& card, const Options& options) {
   return result;
 }
 
-void execute_on_card(const Options& options, const transport::CardUrl& url) {
+void line_on_card(const LineArguments& options, const transport::CardUrl& url) {
   options.engine.refuse_with(options.card);
   refuse_with_card(options.card, "--steps", options.steps.has_value());
   refuse_with_card(options.card, "--plot", options.plot.has_value());
@@ -297,8 +297,8 @@ void execute_on_card(const Options& options, const transport::CardUrl& url) {
                              result.slowed ? ", slowed to keep a limit" : "", url.text, fmt::join(result.moved, ", ")));
 }
 
-void execute(const Options& options) {
-  if (const auto url = options.card.url()) return execute_on_card(options, *url);
+void line_in_simulation(const LineArguments& options) {
+  if (const auto url = options.card.url()) return line_on_card(options, *url);
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
   Output* const steps = outputs.add("--steps", options.steps);
@@ -320,7 +320,7 @@ void execute(const Options& options) {
 }  // namespace
 
 void add_line_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<LineArguments>();
   CLI::App* command = app.add_subcommand("line", "make one straight line in direct mode: one burst of register writes");
   command->add_option("--from", options->from, "start, pulses, one value an axis (default: 0)")
       ->delimiter(',')
@@ -345,7 +345,7 @@ void add_line_command(CLI::App& app) {
   command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
-  command->callback([options] { execute(*options); });
+  command->callback([options] { line_in_simulation(*options); });
 }
 
 }  // namespace trammel::app

@@ -33,7 +33,7 @@ namespace {
 // A simulated card at 1 MHz runs programs faster than life; only the resolution in time differs from the real clock.
 constexpr std::uint32_t kSimulatedClock = 1'000'000;
 
-struct Options {
+struct RunArguments {
   std::string program;
   CardChoice card;
   MachineChoice machine;
@@ -52,7 +52,7 @@ struct Options {
   bool stream = false;
 };
 
-void refuse_contradictions(const Options& options) {
+void refuse_contradictions(const RunArguments& options) {
   const auto refuse = [](const char* option, bool given, const char* why) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
@@ -74,7 +74,7 @@ void refuse_contradictions(const Options& options) {
   refuse("--stream", options.stream, kWhy);
 }
 
-void refuse_rapids_at_zero(const Options& options, const Operation& operation, const run::Plan& plan) {
+void refuse_rapids_at_zero(const RunArguments& options, const Operation& operation, const run::Plan& plan) {
   if (operation.rapid_percent != 0) return;
   if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   if (plan.rapids == 0) return;
@@ -82,7 +82,7 @@ void refuse_rapids_at_zero(const Options& options, const Operation& operation, c
 }
 
 // A list of steps, a picture and a time of the operator's need the pins and the clocks of a simulated card.
-void refuse_what_needs_the_simulation(const Options& options) {
+void refuse_what_needs_the_simulation(const RunArguments& options) {
   const CardChoice& card = options.card;
   options.engine.refuse_with(card);
   refuse_with_card(card, "--steps", options.steps.has_value());
@@ -102,7 +102,7 @@ void warn(const std::vector<std::string>& texts) {
 }
 
 // What is the same on every card; the files are still missing.
-RunOptions run_options(const Options& options, const machine::Machine& machine) {
+RunOptions run_options(const RunArguments& options, const machine::Machine& machine) {
   RunOptions run;
   run.plot = options.plot.has_value();
   run.progress = options.progress;
@@ -122,13 +122,13 @@ run::ProgramLines lines_of(const ProgramFile& file) {
 }
 
 // Refuses to write over what the run reads.
-void keep_inputs(const Options& options, Outputs& outputs) {
+void keep_inputs(const RunArguments& options, Outputs& outputs) {
   outputs.keep("the program", options.program);
   if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
   outputs.check();
 }
 
-void execute_on_card(const Options& options, const transport::CardUrl& url) {
+void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   refuse_what_needs_the_simulation(options);
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
@@ -162,9 +162,9 @@ void check(const run::ProgramLines& lines, const MachineChoice& choice, const ma
   outputs.commit(summary(result) + choice.line());
 }
 
-void execute(const Options& options) {
+void run_in_simulation(const RunArguments& options) {
   refuse_contradictions(options);
-  if (const auto url = options.card.url()) return execute_on_card(options, *url);
+  if (const auto url = options.card.url()) return run_on_card(options, *url);
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
   Output* const plot = outputs.add("--plot", options.plot);
@@ -216,7 +216,7 @@ void execute(const Options& options) {
 }  // namespace
 
 void add_run_command(CLI::App& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunArguments>();
   CLI::App* command =
       app.add_subcommand("run", "run a G-code program on the simulated card, or on one outside (--card)");
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
@@ -247,7 +247,7 @@ void add_run_command(CLI::App& app) {
   command->add_flag("--stream", options->stream,
                     "read the program while it runs: an error in it is a stop on the way, status 1");
   command->footer("One FILE may be '-', standard output; what people read then goes to standard error.");
-  command->callback([options] { execute(*options); });
+  command->callback([options] { run_in_simulation(*options); });
 }
 
 }  // namespace trammel::app

@@ -1,0 +1,98 @@
+#include "trammel_command.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <iostream>
+
+#include "card_commands.hpp"
+#include "command_names.hpp"
+#include "compare_command.hpp"
+#include "errors.hpp"
+#include "info_command.hpp"
+#include "line_command.hpp"
+#include "methods_command.hpp"
+#include "outputs.hpp"
+#include "reproduce_command.hpp"
+#include "run_command.hpp"
+#include "serve_command.hpp"
+#include "shell_command.hpp"
+#include "steps_command.hpp"
+#include "stop_at_signals.hpp"
+#include "temporary_files.hpp"
+#include "terminal.hpp"
+#include "trammel/machine/machine.hpp"
+#include "trammel/run/runner.hpp"
+
+namespace trammel::app {
+namespace {
+
+int report(const std::string& message, int status) {
+  tell("error", message);
+  return status;
+}
+
+// Where the shell closed one of the first three descriptors, an output file would get its number, and with it what is
+// printed. One that can only be read makes printing fail.
+void hold_standard_descriptors() {
+  for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) == -1) (void)::open("/dev/null", O_RDONLY);
+  }
+}
+
+void parse(CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  words = subcommand_words(app, std::move(words));
+  std::reverse(words.begin(), words.end());  // CLI11 takes them from the end
+  try {
+    app.parse(std::move(words));
+  } catch (const CLI::ParseError& error) {
+    // Help and version count as errors too, of status 0.
+    if (error.get_exit_code() != 0) throw UsageError(fmt::format("{} (--help tells more)", error.what()));
+    app.exit(error);
+    std::cout.flush();
+  }
+  finish_standard_output();
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, const char* version) {
+  hold_standard_descriptors();
+  remove_temporary_files_on_signals();
+  CLI::App app("Trammel: an open stepper-motion card, its golden model and its driver", "trammel");
+  app.set_version_flag("--version", version);
+  app.require_subcommand(1);
+  app.footer("trammel help COMMAND tells the options of a command.");
+  add_run_command(app);
+  add_line_command(app);
+  add_info_command(app);
+  add_card_commands(app);
+  add_serve_command(app);
+  add_steps_command(app);
+  add_methods_command(app);
+  add_reproduce_command(app);
+  add_compare_command(app);
+  add_shell_commands(app);
+  try {
+    parse(app, argc, argv);
+  } catch (const UsageError& error) {
+    return report(error.what(), kExitUsage);
+  } catch (const run::ProgramError& error) {
+    return report(error.what(), kExitUsage);
+  } catch (const machine::MachineError& error) {
+    return report(error.what(), kExitUsage);
+  } catch (const EndedBySignal& ended) {
+    tell("note", ended.what());
+    ended.end_process();
+  } catch (const std::exception& error) {
+    return report(error.what(), kExitFailure);
+  }
+  return 0;
+}
+
+}  // namespace trammel::app
