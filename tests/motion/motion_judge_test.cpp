@@ -220,8 +220,8 @@ TEST(MotionJudge, StopsOfAShortWindowAreWithinTheirLimits) {
   }
 }
 
-// Of next to no length: a generator's arc that takes more ticks than its length has, and a stop that is shorter than a
-// tick. The feed must not come to nothing before the ticks do.
+// Of next to no length or speed: a generator's arc that takes more ticks than its length has, a stop that is shorter
+// than a tick, a line that takes 18 s. The feed must not come to nothing before the ticks do.
 TEST(MotionJudge, PiecesEndInTheirTime) {
   struct Case {
     const char* program;
@@ -236,7 +236,11 @@ TEST(MotionJudge, PiecesEndInTheirTime) {
       {"F1.74\nG1 X-0.00158 Y-0.00927 E0.08581\nG1 X-0.01054 Y-0.01859 E0.08070\nG1 X-0.01262 Y-0.02608\n"
        "G1 X-0.00199 Y-0.02493\nM2\n",
        {666, 349, 80, 84},
-       {95000, 18800, 9000, 97000}}};
+       {95000, 18800, 9000, 97000}},
+      {"F600\nG1 X0.02 Y0.028\nG3 X0.00409 Y-0.00718 I0.00964 J-0.02555\nG93\nG1 X-0.01253 Y-0.01215 F3.241\n"
+       "G2 X-0.01253 Y-0.01215 I0.01705 J-0.03611 F1325\nM2\n",
+       {30.85, 30.85, 30.85, 30.85},
+       {20000, 20000, 20000, 20000}}};
   for (const Case& one : cases) {
     SCOPED_TRACE(one.program);
     machine::Machine machine = machine_of(150, 1000, 0);
