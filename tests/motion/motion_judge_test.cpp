@@ -204,9 +204,8 @@ std::string bends_with_feeds(unsigned seed) {
   return program + "M2\n";
 }
 
-// A window too short for smooth ramps makes the motion stop in mid path: at rest, and on from rest. Of 240 seeds these
-// four stop a part of a tick beside a tick.
-TEST(MotionJudge, StopsOfAShortWindowAreWithinTheirLimits) {
+// A window shorter than a stopping distance makes the motion slow down in mid path, and speed up again.
+TEST(MotionJudge, ShortWindowsAreWithinTheirLimits) {
   constexpr double kJerk = 100'000;
   for (const unsigned seed : {1U, 2U, 42U, 78U, 110U, 159U}) {
     SCOPED_TRACE(seed);

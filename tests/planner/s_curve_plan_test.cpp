@@ -12,6 +12,7 @@
 
 #include "counted_allocations.hpp"
 #include "speed_plan_judge.hpp"
+#include "trapezoid_plan.hpp"
 
 namespace trammel::planner {
 namespace {
@@ -160,6 +161,7 @@ TEST(SCurvePlan, RandomProgramsKeepTheirLimits) {
     Spans spans = random_program(random);
     if (random.below(2) == 0) spans = with_limits(random, spans, random.below(2) == 0 ? 1.4 : 100);
     for (const std::size_t window : kWindows) {
+      if (window < 256 && i % 4 != 0) continue;  // many plans
       ASSERT_EQ(test::fault_of(plan(spans, window), spans), "") << "program " << i << " window " << window;
     }
   }
@@ -176,8 +178,7 @@ TEST(SCurvePlan, TakesAtMostOneRiseMoreThanTheTrapezoidARamp) {
   }
 }
 
-// Where the limits change within a ramp, it need not keep the lower ones all along. Few programs take longer than one
-// rise a ramp more.
+// Limits at random. Few programs take longer than one rise a ramp more.
 TEST(SCurvePlan, LimitsThatDifferCostLittleMore) {
   Random random(9);
   int beyond = 0;
@@ -191,8 +192,8 @@ TEST(SCurvePlan, LimitsThatDifferCostLittleMore) {
     beyond += share > 1 ? 1 : 0;
     worst = std::max(worst, share);
   }
-  EXPECT_LE(beyond, 40);    // measured: 34
-  EXPECT_LE(worst, 1.025);  // 1.022
+  EXPECT_LE(beyond, 4);     // measured: 4
+  EXPECT_LE(worst, 1.018);  // 1.0176
   RecordProperty("beyond", std::to_string(beyond));
   RecordProperty("worst", std::to_string(worst));
 }
@@ -216,7 +217,7 @@ Spans turning_chords(Random& random, const Limits& limits) {
   return spans;
 }
 
-TEST(SCurvePlan, LimitsThatTurnCostLittleMore) {
+TEST(SCurvePlan, LimitsThatTurnCostAtMostOneRiseARamp) {
   Random random(11);
   int beyond = 0;
   double worst = 0;
@@ -232,8 +233,8 @@ TEST(SCurvePlan, LimitsThatTurnCostLittleMore) {
     beyond += share > 1 ? 1 : 0;
     worst = std::max(worst, share);
   }
-  EXPECT_LE(beyond, 60);
-  EXPECT_LE(worst, 1.08);
+  EXPECT_EQ(beyond, 0);
+  EXPECT_LE(worst, 1);
   RecordProperty("beyond", std::to_string(beyond));
   RecordProperty("worst", std::to_string(worst));
 }
@@ -368,6 +369,35 @@ TEST(SCurvePlan, AStopInMidPathIsNotOneThatFinishAskedFor) {
   const std::vector<Phase> phases = plan({span, span});
   EXPECT_EQ(std::count_if(phases.begin(), phases.end(), [](const Phase& phase) { return phase.stop; }), 1);
   EXPECT_TRUE(phases.back().stop);
+}
+
+// Stops in mid path, or all but.
+std::size_t stops_of(const std::vector<Phase>& phases) {
+  constexpr double kRest = 1e-3;  // mm/s
+  std::size_t stops = 0;
+  for (std::size_t i = 1; i < phases.size(); ++i) stops += phases[i].speed < kRest ? 1U : 0U;
+  return stops;
+}
+
+// Where a trapezoid with that window does not stop either. Of spans whose lengths differ by four decades a window of
+// 16 may show too little for that.
+TEST(SCurvePlan, AShortWindowOnlySlows) {
+  Random random(12);
+  std::size_t slowed = 0;
+  for (int i = 0; i < 120; ++i) {
+    Spans spans =
+        i % 4 == 0 ? moves(random, random_limits(random), true) : random_chords(random, random_limits(random));
+    if (i % 3 == 1) spans = with_limits(random, spans, 1.4);
+    for (const std::size_t window : {2U, 16U, 256U}) {
+      if (i % 4 == 0 && window != 256) continue;
+      TrapezoidPlan trapezoid(window);
+      const std::vector<Phase> phases = plan(spans, window);
+      ASSERT_EQ(stops_of(phases), stops_of(test::plan_all(trapezoid, spans))) << i << " window " << window;
+      slowed +=
+          std::any_of(phases.begin(), phases.end(), [](const Phase& phase) { return phase.short_sight; }) ? 1U : 0U;
+    }
+  }
+  EXPECT_GT(slowed, 40U);
 }
 
 TEST(SCurvePlan, SaysWhereTheWindowIsTooShort) {

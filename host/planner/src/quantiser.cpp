@@ -29,10 +29,6 @@ std::uint32_t ticks32(double ticks) { return static_cast<std::uint32_t>(std::min
 
 bool same(double a, double b) { return std::abs(a - b) <= 0.01 * std::abs(b); }
 
-double end_speed(const Phase& phase) {
-  return phase.speed + phase.duration * (phase.acceleration + phase.duration * phase.jerk / 2);
-}
-
 // When the distance has been gone from speed, acceleration and jerk on, of a motion that takes `duration` for `length`;
 // a little outside it at the speed that it has there. Newton's method between bounds.
 double time_at(double distance, double speed, double acceleration, double jerk, double duration, double length) {

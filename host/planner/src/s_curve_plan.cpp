@@ -1,12 +1,11 @@
 #include "trammel/planner/s_curve_plan.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "s_ramp.hpp"
+#include "rise.hpp"
 #include "speed_caps.hpp"
 #include "speed_window.hpp"
 
@@ -26,16 +25,18 @@ struct Gap {
   int cap = kNoCap;
 };
 
+bool is_level(const Phase& phase) { return phase.acceleration == 0 && phase.jerk == 0; }
+
 }  // namespace
 
 // The lowest cap first: where ramps from the gap's ends reach it, it splits the gap in two; where they do not, the gap
 // is a ramp up and one down. So a ramp never meets a cap that is still to come, and what has been planned stays.
 class SCurvePlan::Impl {
  public:
-  explicit Impl(std::size_t window) : window_(window), caps_(window) {
+  explicit Impl(std::size_t window) : window_(window), caps_(window), rise_(window) {
     gaps_.reserve(4 * window + 4);
-    ramps_.reserve(2 * window + 2);
-    for (std::vector<Ramp>* ramps : {&planned_, &tail_, &given_}) ramps->reserve(8 * window + 8);
+    fall_.reserve(4 * window + 4);
+    for (std::vector<Phase>* phases : {&planned_, &tail_, &given_}) phases->reserve(8 * window + 8);
   }
 
   bool full() const { return finishing_ || window_.full(); }
@@ -48,104 +49,135 @@ class SCurvePlan::Impl {
 
  private:
   bool plan();
+  bool lead(Gap& gap);
   bool passes(double begin, double end, double low, double high) const;
   bool divide(Gap gap);
   bool divide_below(Gap gap);
   bool hop(const Gap& gap);
-  double peak(const Gap& gap, const SpeedWindow::Walk& forwards, const SpeedWindow::Walk& backwards) const;
-  void put(const Ramp& ramp);
-  void open_phases();
+  double peak(const Gap& gap);
+  double rising(const Gap& gap, double to);
+  double falling(const Gap& gap, double from);
+  void put(const Phase& phase);
   void give();
-  std::size_t ramps_until(double position) const;
-  double give_until(double position);
+  std::size_t phases_until(double position) const;
+  double give_until(double position, double least);
+  double give_phases(std::size_t count);
+  double split(double length);
   double rounding() const { return window_.length() * 0x1p-40; }
 
   SpeedWindow window_;
   SpeedCaps caps_;
-  std::vector<Ramp> ramps_;    // of one way down
-  std::vector<Gap> gaps_;      // still to plan, the next one last
-  std::vector<Ramp> planned_;  // what plan() makes
-  std::vector<Ramp> tail_;     // the last plan from the window's beginning on, from tail_begin_
+  Rise rise_;
+  std::vector<Phase> fall_;     // of one gap
+  std::vector<Gap> gaps_;       // still to plan, the next one last
+  std::vector<Phase> planned_;  // what plan() makes
+  std::vector<Phase> tail_;     // the last plan from the window's beginning on, from tail_begin_
   std::size_t tail_begin_ = 0;
-  std::vector<Ramp> given_;  // what no later span changes, from given_begin_
+  double tail_length_ = 0;
+  std::vector<Phase> given_;  // what no later span changes, from given_begin_
   std::size_t given_begin_ = 0;
-  std::array<Phase, 3> phases_;  // of the last one taken from given_
-  unsigned phase_ = 0;
-  unsigned phase_count_ = 0;
-  double speed_ = 0;  // at the window's beginning
+  double speed_ = 0;         // at the window's beginning
+  double acceleration_ = 0;  // there; not above 0
   bool finishing_ = false;
-  bool short_sight_ = false;  // of the ramps that are put
+  bool lead_short_sight_ = false;  // of what was given last
+  bool short_sight_ = false;       // of the phases that are put
 };
 
 bool SCurvePlan::Impl::next(Phase& phase) {
-  while (phase_ == phase_count_) {
-    if (given_begin_ < given_.size()) {
-      open_phases();
-      continue;
-    }
+  while (given_begin_ == given_.size()) {
     if (window_.empty()) finishing_ = false;
     if (!full() || window_.empty()) return false;
     give();
   }
-  phase = phases_[phase_++];
+  phase = given_[given_begin_++];
+  phase.stop = finishing_ && window_.empty() && given_begin_ == given_.size();
   return true;
 }
 
-void SCurvePlan::Impl::open_phases() {
-  const Ramp& ramp = given_[given_begin_++];
-  phase_ = 0;
-  phase_count_ = phases_of(ramp, phases_);
-  if (!finishing_ || !window_.empty() || given_begin_ != given_.size() || phase_count_ == 0) return;
-  phases_[phase_count_ - 1].stop = true;
-}
-
-// When the speed at the window's beginning is too high for the new plan, what was planned before still holds.
+// When the motion at the window's beginning does not fit the new plan, what was planned before still holds; but the
+// next plan may fit, and so the least is given of it.
 void SCurvePlan::Impl::give() {
   given_.clear();
   given_begin_ = 0;
   window_.index();
-  double position = 0;
+  const double share = std::min(window_.position(window_.size() / 16), window_.length() / 16);
+  const double least = std::max({share, window_.position(1), 2 * rounding()});
+  double position = least;
   if (plan()) {
     tail_.swap(planned_);
     tail_begin_ = 0;
-    position = give_until(finishing_ ? kInfinite : window_.position(window_.size() / 2));
-  } else {
-    given_.push_back(tail_[tail_begin_++]);
-    position = given_.back().length;
+    tail_length_ = window_.length();
+    position = finishing_ ? kInfinite : std::max(least, window_.position(window_.size() / 2));
   }
-  speed_ = given_.back().to;
+  position = give_until(position, least);
+  if (tail_begin_ == tail_.size()) position = tail_length_;
+  tail_length_ -= position;
+  const bool more = tail_begin_ != tail_.size();
+  speed_ = more ? tail_[tail_begin_].speed : 0;
+  acceleration_ = more ? std::min(0.0, tail_[tail_begin_].acceleration) : 0;
+  lead_short_sight_ = given_.back().short_sight;
   caps_.drop(window_.drop_before(position));
 }
 
-// How many ramps of the tail end up to `position`, better where the speed rises next: a later plan may want to fall
-// earlier. Not less than a quarter for that.
-std::size_t SCurvePlan::Impl::ramps_until(double position) const {
+// How many phases of the tail end without acceleration up to `position`, better where the speed rises next: a later
+// plan may want to fall earlier. Not less than a quarter for that.
+std::size_t SCurvePlan::Impl::phases_until(double position) const {
   std::size_t last = 0;
   std::size_t rises = 0;
   double at = 0;
   for (std::size_t i = tail_begin_; i < tail_.size() && at <= position; ++i) {
-    last = i - tail_begin_;
-    if (tail_[i].to > tail_[i].from && at >= position / 4) rises = last;
-    at += tail_[i].length;
+    const Phase& phase = tail_[i];
+    if (phase.acceleration == 0) last = i - tail_begin_;
+    if (phase.acceleration == 0 && phase.jerk > 0 && at >= position / 4) rises = last;
+    at += phase.length;
   }
   if (at <= position) return tail_.size() - tail_begin_;
-  return rises != 0 && tail_[tail_begin_ + last].to < tail_[tail_begin_ + last].from ? rises : last;
+  return rises != 0 && tail_[tail_begin_ + last].jerk < 0 ? rises : last;
 }
 
-// At least one ramp. Ends where there is no acceleration.
-double SCurvePlan::Impl::give_until(double position) {
-  double at = 0;
-  for (std::size_t count = std::max<std::size_t>(ramps_until(position), 1); count > 0; --count) {
-    at += tail_[tail_begin_].length;
+// Up to about `position`, to where there is no acceleration. Of a fall that goes on there `least` is given: the next
+// plan may not want it.
+double SCurvePlan::Impl::give_until(double position, double least) {
+  double at = give_phases(phases_until(position));
+  if (tail_begin_ == tail_.size()) return at;
+  const Phase& next = tail_[tail_begin_];
+  if (is_level(next)) return at + split(position - at);
+  if (at >= least) return at;
+  if (next.acceleration > 0 || (next.acceleration == 0 && next.jerk > 0)) {
+    do {
+      at += give_phases(1);
+    } while (tail_begin_ < tail_.size() && tail_[tail_begin_].acceleration > 0);
+    return at;
+  }
+  while (tail_begin_ < tail_.size() && at + tail_[tail_begin_].length <= least) at += give_phases(1);
+  return at + split(least - at);
+}
+
+double SCurvePlan::Impl::give_phases(std::size_t count) {
+  double length = 0;
+  for (; count > 0; --count) {
+    length += tail_[tail_begin_].length;
     given_.push_back(tail_[tail_begin_++]);
   }
-  if (tail_begin_ == tail_.size()) return window_.length();
-  Ramp& next = tail_[tail_begin_];
-  if (next.from != next.to || at + next.length <= position || at >= position) return at;
+  return length;
+}
+
+// Gives so much of the next phase, whose speed does not rise, if it is longer. Returns what is given.
+double SCurvePlan::Impl::split(double length) {
+  if (tail_begin_ == tail_.size() || !(length > rounding())) return 0;
+  Phase& next = tail_[tail_begin_];
+  if (!(length < next.length)) return 0;
+  const double end = end_speed(next);
+  const double behind = next.acceleration + next.duration * next.jerk;
+  const double left = rising_time(next.length - length, end, -behind, next.jerk, next.duration);
   given_.push_back(next);
-  given_.back().length = position - at;
-  next.length -= position - at;
-  return position;
+  given_.back().length = length;
+  given_.back().duration = next.duration - left;
+  next.length -= length;
+  next.duration = left;
+  next.speed = end - (behind - next.jerk / 2 * left) * left;
+  next.acceleration = next.acceleration == 0 && next.jerk == 0 ? 0 : behind - next.jerk * left;
+  return length;
 }
 
 bool SCurvePlan::Impl::plan() {
@@ -155,6 +187,7 @@ bool SCurvePlan::Impl::plan() {
   all.end = window_.length();
   all.from = speed_;
   all.cap = caps_.build(window_, speed_);
+  if (!lead(all)) return false;
   gaps_.push_back(all);
   while (!gaps_.empty()) {
     const Gap gap = gaps_.back();
@@ -164,11 +197,51 @@ bool SCurvePlan::Impl::plan() {
   return true;
 }
 
+// Goes on from a fall to no acceleration, with each span's jerk.
+bool SCurvePlan::Impl::lead(Gap& gap) {
+  double fall = -acceleration_;
+  short_sight_ = lead_short_sight_;
+  for (std::size_t i = 0; fall > 0; ++i) {
+    if (i == window_.size()) return false;
+    const Span& span = window_[i];
+    const Span& behind = window_[std::min(i + 1, window_.size() - 1)];
+    const double jerk = std::min(span.jerk, behind.jerk);
+    const double duration = fall / jerk;
+    const double speed = gap.from - fall / 2 * duration;
+    if (!(speed > 0)) return false;
+    const double length = (speed + fall / 6 * duration) * duration;
+    const double room = window_.position(i + 1) - gap.begin;
+    if (length <= room) {
+      put({length, duration, gap.from, -fall, jerk});
+      gap.begin += length;
+      gap.from = speed;
+      return true;
+    }
+    const double time = duration - rising_time(length - room, speed, 0, jerk, duration);
+    put({room, time, gap.from, -fall, jerk});
+    gap.from -= (fall - jerk / 2 * time) * time;
+    gap.begin = window_.position(i + 1);
+    fall -= jerk * time;
+    if (gap.from > std::min(span.exit_speed, behind.speed) || fall > behind.acceleration) return false;
+  }
+  return true;
+}
+
 // Whether no motion gets from `low` at one end to `high` within begin .. end. The highest limits of all decide most.
 bool SCurvePlan::Impl::passes(double begin, double end, double low, double high) const {
   const double length = end - begin;
   return reach_length(low, high, window_.most()) >= length ||
          (!window_.uniform() && reach_length(low, high, window_.range(begin, end).most) >= length);
+}
+
+// Length of a ramp from the gap's beginning on, as planned in rise_.
+double SCurvePlan::Impl::rising(const Gap& gap, double to) {
+  return rise_.plan(window_.from(gap.begin, gap.end), gap.from, to);
+}
+
+// The same to its end.
+double SCurvePlan::Impl::falling(const Gap& gap, double from) {
+  return rise_.plan(window_.back_from(gap.end, gap.begin), gap.to, from);
 }
 
 bool SCurvePlan::Impl::divide(Gap gap) {
@@ -185,8 +258,8 @@ bool SCurvePlan::Impl::divide(Gap gap) {
   if (gap.cap == kNoCap) return hop(gap);
   const Cap& cap = caps_[gap.cap];
   if (gap.from > cap.speed) return divide_below(gap);
-  const double risen = gap.begin + window_.rising(gap.begin, gap.from, cap.speed);
-  const double falls = gap.end - window_.falling(gap.end, cap.speed, gap.to);
+  const double risen = gap.begin + rising(gap, cap.speed);
+  const double falls = gap.end - falling(gap, cap.speed);
   if (risen > falls) {
     gap.most = cap.speed;
     gap.cap = kNoCap;
@@ -206,45 +279,41 @@ bool SCurvePlan::Impl::divide(Gap gap) {
 // The window begins above the cap.
 bool SCurvePlan::Impl::divide_below(Gap gap) {
   const Cap& cap = caps_[gap.cap];
-  const double falls = gap.end - window_.falling(gap.end, cap.speed, gap.to);
+  const double falls = gap.end - falling(gap, cap.speed);
   const bool late = falls > cap.end;
   const double first = std::min(cap.begin, falls);
   const double last = late ? cap.end : falls;
-  if (first - window_.falling(first, gap.from, cap.speed) < gap.begin - rounding()) return false;
+  if (first < gap.begin) return false;
+  const Gap above{gap.begin, first, gap.from, cap.speed, gap.most, cap.before};
+  if (first - falling(above, gap.from) < gap.begin - rounding()) return false;
   gaps_.push_back({last, gap.end, cap.speed, gap.to, late ? gap.most : cap.speed, late ? cap.after : kNoCap});
   gaps_.push_back({first, last, cap.speed, cap.speed, cap.speed, kNoCap});
-  gaps_.push_back({gap.begin, first, gap.from, cap.speed, gap.most, cap.before});
+  gaps_.push_back(above);
   return true;
 }
 
 bool SCurvePlan::Impl::hop(const Gap& gap) {
   if (!(gap.end > gap.begin)) return true;
-  const SpeedWindow::Walk forwards = window_.from(gap.begin);
-  const SpeedWindow::Walk backwards = window_.back_from(gap.end);
-  const double speed = peak(gap, forwards, backwards);
+  const double speed = peak(gap);
   short_sight_ = !finishing_ && gap.end == window_.length() && speed < gap.most;
-  ramps_.clear();
-  const double down = window_.ramps(backwards, gap.to, speed, &ramps_);
-  const std::size_t falling = ramps_.size();
-  const double up = window_.ramps(forwards, gap.from, speed, &ramps_);
+  fall_.clear();
+  const double down = falling(gap, speed);
+  rise_.falling(fall_);
+  const double up = rising(gap, speed);
   const double steady = gap.end - gap.begin - up - down;
   if (steady < -rounding()) return false;
+  const std::size_t before = planned_.size();
+  rise_.rising(planned_);
+  for (std::size_t i = before; i < planned_.size(); ++i) planned_[i].short_sight = short_sight_;
+  if (steady >= rounding() || planned_.size() + fall_.size() == before) put({steady, steady / speed, speed, 0, 0});
+  for (const Phase& phase : fall_) put(phase);
   // What rounding leaves goes to a ramp.
-  const bool none = steady < rounding() && up + down > 0;
-  if (none) (up > 0 ? ramps_.back() : ramps_[falling - 1]).length += steady;
-  for (std::size_t i = falling; i < ramps_.size(); ++i) put(ramps_[i]);
-  if (!none) put({steady, speed, speed, {}});
-  for (std::size_t i = falling; i > 0; --i) {
-    Ramp ramp = ramps_[i - 1];
-    std::swap(ramp.from, ramp.to);
-    put(ramp);
-  }
+  if (steady < rounding() && planned_.size() > before) planned_.back().length += steady;
   return true;
 }
 
 // The highest speed in the gap: that of one of its ends where going up and down again is not worth it.
-double SCurvePlan::Impl::peak(const Gap& gap, const SpeedWindow::Walk& forwards,
-                              const SpeedWindow::Walk& backwards) const {
+double SCurvePlan::Impl::peak(const Gap& gap) {
   constexpr double kWorth = 1 + 0x1p-8;
   const double least = std::max(gap.from, gap.to);
   const double worth = std::min(gap.most, least * kWorth);
@@ -262,27 +331,26 @@ double SCurvePlan::Impl::peak(const Gap& gap, const SpeedWindow::Walk& forwards,
     const auto excess = excess_of(limits);
     const double square = (gap.from * gap.from + gap.to * gap.to) / 2;
     const double top = std::min(gap.most, std::sqrt(square + length * limits.acceleration));
-    return top > least && excess(least) < 0 ? highest_speed(least, top, excess) : least;
+    return top > least && excess(least) < 0 ? highest(least, top, excess) : least;
   };
-  const auto excess = [&](double speed) {
-    return window_.ramps(forwards, gap.from, speed) + window_.ramps(backwards, gap.to, speed) - length;
-  };
+  const auto excess = [&](double speed) { return rising(gap, speed) + falling(gap, speed) - length; };
   const double speed = simple(range.least);
   if (range.uniform()) return speed >= worth && excess(speed) <= rounding() ? speed : least;
   if (!(excess(worth) < 0)) return least;
   const double high = std::max(worth, simple(range.most));
-  return speed > worth && excess(speed) < 0 ? highest_speed(speed, high, excess) : highest_speed(worth, high, excess);
+  constexpr double kShare = 0x1p-20;  // what is left is gone at the peak
+  return highest(speed > worth && excess(speed) < 0 ? speed : worth, high, excess, kShare);
 }
 
-void SCurvePlan::Impl::put(const Ramp& ramp) {
-  if (!(ramp.length > 0)) return;
-  if (ramp.from == ramp.to && !planned_.empty() && planned_.back().to == ramp.from &&
-      planned_.back().from == ramp.from) {
-    planned_.back().length += ramp.length;
+void SCurvePlan::Impl::put(const Phase& phase) {
+  if (!(phase.length > 0) || !(phase.duration > 0)) return;
+  if (is_level(phase) && !planned_.empty() && is_level(planned_.back()) && planned_.back().speed == phase.speed) {
+    planned_.back().length += phase.length;
+    planned_.back().duration += phase.duration;
     planned_.back().short_sight |= short_sight_;
     return;
   }
-  planned_.push_back(ramp);
+  planned_.push_back(phase);
   planned_.back().short_sight = short_sight_;
 }
 

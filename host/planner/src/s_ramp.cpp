@@ -50,31 +50,16 @@ double ramp_end(double low, double length, RampLimits limits) {
   return low + limits.jerk * time * time;
 }
 
-unsigned phases_of(const Ramp& ramp, std::array<Phase, 3>& phases) {
-  unsigned count = 0;
-  const auto add = [&](double length, double duration, double speed, double acceleration, double jerk) {
-    if (!(length > 0) || !(duration > 0)) return;
-    phases[count++] = {length, duration, speed, acceleration, jerk, 0, false, ramp.short_sight};
-  };
-  const double sign = ramp.to < ramp.from ? -1 : 1;
-  const double change = sign * (ramp.to - ramp.from);
-  if (!(change > 0)) {
-    add(ramp.length, ramp.length / ramp.from, ramp.from, 0, 0);
-    return count;
+// Newton's method from above: the speed only rises.
+double rising_time(double length, double speed, double acceleration, double jerk, double most) {
+  double time = length < most * speed ? length / speed : most;
+  for (int i = 0; i < 100; ++i) {
+    const double more = (speed + (acceleration / 2 + jerk / 6 * time) * time) * time - length;
+    const double step = more / (speed + (acceleration + jerk / 2 * time) * time);
+    if (!(step > 0x1p-50 * time)) break;
+    time -= step;
   }
-  const double rise = rise_time(ramp.limits);
-  const bool full = change >= ramp.limits.acceleration * rise;
-  const double bend = full ? rise : std::sqrt(change / ramp.limits.jerk);
-  const double steady = full ? change / ramp.limits.acceleration - rise : 0;
-  const double acceleration = sign * (full ? ramp.limits.acceleration : change / bend);
-  const double jerk = bend > 0 ? acceleration / bend : 0;
-  const double gain = acceleration * bend / 2;
-  const double first = (ramp.from + gain / 3) * bend;
-  const double last = (ramp.to - gain / 3) * bend;
-  add(first, bend, ramp.from, 0, jerk);
-  add(ramp.length - first - last, steady, ramp.from + gain, acceleration, 0);
-  add(steady > 0 ? last : ramp.length - first, bend, ramp.to - gain, acceleration, -jerk);
-  return count;
+  return time;
 }
 
 }  // namespace trammel::planner

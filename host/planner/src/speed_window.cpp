@@ -1,6 +1,7 @@
 #include "speed_window.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace trammel::planner {
 namespace {
@@ -21,10 +22,19 @@ Range joined(const Range& a, const Range& b) {
   return {lower(a.least, b.least), most};
 }
 
-// Not worth ramps of their own.
-bool alike(const Range& range) {
-  constexpr double kAlike = 1.05;
-  return range.most.acceleration <= kAlike * range.least.acceleration && range.most.jerk <= kAlike * range.least.jerk;
+// As one stretch, it costs a ramp little of the time that its acceleration takes to rise.
+bool alike(const Range& range, double tolerance) {
+  constexpr double kMost = 1.05;
+  return range.most.acceleration <= (1 + tolerance) * range.least.acceleration &&
+         range.most.jerk <= kMost * range.least.jerk;
+}
+
+// The least of both, unless the neighbour has much less.
+double near_jerk(double jerk, double neighbour) { return 2.5 * neighbour < jerk ? jerk : std::min(jerk, neighbour); }
+
+bool same(const Range& a, const Range& b) {
+  return a.least.acceleration == b.least.acceleration && a.least.jerk == b.least.jerk &&
+         a.most.acceleration == b.most.acceleration && a.most.jerk == b.most.jerk;
 }
 
 }  // namespace
@@ -37,7 +47,7 @@ SpeedWindow::SpeedWindow(std::size_t spans) : most_(spans) {
 
 std::size_t SpeedWindow::drop_before(double position) {
   // What rounding leaves of a span is not a span.
-  const double nearly = position + length() * 0x1p-44;
+  const double nearly = position + length() * 0x1p-40;
   const auto border = std::upper_bound(positions_.begin() + 1, positions_.end(), nearly);
   const auto passed = border - positions_.begin() - 1;
   spans_.erase(spans_.begin(), spans_.begin() + passed);
@@ -58,73 +68,84 @@ void SpeedWindow::index() {
   }
 }
 
-SpeedWindow::Walk::Walk(const SpeedWindow& window, double from, bool forwards)
+SpeedWindow::Walk::Walk(const SpeedWindow& window, double from, bool forwards, double to)
     : window_(&window), from_(from), forwards_(forwards) {
   if (window.uniform()) {  // nothing to look for
-    at_ = forwards ? window.size() : 0;
-    range_ = window.all_;
-    end_ = window.length();
+    last_ = forwards ? window.size() : 0;
+    at_ = window.size() - last_;
     return;
   }
   const auto begin = window.positions_.begin();
   const auto last = window.positions_.end() - 1;
-  const auto border = forwards ? std::upper_bound(begin + 1, last, from) - 1 : std::lower_bound(begin + 1, last, from);
-  at_ = static_cast<std::size_t>(border - begin);
-  next(0);
+  const auto up = [&](double place) {
+    return static_cast<std::size_t>(std::lower_bound(begin + 1, last, place) - begin);
+  };
+  const auto down = [&](double place) {
+    return static_cast<std::size_t>(std::upper_bound(begin + 1, last, place) - begin - 1);
+  };
+  at_ = forwards ? down(from) : up(from);
+  last_ = forwards ? std::max(up(to), at_ + 1) : std::min(down(to), at_ - 1);
 }
 
-bool SpeedWindow::Walk::next(double need) {
-  if (at_ == (forwards_ ? window_->size() : 0)) return false;
-  const std::size_t blocks_end = forwards_ ? at_ + kBlock : at_ - std::min(at_, kBlock);
-  const bool block = at_ % kBlock == 0 && blocks_end <= window_->size() && distance(blocks_end) < need;
-  const std::size_t before = at_;
-  at_ = block ? blocks_end : forwards_ ? at_ + 1 : at_ - 1;
-  const std::size_t first = std::min(before, at_);
-  range_ = block ? window_->blocks_[first / kBlock] : range_of((*window_)[first]);
-  end_ = distance(at_);
+bool SpeedWindow::Walk::take_block(Range& range) {
+  const std::size_t end = forwards_ ? at_ + kBlock : at_ - std::min(at_, kBlock);
+  if (at_ % kBlock != 0 || (forwards_ ? end > last_ : at_ < last_ + kBlock)) return false;
+  const Range& block = window_->blocks_[std::min(at_, end) / kBlock];
+  if (!same(block, range)) return false;
+  at_ = end;
   return true;
 }
 
-// At a border where the limits change much, either the ramp ends there, or it goes on with the lower ones: whichever is
-// over sooner should nothing change behind. One ramp all along, where that is better after all.
-double SpeedWindow::ramps(Walk walk, double low, double high, std::vector<Ramp>* ramps) const {
-  const std::size_t before = ramps == nullptr ? 0 : ramps->size();
-  Stretch now{0, low, walk.range().least};
-  Range like = walk.range();
-  RampLimits least = now.limits;
-  double end = walk.end();
-  double length = ramp_length(low, high, now.limits);
-  while (length > end && walk.next(length)) {
-    const Range next = walk.range();
-    const RampLimits both = lower(now.limits, next.least);
-    const Range wider = joined(like, next);
-    like = alike(wider) ? wider : next;
-    length = now.begin + ramp_length(now.low, high, both);
-    const double middle = alike(wider) ? now.low : ramp_end(now.low, end - now.begin, now.limits);
-    const double split = end + ramp_length(middle, high, next.least);
-    if (!alike(wider) && split < length) {
-      if (ramps != nullptr) ramps->push_back({end - now.begin, now.low, middle, now.limits});
-      now = {end, middle, next.least};
-      length = split;
-    } else {
-      now.limits = both;
-    }
-    least = lower(least, next.least);
-    end = walk.end();
+SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
+  constexpr double kBrief = 1.0 / 8;   // of the acceleration's rise
+  constexpr double kShare = 1.0 / 8;   // of it that a whole ramp may lose
+  constexpr double kTolerance = 0.05;  // at most
+  constexpr double kLeast = 0x1p-12;   // at least
+  if (window_->uniform()) {
+    at_ = last_;
+    return {distance(at_), window_->least()};
   }
-  const double one = now.begin == 0 ? length : ramp_length(low, high, least);
-  if (one <= length) now = {0, low, least};
-  if (ramps != nullptr && now.begin == 0) ramps->resize(before);
-  length = std::min(length, one);
-  if (ramps != nullptr) ramps->push_back({length - now.begin, now.low, high, now.limits});
-  return length;
+  const double begin = end_;
+  const std::size_t first = at_;
+  Range range = range_of((*window_)[span_at(at_)]);
+  at_ = forwards_ ? at_ + 1 : at_ - 1;
+  while (!ended()) {
+    if (take_block(range)) continue;
+    const Range next = range_of((*window_)[span_at(at_)]);
+    const std::size_t behind = forwards_ ? at_ + 1 : at_ - 1;
+    if (!same(next, range)) {
+      const Range both = joined(range, next);
+      const double rise = both.least.acceleration / both.least.jerk;
+      if (distance(behind) - begin > speed * rise * kBrief) {
+        const double length = distance(at_) - begin;
+        const double now = std::sqrt(speed * speed + 2 * both.least.acceleration * length);
+        const double passed = time + 2 * length / (speed + now);
+        if (!alike(both, std::clamp(kShare * rise / passed, kLeast, kTolerance))) break;
+      }
+      range = both;
+    }
+    at_ = behind;
+  }
+  end_ = distance(at_);
+  // What is too short for a piece of its own is made with what follows or comes before.
+  RampLimits limits = range.least;
+  if (begin > 0) limits.jerk = near_jerk(limits.jerk, (*window_)[forwards_ ? first - 1 : first].jerk);
+  if (!ended()) limits.jerk = near_jerk(limits.jerk, (*window_)[span_at(at_)].jerk);
+  return {end_, limits};
 }
 
 Range SpeedWindow::range(double begin, double end) const {
   if (uniform()) return all_;
-  Walk walk(*this, begin, true);
-  Range range = walk.range();
-  while (walk.end() < end - begin && walk.next(end - begin)) range = joined(range, walk.range());
+  const auto first = positions_.begin();
+  const auto last = positions_.end() - 1;
+  auto i = static_cast<std::size_t>(std::upper_bound(first + 1, last, begin) - first - 1);
+  const auto end_border = static_cast<std::size_t>(std::lower_bound(first + 1, last, end) - first);
+  Range range = range_of(spans_[i]);
+  while (i < end_border) {
+    const bool block = i % kBlock == 0 && i + kBlock <= end_border;
+    range = joined(range, block ? blocks_[i / kBlock] : range_of(spans_[i]));
+    i += block ? kBlock : 1;
+  }
   return range;
 }
 

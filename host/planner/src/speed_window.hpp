@@ -1,12 +1,11 @@
-// The spans that a plan looks at, and the ramps that fit them: a ramp keeps the least acceleration and jerk of the
-// spans that it touches; where they differ much, a row of ramps may be better than one. Positions are lengths from the
-// window's beginning. Internal to the planner.
+// The spans that a plan looks at. Positions are lengths from the window's beginning. Internal to the planner.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
 #include "s_ramp.hpp"
+#include "trammel/planner/speed_plan.hpp"
 
 namespace trammel::planner {
 
@@ -29,7 +28,8 @@ class SpeedWindow {
   double position(std::size_t i) const { return positions_[i]; }
   double length() const { return positions_.back(); }
   bool uniform() const { return all_.uniform(); }
-  // No span has more.
+  // No span has less, or more.
+  RampLimits least() const { return all_.least; }
   RampLimits most() const { return all_.most; }
   // The least and the most of both within begin .. end.
   struct Range {
@@ -39,46 +39,41 @@ class SpeedWindow {
   };
   Range range(double begin, double end) const;
 
-  // Away from a place, span by span or block by block; begins with a span.
+  // Spans as one stretch of the way that a ramp takes; their least limits.
+  struct Stretch {
+    double end = 0;  // from where the walk began
+    RampLimits limits;
+  };
+
+  // Away from a place, stretch by stretch, up to the span in which the other one lies.
   class Walk {
    public:
-    Walk(const SpeedWindow& window, double from, bool forwards);
+    Walk(const SpeedWindow& window, double from, bool forwards, double to);
 
-    // The next span, or a block of them that ends nearer than `need`; false at the window's end.
-    bool next(double need);
-    const Range& range() const { return range_; }
-    double end() const { return end_; }  // its far end, from where the walk began
+    bool ended() const { return at_ == last_; }
+    // The next stretch, for a ramp that has `speed` there, `time` after its beginning. Spans make one where their
+    // limits differ so little, or for so short a time, that it costs little of what a rise of the acceleration does.
+    Stretch next(double speed, double time);
 
    private:
     double distance(std::size_t border) const {
       return forwards_ ? window_->position(border) - from_ : from_ - window_->position(border);
     }
+    std::size_t span_at(std::size_t border) const { return forwards_ ? border : border - 1; }
+    bool take_block(Range& range);
 
     const SpeedWindow* window_;
     double from_;
     bool forwards_;
-    std::size_t at_ = 0;  // border
-    Range range_;
+    std::size_t at_;  // border
+    std::size_t last_;
     double end_ = 0;
   };
-  Walk from(double begin) const { return {*this, begin, true}; }
-  Walk back_from(double end) const { return {*this, end, false}; }
-
-  // Length of the ramps from `low` to `high` on the way, seen from its beginning. If it is longer than the window, they
-  // do not fit. `ramps`, if any: they are put there, from `low` on.
-  double ramps(Walk walk, double low, double high, std::vector<Ramp>* ramps = nullptr) const;
-  double rising(double begin, double low, double high) const { return ramps(from(begin), low, high); }
-  double falling(double end, double high, double low) const { return ramps(back_from(end), low, high); }
+  Walk from(double begin, double end) const { return {*this, begin, true, end}; }
+  Walk back_from(double end, double begin) const { return {*this, end, false, begin}; }
 
  private:
   static constexpr std::size_t kBlock = 64;
-
-  // Where the present ramp begins, seen from the first one.
-  struct Stretch {
-    double begin;
-    double low;
-    RampLimits limits;
-  };
 
   std::size_t most_;
   std::vector<Span> spans_;

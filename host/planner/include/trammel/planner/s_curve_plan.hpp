@@ -1,8 +1,9 @@
-// The speed plan with limited jerk: speed and acceleration have no jump, a ramp may span any number of spans and keeps
-// the least acceleration and jerk of those that it touches. An infinite jerk is no limit.
+// The speed plan with limited jerk: speed and acceleration have no jump, and a ramp, which may span any number of spans,
+// keeps the acceleration and jerk of each. An infinite jerk is no limit.
 //
 // At its lowest and highest speeds, and where a limit of speed holds it between, the plan has no acceleration. It is
-// made anew for a whole window, and phases are given up to about the window's half.
+// made anew for a whole window, and phases are given up to about the window's half; where the speed has to fall because
+// the window ends, little by little, so that it does not stop when the window shows more.
 #pragma once
 
 #include <cstddef>

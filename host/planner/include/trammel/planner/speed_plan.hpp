@@ -34,6 +34,10 @@ struct Phase {
   bool short_sight = false;  // slower than the path allows, because of what `window` does not show
 };
 
+inline double end_speed(const Phase& phase) {
+  return phase.speed + phase.duration * (phase.acceleration + phase.duration * phase.jerk / 2);
+}
+
 // Speeds along a path that is not known to its end. A function of the sequence of spans alone. Not thread-safe.
 class SpeedPlan {
  public:

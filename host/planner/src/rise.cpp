@@ -1,0 +1,176 @@
+#include "rise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace trammel::planner {
+namespace {
+
+void put(std::vector<Phase>& phases, const Phase& phase) {
+  if (phase.length > 0 && phase.duration > 0) phases.push_back(phase);
+}
+
+}  // namespace
+
+Rise::Rise(std::size_t spans) {
+  stretches_.reserve(spans);
+  parts_.reserve(4 * spans + 4);
+  bend_.reserve(spans + 1);
+}
+
+Rise::State Rise::Part::at(double time) const {
+  const double end = time < duration ? from.acceleration + (to - from.acceleration) * (time / duration) : to;
+  const double speed = from.speed + (from.acceleration + end) / 2 * time;
+  const double length = (from.speed + (2 * from.acceleration + end) / 6 * time) * time;
+  return {from.place + length, from.time + time, speed, end};
+}
+
+// When the length is done, not more than the part's.
+double Rise::Part::time_at(double length) const {
+  return rising_time(length, from.speed, from.acceleration, (to - from.acceleration) / duration, duration);
+}
+
+double Rise::plan(SpeedWindow::Walk walk, double low, double high) {
+  stretches_.clear();
+  parts_.clear();
+  start_ = {0, 0, low, 0};
+  arrival_ = 0;
+  if (!(high > low)) return 0;
+  do {
+    const State now = end();
+    SpeedWindow::Stretch next = walk.next(now.speed, now.time);
+    const double rise = next.limits.acceleration / next.limits.jerk;
+    if (walk.ended()) next.end = std::max(next.end, now.place) + high * (high / next.limits.acceleration + 3 * rise);
+    if (stretches_.empty() && ramp_length(low, high, next.limits) <= next.end) {
+      lone(low, high, next.limits);
+      return end().place;
+    }
+    stretches_.push_back(next);
+    if (now.acceleration > next.limits.acceleration) brake();
+    climb();
+  } while (!arrive(high, walk.ended()));
+  return end().place;
+}
+
+// All with the same limits.
+void Rise::lone(double low, double high, const RampLimits& limits) {
+  const double rise = limits.acceleration / limits.jerk;
+  const double change = high - low;
+  const bool full = change >= limits.acceleration * rise;
+  const double bend = full ? rise : std::sqrt(change / limits.jerk);
+  const double most = full ? limits.acceleration : change / bend;
+  const double steady = full ? change / limits.acceleration - rise : 0;
+  parts_.push_back({start_, bend, most, 0});
+  parts_.push_back({end(), steady, most, 0});
+  parts_.push_back({end(), bend, 0, 0});
+}
+
+// Through the last stretch, as fast as it allows.
+void Rise::climb() {
+  const SpeedWindow::Stretch& stretch = stretches_.back();
+  const std::size_t index = stretches_.size() - 1;
+  State now = end();
+  const double most = stretch.limits.acceleration;
+  if (now.acceleration < most && now.place < stretch.end) {
+    Part part{now, (most - now.acceleration) / stretch.limits.jerk, most, index};
+    if (part.end().place > stretch.end) {
+      const double time = part.time_at(stretch.end - now.place);
+      part.to = part.at(time).acceleration;
+      part.duration = time;
+    }
+    parts_.push_back(part);
+    now = end();
+  }
+  if (now.place >= stretch.end || now.acceleration < most) return;
+  const double length = stretch.end - now.place;
+  const double speed = std::sqrt(now.speed * now.speed + 2 * most * length);
+  parts_.push_back({now, 2 * length / (now.speed + speed), most, index});
+}
+
+// Where the last stretch begins, its acceleration is kept.
+void Rise::brake() {
+  const SpeedWindow::Stretch next = stretches_.back();
+  stretches_.pop_back();
+  const double most = next.limits.acceleration;
+  turn(last_place([&](const Place& place) { return fall(place, most, true).acceleration - most; }), most, true);
+  stretches_.push_back(next);
+}
+
+// Ends at the speed, if it can within the stretches; `anywhere`: behind them, too.
+bool Rise::arrive(double high, bool anywhere) {
+  const State last = end();
+  if (!anywhere && (last.speed < high || last.place < arrival_)) return false;
+  const Place place = last_place([&](const Place& from) { return fall(from, 0, false).speed - high; });
+  arrival_ = fall(place, 0, false).place;
+  if (!anywhere && arrival_ > last.place) return false;
+  turn(place, 0, false);
+  return true;
+}
+
+// The last place from which `excess` is not above 0; it rises along the way.
+template <typename Excess>
+Rise::Place Rise::last_place(Excess excess) const {
+  std::size_t above = parts_.size();  // no later part begins where it is not
+  std::size_t part = above - 1;
+  for (std::size_t step = 1; part > 0 && excess({part, 0}) > 0; step *= 2) {
+    above = part;
+    part -= std::min(step, part);
+  }
+  while (above - part > 1) {
+    const std::size_t middle = part + (above - part) / 2;
+    (excess({middle, 0}) > 0 ? above : part) = middle;
+  }
+  return {part, highest(0, parts_[part].duration, [&](double time) { return excess({part, time}); })};
+}
+
+// Falls to the acceleration from the place on. `bounded`: no farther than the last stretch goes.
+Rise::State Rise::fall(const Place& place, double to, bool bounded, std::vector<Part>* parts) const {
+  State now = parts_[place.part].at(place.time);
+  for (std::size_t i = parts_[place.part].stretch; now.acceleration > to; ++i) {
+    while (i + 1 < stretches_.size() && stretches_[i + 1].limits.jerk == stretches_[i].limits.jerk) ++i;
+    const SpeedWindow::Stretch& stretch = stretches_[i];
+    const bool last = i + 1 == stretches_.size();
+    Part part{now, (now.acceleration - to) / stretch.limits.jerk, to, i};
+    State end = part.end();
+    const bool crosses = end.place > stretch.end && (bounded || !last);
+    if (crosses) {
+      const double left = stretch.end - now.place;
+      const double time = left > 0 ? part.time_at(left) : 0;
+      end = part.at(time);
+      part.duration = time;
+      part.to = end.acceleration;
+    }
+    if (parts != nullptr) parts->push_back(part);
+    now = end;
+    if (!crosses || last) break;
+  }
+  return now;
+}
+
+void Rise::turn(const Place& place, double to, bool bounded) {
+  bend_.clear();
+  fall(place, to, bounded, &bend_);
+  Part& part = parts_[place.part];
+  part.to = part.at(place.time).acceleration;
+  part.duration = place.time;
+  parts_.resize(place.part + 1);
+  parts_.insert(parts_.end(), bend_.begin(), bend_.end());
+}
+
+void Rise::rising(std::vector<Phase>& phases) const {
+  for (const Part& part : parts_) {
+    const double jerk = (part.to - part.from.acceleration) / part.duration;
+    put(phases, {part.end().place - part.from.place, part.duration, part.from.speed, part.from.acceleration, jerk});
+  }
+}
+
+void Rise::falling(std::vector<Phase>& phases) const {
+  for (std::size_t i = parts_.size(); i-- > 0;) {
+    const Part& part = parts_[i];
+    const State end = part.end();
+    const double jerk = (part.to - part.from.acceleration) / part.duration;
+    put(phases, {end.place - part.from.place, part.duration, end.speed, -part.to, jerk});
+  }
+}
+
+}  // namespace trammel::planner
