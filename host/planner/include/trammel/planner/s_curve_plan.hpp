@@ -1,5 +1,5 @@
-// The speed plan with limited jerk: speed and acceleration have no jump, and a ramp, which may span any number of spans,
-// keeps the acceleration and jerk of each. An infinite jerk is no limit.
+// The speed plan with limited jerk: speed and acceleration have no jump, and a ramp, which may span any number of
+// spans, keeps the acceleration and jerk of each. An infinite jerk is no limit.
 //
 // At its lowest and highest speeds, and where a limit of speed holds it between, the plan has no acceleration. It is
 // made anew for a whole window, and phases are given up to about the window's half; where the speed has to fall because
