@@ -95,7 +95,7 @@ class FrameSource {
                     static_cast<std::uint8_t>(dice_.chance(2) ? 4 * dice_.below(64) : dice_.below(256)),
                     static_cast<std::uint8_t>(dice_.chance(2) ? dice_.below(16) : dice_.below(256))};
     const bool write = (b[0] & 3) == 3;
-    std::size_t words = write ? b[1] % 64 : 0;
+    std::size_t words = write ? b[1] % 64U : 0U;
     if (dice_.chance(6)) words = dice_.below(64);
     // A read of a few words more than a reply has.
     if (dice_.chance(4)) {

@@ -144,8 +144,9 @@ class Bench {
 
   void compare() {
     const model::Axi4LitePort::Outputs& axi = model_.axi();
-    const unsigned axi_rtl = dut_->awready_o | dut_->wready_o << 1 | dut_->bvalid_o << 2 | dut_->arready_o << 3 |
-                             dut_->rvalid_o << 4 | dut_->bresp_o << 5 | dut_->rresp_o << 7;
+    const unsigned axi_rtl = unsigned{dut_->awready_o} | unsigned{dut_->wready_o} << 1 | unsigned{dut_->bvalid_o} << 2 |
+                             unsigned{dut_->arready_o} << 3 | unsigned{dut_->rvalid_o} << 4 |
+                             unsigned{dut_->bresp_o} << 5 | unsigned{dut_->rresp_o} << 7;
     const unsigned axi_model = unsigned{axi.awready} | unsigned{axi.wready} << 1 | unsigned{axi.bvalid} << 2 |
                                unsigned{axi.arready} << 3 | unsigned{axi.rvalid} << 4 | unsigned{axi.bresp} << 5 |
                                unsigned{axi.rresp} << 7;

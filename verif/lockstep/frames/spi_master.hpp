@@ -65,7 +65,7 @@ class SpiMaster {
         break;
       case At::Second:  // rising edge: both take their bit
         pins_.sck = true;
-        shift_ = static_cast<std::uint8_t>(shift_ << 1 | (miso ? 1U : 0U));
+        shift_ = static_cast<std::uint8_t>(unsigned{shift_} << 1 | (miso ? 1U : 0U));
         if (++place_ % 8 == 0) received_.push_back(shift_);
         --bits_left_;
         left_ += half_;

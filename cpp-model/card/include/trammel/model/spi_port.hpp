@@ -34,11 +34,11 @@ class SpiPort {
     const Pins pins = second_;
     out_.byte_valid = out_.ready;
     if (out_.ready) {
-      out_.byte = static_cast<std::uint8_t>(taken_ << 1 | (pins.mosi ? 1U : 0U));
+      out_.byte = static_cast<std::uint8_t>(unsigned{taken_} << 1 | (pins.mosi ? 1U : 0U));
       given_ = in.valid ? in.byte : frames::kEnd;
       place_ = 0;
     } else if (rises_) {
-      taken_ = static_cast<std::uint8_t>(taken_ << 1 | (pins.mosi ? 1U : 0U));
+      taken_ = static_cast<std::uint8_t>(unsigned{taken_} << 1 | (pins.mosi ? 1U : 0U));
       ++place_;
     }
     // A byte that was begun is not given from its beginning again: the frame in it is lost anyway.
