@@ -5,6 +5,8 @@ if(PROJECT_IS_TOP_LEVEL)
     set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
   endif()
   set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+  # g++ looks for memory to give back from 512 MB on only, not 128 MB: 5 % of its time.
+  add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=524288>)
   # There are 360 programs to link: gold, which comes with g++ on Debian, takes half of the time of the default linker.
   include(CheckLinkerFlag)
   check_linker_flag(CXX -fuse-ld=gold TRAMMEL_LINKS_WITH_GOLD)
