@@ -488,7 +488,13 @@ void Quantiser::complete_first() {
   const double rate = piece(highest).most;
   // At least 1: 0 says that the piece ends at rest.
   if (!first.stop) {
-    const double wanted = std::min(std::ceil(stop_clocks_ * rate), reach(first) / kFillOfReach - kReserve);
+    double wanted = std::ceil(stop_clocks_ * rate);
+    // A stop that begins in the piece goes on at its rates, and to the program's own stop at most.
+    if (const Piece& last = piece(seen_ - 1); last.stop) {
+      const std::uint64_t behind = last.begin + last.command.ticks - first.begin - first.command.ticks;
+      wanted = std::min(wanted, std::ceil(stop_clocks_ * first.most) + static_cast<double>(behind));
+    }
+    wanted = std::min(wanted, reach(first) / kFillOfReach - kReserve);
     first.command.stop_distance = wanted > 1 && !ends_queued(path_[first.block]) ? ticks32(wanted) : 1;
   }
   if (highest == completed_) ++highest_first_;
