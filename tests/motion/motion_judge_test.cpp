@@ -380,16 +380,20 @@ TEST(MotionJudge, CurvesInChordsAreWithinTheirLimits) {
 
 // From rest to rest on arcs alone: the acceleration in all is what the axes have at every speed, never more.
 TEST(MotionJudge, ArcsUseTheirAccelerationAtEverySpeed) {
-  for (const char* text : {"G2 I10\n", "G3 X20 I10\n", "G2 X1 Y1 I1\n", "G17 G2 I10 Z2 P2\n"}) {
-    SCOPED_TRACE(text);
-    const std::string program = std::string("G21 G90 G94 F60000\n") + text + "M2\n";
-    gcode::TextLines lines(program, "program");
-    const machine::Machine machine = machine_of(300, 1000, 0);
-    const Planned planned(lines, machine, 10 * kClock);
-    const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
-    expect_within_limits(verdict);
-    EXPECT_GT(verdict.acceleration.share, 0.98);
-    EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
+  for (const char* text :
+       {"G2 I10\n", "G3 X20 I10\n", "G2 X1 Y1 I1\n", "G17 G2 I10 Z2 P2\n", "G1 X5\nG2 X15 I5\nG3 X18 Y3 J3\n"}) {
+    for (const double jerk : {0.0, 20'000.0, 200'000.0}) {
+      SCOPED_TRACE(fmt::format("{} jerk {}", text, jerk));
+      const std::string program = std::string("G21 G90 G94 F60000\n") + text + "M2\n";
+      gcode::TextLines lines(program, "program");
+      const machine::Machine machine = machine_of(300, 1000, jerk);
+      const Planned planned(lines, machine, 10 * kClock);
+      const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
+      expect_within_limits(verdict);
+      // At the lower one the jerk is the limit.
+      EXPECT_GT(verdict.acceleration.share, jerk == 20'000 ? 0.3 : 0.98);
+      EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
+    }
   }
 }
 
