@@ -319,7 +319,8 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   const double rate = one_rate ? (static_cast<double>(command.ticks) - lead) / motion.clocks
                                : motion.rate + kUpdate / 2 * motion.acceleration + kUpdate * kUpdate / 6 * motion.jerk;
   command.rate = fixed64(std::max(rate, kLeastRate));
-  command.acceleration = one_rate ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
+  // In less than an update it comes to nothing; the motion's acceleration has no jump there all the same.
+  command.acceleration = one_rate && !smooth_ ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
   command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);
   if (classes_ && path_[timed_].block.rapid) command.piece_class = driver::PieceClass::kRapid;
   // Smooth motion does not reach it before the piece is over.
