@@ -207,7 +207,8 @@ std::string bends_with_feeds(unsigned seed) {
 // A window shorter than a stopping distance makes the motion slow down in mid path, and speed up again.
 TEST(MotionJudge, ShortWindowsAreWithinTheirLimits) {
   constexpr double kJerk = 100'000;
-  for (const unsigned seed : {1U, 2U, 42U, 78U, 110U, 159U}) {
+  // At the last three a piece of less than an update lies before a change of density.
+  for (const unsigned seed : {1U, 2U, 42U, 78U, 68U, 74U, 96U}) {
     SCOPED_TRACE(seed);
     const std::uint32_t clock = seed % 2 == 0 ? kClock : 10 * kClock;
     const std::string program = bends_with_feeds(seed);

@@ -319,7 +319,8 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   const double rate = one_rate ? (static_cast<double>(command.ticks) - lead) / motion.clocks
                                : motion.rate + kUpdate / 2 * motion.acceleration + kUpdate * kUpdate / 6 * motion.jerk;
   command.rate = fixed64(std::max(rate, kLeastRate));
-  command.acceleration = one_rate ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
+  // In less than an update it comes to nothing; the motion's acceleration has no jump there all the same.
+  command.acceleration = one_rate && !smooth_ ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
   command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);
   if (classes_ && path_[timed_].block.rapid) command.piece_class = driver::PieceClass::kRapid;
   // Smooth motion does not reach it before the piece is over.
@@ -488,7 +489,13 @@ void Quantiser::complete_first() {
   const double rate = piece(highest).most;
   // At least 1: 0 says that the piece ends at rest.
   if (!first.stop) {
-    const double wanted = std::min(std::ceil(stop_clocks_ * rate), reach(first) / kFillOfReach - kReserve);
+    double wanted = std::ceil(stop_clocks_ * rate);
+    // A stop that begins in the piece goes on at its rates, and to the program's own stop at most.
+    if (const Piece& last = piece(seen_ - 1); last.stop) {
+      const std::uint64_t behind = last.begin + last.command.ticks - first.begin - first.command.ticks;
+      wanted = std::min(wanted, std::ceil(stop_clocks_ * first.most) + static_cast<double>(behind));
+    }
+    wanted = std::min(wanted, reach(first) / kFillOfReach - kReserve);
     first.command.stop_distance = wanted > 1 && !ends_queued(path_[first.block]) ? ticks32(wanted) : 1;
   }
   if (highest == completed_) ++highest_first_;
