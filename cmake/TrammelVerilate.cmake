@@ -85,8 +85,8 @@ endfunction()
 # Builds lockstep_<name>: the test runs Vdut (the block) beside its golden model.
 # The test is compiled once (lockstep_<name>_test) and linked with the block and with each of its copies with a seeded
 # bug, so it may use Vdut.h but nothing else of what Verilator writes. A source that does is named after INSIDE and is
-# compiled for each copy. DEFINITIONS and INCLUDES are the test's. HARNESS is a top that joins several blocks for their
-# lockstep alone, beside the test.
+# compiled for each copy. LEVEL is 1 by itself, since few run long enough for more. DEFINITIONS and INCLUDES
+# are the test's. HARNESS is a top that joins several blocks for their lockstep alone, beside the test.
 function(trammel_add_lockstep name)
   cmake_parse_arguments(A "ANY_EVENT" "TOP;TEST;INSIDE;HARNESS;LEVEL" "SOURCES;ARGS;DEFINITIONS;INCLUDES" ${ARGN})
   set(target lockstep_${name})
@@ -95,9 +95,10 @@ function(trammel_add_lockstep name)
     set(how ANY_EVENT)
   endif()
   set_property(GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_HOW "${how}")
-  if(DEFINED A_LEVEL)
-    list(APPEND how LEVEL ${A_LEVEL})
+  if(NOT DEFINED A_LEVEL)
+    set(A_LEVEL 1)
   endif()
+  list(APPEND how LEVEL ${A_LEVEL})
   if(A_HARNESS)
     list(APPEND A_ARGS "${CMAKE_CURRENT_SOURCE_DIR}/${A_HARNESS}")
   endif()

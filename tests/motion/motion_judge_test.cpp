@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -206,7 +207,8 @@ std::string bends_with_feeds(unsigned seed) {
 // A window shorter than a stopping distance makes the motion slow down in mid path, and speed up again.
 TEST(MotionJudge, ShortWindowsAreWithinTheirLimits) {
   constexpr double kJerk = 100'000;
-  for (const unsigned seed : {1U, 2U, 42U, 78U, 110U, 159U}) {
+  // At the last three a piece of less than an update lies before a change of density.
+  for (const unsigned seed : {1U, 2U, 42U, 78U, 68U, 74U, 96U}) {
     SCOPED_TRACE(seed);
     const std::uint32_t clock = seed % 2 == 0 ? kClock : 10 * kClock;
     const std::string program = bends_with_feeds(seed);
@@ -215,6 +217,42 @@ TEST(MotionJudge, ShortWindowsAreWithinTheirLimits) {
     machine.motion.window = 16;
     const Planned planned(lines, machine, clock);
     expect_within_limits(judge_motion(planned.commands, {machine, static_cast<double>(clock), 0.01}));
+  }
+}
+
+// Of next to no length or speed: a generator's arc that takes more ticks than its length has, a stop that is shorter
+// than a tick, a line that takes 18 s. The feed must not come to nothing before the ticks do.
+TEST(MotionJudge, PiecesEndInTheirTime) {
+  struct Case {
+    const char* program;
+    std::array<double, 4> scale;  // steps/mm
+    std::array<double, 4> jerk;
+  };
+  const Case cases[] = {
+      {"F4.86\nG19\nG1 X0.09309 Y-0.03382\nG1 X0.09388 Y-0.04620 Z-0.03285 E0.5\n"
+       "G3 Y-0.04620 Z-0.03285 J0.01127 K0.01756 P2\nM2\n",
+       {21.4, 21.4, 21.4, 21.4},
+       {20000, 20000, 20000, 20000}},
+      {"F1.74\nG1 X-0.00158 Y-0.00927 E0.08581\nG1 X-0.01054 Y-0.01859 E0.08070\nG1 X-0.01262 Y-0.02608\n"
+       "G1 X-0.00199 Y-0.02493\nM2\n",
+       {666, 349, 80, 84},
+       {95000, 18800, 9000, 97000}},
+      {"F600\nG1 X0.02 Y0.028\nG3 X0.00409 Y-0.00718 I0.00964 J-0.02555\nG93\nG1 X-0.01253 Y-0.01215 F3.241\n"
+       "G2 X-0.01253 Y-0.01215 I0.01705 J-0.03611 F1325\nM2\n",
+       {30.85, 30.85, 30.85, 30.85},
+       {20000, 20000, 20000, 20000}}};
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.program);
+    machine::Machine machine = machine_of(150, 1000, 0);
+    machine.motion.junction_deviation = 0.001;
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      machine.axes[axis].steps_per_mm = one.scale[axis];
+      machine.axes[axis].max_jerk = one.jerk[axis];
+    }
+    gcode::TextLines lines(one.program, "program");
+    const Planned planned(lines, machine, kClock);
+    const MotionVerdict verdict = judge_motion(planned.commands, {machine, kClock, 0.001});
+    EXPECT_NEAR(verdict.seconds(kClock), planned.seconds, 0.002 * planned.seconds);
   }
 }
 
@@ -343,16 +381,20 @@ TEST(MotionJudge, CurvesInChordsAreWithinTheirLimits) {
 
 // From rest to rest on arcs alone: the acceleration in all is what the axes have at every speed, never more.
 TEST(MotionJudge, ArcsUseTheirAccelerationAtEverySpeed) {
-  for (const char* text : {"G2 I10\n", "G3 X20 I10\n", "G2 X1 Y1 I1\n", "G17 G2 I10 Z2 P2\n"}) {
-    SCOPED_TRACE(text);
-    const std::string program = std::string("G21 G90 G94 F60000\n") + text + "M2\n";
-    gcode::TextLines lines(program, "program");
-    const machine::Machine machine = machine_of(300, 1000, 0);
-    const Planned planned(lines, machine, 10 * kClock);
-    const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
-    expect_within_limits(verdict);
-    EXPECT_GT(verdict.acceleration.share, 0.98);
-    EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
+  for (const char* text :
+       {"G2 I10\n", "G3 X20 I10\n", "G2 X1 Y1 I1\n", "G17 G2 I10 Z2 P2\n", "G1 X5\nG2 X15 I5\nG3 X18 Y3 J3\n"}) {
+    for (const double jerk : {0.0, 20'000.0, 200'000.0}) {
+      SCOPED_TRACE(fmt::format("{} jerk {}", text, jerk));
+      const std::string program = std::string("G21 G90 G94 F60000\n") + text + "M2\n";
+      gcode::TextLines lines(program, "program");
+      const machine::Machine machine = machine_of(300, 1000, jerk);
+      const Planned planned(lines, machine, 10 * kClock);
+      const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
+      expect_within_limits(verdict);
+      // At the lower one the jerk is the limit.
+      EXPECT_GT(verdict.acceleration.share, jerk == 20'000 ? 0.3 : 0.98);
+      EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
+    }
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "plan.hpp"
+#include "trammel/driver/trigonometry.hpp"
 
 namespace trammel::planner {
 namespace {

@@ -1,4 +1,4 @@
-// Blocks a second on one core: chords of 0.02 mm through reader, look-ahead, trapezoid, quantiser and encoding.
+// Blocks a second on one core: chords of 0.02 mm through reader, look-ahead, speed plan, quantiser and encoding.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -50,6 +50,7 @@ void blocks(benchmark::State& state) {
   for (machine::MachineAxis& axis : machine.axes) {
     axis.max_velocity = 300;
     axis.max_acceleration = 3000;
+    axis.max_jerk = state.range(2) != 0 ? 100'000 : 0;
   }
   machine.motion.window = static_cast<double>(state.range(1));
   std::uint64_t blocks = 0;
@@ -67,6 +68,9 @@ void blocks(benchmark::State& state) {
   state.counters["pieces a block"] = static_cast<double>(pieces) / static_cast<double>(blocks);
 }
 
-BENCHMARK(blocks)->ArgNames({"spiral", "window"})->ArgsProduct({{0, 1}, {256, 16'384}})->Unit(benchmark::kMillisecond);
+BENCHMARK(blocks)
+    ->ArgNames({"spiral", "window", "s_curve"})
+    ->ArgsProduct({{0, 1}, {256, 16'384}, {0, 1}})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

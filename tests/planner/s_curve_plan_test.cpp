@@ -239,6 +239,48 @@ TEST(SCurvePlan, LimitsThatTurnCostAtMostOneRiseARamp) {
   RecordProperty("worst", std::to_string(worst));
 }
 
+// Arcs among straight spans; on them the acceleration is what the speed of the moment leaves.
+Spans with_arcs(Random& random, const Limits& limits) {
+  constexpr double kAlong = 0.43588989435406736;  // where 0.9 of it is across
+  Spans spans = moves(random, limits, true);
+  for (Span& span : spans) {
+    if (random.below(3) == 0) continue;
+    const double radius = random.logarithmic(0.5, 200);
+    span.speed = std::min(span.speed, std::sqrt(0.9 * limits.acceleration * radius));
+    const double across = span.speed * span.speed / radius;
+    span.curve = {limits.acceleration, 1 / radius, limits.acceleration};
+    span.acceleration = std::sqrt(limits.acceleration * limits.acceleration - across * across);
+    span.jerk *= kAlong;
+  }
+  return spans;
+}
+
+TEST(SCurvePlan, ArcsUseTheirAccelerationAtEverySpeed) {
+  Random random(13);
+  double best = 1;
+  double worst = 0;
+  for (int i = 0; i < 600; ++i) {
+    const Spans spans = with_arcs(random, random_limits(random));
+    Spans as_at_top = spans;
+    for (Span& span : as_at_top) span.curve = {};
+    for (const std::size_t window : {16U, 16'384U}) {
+      const std::vector<Phase> phases = plan(spans, window);
+      ASSERT_EQ(test::fault_of(phases, spans), "") << i << " window " << window;
+      if (window == 16) continue;
+      TrapezoidPlan trapezoid(window);
+      const double time = test::duration_of(phases);
+      ASSERT_GE(time, test::duration_of(test::plan_all(trapezoid, spans)) * (1 - 1e-9)) << i;
+      const double share = time / seconds(as_at_top, window);
+      best = std::min(best, share);
+      worst = std::max(worst, share);
+    }
+  }
+  EXPECT_LE(best, 0.9);
+  EXPECT_LE(worst, 1.001);
+  RecordProperty("best", std::to_string(best));
+  RecordProperty("worst", std::to_string(worst));
+}
+
 TEST(SCurvePlan, ATrapezoidFailsItsJudge) {
   Random random(4);
   for (int i = 0; i < 300; ++i) {

@@ -131,5 +131,18 @@ TEST(StopDistance, IsNoneWhereAllUpToTheStopIsQueued) {
   EXPECT_GE(others, 2U);
 }
 
+// 10 mm at 1 mm/s, then 1 mm at what can be had up to the stop: from the slow line's last piece on a stop takes 0.1 mm
+// of it and all of the quick one at most, whatever the rates there are.
+TEST(StopDistance, IsAtMostTheWayToTheStop) {
+  CardLimits card;
+  card.clock_hz = 50'000'000;
+  const Plan plan = plan_text("F60\nG1 X10\nF6000 G1 X11\nM2\n", quick_machine(), card);
+  ASSERT_FALSE(plan.error);
+  const auto pieces = commands<driver::FeedCommand>(plan.blocks.front());
+  const double ticks_a_mm = static_cast<double>(path_ticks_of(plan.blocks.front().commands.back())) / 10;
+  EXPECT_GE(pieces.back().stop_distance, 1 * ticks_a_mm);
+  EXPECT_LE(pieces.back().stop_distance, 1.11 * ticks_a_mm);
+}
+
 }  // namespace
 }  // namespace trammel::planner

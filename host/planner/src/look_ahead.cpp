@@ -179,7 +179,7 @@ double Planner::LookAhead::least_density(const Block& block) const {
 // Each change of density costs a piece: where the clock is the limit, half of what it allows serves too.
 bool Planner::LookAhead::suits(double density, const Block& block) const {
   const double most = std::min(kMaxTickRate * clock_hz_ / block.speed, kMostTicks / block.length);
-  const double least = std::max(std::min(even_density(block), most / 2), least_density(block) / 2);
+  const double least = std::max(std::min(even_density(block), most / 2), least_density(block));
   return density >= least * (1 - 1e-9) && density <= most * (1 + 1e-9);
 }
 

@@ -234,7 +234,7 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
   const auto when = [&](double place) {
     return time_at(place, phase.speed, phase.acceleration, phase.jerk, phase.duration, phase.length);
   };
-  const double begin = rested ? 0 : when(from);
+  double begin = rested ? 0 : when(from);
   const double end = rests ? phase.duration : when(to);
   const auto rate_at = [&](double time) {
     return std::max(0.0, phase.speed + time * (phase.acceleration + time * phase.jerk / 2)) * rate_a_speed_;
@@ -242,6 +242,16 @@ Quantiser::Motion Quantiser::motion_of(const Phase& phase, double from, double t
   Motion motion;
   motion.rate = rate_at(begin);
   motion.end_rate = rate_at(end);
+  // Its jerk is no guide far outside the phase, where it would end the feed before the ticks end.
+  const auto astray = [](double rate, double right) { return std::abs(rate - right) > right / 2; };
+  const double left = end_speed(phase) * rate_a_speed_;
+  if (!rests && end > phase.duration && astray(motion.end_rate, left)) {
+    return steady(phase.speed * rate_a_speed_, left, ticks);
+  }
+  if (begin < 0 && astray(motion.rate, phase.speed * rate_a_speed_)) {
+    begin = 0;
+    motion.rate = rate_at(begin);
+  }
   motion.acceleration = (phase.acceleration + begin * phase.jerk) * rate_a_speed_ / clock_hz_;
   motion.jerk = phase.jerk * rate_a_speed_ / clock_hz_ / clock_hz_;
   motion.clocks = (end - begin) * clock_hz_;
@@ -309,12 +319,14 @@ void Quantiser::put(const Motion& motion, std::uint64_t end_tick, bool stop) {
   const double rate = one_rate ? (static_cast<double>(command.ticks) - lead) / motion.clocks
                                : motion.rate + kUpdate / 2 * motion.acceleration + kUpdate * kUpdate / 6 * motion.jerk;
   command.rate = fixed64(std::max(rate, kLeastRate));
-  command.acceleration = one_rate ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
+  // In less than an update it comes to nothing; the motion's acceleration has no jump there all the same.
+  command.acceleration = one_rate && !smooth_ ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
   command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);
   if (classes_ && path_[timed_].block.rapid) command.piece_class = driver::PieceClass::kRapid;
   // Smooth motion does not reach it before the piece is over.
-  const double spare =
-      smooth_ && !motion.rests ? 4 * std::abs(kUpdate * (motion.acceleration + motion.clocks * motion.jerk)) : 0;
+  const double spare = smooth_ && !motion.rests && motion.jerk != 0
+                           ? 4 * std::abs(kUpdate * (motion.acceleration + motion.clocks * motion.jerk))
+                           : 0;
   command.floor = fixed32(std::min({motion.rate, motion.end_rate, turning, rate}) - spare);
   if (motion.rests && motion.jerk != 0) command.floor = fixed32(std::min(motion.end_rate, put.most));
   time_blocks(motion, lead, end_tick, stop);
@@ -477,7 +489,13 @@ void Quantiser::complete_first() {
   const double rate = piece(highest).most;
   // At least 1: 0 says that the piece ends at rest.
   if (!first.stop) {
-    const double wanted = std::min(std::ceil(stop_clocks_ * rate), reach(first) / kFillOfReach - kReserve);
+    double wanted = std::ceil(stop_clocks_ * rate);
+    // A stop that begins in the piece goes on at its rates, and to the program's own stop at most.
+    if (const Piece& last = piece(seen_ - 1); last.stop) {
+      const std::uint64_t behind = last.begin + last.command.ticks - first.begin - first.command.ticks;
+      wanted = std::min(wanted, std::ceil(stop_clocks_ * first.most) + static_cast<double>(behind));
+    }
+    wanted = std::min(wanted, reach(first) / kFillOfReach - kReserve);
     first.command.stop_distance = wanted > 1 && !ends_queued(path_[first.block]) ? ticks32(wanted) : 1;
   }
   if (highest == completed_) ++highest_first_;

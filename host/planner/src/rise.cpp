@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "span_acceleration.hpp"
 
 namespace trammel::planner {
 namespace {
+
+constexpr double kAnySpeed = std::numeric_limits<double>::infinity();
 
 void put(std::vector<Phase>& phases, const Phase& phase) {
   if (phase.length > 0 && phase.duration > 0) phases.push_back(phase);
@@ -41,13 +46,16 @@ double Rise::plan(SpeedWindow::Walk walk, double low, double high) {
     SpeedWindow::Stretch next = walk.next(now.speed, now.time);
     const double rise = next.limits.acceleration / next.limits.jerk;
     if (walk.ended()) next.end = std::max(next.end, now.place) + high * (high / next.limits.acceleration + 3 * rise);
-    if (stretches_.empty() && ramp_length(low, high, next.limits) <= next.end) {
+    if (stretches_.empty() && next.arc == nullptr && ramp_length(low, high, next.limits) <= next.end) {
       lone(low, high, next.limits);
       return end().place;
     }
-    stretches_.push_back(next);
-    if (now.acceleration > next.limits.acceleration) brake();
-    climb();
+    if (next.arc != nullptr) {
+      climb_arc(next);
+    } else {
+      enter(next);
+      climb(kAnySpeed);
+    }
   } while (!arrive(high, walk.ended()));
   return end().place;
 }
@@ -65,14 +73,20 @@ void Rise::lone(double low, double high, const RampLimits& limits) {
   parts_.push_back({end(), bend, 0, 0});
 }
 
-// Through the last stretch, as fast as it allows.
-void Rise::climb() {
+// Through the last stretch, or up to the speed, as fast as it allows.
+void Rise::climb(double top) {
   const SpeedWindow::Stretch& stretch = stretches_.back();
   const std::size_t index = stretches_.size() - 1;
   State now = end();
   const double most = stretch.limits.acceleration;
   if (now.acceleration < most && now.place < stretch.end) {
     Part part{now, (most - now.acceleration) / stretch.limits.jerk, most, index};
+    if (part.end().speed > top) {
+      const double gain = top - now.speed;
+      const double reached = std::sqrt(now.acceleration * now.acceleration + 2 * stretch.limits.jerk * gain);
+      part.duration = 2 * gain / (now.acceleration + reached);
+      part.to = reached;
+    }
     if (part.end().place > stretch.end) {
       const double time = part.time_at(stretch.end - now.place);
       part.to = part.at(time).acceleration;
@@ -81,19 +95,46 @@ void Rise::climb() {
     parts_.push_back(part);
     now = end();
   }
-  if (now.place >= stretch.end || now.acceleration < most) return;
-  const double length = stretch.end - now.place;
+  if (now.place >= stretch.end || now.speed >= top || now.acceleration < most) return;
+  const double length = std::min(stretch.end - now.place, (top * top - now.speed * now.speed) / (2 * most));
   const double speed = std::sqrt(now.speed * now.speed + 2 * most * length);
   parts_.push_back({now, 2 * length / (now.speed + speed), most, index});
 }
 
-// Where the last stretch begins, its acceleration is kept.
-void Rise::brake() {
-  const SpeedWindow::Stretch next = stretches_.back();
-  stretches_.pop_back();
+// In steps of speed, each with the acceleration that its highest speed leaves.
+void Rise::climb_arc(SpeedWindow::Stretch arc) {
+  const SpanAcceleration acceleration(*arc.arc);
+  bool entered = false;
+  for (int i = 0; i < acceleration.steps(); ++i) {
+    const State now = end();
+    const bool last = i + 1 == acceleration.steps();
+    const double top = last ? kAnySpeed : std::sqrt(acceleration.top(i));
+    if (now.speed >= top) continue;
+    if (entered && now.place >= arc.end) return;
+    arc.limits.acceleration = acceleration.acceleration(i);
+    if (!entered) {
+      enter(arc);
+    } else {
+      if (now.acceleration > arc.limits.acceleration) relax(arc.limits.acceleration, now.speed);
+      stretches_.push_back(arc);
+    }
+    entered = true;
+    climb(top);
+  }
+}
+
+// Where a stretch begins, its acceleration is kept.
+void Rise::enter(const SpeedWindow::Stretch& next) {
   const double most = next.limits.acceleration;
-  turn(last_place([&](const Place& place) { return fall(place, most, true).acceleration - most; }), most, true);
+  if (end().acceleration > most) {
+    turn(last_place([&](const Place& place) { return fall(place, most, true).acceleration - most; }), most, true);
+  }
   stretches_.push_back(next);
+}
+
+// At the speed no more acceleration than `most`, unless the last stretch ends before.
+void Rise::relax(double most, double speed) {
+  turn(last_place([&](const Place& place) { return fall(place, most, true).speed - speed; }), most, true);
 }
 
 // Ends at the speed, if it can within the stretches; `anywhere`: behind them, too.

@@ -45,8 +45,10 @@ class Rise {
   };
 
   State end() const { return parts_.empty() ? start_ : parts_.back().end(); }
-  void climb();
-  void brake();
+  void climb(double top);
+  void climb_arc(SpeedWindow::Stretch arc);
+  void enter(const SpeedWindow::Stretch& next);
+  void relax(double most, double speed);
   bool arrive(double high, bool anywhere);
   void lone(double low, double high, const RampLimits& limits);
   State fall(const Place& place, double to, bool bounded, std::vector<Part>* parts = nullptr) const;

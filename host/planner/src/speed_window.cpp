@@ -8,9 +8,11 @@ namespace {
 
 using Range = SpeedWindow::Range;
 
+bool has_more_below(const Span& span) { return span.curve.whole > 0 && span.curve.at_rest > span.acceleration; }
+
 Range range_of(const Span& span) {
   const RampLimits limits = {span.acceleration, span.jerk};
-  return {limits, limits};
+  return {limits, has_more_below(span) ? RampLimits{span.curve.at_rest, span.jerk} : limits};
 }
 
 RampLimits lower(RampLimits a, RampLimits b) {
@@ -103,11 +105,12 @@ SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
   constexpr double kLeast = 0x1p-12;   // at least
   if (window_->uniform()) {
     at_ = last_;
-    return {distance(at_), window_->least()};
+    return {distance(at_), window_->least(), nullptr};
   }
   const double begin = end_;
   const std::size_t first = at_;
-  Range range = range_of((*window_)[span_at(at_)]);
+  const Span& span = (*window_)[span_at(at_)];
+  Range range = range_of(span);
   at_ = forwards_ ? at_ + 1 : at_ - 1;
   while (!ended()) {
     if (take_block(range)) continue;
@@ -131,7 +134,8 @@ SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
   RampLimits limits = range.least;
   if (begin > 0) limits.jerk = near_jerk(limits.jerk, (*window_)[forwards_ ? first - 1 : first].jerk);
   if (!ended()) limits.jerk = near_jerk(limits.jerk, (*window_)[span_at(at_)].jerk);
-  return {end_, limits};
+  const bool alone = at_ == (forwards_ ? first + 1 : first - 1);
+  return {end_, limits, alone && has_more_below(span) ? &span : nullptr};
 }
 
 Range SpeedWindow::range(double begin, double end) const {

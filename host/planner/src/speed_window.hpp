@@ -43,6 +43,7 @@ class SpeedWindow {
   struct Stretch {
     double end = 0;  // from where the walk began
     RampLimits limits;
+    const Span* arc = nullptr;  // one span alone, which has more acceleration below its highest speed
   };
 
   // Away from a place, stretch by stretch, up to the span in which the other one lies.

@@ -15,7 +15,7 @@ namespace trammel::planner {
 
 class SCurvePlan final : public SpeedPlan {
  public:
-  // Looks `window` spans ahead, at least 1. All memory is taken here.
+  // Looks `window` spans ahead, at least 1. All memory is taken here, but for ramps over rows of arcs.
   explicit SCurvePlan(std::size_t window);
   ~SCurvePlan() override;
 
