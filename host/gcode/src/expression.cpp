@@ -27,8 +27,10 @@ struct Function {
   const char* outside;  // what is wrong where the result is no number
 };
 
-double arc_sine(double x) { return degrees_of(x, std::sqrt((1 - x) * (1 + x))); }
-double arc_cosine(double x) { return degrees_of(std::sqrt((1 - x) * (1 + x)), x); }
+bool has_angle(double x) { return std::abs(x) <= 1; }
+double beside(double x) { return std::sqrt((1 - x) * (1 + x)); }
+double arc_sine(double x) { return has_angle(x) ? degrees_of(x, beside(x)) : std::nan(""); }
+double arc_cosine(double x) { return has_angle(x) ? degrees_of(beside(x), x) : std::nan(""); }
 double tangent(double x) { return sine_of_degrees(x) / cosine_of_degrees(x); }
 double logarithm(double x) { return x > 0 ? natural_logarithm(x) : std::nan(""); }
 double rounded(double x) { return x < 0 ? -std::floor(-x + 0.5) : std::floor(x + 0.5); }

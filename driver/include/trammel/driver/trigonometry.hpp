@@ -15,8 +15,8 @@ struct SineCosine {
 // `angle` in radians, |angle| <= 10^6. Each is off by 2^-52 at most.
 SineCosine sine_cosine(double angle);
 
-// The angle of (x, y) from the x axis towards y, -pi .. pi; 0 for (0, 0). Off by 2^-50 at most. The sign of a zero
-// counts for nothing: on the negative x axis it is pi.
+// The angle of (x, y), both finite, from the x axis towards y, -pi .. pi; 0 for (0, 0). Off by 2^-50 at most. The sign
+// of a zero counts for nothing: on the negative x axis it is pi.
 double arc_tangent(double y, double x);
 
 // For 0 <= x <= 1; off by 2^-50 at most for x <= 1/2.
