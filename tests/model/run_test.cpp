@@ -26,7 +26,10 @@ class Pair {
 
   std::uint64_t any(std::uint64_t low, std::uint64_t high) { return low + random() % (high - low + 1); }
   // Any order of size up to 2^bits.
-  std::uint64_t sized(unsigned bits) { return random() >> (64 - any(0, bits)); }
+  std::uint64_t sized(unsigned bits) {
+    const std::uint64_t size = any(0, bits);
+    return size == 0 ? 0 : random() >> (64 - size);
+  }
   bool one_in(std::uint64_t n) { return random() % n == 0; }
 
   bool write(std::uint32_t address, std::uint32_t data) {
