@@ -58,7 +58,7 @@ TEST(Number, HardCases) {
 // Of every length that a word of a program may have, so that each way of conversion and its borders are met: whole
 // numbers beyond 2^53 need 16 digits, beyond 2^64 20.
 TEST(Number, IsTheNearestDouble) {
-  constexpr std::size_t kEach = 20000;
+  constexpr std::size_t kEach = 8000;
   std::mt19937 random(9);
   std::vector<std::string> numbers;
   for (std::size_t digits = 1; digits <= 26; ++digits) {

@@ -79,7 +79,9 @@ TEST(PulseGenerator, StandsAtTheClosedFormAtEveryTick) {
   std::mt19937_64 random(1);
   for (int n = 0; n < 300; ++n) {
     const auto magnitude = static_cast<std::int64_t>(random() >> 24) >> (n % 30);
-    const std::int64_t increment = n == 0 ? kPulseLength : n == 1 ? -kPulseLength : (n % 2 != 0 ? -magnitude : magnitude);
+    const std::int64_t increment = n == 0   ? kPulseLength
+                                   : n == 1 ? -kPulseLength
+                                            : (n % 2 != 0 ? -magnitude : magnitude);
     PulseGenerator generator;
     begin(generator, {increment});
     std::int64_t x = 0;

@@ -38,8 +38,9 @@ struct TrafficRun {
 std::vector<TrafficRun> runs() {
   std::vector<TrafficRun> result;
   for (unsigned axes = 1; axes <= 8; ++axes) {
-    const unsigned count = axes == 4 ? 6 : axes == 8 ? 2 : 1;
-    for (unsigned i = 0; i < count; ++i) result.push_back({axes, i, axes % 4 == 0 ? 11'600'000U : 1'300'000U});
+    const unsigned count = axes == 4 ? 6 : 1;
+    const std::uint64_t clocks = axes == 2 ? 12'900'000 : axes % 4 == 0 ? 11'600'000 : 1'300'000;
+    for (unsigned i = 0; i < count; ++i) result.push_back({axes, i, clocks});
   }
   return result;
 }
