@@ -34,6 +34,12 @@ void Patience::allow(const PlannedTime& planned) {
   slews_counted_ = false;
 }
 
+void Patience::allow_again() {
+  const std::uint64_t waited = waited_;
+  allow(planned_);
+  waited_ = waited;
+}
+
 // What runs now, as far as it is known, has a ratio of 0.
 bool Patience::stands() const {
   for (std::size_t i = 0; i < gated_left_.size(); ++i) {
@@ -74,16 +80,18 @@ bool Patience::overdue() {
   card_.transfer(accesses.data(), ratios + 1, context_);
   Card::check_read(accesses[ratios]);
   if (ratios_changed(accesses.data(), ratios)) {
-    const std::uint64_t waited = waited_;
-    allow(planned_);
-    waited_ = waited;
+    allow_again();
     return false;
   }
   if (stands()) {
     return false;
   }
   if (slews_counted_) {
-    return true;
+    // Lower for a while and back again, which nothing tells: a piece still runs.
+    const Snapshot now = card_.snapshot();
+    const bool runs = margin_ != 0 && now.rate != 0 && now.ratio != 0;
+    if (runs) allow_again();
+    return !runs;
   }
   slews_counted_ = true;
   real_left_ += 2 * (std::uint64_t{constant::kSlewClocks} << constant::kSlewFractionBits) /

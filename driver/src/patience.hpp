@@ -31,7 +31,8 @@ class Patience {
   static constexpr std::uint32_t kIdle = card_map::field::kIrqEnableIdle;
   static constexpr std::uint32_t kProbed = card_map::field::kIrqEnableProbed;
 
-  // `margin`: clocks beyond what was planned. `context` names what is waited for and must outlive the object.
+  // `margin`: clocks beyond what was planned; 0: the time is the caller's own and holds, whatever runs. `context` names
+  // what is waited for and must outlive the object.
   Patience(Card& card, const char* context, std::uint64_t margin) : card_(card), context_(context), margin_(margin) {}
 
   // Something begins that takes so long: the time waited counts from here on.
@@ -43,6 +44,7 @@ class Patience {
 
  private:
   std::uint32_t ratio_of(std::size_t part) const { return card_.ratio(planned_.parts[part].piece_class); }
+  void allow_again();
   bool stands() const;
   std::uint64_t left() const;
   bool overdue();

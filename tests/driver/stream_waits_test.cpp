@@ -198,5 +198,24 @@ TEST(StreamWaits, ARatioChangedInAPieceIsNoTimeOut) {
   EXPECT_EQ(engine->positions()[0], 20);
 }
 
+// By somebody else, between two looks at it.
+TEST(StreamWaits, ARatioThatWasLowerForAWhileIsNoTimeOut) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  StreamOptions options;
+  options.patience = 1ms;
+  bool lower = false;
+  options.progress = [&](const StreamProgress&) {
+    if (lower == (engine->cycles() < 200'000)) return;
+    lower = !lower;
+    engine->write(reg::kRatioFeed, Card::kFullRatio / (lower ? 16 : 1));
+  };
+  Stream stream(card, options);
+  stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});  // 160,000 clocks at full ratio, and 100,000
+  EXPECT_TRUE(stream.finish().ended);
+  EXPECT_GT(engine->cycles(), 300'000U);
+  EXPECT_EQ(engine->positions()[0], 10);
+}
+
 }  // namespace
 }  // namespace trammel::driver
