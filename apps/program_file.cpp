@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "errors.hpp"
+#include "standard_streams.hpp"
 #include "temporary_files.hpp"
 
 namespace trammel::app {
@@ -22,6 +23,9 @@ ProgramFile::ProgramFile(const std::string& file, bool once)
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) {
     throw UsageError(fmt::format("{}: cannot read the program: {}", name_, strerror(errno)));
+  }
+  if (file == "-" && standard_input_is_closed()) {
+    throw UsageError("standard input: is closed: no program can be read from it");
   }
   if (S_ISDIR(status.st_mode)) throw UsageError(fmt::format("{}: is a directory, not a program", name_));
   // Standard input may have been read in part by who gave it.

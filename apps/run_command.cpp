@@ -22,6 +22,7 @@
 #include "program_file.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
+#include "standard_streams.hpp"
 #include "terminal.hpp"
 #include "trammel/report/page.hpp"
 #include "trammel/report/report_writer.hpp"
@@ -97,8 +98,10 @@ void refuse_what_needs_the_simulation(const RunArguments& options) {
   if (options.check) throw UsageError("--check: nothing runs, so it takes no --card");
 }
 
+// Throws where a warning is lost: most come before anything moves, and then nothing does.
 void warn(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) tell("warning", text);
+  finish_standard_streams();
 }
 
 // What is the same on every card; the files are still missing.

@@ -164,22 +164,6 @@ TEST_F(OutputFiles, FullDiskIsAnErrorAndLeavesNothing) {
   EXPECT_EQ(command_.names(), before);
 }
 
-TEST_F(OutputFiles, FullStandardOutputIsAnErrorOfEveryCommand) {
-  for (const std::string& arguments :
-       {"run " + short_, "run " + short_ + " --json -", std::string("line --to 3,4"), std::string("info"),
-        std::string("methods"), std::string("steps --method steer --circle 5"), std::string("compare --random 20"),
-        std::string("--help"), std::string("--version")}) {
-    const Outcome outcome = command_.run(arguments + " >/dev/full");
-    EXPECT_EQ(outcome.status, 1) << arguments;
-    EXPECT_NE(outcome.err.find("standard output: could not be written"), std::string::npos) << outcome.err;
-    const Outcome closed = command_.run(arguments + " >&-");
-    EXPECT_EQ(closed.status, 1) << arguments;
-  }
-  const Names before = command_.names();
-  EXPECT_EQ(run("--json " + at("new.json") + " >/dev/full").status, 1);
-  EXPECT_EQ(command_.names(), before) << "no file where the run counts as failed";
-}
-
 // In mid run, when the files that are being written lie there.
 TEST_F(OutputFiles, SignalLeavesWhatWasThere) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
