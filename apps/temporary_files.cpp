@@ -99,4 +99,15 @@ TemporaryFile::~TemporaryFile() {
   remove_and_forget(beside_);
 }
 
+NamelessFile::NamelessFile(const std::filesystem::path& folder)
+    : descriptor_(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600)) {
+  if (descriptor_ >= 0) return;
+  // Not every file system can do it. On the others the file loses its name at once.
+  const TemporaryFile named(folder);
+  descriptor_ = ::fcntl(named.descriptor(), F_DUPFD_CLOEXEC, 0);
+  if (descriptor_ < 0) throw std::runtime_error(fmt::format("no new file can be opened: {}", strerror(errno)));
+}
+
+NamelessFile::~NamelessFile() { ::close(descriptor_); }
+
 }  // namespace trammel::app
