@@ -9,7 +9,8 @@
 
 namespace trammel::app {
 
-// Call once, before the first temporary file. Signals that the parent has the process ignore (nohup) stay ignored.
+// Call once, before the first temporary file. A disk that is full under a mapped file ends the process with a message
+// and kExitFailure. Signals that the parent has the process ignore (nohup) stay ignored.
 void remove_temporary_files_on_signals();
 
 // While one lives, signals that end the process wait.

@@ -159,9 +159,13 @@ TEST_F(OutputFiles, FullDiskIsAnErrorAndLeavesNothing) {
     EXPECT_EQ(contents(at("old.json")), "old") << option;
   }
   // A file that may not grow: what the disk takes no more of.
-  const Outcome limited = command_.run_in(".", "ulimit -f 1;", "run " + short_ + " --plot " + at("new.svg"));
-  EXPECT_EQ(limited.status, 1) << limited.err;
-  EXPECT_EQ(command_.names(), before);
+  for (const std::string option : {"--plot", "--trace"}) {
+    const Outcome limited = command_.run_in(".", "ulimit -f 1;", "run " + short_ + " " + option + " " + at("old.json"));
+    EXPECT_EQ(limited.status, 1) << limited.err;
+    EXPECT_EQ(count_lines(limited.err), 1U) << limited.err;
+    EXPECT_EQ(command_.names(), before) << option;
+    EXPECT_EQ(contents(at("old.json")), "old") << option;
+  }
 }
 
 // In mid run, when the files that are being written lie there.
