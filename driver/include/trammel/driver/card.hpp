@@ -105,6 +105,11 @@ constexpr std::int32_t pulses_between(std::int32_t from, std::int32_t to) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
 }
 
+// A count of the card, which has 32 bits, carried on from `before`: for less than 2^32 more.
+constexpr std::uint64_t count_after(std::uint64_t before, std::uint32_t counter) {
+  return before + (counter - static_cast<std::uint32_t>(before));
+}
+
 // Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".
 std::string describe_faults(std::uint32_t faults);
 // Name of a refusal reason and what it means.
