@@ -35,12 +35,14 @@ bool same(const std::string& a, const std::string& b) {
 }  // namespace
 
 CardServer::Client::Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine,
-                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left)
+                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left,
+                           const std::string& held_by)
     : stream_(std::move(stream)),
       engine_(engine),
       endpoint_(endpoint),
       settings_(settings),
       left_(std::move(left)),
+      held_by_(held_by),
       clocks_of_byte_(settings.baud == 0 ? 0 : 10.0 * settings.clock_hz / settings.baud),
       heard_(steady_clock::now()) {}
 
@@ -120,7 +122,8 @@ void CardServer::Client::take_hello(const std::string& line) {
   begin();
   hello_ = true;
   may_move_ = with_token;
-  answer(bytes_of(may_move_ ? "trammel 1 motion\n" : "trammel 1 reading\n"), engine_.cycles());
+  const std::string held = held_by_.empty() ? "" : " held: " + held_by_.substr(0, kLongestText);
+  answer(bytes_of(fmt::format("trammel 1 {}{}\n", may_move_ ? "motion" : "reading", held)), engine_.cycles());
 }
 
 bool CardServer::Client::deliver(std::uint8_t byte) {
