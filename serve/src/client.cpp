@@ -55,11 +55,20 @@ void CardServer::Client::serve(std::chrono::nanoseconds longest) {
 // All that has come, so that an end behind it is seen at once: what was not at the card by then does not run.
 void CardServer::Client::read(std::chrono::nanoseconds longest) {
   std::uint8_t bytes[4096];
+  const auto before = static_cast<std::ptrdiff_t>(came_.size());
   while (const std::size_t count = stream_->read(bytes, sizeof(bytes), longest)) {
     came_.insert(came_.end(), bytes, bytes + count);
     if (begun_) heard_ = steady_clock::now();
     longest = std::chrono::nanoseconds(0);
     if (came_.size() > kMostRubbish) throw Unwanted("more bytes than the line carries: a request waits for its reply");
+  }
+  if (stream_->changed_hands()) {
+    // The next one's, or of both: nobody's rights go with it.
+    came_.erase(came_.begin(), came_.begin() + before);
+    text_.clear();
+    between_frames_ = true;
+    endpoint_.connect();
+    begin_anew();
   }
   check_silence();
 }
