@@ -6,6 +6,7 @@
 
 #include "patience.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/driver/interrupt.hpp"
 
 namespace trammel::driver {
 namespace {
@@ -234,7 +235,30 @@ void Card::set_slew_time(std::chrono::nanoseconds full_scale) {
   write(reg::kSlew, static_cast<std::uint32_t>(slew), "time base: slew");
 }
 
-void Card::set_hold(bool hold) { write(reg::kHold, hold ? 1 : 0, "time base: hold"); }
+void Card::set_hold(bool hold) {
+  write(reg::kHold, hold ? 1 : 0, "time base: hold");
+  own_hold_ = hold;
+}
+
+void Card::throw_if_held(std::string_view context) {
+  if (read(reg::kHold) == 0) return;
+  const std::string origin = own_hold_.value_or(false) ? "set by this program"
+                             : own_hold_               ? std::string()
+                                                       : bus_->hold_origin();
+  throw HeldError(fmt::format("{}: the card holds{}{}: take it over, or end the hold", context,
+                              origin.empty() ? "" : ": ", origin));
+}
+
+std::optional<Snapshot> Card::take_over() {
+  const Status now = status();
+  const bool holds = read(reg::kHold) != 0;
+  if (now.busy && !now.held && !holds) {
+    throw StateError("the card is moving, and not by this program: wait until it is idle, or hold it");
+  }
+  if (now.busy) return stop();
+  set_hold(false);
+  return std::nullopt;
+}
 
 void Card::set_longest_step_wait(std::chrono::nanoseconds longest) {
   const std::uint64_t value = clocks(longest, "longest step wait");
@@ -377,12 +401,13 @@ void Card::wait_until_idle(std::chrono::nanoseconds timeout) {
     if (ratio(other) != 0 && (ratio(slowest) == 0 || ratio(other) < ratio(slowest))) slowest = other;
   }
   patience.allow(PlannedTime::of(clocks(timeout, "timeout"), slowest));
-  for (;;) {
+  for (bool first = true;; first = false) {
     const Status now = status();
     throw_if_faulted(now, kContext);
     if (!now.busy) {
       return check_identity();
     }
+    if (first && now.held && !own_hold_.value_or(false)) throw_if_held(kContext);
     serve_requests();
     patience.pause(now, poll_interval(), Patience::kIdle);
   }
@@ -415,6 +440,7 @@ void Card::wait_for_rest(std::uint64_t limit, bool held_is_rest) {
     throw_if_faulted(now, "stop");
     if (!now.busy || (held_is_rest && now.held)) return;
     if (waited > limit) throw TimeoutError("stop on the path", waited);
+    if (interrupted()) throw InterruptedError("stop on the path: interrupted; the card goes on to rest, and holds");
     bus_->sleep(time_of(poll_interval(), identification_.clock_hz));
   }
 }
@@ -432,10 +458,10 @@ void Card::serve_requests() {
     abort();
     throw StateError("card: aborted, as another thread has asked for");
   }
-  if (requests_->stop.exchange(false)) {
-    requests_->hold.store(-1);
-    const Snapshot end = stop();
-    throw StoppedError(end.geometry_begun, "card: stopped on the path, as another thread has asked for");
+  if (requests_->stop.exchange(false)) stop_on_request("as another thread has asked for");
+  if (interrupted()) {
+    const StopForInterrupt stopping;
+    stop_on_request("because the call was interrupted");
   }
   const int hold = requests_->hold.exchange(-1);
   if (hold >= 0) {
@@ -446,6 +472,12 @@ void Card::serve_requests() {
     const bool there = i == 0 || has_engine(map::engine::kClasses);
     if (ratio <= kFullRatio && there) set_ratio(static_cast<PieceClass>(i), ratio);
   }
+}
+
+void Card::stop_on_request(const char* why) {
+  requests_->hold.store(-1);
+  const Snapshot end = stop();
+  throw StoppedError(end.geometry_begun, fmt::format("card: stopped on the path, {}", why));
 }
 
 std::uint64_t Card::clocks(std::chrono::nanoseconds time, const char* what) const {

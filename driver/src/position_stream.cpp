@@ -9,6 +9,7 @@
 #include "nanoseconds.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/driver/increment.hpp"
+#include "trammel/driver/interrupt.hpp"
 #include "trammel/driver/wide.hpp"
 
 namespace trammel::driver {
@@ -92,6 +93,7 @@ PositionStream::PositionStream(Card& card, const PositionStreamOptions& options)
   }
   const Status status = card.status();
   card.throw_if_faulted(status, "position stream");
+  if (!card.holds_by_this_program()) card.throw_if_held("position stream");
   if (status.busy) throw StateError("position stream: the card is busy; wait until it is idle, or abort it");
   origin_ = card.snapshot().position;
   start();
@@ -343,6 +345,7 @@ PositionStream::Stopped PositionStream::recover() {
   const std::uint64_t pause = card_->poll_interval();
   for (std::uint64_t waited = 0; card_->status().busy; waited += pause) {
     if (waited > limit) throw TimeoutError("position stream: waiting for the card to stand", waited);
+    if (interrupted()) throw InterruptedError("position stream: interrupted before the card stood; recover it again");
     card_->bus().sleep(time_of(pause, card_->identification().clock_hz));
   }
   Stopped stopped;

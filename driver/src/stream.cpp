@@ -115,6 +115,7 @@ Stream::Stream(Card& card, StreamOptions options)
   }
   const Status status = card.status();
   card.throw_if_faulted(status, "stream");
+  if (!options_.opens_in_hold && !card.holds_by_this_program()) card.throw_if_held("stream");
   if (status.busy) {
     throw StateError("stream: the card is busy; wait until it is idle, or abort it, before opening the stream");
   }

@@ -35,12 +35,14 @@ bool same(const std::string& a, const std::string& b) {
 }  // namespace
 
 CardServer::Client::Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine,
-                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left)
+                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left,
+                           const std::string& held_by)
     : stream_(std::move(stream)),
       engine_(engine),
       endpoint_(endpoint),
       settings_(settings),
       left_(std::move(left)),
+      held_by_(held_by),
       clocks_of_byte_(settings.baud == 0 ? 0 : 10.0 * settings.clock_hz / settings.baud),
       heard_(steady_clock::now()) {}
 
@@ -53,11 +55,20 @@ void CardServer::Client::serve(std::chrono::nanoseconds longest) {
 // All that has come, so that an end behind it is seen at once: what was not at the card by then does not run.
 void CardServer::Client::read(std::chrono::nanoseconds longest) {
   std::uint8_t bytes[4096];
+  const auto before = static_cast<std::ptrdiff_t>(came_.size());
   while (const std::size_t count = stream_->read(bytes, sizeof(bytes), longest)) {
     came_.insert(came_.end(), bytes, bytes + count);
     if (begun_) heard_ = steady_clock::now();
     longest = std::chrono::nanoseconds(0);
     if (came_.size() > kMostRubbish) throw Unwanted("more bytes than the line carries: a request waits for its reply");
+  }
+  if (stream_->changed_hands()) {
+    // The next one's, or of both: nobody's rights go with it.
+    came_.erase(came_.begin(), came_.begin() + before);
+    text_.clear();
+    between_frames_ = true;
+    endpoint_.connect();
+    begin_anew();
   }
   check_silence();
 }
@@ -120,7 +131,8 @@ void CardServer::Client::take_hello(const std::string& line) {
   begin();
   hello_ = true;
   may_move_ = with_token;
-  answer(bytes_of(may_move_ ? "trammel 1 motion\n" : "trammel 1 reading\n"), engine_.cycles());
+  const std::string held = held_by_.empty() ? "" : " held: " + held_by_.substr(0, kLongestText);
+  answer(bytes_of(fmt::format("trammel 1 {}{}\n", may_move_ ? "motion" : "reading", held)), engine_.cycles());
 }
 
 bool CardServer::Client::deliver(std::uint8_t byte) {

@@ -70,21 +70,20 @@ TEST_F(ClientsTest, Hellos) {
   serve(settings());
   EXPECT_EQ(answer_to("trammel 1\n"), "trammel 1 reading\n");
   EXPECT_EQ(answer_to("trammel 1 secret\n"), "trammel 1 motion\n");
-  EXPECT_EQ(answer_to("\xC0trammel 1 secret\n"), "trammel 1 motion\n");
+  EXPECT_EQ(answer_to("\xC0trammel 1 secret\n"), "trammel 1 motion held: the client has gone\n");
   EXPECT_EQ(answer_to("trammel 1 Secret\n"),
             "trammel 1 refused: wrong token: take the one that the server has printed\n");
   EXPECT_EQ(answer_to("trammel 1 secret2\n"), answer_to("trammel 1 \n"));
   EXPECT_EQ(answer_to("trammel 2 secret\n"), "trammel 1 refused: no hello of this version\n");
   EXPECT_EQ(answer_to("t" + std::string(500, 'x')), "trammel 1 refused: no hello of this version\n");
   EXPECT_EQ(answer_to("GET / HTTP/1.1\r\n\r\n"), "trammel 1 refused: neither a hello nor a frame\n");
+  const std::string kReading = "trammel 1 reading held: the client has gone\n";
   for (const char* wait : {"wait 10 minutes", "wait 10", "wait  10 1", "wait -1 1", "wait 10 1 ", "wait 1000000001 1",
                            "wait 10 4294967296", "wait", "waits 10 1"}) {
-    EXPECT_EQ(answer_to(fmt::format("trammel 1\n{}\xC0wait 2 3\xC0", wait)), "trammel 1 reading\nwaited 2 3\xC0")
-        << wait;
+    EXPECT_EQ(answer_to(fmt::format("trammel 1\n{}\xC0wait 2 3\xC0", wait)), kReading + "waited 2 3\xC0") << wait;
   }
-  EXPECT_EQ(answer_to("trammel 1\nwait 1000 4294967295\xC0"), "trammel 1 reading\nwaited 1000 4294967295\xC0");
-  EXPECT_EQ(answer_to("trammel 1\nwait " + std::string(500, '1') + "\xC0wait 0 0\xC0"),
-            "trammel 1 reading\nwaited 0 0\xC0");
+  EXPECT_EQ(answer_to("trammel 1\nwait 1000 4294967295\xC0"), kReading + "waited 1000 4294967295\xC0");
+  EXPECT_EQ(answer_to("trammel 1\nwait " + std::string(500, '1') + "\xC0wait 0 0\xC0"), kReading + "waited 0 0\xC0");
   EXPECT_EQ(engine_->read(reg::kHold), 1U) << "those with the token have gone";
   EXPECT_EQ(server_->counts().holds, 2U);
   EXPECT_EQ(server_->counts().refused, 6U);
@@ -154,6 +153,33 @@ TEST_F(ClientsTest, WithoutTheTokenNothingIsWrittenThatMoves) {
   EXPECT_EQ(engine_->read(reg::kSlew), 0xFFFFFFFU);
 }
 
+// Who comes next with the token finds the hold at once, and who has left it; a take-over ends it.
+TEST_F(ClientsTest, ANewClientIsToldWhoHasLeftTheCardInItsHold) {
+  serve(settings());
+  {
+    StreamLink link(opener(), StreamLink::Hello{"secret"});
+    driver::FrameBus bus(link);
+    driver::Card card = driver::Card::open(bus);
+    driver::start_line(card, {1000}, 10s);
+    link.sleep(1ms);
+  }
+  server_->turn();
+  StreamLink link(opener(), StreamLink::Hello{"secret"});
+  driver::FrameBus bus(link);
+  driver::Card card = driver::Card::open(bus);
+  EXPECT_THROW(card.wait_until_idle(100s), driver::HeldError);
+  try {
+    driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
+    ADD_FAILURE() << "the line has run";
+  } catch (const driver::HeldError& error) {
+    EXPECT_STREQ(error.what(), "line: the card holds: the client has gone: take it over, or end the hold");
+  }
+  ASSERT_TRUE(card.take_over()) << "something was left";
+  const std::int32_t before = card.snapshot().position[0];
+  driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
+  EXPECT_EQ(card.snapshot().position[0], before + 100);
+}
+
 TEST_F(ClientsTest, SilenceAndRubbish) {
   Settings impatient = settings();
   impatient.hello = 50ms;
@@ -215,6 +241,7 @@ TEST_F(ClientsTest, CutConnectionsAreMadeAnewAndNothingRunsTwice) {
   options.progress = [&](const driver::StreamProgress& progress) {
     if (progress.status.held) card.request_hold(false);
   };
+  card.take_over();
   driver::Stream stream(card, options);
   driver::LineCommand line;
   line.ticks = 2000;
@@ -327,10 +354,10 @@ TEST_F(ClientsTest, AnotherOneOnTheSameStreamHasItsOwnRights) {
     return std::string(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
   };
   EXPECT_EQ(say("trammel 1 secret\n"), "trammel 1 motion\n");
-  EXPECT_EQ(say("half a frame\xC0trammel 1\n"), "trammel 1 reading\n");
+  EXPECT_EQ(say("half a frame\xC0trammel 1\n"), "trammel 1 reading held: client: another one has its place\n");
   EXPECT_EQ(engine_->read(reg::kHold), 1U);
   engine_->write(reg::kHold, 0);
-  EXPECT_EQ(say("trammel 1 secret\n"), "trammel 1 motion\n");
+  EXPECT_EQ(say("trammel 1 secret\n").rfind("trammel 1 motion", 0), 0U);
   // A serial line's beginning: a card's client without a hello.
   say("U\xC0");
   EXPECT_EQ(engine_->read(reg::kHold), 1U);

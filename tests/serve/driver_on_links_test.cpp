@@ -11,7 +11,6 @@
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/runner.hpp"
-#include "trammel/run/take_over.hpp"
 #include "trammel/serve/card_server.hpp"
 #include "trammel/sim/engine.hpp"
 #include "trammel/transport/card_url.hpp"
@@ -196,7 +195,7 @@ TEST_P(DriverOnLinks, ProgramsOfSeveralConnections) {
   for (const char* text : {"G1 X1 Y2 F6000\nG2 X3 Y2 I1\n", "G1 X1 F6000\nG1 X-3\nY-2\nX0 Y0\n"}) {
     bench_.connect();
     Card card = Card::open(bench_.bus());
-    run::take_over(card);
+    card.take_over();
     run::Runner runner([&] { return std::make_unique<gcode::TextLines>(text, "p.ngc"); }, machine,
                        planner::limits_of(card.identification()));
     runner.plan();

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <thread>
 #include <utility>
 
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/interrupt.hpp"
 #include "trammel/frames/stuffing.hpp"
 
 namespace trammel::transport {
@@ -20,6 +22,7 @@ constexpr nanoseconds kHelloTime = 5s;
 constexpr nanoseconds kLongestWait = 20ms;  // of one wait; long ones go in pieces
 constexpr std::size_t kLongestLine = 200;
 constexpr nanoseconds kDrainTime = 200ms;
+constexpr const char* kHeld = " held: ";
 constexpr const char* kIsItThere = "is that its port?";
 
 // What another program has sent, fit for a terminal.
@@ -30,6 +33,11 @@ std::string plain(std::string text) {
 }
 constexpr char kSerial[] = "serial line";
 constexpr char kConnection[] = "connection";
+
+void end_if_interrupted(const std::string& peer) {
+  if (!driver::interrupted()) return;
+  throw driver::InterruptedError(fmt::format("{}: interrupted before the connection was made", peer));
+}
 
 // Of who may be anybody.
 std::size_t read_byte(ByteStream& stream, std::uint8_t& byte, nanoseconds longest) {
@@ -48,7 +56,10 @@ std::string read_line(ByteStream& stream) {
     std::uint8_t byte = 0;
     const nanoseconds left = until - steady_clock::now();
     if (left.count() <= 0) break;
-    if (read_byte(stream, byte, left) == 0) continue;
+    if (read_byte(stream, byte, std::min<nanoseconds>(left, driver::kInterruptSlice)) == 0) {
+      end_if_interrupted(stream.peer());
+      continue;
+    }
     if (byte == '\n') return line;
     line += static_cast<char>(byte);
   }
@@ -112,8 +123,11 @@ void StreamLink::say_hello() {
                                         hello_->token.empty() ? "" : " ", hello_->token);
   stream_->write(reinterpret_cast<const std::uint8_t*>(hello.data()), hello.size());
   const std::string line = read_line(*stream_);
-  may_move_ = line == "trammel 1 motion";
-  if (may_move_ || line == "trammel 1 reading") return;
+  const auto is = [&line](const std::string& answer) { return line == answer || line.rfind(answer + kHeld, 0) == 0; };
+  may_move_ = is("trammel 1 motion");
+  const std::size_t held = line.find(kHeld);
+  hold_origin_ = held == std::string::npos ? std::string() : plain(line.substr(held + std::strlen(kHeld)));
+  if (may_move_ || is("trammel 1 reading")) return;
   constexpr const char* kRefused = "trammel 1 refused: ";
   if (line.rfind(kRefused, 0) == 0) {
     throw driver::LinkError(
@@ -148,6 +162,7 @@ void StreamLink::restart() {
     } catch (const driver::LinkError&) {
       if (steady_clock::now() >= until) throw;
     }
+    end_if_interrupted(kConnection);
     std::this_thread::sleep_for(50ms);
   }
 }
@@ -170,7 +185,7 @@ void StreamLink::wait(nanoseconds time) {
   const std::string text = fmt::format("{}wait {}", kEnd, what);
   for (unsigned sent = 0; sent < options_.sends; ++sent) {
     send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    if (answered("waited " + what)) return;
+    if (answered("waited " + what) || driver::interrupted()) return;
   }
   stream_.reset();
   throw driver::LinkError("the server does not answer");
@@ -178,11 +193,13 @@ void StreamLink::wait(nanoseconds time) {
 
 // What comes before it are late replies, for which nobody waits any more.
 bool StreamLink::answered(const std::string& text) {
-  const auto until = steady_clock::now() + options_.answer;
+  const auto begun = steady_clock::now();
+  const auto until = begun + options_.answer;
   std::string came;
   for (auto left = options_.answer; left.count() > 0; left = until - steady_clock::now()) {
     std::uint8_t bytes[256];
-    const std::size_t count = receive(bytes, sizeof(bytes), left);
+    const std::size_t count = receive(bytes, sizeof(bytes), std::min<nanoseconds>(left, driver::kInterruptSlice));
+    if (count == 0 && driver::interrupted_after(steady_clock::now() - begun)) return false;
     came.append(reinterpret_cast<const char*>(bytes), count);
     if (came.find(text) != std::string::npos) return true;
     if (came.size() > text.size()) came.erase(0, came.size() - text.size());

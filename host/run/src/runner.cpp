@@ -157,6 +157,7 @@ class ProgramStream final : private driver::CommandSink {
     // 200 looks a second: the queues hold far more than 5 ms of motion, and every look costs a simulation bus clocks.
     constexpr std::uint32_t kLooksPerSecond = 200;
     driver::StreamOptions options;
+    options.opens_in_hold = true;  // an operator's
     options.poll_clocks = std::max<std::uint64_t>(64, card_.identification().clock_hz / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
       lines_.begun(progress.geometry_begun);

@@ -61,8 +61,9 @@ class PositionStream {
   };
 
   // Opens the stream where the axes stand: what is queued is dropped, numbers begin anew. A missing period stops on a
-  // ramp. Throws ArgumentError for options out of range or a card without the engine, StateError if the card is busy or
-  // its ratio is not the full one, FaultError if it is faulted. `card` must outlive the stream.
+  // ramp. Throws ArgumentError for options out of range or a card without the engine, HeldError if it stands in a hold
+  // that this program has not set, StateError if the card is busy or its ratio is not the full one, FaultError if it is
+  // faulted. `card` must outlive the stream.
   explicit PositionStream(Card& card, const PositionStreamOptions& options = {});
 
   // One period: the axes are at `targets` when `clocks` have passed since the end of the period before.

@@ -77,8 +77,10 @@ class StreamLink final : public driver::ByteLink {
   void restart() override;
   std::chrono::nanoseconds time_of(std::size_t) const override { return {}; }
   std::chrono::nanoseconds now() const override;
-  // With a hello in card time.
+  // With a hello in card time. Ends early where an InterruptScope's check ends the call.
   void sleep(std::chrono::nanoseconds time) override;
+  // Whom the server names in its hello.
+  std::string hold_origin() const override { return hold_origin_; }
 
  private:
   void connect();
@@ -93,6 +95,7 @@ class StreamLink final : public driver::ByteLink {
   bool given_up_ = false;
   std::unique_ptr<ByteStream> stream_;  // nullptr: lost
   bool may_move_ = true;
+  std::string hold_origin_;
   std::uint64_t reconnections_ = 0;
 };
 
