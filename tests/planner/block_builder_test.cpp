@@ -78,7 +78,7 @@ TEST(Blocks, HaveLengthAndLimitsOfTheirPath) {
   const Plan plan = plan_text("G1 X30 Y40 F600\nG1 Z1\n", machine, kCard);
   const Block& block = plan.blocks.at(0).planned.block;
   EXPECT_DOUBLE_EQ(block.length, 50);
-  EXPECT_DOUBLE_EQ(block.steps_per_mm, 80);
+  EXPECT_DOUBLE_EQ(block.pulses_per_mm, 80);
   EXPECT_DOUBLE_EQ(block.speed, 10);
   EXPECT_DOUBLE_EQ(block.wanted, 10);
   EXPECT_DOUBLE_EQ(block.feed, 10);
