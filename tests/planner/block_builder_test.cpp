@@ -113,8 +113,8 @@ TEST(Blocks, HaveTheLengthOfXYZWhateverGoesAlong) {
   EXPECT_NEAR(plan.blocks.at(1)->length, 0.1, 1e-12);
   EXPECT_NEAR(plan.blocks[1]->entry[3], 100, 1e-9);
   // Its steps are as even: 128 ticks each, in the same length.
-  EXPECT_NEAR(plan.blocks[0]->steps_per_mm, 80, 1e-9);
-  EXPECT_NEAR(plan.blocks[1]->steps_per_mm, 8000, 1e-6);
+  EXPECT_NEAR(plan.blocks[0]->pulses_per_mm, 80, 1e-9);
+  EXPECT_NEAR(plan.blocks[1]->pulses_per_mm, 8000, 1e-6);
   // E's pulses count where X may have none.
   EXPECT_NEAR(plan.blocks.at(2)->length, 10, 1e-9);
 }
