@@ -268,23 +268,27 @@ PositionStream::Look PositionStream::transfer_and_look() {
     const Status before = card_->status_of(read[0]);
     const Status after = card_->status_of(read[3]);
     card_->throw_if_faulted(after, "position stream");
-    const std::uint32_t begun = read[4].data;
-    if (begun > lines_) {
-      throw StateError(
-          fmt::format("position stream: the card has begun {} lines, where {} were sent: it was reset, or "
-                      "used by somebody else",
-                      begun, lines_));
-    }
+    const std::uint64_t begun = count_after(begun_, read[4].data);
+    if (begun > lines_) throw_not_ours(read[4].data);
     const bool stale = ((read[0].data | read[3].data) & field::kStatusStale) != 0;
     begun_ = begun;
     geometry_room_ = read[5].data;
-    if (before.busy && after.busy && !stale && begun == read[1].data) return {begun, read[2].data};
+    if (before.busy && after.busy && !stale && read[4].data == read[1].data) return {begun, read[2].data};
   }
   card_->check_identity();
   throw StateError(
       fmt::format("position stream: period {} was over when it was looked at: the bus is too slow for it, "
                   "or the card was reset or aborted by somebody else",
                   lines_));
+}
+
+// The card counts lines that this stream has not sent, or has gone back.
+void PositionStream::throw_not_ours(std::uint32_t begun) {
+  card_->check_identity();
+  throw StateError(
+      fmt::format("position stream: the card says that it has begun {} lines, where {} were sent and {} had begun: it "
+                  "was reset, or used by somebody else",
+                  begun, lines_, begun_));
 }
 
 PositionStream::Positions PositionStream::finish() {

@@ -374,15 +374,15 @@ Status Stream::look(Wait& wait) {
 
 // The card counts in 32 bits, from 0 on since the stream was opened.
 void Stream::advance(Count& count, std::uint32_t begun) const {
-  const std::uint64_t more = begun - static_cast<std::uint32_t>(count.begun);
-  if ((more & 0xFFFFFFFF) > count.sent - count.begun) {
+  const std::uint64_t now = count_after(count.begun, begun);
+  if (now > count.sent) {
     card_->check_identity();
     throw StateError(
         fmt::format("stream: the card says that it has begun {} commands of a queue, where {} were sent and "
                     "{} had begun: it was reset, or aborted by somebody else",
                     begun, count.sent, count.begun));
   }
-  count.begun += more & 0xFFFFFFFF;
+  count.begun = now;
 }
 
 void Stream::require_open() const {

@@ -56,6 +56,7 @@ class CardServer::Client {
   void begin();
   void take_hello(const std::string& line);
   void take_wait(const std::string& text);
+  void drop(std::size_t bytes);
   bool deliver(std::uint8_t byte);
   void send_due();
   void answer(frames::Bytes bytes, std::uint64_t cycle) { answers_.push_back({std::move(bytes), cycle}); }

@@ -219,6 +219,21 @@ TEST(Arcs, GoToWhatTheCardHas) {
   EXPECT_EQ(geometry(flat, equal, false, false), Geometry::kChords);
 }
 
+// A circle of one pulse, which the accumulator in 4 directions would take over its centre, goes out as lines.
+TEST(Arcs, OfOnePulseGoOutAsLines) {
+  const auto geometry = [](bool eight, const std::string& arc) {
+    CardLimits card{kCard.clock_hz, 4};
+    card = with_arcs_by(card, eight ? ArcsBy::kEightDirections : ArcsBy::kAccumulator);
+    card.eight_directions = eight;
+    return plan_text("G1 X1.0125 Y1 F600\n" + arc, machine::default_machine(), card).blocks.at(1)->geometry;
+  };
+  const std::string one = "G3 X1.0125 Y1 I-0.0125\n";
+  const std::string two = "G3 X1.0125 Y1 I-0.025\n";
+  EXPECT_EQ(geometry(false, one), Geometry::kChords);
+  EXPECT_EQ(geometry(true, one), Geometry::kArc);
+  EXPECT_EQ(geometry(false, two), Geometry::kArc);
+}
+
 TEST(Arcs, MayBeAskedForOtherwise) {
   const CardLimits all{100'000'000, 4};
   EXPECT_TRUE(with_arcs_by(all, ArcsBy::kGenerator).arc_generator);

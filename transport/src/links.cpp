@@ -17,9 +17,7 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 constexpr nanoseconds kHelloTime = 5s;
-// What a simulated card may take for one wait; long ones go in pieces.
-constexpr nanoseconds kWaitTime = 60s;
-constexpr nanoseconds kLongestWait = 20ms;
+constexpr nanoseconds kLongestWait = 20ms;  // of one wait; long ones go in pieces
 constexpr std::size_t kLongestLine = 200;
 constexpr nanoseconds kDrainTime = 200ms;
 constexpr const char* kIsItThere = "is that its port?";
@@ -98,8 +96,8 @@ nanoseconds SerialLink::time_of(std::size_t bytes) const {
   return nanoseconds(static_cast<std::int64_t>(10'000'000'000 / baud_ + 1) * static_cast<std::int64_t>(bytes));
 }
 
-StreamLink::StreamLink(Open open, std::optional<Hello> hello, nanoseconds reopen)
-    : open_(std::move(open)), hello_(std::move(hello)), reopen_(reopen) {
+StreamLink::StreamLink(Open open, std::optional<Hello> hello, const Options& options)
+    : open_(std::move(open)), hello_(std::move(hello)), options_(options) {
   connect();
 }
 
@@ -141,7 +139,7 @@ void StreamLink::restart() {
     }
     return;
   }
-  for (const auto until = steady_clock::now() + (std::exchange(given_up_, true) ? 0ns : reopen_);;) {
+  for (const auto until = steady_clock::now() + (std::exchange(given_up_, true) ? 0ns : options_.reopen);;) {
     try {
       connect();
       given_up_ = false;
@@ -167,24 +165,29 @@ void StreamLink::sleep(nanoseconds time) {
 
 void StreamLink::wait(nanoseconds time) {
   constexpr char kEnd = static_cast<char>(frames::kEnd);
-  const std::string text = fmt::format("wait {}{}", time.count(), kEnd);
-  send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  await(std::string("waited") + kEnd);
+  const std::string what = fmt::format("{} {}{}", time.count(), ++waits_, kEnd);
+  // The first end closes what a damaged one has left.
+  const std::string text = fmt::format("{}wait {}", kEnd, what);
+  for (unsigned sent = 0; sent < options_.sends; ++sent) {
+    send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    if (answered("waited " + what)) return;
+  }
+  stream_.reset();
+  throw driver::LinkError("the server does not answer");
 }
 
 // What comes before it are late replies, for which nobody waits any more.
-void StreamLink::await(const std::string& text) {
-  const auto until = steady_clock::now() + kWaitTime;
+bool StreamLink::answered(const std::string& text) {
+  const auto until = steady_clock::now() + options_.answer;
   std::string came;
-  while (came.size() < text.size() || came.compare(came.size() - text.size(), text.size(), text) != 0) {
+  for (auto left = options_.answer; left.count() > 0; left = until - steady_clock::now()) {
     std::uint8_t bytes[256];
-    const std::size_t count = receive(bytes, sizeof(bytes), std::max<nanoseconds>(until - steady_clock::now(), 0ns));
+    const std::size_t count = receive(bytes, sizeof(bytes), left);
     came.append(reinterpret_cast<const char*>(bytes), count);
+    if (came.find(text) != std::string::npos) return true;
     if (came.size() > text.size()) came.erase(0, came.size() - text.size());
-    if (count != 0 || steady_clock::now() < until) continue;
-    stream_.reset();
-    throw driver::LinkError("the server does not answer");
   }
+  return false;
 }
 
 }  // namespace trammel::transport

@@ -309,7 +309,7 @@ typedef struct trammel_arc_command {
 // An arc of an ellipse with axes along the plane's, about a centre on a whole pulse.
 typedef struct trammel_ellipse_command {
   uint64_t ticks;
-  int64_t semi_x;  // pulses, 1 .. 2^20
+  int64_t semi_x;  // pulses, 2 .. 2^20; with eight_directions from 1 on
   int64_t semi_y;
   int64_t start_x;  // centre to start, pulses
   int64_t start_y;

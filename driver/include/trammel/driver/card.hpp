@@ -105,6 +105,11 @@ constexpr std::int32_t pulses_between(std::int32_t from, std::int32_t to) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
 }
 
+// A count of the card, which has 32 bits, carried on from `before`: for less than 2^32 more.
+constexpr std::uint64_t count_after(std::uint64_t before, std::uint32_t counter) {
+  return before + (counter - static_cast<std::uint32_t>(before));
+}
+
 // Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".
 std::string describe_faults(std::uint32_t faults);
 // Name of a refusal reason and what it means.
@@ -184,7 +189,7 @@ class Card {
   // Inputs and outputs, of a card with path commands; else ArgumentError. Bit n: input n after its polarity, output n.
   std::uint16_t inputs();
   std::uint16_t outputs();
-  unsigned inputs_present();  // how many it has, 1 .. 16
+  unsigned inputs_present();  // how many it has, 1 .. 16; IdentificationError for another number
   unsigned outputs_present();
   // Which inputs are inverted.
   void set_input_polarity(std::uint16_t inverted);
@@ -273,6 +278,7 @@ class Card {
   explicit Card(Bus& bus) : bus_(&bus), requests_(std::make_shared<Requests>()) {}
   void write(std::uint32_t address, std::uint32_t value, std::string_view context);
   void wait_for_rest(std::uint64_t limit, bool held_is_rest);
+  unsigned pins_present(std::uint32_t mask, std::uint32_t shift, const char* pins);
   std::size_t checked_transfer(Access* accesses, std::size_t count);
   void confirmed_transfer(Access* accesses, std::size_t count, bool confirm, std::string_view context);
   std::optional<Refusal> latched_refusal();
