@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "build_numbers.hpp"
 #include "trammel/driver/card_timing.hpp"
 
 namespace trammel::sim {
@@ -145,6 +146,7 @@ CardModel::Config config_of(const EngineOptions& options) {
   config.axes = options.axes;
   config.clock_hz = options.clock_hz;
   config.engines = model::RegisterFile::kMostEngines;
+  set_build_numbers(config);
   return config;
 }
 
