@@ -78,7 +78,7 @@ TEST(Blocks, HaveLengthAndLimitsOfTheirPath) {
   const Plan plan = plan_text("G1 X30 Y40 F600\nG1 Z1\n", machine, kCard);
   const Block& block = plan.blocks.at(0).planned.block;
   EXPECT_DOUBLE_EQ(block.length, 50);
-  EXPECT_DOUBLE_EQ(block.steps_per_mm, 80);
+  EXPECT_DOUBLE_EQ(block.pulses_per_mm, 80);
   EXPECT_DOUBLE_EQ(block.speed, 10);
   EXPECT_DOUBLE_EQ(block.wanted, 10);
   EXPECT_DOUBLE_EQ(block.feed, 10);
@@ -113,8 +113,8 @@ TEST(Blocks, HaveTheLengthOfXYZWhateverGoesAlong) {
   EXPECT_NEAR(plan.blocks.at(1)->length, 0.1, 1e-12);
   EXPECT_NEAR(plan.blocks[1]->entry[3], 100, 1e-9);
   // Its steps are as even: 128 ticks each, in the same length.
-  EXPECT_NEAR(plan.blocks[0]->steps_per_mm, 80, 1e-9);
-  EXPECT_NEAR(plan.blocks[1]->steps_per_mm, 8000, 1e-6);
+  EXPECT_NEAR(plan.blocks[0]->pulses_per_mm, 80, 1e-9);
+  EXPECT_NEAR(plan.blocks[1]->pulses_per_mm, 8000, 1e-6);
   // E's pulses count where X may have none.
   EXPECT_NEAR(plan.blocks.at(2)->length, 10, 1e-9);
 }

@@ -223,6 +223,31 @@ void set_outputs(const Source& source, MachineOutputs& outputs, const toml::tabl
   }
 }
 
+void set_kinematics(const Source& source, MachineKinematics& kinematics, const toml::table& table) {
+  struct MotorEntry {
+    std::string_view name;
+    double JointLimits::*member;
+  };
+  static constexpr std::array<MotorEntry, 3> kMotorEntries{{{"motor_velocity", &JointLimits::velocity},
+                                                            {"motor_acceleration", &JointLimits::acceleration},
+                                                            {"motor_jerk", &JointLimits::jerk}}};
+  for (const auto& [key, value] : table) {
+    const std::string path = "kinematics." + key;
+    const auto* const motor = std::find_if(kMotorEntries.begin(), kMotorEntries.end(),
+                                           [&key = key](const MotorEntry& known) { return key == known.name; });
+    if (motor != kMotorEntries.end()) {
+      kinematics.motor.*motor->member = number(source, path, value, Range::kPositive);
+    } else if (key == "name") {
+      const bool known = value.is_string() && std::find(kKinematics.begin(), kKinematics.end(),
+                                                        std::string_view(value.as_string().str)) != kKinematics.end();
+      if (!known) refuse(fmt::format("{}{} must be one of {}", source.at(value), path, fmt::join(kKinematics, ", ")));
+      kinematics.name = value.as_string().str;
+    } else {
+      refuse_key(source, value, "kinematics.", key, {"name", "motor_velocity", "motor_acceleration", "motor_jerk"});
+    }
+  }
+}
+
 void set_probe(const Source& source, Probe& probe, const toml::table& table) {
   for (const auto& [key, value] : table) {
     if (key == "input") {
@@ -348,7 +373,7 @@ toml::value parse(const Source& source, const std::string& text) {
   }
 }
 
-constexpr std::array<const char*, 6> kTables = {"card", "axis", "motion", "outputs", "tools", "probe"};
+constexpr std::array<const char*, 7> kTables = {"card", "axis", "kinematics", "motion", "outputs", "tools", "probe"};
 
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
@@ -381,6 +406,7 @@ bool set_tables(const Source& source, Machine& machine, const toml::table& root)
     any = true;
   };
   set("card", [&](const toml::table& card) { set_clock(source, machine, card.at("clock_hz")); });
+  set("kinematics", [&](const toml::table& entries) { set_kinematics(source, machine.kinematics, entries); });
   set("motion", [&](const toml::table& motion) { set_motion(source, machine.motion, motion); });
   set("outputs", [&](const toml::table& outputs) { set_outputs(source, machine.outputs, outputs); });
   set("tools", [&](const toml::table& tools) { set_tools(source, machine, tools); });
@@ -410,6 +436,7 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   std::sort(machine.axes.begin(), machine.axes.end(),
             [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
   set_tables(source, machine, root);
+  check_kinematics(name + ":1", machine);
   check_times(name + ":1", machine);
   check_outputs(name + ":1", machine.outputs);
   return machine;
@@ -446,6 +473,7 @@ void apply_override(Machine& machine, const std::string& text) {
     refuse(source.name + ": not an assignment such as axis.x.steps_per_mm=20");
   }
   check_motors(source.name, changed);
+  check_kinematics(source.name, changed);
   check_times(source.name, changed);
   check_outputs(source.name, changed.outputs);
   machine = changed;

@@ -168,7 +168,7 @@ double Planner::LookAhead::wanted_density(const Block& block) const {
 
 // Steps even to 1/64, and a line that lasts until the next one is decoded.
 double Planner::LookAhead::even_density(const Block& block) const {
-  return std::max(kTicksPerPulse * block.steps_per_mm, gap_free_ticks_ / block.length);
+  return std::max(kTicksPerPulse * block.pulses_per_mm, gap_free_ticks_ / block.length);
 }
 
 // What the pulses and the finest rate need.

@@ -71,9 +71,8 @@ class Planner {
   void put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
 
-  const machine::Machine& machine_;
+  kinematics::Kinematics kinematics_;
   std::unique_ptr<LookAhead> look_ahead_;
-  std::array<double, card_map::kMaxAxes> scales_{};  // steps/mm
   driver::Command line_{driver::LineCommand{}};
   driver::Command piece_{driver::FeedCommand{}};
   driver::Command other_{driver::EndCommand{}};
