@@ -273,7 +273,10 @@ def _engines(engines):
     yield "\n// Bit numbers of the mask of engines: what is built in (rtl/regs/units.toml).\nnamespace engine {\n"
     for e in engines:
         yield f"inline constexpr std::uint32_t k{camel(e.name)} = {e.low};  // {e.brief}\n"
-    yield "}  // namespace engine\n"
+    yield "}  // namespace engine\n\n// The same as masks.\nnamespace engines {\n"
+    for e in engines:
+        yield f"inline constexpr std::uint32_t k{camel(e.name)} = 0x{1 << e.low:X};\n"
+    yield "}  // namespace engines\n"
     yield "inline constexpr std::array<std::string_view, " + str(len(engines)) + "> kEngineNames{\n"
     yield ", ".join(f'"{e.name}"' for e in engines) + "};\n"
 

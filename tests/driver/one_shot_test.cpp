@@ -273,7 +273,7 @@ TEST(OneShot, AFaultedCardNamesTheFault) {
 
 TEST(OneShot, ACardWithoutDirectModeGetsTheLineThroughItsStream) {
   sim::ModelOptions options;
-  options.engines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
+  options.engines = card_map::engines::kLines | card_map::engines::kJerk;
   const auto engine = sim::make_model_engine(options);
   Card card = Card::open(*engine);
   const OneShotPlan plan = plan_line(card.timing(), {40, -100, 0, 7}, 10ms);

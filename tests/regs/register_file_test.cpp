@@ -100,7 +100,7 @@ TEST(Identity, ComesFromTheParameters) {
 // Which registers an engine brings, by hand.
 TEST(Identity, WithoutDirectModeItsRegistersAreUnknown) {
   RegisterFile::Config config = RegisterBench::config_of(2);
-  config.engines = RegisterFile::kDefaultEngines & ~field::kEnginesDirectMode;
+  config.engines = RegisterFile::kDefaultEngines & ~card_map::engines::kDirectMode;
   RegisterBench bench(config);
   for (std::uint32_t address = 0x300; address < 0x400; address += 4) {
     EXPECT_EQ(bench.refusal_of_write(address, 1), Reason::UnknownAddress) << address;
@@ -114,7 +114,7 @@ TEST(Identity, WithoutDirectModeItsRegistersAreUnknown) {
 
 TEST(Identity, ProbeClearNeedsItsEngine) {
   RegisterFile::Config config = RegisterBench::config_of(1);
-  config.engines &= ~field::kEnginesPathCommands;
+  config.engines &= ~card_map::engines::kPathCommands;
   RegisterBench without(config);
   EXPECT_EQ(without.refusal_of_write(reg::kControl, field::kControlProbeClear), Reason::BadValue);
   RegisterBench with(1);

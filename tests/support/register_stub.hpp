@@ -32,8 +32,8 @@ class RegisterStub : public driver::Bus {
     values[reg::kCommandsVersion] = card_map::kCommandsVersionValue;
     values[reg::kAxes] = axes;
     values[reg::kClockHz] = clock_hz;
-    values[reg::kEngines] = card_map::field::kEnginesLines | card_map::field::kEnginesAccumulator |
-                            card_map::field::kEnginesJerk | card_map::field::kEnginesDirectMode;
+    values[reg::kEngines] = card_map::engines::kLines | card_map::engines::kAccumulator |
+                            card_map::engines::kJerk | card_map::engines::kDirectMode;
     values[reg::kGeometryDepth] = 4096;
     values[reg::kFeedDepth] = 2560;
     values[reg::kRatioFeed] = 0x10000;

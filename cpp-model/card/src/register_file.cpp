@@ -11,7 +11,9 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr std::uint32_t kByteInWord = 3;
-constexpr std::uint64_t kFillClocks = 257;  // from reset on accesses wait so long for the registers to be filled
+// From reset on accesses wait so long for the registers to be filled: a clock for each word of the RAM, which has 256
+// words on a card of up to 4 axes and else 512.
+std::uint64_t fill_clocks(std::uint32_t axes) { return axes <= 4 ? 257 : 513; }
 
 bool writable(Access access) {
   return access == Access::ClearOnes || access == Access::Setting || access == Access::Command;
@@ -37,7 +39,6 @@ RegisterFile::RegisterFile(const Config& config) : config_(config), snapshot_(co
   }
   stored(reg::kAxes) = config_.axes;
   stored(reg::kClockHz) = config_.clock_hz;
-  stored(reg::kEngines) = config_.engines;
   stored(reg::kGeometryDepth) = config_.geometry_depth;
   stored(reg::kFeedDepth) = config_.feed_depth;
   stored(reg::kBuildId) = config_.build_id;
@@ -50,6 +51,51 @@ RegisterFile::RegisterFile(const Config& config) : config_(config), snapshot_(co
     const bool first = (config_.idle_level >> n & 1) != 0;
     const bool second = (config_.idle_level >> (config_.axes + n) & 1) != 0;
     stored(reg::mode(n)) = (first ? field::kModeInvertFirst : 0) | (second ? field::kModeInvertSecond : 0);
+  }
+  describe_units();
+}
+
+unsigned RegisterFile::count_of(const card_map::Unit& unit) const {
+  using card_map::UnitCount;
+  switch (unit.count) {
+    case UnitCount::Axes:
+      return config_.axes;
+    case UnitCount::SnapshotAreas:
+      return card_map::has_engine(config_.engines, card_map::engine::kPathCommands) ? 4 : 2;
+    case UnitCount::Ports:
+      return config_.ports;
+    case UnitCount::Inputs:
+      return config_.inputs;
+    case UnitCount::Outputs:
+      return config_.outputs;
+    default:
+      return unit.instances;
+  }
+}
+
+// The descriptors of the units that are built in, one after the other.
+void RegisterFile::describe_units() {
+  std::uint32_t word = 0;
+  for (const card_map::Unit& unit : card_map::kUnits) {
+    if (!card_map::has_engine(config_.engines, unit.engine)) continue;
+    const auto word_of = [&](std::uint32_t address, std::int32_t step) {
+      return (address + static_cast<std::uint32_t>(step) * (config_.axes - 1)) / 4;
+    };
+    card_map::Descriptor d{unit.tag, unit.major, unit.minor};
+    d.instances = static_cast<std::uint8_t>(count_of(unit));
+    for (std::size_t bit = 0; bit < unit.features.size(); ++bit) {
+      const bool has = unit.features[bit] != 0 && card_map::has_engine(config_.engines, unit.features[bit]);
+      d.features = static_cast<std::uint8_t>(d.features | (has ? 1u << bit : 0u));
+    }
+    if (unit.has_registers) {
+      const std::uint32_t first = word_of(unit.first, unit.first_step);
+      d.base = static_cast<std::uint16_t>(first);
+      d.words = static_cast<std::uint8_t>(word_of(unit.last, unit.last_step) - first + 1);
+    }
+    d.stride = static_cast<std::uint8_t>(unit.stride);
+    d.load_unit = static_cast<std::uint8_t>(unit.load_unit);
+    stored(reg::descriptor(word++)) = card_map::descriptor_word_0(d);
+    stored(reg::descriptor(word++)) = card_map::descriptor_word_1(d);
   }
 }
 
@@ -187,7 +233,7 @@ void RegisterFile::step_access(const Inputs& in) {
     case Stage::Wait: {
       reason_ = judge(in);
       const bool needs_ram = write_ || reason_ == Reason::UnknownAddress || !reads_live(slot_.entry->access);
-      const bool ram_taken = time_ < kFillClocks || snapshot_.busy();
+      const bool ram_taken = time_ < fill_clocks(config_.axes) || snapshot_.busy();
       if (!needs_ram || !ram_taken) {
         stage_ = Stage::Act;
         // A clock before the rest, so that the checker's refusal comes with the answer; an abort makes it idle.

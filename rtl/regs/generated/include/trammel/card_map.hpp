@@ -64,6 +64,21 @@ inline constexpr std::uint32_t kStreaming = 8;     // Position streaming.
 inline constexpr std::uint32_t kClasses = 9;       // Classes of pieces: ratios for rapid and fixed.
 inline constexpr std::uint32_t kWatermarks = 10;   // Watermarks of the queues.
 }  // namespace engine
+
+// The same as masks.
+namespace engines {
+inline constexpr std::uint32_t kLines = 0x1;
+inline constexpr std::uint32_t kAccumulator = 0x2;
+inline constexpr std::uint32_t kAccumulator8 = 0x4;
+inline constexpr std::uint32_t kArcGenerator = 0x8;
+inline constexpr std::uint32_t kJerk = 0x10;
+inline constexpr std::uint32_t kDirectMode = 0x20;
+inline constexpr std::uint32_t kUnderrunHold = 0x40;
+inline constexpr std::uint32_t kPathCommands = 0x80;
+inline constexpr std::uint32_t kStreaming = 0x100;
+inline constexpr std::uint32_t kClasses = 0x200;
+inline constexpr std::uint32_t kWatermarks = 0x400;
+}  // namespace engines
 inline constexpr std::array<std::string_view, 11> kEngineNames{
     "lines",         "accumulator",   "accumulator_8", "arc_generator", "jerk",      "direct_mode",
     "underrun_hold", "path_commands", "streaming",     "classes",       "watermarks"};
