@@ -59,20 +59,14 @@ void check_versions(const Identification& card) {
   }
 }
 
+void check_axes(unsigned axes) {
+  if (axes >= 1 && axes <= card_map::kMaxAxes) return;
+  throw IdentificationError(fmt::format("card: {} axes, this driver knows 1 to {}", axes, card_map::kMaxAxes));
+}
+
 void check_build(const Identification& card) {
-  if (card.axes < 1 || card.axes > card_map::kMaxAxes) {
-    throw IdentificationError(fmt::format("card: {} axes, this driver knows 1 to {}", card.axes, card_map::kMaxAxes));
-  }
   if (card.clock_hz == 0) {
     throw IdentificationError("card: a clock of 0 Hz; its clock strap is not set");
-  }
-  const std::uint32_t unknown = card.engines & ~entry(reg::kEngines).mask;
-  if (unknown != 0) {
-    throw IdentificationError(
-        fmt::format("card: engines 0x{:X}, of which this driver does not know 0x{:X}", card.engines, unknown));
-  }
-  if (!map::has_engine(card.engines, map::engine::kLines)) {
-    throw IdentificationError(fmt::format("card: engines 0x{:X} without lines", card.engines));
   }
   check_depth("geometry", card.geometry_depth, longest_command(&map::Command::to_geometry, card));
   check_depth("feed", card.feed_depth, longest_command(&map::Command::to_feed, card));
@@ -137,9 +131,8 @@ Card Card::open(Bus& bus) {
     throw IdentificationError(
         fmt::format("card: no Trammel card answers: MAGIC reads 0x{:08X}, not 0x{:08X}", magic.data, map::kMagicValue));
   }
-  std::array<Access, 7> who{read_of(reg::kMapVersion), read_of(reg::kCommandsVersion), read_of(reg::kAxes),
-                            read_of(reg::kClockHz),    read_of(reg::kEngines),         read_of(reg::kGeometryDepth),
-                            read_of(reg::kFeedDepth)};
+  std::array<Access, 6> who{read_of(reg::kMapVersion), read_of(reg::kCommandsVersion), read_of(reg::kAxes),
+                            read_of(reg::kClockHz),    read_of(reg::kGeometryDepth),   read_of(reg::kFeedDepth)};
   read_identity(bus, who.data(), who.size());
   Card card(bus);
   Identification& identification = card.identification_;
@@ -151,9 +144,11 @@ Card Card::open(Bus& bus) {
   check_versions(identification);
   identification.axes = who[2].data;
   identification.clock_hz = who[3].data;
-  identification.engines = who[4].data;
-  identification.geometry_depth = who[5].data;
-  identification.feed_depth = who[6].data;
+  identification.geometry_depth = who[4].data;
+  identification.feed_depth = who[5].data;
+  check_axes(identification.axes);
+  identification.units = UnitTable::read(bus, identification.axes);
+  identification.engines = identification.units.engines();
   check_build(identification);
   card.timing_.clock_hz = identification.clock_hz;
   card.timing_.axes = identification.axes;

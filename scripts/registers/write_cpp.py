@@ -195,15 +195,15 @@ struct Unit {
 
 // What one descriptor says.
 struct Descriptor {
-  std::uint8_t tag;
-  std::uint8_t major;
-  std::uint8_t minor;
-  std::uint8_t instances;
-  std::uint8_t features;
-  std::uint16_t base;    // word address
-  std::uint8_t words;    // used by an instance
-  std::uint8_t stride;   // words
-  std::uint8_t load_unit;
+  std::uint8_t tag = 0;
+  std::uint8_t major = 0;
+  std::uint8_t minor = 0;
+  std::uint8_t instances = 0;
+  std::uint8_t features = 0;
+  std::uint16_t base = 0;      // word address
+  std::uint8_t words = 0;      // used by an instance
+  std::uint8_t stride = 0;     // words; 0: all instances share the same registers
+  std::uint8_t load_unit = 0;
 };
 
 constexpr std::uint32_t descriptor_word_0(const Descriptor& d) {
@@ -222,6 +222,62 @@ constexpr Descriptor descriptor_of(std::uint32_t word_0, std::uint32_t word_1) {
           static_cast<std::uint8_t>(bits(word_1, 25, 5))};
 }
 
+"""
+
+DESCRIBE = """
+// What decides a card's descriptors.
+struct CardShape {
+  std::uint32_t engines;
+  std::uint32_t axes;
+  std::uint32_t ports;
+  std::uint32_t inputs;
+  std::uint32_t outputs;
+};
+
+constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
+  switch (unit.count) {
+    case UnitCount::Axes: return card.axes;
+    case UnitCount::SnapshotAreas: return (card.engines >> engine::kPathCommands & 1) != 0 ? 4 : 2;
+    case UnitCount::Ports: return card.ports;
+    case UnitCount::Inputs: return card.inputs;
+    case UnitCount::Outputs: return card.outputs;
+    default: return unit.instances;
+  }
+}
+
+// The descriptor of a unit that is built into such a card.
+constexpr Descriptor describe(const Unit& unit, const CardShape& card) {
+  Descriptor d{unit.tag, unit.major, unit.minor};
+  d.instances = static_cast<std::uint8_t>(instances_of(unit, card));
+  for (std::size_t bit = 0; bit < unit.features.size(); ++bit) {
+    const bool has = unit.features[bit] != 0 && (card.engines >> unit.features[bit] & 1) != 0;
+    d.features = static_cast<std::uint8_t>(d.features | (has ? 1u << bit : 0u));
+  }
+  if (unit.has_registers) {
+    const std::uint32_t further = card.axes - 1;
+    const std::uint32_t first = unit.first + static_cast<std::uint32_t>(unit.first_step) * further;
+    const std::uint32_t last = unit.last + static_cast<std::uint32_t>(unit.last_step) * further;
+    d.base = static_cast<std::uint16_t>(first / 4);
+    d.words = static_cast<std::uint8_t>((last - first) / 4 + 1);
+  }
+  d.stride = static_cast<std::uint8_t>(unit.stride);
+  d.load_unit = static_cast<std::uint8_t>(unit.load_unit);
+  return d;
+}
+
+// Calls put(byte address, word) for each word of the table of such a card, the ending tag included.
+template <typename Put>
+constexpr void put_descriptors(const CardShape& card, const Put& put) {
+  std::uint32_t address = kDescriptorTable;
+  for (const Unit& unit : kUnits) {
+    if ((card.engines >> unit.engine & 1) == 0) continue;
+    const Descriptor d = describe(unit, card);
+    put(address, descriptor_word_0(d));
+    put(address + 4, descriptor_word_1(d));
+    address += 8;
+  }
+  put(address, std::uint32_t{0});
+}
 """
 
 ACCESS = {"constant": "Constant", "live": "Live", "snapshot": "Snapshot", "clear_ones": "ClearOnes",
@@ -353,6 +409,7 @@ def _unit_table(registers, units):
     for u in units.units:
         yield _unit(u, registers, units)
     yield "}};\n"
+    yield DESCRIBE
 
 
 def _unit(u, registers, units):

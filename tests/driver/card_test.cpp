@@ -70,7 +70,7 @@ TEST_F(CardTest, BadArgumentsNeverReachTheBus) {
 TEST_F(CardTest, EachClassHasItsRatio) {
   EXPECT_THAT(argument_error([&] { card_.set_ratio(PieceClass::kRapid, 1); }), HasSubstr("needs classes"));
   EXPECT_TRUE(bus_.log.empty());
-  bus_.values[reg::kEngines] |= card_map::engines::kClasses;
+  bus_.add_engines(card_map::engines::kClasses);
   Card card = Card::open(bus_);
   bus_.forget();
   card.set_ratio(PieceClass::kFixed, 0xF000);

@@ -52,51 +52,8 @@ RegisterFile::RegisterFile(const Config& config) : config_(config), snapshot_(co
     const bool second = (config_.idle_level >> (config_.axes + n) & 1) != 0;
     stored(reg::mode(n)) = (first ? field::kModeInvertFirst : 0) | (second ? field::kModeInvertSecond : 0);
   }
-  describe_units();
-}
-
-unsigned RegisterFile::count_of(const card_map::Unit& unit) const {
-  using card_map::UnitCount;
-  switch (unit.count) {
-    case UnitCount::Axes:
-      return config_.axes;
-    case UnitCount::SnapshotAreas:
-      return card_map::has_engine(config_.engines, card_map::engine::kPathCommands) ? 4 : 2;
-    case UnitCount::Ports:
-      return config_.ports;
-    case UnitCount::Inputs:
-      return config_.inputs;
-    case UnitCount::Outputs:
-      return config_.outputs;
-    default:
-      return unit.instances;
-  }
-}
-
-// The descriptors of the units that are built in, one after the other.
-void RegisterFile::describe_units() {
-  std::uint32_t word = 0;
-  for (const card_map::Unit& unit : card_map::kUnits) {
-    if (!card_map::has_engine(config_.engines, unit.engine)) continue;
-    const auto word_of = [&](std::uint32_t address, std::int32_t step) {
-      return (address + static_cast<std::uint32_t>(step) * (config_.axes - 1)) / 4;
-    };
-    card_map::Descriptor d{unit.tag, unit.major, unit.minor};
-    d.instances = static_cast<std::uint8_t>(count_of(unit));
-    for (std::size_t bit = 0; bit < unit.features.size(); ++bit) {
-      const bool has = unit.features[bit] != 0 && card_map::has_engine(config_.engines, unit.features[bit]);
-      d.features = static_cast<std::uint8_t>(d.features | (has ? 1u << bit : 0u));
-    }
-    if (unit.has_registers) {
-      const std::uint32_t first = word_of(unit.first, unit.first_step);
-      d.base = static_cast<std::uint16_t>(first);
-      d.words = static_cast<std::uint8_t>(word_of(unit.last, unit.last_step) - first + 1);
-    }
-    d.stride = static_cast<std::uint8_t>(unit.stride);
-    d.load_unit = static_cast<std::uint8_t>(unit.load_unit);
-    stored(reg::descriptor(word++)) = card_map::descriptor_word_0(d);
-    stored(reg::descriptor(word++)) = card_map::descriptor_word_1(d);
-  }
+  const card_map::CardShape shape{config_.engines, config_.axes, config_.ports, config_.inputs, config_.outputs};
+  card_map::put_descriptors(shape, [&](std::uint32_t address, std::uint32_t word) { stored(address) = word; });
 }
 
 void RegisterFile::reset() { *this = RegisterFile(config_); }

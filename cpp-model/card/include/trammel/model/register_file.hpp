@@ -152,8 +152,6 @@ class RegisterFile {
   std::size_t written_at(std::uint32_t word) const;
   void take_values(const Inputs& in);
   void step_loader(const Inputs& in);
-  void describe_units();
-  unsigned count_of(const card_map::Unit& unit) const;
   void refuse_checked(const Inputs& in);
   std::uint32_t& stored(std::uint32_t address) { return stored_[address / 4]; }
   std::uint32_t stored(std::uint32_t address) const { return stored_[address / 4]; }
