@@ -45,6 +45,18 @@ void check_kinematics(const std::string& where, const Machine& machine) {
   }
 }
 
+void check_ramps(const std::string& where, const Machine& machine) {
+  constexpr double kLongest = 1000;  // s
+  for (const MachineAxis& axis : machine.axes) {
+    const double seconds = axis.max_velocity / axis.max_acceleration;
+    if (seconds <= kLongest) continue;
+    refuse(
+        fmt::format("{}: axis {}: max_velocity is reached after {:g} s, at most {:g} s are possible: is "
+                    "max_acceleration in mm/s^2?",
+                    where, axis.letter, seconds, kLongest));
+  }
+}
+
 void check_times(const std::string& where, const Machine& machine) {
   constexpr double kLongest = 1e15;  // ns; more than any register at the slowest clock
   const auto check = [&](const MachineAxis& axis, double time, const char* what) {
