@@ -53,6 +53,8 @@ Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const Ca
 
 Planner::~Planner() = default;
 
+const PlanWork& Planner::work() const { return look_ahead_->work(); }
+
 bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
   const PathEntry* entry = look_ahead_->first();
   if (entry == nullptr) return false;

@@ -17,6 +17,7 @@
 #include "trammel/planner/block.hpp"
 #include "trammel/planner/block_builder.hpp"
 #include "trammel/planner/card_limits.hpp"
+#include "trammel/planner/speed_plan.hpp"
 
 namespace trammel::planner {
 
@@ -60,6 +61,9 @@ class Planner {
   // is given, which the builder has: the motion ends at rest there. What the sink throws passes through; the planner is
   // then of no further use.
   bool next(driver::CommandSink& sink, PlannedBlock& planned);
+
+  // Of the speed plan.
+  const PlanWork& work() const;
 
  private:
   class LookAhead;
