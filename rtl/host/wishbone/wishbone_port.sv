@@ -23,6 +23,10 @@ module wishbone_port #(
     input wire logic error_i,
     input wire logic [31:0] data_i
 );
+  if (Pipelined < 0 || Pipelined > 1) begin : gen_wrong_kind
+    ERROR_Pipelined_must_be_0_or_1 error ();
+  end
+
   logic        busy_q;
   logic        wanted_q;  // the master still waits for the answer
   logic        request_q;
