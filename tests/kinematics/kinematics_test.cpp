@@ -139,7 +139,8 @@ TEST(MachineFile, NamesAMember) {
   EXPECT_THAT(error_of({"kinematics.motor_velocity=100"}), HasSubstr("motor limits are for corexy"));
   EXPECT_THAT(error_of({"kinematics.name='corexy'", "axis.x.second_motor=true"}),
               HasSubstr("with corexy two motors move X and Y together"));
-  EXPECT_THAT(error_of({"kinematics.name='corexy'", "kinematics.motor_velocity=0"}), HasSubstr("from 0.001 to 1e+07 mm/s, not 0"));
+  EXPECT_THAT(error_of({"kinematics.name='corexy'", "kinematics.motor_velocity=0"}),
+              HasSubstr("from 0.001 to 1e+07 mm/s, not 0"));
 }
 
 }  // namespace
