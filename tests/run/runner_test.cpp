@@ -171,7 +171,7 @@ TEST_F(RunnerTest, SlewFollowsFromTheAxes) {
   machine::apply_override(machine_, "axis.y.max_acceleration=500");
   run("G0 X1\n");
   EXPECT_EQ(slew(), driver::Card::kSlowestSlew / 600'000);
-  machine::apply_override(machine_, "axis.y.max_acceleration=0.1");
+  machine::apply_override(machine_, "axis.y.max_acceleration=0.15");
   run("G0 X1\n");
   EXPECT_EQ(slew(), 1U);
 }
