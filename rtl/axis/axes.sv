@@ -47,7 +47,9 @@ module axes #(
   always_ff @(posedge clk_i) live_o <= live != '0 && !rst_i;
 
   wait_timer timer (
-      .*,
+      .clk_i,
+      .rst_i,
+      .setting_i,
       .tick_o(wait_tick)
   );
 
@@ -56,24 +58,33 @@ module axes #(
         .Axis   (n),
         .Counted(Counted)
     ) motor (
-        .*,
-        .idle_level_i ({idle_level_i[Axes+n], idle_level_i[n]}),
-        .active_i     (active_i[n]),
-        .chord_load_i (chord_load_i[n]),
-        .chord_swap_i (chord_swap_i[n]),
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .idle_level_i({idle_level_i[Axes+n], idle_level_i[n]}),
+        .setting_i,
+        .load_i,
+        .tick_i,
+        .swap_i,
+        .active_i(active_i[n]),
+        .direct_i,
+        .chord_word_i,
+        .chord_load_i(chord_load_i[n]),
+        .chord_swap_i(chord_swap_i[n]),
         .engine_step_i(engine_step_i[n]),
-        .engine_dir_i (engine_dir_i[n]),
-        .wait_tick_i  (wait_tick),
-        .chain_i      (chain[32*n+:32]),
-        .chain_o      (chain[32*n+32+:32]),
-        .path_step_o  (path_step[n]),
-        .path_dir_o   (path_dir[n]),
-        .live_o       (live[n]),
-        .busy_o       (busy[n]),
-        .fault_o      (fault_o[n]),
-        .position_o   (position[32*n+:32]),
-        .step_o       (step_o[n]),
-        .dir_o        (dir_o[n])
+        .engine_dir_i(engine_dir_i[n]),
+        .wait_tick_i(wait_tick),
+        .snapshot_i,
+        .chain_i(chain[32*n+:32]),
+        .chain_o(chain[32*n+32+:32]),
+        .path_step_o(path_step[n]),
+        .path_dir_o(path_dir[n]),
+        .live_o(live[n]),
+        .busy_o(busy[n]),
+        .fault_o(fault_o[n]),
+        .position_o(position[32*n+:32]),
+        .step_o(step_o[n]),
+        .dir_o(dir_o[n])
     );
   end
 endmodule

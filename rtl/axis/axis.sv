@@ -52,12 +52,15 @@ module axis #(
   axis_settings #(
       .Axis(Axis)
   ) settings (
-      .*,
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .idle_level_i,
       .step_length_o(step_length),
-      .step_space_o (step_space),
-      .dir_setup_o  (dir_setup),
-      .dir_hold_o   (dir_hold),
-      .mode_o       (mode)
+      .step_space_o(step_space),
+      .dir_setup_o(dir_setup),
+      .dir_hold_o(dir_hold),
+      .mode_o(mode)
   );
 
   // A clock later, so that no comparison stands before the count's adder; path swaps come three clocks late.
@@ -73,16 +76,21 @@ module axis #(
   pulse_generator #(
       .Counted(Counted)
   ) generator (
-      .*,
-      .clear_i         (cut_i),
-      .chord_i         (chord_swap_i),
-      .counted_i       (direct_i),
-      .mirror_i        (direct_i),
+      .clk_i,
+      .rst_i,
+      .clear_i(cut_i),
+      .tick_i,
+      .swap_i,
+      .chord_i(chord_swap_i),
+      .active_i,
+      .counted_i(direct_i),
+      .mirror_i(direct_i),
       .load_increment_i(load_increment_q),
-      .load_count_i    (load_count_q),
-      .word_i          (word_q),
-      .step_o          (generator_step),
-      .dir_o           (generator_dir)
+      .load_count_i(load_count_q),
+      .word_i(word_q),
+      .step_o(generator_step),
+      .dir_o(generator_dir),
+      .live_o
   );
 
   // A cut does not drop the step in this register: a step on its way to the shaper is made.
@@ -97,19 +105,30 @@ module axis #(
   end
 
   step_shaper shaper (
-      .*,
-      .step_i       (path_step_o),
-      .dir_i        (path_dir_o),
+      .clk_i,
+      .rst_i,
+      .step_i(path_step_o),
+      .dir_i(path_dir_o),
       .step_length_i(step_length),
-      .step_space_i (step_space),
-      .dir_setup_i  (dir_setup),
-      .dir_hold_i   (dir_hold),
-      .mode_i       (mode)
+      .step_space_i(step_space),
+      .dir_setup_i(dir_setup),
+      .dir_hold_i(dir_hold),
+      .mode_i(mode),
+      .idle_level_i,
+      .wait_tick_i,
+      .step_o,
+      .dir_o,
+      .position_o,
+      .busy_o,
+      .fault_o
   );
 
   snapshot_slice position (
-      .*,
-      .value_i(position_o)
+      .clk_i,
+      .snapshot_i,
+      .value_i(position_o),
+      .chain_i,
+      .chain_o
   );
 endmodule
 

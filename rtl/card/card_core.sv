@@ -90,72 +90,88 @@ module card_core #(
       512'(BoardId) << 8 * card_map_pkg::ADDR_BOARD_ID |
       512'(PORTS) << 8 * card_map_pkg::ADDR_PORTS;
 
-  logic [31:0] clear_fault_o;
-  logic [31:0] fault_o;
+  logic [31:0] clear_fault;
+  logic [31:0] fault;
   logic [31:0] status;
   logic [ 5:0] motion_status;
-  logic        held_o;
+  logic        held;
   logic [65:0] late;  // {a line goes on beyond its period, ticks; held for under-run, how often}
   logic [63:0] begun;  // {geometry, feed}
   logic [31:0] room;  // {geometry, feed}
-  logic [ 1:0] low_o;  // {feed, geometry}
-  logic [40:0] setting_o;  // {set, address, data}
-  logic        abort_o;
-  logic        flush_o;
-  logic        cut_o;
-  logic        closed_o;
-  logic        stop_o;
-  logic        mark_o;
-  logic        probe_o;
-  logic        probe_clear_o;
-  logic [66:0] io_o;  // {waiting, probe missed, probed, marks, outputs, inputs}
-  logic [ 1:0] snapshot_o;  // {shift, strobe}
+  logic [ 1:0] low;  // {feed, geometry}
+  logic [40:0] setting;  // {set, address, data}
+  logic        abort;
+  logic        flush;
+  logic        cut;
+  logic        closed;
+  logic        stop;
+  logic        mark;
+  logic        probe;
+  logic        probe_clear;
+  logic [66:0] io;  // {waiting, probe missed, probed, marks, outputs, inputs}
+  logic [ 1:0] snapshot;  // {shift, strobe}
   logic [31:0] chain_far;
   logic [31:0] chain_near;
-  logic        start_o;
+  logic        start;
   logic [ 9:0] start_answer;  // {done, error, reason}
-  logic [ 7:0] loader_address_o;
-  logic [31:0] loader_data_o;
-  logic        stream_write_o;
-  logic [18:0] answer_o;  // {partial, ready, refuse, number, reason}
+  logic [ 7:0] loader_address;
+  logic [31:0] loader_data;
+  logic        stream_write;
+  logic [18:0] answer;  // {partial, ready, refuse, number, reason}
 
   register_file #(
       .Axes(Axes),
       .Ports(Ports),
       .Engines(ENGINES)
   ) registers (
-      .*,
+      .clk_i,
+      .rst_i,
       .constants_i(constants),
+      .idle_level_i,
+      .request_i,
       .access_i({port_i, write_i, partial_i, address_i, data_i}),
+      .ack_o,
+      .error_o,
+      .data_o,
+      .irq_o,
       .motion_i(motion_status),
-      .held_i(held_o),
+      .held_i(held),
       .late_i(late),
-      .fault_i(fault_o),
+      .fault_i(fault),
       .room_i(room),
-      .low_i(low_o),
+      .low_i(low),
       .begun_i(begun),
-      .io_i(io_o),
+      .io_i(io),
       .status_o(status),
-      .checker_i(answer_o),
+      .setting_o(setting),
+      .clear_fault_o(clear_fault),
+      .abort_o(abort),
+      .probe_clear_o(probe_clear),
+      .flush_o(flush),
+      .stream_write_o(stream_write),
+      .checker_i(answer),
+      .start_o(start),
       .start_answer_i(start_answer),
-      .loader_address_i(loader_address_o),
-      .stop_i(stop_o),
-      .probe_i(probe_o),
-      .mark_i(mark_o),
+      .loader_address_i(loader_address),
+      .loader_data_o(loader_data),
+      .stop_i(stop),
+      .probe_i(probe),
+      .mark_i(mark),
+      .snapshot_o(snapshot),
       .chain_o(chain_far),
       .chain_i(chain_near)
   );
 
-  logic [15:0] halfword_o;
-  logic [ 1:0] geometry_o;  // {commit, write}
-  logic        geometry_read_o;
+  logic [15:0] halfword;
+  logic [ 1:0] geometry;  // {commit, write}
+  logic        geometry_read;
   logic        geometry_empty;
   logic [15:0] geometry_word;
-  logic [ 1:0] feed_o;  // {commit, write}
-  logic        feed_read_o;
+  logic [ 1:0] feed;  // {commit, write}
+  logic        feed_read;
   logic        feed_empty;
   logic [15:0] feed_word;
-  logic        drop_o;
+  logic        drop;
   logic        full;  // no room for the largest command: 50 halfwords of geometry, 20 of feed
 
   assign full = room[31:22] == 10'd0 || room[15:5] == 11'd0;
@@ -164,22 +180,29 @@ module card_core #(
       .Axes(Axes),
       .Engines(ENGINES)
   ) stream (
-      .*,
-      .write_i (stream_write_o),
-      .word_i  (setting_o[31:0]),  // the word last written, whatever it was for
-      .flush_i (flush_o),
-      .clear_i (cut_o),
-      .closed_i(closed_o),
-      .room_i  (room)
+      .clk_i,
+      .rst_i,
+      .write_i(stream_write),
+      .word_i(setting[31:0]),  // the word last written, whatever it was for
+      .flush_i(flush),
+      .clear_i(cut),
+      .closed_i(closed),
+      .room_i(room),
+      .halfword_o(halfword),
+      .geometry_o(geometry),
+      .feed_o(feed),
+      .drop_o(drop),
+      .answer_o(answer)
   );
 
   halfword_queue #(
       .Depth(GeometryDepth)
   ) geometry_queue (
-      .*,
-      .clear_i(cut_o),
-      .store_i({drop_o, geometry_o, halfword_o}),
-      .read_i (geometry_read_o),
+      .clk_i,
+      .rst_i,
+      .clear_i(cut),
+      .store_i({drop, geometry, halfword}),
+      .read_i (geometry_read),
       .word_o (geometry_word),
       .empty_o(geometry_empty),
       .room_o (room[31:16])
@@ -188,10 +211,11 @@ module card_core #(
   halfword_queue #(
       .Depth(FeedDepth)
   ) feed_queue (
-      .*,
-      .clear_i(cut_o),
-      .store_i({drop_o, feed_o, halfword_o}),
-      .read_i (feed_read_o),
+      .clk_i,
+      .rst_i,
+      .clear_i(cut),
+      .store_i({drop, feed, halfword}),
+      .read_i (feed_read),
       .word_o (feed_word),
       .empty_o(feed_empty),
       .room_o (room[15:0])
@@ -202,12 +226,14 @@ module card_core #(
         .GeometryDepth(GeometryDepth),
         .FeedDepth(FeedDepth)
     ) watermarks (
-        .*,
-        .setting_i(setting_o),
-        .room_i(room)
+        .clk_i,
+        .rst_i,
+        .setting_i(setting),
+        .room_i(room),
+        .low_o(low)
     );
   end else begin : gen_no_watermarks
-    assign low_o = '0;
+    assign low = '0;
   end
 
   motion_core #(
@@ -216,33 +242,51 @@ module card_core #(
       .Inputs(Inputs),
       .Outputs(Outputs)
   ) motion (
-      .*,
-      .setting_i(setting_o),
-      .abort_i(abort_o),
-      .clear_fault_i(clear_fault_o),
-      .probe_clear_i(probe_clear_o),
+      .clk_i,
+      .rst_i,
+      .idle_level_i,
+      .setting_i(setting),
+      .abort_i(abort),
+      .clear_fault_i(clear_fault),
+      .input_i,
+      .output_idle_i,
+      .output_o,
+      .mark_o(mark),
+      .probe_o(probe),
+      .probe_clear_i(probe_clear),
+      .io_o(io),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i(geometry_word),
+      .geometry_read_o(geometry_read),
       .feed_empty_i(feed_empty),
       .feed_word_i(feed_word),
-      .arrive_i({full, drop_o, geometry_o, feed_o, halfword_o}),
-      .start_i(start_o),
-      .start_mask_i(setting_o[7:0]),
+      .feed_read_o(feed_read),
+      .arrive_i({full, drop, geometry, feed, halfword}),
+      .start_i(start),
+      .start_mask_i(setting[7:0]),
       .start_done_o(start_answer[9]),
       .start_error_o(start_answer[8]),
       .start_reason_o(start_answer[7:0]),
-      .loader_data_i(loader_data_o),
-      .snapshot_i(snapshot_o),
+      .loader_address_o(loader_address),
+      .loader_data_i(loader_data),
+      .snapshot_i(snapshot),
       .chain_i(chain_far),
       .chain_o(chain_near),
+      .fault_o(fault),
+      .cut_o(cut),
+      .closed_o(closed),
+      .stop_o(stop),
       .status_o(motion_status),
+      .held_o(held),
       .underrun_o(late[32:0]),
       .stale_o(late[65:33]),
       .geometry_begun_o(begun[63:32]),
       .feed_begun_o(begun[31:0]),
-      .observe_o(observe_o[34*Axes+52:0])
+      .observe_o(observe_o[34*Axes+52:0]),
+      .step_o,
+      .dir_o
   );
 
-  assign observe_o[34*Axes+212:34*Axes+53] = {room, status, fault_o, begun};
+  assign observe_o[34*Axes+212:34*Axes+53] = {room, status, fault, begun};
 endmodule
 `default_nettype wire

@@ -87,13 +87,36 @@ module card_with_ports #(
       .Spi(Spi),
       .BreakBits(BreakBits)
   ) hosts (
-      .*,
-      .rst_i    (rst_q),
+      .clk_i,
+      .rst_i(rst_q),
+      .awvalid_i,
+      .awready_o,
+      .awaddr_i,
+      .wvalid_i,
+      .wready_o,
+      .wdata_i,
+      .wstrb_i,
+      .bvalid_o,
+      .bready_i,
+      .bresp_o,
+      .arvalid_i,
+      .arready_o,
+      .araddr_i,
+      .rvalid_o,
+      .rready_i,
+      .rdata_o,
+      .rresp_o,
+      .wishbone_i,
+      .wishbone_o,
+      .rx_i,
+      .tx_o,
+      .spi_i,
+      .spi_o,
       .request_o(request),
-      .access_o (access),
-      .ack_i    (ack),
-      .error_i  (error),
-      .data_i   (data)
+      .access_o(access),
+      .ack_i(ack),
+      .error_i(error),
+      .data_i(data)
   );
 
   card_core #(
@@ -116,17 +139,26 @@ module card_with_ports #(
       .BuildDirty(BuildDirty),
       .BoardId(BoardId)
   ) core (
-      .*,
-      .rst_i    (rst_q),
+      .clk_i,
+      .rst_i(rst_q),
       .request_i(request),
-      .port_i   (access[47:46]),
-      .write_i  (access[45]),
+      .write_i(access[45]),
       .partial_i(access[44]),
+      .port_i(access[47:46]),
       .address_i(access[43:32]),
-      .data_i   (access[31:0]),
-      .ack_o    (ack),
-      .error_o  (error),
-      .data_o   (data)
+      .data_i(access[31:0]),
+      .ack_o(ack),
+      .error_o(error),
+      .data_o(data),
+      .clock_hz_i,
+      .idle_level_i,
+      .output_idle_i,
+      .input_i,
+      .output_o,
+      .step_o,
+      .dir_o,
+      .irq_o,
+      .observe_o
   );
 endmodule
 `default_nettype wire

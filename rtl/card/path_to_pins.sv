@@ -48,28 +48,57 @@ module path_to_pins #(
       .Axes   (Axes),
       .Engines(Engines)
   ) engines (
-      .*,
-      .tick_o      (path_tick),
-      .swap_o      (path_swap),
-      .step_o      (engine_step),
-      .dir_o       (engine_dir),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .tick_i,
+      .swap_i,
+      .engine_i,
+      .engine_taken_i,
+      .load_i,
+      .tick_o(path_tick),
+      .swap_o(path_swap),
+      .path_tick_o,
+      .step_o(engine_step),
+      .dir_o(engine_dir),
       .chord_word_o(chord_word),
       .chord_load_o(chord_load),
-      .chord_swap_o(chord_swap)
+      .chord_swap_o(chord_swap),
+      .ready_o,
+      .payload_ready_o,
+      .shadows_free_o,
+      .done_o,
+      .elsewhere_o
   );
 
   axes #(
       .Axes   (Axes),
       .Counted(Engines[card_map_pkg::ENGINE_DIRECT_MODE])
   ) all_axes (
-      .*,
-      .tick_i       (path_tick),
-      .swap_i       (path_swap),
-      .chord_word_i (chord_word),
-      .chord_load_i (chord_load),
-      .chord_swap_i (chord_swap),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .idle_level_i,
+      .setting_i,
+      .load_i,
+      .tick_i(path_tick),
+      .swap_i(path_swap),
+      .active_i,
+      .direct_i,
+      .chord_word_i(chord_word),
+      .chord_load_i(chord_load),
+      .chord_swap_i(chord_swap),
       .engine_step_i(engine_step),
-      .engine_dir_i (engine_dir)
+      .engine_dir_i(engine_dir),
+      .snapshot_i,
+      .chain_i,
+      .chain_o,
+      .live_o,
+      .busy_o,
+      .fault_o,
+      .observe_o,
+      .step_o,
+      .dir_o
   );
 endmodule
 

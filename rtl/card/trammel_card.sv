@@ -63,12 +63,29 @@ module trammel_card #(
   logic [31:0] port_data;
 
   axi4_lite_port host (
-      .*,
-      .rst_i   (rst_q),
+      .clk_i,
+      .rst_i(rst_q),
+      .awvalid_i,
+      .awready_o,
+      .awaddr_i,
+      .wvalid_i,
+      .wready_o,
+      .wdata_i,
+      .wstrb_i,
+      .bvalid_o,
+      .bready_i,
+      .bresp_o,
+      .arvalid_i,
+      .arready_o,
+      .araddr_i,
+      .rvalid_o,
+      .rready_i,
+      .rdata_o,
+      .rresp_o,
       .access_o(port_access),
-      .ack_i   (port_ack),
-      .error_i (port_error),
-      .data_i  (port_data)
+      .ack_i(port_ack),
+      .error_i(port_error),
+      .data_i(port_data)
   );
 
   logic        request;
@@ -113,17 +130,26 @@ module trammel_card #(
       .BuildDirty(BuildDirty),
       .BoardId(BoardId)
   ) core (
-      .*,
-      .rst_i    (rst_q),
+      .clk_i,
+      .rst_i(rst_q),
       .request_i(request),
-      .port_i   (access[47:46]),
-      .write_i  (access[45]),
+      .write_i(access[45]),
       .partial_i(access[44]),
+      .port_i(access[47:46]),
       .address_i(access[43:32]),
-      .data_i   (access[31:0]),
-      .ack_o    (ack),
-      .error_o  (error),
-      .data_o   (data)
+      .data_i(access[31:0]),
+      .ack_o(ack),
+      .error_o(error),
+      .data_o(data),
+      .clock_hz_i,
+      .idle_level_i,
+      .output_idle_i,
+      .input_i,
+      .output_o,
+      .step_o,
+      .dir_o,
+      .irq_o,
+      .observe_o
   );
 endmodule
 `default_nettype wire

@@ -83,18 +83,19 @@ module command_checker #(
       .Axes(Axes),
       .Engines(Engines)
   ) header (
-      .*,
+      .clk_i,
       .restart_i(restart),
       .phase_i(partial_q ? 4'd0 : {high_judge_q, high_q, low_judge_q, low_q}),
       .accept_i(accepted),
       .halfword_i(halfword_q),
+      .room_i,
       .op_o(op),
       .mask_o(mask),
+      .number_o(number),
       .to_geometry_o(to_geometry),
       .to_feed_o(to_feed),
       .stored_o(stored),
       .bad_o(header_bad),
-      .number_o(number),
       .reason_o(header_reason)
   );
 

@@ -42,20 +42,28 @@ module feed_decoder #(
   endfunction
 
   command_fetch fetch (
-      .*,
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i,
+      .empty_i,
+      .word_i,
+      .read_o,
       .has_payload_i(is_feed || is_wait),
-      .first_i      (is_wait ? {2'd0, load_target_pkg::FEED_NOWHERE, 3'd0} : {2'd0, load_target_pkg::FEED_RATE, 3'd3}),
-      .next_i       ({field + 5'd1, length_of(field[2:0] + 3'd1)}),
-      .last_field_i (pause || is_wait || field[2:0] == load_target_pkg::FEED_JERK),
-      .rest_i       (is_feed && field[2:0] == load_target_pkg::FEED_ACCELERATION),
-      .wait_i       (1'b0),
-      .header_o     (),
-      .first_o      (),
-      .advance_o    (),
-      .field_o      (field),
-      .strobe_o     (strobe),
-      .opcode_o     (opcode),
-      .mask_o       (mask)
+      .first_i(is_wait ? {2'd0, load_target_pkg::FEED_NOWHERE, 3'd0} : {2'd0, load_target_pkg::FEED_RATE, 3'd3}),
+      .next_i({field + 5'd1, length_of(field[2:0] + 3'd1)}),
+      .last_field_i(pause || is_wait || field[2:0] == load_target_pkg::FEED_JERK),
+      .rest_i(is_feed && field[2:0] == load_target_pkg::FEED_ACCELERATION),
+      .wait_i(1'b0),
+      .header_o(),
+      .first_o(),
+      .advance_o(),
+      .field_o(field),
+      .strobe_o(strobe),
+      .opcode_o(opcode),
+      .mask_o(mask),
+      .idle_o,
+      .valid_o
   );
 
   always_ff @(posedge clk_i) begin

@@ -156,22 +156,30 @@ module geometry_decoder #(
   end
 
   command_fetch fetch (
-      .*,
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i,
+      .empty_i,
+      .word_i,
+      .read_o,
       .has_payload_i(is_line_q || on_engine || has_words),
-      .first_i      (first_field),
-      .next_i       (next_field),
-      .last_field_i (last_field),
-      .rest_i       (1'b0),
+      .first_i(first_field),
+      .next_i(next_field),
+      .last_field_i(last_field),
+      .rest_i(1'b0),
       // Before an engine's first field nothing waits: the command before was an engine's, whose last field this is not, or
       // runs on lines, and the engine is free.
-      .wait_i       (is_line_q ? !shadows_free_i : at_prescaler && !payload_ready_i),
-      .header_o     (header),
-      .first_o      (first),
-      .advance_o    (advance),
-      .field_o      (field),
-      .strobe_o     (strobe),
-      .opcode_o     (opcode),
-      .mask_o       (mask)
+      .wait_i(is_line_q ? !shadows_free_i : at_prescaler && !payload_ready_i),
+      .header_o(header),
+      .first_o(first),
+      .advance_o(advance),
+      .field_o(field),
+      .strobe_o(strobe),
+      .opcode_o(opcode),
+      .mask_o(mask),
+      .idle_o,
+      .valid_o
   );
 
   assign of_arc   = arc_target(strobe[4:0]);

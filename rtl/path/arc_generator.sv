@@ -63,21 +63,26 @@ module arc_generator #(
   assign swap_y = begin_arc | (tick_i & odd);
 
   chord_rotation rotation (
-      .*,
-      .k_i      (k_q),
-      .minus_i  (in_x_q ^ clockwise_q),
-      .begin_i  (begin_half),
-      .busy_o   (busy),
-      .last_o   (last),
+      .clk_i,
+      .rst_i,
+      .clear_i,
+      .load_i,
+      .k_i(k_q),
+      .minus_i(in_x_q ^ clockwise_q),
+      .begin_i(begin_half),
+      .busy_o(busy),
+      .last_o(last),
       .loading_o(loading),
-      .first_o  (first),
-      .word_o   (chord_word_o)
+      .first_o(first),
+      .word_o(chord_word_o)
   );
 
   chord_counter counter (
-      .*,
-      .m_i   (m_q),
-      .odd_o (odd),
+      .clk_i,
+      .start_i,
+      .tick_i,
+      .m_i(m_q),
+      .odd_o(odd),
       .even_o(even)
   );
 

@@ -23,8 +23,11 @@ module begun_counter (
   end
 
   snapshot_slice begun (
-      .*,
-      .value_i(begun_o)
+      .clk_i,
+      .snapshot_i,
+      .value_i(begun_o),
+      .chain_i,
+      .chain_o
   );
 endmodule
 

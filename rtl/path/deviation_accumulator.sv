@@ -104,21 +104,21 @@ module deviation_accumulator #(
   deviation_choice #(
       .EightDirections(EightDirections)
   ) next_step (
-      .*,
-      .rest_i     (ready_o),
-      .rule_i     ({eight_q, clockwise_q}),
-      .inside_i   (f_q[79]),
-      .gradient_i ({gy_q[79], gx_q[79]}),
-      .compare_i  (compare),
-      .next_i     ({came[1] ? g_back[31] : gy_q[79], came[0] ? g_back[15] : gx_q[79]}),
-      .sides_i    (sides),
-      .last_i     (done_q),
-      .left_i     ({ey_q[31], ex_q[31], y_zero_q, x_zero_q}),
+      .clk_i,
+      .rest_i(ready_o),
+      .rule_i({eight_q, clockwise_q}),
+      .inside_i(f_q[79]),
+      .gradient_i({gy_q[79], gx_q[79]}),
+      .compare_i(compare),
+      .next_i({came[1] ? g_back[31] : gy_q[79], came[0] ? g_back[15] : gx_q[79]}),
+      .sides_i(sides),
+      .last_i(done_q),
+      .left_i({ey_q[31], ex_q[31], y_zero_q, x_zero_q}),
       .finishing_i(finish_q),
-      .finish_o   (finish),
-      .take_o     (take),
-      .negative_o (negative),
-      .old_sign_o (old_sign)
+      .finish_o(finish),
+      .take_o(take),
+      .negative_o(negative),
+      .old_sign_o(old_sign)
   );
 
   always_ff @(posedge clk_i) begin
@@ -129,15 +129,15 @@ module deviation_accumulator #(
   deviation_steps #(
       .EightDirections(EightDirections)
   ) steps (
-      .*,
-      .run_i     (run_q),
-      .phase_i   (phase_q[2:0] | compare_q[2:0]),
-      .eight_i   (eight_q),
-      .take_i    (take),
+      .clk_i,
+      .run_i(run_q),
+      .phase_i(phase_q[2:0] | compare_q[2:0]),
+      .eight_i(eight_q),
+      .take_i(take),
       .negative_i(negative),
-      .words_i   ({ey_q[15:0], ex_q[15:0], halves, gy_q[15:0], gx_q[15:0], f_q[15:0]}),
-      .words_o   (back),
-      .sides_o   (sides)
+      .words_i({ey_q[15:0], ex_q[15:0], halves, gy_q[15:0], gx_q[15:0], f_q[15:0]}),
+      .words_o(back),
+      .sides_o(sides)
   );
 
   // State: shift chains; a chain that travels is full again when its last word is back.

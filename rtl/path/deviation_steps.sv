@@ -27,16 +27,17 @@ module deviation_steps #(
   assign after_sum = {1'b0, f} + {1'b0, change} + {16'd0, carry_q};
 
   deviation_lane first (
-      .*,
-      .phase_i   (phase_i[1:0]),
-      .skip_i    (skip),
+      .clk_i,
+      .run_i,
+      .phase_i(phase_i[1:0]),
+      .skip_i(skip),
       .negative_i(negative),
       .gradient_i(on_x ? gradient[15:0] : gradient[31:16]),
-      .half_i    (on_x ? half[15:0] : half[31:16]),
-      .left_i    (on_x ? left[15:0] : left[31:16]),
-      .change_o  (change),
+      .half_i(on_x ? half[15:0] : half[31:16]),
+      .left_i(on_x ? left[15:0] : left[31:16]),
+      .change_o(change),
       .gradient_o(gradient_x),
-      .left_o    (left_x)
+      .left_o(left_x)
   );
 
   always_ff @(posedge clk_i) begin
@@ -54,27 +55,30 @@ module deviation_steps #(
     assign skip = eight_i & ~take_i[0];
 
     deviation_lane second (
-        .*,
-        .phase_i   (phase_i[1:0]),
-        .skip_i    (~take_i[1]),
+        .clk_i,
+        .run_i,
+        .phase_i(phase_i[1:0]),
+        .skip_i(~take_i[1]),
         .negative_i(negative_i[1]),
         .gradient_i(gradient[31:16]),
-        .half_i    (half[31:16]),
-        .left_i    (left[31:16]),
-        .change_o  (change_y),
+        .half_i(half[31:16]),
+        .left_i(left[31:16]),
+        .change_o(change_y),
         .gradient_o(gradient_y),
-        .left_o    (left_y)
+        .left_o(left_y)
     );
 
     deviation_compare compare (
-        .*,
-        .deviation_i (f),
-        .phase_i     (phase_i[2:1]),
-        .minus_i     (negative_i & take_i),
-        .change_x_i  (change),
-        .change_y_i  (change_y),
-        .after_x_i   (after_first),
-        .after_both_o(after_both)
+        .clk_i,
+        .run_i,
+        .phase_i(phase_i[2:1]),
+        .minus_i(negative_i & take_i),
+        .deviation_i(f),
+        .change_x_i(change),
+        .change_y_i(change_y),
+        .after_x_i(after_first),
+        .after_both_o(after_both),
+        .sides_o
     );
 
     assign deviation = eight_i ? after_both : after_first;

@@ -61,100 +61,152 @@ module geometry_sequencer #(
     output logic      [    31:0] chain_o,
     output logic      [    31:0] begun_o
 );
-  logic [Axes-1:0] mask_o;
+  logic [Axes-1:0] mask;
   logic [     4:0] engine;
   logic            is_barrier;
   logic [     2:0] instant;
-  logic            end_o;
-  logic            wait_o;
-  logic            probe_end_o;
+  logic            is_end;
+  logic            is_wait;
+  logic            probe_end;
   logic            dropped;
-  logic            valid_o;
-  logic            pop_o;
+  logic            valid;
+  logic            pop;
   logic            decoder_idle;
-  logic            begin_o;
+  logic            begins;
   logic            runs;
-  logic            zero_o;
-  logic            last_o;
-  logic [    39:0] count_o;
-  logic [     2:0] period_o;  // {the line goes on, has gone on, a period's last tick is taken}
-  logic            lost_o;  // the next one is missing
-  logic            at_barrier_o;
+  logic            zero;
+  logic            last;
+  logic [    39:0] count;
+  logic [     2:0] period;  // {the line goes on, has gone on, a period's last tick is taken}
+  logic            lost;  // the next one is missing
+  logic            at_barrier;
 
-  assign runs = taking_o || (valid_o && !is_barrier && instant == 3'd0);
-  assign dropped = valid_o && drop_i[1] && !probe_end_o;
-  assign instant_o = {2{valid_o && !drop_i[1]}} & instant[1:0];
-  assign probe_at_o = {barrier_o[1] && wait_o, barrier_o[1] && probe_end_o, valid_o && instant[2] && !path_active_o};
+  assign runs = taking_o || (valid && !is_barrier && instant == 3'd0);
+  assign dropped = valid && drop_i[1] && !probe_end;
+  assign instant_o = {2{valid && !drop_i[1]}} & instant[1:0];
+  assign probe_at_o = {barrier_o[1] && is_wait, barrier_o[1] && probe_end, valid && instant[2] && !path_active_o};
 
   geometry_decoder #(
       .Axes   (Axes),
       .Engines(Engines)
   ) decoder (
-      .*,
-      .pop_i          (pop_o || instant_o != 2'd0 || probe_says_i[1] || dropped),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i(pop || instant_o != 2'd0 || probe_says_i[1] || dropped),
       .payload_ready_i(payload_ready_i && !engine_taken_o),
-      .engine_o       (engine),
-      .barrier_o      (is_barrier),
-      .instant_o      (instant),
-      .idle_o         (decoder_idle)
+      .shadows_free_i,
+      .empty_i,
+      .word_i,
+      .read_o,
+      .direct_load_i,
+      .load_o,
+      .mask_o(mask),
+      .engine_o(engine),
+      .barrier_o(is_barrier),
+      .instant_o(instant),
+      .end_o(is_end),
+      .wait_o(is_wait),
+      .probe_end_o(probe_end),
+      .idle_o(decoder_idle),
+      .valid_o(valid)
   );
 
   tick_counter ticks (
-      .*,
-      .next_i({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
-      .load_i(begin_o || barrier_o[0]),
-      .take_i((take_i && !stale_o[32]) || barrier_o[1])
+      .clk_i,
+      .rst_i,
+      .next_i ({load_o[21] && load_o[20:16] == load_target_pkg::TICKS, load_o[15:0]}),
+      .count_o(count),
+      .zero_o (zero),
+      .load_i (begins || barrier_o[0]),
+      .take_i ((take_i && !stale_o[32]) || barrier_o[1]),
+      .last_o (last)
   );
 
   path_sequencer #(
       .Axes(Axes)
   ) paths (
-      .*,
-      .valid_i       (valid_o && !dropped && instant == 3'd0),
-      .engine_i      (engine),
-      .barrier_i     (is_barrier),
-      .mask_i        (mask_o),
-      .last_i        (last_o),
-      .streaming_i   ({lost_o, streaming_o}),
-      .halt_i        (drop_i[0]),
-      .barrier_done_i(barrier_o[2])
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .halt_i(drop_i[0]),
+      .valid_i(valid && !dropped && instant == 3'd0),
+      .engine_i(engine),
+      .barrier_i(is_barrier),
+      .mask_i(mask),
+      .pop_o(pop),
+      .direct_go_i,
+      .direct_mask_i,
+      .streaming_i({lost, streaming_o}),
+      .period_o(period),
+      .take_i,
+      .last_i(last),
+      .taking_o,
+      .swap_o,
+      .begin_o(begins),
+      .active_o,
+      .engine_o,
+      .direct_o,
+      .axes_live_i,
+      .done_i,
+      .elsewhere_i,
+      .engine_taken_o,
+      .incomplete_o,
+      .over_o,
+      .barrier_done_i(barrier_o[2]),
+      .at_barrier_o(at_barrier),
+      .path_active_o
   );
 
-  assign stale_o[32] = period_o[1];
+  assign stale_o[32] = period[1];
 
   if (Engines[card_map_pkg::ENGINE_STREAMING]) begin : gen_streaming
     position_streaming periods (
-        .*,
-        .begin_i (begin_o),
-        .count_i (count_o),
-        .period_i(period_o),
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .setting_i,
+        .arrive_i,
+        .rest_i,
+        .begin_i (begins),
+        .count_i (count),
+        .period_i(period),
+        .take_i,
+        .streaming_o,
+        .missing_o,
+        .lost_o  (lost),
         .ticks_o (stale_o[31:0])
     );
   end else begin : gen_no_streaming
-    assign {streaming_o, missing_o, lost_o, stale_o[31:0]} = '0;
+    assign {streaming_o, missing_o, lost, stale_o[31:0]} = '0;
 
     logic unused;
-    assign unused = &{1'b0, setting_i, arrive_i, rest_i, count_o, period_o};
+    assign unused = &{1'b0, setting_i, arrive_i, rest_i, count, period};
   end
 
 
   // A barrier that has begun is over where the others are dropped.
   barrier both_queues (
-      .*,
-      .cut_i          (cut_i || (drop_i[0] && !(valid_o && probe_end_o))),
-      .geometry_at_i  (at_barrier_o),
+      .clk_i,
+      .rst_i,
+      .cut_i(cut_i || (drop_i[0] && !(valid && probe_end))),
+      .geometry_at_i(at_barrier),
       .geometry_runs_i(runs),
-      .zero_i         (zero_o),
-      .end_i          (end_o),
-      .wait_i         (wait_o),
-      .stays_i        (probe_end_o && probe_says_i[2]),
-      .met_i          (probe_says_i[0]),
-      .drop_i         (drop_i[1]),
-      .last_i         (last_o),
-      .begin_i        (swap_o),
-      .load_o         (barrier_o[0]),
-      .counting_o     (barrier_o[1]),
-      .done_o         (barrier_o[2])
+      .feed_at_i,
+      .feed_runs_i,
+      .zero_i(zero),
+      .end_i(is_end),
+      .wait_i(is_wait),
+      .met_i(probe_says_i[0]),
+      .stays_i(probe_end && probe_says_i[2]),
+      .drop_i(drop_i[1]),
+      .last_i(last),
+      .begin_i(swap_o),
+      .mismatch_o,
+      .load_o(barrier_o[0]),
+      .counting_o(barrier_o[1]),
+      .done_o(barrier_o[2]),
+      .ended_o
   );
 
   // A direct move does not count, nor what is neither path nor barrier. A barrier that had begun has counted.
@@ -162,8 +214,14 @@ module geometry_sequencer #(
   assign drop_counts = dropped && instant == 3'd0 && barrier_o[2:1] == 2'd0;
 
   begun_counter begun (
-      .*,
-      .begin_i((swap_o && !direct_o) || barrier_o[0] || drop_counts)
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .begin_i((swap_o && !direct_o) || barrier_o[0] || drop_counts),
+      .snapshot_i,
+      .chain_i,
+      .chain_o,
+      .begun_o
   );
 
   // A barrier is over before its command is.

@@ -46,7 +46,9 @@ module path_commands #(
     input_pins #(
         .Inputs(Inputs)
     ) inputs (
-        .*,
+        .clk_i,
+        .rst_i,
+        .setting_i,
         .pin_i  (input_i),
         .level_o(levels)
     );
@@ -54,39 +56,53 @@ module path_commands #(
     instant_commands #(
         .Outputs(Outputs)
     ) instants (
-        .*,
-        .cut_i   (cut_i || drop_o[0]),
-        .marks_o (marks),
+        .clk_i,
+        .rst_i,
+        .cut_i(cut_i || drop_o[0]),
+        .load_i,
+        .taken_i,
+        .over_i,
+        .runs_i,
+        .mark_o,
+        .marks_o(marks),
         .change_o(change),
-        .set_o   (set),
-        .clear_o (clear)
+        .set_o(set),
+        .clear_o(clear)
     );
 
     output_pins #(
         .Outputs(Outputs)
     ) outputs (
-        .*,
-        .idle_i  (output_idle_i),
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .setting_i,
+        .idle_i(output_idle_i),
         .change_i(change),
-        .set_i   (set),
-        .clear_i (clear),
-        .pin_o   (output_o)
+        .set_i(set),
+        .clear_i(clear),
+        .pin_o(output_o)
     );
 
     probe edges (
-        .*,
-        .level_i (levels),
-        .waits_i (probe_at_i[0]),
-        .ends_i  (probe_at_i[1]),
-        .clear_i (probe_clear_i),
-        .met_o   (probe_says_o[0]),
-        .taken_o (probe_says_o[1]),
-        .stays_o (probe_says_o[2]),
-        .trip_o  (probe_o),
-        .hold_o  (probe_hold_o),
-        .halt_o  (drop_o[0]),
-        .drop_o  (drop_o[1]),
-        .busy_o  (probing_o),
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .level_i(levels),
+        .load_i,
+        .waits_i(probe_at_i[0]),
+        .ends_i(probe_at_i[1]),
+        .at_rest_i,
+        .stopping_i,
+        .clear_i(probe_clear_i),
+        .met_o(probe_says_o[0]),
+        .taken_o(probe_says_o[1]),
+        .stays_o(probe_says_o[2]),
+        .trip_o(probe_o),
+        .hold_o(probe_hold_o),
+        .halt_o(drop_o[0]),
+        .drop_o(drop_o[1]),
+        .busy_o(probing_o),
         .status_o(probe_status)
     );
 

@@ -98,29 +98,35 @@ module path_engines #(
     pulse_generator #(
         .Counted(0)
     ) prescaler (
-        .*,
-        .clear_i         (cut_i),
-        .chord_i         (1'b0),
-        .active_i        (engine_i != LINES),
-        .counted_i       (1'b0),
-        .mirror_i        (1'b0),
+        .clk_i,
+        .rst_i,
+        .clear_i(cut_i),
+        .tick_i,
+        .swap_i,
+        .chord_i(1'b0),
+        .active_i(engine_i != LINES),
+        .counted_i(1'b0),
+        .mirror_i(1'b0),
         .load_increment_i(load_i[21] && load_i[20:16] == load_target_pkg::PRESCALE),
-        .load_count_i    (1'b0),
-        .word_i          (load_i[15:0]),
-        .step_o          (prescaler_step),
-        .dir_o           (),
-        .live_o          ()
+        .load_count_i(1'b0),
+        .word_i(load_i[15:0]),
+        .step_o(prescaler_step),
+        .dir_o(),
+        .live_o()
     );
 
     path_tick_gate gate (
-        .*,
-        .coming_i         (coming),
-        .step_i           (prescaler_step && !on_arc),
-        .engine_ready_i   (engine_ready),
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .coming_i(coming),
+        .step_i(prescaler_step && !on_arc),
+        .engine_ready_i(engine_ready),
         .engine_stepping_i(engine_stepping),
-        .tick_o           (path_tick_o),
-        .ready_o          (gate_ready),
-        .payload_ready_o  (gate_payload_ready)
+        .tick_o(path_tick_o),
+        .ready_o(gate_ready),
+        .payload_ready_o(gate_payload_ready),
+        .done_o
     );
 
     if (Engines[ACCUMULATOR]) begin : gen_accumulator
@@ -136,17 +142,19 @@ module path_engines #(
       deviation_accumulator #(
           .EightDirections(32'(Engines[card_map_pkg::ENGINE_ACCUMULATOR_8]))
       ) deviation (
-          .*,
-          .clear_i   (cut_i),
-          .start_i   (swap_i && engine_i == ACCUMULATOR),
-          .tick_i    (path_tick_o && engine_q == ACCUMULATOR),
-          .step_x_o  (step_x),
-          .dir_x_o   (dir_x),
-          .step_y_o  (step_y),
-          .dir_y_o   (dir_y),
-          .ready_o   (accumulator[2*Axes]),
-          .at_end_o  (accumulator[2*Axes+1]),
-          .stepping_o(accumulator[2*Axes+2])
+          .clk_i,
+          .rst_i,
+          .clear_i(cut_i),
+          .load_i,
+          .start_i(swap_i && engine_i == ACCUMULATOR),
+          .tick_i(path_tick_o && engine_q == ACCUMULATOR),
+          .step_x_o(step_x),
+          .dir_x_o(dir_x),
+          .step_y_o(step_y),
+          .dir_y_o(dir_y),
+          .ready_o(accumulator[2*Axes]),
+          .stepping_o(accumulator[2*Axes+2]),
+          .at_end_o(accumulator[2*Axes+1])
       );
 
       // Its steps go to the two axes of the arc's plane. The plane is loaded with the arc, that is when no other arc runs,
@@ -181,11 +189,16 @@ module path_engines #(
       arc_generator #(
           .Axes(Axes)
       ) arc (
-          .*,
-          .clear_i   (cut_i || over_q),
-          .start_i   (swap_i && engine_i == ARC_GENERATOR),
-          .tick_i    (chord_tick),
-          .ready_o   (arc_ready),
+          .clk_i,
+          .rst_i,
+          .clear_i(cut_i || over_q),
+          .load_i,
+          .start_i(swap_i && engine_i == ARC_GENERATOR),
+          .tick_i(chord_tick),
+          .chord_word_o,
+          .chord_load_o,
+          .chord_swap_o,
+          .ready_o(arc_ready),
           .loadable_o(shadows_free_o)
       );
     end else begin : gen_no_arc_generator

@@ -52,51 +52,92 @@ module register_file #(
     input wire logic [31:0] chain_i
 );
 
-  logic        live_o;
-  logic        sample_o;
-  logic        read_o;
-  logic        clear_refusal_o;
-  logic        refuse_o;
-  logic [15:0] reason_o;  // {number, reason}
+  logic        live;
+  logic        sample;
+  logic        read;
+  logic        clear_refusal;
+  logic        refuse;
+  logic [15:0] reason;  // {number, reason}
   logic        snapshot;
-  logic        active_o;
-  logic [40:0] store_o;
-  logic [ 7:0] clocks_o;
-  logic        writing_o;
+  logic        active;
+  logic [40:0] store;
+  logic [ 7:0] clocks;
+  logic        writing;
   logic [31:0] live_data;
 
   register_access #(
       .Axes(Axes),
       .Engines(Engines)
   ) i_access (
-      .*,
-      .writing_i (writing_o || active_o),
-      .direct_i  (motion_i[1]),
-      .snapshot_o(snapshot)
+      .clk_i,
+      .rst_i,
+      .request_i,
+      .access_i,
+      .ack_o,
+      .error_o,
+      .writing_i(writing || active),
+      .direct_i(motion_i[1]),
+      .live_o(live),
+      .sample_o(sample),
+      .read_o(read),
+      .setting_o,
+      .clear_fault_o,
+      .clear_refusal_o(clear_refusal),
+      .snapshot_o(snapshot),
+      .abort_o,
+      .probe_clear_o,
+      .flush_o,
+      .stream_write_o,
+      .checker_i,
+      .start_o,
+      .start_answer_i,
+      .refuse_o(refuse),
+      .reason_o(reason)
   );
 
   register_live #(
       .Ports  (Ports),
       .Engines(Engines)
   ) i_live (
-      .*,
+      .clk_i,
+      .rst_i,
       .setting_i(setting_o),
       .snapshot_i(snapshot_o),
-      .sample_i(sample_o),
+      .sample_i(sample),
       .access_i({access_i[47:46], access_i[43:32]}),
-      .clear_refusal_i(clear_refusal_o),
-      .refuse_i(refuse_o),
-      .reason_i(reason_o),
-      .snapshotting_i(active_o),
+      .clear_refusal_i(clear_refusal),
+      .refuse_i(refuse),
+      .reason_i(reason),
+      .motion_i,
+      .held_i,
+      .late_i,
+      .snapshotting_i(active),
       .incomplete_i(checker_i[18]),
-      .data_o(live_data)
+      .low_i,
+      .fault_i,
+      .room_i,
+      .begun_i,
+      .io_i,
+      .status_o,
+      .data_o(live_data),
+      .chain_o,
+      .irq_o
   );
 
   snapshot_writer #(
       .Axes(Axes)
   ) i_snapshot (
-      .*,
-      .host_i(snapshot)
+      .clk_i,
+      .rst_i,
+      .host_i  (snapshot),
+      .stop_i,
+      .probe_i,
+      .mark_i,
+      .chain_i,
+      .snapshot_o,
+      .active_o(active),
+      .clocks_o(clocks),
+      .store_o (store)
   );
 
   // The direct loader owns the RAM's read side from its start to its end; the START write waits all the while.
@@ -110,15 +151,19 @@ module register_file #(
   register_ram #(
       .Axes(Axes)
   ) i_ram (
-      .*,
+      .clk_i,
+      .rst_i,
+      .constants_i,
+      .idle_level_i,
       .setting_i(setting_o),
-      .snapshot_i(store_o),
-      .clocks_i(clocks_o),
+      .snapshot_i(store),
+      .clocks_i(clocks),
       .address_i(loading_q ? loader_address_i : access_i[41:34]),
+      .writing_o(writing),
       .data_o(loader_data_o)
   );
 
-  assign data_o = !read_o ? '0 : live_o ? live_data : loader_data_o;
+  assign data_o = !read ? '0 : live ? live_data : loader_data_o;
 
 endmodule
 `default_nettype wire

@@ -128,7 +128,8 @@ module register_live #(
   snapshot_slice #(
       .Width(16)
   ) i_fault (
-      .*,
+      .clk_i,
+      .snapshot_i,
       .value_i(fault_i[15:0]),
       .chain_i(32'd0),
       .chain_o(chain)
@@ -137,9 +138,11 @@ module register_live #(
   snapshot_slice #(
       .Width(18)
   ) i_status (
-      .*,
+      .clk_i,
+      .snapshot_i,
       .value_i(status_o[17:0] & ~(18'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
-      .chain_i(chain)
+      .chain_i(chain),
+      .chain_o
   );
 
 endmodule

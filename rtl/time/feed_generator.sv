@@ -212,8 +212,11 @@ module feed_generator (
   assign rate_o = slope_high_q;
 
   snapshot_slice rate (
-      .*,
-      .value_i(rate_o)
+      .clk_i,
+      .snapshot_i,
+      .value_i(rate_o),
+      .chain_i,
+      .chain_o
   );
 endmodule
 

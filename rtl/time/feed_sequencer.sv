@@ -60,30 +60,44 @@ module feed_sequencer #(
   feed_decoder #(
       .Engines(Engines)
   ) decoder (
-      .*,
-      .pop_i      (swap || barrier_i[2] || dropped),
-      .active_i   (active_o),
-      .piece_o    (piece),
-      .class_o    (piece_class),
-      .barrier_o  (is_barrier),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i(swap || barrier_i[2] || dropped),
+      .active_i(active_o),
+      .empty_i,
+      .word_i,
+      .read_o,
+      .load_o,
+      .piece_o(piece),
+      .class_o(piece_class),
+      .barrier_o(is_barrier),
       .probe_end_o(is_probe_end),
-      .valid_o    (valid)
+      .idle_o,
+      .valid_o(valid)
   );
 
   tick_counter ticks (
-      .*,
+      .clk_i,
+      .rst_i,
       .next_i ({load_o[19] && load_o[18:16] == load_target_pkg::FEED_TICKS, load_o[15:0]}),
       .count_o(),
       .zero_o (),
-      .take_i (take_i && !spent_o),
       .load_i (swap),
+      .take_i (take_i && !spent_o),
       .last_o (last)
   );
 
   // A barrier that had begun has counted.
   begun_counter begun (
-      .*,
-      .begin_i(swap_o || barrier_i[0] || (dropped && barrier_i[2:1] == 2'd0))
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .begin_i(swap_o || barrier_i[0] || (dropped && barrier_i[2:1] == 2'd0)),
+      .snapshot_i,
+      .chain_i,
+      .chain_o,
+      .begun_o
   );
 
   always_ff @(posedge clk_i) begin

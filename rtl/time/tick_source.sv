@@ -46,84 +46,127 @@ module tick_source #(
     input  wire logic [31:0] chain_i,
     output logic      [31:0] chain_o
 );
-  logic [ 1:0] class_o;
-  logic        enable_o;
+  logic [ 1:0] piece_class;
+  logic        enable;
   logic        feed_tick;
-  logic        feed_enable_o;
-  logic        feed_clear_o;
-  logic [19:0] load_o;
+  logic        feed_enable;
+  logic        feed_clear;
+  logic [19:0] load;
   logic        decoder_idle;
-  logic        decoded_o;
-  logic        spent_o;
-  logic        wait_o;
+  logic        decoded;
+  logic        spent;
+  logic        must_wait;
   logic [31:0] ratio_chain;
   logic [31:0] rate_chain;
 
   assign idle_o  = decoder_idle && empty_i && !active_o;
-  assign fixed_o = class_o == 2'(card_map_pkg::CLASS_FIXED);
+  assign fixed_o = piece_class == 2'(card_map_pkg::CLASS_FIXED);
 
   time_base #(
       .Engines(Engines)
   ) base (
-      .*,
-      .class_i(class_o),
-      .chain_o(ratio_chain)
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .hold_i,
+      .class_i (piece_class),
+      .snapshot_i,
+      .chain_i,
+      .chain_o (ratio_chain),
+      .enable_o(enable),
+      .ratio_o
   );
 
   feed_sequencer #(
       .Engines(Engines)
   ) pieces (
-      .*,
-      .take_i (take_o),
-      .wait_i (wait_o),
-      .idle_o (decoder_idle),
-      .chain_i(rate_chain)
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .empty_i,
+      .word_i,
+      .read_o,
+      .take_i(take_o),
+      .direct_i,
+      .wait_i(must_wait),
+      .streaming_i,
+      .taking_i,
+      .drop_i,
+      .barrier_i,
+      .at_barrier_o,
+      .runs_o,
+      .active_o,
+      .decoded_o(decoded),
+      .spent_o(spent),
+      .moving_o,
+      .class_o(piece_class),
+      .idle_o(decoder_idle),
+      .swap_o,
+      .load_o(load),
+      .snapshot_i,
+      .chain_i(rate_chain),
+      .chain_o,
+      .begun_o
   );
 
   if (Engines[card_map_pkg::ENGINE_UNDERRUN_HOLD]) begin : gen_underrun_hold
     underrun_guard #(
         .Probing(Engines[card_map_pkg::ENGINE_PATH_COMMANDS])
     ) guard (
-        .*,
-        .cut_i      (cut_i || streaming_i),
-        .lost_i     (drop_i[0]),
-        .idle_i     (card_idle_i),
-        .arrive_i   (arrive_i[20:0]),
-        .full_i     (arrive_i[21]),
-        .load_i     (load_o),
-        .take_i     (take_o && active_o),
-        .swap_i     (swap_o),
-        .active_i   (active_o),
-        .ratio_i    (ratio_o),
-        .decoded_i  (decoded_o),
-        .hold_o     (underrun_hold_o),
-        .shown_o    (underrun_o[32]),
+        .clk_i,
+        .rst_i,
+        .cut_i(cut_i || streaming_i),
+        .lost_i(drop_i[0]),
+        .idle_i(card_idle_i),
+        .arrive_i(arrive_i[20:0]),
+        .full_i(arrive_i[21]),
+        .load_i(load),
+        .take_i(take_o && active_o),
+        .swap_i(swap_o),
+        .active_i(active_o),
+        .decoded_i(decoded),
+        .ratio_i(ratio_o),
+        .wait_o(must_wait),
+        .hold_o(underrun_hold_o),
+        .shown_o(underrun_o[32]),
         .underruns_o(underrun_o[31:0])
     );
   end else begin : gen_no_underrun_hold
-    assign {wait_o, underrun_hold_o, underrun_o} = '0;
+    assign {must_wait, underrun_hold_o, underrun_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, arrive_i, decoded_o, card_idle_i};
+    assign unused = &{1'b0, arrive_i, decoded, card_idle_i};
   end
 
   feed_generator generator (
-      .*,
-      .clear_i (feed_clear_o),
-      .enable_i(feed_enable_o),
-      .freeze_i(spent_o),
-      .load_i  (load_o),
+      .clk_i,
+      .rst_i,
+      .clear_i (feed_clear),
+      .enable_i(feed_enable),
+      .freeze_i(spent),
+      .load_i  (load),
       .swap_i  (swap_o),
+      .snapshot_i,
       .chain_i (ratio_chain),
       .chain_o (rate_chain),
-      .tick_o  (feed_tick)
+      .tick_o  (feed_tick),
+      .rate_o
   );
 
   tick_gate gate (
-      .*,
-      .enable_i     (enable_o),
-      .feed_tick_i  (feed_tick),
-      .feed_active_i(active_o)
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .enable_i(enable),
+      .feed_tick_i(feed_tick),
+      .feed_active_i(active_o),
+      .direct_i,
+      .taking_i,
+      .ready_i,
+      .take_o,
+      .tick_o,
+      .feed_enable_o(feed_enable),
+      .feed_clear_o(feed_clear)
   );
 endmodule
 

@@ -114,8 +114,11 @@ module time_base #(
   snapshot_slice #(
       .Width(18)
   ) ratio (
-      .*,
-      .value_i({1'b0, ratio_o})
+      .clk_i,
+      .snapshot_i,
+      .value_i({1'b0, ratio_o}),
+      .chain_i,
+      .chain_o
   );
 
   logic unused;

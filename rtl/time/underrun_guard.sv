@@ -85,28 +85,37 @@ module underrun_guard #(
   queued_ticks #(
       .Reserve(Reserve)
   ) queued (
-      .*,
-      .forget_i        (lost),
-      .word_i          (step_q[1:0]),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .forget_i(lost),
+      .arrive_i,
+      .take_i,
+      .word_i(step_q[1:0]),
       .inverted_limit_i(inverted_limit),
       .geometry_short_o(geometry_short),
-      .feed_short_o    (feed_short),
-      .covered_o       (covered),
-      .at_rest_o       (at_rest),
-      .at_barrier_o    (at_barrier)
+      .feed_short_o(feed_short),
+      .covered_o(covered),
+      .at_rest_o(at_rest),
+      .at_barrier_o(at_barrier)
   );
 
   stop_ticks stop (
-      .*,
-      .step_i     (step_q),
-      .keep_i     (hold_o),
-      .twice_i    (hold_o),
-      .none_i     (standing && full_i),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .step_i(step_q),
+      .ratio_i,
+      .keep_i(hold_o),
+      .twice_i(hold_o),
+      .none_i(standing && full_i),
+      .load_i,
+      .swap_i,
       .from_rest_i(from_rest_q),
-      .follow_i   (follow),
+      .follow_i(follow),
       .next_zero_o(next_zero),
-      .ruled_o    (ruled),
-      .inverted_o (inverted_limit)
+      .ruled_o(ruled),
+      .inverted_o(inverted_limit)
   );
 
   logic decoded_q;

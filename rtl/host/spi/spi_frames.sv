@@ -19,7 +19,13 @@ module spi_frames (
   logic       ready;
 
   spi_port port (
-      .*,
+      .clk_i,
+      .rst_i,
+      .sck_i,
+      .cs_n_i,
+      .mosi_i,
+      .miso_o,
+      .miso_enable_o,
       .byte_o (received),
       .valid_i(valid),
       .byte_i (sent),
@@ -27,12 +33,17 @@ module spi_frames (
   );
 
   frame_engine engine (
-      .*,
+      .clk_i,
+      .rst_i,
       .restart_i(1'b0),
       .byte_i(received),
       .valid_o(valid),
       .byte_o(sent),
-      .ready_i(ready)
+      .ready_i(ready),
+      .access_o,
+      .ack_i,
+      .error_i,
+      .data_i
   );
 endmodule
 `default_nettype wire

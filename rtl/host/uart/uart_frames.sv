@@ -21,7 +21,10 @@ module uart_frames #(
   uart_port #(
       .BreakBits(BreakBits)
   ) port (
-      .*,
+      .clk_i,
+      .rst_i,
+      .rx_i,
+      .tx_o,
       .restart_o(restart),
       .byte_o(received),
       .valid_i(valid),
@@ -30,12 +33,17 @@ module uart_frames #(
   );
 
   frame_engine engine (
-      .*,
+      .clk_i,
+      .rst_i,
       .restart_i(restart),
       .byte_i(received),
       .valid_o(valid),
       .byte_o(sent),
-      .ready_i(ready)
+      .ready_i(ready),
+      .access_o,
+      .ack_i,
+      .error_i,
+      .data_i
   );
 endmodule
 `default_nettype wire

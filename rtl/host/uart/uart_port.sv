@@ -44,25 +44,34 @@ module uart_port #(
   uart_baud #(
       .BreakBits(BreakBits)
   ) baud (
-      .*,
+      .clk_i,
+      .rst_i,
       .level_i (rx_second_q),
       .fall_i  (fall),
+      .restart_o,
       .known_o (known),
       .period_o(period)
   );
 
   uart_receiver receiver (
-      .*,
+      .clk_i,
+      .rst_i,
       .level_i (rx_second_q),
       .fall_i  (fall),
       .known_i (known),
-      .period_i(period)
+      .period_i(period),
+      .byte_o
   );
 
   uart_transmitter transmitter (
-      .*,
+      .clk_i,
+      .rst_i,
       .known_i (known),
-      .period_i(period)
+      .period_i(period),
+      .valid_i,
+      .byte_i,
+      .ready_o,
+      .tx_o
   );
 endmodule
 `default_nettype wire

@@ -20,7 +20,8 @@ module uart_receiver (
   assign stop  = bit_q[3] && bit_q[0];
 
   uart_timer timer (
-      .*,
+      .clk_i,
+      .period_i,
       .start_i(start),
       .half_i (1'b1),
       .end_o  (sample)

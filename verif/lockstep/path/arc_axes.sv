@@ -24,7 +24,21 @@ module arc_axes #(
   logic tick_q;
   always_ff @(posedge clk_i) tick_q <= tick_i && !clear_i && !rst_i;
 
-  arc_generator #(.Axes(Axes)) generator (.*);
+  arc_generator #(
+      .Axes(Axes)
+  ) generator (
+      .clk_i,
+      .rst_i,
+      .clear_i,
+      .load_i,
+      .start_i,
+      .tick_i,
+      .chord_word_o,
+      .chord_load_o,
+      .chord_swap_o,
+      .ready_o,
+      .loadable_o
+  );
 
   logic [34*Axes-1:0] observe;
   assign {path_dir_o, path_step_o} = observe[2*Axes-1:0];
@@ -33,26 +47,30 @@ module arc_axes #(
       .Axes   (Axes),
       .Counted(0)
   ) motors (
-      .*,
-      .cut_i        (clear_i),
-      .idle_level_i ('0),
-      .setting_i    ('0),
-      .tick_i       (tick_q || line_tick_i),
-      .direct_i     (1'b0),
-      .chord_word_i (chord_word_o),
-      .chord_load_i (chord_load_o),
-      .chord_swap_i (chord_swap_o),
+      .clk_i,
+      .rst_i,
+      .cut_i(clear_i),
+      .idle_level_i('0),
+      .setting_i('0),
+      .load_i,
+      .tick_i(tick_q || line_tick_i),
+      .swap_i,
+      .active_i,
+      .direct_i(1'b0),
+      .chord_word_i(chord_word_o),
+      .chord_load_i(chord_load_o),
+      .chord_swap_i(chord_swap_o),
       .engine_step_i('0),
-      .engine_dir_i ('0),
-      .snapshot_i   ('0),
-      .chain_i      ('0),
-      .chain_o      (),
-      .live_o       (),
-      .busy_o       (),
-      .fault_o      (),
-      .observe_o    (observe),
-      .step_o       (),
-      .dir_o        ()
+      .engine_dir_i('0),
+      .snapshot_i('0),
+      .chain_i('0),
+      .chain_o(),
+      .live_o(),
+      .busy_o(),
+      .fault_o(),
+      .observe_o(observe),
+      .step_o(),
+      .dir_o()
   );
 
   logic unused;
