@@ -49,15 +49,18 @@ module card_with_ports #(
     input wire logic rready_i,
     output logic [31:0] rdata_o,
     output logic [1:0] rresp_o,
-    // Wishbone B4: {CYC, STB, WE, SEL, ADR, DAT}, {ACK, ERR, STALL, DAT}
-    input wire logic [50:0] wishbone_i,
-    output logic [34:0] wishbone_o,
+    // Wishbone B4
+    input wire logic [wishbone_request_pkg::WIDTH-1:0] wishbone_i,
+    output logic [wishbone_answer_pkg::WIDTH-1:0] wishbone_o,
     // UART
     input wire logic rx_i,
     output logic tx_o,
-    // SPI: {MOSI, CS low active, SCK}, {enable, MISO}
-    input wire logic [2:0] spi_i,
-    output logic [1:0] spi_o,
+    // SPI
+    input wire logic sck_i,
+    input wire logic cs_n_i,
+    input wire logic mosi_i,
+    output logic miso_o,
+    output logic miso_enable_o,  // low: MISO is for others
     // pins
     input wire logic [Inputs-1:0] input_i,
     output logic [Outputs-1:0] output_o,
@@ -65,7 +68,7 @@ module card_with_ports #(
     output logic [Axes-1:0] dir_o,
     output logic irq_o,
     // for lockstep; a board leaves it open
-    output logic [34*Axes+212:0] observe_o
+    output logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*Axes-1:0] observe_o
 );
   // The reset is registered once for all blocks: it takes effect a clock later, and nothing combinational hangs on the
   // pin.
@@ -74,11 +77,8 @@ module card_with_ports #(
 
   localparam int PORTS = (AxiLite != 0 ? 1 : 0) + (Wishbone != 0 ? 1 : 0) + (Uart != 0 ? 1 : 0) + (Spi != 0 ? 1 : 0);
 
-  logic        request;
-  logic [47:0] access;  // {port, write, partial, address, data}
-  logic        ack;
-  logic        error;
-  logic [31:0] data;
+  logic [register_access_pkg::WIDTH-1:0] access;
+  logic [register_answer_pkg::WIDTH-1:0] answer;
 
   host_ports #(
       .AxiLite(AxiLite),
@@ -110,13 +110,13 @@ module card_with_ports #(
       .wishbone_o,
       .rx_i,
       .tx_o,
-      .spi_i,
-      .spi_o,
-      .request_o(request),
+      .sck_i,
+      .cs_n_i,
+      .mosi_i,
+      .miso_o,
+      .miso_enable_o,
       .access_o(access),
-      .ack_i(ack),
-      .error_i(error),
-      .data_i(data)
+      .answer_i(answer)
   );
 
   card_core #(
@@ -141,15 +141,8 @@ module card_with_ports #(
   ) core (
       .clk_i,
       .rst_i(rst_q),
-      .request_i(request),
-      .write_i(access[45]),
-      .partial_i(access[44]),
-      .port_i(access[47:46]),
-      .address_i(access[43:32]),
-      .data_i(access[31:0]),
-      .ack_o(ack),
-      .error_o(error),
-      .data_o(data),
+      .access_i(access),
+      .answer_o(answer),
       .clock_hz_i,
       .idle_level_i,
       .output_idle_i,

@@ -4,60 +4,53 @@
 module tick_source #(
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic        hold_i,
-    input  wire logic [40:0] setting_i,
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic hold_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     // queue
-    input  wire logic        empty_i,
-    input  wire logic [15:0] word_i,
-    output logic             read_o,
-    // what is queued
-    // {a queue may have no room for the next command, drop, geometry {commit, write}, feed {commit, write}, halfword}
-    input  wire logic [21:0] arrive_i,
+    input wire logic empty_i,
+    input wire logic [15:0] word_i,
+    output logic read_o,
+    input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     // ticks
-    input  wire logic        direct_i,         // a direct move is under way
-    input  wire logic        taking_i,         // a path takes ticks
-    input  wire logic        ready_i,          // and so does its engine
-    output logic             take_o,           // combinational
-    output logic             tick_o,
-    output logic             swap_o,           // of the feed piece
-    input  wire logic        streaming_i,      // position streaming
-    // probe
-    input  wire logic [ 1:0] drop_i,           // {commands up to PROBE_END are dropped, event: the piece ends here}
-    input  wire logic        card_idle_i,      // nothing runs, is decoded or queued; up to four clocks late
+    input wire logic [path_pkg::WIDTH-1:0] path_i,
+    input wire logic ready_i,  // the path's engine takes ticks
+    output logic take_o,  // combinational
+    output logic tick_o,
+    output logic swap_o,  // of the feed piece
+    input wire logic card_idle_i,  // nothing runs, is decoded or queued; up to four clocks late
     // barriers
-    input  wire logic [ 2:0] barrier_i,        // {done, counts, begins}
-    output logic             at_barrier_o,
-    output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
+    output logic at_barrier_o,
+    output logic runs_o,  // a piece gives ticks, or a decoded one waits (combinational)
     // under-run
-    output logic             underrun_hold_o,
-    output logic      [32:0] underrun_o,       // {it holds, or keeps a piece waiting; how often it has held}
+    output logic underrun_hold_o,
+    output logic underrun_o,  // it holds, or keeps a piece waiting
+    output logic [31:0] underruns_o,  // how often it has held
     // status
-    output logic             active_o,         // a piece gives ticks
-    output logic             moving_o,         // and has, or the one before it in one go
-    output logic             fixed_o,          // the piece's class is fixed (combinational)
-    output logic             idle_o,           // nothing runs, is decoded or queued (combinational)
-    output logic      [16:0] ratio_o,
-    output logic      [31:0] rate_o,
-    output logic      [31:0] begun_o,
-    input  wire logic [ 1:0] snapshot_i,
-    input  wire logic [31:0] chain_i,
-    output logic      [31:0] chain_o
+    output logic active_o,  // a piece gives ticks
+    output logic moving_o,  // and has, or the one before it in one go
+    output logic fixed_o,  // the piece's class is fixed (combinational)
+    output logic idle_o,  // nothing runs, is decoded or queued (combinational)
+    output logic [16:0] ratio_o,
+    output logic [31:0] rate_o,
+    output logic [31:0] begun_o,
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o
 );
-  logic [ 1:0] piece_class;
-  logic        enable;
-  logic        feed_tick;
-  logic        feed_enable;
-  logic        feed_clear;
-  logic [19:0] load;
-  logic        decoder_idle;
-  logic        decoded;
-  logic        spent;
-  logic        must_wait;
-  logic [31:0] ratio_chain;
-  logic [31:0] rate_chain;
+  logic [                     1:0] piece_class;
+  logic                            enable;
+  logic                            feed_tick;
+  logic                            feed_enable;
+  logic                            feed_clear;
+  logic [feed_load_pkg::WIDTH-1:0] load;
+  logic                            decoder_idle;
+  logic                            decoded;
+  logic                            spent;
+  logic                            must_wait;
+  logic [ snapshot_pkg::WIDTH-1:0] behind_ratio;
+  logic [ snapshot_pkg::WIDTH-1:0] behind_rate;
 
   assign idle_o  = decoder_idle && empty_i && !active_o;
   assign fixed_o = piece_class == 2'(card_map_pkg::CLASS_FIXED);
@@ -69,10 +62,9 @@ module tick_source #(
       .rst_i,
       .setting_i,
       .hold_i,
-      .class_i (piece_class),
+      .class_i(piece_class),
       .snapshot_i,
-      .chain_i,
-      .chain_o (ratio_chain),
+      .snapshot_o(behind_ratio),
       .enable_o(enable),
       .ratio_o
   );
@@ -87,12 +79,8 @@ module tick_source #(
       .word_i,
       .read_o,
       .take_i(take_o),
-      .direct_i,
       .wait_i(must_wait),
-      .streaming_i,
-      .taking_i,
-      .drop_i,
-      .barrier_i,
+      .path_i,
       .at_barrier_o,
       .runs_o,
       .active_o,
@@ -103,9 +91,8 @@ module tick_source #(
       .idle_o(decoder_idle),
       .swap_o,
       .load_o(load),
-      .snapshot_i,
-      .chain_i(rate_chain),
-      .chain_o,
+      .snapshot_i(behind_rate),
+      .snapshot_o,
       .begun_o
   );
 
@@ -115,11 +102,10 @@ module tick_source #(
     ) guard (
         .clk_i,
         .rst_i,
-        .cut_i(cut_i || streaming_i),
-        .lost_i(drop_i[0]),
+        .cut_i(cut_i || path_i[path_pkg::STREAMING]),
+        .lost_i(path_i[path_pkg::HALT]),
         .idle_i(card_idle_i),
-        .arrive_i(arrive_i[20:0]),
-        .full_i(arrive_i[21]),
+        .arrival_i,
         .load_i(load),
         .take_i(take_o && active_o),
         .swap_i(swap_o),
@@ -128,28 +114,27 @@ module tick_source #(
         .ratio_i(ratio_o),
         .wait_o(must_wait),
         .hold_o(underrun_hold_o),
-        .shown_o(underrun_o[32]),
-        .underruns_o(underrun_o[31:0])
+        .shown_o(underrun_o),
+        .underruns_o
     );
   end else begin : gen_no_underrun_hold
-    assign {must_wait, underrun_hold_o, underrun_o} = '0;
+    assign {must_wait, underrun_hold_o, underrun_o, underruns_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, arrive_i, decoded, card_idle_i};
+    assign unused = &{1'b0, arrival_i, decoded, card_idle_i};
   end
 
   feed_generator generator (
       .clk_i,
       .rst_i,
-      .clear_i (feed_clear),
+      .clear_i(feed_clear),
       .enable_i(feed_enable),
       .freeze_i(spent),
-      .load_i  (load),
-      .swap_i  (swap_o),
-      .snapshot_i,
-      .chain_i (ratio_chain),
-      .chain_o (rate_chain),
-      .tick_o  (feed_tick),
+      .load_i(load),
+      .swap_i(swap_o),
+      .snapshot_i(behind_ratio),
+      .snapshot_o(behind_rate),
+      .tick_o(feed_tick),
       .rate_o
   );
 
@@ -160,8 +145,8 @@ module tick_source #(
       .enable_i(enable),
       .feed_tick_i(feed_tick),
       .feed_active_i(active_o),
-      .direct_i,
-      .taking_i,
+      .direct_i(path_i[path_pkg::DIRECT]),
+      .taking_i(path_i[path_pkg::TAKING]),
       .ready_i,
       .take_o,
       .tick_o,

@@ -6,16 +6,15 @@ module frame_engine (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic restart_i,  // event: a new connection (a break)
-    input wire logic [8:0] byte_i,  // {valid, byte}, 10 clocks apart at least
+    input wire logic received_i,  // event, 10 clocks apart at least
+    input wire logic [7:0] byte_i,  // with it
     // replies; combinational from registers
     output logic valid_o,
     output logic [7:0] byte_o,
     input wire logic ready_i,
     // to the inner port
-    output logic [47:0] access_o,  // {request, write, partial, 0, address, data}
-    input wire logic ack_i,
-    input wire logic error_i,
-    input wire logic [31:0] data_i
+    output logic [register_access_pkg::WIDTH-1:0] access_o,
+    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
 );
   localparam logic [1:0] WRITE = 2'd3;
 
@@ -89,6 +88,7 @@ module frame_engine (
       .rst_i,
       .listen_i(listen),
       .restart_i,
+      .received_i,
       .byte_i,
       .epoch_i(epoch),
       .crc_clear_o(crc_clear),
@@ -133,9 +133,7 @@ module frame_engine (
       .byte_o(execute_byte),
       .byte_i(ram_q),
       .access_o,
-      .ack_i,
-      .error_i,
-      .data_i
+      .answer_i
   );
 
   // Byte 0 lowest.

@@ -11,7 +11,8 @@ module uart_port #(
     output logic tx_o,
     // to the frame engine
     output logic restart_o,  // event: a break
-    output logic [8:0] byte_o,  // {event, byte}
+    output logic received_o,  // event
+    output logic [7:0] byte_o,  // with it
     input wire logic valid_i,
     input wire logic [7:0] byte_i,
     output logic ready_o  // combinational from registers
@@ -60,6 +61,7 @@ module uart_port #(
       .fall_i  (fall),
       .known_i (known),
       .period_i(period),
+      .received_o,
       .byte_o
   );
 
