@@ -3,6 +3,7 @@ buses/arrival_pkg.sv
 buses/axis_drive_pkg.sv
 buses/axis_observe_pkg.sv
 buses/card_constants_pkg.sv
+buses/commands_pkg.sv
 buses/engines_pkg.sv
 buses/feed_load_pkg.sv
 buses/feed_pkg.sv
@@ -12,6 +13,8 @@ buses/load_target_pkg.sv
 buses/move_pkg.sv
 buses/observe_pkg.sv
 buses/path_pkg.sv
+buses/pins_state_pkg.sv
+buses/probe_pkg.sv
 buses/queue_state_pkg.sv
 buses/refusal_pkg.sv
 buses/register_access_pkg.sv

@@ -3,12 +3,11 @@
 package feed_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int TAKE = 0;  // the tick is taken in this clock (combinational)
-  localparam int AT_BARRIER = 1;  // the feed stands at a barrier
-  localparam int RUNS = 2;  // a piece gives ticks, or a decoded one waits (combinational)
-  localparam int AT_REST = 3;  // the ratio is 0 (combinational)
-  localparam int STOPPING = 4;  // a fault's ramp
-  localparam int WIDTH = 5;
+  localparam int AT_BARRIER = 0;  // the feed stands at a barrier
+  localparam int RUNS = 1;  // a piece gives ticks, or a decoded one waits (combinational)
+  localparam int AT_REST = 2;  // the ratio is 0 (combinational)
+  localparam int STOPPING = 3;  // a fault's ramp
+  localparam int WIDTH = 4;
 
 endpackage
 `default_nettype wire

@@ -9,10 +9,5 @@ package wishbone_answer_pkg;
   localparam int ACK = 34;
   localparam int WIDTH = 35;
 
-  function automatic logic [WIDTH-1:0] pack(input logic ack, input logic err, input logic stall,
-                                            input logic [31:0] dat);
-    pack = {ack, err, stall, dat};
-  endfunction
-
 endpackage
 `default_nettype wire

@@ -112,6 +112,7 @@ module card_core #(
   logic busy;
   logic [time_state_pkg::WIDTH-1:0] time_state;
   logic [geometry_state_pkg::WIDTH-1:0] geometry_state;
+  logic [pins_state_pkg::WIDTH-1:0] pins_state;
   // between stream and what moves
   logic cut;
   logic closed;
@@ -138,6 +139,7 @@ module card_core #(
       .busy_i(busy),
       .time_state_i(time_state),
       .geometry_state_i(geometry_state),
+      .pins_state_i(pins_state),
       .queue_state_i(queue_state),
       .status_o(observe_o[observe_pkg::STATUS+:32]),
       .setting_o(setting),
@@ -215,6 +217,7 @@ module card_core #(
       .busy_o(busy),
       .time_state_o(time_state),
       .geometry_state_o(geometry_state),
+      .pins_state_o(pins_state),
       .path_tick_o(observe_o[observe_pkg::PATH_TICK]),
       .observe_o(observe_o[observe_pkg::WIDTH+:axis_observe_pkg::WIDTH*Axes]),
       .step_o,

@@ -19,6 +19,7 @@ module geometry_part #(
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     // the other parts
     input wire logic [feed_pkg::WIDTH-1:0] feed_i,
+    input wire logic take_i,  // the tick is taken in this clock (combinational)
     input wire logic [engines_pkg::WIDTH-1:0] engines_i,
     output logic [path_pkg::WIDTH-1:0] path_o,
     output logic [load_bus_pkg::WIDTH-1:0] load_o,
@@ -37,6 +38,7 @@ module geometry_part #(
     output logic probe_o,  // event: a snapshot is wanted (combinational)
     input wire logic probe_clear_i,  // event
     // status
+    output logic [pins_state_pkg::WIDTH-1:0] pins_state_o,
     output logic idle_o,  // nothing is decoded or queued, no path runs, no probe is armed (combinational)
     output logic [geometry_state_pkg::WIDTH-1:0] geometry_state_o,
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
@@ -45,21 +47,13 @@ module geometry_part #(
   logic [load_bus_pkg::WIDTH-1:0] direct_load;
   logic direct_go;
   logic [Axes-1:0] direct_mask;
-  logic take_output;
-  logic take_mark;
-  logic over;
-  logic probe_waits;
-  logic probe_ends;
-  logic probe_taken;
-  logic probe_stays;
-  logic met;
-  logic probing;
+  logic [commands_pkg::WIDTH-1:0] commands;
+  logic [probe_pkg::WIDTH-1:0] probe;
+  logic drop;
+  logic halt;
   logic sequencer_idle;
 
-  assign idle_o = sequencer_idle && !probing;
-  assign path_o[path_pkg::DIRECT] = move_o[move_pkg::DIRECT];
-  assign geometry_state_o[geometry_state_pkg::DIRECT] = move_o[move_pkg::DIRECT];
-  assign geometry_state_o[geometry_state_pkg::PATH_SWAP] = move_o[move_pkg::SWAP];
+  assign idle_o = sequencer_idle && !probe[probe_pkg::BUSY];
 
   geometry_sequencer #(
       .Axes   (Axes),
@@ -75,46 +69,29 @@ module geometry_part #(
       .direct_go_i(direct_go),
       .direct_mask_i(direct_mask),
       .feed_i,
+      .take_i,
       .engines_i,
       .load_o,
       .move_o,
-      .taking_o(path_o[path_pkg::TAKING]),
+      .path_o,
       .setting_i,
       .arrival_i,
       .rest_i,
-      .streaming_o(path_o[path_pkg::STREAMING]),
-      .missing_o(path_o[path_pkg::MISSING]),
-      .stale_o(geometry_state_o[geometry_state_pkg::STALE]),
-      .stale_ticks_o(geometry_state_o[geometry_state_pkg::STALE_TICKS+:32]),
-      .take_output_o(take_output),
-      .take_mark_o(take_mark),
-      .over_o(over),
-      .probe_waits_o(probe_waits),
-      .probe_ends_o(probe_ends),
-      .waits_for_input_o(geometry_state_o[geometry_state_pkg::WAITING]),
-      .met_i(met),
-      .probe_taken_i(probe_taken),
-      .probe_stays_i(probe_stays),
-      .drop_i(path_o[path_pkg::DROP]),
-      .halt_i(path_o[path_pkg::HALT]),
-      .barrier_begins_o(path_o[path_pkg::BARRIER_BEGINS]),
-      .barrier_counts_o(path_o[path_pkg::BARRIER_COUNTS]),
-      .barrier_done_o(path_o[path_pkg::BARRIER_DONE]),
-      .mismatch_o(path_o[path_pkg::MISMATCH]),
-      .incomplete_o(path_o[path_pkg::INCOMPLETE]),
-      .path_active_o(geometry_state_o[geometry_state_pkg::PATH_ACTIVE]),
-      .ended_o(geometry_state_o[geometry_state_pkg::ENDED]),
+      .commands_o(commands),
+      .probe_i(probe),
+      .drop_i(drop),
+      .halt_i(halt),
       .idle_o(sequencer_idle),
+      .geometry_state_o,
       .snapshot_i,
-      .snapshot_o,
-      .begun_o(geometry_state_o[geometry_state_pkg::GEOMETRY_BEGUN+:32])
+      .snapshot_o
   );
 
   path_commands #(
       .Engines(Engines),
       .Inputs (Inputs),
       .Outputs(Outputs)
-  ) commands (
+  ) commands_of_path (
       .clk_i,
       .rst_i,
       .cut_i,
@@ -123,29 +100,15 @@ module geometry_part #(
       .output_idle_i,
       .output_o,
       .load_i(load_o),
-      .take_output_i(take_output),
-      .take_mark_i(take_mark),
-      .over_i(over),
-      .runs_i(geometry_state_o[geometry_state_pkg::PATH_ACTIVE]),
+      .commands_i(commands),
       .mark_o,
-      .at_rest_i(feed_i[feed_pkg::AT_REST]),
-      .stopping_i(feed_i[feed_pkg::STOPPING]),
+      .feed_i,
       .probe_clear_i,
-      .probe_waits_i(probe_waits),
-      .probe_ends_i(probe_ends),
-      .met_o(met),
-      .probe_taken_o(probe_taken),
-      .probe_stays_o(probe_stays),
-      .probe_o,
-      .probe_hold_o(path_o[path_pkg::HOLD]),
-      .drop_o(path_o[path_pkg::DROP]),
-      .halt_o(path_o[path_pkg::HALT]),
-      .probing_o(probing),
-      .inputs_o(geometry_state_o[geometry_state_pkg::INPUTS+:16]),
-      .outputs_o(geometry_state_o[geometry_state_pkg::OUTPUTS+:16]),
-      .marks_o(geometry_state_o[geometry_state_pkg::MARKS+:32]),
-      .probed_o(geometry_state_o[geometry_state_pkg::PROBED]),
-      .probe_missed_o(geometry_state_o[geometry_state_pkg::PROBE_MISSED])
+      .probe_o(probe),
+      .drop_o(drop),
+      .halt_o(halt),
+      .trip_o(probe_o),
+      .pins_state_o
   );
 
   if (Engines[card_map_pkg::ENGINE_DIRECT_MODE]) begin : gen_direct_mode

@@ -43,6 +43,7 @@ module motion_core #(
     output logic busy_o,
     output logic [time_state_pkg::WIDTH-1:0] time_state_o,
     output logic [geometry_state_pkg::WIDTH-1:0] geometry_state_o,
+    output logic [pins_state_pkg::WIDTH-1:0] pins_state_o,
     // for lockstep
     output logic path_tick_o,
     output logic [axis_observe_pkg::WIDTH*Axes-1:0] observe_o,
@@ -57,6 +58,7 @@ module motion_core #(
   logic [snapshot_pkg::WIDTH-1:0] behind_time;
   logic [snapshot_pkg::WIDTH-1:0] behind_geometry;
   logic [Axes-1:0] step_fault;
+  logic take;
   logic tick;
   logic feed_idle;
   logic geometry_idle;
@@ -89,6 +91,7 @@ module motion_core #(
       .path_i(path),
       .ready_i(engines[engines_pkg::READY]),
       .feed_o(feed),
+      .take_o(take),
       .tick_o(tick),
       .step_fault_i(step_fault),
       .abort_i,
@@ -118,6 +121,7 @@ module motion_core #(
       .read_o(geometry_read_o),
       .arrival_i,
       .feed_i(feed),
+      .take_i(take),
       .engines_i(engines),
       .path_o(path),
       .load_o(load),
@@ -133,6 +137,7 @@ module motion_core #(
       .mark_o,
       .probe_o,
       .probe_clear_i,
+      .pins_state_o,
       .idle_o(geometry_idle),
       .geometry_state_o,
       .snapshot_i(behind_time),

@@ -18,6 +18,7 @@ module time_part #(
     input wire logic [path_pkg::WIDTH-1:0] path_i,
     input wire logic ready_i,  // the path's engine takes ticks
     output logic [feed_pkg::WIDTH-1:0] feed_o,
+    output logic take_o,  // the tick is taken in this clock (combinational)
     output logic tick_o,
     // stops
     input wire logic [Axes-1:0] step_fault_i,  // events
@@ -91,7 +92,7 @@ module time_part #(
       .arrival_i,
       .path_i,
       .ready_i,
-      .take_o(feed_o[feed_pkg::TAKE]),
+      .take_o,
       .tick_o,
       .swap_o(time_state_o[time_state_pkg::FEED_SWAP]),
       .card_idle_i,

@@ -18,45 +18,25 @@ module geometry_sequencer #(
     input wire logic [Axes-1:0] direct_mask_i,
     // feed, engines and axes
     input wire logic [feed_pkg::WIDTH-1:0] feed_i,
+    input wire logic take_i,  // the tick is taken in this clock (combinational)
     input wire logic [engines_pkg::WIDTH-1:0] engines_i,
     output logic [load_bus_pkg::WIDTH-1:0] load_o,
     output logic [move_pkg::WIDTH-1:0] move_o,
-    output logic taking_o,  // a path takes ticks
+    output logic [path_pkg::WIDTH-1:0] path_o,
     // position streaming
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     input wire logic rest_i,  // nothing is queued or runs
-    output logic streaming_o,  // the mode
-    output logic missing_o,  // event
-    output logic stale_o,  // a line goes on beyond its end
-    output logic [31:0] stale_ticks_o,
-    // commands that are neither paths nor barriers
-    output logic take_output_o,  // OUTPUT is taken now (combinational)
-    output logic take_mark_o,  // MARK is taken now (combinational)
-    output logic over_o,  // event: a path has ended
-    // probe and WAIT_INPUT, all combinational
-    output logic probe_waits_o,  // a PROBE is decoded and no path runs
-    output logic probe_ends_o,  // PROBE_END has begun
-    output logic waits_for_input_o,  // WAIT_INPUT has begun
-    input wire logic met_i,  // the condition decoded last is met
-    input wire logic probe_taken_i,
-    input wire logic probe_stays_i,  // PROBE_END must wait
+    // commands that are neither paths nor barriers, and the probe
+    output logic [commands_pkg::WIDTH-1:0] commands_o,
+    input wire logic [probe_pkg::WIDTH-1:0] probe_i,
     input wire logic drop_i,  // commands up to PROBE_END are not carried out
     input wire logic halt_i,  // event: what runs ends here
-    // barriers
-    output logic barrier_begins_o,  // event
-    output logic barrier_counts_o,
-    output logic barrier_done_o,  // event
-    // faults and status
-    output logic mismatch_o,
-    output logic incomplete_o,
-    output logic path_active_o,
-    output logic ended_o,
+    // status
     output logic idle_o,
-    // what began
+    output logic [geometry_state_pkg::WIDTH-1:0] geometry_state_o,
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
-    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
-    output logic [31:0] begun_o
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o
 );
   // the decoded command
   logic [Axes-1:0] mask;
@@ -79,20 +59,51 @@ module geometry_sequencer #(
   logic zero;
   logic last;
   logic [39:0] count;
+  logic taking;
+  logic path_active;
+  logic over;
+  logic barrier_begins;
+  logic barrier_counts;
+  logic barrier_done;
+  logic streaming;
   logic period_ends;
   logic goes_on;
+  logic stale;
   logic lost;
   logic at_barrier;
   logic [Axes-1:0] active;
+  logic take_output;
+  logic take_mark;
 
   assign instant = is_output || is_mark || is_probe;
-  assign runs = taking_o || (valid && !is_barrier);
+  assign runs = taking || (valid && !is_barrier);
   assign dropped = valid && drop_i && !is_probe_end;
-  assign take_output_o = valid && is_output && !drop_i;
-  assign take_mark_o = valid && is_mark && !drop_i;
-  assign probe_waits_o = valid && is_probe && !path_active_o;
-  assign probe_ends_o = barrier_counts_o && is_probe_end;
-  assign waits_for_input_o = barrier_counts_o && is_wait;
+  assign take_output = valid && is_output && !drop_i;
+  assign take_mark = valid && is_mark && !drop_i;
+
+  assign commands_o[commands_pkg::TAKE_OUTPUT] = take_output;
+  assign commands_o[commands_pkg::TAKE_MARK] = take_mark;
+  assign commands_o[commands_pkg::OVER] = over;
+  assign commands_o[commands_pkg::RUNS] = path_active;
+  assign commands_o[commands_pkg::PROBE_WAITS] = valid && is_probe && !path_active;
+  assign commands_o[commands_pkg::PROBE_ENDS] = barrier_counts && is_probe_end;
+
+  assign path_o[path_pkg::TAKING] = taking;
+  assign path_o[path_pkg::DIRECT] = move_o[move_pkg::DIRECT];
+  assign path_o[path_pkg::STREAMING] = streaming;
+  assign path_o[path_pkg::BARRIER_BEGINS] = barrier_begins;
+  assign path_o[path_pkg::BARRIER_COUNTS] = barrier_counts;
+  assign path_o[path_pkg::BARRIER_DONE] = barrier_done;
+  assign path_o[path_pkg::DROP] = drop_i;
+  assign path_o[path_pkg::HALT] = halt_i;
+  assign path_o[path_pkg::HOLD] = probe_i[probe_pkg::HOLD];
+
+  assign geometry_state_o[geometry_state_pkg::PATH_SWAP] = move_o[move_pkg::SWAP];
+  assign geometry_state_o[geometry_state_pkg::DIRECT] = move_o[move_pkg::DIRECT];
+  assign geometry_state_o[geometry_state_pkg::PATH_ACTIVE] = path_active;
+  assign geometry_state_o[geometry_state_pkg::STALE] = stale;
+  assign geometry_state_o[geometry_state_pkg::WAITING] = barrier_counts && is_wait;
+
   assign move_o[move_pkg::AXES+:8] = 8'(active);
 
   geometry_decoder #(
@@ -102,7 +113,7 @@ module geometry_sequencer #(
       .clk_i,
       .rst_i,
       .cut_i,
-      .pop_i(pop || take_output_o || take_mark_o || probe_taken_i || dropped),
+      .pop_i(pop || take_output || take_mark || probe_i[probe_pkg::TAKEN] || dropped),
       .payload_ready_i(engines_i[engines_pkg::PAYLOAD_READY] && !move_o[move_pkg::TAKING]),
       .shadows_free_i(engines_i[engines_pkg::SHADOWS_FREE]),
       .empty_i,
@@ -130,8 +141,8 @@ module geometry_sequencer #(
       .word_i (load_bus_pkg::word(load_o)),
       .count_o(count),
       .zero_o (zero),
-      .load_i (begins || barrier_begins_o),
-      .take_i ((feed_i[feed_pkg::TAKE] && !stale_o) || barrier_counts_o),
+      .load_i (begins || barrier_begins),
+      .take_i ((take_i && !stale) || barrier_counts),
       .last_o (last)
   );
 
@@ -149,14 +160,14 @@ module geometry_sequencer #(
       .pop_o(pop),
       .direct_go_i,
       .direct_mask_i,
-      .streaming_i(streaming_o),
+      .streaming_i(streaming),
       .lost_i(lost),
       .period_ends_o(period_ends),
       .goes_on_o(goes_on),
-      .stale_o,
-      .take_i(feed_i[feed_pkg::TAKE]),
+      .stale_o(stale),
+      .take_i,
       .last_i(last),
-      .taking_o,
+      .taking_o(taking),
       .swap_o(move_o[move_pkg::SWAP]),
       .begin_o(begins),
       .active_o(active),
@@ -166,11 +177,11 @@ module geometry_sequencer #(
       .done_i(engines_i[engines_pkg::DONE]),
       .missed_end_i(engines_i[engines_pkg::MISSED_END]),
       .engine_taken_o(move_o[move_pkg::TAKING]),
-      .incomplete_o,
-      .over_o,
-      .barrier_done_i(barrier_done_o),
+      .incomplete_o(path_o[path_pkg::INCOMPLETE]),
+      .over_o(over),
+      .barrier_done_i(barrier_done),
       .at_barrier_o(at_barrier),
-      .path_active_o
+      .path_active_o(path_active)
   );
 
   if (Engines[card_map_pkg::ENGINE_STREAMING]) begin : gen_streaming
@@ -185,15 +196,17 @@ module geometry_sequencer #(
         .count_i(count),
         .period_ends_i(period_ends),
         .goes_on_i(goes_on),
-        .stale_i(stale_o),
-        .take_i(feed_i[feed_pkg::TAKE]),
-        .streaming_o,
-        .missing_o,
+        .stale_i(stale),
+        .take_i,
+        .streaming_o(streaming),
+        .missing_o(path_o[path_pkg::MISSING]),
         .lost_o(lost),
-        .ticks_o(stale_ticks_o)
+        .ticks_o(geometry_state_o[geometry_state_pkg::STALE_TICKS+:32])
     );
   end else begin : gen_no_streaming
-    assign {streaming_o, missing_o, lost, stale_ticks_o} = '0;
+    assign {streaming, lost} = '0;
+    assign path_o[path_pkg::MISSING] = 1'b0;
+    assign geometry_state_o[geometry_state_pkg::STALE_TICKS+:32] = '0;
 
     logic unused;
     assign unused = &{1'b0, setting_i, arrival_i, rest_i, count, period_ends, goes_on};
@@ -211,37 +224,37 @@ module geometry_sequencer #(
       .zero_i(zero),
       .end_i(is_end),
       .wait_i(is_wait),
-      .met_i,
-      .stays_i(is_probe_end && probe_stays_i),
+      .met_i(probe_i[probe_pkg::MET]),
+      .stays_i(is_probe_end && probe_i[probe_pkg::STAYS]),
       .drop_i,
       .last_i(last),
       .begin_i(move_o[move_pkg::SWAP]),
-      .mismatch_o,
-      .load_o(barrier_begins_o),
-      .counting_o(barrier_counts_o),
-      .done_o(barrier_done_o),
-      .ended_o
+      .mismatch_o(path_o[path_pkg::MISMATCH]),
+      .load_o(barrier_begins),
+      .counting_o(barrier_counts),
+      .done_o(barrier_done),
+      .ended_o(geometry_state_o[geometry_state_pkg::ENDED])
   );
 
   // A direct move does not count, nor what is neither path nor barrier. A barrier that had begun has counted.
   logic drop_counts;
-  assign drop_counts = dropped && !instant && !barrier_counts_o && !barrier_done_o;
+  assign drop_counts = dropped && !instant && !barrier_counts && !barrier_done;
 
   begun_counter begun (
       .clk_i,
       .rst_i,
       .cut_i,
-      .begin_i((move_o[move_pkg::SWAP] && !move_o[move_pkg::DIRECT]) || barrier_begins_o || drop_counts),
+      .begin_i((move_o[move_pkg::SWAP] && !move_o[move_pkg::DIRECT]) || barrier_begins || drop_counts),
       .snapshot_i,
       .snapshot_o,
-      .begun_o
+      .begun_o(geometry_state_o[geometry_state_pkg::GEOMETRY_BEGUN+:32])
   );
 
   // A barrier is over before its command is.
-  always_ff @(posedge clk_i) idle_o <= (decoder_idle && empty_i && !path_active_o) || rst_i;
+  always_ff @(posedge clk_i) idle_o <= (decoder_idle && empty_i && !path_active) || rst_i;
 
-  logic unused_feed;  // what concerns the path commands
-  assign unused_feed = &{1'b0, feed_i, engines_i};
+  logic unused_bundles;  // what concerns others
+  assign unused_bundles = &{1'b0, feed_i, engines_i, probe_i};
 endmodule
 
 `default_nettype wire

@@ -17,34 +17,21 @@ module path_commands #(
     output logic [Outputs-1:0] output_o,
     // commands
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
-    input wire logic take_output_i,  // OUTPUT is taken now; its last halfword is on load_i
-    input wire logic take_mark_i,  // MARK is taken now
-    input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
-    input wire logic runs_i,  // a path is under way
+    input wire logic [commands_pkg::WIDTH-1:0] commands_i,
     output logic mark_o,  // event: a snapshot is wanted
     // probe
-    input wire logic at_rest_i,  // the ratio is 0
-    input wire logic stopping_i,  // a fault's ramp
+    input wire logic [feed_pkg::WIDTH-1:0] feed_i,
     input wire logic probe_clear_i,  // event
-    input wire logic probe_waits_i,  // a PROBE is decoded and no path runs
-    input wire logic probe_ends_i,  // PROBE_END has begun
-    output logic met_o,  // the condition decoded last is met (combinational)
-    output logic probe_taken_o,  // the PROBE is taken now (combinational)
-    output logic probe_stays_o,  // PROBE_END must wait (combinational)
-    output logic probe_o,  // event: a snapshot is wanted (combinational)
-    output logic probe_hold_o,
+    output logic [probe_pkg::WIDTH-1:0] probe_o,
     output logic drop_o,  // commands up to PROBE_END are not carried out
     output logic halt_o,  // event: what runs ends here
-    output logic probing_o,
+    output logic trip_o,  // event: a snapshot is wanted (combinational)
     // registers
-    output logic [15:0] inputs_o,
-    output logic [15:0] outputs_o,
-    output logic [31:0] marks_o,
-    output logic probed_o,
-    output logic probe_missed_o
+    output logic [pins_state_pkg::WIDTH-1:0] pins_state_o
 );
   if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_built
-    logic               change;
+    logic [15:0] levels;
+    logic change;
     logic [Outputs-1:0] set;
     logic [Outputs-1:0] clear;
 
@@ -55,7 +42,7 @@ module path_commands #(
         .rst_i,
         .setting_i,
         .pin_i  (input_i),
-        .level_o(inputs_o)
+        .level_o(levels)
     );
 
     instant_commands #(
@@ -65,12 +52,12 @@ module path_commands #(
         .rst_i,
         .cut_i(cut_i || halt_o),
         .load_i,
-        .take_output_i,
-        .take_mark_i,
-        .over_i,
-        .runs_i,
+        .take_output_i(commands_i[commands_pkg::TAKE_OUTPUT]),
+        .take_mark_i(commands_i[commands_pkg::TAKE_MARK]),
+        .over_i(commands_i[commands_pkg::OVER]),
+        .runs_i(commands_i[commands_pkg::RUNS]),
         .mark_o,
-        .marks_o,
+        .marks_o(pins_state_o[pins_state_pkg::MARKS+:32]),
         .change_o(change),
         .set_o(set),
         .clear_o(clear)
@@ -94,34 +81,36 @@ module path_commands #(
         .clk_i,
         .rst_i,
         .cut_i,
-        .level_i (inputs_o),
+        .level_i(levels),
         .load_i,
-        .waits_i (probe_waits_i),
-        .ends_i  (probe_ends_i),
-        .at_rest_i,
-        .stopping_i,
-        .clear_i (probe_clear_i),
-        .met_o,
-        .taken_o (probe_taken_o),
-        .stays_o (probe_stays_o),
-        .trip_o  (probe_o),
-        .hold_o  (probe_hold_o),
+        .waits_i(commands_i[commands_pkg::PROBE_WAITS]),
+        .ends_i(commands_i[commands_pkg::PROBE_ENDS]),
+        .at_rest_i(feed_i[feed_pkg::AT_REST]),
+        .stopping_i(feed_i[feed_pkg::STOPPING]),
+        .clear_i(probe_clear_i),
+        .met_o(probe_o[probe_pkg::MET]),
+        .taken_o(probe_o[probe_pkg::TAKEN]),
+        .stays_o(probe_o[probe_pkg::STAYS]),
+        .trip_o,
+        .hold_o(probe_o[probe_pkg::HOLD]),
         .halt_o,
         .drop_o,
-        .busy_o  (probing_o),
-        .probed_o,
-        .missed_o(probe_missed_o)
+        .busy_o(probe_o[probe_pkg::BUSY]),
+        .probed_o(pins_state_o[pins_state_pkg::PROBED]),
+        .missed_o(pins_state_o[pins_state_pkg::PROBE_MISSED])
     );
 
-    assign outputs_o = 16'(output_o);
-  end else begin : gen_without
-    assign output_o = output_idle_i;
-    assign {mark_o, met_o, probe_taken_o, probe_stays_o, probe_o, probe_hold_o, drop_o, halt_o, probing_o} = '0;
-    assign {inputs_o, outputs_o, marks_o, probed_o, probe_missed_o} = '0;
+    assign pins_state_o[pins_state_pkg::INPUTS+:16]  = levels;
+    assign pins_state_o[pins_state_pkg::OUTPUTS+:16] = 16'(output_o);
 
     logic unused;
-    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, take_output_i, take_mark_i, over_i, runs_i,
-                       at_rest_i, stopping_i, probe_clear_i, probe_waits_i, probe_ends_i};
+    assign unused = &{1'b0, feed_i};
+  end else begin : gen_without
+    assign output_o = output_idle_i;
+    assign {mark_o, trip_o, probe_o, drop_o, halt_o, pins_state_o} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, commands_i, feed_i, probe_clear_i};
   end
 endmodule
 

@@ -18,6 +18,7 @@ module register_file #(
     input wire logic busy_i,
     input wire logic [time_state_pkg::WIDTH-1:0] time_state_i,
     input wire logic [geometry_state_pkg::WIDTH-1:0] geometry_state_i,
+    input wire logic [pins_state_pkg::WIDTH-1:0] pins_state_i,
     input wire logic [queue_state_pkg::WIDTH-1:0] queue_state_i,
     output logic [31:0] status_o,  // combinational; refused is any port's
     // what writes do
@@ -104,6 +105,7 @@ module register_file #(
       .busy_i,
       .time_state_i,
       .geometry_state_i,
+      .pins_state_i,
       .queue_state_i,
       .snapshotting_i(snapshotting),
       .incomplete_i(stream_answer_i[stream_answer_pkg::PARTIAL]),

@@ -19,6 +19,7 @@ module register_live #(
     input wire logic busy_i,
     input wire logic [time_state_pkg::WIDTH-1:0] time_state_i,
     input wire logic [geometry_state_pkg::WIDTH-1:0] geometry_state_i,
+    input wire logic [pins_state_pkg::WIDTH-1:0] pins_state_i,
     input wire logic [queue_state_pkg::WIDTH-1:0] queue_state_i,
     input wire logic snapshotting_i,
     input wire logic incomplete_i,  // the stream is inside a command
@@ -82,8 +83,8 @@ module register_live #(
       32'(queue_state_i[queue_state_pkg::GEOMETRY_LOW]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
       32'(queue_state_i[queue_state_pkg::FEED_LOW]) << card_map_pkg::BIT_STATUS_FEED_LOW |
       32'(time_state_i[time_state_pkg::UNDERRUN]) << card_map_pkg::BIT_STATUS_UNDERRUN |
-      32'(geometry_state_i[geometry_state_pkg::PROBED]) << card_map_pkg::BIT_STATUS_PROBED |
-      32'(geometry_state_i[geometry_state_pkg::PROBE_MISSED]) << card_map_pkg::BIT_STATUS_PROBE_MISSED |
+      32'(pins_state_i[pins_state_pkg::PROBED]) << card_map_pkg::BIT_STATUS_PROBED |
+      32'(pins_state_i[pins_state_pkg::PROBE_MISSED]) << card_map_pkg::BIT_STATUS_PROBE_MISSED |
       32'(geometry_state_i[geometry_state_pkg::WAITING]) << card_map_pkg::BIT_STATUS_WAITING |
       32'(geometry_state_i[geometry_state_pkg::STALE]) << card_map_pkg::BIT_STATUS_STALE;
 
@@ -99,9 +100,9 @@ module register_live #(
         card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_o <= {16'd0, queue_state_pkg::geometry_room(queue_state_i)};
         card_map_pkg::ADDR_FEED_ROOM[5:2]: data_o <= {16'd0, queue_state_pkg::feed_room(queue_state_i)};
         card_map_pkg::ADDR_GEOMETRY_BEGUN[5:2]: data_o <= geometry_state_pkg::geometry_begun(geometry_state_i);
-        card_map_pkg::ADDR_INPUTS[5:2]: data_o <= {16'd0, geometry_state_pkg::inputs(geometry_state_i)};
-        card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, geometry_state_pkg::outputs(geometry_state_i)};
-        card_map_pkg::ADDR_MARKS[5:2]: data_o <= geometry_state_pkg::marks(geometry_state_i);
+        card_map_pkg::ADDR_INPUTS[5:2]: data_o <= {16'd0, pins_state_pkg::inputs(pins_state_i)};
+        card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, pins_state_pkg::outputs(pins_state_i)};
+        card_map_pkg::ADDR_MARKS[5:2]: data_o <= pins_state_pkg::marks(pins_state_i);
         card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= time_state_pkg::feed_begun(time_state_i);
         default:
         if (Engines[card_map_pkg::ENGINE_STREAMING] && address[5:2] == card_map_pkg::ADDR_STALE_TICKS[5:2])

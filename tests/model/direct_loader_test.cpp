@@ -111,8 +111,8 @@ void expect_loads(const Bench& bench, const Move& move, std::uint8_t mask) {
   };
   for (unsigned n = 0; n < 8; ++n) {
     if ((mask >> n & 1) == 0) continue;
-    add(target::kIncrement + n, move.negative[n] ? 0 - move.frequency[n] : move.frequency[n], 3);
-    add(target::kCount + n, move.count[n], 2);
+    add(target::increment(n), move.negative[n] ? 0 - move.frequency[n] : move.frequency[n], 3);
+    add(target::count(n), move.count[n], 2);
   }
   add(target::kTicks, move.length, 3);
   ASSERT_EQ(bench.loads.size(), expected.size());

@@ -4,44 +4,62 @@
 #include <cstdint>
 #include <random>
 
+#include "rtl_buses.hpp"
 #include "trammel/model/buses.hpp"
+#include "trammel/model/wishbone_port.hpp"
 
 namespace trammel::lockstep {
 
-// {set, address[9:2], data}
 inline std::uint64_t wire(const model::Setting& setting) {
-  return std::uint64_t{setting.set} << 40 | std::uint64_t{setting.address >> 2 & 0xFF} << 32 | setting.data;
+  using namespace bus::setting_bus;
+  return in_place(kSet, setting.set) | in_place(kWord, setting.address >> 2) | in_place(kData, setting.data);
 }
 
-// {valid, target, halfword}; the feed load's targets have 3 bits, the load bus's 5.
+// The model's targets are {unit, target}.
 inline std::uint32_t load_wire(const model::LoadWord& load) {
-  return std::uint32_t{load.valid} << 21 | std::uint32_t{load.target} << 16 | load.word;
+  using namespace bus::load_bus;
+  constexpr bus::Field kPlace{kTarget.offset, kTarget.bits + kUnit.bits};
+  return static_cast<std::uint32_t>(in_place(kValid, load.valid) | in_place(kPlace, load.target) |
+                                    in_place(kWord, load.word));
 }
 inline std::uint32_t feed_wire(const model::LoadWord& load) {
-  return std::uint32_t{load.valid} << 19 | std::uint32_t{load.target} << 16 | load.word;
+  using namespace bus::feed_load;
+  return static_cast<std::uint32_t>(in_place(kValid, load.valid) | in_place(kTarget, load.target) |
+                                    in_place(kWord, load.word));
+}
+
+inline std::uint64_t wishbone_wire(const model::WishbonePort::Inputs& master) {
+  using namespace bus::wishbone_request;
+  return in_place(kCyc, master.cyc) | in_place(kStb, master.stb) | in_place(kWe, master.we) |
+         in_place(kSel, master.sel) | in_place(kAdr, master.adr) | in_place(kDat, master.dat);
 }
 
 inline model::LoadWord halfword(unsigned target, std::uint64_t value, unsigned index) {
-  return {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
+  return {true, static_cast<std::uint16_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
 }
 
 // A word of the snapshot chain: takes its value at a strobe, what comes in at a shift. Unknown before either.
 class SnapshotWord {
  public:
-  void clock(std::uint32_t snapshot, std::uint32_t value, std::uint32_t chain, bool chain_known = true) {
-    if (snapshot == 0) return;
-    const bool strobe = (snapshot & 1) != 0;
-    word_ = strobe ? value : chain;
-    known_ = strobe || chain_known;
+  // `snapshot` is the chain as it comes in.
+  void clock(std::uint64_t snapshot, std::uint32_t value) {
+    clock(snapshot, value, static_cast<std::uint32_t>(get(snapshot, bus::snapshot::kWord)), true);
   }
   // The same behind another slice.
-  void clock(std::uint32_t snapshot, std::uint32_t value, const SnapshotWord& before) {
+  void clock(std::uint64_t snapshot, std::uint32_t value, const SnapshotWord& before) {
     clock(snapshot, value, before.word_, before.known_);
   }
   bool known() const { return known_; }
   std::uint32_t word() const { return word_; }
 
  private:
+  void clock(std::uint64_t snapshot, std::uint32_t value, std::uint32_t chain, bool chain_known) {
+    const bool strobe = get(snapshot, bus::snapshot::kStrobe) != 0;
+    if (!strobe && get(snapshot, bus::snapshot::kShift) == 0) return;
+    word_ = strobe ? value : chain;
+    known_ = strobe || chain_known;
+  }
+
   std::uint32_t word_ = 0;
   bool known_ = false;
 };
@@ -55,8 +73,13 @@ class Dice {
   bool chance(std::uint32_t one_in) { return below(one_in) == 0; }
   // Any number of bits up to `bits`, each as often as the others.
   std::uint64_t log_uniform(std::uint32_t bits) { return random_() >> (64 - bits) >> below(bits); }
-  // {shift, strobe} of the snapshot chain, mostly none.
-  std::uint8_t snapshot() { return static_cast<std::uint8_t>(chance(8) ? 1 + below(2) : 0); }
+  // The snapshot chain as it may come in: any word, mostly neither shift nor strobe.
+  std::uint64_t snapshot() {
+    const bool event = chance(8);
+    const bool shift = chance(2);
+    return in_place(bus::snapshot::kStrobe, event && !shift) | in_place(bus::snapshot::kShift, event && shift) |
+           in_place(bus::snapshot::kWord, draw());
+  }
 
  private:
   std::mt19937_64 random_;

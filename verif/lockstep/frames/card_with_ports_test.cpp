@@ -14,6 +14,7 @@
 #include "trammel/model/host_ports.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "uart_link.hpp"
+#include "wires.hpp"
 
 namespace trammel::lockstep {
 namespace {
@@ -96,18 +97,21 @@ class CardUnderTest {
 
   void drive() {
     dut_->rx_i = in_.rx;
-    dut_->spi_i = static_cast<CData>(unsigned{in_.spi.mosi} << 2 | unsigned{in_.spi.cs_n} << 1 | unsigned{in_.spi.sck});
+    dut_->sck_i = in_.spi.sck;
+    dut_->cs_n_i = in_.spi.cs_n;
+    dut_->mosi_i = in_.spi.mosi;
     const model::WishbonePort::Inputs& w = in_.wishbone;
-    dut_->wishbone_i = std::uint64_t{w.cyc} << 50 | std::uint64_t{w.stb} << 49 | std::uint64_t{w.we} << 48 |
-                       std::uint64_t{w.sel} << 44 | std::uint64_t{w.adr} << 32 | w.dat;
+    dut_->wishbone_i = wishbone_wire(w);
   }
   void compare() {
     const model::CoreModel::Outputs& out = core_.outputs();
     check_.compare("tx_o", dut_->tx_o, hosts_.uart().tx);
-    check_.compare("spi_o", dut_->spi_o, unsigned{hosts_.spi().miso_enable} << 1 | unsigned{hosts_.spi().miso});
+    check_.compare("miso_o and miso_enable_o", unsigned{dut_->miso_enable_o} << 1 | dut_->miso_o,
+                   unsigned{hosts_.spi().miso_enable} << 1 | unsigned{hosts_.spi().miso});
     const model::WishbonePort::Outputs& w = hosts_.wishbone();
-    check_.compare("Wishbone ack, err, stall", dut_->wishbone_o >> 32,
-                   unsigned{w.ack} << 2 | unsigned{w.err} << 1 | unsigned{w.stall});
+    check_.compare("Wishbone ack, err, stall", dut_->wishbone_o & ~in_place(bus::wishbone_answer::kDat, ~0U),
+                   in_place(bus::wishbone_answer::kAck, w.ack) | in_place(bus::wishbone_answer::kErr, w.err) |
+                       in_place(bus::wishbone_answer::kStall, w.stall));
     check_.compare("step_o", dut_->step_o, out.step);
     check_.compare("dir_o", dut_->dir_o, out.dir);
     check_.compare("irq_o", dut_->irq_o, out.irq);

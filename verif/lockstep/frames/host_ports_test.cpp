@@ -133,13 +133,13 @@ class Bench {
     dut_->araddr_i = static_cast<SData>(in_.axi.araddr);
     dut_->rready_i = in_.axi.rready;
     const model::WishbonePort::Inputs& w = in_.wishbone;
-    dut_->wishbone_i = std::uint64_t{w.cyc} << 50 | std::uint64_t{w.stb} << 49 | std::uint64_t{w.we} << 48 |
-                       std::uint64_t{w.sel} << 44 | std::uint64_t{w.adr} << 32 | w.dat;
+    dut_->wishbone_i = wishbone_wire(w);
     dut_->rx_i = in_.rx;
-    dut_->spi_i = static_cast<CData>(unsigned{in_.spi.mosi} << 2 | unsigned{in_.spi.cs_n} << 1 | unsigned{in_.spi.sck});
-    dut_->ack_i = answer.ack;
-    dut_->error_i = answer.error;
-    dut_->data_i = answer.data;
+    dut_->sck_i = in_.spi.sck;
+    dut_->cs_n_i = in_.spi.cs_n;
+    dut_->mosi_i = in_.spi.mosi;
+    using namespace bus::register_answer;
+    dut_->answer_i = in_place(kAck, answer.ack) | in_place(kError, answer.error) | in_place(kData, answer.data);
   }
 
   void compare() {
@@ -152,22 +152,28 @@ class Bench {
                                unsigned{axi.rresp} << 7;
     check_.compare("AXI4-Lite handshakes and responses", axi_rtl, axi_model);
     const model::WishbonePort::Outputs& w = model_.wishbone();
-    check_.compare("Wishbone ack, err, stall", dut_->wishbone_o >> 32,
-                   unsigned{w.ack} << 2 | unsigned{w.err} << 1 | unsigned{w.stall});
+    check_.compare("Wishbone ack, err, stall", dut_->wishbone_o & ~in_place(bus::wishbone_answer::kDat, ~0U),
+                   in_place(bus::wishbone_answer::kAck, w.ack) | in_place(bus::wishbone_answer::kErr, w.err) |
+                       in_place(bus::wishbone_answer::kStall, w.stall));
     check_.compare("tx_o", dut_->tx_o, model_.uart().tx);
     // A port that is not built drives nothing.
     const bool miso = kConfig.spi && model_.spi().miso;
-    check_.compare("spi_o", dut_->spi_o, unsigned{model_.spi().miso_enable} << 1 | unsigned{miso});
+    check_.compare("miso_o and miso_enable_o", unsigned{dut_->miso_enable_o} << 1 | dut_->miso_o,
+                   unsigned{model_.spi().miso_enable} << 1 | unsigned{miso});
     const model::PortArbiter::Inner inner = model_.inner();
-    check_.compare("request_o", dut_->request_o, inner.access.request);
-    check_.compare("access_o, port", dut_->access_o >> 46, dut_->request_o ? inner.port : dut_->access_o >> 46);
+    using namespace bus::register_access;
+    const auto access = [this](const bus::Field& field) { return get(dut_->access_o, field); };
+    check_.compare("request", access(kRequest), inner.access.request);
+    check_.compare("port", access(kPort), access(kRequest) != 0 ? inner.port : access(kPort));
     if (axi.rvalid) differs("rdata_o", dut_->rdata_o, axi.rdata);
-    if (w.ack || w.err) differs("Wishbone data", dut_->wishbone_o & 0xFFFFFFFF, w.dat);
+    if (w.ack || w.err) differs("Wishbone data", get(dut_->wishbone_o, bus::wishbone_answer::kDat), w.dat);
     if (!inner.access.request) return;
     const model::PortArbiter::Access& a = inner.access;
-    differs("access_o, write and address", dut_->access_o >> 32 & 0x2FFF, std::uint64_t{a.write} << 13 | a.address);
+    differs("access, write and address", access(kWrite) << 12 | access(kAddress),
+            std::uint64_t{a.write} << 12 | a.address);
     if (a.write)
-      differs("access_o, partial and data", dut_->access_o & 0x1000FFFFFFFF, std::uint64_t{a.partial} << 44 | a.data);
+      differs("access, partial and data", access(kPartial) << 32 | access(kData),
+              std::uint64_t{a.partial} << 32 | a.data);
   }
   void differs(const char* signal, std::uint64_t rtl, std::uint64_t model) {
     check_.compare(signal, rtl, model);

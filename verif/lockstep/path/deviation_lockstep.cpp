@@ -78,7 +78,7 @@ void load(Bench& bench, Random& random, const Path& path, bool gaps) {
     const auto index = static_cast<std::size_t>(chain);
     for (int i = 0; i < static_cast<int>(kChainHalfwords[index]); ++i) {
       Model::Inputs in;
-      in.load = {true, static_cast<std::uint8_t>(model::load_target::kDeviation + index),
+      in.load = {true, static_cast<std::uint16_t>(model::load_target::kDeviation + index),
                  static_cast<std::uint16_t>(values[index] >> (16 * i))};
       bench.clock(in);
       while (gaps && random() % 4 == 0) bench.clock(not_its_own(random));

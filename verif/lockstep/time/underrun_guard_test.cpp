@@ -268,10 +268,11 @@ class Bench {
     dut_->cut_i = in_.cut;
     dut_->lost_i = in_.lost;
     dut_->idle_i = in_.idle;
-    dut_->arrive_i = std::uint32_t{a.drop} << 20 | std::uint32_t{a.geometry_commit} << 19 |
-                     std::uint32_t{a.geometry_write} << 18 | std::uint32_t{a.feed_commit} << 17 |
-                     std::uint32_t{a.feed_write} << 16 | a.halfword;
-    dut_->full_i = in_.full;
+    using namespace bus::arrival;
+    dut_->arrival_i = static_cast<IData>(
+        in_place(kFull, in_.full) | in_place(kDrop, a.drop) | in_place(kGeometryCommit, a.geometry_commit) |
+        in_place(kGeometryWrite, a.geometry_write) | in_place(kFeedCommit, a.feed_commit) |
+        in_place(kFeedWrite, a.feed_write) | in_place(kHalfword, a.halfword));
     dut_->load_i = feed_wire(in_.load);
     dut_->take_i = in_.take;
     dut_->swap_i = in_.swap;
