@@ -205,19 +205,12 @@ module register_access #(
   // By the map, by the direct loader, or by the checker: while its access waits, or in the clock after a flush.
   assign start_refused = start_answer_i[start_answer_pkg::DONE] && start_answer_i[start_answer_pkg::ERROR];
 
-  always_comb begin
-    if (acting_q) begin
-      refuse = !good_q;
-      why = {8'd0, reason_q};
-    end else if (state_q == START) begin
-      refuse = start_refused;
-      why = {8'd0, start_answer_pkg::reason(start_answer_i)};
-    end else begin
-      refuse = stream_answer_i[stream_answer_pkg::REFUSE];
-      why = stream_answer_pkg::why(stream_answer_i);
-    end
-  end
-
+  assign refuse = acting_q ? !good_q : state_q == START ? start_refused : stream_answer_i[stream_answer_pkg::REFUSE];
+  assign why = acting_q ? {8'd0, reason_q} : state_q == START ? {8'd0, start_answer_pkg::reason(
+      start_answer_i
+  )} : stream_answer_pkg::why(
+      stream_answer_i
+  );
   assign refusal_o = refusal_pkg::pack(act && refusal_q, refuse, why);
 
   logic set_q;
