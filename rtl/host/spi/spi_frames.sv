@@ -28,7 +28,7 @@ module spi_frames (
       .received_o(received),
       .byte_o(byte_in),
       .valid_i(valid),
-      .byte_i (sent),
+      .byte_i(sent),
       .ready_o(ready)
   );
 

@@ -398,7 +398,8 @@ class Bench {
     check_.compare("path swap", in_geometry(geometry::kPathSwap), s.swap);
     const auto& commands = model_->commands();
     check_.compare("inputs", get(dut_->pins_state_o, bus::pins_state::kInputs), kPathCommands ? commands.levels() : 0);
-    check_.compare("outputs", get(dut_->pins_state_o, bus::pins_state::kOutputs), kPathCommands ? commands.outputs() : 0);
+    check_.compare("outputs", get(dut_->pins_state_o, bus::pins_state::kOutputs),
+                   kPathCommands ? commands.outputs() : 0);
     check_.compare("marks", get(dut_->pins_state_o, bus::pins_state::kMarks), commands.marks());
     check_.compare("waiting", in_geometry(geometry::kWaiting), model_->sequencer().waits_for_input());
     check_.compare("probe missed", get(dut_->pins_state_o, bus::pins_state::kProbeMissed), model_->probe().missed());
