@@ -9,7 +9,6 @@
 #include "errors.hpp"
 #include "terminal.hpp"
 #include "trammel/driver/errors.hpp"
-#include "trammel/run/take_over.hpp"
 
 namespace trammel::app {
 namespace {
@@ -81,7 +80,7 @@ void with_card(const transport::CardUrl& place, Purpose purpose,
 
 void take_over(driver::Card& card) {
   try {
-    if (run::take_over(card)) {
+    if (card.take_over()) {
       tell("note", "the card held with a motion of before under way; what was left is dropped");
     }
   } catch (const driver::StateError& error) {

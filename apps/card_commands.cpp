@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 #include "card_choice.hpp"
 #include "engine_options.hpp"
 #include "errors.hpp"
+#include "standard_streams.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/sim/engines.hpp"
@@ -68,7 +68,7 @@ void dump(Card& card) {
     }
   }
   std::sort(lines.begin(), lines.end());
-  for (const auto& [address, line] : lines) fmt::print("{}", line);
+  for (const auto& [address, line] : lines) to_standard_output(line);
 }
 
 // --- monitor ---
@@ -118,10 +118,10 @@ void monitor(Card& card, const LookOptions& options) {
   for (std::uint64_t look = 0; options.looks == 0 || look < options.looks; ++look) {
     if (look != 0) card.bus().sleep(pause);
     const std::vector<std::string> lines = table(card);
-    if (terminal && look != 0) fmt::print("\x1b[{}A", lines.size());
-    for (const std::string& line : lines) fmt::print("{}{}\n", line, terminal ? "\x1b[K" : "");
-    if (!terminal) fmt::print("\n");
-    std::fflush(stdout);
+    if (terminal && look != 0) to_standard_output(fmt::format("\x1b[{}A", lines.size()));
+    for (const std::string& line : lines) to_standard_output(fmt::format("{}{}\n", line, terminal ? "\x1b[K" : ""));
+    if (!terminal) to_standard_output("\n");
+    finish_standard_streams();
   }
 }
 
@@ -131,8 +131,8 @@ void monitor(Card& card, const LookOptions& options) {
 class Checks {
  public:
   void add(const std::string& what, const std::string& wrong, const std::string& good = "") {
-    fmt::print("{}  {}{}\n", wrong.empty() ? "pass" : "FAIL", what,
-               wrong.empty() ? (good.empty() ? "" : ": " + good) : ": " + wrong);
+    to_standard_output(fmt::format("{}  {}{}\n", wrong.empty() ? "pass" : "FAIL", what,
+                                   wrong.empty() ? (good.empty() ? "" : ": " + good) : ": " + wrong));
     ++made_;
     failed_ += wrong.empty() ? 0U : 1U;
   }
@@ -249,7 +249,7 @@ void selftest(Card& card, transport::Connection* connection, const LookOptions& 
   if (checks.failed() != 0) {
     throw std::runtime_error(fmt::format("selftest: {} of {} checks failed", checks.failed(), checks.made()));
   }
-  fmt::print("{} checks passed\n", checks.made());
+  to_standard_output(fmt::format("{} checks passed\n", checks.made()));
 }
 
 }  // namespace

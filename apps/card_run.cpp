@@ -6,12 +6,14 @@
 #include <nlohmann/json.hpp>
 
 #include "card_choice.hpp"
+#include "end_text.hpp"
 #include "errors.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
 #include "stop_at_signals.hpp"
 #include "terminal.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 
 namespace trammel::app {
 namespace {
@@ -78,10 +80,8 @@ CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine
   result.plan = runner.last_plan();
   result.clock_hz = id.clock_hz;
   result.seconds = static_cast<double>(card.snapshot().time - before.time) / id.clock_hz;
-  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    result.final_millimetres.push_back(static_cast<double>(result.outcome.final_position[a]) /
-                                       machine.axes[a].steps_per_mm);
-  }
+  result.final_millimetres = end_millimetres(machine, result.outcome.final_position);
+  result.joint_for_each_axis = kinematics::Kinematics(machine).joint_for_each_axis();
   result.profile = profile_of(machine, options.settings);
   if (connection.frames() != nullptr) result.link = connection.frames()->counts();
   result.reconnections = connection.reconnections();
@@ -92,10 +92,7 @@ std::string summary(const CardRunResult& result) {
   std::string text =
       fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz on {}\n", result.plan.file,
                   result.plan.segments, result.outcome.commands, result.seconds, result.clock_hz * 1e-6, result.card);
-  for (std::size_t a = 0; a < result.axes.size(); ++a) {
-    text += fmt::format("  {}: ends at pulse {} ({:.4f} mm)\n", result.axes[a], result.outcome.final_position[a],
-                        result.final_millimetres[a]);
-  }
+  text += end_text(result.axes, result.outcome.final_position, result.final_millimetres, result.joint_for_each_axis);
   text += summary(result.profile);
   if (result.outcome.under_runs) text += fmt::format("  under-runs since reset: {}\n", *result.outcome.under_runs);
   text += probes_text(result.axes, result.outcome.probes);

@@ -18,6 +18,7 @@ struct CardRunResult {
   run::Plan plan;
   run::Outcome outcome;
   std::vector<double> final_millimetres;
+  bool joint_for_each_axis = true;  // no motor moves two axes
   std::uint32_t clock_hz = 0;
   double seconds = 0;  // of card time, from the first access to the end
   ProfileReport profile;

@@ -176,8 +176,7 @@ Result make_line(const LineArguments& options, const sim::SimulationOptions& eng
   recording.steps = steps;
   recording.clock_hz = engine_options.clock_hz;
   recording.plot = options.plot.has_value();
-  recording.steps_per_mm.assign(engine_options.axes, 1.0);
-  run::StepRecorder recorder(recording);
+  run::StepRecorder recorder(recording, kinematics::Kinematics::in_pulses(engine_options.axes));
   driver::Card card = driver::Card::open(*engine);
   const driver::OneShotPlan plan = plan_of(options, card.timing(), result.pulses);
   recorder.command(0, as_command(plan, result.pulses));

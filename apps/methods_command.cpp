@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "standard_streams.hpp"
 #include "trammel/interpolation/method.hpp"
 
 namespace trammel::app {
@@ -21,10 +22,10 @@ std::string abilities(const interpolation::MethodInfo& method) {
 }
 
 void list_methods() {
-  fmt::print("{:<16} {:<46} {:<10} {}\n", "method", "can do", "time in", "what it is");
+  to_standard_output(fmt::format("{:<16} {:<46} {:<10} {}\n", "method", "can do", "time in", "what it is"));
   for (const auto& method : interpolation::methods()) {
     const std::string unit = std::string(method.time_unit) + "s";
-    fmt::print("{:<16} {:<46} {:<10} {}\n", method.name, abilities(method), unit, method.brief);
+    to_standard_output(fmt::format("{:<16} {:<46} {:<10} {}\n", method.name, abilities(method), unit, method.brief));
   }
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "errors.hpp"
+#include "standard_streams.hpp"
 
 namespace trammel::app {
 namespace {
@@ -68,12 +69,6 @@ std::string identity_of_new_file(const fs::path& file) {
 }
 
 }  // namespace
-
-void finish_standard_output() {
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw std::runtime_error(fmt::format("standard output: could not be written to its end: {}", strerror(errno)));
-  }
-}
 
 // Looks at the destination, and creates and opens nothing.
 Output::Output(std::string option, std::string name, bool by_name)
@@ -156,7 +151,7 @@ void Output::finish() {
   if (by_name_ && kind_ != Kind::kRegular) copy_staged();
   std::FILE* const stream = std::exchange(stream_, nullptr);
   if (stream == stdout) {
-    finish_standard_output();
+    finish_standard_streams();
   } else if (std::fclose(stream) != 0) {
     fail();
   }
@@ -232,10 +227,12 @@ void Outputs::open() {
 
 void Outputs::commit(const std::string& summary) {
   for (const auto& output : outputs_) output->finish();
-  std::FILE* const people = standard_output_taken_ ? stderr : stdout;
-  std::fwrite(summary.data(), 1, summary.size(),
-              people);  // what standard output does not take shows when it is flushed
-  finish_standard_output();
+  finish_standard_streams();  // no summary of a run that failed
+  if (standard_output_taken_)
+    to_standard_error(summary);
+  else
+    to_standard_output(summary);
+  finish_standard_streams();
   const SignalsWait wait;
   try {
     for (const auto& output : outputs_) output->take_name();

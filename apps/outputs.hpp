@@ -75,7 +75,4 @@ class Outputs {
   bool standard_output_taken_ = false;
 };
 
-// Flushes standard output; throws std::runtime_error when it has not taken all that was printed.
-void finish_standard_output();
-
 }  // namespace trammel::app

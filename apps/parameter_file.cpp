@@ -6,10 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 
 #include "errors.hpp"
+#include "trammel/gcode/line_source.hpp"
 
 namespace trammel::app {
 namespace {
@@ -38,14 +38,10 @@ std::map<int, double> load_parameters(const std::string& file) {
   std::map<int, double> parameters;
   std::error_code code;
   if (!std::filesystem::exists(file, code)) return parameters;
-  std::ifstream stream(file);
-  if (std::filesystem::is_directory(file, code) || !stream) {
-    throw UsageError(fmt::format("{}: cannot read the parameters", file));
-  }
+  gcode::FileLines lines(file);
   std::size_t number = 0;
-  for (std::string line; std::getline(stream, line);) {
+  for (std::string_view rest; lines.next(rest);) {
     ++number;
-    std::string_view rest = line;
     const std::string_view first = word_of(rest);
     if (first.empty()) continue;
     const std::string_view second = word_of(rest);
@@ -59,7 +55,9 @@ std::map<int, double> load_parameters(const std::string& file) {
     }
     parameters[parameter] = value;
   }
-  if (stream.bad()) throw UsageError(fmt::format("{}: cannot read the parameters", file));
+  if (const auto failure = lines.failure()) {
+    throw UsageError(fmt::format("{}: cannot read the parameters: {}", file, *failure));
+  }
   return parameters;
 }
 

@@ -4,7 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "end_text.hpp"
 #include "run_report.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 
 namespace trammel::app {
 
@@ -14,10 +16,12 @@ CheckResult check_program(const run::ProgramLines& lines, const machine::Machine
   result.plan = run::Runner(lines, machine, card, settings).plan();
   result.profile = profile_of(machine, settings);
   result.clock_hz = card.clock_hz;
-  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    result.axes += machine.axes[a].letter;
-    result.final_millimetres.push_back(static_cast<double>(result.plan.end[a]) / machine.axes[a].steps_per_mm);
-  }
+  for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
+  const kinematics::Kinematics kinematics(machine);
+  const auto* const end = result.plan.end.begin();
+  result.final_position.assign(end, end + kinematics.joints());
+  result.final_millimetres = end_millimetres(machine, result.final_position);
+  result.joint_for_each_axis = kinematics.joint_for_each_axis();
   return result;
 }
 
@@ -25,10 +29,7 @@ std::string summary(const CheckResult& result) {
   const run::Plan& plan = result.plan;
   std::string text = fmt::format("{}: {} path segments, {} commands, {:.3f} s planned at {:g} MHz; nothing was run\n",
                                  plan.file, plan.segments, plan.commands, plan.seconds, result.clock_hz * 1e-6);
-  for (std::size_t a = 0; a < result.axes.size(); ++a) {
-    text +=
-        fmt::format("  {}: ends at pulse {} ({:.4f} mm)\n", result.axes[a], plan.end[a], result.final_millimetres[a]);
-  }
+  text += end_text(result.axes, result.final_position, result.final_millimetres, result.joint_for_each_axis);
   return text + summary(result.profile) + blends_text(plan.blends) + probes_planned(plan) +
          accepted_words(plan.accepted);
 }
@@ -38,8 +39,7 @@ std::string json_text(const CheckResult& result) {
   nlohmann::ordered_json json;
   json["program"] = plan.file;
   json["axes"] = result.axes;
-  json["final_position"] = nlohmann::ordered_json::array();
-  for (std::size_t a = 0; a < result.axes.size(); ++a) json["final_position"].push_back(plan.end[a]);
+  json["final_position"] = result.final_position;
   json["clock_hz"] = result.clock_hz;
   json["segments"] = plan.segments;
   json["commands"] = plan.commands;

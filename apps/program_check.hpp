@@ -12,8 +12,10 @@ namespace trammel::app {
 struct CheckResult {
   run::Plan plan;
   ProfileReport profile;
-  std::string axes;  // letters in the card's order
+  std::string axes;                          // letters in the card's order
+  std::vector<std::int64_t> final_position;  // pulses by axis of the card
   std::vector<double> final_millimetres;
+  bool joint_for_each_axis = true;  // no motor moves two axes
   std::uint32_t clock_hz = 0;
 };
 

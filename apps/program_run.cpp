@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <chrono>
 
+#include "end_text.hpp"
 #include "engine_options.hpp"
+#include "errors.hpp"
 #include "progress_bar.hpp"
 #include "stop_at_signals.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/feed_meter.hpp"
 #include "trammel/run/step_fork.hpp"
@@ -83,17 +86,8 @@ bool scripts_inputs(const Operation& operation) {
                      [](const OperatorEvent& event) { return event.kind == OperatorEvent::Kind::kInput; });
 }
 
-// By axis of the card.
-std::vector<double> scales(const machine::Machine& machine) {
-  std::vector<double> result;
-  for (const machine::MachineAxis& axis : machine.axes) result.push_back(axis.steps_per_mm);
-  for (const std::size_t axis : machine.second_motors()) result.push_back(machine.axes[axis].steps_per_mm);
-  return result;
-}
-
-run::StepRecorder::Options recording_of(const machine::Machine& machine, const RunOptions& options, double clock_hz) {
+run::StepRecorder::Options recording_of(const RunOptions& options, double clock_hz) {
   run::StepRecorder::Options recording;
-  recording.steps_per_mm = scales(machine);
   recording.steps = options.steps;
   recording.path_steps = options.path_steps;
   recording.plot = options.plot;
@@ -113,9 +107,8 @@ void tell(const run::Plan& plan, RunResult& result) {
 
 void tell(const run::Outcome& outcome, const machine::Machine& machine, RunResult& result) {
   result.final_position = outcome.final_position;
-  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-    result.final_millimetres.push_back(static_cast<double>(result.final_position[a]) / machine.axes[a].steps_per_mm);
-  }
+  result.final_millimetres = end_millimetres(machine, result.final_position);
+  result.joint_for_each_axis = kinematics::Kinematics(machine).joint_for_each_axis();
   result.commands = outcome.commands;
   result.under_runs = outcome.under_runs;
   result.probes = outcome.probes;
@@ -150,6 +143,9 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
                       const sim::SimulationOptions& engine_options, const RunOptions& options,
                       std::unique_ptr<report::ReportWriter>* report) {
   const auto begun = std::chrono::steady_clock::now();
+  if (options.report != nullptr && !kinematics::Kinematics(machine).joint_for_each_axis()) {
+    throw UsageError("--report: its page shows machines with a motor for each axis; leave it out for corexy");
+  }
   RunResult result;
   for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
   run::Runner runner(lines, machine, limits_of(engine_options), options.settings);
@@ -159,7 +155,7 @@ RunResult run_program(const run::ProgramLines& lines, const machine::Machine& ma
 
   if (options.planned) options.planned(plan);
 
-  run::StepRecorder recorder(recording_of(machine, options, engine_options.clock_hz));
+  run::StepRecorder recorder(recording_of(options, engine_options.clock_hz), kinematics::Kinematics(machine));
   if (course.detail_command()) recorder.detail_of(*course.detail_command());
 
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_options);

@@ -54,9 +54,10 @@ struct RunResult {
   std::string program;
   std::string engine;
   std::string axes;                              // letters in the card's order
-  std::vector<std::int64_t> final_position;      // pulses, the card's position counters
+  std::vector<std::int64_t> final_position;      // pulses by axis of the card, from machine zero on
   std::vector<std::uint64_t> steps;              // pulses at the pins
   std::vector<double> final_millimetres;         // of final_position
+  bool joint_for_each_axis = true;               // no motor moves two axes
   std::uint64_t cycles = 0;                      // clocks of the card
   std::uint32_t clock_hz = 0;                    // Hz
   std::optional<std::uint64_t> lockstep_cycles;  // clocks compared

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "standard_streams.hpp"
 #include "terminal.hpp"
 
 namespace trammel::app {
@@ -19,7 +19,7 @@ std::string duration_text(double seconds) {
 ProgressBar::ProgressBar(bool always) : bar_(has_escapes(STDERR_FILENO)), lines_(always && !bar_) {}
 
 ProgressBar::~ProgressBar() {
-  if (drawn_) std::fputs("\r\033[K", stderr);
+  if (drawn_) to_standard_error("\r\033[K");
 }
 
 void ProgressBar::show(double done, const std::string& note) {
@@ -32,15 +32,14 @@ void ProgressBar::show(double done, const std::string& note) {
   const std::string left =
       elapsed > 1 && done > 0 ? fmt::format(", {} left", duration_text(elapsed * (1 - done) / done)) : std::string();
   if (lines_) {
-    fmt::print(stderr, "{:3.0f} %  {}{}\n", 100 * done, note, left);
+    to_standard_error(fmt::format("{:3.0f} %  {}{}\n", 100 * done, note, left));
     return;
   }
   drawn_ = true;
   constexpr std::size_t kWidth = 20;  // all of the line within 80 columns
   const auto full = static_cast<std::size_t>(done * kWidth);
-  fmt::print(stderr, "\r\033[K[{}{}] {:3.0f} %  {}{}", std::string(full, '#'), std::string(kWidth - full, '.'),
-             100 * done, note, left);
-  std::fflush(stderr);
+  to_standard_error(fmt::format("\r\033[K[{}{}] {:3.0f} %  {}{}", std::string(full, '#'),
+                                std::string(kWidth - full, '.'), 100 * done, note, left));
 }
 
 }  // namespace trammel::app

@@ -83,7 +83,8 @@ void check_folder(const std::string& name) {
   }
 }
 
-void write_all(const std::filesystem::path& folder, const std::map<std::string, std::string>& files) {
+void write_all(const std::filesystem::path& folder, const std::map<std::string, std::string>& files,
+               const std::string& summary) {
   Outputs outputs;
   std::vector<Output*> places;
   for (const auto& [name, content] : files) {
@@ -96,7 +97,7 @@ void write_all(const std::filesystem::path& folder, const std::map<std::string, 
   outputs.open();
   auto place = places.begin();
   for (const auto& [name, content] : files) (*place++)->write(content);
-  outputs.commit();
+  outputs.commit(summary);
 }
 
 void reproduce_papers(const ReproduceOptions& options) {
@@ -124,9 +125,9 @@ void reproduce_papers(const ReproduceOptions& options) {
     added += page.count(Verdict::kAdded);
     failed += page.count(Verdict::kFail);
   }
-  write_all(options.out, files);
-  fmt::print("{} items: {} PASS, {} CORRECTED, {} ADDED, {} FAIL; pages in {}\n", passed + corrected + added + failed,
-             passed, corrected, added, failed, options.out);
+  write_all(options.out, files,
+            fmt::format("{} items: {} PASS, {} CORRECTED, {} ADDED, {} FAIL; pages in {}\n",
+                        passed + corrected + added + failed, passed, corrected, added, failed, options.out));
   if (failed != 0) throw std::runtime_error(fmt::format("{} items of the papers were not reproduced", failed));
 }
 

@@ -22,6 +22,7 @@
 #include "program_file.hpp"
 #include "program_run.hpp"
 #include "run_report.hpp"
+#include "standard_streams.hpp"
 #include "terminal.hpp"
 #include "trammel/report/page.hpp"
 #include "trammel/report/report_writer.hpp"
@@ -32,6 +33,8 @@ namespace {
 
 // A simulated card at 1 MHz runs programs faster than life; only the resolution in time differs from the real clock.
 constexpr std::uint32_t kSimulatedClock = 1'000'000;
+
+constexpr std::uint64_t kDefaultPipeLimit = 512;  // MiB
 
 struct RunArguments {
   std::string program;
@@ -50,6 +53,7 @@ struct RunArguments {
   bool progress = false;
   bool check = false;
   bool stream = false;
+  std::optional<std::uint64_t> pipe_limit;  // MiB
 };
 
 void refuse_contradictions(const RunArguments& options) {
@@ -57,6 +61,7 @@ void refuse_contradictions(const RunArguments& options) {
     if (given) throw UsageError(fmt::format("{}: {}", option, why));
   };
   if (options.stream) {
+    refuse("--pipe-limit", options.pipe_limit.has_value(), "nothing is copied with --stream");
     refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
     refuse("--report", options.report.has_value(), "needs the whole program first, not --stream");
   }
@@ -97,8 +102,10 @@ void refuse_what_needs_the_simulation(const RunArguments& options) {
   if (options.check) throw UsageError("--check: nothing runs, so it takes no --card");
 }
 
+// Throws where a warning is lost: most come before anything moves, and then nothing does.
 void warn(const std::vector<std::string>& texts) {
   for (const std::string& text : texts) tell("warning", text);
+  finish_standard_streams();
 }
 
 // What is the same on every card; the files are still missing.
@@ -112,6 +119,11 @@ RunOptions run_options(const RunArguments& options, const machine::Machine& mach
   run.most_percent = 100 * machine.motion.max_override;
   run.operation = options.motion.operation(run.most_percent);
   return run;
+}
+
+std::optional<std::uint64_t> copy_limit(const RunArguments& options) {
+  if (options.stream) return std::nullopt;
+  return options.pipe_limit.value_or(kDefaultPipeLimit) << 20U;
 }
 
 // From its beginning, each time. `file` must outlive them.
@@ -142,7 +154,7 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
     outputs.open();
     warn(feed_warnings(plan.file, plan.feeds_not_reached));
   };
-  const ProgramFile file(options.program, options.stream);
+  const ProgramFile file(options.program, copy_limit(options));
   CardRunResult result;
   with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
     result = run_on_card(lines_of(file), machine, card, connection, run);
@@ -190,7 +202,7 @@ void run_in_simulation(const RunArguments& options) {
   if (options.report_window) {
     run.report_window = window_of("--report-window", *options.report_window, engine.clock_hz);
   }
-  const ProgramFile file(options.program, options.stream);
+  const ProgramFile file(options.program, copy_limit(options));
   const run::ProgramLines lines = lines_of(file);
   if (options.check) return check(lines, options.machine, machine, limits_of(engine), run.settings, outputs, json);
   run.planned = [&](const run::Plan& plan) {
@@ -246,6 +258,13 @@ void add_run_command(CLI::App& app) {
   command->add_flag("--check", options->check, "read, plan and time the program; nothing runs");
   command->add_flag("--stream", options->stream,
                     "read the program while it runs: an error in it is a stop on the way, status 1");
+  command
+      ->add_option("--pipe-limit", options->pipe_limit,
+                   fmt::format("longest program that is read from standard input, a pipe or a device, which is copied "
+                               "first (default {})",
+                               kDefaultPipeLimit))
+      ->transform(whole_number(1, 1'000'000, "MiB"))
+      ->type_name("MIB");
   command->footer("One FILE may be '-', standard output; what people read then goes to standard error.");
   command->callback([options] { run_in_simulation(*options); });
 }

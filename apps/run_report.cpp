@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "end_text.hpp"
+
 namespace trammel::app {
 namespace {
 
@@ -201,10 +203,8 @@ std::string summary(const RunResult& result) {
   const double seconds = static_cast<double>(result.cycles) / result.clock_hz;
   std::string text = fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz\n",
                                  result.program, result.segments, result.commands, seconds, result.clock_hz * 1e-6);
-  for (std::size_t a = 0; a < result.axes.size(); ++a) {
-    text += fmt::format("  {}: {} pulses made, ends at pulse {} ({:.4f} mm)\n", result.axes[a], result.steps[a],
-                        result.final_position[a], result.final_millimetres[a]);
-  }
+  text +=
+      end_text(result.axes, result.final_position, result.final_millimetres, result.joint_for_each_axis, result.steps);
   text += summary(result.profile);
   text += fmt::format("  largest deviation: lines {:.4f} pulses, arcs {:.4f} pulses\n", result.largest_line_deviation,
                       result.largest_arc_deviation);

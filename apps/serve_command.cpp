@@ -4,13 +4,13 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "engine_options.hpp"
 #include "errors.hpp"
+#include "standard_streams.hpp"
 #include "terminal.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
@@ -90,8 +90,9 @@ std::unique_ptr<transport::Listener> listener_of(const ServeOptions& options) {
 
 // What a program or a person needs to connect, on standard output at once.
 void tell_where(const transport::Listener& listener, const std::string& token) {
-  fmt::print("card {}\ntoken {}\nmove with --card '{}?token={}'\n", listener.url(), token, listener.url(), token);
-  std::fflush(stdout);
+  to_standard_output(
+      fmt::format("card {}\ntoken {}\nmove with --card '{}?token={}'\n", listener.url(), token, listener.url(), token));
+  finish_standard_streams();
 }
 
 void serve_card(const ServeOptions& options) {

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "command_outline.hpp"
+#include "standard_streams.hpp"
 
 namespace trammel::app {
 namespace {
@@ -196,9 +197,9 @@ void add_shell_commands(CLI::App& app) {
   completion->add_option("shell", *shell, "the shell: bash, zsh or fish")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-  completion->callback([shell, &app] { fmt::print("{}", completion_of(app, *shell)); });
+  completion->callback([shell, &app] { to_standard_output(completion_of(app, *shell)); });
   CLI::App* manual = app.add_subcommand("man", "print the manual page: trammel man | man -l -");
-  manual->callback([&app] { fmt::print("{}", manual_of(app)); });
+  manual->callback([&app] { to_standard_output(manual_of(app)); });
 }
 
 }  // namespace trammel::app

@@ -70,10 +70,11 @@ run::Outcome run_until_signal(run::Runner& runner, driver::Card& card, const mac
     return stream ? runner.stream(card) : runner.run(card);
   } catch (const run::StoppedOnPath& stopped) {
     std::string where = fmt::format("line {}", stopped.line());
+    const kinematics::Kinematics kinematics(machine);
+    const kinematics::Coordinates at = kinematics.coordinates(stopped.position());
     for (std::size_t a = 0; a < machine.axes.size(); ++a) {
-      const machine::MachineAxis& axis = machine.axes[a];
-      where += fmt::format(", {} at pulse {} ({:.4f} mm)", axis.letter, stopped.position()[a],
-                           static_cast<double>(stopped.position()[a]) / axis.steps_per_mm);
+      const std::string pulse = kinematics.joint_for_each_axis() ? fmt::format("pulse {} ", stopped.position()[a]) : "";
+      where += fmt::format(", {} at {}({:.4f} mm)", machine.axes[a].letter, pulse, at[a]);
     }
     signals.end(where);
   }

@@ -10,6 +10,9 @@
 #include <cstddef>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
+
+#include "errors.hpp"
 
 namespace trammel::app {
 namespace {
@@ -38,13 +41,31 @@ void remove_and_forget(const std::string& name) {
   }
 }
 
-// The signal's own action was put back on entry (SA_RESETHAND), so that the parent sees what ended the process.
-extern "C" void remove_all(int signal) {
+void unlink_all() {
   for (const std::atomic<const char*>& entry : names) {
     const char* const name = entry;
     if (name != nullptr) ::unlink(name);
   }
+}
+
+// The signal's own action was put back on entry (SA_RESETHAND), so that the parent sees what ended the process.
+extern "C" void remove_all(int signal) {
+  unlink_all();
   ::raise(signal);
+}
+
+// The waveform's writer maps its files into memory. A disk without room for them is not an error of a call there: the
+// access fails, with this code.
+extern "C" void end_without_room(int signal, siginfo_t* info, void* /*context*/) {
+  unlink_all();
+  if (info->si_code != BUS_ADRERR) {
+    ::raise(signal);
+    return;
+  }
+  constexpr std::string_view kMessage = "trammel: error: --trace: no room for the waveform's files (is a disk full?)\n";
+  // Nothing else can be done where this fails.
+  [[maybe_unused]] const ssize_t count = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  ::_exit(kExitFailure);
 }
 
 sigset_t ending_signals() {
@@ -66,6 +87,9 @@ void remove_temporary_files_on_signals() {
     ::sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) ::sigaction(signal, &action, nullptr);
   }
+  action.sa_sigaction = end_without_room;
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_SIGINFO;
+  ::sigaction(SIGBUS, &action, nullptr);
   // A file that grows beyond its limit is a write that fails, and is reported as one.
   ::signal(SIGXFSZ, SIG_IGN);
 }
@@ -98,5 +122,16 @@ TemporaryFile::~TemporaryFile() {
   remove_and_forget(path_.native());
   remove_and_forget(beside_);
 }
+
+NamelessFile::NamelessFile(const std::filesystem::path& folder)
+    : descriptor_(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600)) {
+  if (descriptor_ >= 0) return;
+  // Not every file system can do it. On the others the file loses its name at once.
+  const TemporaryFile named(folder);
+  descriptor_ = ::fcntl(named.descriptor(), F_DUPFD_CLOEXEC, 0);
+  if (descriptor_ < 0) throw std::runtime_error(fmt::format("no new file can be opened: {}", strerror(errno)));
+}
+
+NamelessFile::~NamelessFile() { ::close(descriptor_); }
 
 }  // namespace trammel::app

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "standard_streams.hpp"
+
 namespace trammel::app {
 namespace {
 
@@ -39,7 +41,7 @@ std::string coloured(int descriptor, Colour colour, const std::string& text) {
 
 void tell(const std::string& kind, const std::string& text) {
   const Colour colour = kind == "error" ? Colour::kRed : kind == "warning" ? Colour::kYellow : Colour::kCyan;
-  fmt::print(stderr, "trammel: {}: {}\n", coloured(STDERR_FILENO, colour, kind), text);
+  to_standard_error(fmt::format("trammel: {}: {}\n", coloured(STDERR_FILENO, colour, kind), text));
 }
 
 }  // namespace trammel::app

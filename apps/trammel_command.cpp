@@ -1,8 +1,6 @@
 #include "trammel_command.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -16,11 +14,11 @@
 #include "info_command.hpp"
 #include "line_command.hpp"
 #include "methods_command.hpp"
-#include "outputs.hpp"
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
 #include "serve_command.hpp"
 #include "shell_command.hpp"
+#include "standard_streams.hpp"
 #include "steps_command.hpp"
 #include "stop_at_signals.hpp"
 #include "temporary_files.hpp"
@@ -36,14 +34,6 @@ int report(const std::string& message, int status) {
   return status;
 }
 
-// Where the shell closed one of the first three descriptors, an output file would get its number, and with it what is
-// printed. One that can only be read makes printing fail.
-void hold_standard_descriptors() {
-  for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor) {
-    if (::fcntl(descriptor, F_GETFD) == -1) (void)::open("/dev/null", O_RDONLY);
-  }
-}
-
 void parse(CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   words = subcommand_words(app, std::move(words));
@@ -56,7 +46,7 @@ void parse(CLI::App& app, int argc, char** argv) {
     app.exit(error);
     std::cout.flush();
   }
-  finish_standard_output();
+  finish_standard_streams();
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ include(CMakePackageConfigHelpers)
 
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
-install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_transport trammel_machine trammel_gcode
-  trammel_planner trammel_chart trammel_run trammel_sim trammel_c EXPORT trammel-targets
+install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_transport trammel_machine
+  trammel_kinematics trammel_gcode trammel_planner trammel_chart trammel_run trammel_sim trammel_c EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
 install(FILES "${PROJECT_SOURCE_DIR}/bindings/c/include/trammel.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
@@ -24,6 +24,7 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/driver/include/"
   "${PROJECT_SOURCE_DIR}/transport/include/"
   "${PROJECT_SOURCE_DIR}/host/machine/include/"
+  "${PROJECT_SOURCE_DIR}/host/kinematics/include/"
   "${PROJECT_SOURCE_DIR}/host/gcode/include/"
   "${PROJECT_SOURCE_DIR}/host/planner/include/"
   "${PROJECT_SOURCE_DIR}/host/chart/include/"

@@ -116,6 +116,25 @@ function(trammel_add_lockstep name)
     set_property(GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_${var} "${A_${var}}")
   endforeach()
   set_property(GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_SOUND ${target})
+  trammel_record_lockstep(${name})
+endfunction()
+
+# For the table of judges (scripts/rtl/judges): what a lockstep clocks.
+function(trammel_record_lockstep name)
+  get_property(top GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_TOP)
+  get_property(sources GLOBAL PROPERTY TRAMMEL_LOCKSTEP_${name}_SOURCES)
+  list(JOIN sources "\", \"" sources)
+  set_property(GLOBAL APPEND_STRING PROPERTY TRAMMEL_LOCKSTEPS_JSON
+    "\n    {\"name\": \"${name}\", \"top\": \"${top}\", \"sources\": [\"${sources}\"]},")
+endfunction()
+
+# Writes what was recorded of locksteps and seeded bugs, once all of them are known.
+function(trammel_write_judges file)
+  get_property(locksteps GLOBAL PROPERTY TRAMMEL_LOCKSTEPS_JSON)
+  get_property(bugs GLOBAL PROPERTY TRAMMEL_SEEDED_BUGS_JSON)
+  string(REGEX REPLACE ",$" "" locksteps "${locksteps}")
+  string(REGEX REPLACE ",$" "" bugs "${bugs}")
+  file(CONFIGURE OUTPUT "${file}" CONTENT "{\n  \"locksteps\": [${locksteps}\n  ],\n  \"seeded_bugs\": [${bugs}\n  ]\n}\n" @ONLY)
 endfunction()
 
 # trammel_lockstep_test(executable TEST test.cpp HEADERS_OF target PREFIX Vx)
@@ -165,6 +184,8 @@ function(trammel_add_seeded_bug name bug)
       elseif(i LESS ARGC)
         set(file "${ARGV${next}}")
         set_property(GLOBAL APPEND PROPERTY TRAMMEL_RTL_WITH_SEEDED_BUG "${file}")
+        set_property(GLOBAL APPEND_STRING PROPERTY TRAMMEL_SEEDED_BUGS_JSON
+          "\n    {\"name\": \"${name}.${bug}\", \"file\": \"${file}\"},")
         if(NOT file IN_LIST L_SOURCES AND NOT file IN_LIST TRAMMEL_RTL_PACKAGES)
           message(FATAL_ERROR "seeded bug ${name}/${bug}: ${file} is no source of ${name}, or named twice")
         endif()

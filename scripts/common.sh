@@ -25,10 +25,24 @@ debian_packages_page=(chromium)
 debian_packages_check=(clang-format universal-ctags iverilog yosys)
 # The documentation as a site.
 debian_packages_site=(doxygen)
+# LinuxCNC's interpreter, which tests compare the G-code reader with.
+debian_packages_linuxcnc=(linuxcnc-uspace)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)
 # The tests on 32-bit ARM.
 debian_packages_armhf=(g++-arm-linux-gnueabihf qemu-user-static)
 armhf_libraries=(libfmt9 libfmt-dev libtoml11-dev nlohmann-json3-dev libgtest-dev libgmock-dev librapidcheck-dev)
+
+apt_lock_timeout=600  # seconds: how long another apt may run
+
+# update_packages [COMMAND ...]: apt-get update, by sudo for instance. It has no option that waits for the lock of the lists.
+update_packages() {
+  local until=$((SECONDS + apt_lock_timeout)) printed
+  until printed=$("$@" env LC_ALL=C apt-get update -qq 2>&1); do
+    [[ $printed == *"Could not get lock"* && $SECONDS -lt $until ]] || die "apt-get update: $printed"
+    sleep 1
+  done
+  [ -z "$printed" ] || echo "$printed" >&2
+}
 
 install_debian() {
   local missing=() package
@@ -40,8 +54,9 @@ install_debian() {
   local sudo=()
   [ "$(id -u)" -eq 0 ] || sudo=(sudo)
   say "installing ${missing[*]}"
-  "${sudo[@]}" apt-get update -qq
-  DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  update_packages "${sudo[@]}"
+  DEBIAN_FRONTEND=noninteractive "${sudo[@]}" apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=$apt_lock_timeout \
+    "${missing[@]}" >/dev/null
 }
 
 # What the tests on 32-bit ARM need: compiler and emulator, and the libraries of that architecture, which are unpacked into

@@ -3,9 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "standard_streams.hpp"
 #include "terminal.hpp"
 
 namespace trammel::app::reproduce {
@@ -65,9 +65,10 @@ void Page::data(const std::string& name, const std::string& caption, const Csv& 
 
 void Page::add(Item item) {
   const std::string verdict = fmt::format("{:<10}", name_of(item.verdict));
-  fmt::print("{} {}: {}\n", coloured(STDOUT_FILENO, colour_of(item.verdict), verdict), item.what, item.found);
-  if (item.verdict != Verdict::kPass) fmt::print("{:<10} the paper: {}\n", "", item.paper);
-  std::fflush(stdout);
+  to_standard_output(
+      fmt::format("{} {}: {}\n", coloured(STDOUT_FILENO, colour_of(item.verdict), verdict), item.what, item.found));
+  if (item.verdict != Verdict::kPass) to_standard_output(fmt::format("{:<10} the paper: {}\n", "", item.paper));
+  finish_standard_streams();
   body_ +=
       fmt::format("\n**{}** {}. Paper: {}. Found: {}.\n", name_of(item.verdict), item.what, item.paper, item.found);
   items_.push_back(std::move(item));

@@ -1,7 +1,7 @@
 // Python's module: driver, simulated card and interpolators. The only file that knows of nanobind.
 //
-// Times come as whole nanoseconds, since Python's timedelta ends at microseconds. Calls that may take long let other
-// threads of Python go on, and end at Ctrl-C where they look at the card.
+// Times come as whole nanoseconds, since Python's timedelta ends at microseconds. Calls that use a card let other
+// threads of Python go on, and those that wait end at Ctrl-C: waiting().
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/function.h>
@@ -18,12 +18,15 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "trammel/driver/arc.hpp"
 #include "trammel/driver/arc_chord.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/increment.hpp"
+#include "trammel/driver/interrupt.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/position_stream.hpp"
 #include "trammel/driver/stream.hpp"
@@ -39,12 +42,10 @@ using std::chrono::nanoseconds;
 
 namespace {
 
-using Unlocked = nb::call_guard<nb::gil_scoped_release>;
-
 // ---- Errors ----
 
 struct ErrorTypes {
-  nb::handle error, link, identification, refused, fault, state, stopped, argument, timeout;
+  nb::handle error, link, identification, refused, fault, state, held, stopped, interrupted, argument, timeout;
 };
 ErrorTypes error_types;  // live as long as the module, which Python never unloads
 
@@ -76,8 +77,12 @@ void translate(const std::exception_ptr& thrown, void*) {
     raise(error_types.argument, e);
   } catch (const driver::StoppedError& e) {
     raise(error_types.stopped, e, std::pair{"geometry_begun", e.geometry_begun()});
+  } catch (const driver::HeldError& e) {
+    raise(error_types.held, e);
   } catch (const driver::StateError& e) {
     raise(error_types.state, e);
+  } catch (const driver::InterruptedError& e) {
+    raise(error_types.interrupted, e);
   } catch (const driver::TimeoutError& e) {
     raise(error_types.timeout, e, std::pair{"waited", e.waited()});
   } catch (const driver::RefusedError& e) {
@@ -100,10 +105,83 @@ void bind_errors(nb::module_& m) {
   t.refused = make_error(m, "RefusedError", t.error);
   t.fault = make_error(m, "FaultError", t.error);
   t.state = make_error(m, "StateError", t.error);
+  t.held = make_error(m, "HeldError", t.state);
   t.stopped = make_error(m, "StoppedError", t.state);
+  t.interrupted = make_error(m, "InterruptedError", t.error);
   t.argument = make_error(m, "ArgumentError", t.error, PyExc_ValueError);
   t.timeout = make_error(m, "TimeoutError", t.error, PyExc_TimeoutError);
   nb::register_exception_translator(translate);
+}
+
+// ---- Calls that wait ----
+
+// What a signal's handler has raised while the thread's innermost call waited, if anything.
+class RaisedWhileWaiting : public std::optional<nb::python_error> {
+ public:
+  RaisedWhileWaiting() : outer_(innermost()) { innermost() = this; }
+  ~RaisedWhileWaiting() { innermost() = outer_; }
+  RaisedWhileWaiting(const RaisedWhileWaiting&) = delete;
+  RaisedWhileWaiting& operator=(const RaisedWhileWaiting&) = delete;
+
+  static RaisedWhileWaiting*& innermost() {
+    thread_local RaisedWhileWaiting* raised = nullptr;
+    return raised;
+  }
+
+ private:
+  RaisedWhileWaiting* outer_;
+};
+
+// Makes the call without Python's lock. While it waits, signals are looked for: what a handler raises (Ctrl-C:
+// KeyboardInterrupt) ends the call, which stops the card on the path before, and is raised with what the driver said of
+// that as its cause.
+template <class Call>
+auto without_lock(Call call) {
+  RaisedWhileWaiting raised;
+  const auto locked_out = [&] {
+    const nb::gil_scoped_release unlocked;
+    const driver::InterruptScope scope([&raised] {
+      if (raised) return true;
+      const nb::gil_scoped_acquire locked;
+      if (PyErr_CheckSignals() == 0) return false;
+      raised.emplace();
+      return true;
+    });
+    return call();
+  };
+  try {
+    if constexpr (std::is_void_v<decltype(call())>) {
+      locked_out();
+      if (!raised) return;
+    } else {
+      auto result = locked_out();
+      if (!raised) return result;
+    }
+  } catch (const driver::Error& error) {
+    if (!raised) throw;
+    PyException_SetCause(raised->value().ptr(), error_types.error(error.what()).release().ptr());
+  } catch (const nb::python_error&) {  // of a callback, in which a call of its own was ended
+    if (!raised) throw;
+  }
+  throw std::move(*raised);
+}
+
+// The function, as Python calls it.
+template <class Result, class... Values>
+auto waiting(Result (*function)(Values...)) {
+  return [function](Values... values) -> Result {
+    return without_lock([&]() -> Result { return function(std::forward<Values>(values)...); });
+  };
+}
+template <class Result, class Object, class... Values>
+auto waiting(Result (Object::*function)(Values...)) {
+  return [function](Object& object, Values... values) -> Result {
+    return without_lock([&]() -> Result { return (object.*function)(std::forward<Values>(values)...); });
+  };
+}
+template <class Lambda>
+auto waiting(Lambda lambda) {
+  return waiting(+lambda);
 }
 
 // ---- Cards ----
@@ -237,48 +315,43 @@ void configure_axis(PythonCard& of, unsigned axis, std::int64_t length, std::int
 }
 
 void bind_motion(nb::class_<PythonCard>& card) {
-  card.def(
-          "start_line",
-          [](PythonCard& of, const std::vector<std::int64_t>& pulses, std::optional<std::int64_t> duration_ns,
-             std::optional<std::uint64_t> speed, const std::vector<std::uint64_t>& max_velocity, bool slow_down) {
-            const driver::OneShotPlan planned = plan(of, pulses, duration_ns, speed, max_velocity, slow_down);
-            if (planned.size() != 1) throw driver::ArgumentError("the line has several parts: run_line() runs them");
-            driver::start_line(of.card, planned.part(0));
-            return planned;
-          },
-          "pulses"_a, nb::kw_only(), "duration_ns"_a = nb::none(), "speed"_a = nb::none(),
-          "max_velocity"_a = std::vector<std::uint64_t>{}, "slow_down"_a = false, Unlocked(),
-          "Starts a line, by axis, over duration_ns or at a speed along the path (pulses/s), and returns at once.")
-      .def(
-          "run_line",
-          [](PythonCard& of, const std::vector<std::int64_t>& pulses, std::optional<std::int64_t> duration_ns,
-             std::optional<std::uint64_t> speed, const std::vector<std::uint64_t>& max_velocity, bool slow_down,
-             std::int64_t patience_ns) {
-            const driver::OneShotPlan planned = plan(of, pulses, duration_ns, speed, max_velocity, slow_down);
-            driver::run_line(of.card, planned, nanoseconds(patience_ns));
-            return planned;
-          },
-          "pulses"_a, nb::kw_only(), "duration_ns"_a = nb::none(), "speed"_a = nb::none(),
-          "max_velocity"_a = std::vector<std::uint64_t>{}, "slow_down"_a = false, "patience_ns"_a = 1'000'000'000,
-          Unlocked(), "Runs a line and returns when it has ended.")
-      .def(
-          "hold", [](PythonCard& of, bool on) { of.card.set_hold(on); }, "on"_a = true,
-          "Slews to rest on the path, or goes on.")
-      .def(
-          "set_override",
-          [](PythonCard& of, double percent, double most_percent, driver::PieceClass piece_class) {
-            of.card.set_override(piece_class, percent, most_percent);
-          },
-          "percent"_a, "most_percent"_a = 100.0, "piece_class"_a = driver::PieceClass::kFeed)
-      .def(
-          "set_slew_time", [](PythonCard& of, std::int64_t ns) { of.card.set_slew_time(nanoseconds(ns)); },
-          "full_scale_ns"_a)
-      .def(
-          "abort", [](PythonCard& of) { of.card.abort(); }, "Drops what is queued and stops at once.")
-      .def(
-          "stop", [](PythonCard& of, std::int64_t ns) { return of.card.stop(nanoseconds(ns)); },
-          "patience_ns"_a = 1'000'000'000, Unlocked(),
-          "A hold, and at rest an abort. Gives back where the card stands.")
+  card.def("start_line",
+           waiting([](PythonCard& of, const std::vector<std::int64_t>& pulses, std::optional<std::int64_t> duration_ns,
+                      std::optional<std::uint64_t> speed, const std::vector<std::uint64_t>& max_velocity,
+                      bool slow_down) {
+             const driver::OneShotPlan planned = plan(of, pulses, duration_ns, speed, max_velocity, slow_down);
+             if (planned.size() != 1) throw driver::ArgumentError("the line has several parts: run_line() runs them");
+             driver::start_line(of.card, planned.part(0));
+             return planned;
+           }),
+           "pulses"_a, nb::kw_only(), "duration_ns"_a = nb::none(), "speed"_a = nb::none(),
+           "max_velocity"_a = std::vector<std::uint64_t>{}, "slow_down"_a = false,
+           "Starts a line, by axis, over duration_ns or at a speed along the path (pulses/s), and returns at once.")
+      .def("run_line",
+           waiting([](PythonCard& of, const std::vector<std::int64_t>& pulses, std::optional<std::int64_t> duration_ns,
+                      std::optional<std::uint64_t> speed, const std::vector<std::uint64_t>& max_velocity,
+                      bool slow_down, std::int64_t patience_ns) {
+             const driver::OneShotPlan planned = plan(of, pulses, duration_ns, speed, max_velocity, slow_down);
+             driver::run_line(of.card, planned, nanoseconds(patience_ns));
+             return planned;
+           }),
+           "pulses"_a, nb::kw_only(), "duration_ns"_a = nb::none(), "speed"_a = nb::none(),
+           "max_velocity"_a = std::vector<std::uint64_t>{}, "slow_down"_a = false, "patience_ns"_a = 1'000'000'000,
+           "Runs a line and returns when it has ended.")
+      .def("hold", waiting([](PythonCard& of, bool on) { of.card.set_hold(on); }), "on"_a = true,
+           "Slews to rest on the path, or goes on.")
+      .def("set_override",
+           waiting([](PythonCard& of, double percent, double most_percent, driver::PieceClass piece_class) {
+             of.card.set_override(piece_class, percent, most_percent);
+           }),
+           "percent"_a, "most_percent"_a = 100.0, "piece_class"_a = driver::PieceClass::kFeed)
+      .def("set_slew_time", waiting([](PythonCard& of, std::int64_t ns) { of.card.set_slew_time(nanoseconds(ns)); }),
+           "full_scale_ns"_a)
+      .def("abort", waiting([](PythonCard& of) { of.card.abort(); }), "Drops what is queued and stops at once.")
+      .def("stop", waiting([](PythonCard& of, std::int64_t ns) { return of.card.stop(nanoseconds(ns)); }),
+           "patience_ns"_a = 1'000'000'000, "A hold, and at rest an abort. Gives back where the card stands.")
+      .def("take_over", waiting([](PythonCard& of) { return of.card.take_over(); }),
+           "Of another host that has left it: ends its hold. Gives back where the card stands if a motion was dropped.")
       .def(
           "request_hold", [](PythonCard& of, bool on) { of.card.request_hold(on); }, "on"_a = true)
       .def("request_abort", [](PythonCard& of) { of.card.request_abort(); })
@@ -287,28 +360,27 @@ void bind_motion(nb::class_<PythonCard>& card) {
 
 void bind_state(nb::class_<PythonCard>& card) {
   card.def_prop_ro("identification", [](const PythonCard& of) { return of.card.identification(); })
-      .def("configure_axis", configure_axis, "axis"_a, nb::kw_only(), "step_length_ns"_a = 0, "step_space_ns"_a = 0,
-           "direction_setup_ns"_a = 0, "direction_hold_ns"_a = 0, "mode"_a = driver::StepMode::kStepDirection,
-           "invert_first"_a = false, "invert_second"_a = false)
-      .def("status", [](PythonCard& of) { return of.card.status(); })
-      .def(
-          "snapshot", [](PythonCard& of) { return of.card.snapshot(); }, "All of one clock.")
-      .def("stop_snapshot", [](PythonCard& of) { return of.card.stop_snapshot(); })
-      .def(
-          "wait_until_idle", [](PythonCard& of, std::int64_t ns) { of.card.wait_until_idle(nanoseconds(ns)); },
-          "timeout_ns"_a, Unlocked())
-      .def("faults", [](PythonCard& of) { return of.card.faults(); })
-      .def("clear_faults", [](PythonCard& of) { of.card.clear_faults(); })
-      .def("inputs", [](PythonCard& of) { return of.card.inputs(); })
-      .def("outputs", [](PythonCard& of) { return of.card.outputs(); })
-      .def("marks", [](PythonCard& of) { return of.card.marks(); })
-      .def("mark_snapshot", [](PythonCard& of) { return of.card.mark_snapshot(); });
+      .def("configure_axis", waiting(configure_axis), "axis"_a, nb::kw_only(), "step_length_ns"_a = 0,
+           "step_space_ns"_a = 0, "direction_setup_ns"_a = 0, "direction_hold_ns"_a = 0,
+           "mode"_a = driver::StepMode::kStepDirection, "invert_first"_a = false, "invert_second"_a = false)
+      .def("status", waiting([](PythonCard& of) { return of.card.status(); }))
+      .def("snapshot", waiting([](PythonCard& of) { return of.card.snapshot(); }), "All of one clock.")
+      .def("stop_snapshot", waiting([](PythonCard& of) { return of.card.stop_snapshot(); }))
+      .def("wait_until_idle",
+           waiting([](PythonCard& of, std::int64_t ns) { of.card.wait_until_idle(nanoseconds(ns)); }), "timeout_ns"_a)
+      .def("faults", waiting([](PythonCard& of) { return of.card.faults(); }))
+      .def("clear_faults", waiting([](PythonCard& of) { of.card.clear_faults(); }))
+      .def("inputs", waiting([](PythonCard& of) { return of.card.inputs(); }))
+      .def("outputs", waiting([](PythonCard& of) { return of.card.outputs(); }))
+      .def("marks", waiting([](PythonCard& of) { return of.card.marks(); }))
+      .def("mark_snapshot", waiting([](PythonCard& of) { return of.card.mark_snapshot(); }));
 }
 
 void bind_simulation(nb::class_<PythonCard>& card) {
-  card.def(
-          "wait", [](PythonCard& of, std::uint64_t clocks) { of.engine().wait(clocks); }, "clocks"_a, Unlocked(),
-          "Simulated cards: lets clocks pass.")
+  card.def("wait", waiting([](PythonCard& of, std::uint64_t clocks) {
+             if (!of.engine().wait_or_interrupt(clocks)) throw driver::InterruptedError("wait: interrupted");
+           }),
+           "clocks"_a, "Simulated cards: lets clocks pass.")
       .def(
           "set_inputs", [](PythonCard& of, std::uint16_t levels) { of.engine().set_inputs(levels); }, "levels"_a,
           "Simulated cards: levels at the input pins, bit n: input n.")
@@ -423,11 +495,16 @@ std::vector<driver::Command> commands_of(const std::vector<PythonCommand>& comma
   return out;
 }
 
-// At each look at the card: Ctrl-C, and what the caller wants to know.
-void look(const std::function<void(const driver::StreamProgress&)>& progress, const driver::StreamProgress& is) {
+// Ctrl-C may come while Python's function runs: it ends the call as everywhere, by a stop.
+void tell(const std::function<void(const driver::StreamProgress&)>& progress, const driver::StreamProgress& is) {
   const nb::gil_scoped_acquire locked;
-  if (PyErr_CheckSignals() != 0) throw nb::python_error();
-  if (progress) progress(is);
+  try {
+    progress(is);
+  } catch (nb::python_error& error) {
+    RaisedWhileWaiting* const raised = RaisedWhileWaiting::innermost();
+    if (raised == nullptr || !error.matches(PyExc_KeyboardInterrupt)) throw;
+    raised->emplace(std::move(error));
+  }
 }
 
 void bind_stream(nb::module_& m) {
@@ -445,31 +522,29 @@ void bind_stream(nb::module_& m) {
       .def_ro("edge", &driver::ProbeResult::edge)
       .def_ro("rest", &driver::ProbeResult::rest);
   nb::class_<driver::Stream>(m, "Stream")
-      .def(
-          "__init__",
-          [](driver::Stream* place, PythonCard& of, std::function<void(const driver::StreamProgress&)> progress,
-             std::int64_t patience_ns) {
-            driver::StreamOptions options;
-            options.patience = nanoseconds(patience_ns);
-            options.progress = [progress](const driver::StreamProgress& is) { look(progress, is); };
-            new (place) driver::Stream(of.card, std::move(options));
-          },
-          "card"_a, nb::kw_only(), "progress"_a.none() = nb::none(), "patience_ns"_a = 1'000'000'000,
-          nb::keep_alive<1, 2>())
-      .def(
-          "put", [](driver::Stream& s, const PythonCommand& c) { s.put(c.command); }, "command"_a, Unlocked())
-      .def(
-          "send", [](driver::Stream& s, const std::vector<PythonCommand>& c) { s.send(commands_of(c)); }, "commands"_a,
-          Unlocked(), "Every one is checked before the first access to the card.")
-      .def("flush", &driver::Stream::flush, Unlocked())
-      .def("finish", &driver::Stream::finish, Unlocked(), "Waits until all is done.")
-      .def("restart", &driver::Stream::restart)
-      .def(
-          "probe",
-          [](driver::Stream& s, std::uint8_t input, const std::vector<PythonCommand>& paths, bool level) {
-            return s.probe({input, level}, commands_of(paths));
-          },
-          "input"_a, "paths"_a, "level"_a = true, Unlocked())
+      .def("__init__",
+           waiting([](driver::Stream* place, PythonCard& of,
+                      std::function<void(const driver::StreamProgress&)> progress, std::int64_t patience_ns) {
+             driver::StreamOptions options;
+             options.patience = nanoseconds(patience_ns);
+             if (progress) {
+               options.progress = [progress](const driver::StreamProgress& is) { tell(progress, is); };
+             }
+             new (place) driver::Stream(of.card, std::move(options));
+           }),
+           "card"_a, nb::kw_only(), "progress"_a.none() = nb::none(), "patience_ns"_a = 1'000'000'000,
+           nb::keep_alive<1, 2>())
+      .def("put", waiting([](driver::Stream& s, const PythonCommand& c) { s.put(c.command); }), "command"_a)
+      .def("send", waiting([](driver::Stream& s, const std::vector<PythonCommand>& c) { s.send(commands_of(c)); }),
+           "commands"_a, "Every one is checked before the first access to the card.")
+      .def("flush", waiting(&driver::Stream::flush))
+      .def("finish", waiting(&driver::Stream::finish), "Waits until all is done.")
+      .def("restart", waiting(&driver::Stream::restart))
+      .def("probe",
+           waiting([](driver::Stream& s, std::uint8_t input, const std::vector<PythonCommand>& paths, bool level) {
+             return s.probe({input, level}, commands_of(paths));
+           }),
+           "input"_a, "paths"_a, "level"_a = true)
       .def_prop_ro("sent", &driver::Stream::sent);
 }
 
@@ -485,24 +560,21 @@ void bind_position_stream(nb::module_& m) {
   auto stream = nb::class_<PositionStream>(m, "PositionStream");
   stream.attr("PULSE") = PositionStream::kPulse;
   stream
-      .def(
-          "__init__",
-          [](PositionStream* place, PythonCard& of, unsigned stale_periods, unsigned ahead,
-             const std::vector<double>& max_speed, std::int64_t patience_ns) {
-            new (place) PositionStream(
-                of.card, {stale_periods, ahead, by_axis(max_speed, "max_speed"), nanoseconds(patience_ns)});
-          },
-          "card"_a, nb::kw_only(), "stale_periods"_a = 1, "ahead"_a = 2, "max_speed"_a = std::vector<double>{},
-          "patience_ns"_a = 1'000'000'000, nb::keep_alive<1, 2>())
-      .def(
-          "send",
-          [](PositionStream& s, const std::vector<std::int64_t>& targets, std::int64_t duration_ns) {
-            return s.send(by_axis(targets, "targets"), nanoseconds(duration_ns));
-          },
-          "targets"_a, "duration_ns"_a, Unlocked(),
-          "A period: the axes are at targets (PULSE a pulse, from where they stood at the opening) at its end.")
-      .def("recover", &PositionStream::recover, Unlocked(), "After a FaultError: goes on from where the card stands.")
-      .def("finish", &PositionStream::finish, Unlocked(), "Waits until all is done; where the axes are.")
+      .def("__init__",
+           waiting([](PositionStream* place, PythonCard& of, unsigned stale_periods, unsigned ahead,
+                      const std::vector<double>& max_speed, std::int64_t patience_ns) {
+             new (place) PositionStream(
+                 of.card, {stale_periods, ahead, by_axis(max_speed, "max_speed"), nanoseconds(patience_ns)});
+           }),
+           "card"_a, nb::kw_only(), "stale_periods"_a = 1, "ahead"_a = 2, "max_speed"_a = std::vector<double>{},
+           "patience_ns"_a = 1'000'000'000, nb::keep_alive<1, 2>())
+      .def("send", waiting([](PositionStream& s, const std::vector<std::int64_t>& targets, std::int64_t duration_ns) {
+             return s.send(by_axis(targets, "targets"), nanoseconds(duration_ns));
+           }),
+           "targets"_a, "duration_ns"_a,
+           "A period: the axes are at targets (PULSE a pulse, from where they stood at the opening) at its end.")
+      .def("recover", waiting(&PositionStream::recover), "After a FaultError: goes on from where the card stands.")
+      .def("finish", waiting(&PositionStream::finish), "Waits until all is done; where the axes are.")
       .def_prop_ro("position", &PositionStream::position)
       .def_prop_ro("stale_ticks", &PositionStream::stale_ticks)
       .def_prop_ro("ticks_behind", &PositionStream::ticks_behind)
@@ -515,7 +587,7 @@ void bind_driver(nb::module_& m) {
   bind_motion(card);
   bind_state(card);
   bind_simulation(card);
-  m.def("open", open_card, "url"_a, Unlocked(), "The card that a URL names: sim:, tcp://host:port, serial:/dev/...");
+  m.def("open", waiting(open_card), "url"_a, "The card that a URL names: sim:, tcp://host:port, serial:/dev/...");
   m.def("simulate", simulate, "axes"_a = 4, "clock_hz"_a = 1'000'000, "A simulated card: the golden model.");
   m.def("describe_faults", driver::describe_faults, "faults"_a);
   bind_commands(m);

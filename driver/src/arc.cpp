@@ -286,6 +286,18 @@ Int128 mean_radius_squared(const Point& start, const Point& end) {
   return Int128((sum * sum + (Int128(1) << (kShift - 1))).bits() >> kShift);  // positive
 }
 
+// In centre units. In 4 directions a walk strays 1 + 1/(4 R) inwards, which takes it over the centre up to a radius R
+// of (1 + sqrt 2)/2 = 1.21; from 1.5 on it keeps a third of a pulse away. In 8 it does from one pulse on.
+std::int64_t least_radius(StepRule rule) {
+  return rule == StepRule::kEightDirections ? kCentreUnitsPerPulse : kCentreUnitsPerPulse * 3 / 2;
+}
+
+int directions(StepRule rule) { return rule == StepRule::kEightDirections ? 8 : 4; }
+
+double pulses_of(std::int64_t centre_units) {
+  return static_cast<double>(centre_units) / static_cast<double>(kCentreUnitsPerPulse);
+}
+
 bool within(const Point& p, std::int64_t limit) { return std::llabs(p.x) <= limit && std::llabs(p.y) <= limit; }
 
 }  // namespace
@@ -302,7 +314,11 @@ ArcCommand prepare(const ArcGeometry& geometry, StepRule rule) {
   const Point end{geometry.end_x * kUnit - geometry.centre_x, geometry.end_y * kUnit - geometry.centre_y};
   if (!within(end, kMaxCentreDistance)) refuse_arc("the centre is farther than 2^24 pulses from the end");
   const Int128 mean = mean_radius_squared(start, end);
-  if (mean < kUnit * kUnit) refuse_arc("radius below one pulse: send a line");
+  const std::int64_t least = least_radius(rule);
+  if (mean < least * least) {
+    refuse_arc(fmt::format("radius of {:.4g} pulses, at least {:g} in {} directions: send lines",
+                           pulses_of(square_root(mean)), pulses_of(least), directions(rule)));
+  }
   // A step to the side of the circle adds up to 1/2 to R^2 (in pulses), a step inwards takes nothing off it: half a
   // square pulse less makes outside and inside errors alike, 1 + 1/(4 R). About a whole pulse F is then a whole number
   // and one half, so that every sign is that of STEER's F. In 8 directions errors are alike without.
@@ -314,8 +330,10 @@ ArcCommand prepare(const EllipseGeometry& geometry, StepRule rule) {
   check_common(geometry);
   const std::int64_t a = geometry.semi_x;
   const std::int64_t b = geometry.semi_y;
-  if (a < 1 || b < 1 || a > kMaxSemiAxis || b > kMaxSemiAxis) {
-    refuse_arc(fmt::format("semi-axes {} and {} are not within 1 .. 2^20 pulses", a, b));
+  const std::int64_t least = (least_radius(rule) + kCentreUnitsPerPulse - 1) / kCentreUnitsPerPulse;
+  if (a < least || b < least || a > kMaxSemiAxis || b > kMaxSemiAxis) {
+    refuse_arc(fmt::format("semi-axes {} and {} are not within {} .. 2^20 pulses, in {} directions", a, b, least,
+                           directions(rule)));
   }
   const Point start{geometry.start_x, geometry.start_y};
   // A point rounded from the curve is at most one pulse outside its bounding box. Looked at before any arithmetic.

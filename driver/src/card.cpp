@@ -6,6 +6,7 @@
 
 #include "patience.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/driver/interrupt.hpp"
 
 namespace trammel::driver {
 namespace {
@@ -40,42 +41,48 @@ std::uint32_t longest_command(bool map::Command::*queue, const Identification& c
   return result;
 }
 
-void check_depth(const char* queue, std::uint32_t depth, std::uint32_t needed) {
-  if (depth < needed) {
-    throw IdentificationError(
-        fmt::format("card: its {} queue holds {} halfwords, the longest command needs {}", queue, depth, needed));
-  }
+// Throws unless a register of the identification reads what a card may have there.
+void check_field(std::uint32_t address, std::uint32_t value, std::uint32_t least, std::uint32_t most,
+                 const char* unit) {
+  if (value >= least && value <= most) return;
+  throw IdentificationError(
+      fmt::format("card: {}: {} {}, this driver takes {} to {}", entry(address).name, value, unit, least, most));
 }
 
 void check_versions(const Identification& card) {
   const std::uint32_t major = bits(map::kMapVersionValue, field::kMapVersionMajor, field::kMapVersionMajorShift);
   if (card.map_major != major) {
-    throw IdentificationError(fmt::format("card: register map version {}.{}, this driver knows version {}",
-                                          card.map_major, card.map_minor, major));
+    throw IdentificationError(
+        fmt::format("card: MAP_VERSION: {}.{}, this driver takes version {}", card.map_major, card.map_minor, major));
   }
   if (card.commands_version != map::kCommandsVersionValue) {
-    throw IdentificationError(fmt::format("card: command layouts of version {}, this driver knows version {}",
+    throw IdentificationError(fmt::format("card: COMMANDS_VERSION: {}, this driver takes version {}",
                                           card.commands_version, map::kCommandsVersionValue));
   }
 }
 
-void check_build(const Identification& card) {
-  if (card.axes < 1 || card.axes > card_map::kMaxAxes) {
-    throw IdentificationError(fmt::format("card: {} axes, this driver knows 1 to {}", card.axes, card_map::kMaxAxes));
-  }
-  if (card.clock_hz == 0) {
-    throw IdentificationError("card: a clock of 0 Hz; its clock strap is not set");
-  }
-  const std::uint32_t unknown = card.engines & ~entry(reg::kEngines).mask;
+void check_engines(std::uint32_t engines) {
+  const std::uint32_t unknown = engines & ~entry(reg::kEngines).mask;
   if (unknown != 0) {
     throw IdentificationError(
-        fmt::format("card: engines 0x{:X}, of which this driver does not know 0x{:X}", card.engines, unknown));
+        fmt::format("card: ENGINES: 0x{:X}, of which this driver does not know 0x{:X}", engines, unknown));
   }
-  if (!map::has_engine(card.engines, map::engine::kLines)) {
-    throw IdentificationError(fmt::format("card: engines 0x{:X} without lines", card.engines));
-  }
-  check_depth("geometry", card.geometry_depth, longest_command(&map::Command::to_geometry, card));
-  check_depth("feed", card.feed_depth, longest_command(&map::Command::to_feed, card));
+  const auto needs = [engines](std::uint32_t engine) {
+    if (map::has_engine(engines, engine)) return;
+    throw IdentificationError(fmt::format("card: ENGINES: 0x{:X} without {}", engines, map::kEngineNames[engine]));
+  };
+  needs(map::engine::kLines);
+  if (map::has_engine(engines, map::engine::kAccumulator8)) needs(map::engine::kAccumulator);
+}
+
+void check_build(const Identification& card) {
+  constexpr std::uint32_t kDeepest = 32768;  // halfwords; larger ones the RTL refuses to build
+  check_field(reg::kAxes, card.axes, 1, map::kMaxAxes, "axes");
+  check_field(reg::kClockHz, card.clock_hz, 1, entry(reg::kClockHz).mask, "Hz (its clock strap)");
+  check_engines(card.engines);
+  check_field(reg::kGeometryDepth, card.geometry_depth, longest_command(&map::Command::to_geometry, card), kDeepest,
+              "halfwords");
+  check_field(reg::kFeedDepth, card.feed_depth, longest_command(&map::Command::to_feed, card), kDeepest, "halfwords");
 }
 
 // Reads of the step times of all axes, and room for one more access.
@@ -228,7 +235,30 @@ void Card::set_slew_time(std::chrono::nanoseconds full_scale) {
   write(reg::kSlew, static_cast<std::uint32_t>(slew), "time base: slew");
 }
 
-void Card::set_hold(bool hold) { write(reg::kHold, hold ? 1 : 0, "time base: hold"); }
+void Card::set_hold(bool hold) {
+  write(reg::kHold, hold ? 1 : 0, "time base: hold");
+  own_hold_ = hold;
+}
+
+void Card::throw_if_held(std::string_view context) {
+  if (read(reg::kHold) == 0) return;
+  const std::string origin = own_hold_.value_or(false) ? "set by this program"
+                             : own_hold_               ? std::string()
+                                                       : bus_->hold_origin();
+  throw HeldError(fmt::format("{}: the card holds{}{}: take it over, or end the hold", context,
+                              origin.empty() ? "" : ": ", origin));
+}
+
+std::optional<Snapshot> Card::take_over() {
+  const Status now = status();
+  const bool holds = read(reg::kHold) != 0;
+  if (now.busy && !now.held && !holds) {
+    throw StateError("the card is moving, and not by this program: wait until it is idle, or hold it");
+  }
+  if (now.busy) return stop();
+  set_hold(false);
+  return std::nullopt;
+}
 
 void Card::set_longest_step_wait(std::chrono::nanoseconds longest) {
   const std::uint64_t value = clocks(longest, "longest step wait");
@@ -262,17 +292,27 @@ std::uint16_t Card::outputs() {
 Build Card::build() {
   std::array<Access, 3> accesses{read_of(reg::kBuildId), read_of(reg::kBuildFlags), read_of(reg::kBoardId)};
   transfer(accesses.data(), accesses.size(), "build");
+  check_read(accesses[1]);
   return {accesses[0].data, (accesses[1].data & field::kBuildFlagsDirty) != 0, accesses[2].data};
 }
 
 unsigned Card::inputs_present() {
   require_path_commands("inputs");
-  return bits(read(reg::kPorts), field::kPortsInputs, field::kPortsInputsShift);
+  return pins_present(field::kPortsInputs, field::kPortsInputsShift, "inputs");
 }
 
 unsigned Card::outputs_present() {
   require_path_commands("outputs");
-  return bits(read(reg::kPorts), field::kPortsOutputs, field::kPortsOutputsShift);
+  return pins_present(field::kPortsOutputs, field::kPortsOutputsShift, "outputs");
+}
+
+unsigned Card::pins_present(std::uint32_t mask, std::uint32_t shift, const char* pins) {
+  constexpr std::uint32_t kMostPins = 16;  // the bits of INPUTS and OUTPUTS
+  const std::uint32_t ports = read(reg::kPorts);
+  check_read({reg::kPorts, ports});
+  const std::uint32_t count = bits(ports, mask, shift);
+  check_field(reg::kPorts, count, 1, kMostPins, pins);
+  return count;
 }
 
 void Card::set_input_polarity(std::uint16_t inverted) {
@@ -361,12 +401,13 @@ void Card::wait_until_idle(std::chrono::nanoseconds timeout) {
     if (ratio(other) != 0 && (ratio(slowest) == 0 || ratio(other) < ratio(slowest))) slowest = other;
   }
   patience.allow(PlannedTime::of(clocks(timeout, "timeout"), slowest));
-  for (;;) {
+  for (bool first = true;; first = false) {
     const Status now = status();
     throw_if_faulted(now, kContext);
     if (!now.busy) {
       return check_identity();
     }
+    if (first && now.held && !own_hold_.value_or(false)) throw_if_held(kContext);
     serve_requests();
     patience.pause(now, poll_interval(), Patience::kIdle);
   }
@@ -399,6 +440,7 @@ void Card::wait_for_rest(std::uint64_t limit, bool held_is_rest) {
     throw_if_faulted(now, "stop");
     if (!now.busy || (held_is_rest && now.held)) return;
     if (waited > limit) throw TimeoutError("stop on the path", waited);
+    if (interrupted()) throw InterruptedError("stop on the path: interrupted; the card goes on to rest, and holds");
     bus_->sleep(time_of(poll_interval(), identification_.clock_hz));
   }
 }
@@ -416,10 +458,10 @@ void Card::serve_requests() {
     abort();
     throw StateError("card: aborted, as another thread has asked for");
   }
-  if (requests_->stop.exchange(false)) {
-    requests_->hold.store(-1);
-    const Snapshot end = stop();
-    throw StoppedError(end.geometry_begun, "card: stopped on the path, as another thread has asked for");
+  if (requests_->stop.exchange(false)) stop_on_request("as another thread has asked for");
+  if (interrupted()) {
+    const StopForInterrupt stopping;
+    stop_on_request("because the call was interrupted");
   }
   const int hold = requests_->hold.exchange(-1);
   if (hold >= 0) {
@@ -430,6 +472,12 @@ void Card::serve_requests() {
     const bool there = i == 0 || has_engine(map::engine::kClasses);
     if (ratio <= kFullRatio && there) set_ratio(static_cast<PieceClass>(i), ratio);
   }
+}
+
+void Card::stop_on_request(const char* why) {
+  requests_->hold.store(-1);
+  const Snapshot end = stop();
+  throw StoppedError(end.geometry_begun, fmt::format("card: stopped on the path, {}", why));
 }
 
 std::uint64_t Card::clocks(std::chrono::nanoseconds time, const char* what) const {

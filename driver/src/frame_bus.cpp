@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/interrupt.hpp"
 
 namespace trammel::driver {
 
@@ -167,10 +168,15 @@ std::optional<Reply> FrameBus::send_and_wait(const Request& request) {
 std::optional<Reply> FrameBus::wait_for(const Request& request, std::size_t bytes) {
   const auto back = static_cast<std::size_t>(request.kind == Kind::Read ? request.count : 0) * 8 + 80;
   const auto until = link_.now() + link_.time_of(bytes) + link_.time_of(back) + options_.answer;
+  const auto begun = link_.now();
   std::uint8_t buffer[256];
   // Bytes behind the end of this reply belong to nothing that is waited for.
-  for (auto left = until - link_.now(); left.count() > 0; left = until - link_.now()) {
-    const std::size_t count = link_.receive(buffer, sizeof(buffer), left);
+  for (auto left = until - begun; left.count() > 0; left = until - link_.now()) {
+    const std::size_t count =
+        link_.receive(buffer, sizeof(buffer), std::min<std::chrono::nanoseconds>(left, kInterruptSlice));
+    if (count == 0 && interrupted_after(link_.now() - begun)) {
+      throw InterruptedError("interrupted while the card did not answer: what became of the last request is not known");
+    }
     for (std::size_t i = 0; i < count; ++i) {
       if (!deframer_.take(buffer[i])) continue;
       std::optional<Reply> reply = frames::parse_reply(deframer_.body());

@@ -175,6 +175,14 @@ void check_made(Card& card, const OneShotPart& part) {
   }
 }
 
+// Nothing would move, and no call that waits would end.
+void require_moving(Card& card) {
+  card.throw_if_held("line");
+  if (card.read(card_map::reg::kRatioFeed) == 0) {
+    throw HeldError("line: the time base's ratio is 0: set another one first");
+  }
+}
+
 OneShotPart require_single_part(const OneShotPlan& plan) {
   if (plan.size() != 1) {
     throw ArgumentError(fmt::format("line: {} clocks are too long for one start; run_line takes its {} parts",
@@ -279,6 +287,7 @@ void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds pati
   constexpr std::uint32_t kLooksPerSecond = 50;
   const std::uint64_t margin = card.clocks(patience, "line: patience");
   const std::uint64_t look = std::max<std::uint64_t>(card.timing().clock_hz / kLooksPerSecond, card.poll_interval());
+  require_moving(card);
   for (std::size_t index = 0; index < plan.size(); ++index) {
     const OneShotPart part = plan.part(index);
     start_line(card, part);

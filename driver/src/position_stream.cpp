@@ -9,6 +9,7 @@
 #include "nanoseconds.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/driver/increment.hpp"
+#include "trammel/driver/interrupt.hpp"
 #include "trammel/driver/wide.hpp"
 
 namespace trammel::driver {
@@ -92,6 +93,7 @@ PositionStream::PositionStream(Card& card, const PositionStreamOptions& options)
   }
   const Status status = card.status();
   card.throw_if_faulted(status, "position stream");
+  if (!card.holds_by_this_program()) card.throw_if_held("position stream");
   if (status.busy) throw StateError("position stream: the card is busy; wait until it is idle, or abort it");
   origin_ = card.snapshot().position;
   start();
@@ -268,23 +270,27 @@ PositionStream::Look PositionStream::transfer_and_look() {
     const Status before = card_->status_of(read[0]);
     const Status after = card_->status_of(read[3]);
     card_->throw_if_faulted(after, "position stream");
-    const std::uint32_t begun = read[4].data;
-    if (begun > lines_) {
-      throw StateError(
-          fmt::format("position stream: the card has begun {} lines, where {} were sent: it was reset, or "
-                      "used by somebody else",
-                      begun, lines_));
-    }
+    const std::uint64_t begun = count_after(begun_, read[4].data);
+    if (begun > lines_) throw_not_ours(read[4].data);
     const bool stale = ((read[0].data | read[3].data) & field::kStatusStale) != 0;
     begun_ = begun;
     geometry_room_ = read[5].data;
-    if (before.busy && after.busy && !stale && begun == read[1].data) return {begun, read[2].data};
+    if (before.busy && after.busy && !stale && read[4].data == read[1].data) return {begun, read[2].data};
   }
   card_->check_identity();
   throw StateError(
       fmt::format("position stream: period {} was over when it was looked at: the bus is too slow for it, "
                   "or the card was reset or aborted by somebody else",
                   lines_));
+}
+
+// The card counts lines that this stream has not sent, or has gone back.
+void PositionStream::throw_not_ours(std::uint32_t begun) {
+  card_->check_identity();
+  throw StateError(
+      fmt::format("position stream: the card says that it has begun {} lines, where {} were sent and {} had begun: it "
+                  "was reset, or used by somebody else",
+                  begun, lines_, begun_));
 }
 
 PositionStream::Positions PositionStream::finish() {
@@ -339,6 +345,7 @@ PositionStream::Stopped PositionStream::recover() {
   const std::uint64_t pause = card_->poll_interval();
   for (std::uint64_t waited = 0; card_->status().busy; waited += pause) {
     if (waited > limit) throw TimeoutError("position stream: waiting for the card to stand", waited);
+    if (interrupted()) throw InterruptedError("position stream: interrupted before the card stood; recover it again");
     card_->bus().sleep(time_of(pause, card_->identification().clock_hz));
   }
   Stopped stopped;

@@ -115,6 +115,7 @@ Stream::Stream(Card& card, StreamOptions options)
   }
   const Status status = card.status();
   card.throw_if_faulted(status, "stream");
+  if (!options_.opens_in_hold && !card.holds_by_this_program()) card.throw_if_held("stream");
   if (status.busy) {
     throw StateError("stream: the card is busy; wait until it is idle, or abort it, before opening the stream");
   }
@@ -374,15 +375,15 @@ Status Stream::look(Wait& wait) {
 
 // The card counts in 32 bits, from 0 on since the stream was opened.
 void Stream::advance(Count& count, std::uint32_t begun) const {
-  const std::uint64_t more = begun - static_cast<std::uint32_t>(count.begun);
-  if ((more & 0xFFFFFFFF) > count.sent - count.begun) {
+  const std::uint64_t now = count_after(count.begun, begun);
+  if (now > count.sent) {
     card_->check_identity();
     throw StateError(
         fmt::format("stream: the card says that it has begun {} commands of a queue, where {} were sent and "
                     "{} had begun: it was reset, or aborted by somebody else",
                     begun, count.sent, count.begun));
   }
-  count.begun += more & 0xFFFFFFFF;
+  count.begun = now;
 }
 
 void Stream::require_open() const {

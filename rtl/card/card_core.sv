@@ -53,6 +53,11 @@ module card_core #(
   if (Inputs < 1 || Inputs > 16 || Outputs < 1 || Outputs > 16) begin : gen_wrong_pins
     ERROR_Inputs_and_Outputs_must_be_1_to_16 error ();
   end
+  localparam int FLAGS = Accumulator | EightDirections | ArcGenerator | DirectMode | UnderrunHold | Classes |
+      Watermarks | PathCommands | PositionStreaming | BuildDirty;
+  if (FLAGS != 0 && FLAGS != 1) begin : gen_wrong_flag
+    ERROR_engines_and_BuildDirty_must_be_0_or_1 error ();
+  end
   if (EightDirections != 0 && Accumulator == 0) begin : gen_wrong_accumulator
     ERROR_EightDirections_needs_Accumulator error ();
   end

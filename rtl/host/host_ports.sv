@@ -50,6 +50,12 @@ module host_ports #(
   localparam int SPI = UART + (Uart != 0 ? 1 : 0);
   localparam int PORTS = SPI + (Spi != 0 ? 1 : 0);
 
+  if (AxiLite < 0 || AxiLite > 1 || Uart < 0 || Uart > 1 || Spi < 0 || Spi > 1) begin : gen_wrong_port
+    ERROR_AxiLite_Uart_and_Spi_must_be_0_or_1 error ();
+  end
+  if (Wishbone < 0 || Wishbone > 2) begin : gen_wrong_wishbone
+    ERROR_Wishbone_must_be_0_to_2 error ();
+  end
   if (PORTS == 0) begin : gen_no_port
     ERROR_a_card_needs_a_host_port error ();
   end

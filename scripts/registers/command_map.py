@@ -65,6 +65,7 @@ class Command:
     built: bool  # false: only laid out, and unknown whatever the engines are
     flags: Optional[Flags]  # with the mask rule `flags`
     brief: str
+    notes: str  # Markdown behind the fields
     count: Count
     fields: List[Field]
 
@@ -128,6 +129,7 @@ def _command(entry):
         built=entry.get("built", True),
         flags=Flags(flags["max"], flags["engine"], flags["brief"]) if flags else None,
         brief=entry["brief"],
+        notes=entry.get("notes", ""),
         count=Count(
             name=count["name"],
             minimum=count["min"],

@@ -149,8 +149,7 @@ def _command(command):
     top = "0" if count.maximum == 0 else "2^40 - 1"
     lines = [
         f"\n## {command.name}\n\n{_not_built(command)}{command.brief}\n\n",
-        f"- Opcode {command.opcode}, to the {' and the '.join(command.queues)} queue"
-        f"{'s' if len(command.queues) > 1 else ''}.\n",
+        f"- Opcode {command.opcode}, {_destination(command)}.\n",
         f"- Axis mask: {_mask(command)}.\n",
         f"- Count `{count.name}`, {count.minimum} to {top}{' ' + count.unit if count.unit else ''}: {count.brief}.\n",
     ]
@@ -160,7 +159,15 @@ def _command(command):
         lines.append("\n| halfword | field | bits | kind | range | unit | meaning | width, because |\n"
                      "|---|---|---|---|---|---|---|---|\n")
         lines += [_field(f) for f in command.fields]
+    if command.notes:
+        lines.append(f"\n{command.notes.strip()}\n")
     return "".join(lines)
+
+
+def _destination(command):
+    if len(command.queues) == 1:
+        return f"to the {command.queues[0]} queue"
+    return "sent once: the card puts it into both queues"
 
 
 def _mask(command):

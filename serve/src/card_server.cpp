@@ -47,6 +47,7 @@ frames::Endpoint::Answer CardServer::make(bool write, std::uint32_t address, std
   if (write && !client_->may_move() && !serves_reading(address, data)) return {true, 0};
   driver::Access access{address, data, write};
   const bool made = engine_.transfer(&access, 1) == 1;
+  if (write && made && address == reg::kHold && data == 0) held_by_.clear();
   return {!made, access.data};
 }
 
@@ -66,8 +67,9 @@ void CardServer::admit() {
   ++counts_.clients;
   settings_.note(fmt::format("{} has come", stream->peer()));
   endpoint_.connect();  // nothing that its predecessor has left of a frame
-  client_ = std::make_unique<Client>(std::move(stream), engine_, endpoint_, settings_,
-                                     [this] { hold("another one has its place"); });
+  client_ = std::make_unique<Client>(
+      std::move(stream), engine_, endpoint_, settings_,
+      [this] { hold(client_->peer() + ": another one has its place"); }, held_by_);
 }
 
 void CardServer::serve_client(std::chrono::nanoseconds longest) {
@@ -94,6 +96,7 @@ void CardServer::lose_client(const std::string& why) {
 
 void CardServer::hold(const std::string& why) {
   engine_.write(reg::kHold, 1);
+  held_by_ = why;
   ++counts_.holds;
   settings_.note(fmt::format("client gone ({}): the card holds", why));
 }

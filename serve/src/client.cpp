@@ -35,12 +35,14 @@ bool same(const std::string& a, const std::string& b) {
 }  // namespace
 
 CardServer::Client::Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine,
-                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left)
+                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left,
+                           const std::string& held_by)
     : stream_(std::move(stream)),
       engine_(engine),
       endpoint_(endpoint),
       settings_(settings),
       left_(std::move(left)),
+      held_by_(held_by),
       clocks_of_byte_(settings.baud == 0 ? 0 : 10.0 * settings.clock_hz / settings.baud),
       heard_(steady_clock::now()) {}
 
@@ -53,11 +55,20 @@ void CardServer::Client::serve(std::chrono::nanoseconds longest) {
 // All that has come, so that an end behind it is seen at once: what was not at the card by then does not run.
 void CardServer::Client::read(std::chrono::nanoseconds longest) {
   std::uint8_t bytes[4096];
+  const auto before = static_cast<std::ptrdiff_t>(came_.size());
   while (const std::size_t count = stream_->read(bytes, sizeof(bytes), longest)) {
     came_.insert(came_.end(), bytes, bytes + count);
     if (begun_) heard_ = steady_clock::now();
     longest = std::chrono::nanoseconds(0);
     if (came_.size() > kMostRubbish) throw Unwanted("more bytes than the line carries: a request waits for its reply");
+  }
+  if (stream_->changed_hands()) {
+    // The next one's, or of both: nobody's rights go with it.
+    came_.erase(came_.begin(), came_.begin() + before);
+    text_.clear();
+    between_frames_ = true;
+    endpoint_.connect();
+    begin_anew();
   }
   check_silence();
 }
@@ -89,7 +100,12 @@ bool CardServer::Client::take_byte(std::uint8_t byte) {
     return true;
   }
   text_ += static_cast<char>(byte);
-  if (text_.size() > kLongestText) throw Unwanted(hello ? "no hello of this version" : "a wait that is none");
+  if (text_.size() <= kLongestText) return true;
+  if (hello) throw Unwanted("no hello of this version");
+  // No wait: rubbish up to the next end.
+  drop(text_.size());
+  text_.clear();
+  between_frames_ = false;
   return true;
 }
 
@@ -115,7 +131,8 @@ void CardServer::Client::take_hello(const std::string& line) {
   begin();
   hello_ = true;
   may_move_ = with_token;
-  answer(bytes_of(may_move_ ? "trammel 1 motion\n" : "trammel 1 reading\n"), engine_.cycles());
+  const std::string held = held_by_.empty() ? "" : " held: " + held_by_.substr(0, kLongestText);
+  answer(bytes_of(fmt::format("trammel 1 {}{}\n", may_move_ ? "motion" : "reading", held)), engine_.cycles());
 }
 
 bool CardServer::Client::deliver(std::uint8_t byte) {
@@ -127,7 +144,7 @@ bool CardServer::Client::deliver(std::uint8_t byte) {
   between_frames_ = byte == frames::kEnd;
   frames::Bytes reply;
   endpoint_.take(byte, reply);
-  if (++since_good_ > kMostRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMostRubbish));
+  drop(1);
   if (reply.empty()) return true;
   since_good_ = 0;
   begin();
@@ -138,18 +155,29 @@ bool CardServer::Client::deliver(std::uint8_t byte) {
   return true;
 }
 
+// The answer repeats the time and the number, so that the client sees what was understood. One that was damaged is
+// dropped, as a frame is.
 void CardServer::Client::take_wait(const std::string& text) {
   constexpr std::int64_t kMost = 1'000'000'000;  // ns
-  const std::string number = text.rfind(kWait, 0) == 0 ? text.substr(sizeof(kWait) - 1) : "";
-  std::int64_t time = 0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), time);
-  if (number.empty() || error != std::errc{} || end != number.data() + number.size() || time < 0 || time > kMost) {
-    throw Unwanted("a wait that is none");
-  }
-  frames::Bytes waited = bytes_of("waited");
+  const char* const end = text.data() + text.size();
+  std::int64_t time = -1;
+  std::uint32_t number = 0;
+  const bool named = text.rfind(kWait, 0) == 0;
+  const auto first = std::from_chars(named ? text.data() + sizeof(kWait) - 1 : end, end, time);
+  const bool spaced = first.ptr != end && *first.ptr == ' ';
+  const auto second = std::from_chars(spaced ? first.ptr + 1 : end, end, number);
+  if (second.ec != std::errc{} || second.ptr != end || time < 0 || time > kMost) return drop(text.size());
+  since_good_ = 0;
+  frames::Bytes waited = bytes_of(fmt::format("waited {} {}", time, number));
   waited.push_back(frames::kEnd);
   answer(std::move(waited),
          engine_.cycles() + driver::clocks_of(std::chrono::nanoseconds(time), settings_.clock_hz, "wait"));
+}
+
+// Bytes that are no good until a frame or a wait is whole.
+void CardServer::Client::drop(std::size_t bytes) {
+  since_good_ += bytes;
+  if (since_good_ > kMostRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMostRubbish));
 }
 
 void CardServer::Client::send_due() {

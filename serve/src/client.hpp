@@ -25,9 +25,10 @@ class Unwanted : public std::runtime_error {
 
 class CardServer::Client {
  public:
-  // `left`: called when one who could move the card has gone, and another one has the stream.
+  // `left`: called when one who could move the card has gone, and another one has the stream. `held_by`: who has left
+  // the card in a hold, if anybody has; the hello says it.
   Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine, frames::Endpoint& endpoint,
-         const Settings& settings, std::function<void()> left);
+         const Settings& settings, std::function<void()> left, const std::string& held_by);
 
   // Reads what has come, waiting for at most `longest`; makes what is due at the card's time; sends what is due.
   // Throws driver::LinkError when the client has gone, Unwanted when it cannot stay.
@@ -56,6 +57,7 @@ class CardServer::Client {
   void begin();
   void take_hello(const std::string& line);
   void take_wait(const std::string& text);
+  void drop(std::size_t bytes);
   bool deliver(std::uint8_t byte);
   void send_due();
   void answer(frames::Bytes bytes, std::uint64_t cycle) { answers_.push_back({std::move(bytes), cycle}); }
@@ -65,6 +67,7 @@ class CardServer::Client {
   frames::Endpoint& endpoint_;
   const Settings& settings_;
   std::function<void()> left_;
+  const std::string& held_by_;
   double clocks_of_byte_;                        // on the line, in card time
   std::chrono::steady_clock::time_point heard_;  // something; before it has begun: when it came
   std::deque<std::uint8_t> came_;                // not yet at the card

@@ -1,9 +1,12 @@
 #include "bus_engine.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
+#include "build_numbers.hpp"
 #include "trammel/driver/card_timing.hpp"
+#include "trammel/driver/interrupt.hpp"
 
 namespace trammel::sim {
 
@@ -35,6 +38,15 @@ void Engine::write(std::uint32_t address, std::uint32_t value) {
   if (transfer(&access, 1) != 1) throw driver::RefusedError(0, 0, address, "simulated bus");
 }
 
+bool Engine::wait_or_interrupt(std::uint64_t clocks) {
+  constexpr std::uint64_t kPiece = 100'000;  // clocks; the Verilated card takes a tenth of a second for them
+  for (std::uint64_t left = clocks; left != 0; left -= std::min(left, kPiece)) {
+    wait(std::min(left, kPiece));
+    if (driver::interrupted()) return false;
+  }
+  return true;
+}
+
 std::size_t BusEngine::transfer(driver::Access* accesses, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     note(accesses[i]);
@@ -43,7 +55,7 @@ std::size_t BusEngine::transfer(driver::Access* accesses, std::size_t count) {
   return count;
 }
 
-void BusEngine::sleep(std::chrono::nanoseconds time) { wait(driver::clocks_of(time, clock_hz_, "sleep")); }
+void BusEngine::sleep(std::chrono::nanoseconds time) { wait_or_interrupt(driver::clocks_of(time, clock_hz_, "sleep")); }
 
 // Clock by clock: what raises the line may come at any of them.
 bool BusEngine::wait_for_interrupt(std::chrono::nanoseconds longest) {
@@ -145,6 +157,7 @@ CardModel::Config config_of(const EngineOptions& options) {
   config.axes = options.axes;
   config.clock_hz = options.clock_hz;
   config.engines = model::RegisterFile::kMostEngines;
+  set_build_numbers(config);
   return config;
 }
 

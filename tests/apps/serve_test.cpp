@@ -290,7 +290,7 @@ TEST(CardOutside, ACardOfAnotherMapVersionAndOneThatEndsEarly) {
   };
   put(0x000, 0x54524D4C);
   put(0x004, 0x00030000);
-  expect_refused(command, "info --card mmap:" + command.write("newer", window), "register map version 3.0");
+  expect_refused(command, "info --card mmap:" + command.write("newer", window), "MAP_VERSION: 3.0");
   EXPECT_EQ(contents(command.path("newer")), window) << "nothing was written";
 }
 

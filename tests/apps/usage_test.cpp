@@ -226,6 +226,7 @@ TEST(Axes, EveryNumberIsBuiltAndTracesSayWhatServes) {
   const Command command;
   for (const std::string axes : {"1", "2", "3", "4", "5", "6", "7", "8"}) {
     const Outcome outcome = command.run("info --axes " + axes);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("axes           " + axes + "\n"), std::string::npos) << outcome.out;
   }
   const Outcome refused = command.run("info --axes 3 --trace " + command.path("x.fst"));

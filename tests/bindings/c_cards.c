@@ -1,4 +1,6 @@
 // Cards by trammel.h: who they are, one-shot lines, settings, state, hold and stop.
+#include <signal.h>
+
 #include "check.h"
 
 typedef struct counts {
@@ -146,6 +148,60 @@ static void hold_and_stop(void) {
   trammel_close(card);
 }
 
+// A hold that was there before a line is found at once; a take-over ends it.
+static void held(void) {
+  trammel_card* card = simulated_card();
+  trammel_one_shot line;
+  trammel_access hold = {0x184, 1, true};
+  size_t made;
+  bool dropped = true;
+  memset(&line, 0, sizeof line);
+  line.pulses[0] = 10;
+  line.duration_ns = 1000000;
+  DONE(trammel_transfer(card, &hold, 1, &made));
+  FAILS(trammel_run_line(card, &line, 1000000, NULL), TRAMMEL_HELD, "the card holds");
+  FAILS(trammel_open_stream(card, NULL), TRAMMEL_HELD, "stream: the card holds");
+  DONE(trammel_take_over(card, &dropped));
+  CHECK(!dropped);
+  DONE(trammel_start_line(card, &line, NULL));
+  DONE(trammel_transfer(card, &hold, 1, &made));
+  DONE(trammel_take_over(card, &dropped));
+  CHECK(dropped);
+  DONE(trammel_run_line(card, &line, 1000000, NULL));
+  trammel_close(card);
+}
+
+static volatile sig_atomic_t g_signalled = 0;
+static void on_signal(int signal) { g_signalled = signal; }
+static bool signal_came(void* context) {
+  unsigned* asked = (unsigned*)context;
+  if (++*asked == 2) raise(SIGINT);
+  return g_signalled != 0;
+}
+
+// A line of an hour ends with the signal, and the card is empty and at rest.
+static void interrupts(void) {
+  trammel_card* card = simulated_card();
+  trammel_one_shot line;
+  trammel_status status;
+  unsigned asked = 0;
+  memset(&line, 0, sizeof line);
+  line.pulses[0] = 10;
+  line.duration_ns = INT64_C(1000000000) * 360000;
+  signal(SIGINT, on_signal);
+  trammel_set_interrupt(signal_came, &asked);
+  FAILS(trammel_run_line(card, &line, 1000000, NULL), TRAMMEL_STOPPED, "because the call was interrupted");
+  CHECK(asked == 2);
+  FAILS(trammel_simulated_wait(card, UINT64_MAX), TRAMMEL_CANCELLED, "interrupted");
+  trammel_set_interrupt(NULL, NULL);
+  signal(SIGINT, SIG_DFL);
+  DONE(trammel_read_status(card, &status));
+  CHECK(!status.busy && !status.held);
+  line.duration_ns = 1000000;
+  DONE(trammel_run_line(card, &line, 1000000, NULL));
+  trammel_close(card);
+}
+
 static void two_cards(void) {
   trammel_card* one = simulated_card();
   trammel_card* other = simulated_card();
@@ -164,11 +220,14 @@ static void two_cards(void) {
 void test_cards(void) {
   CHECK(strcmp(trammel_version(), TRAMMEL_EXPECTED_VERSION) == 0);
   CHECK(strcmp(trammel_result_name(TRAMMEL_IDENTIFICATION), "TRAMMEL_IDENTIFICATION") == 0);
+  CHECK(strcmp(trammel_result_name(TRAMMEL_HELD), "TRAMMEL_HELD") == 0);
   CHECK(strcmp(trammel_result_name(99), "unknown") == 0);
   identification();
   one_shot_lines();
   settings();
   pins();
   hold_and_stop();
+  held();
+  interrupts();
   two_cards();
 }

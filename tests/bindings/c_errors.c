@@ -248,6 +248,7 @@ static void null_cards(void) {
   NO_CARD(trammel_set_override(NULL, TRAMMEL_CLASS_FEED, 1, 100));
   NO_CARD(trammel_set_slew_time(NULL, 1));
   NO_CARD(trammel_abort(NULL));
+  NO_CARD(trammel_take_over(NULL, NULL));
   NO_CARD(trammel_stop(NULL, 1, NULL));
   NO_CARD(trammel_start_line(NULL, &line, NULL));
   NO_CARD(trammel_run_line(NULL, &line, 1, NULL));

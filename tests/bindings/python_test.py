@@ -1,6 +1,10 @@
 """The Python package: driver, simulated card, interpolators, and how they fail."""
 import math
+import os
+import signal
+import socket
 import threading
+import time
 import unittest
 
 import trammel
@@ -49,6 +53,121 @@ class Cards(unittest.TestCase):
         with self.assertRaises(trammel.StoppedError):
             card.run_line([1], duration_ns=(1 << 39) * 1000)
         thread.join()
+
+
+class Holds(unittest.TestCase):
+    def test_a_hold_from_before_is_found_at_once(self):
+        card = trammel.simulate()
+        card.hold()
+        with self.assertRaisesRegex(trammel.HeldError, "set by this program"):
+            card.run_line([10], duration_ns=1_000_000)
+        self.assertIsNone(card.take_over())
+        card.start_line([10], duration_ns=SECOND)
+        card.hold()
+        self.assertFalse(card.take_over().status.busy)
+        card.run_line([10], duration_ns=1_000_000)
+
+
+class Interrupts(unittest.TestCase):
+    """A real SIGINT while a call waits: KeyboardInterrupt, and a card at rest and empty."""
+
+    HOURS = 10**6 * SECOND
+    HEARD = 0.2  # seconds: the best of some, since the machine may have other work
+    TRIES = 3
+
+    def interrupted(self, call):
+        """Seconds from the signal to the exception."""
+        sent = []
+
+        def send():
+            sent.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        timer = threading.Timer(0.06, send)
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt) as raised:
+            call()
+        heard = time.monotonic() - sent[0]
+        timer.join()
+        self.assertIsInstance(raised.exception.__cause__, trammel.Error)
+        return heard
+
+    def expect_heard(self, call, tries=TRIES):
+        self.assertLess(min(self.interrupted(call) for _ in range(tries)), self.HEARD)
+
+    def expect_rest(self, card):
+        self.assertFalse(card.status().busy or card.status().held)
+        before = card.snapshot().position
+        card.wait(1_000_000)
+        self.assertEqual(card.snapshot().position, before)
+
+    def test_lines(self):
+        card = trammel.simulate()
+        card.set_slew_time(10_000_000)
+        self.expect_heard(lambda: card.run_line([10**6], duration_ns=self.HOURS))
+        self.expect_rest(card)
+        card.start_line([10**6], duration_ns=self.HOURS)
+        self.expect_heard(lambda: card.wait_until_idle(2 * self.HOURS), tries=1)
+        self.expect_rest(card)
+        card.run_line([10], duration_ns=1_000_000)
+
+    def test_a_line_in_a_hold(self):
+        card = trammel.simulate()
+        card.request_hold()
+        self.expect_heard(lambda: card.run_line([10**6], duration_ns=self.HOURS), tries=1)
+        self.expect_rest(card)
+
+    def test_streams(self):
+        card = trammel.simulate()
+        for progress in (None, lambda is_: None, lambda is_: time.sleep(0.001)):
+            stream = trammel.Stream(card, progress=progress)
+            stream.send([trammel.feed(10**9, TICK_EVERY_16), trammel.line(10**9, [1000]), trammel.end()])
+            self.expect_heard(stream.finish, tries=1)
+            self.expect_rest(card)
+        stream.restart()
+        stream.send([trammel.feed(64, TICK_EVERY_16), trammel.line(64, [1]), trammel.end()])
+        stream.finish()
+
+    def test_a_full_queue(self):
+        card = trammel.simulate()
+        stream = trammel.Stream(card)
+
+        def fill():
+            while True:
+                stream.put(trammel.feed(10**9, TICK_EVERY_16))
+                stream.put(trammel.line(10**9, [1000]))
+
+        self.expect_heard(fill, tries=1)
+        self.expect_rest(card)
+
+    def test_other_waits(self):
+        card = trammel.simulate()
+        self.expect_heard(lambda: card.wait(1 << 62))
+        card.set_slew_time(SECOND)
+        card.start_line([10**6], duration_ns=self.HOURS)
+        card.wait(10_000)
+        with self.assertRaises(trammel.TimeoutError):
+            card.wait_until_idle(1000)
+
+    def test_a_silent_link(self):
+        with socket.create_server(("127.0.0.1", 0)) as server:
+            url = "tcp://127.0.0.1:%d" % server.getsockname()[1]
+            self.expect_heard(lambda: trammel.open(url), tries=1)
+            self.expect_heard(lambda: trammel.open(url + "?hello=no&timeout=60000"), tries=1)
+
+    def test_a_handler_of_ones_own(self):
+        def end(*_):
+            raise KeyError("enough")
+
+        before = signal.signal(signal.SIGALRM, end)
+        try:
+            card = trammel.simulate()
+            signal.setitimer(signal.ITIMER_REAL, 0.05)
+            with self.assertRaises(KeyError):
+                card.run_line([10**6], duration_ns=self.HOURS)
+            self.expect_rest(card)
+        finally:
+            signal.signal(signal.SIGALRM, before)
 
 
 class Streams(unittest.TestCase):
@@ -153,7 +272,7 @@ class Positions(unittest.TestCase):
 
 class Errors(unittest.TestCase):
     def test_classes(self):
-        for name in ("LinkError", "IdentificationError", "RefusedError", "FaultError", "StateError", "ArgumentError", "TimeoutError"):
+        for name in ("LinkError", "IdentificationError", "RefusedError", "FaultError", "StateError", "HeldError", "InterruptedError", "ArgumentError", "TimeoutError"):
             self.assertTrue(issubclass(getattr(trammel, name), trammel.Error), name)
         self.assertTrue(issubclass(trammel.StoppedError, trammel.StateError))
         self.assertTrue(issubclass(trammel.ArgumentError, ValueError))

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <optional>
+#include <random>
 #include <set>
 
 #include "register_stub.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/frame_bus.hpp"
+#include "trammel/driver/one_shot.hpp"
+#include "trammel/driver/stream.hpp"
 #include "trammel/frames/endpoint.hpp"
 
 namespace trammel::driver {
@@ -139,17 +142,20 @@ const Malformed kMalformed[] = {
     {"Magic", reg::kMagic, 0x4D4C5254, "0x4D4C5254"},
     {"NothingThere", reg::kMagic, 0xFFFFFFFF, "MAGIC reads 0xFFFFFFFF"},
     {"Zeros", reg::kMagic, 0, "MAGIC reads 0x00000000"},
-    {"OlderMap", reg::kMapVersion, 0x00010000, "map version 1.0"},
-    {"NewerMap", reg::kMapVersion, 0x00030003, "map version 3.3"},
-    {"OlderCommands", reg::kCommandsVersion, 1, "layouts of version 1"},
-    {"NewerCommands", reg::kCommandsVersion, 3, "layouts of version 3"},
-    {"NoAxes", reg::kAxes, 0, "0 axes"},
-    {"NineAxes", reg::kAxes, 9, "9 axes"},
-    {"NoClock", reg::kClockHz, 0, "0 Hz"},
+    {"OlderMap", reg::kMapVersion, 0x00010000, "MAP_VERSION: 1.0"},
+    {"NewerMap", reg::kMapVersion, 0x00030003, "MAP_VERSION: 3.3"},
+    {"OlderCommands", reg::kCommandsVersion, 1, "COMMANDS_VERSION: 1"},
+    {"NewerCommands", reg::kCommandsVersion, 3, "COMMANDS_VERSION: 3"},
+    {"NoAxes", reg::kAxes, 0, "AXES: 0 axes, this driver takes 1 to 8"},
+    {"NineAxes", reg::kAxes, 9, "AXES: 9 axes, this driver takes 1 to 8"},
+    {"NoClock", reg::kClockHz, 0, "CLOCK_HZ: 0 Hz"},
     {"UnknownEngine", reg::kEngines, 0x801, "does not know 0x800"},
     {"NoLines", reg::kEngines, 0x12, "without lines"},
-    {"ShortGeometry", reg::kGeometryDepth, 36, "geometry queue holds 36"},
-    {"ShortFeed", reg::kFeedDepth, 19, "feed queue holds 19"},
+    {"ShortGeometry", reg::kGeometryDepth, 36, "GEOMETRY_DEPTH: 36 halfwords, this driver takes 37 to 32768"},
+    {"ShortFeed", reg::kFeedDepth, 19, "FEED_DEPTH: 19 halfwords, this driver takes 20 to 32768"},
+    {"HalfAnAccumulator", reg::kEngines, 0x5, "0x5 without accumulator"},
+    {"DeepGeometry", reg::kGeometryDepth, 32769, "GEOMETRY_DEPTH: 32769 halfwords"},
+    {"EndlessFeed", reg::kFeedDepth, 0xFFFFFFFF, "FEED_DEPTH: 4294967295 halfwords"},
     {"StepTimes", reg::step_length(3), 0x10000, "STEP_LENGTH reads 0x00010000"},
     {"StepSpaces", reg::step_space(0), 0x20000, "STEP_SPACE reads 0x00020000"},
     // An identification that ends early.
@@ -171,6 +177,73 @@ TEST(MalformedCards, HaveMessagesOfTheirOwn) {
   }
   EXPECT_EQ(messages.size(), std::size(kMalformed));
   EXPECT_EQ(messages.count(""), 0U);
+}
+
+// A word for a register of the identification: mostly what a card has there, else one near it, or nonsense.
+std::uint32_t word_for(std::uint32_t usual, std::mt19937_64& random) {
+  switch (random() % 8) {
+    case 0:
+      return static_cast<std::uint32_t>(random());
+    case 1:
+      return usual ^ 1U << random() % 32;
+    case 2:
+      return static_cast<std::uint32_t>(random()) >> random() % 32;
+    case 3:
+      return usual + static_cast<std::uint32_t>(random() % 3) - 1;
+    default:
+      return usual;
+  }
+}
+
+// What a program does first with a card that was taken for one.
+void use(Card& card) {
+  const Identification& is = card.identification();
+  EXPECT_TRUE(is.axes >= 1 && is.axes <= card_map::kMaxAxes && is.clock_hz != 0);
+  EXPECT_TRUE(is.geometry_depth <= 32768 && is.feed_depth <= 32768);
+  card.build();
+  plan_line(card.timing(), {100}, std::chrono::hours(1));
+  if (card_map::has_engine(is.engines, card_map::engine::kPathCommands)) {
+    EXPECT_LE(card.inputs_present(), 16U);
+    EXPECT_LE(card.outputs_present(), 16U);
+  }
+  Stream stream(card);
+}
+
+bool names_a_register(const std::string& text) {
+  return std::any_of(std::begin(card_map::kRegisters), std::end(card_map::kRegisters),
+                     [&](const auto& entry) { return text.find(std::string(entry.name)) != std::string::npos; });
+}
+
+// Whatever a bus answers: a card within its bounds, or an error of the driver's that names the register.
+TEST(CardOpen, NonsenseIsATypedErrorOrACard) {
+  constexpr std::uint64_t kSeed = 20;
+  std::mt19937_64 random(kSeed);
+  unsigned opened = 0;
+  unsigned refused = 0;
+  for (int i = 0; i < 5000; ++i) {
+    RegisterStub bus;
+    bus.values[reg::kPorts] = 0x04'04'01;
+    bus.values[reg::kEngines] |= field::kEnginesPathCommands | field::kEnginesStreaming;
+    for (const std::uint32_t address :
+         {reg::kMapVersion, reg::kCommandsVersion, reg::kAxes, reg::kClockHz, reg::kEngines, reg::kGeometryDepth,
+          reg::kFeedDepth, reg::kBuildId, reg::kBuildFlags, reg::kBoardId, reg::kPorts, reg::step_length(0),
+          reg::step_space(3)}) {
+      // All of them nonsense at once is found at the first: so one or two.
+      if (random() % 6 == 0) bus.values[address] = word_for(bus.values[address], random);
+    }
+    try {
+      Card card = Card::open(bus);
+      use(card);
+      ++opened;
+    } catch (const Error& error) {
+      EXPECT_TRUE(names_a_register(error.what())) << error.what();
+      ++refused;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << "card " << i << ", seed " << kSeed << ": untyped: " << error.what();
+    }
+  }
+  EXPECT_GT(opened, 1000U);
+  EXPECT_GT(refused, 1000U);
 }
 
 }  // namespace

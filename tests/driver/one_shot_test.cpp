@@ -315,12 +315,12 @@ TEST(OneShot, ALowRatioAndAHoldAreNoTimeOuts) {
   run_line(card, plan_line(card.timing(), {100}, 20ms), 2ms);
   EXPECT_EQ(engine->positions()[0], 100);
   card.set_ratio(Card::kFullRatio);
-  card.set_hold(true);
+  card.request_hold(true);
   std::thread other([&card] {
     std::this_thread::sleep_for(50ms);
     card.request_hold(false);
   });
-  run_line(card, plan_line(card.timing(), {10}, 1ms), 5ms);
+  run_line(card, plan_line(card.timing(), {10}, 100ms), 100ms);
   other.join();
   EXPECT_EQ(engine->positions()[0], 110);
 }

@@ -17,6 +17,15 @@
 #include "trammel/sim/engine.hpp"
 
 namespace trammel::driver {
+
+// So many lines more were sent and have begun, as far as the stream knows.
+struct PositionStreamCount {
+  static void add(PositionStream& stream, std::uint32_t lines) {
+    stream.lines_ += lines;
+    stream.begun_ += lines;
+  }
+};
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -374,6 +383,60 @@ TEST(PositionStream, RunsOverPostedWrites) {
   }
   EXPECT_EQ(stream.finish()[2], -150 * kPulse);
   EXPECT_EQ(engine->positions()[2], -150);
+}
+
+// A card that has begun `earlier` lines more than it is made to begin here.
+class LongRun final : public Bus {
+ public:
+  explicit LongRun(Bus& bus) : bus_(bus) {}
+  std::size_t transfer(Access* accesses, std::size_t count) override {
+    const std::size_t made = bus_.transfer(accesses, count);
+    for (std::size_t i = 0; i < made; ++i) {
+      if (!accesses[i].write && accesses[i].address == reg::kGeometryBegun) accesses[i].data += earlier;
+    }
+    return made;
+  }
+  void sleep(std::chrono::nanoseconds time) override { bus_.sleep(time); }
+  bool reports_refusals() const override { return true; }
+
+  std::uint32_t earlier = 0;
+
+ private:
+  Bus& bus_;
+};
+
+// At a kilohertz the card's count of lines wraps after 49.7 days: the stream goes on, the FEED is not sent again, and a
+// count that goes back is still found.
+TEST(PositionStream, GoesOnWhereTheCountOfLinesWraps) {
+  for (const bool reset : {false, true}) {
+    const auto engine = sim::make_model_engine({});
+    LongRun bus(*engine);
+    Card card = Card::open(bus);
+    PositionStream stream(card);
+    Positions p{};
+    const auto send = [&] {
+      p[0] += 4 * kPulse;
+      const PositionStream::Sent sent = stream.send(p, 1000);
+      engine->wait(500);
+      return sent;
+    };
+    for (int i = 0; i < 10; ++i) send();
+    bus.earlier = std::uint32_t{0} - 20;
+    PositionStreamCount::add(stream, bus.earlier);
+    for (int i = 0; i < 30; ++i) {
+      const std::uint64_t ahead = send().ahead;
+      ASSERT_GE(ahead, 2U) << i;
+      ASSERT_LE(ahead, 20U) << i;
+    }
+    EXPECT_EQ(card.read(reg::kFeedBegun), 1U);
+    if (!reset) {
+      EXPECT_EQ(stream.finish()[0], 160 * kPulse);
+      EXPECT_EQ(engine->positions()[0], 160);
+      continue;
+    }
+    bus.earlier -= 5;
+    EXPECT_THROW(send(), StateError);
+  }
 }
 
 // An abort by somebody else, a reset: no wrong position is reported.

@@ -41,8 +41,8 @@ class StreamOrder : public ::testing::Test {
   Stream open_stream() {
     bus_.forget();
     Stream stream(card_, options_);
-    EXPECT_THAT(bus_.log, ElementsAre(was_read(reg::kStatus), wrote(reg::kControl, field::kControlAbort),
-                                      wrote(reg::kRefusal, 0x0FFFFFFF)));
+    EXPECT_THAT(bus_.log, ElementsAre(was_read(reg::kStatus), was_read(reg::kHold),
+                                      wrote(reg::kControl, field::kControlAbort), wrote(reg::kRefusal, 0x0FFFFFFF)));
     bus_.forget();
     return stream;
   }

@@ -105,6 +105,93 @@ TEST(Cycle, RepeatsInIncrements) {
   expect_steps("G91 G98 G81 X1 Y2 Z-6 R-3 L3", steps);
 }
 
+// A hole from `from` in X, at level `level`: rapid to the place, rapid to R, feed to the bottom, rapid out.
+void add_hole(std::vector<Step>& steps, double x, double level, double retract, double bottom, double clear) {
+  steps.push_back({kRapid, x, 0, level});
+  if (level != retract) steps.push_back({kRapid, x, 0, retract});
+  steps.push_back({kFeed, x, 0, bottom});
+  steps.push_back({kRapid, x, 0, clear});
+}
+
+TEST(Cycle, UnderG91RCountsFromWhereTheSeriesBegan) {
+  std::vector<Step> below;  // R 6, bottom 3
+  add_hole(below, 1, 10, 6, 3, 6);
+  add_hole(below, 2, 6, 6, 3, 6);
+  add_hole(below, 3, 6, 6, 3, 6);
+  add_hole(below, 4, 6, 6, 3, 6);
+  expect_steps("G91 G81 X1 Z-3 R-4\nX1\nX1 L2", below);
+
+  std::vector<Step> above{{kRapid, 0, 0, 12}};  // R 12, bottom 9
+  for (int x = 1; x <= 3; ++x) add_hole(above, x, 12, 12, 9, 12);
+  expect_steps("G91 G81 X1 Z-3 R2\nX1\nX1", above);
+  expect_steps("G91 G98 G81 X1 Z-3 R2\nX1\nX1", above);
+}
+
+TEST(Cycle, UnderG91NewLevelsCountFromTheSameStart) {
+  std::vector<Step> steps;
+  add_hole(steps, 1, 10, 6, 3, 6);
+  add_hole(steps, 2, 6, 5, 2, 5);
+  add_hole(steps, 3, 5, 5, 4, 5);
+  steps.push_back({kRapid, 3, 0, 8});  // G85
+  steps.push_back({kRapid, 4, 0, 8});
+  steps.push_back({kFeed, 4, 0, 6});
+  steps.push_back({kFeed, 4, 0, 8});
+  add_hole(steps, 5, 8, 7, 6, 7);  // a series of its own, from level 8
+  expect_steps("G91 G81 X1 Z-3 R-4\nX1 R-5\nX1 Z-1\nG85 X1 Z-2 R-2\nG80\nG81 X1 Z-1 R-1", steps);
+}
+
+TEST(Cycle, TheLevelWhereASeriesBeganIsACoordinate) {
+  // The tool gets longer by 2: the series began at Z10 and goes on from Z8, in machine coordinates from 12 and 10.
+  std::vector<Step> steps;
+  add_hole(steps, 1, 10, 6, 3, 10);
+  add_hole(steps, 2, 10, 8, 5, 12);
+  add_hole(steps, 3, 12, 8, 5, 12);
+  expect_steps("G91 G98 G81 X1 Z-3 R-4\nG43.1 Z2\nX1\nX1", steps);
+}
+
+TEST(Cycle, LevelsKeepTheirLengthWhenUnitsChange) {
+  std::vector<Step> steps;
+  add_hole(steps, 1, 10, 6, 3, 6);
+  add_hole(steps, 1 + 25.4, 6, 6, 3, 6);
+  expect_steps("G91 G81 X1 Z-3 R-4\nG20 F[60/25.4]\nX1", steps);
+}
+
+TEST(Cycle, AnotherPlaneBeginsAnotherSeries) {
+  expect_steps("G91 G81 X1 Z-3 R-4\nG18 G81 X1 Y-3 R-4", {{kRapid, 1, 0, 10},
+                                                          {kRapid, 1, 0, 6},
+                                                          {kFeed, 1, 0, 3},
+                                                          {kRapid, 1, 0, 6},
+                                                          {kRapid, 2, 0, 6},
+                                                          {kRapid, 2, -4, 6},
+                                                          {kFeed, 2, -7, 6},
+                                                          {kRapid, 2, -4, 6}});
+  EXPECT_EQ(cycle_refusal("G81 X1 Z-1 R2\nG18 X2"), "4: G81 needs the bottom of its holes");
+}
+
+// Levels that count from where a probe ended are not known before the run.
+TEST(Cycle, LevelsBehindAProbeAreLater) {
+  machine::Machine machine = machine::default_machine();
+  machine.probe.input = 0;
+  const auto later_at_the_end = [&](const std::string& text) {
+    const std::string program = "G90 G21 F60\nG0 Z10\nG38.2 Z-3\n" + text;
+    TextLines lines(program, "p.ngc");
+    Reader reader(lines, machine);
+    unsigned later = 0;
+    for (Motion motion; reader.next(motion) && motion.kind != MotionKind::kEnd;) {
+      later = motion.later;
+      if (reader.awaits_probe()) reader.assume_probed();
+    }
+    if (reader.error()) ADD_FAILURE() << describe(*reader.error());
+    return later;
+  };
+  constexpr unsigned kZ = 1U << 2;
+  EXPECT_EQ(later_at_the_end("G81 X1 Z-6 R-4"), 0U);
+  EXPECT_EQ(later_at_the_end("G98 G81 X1 Z-6 R-4"), kZ);
+  EXPECT_EQ(later_at_the_end("G91 G81 X1 Z-6 R-4"), kZ);
+  EXPECT_EQ(later_at_the_end("G81 X1 Z-6 R-4\nX2\nG91 X1"), kZ);
+  EXPECT_EQ(later_at_the_end("G81 X1 Z-6 R-4\nG80\nG91 G98 G81 X1 Z-6 R-4"), 0U);
+}
+
 TEST(Cycle, RisesToRFirst) {
   expect_steps("G0 Z1\nG81 X1 Z-1 R3",
                {{kRapid, 0, 0, 1}, {kRapid, 0, 0, 3}, {kRapid, 1, 0, 3}, {kFeed, 1, 0, -1}, {kRapid, 1, 0, 3}});

@@ -90,9 +90,7 @@ Outcome run(const Job& job, Shift shift = kShift) {
   model.engines = job.engines;
   const std::unique_ptr<sim::Engine> engine = job.engines ? sim::make_model_engine(model) : sim::make_engine(options);
   StepHasher hasher(shift);
-  run::StepRecorder::Options recording;
-  recording.steps_per_mm.assign(machine.axes.size(), 1.0);
-  run::StepRecorder recorder(recording);
+  run::StepRecorder recorder({}, kinematics::Kinematics::in_pulses(machine.axes.size()));
   Watch watch(hasher, *engine);
   run::StepFork steps;
   steps.add(recorder);

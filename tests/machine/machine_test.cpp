@@ -92,11 +92,11 @@ TEST(Machine, ReadsHomeAndOffsets) {
 
 TEST(Machine, RefusesWithFileAndLine) {
   EXPECT_EQ(error_of(replaced(defaults(), "steps_per_mm = 80 ", "steps_per_mm = 0 ")),
-            "m.toml:9: axis.x.steps_per_mm must be greater than 0, not 0");
+            "m.toml:9: axis.x.steps_per_mm must be from 0.001 to 1e+06 pulses/mm, not 0");
   EXPECT_EQ(error_of(replaced(defaults(), "step_length_ns = 2000", "step_length_ns = -1")),
-            "m.toml:12: axis.x.step_length_ns must be greater than 0, not -1");
+            "m.toml:12: axis.x.step_length_ns must be from 0.001 to 1e+11 ns, not -1");
   EXPECT_EQ(error_of(replaced(defaults(), "direction_hold_ns = 1000", "direction_hold_ns = -1")),
-            "m.toml:15: axis.x.direction_hold_ns must not be negative, not -1");
+            "m.toml:15: axis.x.direction_hold_ns must be from 0 to 1e+11 ns, not -1");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "max_velocity = \"fast\"")),
             "m.toml:10: axis.x.max_velocity must be a number");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "max_velocity = inf")),
@@ -221,16 +221,16 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
   EXPECT_EQ(parse_machine("# " + brackets + "\n" + defaults(), "m.toml").axes.size(), 4U);
   for (const std::string quote : {"\"", "'", "\"\"\"", "'''"}) {
     EXPECT_EQ(error_of("a = " + quote + brackets + quote),
-              "m.toml:1: unknown entry a; known are card, axis, motion, outputs, tools, probe")
+              "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe")
         << quote;
     // A string of one line that is not closed hides nothing behind it.
     const bool found = error_of("a = " + quote + "\nb = " + brackets) == "m.toml:2: nested deeper than 16";
     EXPECT_EQ(found, quote.size() == 1) << quote;
   }
   EXPECT_EQ(error_of("a = \"\\\"\" # " + brackets),
-            "m.toml:1: unknown entry a; known are card, axis, motion, outputs, tools, probe");
+            "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe");
   EXPECT_EQ(error_of("a = '\\' # " + brackets),
-            "m.toml:1: unknown entry a; known are card, axis, motion, outputs, tools, probe");
+            "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe");
 }
 
 TEST(Machine, RefusesEndlessText) {
@@ -265,7 +265,7 @@ TEST(Machine, JerkIsOptional) {
     return replaced(defaults(), "inverted = false", "inverted = false\n" + line);
   };
   EXPECT_EQ(parse_machine(with("max_jerk = 50_000"), "m.toml").axes[0].max_jerk, 50000);
-  EXPECT_THAT(error_of(with("max_jerk = 0")), HasSubstr("must be greater than 0"));
+  EXPECT_THAT(error_of(with("max_jerk = 0")), HasSubstr("max_jerk must be from 0.001 to 1e+13 mm/s^3, not 0"));
 }
 
 TEST(Machine, OverridesEntries) {
@@ -282,7 +282,7 @@ TEST(Machine, OverridesEntries) {
 
 TEST(Machine, RefusesBadOverrides) {
   EXPECT_EQ(override_error("axis.x.steps_per_mm=0"),
-            "--set axis.x.steps_per_mm=0: axis.x.steps_per_mm must be greater than 0, not 0");
+            "--set axis.x.steps_per_mm=0: axis.x.steps_per_mm must be from 0.001 to 1e+06 pulses/mm, not 0");
   EXPECT_EQ(override_error("axis.a.steps_per_mm=1"), "--set axis.a.steps_per_mm=1: the machine has no axis a");
   EXPECT_THAT(override_error("axis.x.colour=1"),
               StartsWith("--set axis.x.colour=1: unknown entry axis.x.colour; known are "));
@@ -297,7 +297,7 @@ TEST(Machine, RefusesBadOverrides) {
             "--set axis.x.min=1\\x0aaxis.x.max=1: axis.x.min must be less than axis.x.max: 1 and 1");
   EXPECT_EQ(override_error("axis.x=1"), "--set axis.x=1: axis.x must be a table");
   EXPECT_EQ(override_error("speed=1"),
-            "--set speed=1: unknown entry speed; known are card, axis, motion, outputs, tools, probe");
+            "--set speed=1: unknown entry speed; known are card, axis, kinematics, motion, outputs, tools, probe");
   EXPECT_THAT(override_error("axis.x.steps_per_mm"), StartsWith("--set axis.x.steps_per_mm: "));
   EXPECT_THAT(override_error(""), HasSubstr("not an assignment"));
   EXPECT_THAT(override_error("axis.x.steps_per_mm=eighty"), HasSubstr("not TOML"));
@@ -311,7 +311,7 @@ TEST(Machine, StepTimesFitTheCardsRegistersAtItsClock) {
   EXPECT_NO_THROW(apply_override(machine, "axis.x.step_space_ns=655350"));
   EXPECT_THROW(apply_override(machine, "card.clock_hz=100000001"), MachineError);
   EXPECT_NO_THROW(apply_override(machine, "card.clock_hz=1000"));
-  EXPECT_THAT(override_error("axis.e.direction_hold_ns=1e300"), HasSubstr("axis E: direction_hold_ns: "));
+  EXPECT_THAT(override_error("axis.e.direction_hold_ns=1e11"), HasSubstr("axis E: direction_hold_ns: "));
 }
 
 TEST(MachineFile, Outputs) {
@@ -377,6 +377,41 @@ TEST(MachineFile, HomesAndNineCoordinateSystems) {
   EXPECT_EQ(machine.axes[0].second_home, 7);
   EXPECT_EQ(machine.axes[0].offsets[8], 9);
   EXPECT_THAT(override_error("axis.x.g59_4=9"), HasSubstr("did you mean g59_"));
+}
+
+// Each number at its bounds and just beyond: refused by name, bounds and unit.
+TEST(MachineBounds, EveryNumberOfAnAxisHasThem) {
+  struct Bound {
+    const char* entry;
+    const char* least;
+    const char* most;
+    const char* below;
+    const char* above;
+  };
+  for (const Bound& bound : std::initializer_list<Bound>{
+           {"steps_per_mm", "0.001", "1e6", "1e-300", "1.1e6"},
+           {"max_acceleration", "0.15", "1e9", "1e-300", "1.1e9"},
+           {"max_jerk", "0.001", "1e13", "1e-300", "1.1e13"},
+           {"step_length_ns", "0.001", "2000", "1e-300", "1e300"},
+           {"direction_setup_ns", "0.0", "2000", "-1e-300", "1e300"},
+           {"min", "-2e12", "0", "-1e300", "1e300"},
+           {"home", "-2e12", "2e12", "-1e300", "1e300"},
+           {"g54", "-2e12", "2e12", "-1e300", "1e300"},
+       }) {
+    const std::string set = std::string("axis.x.") + bound.entry + "=";
+    EXPECT_EQ(override_error(set + bound.least), "no error") << bound.entry;
+    EXPECT_EQ(override_error(set + bound.most), "no error") << bound.entry;
+    for (const char* beyond : {bound.below, bound.above}) {
+      EXPECT_THAT(override_error(set + beyond), HasSubstr(std::string("axis.x.") + bound.entry + " must be from "));
+    }
+  }
+  EXPECT_THAT(override_error("axis.x.max_velocity=1e-300"), HasSubstr("must be from 0.001 to 1e+07 mm/s, not 1e-300"));
+}
+
+TEST(MachineBounds, ARampThatTakesLongerThanAnyMachineIsASlip) {
+  EXPECT_EQ(override_error("axis.x.max_acceleration=0.14"),
+            "--set axis.x.max_acceleration=0.14: axis X: max_velocity is reached after 1071.43 s, at most 1000 s are "
+            "possible: is max_acceleration in mm/s^2?");
 }
 
 }  // namespace

@@ -22,11 +22,15 @@ struct PathStep {
 
 class PageHost : public model::CardSteps {
  public:
-  explicit PageHost(unsigned axes = 4) : card(config_of(axes)) { card.set_steps(this); }
+  explicit PageHost(unsigned axes = 4, std::uint32_t engines = model::RegisterFile::kDefaultEngines)
+      : card(config_of(axes, engines)) {
+    card.set_steps(this);
+  }
 
-  static model::CardModel::Config config_of(unsigned axes) {
+  static model::CardModel::Config config_of(unsigned axes, std::uint32_t engines) {
     model::CardModel::Config config;
     config.axes = axes;
+    config.engines = engines;
     return config;
   }
 

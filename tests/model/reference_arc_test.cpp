@@ -1,7 +1,11 @@
-// What docs/reference/behaviour.md says of ARC, tried on the golden model of the whole card over its bus alone.
+// What docs/reference/behaviour.md says of ARC, and commands.md of ARC_CHORD, tried on the golden model of the whole
+// card over its bus alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,6 +18,7 @@ namespace {
 
 using namespace trammel;
 using trammel::testing::feed;
+using trammel::testing::kOnePulse;
 using trammel::testing::line;
 using trammel::testing::PathStep;
 using Host = trammel::testing::PageHost;
@@ -156,6 +161,136 @@ TEST(ReferencePage, WhatWrongNumbersOfAnArcDo) {
   EXPECT_EQ(fault, 0U);
   EXPECT_EQ(straight.size(), 50U);
   for (const auto& step : straight) EXPECT_EQ(step, (std::pair<int, int>{-1, 0}));
+}
+
+// The page's arithmetic of ARC_CHORD, in its own words.
+class ChordWalk {
+ public:
+  explicit ChordWalk(const driver::ArcChordCommand& arc) : arc_(arc), x_(arc.x), y_(arc.y) {
+    dy_ = next_dy();
+    dx_ = next_dx();
+  }
+
+  // Increments in force at path tick 1, 2, ..., to be asked for in order.
+  std::pair<std::int64_t, std::int64_t> at(std::uint64_t tick) {
+    const std::uint64_t chord = std::uint64_t{1} << arc_.m;
+    const std::uint64_t before = (tick - 1) % chord;
+    if (before == chord / 2) dy_ = next_dy();
+    if (before == 0 && tick != 1) dx_ = next_dx();
+    if (tick == 1) return {arc_.first_x, arc_.first_y};
+    return {dx_ + arc_.closing_x, dy_ + arc_.closing_y};
+  }
+  // Of the chords.
+  std::int64_t dx() const { return dx_; }
+  std::int64_t dy() const { return dy_; }
+
+ private:
+  std::int64_t turned(std::int64_t value) const { return (value + (std::int64_t{1} << (arc_.k - 1))) >> arc_.k; }
+  std::int64_t next_dy() {
+    const std::int64_t dy = turned(x_) * (arc_.clockwise ? -1 : 1);
+    y_ += dy;
+    return dy;
+  }
+  std::int64_t next_dx() {
+    const std::int64_t dx = turned(y_) * (arc_.clockwise ? 1 : -1);
+    x_ += dx;
+    return dx;
+  }
+
+  driver::ArcChordCommand arc_;
+  std::int64_t x_;
+  std::int64_t y_;
+  std::int64_t dx_;
+  std::int64_t dy_;
+};
+
+using Point = std::pair<std::int64_t, std::int64_t>;  // pulses
+
+// A quarter of a turn about (0, 0) by the page's formulas alone; the third axis makes `further` pulses.
+driver::ArcChordCommand quarter_about_origin(Point start, Point end, bool clockwise, std::uint8_t k,
+                                             std::int64_t further) {
+  constexpr double kQuarter = 1.5707963267948966;  // rad
+  driver::ArcChordCommand arc;
+  arc.mask = 0b111;
+  arc.clockwise = clockwise;
+  arc.k = k;
+  arc.m = 6;
+  const auto x = static_cast<double>(start.first);
+  const auto y = static_cast<double>(start.second);
+  const double radius = std::hypot(x, y);
+  const double angle = std::atan2(y, x);
+  const double half_chord = std::asin(std::ldexp(1, -k - 1));
+  arc.x = std::llround(std::ldexp(radius * std::cos(angle), 40 - arc.m));
+  arc.y = std::llround(std::ldexp(radius * std::sin(angle - (clockwise ? -1 : 1) * half_chord), 40 - arc.m));
+  arc.path_ticks = static_cast<std::uint64_t>(std::llround(std::ldexp(kQuarter / (2 * half_chord), arc.m)));
+  arc.ticks = 2 * arc.path_ticks;
+  arc.prescale = kOnePulse / 2;
+  ChordWalk walk(arc);
+  arc.first_x = walk.dx();
+  arc.first_y = walk.dy();
+  Point sum{arc.first_x, arc.first_y};
+  for (std::uint64_t tick = 2; tick <= arc.path_ticks; ++tick) {
+    const Point by = walk.at(tick);
+    sum = {sum.first + by.first, sum.second + by.second};
+  }
+  const auto share = [&arc](std::int64_t pulses, std::int64_t made) {
+    return std::llround(static_cast<double>(pulses * kOnePulse - made) / static_cast<double>(arc.path_ticks));
+  };
+  arc.closing_x = share(end.first - start.first, sum.first);
+  arc.closing_y = share(end.second - start.second, sum.second);
+  arc.first_x += arc.closing_x;
+  arc.first_y += arc.closing_y;
+  arc.increment[2] = share(further, 0);
+  return arc;
+}
+
+using Step = std::tuple<std::uint64_t, unsigned, int>;  // path tick, axis, direction
+
+std::vector<Step> steps_of(const std::vector<PathStep>& path) {
+  std::vector<Step> steps;
+  for (const PathStep& step : path) steps.emplace_back(step.tick, step.axis, step.direction);
+  std::sort(steps.begin(), steps.end());
+  return steps;
+}
+
+std::vector<Step> steps_of(const driver::ArcChordCommand& arc) {
+  std::vector<Step> steps;
+  ChordWalk walk(arc);
+  std::int64_t sums[3] = {};
+  for (std::uint64_t tick = 1; tick <= arc.path_ticks; ++tick) {
+    const Point by = walk.at(tick);
+    const std::int64_t increments[3] = {by.first, by.second, arc.increment[2]};
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const auto position = [&] { return (sums[axis] + kOnePulse / 2) >> 40; };
+      const std::int64_t before = position();
+      sums[axis] += increments[axis];
+      if (position() != before) steps.emplace_back(tick, axis, static_cast<int>(position() - before));
+    }
+  }
+  return steps;
+}
+
+// A path tick in two feed ticks: each axis steps in the path ticks in which the page's sums pass a pulse, and ends
+// where the host wants it.
+TEST(ReferencePage, AnArcInChordsTickForTick) {
+  for (const bool clockwise : {false, true}) {
+    for (const std::uint8_t k : {std::uint8_t{3}, std::uint8_t{5}}) {
+      const int side = clockwise ? -1 : 1;
+      const driver::ArcChordCommand arc = quarter_about_origin({30, 40}, {-40 * side, 30 * side}, clockwise, k, -7);
+      Host host(4, model::RegisterFile::kMostEngines);
+      host.send(arc);
+      host.send(feed(arc.ticks, 20));
+      host.send(driver::EndCommand{});
+      host.idle();
+      EXPECT_EQ(host.read(reg::kFault), 0U);
+      EXPECT_EQ(host.position(0), -40 * side - 30);
+      EXPECT_EQ(host.position(1), 30 * side - 40);
+      EXPECT_EQ(host.position(2), -7);
+      const auto made = steps_of(host.path);
+      EXPECT_GT(made.size(), 50U);
+      EXPECT_EQ(made, steps_of(arc));
+    }
+  }
 }
 
 }  // namespace

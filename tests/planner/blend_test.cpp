@@ -197,7 +197,7 @@ RC_GTEST_PROP(Blend, RandomLinesAreLeftByTheToleranceAtMost, ()) {
   expect_tangent(path.blocks, 1e-6);
   RC_ASSERT(!testing::Test::HasFailure());
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    RC_ASSERT(path.blocks.back().end[axis] == to_pulses(corners.back()[axis], kScale));
+    RC_ASSERT(path.blocks.back().end[axis] == kinematics::to_pulses(corners.back()[axis], kScale));
   }
   // The half of each line: the point in its middle stays where it is, but for what a pulse hides.
   for (std::size_t i = 1; i < corners.size(); ++i) {
@@ -316,7 +316,7 @@ RC_GTEST_PROP(Blend, RandomArcsAndLinesAreLeftByTheToleranceAtMost, ()) {
   expect_tangent(path.blocks, kWithinAPulse);
   RC_ASSERT(!testing::Test::HasFailure());
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    RC_ASSERT(path.blocks.back().end[axis] == to_pulses(curves.path.back()[axis], kScale));
+    RC_ASSERT(path.blocks.back().end[axis] == kinematics::to_pulses(curves.path.back()[axis], kScale));
   }
   RC_CLASSIFY(path.blends != 0, "some blends");
   RC_CLASSIFY(path.blends > 3, "more than three");

@@ -78,7 +78,7 @@ TEST(Blocks, HaveLengthAndLimitsOfTheirPath) {
   const Plan plan = plan_text("G1 X30 Y40 F600\nG1 Z1\n", machine, kCard);
   const Block& block = plan.blocks.at(0).planned.block;
   EXPECT_DOUBLE_EQ(block.length, 50);
-  EXPECT_DOUBLE_EQ(block.steps_per_mm, 80);
+  EXPECT_DOUBLE_EQ(block.pulses_per_mm, 80);
   EXPECT_DOUBLE_EQ(block.speed, 10);
   EXPECT_DOUBLE_EQ(block.wanted, 10);
   EXPECT_DOUBLE_EQ(block.feed, 10);
@@ -113,8 +113,8 @@ TEST(Blocks, HaveTheLengthOfXYZWhateverGoesAlong) {
   EXPECT_NEAR(plan.blocks.at(1)->length, 0.1, 1e-12);
   EXPECT_NEAR(plan.blocks[1]->entry[3], 100, 1e-9);
   // Its steps are as even: 128 ticks each, in the same length.
-  EXPECT_NEAR(plan.blocks[0]->steps_per_mm, 80, 1e-9);
-  EXPECT_NEAR(plan.blocks[1]->steps_per_mm, 8000, 1e-6);
+  EXPECT_NEAR(plan.blocks[0]->pulses_per_mm, 80, 1e-9);
+  EXPECT_NEAR(plan.blocks[1]->pulses_per_mm, 8000, 1e-6);
   // E's pulses count where X may have none.
   EXPECT_NEAR(plan.blocks.at(2)->length, 10, 1e-9);
 }
@@ -217,6 +217,21 @@ TEST(Arcs, GoToWhatTheCardHas) {
   EXPECT_EQ(geometry(flat, unequal, true, false), Geometry::kArc);
   EXPECT_EQ(geometry(flat, unequal, false, false), Geometry::kChords);
   EXPECT_EQ(geometry(flat, equal, false, false), Geometry::kChords);
+}
+
+// A circle of one pulse, which the accumulator in 4 directions would take over its centre, goes out as lines.
+TEST(Arcs, OfOnePulseGoOutAsLines) {
+  const auto geometry = [](bool eight, const std::string& arc) {
+    CardLimits card{kCard.clock_hz, 4};
+    card = with_arcs_by(card, eight ? ArcsBy::kEightDirections : ArcsBy::kAccumulator);
+    card.eight_directions = eight;
+    return plan_text("G1 X1.0125 Y1 F600\n" + arc, machine::default_machine(), card).blocks.at(1)->geometry;
+  };
+  const std::string one = "G3 X1.0125 Y1 I-0.0125\n";
+  const std::string two = "G3 X1.0125 Y1 I-0.025\n";
+  EXPECT_EQ(geometry(false, one), Geometry::kChords);
+  EXPECT_EQ(geometry(true, one), Geometry::kArc);
+  EXPECT_EQ(geometry(false, two), Geometry::kArc);
 }
 
 TEST(Arcs, MayBeAskedForOtherwise) {

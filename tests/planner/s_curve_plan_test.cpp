@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "counted_allocations.hpp"
+#include "random.hpp"
 #include "speed_plan_judge.hpp"
 #include "trapezoid_plan.hpp"
 
@@ -18,6 +19,7 @@ namespace trammel::planner {
 namespace {
 
 using Spans = std::vector<Span>;
+using test::Random;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t kWindows[] = {1, 2, 16, 256, 16'384};
@@ -28,24 +30,6 @@ std::vector<Phase> plan(const Spans& spans, std::size_t window = 16'384) {
 }
 
 double seconds(const Spans& spans, std::size_t window = 16'384) { return test::duration_of(plan(spans, window)); }
-
-// The same numbers on every host.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * static_cast<double>(next() >> 11) * 0x1p-53; }
-  double logarithmic(double low, double high) { return low * std::pow(high / low, uniform(0, 1)); }
-  std::size_t below(std::size_t end) { return static_cast<std::size_t>(next() % end); }
-
- private:
-  std::uint64_t next() {  // splitmix64
-    std::uint64_t z = state_ += 0x9e3779b97f4a7c15;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-    return z ^ (z >> 31);
-  }
-  std::uint64_t state_;
-};
 
 struct Limits {
   double speed;
@@ -279,6 +263,33 @@ TEST(SCurvePlan, ArcsUseTheirAccelerationAtEverySpeed) {
   EXPECT_LE(worst, 1.001);
   RecordProperty("best", std::to_string(best));
   RecordProperty("worst", std::to_string(worst));
+}
+
+// Lines and arcs at one feed, which differ by rounding: length / (length / feed) is not always the feed.
+Spans at_one_feed(Random& random, const Limits& limits) {
+  Spans spans;
+  for (std::size_t i = 4 + random.below(20); i > 0; --i) {
+    const double speed = limits.speed * (1 - static_cast<double>(random.below(4)) * 0x1p-53);
+    const double exit = random.below(2) == 0 ? kInfinite : random.uniform(0, limits.speed);
+    const double share = random.uniform(0.5, 1);
+    spans.push_back({random.logarithmic(0.5, 100), speed, limits.acceleration * share, limits.jerk * share, exit});
+    if (random.below(3) != 0) continue;
+    Span& arc = spans.back();
+    const double across = random.uniform(0, 0.9) * limits.acceleration;
+    arc.curve = {limits.acceleration, across / (speed * speed), limits.acceleration};
+    arc.acceleration = std::sqrt(limits.acceleration * limits.acceleration - across * across);
+  }
+  return spans;
+}
+
+TEST(SCurvePlan, SpeedsThatDifferByRoundingMakeNoRamps) {
+  Random random(14);
+  for (int i = 0; i < 1'000; ++i) {
+    const Spans spans = at_one_feed(random, random_limits(random));
+    for (const std::size_t window : {16U, 16'384U}) {
+      ASSERT_EQ(test::fault_of(plan(spans, window), spans), "") << "program " << i << " window " << window;
+    }
+  }
 }
 
 TEST(SCurvePlan, ATrapezoidFailsItsJudge) {

@@ -66,6 +66,8 @@ TEST(DeviationMeter, MeasuresAnArcInChordsByItsBlock) {
   block.end = {0, 5, 500, 0};
   block.axis_x = 2;
   block.axis_y = 1;
+  block.joint_x = 2;
+  block.joint_y = 1;
   block.centre_x = 400 * driver::kCentreUnitsPerPulse;
   block.centre_y = 5 * driver::kCentreUnitsPerPulse;
   DeviationMeter meter;

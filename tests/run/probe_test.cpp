@@ -80,8 +80,7 @@ TEST_F(ProbingProgram, ResultIsWhereTheCardWas) {
 // The recorder refuses a step of a command that nobody announced.
 TEST_F(ProbingProgram, StepsBelongToTheirCommands) {
   StepRecorder::Options options;
-  options.steps_per_mm.assign(4, kPulses);
-  StepRecorder recorder(options);
+  StepRecorder recorder(options, kinematics::Kinematics(machine_));
   engine_->set_sink(&recorder);
   touch_at(2);
   Runner runner = make("M3\nG38.2 Z-10 F120\nG2 X2 I1 F600\nG38.3 X3\nG1 X0 Y1 Z0\nM2\n");

@@ -52,9 +52,7 @@ class RunnerTest : public testing::Test {
 
 TEST_F(RunnerTest, RunsAProgramToItsEnd) {
   Runner runner = make("G1 X1 Y2 F600\nG4 P0.1\nG2 X2 Y1 I1 F600\nM3\nM2\n");
-  StepRecorder::Options options;
-  options.steps_per_mm.assign(4, 80);
-  StepRecorder recorder(options);
+  StepRecorder recorder({}, kinematics::Kinematics(machine_));
   engine_->set_sink(&recorder);
   runner.add(recorder);
   const Plan plan = runner.plan();
@@ -107,9 +105,7 @@ TEST_F(RunnerTest, ACircleOnUnequalScalesGoesOutAsAnEllipse) {
   settings.arcs = planner::ArcsBy::kAccumulator;
   Runner runner(lines_of("F1200 G2 X0 Y0 I5.003 J2.007\nG3 X0 Y4.014 I-5.003 J2.007\nM2\n"), machine_,
                 planner::limits_of(card_.identification()), settings);
-  StepRecorder::Options options;
-  options.steps_per_mm = {80, 123.4, 80, 80};
-  StepRecorder recorder(options);
+  StepRecorder recorder({}, kinematics::Kinematics(machine_));
   engine_->set_sink(&recorder);
   runner.add(recorder);
   runner.plan();
@@ -142,9 +138,7 @@ TEST_F(RunnerTest, EightDirectionsAreNearerToTheCircle) {
     RunSettings settings;
     settings.arcs = arcs;
     Runner runner(lines_of("F1200 G2 I5 J2\nM2\n"), machine_, planner::limits_of(card_.identification()), settings);
-    StepRecorder::Options options;
-    options.steps_per_mm.assign(4, 80);
-    StepRecorder recorder(options);
+    StepRecorder recorder({}, kinematics::Kinematics(machine_));
     engine_->set_sink(&recorder);
     runner.add(recorder);
     runner.plan();
@@ -177,7 +171,7 @@ TEST_F(RunnerTest, SlewFollowsFromTheAxes) {
   machine::apply_override(machine_, "axis.y.max_acceleration=500");
   run("G0 X1\n");
   EXPECT_EQ(slew(), driver::Card::kSlowestSlew / 600'000);
-  machine::apply_override(machine_, "axis.y.max_acceleration=0.1");
+  machine::apply_override(machine_, "axis.y.max_acceleration=0.15");
   run("G0 X1\n");
   EXPECT_EQ(slew(), 1U);
 }

@@ -34,7 +34,7 @@ TEST(SecondMotor, MakesItsAxisStepsInTheSameClocks) {
       machine, planner::limits_of(card.identification()));
   runner.plan();
   const Outcome outcome = runner.run(card);
-  EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{0, -80, 0, 0}));
+  EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{0, -80, 0, 0, -80}));
   EXPECT_EQ(outcome.counted, (std::vector<std::int64_t>{0, -80, 0, 0, -80}));
   const auto expect_together = [&] {
     const auto first = of(steps, 1);

@@ -19,14 +19,22 @@ driver::LineCommand line(std::int64_t pulses) {
   return result;
 }
 
+// Axes X, Y, Z with these steps/mm.
+kinematics::Kinematics joints(const std::vector<double>& steps_per_mm) {
+  machine::Machine machine = machine::default_machine();
+  machine.axes.resize(steps_per_mm.size());
+  for (std::size_t a = 0; a < steps_per_mm.size(); ++a) machine.axes[a].steps_per_mm = steps_per_mm[a];
+  return kinematics::Kinematics(machine);
+}
+
 TEST(StepRecorder, WritesBothLists) {
   StringSink steps;
   StringSink path_steps;
   StepRecorder::Options options;
   options.steps = &steps;
   options.path_steps = &path_steps;
-  options.steps_per_mm = {80, 80};
-  StepRecorder recorder(options);
+  const std::vector<double> steps_per_mm{80, 80};
+  StepRecorder recorder(options, joints(steps_per_mm));
   recorder.command(3, line(-1));
   recorder.path_step({3, 50, 0, -1});
   recorder.pin_step({123456789012, 0, -1});
@@ -37,8 +45,8 @@ TEST(StepRecorder, WritesBothLists) {
 
 TEST(StepRecorder, CountsAndChecksWhatThePinsMade) {
   StepRecorder::Options options;
-  options.steps_per_mm = {80, 80};
-  StepRecorder recorder(options);
+  const std::vector<double> steps_per_mm{80, 80};
+  StepRecorder recorder(options, joints(steps_per_mm));
   for (const int direction : {1, 1, -1}) recorder.pin_step({1, 1, static_cast<std::int8_t>(direction)});
   EXPECT_EQ(recorder.steps(), (std::vector<std::uint64_t>{0, 3}));
   EXPECT_EQ(recorder.position(), (std::vector<std::int64_t>{0, 1}));
@@ -48,10 +56,10 @@ TEST(StepRecorder, CountsAndChecksWhatThePinsMade) {
 
 TEST(StepRecorder, KeepsOnePointATickForThePicture) {
   StepRecorder::Options options;
-  options.steps_per_mm = {80, 100};
+  const std::vector<double> steps_per_mm{80, 100};
   options.plot = true;
   options.clock_hz = 1000;
-  StepRecorder recorder(options);
+  StepRecorder recorder(options, joints(steps_per_mm));
   driver::LineCommand diagonal = line(2);
   diagonal.mask = 3;
   diagonal.increment[1] = diagonal.increment[0];
@@ -77,19 +85,19 @@ TEST(StepRecorder, WritesAsItGoes) {
   StringSink steps;
   StepRecorder::Options options;
   options.steps = &steps;
-  options.steps_per_mm = {80};
-  StepRecorder recorder(options);
+  const std::vector<double> steps_per_mm{80};
+  StepRecorder recorder(options, joints(steps_per_mm));
   for (std::uint64_t i = 0; i < 20'000; ++i) recorder.pin_step({i, 0, 1});
   EXPECT_GT(steps.text.size(), 100'000U);
 }
 
 TEST(StepFork, GivesEverySinkEveryStep) {
   StepRecorder::Options options;
-  options.steps_per_mm = {80};
-  StepRecorder first(options);
+  const std::vector<double> steps_per_mm{80};
+  StepRecorder first(options, joints(steps_per_mm));
   StringSink path_steps;
   options.path_steps = &path_steps;
-  StepRecorder second(options);
+  StepRecorder second(options, joints(steps_per_mm));
   StepFork fork;
   fork.add(first);
   fork.add(second);

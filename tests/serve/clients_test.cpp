@@ -70,18 +70,23 @@ TEST_F(ClientsTest, Hellos) {
   serve(settings());
   EXPECT_EQ(answer_to("trammel 1\n"), "trammel 1 reading\n");
   EXPECT_EQ(answer_to("trammel 1 secret\n"), "trammel 1 motion\n");
-  EXPECT_EQ(answer_to("\xC0trammel 1 secret\n"), "trammel 1 motion\n");
+  EXPECT_EQ(answer_to("\xC0trammel 1 secret\n"), "trammel 1 motion held: the client has gone\n");
   EXPECT_EQ(answer_to("trammel 1 Secret\n"),
             "trammel 1 refused: wrong token: take the one that the server has printed\n");
   EXPECT_EQ(answer_to("trammel 1 secret2\n"), answer_to("trammel 1 \n"));
   EXPECT_EQ(answer_to("trammel 2 secret\n"), "trammel 1 refused: no hello of this version\n");
   EXPECT_EQ(answer_to("t" + std::string(500, 'x')), "trammel 1 refused: no hello of this version\n");
   EXPECT_EQ(answer_to("GET / HTTP/1.1\r\n\r\n"), "trammel 1 refused: neither a hello nor a frame\n");
-  EXPECT_EQ(answer_to("trammel 1\nwait 10 minutes\xC0"), "trammel 1 refused: a wait that is none\n");
-  EXPECT_EQ(answer_to("trammel 1\nwait 1000\xC0"), "trammel 1 reading\nwaited\xC0");
+  const std::string kReading = "trammel 1 reading held: the client has gone\n";
+  for (const char* wait : {"wait 10 minutes", "wait 10", "wait  10 1", "wait -1 1", "wait 10 1 ", "wait 1000000001 1",
+                           "wait 10 4294967296", "wait", "waits 10 1"}) {
+    EXPECT_EQ(answer_to(fmt::format("trammel 1\n{}\xC0wait 2 3\xC0", wait)), kReading + "waited 2 3\xC0") << wait;
+  }
+  EXPECT_EQ(answer_to("trammel 1\nwait 1000 4294967295\xC0"), kReading + "waited 1000 4294967295\xC0");
+  EXPECT_EQ(answer_to("trammel 1\nwait " + std::string(500, '1') + "\xC0wait 0 0\xC0"), kReading + "waited 0 0\xC0");
   EXPECT_EQ(engine_->read(reg::kHold), 1U) << "those with the token have gone";
   EXPECT_EQ(server_->counts().holds, 2U);
-  EXPECT_EQ(server_->counts().refused, 7U);
+  EXPECT_EQ(server_->counts().refused, 6U);
 }
 
 // What is lost for good is found in that time once, however often the driver asks again.
@@ -95,7 +100,7 @@ TEST_F(ClientsTest, AServerThatIsGone) {
         if (gone) throw driver::LinkError("nobody there");
         return std::make_unique<ClientEnd>(*server_, listener_);
       },
-      StreamLink::Hello{"secret"}, 100ms);
+      StreamLink::Hello{"secret"}, {100ms, 20s, 2});
   driver::FrameBus bus(link);
   gone = true;
   server_.reset();
@@ -146,6 +151,33 @@ TEST_F(ClientsTest, WithoutTheTokenNothingIsWrittenThatMoves) {
   EXPECT_EQ(engine_->positions()[0], 0);
   EXPECT_EQ(engine_->read(reg::kHold), 0U) << "who cannot move leaves nothing behind";
   EXPECT_EQ(engine_->read(reg::kSlew), 0xFFFFFFFU);
+}
+
+// Who comes next with the token finds the hold at once, and who has left it; a take-over ends it.
+TEST_F(ClientsTest, ANewClientIsToldWhoHasLeftTheCardInItsHold) {
+  serve(settings());
+  {
+    StreamLink link(opener(), StreamLink::Hello{"secret"});
+    driver::FrameBus bus(link);
+    driver::Card card = driver::Card::open(bus);
+    driver::start_line(card, {1000}, 10s);
+    link.sleep(1ms);
+  }
+  server_->turn();
+  StreamLink link(opener(), StreamLink::Hello{"secret"});
+  driver::FrameBus bus(link);
+  driver::Card card = driver::Card::open(bus);
+  EXPECT_THROW(card.wait_until_idle(100s), driver::HeldError);
+  try {
+    driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
+    ADD_FAILURE() << "the line has run";
+  } catch (const driver::HeldError& error) {
+    EXPECT_STREQ(error.what(), "line: the card holds: the client has gone: take it over, or end the hold");
+  }
+  ASSERT_TRUE(card.take_over()) << "something was left";
+  const std::int32_t before = card.snapshot().position[0];
+  driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
+  EXPECT_EQ(card.snapshot().position[0], before + 100);
 }
 
 TEST_F(ClientsTest, SilenceAndRubbish) {
@@ -209,6 +241,7 @@ TEST_F(ClientsTest, CutConnectionsAreMadeAnewAndNothingRunsTwice) {
   options.progress = [&](const driver::StreamProgress& progress) {
     if (progress.status.held) card.request_hold(false);
   };
+  card.take_over();
   driver::Stream stream(card, options);
   driver::LineCommand line;
   line.ticks = 2000;
@@ -229,6 +262,70 @@ TEST_F(ClientsTest, CutConnectionsAreMadeAnewAndNothingRunsTwice) {
   EXPECT_GE(link.reconnections(), 20U);
   // A cut in the hello's answer is noticed when nobody may have moved yet.
   EXPECT_LE(server_->counts().holds, link.reconnections());
+}
+
+// Between a client and the server: damages what the test wants damaged, and keeps to the time of a read.
+class Relay final : public transport::ByteStream {
+ public:
+  using Damage = std::function<void(std::vector<std::uint8_t>&, bool to_server)>;
+  Relay(CardServer& server, std::unique_ptr<transport::ByteStream> client, Damage damage)
+      : server_(server), client_(std::move(client)), damage_(std::move(damage)) {}
+  void write(const std::uint8_t* bytes, std::size_t count) override {
+    std::vector<std::uint8_t> sent(bytes, bytes + count);
+    damage_(sent, true);
+    client_->write(sent.data(), sent.size());
+  }
+  std::size_t read(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) override {
+    const auto until = std::chrono::steady_clock::now() + longest;
+    std::vector<std::uint8_t> came(room);
+    std::size_t count = 0;
+    do {
+      server_.turn();
+      count = client_->read(came.data(), room, 0ns);
+    } while (count == 0 && std::chrono::steady_clock::now() < until);
+    came.resize(count);
+    damage_(came, false);
+    std::copy(came.begin(), came.end(), bytes);
+    return came.size();
+  }
+  std::string peer() const override { return client_->peer(); }
+
+ private:
+  CardServer& server_;
+  std::unique_ptr<transport::ByteStream> client_;
+  Damage damage_;
+};
+
+// Each byte of a wait and of its answer, damaged once: the wait is sent again, on the same connection, and takes its
+// time.
+TEST_F(ClientsTest, ADamagedWaitIsSentAgain) {
+  serve(settings());
+  bool to_server = true;
+  std::optional<std::size_t> place;
+  std::size_t damaged = 0;
+  const Relay::Damage damage = [&](std::vector<std::uint8_t>& bytes, bool up) {
+    if (up != to_server || !place || *place >= bytes.size()) return;
+    bytes[*place] ^= 1;
+    place.reset();
+    ++damaged;
+  };
+  StreamLink link([&] { return std::make_unique<Relay>(*server_, opener()(), damage); }, StreamLink::Hello{"secret"},
+                  {3s, 20ms, 10});
+  const auto begun = std::chrono::steady_clock::now();
+  for (const bool up : {true, false}) {
+    for (std::size_t at = 0; at < 16; ++at) {
+      to_server = up;
+      place = at;
+      const std::uint64_t before = engine_->cycles();
+      link.sleep(12'345us);
+      EXPECT_GE(engine_->cycles() - before, 12'345U) << "byte " << at << (up ? " of a wait" : " of an answer");
+      EXPECT_LE(engine_->cycles() - before, 12'345U * 11);
+    }
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, 20s);
+  EXPECT_EQ(damaged, 32U);
+  EXPECT_EQ(server_->counts().clients, 1U);
+  EXPECT_EQ(engine_->read(reg::kHold), 0U);
 }
 
 // Somebody else's stream.
@@ -257,10 +354,10 @@ TEST_F(ClientsTest, AnotherOneOnTheSameStreamHasItsOwnRights) {
     return std::string(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
   };
   EXPECT_EQ(say("trammel 1 secret\n"), "trammel 1 motion\n");
-  EXPECT_EQ(say("half a frame\xC0trammel 1\n"), "trammel 1 reading\n");
+  EXPECT_EQ(say("half a frame\xC0trammel 1\n"), "trammel 1 reading held: client: another one has its place\n");
   EXPECT_EQ(engine_->read(reg::kHold), 1U);
   engine_->write(reg::kHold, 0);
-  EXPECT_EQ(say("trammel 1 secret\n"), "trammel 1 motion\n");
+  EXPECT_EQ(say("trammel 1 secret\n").rfind("trammel 1 motion", 0), 0U);
   // A serial line's beginning: a card's client without a hello.
   say("U\xC0");
   EXPECT_EQ(engine_->read(reg::kHold), 1U);

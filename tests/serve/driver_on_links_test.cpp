@@ -11,7 +11,6 @@
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/runner.hpp"
-#include "trammel/run/take_over.hpp"
 #include "trammel/serve/card_server.hpp"
 #include "trammel/sim/engine.hpp"
 #include "trammel/transport/card_url.hpp"
@@ -48,6 +47,8 @@ class Bench {
   ~Bench() { end(); }
 
   driver::Bus& bus() { return connection_ ? connection_->bus() : *engine_; }
+  std::string url() const { return listener_->url(); }
+  void disconnect() { connection_.reset(); }
   // The card's positions as the simulation has them, at the end of all use.
   std::vector<std::int64_t> end() {
     connection_.reset();
@@ -194,7 +195,7 @@ TEST_P(DriverOnLinks, ProgramsOfSeveralConnections) {
   for (const char* text : {"G1 X1 Y2 F6000\nG2 X3 Y2 I1\n", "G1 X1 F6000\nG1 X-3\nY-2\nX0 Y0\n"}) {
     bench_.connect();
     Card card = Card::open(bench_.bus());
-    run::take_over(card);
+    card.take_over();
     run::Runner runner([&] { return std::make_unique<gcode::TextLines>(text, "p.ngc"); }, machine,
                        planner::limits_of(card.identification()));
     runner.plan();
@@ -207,6 +208,56 @@ INSTANTIATE_TEST_SUITE_P(
     Places, DriverOnLinks, ::testing::Values(Place::kHere, Place::kTcp, Place::kTerminal), [](const auto& place) {
       return std::string(place.param == Place::kHere ? "Here" : place.param == Place::kTcp ? "Tcp" : "Terminal");
     });
+
+// A TCP port in front of a server's, that loses each wait.
+class LossyRelay {
+ public:
+  explicit LossyRelay(const std::string& server)
+      : server_(transport::parse_card_url(server)), thread_([this] { run(); }) {}
+  ~LossyRelay() {
+    ended_ = true;
+    thread_.join();
+  }
+  std::string url() const { return listener_->url(); }
+
+ private:
+  void run() {
+    std::unique_ptr<transport::ByteStream> client;
+    for (; !ended_ && !client; std::this_thread::sleep_for(1ms)) client = listener_->accept();
+    try {
+      const auto card = transport::connect_tcp(server_.host, server_.port, 5s);
+      while (!ended_) {
+        carry(*client, *card);
+        carry(*card, *client);
+      }
+    } catch (const driver::LinkError&) {
+    }
+  }
+  static void carry(transport::ByteStream& from, transport::ByteStream& to) {
+    std::array<std::uint8_t, 4096> bytes{};
+    const std::size_t count = from.read(bytes.data(), bytes.size(), 1ms);
+    const std::string text(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
+    if (text.find("wait ") == std::string::npos) to.write(bytes.data(), count);
+  }
+
+  std::unique_ptr<transport::Listener> listener_ = transport::listen_tcp("127.0.0.1", 0);
+  transport::CardUrl server_;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+// Twice the time that the URL gives, not the driver's own.
+TEST(StreamLinks, AWaitKeepsToTheTimeoutOfTheUrl) {
+  Bench bench(Place::kTcp);
+  bench.disconnect();
+  const LossyRelay relay(bench.url());
+  transport::Connection connection(transport::parse_card_url(relay.url() + "?token=secret&timeout=150"));
+  const auto begun = std::chrono::steady_clock::now();
+  connection.bus().sleep(10ms);
+  const auto waited = std::chrono::steady_clock::now() - begun;
+  EXPECT_GE(waited, 300ms);
+  EXPECT_LT(waited, 5s);
+}
 
 // A serial line without a hello, as a card has it: a break, 55, frames. The server lets it read.
 TEST(SerialLine, ReadsWithoutAHello) {

@@ -11,7 +11,6 @@
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/frame_bus.hpp"
 #include "trammel/run/runner.hpp"
-#include "trammel/run/take_over.hpp"
 #include "trammel/serve/card_server.hpp"
 #include "trammel/sim/engine.hpp"
 #include "trammel/transport/links.hpp"
@@ -61,7 +60,7 @@ class Bench {
                                transport::StreamLink::Hello{kToken});
     driver::FrameBus bus(link);
     driver::Card card = driver::Card::open(bus);
-    run::take_over(card);
+    card.take_over();
     run::Runner runner(lines(text), machine, planner::limits_of(card.identification()), there);
     runner.plan();
     return runner.run(card);

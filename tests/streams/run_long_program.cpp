@@ -71,8 +71,7 @@ void run_lines(std::uint64_t lines, bool plot, bool keep) {
   options.path_steps = &path_steps;
   options.plot = plot;
   options.clock_hz = machine.clock_hz;
-  for (const machine::MachineAxis& axis : machine.axes) options.steps_per_mm.push_back(axis.steps_per_mm);
-  run::StepRecorder recorder(options);
+  run::StepRecorder recorder(options, kinematics::Kinematics(machine));
   engine->set_sink(&recorder);
   Keeper keeper;
   if (keep) runner.add(keeper);

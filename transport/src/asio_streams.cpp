@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/interrupt.hpp"
 #include "trammel/transport/byte_stream.hpp"
 #include "wait_for_file.hpp"
 
@@ -173,10 +174,15 @@ std::unique_ptr<ByteStream> connect_tcp(const std::string& host, std::uint16_t p
   tcp::socket socket(*io);
   std::optional<error_code> result;
   asio::async_connect(socket, found, [&](const error_code& code, const tcp::endpoint&) { result = code; });
-  io->run_for(longest);
+  const auto until = std::chrono::steady_clock::now() + longest;
+  while (!result && std::chrono::steady_clock::now() < until && !driver::interrupted()) {
+    io->run_for(driver::kInterruptSlice);
+  }
   if (!result) {
+    const bool ended = driver::interrupted();
     socket.close(error);
     io->run();
+    if (ended) throw driver::InterruptedError(fmt::format("{}: interrupted before it answered", place));
     throw driver::LinkError(fmt::format("{}: no answer within {} ms", place, longest.count()));
   }
   if (*result) {

@@ -15,7 +15,10 @@ namespace {
 using namespace std::chrono_literals;
 using Kind = CardUrl::Kind;
 
-std::unique_ptr<StreamLink> stream_link(const CardUrl& url) {
+std::unique_ptr<StreamLink> stream_link(const CardUrl& url, const driver::FrameBus::Options& frames) {
+  StreamLink::Options options;
+  options.answer = frames.answer;
+  options.sends = frames.sends;
   std::optional<StreamLink::Hello> hello;
   if (url.hello) hello = StreamLink::Hello{url.token};
   return std::make_unique<StreamLink>(
@@ -23,7 +26,7 @@ std::unique_ptr<StreamLink> stream_link(const CardUrl& url) {
         if (url.kind == Kind::kSerial) return open_serial(url.device, url.baud);
         return connect_tcp(url.host, url.port, 5s);
       },
-      std::move(hello));
+      std::move(hello), options);
 }
 
 // A stream between computers loses nothing, and the card at its end may be slow: nothing is sent again soon.
@@ -55,8 +58,10 @@ Connection::Connection(const CardUrl& url) {
     bus_ = std::make_unique<MemoryBus>(url.device, url.offset, url.interrupt);
     return;
   }
-  if (url.kind == Kind::kTcp || !url.token.empty()) {
-    auto link = stream_link(url);
+  const bool stream = url.kind == Kind::kTcp || !url.token.empty();
+  const driver::FrameBus::Options options = frame_options(url, stream);
+  if (stream) {
+    auto link = stream_link(url, options);
     stream_ = link.get();
     link_ = std::move(link);
   } else if (url.kind == Kind::kSerial) {
@@ -65,12 +70,11 @@ Connection::Connection(const CardUrl& url) {
     link_ = std::make_unique<SpiLink>(url.device, SpiLink::Options{url.sck_hz, url.mode});
   }
   try {
-    auto bus = std::make_unique<driver::FrameBus>(*link_, frame_options(url, stream_ != nullptr));
+    auto bus = std::make_unique<driver::FrameBus>(*link_, options);
     frames_ = bus.get();
     bus_ = std::move(bus);
   } catch (const driver::LinkError& error) {
-    throw driver::LinkError(
-        fmt::format("{}: {}: {}", url.text, error.what(), hint(url, stream_ != nullptr && url.hello)));
+    throw driver::LinkError(fmt::format("{}: {}: {}", url.text, error.what(), hint(url, stream && url.hello)));
   }
 }
 

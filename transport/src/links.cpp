@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <thread>
 #include <utility>
 
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/interrupt.hpp"
 #include "trammel/frames/stuffing.hpp"
 
 namespace trammel::transport {
@@ -17,11 +19,10 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 constexpr nanoseconds kHelloTime = 5s;
-// What a simulated card may take for one wait; long ones go in pieces.
-constexpr nanoseconds kWaitTime = 60s;
-constexpr nanoseconds kLongestWait = 20ms;
+constexpr nanoseconds kLongestWait = 20ms;  // of one wait; long ones go in pieces
 constexpr std::size_t kLongestLine = 200;
 constexpr nanoseconds kDrainTime = 200ms;
+constexpr const char* kHeld = " held: ";
 constexpr const char* kIsItThere = "is that its port?";
 
 // What another program has sent, fit for a terminal.
@@ -32,6 +33,11 @@ std::string plain(std::string text) {
 }
 constexpr char kSerial[] = "serial line";
 constexpr char kConnection[] = "connection";
+
+void end_if_interrupted(const std::string& peer) {
+  if (!driver::interrupted()) return;
+  throw driver::InterruptedError(fmt::format("{}: interrupted before the connection was made", peer));
+}
 
 // Of who may be anybody.
 std::size_t read_byte(ByteStream& stream, std::uint8_t& byte, nanoseconds longest) {
@@ -50,7 +56,10 @@ std::string read_line(ByteStream& stream) {
     std::uint8_t byte = 0;
     const nanoseconds left = until - steady_clock::now();
     if (left.count() <= 0) break;
-    if (read_byte(stream, byte, left) == 0) continue;
+    if (read_byte(stream, byte, std::min<nanoseconds>(left, driver::kInterruptSlice)) == 0) {
+      end_if_interrupted(stream.peer());
+      continue;
+    }
     if (byte == '\n') return line;
     line += static_cast<char>(byte);
   }
@@ -98,8 +107,8 @@ nanoseconds SerialLink::time_of(std::size_t bytes) const {
   return nanoseconds(static_cast<std::int64_t>(10'000'000'000 / baud_ + 1) * static_cast<std::int64_t>(bytes));
 }
 
-StreamLink::StreamLink(Open open, std::optional<Hello> hello, nanoseconds reopen)
-    : open_(std::move(open)), hello_(std::move(hello)), reopen_(reopen) {
+StreamLink::StreamLink(Open open, std::optional<Hello> hello, const Options& options)
+    : open_(std::move(open)), hello_(std::move(hello)), options_(options) {
   connect();
 }
 
@@ -114,8 +123,11 @@ void StreamLink::say_hello() {
                                         hello_->token.empty() ? "" : " ", hello_->token);
   stream_->write(reinterpret_cast<const std::uint8_t*>(hello.data()), hello.size());
   const std::string line = read_line(*stream_);
-  may_move_ = line == "trammel 1 motion";
-  if (may_move_ || line == "trammel 1 reading") return;
+  const auto is = [&line](const std::string& answer) { return line == answer || line.rfind(answer + kHeld, 0) == 0; };
+  may_move_ = is("trammel 1 motion");
+  const std::size_t held = line.find(kHeld);
+  hold_origin_ = held == std::string::npos ? std::string() : plain(line.substr(held + std::strlen(kHeld)));
+  if (may_move_ || is("trammel 1 reading")) return;
   constexpr const char* kRefused = "trammel 1 refused: ";
   if (line.rfind(kRefused, 0) == 0) {
     throw driver::LinkError(
@@ -141,7 +153,7 @@ void StreamLink::restart() {
     }
     return;
   }
-  for (const auto until = steady_clock::now() + (std::exchange(given_up_, true) ? 0ns : reopen_);;) {
+  for (const auto until = steady_clock::now() + (std::exchange(given_up_, true) ? 0ns : options_.reopen);;) {
     try {
       connect();
       given_up_ = false;
@@ -150,6 +162,7 @@ void StreamLink::restart() {
     } catch (const driver::LinkError&) {
       if (steady_clock::now() >= until) throw;
     }
+    end_if_interrupted(kConnection);
     std::this_thread::sleep_for(50ms);
   }
 }
@@ -167,24 +180,31 @@ void StreamLink::sleep(nanoseconds time) {
 
 void StreamLink::wait(nanoseconds time) {
   constexpr char kEnd = static_cast<char>(frames::kEnd);
-  const std::string text = fmt::format("wait {}{}", time.count(), kEnd);
-  send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  await(std::string("waited") + kEnd);
+  const std::string what = fmt::format("{} {}{}", time.count(), ++waits_, kEnd);
+  // The first end closes what a damaged one has left.
+  const std::string text = fmt::format("{}wait {}", kEnd, what);
+  for (unsigned sent = 0; sent < options_.sends; ++sent) {
+    send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    if (answered("waited " + what) || driver::interrupted()) return;
+  }
+  stream_.reset();
+  throw driver::LinkError("the server does not answer");
 }
 
 // What comes before it are late replies, for which nobody waits any more.
-void StreamLink::await(const std::string& text) {
-  const auto until = steady_clock::now() + kWaitTime;
+bool StreamLink::answered(const std::string& text) {
+  const auto begun = steady_clock::now();
+  const auto until = begun + options_.answer;
   std::string came;
-  while (came.size() < text.size() || came.compare(came.size() - text.size(), text.size(), text) != 0) {
+  for (auto left = options_.answer; left.count() > 0; left = until - steady_clock::now()) {
     std::uint8_t bytes[256];
-    const std::size_t count = receive(bytes, sizeof(bytes), std::max<nanoseconds>(until - steady_clock::now(), 0ns));
+    const std::size_t count = receive(bytes, sizeof(bytes), std::min<nanoseconds>(left, driver::kInterruptSlice));
+    if (count == 0 && driver::interrupted_after(steady_clock::now() - begun)) return false;
     came.append(reinterpret_cast<const char*>(bytes), count);
+    if (came.find(text) != std::string::npos) return true;
     if (came.size() > text.size()) came.erase(0, came.size() - text.size());
-    if (count != 0 || steady_clock::now() < until) continue;
-    stream_.reset();
-    throw driver::LinkError("the server does not answer");
   }
+  return false;
 }
 
 }  // namespace trammel::transport

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <stdlib.h>
+#include <sys/inotify.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -31,8 +33,11 @@ class Master {
                      (::cfmakeraw(&settings), ::tcsetattr(client, TCSANOW, &settings) == 0);
     if (client >= 0) ::close(client);
     if (!raw) fail();
+    watch_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (watch_ < 0 || ::inotify_add_watch(watch_, name, IN_OPEN | IN_CLOSE) < 0) fail();
   }
   ~Master() {
+    if (watch_ >= 0) ::close(watch_);
     if (file_ >= 0) ::close(file_);
   }
   Master(const Master&) = delete;
@@ -40,6 +45,29 @@ class Master {
 
   int file() const { return file_; }
   const std::string& name() const { return name_; }
+  // A client has come: those who open and close the terminal from here on are counted.
+  void begin_client() {
+    clients_ = 0;
+    all_have_closed();
+    clients_ = std::max(clients_, 1);
+  }
+  // Whether, since it was asked last, there was a moment in which nobody had the terminal open. A hang-up does not show
+  // that where the next one has opened it before the server looked; the order of opening and closing does. Several
+  // openings or closings in a row may come as one.
+  bool all_have_closed() {
+    alignas(inotify_event) char events[4096];
+    bool closed = false;
+    for (ssize_t count = 0; (count = ::read(watch_, events, sizeof(events))) > 0;) {
+      for (ssize_t at = 0; at < count;) {
+        const auto* event = reinterpret_cast<const inotify_event*>(events + at);
+        clients_ += (event->mask & IN_OPEN) != 0 ? 1 : (event->mask & IN_CLOSE) != 0 ? -1 : 0;
+        closed = closed || clients_ <= 0 || (event->mask & IN_Q_OVERFLOW) != 0;
+        clients_ = std::max(clients_, 0);
+        at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
+      }
+    }
+    return closed;
+  }
   // Somebody has the other end open, or has left bytes.
   bool has_client() const {
     pollfd entry{file_, POLLIN, 0};
@@ -52,12 +80,14 @@ class Master {
   }
 
   int file_;
+  int watch_ = -1;   // of openings and closings
+  int clients_ = 0;  // that have the terminal open
   std::string name_;
 };
 
 class TerminalStream final : public ByteStream {
  public:
-  explicit TerminalStream(std::shared_ptr<Master> master) : master_(std::move(master)) {}
+  explicit TerminalStream(std::shared_ptr<Master> master) : master_(std::move(master)) { master_->begin_client(); }
 
   void write(const std::uint8_t* bytes, std::size_t count) override {
     while (count != 0) {
@@ -79,6 +109,7 @@ class TerminalStream final : public ByteStream {
     throw driver::LinkError(fmt::format("{}: the other end has closed", peer()));
   }
   std::string peer() const override { return master_->name(); }
+  bool changed_hands() override { return master_->all_have_closed(); }
 
  private:
   std::shared_ptr<Master> master_;

@@ -1,6 +1,7 @@
 #include "modules.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "trammel/driver/errors.hpp"
 
@@ -8,10 +9,10 @@ namespace trammel::platform {
 
 namespace {
 
+using sc_core::sc_time;
 using sc_core::sc_time_stamp;
 
-// An access takes some ten clocks, a START some hundred; one that takes more has hung.
-constexpr int kPatience = 100'000;
+constexpr double kDefaultPeriod = 100e-6;  // s
 
 // What the Verilated card of verif/lockstep/frames is built with.
 model::CardConfig card_config(std::uint32_t clock_hz) {
@@ -29,6 +30,26 @@ void show(sc_core::sc_out<T>& port, T& shown, const T& now) {
   if (shown == now) return;
   shown = now;
   port.write(now);
+}
+
+// Whether the card, which goes on by some clocks, made the access.
+bool access_card(model::CoreModel& card, std::uint16_t switches, driver::Access& access) {
+  model::CoreModel::Inputs in;
+  in.request = true;
+  in.write = access.write;
+  in.address = access.address;
+  in.data = access.data;
+  in.pins = switches;
+  card.clock(in);
+  in.request = false;
+  for (int i = 0; !card.answer().ack; ++i) {
+    if (i == kLongestAnswer) throw driver::LinkError("loosely timed card: no answer");
+    card.clock(in);
+  }
+  const model::CoreModel::Answer answer = card.answer();
+  card.clock(in);  // the next request comes after the answer's clock
+  if (!answer.error && !access.write) access.data = answer.data;
+  return !answer.error;
 }
 
 }  // namespace
@@ -105,8 +126,9 @@ void MachineModule::time_passes() {
 
 LooseCard::LooseCard(const sc_core::sc_module_name& name, std::uint32_t clock_hz, Motors& machine)
     : RegisterTarget(name), clock_hz_(clock_hz), card_(card_config(clock_hz)), machine_(machine) {
+  if (clock_hz == 0) throw std::invalid_argument("a card with a clock of 0 Hz never runs");
   SC_HAS_PROCESS(LooseCard);
-  SC_METHOD(quantum);
+  SC_METHOD(run_on);
   card_.set_steps(this);
 }
 
@@ -116,49 +138,54 @@ void LooseCard::pin_step(std::uint64_t cycle, unsigned axis, int direction) {
   if (sink_) sink_(time, {cycle, static_cast<std::uint8_t>(axis), static_cast<std::int8_t>(direction)});
 }
 
-void LooseCard::quantum() {
+void LooseCard::run_on() {
   run_to(sc_time_stamp());
-  next_trigger(tlm_utils::tlm_quantumkeeper::get_global_quantum());
+  irq.write(card_.outputs().irq);
+  next_trigger(period(), irq_changes_);
 }
 
-// In pieces of a quantum, with the switches as they stood at its beginning.
-void LooseCard::run_to(const sc_core::sc_time& time) {
-  const auto end = static_cast<std::uint64_t>(time.to_seconds() * clock_hz_ + 0.5);
-  const double quantum = tlm_utils::tlm_quantumkeeper::get_global_quantum().to_seconds();
-  const auto most = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(quantum * clock_hz_));
+// Of no length it would be called for ever without time going on, and beyond the end of SystemC's time never again.
+sc_time LooseCard::period() const {
+  const sc_time quantum = tlm_utils::tlm_quantumkeeper::get_global_quantum();
+  if (quantum == sc_core::SC_ZERO_TIME) return sc_time(kDefaultPeriod, sc_core::SC_SEC);
+  return std::clamp(quantum, sc_time(time_of(1), sc_core::SC_SEC), sc_time(1, sc_core::SC_SEC));
+}
+
+std::uint64_t LooseCard::cycle_at(const sc_time& time) const {
+  return static_cast<std::uint64_t>(time.to_seconds() * clock_hz_ + 0.5);
+}
+
+// In pieces of a period, with the switches as they stood at its beginning.
+void LooseCard::run_to(const sc_time& time) {
+  const std::uint64_t end = cycle_at(time);
+  const std::uint64_t most = std::max<std::uint64_t>(1, cycle_at(period()));
   while (card_.cycles() < end) {
     card_.run(std::min(most, end - card_.cycles()), machine_.switches());
     machine_.run_to(time_of(card_.cycles()));
   }
-  irq.write(card_.outputs().irq);
 }
 
-std::size_t LooseCard::transfer(driver::Access* accesses, std::size_t count, sc_core::sc_time& delay) {
+std::size_t LooseCard::transfer(driver::Access* accesses, std::size_t count, sc_time& delay) {
   run_to(sc_time_stamp() + delay);
   const std::uint64_t before = card_.cycles();
   std::size_t made = 0;
-  while (made < count && access(accesses[made])) ++made;
-  delay += sc_core::sc_time(time_of(card_.cycles() - before), sc_core::SC_SEC);
+  while (made < count && access_card(card_, machine_.switches(), accesses[made])) ++made;
+  delay += sc_time(time_of(card_.cycles() - before), sc_core::SC_SEC);
+  if (card_.outputs().irq != irq.read()) irq_changes_.notify(sc_core::SC_ZERO_TIME);
   return made;
 }
 
-bool LooseCard::access(driver::Access& access) {
-  model::CoreModel::Inputs in;
-  in.request = true;
-  in.write = access.write;
-  in.address = access.address;
-  in.data = access.data;
-  in.pins = machine_.switches();
-  card_.clock(in);
-  in.request = false;
-  for (int i = 0; !card_.answer().ack; ++i) {
-    if (i == kPatience) throw driver::LinkError("loosely timed card: no answer");
-    card_.clock(in);
+// Each read is made on a copy of the card.
+std::size_t LooseCard::peek(driver::Access* reads, std::size_t count) {
+  model::CoreModel now = card_;
+  now.set_steps(nullptr);
+  const std::uint64_t end = cycle_at(sc_time_stamp());
+  if (now.cycles() < end) now.run(end - now.cycles(), machine_.switches());
+  for (std::size_t i = 0; i < count; ++i) {
+    model::CoreModel asked = now;
+    if (!access_card(asked, machine_.switches(), reads[i])) return i;
   }
-  const model::CoreModel::Answer answer = card_.answer();
-  card_.clock(in);  // the next request comes after the answer's clock
-  if (!answer.error && !access.write) access.data = answer.data;
-  return !answer.error;
+  return count;
 }
 
 }  // namespace trammel::platform

@@ -94,22 +94,25 @@ class MachineModule final : public sc_core::sc_module {
   std::uint32_t step_before_ = 0;
 };
 
-// Loosely timed: the golden model behind the socket, with the machine on its pins. It runs when it is asked, and once a
-// quantum; so switches and interrupt may be seen a quantum late.
+// Loosely timed: the golden model behind the socket, with the machine on its pins. It runs when it is asked, and once
+// per global quantum; so switches and interrupt may be seen a quantum late. The quantum counts as one clock where it is
+// shorter, as 1 s where it is longer, and as 100 microseconds where there is none.
 class LooseCard final : public RegisterTarget, private model::CardSteps {
  public:
   sc_core::sc_out<bool> irq{"irq"};
 
-  // `machine` must outlive it.
+  // `machine` must outlive it. Throws std::invalid_argument for a clock of 0 Hz.
   LooseCard(const sc_core::sc_module_name& name, std::uint32_t clock_hz, Motors& machine);
   void set_sink(PulseSink sink) { sink_ = std::move(sink); }
   std::uint64_t cycles() const { return card_.cycles(); }
 
  private:
   std::size_t transfer(driver::Access* accesses, std::size_t count, sc_core::sc_time& delay) override;
-  bool access(driver::Access& access);
-  void quantum();
+  std::size_t peek(driver::Access* reads, std::size_t count) override;
+  void run_on();
   void run_to(const sc_core::sc_time& time);
+  sc_core::sc_time period() const;
+  std::uint64_t cycle_at(const sc_core::sc_time& time) const;
   double time_of(std::uint64_t cycle) const { return static_cast<double>(cycle) / clock_hz_; }
   void pin_step(std::uint64_t cycle, unsigned axis, int direction) override;
   void path_step(std::uint64_t, std::uint64_t, std::uint64_t, unsigned, int) override {}
@@ -118,6 +121,7 @@ class LooseCard final : public RegisterTarget, private model::CardSteps {
   model::CoreModel card_;
   Motors& machine_;
   PulseSink sink_;
+  sc_core::sc_event irq_changes_;
 };
 
 }  // namespace trammel::platform

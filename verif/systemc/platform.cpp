@@ -1,5 +1,7 @@
 #include "platform.hpp"
 
+#include <algorithm>
+#include <fstream>
 #include <iterator>
 #include <stdexcept>
 
@@ -78,16 +80,13 @@ struct Platform::Pins final : sc_core::sc_module {
     ends.tx(tx);
   }
 
-  // What the one Wishbone port takes; throws where that is asked for twice.
-  void set_wishbone(bool classic) {
-    if (wishbone_taken) throw std::invalid_argument("the card has one Wishbone port, and it is taken");
-    wishbone_taken = true;
-    if (!classic) return;
+  void set_classic_wishbone() {
     card.set_classic();
     if (checkers) checkers->checkers().set_pipelined(false);
   }
 
   void trace(const std::string& path) {
+    if (!std::ofstream(path + ".vcd")) throw std::runtime_error(path + ".vcd: cannot be written");
     file = sc_core::sc_create_vcd_trace_file(path.c_str());
     const auto add = [this](const auto& wire) { sc_trace(file, wire.read(), wire.basename()); };
     add(clk), add(rst), add(axi_master), add(axi_card), add(wishbone_master), add(wishbone_card), add(spi_master);
@@ -114,11 +113,12 @@ struct Platform::Pins final : sc_core::sc_module {
   MachineModule machine;
   sc_time reset_time;
   sc_core::sc_trace_file* file = nullptr;
-  bool wishbone_taken = false;
 };
 
 Platform::Platform(const PlatformOptions& options)
     : options_(options), loose_machine_(options.motors), pin_machine_(options.motors) {
+  if (options.clock_hz == 0) throw std::invalid_argument("a card with a clock of 0 Hz never runs");
+  if (!(options.quantum >= 0 && options.quantum <= 1)) throw std::invalid_argument("a quantum is 0 to 1 s");
   tlm_utils::tlm_quantumkeeper::set_global_quantum(sc_time(options.quantum, SC_SEC));
 }
 
@@ -127,6 +127,8 @@ Platform::~Platform() {
 }
 
 void Platform::add(Port port, Host::Software software) {
+  if (!taken_.insert(port == Port::kWishboneClassic ? Port::kWishbone : port).second)
+    throw std::invalid_argument(std::string("the port for ") + name_of(port) + " has a program already");
   if (port == Port::kLoose && !loose_) {
     loose_ = std::make_unique<LooseCard>("loose_card", options_.clock_hz, loose_machine_);
     loose_->irq(loose_irq_);
@@ -136,12 +138,8 @@ void Platform::add(Port port, Host::Software software) {
     if (!options_.vcd.empty()) pins_->trace(options_.vcd);
   }
   const std::string name = std::string("host_") + name_of(port);
-  hosts_.push_back(std::make_unique<Host>(name.c_str(), std::move(software), clocks(options_, kStart), [this] {
-    for (const auto& host : hosts_) {
-      if (!host->done()) return;
-    }
-    sc_core::sc_stop();
-  }));
+  hosts_.push_back(
+      std::make_unique<Host>(name.c_str(), std::move(software), clocks(options_, kStart), [this] { program_ended(); }));
   Host& host = *hosts_.back();
   if (port == Port::kLoose) {
     host.irq(loose_irq_);
@@ -167,7 +165,7 @@ RegisterTarget& Platform::transactor(Port port) {
     case Port::kWishbone:
     case Port::kWishboneClassic: {
       const bool classic = port == Port::kWishboneClassic;
-      pins_->set_wishbone(classic);
+      if (classic) pins_->set_classic_wishbone();
       auto wishbone = std::make_unique<WishboneTransactor>("wishbone", classic);
       wishbone->clk(pins_->clk);
       wishbone->master(pins_->wishbone_master);
@@ -194,10 +192,20 @@ RegisterTarget& Platform::transactor(Port port) {
   return *transactors_.back();
 }
 
+// Where one failed the others do not count: they may wait for it.
+void Platform::program_ended() {
+  const bool failed = std::any_of(hosts_.begin(), hosts_.end(), [](const auto& host) { return host->failure(); });
+  if (failed || std::all_of(hosts_.begin(), hosts_.end(), [](const auto& host) { return host->done(); }))
+    sc_core::sc_stop();
+}
+
 void Platform::run() {
   sc_core::sc_start();
   for (const auto& host : hosts_) {
     if (host->failure()) std::rethrow_exception(host->failure());
+  }
+  for (const auto& host : hosts_) {
+    if (!host->done()) throw std::runtime_error(std::string("the simulation ended before ") + host->basename());
   }
 }
 

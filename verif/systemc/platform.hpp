@@ -1,10 +1,12 @@
-// The virtual prototype: computers with programs, each on a link of its own to a card with a machine behind it.
-// Programs on Port::kLoose share the golden model, those on pins the Verilated card; both cards may be there at once.
+// The virtual prototype: computers with programs, each on a link of its own to a card with a machine behind it. The
+// program on Port::kLoose has the golden model, those on pins share the Verilated card; both cards may be there at
+// once.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,7 @@ const char* name_of(Port port);
 
 struct PlatformOptions {
   std::uint32_t clock_hz = 1'000'000;
-  double quantum = 100e-6;  // s, the global quantum of loosely timed models
+  double quantum = 100e-6;  // s, the global quantum of loosely timed models; 0: programs never run ahead
   MotorParameters motors;
   bool checkers = true;  // on the pins
   std::string vcd;       // trace of the pins, without ".vcd"; empty: none
@@ -28,13 +30,15 @@ struct PlatformOptions {
 
 class Platform {
  public:
+  // Throws std::invalid_argument for a clock of 0 Hz and a quantum below 0 s or above 1 s.
   explicit Platform(const PlatformOptions& options = {});
   ~Platform();
 
-  // One program a port. Before run(). Throws std::invalid_argument for a second on the Wishbone port, which is
-  // pipelined or classic.
+  // One program per port; the Wishbone port is pipelined or classic. Before run(). Throws std::invalid_argument for a
+  // second program on a port, and std::runtime_error when the trace cannot be written.
   void add(Port port, Host::Software software);
-  // To the end of all programs; then what the first that failed has thrown. SystemC can be run once a process.
+  // To the end of all programs, or of the first that fails, and throws what that has thrown. Throws std::runtime_error
+  // when the simulation ends before the programs. SystemC can be run once per process.
   void run();
 
   // The machine on the loosely timed card, and on the pin-accurate one.
@@ -51,15 +55,16 @@ class Platform {
   struct Pins;
 
   RegisterTarget& transactor(Port port);
+  void program_ended();
 
   PlatformOptions options_;
   Motors loose_machine_;
   Motors pin_machine_;
+  std::set<Port> taken_;  // with kWishbone for both of its kinds
   std::vector<std::unique_ptr<Host>> hosts_;
   std::vector<std::unique_ptr<RegisterTarget>> transactors_;
   std::unique_ptr<LooseCard> loose_;
-  // Written by the program that asks and by the quantum, at one time maybe: what both have to say is the same.
-  sc_core::sc_signal<bool, sc_core::SC_UNCHECKED_WRITERS> loose_irq_{"loose_irq"};
+  sc_core::sc_signal<bool> loose_irq_{"loose_irq"};
   std::unique_ptr<Pins> pins_;
 };
 

@@ -1,12 +1,14 @@
 // systemc_run: a program of G-code on the virtual prototype; where the machine was beside where it was sent.
 #include <fmt/format.h>
 
+#include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
+#include <cstdint>
 #include <ctime>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -36,11 +38,21 @@ struct Options {
   PlatformOptions platform;
 };
 
+// Hz, from 100 kHz to 4 GHz.
+std::optional<std::uint32_t> clock_of(const std::string& text) {
+  double hz = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, hz);
+  if (error != std::errc() || stop != end || !(hz >= 1e5 && hz <= 4e9)) return std::nullopt;
+  return static_cast<std::uint32_t>(hz);
+}
+
 Options options_of(int argc, char** argv) {
   Options options;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word.substr(0, 2) != "--") {
+      if (!options.file.empty()) throw std::invalid_argument(word + ": only one program can be run");
       options.file = word;
       continue;
     }
@@ -48,8 +60,8 @@ Options options_of(int argc, char** argv) {
     const std::string value = argv[i];
     if (word == "--port" && port_of(value)) {
       options.port = *port_of(value);
-    } else if (word == "--clock" && std::atof(value.c_str()) >= 1e5 && std::atof(value.c_str()) <= 4e9) {
-      options.platform.clock_hz = static_cast<std::uint32_t>(std::atof(value.c_str()));
+    } else if (word == "--clock" && clock_of(value)) {
+      options.platform.clock_hz = *clock_of(value);
     } else if (word == "--svg") {
       options.svg = value;
     } else if (word == "--vcd") {
@@ -117,6 +129,13 @@ bool report(const Motors& motors, const machine::Machine& machine) {
   return arrived;
 }
 
+void write(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error(path + ": cannot be written");
+}
+
 int run(const Options& options) {
   const machine::Machine machine = machine::default_machine();
   const bool loose = options.port == Port::kLoose;
@@ -132,7 +151,7 @@ int run(const Options& options) {
              cycles / options.platform.clock_hz, cycles / 1e6, cycles / 1e6 / seconds);
   for (const std::string& rule : platform.broken()) fmt::print(stderr, "error: {}\n", rule);
   if (!arrived) fmt::print(stderr, "error: the machine is not where it was sent\n");
-  if (!options.svg.empty()) std::ofstream(options.svg) << picture(platform.machine(loose), machine);
+  if (!options.svg.empty()) write(options.svg, picture(platform.machine(loose), machine));
   return arrived && platform.broken().empty() ? 0 : 1;
 }
 

@@ -246,12 +246,6 @@ TEST(Systemc, ARogueClassicMasterIsFound) {
   EXPECT_EQ(platform.broken(), std::vector<std::string>{"Wishbone: a request changes before its answer"});
 }
 
-TEST(Systemc, TheWishbonePortIsPipelinedOrClassic) {
-  Platform platform;
-  platform.add(Port::kWishboneClassic, [](Host&) {});
-  EXPECT_THROW(platform.add(Port::kWishbone, [](Host&) {}), std::invalid_argument);
-}
-
 TEST(Systemc, PinsCanBeTraced) {
   const std::string path = testing::TempDir() + "trammel_systemc_pins";
   {

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <string>
 #include <systemc>
 
@@ -17,12 +18,18 @@
 
 namespace trammel::platform {
 
-sc_core::sc_time to_sc(std::chrono::nanoseconds time);
+// `time` from `now` on; at most to the end of SystemC's time, at least 0.
+sc_core::sc_time to_sc(std::chrono::nanoseconds time, const sc_core::sc_time& now = sc_core::sc_time_stamp());
 
-// What the generic payload cannot say of a burst that ended early. A target without it is asked word by word.
+// Clocks. The card answers within 600 (ANSWER_CLOCKS_8_AXES), and a port waits for three others at most: a card that
+// takes longer than this does not answer at all.
+inline constexpr int kLongestAnswer = 100'000;
+
+// What the generic payload cannot say of a burst that ended early. A target that knows the extension sets `made` in
+// each transaction. Host asks word by word until a target has done so, because a burst cannot be repeated.
 struct BurstEnd : tlm::tlm_extension<BurstEnd> {
-  std::size_t made = 0;  // words
-  std::string failure;   // of the link, where it failed
+  std::optional<std::size_t> made;  // words
+  std::string failure;              // of the link, where it failed
 
   tlm_extension_base* clone() const override { return new BurstEnd(*this); }
   void copy_from(const tlm_extension_base& other) override { *this = static_cast<const BurstEnd&>(other); }
@@ -59,6 +66,7 @@ class Host final : public sc_core::sc_module, public driver::Bus {
  private:
   void run();
   std::size_t burst(driver::Access* accesses, std::size_t count);
+  std::size_t words_made(const tlm::tlm_generic_payload& payload, const BurstEnd& end);
   void transport(tlm::tlm_generic_payload& payload);
 
   Software software_;
@@ -66,11 +74,15 @@ class Host final : public sc_core::sc_module, public driver::Bus {
   std::function<void()> finished_;
   tlm_utils::tlm_quantumkeeper keeper_;
   std::uint64_t bursts_ = 0;
+  bool counts_words_ = false;  // the target does, in BurstEnd
   bool done_ = false;
   std::exception_ptr failure_;
 };
 
-// A card's register window as a target: 4 KiB of 32-bit words, little endian.
+// A card's register window as a target: 4 KiB of 32-bit words, little endian. One transaction at a time.
+//
+// Debug transport reads any range of bytes in the window up to the first register that cannot be read, and gives back
+// the number of bytes. It does not write (0 bytes): the card takes each write as an order and needs clocks for it.
 class RegisterTarget : public sc_core::sc_module {
  public:
   tlm_utils::simple_target_socket<RegisterTarget> socket{"socket"};
@@ -80,9 +92,13 @@ class RegisterTarget : public sc_core::sc_module {
  protected:
   // As Bus::transfer(), `delay` ahead of SystemC's time; adds what it takes, or waits.
   virtual std::size_t transfer(driver::Access* accesses, std::size_t count, sc_core::sc_time& delay) = 0;
+  // Reads as they would be answered now, without a change of the card and without time; how many are possible. At the
+  // pins none is: a port's answer takes clocks.
+  virtual std::size_t peek(driver::Access* /*reads*/, std::size_t /*count*/) { return 0; }
 
  private:
   void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay);
+  unsigned transport_dbg(tlm::tlm_generic_payload& payload);
 };
 
 }  // namespace trammel::platform

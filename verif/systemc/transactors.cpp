@@ -1,6 +1,9 @@
 #include "transactors.hpp"
 
+#include <string>
+
 #include "bundles.hpp"
+#include "trammel/driver/errors.hpp"
 
 namespace trammel::platform {
 
@@ -19,6 +22,16 @@ nanoseconds to_ns(const sc_core::sc_time& time) {
 void catch_up(sc_core::sc_time& delay) {
   if (delay != sc_core::SC_ZERO_TIME) sc_core::wait(delay);
   delay = sc_core::SC_ZERO_TIME;
+}
+
+// To the first rising edge at which `done` holds.
+template <class Done>
+void wait_for(const sc_core::sc_in<bool>& clk, Done done) {
+  for (int i = 0; i < kLongestAnswer; ++i) {
+    sc_core::wait(clk.posedge_event());
+    if (done()) return;
+  }
+  throw driver::LinkError("no answer from the card in " + std::to_string(kLongestAnswer) + " clocks");
 }
 
 }  // namespace
@@ -40,14 +53,13 @@ bool AxiTransactor::write(const driver::Access& access) {
   m.wstrb = kAllStrobes;
   m.bready = true;
   master.write(m);
-  while (m.awvalid || m.wvalid) {
-    wait(clk.posedge_event());
+  wait_for(clk, [&] {
     if (card.read().awready) m.awvalid = false;
     if (card.read().wready) m.wvalid = false;
     master.write(m);
-  }
-  do wait(clk.posedge_event());
-  while (!card.read().bvalid);
+    return !m.awvalid && !m.wvalid;
+  });
+  wait_for(clk, [&] { return card.read().bvalid; });
   const bool okay = card.read().bresp == 0;
   master.write({});
   return okay;
@@ -58,12 +70,10 @@ bool AxiTransactor::read(driver::Access& access) {
   m.arvalid = m.rready = true;
   m.araddr = static_cast<std::uint16_t>(access.address);
   master.write(m);
-  do wait(clk.posedge_event());
-  while (!card.read().arready);
+  wait_for(clk, [&] { return card.read().arready; });
   m.arvalid = false;
   master.write(m);
-  do wait(clk.posedge_event());
-  while (!card.read().rvalid);
+  wait_for(clk, [&] { return card.read().rvalid; });
   const bool okay = card.read().rresp == 0;
   if (okay) access.data = card.read().rdata;
   master.write({});
@@ -89,13 +99,11 @@ bool WishboneTransactor::access(driver::Access& access) {
   m.dat = access.data;
   master.write(m);
   if (!classic_) {
-    do wait(clk.posedge_event());
-    while (card.read().stall);
+    wait_for(clk, [&] { return !card.read().stall; });
     m.stb = false;
     master.write(m);
   }
-  do wait(clk.posedge_event());
-  while (!card.read().ack && !card.read().err);
+  wait_for(clk, [&] { return card.read().ack || card.read().err; });
   if (card.read().ack && !access.write) access.data = card.read().dat;
   return card.read().ack;
 }

@@ -1,5 +1,6 @@
 // From the transactions of TLM-2.0 to the pins of the card's host ports, each as a master on that bus makes them. They
-// wait for SystemC's time first: at the pins nothing runs ahead.
+// wait for SystemC's time first: at the pins nothing runs ahead. A card that does not answer is a LinkError; the
+// request stands on, since on AXI4-Lite a master must not take it back.
 #pragma once
 
 #include <deque>

@@ -44,9 +44,10 @@ typedef enum trammel_result {
   TRAMMEL_FAULT = 6,           // the card has stopped with a latched fault
   TRAMMEL_LINK = 7,            // the link failed: what was under way may have been made or not
   TRAMMEL_IDENTIFICATION = 8,  // what answers is no card that this driver knows
-  TRAMMEL_CANCELLED = 9,       // a progress callback gave back false
+  TRAMMEL_CANCELLED = 9,       // a progress callback gave back false, or an interrupt ended the wait for a silent link
   TRAMMEL_MEMORY = 10,         // out of memory
-  TRAMMEL_INTERNAL = 11        // a defect of this library
+  TRAMMEL_INTERNAL = 11,       // a defect of this library
+  TRAMMEL_HELD = 12            // the card stands in a hold that was there before the call: nothing would move
 } trammel_result;
 
 // The last failure in this thread.
@@ -67,6 +68,14 @@ TRAMMEL_API const trammel_error* trammel_last_error(void);
 TRAMMEL_API const char* trammel_result_name(int32_t result);
 // "0.1.0".
 TRAMMEL_API const char* trammel_version(void);
+
+// ---- Interrupts ----
+
+// From now on a call of this thread that waits asks `asked(context)` every 50 ms or so, trammel_open() too. Once it
+// gives back true, a call that waits for motion stops the card on the path and ends with TRAMMEL_STOPPED; one that
+// waits for a link that is silent, or for trammel_stop(), ends with TRAMMEL_CANCELLED. For a flag that a signal's
+// handler sets, or a deadline. It must not use the card. Null: nothing ends a call, as at first.
+TRAMMEL_API void trammel_set_interrupt(bool (*asked)(void* context), void* context);
 
 // ---- Cards ----
 
@@ -191,7 +200,7 @@ TRAMMEL_API trammel_result trammel_read_snapshot(trammel_card* card, trammel_sna
 // What the first cause of the present or last fault latched; zeros if there was none.
 TRAMMEL_API trammel_result trammel_read_stop_snapshot(trammel_card* card, trammel_snapshot* snapshot);
 // `timeout_ns`: card time in which it was not held, stretched where the ratio is below 1. TRAMMEL_FAULT once it is
-// faulted, TRAMMEL_STATE if it was reset.
+// faulted, TRAMMEL_HELD where it stands in a hold that this handle has not set, TRAMMEL_STATE if it was reset.
 TRAMMEL_API trammel_result trammel_wait_until_idle(trammel_card* card, int64_t timeout_ns);
 
 // FAULT, 0 if there is none.
@@ -233,6 +242,11 @@ TRAMMEL_API trammel_result trammel_abort(trammel_card* card);
 // A hold, and at rest an abort: no pulse comes after it. `snapshot` (may be null) has the position.
 TRAMMEL_API trammel_result trammel_stop(trammel_card* card, int64_t patience_ns, trammel_snapshot* snapshot);
 
+// Takes over a card that another host has left: ends a hold that stands, and drops what is left of a path on which the
+// card holds; `dropped` (may be null) says whether there was any. TRAMMEL_STATE, and nothing changes, where the card
+// moves and does not hold.
+TRAMMEL_API trammel_result trammel_take_over(trammel_card* card, bool* dropped);
+
 // What a call that waits, now or next, shall do at its next look at the card. An abort ends it with TRAMMEL_STATE, a
 // stop with TRAMMEL_STOPPED. A card that is null, and a ratio or class that there is not, are left out.
 TRAMMEL_API void trammel_request_hold(trammel_card* card, bool hold);
@@ -262,7 +276,8 @@ typedef struct trammel_line_plan {
 // Starts a line of one part and returns at once. `plan` may be null.
 TRAMMEL_API trammel_result trammel_start_line(trammel_card* card, const trammel_one_shot* line,
                                               trammel_line_plan* plan);
-// Runs all parts and returns when the last has ended, at most `patience_ns` later than planned.
+// Runs all parts and returns when the last has ended, at most `patience_ns` later than planned. TRAMMEL_HELD, and
+// nothing was started, on a card that holds or whose ratio is 0; a hold that comes later is waited out.
 TRAMMEL_API trammel_result trammel_run_line(trammel_card* card, const trammel_one_shot* line, int64_t patience_ns,
                                             trammel_line_plan* plan);
 
@@ -309,7 +324,7 @@ typedef struct trammel_arc_command {
 // An arc of an ellipse with axes along the plane's, about a centre on a whole pulse.
 typedef struct trammel_ellipse_command {
   uint64_t ticks;
-  int64_t semi_x;  // pulses, 1 .. 2^20
+  int64_t semi_x;  // pulses, 2 .. 2^20; with eight_directions from 1 on
   int64_t semi_y;
   int64_t start_x;  // centre to start, pulses
   int64_t start_y;
@@ -374,7 +389,8 @@ typedef struct trammel_stream_options {
   void* context;
 } trammel_stream_options;
 
-// Opens the card's stream, which must stand idle; one that was open ends. `options` may be null.
+// Opens the card's stream, which must stand idle; one that was open ends. `options` may be null. TRAMMEL_HELD where the
+// card stands in a hold that this handle has not set.
 TRAMMEL_API trammel_result trammel_open_stream(trammel_card* card, const trammel_stream_options* options);
 // Takes a command, whole or not at all; written now or later. After TRAMMEL_REFUSED, TRAMMEL_LINK or TRAMMEL_STATE the
 // stream is closed until trammel_restart_stream().

@@ -233,6 +233,13 @@ trammel_result trammel_stop(trammel_card* card, int64_t patience_ns, trammel_sna
   });
 }
 
+trammel_result trammel_take_over(trammel_card* card, bool* dropped) {
+  return guarded([=] {
+    const bool some = card_of(card).take_over().has_value();
+    if (dropped != nullptr) *dropped = some;
+  });
+}
+
 void trammel_request_hold(trammel_card* card, bool hold) {
   if (card != nullptr) card->card.request_hold(hold);
 }

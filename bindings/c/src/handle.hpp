@@ -9,6 +9,7 @@
 #include "trammel/driver/bus.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/commands.hpp"
+#include "trammel/driver/interrupt.hpp"
 #include "trammel/driver/position_stream.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/sim/engine.hpp"
@@ -59,9 +60,19 @@ class Cancelled {};
 // The exception under way as a result, noted for trammel_last_error(). Only within a catch.
 trammel_result note_exception() noexcept;
 
+// The thread's trammel_set_interrupt(), for one call.
+class CallInterrupts {
+ public:
+  CallInterrupts();
+
+ private:
+  std::optional<driver::InterruptScope> scope_;
+};
+
 template <class Call>
 trammel_result guarded(Call&& call) noexcept {
   try {
+    const CallInterrupts interrupts;
     call();
     return TRAMMEL_OK;
   } catch (...) {

@@ -20,7 +20,19 @@ trammel_error& note(trammel_result result, const char* text) noexcept {
   return last_error;
 }
 
+struct InterruptCheck {
+  bool (*asked)(void* context) = nullptr;
+  void* context = nullptr;
+};
+
+thread_local InterruptCheck interrupt_check;
+
 }  // namespace
+
+CallInterrupts::CallInterrupts() {
+  if (interrupt_check.asked == nullptr) return;
+  scope_.emplace([check = interrupt_check] { return check.asked(check.context); });
+}
 
 // The driver's classes, the derived before their bases.
 trammel_result note_exception() noexcept {
@@ -33,6 +45,8 @@ trammel_result note_exception() noexcept {
   } catch (const driver::StoppedError& error) {
     trammel_error& noted = note(TRAMMEL_STOPPED, error.what());
     noted.geometry_begun = error.geometry_begun();
+  } catch (const driver::HeldError& error) {
+    note(TRAMMEL_HELD, error.what());
   } catch (const driver::StateError& error) {
     note(TRAMMEL_STATE, error.what());
   } catch (const driver::TimeoutError& error) {
@@ -50,6 +64,8 @@ trammel_result note_exception() noexcept {
     note(TRAMMEL_LINK, error.what());
   } catch (const driver::IdentificationError& error) {
     note(TRAMMEL_IDENTIFICATION, error.what());
+  } catch (const driver::InterruptedError& error) {
+    note(TRAMMEL_CANCELLED, error.what());
   } catch (const Cancelled&) {
     note(TRAMMEL_CANCELLED, "the progress callback ended the call");
   } catch (const std::bad_alloc&) {
@@ -63,6 +79,8 @@ trammel_result note_exception() noexcept {
 }
 
 }  // namespace trammel::c
+
+void trammel_set_interrupt(bool (*asked)(void*), void* context) { trammel::c::interrupt_check = {asked, context}; }
 
 const trammel_error* trammel_last_error() { return &trammel::c::last_error; }
 
@@ -94,6 +112,8 @@ const char* trammel_result_name(int32_t result) {
       return "TRAMMEL_MEMORY";
     case TRAMMEL_INTERNAL:
       return "TRAMMEL_INTERNAL";
+    case TRAMMEL_HELD:
+      return "TRAMMEL_HELD";
   }
   return "unknown";
 }

@@ -33,7 +33,9 @@ trammel_result trammel_simulated_listen(trammel_card* card, void (*listener)(voi
 }
 
 trammel_result trammel_simulated_wait(trammel_card* card, uint64_t clocks) {
-  return guarded([=] { engine_of(card).wait(clocks); });
+  return guarded([=] {
+    if (!engine_of(card).wait_or_interrupt(clocks)) throw trammel::driver::InterruptedError("wait: interrupted");
+  });
 }
 
 trammel_result trammel_simulated_set_inputs(trammel_card* card, uint16_t levels) {

@@ -84,8 +84,11 @@ class Interpreter final : public Predefined {
     double bottom = 0;
     double peck = 0;
     double seconds = 0;
-    double start = 0;  // level before the first of several cycles, machine coordinates
     bool later = false;
+    // Of a series of cycles: the level before its first hole and the program's zero then, machine coordinates.
+    double start = 0;
+    double zero = 0;
+    bool start_later = false;
   };
   // Where a line's motions and problems go.
   struct Context {
@@ -115,6 +118,7 @@ class Interpreter final : public Predefined {
   bool cycle(const Context& context, std::optional<int> before);
   bool set_sticky(const Context& context, int code, const PlaneAxes& axes, bool fresh);
   bool check_cycle(const Context& context, const PlaneAxes& axes) const;
+  void begin_series(std::size_t normal);
   CycleHoles holes_to(const Place& target, int code, const PlaneAxes& axes, double repeats) const;
   bool probe(const Context& context);
   bool plane_axis(char letter, const char* what, std::size_t& axis, Problem& problem) const;

@@ -248,14 +248,22 @@ bool Interpreter::set_sticky(const Context& context, int code, const PlaneAxes& 
   return true;
 }
 
+void Interpreter::begin_series(std::size_t normal) {
+  sticky_.start = here_.at[normal];
+  sticky_.zero = offsets_.total(normal);
+  sticky_.start_later = here_.is_later(normal) || offsets_.later(normal);
+}
+
 // From where the tool stands; `target` is the first hole.
 CycleHoles Interpreter::holes_to(const Place& target, int code, const PlaneAxes& axes, double repeats) const {
   CycleHoles holes;
   holes.code = code;
   holes.start = here_.at[axes.normal];
-  holes.retract = (modes_.absolute ? offsets_.total(axes.normal) : holes.start) + sticky_.retract;
-  holes.bottom = (modes_.absolute ? offsets_.total(axes.normal) : holes.retract) + sticky_.bottom;
-  holes.clear = modes_.retract_to_start ? std::max(sticky_.start, holes.retract) : holes.retract;
+  const double zero = offsets_.total(axes.normal);
+  const double start = sticky_.start + (zero - sticky_.zero);  // keeps its coordinate when an offset changes
+  holes.retract = (modes_.absolute ? zero : start) + sticky_.retract;
+  holes.bottom = (modes_.absolute ? zero : holes.retract) + sticky_.bottom;
+  holes.clear = modes_.retract_to_start ? std::max(start, holes.retract) : holes.retract;
   holes.peck = sticky_.peck;
   holes.seconds = sticky_.seconds;
   holes.first = {target.at[axes.first], target.at[axes.second]};
@@ -278,7 +286,7 @@ bool Interpreter::cycle(const Context& context, std::optional<int> before) {
   }
   const bool series = is_cycle(before) && cycle_plane_ == modes_.plane;
   if (!set_sticky(context, code, axes, before != code || !series)) return false;
-  if (!series) sticky_.start = here_.at[axes.normal];
+  if (!series) begin_series(axes.normal);
   cycle_plane_ = modes_.plane;
   Place target;
   if (!target_of(context, target)) return false;
@@ -295,7 +303,8 @@ bool Interpreter::cycle(const Context& context, std::optional<int> before) {
                        fmt::format("a cycle of more than {} motions on one line", kMostCycleMotions));
   }
   here_.later = target.later;
-  if (sticky_.later || (modes_.absolute ? offsets_.later(axes.normal) : here_.is_later(axes.normal))) {
+  const bool needs_start = !modes_.absolute || modes_.retract_to_start;
+  if (sticky_.later || offsets_.later(axes.normal) || (needs_start && sticky_.start_later)) {
     here_.later |= 1U << axes.normal;
   }
   CycleMotions sink(*this, context, axes, holes.seconds);

@@ -28,6 +28,35 @@ void check_motors(const std::string& where, const Machine& machine) {
   }
 }
 
+void check_kinematics(const std::string& where, const Machine& machine) {
+  const JointLimits& motor = machine.kinematics.motor;
+  const bool limited = std::isfinite(motor.velocity) || std::isfinite(motor.acceleration) || std::isfinite(motor.jerk);
+  if (machine.kinematics.name != "corexy") {
+    if (!limited) return;
+    refuse(
+        fmt::format("{}: kinematics: motor limits are for corexy; here each axis has its motor and its limits", where));
+  }
+  for (const char letter : {'X', 'Y'}) {
+    const std::optional<std::size_t> axis = machine.axis(letter);
+    if (!axis) refuse(fmt::format("{}: kinematics: corexy needs the axes X and Y, and {} is missing", where, letter));
+    if (machine.axes[*axis].second_motor) {
+      refuse(fmt::format("{}: axis {}: second_motor: with corexy two motors move X and Y together", where, letter));
+    }
+  }
+}
+
+void check_ramps(const std::string& where, const Machine& machine) {
+  constexpr double kLongest = 1000;  // s
+  for (const MachineAxis& axis : machine.axes) {
+    const double seconds = axis.max_velocity / axis.max_acceleration;
+    if (seconds <= kLongest) continue;
+    refuse(
+        fmt::format("{}: axis {}: max_velocity is reached after {:g} s, at most {:g} s are possible: is "
+                    "max_acceleration in mm/s^2?",
+                    where, axis.letter, seconds, kLongest));
+  }
+}
+
 void check_times(const std::string& where, const Machine& machine) {
   constexpr double kLongest = 1e15;  // ns; more than any register at the slowest clock
   const auto check = [&](const MachineAxis& axis, double time, const char* what) {

@@ -11,6 +11,12 @@ namespace trammel::machine {
 // No more axes and motors than a card has.
 void check_motors(const std::string& where, const Machine& machine);
 
+// The kinematics have their axes, and motor limits belong to a member that has motors of its own.
+void check_kinematics(const std::string& where, const Machine& machine);
+
+// No axis takes more than 1,000 s from rest to its max_velocity: longer ones are slips of a unit.
+void check_ramps(const std::string& where, const Machine& machine);
+
 // Step times fit the card's registers at its clock; rounded up to whole nanoseconds, as the driver takes them.
 void check_times(const std::string& where, const Machine& machine);
 

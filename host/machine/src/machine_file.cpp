@@ -15,8 +15,26 @@
 namespace trammel::machine {
 namespace {
 
-// What an entry's number must be.
-enum class Range { kAny, kNotNegative, kPositive };
+// What an entry's number must be, and its unit. The bounds lie beyond any machine, and within what the card and the
+// planner's doubles carry without loss; inside them no plan becomes endless.
+struct Range {
+  double least;
+  double most;
+  const char* unit;
+};
+// A pulse a metre to a pulse a nanometre.
+constexpr Range kStepsPerMm{1e-3, 1e6, "pulses/mm"};
+// 3.6 mm an hour to the speed of sound in steel; ramps between that and rest take from microseconds to 1,000 s
+// (check_ramps), which is as long as the card's slowest slew at 1 MHz.
+constexpr Range kSpeed{1e-3, 1e7, "mm/s"};
+constexpr Range kAcceleration{1e-3, 1e9, "mm/s^2"};
+constexpr Range kJerk{1e-3, 1e13, "mm/s^3"};
+// 65,535 clocks, which the registers hold, take less than 100 s at the slowest clock.
+constexpr Range kPulseTime{1e-3, 1e11, "ns"};
+constexpr Range kDirectionTime{0, 1e11, "ns"};
+// 2^31 pulses at the coarsest scale.
+constexpr Range kPlace{-2.2e12, 2.2e12, "mm"};
+constexpr Range kAny{-std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), ""};
 
 struct Entry {
   const char* name;
@@ -26,18 +44,18 @@ struct Entry {
 };
 
 constexpr std::array<Entry, 12> kEntries = {{
-    {"steps_per_mm", &MachineAxis::steps_per_mm, Range::kPositive, true},
-    {"max_velocity", &MachineAxis::max_velocity, Range::kPositive, true},
-    {"max_acceleration", &MachineAxis::max_acceleration, Range::kPositive, true},
-    {"max_jerk", &MachineAxis::max_jerk, Range::kPositive, false},
-    {"step_length_ns", &MachineAxis::step_length_ns, Range::kPositive, true},
-    {"step_space_ns", &MachineAxis::step_space_ns, Range::kPositive, true},
-    {"direction_setup_ns", &MachineAxis::direction_setup_ns, Range::kNotNegative, true},
-    {"direction_hold_ns", &MachineAxis::direction_hold_ns, Range::kNotNegative, true},
-    {"min", &MachineAxis::min, Range::kAny, false},
-    {"max", &MachineAxis::max, Range::kAny, false},
-    {"home", &MachineAxis::home, Range::kAny, false},
-    {"second_home", &MachineAxis::second_home, Range::kAny, false},
+    {"steps_per_mm", &MachineAxis::steps_per_mm, kStepsPerMm, true},
+    {"max_velocity", &MachineAxis::max_velocity, kSpeed, true},
+    {"max_acceleration", &MachineAxis::max_acceleration, kAcceleration, true},
+    {"max_jerk", &MachineAxis::max_jerk, kJerk, false},
+    {"step_length_ns", &MachineAxis::step_length_ns, kPulseTime, true},
+    {"step_space_ns", &MachineAxis::step_space_ns, kPulseTime, true},
+    {"direction_setup_ns", &MachineAxis::direction_setup_ns, kDirectionTime, true},
+    {"direction_hold_ns", &MachineAxis::direction_hold_ns, kDirectionTime, true},
+    {"min", &MachineAxis::min, kPlace, false},
+    {"max", &MachineAxis::max, kPlace, false},
+    {"home", &MachineAxis::home, kPlace, false},
+    {"second_home", &MachineAxis::second_home, kPlace, false},
 }};
 constexpr const char* kInverted = "inverted";
 
@@ -88,7 +106,7 @@ struct Source {
   std::string at(const toml::value& value) const { return at_line(value.location().line()); }
 };
 
-double number(const Source& source, const std::string& path, const toml::value& value, Range range) {
+double number(const Source& source, const std::string& path, const toml::value& value, const Range& range) {
   double result = 0;
   if (value.is_integer()) {
     result = static_cast<double>(value.as_integer());
@@ -100,11 +118,9 @@ double number(const Source& source, const std::string& path, const toml::value& 
   if (!std::isfinite(result)) {
     refuse(source.at(value) + path + " must be a finite number");
   }
-  if (range == Range::kPositive && result <= 0) {
-    refuse(fmt::format("{}{} must be greater than 0, not {}", source.at(value), path, result));
-  }
-  if (range == Range::kNotNegative && result < 0) {
-    refuse(fmt::format("{}{} must not be negative, not {}", source.at(value), path, result));
+  if (result < range.least || result > range.most) {
+    refuse(fmt::format("{}{} must be from {:g} to {:g} {}, not {:g}", source.at(value), path, range.least, range.most,
+                       range.unit, result));
   }
   return result;
 }
@@ -154,7 +170,7 @@ void set_axis_entry(const Source& source, MachineAxis& axis, const std::string& 
     }
   }
   if (const auto system = coordinate_system(key)) {
-    axis.offsets[*system] = number(source, path, value, Range::kAny);
+    axis.offsets[*system] = number(source, path, value, kPlace);
     return;
   }
   for (const Entry& entry : kEntries) {
@@ -190,7 +206,7 @@ void set_motion(const Source& source, MotionSettings& motion, const toml::table&
     const auto entry = std::find_if(kMotionEntries.begin(), kMotionEntries.end(),
                                     [&key = key](const MotionEntry& known) { return key == known.name; });
     if (entry == kMotionEntries.end()) refuse_key(source, value, "motion.", key, motion_entries());
-    const double given = number(source, "motion." + key, value, Range::kAny);
+    const double given = number(source, "motion." + key, value, kAny);
     if (given < entry->least || given > entry->most || (entry->whole && given != std::floor(given))) {
       refuse(fmt::format("{}motion.{} must be {}from {} to {}, not {}", source.at(value), key,
                          entry->whole ? "a whole number " : "", entry->least, entry->most, given));
@@ -220,6 +236,33 @@ void set_outputs(const Source& source, MachineOutputs& outputs, const toml::tabl
       bits = output_bit(source, path, value);
     }
     outputs.*entry->member = bits;
+  }
+}
+
+void set_kinematics(const Source& source, MachineKinematics& kinematics, const toml::table& table) {
+  struct MotorEntry {
+    std::string_view name;
+    double JointLimits::*member;
+    Range range;
+  };
+  static constexpr std::array<MotorEntry, 3> kMotorEntries{
+      {{"motor_velocity", &JointLimits::velocity, kSpeed},
+       {"motor_acceleration", &JointLimits::acceleration, kAcceleration},
+       {"motor_jerk", &JointLimits::jerk, kJerk}}};
+  for (const auto& [key, value] : table) {
+    const std::string path = "kinematics." + key;
+    const auto* const motor = std::find_if(kMotorEntries.begin(), kMotorEntries.end(),
+                                           [&key = key](const MotorEntry& known) { return key == known.name; });
+    if (motor != kMotorEntries.end()) {
+      kinematics.motor.*motor->member = number(source, path, value, motor->range);
+    } else if (key == "name") {
+      const bool known = value.is_string() && std::find(kKinematics.begin(), kKinematics.end(),
+                                                        std::string_view(value.as_string().str)) != kKinematics.end();
+      if (!known) refuse(fmt::format("{}{} must be one of {}", source.at(value), path, fmt::join(kKinematics, ", ")));
+      kinematics.name = value.as_string().str;
+    } else {
+      refuse_key(source, value, "kinematics.", key, {"name", "motor_velocity", "motor_acceleration", "motor_jerk"});
+    }
   }
 }
 
@@ -267,14 +310,13 @@ void set_tools(const Source& source, Machine& machine, const toml::table& table)
     for (const auto& [letter, offset] : value.as_table()) {
       const auto axis = std::find(letters.begin(), letters.end(), letter);
       if (axis == letters.end()) refuse_key(source, offset, path, letter, letters);
-      tool->offsets[static_cast<std::size_t>(axis - letters.begin())] =
-          number(source, path + letter, offset, Range::kAny);
+      tool->offsets[static_cast<std::size_t>(axis - letters.begin())] = number(source, path + letter, offset, kPlace);
     }
   }
 }
 
 void set_clock(const Source& source, Machine& machine, const toml::value& value) {
-  const double clock = number(source, "card.clock_hz", value, Range::kAny);
+  const double clock = number(source, "card.clock_hz", value, kAny);
   if (clock != std::floor(clock) || clock < kSlowestClock || clock > kFastestClock) {
     refuse(fmt::format("{}card.clock_hz must be a whole number of Hz from {} to {}, not {}", source.at(value),
                        kSlowestClock, kFastestClock, clock));
@@ -348,7 +390,7 @@ toml::value parse(const Source& source, const std::string& text) {
   }
 }
 
-constexpr std::array<const char*, 6> kTables = {"card", "axis", "motion", "outputs", "tools", "probe"};
+constexpr std::array<const char*, 7> kTables = {"card", "axis", "kinematics", "motion", "outputs", "tools", "probe"};
 
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
@@ -381,6 +423,7 @@ bool set_tables(const Source& source, Machine& machine, const toml::table& root)
     any = true;
   };
   set("card", [&](const toml::table& card) { set_clock(source, machine, card.at("clock_hz")); });
+  set("kinematics", [&](const toml::table& entries) { set_kinematics(source, machine.kinematics, entries); });
   set("motion", [&](const toml::table& motion) { set_motion(source, machine.motion, motion); });
   set("outputs", [&](const toml::table& outputs) { set_outputs(source, machine.outputs, outputs); });
   set("tools", [&](const toml::table& tools) { set_tools(source, machine, tools); });
@@ -410,6 +453,8 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   std::sort(machine.axes.begin(), machine.axes.end(),
             [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
   set_tables(source, machine, root);
+  check_kinematics(name + ":1", machine);
+  check_ramps(name + ":1", machine);
   check_times(name + ":1", machine);
   check_outputs(name + ":1", machine.outputs);
   return machine;
@@ -446,6 +491,8 @@ void apply_override(Machine& machine, const std::string& text) {
     refuse(source.name + ": not an assignment such as axis.x.steps_per_mm=20");
   }
   check_motors(source.name, changed);
+  check_kinematics(source.name, changed);
+  check_ramps(source.name, changed);
   check_times(source.name, changed);
   check_outputs(source.name, changed.outputs);
   machine = changed;

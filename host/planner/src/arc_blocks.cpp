@@ -1,5 +1,5 @@
-// Blocks of arcs and helices: on the arc generator where the scales are equal, arcs also on the accumulator, where
-// these are built in and they reach; else as chords.
+// Blocks of arcs and helices: on the arc generator where a circle is a circle of pulses, arcs also on the accumulator,
+// where these are built in and they reach; else as chords.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,8 +40,29 @@ ExactArc exact_arc(const gcode::Motion& motion, const gcode::Coordinates& from) 
   return {motion.centre_x, motion.centre_y, hypotenuse(start_x, start_y), hypotenuse(end_x, end_y), angle_start, sweep};
 }
 
-std::int64_t centre_units(double mm, double steps_per_mm) {
-  return std::llround(mm * steps_per_mm * static_cast<double>(driver::kCentreUnitsPerPulse));
+std::int64_t centre_units(const kinematics::Kinematics& kinematics, std::size_t joint, const Direction& centre) {
+  const double units = kinematics.pulse_rate(joint, centre) * static_cast<double>(driver::kCentreUnitsPerPulse);
+  return std::llround(units);
+}
+
+// Two unit vectors at right angles that span the arc's plane.
+struct PlaneVectors {
+  Direction first{};
+  Direction second{};
+};
+
+PlaneVectors plane_vectors(const Block& block) {
+  PlaneVectors plane;
+  if (!block.tilted) {
+    plane.first[block.axis_x] = 1;
+    plane.second[block.axis_y] = 1;
+    return plane;
+  }
+  for (std::size_t i = 0; i < block.space.axes.size(); ++i) {
+    plane.first[block.space.axes[i]] = block.space.first[i];
+    plane.second[block.space.axes[i]] = block.space.second[i];
+  }
+  return plane;
 }
 
 double largest_radius(const Block& block) { return std::max(block.exact.radius_start, block.exact.radius_end); }
@@ -49,38 +70,39 @@ double largest_radius(const Block& block) { return std::max(block.exact.radius_s
 // The block's arc between two points on it. Throws std::invalid_argument where they are too far apart.
 driver::ArcGeometry geometry_of(const Block& block, const Pulses& start, const Pulses& end, double sweep) {
   driver::ArcGeometry geometry;
-  geometry.centre_x = block.centre_x - start[block.axis_x] * driver::kCentreUnitsPerPulse;
-  geometry.centre_y = block.centre_y - start[block.axis_y] * driver::kCentreUnitsPerPulse;
-  const std::int64_t end_x = end[block.axis_x] - start[block.axis_x];
-  const std::int64_t end_y = end[block.axis_y] - start[block.axis_y];
+  geometry.centre_x = block.centre_x - start[block.joint_x] * driver::kCentreUnitsPerPulse;
+  geometry.centre_y = block.centre_y - start[block.joint_y] * driver::kCentreUnitsPerPulse;
+  const std::int64_t end_x = end[block.joint_x] - start[block.joint_x];
+  const std::int64_t end_y = end[block.joint_y] - start[block.joint_y];
   geometry.end_x = static_cast<std::int32_t>(end_x);
   geometry.end_y = static_cast<std::int32_t>(end_y);
   if (geometry.end_x != end_x || geometry.end_y != end_y)
     throw std::invalid_argument("arc: its ends are too far apart");
-  geometry.clockwise = block.clockwise;
+  geometry.clockwise = block.joints_clockwise;
   geometry.sweep = sweep;
-  geometry.axis_x = block.axis_x;
-  geometry.axis_y = block.axis_y;
+  geometry.axis_x = block.joint_x;
+  geometry.axis_y = block.joint_y;
   return geometry;
 }
 
 bool is_helix(const Block& block) {
-  for (std::size_t axis = 0; axis < block.start.size(); ++axis) {
-    if (!in_plane(block, axis) && block.start[axis] != block.end[axis]) return true;
+  for (std::size_t joint = 0; joint < block.start.size(); ++joint) {
+    const bool turns = joint == block.joint_x || joint == block.joint_y;
+    if (!turns && block.start[joint] != block.end[joint]) return true;
   }
   return false;
 }
 
 // On axes of unequal steps/mm the circle is an ellipse of pulses. Its centre and semi-axes are whole ones.
-driver::EllipseGeometry ellipse_of(const Block& block, double scale_x, double scale_y) {
+driver::EllipseGeometry ellipse_of(const Block& block, const kinematics::PlaneMap& plane) {
   const driver::ArcGeometry arc = geometry_of(block, block.start, block.end, block.exact.sweep);
   const double radius = (block.exact.radius_start + block.exact.radius_end) / 2;
   const auto whole = [](std::int64_t units) {
     return std::llround(static_cast<double>(units) / static_cast<double>(driver::kCentreUnitsPerPulse));
   };
   driver::EllipseGeometry ellipse;
-  ellipse.semi_x = std::llround(radius * scale_x);
-  ellipse.semi_y = std::llround(radius * scale_y);
+  ellipse.semi_x = std::llround(radius * plane.scale_x);
+  ellipse.semi_y = std::llround(radius * plane.scale_y);
   ellipse.start_x = -whole(arc.centre_x);
   ellipse.start_y = -whole(arc.centre_y);
   ellipse.end_x = arc.end_x;
@@ -93,10 +115,10 @@ driver::EllipseGeometry ellipse_of(const Block& block, double scale_x, double sc
 }
 
 // None where the accumulator's bounds do not admit the arc.
-std::optional<driver::ArcCommand> accumulator_arc(const Block& block, double scale_x, double scale_y,
+std::optional<driver::ArcCommand> accumulator_arc(const Block& block, const kinematics::PlaneMap& plane,
                                                   driver::StepRule rule) {
   try {
-    if (scale_x != scale_y) return driver::prepare(ellipse_of(block, scale_x, scale_y), rule);
+    if (!plane.circle) return driver::prepare(ellipse_of(block, plane), rule);
     return driver::prepare(geometry_of(block, block.start, block.end, block.exact.sweep), rule);
   } catch (const std::invalid_argument&) {
     return std::nullopt;
@@ -105,21 +127,21 @@ std::optional<driver::ArcCommand> accumulator_arc(const Block& block, double sca
 
 }  // namespace
 
-std::uint64_t chord_count(const ExactArc& arc, double largest_steps_per_mm) {
+std::uint64_t chord_count(const ExactArc& arc, double most_pulses_per_mm) {
   constexpr double kChordError = 0.25;  // pulses
-  const double radius = std::max(arc.radius_start, arc.radius_end) * largest_steps_per_mm;
+  const double radius = std::max(arc.radius_start, arc.radius_end) * most_pulses_per_mm;
   // A chord over the angle d strays r (1 - cos(d / 2)) from its arc; the arc sine keeps its digits where d is small.
   const double turn = radius > kChordError ? 4 * driver::arc_sine(std::sqrt(kChordError / radius / 2)) : driver::kPi;
   return static_cast<std::uint64_t>(std::ceil(arc.sweep / std::min(turn, driver::kPi / 4)));
 }
 
-driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, const Scales& scales) {
-  const Pulses start = corner(block, i, block.parts, scales);
-  const Pulses end = corner(block, i + 1, block.parts, scales);
+driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, const kinematics::Kinematics& kinematics) {
+  const Pulses start = corner(block, i, block.parts, kinematics);
+  const Pulses end = corner(block, i + 1, block.parts, kinematics);
   driver::HelixGeometry helix;
   helix.arc = geometry_of(block, start, end, block.exact.sweep / static_cast<double>(block.parts));
-  for (std::size_t axis = 0; axis < start.size(); ++axis) {
-    if (axis != block.axis_x && axis != block.axis_y) helix.further[axis] = end[axis] - start[axis];
+  for (std::size_t joint = 0; joint < start.size(); ++joint) {
+    if (joint != block.joint_x && joint != block.joint_y) helix.further[joint] = end[joint] - start[joint];
   }
   return helix;
 }
@@ -127,7 +149,7 @@ driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, const Scal
 // The arc's extremes: its start and end are targets, the others lie at whole quarters of a turn.
 bool BlockBuilder::check_arc(const Block& block) {
   const ExactArc& arc = block.exact;
-  const double scale = std::max(axes_[block.axis_x].steps_per_mm, axes_[block.axis_y].steps_per_mm);
+  const double scale = std::max(kinematics_.finest(block.axis_x), kinematics_.finest(block.axis_y));
   if (!(largest_radius(block) * scale <= kMaxRadius)) {
     return refuse(gcode::ErrorCode::kArcTooLarge,
                   fmt::format("an arc of radius {:.10g} mm is too large", largest_radius(block)));
@@ -157,19 +179,25 @@ bool BlockBuilder::build_arc(Block& block) {
   block.axis_y = motion_.axis_y;
   block.exact = exact_arc(motion_, exact_);
   if (!check_arc(block)) return false;
-  const double scale_x = axes_[block.axis_x].steps_per_mm;
-  const double scale_y = axes_[block.axis_y].steps_per_mm;
-  block.centre_x = centre_units(motion_.centre_x, scale_x);
-  block.centre_y = centre_units(motion_.centre_y, scale_y);
+  const std::optional<kinematics::PlaneMap> plane = kinematics_.plane(block.axis_x, block.axis_y);
+  if (!plane) return build_chords(block);
+  block.joint_x = plane->joint_x;
+  block.joint_y = plane->joint_y;
+  block.joints_clockwise = block.clockwise != plane->mirrored;
+  Direction centre{};
+  centre[block.axis_x] = motion_.centre_x;
+  centre[block.axis_y] = motion_.centre_y;
+  block.centre_x = centre_units(kinematics_, plane->joint_x, centre);
+  block.centre_y = centre_units(kinematics_, plane->joint_y, centre);
   // Radius and bounds are checked where the commands are made.
-  if (card_.arc_generator && scale_x == scale_y && build_generator_arc(block)) return true;
+  if (card_.arc_generator && plane->circle && build_generator_arc(block, *plane)) return true;
   // Beside a generator, chords follow a circle on unequal scales closer than an ellipse of whole pulses.
-  const bool accumulates = card_.accumulator && (scale_x == scale_y || !card_.arc_generator);
+  const bool accumulates = card_.accumulator && (plane->circle || !card_.arc_generator);
   const auto rule = card_.eight_directions ? driver::StepRule::kEightDirections : driver::StepRule::kFourDirections;
   if (accumulates && !is_helix(block)) {
-    if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block, scale_x, scale_y, rule)) {
+    if (const std::optional<driver::ArcCommand> arc = accumulator_arc(block, *plane, rule)) {
       block.arc = *arc;
-      return build_accumulator_arc(block);
+      return build_accumulator_arc(block, *plane);
     }
   }
   return build_chords(block);
@@ -214,9 +242,7 @@ double BlockBuilder::measure_arc(Block& block) const {
   for (std::size_t i = 0; i < axis_count_; ++i) way[i] = in_plane(block, i) ? 0 : motion_.target[i] - anchor_[i];
   way[block.axis_x] = length;
   const double feed_length = measure_line(block, way);
-  for (std::size_t i = 0; i < axis_count_; ++i) {
-    if (in_plane(block, i)) block.steps_per_mm = std::max(block.steps_per_mm, scales_[i]);
-  }
+  block.pulses_per_mm = std::max(block.pulses_per_mm, finest_in_plane(block));
   block.entry = tangent(block, 0);
   block.exit = tangent(block, 1);
   for (Direction* end : {&block.entry, &block.exit}) {
@@ -233,30 +259,63 @@ void BlockBuilder::limit_further(Block& block) const {
     const double share = std::abs(block.entry[i]);
     if (in_plane(block, i) || share == 0) continue;
     limit_speed(block, axes_[i].velocity / share, SpeedLimit::kAxisVelocity);
-    limit_speed(block, axes_[i].pulse_rate / axes_[i].steps_per_mm / share, SpeedLimit::kPulseShape);
     block.acceleration = std::min(block.acceleration, axes_[i].acceleration / share);
     block.jerk = std::min(block.jerk, axes_[i].jerk / share);
   }
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const double share = joint_share(block, i);
+    if (share == 0) continue;
+    limit_speed(block, joints_[i].pulses / kinematics_.joint(i).steps_per_mm / share, SpeedLimit::kPulseShape);
+    limit_speed(block, joints_[i].velocity / share, SpeedLimit::kAxisVelocity);
+    block.acceleration = std::min(block.acceleration, joints_[i].acceleration / share);
+    block.jerk = std::min(block.jerk, joints_[i].jerk / share);
+  }
 }
 
-// In a tilted plane no direction has more of an axis than the two unit vectors have together.
+// Most pulses that a joint makes a mm in the plane, of an axis alone or in any direction.
+double BlockBuilder::finest_in_plane(const Block& block) const {
+  const PlaneVectors plane = plane_vectors(block);
+  double finest = 0;
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    if (in_plane(block, i)) finest = std::max(finest, kinematics_.finest(i));
+  }
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const double most = kinematics_.most_in_plane(i, plane.first, plane.second);
+    finest = std::max(finest, most * kinematics_.joint(i).steps_per_mm);
+  }
+  return finest;
+}
+
+// Most mm of a joint a mm of path, of a joint that axes outside the plane move, else 0. These go evenly along the whole
+// arc; a joint that the plane moves as well has at the most both together.
+double BlockBuilder::joint_share(const Block& block, std::size_t joint) const {
+  Direction further = block.entry;
+  for (std::size_t i = 0; i < axis_count_; ++i) further[i] = in_plane(block, i) ? 0 : further[i];
+  const double beside = std::abs(kinematics_.joint_rate(joint, further));
+  if (beside == 0) return 0;
+  const PlaneVectors plane = plane_vectors(block);
+  const double slope = largest_radius(block) * block.exact.sweep / block.length;
+  return beside + slope * kinematics_.most_in_plane(joint, plane.first, plane.second);
+}
+
+// In a plane no direction has more of an axis, or of a joint, than the two unit vectors have together.
 BlockBuilder::PlaneLimits BlockBuilder::plane_limits(const Block& block) const {
   PlaneLimits limits{kNoLimit, kNoLimit, kNoLimit, kNoLimit};
-  const auto take = [&limits](const Axis& axis, double share) {
-    limits.velocity = std::min(limits.velocity, axis.velocity / share);
-    limits.pulse_speed = std::min(limits.pulse_speed, axis.pulse_rate / axis.steps_per_mm / share);
-    limits.acceleration = std::min(limits.acceleration, axis.acceleration / share);
-    limits.jerk = std::min(limits.jerk, axis.jerk / share);
+  const auto take = [&limits](const auto& of, double share) {
+    limits.velocity = std::min(limits.velocity, of.velocity / share);
+    limits.acceleration = std::min(limits.acceleration, of.acceleration / share);
+    limits.jerk = std::min(limits.jerk, of.jerk / share);
   };
-  if (!block.tilted) {
-    take(axes_[block.axis_x], 1);
-    take(axes_[block.axis_y], 1);
-    return limits;
+  const PlaneVectors plane = plane_vectors(block);
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    const double share = hypotenuse(plane.first[i], plane.second[i]);
+    if (share > 0) take(axes_[i], share);
   }
-  const SpaceArc& space = block.space;
-  for (std::size_t i = 0; i < space.axes.size(); ++i) {
-    const double share = hypotenuse(space.first[i], space.second[i]);
-    if (share > 0) take(axes_[space.axes[i]], share);
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const double share = kinematics_.most_in_plane(i, plane.first, plane.second);
+    if (share == 0) continue;
+    take(joints_[i], share);
+    limits.pulse_speed = std::min(limits.pulse_speed, joints_[i].pulses / kinematics_.joint(i).steps_per_mm / share);
   }
   return limits;
 }
@@ -291,11 +350,11 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
 }
 
 // False where the generator cannot make it.
-bool BlockBuilder::build_generator_arc(Block& block) const {
+bool BlockBuilder::build_generator_arc(Block& block, const kinematics::PlaneMap& plane) const {
   constexpr double kMostTurns = 50'000;   // of a command: half of what the driver takes
   constexpr double kMostPulses = 0x1p30;  // along the path of a command: at 64 path ticks a pulse half of 2^37
   const double turns = block.exact.sweep / (2 * driver::kPi);
-  const double pulses = largest_radius(block) * block.exact.sweep * scales_[block.axis_x];
+  const double pulses = largest_radius(block) * block.exact.sweep * plane.scale_x;
   block.geometry = Geometry::kArcChord;
   block.parts = static_cast<std::uint64_t>(std::ceil(std::max(turns / kMostTurns, pulses / kMostPulses)));
   block.parts = std::max<std::uint64_t>(block.parts, 1);
@@ -303,7 +362,7 @@ bool BlockBuilder::build_generator_arc(Block& block) const {
   try {
     std::uint64_t most = 0;
     for (std::uint64_t i = 0; i < block.parts; ++i) {
-      most = std::max(most, driver::least_chord_ticks(helix_part(block, i, scales_)));
+      most = std::max(most, driver::least_chord_ticks(helix_part(block, i, kinematics_)));
     }
     block.least_ticks = most * block.parts;
   } catch (const std::invalid_argument&) {
@@ -318,13 +377,13 @@ bool BlockBuilder::build_generator_arc(Block& block) const {
 // adds to what a ramp does, is V^2 sqrt(sx^2 + sy^2) / (r g^3); where the scales are equal the speed is 4/pi at the
 // most above its mean. In 8 directions a diagonal is one step: g = max(|sin| sx, |cos| sy), least along the diagonal,
 // and the acceleration V^2 max(sx, sy) / (r g^3) at the most.
-bool BlockBuilder::build_accumulator_arc(Block& block) {
+bool BlockBuilder::build_accumulator_arc(Block& block, const kinematics::PlaneMap& plane) {
   block.geometry = Geometry::kArc;
   const bool eight = block.arc.eight_directions;
   const double steps = static_cast<double>(block.arc.path_ticks);
   const double radius = largest_radius(block);
-  const double scale_x = scales_[block.axis_x];
-  const double scale_y = scales_[block.axis_y];
+  const double scale_x = plane.scale_x;
+  const double scale_y = plane.scale_y;
   const double both = hypotenuse(scale_x, scale_y);
   const double least = eight ? scale_x * scale_y / both : std::min(scale_x, scale_y);
   const double mean = std::max(least, steps / (radius * block.exact.sweep));  // steps a mm
@@ -337,8 +396,8 @@ bool BlockBuilder::build_accumulator_arc(Block& block) {
   const double clocks = eight ? kClocksPerEightDirections : kClocksPerPathTick;
   limit_speed(block, card_.clock_hz / clocks / unit_steps, SpeedLimit::kClock);
   for (Direction* end : {&block.entry, &block.exit}) {
-    const double x = std::abs((*end)[block.axis_x]) * scale_x;
-    const double y = std::abs((*end)[block.axis_y]) * scale_y;
+    const double x = std::abs(kinematics_.pulse_rate(plane.joint_x, *end));
+    const double y = std::abs(kinematics_.pulse_rate(plane.joint_y, *end));
     const double here = eight ? std::max(x, y) : x + y;
     for (double& part : *end) part *= mean / here;
   }
@@ -347,13 +406,11 @@ bool BlockBuilder::build_accumulator_arc(Block& block) {
 
 // Lines between corners on the arc at equal angles.
 bool BlockBuilder::build_chords(Block& block) {
-  double scale = 0;
-  for (std::size_t i = 0; i < axis_count_; ++i) scale = in_plane(block, i) ? std::max(scale, scales_[i]) : scale;
   block.geometry = Geometry::kChords;
-  block.chords = chord_count(block.exact, scale);
+  block.chords = chord_count(block.exact, finest_in_plane(block));
   block.chord_lines = 0;
   std::int64_t longest = 0;
-  for_each_chord(block, scales_, [&](const Pulses& step) {
+  for_each_chord(block, kinematics_, [&](const Pulses& step) {
     ++block.chord_lines;
     for (const std::int64_t pulses : step) longest = std::max(longest, std::abs(pulses));
   });

@@ -22,6 +22,13 @@ inline AxisLimits limits_of(const machine::MachineAxis& axis, const machine::Mot
           axis.max_jerk > 0 ? axis.max_jerk * spare * spare * spare : kNoLimit};
 }
 
+// Of a joint: infinite ones stay so.
+inline AxisLimits limits_of(const machine::JointLimits& joint, const machine::MotionSettings& motion) {
+  const double spare = 1 / motion.max_override;
+  return {joint.velocity * spare, joint.acceleration * (1 - motion.hold_reserve) * spare * spare,
+          joint.jerk * spare * spare * spare};
+}
+
 inline bool is_linear(const machine::MachineAxis& axis) { return axis.letter >= 'X' && axis.letter <= 'Z'; }
 
 // Of acceleration and jerk on an arc so much goes across the path at the most; what is left serves along it.

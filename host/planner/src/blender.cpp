@@ -37,11 +37,12 @@ Blender::Blender(gcode::Reader& reader, const machine::Machine& machine, const g
       junction_deviation_(machine.motion.junction_deviation),
       time_(std::make_unique<CornerTime>(machine)),
       here_(start) {
+  const kinematics::Kinematics kinematics(machine);
   for (std::size_t letter = 0; letter < space_.size(); ++letter) {
     const auto axis = machine.axis(static_cast<char>('X' + letter));
     if (!axis) continue;
     space_[letter] = *axis;
-    finest_ = std::max(finest_, machine.axes[*axis].steps_per_mm);
+    finest_ = std::max(finest_, kinematics.finest(*axis));
   }
 }
 

@@ -31,34 +31,20 @@ unsigned feed_group(char letter) {
 
 }  // namespace
 
-std::int64_t to_pulses(double mm, double steps_per_mm) {
-  const double pulses = mm * steps_per_mm;
-  const double away = 0.5 + 1e-9 + 1e-15 * std::abs(pulses);
-  return static_cast<std::int64_t>(pulses < 0 ? pulses - away : pulses + away);
-}
-
 BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machine, const CardLimits& card,
                            const gcode::Coordinates& start)
     : reader_(reader),
       machine_(machine),
       card_(card),
       axis_count_(machine.axes.size()),
+      kinematics_(machine),
       blender_(reader, machine, start),
       exact_(start),
       anchor_(start) {
   for (std::size_t i = 0; i < axis_count_; ++i) {
     const machine::MachineAxis& from = machine.axes[i];
-    const driver::AxisSettings settings = settings_of(from);
-    const auto clocks = [&](std::chrono::nanoseconds time, const char* what) {
-      return driver::step_time_clocks(time, card.clock_hz, what);
-    };
-    const double period = driver::shortest_pulse_period(clocks(settings.step_length, "step length"),
-                                                        clocks(settings.step_space, "step space"));
-    const double shaper = kShaperShare * card.clock_hz / period;
     Axis& axis = axes_[i];
     const AxisLimits limits = limits_of(from, machine.motion);
-    axis.steps_per_mm = scales_[i] = from.steps_per_mm;
-    axis.pulse_rate = shaper / machine.motion.max_override;
     axis.velocity = limits.velocity;
     axis.acceleration = limits.acceleration;
     axis.jerk = limits.jerk;
@@ -66,9 +52,20 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
     axis.highest = from.max;
     axis.feed_group = feed_group(from.letter);
     axis.linear = axis.feed_group == 0;
-    start_[i] = to_pulses(start[i], from.steps_per_mm);
   }
-  here_ = start_;
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const kinematics::Joint& joint = kinematics_.joint(i);
+    const driver::AxisSettings settings = settings_of(machine.axes[joint.settings]);
+    const auto clocks = [&](std::chrono::nanoseconds time, const char* what) {
+      return driver::step_time_clocks(time, card.clock_hz, what);
+    };
+    const double period = driver::shortest_pulse_period(clocks(settings.step_length, "step length"),
+                                                        clocks(settings.step_space, "step space"));
+    const double shaper = kShaperShare * card.clock_hz / period;
+    const AxisLimits limits = limits_of(joint.limits, machine.motion);
+    joints_[i] = {shaper / machine.motion.max_override, limits.velocity, limits.acceleration, limits.jerk};
+  }
+  start_ = here_ = kinematics_.pulses(start);
 }
 
 const gcode::Motion& BlockBuilder::begin_probe() {
@@ -78,7 +75,7 @@ const gcode::Motion& BlockBuilder::begin_probe() {
 
 void BlockBuilder::resume_at(const Pulses& here) {
   here_ = here;
-  for (std::size_t i = 0; i < axis_count_; ++i) exact_[i] = static_cast<double>(here[i]) / axes_[i].steps_per_mm;
+  exact_ = kinematics_.coordinates(here);
   anchor_ = exact_;
   blender_.resume_at(exact_);
   probe_ = Probe::kNone;
@@ -151,10 +148,12 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
     return refuse(gcode::ErrorCode::kNoJerk,
                   fmt::format("axis {} moves and has no max_jerk in the machine file, which S-curves need", letter));
   }
-  if (!(std::abs(mm * limits.steps_per_mm) <= kMostPulses)) {
+  // Where two axes move a joint, each may take half of its counter.
+  const auto share = static_cast<double>(kinematics_.most_terms(axis));
+  if (!(std::abs(mm * kinematics_.finest(axis)) * share <= kMostPulses)) {
     return refuse(gcode::ErrorCode::kPositionRange,
                   fmt::format("{}{:.10g} is beyond the card's 32-bit position counter ({:.10g} steps/mm)", letter, mm,
-                              limits.steps_per_mm));
+                              kinematics_.finest(axis)));
   }
   const bool later = (unsigned{motion_.later} >> axis & 1U) != 0;
   if (!later && (mm < limits.lowest - kSoftLimitSlack || mm > limits.highest + kSoftLimitSlack)) {
@@ -167,13 +166,17 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
 }
 
 bool BlockBuilder::set_targets(Block& block) {
+  unsigned moved = 0;  // axes, a bit each
   for (std::size_t axis = 0; axis < axis_count_; ++axis) {
     const double mm = motion_.target[axis];
     const double programmed = motion_.programmed[axis];
     if (programmed != mm && !check(axis, programmed)) return false;
     if (mm == exact_[axis]) continue;
     if (!check(axis, mm)) return false;
-    block.end[axis] = to_pulses(mm, axes_[axis].steps_per_mm);
+    moved |= 1U << axis;
+  }
+  for (std::size_t joint = 0; joint < joint_count(); ++joint) {
+    if ((kinematics_.axes_of(joint) & moved) != 0) block.end[joint] = kinematics_.pulses(joint, motion_.target);
   }
   return true;
 }
@@ -215,7 +218,13 @@ bool BlockBuilder::build_line(Block& block) {
   const double feed_length = measure_line(block, way);
   for (std::size_t i = 0; i < axis_count_; ++i) block.entry[i] = way[i] / block.length;
   block.exit = block.entry;
+  // A joint that two axes move may make more pulses than either alone.
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    if (kinematics_.joint(i).term_count == 1) continue;
+    block.pulses_per_mm = std::max(block.pulses_per_mm, std::abs(kinematics_.pulse_rate(i, block.entry)));
+  }
   limit_line(block);
+  limit_joints(block);
   limit_pulses(block);
   apply_feed(block, feed_length);
   return true;
@@ -234,16 +243,16 @@ double BlockBuilder::measure_line(Block& block, const gcode::Coordinates& way) c
     const double square = way[i] * way[i];
     squares += square;
     feed_squares[axis.feed_group] += square;
-    finest = std::max(finest, axis.steps_per_mm);
-    if (axis.linear) scale = std::max(scale, axis.steps_per_mm);
-    if (!axis.linear) other_pulses = std::max(other_pulses, std::abs(way[i]) * axis.steps_per_mm);
+    finest = std::max(finest, kinematics_.finest(i));
+    if (axis.linear) scale = std::max(scale, kinematics_.finest(i));
+    if (!axis.linear) other_pulses = std::max(other_pulses, std::abs(way[i]) * kinematics_.finest(i));
   }
   block.linear = feed_squares[0] > 0;
   block.length = std::sqrt(block.linear ? feed_squares[0] : squares);
-  block.steps_per_mm = finest;
+  block.pulses_per_mm = finest;
   if (block.linear) {
     if (block.length * scale < kLeastWay) block.length = std::max(block.length, other_pulses / scale);
-    block.steps_per_mm = std::max(scale, other_pulses / block.length);
+    block.pulses_per_mm = std::max(scale, other_pulses / block.length);
   }
   const auto counts = std::find_if(feed_squares.begin(), feed_squares.end(), [](double sum) { return sum > 0; });
   return std::sqrt(*counts);
@@ -269,14 +278,26 @@ void BlockBuilder::limit_line(Block& block) const {
   }
 }
 
+// What joints with limits of their own allow along a straight path.
+void BlockBuilder::limit_joints(Block& block) const {
+  if (!kinematics_.has_joint_limits()) return;
+  for (std::size_t i = 0; i < joint_count(); ++i) {
+    const double share = std::abs(kinematics_.joint_rate(i, block.entry));
+    if (share == 0) continue;
+    limit_speed(block, joints_[i].velocity / share, SpeedLimit::kAxisVelocity);
+    block.acceleration = std::min(block.acceleration, joints_[i].acceleration / share);
+    block.jerk = std::min(block.jerk, joints_[i].jerk / share);
+  }
+}
+
 // Rounding adds up to a pulse, which may come a little late.
 void BlockBuilder::limit_pulses(Block& block) const {
   std::int64_t most = 0;
-  for (std::size_t i = 0; i < axis_count_; ++i) {
+  for (std::size_t i = 0; i < joint_count(); ++i) {
     const std::int64_t pulses = std::abs(block.end[i] - block.start[i]);
     most = std::max(most, pulses);
     if (pulses < 2) continue;
-    limit_speed(block, axes_[i].pulse_rate * block.length / static_cast<double>(pulses - 1), SpeedLimit::kPulseShape);
+    limit_speed(block, joints_[i].pulses * block.length / static_cast<double>(pulses - 1), SpeedLimit::kPulseShape);
   }
   block.least_ticks = static_cast<std::uint64_t>(most);  // at most one pulse a tick
 }

@@ -12,49 +12,59 @@
 
 namespace trammel::planner {
 
-// Steps/mm, by axis.
-using Scales = std::array<double, card_map::kMaxAxes>;
-
 // Chords of equal angles so many that none strays more than a quarter of a pulse from its arc.
-std::uint64_t chord_count(const ExactArc& arc, double largest_steps_per_mm);
+std::uint64_t chord_count(const ExactArc& arc, double most_pulses_per_mm);
 
-// Where part `i` of `count`, of equal angles, ends; the last one at the block's end. Axes outside the plane go evenly.
-inline Pulses corner(const Block& block, std::uint64_t i, std::uint64_t count, const Scales& scales) {
-  if (i == 0) return block.start;
-  if (i == count) return block.end;
-  const ExactArc& arc = block.exact;
-  const double share = static_cast<double>(i) / static_cast<double>(count);
-  Pulses at = block.start;
-  for (std::size_t axis = 0; axis < at.size(); ++axis) {
-    const std::int64_t way = block.end[axis] - block.start[axis];
-    if (way != 0) at[axis] += std::llround(static_cast<double>(way) * share);
-  }
+// Sets the coordinates of the arc's plane at a share, 0 to 1, of the arc; gives back these axes, a bit each.
+inline unsigned place_on_arc(const Block& block, double share, gcode::Coordinates& at) {
   if (block.tilted) {
     const SpaceArc& space = block.space;
     const driver::SineCosine to = driver::sine_cosine(space.sweep * share);
+    unsigned axes = 0;
     for (std::size_t part = 0; part < space.axes.size(); ++part) {
       const double way = to.cosine * space.first[part] + to.sine * space.second[part];
-      const std::uint8_t axis = space.axes[part];
-      at[axis] = to_pulses(space.centre[part] + space.radius * way, scales[axis]);
+      at[space.axes[part]] = space.centre[part] + space.radius * way;
+      axes |= 1U << space.axes[part];
     }
-    return at;
+    return axes;
   }
+  const ExactArc& arc = block.exact;
   const driver::SineCosine to = driver::sine_cosine(arc.angle_start + (block.clockwise ? -1 : 1) * arc.sweep * share);
   const double radius = arc.radius_start + (arc.radius_end - arc.radius_start) * share;
-  at[block.axis_x] = to_pulses(arc.centre_x + radius * to.cosine, scales[block.axis_x]);
-  at[block.axis_y] = to_pulses(arc.centre_y + radius * to.sine, scales[block.axis_y]);
+  at[block.axis_x] = arc.centre_x + radius * to.cosine;
+  at[block.axis_y] = arc.centre_y + radius * to.sine;
+  return 1U << block.axis_x | 1U << block.axis_y;
+}
+
+// Where part `i` of `count`, of equal angles, ends; the last one at the block's end. Joints that no axis of the plane
+// moves go evenly. An axis outside the plane that moves a joint of it is where the joints' even way has it.
+inline Pulses corner(const Block& block, std::uint64_t i, std::uint64_t count,
+                     const kinematics::Kinematics& kinematics) {
+  if (i == 0) return block.start;
+  if (i == count) return block.end;
+  const double share = static_cast<double>(i) / static_cast<double>(count);
+  Pulses at = block.start;
+  for (std::size_t joint = 0; joint < at.size(); ++joint) {
+    const std::int64_t way = block.end[joint] - block.start[joint];
+    if (way != 0) at[joint] += std::llround(static_cast<double>(way) * share);
+  }
+  gcode::Coordinates place = kinematics.coordinates(at);
+  const unsigned axes = place_on_arc(block, share, place);
+  for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {
+    if ((kinematics.axes_of(joint) & axes) != 0) at[joint] = kinematics.pulses(joint, place);
+  }
   return at;
 }
 
 // Calls take(step) with the displacement of each chord that has steps, in order.
 template <class Take>
-void for_each_chord(const Block& block, const Scales& scales, Take take) {
+void for_each_chord(const Block& block, const kinematics::Kinematics& kinematics, Take take) {
   Pulses here = block.start;
   for (std::uint64_t i = 1; i <= block.chords; ++i) {
-    const Pulses next = corner(block, i, block.chords, scales);
+    const Pulses next = corner(block, i, block.chords, kinematics);
     if (next == here) continue;
     Pulses step{};
-    for (std::size_t axis = 0; axis < step.size(); ++axis) step[axis] = next[axis] - here[axis];
+    for (std::size_t joint = 0; joint < step.size(); ++joint) step[joint] = next[joint] - here[joint];
     take(step);
     here = next;
   }
@@ -62,6 +72,6 @@ void for_each_chord(const Block& block, const Scales& scales, Take take) {
 
 // Part `i` of the block's parts for the arc generator. Throws std::invalid_argument where the command has no room for
 // it.
-driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, const Scales& scales);
+driver::HelixGeometry helix_part(const Block& block, std::uint64_t i, const kinematics::Kinematics& kinematics);
 
 }  // namespace trammel::planner

@@ -22,7 +22,10 @@ double corner_speed_square(double acceleration, double deviation, double sine, d
 }
 
 Junctions::Junctions(const machine::Machine& machine)
-    : axes_(machine.axes.size()), deviation_(machine.motion.junction_deviation) {
+    : axes_(machine.axes.size()), kinematics_(machine), deviation_(machine.motion.junction_deviation) {
+  for (std::size_t i = 0; i < kinematics_.joints(); ++i) {
+    joint_acceleration_[i] = limits_of(kinematics_.joint(i).limits, machine.motion).acceleration;
+  }
   for (std::size_t i = 0; i < axes_; ++i) {
     linear_[i] = is_linear(machine.axes[i]);
     acceleration_[i] = limits_of(machine.axes[i], machine.motion).acceleration;
@@ -47,13 +50,26 @@ Junctions::Turn Junctions::turn(const Block& from, const Block& to) const {
 }
 
 double Junctions::corner_square(const Block& from, const Block& to, const Turn& turn) const {
-  double acceleration = kNoLimit;
   const double size = std::sqrt(turn.square);
+  Direction change{};
+  for (std::size_t i = 0; i < axes_; ++i) change[i] = in_angle(i, from) ? to.entry[i] - from.exit[i] : 0;
+  double acceleration = joints_allow(change, size);
   for (std::size_t i = 0; i < axes_; ++i) {
-    const double part = std::abs(to.entry[i] - from.exit[i]);
-    if (in_angle(i, from) && part > 0) acceleration = std::min(acceleration, acceleration_[i] * size / part);
+    const double part = std::abs(change[i]);
+    if (part > 0) acceleration = std::min(acceleration, acceleration_[i] * size / part);
   }
   return corner_speed_square(acceleration, deviation_, std::min(1.0, size / 2), std::min(from.length, to.length));
+}
+
+// The largest acceleration along a change of direction, of this size, that no joint's own limit forbids.
+double Junctions::joints_allow(const Direction& change, double size) const {
+  double acceleration = kNoLimit;
+  if (!kinematics_.has_joint_limits()) return acceleration;
+  for (std::size_t i = 0; i < kinematics_.joints(); ++i) {
+    const double part = std::abs(kinematics_.joint_rate(i, change));
+    if (part > 0) acceleration = std::min(acceleration, joint_acceleration_[i] * size / part);
+  }
+  return acceleration;
 }
 
 // The speed at which no axis outside the angle, or no axis at all, jumps by more than it may.

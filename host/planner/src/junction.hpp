@@ -38,12 +38,15 @@ class Junctions {
   bool in_angle(std::size_t axis, const Block& block) const { return linear_[axis] || !block.linear; }
   Turn turn(const Block& from, const Block& to) const;
   double corner_square(const Block& from, const Block& to, const Turn& turn) const;
+  double joints_allow(const Direction& change, double size) const;
   double jump_speed(const Block& from, const Block& to, bool all) const;
 
   std::size_t axes_;
   std::array<bool, card_map::kMaxAxes> linear_{};          // X Y Z
   std::array<double, card_map::kMaxAxes> acceleration_{};  // mm/s^2
-  double deviation_;                                       // mm
+  kinematics::Kinematics kinematics_;
+  std::array<double, card_map::kMaxAxes> joint_acceleration_{};  // mm/s^2, infinite where the axes' alone hold
+  double deviation_;                                             // mm
 };
 
 }  // namespace trammel::planner

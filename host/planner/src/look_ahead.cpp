@@ -17,6 +17,7 @@ constexpr double kMaxTickRate = 0.9;        // ticks a clock; above it shapers h
 constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
 // Blocks that are planned, but whose stop distances wait for what follows.
 constexpr std::size_t kSpare = 4096;
+static_assert(kSpare >= 3 * Quantiser::kMostBlocks + 2);  // one is read behind the window, one ends at rest
 
 // In the card's queue, with all its axes.
 std::uint64_t halfwords_of(card_map::Opcode opcode, unsigned axes) {
@@ -168,7 +169,7 @@ double Planner::LookAhead::wanted_density(const Block& block) const {
 
 // Steps even to 1/64, and a line that lasts until the next one is decoded.
 double Planner::LookAhead::even_density(const Block& block) const {
-  return std::max(kTicksPerPulse * block.steps_per_mm, gap_free_ticks_ / block.length);
+  return std::max(kTicksPerPulse * block.pulses_per_mm, gap_free_ticks_ / block.length);
 }
 
 // What the pulses and the finest rate need.

@@ -24,6 +24,7 @@ class Planner::LookAhead {
   // A piece that begins in the first block, in order; false after its last.
   bool piece(driver::FeedCommand& piece) { return quantiser_.take(path_.begin(), piece); }
   void pop() { path_.pop(); }
+  const PlanWork& work() const { return plan_->work(); }
 
  private:
   void go_on();

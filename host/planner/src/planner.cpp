@@ -49,11 +49,11 @@ SpeedProfile profile_of(const machine::Machine& machine, const PlannerSettings& 
 
 Planner::Planner(BlockBuilder& blocks, const machine::Machine& machine, const CardLimits& card,
                  const PlannerSettings& settings)
-    : machine_(machine), look_ahead_(std::make_unique<LookAhead>(blocks, machine, card, settings)) {
-  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) scales_[axis] = machine.axes[axis].steps_per_mm;
-}
+    : kinematics_(machine), look_ahead_(std::make_unique<LookAhead>(blocks, machine, card, settings)) {}
 
 Planner::~Planner() = default;
+
+const PlanWork& Planner::work() const { return look_ahead_->work(); }
 
 bool Planner::next(driver::CommandSink& sink, PlannedBlock& planned) {
   const PathEntry* entry = look_ahead_->first();
@@ -124,12 +124,12 @@ void Planner::put_line(const Block& block, std::uint64_t ticks, driver::CommandS
   auto& line = std::get<driver::LineCommand>(line_);
   line.ticks = ticks;
   unsigned mask = 0;
-  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    const std::int64_t pulses = block.end[axis] - block.start[axis];
-    line.increment[axis] = 0;
+  for (std::size_t joint = 0; joint < kinematics_.joints(); ++joint) {
+    const std::int64_t pulses = block.end[joint] - block.start[joint];
+    line.increment[joint] = 0;
     if (pulses == 0) continue;
-    mask |= 1U << axis;
-    line.increment[axis] = driver::rounded_increment(pulses, ticks);
+    mask |= 1U << joint;
+    line.increment[joint] = driver::rounded_increment(pulses, ticks);
   }
   line.mask = static_cast<std::uint8_t>(mask);
   sink.put(line_);
@@ -138,7 +138,7 @@ void Planner::put_line(const Block& block, std::uint64_t ticks, driver::CommandS
 void Planner::put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
   Shares shares(ticks, block.parts);
   for (std::uint64_t i = 0; i < block.parts; ++i) {
-    sink.put(other_ = driver::make_helix(helix_part(block, i, scales_), shares.next()));
+    sink.put(other_ = driver::make_helix(helix_part(block, i, kinematics_), shares.next()));
   }
 }
 
@@ -146,12 +146,12 @@ void Planner::put_arc_chords(const Block& block, std::uint64_t ticks, driver::Co
 void Planner::put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink) {
   auto& line = std::get<driver::LineCommand>(line_);
   Shares shares(ticks, block.chord_lines);
-  for_each_chord(block, scales_, [&](const Pulses& step) {
+  for_each_chord(block, kinematics_, [&](const Pulses& step) {
     line.ticks = shares.next();
     unsigned mask = 0;
-    for (std::size_t axis = 0; axis < step.size(); ++axis) {
-      line.increment[axis] = step[axis] == 0 ? 0 : driver::rounded_increment(step[axis], line.ticks);
-      mask |= (step[axis] == 0 ? 0U : 1U) << axis;
+    for (std::size_t joint = 0; joint < step.size(); ++joint) {
+      line.increment[joint] = step[joint] == 0 ? 0 : driver::rounded_increment(step[joint], line.ticks);
+      mask |= (step[joint] == 0 ? 0U : 1U) << joint;
     }
     line.mask = static_cast<std::uint8_t>(mask);
     sink.put(line_);

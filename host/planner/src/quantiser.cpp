@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "roots.hpp"
 #include "trammel/card_map.hpp"
@@ -77,6 +78,7 @@ void Quantiser::add(const Phase& phase) {
   if (!moving_) {
     turns_ = !waits;
     moving_ = true;
+    spanned_ = 0;
     // Where the density is what it is from does not matter: lengths go on from any place.
     mm_ = base_mm_ = path_[at_].begin;
     base_tick_ = tick_ = pending_.end = path_[at_].begin_ticks;
@@ -91,8 +93,10 @@ void Quantiser::add(const Phase& phase) {
   short_sight_ = phase.short_sight;
   for (; !path_[at_].stop && (phase.stop || path_[at_].end <= mm_); ++at_) {
     const PathEntry& block = path_[at_];
-    if (!block.cut) continue;
+    if (!block.cut && ++spanned_ < kMostBlocks) continue;
     portion(phase, begin, block.end, block.end_ticks, true, false);
+    spanned_ = 0;
+    if (!block.cut) continue;
     base_mm_ = block.end;
     base_tick_ = block.end_ticks;
     change_density(path_[at_ + 1].density / clock_hz_);
@@ -436,7 +440,8 @@ void Quantiser::complete() {
 }
 
 void Quantiser::force() {
-  if (last_ - completed_ >= 2) complete_first();
+  if (last_ - completed_ < 2) throw std::logic_error("the ring of blocks is full, and no piece is complete");
+  complete_first();
 }
 
 void Quantiser::see_next() {

@@ -25,6 +25,11 @@ struct QueueLimits {
 
 class Quantiser {
  public:
+  // A piece begins after so many blocks at the latest. The first piece in the ring waits for those behind it: a ring
+  // that holds three times as many blocks behind the speed plan's window holds two pieces behind the first one's
+  // block, so that force() has one to complete, however long a phase is.
+  static constexpr std::uint64_t kMostBlocks = 1024;
+
   // `clock_hz`: enabled clocks a second; `stop_clocks`: T_s, how long the fastest rate counts for stop distances.
   // `smooth`: acceleration has no jumps; `classes`: pieces say theirs.
   Quantiser(PathRing& path, double clock_hz, double stop_clocks, const QueueLimits& queues, bool smooth, bool classes);
@@ -37,7 +42,7 @@ class Quantiser {
   std::uint64_t count(std::uint64_t index) const;
   // The next piece that begins in block `index`; false when there is none.
   bool take(std::uint64_t index, driver::FeedCommand& piece);
-  // The first piece is complete as it is: no room for more behind it.
+  // The first piece is complete as it is: no room for more behind it. Needs two pieces.
   void force();
 
  private:
@@ -115,6 +120,7 @@ class Quantiser {
   double lead_ = 0;          // ticks of the next piece that pass at the last one's rate
   double ahead_ = 0;         // of these, those for which the speed's time does not pass
   Pending pending_;
+  std::uint64_t spanned_ = 0;  // blocks since a piece ended with one
   bool short_sight_ = false;
 
   // Where the pieces are.

@@ -40,7 +40,7 @@ double Rise::plan(SpeedWindow::Walk walk, double low, double high) {
   parts_.clear();
   start_ = {0, 0, low, 0};
   arrival_ = 0;
-  if (!(high > low)) return 0;
+  if (!(high > low * kSameSpeed)) return 0;
   do {
     const State now = end();
     SpeedWindow::Stretch next = walk.next(now.speed, now.time);

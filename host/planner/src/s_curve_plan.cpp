@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace trammel::planner {
 namespace {
 
 constexpr int kNoCap = -1;
+static_assert(SCurvePlan::kMostRamps == 10 + 3 * (2 + 2 * (kMostTries + 4)));
 
 // A stretch between two places without acceleration. Ramps that start there and the caps of the tree below `cap` are
 // all that limits the speed between, and `most`. None of the caps is below `to`.
@@ -25,6 +27,13 @@ struct Gap {
   int cap = kNoCap;
 };
 
+// How far rounding may put the length of a ramp off. Speeds are off by some 2^-48 of them, and a ramp between speeds dv
+// apart is at least as long as the square root of dv, so that its length changes by up to 1 / (2 dv) of it for each
+// mm/s. From Rise::kSameSpeed on that is at most 2^-19 of the length.
+double uncertainty(double length, double low, double high) {
+  return length > 0 ? length * (high / (high - low)) * 0x1p-49 : 0;
+}
+
 bool is_level(const Phase& phase) { return phase.acceleration == 0 && phase.jerk == 0; }
 
 }  // namespace
@@ -33,7 +42,7 @@ bool is_level(const Phase& phase) { return phase.acceleration == 0 && phase.jerk
 // is a ramp up and one down. So a ramp never meets a cap that is still to come, and what has been planned stays.
 class SCurvePlan::Impl {
  public:
-  explicit Impl(std::size_t window) : window_(window), caps_(window), rise_(window) {
+  Impl(std::size_t window, PlanWork& work) : work_(work), window_(window), caps_(window), rise_(window) {
     gaps_.reserve(4 * window + 4);
     fall_.reserve(4 * window + 4);
     for (std::vector<Phase>* phases : {&planned_, &tail_, &given_}) phases->reserve(8 * window + 8);
@@ -43,8 +52,12 @@ class SCurvePlan::Impl {
   void push(const Span& span) {
     window_.push(span);
     caps_.push(span);
+    ++work_.spans;
   }
-  void finish() { finishing_ = true; }
+  void finish() {
+    finishing_ = true;
+    ++work_.runs;
+  }
   bool next(Phase& phase);
 
  private:
@@ -54,6 +67,7 @@ class SCurvePlan::Impl {
   bool divide(Gap gap);
   bool divide_below(Gap gap);
   bool hop(const Gap& gap);
+  void take_up(double length, std::size_t first);
   double peak(const Gap& gap);
   double rising(const Gap& gap, double to);
   double falling(const Gap& gap, double from);
@@ -65,6 +79,7 @@ class SCurvePlan::Impl {
   double split(double length);
   double rounding() const { return window_.length() * 0x1p-40; }
 
+  PlanWork& work_;
   SpeedWindow window_;
   SpeedCaps caps_;
   Rise rise_;
@@ -84,7 +99,7 @@ class SCurvePlan::Impl {
 };
 
 bool SCurvePlan::Impl::next(Phase& phase) {
-  while (given_begin_ == given_.size()) {
+  if (given_begin_ == given_.size()) {
     if (window_.empty()) finishing_ = false;
     if (!full() || window_.empty()) return false;
     give();
@@ -95,11 +110,13 @@ bool SCurvePlan::Impl::next(Phase& phase) {
 }
 
 // When the motion at the window's beginning does not fit the new plan, what was planned before still holds; but the
-// next plan may fit, and so the least is given of it.
+// next plan may fit, and so the least is given of it. At rest every plan fits.
 void SCurvePlan::Impl::give() {
   given_.clear();
   given_begin_ = 0;
   window_.index();
+  ++work_.windows;
+  work_.window_spans += window_.size();
   const double share = std::min(window_.position(window_.size() / 16), window_.length() / 16);
   const double least = std::max({share, window_.position(1), 2 * rounding()});
   double position = least;
@@ -110,6 +127,7 @@ void SCurvePlan::Impl::give() {
     position = finishing_ ? kInfinite : std::max(least, window_.position(window_.size() / 2));
   }
   position = give_until(position, least);
+  if (given_.empty()) throw std::logic_error("the speed plan does not go on: no motion fits where it begins at rest");
   if (tail_begin_ == tail_.size()) position = tail_length_;
   tail_length_ -= position;
   const bool more = tail_begin_ != tail_.size();
@@ -236,11 +254,13 @@ bool SCurvePlan::Impl::passes(double begin, double end, double low, double high)
 
 // Length of a ramp from the gap's beginning on, as planned in rise_.
 double SCurvePlan::Impl::rising(const Gap& gap, double to) {
+  ++work_.ramps;
   return rise_.plan(window_.from(gap.begin, gap.end), gap.from, to);
 }
 
 // The same to its end.
 double SCurvePlan::Impl::falling(const Gap& gap, double from) {
+  ++work_.ramps;
   return rise_.plan(window_.back_from(gap.end, gap.begin), gap.to, from);
 }
 
@@ -301,15 +321,23 @@ bool SCurvePlan::Impl::hop(const Gap& gap) {
   rise_.falling(fall_);
   const double up = rising(gap, speed);
   const double steady = gap.end - gap.begin - up - down;
-  if (steady < -rounding()) return false;
+  // Ends whose ramps fit were found by the same ramps over a longer way: what is too little is rounding.
+  const double slack = rounding() + uncertainty(up, gap.from, speed) + uncertainty(down, gap.to, speed);
+  if (steady < -slack) return false;
   const std::size_t before = planned_.size();
   rise_.rising(planned_);
   for (std::size_t i = before; i < planned_.size(); ++i) planned_[i].short_sight = short_sight_;
   if (steady >= rounding() || planned_.size() + fall_.size() == before) put({steady, steady / speed, speed, 0, 0});
   for (const Phase& phase : fall_) put(phase);
-  // What rounding leaves goes to a ramp.
-  if (steady < rounding() && planned_.size() > before) planned_.back().length += steady;
+  if (steady < rounding() && planned_.size() > before) take_up(steady, before);
   return true;
+}
+
+// The length that rounding leaves goes to the longest phase from `first` on.
+void SCurvePlan::Impl::take_up(double length, std::size_t first) {
+  const auto longest = std::max_element(planned_.begin() + static_cast<std::ptrdiff_t>(first), planned_.end(),
+                                        [](const Phase& a, const Phase& b) { return a.length < b.length; });
+  longest->length += length;
 }
 
 // The highest speed in the gap: that of one of its ends where going up and down again is not worth it.
@@ -354,7 +382,7 @@ void SCurvePlan::Impl::put(const Phase& phase) {
   planned_.back().short_sight = short_sight_;
 }
 
-SCurvePlan::SCurvePlan(std::size_t window) : impl_(std::make_unique<Impl>(std::max<std::size_t>(window, 1))) {}
+SCurvePlan::SCurvePlan(std::size_t window) : impl_(std::make_unique<Impl>(std::max<std::size_t>(window, 1), work_)) {}
 SCurvePlan::~SCurvePlan() = default;
 bool SCurvePlan::full() const { return impl_->full(); }
 void SCurvePlan::push(const Span& span) { impl_->push(span); }

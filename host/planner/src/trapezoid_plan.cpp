@@ -21,9 +21,11 @@ void TrapezoidPlan::push(const Span& span) {
   const double top = span.speed * span.speed;
   Node& added = nodes_[(first_ + count_++) % nodes_.size()];
   added = {span.length, SpanAcceleration(span), top, std::min(top, span.exit_speed * span.exit_speed), -1, false};
+  ++work_.spans;
 }
 
 void TrapezoidPlan::finish() {
+  ++work_.runs;
   if (count_ == 0) return;
   finished_ = true;
   look_back();
@@ -32,9 +34,12 @@ void TrapezoidPlan::finish() {
 
 // From the last span to the first one whose entry stays what it was.
 void TrapezoidPlan::look_back() {
+  ++work_.windows;
+  work_.window_spans += count_;
   double after = 0;
   bool in_sight = finished_;
   for (std::size_t i = count_; i-- != 0;) {
+    ++work_.ramps;
     Node& at = node(i);
     const bool corner = at.exit <= after;
     const double slowing = at.acceleration.reached(corner ? at.exit : after, at.length);
@@ -62,6 +67,7 @@ bool TrapezoidPlan::next(Phase& phase) {
 }
 
 void TrapezoidPlan::plan_first() {
+  ++work_.ramps;
   const Node at = node(0);
   const bool last = count_ == 1;
   const double after = last ? 0 : node(1).entry;

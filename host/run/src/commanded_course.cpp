@@ -3,22 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "centre_scale.hpp"
 #include "trammel/run/step_recorder.hpp"
 
 namespace trammel::run {
 namespace {
 
-// The commanded path of a block as points. In mm, where an arc is a circle whatever the axes' scales.
+// The commanded path of a block as points. In mm, where an arc is a circle whatever the joints make of it.
 class CommandedPath {
  public:
-  CommandedPath(const planner::Block& block, const std::vector<double>& steps_per_mm)
-      : axes_(std::min<std::size_t>(3, steps_per_mm.size())), axis_x_(block.axis_x), axis_y_(block.axis_y) {
+  CommandedPath(const planner::Block& block, const kinematics::Kinematics& kinematics)
+      : axes_(std::min<std::size_t>(3, kinematics.axes())),
+        axis_x_(block.axis_x),
+        axis_y_(block.axis_y),
+        start_(kinematics.coordinates(block.start)),
+        end_(kinematics.coordinates(block.end)) {
     double square = 0;
-    for (std::size_t a = 0; a < steps_per_mm.size(); ++a) {
-      start_[a] = static_cast<double>(block.start[a]) / steps_per_mm[a];
-      end_[a] = static_cast<double>(block.end[a]) / steps_per_mm[a];
-      square += std::pow(static_cast<double>(block.end[a] - block.start[a]), 2);
+    for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {
+      square += std::pow(static_cast<double>(block.end[joint] - block.start[joint]), 2);
     }
     pulses_ = std::sqrt(square);
     if (block.geometry == planner::Geometry::kLine) return;
@@ -26,14 +27,14 @@ class CommandedPath {
     tilted_ = block.tilted;
     if (tilted_) {
       space_ = block.space;
-      pulses_ = space_.radius * space_.sweep * steps_per_mm[axis_x_];
+      pulses_ = space_.radius * space_.sweep * kinematics.finest(axis_x_);
       return;
     }
-    centre_x_ = static_cast<double>(block.centre_x) / kCentreScale / steps_per_mm[axis_x_];
-    centre_y_ = static_cast<double>(block.centre_y) / kCentreScale / steps_per_mm[axis_y_];
+    centre_x_ = block.exact.centre_x;
+    centre_y_ = block.exact.centre_y;
     radius_ = std::hypot(start_[axis_x_] - centre_x_, start_[axis_y_] - centre_y_);
     angle_ = std::atan2(start_[axis_y_] - centre_y_, start_[axis_x_] - centre_x_);
-    pulses_ = radius_ * block.exact.sweep * std::max(steps_per_mm[axis_x_], steps_per_mm[axis_y_]);
+    pulses_ = radius_ * block.exact.sweep * std::max(kinematics.finest(axis_x_), kinematics.finest(axis_y_));
   }
   double pulses() const { return pulses_; }  // length, about
 
@@ -57,8 +58,8 @@ class CommandedPath {
   std::size_t axes_;
   std::size_t axis_x_;
   std::size_t axis_y_;
-  std::array<double, card_map::kMaxAxes> start_{};
-  std::array<double, card_map::kMaxAxes> end_{};
+  gcode::Coordinates start_;
+  gcode::Coordinates end_;
   double centre_x_ = 0;
   double centre_y_ = 0;
   double radius_ = 0;  // 0: a line, or tilted
@@ -79,16 +80,14 @@ int detail_rank(const planner::Block& block) {
 
 }  // namespace
 
-CommandedCourse::CommandedCourse(const machine::Machine& machine) {
-  for (const machine::MachineAxis& axis : machine.axes) steps_per_mm_.push_back(axis.steps_per_mm);
-}
+CommandedCourse::CommandedCourse(const machine::Machine& machine) : kinematics_(machine) {}
 
 void CommandedCourse::planned(const planner::PlannedBlock& planned, std::uint64_t first) {
   constexpr double kArcPoints = 64;  // a turn
   constexpr double kMostTurns = 100;
   const planner::Block& block = planned.block;
   if (!planner::moves(block)) return;
-  const CommandedPath path(block, steps_per_mm_);
+  const CommandedPath path(block, kinematics_);
   if (!begun_) points_.add({path.at(0), false});
   begun_ = true;
   const double turns = std::min(std::ceil(block.exact.sweep / 6.28), kMostTurns);

@@ -29,14 +29,12 @@ void check_outputs(driver::Card& card, std::uint16_t named) {
 
 void configure(driver::Card& card, const machine::Machine& machine) {
   check_outputs(card, machine.outputs.all());
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    card.configure_axis(static_cast<unsigned>(i), planner::settings_of(machine.axes[i]));
-  }
-  std::size_t motor = machine.axes.size();
-  for (const std::size_t axis : machine.second_motors()) {
-    driver::AxisSettings settings = planner::settings_of(machine.axes[axis]);
-    settings.invert_second = machine.axes[axis].second_inverted;
-    card.configure_axis(static_cast<unsigned>(motor++), settings);
+  const kinematics::Kinematics kinematics(machine);
+  for (std::size_t i = 0; i < kinematics.joints(); ++i) {
+    const kinematics::Joint& joint = kinematics.joint(i);
+    driver::AxisSettings settings = planner::settings_of(machine.axes[joint.settings]);
+    settings.invert_second = joint.inverted;
+    card.configure_axis(static_cast<unsigned>(i), settings);
   }
   constexpr double kNanoseconds = 1e9;
   const double slowest = driver::Card::kSlowestSlew * kNanoseconds / card.identification().clock_hz;

@@ -41,8 +41,8 @@ DeviationMeter::Path DeviationMeter::arc_in_chords() const {
   Path path;
   path.arc = path.of_machine = true;
   path.axis_count = 2;
-  path.axes[0] = block_.axis_x;
-  path.axes[1] = block_.axis_y;
+  path.axes[0] = block_.joint_x;
+  path.axes[1] = block_.joint_y;
   path.target[0] = static_cast<double>(block_.centre_x) / kCentreScale;
   path.target[1] = static_cast<double>(block_.centre_y) / kCentreScale;
   const auto radius = [&](const planner::Pulses& at) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "second_motors.hpp"
 #include "trammel/card_map.hpp"
 
 namespace trammel::run {
@@ -84,7 +83,7 @@ void Jog::send_line() {
   const std::uint64_t left = path_->ticks - sent_ticks_;
   // No line is shorter than the others.
   const std::uint64_t ticks = left < 2 * line_ticks_ ? left : line_ticks_;
-  stream_->put(SecondMotors(machine_).with(line_of(*path_, sent_ticks_, sent_ticks_ + ticks)));
+  stream_->put(line_of(*path_, sent_ticks_, sent_ticks_ + ticks));
   sent_ticks_ += ticks;
 }
 

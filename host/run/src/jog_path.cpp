@@ -28,30 +28,45 @@ struct Allowed {
   double pulses = 0;                                              // of the finest axis, a mm of path
 };
 
-// How far an axis may go in a direction, pulses; whole ones within the soft limits.
-double room(const machine::MachineAxis& axis, std::int64_t here, bool upwards) {
-  const double limit = upwards ? std::floor(axis.max * axis.steps_per_mm) : -std::ceil(axis.min * axis.steps_per_mm);
-  return std::min(limit - static_cast<double>(upwards ? here : -here), kMostPulses);
+// How far an axis may go in a direction, in the finest steps that move it; whole ones within the soft limits.
+double room(const machine::MachineAxis& axis, double finest, double here, bool upwards) {
+  const double limit = upwards ? std::floor(axis.max * finest) : -std::ceil(axis.min * finest);
+  return std::min(limit - (upwards ? here : -here) * finest, kMostPulses);
 }
 
-Allowed allowed(const machine::Machine& machine, const driver::CardTiming& card, const planner::Pulses& here,
-                const gcode::Coordinates& direction) {
+// What the joints allow along a direction.
+void limit_joints(const kinematics::Kinematics& kinematics, const driver::CardTiming& card,
+                  const gcode::Coordinates& direction, Allowed& result) {
+  for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {
+    const double share = std::abs(kinematics.joint_rate(joint, direction));
+    if (share == 0) continue;
+    const kinematics::Joint& of = kinematics.joint(joint);
+    const double shaper = kShaperShare * card.clock_hz / card.pulse_period[joint] / of.steps_per_mm;
+    result.speed = std::min(result.speed, std::min(of.limits.velocity, shaper) / share);
+    result.acceleration = std::min(result.acceleration, of.limits.acceleration / share);
+    result.pulses = std::max(result.pulses, share * of.steps_per_mm);
+  }
+}
+
+Allowed allowed(const machine::Machine& machine, const kinematics::Kinematics& kinematics,
+                const driver::CardTiming& card, const planner::Pulses& here, const gcode::Coordinates& direction) {
   Allowed result;
+  const gcode::Coordinates at = kinematics.coordinates(here);
   for (std::size_t a = 0; a < machine.axes.size(); ++a) {
     if (direction[a] == 0) continue;
     const machine::MachineAxis& axis = machine.axes[a];
     const double share = std::abs(direction[a]);
-    const double shaper = kShaperShare * card.clock_hz / card.pulse_period[a] / axis.steps_per_mm;
-    const double pulses = room(axis, here[a], direction[a] > 0);
+    const double finest = kinematics.finest(a);
+    const double pulses = room(axis, finest, at[a], direction[a] > 0);
     if (pulses < 1) {
       throw driver::ArgumentError(fmt::format("jog: axis {} stands at its soft limit, {:g} mm", axis.letter,
                                               direction[a] > 0 ? axis.max : axis.min));
     }
-    result.speed = std::min(result.speed, std::min(axis.max_velocity, shaper) / share);
+    result.speed = std::min(result.speed, axis.max_velocity / share);
     result.acceleration = std::min(result.acceleration, axis.max_acceleration / share);
-    result.length = std::min(result.length, pulses / axis.steps_per_mm / share);
-    result.pulses = std::max(result.pulses, share * axis.steps_per_mm);
+    result.length = std::min(result.length, pulses / finest / share);
   }
+  limit_joints(kinematics, card, direction, result);
   return result;
 }
 
@@ -63,8 +78,8 @@ double norm(const machine::Machine& machine, const gcode::Coordinates& vector) {
 }
 
 // At rest at its end; `length` is the path's, `limits` what holds along it.
-JogPath made(const machine::Machine& machine, const driver::CardTiming& card, const gcode::Coordinates& direction,
-             double length, double speed, const Allowed& limits) {
+JogPath made(const kinematics::Kinematics& kinematics, const driver::CardTiming& card,
+             const gcode::Coordinates& direction, double length, double speed, const Allowed& limits) {
   JogPath path;
   path.length = length;
   path.speed = speed;
@@ -74,11 +89,13 @@ JogPath made(const machine::Machine& machine, const driver::CardTiming& card, co
       std::max(std::min(kTicksPerPulse, kMostTickRate * card.clock_hz / rate), kLeastTickRate * card.clock_hz / rate);
   const double ticks = std::clamp(std::round(per_pulse * limits.pulses * length), kLeastPathTicks, kMostTicks);
   path.ticks = static_cast<std::uint64_t>(ticks);
-  for (std::size_t a = 0; a < machine.axes.size(); ++a) {
+  gcode::Coordinates way{};
+  for (std::size_t a = 0; a < kinematics.axes(); ++a) way[a] = direction[a] * length;
+  for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {
     // Towards zero: never beyond a limit.
     const double slack = 1e-9;
-    path.pulses[a] = static_cast<std::int64_t>(direction[a] * length * machine.axes[a].steps_per_mm * (1 + slack));
-    if (path.pulses[a] != 0) path.mask = static_cast<std::uint8_t>(path.mask | 1U << a);
+    path.pulses[joint] = static_cast<std::int64_t>(kinematics.pulse_rate(joint, way) * (1 + slack));
+    if (path.pulses[joint] != 0) path.mask = static_cast<std::uint8_t>(path.mask | 1U << joint);
   }
   if (path.mask == 0)
     throw driver::ArgumentError(fmt::format("jog: {:g} mm are less than a pulse of any axis", length));
@@ -114,12 +131,13 @@ JogPath jog_path(const machine::Machine& machine, const driver::CardTiming& card
   const double speed = norm(machine, velocity);
   gcode::Coordinates direction{};
   for (std::size_t a = 0; a < machine.axes.size(); ++a) direction[a] = velocity[a] / speed;
-  const Allowed limits = allowed(machine, card, here, direction);
+  const kinematics::Kinematics kinematics(machine);
+  const Allowed limits = allowed(machine, kinematics, card, here, direction);
   const double ramps = limits.speed * limits.speed / limits.acceleration;  // mm, both of them
   if (limits.length < 2 * ramps) {
-    return made(machine, card, direction, limits.length, std::min(speed, limits.speed), limits);
+    return made(kinematics, card, direction, limits.length, std::min(speed, limits.speed), limits);
   }
-  JogPath path = made(machine, card, direction, limits.length, limits.speed, limits);
+  JogPath path = made(kinematics, card, direction, limits.length, limits.speed, limits);
   if (path.pieces.size() == 3) {
     // At full rate from the first tick on: the ratio rises from 0.
     path.pieces[1].ticks += path.pieces[0].ticks;
@@ -137,8 +155,9 @@ JogPath jog_path(const machine::Machine& machine, const driver::CardTiming& card
   const double length = norm(machine, distance);
   gcode::Coordinates direction{};
   for (std::size_t a = 0; a < machine.axes.size(); ++a) direction[a] = distance[a] / length;
-  const Allowed limits = allowed(machine, card, here, direction);
-  return made(machine, card, direction, std::min(length, limits.length), std::min(speed, limits.speed), limits);
+  const kinematics::Kinematics kinematics(machine);
+  const Allowed limits = allowed(machine, kinematics, card, here, direction);
+  return made(kinematics, card, direction, std::min(length, limits.length), std::min(speed, limits.speed), limits);
 }
 
 }  // namespace trammel::run

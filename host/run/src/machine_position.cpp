@@ -1,26 +1,21 @@
 #include "trammel/run/machine_position.hpp"
 
-#include "trammel/planner/block_builder.hpp"
-
 namespace trammel::run {
 
 void MachinePosition::look(const driver::Snapshot& now) {
-  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    pulses_[axis] += driver::pulses_between(last_.position[axis], now.position[axis]);
+  for (std::size_t joint = 0; joint < kinematics_.joints(); ++joint) {
+    pulses_[joint] += driver::pulses_between(last_.position[joint], now.position[joint]);
   }
   last_ = now;
 }
 
+// Joints that do not move with the axis keep their pulses.
 void MachinePosition::set(std::size_t axis, double millimetres) {
-  pulses_[axis] = planner::to_pulses(millimetres, machine_.axes[axis].steps_per_mm);
-}
-
-gcode::Coordinates MachinePosition::millimetres() const {
-  gcode::Coordinates result{};
-  for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    result[axis] = static_cast<double>(pulses_[axis]) / machine_.axes[axis].steps_per_mm;
+  gcode::Coordinates at = kinematics_.coordinates(pulses_);
+  at[axis] = millimetres;
+  for (std::size_t joint = 0; joint < kinematics_.joints(); ++joint) {
+    if ((kinematics_.axes_of(joint) >> axis & 1U) != 0) pulses_[joint] = kinematics_.pulses(joint, at);
   }
-  return result;
 }
 
 }  // namespace trammel::run

@@ -20,6 +20,7 @@ class Pipeline {
         reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
         blocks_(reader_, machine, planner::with_arcs_by(card, settings.arcs), reader_.position()),
         machine_(machine),
+        kinematics_(machine),
         card_(card),
         planning_({settings.single_block, settings.profile}) {
     planner_.emplace(blocks_, machine_, card_, planning_);
@@ -40,7 +41,7 @@ class Pipeline {
     planner_.emplace(blocks_, machine_, card_, planning_);
     return motion;
   }
-  // Goes on behind the probe, machine coordinates in pulses.
+  // Goes on behind the probe, pulses by joint.
   void end_probe(const planner::Pulses& edge, const planner::Pulses& rest, bool tripped) {
     reader_.probed(millimetres(edge), millimetres(rest), tripped);
     go_on_at(rest);
@@ -52,13 +53,8 @@ class Pipeline {
   }
   std::size_t lines_on_probes() const { return reader_.lines_on_probes(); }
   std::map<int, double> parameters() const { return reader_.parameters(); }
-  gcode::Coordinates millimetres(const planner::Pulses& pulses) const {
-    gcode::Coordinates at{};
-    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-      at[axis] = static_cast<double>(pulses[axis]) / machine_.axes[axis].steps_per_mm;
-    }
-    return at;
-  }
+  gcode::Coordinates millimetres(const planner::Pulses& pulses) const { return kinematics_.coordinates(pulses); }
+  const kinematics::Kinematics& kinematics() const { return kinematics_; }
 
   const std::string& file() const { return lines_->name(); }
   const planner::Pulses& start() const { return blocks_.start(); }
@@ -79,6 +75,7 @@ class Pipeline {
   gcode::Reader reader_;
   planner::BlockBuilder blocks_;
   const machine::Machine& machine_;
+  kinematics::Kinematics kinematics_;
   planner::CardLimits card_;
   planner::PlannerSettings planning_;
   std::optional<planner::Planner> planner_;  // of the program up to the next probe

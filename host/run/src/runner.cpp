@@ -8,7 +8,6 @@
 #include "line_ring.hpp"
 #include "pipeline.hpp"
 #include "plan_gatherer.hpp"
-#include "second_motors.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/configure.hpp"
 
@@ -32,7 +31,6 @@ class ProgramStream final : private driver::CommandSink {
       : pipeline_(pipeline),
         observers_(observers),
         machine_(machine),
-        seconds_(machine),
         single_block_(single_block),
         card_(card),
         before_(card.snapshot()),
@@ -107,11 +105,10 @@ class ProgramStream final : private driver::CommandSink {
     probes_.push_back({motion.line, tripped, pipeline_.millimetres(edge)});
     pipeline_.end_probe(edge, rest, tripped);
   }
-  // By axis of the machine.
   planner::Pulses machine_position(const driver::Snapshot& at) const {
     planner::Pulses position = pipeline_.start();
-    for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-      position[axis] += driver::pulses_between(before_.position[axis], at.position[axis]);
+    for (std::size_t joint = 0; joint < pipeline_.kinematics().joints(); ++joint) {
+      position[joint] += driver::pulses_between(before_.position[joint], at.position[joint]);
     }
     return position;
   }
@@ -131,12 +128,7 @@ class ProgramStream final : private driver::CommandSink {
       for (Observer* observer : observers_) observer->sending(planned_);
       first_of_block_ = false;
     }
-    const auto* line = std::get_if<driver::LineCommand>(&command);
-    if (line != nullptr && !seconds_.empty()) {
-      send(driver::Command(seconds_.with(*line)));
-    } else {
-      send(command);
-    }
+    send(command);
   }
   void send(const driver::Command& command) {
     announce(command);
@@ -157,6 +149,7 @@ class ProgramStream final : private driver::CommandSink {
     // 200 looks a second: the queues hold far more than 5 ms of motion, and every look costs a simulation bus clocks.
     constexpr std::uint32_t kLooksPerSecond = 200;
     driver::StreamOptions options;
+    options.opens_in_hold = true;  // an operator's
     options.poll_clocks = std::max<std::uint64_t>(64, card_.identification().clock_hz / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
       lines_.begun(progress.geometry_begun);
@@ -177,7 +170,6 @@ class ProgramStream final : private driver::CommandSink {
   Pipeline& pipeline_;
   const std::vector<Observer*>& observers_;
   const machine::Machine& machine_;
-  SecondMotors seconds_;
   bool single_block_;
   std::size_t line_ = 0;  // of the block under way
   driver::Card& card_;
@@ -205,7 +197,7 @@ Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planne
     : lines_(std::move(lines)), machine_(machine), card_(card), settings_(settings) {}
 
 const Plan& Runner::plan() {
-  Pipeline pipeline(lines_, machine_, planning_limits(card_, machine_), settings_);
+  Pipeline pipeline(lines_, machine_, card_, settings_);
   PlanGatherer gatherer(pipeline);
   NoSink sink;
   std::uint64_t commands = 0;
@@ -237,7 +229,7 @@ void Runner::require_planned_for(driver::Card& card) const {
 Outcome Runner::run(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, planning_limits(card_, machine_), settings_);
+  Pipeline pipeline(lines_, machine_, card_, settings_);
   ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block);
   const planner::Pulses end = stream.run();
   if (plan_.probes == 0 && (stream.sent() != plan_.commands || end != plan_.end)) {
@@ -253,7 +245,7 @@ Outcome Runner::run(driver::Card& card) {
 Outcome Runner::stream(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, planning_limits(card_, machine_), settings_);
+  Pipeline pipeline(lines_, machine_, card_, settings_);
   PlanGatherer gatherer(pipeline);
   std::vector<Observer*> observers = observers_;
   observers.push_back(&gatherer);
@@ -271,19 +263,19 @@ Outcome Runner::stream(driver::Card& card) {
 // Throws unless the card has counted what the program says.
 Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, const planner::Pulses& end) const {
   const driver::Snapshot after = card.snapshot();
-  const SecondMotors motors(machine_);
+  const kinematics::Kinematics kinematics(machine_);
   Outcome outcome;
-  for (std::size_t motor = 0; motor < machine_.motors(); ++motor) {
-    const std::size_t axis = motors.axis_of(motor);
-    const std::int64_t counted = driver::pulses_between(before.position[motor], after.position[motor]);
-    const std::int64_t planned = end[axis] - plan_.start[axis];
+  for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {
+    const std::int64_t counted = driver::pulses_between(before.position[joint], after.position[joint]);
+    const std::int64_t planned = end[joint] - plan_.start[joint];
     if (counted != planned) {
       throw std::runtime_error(
-          fmt::format("axis {}: the card ended at pulse {}, the program at {}", motor, counted, planned));
+          fmt::format("axis {}: the card ended at pulse {}, the program at {}", joint, counted, planned));
     }
     outcome.counted.push_back(counted);
-    if (motor == axis) outcome.final_position.push_back(end[axis]);
+    outcome.final_position.push_back(end[joint]);
   }
+  outcome.final_coordinates = kinematics.coordinates(end);
   if (card_map::has_engine(card.identification().engines, card_map::engine::kUnderrunHold)) {
     outcome.under_runs = card.read(card_map::reg::kUnderruns);
   }

@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "csv.hpp"
 
 namespace trammel::run {
 
-StepRecorder::StepRecorder(const Options& options)
+StepRecorder::StepRecorder(const Options& options, kinematics::Kinematics kinematics)
     : options_(options),
-      steps_(options.steps_per_mm.size()),
-      position_(options.steps_per_mm.size()),
-      path_position_(options.steps_per_mm.size()),
+      kinematics_(std::move(kinematics)),
+      steps_(kinematics_.joints()),
+      position_(kinematics_.joints()),
       speed_(options.clock_hz) {
+  for (std::size_t joint = 0; joint < kinematics_.joints(); ++joint) {
+    step_length_[joint] = kinematics_.step_length(joint);
+  }
   if (options.steps != nullptr) step_list_ = std::make_unique<CsvWriter>(*options.steps, "cycle,axis,direction");
   if (options.path_steps != nullptr) {
     path_step_list_ = std::make_unique<CsvWriter>(*options.path_steps, "command,tick,axis,direction");
@@ -24,18 +28,15 @@ StepRecorder::StepRecorder(const Options& options)
 StepRecorder::~StepRecorder() = default;
 
 Point StepRecorder::millimetres() const {
-  Point point{};
-  for (std::size_t axis = 0; axis < std::min<std::size_t>(3, path_position_.size()); ++axis) {
-    point[axis] = static_cast<double>(path_position_[axis]) / options_.steps_per_mm[axis];
-  }
-  return point;
+  const kinematics::Coordinates at = kinematics_.coordinates(path_position_);
+  return {at[0], at[1], at[2]};
 }
 
 void StepRecorder::pin_step(const driver::PinStep& step) {
   ++steps_[step.axis];
   position_[step.axis] += step.direction;
   if (step_list_) step_list_->row({static_cast<std::int64_t>(step.cycle), step.axis, step.direction});
-  if (options_.plot && step.axis < 3) speed_.add(step.cycle, step.axis, 1.0 / options_.steps_per_mm[step.axis]);
+  if (options_.plot && step.axis < 3) speed_.add(step.cycle, step.axis, step_length_[step.axis]);
 }
 
 void StepRecorder::point_of_path() {

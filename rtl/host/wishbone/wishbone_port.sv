@@ -21,6 +21,10 @@ module wishbone_port #(
     output logic [register_access_pkg::WIDTH-1:0] access_o,
     input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
 );
+  if (Pipelined < 0 || Pipelined > 1) begin : gen_wrong_kind
+    ERROR_Pipelined_must_be_0_or_1 error ();
+  end
+
   logic        busy_q;
   logic        wanted_q;  // the master still waits for the answer
   logic        request_q;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "build_numbers.hpp"
 #include "lockstep_card.hpp"
 
 namespace trammel::test {
@@ -14,11 +15,7 @@ inline sim::LockstepCard card_under_test(unsigned axes, std::uint64_t seed, std:
   config.engines = model::RegisterFile::kMostEngines;
   config.axes = axes;
   config.idle_level = idle_level & ((1U << 2 * axes) - 1);
-  if (axes == 3) {  // sim/CMakeLists.txt
-    config.build_id = 0x89AB'CDEF;
-    config.build_dirty = true;
-    config.board_id = 0x7654'3210;
-  }
+  sim::set_build_numbers(config);
   return {sim::make_verilated_card(axes, {config.clock_hz, config.idle_level}, std::nullopt), config, seed};
 }
 

@@ -39,7 +39,7 @@ inline driver::FeedCommand feed(std::uint64_t ticks, double clocks) {
 template <class Random>
 driver::ArcCommand random_arc(Random&& random, unsigned axes) {
   driver::ArcGeometry arc;
-  const auto radius = static_cast<std::int32_t>(1 + random(20));
+  const auto radius = static_cast<std::int32_t>(2 + random(19));
   arc.clockwise = random(2) == 0;
   arc.centre_x = -radius * driver::kCentreUnitsPerPulse;
   const bool whole = random(3) == 0;

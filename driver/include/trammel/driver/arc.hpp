@@ -4,8 +4,9 @@
 // Algorithms"), or, in 8 directions, to where |F| is least, and ends on the commanded end point whatever the rounding
 // of start, end and centre. Position is never in floating point; the sweep only tells a short way from the same way and
 // a full turn. Pure functions, thread-safe. Every function throws std::invalid_argument, naming the value, for what the
-// card cannot do: a radius below one pulse or above the bounds here, an ellipse's start or end off the curve, no step
-// to make, or more turns than its counters hold.
+// card cannot do: a radius below 1.5 pulses or a semi-axis below 2 (in 8 directions 1; smaller ones may pass over the
+// centre), a radius above the bounds here, an ellipse's start or end off the curve, no step to make, or more turns than
+// its counters hold.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +44,7 @@ struct ArcGeometry {
 
 // An arc of the ellipse (x/a)^2 + (y/b)^2 = 1 about a centre that lies on a whole pulse.
 struct EllipseGeometry {
-  std::int64_t semi_x = 0;   // a, pulses, 1 .. 2^20
+  std::int64_t semi_x = 0;   // a, pulses, 2 .. 2^20; in 8 directions from 1 on
   std::int64_t semi_y = 0;   // b
   std::int64_t start_x = 0;  // from the centre to the start point, pulses; rounded from the curve
   std::int64_t start_y = 0;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace trammel::driver {
 
@@ -31,7 +32,8 @@ class Bus {
   // Throws LinkError, with what the transport knows, when the link fails: which accesses were made is then not known.
   virtual std::size_t transfer(Access* accesses, std::size_t count) = 0;
 
-  // Returns after at least `time` (>= 0): a sleep with hardware, clocks in simulation.
+  // Returns after at least `time` (>= 0): a sleep with hardware, clocks in simulation. Earlier only where the check of
+  // an InterruptScope ends the call that sleeps.
   virtual void sleep(std::chrono::nanoseconds time) = 0;
 
   // Whether a refusal shows in transfer(). Where it does not (posted writes), transfer() gives back `count`, and the
@@ -47,6 +49,9 @@ class Bus {
     sleep(longest);
     return false;
   }
+
+  // Who has made the card hold, as far as the transport knows: for messages; empty where it does not.
+  virtual std::string hold_origin() const { return {}; }
 
  protected:
   Bus() = default;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace trammel::driver {
 
@@ -27,6 +28,9 @@ class ByteLink {
   // A clock that only rises, and a wait by it.
   virtual std::chrono::nanoseconds now() const = 0;
   virtual void sleep(std::chrono::nanoseconds time) = 0;
+
+  // As of Bus.
+  virtual std::string hold_origin() const { return {}; }
 
  protected:
   ByteLink() = default;

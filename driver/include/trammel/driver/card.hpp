@@ -105,6 +105,11 @@ constexpr std::int32_t pulses_between(std::int32_t from, std::int32_t to) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
 }
 
+// A count of the card, which has 32 bits, carried on from `before`: for less than 2^32 more.
+constexpr std::uint64_t count_after(std::uint64_t before, std::uint32_t counter) {
+  return before + (counter - static_cast<std::uint32_t>(before));
+}
+
 // Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".
 std::string describe_faults(std::uint32_t faults);
 // Name of a refusal reason and what it means.
@@ -152,6 +157,10 @@ class Card {
   // A hold: slews the time base to 0 (or back to its ratio), once the fixed pieces that are under way have ended.
   // Nothing is lost; time-outs do not run in a hold.
   void set_hold(bool hold);
+  // Takes over a card that another host has left: ends a hold that stands, and drops what is left of a path on which
+  // the card holds. Gives back the state at rest where something was dropped. Throws StateError, and changes nothing,
+  // where the card moves and does not hold: somebody else moves it. Else errors as stop().
+  std::optional<Snapshot> take_over();
   // Longest time that a step may wait for the one before it; longer is a step fault. 1 .. 65535 clocks, rounded up.
   void set_longest_step_wait(std::chrono::nanoseconds longest);
 
@@ -176,15 +185,16 @@ class Card {
 
   Status status();
   bool busy() { return status().busy; }
-  // Waits until the card is idle, and then for its identity: StateError if it was reset since. Throws FaultError once
-  // it is faulted, TimeoutError after `timeout` of card time in which it was not held. Where the ratio is below 1 the
-  // timeout is stretched by as much; a ratio of 0 is a hold.
+  // Waits until the card is idle, and then for its identity: StateError if it was reset since. Throws HeldError where
+  // it stands in a hold that this object has not set, FaultError once it is faulted, TimeoutError after `timeout` of
+  // card time in which it was not held. Where the ratio is below 1 the timeout is stretched by as much; a ratio of 0 is
+  // a hold.
   void wait_until_idle(std::chrono::nanoseconds timeout);
 
   // Inputs and outputs, of a card with path commands; else ArgumentError. Bit n: input n after its polarity, output n.
   std::uint16_t inputs();
   std::uint16_t outputs();
-  unsigned inputs_present();  // how many it has, 1 .. 16
+  unsigned inputs_present();  // how many it has, 1 .. 16; IdentificationError for another number
   unsigned outputs_present();
   // Which inputs are inverted.
   void set_input_polarity(std::uint16_t inverted);
@@ -238,13 +248,18 @@ class Card {
   void check_identity();
   // Throws FaultError if the card is faulted; reads FAULT only if `status` says so.
   void throw_if_faulted(const Status& status, std::string_view context);
+  // Throws HeldError if the card holds, whoever has made it.
+  void throw_if_held(std::string_view context);
+  // Whether set_hold(true) of this object, or a request, was its last word.
+  bool holds_by_this_program() const { return own_hold_.value_or(false); }
   // Throws what a refusal means: FaultError for the reason FAULTED, else RefusedError.
   [[noreturn]] void throw_refused(const Refusal& refusal, std::string_view context);
   // Somebody else has set this ratio.
   void note_ratio(PieceClass piece_class, std::uint32_t ratio) {
     ratios_[static_cast<std::size_t>(piece_class)] = ratio;
   }
-  // Does what other threads have asked for. Throws StateError after an abort, StoppedError after a stop.
+  // Does what other threads have asked for. Throws StateError after an abort, StoppedError after a stop, also after the
+  // one that an InterruptScope asks for.
   void serve_requests();
   // Lets up to `clocks` pass: fewer only where the bus has an interrupt and the card is faulted, refuses something or
   // gets to what `wake` asks for, by the bits of IRQ_ENABLE. True for the interrupt.
@@ -273,6 +288,8 @@ class Card {
   explicit Card(Bus& bus) : bus_(&bus), requests_(std::make_shared<Requests>()) {}
   void write(std::uint32_t address, std::uint32_t value, std::string_view context);
   void wait_for_rest(std::uint64_t limit, bool held_is_rest);
+  [[noreturn]] void stop_on_request(const char* why);
+  unsigned pins_present(std::uint32_t mask, std::uint32_t shift, const char* pins);
   std::size_t checked_transfer(Access* accesses, std::size_t count);
   void confirmed_transfer(Access* accesses, std::size_t count, bool confirm, std::string_view context);
   std::optional<Refusal> latched_refusal();
@@ -288,6 +305,7 @@ class Card {
   Identification identification_;
   CardTiming timing_;
   std::array<std::uint32_t, kPieceClasses> ratios_{kFullRatio, kFullRatio, kFullRatio};
+  std::optional<bool> own_hold_;             // HOLD as this object has written it last
   std::optional<Refusal> earlier_;           // taken from the card and not reported yet
   std::optional<std::uint32_t> irq_enable_;  // as written last, and so the watermarks
   std::optional<std::uint32_t> geometry_watermark_;

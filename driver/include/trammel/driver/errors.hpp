@@ -64,8 +64,15 @@ class StateError : public Error {
   using Error::Error;
 };
 
-// A call that waited ended because somebody asked for a stop on the path (Card::request_stop()). The card is at rest
-// and empty, every pulse has come out.
+// A call that would wait for motion found the card in a hold that was there before it: nothing would move. The message
+// says who left it so, where that is known. Nothing was done; Card::take_over() ends it.
+class HeldError : public StateError {
+ public:
+  using StateError::StateError;
+};
+
+// A call that waited ended because somebody asked for a stop on the path (Card::request_stop(), or the check of an
+// InterruptScope). The card is at rest and empty, every pulse has come out.
 class StoppedError : public StateError {
  public:
   // Commands begun from the geometry queue when it stopped, since the stream was opened.
@@ -80,6 +87,13 @@ class StoppedError : public StateError {
 
 // A value is outside its range. Thrown before any access to the bus.
 class ArgumentError : public Error {
+ public:
+  using Error::Error;
+};
+
+// The check of an InterruptScope ended a wait before the card could be stopped: for an answer of a silent link (what
+// became of the request is not known), or for the end of Card::stop().
+class InterruptedError : public Error {
  public:
   using Error::Error;
 };

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "trammel/driver/bus.hpp"
 #include "trammel/driver/byte_link.hpp"
@@ -40,6 +41,7 @@ class FrameBus final : public Bus {
   std::size_t transfer(Access* accesses, std::size_t count) override;
   void sleep(std::chrono::nanoseconds time) override { link_.sleep(time); }
   bool reports_refusals() const override { return true; }
+  std::string hold_origin() const override { return link_.hold_origin(); }
 
   // After transfer() has thrown a LinkError: connects again, and says how many of its accesses were made; the data of
   // reads among them are lost. Throws LinkError when the card does not answer, or was reset or used by somebody else

@@ -108,7 +108,8 @@ OneShotPlan start_line(Card& card, const Displacement& displacement, std::chrono
                        const LineLimits& limits = {});
 OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed speed, const LineLimits& limits = {});
 
-// Runs all parts and returns when the last has ended. Throws FaultError; TimeoutError when a part is not over
+// Runs all parts and returns when the last has ended. Throws HeldError, before anything moves, on a card that holds or
+// whose ratio is 0; a hold that comes later is waited out. Throws FaultError; TimeoutError when a part is not over
 // `patience` (card time) after its length has passed at the ratio that the time base has, holds not counted; StateError
 // when the card was reset, or aborted by Card::request_abort().
 void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds patience = std::chrono::seconds(1));

@@ -61,8 +61,9 @@ class PositionStream {
   };
 
   // Opens the stream where the axes stand: what is queued is dropped, numbers begin anew. A missing period stops on a
-  // ramp. Throws ArgumentError for options out of range or a card without the engine, StateError if the card is busy or
-  // its ratio is not the full one, FaultError if it is faulted. `card` must outlive the stream.
+  // ramp. Throws ArgumentError for options out of range or a card without the engine, HeldError if it stands in a hold
+  // that this program has not set, StateError if the card is busy or its ratio is not the full one, FaultError if it is
+  // faulted. `card` must outlive the stream.
   explicit PositionStream(Card& card, const PositionStreamOptions& options = {});
 
   // One period: the axes are at `targets` when `clocks` have passed since the end of the period before.
@@ -96,6 +97,7 @@ class PositionStream {
   Positions position() const;
 
  private:
+  friend struct PositionStreamCount;  // of the tests: 2^32 lines take weeks
   using Pulses = std::array<std::int64_t, card_map::kMaxAxes>;
   // A line to be sent, and what is left then.
   struct Line {
@@ -110,7 +112,7 @@ class PositionStream {
   };
   // The card with nothing stale.
   struct Look {
-    std::uint32_t begun = 0;        // lines
+    std::uint64_t begun = 0;        // lines
     std::uint32_t stale_ticks = 0;  // of the line before the one under way
   };
 
@@ -123,6 +125,7 @@ class PositionStream {
   void put_feed();
   void put(const Command& command);
   Look transfer_and_look();
+  [[noreturn]] void throw_not_ours(std::uint32_t begun);
   void gone_beyond(std::uint64_t ticks);
   void expect_positions(const std::array<std::int32_t, card_map::kMaxAxes>& seen) const;
   std::int32_t at_card(unsigned axis, std::int64_t pulses) const;
@@ -150,8 +153,8 @@ class PositionStream {
   LineCommand last_;                   // as it was sent
   bool pending_ = false;               // whether the card goes on beyond it is not known yet
 
-  std::uint32_t lines_ = 0;          // sent since start()
-  std::uint32_t begun_ = 0;          // of them, as of the last look
+  std::uint64_t lines_ = 0;          // sent since start()
+  std::uint64_t begun_ = 0;          // of them, as of the last look
   std::uint64_t longest_ticks_ = 0;  // of a line
   std::uint32_t geometry_room_ = 0;  // halfwords
   std::uint8_t number_ = 0;          // of the next command

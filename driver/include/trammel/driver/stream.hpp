@@ -52,13 +52,15 @@ struct StreamOptions {
   std::chrono::nanoseconds patience = std::chrono::seconds(1);
   // Called at each look while the stream waits. May throw: the exception passes through, the stream stays usable.
   std::function<void(const StreamProgress&)> progress;
+  // A hold that stands when the stream is opened is waited out, as one that comes later: somebody will end it.
+  bool opens_in_hold = false;
 };
 
 class Stream final : public CommandSink {
  public:
-  // Opens the card's stream: numbers begin at 0, the queues are empty, no refusal is latched. Throws StateError if
-  // the card is busy, FaultError if it is faulted, ArgumentError for a patience that is not positive.
-  // `card` must outlive the stream.
+  // Opens the card's stream: numbers begin at 0, the queues are empty, no refusal is latched. Throws HeldError if the
+  // card stands in a hold that this program has not set, StateError if it is busy, FaultError if it is faulted,
+  // ArgumentError for a patience that is not positive. `card` must outlive the stream.
   explicit Stream(Card& card, StreamOptions options = {});
 
   // Takes a command to send, whole or not at all; it is written now or later. Throws ArgumentError when it does not fit

@@ -75,6 +75,7 @@ class CardServer {
   std::unique_ptr<Pace> pace_;
   frames::Endpoint endpoint_;
   std::vector<Leaving> leaving_;
+  std::string held_by_;  // who has left the card in its hold, and why; empty where it does not hold for that
 };
 
 }  // namespace trammel::serve

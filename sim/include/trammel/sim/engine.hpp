@@ -39,6 +39,7 @@ class Engine : public driver::Bus {
   void write(std::uint32_t address, std::uint32_t value);
 
   virtual void wait(std::uint64_t clocks) = 0;        // runs so many clocks
+  bool wait_or_interrupt(std::uint64_t clocks);       // likewise; false: a driver::InterruptScope has ended it early
   virtual void set_inputs(std::uint16_t levels) = 0;  // at the card's input pins from now on; bit n: input n
   virtual void reset() = 0;                           // as by the card's reset input
   virtual void set_sink(driver::StepSink* sink) = 0;  // nullptr: none; not owned

@@ -21,6 +21,9 @@ class ByteStream {
   virtual std::size_t read(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) = 0;
   // The other end, for messages.
   virtual std::string peer() const = 0;
+  // Whether, since it was asked last, everybody at the other end had let go of it: what has been read since may be
+  // somebody else's.
+  virtual bool changed_hands() { return false; }
 
  protected:
   ByteStream() = default;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "trammel/driver/byte_link.hpp"
 #include "trammel/transport/byte_stream.hpp"
@@ -53,9 +54,17 @@ class StreamLink final : public driver::ByteLink {
     std::string token;  // empty: for reading alone
   };
 
-  // Connects. Throws driver::LinkError: what `open` throws, or why the server refuses. `reopen`: how long it is tried
-  // to open again what was lost.
-  StreamLink(Open open, std::optional<Hello> hello, std::chrono::nanoseconds reopen = std::chrono::seconds(3));
+  struct Options {
+    // How long it is tried to open again what was lost.
+    std::chrono::nanoseconds reopen = std::chrono::seconds(3);
+    // How long the answer to a wait may take, of the host's time, and how often a wait is sent.
+    std::chrono::nanoseconds answer = std::chrono::seconds(20);
+    unsigned sends = 2;
+  };
+
+  // Connects. Throws driver::LinkError: what `open` throws, or why the server refuses.
+  StreamLink(Open open, std::optional<Hello> hello) : StreamLink(std::move(open), std::move(hello), Options()) {}
+  StreamLink(Open open, std::optional<Hello> hello, const Options& options);
 
   // Whether a server takes what moves; otherwise it refuses every write but the order for a snapshot.
   bool may_move() const { return may_move_; }
@@ -68,21 +77,25 @@ class StreamLink final : public driver::ByteLink {
   void restart() override;
   std::chrono::nanoseconds time_of(std::size_t) const override { return {}; }
   std::chrono::nanoseconds now() const override;
-  // With a hello in card time.
+  // With a hello in card time. Ends early where an InterruptScope's check ends the call.
   void sleep(std::chrono::nanoseconds time) override;
+  // Whom the server names in its hello.
+  std::string hold_origin() const override { return hold_origin_; }
 
  private:
   void connect();
   void say_hello();
   void wait(std::chrono::nanoseconds time);
-  void await(const std::string& text);
+  bool answered(const std::string& text);
 
   Open open_;
   std::optional<Hello> hello_;
-  std::chrono::nanoseconds reopen_;
+  Options options_;
+  std::uint32_t waits_ = 0;  // each has a number, so that a late answer is not taken for the next one's
   bool given_up_ = false;
   std::unique_ptr<ByteStream> stream_;  // nullptr: lost
   bool may_move_ = true;
+  std::string hold_origin_;
   std::uint64_t reconnections_ = 0;
 };
 

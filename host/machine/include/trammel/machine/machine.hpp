@@ -90,9 +90,26 @@ struct Probe {
   bool touched_level = true;  // of the input, when it touches
 };
 
+// How the card's axes move the machine's (trammel/kinematics/kinematics.hpp): the table [kinematics].
+//   cartesian  a joint for each axis
+//   corexy     the first two axes of the card are the motors A = X + Y and B = X - Y of crossed belts; steps_per_mm and
+//              step times of X are A's, those of Y are B's, mm of belt
+inline constexpr std::array<std::string_view, 2> kKinematics{"cartesian", "corexy"};
+// Along a motor's own length (mm of belt); infinite: the axes' limits alone hold.
+struct JointLimits {
+  double velocity = std::numeric_limits<double>::infinity();      // mm/s
+  double acceleration = std::numeric_limits<double>::infinity();  // mm/s^2
+  double jerk = std::numeric_limits<double>::infinity();          // mm/s^3
+};
+struct MachineKinematics {
+  std::string name{kKinematics[0]};
+  JointLimits motor;  // corexy: of A and of B
+};
+
 struct Machine {
   std::uint32_t clock_hz = 0;     // kSlowestClock .. kFastestClock
   std::vector<MachineAxis> axes;  // in the card's order
+  MachineKinematics kinematics;
   MotionSettings motion;
   MachineOutputs outputs;
   std::vector<Tool> tools;

@@ -8,13 +8,14 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/gcode/motion.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/planner/blender.hpp"
 #include "trammel/planner/speed_plan.hpp"
 
 namespace trammel::planner {
 
-// By axis index, machine coordinates in pulses; within the 32-bit position counters where it is a target.
-using Pulses = std::array<std::int64_t, card_map::kMaxAxes>;
+// By joint, an axis of the card, in pulses; within the 32-bit position counters where it is a target.
+using kinematics::Pulses;
 
 // What keeps a motion below its programmed feed.
 enum class SpeedLimit : std::uint8_t {
@@ -27,8 +28,8 @@ enum class SpeedLimit : std::uint8_t {
 };
 inline constexpr std::size_t kSpeedLimits = 6;
 
-// By axis index, mm a mm of path.
-using Direction = std::array<double, card_map::kMaxAxes>;
+// By axis of the machine, mm a mm of path.
+using kinematics::Direction;
 
 // What goes to the card's geometry queue.
 enum class Geometry : std::uint8_t {
@@ -71,7 +72,7 @@ struct Block {
   Direction exit{};                      // where it ends
   double length = 0;                     // mm
   double curvature = 0;                  // 1/mm, of an arc; below 0 where it runs clockwise
-  double steps_per_mm = 0;               // pulses a mm of path, of the axis that has most
+  double pulses_per_mm = 0;              // of path, of the joint that has most
   std::uint64_t least_ticks = 0;         // feed ticks that the geometry needs
   double speed = 0;                      // a second, the most that axes, card and program allow
   double acceleration = 0;               // a second^2, at any speed up to it
@@ -85,7 +86,11 @@ struct Block {
   bool clockwise = false;
   std::uint8_t axis_x = 0;
   std::uint8_t axis_y = 0;
-  std::int64_t centre_x = 0;  // 1/256 pulses, machine coordinates
+  // kArc, kArcChord: the joints that make it, the direction in which they turn, its centre on them.
+  std::uint8_t joint_x = 0;
+  std::uint8_t joint_y = 0;
+  bool joints_clockwise = false;
+  std::int64_t centre_x = 0;  // 1/256 pulses
   std::int64_t centre_y = 0;
   ExactArc exact;
   bool tilted =

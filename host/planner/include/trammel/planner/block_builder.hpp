@@ -1,9 +1,9 @@
 // From motions to blocks: pulses, length, limits. What a program asks of machine and card is checked here: soft limits,
 // the range of the position counters, dwells. Pulls from the reader and holds one motion. Not thread-safe.
 //
-// Targets become pulses by rounding the absolute target, half away from zero: nothing drifts. Lengths and limits are
-// those of the path before rounding. Limits are smaller by max_override, its square and cube, and by hold_reserve.
-// Feeds hold along X Y Z; without those along U V W, then A B C, then E (as LinuxCNC).
+// Targets become pulses of the joints by rounding the absolute target, half away from zero: nothing drifts. Lengths and
+// limits are those of the path before rounding. Limits are smaller by max_override, its square and cube, and by
+// hold_reserve. Feeds hold along X Y Z; without those along U V W, then A B C, then E (as LinuxCNC).
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "trammel/gcode/reader.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/planner/blender.hpp"
 #include "trammel/planner/block.hpp"
@@ -47,17 +48,22 @@ class BlockBuilder {
 
  private:
   struct Axis {
-    double steps_per_mm;
     double velocity;      // mm/s
     double acceleration;  // mm/s^2
     double jerk;          // mm/s^3
-    double pulse_rate;    // pulses/s, the most that the shaper makes without a pause
     double lowest;        // mm, soft limits
     double highest;
     bool linear;          // X, Y or Z
     unsigned feed_group;  // which feed it counts for: 0 X Y Z, 1 U V W, 2 A B C, 3 E
   };
-  // What the axes of an arc's plane allow in any direction of it.
+  // What a joint of the card allows; velocity, acceleration and jerk infinite where its axes' limits alone hold.
+  struct JointRates {
+    double pulses;        // a second, the most that the shaper makes without a pause
+    double velocity;      // mm/s
+    double acceleration;  // mm/s^2
+    double jerk;          // mm/s^3
+  };
+  // What the axes and joints of an arc's plane allow in any direction of it.
   struct PlaneLimits {
     double velocity;
     double pulse_speed;  // mm/s
@@ -72,14 +78,17 @@ class BlockBuilder {
   bool set_targets(Block& block);
   bool build_line(Block& block);
   bool build_arc(Block& block);
-  bool build_generator_arc(Block& block) const;
-  bool build_accumulator_arc(Block& block);
+  bool build_generator_arc(Block& block, const kinematics::PlaneMap& plane) const;
+  bool build_accumulator_arc(Block& block, const kinematics::PlaneMap& plane);
   bool build_chords(Block& block);
   bool build_tilted(Block& block);
   bool build_dwell(Block& block);
   double measure_line(Block& block, const gcode::Coordinates& way) const;
   static void limit_speed(Block& block, double speed, SpeedLimit limit);
   void limit_line(Block& block) const;
+  void limit_joints(Block& block) const;
+  double finest_in_plane(const Block& block) const;
+  double joint_share(const Block& block, std::size_t joint) const;
   PlaneLimits plane_limits(const Block& block) const;
   void limit_arc(Block& block, double unevenness, double share) const;
   double measure_arc(Block& block) const;
@@ -87,6 +96,7 @@ class BlockBuilder {
   static Direction tangent(const Block& block, double share);
   void limit_pulses(Block& block) const;
   void apply_feed(Block& block, double feed_length) const;
+  std::size_t joint_count() const { return kinematics_.joints(); }
   bool check(std::size_t axis, double mm);
   bool check_arc(const Block& block);
   bool refuse(gcode::ErrorCode code, std::string message);
@@ -96,8 +106,9 @@ class BlockBuilder {
   CardLimits card_;
   std::size_t axis_count_;
   bool jerk_required_ = false;
+  kinematics::Kinematics kinematics_;
   std::array<Axis, card_map::kMaxAxes> axes_{};
-  std::array<double, card_map::kMaxAxes> scales_{};  // steps/mm
+  std::array<JointRates, card_map::kMaxAxes> joints_{};
   Blender blender_;
   PathMotion motion_;
   Pulses start_{};
@@ -108,9 +119,5 @@ class BlockBuilder {
   Probe probe_ = Probe::kNone;
   std::optional<gcode::Error> error_;
 };
-
-// mm (or degrees) to pulses, half away from zero. Sums of decimal fractions miss a half by some 1e-13: they count as
-// it. |mm * steps_per_mm| below 2^52.
-std::int64_t to_pulses(double mm, double steps_per_mm);
 
 }  // namespace trammel::planner

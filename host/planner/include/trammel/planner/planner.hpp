@@ -17,6 +17,7 @@
 #include "trammel/planner/block.hpp"
 #include "trammel/planner/block_builder.hpp"
 #include "trammel/planner/card_limits.hpp"
+#include "trammel/planner/speed_plan.hpp"
 
 namespace trammel::planner {
 
@@ -61,6 +62,9 @@ class Planner {
   // then of no further use.
   bool next(driver::CommandSink& sink, PlannedBlock& planned);
 
+  // Of the speed plan.
+  const PlanWork& work() const;
+
  private:
   class LookAhead;
 
@@ -71,9 +75,8 @@ class Planner {
   void put_arc_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
   void put_chords(const Block& block, std::uint64_t ticks, driver::CommandSink& sink);
 
-  const machine::Machine& machine_;
+  kinematics::Kinematics kinematics_;
   std::unique_ptr<LookAhead> look_ahead_;
-  std::array<double, card_map::kMaxAxes> scales_{};  // steps/mm
   driver::Command line_{driver::LineCommand{}};
   driver::Command piece_{driver::FeedCommand{}};
   driver::Command other_{driver::EndCommand{}};

@@ -2,6 +2,8 @@
 // rotary axes alone).
 #pragma once
 
+#include <cstdint>
+
 namespace trammel::planner {
 
 // Of an arc: acceleration along it and across it, which is turning * v^2, are `whole` together.
@@ -38,6 +40,15 @@ inline double end_speed(const Phase& phase) {
   return phase.speed + phase.duration * (phase.acceleration + phase.duration * phase.jerk / 2);
 }
 
+// What planning has taken so far, in counts that are the same on every host.
+struct PlanWork {
+  std::uint64_t spans = 0;         // pushed
+  std::uint64_t runs = 0;          // finished
+  std::uint64_t windows = 0;       // planned
+  std::uint64_t window_spans = 0;  // in these, summed up
+  std::uint64_t ramps = 0;         // computed for these; where acceleration may jump: looks at a span
+};
+
 // Speeds along a path that is not known to its end. A function of the sequence of spans alone. Not thread-safe.
 class SpeedPlan {
  public:
@@ -52,6 +63,11 @@ class SpeedPlan {
   // The next phase, when the window is full or after finish(); false when a span is wanted first. The lengths of the
   // phases add up to the spans'. In order, without gap.
   virtual bool next(Phase& phase) = 0;
+
+  const PlanWork& work() const { return work_; }
+
+ protected:
+  PlanWork work_;
 };
 
 }  // namespace trammel::planner

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/run/observer.hpp"
 #include "trammel/run/path_points.hpp"
 
@@ -22,7 +23,7 @@ class CommandedCourse final : public Observer {
   const std::vector<Point>& detail() const { return detail_; }
 
  private:
-  std::vector<double> steps_per_mm_;
+  kinematics::Kinematics kinematics_;
   PathPoints points_{10000};
   bool begun_ = false;
   int best_rank_ = 0;

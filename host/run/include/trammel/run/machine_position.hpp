@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "trammel/driver/card.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/planner/block.hpp"
 
@@ -12,19 +13,20 @@ namespace trammel::run {
 
 class MachinePosition {
  public:
-  // The machine stands at 0 where the card does now. `machine` must outlive the object.
-  MachinePosition(const driver::Snapshot& now, const machine::Machine& machine) : machine_(machine), last_(now) {}
+  // The machine stands at 0 where the card does now.
+  MachinePosition(const driver::Snapshot& now, const machine::Machine& machine) : kinematics_(machine), last_(now) {}
 
   // What the card says now. The counters wrap: at least one look in 2^31 pulses of an axis.
   void look(const driver::Snapshot& now);
   // What the machine is told to stand at, mm (degrees), without moving; rounded to a pulse. The last look counts.
   void set(std::size_t axis, double millimetres);
 
+  // By axis of the card; and as the machine's axes stand.
   const planner::Pulses& pulses() const { return pulses_; }
-  gcode::Coordinates millimetres() const;
+  gcode::Coordinates millimetres() const { return kinematics_.coordinates(pulses_); }
 
  private:
-  const machine::Machine& machine_;
+  kinematics::Kinematics kinematics_;
   driver::Snapshot last_;
   planner::Pulses pulses_{};
 };

@@ -80,7 +80,7 @@ struct Plan {
   std::uint64_t commands = 0;  // for the card
   PlannedMotion motion;
   Blends blends;
-  planner::Pulses start{};  // machine coordinates; where the first line begins
+  planner::Pulses start{};  // by axis of the card, from machine zero on; where the first line begins
   planner::Pulses end{};
   std::vector<FeedNotReached> feeds_not_reached;  // one a cause, the cause of most blocks first
   std::map<std::string, std::size_t> accepted;    // words without effect yet and how often
@@ -97,7 +97,8 @@ struct ProbeMade {
 
 struct Outcome {
   std::vector<std::int64_t> counted;         // pulses from the start, by axis of the card, as it counted them
-  std::vector<std::int64_t> final_position;  // pulses, machine coordinates
+  std::vector<std::int64_t> final_position;  // pulses, likewise, from machine zero on
+  gcode::Coordinates final_coordinates{};    // the same as the machine's axes: mm (degrees)
   std::uint64_t commands = 0;                // sent
   std::vector<ProbeMade> probes;
   std::map<int, double> parameters;         // of the program at its end, those that are not 0

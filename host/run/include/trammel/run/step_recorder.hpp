@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "trammel/driver/steps.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/run/deviation_meter.hpp"
 #include "trammel/run/observer.hpp"
 #include "trammel/run/path_points.hpp"
@@ -27,9 +28,9 @@ class StepRecorder final : public driver::StepSink, public Observer {
     TextSink* path_steps = nullptr;  // list of the path's steps: command,tick,axis,direction
     bool plot = false;
     double clock_hz = 0;
-    std::vector<double> steps_per_mm;  // by axis
   };
-  explicit StepRecorder(const Options& options);
+  // `kinematics`: whose joints make the steps; the picture has its coordinates.
+  StepRecorder(const Options& options, kinematics::Kinematics kinematics);
   ~StepRecorder() override;
 
   void sending(const planner::PlannedBlock& planned) override {
@@ -60,12 +61,14 @@ class StepRecorder final : public driver::StepSink, public Observer {
   void point_of_path();
 
   Options options_;
+  kinematics::Kinematics kinematics_;
+  std::array<double, card_map::kMaxAxes> step_length_{};  // mm a pulse, by joint
   std::unique_ptr<CsvWriter> step_list_;
   std::unique_ptr<CsvWriter> path_step_list_;
   DeviationMeter deviation_;
   std::vector<std::uint64_t> steps_;
-  std::vector<std::int64_t> position_;       // at the pins
-  std::vector<std::int64_t> path_position_;  // before the shapers
+  std::vector<std::int64_t> position_;  // at the pins
+  kinematics::Pulses path_position_{};  // before the shapers
   PathPoints executed_{20000};
   PathSpeed speed_;
   std::vector<Point> detail_;
