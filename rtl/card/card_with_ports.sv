@@ -67,10 +67,12 @@ module card_with_ports #(
     // for lockstep; a board leaves it open
     output logic [34*Axes+212:0] observe_o
 );
-  // The reset is registered once for all blocks: it takes effect a clock later, and nothing combinational hangs on the
-  // pin.
+  // The reset is registered once for all blocks: it takes effect a clock later. The ports take the pin as
+  // well: AXI and Wishbone want no answer in the first clock after a reset, even of one clock.
   logic rst_q;
+  logic port_rst;
   always_ff @(posedge clk_i) rst_q <= rst_i;
+  assign port_rst = rst_i || rst_q;
 
   localparam int PORTS = (AxiLite != 0 ? 1 : 0) + (Wishbone != 0 ? 1 : 0) + (Uart != 0 ? 1 : 0) + (Spi != 0 ? 1 : 0);
 
@@ -88,7 +90,7 @@ module card_with_ports #(
       .BreakBits(BreakBits)
   ) hosts (
       .*,
-      .rst_i    (rst_q),
+      .rst_i    (port_rst),
       .request_o(request),
       .access_o (access),
       .ack_i    (ack),

@@ -52,10 +52,12 @@ module trammel_card #(
     // for lockstep; a board leaves it open
     output logic [34*Axes+212:0] observe_o
 );
-  // The reset is registered once for all blocks: it takes effect a clock later, and nothing combinational hangs on the
-  // pin.
+  // The reset is registered once for all blocks: it takes effect a clock later. The port takes the pin as
+  // well: AXI wants RVALID and BVALID low in the first clock after a reset, even of one clock.
   logic rst_q;
+  logic port_rst;
   always_ff @(posedge clk_i) rst_q <= rst_i;
+  assign port_rst = rst_i || rst_q;
 
   logic [47:0] port_access;
   logic        port_ack;
@@ -64,7 +66,7 @@ module trammel_card #(
 
   axi4_lite_port host (
       .*,
-      .rst_i   (rst_q),
+      .rst_i   (port_rst),
       .access_o(port_access),
       .ack_i   (port_ack),
       .error_i (port_error),

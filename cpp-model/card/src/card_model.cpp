@@ -16,7 +16,7 @@ void CardModel::clock(const Inputs& in) {
   core.pins = in.pins;
   const CoreModel::Answer answer = core_.answer();
   core_.clock(core);
-  if (reset_now) return port_.reset();
+  if (reset_now || in.rst) return port_.reset();  // the port also takes the pin
   Axi4LitePort::Inputs bus;
   bus.awvalid = in.awvalid;
   bus.awaddr = in.awaddr;

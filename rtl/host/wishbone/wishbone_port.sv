@@ -38,10 +38,14 @@ module wishbone_port #(
   logic        take;
 
   // A classic master's STB stands until the answer, which is in the clock of the answer as well.
+  // A pipelined one's is taken by a low STALL: high behind a clock of reset, since a card may hold the port in reset for a
+  // clock longer than its hosts.
   if (Pipelined != 0) begin : gen_pipelined
-    assign take = cyc_i && stb_i && !busy_q;
+    logic was_reset_q;
+    always_ff @(posedge clk_i) was_reset_q <= rst_i;
+    assign take = cyc_i && stb_i && !stall_o;
     assign stays = cyc_i;
-    assign stall_o = busy_q;
+    assign stall_o = busy_q || was_reset_q;
   end else begin : gen_classic
     assign take = cyc_i && stb_i && !busy_q && !ack_o && !err_o;
     assign stays = cyc_i && stb_i;

@@ -222,6 +222,29 @@ void guard_behind_a_probe(unsigned axes) {
   expect_all_compared(card, axes, 1000);
 }
 
+// A reset of one clock in each clock of a write and a read whose answers nobody takes.
+void resets_in_accesses(unsigned axes) {
+  sim::LockstepCard card = test::card_under_test(axes, 11, 0);
+  model::CardModel::Inputs ask;
+  ask.awvalid = ask.wvalid = ask.arvalid = true;
+  ask.wstrb = model::Axi4LitePort::kAllStrobes;
+  ask.awaddr = reg::kHoldLimit;
+  ask.wdata = 7;
+  ask.araddr = reg::kAxes;
+  model::CardModel::Inputs reset;
+  reset.rst = true;
+  for (unsigned at = 0; at < 24; ++at) {
+    card.run({}, 300);
+    card.run(ask, at);
+    card.run(reset, 1);
+    card.run(ask, 300);
+    // The answers to what the first clocks after it asked for stand.
+    EXPECT_TRUE(card.model().bus().bvalid && card.model().bus().rvalid) << at;
+    card.run(reset, 1);
+  }
+  expect_all_compared(card, axes, 14'000);
+}
+
 class CardJoins : public testing::TestWithParam<unsigned> {};
 
 TEST_P(CardJoins, AFullQueueMoves) {
@@ -230,6 +253,10 @@ TEST_P(CardJoins, AFullQueueMoves) {
 
 TEST_P(CardJoins, Once) {
   EXPECT_EQ(lockstep::judge([] { joins(GetParam()); }), "");
+}
+
+TEST_P(CardJoins, ResetsInAccesses) {
+  EXPECT_EQ(lockstep::judge([] { resets_in_accesses(GetParam()); }), "");
 }
 
 TEST_P(CardJoins, AProbeAndTheGuard) {

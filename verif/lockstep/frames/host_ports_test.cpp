@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "byte_ports.hpp"
+#include "host_pins.hpp"
 #include "spi_master.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "uart_line.hpp"
@@ -123,20 +124,7 @@ class Bench {
   }
 
   void drive(const HostPorts::Answer& answer) {
-    dut_->awvalid_i = in_.axi.awvalid;
-    dut_->awaddr_i = static_cast<SData>(in_.axi.awaddr);
-    dut_->wvalid_i = in_.axi.wvalid;
-    dut_->wdata_i = in_.axi.wdata;
-    dut_->wstrb_i = in_.axi.wstrb;
-    dut_->bready_i = in_.axi.bready;
-    dut_->arvalid_i = in_.axi.arvalid;
-    dut_->araddr_i = static_cast<SData>(in_.axi.araddr);
-    dut_->rready_i = in_.axi.rready;
-    const model::WishbonePort::Inputs& w = in_.wishbone;
-    dut_->wishbone_i = std::uint64_t{w.cyc} << 50 | std::uint64_t{w.stb} << 49 | std::uint64_t{w.we} << 48 |
-                       std::uint64_t{w.sel} << 44 | std::uint64_t{w.adr} << 32 | w.dat;
-    dut_->rx_i = in_.rx;
-    dut_->spi_i = static_cast<CData>(unsigned{in_.spi.mosi} << 2 | unsigned{in_.spi.cs_n} << 1 | unsigned{in_.spi.sck});
+    drive_hosts(*dut_, in_);
     dut_->ack_i = answer.ack;
     dut_->error_i = answer.error;
     dut_->data_i = answer.data;
@@ -144,13 +132,7 @@ class Bench {
 
   void compare() {
     const model::Axi4LitePort::Outputs& axi = model_.axi();
-    const unsigned axi_rtl = unsigned{dut_->awready_o} | unsigned{dut_->wready_o} << 1 | unsigned{dut_->bvalid_o} << 2 |
-                             unsigned{dut_->arready_o} << 3 | unsigned{dut_->rvalid_o} << 4 |
-                             unsigned{dut_->bresp_o} << 5 | unsigned{dut_->rresp_o} << 7;
-    const unsigned axi_model = unsigned{axi.awready} | unsigned{axi.wready} << 1 | unsigned{axi.bvalid} << 2 |
-                               unsigned{axi.arready} << 3 | unsigned{axi.rvalid} << 4 | unsigned{axi.bresp} << 5 |
-                               unsigned{axi.rresp} << 7;
-    check_.compare("AXI4-Lite handshakes and responses", axi_rtl, axi_model);
+    check_.compare("AXI4-Lite handshakes and responses", axi_shown(*dut_), axi_shown(axi));
     const model::WishbonePort::Outputs& w = model_.wishbone();
     check_.compare("Wishbone ack, err, stall", dut_->wishbone_o >> 32,
                    unsigned{w.ack} << 2 | unsigned{w.err} << 1 | unsigned{w.stall});

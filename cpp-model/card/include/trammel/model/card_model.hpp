@@ -18,7 +18,7 @@ class CardModel {
 
   // Pins of the AXI4-Lite port, as the card has them; see Axi4LitePort.
   struct Inputs {
-    bool rst = false;  // registered: it takes effect a clock later
+    bool rst = false;  // registered: beyond the port it takes effect a clock later
     bool awvalid = false;
     bool wvalid = false;
     bool bready = false;

@@ -26,7 +26,7 @@ class WishbonePort {
   struct Outputs {
     bool ack = false;
     bool err = false;
-    bool stall = false;
+    bool stall = false;     // of a pipelined one: busy, or reset in the clock before
     std::uint32_t dat = 0;  // holds from answer to answer
     // to the inner port; the others stand from `request` to its answer
     bool request = false;
@@ -36,7 +36,8 @@ class WishbonePort {
     std::uint32_t data = 0;
   };
 
-  explicit WishbonePort(bool pipelined = false) : pipelined_(pipelined) {}
+  // As it stands after a reset.
+  explicit WishbonePort(bool pipelined = false) : pipelined_(pipelined) { out_.stall = pipelined; }
 
   void reset() { *this = WishbonePort(pipelined_); }
 
@@ -46,7 +47,7 @@ class WishbonePort {
     // What the master does now decides whether an answer still has somebody who waits for it.
     const bool waits = pipelined_ ? in.cyc : asked;
     const bool answered = out_.ack || out_.err;
-    const bool take = asked && !busy_ && (pipelined_ || !answered);
+    const bool take = asked && (pipelined_ ? !out_.stall : !busy_ && !answered);
     if (!waits) given_up_ = true;
     out_.ack = in.ack && !in.error && !given_up_;
     out_.err = in.ack && in.error && !given_up_;
@@ -70,7 +71,8 @@ class WishbonePort {
 
   // True when clocks with these same inputs change nothing.
   bool quiet(const Inputs& in) const {
-    return !(in.cyc && in.stb) && !out_.request && !out_.ack && !out_.err && !(busy_ && in.ack);
+    const bool wakes = out_.stall && !busy_;
+    return !(in.cyc && in.stb) && !out_.request && !out_.ack && !out_.err && !(busy_ && in.ack) && !wakes;
   }
 
  private:
