@@ -245,14 +245,18 @@ class QueueWriter {
   bool done() const { return commands_.empty(); }
   const model::HalfwordQueue::Outputs& outputs() const { return queue_.outputs(); }
 
-  // One rising edge; the writer goes on when `write`.
-  void clock(bool read, bool write, bool clear) {
-    model::HalfwordQueue::Inputs in;
-    in.read = read;
-    in.clear = clear;
-    if (write && !commands_.empty()) go_on(in);
+  // What it gives to the queue in the clock that begins; the writer goes on when `write`.
+  const model::HalfwordQueue::Inputs& offer(bool write) {
+    offered_ = {};
+    if (write && !commands_.empty()) go_on(offered_);
+    return offered_;
+  }
+  // One rising edge.
+  void clock(bool read, bool clear) {
+    offered_.read = read;
+    offered_.clear = clear;
     if (clear) forget();
-    queue_.clock(in);
+    queue_.clock(offered_);
   }
 
   void reset() {
@@ -281,6 +285,7 @@ class QueueWriter {
   }
 
   model::HalfwordQueue queue_;
+  model::HalfwordQueue::Inputs offered_;
   std::deque<Halfwords> commands_;
   std::size_t written_ = 0;  // halfwords of the first one
 };

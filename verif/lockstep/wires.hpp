@@ -5,6 +5,7 @@
 #include <random>
 
 #include "trammel/model/buses.hpp"
+#include "trammel/model/underrun_guard.hpp"
 
 namespace trammel::lockstep {
 
@@ -19,6 +20,12 @@ inline std::uint32_t load_wire(const model::LoadWord& load) {
 }
 inline std::uint32_t feed_wire(const model::LoadWord& load) {
   return std::uint32_t{load.valid} << 19 | std::uint32_t{load.target} << 16 | load.word;
+}
+
+// {drop, geometry {commit, write}, feed {commit, write}, halfword}
+inline std::uint32_t arrive_wire(const model::UnderrunGuard::Arrival& a) {
+  return std::uint32_t{a.drop} << 20 | std::uint32_t{a.geometry_commit} << 19 | std::uint32_t{a.geometry_write} << 18 |
+         std::uint32_t{a.feed_commit} << 17 | std::uint32_t{a.feed_write} << 16 | a.halfword;
 }
 
 inline model::LoadWord halfword(unsigned target, std::uint64_t value, unsigned index) {
@@ -55,6 +62,11 @@ class Dice {
   bool chance(std::uint32_t one_in) { return below(one_in) == 0; }
   // Any number of bits up to `bits`, each as often as the others.
   std::uint64_t log_uniform(std::uint32_t bits) { return random_() >> (64 - bits) >> below(bits); }
+  // Up to 4 below a power of two, at most 2^bits: a counter of so many bits that stands there soon carries or wraps.
+  std::uint64_t before_carry(std::uint32_t bits) {
+    const std::uint32_t bit = 3 + below(bits - 2);
+    return (bit == 64 ? 0 : std::uint64_t{1} << bit) - 1 - below(4);
+  }
   // {shift, strobe} of the snapshot chain, mostly none.
   std::uint8_t snapshot() { return static_cast<std::uint8_t>(chance(8) ? 1 + below(2) : 0); }
 

@@ -14,7 +14,7 @@ using trammel::lockstep::Checker;
 using trammel::model::HalfwordQueue;
 
 constexpr std::size_t kDepth = TRAMMEL_DEPTH;
-constexpr std::uint64_t kSignals = 3;
+constexpr std::uint64_t kSignals = 2;
 
 class Bench {
  public:
@@ -34,21 +34,31 @@ class Bench {
     if (in.drop) checker_.event("drop");
     if (in.read) checker_.event("read");
     if (in.clear) checker_.event("clear");
+    word_known_ = ram_known_;
+    ram_known_ = ram_known_ || (in.read && !model_.outputs().empty);
     rtl_.clock();
     model_.clock(in);
     checker_.next_cycle();
-    checker_.compare("word_o", rtl_->word_o, model_.outputs().word);
+    if (word_known_) {
+      checker_.compare("word_o", rtl_->word_o, model_.outputs().word);
+      ++words_;
+    }
     checker_.compare("empty_o", rtl_->empty_o, model_.outputs().empty);
     checker_.compare("room_o", rtl_->room_o, model_.outputs().room);
   }
 
   bool full() const { return model_.free() == 0; }
   const Checker& checker() const { return checker_; }
+  std::uint64_t expected() const { return kSignals * checker_.cycles() + words_; }
 
  private:
   Checker checker_;
   trammel::lockstep::Simulated<Vdut> rtl_;
   HalfwordQueue model_;
+  // Something has been read: the RAM's output holds it, and a clock later the port.
+  bool ram_known_ = false;
+  bool word_known_ = false;
+  std::uint64_t words_ = 0;
 };
 
 void fill_and_drain(Bench& bench, std::uint16_t first) {
@@ -94,7 +104,7 @@ TEST(HalfwordQueueLockstep, EqualsModelInEveryCycle) {
     std::mt19937_64 random(seed);
     const std::uint64_t length = trammel::lockstep::scaled(200'000);
     random_traffic(bench, random, length);
-    ASSERT_EQ(bench.checker().comparisons(), kSignals * bench.checker().cycles());
+    ASSERT_EQ(bench.checker().comparisons(), bench.expected());
     ASSERT_GT(bench.checker().cycles(), length);
   });
   EXPECT_EQ(complaint, "");

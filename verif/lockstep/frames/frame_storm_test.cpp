@@ -20,6 +20,8 @@ class Bench {
       : dice_(seed),
         storm_(
             seed, [this](const frames::Bytes& bytes) { return bring(bytes); }, [this] { restart(); }, 20) {
+    dut_->byte_i = 0;
+    dut_->restart_i = 0;
     dut_->rst_i = 1;
     dut_.clock();
     dut_->rst_i = 0;

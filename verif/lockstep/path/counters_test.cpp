@@ -4,6 +4,7 @@
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
+#include "counters_inside.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
@@ -57,6 +58,18 @@ class Bench {
     while (left_ != 0) clock(take_of_16, false);
   }
 
+  // A count at 2^bit, bit 5 to 39, with the fast bits full, and the ticks that make it borrow from that bit.
+  void borrow_from(unsigned bit) {
+    load(kCountMask, 0);
+    begin(0, 4);
+    left_ = std::uint64_t{1} << bit | 0xF;
+    set_slow_count(*dut_, left_ >> 4);
+    for (unsigned i = 0; i < 20; ++i) clock(16, false);
+    for (unsigned i = 0; i < 4; ++i) clock(0, false);
+    check_.compare("slow bits of the count", slow_count(*dut_), left_ >> 4);
+    ++expected_;
+  }
+
   Checker& check() { return check_; }
   Dice& dice() { return dice_; }
   std::uint64_t comparisons() const { return expected_; }
@@ -66,6 +79,7 @@ class Bench {
   void drive() {
     dut_->cut_i = dice_.chance(100);
     dut_->begin_i = dice_.chance(3);
+    if (dice_.chance(50)) begun_ = dut_->begun_o = static_cast<IData>(dice_.before_carry(32));  // the register itself
     dut_->snapshot_i = dice_.snapshot();
     dut_->chain_i = dice_.draw();
   }
@@ -168,6 +182,13 @@ void random_counts() {
   EXPECT_GT(bench.lasts(), paths / 10);
 }
 
+void borrows() {
+  Bench bench(2);
+  for (unsigned bit = 5; bit < 40; ++bit) bench.borrow_from(bit);
+  EXPECT_EQ(bench.check().comparisons(), bench.comparisons());
+}
+
+TEST(Counters, Borrows) { EXPECT_EQ(judge(borrows), ""); }
 TEST(Counters, Resets) { EXPECT_EQ(judge(resets), ""); }
 TEST(Counters, RandomCounts) { EXPECT_EQ(judge(random_counts), ""); }
 TEST(Counters, Boundaries) { EXPECT_EQ(judge(boundaries), ""); }

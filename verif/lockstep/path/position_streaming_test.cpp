@@ -5,6 +5,7 @@
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
+#include "position_streaming_inside.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
@@ -31,10 +32,33 @@ class Bench {
     in_.rest = !dice_.chance(5);
     in_.cut = dice_.chance(300);
     random_path();
+    if (stale_ && dice_.chance(100)) ticks_near_a_carry();
     if (dice_.chance(in_.period || in_.stale_tick ? 100 : 3000))
       reset();
     else
       clock();
+  }
+
+  // A line without end goes on: of a round 2^bit ticks are left, then one less.
+  void borrow_from(unsigned bit) {
+    reset();
+    in_ = {};
+    in_.setting = {true, reg::kStreaming, 255U << 8};
+    clock();
+    in_ = {};
+    in_.begin = true;
+    in_.ticks = kMost;
+    clock();
+    in_ = {};
+    clock();
+    in_.period = in_.goes_on = true;
+    clock();
+    in_.period = false;
+    in_.stale_tick = true;
+    clock();
+    ticks_left(*dut_) = std::uint64_t{1} << bit;
+    clock();
+    check_.compare("ticks left", ticks_left(*dut_), (std::uint64_t{1} << bit) - 1);
   }
 
   Checker& check() { return check_; }
@@ -75,6 +99,12 @@ class Bench {
     return ticks > kMost ? kMost : ticks;
   }
 
+  // The port is the register itself.
+  void ticks_near_a_carry() {
+    dut_->ticks_o = static_cast<IData>(dice_.before_carry(32));
+    ticks_ahead_ = dut_->ticks_o - model_.outputs().ticks;
+  }
+
   void reset() {
     check_.event("reset");
     dut_->rst_i = 1;
@@ -82,6 +112,7 @@ class Bench {
     dut_.clock();
     dut_->rst_i = 0;
     model_ = model::PositionStreaming();
+    ticks_ahead_ = 0;
     running_ = stale_ = false;
     compare();
   }
@@ -91,6 +122,7 @@ class Bench {
     const bool on = model_.outputs().on;
     dut_.clock();
     model_.clock(in_);
+    if (in_.period) ticks_ahead_ = 0;
     began_with_ = in_.begin ? in_.ticks : 0;
     compare();
     missing_ += model_.outputs().missing ? 1U : 0U;
@@ -118,7 +150,7 @@ class Bench {
     check_.compare("streaming_o", dut_->streaming_o, out.on);
     check_.compare("missing_o", dut_->missing_o, out.missing);
     check_.compare("lost_o", dut_->lost_o, out.lost);
-    check_.compare("ticks_o", dut_->ticks_o, out.ticks);
+    check_.compare("ticks_o", dut_->ticks_o, out.ticks + ticks_ahead_);
   }
 
   Simulated<Vdut> dut_;
@@ -131,6 +163,7 @@ class Bench {
   bool running_ = false;
   bool stale_ = false;
   bool was_stale_ = false;
+  std::uint32_t ticks_ahead_ = 0;  // of the model, in the RTL, until the next period ends
   std::uint64_t missing_ = 0;
   std::uint64_t modes_ = 0;
 };
@@ -144,6 +177,12 @@ void random_periods() {
   EXPECT_GT(bench.modes(), length / 1000);
 }
 
+void borrows() {
+  Bench bench(2);
+  for (unsigned bit = 2; bit < 40; ++bit) bench.borrow_from(bit);
+}
+
+TEST(PositionStreaming, Borrows) { EXPECT_EQ(judge(borrows), ""); }
 TEST(PositionStreaming, RandomPeriods) { EXPECT_EQ(judge(random_periods), ""); }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <Vdut.h>
 
 #include "programs.hpp"
+#include "sequencers_inside.hpp"
 #include "trammel/model/probe.hpp"
 #include "trammel/model/sequencer.hpp"
 #include "trammel/sim/lockstep.hpp"
@@ -118,8 +119,10 @@ class SequencersBench {
     probe_.clock(probe_in);
     chain_[1].clock(dut_->snapshot_i, begun[1], chain_[0]);
     chain_[0].clock(dut_->snapshot_i, begun[0], dut_->chain_i);
-    geometry_.clock(geometry_reads, dice_.chance(pace.write), in_.cut);
-    feed_.clock(feed_reads, dice_.chance(pace.write), in_.cut);
+    geometry_.offer(dice_.chance(pace.write));
+    geometry_.clock(geometry_reads, in_.cut);
+    feed_.offer(dice_.chance(pace.write));
+    feed_.clock(feed_reads, in_.cut);
     cut_before_ = in_.cut || in_.halt;
     halts_ += in_.halt ? 1U : 0U;
     if (in_.cut) direct_step_ = 0;
@@ -176,6 +179,23 @@ class SequencersBench {
     for (unsigned i = 0; i < 400; ++i) clock();
   }
 
+  // A WAIT_INPUT without a time-out whose count has come round to its end: it goes on waiting for its input, which is
+  // set.
+  void wait_beyond_the_count() {
+    const Halfwords wait = stored_command(card_map::Opcode::WaitInput, 0, 0, {{"condition", 0x10}});
+    pace = {1, 1, 1'000'000, 1, 1'000'000, 1'000'000, 1};
+    levels_ = 0;
+    add({{wait}, {wait}});
+    for (unsigned i = 0; i < 100; ++i) clock();
+    // Neither a borrow nor the end is near.
+    for (unsigned i = 0; i < 16 && fast_count(*dut_) != 8; ++i) clock();
+    clear_slow_count(*dut_);
+    for (unsigned i = 0; i < 40; ++i) clock();
+    waited_ = model_.waits_for_input();
+    levels_ = 1;
+    for (unsigned i = 0; i < 40; ++i) clock();
+  }
+
   // STREAMING, and halfwords on their way in, at any clock: the mode changes at rest alone.
   void random_mode() {
     const bool on = dice_.chance(2);
@@ -195,6 +215,7 @@ class SequencersBench {
   std::uint64_t swaps() const { return ends_; }
   std::uint64_t missing() const { return missing_; }
   std::uint64_t late() const { return late_; }
+  bool waited() const { return waited_; }
   std::uint64_t halts() const { return halts_; }
   std::uint64_t drops() const { return drops_; }
   std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
@@ -396,6 +417,7 @@ class SequencersBench {
   std::uint64_t missing_ = 0;
   std::uint64_t late_ = 0;
   bool stale_before_ = false;
+  bool waited_ = false;
   unsigned mode_every_ = 200;
   std::uint16_t levels_ = 0;
   bool at_rest_ = false;

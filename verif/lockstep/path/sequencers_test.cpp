@@ -134,11 +134,20 @@ void edges_at_every_clock() {
   EXPECT_GT(bench.drops(), 2000U);
 }
 
+void wait_without_time_out() {
+  Bench bench(1);
+  bench.wait_beyond_the_count();
+  EXPECT_TRUE(bench.waited());
+  EXPECT_TRUE(bench.at_rest());
+  EXPECT_EQ(bench.check().comparisons(), bench.expected());
+}
+
 // What finds most comes first.
 TEST(Sequencers, RandomPrograms) { EXPECT_EQ(judge(random_programs), ""); }
 TEST(Sequencers, EdgesAtEveryClock) { EXPECT_EQ(judge(edges_at_every_clock), ""); }
 TEST(Sequencers, LatePeriods) { EXPECT_EQ(judge(late_periods), ""); }
 TEST(Sequencers, CutsAtEveryClock) { EXPECT_EQ(judge(cuts_at_every_clock), ""); }
+TEST(Sequencers, AWaitWithoutTimeOut) { EXPECT_EQ(judge(wait_without_time_out), ""); }
 TEST(Sequencers, Boundaries) { EXPECT_EQ(judge(boundaries), ""); }
 
 }  // namespace

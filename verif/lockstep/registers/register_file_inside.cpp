@@ -3,4 +3,4 @@
 #include "Vdut.h"
 #include "Vdut___024root.h"
 
-void advance_time(Vdut& dut, std::uint32_t clocks) { dut.rootp->register_file__DOT__i_snapshot__DOT__time_q += clocks; }
+void advance_time(Vdut& dut, std::uint64_t clocks) { dut.rootp->register_file__DOT__i_snapshot__DOT__time_q += clocks; }

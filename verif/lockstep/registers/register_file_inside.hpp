@@ -5,5 +5,5 @@
 
 class Vdut;
 
-// Lets `clocks` pass for the low word of the time that snapshots take, which must not carry.
-void advance_time(Vdut& dut, std::uint32_t clocks);
+// Lets `clocks` pass for the time that snapshots take.
+void advance_time(Vdut& dut, std::uint64_t clocks);

@@ -52,6 +52,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : checker_("register_file", seed), random_(seed), model_(configuration()) {
     const RegisterFile::Config config = configuration();
+    for (std::uint32_t word = 0; word < 16; ++word) rtl_->constants_i[word] = 0;
     constants(reg::kAxes) = config.axes;
     constants(reg::kClockHz) = config.clock_hz;
     constants(reg::kEngines) = config.engines;
@@ -140,9 +141,9 @@ class Bench {
     }
   }
 
-  // Sets both times to `clocks`, later than now and of the low word alone.
-  void skip_to(std::uint32_t clocks) {
-    const auto more = static_cast<std::uint32_t>(clocks - model_.time());
+  // Sets both times to `clocks`.
+  void skip_to(std::uint64_t clocks) {
+    const std::uint64_t more = clocks - model_.time();
     model_.advance(more);
     advance_time(*rtl_, more);
   }
@@ -350,16 +351,21 @@ class Bench {
   bool outstanding_ = false;
 };
 
-// Snapshots in every clock around the carry into the time's high word, of which the card writes the halves in turn.
-void snapshots_around_the_carry(Bench& bench) {
-  for (std::uint32_t before = 0; before < 16; ++before) {
-    bench.reset();
-    for (std::uint64_t i = 0; i < kFilled; ++i) bench.clock();
-    bench.skip_to(0xFFFF'FFFFu - before);
-    bench.access(true, reg::kControl, card_map::field::kControlSnapshot);
-    bench.access(false, reg::kSnapTimeLo, 0);
-    bench.access(false, reg::kSnapTimeHi, 0);
-  }
+// A snapshot that is asked for so many clocks before the time's lower `bits` bits carry.
+void snapshot_before_a_carry(Bench& bench, std::uint32_t bits, std::uint32_t before) {
+  bench.reset();
+  for (std::uint64_t i = 0; i < kFilled; ++i) bench.clock();
+  bench.skip_to((std::uint64_t{1} << bits) - 1 - before);
+  bench.access(true, reg::kControl, card_map::field::kControlSnapshot);
+  bench.access(false, reg::kSnapTimeLo, 0);
+  bench.access(false, reg::kSnapTimeHi, 0);
+}
+
+// In every clock around the carry into the time's high word, of which the card writes the halves in turn; then around
+// each carry within the high word.
+void snapshots_around_carries(Bench& bench) {
+  for (std::uint32_t before = 0; before < 16; ++before) snapshot_before_a_carry(bench, 32, before);
+  for (std::uint32_t bits = 33; bits < 64; ++bits) snapshot_before_a_carry(bench, bits, bits % 4);
 }
 
 // A reset in each clock of a write: what it asked for never comes out, be it a setting, an event or a refusal.
@@ -384,7 +390,7 @@ TEST(RegisterFile, LockstepUnderTraffic) {
   const std::uint64_t seed = trammel::lockstep::seed_from_environment(1);
   EXPECT_EQ("", trammel::lockstep::judge([&] {
               Bench bench(seed);
-              snapshots_around_the_carry(bench);
+              snapshots_around_carries(bench);
               resets_in_writes(bench);
               const std::uint64_t length = trammel::lockstep::scaled(400'000);
               for (std::uint64_t i = 0; i < length; ++i) bench.random_clock();
