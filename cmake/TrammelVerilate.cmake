@@ -10,7 +10,8 @@ set(TRAMMEL_RTL_PACKAGES "${TRAMMEL_CARD_SOURCES}")
 list(FILTER TRAMMEL_RTL_PACKAGES INCLUDE REGEX "_pkg\\.sv$")
 list(FILTER TRAMMEL_CARD_SOURCES EXCLUDE REGEX "_pkg\\.sv$")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${TRAMMEL_RTL_DIR}/trammel.f")
-set(TRAMMEL_VERILATOR_ARGS -Wall "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" -O3 --x-assign fast --x-initial fast
+# Every bit without a value begins at random (Simulated gives the seed): zeros would hide a missing reset.
+set(TRAMMEL_VERILATOR_ARGS -Wall "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" -O3 --x-assign unique --x-initial unique
     --noassert)
 
 # Verilator's run time, once for all models.

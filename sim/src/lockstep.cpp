@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 #include <cstdlib>
 
@@ -43,7 +44,7 @@ void fail(std::string_view block, std::uint64_t cycle, std::uint64_t seed, const
     text += fmt::format("{}: cycle {}: {} is {:#x} ({}) in RTL, {:#x} ({}) in the model\n", block, cycle, d.signal,
                         d.rtl, d.rtl, d.model, d.model);
   }
-  text += fmt::format("repeat with TRAMMEL_SEED={}\n", seed);
+  text += fmt::format("repeat with TRAMMEL_SEED={} TRAMMEL_STATE_SEED={}\n", seed, state_seed());
   throw Mismatch(text + events);
 }
 
@@ -51,9 +52,22 @@ void Checker::differ(const char* signal, std::uint64_t rtl, std::uint64_t model)
   fail(block_, cycles_, seed_, {{signal, rtl, model}}, events_.text(cycles_));
 }
 
-std::uint64_t seed_from_environment(std::uint64_t fallback) {
-  const char* text = std::getenv("TRAMMEL_SEED");
+namespace {
+
+std::uint64_t number_from_environment(const char* name, std::uint64_t fallback) {
+  const char* text = std::getenv(name);
   return text ? std::strtoull(text, nullptr, 0) : fallback;
+}
+
+}  // namespace
+
+std::uint64_t seed_from_environment(std::uint64_t fallback) {
+  return number_from_environment("TRAMMEL_SEED", fallback);
+}
+
+int state_seed() {
+  const std::uint64_t seed = number_from_environment("TRAMMEL_STATE_SEED", seed_from_environment(1));
+  return seed == 0 || seed > INT_MAX ? static_cast<int>(seed % INT_MAX) + 1 : static_cast<int>(seed);
 }
 
 std::uint64_t scaled(std::uint64_t length) {

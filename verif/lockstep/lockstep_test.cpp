@@ -36,7 +36,30 @@ TEST(Checker, EqualSignalsAreCountedAndPass) {
   EXPECT_EQ(checker.comparisons(), 10U);
 }
 
+// Sets a variable of the environment and puts it back.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old;
+    if (value != nullptr)
+      setenv(name, value, 1);
+    else
+      unsetenv(name);
+  }
+  ~Environment() {
+    if (old_)
+      setenv(name_, old_->c_str(), 1);
+    else
+      unsetenv(name_);
+  }
+
+ private:
+  const char* name_;
+  std::optional<std::string> old_;
+};
+
 TEST(Checker, ReportNamesBlockCycleSignalValuesSeedAndEvents) {
+  const Environment state("TRAMMEL_STATE_SEED", "5");
   Checker checker("block", 77);
   checker.event("swap", 0xAB);
   for (int i = 0; i < 12; ++i) checker.next_cycle();
@@ -44,7 +67,7 @@ TEST(Checker, ReportNamesBlockCycleSignalValuesSeedAndEvents) {
   const std::string report = report_of([&] { checker.compare("wrong_o", 0x10, 0x2F); });
   EXPECT_EQ(report,
             "block: cycle 12: wrong_o is 0x10 (16) in RTL, 0x2f (47) in the model\n"
-            "repeat with TRAMMEL_SEED=77\n"
+            "repeat with TRAMMEL_SEED=77 TRAMMEL_STATE_SEED=5\n"
             "last 1 events:\n"
             "  cycle 0: swap 0xab\n");
 }
@@ -85,12 +108,13 @@ TEST(EventLog, EventsBehindTheCycleAreLeftOut) {
 }
 
 TEST(Fail, AllDifferencesAreNamed) {
+  const Environment state("TRAMMEL_STATE_SEED", "4");
   EXPECT_EQ(report_of([] {
               fail("card", 9, 3, {{"a_o", 1, 0}, {"b_o", 2, 4}}, "");
             }),
             "card: cycle 9: a_o is 0x1 (1) in RTL, 0x0 (0) in the model\n"
             "card: cycle 9: b_o is 0x2 (2) in RTL, 0x4 (4) in the model\n"
-            "repeat with TRAMMEL_SEED=3\n");
+            "repeat with TRAMMEL_SEED=3 TRAMMEL_STATE_SEED=4\n");
 }
 
 TEST(Fail, DifferenceWithoutANameIsAnError) { EXPECT_THROW(fail("card", 9, 3, {}, ""), std::logic_error); }
@@ -101,27 +125,19 @@ TEST(Judge, MismatchIsReturnedOtherErrorsPassThrough) {
   EXPECT_THROW(judge([] { throw std::logic_error("no mismatch"); }), std::logic_error);
 }
 
-// Sets a variable of the environment and puts it back.
-class Environment {
- public:
-  Environment(const char* name, const char* value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old;
-    if (value != nullptr)
-      setenv(name, value, 1);
-    else
-      unsetenv(name);
+TEST(StateSeed, IsItsOwnElseThatOfTheScenariosAndNeverZero) {
+  const Environment scenario("TRAMMEL_SEED", nullptr);
+  const Environment none("TRAMMEL_STATE_SEED", nullptr);
+  EXPECT_EQ(state_seed(), 1);
+  const Environment given("TRAMMEL_SEED", "6");
+  EXPECT_EQ(state_seed(), 6);
+  const Environment own("TRAMMEL_STATE_SEED", "8");
+  EXPECT_EQ(state_seed(), 8);
+  for (const char* beyond : {"0", "4294967294", "18446744073709551615"}) {
+    const Environment environment("TRAMMEL_STATE_SEED", beyond);
+    EXPECT_GT(state_seed(), 0) << beyond;
   }
-  ~Environment() {
-    if (old_)
-      setenv(name_, old_->c_str(), 1);
-    else
-      unsetenv(name_);
-  }
-
- private:
-  const char* name_;
-  std::optional<std::string> old_;
-};
+}
 
 TEST(Scaled, TakesTheFactorFromTheEnvironment) {
   {

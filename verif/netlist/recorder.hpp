@@ -57,7 +57,7 @@ class Recorder {
 
   std::FILE* file_;
   std::string line_;
-  lockstep::Simulated<Vrecorded> dut_;
+  lockstep::Simulated<Vrecorded> dut_{lockstep::kZeros};
   model::CardModel model_;
   model::CardModel::Inputs in_;
   std::uint32_t seed_;

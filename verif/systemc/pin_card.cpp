@@ -49,7 +49,7 @@ class VerilatedPinCard final : public PinCard {
     out.irq = dut_->irq_o != 0;
   }
 
-  lockstep::Simulated<Dut> dut_;
+  lockstep::Simulated<Dut> dut_{lockstep::kZeros};  // straps, too
 };
 
 }  // namespace

@@ -82,7 +82,7 @@ class Accumulator {
     dut_->load_i = 0;
   }
 
-  Simulated<Vdut> dut_;
+  Simulated<Vdut> dut_{kZeros};  // inputs that a test does not set are 0
   Point position_;
   int period_ = 9;  // clocks
 };

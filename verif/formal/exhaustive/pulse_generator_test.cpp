@@ -67,7 +67,7 @@ class Generator {
     ++clocks;
   }
 
-  Simulated<Vdut> dut_;
+  Simulated<Vdut> dut_{kZeros};  // inputs that a test does not set are 0
   int position_ = 0;
 };
 

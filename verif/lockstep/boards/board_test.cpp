@@ -91,7 +91,7 @@ class BoardUnderTest {
     check_.compare("output_o", dut_->output_o, board_.pins().output);
   }
 
-  Simulated<Vdut> dut_;
+  Simulated<Vdut> dut_{kZeros};  // the board is in reset from configuration on
   Checker check_;
   Dice dice_;
   Board board_;

@@ -18,7 +18,7 @@ class Top final : public BoardTop {
   }
 
  private:
-  Simulated<Vdut> dut_;
+  Simulated<Vdut> dut_{kZeros};  // the board is in reset from configuration on
 };
 
 std::string over_uart(void (*scenario)(BoardTop&, const BoardFacts&)) {

@@ -91,6 +91,13 @@ class Checker {
   EventLog events_;
 };
 
+// The seed that Simulated takes by itself: TRAMMEL_STATE_SEED from the environment, else TRAMMEL_SEED, else 1; brought
+// into the range 1 to INT_MAX, since Verilator takes a seed of its own for 0.
+int state_seed();
+
+// In place of a seed: all bits begin with 0, as the flip-flops of an FPGA do after configuration.
+inline constexpr int kZeros = 0;
+
 // rising_edge.hpp; every Verilated copy has its own.
 template <class Dut>
 void rising_edge(Dut& dut);
@@ -101,9 +108,12 @@ void rising_edge(Dut& dut);
 template <class Dut>
 class Simulated {
  public:
-  Simulated() : context_(std::make_unique<VerilatedContext>()) {
+  // `seed`: of the random bits with which registers and inputs begin, at least 1; or kZeros.
+  explicit Simulated(int seed = state_seed()) : context_(std::make_unique<VerilatedContext>()) {
     select();
-    context_->threads(1);  // else the context starts threads that nothing uses
+    context_->threads(1);                         // else the context starts threads that nothing uses
+    context_->randReset(seed == kZeros ? 0 : 2);  // 2: random bits
+    context_->randSeed(seed);
     dut_ = std::make_unique<Dut>(context_.get());
     dut_->clk_i = 0;
     dut_->eval();
