@@ -10,8 +10,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from mutation import campaign, equivalents, judges
-from mutation.instrument import Instrumenter
+from mutation import campaign, equivalents, judges, texts
+from mutation.instrument import Instrumenter, Mutant
 
 BUILD = Path(os.environ["SELFTEST_BUILD"])
 SOURCE = Path(__file__).with_name("selftest_counter.sv")
@@ -39,6 +39,20 @@ class Folder(unittest.TestCase):
         path.write_text("#!/bin/sh\n" + text)
         path.chmod(path.stat().st_mode | stat.S_IXUSR)
         return str(path)
+
+
+class Texts(unittest.TestCase):
+    def mutated(self, original, nth):
+        mutant = Mutant("id", 1, "m", "m.sv", 1, "operator", original, "a_q <= b - c", nth)
+        return texts.mutated("x <= 1;\na_q  <= b +\n  c;\na_q <= b + c;\n", mutant)
+
+    def test_only_the_place_that_is_meant_changes(self):
+        self.assertEqual(self.mutated("a_q <= b + c", 1), "x <= 1;\na_q <= b - c;\na_q <= b + c;\n")
+        self.assertEqual(self.mutated("a_q <= b + c", 2), "x <= 1;\na_q  <= b +\n  c;\na_q <= b - c;\n")
+
+    def test_a_slip_that_is_no_text_is_none(self):
+        self.assertIsNone(self.mutated("case label IDLE", 1))
+        self.assertIsNone(self.mutated("a_q <= b + c", 3))
 
 
 class Campaign(Folder):
