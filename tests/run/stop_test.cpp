@@ -151,6 +151,11 @@ class WindowOfLines final : public gcode::LineSource {
   unsigned& read_;
 };
 
+class SentNothing final : public Observer {
+ public:
+  void sending(const planner::PlannedBlock& block) override { ADD_FAILURE() << "line " << block.block.line; }
+};
+
 TEST(Stop, WhileAWindowIsPlanned) {
   for (const unsigned stop_at : {100U, WindowOfLines::kWindow + 1}) {
     SCOPED_TRACE(stop_at);
@@ -160,9 +165,10 @@ TEST(Stop, WhileAWindowIsPlanned) {
     unsigned read = 0;
     Runner runner([&] { return std::make_unique<WindowOfLines>(bench.card, stop_at, read); }, bench.machine,
                   planner::limits_of(bench.card.identification()));
+    SentNothing observer;
+    runner.add(observer);
     EXPECT_THROW(runner.stream(bench.card), StoppedOnPath);
     EXPECT_LE(read, stop_at + 1);
-    EXPECT_EQ(bench.card.snapshot().geometry_begun, 0U);
     EXPECT_TRUE(bench.steps.pins.empty());
   }
 }
