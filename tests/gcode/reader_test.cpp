@@ -100,8 +100,12 @@ TEST(Gcode, MessagesQuoteOneShortLine) {
 TEST(Gcode, RefusesNumbersBeyondReason) {
   EXPECT_EQ(refusal("G0 X1000000000000"), "accepted");
   EXPECT_EQ(refusal("G0 X1000000000001"), "1: number out of range in 'X1000000000001'");
-  EXPECT_EQ(refusal("G1 X1 F0.0000001"), "1: feed is too small");
-  EXPECT_EQ(refusal("G93 G1 X1 F0.0000001"), "1: feed is too small");
+  EXPECT_EQ(refusal("G1 X1 F0.06"), "accepted");
+  EXPECT_EQ(refusal("G1 X1 F0.0599"), "1: feed is too small: 0.0599 mm/min, at least 0.06 are possible");
+  EXPECT_EQ(refusal("G20 G1 X1 F0.0024"), "accepted");
+  EXPECT_EQ(refusal("G20 G1 X1 F0.0023"), "1: feed is too small: 0.05842 mm/min, at least 0.06 are possible");
+  EXPECT_EQ(refusal("G93 G1 X1 F0.001"), "accepted");
+  EXPECT_EQ(refusal("G93 G1 X1 F0.00099"), "1: feed is too small: under G93 at least F0.001 (1,000 minutes)");
 }
 
 TEST(Gcode, RefusesWordsItDoesNotKnow) {

@@ -92,11 +92,14 @@ TEST(Machine, ReadsHomeAndOffsets) {
 
 TEST(Machine, RefusesWithFileAndLine) {
   EXPECT_EQ(error_of(replaced(defaults(), "steps_per_mm = 80 ", "steps_per_mm = 0 ")),
-            "m.toml:9: axis.x.steps_per_mm must be from 0.001 to 1e+06 pulses/mm, not 0");
+            "m.toml:9: axis.x.steps_per_mm must be from 0.001 to 1e+06 pulses/mm, not 0 (a pulse a metre to a pulse a "
+            "nanometre)");
   EXPECT_EQ(error_of(replaced(defaults(), "step_length_ns = 2000", "step_length_ns = -1")),
-            "m.toml:12: axis.x.step_length_ns must be from 0.001 to 1e+11 ns, not -1");
+            "m.toml:12: axis.x.step_length_ns must be from 0.001 to 1e+11 ns, not -1 (a register holds 65,535 clocks, "
+            "100 s at the slowest clock)");
   EXPECT_EQ(error_of(replaced(defaults(), "direction_hold_ns = 1000", "direction_hold_ns = -1")),
-            "m.toml:15: axis.x.direction_hold_ns must be from 0 to 1e+11 ns, not -1");
+            "m.toml:15: axis.x.direction_hold_ns must be from 0 to 1e+11 ns, not -1 (a register holds 65,535 clocks, "
+            "100 s at the slowest clock)");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "max_velocity = \"fast\"")),
             "m.toml:10: axis.x.max_velocity must be a number");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "max_velocity = inf")),
@@ -282,7 +285,8 @@ TEST(Machine, OverridesEntries) {
 
 TEST(Machine, RefusesBadOverrides) {
   EXPECT_EQ(override_error("axis.x.steps_per_mm=0"),
-            "--set axis.x.steps_per_mm=0: axis.x.steps_per_mm must be from 0.001 to 1e+06 pulses/mm, not 0");
+            "--set axis.x.steps_per_mm=0: axis.x.steps_per_mm must be from 0.001 to 1e+06 pulses/mm, not 0 (a pulse a "
+            "metre to a pulse a nanometre)");
   EXPECT_EQ(override_error("axis.a.steps_per_mm=1"), "--set axis.a.steps_per_mm=1: the machine has no axis a");
   EXPECT_THAT(override_error("axis.x.colour=1"),
               StartsWith("--set axis.x.colour=1: unknown entry axis.x.colour; known are "));
@@ -391,7 +395,7 @@ TEST(MachineBounds, EveryNumberOfAnAxisHasThem) {
   for (const Bound& bound : std::initializer_list<Bound>{
            {"steps_per_mm", "0.001", "1e6", "1e-300", "1.1e6"},
            {"max_acceleration", "0.15", "1e9", "1e-300", "1.1e9"},
-           {"max_jerk", "0.001", "1e13", "1e-300", "1.1e13"},
+           {"max_jerk", "1", "1e13", "1e-300", "1.1e13"},
            {"step_length_ns", "0.001", "2000", "1e-300", "1e300"},
            {"direction_setup_ns", "0.0", "2000", "-1e-300", "1e300"},
            {"min", "-2e12", "0", "-1e300", "1e300"},
@@ -410,8 +414,11 @@ TEST(MachineBounds, EveryNumberOfAnAxisHasThem) {
 
 TEST(MachineBounds, ARampThatTakesLongerThanAnyMachineIsASlip) {
   EXPECT_EQ(override_error("axis.x.max_acceleration=0.14"),
-            "--set axis.x.max_acceleration=0.14: axis X: max_velocity is reached after 1071.43 s, at most 1000 s are "
-            "possible: is max_acceleration in mm/s^2?");
+            "--set axis.x.max_acceleration=0.14: axis X: max_velocity is reached after 1071.43 s; at most 1000 s are "
+            "possible, which is the card's longest ramp at 1 MHz: is max_acceleration in mm/s^2?");
+  EXPECT_EQ(override_error("axis.x.max_jerk=0.9"),
+            "--set axis.x.max_jerk=0.9: axis X: max_acceleration is reached after 1111.11 s; at most 1000 s are "
+            "possible, which is the card's longest ramp at 1 MHz: is max_jerk in mm/s^3?");
 }
 
 }  // namespace

@@ -130,6 +130,49 @@ TEST(Stop, WhileLinesComeSlowly) {
   EXPECT_LT(read, 60U) << "it was not looked for before the end";
 }
 
+// Before the first command is known, and the card has been given nothing: while a window of blocks is read, and while
+// the ramps of one are planned, which begin when its last line has been read.
+class WindowOfLines final : public gcode::LineSource {
+ public:
+  WindowOfLines(driver::Card& card, unsigned stop_at, unsigned& read) : card_(card), stop_at_(stop_at), read_(read) {}
+  const std::string& name() const override { return name_; }
+  bool next(std::string_view& line) override {
+    if (++read_ == stop_at_) card_.request_stop();
+    line = read_ % 2 == 0 ? "G91 G1 X0.1 F600" : "G91 G1 X0.1 F900";
+    return read_ <= kWindow;
+  }
+
+  static constexpr unsigned kWindow = 1000;
+
+ private:
+  std::string name_ = "window.ngc";
+  driver::Card& card_;
+  unsigned stop_at_;
+  unsigned& read_;
+};
+
+class SentNothing final : public Observer {
+ public:
+  void sending(const planner::PlannedBlock& block) override { ADD_FAILURE() << "line " << block.block.line; }
+};
+
+TEST(Stop, WhileAWindowIsPlanned) {
+  for (const unsigned stop_at : {100U, WindowOfLines::kWindow + 1}) {
+    SCOPED_TRACE(stop_at);
+    StopBench bench;
+    machine::apply_override(bench.machine, "motion.window=2000");
+    for (machine::MachineAxis& axis : bench.machine.axes) axis.max_jerk = 10'000;
+    unsigned read = 0;
+    Runner runner([&] { return std::make_unique<WindowOfLines>(bench.card, stop_at, read); }, bench.machine,
+                  planner::limits_of(bench.card.identification()));
+    SentNothing observer;
+    runner.add(observer);
+    EXPECT_THROW(runner.stream(bench.card), StoppedOnPath);
+    EXPECT_LE(read, stop_at + 1);
+    EXPECT_TRUE(bench.steps.pins.empty());
+  }
+}
+
 // In a dwell, with a hold standing, and when there is nothing to stop.
 TEST(Stop, AtRest) {
   StopBench bench;

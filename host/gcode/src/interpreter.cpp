@@ -13,7 +13,10 @@ namespace {
 
 constexpr double kStill = 1e-9;  // mm: what is left of a sum that should be 0
 
-constexpr double kLeastFeed = 1e-6;  // a minute; a millimetre in two years
+// The least max_velocity of a machine file, 0.001 mm/s. Less is a slip of the pen: 10 mm would take hours.
+constexpr double kLeastFeed = 0.06;  // mm/min, or degrees/min
+// Under G93: one motion takes at most 1,000 minutes.
+constexpr double kLeastInverseTime = 0.001;  // 1/min
 
 constexpr int kSpindleClockwise = 30;
 constexpr int kSpindleCounterClockwise = 40;
@@ -336,10 +339,12 @@ bool Interpreter::set_speed(const Context& context, Motion& motion) const {
   if (!modes_.feed) {
     return problem.set(ErrorCode::kNoFeed, "motion with feed, but no F word before");
   }
-  if (*modes_.feed < kLeastFeed) {
-    return problem.set(ErrorCode::kFeedTooSmall, *modes_.feed == 0 ? "feed is 0" : "feed is too small");
-  }
+  if (*modes_.feed == 0) return problem.set(ErrorCode::kFeedTooSmall, "feed is 0");
   if (modes_.inverse_time) {
+    if (*modes_.feed < kLeastInverseTime) {
+      return problem.set(ErrorCode::kFeedTooSmall,
+                         fmt::format("feed is too small: under G93 at least F{} (1,000 minutes)", kLeastInverseTime));
+    }
     motion.seconds = 60 / *modes_.feed;
     return true;
   }
@@ -347,7 +352,12 @@ bool Interpreter::set_speed(const Context& context, Motion& motion) const {
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
     linear = linear || (!is_rotary(axis) && std::abs(motion.target[axis] - here_.at[axis]) > kStill);
   }
-  motion.feed = *modes_.feed * (modes_.feed_in_inches && linear ? kMmPerInch : 1) / 60;
+  const double per_minute = *modes_.feed * (modes_.feed_in_inches && linear ? kMmPerInch : 1);
+  if (per_minute < kLeastFeed) {
+    return problem.set(ErrorCode::kFeedTooSmall, fmt::format("feed is too small: {:g} {}/min, at least {} are possible",
+                                                             per_minute, linear ? "mm" : "degrees", kLeastFeed));
+  }
+  motion.feed = per_minute / 60;
   return true;
 }
 

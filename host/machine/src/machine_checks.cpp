@@ -46,14 +46,19 @@ void check_kinematics(const std::string& where, const Machine& machine) {
 }
 
 void check_ramps(const std::string& where, const Machine& machine) {
-  constexpr double kLongest = 1000;  // s
-  for (const MachineAxis& axis : machine.axes) {
-    const double seconds = axis.max_velocity / axis.max_acceleration;
-    if (seconds <= kLongest) continue;
+  constexpr double kLongest = 1000;  // s: the card's slowest slew at 1 MHz
+  const auto check = [&](const MachineAxis& axis, double seconds, const char* reached, const char* unit_of) {
+    if (seconds <= kLongest) return;
     refuse(
-        fmt::format("{}: axis {}: max_velocity is reached after {:g} s, at most {:g} s are possible: is "
-                    "max_acceleration in mm/s^2?",
-                    where, axis.letter, seconds, kLongest));
+        fmt::format("{}: axis {}: {} is reached after {:g} s; at most {:g} s are possible, which is the card's longest "
+                    "ramp at 1 MHz: is {}?",
+                    where, axis.letter, reached, seconds, kLongest, unit_of));
+  };
+  for (const MachineAxis& axis : machine.axes) {
+    check(axis, axis.max_velocity / axis.max_acceleration, "max_velocity", "max_acceleration in mm/s^2");
+    if (axis.max_jerk > 0) {
+      check(axis, axis.max_acceleration / axis.max_jerk, "max_acceleration", "max_jerk in mm/s^3");
+    }
   }
 }
 

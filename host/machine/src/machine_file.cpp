@@ -9,32 +9,12 @@
 #include <toml.hpp>
 
 #include "machine_checks.hpp"
+#include "numbers.hpp"
 #include "text.hpp"
 #include "trammel/machine/machine.hpp"
 
 namespace trammel::machine {
 namespace {
-
-// What an entry's number must be, and its unit. The bounds lie beyond any machine, and within what the card and the
-// planner's doubles carry without loss; inside them no plan becomes endless.
-struct Range {
-  double least;
-  double most;
-  const char* unit;
-};
-// A pulse a metre to a pulse a nanometre.
-constexpr Range kStepsPerMm{1e-3, 1e6, "pulses/mm"};
-// 3.6 mm an hour to the speed of sound in steel; ramps between that and rest take from microseconds to 1,000 s
-// (check_ramps), which is as long as the card's slowest slew at 1 MHz.
-constexpr Range kSpeed{1e-3, 1e7, "mm/s"};
-constexpr Range kAcceleration{1e-3, 1e9, "mm/s^2"};
-constexpr Range kJerk{1e-3, 1e13, "mm/s^3"};
-// 65,535 clocks, which the registers hold, take less than 100 s at the slowest clock.
-constexpr Range kPulseTime{1e-3, 1e11, "ns"};
-constexpr Range kDirectionTime{0, 1e11, "ns"};
-// 2^31 pulses at the coarsest scale.
-constexpr Range kPlace{-2.2e12, 2.2e12, "mm"};
-constexpr Range kAny{-std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), ""};
 
 struct Entry {
   const char* name;
@@ -96,34 +76,6 @@ constexpr std::array<OutputEntry, 4> kOutputEntries = {{
     {"m7", &MachineOutputs::m7},
     {"m8", &MachineOutputs::m8},
 }};
-
-// Where a text came from, for messages: a file (with line numbers), or one override.
-struct Source {
-  std::string name;
-  bool has_lines;
-
-  std::string at_line(std::size_t line) const { return has_lines ? fmt::format("{}:{}: ", name, line) : name + ": "; }
-  std::string at(const toml::value& value) const { return at_line(value.location().line()); }
-};
-
-double number(const Source& source, const std::string& path, const toml::value& value, const Range& range) {
-  double result = 0;
-  if (value.is_integer()) {
-    result = static_cast<double>(value.as_integer());
-  } else if (value.is_floating()) {
-    result = value.as_floating();
-  } else {
-    refuse(source.at(value) + path + " must be a number");
-  }
-  if (!std::isfinite(result)) {
-    refuse(source.at(value) + path + " must be a finite number");
-  }
-  if (result < range.least || result > range.most) {
-    refuse(fmt::format("{}{} must be from {:g} to {:g} {}, not {:g}", source.at(value), path, range.least, range.most,
-                       range.unit, result));
-  }
-  return result;
-}
 
 // A bare key of TOML has no point: G59.1 is g59_1.
 constexpr std::array<const char*, kCoordinateSystems> kSystems = {"g54", "g55",   "g56",   "g57",  "g58",
@@ -206,7 +158,7 @@ void set_motion(const Source& source, MotionSettings& motion, const toml::table&
     const auto entry = std::find_if(kMotionEntries.begin(), kMotionEntries.end(),
                                     [&key = key](const MotionEntry& known) { return key == known.name; });
     if (entry == kMotionEntries.end()) refuse_key(source, value, "motion.", key, motion_entries());
-    const double given = number(source, "motion." + key, value, kAny);
+    const double given = number(source, "motion." + key, value);
     if (given < entry->least || given > entry->most || (entry->whole && given != std::floor(given))) {
       refuse(fmt::format("{}motion.{} must be {}from {} to {}, not {}", source.at(value), key,
                          entry->whole ? "a whole number " : "", entry->least, entry->most, given));
@@ -316,7 +268,7 @@ void set_tools(const Source& source, Machine& machine, const toml::table& table)
 }
 
 void set_clock(const Source& source, Machine& machine, const toml::value& value) {
-  const double clock = number(source, "card.clock_hz", value, kAny);
+  const double clock = number(source, "card.clock_hz", value);
   if (clock != std::floor(clock) || clock < kSlowestClock || clock > kFastestClock) {
     refuse(fmt::format("{}card.clock_hz must be a whole number of Hz from {} to {}, not {}", source.at(value),
                        kSlowestClock, kFastestClock, clock));

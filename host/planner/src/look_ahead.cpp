@@ -30,8 +30,11 @@ QueueLimits queues_of(const CardLimits& card) {
           std::max<std::uint64_t>(1, card.feed_depth / halfwords_of(card_map::Opcode::Feed, card.axes))};
 }
 
-std::unique_ptr<SpeedPlan> plan_for(SpeedProfile profile, std::size_t window) {
-  if (profile == SpeedProfile::kSCurve) return std::make_unique<SCurvePlan>(window);
+std::unique_ptr<SpeedPlan> plan_for(const machine::Machine& machine, const PlannerSettings& settings) {
+  const auto window = static_cast<std::size_t>(machine.motion.window);
+  if (profile_of(machine, settings) == SpeedProfile::kSCurve) {
+    return std::make_unique<SCurvePlan>(window, settings.meanwhile);
+  }
   return std::make_unique<TrapezoidPlan>(window);
 }
 
@@ -49,7 +52,7 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
       quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, queues_of(card),
                  profile_of(machine, settings) == SpeedProfile::kSCurve, card.classes),
-      plan_(plan_for(profile_of(machine, settings), static_cast<std::size_t>(machine.motion.window))) {}
+      plan_(plan_for(machine, settings)) {}
 
 PathEntry* Planner::LookAhead::first() {
   while (path_.begin() == path_.end() || (moves(path_[path_.begin()].block) && !quantiser_.ready())) {
@@ -77,6 +80,7 @@ void Planner::LookAhead::go_on() {
 }
 
 void Planner::LookAhead::read_block() {
+  if (settings_.meanwhile) settings_.meanwhile();
   PathEntry& entry = path_.push();
   entry.timed = false;
   entry.queued = queued_;

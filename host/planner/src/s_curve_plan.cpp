@@ -42,7 +42,8 @@ bool is_level(const Phase& phase) { return phase.acceleration == 0 && phase.jerk
 // is a ramp up and one down. So a ramp never meets a cap that is still to come, and what has been planned stays.
 class SCurvePlan::Impl {
  public:
-  Impl(std::size_t window, PlanWork& work) : work_(work), window_(window), caps_(window), rise_(window) {
+  Impl(std::size_t window, std::function<void()> meanwhile, PlanWork& work)
+      : meanwhile_(std::move(meanwhile)), work_(work), window_(window), caps_(window), rise_(window) {
     gaps_.reserve(4 * window + 4);
     fall_.reserve(4 * window + 4);
     for (std::vector<Phase>* phases : {&planned_, &tail_, &given_}) phases->reserve(8 * window + 8);
@@ -69,6 +70,7 @@ class SCurvePlan::Impl {
   bool hop(const Gap& gap);
   void take_up(double length, std::size_t first);
   double peak(const Gap& gap);
+  void begin_ramp();
   double rising(const Gap& gap, double to);
   double falling(const Gap& gap, double from);
   void put(const Phase& phase);
@@ -79,6 +81,7 @@ class SCurvePlan::Impl {
   double split(double length);
   double rounding() const { return window_.length() * 0x1p-40; }
 
+  std::function<void()> meanwhile_;
   PlanWork& work_;
   SpeedWindow window_;
   SpeedCaps caps_;
@@ -252,15 +255,20 @@ bool SCurvePlan::Impl::passes(double begin, double end, double low, double high)
          (!window_.uniform() && reach_length(low, high, window_.range(begin, end).most) >= length);
 }
 
+void SCurvePlan::Impl::begin_ramp() {
+  if (meanwhile_) meanwhile_();
+  ++work_.ramps;
+}
+
 // Length of a ramp from the gap's beginning on, as planned in rise_.
 double SCurvePlan::Impl::rising(const Gap& gap, double to) {
-  ++work_.ramps;
+  begin_ramp();
   return rise_.plan(window_.from(gap.begin, gap.end), gap.from, to);
 }
 
 // The same to its end.
 double SCurvePlan::Impl::falling(const Gap& gap, double from) {
-  ++work_.ramps;
+  begin_ramp();
   return rise_.plan(window_.back_from(gap.end, gap.begin), gap.to, from);
 }
 
@@ -382,7 +390,8 @@ void SCurvePlan::Impl::put(const Phase& phase) {
   planned_.back().short_sight = short_sight_;
 }
 
-SCurvePlan::SCurvePlan(std::size_t window) : impl_(std::make_unique<Impl>(std::max<std::size_t>(window, 1), work_)) {}
+SCurvePlan::SCurvePlan(std::size_t window, std::function<void()> meanwhile)
+    : impl_(std::make_unique<Impl>(std::max<std::size_t>(window, 1), std::move(meanwhile), work_)) {}
 SCurvePlan::~SCurvePlan() = default;
 bool SCurvePlan::full() const { return impl_->full(); }
 void SCurvePlan::push(const Span& span) { impl_->push(span); }

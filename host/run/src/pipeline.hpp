@@ -1,9 +1,11 @@
 // One pass over a program: lines, reader, blocks, planner. Internal to the runner.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
@@ -14,15 +16,16 @@ namespace trammel::run {
 
 class Pipeline {
  public:
+  // `meanwhile`: as of planner::PlannerSettings.
   Pipeline(const ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card,
-           const RunSettings& settings)
+           const RunSettings& settings, std::function<void()> meanwhile = {})
       : lines_(lines()),
         reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
         blocks_(reader_, machine, planner::with_arcs_by(card, settings.arcs), reader_.position()),
         machine_(machine),
         kinematics_(machine),
         card_(card),
-        planning_({settings.single_block, settings.profile}) {
+        planning_({settings.single_block, settings.profile, std::move(meanwhile)}) {
     planner_.emplace(blocks_, machine_, card_, planning_);
     if (settings.profile == planner::SpeedProfile::kSCurve) blocks_.require_jerk();
     if (settings.single_block) blocks_.keep_corners();

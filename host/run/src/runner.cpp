@@ -229,7 +229,8 @@ void Runner::require_planned_for(driver::Card& card) const {
 Outcome Runner::run(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, card_, settings_);
+  // A window that takes long to plan does not make a stop or a hold wait.
+  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { card.serve_requests(); });
   ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block);
   const planner::Pulses end = stream.run();
   if (plan_.probes == 0 && (stream.sent() != plan_.commands || end != plan_.end)) {
@@ -245,7 +246,7 @@ Outcome Runner::run(driver::Card& card) {
 Outcome Runner::stream(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, card_, settings_);
+  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { card.serve_requests(); });
   PlanGatherer gatherer(pipeline);
   std::vector<Observer*> observers = observers_;
   observers.push_back(&gatherer);

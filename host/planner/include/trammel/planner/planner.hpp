@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "trammel/driver/command_sink.hpp"
@@ -30,6 +31,9 @@ enum class SpeedProfile {
 struct PlannerSettings {
   bool exact_stop = false;  // a stop after every line of the program
   SpeedProfile profile = SpeedProfile::kByMachine;
+  // Called before each block is read and before each ramp is planned, since one Planner::next() may take a whole window
+  // of them. What it throws passes through that call.
+  std::function<void()> meanwhile{};
 };
 
 // kTrapezoid or kSCurve.

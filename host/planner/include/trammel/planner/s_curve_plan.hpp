@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "trammel/planner/speed_plan.hpp"
@@ -28,8 +29,10 @@ class SCurvePlan final : public SpeedPlan {
   // (100, both ends twice): 210 (2 n + 1), and n is at least 1.
   static constexpr std::uint64_t kMostRamps = 10 + 3 * 210;
 
-  // Looks `window` spans ahead, at least 1. All memory is taken here, but for ramps over rows of arcs.
-  explicit SCurvePlan(std::size_t window);
+  // Looks `window` spans ahead, at least 1. All memory is taken here, but for ramps over rows of arcs. A long window
+  // takes many ramps to plan: `meanwhile`, where there is one, is called before each. What it throws passes through;
+  // the plan is then of no further use.
+  explicit SCurvePlan(std::size_t window, std::function<void()> meanwhile = {});
   ~SCurvePlan() override;
 
   bool full() const override;

@@ -1,0 +1,42 @@
+// Numbers of a machine file: what they may be, and where they stand.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <toml.hpp>
+
+namespace trammel::machine {
+
+// Where a text came from, for messages: a file (with line numbers), or one override.
+struct Source {
+  std::string name;
+  bool has_lines;
+
+  std::string at_line(std::size_t line) const;
+  std::string at(const toml::value& value) const { return at_line(value.location().line()); }
+};
+
+// What a number must be, its unit, and why: the end of the refusal. The bounds lie beyond any machine, and within what
+// the card and the planner's doubles carry without loss; inside them no plan becomes endless.
+struct Range {
+  double least;
+  double most;
+  const char* unit;
+  const char* reason;
+};
+
+inline constexpr Range kStepsPerMm{1e-3, 1e6, "pulses/mm", "a pulse a metre to a pulse a nanometre"};
+inline constexpr Range kSpeed{1e-3, 1e7, "mm/s", "3.6 mm an hour to 10 km/s"};
+inline constexpr Range kAcceleration{1e-3, 1e9, "mm/s^2", "1 mm/s in 1,000 s to 100,000 g"};
+inline constexpr Range kJerk{1e-3, 1e13, "mm/s^3", "1 mm/s^2 in 1,000 s to 100,000 g in 0.1 ms"};
+// 65,535 clocks take less than 100 s at the slowest clock.
+inline constexpr Range kPulseTime{1e-3, 1e11, "ns", "a register holds 65,535 clocks, 100 s at the slowest clock"};
+inline constexpr Range kDirectionTime{0, 1e11, "ns", "a register holds 65,535 clocks, 100 s at the slowest clock"};
+inline constexpr Range kPlace{-2.2e12, 2.2e12, "mm", "2^31 pulses at the coarsest scale"};
+
+// The value, when it is a finite number; else a MachineError with file and line.
+double number(const Source& source, const std::string& path, const toml::value& value);
+// The same, within its range.
+double number(const Source& source, const std::string& path, const toml::value& value, const Range& range);
+
+}  // namespace trammel::machine
