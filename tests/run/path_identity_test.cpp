@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "clocks.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/run/step_fork.hpp"
 #include "trammel/sim/timed_bus.hpp"
