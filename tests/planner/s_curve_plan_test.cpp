@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -378,6 +379,23 @@ TEST(SCurvePlan, AWindowOfSomeStoppingDistancesIsEnough) {
   EXPECT_NEAR(test::duration_of(phases) / seconds(spans, 20'000), 1, 1e-3);
   for (std::size_t i = 2; i < phases.size(); ++i) EXPECT_GT(phases[i].speed + (i + 1 == phases.size()) * 10, 10) << i;
   EXPECT_EQ(std::count_if(phases.begin(), phases.end(), [](const Phase& phase) { return phase.short_sight; }), 0);
+}
+
+// A host that is told to stop throws there: a window may have thousands of ramps.
+TEST(SCurvePlan, CallsBeforeEachRamp) {
+  Random random(7);
+  const Spans spans = moves(random, {100, 1'000, 1e5}, true);
+  std::uint64_t calls = 0;
+  SCurvePlan whole(1'000, [&] { ++calls; });
+  test::plan_all(whole, spans);
+  EXPECT_EQ(calls, whole.work().ramps);
+  EXPECT_GT(calls, spans.size());
+  std::uint64_t left = calls / 2;
+  SCurvePlan stopped(1'000, [&] {
+    if (--left == 0) throw std::runtime_error("stop");
+  });
+  EXPECT_THROW(test::plan_all(stopped, spans), std::runtime_error);
+  EXPECT_EQ(left, 0U);
 }
 
 TEST(SCurvePlan, IsAFunctionOfTheSpansAlone) {

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "clocks.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/run/step_fork.hpp"
 #include "trammel/sim/timed_bus.hpp"
@@ -134,17 +135,18 @@ struct Trouble {
 };
 
 Made run(const Trouble& trouble) {
-  constexpr std::uint32_t kClock = 400'000;
   constexpr double kSeconds = 2;
   const machine::Machine machine = machine::default_machine();
-  const auto engine = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
-  sim::TimedBus bus(*engine, kClock, trouble.bytes_per_second);
+  const auto engine = sim::make_model_engine(sim::EngineOptions{4, kSlowClock, false});
+  sim::TimedBus bus(*engine, kSlowClock, trouble.bytes_per_second);
   std::mt19937_64 random(trouble.seed);
-  const auto moment = [&] { return static_cast<std::uint64_t>(random() % static_cast<unsigned>(kSeconds * kClock)); };
+  const auto moment = [&] {
+    return static_cast<std::uint64_t>(random() % static_cast<unsigned>(kSeconds * kSlowClock));
+  };
   for (unsigned i = 0; i < trouble.holds; ++i) {
     const std::uint64_t at = moment();
     bus.at(at, [](sim::Engine& e) { e.write(card_map::reg::kHold, 1); });
-    bus.at(at + kClock / 10, [](sim::Engine& e) { e.write(card_map::reg::kHold, 0); });
+    bus.at(at + kSlowClock / 10, [](sim::Engine& e) { e.write(card_map::reg::kHold, 0); });
   }
   for (unsigned i = 0; i < trouble.overrides; ++i) {
     const auto ratio = static_cast<std::uint32_t>(random() % 60000 + 5000);
