@@ -257,7 +257,7 @@ TEST_F(Changes, OfTheStartShowInTheStartAlone) {
 class BarrierShift : public testing::Test {
  protected:
   const Job job_{kData, "dwells.ngc", sim::EngineKind::kModel, "",
-                 card_map::field::kEnginesLines | card_map::field::kEnginesJerk};
+                 card_map::engines::kLines | card_map::engines::kJerk};
   const StepHashes card_ = hashes_of(job_, {0, 0});
 };
 

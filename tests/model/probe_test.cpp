@@ -15,7 +15,7 @@ namespace field = card_map::field;
 using card_map::Area;
 
 constexpr std::uint64_t kFullRate = ~std::uint64_t{0};  // a tick nearly every clock
-constexpr unsigned kHigh = 0x10;                        // of a condition: the level that trips
+constexpr unsigned kHigh = 0x20;                        // of a condition: the level that trips
 
 // A card that probes along +X, a pulse in `ticks_a_pulse` ticks, a tick in four clocks; input 2 trips when it is high.
 class Probing : public CoreBench {

@@ -128,7 +128,7 @@ typedef struct trammel_identification {
   uint32_t commands_version;
   unsigned axes;            // 1 .. 8
   uint32_t clock_hz;        // Hz
-  uint32_t engines;         // bits of ENGINES
+  uint32_t engines;         // what is built in: a bit for each engine (TRAMMEL_ENGINE_...)
   uint32_t geometry_depth;  // of the queues, halfwords
   uint32_t feed_depth;
 } trammel_identification;
@@ -357,7 +357,7 @@ typedef struct trammel_output_command {
 
 // Until an input has a level.
 typedef struct trammel_input_condition {
-  uint8_t input;     // 0 .. 15
+  uint8_t input;     // 0 .. 31; one that the card lacks stays at 0
   bool level;        //
   uint64_t timeout;  // clocks, 0: none. Not for probes
 } trammel_input_condition;

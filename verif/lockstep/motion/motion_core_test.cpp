@@ -176,7 +176,7 @@ class Bench {
     const auto piece = [](unsigned n) {
       return stored_command(card_map::Opcode::Feed, 0, n, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}});
     };
-    const Halfwords probe = stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x10}});
+    const Halfwords probe = stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x20}});
     geometry_.add({probe});
     if (ticks != 0) geometry_.add({line(ticks)});
     if (ticks != 0) feed_.add({piece(ticks)});
