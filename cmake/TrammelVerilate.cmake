@@ -57,8 +57,10 @@ function(trammel_verilate target)
     cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${TRAMMEL_RTL_DIR}" NORMALIZE)
     list(APPEND files "${file}")
   endforeach()
+  # A harness is read after the packages.
   set(harness ${A_ARGS})
   list(FILTER harness INCLUDE REGEX "\\.sv$")
+  list(FILTER A_ARGS EXCLUDE REGEX "\\.sv$")
   set(model "${target}_${A_PREFIX}")
   set(dir "${CMAKE_CURRENT_BINARY_DIR}/${model}")
   set(code "${dir}/${A_PREFIX}__joined.cc")
@@ -66,7 +68,7 @@ function(trammel_verilate target)
   add_custom_command(OUTPUT "${code}" "${dir}/${A_PREFIX}.h"
     COMMAND "${CMAKE_COMMAND}" -E rm -rf "${dir}"
     COMMAND "${VERILATOR_BIN}" --cc --compiler gcc --prefix ${A_PREFIX} --top-module ${A_TOP} --Mdir "${dir}"
-            $<$<BOOL:${A_TRACE}>:--trace-fst> ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS} ${files}
+            $<$<BOOL:${A_TRACE}>:--trace-fst> ${TRAMMEL_VERILATOR_ARGS} ${A_ARGS} ${files} ${harness}
     COMMAND "${CMAKE_COMMAND}" -D DIR=${dir} -D PREFIX=${A_PREFIX} -D ANY_EVENT=${A_ANY_EVENT} -P "${join}"
     DEPENDS ${files} ${harness} "${PROJECT_SOURCE_DIR}/rtl/lint/waivers.vlt" "${join}"
     COMMENT "Verilating ${A_TOP} for ${target}" VERBATIM COMMAND_EXPAND_LISTS)
@@ -229,7 +231,7 @@ endfunction()
 
 function(trammel_lockstep_target target)
   trammel_target(${target})
-  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/verif/lockstep")
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/verif/lockstep" "${PROJECT_SOURCE_DIR}/sim/src")
   target_link_libraries(${target} PUBLIC trammel_lockstep_main trammel_lockstep trammel::model GTest::gtest)
   trammel_test_headers(${target})
 endfunction()

@@ -5,49 +5,40 @@ module axes #(
     parameter int Axes    = 4,
     parameter bit Counted = 1
 ) (
-    input  wire logic               clk_i,
-    input  wire logic               rst_i,
-    input  wire logic               cut_i,
-    input  wire logic [ 2*Axes-1:0] idle_level_i,
-    input  wire logic [       40:0] setting_i,
-    input  wire logic [       21:0] load_i,
-    // path domain
-    input  wire logic               tick_i,
-    input  wire logic               swap_i,
-    input  wire logic [   Axes-1:0] active_i,
-    input  wire logic               direct_i,
-    input  wire logic [       15:0] chord_word_i,
-    input  wire logic [   Axes-1:0] chord_load_i,
-    input  wire logic [   Axes-1:0] chord_swap_i,
-    input  wire logic [   Axes-1:0] engine_step_i,
-    input  wire logic [   Axes-1:0] engine_dir_i,
-    input  wire logic [        1:0] snapshot_i,
-    input  wire logic [       31:0] chain_i,
-    output logic      [       31:0] chain_o,
-    output logic                    live_o,         // a counted axis has not made its count
-    output logic                    busy_o,         // combinational
-    output logic      [   Axes-1:0] fault_o,        // events
-    output logic      [34*Axes-1:0] observe_o,      // {position, path dir, path step}
-    output logic      [   Axes-1:0] step_o,
-    output logic      [   Axes-1:0] dir_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
+    input wire logic [move_pkg::WIDTH-1:0] move_i,
+    input wire logic [axis_drive_pkg::WIDTH-1:0] drive_i,
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
+    output logic live_o,  // a counted axis has not made its count
+    output logic busy_o,  // combinational
+    output logic [Axes-1:0] fault_o,  // events
+    output logic [axis_observe_pkg::WIDTH*Axes-1:0] observe_o,
+    output logic [Axes-1:0] step_o,
+    output logic [Axes-1:0] dir_o
 );
-  logic                wait_tick;
-  logic [    Axes-1:0] live;
-  logic [    Axes-1:0] busy;
-  logic [    Axes-1:0] path_step;
-  logic [    Axes-1:0] path_dir;
-  logic [ 32*Axes-1:0] position;
-  logic [32*Axes+31:0] chain;  // the word that comes in, and each axis's
+  localparam int SNAPSHOT = snapshot_pkg::WIDTH;
 
-  assign chain[31:0] = chain_i;
-  assign chain_o = chain[32*Axes+:32];
-  assign busy_o    = busy != '0;
-  assign observe_o = {position, path_dir, path_step};
+  logic                              wait_tick;
+  logic [                  Axes-1:0] live;
+  logic [                  Axes-1:0] busy;
+  logic [SNAPSHOT*Axes+SNAPSHOT-1:0] chain;  // what comes in, and each axis's
+
+  assign chain[SNAPSHOT-1:0] = snapshot_i;
+  assign snapshot_o = chain[SNAPSHOT*Axes+:SNAPSHOT];
+  assign busy_o = busy != '0;
 
   always_ff @(posedge clk_i) live_o <= live != '0 && !rst_i;
 
   wait_timer timer (
-      .*,
+      .clk_i,
+      .rst_i,
+      .setting_i,
       .tick_o(wait_tick)
   );
 
@@ -56,26 +47,35 @@ module axes #(
         .Axis   (n),
         .Counted(Counted)
     ) motor (
-        .*,
-        .idle_level_i ({idle_level_i[Axes+n], idle_level_i[n]}),
-        .active_i     (active_i[n]),
-        .chord_load_i (chord_load_i[n]),
-        .chord_swap_i (chord_swap_i[n]),
-        .engine_step_i(engine_step_i[n]),
-        .engine_dir_i (engine_dir_i[n]),
-        .wait_tick_i  (wait_tick),
-        .chain_i      (chain[32*n+:32]),
-        .chain_o      (chain[32*n+32+:32]),
-        .path_step_o  (path_step[n]),
-        .path_dir_o   (path_dir[n]),
-        .live_o       (live[n]),
-        .busy_o       (busy[n]),
-        .fault_o      (fault_o[n]),
-        .position_o   (position[32*n+:32]),
-        .step_o       (step_o[n]),
-        .dir_o        (dir_o[n])
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .idle_level_i({idle_level_i[Axes+n], idle_level_i[n]}),
+        .setting_i,
+        .load_i,
+        .tick_i(drive_i[axis_drive_pkg::TICK]),
+        .swap_i(drive_i[axis_drive_pkg::SWAP]),
+        .active_i(move_i[move_pkg::AXES+n]),
+        .direct_i(move_i[move_pkg::DIRECT]),
+        .chord_word_i(axis_drive_pkg::chord_word(drive_i)),
+        .chord_load_i(drive_i[axis_drive_pkg::CHORD_LOAD+n]),
+        .chord_swap_i(drive_i[axis_drive_pkg::CHORD_SWAP+n]),
+        .engine_step_i(drive_i[axis_drive_pkg::STEP+n]),
+        .engine_dir_i(drive_i[axis_drive_pkg::DIR+n]),
+        .wait_tick_i(wait_tick),
+        .snapshot_i(chain[SNAPSHOT*n+:SNAPSHOT]),
+        .snapshot_o(chain[SNAPSHOT*(n+1)+:SNAPSHOT]),
+        .live_o(live[n]),
+        .busy_o(busy[n]),
+        .fault_o(fault_o[n]),
+        .observe_o(observe_o[axis_observe_pkg::WIDTH*n+:axis_observe_pkg::WIDTH]),
+        .step_o(step_o[n]),
+        .dir_o(dir_o[n])
     );
   end
+
+  logic unused;  // absent axes
+  assign unused = &{1'b0, move_i, drive_i};
 endmodule
 
 `default_nettype wire

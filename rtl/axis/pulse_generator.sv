@@ -116,15 +116,17 @@ module pulse_generator #(
       step_count #(
           .Width(CountWidth)
       ) u_count (
-          .*,
-          .clear_i  (rst_i | clear_i),
-          .load_i   (load_count_i),
-          .arm_i    (swap_i),
+          .clk_i,
+          .clear_i(rst_i | clear_i),
+          .load_i(load_count_i),
+          .word_i,
+          .arm_i(swap_i),
           .counted_i(active_i & counted_i),
-          .begin_i  (swap_late_q),
-          .step_i   (carried_q),
+          .begin_i(swap_late_q),
+          .step_i(carried_q),
+          .live_o,
           .nothing_o(nothing),
-          .last_o   (last)
+          .last_o(last)
       );
     end else begin : g_free
       logic unused;

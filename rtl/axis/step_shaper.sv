@@ -30,23 +30,33 @@ module step_shaper (
   logic pulse;
 
   waiting_steps waiting (
-      .*,
+      .clk_i,
+      .rst_i,
+      .step_i,
+      .dir_i,
       .points_i(dir),
-      .take_i  (go),
-      .any_o   (any),
-      .same_o  (same),
-      .other_o (other)
+      .take_i(go),
+      .wait_tick_i,
+      .any_o(any),
+      .same_o(same),
+      .other_o(other),
+      .fault_o
   );
 
   step_phases phases (
-      .*,
-      .same_i   (same),
-      .other_i  (other),
-      .go_o     (go),
+      .clk_i,
+      .rst_i,
+      .same_i(same),
+      .other_i(other),
+      .step_length_i,
+      .step_space_i,
+      .dir_setup_i,
+      .dir_hold_i,
+      .go_o(go),
       .resting_o(resting),
-      .dir_o    (dir),
-      .begun_o  (begun),
-      .pulse_o  (pulse)
+      .dir_o(dir),
+      .begun_o(begun),
+      .pulse_o(pulse)
   );
 
   always_ff @(posedge clk_i) begin

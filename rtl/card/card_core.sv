@@ -24,15 +24,8 @@ module card_core #(
     input wire logic clk_i,
     input wire logic rst_i,
     // the inner port
-    input wire logic request_i,
-    input wire logic write_i,
-    input wire logic partial_i,
-    input wire logic [1:0] port_i,
-    input wire logic [11:0] address_i,
-    input wire logic [31:0] data_i,
-    output logic ack_o,
-    output logic error_o,
-    output logic [31:0] data_o,
+    input wire logic [register_access_pkg::WIDTH-1:0] access_i,
+    output logic [register_answer_pkg::WIDTH-1:0] answer_o,
     // straps
     input wire logic [31:0] clock_hz_i,
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
@@ -44,7 +37,7 @@ module card_core #(
     output logic [Axes-1:0] dir_o,
     output logic irq_o,
     // for lockstep; a board leaves it open
-    output logic [34*Axes+212:0] observe_o
+    output logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*Axes-1:0] observe_o
 );
   // A parameter out of its range stops every reader here: there is no module of this name, and the name says why.
   if (Axes < 1 || Axes > 8) begin : gen_wrong_axes
@@ -82,138 +75,117 @@ module card_core #(
   // PORTS: {outputs, inputs, ports}.
   localparam logic [31:0] PORTS = 32'(Ports) | (PathCommands != 0 ? 32'(Inputs) << 8 | 32'(Outputs) << 16 : 32'd0);
 
-  // What parameters and straps decide of the constants, by address.
-  logic [511:0] constants;
+  logic [card_constants_pkg::WIDTH-1:0] constants;
 
-  assign constants = 512'(Axes) << 8 * card_map_pkg::ADDR_AXES |
-      512'(clock_hz_i) << 8 * card_map_pkg::ADDR_CLOCK_HZ |
-      512'(ENGINES) << 8 * card_map_pkg::ADDR_ENGINES |
-      512'(GeometryDepth) << 8 * card_map_pkg::ADDR_GEOMETRY_DEPTH |
-      512'(FeedDepth) << 8 * card_map_pkg::ADDR_FEED_DEPTH |
-      512'(BuildId) << 8 * card_map_pkg::ADDR_BUILD_ID |
-      512'(BuildDirty != 0) << 8 * card_map_pkg::ADDR_BUILD_FLAGS |
-      512'(BoardId) << 8 * card_map_pkg::ADDR_BOARD_ID |
-      512'(PORTS) << 8 * card_map_pkg::ADDR_PORTS;
+  assign constants = card_constants_pkg::at(
+      card_map_pkg::ADDR_AXES, 32'(Axes)
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_CLOCK_HZ, clock_hz_i
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_ENGINES, ENGINES
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_GEOMETRY_DEPTH, 32'(GeometryDepth)
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_FEED_DEPTH, 32'(FeedDepth)
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_BUILD_ID, BuildId
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_BUILD_FLAGS, 32'(BuildDirty != 0)
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_BOARD_ID, BoardId
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_PORTS, PORTS
+  );
 
-  logic [31:0] clear_fault_o;
-  logic [31:0] fault_o;
-  logic [31:0] status;
-  logic [ 5:0] motion_status;
-  logic        held_o;
-  logic [65:0] late;  // {a line goes on beyond its period, ticks; held for under-run, how often}
-  logic [63:0] begun;  // {geometry, feed}
-  logic [31:0] room;  // {geometry, feed}
-  logic [ 1:0] low_o;  // {feed, geometry}
-  logic [40:0] setting_o;  // {set, address, data}
-  logic        abort_o;
-  logic        flush_o;
-  logic        cut_o;
-  logic        closed_o;
-  logic        stop_o;
-  logic        mark_o;
-  logic        probe_o;
-  logic        probe_clear_o;
-  logic [66:0] io_o;  // {waiting, probe missed, probed, marks, outputs, inputs}
-  logic [ 1:0] snapshot_o;  // {shift, strobe}
-  logic [31:0] chain_far;
-  logic [31:0] chain_near;
-  logic        start_o;
-  logic [ 9:0] start_answer;  // {done, error, reason}
-  logic [ 7:0] loader_address_o;
-  logic [31:0] loader_data_o;
-  logic        stream_write_o;
-  logic [18:0] answer_o;  // {partial, ready, refuse, number, reason}
+  // between registers and stream
+  logic [setting_bus_pkg::WIDTH-1:0] setting;
+  logic stream_write;
+  logic flush;
+  logic [stream_answer_pkg::WIDTH-1:0] stream_answer;
+  logic [queue_state_pkg::WIDTH-1:0] queue_state;
+  // between registers and what moves
+  logic [31:0] clear_fault;
+  logic abort;
+  logic probe_clear;
+  logic [start_pkg::WIDTH-1:0] start;
+  logic [start_answer_pkg::WIDTH-1:0] start_answer;
+  logic stop;
+  logic mark;
+  logic probe;
+  logic [snapshot_pkg::WIDTH-1:0] snapshot_far;
+  logic [snapshot_pkg::WIDTH-1:0] snapshot_near;
+  logic busy;
+  logic [time_state_pkg::WIDTH-1:0] time_state;
+  logic [geometry_state_pkg::WIDTH-1:0] geometry_state;
+  logic [pins_state_pkg::WIDTH-1:0] pins_state;
+  // between stream and what moves
+  logic cut;
+  logic closed;
+  logic [arrival_pkg::WIDTH-1:0] arrival;
+  logic geometry_empty;
+  logic [15:0] geometry_word;
+  logic geometry_read;
+  logic feed_empty;
+  logic [15:0] feed_word;
+  logic feed_read;
 
   register_file #(
       .Axes(Axes),
       .Ports(Ports),
       .Engines(ENGINES)
   ) registers (
-      .*,
+      .clk_i,
+      .rst_i,
       .constants_i(constants),
-      .access_i({port_i, write_i, partial_i, address_i, data_i}),
-      .motion_i(motion_status),
-      .held_i(held_o),
-      .late_i(late),
-      .fault_i(fault_o),
-      .room_i(room),
-      .low_i(low_o),
-      .begun_i(begun),
-      .io_i(io_o),
-      .status_o(status),
-      .checker_i(answer_o),
+      .idle_level_i,
+      .access_i,
+      .answer_o,
+      .irq_o,
+      .busy_i(busy),
+      .time_state_i(time_state),
+      .geometry_state_i(geometry_state),
+      .pins_state_i(pins_state),
+      .queue_state_i(queue_state),
+      .status_o(observe_o[observe_pkg::STATUS+:32]),
+      .setting_o(setting),
+      .clear_fault_o(clear_fault),
+      .abort_o(abort),
+      .probe_clear_o(probe_clear),
+      .flush_o(flush),
+      .stream_write_o(stream_write),
+      .stream_answer_i(stream_answer),
+      .start_o(start),
       .start_answer_i(start_answer),
-      .loader_address_i(loader_address_o),
-      .stop_i(stop_o),
-      .probe_i(probe_o),
-      .mark_i(mark_o),
-      .chain_o(chain_far),
-      .chain_i(chain_near)
+      .stop_i(stop),
+      .probe_i(probe),
+      .mark_i(mark),
+      .snapshot_i(snapshot_near),
+      .snapshot_o(snapshot_far)
   );
 
-  logic [15:0] halfword_o;
-  logic [ 1:0] geometry_o;  // {commit, write}
-  logic        geometry_read_o;
-  logic        geometry_empty;
-  logic [15:0] geometry_word;
-  logic [ 1:0] feed_o;  // {commit, write}
-  logic        feed_read_o;
-  logic        feed_empty;
-  logic [15:0] feed_word;
-  logic        drop_o;
-  logic        full;  // no room for the largest command: 50 halfwords of geometry, 20 of feed
-
-  assign full = room[31:22] == 10'd0 || room[15:5] == 11'd0;
-
-  command_checker #(
+  command_stream #(
       .Axes(Axes),
-      .Engines(ENGINES)
-  ) stream (
-      .*,
-      .write_i (stream_write_o),
-      .word_i  (setting_o[31:0]),  // the word last written, whatever it was for
-      .flush_i (flush_o),
-      .clear_i (cut_o),
-      .closed_i(closed_o),
-      .room_i  (room)
+      .Engines(ENGINES),
+      .GeometryDepth(GeometryDepth),
+      .FeedDepth(FeedDepth)
+  ) commands (
+      .clk_i,
+      .rst_i,
+      .cut_i(cut),
+      .setting_i(setting),
+      .write_i(stream_write),
+      .flush_i(flush),
+      .closed_i(closed),
+      .answer_o(stream_answer),
+      .queue_state_o(queue_state),
+      .arrival_o(arrival),
+      .geometry_empty_o(geometry_empty),
+      .geometry_word_o(geometry_word),
+      .geometry_read_i(geometry_read),
+      .feed_empty_o(feed_empty),
+      .feed_word_o(feed_word),
+      .feed_read_i(feed_read)
   );
-
-  halfword_queue #(
-      .Depth(GeometryDepth)
-  ) geometry_queue (
-      .*,
-      .clear_i(cut_o),
-      .store_i({drop_o, geometry_o, halfword_o}),
-      .read_i (geometry_read_o),
-      .word_o (geometry_word),
-      .empty_o(geometry_empty),
-      .room_o (room[31:16])
-  );
-
-  halfword_queue #(
-      .Depth(FeedDepth)
-  ) feed_queue (
-      .*,
-      .clear_i(cut_o),
-      .store_i({drop_o, feed_o, halfword_o}),
-      .read_i (feed_read_o),
-      .word_o (feed_word),
-      .empty_o(feed_empty),
-      .room_o (room[15:0])
-  );
-
-  if (Watermarks != 0) begin : gen_watermarks
-    queue_watermarks #(
-        .GeometryDepth(GeometryDepth),
-        .FeedDepth(FeedDepth)
-    ) watermarks (
-        .*,
-        .setting_i(setting_o),
-        .room_i(room)
-    );
-  end else begin : gen_no_watermarks
-    assign low_o = '0;
-  end
 
   motion_core #(
       .Axes(Axes),
@@ -221,33 +193,51 @@ module card_core #(
       .Inputs(Inputs),
       .Outputs(Outputs)
   ) motion (
-      .*,
-      .setting_i(setting_o),
-      .abort_i(abort_o),
-      .clear_fault_i(clear_fault_o),
-      .probe_clear_i(probe_clear_o),
+      .clk_i,
+      .rst_i,
+      .idle_level_i,
+      .setting_i(setting),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i(geometry_word),
+      .geometry_read_o(geometry_read),
       .feed_empty_i(feed_empty),
       .feed_word_i(feed_word),
-      .arrive_i({full, drop_o, geometry_o, feed_o, halfword_o}),
-      .start_i(start_o),
-      .start_mask_i(setting_o[7:0]),
-      .start_done_o(start_answer[9]),
-      .start_error_o(start_answer[8]),
-      .start_reason_o(start_answer[7:0]),
-      .loader_data_i(loader_data_o),
-      .snapshot_i(snapshot_o),
-      .chain_i(chain_far),
-      .chain_o(chain_near),
-      .status_o(motion_status),
-      .underrun_o(late[32:0]),
-      .stale_o(late[65:33]),
-      .geometry_begun_o(begun[63:32]),
-      .feed_begun_o(begun[31:0]),
-      .observe_o(observe_o[34*Axes+52:0])
+      .feed_read_o(feed_read),
+      .arrival_i(arrival),
+      .start_i(start),
+      .start_answer_o(start_answer),
+      .abort_i(abort),
+      .clear_fault_i(clear_fault),
+      .cut_o(cut),
+      .closed_o(closed),
+      .input_i,
+      .output_idle_i,
+      .output_o,
+      .probe_clear_i(probe_clear),
+      .stop_o(stop),
+      .mark_o(mark),
+      .probe_o(probe),
+      .snapshot_i(snapshot_far),
+      .snapshot_o(snapshot_near),
+      .busy_o(busy),
+      .time_state_o(time_state),
+      .geometry_state_o(geometry_state),
+      .pins_state_o(pins_state),
+      .path_tick_o(observe_o[observe_pkg::PATH_TICK]),
+      .observe_o(observe_o[observe_pkg::WIDTH+:axis_observe_pkg::WIDTH*Axes]),
+      .step_o,
+      .dir_o
   );
 
-  assign observe_o[34*Axes+212:34*Axes+53] = {room, status, fault_o, begun};
+  assign observe_o[observe_pkg::TICK] = time_state[time_state_pkg::TICK];
+  assign observe_o[observe_pkg::FEED_SWAP] = time_state[time_state_pkg::FEED_SWAP];
+  assign observe_o[observe_pkg::RATIO+:17] = time_state_pkg::ratio(time_state);
+  assign observe_o[observe_pkg::RATE+:32] = time_state_pkg::rate(time_state);
+  assign observe_o[observe_pkg::FEED_BEGUN+:32] = time_state_pkg::feed_begun(time_state);
+  assign observe_o[observe_pkg::FAULT+:32] = time_state_pkg::fault(time_state);
+  assign observe_o[observe_pkg::PATH_SWAP] = geometry_state[geometry_state_pkg::PATH_SWAP];
+  assign observe_o[observe_pkg::GEOMETRY_BEGUN+:32] = geometry_state_pkg::geometry_begun(geometry_state);
+  assign observe_o[observe_pkg::FEED_ROOM+:16] = queue_state_pkg::feed_room(queue_state);
+  assign observe_o[observe_pkg::GEOMETRY_ROOM+:16] = queue_state_pkg::geometry_room(queue_state);
 endmodule
 `default_nettype wire

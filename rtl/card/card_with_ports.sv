@@ -49,15 +49,18 @@ module card_with_ports #(
     input wire logic rready_i,
     output logic [31:0] rdata_o,
     output logic [1:0] rresp_o,
-    // Wishbone B4: {CYC, STB, WE, SEL, ADR, DAT}, {ACK, ERR, STALL, DAT}
-    input wire logic [50:0] wishbone_i,
-    output logic [34:0] wishbone_o,
+    // Wishbone B4
+    input wire logic [wishbone_request_pkg::WIDTH-1:0] wishbone_i,
+    output logic [wishbone_answer_pkg::WIDTH-1:0] wishbone_o,
     // UART
     input wire logic rx_i,
     output logic tx_o,
-    // SPI: {MOSI, CS low active, SCK}, {enable, MISO}
-    input wire logic [2:0] spi_i,
-    output logic [1:0] spi_o,
+    // SPI
+    input wire logic sck_i,
+    input wire logic cs_n_i,
+    input wire logic mosi_i,
+    output logic miso_o,
+    output logic miso_enable_o,  // low: MISO is for others
     // pins
     input wire logic [Inputs-1:0] input_i,
     output logic [Outputs-1:0] output_o,
@@ -65,7 +68,7 @@ module card_with_ports #(
     output logic [Axes-1:0] dir_o,
     output logic irq_o,
     // for lockstep; a board leaves it open
-    output logic [34*Axes+212:0] observe_o
+    output logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*Axes-1:0] observe_o
 );
   // The reset is registered once for all blocks: it takes effect a clock later. The ports take the pin as
   // well: AXI and Wishbone want no answer in the first clock after a reset, even of one clock.
@@ -76,11 +79,8 @@ module card_with_ports #(
 
   localparam int PORTS = (AxiLite != 0 ? 1 : 0) + (Wishbone != 0 ? 1 : 0) + (Uart != 0 ? 1 : 0) + (Spi != 0 ? 1 : 0);
 
-  logic        request;
-  logic [47:0] access;  // {port, write, partial, address, data}
-  logic        ack;
-  logic        error;
-  logic [31:0] data;
+  logic [register_access_pkg::WIDTH-1:0] access;
+  logic [register_answer_pkg::WIDTH-1:0] answer;
 
   host_ports #(
       .AxiLite(AxiLite),
@@ -89,13 +89,36 @@ module card_with_ports #(
       .Spi(Spi),
       .BreakBits(BreakBits)
   ) hosts (
-      .*,
-      .rst_i    (port_rst),
-      .request_o(request),
-      .access_o (access),
-      .ack_i    (ack),
-      .error_i  (error),
-      .data_i   (data)
+      .clk_i,
+      .rst_i(port_rst),
+      .awvalid_i,
+      .awready_o,
+      .awaddr_i,
+      .wvalid_i,
+      .wready_o,
+      .wdata_i,
+      .wstrb_i,
+      .bvalid_o,
+      .bready_i,
+      .bresp_o,
+      .arvalid_i,
+      .arready_o,
+      .araddr_i,
+      .rvalid_o,
+      .rready_i,
+      .rdata_o,
+      .rresp_o,
+      .wishbone_i,
+      .wishbone_o,
+      .rx_i,
+      .tx_o,
+      .sck_i,
+      .cs_n_i,
+      .mosi_i,
+      .miso_o,
+      .miso_enable_o,
+      .access_o(access),
+      .answer_i(answer)
   );
 
   card_core #(
@@ -118,17 +141,19 @@ module card_with_ports #(
       .BuildDirty(BuildDirty),
       .BoardId(BoardId)
   ) core (
-      .*,
-      .rst_i    (rst_q),
-      .request_i(request),
-      .port_i   (access[47:46]),
-      .write_i  (access[45]),
-      .partial_i(access[44]),
-      .address_i(access[43:32]),
-      .data_i   (access[31:0]),
-      .ack_o    (ack),
-      .error_o  (error),
-      .data_o   (data)
+      .clk_i,
+      .rst_i(rst_q),
+      .access_i(access),
+      .answer_o(answer),
+      .clock_hz_i,
+      .idle_level_i,
+      .output_idle_i,
+      .input_i,
+      .output_o,
+      .step_o,
+      .dir_o,
+      .irq_o,
+      .observe_o
   );
 endmodule
 `default_nettype wire

@@ -50,7 +50,7 @@ module trammel_card #(
     output logic [Axes-1:0] dir_o,
     output logic irq_o,
     // for lockstep; a board leaves it open
-    output logic [34*Axes+212:0] observe_o
+    output logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*Axes-1:0] observe_o
 );
   // The reset is registered once for all blocks: it takes effect a clock later. The port takes the pin as
   // well: AXI wants RVALID and BVALID low in the first clock after a reset, even of one clock.
@@ -59,40 +59,45 @@ module trammel_card #(
   always_ff @(posedge clk_i) rst_q <= rst_i;
   assign port_rst = rst_i || rst_q;
 
-  logic [47:0] port_access;
-  logic        port_ack;
-  logic        port_error;
-  logic [31:0] port_data;
+  logic [register_access_pkg::WIDTH-1:0] port_access;
+  logic [register_answer_pkg::WIDTH-1:0] port_answer;
 
   axi4_lite_port host (
-      .*,
-      .rst_i   (port_rst),
+      .clk_i,
+      .rst_i(port_rst),
+      .awvalid_i,
+      .awready_o,
+      .awaddr_i,
+      .wvalid_i,
+      .wready_o,
+      .wdata_i,
+      .wstrb_i,
+      .bvalid_o,
+      .bready_i,
+      .bresp_o,
+      .arvalid_i,
+      .arready_o,
+      .araddr_i,
+      .rvalid_o,
+      .rready_i,
+      .rdata_o,
+      .rresp_o,
       .access_o(port_access),
-      .ack_i   (port_ack),
-      .error_i (port_error),
-      .data_i  (port_data)
+      .answer_i(port_answer)
   );
 
-  logic        request;
-  logic [47:0] access;  // {port, write, partial, address, data}
-  logic        ack;
-  logic        error;
-  logic [31:0] data;
+  logic [register_access_pkg::WIDTH-1:0] access;
+  logic [register_answer_pkg::WIDTH-1:0] answer;
 
   port_arbiter #(
       .Ports(1)
   ) arbiter (
       .clk_i,
-      .rst_i    (rst_q),
-      .access_i (port_access),
-      .ack_o    (port_ack),
-      .error_o  (port_error),
-      .data_o   (port_data),
-      .request_o(request),
-      .access_o (access),
-      .ack_i    (ack),
-      .error_i  (error),
-      .data_i   (data)
+      .rst_i   (rst_q),
+      .access_i(port_access),
+      .answer_o(port_answer),
+      .access_o(access),
+      .answer_i(answer)
   );
 
   card_core #(
@@ -115,17 +120,19 @@ module trammel_card #(
       .BuildDirty(BuildDirty),
       .BoardId(BoardId)
   ) core (
-      .*,
-      .rst_i    (rst_q),
-      .request_i(request),
-      .port_i   (access[47:46]),
-      .write_i  (access[45]),
-      .partial_i(access[44]),
-      .address_i(access[43:32]),
-      .data_i   (access[31:0]),
-      .ack_o    (ack),
-      .error_o  (error),
-      .data_o   (data)
+      .clk_i,
+      .rst_i(rst_q),
+      .access_i(access),
+      .answer_o(answer),
+      .clock_hz_i,
+      .idle_level_i,
+      .output_idle_i,
+      .input_i,
+      .output_o,
+      .step_o,
+      .dir_o,
+      .irq_o,
+      .observe_o
   );
 endmodule
 `default_nettype wire

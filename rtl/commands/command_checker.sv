@@ -5,7 +5,7 @@
 // command whole and closes the stream until clear_i; a closed stream answers at c+2. So does a fault (closed_i), whose
 // refusal changes nothing else: the cut that comes with it clears all there is. A write while it is not ready is ignored.
 // flush_i waits for a word under way and comes before one beside it. A word under way at clear_i is dropped without a
-// refusal. number is that in the last header, reason the last refusal's; halfword_o holds between writes.
+// refusal. number is that in the last header, reason the last refusal's.
 `default_nettype none
 module command_checker #(
     parameter int Axes = 4,  // 1 to 8
@@ -18,12 +18,10 @@ module command_checker #(
     input wire logic flush_i,
     input wire logic clear_i,
     input wire logic closed_i,
-    input wire logic [31:0] room_i,  // {geometry, feed}, halfwords
-    output logic [15:0] halfword_o,
-    output logic [1:0] geometry_o,  // {commit, write}
-    output logic [1:0] feed_o,
-    output logic drop_o,
-    output logic [18:0] answer_o  // {partial, ready, refuse, number, reason}; partial: inside a command
+    input wire logic [15:0] geometry_room_i,  // halfwords
+    input wire logic [15:0] feed_room_i,
+    output logic [arrival_pkg::WIDTH-1:0] arrival_o,
+    output logic [stream_answer_pkg::WIDTH-1:0] answer_o
 );
 
   // A word's way, one clock each: either halfword is examined and judged, then the word is answered.
@@ -61,7 +59,22 @@ module command_checker #(
   logic field_bad;
   logic field_bad_mask;
 
-  assign answer_o = {partial_q, ready_q, refuse_q, number, reason_q};
+  assign answer_o = stream_answer_pkg::pack(partial_q, ready_q, refuse_q, number, reason_q);
+
+  // What is stored. No command is larger than 50 halfwords of geometry or 20 of feed.
+  logic [15:0] stored_q;
+  logic geometry_write_q;
+  logic geometry_commit_q;
+  logic feed_write_q;
+  logic feed_commit_q;
+  logic drop_q;
+  assign arrival_o[arrival_pkg::HALFWORD+:16] = stored_q;
+  assign arrival_o[arrival_pkg::GEOMETRY_WRITE] = geometry_write_q;
+  assign arrival_o[arrival_pkg::GEOMETRY_COMMIT] = geometry_commit_q;
+  assign arrival_o[arrival_pkg::FEED_WRITE] = feed_write_q;
+  assign arrival_o[arrival_pkg::FEED_COMMIT] = feed_commit_q;
+  assign arrival_o[arrival_pkg::DROP] = drop_q;
+  assign arrival_o[arrival_pkg::FULL] = geometry_room_i[15:6] == 10'd0 || feed_room_i[15:5] == 11'd0;
 
   // Nothing moves but for a word under way and the clock after it, in which the pulses fall.
   logic awake;
@@ -83,18 +96,20 @@ module command_checker #(
       .Axes(Axes),
       .Engines(Engines)
   ) header (
-      .*,
+      .clk_i,
       .restart_i(restart),
       .phase_i(partial_q ? 4'd0 : {high_judge_q, high_q, low_judge_q, low_q}),
       .accept_i(accepted),
       .halfword_i(halfword_q),
+      .geometry_room_i,
+      .feed_room_i,
       .op_o(op),
       .mask_o(mask),
+      .number_o(number),
       .to_geometry_o(to_geometry),
       .to_feed_o(to_feed),
       .stored_o(stored),
       .bad_o(header_bad),
-      .number_o(number),
       .reason_o(header_reason)
   );
 
@@ -148,16 +163,18 @@ module command_checker #(
   always_ff @(posedge clk_i) begin
     if (awake) begin
       if (restart) begin
-        halfword_o <= 16'd0;
-        {geometry_o, feed_o} <= 4'd0;
-        drop_o <= 1'b0;
+        stored_q <= 16'd0;
+        {geometry_write_q, geometry_commit_q, feed_write_q, feed_commit_q} <= 4'd0;
+        drop_q <= 1'b0;
         refuse_q <= 1'b0;
         reason_q <= card_map_pkg::REFUSE_NONE;
       end else begin
-        if (store) halfword_o <= halfword_q;
-        geometry_o <= {accepted && to_geometry, store && to_geometry};
-        feed_o <= {accepted && to_feed, store && to_feed};
-        drop_o <= refused || truncate;
+        if (store) stored_q <= halfword_q;
+        geometry_write_q <= store && to_geometry;
+        geometry_commit_q <= accepted && to_geometry;
+        feed_write_q <= store && to_feed;
+        feed_commit_q <= accepted && to_feed;
+        drop_q <= refused || truncate;
         refuse_q <= refused || truncate || (answer_q && !judged);
         // Never both: an answer comes while ready_q is low, a flush is heard while it is high.
         if (answer_q) begin

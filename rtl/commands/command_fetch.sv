@@ -8,32 +8,36 @@
 `default_nettype none
 
 module command_fetch (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic        pop_i,          // the decoded command is taken; the next may be read
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic pop_i,  // the decoded command is taken; the next may be read
     // queue
-    input  wire logic        empty_i,
-    input  wire logic [15:0] word_i,
-    output logic             read_o,
+    input wire logic empty_i,
+    input wire logic [15:0] word_i,
+    output logic read_o,
     // fields of the payload, named by the decoder from opcode_o, mask_o and field_o
-    input  wire logic        has_payload_i,
-    input  wire logic [ 7:0] first_i,        // {field, its halfwords less one}
-    input  wire logic [ 7:0] next_i,
-    input  wire logic        last_field_i,
-    input  wire logic        rest_i,         // fields are left when the command is taken
-    input  wire logic        wait_i,         // the next field, with first_o the first one, must wait
-    output logic             header_o,       // {mask, opcode} is on word_i
-    output logic             first_o,        // the first field is taken up now (combinational)
-    output logic             advance_o,      // the next field is taken up now (combinational)
-    output logic      [ 4:0] field_o,        // field being read, or the one that waits
+    input wire logic has_payload_i,
+    input wire logic [4:0] first_field_i,
+    input wire logic [2:0] first_length_i,  // halfwords, less one
+    input wire logic [4:0] next_field_i,
+    input wire logic [2:0] next_length_i,
+    input wire logic last_field_i,
+    input wire logic rest_i,  // fields are left when the command is taken
+    input wire logic wait_i,  // the next field, with first_o the first one, must wait
+    output logic header_o,  // {mask, opcode} is on word_i
+    output logic first_o,  // the first field is taken up now (combinational)
+    output logic advance_o,  // the next field is taken up now (combinational)
+    output logic [4:0] field_o,  // field being read, or the one that waits
     // halfwords on their way, aligned with word_i
-    output logic      [ 6:0] strobe_o,       // {of the count, of a field, which one}
+    output logic of_count_o,
+    output logic of_field_o,
+    output logic [4:0] which_o,  // the field
     // header
-    output logic      [ 7:0] opcode_o,
-    output logic      [ 7:0] mask_o,
-    output logic             idle_o,         // nothing read or decoded
-    output logic             valid_o         // a command is decoded
+    output logic [7:0] opcode_o,
+    output logic [7:0] mask_o,
+    output logic idle_o,  // nothing read or decoded
+    output logic valid_o  // a command is decoded
 );
   typedef enum logic [2:0] {
     IDLE,
@@ -103,14 +107,14 @@ module command_fetch (
 
   always_ff @(posedge clk_i) begin : p_fetch
     // Nothing moves while there is nothing to read and nothing on its way, or what was read waits.
-    if (cut_i || rst_i || !(valid_o || (idle_o && empty_i && !strobe_o[5]))) begin
+    if (cut_i || rst_i || !(valid_o || (idle_o && empty_i && !of_field_o))) begin
       // 0 in the first clock of either state, without waiting for what comes next: HEADER has four clocks.
       step_q <= state_q == HEADER || state_q == TAIL ? step_q + 2'd1 : 2'd0;
 
       if (first_o) begin
-        {field_o, left_q} <= first_i;
+        {field_o, left_q} <= {first_field_i, first_length_i};
       end else if (advance_o) begin
-        {field_o, left_q} <= next_i;
+        {field_o, left_q} <= {next_field_i, next_length_i};
       end else if (state_q == PAYLOAD || state_q == REST) begin
         left_q <= left_q - 3'd1;
       end
@@ -120,13 +124,16 @@ module command_fetch (
       payload_1_q <= state_q == PAYLOAD || state_q == REST;
       field_1_q   <= field_o;
       header_o    <= first_1_q;
-      strobe_o    <= {header_1_q && !first_1_q, payload_1_q, field_1_q};
+      of_count_o  <= header_1_q && !first_1_q;
+      of_field_o  <= payload_1_q;
+      which_o     <= field_1_q;
       if (header_o) {mask_o, opcode_o} <= word_i;
 
       if (cut_i || rst_i) begin
-        header_1_q    <= 1'b0;
-        payload_1_q   <= 1'b0;
-        strobe_o[6:5] <= 2'b00;
+        header_1_q  <= 1'b0;
+        payload_1_q <= 1'b0;
+        of_count_o  <= 1'b0;
+        of_field_o  <= 1'b0;
       end
     end
   end

@@ -13,7 +13,8 @@ module command_header #(
     input wire logic [3:0] phase_i,
     input wire logic accept_i,  // the command is committed: its successor is due
     input wire logic [15:0] halfword_i,
-    input wire logic [31:0] room_i,  // {geometry, feed}
+    input wire logic [15:0] geometry_room_i,
+    input wire logic [15:0] feed_room_i,
     output logic [7:0] op_o,
     output logic [7:0] mask_o,
     output logic [7:0] number_o,
@@ -79,8 +80,8 @@ module command_header #(
     if (phase_i[3]) begin
       length_bad_q <= halfword_i[7:0] != {3'b0, stored_o[5:1]} + 8'd1;
       number_bad_q <= number_o != expected_q;
-      geometry_full_q <= to_geometry_o && room_i[31:16] < {10'b0, stored_o};
-      feed_full_q <= to_feed_o && room_i[15:0] < {10'b0, stored_o};
+      geometry_full_q <= to_geometry_o && geometry_room_i < {10'b0, stored_o};
+      feed_full_q <= to_feed_o && feed_room_i < {10'b0, stored_o};
     end
   end
 

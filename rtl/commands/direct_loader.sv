@@ -8,22 +8,17 @@
 module direct_loader #(
     parameter int Axes = 4
 ) (
-    input  wire logic            clk_i,
-    input  wire logic            rst_i,
-    input  wire logic            busy_i,     // anything runs, is decoded or queued
-    input  wire logic            closed_i,   // a fault stands
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic busy_i,  // anything runs, is decoded or queued
+    input wire logic closed_i,  // a fault stands
     // registers
-    input  wire logic            start_i,
-    input  wire logic [     7:0] mask_i,     // stands until done_o
-    output logic      [     7:0] address_o,  // word address
-    input  wire logic [    31:0] data_i,
-    output logic                 done_o,
-    output logic                 error_o,
-    output logic      [     7:0] reason_o,
+    input wire logic [start_pkg::WIDTH-1:0] start_i,
+    output logic [start_answer_pkg::WIDTH-1:0] answer_o,
     // to the geometry sequencer
-    output logic      [    21:0] load_o,
-    output logic                 go_o,
-    output logic      [Axes-1:0] mask_o
+    output logic [load_bus_pkg::WIDTH-1:0] load_o,
+    output logic go_o,
+    output logic [Axes-1:0] mask_o
 );
   typedef enum logic [2:0] {
     IDLE,
@@ -67,6 +62,20 @@ module direct_loader #(
   logic          length_any_q;
   logic          bad_q;
 
+  // Registers' side.
+  logic          start;
+  logic   [ 7:0] mask;
+  logic   [31:0] data;
+  logic   [ 7:0] address_q;
+  logic          done_q;
+  logic          error_q;
+  logic   [ 7:0] reason_q;
+
+  assign start = start_i[start_pkg::START];
+  assign mask = start_pkg::mask(start_i);
+  assign data = start_pkg::data(start_i);
+  assign answer_o = start_answer_pkg::pack(address_q, done_q, error_q, reason_q);
+
   always_ff @(posedge clk_i) begin : p_loader
     logic        closed;
     logic        refused;
@@ -75,9 +84,10 @@ module direct_loader #(
     logic        take_high;
     logic        raw_any;
     logic [15:0] negated;
+    logic [ 3:0] target;
 
-    // At rest nothing moves, once done_o and go_o have fallen again.
-    if (rst_i || start_i || state_q != IDLE || done_o) begin
+    // At rest nothing moves, once done_q and go_o have fallen again.
+    if (rst_i || start || state_q != IDLE || done_q) begin
       // A fault that came in between counts: the move must not wait for FAULT to be cleared.
       closed = closed_q || (state_q == DECIDE && closed_i);
       refused = bad_mask_q || closed || busy_q || bad_q;
@@ -88,21 +98,25 @@ module direct_loader #(
       negated = (raw_q ^ {16{negative_q && frequency_q}}) + {15'd0, carry_q && frequency_q};
 
       // Each stage before the one that feeds it.
-      load_o[21]   <= (frequency_q || count_q || length_q) && !rst_i;
-      load_o[15:0] <= negated;
-      if (length_q) load_o[20:16] <= load_target_pkg::TICKS;
-      else load_o[20:16] <= (count_q ? load_target_pkg::COUNT : load_target_pkg::INCREMENT) + {2'd0, raw_axis_q};
+      target = count_q ? load_target_pkg::COUNT : load_target_pkg::INCREMENT;
+      load_o <= load_bus_pkg::pack(
+          (frequency_q || count_q || length_q) && !rst_i,
+          length_q ? load_target_pkg::TICKS : load_target_pkg::of_axis(
+              raw_axis_q, target
+          ),
+          negated
+      );
 
-      done_o  <= state_q == DECIDE && step_q == 5'd7 && !rst_i;
-      error_o <= refused || !length_any_q;
-      go_o    <= state_q == DECIDE && step_q == 5'd7 && !refused && length_any_q && !rst_i;
-      if (bad_mask_q) reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
-      else if (closed) reason_o <= card_map_pkg::REFUSE_FAULTED;
-      else if (busy_q) reason_o <= card_map_pkg::REFUSE_BUSY;
-      else reason_o <= card_map_pkg::REFUSE_BAD_VALUE;
+      done_q <= state_q == DECIDE && step_q == 5'd7 && !rst_i;
+      error_q <= refused || !length_any_q;
+      go_o <= state_q == DECIDE && step_q == 5'd7 && !refused && length_any_q && !rst_i;
+      if (bad_mask_q) reason_q <= card_map_pkg::REFUSE_BAD_VALUE;
+      else if (closed) reason_q <= card_map_pkg::REFUSE_FAULTED;
+      else if (busy_q) reason_q <= card_map_pkg::REFUSE_BUSY;
+      else reason_q <= card_map_pkg::REFUSE_BAD_VALUE;
 
       if (state_q == CHECK && step_q != 5'd7) {busy_q, closed_q} <= {busy_i, closed_i};
-      if (state_q == CHECK) bad_mask_q <= mask_i == 8'd0 || (mask_i >> Axes) != 8'd0;
+      if (state_q == CHECK) bad_mask_q <= mask == 8'd0 || (mask >> Axes) != 8'd0;
       if (state_q == IDLE) begin
         bad_q        <= 1'b0;
         length_any_q <= 1'b0;
@@ -113,15 +127,15 @@ module direct_loader #(
       if (length_q && raw_any) length_any_q <= 1'b1;
 
       if (state_q == AXIS && step_q == TAKE_DIRECTION) begin
-        negative_q      <= data_i[0];
-        carry_q         <= data_i[0];
+        negative_q      <= data[0];
+        carry_q         <= data[0];
         frequency_any_q <= 1'b0;
       end else if (frequency_q) begin
         carry_q         <= carry_q && !raw_any;
         frequency_any_q <= frequency_any_q || raw_any;
       end
 
-      raw_q <= take_high ? data_i[31:16] : data_i[15:0];
+      raw_q <= take_high ? data[31:16] : data[15:0];
       raw_axis_q <= axis_q;
       frequency_top_q <= step_q == TAKE_FREQUENCY_2;
       frequency_q     <= state_q == AXIS && rest_q[0] &&
@@ -130,20 +144,20 @@ module direct_loader #(
       length_q <= state_q == LENGTH && (step_q == TAKE_LENGTH_0 || step_q == TAKE_LENGTH_1 || step_q == TAKE_LENGTH_2);
 
       if (state_q == LENGTH) begin
-        address_o <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[9:2] : card_map_pkg::ADDR_LENGTH_LO[9:2];
+        address_q <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[9:2] : card_map_pkg::ADDR_LENGTH_LO[9:2];
       end else begin
         case (step_q[3:2])
-          2'd0: address_o <= card_map_pkg::ADDR_DIRECTION[9:2] - {3'd0, axis_q, 2'd0};
-          2'd1: address_o <= card_map_pkg::ADDR_FREQUENCY_LO[9:2] - {3'd0, axis_q, 2'd0};
-          2'd2: address_o <= card_map_pkg::ADDR_FREQUENCY_HI[9:2] - {3'd0, axis_q, 2'd0};
-          default: address_o <= card_map_pkg::ADDR_COUNT[9:2] - {3'd0, axis_q, 2'd0};
+          2'd0: address_q <= card_map_pkg::ADDR_DIRECTION[9:2] - {3'd0, axis_q, 2'd0};
+          2'd1: address_q <= card_map_pkg::ADDR_FREQUENCY_LO[9:2] - {3'd0, axis_q, 2'd0};
+          2'd2: address_q <= card_map_pkg::ADDR_FREQUENCY_HI[9:2] - {3'd0, axis_q, 2'd0};
+          default: address_q <= card_map_pkg::ADDR_COUNT[9:2] - {3'd0, axis_q, 2'd0};
         endcase
       end
 
       if (state_q == CHECK) begin
-        rest_q <= mask_i;
+        rest_q <= mask;
         axis_q <= 3'd0;
-        mask_o <= mask_i[Axes-1:0];
+        mask_o <= mask[Axes-1:0];
       end else if (state_q == AXIS && axis_done) begin
         rest_q <= {1'b0, rest_q[7:1]};
         axis_q <= axis_q + 3'd1;
@@ -153,7 +167,7 @@ module direct_loader #(
       case (state_q)
         IDLE: begin
           step_q <= 5'd0;
-          if (start_i) state_q <= CHECK;
+          if (start) state_q <= CHECK;
         end
         // The clocks in which a command just committed makes the card busy.
         CHECK: begin

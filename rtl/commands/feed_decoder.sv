@@ -6,24 +6,26 @@
 module feed_decoder #(
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic        pop_i,
-    input  wire logic        active_i,     // a piece runs
-    input  wire logic        empty_i,
-    input  wire logic [15:0] word_i,
-    output logic             read_o,
-    output logic      [19:0] load_o,       // {valid, target, word}
-    output logic             piece_o,
-    output logic      [ 1:0] class_o,      // of the piece
-    output logic             barrier_o,
-    output logic             probe_end_o,
-    output logic             idle_o,
-    output logic             valid_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic pop_i,
+    input wire logic active_i,  // a piece runs
+    input wire logic empty_i,
+    input wire logic [15:0] word_i,
+    output logic read_o,
+    output logic [feed_load_pkg::WIDTH-1:0] load_o,
+    output logic piece_o,
+    output logic [1:0] class_o,  // of the piece
+    output logic barrier_o,
+    output logic probe_end_o,
+    output logic idle_o,
+    output logic valid_o
 );
   logic [4:0] field;
-  logic [6:0] strobe;  // {of the count, of a field, which one}
+  logic       of_count;  // word_i is of the count
+  logic       of_field;  // word_i is of a field
+  logic [4:0] which;  // that field
   logic [7:0] opcode;
   logic [7:0] mask;
   logic       is_feed;
@@ -42,33 +44,45 @@ module feed_decoder #(
   endfunction
 
   command_fetch fetch (
-      .*,
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i,
+      .empty_i,
+      .word_i,
+      .read_o,
       .has_payload_i(is_feed || is_wait),
-      .first_i      (is_wait ? {2'd0, load_target_pkg::FEED_NOWHERE, 3'd0} : {2'd0, load_target_pkg::FEED_RATE, 3'd3}),
-      .next_i       ({field + 5'd1, length_of(field[2:0] + 3'd1)}),
-      .last_field_i (pause || is_wait || field[2:0] == load_target_pkg::FEED_JERK),
-      .rest_i       (is_feed && field[2:0] == load_target_pkg::FEED_ACCELERATION),
-      .wait_i       (1'b0),
-      .header_o     (),
-      .first_o      (),
-      .advance_o    (),
-      .field_o      (field),
-      .strobe_o     (strobe),
-      .opcode_o     (opcode),
-      .mask_o       (mask)
+      .first_field_i({2'd0, is_wait ? load_target_pkg::FEED_NOWHERE : load_target_pkg::FEED_RATE}),
+      .first_length_i(is_wait ? 3'd0 : 3'd3),
+      .next_field_i(field + 5'd1),
+      .next_length_i(length_of(field[2:0] + 3'd1)),
+      .last_field_i(pause || is_wait || field[2:0] == load_target_pkg::FEED_JERK),
+      .rest_i(is_feed && field[2:0] == load_target_pkg::FEED_ACCELERATION),
+      .wait_i(1'b0),
+      .header_o(),
+      .first_o(),
+      .advance_o(),
+      .field_o(field),
+      .of_count_o(of_count),
+      .of_field_o(of_field),
+      .which_o(which),
+      .opcode_o(opcode),
+      .mask_o(mask),
+      .idle_o,
+      .valid_o
   );
 
   always_ff @(posedge clk_i) begin
-    load_o[19]    <= strobe[6:5] != 2'd0 && !rst_i;
-    load_o[18:16] <= strobe[6] ? load_target_pkg::FEED_TICKS : strobe[2:0];
-    load_o[15:0]  <= word_i;
-    piece_o       <= is_feed;
-    barrier_o     <= !is_feed;
-    probe_end_o   <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_PROBE_END;
+    load_o <= feed_load_pkg::pack(
+        (of_count || of_field) && !rst_i, of_count ? load_target_pkg::FEED_TICKS : which[2:0], word_i
+    );
+    piece_o <= is_feed;
+    barrier_o <= !is_feed;
+    probe_end_o <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_PROBE_END;
   end
 
   logic unused;
-  assign unused = &{1'b0, strobe[4:3], mask[7:2]};
+  assign unused = &{1'b0, which[4:3], mask[7:2]};
 endmodule
 
 `default_nettype wire

@@ -11,42 +11,49 @@ module geometry_decoder #(
     parameter int          Axes    = 4,
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic            clk_i,
-    input  wire logic            rst_i,
-    input  wire logic            cut_i,
-    input  wire logic            pop_i,
-    input  wire logic            payload_ready_i,  // the engine's state may be loaded
-    input  wire logic            shadows_free_i,   // so may increments
-    input  wire logic            empty_i,
-    input  wire logic [    15:0] word_i,
-    output logic                 read_o,
-    input  wire logic [    21:0] direct_load_i,    // only while nothing is decoded
-    output logic      [    21:0] load_o,
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic pop_i,
+    input wire logic payload_ready_i,  // the engine's state may be loaded
+    input wire logic shadows_free_i,  // so may increments
+    input wire logic empty_i,
+    input wire logic [15:0] word_i,
+    output logic read_o,
+    input wire logic [load_bus_pkg::WIDTH-1:0] direct_load_i,  // only while nothing is decoded
+    output logic [load_bus_pkg::WIDTH-1:0] load_o,
     // the decoded command
-    output logic      [Axes-1:0] mask_o,
-    output logic      [     4:0] engine_o,         // what a path runs on, by its bit of ENGINES
-    output logic                 barrier_o,
-    output logic      [     2:0] instant_o,        // {PROBE, MARK, OUTPUT}
-    output logic                 end_o,
-    output logic                 wait_o,           // WAIT_INPUT
-    output logic                 probe_end_o,
-    output logic                 idle_o,
-    output logic                 valid_o
+    output logic [Axes-1:0] mask_o,
+    output logic [4:0] engine_o,  // what a path runs on, by its bit of ENGINES
+    output logic barrier_o,  // no path
+    output logic output_o,
+    output logic mark_o,
+    output logic probe_o,
+    output logic end_o,
+    output logic wait_o,  // WAIT_INPUT
+    output logic probe_end_o,
+    output logic idle_o,
+    output logic valid_o
 );
   logic       first;
   logic       advance;
   logic [4:0] field;
   logic [4:0] next_q;  // the field after this one, where fields go by their number
+  logic [2:0] numbered_length;
   logic [2:0] next_length;
   logic [4:0] lowest;
-  logic [7:0] first_field;  // {field, its halfwords less one}
-  logic [7:0] next_field;
+  logic [4:0] first_field;
+  logic [2:0] first_length;  // halfwords, less one
+  logic [4:0] next_field;
   logic       last_field;
   logic       header;
-  logic [6:0] strobe;  // {of the count, of a field, which one}
-  logic [4:0] target;  // of that field
-  logic [4:0] of_arc;
-  logic [4:0] of_chord;
+  logic       of_count;  // word_i is of the count
+  logic       of_field;  // word_i is of a field
+  logic [4:0] which;  // that field
+  logic [8:0] place;  // where it goes: unit and target of the load bus
+  logic [8:0] of_line;
+  logic [8:0] of_arc;
+  logic [8:0] of_chord;
   logic [7:0] opcode;
   logic [7:0] mask;
   logic       is_line_q;
@@ -91,7 +98,7 @@ module geometry_decoder #(
   endfunction
 
   // Where an arc's fields go. The path ticks go nowhere: the prescaler makes exactly as many.
-  function automatic logic [4:0] arc_target(input logic [4:0] number);
+  function automatic logic [8:0] arc_target(input logic [4:0] number);
     case (number)
       card_map_pkg::FIELD_ARC_PRESCALE: arc_target = load_target_pkg::PRESCALE;
       card_map_pkg::FIELD_ARC_PLANE: arc_target = load_target_pkg::PLANE;
@@ -109,17 +116,19 @@ module geometry_decoder #(
 
   // The same of an arc in chords; an axis's increment goes to the target of its number, and as a field it is AXIS and that.
   localparam logic [4:0] AXIS = 5'd16;
-  function automatic logic [4:0] chord_target(input logic [4:0] number, input logic [2:0] x, input logic [2:0] y);
+  function automatic logic [8:0] chord_target(input logic [4:0] number, input logic [2:0] x, input logic [2:0] y);
     case (number)
       card_map_pkg::FIELD_ARC_CHORD_PRESCALE: chord_target = load_target_pkg::PRESCALE;
-      card_map_pkg::FIELD_ARC_CHORD_PLANE: chord_target = load_target_pkg::PLANE;
-      card_map_pkg::FIELD_ARC_CHORD_SHIFTS: chord_target = load_target_pkg::SHIFTS;
-      card_map_pkg::FIELD_ARC_CHORD_X, card_map_pkg::FIELD_ARC_CHORD_Y: chord_target = load_target_pkg::STATE;
-      card_map_pkg::FIELD_ARC_CHORD_FIRST_X: chord_target = {2'd0, x};
-      card_map_pkg::FIELD_ARC_CHORD_FIRST_Y: chord_target = {2'd0, y};
+      card_map_pkg::FIELD_ARC_CHORD_PLANE: chord_target = load_target_pkg::CHORD_PLANE;
+      card_map_pkg::FIELD_ARC_CHORD_SHIFTS: chord_target = load_target_pkg::CHORD_SHIFTS;
+      card_map_pkg::FIELD_ARC_CHORD_X, card_map_pkg::FIELD_ARC_CHORD_Y: chord_target = load_target_pkg::CHORD_STATE;
+      card_map_pkg::FIELD_ARC_CHORD_FIRST_X: chord_target = load_target_pkg::of_axis(x, load_target_pkg::INCREMENT);
+      card_map_pkg::FIELD_ARC_CHORD_FIRST_Y: chord_target = load_target_pkg::of_axis(y, load_target_pkg::INCREMENT);
       card_map_pkg::FIELD_ARC_CHORD_CLOSING_X, card_map_pkg::FIELD_ARC_CHORD_CLOSING_Y:
-      chord_target = load_target_pkg::CLOSING;
-      default: chord_target = number[4] ? {2'd0, number[2:0]} : load_target_pkg::NOWHERE;
+      chord_target = load_target_pkg::CHORD_CLOSING;
+      default:
+      chord_target = number[4] ? load_target_pkg::of_axis(number[2:0], load_target_pkg::INCREMENT) :
+          load_target_pkg::NOWHERE;
     endcase
   endfunction
 
@@ -129,15 +138,15 @@ module geometry_decoder #(
   // All paths begin with a field of three halfwords, those on an engine with path ticks, prescale, plane. A line's fields
   // are its axes. An arc's in chords end with the axes outside its plane.
   assign lowest = lowest_axis(rest_q);
-  assign next_length = card_map_pkg::field_halfwords_less_one(opcode, next_q);
+  assign numbered_length = card_map_pkg::field_halfwords_less_one(opcode, next_q);
   assign at_prescaler = field == card_map_pkg::FIELD_ARC_PRESCALE || field == card_map_pkg::FIELD_ARC_PLANE;
 
-  assign plane = strobe[5] && is_chord_q && strobe[4:0] == card_map_pkg::FIELD_ARC_CHORD_PLANE;
+  assign plane = of_field && is_chord_q && which == card_map_pkg::FIELD_ARC_CHORD_PLANE;
   assign at_axes = is_chord_q && (field[4] || field == card_map_pkg::FIELD_ARC_CHORD_CLOSING_Y);
   assign to_axis = is_line_q || at_axes;
 
   always_ff @(posedge clk_i) begin
-    if (first || advance) next_q <= (advance ? next_q : first_field[7:3]) + 5'd1;
+    if (first || advance) next_q <= (advance ? next_q : first_field) + 5'd1;
     if (plane) {axis_y_q, axis_x_q} <= {word_i[10:8], word_i[6:4]};
     if (header) rest_q <= word_i[15:8];
     else if (plane) rest_q <= rest_q & ~(8'd1 << word_i[6:4]) & ~(8'd1 << word_i[10:8]);
@@ -145,49 +154,73 @@ module geometry_decoder #(
   end
 
   always_comb begin
-    first_field = {on_engine ? 5'd0 : lowest, 3'd2};
-    next_field  = to_axis ? {is_chord_q ? AXIS | lowest : lowest, 3'd2} : {next_q, next_length};
-    last_field  = is_arc_q ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
+    first_field  = on_engine ? 5'd0 : lowest;
+    first_length = 3'd2;
+    next_field   = !to_axis ? next_q : is_chord_q ? AXIS | lowest : lowest;
+    next_length  = to_axis ? 3'd2 : numbered_length;
+    last_field   = is_arc_q ? field == card_map_pkg::FIELD_ARC_HALF_Y : to_axis && rest_q == 8'd0;
     // Two masks, or the second number alone: a condition.
     if (has_words) begin
-      first_field = {FIRST_OF_COMMAND | 5'(!is_output_q), 3'd0};
-      last_field  = field[0];
+      first_field  = FIRST_OF_COMMAND | 5'(!is_output_q);
+      first_length = 3'd0;
+      last_field   = field[0];
     end
   end
 
   command_fetch fetch (
-      .*,
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i,
+      .empty_i,
+      .word_i,
+      .read_o,
       .has_payload_i(is_line_q || on_engine || has_words),
-      .first_i      (first_field),
-      .next_i       (next_field),
-      .last_field_i (last_field),
-      .rest_i       (1'b0),
+      .first_field_i(first_field),
+      .first_length_i(first_length),
+      .next_field_i(next_field),
+      .next_length_i(next_length),
+      .last_field_i(last_field),
+      .rest_i(1'b0),
       // Before an engine's first field nothing waits: the command before was an engine's, whose last field this is not, or
       // runs on lines, and the engine is free.
-      .wait_i       (is_line_q ? !shadows_free_i : at_prescaler && !payload_ready_i),
-      .header_o     (header),
-      .first_o      (first),
-      .advance_o    (advance),
-      .field_o      (field),
-      .strobe_o     (strobe),
-      .opcode_o     (opcode),
-      .mask_o       (mask)
+      .wait_i(is_line_q ? !shadows_free_i : at_prescaler && !payload_ready_i),
+      .header_o(header),
+      .first_o(first),
+      .advance_o(advance),
+      .field_o(field),
+      .of_count_o(of_count),
+      .of_field_o(of_field),
+      .which_o(which),
+      .opcode_o(opcode),
+      .mask_o(mask),
+      .idle_o,
+      .valid_o
   );
 
-  assign of_arc   = arc_target(strobe[4:0]);
-  assign of_chord = chord_target(strobe[4:0], axis_x_q, axis_y_q);
-  assign target   = is_arc_q ? of_arc : is_chord_q ? of_chord : has_words ? load_target_pkg::COMMAND : strobe[4:0];
+  assign of_line  = load_target_pkg::of_axis(which[2:0], load_target_pkg::INCREMENT);
+  assign of_arc   = arc_target(which);
+  assign of_chord = chord_target(which, axis_x_q, axis_y_q);
+
+  always_comb begin
+    place = is_arc_q ? of_arc : is_chord_q ? of_chord : has_words ? load_target_pkg::COMMAND : of_line;
+    if (of_count) place = load_target_pkg::TICKS;
+  end
 
   always_ff @(posedge clk_i) begin
-    load_o[21]    <= (strobe[6:5] != 2'd0 || direct_load_i[21]) && !rst_i;
-    load_o[20:16] <= direct_load_i[21] ? direct_load_i[20:16] : strobe[6] ? load_target_pkg::TICKS : target;
-    load_o[15:0]  <= direct_load_i[21] ? direct_load_i[15:0] : word_i;
+    load_o <= load_bus_pkg::pack(of_count || of_field, place, word_i);
+    if (direct_load_i[load_bus_pkg::VALID]) load_o <= direct_load_i;
+    if (rst_i) load_o[load_bus_pkg::VALID] <= 1'b0;
+  end
 
-    engine_o      <= 5'(card_map_pkg::ENGINE_LINES);
+  always_ff @(posedge clk_i) begin
+    engine_o <= 5'(card_map_pkg::ENGINE_LINES);
     if (is_arc_q) engine_o <= 5'(card_map_pkg::ENGINE_ACCUMULATOR);
     if (is_chord_q) engine_o <= 5'(card_map_pkg::ENGINE_ARC_GENERATOR);
     barrier_o   <= !is_line_q && !on_engine;
-    instant_o   <= {is_probe_q, is_mark_q, is_output_q};
+    output_o    <= is_output_q;
+    mark_o      <= is_mark_q;
+    probe_o     <= is_probe_q;
     end_o       <= opcode == card_map_pkg::OP_END;
     wait_o      <= is_wait_q;
     probe_end_o <= Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_PROBE_END;

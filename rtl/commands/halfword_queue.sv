@@ -11,7 +11,10 @@ module halfword_queue #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic clear_i,
-    input wire logic [18:0] store_i,  // {drop, commit, write, halfword}
+    input wire logic drop_i,
+    input wire logic commit_i,
+    input wire logic write_i,
+    input wire logic [15:0] halfword_i,
     input wire logic read_i,
     output logic [15:0] word_o,
     output logic empty_o,
@@ -36,14 +39,10 @@ module halfword_queue #(
   logic [AddressWidth:0] commit_q;
   logic [AddressWidth:0] read_q;
   logic [AddressWidth:0] read_next_q;
-  logic drop;
-  logic commit;
-  logic write;
   logic take;
   logic reset;
 
-  assign {drop, commit, write} = store_i[18:16];
-  assign take = read_i && !empty_o;
+  assign take  = read_i && !empty_o;
   assign reset = rst_i || clear_i;
 
   // In slices, so that a block RAM is deep and narrow: then none, or few, are chosen between after the RAM's slow output. The
@@ -55,7 +54,7 @@ module halfword_queue #(
     logic [Slice-1:0] memory_q;
 
     always_ff @(posedge clk_i) begin
-      if (write) memory[write_q[AddressWidth-1:0]] <= store_i[Slice*n+:Slice];
+      if (write_i) memory[write_q[AddressWidth-1:0]] <= halfword_i[Slice*n+:Slice];
       if (take) memory_q <= memory[read_q[AddressWidth-1:0]];
       // A bare flip-flop right after the RAM.
       word_o[Slice*n+:Slice] <= memory_q;
@@ -69,9 +68,9 @@ module halfword_queue #(
       read_q <= '0;
       read_next_q <= (AddressWidth + 1)'(1);
     end else begin
-      if (drop) write_q <= commit_q;
-      else if (write) write_q <= next(write_q);
-      if (commit && !drop) commit_q <= write_q;
+      if (drop_i) write_q <= commit_q;
+      else if (write_i) write_q <= next(write_q);
+      if (commit_i && !drop_i) commit_q <= write_q;
       if (take) begin
         read_q <= read_next_q;
         read_next_q <= next(read_next_q);

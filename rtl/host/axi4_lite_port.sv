@@ -5,30 +5,28 @@
 // Ready answers valid a clock later, for one clock: the access was noted a clock before its handshake, which is safe
 // since a master keeps valid and what belongs to it until then.
 module axi4_lite_port (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        awvalid_i,
-    output logic             awready_o,
-    input  wire logic [11:0] awaddr_i,
-    input  wire logic        wvalid_i,
-    output logic             wready_o,
-    input  wire logic [31:0] wdata_i,
-    input  wire logic [ 3:0] wstrb_i,
-    output logic             bvalid_o,
-    input  wire logic        bready_i,
-    output logic      [ 1:0] bresp_o,
-    input  wire logic        arvalid_i,
-    output logic             arready_o,
-    input  wire logic [11:0] araddr_i,
-    output logic             rvalid_o,
-    input  wire logic        rready_i,
-    output logic      [31:0] rdata_o,
-    output logic      [ 1:0] rresp_o,
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic awvalid_i,
+    output logic awready_o,
+    input wire logic [11:0] awaddr_i,
+    input wire logic wvalid_i,
+    output logic wready_o,
+    input wire logic [31:0] wdata_i,
+    input wire logic [3:0] wstrb_i,
+    output logic bvalid_o,
+    input wire logic bready_i,
+    output logic [1:0] bresp_o,
+    input wire logic arvalid_i,
+    output logic arready_o,
+    input wire logic [11:0] araddr_i,
+    output logic rvalid_o,
+    input wire logic rready_i,
+    output logic [31:0] rdata_o,
+    output logic [1:0] rresp_o,
     // to the inner port
-    output logic      [47:0] access_o,   // {request, write, partial, 0, address, data}
-    input  wire logic        ack_i,
-    input  wire logic        error_i,
-    input  wire logic [31:0] data_i
+    output logic [register_access_pkg::WIDTH-1:0] access_o,
+    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
 );
 
   logic        busy_q;
@@ -38,7 +36,10 @@ module axi4_lite_port (
   logic [11:0] address_q;
   logic [31:0] data_q;
 
-  assign access_o = {request_q, write_q, partial_q, 1'b0, address_q, data_q};
+  logic        ack;
+
+  assign access_o = register_access_pkg::pack(request_q, write_q, partial_q, address_q, data_q);
+  assign ack = answer_i[register_answer_pkg::ACK];
 
   logic write_waits;
   logic read_waits;
@@ -52,7 +53,7 @@ module axi4_lite_port (
     awready_o <= 1'b0;
     arready_o <= 1'b0;
     if (busy_q) begin
-      if (ack_i) busy_q <= 1'b0;
+      if (ack) busy_q <= 1'b0;
     end else if (write_waits && !(read_waits && write_q)) begin
       request_q <= 1'b1;
       awready_o <= 1'b1;
@@ -86,14 +87,14 @@ module axi4_lite_port (
   always_ff @(posedge clk_i) begin
     if (bready_i) bvalid_o <= 1'b0;
     if (rready_i) rvalid_o <= 1'b0;
-    if (ack_i && write_q) begin
+    if (ack && write_q) begin
       bvalid_o <= 1'b1;
-      write_error_q <= error_i;
+      write_error_q <= answer_i[register_answer_pkg::ERROR];
     end
-    if (ack_i && !write_q) begin
+    if (ack && !write_q) begin
       rvalid_o <= 1'b1;
-      read_error_q <= error_i;
-      rdata_o <= data_i;
+      read_error_q <= answer_i[register_answer_pkg::ERROR];
+      rdata_o <= register_answer_pkg::data(answer_i);
     end
     if (rst_i) begin
       bvalid_o <= 1'b0;

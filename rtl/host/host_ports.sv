@@ -28,21 +28,21 @@ module host_ports #(
     input wire logic rready_i,
     output logic [31:0] rdata_o,
     output logic [1:0] rresp_o,
-    // Wishbone B4: {CYC, STB, WE, SEL, ADR, DAT}, {ACK, ERR, STALL, DAT}
-    input wire logic [50:0] wishbone_i,
-    output logic [34:0] wishbone_o,
+    // Wishbone B4
+    input wire logic [wishbone_request_pkg::WIDTH-1:0] wishbone_i,
+    output logic [wishbone_answer_pkg::WIDTH-1:0] wishbone_o,
     // UART
     input wire logic rx_i,
     output logic tx_o,
-    // SPI: {MOSI, CS low active, SCK}, {enable, MISO}
-    input wire logic [2:0] spi_i,
-    output logic [1:0] spi_o,
+    // SPI
+    input wire logic sck_i,
+    input wire logic cs_n_i,
+    input wire logic mosi_i,
+    output logic miso_o,
+    output logic miso_enable_o,  // low: MISO is for others
     // to the inner port
-    output logic request_o,
-    output logic [47:0] access_o,  // {port, write, partial, address, data}
-    input wire logic ack_i,
-    input wire logic error_i,
-    input wire logic [31:0] data_i
+    output logic [register_access_pkg::WIDTH-1:0] access_o,
+    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
 );
   // Ports in the order in which they stand above: the number of each is how many are before it.
   localparam int WISHBONE = AxiLite != 0 ? 1 : 0;
@@ -60,10 +60,11 @@ module host_ports #(
     ERROR_a_card_needs_a_host_port error ();
   end
 
-  logic [48*PORTS-1:0] access;
-  logic [   PORTS-1:0] ack;
-  logic                error;
-  logic [        31:0] data;
+  localparam int ACCESS = register_access_pkg::WIDTH;
+  localparam int ANSWER = register_answer_pkg::WIDTH;
+
+  logic [ACCESS*PORTS-1:0] access;
+  logic [ANSWER*PORTS-1:0] answer;
 
   port_arbiter #(
       .Ports(PORTS)
@@ -71,23 +72,34 @@ module host_ports #(
       .clk_i,
       .rst_i,
       .access_i(access),
-      .ack_o(ack),
-      .error_o(error),
-      .data_o(data),
-      .request_o,
+      .answer_o(answer),
       .access_o,
-      .ack_i,
-      .error_i,
-      .data_i
+      .answer_i
   );
 
   if (AxiLite != 0) begin : gen_axi
     axi4_lite_port port (
-        .*,
-        .access_o(access[0+:48]),
-        .ack_i(ack[0]),
-        .error_i(error),
-        .data_i(data)
+        .clk_i,
+        .rst_i,
+        .awvalid_i,
+        .awready_o,
+        .awaddr_i,
+        .wvalid_i,
+        .wready_o,
+        .wdata_i,
+        .wstrb_i,
+        .bvalid_o,
+        .bready_i,
+        .bresp_o,
+        .arvalid_i,
+        .arready_o,
+        .araddr_i,
+        .rvalid_o,
+        .rready_i,
+        .rdata_o,
+        .rresp_o,
+        .access_o(access[0+:ACCESS]),
+        .answer_i(answer[0+:ANSWER])
     );
   end else begin : gen_no_axi
     logic unused;
@@ -101,20 +113,18 @@ module host_ports #(
     ) port (
         .clk_i,
         .rst_i,
-        .cyc_i(wishbone_i[50]),
-        .stb_i(wishbone_i[49]),
-        .we_i(wishbone_i[48]),
-        .sel_i(wishbone_i[47:44]),
-        .adr_i(wishbone_i[43:32]),
-        .dat_i(wishbone_i[31:0]),
-        .ack_o(wishbone_o[34]),
-        .err_o(wishbone_o[33]),
-        .stall_o(wishbone_o[32]),
-        .dat_o(wishbone_o[31:0]),
-        .access_o(access[48*WISHBONE+:48]),
-        .ack_i(ack[WISHBONE]),
-        .error_i(error),
-        .data_i(data)
+        .cyc_i(wishbone_i[wishbone_request_pkg::CYC]),
+        .stb_i(wishbone_i[wishbone_request_pkg::STB]),
+        .we_i(wishbone_i[wishbone_request_pkg::WE]),
+        .adr_i(wishbone_request_pkg::adr(wishbone_i)),
+        .sel_i(wishbone_request_pkg::sel(wishbone_i)),
+        .dat_i(wishbone_request_pkg::dat(wishbone_i)),
+        .dat_o(wishbone_o[wishbone_answer_pkg::DAT+:32]),
+        .ack_o(wishbone_o[wishbone_answer_pkg::ACK]),
+        .err_o(wishbone_o[wishbone_answer_pkg::ERR]),
+        .stall_o(wishbone_o[wishbone_answer_pkg::STALL]),
+        .access_o(access[ACCESS*WISHBONE+:ACCESS]),
+        .answer_i(answer[ANSWER*WISHBONE+:ANSWER])
     );
   end else begin : gen_no_wishbone
     logic unused;
@@ -130,10 +140,8 @@ module host_ports #(
         .rst_i,
         .rx_i,
         .tx_o,
-        .access_o(access[48*UART+:48]),
-        .ack_i(ack[UART]),
-        .error_i(error),
-        .data_i(data)
+        .access_o(access[ACCESS*UART+:ACCESS]),
+        .answer_i(answer[ANSWER*UART+:ANSWER])
     );
   end else begin : gen_no_uart
     logic unused;
@@ -145,20 +153,18 @@ module host_ports #(
     spi_frames port (
         .clk_i,
         .rst_i,
-        .mosi_i(spi_i[2]),
-        .cs_n_i(spi_i[1]),
-        .sck_i(spi_i[0]),
-        .miso_enable_o(spi_o[1]),
-        .miso_o(spi_o[0]),
-        .access_o(access[48*SPI+:48]),
-        .ack_i(ack[SPI]),
-        .error_i(error),
-        .data_i(data)
+        .sck_i,
+        .cs_n_i,
+        .mosi_i,
+        .miso_o,
+        .miso_enable_o,
+        .access_o(access[ACCESS*SPI+:ACCESS]),
+        .answer_i(answer[ANSWER*SPI+:ANSWER])
     );
   end else begin : gen_no_spi
     logic unused;
-    assign unused = &{1'b0, spi_i};
-    assign spi_o  = 2'b00;
+    assign unused = &{1'b0, sck_i, cs_n_i, mosi_i};
+    assign {miso_o, miso_enable_o} = '0;
   end
 endmodule
 `default_nettype wire

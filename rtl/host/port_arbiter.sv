@@ -9,47 +9,46 @@ module port_arbiter #(
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    // ports: each {request, write, partial, 0, address, data}
-    input wire logic [48*Ports-1:0] access_i,
-    output logic [Ports-1:0] ack_o,
-    output logic error_o,
-    output logic [31:0] data_o,
+    // ports, the first one lowest
+    input wire logic [register_access_pkg::WIDTH*Ports-1:0] access_i,
+    output logic [register_answer_pkg::WIDTH*Ports-1:0] answer_o,
     // card core
-    output logic request_o,
-    output logic [47:0] access_o,  // {port, write, partial, address, data}
-    input wire logic ack_i,
-    input wire logic error_i,
-    input wire logic [31:0] data_i
+    output logic [register_access_pkg::WIDTH-1:0] access_o,
+    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
 );
-  assign error_o = error_i;
-  assign data_o  = data_i;
+  localparam int ACCESS = register_access_pkg::WIDTH;
+  localparam int ANSWER = register_answer_pkg::WIDTH;
 
   if (Ports == 1) begin : gen_wires
     logic unused;
-    assign unused    = &{1'b0, clk_i, rst_i, access_i[44]};
+    assign unused   = &{1'b0, clk_i, rst_i};
 
-    assign ack_o     = ack_i;
-    assign request_o = access_i[47];
-    assign access_o  = {2'd0, access_i[46:45], access_i[43:0]};
+    assign access_o = access_i;
+    assign answer_o = answer_i;
   end else begin : gen_turns
-    logic [Ports-1:0] request;
-    logic [      3:0] waiting_q;
-    logic [      1:0] port_q;
-    logic             busy_q;
+    logic [ Ports-1:0] request;
+    logic [       3:0] waiting_q;
+    logic [       1:0] port_q;
+    logic              busy_q;
+    logic              request_q;
+    logic [ACCESS-1:0] served;
+    logic              ack;
+
+    assign ack = answer_i[register_answer_pkg::ACK];
 
     for (genvar p = 0; p < Ports; p++) begin : gen_port
-      assign request[p] = access_i[48*p+47];
-      assign ack_o[p]   = ack_i && port_q == 2'(p);
+      assign request[p] = access_i[ACCESS*p+register_access_pkg::REQUEST];
+      assign answer_o[ANSWER*p+:ANSWER] = register_answer_pkg::only_if(answer_i, port_q == 2'(p));
     end
 
     always_ff @(posedge clk_i) begin : p_turns
       logic [1:0] candidate;
       logic [1:0] chosen;
 
-      request_o <= 1'b0;
+      request_q <= 1'b0;
       waiting_q <= waiting_q | 4'(request);
-      if (ack_i) busy_q <= 1'b0;
-      if ((!busy_q || ack_i) && waiting_q != '0) begin
+      if (ack) busy_q <= 1'b0;
+      if ((!busy_q || ack) && waiting_q != '0) begin
         // From the farthest port to the next one: the last that waits is taken. Ports that are not there never wait.
         chosen = port_q;
         for (int n = 3; n >= 1; n--) begin
@@ -58,23 +57,19 @@ module port_arbiter #(
         end
         port_q <= chosen;
         waiting_q[chosen] <= 1'b0;
-        request_o <= 1'b1;
+        request_q <= 1'b1;
         busy_q <= 1'b1;
       end
       if (rst_i) begin
-        request_o <= 1'b0;
+        request_q <= 1'b0;
         waiting_q <= '0;
         busy_q <= 1'b0;
         port_q <= 2'd3;
       end
     end
 
-    logic [47:0] served;
-    logic        unused;
-    assign served   = access_i[48*port_q+:48];
-    assign unused   = &{1'b0, served[47], served[44]};
-
-    assign access_o = {port_q, served[46:45], served[43:0]};
+    assign served   = access_i[ACCESS*port_q+:ACCESS];
+    assign access_o = register_access_pkg::passed_on(served, request_q, port_q);
   end
 endmodule
 `default_nettype wire

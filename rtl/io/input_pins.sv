@@ -4,22 +4,25 @@
 module input_pins #(
     parameter int Inputs = 4  // 1 to 16
 ) (
-    input  wire logic              clk_i,
-    input  wire logic              rst_i,
-    input  wire logic [      40:0] setting_i,  // {set, address[9:2], data}
-    input  wire logic [Inputs-1:0] pin_i,
-    output logic      [      15:0] level_o     // combinational; 0 for absent inputs
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic [Inputs-1:0] pin_i,
+    output logic [15:0] level_o  // combinational; 0 for absent inputs
 );
   // Marked, so that tools place the two side by side and know that the first one's data has no timing.
-  (* async_reg = "true" *)logic [Inputs-1:0] first_q;
-  (* async_reg = "true" *)logic [Inputs-1:0] second_q;
+  (* async_reg = "true" *) logic [Inputs-1:0] first_q;
+  (* async_reg = "true" *) logic [Inputs-1:0] second_q;
   logic [Inputs-1:0] inverted_q;
+
+  logic [31:0] data;
+
+  assign data = setting_bus_pkg::data(setting_i);
 
   always_ff @(posedge clk_i) begin
     first_q  <= pin_i;
     second_q <= first_q;
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_INPUT_POLARITY[9:2])
-      inverted_q <= setting_i[Inputs-1:0];
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_INPUT_POLARITY)) inverted_q <= data[Inputs-1:0];
     if (rst_i) begin
       first_q <= '0;
       second_q <= '0;
@@ -32,7 +35,7 @@ module input_pins #(
   assign level_o = 16'(level);
 
   logic unused;
-  assign unused = &{1'b0, setting_i[31:Inputs]};
+  assign unused = &{1'b0, data[31:Inputs]};
 endmodule
 
 `default_nettype wire

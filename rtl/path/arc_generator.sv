@@ -8,34 +8,37 @@
 module arc_generator #(
     parameter int Axes = 4
 ) (
-    input  wire logic            clk_i,
-    input  wire logic            rst_i,
-    input  wire logic            clear_i,       // the arc is over, or cut
-    input  wire logic [    21:0] load_i,        // its targets only while loadable_o
-    input  wire logic            start_i,       // the state is loaded; the axes swap three clocks later
-    input  wire logic            tick_i,        // path tick: at most one from the start until ready_o
-    output logic      [    15:0] chord_word_o,
-    output logic      [Axes-1:0] chord_load_o,  // a halfword of the axis's next increment
-    output logic      [Axes-1:0] chord_swap_o,  // the axis takes it; a clock after the chord's last path tick
-    output logic                 ready_o,       // path ticks may come
-    output logic                 loadable_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic clear_i,  // the arc is over, or cut
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,  // its targets only while loadable_o
+    input wire logic start_i,  // the state is loaded; the axes swap three clocks later
+    input wire logic tick_i,  // path tick: at most one from the start until ready_o
+    output logic [15:0] chord_word_o,
+    output logic [Axes-1:0] chord_load_o,  // a halfword of the axis's next increment
+    output logic [Axes-1:0] chord_swap_o,  // the axis takes it; a clock after the chord's last path tick
+    output logic ready_o,  // path ticks may come
+    output logic loadable_o
 );
   logic [     4:0] k_q;
   logic [     4:0] m_q;
   logic            clockwise_q;
   logic [Axes-1:0] axis_x_q;
   logic [Axes-1:0] axis_y_q;
+  logic [    15:0] word;
+
+  assign word = load_bus_pkg::word(load_i);
 
   always_ff @(posedge clk_i) begin
-    if (load_i[21] && load_i[20:16] == load_target_pkg::SHIFTS) begin
-      k_q <= load_i[4:0];
-      m_q <= load_i[12:8];
+    if (load_bus_pkg::to(load_i, load_target_pkg::CHORD_SHIFTS)) begin
+      k_q <= word[4:0];
+      m_q <= word[12:8];
     end
-    if (load_i[21] && load_i[20:16] == load_target_pkg::PLANE) begin
-      clockwise_q <= load_i[0];
+    if (load_bus_pkg::to(load_i, load_target_pkg::CHORD_PLANE)) begin
+      clockwise_q <= word[0];
       for (int i = 0; i < Axes; i++) begin
-        axis_x_q[i] <= load_i[6:4] == 3'(i);
-        axis_y_q[i] <= load_i[10:8] == 3'(i);
+        axis_x_q[i] <= word[6:4] == 3'(i);
+        axis_y_q[i] <= word[10:8] == 3'(i);
       end
     end
   end
@@ -63,21 +66,26 @@ module arc_generator #(
   assign swap_y = begin_arc | (tick_i & odd);
 
   chord_rotation rotation (
-      .*,
-      .k_i      (k_q),
-      .minus_i  (in_x_q ^ clockwise_q),
-      .begin_i  (begin_half),
-      .busy_o   (busy),
-      .last_o   (last),
+      .clk_i,
+      .rst_i,
+      .clear_i,
+      .load_i,
+      .k_i(k_q),
+      .minus_i(in_x_q ^ clockwise_q),
+      .begin_i(begin_half),
+      .busy_o(busy),
+      .last_o(last),
       .loading_o(loading),
-      .first_o  (first),
-      .word_o   (chord_word_o)
+      .first_o(first),
+      .word_o(chord_word_o)
   );
 
   chord_counter counter (
-      .*,
-      .m_i   (m_q),
-      .odd_o (odd),
+      .clk_i,
+      .start_i,
+      .tick_i,
+      .m_i(m_q),
+      .odd_o(odd),
       .even_o(even)
   );
 
@@ -109,7 +117,7 @@ module arc_generator #(
   end
 
   logic unused;
-  assign unused = &{1'b0, load_i[15:13]};
+  assign unused = &{1'b0, word[15:13], word[7]};
 endmodule
 
 `default_nettype wire

@@ -5,14 +5,13 @@
 `default_nettype none
 
 module begun_counter (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic        begin_i,
-    input  wire logic [ 1:0] snapshot_i,
-    input  wire logic [31:0] chain_i,
-    output logic      [31:0] chain_o,
-    output logic      [31:0] begun_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic begin_i,
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
+    output logic [31:0] begun_o
 );
   logic cut_q;
 
@@ -23,8 +22,10 @@ module begun_counter (
   end
 
   snapshot_slice begun (
-      .*,
-      .value_i(begun_o)
+      .clk_i,
+      .snapshot_i,
+      .value_i(begun_o),
+      .snapshot_o
   );
 endmodule
 

@@ -9,18 +9,18 @@
 `default_nettype none
 
 module chord_rotation (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        clear_i,
-    input  wire logic [21:0] load_i,
-    input  wire logic [ 4:0] k_i,
-    input  wire logic        minus_i,    // the coordinate moves against the other one's sign; stands still
-    input  wire logic        begin_i,    // at rest or with last_o: the next clock is a half chord's first
-    output logic             busy_o,
-    output logic             last_o,     // its last clock
-    output logic             loading_o,  // the next clock has a halfword of the increment
-    output logic             first_o,    // that is the first of three
-    output logic      [15:0] word_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic clear_i,
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
+    input wire logic [4:0] k_i,
+    input wire logic minus_i,  // the coordinate moves against the other one's sign; stands still
+    input wire logic begin_i,  // at rest or with last_o: the next clock is a half chord's first
+    output logic busy_o,
+    output logic last_o,  // its last clock
+    output logic loading_o,  // the next clock has a halfword of the increment
+    output logic first_o,  // that is the first of three
+    output logic [15:0] word_o
 );
   // Clocks of a half chord, one bit each.
   logic [3:0] pass_q;
@@ -49,10 +49,12 @@ module chord_rotation (
     end
   end
 
-  logic load_state;
-  logic load_closing;
-  assign load_state   = load_i[21] && load_i[20:16] == load_target_pkg::STATE;
-  assign load_closing = load_i[21] && load_i[20:16] == load_target_pkg::CLOSING;
+  logic        load_state;
+  logic        load_closing;
+  logic [15:0] loaded;
+  assign load_state = load_bus_pkg::to(load_i, load_target_pkg::CHORD_STATE);
+  assign load_closing = load_bus_pkg::to(load_i, load_target_pkg::CHORD_CLOSING);
+  assign loaded = load_bus_pkg::word(load_i);
 
   // Funnel: two words of the source, and the bit below them, which rounds. Subtracting is adding the complement, and its
   // one that is to be added is the complement of the bit that rounds: both come by complementing the source. Behind
@@ -92,8 +94,8 @@ module chord_rotation (
     increment_carry_q <= enter ? fine[0] : increment[16];
     word_o <= increment[15:0];
     if (passing_q | adding_q | load_state) source_q <= {passing_q ? source_q[15:0] : sum[15:0], source_q[63:16]};
-    if (adding_q | load_state) target_q <= {adding_q ? source_q[15:0] : load_i[15:0], target_q[63:16]};
-    if (loading_o | load_closing) closing_q <= {loading_o ? closing_q[15:0] : load_i[15:0], closing_q[95:16]};
+    if (adding_q | load_state) target_q <= {adding_q ? source_q[15:0] : loaded, target_q[63:16]};
+    if (loading_o | load_closing) closing_q <= {loading_o ? closing_q[15:0] : loaded, closing_q[95:16]};
   end
 endmodule
 

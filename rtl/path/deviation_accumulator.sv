@@ -13,19 +13,19 @@
 module deviation_accumulator #(
     parameter int EightDirections = 0  // 1: paths in 8 directions too
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        clear_i,
-    input  wire logic [21:0] load_i,
-    input  wire logic        start_i,
-    input  wire logic        tick_i,
-    output logic             step_x_o,
-    output logic             dir_x_o,
-    output logic             step_y_o,
-    output logic             dir_y_o,
-    output logic             ready_o,
-    output logic             stepping_o,  // not in the last four clocks before ready_o (combinational)
-    output logic             at_end_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic clear_i,
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
+    input wire logic start_i,
+    input wire logic tick_i,
+    output logic step_x_o,
+    output logic dir_x_o,
+    output logic step_y_o,
+    output logic dir_y_o,
+    output logic ready_o,
+    output logic stepping_o,  // not in the last four clocks before ready_o (combinational)
+    output logic at_end_o
 );
   // Words that travel: 5 words of G enter the adders in phases 0..4 and come back three clocks later, in 3..7.
   localparam int LAST = 7;
@@ -37,18 +37,27 @@ module deviation_accumulator #(
   logic        clockwise_q;
   logic        eight_q;  // this path's step rule
 
-  // Its targets on the load bus. The chains take a halfword a clock late: the choice among so many is in no long path.
+  // Chains by their target on the load bus.
+  localparam int F = 32'(load_target_pkg::DEVIATION[3:0]);
+  localparam int GX = 32'(load_target_pkg::GRADIENT_X[3:0]);
+  localparam int GY = 32'(load_target_pkg::GRADIENT_Y[3:0]);
+  localparam int HX = 32'(load_target_pkg::HALF_X[3:0]);
+  localparam int HY = 32'(load_target_pkg::HALF_Y[3:0]);
+  localparam int EX = 32'(load_target_pkg::END_X[3:0]);
+  localparam int EY = 32'(load_target_pkg::END_Y[3:0]);
+  localparam int QUADRANTS = 32'(load_target_pkg::QUADRANTS[3:0]);
+  localparam int PLANE = 32'(load_target_pkg::PLANE[3:0]);
+
+  // The chains take a halfword a clock late: the choice among so many is in no long path.
   logic [15:0] word;
   logic [ 8:0] load;
   logic        loading;
   logic        loading_q;
-  assign loading = load_i[21] && load_i[20:16] >= load_target_pkg::DEVIATION && load_i[20:16] <= load_target_pkg::PLANE;
+  assign loading = load_bus_pkg::to_unit(load_i, load_target_pkg::UNIT_ACCUMULATOR);
   always_ff @(posedge clk_i) begin
-    word <= load_i[15:0];
+    word <= load_bus_pkg::word(load_i);
     loading_q <= loading;
-    for (int i = 0; i < 9; i++) begin
-      load[i] <= load_i[21] && load_i[20:16] == load_target_pkg::DEVIATION + 5'(i);
-    end
+    for (int i = 0; i < 9; i++) load[i] <= load_bus_pkg::to(load_i, load_target_pkg::DEVIATION + 9'(i));
   end
 
   // Control: one-hot phase of a step and of the pass that compares, and enables registered a clock ahead.
@@ -94,31 +103,31 @@ module deviation_accumulator #(
   logic x_zero_q, y_zero_q, done_q, finish, finish_q;
   logic [1:0] take, negative, old_sign, sides;
   logic [ 1:0] came;  // the step's last word of this axis's gradient, with its sign
-  logic [79:0] back;
   logic [15:0] f_back;
   logic [31:0] g_back, e_back, halves;
-  assign {e_back, g_back, f_back} = back;
   assign halves = {hy_q[15:0], hx_q[15:0]} & {32{h_shift_q}};
-  assign came = take & {2{phase_q[LAST]}};
+  assign came   = take & {2{phase_q[LAST]}};
 
   deviation_choice #(
       .EightDirections(EightDirections)
   ) next_step (
-      .*,
-      .rest_i     (ready_o),
-      .rule_i     ({eight_q, clockwise_q}),
-      .inside_i   (f_q[79]),
-      .gradient_i ({gy_q[79], gx_q[79]}),
-      .compare_i  (compare),
-      .next_i     ({came[1] ? g_back[31] : gy_q[79], came[0] ? g_back[15] : gx_q[79]}),
-      .sides_i    (sides),
-      .last_i     (done_q),
-      .left_i     ({ey_q[31], ex_q[31], y_zero_q, x_zero_q}),
+      .clk_i,
+      .rest_i(ready_o),
+      .eight_i(eight_q),
+      .clockwise_i(clockwise_q),
+      .inside_i(f_q[79]),
+      .gradient_i({gy_q[79], gx_q[79]}),
+      .compare_i(compare),
+      .next_i({came[1] ? g_back[31] : gy_q[79], came[0] ? g_back[15] : gx_q[79]}),
+      .sides_i(sides),
+      .last_i(done_q),
+      .left_i({ey_q[31], ex_q[31]}),
+      .arrived_i({y_zero_q, x_zero_q}),
       .finishing_i(finish_q),
-      .finish_o   (finish),
-      .take_o     (take),
-      .negative_o (negative),
-      .old_sign_o (old_sign)
+      .finish_o(finish),
+      .take_o(take),
+      .negative_o(negative),
+      .old_sign_o(old_sign)
   );
 
   always_ff @(posedge clk_i) begin
@@ -129,34 +138,40 @@ module deviation_accumulator #(
   deviation_steps #(
       .EightDirections(EightDirections)
   ) steps (
-      .*,
-      .run_i     (run_q),
-      .phase_i   (phase_q[2:0] | compare_q[2:0]),
-      .eight_i   (eight_q),
-      .take_i    (take),
+      .clk_i,
+      .run_i(run_q),
+      .phase_i(phase_q[2:0] | compare_q[2:0]),
+      .eight_i(eight_q),
+      .take_i(take),
       .negative_i(negative),
-      .words_i   ({ey_q[15:0], ex_q[15:0], halves, gy_q[15:0], gx_q[15:0], f_q[15:0]}),
-      .words_o   (back),
-      .sides_o   (sides)
+      .f_i(f_q[15:0]),
+      .gradient_i({gy_q[15:0], gx_q[15:0]}),
+      .half_i(halves),
+      .left_i({ey_q[15:0], ex_q[15:0]}),
+      .f_o(f_back),
+      .gradient_o(g_back),
+      .left_o(e_back),
+      .sides_o(sides)
   );
 
   // State: shift chains; a chain that travels is full again when its last word is back.
   always_ff @(posedge clk_i) begin
     if (loading_q | run_q) begin
-      if (load[0] | f_shift_q) f_q <= {load[0] ? word : f_turn_q ? f_q[15:0] : f_back, f_q[79:16]};
-      if (load[1] | (g_shift_q & take[0])) gx_q <= {load[1] ? word : turn_q ? gx_q[15:0] : g_back[15:0], gx_q[79:16]};
-      if (load[2] | (g_shift_q & take[1])) gy_q <= {load[2] ? word : turn_q ? gy_q[15:0] : g_back[31:16], gy_q[79:16]};
-      if (load[3] | (h_shift_q & take[0])) hx_q <= {load[3] ? word : hx_q[15:0], hx_q[47:16]};
-      if (load[4] | (h_shift_q & take[1])) hy_q <= {load[4] ? word : hy_q[15:0], hy_q[47:16]};
-      if (load[5] | (e_shift_q & take[0])) ex_q <= {load[5] ? word : e_back[15:0], ex_q[31:16]};
-      if (load[6] | (e_shift_q & take[1])) ey_q <= {load[6] ? word : e_back[31:16], ey_q[31:16]};
-      if (load[8]) clockwise_q <= word[0];
+      if (load[F] | f_shift_q) f_q <= {load[F] ? word : f_turn_q ? f_q[15:0] : f_back, f_q[79:16]};
+      if (load[GX] | (g_shift_q & take[0])) gx_q <= {load[GX] ? word : turn_q ? gx_q[15:0] : g_back[15:0], gx_q[79:16]};
+      if (load[GY] | (g_shift_q & take[1]))
+        gy_q <= {load[GY] ? word : turn_q ? gy_q[15:0] : g_back[31:16], gy_q[79:16]};
+      if (load[HX] | (h_shift_q & take[0])) hx_q <= {load[HX] ? word : hx_q[15:0], hx_q[47:16]};
+      if (load[HY] | (h_shift_q & take[1])) hy_q <= {load[HY] ? word : hy_q[15:0], hy_q[47:16]};
+      if (load[EX] | (e_shift_q & take[0])) ex_q <= {load[EX] ? word : e_back[15:0], ex_q[31:16]};
+      if (load[EY] | (e_shift_q & take[1])) ey_q <= {load[EY] ? word : e_back[31:16], ey_q[31:16]};
+      if (load[PLANE]) clockwise_q <= word[0];
     end
   end
 
   if (EightDirections != 0) begin : gen_eight_directions
     always_ff @(posedge clk_i) begin
-      if (load[8]) eight_q <= word[1];
+      if (load[PLANE]) eight_q <= word[1];
     end
   end else begin : gen_four_directions
     assign eight_q = 1'b0;
@@ -168,7 +183,7 @@ module deviation_accumulator #(
   assign change = |(came & ({g_back[31], g_back[15]} ^ old_sign));
   assign done   = start_q ? upper_zero_q & ~quadrants_q[0] : done_q | (change & upper_zero_q);
   always_ff @(posedge clk_i) begin
-    if (load[7]) quadrants_q <= word;
+    if (load[QUADRANTS]) quadrants_q <= word;
     else if (change) quadrants_q <= quadrants_q - 16'd1;
     // The flags of what a start finds, and of what a step leaves.
     if (start_i | run_q) begin

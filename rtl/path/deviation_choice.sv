@@ -9,26 +9,24 @@
 module deviation_choice #(
     parameter int EightDirections = 0  // 1: built in
 ) (
-    input  wire logic       clk_i,
-    input  wire logic       rest_i,       // all inputs are of the present point
-    input  wire logic [1:0] rule_i,       // {8 directions, clockwise}, the path's
-    input  wire logic       inside_i,     // F is negative
-    input  wire logic [1:0] gradient_i,   // signs of GX and GY
-    input  wire logic       compare_i,    // both axes are tried next: which way, these say:
-    input  wire logic [1:0] next_i,       // signs of GX and GY as the step leaves them
-    input  wire logic [1:0] sides_i,      // the sum of F with the axis's step and with both is negative
-    input  wire logic       last_i,       // no quadrants left
-    input  wire logic [3:0] left_i,       // {signs of the displacements that are left, whether there is none}
-    input  wire logic       finishing_i,
-    output logic            finish_o,     // straight to the end (combinational, at rest)
-    output logic      [1:0] take_o,
-    output logic      [1:0] negative_o,   // in 4 directions alone: both of the axis that steps
-    output logic      [1:0] old_sign_o    // of the gradients before the step
+    input wire logic clk_i,
+    input wire logic rest_i,  // all inputs are of the present point
+    input wire logic eight_i,  // the path's step rule
+    input wire logic clockwise_i,
+    input wire logic inside_i,  // F is negative
+    input wire logic [1:0] gradient_i,  // signs of GX and GY
+    input wire logic compare_i,  // both axes are tried next: which way, these say:
+    input wire logic [1:0] next_i,  // signs of GX and GY as the step leaves them
+    input wire logic [1:0] sides_i,  // the sum of F with the axis's step and with both is negative
+    input wire logic last_i,  // no quadrants left
+    input wire logic [1:0] left_i,  // signs of the displacements that are left
+    input wire logic [1:0] arrived_i,  // there is none left
+    input wire logic finishing_i,
+    output logic finish_o,  // straight to the end (combinational, at rest)
+    output logic [1:0] take_o,
+    output logic [1:0] negative_o,  // in 4 directions alone: both of the axis that steps
+    output logic [1:0] old_sign_o  // of the gradients before the step
 );
-  logic eight, clockwise;
-  logic [1:0] arrived, left;
-  assign {eight, clockwise} = rule_i;
-  assign {left, arrived} = left_i;
   logic [1:0] ahead, reached, tabled, least, choice;
   logic inward_x;
 
@@ -37,24 +35,24 @@ module deviation_choice #(
     heading = {backwards ^ signs[0], backwards ^ ~signs[1]};
   endfunction
 
-  assign ahead = heading(clockwise, gradient_i);
+  assign ahead = heading(clockwise_i, gradient_i);
   assign inward_x = ahead[0] ^ gradient_i[0];
   assign tabled = {~(inward_x ^ inside_i), inward_x ^ inside_i};
   assign least = inward_x ? {sides_i[0], ~&sides_i} : {~&sides_i, sides_i[1]};
-  assign reached = arrived | (left ^ ahead);
+  assign reached = arrived_i | (left_i ^ ahead);
   assign finish_o = finishing_i | (last_i & (|reached));
-  assign choice = finish_o ? {~arrived[1] & (eight | arrived[0]), ~arrived[0]} : eight ? least : tabled;
+  assign choice = finish_o ? {~arrived_i[1] & (eight_i | arrived_i[0]), ~arrived_i[0]} : eight_i ? least : tabled;
 
   if (EightDirections != 0) begin : gen_eight_directions
     always_ff @(posedge clk_i) begin
       if (rest_i) begin
         take_o <= choice;
-        negative_o <= finish_o ? left : ahead;
+        negative_o <= finish_o ? left_i : ahead;
         old_sign_o <= gradient_i;
       end
       if (compare_i) begin
         take_o <= 2'b11;
-        negative_o <= heading(clockwise, next_i);
+        negative_o <= heading(clockwise_i, next_i);
       end
     end
   end else begin : gen_four_directions
@@ -63,7 +61,7 @@ module deviation_choice #(
     always_ff @(posedge clk_i) begin
       if (rest_i) begin
         take_x_q   <= choice[0];
-        negative_q <= finish_o ? (choice[0] ? left[0] : left[1]) : (choice[0] ? ahead[0] : ahead[1]);
+        negative_q <= finish_o ? (choice[0] ? left_i[0] : left_i[1]) : (choice[0] ? ahead[0] : ahead[1]);
         old_sign_q <= choice[0] ? gradient_i[0] : gradient_i[1];
       end
     end

@@ -6,37 +6,42 @@
 module deviation_steps #(
     parameter int EightDirections = 0  // 1: built in
 ) (
-    input  wire logic         clk_i,
-    input  wire logic         run_i,
-    input  wire logic [  2:0] phase_i,
-    input  wire logic         eight_i,     // the path's step rule
-    input  wire logic [  1:0] take_i,
-    input  wire logic [  1:0] negative_i,
-    input  wire logic [111:0] words_i,     // {displacements, halves, gradients, F}
-    output logic      [ 79:0] words_o,     // {displacements, gradients, F}
-    output logic      [  1:0] sides_o      // deviation_compare's
+    input wire logic clk_i,
+    input wire logic run_i,
+    input wire logic [2:0] phase_i,
+    input wire logic eight_i,  // the path's step rule
+    input wire logic [1:0] take_i,
+    input wire logic [1:0] negative_i,
+    input wire logic [15:0] f_i,
+    input wire logic [31:0] gradient_i,
+    input wire logic [31:0] half_i,
+    input wire logic [31:0] left_i,
+    output logic [15:0] f_o,
+    output logic [31:0] gradient_o,
+    output logic [31:0] left_o,
+    output logic [1:0] sides_o  // deviation_compare's
 );
   // The first lane has x, and y in its place where y steps in 4 directions.
   logic [15:0] change, after_first, deviation, gradient_x, gradient_y, left_x, left_y;
   logic on_x, negative, skip, carry_q;
   logic [16:0] after_sum;
-  logic [15:0] f;
-  logic [31:0] gradient, half, left;
-  assign {left, half, gradient, f} = words_i;
-  assign words_o = {left_y, left_x, gradient_y, gradient_x, deviation};
-  assign after_sum = {1'b0, f} + {1'b0, change} + {16'd0, carry_q};
+  assign f_o = deviation;
+  assign gradient_o = {gradient_y, gradient_x};
+  assign left_o = {left_y, left_x};
+  assign after_sum = {1'b0, f_i} + {1'b0, change} + {16'd0, carry_q};
 
   deviation_lane first (
-      .*,
-      .phase_i   (phase_i[1:0]),
-      .skip_i    (skip),
+      .clk_i,
+      .run_i,
+      .phase_i(phase_i[1:0]),
+      .skip_i(skip),
       .negative_i(negative),
-      .gradient_i(on_x ? gradient[15:0] : gradient[31:16]),
-      .half_i    (on_x ? half[15:0] : half[31:16]),
-      .left_i    (on_x ? left[15:0] : left[31:16]),
-      .change_o  (change),
+      .gradient_i(on_x ? gradient_i[15:0] : gradient_i[31:16]),
+      .half_i(on_x ? half_i[15:0] : half_i[31:16]),
+      .left_i(on_x ? left_i[15:0] : left_i[31:16]),
+      .change_o(change),
       .gradient_o(gradient_x),
-      .left_o    (left_x)
+      .left_o(left_x)
   );
 
   always_ff @(posedge clk_i) begin
@@ -54,27 +59,30 @@ module deviation_steps #(
     assign skip = eight_i & ~take_i[0];
 
     deviation_lane second (
-        .*,
-        .phase_i   (phase_i[1:0]),
-        .skip_i    (~take_i[1]),
+        .clk_i,
+        .run_i,
+        .phase_i(phase_i[1:0]),
+        .skip_i(~take_i[1]),
         .negative_i(negative_i[1]),
-        .gradient_i(gradient[31:16]),
-        .half_i    (half[31:16]),
-        .left_i    (left[31:16]),
-        .change_o  (change_y),
+        .gradient_i(gradient_i[31:16]),
+        .half_i(half_i[31:16]),
+        .left_i(left_i[31:16]),
+        .change_o(change_y),
         .gradient_o(gradient_y),
-        .left_o    (left_y)
+        .left_o(left_y)
     );
 
     deviation_compare compare (
-        .*,
-        .deviation_i (f),
-        .phase_i     (phase_i[2:1]),
-        .minus_i     (negative_i & take_i),
-        .change_x_i  (change),
-        .change_y_i  (change_y),
-        .after_x_i   (after_first),
-        .after_both_o(after_both)
+        .clk_i,
+        .run_i,
+        .phase_i(phase_i[2:1]),
+        .minus_i(negative_i & take_i),
+        .deviation_i(f_i),
+        .change_x_i(change),
+        .change_y_i(change_y),
+        .after_x_i(after_first),
+        .after_both_o(after_both),
+        .sides_o
     );
 
     assign deviation = eight_i ? after_both : after_first;

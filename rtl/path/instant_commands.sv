@@ -12,8 +12,9 @@ module instant_commands #(
     input wire logic rst_i,
     input wire logic cut_i,
     // commands
-    input wire logic [21:0] load_i,
-    input wire logic [1:0] taken_i,  // {MARK, OUTPUT} is taken now; its last halfword is on load_i
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
+    input wire logic take_output_i,  // OUTPUT is taken now; its last halfword is on load_i
+    input wire logic take_mark_i,  // MARK is taken now
     input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
     input wire logic runs_i,  // a path is under way
     output logic mark_o,  // event: a snapshot is wanted
@@ -35,20 +36,23 @@ module instant_commands #(
   logic [          2:0] delay_q;
   logic                 fire;
 
+  logic [         15:0] word;
+
+  assign word = load_bus_pkg::word(load_i);
   assign fire = (output_waits_q || mark_waits_q) && delay_q == 3'd0 && (over_i || !runs_i);
   assign change_o = delay_q == 3'd1 && !cut_i;
 
   // What has taken effect stays in the masks, where it changes nothing more: set goes before clear, a later command takes
   // what it clears out of set_o, and a cut empties both.
   always_ff @(posedge clk_i) begin
-    words_q <= {load_i[Outputs-1:0], words_q[2*Outputs-1:Outputs]};
-    merge_q <= taken_i[0];
+    words_q <= {word[Outputs-1:0], words_q[2*Outputs-1:Outputs]};
+    merge_q <= take_output_i;
     if (merge_q) begin
       set_o   <= (set_o & ~words_q[2*Outputs-1:Outputs]) | words_q[Outputs-1:0];
       clear_o <= clear_o | words_q[2*Outputs-1:Outputs];
     end
-    output_waits_q <= taken_i[0] || (output_waits_q && !fire);
-    mark_waits_q   <= taken_i[1] || (mark_waits_q && !fire);
+    output_waits_q <= take_output_i || (output_waits_q && !fire);
+    mark_waits_q   <= take_mark_i || (mark_waits_q && !fire);
     if (fire) mark_due_q <= mark_waits_q;
     if (fire) delay_q <= TO_STEP;
     else if (delay_q != 3'd0) delay_q <= delay_q - 3'd1;
@@ -69,7 +73,7 @@ module instant_commands #(
     mark_o <= change_o && mark_due_q && !rst_i;
     if (change_o && mark_due_q) marks_o <= taken_q;
     if (cut_i) taken_q <= marks_o;
-    else if (taken_i[1]) taken_q <= taken_q + 32'd1;
+    else if (take_mark_i) taken_q <= taken_q + 32'd1;
     if (rst_i) begin
       taken_q <= '0;
       marks_o <= '0;
@@ -77,7 +81,7 @@ module instant_commands #(
   end
 
   logic unused;
-  assign unused = &{1'b0, load_i};
+  assign unused = &{1'b0, word};
 endmodule
 
 `default_nettype wire

@@ -10,43 +10,38 @@ module path_commands #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
-    input wire logic [40:0] setting_i,  // {set, address[9:2], data}
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     // pins
     input wire logic [Inputs-1:0] input_i,
     input wire logic [Outputs-1:0] output_idle_i,  // strap
     output logic [Outputs-1:0] output_o,
     // commands
-    input wire logic [21:0] load_i,
-    input wire logic [1:0] taken_i,  // {MARK, OUTPUT} is taken now; its last halfword is on load_i
-    input wire logic over_i,  // event: a path's last tick was taken, or it has ended on its engine
-    input wire logic runs_i,  // a path is under way
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
+    input wire logic [commands_pkg::WIDTH-1:0] commands_i,
     output logic mark_o,  // event: a snapshot is wanted
     // probe
-    input wire logic at_rest_i,  // the ratio is 0
-    input wire logic stopping_i,  // a fault's ramp
+    input wire logic [feed_pkg::WIDTH-1:0] feed_i,
     input wire logic probe_clear_i,  // event
-    input wire logic [2:0] probe_at_i,  // {WAIT_INPUT has begun, so has PROBE_END, a PROBE is decoded and no path runs}
-    // combinational: {PROBE_END must wait, the PROBE is taken, the condition decoded last is met}
-    output logic [2:0] probe_says_o,
-    output logic probe_o,  // event: a snapshot is wanted (combinational)
-    output logic probe_hold_o,
-    output logic [1:0] drop_o,  // {commands up to PROBE_END are not carried out, event: what runs ends here}
-    output logic probing_o,
+    output logic [probe_pkg::WIDTH-1:0] probe_o,
+    output logic drop_o,  // commands up to PROBE_END are not carried out
+    output logic halt_o,  // event: what runs ends here
+    output logic trip_o,  // event: a snapshot is wanted (combinational)
     // registers
-    output logic [66:0] io_o  // {waiting, probe missed, probed, marks, outputs, inputs}
+    output logic [pins_state_pkg::WIDTH-1:0] pins_state_o
 );
   if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_built
-    logic [       15:0] levels;
-    logic [       31:0] marks;
-    logic               change;
+    logic [15:0] levels;
+    logic [31:0] marks;
+    logic change;
     logic [Outputs-1:0] set;
     logic [Outputs-1:0] clear;
-    logic [        1:0] probe_status;
 
     input_pins #(
         .Inputs(Inputs)
     ) inputs (
-        .*,
+        .clk_i,
+        .rst_i,
+        .setting_i,
         .pin_i  (input_i),
         .level_o(levels)
     );
@@ -54,50 +49,70 @@ module path_commands #(
     instant_commands #(
         .Outputs(Outputs)
     ) instants (
-        .*,
-        .cut_i   (cut_i || drop_o[0]),
-        .marks_o (marks),
+        .clk_i,
+        .rst_i,
+        .cut_i(cut_i || halt_o),
+        .load_i,
+        .take_output_i(commands_i[commands_pkg::TAKE_OUTPUT]),
+        .take_mark_i(commands_i[commands_pkg::TAKE_MARK]),
+        .over_i(commands_i[commands_pkg::OVER]),
+        .runs_i(commands_i[commands_pkg::RUNS]),
+        .mark_o,
+        .marks_o(marks),
         .change_o(change),
-        .set_o   (set),
-        .clear_o (clear)
+        .set_o(set),
+        .clear_o(clear)
     );
 
     output_pins #(
         .Outputs(Outputs)
     ) outputs (
-        .*,
-        .idle_i  (output_idle_i),
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .setting_i,
+        .idle_i(output_idle_i),
         .change_i(change),
-        .set_i   (set),
-        .clear_i (clear),
-        .pin_o   (output_o)
+        .set_i(set),
+        .clear_i(clear),
+        .pin_o(output_o)
     );
 
     probe edges (
-        .*,
-        .level_i (levels),
-        .waits_i (probe_at_i[0]),
-        .ends_i  (probe_at_i[1]),
-        .clear_i (probe_clear_i),
-        .met_o   (probe_says_o[0]),
-        .taken_o (probe_says_o[1]),
-        .stays_o (probe_says_o[2]),
-        .trip_o  (probe_o),
-        .hold_o  (probe_hold_o),
-        .halt_o  (drop_o[0]),
-        .drop_o  (drop_o[1]),
-        .busy_o  (probing_o),
-        .status_o(probe_status)
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .level_i(levels),
+        .load_i,
+        .waits_i(commands_i[commands_pkg::PROBE_WAITS]),
+        .ends_i(commands_i[commands_pkg::PROBE_ENDS]),
+        .at_rest_i(feed_i[feed_pkg::AT_REST]),
+        .stopping_i(feed_i[feed_pkg::STOPPING]),
+        .clear_i(probe_clear_i),
+        .met_o(probe_o[probe_pkg::MET]),
+        .taken_o(probe_o[probe_pkg::TAKEN]),
+        .stays_o(probe_o[probe_pkg::STAYS]),
+        .trip_o,
+        .hold_o(probe_o[probe_pkg::HOLD]),
+        .halt_o,
+        .drop_o,
+        .busy_o(probe_o[probe_pkg::BUSY]),
+        .probed_o(pins_state_o[pins_state_pkg::PROBED]),
+        .missed_o(pins_state_o[pins_state_pkg::PROBE_MISSED])
     );
 
-    assign io_o = {probe_at_i[2], probe_status, marks, 16'(output_o), levels};
-  end else begin : gen_without
-    assign output_o = output_idle_i;
-    assign {mark_o, io_o, probe_says_o, probe_o, probe_hold_o, drop_o, probing_o} = '0;
+    assign pins_state_o[pins_state_pkg::INPUTS+:16]  = levels;
+    assign pins_state_o[pins_state_pkg::OUTPUTS+:16] = 16'(output_o);
+    assign pins_state_o[pins_state_pkg::MARKS+:32]   = marks;
 
     logic unused;
-    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, taken_i, over_i, runs_i, at_rest_i,
-                       stopping_i, probe_clear_i, probe_at_i};
+    assign unused = &{1'b0, feed_i};
+  end else begin : gen_without
+    assign output_o = output_idle_i;
+    assign {mark_o, trip_o, probe_o, drop_o, halt_o, pins_state_o} = '0;
+
+    logic unused;
+    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, commands_i, feed_i, probe_clear_i};
   end
 endmodule
 

@@ -10,28 +10,19 @@ module path_engines #(
     parameter int          Axes    = 4,
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic            clk_i,
-    input  wire logic            rst_i,
-    input  wire logic            cut_i,
-    input  wire logic            tick_i,
-    input  wire logic            swap_i,
-    // with swap_i: what the path runs on, by its bit of ENGINES; the state of one that is not lines is loaded
-    input  wire logic [     4:0] engine_i,
-    input  wire logic            engine_taken_i,   // the path still takes feed ticks
-    input  wire logic [    21:0] load_i,
-    output logic                 tick_o,           // path domain, to the axes
-    output logic                 swap_o,
-    output logic                 path_tick_o,      // an engine's tick
-    output logic      [Axes-1:0] step_o,
-    output logic      [Axes-1:0] dir_o,
-    output logic      [    15:0] chord_word_o,     // the arc generator's, to the axes
-    output logic      [Axes-1:0] chord_load_o,
-    output logic      [Axes-1:0] chord_swap_o,
-    output logic                 ready_o,          // a tick may be taken
-    output logic                 payload_ready_o,  // the engine's state may be loaded
-    output logic                 shadows_free_o,   // so may the axes' increments
-    output logic                 done_o,           // every path tick given is finished
-    output logic                 elsewhere_o       // with done_o: not on the commanded end point
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic tick_i,
+    input wire logic [move_pkg::WIDTH-1:0] move_i,  // with its swap the state of an engine that is not lines is loaded
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
+    output logic [axis_drive_pkg::WIDTH-1:0] drive_o,  // path domain
+    output logic path_tick_o,  // an engine's tick
+    output logic ready_o,  // a tick may be taken
+    output logic payload_ready_o,  // the engine's state may be loaded
+    output logic shadows_free_o,  // so may the axes' increments
+    output logic done_o,  // every path tick given is finished
+    output logic missed_end_o  // with done_o: not on the commanded end point
 );
   localparam logic [4:0] LINES = 5'(card_map_pkg::ENGINE_LINES);
   localparam logic [4:0] ACCUMULATOR = 5'(card_map_pkg::ENGINE_ACCUMULATOR);
@@ -39,22 +30,43 @@ module path_engines #(
   // Those that take the prescaler's ticks.
   localparam logic [31:0] TICKED = 32'd1 << ACCUMULATOR | 32'd1 << ARC_GENERATOR;
 
-  logic [2:0] tick_q;
-  logic [2:0] swap_q;
-  logic [1:0] own_tick_q;  // feed ticks that the axes get
-  logic       axes_run;  // on feed ticks
-  logic       chord_tick;  // a path tick that the axes get
+  logic [4:0] engine;  // what the path that begins runs on
+  logic swap;
+  logic taking;  // the path still takes feed ticks
 
-  assign swap_o = swap_q[2];
+  assign engine = move_pkg::engine(move_i);
+  assign swap   = move_i[move_pkg::SWAP];
+  assign taking = move_i[move_pkg::TAKING];
+
+  logic [     2:0] tick_q;
+  logic [     2:0] swap_q;
+  logic            axes_tick_q;
+  logic [     1:0] own_tick_q;  // feed ticks that the axes get
+  logic            axes_run;  // on feed ticks
+  logic            chord_tick;  // a path tick that the axes get
+
+  logic [Axes-1:0] step;
+  logic [Axes-1:0] dir;
+  logic [    15:0] chord_word;
+  logic [Axes-1:0] chord_load;
+  logic [Axes-1:0] chord_swap;
+
+  assign drive_o[axis_drive_pkg::TICK] = axes_tick_q;
+  assign drive_o[axis_drive_pkg::SWAP] = swap_q[2];
+  assign drive_o[axis_drive_pkg::STEP+:8] = 8'(step);
+  assign drive_o[axis_drive_pkg::DIR+:8] = 8'(dir);
+  assign drive_o[axis_drive_pkg::CHORD_WORD+:16] = chord_word;
+  assign drive_o[axis_drive_pkg::CHORD_LOAD+:8] = 8'(chord_load);
+  assign drive_o[axis_drive_pkg::CHORD_SWAP+:8] = 8'(chord_swap);
 
   always_ff @(posedge clk_i) begin
     tick_q <= {tick_q[1:0], tick_i};
     own_tick_q <= {own_tick_q[0], tick_i && axes_run};
-    tick_o <= own_tick_q[1] || chord_tick;
-    swap_q <= {swap_q[1:0], swap_i};
+    axes_tick_q <= own_tick_q[1] || chord_tick;
+    swap_q <= {swap_q[1:0], swap};
     if (rst_i || cut_i) begin
       own_tick_q <= '0;
-      tick_o <= 1'b0;
+      axes_tick_q <= 1'b0;
       swap_q <= '0;
     end
   end
@@ -77,8 +89,8 @@ module path_engines #(
     always_comb begin
       case (engine_q)
         // Its steps are the axes' own, and it ends where they do.
-        ARC_GENERATOR: {engine_stepping, at_end, engine_ready, dir_o, step_o} = (2 * Axes + 3)'(2'b11) << 2 * Axes;
-        default: {engine_stepping, at_end, engine_ready, dir_o, step_o} = accumulator;
+        ARC_GENERATOR: {engine_stepping, at_end, engine_ready, dir, step} = (2 * Axes + 3)'(2'b11) << 2 * Axes;
+        default: {engine_stepping, at_end, engine_ready, dir, step} = accumulator;
       endcase
     end
 
@@ -90,37 +102,43 @@ module path_engines #(
     assign chord_tick = on_arc && prescaler_step;
 
     always_ff @(posedge clk_i) begin
-      if (swap_i) engine_q <= engine_i;
-      elsewhere_o <= !at_end;
+      if (swap) engine_q <= engine;
+      missed_end_o <= !at_end;
       if (rst_i || cut_i) engine_q <= LINES;
     end
 
     pulse_generator #(
         .Counted(0)
     ) prescaler (
-        .*,
-        .clear_i         (cut_i),
-        .chord_i         (1'b0),
-        .active_i        (engine_i != LINES),
-        .counted_i       (1'b0),
-        .mirror_i        (1'b0),
-        .load_increment_i(load_i[21] && load_i[20:16] == load_target_pkg::PRESCALE),
-        .load_count_i    (1'b0),
-        .word_i          (load_i[15:0]),
-        .step_o          (prescaler_step),
-        .dir_o           (),
-        .live_o          ()
+        .clk_i,
+        .rst_i,
+        .clear_i(cut_i),
+        .tick_i,
+        .swap_i(swap),
+        .chord_i(1'b0),
+        .active_i(engine != LINES),
+        .counted_i(1'b0),
+        .mirror_i(1'b0),
+        .load_increment_i(load_bus_pkg::to(load_i, load_target_pkg::PRESCALE)),
+        .load_count_i(1'b0),
+        .word_i(load_bus_pkg::word(load_i)),
+        .step_o(prescaler_step),
+        .dir_o(),
+        .live_o()
     );
 
     path_tick_gate gate (
-        .*,
-        .coming_i         (coming),
-        .step_i           (prescaler_step && !on_arc),
-        .engine_ready_i   (engine_ready),
+        .clk_i,
+        .rst_i,
+        .cut_i,
+        .coming_i(coming),
+        .step_i(prescaler_step && !on_arc),
+        .engine_ready_i(engine_ready),
         .engine_stepping_i(engine_stepping),
-        .tick_o           (path_tick_o),
-        .ready_o          (gate_ready),
-        .payload_ready_o  (gate_payload_ready)
+        .tick_o(path_tick_o),
+        .ready_o(gate_ready),
+        .payload_ready_o(gate_payload_ready),
+        .done_o
     );
 
     if (Engines[ACCUMULATOR]) begin : gen_accumulator
@@ -132,29 +150,37 @@ module path_engines #(
       logic            dir_y;
       logic [     2:0] axis_x_q;
       logic [     2:0] axis_y_q;
+      logic [    15:0] word;
+
+      assign word = load_bus_pkg::word(load_i);
+
+      logic unused;
+      assign unused = &{1'b0, word};
 
       deviation_accumulator #(
           .EightDirections(32'(Engines[card_map_pkg::ENGINE_ACCUMULATOR_8]))
       ) deviation (
-          .*,
-          .clear_i   (cut_i),
-          .start_i   (swap_i && engine_i == ACCUMULATOR),
-          .tick_i    (path_tick_o && engine_q == ACCUMULATOR),
-          .step_x_o  (step_x),
-          .dir_x_o   (dir_x),
-          .step_y_o  (step_y),
-          .dir_y_o   (dir_y),
-          .ready_o   (accumulator[2*Axes]),
-          .at_end_o  (accumulator[2*Axes+1]),
-          .stepping_o(accumulator[2*Axes+2])
+          .clk_i,
+          .rst_i,
+          .clear_i(cut_i),
+          .load_i,
+          .start_i(swap && engine == ACCUMULATOR),
+          .tick_i(path_tick_o && engine_q == ACCUMULATOR),
+          .step_x_o(step_x),
+          .dir_x_o(dir_x),
+          .step_y_o(step_y),
+          .dir_y_o(dir_y),
+          .ready_o(accumulator[2*Axes]),
+          .stepping_o(accumulator[2*Axes+2]),
+          .at_end_o(accumulator[2*Axes+1])
       );
 
       // Its steps go to the two axes of the arc's plane. The plane is loaded with the arc, that is when no other arc runs,
       // so that one register is enough.
       always_ff @(posedge clk_i) begin
-        if (load_i[21] && load_i[20:16] == load_target_pkg::PLANE) begin
-          axis_x_q <= load_i[6:4];
-          axis_y_q <= load_i[10:8];
+        if (load_bus_pkg::to(load_i, load_target_pkg::PLANE)) begin
+          axis_x_q <= word[6:4];
+          axis_y_q <= word[10:8];
         end
         // A direction is looked at with its step only.
         step_q <= '0;
@@ -176,46 +202,51 @@ module path_engines #(
 
       assign on_arc = engine_q == ARC_GENERATOR;
       // Only while it is under way: the next arc may start with this one's number still standing.
-      always_ff @(posedge clk_i) over_q <= !engine_taken_i && !coming && !shadows_free_o;
+      always_ff @(posedge clk_i) over_q <= !taking && !coming && !shadows_free_o;
 
       arc_generator #(
           .Axes(Axes)
       ) arc (
-          .*,
-          .clear_i   (cut_i || over_q),
-          .start_i   (swap_i && engine_i == ARC_GENERATOR),
-          .tick_i    (chord_tick),
-          .ready_o   (arc_ready),
+          .clk_i,
+          .rst_i,
+          .clear_i(cut_i || over_q),
+          .load_i,
+          .start_i(swap && engine == ARC_GENERATOR),
+          .tick_i(chord_tick),
+          .chord_word_o(chord_word),
+          .chord_load_o(chord_load),
+          .chord_swap_o(chord_swap),
+          .ready_o(arc_ready),
           .loadable_o(shadows_free_o)
       );
     end else begin : gen_no_arc_generator
       assign on_arc         = 1'b0;
       assign arc_ready      = 1'b1;
-      assign chord_word_o   = '0;
-      assign chord_load_o   = '0;
-      assign chord_swap_o   = '0;
+      assign chord_word     = '0;
+      assign chord_load     = '0;
+      assign chord_swap     = '0;
       assign shadows_free_o = 1'b1;
 
       logic unused;
-      assign unused = &{1'b0, engine_taken_i};
+      assign unused = &{1'b0, taking};
     end
   end else begin : gen_lines_only
     assign path_tick_o     = 1'b0;
-    assign step_o          = '0;
-    assign dir_o           = '0;
+    assign step            = '0;
+    assign dir             = '0;
     assign ready_o         = 1'b1;
     assign payload_ready_o = 1'b1;
     assign done_o          = 1'b1;
-    assign elsewhere_o     = 1'b0;
-    assign chord_word_o    = '0;
-    assign chord_load_o    = '0;
-    assign chord_swap_o    = '0;
+    assign missed_end_o    = 1'b0;
+    assign chord_word      = '0;
+    assign chord_load      = '0;
+    assign chord_swap      = '0;
     assign shadows_free_o  = 1'b1;
     assign axes_run        = 1'b1;
     assign chord_tick      = 1'b0;
 
     logic unused;
-    assign unused = &{1'b0, engine_i, engine_taken_i, load_i, tick_q};
+    assign unused = &{1'b0, engine, taking, load_i, tick_q};
   end
 endmodule
 

@@ -1,7 +1,7 @@
 // Runs one path after the other: swaps the decoded command in at the last tick of a line, waits for a path's engine
 // or for the axes of a direct move to finish, and stops at barriers.
 //
-// In position streaming a line with nothing behind it goes on beyond its last tick (`stale_q`), until a path or a barrier
+// In position streaming a line with nothing behind it goes on beyond its last tick (`stale_o`), until a path or a barrier
 // is decoded; not once the next period is missing: then only a cut ends it.
 //
 // A swap is decided in one clock and carried out in the next, together with the tick (both leave as registers), so that
@@ -11,42 +11,44 @@
 module path_sequencer #(
     parameter int Axes = 4
 ) (
-    input  wire logic            clk_i,
-    input  wire logic            rst_i,
-    input  wire logic            cut_i,
-    input  wire logic            halt_i,          // event: the path ends here; no command is valid in this clock
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic halt_i,  // event: the path ends here; no command is valid in this clock
     // decoded command
-    input  wire logic            valid_i,         // a path or a barrier
-    input  wire logic [     4:0] engine_i,        // what a path runs on, by its bit of ENGINES
-    input  wire logic            barrier_i,
-    input  wire logic [Axes-1:0] mask_i,
-    output logic                 pop_o,           // taken now (combinational)
+    input wire logic valid_i,  // a path or a barrier
+    input wire logic [4:0] engine_i,  // what a path runs on, by its bit of ENGINES
+    input wire logic barrier_i,
+    input wire logic [Axes-1:0] mask_i,
+    output logic pop_o,  // taken now (combinational)
     // direct move: the chains are loaded
-    input  wire logic            direct_go_i,
-    input  wire logic [Axes-1:0] direct_mask_i,
+    input wire logic direct_go_i,
+    input wire logic [Axes-1:0] direct_mask_i,
     // position streaming
-    input  wire logic [     1:0] streaming_i,     // {the next period is missing, the mode}
-    // {the line goes on (combinational), has gone on, a period's last tick is taken (combinational)}
-    output logic      [     2:0] period_o,
+    input wire logic streaming_i,  // the mode
+    input wire logic lost_i,  // the next period is missing
+    output logic period_ends_o,  // a period's last tick is taken (combinational)
+    output logic goes_on_o,  // the line goes on beyond it (combinational)
+    output logic stale_o,  // it has gone on
     // ticks
-    input  wire logic            take_i,
-    input  wire logic            last_i,
-    output logic                 taking_o,        // ticks may be taken
-    output logic                 swap_o,          // a path begins with the next tick
-    output logic                 begin_o,         // as swap_o, a clock earlier (combinational)
-    output logic      [Axes-1:0] active_o,        // sampled with swap_o
-    output logic      [     4:0] engine_o,        // sampled with swap_o: what the path runs on
-    output logic                 direct_o,        // a direct move is under way
+    input wire logic take_i,
+    input wire logic last_i,
+    output logic taking_o,  // ticks may be taken
+    output logic swap_o,  // a path begins with the next tick
+    output logic begin_o,  // as swap_o, a clock earlier (combinational)
+    output logic [Axes-1:0] active_o,  // sampled with swap_o
+    output logic [4:0] engine_o,  // sampled with swap_o: what the path runs on
+    output logic direct_o,  // a direct move is under way
     // ends
-    input  wire logic            axes_live_i,
-    input  wire logic            done_i,          // every path tick given is finished
-    input  wire logic            elsewhere_i,
-    output logic                 engine_taken_o,  // by a path that still takes ticks (combinational)
-    output logic                 incomplete_o,    // event: a path ended elsewhere
-    output logic                 over_o,          // event: a path has ended; on lines its last tick was taken
-    input  wire logic            barrier_done_i,
-    output logic                 at_barrier_o,
-    output logic                 path_active_o
+    input wire logic axes_live_i,
+    input wire logic done_i,  // every path tick given is finished
+    input wire logic missed_end_i,  // with done_i: not on the commanded end point
+    output logic engine_taken_o,  // by a path that still takes ticks (combinational)
+    output logic incomplete_o,  // event: a path ended elsewhere
+    output logic over_o,  // event: a path has ended; on lines its last tick was taken
+    input wire logic barrier_done_i,
+    output logic at_barrier_o,
+    output logic path_active_o
 );
   // Clocks from the last enabled clock of a direct move until the axes are asked whether one is live.
   localparam logic [2:0] SETTLE_CLOCKS = 3'd7;
@@ -65,32 +67,28 @@ module path_sequencer #(
   logic       ending;
   logic       path_valid;
   logic       swap;
-  logic       period;  // its last tick is taken
-  logic       goes_on;  // the line beyond it
-  logic       stale_q;
   logic       stale_ends;
 
   assign on_lines = engine_i == LINES;
   assign path_valid = valid_i && !barrier_i;
-  assign ending = take_i && last_i && !stale_q;
+  assign ending = take_i && last_i && !stale_o;
   assign over = on_engine_q ? drained_q && done_i : settled_q && !axes_live_i;
   // After a line the next path takes over in the clock of the last tick. A path that ended elsewhere has no successor.
-  assign swap = path_valid && !incomplete_o && !streaming_i[1] && (idle_q || stale_q || (ending && !on_engine_q));
+  assign swap = path_valid && !incomplete_o && !lost_i && (idle_q || stale_o || (ending && !on_engine_q));
   assign pop_o = swap || barrier_done_i;
   assign begin_o = swap || direct_go_i;
   assign path_active_o = !idle_q;
   assign engine_taken_o = on_engine_q && !drained_q;
-  assign period = streaming_i[0] && ending && !on_engine_q && !direct_o;
-  assign goes_on = streaming_i[0] && (period || stale_q) && !swap && (streaming_i[1] || !(valid_i && barrier_i));
-  assign period_o = {goes_on, stale_q, period};
-  assign stale_ends = stale_q && !goes_on;
+  assign period_ends_o = streaming_i && ending && !on_engine_q && !direct_o;
+  assign goes_on_o = streaming_i && (period_ends_o || stale_o) && !swap && (lost_i || !(valid_i && barrier_i));
+  assign stale_ends = stale_o && !goes_on_o;
 
   always_ff @(posedge clk_i) begin
     swap_o       <= begin_o && !cut_i && !rst_i;
     over_o       <= ((over && drain_q) || (ending && !on_engine_q && !direct_o) || stale_ends) && !cut_i && !rst_i;
-    incomplete_o <= over && on_engine_q && elsewhere_i && !cut_i && !rst_i;
+    incomplete_o <= over && on_engine_q && missed_end_i && !cut_i && !rst_i;
     at_barrier_o <= valid_i && barrier_i && idle_q && !barrier_done_i && !cut_i && !rst_i;
-    stale_q      <= goes_on && !cut_i && !halt_i && !rst_i;
+    stale_o      <= goes_on_o && !cut_i && !halt_i && !rst_i;
     drained_q    <= drain_q;
     settled_q    <= drain_q && settle_q == 3'd0;
     if (!drain_q) settle_q <= SETTLE_CLOCKS;
@@ -113,8 +111,8 @@ module path_sequencer #(
       on_engine_q <= swap && !on_lines;
       direct_o <= direct_go_i;
     end else if (ending || stale_ends) begin
-      idle_q   <= !on_engine_q && !direct_o && !goes_on;
-      taking_o <= direct_o || goes_on;
+      idle_q   <= !on_engine_q && !direct_o && !goes_on_o;
+      taking_o <= direct_o || goes_on_o;
       drain_q  <= on_engine_q || direct_o;
     end else if (over) begin
       idle_q <= 1'b1;

@@ -10,32 +10,36 @@
 `default_nettype none
 
 module position_streaming (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic [40:0] setting_i,
-    input  wire logic [21:0] arrive_i,     // as tick_source has it
-    input  wire logic        rest_i,       // nothing is queued or runs
-    input  wire logic        begin_i,      // a path begins
-    input  wire logic [39:0] count_i,      // its ticks, in the clock after begin_i
-    input  wire logic [ 2:0] period_i,     // {the line goes on, has gone on, a period's last tick is taken}
-    input  wire logic        take_i,
-    output logic             streaming_o,  // the mode
-    output logic             missing_o,    // event
-    output logic             lost_o,       // since then, until the cut
-    output logic      [31:0] ticks_o       // beyond the end of the last period that ended
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
+    input wire logic rest_i,  // nothing is queued or runs
+    input wire logic begin_i,  // a path begins
+    input wire logic [39:0] count_i,  // its ticks, in the clock after begin_i
+    input wire logic period_ends_i,  // a period's last tick is taken
+    input wire logic goes_on_i,  // the line goes on beyond it
+    input wire logic stale_i,  // it has gone on
+    input wire logic take_i,
+    output logic streaming_o,  // the mode
+    output logic missing_o,  // event
+    output logic lost_o,  // since then, until the cut
+    output logic [31:0] ticks_o  // beyond the end of the last period that ended
 );
-  logic       on_q;
-  logic [7:0] stale_periods_q;
-  logic       inside_q;
-  logic       writes;
-  logic       ends;
-  assign writes = arrive_i[18] || arrive_i[16];
-  assign ends   = arrive_i[20] || arrive_i[19] || arrive_i[17];
+  logic        on_q;
+  logic [ 7:0] stale_periods_q;
+  logic        inside_q;
+  logic        writes;
+  logic        ends;
+  logic [31:0] data;
+  assign writes = arrival_pkg::writes(arrival_i);
+  assign ends   = arrival_pkg::ends(arrival_i);
+  assign data   = setting_bus_pkg::data(setting_i);
 
   always_ff @(posedge clk_i) begin
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_STREAMING[9:2])
-      {stale_periods_q, on_q} <= {setting_i[15:8], setting_i[0]};
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_STREAMING))
+      {stale_periods_q, on_q} <= {data[15:8], data[0]};
     inside_q <= !ends && (inside_q || writes);
     if (rest_i && !inside_q && !writes) streaming_o <= on_q;
     if (rst_i || cut_i) inside_q <= 1'b0;
@@ -54,10 +58,10 @@ module position_streaming (
   logic        one;
   logic        missing;
   logic        stale_tick;  // beyond the end of the line
-  assign stale_tick = take_i && period_i[1];
+  assign stale_tick = take_i && stale_i;
   assign one = count_i == 40'd1;
-  assign missing = period_i[2] && !lost_o &&
-      (period_i[0] ? stale_periods_q == 8'd0 : stale_tick && last_q && rounds_q == 8'd1);
+  assign missing = goes_on_i && !lost_o &&
+      (period_ends_i ? stale_periods_q == 8'd0 : stale_tick && last_q && rounds_q == 8'd1);
 
   always_ff @(posedge clk_i) begin
     begin_q <= begin_i;
@@ -69,15 +73,15 @@ module position_streaming (
       last_q <= last_q ? short_q : left_q == 40'd2;
       if (last_q) rounds_q <= rounds_q - 8'd1;
     end
-    if (period_i[0]) rounds_q <= stale_periods_q;
-    if (rst_i || period_i[0]) ticks_o <= 32'd0;
+    if (period_ends_i) rounds_q <= stale_periods_q;
+    if (rst_i || period_ends_i) ticks_o <= 32'd0;
     else if (stale_tick) ticks_o <= ticks_o + 32'd1;
     missing_o <= missing && !cut_i && !rst_i;
     lost_o    <= (lost_o || missing) && !cut_i && !rst_i;
   end
 
   logic unused;
-  assign unused = &{1'b0, setting_i[31:16], setting_i[7:1], arrive_i[21], arrive_i[15:0]};
+  assign unused = &{1'b0, data[31:16], data[7:1]};
 endmodule
 
 `default_nettype wire

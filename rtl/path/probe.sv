@@ -9,47 +9,48 @@
 `default_nettype none
 
 module probe (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic [15:0] level_i,     // of the inputs
-    input  wire logic [21:0] load_i,
-    input  wire logic        waits_i,     // a PROBE is decoded and no path runs
-    input  wire logic        ends_i,      // PROBE_END has begun
-    input  wire logic        at_rest_i,   // the ratio is 0
-    input  wire logic        stopping_i,  // a fault's ramp
-    input  wire logic        clear_i,     // event: CONTROL.probe_clear
-    output logic             met_o,       // the condition decoded last is met (combinational)
-    output logic             taken_o,     // the PROBE is taken now (combinational)
-    output logic             stays_o,     // PROBE_END must wait (combinational)
-    output logic             trip_o,      // event: a snapshot is wanted (combinational)
-    output logic             hold_o,      // the time base slows down to rest
-    output logic             halt_o,      // event: what runs ends here
-    output logic             drop_o,      // from halt_o to PROBE_END commands are not carried out
-    output logic             busy_o,
-    output logic      [ 1:0] status_o     // {missed, probed}
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic [15:0] level_i,  // of the inputs
+    input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
+    input wire logic waits_i,  // a PROBE is decoded and no path runs
+    input wire logic ends_i,  // PROBE_END has begun
+    input wire logic at_rest_i,  // the ratio is 0
+    input wire logic stopping_i,  // a fault's ramp
+    input wire logic clear_i,  // event: CONTROL.probe_clear
+    output logic met_o,  // the condition decoded last is met (combinational)
+    output logic taken_o,  // the PROBE is taken now (combinational)
+    output logic stays_o,  // PROBE_END must wait (combinational)
+    output logic trip_o,  // event: a snapshot is wanted (combinational)
+    output logic hold_o,  // the time base slows down to rest
+    output logic halt_o,  // event: what runs ends here
+    output logic drop_o,  // from halt_o to PROBE_END commands are not carried out
+    output logic busy_o,
+    output logic probed_o,
+    output logic missed_o  // PROBE_END came before an edge
 );
   // {level, input}: decoded last, and of the PROBE that is armed.
-  logic [4:0] decoded_q;
-  logic [4:0] condition_q;
-  logic [2:0] settle_q;
-  logic       armed_q;
-  logic       look;  // the PROBE is over: is its input tripped already?
-  logic       edge_now;
-  logic       probed_q;
-  logic       missed_q;
+  logic [ 4:0] decoded_q;
+  logic [ 4:0] condition_q;
+  logic [ 2:0] settle_q;
+  logic        armed_q;
+  logic        look;  // the PROBE is over: is its input tripped already?
+  logic        edge_now;
 
+  logic [15:0] word;
+
+  assign word = load_bus_pkg::word(load_i);
   assign met_o = level_i[decoded_q[3:0]] == decoded_q[4];
   assign edge_now = armed_q && level_i[condition_q[3:0]] == condition_q[4] && !stopping_i && !cut_i;
   assign look = waits_i && settle_q == 3'd7 && !edge_now && !hold_o && !drop_o && !stopping_i && !cut_i;
   assign taken_o = look;
   assign trip_o = edge_now || (look && met_o);
-  assign stays_o = edge_now || hold_o || (drop_o && probed_q);
+  assign stays_o = edge_now || hold_o || (drop_o && probed_o);
   assign busy_o = armed_q || hold_o || drop_o;
-  assign status_o = {missed_q, probed_q};
 
   always_ff @(posedge clk_i) begin
-    if (load_i[21] && load_i[20:16] == load_target_pkg::COMMAND) decoded_q <= load_i[4:0];
+    if (load_bus_pkg::to(load_i, load_target_pkg::COMMAND)) decoded_q <= word[4:0];
     if (look) condition_q <= decoded_q;
     if (!waits_i) settle_q <= 3'd0;
     else if (settle_q != 3'd7) settle_q <= settle_q + 3'd1;
@@ -57,11 +58,11 @@ module probe (
 
   always_ff @(posedge clk_i) begin
     halt_o   <= (hold_o && at_rest_i) || (look && met_o);
-    probed_q <= trip_o || (probed_q && !clear_i);
-    missed_q <= (ends_i && armed_q && !edge_now) || (missed_q && !look && !clear_i);
+    probed_o <= trip_o || (probed_o && !clear_i);
+    missed_o <= (ends_i && armed_q && !edge_now) || (missed_o && !look && !clear_i);
     armed_q  <= look ? !met_o : armed_q && !edge_now && !ends_i;
     hold_o   <= edge_now || (hold_o && !at_rest_i);
-    drop_o   <= (hold_o && at_rest_i) || (look && met_o) || (drop_o && (!ends_i || probed_q));
+    drop_o   <= (hold_o && at_rest_i) || (look && met_o) || (drop_o && (!ends_i || probed_o));
     if (cut_i || rst_i) begin
       halt_o  <= 1'b0;
       armed_q <= 1'b0;
@@ -69,13 +70,13 @@ module probe (
       drop_o  <= 1'b0;
     end
     if (rst_i) begin
-      probed_q <= 1'b0;
-      missed_q <= 1'b0;
+      probed_o <= 1'b0;
+      missed_o <= 1'b0;
     end
   end
 
   logic unused;
-  assign unused = &{1'b0, load_i[15:5]};
+  assign unused = &{1'b0, word[15:5]};
 endmodule
 
 `default_nettype wire

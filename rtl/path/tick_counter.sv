@@ -8,14 +8,16 @@
 `default_nettype none
 
 module tick_counter (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic [16:0] next_i,   // {valid, halfword} of the next count, which is at least 1 where ticks count it
-    output logic      [39:0] count_o,  // the next count; still there in the clock after load_i
-    output logic             zero_o,   // it is 0; two clocks late
-    input  wire logic        load_i,   // take it
-    input  wire logic        take_i,
-    output logic             last_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    // a halfword of the next count, which is at least 1 where ticks count it
+    input wire logic next_i,
+    input wire logic [15:0] word_i,
+    output logic [39:0] count_o,  // the next count; still there in the clock after load_i
+    output logic zero_o,  // it is 0; two clocks late
+    input wire logic load_i,  // take it
+    input wire logic take_i,
+    output logic last_o
 );
   logic [39:0] count_q;  // the next one
   assign count_o = count_q;
@@ -27,8 +29,8 @@ module tick_counter (
   logic       next_top_zero_q;
 
   always_ff @(posedge clk_i) begin
-    if (next_i[16]) {top_pass_q, count_q} <= {next_i[15:0], top_pass_q, count_q[39:16]};
-    loaded_q  <= next_i[16];
+    if (next_i) {top_pass_q, count_q} <= {word_i, top_pass_q, count_q[39:16]};
+    loaded_q  <= next_i;
     settled_q <= loaded_q;
     if (loaded_q) begin
       next_low_zero_q <= count_q[3:0] == 4'd0;

@@ -8,34 +8,30 @@ module register_access #(
     parameter int          Axes    = 4,  // 1 to 8
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        request_i,
-    input  wire logic [47:0] access_i,         // {port, write, partial, address, data}
-    output logic             ack_o,
-    output logic             error_o,
-    input  wire logic        writing_i,        // the RAM is being written
-    input  wire logic        direct_i,         // a direct move is under way
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [register_access_pkg::WIDTH-1:0] access_i,
+    output logic ack_o,
+    output logic error_o,
+    input wire logic writing_i,  // the RAM is being written
+    input wire logic direct_i,  // a direct move is under way
     // reads
-    output logic             live_o,           // the register reads as the card stands
-    output logic             sample_o,         // combinational: a live register is taken
-    output logic             read_o,           // with ack_o: what was read is to be shown
+    output logic live_o,  // the register reads as the card stands
+    output logic sample_o,  // combinational: a live register is taken
+    output logic read_o,  // with ack_o: what was read is to be shown
     // writes
-    output logic      [40:0] setting_o,        // {set, address, data}
-    output logic      [31:0] clear_fault_o,
-    output logic             clear_refusal_o,  // combinational
-    output logic             snapshot_o,
-    output logic             abort_o,
-    output logic             probe_clear_o,
-    output logic             flush_o,          // combinational
+    output logic [setting_bus_pkg::WIDTH-1:0] setting_o,
+    output logic [31:0] clear_fault_o,
+    output logic snapshot_o,
+    output logic abort_o,
+    output logic probe_clear_o,
+    output logic flush_o,  // combinational
     // who answers a word of the stream and START
-    output logic             stream_write_o,
-    input  wire logic [18:0] checker_i,        // {partial, ready, refuse, number, reason}
-    output logic             start_o,
-    input  wire logic [ 9:0] start_answer_i,   // {done, error, reason}
-    // a refusal, combinational
-    output logic             refuse_o,
-    output logic      [15:0] reason_o          // {number, reason}
+    output logic stream_write_o,
+    input wire logic [stream_answer_pkg::WIDTH-1:0] stream_answer_i,
+    output logic start_o,
+    input wire logic [start_answer_pkg::WIDTH-1:0] start_answer_i,
+    output logic [refusal_pkg::WIDTH-1:0] refusal_o  // combinational
 );
 
   localparam logic [3:0] AXIS_COUNT = 4'(Axes);
@@ -59,9 +55,9 @@ module register_access #(
   logic   [31:0] data;
 
   assign judging = state_q == DECODE || state_q == WAIT;
-  assign write   = access_i[45];
-  assign word    = access_i[43:34];
-  assign data    = access_i[31:0];
+  assign write   = access_i[register_access_pkg::WRITE];
+  assign word    = register_access_pkg::word(access_i);
+  assign data    = register_access_pkg::data(access_i);
 
   // What the access aims at.
   logic [2:0] kind_q;
@@ -85,7 +81,7 @@ module register_access #(
       only_present = card_map_pkg::register_only_present_axes(word);
       axis = card_map_pkg::register_axis(word);
       kind_q   <= card_map_pkg::register_access(word, Engines);
-      absent_q <= access_i[33:32] != 2'd0 || (only_present && {1'b0, axis} >= AXIS_COUNT);
+      absent_q <= !register_access_pkg::aligned(access_i) || (only_present && {1'b0, axis} >= AXIS_COUNT);
       for (int b = 0; b < 4; b++) stray_q[b] <= (data[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
       in_limits_q <= card_map_pkg::register_in_limits(word, data);
       control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
@@ -103,10 +99,12 @@ module register_access #(
   logic [1:0] owner_q;
   logic       stream_busy;
 
-  assign stream_busy = direct_i || (checker_i[18] && owner_q != access_i[47:46]);
+  assign stream_busy = direct_i || (stream_answer_i[stream_answer_pkg::PARTIAL] && owner_q != register_access_pkg::port(
+      access_i
+  ));
 
   always_ff @(posedge clk_i) begin
-    if (stream_write_o) owner_q <= access_i[47:46];
+    if (stream_write_o) owner_q <= register_access_pkg::port(access_i);
   end
 
   logic       read_only;
@@ -126,7 +124,7 @@ module register_access #(
         reason_q <= card_map_pkg::REFUSE_WRITE_ONLY;
       end else if (write && read_only) begin
         reason_q <= card_map_pkg::REFUSE_READ_ONLY;
-      end else if (write && access_i[44]) begin
+      end else if (write && access_i[register_access_pkg::PARTIAL]) begin
         reason_q <= card_map_pkg::REFUSE_PARTIAL_WRITE;
       end else if (write && (stray_q != 4'd0 || !in_limits_q)) begin
         reason_q <= card_map_pkg::REFUSE_BAD_VALUE;
@@ -146,7 +144,7 @@ module register_access #(
     start_o <= 1'b0;
     acting_q <= state_q == WAIT && !waiting;
     case (state_q)
-      IDLE:   if (request_i) state_q <= DECODE;
+      IDLE:   if (access_i[register_access_pkg::REQUEST]) state_q <= DECODE;
       DECODE: state_q <= WAIT;
       WAIT:   if (!waiting) state_q <= ACT;
       ACT: begin
@@ -166,17 +164,17 @@ module register_access #(
       end
       STREAM: begin
         // The checker is still ready in the clock of the write.
-        if (checker_i[17] && !stream_write_o) begin
+        if (stream_answer_i[stream_answer_pkg::READY] && !stream_write_o) begin
           state_q <= IDLE;
           ack_o   <= 1'b1;
-          error_o <= checker_i[16];
+          error_o <= stream_answer_i[stream_answer_pkg::REFUSE];
         end
       end
       START: begin
-        if (start_answer_i[9]) begin
+        if (start_answer_i[start_answer_pkg::DONE]) begin
           state_q <= IDLE;
           ack_o   <= 1'b1;
-          error_o <= start_answer_i[8];
+          error_o <= start_answer_i[start_answer_pkg::ERROR];
         end
       end
       default: begin  // RESPOND
@@ -196,19 +194,29 @@ module register_access #(
     end
   end
 
-  assign waiting  = writing_i && (write || !live_o);
-  assign sample_o = acting_q;
-  // By the map, by the direct loader, or by the checker: while its access waits, or in the clock after a flush.
-  assign refuse_o = acting_q ? !good_q : state_q == START ? start_answer_i[9] && start_answer_i[8] : checker_i[16];
-  assign reason_o = acting_q ? {8'd0, reason_q} : state_q == START ? {8'd0, start_answer_i[7:0]} : checker_i[15:0];
-
-  logic act;
-  logic set_q;
+  logic        refuse;
+  logic [15:0] why;  // {number, reason}
+  logic        start_refused;
+  logic        act;
 
   assign act = acting_q && good_q && write;
-  assign setting_o = {set_q, access_i[41:34], data};
-  assign clear_refusal_o = act && refusal_q;
-  assign flush_o = acting_q && good_q && flush_q;  // only a write of CONTROL is good
+  assign waiting = writing_i && (write || !live_o);
+  assign sample_o = acting_q;
+  // By the map, by the direct loader, or by the checker: while its access waits, or in the clock after a flush.
+  assign start_refused = start_answer_i[start_answer_pkg::DONE] && start_answer_i[start_answer_pkg::ERROR];
+
+  assign refuse = acting_q ? !good_q : state_q == START ? start_refused : stream_answer_i[stream_answer_pkg::REFUSE];
+  assign why = acting_q ? {8'd0, reason_q} : state_q == START ? {8'd0, start_answer_pkg::reason(
+      start_answer_i
+  )} : stream_answer_pkg::why(
+      stream_answer_i
+  );
+  assign refusal_o = refusal_pkg::pack(act && refusal_q, refuse, why);
+
+  logic set_q;
+
+  assign setting_o = setting_bus_pkg::pack(set_q, word, data);
+  assign flush_o   = acting_q && good_q && flush_q;  // only a write of CONTROL is good
 
   always_ff @(posedge clk_i) begin
     set_q <= act && kind_q == card_map_pkg::ACCESS_SETTING;

@@ -1,6 +1,4 @@
 // The card's registers: takes an access, judges it by the register map, acts and answers.
-//
-// An access is {port, write, partial, address, data} and stands still from request_i to ack_o.
 // Latencies: docs/developer/architecture.md.
 `default_nettype none
 module register_file #(
@@ -10,115 +8,156 @@ module register_file #(
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [511:0] constants_i,  // what parameters and straps decide, by address
-    input wire logic [2*Axes-1:0] idle_level_i,
+    input wire logic [card_constants_pkg::WIDTH-1:0] constants_i,
+    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
     // the access
-    input wire logic request_i,
-    input wire logic [47:0] access_i,
-    output logic ack_o,
-    output logic error_o,
-    output logic [31:0] data_o,  // combinational
+    input wire logic [register_access_pkg::WIDTH-1:0] access_i,
+    output logic [register_answer_pkg::WIDTH-1:0] answer_o,
     output logic irq_o,
     // the card's state
-    input wire logic [5:0] motion_i,  // {stopping, ended, feed active, path active, direct, busy}
-    input wire logic held_i,
-    input wire logic [65:0] late_i,  // {a line goes on beyond its period, ticks; held for under-run, how often}
-    input wire logic [31:0] fault_i,
-    input wire logic [31:0] room_i,  // {geometry, feed}
-    input wire logic [1:0] low_i,  // {feed, geometry}: below their watermarks
-    input wire logic [63:0] begun_i,  // {geometry, feed}
-    input wire logic [66:0] io_i,  // {waiting, probe missed, probed, marks, outputs, inputs}
+    input wire logic busy_i,
+    input wire logic [time_state_pkg::WIDTH-1:0] time_state_i,
+    input wire logic [geometry_state_pkg::WIDTH-1:0] geometry_state_i,
+    input wire logic [pins_state_pkg::WIDTH-1:0] pins_state_i,
+    input wire logic [queue_state_pkg::WIDTH-1:0] queue_state_i,
     output logic [31:0] status_o,  // combinational; refused is any port's
     // what writes do
-    output logic [40:0] setting_o,  // {set, address, data}
+    output logic [setting_bus_pkg::WIDTH-1:0] setting_o,
     output logic [31:0] clear_fault_o,
     output logic abort_o,
     output logic probe_clear_o,
     output logic flush_o,  // combinational
-    // the command checker
+    // the stream of commands
     output logic stream_write_o,
-    input wire logic [18:0] checker_i,  // {partial, ready, refuse, number, reason}
+    input wire logic [stream_answer_pkg::WIDTH-1:0] stream_answer_i,
     // the direct loader
-    output logic start_o,
-    input wire logic [9:0] start_answer_i,  // {done, error, reason}
-    input wire logic [7:0] loader_address_i,
-    output logic [31:0] loader_data_o,
+    output logic [start_pkg::WIDTH-1:0] start_o,
+    input wire logic [start_answer_pkg::WIDTH-1:0] start_answer_i,
     // snapshots
-    input wire logic stop_i,
+    input wire logic stop_i,  // events: a snapshot is wanted
     input wire logic probe_i,
     input wire logic mark_i,
-    output logic [1:0] snapshot_o,  // {shift, strobe}
-    output logic [31:0] chain_o,  // the far end
-    input wire logic [31:0] chain_i
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,  // the chain's near end
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o  // behind FAULT and STATUS
 );
 
-  logic        live_o;
-  logic        sample_o;
-  logic        read_o;
-  logic        clear_refusal_o;
-  logic        refuse_o;
-  logic [15:0] reason_o;  // {number, reason}
-  logic        snapshot;
-  logic        active_o;
-  logic [40:0] store_o;
-  logic [ 7:0] clocks_o;
-  logic        writing_o;
+  logic ack;
+  logic error;
+  logic live;
+  logic sample;
+  logic read;
+  logic [refusal_pkg::WIDTH-1:0] refusal;
+  logic snapshot;
+  logic strobe;
+  logic shift;
+  logic snapshotting;
+  logic [setting_bus_pkg::WIDTH-1:0] store;
+  logic [7:0] clocks;
+  logic writing;
+  logic start;
+  logic [9:0] word;
   logic [31:0] live_data;
+  logic [31:0] ram_data;
+  logic [31:0] written;
+
+  assign word = register_access_pkg::word(access_i);
+  assign written = register_access_pkg::data(access_i);
+  assign start_o = start_pkg::pack(start, written[7:0], ram_data);
+  assign answer_o = register_answer_pkg::pack(ack, error, !read ? '0 : live ? live_data : ram_data);
 
   register_access #(
       .Axes(Axes),
       .Engines(Engines)
   ) i_access (
-      .*,
-      .writing_i (writing_o || active_o),
-      .direct_i  (motion_i[1]),
-      .snapshot_o(snapshot)
+      .clk_i,
+      .rst_i,
+      .access_i,
+      .ack_o(ack),
+      .error_o(error),
+      .writing_i(writing || snapshotting),
+      .direct_i(geometry_state_i[geometry_state_pkg::DIRECT]),
+      .live_o(live),
+      .sample_o(sample),
+      .read_o(read),
+      .setting_o,
+      .clear_fault_o,
+      .snapshot_o(snapshot),
+      .abort_o,
+      .probe_clear_o,
+      .flush_o,
+      .stream_write_o,
+      .stream_answer_i,
+      .start_o(start),
+      .start_answer_i,
+      .refusal_o(refusal)
   );
 
   register_live #(
       .Ports  (Ports),
       .Engines(Engines)
   ) i_live (
-      .*,
+      .clk_i,
+      .rst_i,
       .setting_i(setting_o),
-      .snapshot_i(snapshot_o),
-      .sample_i(sample_o),
-      .access_i({access_i[47:46], access_i[43:32]}),
-      .clear_refusal_i(clear_refusal_o),
-      .refuse_i(refuse_o),
-      .reason_i(reason_o),
-      .snapshotting_i(active_o),
-      .incomplete_i(checker_i[18]),
-      .data_o(live_data)
+      .access_i,
+      .sample_i(sample),
+      .refusal_i(refusal),
+      .busy_i,
+      .time_state_i,
+      .geometry_state_i,
+      .pins_state_i,
+      .queue_state_i,
+      .snapshotting_i(snapshotting),
+      .incomplete_i(stream_answer_i[stream_answer_pkg::PARTIAL]),
+      .status_o,
+      .data_o(live_data),
+      .irq_o,
+      .snapshot_i(snapshot_pkg::pack(shift, strobe, 32'd0)),
+      .snapshot_o
   );
 
   snapshot_writer #(
       .Axes(Axes)
   ) i_snapshot (
-      .*,
-      .host_i(snapshot)
+      .clk_i,
+      .rst_i,
+      .host_i  (snapshot),
+      .stop_i,
+      .probe_i,
+      .mark_i,
+      .word_i  (snapshot_pkg::word(snapshot_i)),
+      .strobe_o(strobe),
+      .shift_o (shift),
+      .active_o(snapshotting),
+      .clocks_o(clocks),
+      .store_o (store)
   );
 
   // The direct loader owns the RAM's read side from its start to its end; the START write waits all the while.
   logic loading_q;
 
   always_ff @(posedge clk_i) begin
-    loading_q <= (loading_q || start_o) && !start_answer_i[9];
+    loading_q <= (loading_q || start) && !start_answer_i[start_answer_pkg::DONE];
     if (rst_i) loading_q <= 1'b0;
   end
 
   register_ram #(
       .Axes(Axes)
   ) i_ram (
-      .*,
+      .clk_i,
+      .rst_i,
+      .constants_i,
+      .idle_level_i,
       .setting_i(setting_o),
-      .snapshot_i(store_o),
-      .clocks_i(clocks_o),
-      .address_i(loading_q ? loader_address_i : access_i[41:34]),
-      .data_o(loader_data_o)
+      .store_i(store),
+      .clocks_i(clocks),
+      .address_i(loading_q ? start_answer_pkg::address(start_answer_i) : word[7:0]),
+      .writing_o(writing),
+      .data_o(ram_data)
   );
 
-  assign data_o = !read_o ? '0 : live_o ? live_data : loader_data_o;
+  logic unused;  // the chain's strobe and shift come round; the RAM has the first 256 words of the map
+  assign unused = &{1'b0, snapshot_i, written[31:8], word[9:8]};
 
 endmodule
 `default_nettype wire

@@ -11,34 +11,34 @@ module register_live #(
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [40:0] setting_i,
-    input wire logic [1:0] snapshot_i,  // {shift, strobe}
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic [register_access_pkg::WIDTH-1:0] access_i,
     input wire logic sample_i,
-    input wire logic [13:0] access_i,  // {port, address}
-    // refusals
-    input wire logic clear_refusal_i,
-    input wire logic refuse_i,
-    input wire logic [15:0] reason_i,  // {number, reason}
-    // STATUS
-    input wire logic [5:0] motion_i,  // {stopping, ended, feed active, path active, direct, busy}
-    input wire logic held_i,
-    input wire logic [65:0] late_i,  // {a line goes on beyond its period, ticks; held for under-run, how often}
+    input wire logic [refusal_pkg::WIDTH-1:0] refusal_i,
+    // what is shown
+    input wire logic busy_i,
+    input wire logic [time_state_pkg::WIDTH-1:0] time_state_i,
+    input wire logic [geometry_state_pkg::WIDTH-1:0] geometry_state_i,
+    input wire logic [pins_state_pkg::WIDTH-1:0] pins_state_i,
+    input wire logic [queue_state_pkg::WIDTH-1:0] queue_state_i,
     input wire logic snapshotting_i,
-    input wire logic incomplete_i,
-    input wire logic [1:0] low_i,  // {feed, geometry}: below their watermarks
-    // the other live registers
-    input wire logic [31:0] fault_i,
-    input wire logic [31:0] room_i,  // {geometry, feed}
-    input wire logic [63:0] begun_i,  // {geometry, feed}
-    input wire logic [66:0] io_i,  // {waiting, probe missed, probed, marks, outputs, inputs}
+    input wire logic incomplete_i,  // the stream is inside a command
     output logic [31:0] status_o,  // combinational; refused is any port's
     output logic [31:0] data_o,
-    output logic [31:0] chain_o,
-    output logic irq_o
+    output logic irq_o,
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o
 );
 
   logic [  3:0] refused;
   logic [111:0] refusal;
+  logic [  1:0] port;
+  logic [ 11:0] address;
+  logic [ 31:0] fault;
+
+  assign port = register_access_pkg::port(access_i);
+  assign address = register_access_pkg::address(access_i);
+  assign fault = time_state_pkg::fault(time_state_i);
 
   for (genvar p = 0; p < 4; p++) begin : gen_port
     if (p < Ports) begin : gen_refusal
@@ -46,11 +46,11 @@ module register_live #(
       logic [27:0] refusal_q;
 
       always_ff @(posedge clk_i) begin
-        if (access_i[13:12] == 2'(p)) begin
-          if (refuse_i && !refused_q) begin
+        if (port == 2'(p)) begin
+          if (refusal_i[refusal_pkg::REFUSE] && !refused_q) begin
             refused_q <= 1'b1;
-            refusal_q <= {access_i[11:0], reason_i};
-          end else if (clear_refusal_i) begin
+            refusal_q <= {address, refusal_pkg::why(refusal_i)};
+          end else if (refusal_i[refusal_pkg::CLEAR]) begin
             refused_q <= 1'b0;
             refusal_q <= '0;
           end
@@ -69,45 +69,45 @@ module register_live #(
     end
   end
 
-  assign status_o = 32'(motion_i[0]) << card_map_pkg::BIT_STATUS_BUSY |
-      32'(motion_i[1]) << card_map_pkg::BIT_STATUS_DIRECT |
-      32'(motion_i[2]) << card_map_pkg::BIT_STATUS_PATH_ACTIVE |
-      32'(motion_i[3]) << card_map_pkg::BIT_STATUS_FEED_ACTIVE |
-      32'(held_i) << card_map_pkg::BIT_STATUS_HELD |
-      32'(motion_i[4]) << card_map_pkg::BIT_STATUS_ENDED |
-      32'(fault_i != 32'd0) << card_map_pkg::BIT_STATUS_FAULTED |
+  assign status_o = 32'(busy_i) << card_map_pkg::BIT_STATUS_BUSY |
+      32'(geometry_state_i[geometry_state_pkg::DIRECT]) << card_map_pkg::BIT_STATUS_DIRECT |
+      32'(geometry_state_i[geometry_state_pkg::PATH_ACTIVE]) << card_map_pkg::BIT_STATUS_PATH_ACTIVE |
+      32'(time_state_i[time_state_pkg::FEED_ACTIVE]) << card_map_pkg::BIT_STATUS_FEED_ACTIVE |
+      32'(time_state_i[time_state_pkg::HELD]) << card_map_pkg::BIT_STATUS_HELD |
+      32'(geometry_state_i[geometry_state_pkg::ENDED]) << card_map_pkg::BIT_STATUS_ENDED |
+      32'(fault != 32'd0) << card_map_pkg::BIT_STATUS_FAULTED |
       32'(refused != '0) << card_map_pkg::BIT_STATUS_REFUSED |
       32'(snapshotting_i) << card_map_pkg::BIT_STATUS_SNAPSHOT |
       32'(incomplete_i) << card_map_pkg::BIT_STATUS_INCOMPLETE |
-      32'(motion_i[5]) << card_map_pkg::BIT_STATUS_STOPPING |
-      32'(low_i[0]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
-      32'(low_i[1]) << card_map_pkg::BIT_STATUS_FEED_LOW |
-      32'(late_i[32]) << card_map_pkg::BIT_STATUS_UNDERRUN |
-      32'(io_i[64]) << card_map_pkg::BIT_STATUS_PROBED |
-      32'(io_i[65]) << card_map_pkg::BIT_STATUS_PROBE_MISSED |
-      32'(io_i[66]) << card_map_pkg::BIT_STATUS_WAITING |
-      32'(late_i[65]) << card_map_pkg::BIT_STATUS_STALE;
+      32'(time_state_i[time_state_pkg::STOPPING]) << card_map_pkg::BIT_STATUS_STOPPING |
+      32'(queue_state_i[queue_state_pkg::GEOMETRY_LOW]) << card_map_pkg::BIT_STATUS_GEOMETRY_LOW |
+      32'(queue_state_i[queue_state_pkg::FEED_LOW]) << card_map_pkg::BIT_STATUS_FEED_LOW |
+      32'(time_state_i[time_state_pkg::UNDERRUN]) << card_map_pkg::BIT_STATUS_UNDERRUN |
+      32'(pins_state_i[pins_state_pkg::PROBED]) << card_map_pkg::BIT_STATUS_PROBED |
+      32'(pins_state_i[pins_state_pkg::PROBE_MISSED]) << card_map_pkg::BIT_STATUS_PROBE_MISSED |
+      32'(geometry_state_i[geometry_state_pkg::WAITING]) << card_map_pkg::BIT_STATUS_WAITING |
+      32'(geometry_state_i[geometry_state_pkg::STALE]) << card_map_pkg::BIT_STATUS_STALE;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin
-      case (access_i[5:2])
+      case (address[5:2])
         card_map_pkg::ADDR_STATUS[5:2]: begin
           data_o <= status_o;
-          data_o[card_map_pkg::BIT_STATUS_REFUSED] <= refused[access_i[13:12]];
+          data_o[card_map_pkg::BIT_STATUS_REFUSED] <= refused[port];
         end
-        card_map_pkg::ADDR_FAULT[5:2]: data_o <= fault_i;
-        card_map_pkg::ADDR_REFUSAL[5:2]: data_o <= {4'd0, refusal[28*access_i[13:12]+:28]};
-        card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_o <= {16'd0, room_i[31:16]};
-        card_map_pkg::ADDR_FEED_ROOM[5:2]: data_o <= {16'd0, room_i[15:0]};
-        card_map_pkg::ADDR_GEOMETRY_BEGUN[5:2]: data_o <= begun_i[63:32];
-        card_map_pkg::ADDR_INPUTS[5:2]: data_o <= {16'd0, io_i[15:0]};
-        card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, io_i[31:16]};
-        card_map_pkg::ADDR_MARKS[5:2]: data_o <= io_i[63:32];
-        card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= begun_i[31:0];
+        card_map_pkg::ADDR_FAULT[5:2]: data_o <= fault;
+        card_map_pkg::ADDR_REFUSAL[5:2]: data_o <= {4'd0, refusal[28*port+:28]};
+        card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_o <= {16'd0, queue_state_pkg::geometry_room(queue_state_i)};
+        card_map_pkg::ADDR_FEED_ROOM[5:2]: data_o <= {16'd0, queue_state_pkg::feed_room(queue_state_i)};
+        card_map_pkg::ADDR_GEOMETRY_BEGUN[5:2]: data_o <= geometry_state_pkg::geometry_begun(geometry_state_i);
+        card_map_pkg::ADDR_INPUTS[5:2]: data_o <= {16'd0, pins_state_pkg::inputs(pins_state_i)};
+        card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, pins_state_pkg::outputs(pins_state_i)};
+        card_map_pkg::ADDR_MARKS[5:2]: data_o <= pins_state_pkg::marks(pins_state_i);
+        card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= time_state_pkg::feed_begun(time_state_i);
         default:
-        if (Engines[card_map_pkg::ENGINE_STREAMING] && access_i[5:2] == card_map_pkg::ADDR_STALE_TICKS[5:2])
-          data_o <= late_i[64:33];
-        else data_o <= late_i[31:0];
+        if (Engines[card_map_pkg::ENGINE_STREAMING] && address[5:2] == card_map_pkg::ADDR_STALE_TICKS[5:2])
+          data_o <= geometry_state_pkg::stale_ticks(geometry_state_i);
+        else data_o <= time_state_pkg::underruns(time_state_i);
       endcase
     end
   end
@@ -116,30 +116,31 @@ module register_live #(
 
   always_ff @(posedge clk_i) begin
     irq_o <= ((status_o ^ (32'd1 << card_map_pkg::BIT_STATUS_BUSY)) & enable_q) != '0;
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_IRQ_ENABLE[9:2]) enable_q <= setting_i[31:0];
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_IRQ_ENABLE)) enable_q <= setting_bus_pkg::data(setting_i);
     if (rst_i) begin
       irq_o <= 1'b0;
       enable_q <= card_map_pkg::RESET_IRQ_ENABLE;
     end
   end
 
-  logic [31:0] chain;
+  logic [snapshot_pkg::WIDTH-1:0] behind_fault;
 
   snapshot_slice #(
       .Width(16)
   ) i_fault (
-      .*,
-      .value_i(fault_i[15:0]),
-      .chain_i(32'd0),
-      .chain_o(chain)
+      .clk_i,
+      .snapshot_i,
+      .value_i(fault[15:0]),
+      .snapshot_o(behind_fault)
   );
 
   snapshot_slice #(
       .Width(18)
   ) i_status (
-      .*,
+      .clk_i,
       .value_i(status_o[17:0] & ~(18'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
-      .chain_i(chain)
+      .snapshot_i(behind_fault),
+      .snapshot_o
   );
 
 endmodule

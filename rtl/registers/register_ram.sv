@@ -7,16 +7,16 @@
 module register_ram #(
     parameter int Axes = 4  // 1 to 8
 ) (
-    input  wire logic              clk_i,
-    input  wire logic              rst_i,
-    input  wire logic [     511:0] constants_i,   // what parameters and straps decide, by address
-    input  wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
-    input  wire logic [      40:0] setting_i,     // {write, address, data}
-    input  wire logic [      40:0] snapshot_i,
-    input  wire logic [       7:0] clocks_i,      // since reset, the low byte
-    input  wire logic [       7:0] address_i,
-    output logic                   writing_o,
-    output logic      [      31:0] data_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [card_constants_pkg::WIDTH-1:0] constants_i,
+    input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] store_i,  // a word of a snapshot
+    input wire logic [7:0] clocks_i,  // since reset, the low byte
+    input wire logic [7:0] address_i,
+    output logic writing_o,
+    output logic [31:0] data_o
 );
 
   localparam logic [7:0] FIRST_MODE = card_map_pkg::ADDR_MODE[9:2];
@@ -35,6 +35,19 @@ module register_ram #(
     if (rst_i) resetting_q <= 1'b1;
   end
 
+  logic setting;
+  logic snapshot;
+  logic [9:0] setting_word;
+  logic [9:0] store_word;
+
+  assign setting = setting_i[setting_bus_pkg::SET];
+  assign snapshot = store_i[setting_bus_pkg::SET];
+  assign setting_word = setting_bus_pkg::word(setting_i);
+  assign store_word = setting_bus_pkg::word(store_i);
+
+  logic unused;  // the RAM has the first 256 words of the map
+  assign unused = &{1'b0, setting_word[9:8], store_word[9:8]};
+
   // The write port, registered: those who write take turns, and give 0 when it is not theirs.
   always_ff @(posedge clk_i) begin : p_store
     logic [ 7:0] swept;
@@ -47,16 +60,16 @@ module register_ram #(
     if (resetting_q) begin
       swept = clocks_i;
       reset_value = card_map_pkg::register_reset({2'b00, swept});
-      if (swept < 8'd16) reset_value = reset_value | constants_i[32*swept[3:0]+:32];
+      if (swept < 8'd16) reset_value = reset_value | card_constants_pkg::word(constants_i, swept[3:0]);
       first_inverted  = 8'(idle_level_i[Axes-1:0]);
       second_inverted = 8'(idle_level_i[2*Axes-1:Axes]);
       if ((swept & ~AXIS_SLOTS) == FIRST_MODE) begin
         reset_value[3:2] = {second_inverted[swept[5:3]], first_inverted[swept[5:3]]};
       end
     end
-    store_q <= setting_i[40] || snapshot_i[40] || resetting_q;
-    store_address_q <= {8{setting_i[40]}} & setting_i[39:32] | snapshot_i[39:32] | swept;
-    store_data_q <= {32{setting_i[40]}} & setting_i[31:0] | snapshot_i[31:0] | reset_value;
+    store_q <= setting || snapshot || resetting_q;
+    store_address_q <= {8{setting}} & setting_word[7:0] | store_word[7:0] | swept;
+    store_data_q <= {32{setting}} & setting_bus_pkg::data(setting_i) | setting_bus_pkg::data(store_i) | reset_value;
   end
 
   (* no_rw_check *)

@@ -11,17 +11,18 @@
 module snapshot_writer #(
     parameter int Axes = 4  // 1 to 8
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        host_i,      // events: a snapshot is wanted
-    input  wire logic        stop_i,
-    input  wire logic        probe_i,
-    input  wire logic        mark_i,
-    input  wire logic [31:0] chain_i,
-    output logic      [ 1:0] snapshot_o,  // {shift, strobe}
-    output logic             active_o,    // from the strobe until the last word is in the RAM
-    output logic      [ 7:0] clocks_o,    // since reset, two clocks late: the low byte
-    output logic      [40:0] store_o      // {write, address, data}, combinational; 0 when there is nothing to write
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic host_i,  // events: a snapshot is wanted
+    input wire logic stop_i,
+    input wire logic probe_i,
+    input wire logic mark_i,
+    input wire logic [31:0] word_i,  // what the chain brings
+    output logic strobe_o,
+    output logic shift_o,
+    output logic active_o,  // from the strobe until the last word is in the RAM
+    output logic [7:0] clocks_o,  // since reset, two clocks late: the low byte
+    output logic [setting_bus_pkg::WIDTH-1:0] store_o  // combinational; 0 when there is nothing to write
 );
 
   localparam logic [3:0] FAULT = card_map_pkg::IN_AREA_FAULT[5:2];
@@ -73,11 +74,11 @@ module snapshot_writer #(
 
   always_ff @(posedge clk_i) begin
     if (breaks || active_o || host_i) begin
-      snapshot_o[0] <= breaks || begin_host;
-      settle_q <= snapshot_o[0] && !breaks;
-      last_q <= write_q && word_q == FAULT && !breaks;
-      host_q <= host_i || (host_q && !(last_q && for_host && !breaks));
-      mark_q <= begin_first ? mark_i || mark_q || (active_o && area_q == MARK) : (mark_i || mark_q) && !begin_mark;
+      strobe_o <= breaks || begin_host;
+      settle_q <= strobe_o && !breaks;
+      last_q   <= write_q && word_q == FAULT && !breaks;
+      host_q   <= host_i || (host_q && !(last_q && for_host && !breaks));
+      mark_q   <= begin_first ? mark_i || mark_q || (active_o && area_q == MARK) : (mark_i || mark_q) && !begin_mark;
       if (settle_q) begin
         write_q <= 1'b1;
         word_q  <= TIME_LO;
@@ -87,36 +88,37 @@ module snapshot_writer #(
           FIRST_POSITION: word_q <= GEOMETRY_BEGUN;
           default: word_q <= word_q - 4'd1;
         endcase
-        if (word_q == TIME_HI) snapshot_o[1] <= 1'b1;
+        if (word_q == TIME_HI) shift_o <= 1'b1;
         if (word_q == FAULT) begin
           write_q <= 1'b0;
-          snapshot_o[1] <= 1'b0;
+          shift_o <= 1'b0;
         end
       end
       if (last_q) active_o <= 1'b0;
       if (breaks || begin_host) begin
         active_o <= 1'b1;
-        area_q <= stop_i ? STOP : probe_i ? PROBE : begin_mark ? MARK : SNAP;
-        again_q <= active_o;
-        write_q <= 1'b0;
-        snapshot_o[1] <= 1'b0;
+        area_q   <= stop_i ? STOP : probe_i ? PROBE : begin_mark ? MARK : SNAP;
+        again_q  <= active_o;
+        write_q  <= 1'b0;
+        shift_o  <= 1'b0;
       end
     end
     if (rst_i) begin
-      snapshot_o <= 2'b00;
+      strobe_o <= 1'b0;
+      shift_o  <= 1'b0;
       settle_q <= 1'b0;
-      write_q <= 1'b0;
-      last_q <= 1'b0;
-      host_q <= 1'b0;
-      mark_q <= 1'b0;
+      write_q  <= 1'b0;
+      last_q   <= 1'b0;
+      host_q   <= 1'b0;
+      mark_q   <= 1'b0;
       active_o <= 1'b0;
     end
   end
 
   logic [31:0] data;
 
-  assign data = word_q == TIME_LO ? time_q[31:0] : word_q == TIME_HI ? time_q[63:32] : chain_i;
-  assign store_o = write_q ? {1'b1, area_q, word_q, data} : '0;
+  assign data = word_q == TIME_LO ? time_q[31:0] : word_q == TIME_HI ? time_q[63:32] : word_i;
+  assign store_o = write_q ? setting_bus_pkg::pack(1'b1, {2'd0, area_q, word_q}, data) : '0;
 
 endmodule
 `default_nettype wire

@@ -11,26 +11,26 @@ module stop_control #(
     parameter int          Axes    = 4,
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic            clk_i,
-    input  wire logic            rst_i,
-    input  wire logic [    40:0] setting_i,
-    input  wire logic [Axes-1:0] step_fault_i,
-    input  wire logic            mismatch_i,
-    input  wire logic            incomplete_i,
-    input  wire logic            missing_i,     // position streaming
-    input  wire logic            abort_i,
-    input  wire logic [    31:0] clear_i,       // ones written to FAULT
-    input  wire logic            at_rest_i,     // the ratio is 0
-    input  wire logic            moving_i,      // pieces are giving ticks
-    input  wire logic            fixed_i,       // the present one is fixed
-    input  wire logic            underrun_i,    // what is queued ends: neither a fault nor a cut
-    input  wire logic            probe_i,       // a probe has tripped: likewise
-    output logic      [    31:0] fault_o,
-    output logic                 hold_o,        // the time base slows down to rest
-    output logic                 cut_o,
-    output logic                 stop_o,        // the first cause of a stop
-    output logic                 stopping_o,
-    output logic                 closed_o       // no command and no START is taken
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic [Axes-1:0] step_fault_i,
+    input wire logic mismatch_i,
+    input wire logic incomplete_i,
+    input wire logic missing_i,  // position streaming
+    input wire logic abort_i,
+    input wire logic [31:0] clear_i,  // ones written to FAULT
+    input wire logic at_rest_i,  // the ratio is 0
+    input wire logic moving_i,  // pieces are giving ticks
+    input wire logic fixed_i,  // the present one is fixed
+    input wire logic underrun_i,  // what is queued ends: neither a fault nor a cut
+    input wire logic probe_i,  // a probe has tripped: likewise
+    output logic [31:0] fault_o,
+    output logic hold_o,  // the time base slows down to rest
+    output logic cut_o,
+    output logic stop_o,  // the first cause of a stop
+    output logic stopping_o,
+    output logic closed_o  // no command and no START is taken
 );
   typedef enum logic [1:0] {
     RUN,
@@ -53,7 +53,9 @@ module stop_control #(
   logic   [Faults-1:0] ramped_q;  // causes whose reaction is a ramp
   logic                any;
   logic                immediate;
+  logic   [      31:0] data;
 
+  assign data = setting_bus_pkg::data(setting_i);
   assign any = cause != '0;
   assign stays = hold_q && (stays_q || !moving_i || at_rest_i);
   assign immediate = (cause & ~ramped_q) != '0;
@@ -77,9 +79,8 @@ module stop_control #(
   end
 
   always_ff @(posedge clk_i) begin
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_HOLD[9:2]) hold_q <= setting_i[0];
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_STOP_REACTION[9:2])
-      ramped_q <= setting_i[Faults-1:0] & REACTIONS;
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_HOLD)) hold_q <= data[0];
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_STOP_REACTION)) ramped_q <= data[Faults-1:0] & REACTIONS;
     fault_q  <= (fault_q & ~clear_i[Faults-1:0]) | cause;
     state_q  <= state_d;
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
@@ -103,7 +104,7 @@ module stop_control #(
   assign stopping_o = state_q == RAMP;
 
   logic unused;  // absent axes and faults that are not built
-  assign unused = &{1'b0, setting_i[31:Faults], clear_i};
+  assign unused = &{1'b0, data[31:Faults], clear_i};
 endmodule
 
 `default_nettype wire

@@ -19,36 +19,37 @@
 `default_nettype none
 
 module feed_generator (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        clear_i,
-    input  wire logic        enable_i,
-    input  wire logic        freeze_i,
-    input  wire logic [19:0] load_i,      // {valid, target, word}
-    input  wire logic        swap_i,
-    input  wire logic [ 1:0] snapshot_i,
-    input  wire logic [31:0] chain_i,
-    output logic      [31:0] chain_o,
-    output logic             tick_o,
-    output logic      [31:0] rate_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic clear_i,
+    input wire logic enable_i,
+    input wire logic freeze_i,
+    input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
+    input wire logic swap_i,
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
+    output logic tick_o,
+    output logic [31:0] rate_o
 );
   localparam int Word = 4;
   // 64 fraction bits and a nibble: +-8.
   localparam int Width = 68;
   localparam logic [4:0] LAST_STEP = 5'd16;
 
+  logic [15:0] word;
   logic load_rate, load_floor, load_acceleration, load_jerk;
-  assign load_rate = load_i[19] && load_i[18:16] == load_target_pkg::FEED_RATE;
-  assign load_floor = load_i[19] && load_i[18:16] == load_target_pkg::FEED_FLOOR;
-  assign load_acceleration = load_i[19] && load_i[18:16] == load_target_pkg::FEED_ACCELERATION;
-  assign load_jerk = load_i[19] && load_i[18:16] == load_target_pkg::FEED_JERK;
+  assign word = feed_load_pkg::word(load_i);
+  assign load_rate = feed_load_pkg::to(load_i, load_target_pkg::FEED_RATE);
+  assign load_floor = feed_load_pkg::to(load_i, load_target_pkg::FEED_FLOOR);
+  assign load_acceleration = feed_load_pkg::to(load_i, load_target_pkg::FEED_ACCELERATION);
+  assign load_jerk = feed_load_pkg::to(load_i, load_target_pkg::FEED_JERK);
 
   // The next piece's first slope and floor.
   logic [63:0] next_rate_q;
   logic [31:0] next_floor_q;
   always_ff @(posedge clk_i) begin
-    if (load_rate) next_rate_q <= {load_i[15:0], next_rate_q[63:16]};
-    if (load_floor) next_floor_q <= {load_i[15:0], next_floor_q[31:16]};
+    if (load_rate) next_rate_q <= {word, next_rate_q[63:16]};
+    if (load_floor) next_floor_q <= {word, next_floor_q[31:16]};
   end
 
   // Enabled clocks of the piece, modulo 32, and the moments at which the two parts of the slope are taken from R.
@@ -122,14 +123,14 @@ module feed_generator (
       rate_high_q <= {rate_sum[Word-1:0], rate_high_q[Width-33:Word]};
     end
     if (rotate_q || load_acceleration) begin
-      acceleration_top_q <= rotate_q ? acceleration_sum[Word-1:0] : {Word{load_i[15]}};
+      acceleration_top_q <= rotate_q ? acceleration_sum[Word-1:0] : {Word{word[15]}};
       if (rotate_q) acceleration_q <= {acceleration_top_q, acceleration_q[63:Word]};
-      else acceleration_q <= {load_i[15:0], acceleration_q[63:16]};
+      else acceleration_q <= {word, acceleration_q[63:16]};
     end
     if (rotate_q || load_jerk) begin
-      jerk_top_q <= rotate_q ? jerk_q[Word-1:0] : {Word{load_i[15]}};
+      jerk_top_q <= rotate_q ? jerk_q[Word-1:0] : {Word{word[15]}};
       if (rotate_q) jerk_q <= {jerk_top_q, jerk_q[63:Word]};
-      else jerk_q <= {load_i[15:0], jerk_q[63:16]};
+      else jerk_q <= {word, jerk_q[63:16]};
     end
 
     // Eight nibbles: after the comparison the floor is back in its place.
@@ -212,8 +213,10 @@ module feed_generator (
   assign rate_o = slope_high_q;
 
   snapshot_slice rate (
-      .*,
-      .value_i(rate_o)
+      .clk_i,
+      .snapshot_i,
+      .value_i(rate_o),
+      .snapshot_o
   );
 endmodule
 

@@ -7,37 +7,32 @@
 module feed_sequencer #(
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
     // queue
-    input  wire logic        empty_i,
-    input  wire logic [15:0] word_i,
-    output logic             read_o,
+    input wire logic empty_i,
+    input wire logic [15:0] word_i,
+    output logic read_o,
     // ticks
-    input  wire logic        take_i,
-    input  wire logic        direct_i,      // a direct move is under way
-    input  wire logic        wait_i,        // no piece begins
-    input  wire logic        streaming_i,
-    input  wire logic        taking_i,      // a path takes ticks
-    input  wire logic [ 1:0] drop_i,        // {commands up to PROBE_END are dropped, event: the piece ends here}
-    input  wire logic [ 2:0] barrier_i,     // {done, counts, begins}
-    output logic             at_barrier_o,
-    output logic             runs_o,        // a piece gives ticks, or a decoded one waits (combinational)
-    output logic             active_o,      // a piece gives ticks
-    output logic             decoded_o,     // a piece waits (combinational)
-    output logic             spent_o,       // beyond its own
-    output logic             moving_o,      // and has, or the one before it in one go
-    output logic      [ 1:0] class_o,       // of the piece that was swapped in last
-    output logic             idle_o,        // nothing read or decoded
+    input wire logic take_i,
+    input wire logic wait_i,  // no piece begins
+    input wire logic [path_pkg::WIDTH-1:0] path_i,
+    output logic at_barrier_o,
+    output logic runs_o,  // a piece gives ticks, or a decoded one waits (combinational)
+    output logic active_o,  // a piece gives ticks
+    output logic decoded_o,  // a piece waits (combinational)
+    output logic spent_o,  // beyond its own
+    output logic moving_o,  // and has, or the one before it in one go
+    output logic [1:0] class_o,  // of the piece that was swapped in last
+    output logic idle_o,  // nothing read or decoded
     // feed generator
-    output logic             swap_o,
-    output logic      [19:0] load_o,
+    output logic swap_o,
+    output logic [feed_load_pkg::WIDTH-1:0] load_o,
     // what began
-    input  wire logic [ 1:0] snapshot_i,
-    input  wire logic [31:0] chain_i,
-    output logic      [31:0] chain_o,
-    output logic      [31:0] begun_o
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
+    output logic [31:0] begun_o
 );
   logic piece;
   logic [1:0] piece_class;
@@ -49,66 +44,90 @@ module feed_sequencer #(
   logic last;
   logic ending;
   logic goes_on;
+  logic drops;
+  logic halt;
 
+  assign drops     = path_i[path_pkg::DROP];
+  assign halt      = path_i[path_pkg::HALT];
   assign decoded_o = valid && piece;
-  assign dropped   = valid && drop_i[1] && !is_probe_end;
+  assign dropped   = valid && drops && !is_probe_end;
   assign ending    = take_i && last && !spent_o;
-  assign swap      = decoded_o && !wait_i && !drop_i[1] && (!active_o || spent_o || ending);
-  assign goes_on   = streaming_i && (ending ? active_o : spent_o && taking_i) && !swap;
+  assign swap      = decoded_o && !wait_i && !drops && (!active_o || spent_o || ending);
+  assign goes_on   = path_i[path_pkg::STREAMING] && (ending ? active_o : spent_o && path_i[path_pkg::TAKING]) && !swap;
   assign runs_o    = active_o || decoded_o;
 
   feed_decoder #(
       .Engines(Engines)
   ) decoder (
-      .*,
-      .pop_i      (swap || barrier_i[2] || dropped),
-      .active_i   (active_o),
-      .piece_o    (piece),
-      .class_o    (piece_class),
-      .barrier_o  (is_barrier),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .pop_i(swap || path_i[path_pkg::BARRIER_DONE] || dropped),
+      .active_i(active_o),
+      .empty_i,
+      .word_i,
+      .read_o,
+      .load_o,
+      .piece_o(piece),
+      .class_o(piece_class),
+      .barrier_o(is_barrier),
       .probe_end_o(is_probe_end),
-      .valid_o    (valid)
+      .idle_o,
+      .valid_o(valid)
   );
 
   tick_counter ticks (
-      .*,
-      .next_i ({load_o[19] && load_o[18:16] == load_target_pkg::FEED_TICKS, load_o[15:0]}),
+      .clk_i,
+      .rst_i,
+      .next_i (feed_load_pkg::to(load_o, load_target_pkg::FEED_TICKS)),
+      .word_i (feed_load_pkg::word(load_o)),
       .count_o(),
       .zero_o (),
-      .take_i (take_i && !spent_o),
       .load_i (swap),
+      .take_i (take_i && !spent_o),
       .last_o (last)
   );
 
   // A barrier that had begun has counted.
+  logic barrier_under_way;
+  assign barrier_under_way = path_i[path_pkg::BARRIER_COUNTS] || path_i[path_pkg::BARRIER_DONE];
+
   begun_counter begun (
-      .*,
-      .begin_i(swap_o || barrier_i[0] || (dropped && barrier_i[2:1] == 2'd0))
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .begin_i(swap_o || path_i[path_pkg::BARRIER_BEGINS] || (dropped && !barrier_under_way)),
+      .snapshot_i,
+      .snapshot_o,
+      .begun_o
   );
 
   always_ff @(posedge clk_i) begin
-    swap_o       <= swap && !cut_i && !rst_i;
-    at_barrier_o <= valid && is_barrier && !dropped && !active_o && !barrier_i[2] && !cut_i && !rst_i;
-    if (rst_i || cut_i || drop_i[0]) active_o <= 1'b0;
+    swap_o <= swap && !cut_i && !rst_i;
+    at_barrier_o <= valid && is_barrier && !dropped && !active_o && !path_i[path_pkg::BARRIER_DONE] && !cut_i && !rst_i;
+    if (rst_i || cut_i || halt) active_o <= 1'b0;
     else if (swap) active_o <= 1'b1;
     else if ((ending || spent_o) && !goes_on) active_o <= 1'b0;
-    spent_o <= goes_on && !cut_i && !drop_i[0] && !rst_i;
-    if (rst_i || cut_i || drop_i[0]) moving_o <= 1'b0;
+    spent_o <= goes_on && !cut_i && !halt && !rst_i;
+    if (rst_i || cut_i || halt) moving_o <= 1'b0;
     else if (take_i || spent_o) moving_o <= active_o && (swap || goes_on || !(ending || spent_o));
   end
 
   // A direct move has no pieces: it runs as feed, and so does what comes after a cut.
   if (Engines[card_map_pkg::ENGINE_CLASSES]) begin : gen_classes
     always_ff @(posedge clk_i) begin
-      if (rst_i || cut_i || drop_i[0] || direct_i) class_o <= 2'(card_map_pkg::CLASS_FEED);
+      if (rst_i || cut_i || halt || path_i[path_pkg::DIRECT]) class_o <= 2'(card_map_pkg::CLASS_FEED);
       else if (swap) class_o <= piece_class;
     end
   end else begin : gen_no_classes
     assign class_o = 2'(card_map_pkg::CLASS_FEED);
 
     logic unused;
-    assign unused = &{1'b0, piece_class, direct_i};
+    assign unused = &{1'b0, piece_class};
   end
+
+  logic unused_path;  // what concerns gate and stops
+  assign unused_path = &{1'b0, path_i};
 endmodule
 
 `default_nettype wire

@@ -12,25 +12,30 @@
 module queued_ticks #(
     parameter int Reserve = 256
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic        forget_i,          // nothing counts as queued; what is on its way in goes on
-    input  wire logic [20:0] arrive_i,          // {drop, geometry {commit, write}, feed {commit, write}, halfword}
-    input  wire logic        take_i,
-    input  wire logic [ 1:0] word_i,            // of the pass
-    input  wire logic [13:0] inverted_limit_i,  // a word of the limit, inverted, a clock behind word_i
-    output logic             geometry_short_o,  // a clock after the limit's last word
-    output logic             feed_short_o,
-    output logic             covered_o,         // paths have all the ticks that pieces have, or more
-    output logic             at_rest_o,         // the last piece ends at rest
-    output logic             at_barrier_o       // what arrived last is a barrier
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic forget_i,  // nothing counts as queued; what is on its way in goes on
+    input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
+    input wire logic take_i,
+    input wire logic [1:0] word_i,  // of the pass
+    input wire logic [13:0] inverted_limit_i,  // a word of the limit, inverted, a clock behind word_i
+    output logic geometry_short_o,  // a clock after the limit's last word
+    output logic feed_short_o,
+    output logic covered_o,  // paths have all the ticks that pieces have, or more
+    output logic at_rest_o,  // the last piece ends at rest
+    output logic at_barrier_o  // what arrived last is a barrier
 );
   localparam logic [55:0] EMPTY = 56'd0 - 56'(Reserve);
 
-  logic drop, geometry_commit, geometry_write, feed_commit, feed_write;
+  logic geometry_commit, feed_commit, comes, ends;
+  logic [15:0] halfword;
   logic reset;
-  assign {drop, geometry_commit, geometry_write, feed_commit, feed_write} = arrive_i[20:16];
+  assign geometry_commit = arrival_i[arrival_pkg::GEOMETRY_COMMIT];
+  assign feed_commit = arrival_i[arrival_pkg::FEED_COMMIT];
+  assign comes = arrival_pkg::writes(arrival_i);
+  assign ends = arrival_pkg::ends(arrival_i);
+  assign halfword = arrival_pkg::halfword(arrival_i);
   assign reset = rst_i || cut_i;
 
   // The command on its way in: header, three halfwords of count, the payload, of which a piece's stop distance counts.
@@ -40,13 +45,13 @@ module queued_ticks #(
   logic        zero_q;  // the stop distance is
   logic        adding_q;
   always_ff @(posedge clk_i) begin
-    if (reset || drop || geometry_commit || feed_commit) index_q <= 4'd0;
-    else if ((geometry_write || feed_write) && index_q[3:2] != 2'd3) index_q <= index_q + 4'd1;
-    if (geometry_write || feed_write) begin
-      if (index_q == 4'd1) count_q[15:0] <= arrive_i[15:0];
-      if (index_q == 4'd2) count_q[31:16] <= arrive_i[15:0];
-      if (index_q == 4'd3) count_q[39:32] <= arrive_i[7:0];
-      if (index_q[3:1] == STOP_DISTANCE[3:1]) zero_q <= arrive_i[15:0] == 16'd0 && (zero_q || !index_q[0]);
+    if (reset || ends) index_q <= 4'd0;
+    else if (comes && index_q[3:2] != 2'd3) index_q <= index_q + 4'd1;
+    if (comes) begin
+      if (index_q == 4'd1) count_q[15:0] <= halfword;
+      if (index_q == 4'd2) count_q[31:16] <= halfword;
+      if (index_q == 4'd3) count_q[39:32] <= halfword[7:0];
+      if (index_q[3:1] == STOP_DISTANCE[3:1]) zero_q <= halfword == 16'd0 && (zero_q || !index_q[0]);
     end else if (adding_q) count_q <= {14'd0, count_q[39:14]};
   end
 
@@ -116,12 +121,12 @@ module queued_ticks #(
   logic [15:0] paths_over, pieces_over, covered;  // {carry, difference, carry in's place}
   logic paths_over_q, pieces_over_q;
   logic [13:0] paths_word, pieces_word, inverted_limit;
-  logic begins, ends;
+  logic begins, closes;
   assign begins = word_i == 2'd1;
-  assign ends = word_i == 2'd0;
-  assign paths_word = {paths_q[55] ^ ends, paths_q[54:42]};
-  assign pieces_word = {pieces_q[55] ^ ends, pieces_q[54:42]};
-  assign inverted_limit = {inverted_limit_i[13] & ~ends, inverted_limit_i[12:0]};
+  assign closes = word_i == 2'd0;
+  assign paths_word = {paths_q[55] ^ closes, paths_q[54:42]};
+  assign pieces_word = {pieces_q[55] ^ closes, pieces_q[54:42]};
+  assign inverted_limit = {inverted_limit_i[13] & ~closes, inverted_limit_i[12:0]};
   assign paths_over = {1'b0, paths_word, 1'b1} + {1'b0, inverted_limit, !begins && paths_over_q};
   assign pieces_over = {1'b0, pieces_word, 1'b1} + {1'b0, inverted_limit, !begins && pieces_over_q};
   assign covered = {1'b0, paths_word, 1'b1} + {1'b0, ~pieces_word, begins || covered_o};

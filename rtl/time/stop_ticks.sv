@@ -9,32 +9,34 @@
 `default_nettype none
 
 module stop_ticks (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic [ 4:0] step_i,
-    input  wire logic [16:0] ratio_i,
-    input  wire logic        keep_i,       // the ratio taken stays
-    input  wire logic        twice_i,      // twice the product
-    input  wire logic        none_i,       // 0 instead: the card stands
-    input  wire logic [19:0] load_i,       // feed load
-    input  wire logic        swap_i,       // a piece began in the clock before
-    input  wire logic        from_rest_i,  // nothing was in force before it, or what ends at rest
-    input  wire logic        follow_i,
-    output logic             next_zero_o,  // the next piece's stop distance is 0: it ends at rest
-    output logic             ruled_o,      // the stop distance in force is not 0
-    output logic      [13:0] inverted_o    // a word, inverted: who compares with it needs it so
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic [4:0] step_i,
+    input wire logic [16:0] ratio_i,
+    input wire logic keep_i,  // the ratio taken stays
+    input wire logic twice_i,  // twice the product
+    input wire logic none_i,  // 0 instead: the card stands
+    input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
+    input wire logic swap_i,  // a piece began in the clock before
+    input wire logic from_rest_i,  // nothing was in force before it, or what ends at rest
+    input wire logic follow_i,
+    output logic next_zero_o,  // the next piece's stop distance is 0: it ends at rest
+    output logic ruled_o,  // the stop distance in force is not 0
+    output logic [13:0] inverted_o  // a word, inverted: who compares with it needs it so
 );
   logic        load;
   logic        half_q;  // the lower halfword is there
   logic        low_zero_q;
   logic [31:0] next_q;
-  assign load = load_i[19] && load_i[18:16] == load_target_pkg::FEED_STOP_DISTANCE;
+  logic [15:0] word;
+  assign load = feed_load_pkg::to(load_i, load_target_pkg::FEED_STOP_DISTANCE);
+  assign word = feed_load_pkg::word(load_i);
   always_ff @(posedge clk_i) begin
     if (load) begin
-      next_q <= {load_i[15:0], next_q[31:16]};
-      low_zero_q <= load_i[15:0] == 16'd0;
-      next_zero_o <= half_q && low_zero_q && load_i[15:0] == 16'd0;
+      next_q <= {word, next_q[31:16]};
+      low_zero_q <= word == 16'd0;
+      next_zero_o <= half_q && low_zero_q && word == 16'd0;
       half_q <= !half_q;
     end
     if (rst_i || cut_i) begin

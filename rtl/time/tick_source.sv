@@ -4,126 +4,154 @@
 module tick_source #(
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,
-    input  wire logic        hold_i,
-    input  wire logic [40:0] setting_i,
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,
+    input wire logic hold_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     // queue
-    input  wire logic        empty_i,
-    input  wire logic [15:0] word_i,
-    output logic             read_o,
-    // what is queued
-    // {a queue may have no room for the next command, drop, geometry {commit, write}, feed {commit, write}, halfword}
-    input  wire logic [21:0] arrive_i,
+    input wire logic empty_i,
+    input wire logic [15:0] word_i,
+    output logic read_o,
+    input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     // ticks
-    input  wire logic        direct_i,         // a direct move is under way
-    input  wire logic        taking_i,         // a path takes ticks
-    input  wire logic        ready_i,          // and so does its engine
-    output logic             take_o,           // combinational
-    output logic             tick_o,
-    output logic             swap_o,           // of the feed piece
-    input  wire logic        streaming_i,      // position streaming
-    // probe
-    input  wire logic [ 1:0] drop_i,           // {commands up to PROBE_END are dropped, event: the piece ends here}
-    input  wire logic        card_idle_i,      // nothing runs, is decoded or queued; up to four clocks late
+    input wire logic [path_pkg::WIDTH-1:0] path_i,
+    input wire logic ready_i,  // the path's engine takes ticks
+    output logic take_o,  // combinational
+    output logic tick_o,
+    output logic swap_o,  // of the feed piece
+    input wire logic card_idle_i,  // nothing runs, is decoded or queued; up to four clocks late
     // barriers
-    input  wire logic [ 2:0] barrier_i,        // {done, counts, begins}
-    output logic             at_barrier_o,
-    output logic             runs_o,           // a piece gives ticks, or a decoded one waits (combinational)
+    output logic at_barrier_o,
+    output logic runs_o,  // a piece gives ticks, or a decoded one waits (combinational)
     // under-run
-    output logic             underrun_hold_o,
-    output logic      [32:0] underrun_o,       // {it holds, or keeps a piece waiting; how often it has held}
+    output logic underrun_hold_o,
+    output logic underrun_o,  // it holds, or keeps a piece waiting
+    output logic [31:0] underruns_o,  // how often it has held
     // status
-    output logic             active_o,         // a piece gives ticks
-    output logic             moving_o,         // and has, or the one before it in one go
-    output logic             fixed_o,          // the piece's class is fixed (combinational)
-    output logic             idle_o,           // nothing runs, is decoded or queued (combinational)
-    output logic      [16:0] ratio_o,
-    output logic      [31:0] rate_o,
-    output logic      [31:0] begun_o,
-    input  wire logic [ 1:0] snapshot_i,
-    input  wire logic [31:0] chain_i,
-    output logic      [31:0] chain_o
+    output logic active_o,  // a piece gives ticks
+    output logic moving_o,  // and has, or the one before it in one go
+    output logic fixed_o,  // the piece's class is fixed (combinational)
+    output logic idle_o,  // nothing runs, is decoded or queued (combinational)
+    output logic [16:0] ratio_o,
+    output logic [31:0] rate_o,
+    output logic [31:0] begun_o,
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o
 );
-  logic [ 1:0] class_o;
-  logic        enable_o;
-  logic        feed_tick;
-  logic        feed_enable_o;
-  logic        feed_clear_o;
-  logic [19:0] load_o;
-  logic        decoder_idle;
-  logic        decoded_o;
-  logic        spent_o;
-  logic        wait_o;
-  logic [31:0] ratio_chain;
-  logic [31:0] rate_chain;
+  logic [                     1:0] piece_class;
+  logic                            enable;
+  logic                            feed_tick;
+  logic                            feed_enable;
+  logic                            feed_clear;
+  logic [feed_load_pkg::WIDTH-1:0] load;
+  logic                            decoder_idle;
+  logic                            decoded;
+  logic                            spent;
+  logic                            must_wait;
+  logic [ snapshot_pkg::WIDTH-1:0] behind_ratio;
+  logic [ snapshot_pkg::WIDTH-1:0] behind_rate;
 
   assign idle_o  = decoder_idle && empty_i && !active_o;
-  assign fixed_o = class_o == 2'(card_map_pkg::CLASS_FIXED);
+  assign fixed_o = piece_class == 2'(card_map_pkg::CLASS_FIXED);
 
   time_base #(
       .Engines(Engines)
   ) base (
-      .*,
-      .class_i(class_o),
-      .chain_o(ratio_chain)
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .hold_i,
+      .class_i(piece_class),
+      .snapshot_i,
+      .snapshot_o(behind_ratio),
+      .enable_o(enable),
+      .ratio_o
   );
 
   feed_sequencer #(
       .Engines(Engines)
   ) pieces (
-      .*,
-      .take_i (take_o),
-      .wait_i (wait_o),
-      .idle_o (decoder_idle),
-      .chain_i(rate_chain)
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .empty_i,
+      .word_i,
+      .read_o,
+      .take_i(take_o),
+      .wait_i(must_wait),
+      .path_i,
+      .at_barrier_o,
+      .runs_o,
+      .active_o,
+      .decoded_o(decoded),
+      .spent_o(spent),
+      .moving_o,
+      .class_o(piece_class),
+      .idle_o(decoder_idle),
+      .swap_o,
+      .load_o(load),
+      .snapshot_i(behind_rate),
+      .snapshot_o,
+      .begun_o
   );
 
   if (Engines[card_map_pkg::ENGINE_UNDERRUN_HOLD]) begin : gen_underrun_hold
     underrun_guard #(
         .Probing(Engines[card_map_pkg::ENGINE_PATH_COMMANDS])
     ) guard (
-        .*,
-        .cut_i      (cut_i || streaming_i),
-        .lost_i     (drop_i[0]),
-        .idle_i     (card_idle_i),
-        .arrive_i   (arrive_i[20:0]),
-        .full_i     (arrive_i[21]),
-        .load_i     (load_o),
-        .take_i     (take_o && active_o),
-        .swap_i     (swap_o),
-        .active_i   (active_o),
-        .ratio_i    (ratio_o),
-        .decoded_i  (decoded_o),
-        .hold_o     (underrun_hold_o),
-        .shown_o    (underrun_o[32]),
-        .underruns_o(underrun_o[31:0])
+        .clk_i,
+        .rst_i,
+        .cut_i(cut_i || path_i[path_pkg::STREAMING]),
+        .lost_i(path_i[path_pkg::HALT]),
+        .idle_i(card_idle_i),
+        .arrival_i,
+        .load_i(load),
+        .take_i(take_o && active_o),
+        .swap_i(swap_o),
+        .active_i(active_o),
+        .decoded_i(decoded),
+        .ratio_i(ratio_o),
+        .wait_o(must_wait),
+        .hold_o(underrun_hold_o),
+        .shown_o(underrun_o),
+        .underruns_o
     );
   end else begin : gen_no_underrun_hold
-    assign {wait_o, underrun_hold_o, underrun_o} = '0;
+    assign {must_wait, underrun_hold_o, underrun_o, underruns_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, arrive_i, decoded_o, card_idle_i};
+    assign unused = &{1'b0, arrival_i, decoded, card_idle_i};
   end
 
   feed_generator generator (
-      .*,
-      .clear_i (feed_clear_o),
-      .enable_i(feed_enable_o),
-      .freeze_i(spent_o),
-      .load_i  (load_o),
-      .swap_i  (swap_o),
-      .chain_i (ratio_chain),
-      .chain_o (rate_chain),
-      .tick_o  (feed_tick)
+      .clk_i,
+      .rst_i,
+      .clear_i(feed_clear),
+      .enable_i(feed_enable),
+      .freeze_i(spent),
+      .load_i(load),
+      .swap_i(swap_o),
+      .snapshot_i(behind_ratio),
+      .snapshot_o(behind_rate),
+      .tick_o(feed_tick),
+      .rate_o
   );
 
   tick_gate gate (
-      .*,
-      .enable_i     (enable_o),
-      .feed_tick_i  (feed_tick),
-      .feed_active_i(active_o)
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .enable_i(enable),
+      .feed_tick_i(feed_tick),
+      .feed_active_i(active_o),
+      .direct_i(path_i[path_pkg::DIRECT]),
+      .taking_i(path_i[path_pkg::TAKING]),
+      .ready_i,
+      .take_o,
+      .tick_o,
+      .feed_enable_o(feed_enable),
+      .feed_clear_o(feed_clear)
   );
 endmodule
 

@@ -12,16 +12,15 @@
 module time_base #(
     parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic [40:0] setting_i,
-    input  wire logic        hold_i,
-    input  wire logic [ 1:0] class_i,     // of the piece in force
-    input  wire logic [ 1:0] snapshot_i,
-    input  wire logic [31:0] chain_i,
-    output logic      [31:0] chain_o,
-    output logic             enable_o,
-    output logic      [16:0] ratio_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic hold_i,
+    input wire logic [1:0] class_i,  // of the piece in force
+    input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
+    output logic enable_o,
+    output logic [16:0] ratio_o
 );
   // Q1.28: 1 is 2^28. The candidate lies between -2^28 and 2^29 - 1, modulo 2^29.
   localparam logic [28:0] ONE = 29'h1000_0000;
@@ -31,9 +30,13 @@ module time_base #(
   logic [16:0] fixed_q;
   logic [16:0] target;
   logic [27:0] slew_q;
+  logic [31:0] data;
+
+  assign data = setting_bus_pkg::data(setting_i);
+
   always_ff @(posedge clk_i) begin
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_FEED[9:2]) feed_q <= setting_i[16:0];
-    if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_SLEW[9:2]) slew_q <= setting_i[27:0];
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_RATIO_FEED)) feed_q <= data[16:0];
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_SLEW)) slew_q <= data[27:0];
     if (rst_i) begin
       feed_q <= card_map_pkg::RESET_RATIO_FEED[16:0];
       slew_q <= card_map_pkg::RESET_SLEW[27:0];
@@ -42,8 +45,8 @@ module time_base #(
 
   if (Engines[card_map_pkg::ENGINE_CLASSES]) begin : gen_classes
     always_ff @(posedge clk_i) begin
-      if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_RAPID[9:2]) rapid_q <= setting_i[16:0];
-      if (setting_i[40] && setting_i[39:32] == card_map_pkg::ADDR_RATIO_FIXED[9:2]) fixed_q <= setting_i[16:0];
+      if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_RATIO_RAPID)) rapid_q <= data[16:0];
+      if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_RATIO_FIXED)) fixed_q <= data[16:0];
       if (rst_i) begin
         rapid_q <= card_map_pkg::RESET_RATIO_RAPID[16:0];
         fixed_q <= card_map_pkg::RESET_RATIO_FIXED[16:0];
@@ -114,12 +117,14 @@ module time_base #(
   snapshot_slice #(
       .Width(18)
   ) ratio (
-      .*,
-      .value_i({1'b0, ratio_o})
+      .clk_i,
+      .snapshot_i,
+      .value_i({1'b0, ratio_o}),
+      .snapshot_o
   );
 
   logic unused;
-  assign unused = &{1'b0, setting_i[31:28], ratio_sum[17:0], candidate_sum[16:0]};
+  assign unused = &{1'b0, data[31:28], ratio_sum[17:0], candidate_sum[16:0]};
 endmodule
 
 `default_nettype wire

@@ -12,23 +12,22 @@
 module underrun_guard #(
     parameter logic Probing = 1'b1  // 0: nothing is ever dropped
 ) (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic        cut_i,       // and where there is no rule: nothing is counted
-    input  wire logic        lost_i,      // event: what is queued will be dropped
-    input  wire logic        idle_i,      // nothing runs, is decoded or queued; up to four clocks late
-    input  wire logic [20:0] arrive_i,    // {drop, geometry {commit, write}, feed {commit, write}, halfword}
-    input  wire logic        full_i,      // a queue may have no room for the next command
-    input  wire logic [19:0] load_i,      // feed load
-    input  wire logic        take_i,      // a feed tick is taken
-    input  wire logic        swap_i,      // a piece began in the clock before
-    input  wire logic        active_i,    // a piece gives ticks
-    input  wire logic        decoded_i,   // a piece waits
-    input  wire logic [16:0] ratio_i,
-    output logic             wait_o,      // a piece that is decoded must not begin (combinational)
-    output logic             hold_o,
-    output logic             shown_o,     // holds, or keeps a piece waiting
-    output logic      [31:0] underruns_o
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic cut_i,  // and where there is no rule: nothing is counted
+    input wire logic lost_i,  // event: what is queued will be dropped
+    input wire logic idle_i,  // nothing runs, is decoded or queued; up to four clocks late
+    input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
+    input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
+    input wire logic take_i,  // a feed tick is taken
+    input wire logic swap_i,  // a piece began in the clock before
+    input wire logic active_i,  // a piece gives ticks
+    input wire logic decoded_i,  // a piece waits
+    input wire logic [16:0] ratio_i,
+    output logic wait_o,  // a piece that is decoded must not begin (combinational)
+    output logic hold_o,
+    output logic shown_o,  // holds, or keeps a piece waiting
+    output logic [31:0] underruns_o
 );
   localparam int Reserve = card_map_pkg::UNDERRUN_RESERVE_TICKS;
   localparam logic [4:0] LOOK = 5'd11;  // the stop distance that is taken now is judged
@@ -41,10 +40,12 @@ module underrun_guard #(
   logic geometry_short, feed_short, covered, at_rest, at_barrier;
   logic next_zero, ruled;
   logic standing;
+  logic full;
   logic ends_q;  // the piece in force ends at rest
   logic covered_q;  // all its ticks have their paths
   logic from_rest, from_rest_q;
   logic follow;
+  assign full = arrival_i[arrival_pkg::FULL];
   assign standing = ratio_i == 17'd0;
   assign from_rest = !active_i || ends_q;
   assign follow = !active_i || (ends_q && covered_q);
@@ -59,8 +60,8 @@ module underrun_guard #(
     logic [2:0] since_q;  // the last command came; 7: long ago
 
     always_ff @(posedge clk_i) begin
-      if (arrive_i[16] || arrive_i[18]) inside_q <= 1'b1;
-      if (arrive_i[20] || arrive_i[19] || arrive_i[17]) begin
+      if (arrival_pkg::writes(arrival_i)) inside_q <= 1'b1;
+      if (arrival_pkg::ends(arrival_i)) begin
         inside_q <= 1'b0;
         since_q  <= 3'd0;
       end else if (since_q != 3'd7) since_q <= since_q + 3'd1;
@@ -85,28 +86,37 @@ module underrun_guard #(
   queued_ticks #(
       .Reserve(Reserve)
   ) queued (
-      .*,
-      .forget_i        (lost),
-      .word_i          (step_q[1:0]),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .forget_i(lost),
+      .arrival_i,
+      .take_i,
+      .word_i(step_q[1:0]),
       .inverted_limit_i(inverted_limit),
       .geometry_short_o(geometry_short),
-      .feed_short_o    (feed_short),
-      .covered_o       (covered),
-      .at_rest_o       (at_rest),
-      .at_barrier_o    (at_barrier)
+      .feed_short_o(feed_short),
+      .covered_o(covered),
+      .at_rest_o(at_rest),
+      .at_barrier_o(at_barrier)
   );
 
   stop_ticks stop (
-      .*,
-      .step_i     (step_q),
-      .keep_i     (hold_o),
-      .twice_i    (hold_o),
-      .none_i     (standing && full_i),
+      .clk_i,
+      .rst_i,
+      .cut_i,
+      .step_i(step_q),
+      .ratio_i,
+      .keep_i(hold_o),
+      .twice_i(hold_o),
+      .none_i(standing && full),
+      .load_i,
+      .swap_i,
       .from_rest_i(from_rest_q),
-      .follow_i   (follow),
+      .follow_i(follow),
       .next_zero_o(next_zero),
-      .ruled_o    (ruled),
-      .inverted_o (inverted_limit)
+      .ruled_o(ruled),
+      .inverted_o(inverted_limit)
   );
 
   logic decoded_q;
@@ -121,8 +131,8 @@ module underrun_guard #(
     decoded_q   <= decoded_i;
     if (step_q == LOOK) judged_q <= decoded_q && follow;
     if (step_q == DECIDE) begin
-      hold_o <= short && (hold_o || !follow || (judged_q && full_i));
-      if (short && !hold_o && (!follow || (judged_q && full_i))) underruns_o <= underruns_o + 32'd1;
+      hold_o <= short && (hold_o || !follow || (judged_q && full));
+      if (short && !hold_o && (!follow || (judged_q && full))) underruns_o <= underruns_o + 32'd1;
       enough_q <= judged_q && !short;
       waits_q  <= judged_q && !active_i && short;
       if (covered && !unknown) covered_q <= 1'b1;

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "rtl_buses.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/model/card_model.hpp"
 #include "trammel/sim/lockstep.hpp"
@@ -48,43 +49,39 @@
 
 namespace trammel::sim {
 
-// The fields of observe_o, layout in docs/developer/architecture.md.
+// The fields of observe_o.
 template <unsigned kAxes, class Wide>
 class Observed {
  public:
   explicit Observed(const Wide& bits) : bits_(bits) {}
 
-  std::uint32_t tick() const { return field<0, 1>(); }
-  std::uint32_t path_tick() const { return field<1, 1>(); }
-  std::uint32_t path_swap() const { return field<2, 1>(); }
-  std::uint32_t feed_swap() const { return field<3, 1>(); }
-  std::uint32_t path_step() const { return field<4, kAxes>(); }
-  std::uint32_t path_dir() const { return field<4 + kAxes, kAxes>(); }
-  std::uint32_t position(unsigned axis) const { return word(kPosition + 32 * axis); }
-  std::uint32_t ratio() const { return field<kRatio, 17>(); }
-  std::uint32_t rate() const { return field<kRatio + 17, 32>(); }
-  std::uint32_t feed_begun() const { return field<kRatio + 49, 32>(); }
-  std::uint32_t geometry_begun() const { return field<kRatio + 81, 32>(); }
-  std::uint32_t fault() const { return field<kRatio + 113, 32>(); }
-  std::uint32_t status() const { return field<kRatio + 145, 32>(); }
-  std::uint32_t feed_room() const { return field<kRatio + 177, 16>(); }
-  std::uint32_t geometry_room() const { return field<kRatio + 193, 16>(); }
+  std::uint32_t tick() const { return field(bus::observe::kTick); }
+  std::uint32_t path_tick() const { return field(bus::observe::kPathTick); }
+  std::uint32_t path_swap() const { return field(bus::observe::kPathSwap); }
+  std::uint32_t feed_swap() const { return field(bus::observe::kFeedSwap); }
+  std::uint32_t path_step() const { return of_axes(bus::axis_observe::kStep); }
+  std::uint32_t path_dir() const { return of_axes(bus::axis_observe::kDir); }
+  std::uint32_t position(unsigned axis) const { return field(of_axis(axis, bus::axis_observe::kPosition)); }
+  std::uint32_t ratio() const { return field(bus::observe::kRatio); }
+  std::uint32_t rate() const { return field(bus::observe::kRate); }
+  std::uint32_t feed_begun() const { return field(bus::observe::kFeedBegun); }
+  std::uint32_t geometry_begun() const { return field(bus::observe::kGeometryBegun); }
+  std::uint32_t fault() const { return field(bus::observe::kFault); }
+  std::uint32_t status() const { return field(bus::observe::kStatus); }
+  std::uint32_t feed_room() const { return field(bus::observe::kFeedRoom); }
+  std::uint32_t geometry_room() const { return field(bus::observe::kGeometryRoom); }
 
  private:
-  static constexpr unsigned kPosition = 4 + 2 * kAxes;
-  static constexpr unsigned kRatio = kPosition + 32 * kAxes;
-
-  // 32 bits from bit `low` on; zeros beyond the port.
-  std::uint32_t word(unsigned low) const {
-    const unsigned place = low / 32;
-    const unsigned shift = low % 32;
-    const std::uint64_t high = place + 1 < sizeof(Wide) / sizeof(std::uint32_t) ? bits_[place + 1] : 0;
-    return static_cast<std::uint32_t>((high << 32 | bits_[place]) >> shift);
+  static constexpr bus::Field of_axis(unsigned axis, const bus::Field& field) {
+    return up(field, bus::observe::kWidth + bus::axis_observe::kWidth * axis);
   }
-  template <unsigned kLow, unsigned kWidth>
-  std::uint32_t field() const {
-    constexpr std::uint32_t kMask = kWidth == 32 ? ~0U : (1U << kWidth) - 1;
-    return word(kLow) & kMask;
+  // Of 32 bits at most.
+  std::uint32_t field(const bus::Field& place) const { return static_cast<std::uint32_t>(get(bits_, place)); }
+  // One bit of each axis.
+  std::uint32_t of_axes(const bus::Field& place) const {
+    std::uint32_t bits = 0;
+    for (unsigned axis = 0; axis < kAxes; ++axis) bits |= field(of_axis(axis, place)) << axis;
+    return bits;
   }
 
   const Wide& bits_;

@@ -219,13 +219,13 @@ TEST(ArcGenerator, LargestRadius) {
 class Rig {
  public:
   void load(const ChordFields& fields) {
-    send(load_target::kPlane, fields.state.clockwise ? 0x101 : 0x100, 1);
-    send(load_target::kShifts, static_cast<std::uint64_t>(fields.state.k | fields.state.m << 8), 1);
-    send(load_target::kState, static_cast<std::uint64_t>(fields.state.x), 4);
-    send(load_target::kState, static_cast<std::uint64_t>(fields.state.y), 4);
-    for (unsigned n = 0; n < 2; ++n) send(load_target::kIncrement + n, static_cast<std::uint64_t>(fields.first[n]), 3);
-    send(load_target::kClosing, static_cast<std::uint64_t>(fields.state.closing_x), 3);
-    send(load_target::kClosing, static_cast<std::uint64_t>(fields.state.closing_y), 3);
+    send(load_target::kChordPlane, fields.state.clockwise ? 0x101 : 0x100, 1);
+    send(load_target::kChordShifts, static_cast<std::uint64_t>(fields.state.k | fields.state.m << 8), 1);
+    send(load_target::kChordState, static_cast<std::uint64_t>(fields.state.x), 4);
+    send(load_target::kChordState, static_cast<std::uint64_t>(fields.state.y), 4);
+    for (unsigned n = 0; n < 2; ++n) send(load_target::increment(n), static_cast<std::uint64_t>(fields.first[n]), 3);
+    send(load_target::kChordClosing, static_cast<std::uint64_t>(fields.state.closing_x), 3);
+    send(load_target::kChordClosing, static_cast<std::uint64_t>(fields.state.closing_y), 3);
   }
 
   // Clocks from the start to ready.
@@ -260,7 +260,7 @@ class Rig {
  private:
   void send(unsigned target, std::uint64_t value, unsigned halfwords) {
     for (unsigned i = 0; i < halfwords; ++i) {
-      in_.load = {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value >> (16 * i))};
+      in_.load = {true, static_cast<std::uint16_t>(target), static_cast<std::uint16_t>(value >> (16 * i))};
       clock(false);
     }
     in_.load = {};
@@ -275,7 +275,7 @@ class Rig {
       in.swap = swap;
       in.active = true;
       in.chord = (out.swap >> n & 1) != 0;
-      in.load_increment = (out.load >> n & 1) != 0 || in_.load.to(load_target::kIncrement + n);
+      in.load_increment = (out.load >> n & 1) != 0 || in_.load.to(load_target::increment(n));
       in.word = (out.load >> n & 1) != 0 ? out.word : in_.load.word;
       axes_[n].clock(in);
       if (axes_[n].outputs().step) position[n] += axes_[n].outputs().dir ? -1 : 1;

@@ -25,7 +25,7 @@ void begin(Axis& axis, std::int64_t increment) {
   Axis::Inputs in;
   for (int i = 0; i < 3; ++i) {
     const auto word = static_cast<std::uint16_t>(static_cast<std::uint64_t>(increment) >> (16 * i));
-    in.load = {true, load_target::kIncrement + kAxis, word};
+    in.load = {true, load_target::increment(kAxis), word};
     axis.clock(in);
   }
   in.load.valid = false;
@@ -115,7 +115,7 @@ TEST(Axis, OnlyItsOwn) {
   }
   begin(axis, static_cast<std::int64_t>(PulseGenerator::kOne) / 2);
   Axis::Inputs in;
-  in.load = {true, load_target::kIncrement + kAxis + 1, 0xFFFF};
+  in.load = {true, load_target::increment(kAxis + 1), 0xFFFF};
   for (int i = 0; i < 3; ++i) axis.clock(in);
   in.load.valid = false;
   in.swap = in.active = true;

@@ -94,7 +94,7 @@ class DeviationRig {
  private:
   void shift(unsigned chain, std::uint16_t word) {
     Inputs in;
-    in.load = {true, static_cast<std::uint8_t>(chain), word};
+    in.load = {true, static_cast<std::uint16_t>(chain), word};
     block.clock(in);
   }
 };

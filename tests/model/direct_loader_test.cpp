@@ -106,13 +106,13 @@ void expect_loads(const Bench& bench, const Move& move, std::uint8_t mask) {
   std::vector<LoadWord> expected;
   const auto add = [&expected](unsigned chain, std::uint64_t value, int halfwords) {
     for (int i = 0; i < halfwords; ++i) {
-      expected.push_back({true, static_cast<std::uint8_t>(chain), static_cast<std::uint16_t>(value >> (16 * i))});
+      expected.push_back({true, static_cast<std::uint16_t>(chain), static_cast<std::uint16_t>(value >> (16 * i))});
     }
   };
   for (unsigned n = 0; n < 8; ++n) {
     if ((mask >> n & 1) == 0) continue;
-    add(target::kIncrement + n, move.negative[n] ? 0 - move.frequency[n] : move.frequency[n], 3);
-    add(target::kCount + n, move.count[n], 2);
+    add(target::increment(n), move.negative[n] ? 0 - move.frequency[n] : move.frequency[n], 3);
+    add(target::count(n), move.count[n], 2);
   }
   add(target::kTicks, move.length, 3);
   ASSERT_EQ(bench.loads.size(), expected.size());

@@ -294,7 +294,7 @@ class EightRig {
   explicit EightRig(const DeviationPath::State& state) {
     const auto shift = [this](unsigned chain, std::uint64_t word) {
       DeviationAccumulator::Inputs in;
-      in.load = {true, static_cast<std::uint8_t>(chain), static_cast<std::uint16_t>(word)};
+      in.load = {true, static_cast<std::uint16_t>(chain), static_cast<std::uint16_t>(word)};
       block.clock(in);
     };
     for (int i = 0; i < 5; ++i) {

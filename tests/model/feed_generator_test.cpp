@@ -93,7 +93,7 @@ TEST(FeedGenerator, AccelerationAndJerkComeAfterTheSwap) {
       for (int k = 0; k < 4; ++k) {
         FeedGenerator::Inputs in;
         in.enable = true;
-        in.load = {true, static_cast<std::uint8_t>(target),
+        in.load = {true, static_cast<std::uint16_t>(target),
                    static_cast<std::uint16_t>(static_cast<std::uint64_t>(value) >> (16 * k))};
         feed.clock(in);
       }

@@ -26,7 +26,7 @@ struct Piece {
 inline void shift(FeedGenerator& feed, unsigned target, std::uint64_t value, int halfwords) {
   for (int i = 0; i < halfwords; ++i) {
     FeedGenerator::Inputs in;
-    in.load = {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value >> (16 * i))};
+    in.load = {true, static_cast<std::uint16_t>(target), static_cast<std::uint16_t>(value >> (16 * i))};
     feed.clock(in);
   }
 }

@@ -15,7 +15,7 @@ constexpr std::int64_t kOne = std::int64_t{1} << 40;
 void load(PathEngines& engines, unsigned target, std::uint64_t value, int halfwords) {
   for (int i = 0; i < halfwords; ++i) {
     PathEngines::Inputs in;
-    in.load = {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value)};
+    in.load = {true, static_cast<std::uint16_t>(target), static_cast<std::uint16_t>(value)};
     value >>= 16;
     engines.clock(in);
   }

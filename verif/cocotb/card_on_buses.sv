@@ -33,11 +33,25 @@ module card_on_buses (
     output logic      [ 3:0] step,
     output logic      [ 3:0] dir
 );
-  logic [1:0] spi;
+  logic miso;
+  logic miso_enable;
+  logic [wishbone_request_pkg::WIDTH-1:0] request;
+  logic [wishbone_answer_pkg::WIDTH-1:0] answer;
   logic tx;
   logic irq;
   logic [3:0] outputs;
-  logic [34*4+212:0] observe;
+  logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*4-1:0] observe;
+
+  assign request[wishbone_request_pkg::CYC] = wb_cyc;
+  assign request[wishbone_request_pkg::STB] = wb_stb;
+  assign request[wishbone_request_pkg::WE] = wb_we;
+  assign request[wishbone_request_pkg::SEL+:4] = wb_sel;
+  assign request[wishbone_request_pkg::ADR+:12] = wb_adr;
+  assign request[wishbone_request_pkg::DAT+:32] = wb_datwr;
+  assign wb_ack = answer[wishbone_answer_pkg::ACK];
+  assign wb_err = answer[wishbone_answer_pkg::ERR];
+  assign wb_stall = answer[wishbone_answer_pkg::STALL];
+  assign wb_datrd = answer[wishbone_answer_pkg::DAT+:32];
 
   card_with_ports #(
       .AxiLite (1),
@@ -65,12 +79,15 @@ module card_on_buses (
       .rready_i(axi_rready),
       .rdata_o(axi_rdata),
       .rresp_o(axi_rresp),
-      .wishbone_i({wb_cyc, wb_stb, wb_we, wb_sel, wb_adr, wb_datwr}),
-      .wishbone_o({wb_ack, wb_err, wb_stall, wb_datrd}),
+      .wishbone_i(request),
+      .wishbone_o(answer),
       .rx_i(1'b1),
       .tx_o(tx),
-      .spi_i(3'b010),
-      .spi_o(spi),
+      .sck_i(1'b0),
+      .cs_n_i(1'b1),
+      .mosi_i(1'b0),
+      .miso_o(miso),
+      .miso_enable_o(miso_enable),
       .input_i(4'd0),
       .output_o(outputs),
       .step_o(step),

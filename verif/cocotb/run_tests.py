@@ -17,10 +17,10 @@ ROOT = HERE.parent.parent
 
 # (name, file, what stands there once, what stands there instead)
 SEEDED = [
-    ("axi_refusal_untold", "rtl/host/axi4_lite_port.sv", "write_error_q <= error_i;", "write_error_q <= 1'b0;"),
+    ("axi_refusal_untold", "rtl/host/axi4_lite_port.sv", "write_error_q <= answer_i[register_answer_pkg::ERROR];", "write_error_q <= 1'b0;"),
     ("axi_answer_dropped", "rtl/host/axi4_lite_port.sv", "if (rready_i) rvalid_o <= 1'b0;", "rvalid_o <= 1'b0;"),
-    ("wishbone_refusal_untold", "rtl/host/wishbone/wishbone_port.sv", "err_o <= ack_i && error_i &&", "err_o <= 1'b0 &&"),
-    ("answers_to_everybody", "rtl/host/port_arbiter.sv", "ack_i && port_q == 2'(p);", "ack_i;"),
+    ("wishbone_refusal_untold", "rtl/host/wishbone/wishbone_port.sv", "err_o <= ack && error &&", "err_o <= 1'b0 &&"),
+    ("answers_to_everybody", "rtl/host/port_arbiter.sv", "register_answer_pkg::only_if(answer_i, port_q == 2'(p));", "answer_i;"),
 ]
 
 

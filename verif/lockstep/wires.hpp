@@ -4,51 +4,71 @@
 #include <cstdint>
 #include <random>
 
+#include "rtl_buses.hpp"
 #include "trammel/model/buses.hpp"
 #include "trammel/model/underrun_guard.hpp"
+#include "trammel/model/wishbone_port.hpp"
 
 namespace trammel::lockstep {
 
-// {set, address[9:2], data}
 inline std::uint64_t wire(const model::Setting& setting) {
-  return std::uint64_t{setting.set} << 40 | std::uint64_t{setting.address >> 2 & 0xFF} << 32 | setting.data;
+  using namespace bus::setting_bus;
+  return in_place(kSet, setting.set) | in_place(kWord, setting.address >> 2) | in_place(kData, setting.data);
 }
 
-// {valid, target, halfword}; the feed load's targets have 3 bits, the load bus's 5.
+// The model's targets are {unit, target}.
 inline std::uint32_t load_wire(const model::LoadWord& load) {
-  return std::uint32_t{load.valid} << 21 | std::uint32_t{load.target} << 16 | load.word;
+  using namespace bus::load_bus;
+  constexpr bus::Field kPlace{kTarget.offset, kTarget.bits + kUnit.bits};
+  return static_cast<std::uint32_t>(in_place(kValid, load.valid) | in_place(kPlace, load.target) |
+                                    in_place(kWord, load.word));
 }
 inline std::uint32_t feed_wire(const model::LoadWord& load) {
-  return std::uint32_t{load.valid} << 19 | std::uint32_t{load.target} << 16 | load.word;
+  using namespace bus::feed_load;
+  return static_cast<std::uint32_t>(in_place(kValid, load.valid) | in_place(kTarget, load.target) |
+                                    in_place(kWord, load.word));
 }
 
-// {drop, geometry {commit, write}, feed {commit, write}, halfword}
-inline std::uint32_t arrive_wire(const model::UnderrunGuard::Arrival& a) {
-  return std::uint32_t{a.drop} << 20 | std::uint32_t{a.geometry_commit} << 19 | std::uint32_t{a.geometry_write} << 18 |
-         std::uint32_t{a.feed_commit} << 17 | std::uint32_t{a.feed_write} << 16 | a.halfword;
+inline std::uint64_t wishbone_wire(const model::WishbonePort::Inputs& master) {
+  using namespace bus::wishbone_request;
+  return in_place(kCyc, master.cyc) | in_place(kStb, master.stb) | in_place(kWe, master.we) |
+         in_place(kSel, master.sel) | in_place(kAdr, master.adr) | in_place(kDat, master.dat);
+}
+
+inline std::uint32_t arrival_wire(const model::UnderrunGuard::Arrival& a, bool full) {
+  using namespace bus::arrival;
+  return static_cast<std::uint32_t>(in_place(kFull, full) | in_place(kDrop, a.drop) |
+                                    in_place(kGeometryCommit, a.geometry_commit) |
+                                    in_place(kGeometryWrite, a.geometry_write) | in_place(kFeedCommit, a.feed_commit) |
+                                    in_place(kFeedWrite, a.feed_write) | in_place(kHalfword, a.halfword));
 }
 
 inline model::LoadWord halfword(unsigned target, std::uint64_t value, unsigned index) {
-  return {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
+  return {true, static_cast<std::uint16_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
 }
 
 // A word of the snapshot chain: takes its value at a strobe, what comes in at a shift. Unknown before either.
 class SnapshotWord {
  public:
-  void clock(std::uint32_t snapshot, std::uint32_t value, std::uint32_t chain, bool chain_known = true) {
-    if (snapshot == 0) return;
-    const bool strobe = (snapshot & 1) != 0;
-    word_ = strobe ? value : chain;
-    known_ = strobe || chain_known;
+  // `snapshot` is the chain as it comes in.
+  void clock(std::uint64_t snapshot, std::uint32_t value) {
+    clock(snapshot, value, static_cast<std::uint32_t>(get(snapshot, bus::snapshot::kWord)), true);
   }
   // The same behind another slice.
-  void clock(std::uint32_t snapshot, std::uint32_t value, const SnapshotWord& before) {
+  void clock(std::uint64_t snapshot, std::uint32_t value, const SnapshotWord& before) {
     clock(snapshot, value, before.word_, before.known_);
   }
   bool known() const { return known_; }
   std::uint32_t word() const { return word_; }
 
  private:
+  void clock(std::uint64_t snapshot, std::uint32_t value, std::uint32_t chain, bool chain_known) {
+    const bool strobe = get(snapshot, bus::snapshot::kStrobe) != 0;
+    if (!strobe && get(snapshot, bus::snapshot::kShift) == 0) return;
+    word_ = strobe ? value : chain;
+    known_ = strobe || chain_known;
+  }
+
   std::uint32_t word_ = 0;
   bool known_ = false;
 };
@@ -67,8 +87,13 @@ class Dice {
     const std::uint32_t bit = 3 + below(bits - 2);
     return (bit == 64 ? 0 : std::uint64_t{1} << bit) - 1 - below(4);
   }
-  // {shift, strobe} of the snapshot chain, mostly none.
-  std::uint8_t snapshot() { return static_cast<std::uint8_t>(chance(8) ? 1 + below(2) : 0); }
+  // The snapshot chain as it may come in: any word, mostly neither shift nor strobe.
+  std::uint64_t snapshot() {
+    const bool event = chance(8);
+    const bool strobe = event && chance(2);
+    return in_place(bus::snapshot::kStrobe, strobe) | in_place(bus::snapshot::kShift, event && !strobe) |
+           in_place(bus::snapshot::kWord, draw());
+  }
 
  private:
   std::mt19937_64 random_;

@@ -74,7 +74,7 @@ void Recorder::for_each_port(Port&& port) {
   port("dir_o", '>', dut_->dir_o, kAxes);
   port("output_o", '>', dut_->output_o, kPins);
   port("irq_o", '>', dut_->irq_o, 1);
-  port("observe_o", '>', dut_->observe_o, 34 * kAxes + 213);
+  port("observe_o", '>', dut_->observe_o, bus::observe::kWidth + bus::axis_observe::kWidth * kAxes);
 }
 
 bool Recorder::write(std::uint32_t address, std::uint32_t data, std::uint8_t strobes) {

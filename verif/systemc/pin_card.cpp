@@ -23,7 +23,9 @@ class VerilatedPinCard final : public PinCard {
   void drive(const CardInputs& in) {
     drive_shared(*dut_, in);
     dut_->wishbone_i = bits_of(in.wishbone);
-    dut_->spi_i = bits_of(in.spi);
+    dut_->sck_i = in.spi.sck;
+    dut_->cs_n_i = in.spi.cs_n;
+    dut_->mosi_i = in.spi.mosi;
     dut_->input_i = static_cast<CData>(in.inputs);
   }
   void show(CardOutputs& out) {
@@ -41,8 +43,8 @@ class VerilatedPinCard final : public PinCard {
     out.wishbone.stall = (wishbone >> 32 & 1) != 0;
     out.wishbone.dat = static_cast<std::uint32_t>(wishbone);
     out.tx = dut_->tx_o != 0;
-    out.spi.enable = (dut_->spi_o >> 1 & 1) != 0;
-    out.spi.miso = (dut_->spi_o & 1) != 0;
+    out.spi.enable = dut_->miso_enable_o != 0;
+    out.spi.miso = dut_->miso_o != 0;
     out.step = dut_->step_o;
     out.dir = dut_->dir_o;
     out.outputs = dut_->output_o;

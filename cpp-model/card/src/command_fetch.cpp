@@ -18,7 +18,7 @@ constexpr std::size_t kFurtherAxes = 28;  // of an arc in chords: where their in
 
 // Where the halfwords of a payload go, and the first one that waits.
 struct Layout {
-  std::array<std::uint8_t, kMostPayload> targets{};
+  std::array<std::uint16_t, kMostPayload> targets{};
   int pause_at = kEndless;
 };
 
@@ -34,7 +34,7 @@ Layout layout_of(Opcode opcode, const Names& names, std::string_view waits) {
     for (const auto& [name, target] : names) {
       if (field.name != name) continue;
       for (std::size_t k = 0; k < field.halfwords; ++k)
-        layout.targets[field.offset + k] = static_cast<std::uint8_t>(target);
+        layout.targets[field.offset + k] = static_cast<std::uint16_t>(target);
     }
   }
   return layout;
@@ -60,14 +60,14 @@ std::array<Layout, 256> all_layouts() {
   // Increments are numbered in the order of axes_.
   all[static_cast<std::uint8_t>(Opcode::ArcChord)] = layout_of(Opcode::ArcChord,
                                                                {{"prescale", path::kPrescale},
-                                                                {"plane", path::kPlane},
-                                                                {"shifts", path::kShifts},
-                                                                {"x", path::kState},
-                                                                {"y", path::kState},
-                                                                {"first_x", path::kIncrement},
-                                                                {"first_y", path::kIncrement + 1},
-                                                                {"closing_x", path::kClosing},
-                                                                {"closing_y", path::kClosing}},
+                                                                {"plane", path::kChordPlane},
+                                                                {"shifts", path::kChordShifts},
+                                                                {"x", path::kChordState},
+                                                                {"y", path::kChordState},
+                                                                {"first_x", path::increment(0)},
+                                                                {"first_y", path::increment(1)},
+                                                                {"closing_x", path::kChordClosing},
+                                                                {"closing_y", path::kChordClosing}},
                                                                "plane");
   all[static_cast<std::uint8_t>(Opcode::Output)] =
       layout_of(Opcode::Output, {{"set", path::kCommand}, {"clear", path::kCommand}}, "");
@@ -93,10 +93,12 @@ unsigned CommandFetch::target_of(int index) const {
   if (index < kHeader) return ticks;
   const auto payload = static_cast<std::size_t>(index - kHeader);
   if (queue_ == Queue::Feed && !is_feed()) return feed_target::kNowhere;
-  if (opcode_ == Opcode::Line) return load_target::kIncrement + axes_[payload / 3];
-  if (is_chord() && payload >= kFurtherAxes) return load_target::kIncrement + axes_[2 + (payload - kFurtherAxes) / 3];
+  if (opcode_ == Opcode::Line) return load_target::increment(axes_[payload / 3]);
+  if (is_chord() && payload >= kFurtherAxes) return load_target::increment(axes_[2 + (payload - kFurtherAxes) / 3]);
   const unsigned target = kLayouts[static_cast<std::uint8_t>(opcode_)].targets[payload];
-  return is_chord() && target < load_target::kCount ? load_target::kIncrement + axes_[target] : target;
+  if (is_chord() && target == load_target::increment(0)) return load_target::increment(axes_[0]);
+  if (is_chord() && target == load_target::increment(1)) return load_target::increment(axes_[1]);
+  return target;
 }
 
 // The plane's axes first.
@@ -114,8 +116,8 @@ void CommandFetch::order_axes(std::uint16_t plane) {
 // The first halfword says how long the command is and which axes a line moves.
 void CommandFetch::arrive(int index, std::uint16_t halfword) {
   if (index > 0) {
-    bus_ = {true, static_cast<std::uint8_t>(target_of(index)), halfword};
-    if (is_chord() && bus_.target == load_target::kPlane) order_axes(halfword);
+    bus_ = {true, static_cast<std::uint16_t>(target_of(index)), halfword};
+    if (is_chord() && bus_.target == load_target::kChordPlane) order_axes(halfword);
     return;
   }
   header_here_ = true;

@@ -14,7 +14,7 @@ constexpr int kAxisClocks = 17;
 constexpr int kOtherClocks = 8;  // of every other phase
 
 LoadWord halfword(unsigned target, std::uint64_t value, int index) {
-  return {true, static_cast<std::uint8_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
+  return {true, static_cast<std::uint16_t>(target), static_cast<std::uint16_t>(value >> (16 * index))};
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ void DirectLoader::enter(Phase phase) {
 
 // Halfwords go out lowest first; a frequency to the negative side as its two's complement.
 LoadWord DirectLoader::frequency_halfword(int index) const {
-  return halfword(load_target::kIncrement + axis_, negative_ ? 0 - frequency_ : frequency_, index);
+  return halfword(load_target::increment(axis_), negative_ ? 0 - frequency_ : frequency_, index);
 }
 
 LoadWord DirectLoader::read_axis(const Inputs& in) {
@@ -49,7 +49,7 @@ LoadWord DirectLoader::read_axis(const Inputs& in) {
     case 15:
     case 16:
       if (in.data != 0 && frequency_ == 0) bad_value_ = true;
-      return halfword(load_target::kCount + axis_, in.data, step_ - 15);
+      return halfword(load_target::count(axis_), in.data, step_ - 15);
     default:
       break;
   }

@@ -23,10 +23,8 @@ module frame_executor (
     output logic [7:0] byte_o,
     input wire logic [7:0] byte_i,  // of the place a clock ago
     // to the inner port
-    output logic [47:0] access_o,
-    input wire logic ack_i,
-    input wire logic error_i,
-    input wire logic [31:0] data_i
+    output logic [register_access_pkg::WIDTH-1:0] access_o,
+    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
 );
   localparam logic [7:0] REQUEST_WORDS = 8'd8;
   localparam logic [7:0] REPLY_WORDS = 8'd20;
@@ -50,6 +48,8 @@ module frame_executor (
   logic        over;
   logic        moves;
   logic        begins;  // the request
+  logic        ack;
+  logic        error;
 
   assign begins   = start_i && execute_i;
   assign writes   = write_i && !state_q;
@@ -59,27 +59,29 @@ module frame_executor (
   assign place_o  = place_q;
   assign store_o  = at_q[STORE];
   assign byte_o   = data_q[7:0];
-  assign access_o = {at_q[ASK], writes, 2'b00, address_q, 2'b00, data_q};
+  assign access_o = register_access_pkg::pack(at_q[ASK], writes, 1'b0, {address_q, 2'b00}, data_q);
+  assign ack      = answer_i[register_answer_pkg::ACK];
+  assign error    = answer_i[register_answer_pkg::ERROR];
   assign done_o   = at_q[NEXT] && state_q && over;
 
   always_ff @(posedge clk_i) begin
     at_q[FETCH] <= (begins && write_i) || (at_q[FETCH] && !byte_q[2]) || (at_q[NEXT] && writes && !over);
     at_q[ASK]   <= (start_i && !(begins && write_i)) || (at_q[FETCH] && byte_q[2]) ||
         (at_q[NEXT] && !done_o && (!writes || over));
-    at_q[STORE] <= (ack_i && !writes && (state_q || !error_i)) || (at_q[STORE] && byte_q != 3'd3);
-    at_q[NEXT] <= (ack_i && (writes || (!state_q && error_i))) || (at_q[STORE] && byte_q == 3'd3);
+    at_q[STORE] <= (ack && !writes && (state_q || !error)) || (at_q[STORE] && byte_q != 3'd3);
+    at_q[NEXT] <= (ack && (writes || (!state_q && error))) || (at_q[STORE] && byte_q == 3'd3);
     if (rst_i) at_q <= '0;
   end
 
   always_ff @(posedge clk_i) begin
     byte_q <= moves ? byte_q + 3'd1 : 3'd0;
     if (moves) data_q <= {byte_i, data_q[31:8]};
-    if (ack_i) data_q <= data_i;
+    if (ack) data_q <= register_answer_pkg::data(answer_i);
     // While a word is fetched the place is a clock ahead of the byte.
     if (moves && !byte_q[2]) place_q <= place_q + 8'd1;
-    if (ack_i) begin
-      error_q <= error_i && !state_q;
-      word_q  <= word_q + 6'(state_q || !error_i);
+    if (ack) begin
+      error_q <= error && !state_q;
+      word_q  <= word_q + 6'(state_q || !error);
       if (!fixed_i || state_q) address_q <= address_q + 10'd1;
     end
     // The last of these is what the execution came to.

@@ -7,7 +7,8 @@ module frame_receiver (
     input wire logic rst_i,
     input wire logic listen_i,  // low: a frame with a byte in this clock is dropped
     input wire logic restart_i,  // what has come of a frame is dropped
-    input wire logic [8:0] byte_i,  // {valid, byte}
+    input wire logic received_i,  // event
+    input wire logic [7:0] byte_i,
     input wire logic [15:0] epoch_i,
     // CRC
     output logic crc_clear_o,
@@ -44,20 +45,20 @@ module frame_receiver (
   logic       add;
   logic       wrong;
 
-  assign ends = byte_i == {1'b1, END};
-  assign escape = byte_i[7:0] == ESCAPE;
-  assign unescaped = byte_i[7:0] == ESCAPED_END || byte_i[7:0] == ESCAPED_ESCAPE;
+  assign ends = received_i && byte_i == END;
+  assign escape = byte_i == ESCAPE;
+  assign unescaped = byte_i == ESCAPED_END || byte_i == ESCAPED_ESCAPE;
   assign wrong = !listen_i || (escaped_q && !unescaped) || place_q == MOST;
   // What comes of an end, or after a wrong byte, is never looked at.
-  assign add = byte_i[8] && !escape && !wrong;
+  assign add = received_i && !escape && !wrong;
 
-  assign byte_o = !escaped_q ? byte_i[7:0] : byte_i[0] ? ESCAPE : END;
+  assign byte_o = !escaped_q ? byte_i : byte_i[0] ? ESCAPE : END;
   assign crc_start_o = add;
   assign crc_clear_o = listen_i && ends;
   assign place_o = place_q;
 
   always_ff @(posedge clk_i) begin
-    if (byte_i[8]) begin
+    if (received_i) begin
       escaped_q <= escape;
       bad_q <= bad_q || wrong;
     end

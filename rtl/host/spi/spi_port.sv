@@ -14,7 +14,8 @@ module spi_port (
     output logic miso_o,
     output logic miso_enable_o,  // low: MISO is for others
     // to the frame engine
-    output logic [8:0] byte_o,  // {event, byte}
+    output logic received_o,  // event
+    output logic [7:0] byte_o,  // with it
     input wire logic valid_i,
     input wire logic [7:0] byte_i,
     output logic ready_o  // event; combinational from registers
@@ -50,7 +51,8 @@ module spi_port (
   assign miso_o = out_q[7];
 
   always_ff @(posedge clk_i) begin
-    byte_o <= {whole, in_q, second_q[2]};
+    received_o <= whole;
+    byte_o <= {in_q, second_q[2]};
     miso_enable_o <= !second_q[1];
     if (rise) begin
       bit_q <= bit_q + 3'd1;
@@ -61,7 +63,7 @@ module spi_port (
     if (second_q[1]) bit_q <= 3'd0;
     if (rst_i) begin
       out_q <= END;
-      byte_o[8] <= 1'b0;
+      received_o <= 1'b0;
       miso_enable_o <= 1'b0;
     end
   end

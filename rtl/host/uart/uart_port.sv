@@ -11,7 +11,8 @@ module uart_port #(
     output logic tx_o,
     // to the frame engine
     output logic restart_o,  // event: a break
-    output logic [8:0] byte_o,  // {event, byte}
+    output logic received_o,  // event
+    output logic [7:0] byte_o,  // with it
     input wire logic valid_i,
     input wire logic [7:0] byte_i,
     output logic ready_o  // combinational from registers
@@ -44,25 +45,35 @@ module uart_port #(
   uart_baud #(
       .BreakBits(BreakBits)
   ) baud (
-      .*,
+      .clk_i,
+      .rst_i,
       .level_i (rx_second_q),
       .fall_i  (fall),
+      .restart_o,
       .known_o (known),
       .period_o(period)
   );
 
   uart_receiver receiver (
-      .*,
+      .clk_i,
+      .rst_i,
       .level_i (rx_second_q),
       .fall_i  (fall),
       .known_i (known),
-      .period_i(period)
+      .period_i(period),
+      .received_o,
+      .byte_o
   );
 
   uart_transmitter transmitter (
-      .*,
+      .clk_i,
+      .rst_i,
       .known_i (known),
-      .period_i(period)
+      .period_i(period),
+      .valid_i,
+      .byte_i,
+      .ready_o,
+      .tx_o
   );
 endmodule
 `default_nettype wire

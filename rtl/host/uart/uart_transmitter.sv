@@ -20,7 +20,8 @@ module uart_transmitter (
   assign take = valid_i && ready_o;
 
   uart_timer timer (
-      .*,
+      .clk_i,
+      .period_i,
       .start_i(take),
       .half_i (1'b0),
       .end_o  (ends)

@@ -18,10 +18,8 @@ module wishbone_port #(
     output logic err_o,
     output logic stall_o,  // 0 where it is classic
     // to the inner port
-    output logic [47:0] access_o,  // {request, write, partial, 0, address, data}
-    input wire logic ack_i,
-    input wire logic error_i,
-    input wire logic [31:0] data_i
+    output logic [register_access_pkg::WIDTH-1:0] access_o,
+    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i
 );
   if (Pipelined < 0 || Pipelined > 1) begin : gen_wrong_kind
     ERROR_Pipelined_must_be_0_or_1 error ();
@@ -52,12 +50,17 @@ module wishbone_port #(
     assign stall_o = 1'b0;
   end
 
-  assign access_o = {request_q, write_q, partial_q, 1'b0, address_q, data_q};
+  logic ack;
+  logic error;
+
+  assign access_o = register_access_pkg::pack(request_q, write_q, partial_q, address_q, data_q);
+  assign ack = answer_i[register_answer_pkg::ACK];
+  assign error = answer_i[register_answer_pkg::ERROR];
 
   always_ff @(posedge clk_i) begin
     request_q <= take;
     wanted_q  <= take || (wanted_q && stays);
-    if (ack_i) busy_q <= 1'b0;
+    if (ack) busy_q <= 1'b0;
     if (take) begin
       busy_q <= 1'b1;
       write_q <= we_i;
@@ -72,9 +75,9 @@ module wishbone_port #(
   end
 
   always_ff @(posedge clk_i) begin
-    ack_o <= ack_i && !error_i && wanted_q && stays && !rst_i;
-    err_o <= ack_i && error_i && wanted_q && stays && !rst_i;
-    if (ack_i) dat_o <= data_i;
+    ack_o <= ack && !error && wanted_q && stays && !rst_i;
+    err_o <= ack && error && wanted_q && stays && !rst_i;
+    if (ack) dat_o <= register_answer_pkg::data(answer_i);
   end
 endmodule
 `default_nettype wire

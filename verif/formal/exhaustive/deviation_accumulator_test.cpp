@@ -17,6 +17,7 @@
 #include "trammel/driver/arc.hpp"
 #include "trammel/model/buses.hpp"
 #include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
 
 namespace trammel::lockstep {
 namespace {
@@ -76,7 +77,7 @@ class Accumulator {
   void load(unsigned target, const driver::Int128& value, int halfwords) {
     for (int i = 0; i < halfwords; ++i) {
       const auto word = static_cast<std::uint16_t>((value.bits() >> (16 * static_cast<unsigned>(i))).low());
-      dut_->load_i = 1U << 21 | target << 16 | word;
+      dut_->load_i = load_wire({true, static_cast<std::uint16_t>(target), word});
       dut_.clock();
     }
     dut_->load_i = 0;

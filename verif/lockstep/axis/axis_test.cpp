@@ -12,8 +12,8 @@ namespace trammel::lockstep {
 namespace {
 
 namespace reg = card_map::reg;
-using model::load_target::kCount;
-using model::load_target::kIncrement;
+using model::load_target::count;
+using model::load_target::increment;
 
 constexpr unsigned kAxis = TRAMMEL_AXIS;
 constexpr std::uint64_t kComparedSignals = 8;
@@ -30,8 +30,8 @@ class Bench {
     const std::int64_t top = std::int64_t{1} << (30 + dice_.below(11));
     // A power of two meets the half pulse exactly, where a line and its mirror image differ.
     const std::int64_t magnitude = dice_.chance(4) ? top : static_cast<std::int64_t>(dice_.word() >> 24) % (top + 1);
-    send(kIncrement, static_cast<std::uint64_t>(dice_.chance(2) ? magnitude : -magnitude), 3);
-    if (direct) send(kCount, dice_.below(30), 2);
+    send(increment(kAxis), static_cast<std::uint64_t>(dice_.chance(2) ? magnitude : -magnitude), 3);
+    if (direct) send(count(kAxis), dice_.below(30), 2);
     in_.swap = true;
     in_.active = !engine;
     in_.direct = direct;
@@ -63,7 +63,7 @@ class Bench {
         in_.chord_load = false;
         // Words without a load, and the load bus's for others, are nobody's.
         in_.chord_word = static_cast<std::uint16_t>(dice_.draw());
-        in_.load = halfword(kIncrement + (kAxis + 1 + dice_.below(7)) % 8, dice_.word(), 0);
+        in_.load = halfword(model::load_target::increment(other_axis()), dice_.word(), 0);
         if (dice_.chance(3)) tick(every);
       }
       for (unsigned clocks = 1 + dice_.below(20); clocks != 0; --clocks) tick(every);
@@ -133,14 +133,22 @@ class Bench {
     in_.setting = {};
   }
 
+  unsigned other_axis() { return (kAxis + 1 + dice_.below(7)) % 8; }
+
+  // The same chain of another axis, or a chain that no axis has.
+  unsigned other_target(unsigned target) {
+    if (dice_.chance(4)) return increment(kAxis) + 2 + dice_.below(14);
+    return target - increment(kAxis) + increment(other_axis());
+  }
+
   void send(unsigned target, std::uint64_t value, unsigned halfwords) {
     check_.event("load", value);
     for (unsigned i = 0; i < halfwords; ++i) {
-      in_.load = halfword(target + kAxis, value, i);
+      in_.load = halfword(target, value, i);
       clock();
       // What goes to another axis or chain is not this one's.
       if (dice_.chance(3)) {
-        in_.load = halfword(target + (kAxis + 1 + dice_.below(7)) % 8, dice_.word(), 0);
+        in_.load = halfword(other_target(target), dice_.word(), 0);
         clock();
       }
     }
@@ -155,7 +163,7 @@ class Bench {
     const std::uint32_t position = model_.outputs().shaper.position;
     dut_.clock();
     model_.clock(in_);
-    snapshot_.clock(dut_->snapshot_i, position, dut_->chain_i);
+    snapshot_.clock(dut_->snapshot_i, position);
     compare();
     steps_ += model_.outputs().path_step ? 1U : 0U;
   }
@@ -163,16 +171,16 @@ class Bench {
   void compare() {
     check_.next_cycle();
     const auto out = model_.outputs();
-    check_.compare("path_step_o", dut_->path_step_o, out.path_step);
-    check_.compare("path_dir_o", dut_->path_dir_o, out.path_dir);
+    check_.compare("path step", get(dut_->observe_o, bus::axis_observe::kStep), out.path_step);
+    check_.compare("path dir", get(dut_->observe_o, bus::axis_observe::kDir), out.path_dir);
     check_.compare("live_o", dut_->live_o, out.live);
     check_.compare("step_o", dut_->step_o, out.shaper.step);
     check_.compare("dir_o", dut_->dir_o, out.shaper.dir);
-    check_.compare("position_o", dut_->position_o, out.shaper.position);
+    check_.compare("position", get(dut_->observe_o, bus::axis_observe::kPosition), out.shaper.position);
     check_.compare("busy_o", dut_->busy_o, out.shaper.busy);
     check_.compare("fault_o", dut_->fault_o, out.shaper.fault);
     if (!snapshot_.known()) return;
-    check_.compare("chain_o", dut_->chain_o, snapshot_.word());
+    check_.compare("snapshot_o, word", get(dut_->snapshot_o, bus::snapshot::kWord), snapshot_.word());
     ++chained_;
   }
 
@@ -191,7 +199,6 @@ class Bench {
     dut_->load_i = load_wire(in_.load);
     dut_->setting_i = wire(in_.setting);
     dut_->snapshot_i = dice_.snapshot();
-    dut_->chain_i = dice_.draw();
   }
 
   Simulated<Vdut> dut_;

@@ -2,12 +2,12 @@
 `default_nettype none
 
 module timers (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
-    input  wire logic [40:0] setting_i,
-    output logic             tick_o,
-    input  wire logic        running_i,
-    output logic             busy_o
+    input  wire logic                              clk_i,
+    input  wire logic                              rst_i,
+    input  wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    output logic                                   tick_o,
+    input  wire logic                              running_i,
+    output logic                                   busy_o
 );
   wait_timer wait_limit (
       .clk_i,

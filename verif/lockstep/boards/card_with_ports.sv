@@ -43,18 +43,21 @@ module card_with_ports #(
     input wire logic rready_i,
     output logic [31:0] rdata_o,
     output logic [1:0] rresp_o,
-    input wire logic [50:0] wishbone_i,
-    output logic [34:0] wishbone_o,
+    input wire logic [wishbone_request_pkg::WIDTH-1:0] wishbone_i,
+    output logic [wishbone_answer_pkg::WIDTH-1:0] wishbone_o,
     input wire logic rx_i,
     output logic tx_o,
-    input wire logic [2:0] spi_i,
-    output logic [1:0] spi_o,
+    input wire logic sck_i,
+    input wire logic cs_n_i,
+    input wire logic mosi_i,
+    output logic miso_o,
+    output logic miso_enable_o,
     input wire logic [Inputs-1:0] input_i,
     output logic [Outputs-1:0] output_o,
     output logic [Axes-1:0] step_o,
     output logic [Axes-1:0] dir_o,
     output logic irq_o,
-    output logic [34*Axes+212:0] observe_o
+    output logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*Axes-1:0] observe_o
 );
   // Who this is goes out by the serial line, a bit a clock after the reset: nothing else of a board's top shows it.
   localparam logic [31:0] WHO = BoardId ^ {26'd0, Uart != 0, AxiLite == 0, PathCommands != 0, 3'd0};

@@ -261,7 +261,7 @@ TEST(CardJudge, EveryBitOfEveryOutputIsCompared) {
   turn(rtl.dir_o, 0, 4, "dir_o");
   turn(rtl.output_o, 0, 4, "output_o");
   turn(rtl.irq_o, 0, 1, "irq_o");
-  constexpr unsigned kObserved = 34 * 4 + 213;
+  constexpr unsigned kObserved = bus::observe::kWidth + 4 * bus::axis_observe::kWidth;
   for (unsigned low = 0; low < kObserved; low += 32) {
     turn(rtl.observe_o[low / 32], low, std::min(32U, kObserved - low), "observe_o");
   }

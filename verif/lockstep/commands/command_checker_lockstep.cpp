@@ -10,6 +10,7 @@
 #include "command_source.hpp"
 #include "trammel/model/command_checker.hpp"
 #include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
 
 namespace {
 
@@ -20,7 +21,7 @@ using trammel::testing::WireCommand;
 
 constexpr unsigned kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kEngines = TRAMMEL_ENGINES;
-constexpr std::uint64_t kSignals = 11;
+constexpr std::uint64_t kSignals = 12;
 constexpr std::uint16_t kMuchRoom = 4096;
 
 class Bench {
@@ -40,12 +41,14 @@ class Bench {
     rtl_->flush_i = in.flush;
     rtl_->clear_i = in.clear;
     rtl_->closed_i = in.closed;
-    rtl_->room_i = std::uint32_t{in.geometry_room} << 16 | in.feed_room;
+    rtl_->geometry_room_i = in.geometry_room;
+    rtl_->feed_room_i = in.feed_room;
     if (in.write) checker_.event("write", in.word);
     if (in.flush) checker_.event("flush");
     if (in.clear) checker_.event("clear");
     rtl_.clock();
     model_.clock(in);
+    full_ = in.geometry_room < 64 || in.feed_room < 32;
     checker_.next_cycle();
     compare(model_.outputs());
     commits_ += model_.outputs().geometry_commit || model_.outputs().feed_commit ? 1U : 0U;
@@ -59,23 +62,29 @@ class Bench {
 
  private:
   void compare(const CommandChecker::Outputs& model) {
-    checker_.compare("ready", rtl_->answer_o >> 17 & 1U, model.ready);
-    checker_.compare("halfword_o", rtl_->halfword_o, model.halfword);
-    checker_.compare("geometry_o, write", rtl_->geometry_o & 1U, model.geometry_write);
-    checker_.compare("feed_o, write", rtl_->feed_o & 1U, model.feed_write);
-    checker_.compare("geometry_o, commit", rtl_->geometry_o >> 1, model.geometry_commit);
-    checker_.compare("feed_o, commit", rtl_->feed_o >> 1, model.feed_commit);
-    checker_.compare("drop_o", rtl_->drop_o, model.drop);
-    checker_.compare("refuse", rtl_->answer_o >> 16 & 1U, model.refuse);
-    checker_.compare("reason", rtl_->answer_o & 0xFFU, model.reason);
-    checker_.compare("number", rtl_->answer_o >> 8 & 0xFFU, model.number);
-    checker_.compare("partial", rtl_->answer_o >> 18, model.partial);
+    namespace arrival = trammel::bus::arrival;
+    namespace answer = trammel::bus::stream_answer;
+    const auto stored = [this](const trammel::bus::Field& field) { return get(rtl_->arrival_o, field); };
+    const auto answered = [this](const trammel::bus::Field& field) { return get(rtl_->answer_o, field); };
+    checker_.compare("ready", answered(answer::kReady), model.ready);
+    checker_.compare("halfword", stored(arrival::kHalfword), model.halfword);
+    checker_.compare("geometry, write", stored(arrival::kGeometryWrite), model.geometry_write);
+    checker_.compare("feed, write", stored(arrival::kFeedWrite), model.feed_write);
+    checker_.compare("geometry, commit", stored(arrival::kGeometryCommit), model.geometry_commit);
+    checker_.compare("feed, commit", stored(arrival::kFeedCommit), model.feed_commit);
+    checker_.compare("drop", stored(arrival::kDrop), model.drop);
+    checker_.compare("full", stored(arrival::kFull), full_);
+    checker_.compare("refuse", answered(answer::kRefuse), model.refuse);
+    checker_.compare("reason", answered(answer::kReason), model.reason);
+    checker_.compare("number", answered(answer::kNumber), model.number);
+    checker_.compare("partial", answered(answer::kPartial), model.partial);
   }
 
   Checker checker_;
   trammel::lockstep::Simulated<Vdut> rtl_;
   CommandChecker model_;
   std::uint32_t word_ = 0;
+  bool full_ = false;  // there may be no room for the largest command: 50 halfwords of geometry, 20 of feed
   std::uint64_t commits_ = 0;
   std::uint64_t refusals_ = 0;
 };

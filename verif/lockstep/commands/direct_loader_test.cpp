@@ -78,10 +78,9 @@ class Bench {
     dut_->rst_i = in_.reset;
     dut_->busy_i = in_.busy;
     dut_->closed_i = in_.closed;
-    dut_->start_i = in_.start;
-    dut_->mask_i = in_.mask;
-    dut_->data_i = rtl_read_.data;
-    rtl_read_ = {words_[dut_->address_o], rtl_read_.fetched};
+    using namespace bus::start;
+    dut_->start_i = in_place(kStart, in_.start) | in_place(kMask, in_.mask) | in_place(kData, rtl_read_.data);
+    rtl_read_ = {words_[get(dut_->answer_o, bus::start_answer::kAddress)], rtl_read_.fetched};
     model_read_ = {words_[model_.outputs().address], model_read_.fetched};
     dut_.clock();
     model_.clock(in_);
@@ -91,11 +90,13 @@ class Bench {
   void compare() {
     check_.next_cycle();
     const auto& out = model_.outputs();
-    check_.compare("done_o", dut_->done_o, out.done);
+    using namespace bus::start_answer;
+    const auto answer = [this](const bus::Field& field) { return get(dut_->answer_o, field); };
+    check_.compare("done", answer(kDone), out.done);
     check_.compare("go_o", dut_->go_o, out.go);
-    check_.compare("load_o, valid", dut_->load_o >> 21, out.load.valid);
-    if (out.done) more("error_o", dut_->error_o, out.error);
-    if (out.done && out.error) more("reason_o", dut_->reason_o, out.reason);
+    check_.compare("load_o, valid", get(dut_->load_o, bus::load_bus::kValid), out.load.valid);
+    if (out.done) more("error", answer(kError), out.error);
+    if (out.done && out.error) more("reason", answer(kReason), out.reason);
     if (out.go) more("mask_o", dut_->mask_o, out.mask);
     if (out.load.valid) more("load_o", dut_->load_o, load_wire(out.load));
   }

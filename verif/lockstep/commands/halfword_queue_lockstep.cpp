@@ -27,7 +27,10 @@ class Bench {
   void clock(const HalfwordQueue::Inputs& in) {
     rtl_->rst_i = in.reset;
     rtl_->clear_i = in.clear;
-    rtl_->store_i = static_cast<IData>(in.drop << 18 | in.commit << 17 | in.write << 16 | in.word);
+    rtl_->drop_i = in.drop;
+    rtl_->commit_i = in.commit;
+    rtl_->write_i = in.write;
+    rtl_->halfword_i = in.word;
     rtl_->read_i = in.read;
     if (in.write) checker_.event("write", in.word);
     if (in.commit) checker_.event("commit");

@@ -33,7 +33,8 @@ class Bench {
   void clock(const model::QueueWatermarks::Inputs& in) {
     if (in.setting.set) check_.event("setting", std::uint64_t{in.setting.address} << 32 | in.setting.data);
     dut_->setting_i = wire(in.setting);
-    dut_->room_i = in.geometry_room << 16 | in.feed_room;
+    dut_->geometry_room_i = in.geometry_room;
+    dut_->feed_room_i = in.feed_room;
     dut_.clock();
     model_.clock(in);
     compare();
@@ -47,8 +48,8 @@ class Bench {
  private:
   void compare() {
     check_.next_cycle();
-    check_.compare("geometry low", dut_->low_o & 1, model_.outputs().geometry_low);
-    check_.compare("feed low", dut_->low_o >> 1, model_.outputs().feed_low);
+    check_.compare("geometry low", dut_->geometry_low_o, model_.outputs().geometry_low);
+    check_.compare("feed low", dut_->feed_low_o, model_.outputs().feed_low);
   }
 
   Simulated<Vdut> dut_;

@@ -126,10 +126,12 @@ class CardBehindPorts {
     platform::CardOutputs from;
     from.axi = {dut_->awready_o != 0, dut_->wready_o != 0, dut_->bvalid_o != 0, dut_->arready_o != 0,
                 dut_->rvalid_o != 0,  dut_->bresp_o,       dut_->rresp_o,       dut_->rdata_o};
-    const QData bus = dut_->wishbone_o;
-    from.wishbone = {(bus >> 34 & 1) != 0, (bus >> 33 & 1) != 0, (bus >> 32 & 1) != 0, static_cast<std::uint32_t>(bus)};
+    using namespace bus::wishbone_answer;
+    const QData wishbone = dut_->wishbone_o;
+    from.wishbone = {get(wishbone, kAck) != 0, get(wishbone, kErr) != 0, get(wishbone, kStall) != 0,
+                     static_cast<std::uint32_t>(get(wishbone, kDat))};
     from.tx = dut_->tx_o != 0;
-    from.spi = {(dut_->spi_o & 1) != 0, (dut_->spi_o >> 1 & 1) != 0};
+    from.spi = {dut_->miso_o != 0, dut_->miso_enable_o != 0};
     rules_->clock(to, from);
   }
 
@@ -139,10 +141,9 @@ class CardBehindPorts {
     const model::CoreModel::Outputs& out = core_.outputs();
     check_.compare("AXI4-Lite handshakes and responses", axi_shown(*dut_), axi_shown(hosts_.axi()));
     check_.compare("tx_o", dut_->tx_o, hosts_.uart().tx);
-    check_.compare("spi_o", dut_->spi_o, unsigned{hosts_.spi().miso_enable} << 1 | unsigned{hosts_.spi().miso});
-    const model::WishbonePort::Outputs& w = hosts_.wishbone();
-    check_.compare("Wishbone ack, err, stall", dut_->wishbone_o >> 32,
-                   unsigned{w.ack} << 2 | unsigned{w.err} << 1 | unsigned{w.stall});
+    check_.compare("miso_o and miso_enable_o", unsigned{dut_->miso_enable_o} << 1 | dut_->miso_o,
+                   unsigned{hosts_.spi().miso_enable} << 1 | unsigned{hosts_.spi().miso});
+    check_.compare("Wishbone ack, err, stall", wishbone_shown(dut_->wishbone_o), wishbone_shown(hosts_.wishbone()));
     check_.compare("step_o and dir_o", dut_->step_o << kAxes | dut_->dir_o, out.step << kAxes | out.dir);
     check_.compare("irq_o", dut_->irq_o, out.irq);
     if (hosts_.axi().rvalid) {

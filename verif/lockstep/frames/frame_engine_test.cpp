@@ -99,28 +99,29 @@ class Bench {
 
   void drive() {
     dut_->restart_i = in_.restart;
-    dut_->byte_i = static_cast<SData>(unsigned{in_.byte_valid} << 8 | in_.byte);
+    dut_->received_i = in_.byte_valid;
+    dut_->byte_i = in_.byte;
     dut_->ready_i = in_.ready;
-    dut_->ack_i = in_.ack;
-    dut_->error_i = in_.error;
-    dut_->data_i = in_.data;
+    using namespace bus::register_answer;
+    dut_->answer_i = in_place(kAck, in_.ack) | in_place(kError, in_.error) | in_place(kData, in_.data);
   }
 
   void compare() {
     const FrameEngine::Outputs& out = model_.outputs();
     check_.compare("valid_o", dut_->valid_o, out.valid);
-    check_.compare("request_o", dut_->access_o >> 47, out.request);
+    using namespace bus::register_access;
+    check_.compare("request", get(dut_->access_o, kRequest), out.request);
     if (out.valid) {
       check_.compare("byte_o", dut_->byte_o, out.byte);
       ++more_;
     }
     // The access stands from its request to the answer; what no write needs may be anything.
     if (!out.request && !inner_.open()) return;
-    check_.compare("access_o, without data", dut_->access_o >> 32 & 0x7FFF,
-                   std::uint64_t{out.write} << 14 | out.address);
+    check_.compare("access, without data", dut_->access_o & ~in_place(kRequest, 1) & ~in_place(kData, ~0U),
+                   in_place(kWrite, out.write) | in_place(kAddress, out.address));
     ++more_;
     if (!out.write) return;
-    check_.compare("access_o, data", dut_->access_o & 0xFFFFFFFF, out.data);
+    check_.compare("access, data", get(dut_->access_o, kData), out.data);
     ++more_;
   }
 

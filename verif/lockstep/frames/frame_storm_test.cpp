@@ -54,9 +54,10 @@ class Bench {
     return reply_;
   }
   void send(std::uint8_t byte) {
-    dut_->byte_i = static_cast<SData>(0x100U | byte);
+    dut_->received_i = 1;
+    dut_->byte_i = byte;
     clock();
-    dut_->byte_i = 0;
+    dut_->received_i = 0;
     for (unsigned i = 1; i < kGap; ++i) clock();
   }
   // Neither an end nor an escape, which would change the length.

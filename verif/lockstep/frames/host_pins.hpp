@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "trammel/model/host_ports.hpp"
+#include "wires.hpp"
 
 namespace trammel::lockstep {
 
@@ -18,11 +19,11 @@ void drive_hosts(Dut& dut, const model::HostPorts::Inputs& in) {
   dut.arvalid_i = in.axi.arvalid;
   dut.araddr_i = static_cast<std::uint16_t>(in.axi.araddr);
   dut.rready_i = in.axi.rready;
-  const model::WishbonePort::Inputs& w = in.wishbone;
-  dut.wishbone_i = std::uint64_t{w.cyc} << 50 | std::uint64_t{w.stb} << 49 | std::uint64_t{w.we} << 48 |
-                   std::uint64_t{w.sel} << 44 | std::uint64_t{w.adr} << 32 | w.dat;
+  dut.wishbone_i = wishbone_wire(in.wishbone);
   dut.rx_i = in.rx;
-  dut.spi_i = static_cast<std::uint8_t>(unsigned{in.spi.mosi} << 2 | unsigned{in.spi.cs_n} << 1 | unsigned{in.spi.sck});
+  dut.sck_i = in.spi.sck;
+  dut.cs_n_i = in.spi.cs_n;
+  dut.mosi_i = in.spi.mosi;
 }
 
 // Handshakes and responses of AXI4-Lite: {rresp, bresp, rvalid, arready, bvalid, wready, awready}.
@@ -36,6 +37,15 @@ inline std::uint32_t axi_shown(const model::Axi4LitePort::Outputs& axi) {
   return std::uint32_t{axi.awready} | std::uint32_t{axi.wready} << 1 | std::uint32_t{axi.bvalid} << 2 |
          std::uint32_t{axi.arready} << 3 | std::uint32_t{axi.rvalid} << 4 | std::uint32_t{axi.bresp} << 5 |
          std::uint32_t{axi.rresp} << 7;
+}
+
+// The same of Wishbone: acknowledgement, error, stall.
+inline std::uint64_t wishbone_shown(std::uint64_t answer) {
+  return answer & ~in_place(bus::wishbone_answer::kDat, ~0U);
+}
+inline std::uint64_t wishbone_shown(const model::WishbonePort::Outputs& w) {
+  using namespace bus::wishbone_answer;
+  return in_place(kAck, w.ack) | in_place(kErr, w.err) | in_place(kStall, w.stall);
 }
 
 }  // namespace trammel::lockstep

@@ -125,31 +125,34 @@ class Bench {
 
   void drive(const HostPorts::Answer& answer) {
     drive_hosts(*dut_, in_);
-    dut_->ack_i = answer.ack;
-    dut_->error_i = answer.error;
-    dut_->data_i = answer.data;
+    using namespace bus::register_answer;
+    dut_->answer_i = in_place(kAck, answer.ack) | in_place(kError, answer.error) | in_place(kData, answer.data);
   }
 
   void compare() {
     const model::Axi4LitePort::Outputs& axi = model_.axi();
     check_.compare("AXI4-Lite handshakes and responses", axi_shown(*dut_), axi_shown(axi));
-    const model::WishbonePort::Outputs& w = model_.wishbone();
-    check_.compare("Wishbone ack, err, stall", dut_->wishbone_o >> 32,
-                   unsigned{w.ack} << 2 | unsigned{w.err} << 1 | unsigned{w.stall});
+    check_.compare("Wishbone ack, err, stall", wishbone_shown(dut_->wishbone_o), wishbone_shown(model_.wishbone()));
     check_.compare("tx_o", dut_->tx_o, model_.uart().tx);
     // A port that is not built drives nothing.
     const bool miso = kConfig.spi && model_.spi().miso;
-    check_.compare("spi_o", dut_->spi_o, unsigned{model_.spi().miso_enable} << 1 | unsigned{miso});
+    check_.compare("miso_o and miso_enable_o", unsigned{dut_->miso_enable_o} << 1 | dut_->miso_o,
+                   unsigned{model_.spi().miso_enable} << 1 | unsigned{miso});
     const model::PortArbiter::Inner inner = model_.inner();
-    check_.compare("request_o", dut_->request_o, inner.access.request);
-    check_.compare("access_o, port", dut_->access_o >> 46, dut_->request_o ? inner.port : dut_->access_o >> 46);
+    using namespace bus::register_access;
+    const auto access = [this](const bus::Field& field) { return get(dut_->access_o, field); };
+    check_.compare("request", access(kRequest), inner.access.request);
+    check_.compare("port", access(kPort), access(kRequest) != 0 ? inner.port : access(kPort));
     if (axi.rvalid) differs("rdata_o", dut_->rdata_o, axi.rdata);
-    if (w.ack || w.err) differs("Wishbone data", dut_->wishbone_o & 0xFFFFFFFF, w.dat);
+    const model::WishbonePort::Outputs& w = model_.wishbone();
+    if (w.ack || w.err) differs("Wishbone data", get(dut_->wishbone_o, bus::wishbone_answer::kDat), w.dat);
     if (!inner.access.request) return;
     const model::PortArbiter::Access& a = inner.access;
-    differs("access_o, write and address", dut_->access_o >> 32 & 0x2FFF, std::uint64_t{a.write} << 13 | a.address);
+    differs("access, write and address", access(kWrite) << 12 | access(kAddress),
+            std::uint64_t{a.write} << 12 | a.address);
     if (a.write)
-      differs("access_o, partial and data", dut_->access_o & 0x1000FFFFFFFF, std::uint64_t{a.partial} << 44 | a.data);
+      differs("access, partial and data", access(kPartial) << 32 | access(kData),
+              std::uint64_t{a.partial} << 32 | a.data);
   }
   void differs(const char* signal, std::uint64_t rtl, std::uint64_t model) {
     check_.compare(signal, rtl, model);

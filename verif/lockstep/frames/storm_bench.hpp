@@ -10,6 +10,7 @@
 
 #include "byte_ports.hpp"
 #include "frame_storm.hpp"
+#include "rtl_buses.hpp"
 #include "trammel/sim/lockstep.hpp"
 
 namespace trammel::lockstep {
@@ -28,17 +29,19 @@ inline void run_storm(test::FrameStorm& storm, std::uint64_t frames) {
 // one.
 template <class Dut, class Clocks>
 bool serve_access(Dut& dut, InnerPort& inner, test::FrameStorm& storm, Clocks clocks) {
-  const std::uint64_t access = dut.access_o;  // {request, write, partial, address, data}
-  const bool request = access >> 47 != 0;
+  using namespace bus::register_access;
+  const auto access = [&dut](const bus::Field& field) { return get(dut.access_o, field); };
+  const bool request = access(kRequest) != 0;
   if (request) {
-    const test::FrameStorm::Answer answer = storm.access(
-        (access >> 46 & 1) != 0, static_cast<std::uint32_t>(access >> 32 & 0xFFF), static_cast<std::uint32_t>(access));
+    const test::FrameStorm::Answer answer =
+        storm.access(access(kWrite) != 0, static_cast<std::uint32_t>(access(kAddress)),
+                     static_cast<std::uint32_t>(access(bus::register_access::kData)));
     inner.ask(clocks(), answer.refused, answer.data);
   }
   const InnerPort::Answer answer = inner.now();
-  dut.ack_i = answer.ack;
-  dut.error_i = answer.error;
-  dut.data_i = answer.data;
+  dut.answer_i = in_place(bus::register_answer::kAck, answer.ack) |
+                 in_place(bus::register_answer::kError, answer.error) |
+                 in_place(bus::register_answer::kData, answer.data);
   return request;
 }
 

@@ -8,6 +8,7 @@
 
 #include "Vdut.h"
 #include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
 
 namespace {
 
@@ -95,29 +96,30 @@ class Bench {
     rtl_->arvalid_i = in_.arvalid;
     rtl_->araddr_i = static_cast<SData>(in_.araddr);
     rtl_->rready_i = in_.rready;
-    rtl_->ack_i = in_.ack;
-    rtl_->error_i = in_.error;
-    rtl_->data_i = in_.data;
+    using namespace trammel::bus::register_answer;
+    rtl_->answer_i = in_place(kAck, in_.ack) | in_place(kError, in_.error) | in_place(kData, in_.data);
   }
 
   void compare() {
     const Axi4LitePort::Outputs& out = model_.outputs();
+    using namespace trammel::bus::register_access;
+    const auto access = [this](const trammel::bus::Field& field) { return get(rtl_->access_o, field); };
     checker_.compare("awready_o", rtl_->awready_o, out.awready);
     checker_.compare("wready_o", rtl_->wready_o, out.wready);
     checker_.compare("arready_o", rtl_->arready_o, out.arready);
     checker_.compare("bvalid_o", rtl_->bvalid_o, out.bvalid);
     checker_.compare("rvalid_o", rtl_->rvalid_o, out.rvalid);
-    checker_.compare("request_o", rtl_->access_o >> 47, out.request);
+    checker_.compare("request_o", access(kRequest), out.request);
     checker_.compare("bresp_o", rtl_->bresp_o, out.bresp);
     checker_.compare("rresp_o", rtl_->rresp_o, out.rresp);
-    checker_.compare("access_o, bit without a meaning", rtl_->access_o >> 44 & 1U, 0U);
+    checker_.compare("access_o, port", access(kPort), 0U);
     if (out.rvalid) checker_.compare("rdata_o", rtl_->rdata_o, out.rdata);
     if (!out.request) return;
-    checker_.compare("write_o", rtl_->access_o >> 46 & 1U, out.write);
-    checker_.compare("address_o", rtl_->access_o >> 32 & 0xFFFU, out.address);
+    checker_.compare("write_o", access(kWrite), out.write);
+    checker_.compare("address_o", access(kAddress), out.address);
     if (!out.write) return;
-    checker_.compare("partial_o", rtl_->access_o >> 45 & 1U, out.partial);
-    checker_.compare("data_o", rtl_->access_o & 0xFFFFFFFFU, out.data);
+    checker_.compare("partial_o", access(kPartial), out.partial);
+    checker_.compare("data_o", access(kData), out.data);
   }
 
   struct Handshake {

@@ -16,7 +16,7 @@ namespace {
 using model::PortArbiter;
 
 constexpr unsigned kPorts = TRAMMEL_PORTS;
-constexpr std::uint64_t kComparedSignals = 4;
+constexpr std::uint64_t kComparedSignals = 1 + 3 * kPorts;
 
 class Bench {
  public:
@@ -69,38 +69,45 @@ class Bench {
   }
 
   void answer(bool ack) {
-    dut_->ack_i = ack;
-    dut_->error_i = dice_.chance(2);
-    dut_->data_i = dice_.draw();
+    using namespace bus::register_answer;
+    dut_->answer_i = in_place(kAck, ack) | in_place(kError, dice_.chance(2)) | in_place(kData, dice_.draw());
   }
 
-  // {request, write, partial, 0, address, data} of each port.
   void drive() {
-    std::array<std::uint32_t, 6> words{};
+    using namespace bus::register_access;
     for (unsigned port = 0; port < kPorts; ++port) {
       const PortArbiter::Access& a = accesses_[port];
-      const std::uint64_t access = std::uint64_t{a.request} << 47 | std::uint64_t{a.write} << 46 |
-                                   std::uint64_t{a.partial} << 45 | std::uint64_t{a.address} << 32 | a.data;
-      for (unsigned halfword = 0; halfword < 3; ++halfword) {
-        const unsigned place = 3 * port + halfword;
-        words[place / 2] |= static_cast<std::uint32_t>(access >> (16 * halfword) & 0xFFFF) << (16 * (place % 2));
-      }
+      const auto set = [this, port](const bus::Field& field, std::uint64_t value) {
+        put(dut_->access_i, up(field, kWidth * port), value);
+      };
+      set(kRequest, a.request);
+      set(kPort, 0);
+      set(kWrite, a.write);
+      set(kPartial, a.partial);
+      set(kAddress, a.address);
+      set(kData, a.data);
     }
-    for (std::size_t i = 0; i < (48 * kPorts + 31) / 32; ++i) dut_->access_i[i] = words[i];
   }
 
   void compare(const PortArbiter::Inner& inner, bool ack) {
     check_.next_cycle();
-    check_.compare("request_o", dut_->request_o, inner.access.request);
-    check_.compare("ack_o", dut_->ack_o, ack ? 1U << inner.port : 0U);
-    check_.compare("error_o", dut_->error_o, dut_->error_i);
-    check_.compare("data_o", dut_->data_o, dut_->data_i);
+    using namespace bus::register_access;
+    namespace answer = bus::register_answer;
+    check_.compare("request", get(dut_->access_o, kRequest), inner.access.request);
+    for (unsigned port = 0; port < kPorts; ++port) {
+      const auto answered = [this, port](const bus::Field& field) {
+        return get(dut_->answer_o, up(field, answer::kWidth * port));
+      };
+      check_.compare("ack", answered(answer::kAck), ack && port == inner.port);
+      check_.compare("error", answered(answer::kError), get(dut_->answer_i, answer::kError));
+      check_.compare("data", answered(answer::kData), get(dut_->answer_i, answer::kData));
+    }
     // The access stands from its request to the answer.
     if (!asked_) return;
     const PortArbiter::Access& a = accesses_[inner.port];
-    check_.compare("access_o", dut_->access_o,
-                   std::uint64_t{inner.port} << 46 | std::uint64_t{a.write} << 45 | std::uint64_t{a.partial} << 44 |
-                       std::uint64_t{a.address} << 32 | a.data);
+    check_.compare("access", dut_->access_o & ~in_place(kRequest, 1),
+                   in_place(kPort, inner.port) | in_place(kWrite, a.write) | in_place(kPartial, a.partial) |
+                       in_place(kAddress, a.address) | in_place(kData, a.data));
     ++more_;
   }
 

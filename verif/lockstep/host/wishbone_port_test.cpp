@@ -101,9 +101,8 @@ class Bench {
     dut_->adr_i = static_cast<SData>(in_.adr);
     dut_->sel_i = in_.sel;
     dut_->dat_i = in_.dat;
-    dut_->ack_i = in_.ack;
-    dut_->error_i = in_.error;
-    dut_->data_i = in_.data;
+    using namespace bus::register_answer;
+    dut_->answer_i = in_place(kAck, in_.ack) | in_place(kError, in_.error) | in_place(kData, in_.data);
   }
 
   void compare() {
@@ -111,16 +110,17 @@ class Bench {
     check_.compare("ack_o", dut_->ack_o, out.ack);
     check_.compare("err_o", dut_->err_o, out.err);
     check_.compare("stall_o", dut_->stall_o, out.stall);
-    check_.compare("request_o", dut_->access_o >> 47, out.request);
+    using namespace bus::register_access;
+    check_.compare("request", get(dut_->access_o, kRequest), out.request);
     if (known_) {
       check_.compare("dat_o", dut_->dat_o, out.dat);
       ++more_;
     }
     // The access stands from its request to the answer.
     if (!out.request && !open_) return;
-    check_.compare("access_o", dut_->access_o & ~(1ULL << 47),
-                   std::uint64_t{out.write} << 46 | std::uint64_t{out.partial} << 45 |
-                       std::uint64_t{out.address} << 32 | out.data);
+    check_.compare("access", dut_->access_o & ~in_place(kRequest, 1),
+                   in_place(kWrite, out.write) | in_place(kPartial, out.partial) | in_place(kAddress, out.address) |
+                       in_place(kData, out.data));
     ++more_;
   }
 

@@ -30,7 +30,7 @@ constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::e
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr unsigned kInputs = 5;
 constexpr unsigned kOutputs = 3;
-constexpr std::uint64_t kComparedSignals = 36 + kAxes;
+constexpr std::uint64_t kComparedSignals = 38 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
@@ -290,7 +290,7 @@ class Bench {
     const bool cut = model_->stop().cut;
     const bool geometry_reads = model_->sequencer().geometry_read();
     const bool feed_reads = model_->sequencer().feed_read();
-    const std::uint8_t rtl_address = dut_->loader_address_o;
+    const auto rtl_address = static_cast<std::uint8_t>(get(dut_->start_answer_o, bus::start_answer::kAddress));
     const std::uint8_t model_address = model_->loader().address;
     dut_.clock();
     model_->clock(in_);
@@ -330,7 +330,7 @@ class Bench {
                                       sequencer.geometry_begun};
       const std::uint32_t value = i < 4 ? values[i] : model_->position(static_cast<unsigned>(i - 4));
       if (i == 0)
-        chain_[i].clock(dut_->snapshot_i, value, dut_->chain_i);
+        chain_[i].clock(dut_->snapshot_i, value);
       else
         chain_[i].clock(dut_->snapshot_i, value, chain_[i - 1]);
     }
@@ -354,72 +354,88 @@ class Bench {
     dut_->geometry_word_i = in_.geometry_word;
     dut_->feed_empty_i = in_.feed_empty;
     dut_->feed_word_i = in_.feed_word;
-    dut_->arrive_i = arrive_wire(in_.arrival);
-    dut_->start_i = in_.start;
-    dut_->start_mask_i = in_.start_mask;
-    dut_->loader_data_i = rtl_ram_.data();
-    dut_->snapshot_i = dice_.snapshot();
-    dut_->chain_i = dice_.draw() & 0x3FFFF;
+    dut_->arrival_i = arrival_wire(in_.arrival, in_.full);
+    using namespace bus::start;
+    dut_->start_i = in_place(kStart, in_.start) | in_place(kMask, in_.start_mask) | in_place(kData, rtl_ram_.data());
+    dut_->snapshot_i = dice_.snapshot() & ~bus::in_place({18, 14}, ~std::uint64_t{0});
   }
 
-  std::uint32_t observed(unsigned low, unsigned width) {
-    const std::uint32_t* words = &dut_->observe_o[0];
-    const std::uint64_t two = words[low / 32] | (low % 32 + width > 32 ? std::uint64_t{words[low / 32 + 1]} << 32 : 0);
-    return static_cast<std::uint32_t>(two >> low % 32 & ((std::uint64_t{1} << width) - 1));
+  std::uint64_t observed(unsigned axis, const bus::Field& field) {
+    return get(dut_->observe_o, up(field, bus::axis_observe::kWidth * axis));
   }
 
   void compare() {
     check_.next_cycle();
-    const auto& s = model_->sequencer().outputs();
     const auto& out = model_->outputs();
     const auto& stop = model_->stop();
     check_.compare("geometry_read_o", dut_->geometry_read_o, model_->sequencer().geometry_read());
     check_.compare("feed_read_o", dut_->feed_read_o, model_->sequencer().feed_read());
-    check_.compare("start_done_o", dut_->start_done_o, model_->loader().done);
-    check_.compare("fault_o", dut_->fault_o, stop.fault);
+    const auto answer = [this](const bus::Field& field) { return get(dut_->start_answer_o, field); };
+    check_.compare("start, done", answer(bus::start_answer::kDone), model_->loader().done);
     check_.compare("cut_o", dut_->cut_o, stop.cut);
     check_.compare("closed_o", dut_->closed_o, stop.closed);
     check_.compare("stop_o", dut_->stop_o, stop.stop);
-    const unsigned status = dut_->status_o;
-    check_.compare("busy", status & 1, out.busy);
-    check_.compare("direct", status >> 1 & 1, s.direct);
-    check_.compare("path active", status >> 2 & 1, s.path_active);
-    check_.compare("feed active", status >> 3 & 1, s.feed_active);
-    check_.compare("ended", status >> 4 & 1, s.ended);
-    check_.compare("stopping", status >> 5 & 1, stop.stopping);
-    check_.compare("held_o", dut_->held_o, model_->time().ratio == 0);
-    check_.compare("geometry_begun_o", dut_->geometry_begun_o, s.geometry_begun);
-    check_.compare("feed_begun_o", dut_->feed_begun_o, s.feed_begun);
-    check_.compare("tick", observed(0, 1), s.tick);
-    check_.compare("path tick", observed(1, 1), model_->engines().path_tick);
-    check_.compare("path swap", observed(2, 1), s.swap);
-    check_.compare("feed swap", observed(3, 1), s.feed_swap);
-    check_.compare("path step", observed(4, kAxes), out.path_step);
-    check_.compare("path dir", observed(4 + kAxes, kAxes), out.path_dir);
-    for (unsigned axis = 0; axis < kAxes; ++axis)
-      check_.compare("position", observed(4 + 2 * kAxes + 32 * axis, 32), model_->position(axis));
-    check_.compare("ratio", observed(4 + 34 * kAxes, 17), model_->time().ratio);
-    check_.compare("rate", observed(21 + 34 * kAxes, 32), model_->feed().rate);
+    check_.compare("busy_o", dut_->busy_o, out.busy);
+    compare_states();
+    compare_axes();
     const auto& commands = model_->commands();
     check_.compare("output_o", dut_->output_o, commands.outputs());
     check_.compare("mark_o", dut_->mark_o, commands.mark());
-    const auto& probe = model_->probe();
     check_.compare("probe_o", dut_->probe_o, model_->probe_trips(in_));
-    check_.compare("inputs", dut_->io_o[0] & 0xFFFF, kPathCommands ? commands.levels() : 0);
-    check_.compare("outputs", dut_->io_o[0] >> 16, kPathCommands ? commands.outputs() : 0);
-    check_.compare("marks", dut_->io_o[1], commands.marks() + marks_ahead_);
-    check_.compare("waiting, missed, probed", dut_->io_o[2],
-                   std::uint32_t{model_->sequencer().waits_for_input()} << 2 | std::uint32_t{probe.missed()} << 1 |
-                       std::uint32_t{probe.probed()});
-    check_.compare("stale_o", dut_->stale_o >> 32, s.stale);
-    check_.compare("stale_o, ticks", dut_->stale_o & 0xFFFFFFFF, model_->sequencer().streaming().ticks);
     check_.compare("step_o", dut_->step_o, out.step);
     check_.compare("dir_o", dut_->dir_o, out.dir);
-    check_.compare("start_error_o, with done", dut_->start_done_o & dut_->start_error_o,
+    check_.compare("start, error with done", answer(bus::start_answer::kDone) & answer(bus::start_answer::kError),
                    model_->loader().done && model_->loader().error);
     if (model_->loader().done && model_->loader().error)
-      more("start_reason_o", dut_->start_reason_o, model_->loader().reason);
-    if (chain_.back().known()) more("chain_o", dut_->chain_o, chain_.back().word());
+      more("start, reason", answer(bus::start_answer::kReason), model_->loader().reason);
+    if (chain_.back().known())
+      more("snapshot_o, word", get(dut_->snapshot_o, bus::snapshot::kWord), chain_.back().word());
+  }
+
+  void compare_states() {
+    const auto& s = model_->sequencer().outputs();
+    namespace time = bus::time_state;
+    const auto in_time = [this](const bus::Field& field) { return get(dut_->time_state_o, field); };
+    check_.compare("fault", in_time(time::kFault), model_->stop().fault);
+    check_.compare("feed active", in_time(time::kFeedActive), s.feed_active);
+    check_.compare("stopping", in_time(time::kStopping), model_->stop().stopping);
+    check_.compare("held", in_time(time::kHeld), model_->time().ratio == 0);
+    check_.compare("feed begun", in_time(time::kFeedBegun), s.feed_begun);
+    check_.compare("tick", in_time(time::kTick), s.tick);
+    check_.compare("feed swap", in_time(time::kFeedSwap), s.feed_swap);
+    check_.compare("ratio", in_time(time::kRatio), model_->time().ratio);
+    check_.compare("rate", in_time(time::kRate), model_->feed().rate);
+    namespace geometry = bus::geometry_state;
+    const auto in_geometry = [this](const bus::Field& field) { return get(dut_->geometry_state_o, field); };
+    check_.compare("direct", in_geometry(geometry::kDirect), s.direct);
+    check_.compare("path active", in_geometry(geometry::kPathActive), s.path_active);
+    check_.compare("ended", in_geometry(geometry::kEnded), s.ended);
+    check_.compare("geometry begun", in_geometry(geometry::kGeometryBegun), s.geometry_begun);
+    check_.compare("path swap", in_geometry(geometry::kPathSwap), s.swap);
+    const auto& commands = model_->commands();
+    check_.compare("inputs", get(dut_->pins_state_o, bus::pins_state::kInputs), kPathCommands ? commands.levels() : 0);
+    check_.compare("outputs", get(dut_->pins_state_o, bus::pins_state::kOutputs),
+                   kPathCommands ? commands.outputs() : 0);
+    check_.compare("marks", get(dut_->pins_state_o, bus::pins_state::kMarks), commands.marks() + marks_ahead_);
+    check_.compare("waiting", in_geometry(geometry::kWaiting), model_->sequencer().waits_for_input());
+    check_.compare("probe missed", get(dut_->pins_state_o, bus::pins_state::kProbeMissed), model_->probe().missed());
+    check_.compare("probed", get(dut_->pins_state_o, bus::pins_state::kProbed), model_->probe().probed());
+    check_.compare("stale", in_geometry(geometry::kStale), s.stale);
+    check_.compare("stale ticks", in_geometry(geometry::kStaleTicks), model_->sequencer().streaming().ticks);
+  }
+
+  void compare_axes() {
+    using namespace bus::axis_observe;
+    check_.compare("path tick", dut_->path_tick_o, model_->engines().path_tick);
+    std::uint64_t steps = 0;
+    std::uint64_t dirs = 0;
+    for (unsigned axis = 0; axis < kAxes; ++axis) {
+      steps |= observed(axis, kStep) << axis;
+      dirs |= observed(axis, kDir) << axis;
+      check_.compare("position", observed(axis, kPosition), model_->position(axis));
+    }
+    check_.compare("path step", steps, model_->outputs().path_step);
+    check_.compare("path dir", dirs, model_->outputs().path_dir);
   }
 
   void more(const char* signal, std::uint64_t rtl, std::uint64_t model) {

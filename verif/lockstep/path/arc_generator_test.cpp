@@ -146,14 +146,14 @@ class Bench {
 
   void load(const Arc& arc) {
     const unsigned plane = (arc.state.clockwise ? 1U : 0U) | arc.axis_x << 4 | arc.axis_y << 8;
-    send(load_target::kPlane, plane, 1);
+    send(load_target::kChordPlane, plane, 1);
     // Bits that nothing names.
-    send(load_target::kShifts, arc.state.k | arc.state.m << 8 | (dice_.draw() & 0xE0E0), 1);
-    send(load_target::kState, static_cast<std::uint64_t>(arc.state.x), 4);
-    send(load_target::kState, static_cast<std::uint64_t>(arc.state.y), 4);
-    for (unsigned n = 0; n < kAxes; ++n) send(load_target::kIncrement + n, static_cast<std::uint64_t>(arc.first[n]), 3);
-    send(load_target::kClosing, static_cast<std::uint64_t>(arc.state.closing_x), 3);
-    send(load_target::kClosing, static_cast<std::uint64_t>(arc.state.closing_y), 3);
+    send(load_target::kChordShifts, arc.state.k | arc.state.m << 8 | (dice_.draw() & 0xE0E0), 1);
+    send(load_target::kChordState, static_cast<std::uint64_t>(arc.state.x), 4);
+    send(load_target::kChordState, static_cast<std::uint64_t>(arc.state.y), 4);
+    for (unsigned n = 0; n < kAxes; ++n) send(load_target::increment(n), static_cast<std::uint64_t>(arc.first[n]), 3);
+    send(load_target::kChordClosing, static_cast<std::uint64_t>(arc.state.closing_x), 3);
+    send(load_target::kChordClosing, static_cast<std::uint64_t>(arc.state.closing_y), 3);
     for (unsigned i = dice_.chance(2) ? dice_.below(20) : 0; i != 0; --i) clock();
   }
 
@@ -163,8 +163,8 @@ class Bench {
       clock();
       in_.load = {};
       if (dice_.chance(8)) {  // for somebody else, or nobody
-        in_.load = {dice_.chance(2), static_cast<std::uint8_t>(dice_.chance(2) ? 16 + dice_.below(2) : 30),
-                    static_cast<std::uint16_t>(dice_.draw())};
+        const std::array<std::uint16_t, 3> others{load_target::kTicks, load_target::kPrescale, load_target::kCommand};
+        in_.load = {dice_.chance(2), others[dice_.below(3)], static_cast<std::uint16_t>(dice_.draw())};
         clock();
         in_.load = {};
       }

@@ -2,29 +2,29 @@
 `default_nettype none
 
 module counters (
-    input  wire logic        clk_i,
-    input  wire logic        rst_i,
+    input  wire logic                           clk_i,
+    input  wire logic                           rst_i,
     // count of the next path
-    input  wire logic        load_i,
-    input  wire logic [15:0] word_i,
-    output logic      [39:0] count_o,
-    output logic             zero_o,
+    input  wire logic                           load_i,
+    input  wire logic [                   15:0] word_i,
+    output logic      [                   39:0] count_o,
+    output logic                                zero_o,
     // ticks
-    input  wire logic        swap_i,
-    input  wire logic        take_i,
-    output logic             last_o,
+    input  wire logic                           swap_i,
+    input  wire logic                           take_i,
+    output logic                                last_o,
     // commands begun
-    input  wire logic        cut_i,
-    input  wire logic        begin_i,
-    input  wire logic [ 1:0] snapshot_i,
-    input  wire logic [31:0] chain_i,
-    output logic      [31:0] chain_o,
-    output logic      [31:0] begun_o
+    input  wire logic                           cut_i,
+    input  wire logic                           begin_i,
+    input  wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
+    output logic      [snapshot_pkg::WIDTH-1:0] snapshot_o,
+    output logic      [                   31:0] begun_o
 );
   tick_counter ticks (
       .clk_i,
       .rst_i,
-      .next_i({load_i, word_i}),
+      .next_i(load_i),
+      .word_i,
       .count_o,
       .zero_o,
       .load_i(swap_i),
@@ -38,8 +38,7 @@ module counters (
       .cut_i,
       .begin_i,
       .snapshot_i,
-      .chain_i,
-      .chain_o,
+      .snapshot_o,
       .begun_o
   );
 endmodule

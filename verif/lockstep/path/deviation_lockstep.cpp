@@ -62,11 +62,12 @@ class Bench {
   Model model_;
 };
 
-// A halfword on the bus for somebody else, or none.
+// A halfword on the bus for another unit, or none.
 Model::Inputs not_its_own(Random& random) {
   Model::Inputs in;
-  in.load = {random() % 2 == 0, static_cast<std::uint8_t>(random() % 32), static_cast<std::uint16_t>(random())};
-  if (Model::is_own(in.load)) in.load.valid = false;
+  using namespace model::load_target;
+  in.load = {random() % 2 == 0, static_cast<std::uint16_t>(random() % 512), static_cast<std::uint16_t>(random())};
+  if (in.load.target / kChainsOfAUnit == kDeviation / kChainsOfAUnit) in.load.valid = false;
   return in;
 }
 
@@ -78,7 +79,7 @@ void load(Bench& bench, Random& random, const Path& path, bool gaps) {
     const auto index = static_cast<std::size_t>(chain);
     for (int i = 0; i < static_cast<int>(kChainHalfwords[index]); ++i) {
       Model::Inputs in;
-      in.load = {true, static_cast<std::uint8_t>(model::load_target::kDeviation + index),
+      in.load = {true, static_cast<std::uint16_t>(model::load_target::kDeviation + index),
                  static_cast<std::uint16_t>(values[index] >> (16 * i))};
       bench.clock(in);
       while (gaps && random() % 4 == 0) bench.clock(not_its_own(random));

@@ -95,10 +95,10 @@ class Bench {
   bool load_chords() {
     const unsigned x = dice_.below(kAxes);
     const unsigned y = (x + 1 + dice_.below(kAxes - 1)) % kAxes;
-    bool good = load(load_target::kPlane, y << 8 | x << 4 | dice_.below(2), 1) &&
-                load(load_target::kShifts, (5 + dice_.below(4)) << 8 | dice_.below(32), 1);
-    for (unsigned i = 0; i < 2 && good; ++i) good = load(load_target::kState, dice_.word(), 4);
-    for (unsigned i = 0; i < 2 && good; ++i) good = load(load_target::kClosing, dice_.word(), 3);
+    bool good = load(load_target::kChordPlane, y << 8 | x << 4 | dice_.below(2), 1) &&
+                load(load_target::kChordShifts, (5 + dice_.below(4)) << 8 | dice_.below(32), 1);
+    for (unsigned i = 0; i < 2 && good; ++i) good = load(load_target::kChordState, dice_.word(), 4);
+    for (unsigned i = 0; i < 2 && good; ++i) good = load(load_target::kChordClosing, dice_.word(), 3);
     return good;
   }
 
@@ -186,39 +186,41 @@ class Bench {
   void apply() {
     dut_->cut_i = in_.cut;
     dut_->tick_i = in_.tick;
-    dut_->swap_i = in_.swap;
-    dut_->engine_i = in_.engine;
-    dut_->engine_taken_i = in_.engine_taken;
+    using namespace bus::move;
+    dut_->move_i = static_cast<SData>(in_place(kSwap, in_.swap) | in_place(kEngine, in_.engine) |
+                                      in_place(kTaking, in_.engine_taken) | in_place(bus::move::kAxes, dice_.draw()));
     // Without its valid bit the bus says nothing.
-    dut_->load_i = in_.load.valid ? load_wire(in_.load) : dice_.below(1U << 21);
+    dut_->load_i = in_.load.valid ? load_wire(in_.load) : dice_.below(1U << bus::load_bus::kValid.offset);
   }
 
   void compare() {
     check_.next_cycle();
     const auto& out = model_.outputs();
-    check_.compare("tick_o", dut_->tick_o, out.tick);
-    check_.compare("swap_o", dut_->swap_o, out.swap);
+    const auto drive = [this](const bus::Field& field) { return get(dut_->drive_o, field); };
+    using namespace bus::axis_drive;
+    check_.compare("tick", drive(kTick), out.tick);
+    check_.compare("swap", drive(kSwap), out.swap);
     check_.compare("path_tick_o", dut_->path_tick_o, out.path_tick);
-    check_.compare("step_o", dut_->step_o, out.step);
-    check_.compare("dir_o, of steps", dut_->dir_o & dut_->step_o, out.dir & out.step);
+    check_.compare("step", drive(kStep), out.step);
+    check_.compare("dir, of steps", drive(kDir) & drive(kStep), out.dir & out.step);
     check_.compare("ready_o", dut_->ready_o, out.ready);
     check_.compare("payload_ready_o", dut_->payload_ready_o, out.payload_ready);
     check_.compare("shadows_free_o", dut_->shadows_free_o, out.shadows_free);
-    check_.compare("chord_load_o", dut_->chord_load_o, out.chord_load & ((1U << kAxes) - 1));
-    check_.compare("chord_swap_o", dut_->chord_swap_o, out.chord_swap & ((1U << kAxes) - 1));
-    check_.compare("chord_word_o, of loads", out.chord_load != 0 ? dut_->chord_word_o : 0,
+    check_.compare("chord_load", drive(kChordLoad), out.chord_load & ((1U << kAxes) - 1));
+    check_.compare("chord_swap", drive(kChordSwap), out.chord_swap & ((1U << kAxes) - 1));
+    check_.compare("chord_word, of loads", out.chord_load != 0 ? drive(kChordWord) : 0,
                    out.chord_load != 0 ? out.chord_word : 0);
     chords_ += out.chord_swap != 0 ? 1U : 0U;
     if (!kEngines) {
       check_.compare("done_o", dut_->done_o, 1);
-      check_.compare("elsewhere_o", dut_->elsewhere_o, 0);
-      check_.compare("dir_o", dut_->dir_o, 0);
+      check_.compare("missed_end_o", dut_->missed_end_o, 0);
+      check_.compare("dir", drive(kDir), 0);
       return;
     }
     // Both are asked for while an arc runs.
     check_.compare("done_o, of an arc", on_arc_ && dut_->done_o, on_arc_ && out.done);
     if (!on_arc_ || !out.done) return;
-    check_.compare("elsewhere_o", dut_->elsewhere_o, out.elsewhere);
+    check_.compare("missed_end_o", dut_->missed_end_o, out.elsewhere);
     ++judged_;
   }
 

@@ -132,16 +132,19 @@ class Bench {
   void apply() {
     dut_->cut_i = in_.cut;
     dut_->setting_i = wire(in_.setting);
-    const unsigned writes = in_.write ? 1U << (dice_.chance(2) ? 2 : 0) : 0;
-    const unsigned ends = in_.whole ? (dice_.chance(3) ? 1U << 4 : dice_.chance(2) ? 1U << 3 : 1U << 1) : 0;
-    dut_->arrive_i = (writes | ends) << 16 | (dice_.draw() & 0x20FFFF);
+    using namespace bus::arrival;
+    dut_->arrival_i = dice_.draw() & static_cast<IData>(in_place(kFull, 1) | in_place(kHalfword, ~0U));
+    if (in_.write) put(dut_->arrival_i, dice_.chance(2) ? kGeometryWrite : kFeedWrite, 1);
+    if (in_.whole) put(dut_->arrival_i, dice_.chance(3) ? kDrop : dice_.chance(2) ? kGeometryCommit : kFeedCommit, 1);
     dut_->rest_i = in_.rest;
     dut_->begin_i = in_.begin;
     dut_->count_i = began_with_ != 0 ? began_with_ : dice_.word() & kMost;
     // A tick that is not beyond the line's end is none of its business.
     const bool gone_on = in_.stale_tick || (was_stale_ && dice_.chance(2));
     dut_->take_i = in_.stale_tick || (!gone_on && dice_.chance(2));
-    dut_->period_i = static_cast<CData>(unsigned{in_.goes_on} << 2 | unsigned{gone_on} << 1 | unsigned{in_.period});
+    dut_->goes_on_i = in_.goes_on;
+    dut_->stale_i = gone_on;
+    dut_->period_ends_i = in_.period;
   }
 
   void compare() {

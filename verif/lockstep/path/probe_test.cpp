@@ -78,8 +78,8 @@ class Bench {
     check_.compare("halt_o", dut_->halt_o, model_.halt());
     check_.compare("drop_o", dut_->drop_o, model_.drops());
     check_.compare("busy_o", dut_->busy_o, model_.busy());
-    check_.compare("probed", dut_->status_o & 1, model_.probed());
-    check_.compare("missed", dut_->status_o >> 1, model_.missed());
+    check_.compare("probed", dut_->probed_o, model_.probed());
+    check_.compare("missed", dut_->missed_o, model_.missed());
   }
 
   Simulated<Vdut> dut_;
@@ -138,7 +138,7 @@ void random_courses() {
     in.clear = dice.chance(20);
     in.cut = dice.chance(200);
     in.load = {dice.chance(12),
-               static_cast<std::uint8_t>(dice.chance(3) ? dice.below(32) : model::load_target::kCommand),
+               static_cast<std::uint16_t>(dice.chance(3) ? dice.below(512) : model::load_target::kCommand),
                static_cast<std::uint16_t>(dice.draw())};
     if (dice.chance(5000))
       bench.reset(in);

@@ -16,7 +16,7 @@ namespace trammel::lockstep {
 class SequencersBench {
  public:
   static constexpr unsigned kAxes = 4;
-  static constexpr std::uint64_t kComparedSignals = 32;
+  static constexpr std::uint64_t kComparedSignals = 33;
   using Stretch = Programs::Stretch;
 
   explicit SequencersBench(std::uint64_t seed)
@@ -118,7 +118,7 @@ class SequencersBench {
     model_.clock(in_);
     probe_.clock(probe_in);
     chain_[1].clock(dut_->snapshot_i, begun[1], chain_[0]);
-    chain_[0].clock(dut_->snapshot_i, begun[0], dut_->chain_i);
+    chain_[0].clock(dut_->snapshot_i, begun[0]);
     geometry_.offer(dice_.chance(pace.write));
     geometry_.clock(geometry_reads, in_.cut);
     feed_.offer(dice_.chance(pace.write));
@@ -251,7 +251,9 @@ class SequencersBench {
     if (direct_step_ >= 3 && direct_step_ < 6) {
       in_.direct_load = halfword(model::load_target::kTicks, length_, direct_step_ - 3);
     } else if (direct_step_ == 6) {
-      in_.direct_load = halfword(dice_.below(16), dice_.word(), 0);
+      const unsigned axis = dice_.below(8);
+      namespace target = model::load_target;
+      in_.direct_load = halfword(dice_.chance(2) ? target::increment(axis) : target::count(axis), dice_.word(), 0);
     } else if (direct_step_ == 15) {
       check_.event("direct move", length_);
       in_.direct_go = true;
@@ -323,10 +325,13 @@ class SequencersBench {
   void apply() {
     dut_->cut_i = in_.cut;
     dut_->setting_i = wire(in_.setting);
-    dut_->arrive_i = (in_.arrived ? 1U << 20 : 0) | (in_.arrives ? 1U << 18 : 0);
-    dut_->drop_i = static_cast<CData>(unsigned{in_.drop} << 1 | unsigned{in_.halt});
-    dut_->probe_says_i =
-        static_cast<CData>(unsigned{in_.stays} << 2 | unsigned{in_.probe_taken} << 1 | unsigned{in_.met});
+    dut_->arrival_i = static_cast<IData>(in_place(bus::arrival::kDrop, in_.arrived) |
+                                         in_place(bus::arrival::kGeometryWrite, in_.arrives));
+    dut_->drop_i = in_.drop;
+    dut_->halt_i = in_.halt;
+    namespace probe = bus::probe;
+    dut_->probe_i = static_cast<CData>(in_place(probe::kMet, in_.met) | in_place(probe::kTaken, in_.probe_taken) |
+                                       in_place(probe::kStays, in_.stays));
     dut_->geometry_empty_i = in_.geometry_empty;
     dut_->geometry_word_i = in_.geometry_word;
     dut_->feed_empty_i = in_.feed_empty;
@@ -337,58 +342,62 @@ class SequencersBench {
     dut_->enable_i = in_.enable;
     dut_->wait_i = in_.wait;
     dut_->feed_tick_i = in_.feed_tick;
-    dut_->engine_ready_i = in_.engine_ready;
-    dut_->payload_ready_i = in_.payload_ready;
-    dut_->shadows_free_i = in_.shadows_free;
-    dut_->engine_done_i = in_.engine_done;
-    dut_->elsewhere_i = in_.elsewhere;
-    dut_->axes_live_i = in_.axes_live;
+    using namespace bus::engines;
+    dut_->engines_i =
+        static_cast<CData>(in_place(kReady, in_.engine_ready) | in_place(kPayloadReady, in_.payload_ready) |
+                           in_place(kShadowsFree, in_.shadows_free) | in_place(kDone, in_.engine_done) |
+                           in_place(kMissedEnd, in_.elsewhere) | in_place(kLive, in_.axes_live));
     dut_->snapshot_i = dice_.snapshot();
-    dut_->chain_i = dice_.draw();
   }
 
   void compare() {
     check_.next_cycle();
     const auto& out = model_.outputs();
     check_.compare("geometry_read_o", dut_->geometry_read_o, model_.geometry_read());
-    check_.compare("engine_taken_o", dut_->engine_taken_o, model_.engine_taken());
+    const auto move = [this](const bus::Field& field) { return get(dut_->move_o, field); };
+    check_.compare("move_o, taking", move(bus::move::kTaking), model_.engine_taken());
     check_.compare("feed_read_o", dut_->feed_read_o, model_.feed_read());
-    check_.compare("direct_o", dut_->direct_o, out.direct);
+    check_.compare("move_o, direct", move(bus::move::kDirect), out.direct);
     check_.compare("feed_enable_o", dut_->feed_enable_o, out.feed_enable);
     check_.compare("feed_clear_o", dut_->feed_clear_o, out.feed_clear);
     check_.compare("tick_o", dut_->tick_o, out.tick);
-    check_.compare("swap_o", dut_->swap_o, out.swap);
+    check_.compare("move_o, swap", move(bus::move::kSwap), out.swap);
     check_.compare("feed_swap_o", dut_->feed_swap_o, out.feed_swap);
-    check_.compare("load_o, valid", dut_->load_o >> 21, model_.load().valid);
-    check_.compare("feed_load_o, valid", dut_->feed_load_o >> 19, model_.feed_load().valid);
-    check_.compare("mismatch_o", dut_->mismatch_o, out.mismatch);
-    check_.compare("incomplete_o", dut_->incomplete_o, out.incomplete);
+    check_.compare("load_o, valid", get(dut_->load_o, bus::load_bus::kValid), model_.load().valid);
+    check_.compare("feed_load_o, valid", get(dut_->feed_load_o, bus::feed_load::kValid), model_.feed_load().valid);
+    const auto path = [this](const bus::Field& field) { return get(dut_->path_o, field); };
+    const auto command = [this](const bus::Field& field) { return get(dut_->commands_o, field); };
+    check_.compare("mismatch", path(bus::path::kMismatch), out.mismatch);
+    check_.compare("incomplete", path(bus::path::kIncomplete), out.incomplete);
     const bool dropping = in_.drop;  // combinational: of the clock that is over
-    check_.compare("instant_o", dut_->instant_o,
-                   unsigned{model_.takes_mark(dropping)} << 1 | unsigned{model_.takes_output(dropping)});
-    check_.compare("PROBE waits", dut_->probe_at_o & 1, model_.probe_waits());
-    check_.compare("PROBE_END has begun", dut_->probe_at_o >> 1 & 1, model_.probe_ends());
-    check_.compare("WAIT_INPUT has begun", dut_->probe_at_o >> 2, model_.waits_for_input());
-    check_.compare("over_o", dut_->over_o, out.over);
-    check_.compare("path_active_o", dut_->path_active_o, out.path_active);
+    check_.compare("take mark", command(bus::commands::kTakeMark), model_.takes_mark(dropping));
+    check_.compare("take output", command(bus::commands::kTakeOutput), model_.takes_output(dropping));
+    check_.compare("probe waits", command(bus::commands::kProbeWaits), model_.probe_waits());
+    check_.compare("probe ends", command(bus::commands::kProbeEnds), model_.probe_ends());
+    const auto state = [this](const bus::Field& field) { return get(dut_->geometry_state_o, field); };
+    namespace geometry = bus::geometry_state;
+    check_.compare("waiting", state(geometry::kWaiting), model_.waits_for_input());
+    check_.compare("over", command(bus::commands::kOver), out.over);
+    check_.compare("path active", state(geometry::kPathActive), out.path_active);
     check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
     check_.compare("moving_o", dut_->moving_o, out.moving);
     check_.compare("class_o", dut_->class_o, out.piece_class);
-    check_.compare("ended_o", dut_->ended_o, out.ended);
+    check_.compare("ended", state(geometry::kEnded), out.ended);
     check_.compare("idle_o", dut_->idle_o, out.idle);
-    check_.compare("geometry_begun_o", dut_->geometry_begun_o, out.geometry_begun);
+    check_.compare("geometry begun", state(geometry::kGeometryBegun), out.geometry_begun);
     check_.compare("feed_begun_o", dut_->feed_begun_o, out.feed_begun);
-    check_.compare("streaming_o", dut_->streaming_o, model_.streaming().on);
-    check_.compare("missing_o", dut_->missing_o, model_.streaming().missing);
-    check_.compare("stale_o", dut_->stale_o >> 32, out.stale);
-    check_.compare("stale_o, ticks", dut_->stale_o & 0xFFFFFFFF, model_.streaming().ticks);
+    check_.compare("streaming", path(bus::path::kStreaming), model_.streaming().on);
+    check_.compare("missing", path(bus::path::kMissing), model_.streaming().missing);
+    check_.compare("stale", state(geometry::kStale), out.stale);
+    check_.compare("stale ticks", state(geometry::kStaleTicks), model_.streaming().ticks);
     check_.compare("spent_o", dut_->spent_o, out.spent);
     // What stands beside an event, where there is one.
     const std::uint64_t beside = out.swap ? std::uint64_t{out.engine} << 8 | out.active : 0;
-    check_.compare("active_o and engine_o", out.swap ? dut_->engine_o << 8 | dut_->active_o : 0, beside);
+    check_.compare("move_o, axes and engine", out.swap ? move(bus::move::kEngine) << 8 | move(bus::move::kAxes) : 0,
+                   beside);
     if (model_.load().valid) more("load_o", dut_->load_o, load_wire(model_.load()));
     if (model_.feed_load().valid) more("feed_load_o", dut_->feed_load_o, feed_wire(model_.feed_load()));
-    if (chain_[1].known()) more("chain_o", dut_->chain_o, chain_[1].word());
+    if (chain_[1].known()) more("snapshot_o, word", get(dut_->snapshot_o, bus::snapshot::kWord), chain_[1].word());
   }
 
   void more(const char* signal, std::uint64_t rtl, std::uint64_t model) {

@@ -89,9 +89,9 @@ class Bench {
 
   void clock() {
     drive();
-    const std::uint32_t snapshot = rtl_->snapshot_o;
-    for (std::size_t i = chain_.size(); i-- > 0;)
-      chain_[i].clock(snapshot, latched_value(i), i == 0 ? rtl_->chain_o : chain_[i - 1].word());
+    const std::uint64_t snapshot = rtl_->snapshot_o;
+    for (std::size_t i = chain_.size(); i-- > 1;) chain_[i].clock(snapshot, latched_value(i), chain_[i - 1]);
+    chain_[0].clock(snapshot, latched_value(0));
     rtl_.clock();
     model_.clock(in_);
     compare();
@@ -279,39 +279,69 @@ class Bench {
   }
 
   void drive() {
-    rtl_->request_i = in_.request;
-    rtl_->access_i = std::uint64_t{in_.port} << 46 | std::uint64_t{in_.write} << 45 | std::uint64_t{in_.partial} << 44 |
-                     std::uint64_t{in_.address} << 32 | in_.data;
-    rtl_->motion_i = static_cast<CData>(in_.stopping << 5 | in_.ended << 4 | in_.feed_active << 3 |
-                                        in_.path_active << 2 | in_.direct << 1 | static_cast<int>(in_.busy));
-    rtl_->held_i = in_.ratio == 0;
-    rtl_->late_i[0] = in_.underruns;
-    rtl_->late_i[1] = std::uint32_t{in_.underrun} | in_.stale_ticks << 1;
-    rtl_->late_i[2] = std::uint32_t{in_.stale} << 1 | in_.stale_ticks >> 31;
-    rtl_->fault_i = in_.fault;
-    rtl_->room_i = std::uint32_t{in_.geometry_room} << 16 | in_.feed_room;
-    rtl_->low_i = static_cast<CData>(in_.feed_low << 1 | static_cast<int>(in_.geometry_low));
-    rtl_->begun_i = std::uint64_t{in_.geometry_begun} << 32 | in_.feed_begun;
-    rtl_->checker_i = std::uint32_t{in_.incomplete} << 18 | std::uint32_t{in_.checker_ready} << 17 |
-                      std::uint32_t{in_.checker_refuse} << 16 | std::uint32_t{in_.checker_number} << 8 |
-                      in_.checker_reason;
-    rtl_->start_answer_i = static_cast<SData>(in_.start_done << 9 | in_.start_error << 8 | in_.start_reason);
-    rtl_->loader_address_i = in_.loader_address;
+    drive_access();
+    drive_state();
+    namespace stream = trammel::bus::stream_answer;
+    rtl_->stream_answer_i = static_cast<IData>(
+        in_place(stream::kPartial, in_.incomplete) | in_place(stream::kReady, in_.checker_ready) |
+        in_place(stream::kRefuse, in_.checker_refuse) | in_place(stream::kNumber, in_.checker_number) |
+        in_place(stream::kReason, in_.checker_reason));
+    namespace start = trammel::bus::start_answer;
+    rtl_->start_answer_i =
+        static_cast<IData>(in_place(start::kDone, in_.start_done) | in_place(start::kError, in_.start_error) |
+                           in_place(start::kReason, in_.start_reason) | in_place(start::kAddress, in_.loader_address));
     rtl_->stop_i = in_.stop;
     rtl_->probe_i = in_.probe;
     rtl_->mark_i = in_.mark;
-    rtl_->io_i[0] = std::uint32_t{in_.outputs} << 16 | in_.inputs;
-    rtl_->io_i[1] = in_.marks;
-    rtl_->io_i[2] = std::uint32_t{in_.waiting} << 2 | std::uint32_t{in_.probe_missed} << 1 | std::uint32_t{in_.probed};
-    rtl_->chain_i = chain_.back().word();
+    rtl_->snapshot_i = in_place(trammel::bus::snapshot::kWord, chain_.back().word());
+  }
+
+  void drive_access() {
+    using namespace trammel::bus::register_access;
+    rtl_->access_i = in_place(kRequest, in_.request) | in_place(kPort, in_.port) | in_place(kWrite, in_.write) |
+                     in_place(kPartial, in_.partial) | in_place(kAddress, in_.address) | in_place(kData, in_.data);
+  }
+
+  void drive_state() {
+    rtl_->busy_i = in_.busy;
+    namespace time = trammel::bus::time_state;
+    put(rtl_->time_state_i, time::kFault, in_.fault);
+    put(rtl_->time_state_i, time::kFeedBegun, in_.feed_begun);
+    put(rtl_->time_state_i, time::kUnderruns, in_.underruns);
+    put(rtl_->time_state_i, time::kUnderrun, in_.underrun);
+    put(rtl_->time_state_i, time::kHeld, in_.ratio == 0);
+    put(rtl_->time_state_i, time::kFeedActive, in_.feed_active);
+    put(rtl_->time_state_i, time::kStopping, in_.stopping);
+    namespace geometry = trammel::bus::geometry_state;
+    namespace pins = trammel::bus::pins_state;
+    put(rtl_->geometry_state_i, geometry::kGeometryBegun, in_.geometry_begun);
+    put(rtl_->pins_state_i, pins::kInputs, in_.inputs);
+    put(rtl_->pins_state_i, pins::kOutputs, in_.outputs);
+    put(rtl_->pins_state_i, pins::kMarks, in_.marks);
+    put(rtl_->geometry_state_i, geometry::kStaleTicks, in_.stale_ticks);
+    put(rtl_->geometry_state_i, geometry::kStale, in_.stale);
+    put(rtl_->pins_state_i, pins::kProbed, in_.probed);
+    put(rtl_->pins_state_i, pins::kProbeMissed, in_.probe_missed);
+    put(rtl_->geometry_state_i, geometry::kWaiting, in_.waiting);
+    put(rtl_->geometry_state_i, geometry::kPathActive, in_.path_active);
+    put(rtl_->geometry_state_i, geometry::kEnded, in_.ended);
+    put(rtl_->geometry_state_i, geometry::kDirect, in_.direct);
+    namespace queues = trammel::bus::queue_state;
+    rtl_->queue_state_i = in_place(queues::kGeometryLow, in_.geometry_low) | in_place(queues::kFeedLow, in_.feed_low) |
+                          in_place(queues::kGeometryRoom, in_.geometry_room) |
+                          in_place(queues::kFeedRoom, in_.feed_room);
   }
 
   void compare() {
     checker_.next_cycle();
     const RegisterFile::Outputs& out = model_.outputs();
-    checker_.compare("ack_o", rtl_->ack_o, out.ack);
-    checker_.compare("error_o", rtl_->error_o, out.error);
-    checker_.compare("data_o", rtl_->data_o, out.data);
+    namespace answer = trammel::bus::register_answer;
+    namespace setting = trammel::bus::setting_bus;
+    namespace snapshot = trammel::bus::snapshot;
+    namespace start = trammel::bus::start;
+    checker_.compare("ack", get(rtl_->answer_o, answer::kAck), out.ack);
+    checker_.compare("error", get(rtl_->answer_o, answer::kError), out.error);
+    checker_.compare("data", get(rtl_->answer_o, answer::kData), out.data);
     checker_.compare("status_o", rtl_->status_o, model_.status(in_));
     checker_.compare("irq_o", rtl_->irq_o, out.irq);
     checker_.compare("clear_fault_o", rtl_->clear_fault_o, out.clear_fault);
@@ -319,14 +349,14 @@ class Bench {
     checker_.compare("probe_clear_o", rtl_->probe_clear_o, out.probe_clear);
     checker_.compare("flush_o", rtl_->flush_o, out.flush);
     checker_.compare("stream_write_o", rtl_->stream_write_o, out.stream_write);
-    checker_.compare("start_o", rtl_->start_o, out.start);
-    checker_.compare("setting_o, set", rtl_->setting_o >> 40, out.setting.set);
-    checker_.compare("snapshot_o, strobe", rtl_->snapshot_o & 1U, out.strobe);
-    checker_.compare("snapshot_o, shift at rest", rtl_->snapshot_o >> 1 & ~(rtl_->status_o >> 8) & 1U, 0U);
+    checker_.compare("start", get(rtl_->start_o, start::kStart), out.start);
+    checker_.compare("setting_o, set", get(rtl_->setting_o, setting::kSet), out.setting.set);
+    checker_.compare("snapshot_o, strobe", get(rtl_->snapshot_o, snapshot::kStrobe), out.strobe);
+    checker_.compare("snapshot_o, shift at rest", get(rtl_->snapshot_o, snapshot::kShift) & ~(rtl_->status_o >> 8), 0U);
     if (out.setting.set) more("setting_o", rtl_->setting_o, trammel::lockstep::wire(out.setting));
-    if (out.stream_write) more("setting_o, word", rtl_->setting_o & 0xFFFF'FFFF, out.stream_word);
-    if (out.start) more("setting_o, mask", rtl_->setting_o & 0xFF, out.start_mask);
-    if (out.loader_valid) more("loader_data_o", rtl_->loader_data_o, out.loader_data);
+    if (out.stream_write) more("setting_o, word", get(rtl_->setting_o, setting::kData), out.stream_word);
+    if (out.start) more("start_o, mask", get(rtl_->start_o, start::kMask), out.start_mask);
+    if (out.loader_valid) more("start_o, data", get(rtl_->start_o, start::kData), out.loader_data);
   }
 
   void more(const char* signal, std::uint64_t rtl, std::uint64_t model) {

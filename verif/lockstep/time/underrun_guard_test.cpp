@@ -275,8 +275,7 @@ class Bench {
     dut_->cut_i = in_.cut;
     dut_->lost_i = in_.lost;
     dut_->idle_i = in_.idle;
-    dut_->arrive_i = arrive_wire(in_.arrival);
-    dut_->full_i = in_.full;
+    dut_->arrival_i = arrival_wire(in_.arrival, in_.full);
     dut_->load_i = feed_wire(in_.load);
     dut_->take_i = in_.take;
     dut_->swap_i = in_.swap;

@@ -112,13 +112,13 @@ class ArcGenerator {
 
   void take(const LoadWord& load) {
     ChordRotation::State& state = path_.state;
-    if (load.to(load_target::kState)) join<64>(state.x, state.y, load.word);
-    if (load.to(load_target::kClosing)) join<48>(state.closing_x, state.closing_y, load.word);
-    if (load.to(load_target::kShifts)) {
+    if (load.to(load_target::kChordState)) join<64>(state.x, state.y, load.word);
+    if (load.to(load_target::kChordClosing)) join<48>(state.closing_x, state.closing_y, load.word);
+    if (load.to(load_target::kChordShifts)) {
       state.k = load.word & 31;
       state.m = load.word >> 8 & 31;
     }
-    if (load.to(load_target::kPlane)) {
+    if (load.to(load_target::kChordPlane)) {
       state.clockwise = (load.word & 1) != 0;
       axis_x_ = static_cast<std::uint8_t>(1U << (load.word >> 4 & 7));
       axis_y_ = static_cast<std::uint8_t>(1U << (load.word >> 8 & 7));

@@ -64,8 +64,8 @@ class Axis {
     generator.active = in.active;
     generator.counted = generator.mirror = in.direct;
     generator.chord = in.chord_swap;
-    generator.load_increment = in.load.to(load_target::kIncrement + number_) || in.chord_load;
-    generator.load_count = in.load.to(load_target::kCount + number_);
+    generator.load_increment = in.load.to(load_target::increment(number_)) || in.chord_load;
+    generator.load_count = in.load.to(load_target::count(number_));
     generator.word = in.chord_load ? in.chord_word : in.load.word;
     generator_.clock(generator);
     if (in.setting.set) set(in.setting);

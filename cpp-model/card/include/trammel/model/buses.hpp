@@ -16,33 +16,36 @@ struct Setting {
 // A halfword on the load bus or the feed load, and the chain that shifts it in.
 struct LoadWord {
   bool valid = false;
-  std::uint8_t target = 0;
+  std::uint16_t target = 0;
   std::uint16_t word = 0;
 
   bool to(unsigned chain) const { return valid && target == chain; }
 };
 
-// Targets of the load bus.
+// Targets of the load bus: unit * 16 + the chain within the unit. Units 0 to 7 are the axes.
 namespace load_target {
-inline constexpr unsigned kIncrement = 0;  // of axis n: kIncrement + n
-inline constexpr unsigned kCount = 8;      // of axis n in direct mode: kCount + n
-inline constexpr unsigned kTicks = 16;
-inline constexpr unsigned kPrescale = 17;
-inline constexpr unsigned kDeviation = 18;
-inline constexpr unsigned kGradientX = 19;
-inline constexpr unsigned kGradientY = 20;
-inline constexpr unsigned kHalfX = 21;
-inline constexpr unsigned kHalfY = 22;
-inline constexpr unsigned kEndX = 23;
-inline constexpr unsigned kEndY = 24;
-inline constexpr unsigned kQuadrants = 25;
-inline constexpr unsigned kPlane = 26;
+inline constexpr unsigned kChainsOfAUnit = 16;
+constexpr unsigned increment(unsigned axis) { return axis * kChainsOfAUnit; }
+constexpr unsigned count(unsigned axis) { return axis * kChainsOfAUnit + 1; }  // in direct mode
+inline constexpr unsigned kTicks = 8 * kChainsOfAUnit;
+inline constexpr unsigned kPrescale = 9 * kChainsOfAUnit;
+// The deviation accumulator's.
+inline constexpr unsigned kDeviation = 10 * kChainsOfAUnit;
+inline constexpr unsigned kGradientX = kDeviation + 1;
+inline constexpr unsigned kGradientY = kDeviation + 2;
+inline constexpr unsigned kHalfX = kDeviation + 3;
+inline constexpr unsigned kHalfY = kDeviation + 4;
+inline constexpr unsigned kEndX = kDeviation + 5;
+inline constexpr unsigned kEndY = kDeviation + 6;
+inline constexpr unsigned kQuadrants = kDeviation + 7;
+inline constexpr unsigned kPlane = kDeviation + 8;
 // The arc generator's.
-inline constexpr unsigned kShifts = 27;
-inline constexpr unsigned kState = 28;    // X, then Y
-inline constexpr unsigned kClosing = 29;  // of x, then of y
-inline constexpr unsigned kCommand = 30;  // fields of commands that are no paths
-inline constexpr unsigned kNowhere = 31;
+inline constexpr unsigned kChordShifts = 11 * kChainsOfAUnit;
+inline constexpr unsigned kChordState = kChordShifts + 1;    // X, then Y
+inline constexpr unsigned kChordClosing = kChordShifts + 2;  // of x, then of y
+inline constexpr unsigned kChordPlane = kChordShifts + 8;
+inline constexpr unsigned kCommand = 12 * kChainsOfAUnit;  // fields of commands that are no paths
+inline constexpr unsigned kNowhere = 31 * kChainsOfAUnit + 15;
 }  // namespace load_target
 
 // Targets of the feed load.

@@ -190,10 +190,6 @@ class DeviationAccumulator {
   // In a step or before the first one, and no load may be asked for yet.
   bool stepping() const { return wait_ > kAskClocks; }
 
-  static bool is_own(const LoadWord& load) {
-    return load.valid && load.target >= load_target::kDeviation && load.target <= load_target::kPlane;
-  }
-
   // Nothing is under way: without inputs no output will change.
   bool quiet() const { return wait_ == 0 && !emit_ && !out_.step_x && !out_.step_y; }
 
@@ -203,6 +199,10 @@ class DeviationAccumulator {
   }
 
  private:
+  static bool is_own(const LoadWord& load) {
+    return load.valid && load.target >= load_target::kDeviation && load.target <= load_target::kPlane;
+  }
+
   void take(const LoadWord& load);
 
   unsigned compare_clocks() const { return path_.state.eight_directions ? kCompareClocks : 0; }

@@ -1,0 +1,21 @@
+// What the geometry part says to the time part.
+`default_nettype none
+package path_pkg;
+
+  // Fields, lowest bit first; each ends where the next one begins.
+  localparam int TAKING = 0;  // a path takes ticks
+  localparam int DIRECT = 1;  // a direct move is under way
+  localparam int STREAMING = 2;  // the mode of position streaming
+  localparam int BARRIER_BEGINS = 3;  // event
+  localparam int BARRIER_COUNTS = 4;  // the barrier counts clocks
+  localparam int BARRIER_DONE = 5;  // event: both queues go on
+  localparam int DROP = 6;  // commands up to PROBE_END are not carried out
+  localparam int HALT = 7;  // event: what runs ends here
+  localparam int HOLD = 8;  // a probe has tripped: the time base slows down to rest
+  localparam int MISMATCH = 9;  // event: TICK_MISMATCH
+  localparam int INCOMPLETE = 10;  // event: PATH_INCOMPLETE
+  localparam int MISSING = 11;  // event: MISSING_PERIOD
+  localparam int WIDTH = 12;
+
+endpackage
+`default_nettype wire

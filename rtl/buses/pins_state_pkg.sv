@@ -1,0 +1,26 @@
+// What the registers see of inputs, outputs, MARKs and the probe.
+`default_nettype none
+package pins_state_pkg;
+
+  // Fields, lowest bit first; each ends where the next one begins.
+  localparam int INPUTS = 0;  // 16 bits: levels, after synchroniser and polarity (combinational)
+  localparam int OUTPUTS = 16;  // 16 bits: levels
+  localparam int MARKS = 32;  // 32 bits: MARKs that have taken effect
+  localparam int PROBED = 64;  // the probe has tripped
+  localparam int PROBE_MISSED = 65;  // PROBE_END came before an edge
+  localparam int WIDTH = 66;
+
+  function automatic logic [15:0] inputs(input logic [WIDTH-1:0] state);
+    inputs = state[INPUTS+:16];
+  endfunction
+
+  function automatic logic [15:0] outputs(input logic [WIDTH-1:0] state);
+    outputs = state[OUTPUTS+:16];
+  endfunction
+
+  function automatic logic [31:0] marks(input logic [WIDTH-1:0] state);
+    marks = state[MARKS+:32];
+  endfunction
+
+endpackage
+`default_nettype wire

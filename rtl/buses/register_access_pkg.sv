@@ -1,0 +1,49 @@
+// An access to the registers. `request` is an event; the other fields stand still from it until the answer, that clock
+// included.
+`default_nettype none
+package register_access_pkg;
+
+  // Fields, lowest bit first; each ends where the next one begins.
+  localparam int DATA = 0;  // 32 bits: of a write
+  localparam int ADDRESS = 32;  // 12 bits: bytes
+  localparam int PARTIAL = 44;  // a write without all its byte strobes
+  localparam int WRITE = 45;  // 0: a read
+  localparam int PORT = 46;  // 2 bits: the host port that asks; 0 in front of the arbiter
+  localparam int REQUEST = 48;  // event
+  localparam int WIDTH = 49;
+
+  function automatic logic [31:0] data(input logic [WIDTH-1:0] access);
+    data = access[DATA+:32];
+  endfunction
+
+  function automatic logic [11:0] address(input logic [WIDTH-1:0] access);
+    address = access[ADDRESS+:12];
+  endfunction
+
+  function automatic logic [1:0] port(input logic [WIDTH-1:0] access);
+    port = access[PORT+:2];
+  endfunction
+
+  // The register's address in words of 4 bytes.
+  function automatic logic [9:0] word(input logic [WIDTH-1:0] access);
+    word = access[ADDRESS+2+:10];
+  endfunction
+
+  // Whether the address is that of a whole word.
+  function automatic logic aligned(input logic [WIDTH-1:0] access);
+    aligned = access[ADDRESS+:2] == 2'd0;
+  endfunction
+
+  function automatic logic [WIDTH-1:0] pack(input logic now, input logic is_write, input logic is_partial,
+                                            input logic [11:0] place, input logic [31:0] value);
+    pack = {now, 2'd0, is_write, is_partial, place, value};
+  endfunction
+
+  // The access as the arbiter passes it on: its request when `now`, from the port `from`.
+  function automatic logic [WIDTH-1:0] passed_on(input logic [WIDTH-1:0] access, input logic now,
+                                                 input logic [1:0] from);
+    passed_on = {now, from, access[PORT-1:0]};
+  endfunction
+
+endpackage
+`default_nettype wire

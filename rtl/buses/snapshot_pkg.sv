@@ -1,0 +1,26 @@
+// The snapshot chain, which passes from one owner of a value to the next: at a strobe each owner takes its value, at a
+// shift the word that comes in.
+`default_nettype none
+package snapshot_pkg;
+
+  // Fields, lowest bit first; each ends where the next one begins.
+  localparam int WORD = 0;  // 32 bits: of the owner before
+  localparam int STROBE = 32;  // event
+  localparam int SHIFT = 33;  // event, never with a strobe
+  localparam int WIDTH = 34;
+
+  function automatic logic [31:0] word(input logic [WIDTH-1:0] chain);
+    word = chain[WORD+:32];
+  endfunction
+
+  // The chain as it goes on behind an owner that holds `value`.
+  function automatic logic [WIDTH-1:0] with_word(input logic [WIDTH-1:0] chain, input logic [31:0] value);
+    with_word = {chain[SHIFT], chain[STROBE], value};
+  endfunction
+
+  function automatic logic [WIDTH-1:0] pack(input logic shift_now, input logic strobe_now, input logic [31:0] value);
+    pack = {shift_now, strobe_now, value};
+  endfunction
+
+endpackage
+`default_nettype wire

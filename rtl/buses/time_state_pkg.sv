@@ -1,0 +1,40 @@
+// What the registers and the lockstep see of the time part.
+`default_nettype none
+package time_state_pkg;
+
+  // Fields, lowest bit first; each ends where the next one begins.
+  localparam int FAULT = 0;  // 32 bits: the register FAULT
+  localparam int FEED_BEGUN = 32;  // 32 bits: the register FEED_BEGUN
+  localparam int UNDERRUNS = 64;  // 32 bits: how often the under-run hold has begun
+  localparam int RATE = 96;  // 32 bits: ticks per enabled clock, 2^-32; of the lockstep alone
+  localparam int RATIO = 128;  // 17 bits: enabled clocks per clock, 2^-16; of the lockstep alone
+  localparam int TICK = 145;  // event, of the lockstep alone
+  localparam int FEED_SWAP = 146;  // event: a feed piece begins; of the lockstep alone
+  localparam int UNDERRUN = 147;  // the under-run hold is in force, or keeps a piece waiting
+  localparam int HELD = 148;  // the ratio is 0 (combinational)
+  localparam int FEED_ACTIVE = 149;  // a feed piece gives ticks
+  localparam int STOPPING = 150;  // a fault's ramp
+  localparam int WIDTH = 151;
+
+  function automatic logic [31:0] fault(input logic [WIDTH-1:0] state);
+    fault = state[FAULT+:32];
+  endfunction
+
+  function automatic logic [31:0] feed_begun(input logic [WIDTH-1:0] state);
+    feed_begun = state[FEED_BEGUN+:32];
+  endfunction
+
+  function automatic logic [31:0] underruns(input logic [WIDTH-1:0] state);
+    underruns = state[UNDERRUNS+:32];
+  endfunction
+
+  function automatic logic [31:0] rate(input logic [WIDTH-1:0] state);
+    rate = state[RATE+:32];
+  endfunction
+
+  function automatic logic [16:0] ratio(input logic [WIDTH-1:0] state);
+    ratio = state[RATIO+:17];
+  endfunction
+
+endpackage
+`default_nettype wire
