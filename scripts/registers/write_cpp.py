@@ -405,6 +405,12 @@ def _unit_table(registers, units):
     for u in units.units:
         yield f"inline constexpr std::uint8_t k{camel(u.name)} = {u.tag};  // {u.brief}\n"
     yield "}  // namespace unit\n"
+    yield "\n// Units on the load bus, of their first instance.\nnamespace load_unit {\n"
+    for u in units.units:
+        if u.load_unit != um.LOAD_UNIT_NONE:
+            yield f"inline constexpr unsigned k{camel(u.name)} = {u.load_unit};\n"
+    yield f"inline constexpr unsigned kNone = {um.LOAD_UNIT_NONE};\n"
+    yield "}  // namespace load_unit\n"
     yield f"\ninline constexpr std::array<Unit, {len(units.units)}> kUnits{{{{\n"
     for u in units.units:
         yield _unit(u, registers, units)

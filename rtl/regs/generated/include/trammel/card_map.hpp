@@ -478,6 +478,15 @@ inline constexpr std::uint8_t kOutputs = 14;            // Outputs.
 inline constexpr std::uint8_t kPositionStreaming = 15;  // A line for each period of a host that streams positions.
 }  // namespace unit
 
+// Units on the load bus, of their first instance.
+namespace load_unit {
+inline constexpr unsigned kAxes = 0;
+inline constexpr unsigned kAccumulator = 10;
+inline constexpr unsigned kArcGenerator = 11;
+inline constexpr unsigned kPathCommands = 12;
+inline constexpr unsigned kNone = 31;
+}  // namespace load_unit
+
 inline constexpr std::array<Unit, 15> kUnits{{
     {"time_base", 1, 1, 0, 0, UnitCount::Fixed, 1, true, 1600, 0, 1612, 0, 0, 31, {9, 0, 0, 0, 0, 0, 0, 0}},
     {"stop_control", 2, 1, 0, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
