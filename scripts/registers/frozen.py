@@ -7,7 +7,7 @@ HEAD = """# Positions of the register map and of the command layouts, one line e
 """
 
 
-def frozen_text(register_map, commands, units):
+def frozen_text(register_map, commands, units, window):
     lines = [HEAD, f"map 0x{register_map.version:08X}\n"]
     for r in register_map.registers:
         array = f" x{r.count} {r.stride:+#x}" if r.is_array else ""
@@ -16,6 +16,7 @@ def frozen_text(register_map, commands, units):
         lines.append(f"  0x{r.address:03X} {r.name}{array} {r.access}{engine}: {fields}\n")
     lines += [f"  reason {r.value} {r.name}\n" for r in register_map.reasons]
     lines += [_unit(u) for u in units.units]
+    lines += [f"  reserved 0x{r.first:03X} to 0x{r.last:03X}: {r.content}\n" for r in window if r.reserved]
     lines.append(f"commands {commands.version}\n")
     for c in commands.commands:
         engine = f" engine {units.engine_bit(c.engine)}" if c.engine else ""

@@ -21,8 +21,8 @@ access is looked for in this order: `UNKNOWN_ADDRESS`; for reads `WRITE_ONLY`; f
 behaves](behaviour.md)).
 
 Registers of axes that the card lacks and of engines that are not built in (the column `engine`: see
-[units and engines](#units-and-engines); empty: on every card) are unknown addresses. For 257 clocks after reset the registers are being
-filled: accesses wait, but reads of live registers, of `FAULT` and of `REFUSAL` are answered at once.
+[units and engines](#units-and-engines); empty: on every card) are unknown addresses. For 257 clocks after reset the
+registers are being filled: accesses wait, but reads of live registers, of `FAULT` and of `REFUSAL` are answered at once.
 
 The registers of the direct mode run downwards, axis n at 0xCF0 - 0x10 n, and `START` is the last register: on a card
 with n axes one block write of 4 n + 3 words, from `FREQUENCY_LO` of axis n - 1 to `START`, sets and starts a move.
@@ -53,8 +53,9 @@ A command that needs an [engine](registers.md#units-and-engines) which is not bu
 """
 
 
-def registers_text(register_map, commands, units):
+def registers_text(register_map, commands, units, window):
     parts = [GENERATED.format("rtl/regs/trammel.rdl"), REGISTERS_HEAD]
+    parts.append(_window_text(window))
     parts.append("\n## Summary\n\n| address | name | access | reset | engine | content |\n|---|---|---|---|---|---|\n")
     parts += [_summary(r, commands) for r in register_map.registers]
     parts += [_register(r, commands) for r in register_map.registers]
@@ -86,11 +87,30 @@ order of the table below. A tag of 0 ends them.
 """
 
 ENGINES_HEAD = """
-An engine names something that may be built in; registers, fields and commands ask for engines.
+An engine names something that may be built in; registers, fields and commands ask for engines. The bit is that of the
+mask in which the C and Python interfaces give them.
 
-| engine | shown by | meaning |
-|---|---|---|
+| bit | engine | shown by | meaning |
+|---|---|---|---|
 """
+
+
+WINDOW_HEAD = """
+## The window
+
+Reserved addresses, whole ranges or words between the registers of another range, answer `UNKNOWN_ADDRESS`. A unit that
+is built later takes its reserved range, and `MAP_VERSION` then has a higher minor version: a driver accepts any minor
+version and refuses another major one. What has an address keeps it within a major version.
+
+| bytes | words | content | state |
+|---|---|---|---|
+"""
+
+
+def _window_text(window):
+    rows = [f"| 0x{r.first:03X} to 0x{r.last:03X} | {r.words} | {r.content} | {'reserved' if r.reserved else 'built'} |\n"
+            for r in window]
+    return WINDOW_HEAD + "".join(rows)
 
 
 def _units_text(units, registers):
@@ -101,7 +121,7 @@ def _units_text(units, registers):
         parts.append(f"| {u.tag} | {u.name} | {u.major}.{u.minor} | {u.instances} | {bounds if u.first else ''} "
                      f"| {u.engine} | {features} | {u.brief} |\n")
     parts.append(ENGINES_HEAD)
-    parts += [f"| `{e.name}` | {_shown_by(e.name, units)} | {e.brief} |\n" for e in units.engines]
+    parts += [f"| {e.low} | `{e.name}` | {_shown_by(e.name, units)} | {e.brief} |\n" for e in units.engines]
     return "".join(parts)
 
 
@@ -140,7 +160,7 @@ def _summary(register, commands):
 def _register(register, commands):
     lines = [f"\n## {register.name}\n\n{_address(register)}, {ACCESS_TEXT[register.access]}"]
     if register.is_array:
-        lines.append(", n = 0 to 7" + (", only of axes that the card has" if register.only_present_axes else ""))
+        lines.append(f", n = 0 to {register.count - 1}" + (", only of axes that the card has" if register.only_present_axes else ""))
     lines.append(f". {register.brief}")
     lines.append(f" Needs the engine `{register.engine}`.\n" if register.engine else "\n")
     lines.append("\n| bits | field | reset | range | unit | engine | meaning |\n|---|---|---|---|---|---|---|\n")

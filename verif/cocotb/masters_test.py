@@ -15,12 +15,14 @@ SEED = int(os.environ.get("TRAMMEL_SEED", "1"))
 MAP = {name: int(value, 16) for name, value in re.findall(
     r"localparam logic \[\d+:0\] (\w+) = \d+'h([0-9A-F]+);",
     open(os.environ["TRAMMEL_CARD_MAP"], encoding="ascii").read())}
+STRIDES = {name: int(value) for name, value in re.findall(
+    r"localparam int STRIDE_(\w+) = (-?\d+);", open(os.environ["TRAMMEL_CARD_MAP"], encoding="ascii").read())}
 AXES = 4
 OKAY, SLVERR = True, False
 
 
-def address(name, axis=0, stride=0x20):
-    return MAP[f"ADDR_{name}"] + stride * axis
+def address(name, axis=0):
+    return MAP[f"ADDR_{name}"] + STRIDES.get(name, 0) * axis
 
 
 class Axi:

@@ -128,7 +128,7 @@ typedef struct trammel_identification {
   uint32_t commands_version;
   unsigned axes;            // 1 .. 8
   uint32_t clock_hz;        // Hz
-  uint32_t engines;         // what is built in: a bit for each engine (TRAMMEL_ENGINE_...)
+  uint32_t engines;         // what is built in: bits as docs/reference/registers.md has them (Units and engines)
   uint32_t geometry_depth;  // of the queues, halfwords
   uint32_t feed_depth;
 } trammel_identification;

@@ -46,7 +46,8 @@ inline constexpr unsigned kChordShifts = card_map::load_unit::kArcGenerator * kC
 inline constexpr unsigned kChordState = kChordShifts + 1;    // X, then Y
 inline constexpr unsigned kChordClosing = kChordShifts + 2;  // of x, then of y
 inline constexpr unsigned kChordPlane = kChordShifts + 8;
-inline constexpr unsigned kCommand = card_map::load_unit::kPathCommands * kChainsOfAUnit;  // fields of commands that are no paths
+inline constexpr unsigned kCommand =
+    card_map::load_unit::kPathCommands * kChainsOfAUnit;  // fields of commands that are no paths
 inline constexpr unsigned kNowhere = card_map::load_unit::kNone * kChainsOfAUnit + 15;
 }  // namespace load_target
 
