@@ -39,7 +39,7 @@ struct Job {
   std::string program;
   sim::EngineKind engine;
   std::string set;                            // override of the machine, or nothing
-  std::optional<std::uint32_t> engines = {};  // kModel: ENGINES, where it is not the usual card's
+  std::optional<std::uint32_t> engines = {};  // kModel: the mask of them, where it is not the usual card's
 };
 
 // In the names of the tests.
