@@ -112,13 +112,16 @@ const Descriptor* UnitTable::find(std::uint8_t tag) const {
 
 std::uint32_t UnitTable::engines() const {
   std::uint32_t result = 0;
-  for (const Descriptor& d : *this) {
-    const map::Unit* const unit = known_unit(d.tag);
-    if (unit == nullptr) continue;
-    result |= 1U << unit->engine;
-    for (std::size_t bit = 0; bit < unit->features.size(); ++bit) {
-      if (unit->features[bit] != 0 && (d.features >> bit & 1) != 0) result |= 1U << unit->features[bit];
-    }
+  for (const Descriptor& d : *this) result |= engines_of(d);
+  return result;
+}
+
+std::uint32_t engines_of(const Descriptor& d) {
+  const map::Unit* const unit = known_unit(d.tag);
+  if (unit == nullptr) return 0;
+  std::uint32_t result = 1U << unit->engine;
+  for (std::size_t bit = 0; bit < unit->features.size(); ++bit) {
+    if (unit->features[bit] != 0 && (d.features >> bit & 1) != 0) result |= 1U << unit->features[bit];
   }
   return result;
 }

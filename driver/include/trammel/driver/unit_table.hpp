@@ -39,6 +39,8 @@ class UnitTable {
   std::size_t count_ = 0;
 };
 
+// What it shows to be built in, as card_map::engine has it; 0 where this driver does not know the unit.
+std::uint32_t engines_of(const card_map::Descriptor& unit);
 // Its name, "tag 200" where this driver does not know the unit.
 std::string unit_name(const card_map::Descriptor& unit);
 // The engines that its features show, "feature 3" where this driver does not know one: "jerk, feature 3". May be empty.
