@@ -8,6 +8,7 @@ buses/engines_pkg.sv
 buses/feed_load_pkg.sv
 buses/feed_pkg.sv
 buses/geometry_state_pkg.sv
+buses/input_levels_pkg.sv
 buses/load_bus_pkg.sv
 buses/load_target_pkg.sv
 buses/move_pkg.sv

@@ -5,7 +5,6 @@
 module geometry_part #(
     parameter int          Axes    = 4,
     parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
-    parameter int          Inputs  = 4,
     parameter int          Outputs = 4
 ) (
     input wire logic clk_i,
@@ -31,7 +30,7 @@ module geometry_part #(
     input wire logic busy_i,  // anything runs, is decoded or queued
     input wire logic rest_i,  // nothing does
     // pins, MARK and probe
-    input wire logic [Inputs-1:0] input_i,
+    input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
     output logic [Outputs-1:0] output_o,
     output logic mark_o,  // event: a snapshot is wanted
@@ -89,14 +88,13 @@ module geometry_part #(
 
   path_commands #(
       .Engines(Engines),
-      .Inputs (Inputs),
       .Outputs(Outputs)
   ) commands_of_path (
       .clk_i,
       .rst_i,
       .cut_i,
       .setting_i,
-      .input_i,
+      .inputs_i,
       .output_idle_i,
       .output_o,
       .load_i(load_o),

@@ -50,6 +50,7 @@ module motion_core #(
     output logic [Axes-1:0] step_o,
     output logic [Axes-1:0] dir_o
 );
+  logic [input_levels_pkg::WIDTH-1:0] inputs;
   logic [feed_pkg::WIDTH-1:0] feed;
   logic [path_pkg::WIDTH-1:0] path;
   logic [load_bus_pkg::WIDTH-1:0] load;
@@ -76,6 +77,23 @@ module motion_core #(
       .running_i(running_q),
       .busy_o
   );
+
+  if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_inputs
+    input_pins #(
+        .Inputs(Inputs)
+    ) pins (
+        .clk_i,
+        .rst_i,
+        .setting_i,
+        .pin_i(input_i),
+        .inputs_o(inputs)
+    );
+  end else begin : gen_no_inputs
+    assign inputs = '0;
+
+    logic unused;
+    assign unused = &{1'b0, input_i};
+  end
 
   time_part #(
       .Axes   (Axes),
@@ -109,7 +127,6 @@ module motion_core #(
   geometry_part #(
       .Axes   (Axes),
       .Engines(Engines),
-      .Inputs (Inputs),
       .Outputs(Outputs)
   ) geometry (
       .clk_i,
@@ -131,7 +148,7 @@ module motion_core #(
       .closed_i(closed_o),
       .busy_i(busy_o),
       .rest_i(idle_q && !busy_o),
-      .input_i,
+      .inputs_i(inputs),
       .output_idle_i,
       .output_o,
       .mark_o,

@@ -8,7 +8,7 @@ module input_pins #(
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [Inputs-1:0] pin_i,
-    output logic [15:0] level_o  // combinational; 0 for absent inputs
+    output logic [input_levels_pkg::WIDTH-1:0] inputs_o  // combinational
 );
   // Marked, so that tools place the two side by side and know that the first one's data has no timing.
   (* async_reg = "true" *) logic [Inputs-1:0] first_q;
@@ -31,8 +31,8 @@ module input_pins #(
   end
 
   logic [Inputs-1:0] level;
-  assign level   = second_q ^ inverted_q;
-  assign level_o = 16'(level);
+  assign level = second_q ^ inverted_q;
+  assign inputs_o[input_levels_pkg::LEVELS+:16] = 16'(level);
 
   logic unused;
   assign unused = &{1'b0, data[31:Inputs]};

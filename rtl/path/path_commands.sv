@@ -1,10 +1,9 @@
-// The card's inputs and outputs, and what commands do with them at their place on the path. Without the engine the inputs
-// are not looked at, and the outputs stand as the strap says.
+// The card's outputs, and what commands do with outputs and inputs at their place on the path. Without the engine the
+// outputs stand as the strap says.
 `default_nettype none
 
 module path_commands #(
     parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
-    parameter int          Inputs  = 4,   // 1 to 16
     parameter int          Outputs = 4    // 1 to 16
 ) (
     input wire logic clk_i,
@@ -12,7 +11,7 @@ module path_commands #(
     input wire logic cut_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     // pins
-    input wire logic [Inputs-1:0] input_i,
+    input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
     input wire logic [Outputs-1:0] output_idle_i,  // strap
     output logic [Outputs-1:0] output_o,
     // commands
@@ -36,15 +35,7 @@ module path_commands #(
     logic [Outputs-1:0] set;
     logic [Outputs-1:0] clear;
 
-    input_pins #(
-        .Inputs(Inputs)
-    ) inputs (
-        .clk_i,
-        .rst_i,
-        .setting_i,
-        .pin_i  (input_i),
-        .level_o(levels)
-    );
+    assign levels = input_levels_pkg::levels(inputs_i);
 
     instant_commands #(
         .Outputs(Outputs)
@@ -112,7 +103,7 @@ module path_commands #(
     assign {mark_o, trip_o, probe_o, drop_o, halt_o, pins_state_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, input_i, load_i, commands_i, feed_i, probe_clear_i};
+    assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, inputs_i, load_i, commands_i, feed_i, probe_clear_i};
   end
 endmodule
 

@@ -88,6 +88,11 @@ inline constexpr Field kDirect{69, 1};
 inline constexpr unsigned kWidth = 70;
 }  // namespace geometry_state
 
+namespace input_levels {
+inline constexpr Field kLevels{0, 16};
+inline constexpr unsigned kWidth = 16;
+}  // namespace input_levels
+
 namespace load_bus {
 inline constexpr Field kWord{0, 16};
 inline constexpr Field kTarget{16, 4};
