@@ -51,7 +51,6 @@ module register_ram #(
   // The write port, registered: those who write take turns, and give 0 when it is not theirs.
   always_ff @(posedge clk_i) begin : p_store
     logic [ 8:0] swept;
-    logic        keeps;
     logic [31:0] reset_value;
     logic [ 7:0] first_inverted;
     logic [ 7:0] second_inverted;
@@ -70,11 +69,7 @@ module register_ram #(
         reset_value[3:2] = {second_inverted[swept[5:3]], first_inverted[swept[5:3]]};
       end
     end
-    keeps = register_fold_pkg::is_descriptor(swept, MORE_AXES) ||
-        (register_fold_pkg::is_identity(swept) && swept != CLOCK_HZ);
-    store_q <= setting || snapshot || (resetting_q && !keeps);
-    // Of a snapshot its writer tells. An access after a reset asks two clocks later at the earliest.
-    writing_o <= setting || snapshot || resetting_q;
+    store_q <= setting || snapshot || resetting_q;
     store_place_q <= {9{setting}} & register_fold_pkg::place_of(
         setting_bus_pkg::word(setting_i), MORE_AXES
     ) | register_fold_pkg::place_of(
@@ -97,11 +92,23 @@ module register_ram #(
 
   initial for (int i = 0; i < 1 << BITS; i++) memory[i] = content(9'(i));
 
+  // Nothing overwrites constants, whatever the flip-flops hold before the first reset.
+  logic [8:0] stored_at;
+  logic identity;
+  logic descriptor;
+
+  assign stored_at  = 9'(store_place_q[BITS-1:0]);
+  assign identity   = register_fold_pkg::is_identity(stored_at) && stored_at != CLOCK_HZ;
+  assign descriptor = register_fold_pkg::is_descriptor(stored_at, MORE_AXES);
+
   always_ff @(posedge clk_i) begin
-    if (store_q) memory[store_place_q[BITS-1:0]] <= store_data_q;
+    if (store_q && !identity && !descriptor) memory[store_place_q[BITS-1:0]] <= store_data_q;
     memory_q <= memory[place_i[BITS-1:0]];
     data_o   <= memory_q;
   end
+
+  // Of a snapshot its writer tells. An access after a reset asks two clocks later at the earliest.
+  assign writing_o = store_q;
 
   if (!MORE_AXES) begin : gen_narrow
     logic unused;
