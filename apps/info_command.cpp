@@ -36,6 +36,25 @@ std::string engines(std::uint32_t bits) {
   return text;
 }
 
+// A row of the table of units, without blanks at its end.
+template <typename... Cells>
+std::string row(const Cells&... cells) {
+  std::string text = fmt::format("{:18} {:>7} {:>9}  {:>9} {:>5} {:>6}  {}", cells...);
+  return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+}
+
+std::string units(const driver::UnitTable& table) {
+  std::string text = "\n" + row("unit", "version", "instances", "registers", "words", "stride", "with");
+  for (const card_map::Descriptor& unit : table) {
+    const bool has_registers = unit.words != 0;
+    text += row(driver::unit_name(unit), fmt::format("{}.{}", unit.major, unit.minor), unit.instances,
+                has_registers ? fmt::format("0x{:03X}", 4 * unit.base) : "",
+                has_registers ? fmt::to_string(unit.words) : "",
+                unit.stride != 0 && unit.instances > 1 ? fmt::to_string(unit.stride) : "", driver::feature_names(unit));
+  }
+  return text;
+}
+
 std::string describe(driver::Card& card) {
   std::string text;
   const auto out = std::back_inserter(text);
@@ -56,7 +75,7 @@ std::string describe(driver::Card& card) {
     fmt::format_to(out, "axis {}         pulse {}\n", axis, now.position[axis]);
   fmt::format_to(out, "state          {}{}{}\n", now.status.busy ? "busy" : "idle",
                  now.status.faulted ? ", faulted" : "", now.status.refused ? ", refused" : "");
-  return text;
+  return text + units(id.units);
 }
 
 void info_on_card(const InfoArguments& options, const transport::CardUrl& url) {

@@ -4,6 +4,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/unit_table.hpp"
 
 namespace trammel::app {
 
@@ -12,7 +13,9 @@ namespace reg = card_map::reg;
 void OperatorTimeline::schedule(sim::TimedBus& bus, std::uint32_t clock_hz) {
   bus.at(0, [this](sim::Engine& engine) {
     engine.write(reg::kRatioFeed, driver::Card::ratio_of(operation_.percent, most_));
-    if (!card_map::has_engine(engine.read(reg::kEngines), card_map::engine::kClasses)) return;
+    // The first descriptor of each card is the time base's.
+    const card_map::Descriptor time_base = card_map::descriptor_of(engine.read(reg::descriptor(0)), 0);
+    if (!card_map::has_engine(driver::engines_of(time_base), card_map::engine::kClasses)) return;
     engine.write(reg::kRatioRapid, driver::Card::ratio_of(operation_.rapid_percent, most_));
     engine.write(reg::kRatioFixed, driver::Card::ratio_of(100, most_));
   });

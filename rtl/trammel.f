@@ -28,6 +28,7 @@ buses/stream_answer_pkg.sv
 buses/time_state_pkg.sv
 buses/wishbone_answer_pkg.sv
 buses/wishbone_request_pkg.sv
+registers/register_fold_pkg.sv
 regs/generated/card_map_pkg.sv
 axis/axes.sv
 axis/axis.sv

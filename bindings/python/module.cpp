@@ -263,6 +263,16 @@ driver::OneShotPlan plan(const PythonCard& of, const std::vector<std::int64_t>& 
 }
 
 void bind_card_values(nb::module_& m) {
+  nb::class_<card_map::Descriptor>(m, "Unit")
+      .def_prop_ro("name", [](const card_map::Descriptor& of) { return driver::unit_name(of); })
+      .def_ro("tag", &card_map::Descriptor::tag)
+      .def_ro("major", &card_map::Descriptor::major)
+      .def_ro("minor", &card_map::Descriptor::minor)
+      .def_ro("instances", &card_map::Descriptor::instances)
+      .def_ro("features", &card_map::Descriptor::features)
+      .def_prop_ro("address", [](const card_map::Descriptor& of) { return 4 * of.base; })
+      .def_ro("words", &card_map::Descriptor::words)
+      .def_ro("stride", &card_map::Descriptor::stride);
   nb::class_<driver::Identification>(m, "Identification")
       .def_ro("map_major", &driver::Identification::map_major)
       .def_ro("map_minor", &driver::Identification::map_minor)
@@ -270,6 +280,10 @@ void bind_card_values(nb::module_& m) {
       .def_ro("axes", &driver::Identification::axes)
       .def_ro("clock_hz", &driver::Identification::clock_hz)
       .def_ro("engines", &driver::Identification::engines)
+      .def_prop_ro("units",
+                   [](const driver::Identification& of) {
+                     return std::vector<card_map::Descriptor>(of.units.begin(), of.units.end());
+                   })
       .def_ro("geometry_depth", &driver::Identification::geometry_depth)
       .def_ro("feed_depth", &driver::Identification::feed_depth);
   nb::class_<driver::Status>(m, "Status")

@@ -49,37 +49,27 @@ void check_field(std::uint32_t address, std::uint32_t value, std::uint32_t least
       fmt::format("card: {}: {} {}, this driver takes {} to {}", entry(address).name, value, unit, least, most));
 }
 
+// What to update where the card has another version than the driver.
+const char* update(std::uint32_t on_card, std::uint32_t here) {
+  return on_card > here ? "update the driver" : "update the card's bitstream";
+}
+
 void check_versions(const Identification& card) {
   const std::uint32_t major = bits(map::kMapVersionValue, field::kMapVersionMajor, field::kMapVersionMajorShift);
   if (card.map_major != major) {
-    throw IdentificationError(
-        fmt::format("card: MAP_VERSION: {}.{}, this driver takes version {}", card.map_major, card.map_minor, major));
+    throw IdentificationError(fmt::format("card: MAP_VERSION: {}.{}, this driver takes version {}: {}", card.map_major,
+                                          card.map_minor, major, update(card.map_major, major)));
   }
   if (card.commands_version != map::kCommandsVersionValue) {
-    throw IdentificationError(fmt::format("card: COMMANDS_VERSION: {}, this driver takes version {}",
-                                          card.commands_version, map::kCommandsVersionValue));
+    throw IdentificationError(fmt::format("card: COMMANDS_VERSION: {}, this driver takes version {}: {}",
+                                          card.commands_version, map::kCommandsVersionValue,
+                                          update(card.commands_version, map::kCommandsVersionValue)));
   }
-}
-
-void check_engines(std::uint32_t engines) {
-  const std::uint32_t unknown = engines & ~entry(reg::kEngines).mask;
-  if (unknown != 0) {
-    throw IdentificationError(
-        fmt::format("card: ENGINES: 0x{:X}, of which this driver does not know 0x{:X}", engines, unknown));
-  }
-  const auto needs = [engines](std::uint32_t engine) {
-    if (map::has_engine(engines, engine)) return;
-    throw IdentificationError(fmt::format("card: ENGINES: 0x{:X} without {}", engines, map::kEngineNames[engine]));
-  };
-  needs(map::engine::kLines);
-  if (map::has_engine(engines, map::engine::kAccumulator8)) needs(map::engine::kAccumulator);
 }
 
 void check_build(const Identification& card) {
   constexpr std::uint32_t kDeepest = 32768;  // halfwords; larger ones the RTL refuses to build
-  check_field(reg::kAxes, card.axes, 1, map::kMaxAxes, "axes");
   check_field(reg::kClockHz, card.clock_hz, 1, entry(reg::kClockHz).mask, "Hz (its clock strap)");
-  check_engines(card.engines);
   check_field(reg::kGeometryDepth, card.geometry_depth, longest_command(&map::Command::to_geometry, card), kDeepest,
               "halfwords");
   check_field(reg::kFeedDepth, card.feed_depth, longest_command(&map::Command::to_feed, card), kDeepest, "halfwords");
@@ -144,9 +134,8 @@ Card Card::open(Bus& bus) {
     throw IdentificationError(
         fmt::format("card: no Trammel card answers: MAGIC reads 0x{:08X}, not 0x{:08X}", magic.data, map::kMagicValue));
   }
-  std::array<Access, 7> who{read_of(reg::kMapVersion), read_of(reg::kCommandsVersion), read_of(reg::kAxes),
-                            read_of(reg::kClockHz),    read_of(reg::kEngines),         read_of(reg::kGeometryDepth),
-                            read_of(reg::kFeedDepth)};
+  std::array<Access, 6> who{read_of(reg::kMapVersion), read_of(reg::kCommandsVersion), read_of(reg::kAxes),
+                            read_of(reg::kClockHz),    read_of(reg::kGeometryDepth),   read_of(reg::kFeedDepth)};
   read_identity(bus, who.data(), who.size());
   Card card(bus);
   Identification& identification = card.identification_;
@@ -158,9 +147,11 @@ Card Card::open(Bus& bus) {
   check_versions(identification);
   identification.axes = who[2].data;
   identification.clock_hz = who[3].data;
-  identification.engines = who[4].data;
-  identification.geometry_depth = who[5].data;
-  identification.feed_depth = who[6].data;
+  identification.geometry_depth = who[4].data;
+  identification.feed_depth = who[5].data;
+  check_field(reg::kAxes, identification.axes, 1, map::kMaxAxes, "axes");
+  identification.units = UnitTable::read(bus, identification.axes);
+  identification.engines = identification.units.engines();
   check_build(identification);
   card.timing_.clock_hz = identification.clock_hz;
   card.timing_.axes = identification.axes;

@@ -91,8 +91,8 @@ inline constexpr const map::Command& kProbe = layout_for(map::Opcode::Probe);
 inline constexpr map::Field kProbeCondition = field_of(kProbe, "condition");
 inline constexpr const map::Command& kProbeEnd = layout_for(map::Opcode::ProbeEnd);
 // Bits of the field `condition`.
-inline constexpr unsigned kInputMask = 0xF;
-inline constexpr unsigned kLevelBit = 4;
+inline constexpr unsigned kInputMask = 0x1F;
+inline constexpr unsigned kLevelBit = 5;
 
 [[noreturn]] inline void refuse(const map::Command& layout, const std::string& what) {
   throw ArgumentError(fmt::format("{}: {}", layout.name, what));

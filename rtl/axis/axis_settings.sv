@@ -42,7 +42,7 @@ module axis_settings #(
     end
   end
 
-  // A slot is eight words; what lies above it in the window is no setting.
+  // The shaper's settings are in the first eight words of the axis's 32.
   logic unused;
   assign unused = &{1'b0, data[31:16]};
 endmodule

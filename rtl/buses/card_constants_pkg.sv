@@ -1,4 +1,4 @@
-// What parameters and straps decide of the registers that are constants: one word for each of the first addresses of
+// What parameters decide of the registers that are constants: one word for each of the first addresses of
 // the map.
 `default_nettype none
 package card_constants_pkg;

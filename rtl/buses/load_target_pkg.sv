@@ -2,7 +2,7 @@
 `default_nettype none
 package load_target_pkg;
 
-  // Units. 0 to 7 are the axes by their number.
+  // Units, as rtl/regs/units.toml has those with a descriptor. 0 to 7 are the axes by their number.
   localparam logic [4:0] UNIT_SEQUENCER = 5'd8;
   localparam logic [4:0] UNIT_PRESCALER = 5'd9;
   localparam logic [4:0] UNIT_ACCUMULATOR = 5'd10;

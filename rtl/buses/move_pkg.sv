@@ -3,7 +3,7 @@
 package move_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int ENGINE = 0;  // 5 bits: with swap: what the path runs on, by its bit of ENGINES
+  localparam int ENGINE = 0;  // 5 bits: with swap: what the path runs on, by its number, card_map_pkg::ENGINE_*
   localparam int AXES = 5;  // 8 bits: with swap: the axes whose own generators make its steps
   localparam int SWAP = 13;  // event: the path begins with the next tick
   localparam int DIRECT = 14;  // it is a direct move

@@ -3,7 +3,7 @@
 package start_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int DATA = 0;  // 32 bits: the word of the registers' RAM at the answer's address two clocks ago
+  localparam int DATA = 0;  // 32 bits: the register at the answer's address two clocks ago
   localparam int MASK = 32;  // 8 bits: axes of the move; stands until the answer
   localparam int START = 40;  // event
   localparam int WIDTH = 41;

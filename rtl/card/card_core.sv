@@ -72,31 +72,6 @@ module card_core #(
       32'(PathCommands != 0) << card_map_pkg::ENGINE_PATH_COMMANDS |
       32'(PositionStreaming != 0) << card_map_pkg::ENGINE_STREAMING;
 
-  // PORTS: {outputs, inputs, ports}.
-  localparam logic [31:0] PORTS = 32'(Ports) | (PathCommands != 0 ? 32'(Inputs) << 8 | 32'(Outputs) << 16 : 32'd0);
-
-  logic [card_constants_pkg::WIDTH-1:0] constants;
-
-  assign constants = card_constants_pkg::at(
-      card_map_pkg::ADDR_AXES, 32'(Axes)
-  ) | card_constants_pkg::at(
-      card_map_pkg::ADDR_CLOCK_HZ, clock_hz_i
-  ) | card_constants_pkg::at(
-      card_map_pkg::ADDR_ENGINES, ENGINES
-  ) | card_constants_pkg::at(
-      card_map_pkg::ADDR_GEOMETRY_DEPTH, 32'(GeometryDepth)
-  ) | card_constants_pkg::at(
-      card_map_pkg::ADDR_FEED_DEPTH, 32'(FeedDepth)
-  ) | card_constants_pkg::at(
-      card_map_pkg::ADDR_BUILD_ID, BuildId
-  ) | card_constants_pkg::at(
-      card_map_pkg::ADDR_BUILD_FLAGS, 32'(BuildDirty != 0)
-  ) | card_constants_pkg::at(
-      card_map_pkg::ADDR_BOARD_ID, BoardId
-  ) | card_constants_pkg::at(
-      card_map_pkg::ADDR_PORTS, PORTS
-  );
-
   // between registers and stream
   logic [setting_bus_pkg::WIDTH-1:0] setting;
   logic stream_write;
@@ -132,11 +107,18 @@ module card_core #(
   register_file #(
       .Axes(Axes),
       .Ports(Ports),
-      .Engines(ENGINES)
+      .Engines(ENGINES),
+      .GeometryDepth(GeometryDepth),
+      .FeedDepth(FeedDepth),
+      .Inputs(Inputs),
+      .Outputs(Outputs),
+      .BuildId(BuildId),
+      .BuildDirty(BuildDirty),
+      .BoardId(BoardId)
   ) registers (
       .clk_i,
       .rst_i,
-      .constants_i(constants),
+      .clock_hz_i,
       .idle_level_i,
       .access_i,
       .answer_o,

@@ -4,7 +4,7 @@
 
 module motion_core #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1,  // what is built in, as the register ENGINES shows it
+    parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
     parameter int          Inputs  = 4,
     parameter int          Outputs = 4
 ) (

@@ -66,7 +66,7 @@ module direct_loader #(
   logic          start;
   logic   [ 7:0] mask;
   logic   [31:0] data;
-  logic   [ 7:0] address_q;
+  logic   [ 9:0] address_q;
   logic          done_q;
   logic          error_q;
   logic   [ 7:0] reason_q;
@@ -144,13 +144,13 @@ module direct_loader #(
       length_q <= state_q == LENGTH && (step_q == TAKE_LENGTH_0 || step_q == TAKE_LENGTH_1 || step_q == TAKE_LENGTH_2);
 
       if (state_q == LENGTH) begin
-        address_q <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[9:2] : card_map_pkg::ADDR_LENGTH_LO[9:2];
+        address_q <= step_q[2] ? card_map_pkg::ADDR_LENGTH_HI[11:2] : card_map_pkg::ADDR_LENGTH_LO[11:2];
       end else begin
         case (step_q[3:2])
-          2'd0: address_q <= card_map_pkg::ADDR_DIRECTION[9:2] - {3'd0, axis_q, 2'd0};
-          2'd1: address_q <= card_map_pkg::ADDR_FREQUENCY_LO[9:2] - {3'd0, axis_q, 2'd0};
-          2'd2: address_q <= card_map_pkg::ADDR_FREQUENCY_HI[9:2] - {3'd0, axis_q, 2'd0};
-          default: address_q <= card_map_pkg::ADDR_COUNT[9:2] - {3'd0, axis_q, 2'd0};
+          2'd0: address_q <= card_map_pkg::ADDR_DIRECTION[11:2] - {5'd0, axis_q, 2'd0};
+          2'd1: address_q <= card_map_pkg::ADDR_FREQUENCY_LO[11:2] - {5'd0, axis_q, 2'd0};
+          2'd2: address_q <= card_map_pkg::ADDR_FREQUENCY_HI[11:2] - {5'd0, axis_q, 2'd0};
+          default: address_q <= card_map_pkg::ADDR_COUNT[11:2] - {5'd0, axis_q, 2'd0};
         endcase
       end
 

@@ -9,7 +9,7 @@
 
 module geometry_decoder #(
     parameter int          Axes    = 4,
-    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+    parameter logic [31:0] Engines = '1  // what is built in: bits card_map_pkg::ENGINE_*
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -24,7 +24,7 @@ module geometry_decoder #(
     output logic [load_bus_pkg::WIDTH-1:0] load_o,
     // the decoded command
     output logic [Axes-1:0] mask_o,
-    output logic [4:0] engine_o,  // what a path runs on, by its bit of ENGINES
+    output logic [4:0] engine_o,  // what a path runs on, by its number, card_map_pkg::ENGINE_*
     output logic barrier_o,  // no path
     output logic output_o,
     output logic mark_o,

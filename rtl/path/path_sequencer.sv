@@ -17,7 +17,7 @@ module path_sequencer #(
     input wire logic halt_i,  // event: the path ends here; no command is valid in this clock
     // decoded command
     input wire logic valid_i,  // a path or a barrier
-    input wire logic [4:0] engine_i,  // what a path runs on, by its bit of ENGINES
+    input wire logic [4:0] engine_i,  // what a path runs on, by its number, card_map_pkg::ENGINE_*
     input wire logic barrier_i,
     input wire logic [Axes-1:0] mask_i,
     output logic pop_o,  // taken now (combinational)

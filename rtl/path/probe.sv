@@ -31,8 +31,8 @@ module probe (
     output logic missed_o  // PROBE_END came before an edge
 );
   // {level, input}: decoded last, and of the PROBE that is armed.
-  logic [ 4:0] decoded_q;
-  logic [ 4:0] condition_q;
+  logic [ 5:0] decoded_q;
+  logic [ 5:0] condition_q;
   logic [ 2:0] settle_q;
   logic        armed_q;
   logic        look;  // the PROBE is over: is its input tripped already?
@@ -40,9 +40,14 @@ module probe (
 
   logic [15:0] word;
 
+  // A condition names one of 32 inputs; those that the card lacks stay at 0.
+  function automatic logic level_of(input logic [4:0] number);
+    level_of = !number[4] && level_i[number[3:0]];
+  endfunction
+
   assign word = load_bus_pkg::word(load_i);
-  assign met_o = level_i[decoded_q[3:0]] == decoded_q[4];
-  assign edge_now = armed_q && level_i[condition_q[3:0]] == condition_q[4] && !stopping_i && !cut_i;
+  assign met_o = level_of(decoded_q[4:0]) == decoded_q[5];
+  assign edge_now = armed_q && level_of(condition_q[4:0]) == condition_q[5] && !stopping_i && !cut_i;
   assign look = waits_i && settle_q == 3'd7 && !edge_now && !hold_o && !drop_o && !stopping_i && !cut_i;
   assign taken_o = look;
   assign trip_o = edge_now || (look && met_o);
@@ -50,7 +55,7 @@ module probe (
   assign busy_o = armed_q || hold_o || drop_o;
 
   always_ff @(posedge clk_i) begin
-    if (load_bus_pkg::to(load_i, load_target_pkg::COMMAND)) decoded_q <= word[4:0];
+    if (load_bus_pkg::to(load_i, load_target_pkg::COMMAND)) decoded_q <= word[5:0];
     if (look) condition_q <= decoded_q;
     if (!waits_i) settle_q <= 3'd0;
     else if (settle_q != 3'd7) settle_q <= settle_q + 3'd1;
@@ -76,7 +81,7 @@ module probe (
   end
 
   logic unused;
-  assign unused = &{1'b0, word[15:5]};
+  assign unused = &{1'b0, word[15:6]};
 endmodule
 
 `default_nettype wire

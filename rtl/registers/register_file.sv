@@ -2,13 +2,20 @@
 // Latencies: docs/developer/architecture.md.
 `default_nettype none
 module register_file #(
-    parameter int          Axes    = 4,  // 1 to 8
-    parameter int          Ports   = 1,  // 1 to 4
-    parameter logic [31:0] Engines = '1  // what is built in, as the register ENGINES shows it
+    parameter int          Axes          = 4,     // 1 to 8
+    parameter int          Ports         = 1,     // 1 to 4
+    parameter logic [31:0] Engines       = '1,    // what is built in: bits card_map_pkg::ENGINE_*
+    parameter int          GeometryDepth = 4096,  // halfwords, of the queues
+    parameter int          FeedDepth     = 2560,
+    parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
+    parameter int          Outputs       = 4,
+    parameter logic [31:0] BuildId       = 0,
+    parameter int          BuildDirty    = 0,
+    parameter logic [31:0] BoardId       = 0
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [card_constants_pkg::WIDTH-1:0] constants_i,
+    input wire logic [31:0] clock_hz_i,  // strap
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
     // the access
     input wire logic [register_access_pkg::WIDTH-1:0] access_i,
@@ -40,6 +47,27 @@ module register_file #(
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,  // the chain's near end
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o  // behind FAULT and STATUS
 );
+
+  localparam logic MORE_AXES = Axes > 4;
+  localparam logic PATH_COMMANDS = Engines[card_map_pkg::ENGINE_PATH_COMMANDS];
+  // {outputs, inputs, ports}
+  localparam logic [31:0] PORTS = 32'(Ports) | (PATH_COMMANDS ? 32'(Inputs) << 8 | 32'(Outputs) << 16 : 32'd0);
+
+  localparam logic [card_constants_pkg::WIDTH-1:0] CONSTANTS = card_constants_pkg::at(
+      card_map_pkg::ADDR_AXES, 32'(Axes)
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_GEOMETRY_DEPTH, 32'(GeometryDepth)
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_FEED_DEPTH, 32'(FeedDepth)
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_BUILD_ID, BuildId
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_BUILD_FLAGS, 32'(BuildDirty != 0)
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_BOARD_ID, BoardId
+  ) | card_constants_pkg::at(
+      card_map_pkg::ADDR_PORTS, PORTS
+  );
 
   logic ack;
   logic error;
@@ -141,23 +169,33 @@ module register_file #(
     if (rst_i) loading_q <= 1'b0;
   end
 
+  logic [8:0] place;
+
+  assign place = loading_q ? register_fold_pkg::place_of(
+      start_answer_pkg::address(start_answer_i), MORE_AXES
+  ) : register_fold_pkg::place_of(
+      word, MORE_AXES
+  );
+
   register_ram #(
-      .Axes(Axes)
+      .Axes(Axes),
+      .Constants(CONSTANTS),
+      .Descriptors(card_map_pkg::unit_descriptors(Engines, Axes, PATH_COMMANDS ? 4 : 2, Ports, Inputs, Outputs))
   ) i_ram (
       .clk_i,
       .rst_i,
-      .constants_i,
+      .clock_hz_i,
       .idle_level_i,
       .setting_i(setting_o),
       .store_i(store),
       .clocks_i(clocks),
-      .address_i(loading_q ? start_answer_pkg::address(start_answer_i) : word[7:0]),
+      .place_i(place),
       .writing_o(writing),
       .data_o(ram_data)
   );
 
-  logic unused;  // the chain's strobe and shift come round; the RAM has the first 256 words of the map
-  assign unused = &{1'b0, snapshot_i, written[31:8], word[9:8]};
+  logic unused;  // the chain's strobe and shift come round
+  assign unused = &{1'b0, snapshot_i, written[31:8]};
 
 endmodule
 `default_nettype wire

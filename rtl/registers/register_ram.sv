@@ -1,33 +1,40 @@
 // The block RAM behind the registers: constants, the settings' shadow, snapshots and the direct mode's registers.
 //
-// After reset every word is written with its reset value or constant in 256 clocks, in the order in which the low byte
-// of the time counter runs; writing_o tells whether a word may still be on its way. Settings and words of a snapshot never come together, nor before that is over.
-// data_o is the word at address_i two clocks earlier.
+// Constants and descriptors are its initial content, which nothing overwrites. After reset the other words are written
+// with their reset values in 256 clocks, in the order in which the low byte of the time counter runs; writing_o tells
+// whether a word may still be on its way. Settings and words of a snapshot never come together, nor before that is over.
+// data_o is the word at place_i two clocks earlier.
 `default_nettype none
 module register_ram #(
-    parameter int Axes = 4  // 1 to 8
+    parameter int                                           Axes        = 4,   // 1 to 8
+    parameter logic [        card_constants_pkg::WIDTH-1:0] Constants   = '0,
+    // the first word lowest
+    parameter logic [32*card_map_pkg::COUNT_DESCRIPTOR-1:0] Descriptors = '0
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
-    input wire logic [card_constants_pkg::WIDTH-1:0] constants_i,
+    input wire logic [31:0] clock_hz_i,  // strap
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] store_i,  // a word of a snapshot
     input wire logic [7:0] clocks_i,  // since reset, the low byte
-    input wire logic [7:0] address_i,
+    input wire logic [8:0] place_i,  // as register_fold_pkg has it
     output logic writing_o,
     output logic [31:0] data_o
 );
 
-  localparam logic [7:0] FIRST_MODE = card_map_pkg::ADDR_MODE[9:2];
-  localparam logic [7:0] AXIS_SLOTS = 8'(7 * card_map_pkg::STRIDE_MODE / 4);
+  localparam logic MORE_AXES = Axes > 4;
+  localparam int BITS = MORE_AXES ? 9 : 8;
+  localparam logic [8:0] CLOCK_HZ = register_fold_pkg::place_of(card_map_pkg::ADDR_CLOCK_HZ[11:2], MORE_AXES);
+  localparam logic [8:0] FIRST_MODE = register_fold_pkg::place_of(card_map_pkg::ADDR_MODE[11:2], MORE_AXES);
+  localparam logic [8:0] AXIS_SLOTS = 9'o070;
 
   // The counter is two clocks late: it begins at 0xFE.
   localparam logic [7:0] LAST_SWEPT = 8'hFD;
 
   logic        resetting_q;
   logic        store_q;
-  logic [ 7:0] store_address_q;
+  logic [ 8:0] store_place_q;
   logic [31:0] store_data_q;
 
   always_ff @(posedge clk_i) begin
@@ -37,20 +44,13 @@ module register_ram #(
 
   logic setting;
   logic snapshot;
-  logic [9:0] setting_word;
-  logic [9:0] store_word;
 
-  assign setting = setting_i[setting_bus_pkg::SET];
+  assign setting  = setting_i[setting_bus_pkg::SET];
   assign snapshot = store_i[setting_bus_pkg::SET];
-  assign setting_word = setting_bus_pkg::word(setting_i);
-  assign store_word = setting_bus_pkg::word(store_i);
-
-  logic unused;  // the RAM has the first 256 words of the map
-  assign unused = &{1'b0, setting_word[9:8], store_word[9:8]};
 
   // The write port, registered: those who write take turns, and give 0 when it is not theirs.
   always_ff @(posedge clk_i) begin : p_store
-    logic [ 7:0] swept;
+    logic [ 8:0] swept;
     logic [31:0] reset_value;
     logic [ 7:0] first_inverted;
     logic [ 7:0] second_inverted;
@@ -58,9 +58,11 @@ module register_ram #(
     swept = '0;
     reset_value = '0;
     if (resetting_q) begin
-      swept = clocks_i;
-      reset_value = card_map_pkg::register_reset({2'b00, swept});
-      if (swept < 8'd16) reset_value = reset_value | card_constants_pkg::word(constants_i, swept[3:0]);
+      swept = {1'b0, clocks_i};
+      if (register_fold_pkg::is_setting(swept)) begin
+        reset_value = card_map_pkg::register_reset(register_fold_pkg::setting_word(swept));
+      end
+      if (swept == CLOCK_HZ) reset_value = clock_hz_i;
       first_inverted  = 8'(idle_level_i[Axes-1:0]);
       second_inverted = 8'(idle_level_i[2*Axes-1:Axes]);
       if ((swept & ~AXIS_SLOTS) == FIRST_MODE) begin
@@ -68,22 +70,50 @@ module register_ram #(
       end
     end
     store_q <= setting || snapshot || resetting_q;
-    store_address_q <= {8{setting}} & setting_word[7:0] | store_word[7:0] | swept;
+    store_place_q <= {9{setting}} & register_fold_pkg::place_of(
+        setting_bus_pkg::word(setting_i), MORE_AXES
+    ) | register_fold_pkg::place_of(
+        setting_bus_pkg::word(store_i), MORE_AXES
+    ) | swept;
     store_data_q <= {32{setting}} & setting_bus_pkg::data(setting_i) | setting_bus_pkg::data(store_i) | reset_value;
   end
 
+  function automatic logic [31:0] content(input logic [8:0] place);
+    content = '0;
+    if (register_fold_pkg::is_identity(place)) begin
+      content = card_map_pkg::register_reset({6'd0, place[3:0]}) | card_constants_pkg::word(Constants, place[3:0]);
+    end
+    if (register_fold_pkg::is_descriptor(place, MORE_AXES)) content = Descriptors[32*place[5:0]+:32];
+  endfunction
+
   (* no_rw_check *)
-  logic [31:0] memory[0:255];
+  logic [31:0] memory[0:(1<<BITS)-1];
   logic [31:0] memory_q;
 
+  initial for (int i = 0; i < 1 << BITS; i++) memory[i] = content(9'(i));
+
+  // Nothing overwrites constants, whatever the flip-flops hold before the first reset.
+  logic [8:0] stored_at;
+  logic identity;
+  logic descriptor;
+
+  assign stored_at  = 9'(store_place_q[BITS-1:0]);
+  assign identity   = register_fold_pkg::is_identity(stored_at) && stored_at != CLOCK_HZ;
+  assign descriptor = register_fold_pkg::is_descriptor(stored_at, MORE_AXES);
+
   always_ff @(posedge clk_i) begin
-    if (store_q) memory[store_address_q] <= store_data_q;
-    memory_q <= memory[address_i];
+    if (store_q && !identity && !descriptor) memory[store_place_q[BITS-1:0]] <= store_data_q;
+    memory_q <= memory[place_i[BITS-1:0]];
     data_o   <= memory_q;
   end
 
   // Of a snapshot its writer tells. An access after a reset asks two clocks later at the earliest.
   assign writing_o = store_q;
+
+  if (!MORE_AXES) begin : gen_narrow
+    logic unused;
+    assign unused = &{1'b0, store_place_q[8], place_i[8]};
+  end
 
 endmodule
 `default_nettype wire

@@ -32,10 +32,11 @@ module snapshot_writer #(
   localparam logic [3:0] FIRST_POSITION = card_map_pkg::IN_AREA_POSITION[5:2];
   localparam logic [3:0] LAST_POSITION = FIRST_POSITION + 4'(Axes - 1);
 
-  localparam logic [3:0] SNAP = card_map_pkg::AREA_SNAP[9:6];
-  localparam logic [3:0] STOP = card_map_pkg::AREA_STOP[9:6];
-  localparam logic [3:0] PROBE = card_map_pkg::AREA_PROBE[9:6];
-  localparam logic [3:0] MARK = card_map_pkg::AREA_MARK[9:6];
+  // The areas have 32 words each, of which the first 16 are used.
+  localparam logic [1:0] SNAP = card_map_pkg::AREA_SNAP[8:7];
+  localparam logic [1:0] STOP = card_map_pkg::AREA_STOP[8:7];
+  localparam logic [1:0] PROBE = card_map_pkg::AREA_PROBE[8:7];
+  localparam logic [1:0] MARK = card_map_pkg::AREA_MARK[8:7];
 
   // Clocks since reset as they are written down: two clocks late, the high word three.
   logic        carry_q;
@@ -54,7 +55,7 @@ module snapshot_writer #(
 
   logic       host_q;  // the host's request is not served yet
   logic       mark_q;  // a MARK's
-  logic [3:0] area_q;
+  logic [1:0] area_q;
   logic       again_q;  // of the host's: a snapshot taken anew
   logic       settle_q;  // the clock between the strobe and the first word
   logic       write_q;
@@ -118,7 +119,9 @@ module snapshot_writer #(
   logic [31:0] data;
 
   assign data = word_q == TIME_LO ? time_q[31:0] : word_q == TIME_HI ? time_q[63:32] : word_i;
-  assign store_o = write_q ? setting_bus_pkg::pack(1'b1, {2'd0, area_q, word_q}, data) : '0;
+  assign store_o = write_q ? setting_bus_pkg::pack(
+      1'b1, {card_map_pkg::AREA_SNAP[11:9], area_q, 1'b0, word_q}, data
+  ) : '0;
 
 endmodule
 `default_nettype wire

@@ -61,7 +61,7 @@ class Command:
     opcode: int
     queues: List[str]
     mask: str  # one of MASK_RULES
-    engine: str  # field of ENGINES without which the opcode is unknown; empty: always there
+    engine: str  # engine (units.toml) without which the opcode is unknown; empty: always there
     built: bool  # false: only laid out, and unknown whatever the engines are
     flags: Optional[Flags]  # with the mask rule `flags`
     brief: str

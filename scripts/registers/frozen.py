@@ -7,20 +7,30 @@ HEAD = """# Positions of the register map and of the command layouts, one line e
 """
 
 
-def frozen_text(register_map, commands):
+def frozen_text(register_map, commands, units, window):
     lines = [HEAD, f"map 0x{register_map.version:08X}\n"]
     for r in register_map.registers:
         array = f" x{r.count} {r.stride:+#x}" if r.is_array else ""
-        engine = f" engine {register_map.engine_bit(r.engine)}" if r.engine else ""
+        engine = f" engine {units.engine_bit(r.engine)}" if r.engine else ""
         fields = " ".join(f"{f.name}[{f.low + f.width - 1}:{f.low}]" for f in r.fields)
         lines.append(f"  0x{r.address:03X} {r.name}{array} {r.access}{engine}: {fields}\n")
     lines += [f"  reason {r.value} {r.name}\n" for r in register_map.reasons]
+    lines += [_unit(u) for u in units.units]
+    lines += [f"  reserved 0x{r.first:03X} to 0x{r.last:03X}: {r.content}\n" for r in window if r.reserved]
     lines.append(f"commands {commands.version}\n")
     for c in commands.commands:
-        engine = f" engine {register_map.engine_bit(c.engine)}" if c.engine else ""
+        engine = f" engine {units.engine_bit(c.engine)}" if c.engine else ""
         fields = " ".join(_field(f) for f in c.fields)
         lines.append(f"  {c.opcode} {c.name} to {'+'.join(c.queues)} mask {c.mask}{engine}: {fields}\n")
     return "".join(lines)
+
+
+def _unit(unit):
+    registers = f" {unit.first}..{unit.last} stride {unit.stride}" if unit.first else ""
+    features = "".join(f" {f.bit}={f.engine}" for f in unit.features)
+    engine = f" engine {unit.engine}" if unit.engine else ""
+    return (f"  unit {unit.tag} {unit.name} {unit.major} x{unit.instances}{registers} load {unit.load_unit}{engine}:"
+            f"{features}\n")
 
 
 def _field(field):

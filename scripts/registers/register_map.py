@@ -24,7 +24,7 @@ class Field:
     brief: str
     minimum: Optional[int]
     maximum: Optional[int]
-    engine: str  # field of ENGINES that must be set for the bits to have a meaning; empty: always
+    engine: str  # engine (units.toml) that the bits need to have a meaning; empty: always
 
     @property
     def mask(self):
@@ -41,7 +41,7 @@ class Register:
     count: int
     stride: int  # in bytes from one axis to the next; negative where an array runs downwards
     only_present_axes: bool
-    engine: str  # field of ENGINES without which the register is not there; empty: always there
+    engine: str  # engine without which the register is not there; empty: always there
     area: str  # of latched values that it belongs to, else empty
     fields: List[Field] = field(default_factory=list)
 
@@ -89,15 +89,10 @@ class Reason:
 class RegisterMap:
     registers: List[Register]
     reasons: List[Reason]
-    engines: List[Field]  # the fields of ENGINES, a bit each
 
     @property
     def version(self):
         return next(r for r in self.registers if r.name == "MAP_VERSION").reset
-
-    def engine_bit(self, name):
-        """Bit of ENGINES; 0 (lines, which every card has) where nothing is needed."""
-        return next(e.low for e in self.engines if e.name == name) if name else 0
 
     def areas(self):
         """Areas of latched values with the same layout: name -> registers, their names without the area's."""
@@ -108,19 +103,19 @@ class RegisterMap:
         return areas
 
 
-def read_register_map(path):
+def read_register_map(path, engines):
+    """`engines`: the names that registers and fields may ask for."""
     compiler = RDLCompiler()
     compiler.compile_file(str(path))
     top = compiler.elaborate().top
     registers = [_register(node) for node in top.descendants(unroll=False) if isinstance(node, RegNode)]
     registers.sort(key=lambda r: min(r.addresses))
-    engines = next(r for r in registers if r.name == "ENGINES").fields
-    known = {e.name for e in engines} | {""}
+    known = set(engines) | {""}
     for r in registers:
         for engine in [r.engine] + [f.engine for f in r.fields]:
             if engine not in known:
-                raise MapError(f"{r.name}: ENGINES has no field {engine}")
-    return RegisterMap(registers, _reasons(top), engines)
+                raise MapError(f"{r.name}: no engine {engine}")
+    return RegisterMap(registers, _reasons(top))
 
 
 def _register(node):

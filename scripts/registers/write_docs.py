@@ -20,11 +20,11 @@ access is looked for in this order: `UNKNOWN_ADDRESS`; for reads `WRITE_ONLY`; f
 `BAD_VALUE` (a bit without meaning is set, or a limit is passed), then what the register itself asks for ([how the card
 behaves](behaviour.md)).
 
-Registers of axes that the card lacks and of engines that are not built in (the column `engine` names a bit of
-[`ENGINES`](#engines); empty: on every card) are unknown addresses. For 257 clocks after reset the registers are being
-filled: accesses wait, but reads of live registers, of `FAULT` and of `REFUSAL` are answered at once.
+Registers of axes that the card lacks and of engines that are not built in (the column `engine`: see
+[units and engines](#units-and-engines); empty: on every card) are unknown addresses. For 257 clocks after reset the
+registers are being filled: accesses wait, but reads of live registers, of `FAULT` and of `REFUSAL` are answered at once.
 
-The registers of the direct mode run downwards, axis n at 0x370 - 0x10 n, and `START` is the last register: on a card
+The registers of the direct mode run downwards, axis n at 0xCF0 - 0x10 n, and `START` is the last register: on a card
 with n axes one block write of 4 n + 3 words, from `FREQUENCY_LO` of axis n - 1 to `START`, sets and starts a move.
 """
 
@@ -49,18 +49,86 @@ when it is whole and every field is in its range; otherwise it is dropped whole,
 [how the card behaves](behaviour.md).
 
 In the queue halfword 1 and the padding are gone, so a command takes one halfword less there than the "halfwords" below.
-A command that needs an engine (a bit of [`ENGINES`](registers.md#engines)) which is not built in is `UNKNOWN_OPCODE`.
+A command that needs an [engine](registers.md#units-and-engines) which is not built in is `UNKNOWN_OPCODE`.
 """
 
 
-def registers_text(register_map, commands):
+def registers_text(register_map, commands, units, window):
     parts = [GENERATED.format("rtl/regs/trammel.rdl"), REGISTERS_HEAD]
+    parts.append(_window_text(window))
     parts.append("\n## Summary\n\n| address | name | access | reset | engine | content |\n|---|---|---|---|---|---|\n")
     parts += [_summary(r, commands) for r in register_map.registers]
     parts += [_register(r, commands) for r in register_map.registers]
+    parts.append(_units_text(units, register_map.registers))
     parts.append("\n## Reasons of a refusal\n\n| value | name | meaning |\n|---|---|---|\n")
     parts += [f"| {r.value} | `{r.name}` | {r.brief} |\n" for r in register_map.reasons]
     return "".join(parts)
+
+
+UNITS_HEAD = """
+## Units and engines
+
+The words from [`DESCRIPTOR`](#descriptor) on describe the units that are built into the card, two words each, in the
+order of the table below. A tag of 0 ends them.
+
+| word | bits | content |
+|---|---|---|
+| 0 | 7:0 | tag |
+| 0 | 11:8, 15:12 | minor and major version: the major one changes when an old driver would go wrong with the unit |
+| 0 | 23:16 | number of instances |
+| 0 | 31:24 | features |
+| 1 | 9:0 | base: word address of the first instance, 0 where the unit has no registers |
+| 1 | 17:10 | words used by an instance |
+| 1 | 24:18 | stride: words from one instance to the next |
+| 1 | 29:25 | number of its first instance on the load bus, 31: none; it has a meaning inside the card alone |
+
+| tag | unit | version | instances | registers of one instance | engine | features | meaning |
+|---|---|---|---|---|---|---|---|
+"""
+
+ENGINES_HEAD = """
+An engine names something that may be built in; registers, fields and commands ask for engines. The bit is that of the
+mask in which the C and Python interfaces give them.
+
+| bit | engine | shown by | meaning |
+|---|---|---|---|
+"""
+
+
+WINDOW_HEAD = """
+## The window
+
+Reserved addresses, whole ranges or words between the registers of another range, answer `UNKNOWN_ADDRESS`. A unit that
+is built later takes its reserved range, and `MAP_VERSION` then has a higher minor version: a driver accepts any minor
+version and refuses another major one. What has an address keeps it within a major version.
+
+| bytes | words | content | state |
+|---|---|---|---|
+"""
+
+
+def _window_text(window):
+    rows = [f"| 0x{r.first:03X} to 0x{r.last:03X} | {r.words} | {r.content} | {'reserved' if r.reserved else 'built'} |\n"
+            for r in window]
+    return WINDOW_HEAD + "".join(rows)
+
+
+def _units_text(units, registers):
+    parts = [UNITS_HEAD]
+    for u in units.units:
+        bounds = f"`{u.first}` to `{u.last}`" if u.first != u.last else f"`{u.first}`"
+        features = "; ".join(f"{f.bit}: {f.engine}" for f in u.features)
+        parts.append(f"| {u.tag} | {u.name} | {u.major}.{u.minor} | {u.instances} | {bounds if u.first else ''} "
+                     f"| {u.engine} | {features} | {u.brief} |\n")
+    parts.append(ENGINES_HEAD)
+    parts += [f"| {e.low} | `{e.name}` | {_shown_by(e.name, units)} | {e.brief} |\n" for e in units.engines]
+    return "".join(parts)
+
+
+def _shown_by(engine, units):
+    shown = [f"unit {u.name}" for u in units.units if u.engine == engine]
+    shown += [f"feature {f.bit} of {u.name}" for u in units.units for f in u.features if f.engine == engine]
+    return ", ".join(shown) or "every card"
 
 
 def _address(register):
@@ -92,7 +160,7 @@ def _summary(register, commands):
 def _register(register, commands):
     lines = [f"\n## {register.name}\n\n{_address(register)}, {ACCESS_TEXT[register.access]}"]
     if register.is_array:
-        lines.append(", n = 0 to 7" + (", only of axes that the card has" if register.only_present_axes else ""))
+        lines.append(f", n = 0 to {register.count - 1}" + (", only of axes that the card has" if register.only_present_axes else ""))
     lines.append(f". {register.brief}")
     lines.append(f" Needs the engine `{register.engine}`.\n" if register.engine else "\n")
     lines.append("\n| bits | field | reset | range | unit | engine | meaning |\n|---|---|---|---|---|---|---|\n")

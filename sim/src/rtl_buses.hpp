@@ -211,8 +211,8 @@ namespace start_answer {
 inline constexpr Field kReason{0, 8};
 inline constexpr Field kError{8, 1};
 inline constexpr Field kDone{9, 1};
-inline constexpr Field kAddress{10, 8};
-inline constexpr unsigned kWidth = 18;
+inline constexpr Field kAddress{10, 10};
+inline constexpr unsigned kWidth = 20;
 }  // namespace start_answer
 
 namespace start {

@@ -63,6 +63,18 @@ TEST(Info, NamesAxesAndClock) {
   EXPECT_NE(outcome.out.find("build          00000000\nboard          0\n"), std::string::npos) << outcome.out;
 }
 
+TEST(Info, ShowsTheUnitsAsATable) {
+  const Command command;
+  const Outcome outcome = command.run("info --axes 5");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* row :
+       {"unit               version instances  registers words stride  with\n",
+        "time_base              1.0         1      0x640     4         classes\n",
+        "axes                   1.0         5      0x800     5     32\n", "host_ports             1.0         1\n"}) {
+    EXPECT_NE(outcome.out.find(row), std::string::npos) << row << outcome.out;
+  }
+}
+
 TEST(Run, MachineOfThreeAxesOnBothEngines) {
   const Command command;
   std::string machine = contents(TRAMMEL_EXAMPLES_DIR "/machine.toml");

@@ -25,12 +25,19 @@ static void identification(void) {
   trammel_simulation simulation = {7, 25000000};
   trammel_card* card = NULL;
   trammel_identification is;
+  trammel_unit units[5];
+  size_t count = 0;
   DONE(trammel_open_simulated(&simulation, &card));
   DONE(trammel_identify(card, &is));
   CHECK(is.axes == 7);
   CHECK(is.clock_hz == 25000000);
   CHECK(is.geometry_depth == 4096 && is.feed_depth == 2560);
   CHECK(is.map_major > 0 && is.commands_version > 0 && is.engines != 0);
+  DONE(trammel_identify_units(card, NULL, 0, &count));
+  CHECK(count > 5 && count < 32);
+  DONE(trammel_identify_units(card, units, 5, &count));
+  CHECK(count > 5 && units[4].tag == 5 && units[4].instances == 7);
+  CHECK(units[4].address == 0x800 && units[4].words == 5 && units[4].stride == 32);
   trammel_close(card);
 }
 

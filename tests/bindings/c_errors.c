@@ -220,6 +220,7 @@ static void null_cards(void) {
   trammel_snapshot snapshot;
   trammel_probe_result probe;
   trammel_identification is;
+  trammel_unit unit;
   trammel_status status;
   trammel_position_stop stop;
   int64_t positions[TRAMMEL_MAX_AXES] = {0};
@@ -231,6 +232,7 @@ static void null_cards(void) {
 #define NO_CARD(call) FAILS(call, TRAMMEL_ARGUMENT, "card is null")
   NO_CARD(trammel_transfer(NULL, &access, 1, &made));
   NO_CARD(trammel_identify(NULL, &is));
+  NO_CARD(trammel_identify_units(NULL, &unit, 1, &made));
   NO_CARD(trammel_configure_axis(NULL, 0, &axis));
   NO_CARD(trammel_read_status(NULL, &status));
   NO_CARD(trammel_read_snapshot(NULL, &snapshot));
@@ -283,6 +285,8 @@ static void null_pointers(void) {
   FAILS(trammel_transfer(card, NULL, 1, &made), TRAMMEL_ARGUMENT, "accesses is null");
   FAILS(trammel_transfer(card, &access, 1, NULL), TRAMMEL_ARGUMENT, "made is null");
   FAILS(trammel_identify(card, NULL), TRAMMEL_ARGUMENT, "identification is null");
+  FAILS(trammel_identify_units(card, NULL, 1, &made), TRAMMEL_ARGUMENT, "units is null");
+  FAILS(trammel_identify_units(card, NULL, 0, NULL), TRAMMEL_ARGUMENT, "count is null");
   FAILS(trammel_configure_axis(card, 0, NULL), TRAMMEL_ARGUMENT, "settings is null");
   FAILS(trammel_read_status(card, NULL), TRAMMEL_ARGUMENT, "status is null");
   FAILS(trammel_read_snapshot(card, NULL), TRAMMEL_ARGUMENT, "snapshot is null");

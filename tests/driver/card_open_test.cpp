@@ -24,18 +24,22 @@ using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-TEST(CardOpen, ReadsWhoTheCardIsInThreeTransfersAndWritesNothing) {
+TEST(CardOpen, ReadsWhoTheCardIsInFourTransfersAndWritesNothing) {
   RegisterStub bus(2, 100'000'000);
   bus.values[reg::kMapVersion] = card_map::kMapVersionValue | 5U;
   bus.values[reg::step_length(1)] = 200;
   bus.values[reg::step_space(1)] = 300;
   const Card card = Card::open(bus);
-  EXPECT_THAT(bus.log,
-              ElementsAre(was_read(reg::kMagic), was_read(reg::kMapVersion), was_read(reg::kCommandsVersion),
-                          was_read(reg::kAxes), was_read(reg::kClockHz), was_read(reg::kEngines),
-                          was_read(reg::kGeometryDepth), was_read(reg::kFeedDepth), was_read(reg::step_length(0)),
-                          was_read(reg::step_space(0)), was_read(reg::step_length(1)), was_read(reg::step_space(1))));
-  EXPECT_THAT(bus.transfers, ElementsAre(1U, 7U, 4U));
+  std::vector<test::Made> expected{
+      was_read(reg::kMagic),   was_read(reg::kMapVersion),    was_read(reg::kCommandsVersion), was_read(reg::kAxes),
+      was_read(reg::kClockHz), was_read(reg::kGeometryDepth), was_read(reg::kFeedDepth)};
+  for (std::uint32_t i = 0; i < 64; ++i) expected.push_back(was_read(reg::descriptor(i)));
+  for (std::uint32_t axis = 0; axis < 2; ++axis) {
+    expected.push_back(was_read(reg::step_length(axis)));
+    expected.push_back(was_read(reg::step_space(axis)));
+  }
+  EXPECT_EQ(bus.log, expected);
+  EXPECT_THAT(bus.transfers, ElementsAre(1U, 6U, 64U, 4U));
   EXPECT_EQ(card.identification().map_major, card_map::kMapVersionValue >> 16);
   EXPECT_EQ(card.identification().map_minor, 5);
   EXPECT_EQ(card.identification().axes, 2U);
@@ -76,6 +80,11 @@ struct Malformed {
   std::optional<std::uint32_t> value;  // none: the read is refused
   const char* message;
 };
+
+// The second word of a descriptor: stride and words used, base as a byte address; on no load bus.
+constexpr std::uint32_t range_of(std::uint32_t stride, std::uint32_t words, std::uint32_t base) {
+  return 31U << 25 | stride << 18 | words << 10 | base / 4;
+}
 
 class MalformedCard : public ::testing::TestWithParam<Malformed> {};
 
@@ -142,28 +151,47 @@ const Malformed kMalformed[] = {
     {"Magic", reg::kMagic, 0x4D4C5254, "0x4D4C5254"},
     {"NothingThere", reg::kMagic, 0xFFFFFFFF, "MAGIC reads 0xFFFFFFFF"},
     {"Zeros", reg::kMagic, 0, "MAGIC reads 0x00000000"},
-    {"OlderMap", reg::kMapVersion, 0x00010000, "MAP_VERSION: 1.0"},
-    {"NewerMap", reg::kMapVersion, 0x00030003, "MAP_VERSION: 3.3"},
-    {"OlderCommands", reg::kCommandsVersion, 1, "COMMANDS_VERSION: 1"},
-    {"NewerCommands", reg::kCommandsVersion, 3, "COMMANDS_VERSION: 3"},
+    {"OlderMap", reg::kMapVersion, 0x00020000,
+     "MAP_VERSION: 2.0, this driver takes version 3: update the card's bitstream"},
+    {"NewerMap", reg::kMapVersion, 0x00040003, "MAP_VERSION: 4.3, this driver takes version 3: update the driver"},
+    {"OlderCommands", reg::kCommandsVersion, 2,
+     "COMMANDS_VERSION: 2, this driver takes version 3: update the card's bitstream"},
+    {"NewerCommands", reg::kCommandsVersion, 4, "COMMANDS_VERSION: 4, this driver takes version 3: update the driver"},
     {"NoAxes", reg::kAxes, 0, "AXES: 0 axes, this driver takes 1 to 8"},
     {"NineAxes", reg::kAxes, 9, "AXES: 9 axes, this driver takes 1 to 8"},
     {"NoClock", reg::kClockHz, 0, "CLOCK_HZ: 0 Hz"},
-    {"UnknownEngine", reg::kEngines, 0x801, "does not know 0x800"},
-    {"NoLines", reg::kEngines, 0x12, "without lines"},
     {"ShortGeometry", reg::kGeometryDepth, 36, "GEOMETRY_DEPTH: 36 halfwords, this driver takes 37 to 32768"},
     {"ShortFeed", reg::kFeedDepth, 19, "FEED_DEPTH: 19 halfwords, this driver takes 20 to 32768"},
-    {"HalfAnAccumulator", reg::kEngines, 0x5, "0x5 without accumulator"},
     {"DeepGeometry", reg::kGeometryDepth, 32769, "GEOMETRY_DEPTH: 32769 halfwords"},
     {"EndlessFeed", reg::kFeedDepth, 0xFFFFFFFF, "FEED_DEPTH: 4294967295 halfwords"},
     {"StepTimes", reg::step_length(3), 0x10000, "STEP_LENGTH reads 0x00010000"},
     {"StepSpaces", reg::step_space(0), 0x20000, "STEP_SPACE reads 0x00020000"},
+    // Units: time_base is described by words 0 and 1, axes by 8 and 9, host_ports, which has no registers, by 12
+    // and 13.
+    {"NewerUnit", reg::descriptor(8), 0x00'04'20'05, "unit axes: version 2.0, this driver takes version 1"},
+    {"OlderUnit", reg::descriptor(8), 0x00'04'0F'05, "unit axes: version 0.15, this driver takes version 1"},
+    {"OtherAxes", reg::descriptor(8), 0x00'03'10'05, "unit axes: 3 instances, but AXES reads 4"},
+    {"SmallStride", reg::descriptor(9), range_of(4, 5, 0x800),
+     "unit axes: a stride of 4 words, but an instance uses 5"},
+    {"OtherStride", reg::descriptor(9), range_of(8, 5, 0x800), "unit axes: registers at 0x800, 8 words apart"},
+    {"EndBeyondWindow", reg::descriptor(13), range_of(0, 2, 0xFFC), "unit host_ports: its registers end at word 1025"},
+    {"StrideBeyondWindow", reg::descriptor(9), range_of(127, 5, 0xC00), "unit axes: its registers end at word 1154"},
+    {"Overlap", reg::descriptor(13), range_of(0, 3, 0x800),
+     "unit host_ports: register 0x800 is another unit's as well"},
+    {"OverlapBetween", reg::descriptor(13), range_of(0, 1, 0x910), "register 0x910 is another unit's as well"},
+    {"Moved", reg::descriptor(1), range_of(0, 4, 0x400), "unit time_base: registers at 0x400"},
+    {"FewerWords", reg::descriptor(1), range_of(0, 3, 0x640), "unit time_base: 3 words of registers"},
+    {"Twice", reg::descriptor(12), 0x00'01'10'04, "unit feed_generator: it is described twice"},
+    {"NoInstance", reg::descriptor(12), 0x00'00'10'07, "unit host_ports: 0 instances"},
+    {"NoTimeBase", reg::descriptor(0), 0x00'01'10'C8, "no unit time_base, which every card has"},
+    {"EndsBeforeAxes", reg::descriptor(8), 0, "no unit axes, which every card has"},
     // An identification that ends early.
     {"EndsAtMagic", reg::kMagic, std::nullopt, "the read of 0x000 was refused"},
     {"EndsAtMapVersion", reg::kMapVersion, std::nullopt, "the read of 0x004 was refused"},
     {"EndsAtClock", reg::kClockHz, std::nullopt, "the read of 0x00C was refused"},
     {"EndsAtDepths", reg::kFeedDepth, std::nullopt, "the read of 0x018 was refused"},
-    {"FewerAxesThanItSays", reg::step_length(2), std::nullopt, "the read of 0x240 was refused"},
+    {"EndsAtUnits", reg::descriptor(5), std::nullopt, "the read of 0x114 was refused"},
+    {"FewerAxesThanItSays", reg::step_length(2), std::nullopt, "the read of 0x900 was refused"},
 };
 
 INSTANTIATE_TEST_SUITE_P(CardOpen, MalformedCard, ::testing::ValuesIn(kMalformed),
@@ -177,6 +205,31 @@ TEST(MalformedCards, HaveMessagesOfTheirOwn) {
   }
   EXPECT_EQ(messages.size(), std::size(kMalformed));
   EXPECT_EQ(messages.count(""), 0U);
+}
+
+// What a later card of the same major version may have: a unit of its own, a higher minor version and a further feature
+// of a unit, a unit with more words.
+TEST(CardOpen, TakesUnitsAndFeaturesThatItDoesNotKnow) {
+  RegisterStub bus;
+  const std::uint32_t engines = Card::open(bus).identification().engines;
+  bus.values[reg::kMapVersion] = card_map::kMapVersionValue + 1;
+  bus.values[reg::descriptor(0)] = 0x80'01'13'01;
+  bus.values[reg::descriptor(1)] = range_of(0, 5, 0x640);
+  const std::uint32_t end = 2 * static_cast<std::uint32_t>(Card::open(bus).identification().units.size());
+  bus.values[reg::descriptor(end)] = 0xFF'02'71'C8;
+  bus.values[reg::descriptor(end + 1)] = range_of(16, 16, 0xF80);
+  const Identification later = Card::open(bus).identification();
+  EXPECT_EQ(later.map_minor, 1);
+  EXPECT_EQ(later.engines, engines);
+  ASSERT_NE(later.units.find(200), nullptr);
+  EXPECT_EQ(later.units.find(200)->major, 7);
+  EXPECT_EQ(later.units.find(card_map::unit::kTimeBase)->words, 5);
+}
+
+TEST(CardOpen, RefusesATableWithoutEnd) {
+  RegisterStub bus;
+  for (std::uint32_t i = 0; i < card_map::kDescriptorSlots; ++i) bus.values[reg::descriptor(2 * i)] = 0x00'01'10'32 + i;
+  EXPECT_THAT(message_of(bus), HasSubstr("its table of units does not end within 32 descriptors"));
 }
 
 // A word for a register of the identification: mostly what a card has there, else one near it, or nonsense.
@@ -210,11 +263,12 @@ void use(Card& card) {
 }
 
 bool names_a_register(const std::string& text) {
-  return std::any_of(std::begin(card_map::kRegisters), std::end(card_map::kRegisters),
+  return text.find("unit") != std::string::npos ||
+         std::any_of(std::begin(card_map::kRegisters), std::end(card_map::kRegisters),
                      [&](const auto& entry) { return text.find(std::string(entry.name)) != std::string::npos; });
 }
 
-// Whatever a bus answers: a card within its bounds, or an error of the driver's that names the register.
+// Whatever a bus answers: a card within its bounds, or an error of the driver's that names the register or the unit.
 TEST(CardOpen, NonsenseIsATypedErrorOrACard) {
   constexpr std::uint64_t kSeed = 20;
   std::mt19937_64 random(kSeed);
@@ -223,11 +277,11 @@ TEST(CardOpen, NonsenseIsATypedErrorOrACard) {
   for (int i = 0; i < 5000; ++i) {
     RegisterStub bus;
     bus.values[reg::kPorts] = 0x04'04'01;
-    bus.values[reg::kEngines] |= field::kEnginesPathCommands | field::kEnginesStreaming;
+    bus.add_engines(card_map::engines::kPathCommands | card_map::engines::kStreaming);
     for (const std::uint32_t address :
-         {reg::kMapVersion, reg::kCommandsVersion, reg::kAxes, reg::kClockHz, reg::kEngines, reg::kGeometryDepth,
-          reg::kFeedDepth, reg::kBuildId, reg::kBuildFlags, reg::kBoardId, reg::kPorts, reg::step_length(0),
-          reg::step_space(3)}) {
+         {reg::kMapVersion, reg::kCommandsVersion, reg::kAxes, reg::kClockHz, reg::descriptor(8), reg::descriptor(9),
+          reg::kGeometryDepth, reg::kFeedDepth, reg::kBuildId, reg::kBuildFlags, reg::kBoardId, reg::kPorts,
+          reg::step_length(0), reg::step_space(3)}) {
       // All of them nonsense at once is found at the first: so one or two.
       if (random() % 6 == 0) bus.values[address] = word_for(bus.values[address], random);
     }

@@ -70,7 +70,7 @@ TEST_F(CardTest, BadArgumentsNeverReachTheBus) {
 TEST_F(CardTest, EachClassHasItsRatio) {
   EXPECT_THAT(argument_error([&] { card_.set_ratio(PieceClass::kRapid, 1); }), HasSubstr("needs classes"));
   EXPECT_TRUE(bus_.log.empty());
-  bus_.values[reg::kEngines] |= field::kEnginesClasses;
+  bus_.add_engines(card_map::engines::kClasses);
   Card card = Card::open(bus_);
   bus_.forget();
   card.set_ratio(PieceClass::kFixed, 0xF000);
@@ -357,7 +357,7 @@ TEST(Errors, TextsNameWhatTheyAreOf) {
   EXPECT_THAT(describe_reason(15), HasSubstr("FAULTED (15): "));
   EXPECT_THAT(describe_reason(5), HasSubstr("NO_ROOM (5): "));
   EXPECT_THAT(RefusedError(6, 17, reg::kStream, "stream").what(), HasSubstr("BAD_FIELD"));
-  EXPECT_THAT(RefusedError(8, 0, reg::step_space(3), "axis 3").what(), HasSubstr("STEP_SPACE[3] (0x264)"));
+  EXPECT_THAT(RefusedError(8, 0, reg::step_space(3), "axis 3").what(), HasSubstr("STEP_SPACE[3] (0x984)"));
   EXPECT_THAT(RefusedError(0, 0, reg::kStart, "line").what(), HasSubstr("it did not say why"));
 }
 

@@ -154,8 +154,8 @@ TEST(Commands, BarriersAreThreeWords) {
   EXPECT_THAT(words_of(EndCommand{}, 1), ElementsAre(0x01030021U, 0U, 0U));
   EXPECT_THAT(words_of(OutputCommand{0x8001, 0x4002}, 2), ElementsAre(0x02040022U, 0U, 0x80010000U, 0x00004002U));
   EXPECT_THAT(words_of(MarkCommand{}, 3), ElementsAre(0x03030023U, 0U, 0U));
-  EXPECT_THAT(words_of(WaitInputCommand{5, true, 0x0123456789}, 4), ElementsAre(0x04030024U, 0x23456789U, 0x00150001U));
-  EXPECT_THAT(words_of(ProbeCommand{15, false}, 5), ElementsAre(0x05030025U, 0U, 0x000F0000U));
+  EXPECT_THAT(words_of(WaitInputCommand{5, true, 0x0123456789}, 4), ElementsAre(0x04030024U, 0x23456789U, 0x00250001U));
+  EXPECT_THAT(words_of(ProbeCommand{31, false}, 5), ElementsAre(0x05030025U, 0U, 0x001F0000U));
   EXPECT_THAT(words_of(ProbeEndCommand{}, 6), ElementsAre(0x06030026U, 0U, 0U));
 }
 
@@ -247,8 +247,8 @@ TEST(Commands, LimitsOfAFeedPieceAndADwellAreKept) {
   EXPECT_EQ(refusal_of(feed), "");
   EXPECT_THAT(refusal_of(DwellCommand{std::uint64_t{1} << 40}), HasSubstr("DWELL: count"));
   EXPECT_THAT(refusal_of(WaitInputCommand{1, true, std::uint64_t{1} << 40}), HasSubstr("WAIT_INPUT: count"));
-  EXPECT_THAT(refusal_of(WaitInputCommand{16}), HasSubstr("WAIT_INPUT: input 16"));
-  EXPECT_THAT(refusal_of(ProbeCommand{16}), HasSubstr("PROBE: input 16"));
+  EXPECT_THAT(refusal_of(WaitInputCommand{32}), HasSubstr("WAIT_INPUT: input 32"));
+  EXPECT_THAT(refusal_of(ProbeCommand{32}), HasSubstr("PROBE: input 32"));
 }
 
 TEST(Commands, DecodeRefusesWhatEncodeCannotMake) {

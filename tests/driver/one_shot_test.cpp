@@ -171,7 +171,7 @@ TEST(OneShot, StartIsOneTransferOfWritesAndNothingElse) {
     EXPECT_THAT(bus.transfers, ElementsAre(used));
     ASSERT_EQ(bus.log.size(), used);
     for (std::size_t i = 0; i < used; ++i) {
-      const auto address = static_cast<std::uint32_t>(0x380 - 0x10 * axes + 4 * i);
+      const auto address = static_cast<std::uint32_t>(0xD00 - 0x10 * axes + 4 * i);
       EXPECT_EQ(bus.log[i], test::wrote(address, words[words.size() - used + i]));
     }
   }
@@ -273,7 +273,7 @@ TEST(OneShot, AFaultedCardNamesTheFault) {
 
 TEST(OneShot, ACardWithoutDirectModeGetsTheLineThroughItsStream) {
   sim::ModelOptions options;
-  options.engines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
+  options.engines = card_map::engines::kLines | card_map::engines::kJerk;
   const auto engine = sim::make_model_engine(options);
   Card card = Card::open(*engine);
   const OneShotPlan plan = plan_line(card.timing(), {40, -100, 0, 7}, 10ms);

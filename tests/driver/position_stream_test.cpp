@@ -339,7 +339,7 @@ TEST(PositionStream, OpensOnlyWhereItCanRun) {
   stream.finish();
 
   sim::ModelOptions without;
-  without.engines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
+  without.engines = card_map::engines::kLines | card_map::engines::kJerk;
   const auto plain = sim::make_model_engine(without);
   Card plain_card = Card::open(*plain);
   EXPECT_THROW(PositionStream{plain_card}, ArgumentError);

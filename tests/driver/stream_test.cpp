@@ -195,7 +195,7 @@ TEST_F(StreamOrder, AHangTimesOutInTheTimePlannedAndAHoldDoesNot) {
 // The time that a piece may take is that of its own class's ratio, the next one's of its own.
 TEST_F(StreamOrder, AHangTimesOutByTheRatiosOfTheClasses) {
   options_.patience = 10ms;
-  bus_.values[reg::kEngines] |= field::kEnginesClasses;
+  bus_.add_engines(card_map::engines::kClasses);
   card_ = Card::open(bus_);
   card_.set_ratio(PieceClass::kFeed, 0x10);
   card_.set_ratio(PieceClass::kRapid, 0x4000);
@@ -269,7 +269,7 @@ TEST_F(StreamOrder, MoreBegunThanSentIsAStateError) {
 }
 
 TEST_F(StreamOrder, HonoursTheCardsEngines) {
-  bus_.values[reg::kEngines] = field::kEnginesLines;
+  bus_.set_engines(card_map::engines::kLines);
   Card card = Card::open(bus_);
   Stream stream(card);
   ArcCommand arc;
@@ -291,7 +291,7 @@ TEST_F(StreamOrder, HonoursTheCardsEngines) {
   feed.piece_class = PieceClass::kRapid;
   EXPECT_THAT(message(feed), HasSubstr("FEED needs classes"));
   // By its step rule too; the whole command is refused before a word of it is written.
-  bus_.values[reg::kEngines] |= field::kEnginesAccumulator;
+  bus_.add_engines(card_map::engines::kAccumulator);
   Card in_four = Card::open(bus_);
   Stream four(in_four);
   arc.eight_directions = true;
@@ -303,13 +303,13 @@ TEST_F(StreamOrder, HonoursTheCardsEngines) {
     EXPECT_THAT(error.what(), HasSubstr("ARC needs accumulator_8"));
   }
   EXPECT_TRUE(bus_.log.empty());
-  bus_.values[reg::kEngines] |= field::kEnginesAccumulator8;
+  bus_.add_engines(card_map::engines::kAccumulator8);
   Card in_eight = Card::open(bus_);
   Stream eight(in_eight);
   EXPECT_NO_THROW(eight.send(arc));
   // A class is no axis.
-  bus_.values[reg::kEngines] |= field::kEnginesClasses;
   bus_.values[reg::kAxes] = 1;
+  bus_.add_engines(card_map::engines::kClasses);
   Card with_classes = Card::open(bus_);
   Stream again(with_classes);
   feed.piece_class = PieceClass::kFixed;

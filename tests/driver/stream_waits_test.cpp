@@ -135,7 +135,7 @@ TEST(StreamWaits, AWatermarkEndsAWaitForRoom) {
     small.interrupt = true;
     small.geometry_depth = 64;
     small.feed_depth = 64;
-    if (!watermarks) small.engines = field::kEnginesLines | field::kEnginesJerk;
+    if (!watermarks) small.engines = card_map::engines::kLines | card_map::engines::kJerk;
     const auto engine = sim::make_model_engine(small);
     Counting bus(*engine);
     Card card = Card::open(bus);

@@ -39,7 +39,7 @@ struct Job {
   std::string program;
   sim::EngineKind engine;
   std::string set;                            // override of the machine, or nothing
-  std::optional<std::uint32_t> engines = {};  // kModel: ENGINES, where it is not the usual card's
+  std::optional<std::uint32_t> engines = {};  // kModel: the mask of them, where it is not the usual card's
 };
 
 // In the names of the tests.
@@ -257,7 +257,7 @@ TEST_F(Changes, OfTheStartShowInTheStartAlone) {
 class BarrierShift : public testing::Test {
  protected:
   const Job job_{kData, "dwells.ngc", sim::EngineKind::kModel, "",
-                 card_map::field::kEnginesLines | card_map::field::kEnginesJerk};
+                 card_map::engines::kLines | card_map::engines::kJerk};
   const StepHashes card_ = hashes_of(job_, {0, 0});
 };
 

@@ -55,7 +55,7 @@ class ArcProgram {
   static model::CardConfig config() {
     model::CardConfig config;
     config.axes = kAxes;
-    config.engines |= card_map::field::kEnginesArcGenerator;
+    config.engines |= card_map::engines::kArcGenerator;
     return config;
   }
 

@@ -210,7 +210,7 @@ TEST(CoreModel, AChordArcsStepsCarryTheirPathTicks) {
   const std::uint64_t ticks = prepare_chords(arc).path_ticks;
   for (const unsigned slow : {0U, 1U}) {
     model::CardConfig config;
-    config.engines |= card_map::field::kEnginesArcGenerator;
+    config.engines |= card_map::engines::kArcGenerator;
     CoreBench bench(config);
     ASSERT_TRUE(bench.line(50, {kOnePulse / 10}));
     ASSERT_TRUE(bench.send(chord_words(bench.number++, arc, ticks)));
@@ -239,7 +239,7 @@ struct ChordGaps {
 // A line, an arc, and another arc or a line of all axes.
 ChordGaps chord_gaps(std::int64_t radius, bool to_arc) {
   model::CardConfig config;
-  config.engines |= card_map::field::kEnginesArcGenerator;
+  config.engines |= card_map::engines::kArcGenerator;
   CoreBench bench(config);
   const ArcPoints arc = short_arc(radius, false);
   const std::uint64_t ticks = prepare_chords(arc).path_ticks;

@@ -34,13 +34,13 @@ class Bench {
 
   void set(const Move& move) {
     for (std::uint32_t n = 0; n < 8; ++n) {
-      memory_[0x370 - 0x10 * n] = static_cast<std::uint32_t>(move.frequency[n]);
-      memory_[0x374 - 0x10 * n] = static_cast<std::uint32_t>(move.frequency[n] >> 32);
-      memory_[0x378 - 0x10 * n] = move.count[n];
-      memory_[0x37C - 0x10 * n] = move.negative[n] ? 1 : 0;
+      memory_[0xCF0 - 0x10 * n] = static_cast<std::uint32_t>(move.frequency[n]);
+      memory_[0xCF4 - 0x10 * n] = static_cast<std::uint32_t>(move.frequency[n] >> 32);
+      memory_[0xCF8 - 0x10 * n] = move.count[n];
+      memory_[0xCFC - 0x10 * n] = move.negative[n] ? 1 : 0;
     }
-    memory_[0x380] = static_cast<std::uint32_t>(move.length);
-    memory_[0x384] = static_cast<std::uint32_t>(move.length >> 32);
+    memory_[0xD00] = static_cast<std::uint32_t>(move.length);
+    memory_[0xD04] = static_cast<std::uint32_t>(move.length >> 32);
   }
 
   // Clocks from START to its answer.

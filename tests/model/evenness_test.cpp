@@ -50,7 +50,7 @@ class EvennessBench : public CoreBench {
   static model::CardConfig config() {
     model::CardConfig config;
     config.axes = kAxes;
-    config.engines |= card_map::field::kEnginesArcGenerator;
+    config.engines |= card_map::engines::kArcGenerator;
     return config;
   }
 };

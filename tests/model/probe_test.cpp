@@ -15,7 +15,7 @@ namespace field = card_map::field;
 using card_map::Area;
 
 constexpr std::uint64_t kFullRate = ~std::uint64_t{0};  // a tick nearly every clock
-constexpr unsigned kHigh = 0x10;                        // of a condition: the level that trips
+constexpr unsigned kHigh = 0x20;                        // of a condition: the level that trips
 
 // A card that probes along +X, a pulse in `ticks_a_pulse` ticks, a tick in four clocks; input 2 trips when it is high.
 class Probing : public CoreBench {
@@ -333,6 +333,36 @@ TEST(WaitInput, EndsWithItsLevelOrItsTime) {
   // The input has its level already: one clock.
   ASSERT_TRUE(card.wait_input(1, 0));
   EXPECT_TRUE(card.finish(100));
+}
+
+// Inputs 16 to 31 can be named, and no card has them: 0 whatever the pins are.
+TEST(Probe, AnInputThatTheCardLacksStaysAtZero) {
+  Probing card;
+  card.pins = 0xFFFF;
+  for (const unsigned input : {16U, 17U, 31U}) {
+    ASSERT_TRUE(card.wait_input(input, 0));
+    EXPECT_TRUE(card.finish(100)) << input;
+    ASSERT_TRUE(card.wait_input(kHigh | input, 500));
+    EXPECT_FALSE(card.finish(400)) << input;
+    EXPECT_TRUE(card.finish(200)) << input;
+  }
+}
+
+// Laid out, not built: conditions on captures ([15]), pieces without steps ([2] of the mask byte).
+TEST(Probe, CapturesAndSilentPiecesAreRefused) {
+  for (unsigned bit = 6; bit < 16; ++bit) {
+    for (const bool probes : {false, true}) {
+      Probing card;
+      const unsigned condition = 1U << bit | 1;
+      EXPECT_FALSE(probes ? card.probe(condition) : card.wait_input(condition, 0)) << bit;
+      EXPECT_EQ(card.read(reg::kRefusal) & 0xFF, static_cast<std::uint32_t>(card_map::Reason::BadField)) << bit;
+    }
+  }
+  for (const std::uint8_t flags : {std::uint8_t{4}, std::uint8_t{6}}) {
+    Probing card;
+    EXPECT_FALSE(card.feed(10, kFullRate, 0, 0, 1, flags));
+    EXPECT_EQ(card.read(reg::kRefusal) & 0xFF, static_cast<std::uint32_t>(card_map::Reason::BadMask));
+  }
 }
 
 }  // namespace

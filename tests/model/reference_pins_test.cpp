@@ -24,7 +24,7 @@ using Host = trammel::testing::PageHost;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
 
-constexpr unsigned kHigh = 1U << 4;  // of a condition
+constexpr unsigned kHigh = 1U << 5;  // of a condition
 
 // Inputs have no filter: a level that one rising edge sees ends a wait and trips a probe.
 TEST(ReferencePage, AnInputIsTakenAfterOneClock) {

@@ -195,7 +195,7 @@ class Program {
   }
 
   void conditional(card_map::Opcode opcode, std::uint64_t count) {
-    p_.send(command_words(opcode, 0, number_++, count, {{"condition", p_.any(0, 1) << 4 | p_.any(0, 3)}}));
+    p_.send(command_words(opcode, 0, number_++, count, {{"condition", p_.any(0, 1) << 5 | p_.any(0, 3)}}));
   }
 
   std::uint64_t line(std::uint64_t ticks) {
@@ -342,8 +342,8 @@ Compared compare_programs(Pair::Of of, std::uint64_t programs, std::uint64_t lon
     std::mt19937_64 random(seed() * 1'000'003 + i);
     config.axes = 1 + static_cast<unsigned>(random() % 8);
     config.idle_level = static_cast<std::uint32_t>(random() & ((1U << 2 * config.axes) - 1));
-    if (random() % 2 == 0) config.engines |= card_map::field::kEnginesArcGenerator;
-    if (random() % 2 == 0) config.engines |= card_map::field::kEnginesAccumulator8;
+    if (random() % 2 == 0) config.engines |= card_map::engines::kArcGenerator;
+    if (random() % 2 == 0) config.engines |= card_map::engines::kAccumulator8;
     Pair pair(of, config, random());
     Program program(pair);
     program.settings();
@@ -390,8 +390,8 @@ TEST(Run, EqualsClockOnArcsInChords) {
   for (std::uint64_t i = 0; i < programs && !HasFailure(); ++i) {
     SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
     model::CardConfig config;
-    config.engines |= card_map::field::kEnginesArcGenerator;
-    config.engines |= card_map::field::kEnginesAccumulator8;
+    config.engines |= card_map::engines::kArcGenerator;
+    config.engines |= card_map::engines::kAccumulator8;
     Pair pair(Pair::Of::ClockAndRun, config, seed() * 1'000'003 + i);
     Program program(pair);
     const double paces[] = {5, 9.7, 31, 120};
@@ -414,7 +414,7 @@ TEST(Run, EqualsClockWhileTheRatioSlews) {
   for (std::uint64_t i = 0; i < programs && !HasFailure(); ++i) {
     SCOPED_TRACE("TRAMMEL_SEED=" + std::to_string(seed()) + " program " + std::to_string(i));
     model::CardConfig config;
-    if (i % 2 == 0) config.engines |= card_map::field::kEnginesArcGenerator;
+    if (i % 2 == 0) config.engines |= card_map::engines::kArcGenerator;
     Pair pair(Pair::Of::ClockAndRun, config, seed() * 1'000'003 + i);
     Program program(pair);
     program.settings();

@@ -260,7 +260,7 @@ class Directed : public ::testing::Test {
 
 class WithoutTheEngine : public Directed {
  protected:
-  WithoutTheEngine() : Directed(field::kEnginesUnderrunHold) {}
+  WithoutTheEngine() : Directed(card_map::engines::kUnderrunHold) {}
 };
 
 TEST_F(Directed, NothingQueuedIsNoUnderrun) {
@@ -336,7 +336,7 @@ void whole_program(Starved& card) {
 TEST_F(Directed, TheEndOfAProgramIsNone) {
   whole_program(card);
   const std::uint64_t clocks = clocks_to_the_end(card);
-  Starved without(config_without(field::kEnginesUnderrunHold));
+  Starved without(config_without(card_map::engines::kUnderrunHold));
   without.bench.write(reg::kSlew, static_cast<std::uint32_t>(kFullSlew * kRate / kStop));
   whole_program(without);
   // Its first piece waits for a round of the guard.

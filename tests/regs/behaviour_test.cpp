@@ -212,7 +212,7 @@ TEST(Behaviour, StartWaitsForTheLoaderWhichReadsItsRegisters) {
   EXPECT_EQ(file.time() - asked, 4u);
   EXPECT_EQ(file.outputs().start_mask, 0x4u);
   file.clock(in);
-  in.loader_address = static_cast<std::uint8_t>(reg::frequency_lo(2) / 4);
+  in.loader_address = static_cast<std::uint16_t>(reg::frequency_lo(2) / 4);
   file.clock(in);
   EXPECT_FALSE(file.outputs().loader_valid && file.outputs().loader_data == 0x12345678u);
   in.loader_address = 0;

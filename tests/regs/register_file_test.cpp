@@ -71,9 +71,8 @@ TEST_P(EveryAxisCount, DescribesItself) {
   EXPECT_EQ(bench_.read(reg::kClockHz).data, 25'000'000u);
   EXPECT_EQ(bench_.read(reg::kGeometryDepth).data, 1024u);
   EXPECT_EQ(bench_.read(reg::kFeedDepth).data, 512u);
-  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x20000u);
-  EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, 2u);
-  EXPECT_EQ(bench_.read(reg::kEngines).data, 0x7F3u);
+  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30000u);
+  EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, 3u);
   EXPECT_EQ(bench_.read(reg::kPorts).data, 0x04'04'01u);
 }
 
@@ -86,7 +85,6 @@ TEST(Identity, ComesFromTheParameters) {
   config.ports = 3;
   config.idle_level = 0b101'010;
   RegisterBench bench(config);
-  EXPECT_EQ(bench.read(reg::kEngines).data, 0x11u);
   EXPECT_EQ(bench.read(reg::kBuildId).data, 0xC0FFEE01u);
   EXPECT_EQ(bench.read(reg::kBuildFlags).data, 1u);
   EXPECT_EQ(bench.read(reg::kBoardId).data, 0xB0A2Du);
@@ -97,24 +95,78 @@ TEST(Identity, ComesFromTheParameters) {
   EXPECT_EQ(bench.read(reg::mode(2)).data, field::kModeInvertSecond);
 }
 
+// The words by hand, from the layout on the reference page: {features, instances, version, tag} and
+// {load unit, stride, words, base}.
+TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
+  RegisterFile::Config config = RegisterBench::config_of(3);
+  config.engines = RegisterFile::kLeastEngines | card_map::engines::kDirectMode | card_map::engines::kClasses;
+  config.ports = 2;
+  RegisterBench bench(config);
+  const auto word = [](unsigned load, unsigned stride, unsigned words, unsigned base) {
+    return load << 25 | stride << 18 | words << 10 | base / 4;
+  };
+  const std::vector<std::uint32_t> expected{
+      0x01'01'10'01,
+      word(31, 0, 4, 0x640),  // time base with classes
+      0x00'01'10'02,
+      word(31, 0, 2, 0x680),  // stop control
+      0x00'02'10'03,
+      word(31, 1, 1, 0x6C0),  // queues without watermarks
+      0x01'01'10'04,
+      word(31, 0, 0, 0),  // feed generator with jerk
+      0x00'03'10'05,
+      word(0, 32, 5, 0x800),  // three axes
+      0x00'02'10'06,
+      word(31, 32, 11, 0x200),  // SNAP and STOP, 8 words and three positions
+      0x00'02'10'07,
+      word(31, 0, 0, 0),  // two host ports
+      0x00'01'10'0A,
+      word(31, 0, 15, 0xCD0),  // direct mode: 4 words an axis, two of length, START
+      0,
+      0};
+  for (std::uint32_t i = 0; i < expected.size(); ++i)
+    EXPECT_EQ(bench.read(reg::descriptor(i)).data, expected[i]) << "word " << i;
+}
+
+// A card with all engines: every unit once, in the order of the description, no two ranges overlap.
+TEST(Descriptors, EveryUnitOnceAndNoOverlap) {
+  RegisterFile::Config config = RegisterBench::config_of(8);
+  config.engines = RegisterFile::kMostEngines;
+  RegisterBench bench(config);
+  std::array<bool, card_map::kWindowBytes / 4> used{};
+  for (std::uint32_t i = 0; i < card_map::kUnits.size(); ++i) {
+    const card_map::Descriptor d =
+        card_map::descriptor_of(bench.read(reg::descriptor(2 * i)).data, bench.read(reg::descriptor(2 * i + 1)).data);
+    EXPECT_EQ(d.tag, card_map::kUnits[i].tag);
+    for (std::uint32_t n = 0; n < (d.stride == 0 ? 1u : d.instances); ++n) {
+      for (std::uint32_t w = 0; w < d.words; ++w) {
+        bool& word = used.at(d.base + n * d.stride + w);
+        EXPECT_FALSE(word) << card_map::kUnits[i].name << " word " << w;
+        word = true;
+      }
+    }
+  }
+  EXPECT_EQ(bench.read(reg::descriptor(2 * card_map::kUnits.size())).data, 0u);
+}
+
 // Which registers an engine brings, by hand.
 TEST(Identity, WithoutDirectModeItsRegistersAreUnknown) {
   RegisterFile::Config config = RegisterBench::config_of(2);
-  config.engines = RegisterFile::kDefaultEngines & ~field::kEnginesDirectMode;
+  config.engines = RegisterFile::kDefaultEngines & ~card_map::engines::kDirectMode;
   RegisterBench bench(config);
-  for (std::uint32_t address = 0x300; address < 0x400; address += 4) {
+  for (std::uint32_t address = 0xC00; address < 0xE00; address += 4) {
     EXPECT_EQ(bench.refusal_of_write(address, 1), Reason::UnknownAddress) << address;
   }
   RegisterBench with(2);
-  EXPECT_EQ(with.refusal_of_write(0x370, 1), Reason::None) << "axis 0";
-  EXPECT_EQ(with.refusal_of_write(0x360, 1), Reason::None) << "axis 1";
-  EXPECT_EQ(with.refusal_of_write(0x350, 1), Reason::UnknownAddress) << "axis 2, which a card with 2 axes lacks";
-  EXPECT_EQ(with.refusal_of_write(0x388, 1), Reason::None);
+  EXPECT_EQ(with.refusal_of_write(0xCF0, 1), Reason::None) << "axis 0";
+  EXPECT_EQ(with.refusal_of_write(0xCE0, 1), Reason::None) << "axis 1";
+  EXPECT_EQ(with.refusal_of_write(0xCD0, 1), Reason::UnknownAddress) << "axis 2, which a card with 2 axes lacks";
+  EXPECT_EQ(with.refusal_of_write(0xD08, 1), Reason::None);
 }
 
 TEST(Identity, ProbeClearNeedsItsEngine) {
   RegisterFile::Config config = RegisterBench::config_of(1);
-  config.engines &= ~field::kEnginesPathCommands;
+  config.engines &= ~card_map::engines::kPathCommands;
   RegisterBench without(config);
   EXPECT_EQ(without.refusal_of_write(reg::kControl, field::kControlProbeClear), Reason::BadValue);
   RegisterBench with(1);

@@ -90,8 +90,8 @@ TEST(PathOutputs, OutputsThatTheCardLacksAreRefused) {
   EXPECT_NO_THROW(configure(bench.card, bench.machine));
 
   sim::ModelOptions bare(sim::EngineOptions{4, kSlowClock, false});
-  bare.engines = card_map::field::kEnginesLines | card_map::field::kEnginesArcGenerator |
-                 card_map::field::kEnginesJerk | card_map::field::kEnginesUnderrunHold;
+  bare.engines = card_map::engines::kLines | card_map::engines::kArcGenerator | card_map::engines::kJerk |
+                 card_map::engines::kUnderrunHold;
   Bench without(bare);
   try {
     without.run("G1 X1 F600\nM3\n");

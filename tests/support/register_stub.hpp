@@ -32,13 +32,21 @@ class RegisterStub : public driver::Bus {
     values[reg::kCommandsVersion] = card_map::kCommandsVersionValue;
     values[reg::kAxes] = axes;
     values[reg::kClockHz] = clock_hz;
-    values[reg::kEngines] = card_map::field::kEnginesLines | card_map::field::kEnginesAccumulator |
-                            card_map::field::kEnginesJerk | card_map::field::kEnginesDirectMode;
+    set_engines(card_map::engines::kLines | card_map::engines::kAccumulator | card_map::engines::kJerk |
+                card_map::engines::kDirectMode);
     values[reg::kGeometryDepth] = 4096;
     values[reg::kFeedDepth] = 2560;
     values[reg::kRatioFeed] = 0x10000;
     values[reg::kSlew] = 0xFFFFFFF;
   }
+
+  // Describes the units of a card that is built with these engines; the number of axes is as AXES says.
+  void set_engines(std::uint32_t engines) {
+    engines_ = engines;
+    const card_map::CardShape shape{engines, values[card_map::reg::kAxes], 1, 4, 4};
+    card_map::put_descriptors(shape, [&](std::uint32_t address, std::uint32_t word) { values[address] = word; });
+  }
+  void add_engines(std::uint32_t engines) { set_engines(engines_ | engines); }
 
   // Read and written registers; 0 where nothing is set. Orders are only logged, writing ones clears where the map says.
   std::map<std::uint32_t, std::uint32_t> values;
@@ -76,6 +84,8 @@ class RegisterStub : public driver::Bus {
   bool reports_refusals() const override { return !posted; }
 
  private:
+  std::uint32_t engines_ = 0;
+
   void make(driver::Access& access) {
     log.push_back(access.write ? wrote(access.address, access.data) : was_read(access.address));
     if (!access.write) {

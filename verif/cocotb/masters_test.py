@@ -12,15 +12,17 @@ from cocotbext.axi import AxiLiteBus, AxiLiteMaster, AxiResp
 from cocotbext.wishbone.driver import WBOp, WishboneMaster
 
 SEED = int(os.environ.get("TRAMMEL_SEED", "1"))
+with open(os.environ["TRAMMEL_CARD_MAP"], encoding="ascii") as card_map:
+    TEXT = card_map.read()
 MAP = {name: int(value, 16) for name, value in re.findall(
-    r"localparam logic \[\d+:0\] (\w+) = \d+'h([0-9A-F]+);",
-    open(os.environ["TRAMMEL_CARD_MAP"], encoding="ascii").read())}
+    r"localparam logic \[\d+:0\] (\w+) = \d+'h([0-9A-F]+);", TEXT)}
+STRIDES = {name: int(value) for name, value in re.findall(r"localparam int STRIDE_(\w+) = (-?\d+);", TEXT)}
 AXES = 4
 OKAY, SLVERR = True, False
 
 
-def address(name, axis=0, stride=0x20):
-    return MAP[f"ADDR_{name}"] + stride * axis
+def address(name, axis=0):
+    return MAP[f"ADDR_{name}"] + STRIDES.get(name, 0) * axis
 
 
 class Axi:
@@ -140,7 +142,7 @@ async def line(bus, dut, pulses, clocks):
         pass
     assert await bus.write(address("CONTROL"), 1)
     await ClockCycles(dut.clk, 100)
-    return [((await bus.read(address("SNAP_POSITION", axis, 4)))[1] ^ 1 << 31) - (1 << 31) for axis in range(AXES)]
+    return [((await bus.read(address("SNAP_POSITION", axis)))[1] ^ 1 << 31) - (1 << 31) for axis in range(AXES)]
 
 
 @cocotb.test(timeout_time=20_000, timeout_unit="step")

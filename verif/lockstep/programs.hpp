@@ -113,7 +113,7 @@ class Programs {
 
   static Halfwords probe_end() { return stored_command(card_map::Opcode::ProbeEnd, 0, 0); }
   Halfwords conditional(card_map::Opcode opcode, std::uint64_t count) {
-    return stored_command(opcode, 0, count, {{"condition", dice_.below(2) << 4 | dice_.below(inputs)}});
+    return stored_command(opcode, 0, count, {{"condition", dice_.below(2) << 5 | dice_.below(inputs)}});
   }
 
   void barrier(Stretch& s) {

@@ -128,10 +128,23 @@ typedef struct trammel_identification {
   uint32_t commands_version;
   unsigned axes;            // 1 .. 8
   uint32_t clock_hz;        // Hz
-  uint32_t engines;         // bits of ENGINES
+  uint32_t engines;         // what is built in: bits as docs/reference/registers.md has them (Units and engines)
   uint32_t geometry_depth;  // of the queues, halfwords
   uint32_t feed_depth;
 } trammel_identification;
+
+// A unit that is built into the card, as its descriptor says (docs/reference/registers.md of the project, Units and
+// engines).
+typedef struct trammel_unit {
+  uint8_t tag;
+  uint8_t major;  // version
+  uint8_t minor;
+  uint8_t instances;
+  uint8_t features;  // bits
+  uint16_t address;  // byte address of the first instance's first register; 0 where it has none
+  uint8_t words;     // that an instance uses
+  uint8_t stride;    // words from one instance to the next; 0: all share the same registers
+} trammel_unit;
 
 // Raw accesses through the card's bus, unchecked: `made` is how many, fewer than `count` where the card refused the
 // next one. What is written so, the driver does not know of.
@@ -139,6 +152,9 @@ TRAMMEL_API trammel_result trammel_transfer(trammel_card* card, trammel_access* 
 
 // As read when the card was opened.
 TRAMMEL_API trammel_result trammel_identify(const trammel_card* card, trammel_identification* identification);
+// The same: the first `room` units into `units`, which may be null where `room` is 0; *count is how many there are.
+TRAMMEL_API trammel_result trammel_identify_units(const trammel_card* card, trammel_unit* units, size_t room,
+                                                  size_t* count);
 
 typedef enum trammel_step_mode {
   TRAMMEL_STEP_DIRECTION = 0,
@@ -357,7 +373,7 @@ typedef struct trammel_output_command {
 
 // Until an input has a level.
 typedef struct trammel_input_condition {
-  uint8_t input;     // 0 .. 15
+  uint8_t input;     // 0 .. 31; one that the card lacks stays at 0
   bool level;        //
   uint64_t timeout;  // clocks, 0: none. Not for probes
 } trammel_input_condition;

@@ -145,6 +145,23 @@ trammel_result trammel_identify(const trammel_card* card, trammel_identification
   });
 }
 
+trammel_result trammel_identify_units(const trammel_card* card, trammel_unit* units, size_t room, size_t* count) {
+  return guarded([=] {
+    const driver::UnitTable& table = required(card, "card").card.identification().units;
+    size_t& number = required(count, "count");
+    if (room != 0) required(units, "units");
+    number = 0;
+    for (const trammel::card_map::Descriptor& unit : table) {
+      if (number < room) {
+        units[number] = {unit.tag,       unit.major,    unit.minor,
+                         unit.instances, unit.features, static_cast<uint16_t>(4 * unit.base),
+                         unit.words,     unit.stride};
+      }
+      ++number;
+    }
+  });
+}
+
 trammel_result trammel_configure_axis(trammel_card* card, unsigned axis, const trammel_axis_settings* settings) {
   return guarded([=] { card_of(card).configure_axis(axis, settings_of(required(settings, "settings"))); });
 }

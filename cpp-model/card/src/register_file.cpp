@@ -11,7 +11,8 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr std::uint32_t kByteInWord = 3;
-constexpr std::uint64_t kFillClocks = 257;  // from reset on accesses wait so long for the registers to be filled
+// From reset on accesses wait so long for the registers to be filled: a clock for each word of the RAM that is written.
+constexpr std::uint64_t kFillClocks = 257;
 
 bool writable(Access access) {
   return access == Access::ClearOnes || access == Access::Setting || access == Access::Command;
@@ -37,7 +38,6 @@ RegisterFile::RegisterFile(const Config& config) : config_(config), snapshot_(co
   }
   stored(reg::kAxes) = config_.axes;
   stored(reg::kClockHz) = config_.clock_hz;
-  stored(reg::kEngines) = config_.engines;
   stored(reg::kGeometryDepth) = config_.geometry_depth;
   stored(reg::kFeedDepth) = config_.feed_depth;
   stored(reg::kBuildId) = config_.build_id;
@@ -51,6 +51,8 @@ RegisterFile::RegisterFile(const Config& config) : config_(config), snapshot_(co
     const bool second = (config_.idle_level >> (config_.axes + n) & 1) != 0;
     stored(reg::mode(n)) = (first ? field::kModeInvertFirst : 0) | (second ? field::kModeInvertSecond : 0);
   }
+  const card_map::CardShape shape{config_.engines, config_.axes, config_.ports, config_.inputs, config_.outputs};
+  card_map::put_descriptors(shape, [&](std::uint32_t address, std::uint32_t word) { stored(address) = word; });
 }
 
 void RegisterFile::reset() { *this = RegisterFile(config_); }

@@ -49,7 +49,7 @@ package card_map_pkg;
   // Class of a feed piece: threading and the like, which a hold lets end
   localparam int CLASS_FIXED = 2;
 
-  // Bit numbers of ENGINES.
+  // Bit numbers of the mask of engines: what is built in.
   localparam int ENGINE_LINES = 0;
   localparam int ENGINE_ACCUMULATOR = 1;
   localparam int ENGINE_ACCUMULATOR_8 = 2;
@@ -68,7 +68,7 @@ package card_map_pkg;
   localparam logic [31:0] RESET_MAGIC = 32'h54524D4C;
   localparam logic [31:0] MASK_MAGIC = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_MAP_VERSION = 12'h004;
-  localparam logic [31:0] RESET_MAP_VERSION = 32'h00020000;
+  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030000;
   localparam logic [31:0] MASK_MAP_VERSION = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_AXES = 12'h008;
   localparam logic [31:0] RESET_AXES = 32'h00000000;
@@ -76,9 +76,6 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_CLOCK_HZ = 12'h00C;
   localparam logic [31:0] RESET_CLOCK_HZ = 32'h00000000;
   localparam logic [31:0] MASK_CLOCK_HZ = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_ENGINES = 12'h010;
-  localparam logic [31:0] RESET_ENGINES = 32'h00000000;
-  localparam logic [31:0] MASK_ENGINES = 32'h000007FF;
   localparam logic [11:0] ADDR_GEOMETRY_DEPTH = 12'h014;
   localparam logic [31:0] RESET_GEOMETRY_DEPTH = 32'h00000000;
   localparam logic [31:0] MASK_GEOMETRY_DEPTH = 32'h0000FFFF;
@@ -136,219 +133,224 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_STALE_TICKS = 12'h06C;
   localparam logic [31:0] RESET_STALE_TICKS = 32'h00000000;
   localparam logic [31:0] MASK_STALE_TICKS = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_SNAP_FAULT = 12'h080;
+  localparam logic [11:0] ADDR_DESCRIPTOR = 12'h100;
+  localparam logic [31:0] RESET_DESCRIPTOR = 32'h00000000;
+  localparam logic [31:0] MASK_DESCRIPTOR = 32'hFFFFFFFF;
+  localparam int COUNT_DESCRIPTOR = 64;
+  localparam int STRIDE_DESCRIPTOR = 4;
+  localparam logic [11:0] ADDR_SNAP_FAULT = 12'h200;
   localparam logic [31:0] RESET_SNAP_FAULT = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_FAULT = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_SNAP_STATUS = 12'h084;
+  localparam logic [11:0] ADDR_SNAP_STATUS = 12'h204;
   localparam logic [31:0] RESET_SNAP_STATUS = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_STATUS = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_SNAP_RATIO = 12'h088;
+  localparam logic [11:0] ADDR_SNAP_RATIO = 12'h208;
   localparam logic [31:0] RESET_SNAP_RATIO = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_RATIO = 32'h0001FFFF;
-  localparam logic [11:0] ADDR_SNAP_RATE = 12'h08C;
+  localparam logic [11:0] ADDR_SNAP_RATE = 12'h20C;
   localparam logic [31:0] RESET_SNAP_RATE = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_RATE = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_SNAP_FEED_BEGUN = 12'h090;
+  localparam logic [11:0] ADDR_SNAP_FEED_BEGUN = 12'h210;
   localparam logic [31:0] RESET_SNAP_FEED_BEGUN = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_FEED_BEGUN = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_SNAP_GEOMETRY_BEGUN = 12'h094;
+  localparam logic [11:0] ADDR_SNAP_GEOMETRY_BEGUN = 12'h214;
   localparam logic [31:0] RESET_SNAP_GEOMETRY_BEGUN = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_GEOMETRY_BEGUN = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_SNAP_TIME_HI = 12'h098;
+  localparam logic [11:0] ADDR_SNAP_TIME_HI = 12'h218;
   localparam logic [31:0] RESET_SNAP_TIME_HI = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_TIME_HI = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_SNAP_TIME_LO = 12'h09C;
+  localparam logic [11:0] ADDR_SNAP_TIME_LO = 12'h21C;
   localparam logic [31:0] RESET_SNAP_TIME_LO = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_TIME_LO = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_SNAP_POSITION = 12'h0A0;
+  localparam logic [11:0] ADDR_SNAP_POSITION = 12'h220;
   localparam logic [31:0] RESET_SNAP_POSITION = 32'h00000000;
   localparam logic [31:0] MASK_SNAP_POSITION = 32'hFFFFFFFF;
   localparam int COUNT_SNAP_POSITION = 8;
   localparam int STRIDE_SNAP_POSITION = 4;
-  localparam logic [11:0] ADDR_STOP_FAULT = 12'h0C0;
+  localparam logic [11:0] ADDR_STOP_FAULT = 12'h280;
   localparam logic [31:0] RESET_STOP_FAULT = 32'h00000000;
   localparam logic [31:0] MASK_STOP_FAULT = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_STOP_STATUS = 12'h0C4;
+  localparam logic [11:0] ADDR_STOP_STATUS = 12'h284;
   localparam logic [31:0] RESET_STOP_STATUS = 32'h00000000;
   localparam logic [31:0] MASK_STOP_STATUS = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_STOP_RATIO = 12'h0C8;
+  localparam logic [11:0] ADDR_STOP_RATIO = 12'h288;
   localparam logic [31:0] RESET_STOP_RATIO = 32'h00000000;
   localparam logic [31:0] MASK_STOP_RATIO = 32'h0001FFFF;
-  localparam logic [11:0] ADDR_STOP_RATE = 12'h0CC;
+  localparam logic [11:0] ADDR_STOP_RATE = 12'h28C;
   localparam logic [31:0] RESET_STOP_RATE = 32'h00000000;
   localparam logic [31:0] MASK_STOP_RATE = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_STOP_FEED_BEGUN = 12'h0D0;
+  localparam logic [11:0] ADDR_STOP_FEED_BEGUN = 12'h290;
   localparam logic [31:0] RESET_STOP_FEED_BEGUN = 32'h00000000;
   localparam logic [31:0] MASK_STOP_FEED_BEGUN = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_STOP_GEOMETRY_BEGUN = 12'h0D4;
+  localparam logic [11:0] ADDR_STOP_GEOMETRY_BEGUN = 12'h294;
   localparam logic [31:0] RESET_STOP_GEOMETRY_BEGUN = 32'h00000000;
   localparam logic [31:0] MASK_STOP_GEOMETRY_BEGUN = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_STOP_TIME_HI = 12'h0D8;
+  localparam logic [11:0] ADDR_STOP_TIME_HI = 12'h298;
   localparam logic [31:0] RESET_STOP_TIME_HI = 32'h00000000;
   localparam logic [31:0] MASK_STOP_TIME_HI = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_STOP_TIME_LO = 12'h0DC;
+  localparam logic [11:0] ADDR_STOP_TIME_LO = 12'h29C;
   localparam logic [31:0] RESET_STOP_TIME_LO = 32'h00000000;
   localparam logic [31:0] MASK_STOP_TIME_LO = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_STOP_POSITION = 12'h0E0;
+  localparam logic [11:0] ADDR_STOP_POSITION = 12'h2A0;
   localparam logic [31:0] RESET_STOP_POSITION = 32'h00000000;
   localparam logic [31:0] MASK_STOP_POSITION = 32'hFFFFFFFF;
   localparam int COUNT_STOP_POSITION = 8;
   localparam int STRIDE_STOP_POSITION = 4;
-  localparam logic [11:0] ADDR_PROBE_FAULT = 12'h100;
+  localparam logic [11:0] ADDR_PROBE_FAULT = 12'h300;
   localparam logic [31:0] RESET_PROBE_FAULT = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_FAULT = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_PROBE_STATUS = 12'h104;
+  localparam logic [11:0] ADDR_PROBE_STATUS = 12'h304;
   localparam logic [31:0] RESET_PROBE_STATUS = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_STATUS = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_PROBE_RATIO = 12'h108;
+  localparam logic [11:0] ADDR_PROBE_RATIO = 12'h308;
   localparam logic [31:0] RESET_PROBE_RATIO = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_RATIO = 32'h0001FFFF;
-  localparam logic [11:0] ADDR_PROBE_RATE = 12'h10C;
+  localparam logic [11:0] ADDR_PROBE_RATE = 12'h30C;
   localparam logic [31:0] RESET_PROBE_RATE = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_RATE = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_PROBE_FEED_BEGUN = 12'h110;
+  localparam logic [11:0] ADDR_PROBE_FEED_BEGUN = 12'h310;
   localparam logic [31:0] RESET_PROBE_FEED_BEGUN = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_FEED_BEGUN = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_PROBE_GEOMETRY_BEGUN = 12'h114;
+  localparam logic [11:0] ADDR_PROBE_GEOMETRY_BEGUN = 12'h314;
   localparam logic [31:0] RESET_PROBE_GEOMETRY_BEGUN = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_GEOMETRY_BEGUN = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_PROBE_TIME_HI = 12'h118;
+  localparam logic [11:0] ADDR_PROBE_TIME_HI = 12'h318;
   localparam logic [31:0] RESET_PROBE_TIME_HI = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_TIME_HI = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_PROBE_TIME_LO = 12'h11C;
+  localparam logic [11:0] ADDR_PROBE_TIME_LO = 12'h31C;
   localparam logic [31:0] RESET_PROBE_TIME_LO = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_TIME_LO = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_PROBE_POSITION = 12'h120;
+  localparam logic [11:0] ADDR_PROBE_POSITION = 12'h320;
   localparam logic [31:0] RESET_PROBE_POSITION = 32'h00000000;
   localparam logic [31:0] MASK_PROBE_POSITION = 32'hFFFFFFFF;
   localparam int COUNT_PROBE_POSITION = 8;
   localparam int STRIDE_PROBE_POSITION = 4;
-  localparam logic [11:0] ADDR_MARK_FAULT = 12'h140;
+  localparam logic [11:0] ADDR_MARK_FAULT = 12'h380;
   localparam logic [31:0] RESET_MARK_FAULT = 32'h00000000;
   localparam logic [31:0] MASK_MARK_FAULT = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_MARK_STATUS = 12'h144;
+  localparam logic [11:0] ADDR_MARK_STATUS = 12'h384;
   localparam logic [31:0] RESET_MARK_STATUS = 32'h00000000;
   localparam logic [31:0] MASK_MARK_STATUS = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_MARK_RATIO = 12'h148;
+  localparam logic [11:0] ADDR_MARK_RATIO = 12'h388;
   localparam logic [31:0] RESET_MARK_RATIO = 32'h00000000;
   localparam logic [31:0] MASK_MARK_RATIO = 32'h0001FFFF;
-  localparam logic [11:0] ADDR_MARK_RATE = 12'h14C;
+  localparam logic [11:0] ADDR_MARK_RATE = 12'h38C;
   localparam logic [31:0] RESET_MARK_RATE = 32'h00000000;
   localparam logic [31:0] MASK_MARK_RATE = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_MARK_FEED_BEGUN = 12'h150;
+  localparam logic [11:0] ADDR_MARK_FEED_BEGUN = 12'h390;
   localparam logic [31:0] RESET_MARK_FEED_BEGUN = 32'h00000000;
   localparam logic [31:0] MASK_MARK_FEED_BEGUN = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_MARK_GEOMETRY_BEGUN = 12'h154;
+  localparam logic [11:0] ADDR_MARK_GEOMETRY_BEGUN = 12'h394;
   localparam logic [31:0] RESET_MARK_GEOMETRY_BEGUN = 32'h00000000;
   localparam logic [31:0] MASK_MARK_GEOMETRY_BEGUN = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_MARK_TIME_HI = 12'h158;
+  localparam logic [11:0] ADDR_MARK_TIME_HI = 12'h398;
   localparam logic [31:0] RESET_MARK_TIME_HI = 32'h00000000;
   localparam logic [31:0] MASK_MARK_TIME_HI = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_MARK_TIME_LO = 12'h15C;
+  localparam logic [11:0] ADDR_MARK_TIME_LO = 12'h39C;
   localparam logic [31:0] RESET_MARK_TIME_LO = 32'h00000000;
   localparam logic [31:0] MASK_MARK_TIME_LO = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_MARK_POSITION = 12'h160;
+  localparam logic [11:0] ADDR_MARK_POSITION = 12'h3A0;
   localparam logic [31:0] RESET_MARK_POSITION = 32'h00000000;
   localparam logic [31:0] MASK_MARK_POSITION = 32'hFFFFFFFF;
   localparam int COUNT_MARK_POSITION = 8;
   localparam int STRIDE_MARK_POSITION = 4;
-  localparam logic [11:0] ADDR_CONTROL = 12'h180;
+  localparam logic [11:0] ADDR_CONTROL = 12'h600;
   localparam logic [31:0] RESET_CONTROL = 32'h00000000;
   localparam logic [31:0] MASK_CONTROL = 32'h0000000F;
-  localparam logic [11:0] ADDR_HOLD = 12'h184;
+  localparam logic [11:0] ADDR_HOLD = 12'h604;
   localparam logic [31:0] RESET_HOLD = 32'h00000000;
   localparam logic [31:0] MASK_HOLD = 32'h00000001;
-  localparam logic [11:0] ADDR_RATIO_FEED = 12'h188;
-  localparam logic [31:0] RESET_RATIO_FEED = 32'h00010000;
-  localparam logic [31:0] MASK_RATIO_FEED = 32'h0001FFFF;
-  localparam logic [11:0] ADDR_RATIO_RAPID = 12'h18C;
-  localparam logic [31:0] RESET_RATIO_RAPID = 32'h00010000;
-  localparam logic [31:0] MASK_RATIO_RAPID = 32'h0001FFFF;
-  localparam logic [11:0] ADDR_RATIO_FIXED = 12'h190;
-  localparam logic [31:0] RESET_RATIO_FIXED = 32'h00010000;
-  localparam logic [31:0] MASK_RATIO_FIXED = 32'h0001FFFF;
-  localparam logic [11:0] ADDR_SLEW = 12'h194;
-  localparam logic [31:0] RESET_SLEW = 32'h0FFFFFFF;
-  localparam logic [31:0] MASK_SLEW = 32'h0FFFFFFF;
-  localparam logic [11:0] ADDR_HOLD_LIMIT = 12'h198;
-  localparam logic [31:0] RESET_HOLD_LIMIT = 32'h0000FFFF;
-  localparam logic [31:0] MASK_HOLD_LIMIT = 32'h0000FFFF;
-  localparam logic [11:0] ADDR_IRQ_ENABLE = 12'h19C;
-  localparam logic [31:0] RESET_IRQ_ENABLE = 32'h00000000;
-  localparam logic [31:0] MASK_IRQ_ENABLE = 32'h0003FFFF;
-  localparam logic [11:0] ADDR_STOP_REACTION = 12'h1A0;
-  localparam logic [31:0] RESET_STOP_REACTION = 32'h00000000;
-  localparam logic [31:0] MASK_STOP_REACTION = 32'h0000FCFF;
-  localparam logic [11:0] ADDR_GEOMETRY_WATERMARK = 12'h1A4;
-  localparam logic [31:0] RESET_GEOMETRY_WATERMARK = 32'h00000000;
-  localparam logic [31:0] MASK_GEOMETRY_WATERMARK = 32'h0000FFFF;
-  localparam logic [11:0] ADDR_FEED_WATERMARK = 12'h1A8;
-  localparam logic [31:0] RESET_FEED_WATERMARK = 32'h00000000;
-  localparam logic [31:0] MASK_FEED_WATERMARK = 32'h0000FFFF;
-  localparam logic [11:0] ADDR_OUTPUT_SAFE = 12'h1AC;
-  localparam logic [31:0] RESET_OUTPUT_SAFE = 32'h00000000;
-  localparam logic [31:0] MASK_OUTPUT_SAFE = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_INPUT_POLARITY = 12'h1B0;
-  localparam logic [31:0] RESET_INPUT_POLARITY = 32'h00000000;
-  localparam logic [31:0] MASK_INPUT_POLARITY = 32'h0000FFFF;
-  localparam logic [11:0] ADDR_STREAMING = 12'h1B4;
-  localparam logic [31:0] RESET_STREAMING = 32'h00000000;
-  localparam logic [31:0] MASK_STREAMING = 32'h0000FF01;
-  localparam logic [11:0] ADDR_STREAM = 12'h1C0;
+  localparam logic [11:0] ADDR_STREAM = 12'h610;
   localparam logic [31:0] RESET_STREAM = 32'h00000000;
   localparam logic [31:0] MASK_STREAM = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_STEP_LENGTH = 12'h200;
+  localparam logic [11:0] ADDR_RATIO_FEED = 12'h640;
+  localparam logic [31:0] RESET_RATIO_FEED = 32'h00010000;
+  localparam logic [31:0] MASK_RATIO_FEED = 32'h0001FFFF;
+  localparam logic [11:0] ADDR_RATIO_RAPID = 12'h644;
+  localparam logic [31:0] RESET_RATIO_RAPID = 32'h00010000;
+  localparam logic [31:0] MASK_RATIO_RAPID = 32'h0001FFFF;
+  localparam logic [11:0] ADDR_RATIO_FIXED = 12'h648;
+  localparam logic [31:0] RESET_RATIO_FIXED = 32'h00010000;
+  localparam logic [31:0] MASK_RATIO_FIXED = 32'h0001FFFF;
+  localparam logic [11:0] ADDR_SLEW = 12'h64C;
+  localparam logic [31:0] RESET_SLEW = 32'h0FFFFFFF;
+  localparam logic [31:0] MASK_SLEW = 32'h0FFFFFFF;
+  localparam logic [11:0] ADDR_HOLD_LIMIT = 12'h680;
+  localparam logic [31:0] RESET_HOLD_LIMIT = 32'h0000FFFF;
+  localparam logic [31:0] MASK_HOLD_LIMIT = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_STOP_REACTION = 12'h684;
+  localparam logic [31:0] RESET_STOP_REACTION = 32'h00000000;
+  localparam logic [31:0] MASK_STOP_REACTION = 32'h0000FCFF;
+  localparam logic [11:0] ADDR_IRQ_ENABLE = 12'h688;
+  localparam logic [31:0] RESET_IRQ_ENABLE = 32'h00000000;
+  localparam logic [31:0] MASK_IRQ_ENABLE = 32'h0003FFFF;
+  localparam logic [11:0] ADDR_GEOMETRY_WATERMARK = 12'h6C0;
+  localparam logic [31:0] RESET_GEOMETRY_WATERMARK = 32'h00000000;
+  localparam logic [31:0] MASK_GEOMETRY_WATERMARK = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_FEED_WATERMARK = 12'h6C4;
+  localparam logic [31:0] RESET_FEED_WATERMARK = 32'h00000000;
+  localparam logic [31:0] MASK_FEED_WATERMARK = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_OUTPUT_SAFE = 12'h700;
+  localparam logic [31:0] RESET_OUTPUT_SAFE = 32'h00000000;
+  localparam logic [31:0] MASK_OUTPUT_SAFE = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_INPUT_POLARITY = 12'h704;
+  localparam logic [31:0] RESET_INPUT_POLARITY = 32'h00000000;
+  localparam logic [31:0] MASK_INPUT_POLARITY = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_STREAMING = 12'h740;
+  localparam logic [31:0] RESET_STREAMING = 32'h00000000;
+  localparam logic [31:0] MASK_STREAMING = 32'h0000FF01;
+  localparam logic [11:0] ADDR_STEP_LENGTH = 12'h800;
   localparam logic [31:0] RESET_STEP_LENGTH = 32'h00000000;
   localparam logic [31:0] MASK_STEP_LENGTH = 32'h0000FFFF;
   localparam int COUNT_STEP_LENGTH = 8;
-  localparam int STRIDE_STEP_LENGTH = 32;
-  localparam logic [11:0] ADDR_STEP_SPACE = 12'h204;
+  localparam int STRIDE_STEP_LENGTH = 128;
+  localparam logic [11:0] ADDR_STEP_SPACE = 12'h804;
   localparam logic [31:0] RESET_STEP_SPACE = 32'h00000000;
   localparam logic [31:0] MASK_STEP_SPACE = 32'h0000FFFF;
   localparam int COUNT_STEP_SPACE = 8;
-  localparam int STRIDE_STEP_SPACE = 32;
-  localparam logic [11:0] ADDR_DIR_SETUP = 12'h208;
+  localparam int STRIDE_STEP_SPACE = 128;
+  localparam logic [11:0] ADDR_DIR_SETUP = 12'h808;
   localparam logic [31:0] RESET_DIR_SETUP = 32'h00000000;
   localparam logic [31:0] MASK_DIR_SETUP = 32'h0000FFFF;
   localparam int COUNT_DIR_SETUP = 8;
-  localparam int STRIDE_DIR_SETUP = 32;
-  localparam logic [11:0] ADDR_DIR_HOLD = 12'h20C;
+  localparam int STRIDE_DIR_SETUP = 128;
+  localparam logic [11:0] ADDR_DIR_HOLD = 12'h80C;
   localparam logic [31:0] RESET_DIR_HOLD = 32'h00000000;
   localparam logic [31:0] MASK_DIR_HOLD = 32'h0000FFFF;
   localparam int COUNT_DIR_HOLD = 8;
-  localparam int STRIDE_DIR_HOLD = 32;
-  localparam logic [11:0] ADDR_MODE = 12'h210;
+  localparam int STRIDE_DIR_HOLD = 128;
+  localparam logic [11:0] ADDR_MODE = 12'h810;
   localparam logic [31:0] RESET_MODE = 32'h00000000;
   localparam logic [31:0] MASK_MODE = 32'h0000000F;
   localparam int COUNT_MODE = 8;
-  localparam int STRIDE_MODE = 32;
-  localparam logic [11:0] ADDR_FREQUENCY_LO = 12'h370;
+  localparam int STRIDE_MODE = 128;
+  localparam logic [11:0] ADDR_FREQUENCY_LO = 12'hCF0;
   localparam logic [31:0] RESET_FREQUENCY_LO = 32'h00000000;
   localparam logic [31:0] MASK_FREQUENCY_LO = 32'hFFFFFFFF;
   localparam int COUNT_FREQUENCY_LO = 8;
   localparam int STRIDE_FREQUENCY_LO = -16;
-  localparam logic [11:0] ADDR_FREQUENCY_HI = 12'h374;
+  localparam logic [11:0] ADDR_FREQUENCY_HI = 12'hCF4;
   localparam logic [31:0] RESET_FREQUENCY_HI = 32'h00000000;
   localparam logic [31:0] MASK_FREQUENCY_HI = 32'h000001FF;
   localparam int COUNT_FREQUENCY_HI = 8;
   localparam int STRIDE_FREQUENCY_HI = -16;
-  localparam logic [11:0] ADDR_COUNT = 12'h378;
+  localparam logic [11:0] ADDR_COUNT = 12'hCF8;
   localparam logic [31:0] RESET_COUNT = 32'h00000000;
   localparam logic [31:0] MASK_COUNT = 32'hFFFFFFFF;
   localparam int COUNT_COUNT = 8;
   localparam int STRIDE_COUNT = -16;
-  localparam logic [11:0] ADDR_DIRECTION = 12'h37C;
+  localparam logic [11:0] ADDR_DIRECTION = 12'hCFC;
   localparam logic [31:0] RESET_DIRECTION = 32'h00000000;
   localparam logic [31:0] MASK_DIRECTION = 32'h00000001;
   localparam int COUNT_DIRECTION = 8;
   localparam int STRIDE_DIRECTION = -16;
-  localparam logic [11:0] ADDR_LENGTH_LO = 12'h380;
+  localparam logic [11:0] ADDR_LENGTH_LO = 12'hD00;
   localparam logic [31:0] RESET_LENGTH_LO = 32'h00000000;
   localparam logic [31:0] MASK_LENGTH_LO = 32'hFFFFFFFF;
-  localparam logic [11:0] ADDR_LENGTH_HI = 12'h384;
+  localparam logic [11:0] ADDR_LENGTH_HI = 12'hD04;
   localparam logic [31:0] RESET_LENGTH_HI = 32'h00000000;
   localparam logic [31:0] MASK_LENGTH_HI = 32'h000000FF;
-  localparam logic [11:0] ADDR_START = 12'h388;
+  localparam logic [11:0] ADDR_START = 12'hD08;
   localparam logic [31:0] RESET_START = 32'h00000000;
   localparam logic [31:0] MASK_START = 32'h000000FF;
 
@@ -413,10 +415,10 @@ package card_map_pkg;
   localparam logic [2:0] ACCESS_COMMAND = 3'd6;
 
   // Areas of latched values: byte address of each, offset in bytes of each register.
-  localparam logic [11:0] AREA_SNAP = 12'h080;
-  localparam logic [11:0] AREA_STOP = 12'h0C0;
-  localparam logic [11:0] AREA_PROBE = 12'h100;
-  localparam logic [11:0] AREA_MARK = 12'h140;
+  localparam logic [11:0] AREA_SNAP = 12'h200;
+  localparam logic [11:0] AREA_STOP = 12'h280;
+  localparam logic [11:0] AREA_PROBE = 12'h300;
+  localparam logic [11:0] AREA_MARK = 12'h380;
   localparam logic [5:0] IN_AREA_FAULT = 6'h00;
   localparam logic [5:0] IN_AREA_STATUS = 6'h04;
   localparam logic [5:0] IN_AREA_RATIO = 6'h08;
@@ -446,7 +448,7 @@ package card_map_pkg;
   localparam logic [7:0] REFUSE_FAULTED = 8'd15;
 
   // Commands: opcodes; number, offset and size in halfwords of each field of the payload after the count.
-  localparam logic [31:0] LAYOUT_VERSION = 32'd2;
+  localparam logic [31:0] LAYOUT_VERSION = 32'd3;
   localparam logic [7:0] OP_LINE = 8'd1;
   localparam logic [4:0] FIELD_LINE_INCREMENT = 5'd0;
   localparam int AT_LINE_INCREMENT = 0;
@@ -580,9 +582,9 @@ package card_map_pkg;
   // whatever axes are present.
   function automatic logic [2:0] register_access(input logic [9:0] word, input logic [31:0] engines);
     casez (word)
-      10'b00_0000_0000, 10'b00_0000_0001, 10'b00_0000_0010, 10'b00_0000_0011, 10'b00_0000_0100,
-      10'b00_0000_0101, 10'b00_0000_0110, 10'b00_0000_0111, 10'b00_0000_1000, 10'b00_0000_1001,
-      10'b00_0000_1010, 10'b00_0000_1011:
+      10'b00_0000_0000, 10'b00_0000_0001, 10'b00_0000_0010, 10'b00_0000_0011, 10'b00_0000_0101,
+      10'b00_0000_0110, 10'b00_0000_0111, 10'b00_0000_1000, 10'b00_0000_1001, 10'b00_0000_1010,
+      10'b00_0000_1011, 10'b00_01??_????:
         register_access = ACCESS_CONSTANT;
       10'b00_0001_0000, 10'b00_0001_0011, 10'b00_0001_0100, 10'b00_0001_0101, 10'b00_0001_0110:
         register_access = ACCESS_LIVE;
@@ -594,34 +596,34 @@ package card_map_pkg;
         register_access = engines[ENGINE_UNDERRUN_HOLD] ? ACCESS_LIVE : ACCESS_NONE;
       10'b00_0001_1011:
         register_access = engines[ENGINE_STREAMING] ? ACCESS_LIVE : ACCESS_NONE;
-      10'b00_0010_0000, 10'b00_0010_0001, 10'b00_0010_0010, 10'b00_0010_0011, 10'b00_0010_0100,
-      10'b00_0010_0101, 10'b00_0010_0110, 10'b00_0010_0111, 10'b00_0010_1???, 10'b00_0011_0000,
-      10'b00_0011_0001, 10'b00_0011_0010, 10'b00_0011_0011, 10'b00_0011_0100, 10'b00_0011_0101,
-      10'b00_0011_0110, 10'b00_0011_0111, 10'b00_0011_1???:
+      10'b00_1000_0000, 10'b00_1000_0001, 10'b00_1000_0010, 10'b00_1000_0011, 10'b00_1000_0100,
+      10'b00_1000_0101, 10'b00_1000_0110, 10'b00_1000_0111, 10'b00_1000_1???, 10'b00_1010_0000,
+      10'b00_1010_0001, 10'b00_1010_0010, 10'b00_1010_0011, 10'b00_1010_0100, 10'b00_1010_0101,
+      10'b00_1010_0110, 10'b00_1010_0111, 10'b00_1010_1???:
         register_access = ACCESS_SNAPSHOT;
-      10'b00_0100_0000, 10'b00_0100_0001, 10'b00_0100_0010, 10'b00_0100_0011, 10'b00_0100_0100,
-      10'b00_0100_0101, 10'b00_0100_0110, 10'b00_0100_0111, 10'b00_0100_1???, 10'b00_0101_0000,
-      10'b00_0101_0001, 10'b00_0101_0010, 10'b00_0101_0011, 10'b00_0101_0100, 10'b00_0101_0101,
-      10'b00_0101_0110, 10'b00_0101_0111, 10'b00_0101_1???:
+      10'b00_1100_0000, 10'b00_1100_0001, 10'b00_1100_0010, 10'b00_1100_0011, 10'b00_1100_0100,
+      10'b00_1100_0101, 10'b00_1100_0110, 10'b00_1100_0111, 10'b00_1100_1???, 10'b00_1110_0000,
+      10'b00_1110_0001, 10'b00_1110_0010, 10'b00_1110_0011, 10'b00_1110_0100, 10'b00_1110_0101,
+      10'b00_1110_0110, 10'b00_1110_0111, 10'b00_1110_1???:
         register_access = engines[ENGINE_PATH_COMMANDS] ? ACCESS_SNAPSHOT : ACCESS_NONE;
-      10'b00_0110_0000, 10'b00_0111_0000:
+      10'b01_1000_0000, 10'b01_1000_0100:
         register_access = ACCESS_COMMAND;
-      10'b00_0110_0001, 10'b00_0110_0010, 10'b00_0110_0101, 10'b00_0110_0110, 10'b00_0110_0111,
-      10'b00_0110_1000, 10'b00_10??_?000, 10'b00_10??_?001, 10'b00_10??_?010, 10'b00_10??_?011,
-      10'b00_10??_?100:
+      10'b01_1000_0001, 10'b01_1001_0000, 10'b01_1001_0011, 10'b01_1010_0000, 10'b01_1010_0001,
+      10'b01_1010_0010, 10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011,
+      10'b10_???0_0100:
         register_access = ACCESS_SETTING;
-      10'b00_0110_0011, 10'b00_0110_0100:
+      10'b01_1001_0001, 10'b01_1001_0010:
         register_access = engines[ENGINE_CLASSES] ? ACCESS_SETTING : ACCESS_NONE;
-      10'b00_0110_1001, 10'b00_0110_1010:
+      10'b01_1011_0000, 10'b01_1011_0001:
         register_access = engines[ENGINE_WATERMARKS] ? ACCESS_SETTING : ACCESS_NONE;
-      10'b00_0110_1011, 10'b00_0110_1100:
+      10'b01_1100_0000, 10'b01_1100_0001:
         register_access = engines[ENGINE_PATH_COMMANDS] ? ACCESS_SETTING : ACCESS_NONE;
-      10'b00_0110_1101:
+      10'b01_1101_0000:
         register_access = engines[ENGINE_STREAMING] ? ACCESS_SETTING : ACCESS_NONE;
-      10'b00_110?_??00, 10'b00_110?_??01, 10'b00_110?_??10, 10'b00_110?_??11, 10'b00_1110_0000,
-      10'b00_1110_0001:
+      10'b11_001?_??00, 10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11, 10'b11_0100_0000,
+      10'b11_0100_0001:
         register_access = engines[ENGINE_DIRECT_MODE] ? ACCESS_SETTING : ACCESS_NONE;
-      10'b00_1110_0010:
+      10'b11_0100_0010:
         register_access = engines[ENGINE_DIRECT_MODE] ? ACCESS_COMMAND : ACCESS_NONE;
       default: register_access = ACCESS_NONE;
     endcase
@@ -630,9 +632,9 @@ package card_map_pkg;
   // 1: the register is a slot of one axis and there only when the card has the axis.
   function automatic logic register_only_present_axes(input logic [9:0] word);
     casez (word)
-      10'b00_0010_1???, 10'b00_0011_1???, 10'b00_0100_1???, 10'b00_0101_1???, 10'b00_10??_?000,
-      10'b00_10??_?001, 10'b00_10??_?010, 10'b00_10??_?011, 10'b00_10??_?100, 10'b00_110?_??00,
-      10'b00_110?_??01, 10'b00_110?_??10, 10'b00_110?_??11:
+      10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b10_???0_0000,
+      10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100, 10'b11_001?_??00,
+      10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11:
         register_only_present_axes = 1'b1;
       default: register_only_present_axes = 1'b0;
     endcase
@@ -641,43 +643,43 @@ package card_map_pkg;
   // Bits with meaning, by the engines that are built in; a write of any other bit is refused.
   function automatic logic [31:0] register_mask(input logic [9:0] word, input logic [31:0] engines);
     casez (word)
-      10'b00_0001_0001, 10'b00_0110_0110, 10'b00_10??_?000, 10'b00_10??_?001, 10'b00_10??_?010,
-      10'b00_10??_?011:
+      10'b00_0001_0001, 10'b01_1010_0000, 10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010,
+      10'b10_???0_0011:
         register_mask = 32'h0000FFFF;
-      10'b00_0001_0010, 10'b00_0110_0101:
+      10'b00_0001_0010, 10'b01_1001_0011:
         register_mask = 32'h0FFFFFFF;
-      10'b00_0110_0000:
+      10'b01_1000_0000:
         register_mask = 32'h00000007 | (engines[ENGINE_PATH_COMMANDS] ?
             32'h00000008 : 32'h00000000);
-      10'b00_0110_0001:
+      10'b01_1000_0001:
         register_mask = 32'h00000001;
-      10'b00_0110_0010:
-        register_mask = 32'h0001FFFF;
-      10'b00_0110_0011, 10'b00_0110_0100:
-        register_mask = engines[ENGINE_CLASSES] ? 32'h0001FFFF : 32'h00000000;
-      10'b00_0110_0111:
-        register_mask = 32'h0003FFFF;
-      10'b00_0110_1000:
-        register_mask = 32'h0000FCFF;
-      10'b00_0110_1001, 10'b00_0110_1010:
-        register_mask = engines[ENGINE_WATERMARKS] ? 32'h0000FFFF : 32'h00000000;
-      10'b00_0110_1011:
-        register_mask = engines[ENGINE_PATH_COMMANDS] ? 32'hFFFFFFFF : 32'h00000000;
-      10'b00_0110_1100:
-        register_mask = engines[ENGINE_PATH_COMMANDS] ? 32'h0000FFFF : 32'h00000000;
-      10'b00_0110_1101:
-        register_mask = engines[ENGINE_STREAMING] ? 32'h0000FF01 : 32'h00000000;
-      10'b00_0111_0000:
+      10'b01_1000_0100:
         register_mask = 32'hFFFFFFFF;
-      10'b00_10??_?100:
+      10'b01_1001_0000:
+        register_mask = 32'h0001FFFF;
+      10'b01_1001_0001, 10'b01_1001_0010:
+        register_mask = engines[ENGINE_CLASSES] ? 32'h0001FFFF : 32'h00000000;
+      10'b01_1010_0001:
+        register_mask = 32'h0000FCFF;
+      10'b01_1010_0010:
+        register_mask = 32'h0003FFFF;
+      10'b01_1011_0000, 10'b01_1011_0001:
+        register_mask = engines[ENGINE_WATERMARKS] ? 32'h0000FFFF : 32'h00000000;
+      10'b01_1100_0000:
+        register_mask = engines[ENGINE_PATH_COMMANDS] ? 32'hFFFFFFFF : 32'h00000000;
+      10'b01_1100_0001:
+        register_mask = engines[ENGINE_PATH_COMMANDS] ? 32'h0000FFFF : 32'h00000000;
+      10'b01_1101_0000:
+        register_mask = engines[ENGINE_STREAMING] ? 32'h0000FF01 : 32'h00000000;
+      10'b10_???0_0100:
         register_mask = 32'h0000000F;
-      10'b00_110?_??00, 10'b00_110?_??10, 10'b00_1110_0000:
+      10'b11_001?_??00, 10'b11_001?_??10, 10'b11_0100_0000:
         register_mask = engines[ENGINE_DIRECT_MODE] ? 32'hFFFFFFFF : 32'h00000000;
-      10'b00_110?_??01:
+      10'b11_001?_??01:
         register_mask = engines[ENGINE_DIRECT_MODE] ? 32'h000001FF : 32'h00000000;
-      10'b00_110?_??11:
+      10'b11_001?_??11:
         register_mask = engines[ENGINE_DIRECT_MODE] ? 32'h00000001 : 32'h00000000;
-      10'b00_1110_0001, 10'b00_1110_0010:
+      10'b11_0100_0001, 10'b11_0100_0010:
         register_mask = engines[ENGINE_DIRECT_MODE] ? 32'h000000FF : 32'h00000000;
       default: register_mask = 32'h00000000;
     endcase
@@ -689,14 +691,14 @@ package card_map_pkg;
       10'b00_0000_0000:
         register_reset = 32'h54524D4C;
       10'b00_0000_0001:
-        register_reset = 32'h00020000;
+        register_reset = 32'h00030000;
       10'b00_0000_0111:
-        register_reset = 32'h00000002;
-      10'b00_0110_0010, 10'b00_0110_0011, 10'b00_0110_0100:
+        register_reset = 32'h00000003;
+      10'b01_1001_0000, 10'b01_1001_0001, 10'b01_1001_0010:
         register_reset = 32'h00010000;
-      10'b00_0110_0101:
+      10'b01_1001_0011:
         register_reset = 32'h0FFFFFFF;
-      10'b00_0110_0110:
+      10'b01_1010_0000:
         register_reset = 32'h0000FFFF;
       default: register_reset = 32'h00000000;
     endcase
@@ -705,26 +707,26 @@ package card_map_pkg;
   // 1: the written value keeps the limits that a field has beyond its width.
   function automatic logic register_in_limits(input logic [9:0] word, input logic [31:0] data);
     casez (word)
-      10'b00_0110_0010, 10'b00_0110_0011, 10'b00_0110_0100:
+      10'b01_1001_0000, 10'b01_1001_0001, 10'b01_1001_0010:
         register_in_limits = data[16:0] <= 17'h10000;
-      10'b00_0110_0101:
+      10'b01_1001_0011:
         register_in_limits = data[27:0] >= 28'h0000001;
-      10'b00_0110_0110:
+      10'b01_1010_0000:
         register_in_limits = data[15:0] >= 16'h0001;
-      10'b00_10??_?100:
+      10'b10_???0_0100:
         register_in_limits = data[1:0] <= 2'h2;
       default: register_in_limits = 1'b1;
     endcase
   endfunction
 
-  // Axis of a register that has a slot for each axis, else 0.
+  // Axis of a register that is one of the axes' slots, else 0.
   function automatic logic [2:0] register_axis(input logic [9:0] word);
     casez (word)
-      10'b00_0010_1???, 10'b00_0011_1???, 10'b00_0100_1???, 10'b00_0101_1???:
+      10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???:
         register_axis = word[2:0];
-      10'b00_10??_?000, 10'b00_10??_?001, 10'b00_10??_?010, 10'b00_10??_?011, 10'b00_10??_?100:
-        register_axis = word[5:3];
-      10'b00_110?_??00, 10'b00_110?_??01, 10'b00_110?_??10, 10'b00_110?_??11:
+      10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100:
+        register_axis = word[7:5];
+      10'b11_001?_??00, 10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11:
         register_axis = ~word[4:2];
       default: register_axis = 3'd0;
     endcase
@@ -932,7 +934,7 @@ package card_map_pkg;
       {OP_OUTPUT, 6'd0}, {OP_OUTPUT, 6'd1}:
         payload_bits = engines[ENGINE_PATH_COMMANDS] ? 16'hFFFF : 16'h0000;
       {OP_WAIT_INPUT, 6'd0}, {OP_PROBE, 6'd0}:
-        payload_bits = engines[ENGINE_PATH_COMMANDS] ? 16'h001F : 16'h0000;
+        payload_bits = engines[ENGINE_PATH_COMMANDS] ? 16'h003F : 16'h0000;
       default: payload_bits = 16'h0000;
     endcase
   endfunction
@@ -987,6 +989,66 @@ package card_map_pkg;
         payload_checks = engines[ENGINE_PATH_COMMANDS] ? 6'b000001 : 6'b000000;
       default: payload_checks = 6'b000000;
     endcase
+  endfunction
+
+  // Descriptors of the units that are built in (rtl/regs/units.toml), the first in the lowest bits, 0 behind the
+  // last; a constant for each card.
+  function automatic logic [2047:0] unit_descriptors(input logic [31:0] engines,
+                                                     input int axes,
+                                                     input int snapshot_areas,
+                                                     input int ports,
+                                                     input int inputs,
+                                                     input int outputs);
+    logic [2047:0] table_so_far;
+
+    table_so_far = '0;
+    // position_streaming
+    if (engines[ENGINE_STREAMING]) begin
+      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(464 - (464) + 1), 10'(464), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd15};
+    end
+    // outputs
+    if (engines[ENGINE_PATH_COMMANDS]) begin
+      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(448 - (448) + 1), 10'(448), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(outputs), 4'd1, 4'd0, 8'd14};
+    end
+    // inputs
+    if (engines[ENGINE_PATH_COMMANDS]) begin
+      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(449 - (449) + 1), 10'(449), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(inputs), 4'd1, 4'd0, 8'd13};
+    end
+    // path_commands
+    if (engines[ENGINE_PATH_COMMANDS]) begin
+      table_so_far = {table_so_far[1983:0], 2'd0, 5'd12, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd12};
+    end
+    // underrun_hold
+    if (engines[ENGINE_UNDERRUN_HOLD]) begin
+      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd11};
+    end
+    // direct_mode
+    if (engines[ENGINE_DIRECT_MODE]) begin
+      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(834 - (828 - 4 * (axes - 1)) + 1), 10'(828 - 4 * (axes - 1)), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd10};
+    end
+    // arc_generator
+    if (engines[ENGINE_ARC_GENERATOR]) begin
+      table_so_far = {table_so_far[1983:0], 2'd0, 5'd11, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd9};
+    end
+    // accumulator
+    if (engines[ENGINE_ACCUMULATOR]) begin
+      table_so_far = {table_so_far[1983:0], 2'd0, 5'd10, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_ACCUMULATOR_8], 8'd1, 4'd1, 4'd0, 8'd8};
+    end
+    // host_ports
+    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(ports), 4'd1, 4'd0, 8'd7};
+    // snapshots
+    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd32, 8'(136 + 1 * (axes - 1) - (128) + 1), 10'(128), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(snapshot_areas), 4'd1, 4'd0, 8'd6};
+    // axes
+    table_so_far = {table_so_far[1983:0], 2'd0, 5'd0, 7'd32, 8'(516 - (512) + 1), 10'(512), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(axes), 4'd1, 4'd0, 8'd5};
+    // feed_generator
+    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_JERK], 8'd1, 4'd1, 4'd0, 8'd4};
+    // queues
+    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd1, 8'(432 - (432) + 1), 10'(432), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_WATERMARKS], 8'd2, 4'd1, 4'd0, 8'd3};
+    // stop_control
+    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(417 - (416) + 1), 10'(416), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd2};
+    // time_base
+    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(403 - (400) + 1), 10'(400), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_CLASSES], 8'd1, 4'd1, 4'd0, 8'd1};
+    unit_descriptors = table_so_far;
   endfunction
 
 endpackage

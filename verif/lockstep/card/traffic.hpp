@@ -117,6 +117,7 @@ class Traffic {
     ++overrides;
     host_.write(address, ratio);
   }
+  std::uint32_t any_address();
   void read_anything();
   void write_anything();
 
@@ -351,8 +352,15 @@ inline void Traffic::start() {
   if (one_in(3)) host_.wait(below(900));
 }
 
+// Mostly a register's.
+inline std::uint32_t Traffic::any_address() {
+  if (one_in(8)) return static_cast<std::uint32_t>(below(card_map::kWindowBytes));
+  const card_map::Register& entry = card_map::kRegisters[below(card_map::kRegisters.size())];
+  return card_map::slot_address(entry, static_cast<std::uint32_t>(below(entry.count)));
+}
+
 inline void Traffic::read_anything() {
-  const auto address = static_cast<std::uint32_t>(one_in(8) ? below(4096) : 4 * below(256));
+  const std::uint32_t address = any_address();
   if (one_in(2)) {
     host_.read(address);
   } else {
@@ -361,7 +369,7 @@ inline void Traffic::read_anything() {
 }
 
 inline void Traffic::write_anything() {
-  const auto address = static_cast<std::uint32_t>(one_in(8) ? below(4096) : 4 * below(256));
+  const std::uint32_t address = any_address();
   const auto strobes = static_cast<std::uint8_t>(one_in(3) ? below(16) : 0xF);
   host_.write(address, static_cast<std::uint32_t>(odd_number(32)), strobes);
 }

@@ -26,7 +26,7 @@ class Bench {
     reset();
   }
 
-  std::uint32_t& at(std::uint32_t address) { return words_[address >> 2 & 0xFF]; }
+  std::uint32_t& at(std::uint32_t address) { return words_[address >> 2]; }
 
   // START with what the registers hold; until its answer, or until a reset `reset_after` clocks later.
   void start(std::uint32_t mask, unsigned reset_after = ~0U) {
@@ -111,7 +111,7 @@ class Bench {
   Dice dice_;
   model::DirectLoader model_;
   model::DirectLoader::Inputs in_;
-  std::array<std::uint32_t, 256> words_{};
+  std::array<std::uint32_t, card_map::kWindowBytes / 4> words_{};
   Read rtl_read_;
   Read model_read_;
   unsigned busy_every_ = 0;

@@ -42,10 +42,10 @@ class LoaderRam {
     fetched_ = words_[address];
   }
   std::uint32_t data() const { return data_; }
-  void write(std::uint32_t address, std::uint32_t data) { words_[address >> 2 & 0xFF] = data; }
+  void write(std::uint32_t address, std::uint32_t data) { words_[address >> 2] = data; }
 
  private:
-  std::array<std::uint32_t, 256> words_{};
+  std::array<std::uint32_t, card_map::kWindowBytes / 4> words_{};
   std::uint32_t fetched_ = 0;
   std::uint32_t data_ = 0;
 };
@@ -176,7 +176,7 @@ class Bench {
     const auto piece = [](unsigned n) {
       return stored_command(card_map::Opcode::Feed, 0, n, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}});
     };
-    const Halfwords probe = stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x10}});
+    const Halfwords probe = stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x20}});
     geometry_.add({probe});
     if (ticks != 0) geometry_.add({line(ticks)});
     if (ticks != 0) feed_.add({piece(ticks)});
@@ -290,8 +290,8 @@ class Bench {
     const bool cut = model_->stop().cut;
     const bool geometry_reads = model_->sequencer().geometry_read();
     const bool feed_reads = model_->sequencer().feed_read();
-    const auto rtl_address = static_cast<std::uint8_t>(get(dut_->start_answer_o, bus::start_answer::kAddress));
-    const std::uint8_t model_address = model_->loader().address;
+    const auto rtl_address = static_cast<std::uint16_t>(get(dut_->start_answer_o, bus::start_answer::kAddress));
+    const std::uint16_t model_address = model_->loader().address;
     dut_.clock();
     model_->clock(in_);
     rtl_ram_.clock(rtl_address);

@@ -45,7 +45,7 @@ class Bench {
   void arm(bool level) {
     Inputs in;
     in.levels = level ? 1 : 0;
-    in.load = {true, model::load_target::kCommand, 0x10};
+    in.load = {true, model::load_target::kCommand, 0x20};
     clock(in);
     in.load = {};
     in.waits = true;

@@ -182,7 +182,7 @@ class SequencersBench {
   // A WAIT_INPUT without a time-out whose count has come round to its end: it goes on waiting for its input, which is
   // set.
   void wait_beyond_the_count() {
-    const Halfwords wait = stored_command(card_map::Opcode::WaitInput, 0, 0, {{"condition", 0x10}});
+    const Halfwords wait = stored_command(card_map::Opcode::WaitInput, 0, 0, {{"condition", 0x20}});
     pace = {1, 1, 1'000'000, 1, 1'000'000, 1'000'000, 1};
     levels_ = 0;
     add({{wait}, {wait}});

@@ -107,9 +107,9 @@ Programs::Stretch probed_program(bool empty) {
   };
   const Halfwords end = barrier(card_map::Opcode::End, 0);
   const Halfwords dwell = barrier(card_map::Opcode::Dwell, 3);
-  const Halfwords wait = stored_command(card_map::Opcode::WaitInput, 0, 5, {{"condition", 0x11}});
+  const Halfwords wait = stored_command(card_map::Opcode::WaitInput, 0, 5, {{"condition", 0x21}});
   const Halfwords probe_end = barrier(card_map::Opcode::ProbeEnd, 0);
-  Programs::Stretch program{{end, stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x10}})}, {end}};
+  Programs::Stretch program{{end, stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x20}})}, {end}};
   if (!empty) {
     program.geometry.insert(program.geometry.end(), {dwell, line(4), Programs::mark(), wait, end, line(1), dwell});
     program.feed.insert(program.feed.end(), {dwell, piece(4), wait, end, piece(1), dwell});

@@ -30,7 +30,9 @@ constexpr std::uint64_t kComparedSignals = 14;
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
-constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(7) / 4;  // word of the direct mode's first register
+// Words that the direct loader reads: from its first register up to START.
+constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(kAxes - 1) / 4;
+constexpr std::uint32_t kDirectWords = card_map::reg::kStart / 4 - kFirstDirect;
 // RATIO, RATE, FEED_BEGUN and GEOMETRY_BEGUN come before the positions on the snapshot chain.
 constexpr std::size_t kBeforePositions = 4;
 
@@ -42,9 +44,11 @@ RegisterFile::Config configuration() {
   config.inputs = 7;
   config.outputs = 16;
   config.idle_level = 0x9C35 & ((1U << 2 * kAxes) - 1);
-  config.build_id = 0x1234'5678;
+  config.geometry_depth = TRAMMEL_GEOMETRY_DEPTH;
+  config.feed_depth = TRAMMEL_FEED_DEPTH;
+  config.build_id = TRAMMEL_BUILD_ID;
   config.build_dirty = true;
-  config.board_id = 0x9ABC'DEF0;
+  config.board_id = TRAMMEL_BOARD_ID;
   return config;
 }
 
@@ -52,16 +56,7 @@ class Bench {
  public:
   explicit Bench(std::uint64_t seed) : checker_("register_file", seed), random_(seed), model_(configuration()) {
     const RegisterFile::Config config = configuration();
-    for (std::uint32_t word = 0; word < 16; ++word) rtl_->constants_i[word] = 0;
-    constants(reg::kAxes) = config.axes;
-    constants(reg::kClockHz) = config.clock_hz;
-    constants(reg::kEngines) = config.engines;
-    constants(reg::kGeometryDepth) = config.geometry_depth;
-    constants(reg::kFeedDepth) = config.feed_depth;
-    constants(reg::kBuildId) = config.build_id;
-    constants(reg::kBuildFlags) = 1;
-    constants(reg::kBoardId) = config.board_id;
-    constants(reg::kPorts) = config.ports | (kPathCommands ? 0x10'07'00U : 0);
+    rtl_->clock_hz_i = config.clock_hz;
     rtl_->idle_level_i = static_cast<IdleLevel>(config.idle_level);
     reset();
     in_ = {};
@@ -163,8 +158,6 @@ class Bench {
     return start_wait_ != 0 || (outstanding_ && acts) ? 60 : 3000;
   }
 
-  std::uint32_t& constants(std::uint32_t address) { return rtl_->constants_i[address / 4]; }
-
   std::uint32_t latched_value(std::size_t place) const {
     if (place >= kBeforePositions) return in_.position[place - kBeforePositions];
     const std::uint32_t values[] = {in_.ratio, in_.rate, in_.feed_begun, in_.geometry_begun};
@@ -219,7 +212,7 @@ class Bench {
   void random_loader() {
     if (model_.outputs().start) start_wait_ = 1 + draw() % 40;
     // The direct loader reads its own registers alone, never words that a snapshot may be writing.
-    in_.loader_address = static_cast<std::uint8_t>(kFirstDirect + draw() % (256 - kFirstDirect));
+    in_.loader_address = static_cast<std::uint16_t>(kFirstDirect + draw() % kDirectWords);
     in_.start_done = start_wait_ == 1;
     in_.start_error = chance(2);
     in_.start_reason = chance(2) ? 8 : chance(2) ? 12 : 15;

@@ -25,6 +25,7 @@
 #include "trammel/driver/card_timing.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/unit_table.hpp"
 
 namespace trammel::driver {
 
@@ -35,7 +36,8 @@ struct Identification {
   std::uint32_t commands_version = 0;
   unsigned axes = 0;                 // 1 .. 8
   std::uint32_t clock_hz = 0;        // Hz
-  std::uint32_t engines = 0;         // card_map's bits of ENGINES
+  UnitTable units;                   // what it is built of
+  std::uint32_t engines = 0;         // the same as card_map::engine's bits
   std::uint32_t geometry_depth = 0;  // halfwords
   std::uint32_t feed_depth = 0;      // halfwords
 };

@@ -100,14 +100,14 @@ struct MarkCommand {};
 
 // Barrier, then until an input has a level.
 struct WaitInputCommand {
-  std::uint8_t input = 0;     // 0 .. 15
+  std::uint8_t input = 0;     // 0 .. 31; one that the card lacks stays at 0
   bool level = true;          // that ends the wait
   std::uint64_t timeout = 0;  // clocks, up to 2^40 - 1; 0: none
 };
 
 // Arms the probe for the paths up to PROBE_END.
 struct ProbeCommand {
-  std::uint8_t input = 0;  // 0 .. 15
+  std::uint8_t input = 0;  // 0 .. 31; one that the card lacks stays at 0
   bool level = true;       // that trips
 };
 

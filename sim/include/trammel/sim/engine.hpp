@@ -27,7 +27,7 @@ struct ModelOptions : EngineOptions {
   ModelOptions(const EngineOptions& options = {}) : EngineOptions(options) {}  // NOLINT: they are options of the model
   std::uint32_t geometry_depth = 4096;                                         // halfwords
   std::uint32_t feed_depth = 2560;                                             // halfwords
-  std::optional<std::uint32_t> engines;                                        // ENGINES; all that are built without it
+  std::optional<std::uint32_t> engines;                                        // mask; all that are built without it
 };
 
 // A card on a simulated bus: the driver's Bus, with sleep() running clocks. A refused access shows in transfer(). An

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "trammel/card_map.hpp"
+
 namespace trammel::model {
 
 // The setting bus: a value that was checked, for whoever owns the address.
@@ -30,7 +32,7 @@ constexpr unsigned count(unsigned axis) { return axis * kChainsOfAUnit + 1; }  /
 inline constexpr unsigned kTicks = 8 * kChainsOfAUnit;
 inline constexpr unsigned kPrescale = 9 * kChainsOfAUnit;
 // The deviation accumulator's.
-inline constexpr unsigned kDeviation = 10 * kChainsOfAUnit;
+inline constexpr unsigned kDeviation = card_map::load_unit::kAccumulator * kChainsOfAUnit;
 inline constexpr unsigned kGradientX = kDeviation + 1;
 inline constexpr unsigned kGradientY = kDeviation + 2;
 inline constexpr unsigned kHalfX = kDeviation + 3;
@@ -40,12 +42,13 @@ inline constexpr unsigned kEndY = kDeviation + 6;
 inline constexpr unsigned kQuadrants = kDeviation + 7;
 inline constexpr unsigned kPlane = kDeviation + 8;
 // The arc generator's.
-inline constexpr unsigned kChordShifts = 11 * kChainsOfAUnit;
+inline constexpr unsigned kChordShifts = card_map::load_unit::kArcGenerator * kChainsOfAUnit;
 inline constexpr unsigned kChordState = kChordShifts + 1;    // X, then Y
 inline constexpr unsigned kChordClosing = kChordShifts + 2;  // of x, then of y
 inline constexpr unsigned kChordPlane = kChordShifts + 8;
-inline constexpr unsigned kCommand = 12 * kChainsOfAUnit;  // fields of commands that are no paths
-inline constexpr unsigned kNowhere = 31 * kChainsOfAUnit + 15;
+inline constexpr unsigned kCommand =
+    card_map::load_unit::kPathCommands * kChainsOfAUnit;  // fields of commands that are no paths
+inline constexpr unsigned kNowhere = card_map::load_unit::kNone * kChainsOfAUnit + 15;
 }  // namespace load_target
 
 // Targets of the feed load.

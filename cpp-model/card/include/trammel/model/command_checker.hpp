@@ -41,7 +41,7 @@ class CommandChecker {
   static constexpr int kAnswerClocks = 6;
   static constexpr int kClosedAnswerClocks = 2;
 
-  // axes: 1 .. 8; throws std::invalid_argument otherwise. engines: the card's ENGINES.
+  // axes: 1 .. 8; throws std::invalid_argument otherwise. engines: the card's mask of them.
   CommandChecker(unsigned axes, std::uint32_t engines);
 
   // One rising edge.

@@ -55,7 +55,7 @@ class CommandFetch {
   bool is_probe_end() const { return opcode_ == card_map::Opcode::ProbeEnd; }
   bool is_instant() const { return is_output() || is_mark() || is_probe(); }  // neither path nor barrier
   bool is_barrier() const { return !is_path() && !is_feed() && !is_instant(); }
-  std::uint8_t engine() const { return engine_; }  // what a path runs on, by its bit of ENGINES
+  std::uint8_t engine() const { return engine_; }  // what a path runs on, by its card_map::engine
   std::uint8_t mask() const { return mask_; }
   std::uint8_t flags() const { return mask_; }  // in place of the mask: a piece's class
 

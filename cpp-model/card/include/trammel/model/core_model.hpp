@@ -22,7 +22,7 @@ struct CardConfig {
   unsigned geometry_depth = 4096;  // halfwords
   unsigned feed_depth = 2560;
   std::uint32_t clock_hz = 1'000'000;
-  std::uint32_t engines = RegisterFile::kDefaultEngines;  // ENGINES
+  std::uint32_t engines = RegisterFile::kDefaultEngines;  // what is built in
   unsigned ports = 1;                                     // 1 .. 4
   unsigned inputs = 4;                                    // 1 .. 16, of a card with path commands
   unsigned outputs = 4;

@@ -24,7 +24,7 @@ class DirectLoader {
     std::uint32_t data = 0;  // of the address of two clocks ago
   };
   struct Outputs {
-    std::uint8_t address = 0;  // words
+    std::uint16_t address = 0;  // words, 10 bits
     bool done = false;
     bool error = false;  // means something with done
     std::uint8_t reason = 0;
@@ -52,7 +52,9 @@ class DirectLoader {
   LoadWord read_length(const Inputs& in);
   LoadWord frequency_halfword(int index) const;
   void decide(const Inputs& in);
-  static std::uint8_t word_address(std::uint32_t byte_address) { return static_cast<std::uint8_t>(byte_address >> 2); }
+  static std::uint16_t word_address(std::uint32_t byte_address) {
+    return static_cast<std::uint16_t>(byte_address >> 2);
+  }
 
   unsigned axes_;
   Phase phase_ = Phase::Idle;

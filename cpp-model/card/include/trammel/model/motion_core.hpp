@@ -55,8 +55,8 @@ class MotionCore {
     bool busy = false;
   };
 
-  // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests. `engines`: of ENGINES,
-  // what is beside the path engines.
+  // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests. `engines`: what is
+  // built in, what is beside the path engines.
   MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false, std::uint32_t engines = 0,
              const PathCommands::Config& pins = {});
 

@@ -27,7 +27,7 @@ class PathEngines {
     bool cut = false;
     bool tick = false;  // feed domain
     bool swap = false;
-    // Sampled with swap: what the path runs on, by its bit of ENGINES; the state of one that is not lines is loaded.
+    // Sampled with swap: what the path runs on, by its card_map::engine; the state of one that is not lines is loaded.
     std::uint8_t engine = card_map::engine::kLines;
     LoadWord load;
     bool engine_taken = false;  // the path is on an engine and still takes feed ticks

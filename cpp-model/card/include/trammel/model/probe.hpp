@@ -48,7 +48,7 @@ class Probe {
     }
     waited_ = in.waits ? waited_ + 1 : 0;
     if (take) armed_for_ = condition_;
-    if (in.load.to(load_target::kCommand)) condition_ = static_cast<std::uint8_t>(in.load.word & 0x1F);
+    if (in.load.to(load_target::kCommand)) condition_ = static_cast<std::uint8_t>(in.load.word & 0x3F);
   }
 
   // The condition decoded last is met.
@@ -83,7 +83,9 @@ class Probe {
   enum class State : std::uint8_t { Off, Armed, Ramp, Dropping };
 
   static bool meets(std::uint8_t condition, std::uint16_t levels) {
-    return (levels >> (condition & 0xF) & 1) == condition >> 4;
+    constexpr unsigned kInputBits = 5;  // the number of an input; one that the card lacks stays at 0
+    const std::uint32_t input = condition & ((1U << kInputBits) - 1);
+    return (std::uint32_t{levels} >> input & 1) == condition >> kInputBits;
   }
   bool edges(const Inputs& in) const {
     return state_ == State::Armed && meets(armed_for_, in.levels) && !in.stopping && !in.cut;

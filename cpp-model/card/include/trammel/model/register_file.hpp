@@ -16,14 +16,15 @@ class RegisterFile {
  public:
   static constexpr std::size_t kMaxPorts = 4;
 
-  // ENGINES: what every card has, what one has by default, and what one that is built with everything there is.
-  static constexpr std::uint32_t kLeastEngines = card_map::field::kEnginesLines | card_map::field::kEnginesJerk;
-  static constexpr std::uint32_t kDefaultEngines =
-      kLeastEngines | card_map::field::kEnginesAccumulator | card_map::field::kEnginesDirectMode |
-      card_map::field::kEnginesUnderrunHold | card_map::field::kEnginesPathCommands |
-      card_map::field::kEnginesStreaming | card_map::field::kEnginesClasses | card_map::field::kEnginesWatermarks;
+  // Masks of engines: what every card has, what one has by default, and what one that is built with everything there
+  // is.
+  static constexpr std::uint32_t kLeastEngines = card_map::engines::kLines | card_map::engines::kJerk;
+  static constexpr std::uint32_t kDefaultEngines = kLeastEngines | card_map::engines::kAccumulator |
+                                                   card_map::engines::kDirectMode | card_map::engines::kUnderrunHold |
+                                                   card_map::engines::kPathCommands | card_map::engines::kStreaming |
+                                                   card_map::engines::kClasses | card_map::engines::kWatermarks;
   static constexpr std::uint32_t kMostEngines =
-      kDefaultEngines | card_map::field::kEnginesArcGenerator | card_map::field::kEnginesAccumulator8;
+      kDefaultEngines | card_map::engines::kArcGenerator | card_map::engines::kAccumulator8;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8
@@ -88,7 +89,7 @@ class RegisterFile {
     bool start_done = false;
     bool start_error = false;
     std::uint8_t start_reason = 0;
-    std::uint8_t loader_address = 0;  // words
+    std::uint16_t loader_address = 0;  // words, 10 bits
   };
 
   // Events and `setting.set` are high in the clock of `ack`, `flush` a clock earlier (never with `abort`).
@@ -173,7 +174,8 @@ class RegisterFile {
   std::uint8_t stream_owner_ = 0;  // port that the command under way belongs to
   bool snapshot_asked_ = false;    // by CONTROL, in this clock
 
-  std::array<std::uint32_t, 256> stored_{};  // whatever reads back: constants, settings, latched values
+  std::array<std::uint32_t, card_map::kWindowBytes / 4>
+      stored_{};  // whatever reads back: constants, settings, latched values
   std::uint32_t irq_enable_ = 0;
   SnapshotWriter snapshot_;
   Values latched_{};

@@ -12,8 +12,8 @@ namespace trammel::card_map {
 
 inline constexpr std::size_t kMaxAxes = 8;
 inline constexpr std::uint32_t kMagicValue = 0x54524D4C;
-inline constexpr std::uint32_t kMapVersionValue = 0x00020000;
-inline constexpr std::uint32_t kCommandsVersionValue = 2;
+inline constexpr std::uint32_t kMapVersionValue = 0x00030000;
+inline constexpr std::uint32_t kCommandsVersionValue = 3;
 inline constexpr std::uint32_t kWindowBytes = 4096;
 
 // Numbers that follow from how the card is built.
@@ -50,7 +50,7 @@ inline constexpr std::uint32_t kClassRapid = 1;  // Class of a feed piece: rapid
 inline constexpr std::uint32_t kClassFixed = 2;  // Class of a feed piece: threading and the like, which a hold lets end
 }  // namespace constant
 
-// Bit numbers of ENGINES.
+// Bit numbers of the mask of engines: what is built in (rtl/regs/units.toml).
 namespace engine {
 inline constexpr std::uint32_t kLines = 0;         // Lines: pulse generators; on every card.
 inline constexpr std::uint32_t kAccumulator = 1;   // ARC: deviation accumulator, 4 directions.
@@ -64,6 +64,21 @@ inline constexpr std::uint32_t kStreaming = 8;     // Position streaming.
 inline constexpr std::uint32_t kClasses = 9;       // Classes of pieces: ratios for rapid and fixed.
 inline constexpr std::uint32_t kWatermarks = 10;   // Watermarks of the queues.
 }  // namespace engine
+
+// The same as masks.
+namespace engines {
+inline constexpr std::uint32_t kLines = 0x1;
+inline constexpr std::uint32_t kAccumulator = 0x2;
+inline constexpr std::uint32_t kAccumulator8 = 0x4;
+inline constexpr std::uint32_t kArcGenerator = 0x8;
+inline constexpr std::uint32_t kJerk = 0x10;
+inline constexpr std::uint32_t kDirectMode = 0x20;
+inline constexpr std::uint32_t kUnderrunHold = 0x40;
+inline constexpr std::uint32_t kPathCommands = 0x80;
+inline constexpr std::uint32_t kStreaming = 0x100;
+inline constexpr std::uint32_t kClasses = 0x200;
+inline constexpr std::uint32_t kWatermarks = 0x400;
+}  // namespace engines
 inline constexpr std::array<std::string_view, 11> kEngineNames{
     "lines",         "accumulator",   "accumulator_8", "arc_generator", "jerk",      "direct_mode",
     "underrun_hold", "path_commands", "streaming",     "classes",       "watermarks"};
@@ -90,7 +105,7 @@ struct Register {
   std::uint32_t limited;  // bits of the field that `minimum` and `maximum` bound, 0 when there is none
   std::uint32_t minimum;  // of that field, shifted down
   std::uint32_t maximum;
-  std::uint32_t engine;    // bit of ENGINES without which the register is an unknown address; 0 (lines): always there
+  std::uint32_t engine;    // engine without which the register is an unknown address; 0 (lines): always there
   std::uint32_t optional;  // bits of `mask` that have a meaning only with `optional_engine`
   std::uint32_t optional_engine;
   bool only_present_axes;  // slots of absent axes are unknown addresses
@@ -103,7 +118,6 @@ inline constexpr std::uint32_t kMagic = 0x000;
 inline constexpr std::uint32_t kMapVersion = 0x004;
 inline constexpr std::uint32_t kAxes = 0x008;
 inline constexpr std::uint32_t kClockHz = 0x00C;
-inline constexpr std::uint32_t kEngines = 0x010;
 inline constexpr std::uint32_t kGeometryDepth = 0x014;
 inline constexpr std::uint32_t kFeedDepth = 0x018;
 inline constexpr std::uint32_t kCommandsVersion = 0x01C;
@@ -123,77 +137,78 @@ inline constexpr std::uint32_t kOutputs = 0x060;
 inline constexpr std::uint32_t kUnderruns = 0x064;
 inline constexpr std::uint32_t kMarks = 0x068;
 inline constexpr std::uint32_t kStaleTicks = 0x06C;
-inline constexpr std::uint32_t kSnapFault = 0x080;
-inline constexpr std::uint32_t kSnapStatus = 0x084;
-inline constexpr std::uint32_t kSnapRatio = 0x088;
-inline constexpr std::uint32_t kSnapRate = 0x08C;
-inline constexpr std::uint32_t kSnapFeedBegun = 0x090;
-inline constexpr std::uint32_t kSnapGeometryBegun = 0x094;
-inline constexpr std::uint32_t kSnapTimeHi = 0x098;
-inline constexpr std::uint32_t kSnapTimeLo = 0x09C;
-constexpr std::uint32_t snap_position(std::uint32_t axis) { return 0x0A0 + 4 * axis; }
-inline constexpr std::uint32_t kStopFault = 0x0C0;
-inline constexpr std::uint32_t kStopStatus = 0x0C4;
-inline constexpr std::uint32_t kStopRatio = 0x0C8;
-inline constexpr std::uint32_t kStopRate = 0x0CC;
-inline constexpr std::uint32_t kStopFeedBegun = 0x0D0;
-inline constexpr std::uint32_t kStopGeometryBegun = 0x0D4;
-inline constexpr std::uint32_t kStopTimeHi = 0x0D8;
-inline constexpr std::uint32_t kStopTimeLo = 0x0DC;
-constexpr std::uint32_t stop_position(std::uint32_t axis) { return 0x0E0 + 4 * axis; }
-inline constexpr std::uint32_t kProbeFault = 0x100;
-inline constexpr std::uint32_t kProbeStatus = 0x104;
-inline constexpr std::uint32_t kProbeRatio = 0x108;
-inline constexpr std::uint32_t kProbeRate = 0x10C;
-inline constexpr std::uint32_t kProbeFeedBegun = 0x110;
-inline constexpr std::uint32_t kProbeGeometryBegun = 0x114;
-inline constexpr std::uint32_t kProbeTimeHi = 0x118;
-inline constexpr std::uint32_t kProbeTimeLo = 0x11C;
-constexpr std::uint32_t probe_position(std::uint32_t axis) { return 0x120 + 4 * axis; }
-inline constexpr std::uint32_t kMarkFault = 0x140;
-inline constexpr std::uint32_t kMarkStatus = 0x144;
-inline constexpr std::uint32_t kMarkRatio = 0x148;
-inline constexpr std::uint32_t kMarkRate = 0x14C;
-inline constexpr std::uint32_t kMarkFeedBegun = 0x150;
-inline constexpr std::uint32_t kMarkGeometryBegun = 0x154;
-inline constexpr std::uint32_t kMarkTimeHi = 0x158;
-inline constexpr std::uint32_t kMarkTimeLo = 0x15C;
-constexpr std::uint32_t mark_position(std::uint32_t axis) { return 0x160 + 4 * axis; }
-inline constexpr std::uint32_t kControl = 0x180;
-inline constexpr std::uint32_t kHold = 0x184;
-inline constexpr std::uint32_t kRatioFeed = 0x188;
-inline constexpr std::uint32_t kRatioRapid = 0x18C;
-inline constexpr std::uint32_t kRatioFixed = 0x190;
-inline constexpr std::uint32_t kSlew = 0x194;
-inline constexpr std::uint32_t kHoldLimit = 0x198;
-inline constexpr std::uint32_t kIrqEnable = 0x19C;
-inline constexpr std::uint32_t kStopReaction = 0x1A0;
-inline constexpr std::uint32_t kGeometryWatermark = 0x1A4;
-inline constexpr std::uint32_t kFeedWatermark = 0x1A8;
-inline constexpr std::uint32_t kOutputSafe = 0x1AC;
-inline constexpr std::uint32_t kInputPolarity = 0x1B0;
-inline constexpr std::uint32_t kStreaming = 0x1B4;
-inline constexpr std::uint32_t kStream = 0x1C0;
-constexpr std::uint32_t step_length(std::uint32_t axis) { return 0x200 + 32 * axis; }
-constexpr std::uint32_t step_space(std::uint32_t axis) { return 0x204 + 32 * axis; }
-constexpr std::uint32_t dir_setup(std::uint32_t axis) { return 0x208 + 32 * axis; }
-constexpr std::uint32_t dir_hold(std::uint32_t axis) { return 0x20C + 32 * axis; }
-constexpr std::uint32_t mode(std::uint32_t axis) { return 0x210 + 32 * axis; }
-constexpr std::uint32_t frequency_lo(std::uint32_t axis) { return 0x370 - 16 * axis; }
-constexpr std::uint32_t frequency_hi(std::uint32_t axis) { return 0x374 - 16 * axis; }
-constexpr std::uint32_t count(std::uint32_t axis) { return 0x378 - 16 * axis; }
-constexpr std::uint32_t direction(std::uint32_t axis) { return 0x37C - 16 * axis; }
-inline constexpr std::uint32_t kLengthLo = 0x380;
-inline constexpr std::uint32_t kLengthHi = 0x384;
-inline constexpr std::uint32_t kStart = 0x388;
+constexpr std::uint32_t descriptor(std::uint32_t index) { return 0x100 + 4 * index; }
+inline constexpr std::uint32_t kSnapFault = 0x200;
+inline constexpr std::uint32_t kSnapStatus = 0x204;
+inline constexpr std::uint32_t kSnapRatio = 0x208;
+inline constexpr std::uint32_t kSnapRate = 0x20C;
+inline constexpr std::uint32_t kSnapFeedBegun = 0x210;
+inline constexpr std::uint32_t kSnapGeometryBegun = 0x214;
+inline constexpr std::uint32_t kSnapTimeHi = 0x218;
+inline constexpr std::uint32_t kSnapTimeLo = 0x21C;
+constexpr std::uint32_t snap_position(std::uint32_t axis) { return 0x220 + 4 * axis; }
+inline constexpr std::uint32_t kStopFault = 0x280;
+inline constexpr std::uint32_t kStopStatus = 0x284;
+inline constexpr std::uint32_t kStopRatio = 0x288;
+inline constexpr std::uint32_t kStopRate = 0x28C;
+inline constexpr std::uint32_t kStopFeedBegun = 0x290;
+inline constexpr std::uint32_t kStopGeometryBegun = 0x294;
+inline constexpr std::uint32_t kStopTimeHi = 0x298;
+inline constexpr std::uint32_t kStopTimeLo = 0x29C;
+constexpr std::uint32_t stop_position(std::uint32_t axis) { return 0x2A0 + 4 * axis; }
+inline constexpr std::uint32_t kProbeFault = 0x300;
+inline constexpr std::uint32_t kProbeStatus = 0x304;
+inline constexpr std::uint32_t kProbeRatio = 0x308;
+inline constexpr std::uint32_t kProbeRate = 0x30C;
+inline constexpr std::uint32_t kProbeFeedBegun = 0x310;
+inline constexpr std::uint32_t kProbeGeometryBegun = 0x314;
+inline constexpr std::uint32_t kProbeTimeHi = 0x318;
+inline constexpr std::uint32_t kProbeTimeLo = 0x31C;
+constexpr std::uint32_t probe_position(std::uint32_t axis) { return 0x320 + 4 * axis; }
+inline constexpr std::uint32_t kMarkFault = 0x380;
+inline constexpr std::uint32_t kMarkStatus = 0x384;
+inline constexpr std::uint32_t kMarkRatio = 0x388;
+inline constexpr std::uint32_t kMarkRate = 0x38C;
+inline constexpr std::uint32_t kMarkFeedBegun = 0x390;
+inline constexpr std::uint32_t kMarkGeometryBegun = 0x394;
+inline constexpr std::uint32_t kMarkTimeHi = 0x398;
+inline constexpr std::uint32_t kMarkTimeLo = 0x39C;
+constexpr std::uint32_t mark_position(std::uint32_t axis) { return 0x3A0 + 4 * axis; }
+inline constexpr std::uint32_t kControl = 0x600;
+inline constexpr std::uint32_t kHold = 0x604;
+inline constexpr std::uint32_t kStream = 0x610;
+inline constexpr std::uint32_t kRatioFeed = 0x640;
+inline constexpr std::uint32_t kRatioRapid = 0x644;
+inline constexpr std::uint32_t kRatioFixed = 0x648;
+inline constexpr std::uint32_t kSlew = 0x64C;
+inline constexpr std::uint32_t kHoldLimit = 0x680;
+inline constexpr std::uint32_t kStopReaction = 0x684;
+inline constexpr std::uint32_t kIrqEnable = 0x688;
+inline constexpr std::uint32_t kGeometryWatermark = 0x6C0;
+inline constexpr std::uint32_t kFeedWatermark = 0x6C4;
+inline constexpr std::uint32_t kOutputSafe = 0x700;
+inline constexpr std::uint32_t kInputPolarity = 0x704;
+inline constexpr std::uint32_t kStreaming = 0x740;
+constexpr std::uint32_t step_length(std::uint32_t axis) { return 0x800 + 128 * axis; }
+constexpr std::uint32_t step_space(std::uint32_t axis) { return 0x804 + 128 * axis; }
+constexpr std::uint32_t dir_setup(std::uint32_t axis) { return 0x808 + 128 * axis; }
+constexpr std::uint32_t dir_hold(std::uint32_t axis) { return 0x80C + 128 * axis; }
+constexpr std::uint32_t mode(std::uint32_t axis) { return 0x810 + 128 * axis; }
+constexpr std::uint32_t frequency_lo(std::uint32_t axis) { return 0xCF0 - 16 * axis; }
+constexpr std::uint32_t frequency_hi(std::uint32_t axis) { return 0xCF4 - 16 * axis; }
+constexpr std::uint32_t count(std::uint32_t axis) { return 0xCF8 - 16 * axis; }
+constexpr std::uint32_t direction(std::uint32_t axis) { return 0xCFC - 16 * axis; }
+inline constexpr std::uint32_t kLengthLo = 0xD00;
+inline constexpr std::uint32_t kLengthHi = 0xD04;
+inline constexpr std::uint32_t kStart = 0xD08;
 }  // namespace reg
 
 // Areas of latched values: their byte addresses, and their registers in any of them.
 enum class Area : std::uint32_t {
-  Snap = 0x080,
-  Stop = 0x0C0,
-  Probe = 0x100,
-  Mark = 0x140,
+  Snap = 0x200,
+  Stop = 0x280,
+  Probe = 0x300,
+  Mark = 0x380,
 };
 namespace reg {
 constexpr std::uint32_t fault(Area area) { return static_cast<std::uint32_t>(area) + 0x00; }
@@ -215,17 +230,6 @@ inline constexpr std::uint32_t kMapVersionMinor = 0xFFFF;
 inline constexpr std::uint32_t kMapVersionMinorShift = 0;
 inline constexpr std::uint32_t kMapVersionMajor = 0xFFFF0000;
 inline constexpr std::uint32_t kMapVersionMajorShift = 16;
-inline constexpr std::uint32_t kEnginesLines = 0x1;
-inline constexpr std::uint32_t kEnginesAccumulator = 0x2;
-inline constexpr std::uint32_t kEnginesAccumulator8 = 0x4;
-inline constexpr std::uint32_t kEnginesArcGenerator = 0x8;
-inline constexpr std::uint32_t kEnginesJerk = 0x10;
-inline constexpr std::uint32_t kEnginesDirectMode = 0x20;
-inline constexpr std::uint32_t kEnginesUnderrunHold = 0x40;
-inline constexpr std::uint32_t kEnginesPathCommands = 0x80;
-inline constexpr std::uint32_t kEnginesStreaming = 0x100;
-inline constexpr std::uint32_t kEnginesClasses = 0x200;
-inline constexpr std::uint32_t kEnginesWatermarks = 0x400;
 inline constexpr std::uint32_t kBuildFlagsDirty = 0x1;
 inline constexpr std::uint32_t kPortsPorts = 0xFF;
 inline constexpr std::uint32_t kPortsPortsShift = 0;
@@ -271,6 +275,14 @@ inline constexpr std::uint32_t kControlSnapshot = 0x1;
 inline constexpr std::uint32_t kControlAbort = 0x2;
 inline constexpr std::uint32_t kControlFlush = 0x4;
 inline constexpr std::uint32_t kControlProbeClear = 0x8;
+inline constexpr std::uint32_t kStopReactionStep = 0xFF;
+inline constexpr std::uint32_t kStopReactionStepShift = 0;
+inline constexpr std::uint32_t kStopReactionMissingPeriod = 0x400;
+inline constexpr std::uint32_t kStopReactionLimit = 0x800;
+inline constexpr std::uint32_t kStopReactionEmergencyStop = 0x1000;
+inline constexpr std::uint32_t kStopReactionDriveFault = 0x2000;
+inline constexpr std::uint32_t kStopReactionWatchdog = 0x4000;
+inline constexpr std::uint32_t kStopReactionLinkLoss = 0x8000;
 inline constexpr std::uint32_t kIrqEnableIdle = 0x1;
 inline constexpr std::uint32_t kIrqEnableDirect = 0x2;
 inline constexpr std::uint32_t kIrqEnablePathActive = 0x4;
@@ -289,14 +301,6 @@ inline constexpr std::uint32_t kIrqEnableProbed = 0x4000;
 inline constexpr std::uint32_t kIrqEnableProbeMissed = 0x8000;
 inline constexpr std::uint32_t kIrqEnableWaiting = 0x10000;
 inline constexpr std::uint32_t kIrqEnableStale = 0x20000;
-inline constexpr std::uint32_t kStopReactionStep = 0xFF;
-inline constexpr std::uint32_t kStopReactionStepShift = 0;
-inline constexpr std::uint32_t kStopReactionMissingPeriod = 0x400;
-inline constexpr std::uint32_t kStopReactionLimit = 0x800;
-inline constexpr std::uint32_t kStopReactionEmergencyStop = 0x1000;
-inline constexpr std::uint32_t kStopReactionDriveFault = 0x2000;
-inline constexpr std::uint32_t kStopReactionWatchdog = 0x4000;
-inline constexpr std::uint32_t kStopReactionLinkLoss = 0x8000;
 inline constexpr std::uint32_t kOutputSafeValue = 0xFFFF;
 inline constexpr std::uint32_t kOutputSafeValueShift = 0;
 inline constexpr std::uint32_t kOutputSafeChange = 0xFFFF0000;
@@ -312,13 +316,12 @@ inline constexpr std::uint32_t kModeInvertSecond = 0x8;
 
 inline constexpr std::array<Register, 87> kRegisters{{
     {"MAGIC", 0x000, 1, 0, Access::Constant, 0x54524D4C, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x20000, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30000, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"AXES", 0x008, 1, 0, Access::Constant, 0x0, 0xFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"CLOCK_HZ", 0x00C, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"ENGINES", 0x010, 1, 0, Access::Constant, 0x0, 0x7FF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"GEOMETRY_DEPTH", 0x014, 1, 0, Access::Constant, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"FEED_DEPTH", 0x018, 1, 0, Access::Constant, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"COMMANDS_VERSION", 0x01C, 1, 0, Access::Constant, 0x2, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"COMMANDS_VERSION", 0x01C, 1, 0, Access::Constant, 0x3, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"BUILD_ID", 0x020, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"BUILD_FLAGS", 0x024, 1, 0, Access::Constant, 0x0, 0x1, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"BOARD_ID", 0x028, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -335,70 +338,232 @@ inline constexpr std::array<Register, 87> kRegisters{{
     {"UNDERRUNS", 0x064, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 6, 0x0, 0, false, true},
     {"MARKS", 0x068, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
     {"STALE_TICKS", 0x06C, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 8, 0x0, 0, false, true},
-    {"SNAP_FAULT", 0x080, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"SNAP_STATUS", 0x084, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"SNAP_RATIO", 0x088, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"SNAP_RATE", 0x08C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"SNAP_FEED_BEGUN", 0x090, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"SNAP_GEOMETRY_BEGUN", 0x094, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"SNAP_TIME_HI", 0x098, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"SNAP_TIME_LO", 0x09C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"SNAP_POSITION", 0x0A0, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, true},
-    {"STOP_FAULT", 0x0C0, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STOP_STATUS", 0x0C4, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STOP_RATIO", 0x0C8, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STOP_RATE", 0x0CC, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STOP_FEED_BEGUN", 0x0D0, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STOP_GEOMETRY_BEGUN", 0x0D4, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STOP_TIME_HI", 0x0D8, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STOP_TIME_LO", 0x0DC, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STOP_POSITION", 0x0E0, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, true},
-    {"PROBE_FAULT", 0x100, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"PROBE_STATUS", 0x104, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"PROBE_RATIO", 0x108, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"PROBE_RATE", 0x10C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"PROBE_FEED_BEGUN", 0x110, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"PROBE_GEOMETRY_BEGUN", 0x114, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"PROBE_TIME_HI", 0x118, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"PROBE_TIME_LO", 0x11C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"PROBE_POSITION", 0x120, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, true, true},
-    {"MARK_FAULT", 0x140, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"MARK_STATUS", 0x144, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"MARK_RATIO", 0x148, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"MARK_RATE", 0x14C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"MARK_FEED_BEGUN", 0x150, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"MARK_GEOMETRY_BEGUN", 0x154, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"MARK_TIME_HI", 0x158, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"MARK_TIME_LO", 0x15C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
-    {"MARK_POSITION", 0x160, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, true, true},
-    {"CONTROL", 0x180, 1, 0, Access::Command, 0x0, 0xF, 0x0, 0, 0x0, 0, 0x8, 7, false, false},
-    {"HOLD", 0x184, 1, 0, Access::Setting, 0x0, 0x1, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"RATIO_FEED", 0x188, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 0, 0x0, 0, false, false},
-    {"RATIO_RAPID", 0x18C, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 9, 0x0, 0, false, false},
-    {"RATIO_FIXED", 0x190, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 9, 0x0, 0, false, false},
-    {"SLEW", 0x194, 1, 0, Access::Setting, 0xFFFFFFF, 0xFFFFFFF, 0xFFFFFFF, 1, 0xFFFFFFF, 0, 0x0, 0, false, false},
-    {"HOLD_LIMIT", 0x198, 1, 0, Access::Setting, 0xFFFF, 0xFFFF, 0xFFFF, 1, 0xFFFF, 0, 0x0, 0, false, false},
-    {"IRQ_ENABLE", 0x19C, 1, 0, Access::Setting, 0x0, 0x3FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"STOP_REACTION", 0x1A0, 1, 0, Access::Setting, 0x0, 0xFCFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"GEOMETRY_WATERMARK", 0x1A4, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
-    {"FEED_WATERMARK", 0x1A8, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
-    {"OUTPUT_SAFE", 0x1AC, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
-    {"INPUT_POLARITY", 0x1B0, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
-    {"STREAMING", 0x1B4, 1, 0, Access::Setting, 0x0, 0xFF01, 0x0, 0, 0x0, 8, 0x0, 0, false, false},
-    {"STREAM", 0x1C0, 1, 0, Access::Command, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"STEP_LENGTH", 0x200, 8, 32, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
-    {"STEP_SPACE", 0x204, 8, 32, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
-    {"DIR_SETUP", 0x208, 8, 32, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
-    {"DIR_HOLD", 0x20C, 8, 32, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
-    {"MODE", 0x210, 8, 32, Access::Setting, 0x0, 0xF, 0x3, 0, 0x2, 0, 0x0, 0, true, false},
-    {"FREQUENCY_LO", 0x370, 8, -16, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
-    {"FREQUENCY_HI", 0x374, 8, -16, Access::Setting, 0x0, 0x1FF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
-    {"COUNT", 0x378, 8, -16, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
-    {"DIRECTION", 0x37C, 8, -16, Access::Setting, 0x0, 0x1, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
-    {"LENGTH_LO", 0x380, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
-    {"LENGTH_HI", 0x384, 1, 0, Access::Setting, 0x0, 0xFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
-    {"START", 0x388, 1, 0, Access::Command, 0x0, 0xFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
+    {"DESCRIPTOR", 0x100, 64, 4, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_FAULT", 0x200, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_STATUS", 0x204, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_RATIO", 0x208, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_RATE", 0x20C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_FEED_BEGUN", 0x210, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_GEOMETRY_BEGUN", 0x214, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_TIME_HI", 0x218, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_TIME_LO", 0x21C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"SNAP_POSITION", 0x220, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, true},
+    {"STOP_FAULT", 0x280, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STOP_STATUS", 0x284, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STOP_RATIO", 0x288, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STOP_RATE", 0x28C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STOP_FEED_BEGUN", 0x290, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STOP_GEOMETRY_BEGUN", 0x294, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STOP_TIME_HI", 0x298, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STOP_TIME_LO", 0x29C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STOP_POSITION", 0x2A0, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, true},
+    {"PROBE_FAULT", 0x300, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"PROBE_STATUS", 0x304, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"PROBE_RATIO", 0x308, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"PROBE_RATE", 0x30C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"PROBE_FEED_BEGUN", 0x310, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"PROBE_GEOMETRY_BEGUN", 0x314, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"PROBE_TIME_HI", 0x318, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"PROBE_TIME_LO", 0x31C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"PROBE_POSITION", 0x320, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, true, true},
+    {"MARK_FAULT", 0x380, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"MARK_STATUS", 0x384, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"MARK_RATIO", 0x388, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"MARK_RATE", 0x38C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"MARK_FEED_BEGUN", 0x390, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"MARK_GEOMETRY_BEGUN", 0x394, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"MARK_TIME_HI", 0x398, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"MARK_TIME_LO", 0x39C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"MARK_POSITION", 0x3A0, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, true, true},
+    {"CONTROL", 0x600, 1, 0, Access::Command, 0x0, 0xF, 0x0, 0, 0x0, 0, 0x8, 7, false, false},
+    {"HOLD", 0x604, 1, 0, Access::Setting, 0x0, 0x1, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"STREAM", 0x610, 1, 0, Access::Command, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"RATIO_FEED", 0x640, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 0, 0x0, 0, false, false},
+    {"RATIO_RAPID", 0x644, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 9, 0x0, 0, false, false},
+    {"RATIO_FIXED", 0x648, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 9, 0x0, 0, false, false},
+    {"SLEW", 0x64C, 1, 0, Access::Setting, 0xFFFFFFF, 0xFFFFFFF, 0xFFFFFFF, 1, 0xFFFFFFF, 0, 0x0, 0, false, false},
+    {"HOLD_LIMIT", 0x680, 1, 0, Access::Setting, 0xFFFF, 0xFFFF, 0xFFFF, 1, 0xFFFF, 0, 0x0, 0, false, false},
+    {"STOP_REACTION", 0x684, 1, 0, Access::Setting, 0x0, 0xFCFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"IRQ_ENABLE", 0x688, 1, 0, Access::Setting, 0x0, 0x3FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"GEOMETRY_WATERMARK", 0x6C0, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
+    {"FEED_WATERMARK", 0x6C4, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
+    {"OUTPUT_SAFE", 0x700, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
+    {"INPUT_POLARITY", 0x704, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
+    {"STREAMING", 0x740, 1, 0, Access::Setting, 0x0, 0xFF01, 0x0, 0, 0x0, 8, 0x0, 0, false, false},
+    {"STEP_LENGTH", 0x800, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
+    {"STEP_SPACE", 0x804, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
+    {"DIR_SETUP", 0x808, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
+    {"DIR_HOLD", 0x80C, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
+    {"MODE", 0x810, 8, 128, Access::Setting, 0x0, 0xF, 0x3, 0, 0x2, 0, 0x0, 0, true, false},
+    {"FREQUENCY_LO", 0xCF0, 8, -16, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
+    {"FREQUENCY_HI", 0xCF4, 8, -16, Access::Setting, 0x0, 0x1FF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
+    {"COUNT", 0xCF8, 8, -16, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
+    {"DIRECTION", 0xCFC, 8, -16, Access::Setting, 0x0, 0x1, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
+    {"LENGTH_LO", 0xD00, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
+    {"LENGTH_HI", 0xD04, 1, 0, Access::Setting, 0x0, 0xFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
+    {"START", 0xD08, 1, 0, Access::Command, 0x0, 0xFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
 }};
+
+// Units of the card and their descriptors, two words each (rtl/regs/units.toml has the layout). The table begins at
+// kDescriptorTable; a tag of 0 ends it.
+enum class UnitCount { Fixed, Axes, SnapshotAreas, Ports, Inputs, Outputs };
+
+struct Unit {
+  std::string_view name;
+  std::uint8_t tag;
+  std::uint8_t major;
+  std::uint8_t minor;
+  std::uint32_t engine;     // engine without which the unit is not built in; 0 (lines): on every card
+  UnitCount count;          // which number of the card its instances are
+  std::uint32_t instances;  // with Fixed: how many
+  bool has_registers;
+  std::uint32_t first;      // byte address of the first register of the first instance
+  std::int32_t first_step;  // bytes that it moves with each axis of the card beyond the first
+  std::uint32_t last;       // and of the last one
+  std::int32_t last_step;
+  std::uint32_t stride;                   // words from one instance to the next
+  std::uint32_t load_unit;                // number on the load bus, 31: none
+  std::array<std::uint32_t, 8> features;  // by bit: the engine that sets it, 0: no such feature
+};
+
+// What one descriptor says.
+struct Descriptor {
+  std::uint8_t tag = 0;
+  std::uint8_t major = 0;
+  std::uint8_t minor = 0;
+  std::uint8_t instances = 0;
+  std::uint8_t features = 0;
+  std::uint16_t base = 0;   // word address
+  std::uint8_t words = 0;   // used by an instance
+  std::uint8_t stride = 0;  // words; 0: all instances share the same registers
+  std::uint8_t load_unit = 0;
+};
+
+constexpr std::uint32_t descriptor_word_0(const Descriptor& d) {
+  return d.tag | std::uint32_t{d.minor} << 8 | std::uint32_t{d.major} << 12 | std::uint32_t{d.instances} << 16 |
+         std::uint32_t{d.features} << 24;
+}
+constexpr std::uint32_t descriptor_word_1(const Descriptor& d) {
+  return d.base | std::uint32_t{d.words} << 10 | std::uint32_t{d.stride} << 18 | std::uint32_t{d.load_unit} << 25;
+}
+constexpr Descriptor descriptor_of(std::uint32_t word_0, std::uint32_t word_1) {
+  const auto bits = [](std::uint32_t word, int low, int width) { return word >> low & ((1u << width) - 1); };
+  return {static_cast<std::uint8_t>(bits(word_0, 0, 8)),  static_cast<std::uint8_t>(bits(word_0, 12, 4)),
+          static_cast<std::uint8_t>(bits(word_0, 8, 4)),  static_cast<std::uint8_t>(bits(word_0, 16, 8)),
+          static_cast<std::uint8_t>(bits(word_0, 24, 8)), static_cast<std::uint16_t>(bits(word_1, 0, 10)),
+          static_cast<std::uint8_t>(bits(word_1, 10, 8)), static_cast<std::uint8_t>(bits(word_1, 18, 7)),
+          static_cast<std::uint8_t>(bits(word_1, 25, 5))};
+}
+
+inline constexpr std::uint32_t kDescriptorTable = 0x100;  // byte address of the first
+inline constexpr std::uint32_t kDescriptorSlots = 32;     // the ending one included
+
+namespace unit {
+inline constexpr std::uint8_t kTimeBase = 1;       // Share of clocks that are enabled: ratio, slew, hold.
+inline constexpr std::uint8_t kStopControl = 2;    // Causes of a stop, and the reaction to each.
+inline constexpr std::uint8_t kQueues = 3;         // Geometry queue and feed queue.
+inline constexpr std::uint8_t kFeedGenerator = 4;  // Rate, acceleration and jerk of feed pieces.
+inline constexpr std::uint8_t kAxes = 5;           // Pulse generator, step shaper and position counter of each axis.
+inline constexpr std::uint8_t kSnapshots =
+    6;  // Areas of latched values: SNAP, STOP; with path commands also PROBE and MARK.
+inline constexpr std::uint8_t kHostPorts = 7;     // Ports that a host may come by.
+inline constexpr std::uint8_t kAccumulator = 8;   // Deviation accumulator: circles, ellipses (ARC).
+inline constexpr std::uint8_t kArcGenerator = 9;  // Arc generator: circles and helices in chords (ARC_CHORD).
+inline constexpr std::uint8_t kDirectMode =
+    10;  // One-shot lines: frequency, count and direction of each axis, length, START.
+inline constexpr std::uint8_t kUnderrunHold = 11;       // Hold on the path before the queues run dry.
+inline constexpr std::uint8_t kPathCommands = 12;       // OUTPUT, MARK, WAIT_INPUT, PROBE and PROBE_END.
+inline constexpr std::uint8_t kInputs = 13;             // Inputs with synchroniser and polarity.
+inline constexpr std::uint8_t kOutputs = 14;            // Outputs.
+inline constexpr std::uint8_t kPositionStreaming = 15;  // A line for each period of a host that streams positions.
+}  // namespace unit
+
+// Units on the load bus, of their first instance.
+namespace load_unit {
+inline constexpr unsigned kAxes = 0;
+inline constexpr unsigned kAccumulator = 10;
+inline constexpr unsigned kArcGenerator = 11;
+inline constexpr unsigned kPathCommands = 12;
+inline constexpr unsigned kNone = 31;
+}  // namespace load_unit
+
+inline constexpr std::array<Unit, 15> kUnits{{
+    {"time_base", 1, 1, 0, 0, UnitCount::Fixed, 1, true, 1600, 0, 1612, 0, 0, 31, {9, 0, 0, 0, 0, 0, 0, 0}},
+    {"stop_control", 2, 1, 0, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"queues", 3, 1, 0, 0, UnitCount::Fixed, 2, true, 1728, 0, 1728, 0, 1, 31, {10, 0, 0, 0, 0, 0, 0, 0}},
+    {"feed_generator", 4, 1, 0, 0, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {4, 0, 0, 0, 0, 0, 0, 0}},
+    {"axes", 5, 1, 0, 0, UnitCount::Axes, 0, true, 2048, 0, 2064, 0, 32, 0, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"snapshots", 6, 1, 0, 0, UnitCount::SnapshotAreas, 0, true, 512, 0, 544, 4, 32, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"host_ports", 7, 1, 0, 0, UnitCount::Ports, 0, false, 0, 0, 0, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"accumulator", 8, 1, 0, 1, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 10, {2, 0, 0, 0, 0, 0, 0, 0}},
+    {"arc_generator", 9, 1, 0, 3, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 11, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"direct_mode", 10, 1, 0, 5, UnitCount::Fixed, 1, true, 3312, -16, 3336, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"underrun_hold", 11, 1, 0, 6, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"path_commands", 12, 1, 0, 7, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 12, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"inputs", 13, 1, 0, 7, UnitCount::Inputs, 0, true, 1796, 0, 1796, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"outputs", 14, 1, 0, 7, UnitCount::Outputs, 0, true, 1792, 0, 1792, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"position_streaming", 15, 1, 0, 8, UnitCount::Fixed, 1, true, 1856, 0, 1856, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+}};
+
+// What decides a card's descriptors.
+struct CardShape {
+  std::uint32_t engines;
+  std::uint32_t axes;
+  std::uint32_t ports;
+  std::uint32_t inputs;
+  std::uint32_t outputs;
+};
+
+constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
+  switch (unit.count) {
+    case UnitCount::Axes:
+      return card.axes;
+    case UnitCount::SnapshotAreas:
+      return (card.engines >> engine::kPathCommands & 1) != 0 ? 4 : 2;
+    case UnitCount::Ports:
+      return card.ports;
+    case UnitCount::Inputs:
+      return card.inputs;
+    case UnitCount::Outputs:
+      return card.outputs;
+    default:
+      return unit.instances;
+  }
+}
+
+// The descriptor of a unit that is built into such a card.
+constexpr Descriptor describe(const Unit& unit, const CardShape& card) {
+  Descriptor d{unit.tag, unit.major, unit.minor};
+  d.instances = static_cast<std::uint8_t>(instances_of(unit, card));
+  for (std::size_t bit = 0; bit < unit.features.size(); ++bit) {
+    const bool has = unit.features[bit] != 0 && (card.engines >> unit.features[bit] & 1) != 0;
+    d.features = static_cast<std::uint8_t>(d.features | (has ? 1u << bit : 0u));
+  }
+  if (unit.has_registers) {
+    const std::uint32_t further = card.axes - 1;
+    const std::uint32_t first = unit.first + static_cast<std::uint32_t>(unit.first_step) * further;
+    const std::uint32_t last = unit.last + static_cast<std::uint32_t>(unit.last_step) * further;
+    d.base = static_cast<std::uint16_t>(first / 4);
+    d.words = static_cast<std::uint8_t>((last - first) / 4 + 1);
+  }
+  d.stride = static_cast<std::uint8_t>(unit.stride);
+  d.load_unit = static_cast<std::uint8_t>(unit.load_unit);
+  return d;
+}
+
+// Calls put(byte address, word) for each word of the table of such a card, the ending tag included.
+template <typename Put>
+constexpr void put_descriptors(const CardShape& card, const Put& put) {
+  std::uint32_t address = kDescriptorTable;
+  for (const Unit& unit : kUnits) {
+    if ((card.engines >> unit.engine & 1) == 0) continue;
+    const Descriptor d = describe(unit, card);
+    put(address, descriptor_word_0(d));
+    put(address + 4, descriptor_word_1(d));
+    address += 8;
+  }
+  put(address, std::uint32_t{0});
+}
 
 // Why an access or a command was refused (REFUSAL.reason).
 enum class Reason : std::uint8_t {
@@ -552,7 +717,7 @@ struct Command {
   Opcode opcode;
   bool to_geometry;
   bool to_feed;
-  std::uint32_t engine;  // bit of ENGINES without which the opcode is unknown; 0 (lines): always known
+  std::uint32_t engine;  // engine without which the opcode is unknown; 0 (lines): always known
   bool built;            // false: only laid out yet, and unknown whatever the engines are
   MaskRule mask_rule;
   std::uint32_t flags_maximum;
@@ -690,7 +855,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      0,
      0,
      1,
-     {{Field{"condition", FieldKind::Unsigned, 5, 0, 1, false, 0, 0x0, 0x1F, 0x0, 0, false}}}},
+     {{Field{"condition", FieldKind::Unsigned, 16, 0, 1, false, 0, 0x0, 0x3F, 0x0, 0, false}}}},
     {"PROBE",
      Opcode::Probe,
      true,
@@ -706,7 +871,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      0,
      0,
      1,
-     {{Field{"condition", FieldKind::Unsigned, 5, 0, 1, false, 0, 0x0, 0x1F, 0x0, 0, false}}}},
+     {{Field{"condition", FieldKind::Unsigned, 16, 0, 1, false, 0, 0x0, 0x3F, 0x0, 0, false}}}},
     {"PROBE_END", Opcode::ProbeEnd, true, true, 7, true, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
 }};
 

@@ -1,0 +1,50 @@
+"""The plan of the register window as plain data, read from TOML and checked against the registers."""
+
+import tomllib
+from dataclasses import dataclass
+
+
+class WindowError(Exception):
+    """Ranges that leave a gap or overlap, or a register in a reserved one or across two."""
+
+
+@dataclass
+class Range:
+    first: int  # byte address
+    words: int
+    content: str
+    reserved: bool
+
+    @property
+    def last(self):
+        """Byte address of the last byte."""
+        return self.first + 4 * self.words - 1
+
+
+def read_window(path, registers):
+    with open(path, "rb") as file:
+        data = tomllib.load(file)
+    ranges = [Range(r["first"], r["words"], r["content"], r.get("reserved", False)) for r in data["range"]]
+    _check_tiling(ranges, 4 * data["words"])
+    for register in registers:
+        _check_register(register, ranges)
+    return ranges
+
+
+def _check_tiling(ranges, size):
+    end = 0
+    for r in ranges:
+        if r.first != end:
+            raise WindowError(f"the range at 0x{r.first:03X} does not follow on 0x{end:03X}")
+        end = r.last + 1
+    if end != size:
+        raise WindowError(f"the ranges end at 0x{end:03X}, the window at 0x{size:03X}")
+
+
+def _check_register(register, ranges):
+    places = {next(i for i, r in enumerate(ranges) if address <= r.last) for address in register.addresses}
+    if len(places) != 1:
+        raise WindowError(f"{register.name}: in more than one range of the window")
+    place = ranges[places.pop()]
+    if place.reserved:
+        raise WindowError(f"{register.name}: in the range at 0x{place.first:03X}, which is reserved: {place.content}")
