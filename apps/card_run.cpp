@@ -8,12 +8,12 @@
 #include "card_choice.hpp"
 #include "end_text.hpp"
 #include "errors.hpp"
+#include "profile_report.hpp"
 #include "progress_bar.hpp"
 #include "run_report.hpp"
 #include "stop_at_signals.hpp"
 #include "terminal.hpp"
 #include "trammel/card_map.hpp"
-#include "trammel/kinematics/kinematics.hpp"
 
 namespace trammel::app {
 namespace {
@@ -44,10 +44,10 @@ class CardWatch final : public run::Observer {
   std::uint64_t reconnections_ = 0;
 };
 
-void set_overrides(driver::Card& card, const RunOptions& options) {
-  card.set_override(driver::PieceClass::kFeed, options.operation.percent, options.most_percent);
+void set_overrides(driver::Card& card, const CardRunOptions& options) {
+  card.set_override(driver::PieceClass::kFeed, options.percent, options.most_percent);
   if (!card_map::has_engine(card.identification().engines, card_map::engine::kClasses)) return;
-  card.set_override(driver::PieceClass::kRapid, options.operation.rapid_percent, options.most_percent);
+  card.set_override(driver::PieceClass::kRapid, options.rapid_percent, options.most_percent);
   card.set_override(driver::PieceClass::kFixed, 100, options.most_percent);
 }
 
@@ -60,13 +60,12 @@ std::string link_text(const CardRunResult& result) {
 }  // namespace
 
 CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine& machine, driver::Card& card,
-                          transport::Connection& connection, const RunOptions& options) {
+                          transport::Connection& connection, const CardRunOptions& options) {
   const driver::Identification& id = card.identification();
   if (machine.motors() > id.axes) {
     throw UsageError(fmt::format("--card: it has {} axes, the machine {} motors", id.axes, machine.motors()));
   }
   CardRunResult result;
-  for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
   run::Runner runner(lines, machine, planner::limits_of(id), options.settings);
   const run::Plan plan = options.stream ? run::Plan{} : runner.plan();
   if (options.planned) options.planned(plan);
@@ -80,9 +79,8 @@ CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine
   result.plan = runner.last_plan();
   result.clock_hz = id.clock_hz;
   result.seconds = static_cast<double>(card.snapshot().time - before.time) / id.clock_hz;
-  result.final_millimetres = end_millimetres(machine, result.outcome.final_position);
-  result.joint_for_each_axis = kinematics::Kinematics(machine).joint_for_each_axis();
-  result.profile = profile_of(machine, options.settings);
+  result.end = run::end_position(machine, result.outcome.final_position);
+  result.profile = run::planned_profile(machine, options.settings);
   if (connection.frames() != nullptr) result.link = connection.frames()->counts();
   result.reconnections = connection.reconnections();
   return result;
@@ -92,10 +90,10 @@ std::string summary(const CardRunResult& result) {
   std::string text =
       fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz on {}\n", result.plan.file,
                   result.plan.segments, result.outcome.commands, result.seconds, result.clock_hz * 1e-6, result.card);
-  text += end_text(result.axes, result.outcome.final_position, result.final_millimetres, result.joint_for_each_axis);
-  text += summary(result.profile);
+  text += end_text(result.end);
+  text += profile_text(result.profile);
   if (result.outcome.under_runs) text += fmt::format("  under-runs since reset: {}\n", *result.outcome.under_runs);
-  text += probes_text(result.axes, result.outcome.probes);
+  text += probes_text(result.end.axes, result.outcome.probes);
   text += link_text(result) + blends_text(result.plan.blends);
   return text + accepted_words(result.plan.accepted);
 }
@@ -104,20 +102,20 @@ std::string json_text(const CardRunResult& result) {
   nlohmann::ordered_json json;
   json["program"] = result.plan.file;
   json["card"] = result.card;
-  json["axes"] = result.axes;
-  json["final_position"] = result.outcome.final_position;
+  json["axes"] = result.end.axes;
+  json["final_position"] = result.end.pulses;
   json["seconds"] = result.seconds;
   json["clock_hz"] = result.clock_hz;
   json["segments"] = result.plan.segments;
   json["commands"] = result.outcome.commands;
   json["planned_seconds"] = result.plan.seconds;
-  json["profile"] = name_of(result.profile);
+  json["profile"] = profile_name(result.profile);
   json["motion"] = motion_json(result.plan.motion);
   json["blends"] = blends_json(result.plan.blends);
   json["under_runs"] = nullptr;
   if (result.outcome.under_runs) json["under_runs"] = *result.outcome.under_runs;
   json["feeds_not_reached"] = feeds_json(result.plan.feeds_not_reached);
-  json["probes"] = probes_json(result.axes, result.outcome.probes);
+  json["probes"] = probes_json(result.end.axes, result.outcome.probes);
   json["link"] = {{"requests", result.link.requests},
                   {"sent_again", result.link.sent_again},
                   {"reconnections", result.reconnections}};

@@ -2,33 +2,45 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
-#include <vector>
 
-#include "program_run.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/frame_bus.hpp"
+#include "trammel/machine/machine.hpp"
+#include "trammel/run/end_position.hpp"
+#include "trammel/run/planned_profile.hpp"
+#include "trammel/run/runner.hpp"
 #include "trammel/transport/connection.hpp"
 
 namespace trammel::app {
 
+struct CardRunOptions {
+  run::RunSettings settings;
+  bool stream = false;         // the program is read once, while it runs
+  double percent = 100;        // override, of the planned speed
+  double rapid_percent = 100;  // of rapids
+  double most_percent = 100;   // largest override
+  bool progress = false;       // also where stderr is no terminal
+  // When all is checked and nothing has moved yet; with `stream` of an empty plan.
+  std::function<void(const run::Plan&)> planned;
+};
+
 struct CardRunResult {
   std::string card;  // its URL
-  std::string axes;  // letters in the card's order
   run::Plan plan;
   run::Outcome outcome;
-  std::vector<double> final_millimetres;
-  bool joint_for_each_axis = true;  // no motor moves two axes
+  run::EndPosition end;
   std::uint32_t clock_hz = 0;
   double seconds = 0;  // of card time, from the first access to the end
-  ProfileReport profile;
+  run::PlannedProfile profile;
   driver::FrameBus::Counts link;  // zeros where it does not go by frames
   std::uint64_t reconnections = 0;
 };
 
-// The program begins where the card stands. `options`: those that need no pins. Errors as of run_program().
+// The program begins where the card stands. Throws UsageError for a card with too few axes, and as run::Runner does.
 CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine& machine, driver::Card& card,
-                          transport::Connection& connection, const RunOptions& options);
+                          transport::Connection& connection, const CardRunOptions& options);
 
 std::string summary(const CardRunResult& result);
 std::string json_text(const CardRunResult& result);

@@ -81,17 +81,6 @@ void EngineChoice::refuse_with(const CardChoice& card) const {
   refuse_with_card(card, "--trace-window", trace_window.has_value());
 }
 
-planner::CardLimits limits_of(const sim::EngineOptions& engine) {
-  planner::CardLimits card;
-  card.clock_hz = engine.clock_hz;
-  card.axes = engine.axes;
-  card.classes = true;
-  card.outputs = sim::kPins;
-  return card;
-}
-
-unsigned traced_axes(unsigned axes) { return axes <= 4 ? 4 : 8; }
-
 sim::SimulationOptions EngineChoice::options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const {
   sim::SimulationOptions options;
   options.kind = engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;

@@ -8,7 +8,6 @@
 
 #include "card_choice.hpp"
 #include "command_line.hpp"
-#include "trammel/planner/card_limits.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
@@ -38,11 +37,5 @@ struct EngineChoice {
   // Throws UsageError for what does not go together.
   sim::SimulationOptions options(unsigned axes, std::uint32_t rtl_clock, std::uint32_t model_clock) const;
 };
-
-// What the simulated card has.
-planner::CardLimits limits_of(const sim::EngineOptions& engine);
-
-// Axes of the card that can be traced and serves so many.
-unsigned traced_axes(unsigned axes);
 
 }  // namespace trammel::app

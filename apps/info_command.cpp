@@ -13,6 +13,7 @@
 #include "outputs.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
+#include "trammel/simulation/simulated_card.hpp"
 #include "waveform.hpp"
 
 namespace trammel::app {
@@ -73,7 +74,7 @@ void info_in_simulation(const InfoArguments& options) {
   Output* const trace = outputs.add("--trace", options.engine.trace, true);
   outputs.check();
   sim::SimulationOptions engine_options = options.engine.options(options.axes, kInfoClock, kInfoClock);
-  if (trace != nullptr && traced_axes(options.axes) != options.axes) {
+  if (trace != nullptr && simulation::traced_axes(options.axes) != options.axes) {
     throw UsageError(fmt::format("--trace: cards of 4 and of 8 axes are built for it, not of {}", options.axes));
   }
   outputs.open();

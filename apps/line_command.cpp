@@ -21,6 +21,7 @@
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/run/plot.hpp"
 #include "trammel/run/step_recorder.hpp"
+#include "trammel/simulation/simulated_card.hpp"
 #include "waveform.hpp"
 
 namespace trammel::app {
@@ -305,7 +306,7 @@ void line_in_simulation(const LineArguments& options) {
   Output* const plot = outputs.add("--plot", options.plot);
   outputs.check();
   // A card of 4 or of 8 axes, so that the results do not depend on whether it is traced.
-  const auto axes = traced_axes(static_cast<unsigned>(displacement_of(options).size()));
+  const auto axes = simulation::traced_axes(static_cast<unsigned>(displacement_of(options).size()));
   sim::SimulationOptions engine = options.engine.options(axes, kDefaultClock, kDefaultClock);
   outputs.open();
   if (trace != nullptr) engine.trace->path = trace->path_to_write();

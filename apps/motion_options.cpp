@@ -16,6 +16,8 @@
 namespace trammel::app {
 namespace {
 
+using simulation::OperatorEvent;
+
 constexpr double kLongest = 1e9;  // s, as for --trace-window
 
 std::optional<double> number(std::string_view text) {
@@ -163,8 +165,8 @@ void MotionChoice::add_to(CLI::App& command) {
   command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
 }
 
-Operation MotionChoice::operation(double most_percent) const {
-  Operation result;
+simulation::Operation MotionChoice::operation(double most_percent) const {
+  simulation::Operation result;
   constexpr const char* kMost = " (max_override of the machine file sets the most)";
   result.percent = percent_of("--override", percent, most_percent, kMost);
   result.rapid_percent = percent_of("--rapid-override", rapid_percent, 100);

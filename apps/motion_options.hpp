@@ -9,26 +9,9 @@
 
 #include "command_line.hpp"
 #include "trammel/run/run_settings.hpp"
+#include "trammel/simulation/operation.hpp"
 
 namespace trammel::app {
-
-// What the operator, or the machine, does at a time of the card's.
-struct OperatorEvent {
-  enum class Kind { kOverride, kHold, kResume, kInput };
-  Kind kind = Kind::kOverride;
-  double seconds = 0;  // of card time, asked for
-  double percent = 0;  // kOverride
-  unsigned input = 0;  // kInput
-  bool level = false;
-};
-
-// How the operator and the bus treat the run.
-struct Operation {
-  double percent = 100;               // override from the start on
-  double rapid_percent = 100;         // of rapids
-  std::vector<OperatorEvent> events;  // in order of time
-  double bytes_per_second = 0;        // of the bus, infinite without a limit
-};
 
 struct MotionChoice {
   std::string percent = "100";
@@ -48,7 +31,7 @@ struct MotionChoice {
   void add_to(CLI::App& command);
   // Throw UsageError for what is malformed or out of range. `most_percent`: the largest override that the machine's
   // limits leave room for.
-  Operation operation(double most_percent) const;
+  simulation::Operation operation(double most_percent) const;
   run::RunSettings settings() const;
 };
 

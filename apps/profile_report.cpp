@@ -9,21 +9,10 @@ constexpr double kLongestRise = 1;  // s
 
 }  // namespace
 
-ProfileReport profile_of(const machine::Machine& machine, const run::RunSettings& settings) {
-  ProfileReport result;
-  result.s_curve =
-      planner::profile_of(machine, {settings.single_block, settings.profile}) == planner::SpeedProfile::kSCurve;
-  if (settings.profile != planner::SpeedProfile::kByMachine) return result;
-  for (const machine::MachineAxis& axis : machine.axes) {
-    if (axis.max_jerk == 0) result.without_jerk += axis.letter;
-  }
-  return result;
-}
+const char* profile_name(const run::PlannedProfile& profile) { return profile.s_curve ? "s-curve" : "trapezoid"; }
 
-const char* name_of(const ProfileReport& profile) { return profile.s_curve ? "s-curve" : "trapezoid"; }
-
-std::string summary(const ProfileReport& profile) {
-  std::string text = fmt::format("  profile: {}", name_of(profile));
+std::string profile_text(const run::PlannedProfile& profile) {
+  std::string text = fmt::format("  profile: {}", profile_name(profile));
   if (!profile.without_jerk.empty()) text += "; max_jerk is missing for";
   for (const char letter : profile.without_jerk) text += fmt::format(" {}", letter);
   return text + "\n";

@@ -5,19 +5,12 @@
 #include <vector>
 
 #include "trammel/machine/machine.hpp"
-#include "trammel/run/run_settings.hpp"
+#include "trammel/run/planned_profile.hpp"
 
 namespace trammel::app {
 
-struct ProfileReport {
-  bool s_curve = false;
-  std::string without_jerk;  // letters of the axes for which it is a trapezoid; empty where one was asked for
-};
-
-ProfileReport profile_of(const machine::Machine& machine, const run::RunSettings& settings);
-
-const char* name_of(const ProfileReport& profile);  // as of --profile
-std::string summary(const ProfileReport& profile);  // a line
+const char* profile_name(const run::PlannedProfile& profile);  // as of --profile
+std::string profile_text(const run::PlannedProfile& profile);  // a line
 
 // A line an axis whose acceleration would take more than a second to rise: most likely not mm/s^3.
 std::vector<std::string> jerk_warnings(const machine::Machine& machine);

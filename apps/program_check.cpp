@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "end_text.hpp"
+#include "profile_report.hpp"
 #include "run_report.hpp"
 #include "trammel/kinematics/kinematics.hpp"
 
@@ -14,14 +15,10 @@ CheckResult check_program(const run::ProgramLines& lines, const machine::Machine
                           const planner::CardLimits& card, const run::RunSettings& settings) {
   CheckResult result;
   result.plan = run::Runner(lines, machine, card, settings).plan();
-  result.profile = profile_of(machine, settings);
+  result.profile = run::planned_profile(machine, settings);
   result.clock_hz = card.clock_hz;
-  for (const machine::MachineAxis& axis : machine.axes) result.axes += axis.letter;
-  const kinematics::Kinematics kinematics(machine);
   const auto* const end = result.plan.end.begin();
-  result.final_position.assign(end, end + kinematics.joints());
-  result.final_millimetres = end_millimetres(machine, result.final_position);
-  result.joint_for_each_axis = kinematics.joint_for_each_axis();
+  result.end = run::end_position(machine, {end, end + kinematics::Kinematics(machine).joints()});
   return result;
 }
 
@@ -29,8 +26,8 @@ std::string summary(const CheckResult& result) {
   const run::Plan& plan = result.plan;
   std::string text = fmt::format("{}: {} path segments, {} commands, {:.3f} s planned at {:g} MHz; nothing was run\n",
                                  plan.file, plan.segments, plan.commands, plan.seconds, result.clock_hz * 1e-6);
-  text += end_text(result.axes, result.final_position, result.final_millimetres, result.joint_for_each_axis);
-  return text + summary(result.profile) + blends_text(plan.blends) + probes_planned(plan) +
+  text += end_text(result.end);
+  return text + profile_text(result.profile) + blends_text(plan.blends) + probes_planned(plan) +
          accepted_words(plan.accepted);
 }
 
@@ -38,13 +35,13 @@ std::string json_text(const CheckResult& result) {
   const run::Plan& plan = result.plan;
   nlohmann::ordered_json json;
   json["program"] = plan.file;
-  json["axes"] = result.axes;
-  json["final_position"] = result.final_position;
+  json["axes"] = result.end.axes;
+  json["final_position"] = result.end.pulses;
   json["clock_hz"] = result.clock_hz;
   json["segments"] = plan.segments;
   json["commands"] = plan.commands;
   json["planned_seconds"] = plan.seconds;
-  json["profile"] = name_of(result.profile);
+  json["profile"] = profile_name(result.profile);
   json["motion"] = motion_json(plan.motion);
   json["blends"] = blends_json(plan.blends);
   json["feeds_not_reached"] = feeds_json(plan.feeds_not_reached);

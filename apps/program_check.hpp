@@ -3,19 +3,17 @@
 
 #include <string>
 
-#include "profile_report.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/run/end_position.hpp"
+#include "trammel/run/planned_profile.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace trammel::app {
 
 struct CheckResult {
   run::Plan plan;
-  ProfileReport profile;
-  std::string axes;                          // letters in the card's order
-  std::vector<std::int64_t> final_position;  // pulses by axis of the card
-  std::vector<double> final_millimetres;
-  bool joint_for_each_axis = true;  // no motor moves two axes
+  run::PlannedProfile profile;
+  run::EndPosition end;
   std::uint32_t clock_hz = 0;
 };
 

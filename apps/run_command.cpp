@@ -20,12 +20,16 @@
 #include "profile_report.hpp"
 #include "program_check.hpp"
 #include "program_file.hpp"
-#include "program_run.hpp"
+#include "progress_bar.hpp"
 #include "run_report.hpp"
 #include "standard_streams.hpp"
+#include "stop_at_signals.hpp"
 #include "terminal.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/report/page.hpp"
 #include "trammel/report/report_writer.hpp"
+#include "trammel/simulation/simulated_card.hpp"
+#include "trammel/simulation/simulated_run.hpp"
 #include "waveform.hpp"
 
 namespace trammel::app {
@@ -79,8 +83,8 @@ void refuse_contradictions(const RunArguments& options) {
   refuse("--stream", options.stream, kWhy);
 }
 
-void refuse_rapids_at_zero(const RunArguments& options, const Operation& operation, const run::Plan& plan) {
-  if (operation.rapid_percent != 0) return;
+void refuse_rapids_at_zero(const RunArguments& options, double rapid_percent, const run::Plan& plan) {
+  if (rapid_percent != 0) return;
   if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   if (plan.rapids == 0) return;
   throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
@@ -108,18 +112,15 @@ void warn(const std::vector<std::string>& texts) {
   finish_standard_streams();
 }
 
-// What is the same on every card; the files are still missing.
-RunOptions run_options(const RunArguments& options, const machine::Machine& machine) {
-  RunOptions run;
-  run.plot = options.plot.has_value();
-  run.progress = options.progress;
-  run.stream = options.stream;
-  run.settings = options.motion.settings();
-  if (options.parameters) run.settings.reader.parameters = load_parameters(*options.parameters);
-  run.most_percent = 100 * machine.motion.max_override;
-  run.operation = options.motion.operation(run.most_percent);
-  return run;
+// Of the program, on every card.
+run::RunSettings settings_of(const RunArguments& options) {
+  run::RunSettings settings = options.motion.settings();
+  if (options.parameters) settings.reader.parameters = load_parameters(*options.parameters);
+  return settings;
 }
+
+// The largest override that the machine's limits leave room for.
+double most_percent(const machine::Machine& machine) { return 100 * machine.motion.max_override; }
 
 std::optional<std::uint64_t> copy_limit(const RunArguments& options) {
   if (options.stream) return std::nullopt;
@@ -148,9 +149,16 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   keep_inputs(options, outputs);
   const machine::Machine machine = options.machine.load();
   warn(jerk_warnings(machine));
-  RunOptions run = run_options(options, machine);
+  CardRunOptions run;
+  run.settings = settings_of(options);
+  run.stream = options.stream;
+  run.progress = options.progress;
+  run.most_percent = most_percent(machine);
+  const simulation::Operation operation = options.motion.operation(run.most_percent);
+  run.percent = operation.percent;
+  run.rapid_percent = operation.rapid_percent;
   run.planned = [&](const run::Plan& plan) {
-    refuse_rapids_at_zero(options, run.operation, plan);
+    refuse_rapids_at_zero(options, run.rapid_percent, plan);
     outputs.open();
     warn(feed_warnings(plan.file, plan.feeds_not_reached));
   };
@@ -174,55 +182,123 @@ void check(const run::ProgramLines& lines, const MachineChoice& choice, const ma
   outputs.commit(summary(result) + choice.line());
 }
 
+// The files of a run in simulation: nullptr where an option was not given.
+struct SimulationFiles {
+  explicit SimulationFiles(const RunArguments& options)
+      : json(all.add("--json", options.json)),
+        plot(all.add("--plot", options.plot)),
+        report(all.add("--report", options.report)),
+        trace(all.add("--trace", options.engine.trace, true)),
+        steps(all.add("--steps", options.steps)),
+        path_steps(all.add("--path-steps", options.path_steps)),
+        outputs(all.add("--outputs", options.outputs)),
+        parameters(all.add("--parameters", options.check ? std::optional<std::string>() : options.parameters)) {
+    keep_inputs(options, all);
+  }
+
+  Outputs all;
+  Output* json;
+  Output* plot;
+  Output* report;
+  Output* trace;
+  Output* steps;
+  Output* path_steps;
+  Output* outputs;
+  Output* parameters;
+};
+
+simulation::RunOptions simulation_options(const RunArguments& options, const machine::Machine& machine,
+                                          const SimulationFiles& files) {
+  if (files.report != nullptr && !kinematics::Kinematics(machine).joint_for_each_axis()) {
+    throw UsageError("--report: its page shows machines with a motor for each axis; leave it out for corexy");
+  }
+  simulation::RunOptions run;
+  run.settings = settings_of(options);
+  run.most_percent = most_percent(machine);
+  run.operation = options.motion.operation(run.most_percent);
+  run.steps = files.steps;
+  run.path_steps = files.path_steps;
+  run.outputs = files.outputs;
+  run.report = files.report;
+  run.plot = files.plot != nullptr;
+  return run;
+}
+
+// What people may want to know before a long wait.
+void tell_of_engine(const sim::SimulationOptions& engine, unsigned axes, double planned_seconds) {
+  if (const auto text = long_run_note(engine, planned_seconds)) tell("note", *text);
+  if (engine.axes != axes) {
+    tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
+  }
+}
+
+// Shows how far the run is.
+class SimulationProgress final : public run::Observer {
+ public:
+  SimulationProgress(const simulation::SimulatedRun& run, double planned_seconds, double clock_hz, bool always)
+      : run_(run), planned_seconds_(planned_seconds), clock_hz_(clock_hz), bar_(always) {}
+  void sent() override { progress({}); }
+  void progress(const run::Progress& /*progress*/) override {
+    const double seconds = static_cast<double>(run_.cycles()) / clock_hz_;
+    bar_.show(planned_seconds_ > 0 ? seconds / planned_seconds_ : 1.0,
+              fmt::format("{:.1f} of {:.1f} s of card time", seconds, planned_seconds_));
+  }
+
+ private:
+  const simulation::SimulatedRun& run_;
+  double planned_seconds_;
+  double clock_hz_;
+  ProgressBar bar_;
+};
+
+// The run itself, when all is checked: to the end of the motion.
+run::Outcome stream_to_simulation(const RunArguments& options, const machine::Machine& machine,
+                                  const sim::SimulationOptions& engine, double planned_seconds,
+                                  simulation::SimulatedRun& run) {
+  run.make_card(engine);
+  SimulationProgress progress(run, planned_seconds, engine.clock_hz, options.progress);
+  run.runner().add(progress);
+  return run_until_signal(run.runner(), run.card(), machine, options.stream);
+}
+
+void write_results(const RunArguments& options, const simulation::RunResult& result, const run::PlannedProfile& profile,
+                   report::ReportWriter* report, SimulationFiles& files) {
+  if (options.stream) warn(feed_warnings(result.plan.file, result.plan.feeds_not_reached));
+  if (files.trace != nullptr) require_whole_waveform(files.trace->path_to_write(), *options.engine.trace);
+  if (files.json != nullptr) files.json->write(json_text(result, profile));
+  if (files.parameters != nullptr) files.parameters->write(parameters_text(result.outcome.parameters));
+  if (files.plot != nullptr) files.plot->write(run::svg(result.plot));
+  if (report != nullptr) report->finish(report_json(result, profile));
+  files.all.commit(run_summary(result, profile) + options.machine.line());
+}
+
 void run_in_simulation(const RunArguments& options) {
   refuse_contradictions(options);
   if (const auto url = options.card.url()) return run_on_card(options, *url);
-  Outputs outputs;
-  Output* const json = outputs.add("--json", options.json);
-  Output* const plot = outputs.add("--plot", options.plot);
-  Output* const report_file = outputs.add("--report", options.report);
-  Output* const trace = outputs.add("--trace", options.engine.trace, true);
-  Output* const steps = outputs.add("--steps", options.steps);
-  Output* const path_steps = outputs.add("--path-steps", options.path_steps);
-  Output* const changes = outputs.add("--outputs", options.outputs);
-  Output* const parameters =
-      outputs.add("--parameters", options.check ? std::optional<std::string>() : options.parameters);
-  keep_inputs(options, outputs);
-
+  SimulationFiles files(options);
   const machine::Machine machine = options.machine.load();
   warn(jerk_warnings(machine));
-  RunOptions run = run_options(options, machine);
-  run.report = report_file;
-  run.steps = steps;
-  run.path_steps = path_steps;
-  run.outputs = changes;
+  simulation::RunOptions settings = simulation_options(options, machine, files);
   const auto axes = static_cast<unsigned>(machine.motors());
-  sim::SimulationOptions engine =
-      options.engine.options(trace != nullptr ? traced_axes(axes) : axes, kSimulatedClock, machine.clock_hz);
+  sim::SimulationOptions engine = options.engine.options(files.trace != nullptr ? simulation::traced_axes(axes) : axes,
+                                                         kSimulatedClock, machine.clock_hz);
   if (options.report_window) {
-    run.report_window = window_of("--report-window", *options.report_window, engine.clock_hz);
+    settings.report_window = window_of("--report-window", *options.report_window, engine.clock_hz);
   }
   const ProgramFile file(options.program, copy_limit(options));
-  const run::ProgramLines lines = lines_of(file);
-  if (options.check) return check(lines, options.machine, machine, limits_of(engine), run.settings, outputs, json);
-  run.planned = [&](const run::Plan& plan) {
-    refuse_rapids_at_zero(options, run.operation, plan);
-    outputs.open();
-    if (trace != nullptr) engine.trace->path = trace->path_to_write();
-    warn(feed_warnings(plan.file, plan.feeds_not_reached));
-    if (const auto text = long_run_note(engine, plan.seconds)) tell("note", *text);
-    if (engine.axes != axes)
-      tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
-  };
-  std::unique_ptr<report::ReportWriter> report;
-  const RunResult result = run_program(lines, machine, engine, run, &report);
-  if (options.stream) warn(feed_warnings(result.program, result.feeds_not_reached));
-  if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
-  if (json != nullptr) json->write(json_text(result));
-  if (parameters != nullptr) parameters->write(parameters_text(result.parameters));
-  if (plot != nullptr) plot->write(run::svg(result.plot));
-  if (report) report->finish(report_json(result));
-  outputs.commit(summary(result) + options.machine.line());
+  const planner::CardLimits card = simulation::limits_of(engine);
+  if (options.check) {
+    return check(lines_of(file), options.machine, machine, card, settings.settings, files.all, files.json);
+  }
+  simulation::SimulatedRun run(lines_of(file), machine, card, settings);
+  const run::Plan plan = options.stream ? run::Plan{} : run.runner().plan();
+  refuse_rapids_at_zero(options, settings.operation.rapid_percent, plan);
+  files.all.open();
+  if (files.trace != nullptr) engine.trace->path = files.trace->path_to_write();
+  warn(feed_warnings(plan.file, plan.feeds_not_reached));
+  tell_of_engine(engine, axes, plan.seconds);
+  const run::Outcome outcome = stream_to_simulation(options, machine, engine, plan.seconds, run);
+  write_results(options, run.result(outcome), run::planned_profile(machine, settings.settings), run.report(), files);
 }
 
 }  // namespace

@@ -10,9 +10,19 @@
 #include <utility>
 
 #include "end_text.hpp"
+#include "profile_report.hpp"
 
 namespace trammel::app {
+
+using simulation::MadeEvent;
+using simulation::OperatorEvent;
+using simulation::OutputResult;
+using simulation::RunResult;
+
 namespace {
+
+// Of every run that has a result: a mismatch ends it.
+constexpr int kMismatches = 0;
 
 // Without an exponent, and without digits that nobody reads.
 std::string number(double feed) { return feed < 100 ? fmt::format("{:.3g}", feed) : fmt::format("{:.0f}", feed); }
@@ -199,13 +209,13 @@ nlohmann::ordered_json probes_json(const std::string& axes, const std::vector<ru
   return list;
 }
 
-std::string summary(const RunResult& result) {
+std::string run_summary(const RunResult& result, const run::PlannedProfile& profile) {
   const double seconds = static_cast<double>(result.cycles) / result.clock_hz;
-  std::string text = fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz\n",
-                                 result.program, result.segments, result.commands, seconds, result.clock_hz * 1e-6);
-  text +=
-      end_text(result.axes, result.final_position, result.final_millimetres, result.joint_for_each_axis, result.steps);
-  text += summary(result.profile);
+  std::string text =
+      fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz\n", result.plan.file,
+                  result.plan.segments, result.outcome.commands, seconds, result.clock_hz * 1e-6);
+  text += end_text(result.end, result.steps);
+  text += profile_text(profile);
   text += fmt::format("  largest deviation: lines {:.4f} pulses, arcs {:.4f} pulses\n", result.largest_line_deviation,
                       result.largest_arc_deviation);
   text += fmt::format("  path: {} steps, identity {}; shapers {} to {} clocks late\n", result.path_steps,
@@ -213,20 +223,20 @@ std::string summary(const RunResult& result) {
   if (result.achieved_feed) {
     text += fmt::format("  mean feed {} of {} mm/min\n", number(*result.achieved_feed), number(*result.commanded_feed));
   }
-  text += blends_text(result.blends);
-  text += probes_text(result.axes, result.probes);
+  text += blends_text(result.plan.blends);
+  text += probes_text(result.end.axes, result.outcome.probes);
   text += outputs_text(result.outputs);
   if (!result.events.empty())
     text += fmt::format("  {} overrides, holds and inputs on the way\n", result.events.size());
   if (result.lockstep_cycles) {
     text += fmt::format("  lockstep: {} cycles, {} comparisons, {} mismatches\n", *result.lockstep_cycles,
-                        result.comparisons, result.mismatches);
+                        result.comparisons, kMismatches);
   } else {
     text += "  engine: golden model alone (no lockstep)\n";
   }
   text += fmt::format("  simulated {} cycles in {:.1f} s, {:.2f} M cycles/s\n", result.cycles, result.wall_seconds,
                       static_cast<double>(result.cycles) / result.wall_seconds * 1e-6);
-  return text + accepted_words(result.accepted);
+  return text + accepted_words(result.plan.accepted);
 }
 
 namespace {
@@ -238,12 +248,12 @@ nlohmann::ordered_json place_json(const run::DeviationMeter::Place& place, std::
   return {{"line", place.line}, {"position", position}};
 }
 
-nlohmann::ordered_json run_json(const RunResult& result) {
+nlohmann::ordered_json run_json(const RunResult& result, const run::PlannedProfile& profile) {
   nlohmann::ordered_json json;
-  json["program"] = result.program;
-  json["engine"] = result.engine;
-  json["axes"] = result.axes;
-  json["final_position"] = result.final_position;
+  json["program"] = result.plan.file;
+  json["engine"] = result.engine == sim::EngineKind::kRtl ? "rtl" : "model";
+  json["axes"] = result.end.axes;
+  json["final_position"] = result.end.pulses;
   json["steps"] = result.steps;
   json["cycles"] = result.cycles;
   json["seconds"] = static_cast<double>(result.cycles) / result.clock_hz;
@@ -251,39 +261,41 @@ nlohmann::ordered_json run_json(const RunResult& result) {
   json["lockstep_cycles"] = nullptr;
   if (result.lockstep_cycles) json["lockstep_cycles"] = *result.lockstep_cycles;
   json["comparisons"] = result.comparisons;
-  json["mismatches"] = result.mismatches;
+  json["mismatches"] = kMismatches;
   json["path_steps"] = {{"count", result.path_steps}, {"identity", result.path_identity}};
   json["shaper_delay"] = {{"least", result.shaper_delay.least}, {"most", result.shaper_delay.most}};
   json["max_deviation"] = {{"line", result.largest_line_deviation}, {"arc", result.largest_arc_deviation}};
-  json["segments"] = result.segments;
-  json["commands"] = result.commands;
-  json["planned_seconds"] = result.planned_seconds;
-  json["profile"] = name_of(result.profile);
-  json["motion"] = motion_json(result.motion);
-  json["blends"] = blends_json(result.blends);
+  json["segments"] = result.plan.segments;
+  json["commands"] = result.outcome.commands;
+  json["planned_seconds"] = result.plan.seconds;
+  json["profile"] = profile_name(profile);
+  json["motion"] = motion_json(result.plan.motion);
+  json["blends"] = blends_json(result.plan.blends);
   json["under_runs"] = nullptr;
-  if (result.under_runs) json["under_runs"] = *result.under_runs;
+  if (result.outcome.under_runs) json["under_runs"] = *result.outcome.under_runs;
   json["feed"] = {{"commanded", nullptr}, {"achieved", nullptr}};
   if (result.commanded_feed) json["feed"]["commanded"] = *result.commanded_feed;
   if (result.achieved_feed) json["feed"]["achieved"] = *result.achieved_feed;
-  json["feeds_not_reached"] = feeds_json(result.feeds_not_reached);
+  json["feeds_not_reached"] = feeds_json(result.plan.feeds_not_reached);
   json["events"] = events_json(result.events);
   json["outputs"] = outputs_json(result.outputs);
   json["inputs"] = nullptr;
   if (result.inputs) json["inputs"] = *result.inputs;
-  json["probes"] = probes_json(result.axes, result.probes);
-  json["accepted_words"] = result.accepted;
+  json["probes"] = probes_json(result.end.axes, result.outcome.probes);
+  json["accepted_words"] = result.plan.accepted;
   return json;
 }
 
 }  // namespace
 
-std::string json_text(const RunResult& result) { return run_json(result).dump(2) + "\n"; }
+std::string json_text(const RunResult& result, const run::PlannedProfile& profile) {
+  return run_json(result, profile).dump(2) + "\n";
+}
 
-std::string report_json(const RunResult& result) {
-  nlohmann::ordered_json json = run_json(result);
-  json["deviation_places"] = {{"line", place_json(result.line_place, result.axes.size())},
-                              {"arc", place_json(result.arc_place, result.axes.size())}};
+std::string report_json(const RunResult& result, const run::PlannedProfile& profile) {
+  nlohmann::ordered_json json = run_json(result, profile);
+  json["deviation_places"] = {{"line", place_json(result.line_place, result.end.axes.size())},
+                              {"arc", place_json(result.arc_place, result.end.axes.size())}};
   // A name may hold any bytes.
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "program_run.hpp"
+#include "trammel/run/planned_profile.hpp"
+#include "trammel/simulation/simulated_run.hpp"
 
 namespace trammel::app {
 
@@ -14,7 +15,7 @@ namespace trammel::app {
 std::vector<std::string> feed_warnings(const std::string& file, const std::vector<run::FeedNotReached>& feeds);
 
 // Some lines of text, units in every one.
-std::string summary(const RunResult& result);
+std::string run_summary(const simulation::RunResult& result, const run::PlannedProfile& profile);
 
 // Of the first pass: nothing, or a line.
 std::string probes_planned(const run::Plan& plan);
@@ -29,8 +30,8 @@ nlohmann::ordered_json blends_json(const run::Blends& blends);
 nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
 
-std::string json_text(const RunResult& result);
+std::string json_text(const simulation::RunResult& result, const run::PlannedProfile& profile);
 // The same and what the page of a run says beside it, in one line.
-std::string report_json(const RunResult& result);
+std::string report_json(const simulation::RunResult& result, const run::PlannedProfile& profile);
 
 }  // namespace trammel::app

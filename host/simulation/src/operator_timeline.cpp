@@ -5,7 +5,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 
-namespace trammel::app {
+namespace trammel::simulation {
 
 namespace reg = card_map::reg;
 
@@ -35,4 +35,4 @@ void OperatorTimeline::make(const OperatorEvent& event, sim::Engine& engine) {
   made_.push_back({event, engine.cycles()});
 }
 
-}  // namespace trammel::app
+}  // namespace trammel::simulation

@@ -4,16 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "motion_options.hpp"
 #include "trammel/sim/timed_bus.hpp"
+#include "trammel/simulation/operation.hpp"
 
-namespace trammel::app {
-
-struct MadeEvent {
-  OperatorEvent event;
-  // Clock of the card in which the write was answered, and had taken effect; of an input, in which it changed.
-  std::uint64_t cycle = 0;
-};
+namespace trammel::simulation {
 
 class OperatorTimeline {
  public:
@@ -35,4 +29,4 @@ class OperatorTimeline {
   std::uint16_t inputs_ = 0;  // levels at the card's pins
 };
 
-}  // namespace trammel::app
+}  // namespace trammel::simulation
