@@ -24,7 +24,7 @@ debian_packages_page=(chromium)
 # Checks of the sources, other RTL readers, synthesis.
 debian_packages_check=(clang-format universal-ctags iverilog yosys)
 # The documentation as a site.
-debian_packages_site=(doxygen)
+debian_packages_site=(doxygen graphviz)
 # LinuxCNC's interpreter, which tests compare the G-code reader with.
 debian_packages_linuxcnc=(linuxcnc-uspace)
 debian_packages_synthesis=(yosys nextpnr-ice40 fpga-icestorm)

@@ -1,8 +1,7 @@
 # Sphinx's settings for the site (scripts/site).
 project = "Trammel"
-extensions = ["myst_parser", "sphinxcontrib.mermaid"]
+extensions = ["myst_parser"]
 myst_heading_anchors = 4
-myst_fence_as_directive = ["mermaid"]
 html_theme = "furo"
 html_title = "Trammel"
 html_show_sphinx = False

@@ -268,12 +268,17 @@ inline void Traffic::streamed() {
 inline void Traffic::probing() {
   const double pace = 1.01 + static_cast<double>(below(40)) * 0.1;
   const auto random = [this](std::uint64_t count) { return below(count); };
+  // Inputs that nobody touches: the probe that is armed is missed.
+  const bool untouched = one_in(3);
+  const auto touch = [this, untouched] {
+    if (!untouched) flip_a_pin();
+  };
   const auto input = [this] { return static_cast<std::uint8_t>(below(one_in(20) ? 16 : 4)); };
   // Mostly for a level that the input does not have yet.
-  const auto probe = [this, input] {
+  const auto probe = [this, input, untouched] {
     const std::uint8_t n = input();
     const bool now = (host_.pins() >> n & 1) != 0;
-    return driver::ProbeCommand{n, one_in(6) ? now : !now};
+    return driver::ProbeCommand{n, !untouched && one_in(6) ? now : !now};
   };
   if (one_in(3)) host_.write(reg::kSlew, std::uint32_t{1} << (16 + below(12)));
   if (one_in(2)) host_.write(reg::kControl, field::kControlProbeClear);
@@ -286,20 +291,20 @@ inline void Traffic::probing() {
                                : send(random_path(random, axes_, pace, ticks, arc_every_));
       if (!good || (one_in(3) && !send(beside_a_path()))) return abort();
       if (one_in(10) && !send(probe())) return abort();
-      if (one_in(6)) flip_a_pin();
+      if (one_in(6)) touch();
     }
     if (ticks != 0 && !send(random_piece(random, ticks, pace))) return abort();
     if (one_in(3) && !send(driver::WaitInputCommand{input(), one_in(2), one_in(4) ? 0 : below(400)})) return abort();
     if (one_in(4) && !send(driver::DwellCommand{below(300)})) return abort();
     if (!one_in(10) && !send(driver::ProbeEndCommand{})) return abort();
-    if (one_in(2)) flip_a_pin();
+    if (one_in(2)) touch();
   }
   std::uint64_t ticks = 0;
   send(random_path(random, axes_, pace, ticks, arc_every_));
   send(random_piece(random, ticks, pace));
   for (std::uint64_t waits = below(12); waits != 0; --waits) {
     host_.wait(below(300));
-    if (one_in(2)) flip_a_pin();
+    if (one_in(2)) touch();
     const std::uint32_t now = status();
     probed += (now & field::kStatusProbed) != 0 ? 1U : 0U;
     missed += (now & field::kStatusProbeMissed) != 0 ? 1U : 0U;

@@ -1,10 +1,10 @@
 // Arcs of circles and helices for the arc generator: from pulses to the fields of an ArcChord.
 //
-// The card turns the circle's radius once a chord, without multipliers, by 2 asin(2^-(k+1)), and each axis's pulse
-// generator makes the chord's steps (docs/developer/architecture.md, arc_generator). What is left to the host: a circle
-// of the mean of start and end radius about the centre that was given; a phase that puts the start onto it; an
-// increment, the same all along, that takes up what remains at the end. So an arc ends on its commanded end point
-// exactly, and stays within 0.8 pulses of the ring between the radii of its start and its end (both are rounded).
+// The card turns the circle's radius once per chord, without multipliers, by 2 asin(2^-(k+1)), and each axis's pulse
+// generator makes the chord's steps (docs/developer/architecture.md, arc_generator). The host computes the rest: a
+// circle of the mean of start and end radius about the given centre; a phase that puts the start onto it; and a
+// constant increment that takes up the remainder at the end. So an arc ends on its commanded end point exactly, and
+// stays within 0.8 pulses of the ring between the radii of its start and its end (both are rounded).
 //
 // Computed in doubles by + - * / and square roots alone: every host comes to the same fields.
 // Pure functions, thread-safe. They throw std::invalid_argument, naming the value, for what the generator cannot do: a

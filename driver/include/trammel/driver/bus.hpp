@@ -27,17 +27,17 @@ class Bus {
  public:
   virtual ~Bus() = default;
 
-  // Makes `count` accesses in order, none for a count of 0; the data of reads are put in their place. Gives back how
-  // many were made: fewer than `count` only where the card refused accesses[result], after which none was made.
-  // Throws LinkError, with what the transport knows, when the link fails: which accesses were made is then not known.
+  // Makes `count` accesses in order, none for a count of 0, and puts the data of reads in their place. Returns how many
+  // were made: fewer than `count` only if the card refused accesses[result]; none after it was made. Throws LinkError,
+  // with the transport's message, when the link fails: which accesses were made is then not known.
   virtual std::size_t transfer(Access* accesses, std::size_t count) = 0;
 
   // Returns after at least `time` (>= 0): a sleep with hardware, clocks in simulation. Earlier only where the check of
   // an InterruptScope ends the call that sleeps.
   virtual void sleep(std::chrono::nanoseconds time) = 0;
 
-  // Whether a refusal shows in transfer(). Where it does not (posted writes), transfer() gives back `count`, and the
-  // driver reads from the card what it refused before it reports success.
+  // Whether a refusal shows in transfer(). If it does not (posted writes), transfer() returns `count`, and the driver
+  // reads the refusals from the card before it reports success.
   virtual bool reports_refusals() const = 0;
 
   // Whether the card's interrupt line reaches this transport.
@@ -50,7 +50,7 @@ class Bus {
     return false;
   }
 
-  // Who has made the card hold, as far as the transport knows: for messages; empty where it does not.
+  // Who has made the card hold, for messages; empty if the transport does not know.
   virtual std::string hold_origin() const { return {}; }
 
  protected:

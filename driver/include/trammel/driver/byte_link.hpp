@@ -1,4 +1,4 @@
-// A stream of bytes to a card and back: a serial line, an SPI device, a TCP connection. What travels in it are frames
+// A stream of bytes to a card and back: a serial line, an SPI device, a TCP connection. It carries frames
 // (docs/reference/frames.md); FrameBus makes a Bus of it.
 #pragma once
 
@@ -16,11 +16,11 @@ class ByteLink {
 
   // Sends all of them, or throws LinkError.
   virtual void send(const std::uint8_t* bytes, std::size_t count) = 0;
-  // Waits for at most `longest` until something has come; gives back how many bytes were put into `bytes`, 0 for none.
+  // Waits for at most `longest` until something has come; returns how many bytes were put into `bytes`, 0 for none.
   // Throws LinkError when the link is gone.
   virtual std::size_t receive(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) = 0;
-  // Begins anew: a break and the byte from which the card measures the baud rate, or a connection opened again; what
-  // had come and was not received is forgotten. Nothing to do where the link has no such thing. Throws LinkError.
+  // Begins anew: a break and the byte from which the card measures the baud rate, or a connection opened again. Drops
+  // bytes that have come and were not received. Does nothing on a link without either. Throws LinkError.
   virtual void restart() = 0;
 
   // How long so many bytes are on their way at most, there or back.

@@ -18,14 +18,14 @@ namespace trammel::driver {
 struct LineCommand {
   std::uint64_t ticks = 0;                                   // N, feed ticks, 1 .. 2^40 - 1
   std::uint8_t mask = 0;                                     // bit n: axis n moves
-  std::array<std::int64_t, card_map::kMaxAxes> increment{};  // by axis index; 2^-40 pulses a tick, |.| <= 2^40
+  std::array<std::int64_t, card_map::kMaxAxes> increment{};  // by axis index; 2^-40 pulses per tick, |.| <= 2^40
 };
 
 // An arc on the deviation accumulator.
 struct ArcCommand {
   std::uint64_t ticks = 0;        // N, feed ticks
   std::uint64_t path_ticks = 0;   // L <= N, steps
-  std::uint64_t prescale = 0;     // round(L * 2^40 / N), 2^-40 path ticks a feed tick
+  std::uint64_t prescale = 0;     // round(L * 2^40 / N), 2^-40 path ticks per feed tick
   bool clockwise = false;         // seen with the first axis to the right and the second up
   bool eight_directions = false;  // a step may be along both axes; only on cards with accumulator_8
   std::uint8_t axis_x = 0;        // index of the first axis of the plane
@@ -44,16 +44,16 @@ struct ArcCommand {
 struct ArcChordCommand {
   std::uint64_t ticks = 0;       // N, feed ticks
   std::uint64_t path_ticks = 0;  // L <= N, L < 2^37
-  std::uint64_t prescale = 0;    // round(L * 2^40 / N), 2^-40 path ticks a feed tick
+  std::uint64_t prescale = 0;    // round(L * 2^40 / N), 2^-40 path ticks per feed tick
   std::uint8_t mask = 0;         // both axes of the plane, and any further ones
   bool clockwise = false;        // seen with the first axis to the right and the second up
   std::uint8_t axis_x = 0;       // index of the first axis of the plane
   std::uint8_t axis_y = 1;       // index of the second
   std::uint8_t k = 1;            // a chord turns by 2 asin(2^-(k+1)); 1 .. 27 are of use
-  std::uint8_t m = 5;            // 2^m path ticks a chord; 5 .. 31
+  std::uint8_t m = 5;            // 2^m path ticks per chord; 5 .. 31
   std::int64_t x = 0;            // X at the start, 2^(m-40) pulses
   std::int64_t y = 0;            // Y half a chord before it
-  // 2^-40 pulses a path tick, |.| <= 2^40. Of the first path tick: preset, first chord and closing together.
+  // 2^-40 pulses per path tick, |.| <= 2^40. Of the first path tick: preset, first chord and closing together.
   std::int64_t first_x = 0;
   std::int64_t first_y = 0;
   std::int64_t closing_x = 0;
@@ -72,10 +72,10 @@ inline constexpr std::size_t kPieceClasses = 3;
 // One piece of the feed profile.
 struct FeedCommand {
   std::uint64_t ticks = 0;          // feed ticks of the piece
-  std::uint64_t rate = 0;           // 2^-64 ticks an enabled clock
-  std::int64_t acceleration = 0;    // the same unit an update of 32 enabled clocks
-  std::int64_t jerk = 0;            // the same unit an update, each update
-  std::uint32_t floor = 1;          // 2^-32 ticks an enabled clock, not 0
+  std::uint64_t rate = 0;           // 2^-64 ticks per enabled clock
+  std::int64_t acceleration = 0;    // the same unit per update of 32 enabled clocks
+  std::int64_t jerk = 0;            // the same unit per update, each update
+  std::uint32_t floor = 1;          // 2^-32 ticks per enabled clock, not 0
   std::uint32_t stop_distance = 0;  // feed ticks needed to stop on the path; 0: the piece ends at rest
   PieceClass piece_class = PieceClass::kFeed;
 };
@@ -126,7 +126,7 @@ inline constexpr std::size_t kMaxCommandWords = [] {
   return most;
 }();
 
-// Writes the command's words (header first) to words[0 ..], and gives back how many: at most kMaxCommandWords. `number`
+// Writes the command's words (header first) to words[0 ..], and returns how many: at most kMaxCommandWords. `number`
 // is the command's number, mod 256. Throws ArgumentError, naming the field, when a value is outside its layout or an
 // axis outside the mask has an increment; what `words` holds then is of no use. What depends on the card (its axes,
 // engines, room) is not checked here. Allocates nothing.

@@ -16,14 +16,14 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The link to the card failed, or what answers is no longer a card: what() is the transport's own message, or says
-// what the driver read. Which of the accesses under way were made is not known.
+// The link to the card failed, or the device that answers is no longer a card: what() is the transport's own message,
+// or names the words that the driver read. Which of the accesses under way were made is not known.
 class LinkError : public Error {
  public:
   using Error::Error;
 };
 
-// What answers is not a card that this driver understands.
+// The device that answers is not a card that this driver understands.
 class IdentificationError : public Error {
  public:
   using Error::Error;
@@ -98,7 +98,7 @@ class InterruptedError : public Error {
   using Error::Error;
 };
 
-// The card did not get there within the time allowed. Nothing was aborted.
+// The card did not reach the state in the time allowed. Nothing was aborted.
 class TimeoutError : public Error {
  public:
   // `waited`: card clocks.

@@ -17,16 +17,16 @@ namespace trammel::driver {
 class FrameBus final : public Bus {
  public:
   struct Options {
-    // How long the card may take beside the bytes' own time: 600 clocks an access, and what the operating system adds.
+    // How long the card may take beside the bytes' own time: 600 clocks per access, and what the operating system adds.
     std::chrono::nanoseconds answer = std::chrono::milliseconds(50);
     unsigned sends = 4;     // of a request, before the connection is made anew
     unsigned restarts = 3;  // of the connection, before transfer() gives up
-    // The constructor sends once, on one connection: of a link that loses nothing, where who does not answer is no
-    // card.
+    // The constructor sends once, on one connection: for a link that loses nothing, on which a device that does not
+    // answer is no card.
     bool opens_at_once = false;
   };
 
-  // What the link did, for who wants to know.
+  // Counts of what the link did.
   struct Counts {
     std::uint64_t requests = 0;
     std::uint64_t sent_again = 0;
@@ -44,7 +44,7 @@ class FrameBus final : public Bus {
   std::string hold_origin() const override { return link_.hold_origin(); }
 
   // After transfer() has thrown a LinkError: connects again, and says how many of its accesses were made; the data of
-  // reads among them are lost. Throws LinkError when the card does not answer, or was reset or used by somebody else
+  // reads among them are lost. Throws LinkError when the card does not answer, or was reset or used by another program
   // meanwhile: then nothing is known, and the next transfer() begins anew.
   std::size_t resume();
 

@@ -1,4 +1,4 @@
-// The increment of a pulse generator: the one place where pulses over ticks become 2^-40 pulses a tick.
+// The increment of a pulse generator: the one place where pulses over ticks become 2^-40 pulses per tick.
 #pragma once
 
 #include <cstdint>

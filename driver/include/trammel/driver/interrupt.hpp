@@ -1,5 +1,5 @@
-// What ends a call that waits before its time: a check of the caller's, made in the thread that waits. For Ctrl-C, a
-// flag that a signal handler sets, a deadline. From another thread: Card::request_stop().
+// A check of the caller's that ends a waiting call early, made in the thread that waits: for Ctrl-C, a flag that a
+// signal handler sets, or a deadline. From another thread: Card::request_stop().
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@
 
 namespace trammel::driver {
 
-// While one lives, calls of the thread that made it ask `asked` every 50 ms or so while they wait, until it gives back
+// While one lives, calls of the thread that made it ask `asked` every 50 ms or so while they wait, until it returns
 // true. Then a call that waits for motion stops the card on the path, as by Card::request_stop(), and throws
 // StoppedError; one that waits for an answer of a link that is silent, or for Card::stop(), throws InterruptedError. So
 // does every later one that waits, as long as the scope lives. Scopes nest, and each is asked; the last one made is the
@@ -30,7 +30,7 @@ class InterruptScope {
   bool ended_ = false;
 };
 
-// The rest is for what waits.
+// The rest is for code that waits.
 
 // A silent link and a long sleep are waited for in pieces of this length, with a look at the check between them.
 constexpr std::chrono::milliseconds kInterruptSlice{50};

@@ -2,12 +2,13 @@
 // generators then make the line by themselves.
 //
 // Source: Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm", (5)-(8): v_y = v (y_e - y_s), v_x = v (x_e -
-// x_s), p_y = y_e - y_s, p_x = x_e - x_s, with v in lines a second, that is 1 / duration. Here for up to 8 axes: a line
-// of N clocks has FREQUENCY = round(|p| * 2^40 / N), in 2^-40 pulses a clock, and COUNT = |p|. The phase starts at one
-// half, so after k clocks floor(1/2 + k * FREQUENCY / 2^40) pulses are made, and after N < 2^40 exactly |p|.
+// x_s), p_y = y_e - y_s, p_x = x_e - x_s, with v in lines per second, that is 1 / duration. Here for up to 8 axes: a
+// line of N clocks has FREQUENCY = round(|p| * 2^40 / N), in 2^-40 pulses per clock, and COUNT = |p|. The phase starts
+// at one half, so after k clocks floor(1/2 + k * FREQUENCY / 2^40) pulses are made, and after N < 2^40 exactly |p|.
 //
-// All arithmetic is exact (integers). Durations and speeds are those at time base ratio 1; a lower ratio stretches
-// the line and leaves its track as it is. Planning is pure and thread-safe; what takes a Card is as thread-safe as it.
+// All arithmetic is exact (integers). Durations and speeds are those at time base ratio 1; a lower ratio stretches the
+// line and keeps its track. Planning is pure and thread-safe; functions that take a Card are as thread-safe as the
+// card.
 #pragma once
 
 #include <array>
@@ -35,7 +36,7 @@ enum class LimitPolicy {
   kSlow,    // it gets the shortest duration, in whole clocks, that keeps all limits
 };
 
-// Besides these the card's own limit counts: a pulse an axis in step length + step space clocks.
+// Besides these the card's own limit counts: a pulse per axis in step length + step space clocks.
 struct LineLimits {
   std::array<std::uint64_t, card_map::kMaxAxes> max_velocity{};  // by axis, pulses/s; 0: the card's own limit only
   LimitPolicy policy = LimitPolicy::kRefuse;
@@ -50,7 +51,7 @@ inline constexpr std::size_t kOneShotWords = one_shot_words(card_map::kMaxAxes);
 // A line that the card runs in one go.
 struct OneShotPart {
   std::uint64_t length = 0;                                   // N, clocks, 1 .. 2^40 - 1
-  std::array<std::uint64_t, card_map::kMaxAxes> frequency{};  // 2^-40 pulses a clock, 0 .. 2^40
+  std::array<std::uint64_t, card_map::kMaxAxes> frequency{};  // 2^-40 pulses per clock, 0 .. 2^40
   std::array<std::uint32_t, card_map::kMaxAxes> count{};      // pulses
   std::uint8_t mask = 0;                                      // bit n: axis n takes part
   std::uint8_t negative = 0;                                  // bit n: axis n steps in the negative direction
@@ -69,7 +70,7 @@ class OneShotPlan {
   OneShotPart part(std::size_t index) const;
 
   // Length of all parts together, clocks. More than asked for if the line was slowed down, or rounded up to a whole
-  // number of clocks (of clocks a part).
+  // number of clocks (of clocks per part).
   std::uint64_t clocks() const { return part_clocks_ * parts_; }
   // A limit made the line longer than asked for (LimitPolicy::kSlow).
   bool slowed() const { return slowed_; }
@@ -99,11 +100,11 @@ OneShotPlan plan_line_clocks(const CardTiming& card, const Displacement& displac
 
 // Starts the part: with direct mode by one transfer of 4 n + 3 writes on a card with n axes; without, through the
 // card's stream, which begins anew by it (a Stream that is open must be restarted). Throws FaultError if the card is
-// faulted; RefusedError (without direct mode StateError) if it is not idle. A line is never lost in silence.
+// faulted; RefusedError (without direct mode StateError) if it is not idle. A line is never lost silently.
 void start_line(Card& card, const OneShotPart& part);
 
 // Plans a line and starts it. Throws what plan_line throws, and ArgumentError if the line has more than one part;
-// all that before the first access to the bus. Gives back the plan.
+// all that before the first access to the bus. Returns the plan.
 OneShotPlan start_line(Card& card, const Displacement& displacement, std::chrono::nanoseconds duration,
                        const LineLimits& limits = {});
 OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed speed, const LineLimits& limits = {});

@@ -9,11 +9,11 @@
 // places. Clocks, and nanoseconds that make no whole clock, are carried over exactly: the end of a period is never more
 // than a tick from the sum of all durations.
 //
-// A late period. Where the next period is not there when the last one ends, the card goes on along that line, in all
-// for `stale_periods` times its duration. What it went too far and too long is known to the tick when the next period
-// has been sent, and is taken off the periods after that: off their durations and their ways alike, so that the speed
-// stays, at most half a period's duration at a time. Later than that the period is missing: the card ramps down
-// along the line (by the slew), and every call throws FaultError with the bit kFaultMissingPeriod, until recover().
+// A late period. If the next period is not there when the last one ends, the card goes on along that line, in all for
+// `stale_periods` times its duration. The excess distance and time are known to the tick when the next period has been
+// sent. They are taken off the periods after that, off durations and distances alike, so that the speed stays, at most
+// half a period's duration at a time. A period that comes later than that is missing: the card ramps down along the
+// line (by the slew), and every call throws FaultError with the bit kFaultMissingPeriod, until recover().
 //
 // Thread-safety: as of the card: one thread at a time. Nothing is allocated for a period.
 #pragma once
@@ -31,8 +31,8 @@ namespace trammel::driver {
 struct PositionStreamOptions {
   // Periods that the card may go on for along the last line, 0 .. 255.
   unsigned stale_periods = 1;
-  // Periods that are sent before the card begins with the first one, at least 1: so many are queued ahead, and so late
-  // may the host be. They are also the delay from sending a period to its beginning.
+  // Periods that are sent before the card begins with the first one, at least 1. The host may be late by this time. It
+  // is also the delay from sending a period to its beginning.
   unsigned ahead = 2;
   // Largest speed of each axis, pulses/s; 0: as fast as the card and its step times allow.
   std::array<double, card_map::kMaxAxes> max_speed{};
@@ -60,7 +60,7 @@ class PositionStream {
     Positions positions{};          // whole pulses
   };
 
-  // Opens the stream where the axes stand: what is queued is dropped, numbers begin anew. A missing period stops on a
+  // Opens the stream where the axes stand: queued commands are dropped, numbers begin anew. A missing period stops on a
   // ramp. Throws ArgumentError for options out of range or a card without the engine, HeldError if it stands in a hold
   // that this program has not set, StateError if the card is busy or its ratio is not the full one, FaultError if it is
   // faulted. `card` must outlive the stream.
@@ -70,15 +70,15 @@ class PositionStream {
   //
   // ArgumentError, before any access: an axis would be faster than allowed, or targets or duration are out of range
   // (shortest_period() .. 2^32 clocks; targets within 2^30 pulses): the period was not sent, and another may be sent in
-  // its place. StateError: the card's queue is full; likewise. FaultError: a missing period, or whatever else the card
-  // has stopped for. LinkError, RefusedError; StateError when the card was reset or aborted by somebody else, or
+  // its place. StateError: the card's queue is full; likewise. FaultError: a missing period, or another fault that
+  // stopped the card. LinkError, RefusedError; StateError when the card was reset or aborted by another program, or
   // when the bus is so slow that the period was over when it was looked at. After these, recover() or a new stream.
   Sent send(const Positions& targets, std::uint64_t clocks);
   // Likewise; what a duration has beyond whole clocks is carried over to the next.
   Sent send(const Positions& targets, std::chrono::nanoseconds duration);
 
   // Ends the stream after the last period sent, which should end at rest (the card stops there without a ramp). Waits
-  // until the card is idle, and switches position streaming off. Gives back where the axes are: the rounded targets, or
+  // until the card is idle, and switches position streaming off. Returns where the axes are: the rounded targets, or
   // what they went too far where the END was late. Errors as send(); TimeoutError.
   Positions finish();
 

@@ -2,8 +2,8 @@
 //
 // The card parts the stream into a geometry and a feed queue. A command waits here until the queue, or both queues,
 // that it goes into have room for all of it. Geometry and feed must therefore come in an order in which the card can
-// use up what it has while the next command waits: whatever fills one queue must find its counterpart in the other.
-// The planner sends them so; another order ends in a TimeoutError, not in a deadlock.
+// use up its queued commands while the next one waits: the commands that fill one queue must find their counterpart in
+// the other. The planner sends them in such an order; another order ends in a TimeoutError, not in a deadlock.
 //
 // Nothing is allocated for a command: words wait in a buffer of fixed size until it is full, until there is no room
 // known for the next command, or until flush().
@@ -52,7 +52,7 @@ struct StreamOptions {
   std::chrono::nanoseconds patience = std::chrono::seconds(1);
   // Called at each look while the stream waits. May throw: the exception passes through, the stream stays usable.
   std::function<void(const StreamProgress&)> progress;
-  // A hold that stands when the stream is opened is waited out, as one that comes later: somebody will end it.
+  // Waits out a hold that stands when the stream is opened, like one that comes later.
   bool opens_in_hold = false;
 };
 
@@ -82,17 +82,17 @@ class Stream final : public CommandSink {
   void send(const std::vector<Command>& commands);
 
   // Flushes and waits until all is done: the card is idle, has begun every command, and, if the last command was End,
-  // has ended. Gives back the status. Errors as in put().
+  // has ended. Returns the status. Errors as in put().
   Status finish();
 
   // Moves along `paths` (paths and the pieces of their time, and what else stands between them) until the condition's
-  // input has its level: from there on a ramp to rest along the path, what is left of them is dropped. Waits for all
-  // before it to be done, and until the card stands; the stream goes on from there. On cards with path commands.
+  // input has its level. From there the card ramps to rest along the path and drops the rest of them. Waits until
+  // everything before is done, and until the card stands; the stream goes on from there. On cards with path commands.
   // Throws ArgumentError, before anything moves, for an input that the card lacks, no paths, or a PROBE, a PROBE_END or
-  // an END among them; else as finish(). A StateError if the probe ended by another's doing.
+  // an END among them; else as finish(). A StateError if another program ended the probe.
   ProbeResult probe(const ProbeCommand& condition, const std::vector<Command>& paths);
 
-  // Drops what the card has queued, stops its path and begins anew at number 0. Throws FaultError if it is faulted.
+  // Drops the queued commands, stops the path and begins anew at number 0. Throws FaultError if it is faulted.
   void restart();
 
   // Number that the next command gets.

@@ -1,6 +1,6 @@
-// Sine, cosine and arc tangent from + - * / alone, in an order that is fixed, so that every host that rounds as IEEE
-// 754 says comes to the same bits: the mathematics library's differ between hosts, and with a fused multiply-add. To be
-// compiled without contraction (-ffp-contract=off). Pure functions, thread-safe.
+// Sine, cosine and arc tangent from + - * / alone, in a fixed order, so that every host with IEEE 754 rounding computes
+// the same bits. Those of the mathematics library differ between hosts, and with a fused multiply-add. Compile without
+// contraction (-ffp-contract=off). Pure functions, thread-safe.
 #pragma once
 
 namespace trammel::driver {

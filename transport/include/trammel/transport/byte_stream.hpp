@@ -1,5 +1,5 @@
-// Streams of bytes between processes and to serial ports, at both ends. What goes over them is others' business.
-// One thread at a time.
+// Streams of bytes between processes and to serial ports, at both ends, whatever they carry. One thread at a
+// time.
 #pragma once
 
 #include <chrono>
@@ -16,13 +16,13 @@ class ByteStream {
 
   // Sends all of them. Throws driver::LinkError, also when the other end takes nothing for a second.
   virtual void write(const std::uint8_t* bytes, std::size_t count) = 0;
-  // Waits for at most `longest` until something has come; gives back how many bytes were put into `bytes`, 0 for none.
+  // Waits for at most `longest` until something has come; returns how many bytes were put into `bytes`, 0 for none.
   // Throws driver::LinkError when the other end is gone.
   virtual std::size_t read(std::uint8_t* bytes, std::size_t room, std::chrono::nanoseconds longest) = 0;
   // The other end, for messages.
   virtual std::string peer() const = 0;
-  // Whether, since it was asked last, everybody at the other end had let go of it: what has been read since may be
-  // somebody else's.
+  // Whether everybody at the other end had let go of the stream since the last call: bytes read since may be another
+  // client's.
   virtual bool changed_hands() { return false; }
 
  protected:
@@ -33,7 +33,7 @@ class ByteStream {
 
 class SerialStream : public ByteStream {
  public:
-  // The line rests at 0 for a quarter of a second; what has come and was not read is forgotten.
+  // Holds the line at 0 for a quarter of a second; drops bytes that have come and were not read.
   virtual void send_break() = 0;
 };
 
@@ -42,7 +42,7 @@ class Listener {
  public:
   virtual ~Listener() = default;
 
-  // The one who has come, without waiting; nullptr for nobody.
+  // The client that has come, without waiting; nullptr for none.
   virtual std::unique_ptr<ByteStream> accept() = 0;
   // Whether a client sees that the server has let go of its stream.
   virtual bool ends_streams() const { return true; }

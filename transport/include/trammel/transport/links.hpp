@@ -45,8 +45,8 @@ class SerialLink final : public HostTimeLink {
 };
 
 // A card behind a stream that can be opened again. With a hello it is one of `trammel serve`
-// (docs/reference/card-url.md): time passes in that card, which may be slower or faster than life. Without, frames go
-// over the stream and nothing else, such as over a bridge to a serial line.
+// (docs/reference/card-url.md): time passes in that card, which may be slower or faster than real time. Without, frames
+// go over the stream and nothing else, such as over a bridge to a serial line.
 class StreamLink final : public driver::ByteLink {
  public:
   using Open = std::function<std::unique_ptr<ByteStream>()>;
@@ -55,7 +55,7 @@ class StreamLink final : public driver::ByteLink {
   };
 
   struct Options {
-    // How long it is tried to open again what was lost.
+    // How long the link tries to open a lost stream again.
     std::chrono::nanoseconds reopen = std::chrono::seconds(3);
     // How long the answer to a wait may take, of the host's time, and how often a wait is sent.
     std::chrono::nanoseconds answer = std::chrono::seconds(20);
@@ -66,7 +66,7 @@ class StreamLink final : public driver::ByteLink {
   StreamLink(Open open, std::optional<Hello> hello) : StreamLink(std::move(open), std::move(hello), Options()) {}
   StreamLink(Open open, std::optional<Hello> hello, const Options& options);
 
-  // Whether a server takes what moves; otherwise it refuses every write but the order for a snapshot.
+  // Whether a server takes commands that move; otherwise it refuses every write but the order for a snapshot.
   bool may_move() const { return may_move_; }
   // How often a connection that was lost has been made anew: the server had the card hold then.
   std::uint64_t reconnections() const { return reconnections_; }

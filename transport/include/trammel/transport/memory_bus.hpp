@@ -1,5 +1,5 @@
 // A card whose window is mapped into a file: /dev/mem at an offset, a UIO device, a PCI device's resource. Writes are
-// posted: what the card refuses shows in its REFUSAL register alone. One thread at a time.
+// posted: a refusal shows only in the card's REFUSAL register. One thread at a time.
 #pragma once
 
 #include <chrono>

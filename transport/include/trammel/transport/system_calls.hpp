@@ -1,4 +1,4 @@
-// What the transports to devices ask of Linux, one function a call, so that a test can stand in its place.
+// The system calls of the transports to devices, one function per call, so that a test can replace them.
 #pragma once
 
 #include <poll.h>

@@ -1,4 +1,4 @@
-// What can be wrong with a program, as a value: nothing between the lines and the card's commands throws for it.
+// An error of a program, as a value: the code between the lines and the card's commands does not throw for it.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Where a program comes from, line by line, in memory that does not grow with it. LF, CR LF and CR alone end a line.
-// Not thread-safe.
+// The source of a program, line by line, in memory that does not grow with it. LF, CR LF and CR alone end a line. Not
+// thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,7 @@ class ChunkedLines : public LineSource {
   bool at_end_ = false;
 };
 
-// A file, a device or a pipe. That it cannot be opened shows as a failure.
+// A file, a device or a pipe. A file that cannot be opened shows as a failure.
 class FileLines final : public ChunkedLines {
  public:
   explicit FileLines(const std::string& path);

@@ -1,4 +1,4 @@
-// What a program asks for, one motion at a time.
+// The motions of a program, one at a time.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ using Coordinates = std::array<double, card_map::kMaxAxes>;
 
 enum class MotionKind { kTraverse, kLine, kArc, kDwell, kEnd, kOutput, kProbe };
 
-// What the motion asks of the corner where it ends.
+// How the corner at the motion's end is passed.
 enum class PathControl : std::uint8_t {
   kContinuous,  // G64: passed at speed
   kExactPath,   // G61: passed at speed where the path has no corner, else a stop

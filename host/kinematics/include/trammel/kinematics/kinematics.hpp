@@ -22,7 +22,7 @@ namespace trammel::kinematics {
 
 // By axis of the machine: machine coordinates in mm (degrees for A, B and C).
 using Coordinates = std::array<double, card_map::kMaxAxes>;
-// By axis of the machine: mm of the axis a mm of path.
+// By axis of the machine: mm of the axis per mm of path.
 using Direction = std::array<double, card_map::kMaxAxes>;
 // By joint: pulses.
 using Pulses = std::array<std::int64_t, card_map::kMaxAxes>;
@@ -33,7 +33,7 @@ std::int64_t to_pulses(double mm, double steps_per_mm);
 
 // Lengths in mm of the joint (of belt, where a belt moves it).
 struct Joint {
-  // `factor` mm of the joint for a mm of the axis.
+  // `factor` mm of the joint per mm of the axis.
   struct Term {
     std::uint8_t axis;
     double factor;
@@ -45,7 +45,7 @@ struct Joint {
   std::size_t term_count = 0;  // 1 or 2
   std::uint8_t settings = 0;   // machine axis whose step times it has
   bool inverted = false;       // its DIR pin
-  // What the joint itself allows, beside its axes' limits; infinite where these alone hold.
+  // Limits of the joint itself, beside its axes' limits; infinite where these alone hold.
   machine::JointLimits limits;
 };
 
@@ -53,13 +53,13 @@ struct Joint {
 struct PlaneMap {
   std::uint8_t joint_x = 0;
   std::uint8_t joint_y = 0;
-  double scale_x = 0;  // pulses a mm of the plane, along any direction where `circle`
+  double scale_x = 0;  // pulses per mm of the plane, along any direction where `circle`
   double scale_y = 0;
   bool circle = false;    // a circle is a circle of pulses; else an ellipse along the joints
   bool mirrored = false;  // clockwise turns into counter-clockwise
 };
 
-// What a member says of a machine.
+// The joints that a member gives a machine.
 struct Layout {
   // An axis's coordinate: the sum of the joints' lengths, each times a factor (a term's `axis` is a joint here).
   struct Inverse {
@@ -95,7 +95,7 @@ class Kinematics {
   // The inverse: where the axes are when the joints stand so.
   Coordinates coordinates(const Pulses& at) const;
 
-  // mm of the joint a mm of path, signed; and pulses.
+  // mm of the joint per mm of path, signed; and pulses.
   double joint_rate(std::size_t joint, const Direction& direction) const;
   double pulse_rate(std::size_t joint, const Direction& direction) const {
     return joint_rate(joint, direction) * layout_.joints[joint].steps_per_mm;

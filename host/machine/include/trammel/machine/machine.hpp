@@ -1,5 +1,5 @@
-// The machine file: what hangs on the card. A TOML file with a table [card] and one table [axis.<letter>] an axis;
-// examples/machine.toml is the commented default. Plain data; the functions are pure and thread-safe.
+// The machine file: the machine that the card drives. A TOML file with a table [card] and a table [axis.<letter>] per
+// axis; examples/machine.toml is the commented default. Plain data; the functions are pure and thread-safe.
 #pragma once
 
 #include <array>
@@ -62,8 +62,8 @@ struct MotionSettings {
   double stale_periods = 1;          // position streaming: periods that the card goes on alone; whole, 0 .. 65535
 };
 
-// Outputs of the card that words of a program switch on, bit n: output n; the table [outputs]. None where it names
-// none. M3 and M4 switch off what the other has, M5 both; M9 switches off what M7 and M8 have.
+// Outputs of the card that words of a program switch on, bit n: output n; the table [outputs]. Words that the table
+// does not name switch none. M3 and M4 switch off what the other has, M5 both; M9 switches off what M7 and M8 have.
 inline constexpr unsigned kMostOutputs = 16;
 struct MachineOutputs {
   std::uint16_t m3 = 0;  // spindle clockwise

@@ -1,30 +1,15 @@
-#!/usr/bin/env python3
 """Compiles the template of docs/reference/integration.md in every reader, and compares its tables with the card."""
-import argparse
 import json
 import math
 import re
-import subprocess
-import sys
 
+from checks import readers
 from file_list import ROOT, sources
 
 PAGE = ROOT / "docs" / "reference" / "integration.md"
 BUILD = ROOT / "build" / "integration"
 TOP, CARD = "my_machine", "trammel_card"
 AXES, PINS = 3, 4  # of the template: its axes; its inputs, and its outputs
-
-
-def readers(template):
-    files = [*sources(), template]
-    return {
-        "Verilator": ["verilator", "--lint-only", "-Wall", "rtl/lint/waivers.vlt", "--top-module", TOP,
-                      "-F", "rtl/trammel.f", template],
-        "Icarus": ["iverilog", "-g2012", "-Wall", "-tnull", "-s", TOP, *files],
-        "Yosys": ["yosys", "-q", "-p", f"read_verilog -sv {' '.join(files)}; hierarchy -check -top {TOP}; proc; "
-                  f"check -assert; write_json {BUILD.relative_to(ROOT)}/ports.json"],
-        "slang": ["scripts/rtl/slang", "--top", TOP, template],
-    }
 
 
 def width(text):
@@ -53,22 +38,15 @@ def table_complaints(page):
                     for name, value in sorted(parameters ^ told)]
 
 
-def main():
-    argparse.ArgumentParser(description=__doc__).parse_args()
+def complaints():
     BUILD.mkdir(parents=True, exist_ok=True)
     page = PAGE.read_text()
     template = BUILD / f"{TOP}.sv"
     template.write_text(re.search(r"^```systemverilog\n(.*?)^```$", page, re.M | re.S).group(1))
-    complaints = []
-    for reader, command in readers(str(template.relative_to(ROOT))).items():
-        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-        if done.returncode:
-            complaints.append(f"{reader} refuses the template of {PAGE.relative_to(ROOT)}:\n{done.stdout}{done.stderr}")
-    if not complaints:
-        complaints = table_complaints(page)
-    if complaints:
-        sys.exit("\n".join(f"error: {c}" for c in complaints))
-
-
-if __name__ == "__main__":
-    main()
+    ports = f"; proc; check -assert; write_json {BUILD.relative_to(ROOT)}/ports.json"
+    wrong = []
+    for reader, command in readers.commands(TOP, [str(template.relative_to(ROOT))], last=ports).items():
+        said, good = readers.run(command)
+        if not good:
+            wrong.append(f"{reader} refuses the template of {PAGE.relative_to(ROOT)}:\n{said}")
+    return wrong or table_complaints(page)

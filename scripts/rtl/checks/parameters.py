@@ -1,15 +1,11 @@
-#!/usr/bin/env python3
 """Shows that Verilator, Yosys, Icarus and slang stop at impossible parameters of the card, and take the extreme ones.
 
 The RTL stops them by an instance of a module that does not exist and whose name is the message; `$error` will not do,
 because Icarus 11 refuses it in a generate block even where it is not reached."""
-import argparse
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from itertools import cycle
 
-from file_list import ROOT, sources
+from checks import readers
 
 AXES, DEPTH, PORTS = ("ERROR_Axes_must_be_1_to_8", "ERROR_GeometryDepth_and_FeedDepth_must_be_2_to_32768",
                       "ERROR_Ports_must_be_1_to_4")
@@ -80,45 +76,21 @@ CASES = [
 ]
 
 
-def commands(top, parameters, legal):
-    """The command of each reader. Illegal values also make vectors that a linter warns of: it is to go on to the message."""
-    files = sources()
-    lint = ["-Wall", "rtl/lint/waivers.vlt"] if legal else ["-Wno-lint", "-Wno-fatal"]
-    yosys = (f"read_verilog -sv {' '.join(files)}; "
-             + "".join("chparam -set {} {} ".format(*p.split("=")) + f"{top}; " for p in parameters)
-             + f"hierarchy -check -top {top}")
-    return {
-        "Verilator": ["verilator", "--lint-only", *lint, "--top-module", top, *(f"-G{p}" for p in parameters), *files],
-        "Yosys": ["yosys", "-q", "-p", yosys],
-        "Icarus": ["iverilog", "-g2012", "-tnull", "-s", top, *(f"-P{top}.{p}" for p in parameters), *files],
-        "slang": ["scripts/rtl/slang", "--top", top, *(f"-G{p}" for p in parameters)],
-    }
-
-
 def judge(case):
-    """The complaints about one case, a line each."""
+    """The complaints about one case. Illegal values also make vectors that a linter warns of."""
     top, text, message = case
-    complaints = []
-    for reader, command in commands(top, text.split(), message is None).items():
-        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
-        said = done.stdout + done.stderr
-        if message is None and done.returncode:
-            complaints.append(f"{reader} refuses {top} {text}:\n{said}")
-        elif message is not None and not done.returncode:
-            complaints.append(f"{reader} takes {top} {text}")
+    wrong = []
+    for reader, command in readers.commands(top, parameters=text.split(), warnings=message is None).items():
+        said, good = readers.run(command)
+        if message is None and not good:
+            wrong.append(f"{reader} refuses {top} {text}:\n{said}")
+        elif message is not None and good:
+            wrong.append(f"{reader} takes {top} {text}")
         elif message is not None and message not in said:
-            complaints.append(f"{reader} stops at {top} {text}, but does not say {message}:\n{said}")
-    return complaints
+            wrong.append(f"{reader} stops at {top} {text}, but does not say {message}:\n{said}")
+    return wrong
 
 
-def main():
-    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
+def complaints():
     with ThreadPoolExecutor(2) as pool:
-        complaints = sum(pool.map(judge, CASES), [])
-    if complaints:
-        sys.exit("\n".join(f"error: {c}" for c in complaints))
-    print(f"{len(CASES)} sets of parameters in 4 readers: as expected")
-
-
-if __name__ == "__main__":
-    main()
+        return sum(pool.map(judge, CASES), [])

@@ -1,11 +1,8 @@
-#!/usr/bin/env python3
 """Runs the targets of rtl/trammel.core and boards/trammel-boards.core by FuseSoC, with its build below build/.
 
 The targets that place a board are only set up: scripts/boards builds bitstreams."""
-import argparse
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 from file_list import CORE, ROOT
@@ -51,21 +48,15 @@ def name_and_version(core):
     return re.search(r"^name: (\S+:(\S+))$", core.read_text(), re.M).groups()
 
 
-def main():
-    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
+def complaints():
     if not FUSESOC.exists():
-        sys.exit("error: fusesoc is not installed; run scripts/setup")
+        return ["fusesoc is not installed; run scripts/setup"]
     project = re.search(r"^project\(trammel VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.M).group(1)
-    complaints = []
+    wrong = []
     for core, targets in RUNS.items():
         name, version = name_and_version(core)
         if version != project:
-            complaints.append(f"{core.relative_to(ROOT)} has version {version}, the project {project}")
-        complaints += [run(name, *target) for target in targets]
-    complaints += [set_up(name_and_version(BOARDS)[0], *target) for target in SETS_UP.items()]
-    if any(complaints):
-        sys.exit("\n".join(f"error: {c}" for c in complaints if c))
-
-
-if __name__ == "__main__":
-    main()
+            wrong.append(f"{core.relative_to(ROOT)} has version {version}, the project {project}")
+        wrong += [run(name, *target) for target in targets]
+    wrong += [set_up(name_and_version(BOARDS)[0], *target) for target in SETS_UP.items()]
+    return [complaint for complaint in wrong if complaint]
