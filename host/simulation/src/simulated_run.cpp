@@ -4,43 +4,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "judges.hpp"
 #include "operator_timeline.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/kinematics/kinematics.hpp"
-#include "trammel/run/feed_meter.hpp"
-#include "trammel/run/step_fork.hpp"
 #include "trammel/run/step_recorder.hpp"
 #include "trammel/sim/timed_bus.hpp"
 
 namespace trammel::simulation {
 namespace {
-
-// Everything beside the recorder that listens to the steps.
-struct Judges {
-  Judges(run::StepRecorder& recorder, run::TextSink* output_list, double clock_hz)
-      : feed(clock_hz), outputs(output_list) {
-    fork.add(recorder);
-    fork.add(path);
-    fork.add(shapers);
-    fork.add(feed);
-    fork.add(outputs);
-  }
-  void tell(RunResult& result) {
-    shapers.finish();
-    outputs.finish();
-    result.path_steps = path.count();
-    result.path_identity = path.text();
-    if (shapers.range()) result.shaper_delay = *shapers.range();
-    result.commanded_feed = feed.commanded();
-    result.achieved_feed = feed.achieved();
-  }
-
-  run::StepFork fork;
-  run::PathIdentity path;
-  run::ShaperDelay shapers;
-  run::FeedMeter feed;
-  run::OutputRecorder outputs;
-};
 
 std::vector<OutputResult> outputs_of(const machine::MachineOutputs& named, const run::OutputRecorder& recorder) {
   std::vector<OutputResult> result;
