@@ -140,6 +140,8 @@ RunResult SimulatedRun::result(const run::Outcome& outcome) {
                    made.recorder.thinned(), course_.detail(),
                    made.recorder.detail(),  made.recorder.speed()};
   }
+  made.card.reset();
+  made.engine.reset();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
   return result;
 }

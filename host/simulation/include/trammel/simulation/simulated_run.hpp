@@ -90,11 +90,12 @@ class SimulatedRun {
   // sim::make_engine() does.
   void make_card(const sim::SimulationOptions& engine);
 
-  // These after make_card().
+  // These after make_card(); card() and cycles() before result().
   driver::Card& card();
   std::uint64_t cycles() const;    // clocks of the card so far
   report::ReportWriter* report();  // null where none is asked for; its finish() is the caller's
-  // Once, after the run. Throws std::runtime_error when the card did not end where the program says.
+  // Once, after the run: the card is gone then, and its waveform whole. Throws std::runtime_error when the card did not
+  // end where the program says.
   RunResult result(const run::Outcome& outcome);
 
  private:
