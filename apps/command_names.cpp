@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "errors.hpp"
+#include "common/errors.hpp"
 
 namespace trammel::app {
 

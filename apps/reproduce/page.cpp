@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "standard_streams.hpp"
-#include "terminal.hpp"
+#include "common/standard_streams.hpp"
+#include "common/terminal.hpp"
 
 namespace trammel::app::reproduce {
 

@@ -1,5 +1,5 @@
 // trammel steps as a user calls it: formats and exit reasons.
-#include "steps_command.hpp"
+#include "steps/steps_command.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "errors.hpp"
-#include "methods_command.hpp"
+#include "common/errors.hpp"
+#include "methods/methods_command.hpp"
 
 namespace trammel::app {
 namespace {

@@ -40,6 +40,7 @@ class PathRing {
   std::uint64_t end() const { return end_; }
   bool full() const { return end_ - begin_ == entries_.size(); }
   PathEntry& operator[](std::uint64_t i) { return entries_[static_cast<std::size_t>(i % entries_.size())]; }
+  const PathEntry& operator[](std::uint64_t i) const { return entries_[static_cast<std::size_t>(i % entries_.size())]; }
   // The next one, with the content of an old one.
   PathEntry& push() { return (*this)[end_++]; }
   void pop() { ++begin_; }

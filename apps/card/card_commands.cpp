@@ -1,0 +1,284 @@
+#include "card_commands.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/card_choice.hpp"
+#include "common/engine_options.hpp"
+#include "common/errors.hpp"
+#include "common/standard_streams.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/errors.hpp"
+#include "trammel/sim/engines.hpp"
+
+namespace trammel::app {
+namespace {
+
+namespace map = card_map;
+namespace reg = card_map::reg;
+using driver::Card;
+
+struct LookOptions {
+  CardChoice card;
+  double interval = 0.2;     // monitor: seconds of the card
+  std::uint64_t looks = 0;   // monitor: 0 for ever
+  unsigned exchanges = 200;  // selftest
+};
+
+// The card of --card, or a simulated one, which is made for nothing else.
+template <class Use>
+void look_at(const CardChoice& choice, Purpose purpose, Use use) {
+  if (const auto url = choice.url()) {
+    return with_card(*url, purpose, [&](Card& card, transport::Connection& connection) {
+      use(card, connection.frames() != nullptr ? &connection : nullptr);
+    });
+  }
+  sim::SimulationOptions options;
+  const auto engine = sim::make_engine(options);
+  Card card = Card::open(*engine);
+  use(card, static_cast<transport::Connection*>(nullptr));
+}
+
+// --- dump ---
+
+bool is_there(const map::Register& entry, const driver::Identification& card) {
+  return map::has_engine(card.engines, entry.engine);
+}
+
+void dump(Card& card) {
+  card.snapshot();
+  std::vector<std::pair<std::uint32_t, std::string>> lines;
+  for (const map::Register& entry : map::kRegisters) {
+    if (entry.access == map::Access::Command || !is_there(entry, card.identification())) continue;
+    const std::uint32_t slots = entry.only_present_axes ? card.identification().axes : entry.count;
+    for (std::uint32_t i = 0; i < slots; ++i) {
+      const std::uint32_t address = map::slot_address(entry, i);
+      const std::uint32_t value = card.read(address);
+      const std::string name = entry.count > 1 ? fmt::format("{}[{}]", entry.name, i) : std::string(entry.name);
+      lines.emplace_back(address, fmt::format("0x{:03X}  {:<20} 0x{:08X}  {}\n", address, name, value, value));
+    }
+  }
+  std::sort(lines.begin(), lines.end());
+  for (const auto& [address, line] : lines) to_standard_output(line);
+}
+
+// --- monitor ---
+
+std::string state_of(const driver::Snapshot& now) {
+  const driver::Status& s = now.status;
+  std::string text = s.busy ? "busy" : "idle";
+  const auto add = [&](bool flag, const char* word) { text += flag ? std::string(", ") + word : std::string(); };
+  add(s.direct, "a line in direct mode");
+  add(s.path_active, "on a path");
+  add(s.held, "held");
+  add(s.stopping, "stopping");
+  add(s.waiting, "waiting for an input");
+  add(s.probed, "probed");
+  add(s.ended, "ended");
+  add(s.refused, "refused");
+  if (s.faulted) text += ", FAULT: " + driver::describe_faults(now.faults);
+  return text;
+}
+
+std::vector<std::string> table(Card& card) {
+  const driver::Snapshot now = card.snapshot();
+  const driver::Identification& id = card.identification();
+  std::array<driver::Access, 3> room{driver::read_of(reg::kGeometryRoom), driver::read_of(reg::kFeedRoom)};
+  card.transfer(room.data(), 2, "monitor");
+  // RATE counts 2^-32 feed ticks an enabled clock, RATIO 2^-16.
+  const double rate = static_cast<double>(now.rate) / 4294967296.0 * id.clock_hz;
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format("time     {:.3f} s", static_cast<double>(now.time) / id.clock_hz));
+  lines.push_back(fmt::format("state    {}", state_of(now)));
+  lines.push_back(
+      fmt::format("rate     {:.0f} feed ticks/s, time base at {:.1f} %", rate, 100.0 * now.ratio / Card::kFullRatio));
+  lines.push_back(
+      fmt::format("begun    {} of the geometry queue, {} of the feed queue", now.geometry_begun, now.feed_begun));
+  lines.push_back(
+      fmt::format("queued   {} and {} halfwords", id.geometry_depth - room[0].data, id.feed_depth - room[1].data));
+  for (unsigned axis = 0; axis < id.axes; ++axis) {
+    lines.push_back(fmt::format("axis {}   pulse {}", axis, now.position[axis]));
+  }
+  return lines;
+}
+
+// On a terminal the table stays where it is; elsewhere the tables come one below the other.
+void monitor(Card& card, const LookOptions& options) {
+  const bool terminal = ::isatty(STDOUT_FILENO) == 1;
+  const std::chrono::nanoseconds pause(static_cast<std::int64_t>(options.interval * 1e9));
+  for (std::uint64_t look = 0; options.looks == 0 || look < options.looks; ++look) {
+    if (look != 0) card.bus().sleep(pause);
+    const std::vector<std::string> lines = table(card);
+    if (terminal && look != 0) to_standard_output(fmt::format("\x1b[{}A", lines.size()));
+    for (const std::string& line : lines) to_standard_output(fmt::format("{}{}\n", line, terminal ? "\x1b[K" : ""));
+    if (!terminal) to_standard_output("\n");
+    finish_standard_streams();
+  }
+}
+
+// --- selftest ---
+
+// What was tried, and what came of it.
+class Checks {
+ public:
+  void add(const std::string& what, const std::string& wrong, const std::string& good = "") {
+    to_standard_output(fmt::format("{}  {}{}\n", wrong.empty() ? "pass" : "FAIL", what,
+                                   wrong.empty() ? (good.empty() ? "" : ": " + good) : ": " + wrong));
+    ++made_;
+    failed_ += wrong.empty() ? 0U : 1U;
+  }
+  unsigned made() const { return made_; }
+  unsigned failed() const { return failed_; }
+
+ private:
+  unsigned made_ = 0;
+  unsigned failed_ = 0;
+};
+
+// No pin, no queue and no interrupt depends on these while the card is idle.
+bool may_be_tried(const map::Register& entry) {
+  constexpr std::string_view kTried[] = {"STEP_LENGTH", "STEP_SPACE", "DIR_SETUP",    "DIR_HOLD",     "HOLD_LIMIT",
+                                         "SLEW",        "COUNT",      "FREQUENCY_LO", "FREQUENCY_HI", "LENGTH_LO"};
+  return std::find(std::begin(kTried), std::end(kTried), entry.name) != std::end(kTried);
+}
+
+// Writes patterns and reads them back; what was there comes back.
+std::string try_setting(Card& card, const map::Register& entry, std::uint32_t address) {
+  const std::uint32_t before = card.read(address);
+  std::string wrong;
+  for (const std::uint32_t pattern : {0x55555555U, 0xAAAAAAAAU, 0xFFFFFFFFU, 0x00000001U}) {
+    std::uint32_t value = pattern & entry.mask;
+    if (entry.limited != 0) value = std::clamp(value, entry.minimum, entry.maximum);
+    std::array<driver::Access, 3> accesses{driver::write_of(address, value), driver::read_of(address)};
+    card.transfer(accesses.data(), 2, "selftest");
+    if (accesses[1].data != value) wrong = fmt::format("wrote 0x{:08X}, read 0x{:08X}", value, accesses[1].data);
+  }
+  std::array<driver::Access, 2> back{driver::write_of(address, before)};
+  card.transfer(back.data(), 1, "selftest");
+  return wrong;
+}
+
+void try_settings(Card& card, Checks& checks) {
+  const driver::Identification& id = card.identification();
+  unsigned tried = 0;
+  std::string wrong;
+  for (const map::Register& entry : map::kRegisters) {
+    if (!may_be_tried(entry) || !is_there(entry, id)) continue;
+    const std::uint32_t slots = entry.only_present_axes ? id.axes : entry.count;
+    for (std::uint32_t i = 0; i < slots; ++i, ++tried) {
+      const std::string one = try_setting(card, entry, map::slot_address(entry, i));
+      if (!one.empty()) wrong = fmt::format("{}[{}]: {}", entry.name, i, one);
+    }
+  }
+  checks.add("settings keep what is written", wrong, fmt::format("{} registers, 4 patterns each", tried));
+}
+
+// The card must refuse it, for that reason.
+std::string expect_refusal(Card& card, driver::Access access, map::Reason reason) {
+  std::array<driver::Access, 2> accesses{access};
+  try {
+    card.transfer(accesses.data(), 1, "selftest");
+    return "it was not refused";
+  } catch (const driver::RefusedError& error) {
+    if (error.reason() == static_cast<std::uint8_t>(reason)) return {};
+    return error.what();
+  }
+}
+
+void try_refusals(Card& card, Checks& checks) {
+  checks.add("a write to AXES is refused",
+             expect_refusal(card, driver::write_of(reg::kAxes, 1), map::Reason::ReadOnly));
+  checks.add("bits without meaning in HOLD are refused",
+             expect_refusal(card, driver::write_of(reg::kHold, 2), map::Reason::BadValue));
+  checks.add("a write where nothing is is refused",
+             expect_refusal(card, driver::write_of(0x3FC, 0), map::Reason::UnknownAddress));
+}
+
+void try_clock(Card& card, Checks& checks) {
+  using Clock = std::chrono::steady_clock;
+  const std::uint64_t first = card.snapshot().time;
+  const auto begun = Clock::now();
+  card.bus().sleep(std::chrono::milliseconds(200));
+  const std::uint64_t clocks = card.snapshot().time - first;
+  const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
+  checks.add("its clock runs", clocks == 0 ? "no clock in 0.2 s" : "",
+             fmt::format("{:.3f} s of the card in {:.3f} s here",
+                         static_cast<double>(clocks) / card.identification().clock_hz, seconds));
+}
+
+void try_link(Card& card, transport::Connection* connection, unsigned exchanges, Checks& checks) {
+  std::string wrong;
+  const auto begun = std::chrono::steady_clock::now();
+  for (unsigned i = 0; i < exchanges && wrong.empty(); ++i) {
+    const std::uint32_t magic = card.read(reg::kMagic);
+    if (magic != map::kMagicValue) wrong = fmt::format("MAGIC reads 0x{:08X}", magic);
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  std::string good = fmt::format("{} reads, {:.2f} ms each", exchanges, 1e3 * seconds / exchanges);
+  if (connection != nullptr) {
+    const driver::FrameBus::Counts& counts = connection->frames()->counts();
+    good += fmt::format(", {} requests sent again", counts.sent_again);
+  }
+  checks.add("the link carries", wrong, good);
+}
+
+void selftest(Card& card, transport::Connection* connection, const LookOptions& options) {
+  const driver::Status status = card.status();
+  if (status.busy) throw UsageError("selftest: the card is busy: it is tried when it is idle");
+  Checks checks;
+  const driver::Identification& id = card.identification();
+  checks.add("it says who it is", "",
+             fmt::format("{} axes, {} Hz, map {}.{}", id.axes, id.clock_hz, id.map_major, id.map_minor));
+  checks.add("it has no fault", status.faulted ? driver::describe_faults(card.faults()) : "");
+  const driver::Snapshot before = card.snapshot();
+  try_link(card, connection, options.exchanges, checks);
+  try_clock(card, checks);
+  try_settings(card, checks);
+  try_refusals(card, checks);
+  const driver::Snapshot after = card.snapshot();
+  checks.add("nothing has moved", after.position == before.position && !after.status.busy ? "" : "a position changed");
+  if (checks.failed() != 0) {
+    throw std::runtime_error(fmt::format("selftest: {} of {} checks failed", checks.failed(), checks.made()));
+  }
+  to_standard_output(fmt::format("{} checks passed\n", checks.made()));
+}
+
+}  // namespace
+
+void add_card_commands(CLI::App& app) {
+  auto options = std::make_shared<LookOptions>();
+  CLI::App* dump_command = app.add_subcommand("dump", "all registers of a card by name");
+  options->card.add_to(*dump_command);
+  dump_command->callback(
+      [options] { look_at(options->card, Purpose::kRead, [](Card& card, transport::Connection*) { dump(card); }); });
+  CLI::App* monitor_command = app.add_subcommand("monitor", "what a card does, as a live table");
+  options->card.add_to(*monitor_command);
+  monitor_command->add_option("--interval", options->interval, "between two looks, in card time")
+      ->check(CLI::Range(0.001, 3600.0).description(""))
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  monitor_command->add_option("--looks", options->looks, "end after so many (0: never)")
+      ->transform(whole_number(0, 1'000'000'000))
+      ->type_name("N")
+      ->capture_default_str();
+  monitor_command->callback([options] {
+    look_at(options->card, Purpose::kRead, [&](Card& card, transport::Connection*) { monitor(card, *options); });
+  });
+  CLI::App* test_command = app.add_subcommand("selftest", "try a card's link, registers and clock; nothing moves");
+  options->card.add_to(*test_command);
+  test_command->callback([options] {
+    look_at(options->card, Purpose::kMove,
+            [&](Card& card, transport::Connection* connection) { selftest(card, connection, *options); });
+  });
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,169 @@
+#include "compare_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <variant>
+
+#include "common/curve_options.hpp"
+#include "common/engine_options.hpp"
+#include "common/errors.hpp"
+#include "common/outputs.hpp"
+#include "common/progress_bar.hpp"
+#include "compare_plot.hpp"
+#include "compare_report.hpp"
+#include "trammel/measure/comparison.hpp"
+
+namespace trammel::app {
+namespace {
+
+namespace interpolation = interpolation;
+namespace measure = measure;
+
+// Lines a second of random lines where none is given: 100,000 clocks a line at 10 MHz, so that the clock's own
+// coarseness does not hide what the methods do.
+constexpr std::uint64_t kRandomVelocity = 100;
+// Hours of work, and 300 MB of sums.
+constexpr std::uint64_t kMostLines = 100'000'000;
+
+struct CompareOptions {
+  CurveChoice curve;
+  VelocityChoice velocity;
+  std::optional<std::uint64_t> random;
+  std::uint64_t seed = 1;
+  std::int64_t largest = 1000;
+  unsigned threads = std::max(1U, std::thread::hardware_concurrency());
+  std::string drive = "full";
+  bool no_ramps = false;
+  bool progress = false;
+  std::optional<std::string> json;
+  std::optional<std::string> plot;
+};
+
+std::string title_of(const CurveChoice& choice) {
+  const char* turn = choice.clockwise ? ", clockwise" : ", counter-clockwise";
+  if (choice.line) return fmt::format("line {}", *choice.line);
+  if (choice.circle) return fmt::format("circle {}{}", *choice.circle, turn);
+  if (choice.arc) return fmt::format("arc {}{}", *choice.arc, turn);
+  return fmt::format("ellipse {}{}", *choice.ellipse, turn);
+}
+
+void check_size(const interpolation::Curve& curve) {
+  const std::uint64_t pulses = measure::pulses_along(curve);
+  if (pulses == 0) throw UsageError("a line without length: nothing to compare");
+  if (pulses > measure::kMostPulses) {
+    throw UsageError(fmt::format("a curve of about {} pulses: at most {} are compared", pulses, measure::kMostPulses));
+  }
+}
+
+// Every method's measures; fills in the traces, in the same order, for the motor.
+Comparison compare(const CompareOptions& options, std::vector<measure::Trace>& traces) {
+  const interpolation::Curve curve = options.curve.curve();
+  check_size(curve);
+  const measure::IdealCurve ideal = measure::ideal_of(curve);
+  Comparison result;
+  result.title = title_of(options.curve);
+  result.axes = ideal.axes();
+  result.length = ideal.length();
+  result.is_line = ideal.is_line();
+  result.options = options.velocity.options(curve);
+  for (const interpolation::Method method : measure::methods_for(curve)) {
+    measure::Trace trace;
+    try {
+      measure::record(method, curve, result.options, trace);
+    } catch (const std::invalid_argument& error) {
+      result.refused.push_back({method, error.what()});
+      continue;
+    }
+    result.methods.push_back(measure::measure_method(method, trace, ideal));
+    traces.push_back(std::move(trace));
+  }
+  if (result.methods.empty()) throw UsageError(result.refused.front().reason);
+  result.motor.drive = options.drive == "half" ? measure::Drive::kHalfStep : measure::Drive::kFullStep;
+  if (options.no_ramps) result.motor.ramp_time = 0;
+  result.speeds = measure::sweep_speeds();
+  ProgressBar bar(options.progress);
+  result.sweeps = measure::sweep_motors(traces, ideal, result.motor, result.speeds, options.threads,
+                                        [&](double done) { bar.show(done, "motors"); });
+  return result;
+}
+
+void compare_curve(const CompareOptions& options) {
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  Output* const plot = outputs.add("--plot", options.plot);
+  outputs.check();
+  std::vector<measure::Trace> traces;
+  const Comparison comparison = compare(options, traces);
+  outputs.open();
+  if (json != nullptr) json->write(json_text(comparison));
+  if (plot != nullptr) plot->write(comparison_svg(comparison, traces, measure::ideal_of(options.curve.curve())));
+  outputs.commit(table_of(comparison));
+}
+
+void compare_random(const CompareOptions& options) {
+  if (options.curve.given()) throw UsageError("--random takes no curve of its own");
+  if (options.plot) throw UsageError("--plot: a picture is made of one curve, not of --random lines");
+  measure::RandomLines lines;
+  lines.count = *options.random;
+  lines.seed = options.seed;
+  lines.largest = options.largest;
+  lines.threads = options.threads;
+  lines.options.clock_hz = options.velocity.clock_hz.value_or(lines.options.clock_hz);
+  lines.options.velocity = options.velocity.velocity.value_or(kRandomVelocity);
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  outputs.check();
+  std::vector<measure::RandomMeasures> measures;
+  try {
+    ProgressBar bar(options.progress);
+    measures = measure::measure_random_lines(lines, [&](double done) { bar.show(done, "lines"); });
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  outputs.open();
+  if (json != nullptr) json->write(json_text(lines, measures));
+  outputs.commit(table_of(lines, measures));
+  for (const measure::RandomMeasures& method : measures) {
+    if (method.wrong_ends > 0) {
+      throw std::runtime_error(fmt::format("{}: {} lines did not end on their end point",
+                                           interpolation::info(method.method).name, method.wrong_ends));
+    }
+  }
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "all methods on one curve, or over random lines: distances, host cost, evenness, vibration of a motor");
+  options->curve.add_to(*command);
+  options->velocity.add_to(*command);
+  command->add_option("--random", options->random, "so many random lines instead of one curve")
+      ->transform(whole_number(1, kMostLines, "lines"))
+      ->type_name("N");
+  // As far as every whole number is a double.
+  command->add_option("--seed", options->seed, "of the random lines (default 1)")
+      ->transform(whole_number(0, std::uint64_t{1} << 53));
+  command->add_option("--largest", options->largest, "pulses of an axis of a random line, at most (default 1000)")
+      ->transform(whole_number(1, measure::kMostPulses / 2, "pulses"));
+  command->add_option("--threads", options->threads, "threads (default: one a core)")->transform(whole_number(1, 256));
+  command->add_option("--drive", options->drive, "steps of the simulated motor: full or half (default full)")
+      ->check(CLI::IsMember({"full", "half"}));
+  command->add_flag("--no-ramps", options->no_ramps,
+                    "start and stop the simulated motors at full speed, not on ramps of 50 ms");
+  command->add_flag("--progress", options->progress, "show a progress bar even if stderr is no terminal");
+  command->add_option("--json", options->json, "everything measured as JSON ('-': standard output)")->type_name("FILE");
+  command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")->type_name("FILE.svg");
+  command->callback([options] { options->random ? compare_random(*options) : compare_curve(*options); });
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,351 @@
+#include "line_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/card_choice.hpp"
+#include "common/engine_options.hpp"
+#include "common/errors.hpp"
+#include "common/outputs.hpp"
+#include "common/stop_at_signals.hpp"
+#include "common/waveform.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/one_shot.hpp"
+#include "trammel/run/plot.hpp"
+#include "trammel/run/step_recorder.hpp"
+#include "trammel/simulation/simulated_card.hpp"
+
+namespace trammel::app {
+namespace {
+
+constexpr std::uint32_t kDefaultClock = 1'000'000;
+constexpr double kDefaultSpeed = 1000;  // pulses/s
+
+struct LineArguments {
+  std::vector<std::int64_t> from;
+  std::vector<std::int64_t> to;
+  std::optional<double> velocity;
+  std::optional<double> duration;
+  std::optional<double> speed;
+  std::vector<std::uint64_t> max_velocity;
+  bool slow = false;
+  CardChoice card;
+  EngineChoice engine;
+  std::optional<std::string> json;
+  std::optional<std::string> steps;
+  std::optional<std::string> plot;
+};
+
+std::vector<std::int64_t> displacement_of(const LineArguments& options) {
+  std::vector<std::int64_t> result = options.to;
+  if (!options.from.empty() && options.from.size() != options.to.size()) {
+    throw UsageError("--from and --to: must name the same number of axes");
+  }
+  if (result.size() > card_map::kMaxAxes) throw UsageError("--to: a card has at most 8 axes");
+  for (std::size_t a = 0; a < options.from.size(); ++a) {
+    if (__builtin_sub_overflow(result[a], options.from[a], &result[a])) {
+      throw UsageError("--from and --to: more pulses apart than 64 bits hold");
+    }
+  }
+  return result;
+}
+
+// The line's duration in clocks, rounded to the nearest.
+std::uint64_t clocks_of(const LineArguments& options, const std::vector<std::int64_t>& displacement, double clock_hz) {
+  double seconds = 0;
+  if (options.velocity) {
+    seconds = 1 / *options.velocity;
+  } else if (options.duration) {
+    seconds = *options.duration;
+  } else {
+    double square = 0;
+    for (const std::int64_t p : displacement) square += static_cast<double>(p) * static_cast<double>(p);
+    seconds = std::sqrt(square) / options.speed.value_or(kDefaultSpeed);
+  }
+  const double clocks = std::round(seconds * clock_hz);
+  if (clocks >= std::ldexp(1.0, 62)) throw UsageError("the line takes longer than the card can count");
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(clocks));
+}
+
+driver::LineLimits line_limits(const LineArguments& options) {
+  driver::LineLimits limits;
+  if (options.max_velocity.size() > card_map::kMaxAxes) throw UsageError("--max-velocity: a card has at most 8 axes");
+  std::copy(options.max_velocity.begin(), options.max_velocity.end(), limits.max_velocity.begin());
+  limits.policy = options.slow ? driver::LimitPolicy::kSlow : driver::LimitPolicy::kRefuse;
+  return limits;
+}
+
+// What was measured on the card.
+struct Result {
+  std::vector<std::int64_t> pulses;  // asked for
+  std::vector<std::int64_t> final;
+  std::vector<std::uint64_t> steps;
+  std::uint64_t line_clocks = 0;
+  std::size_t parts = 0;
+  bool slowed = false;
+  std::uint64_t cycles = 0;
+  std::uint32_t clock_hz = 0;
+  std::optional<std::uint64_t> lockstep_cycles;
+  std::uint64_t comparisons = 0;
+  double largest_line_deviation = 0;
+  double largest_arc_deviation = 0;
+  run::Plot plot;  // filled when asked for
+};
+
+run::Point point_of(const std::vector<std::int64_t>& pulses, double share) {
+  run::Point point{};
+  for (std::size_t a = 0; a < std::min(point.size(), pulses.size()); ++a) {
+    point[a] = share * static_cast<double>(pulses[a]);
+  }
+  return point;
+}
+
+// The line from its start at (0,0), in pulses, and the beginning of it at most as long as the recorder magnifies.
+run::Plot plot_of(const std::vector<std::int64_t>& pulses, const run::StepRecorder& recorder) {
+  double longest = 1;
+  for (const std::int64_t p : pulses) longest = std::max(longest, std::fabs(static_cast<double>(p)));
+  const double stretch = std::min(1.0, static_cast<double>(run::StepRecorder::kDetailPoints) / longest);
+  const run::Point start{};
+  return {fmt::format("line to {}", fmt::join(pulses, ", ")),
+          "pulses",
+          {{start, false}, {point_of(pulses, 1), false}},
+          recorder.executed(),
+          recorder.thinned(),
+          {start, point_of(pulses, stretch)},
+          recorder.detail(),
+          recorder.speed()};
+}
+
+driver::OneShotPlan plan_of(const LineArguments& options, const driver::CardTiming& timing,
+                            const std::vector<std::int64_t>& pulses) {
+  driver::Displacement displacement{};
+  std::copy(pulses.begin(), pulses.end(), displacement.begin());
+  try {
+    return driver::plan_line_clocks(timing, displacement, clocks_of(options, pulses, timing.clock_hz),
+                                    line_limits(options));
+  } catch (const driver::ArgumentError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+// The path of direct mode has no command; the recorder measures it as one line over its clocks.
+driver::LineCommand as_command(const driver::OneShotPlan& plan, const std::vector<std::int64_t>& pulses) {
+  driver::LineCommand line;
+  line.ticks = plan.part(0).length;
+  line.mask = plan.part(0).mask;
+  for (std::size_t a = 0; a < pulses.size(); ++a) {
+    const auto increment = static_cast<std::int64_t>(plan.part(0).frequency[a]);
+    line.increment[a] = pulses[a] < 0 ? -increment : increment;
+  }
+  return line;
+}
+
+// Pulses that the card has made since `before`, by axis of the line.
+std::vector<std::int64_t> moved(driver::Card& card, const driver::Snapshot& before, std::size_t axes) {
+  const driver::Snapshot after = card.snapshot();
+  std::vector<std::int64_t> result;
+  for (std::size_t a = 0; a < axes; ++a) {
+    result.push_back(driver::pulses_between(before.position[a], after.position[a]));
+  }
+  return result;
+}
+
+// To the end, or to where a signal stops it.
+void run_line(driver::Card& card, const driver::OneShotPlan& plan, const driver::Snapshot& before, std::size_t axes) {
+  const StopAtSignals signals(card);
+  try {
+    driver::run_line(card, plan);
+  } catch (const driver::StoppedError&) {
+    signals.end(fmt::format("moved by {} pulses", fmt::join(moved(card, before, axes), ", ")));
+  }
+}
+
+Result make_line(const LineArguments& options, const sim::SimulationOptions& engine_options, run::TextSink* steps) {
+  Result result;
+  result.pulses = displacement_of(options);
+  const auto engine = sim::make_engine(engine_options);
+  run::StepRecorder::Options recording;
+  recording.steps = steps;
+  recording.clock_hz = engine_options.clock_hz;
+  recording.plot = options.plot.has_value();
+  run::StepRecorder recorder(recording, kinematics::Kinematics::in_pulses(engine_options.axes));
+  driver::Card card = driver::Card::open(*engine);
+  const driver::OneShotPlan plan = plan_of(options, card.timing(), result.pulses);
+  recorder.command(0, as_command(plan, result.pulses));
+  recorder.detail_of(0);
+  engine->set_sink(&recorder);
+  run_line(card, plan, {}, result.pulses.size());
+  const driver::Snapshot snapshot = card.snapshot();
+  engine->set_sink(nullptr);
+  recorder.finish();
+
+  result.final.assign(snapshot.position.begin(), snapshot.position.begin() + engine_options.axes);
+  for (std::size_t a = 0; a < result.pulses.size(); ++a) {
+    if (result.final[a] != result.pulses[a]) {
+      throw std::runtime_error(
+          fmt::format("axis {}: ended at pulse {}, asked for {}", a, result.final[a], result.pulses[a]));
+    }
+  }
+  if (options.plot) result.plot = plot_of(result.pulses, recorder);
+  result.steps = recorder.steps();
+  result.line_clocks = plan.clocks();
+  result.parts = plan.size();
+  result.slowed = plan.slowed();
+  result.cycles = engine->cycles();
+  result.clock_hz = engine_options.clock_hz;
+  result.lockstep_cycles = engine->lockstep_cycles();
+  result.comparisons = engine->comparisons();
+  result.largest_line_deviation = recorder.deviation().largest_line();
+  result.largest_arc_deviation = recorder.deviation().largest_arc();
+  return result;
+}
+
+nlohmann::ordered_json json_of(const Result& result) {
+  nlohmann::ordered_json json;
+  json["final_position"] = result.final;
+  json["steps"] = result.steps;
+  json["line_clocks"] = result.line_clocks;
+  json["slowed"] = result.slowed;
+  json["parts"] = result.parts;
+  json["cycles"] = result.cycles;
+  json["seconds"] = static_cast<double>(result.cycles) / result.clock_hz;
+  json["clock_hz"] = result.clock_hz;
+  json["lockstep_cycles"] = nullptr;
+  if (result.lockstep_cycles) json["lockstep_cycles"] = *result.lockstep_cycles;
+  json["mismatches"] = 0;  // one would have ended the run
+  json["max_deviation"] = {{"line", result.largest_line_deviation}, {"arc", result.largest_arc_deviation}};
+  return json;
+}
+
+std::string summary(const Result& result) {
+  std::string text = fmt::format("line of {} pulses in {} clocks ({:g} s at {:g} MHz){}: ended at {}\n",
+                                 fmt::join(result.pulses, ", "), result.line_clocks,
+                                 static_cast<double>(result.line_clocks) / result.clock_hz, result.clock_hz * 1e-6,
+                                 result.slowed ? ", slowed to keep a limit" : "", fmt::join(result.final, ", "));
+  text += fmt::format("  largest distance from the line: {:.4f} pulses\n", result.largest_line_deviation);
+  if (result.lockstep_cycles) {
+    text += fmt::format("  lockstep: {} cycles, {} comparisons, 0 mismatches\n", *result.lockstep_cycles,
+                        result.comparisons);
+  }
+  return text;
+}
+
+// What a card outside says of the line that it has made.
+struct CardResult {
+  std::vector<std::int64_t> moved;
+  std::uint64_t line_clocks = 0;
+  std::size_t parts = 0;
+  bool slowed = false;
+  std::uint32_t clock_hz = 0;
+};
+
+CardResult make_line_on(driver::Card& card, const LineArguments& options) {
+  const std::vector<std::int64_t> pulses = displacement_of(options);
+  if (pulses.size() > card.identification().axes) {
+    throw UsageError(fmt::format("--to: the card has {} axes", card.identification().axes));
+  }
+  const driver::OneShotPlan plan = plan_of(options, card.timing(), pulses);
+  take_over(card);
+  const driver::Snapshot before = card.snapshot();
+  run_line(card, plan, before, pulses.size());
+  CardResult result;
+  result.moved = moved(card, before, pulses.size());
+  for (std::size_t a = 0; a < pulses.size(); ++a) {
+    if (result.moved[a] != pulses[a]) {
+      throw std::runtime_error(fmt::format("axis {}: moved by {} pulses, asked for {}", a, result.moved[a], pulses[a]));
+    }
+  }
+  result.line_clocks = plan.clocks();
+  result.parts = plan.size();
+  result.slowed = plan.slowed();
+  result.clock_hz = card.identification().clock_hz;
+  return result;
+}
+
+void line_on_card(const LineArguments& options, const transport::CardUrl& url) {
+  options.engine.refuse_with(options.card);
+  refuse_with_card(options.card, "--steps", options.steps.has_value());
+  refuse_with_card(options.card, "--plot", options.plot.has_value());
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  outputs.check();
+  outputs.open();
+  CardResult result;
+  with_card(url, Purpose::kMove,
+            [&](driver::Card& card, transport::Connection&) { result = make_line_on(card, options); });
+  if (json != nullptr) {
+    nlohmann::ordered_json text;
+    text["card"] = url.text;
+    text["moved"] = result.moved;
+    text["line_clocks"] = result.line_clocks;
+    text["slowed"] = result.slowed;
+    text["parts"] = result.parts;
+    text["clock_hz"] = result.clock_hz;
+    json->write(text.dump(2) + "\n");
+  }
+  outputs.commit(fmt::format("line in {} clocks ({:g} s at {:g} MHz){} on {}: moved by {} pulses\n", result.line_clocks,
+                             static_cast<double>(result.line_clocks) / result.clock_hz, result.clock_hz * 1e-6,
+                             result.slowed ? ", slowed to keep a limit" : "", url.text, fmt::join(result.moved, ", ")));
+}
+
+void line_in_simulation(const LineArguments& options) {
+  if (const auto url = options.card.url()) return line_on_card(options, *url);
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  Output* const steps = outputs.add("--steps", options.steps);
+  Output* const trace = outputs.add("--trace", options.engine.trace, true);
+  Output* const plot = outputs.add("--plot", options.plot);
+  outputs.check();
+  // A card of 4 or of 8 axes, so that the results do not depend on whether it is traced.
+  const auto axes = simulation::traced_axes(static_cast<unsigned>(displacement_of(options).size()));
+  sim::SimulationOptions engine = options.engine.options(axes, kDefaultClock, kDefaultClock);
+  outputs.open();
+  if (trace != nullptr) engine.trace->path = trace->path_to_write();
+  const Result result = make_line(options, engine, steps);
+  if (trace != nullptr) require_whole_waveform(trace->path_to_write(), *options.engine.trace);
+  if (json != nullptr) json->write(json_of(result).dump(2) + "\n");
+  if (plot != nullptr) plot->write(run::svg(result.plot));
+  outputs.commit(summary(result));
+}
+
+}  // namespace
+
+void add_line_command(CLI::App& app) {
+  auto options = std::make_shared<LineArguments>();
+  CLI::App* command = app.add_subcommand("line", "make one straight line in direct mode: one burst of register writes");
+  command->add_option("--from", options->from, "start, pulses, one value an axis (default: 0)")
+      ->delimiter(',')
+      ->type_name("X,Y,...");
+  command->add_option("--to", options->to, "end, pulses, one value an axis")
+      ->delimiter(',')
+      ->required()
+      ->type_name("X,Y,...");
+  auto* velocity =
+      command->add_option("--velocity", options->velocity, "lines a second, the second paper's v")->check(positive());
+  auto* duration = command->add_option("--duration", options->duration, "time of the line, seconds")->check(positive());
+  auto* speed =
+      command->add_option("--speed", options->speed, "pulses/s along the path (default 1000)")->check(positive());
+  velocity->excludes(duration)->excludes(speed);
+  duration->excludes(speed);
+  command->add_option("--max-velocity", options->max_velocity, "limit of each axis, pulses/s (0: none)")
+      ->delimiter(',');
+  command->add_flag("--slow", options->slow, "slow down to keep a limit instead of refusing");
+  options->card.add_to(*command);
+  options->engine.add_to(*command);
+  command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
+  command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
+  command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
+      ->type_name("FILE");
+  command->callback([options] { line_in_simulation(*options); });
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,10 @@
+// trammel methods: the interpolators and what each can do.
+#pragma once
+
+#include "common/command_line.hpp"
+
+namespace trammel::app {
+
+void add_methods_command(CLI::App& app);
+
+}  // namespace trammel::app

@@ -1,0 +1,10 @@
+// trammel reproduce: every table and figure of both papers made again.
+#pragma once
+
+#include "common/command_line.hpp"
+
+namespace trammel::app {
+
+void add_reproduce_command(CLI::App& app);
+
+}  // namespace trammel::app

@@ -1,0 +1,27 @@
+#include "engine_speed.hpp"
+
+#include <fmt/format.h>
+
+#include "common/progress_bar.hpp"
+#include "trammel/simulation/simulated_card.hpp"
+
+namespace trammel::app {
+namespace {
+
+constexpr double kWorthMeasuring = 10e6;  // clocks; fewer take seconds
+constexpr double kLong = 60;              // s
+
+}  // namespace
+
+std::optional<std::string> long_run_note(const sim::SimulationOptions& options, double card_seconds) {
+  const double clocks = card_seconds * options.clock_hz;
+  if (options.kind == sim::EngineKind::kModel || clocks < kWorthMeasuring) return std::nullopt;
+  const double speed = simulation::clocks_per_second(options);
+  if (clocks / speed < kLong) return std::nullopt;
+  return fmt::format(
+      "the Verilated card will take about {} for {:.0f} M clocks ({:.2f} M clocks/s now{}); --engine "
+      "model makes the same steps in less",
+      duration_text(clocks / speed), clocks * 1e-6, speed * 1e-6, options.trace ? ", more where it is traced" : "");
+}
+
+}  // namespace trammel::app

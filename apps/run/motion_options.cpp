@@ -1,0 +1,216 @@
+#include "motion_options.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "common/engine_options.hpp"
+#include "common/errors.hpp"
+
+namespace trammel::app {
+namespace {
+
+using simulation::OperatorEvent;
+
+constexpr double kLongest = 1e9;  // s, as for --trace-window
+
+std::optional<double> number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+CLI::Validator between(double least, double most, const std::string& what) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const auto value = number(text);
+        if (value && *value >= least && *value <= most) return std::string();
+        return fmt::format("must be {} from {} to {:.0f}, not {}", what, least, most, text);
+      },
+      "");
+}
+
+double percent_of(const std::string& option, std::string_view text, double most, const char* why = "") {
+  const auto value = number(text);
+  if (!value || !(*value >= 0) || *value > most) {
+    throw UsageError(fmt::format("{}: {} is no override from 0 to {:g} percent{}", option, text, most,
+                                 value && *value > most ? why : ""));
+  }
+  return *value;
+}
+
+double seconds_of(const std::string& option, std::string_view text, const char* what) {
+  const auto value = number(text);
+  if (!value || !(*value >= 0) || *value > kLongest) {
+    throw UsageError(fmt::format("{}: {} is no {} from 0 to {:g} seconds of card time", option, text, what, kLongest));
+  }
+  return *value;
+}
+
+std::pair<std::string_view, std::string_view> halves(const std::string& option, std::string_view text,
+                                                     const char* form) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) throw UsageError(fmt::format("{}: {} must be {}", option, text, form));
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+OperatorEvent input_of(const std::string& text) {
+  constexpr const char* kOption = "--input-at";
+  constexpr const char* kForm = "SECONDS:INPUT:LEVEL";
+  const auto [at, pin_and_level] = halves(kOption, text, kForm);
+  const auto [pin, level] = halves(kOption, pin_and_level, kForm);
+  const double seconds = seconds_of(kOption, at, "time");
+  const auto input = number(pin);
+  if (!input || !(*input >= 0) || *input >= sim::kPins || *input != std::floor(*input)) {
+    throw UsageError(fmt::format("{}: {} is no input of the simulated card, 0 to {}", kOption, pin, sim::kPins - 1));
+  }
+  if (level != "0" && level != "1") throw UsageError(fmt::format("{}: {} is no level, 0 or 1", kOption, level));
+  return {OperatorEvent::Kind::kInput, seconds, 0, static_cast<unsigned>(*input), level == "1"};
+}
+
+// "M900" or "M862.3", in tenths.
+int m_word_of(const std::string& text) {
+  std::string_view digits = text;
+  const bool letter = !digits.empty() && (digits.front() == 'M' || digits.front() == 'm');
+  if (letter) digits.remove_prefix(1);
+  const bool plain = digits.find_first_not_of("0123456789.") == std::string_view::npos;
+  const auto value = letter && plain ? number(digits) : std::nullopt;
+  constexpr double kLargest = 9999.9;
+  const double tenths = value.value_or(0) * 10;
+  if (!value || *value > kLargest || std::abs(tenths - std::round(tenths)) > 1e-6) {
+    throw UsageError(fmt::format("--accept: {} is no M word such as M900 or M862.3", text));
+  }
+  return static_cast<int>(std::round(tenths));
+}
+
+// A resume ends the latest hold alone: two that overlap have no meaning that all would guess.
+void refuse_overlaps(const std::vector<OperatorEvent>& events) {
+  const OperatorEvent* hold = nullptr;
+  for (const OperatorEvent& event : events) {
+    if (event.kind == OperatorEvent::Kind::kHold) {
+      if (hold != nullptr) {
+        throw UsageError(fmt::format("--hold-at: the hold at {:g} s begins before the one at {:g} s is over",
+                                     event.seconds, hold->seconds));
+      }
+      hold = &event;
+    } else if (event.kind == OperatorEvent::Kind::kResume) {
+      hold = nullptr;
+    }
+  }
+}
+
+}  // namespace
+
+void MotionChoice::add_to(CLI::App& command) {
+  command
+      .add_option("--override", percent,
+                  "percent of the planned speed, from the start on; 0 to 100, or to 100 times the machine file's "
+                  "max_override (default: 100)")
+      ->type_name("PERCENT");
+  command
+      .add_option("--rapid-override", rapid_percent, "percent of the planned speed of rapids, 0 to 100 (default: 100)")
+      ->type_name("PERCENT");
+  command.add_option("--override-at", override_at, "change the override at a time of the card (repeatable)")
+      ->type_name("SECONDS:PERCENT")
+      ->allow_extra_args(false);
+  command
+      .add_option("--hold-at", hold_at,
+                  "hold at a time of the card, for so many seconds from the request on (repeatable)")
+      ->type_name("SECONDS:DURATION")
+      ->allow_extra_args(false);
+  command
+      .add_option("--input-at", input_at,
+                  fmt::format("set an input of the simulated card (0 to {}) to a level (0 or 1) at a time of the card "
+                              "(repeatable; before, all are 0)",
+                              sim::kPins - 1))
+      ->type_name("SECONDS:INPUT:LEVEL")
+      ->allow_extra_args(false);
+  command.add_option("--feed-scale", feed_scale, "factor on every programmed feed, 0.001 to 1000 (default: 1)")
+      ->check(between(0.001, 1000, "a factor"))
+      ->type_name("FACTOR");
+  command
+      .add_option(
+          "--limit-bus", bytes_per_second,
+          "the bus carries so many bytes a second of card time, 4 a word, both ways together (default: no limit)")
+      ->check(between(1, 1e9, "bytes a second"))
+      ->type_name("BYTES_PER_SECOND");
+  command
+      .add_option("--from-line", first_line,
+                  "begin at this line; those before it set modes, offsets, position and outputs alone")
+      ->transform(whole_number(1, std::numeric_limits<std::uint32_t>::max()).description(""))
+      ->type_name("N");
+  command
+      .add_option("--arcs", arcs,
+                  "what makes arcs: generator, accumulator-8 (in 8 directions), accumulator (in 4; helices: "
+                  "chords), or chords; the next of these where one cannot")
+      ->check(CLI::IsMember({"generator", "accumulator-8", "accumulator", "chords"}))
+      ->capture_default_str();
+  command
+      .add_option("--profile", profile,
+                  "how the speed changes: trapezoid or s-curve (default: s-curve where every axis has a max_jerk)")
+      ->check(CLI::IsMember({"trapezoid", "s-curve"}).description(""))
+      ->type_name("PROFILE");
+  command
+      .add_option("--accept", accept,
+                  "leave out the lines that begin with this M word, as those of heaters and fans (repeatable)")
+      ->type_name("M...");
+  command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
+  command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
+}
+
+simulation::Operation MotionChoice::operation(double most_percent) const {
+  simulation::Operation result;
+  constexpr const char* kMost = " (max_override of the machine file sets the most)";
+  result.percent = percent_of("--override", percent, most_percent, kMost);
+  result.rapid_percent = percent_of("--rapid-override", rapid_percent, 100);
+  result.bytes_per_second = bytes_per_second.value_or(std::numeric_limits<double>::infinity());
+  for (const std::string& text : override_at) {
+    const auto [at, to] = halves("--override-at", text, "SECONDS:PERCENT");
+    const double seconds = seconds_of("--override-at", at, "time");
+    result.events.push_back(
+        {OperatorEvent::Kind::kOverride, seconds, percent_of("--override-at", to, most_percent, kMost)});
+  }
+  for (const std::string& text : hold_at) {
+    const auto [at, duration] = halves("--hold-at", text, "SECONDS:DURATION, both in seconds");
+    const double begin = seconds_of("--hold-at", at, "time");
+    const double end = begin + seconds_of("--hold-at", duration, "duration");
+    result.events.push_back({OperatorEvent::Kind::kHold, begin, 0});
+    result.events.push_back({OperatorEvent::Kind::kResume, end, 0});
+  }
+  for (const std::string& text : input_at) result.events.push_back(input_of(text));
+  std::stable_sort(result.events.begin(), result.events.end(),
+                   [](const OperatorEvent& a, const OperatorEvent& b) { return a.seconds < b.seconds; });
+  refuse_overlaps(result.events);
+  double last = result.percent;
+  for (const OperatorEvent& event : result.events) {
+    if (event.kind == OperatorEvent::Kind::kOverride) last = event.percent;
+  }
+  if (last == 0) throw UsageError("--override: 0 percent to the end, and the program would never end");
+  return result;
+}
+
+run::RunSettings MotionChoice::settings() const {
+  run::RunSettings settings;
+  settings.reader.block_delete = !run_deleted;
+  settings.reader.feed_scale = feed_scale;
+  for (const std::string& word : accept) settings.reader.left_out.push_back(m_word_of(word));
+  settings.first_line = first_line;
+  settings.single_block = single_block;
+  settings.arcs = arcs == "chords"          ? planner::ArcsBy::kChords
+                  : arcs == "accumulator"   ? planner::ArcsBy::kAccumulator
+                  : arcs == "accumulator-8" ? planner::ArcsBy::kEightDirections
+                                            : planner::ArcsBy::kGenerator;
+  if (profile) {
+    settings.profile = *profile == "s-curve" ? planner::SpeedProfile::kSCurve : planner::SpeedProfile::kTrapezoid;
+  }
+  return settings;
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,38 @@
+// Options of `trammel run` that an operator has at the machine: overrides, holds, where to begin, what to leave out;
+// and what the machine's inputs do.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/command_line.hpp"
+#include "trammel/run/run_settings.hpp"
+#include "trammel/simulation/operation.hpp"
+
+namespace trammel::app {
+
+struct MotionChoice {
+  std::string percent = "100";
+  std::vector<std::string> override_at;  // SECONDS:PERCENT
+  std::vector<std::string> hold_at;      // SECONDS:DURATION
+  std::vector<std::string> input_at;     // SECONDS:INPUT:LEVEL
+  std::string rapid_percent = "100";
+  double feed_scale = 1;
+  std::optional<double> bytes_per_second;
+  std::size_t first_line = 1;
+  std::string arcs = "generator";
+  std::optional<std::string> profile;
+  std::vector<std::string> accept;  // M words
+  bool single_block = false;
+  bool run_deleted = false;
+
+  void add_to(CLI::App& command);
+  // Throw UsageError for what is malformed or out of range. `most_percent`: the largest override that the machine's
+  // limits leave room for.
+  simulation::Operation operation(double most_percent) const;
+  run::RunSettings settings() const;
+};
+
+}  // namespace trammel::app

@@ -1,0 +1,348 @@
+#include "run_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "card_run.hpp"
+#include "common/card_choice.hpp"
+#include "common/engine_options.hpp"
+#include "common/errors.hpp"
+#include "common/machine_choice.hpp"
+#include "common/outputs.hpp"
+#include "common/progress_bar.hpp"
+#include "common/standard_streams.hpp"
+#include "common/stop_at_signals.hpp"
+#include "common/terminal.hpp"
+#include "common/waveform.hpp"
+#include "engine_speed.hpp"
+#include "motion_options.hpp"
+#include "parameter_file.hpp"
+#include "profile_report.hpp"
+#include "program_check.hpp"
+#include "program_file.hpp"
+#include "run_report.hpp"
+#include "trammel/kinematics/kinematics.hpp"
+#include "trammel/report/page.hpp"
+#include "trammel/report/report_writer.hpp"
+#include "trammel/simulation/simulated_card.hpp"
+#include "trammel/simulation/simulated_run.hpp"
+
+namespace trammel::app {
+namespace {
+
+// A simulated card at 1 MHz runs programs faster than life; only the resolution in time differs from the real clock.
+constexpr std::uint32_t kSimulatedClock = 1'000'000;
+
+constexpr std::uint64_t kDefaultPipeLimit = 512;  // MiB
+
+struct RunArguments {
+  std::string program;
+  CardChoice card;
+  MachineChoice machine;
+  EngineChoice engine;
+  MotionChoice motion;
+  std::optional<std::string> json;
+  std::optional<std::string> steps;
+  std::optional<std::string> path_steps;
+  std::optional<std::string> outputs;
+  std::optional<std::string> plot;
+  std::optional<std::string> parameters;
+  std::optional<std::string> report;
+  std::optional<std::string> report_window;
+  bool progress = false;
+  bool check = false;
+  bool stream = false;
+  std::optional<std::uint64_t> pipe_limit;  // MiB
+};
+
+void refuse_contradictions(const RunArguments& options) {
+  const auto refuse = [](const char* option, bool given, const char* why) {
+    if (given) throw UsageError(fmt::format("{}: {}", option, why));
+  };
+  if (options.stream) {
+    refuse("--pipe-limit", options.pipe_limit.has_value(), "nothing is copied with --stream");
+    refuse("--plot", options.plot.has_value(), "needs the whole program first, not --stream");
+    refuse("--report", options.report.has_value(), "needs the whole program first, not --stream");
+  }
+  refuse("--report-window", options.report_window && !options.report, "there is no --report");
+  refuse("--report", options.report && !report::page_is_built(), report::kHowToBuildPage);
+  refuse("--parameters", options.parameters == "-", "needs a file: it is read, too");
+  if (!options.check) return;
+  constexpr const char* kWhy = "nothing runs with --check";
+  refuse("--steps", options.steps.has_value(), kWhy);
+  refuse("--path-steps", options.path_steps.has_value(), kWhy);
+  refuse("--outputs", options.outputs.has_value(), kWhy);
+  refuse("--plot", options.plot.has_value(), kWhy);
+  refuse("--report", options.report.has_value(), kWhy);
+  refuse("--trace", options.engine.trace.has_value(), kWhy);
+  refuse("--stream", options.stream, kWhy);
+}
+
+void refuse_rapids_at_zero(const RunArguments& options, double rapid_percent, const run::Plan& plan) {
+  if (rapid_percent != 0) return;
+  if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
+  if (plan.rapids == 0) return;
+  throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
+}
+
+// A list of steps, a picture and a time of the operator's need the pins and the clocks of a simulated card.
+void refuse_what_needs_the_simulation(const RunArguments& options) {
+  const CardChoice& card = options.card;
+  options.engine.refuse_with(card);
+  refuse_with_card(card, "--steps", options.steps.has_value());
+  refuse_with_card(card, "--path-steps", options.path_steps.has_value());
+  refuse_with_card(card, "--outputs", options.outputs.has_value());
+  refuse_with_card(card, "--plot", options.plot.has_value());
+  refuse_with_card(card, "--report", options.report.has_value());
+  refuse_with_card(card, "--override-at", !options.motion.override_at.empty());
+  refuse_with_card(card, "--hold-at", !options.motion.hold_at.empty());
+  refuse_with_card(card, "--input-at", !options.motion.input_at.empty());
+  refuse_with_card(card, "--limit-bus", options.motion.bytes_per_second.has_value());
+  if (options.check) throw UsageError("--check: nothing runs, so it takes no --card");
+}
+
+// Throws where a warning is lost: most come before anything moves, and then nothing does.
+void warn(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) tell("warning", text);
+  finish_standard_streams();
+}
+
+// Of the program, on every card.
+run::RunSettings settings_of(const RunArguments& options) {
+  run::RunSettings settings = options.motion.settings();
+  if (options.parameters) settings.reader.parameters = load_parameters(*options.parameters);
+  return settings;
+}
+
+// The largest override that the machine's limits leave room for.
+double most_percent(const machine::Machine& machine) { return 100 * machine.motion.max_override; }
+
+std::optional<std::uint64_t> copy_limit(const RunArguments& options) {
+  if (options.stream) return std::nullopt;
+  return options.pipe_limit.value_or(kDefaultPipeLimit) << 20U;
+}
+
+// From its beginning, each time. `file` must outlive them.
+run::ProgramLines lines_of(const ProgramFile& file) {
+  return [&file]() -> std::unique_ptr<gcode::LineSource> {
+    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
+  };
+}
+
+// Refuses to write over what the run reads.
+void keep_inputs(const RunArguments& options, Outputs& outputs) {
+  outputs.keep("the program", options.program);
+  if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
+  outputs.check();
+}
+
+void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
+  refuse_what_needs_the_simulation(options);
+  Outputs outputs;
+  Output* const json = outputs.add("--json", options.json);
+  Output* const parameters = outputs.add("--parameters", options.parameters);
+  keep_inputs(options, outputs);
+  const machine::Machine machine = options.machine.load();
+  warn(jerk_warnings(machine));
+  CardRunOptions run;
+  run.settings = settings_of(options);
+  run.stream = options.stream;
+  run.progress = options.progress;
+  run.most_percent = most_percent(machine);
+  const simulation::Operation operation = options.motion.operation(run.most_percent);
+  run.percent = operation.percent;
+  run.rapid_percent = operation.rapid_percent;
+  run.planned = [&](const run::Plan& plan) {
+    refuse_rapids_at_zero(options, run.rapid_percent, plan);
+    outputs.open();
+    warn(feed_warnings(plan.file, plan.feeds_not_reached));
+  };
+  const ProgramFile file(options.program, copy_limit(options));
+  CardRunResult result;
+  with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
+    result = run_on_card(lines_of(file), machine, card, connection, run);
+  });
+  result.card = url.text;
+  if (parameters != nullptr) parameters->write(parameters_text(result.outcome.parameters));
+  if (json != nullptr) json->write(json_text(result));
+  outputs.commit(summary(result) + options.machine.line());
+}
+
+void check(const run::ProgramLines& lines, const MachineChoice& choice, const machine::Machine& machine,
+           const planner::CardLimits& card, const run::RunSettings& settings, Outputs& outputs, Output* json) {
+  const CheckResult result = check_program(lines, machine, card, settings);
+  warn(feed_warnings(result.plan.file, result.plan.feeds_not_reached));
+  outputs.open();
+  if (json != nullptr) json->write(json_text(result));
+  outputs.commit(summary(result) + choice.line());
+}
+
+// The files of a run in simulation: nullptr where an option was not given.
+struct SimulationFiles {
+  explicit SimulationFiles(const RunArguments& options)
+      : json(all.add("--json", options.json)),
+        plot(all.add("--plot", options.plot)),
+        report(all.add("--report", options.report)),
+        trace(all.add("--trace", options.engine.trace, true)),
+        steps(all.add("--steps", options.steps)),
+        path_steps(all.add("--path-steps", options.path_steps)),
+        outputs(all.add("--outputs", options.outputs)),
+        parameters(all.add("--parameters", options.check ? std::optional<std::string>() : options.parameters)) {
+    keep_inputs(options, all);
+  }
+
+  Outputs all;
+  Output* json;
+  Output* plot;
+  Output* report;
+  Output* trace;
+  Output* steps;
+  Output* path_steps;
+  Output* outputs;
+  Output* parameters;
+};
+
+simulation::RunOptions simulation_options(const RunArguments& options, const machine::Machine& machine,
+                                          const SimulationFiles& files) {
+  if (files.report != nullptr && !kinematics::Kinematics(machine).joint_for_each_axis()) {
+    throw UsageError("--report: its page shows machines with a motor for each axis; leave it out for corexy");
+  }
+  simulation::RunOptions run;
+  run.settings = settings_of(options);
+  run.most_percent = most_percent(machine);
+  run.operation = options.motion.operation(run.most_percent);
+  run.steps = files.steps;
+  run.path_steps = files.path_steps;
+  run.outputs = files.outputs;
+  run.report = files.report;
+  run.plot = files.plot != nullptr;
+  return run;
+}
+
+// What people may want to know before a long wait.
+void tell_of_engine(const sim::SimulationOptions& engine, unsigned axes, double planned_seconds) {
+  if (const auto text = long_run_note(engine, planned_seconds)) tell("note", *text);
+  if (engine.axes != axes) {
+    tell("note", fmt::format("traced on a card of {} axes: others are not built for it", engine.axes));
+  }
+}
+
+// Shows how far the run is.
+class SimulationProgress final : public run::Observer {
+ public:
+  SimulationProgress(const simulation::SimulatedRun& run, double planned_seconds, double clock_hz, bool always)
+      : run_(run), planned_seconds_(planned_seconds), clock_hz_(clock_hz), bar_(always) {}
+  void sent() override { progress({}); }
+  void progress(const run::Progress& /*progress*/) override {
+    const double seconds = static_cast<double>(run_.cycles()) / clock_hz_;
+    bar_.show(planned_seconds_ > 0 ? seconds / planned_seconds_ : 1.0,
+              fmt::format("{:.1f} of {:.1f} s of card time", seconds, planned_seconds_));
+  }
+
+ private:
+  const simulation::SimulatedRun& run_;
+  double planned_seconds_;
+  double clock_hz_;
+  ProgressBar bar_;
+};
+
+// The run itself, when all is checked: to the end of the motion.
+run::Outcome stream_to_simulation(const RunArguments& options, const machine::Machine& machine,
+                                  const sim::SimulationOptions& engine, double planned_seconds,
+                                  simulation::SimulatedRun& run) {
+  run.make_card(engine);
+  SimulationProgress progress(run, planned_seconds, engine.clock_hz, options.progress);
+  run.runner().add(progress);
+  return run_until_signal(run.runner(), run.card(), machine, options.stream);
+}
+
+void write_results(const RunArguments& options, const simulation::RunResult& result, const run::PlannedProfile& profile,
+                   report::ReportWriter* report, SimulationFiles& files) {
+  if (options.stream) warn(feed_warnings(result.plan.file, result.plan.feeds_not_reached));
+  if (files.trace != nullptr) require_whole_waveform(files.trace->path_to_write(), *options.engine.trace);
+  if (files.json != nullptr) files.json->write(json_text(result, profile));
+  if (files.parameters != nullptr) files.parameters->write(parameters_text(result.outcome.parameters));
+  if (files.plot != nullptr) files.plot->write(run::svg(result.plot));
+  if (report != nullptr) report->finish(report_json(result, profile));
+  files.all.commit(run_summary(result, profile) + options.machine.line());
+}
+
+void run_in_simulation(const RunArguments& options) {
+  refuse_contradictions(options);
+  if (const auto url = options.card.url()) return run_on_card(options, *url);
+  SimulationFiles files(options);
+  const machine::Machine machine = options.machine.load();
+  warn(jerk_warnings(machine));
+  simulation::RunOptions settings = simulation_options(options, machine, files);
+  const auto axes = static_cast<unsigned>(machine.motors());
+  sim::SimulationOptions engine = options.engine.options(files.trace != nullptr ? simulation::traced_axes(axes) : axes,
+                                                         kSimulatedClock, machine.clock_hz);
+  if (options.report_window) {
+    settings.report_window = window_of("--report-window", *options.report_window, engine.clock_hz);
+  }
+  const ProgramFile file(options.program, copy_limit(options));
+  const planner::CardLimits card = simulation::limits_of(engine);
+  if (options.check) {
+    return check(lines_of(file), options.machine, machine, card, settings.settings, files.all, files.json);
+  }
+  simulation::SimulatedRun run(lines_of(file), machine, card, settings);
+  const run::Plan plan = options.stream ? run::Plan{} : run.runner().plan();
+  refuse_rapids_at_zero(options, settings.operation.rapid_percent, plan);
+  files.all.open();
+  if (files.trace != nullptr) engine.trace->path = files.trace->path_to_write();
+  warn(feed_warnings(plan.file, plan.feeds_not_reached));
+  tell_of_engine(engine, axes, plan.seconds);
+  const run::Outcome outcome = stream_to_simulation(options, machine, engine, plan.seconds, run);
+  write_results(options, run.result(outcome), run::planned_profile(machine, settings.settings), run.report(), files);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  auto options = std::make_shared<RunArguments>();
+  CLI::App* command =
+      app.add_subcommand("run", "run a G-code program on the simulated card, or on one outside (--card)");
+  command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
+  options->machine.add_to(*command);
+  options->card.add_to(*command);
+  options->engine.add_to(*command, "1000000 with engine rtl, the machine file's with model");
+  options->motion.add_to(*command);
+  command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
+  command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
+      ->type_name("FILE");
+  command->add_option("--path-steps", options->path_steps, "every step of the path: command,tick,axis,direction")
+      ->type_name("FILE");
+  command->add_option("--outputs", options->outputs, "every change of an output: cycle,output,level")
+      ->type_name("FILE");
+  command
+      ->add_option("--parameters", options->parameters,
+                   "parameters, offsets, homes and tool: read before the run, written behind it")
+      ->type_name("FILE");
+  command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
+  command->add_option("--report", options->report, "page of the run: path, speeds, pins, program; opens in a browser")
+      ->type_name("FILE");
+  command
+      ->add_option("--report-window", options->report_window,
+                   "only this stretch's pulses in the page, seconds of card time")
+      ->type_name("FROM:TO");
+  command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");
+  command->add_flag("--check", options->check, "read, plan and time the program; nothing runs");
+  command->add_flag("--stream", options->stream,
+                    "read the program while it runs: an error in it is a stop on the way, status 1");
+  command
+      ->add_option("--pipe-limit", options->pipe_limit,
+                   fmt::format("longest program that is read from standard input, a pipe or a device, which is copied "
+                               "first (default {})",
+                               kDefaultPipeLimit))
+      ->transform(whole_number(1, 1'000'000, "MiB"))
+      ->type_name("MIB");
+  command->footer("One FILE may be '-', standard output; what people read then goes to standard error.");
+  command->callback([options] { run_in_simulation(*options); });
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,37 @@
+// A run's result for people and for programs.
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "trammel/run/planned_profile.hpp"
+#include "trammel/simulation/simulated_run.hpp"
+
+namespace trammel::app {
+
+// A line a cause for which feeds are not reached.
+std::vector<std::string> feed_warnings(const std::string& file, const std::vector<run::FeedNotReached>& feeds);
+
+// Some lines of text, units in every one.
+std::string run_summary(const simulation::RunResult& result, const run::PlannedProfile& profile);
+
+// Of the first pass: nothing, or a line.
+std::string probes_planned(const run::Plan& plan);
+// Words of the program that had no effect, by the reason why; a line each.
+std::string accepted_words(const std::map<std::string, std::size_t>& words);
+// What G64 P has done; empty where no corner asked for it.
+std::string blends_text(const run::Blends& blends);
+// What probes have met.
+std::string probes_text(const std::string& axes, const std::vector<run::ProbeMade>& probes);
+nlohmann::ordered_json probes_json(const std::string& axes, const std::vector<run::ProbeMade>& probes);
+nlohmann::ordered_json blends_json(const run::Blends& blends);
+nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
+nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
+
+std::string json_text(const simulation::RunResult& result, const run::PlannedProfile& profile);
+// The same and what the page of a run says beside it, in one line.
+std::string report_json(const simulation::RunResult& result, const run::PlannedProfile& profile);
+
+}  // namespace trammel::app

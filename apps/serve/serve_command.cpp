@@ -1,0 +1,164 @@
+#include "serve_command.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/engine_options.hpp"
+#include "common/errors.hpp"
+#include "common/standard_streams.hpp"
+#include "common/terminal.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/errors.hpp"
+#include "trammel/machine/machine.hpp"
+#include "trammel/run/path_identity.hpp"
+#include "trammel/serve/card_server.hpp"
+#include "trammel/sim/engines.hpp"
+#include "trammel/transport/byte_stream.hpp"
+
+namespace trammel::app {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint32_t kServedClock = 1'000'000;
+
+struct ServeOptions {
+  std::string engine = "rtl";
+  std::uint32_t clock_hz = kServedClock;
+  unsigned axes = 4;
+  std::string listen = "127.0.0.1";
+  std::uint16_t port = 0;
+  bool terminal = false;
+  std::optional<std::string> token;
+  bool fast = false;
+  std::uint32_t baud = 0;
+  double silence = 60;
+  bool once = false;
+};
+
+volatile sig_atomic_t g_ended = 0;
+
+void say(const std::string& text) { tell("note", text); }
+
+// The first signal ends the server in order; the next one as it would without this.
+void end_at_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { g_ended = 1; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+}
+
+sim::SimulationOptions engine_of(const ServeOptions& options) {
+  sim::SimulationOptions engine;
+  engine.kind = options.engine == "model" ? sim::EngineKind::kModel : sim::EngineKind::kRtl;
+  engine.axes = options.axes;
+  engine.clock_hz = options.clock_hz;
+  engine.rtl_thread = true;
+  return engine;
+}
+
+serve::Settings settings_of(const ServeOptions& options) {
+  if (options.token && !serve::is_token(*options.token)) {
+    throw UsageError("--token: 1 to 64 letters, digits, '-' and '_'");
+  }
+  serve::Settings settings;
+  settings.token = options.token.value_or(serve::random_token());
+  settings.clock_hz = options.clock_hz;
+  settings.real_time = !options.fast;
+  settings.baud = options.baud;
+  settings.note = say;
+  // A terminal's client cannot be sent away, and keeps nobody else from it.
+  if (!options.terminal) {
+    settings.hello = 5s;
+    settings.silence = std::chrono::milliseconds(static_cast<std::int64_t>(options.silence * 1000));
+  }
+  return settings;
+}
+
+std::unique_ptr<transport::Listener> listener_of(const ServeOptions& options) {
+  try {
+    return options.terminal ? transport::open_pseudo_terminal() : transport::listen_tcp(options.listen, options.port);
+  } catch (const driver::LinkError& error) {
+    throw UsageError(fmt::format("serve: {}", error.what()));
+  }
+}
+
+// What a program or a person needs to connect, on standard output at once.
+void tell_where(const transport::Listener& listener, const std::string& token) {
+  to_standard_output(
+      fmt::format("card {}\ntoken {}\nmove with --card '{}?token={}'\n", listener.url(), token, listener.url(), token));
+  finish_standard_streams();
+}
+
+void serve_card(const ServeOptions& options) {
+  const serve::Settings settings = settings_of(options);
+  const std::unique_ptr<transport::Listener> listener = listener_of(options);
+  const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_of(options));
+  run::PathIdentity path;
+  engine->set_sink(&path);
+  serve::CardServer server(*engine, *listener, settings);
+  end_at_signals();
+  tell_where(*listener, settings.token);
+  bool met = false;
+  while (g_ended == 0 && !(options.once && met && !server.has_client())) {
+    server.turn();
+    met = met || server.has_client();
+  }
+  const serve::CardServer::Counts& counts = server.counts();
+  const double seconds = static_cast<double>(engine->cycles()) / options.clock_hz;
+  std::string lockstep;  // asking for it settles what was not compared yet
+  if (const auto cycles = engine->lockstep_cycles())
+    lockstep = fmt::format("; lockstep: {} cycles, 0 mismatches", *cycles);
+  say(fmt::format("served {} clients, {} refused; {} requests, {} damaged; {:.3f} s of card time{}", counts.clients,
+                  counts.refused, counts.requests, counts.dropped, seconds, lockstep));
+  say(fmt::format("path: {} steps, identity {}", path.count(), path.text()));
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app) {
+  auto options = std::make_shared<ServeOptions>();
+  CLI::App* command = app.add_subcommand("serve", "put a simulated card on a TCP port or a pseudo-terminal");
+  command
+      ->add_option("--engine", options->engine,
+                   "rtl: the Verilated card in lockstep with the golden model; model: the model alone")
+      ->check(CLI::IsMember({"rtl", "model"}))
+      ->capture_default_str();
+  command->add_option("--clock", options->clock_hz, "clock of the card")
+      ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
+      ->type_name("HZ")
+      ->capture_default_str();
+  command->add_option("--axes", options->axes, "axes of the card")
+      ->transform(whole_number(1, card_map::kMaxAxes))
+      ->capture_default_str();
+  auto* listen =
+      command->add_option("--listen", options->listen, "address of this machine; others than loopback let others in")
+          ->type_name("ADDRESS")
+          ->capture_default_str();
+  auto* port = command->add_option("--port", options->port, "port; 0: one that is free")
+                   ->transform(whole_number(0, 65535))
+                   ->capture_default_str();
+  command->add_flag("--pty", options->terminal, "a pseudo-terminal in place of a port")
+      ->excludes(listen)
+      ->excludes(port);
+  command->add_option("--token", options->token, "who says it may move the card (default: a random one)");
+  command->add_flag("--fast", options->fast, "as fast as it can, not in real time");
+  command
+      ->add_option("--baud", options->baud, "what the link carries in card time, as a serial line would (0: no limit)")
+      ->transform(whole_number(0, 100'000'000))
+      ->type_name("BAUD")
+      ->capture_default_str();
+  command->add_option("--silence", options->silence, "a client that is silent for so long is let go")
+      ->check(positive())
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  command->add_flag("--once", options->once, "end when the first client has gone");
+  command->callback([options] { serve_card(*options); });
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,68 @@
+// Holds feed pieces until their stop distances are known. Internal to the planner.
+//
+// A piece is complete when all is known that follows within T_s, how long a hold takes at most, or to the stop.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "feed_piece.hpp"
+#include "path_ring.hpp"
+
+namespace trammel::planner {
+
+// What the card's queues hold.
+struct QueueLimits {
+  std::uint64_t halfwords = 0;  // of geometry
+  std::uint64_t pieces = 0;
+};
+
+class StopDistances {
+ public:
+  // `path` must outlive it. `stop_clocks`: T_s, how long the fastest rate counts.
+  StopDistances(const PathRing& path, double stop_clocks, const QueueLimits& queues);
+
+  // In order.
+  void put(const FeedPiece& piece);
+  // The last piece, if it has not been taken, ends at a stop after all.
+  void end_at_stop();
+  // Completes what is known by now.
+  void complete();
+  // The first piece is complete as it is: no room for more behind it. Throws std::logic_error with less than two.
+  void force();
+
+  // The first block's pieces are known, complete.
+  bool ready() const;
+  // How many pieces begin in block `index`, the first in the ring.
+  std::uint64_t count(std::uint64_t index) const;
+  // The next piece that begins in block `index`; false when there is none.
+  bool take(std::uint64_t index, driver::FeedCommand& command);
+
+ private:
+  static constexpr std::size_t kPieces = 16384;
+
+  void see_next();
+  void complete_first();
+  double reach(const FeedPiece& first);
+  double path_reach(const FeedPiece& first);
+  // Of what is numbered on, in a ring.
+  static std::size_t slot(std::uint64_t i) { return static_cast<std::size_t>(i % kPieces); }
+  FeedPiece& at(std::uint64_t i) { return pieces_[slot(i)]; }
+  const FeedPiece& at(std::uint64_t i) const { return pieces_[slot(i)]; }
+
+  const PathRing& path_;
+  double stop_clocks_;
+  QueueLimits queues_;
+  std::vector<FeedPiece> pieces_;  // a ring
+  std::uint64_t reached_ = 0;      // block, with whose commands a full queue ends
+  std::uint64_t first_ = 0;
+  std::uint64_t completed_ = 0;  // from the first: complete
+  std::uint64_t seen_ = 0;       // their rates count in `highest_`
+  std::uint64_t last_ = 0;
+  double seen_clocks_ = 0;              // of the pieces from completed_ to seen_
+  std::vector<std::uint64_t> highest_;  // a ring: pieces from completed_ to seen_ before which none is as fast
+  std::uint64_t highest_first_ = 0;
+  std::uint64_t highest_last_ = 0;
+};
+
+}  // namespace trammel::planner

@@ -1,0 +1,22 @@
+// Where the machine stands at the end of a run. Pure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "trammel/machine/machine.hpp"
+
+namespace trammel::run {
+
+struct EndPosition {
+  std::string axes;                  // letters of the machine's axes, in the card's order
+  std::vector<std::int64_t> pulses;  // by axis of the card, from machine zero on
+  std::vector<double> millimetres;   // by axis of the machine; degrees of a rotary axis
+  bool joint_for_each_axis = true;   // no motor moves two axes
+};
+
+// `pulses`: one for each motor of the machine.
+EndPosition end_position(const machine::Machine& machine, const std::vector<std::int64_t>& pulses);
+
+}  // namespace trammel::run

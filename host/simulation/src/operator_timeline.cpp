@@ -1,0 +1,41 @@
+#include "operator_timeline.hpp"
+
+#include <cmath>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/unit_table.hpp"
+
+namespace trammel::simulation {
+
+namespace reg = card_map::reg;
+
+void OperatorTimeline::schedule(sim::TimedBus& bus, std::uint32_t clock_hz) {
+  bus.at(0, [this](sim::Engine& engine) {
+    engine.write(reg::kRatioFeed, driver::Card::ratio_of(operation_.percent, most_));
+    // The first descriptor of each card is the time base's.
+    const card_map::Descriptor time_base = card_map::descriptor_of(engine.read(reg::descriptor(0)), 0);
+    if (!card_map::has_engine(driver::engines_of(time_base), card_map::engine::kClasses)) return;
+    engine.write(reg::kRatioRapid, driver::Card::ratio_of(operation_.rapid_percent, most_));
+    engine.write(reg::kRatioFixed, driver::Card::ratio_of(100, most_));
+  });
+  for (const OperatorEvent& event : operation_.events) {
+    bus.at(static_cast<std::uint64_t>(std::llround(event.seconds * clock_hz)),
+           [this, event](sim::Engine& engine) { make(event, engine); });
+  }
+}
+
+void OperatorTimeline::make(const OperatorEvent& event, sim::Engine& engine) {
+  if (event.kind == OperatorEvent::Kind::kInput) {
+    const auto pin = static_cast<std::uint16_t>(1U << event.input);
+    inputs_ = static_cast<std::uint16_t>(event.level ? inputs_ | pin : inputs_ & ~pin);
+    engine.set_inputs(inputs_);
+  } else if (event.kind == OperatorEvent::Kind::kOverride) {
+    engine.write(reg::kRatioFeed, driver::Card::ratio_of(event.percent, most_));
+  } else {
+    engine.write(reg::kHold, event.kind == OperatorEvent::Kind::kHold ? 1 : 0);
+  }
+  made_.push_back({event, engine.cycles()});
+}
+
+}  // namespace trammel::simulation
