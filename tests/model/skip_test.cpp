@@ -109,6 +109,7 @@ TEST(Skip, PulseGenerator) {
 TEST(Skip, Axis) {
   judge(model::Axis(1), 30, [](auto& in, const auto&, Random& random) {
     in.setting.address = card_map::reg::step_space(1) + 4 * (random() % 4);
+    in.setting.data %= 30;
   });
 }
 TEST(Skip, WaitTimer) {

@@ -31,7 +31,7 @@ inline std::uint64_t horizon(const model::RegisterFile& registers, const model::
   const bool events = out.ack || out.setting.set || out.stream_write || out.abort || out.probe_clear || out.flush ||
                       out.start || out.strobe || out.clear_fault != 0 || s.snapshot_asked;
   const bool loads = s.loading || s.loader_read.valid || out.loader_valid;
-  if (events || loads || s.snapshot.busy() || out.irq != registers.interrupt(in)) return 0;
+  if (events || loads || s.snapshot.busy() || s.snapshot.waits() || out.irq != registers.interrupt(in)) return 0;
   const std::uint32_t read = s.stored[in.loader_address];
   return forever_if(s.loader_read.data == read && out.loader_data == read);
 }

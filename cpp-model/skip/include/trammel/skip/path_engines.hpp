@@ -62,12 +62,22 @@ inline bool at_rest(const model::PathEngines& block) {
          s.out.done == block.said().ready && s.out.elsewhere == !block.said().at_end && s.out.payload_ready;
 }
 
-// What over_next is to become.
+// The outputs that follow the parts a clock late have arrived.
+inline bool shows_parts(const model::PathEngines& block) {
+  const model::PathEngines::State& s = block.state();
+  const model::DeviationAccumulator::Outputs& a = s.accumulator.outputs();
+  const model::ArcGenerator::Outputs& arc = s.arc.outputs();
+  const unsigned dir = (a.dir_x ? 1U << s.axis_x : 0) | (a.dir_y ? 1U << s.axis_y : 0);
+  return s.routed_dir == dir && s.out.dir == block.said().dir && s.out.chord_word == arc.word &&
+         s.out.ready == arc.ready && s.out.shadows_free == arc.loadable && s.out.chord_load == 0 &&
+         s.out.chord_swap == 0 && s.gate_payload_ready != block.said().stepping;
+}
+
 inline std::uint64_t horizon(const model::PathEngines& block, const model::PathEngines::Inputs& in) {
   const model::PathEngines::State& s = block.state();
   const bool arc_ends = on_chords(block) && !in.engine_taken && !s.arc.outputs().loadable;
   return forever_if(!in.cut && !in.tick && !in.swap && !in.load.valid && !arc_ends && at_rest(block) &&
-                    s.gate_payload_ready && s.out.chord_load == 0 && s.out.chord_swap == 0);
+                    shows_parts(block));
 }
 inline void advance(model::PathEngines&, const model::PathEngines::Inputs&, std::uint64_t) {}
 

@@ -12,7 +12,9 @@ namespace trammel::skip {
 inline bool settled(const model::UnderrunGuard& block, const model::UnderrunGuard::Inputs& in) {
   const model::UnderrunGuard::State& s = block.state();
   const bool follow = block.follows(in.active);
-  if (s.unknown != s.lost) return false;
+  if (s.unknown != s.lost || s.since < model::UnderrunGuard::kLag) return false;
+  const bool counts = s.paths != 0 || s.pieces != 0 || s.owed != 0;
+  if (s.lost && (counts || s.at_rest || s.at_barrier)) return false;
   if (s.lost && (in.lost || in.idle || s.since < model::UnderrunGuard::kLag)) return false;
   if (in.lost || in.cut || in.swap || in.load.valid || in.arrival.any() || s.pending.any) return false;
   if (s.due || (follow && (s.distance != s.next || s.ruled == block.next_zero()))) return false;
