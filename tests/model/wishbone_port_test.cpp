@@ -49,6 +49,8 @@ TEST(WishbonePort, AClassicReadAndItsClocks) {
 
 TEST(WishbonePort, APipelinedMasterIsStalled) {
   WishbonePort port(true);
+  EXPECT_TRUE(port.outputs().stall) << "in the first clock after a reset";
+  port.clock({});
   Core core(4);
   WishbonePort::Inputs in;
   in.cyc = in.stb = true;
@@ -65,6 +67,7 @@ TEST(WishbonePort, APipelinedMasterIsStalled) {
 TEST(WishbonePort, ARefusalIsAnError) {
   for (const bool pipelined : {false, true}) {
     WishbonePort port(pipelined);
+    port.clock({});
     Core core(4, true);
     WishbonePort::Inputs in;
     in.cyc = in.stb = in.we = true;
@@ -86,6 +89,7 @@ TEST(WishbonePort, GivenUpIsNotAnswered) {
   for (const bool pipelined : {false, true}) {
     for (unsigned when = 1; when < 6; ++when) {
       WishbonePort port(pipelined);
+      port.clock({});
       Core core(4);
       WishbonePort::Inputs in;
       unsigned answers = 0;
