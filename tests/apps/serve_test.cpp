@@ -49,7 +49,7 @@ TEST(Serve, EveryCommandOnACardBehindAPort) {
   EXPECT_EQ(read_json(json)["final_position"], (std::vector<int>{240, -160, 0})) << "from where the card stood";
   const Outcome dump = command.run("dump --card " + server.url());
   EXPECT_TRUE(has(dump.out, "0x000  MAGIC                0x54524D4C")) << dump.out;
-  EXPECT_TRUE(has(dump.out, "0x0A0  SNAP_POSITION[0]     0x000001B8  440")) << dump.out;
+  EXPECT_TRUE(has(dump.out, "0x220  SNAP_POSITION[0]     0x000001B8  440")) << dump.out;
   EXPECT_TRUE(has(dump.out, "SNAP_POSITION[2]"));
   EXPECT_FALSE(has(dump.out, "SNAP_POSITION[3]")) << "of an axis that it lacks";
   const Outcome monitor = command.run("monitor --looks 2 --interval 0.01 --card " + server.url());
@@ -289,8 +289,8 @@ TEST(CardOutside, ACardOfAnotherMapVersionAndOneThatEndsEarly) {
     for (std::size_t i = 0; i < 4; ++i) window[address + i] = static_cast<char>(value >> 8 * i);
   };
   put(0x000, 0x54524D4C);
-  put(0x004, 0x00030000);
-  expect_refused(command, "info --card mmap:" + command.write("newer", window), "MAP_VERSION: 3.0");
+  put(0x004, 0x00040000);
+  expect_refused(command, "info --card mmap:" + command.write("newer", window), "MAP_VERSION: 4.0");
   EXPECT_EQ(contents(command.path("newer")), window) << "nothing was written";
 }
 

@@ -159,7 +159,7 @@ static void hold_and_stop(void) {
 static void held(void) {
   trammel_card* card = simulated_card();
   trammel_one_shot line;
-  trammel_access hold = {0x184, 1, true};
+  trammel_access hold = {0x604, 1, true};
   size_t made;
   bool dropped = true;
   memset(&line, 0, sizeof line);

@@ -237,14 +237,14 @@ static void faults(void) {
 static void refusals(void) {
   trammel_card* card = simulated_card();
   trammel_command feed = feed_of(100);
-  trammel_access rubbish = {0x1C0, 0xFFFFFFFF, true};  // a word of the stream that begins no command
+  trammel_access rubbish = {0x610, 0xFFFFFFFF, true};  // a word of the stream that begins no command
   size_t made = 1;
   DONE(trammel_open_stream(card, NULL));
   DONE(trammel_put(card, &feed));
   DONE(trammel_transfer(card, &rubbish, 1, &made));
   CHECK(made == 0);
   FAILS(trammel_flush(card), TRAMMEL_REFUSED, "STREAM");
-  CHECK(trammel_last_error()->reason == 1 && trammel_last_error()->address == 0x1C0);
+  CHECK(trammel_last_error()->reason == 1 && trammel_last_error()->address == 0x610);
   FAILS(trammel_put(card, &feed), TRAMMEL_STATE, "restart");
   DONE(trammel_restart_stream(card));
   DONE(trammel_put(card, &feed));

@@ -188,7 +188,7 @@ TEST(Planner, ExtremesWork) {
   apply_override(machine, "axis.x.steps_per_mm=1000000");
   for (const std::uint32_t clock_hz : {100'000U, 1'000'000U, kClock}) {
     machine.clock_hz = clock_hz;
-    for (const auto& segment : plan_of("G0 X0.000001\nX2000 Y0.0125\nG1 X0 F0.0001\nY0 F0.00001", machine, clock_hz)) {
+    for (const auto& segment : plan_of("G0 X0.000001\nX2000 Y0.0125\nG1 X0 F0.06\nY0 F0.06", machine, clock_hz)) {
       if (segment->geometry != Geometry::kEnd) {
         expect_sound(segment);
         EXPECT_LE(top_rate(segment, clock_hz), 0.9001 * clock_hz);

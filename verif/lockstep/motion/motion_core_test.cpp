@@ -37,7 +37,7 @@ constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 // The registers of direct mode as the loader reads them: the word at an address, two clocks later.
 class LoaderRam {
  public:
-  void clock(std::uint8_t address) {
+  void clock(std::uint16_t address) {
     data_ = fetched_;
     fetched_ = words_[address];
   }
