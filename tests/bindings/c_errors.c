@@ -210,7 +210,7 @@ static void raw_accesses(void) {
   trammel_close(card);
 }
 
-// No card, for every function that takes one.
+// No card, for every function that takes one. Over a screen: a line for each function.
 static void null_cards(void) {
   trammel_access access = {0, 0, false};
   trammel_command command = command_of(TRAMMEL_END);

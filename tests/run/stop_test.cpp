@@ -130,8 +130,8 @@ TEST(Stop, WhileLinesComeSlowly) {
   EXPECT_LT(read, 60U) << "it was not looked for before the end";
 }
 
-// Before the first command is known, and the card has been given nothing: while a window of blocks is read, and when its
-// last line has been read (SCurvePlan.CallsBeforeEachRamp looks inside the planning of one).
+// Before the first command is known, and the card has been given nothing: while a window of blocks is read, and when
+// its last line has been read (SCurvePlan.CallsBeforeEachRamp looks inside the planning of one).
 class WindowOfLines final : public gcode::LineSource {
  public:
   WindowOfLines(driver::Card& card, unsigned stop_at, unsigned& read) : card_(card), stop_at_(stop_at), read_(read) {}

@@ -69,7 +69,7 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   EXPECT_GT(traffic.missing, clocks / 1'000'000);
   EXPECT_GT(traffic.stale, clocks / 500'000);
   EXPECT_GT(traffic.probed, clocks / 100'000);
-  EXPECT_GT(traffic.missed, clocks / 500'000);
+  EXPECT_GT(traffic.missed, clocks / 1'000'000);
   EXPECT_GT(traffic.holds, clocks / 100'000);
   EXPECT_GT(traffic.overrides, clocks / 100'000);
   expect_all_compared(card, axes, clocks);

@@ -303,7 +303,7 @@ inline void Traffic::probing() {
   std::uint64_t ticks = 0;
   send(random_path(random, axes_, pace, ticks, arc_every_));
   send(random_piece(random, ticks, pace));
-  for (std::uint64_t waits = below(12); waits != 0; --waits) {
+  for (std::uint64_t waits = untouched ? 12 : below(12); waits != 0; --waits) {
     host_.wait(below(300));
     if (one_in(2)) touch();
     const std::uint32_t now = status();
@@ -457,7 +457,7 @@ inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
       starved();
     else if (streams && one_in(5))
       streamed();
-    else if (commands_every != 0 && one_in(3))
+    else if (commands_every != 0 && one_in(2))
       probing();
     else
       section(one_in(4));
