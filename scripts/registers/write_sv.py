@@ -262,10 +262,11 @@ def _descriptor_function(registers, units):
     lines += [f"    logic [{bits - 1}:0] table_so_far;", "", "    table_so_far = '0;"]
     for unit in reversed(units.units):
         word_0, word_1 = _descriptor_words(unit, registers)
-        push = f"table_so_far = {{table_so_far[{bits - 65}:0], {word_1}, {word_0}}};"
-        condition = f"if (engines[ENGINE_{unit.engine.upper()}]) " if unit.engine else ""
+        indent = "      " if unit.engine else "    "
+        push = "".join(f"{indent}  {part},\n" for part in (f"table_so_far[{bits - 65}:0]", word_1)) + f"{indent}  {word_0}\n"
+        push = f"{indent}table_so_far = {{\n{push}{indent}}};"
         lines.append(f"    // {unit.name}")
-        lines.append(f"    {condition}begin\n      {push}\n    end" if condition else f"    {push}")
+        lines.append(f"    if (engines[ENGINE_{unit.engine.upper()}]) begin\n{push}\n    end" if unit.engine else push)
     lines += ["    unit_descriptors = table_so_far;", "  endfunction\n"]
     return "\n".join(lines)
 

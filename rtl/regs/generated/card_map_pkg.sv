@@ -1004,50 +1004,110 @@ package card_map_pkg;
     table_so_far = '0;
     // position_streaming
     if (engines[ENGINE_STREAMING]) begin
-      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(464 - (464) + 1), 10'(464), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd15};
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'(464 - (464) + 1), 10'(464),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd15
+      };
     end
     // outputs
     if (engines[ENGINE_PATH_COMMANDS]) begin
-      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(448 - (448) + 1), 10'(448), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(outputs), 4'd1, 4'd0, 8'd14};
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'(448 - (448) + 1), 10'(448),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(outputs), 4'd1, 4'd0, 8'd14
+      };
     end
     // inputs
     if (engines[ENGINE_PATH_COMMANDS]) begin
-      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(449 - (449) + 1), 10'(449), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(inputs), 4'd1, 4'd0, 8'd13};
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'(449 - (449) + 1), 10'(449),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(inputs), 4'd1, 4'd0, 8'd13
+      };
     end
     // path_commands
     if (engines[ENGINE_PATH_COMMANDS]) begin
-      table_so_far = {table_so_far[1983:0], 2'd0, 5'd12, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd12};
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd12, 7'd0, 8'd0, 10'd0,
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd12
+      };
     end
     // underrun_hold
     if (engines[ENGINE_UNDERRUN_HOLD]) begin
-      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd11};
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'd0, 10'd0,
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd11
+      };
     end
     // direct_mode
     if (engines[ENGINE_DIRECT_MODE]) begin
-      table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(834 - (828 - 4 * (axes - 1)) + 1), 10'(828 - 4 * (axes - 1)), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd10};
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'(834 - (828 - 4 * (axes - 1)) + 1), 10'(828 - 4 * (axes - 1)),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd10
+      };
     end
     // arc_generator
     if (engines[ENGINE_ARC_GENERATOR]) begin
-      table_so_far = {table_so_far[1983:0], 2'd0, 5'd11, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd9};
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd11, 7'd0, 8'd0, 10'd0,
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd9
+      };
     end
     // accumulator
     if (engines[ENGINE_ACCUMULATOR]) begin
-      table_so_far = {table_so_far[1983:0], 2'd0, 5'd10, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_ACCUMULATOR_8], 8'd1, 4'd1, 4'd0, 8'd8};
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd10, 7'd0, 8'd0, 10'd0,
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_ACCUMULATOR_8], 8'd1, 4'd1, 4'd0, 8'd8
+      };
     end
     // host_ports
-    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(ports), 4'd1, 4'd0, 8'd7};
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd31, 7'd0, 8'd0, 10'd0,
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(ports), 4'd1, 4'd0, 8'd7
+    };
     // snapshots
-    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd32, 8'(136 + 1 * (axes - 1) - (128) + 1), 10'(128), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(snapshot_areas), 4'd1, 4'd0, 8'd6};
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd31, 7'd32, 8'(136 + 1 * (axes - 1) - (128) + 1), 10'(128),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(snapshot_areas), 4'd1, 4'd0, 8'd6
+    };
     // axes
-    table_so_far = {table_so_far[1983:0], 2'd0, 5'd0, 7'd32, 8'(516 - (512) + 1), 10'(512), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(axes), 4'd1, 4'd0, 8'd5};
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd0, 7'd32, 8'(516 - (512) + 1), 10'(512),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(axes), 4'd1, 4'd0, 8'd5
+    };
     // feed_generator
-    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'd0, 10'd0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_JERK], 8'd1, 4'd1, 4'd0, 8'd4};
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd31, 7'd0, 8'd0, 10'd0,
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_JERK], 8'd1, 4'd1, 4'd0, 8'd4
+    };
     // queues
-    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd1, 8'(432 - (432) + 1), 10'(432), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_WATERMARKS], 8'd2, 4'd1, 4'd0, 8'd3};
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd31, 7'd1, 8'(432 - (432) + 1), 10'(432),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_WATERMARKS], 8'd2, 4'd1, 4'd0, 8'd3
+    };
     // stop_control
-    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(417 - (416) + 1), 10'(416), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd2};
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd31, 7'd0, 8'(417 - (416) + 1), 10'(416),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd2
+    };
     // time_base
-    table_so_far = {table_so_far[1983:0], 2'd0, 5'd31, 7'd0, 8'(403 - (400) + 1), 10'(400), 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_CLASSES], 8'd1, 4'd1, 4'd0, 8'd1};
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd31, 7'd0, 8'(403 - (400) + 1), 10'(400),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_CLASSES], 8'd1, 4'd1, 4'd0, 8'd1
+    };
     unit_descriptors = table_so_far;
   endfunction
 
