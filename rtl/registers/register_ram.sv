@@ -101,7 +101,8 @@ module register_ram #(
   assign identity   = register_fold_pkg::is_identity(stored_at) && stored_at != CLOCK_HZ;
   assign descriptor = register_fold_pkg::is_descriptor(stored_at, MORE_AXES);
 
-  always_ff @(posedge clk_i) begin
+  // Not always_ff: the initial content drives the memory, too.
+  always @(posedge clk_i) begin
     if (store_q && !identity && !descriptor) memory[store_place_q[BITS-1:0]] <= store_data_q;
     memory_q <= memory[place_i[BITS-1:0]];
     data_o   <= memory_q;
