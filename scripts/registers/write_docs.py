@@ -100,7 +100,7 @@ WINDOW_HEAD = """
 
 Reserved addresses, whole ranges or words between the registers of another range, answer `UNKNOWN_ADDRESS`. A unit that
 is built later takes its reserved range, and `MAP_VERSION` then has a higher minor version: a driver accepts any minor
-version and refuses another major one. What has an address keeps it within a major version.
+version and refuses another major one. A register keeps its address within a major version.
 
 | bytes | words | content | state |
 |---|---|---|---|
