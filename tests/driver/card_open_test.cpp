@@ -26,7 +26,7 @@ namespace field = card_map::field;
 
 TEST(CardOpen, ReadsWhoTheCardIsInFourTransfersAndWritesNothing) {
   RegisterStub bus(2, 100'000'000);
-  bus.values[reg::kMapVersion] = card_map::kMapVersionValue | 5U;
+  bus.values[reg::kMapVersion] = (card_map::kMapVersionValue & ~0xFFFFU) | 5U;
   bus.values[reg::step_length(1)] = 200;
   bus.values[reg::step_space(1)] = 300;
   const Card card = Card::open(bus);
