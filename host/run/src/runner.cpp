@@ -190,7 +190,9 @@ ProgramError::ProgramError(gcode::Error error) : std::runtime_error(gcode::descr
 RunError::RunError(const ProgramError& error) : std::runtime_error(error.what()), line_(error.error().line) {}
 
 RunError::RunError(const std::string& file, std::size_t line, const std::string& message)
-    : std::runtime_error(fmt::format("{}:{}: {}", file, line, message)), line_(line) {}
+    : std::runtime_error(line == 0 ? fmt::format("{}: before the first command: {}", file, message)
+                                   : fmt::format("{}:{}: {}", file, line, message)),
+      line_(line) {}
 
 Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card,
                const RunSettings& settings)
