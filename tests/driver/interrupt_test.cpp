@@ -8,6 +8,7 @@
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/frame_bus.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/position_stream.hpp"
 #include "trammel/driver/stream.hpp"
@@ -107,7 +108,7 @@ void expect_stop(sim::Engine& engine, Card& card, Call call) {
   EXPECT_GE(took, 3 * kInterruptSlice);
   EXPECT_LT(took, kLong);
   EXPECT_FALSE(card.busy());
-  EXPECT_EQ(card.read(hold_reg::kHold), 0U);
+  EXPECT_EQ(card.parts().registers.read(hold_reg::kHold), 0U);
   const auto positions = engine.positions();
   engine.wait(1'000'000);
   EXPECT_EQ(engine.positions(), positions);

@@ -12,6 +12,7 @@
 
 #include "posted_bus.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/driver/trigonometry.hpp"
 #include "trammel/sim/engine.hpp"
@@ -428,7 +429,7 @@ TEST(PositionStream, GoesOnWhereTheCountOfLinesWraps) {
       ASSERT_GE(ahead, 2U) << i;
       ASSERT_LE(ahead, 20U) << i;
     }
-    EXPECT_EQ(card.read(reg::kFeedBegun), 1U);
+    EXPECT_EQ(card.parts().registers.read(reg::kFeedBegun), 1U);
     if (!reset) {
       EXPECT_EQ(stream.finish()[0], 160 * kPulse);
       EXPECT_EQ(engine->positions()[0], 160);

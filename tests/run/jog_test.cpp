@@ -10,6 +10,7 @@
 #include "clocks.hpp"
 #include "dying_bus.hpp"
 #include "steps.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/run/configure.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/sim/timed_bus.hpp"
@@ -184,7 +185,7 @@ TEST_F(JogTest, AHostThatDiesLeavesARampedStop) {
     const std::uint64_t dies = engine_->cycles() + kClock;
     DyingBus bus(*engine_, dies);
     driver::Card card = driver::Card::open(bus);
-    const std::uint32_t under_runs = card.read(card_map::reg::kUnderruns);
+    const std::uint32_t under_runs = card.parts().registers.read(card_map::reg::kUnderruns);
     MachinePosition position(card.snapshot(), machine_);
     Jog jog(card, machine_, position);
     const auto times = [&direction](double factor) {
@@ -249,15 +250,15 @@ TEST_F(JogTest, GoesOnWhenItIsLookedAtAgain) {
 
 TEST_F(JogTest, GivesTheTimeBaseBackAndProgramsGoOnFromThere) {
   card_.set_ratio(0x6000);
-  const std::uint32_t slew = card_.read(card_map::reg::kSlew);
+  const std::uint32_t slew = card_.parts().registers.read(card_map::reg::kSlew);
   position_.set(0, 25);
   jog_.start({0, 30});
   pass(0.2);
   jog_.stop();
   jog_.wait();
-  EXPECT_EQ(card_.read(card_map::reg::kRatioFeed), 0x6000U);
-  EXPECT_EQ(card_.read(card_map::reg::kSlew), slew);
-  EXPECT_EQ(card_.read(card_map::reg::kHold), 0U);
+  EXPECT_EQ(card_.parts().registers.read(card_map::reg::kRatioFeed), 0x6000U);
+  EXPECT_EQ(card_.parts().registers.read(card_map::reg::kSlew), slew);
+  EXPECT_EQ(card_.parts().registers.read(card_map::reg::kHold), 0U);
   RunSettings there;
   there.start = position_.millimetres();
   Runner runner([] { return std::make_unique<gcode::TextLines>("G0 X24\nG1 Y0 F900\n", "p.ngc"); }, machine_,

@@ -11,6 +11,7 @@
 
 #include "clocks.hpp"
 #include "dying_bus.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/step_recorder.hpp"
 #include "trammel/sim/engine.hpp"
@@ -165,7 +166,7 @@ TEST_F(RunnerTest, ConfiguresTheCard) {
 
 // Full speed goes to rest in 2 v / a of the axis that takes longest: 0.3 s, or as slowly as the card can.
 TEST_F(RunnerTest, SlewFollowsFromTheAxes) {
-  const auto slew = [this] { return card_.read(card_map::reg::kSlew); };
+  const auto slew = [this] { return card_.parts().registers.read(card_map::reg::kSlew); };
   run("G0 X1\n");
   EXPECT_EQ(slew(), driver::Card::kSlowestSlew / 300'000);
   machine::apply_override(machine_, "axis.y.max_acceleration=500");

@@ -8,6 +8,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/runner.hpp"
@@ -109,9 +110,9 @@ TEST_P(DriverOnLinks, SettingsAreKept) {
   settings.direction_hold = 7us;
   card.configure_axis(2, settings);
   card.set_ratio(0x8000);
-  EXPECT_EQ(card.read(reg::step_length(2)), 3U);
-  EXPECT_EQ(card.read(reg::dir_hold(2)), 7U);
-  EXPECT_EQ(card.read(reg::kRatioFeed), 0x8000U);
+  EXPECT_EQ(card.parts().registers.read(reg::step_length(2)), 3U);
+  EXPECT_EQ(card.parts().registers.read(reg::dir_hold(2)), 7U);
+  EXPECT_EQ(card.parts().registers.read(reg::kRatioFeed), 0x8000U);
 }
 
 TEST_P(DriverOnLinks, ALineEndsWhereItShould) {
@@ -149,13 +150,13 @@ TEST_P(DriverOnLinks, RefusalsHaveTheirReason) {
   Card card = Card::open(bench_.bus());
   std::array<driver::Access, 3> accesses{driver::write_of(reg::step_length(0), 5), driver::write_of(reg::kAxes, 1)};
   try {
-    card.transfer(accesses.data(), 2, "test");
+    card.parts().registers.transfer(accesses.data(), 2, "test");
     FAIL();
   } catch (const driver::RefusedError& error) {
     EXPECT_EQ(error.reason(), static_cast<std::uint8_t>(card_map::Reason::ReadOnly));
     EXPECT_EQ(error.address(), reg::kAxes);
   }
-  EXPECT_EQ(card.read(reg::step_length(0)), 5U) << "the one before was made";
+  EXPECT_EQ(card.parts().registers.read(reg::step_length(0)), 5U) << "the one before was made";
   EXPECT_FALSE(card.refusal());
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "trammel/card_map.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 
 namespace trammel::run {
 
@@ -58,7 +59,7 @@ void Jog::start(const gcode::Coordinates& distance, double speed) {
 void Jog::begin(const JogPath& path, double speed) {
   if (path_) throw driver::StateError("jog: one is under way; stop it first");
   stream_.emplace(card_);
-  before_ = {card_.read(reg::kRatioFeed), card_.read(reg::kSlew)};
+  before_ = {card_.parts().registers.read(reg::kRatioFeed), card_.parts().registers.read(reg::kSlew)};
   path_ = path;
   stopping_ = false;
   sent_ticks_ = 0;
@@ -91,7 +92,7 @@ void Jog::send_line() {
 // card is at counts as over.
 void Jog::feed(int most) {
   if (stopping_ || sent_ticks_ == path_->ticks) return;
-  const std::uint64_t begun = std::uint64_t{card_.read(reg::kGeometryBegun)} * line_ticks_;
+  const std::uint64_t begun = std::uint64_t{card_.parts().registers.read(reg::kGeometryBegun)} * line_ticks_;
   const double wanted = ticks_ahead(*path_, card_.timing(), ratio_);
   for (int i = 0; i < most && sent_ticks_ != path_->ticks; ++i) {
     if (sent_ticks_ > begun && static_cast<double>(sent_ticks_ - begun) >= wanted) break;
@@ -126,7 +127,7 @@ bool Jog::moving() {
   if (!path_) return false;
   const driver::Status status = card_.status();
   if (status.faulted) path_.reset();
-  card_.throw_if_faulted(status, "jog");
+  card_.parts().registers.throw_if_faulted(status, "jog");
   if (status.busy && !(stopping_ && status.held)) {
     feed(kLinesAtOnce);
     return true;
@@ -136,7 +137,8 @@ bool Jog::moving() {
 }
 
 void Jog::wait() {
-  while (moving()) card_.bus().sleep(driver::time_of(card_.poll_interval(), card_.timing().clock_hz));
+  while (moving())
+    card_.bus().sleep(driver::time_of(driver::poll_interval(card_.timing().clock_hz), card_.timing().clock_hz));
 }
 
 void Jog::finish() {
@@ -145,7 +147,7 @@ void Jog::finish() {
   position_.look(card_.stop());
   set_ratio_at_once(before_.ratio);
   std::array<driver::Access, 2> slew{driver::write_of(reg::kSlew, before_.slew)};
-  card_.transfer(slew.data(), 1, "jog: slew");
+  card_.parts().registers.transfer(slew.data(), 1, "jog: slew");
 }
 
 }  // namespace trammel::run

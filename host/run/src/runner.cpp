@@ -8,6 +8,7 @@
 #include "line_ring.hpp"
 #include "pipeline.hpp"
 #include "plan_gatherer.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/configure.hpp"
 
@@ -65,7 +66,7 @@ class ProgramStream final : private driver::CommandSink {
   void run_section(planner::Pulses& end) {
     while (next()) {
       stream_.flush();
-      card_.serve_requests();
+      driver::serve_requests(card_);
       for (Observer* observer : observers_) observer->sent();
       end = planned_.block.end;
       first_of_block_ = true;
@@ -230,7 +231,7 @@ Outcome Runner::run(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
   // A window that takes long to plan does not make a stop or a hold wait.
-  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { card.serve_requests(); });
+  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { driver::serve_requests(card); });
   ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block);
   const planner::Pulses end = stream.run();
   if (plan_.probes == 0 && (stream.sent() != plan_.commands || end != plan_.end)) {
@@ -246,7 +247,7 @@ Outcome Runner::run(driver::Card& card) {
 Outcome Runner::stream(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { card.serve_requests(); });
+  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { driver::serve_requests(card); });
   PlanGatherer gatherer(pipeline);
   std::vector<Observer*> observers = observers_;
   observers.push_back(&gatherer);
@@ -278,7 +279,7 @@ Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, cons
   }
   outcome.final_coordinates = kinematics.coordinates(end);
   if (card_map::has_engine(card.identification().engines, card_map::engine::kUnderrunHold)) {
-    outcome.under_runs = card.read(card_map::reg::kUnderruns);
+    outcome.under_runs = card.parts().registers.read(card_map::reg::kUnderruns);
   }
   return outcome;
 }

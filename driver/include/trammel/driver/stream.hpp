@@ -44,7 +44,7 @@ struct ProbeResult {
 };
 
 struct StreamOptions {
-  // Pause between two looks at the card, card clocks; 0: Card::poll_interval(). Where the bus has interrupts the stream
+  // Pause between two looks at the card, card clocks; 0: poll_interval(). Where the bus has interrupts the stream
   // waits for the end, and where the card has watermarks for room in its queues, without looking so often.
   std::uint64_t poll_clocks = 0;
   // How much longer than planned (in card time) the card may be with what it has begun before it counts as hung. What
