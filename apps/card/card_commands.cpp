@@ -56,7 +56,7 @@ bool is_there(const map::Register& entry, const driver::Identification& card) {
 }
 
 void dump(Card& card) {
-  card.snapshot();
+  card.read_snapshot();
   std::vector<std::pair<std::uint32_t, std::string>> lines;
   for (const map::Register& entry : map::kRegisters) {
     if (entry.access == map::Access::Command || !is_there(entry, card.identification())) continue;
@@ -91,7 +91,7 @@ std::string state_of(const driver::Snapshot& now) {
 }
 
 std::vector<std::string> table(Card& card) {
-  const driver::Snapshot now = card.snapshot();
+  const driver::Snapshot now = card.read_snapshot();
   const driver::Identification& id = card.identification();
   std::array<driver::Access, 3> room{driver::read_of(reg::kGeometryRoom), driver::read_of(reg::kFeedRoom)};
   card.parts().registers.transfer(room.data(), 2, "monitor");
@@ -206,10 +206,10 @@ void try_refusals(Card& card, Checks& checks) {
 
 void try_clock(Card& card, Checks& checks) {
   using Clock = std::chrono::steady_clock;
-  const std::uint64_t first = card.snapshot().time;
+  const std::uint64_t first = card.read_snapshot().time;
   const auto begun = Clock::now();
   card.bus().sleep(std::chrono::milliseconds(200));
-  const std::uint64_t clocks = card.snapshot().time - first;
+  const std::uint64_t clocks = card.read_snapshot().time - first;
   const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
   checks.add("its clock runs", clocks == 0 ? "no clock in 0.2 s" : "",
              fmt::format("{:.3f} s of the card in {:.3f} s here",
@@ -233,19 +233,19 @@ void try_link(Card& card, transport::Connection* connection, unsigned exchanges,
 }
 
 void selftest(Card& card, transport::Connection* connection, const LookOptions& options) {
-  const driver::Status status = card.status();
+  const driver::Status status = card.read_status();
   if (status.busy) throw UsageError("selftest: the card is busy: it is tried when it is idle");
   Checks checks;
   const driver::Identification& id = card.identification();
   checks.add("it says who it is", "",
              fmt::format("{} axes, {} Hz, map {}.{}", id.axes, id.clock_hz, id.map_major, id.map_minor));
-  checks.add("it has no fault", status.faulted ? driver::describe_faults(card.faults()) : "");
-  const driver::Snapshot before = card.snapshot();
+  checks.add("it has no fault", status.faulted ? driver::describe_faults(card.read_faults()) : "");
+  const driver::Snapshot before = card.read_snapshot();
   try_link(card, connection, options.exchanges, checks);
   try_clock(card, checks);
   try_settings(card, checks);
   try_refusals(card, checks);
-  const driver::Snapshot after = card.snapshot();
+  const driver::Snapshot after = card.read_snapshot();
   checks.add("nothing has moved", after.position == before.position && !after.status.busy ? "" : "a position changed");
   if (checks.failed() != 0) {
     throw std::runtime_error(fmt::format("selftest: {} of {} checks failed", checks.failed(), checks.made()));

@@ -37,7 +37,7 @@ Card Card::open(Bus& bus) {
 const Identification& Card::identification() const { return parts_->identification; }
 const CardTiming& Card::timing() const { return parts_->timing; }
 Bus& Card::bus() const { return parts_->registers.bus(); }
-Build Card::build() { return read_build(parts_->registers); }
+Build Card::read_build() { return driver::read_build(parts_->registers); }
 
 void Card::configure_axis(unsigned axis, const AxisSettings& settings) {
   if (axis >= identification().axes) {
@@ -84,16 +84,16 @@ void Card::request_ratio(PieceClass piece_class, std::uint32_t ratio) noexcept {
   parts_->requests.ratio(piece_class, ratio);
 }
 
-Status Card::status() { return parts_->registers.status(); }
-Snapshot Card::snapshot() { return parts_->snapshots.take(); }
-Snapshot Card::stop_snapshot() { return parts_->snapshots.stop(); }
-Snapshot Card::mark_snapshot() { return parts_->snapshots.mark(); }
-Snapshot Card::probe_snapshot() { return parts_->snapshots.probe(); }
-std::uint32_t Card::marks() { return parts_->snapshots.marks(); }
+Status Card::read_status() { return parts_->registers.read_status(); }
+Snapshot Card::read_snapshot() { return parts_->snapshots.take(); }
+Snapshot Card::read_stop_snapshot() { return parts_->snapshots.stop(); }
+Snapshot Card::read_mark_snapshot() { return parts_->snapshots.mark(); }
+Snapshot Card::read_probe_snapshot() { return parts_->snapshots.probe(); }
+std::uint32_t Card::read_marks() { return parts_->snapshots.marks(); }
 void Card::clear_probe() { parts_->snapshots.clear_probe(); }
 
-std::uint16_t Card::inputs() { return parts_->ports.inputs(); }
-std::uint16_t Card::outputs() { return parts_->ports.outputs(); }
+std::uint16_t Card::read_inputs() { return parts_->ports.inputs(); }
+std::uint16_t Card::read_outputs() { return parts_->ports.outputs(); }
 unsigned Card::inputs_present() { return parts_->ports.inputs_present(); }
 unsigned Card::outputs_present() { return parts_->ports.outputs_present(); }
 void Card::set_input_polarity(std::uint16_t inverted) { parts_->ports.set_input_polarity(inverted); }
@@ -101,7 +101,7 @@ void Card::set_output_safe(std::uint16_t levels, std::uint16_t change) {
   parts_->ports.set_output_safe(levels, change);
 }
 
-std::uint32_t Card::faults() { return parts_->registers.faults(); }
+std::uint32_t Card::read_faults() { return parts_->registers.read_faults(); }
 void Card::clear_faults() { parts_->registers.write(reg::kFault, register_at(reg::kFault).mask, "clearing faults"); }
 std::optional<Refusal> Card::refusal() { return parts_->registers.refusal(); }
 void Card::clear_refusal() { parts_->registers.clear_refusal(); }

@@ -24,7 +24,7 @@ void Card::wait_until_idle(std::chrono::nanoseconds timeout) {
   }
   budget.allow(PlannedTime::of(clocks_of(timeout, timing().clock_hz, "timeout"), slowest));
   for (bool first = true;; first = false) {
-    const Status now = status();
+    const Status now = read_status();
     parts_->registers.throw_if_faulted(now, kContext);
     if (!now.busy) {
       return check_identity(*parts_);
@@ -36,7 +36,7 @@ void Card::wait_until_idle(std::chrono::nanoseconds timeout) {
 }
 
 std::optional<Snapshot> Card::take_over() {
-  const Status now = status();
+  const Status now = read_status();
   const bool holds = parts_->time_base.hold();
   if (now.busy && !now.held && !holds) {
     throw StateError("the card is moving, and not by this program: wait until it is idle, or hold it");
@@ -46,14 +46,14 @@ std::optional<Snapshot> Card::take_over() {
   return std::nullopt;
 }
 
-Snapshot Card::stop(std::chrono::nanoseconds patience) {
+Snapshot Card::stop(std::chrono::nanoseconds margin) {
   set_hold(true);
-  const std::uint64_t margin = clocks_of(patience, timing().clock_hz, "stop: patience");
-  wait_for_rest(kSlowestSlew / std::max<std::uint32_t>(parts_->registers.read(reg::kSlew), 1) + margin, true);
-  const Snapshot at_rest = snapshot();
+  const std::uint64_t margin_clocks = clocks_of(margin, timing().clock_hz, "stop: margin");
+  wait_for_rest(kSlowestSlew / std::max<std::uint32_t>(parts_->registers.read(reg::kSlew), 1) + margin_clocks, true);
+  const Snapshot at_rest = read_snapshot();
   abort();
-  wait_for_rest(margin, false);  // pulses that the shapers have accepted
-  Snapshot end = snapshot();
+  wait_for_rest(margin_clocks, false);  // pulses that the shapers have accepted
+  Snapshot end = read_snapshot();
   set_hold(false);
   end.geometry_begun = at_rest.geometry_begun;
   end.feed_begun = at_rest.feed_begun;
@@ -64,7 +64,7 @@ Snapshot Card::stop(std::chrono::nanoseconds patience) {
 void Card::wait_for_rest(std::uint64_t limit, bool held_is_rest) {
   const std::uint64_t pause = poll_interval(timing().clock_hz);
   for (std::uint64_t waited = 0;; waited += pause) {
-    const Status now = status();
+    const Status now = read_status();
     parts_->registers.throw_if_faulted(now, "stop");
     if (!now.busy || (held_is_rest && now.held)) return;
     if (waited > limit) throw TimeoutError("stop on the path", waited);

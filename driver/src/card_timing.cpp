@@ -12,8 +12,8 @@ namespace trammel::driver {
 
 std::uint64_t poll_interval(std::uint32_t clock_hz) {
   constexpr std::uint32_t kPollsPerSecond = 20'000;
-  constexpr std::uint32_t kFewestClocks = 64;
-  return std::max(clock_hz / kPollsPerSecond, kFewestClocks);
+  constexpr std::uint32_t kMinClocks = 64;
+  return std::max(clock_hz / kPollsPerSecond, kMinClocks);
 }
 
 std::uint64_t clocks_of(std::chrono::nanoseconds time, std::uint32_t clock_hz, const char* what) {

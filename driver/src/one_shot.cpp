@@ -284,17 +284,17 @@ OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed s
   return plan;
 }
 
-void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds patience) {
+void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds margin) {
   constexpr const char* kContext = "line: waiting for its end";
   constexpr std::uint32_t kLooksPerSecond = 50;
-  const std::uint64_t margin = clocks_of(patience, card.timing().clock_hz, "line: patience");
+  const std::uint64_t margin_clocks = clocks_of(margin, card.timing().clock_hz, "line: margin");
   const std::uint64_t shortest_pause = poll_interval(card.timing().clock_hz);
   const std::uint64_t look = std::max<std::uint64_t>(card.timing().clock_hz / kLooksPerSecond, shortest_pause);
   require_moving(card);
   for (std::size_t index = 0; index < plan.size(); ++index) {
     const OneShotPart part = plan.part(index);
     start_line(card, part);
-    WaitBudget waiting(card, kContext, margin);
+    WaitBudget waiting(card, kContext, margin_clocks);
     waiting.allow(PlannedTime::of(part.length));
     // The first pause is about as long as the line, the last ones are short.
     Status status;
@@ -303,7 +303,7 @@ void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds pati
       const std::uint64_t pause = std::clamp(left, shortest_pause, look);
       waiting.pause(status, pause, WaitBudget::kIdle);
       left -= std::min(left, pause);
-      status = card.status();
+      status = card.read_status();
       card.parts().registers.throw_if_faulted(status, kContext);
       serve_requests(card);
     } while (status.busy);

@@ -23,7 +23,7 @@ namespace field = card_map::field;
 
 constexpr std::uint64_t kLongestPeriod = std::uint64_t{1} << 32;  // clocks
 constexpr std::int64_t kFarthest = (std::int64_t{1} << 30) * PositionStream::kPulse;
-constexpr unsigned kMostStalePeriods = field::kStreamingStalePeriods >> field::kStreamingStalePeriodsShift;
+constexpr unsigned kMaxStalePeriods = field::kStreamingStalePeriods >> field::kStreamingStalePeriodsShift;
 // A tick every kClocksPerTick clocks, exactly: 2^-64 ticks a clock.
 constexpr std::uint64_t kStreamRate = ~std::uint64_t{0} / PositionStream::kClocksPerTick + 1;
 
@@ -73,14 +73,14 @@ PositionStream::PositionStream(Card& card, const PositionStreamOptions& options)
     : card_(&card),
       options_(options),
       axes_(card.identification().axes),
-      patience_clocks_(clocks_of(options.patience, card.timing().clock_hz, "position stream: patience")) {
+      margin_clocks_(clocks_of(options.margin, card.timing().clock_hz, "position stream: margin")) {
   if (!map::has_engine(card.identification().engines, map::engine::kStreaming)) {
     throw ArgumentError(fmt::format("position stream: needs {}, which the card does not have (engines 0x{:X})",
                                     map::kEngineNames[map::engine::kStreaming], card.identification().engines));
   }
-  if (options.stale_periods > kMostStalePeriods) {
+  if (options.stale_periods > kMaxStalePeriods) {
     throw ArgumentError(
-        fmt::format("position stream: {} stale periods are outside 0 .. {}", options.stale_periods, kMostStalePeriods));
+        fmt::format("position stream: {} stale periods are outside 0 .. {}", options.stale_periods, kMaxStalePeriods));
   }
   if (options.ahead == 0) throw ArgumentError("position stream: 0 periods ahead: at least 1");
   for (unsigned n = 0; n < axes_; ++n) {
@@ -93,12 +93,12 @@ PositionStream::PositionStream(Card& card, const PositionStreamOptions& options)
   if (card.ratio() != kFullRatio) {
     throw StateError(fmt::format("position stream: the ratio is {} / 65536; set it to the full one", card.ratio()));
   }
-  const Status status = card.status();
+  const Status status = card.read_status();
   card.parts().registers.throw_if_faulted(status, "position stream");
   TimeBase& time_base = card.parts().time_base;
   if (!time_base.holds_by_this_program()) time_base.throw_if_held("position stream");
   if (status.busy) throw StateError("position stream: the card is busy; wait until it is idle, or abort it");
-  origin_ = card.snapshot().position;
+  origin_ = card.read_snapshot().position;
   start();
 }
 
@@ -305,11 +305,11 @@ PositionStream::Positions PositionStream::finish() {
     const std::size_t count = used_;
     card_->parts().registers.transfer_stream(accesses_.data(), count);
     const std::uint64_t clocks = (lines_ - begun_ + 1) * longest_ticks_ * kClocksPerTick * (1 + options_.stale_periods);
-    const auto limit = time_of(clocks + patience_clocks_, card_->identification().clock_hz);
+    const auto limit = time_of(clocks + margin_clocks_, card_->identification().clock_hz);
     card_->wait_until_idle(limit);
     if (pending_) gone_beyond(card_->parts().registers.read(reg::kStaleTicks));
     pending_ = false;
-    expect_positions(card_->snapshot().position);
+    expect_positions(card_->read_snapshot().position);
     Access off = write_of(reg::kStreaming, 0);
     std::array<Access, 2> accesses{off};
     card_->parts().registers.transfer(accesses.data(), 1, "position stream");
@@ -342,20 +342,20 @@ std::int32_t PositionStream::at_card(unsigned axis, std::int64_t pulses) const {
 
 PositionStream::Stopped PositionStream::recover() {
   open_ = false;
-  if (!card_->status().faulted) card_->stop(options_.patience);
+  if (!card_->read_status().faulted) card_->stop(options_.margin);
   const std::uint64_t slew = std::max<std::uint32_t>(card_->parts().registers.read(reg::kSlew), 1);
-  const std::uint64_t limit = kSlowestSlew / slew + patience_clocks_;
+  const std::uint64_t limit = kSlowestSlew / slew + margin_clocks_;
   const std::uint64_t pause = poll_interval(card_->timing().clock_hz);
-  for (std::uint64_t waited = 0; card_->status().busy; waited += pause) {
+  for (std::uint64_t waited = 0; card_->read_status().busy; waited += pause) {
     if (waited > limit) throw TimeoutError("position stream: waiting for the card to stand", waited);
     if (interrupted()) throw InterruptedError("position stream: interrupted before the card stood; recover it again");
     card_->bus().sleep(time_of(pause, card_->identification().clock_hz));
   }
   Stopped stopped;
-  stopped.faults = card_->faults();
+  stopped.faults = card_->read_faults();
   if ((stopped.faults & field::kFaultMissingPeriod) != 0)
     stopped.stale_ticks = card_->parts().registers.read(reg::kStaleTicks);
-  const Snapshot now = card_->snapshot();
+  const Snapshot now = card_->read_snapshot();
   for (unsigned n = 0; n < axes_; ++n) {
     const std::int64_t expected = told_[n] + beyond_[n];
     told_[n] = expected + pulses_between(at_card(n, expected), now.position[n]);

@@ -122,7 +122,7 @@ void Registers::throw_refused(const Refusal& refusal, std::string_view context) 
     forget_latched_refusal();
   }
   if (refusal.reason == static_cast<std::uint8_t>(map::Reason::Faulted)) {
-    const std::uint32_t now = faults();
+    const std::uint32_t now = read_faults();
     if (now != 0) {
       throw FaultError(now, std::string(context));
     }
@@ -156,7 +156,7 @@ Status Registers::decode_status(std::uint32_t value) {
   return status;
 }
 
-Status Registers::status() {
+Status Registers::read_status() {
   std::array<Access, 2> access{read_of(reg::kStatus)};
   transfer(access.data(), 1, "status");
   return status_of(access[0]);
@@ -171,7 +171,7 @@ Status Registers::status_of(const Access& access) const {
 
 void Registers::throw_if_faulted(const Status& status, std::string_view context) {
   if (status.faulted) {
-    throw FaultError(faults(), std::string(context));
+    throw FaultError(read_faults(), std::string(context));
   }
 }
 

@@ -41,7 +41,7 @@ Snapshot Snapshots::read_area(map::Area area) {
   constexpr std::uint64_t kPause = 16;    // clocks; a snapshot is a few dozen register words
   constexpr std::uint64_t kLimit = 4096;  // clocks
   std::uint64_t waited = 0;
-  while (registers_.status().snapshot) {
+  while (registers_.read_status().snapshot) {
     if (waited >= kLimit) {
       throw TimeoutError("snapshot", waited);
     }

@@ -48,8 +48,7 @@ void refuse_reversal(const FeedCommand& feed, std::string_view command) {
 // One wait for the card.
 class Stream::Wait {
  public:
-  Wait(Stream& stream, const char* context)
-      : stream_(stream), budget_(*stream.card_, context, stream.patience_clocks_) {
+  Wait(Stream& stream, const char* context) : stream_(stream), budget_(*stream.card_, context, stream.margin_clocks_) {
     allow();
   }
 
@@ -107,15 +106,15 @@ auto Stream::closing_at_errors(Call call) {
 Stream::Stream(Card& card, StreamOptions options)
     : card_(&card),
       options_(std::move(options)),
-      patience_clocks_(clocks_of(options_.patience, card.timing().clock_hz, "stream: patience")),
+      margin_clocks_(clocks_of(options_.margin, card.timing().clock_hz, "stream: margin")),
       poll_clocks_(options_.poll_clocks != 0 ? options_.poll_clocks : poll_interval(card.timing().clock_hz)),
       accesses_(kKeptWords + 1),
       durations_(card.identification().feed_depth / kShortestQueued + kKeptWords / kShortestCommandWords +
                  kBeyondQueue) {
-  if (patience_clocks_ == 0) {
-    throw ArgumentError("stream: a patience of 0 ns");
+  if (margin_clocks_ == 0) {
+    throw ArgumentError("stream: a margin of 0 ns");
   }
-  const Status status = card.status();
+  const Status status = card.read_status();
   card.parts().registers.throw_if_faulted(status, "stream");
   if (!options_.opens_in_hold && !card.parts().time_base.holds_by_this_program()) {
     card.parts().time_base.throw_if_held("stream");
@@ -127,7 +126,7 @@ Stream::Stream(Card& card, StreamOptions options)
 }
 
 void Stream::restart() {
-  card_->parts().registers.throw_if_faulted(card_->status(), "stream");
+  card_->parts().registers.throw_if_faulted(card_->read_status(), "stream");
   reset();
 }
 
@@ -339,14 +338,14 @@ ProbeResult Stream::probe(const ProbeCommand& condition, const std::vector<Comma
     ProbeResult result;
     const Status status = wait_for_probe();
     if (status.probed) {
-      result.edge = card_->probe_snapshot();
+      result.edge = card_->read_probe_snapshot();
       result.outcome = result.edge.geometry_begun == begun ? ProbeOutcome::kTrippedAlready : ProbeOutcome::kTripped;
       card_->clear_probe();
       finish();
     } else if (!status.probe_missed) {
       throw StateError("probe: it is over without an edge and without a miss: somebody else has cleared it");
     }
-    result.rest = card_->snapshot();
+    result.rest = card_->read_snapshot();
     return result;
   });
 }

@@ -88,7 +88,7 @@ bool WaitBudget::overdue() {
   }
   if (slews_counted_) {
     // Lower for a while and back again, which nothing tells: a piece still runs.
-    const Snapshot now = card_.snapshot();
+    const Snapshot now = card_.read_snapshot();
     const bool runs = margin_ != 0 && now.rate != 0 && now.ratio != 0;
     if (runs) allow_again();
     return !runs;

@@ -190,7 +190,7 @@ class SilentLink final : public ByteLink {
   frames::Bytes reply_;
 };
 
-// The link's own patience would be an hour, and a stop's takes a second.
+// The link's own time-out would be an hour, and a stop's takes a second.
 TEST(InterruptScopes, EndTheWaitForASilentLink) {
   const auto engine = sim::make_model_engine({});
   SilentLink link(*engine);
@@ -202,7 +202,7 @@ TEST(InterruptScopes, EndTheWaitForASilentLink) {
   const auto begun = steady_clock::now();
   {
     const InterruptScope scope([] { return true; });
-    EXPECT_THROW(card.status(), InterruptedError);
+    EXPECT_THROW(card.read_status(), InterruptedError);
   }
   EXPECT_LT(steady_clock::now() - begun, kLong);
   link.silent = false;

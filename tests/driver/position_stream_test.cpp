@@ -269,7 +269,7 @@ TEST(PositionStream, AMissingPeriodStopsAndIsRecoveredFrom) {
     EXPECT_EQ(stopped.positions[0], (350 + (7 * gone + 250) / 500) * kPulse);
     EXPECT_EQ(stopped.positions[3], -(150 + (3 * gone + 249) / 500) * kPulse);
     for (unsigned n = 0; n < 4; ++n) EXPECT_EQ(host.engine->positions()[n] * kPulse, stopped.positions[n]);
-    EXPECT_EQ(host.card.faults(), 0U);
+    EXPECT_EQ(host.card.read_faults(), 0U);
     // On from there.
     Positions from = stopped.positions;
     for (int k = 0; k < 20; ++k) {

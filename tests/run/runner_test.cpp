@@ -225,7 +225,7 @@ TEST_F(RunnerTest, RefusesAProgramBeforeAnythingMoves) {
   EXPECT_THAT(error_of([&] { run("G0 X1\nG0 X2 Q\n"); }), HasSubstr("p.ngc:2: "));
   machine::apply_override(machine_, "axis.x.max=10");
   EXPECT_THAT(error_of([&] { run("G0 X1\nG0 X11\n"); }), HasSubstr("p.ngc:2: X11 is beyond the axis's max of 10"));
-  EXPECT_EQ(card_.snapshot().position[0], 0);
+  EXPECT_EQ(card_.read_snapshot().position[0], 0);
 }
 
 TEST_F(RunnerTest, RefusesAProgramThatChangesBetweenThePasses) {

@@ -52,7 +52,7 @@ TEST(SecondMotor, MakesItsAxisStepsInTheSameClocks) {
   EXPECT_EQ(card.parts().registers.read(card_map::reg::mode(1)) & card_map::field::kModeInvertSecond, 0U);
   EXPECT_NE(card.parts().registers.read(card_map::reg::mode(4)) & card_map::field::kModeInvertSecond, 0U);
 
-  MachinePosition position(card.snapshot(), machine);
+  MachinePosition position(card.read_snapshot(), machine);
   Jog jog(card, machine, position);
   jog.start({0, 2}, 20);
   jog.wait();

@@ -118,7 +118,7 @@ TEST_P(DriverOnLinks, SettingsAreKept) {
 TEST_P(DriverOnLinks, ALineEndsWhereItShould) {
   Card card = Card::open(bench_.bus());
   driver::run_line(card, driver::plan_line(card.timing(), {200, -100, 3}, 20ms));
-  const driver::Snapshot now = card.snapshot();
+  const driver::Snapshot now = card.read_snapshot();
   EXPECT_EQ(now.position[0], 200);
   EXPECT_EQ(now.position[1], -100);
   EXPECT_EQ(now.position[2], 3);
@@ -143,7 +143,7 @@ TEST_P(DriverOnLinks, ADwellTakesItsTime) {
   Stream stream(card);
   stream.send({driver::DwellCommand{100'000}, driver::EndCommand{}});
   EXPECT_TRUE(stream.finish().ended);
-  EXPECT_GE(card.snapshot().time, 100'000U);
+  EXPECT_GE(card.read_snapshot().time, 100'000U);
 }
 
 TEST_P(DriverOnLinks, RefusalsHaveTheirReason) {
@@ -165,7 +165,7 @@ TEST_P(DriverOnLinks, AFaultIsNamedAndCleared) {
   Stream stream(card);
   stream.send({feed_of(100), line_of(99, 1), driver::EndCommand{}});
   EXPECT_THROW(stream.finish(), driver::FaultError);
-  EXPECT_EQ(card.faults(), field::kFaultTickMismatch);
+  EXPECT_EQ(card.read_faults(), field::kFaultTickMismatch);
   card.clear_faults();
   stream.restart();
   stream.send({feed_of(10), line_of(10, 1), driver::EndCommand{}});
@@ -180,10 +180,10 @@ TEST_P(DriverOnLinks, HoldAndStopOnThePath) {
   bench_.bus().sleep(200ms);
   card.set_hold(true);
   bench_.bus().sleep(20ms);
-  const driver::Snapshot held = card.snapshot();
+  const driver::Snapshot held = card.read_snapshot();
   EXPECT_TRUE(held.status.held);
   bench_.bus().sleep(50ms);
-  EXPECT_EQ(card.snapshot().position[0], held.position[0]);
+  EXPECT_EQ(card.read_snapshot().position[0], held.position[0]);
   const driver::Snapshot end = card.stop();
   EXPECT_GT(end.position[0], 100);
   EXPECT_LT(end.position[0], 1000);

@@ -15,8 +15,8 @@ namespace reg = card_map::reg;
 
 namespace {
 
-constexpr double kLinesAhead = 24;          // that full speed needs, about
-constexpr std::uint64_t kLeastTicks = 512;  // of a line: more than a decode takes, and than the card's reserve
+constexpr double kLinesAhead = 24;        // that full speed needs, about
+constexpr std::uint64_t kMinTicks = 512;  // of a line: more than a decode takes, and than the card's reserve
 constexpr double kFractionOfQueue = 0.5;
 constexpr int kLinesAtOnce = 2;
 
@@ -36,7 +36,7 @@ std::uint64_t line_ticks(const JogPath& path, const driver::CardTiming& card, co
   const auto line = card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Line));
   const double fit = kFractionOfQueue * who.geometry_depth / card_map::queue_halfwords(*line, all);
   const double lines = std::max(1.0, std::min(kLinesAhead, fit));
-  return std::max(static_cast<std::uint64_t>(ticks_ahead(path, card, 1) / lines), kLeastTicks);
+  return std::max(static_cast<std::uint64_t>(ticks_ahead(path, card, 1) / lines), kMinTicks);
 }
 
 }  // namespace
@@ -47,12 +47,12 @@ Jog::Jog(driver::Card& card, const machine::Machine& machine, MachinePosition& p
 void Jog::start(const gcode::Coordinates& velocity) {
   double speed = 0;
   for (std::size_t a = 0; a < machine_.axes.size(); ++a) speed += velocity[a] * velocity[a];
-  position_.look(card_.snapshot());
+  position_.look(card_.read_snapshot());
   begin(jog_path(machine_, card_.timing(), position_.pulses(), velocity), std::sqrt(speed));
 }
 
 void Jog::start(const gcode::Coordinates& distance, double speed) {
-  position_.look(card_.snapshot());
+  position_.look(card_.read_snapshot());
   begin(jog_path(machine_, card_.timing(), position_.pulses(), distance, speed), speed);
 }
 
@@ -105,7 +105,7 @@ void Jog::feed(int most) {
 void Jog::set_ratio_at_once(std::uint32_t ratio) {
   card_.set_slew_time(std::chrono::nanoseconds(0));
   card_.set_ratio(ratio);
-  card_.status();
+  card_.read_status();
 }
 
 double Jog::set_speed(double speed) {
@@ -125,7 +125,7 @@ void Jog::stop() {
 
 bool Jog::moving() {
   if (!path_) return false;
-  const driver::Status status = card_.status();
+  const driver::Status status = card_.read_status();
   if (status.faulted) path_.reset();
   card_.parts().registers.throw_if_faulted(status, "jog");
   if (status.busy && !(stopping_ && status.held)) {

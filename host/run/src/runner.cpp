@@ -34,7 +34,7 @@ class ProgramStream final : private driver::CommandSink {
         machine_(machine),
         single_block_(single_block),
         card_(card),
-        before_(card.snapshot()),
+        before_(card.read_snapshot()),
         // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
         lines_(card.identification().geometry_depth),
         stream_(card, options()) {}
@@ -48,7 +48,7 @@ class ProgramStream final : private driver::CommandSink {
       stream_.finish();
     } catch (const driver::StoppedError& error) {
       lines_.begun(error.geometry_begun());
-      throw StoppedOnPath(pipeline_.file(), lines_.current(), error.what(), machine_position(card_.snapshot()));
+      throw StoppedOnPath(pipeline_.file(), lines_.current(), error.what(), machine_position(card_.read_snapshot()));
     } catch (const driver::Error& error) {
       look_at_begun(dynamic_cast<const driver::FaultError*>(&error) != nullptr);
       throw RunError(pipeline_.file(), lines_.current(), error.what());
@@ -163,7 +163,7 @@ class ProgramStream final : private driver::CommandSink {
   // latched. Where the link fails too, the last look counts.
   void look_at_begun(bool fault) {
     try {
-      lines_.begun((fault ? card_.stop_snapshot() : card_.snapshot()).geometry_begun);
+      lines_.begun((fault ? card_.read_stop_snapshot() : card_.read_snapshot()).geometry_begun);
     } catch (const driver::Error&) {
     }
   }
@@ -264,7 +264,7 @@ Outcome Runner::stream(driver::Card& card) {
 
 // Throws unless the card has counted what the program says.
 Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, const planner::Pulses& end) const {
-  const driver::Snapshot after = card.snapshot();
+  const driver::Snapshot after = card.read_snapshot();
   const kinematics::Kinematics kinematics(machine_);
   Outcome outcome;
   for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {

@@ -85,14 +85,14 @@ class Card {
   void request_ratio(PieceClass piece_class, std::uint32_t ratio) noexcept;
 
   // All of one clock. Throws TimeoutError if the card does not come up with it.
-  Snapshot snapshot();
+  Snapshot read_snapshot();
   // What the card latched when it was stopped by the first cause of its present or last fault; zeros if there was none.
-  Snapshot stop_snapshot();
+  Snapshot read_stop_snapshot();
 
-  Build build();
+  Build read_build();
 
-  Status status();
-  bool busy() { return status().busy; }
+  Status read_status();
+  bool busy() { return read_status().busy; }
   // Waits until the card is idle, and then for its identity: StateError if it was reset since. Throws HeldError where
   // it stands in a hold that this object has not set, FaultError once it is faulted, TimeoutError after `timeout` of
   // card time in which it was not held. Where the ratio is below 1 the timeout is stretched by as much; a ratio of 0 is
@@ -100,8 +100,8 @@ class Card {
   void wait_until_idle(std::chrono::nanoseconds timeout);
 
   // Inputs and outputs, of a card with path commands; else ArgumentError. Bit n: input n after its polarity, output n.
-  std::uint16_t inputs();
-  std::uint16_t outputs();
+  std::uint16_t read_inputs();
+  std::uint16_t read_outputs();
   unsigned inputs_present();  // how many it has, 1 .. 16; IdentificationError for another number
   unsigned outputs_present();
   // Which inputs are inverted.
@@ -109,16 +109,16 @@ class Card {
   // Levels that the outputs in `change` take at an abort and at a fault.
   void set_output_safe(std::uint16_t levels, std::uint16_t change);
   // MARKs passed since reset, and what the last one latched.
-  std::uint32_t marks();
-  Snapshot mark_snapshot();
+  std::uint32_t read_marks();
+  Snapshot read_mark_snapshot();
 
   // What the last probe's edge latched (Stream::probe() gives it); zeros where there was none.
-  Snapshot probe_snapshot();
+  Snapshot read_probe_snapshot();
   // Leaves the state after a probe: commands behind PROBE_END go on.
   void clear_probe();
 
   // FAULT, 0 if there is none.
-  std::uint32_t faults();
+  std::uint32_t read_faults();
   // Clears all faults. Nothing moves by it: a fault has dropped all that the card had, and an abort may come before,
   // after or not at all. The stream begins with number 0 (Stream::restart()).
   void clear_faults();
@@ -132,9 +132,9 @@ class Card {
 
   // Stops on the path: a hold, and when the card is at rest an abort; the hold is then over. Gives back the state at
   // the end, with the commands begun as they stood before the abort: no pulse comes after it, and a stream may begin
-  // from there. Throws TimeoutError, the card still holding, where it is not at rest `patience` (card time) after the
+  // from there. Throws TimeoutError, the card still holding, where it is not at rest `margin` (card time) after the
   // ramp.
-  Snapshot stop(std::chrono::nanoseconds patience = std::chrono::seconds(1));
+  Snapshot stop(std::chrono::nanoseconds margin = std::chrono::seconds(1));
   // In position: the queues and the shapers are empty, and nothing runs. A card that holds with a path under way is
   // not.
   bool in_position() { return !busy(); }

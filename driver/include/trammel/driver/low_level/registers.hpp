@@ -41,12 +41,12 @@ class Registers {
 
   // STATUS alone, without what this object has taken from the card and not reported.
   static Status decode_status(std::uint32_t value);
-  Status status();
+  Status read_status();
   // Of a value read from STATUS.
   Status status_of(const Access& access) const;
 
   // FAULT, 0 if there is none.
-  std::uint32_t faults() { return read(card_map::reg::kFault); }
+  std::uint32_t read_faults() { return read(card_map::reg::kFault); }
   // Throws FaultError if the card is faulted; reads FAULT only if `status` says so.
   void throw_if_faulted(const Status& status, std::string_view context);
 
