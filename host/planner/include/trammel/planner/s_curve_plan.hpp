@@ -1,5 +1,7 @@
 // The speed plan with limited jerk: speed and acceleration have no jump, and a ramp, which may span any number of
-// spans, keeps the acceleration and jerk of each. An infinite jerk is no limit.
+// spans, keeps the acceleration and jerk of each. An infinite jerk is no limit. Rounding may exceed a limit: 10^-9 of
+// it is what the tests allow; where speeds of neighbouring spans differ by their last bits alone, 1.4 * 10^-8 of the
+// jerk was seen in 3 of 40,000 random programs.
 //
 // At its lowest and highest speeds, and where a limit of speed holds it between, the plan has no acceleration. It is
 // made anew for a whole window, and phases are given up to about the window's half; where the speed has to fall because
