@@ -189,7 +189,7 @@ TEST(StreamWaits, ARatioChangedInAPieceIsNoTimeOut) {
   stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});  // 160,000 clocks at full ratio
   EXPECT_TRUE(stream.finish().ended);
   EXPECT_GT(looks, 8'000U);
-  EXPECT_GE(engine->cycles(), 8'000U * 64U);  // 512,000: more than the line's and the patience together
+  EXPECT_GE(engine->cycles(), 8'000U * 64U);  // 512,000: more than the line's and the margin together
   // Set by somebody else, and never told to this driver.
   engine->write(reg::kRatioFeed, Card::kFullRatio / 16);
   stream.send({feed_of(10'000), line_of(10'000, 10), EndCommand{}});
