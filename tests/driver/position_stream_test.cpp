@@ -12,6 +12,7 @@
 
 #include "posted_bus.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/driver/trigonometry.hpp"
 #include "trammel/sim/engine.hpp"
@@ -268,7 +269,7 @@ TEST(PositionStream, AMissingPeriodStopsAndIsRecoveredFrom) {
     EXPECT_EQ(stopped.positions[0], (350 + (7 * gone + 250) / 500) * kPulse);
     EXPECT_EQ(stopped.positions[3], -(150 + (3 * gone + 249) / 500) * kPulse);
     for (unsigned n = 0; n < 4; ++n) EXPECT_EQ(host.engine->positions()[n] * kPulse, stopped.positions[n]);
-    EXPECT_EQ(host.card.faults(), 0U);
+    EXPECT_EQ(host.card.read_faults(), 0U);
     // On from there.
     Positions from = stopped.positions;
     for (int k = 0; k < 20; ++k) {
@@ -428,7 +429,7 @@ TEST(PositionStream, GoesOnWhereTheCountOfLinesWraps) {
       ASSERT_GE(ahead, 2U) << i;
       ASSERT_LE(ahead, 20U) << i;
     }
-    EXPECT_EQ(card.read(reg::kFeedBegun), 1U);
+    EXPECT_EQ(card.parts().registers.read(reg::kFeedBegun), 1U);
     if (!reset) {
       EXPECT_EQ(stream.finish()[0], 160 * kPulse);
       EXPECT_EQ(engine->positions()[0], 160);
