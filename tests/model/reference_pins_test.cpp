@@ -1,28 +1,13 @@
 // What the reference pages say of inputs, marks, barriers, counters and of several ports, tried on the golden model.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
 #include <cstdlib>
-#include <vector>
 
 #include "core_bench.hpp"
-#include "page_host.hpp"
-#include "trammel/card_map.hpp"
-#include "trammel/driver/commands.hpp"
+#include "reference_page.hpp"
 
+namespace trammel::reference_page {
 namespace {
 
-using namespace trammel;
-using card_map::Area;
-using card_map::Reason;
 using trammel::testing::CoreBench;
-using trammel::testing::feed;
-using trammel::testing::kOnePulse;
-using trammel::testing::line;
-using Host = trammel::testing::PageHost;
-namespace reg = card_map::reg;
-namespace field = card_map::field;
 
 constexpr unsigned kHigh = 1U << 5;  // of a condition
 
@@ -237,3 +222,4 @@ TEST(ReferencePage, AnAbortByAnotherPort) {
 }
 
 }  // namespace
+}  // namespace trammel::reference_page

@@ -50,7 +50,7 @@ class ChordRotation {
 class ArcGenerator {
  public:
   static constexpr unsigned kHalfChord = 8;
-  static constexpr unsigned kLeastChordBits = 5;
+  static constexpr unsigned kMinChordBits = 5;
 
   struct Inputs {
     bool clear = false;  // the arc is over, or cut; wins over everything in its clock
@@ -95,7 +95,7 @@ class ArcGenerator {
   // For jumps, only between the start's clocks and those of a half chord. Path ticks up to the one that ends a half
   // chord, that included; the largest number there is where none does.
   std::uint64_t ticks_left() const {
-    if (path_.state.m < kLeastChordBits) return UINT64_MAX;
+    if (path_.state.m < kMinChordBits) return UINT64_MAX;
     const std::uint64_t half = std::uint64_t{1} << (path_.state.m - 1);
     return half - (ticks_ & (half - 1));
   }
@@ -164,7 +164,7 @@ class ArcGenerator {
       return;
     }
     const unsigned half = path_.state.m - 1U;
-    if (!tick || path_.state.m < kLeastChordBits || (ticks_ & ((std::uint64_t{1} << half) - 1)) != 0) return;
+    if (!tick || path_.state.m < kMinChordBits || (ticks_ & ((std::uint64_t{1} << half) - 1)) != 0) return;
     const bool of_y = (ticks_ >> half & 1) != 0;
     (of_y ? full_y_ : full_x_) = false;
     out_.swap = of_y ? axis_y_ : axis_x_;

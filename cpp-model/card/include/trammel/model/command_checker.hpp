@@ -64,7 +64,7 @@ class CommandChecker {
   }
 
  private:
-  static constexpr std::size_t kMostHalfwords = 64;
+  static constexpr std::size_t kMaxHalfwords = 64;
 
   void restart();
   void idle(const Inputs& in);
@@ -91,7 +91,7 @@ class CommandChecker {
   const card_map::Command* command_ = nullptr;
   card_map::Reason header_verdict_ = card_map::Reason::None;
   std::size_t received_ = 0;  // halfwords of the command, with the word under way
-  std::array<std::uint16_t, kMostHalfwords> halfwords_{};
+  std::array<std::uint16_t, kMaxHalfwords> halfwords_{};
   Outputs outputs_;
 };
 
