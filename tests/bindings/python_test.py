@@ -19,8 +19,10 @@ class Cards(unittest.TestCase):
         card = trammel.simulate(axes=7, clock_hz=25_000_000)
         self.assertEqual((card.identification.axes, card.identification.clock_hz), (7, 25_000_000))
         self.assertEqual(trammel.open("sim:?axes=3").identification.axes, 3)
-        axes = next(unit for unit in card.identification.units if unit.name == "axes")
-        self.assertEqual((axes.instances, axes.address, axes.words, axes.stride), (7, 0x800, 5, 32))
+        units = {unit.name: unit for unit in card.identification.units}
+        axes = units["axes"]
+        self.assertEqual((axes.instances, axes.address, axes.stride), (7, 0x800, 32))
+        self.assertEqual(units["queues"].words, 1)
 
     def test_lines_in_one_burst(self):
         card = trammel.simulate()

@@ -179,7 +179,7 @@ void Sequencer::clock_path(const Inputs& in, const Decision& d) {
     path_ = in.direct_go ? Path::Direct : on_lines ? Path::Line : Path::Engine;
     path_left_ = path_count_ & kCountMask;
     drained_ = false;
-    const bool steps_elsewhere = out_.engine == card_map::engine::kAccumulator;
+    const bool steps_elsewhere = !on_lines && out_.engine != card_map::engine::kArcGenerator;
     out_.active = in.direct_go ? in.direct_mask : steps_elsewhere ? std::uint8_t{0} : geometry_.mask();
   } else if (d.path_ends && path_ != Path::Line) {
     drained_ = true;
