@@ -1,4 +1,4 @@
-"""BUILD_ID: which sources a bitstream is made of."""
+"""Which sources a bitstream or a figure is made of: BUILD_ID, and the commit of the RTL."""
 import hashlib
 import subprocess
 import sys
@@ -35,3 +35,17 @@ def identity(board):
             whole.update(f"{file} {hashlib.sha256(path.read_bytes()).hexdigest()}\n".encode())
     changed = git("status", "--porcelain", "--untracked-files=no", "--", *files)
     return int(whole.hexdigest()[:8], 16), bool(changed.strip())
+
+
+def rtl_commit():
+    """The last commit that changed the RTL, and whether the RTL was changed since."""
+    changed = git("status", "--porcelain", "--", "rtl").strip()
+    return git("log", "-1", "--format=%h", "--abbrev=7", "--", "rtl").strip() + (" and changes" if changed else "")
+
+
+def rtl_lines(known):
+    """Of which RTL the figures of records are, {name: record}."""
+    names = {}
+    for name, record in known.items():
+        names.setdefault(record["rtl"], []).append(name)
+    return [f"RTL of commit {commit}: {', '.join(of)}." for commit, of in names.items()]
