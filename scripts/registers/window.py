@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 
 class WindowError(Exception):
-    """Ranges that leave a gap or overlap, or a register in a reserved one or across two."""
+    """Ranges that leave a gap or overlap, or a register in a reserved one, across two, or where the card keeps none."""
 
 
 @dataclass
@@ -14,6 +14,8 @@ class Range:
     words: int
     content: str
     reserved: bool
+    kept: int  # of each `repeat` words the first that the hardware keeps apart; the others share a place with these
+    repeat: int
 
     @property
     def last(self):
@@ -24,7 +26,8 @@ class Range:
 def read_window(path, registers):
     with open(path, "rb") as file:
         data = tomllib.load(file)
-    ranges = [Range(r["first"], r["words"], r["content"], r.get("reserved", False)) for r in data["range"]]
+    ranges = [Range(r["first"], r["words"], r["content"], r.get("reserved", False), r.get("kept", 0),
+                    r.get("repeat", r["words"])) for r in data["range"]]
     _check_tiling(ranges, 4 * data["words"])
     for register in registers:
         _check_register(register, ranges)
@@ -48,3 +51,9 @@ def _check_register(register, ranges):
     place = ranges[places.pop()]
     if place.reserved:
         raise WindowError(f"{register.name}: in the range at 0x{place.first:03X}, which is reserved: {place.content}")
+    word = max((address - place.first) // 4 % place.repeat for address in register.addresses)
+    # A command is an order and is not kept.
+    if register.access != "command" and word >= place.kept:
+        raise WindowError(f"{register.name}: word {word} of its range at 0x{place.first:03X}, where the hardware keeps "
+                          f"{place.kept} apart (rtl/registers/register_fold_pkg.sv, register_live.sv): it would share a "
+                          "place with another register")

@@ -1,0 +1,63 @@
+"""What scripts/registers/window.py refuses: the plan of the register window, tried with one fault at a time."""
+
+import dataclasses
+import pathlib
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from registers.window import WindowError, read_window  # noqa: E402
+
+PLAN = (ROOT / "rtl/regs/window.toml").read_text()
+
+
+@dataclasses.dataclass
+class Register:
+    name: str
+    access: str
+    addresses: list
+
+
+class Window(unittest.TestCase):
+    def read(self, registers=(), plan=PLAN):
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+            file.write(plan)
+            file.flush()
+            return read_window(file.name, registers)
+
+    def expect_refused(self, text, registers=(), plan=PLAN):
+        with self.assertRaisesRegex(WindowError, text):
+            self.read(registers, plan)
+
+    def test_the_plan_itself_is_taken(self):
+        self.assertEqual(sum(r.words for r in self.read([Register("A", "setting", [0x640, 0x64C])])), 1024)
+
+    def test_gaps_overlaps_and_a_wrong_end(self):
+        self.expect_refused("0x100 does not follow on 0x0FC", plan=PLAN.replace("words = 48", "words = 47", 1))
+        self.expect_refused("0x100 does not follow on 0x104", plan=PLAN.replace("words = 48", "words = 49", 1))
+        self.expect_refused("the window at 0x800", plan=PLAN.replace("words = 1024", "words = 512", 1))
+
+    def test_a_register_across_two_ranges_or_in_a_reserved_one(self):
+        self.expect_refused("A: in more than one range", [Register("A", "live", [0x07C, 0x100])])
+        self.expect_refused("A: in the range at 0x780, which is reserved", [Register("A", "setting", [0x780])])
+
+    def test_a_register_that_would_share_a_word_of_the_ram(self):
+        self.expect_refused("A: word 4 of its range at 0x640, where the hardware keeps 4", [Register("A", "setting", [0x650])])
+        self.expect_refused("A: word 8 of its range at 0x800", [Register("A", "setting", [0x800, 0x8A0])])
+        self.expect_refused("A: word 16 of its range at 0x200", [Register("A", "snapshot", [0x240])])
+        self.expect_refused("A: word 16 of its range at 0x040", [Register("A", "live", [0x080])])
+        self.read([Register("A", "setting", [0x81C, 0x89C]), Register("B", "command", [0x63C]),
+                   Register("C", "live", [0x07C])])
+
+    def test_a_range_that_is_built_without_a_place(self):
+        plan = PLAN.replace('content = "watchdog, enables, brake"\nreserved = true', 'content = "watchdog"')
+        self.assertNotEqual(plan, PLAN)
+        self.expect_refused("A: word 0 of its range at 0x780, where the hardware keeps 0", [Register("A", "setting", [0x780])],
+                            plan)
+
+
+if __name__ == "__main__":
+    unittest.main()
