@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "command_source.hpp"
+#include "trammel/skip/commands.hpp"
 
 namespace {
 
@@ -94,7 +95,7 @@ class Stream {
   }
 
   const CommandChecker::Outputs& outputs() const { return checker_.outputs(); }
-  bool quiet() const { return checker_.quiet(); }
+  bool quiet() const { return trammel::skip::horizon(checker_, {}) != 0; }
 
  private:
   void take(Queue& queue, bool write, bool commit) {
