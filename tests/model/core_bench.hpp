@@ -182,7 +182,7 @@ class CoreBench {
   std::uint8_t number = 0;
   std::uint16_t pins = 0;  // at the card's inputs
   bool logs = false;
-  bool skips = false;  // clocks that change nothing in a block
+  bool skips = true;  // clocks that change nothing in a block
   std::vector<Shown> log;
 };
 

@@ -23,7 +23,7 @@ class Pair {
   Pair(Of of, const model::CardConfig& config, std::uint64_t seed)
       : of_(of), clocked(config), jumping(config), random(seed) {
     clocked.logs = jumping.logs = of == Of::AllAndResting;
-    jumping.skips = of == Of::AllAndResting;
+    clocked.skips = of != Of::AllAndResting;
   }
 
   std::uint64_t any(std::uint64_t low, std::uint64_t high) { return low + random() % (high - low + 1); }

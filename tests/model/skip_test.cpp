@@ -88,6 +88,15 @@ void judge(Block block, unsigned rare, const Legal& legal, bool has_finite = fal
 
 const auto kAny = [](auto&, const auto&, Random&) {};
 
+// A target on the load bus that some block takes.
+std::uint16_t some_target(Random& random) {
+  namespace target = model::load_target;
+  const unsigned all[] = {target::increment(1),  target::count(1), target::kPrescale,   target::kDeviation,
+                          target::kGradientX,    target::kEndX,    target::kPlane,      target::kChordShifts,
+                          target::kChordClosing, target::kCommand, target::kChordPlane, target::kChordState};
+  return static_cast<std::uint16_t>(all[random() % std::size(all)]);
+}
+
 TEST(Skip, StepShaper) {
   judge(
       model::StepShaper(), 9,
@@ -108,6 +117,7 @@ TEST(Skip, PulseGenerator) {
 }
 TEST(Skip, Axis) {
   judge(model::Axis(1), 30, [](auto& in, const auto&, Random& random) {
+    in.load.target = some_target(random);
     in.setting.address = card_map::reg::step_space(1) + 4 * (random() % 4);
     in.setting.data %= 30;
   });
@@ -135,7 +145,7 @@ TEST(Skip, DeviationAccumulator) {
   judge(
       model::DeviationAccumulator(), 9,
       [](auto& in, const auto& block, Random& random) {
-        in.load.target %= 32;
+        in.load.target = static_cast<std::uint16_t>(model::load_target::kDeviation + random() % 9);
         in.load.valid = in.load.valid && random() % 4 == 0;
         in.start = in.start && block.state().wait == 0;
       },
@@ -153,8 +163,8 @@ TEST(Skip, ArcGenerator) {
       true);
 }
 TEST(Skip, PathEngines) {
-  judge(model::PathEngines(), 30, [](auto& in, const auto&, Random&) {
-    in.load.target %= 32;
+  judge(model::PathEngines(), 30, [](auto& in, const auto&, Random& random) {
+    in.load.target = some_target(random);
     in.engine %= 3;
   });
 }
@@ -165,9 +175,14 @@ TEST(Skip, StopControl) {
     in.setting.address = card_map::reg::kHold;
   });
 }
-TEST(Skip, Probe) { judge(model::Probe(), 9, kAny); }
+TEST(Skip, Probe) {
+  judge(model::Probe(), 9, [](auto& in, const auto&, Random& random) { in.load.target = some_target(random); });
+}
 TEST(Skip, PathCommands) {
-  judge(model::PathCommands({}), 9, [](auto& in, const auto&, Random& random) { in.pins = random() % 16 == 0; });
+  judge(model::PathCommands({}), 9, [](auto& in, const auto&, Random& random) {
+    in.pins = random() % 16 == 0;
+    in.load.target = some_target(random);
+  });
 }
 TEST(Skip, HalfwordQueue) {
   judge(model::HalfwordQueue(16), 3,

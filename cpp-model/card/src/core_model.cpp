@@ -115,9 +115,8 @@ CommandChecker::Inputs CoreModel::checker_inputs(bool cut) const {
   return in;
 }
 
-// What the register file sees of the card, as it stands now.
 RegisterFile::Inputs CoreModel::register_inputs(const Inputs& access, bool probe) const {
-  RegisterFile::Inputs in;
+  RegisterFile::Inputs in = state_.shown;
   in.request = access.request;
   in.write = access.write;
   in.partial = access.partial;
@@ -125,6 +124,12 @@ RegisterFile::Inputs CoreModel::register_inputs(const Inputs& access, bool probe
   in.address = access.address;
   in.data = access.data;
   in.probe = probe;
+  return in;
+}
+
+// What the register file sees of the card, as it stands now.
+void CoreModel::show_registers() {
+  RegisterFile::Inputs& in = state_.shown;
   const Sequencer::Outputs& s = state_.motion.sequencer().outputs();
   in.busy = state_.motion.outputs().busy;
   in.direct = s.direct;
@@ -164,10 +169,10 @@ RegisterFile::Inputs CoreModel::register_inputs(const Inputs& access, bool probe
   in.start_error = loader.error;
   in.start_reason = loader.reason;
   in.loader_address = loader.address;
-  return in;
 }
 
 void CoreModel::show() {
+  show_registers();
   const Sequencer::Outputs& s = state_.motion.sequencer().outputs();
   const MotionCore::Outputs& m = state_.motion.outputs();
   state_.answer = {state_.registers.outputs().ack, state_.registers.outputs().error, state_.registers.outputs().data};
@@ -183,7 +188,7 @@ void CoreModel::show() {
   state_.out.path_dir = m.path_dir;
   state_.out.geometry_room = state_.geometry_queue.outputs().room;
   state_.out.feed_room = state_.feed_queue.outputs().room;
-  state_.out.status = state_.registers.status(register_inputs({}, false));
+  state_.out.status = state_.registers.status(state_.shown);
   state_.out.fault = state_.motion.stop().fault;
   state_.out.geometry_begun = s.geometry_begun;
   state_.out.feed_begun = s.feed_begun;

@@ -36,9 +36,8 @@ Probe::Inputs MotionCore::probe_inputs(const Inputs& in) const {
   return probe;
 }
 
-Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in) const {
+Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in, const Probe::Inputs& probe_in) const {
   Sequencer::Inputs s;
-  const Probe::Inputs probe_in = probe_inputs(in);
   s.halt = state_.probe.halt();
   s.drop = state_.probe.drops();
   s.probe_taken = state_.probe.takes(probe_in);

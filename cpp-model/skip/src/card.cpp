@@ -17,21 +17,24 @@ namespace {
 // horizon are always clocked.
 struct ClockBusy {
   template <class Part>
-  void operator()(Part& part, const typename Part::Inputs& in) const {
+  bool operator()(Part& part, const typename Part::Inputs& in) const {
     constexpr bool kJoined = std::is_same_v<Part, model::MotionCore> || std::is_same_v<Part, model::CoreModel>;
     constexpr bool kCheap = std::is_same_v<Part, model::TimeBase> || std::is_same_v<Part, model::FeedGenerator> ||
-                            std::is_same_v<Part, model::WaitTimer> || std::is_same_v<Part, model::UnderrunGuard>;
+                            std::is_same_v<Part, model::WaitTimer> || std::is_same_v<Part, model::UnderrunGuard> ||
+                            std::is_same_v<Part, model::PulseGenerator>;
     if constexpr (kJoined) {
       part.clock_parts(in, *this);
     } else if constexpr (kCheap) {
       part.clock(in);
     } else if (horizon(part, in) != 0) {
       advance(part, in, 1);
+      return false;
     } else if constexpr (std::is_same_v<Part, model::Axis> || std::is_same_v<Part, model::PathEngines>) {
       part.clock_parts(in, *this);
     } else {
       part.clock(in);
     }
+    return true;
   }
 };
 
@@ -44,7 +47,7 @@ std::uint64_t jump(model::CoreModel& core, std::uint64_t limit, std::uint16_t pi
   model::CoreModel::State& s = core.state();
   if (s.reset_due || horizon(s.checker, {}) == 0 || horizon(s.watermarks, core.watermark_inputs()) == 0) return 0;
   if (horizon(s.geometry_queue, {}) == 0 || horizon(s.feed_queue, {}) == 0) return 0;
-  if (horizon(s.registers, core.register_inputs({}, false)) == 0) return 0;
+  if (horizon(s.registers, s.shown) == 0) return 0;
   const std::uint64_t gone = advance(s.motion, limit, core.motion_inputs(pins), s.cycles, s.record);
   if (gone == 0) return 0;
   s.cycles += gone;

@@ -42,7 +42,7 @@ void place_step(model::Axis& axis, std::uint64_t clocks_ago, bool backwards) {
 // Nothing on its way to the shaper, and there no step that waits.
 bool ready_to_jump(model::Axis& axis) {
   model::Axis::State& s = axis.state();
-  return at_rest(s.generator) && !s.path_step && calm(s.shaper) && s.times.mode == s.shaper.state().mode &&
+  return at_rest(s.generator) && !s.path_step && no_step_waits(s.shaper) && s.times.mode == s.shaper.state().mode &&
          !s.generator.outputs().live && PulsesAhead(s.generator).within_a_pulse();
 }
 
@@ -52,7 +52,8 @@ Jump::Jump(model::MotionCore& core, model::StepRecord& record, std::uint64_t cyc
     : core_(core),
       record_(record),
       cycle_(cycle),
-      end_(static_cast<std::int64_t>(std::min({limit, settled_clocks(core.state().sequencer), ratio_known_for(core)}))),
+      end_(
+          static_cast<std::int64_t>(std::min({limit, counting_clocks(core.state().sequencer), ratio_known_for(core)}))),
       ticking_(core.state().sequencer.ticking()),
       chords_(ticking_ && on_chords(core.state().engines)),
       to_axis_(chords_ ? 10 : 9),
@@ -364,7 +365,7 @@ bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
   if (s.swap || s.feed_swap || s.direct || m.out.path_step != 0 || m.axes_live || m.out.step_fault != 0) return false;
   if (in.setting.set || in.abort || in.clear_fault != 0 || in.probe_clear || in.start) return false;
   if (horizon(m.loader, {}) == 0 || horizon(m.stop, core.stop_inputs(in)) == 0) return false;
-  if (!settled(m.engines) || ratio_known_for(core) == 0) return false;
+  if (!only_ticks_move(m.engines) || ratio_known_for(core) == 0) return false;
   if (horizon(m.commands, core.command_inputs(in)) == 0) return false;
   if (horizon(m.probe, core.probe_inputs(in)) == 0 || m.probing != m.probe.busy()) return false;
   for (model::Axis& axis : m.axes) {
@@ -374,9 +375,9 @@ bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
       m.busy_left != (m.running ? model::MotionCore::kBusyClocks : 0))
     return false;
   if (s.idle && m.out.axis_busy != 0) return false;
-  const model::Sequencer::Inputs sequencer = core.sequencer_inputs(in);
-  if (!settled(m.sequencer, sequencer)) return false;
-  if (core.guards() && !settled(m.guard, core.guard_inputs(in, sequencer))) return false;
+  const model::Sequencer::Inputs sequencer = core.sequencer_inputs(in, core.probe_inputs(in));
+  if (!only_counts_move(m.sequencer, sequencer)) return false;
+  if (core.guards() && !only_counts_move(m.guard, core.guard_inputs(in, sequencer))) return false;
   return m.sequencer.ticking() ||
          (at_rest(m.feed) && at_rest(m.engines) && (!s.feed_clear || m.feed.state().phase == 0));
 }

@@ -52,7 +52,7 @@ std::uint64_t horizon(const model::CommandFetch& fetch, const model::CommandFetc
   return forever_if(!in.clear && !in.pop && !begins && at_rest(fetch));
 }
 
-bool settled(const model::Sequencer& block, const model::Sequencer::Inputs& in) {
+bool only_counts_move(const model::Sequencer& block, const model::Sequencer::Inputs& in) {
   const model::Sequencer::State& s = block.state();
   if (!counts_only(block, in) || block.barrier_over(in)) return false;
   if (block.ticking()) return in.engine_ready && s.owed <= 1;
@@ -60,7 +60,7 @@ bool settled(const model::Sequencer& block, const model::Sequencer::Inputs& in) 
          (s.out.feed_active || s.owed == 0);
 }
 
-std::uint64_t settled_clocks(const model::Sequencer& block) {
+std::uint64_t counting_clocks(const model::Sequencer& block) {
   const model::Sequencer::State& s = block.state();
   return s.barrier == Sequencer::Barrier::Running && s.barrier_at > s.now ? s.barrier_at - s.now : kForever;
 }
@@ -70,7 +70,7 @@ std::uint64_t horizon(const model::Sequencer& block, const model::Sequencer::Inp
   const bool ticks = block.takes(in) || s.tick_arrives || s.out.tick || (in.feed_tick && s.out.feed_active);
   const bool enable = in.enable && s.out.feed_active && block.ticking_path() && s.owed <= 1;
   if (ticks || enable != s.out.feed_enable || (s.owed != 0 && !s.out.feed_active)) return 0;
-  return counts_only(block, in) && !block.barrier_over(in) ? settled_clocks(block) : 0;
+  return counts_only(block, in) && !block.barrier_over(in) ? counting_clocks(block) : 0;
 }
 
 void advance(model::Sequencer& block, std::uint64_t clocks, std::uint64_t ticks, unsigned in_flight, bool feed_enable) {

@@ -91,6 +91,7 @@ class CoreModel {
     StepRecord record{};
     Answer answer{};
     Outputs out{};
+    RegisterFile::Inputs shown{};  // to the register file; what a request and the probe's edge add is apart
   };
 
   // One rising edge.
@@ -117,6 +118,7 @@ class CoreModel {
  private:
   void reset();
   CommandChecker::Inputs checker_inputs(bool cut) const;
+  void show_registers();
   void record(bool cut);
 
   Config config_;

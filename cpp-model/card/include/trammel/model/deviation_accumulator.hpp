@@ -202,21 +202,20 @@ class DeviationAccumulator {
   static bool is_own(const LoadWord& load) {
     return load.valid && load.target >= load_target::kDeviation && load.target <= load_target::kPlane;
   }
-}
 
-private : void
-          take(const LoadWord& load);
+ private:
+  void take(const LoadWord& load);
 
-unsigned compare_clocks() const { return state_.path.state.eight_directions ? kCompareClocks : 0; }
+  unsigned compare_clocks() const { return state_.path.state.eight_directions ? kCompareClocks : 0; }
 
-void show() {
-  state_.out.step_x = state_.next.in_x;
-  state_.out.step_y = state_.next.in_y;
-  if (state_.next.in_x) state_.out.dir_x = state_.next.negative_x;
-  if (state_.next.in_y) state_.out.dir_y = state_.next.negative_y;
-}
+  void show() {
+    state_.out.step_x = state_.next.in_x;
+    state_.out.step_y = state_.next.in_y;
+    if (state_.next.in_x) state_.out.dir_x = state_.next.negative_x;
+    if (state_.next.in_y) state_.out.dir_y = state_.next.negative_y;
+  }
 
-State state_;
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -98,13 +98,13 @@ class MotionCore {
   bool probe_trips(const Inputs& in) const { return state_.probe.trips(probe_inputs(in)); }
   const PathEngines::Outputs& engines() const { return state_.engines.outputs(); }
   bool chord_tick() const { return state_.engines.chord_tick(); }
-  std::uint32_t position(unsigned axis) const { return state_.axes[axis].outputs().shaper.position; }
+  std::uint32_t position(unsigned axis) const { return state_.axes[axis].state().shaper.outputs().position; }
 
   // Takes the axis's outputs over into this block's.
   void show_axis(unsigned n);
   // What the parts see.
   Probe::Inputs probe_inputs(const Inputs& in) const;
-  Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
+  Sequencer::Inputs sequencer_inputs(const Inputs& in, const Probe::Inputs& probe) const;
   UnderrunGuard::Inputs guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;
   // The guard counts; in position streaming it does not.
   bool guards() const { return has_guard_ && !state_.sequencer.streaming().on; }
@@ -128,8 +128,8 @@ class MotionCore {
 // Each consumer before its producer: what a block sees is what stood before this edge.
 template <class ClockPart>
 void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
-  const Sequencer::Inputs sequencer = sequencer_inputs(in);
   const Probe::Inputs probe = probe_inputs(in);
+  const Sequencer::Inputs sequencer = sequencer_inputs(in, probe);
   const StopControl::Outputs stop = state_.stop.outputs();
   const Sequencer::Outputs& s = state_.sequencer.outputs();
   const bool over = stop.cut || state_.probe.halt();
@@ -152,8 +152,7 @@ void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
     axis.chord_swap = (engines.chord_swap & bit) != 0;
     axis.engine_step = (engines.step & bit) != 0;
     axis.engine_dir = (engines.dir & bit) != 0;
-    clock_part(state_.axes[n], axis);
-    show_axis(n);
+    if (clock_part(state_.axes[n], axis)) show_axis(n);
   }
   clock_part(state_.wait_timer, in.setting);
   clock_part(state_.engines,

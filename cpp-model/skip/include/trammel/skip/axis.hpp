@@ -15,7 +15,7 @@ class PulsesAhead {
  public:
   explicit PulsesAhead(model::PulseGenerator& block) : s_(block.state()) {}
 
-  // n ticks that make no step, n <= silent_ticks(); only when quiet().
+  // n ticks that make no step, n <= silent_ticks(); only when at_rest().
   void silent_ticks(std::uint64_t n) {
     const auto sum = static_cast<std::uint64_t>(s_.phase) + n * static_cast<std::uint64_t>(s_.increment);
     s_.phase = static_cast<std::int64_t>(sum & static_cast<std::uint64_t>(model::PulseGenerator::kMask));
@@ -95,7 +95,7 @@ inline void advance(model::PulseGenerator& block, const model::PulseGenerator::I
 }
 
 // Nothing waits and no pulse is about to begin: without a step the position stays and no fault can come.
-inline bool calm(const model::StepShaper& block) {
+inline bool no_step_waits(const model::StepShaper& block) {
   const model::StepShaper::State& s = block.state();
   return s.waiting == 0 && s.lead == 0 && !s.waited && !s.out.fault;
 }
@@ -113,7 +113,7 @@ inline void advance(model::StepShaper& block, const model::StepShaper::Inputs&, 
   model::StepShaper::State& s = block.state();
   if (s.out.busy) s.left -= static_cast<std::uint32_t>(clocks);
 }
-// So many clocks, horizons one behind the other; without a step, while calm().
+// So many clocks, horizons one behind the other; without a step, while no_step_waits().
 inline void pass(model::StepShaper& block, const model::StepShaper::Inputs& in, std::uint64_t clocks) {
   while (clocks != 0) {
     const std::uint64_t some = std::min(clocks, horizon(block, in));

@@ -50,7 +50,7 @@ inline bool on_chords(const model::PathEngines& block) {
   return block.state().engine == card_map::engine::kArcGenerator;
 }
 // But for ticks on their way through the 3 clocks, nothing moves without inputs.
-inline bool settled(const model::PathEngines& block) {
+inline bool only_ticks_move(const model::PathEngines& block) {
   const model::PathEngines::State& s = block.state();
   if (!at_rest(s.arc) || s.over || s.over_next || (on_chords(block) && s.own_ticks != 0)) return false;
   return s.swaps == 0 && !s.out.swap && s.waiting == 0 && !s.out.path_tick && s.out.step == 0 && s.routed_step == 0 &&
@@ -58,7 +58,7 @@ inline bool settled(const model::PathEngines& block) {
 }
 inline bool at_rest(const model::PathEngines& block) {
   const model::PathEngines::State& s = block.state();
-  return settled(block) && s.ticks == 0 && s.own_ticks == 0 && !s.chord_tick && !s.out.tick &&
+  return only_ticks_move(block) && s.ticks == 0 && s.own_ticks == 0 && !s.chord_tick && !s.out.tick &&
          s.out.done == block.said().ready && s.out.elsewhere == !block.said().at_end && s.out.payload_ready;
 }
 

@@ -33,8 +33,8 @@ inline unsigned in_flight(const model::Sequencer& block) {
   return (s.tick_arrives ? 1U << kArrives : 0) | (s.owed != 0 ? 1U << kOwed : 0) | (s.out.tick ? 1U << kTaken : 0);
 }
 // With these inputs, the enables and the ticks made apart, only counters move; for so many clocks at most.
-bool settled(const model::Sequencer& block, const model::Sequencer::Inputs& in);
-std::uint64_t settled_clocks(const model::Sequencer& block);
+bool only_counts_move(const model::Sequencer& block, const model::Sequencer::Inputs& in);
+std::uint64_t counting_clocks(const model::Sequencer& block);
 // `clocks` at once in which `ticks` are taken, none of them a last one; what is then on its way.
 void advance(model::Sequencer& block, std::uint64_t clocks, std::uint64_t ticks, unsigned in_flight, bool feed_enable);
 

@@ -9,7 +9,7 @@
 namespace trammel::skip {
 
 // With these inputs nothing changes but counts, as long as fewer ticks are taken than ticks_to_change().
-inline bool settled(const model::UnderrunGuard& block, const model::UnderrunGuard::Inputs& in) {
+inline bool only_counts_move(const model::UnderrunGuard& block, const model::UnderrunGuard::Inputs& in) {
   const model::UnderrunGuard::State& s = block.state();
   const bool follow = block.follows(in.active);
   if (s.unknown != s.lost || s.since < model::UnderrunGuard::kLag) return false;
@@ -43,7 +43,7 @@ inline void advance(model::UnderrunGuard& block, std::uint64_t clocks, std::uint
   const std::uint64_t to_pass = model::UnderrunGuard::kPass - 1 - s.round % model::UnderrunGuard::kPass;
   s.round = static_cast<unsigned>((s.round + clocks) % model::UnderrunGuard::kRound);
   std::uint64_t owed = s.owed + ticks;
-  if (s.lost) owed = 0;
+  if (s.lost && clocks != 0) owed = 0;
   if (clocks > to_pass) {
     const std::uint64_t all = owed;
     owed = 0;
@@ -55,7 +55,7 @@ inline void advance(model::UnderrunGuard& block, std::uint64_t clocks, std::uint
 }
 
 inline std::uint64_t horizon(const model::UnderrunGuard& block, const model::UnderrunGuard::Inputs& in) {
-  return forever_if(!in.take && settled(block, in));
+  return forever_if(!in.take && only_counts_move(block, in));
 }
 inline void advance(model::UnderrunGuard& block, const model::UnderrunGuard::Inputs&, std::uint64_t clocks) {
   advance(block, clocks, 0, 0);
