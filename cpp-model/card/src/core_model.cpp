@@ -115,18 +115,6 @@ CommandChecker::Inputs CoreModel::checker_inputs(bool cut) const {
   return in;
 }
 
-RegisterFile::Inputs CoreModel::register_inputs(const Inputs& access, bool probe) const {
-  RegisterFile::Inputs in = state_.shown;
-  in.request = access.request;
-  in.write = access.write;
-  in.partial = access.partial;
-  in.port = access.port;
-  in.address = access.address;
-  in.data = access.data;
-  in.probe = probe;
-  return in;
-}
-
 // What the register file sees of the card, as it stands now.
 void CoreModel::show_registers() {
   RegisterFile::Inputs& in = state_.shown;

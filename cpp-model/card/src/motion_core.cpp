@@ -23,19 +23,6 @@ MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, std::uint32_t en
   }
 }
 
-Probe::Inputs MotionCore::probe_inputs(const Inputs& in) const {
-  Probe::Inputs probe;
-  probe.cut = state_.stop.outputs().cut;
-  probe.levels = state_.commands.levels();
-  probe.waits = state_.sequencer.probe_waits();
-  probe.ends = state_.sequencer.probe_ends();
-  probe.at_rest = state_.time_base.outputs().ratio == 0;
-  probe.stopping = state_.stop.outputs().stopping;
-  probe.clear = in.probe_clear;
-  probe.load = state_.sequencer.load();
-  return probe;
-}
-
 Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in, const Probe::Inputs& probe_in) const {
   Sequencer::Inputs s;
   s.halt = state_.probe.halt();

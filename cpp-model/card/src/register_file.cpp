@@ -119,7 +119,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
 
 bool RegisterFile::interrupt(const Inputs& in) const {
   // IRQ_ENABLE has the bits of STATUS, but its bit for busy means idle.
-  return ((status(in) ^ field::kStatusBusy) & state_.irq_enable) != 0;
+  return state_.irq_enable != 0 && ((status(in) ^ field::kStatusBusy) & state_.irq_enable) != 0;
 }
 
 std::uint32_t RegisterFile::live(const Inputs& in) const {

@@ -91,7 +91,7 @@ class CoreModel {
     StepRecord record{};
     Answer answer{};
     Outputs out{};
-    RegisterFile::Inputs shown{};  // to the register file; what a request and the probe's edge add is apart
+    RegisterFile::Inputs shown{};  // to the register file; a request and the probe's edge only within a clock
   };
 
   // One rising edge.
@@ -104,7 +104,6 @@ class CoreModel {
   // What the parts see.
   MotionCore::Inputs motion_inputs(std::uint16_t pins) const;
   QueueWatermarks::Inputs watermark_inputs() const;
-  RegisterFile::Inputs register_inputs(const Inputs& in, bool probe) const;
   // Takes the parts' outputs over into the core's.
   void show();
 
@@ -118,6 +117,15 @@ class CoreModel {
  private:
   void reset();
   CommandChecker::Inputs checker_inputs(bool cut) const;
+  void request(const Inputs& access, bool probe) {
+    state_.shown.request = access.request;
+    state_.shown.write = access.write;
+    state_.shown.partial = access.partial;
+    state_.shown.port = access.port;
+    state_.shown.address = access.address;
+    state_.shown.data = access.data;
+    state_.shown.probe = probe;
+  }
   void show_registers();
   void record(bool cut);
 
@@ -135,7 +143,7 @@ void CoreModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   const bool cut = state_.motion.stop().cut;
   const MotionCore::Inputs motion = motion_inputs(in.pins);
   const QueueWatermarks::Inputs watermarks = watermark_inputs();
-  const RegisterFile::Inputs registers = register_inputs(in, state_.motion.probe_trips(motion));
+  request(in, state_.motion.probe_trips(motion));
   const CommandChecker::Outputs was = state_.checker.outputs();
   const bool geometry_read = state_.motion.sequencer().geometry_read();
   const bool feed_read = state_.motion.sequencer().feed_read();
@@ -143,7 +151,8 @@ void CoreModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   clock_part(state_.geometry_queue,
              {false, cut, was.geometry_write, was.halfword, was.geometry_commit, was.drop, geometry_read});
   clock_part(state_.feed_queue, {false, cut, was.feed_write, was.halfword, was.feed_commit, was.drop, feed_read});
-  clock_part(state_.registers, registers);
+  clock_part(state_.registers, state_.shown);
+  request({}, false);
   clock_part(state_.watermarks, watermarks);
   clock_part(state_.motion, motion);
   record(cut);

@@ -95,7 +95,11 @@ class MotionCore {
   const PathCommands& commands() const { return state_.commands; }
   const Probe& probe() const { return state_.probe; }
   // The probe's edge is taken in this clock, and with these inputs.
-  bool probe_trips(const Inputs& in) const { return state_.probe.trips(probe_inputs(in)); }
+  bool probe_trips(const Inputs& in) const {
+    // Without either the inputs need not be looked at.
+    if (!state_.probe.busy() && !state_.sequencer.probe_waits()) return false;
+    return state_.probe.trips(probe_inputs(in));
+  }
   const PathEngines::Outputs& engines() const { return state_.engines.outputs(); }
   bool chord_tick() const { return state_.engines.chord_tick(); }
   std::uint32_t position(unsigned axis) const { return state_.axes[axis].state().shaper.outputs().position; }
@@ -124,6 +128,19 @@ class MotionCore {
 
   State state_;
 };
+
+inline Probe::Inputs MotionCore::probe_inputs(const Inputs& in) const {
+  Probe::Inputs probe;
+  probe.cut = state_.stop.outputs().cut;
+  probe.levels = state_.commands.levels();
+  probe.waits = state_.sequencer.probe_waits();
+  probe.ends = state_.sequencer.probe_ends();
+  probe.at_rest = state_.time_base.outputs().ratio == 0;
+  probe.stopping = state_.stop.outputs().stopping;
+  probe.clear = in.probe_clear;
+  probe.load = state_.sequencer.load();
+  return probe;
+}
 
 // Each consumer before its producer: what a block sees is what stood before this edge.
 template <class ClockPart>
