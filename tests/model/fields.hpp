@@ -33,6 +33,7 @@ template <class T>
 constexpr std::size_t kFields = count_fields<std::remove_const_t<T>, kMostFields + 1>();
 
 // References to all of them, as a tuple.
+// Over a screen: a table, a row for each number of fields.
 // clang-format off
 template <class T>
 auto fields_of(T& value) {
@@ -197,6 +198,10 @@ template <class T, class = void>
 struct HasState : std::false_type {};
 template <class T>
 struct HasState<T, std::void_t<decltype(std::declval<const T&>().state())>> : std::true_type {};
+template <class T, class = void>
+struct HasOutputs : std::false_type {};
+template <class T>
+struct HasOutputs<T, std::void_t<decltype(std::declval<const T&>().outputs())>> : std::true_type {};
 template <class T>
 struct IsList : std::false_type {};
 template <class T, std::size_t N>

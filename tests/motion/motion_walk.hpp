@@ -109,7 +109,7 @@ class MotionWalk {
       std::uint64_t clocks = 32;
       // One rate for `most` clocks at most, and up to the last of `ticks` ticks.
       const auto hold = [&](std::uint64_t most, std::uint64_t& ticks) {
-        at.rate = rate.state().slope;
+        at.rate = rate.slope();
         at.gain = static_cast<std::int64_t>(rate.next_slope()) - static_cast<std::int64_t>(at.rate);
         at.acceleration = rate.acceleration();
         at.jerk = pieces_[piece]->jerk;

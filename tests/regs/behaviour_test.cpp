@@ -5,7 +5,6 @@
 #include <array>
 
 #include "register_bench.hpp"
-#include "trammel/skip/commands.hpp"
 
 namespace {
 
@@ -289,21 +288,6 @@ TEST(Behaviour, AnEnabledInterruptComesTwoClocksAfterItsSetting) {
     bench.clock();
     EXPECT_EQ(bench.outputs().irq, bit == 5 || bit == 6 || bit == 10) << bit;
   }
-}
-
-TEST(Behaviour, AdvanceEqualsClocking) {
-  RegisterBench bench(4);
-  bench.read(reg::kMagic);
-  for (int i = 0; i < 4; ++i) bench.clock();
-  RegisterFile clocked = bench.file();
-  RegisterFile skipped = bench.file();
-  ASSERT_TRUE(skip::horizon(clocked, bench.in) != 0);
-  for (int i = 0; i < 1000; ++i) clocked.clock(bench.in);
-  skip::advance(skipped, bench.in, 1000);
-  EXPECT_EQ(clocked.time(), skipped.time());
-  EXPECT_TRUE(skip::horizon(clocked, bench.in) != 0);
-  bench.in.stop = true;
-  EXPECT_FALSE(skip::horizon(clocked, bench.in) != 0);
 }
 
 }  // namespace
