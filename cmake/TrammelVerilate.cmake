@@ -138,10 +138,10 @@ function(trammel_write_judges file)
   file(CONFIGURE OUTPUT "${file}" CONTENT "{\n  \"locksteps\": [${locksteps}\n  ],\n  \"seeded_bugs\": [${bugs}\n  ]\n}\n" @ONLY)
 endfunction()
 
-# trammel_lockstep_test(executable TEST test.cpp HEADERS_OF target PREFIX Vx)
+# trammel_lockstep_test(executable TEST test.cpp ... HEADERS_OF target PREFIX Vx)
 # The test as <executable>_test, compiled against the Vx.h of a target that was given to trammel_verilate.
 function(trammel_lockstep_test executable)
-  cmake_parse_arguments(A "" "TEST;HEADERS_OF;PREFIX" "" ${ARGN})
+  cmake_parse_arguments(A "" "HEADERS_OF;PREFIX" "TEST" ${ARGN})
   get_property(dir GLOBAL PROPERTY TRAMMEL_VERILATED_${A_HEADERS_OF}_${A_PREFIX})
   add_library(${executable}_test OBJECT ${A_TEST})
   trammel_lockstep_target(${executable}_test)

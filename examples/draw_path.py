@@ -32,11 +32,11 @@ def run(url):
     simulated = url.startswith("sim:")
     if simulated:
         card.record_steps()
-    start = card.snapshot().position[:2]
+    start = card.read_snapshot().position[:2]
     stream = trammel.Stream(card)
     stream.send(commands())
     stream.finish()
-    end = card.snapshot().position[:2]
+    end = card.read_snapshot().position[:2]
     if not simulated:
         return [tuple(start), tuple(end)]
     place, places = list(start), [tuple(start)]

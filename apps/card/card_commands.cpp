@@ -18,6 +18,7 @@
 #include "common/standard_streams.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
@@ -55,14 +56,14 @@ bool is_there(const map::Register& entry, const driver::Identification& card) {
 }
 
 void dump(Card& card) {
-  card.snapshot();
+  card.read_snapshot();
   std::vector<std::pair<std::uint32_t, std::string>> lines;
   for (const map::Register& entry : map::kRegisters) {
     if (entry.access == map::Access::Command || !is_there(entry, card.identification())) continue;
     const std::uint32_t slots = entry.only_present_axes ? card.identification().axes : entry.count;
     for (std::uint32_t i = 0; i < slots; ++i) {
       const std::uint32_t address = map::slot_address(entry, i);
-      const std::uint32_t value = card.read(address);
+      const std::uint32_t value = card.parts().registers.read(address);
       const std::string name = entry.count > 1 ? fmt::format("{}[{}]", entry.name, i) : std::string(entry.name);
       lines.emplace_back(address, fmt::format("0x{:03X}  {:<20} 0x{:08X}  {}\n", address, name, value, value));
     }
@@ -90,10 +91,10 @@ std::string state_of(const driver::Snapshot& now) {
 }
 
 std::vector<std::string> table(Card& card) {
-  const driver::Snapshot now = card.snapshot();
+  const driver::Snapshot now = card.read_snapshot();
   const driver::Identification& id = card.identification();
   std::array<driver::Access, 3> room{driver::read_of(reg::kGeometryRoom), driver::read_of(reg::kFeedRoom)};
-  card.transfer(room.data(), 2, "monitor");
+  card.parts().registers.transfer(room.data(), 2, "monitor");
   // RATE counts 2^-32 feed ticks an enabled clock, RATIO 2^-16.
   const double rate = static_cast<double>(now.rate) / 4294967296.0 * id.clock_hz;
   std::vector<std::string> lines;
@@ -153,17 +154,17 @@ bool may_be_tried(const map::Register& entry) {
 
 // Writes patterns and reads them back; what was there comes back.
 std::string try_setting(Card& card, const map::Register& entry, std::uint32_t address) {
-  const std::uint32_t before = card.read(address);
+  const std::uint32_t before = card.parts().registers.read(address);
   std::string wrong;
   for (const std::uint32_t pattern : {0x55555555U, 0xAAAAAAAAU, 0xFFFFFFFFU, 0x00000001U}) {
     std::uint32_t value = pattern & entry.mask;
     if (entry.limited != 0) value = std::clamp(value, entry.minimum, entry.maximum);
     std::array<driver::Access, 3> accesses{driver::write_of(address, value), driver::read_of(address)};
-    card.transfer(accesses.data(), 2, "selftest");
+    card.parts().registers.transfer(accesses.data(), 2, "selftest");
     if (accesses[1].data != value) wrong = fmt::format("wrote 0x{:08X}, read 0x{:08X}", value, accesses[1].data);
   }
   std::array<driver::Access, 2> back{driver::write_of(address, before)};
-  card.transfer(back.data(), 1, "selftest");
+  card.parts().registers.transfer(back.data(), 1, "selftest");
   return wrong;
 }
 
@@ -186,7 +187,7 @@ void try_settings(Card& card, Checks& checks) {
 std::string expect_refusal(Card& card, driver::Access access, map::Reason reason) {
   std::array<driver::Access, 2> accesses{access};
   try {
-    card.transfer(accesses.data(), 1, "selftest");
+    card.parts().registers.transfer(accesses.data(), 1, "selftest");
     return "it was not refused";
   } catch (const driver::RefusedError& error) {
     if (error.reason() == static_cast<std::uint8_t>(reason)) return {};
@@ -205,10 +206,10 @@ void try_refusals(Card& card, Checks& checks) {
 
 void try_clock(Card& card, Checks& checks) {
   using Clock = std::chrono::steady_clock;
-  const std::uint64_t first = card.snapshot().time;
+  const std::uint64_t first = card.read_snapshot().time;
   const auto begun = Clock::now();
   card.bus().sleep(std::chrono::milliseconds(200));
-  const std::uint64_t clocks = card.snapshot().time - first;
+  const std::uint64_t clocks = card.read_snapshot().time - first;
   const double seconds = std::chrono::duration<double>(Clock::now() - begun).count();
   checks.add("its clock runs", clocks == 0 ? "no clock in 0.2 s" : "",
              fmt::format("{:.3f} s of the card in {:.3f} s here",
@@ -219,7 +220,7 @@ void try_link(Card& card, transport::Connection* connection, unsigned exchanges,
   std::string wrong;
   const auto begun = std::chrono::steady_clock::now();
   for (unsigned i = 0; i < exchanges && wrong.empty(); ++i) {
-    const std::uint32_t magic = card.read(reg::kMagic);
+    const std::uint32_t magic = card.parts().registers.read(reg::kMagic);
     if (magic != map::kMagicValue) wrong = fmt::format("MAGIC reads 0x{:08X}", magic);
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -232,19 +233,19 @@ void try_link(Card& card, transport::Connection* connection, unsigned exchanges,
 }
 
 void selftest(Card& card, transport::Connection* connection, const LookOptions& options) {
-  const driver::Status status = card.status();
+  const driver::Status status = card.read_status();
   if (status.busy) throw UsageError("selftest: the card is busy: it is tried when it is idle");
   Checks checks;
   const driver::Identification& id = card.identification();
   checks.add("it says who it is", "",
              fmt::format("{} axes, {} Hz, map {}.{}", id.axes, id.clock_hz, id.map_major, id.map_minor));
-  checks.add("it has no fault", status.faulted ? driver::describe_faults(card.faults()) : "");
-  const driver::Snapshot before = card.snapshot();
+  checks.add("it has no fault", status.faulted ? driver::describe_faults(card.read_faults()) : "");
+  const driver::Snapshot before = card.read_snapshot();
   try_link(card, connection, options.exchanges, checks);
   try_clock(card, checks);
   try_settings(card, checks);
   try_refusals(card, checks);
-  const driver::Snapshot after = card.snapshot();
+  const driver::Snapshot after = card.read_snapshot();
   checks.add("nothing has moved", after.position == before.position && !after.status.busy ? "" : "a position changed");
   if (checks.failed() != 0) {
     throw std::runtime_error(fmt::format("selftest: {} of {} checks failed", checks.failed(), checks.made()));

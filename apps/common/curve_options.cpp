@@ -83,12 +83,12 @@ Curve CurveChoice::curve() const {
 
 void VelocityChoice::add_to(CLI::App& command) {
   // As make_interpolator() takes them.
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 30;
+  constexpr std::uint64_t kMax = std::uint64_t{1} << 30;
   command.add_option("--clock", clock_hz, "clock of one-shot and divider methods (default 10000000)")
-      ->transform(whole_number(1, kMost, "Hz"))
+      ->transform(whole_number(1, kMax, "Hz"))
       ->type_name("HZ");
   command.add_option("--velocity", velocity, "lines a second, the second paper's v (default 5000)")
-      ->transform(whole_number(1, kMost, "lines/s"));
+      ->transform(whole_number(1, kMax, "lines/s"));
 }
 
 interpolation::Options VelocityChoice::options(const Curve& curve) const {

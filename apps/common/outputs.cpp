@@ -29,9 +29,9 @@ bool is_descriptor(const fs::path& file) {
 // The file that a name leads to, whether it exists or not.
 fs::path follow_links(fs::path file) {
   std::error_code error;
-  constexpr int kMostLinks = 40;  // as the kernel does
+  constexpr int kMaxLinks = 40;  // as the kernel does
   for (int i = 0; fs::is_symlink(file, error); ++i) {
-    if (i == kMostLinks) throw UsageError(fmt::format("{}: too many symbolic links", file.string()));
+    if (i == kMaxLinks) throw UsageError(fmt::format("{}: too many symbolic links", file.string()));
     if (is_descriptor(file)) break;
     file = file.parent_path() / fs::read_symlink(file, error);
     if (error) break;

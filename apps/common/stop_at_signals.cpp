@@ -69,7 +69,7 @@ run::Outcome run_until_signal(run::Runner& runner, driver::Card& card, const mac
   try {
     return stream ? runner.stream(card) : runner.run(card);
   } catch (const run::StoppedOnPath& stopped) {
-    std::string where = fmt::format("line {}", stopped.line());
+    std::string where = stopped.line() == 0 ? "before the first command" : fmt::format("line {}", stopped.line());
     const kinematics::Kinematics kinematics(machine);
     const kinematics::Coordinates at = kinematics.coordinates(stopped.position());
     for (std::size_t a = 0; a < machine.axes.size(); ++a) {

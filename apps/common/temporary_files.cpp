@@ -18,8 +18,8 @@ namespace trammel::app {
 namespace {
 
 // Names that the signal handler removes: it may call unlink(), but may not touch a container.
-constexpr std::size_t kMostNames = 256;
-std::array<std::atomic<const char*>, kMostNames> names{};
+constexpr std::size_t kMaxNames = 256;
+std::array<std::atomic<const char*>, kMaxNames> names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
 constexpr std::array<int, 5> kEndingSignals{SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGPIPE};

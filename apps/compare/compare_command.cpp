@@ -30,7 +30,7 @@ namespace measure = measure;
 // coarseness does not hide what the methods do.
 constexpr std::uint64_t kRandomVelocity = 100;
 // Hours of work, and 300 MB of sums.
-constexpr std::uint64_t kMostLines = 100'000'000;
+constexpr std::uint64_t kMaxLines = 100'000'000;
 
 struct CompareOptions {
   CurveChoice curve;
@@ -57,8 +57,8 @@ std::string title_of(const CurveChoice& choice) {
 void check_size(const interpolation::Curve& curve) {
   const std::uint64_t pulses = measure::pulses_along(curve);
   if (pulses == 0) throw UsageError("a line without length: nothing to compare");
-  if (pulses > measure::kMostPulses) {
-    throw UsageError(fmt::format("a curve of about {} pulses: at most {} are compared", pulses, measure::kMostPulses));
+  if (pulses > measure::kMaxPulses) {
+    throw UsageError(fmt::format("a curve of about {} pulses: at most {} are compared", pulses, measure::kMaxPulses));
   }
 }
 
@@ -148,13 +148,13 @@ void add_compare_command(CLI::App& app) {
   options->curve.add_to(*command);
   options->velocity.add_to(*command);
   command->add_option("--random", options->random, "so many random lines instead of one curve")
-      ->transform(whole_number(1, kMostLines, "lines"))
+      ->transform(whole_number(1, kMaxLines, "lines"))
       ->type_name("N");
   // As far as every whole number is a double.
   command->add_option("--seed", options->seed, "of the random lines (default 1)")
       ->transform(whole_number(0, std::uint64_t{1} << 53));
   command->add_option("--largest", options->largest, "pulses of an axis of a random line, at most (default 1000)")
-      ->transform(whole_number(1, measure::kMostPulses / 2, "pulses"));
+      ->transform(whole_number(1, measure::kMaxPulses / 2, "pulses"));
   command->add_option("--threads", options->threads, "threads (default: one a core)")->transform(whole_number(1, 256));
   command->add_option("--drive", options->drive, "steps of the simulated motor: full or half (default full)")
       ->check(CLI::IsMember({"full", "half"}));

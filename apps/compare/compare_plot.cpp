@@ -15,11 +15,11 @@ constexpr double kTop = 40;
 constexpr double kRowHeight = 190;
 constexpr double kMotorHeight = 460;
 // Points of one polyline at most: two panels of ten methods stay below 1 MB.
-constexpr std::size_t kMostPoints = 2000;
+constexpr std::size_t kMaxPoints = 2000;
 
-// Of each of at most kMostPoints groups of neighbours, the largest: peaks stay.
+// Of each of at most kMaxPoints groups of neighbours, the largest: peaks stay.
 std::vector<chart::Point> thinned(const std::vector<chart::Point>& points) {
-  const std::size_t group = points.size() / kMostPoints + 1;
+  const std::size_t group = points.size() / kMaxPoints + 1;
   std::vector<chart::Point> result;
   for (std::size_t i = 0; i < points.size(); i += group) {
     const auto end = points.begin() + static_cast<std::ptrdiff_t>(std::min(i + group, points.size()));

@@ -67,10 +67,10 @@ std::string describe(driver::Card& card) {
   fmt::format_to(out, "engines        {}\n", engines(id.engines));
   fmt::format_to(out, "geometry queue {} halfwords\n", id.geometry_depth);
   fmt::format_to(out, "feed queue     {} halfwords\n", id.feed_depth);
-  const driver::Build build = card.build();
+  const driver::Build build = card.read_build();
   fmt::format_to(out, "build          {:08x}{}\n", build.id, build.dirty ? ", dirty" : "");
   fmt::format_to(out, "board          {}\n", build.board);
-  const driver::Snapshot now = card.snapshot();
+  const driver::Snapshot now = card.read_snapshot();
   fmt::format_to(out, "time           {} clocks since reset\n", now.time);
   for (unsigned axis = 0; axis < id.axes; ++axis)
     fmt::format_to(out, "axis {}         pulse {}\n", axis, now.position[axis]);

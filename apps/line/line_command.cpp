@@ -151,7 +151,7 @@ driver::LineCommand as_command(const driver::OneShotPlan& plan, const std::vecto
 
 // Pulses that the card has made since `before`, by axis of the line.
 std::vector<std::int64_t> moved(driver::Card& card, const driver::Snapshot& before, std::size_t axes) {
-  const driver::Snapshot after = card.snapshot();
+  const driver::Snapshot after = card.read_snapshot();
   std::vector<std::int64_t> result;
   for (std::size_t a = 0; a < axes; ++a) {
     result.push_back(driver::pulses_between(before.position[a], after.position[a]));
@@ -184,7 +184,7 @@ Result make_line(const LineArguments& options, const sim::SimulationOptions& eng
   recorder.detail_of(0);
   engine->set_sink(&recorder);
   run_line(card, plan, {}, result.pulses.size());
-  const driver::Snapshot snapshot = card.snapshot();
+  const driver::Snapshot snapshot = card.read_snapshot();
   engine->set_sink(nullptr);
   recorder.finish();
 
@@ -255,7 +255,7 @@ CardResult make_line_on(driver::Card& card, const LineArguments& options) {
   }
   const driver::OneShotPlan plan = plan_of(options, card.timing(), pulses);
   take_over(card);
-  const driver::Snapshot before = card.snapshot();
+  const driver::Snapshot before = card.read_snapshot();
   run_line(card, plan, before, pulses.size());
   CardResult result;
   result.moved = moved(card, before, pulses.size());

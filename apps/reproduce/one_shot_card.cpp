@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chapters.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/sim/engines.hpp"
 
@@ -81,7 +82,7 @@ CardRun run_on_card(const Line& line, bool hold, const std::array<double, 2>& st
   card.wait_until_idle(std::chrono::milliseconds(10));
   run.line_cycles = engine->cycles() - before;
   engine->set_sink(nullptr);
-  card.throw_if_faulted(card.status(), "line of the paper");
+  card.parts().registers.throw_if_faulted(card.read_status(), "line of the paper");
   run.counters = engine->positions();
   run.clocks = engine->lockstep_cycles().value_or(0);
   return run;

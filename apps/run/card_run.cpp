@@ -45,10 +45,10 @@ class CardWatch final : public run::Observer {
 };
 
 void set_overrides(driver::Card& card, const CardRunOptions& options) {
-  card.set_override(driver::PieceClass::kFeed, options.percent, options.most_percent);
+  card.set_override(driver::PieceClass::kFeed, options.percent, options.max_percent);
   if (!card_map::has_engine(card.identification().engines, card_map::engine::kClasses)) return;
-  card.set_override(driver::PieceClass::kRapid, options.rapid_percent, options.most_percent);
-  card.set_override(driver::PieceClass::kFixed, 100, options.most_percent);
+  card.set_override(driver::PieceClass::kRapid, options.rapid_percent, options.max_percent);
+  card.set_override(driver::PieceClass::kFixed, 100, options.max_percent);
 }
 
 std::string link_text(const CardRunResult& result) {
@@ -72,13 +72,13 @@ CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine
 
   take_over(card);
   set_overrides(card, options);
-  const driver::Snapshot before = card.snapshot();
+  const driver::Snapshot before = card.read_snapshot();
   CardWatch watch(card, connection, plan, options.progress);
   runner.add(watch);
   result.outcome = run_until_signal(runner, card, machine, options.stream);
   result.plan = runner.last_plan();
   result.clock_hz = id.clock_hz;
-  result.seconds = static_cast<double>(card.snapshot().time - before.time) / id.clock_hz;
+  result.seconds = static_cast<double>(card.read_snapshot().time - before.time) / id.clock_hz;
   result.end = run::end_position(machine, result.outcome.final_position);
   result.profile = run::planned_profile(machine, options.settings);
   if (connection.frames() != nullptr) result.link = connection.frames()->counts();

@@ -20,7 +20,7 @@ struct CardRunOptions {
   bool stream = false;         // the program is read once, while it runs
   double percent = 100;        // override, of the planned speed
   double rapid_percent = 100;  // of rapids
-  double most_percent = 100;   // largest override
+  double max_percent = 100;    // largest override
   bool progress = false;       // also where stderr is no terminal
   // When all is checked and nothing has moved yet; with `stream` of an empty plan.
   std::function<void(const run::Plan&)> planned;

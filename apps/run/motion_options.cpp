@@ -165,17 +165,17 @@ void MotionChoice::add_to(CLI::App& command) {
   command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
 }
 
-simulation::Operation MotionChoice::operation(double most_percent) const {
+simulation::Operation MotionChoice::operation(double max_percent) const {
   simulation::Operation result;
-  constexpr const char* kMost = " (max_override of the machine file sets the most)";
-  result.percent = percent_of("--override", percent, most_percent, kMost);
+  constexpr const char* kMax = " (max_override of the machine file sets the most)";
+  result.percent = percent_of("--override", percent, max_percent, kMax);
   result.rapid_percent = percent_of("--rapid-override", rapid_percent, 100);
   result.bytes_per_second = bytes_per_second.value_or(std::numeric_limits<double>::infinity());
   for (const std::string& text : override_at) {
     const auto [at, to] = halves("--override-at", text, "SECONDS:PERCENT");
     const double seconds = seconds_of("--override-at", at, "time");
     result.events.push_back(
-        {OperatorEvent::Kind::kOverride, seconds, percent_of("--override-at", to, most_percent, kMost)});
+        {OperatorEvent::Kind::kOverride, seconds, percent_of("--override-at", to, max_percent, kMax)});
   }
   for (const std::string& text : hold_at) {
     const auto [at, duration] = halves("--hold-at", text, "SECONDS:DURATION, both in seconds");

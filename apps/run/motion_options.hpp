@@ -29,9 +29,9 @@ struct MotionChoice {
   bool run_deleted = false;
 
   void add_to(CLI::App& command);
-  // Throw UsageError for what is malformed or out of range. `most_percent`: the largest override that the machine's
+  // Throw UsageError for what is malformed or out of range. `max_percent`: the largest override that the machine's
   // limits leave room for.
-  simulation::Operation operation(double most_percent) const;
+  simulation::Operation operation(double max_percent) const;
   run::RunSettings settings() const;
 };
 

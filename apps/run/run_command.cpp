@@ -120,7 +120,7 @@ run::RunSettings settings_of(const RunArguments& options) {
 }
 
 // The largest override that the machine's limits leave room for.
-double most_percent(const machine::Machine& machine) { return 100 * machine.motion.max_override; }
+double max_percent(const machine::Machine& machine) { return 100 * machine.motion.max_override; }
 
 std::optional<std::uint64_t> copy_limit(const RunArguments& options) {
   if (options.stream) return std::nullopt;
@@ -153,8 +153,8 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   run.settings = settings_of(options);
   run.stream = options.stream;
   run.progress = options.progress;
-  run.most_percent = most_percent(machine);
-  const simulation::Operation operation = options.motion.operation(run.most_percent);
+  run.max_percent = max_percent(machine);
+  const simulation::Operation operation = options.motion.operation(run.max_percent);
   run.percent = operation.percent;
   run.rapid_percent = operation.rapid_percent;
   run.planned = [&](const run::Plan& plan) {
@@ -214,8 +214,8 @@ simulation::RunOptions simulation_options(const RunArguments& options, const mac
   }
   simulation::RunOptions run;
   run.settings = settings_of(options);
-  run.most_percent = most_percent(machine);
-  run.operation = options.motion.operation(run.most_percent);
+  run.max_percent = max_percent(machine);
+  run.operation = options.motion.operation(run.max_percent);
   run.steps = files.steps;
   run.path_steps = files.path_steps;
   run.outputs = files.outputs;

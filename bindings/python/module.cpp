@@ -344,26 +344,26 @@ void bind_motion(nb::class_<PythonCard>& card) {
       .def("run_line",
            waiting([](PythonCard& of, const std::vector<std::int64_t>& pulses, std::optional<std::int64_t> duration_ns,
                       std::optional<std::uint64_t> speed, const std::vector<std::uint64_t>& max_velocity,
-                      bool slow_down, std::int64_t patience_ns) {
+                      bool slow_down, std::int64_t margin_ns) {
              const driver::OneShotPlan planned = plan(of, pulses, duration_ns, speed, max_velocity, slow_down);
-             driver::run_line(of.card, planned, nanoseconds(patience_ns));
+             driver::run_line(of.card, planned, nanoseconds(margin_ns));
              return planned;
            }),
            "pulses"_a, nb::kw_only(), "duration_ns"_a = nb::none(), "speed"_a = nb::none(),
-           "max_velocity"_a = std::vector<std::uint64_t>{}, "slow_down"_a = false, "patience_ns"_a = 1'000'000'000,
+           "max_velocity"_a = std::vector<std::uint64_t>{}, "slow_down"_a = false, "margin_ns"_a = 1'000'000'000,
            "Runs a line and returns when it has ended.")
-      .def("hold", waiting([](PythonCard& of, bool on) { of.card.set_hold(on); }), "on"_a = true,
+      .def("set_hold", waiting([](PythonCard& of, bool on) { of.card.set_hold(on); }), "on"_a = true,
            "Slews to rest on the path, or goes on.")
       .def("set_override",
-           waiting([](PythonCard& of, double percent, double most_percent, driver::PieceClass piece_class) {
-             of.card.set_override(piece_class, percent, most_percent);
+           waiting([](PythonCard& of, double percent, double max_percent, driver::PieceClass piece_class) {
+             of.card.set_override(piece_class, percent, max_percent);
            }),
-           "percent"_a, "most_percent"_a = 100.0, "piece_class"_a = driver::PieceClass::kFeed)
+           "percent"_a, "max_percent"_a = 100.0, "piece_class"_a = driver::PieceClass::kFeed)
       .def("set_slew_time", waiting([](PythonCard& of, std::int64_t ns) { of.card.set_slew_time(nanoseconds(ns)); }),
            "full_scale_ns"_a)
       .def("abort", waiting([](PythonCard& of) { of.card.abort(); }), "Drops what is queued and stops at once.")
       .def("stop", waiting([](PythonCard& of, std::int64_t ns) { return of.card.stop(nanoseconds(ns)); }),
-           "patience_ns"_a = 1'000'000'000, "A hold, and at rest an abort. Gives back where the card stands.")
+           "margin_ns"_a = 1'000'000'000, "A hold, and at rest an abort. Gives back where the card stands.")
       .def("take_over", waiting([](PythonCard& of) { return of.card.take_over(); }),
            "Of another host that has left it: ends its hold. Gives back where the card stands if a motion was dropped.")
       .def(
@@ -377,17 +377,17 @@ void bind_state(nb::class_<PythonCard>& card) {
       .def("configure_axis", waiting(configure_axis), "axis"_a, nb::kw_only(), "step_length_ns"_a = 0,
            "step_space_ns"_a = 0, "direction_setup_ns"_a = 0, "direction_hold_ns"_a = 0,
            "mode"_a = driver::StepMode::kStepDirection, "invert_first"_a = false, "invert_second"_a = false)
-      .def("status", waiting([](PythonCard& of) { return of.card.status(); }))
-      .def("snapshot", waiting([](PythonCard& of) { return of.card.snapshot(); }), "All of one clock.")
-      .def("stop_snapshot", waiting([](PythonCard& of) { return of.card.stop_snapshot(); }))
+      .def("read_status", waiting([](PythonCard& of) { return of.card.read_status(); }))
+      .def("read_snapshot", waiting([](PythonCard& of) { return of.card.read_snapshot(); }), "All of one clock.")
+      .def("read_stop_snapshot", waiting([](PythonCard& of) { return of.card.read_stop_snapshot(); }))
       .def("wait_until_idle",
            waiting([](PythonCard& of, std::int64_t ns) { of.card.wait_until_idle(nanoseconds(ns)); }), "timeout_ns"_a)
-      .def("faults", waiting([](PythonCard& of) { return of.card.faults(); }))
+      .def("read_faults", waiting([](PythonCard& of) { return of.card.read_faults(); }))
       .def("clear_faults", waiting([](PythonCard& of) { of.card.clear_faults(); }))
-      .def("inputs", waiting([](PythonCard& of) { return of.card.inputs(); }))
-      .def("outputs", waiting([](PythonCard& of) { return of.card.outputs(); }))
-      .def("marks", waiting([](PythonCard& of) { return of.card.marks(); }))
-      .def("mark_snapshot", waiting([](PythonCard& of) { return of.card.mark_snapshot(); }));
+      .def("read_inputs", waiting([](PythonCard& of) { return of.card.read_inputs(); }))
+      .def("read_outputs", waiting([](PythonCard& of) { return of.card.read_outputs(); }))
+      .def("read_marks", waiting([](PythonCard& of) { return of.card.read_marks(); }))
+      .def("read_mark_snapshot", waiting([](PythonCard& of) { return of.card.read_mark_snapshot(); }));
 }
 
 void bind_simulation(nb::class_<PythonCard>& card) {
@@ -538,15 +538,15 @@ void bind_stream(nb::module_& m) {
   nb::class_<driver::Stream>(m, "Stream")
       .def("__init__",
            waiting([](driver::Stream* place, PythonCard& of,
-                      std::function<void(const driver::StreamProgress&)> progress, std::int64_t patience_ns) {
+                      std::function<void(const driver::StreamProgress&)> progress, std::int64_t margin_ns) {
              driver::StreamOptions options;
-             options.patience = nanoseconds(patience_ns);
+             options.margin = nanoseconds(margin_ns);
              if (progress) {
                options.progress = [progress](const driver::StreamProgress& is) { tell(progress, is); };
              }
              new (place) driver::Stream(of.card, std::move(options));
            }),
-           "card"_a, nb::kw_only(), "progress"_a.none() = nb::none(), "patience_ns"_a = 1'000'000'000,
+           "card"_a, nb::kw_only(), "progress"_a.none() = nb::none(), "margin_ns"_a = 1'000'000'000,
            nb::keep_alive<1, 2>())
       .def("put", waiting([](driver::Stream& s, const PythonCommand& c) { s.put(c.command); }), "command"_a)
       .def("send", waiting([](driver::Stream& s, const std::vector<PythonCommand>& c) { s.send(commands_of(c)); }),
@@ -576,12 +576,12 @@ void bind_position_stream(nb::module_& m) {
   stream
       .def("__init__",
            waiting([](PositionStream* place, PythonCard& of, unsigned stale_periods, unsigned ahead,
-                      const std::vector<double>& max_speed, std::int64_t patience_ns) {
+                      const std::vector<double>& max_speed, std::int64_t margin_ns) {
              new (place) PositionStream(
-                 of.card, {stale_periods, ahead, by_axis(max_speed, "max_speed"), nanoseconds(patience_ns)});
+                 of.card, {stale_periods, ahead, by_axis(max_speed, "max_speed"), nanoseconds(margin_ns)});
            }),
            "card"_a, nb::kw_only(), "stale_periods"_a = 1, "ahead"_a = 2, "max_speed"_a = std::vector<double>{},
-           "patience_ns"_a = 1'000'000'000, nb::keep_alive<1, 2>())
+           "margin_ns"_a = 1'000'000'000, nb::keep_alive<1, 2>())
       .def("send", waiting([](PositionStream& s, const std::vector<std::int64_t>& targets, std::int64_t duration_ns) {
              return s.send(by_axis(targets, "targets"), nanoseconds(duration_ns));
            }),

@@ -18,12 +18,12 @@ constexpr int kFractionBits = card_map::constant::kFractionBits;
 constexpr std::uint64_t kChordCountLimit =
     card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::ArcChord))->count_maximum + 1;
 constexpr double kPathTickLimit = 0x1p37;
-constexpr unsigned kLeastK = 1;
-constexpr unsigned kLeastM = 5;
-constexpr unsigned kMostM = 31;
-constexpr double kLeastRadius = 0.125;   // pulses
-constexpr double kMostToCircle = 0.375;  // pulses
-constexpr double kMostShift = 0x1p22;    // whole pulses of a coordinate in 2^-40 pulses that 63 bits hold, with room
+constexpr unsigned kMinK = 1;
+constexpr unsigned kMinM = 5;
+constexpr unsigned kMaxM = 31;
+constexpr double kMinRadius = 0.125;    // pulses
+constexpr double kMaxToCircle = 0.375;  // pulses
+constexpr double kMaxShift = 0x1p22;    // whole pulses of a coordinate in 2^-40 pulses that 63 bits hold, with room
 
 // From the centre, pulses.
 struct Ray {
@@ -44,7 +44,7 @@ Ray ray(std::int64_t x, std::int64_t y) {
 std::int64_t rounded(double value, int fraction_bits) { return std::llround(std::ldexp(value, fraction_bits)); }
 
 // From a point at `radius` to the circle `mean`, along the radius.
-double to_circle(double radius, double mean) { return std::clamp(mean - radius, -kMostToCircle, kMostToCircle); }
+double to_circle(double radius, double mean) { return std::clamp(mean - radius, -kMaxToCircle, kMaxToCircle); }
 
 // The circle that the card turns on, and where on it the arc begins and ends.
 class Circle {
@@ -65,8 +65,8 @@ class Circle {
   double path_ticks(unsigned m) const { return std::round(std::ldexp(sweep / turn, static_cast<int>(m))); }
   // The fewest for which X and Y have bits.
   unsigned least_m() const {
-    unsigned m = kLeastM;
-    while (std::ldexp(radius, -static_cast<int>(m)) >= kMostShift) ++m;
+    unsigned m = kMinM;
+    while (std::ldexp(radius, -static_cast<int>(m)) >= kMaxShift) ++m;
     return m;
   }
 
@@ -74,14 +74,14 @@ class Circle {
   Ray end;
   double radius;
   int sense;  // 1: counter-clockwise
-  unsigned k = kLeastK;
+  unsigned k = kMinK;
   double turn = 0;   // of a chord
   double sweep = 0;  // between the rounded ends, turns included
 
  private:
   void check_radii() const {
     for (const Ray& at : {start, end}) {
-      if (!(at.radius >= kLeastRadius)) refuse_arc(fmt::format("radius of {:.4g} pulses: send a line", at.radius));
+      if (!(at.radius >= kMinRadius)) refuse_arc(fmt::format("radius of {:.4g} pulses: send a line", at.radius));
       if (!(at.radius <= kMaxChordRadius)) refuse_arc(fmt::format("radius of {:.4g} pulses", at.radius));
     }
     // Rounding parts them by three pulses at most; a program's own rounding may be coarser than the pulses.
@@ -98,8 +98,8 @@ class Circle {
     }
     const double nearest = ahead + 2 * kPi * std::round((arc.sweep - ahead) / (2 * kPi));
     // Each end lies within about a pulse of where the sweep was taken.
-    constexpr double kMostApart = 4;  // pulses
-    if (std::abs(nearest - arc.sweep) * std::min(start.radius, end.radius) > kMostApart) {
+    constexpr double kMaxApart = 4;  // pulses
+    if (std::abs(nearest - arc.sweep) * std::min(start.radius, end.radius) > kMaxApart) {
       refuse_arc(fmt::format("a sweep of {:.6f} radians, but {:.6f} between the points", arc.sweep, nearest));
     }
     const double total = nearest + 2 * kPi * arc.turns;
@@ -198,8 +198,8 @@ void check(const HelixGeometry& geometry) {
   if (!(arc.sweep >= 0 && arc.sweep / (2 * kPi) + arc.turns <= kMaxChordTurns)) {
     refuse_arc(fmt::format("sweep of {} radians and {} turns", arc.sweep, arc.turns));
   }
-  constexpr auto kMost = static_cast<std::int64_t>(kMaxChordRadius) * kCentreUnitsPerPulse;
-  if (arc.centre_x < -kMost || arc.centre_x > kMost || arc.centre_y < -kMost || arc.centre_y > kMost) {
+  constexpr auto kMax = static_cast<std::int64_t>(kMaxChordRadius) * kCentreUnitsPerPulse;
+  if (arc.centre_x < -kMax || arc.centre_x > kMax || arc.centre_y < -kMax || arc.centre_y > kMax) {
     refuse_arc("the centre is farther than 2^31 pulses from the start");
   }
   for (const std::int64_t pulses : geometry.further) {
@@ -247,7 +247,7 @@ std::uint64_t least_chord_ticks(const HelixGeometry& geometry) {
   check(geometry);
   const Circle circle(geometry.arc);
   ArcChordCommand arc = on_plane(geometry, circle);
-  for (unsigned m = circle.least_m(); m <= kMostM && circle.path_ticks(m) < kPathTickLimit; ++m) {
+  for (unsigned m = circle.least_m(); m <= kMaxM && circle.path_ticks(m) < kPathTickLimit; ++m) {
     if (at_density(arc, m, circle, geometry)) return arc.path_ticks;
   }
   refuse_arc("too long, or too short for what its ends or further axes ask for");
@@ -260,7 +260,7 @@ ArcChordCommand make_helix(const HelixGeometry& geometry, std::uint64_t ticks) {
   ArcChordCommand arc = on_plane(geometry, circle);
   const double most = std::min(static_cast<double>(ticks), kPathTickLimit - 1);
   unsigned m = circle.least_m();
-  while (m < kMostM && circle.path_ticks(m + 1) <= most) ++m;
+  while (m < kMaxM && circle.path_ticks(m + 1) <= most) ++m;
   if (circle.path_ticks(m) > most || !at_density(arc, m, circle, geometry)) {
     refuse_arc(fmt::format("{} feed ticks are too few", ticks));
   }

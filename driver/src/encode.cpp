@@ -44,11 +44,11 @@ class Writer {
     static_assert(kField.kind == map::FieldKind::Unsigned && kField.bits <= 64);
     constexpr std::uint64_t kBits =
         kField.bits == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << (kField.bits % 64)) - 1;
-    constexpr std::uint64_t kMost = kField.limit != 0 ? kField.limit : kBits;
+    constexpr std::uint64_t kMax = kField.limit != 0 ? kField.limit : kBits;
     constexpr std::uint64_t kMask =
         kField.mask | kField.optional;  // whether the card has the engine is the stream's question
     const bool bits_good = kField.mask == 0 || (value & ~kMask) == 0;
-    if (value < kField.minimum || value > kMost || !bits_good || (kField.at_most_count && value > count_)) {
+    if (value < kField.minimum || value > kMax || !bits_good || (kField.at_most_count && value > count_)) {
       refuse_field<kField>(layout_, value, count_);
     }
     put(kPayloadBegin + kField.offset + offset, kField.halfwords, value);
@@ -57,11 +57,11 @@ class Writer {
   void field(std::int64_t value, std::size_t offset = 0) {
     static_assert(kField.kind == map::FieldKind::Signed && kField.bits <= 64 && !kField.at_most_count);
     constexpr auto kHalf = static_cast<std::int64_t>(std::uint64_t{1} << (kField.bits - 1) % 63);
-    constexpr std::int64_t kMost = kField.limit != 0   ? static_cast<std::int64_t>(kField.limit)
-                                   : kField.bits == 64 ? std::numeric_limits<std::int64_t>::max()
-                                                       : kHalf - 1;
-    constexpr std::int64_t kLeast = kField.limit != 0 ? -kMost : -kMost - 1;
-    if (value < kLeast || value > kMost) refuse_field<kField>(layout_, value, count_);
+    constexpr std::int64_t kMax = kField.limit != 0   ? static_cast<std::int64_t>(kField.limit)
+                                  : kField.bits == 64 ? std::numeric_limits<std::int64_t>::max()
+                                                      : kHalf - 1;
+    constexpr std::int64_t kMin = kField.limit != 0 ? -kMax : -kMax - 1;
+    if (value < kMin || value > kMax) refuse_field<kField>(layout_, value, count_);
     put(kPayloadBegin + kField.offset + offset, kField.halfwords, static_cast<std::uint64_t>(value));
   }
   template <const map::Field& kField>

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
-#include "patience.hpp"
+#include "card_identity.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/increment.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/driver/wide.hpp"
+#include "wait_budget.hpp"
 
 namespace trammel::driver {
 namespace {
@@ -140,7 +142,7 @@ void start_direct(Card& card, const OneShotPart& part) {
     const auto offset = static_cast<std::uint32_t>(4 * (i - absent));
     accesses[i - absent] = write_of(card_map::reg::frequency_lo(axes - 1) + offset, words[i]);
   }
-  card.transfer(accesses.data(), words.size() - absent, "line");
+  card.parts().registers.transfer(accesses.data(), words.size() - absent, "line");
 }
 
 // Without direct mode: the same increments on feed ticks, one a clock but for 2^-64 of a clock.
@@ -164,12 +166,12 @@ void start_streamed(Card& card, const OneShotPart& part) {
 
 // The card is idle: it is the same one still, and was not reset since the start.
 void check_made(Card& card, const OneShotPart& part) {
-  card.check_identity();
+  check_identity(card.parts());
   if (!has_direct_mode(card)) {
     return;
   }
   std::array<Access, 3> length{read_of(card_map::reg::kLengthLo), read_of(card_map::reg::kLengthHi)};
-  card.transfer(length.data(), 2, "line");
+  card.parts().registers.transfer(length.data(), 2, "line");
   if ((length[0].data | std::uint64_t{length[1].data} << 32) != part.length) {
     throw StateError("line: the card does not know it any more: it was reset, or is used by another program");
   }
@@ -177,8 +179,8 @@ void check_made(Card& card, const OneShotPart& part) {
 
 // Nothing would move, and no call that waits would end.
 void require_moving(Card& card) {
-  card.throw_if_held("line");
-  if (card.read(card_map::reg::kRatioFeed) == 0) {
+  card.parts().time_base.throw_if_held("line");
+  if (card.parts().registers.read(card_map::reg::kRatioFeed) == 0) {
     throw HeldError("line: the time base's ratio is 0: set another one first");
   }
 }
@@ -282,27 +284,28 @@ OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed s
   return plan;
 }
 
-void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds patience) {
+void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds margin) {
   constexpr const char* kContext = "line: waiting for its end";
   constexpr std::uint32_t kLooksPerSecond = 50;
-  const std::uint64_t margin = card.clocks(patience, "line: patience");
-  const std::uint64_t look = std::max<std::uint64_t>(card.timing().clock_hz / kLooksPerSecond, card.poll_interval());
+  const std::uint64_t margin_clocks = clocks_of(margin, card.timing().clock_hz, "line: margin");
+  const std::uint64_t shortest_pause = poll_interval(card.timing().clock_hz);
+  const std::uint64_t look = std::max<std::uint64_t>(card.timing().clock_hz / kLooksPerSecond, shortest_pause);
   require_moving(card);
   for (std::size_t index = 0; index < plan.size(); ++index) {
     const OneShotPart part = plan.part(index);
     start_line(card, part);
-    Patience waiting(card, kContext, margin);
+    WaitBudget waiting(card, kContext, margin_clocks);
     waiting.allow(PlannedTime::of(part.length));
     // The first pause is about as long as the line, the last ones are short.
     Status status;
     std::uint64_t left = part.length;
     do {
-      const std::uint64_t pause = std::clamp(left, card.poll_interval(), look);
-      waiting.pause(status, pause, Patience::kIdle);
+      const std::uint64_t pause = std::clamp(left, shortest_pause, look);
+      waiting.pause(status, pause, WaitBudget::kIdle);
       left -= std::min(left, pause);
-      status = card.status();
-      card.throw_if_faulted(status, kContext);
-      card.serve_requests();
+      status = card.read_status();
+      card.parts().registers.throw_if_faulted(status, kContext);
+      serve_requests(card);
     } while (status.busy);
     check_made(card, part);
   }

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "card_identity.hpp"
 #include "nanoseconds.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/driver/increment.hpp"
 #include "trammel/driver/interrupt.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/wide.hpp"
 
 namespace trammel::driver {
@@ -21,7 +23,7 @@ namespace field = card_map::field;
 
 constexpr std::uint64_t kLongestPeriod = std::uint64_t{1} << 32;  // clocks
 constexpr std::int64_t kFarthest = (std::int64_t{1} << 30) * PositionStream::kPulse;
-constexpr unsigned kMostStalePeriods = field::kStreamingStalePeriods >> field::kStreamingStalePeriodsShift;
+constexpr unsigned kMaxStalePeriods = field::kStreamingStalePeriods >> field::kStreamingStalePeriodsShift;
 // A tick every kClocksPerTick clocks, exactly: 2^-64 ticks a clock.
 constexpr std::uint64_t kStreamRate = ~std::uint64_t{0} / PositionStream::kClocksPerTick + 1;
 
@@ -71,14 +73,14 @@ PositionStream::PositionStream(Card& card, const PositionStreamOptions& options)
     : card_(&card),
       options_(options),
       axes_(card.identification().axes),
-      patience_clocks_(card.clocks(options.patience, "position stream: patience")) {
+      margin_clocks_(clocks_of(options.margin, card.timing().clock_hz, "position stream: margin")) {
   if (!map::has_engine(card.identification().engines, map::engine::kStreaming)) {
     throw ArgumentError(fmt::format("position stream: needs {}, which the card does not have (engines 0x{:X})",
                                     map::kEngineNames[map::engine::kStreaming], card.identification().engines));
   }
-  if (options.stale_periods > kMostStalePeriods) {
+  if (options.stale_periods > kMaxStalePeriods) {
     throw ArgumentError(
-        fmt::format("position stream: {} stale periods are outside 0 .. {}", options.stale_periods, kMostStalePeriods));
+        fmt::format("position stream: {} stale periods are outside 0 .. {}", options.stale_periods, kMaxStalePeriods));
   }
   if (options.ahead == 0) throw ArgumentError("position stream: 0 periods ahead: at least 1");
   for (unsigned n = 0; n < axes_; ++n) {
@@ -88,14 +90,15 @@ PositionStream::PositionStream(Card& card, const PositionStreamOptions& options)
     }
     least_clocks_[n] = std::max<std::uint64_t>(card.timing().pulse_period[n], kClocksPerTick);
   }
-  if (card.ratio() != Card::kFullRatio) {
+  if (card.ratio() != kFullRatio) {
     throw StateError(fmt::format("position stream: the ratio is {} / 65536; set it to the full one", card.ratio()));
   }
-  const Status status = card.status();
-  card.throw_if_faulted(status, "position stream");
-  if (!card.holds_by_this_program()) card.throw_if_held("position stream");
+  const Status status = card.read_status();
+  card.parts().registers.throw_if_faulted(status, "position stream");
+  TimeBase& time_base = card.parts().time_base;
+  if (!time_base.holds_by_this_program()) time_base.throw_if_held("position stream");
   if (status.busy) throw StateError("position stream: the card is busy; wait until it is idle, or abort it");
-  origin_ = card.snapshot().position;
+  origin_ = card.read_snapshot().position;
   start();
 }
 
@@ -103,12 +106,12 @@ PositionStream::PositionStream(Card& card, const PositionStreamOptions& options)
 void PositionStream::start() {
   card_->abort();
   card_->clear_refusal();
-  const std::uint32_t reaction = card_->read(reg::kStopReaction) | field::kStopReactionMissingPeriod;
+  const std::uint32_t reaction = card_->parts().registers.read(reg::kStopReaction) | field::kStopReactionMissingPeriod;
   std::array<Access, 4> accesses{
       write_of(reg::kStopReaction, reaction),
       write_of(reg::kStreaming, field::kStreamingOn | options_.stale_periods << field::kStreamingStalePeriodsShift),
       read_of(reg::kGeometryRoom)};
-  card_->transfer(accesses.data(), 3, "position stream");
+  card_->parts().registers.transfer(accesses.data(), 3, "position stream");
   geometry_room_ = accesses[2].data;
   odd_clocks_ = odd_time_ = 0;
   beyond_ = {};
@@ -160,7 +163,7 @@ PositionStream::Sent PositionStream::send(const Positions& targets, std::uint64_
 // For a line, as of the last look, or as of now where that is too little.
 void PositionStream::require_room() {
   const std::uint32_t need = map::queue_halfwords(layout_of(LineCommand{}), line_mask());
-  if (need > geometry_room_) geometry_room_ = card_->read(reg::kGeometryRoom);
+  if (need > geometry_room_) geometry_room_ = card_->parts().registers.read(reg::kGeometryRoom);
   if (need > geometry_room_) {
     throw StateError(fmt::format("position stream: the card's queue is full, {} periods ahead", lines_ - begun_));
   }
@@ -264,12 +267,12 @@ PositionStream::Look PositionStream::transfer_and_look() {
          {reg::kStatus, reg::kGeometryBegun, reg::kStaleTicks, reg::kStatus, reg::kGeometryBegun, reg::kGeometryRoom}) {
       accesses_[used_++] = read_of(address);
     }
-    card_->transfer_stream(accesses_.data(), used_);
+    card_->parts().registers.transfer_stream(accesses_.data(), used_);
     used_ = 0;
     const Access* read = &accesses_[first];
-    const Status before = card_->status_of(read[0]);
-    const Status after = card_->status_of(read[3]);
-    card_->throw_if_faulted(after, "position stream");
+    const Status before = card_->parts().registers.status_of(read[0]);
+    const Status after = card_->parts().registers.status_of(read[3]);
+    card_->parts().registers.throw_if_faulted(after, "position stream");
     const std::uint64_t begun = count_after(begun_, read[4].data);
     if (begun > lines_) throw_not_ours(read[4].data);
     const bool stale = ((read[0].data | read[3].data) & field::kStatusStale) != 0;
@@ -277,7 +280,7 @@ PositionStream::Look PositionStream::transfer_and_look() {
     geometry_room_ = read[5].data;
     if (before.busy && after.busy && !stale && read[4].data == read[1].data) return {begun, read[2].data};
   }
-  card_->check_identity();
+  check_identity(card_->parts());
   throw StateError(
       fmt::format("position stream: period {} was over when it was looked at: the bus is too slow for it, "
                   "or the card was reset or aborted by somebody else",
@@ -286,7 +289,7 @@ PositionStream::Look PositionStream::transfer_and_look() {
 
 // The card counts lines that this stream has not sent, or has gone back.
 void PositionStream::throw_not_ours(std::uint32_t begun) {
-  card_->check_identity();
+  check_identity(card_->parts());
   throw StateError(
       fmt::format("position stream: the card says that it has begun {} lines, where {} were sent and {} had begun: it "
                   "was reset, or used by somebody else",
@@ -300,16 +303,16 @@ PositionStream::Positions PositionStream::finish() {
     if (lines_ != 0 && !fed_) put_feed();
     put(EndCommand{});
     const std::size_t count = used_;
-    card_->transfer_stream(accesses_.data(), count);
+    card_->parts().registers.transfer_stream(accesses_.data(), count);
     const std::uint64_t clocks = (lines_ - begun_ + 1) * longest_ticks_ * kClocksPerTick * (1 + options_.stale_periods);
-    const auto limit = time_of(clocks + patience_clocks_, card_->identification().clock_hz);
+    const auto limit = time_of(clocks + margin_clocks_, card_->identification().clock_hz);
     card_->wait_until_idle(limit);
-    if (pending_) gone_beyond(card_->read(reg::kStaleTicks));
+    if (pending_) gone_beyond(card_->parts().registers.read(reg::kStaleTicks));
     pending_ = false;
-    expect_positions(card_->snapshot().position);
+    expect_positions(card_->read_snapshot().position);
     Access off = write_of(reg::kStreaming, 0);
     std::array<Access, 2> accesses{off};
-    card_->transfer(accesses.data(), 1, "position stream");
+    card_->parts().registers.transfer(accesses.data(), 1, "position stream");
     open_ = false;
     return position();
   });
@@ -339,19 +342,20 @@ std::int32_t PositionStream::at_card(unsigned axis, std::int64_t pulses) const {
 
 PositionStream::Stopped PositionStream::recover() {
   open_ = false;
-  if (!card_->status().faulted) card_->stop(options_.patience);
-  const std::uint64_t slew = std::max<std::uint32_t>(card_->read(reg::kSlew), 1);
-  const std::uint64_t limit = Card::kSlowestSlew / slew + patience_clocks_;
-  const std::uint64_t pause = card_->poll_interval();
-  for (std::uint64_t waited = 0; card_->status().busy; waited += pause) {
+  if (!card_->read_status().faulted) card_->stop(options_.margin);
+  const std::uint64_t slew = std::max<std::uint32_t>(card_->parts().registers.read(reg::kSlew), 1);
+  const std::uint64_t limit = kSlowestSlew / slew + margin_clocks_;
+  const std::uint64_t pause = poll_interval(card_->timing().clock_hz);
+  for (std::uint64_t waited = 0; card_->read_status().busy; waited += pause) {
     if (waited > limit) throw TimeoutError("position stream: waiting for the card to stand", waited);
     if (interrupted()) throw InterruptedError("position stream: interrupted before the card stood; recover it again");
     card_->bus().sleep(time_of(pause, card_->identification().clock_hz));
   }
   Stopped stopped;
-  stopped.faults = card_->faults();
-  if ((stopped.faults & field::kFaultMissingPeriod) != 0) stopped.stale_ticks = card_->read(reg::kStaleTicks);
-  const Snapshot now = card_->snapshot();
+  stopped.faults = card_->read_faults();
+  if ((stopped.faults & field::kFaultMissingPeriod) != 0)
+    stopped.stale_ticks = card_->parts().registers.read(reg::kStaleTicks);
+  const Snapshot now = card_->read_snapshot();
   for (unsigned n = 0; n < axes_; ++n) {
     const std::int64_t expected = told_[n] + beyond_[n];
     told_[n] = expected + pulses_between(at_card(n, expected), now.position[n]);

@@ -7,10 +7,12 @@
 #include <string_view>
 #include <utility>
 
-#include "patience.hpp"
+#include "card_identity.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/feed_time.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
+#include "wait_budget.hpp"
 
 namespace trammel::driver {
 namespace {
@@ -46,8 +48,7 @@ void refuse_reversal(const FeedCommand& feed, std::string_view command) {
 // One wait for the card.
 class Stream::Wait {
  public:
-  Wait(Stream& stream, const char* context)
-      : stream_(stream), patience_(*stream.card_, context, stream.patience_clocks_) {
+  Wait(Stream& stream, const char* context) : stream_(stream), budget_(*stream.card_, context, stream.margin_clocks_) {
     allow();
   }
 
@@ -63,16 +64,16 @@ class Stream::Wait {
       planned.parts[part++] = {duration.gated, duration.piece_class};
       planned.real += duration.real;
     }
-    patience_.allow(planned);
+    budget_.allow(planned);
   }
-  // `wake`: as of Patience::pause().
-  void pause(const Status& status, std::uint32_t wake) { patience_.pause(status, stream_.poll_clocks_, wake); }
+  // `wake`: as of WaitBudget::pause().
+  void pause(const Status& status, std::uint32_t wake) { budget_.pause(status, stream_.poll_clocks_, wake); }
 
   // Throws StateError when the card has been idle at two looks in a row although it has not begun all.
   void idle(bool without_reason) {
     idle_looks_ = without_reason ? idle_looks_ + 1 : 0;
     if (idle_looks_ < 2) return;
-    stream_.card_->check_identity();
+    check_identity(stream_.card_->parts());
     throw StateError(
         fmt::format("stream: the card is idle, but of {} geometry and {} feed commands it has begun {} and "
                     "{}: it was reset, or aborted by somebody else",
@@ -81,7 +82,7 @@ class Stream::Wait {
 
  private:
   Stream& stream_;
-  Patience patience_;
+  WaitBudget budget_;
   int idle_looks_ = 0;
 };
 
@@ -105,17 +106,19 @@ auto Stream::closing_at_errors(Call call) {
 Stream::Stream(Card& card, StreamOptions options)
     : card_(&card),
       options_(std::move(options)),
-      patience_clocks_(card.clocks(options_.patience, "stream: patience")),
-      poll_clocks_(options_.poll_clocks != 0 ? options_.poll_clocks : card.poll_interval()),
+      margin_clocks_(clocks_of(options_.margin, card.timing().clock_hz, "stream: margin")),
+      poll_clocks_(options_.poll_clocks != 0 ? options_.poll_clocks : poll_interval(card.timing().clock_hz)),
       accesses_(kKeptWords + 1),
       durations_(card.identification().feed_depth / kShortestQueued + kKeptWords / kShortestCommandWords +
                  kBeyondQueue) {
-  if (patience_clocks_ == 0) {
-    throw ArgumentError("stream: a patience of 0 ns");
+  if (margin_clocks_ == 0) {
+    throw ArgumentError("stream: a margin of 0 ns");
   }
-  const Status status = card.status();
-  card.throw_if_faulted(status, "stream");
-  if (!options_.opens_in_hold && !card.holds_by_this_program()) card.throw_if_held("stream");
+  const Status status = card.read_status();
+  card.parts().registers.throw_if_faulted(status, "stream");
+  if (!options_.opens_in_hold && !card.parts().time_base.holds_by_this_program()) {
+    card.parts().time_base.throw_if_held("stream");
+  };
   if (status.busy) {
     throw StateError("stream: the card is busy; wait until it is idle, or abort it, before opening the stream");
   }
@@ -123,7 +126,7 @@ Stream::Stream(Card& card, StreamOptions options)
 }
 
 void Stream::restart() {
-  card_->throw_if_faulted(card_->status(), "stream");
+  card_->parts().registers.throw_if_faulted(card_->read_status(), "stream");
   reset();
 }
 
@@ -234,7 +237,7 @@ void Stream::keep(const Command& command, const Need& need, const std::uint32_t*
 void Stream::write_kept() {
   const std::size_t count = std::exchange(used_, 0);
   const std::size_t commands = std::exchange(kept_, 0);
-  card_->transfer_stream(accesses_.data(), count);
+  card_->parts().registers.transfer_stream(accesses_.data(), count);
   sent_ += commands;
   geometry_.sent = geometry_.put;
   feed_.sent = feed_.put;
@@ -255,9 +258,9 @@ void Stream::wait_for_room(const Need& need) {
 
 // For room where it is missing.
 std::uint32_t Stream::wake_for(const Need& need) const {
-  if (!card_->tells_of_room()) return 0;
-  return card_->wake_at_room(need.geometry > room_.geometry ? need.geometry : 0,
-                             need.feed > room_.feed ? need.feed : 0);
+  if (!card_->parts().interrupt.tells_of_room()) return 0;
+  return card_->parts().interrupt.wake_at_room(need.geometry > room_.geometry ? need.geometry : 0,
+                                               need.feed > room_.feed ? need.feed : 0);
 }
 
 void Stream::refresh_room(const Need& need) {
@@ -265,7 +268,7 @@ void Stream::refresh_room(const Need& need) {
   std::size_t count = 0;
   if (need.geometry > room_.geometry) accesses[count++] = read_of(reg::kGeometryRoom);
   if (need.feed > room_.feed) accesses[count++] = read_of(reg::kFeedRoom);
-  card_->transfer(accesses.data(), count, "stream");
+  card_->parts().registers.transfer(accesses.data(), count, "stream");
   const Identification& card = card_->identification();
   for (std::size_t i = 0; i < count; ++i) {
     const bool geometry = accesses[i].address == reg::kGeometryRoom;
@@ -284,10 +287,10 @@ Status Stream::finish() {
     // The first look comes after a pause too: a command is some clocks on its way from the port to the queue.
     Status status;
     for (;;) {
-      wait.pause(status, Patience::kIdle);
+      wait.pause(status, WaitBudget::kIdle);
       status = look(wait);
       if (!status.busy && all_begun() && (status.ended || !last_is_end_)) {
-        card_->check_identity();
+        check_identity(card_->parts());
         return status;
       }
       wait.idle(!status.busy && !all_begun());
@@ -314,7 +317,7 @@ Status Stream::wait_for_probe() {
   Wait wait(*this, "probe: waiting for the edge or the end of the paths");
   Status status;
   for (;;) {
-    wait.pause(status, Patience::kIdle | Patience::kProbed);
+    wait.pause(status, WaitBudget::kIdle | WaitBudget::kProbed);
     status = look(wait);
     if (status.probed || (!status.busy && all_begun())) return status;
     wait.idle(!status.busy && !all_begun());
@@ -335,26 +338,26 @@ ProbeResult Stream::probe(const ProbeCommand& condition, const std::vector<Comma
     ProbeResult result;
     const Status status = wait_for_probe();
     if (status.probed) {
-      result.edge = card_->probe_snapshot();
+      result.edge = card_->read_probe_snapshot();
       result.outcome = result.edge.geometry_begun == begun ? ProbeOutcome::kTrippedAlready : ProbeOutcome::kTripped;
       card_->clear_probe();
       finish();
     } else if (!status.probe_missed) {
       throw StateError("probe: it is over without an edge and without a miss: somebody else has cleared it");
     }
-    result.rest = card_->snapshot();
+    result.rest = card_->read_snapshot();
     return result;
   });
 }
 
 Status Stream::look(Wait& wait) {
   std::array<Access, 4> accesses{read_of(reg::kStatus), read_of(reg::kGeometryBegun), read_of(reg::kFeedBegun)};
-  card_->transfer(accesses.data(), 3, "stream");
-  const Status status = card_->status_of(accesses[0]);
-  card_->throw_if_faulted(status, "stream");
+  card_->parts().registers.transfer(accesses.data(), 3, "stream");
+  const Status status = card_->parts().registers.status_of(accesses[0]);
+  card_->parts().registers.throw_if_faulted(status, "stream");
   if (status.refused) {
     if (const auto refusal = card_->refusal()) {
-      card_->throw_refused(*refusal, "stream");
+      card_->parts().registers.throw_refused(*refusal, "stream");
     }
   }
   const std::uint64_t begun_before = geometry_.begun + feed_.begun;
@@ -369,7 +372,7 @@ Status Stream::look(Wait& wait) {
     progress.feed_begun = accesses[2].data;
     options_.progress(progress);
   }
-  card_->serve_requests();
+  serve_requests(*card_);
   return status;
 }
 
@@ -377,7 +380,7 @@ Status Stream::look(Wait& wait) {
 void Stream::advance(Count& count, std::uint32_t begun) const {
   const std::uint64_t now = count_after(count.begun, begun);
   if (now > count.sent) {
-    card_->check_identity();
+    check_identity(card_->parts());
     throw StateError(
         fmt::format("stream: the card says that it has begun {} commands of a queue, where {} were sent and "
                     "{} had begun: it was reset, or aborted by somebody else",

@@ -16,7 +16,7 @@ using std::chrono::steady_clock;
 
 constexpr std::uint8_t kMeasured = 0x55;  // with which a serial line begins
 constexpr char kHello[] = "trammel 1";
-constexpr std::uint64_t kMostRubbish = 64 * 1024;  // bytes without a frame among them
+constexpr std::uint64_t kMaxRubbish = 64 * 1024;  // bytes without a frame among them
 constexpr char kWait[] = "wait ";
 constexpr std::size_t kLongestText = 100;
 
@@ -60,7 +60,7 @@ void CardServer::Client::read(std::chrono::nanoseconds longest) {
     came_.insert(came_.end(), bytes, bytes + count);
     if (begun_) heard_ = steady_clock::now();
     longest = std::chrono::nanoseconds(0);
-    if (came_.size() > kMostRubbish) throw Unwanted("more bytes than the line carries: a request waits for its reply");
+    if (came_.size() > kMaxRubbish) throw Unwanted("more bytes than the line carries: a request waits for its reply");
   }
   if (stream_->changed_hands()) {
     // The next one's, or of both: nobody's rights go with it.
@@ -158,7 +158,7 @@ bool CardServer::Client::deliver(std::uint8_t byte) {
 // The answer repeats the time and the number, so that the client sees what was understood. One that was damaged is
 // dropped, as a frame is.
 void CardServer::Client::take_wait(const std::string& text) {
-  constexpr std::int64_t kMost = 1'000'000'000;  // ns
+  constexpr std::int64_t kMax = 1'000'000'000;  // ns
   const char* const end = text.data() + text.size();
   std::int64_t time = -1;
   std::uint32_t number = 0;
@@ -166,7 +166,7 @@ void CardServer::Client::take_wait(const std::string& text) {
   const auto first = std::from_chars(named ? text.data() + sizeof(kWait) - 1 : end, end, time);
   const bool spaced = first.ptr != end && *first.ptr == ' ';
   const auto second = std::from_chars(spaced ? first.ptr + 1 : end, end, number);
-  if (second.ec != std::errc{} || second.ptr != end || time < 0 || time > kMost) return drop(text.size());
+  if (second.ec != std::errc{} || second.ptr != end || time < 0 || time > kMax) return drop(text.size());
   since_good_ = 0;
   frames::Bytes waited = bytes_of(fmt::format("waited {} {}", time, number));
   waited.push_back(frames::kEnd);
@@ -177,7 +177,7 @@ void CardServer::Client::take_wait(const std::string& text) {
 // Bytes that are no good until a frame or a wait is whole.
 void CardServer::Client::drop(std::size_t bytes) {
   since_good_ += bytes;
-  if (since_good_ > kMostRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMostRubbish));
+  if (since_good_ > kMaxRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMaxRubbish));
 }
 
 void CardServer::Client::send_due() {

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 using std::chrono::duration;
 
 constexpr std::uint64_t kPiece = 5000;  // clocks; the Verilated card takes some ms for them
-constexpr double kMostBehind = 0.5;     // seconds
+constexpr double kMaxBehind = 0.5;      // seconds
 constexpr auto kTellAgain = 10s;
 
 }  // namespace
@@ -26,7 +26,7 @@ std::uint64_t CardServer::Pace::due(std::uint64_t wanted) {
   if (!settings_.real_time) return wanted;
   const double life = duration<double>(Clock::now() - anchor_time_).count();
   const double card = static_cast<double>(engine_.cycles() - anchor_cycle_) / settings_.clock_hz;
-  if (life - card > kMostBehind) {
+  if (life - card > kMaxBehind) {
     if (told_ == Clock::time_point{} || Clock::now() - told_ > kTellAgain) {
       told_ = Clock::now();
       settings_.note(fmt::format("not in real time: the card made {:.2f} s of the last {:.2f} s", card, life));

@@ -15,7 +15,7 @@ namespace {
 using model::CardModel;
 
 // An access takes some ten clocks, a START some hundred; one that takes more has hung.
-constexpr int kPatience = 100'000;
+constexpr int kMaxAnswerClocks = 100'000;
 
 // A step's direction as the lists have it.
 std::int8_t sign(int direction) { return static_cast<std::int8_t>(direction < 0 ? -1 : 1); }
@@ -123,7 +123,7 @@ std::vector<std::int64_t> BusEngine::positions() const {
 template <class Ready>
 void BusEngine::handshake(const CardModel::Inputs& in, Ready ready, const driver::Access& access) {
   for (int i = 0; !ready(); ++i) {
-    if (i == kPatience) throw_unanswered(access);
+    if (i == kMaxAnswerClocks) throw_unanswered(access);
     clock(in);
   }
   // The edge at which valid and ready meet.
@@ -133,7 +133,7 @@ void BusEngine::handshake(const CardModel::Inputs& in, Ready ready, const driver
 template <class Valid>
 void BusEngine::wait_for(Valid valid, const driver::Access& access) {
   for (int i = 0; !valid(); ++i) {
-    if (i == kPatience) throw_unanswered(access);
+    if (i == kMaxAnswerClocks) throw_unanswered(access);
     clock(CardModel::Inputs{});
   }
 }
@@ -156,7 +156,7 @@ CardModel::Config config_of(const EngineOptions& options) {
   CardModel::Config config;
   config.axes = options.axes;
   config.clock_hz = options.clock_hz;
-  config.engines = model::RegisterFile::kMostEngines;
+  config.engines = model::RegisterFile::kMaxEngines;
   set_build_numbers(config);
   return config;
 }

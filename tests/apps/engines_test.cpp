@@ -31,7 +31,7 @@ TEST_P(Engines, GiveTheSameStepLists) {
   EXPECT_TRUE(model["lockstep_cycles"].is_null());
 }
 
-INSTANTIATE_TEST_SUITE_P(Examples, Engines, testing::Values("inch", "extruder", "relative"),
+INSTANTIATE_TEST_SUITE_P(Examples, Engines, testing::Values("extruder"),
                          [](const auto& row) { return std::string(row.param); });
 
 }  // namespace

@@ -63,11 +63,11 @@ std::string job_name(const testing::TestParamInfo<Job>& info) {
 INSTANTIATE_TEST_SUITE_P(Gcode, Jobs,
                          testing::Values(Job{"jsdc-laser", "25000", {0, 0, 0, 0}, 2},
                                          Job{"tball", "50000", {12482, -2388, 400, 0}, 2},
-                                         Job{"arc-xz-plane", "200000", {1600, 0, 0, 0}, 2},
+                                         Job{"arc-xz-plane", "100000", {1600, 0, 0, 0}, 2},
                                          Job{"arc-yz-plane", "200000", {0, 1600, 0, 0}, 2},
-                                         Job{"g2-arc", "100000", {800, 800, 0, 0}, 2},
+                                         Job{"g2-arc", "50000", {800, 800, 0, 0}, 2},
                                          // Its last line moves three axes.
-                                         Job{"circle-inch", "100000", {0, 0, 508, 0}, 3}),
+                                         Job{"circle-inch", "50000", {0, 0, 508, 0}, 3}),
                          job_name);
 
 // 300 mm/s and 3,000 mm/s^2: 887 s of motion, 73,118 commands.

@@ -161,8 +161,8 @@ static void command_arguments(void) {
   trammel_stream_options options;
   trammel_command command = line_of(0, 1, 0);
   memset(&options, 0, sizeof options);
-  options.patience_ns = -1;
-  FAILS(trammel_open_stream(card, &options), TRAMMEL_ARGUMENT, "patience");
+  options.margin_ns = -1;
+  FAILS(trammel_open_stream(card, &options), TRAMMEL_ARGUMENT, "margin");
   DONE(trammel_open_stream(card, NULL));
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "ticks");
   command = line_of(UINT64_C(1) << 40, 1, 0);

@@ -27,7 +27,7 @@ class Cards(unittest.TestCase):
         card.record_steps()
         plan = card.run_line([20, -40], duration_ns=2_000_000)
         self.assertEqual((plan.parts, plan.clocks, plan.slowed), (1, 2000, False))
-        self.assertEqual(card.snapshot().position, [20, -40, 0, 0, 0, 0, 0, 0])
+        self.assertEqual(card.read_snapshot().position, [20, -40, 0, 0, 0, 0, 0, 0])
         self.assertEqual(sum(1 for _, axis, way in card.pin_steps if axis == 1 and way == -1), 40)
         self.assertEqual(card.run_line([30, 40], speed=1000).clocks, 50_000)
         plan = card.run_line([30, 40], speed=1000, max_velocity=[0, 400], slow_down=True)
@@ -37,16 +37,16 @@ class Cards(unittest.TestCase):
         card = trammel.simulate()
         card.set_slew_time(1_000_000)
         card.start_line([10_000], duration_ns=SECOND)
-        card.hold()
+        card.set_hold()
         card.wait(2000)
-        self.assertTrue(card.status().held)
-        card.hold(False)
+        self.assertTrue(card.read_status().held)
+        card.set_hold(False)
         card.set_override(50)
         card.wait(100_000)
-        self.assertTrue(450 < card.snapshot().position[0] < 550)
+        self.assertTrue(450 < card.read_snapshot().position[0] < 550)
         rest = card.stop()
         card.wait(100_000)
-        self.assertEqual(card.snapshot().position, rest.position)
+        self.assertEqual(card.read_snapshot().position, rest.position)
 
     def test_another_thread_stops(self):
         card = trammel.simulate()
@@ -60,12 +60,12 @@ class Cards(unittest.TestCase):
 class Holds(unittest.TestCase):
     def test_a_hold_from_before_is_found_at_once(self):
         card = trammel.simulate()
-        card.hold()
+        card.set_hold()
         with self.assertRaisesRegex(trammel.HeldError, "set by this program"):
             card.run_line([10], duration_ns=1_000_000)
         self.assertIsNone(card.take_over())
         card.start_line([10], duration_ns=SECOND)
-        card.hold()
+        card.set_hold()
         self.assertFalse(card.take_over().status.busy)
         card.run_line([10], duration_ns=1_000_000)
 
@@ -77,31 +77,35 @@ class Interrupts(unittest.TestCase):
     HEARD = 0.2  # seconds: the best of some, since the machine may have other work
     TRIES = 3
 
-    def interrupted(self, call):
-        """Seconds from the signal to the exception."""
+    def interrupted(self, call, calls):
+        """Seconds from the signal to the exception. The signal comes when `calls`, which counts what is done, stands."""
         sent = []
 
         def send():
+            before = None
+            while before != calls():
+                before = calls()
+                time.sleep(0.06)
             sent.append(time.monotonic())
             os.kill(os.getpid(), signal.SIGINT)
 
-        timer = threading.Timer(0.06, send)
-        timer.start()
+        sender = threading.Thread(target=send)
+        sender.start()
         with self.assertRaises(KeyboardInterrupt) as raised:
             call()
         heard = time.monotonic() - sent[0]
-        timer.join()
+        sender.join()
         self.assertIsInstance(raised.exception.__cause__, trammel.Error)
         return heard
 
-    def expect_heard(self, call, tries=TRIES):
-        self.assertLess(min(self.interrupted(call) for _ in range(tries)), self.HEARD)
+    def expect_heard(self, call, tries=TRIES, calls=lambda: 0):
+        self.assertLess(min(self.interrupted(call, calls) for _ in range(tries)), self.HEARD)
 
     def expect_rest(self, card):
-        self.assertFalse(card.status().busy or card.status().held)
-        before = card.snapshot().position
+        self.assertFalse(card.read_status().busy or card.read_status().held)
+        before = card.read_snapshot().position
         card.wait(1_000_000)
-        self.assertEqual(card.snapshot().position, before)
+        self.assertEqual(card.read_snapshot().position, before)
 
     def test_lines(self):
         card = trammel.simulate()
@@ -133,13 +137,15 @@ class Interrupts(unittest.TestCase):
     def test_a_full_queue(self):
         card = trammel.simulate()
         stream = trammel.Stream(card)
+        put = [0]
 
         def fill():
             while True:
+                put[0] += 1
                 stream.put(trammel.feed(10**9, TICK_EVERY_16))
                 stream.put(trammel.line(10**9, [1000]))
 
-        self.expect_heard(fill, tries=1)
+        self.expect_heard(fill, tries=1, calls=lambda: put[0])
         self.expect_rest(card)
 
     def test_other_waits(self):
@@ -191,8 +197,8 @@ class Streams(unittest.TestCase):
         ])
         self.assertTrue(stream.finish().ended)
         self.assertEqual(stream.sent, 9)
-        self.assertEqual(card.snapshot().position[:4], [-100, -100, 77, 0])
-        self.assertEqual((card.outputs(), card.marks(), card.mark_snapshot().position[2]), (4, 1, 77))
+        self.assertEqual(card.read_snapshot().position[:4], [-100, -100, 77, 0])
+        self.assertEqual((card.read_outputs(), card.read_marks(), card.read_mark_snapshot().position[2]), (4, 1, 77))
         self.assertEqual(len(card.path_steps), 400 + 200 + len([s for s in card.path_steps if s[0] == 3]))
         self.assertEqual(trammel.dwell(7).name, "DWELL")
         self.assertEqual(len(trammel.end().words()), 3)
@@ -233,13 +239,13 @@ class Positions(unittest.TestCase):
         late = []
         for i in range(1, 41):
             due = 1000 * (i + 5) + (1500 if i == 21 else 0)
-            card.wait(max(0, due - card.snapshot().time))
+            card.wait(max(0, due - card.read_snapshot().time))
             late.append(stream.send([20 * i * stream.PULSE, 5 * i * stream.PULSE], self.PERIOD).stale_ticks)
         self.assertEqual([i for i, ticks in enumerate(late, 1) if ticks], [21])
         self.assertEqual((sum(late), stream.ticks_behind), (stream.stale_ticks, 0))
         stream.send([800 * stream.PULSE, 200 * stream.PULSE], self.PERIOD)
         self.assertEqual(stream.finish()[:3], [800 * stream.PULSE, 200 * stream.PULSE, 0])
-        self.assertEqual(card.snapshot().position[:3], [800, 200, 0])
+        self.assertEqual(card.read_snapshot().position[:3], [800, 200, 0])
         with self.assertRaises(trammel.StateError):
             stream.send([0], self.PERIOD)
 
@@ -254,12 +260,12 @@ class Positions(unittest.TestCase):
         self.assertEqual(trammel.describe_faults(stopped.faults), "MISSING_PERIOD")
         self.assertEqual(stopped.faults, fault.exception.faults)
         self.assertGreater(stopped.stale_ticks, 0)
-        at = card.snapshot().position[0]
+        at = card.read_snapshot().position[0]
         self.assertEqual(stopped.positions[0], at * stream.PULSE)
         self.assertEqual(stream.position[0], stopped.positions[0])
         stream.send([(at + 7) * stream.PULSE], self.PERIOD)
         stream.finish()
-        self.assertEqual(card.snapshot().position[0], at + 7)
+        self.assertEqual(card.read_snapshot().position[0], at + 7)
 
     def test_what_is_refused(self):
         card, stream = self.open(max_speed=[1000])
@@ -269,7 +275,7 @@ class Positions(unittest.TestCase):
                 stream.send(targets, duration)
         with self.assertRaises(trammel.ArgumentError):
             trammel.PositionStream(card, ahead=0)
-        self.assertEqual(card.snapshot().position[0], 0)
+        self.assertEqual(card.read_snapshot().position[0], 0)
 
 
 class Errors(unittest.TestCase):
@@ -319,7 +325,7 @@ class Errors(unittest.TestCase):
         self.assertEqual(trammel.describe_faults(fault.exception.faults), "TICK_MISMATCH")
         card.clear_faults()
         stream.restart()
-        self.assertEqual(card.faults(), 0)
+        self.assertEqual(card.read_faults(), 0)
 
 
 class Interpolators(unittest.TestCase):

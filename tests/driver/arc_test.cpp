@@ -93,7 +93,7 @@ struct Extremes {
   double real = 0;  // from the circle before any rounding
 };
 
-constexpr double kMostInEight = 0.66;
+constexpr double kMaxInEight = 0.66;
 
 void expect_random_arcs(std::uint64_t seed, int count, double smallest, double largest, Extremes& worst,
                         StepRule rule = StepRule::kFourDirections) {
@@ -132,7 +132,7 @@ void expect_random_arcs(std::uint64_t seed, int count, double smallest, double l
     // One pulse, and what a step to the side of a small circle adds; in 8 directions half of it, or what lies between
     // the mean radius and the ends'.
     const bool eight = rule == StepRule::kEightDirections;
-    ASSERT_LT(std::max(most - mean, mean - least), eight ? kMostInEight : 1 + 0.3 / mean)
+    ASSERT_LT(std::max(most - mean, mean - least), eight ? kMaxInEight : 1 + 0.3 / mean)
         << "arc " << i << " of seed " << seed;
     worst.ring = std::max({worst.ring, most - std::max(first, last), std::min(first, last) - least});
     worst.mean = std::max({worst.mean, most - mean, mean - least});
@@ -183,7 +183,7 @@ std::vector<std::pair<int, int>> rounded_circle(int r) {
 // Farthest that a walk may be from the circle with the mean of start's and end's radius.
 double most_off(StepRule rule, double mean) {
   if (rule == StepRule::kFourDirections) return 1 + 1 / (4 * mean) + 1e-9;
-  return mean < 2 ? 0.83 : kMostInEight;
+  return mean < 2 ? 0.83 : kMaxInEight;
 }
 
 // About a whole-pulse centre; gives back how many arcs there were. Those below the least radius are refused, the others

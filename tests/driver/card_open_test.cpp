@@ -57,12 +57,12 @@ TEST(CardBuild, IsReadWhenAskedFor) {
   bus.values[reg::kBuildFlags] = field::kBuildFlagsDirty;
   bus.values[reg::kBoardId] = 7;
   Card card = Card::open(bus);
-  const Build build = card.build();
+  const Build build = card.read_build();
   EXPECT_EQ(build.id, 0x1234ABCDU);
   EXPECT_TRUE(build.dirty);
   EXPECT_EQ(build.board, 7U);
   bus.values[reg::kBuildFlags] = 0;
-  EXPECT_FALSE(card.build().dirty);
+  EXPECT_FALSE(card.read_build().dirty);
 }
 
 TEST(CardOpen, AsksNothingMoreOfWhatIsNotACard) {
@@ -253,7 +253,7 @@ void use(Card& card) {
   const Identification& is = card.identification();
   EXPECT_TRUE(is.axes >= 1 && is.axes <= card_map::kMaxAxes && is.clock_hz != 0);
   EXPECT_TRUE(is.geometry_depth <= 32768 && is.feed_depth <= 32768);
-  card.build();
+  card.read_build();
   plan_line(card.timing(), {100}, std::chrono::hours(1));
   if (card_map::has_engine(is.engines, card_map::engine::kPathCommands)) {
     EXPECT_LE(card.inputs_present(), 16U);

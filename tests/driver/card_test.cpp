@@ -125,7 +125,7 @@ TEST_F(CardTest, ASnapshotIsStrobedAwaitedAndReadInOneTransfer) {
   bus_.values[reg::snap_position(1)] = 0x7FFFFFFF;
   bus_.values[reg::snap_position(2)] = 0x80000000;
   bus_.values[reg::snap_position(3)] = 1;
-  const Snapshot snapshot = card_.snapshot();
+  const Snapshot snapshot = card_.read_snapshot();
   EXPECT_EQ(bus_.log.front(), wrote(reg::kControl, field::kControlSnapshot));
   EXPECT_THAT(bus_.transfers, ElementsAre(1U, 1U, 1U, 12U));
   EXPECT_EQ(bus_.sleeps.size(), 1U);
@@ -143,7 +143,7 @@ TEST_F(CardTest, ASnapshotIsStrobedAwaitedAndReadInOneTransfer) {
 
 TEST_F(CardTest, ASnapshotThatNeverComesTimesOut) {
   bus_.values[reg::kStatus] = field::kStatusSnapshot;
-  EXPECT_THROW(card_.snapshot(), TimeoutError);
+  EXPECT_THROW(card_.read_snapshot(), TimeoutError);
   EXPECT_GT(bus_.slept, 0ns);
 }
 
@@ -236,12 +236,12 @@ TEST(CardOnModel, AFaultLatchesWhereTheCardStood) {
   deceived.pulse_period.fill(1);
   start_line(card, plan_line_clocks(deceived, {100}, 1000).part(0));
   EXPECT_THROW(card.wait_until_idle(10ms), FaultError);
-  const Snapshot stopped = card.stop_snapshot();
+  const Snapshot stopped = card.read_stop_snapshot();
   EXPECT_EQ(stopped.faults, 1U);
   EXPECT_TRUE(stopped.status.faulted);
   EXPECT_GT(stopped.time, 0U);
   EXPECT_LT(stopped.time, engine->cycles());
-  EXPECT_EQ(card.faults(), 1U);
+  EXPECT_EQ(card.read_faults(), 1U);
 }
 
 TEST_F(CardTest, ALinkThatIsGoneKeepsTheTransportsMessage) {
@@ -259,7 +259,7 @@ TEST_F(CardTest, ALinkThatIsGoneKeepsTheTransportsMessage) {
 // All ones is what a bus without a card gives; zeros look like a card that is idle.
 TEST_F(CardTest, NonsenseIsALinkError) {
   bus_.values[reg::kStatus] = 0xFFFFFFFF;
-  EXPECT_THROW(card_.status(), LinkError);
+  EXPECT_THROW(card_.read_status(), LinkError);
   EXPECT_THROW(card_.wait_until_idle(1s), LinkError);
   bus_.values.clear();
   EXPECT_THROW(card_.wait_until_idle(1s), LinkError);
@@ -283,10 +283,10 @@ TEST_F(CardTest, ATransportThatMiscountsIsALinkError) {
   Miscounting bus(bus_);
   Card card = Card::open(bus);
   bus.more = 1;
-  EXPECT_THROW(card.status(), LinkError);
+  EXPECT_THROW(card.read_status(), LinkError);
   bus.more = std::size_t{0} - 1;
   bus.reports = false;
-  EXPECT_THROW(card.status(), LinkError) << "a posted bus makes all accesses";
+  EXPECT_THROW(card.read_status(), LinkError) << "a posted bus makes all accesses";
 }
 
 TEST_F(CardTest, ACardWithOtherStepTimesThanItWasGivenIsFound) {
@@ -309,7 +309,7 @@ TEST(CardOnModel, AnotherThreadsRequestsAreServedByTheCallThatWaits) {
   });
   EXPECT_THROW(card.wait_until_idle(std::chrono::hours(2)), StateError);
   other.join();
-  EXPECT_TRUE(card.status().held) << "served before the abort";
+  EXPECT_TRUE(card.read_status().held) << "served before the abort";
   engine->wait(100);
   EXPECT_FALSE(card.busy());
   EXPECT_LT(engine->positions()[0], 10);

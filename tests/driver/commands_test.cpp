@@ -205,7 +205,7 @@ TEST(Commands, LimitsOfAnArcInChordsAreKept) {
     change(arc);
     return refusal_of(arc);
   };
-  constexpr std::int64_t kMost = std::int64_t{1} << 40;
+  constexpr std::int64_t kMax = std::int64_t{1} << 40;
   EXPECT_THAT(with([](ArcChordCommand& arc) { arc.path_ticks = arc.ticks + 1; }), HasSubstr("path_ticks = 2305"));
   EXPECT_THAT(with([](ArcChordCommand& arc) { arc.ticks = arc.path_ticks = std::uint64_t{1} << 37; }),
               HasSubstr("path_ticks = 137438953472"));
@@ -216,10 +216,10 @@ TEST(Commands, LimitsOfAnArcInChordsAreKept) {
   EXPECT_THAT(with([](ArcChordCommand& arc) { arc.mask = 0b1110; }), HasSubstr("without the axes 2 and 0"));
   EXPECT_THAT(with([](ArcChordCommand& arc) { arc.increment[2] = 1; }), HasSubstr("axis 2"));
   EXPECT_THAT(with([](ArcChordCommand& arc) { arc.increment[4] = 1; }), HasSubstr("axis 4"));
-  EXPECT_EQ(with([](ArcChordCommand& arc) { arc.first_x = -kMost; }), "");
-  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.first_x = -kMost - 1; }), HasSubstr("first_x"));
-  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.closing_y = kMost + 1; }), HasSubstr("closing_y"));
-  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.increment[3] = kMost + 1; }), HasSubstr("increment"));
+  EXPECT_EQ(with([](ArcChordCommand& arc) { arc.first_x = -kMax; }), "");
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.first_x = -kMax - 1; }), HasSubstr("first_x"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.closing_y = kMax + 1; }), HasSubstr("closing_y"));
+  EXPECT_THAT(with([](ArcChordCommand& arc) { arc.increment[3] = kMax + 1; }), HasSubstr("increment"));
 }
 
 // Words whose mask and plane contradict each other hold fewer increments than their mask says.

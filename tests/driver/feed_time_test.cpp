@@ -32,9 +32,9 @@ TEST(FeedTime, IsWhatTheCardTakes) {
     const std::uint64_t begun = engine->cycles();
     const double forecast = feed_clocks(feed);
     engine->wait(static_cast<std::uint64_t>(forecast * 0.995) - 200);
-    EXPECT_FALSE(card.status().ended) << forecast;
+    EXPECT_FALSE(card.read_status().ended) << forecast;
     engine->wait(static_cast<std::uint64_t>(forecast * 0.01) + 600);
-    EXPECT_TRUE(card.status().ended) << forecast << " and not after " << engine->cycles() - begun;
+    EXPECT_TRUE(card.read_status().ended) << forecast << " and not after " << engine->cycles() - begun;
   }
 }
 

@@ -8,6 +8,7 @@
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/frame_bus.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/position_stream.hpp"
 #include "trammel/driver/stream.hpp"
@@ -107,7 +108,7 @@ void expect_stop(sim::Engine& engine, Card& card, Call call) {
   EXPECT_GE(took, 3 * kInterruptSlice);
   EXPECT_LT(took, kLong);
   EXPECT_FALSE(card.busy());
-  EXPECT_EQ(card.read(hold_reg::kHold), 0U);
+  EXPECT_EQ(card.parts().registers.read(hold_reg::kHold), 0U);
   const auto positions = engine.positions();
   engine.wait(1'000'000);
   EXPECT_EQ(engine.positions(), positions);
@@ -189,7 +190,7 @@ class SilentLink final : public ByteLink {
   frames::Bytes reply_;
 };
 
-// The link's own patience would be an hour, and a stop's takes a second.
+// The link's own time-out would be an hour, and a stop's takes a second.
 TEST(InterruptScopes, EndTheWaitForASilentLink) {
   const auto engine = sim::make_model_engine({});
   SilentLink link(*engine);
@@ -201,7 +202,7 @@ TEST(InterruptScopes, EndTheWaitForASilentLink) {
   const auto begun = steady_clock::now();
   {
     const InterruptScope scope([] { return true; });
-    EXPECT_THROW(card.status(), InterruptedError);
+    EXPECT_THROW(card.read_status(), InterruptedError);
   }
   EXPECT_LT(steady_clock::now() - begun, kLong);
   link.silent = false;

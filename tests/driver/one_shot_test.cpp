@@ -307,7 +307,7 @@ TEST(OneShot, RunsAllPartsOfALongLine) {
   EXPECT_LE(bus.slept, std::chrono::hours(1) + 1s);
 }
 
-// At 1/16 of the ratio a line takes 16 times as long as planned, far beyond the patience.
+// At 1/16 of the ratio a line takes 16 times as long as planned, far beyond the margin.
 TEST(OneShot, ALowRatioAndAHoldAreNoTimeOuts) {
   const auto engine = sim::make_model_engine({});
   Card card = Card::open(*engine);

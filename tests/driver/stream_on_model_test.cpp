@@ -79,9 +79,9 @@ TEST(StreamOnModel, OutputsAndMarksAtTheirPlaceOnThePath) {
   card.set_input_polarity(0b0001);
   engine->set_inputs(0b1001);
   engine->wait(10);
-  EXPECT_EQ(card.inputs(), 0b1000);
+  EXPECT_EQ(card.read_inputs(), 0b1000);
   Stream stream(card);  // its abort gives the outputs their safe levels
-  EXPECT_EQ(card.outputs(), 0b0010);
+  EXPECT_EQ(card.read_outputs(), 0b0010);
   LineCommand line;
   line.ticks = 100;
   line.mask = 1;
@@ -92,14 +92,14 @@ TEST(StreamOnModel, OutputsAndMarksAtTheirPlaceOnThePath) {
   feed.floor = 1;
   stream.send({line, OutputCommand{0b0101, 0b0010}, MarkCommand{}, line, feed, MarkCommand{}});
   stream.finish();
-  EXPECT_EQ(card.outputs(), 0b0101);
-  EXPECT_EQ(card.marks(), 2U);
-  EXPECT_EQ(card.mark_snapshot().geometry_begun, 2U);
+  EXPECT_EQ(card.read_outputs(), 0b0101);
+  EXPECT_EQ(card.read_marks(), 2U);
+  EXPECT_EQ(card.read_mark_snapshot().geometry_begun, 2U);
   sim::ModelOptions without;
   without.engines = 0x33;
   const auto other = sim::make_model_engine(without);
   Card plain = Card::open(*other);
-  EXPECT_THROW(plain.outputs(), ArgumentError);
+  EXPECT_THROW(plain.read_outputs(), ArgumentError);
   EXPECT_THROW(plain.set_output_safe(0, 0), ArgumentError);
   Stream closed(plain);
   EXPECT_THROW(closed.send(MarkCommand{}), ArgumentError);
@@ -114,10 +114,10 @@ TEST(StreamOnModel, AFaultWhileWaitingEndsTheWait) {
   Stream stream(card);
   stream.send({feed_of(100), line_of(99, 1), EndCommand{}});
   EXPECT_THROW(stream.finish(), FaultError);
-  EXPECT_EQ(card.faults(), field::kFaultTickMismatch);
+  EXPECT_EQ(card.read_faults(), field::kFaultTickMismatch);
   EXPECT_THROW(stream.send(line_of(1)), FaultError) << "named, not only refused";
   EXPECT_THROW(stream.restart(), FaultError);
-  EXPECT_EQ(card.stop_snapshot().geometry_begun, 1U);
+  EXPECT_EQ(card.read_stop_snapshot().geometry_begun, 1U);
   card.clear_faults();
   stream.restart();
   stream.send({feed_of(10), line_of(10, 1), EndCommand{}});
@@ -133,7 +133,7 @@ TEST(StreamOnModel, RecoversInWhicheverOrder) {
     Stream stream(card);
     stream.send({feed_of(200), line_of(199), EndCommand{}, feed_of(1024), line_of(1024, 100), EndCommand{}});
     engine->wait(5000);
-    ASSERT_NE(card.faults(), 0U);
+    ASSERT_NE(card.read_faults(), 0U);
     if (order == 0) {
       card.abort();
     }

@@ -65,7 +65,7 @@ TEST_F(StreamOrder, OpensAnIdleCardOnly) {
   bus_.values[reg::kStatus] = field::kStatusFaulted;
   bus_.values[reg::kFault] = 1;
   EXPECT_THROW(Stream{card_}, FaultError);
-  options_.patience = 0ns;
+  options_.margin = 0ns;
   EXPECT_THROW(Stream(card_, options_), ArgumentError);
 }
 
@@ -177,9 +177,9 @@ TEST_F(StreamOrder, ARefusedWordIsExplainedAndClosesTheStream) {
   EXPECT_THROW(stream.finish(), StateError);
 }
 
-// A card that begins nothing more, and is not held: reported after what was planned and the patience.
+// A card that begins nothing more, and is not held: reported after what was planned and the margin.
 TEST_F(StreamOrder, AHangTimesOutInTheTimePlannedAndAHoldDoesNot) {
-  options_.patience = 10ms;
+  options_.margin = 10ms;
   Stream stream = open_stream();
   stream.send({feed_of(1'000'000), line_of(1'000'000), EndCommand{}});  // 16 s
   bus_.forget();
@@ -194,7 +194,7 @@ TEST_F(StreamOrder, AHangTimesOutInTheTimePlannedAndAHoldDoesNot) {
 
 // The time that a piece may take is that of its own class's ratio, the next one's of its own.
 TEST_F(StreamOrder, AHangTimesOutByTheRatiosOfTheClasses) {
-  options_.patience = 10ms;
+  options_.margin = 10ms;
   bus_.add_engines(card_map::engines::kClasses);
   card_ = Card::open(bus_);
   card_.set_ratio(PieceClass::kFeed, 0x10);

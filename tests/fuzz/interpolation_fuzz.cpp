@@ -113,13 +113,13 @@ std::uint64_t bound_of(const Curve& curve) {
 
 void check_walk(AnyInterpolator walk, const Curve& curve) {
   // Long walks are cut off here: their first steps meet the widths.
-  constexpr std::uint64_t kMostSteps = 3000;
+  constexpr std::uint64_t kMaxSteps = 3000;
   const std::uint64_t bound = bound_of(curve);
   Position expected = start_of(curve);
   std::uint64_t last_time = 0;
   for (std::uint64_t steps = 0; !walk.done(); ++steps) {
     if (steps > bound) fail("more steps than the bound");
-    if (steps == kMostSteps) return;
+    if (steps == kMaxSteps) return;
     walk.deviation();
     const Step step = walk.next();
     if (step == Step{}) fail("a step of no axis");

@@ -421,5 +421,12 @@ TEST(MachineBounds, ARampThatTakesLongerThanAnyMachineIsASlip) {
             "possible, which is the card's longest ramp at 1 MHz: is max_jerk in mm/s^3?");
 }
 
+TEST(MachineBounds, ARampOfCoreXyMotorsIsHeldAgainstTheSameBound) {
+  EXPECT_EQ(
+      error_of(defaults() + "\n[kinematics]\nname = \"corexy\"\nmotor_acceleration = 0.14\n"),
+      "m.toml:1: axis X with the limits of kinematics: max_velocity is reached after 1071.43 s; at most 1000 s are "
+      "possible, which is the card's longest ramp at 1 MHz: is max_acceleration in mm/s^2?");
+}
+
 }  // namespace
 }  // namespace trammel::machine

@@ -61,7 +61,7 @@ TEST(CoreModel, ACircleComesBack) {
 
 model::CardConfig with_eight_directions() {
   model::CardConfig config;
-  config.engines = model::RegisterFile::kMostEngines;
+  config.engines = model::RegisterFile::kMaxEngines;
   return config;
 }
 

@@ -90,12 +90,12 @@ class Bench {
   std::array<std::uint32_t, 2> pipe_{};
 };
 
-constexpr std::uint64_t kMostFrequency = std::uint64_t{1} << 40;
+constexpr std::uint64_t kMaxFrequency = std::uint64_t{1} << 40;
 
 Move good_move() {
   Move move;
   for (unsigned n = 0; n < 8; ++n) {
-    move.frequency[n] = kMostFrequency / (n + 2);
+    move.frequency[n] = kMaxFrequency / (n + 2);
     move.count[n] = 1000 + n;
     move.negative[n] = n % 2 == 1;
   }
@@ -147,12 +147,12 @@ TEST(DirectLoader, RandomMoves) {
     const auto mask = static_cast<std::uint8_t>(random() % 255 + 1);
     for (unsigned n = 0; n < 8; ++n) {
       // About 2^40 often: the limit itself, and a high word with a low word of 0.
-      const std::uint64_t near = kMostFrequency + random() % 3 - 1;
-      move.frequency[n] = random() % 8 == 0 ? 0 : random() % 4 == 0 ? near : random() % (kMostFrequency + 1);
+      const std::uint64_t near = kMaxFrequency + random() % 3 - 1;
+      move.frequency[n] = random() % 8 == 0 ? 0 : random() % 4 == 0 ? near : random() % (kMaxFrequency + 1);
       move.count[n] = random() % 4 == 0 ? 0 : static_cast<std::uint32_t>(random());
       move.negative[n] = random() % 2 == 0;
       if ((mask >> n & 1) != 0) {
-        bad = bad || move.frequency[n] > kMostFrequency || (move.frequency[n] == 0 && move.count[n] != 0);
+        bad = bad || move.frequency[n] > kMaxFrequency || (move.frequency[n] == 0 && move.count[n] != 0);
       }
     }
     bench.set(move);

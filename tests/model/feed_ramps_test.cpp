@@ -140,9 +140,9 @@ TEST(FeedGenerator, AFloorEndsEveryPiece) {
 
 // The largest sums that the fields can ask for never come round again: clamped once, clamped to the end.
 TEST(FeedGenerator, NoAccumulatorOverflows) {
-  constexpr std::int64_t kMost = (std::int64_t{1} << 62) - 1 + (std::int64_t{1} << 62);
-  for (const std::int64_t acceleration : {kMost, -kMost - 1, std::int64_t{0}}) {
-    for (const std::int64_t jerk : {kMost, -kMost - 1}) {
+  constexpr std::int64_t kMax = (std::int64_t{1} << 62) - 1 + (std::int64_t{1} << 62);
+  for (const std::int64_t acceleration : {kMax, -kMax - 1, std::int64_t{0}}) {
+    for (const std::int64_t jerk : {kMax, -kMax - 1}) {
       FeedGenerator feed;
       load_and_swap(feed, {~std::uint64_t{0} >> 1, acceleration, jerk, 0x100});
       ticks_in(feed, 8 * FeedGenerator::kUpdateClocks);  // 0.5 more an update each update

@@ -1,29 +1,13 @@
 // What docs/reference/behaviour.md says of ARC, and commands.md of ARC_CHORD, tried on the golden model of the whole
 // card over its bus alone.
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <tuple>
-#include <utility>
-#include <vector>
 
-#include "page_host.hpp"
-#include "trammel/card_map.hpp"
+#include "reference_page.hpp"
 #include "trammel/driver/arc.hpp"
-#include "trammel/driver/commands.hpp"
 
+namespace trammel::reference_page {
 namespace {
-
-using namespace trammel;
-using trammel::testing::feed;
-using trammel::testing::kOnePulse;
-using trammel::testing::line;
-using trammel::testing::PathStep;
-using Host = trammel::testing::PageHost;
-namespace reg = card_map::reg;
-namespace field = card_map::field;
 
 // The page's rule, in its own words, on plain integers.
 struct Walk {
@@ -277,7 +261,7 @@ TEST(ReferencePage, AnArcInChordsTickForTick) {
     for (const std::uint8_t k : {std::uint8_t{3}, std::uint8_t{5}}) {
       const int side = clockwise ? -1 : 1;
       const driver::ArcChordCommand arc = quarter_about_origin({30, 40}, {-40 * side, 30 * side}, clockwise, k, -7);
-      Host host(4, model::RegisterFile::kMostEngines);
+      Host host(4, model::RegisterFile::kMaxEngines);
       host.send(arc);
       host.send(feed(arc.ticks, 20));
       host.send(driver::EndCommand{});
@@ -294,3 +278,4 @@ TEST(ReferencePage, AnArcInChordsTickForTick) {
 }
 
 }  // namespace
+}  // namespace trammel::reference_page

@@ -1,26 +1,9 @@
 // What docs/reference/behaviour.md says of lines, direct moves, barriers and pins, tried on the golden model of the
 // whole card over its bus alone.
-#include <gtest/gtest.h>
+#include "reference_page.hpp"
 
-#include <algorithm>
-#include <cstdint>
-#include <utility>
-#include <vector>
-
-#include "page_host.hpp"
-#include "trammel/card_map.hpp"
-#include "trammel/driver/commands.hpp"
-
+namespace trammel::reference_page {
 namespace {
-
-using namespace trammel;
-using trammel::testing::feed;
-using trammel::testing::kOnePulse;
-using trammel::testing::line;
-using trammel::testing::PathStep;
-using Host = trammel::testing::PageHost;
-namespace reg = card_map::reg;
-namespace field = card_map::field;
 
 // LENGTH and COUNT that disagree: never more than COUNT, never less; the move takes the longer of the two.
 TEST(ReferencePage, LengthAndCountThatDisagree) {
@@ -169,3 +152,4 @@ TEST(ReferencePage, TheShapersShortestPeriod) {
 }
 
 }  // namespace
+}  // namespace trammel::reference_page

@@ -1,25 +1,9 @@
 // What docs/reference/behaviour.md says of accesses, refusals, START and recovery, tried on the golden model of the
 // whole card over its bus alone.
-#include <gtest/gtest.h>
+#include "reference_page.hpp"
 
-#include <cstdint>
-#include <vector>
-
-#include "page_host.hpp"
-#include "trammel/card_map.hpp"
-#include "trammel/driver/commands.hpp"
-
+namespace trammel::reference_page {
 namespace {
-
-using namespace trammel;
-using card_map::Area;
-using card_map::Reason;
-using trammel::testing::feed;
-using trammel::testing::kOnePulse;
-using trammel::testing::line;
-using Host = trammel::testing::PageHost;
-namespace reg = card_map::reg;
-namespace field = card_map::field;
 
 constexpr std::uint32_t refusal_of(Reason reason, std::uint32_t number, std::uint32_t address) {
   return static_cast<std::uint32_t>(reason) | number << 8 | address << 16;
@@ -167,3 +151,4 @@ TEST(ReferencePage, AnswerTimeOfStart) {
 }
 
 }  // namespace
+}  // namespace trammel::reference_page

@@ -1,29 +1,14 @@
 // What the reference pages say of inputs, marks, barriers, counters and of several ports, tried on the golden model.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
 #include <cstdlib>
-#include <vector>
 
 #include "core_bench.hpp"
-#include "page_host.hpp"
-#include "trammel/card_map.hpp"
-#include "trammel/driver/commands.hpp"
+#include "reference_page.hpp"
 #include "trammel/skip/card.hpp"
 
+namespace trammel::reference_page {
 namespace {
 
-using namespace trammel;
-using card_map::Area;
-using card_map::Reason;
 using trammel::testing::CoreBench;
-using trammel::testing::feed;
-using trammel::testing::kOnePulse;
-using trammel::testing::line;
-using Host = trammel::testing::PageHost;
-namespace reg = card_map::reg;
-namespace field = card_map::field;
 
 constexpr unsigned kHigh = 1U << 5;  // of a condition
 
@@ -238,3 +223,4 @@ TEST(ReferencePage, AnAbortByAnotherPort) {
 }
 
 }  // namespace
+}  // namespace trammel::reference_page

@@ -217,9 +217,9 @@ Outcome starve(std::uint64_t cases, double share) {
 }
 
 TEST(Underrun, NeverRunsDryAndStaysOnThePath) {
-  const Outcome outcome = starve(160, 1);
+  const Outcome outcome = starve(80, 1);
   EXPECT_EQ(outcome.dry, 0U);
-  EXPECT_GT(outcome.holds, 160U);
+  EXPECT_GT(outcome.holds, 40U);
 }
 
 // The judge above can fail: stop distances of a hundredth are too short.

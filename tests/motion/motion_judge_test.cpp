@@ -145,7 +145,7 @@ struct Planned final : driver::CommandSink {
 
 // TRAMMEL_LONG: all thousand.
 bool long_run() { return std::getenv("TRAMMEL_LONG") != nullptr; }
-unsigned random_programs() { return long_run() ? 1000 : 100; }
+unsigned random_programs() { return long_run() ? 1000 : 60; }
 
 TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
   std::vector<unsigned> seeds(random_programs());
@@ -171,7 +171,7 @@ TEST(MotionJudge, RandomProgramsAreWithinTheirLimits) {
 // path at the old rate counted as motion.
 TEST(MotionJudge, ProgramsWithAFurtherAxisAreWithinTheirLimits) {
   std::vector<unsigned> seeds = {65, 93, 191, 219, 239};
-  for (unsigned seed = 1; seed <= (long_run() ? 250U : 55U); ++seed) seeds.push_back(seed);
+  for (unsigned seed = 1; seed <= (long_run() ? 250U : 30U); ++seed) seeds.push_back(seed);
   for (const unsigned seed : seeds) {
     const double jerk = seed % 2 == 0 ? 20000 : 0;
     SCOPED_TRACE(fmt::format("seed {}, jerk {}", seed, jerk));

@@ -53,8 +53,8 @@ machine::Machine equal_axes(double velocity, double acceleration, double jerk) {
 }
 
 void expect_within_bounds(const PlanWork& work) {
-  EXPECT_LE(work.windows, SCurvePlan::kMostWindows * work.spans + work.runs);
-  EXPECT_LE(work.ramps, SCurvePlan::kMostRamps * work.window_spans);
+  EXPECT_LE(work.windows, SCurvePlan::kMaxWindows * work.spans + work.runs);
+  EXPECT_LE(work.ramps, SCurvePlan::kMaxRamps * work.window_spans);
 }
 
 // The lines' feeds differ from the arc's by their last bit.

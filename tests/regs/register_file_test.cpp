@@ -78,7 +78,7 @@ TEST_P(EveryAxisCount, DescribesItself) {
 
 TEST(Identity, ComesFromTheParameters) {
   RegisterFile::Config config = RegisterBench::config_of(3);
-  config.engines = RegisterFile::kLeastEngines;
+  config.engines = RegisterFile::kMinEngines;
   config.build_id = 0xC0FFEE01;
   config.build_dirty = true;
   config.board_id = 0xB0A2D;
@@ -99,7 +99,7 @@ TEST(Identity, ComesFromTheParameters) {
 // {load unit, stride, words, base}.
 TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
   RegisterFile::Config config = RegisterBench::config_of(3);
-  config.engines = RegisterFile::kLeastEngines | card_map::engines::kDirectMode | card_map::engines::kClasses;
+  config.engines = RegisterFile::kMinEngines | card_map::engines::kDirectMode | card_map::engines::kClasses;
   config.ports = 2;
   RegisterBench bench(config);
   const auto word = [](unsigned load, unsigned stride, unsigned words, unsigned base) {
@@ -131,7 +131,7 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
 // A card with all engines: every unit once, in the order of the description, no two ranges overlap.
 TEST(Descriptors, EveryUnitOnceAndNoOverlap) {
   RegisterFile::Config config = RegisterBench::config_of(8);
-  config.engines = RegisterFile::kMostEngines;
+  config.engines = RegisterFile::kMaxEngines;
   RegisterBench bench(config);
   std::array<bool, card_map::kWindowBytes / 4> used{};
   for (std::uint32_t i = 0; i < card_map::kUnits.size(); ++i) {

@@ -114,7 +114,7 @@ TEST_F(CoreXyRun, MotorLimitsBecomeLimitsAlongThePath) {
 }
 
 TEST_F(CoreXyRun, JogsInTheAxesDirections) {
-  MachinePosition position(card_->snapshot(), machine_);
+  MachinePosition position(card_->read_snapshot(), machine_);
   configure(*card_, machine_);
   Jog jog(*card_, machine_, position);
   jog.start({0, 2}, 20);

@@ -10,6 +10,7 @@
 #include "clocks.hpp"
 #include "dying_bus.hpp"
 #include "steps.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/run/configure.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/sim/timed_bus.hpp"
@@ -65,7 +66,7 @@ class JogTest : public testing::Test {
   sim::TimedBus bus_{*engine_, kClock, 8000};
   driver::Card card_ = driver::Card::open(bus_);
   test::Steps steps_;
-  MachinePosition position_{card_.snapshot(), machine_};
+  MachinePosition position_{card_.read_snapshot(), machine_};
   Jog jog_{card_, machine_, position_};
 };
 
@@ -140,20 +141,20 @@ TEST_F(JogTest, ReactsWithinTenMilliseconds) {
   machine::apply_override(machine_, "axis.x.max=1e4");
   const auto ratio_after = [&](double begun) {
     pass(std::max(0.0, begun + 0.01 - seconds()));
-    return engine_->read(card_map::reg::kStatus), card_.snapshot().ratio;
+    return engine_->read(card_map::reg::kStatus), card_.read_snapshot().ratio;
   };
   double begun = seconds();
   jog_.start({75, 0});
   pass(0.5);
   EXPECT_GT(steps_.pins.front().cycle, begun * kClock);
-  std::uint32_t ratio = card_.snapshot().ratio;
+  std::uint32_t ratio = card_.read_snapshot().ratio;
   EXPECT_NEAR(ratio, 0x8000, 2);
   begun = seconds();
   jog_.set_speed(140);
   EXPECT_LE(seconds() - begun, 0.002);
   EXPECT_GT(ratio_after(begun), ratio + 1000) << "faster";
   pass(0.5);
-  ratio = card_.snapshot().ratio;
+  ratio = card_.read_snapshot().ratio;
   begun = seconds();
   jog_.stop();
   EXPECT_LT(ratio_after(begun), ratio - 1000) << "slower";
@@ -161,7 +162,7 @@ TEST_F(JogTest, ReactsWithinTenMilliseconds) {
   // The start: the stream is opened and three commands written, 40 words or so; with what a bus of 100 kB/s takes.
   sim::TimedBus fast(*engine_, kClock, 100'000);
   driver::Card card = driver::Card::open(fast);
-  MachinePosition position(card.snapshot(), machine_);
+  MachinePosition position(card.read_snapshot(), machine_);
   Jog jog(card, machine_, position);
   begun = seconds();
   const std::size_t made = steps_.pins.size();
@@ -184,8 +185,8 @@ TEST_F(JogTest, AHostThatDiesLeavesARampedStop) {
     const std::uint64_t dies = engine_->cycles() + kClock;
     DyingBus bus(*engine_, dies);
     driver::Card card = driver::Card::open(bus);
-    const std::uint32_t under_runs = card.read(card_map::reg::kUnderruns);
-    MachinePosition position(card.snapshot(), machine_);
+    const std::uint32_t under_runs = card.parts().registers.read(card_map::reg::kUnderruns);
+    MachinePosition position(card.read_snapshot(), machine_);
     Jog jog(card, machine_, position);
     const auto times = [&direction](double factor) {
       return gcode::Coordinates{direction[0] * factor, 0, direction[2] * factor};
@@ -249,22 +250,22 @@ TEST_F(JogTest, GoesOnWhenItIsLookedAtAgain) {
 
 TEST_F(JogTest, GivesTheTimeBaseBackAndProgramsGoOnFromThere) {
   card_.set_ratio(0x6000);
-  const std::uint32_t slew = card_.read(card_map::reg::kSlew);
+  const std::uint32_t slew = card_.parts().registers.read(card_map::reg::kSlew);
   position_.set(0, 25);
   jog_.start({0, 30});
   pass(0.2);
   jog_.stop();
   jog_.wait();
-  EXPECT_EQ(card_.read(card_map::reg::kRatioFeed), 0x6000U);
-  EXPECT_EQ(card_.read(card_map::reg::kSlew), slew);
-  EXPECT_EQ(card_.read(card_map::reg::kHold), 0U);
+  EXPECT_EQ(card_.parts().registers.read(card_map::reg::kRatioFeed), 0x6000U);
+  EXPECT_EQ(card_.parts().registers.read(card_map::reg::kSlew), slew);
+  EXPECT_EQ(card_.parts().registers.read(card_map::reg::kHold), 0U);
   RunSettings there;
   there.start = position_.millimetres();
   Runner runner([] { return std::make_unique<gcode::TextLines>("G0 X24\nG1 Y0 F900\n", "p.ngc"); }, machine_,
                 planner::limits_of(card_.identification()), there);
   runner.plan();
   EXPECT_EQ(runner.run(card_).final_position[0], 24 * 80);
-  position_.look(card_.snapshot());
+  position_.look(card_.read_snapshot());
   EXPECT_EQ(position_.pulses(), (planner::Pulses{24 * 80, 0}));
 }
 

@@ -11,6 +11,7 @@
 
 #include "clocks.hpp"
 #include "dying_bus.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/run/commanded_course.hpp"
 #include "trammel/run/step_recorder.hpp"
 #include "trammel/sim/engine.hpp"
@@ -165,7 +166,7 @@ TEST_F(RunnerTest, ConfiguresTheCard) {
 
 // Full speed goes to rest in 2 v / a of the axis that takes longest: 0.3 s, or as slowly as the card can.
 TEST_F(RunnerTest, SlewFollowsFromTheAxes) {
-  const auto slew = [this] { return card_.read(card_map::reg::kSlew); };
+  const auto slew = [this] { return card_.parts().registers.read(card_map::reg::kSlew); };
   run("G0 X1\n");
   EXPECT_EQ(slew(), driver::Card::kSlowestSlew / 300'000);
   machine::apply_override(machine_, "axis.y.max_acceleration=500");
@@ -224,7 +225,7 @@ TEST_F(RunnerTest, RefusesAProgramBeforeAnythingMoves) {
   EXPECT_THAT(error_of([&] { run("G0 X1\nG0 X2 Q\n"); }), HasSubstr("p.ngc:2: "));
   machine::apply_override(machine_, "axis.x.max=10");
   EXPECT_THAT(error_of([&] { run("G0 X1\nG0 X11\n"); }), HasSubstr("p.ngc:2: X11 is beyond the axis's max of 10"));
-  EXPECT_EQ(card_.snapshot().position[0], 0);
+  EXPECT_EQ(card_.read_snapshot().position[0], 0);
 }
 
 TEST_F(RunnerTest, RefusesAProgramThatChangesBetweenThePasses) {

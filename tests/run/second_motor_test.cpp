@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "steps.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/run/jog.hpp"
 #include "trammel/run/runner.hpp"
 #include "trammel/sim/engine.hpp"
@@ -48,10 +49,10 @@ TEST(SecondMotor, MakesItsAxisStepsInTheSameClocks) {
   EXPECT_GT(of(steps, 1).size(), 240U + 160U);
   expect_together();
   // The pins are its own: its direction is inverted, the axis's is not.
-  EXPECT_EQ(card.read(card_map::reg::mode(1)) & card_map::field::kModeInvertSecond, 0U);
-  EXPECT_NE(card.read(card_map::reg::mode(4)) & card_map::field::kModeInvertSecond, 0U);
+  EXPECT_EQ(card.parts().registers.read(card_map::reg::mode(1)) & card_map::field::kModeInvertSecond, 0U);
+  EXPECT_NE(card.parts().registers.read(card_map::reg::mode(4)) & card_map::field::kModeInvertSecond, 0U);
 
-  MachinePosition position(card.snapshot(), machine);
+  MachinePosition position(card.read_snapshot(), machine);
   Jog jog(card, machine, position);
   jog.start({0, 2}, 20);
   jog.wait();

@@ -55,7 +55,7 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
   for (double at = 0.03; at < end - 0.2; at += 0.0617) {
     SCOPED_TRACE(at);
     StopBench bench;
-    MachinePosition position(bench.card.snapshot(), bench.machine);
+    MachinePosition position(bench.card.read_snapshot(), bench.machine);
     const auto due = static_cast<std::uint64_t>(at * kSlowClock);
     bench.bus.at(due, [&](sim::Engine&) { bench.card.request_stop(); });
     std::optional<std::size_t> line;
@@ -72,12 +72,12 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
     for (std::size_t i = 0; i < made; ++i) ASSERT_TRUE(same(bench.steps.path[i], whole.steps.path[i])) << i;
     EXPECT_EQ(bench.steps.pins.size(), made) << "every step of the path came out, and none after it";
     EXPECT_TRUE(bench.card.in_position());
-    EXPECT_FALSE(bench.card.status().held) << "the hold is over, or soon will be";
+    EXPECT_FALSE(bench.card.read_status().held) << "the hold is over, or soon will be";
     // 0.3 s of ramp from full speed; 50 mm/s of 150 take a third of it.
     EXPECT_LE(
         static_cast<double>(bench.steps.pins.back().cycle - std::min(due, bench.steps.pins.back().cycle)) / kSlowClock,
         0.32);
-    position.look(bench.card.snapshot());
+    position.look(bench.card.read_snapshot());
     planner::Pulses counted{};
     for (const driver::PinStep& step : bench.steps.pins) counted[step.axis] += step.direction;
     EXPECT_EQ(position.pulses(), counted);
@@ -87,7 +87,7 @@ TEST(Stop, OnThePathWithThePositionKnownAndTheNextProgramFromThere) {
     there.start = position.millimetres();
     const Outcome outcome = bench.run("G91 G1 X1 F600\nG90 Y5\nG0 X0 Y0 Z0\n", there);
     EXPECT_EQ(outcome.final_position, (std::vector<std::int64_t>{0, 0, 0, 0}));
-    position.look(bench.card.snapshot());
+    position.look(bench.card.read_snapshot());
     EXPECT_EQ(position.pulses(), planner::Pulses{}) << "as the card counts";
   }
 }
@@ -167,7 +167,13 @@ TEST(Stop, WhileAWindowIsPlanned) {
                   planner::limits_of(bench.card.identification()));
     SentNothing observer;
     runner.add(observer);
-    EXPECT_THROW(runner.stream(bench.card), StoppedOnPath);
+    try {
+      runner.stream(bench.card);
+      ADD_FAILURE() << "not stopped";
+    } catch (const StoppedOnPath& stopped) {
+      EXPECT_EQ(stopped.line(), 0U);
+      EXPECT_EQ(std::string(stopped.what()).find("window.ngc: before the first command: "), 0U) << stopped.what();
+    }
     EXPECT_LE(read, stop_at + 1);
     EXPECT_TRUE(bench.steps.pins.empty());
   }

@@ -131,7 +131,7 @@ TEST_F(ClientsTest, WithoutTheTokenNothingIsWrittenThatMoves) {
     driver::FrameBus bus(link);
     driver::Card card = driver::Card::open(bus);
     EXPECT_EQ(link.may_move(), !hello) << "who says no hello is not told";
-    EXPECT_EQ(card.snapshot().position[0], 0);
+    EXPECT_EQ(card.read_snapshot().position[0], 0);
     EXPECT_FALSE(card.refusal());
     card.clear_refusal();
     EXPECT_THROW(driver::Stream{card}, driver::RefusedError);
@@ -175,9 +175,9 @@ TEST_F(ClientsTest, ANewClientIsToldWhoHasLeftTheCardInItsHold) {
     EXPECT_STREQ(error.what(), "line: the card holds: the client has gone: take it over, or end the hold");
   }
   ASSERT_TRUE(card.take_over()) << "something was left";
-  const std::int32_t before = card.snapshot().position[0];
+  const std::int32_t before = card.read_snapshot().position[0];
   driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
-  EXPECT_EQ(card.snapshot().position[0], before + 100);
+  EXPECT_EQ(card.read_snapshot().position[0], before + 100);
 }
 
 TEST_F(ClientsTest, SilenceAndRubbish) {

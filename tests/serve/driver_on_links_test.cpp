@@ -8,6 +8,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/runner.hpp"
@@ -109,15 +110,15 @@ TEST_P(DriverOnLinks, SettingsAreKept) {
   settings.direction_hold = 7us;
   card.configure_axis(2, settings);
   card.set_ratio(0x8000);
-  EXPECT_EQ(card.read(reg::step_length(2)), 3U);
-  EXPECT_EQ(card.read(reg::dir_hold(2)), 7U);
-  EXPECT_EQ(card.read(reg::kRatioFeed), 0x8000U);
+  EXPECT_EQ(card.parts().registers.read(reg::step_length(2)), 3U);
+  EXPECT_EQ(card.parts().registers.read(reg::dir_hold(2)), 7U);
+  EXPECT_EQ(card.parts().registers.read(reg::kRatioFeed), 0x8000U);
 }
 
 TEST_P(DriverOnLinks, ALineEndsWhereItShould) {
   Card card = Card::open(bench_.bus());
   driver::run_line(card, driver::plan_line(card.timing(), {200, -100, 3}, 20ms));
-  const driver::Snapshot now = card.snapshot();
+  const driver::Snapshot now = card.read_snapshot();
   EXPECT_EQ(now.position[0], 200);
   EXPECT_EQ(now.position[1], -100);
   EXPECT_EQ(now.position[2], 3);
@@ -142,20 +143,20 @@ TEST_P(DriverOnLinks, ADwellTakesItsTime) {
   Stream stream(card);
   stream.send({driver::DwellCommand{100'000}, driver::EndCommand{}});
   EXPECT_TRUE(stream.finish().ended);
-  EXPECT_GE(card.snapshot().time, 100'000U);
+  EXPECT_GE(card.read_snapshot().time, 100'000U);
 }
 
 TEST_P(DriverOnLinks, RefusalsHaveTheirReason) {
   Card card = Card::open(bench_.bus());
   std::array<driver::Access, 3> accesses{driver::write_of(reg::step_length(0), 5), driver::write_of(reg::kAxes, 1)};
   try {
-    card.transfer(accesses.data(), 2, "test");
+    card.parts().registers.transfer(accesses.data(), 2, "test");
     FAIL();
   } catch (const driver::RefusedError& error) {
     EXPECT_EQ(error.reason(), static_cast<std::uint8_t>(card_map::Reason::ReadOnly));
     EXPECT_EQ(error.address(), reg::kAxes);
   }
-  EXPECT_EQ(card.read(reg::step_length(0)), 5U) << "the one before was made";
+  EXPECT_EQ(card.parts().registers.read(reg::step_length(0)), 5U) << "the one before was made";
   EXPECT_FALSE(card.refusal());
 }
 
@@ -164,7 +165,7 @@ TEST_P(DriverOnLinks, AFaultIsNamedAndCleared) {
   Stream stream(card);
   stream.send({feed_of(100), line_of(99, 1), driver::EndCommand{}});
   EXPECT_THROW(stream.finish(), driver::FaultError);
-  EXPECT_EQ(card.faults(), field::kFaultTickMismatch);
+  EXPECT_EQ(card.read_faults(), field::kFaultTickMismatch);
   card.clear_faults();
   stream.restart();
   stream.send({feed_of(10), line_of(10, 1), driver::EndCommand{}});
@@ -179,10 +180,10 @@ TEST_P(DriverOnLinks, HoldAndStopOnThePath) {
   bench_.bus().sleep(200ms);
   card.set_hold(true);
   bench_.bus().sleep(20ms);
-  const driver::Snapshot held = card.snapshot();
+  const driver::Snapshot held = card.read_snapshot();
   EXPECT_TRUE(held.status.held);
   bench_.bus().sleep(50ms);
-  EXPECT_EQ(card.snapshot().position[0], held.position[0]);
+  EXPECT_EQ(card.read_snapshot().position[0], held.position[0]);
   const driver::Snapshot end = card.stop();
   EXPECT_GT(end.position[0], 100);
   EXPECT_LT(end.position[0], 1000);

@@ -87,8 +87,8 @@ void set_halfword(Words& words, std::size_t at, std::uint16_t value) {
 
 // Over a screen: a table, a row for each thing that can be wrong.
 std::vector<Bad> stream_of_bad_input() {
-  constexpr std::int64_t kLeast = kFirst;
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  constexpr std::int64_t kMin = kFirst;
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
   constexpr std::size_t kPayload = 5;  // halfword
   const std::vector<Command> good{line(kTicks, 4)};
   return {
@@ -198,7 +198,7 @@ std::vector<Bad> stream_of_bad_input() {
        {},
        "acceleration and jerk would reverse the feed after"},
       {"jerk beyond the accumulator",
-       {feed(0, kLeast), line(kTicks, 4), driver::EndCommand{}},
+       {feed(0, kMin), line(kTicks, 4), driver::EndCommand{}},
        {},
        {},
        0,
@@ -206,13 +206,13 @@ std::vector<Bad> stream_of_bad_input() {
        {},
        "acceleration and jerk would reverse the feed after"},
       {"acceleration beyond the accumulator",
-       {feed(kMost, kMost), line(kTicks, 4), driver::EndCommand{}},
+       {feed(kMax, kMax), line(kTicks, 4), driver::EndCommand{}},
        {},
        {},
        0,
        kPulses + 4},
       {"deceleration beyond the accumulator",
-       {feed(kLeast, 0), line(kTicks, 4), driver::EndCommand{}},
+       {feed(kMin, 0), line(kTicks, 4), driver::EndCommand{}},
        {},
        {},
        0,
@@ -281,7 +281,7 @@ class BadInput : public testing::TestWithParam<sim::EngineKind> {
     }
     EXPECT_EQ(bench.engine->positions()[0], bad.clamped_to.value_or(bench.engine->positions()[0]));
     if (bad.fault != 0) {
-      const driver::Snapshot stop = bench.card.stop_snapshot();
+      const driver::Snapshot stop = bench.card.read_stop_snapshot();
       EXPECT_EQ(stop.faults, bad.fault);
       EXPECT_EQ(stop.geometry_begun, 3U) << "it was at the path that is wrong, after a path and its end";
     }

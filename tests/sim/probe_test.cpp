@@ -39,7 +39,7 @@ class DriverProbe : public testing::TestWithParam<sim::EngineKind> {
   driver::StreamOptions options() {
     driver::StreamOptions result;
     result.poll_clocks = 64;
-    result.patience = 10ms;
+    result.margin = 10ms;
     result.progress = [this](const driver::StreamProgress& progress) {
       if (look) look(progress);
     };
@@ -171,10 +171,10 @@ TEST_P(DriverProbe, AnAbortFromElsewhereEndsIt) {
   EXPECT_EQ(stream.probe(ProbeCommand{2, true}, towards(20'000, 5000)).outcome, ProbeOutcome::kTripped);
 }
 
-TEST_P(DriverProbe, WaitingForAnInputOutlastsAnyPatience) {
+TEST_P(DriverProbe, WaitingForAnInputOutlastsAnyMargin) {
   driver::Stream stream(card, options());
   const std::uint64_t begin = engine->cycles();
-  constexpr std::uint64_t kLate = 2'000'000;  // 200 ms: 20 times the patience
+  constexpr std::uint64_t kLate = 2'000'000;  // 200 ms: 20 times the margin
   look = [this, begin](const driver::StreamProgress& progress) {
     EXPECT_EQ(steps.pins.size(), progress.status.waiting ? 10U : steps.pins.size());
     if (engine->cycles() - begin > kLate) engine->set_inputs(0b0010);
@@ -192,7 +192,7 @@ TEST_P(DriverProbe, WaitingForAnInputOutlastsAnyPatience) {
   stream.finish();
   EXPECT_GE(engine->cycles() - before, 500'000U);
   EXPECT_LT(engine->cycles() - before, 510'000U);
-  EXPECT_EQ(card.inputs() & 0b0010, 0);
+  EXPECT_EQ(card.read_inputs() & 0b0010, 0);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ model::CardConfig card_config(std::uint32_t clock_hz) {
   model::CardConfig config;
   config.axes = kAxes;
   config.clock_hz = clock_hz;
-  config.engines = model::RegisterFile::kMostEngines;
+  config.engines = model::RegisterFile::kMaxEngines;
   config.ports = 4;
   config.inputs = 2 * kAxes;
   return config;

@@ -73,7 +73,7 @@ TEST_P(OverEachLink, TheDriverMovesTheMachine) {
     EXPECT_EQ(card.identification().axes, kAxes);
     driver::run_line(card, driver::plan_line(card.timing(), {500, -300, 100, 0}, 50ms));
     interrupted = host.irq.read();
-    EXPECT_EQ(card.snapshot().position[1], -300);
+    EXPECT_EQ(card.read_snapshot().position[1], -300);
     host.sleep(50ms);
   });
   platform.run();
@@ -144,7 +144,7 @@ TEST_P(AtBothLevels, AMotorStalls) {
   platform.add(GetParam(), [&](Host& host) {
     driver::Card card = driver::Card::open(host);
     driver::run_line(card, driver::plan_line(card.timing(), {4000, 400, 0, 0}, 100ms));
-    EXPECT_EQ(card.snapshot().position[0], 4000);
+    EXPECT_EQ(card.read_snapshot().position[0], 4000);
     host.sleep(100ms);
   });
   platform.run();
@@ -198,7 +198,7 @@ TEST(Systemc, TwoLinksAtOnce) {
   });
   platform.add(Port::kUart, [&](Host& host) {
     driver::Card card = driver::Card::open(host);
-    while (!done) seen.push_back(card.snapshot().position[0]);
+    while (!done) seen.push_back(card.read_snapshot().position[0]);
     EXPECT_FALSE(card.refusal());
   });
   platform.run();

@@ -1,16 +1,16 @@
 // The commanded path as corners of lines, with what they are coloured by. No document here.
 import { kArc, kPause, kSpaceArc } from './decode.js'
 
-const kMost = 300000  // corners
+const kMaxCorners = 300000  // corners
 
 // Pairs of corners (x y z, mm from the run's middle), in two lists: with a feed, and rapids.
 export function courseOf(run) {
   const { motion, paths, centre } = run
-  const perStretch = Math.max(1, Math.min(16, Math.floor(kMost / Math.max(1, motion.count))))
+  const perStretch = Math.max(1, Math.min(16, Math.floor(kMaxCorners / Math.max(1, motion.count))))
   const feed = { points: [], speed: [], load: [], deviation: [], path: [] }
   const rapid = { points: [], path: [] }
   // A long program's lines are shorter than a pixel: corners nearer to the one before than this are left out.
-  const least = motion.count > kMost ? extentOf(run) / 4000 : 0
+  const least = motion.count > kMaxCorners ? extentOf(run) / 4000 : 0
   let last = null, lastPath = -1
   for (let s = 0; s < motion.count; ++s) {
     const path = motion.paths[s]

@@ -248,15 +248,15 @@ typedef enum trammel_piece_class {
 TRAMMEL_API trammel_result trammel_set_hold(trammel_card* card, bool hold);
 // Share of enabled clocks, 0 .. TRAMMEL_FULL_RATIO. A card without classes has that of feed alone.
 TRAMMEL_API trammel_result trammel_set_ratio(trammel_card* card, int32_t piece_class, uint32_t ratio);
-// The ratio `percent` / `most_percent`; the latter is the largest override that programs are planned for.
+// The ratio `percent` / `max_percent`; the latter is the largest override that programs are planned for.
 TRAMMEL_API trammel_result trammel_set_override(trammel_card* card, int32_t piece_class, double percent,
-                                                double most_percent);
+                                                double max_percent);
 // Time that the ratio takes from 0 to full; up to 2^30 clocks.
 TRAMMEL_API trammel_result trammel_set_slew_time(trammel_card* card, int64_t full_scale_ns);
 // Drops what is queued and stops at once; positions stay, faults stay latched. The stream begins anew.
 TRAMMEL_API trammel_result trammel_abort(trammel_card* card);
 // A hold, and at rest an abort: no pulse comes after it. `snapshot` (may be null) has the position.
-TRAMMEL_API trammel_result trammel_stop(trammel_card* card, int64_t patience_ns, trammel_snapshot* snapshot);
+TRAMMEL_API trammel_result trammel_stop(trammel_card* card, int64_t margin_ns, trammel_snapshot* snapshot);
 
 // Takes over a card that another host has left: ends a hold that stands, and drops what is left of a path on which the
 // card holds; `dropped` (may be null) says whether there was any. TRAMMEL_STATE, and nothing changes, where the card
@@ -292,9 +292,9 @@ typedef struct trammel_line_plan {
 // Starts a line of one part and returns at once. `plan` may be null.
 TRAMMEL_API trammel_result trammel_start_line(trammel_card* card, const trammel_one_shot* line,
                                               trammel_line_plan* plan);
-// Runs all parts and returns when the last has ended, at most `patience_ns` later than planned. TRAMMEL_HELD, and
+// Runs all parts and returns when the last has ended, at most `margin_ns` later than planned. TRAMMEL_HELD, and
 // nothing was started, on a card that holds or whose ratio is 0; a hold that comes later is waited out.
-TRAMMEL_API trammel_result trammel_run_line(trammel_card* card, const trammel_one_shot* line, int64_t patience_ns,
+TRAMMEL_API trammel_result trammel_run_line(trammel_card* card, const trammel_one_shot* line, int64_t margin_ns,
                                             trammel_line_plan* plan);
 
 // ---- The stream of commands ----
@@ -399,7 +399,7 @@ typedef struct trammel_progress {
 } trammel_progress;
 
 typedef struct trammel_stream_options {
-  int64_t patience_ns;  // card time beyond what was planned before a card counts as hung; 0: a second
+  int64_t margin_ns;  // card time beyond what was planned before a card counts as hung; 0: a second
   // Called while a call of the stream waits; false ends that call with TRAMMEL_CANCELLED. May be null.
   bool (*progress)(void* context, const trammel_progress* progress);
   void* context;
@@ -448,7 +448,7 @@ typedef struct trammel_position_options {
   unsigned ahead;          // periods sent before the card begins with the first, at least 1
   // Pulses/s, 0: what the card and its step times allow.
   double max_speed[TRAMMEL_MAX_AXES];
-  int64_t patience_ns;  // card time beyond what is queued before a card counts as hung; 0: a second
+  int64_t margin_ns;  // card time beyond what is queued before a card counts as hung; 0: a second
 } trammel_position_options;
 
 typedef struct trammel_position_sent {

@@ -167,15 +167,15 @@ trammel_result trammel_configure_axis(trammel_card* card, unsigned axis, const t
 }
 
 trammel_result trammel_read_status(trammel_card* card, trammel_status* status) {
-  return guarded([=] { required(status, "status") = c_status(card_of(card).status()); });
+  return guarded([=] { required(status, "status") = c_status(card_of(card).read_status()); });
 }
 
 trammel_result trammel_read_snapshot(trammel_card* card, trammel_snapshot* snapshot) {
-  return guarded([=] { required(snapshot, "snapshot") = c_snapshot(card_of(card).snapshot()); });
+  return guarded([=] { required(snapshot, "snapshot") = c_snapshot(card_of(card).read_snapshot()); });
 }
 
 trammel_result trammel_read_stop_snapshot(trammel_card* card, trammel_snapshot* snapshot) {
-  return guarded([=] { required(snapshot, "snapshot") = c_snapshot(card_of(card).stop_snapshot()); });
+  return guarded([=] { required(snapshot, "snapshot") = c_snapshot(card_of(card).read_stop_snapshot()); });
 }
 
 trammel_result trammel_wait_until_idle(trammel_card* card, int64_t timeout_ns) {
@@ -183,7 +183,7 @@ trammel_result trammel_wait_until_idle(trammel_card* card, int64_t timeout_ns) {
 }
 
 trammel_result trammel_read_faults(trammel_card* card, uint32_t* faults) {
-  return guarded([=] { required(faults, "faults") = card_of(card).faults(); });
+  return guarded([=] { required(faults, "faults") = card_of(card).read_faults(); });
 }
 
 trammel_result trammel_clear_faults(trammel_card* card) {
@@ -200,11 +200,11 @@ trammel_result trammel_describe_faults(uint32_t faults, char* text, size_t size)
 }
 
 trammel_result trammel_read_inputs(trammel_card* card, uint16_t* levels) {
-  return guarded([=] { required(levels, "levels") = card_of(card).inputs(); });
+  return guarded([=] { required(levels, "levels") = card_of(card).read_inputs(); });
 }
 
 trammel_result trammel_read_outputs(trammel_card* card, uint16_t* levels) {
-  return guarded([=] { required(levels, "levels") = card_of(card).outputs(); });
+  return guarded([=] { required(levels, "levels") = card_of(card).read_outputs(); });
 }
 
 trammel_result trammel_set_input_polarity(trammel_card* card, uint16_t inverted) {
@@ -218,8 +218,8 @@ trammel_result trammel_set_output_safe(trammel_card* card, uint16_t levels, uint
 trammel_result trammel_read_marks(trammel_card* card, uint32_t* marks, trammel_snapshot* last) {
   return guarded([=] {
     driver::Card& read = card_of(card);
-    if (marks != nullptr) *marks = read.marks();
-    if (last != nullptr) *last = c_snapshot(read.mark_snapshot());
+    if (marks != nullptr) *marks = read.read_marks();
+    if (last != nullptr) *last = c_snapshot(read.read_mark_snapshot());
   });
 }
 
@@ -231,8 +231,8 @@ trammel_result trammel_set_ratio(trammel_card* card, std::int32_t piece_class, u
   return guarded([=] { card_of(card).set_ratio(piece_class_of(piece_class), ratio); });
 }
 
-trammel_result trammel_set_override(trammel_card* card, std::int32_t piece_class, double percent, double most_percent) {
-  return guarded([=] { card_of(card).set_override(piece_class_of(piece_class), percent, most_percent); });
+trammel_result trammel_set_override(trammel_card* card, std::int32_t piece_class, double percent, double max_percent) {
+  return guarded([=] { card_of(card).set_override(piece_class_of(piece_class), percent, max_percent); });
 }
 
 trammel_result trammel_set_slew_time(trammel_card* card, int64_t full_scale_ns) {
@@ -243,9 +243,9 @@ trammel_result trammel_abort(trammel_card* card) {
   return guarded([=] { card_of(card).abort(); });
 }
 
-trammel_result trammel_stop(trammel_card* card, int64_t patience_ns, trammel_snapshot* snapshot) {
+trammel_result trammel_stop(trammel_card* card, int64_t margin_ns, trammel_snapshot* snapshot) {
   return guarded([=] {
-    const trammel_snapshot rest = c_snapshot(card_of(card).stop(std::chrono::nanoseconds(patience_ns)));
+    const trammel_snapshot rest = c_snapshot(card_of(card).stop(std::chrono::nanoseconds(margin_ns)));
     if (snapshot != nullptr) *snapshot = rest;
   });
 }
@@ -287,12 +287,12 @@ trammel_result trammel_start_line(trammel_card* card, const trammel_one_shot* li
   });
 }
 
-trammel_result trammel_run_line(trammel_card* card, const trammel_one_shot* line, int64_t patience_ns,
+trammel_result trammel_run_line(trammel_card* card, const trammel_one_shot* line, int64_t margin_ns,
                                 trammel_line_plan* out) {
   return guarded([=] {
     driver::Card& of = card_of(card);
     const driver::OneShotPlan planned = plan(of, required(line, "line"));
-    driver::run_line(of, planned, std::chrono::nanoseconds(patience_ns));
+    driver::run_line(of, planned, std::chrono::nanoseconds(margin_ns));
     give(out, planned);
   });
 }

@@ -21,7 +21,7 @@ driver::PositionStreamOptions options_of(const trammel_position_options& options
   out.stale_periods = options.stale_periods;
   out.ahead = options.ahead;
   std::copy(std::begin(options.max_speed), std::end(options.max_speed), out.max_speed.begin());
-  if (options.patience_ns != 0) out.patience = std::chrono::nanoseconds(options.patience_ns);
+  if (options.margin_ns != 0) out.margin = std::chrono::nanoseconds(options.margin_ns);
   return out;
 }
 

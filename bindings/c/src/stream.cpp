@@ -13,7 +13,7 @@ driver::Stream& stream_of(trammel_card* card) {
 
 driver::StreamOptions options_of(const trammel_stream_options& options) {
   driver::StreamOptions out;
-  if (options.patience_ns != 0) out.patience = std::chrono::nanoseconds(options.patience_ns);
+  if (options.margin_ns != 0) out.margin = std::chrono::nanoseconds(options.margin_ns);
   if (options.progress == nullptr) return out;
   out.progress = [options](const driver::StreamProgress& is) {
     const trammel_progress progress{is.commands_sent, is.geometry_begun, is.feed_begun, c_status(is.status)};

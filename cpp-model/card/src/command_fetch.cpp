@@ -12,13 +12,13 @@ namespace {
 using card_map::Opcode;
 
 constexpr int kHeader = 4;  // halfwords before the payload, as they are stored
-constexpr int kMostPayload = 64;
+constexpr int kMaxPayload = 64;
 constexpr int kEndless = 1 << 20;
 constexpr std::size_t kFurtherAxes = 28;  // of an arc in chords: where their increments begin in the payload
 
 // Where the halfwords of a payload go, and the first one that waits.
 struct Layout {
-  std::array<std::uint16_t, kMostPayload> targets{};
+  std::array<std::uint16_t, kMaxPayload> targets{};
   int pause_at = kEndless;
 };
 

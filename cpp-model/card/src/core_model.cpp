@@ -9,16 +9,16 @@ namespace trammel::model {
 namespace {
 
 // A queue with less room than this, in halfwords, may have none for the next command.
-constexpr std::uint16_t kMostGeometry = 64;
-constexpr std::uint16_t kMostFeed = 32;
+constexpr std::uint16_t kMaxGeometry = 64;
+constexpr std::uint16_t kMaxFeed = 32;
 
 const CardConfig& checked(const CardConfig& config) {
   if (config.axes < 1 || config.axes > card_map::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   if (config.ports < 1 || config.ports > 4) throw std::invalid_argument("a card has 1 to 4 ports");
   if (config.inputs < 1 || config.inputs > 16 || config.outputs < 1 || config.outputs > 16)
     throw std::invalid_argument("a card has 1 to 16 inputs and outputs");
-  constexpr std::uint32_t kLeast = RegisterFile::kLeastEngines;
-  if ((config.engines & kLeast) != kLeast || (config.engines & ~RegisterFile::kMostEngines) != 0)
+  constexpr std::uint32_t kMin = RegisterFile::kMinEngines;
+  if ((config.engines & kMin) != kMin || (config.engines & ~RegisterFile::kMaxEngines) != 0)
     throw std::invalid_argument("no card has these engines");
   return config;
 }
@@ -90,7 +90,7 @@ MotionCore::Inputs CoreModel::motion_inputs(std::uint16_t pins) const {
   const CommandChecker::Outputs& checker = state_.checker.outputs();
   in.arrival = {checker.drop,        checker.geometry_commit, checker.geometry_write,
                 checker.feed_commit, checker.feed_write,      checker.halfword};
-  in.full = state_.geometry_queue.outputs().room < kMostGeometry || state_.feed_queue.outputs().room < kMostFeed;
+  in.full = state_.geometry_queue.outputs().room < kMaxGeometry || state_.feed_queue.outputs().room < kMaxFeed;
   in.start = set.start;
   in.start_mask = set.start_mask;
   in.loader_data = set.loader_data;

@@ -7,7 +7,7 @@ namespace trammel::skip {
 namespace {
 
 // Carries at a time, so that phases do not leave 64 bits.
-constexpr std::uint64_t kMostCarries = std::uint64_t{1} << 14;
+constexpr std::uint64_t kMaxCarries = std::uint64_t{1} << 14;
 // Updates for which the clamp is judged at once.
 constexpr std::uint64_t kStretch = 64;
 
@@ -16,7 +16,7 @@ constexpr std::uint64_t kStretch = 64;
 FeedAhead::Advanced FeedAhead::advance(std::uint64_t limit, std::uint64_t carries) {
   Advanced gone;
   while (gone.carries < carries && gone.enables < limit) {
-    const std::uint64_t some = std::min(carries - gone.carries, kMostCarries);
+    const std::uint64_t some = std::min(carries - gone.carries, kMaxCarries);
     if (s_.constant)
       advance_constant(gone, limit - gone.enables, some);
     else

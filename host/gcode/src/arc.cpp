@@ -11,7 +11,7 @@ namespace {
 constexpr double kSamePoint = 1e-6;     // mm; far below a pulse, far above the rounding of sums
 constexpr double kRadiusSlack = 0.005;  // mm
 constexpr double kRadiusSlackRelative = 0.001;
-constexpr double kRadiusSlackMost = 0.5;  // mm
+constexpr double kMaxRadiusSlack = 0.5;  // mm
 
 // Not std::hypot, whose last digit differs between libraries. Numbers of words are at most 1e12: no square overflows.
 double distance(PlanePoint a, PlanePoint b) {
@@ -66,7 +66,7 @@ bool check_radii(double start, double end, Problem& problem) {
   }
   const double difference = std::abs(start - end);
   const bool off = difference > kRadiusSlack && difference > kRadiusSlackRelative * start;
-  if (off || difference > kRadiusSlackMost) {
+  if (off || difference > kMaxRadiusSlack) {
     return problem.set(
         ErrorCode::kArcOffCircle,
         fmt::format("the arc's end is not on its circle: radius {:.3f} mm at the start, {:.3f} mm at the end", start,

@@ -31,7 +31,7 @@ void peck(const CycleHoles& holes, CycleSink& sink) {
 std::size_t motions_of(const CycleHoles& holes) {
   constexpr double kAround = 6;  // position, level, feed, dwell, retract and one to spare
   const double one = kAround + (pecks(holes.code) ? 3 * pecks_before_last(holes) : 0);
-  return static_cast<std::size_t>(std::min(one * holes.count + 1, 2.0 * kMostCycleMotions));
+  return static_cast<std::size_t>(std::min(one * holes.count + 1, 2.0 * kMaxCycleMotions));
 }
 
 void drill(const CycleHoles& holes, CycleSink& sink) {

@@ -43,7 +43,7 @@ class CycleSink {
 };
 
 // The motions that drill() makes at most; more than it counts: all the same too many.
-inline constexpr std::size_t kMostCycleMotions = 65'536;
+inline constexpr std::size_t kMaxCycleMotions = 65'536;
 std::size_t motions_of(const CycleHoles& holes);
 
 void drill(const CycleHoles& holes, CycleSink& sink);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLn2High = 0x1.62e42fee00000p-1;
 constexpr double kLn2Low = 0x1.a39ef35793c76p-33;
 constexpr double kRootHalf = 0.7071067811865476;
-constexpr double kMostMultiplied = 1024;
+constexpr double kMaxMultiplied = 1024;
 
 double whole_power(double base, std::int64_t exponent) {
   double result = 1;
@@ -60,7 +60,7 @@ double natural_logarithm(double x) {
 }
 
 double power(double base, double exponent) {
-  if (exponent == std::floor(exponent) && std::abs(exponent) <= kMostMultiplied) {
+  if (exponent == std::floor(exponent) && std::abs(exponent) <= kMaxMultiplied) {
     return whole_power(base, static_cast<std::int64_t>(exponent));
   }
   if (base == 0 && exponent > 0) return 0;

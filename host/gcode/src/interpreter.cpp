@@ -14,9 +14,9 @@ namespace {
 constexpr double kStill = 1e-9;  // mm: what is left of a sum that should be 0
 
 // The least max_velocity of a machine file, 0.001 mm/s. Less is a slip of the pen: 10 mm would take hours.
-constexpr double kLeastFeed = 0.06;  // mm/min, or degrees/min
+constexpr double kMinFeed = 0.06;  // mm/min, or degrees/min
 // Under G93: one motion takes at most 1,000 minutes.
-constexpr double kLeastInverseTime = 0.001;  // 1/min
+constexpr double kMinInverseTime = 0.001;  // 1/min
 
 constexpr int kSpindleClockwise = 30;
 constexpr int kSpindleCounterClockwise = 40;
@@ -341,9 +341,9 @@ bool Interpreter::set_speed(const Context& context, Motion& motion) const {
   }
   if (*modes_.feed == 0) return problem.set(ErrorCode::kFeedTooSmall, "feed is 0");
   if (modes_.inverse_time) {
-    if (*modes_.feed < kLeastInverseTime) {
+    if (*modes_.feed < kMinInverseTime) {
       return problem.set(ErrorCode::kFeedTooSmall,
-                         fmt::format("feed is too small: under G93 at least F{} (1,000 minutes)", kLeastInverseTime));
+                         fmt::format("feed is too small: under G93 at least F{} (1,000 minutes)", kMinInverseTime));
     }
     motion.seconds = 60 / *modes_.feed;
     return true;
@@ -353,9 +353,9 @@ bool Interpreter::set_speed(const Context& context, Motion& motion) const {
     linear = linear || (!is_rotary(axis) && std::abs(motion.target[axis] - here_.at[axis]) > kStill);
   }
   const double per_minute = *modes_.feed * (modes_.feed_in_inches && linear ? kMmPerInch : 1);
-  if (per_minute < kLeastFeed) {
+  if (per_minute < kMinFeed) {
     return problem.set(ErrorCode::kFeedTooSmall, fmt::format("feed is too small: {:g} {}/min, at least {} are possible",
-                                                             per_minute, linear ? "mm" : "degrees", kLeastFeed));
+                                                             per_minute, linear ? "mm" : "degrees", kMinFeed));
   }
   motion.feed = per_minute / 60;
   return true;

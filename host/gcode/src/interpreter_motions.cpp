@@ -92,16 +92,16 @@ bool Interpreter::arc_geometry(const Context& context, const Plane& plane, Motio
 
 // P, where neither G4 nor G64 takes it: all turns, the last one perhaps not a whole one.
 bool Interpreter::set_turns(const Context& context, Motion& motion) const {
-  constexpr double kMostTurns = 10'000;
+  constexpr double kMaxTurns = 10'000;
   const WordSet& words = context.words;
   const auto turns = words.letter('P');
   if (!turns || words.code(Group::kNonModal) == code::kDwell || words.code(Group::kPathControl)) {
     return true;
   }
-  if (*turns < 1 || *turns > kMostTurns || *turns != std::floor(*turns)) {
+  if (*turns < 1 || *turns > kMaxTurns || *turns != std::floor(*turns)) {
     return context.problem.set(
         ErrorCode::kArcTurns,
-        fmt::format("P{:.10g}: an arc makes a whole number of turns, 1 to {:.0f}", *turns, kMostTurns));
+        fmt::format("P{:.10g}: an arc makes a whole number of turns, 1 to {:.0f}", *turns, kMaxTurns));
   }
   motion.turns = static_cast<std::uint32_t>(*turns) - 1;
   return true;
@@ -152,9 +152,9 @@ bool Interpreter::spline(const Context& context) {
                           ? cubic_of(start, control, end)
                           : Cubic{start, control, {end.x + second[0], end.y + second[1]}, end};
   const std::uint32_t lines = lines_of(curve);
-  if (lines > kMostSplineLines) {
+  if (lines > kMaxSplineLines) {
     return problem.set(ErrorCode::kTooManyMotions,
-                       fmt::format("a curve that takes more than {} lines", kMostSplineLines));
+                       fmt::format("a curve that takes more than {} lines", kMaxSplineLines));
   }
   for (std::uint32_t n = 1; n <= lines; ++n) {
     const PlanePoint point = point_of(curve, n, lines);
@@ -221,9 +221,9 @@ bool Interpreter::check_cycle(const Context& context, const PlaneAxes& axes) con
     return problem.set(ErrorCode::kArcOutsidePlane, fmt::format("{} moves X, Y and Z alone", name));
   }
   const auto repeats = words.letter('L');
-  if (repeats && (*repeats < 1 || *repeats > kMostCycleMotions)) {
+  if (repeats && (*repeats < 1 || *repeats > kMaxCycleMotions)) {
     return problem.set(ErrorCode::kTooManyMotions,
-                       fmt::format("L{:.10g}: a cycle is repeated 1 to {} times", *repeats, kMostCycleMotions));
+                       fmt::format("L{:.10g}: a cycle is repeated 1 to {} times", *repeats, kMaxCycleMotions));
   }
   return true;
 }
@@ -298,9 +298,9 @@ bool Interpreter::cycle(const Context& context, std::optional<int> before) {
   if (pecks(code) && !(holes.peck > 0)) {
     return problem.set(ErrorCode::kCycleLevels, fmt::format("Q of {} must be above 0", name_of('G', code)));
   }
-  if (motions_of(holes) > kMostCycleMotions) {
+  if (motions_of(holes) > kMaxCycleMotions) {
     return problem.set(ErrorCode::kTooManyMotions,
-                       fmt::format("a cycle of more than {} motions on one line", kMostCycleMotions));
+                       fmt::format("a cycle of more than {} motions on one line", kMaxCycleMotions));
   }
   here_.later = target.later;
   const bool needs_start = !modes_.absolute || modes_.retract_to_start;

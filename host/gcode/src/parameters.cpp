@@ -7,9 +7,9 @@
 namespace trammel::gcode {
 namespace {
 
-constexpr std::size_t kMostOfALine = 50;
-constexpr std::size_t kMostNames = 4096;  // so that memory has a bound
-constexpr double kWholeSlack = 1e-4;      // as LinuxCNC
+constexpr std::size_t kMaxOfALine = 50;
+constexpr std::size_t kMaxNames = 4096;  // so that memory has a bound
+constexpr double kWholeSlack = 1e-4;     // as LinuxCNC
 
 // The whole number, or 0 where it is none that a parameter has.
 int index_of(double number) {
@@ -25,7 +25,7 @@ bool refuse_index(double number, Problem& problem) {
 }  // namespace
 
 Parameters::Parameters(const Predefined& predefined) : predefined_(predefined), numbered_(kFirstPredefined) {
-  pending_.reserve(kMostOfALine);
+  pending_.reserve(kMaxOfALine);
 }
 
 bool Parameters::read(const Value& number, Value& value, Problem& problem) const {
@@ -73,8 +73,8 @@ bool Parameters::assign(const Value& number, const Value& value, Problem& proble
         ErrorCode::kParameter,
         fmt::format("#{} only tells something: G10, G28.1, G30.1, G92 and T change what it tells", index));
   }
-  if (pending_.size() == kMostOfALine) {
-    return problem.set(ErrorCode::kParameter, fmt::format("more than {} assignments on a line", kMostOfALine));
+  if (pending_.size() == kMaxOfALine) {
+    return problem.set(ErrorCode::kParameter, fmt::format("more than {} assignments on a line", kMaxOfALine));
   }
   pending_.push_back({&numbered_[static_cast<std::size_t>(index)], value});
   return true;
@@ -86,13 +86,13 @@ bool Parameters::assign(std::string_view name, const Value& value, Problem& prob
   }
   auto found = named_.find(name);
   if (found == named_.end()) {
-    if (named_.size() == kMostNames) {
-      return problem.set(ErrorCode::kParameter, fmt::format("more than {} names of parameters", kMostNames));
+    if (named_.size() == kMaxNames) {
+      return problem.set(ErrorCode::kParameter, fmt::format("more than {} names of parameters", kMaxNames));
     }
     found = named_.emplace(std::string(name), Slot{}).first;
   }
-  if (pending_.size() == kMostOfALine) {
-    return problem.set(ErrorCode::kParameter, fmt::format("more than {} assignments on a line", kMostOfALine));
+  if (pending_.size() == kMaxOfALine) {
+    return problem.set(ErrorCode::kParameter, fmt::format("more than {} assignments on a line", kMaxOfALine));
   }
   pending_.push_back({&found->second, value});
   return true;

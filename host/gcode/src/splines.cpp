@@ -27,7 +27,7 @@ Cubic cubic_of(const PlanePoint& start, const PlanePoint& control, const PlanePo
 std::uint32_t lines_of(const Cubic& curve) {
   const double second = 6 * std::max(bend(curve[0], curve[1], curve[2]), bend(curve[1], curve[2], curve[3]));
   const double lines = std::ceil(std::sqrt(second / (8 * kSplineTolerance)));
-  return static_cast<std::uint32_t>(std::clamp(lines, 1.0, kMostSplineLines + 1.0));
+  return static_cast<std::uint32_t>(std::clamp(lines, 1.0, kMaxSplineLines + 1.0));
 }
 
 PlanePoint point_of(const Cubic& curve, std::uint32_t i, std::uint32_t count) {

@@ -52,7 +52,7 @@ unsigned Kinematics::axes_of(std::size_t joint) const {
   return axes;
 }
 
-std::size_t Kinematics::most_terms(std::size_t axis) const {
+std::size_t Kinematics::max_terms(std::size_t axis) const {
   std::size_t most = 0;
   for (std::size_t joint = 0; joint < joints(); ++joint) {
     if (factor(joint, axis) != 0) most = std::max(most, layout_.joints[joint].term_count);
@@ -60,7 +60,7 @@ std::size_t Kinematics::most_terms(std::size_t axis) const {
   return most;
 }
 
-double Kinematics::most_in_plane(std::size_t joint, const Direction& first, const Direction& second) const {
+double Kinematics::max_in_plane(std::size_t joint, const Direction& first, const Direction& second) const {
   const double along_first = joint_rate(joint, first);
   const double along_second = joint_rate(joint, second);
   return std::sqrt(along_first * along_first + along_second * along_second);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "text.hpp"
 #include "trammel/card_map.hpp"
@@ -47,18 +48,29 @@ void check_kinematics(const std::string& where, const Machine& machine) {
 
 void check_ramps(const std::string& where, const Machine& machine) {
   constexpr double kLongest = 1000;  // s: the card's slowest slew at 1 MHz
-  const auto check = [&](const MachineAxis& axis, double seconds, const char* reached, const char* unit_of) {
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  const auto check = [&](const std::string& what, double seconds, const char* reached, const char* unit_of) {
     if (seconds <= kLongest) return;
     refuse(
-        fmt::format("{}: axis {}: {} is reached after {:g} s; at most {:g} s are possible, which is the card's longest "
+        fmt::format("{}: {}: {} is reached after {:g} s; at most {:g} s are possible, which is the card's longest "
                     "ramp at 1 MHz: is {}?",
-                    where, axis.letter, reached, seconds, kLongest, unit_of));
+                    where, what, reached, seconds, kLongest, unit_of));
   };
+  // With CoreXY a motion along X or Y moves each motor as far as the axis: the lesser limit holds.
+  const JointLimits& motor = machine.kinematics.motor;
+  const bool motors = machine.kinematics.name == "corexy";
   for (const MachineAxis& axis : machine.axes) {
-    check(axis, axis.max_velocity / axis.max_acceleration, "max_velocity", "max_acceleration in mm/s^2");
-    if (axis.max_jerk > 0) {
-      check(axis, axis.max_acceleration / axis.max_jerk, "max_acceleration", "max_jerk in mm/s^3");
-    }
+    const bool moved_by_both = motors && (axis.letter == 'X' || axis.letter == 'Y');
+    const auto limit = [&](double of_axis, double of_motor) {
+      return moved_by_both ? std::min(of_axis, of_motor) : of_axis;
+    };
+    const std::string name =
+        fmt::format("axis {}{}", axis.letter, moved_by_both ? " with the limits of kinematics" : "");
+    const double velocity = limit(axis.max_velocity, motor.velocity);
+    const double acceleration = limit(axis.max_acceleration, motor.acceleration);
+    const double jerk = limit(axis.max_jerk > 0 ? axis.max_jerk : kNoLimit, motor.jerk);
+    check(name, velocity / acceleration, "max_velocity", "max_acceleration in mm/s^2");
+    if (jerk < kNoLimit) check(name, acceleration / jerk, "max_acceleration", "max_jerk in mm/s^3");
   }
 }
 

@@ -168,9 +168,9 @@ void set_motion(const Source& source, MotionSettings& motion, const toml::table&
 }
 
 std::uint16_t output_bit(const Source& source, const std::string& path, const toml::value& value) {
-  if (!value.is_integer() || value.as_integer() < 0 || value.as_integer() >= kMostOutputs) {
+  if (!value.is_integer() || value.as_integer() < 0 || value.as_integer() >= kMaxOutputs) {
     refuse(fmt::format("{}{} must be an output's number, 0 to {}, or a list of such", source.at(value), path,
-                       kMostOutputs - 1));
+                       kMaxOutputs - 1));
   }
   return static_cast<std::uint16_t>(1U << value.as_integer());
 }
@@ -221,8 +221,8 @@ void set_kinematics(const Source& source, MachineKinematics& kinematics, const t
 void set_probe(const Source& source, Probe& probe, const toml::table& table) {
   for (const auto& [key, value] : table) {
     if (key == "input") {
-      if (!value.is_integer() || value.as_integer() < 0 || value.as_integer() >= kMostInputs) {
-        refuse(fmt::format("{}probe.input must be an input's number, 0 to {}", source.at(value), kMostInputs - 1));
+      if (!value.is_integer() || value.as_integer() < 0 || value.as_integer() >= kMaxInputs) {
+        refuse(fmt::format("{}probe.input must be an input's number, 0 to {}", source.at(value), kMaxInputs - 1));
       }
       probe.input = static_cast<unsigned>(value.as_integer());
     } else if (key == "touched_level") {

@@ -21,7 +21,7 @@ namespace {
 constexpr double kMaxRadius = 0x1p44;             // pulses; the centre in 1/256 pulses fits 64 bits
 constexpr double kClocksPerPathTick = 10;         // the accumulator takes 9
 constexpr double kClocksPerEightDirections = 18;  // and 17
-constexpr std::uint64_t kMostParts = 1'000'000;
+constexpr std::uint64_t kMaxParts = 1'000'000;
 
 double hypotenuse(double x, double y) { return std::sqrt(x * x + y * y); }
 
@@ -127,9 +127,9 @@ std::optional<driver::ArcCommand> accumulator_arc(const Block& block, const kine
 
 }  // namespace
 
-std::uint64_t chord_count(const ExactArc& arc, double most_pulses_per_mm) {
+std::uint64_t chord_count(const ExactArc& arc, double max_pulses_per_mm) {
   constexpr double kChordError = 0.25;  // pulses
-  const double radius = std::max(arc.radius_start, arc.radius_end) * most_pulses_per_mm;
+  const double radius = std::max(arc.radius_start, arc.radius_end) * max_pulses_per_mm;
   // A chord over the angle d strays r (1 - cos(d / 2)) from its arc; the arc sine keeps its digits where d is small.
   const double turn = radius > kChordError ? 4 * driver::arc_sine(std::sqrt(kChordError / radius / 2)) : driver::kPi;
   return static_cast<std::uint64_t>(std::ceil(arc.sweep / std::min(turn, driver::kPi / 4)));
@@ -280,7 +280,7 @@ double BlockBuilder::finest_in_plane(const Block& block) const {
     if (in_plane(block, i)) finest = std::max(finest, kinematics_.finest(i));
   }
   for (std::size_t i = 0; i < joint_count(); ++i) {
-    const double most = kinematics_.most_in_plane(i, plane.first, plane.second);
+    const double most = kinematics_.max_in_plane(i, plane.first, plane.second);
     finest = std::max(finest, most * kinematics_.joint(i).steps_per_mm);
   }
   return finest;
@@ -295,7 +295,7 @@ double BlockBuilder::joint_share(const Block& block, std::size_t joint) const {
   if (beside == 0) return 0;
   const PlaneVectors plane = plane_vectors(block);
   const double slope = largest_radius(block) * block.exact.sweep / block.length;
-  return beside + slope * kinematics_.most_in_plane(joint, plane.first, plane.second);
+  return beside + slope * kinematics_.max_in_plane(joint, plane.first, plane.second);
 }
 
 // In a plane no direction has more of an axis, or of a joint, than the two unit vectors have together.
@@ -312,7 +312,7 @@ BlockBuilder::PlaneLimits BlockBuilder::plane_limits(const Block& block) const {
     if (share > 0) take(axes_[i], share);
   }
   for (std::size_t i = 0; i < joint_count(); ++i) {
-    const double share = kinematics_.most_in_plane(i, plane.first, plane.second);
+    const double share = kinematics_.max_in_plane(i, plane.first, plane.second);
     if (share == 0) continue;
     take(joints_[i], share);
     limits.pulse_speed = std::min(limits.pulse_speed, joints_[i].pulses / kinematics_.joint(i).steps_per_mm / share);
@@ -351,14 +351,14 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
 
 // False where the generator cannot make it.
 bool BlockBuilder::build_generator_arc(Block& block, const kinematics::PlaneMap& plane) const {
-  constexpr double kMostTurns = 50'000;   // of a command: half of what the driver takes
-  constexpr double kMostPulses = 0x1p30;  // along the path of a command: at 64 path ticks a pulse half of 2^37
+  constexpr double kMaxTurns = 50'000;   // of a command: half of what the driver takes
+  constexpr double kMaxPulses = 0x1p30;  // along the path of a command: at 64 path ticks a pulse half of 2^37
   const double turns = block.exact.sweep / (2 * driver::kPi);
   const double pulses = largest_radius(block) * block.exact.sweep * plane.scale_x;
   block.geometry = Geometry::kArcChord;
-  block.parts = static_cast<std::uint64_t>(std::ceil(std::max(turns / kMostTurns, pulses / kMostPulses)));
+  block.parts = static_cast<std::uint64_t>(std::ceil(std::max(turns / kMaxTurns, pulses / kMaxPulses)));
   block.parts = std::max<std::uint64_t>(block.parts, 1);
-  if (block.parts > kMostParts) return false;
+  if (block.parts > kMaxParts) return false;
   try {
     std::uint64_t most = 0;
     for (std::uint64_t i = 0; i < block.parts; ++i) {

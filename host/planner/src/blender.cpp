@@ -14,10 +14,10 @@ namespace trammel::planner {
 namespace {
 
 constexpr double kFullTurn = 2 * driver::kPi;
-constexpr double kLeastShare = 1e-9;  // of a motion, that is worth going
-constexpr double kInPlane = 1e-12;    // of a unit vector, that is no way out of a plane
+constexpr double kMinShare = 1e-9;  // of a motion, that is worth going
+constexpr double kInPlane = 1e-12;  // of a unit vector, that is no way out of a plane
 constexpr double kInvisiblePulses = 0.25;
-constexpr double kLeastRadius = 3;   // pulses: rounded ends make an arc of less another one
+constexpr double kMinRadius = 3;     // pulses: rounded ends make an arc of less another one
 constexpr double kSameAngle = 1e-6;  // radians: more than an arc's ends may be off by
 
 double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
@@ -59,7 +59,7 @@ bool Blender::next(PathMotion& motion) {
     Way& to = ways_[1 - first_];
     held_ = pull(to);
     std::size_t outputs = 0;
-    for (; held_ && to.motion.kind == gcode::MotionKind::kOutput && outputs < kMostOutputs; held_ = pull(to)) {
+    for (; held_ && to.motion.kind == gcode::MotionKind::kOutput && outputs < kMaxOutputs; held_ = pull(to)) {
       outputs_[outputs++] = to.motion;
     }
     PathMotion made;
@@ -68,7 +68,7 @@ bool Blender::next(PathMotion& motion) {
       if (corner != Corner::kBlended) from.motion.corner = corner;
     }
     first_ = 1 - first_;
-    if (from.taken_before + from.taken_behind < 1 - kLeastShare) {
+    if (from.taken_before + from.taken_behind < 1 - kMinShare) {
       trim(from);
       given_[given_count_++] = from.motion;
     }
@@ -167,7 +167,7 @@ void Blender::trim(Way& way) {
 // Whether the ends of what is left of an arc tell how far it goes: neither a whole turn nor none, give or take a
 // little.
 bool Blender::can_lose(const Way& way, double share) {
-  if (way.motion.kind != gcode::MotionKind::kArc || share >= 1 - kLeastShare) return true;
+  if (way.motion.kind != gcode::MotionKind::kArc || share >= 1 - kMinShare) return true;
   const double turns = way.sweep * (1 - share) / kFullTurn;
   return std::abs(turns - std::floor(turns + 0.5)) * kFullTurn > kSameAngle;
 }
@@ -270,7 +270,7 @@ Corner Blender::blend(Way& from, Way& to, PathMotion& made) const {
       fillet(side(from, turn.from, true), side(to, turn.to, false), turn.sine, tolerance);
   if (!curve) return Corner::kNoCurve;
   const bool same_path = curve->distance * finest_ < kInvisiblePulses && curve->distance <= junction_deviation_;
-  if (same_path || curve->radius * finest_ < kLeastRadius) return Corner::kInvisible;
+  if (same_path || curve->radius * finest_ < kMinRadius) return Corner::kInvisible;
   if (time_->is_less_without(*curve, corner_side(from, turn.from, true), corner_side(to, turn.to, false), turn.sine)) {
     return Corner::kFaster;
   }

@@ -16,10 +16,10 @@ namespace {
 
 constexpr double kShaperShare = 0.95;  // of the rate at which the shaper makes pulses without a pause
 // One pulse less than the counters hold, for the rounding.
-constexpr double kMostPulses = static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);
+constexpr double kMaxPulses = static_cast<double>(std::numeric_limits<std::int32_t>::max() - 1);
 constexpr double kMaxDwellTotal = 0x1p48;  // clocks of one G4
 constexpr double kSoftLimitSlack = 1e-6;   // mm; far below a pulse, far above the rounding of sums
-constexpr double kLeastWay = 2;            // pulses of X, Y and Z together: less may have no step
+constexpr double kMinWay = 2;              // pulses of X, Y and Z together: less may have no step
 constexpr double kSameSpeed = 1 - 1e-6;    // a feed is reached from this share on
 
 constexpr std::array<std::string_view, 4> kFeedGroups = {"XYZ", "UVW", "ABC", "E"};
@@ -149,8 +149,8 @@ bool BlockBuilder::check(std::size_t axis, double mm) {
                   fmt::format("axis {} moves and has no max_jerk in the machine file, which S-curves need", letter));
   }
   // Where two axes move a joint, each may take half of its counter.
-  const auto share = static_cast<double>(kinematics_.most_terms(axis));
-  if (!(std::abs(mm * kinematics_.finest(axis)) * share <= kMostPulses)) {
+  const auto share = static_cast<double>(kinematics_.max_terms(axis));
+  if (!(std::abs(mm * kinematics_.finest(axis)) * share <= kMaxPulses)) {
     return refuse(gcode::ErrorCode::kPositionRange,
                   fmt::format("{}{:.10g} is beyond the card's 32-bit position counter ({:.10g} steps/mm)", letter, mm,
                               kinematics_.finest(axis)));
@@ -251,7 +251,7 @@ double BlockBuilder::measure_line(Block& block, const gcode::Coordinates& way) c
   block.length = std::sqrt(block.linear ? feed_squares[0] : squares);
   block.pulses_per_mm = finest;
   if (block.linear) {
-    if (block.length * scale < kLeastWay) block.length = std::max(block.length, other_pulses / scale);
+    if (block.length * scale < kMinWay) block.length = std::max(block.length, other_pulses / scale);
     block.pulses_per_mm = std::max(scale, other_pulses / block.length);
   }
   const auto counts = std::find_if(feed_squares.begin(), feed_squares.end(), [](double sum) { return sum > 0; });

@@ -23,7 +23,7 @@ CardLimits limits_of(const driver::Identification& card) {
           card.geometry_depth,
           card.feed_depth,
           has(card_map::engine::kAccumulator8),
-          has(card_map::engine::kPathCommands) ? machine::kMostOutputs : 0};
+          has(card_map::engine::kPathCommands) ? machine::kMaxOutputs : 0};
 }
 
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {

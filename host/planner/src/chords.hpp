@@ -13,7 +13,7 @@
 namespace trammel::planner {
 
 // Chords of equal angles so many that none strays more than a quarter of a pulse from its arc.
-std::uint64_t chord_count(const ExactArc& arc, double most_pulses_per_mm);
+std::uint64_t chord_count(const ExactArc& arc, double max_pulses_per_mm);
 
 // Sets the coordinates of the arc's plane at a share, 0 to 1, of the arc; gives back these axes, a bit each.
 inline unsigned place_on_arc(const Block& block, double share, gcode::Coordinates& at) {

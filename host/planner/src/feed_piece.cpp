@@ -6,11 +6,11 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kLeastRate = 0x1p-32;  // one unit of the floor's field
+constexpr double kMinRate = 0x1p-32;  // one unit of the floor's field
 
 std::uint64_t fixed64(double rate) { return static_cast<std::uint64_t>(std::min(rate, 1 - 0x1p-53) * 0x1p64); }
 std::int64_t signed64(double change) { return static_cast<std::int64_t>(change * 0x1p64); }
-std::uint32_t fixed32(double rate) { return static_cast<std::uint32_t>(std::clamp(rate, kLeastRate, 0.5) * 0x1p32); }
+std::uint32_t fixed32(double rate) { return static_cast<std::uint32_t>(std::clamp(rate, kMinRate, 0.5) * 0x1p32); }
 
 // Smooth motion does not come to its floor before the piece is over: four updates' change of rate are between them.
 double spare_below(const FeedMotion& motion, bool smooth) {
@@ -32,7 +32,7 @@ FeedPiece feed_piece(const FeedMotion& motion, std::uint64_t ticks, double lead,
   const bool one_rate = motion.clocks < kUpdate;
   const double rate = one_rate ? (static_cast<double>(ticks) - lead) / motion.clocks
                                : motion.rate + kUpdate / 2 * motion.acceleration + kUpdate * kUpdate / 6 * motion.jerk;
-  command.rate = fixed64(std::max(rate, kLeastRate));
+  command.rate = fixed64(std::max(rate, kMinRate));
   // In less than an update it comes to nothing; the motion's acceleration has no jump there all the same.
   command.acceleration = one_rate && !smooth ? 0 : signed64(kUpdate * (motion.acceleration + kUpdate * motion.jerk));
   command.jerk = one_rate ? 0 : signed64(kUpdate * kUpdate * motion.jerk);

@@ -72,13 +72,13 @@ class FilletCorner {
 }  // namespace
 
 std::optional<Fillet> fillet(const Side& from, const Side& to, double sine, double tolerance) {
-  constexpr double kLeastSweep = 1e-4;
+  constexpr double kMinSweep = 1e-4;
   constexpr int kHalvings = 50;
   const double cosine = std::sqrt(1 - sine * sine);
   const FilletCorner corner(from, to, sine);
   const auto fits = [&](const std::optional<Fillet>& one) {
     return one && one->distance <= tolerance && one->before > 0 && one->before <= from.most && one->behind > 0 &&
-           one->behind <= to.most && one->sweep > kLeastSweep && one->sweep < driver::kPi;
+           one->behind <= to.most && one->sweep > kMinSweep && one->sweep < driver::kPi;
   };
   // Of two lines.
   const double taken = std::min({tolerance * (1 + cosine) / sine, from.most, to.most});

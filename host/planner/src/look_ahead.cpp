@@ -10,14 +10,14 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kTicksPerPulse = 128;      // steps even to 1/64
-constexpr double kMostTicks = 0x1p38;       // of a block; a command has 40 bits, and pieces span blocks
-constexpr double kLeastTickRate = 0x1p-30;  // ticks a clock; four times the finest floor
-constexpr double kMaxTickRate = 0.9;        // ticks a clock; above it shapers have no jitter left, holds no evenness
-constexpr unsigned kFewestAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
+constexpr double kTicksPerPulse = 128;    // steps even to 1/64
+constexpr double kMaxTicks = 0x1p38;      // of a block; a command has 40 bits, and pieces span blocks
+constexpr double kMinTickRate = 0x1p-30;  // ticks a clock; four times the finest floor
+constexpr double kMaxTickRate = 0.9;      // ticks a clock; above it shapers have no jitter left, holds no evenness
+constexpr unsigned kMinAxes = 4;  // shorter lines than a card of four axes decodes are not worth a rule of their own
 // Blocks that are planned, but whose stop distances wait for what follows.
 constexpr std::size_t kSpare = 4096;
-static_assert(kSpare >= 3 * Quantiser::kMostBlocks + 2);  // one is read behind the window, one ends at rest
+static_assert(kSpare >= 3 * Quantiser::kMaxBlocks + 2);  // one is read behind the window, one ends at rest
 
 // In the card's queue, with all its axes.
 std::uint64_t halfwords_of(card_map::Opcode opcode, unsigned axes) {
@@ -47,7 +47,7 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       clock_hz_(card.clock_hz / machine.motion.max_override),
       axes_(card.axes),
       line_halfwords_(halfwords_of(card_map::Opcode::Line, card.axes)),
-      gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kFewestAxes, card.axes)))),
+      gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kMinAxes, card.axes)))),
       junctions_(machine),
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
       quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, queues_of(card),
@@ -121,7 +121,7 @@ void Planner::LookAhead::add_motion(PathEntry& entry) {
   entry.cut = entry.stop = false;
   entry.jump = entry.bend = 0;
   const Junction junction =
-      tail_ != nullptr && !settings_.exact_stop ? junctions_.between(tail_->block, entry.block) : Junction{};
+      tail_ != nullptr && !settings_.single_block ? junctions_.between(tail_->block, entry.block) : Junction{};
   if (tail_ != nullptr && junction.speed == 0) end_run(*tail_);
   const bool same_class = rapid_ == entry.block.rapid;
   const double density = same_class && suits(density_, entry.block) ? density_ : wanted_density(entry.block);
@@ -168,7 +168,7 @@ void Planner::LookAhead::place(PathEntry& entry, double density) {
 // Ticks a mm: as many as evenness wants and the clock allows.
 double Planner::LookAhead::wanted_density(const Block& block) const {
   const double density = std::min(even_density(block), kMaxTickRate * clock_hz_ / block.speed);
-  return std::min(std::max(density, least_density(block)), kMostTicks / block.length);
+  return std::min(std::max(density, least_density(block)), kMaxTicks / block.length);
 }
 
 // Steps even to 1/64, and a line that lasts until the next one is decoded.
@@ -178,12 +178,12 @@ double Planner::LookAhead::even_density(const Block& block) const {
 
 // What the pulses and the finest rate need.
 double Planner::LookAhead::least_density(const Block& block) const {
-  return std::max(kLeastTickRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length);
+  return std::max(kMinTickRate * clock_hz_ / block.speed, static_cast<double>(block.least_ticks) / block.length);
 }
 
 // Each change of density costs a piece: where the clock is the limit, half of what it allows serves too.
 bool Planner::LookAhead::suits(double density, const Block& block) const {
-  const double most = std::min(kMaxTickRate * clock_hz_ / block.speed, kMostTicks / block.length);
+  const double most = std::min(kMaxTickRate * clock_hz_ / block.speed, kMaxTicks / block.length);
   const double least = std::max(std::min(even_density(block), most / 2), least_density(block));
   return density >= least * (1 - 1e-9) && density <= most * (1 + 1e-9);
 }

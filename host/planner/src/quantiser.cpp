@@ -40,7 +40,7 @@ void Quantiser::add(const Phase& phase) {
   short_sight_ = phase.short_sight;
   for (; !path_[at_.block].stop && (phase.stop || path_[at_.block].end <= at_.mm); ++at_.block) {
     const PathEntry& block = path_[at_.block];
-    if (!block.cut && ++at_.spanned < kMostBlocks) continue;
+    if (!block.cut && ++at_.spanned < kMaxBlocks) continue;
     portion(phase, {begin, block.end, block.end_ticks, true, false});
     at_.spanned = 0;
     if (!block.cut) continue;

@@ -26,7 +26,7 @@ class Quantiser {
   // A piece begins after so many blocks at the latest. The first piece in the ring waits for those behind it: a ring
   // that holds three times as many blocks behind the speed plan's window holds two pieces behind the first one's
   // block, so that force() has one to complete, however long a phase is.
-  static constexpr std::uint64_t kMostBlocks = 1024;
+  static constexpr std::uint64_t kMaxBlocks = 1024;
 
   // `clock_hz`: enabled clocks per second; `stop_clocks`: T_s, how long the fastest rate counts for stop distances.
   // `smooth`: acceleration has no jumps; `classes`: pieces say theirs.

@@ -14,7 +14,7 @@ namespace trammel::planner {
 namespace {
 
 constexpr int kNoCap = -1;
-static_assert(SCurvePlan::kMostRamps == 10 + 3 * (2 + 2 * (kMostTries + 4)));
+static_assert(SCurvePlan::kMaxRamps == 10 + 3 * (2 + 2 * (kMaxTries + 4)));
 
 // A stretch between two places without acceleration. Ramps that start there and the caps of the tree below `cap` are
 // all that limits the speed between, and `most`. None of the caps is below `to`.

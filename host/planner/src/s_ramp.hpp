@@ -23,7 +23,7 @@ double ramp_end(double low, double length, RampLimits limits);
 // When a part whose acceleration is not below 0 has gone a length, `most` or less than that after its beginning.
 double rising_time(double length, double speed, double acceleration, double jerk, double most);
 
-constexpr int kMostTries = 100;  // of highest(), behind those of both ends
+constexpr int kMaxTries = 100;  // of highest(), behind those of both ends
 
 // The highest value from `low` to `high`, but for a share, at which `excess`, which rises with it, is not above 0. It
 // is not at `low`.
@@ -33,7 +33,7 @@ double highest(double low, double high, Excess excess, double share = 1e-13) {
   if (above <= 0) return high;
   double below = excess(low);
   // Regula falsi; the end that stays counts half (Illinois), every fourth step halves.
-  for (int i = 0; i < kMostTries && high - low > share * high; ++i) {
+  for (int i = 0; i < kMaxTries && high - low > share * high; ++i) {
     double middle = i % 4 == 3 ? (low + high) / 2 : low + (high - low) * (below / (below - above));
     if (!(middle > low && middle < high)) middle = (low + high) / 2;
     const double value = excess(middle);

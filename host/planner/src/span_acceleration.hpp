@@ -13,7 +13,7 @@ namespace trammel::planner {
 
 class SpanAcceleration {
  public:
-  static constexpr int kMostSteps = 16;
+  static constexpr int kMaxSteps = 16;
 
   SpanAcceleration() = default;
   explicit SpanAcceleration(const Span& span)
@@ -25,7 +25,7 @@ class SpanAcceleration {
     // As many as make each some 4 % less than the one before, where the speed is the most that the curve allows.
     constexpr double kSteps = 28;
     const double lost = 1 - at_top_ / at_rest_;
-    steps_ = std::clamp(static_cast<int>(std::ceil(kSteps * lost)), 1, kMostSteps);
+    steps_ = std::clamp(static_cast<int>(std::ceil(kSteps * lost)), 1, kMaxSteps);
   }
 
   int steps() const { return steps_; }

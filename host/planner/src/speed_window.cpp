@@ -26,9 +26,9 @@ Range joined(const Range& a, const Range& b) {
 
 // As one stretch, it costs a ramp little of the time that its acceleration takes to rise.
 bool alike(const Range& range, double tolerance) {
-  constexpr double kMost = 1.05;
+  constexpr double kMax = 1.05;
   return range.most.acceleration <= (1 + tolerance) * range.least.acceleration &&
-         range.most.jerk <= kMost * range.least.jerk;
+         range.most.jerk <= kMax * range.least.jerk;
 }
 
 // The least of both, unless the neighbour has much less.
@@ -102,7 +102,7 @@ SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
   constexpr double kBrief = 1.0 / 8;   // of the acceleration's rise
   constexpr double kShare = 1.0 / 8;   // of it that a whole ramp may lose
   constexpr double kTolerance = 0.05;  // at most
-  constexpr double kLeast = 0x1p-12;   // at least
+  constexpr double kMin = 0x1p-12;     // at least
   if (window_->uniform()) {
     at_ = last_;
     return {distance(at_), window_->least(), nullptr};
@@ -123,7 +123,7 @@ SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
         const double length = distance(at_) - begin;
         const double now = std::sqrt(speed * speed + 2 * both.least.acceleration * length);
         const double passed = time + 2 * length / (speed + now);
-        if (!alike(both, std::clamp(kShare * rise / passed, kLeast, kTolerance))) break;
+        if (!alike(both, std::clamp(kShare * rise / passed, kMin, kTolerance))) break;
       }
       range = both;
     }

@@ -6,7 +6,7 @@
 namespace trammel::planner {
 namespace {
 
-constexpr double kMostRounded = 0.5;  // ticks by which a stop or a corner may come before its place
+constexpr double kMaxRounded = 0.5;  // ticks by which a stop or a corner may come before its place
 
 bool goes_on(const Phase& phase) { return phase.acceleration * phase.next > 0; }
 bool is_peak(const Phase& phase) { return phase.acceleration > 0 && phase.next < 0; }
@@ -32,10 +32,10 @@ void TickFit::change_density(double rate_a_speed, double ahead) {
 double TickFit::end_tick(const Phase& phase, double exact) const {
   constexpr double kAlmost = 1e-9;
   const auto above = [](double tick) { return std::ceil(tick - kAlmost); };
-  if (phase.acceleration == 0) return phase.next > 0 ? above(exact) : std::floor(exact - kMostRounded);
+  if (phase.acceleration == 0) return phase.next > 0 ? above(exact) : std::floor(exact - kMaxRounded);
   if (is_peak(phase)) {
     const double both = phase.acceleration - phase.next;
-    return std::floor(exact + (phase.acceleration * lag_ + phase.next * kMostRounded) / both);
+    return std::floor(exact + (phase.acceleration * lag_ + phase.next * kMaxRounded) / both);
   }
   const double late = exact + lag_;
   // The part of a tick at the border has the smaller acceleration of the two.

@@ -50,11 +50,11 @@ class TrapezoidPlan final : public SpeedPlan {
   std::size_t count_ = 0;
   std::size_t due_ = 0;  // spans whose phases are wanted before the next push
   bool finished_ = false;
-  double speed_ = 0;                                            // squared, where the first span begins
-  Phase pending_;                                               // may go on in the next span
-  std::array<Part, 2 * SpanAcceleration::kMostSteps> parts_{};  // of one span: the ramp up, and the one down backwards
+  double speed_ = 0;                                           // squared, where the first span begins
+  Phase pending_;                                              // may go on in the next span
+  std::array<Part, 2 * SpanAcceleration::kMaxSteps> parts_{};  // of one span: the ramp up, and the one down backwards
   std::size_t count_parts_ = 0;
-  std::array<Phase, 2 * SpanAcceleration::kMostSteps + 2> phases_;
+  std::array<Phase, 2 * SpanAcceleration::kMaxSteps + 2> phases_;
   std::size_t made_ = 0;  // of phases_
   std::size_t given_ = 0;
 };

@@ -77,10 +77,10 @@ double MotionClock::Piece::ticks_after(std::uint64_t clocks) const {
 
 std::uint64_t MotionClock::Piece::clocks_to(double tick) const {
   if (ticks_after(0) >= tick) return 0;
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 62;
+  constexpr std::uint64_t kMax = std::uint64_t{1} << 62;
   std::uint64_t before = 0;
   std::uint64_t reached = 64;
-  while (reached < kMost && ticks_after(reached) < tick) {
+  while (reached < kMax && ticks_after(reached) < tick) {
     before = reached;
     reached *= 2;
   }

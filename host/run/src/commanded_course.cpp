@@ -84,13 +84,13 @@ CommandedCourse::CommandedCourse(const machine::Machine& machine) : kinematics_(
 
 void CommandedCourse::planned(const planner::PlannedBlock& planned, std::uint64_t first) {
   constexpr double kArcPoints = 64;  // a turn
-  constexpr double kMostTurns = 100;
+  constexpr double kMaxTurns = 100;
   const planner::Block& block = planned.block;
   if (!planner::moves(block)) return;
   const CommandedPath path(block, kinematics_);
   if (!begun_) points_.add({path.at(0), false});
   begun_ = true;
-  const double turns = std::min(std::ceil(block.exact.sweep / 6.28), kMostTurns);
+  const double turns = std::min(std::ceil(block.exact.sweep / 6.28), kMaxTurns);
   const double points = block.geometry == planner::Geometry::kLine ? 1 : kArcPoints * turns;
   for (double i = 1; i <= points; ++i) points_.add({path.at(i / points), block.rapid});
   const int rank = detail_rank(block);

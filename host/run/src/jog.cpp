@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "trammel/card_map.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 
 namespace trammel::run {
 
@@ -14,8 +15,8 @@ namespace reg = card_map::reg;
 
 namespace {
 
-constexpr double kLinesAhead = 24;          // that full speed needs, about
-constexpr std::uint64_t kLeastTicks = 512;  // of a line: more than a decode takes, and than the card's reserve
+constexpr double kLinesAhead = 24;        // that full speed needs, about
+constexpr std::uint64_t kMinTicks = 512;  // of a line: more than a decode takes, and than the card's reserve
 constexpr double kFractionOfQueue = 0.5;
 constexpr int kLinesAtOnce = 2;
 
@@ -35,7 +36,7 @@ std::uint64_t line_ticks(const JogPath& path, const driver::CardTiming& card, co
   const auto line = card_map::find_command(static_cast<std::uint8_t>(card_map::Opcode::Line));
   const double fit = kFractionOfQueue * who.geometry_depth / card_map::queue_halfwords(*line, all);
   const double lines = std::max(1.0, std::min(kLinesAhead, fit));
-  return std::max(static_cast<std::uint64_t>(ticks_ahead(path, card, 1) / lines), kLeastTicks);
+  return std::max(static_cast<std::uint64_t>(ticks_ahead(path, card, 1) / lines), kMinTicks);
 }
 
 }  // namespace
@@ -46,19 +47,19 @@ Jog::Jog(driver::Card& card, const machine::Machine& machine, MachinePosition& p
 void Jog::start(const gcode::Coordinates& velocity) {
   double speed = 0;
   for (std::size_t a = 0; a < machine_.axes.size(); ++a) speed += velocity[a] * velocity[a];
-  position_.look(card_.snapshot());
+  position_.look(card_.read_snapshot());
   begin(jog_path(machine_, card_.timing(), position_.pulses(), velocity), std::sqrt(speed));
 }
 
 void Jog::start(const gcode::Coordinates& distance, double speed) {
-  position_.look(card_.snapshot());
+  position_.look(card_.read_snapshot());
   begin(jog_path(machine_, card_.timing(), position_.pulses(), distance, speed), speed);
 }
 
 void Jog::begin(const JogPath& path, double speed) {
   if (path_) throw driver::StateError("jog: one is under way; stop it first");
   stream_.emplace(card_);
-  before_ = {card_.read(reg::kRatioFeed), card_.read(reg::kSlew)};
+  before_ = {card_.parts().registers.read(reg::kRatioFeed), card_.parts().registers.read(reg::kSlew)};
   path_ = path;
   stopping_ = false;
   sent_ticks_ = 0;
@@ -91,7 +92,7 @@ void Jog::send_line() {
 // card is at counts as over.
 void Jog::feed(int most) {
   if (stopping_ || sent_ticks_ == path_->ticks) return;
-  const std::uint64_t begun = std::uint64_t{card_.read(reg::kGeometryBegun)} * line_ticks_;
+  const std::uint64_t begun = std::uint64_t{card_.parts().registers.read(reg::kGeometryBegun)} * line_ticks_;
   const double wanted = ticks_ahead(*path_, card_.timing(), ratio_);
   for (int i = 0; i < most && sent_ticks_ != path_->ticks; ++i) {
     if (sent_ticks_ > begun && static_cast<double>(sent_ticks_ - begun) >= wanted) break;
@@ -104,7 +105,7 @@ void Jog::feed(int most) {
 void Jog::set_ratio_at_once(std::uint32_t ratio) {
   card_.set_slew_time(std::chrono::nanoseconds(0));
   card_.set_ratio(ratio);
-  card_.status();
+  card_.read_status();
 }
 
 double Jog::set_speed(double speed) {
@@ -124,9 +125,9 @@ void Jog::stop() {
 
 bool Jog::moving() {
   if (!path_) return false;
-  const driver::Status status = card_.status();
+  const driver::Status status = card_.read_status();
   if (status.faulted) path_.reset();
-  card_.throw_if_faulted(status, "jog");
+  card_.parts().registers.throw_if_faulted(status, "jog");
   if (status.busy && !(stopping_ && status.held)) {
     feed(kLinesAtOnce);
     return true;
@@ -136,7 +137,8 @@ bool Jog::moving() {
 }
 
 void Jog::wait() {
-  while (moving()) card_.bus().sleep(driver::time_of(card_.poll_interval(), card_.timing().clock_hz));
+  while (moving())
+    card_.bus().sleep(driver::time_of(driver::poll_interval(card_.timing().clock_hz), card_.timing().clock_hz));
 }
 
 void Jog::finish() {
@@ -145,7 +147,7 @@ void Jog::finish() {
   position_.look(card_.stop());
   set_ratio_at_once(before_.ratio);
   std::array<driver::Access, 2> slew{driver::write_of(reg::kSlew, before_.slew)};
-  card_.transfer(slew.data(), 1, "jog: slew");
+  card_.parts().registers.transfer(slew.data(), 1, "jog: slew");
 }
 
 }  // namespace trammel::run

@@ -13,12 +13,12 @@
 namespace trammel::run {
 namespace {
 
-constexpr double kShaperShare = 0.95;       // of the rate at which the shaper makes pulses without a pause
-constexpr double kTicksPerPulse = 128;      // steps even to 1/64
-constexpr double kMostPulses = 0x1p30;      // of one jog and axis: half of what the counters hold each way
-constexpr double kMostTicks = 0x1p39;       // half of a command's 40 bits
-constexpr double kLeastPathTicks = 64;      // of a path
-constexpr double kLeastTickRate = 0x1p-30;  // ticks a clock
+constexpr double kShaperShare = 0.95;     // of the rate at which the shaper makes pulses without a pause
+constexpr double kTicksPerPulse = 128;    // steps even to 1/64
+constexpr double kMaxPulses = 0x1p30;     // of one jog and axis: half of what the counters hold each way
+constexpr double kMaxTicks = 0x1p39;      // half of a command's 40 bits
+constexpr double kMinPathTicks = 64;      // of a path
+constexpr double kMinTickRate = 0x1p-30;  // ticks a clock
 
 // What the axes allow along a direction; all of them that it has.
 struct Allowed {
@@ -31,7 +31,7 @@ struct Allowed {
 // How far an axis may go in a direction, in the finest steps that move it; whole ones within the soft limits.
 double room(const machine::MachineAxis& axis, double finest, double here, bool upwards) {
   const double limit = upwards ? std::floor(axis.max * finest) : -std::ceil(axis.min * finest);
-  return std::min(limit - (upwards ? here : -here) * finest, kMostPulses);
+  return std::min(limit - (upwards ? here : -here) * finest, kMaxPulses);
 }
 
 // What the joints allow along a direction.
@@ -86,8 +86,8 @@ JogPath made(const kinematics::Kinematics& kinematics, const driver::CardTiming&
   path.ramp_seconds = 2 * speed / limits.acceleration;
   const double rate = speed * limits.pulses;  // pulses/s
   const double per_pulse =
-      std::max(std::min(kTicksPerPulse, kMostTickRate * card.clock_hz / rate), kLeastTickRate * card.clock_hz / rate);
-  const double ticks = std::clamp(std::round(per_pulse * limits.pulses * length), kLeastPathTicks, kMostTicks);
+      std::max(std::min(kTicksPerPulse, kMaxTickRate * card.clock_hz / rate), kMinTickRate * card.clock_hz / rate);
+  const double ticks = std::clamp(std::round(per_pulse * limits.pulses * length), kMinPathTicks, kMaxTicks);
   path.ticks = static_cast<std::uint64_t>(ticks);
   gcode::Coordinates way{};
   for (std::size_t a = 0; a < kinematics.axes(); ++a) way[a] = direction[a] * length;
@@ -100,11 +100,11 @@ JogPath made(const kinematics::Kinematics& kinematics, const driver::CardTiming&
   if (path.mask == 0)
     throw driver::ArgumentError(fmt::format("jog: {:g} mm are less than a pulse of any axis", length));
   const double density = ticks / length / card.clock_hz;
-  const double tick_rate = std::min(speed * density, kMostTickRate);
+  const double tick_rate = std::min(speed * density, kMaxTickRate);
   path.pieces = jog_profile(path.ticks, tick_rate, limits.acceleration * density / card.clock_hz);
-  constexpr double kMostStop = std::numeric_limits<std::uint32_t>::max();
+  constexpr double kMaxStop = std::numeric_limits<std::uint32_t>::max();
   path.stop_distance = static_cast<std::uint32_t>(
-      std::clamp(std::ceil(path.ramp_seconds / 2 * card.clock_hz * tick_rate), 1.0, kMostStop));
+      std::clamp(std::ceil(path.ramp_seconds / 2 * card.clock_hz * tick_rate), 1.0, kMaxStop));
   for (std::size_t i = 0; i + 1 < path.pieces.size(); ++i) path.pieces[i].stop_distance = path.stop_distance;
   return path;
 }

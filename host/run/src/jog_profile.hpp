@@ -8,10 +8,10 @@
 
 namespace trammel::run {
 
-inline constexpr double kMostTickRate = 0.9;  // ticks a clock: above it the time base could not slow down evenly
+inline constexpr double kMaxTickRate = 0.9;  // ticks a clock: above it the time base could not slow down evenly
 
 // Three pieces, two where the rate is not reached, one where there is no room for ramps. `rate`: ticks a clock, above
-// 0, at most kMostTickRate; `acceleration`: ticks a clock^2, above 0. The same on every host: four operations and a
+// 0, at most kMaxTickRate; `acceleration`: ticks a clock^2, above 0. The same on every host: four operations and a
 // root.
 std::vector<driver::FeedCommand> jog_profile(std::uint64_t ticks, double rate, double acceleration);
 

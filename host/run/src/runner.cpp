@@ -8,6 +8,7 @@
 #include "line_ring.hpp"
 #include "pipeline.hpp"
 #include "plan_gatherer.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/configure.hpp"
 
@@ -33,7 +34,7 @@ class ProgramStream final : private driver::CommandSink {
         machine_(machine),
         single_block_(single_block),
         card_(card),
-        before_(card.snapshot()),
+        before_(card.read_snapshot()),
         // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
         lines_(card.identification().geometry_depth),
         stream_(card, options()) {}
@@ -47,7 +48,7 @@ class ProgramStream final : private driver::CommandSink {
       stream_.finish();
     } catch (const driver::StoppedError& error) {
       lines_.begun(error.geometry_begun());
-      throw StoppedOnPath(pipeline_.file(), lines_.current(), error.what(), machine_position(card_.snapshot()));
+      throw StoppedOnPath(pipeline_.file(), lines_.current(), error.what(), machine_position(card_.read_snapshot()));
     } catch (const driver::Error& error) {
       look_at_begun(dynamic_cast<const driver::FaultError*>(&error) != nullptr);
       throw RunError(pipeline_.file(), lines_.current(), error.what());
@@ -65,7 +66,7 @@ class ProgramStream final : private driver::CommandSink {
   void run_section(planner::Pulses& end) {
     while (next()) {
       stream_.flush();
-      card_.serve_requests();
+      driver::serve_requests(card_);
       for (Observer* observer : observers_) observer->sent();
       end = planned_.block.end;
       first_of_block_ = true;
@@ -162,7 +163,7 @@ class ProgramStream final : private driver::CommandSink {
   // latched. Where the link fails too, the last look counts.
   void look_at_begun(bool fault) {
     try {
-      lines_.begun((fault ? card_.stop_snapshot() : card_.snapshot()).geometry_begun);
+      lines_.begun((fault ? card_.read_stop_snapshot() : card_.read_snapshot()).geometry_begun);
     } catch (const driver::Error&) {
     }
   }
@@ -190,7 +191,9 @@ ProgramError::ProgramError(gcode::Error error) : std::runtime_error(gcode::descr
 RunError::RunError(const ProgramError& error) : std::runtime_error(error.what()), line_(error.error().line) {}
 
 RunError::RunError(const std::string& file, std::size_t line, const std::string& message)
-    : std::runtime_error(fmt::format("{}:{}: {}", file, line, message)), line_(line) {}
+    : std::runtime_error(line == 0 ? fmt::format("{}: before the first command: {}", file, message)
+                                   : fmt::format("{}:{}: {}", file, line, message)),
+      line_(line) {}
 
 Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planner::CardLimits& card,
                const RunSettings& settings)
@@ -230,7 +233,7 @@ Outcome Runner::run(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
   // A window that takes long to plan does not make a stop or a hold wait.
-  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { card.serve_requests(); });
+  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { driver::serve_requests(card); });
   ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block);
   const planner::Pulses end = stream.run();
   if (plan_.probes == 0 && (stream.sent() != plan_.commands || end != plan_.end)) {
@@ -246,7 +249,7 @@ Outcome Runner::run(driver::Card& card) {
 Outcome Runner::stream(driver::Card& card) {
   require_planned_for(card);
   configure(card, machine_);
-  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { card.serve_requests(); });
+  Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { driver::serve_requests(card); });
   PlanGatherer gatherer(pipeline);
   std::vector<Observer*> observers = observers_;
   observers.push_back(&gatherer);
@@ -263,7 +266,7 @@ Outcome Runner::stream(driver::Card& card) {
 
 // Throws unless the card has counted what the program says.
 Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, const planner::Pulses& end) const {
-  const driver::Snapshot after = card.snapshot();
+  const driver::Snapshot after = card.read_snapshot();
   const kinematics::Kinematics kinematics(machine_);
   Outcome outcome;
   for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) {
@@ -278,7 +281,7 @@ Outcome Runner::outcome(driver::Card& card, const driver::Snapshot& before, cons
   }
   outcome.final_coordinates = kinematics.coordinates(end);
   if (card_map::has_engine(card.identification().engines, card_map::engine::kUnderrunHold)) {
-    outcome.under_runs = card.read(card_map::reg::kUnderruns);
+    outcome.under_runs = card.parts().registers.read(card_map::reg::kUnderruns);
   }
   return outcome;
 }

@@ -12,12 +12,12 @@ namespace reg = card_map::reg;
 
 void OperatorTimeline::schedule(sim::TimedBus& bus, std::uint32_t clock_hz) {
   bus.at(0, [this](sim::Engine& engine) {
-    engine.write(reg::kRatioFeed, driver::Card::ratio_of(operation_.percent, most_));
+    engine.write(reg::kRatioFeed, driver::Card::ratio_of(operation_.percent, max_percent_));
     // The first descriptor of each card is the time base's.
     const card_map::Descriptor time_base = card_map::descriptor_of(engine.read(reg::descriptor(0)), 0);
     if (!card_map::has_engine(driver::engines_of(time_base), card_map::engine::kClasses)) return;
-    engine.write(reg::kRatioRapid, driver::Card::ratio_of(operation_.rapid_percent, most_));
-    engine.write(reg::kRatioFixed, driver::Card::ratio_of(100, most_));
+    engine.write(reg::kRatioRapid, driver::Card::ratio_of(operation_.rapid_percent, max_percent_));
+    engine.write(reg::kRatioFixed, driver::Card::ratio_of(100, max_percent_));
   });
   for (const OperatorEvent& event : operation_.events) {
     bus.at(static_cast<std::uint64_t>(std::llround(event.seconds * clock_hz)),
@@ -31,7 +31,7 @@ void OperatorTimeline::make(const OperatorEvent& event, sim::Engine& engine) {
     inputs_ = static_cast<std::uint16_t>(event.level ? inputs_ | pin : inputs_ & ~pin);
     engine.set_inputs(inputs_);
   } else if (event.kind == OperatorEvent::Kind::kOverride) {
-    engine.write(reg::kRatioFeed, driver::Card::ratio_of(event.percent, most_));
+    engine.write(reg::kRatioFeed, driver::Card::ratio_of(event.percent, max_percent_));
   } else {
     engine.write(reg::kHold, event.kind == OperatorEvent::Kind::kHold ? 1 : 0);
   }

@@ -11,7 +11,7 @@ namespace trammel::simulation {
 
 class OperatorTimeline {
  public:
-  OperatorTimeline(const Operation& operation, double most_percent) : operation_(operation), most_(most_percent) {}
+  OperatorTimeline(const Operation& operation, double max_percent) : operation_(operation), max_percent_(max_percent) {}
 
   // Before the first access: the card has its overrides before anybody else writes to it. What is overridden are
   // motions with a feed (all motions where the card has no classes of pieces), by another share rapids; fixed pieces
@@ -24,7 +24,7 @@ class OperatorTimeline {
   void make(const OperatorEvent& event, sim::Engine& engine);
 
   const Operation& operation_;
-  double most_;
+  double max_percent_;
   std::vector<MadeEvent> made_;
   std::uint16_t inputs_ = 0;  // levels at the card's pins
 };

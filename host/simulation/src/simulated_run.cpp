@@ -16,7 +16,7 @@ namespace {
 
 std::vector<OutputResult> outputs_of(const machine::MachineOutputs& named, const run::OutputRecorder& recorder) {
   std::vector<OutputResult> result;
-  for (unsigned n = 0; n < machine::kMostOutputs; ++n) {
+  for (unsigned n = 0; n < machine::kMaxOutputs; ++n) {
     OutputResult output{n, {}, recorder.outputs()[n]};
     const auto word = [&](const char* name, std::uint16_t outputs) {
       if ((outputs >> n & 1) != 0) output.words.emplace_back(name);
@@ -68,7 +68,7 @@ struct SimulatedRun::Instruments {
         engine(sim::make_engine(engine_options)),
         judges(recorder, options.outputs, engine_options.clock_hz),
         bus(*engine, engine_options.clock_hz, options.operation.bytes_per_second),
-        timeline(options.operation, options.most_percent) {
+        timeline(options.operation, options.max_percent) {
     engine->set_sink(&judges.fork);
     timeline.schedule(bus, engine_options.clock_hz);
   }
@@ -127,7 +127,7 @@ RunResult SimulatedRun::result(const run::Outcome& outcome) {
   tell(made.recorder, result);
   result.events = made.timeline.made();
   result.outputs = outputs_of(machine_.outputs, made.judges.outputs);
-  if (scripts_inputs(options_.operation)) result.inputs = made.card->inputs();
+  if (scripts_inputs(options_.operation)) result.inputs = made.card->read_inputs();
   result.plan = runner_.last_plan();
   result.outcome = outcome;
   result.end = run::end_position(machine_, outcome.final_position);

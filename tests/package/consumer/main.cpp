@@ -14,7 +14,7 @@ int main() {
   const auto bus = sim::make_model_engine({});
   driver::Card card = driver::Card::open(*bus);
   driver::run_line(card, driver::plan_line(card.timing(), {20, 40}, std::chrono::milliseconds(1)));
-  const driver::Snapshot snapshot = card.snapshot();
+  const driver::Snapshot snapshot = card.read_snapshot();
   std::printf("%s: x %d, y %d\n", std::string(card_map::find_register(card_map::reg::kMagic).entry->name).c_str(),
               snapshot.position[0], snapshot.position[1]);
   const model::DeviationAccumulator accumulator;

@@ -157,7 +157,7 @@ TEST(EveryLine, TakesSteersSteps) {
   RecordProperty("largest_distance", std::to_string(worst));
 }
 
-constexpr double kLeastRadius = 1.5;  // pulses, of the driver's arcs in 4 directions
+constexpr double kMinRadius = 1.5;  // pulses, of the driver's arcs in 4 directions
 
 // Every arc between rounded points of a circle, by one rule.
 void expect_arcs_of_circle(Accumulator& accumulator, int r, StepRule rule, int& arcs) {
@@ -173,7 +173,7 @@ void expect_arcs_of_circle(Accumulator& accumulator, int r, StepRule rule, int& 
     const double first = std::hypot(start.first, start.second);
     const double second = std::hypot(end.first, end.second);
     // The driver refuses what may come near the centre (arc.hpp); only r = 2 has such points.
-    if (rule == StepRule::kFourDirections && first + second < 2 * kLeastRadius) {
+    if (rule == StepRule::kFourDirections && first + second < 2 * kMinRadius) {
       EXPECT_EQ(r, 2);
       EXPECT_THROW(driver::prepare(geometry, rule), std::invalid_argument);
       return;

@@ -94,8 +94,8 @@ class Random {
     run(2 + below(150));
     if (!counted_) return;
     // A counted line ends before the next: at its count, or by an abort.
-    const unsigned patience = below(400);
-    for (unsigned i = 0; i < patience && bench_.model().outputs().live; ++i) run(1);
+    const unsigned clocks = below(400);
+    for (unsigned i = 0; i < clocks && bench_.model().outputs().live; ++i) run(1);
     if (bench_.model().outputs().live) abort();
   }
 

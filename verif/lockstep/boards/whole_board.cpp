@@ -89,7 +89,7 @@ void identify(const Board& board, driver::Card& card) {
   const driver::Identification& id = card.identification();
   board.require(id.axes == kAxes && id.clock_hz == board.facts().clock_hz,
                 fmt::format("it says {} axes, {} Hz", id.axes, id.clock_hz));
-  const driver::Build build = card.build();
+  const driver::Build build = card.read_build();
   board.require(build.id == 0x1234ABCD && build.dirty && build.board == board.facts().board_id,
                 fmt::format("it says build {:x}{}, board {}", build.id, build.dirty ? ", dirty" : "", build.board));
 }

@@ -27,7 +27,7 @@ class AxiHost {
   AxiHost(sim::LockstepCard& card, std::uint64_t seed) : card_(card), random_(seed) {}
 
   // Valid and ready come up to `clocks` late, each at random; 0: at once, ready before its valid.
-  void set_delays(unsigned clocks) { most_delay_ = clocks; }
+  void set_delays(unsigned clocks) { max_delay_ = clocks; }
 
   bool write(std::uint32_t address, std::uint32_t value, std::uint8_t strobes = 0xF) {
     const Write access{address, value, strobes};
@@ -70,9 +70,9 @@ class AxiHost {
       if (delay != 0) --delay;
     }
   };
-  static constexpr std::uint64_t kMostClocks = 5000;  // far above the card's bound of 600
+  static constexpr std::uint64_t kMaxClocks = 5000;  // far above the card's bound of 600
 
-  Handshake handshake(bool wanted) { return {wanted, wanted && most_delay_ != 0 ? below(most_delay_ + 1) : 0}; }
+  Handshake handshake(bool wanted) { return {wanted, wanted && max_delay_ != 0 ? below(max_delay_ + 1) : 0}; }
 
   Answers perform(const Write* write, const std::uint32_t* read) {
     Handshake aw = handshake(write != nullptr);
@@ -90,7 +90,7 @@ class AxiHost {
     if (read != nullptr) in.araddr = *read;
     std::uint64_t asked = 0;
     for (std::uint64_t clocks = 0; b.due || r.due; ++clocks) {
-      if (clocks == kMostClocks) throw std::logic_error("the card does not answer");
+      if (clocks == kMaxClocks) throw std::logic_error("the card does not answer");
       in.awvalid = aw.up();
       in.wvalid = w.up();
       in.bready = b.up();
@@ -114,7 +114,7 @@ class AxiHost {
 
   sim::LockstepCard& card_;
   std::mt19937_64 random_;
-  unsigned most_delay_ = 0;
+  unsigned max_delay_ = 0;
   std::uint16_t pins_ = 0;
   std::uint64_t slowest_ = 0;
   std::uint64_t clocks_ = 0;

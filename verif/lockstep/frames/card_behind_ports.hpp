@@ -87,7 +87,7 @@ class CardBehindPorts {
     config.axes = kAxes;
     config.ports = 4;
     config.inputs = 8;
-    config.engines = model::RegisterFile::kMostEngines;
+    config.engines = model::RegisterFile::kMaxEngines;
     return config;
   }
   static model::HostPorts::Config host_config() { return {true, true, true, true, true, kBreakBits}; }

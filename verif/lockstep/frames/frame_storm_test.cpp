@@ -101,8 +101,8 @@ class Storm : public testing::TestWithParam<int> {};
 
 TEST_P(Storm, NothingRunsWronglyOrTwiceAndTheLinkRecovers) {
   const std::uint64_t seed = seed_from_environment(static_cast<std::uint64_t>(GetParam()));
-  // Four of them: 10^6 frames, 10^7 in the long run.
-  const std::uint64_t frames = std::min<std::uint64_t>(scaled(250'000), 2'500'000);
+  // Four of them: 5 * 10^5 frames, 10^7 in the long run.
+  const std::uint64_t frames = std::min<std::uint64_t>(scaled(125'000), 2'500'000);
   EXPECT_EQ(judge([&] {
               Bench bench(seed);
               run_storm(bench.storm(), frames);

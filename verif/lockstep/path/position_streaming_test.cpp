@@ -15,7 +15,7 @@ namespace {
 namespace reg = card_map::reg;
 
 constexpr std::uint64_t kComparedSignals = 4;
-constexpr std::uint64_t kMost = (std::uint64_t{1} << 40) - 1;
+constexpr std::uint64_t kMax = (std::uint64_t{1} << 40) - 1;
 
 class Bench {
  public:
@@ -47,7 +47,7 @@ class Bench {
     clock();
     in_ = {};
     in_.begin = true;
-    in_.ticks = kMost;
+    in_.ticks = kMax;
     clock();
     in_ = {};
     clock();
@@ -94,9 +94,9 @@ class Bench {
   std::uint64_t random_ticks() {
     const std::uint64_t few = 1 + dice_.below(dice_.chance(2) ? 3 : 40);
     if (dice_.chance(3)) return few;
-    if (dice_.chance(8)) return kMost - dice_.below(2);
+    if (dice_.chance(8)) return kMax - dice_.below(2);
     const std::uint64_t ticks = (std::uint64_t{1} << dice_.below(40)) + few;
-    return ticks > kMost ? kMost : ticks;
+    return ticks > kMax ? kMax : ticks;
   }
 
   // The port is the register itself.
@@ -138,7 +138,7 @@ class Bench {
     if (in_.whole) put(dut_->arrival_i, dice_.chance(3) ? kDrop : dice_.chance(2) ? kGeometryCommit : kFeedCommit, 1);
     dut_->rest_i = in_.rest;
     dut_->begin_i = in_.begin;
-    dut_->count_i = began_with_ != 0 ? began_with_ : dice_.word() & kMost;
+    dut_->count_i = began_with_ != 0 ? began_with_ : dice_.word() & kMax;
     // A tick that is not beyond the line's end is none of its business.
     const bool gone_on = in_.stale_tick || (was_stale_ && dice_.chance(2));
     dut_->take_i = in_.stale_tick || (!gone_on && dice_.chance(2));

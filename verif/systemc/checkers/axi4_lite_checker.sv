@@ -1,7 +1,7 @@
 // Rules of AXI4-Lite, and the card's own on top of them, at the pins: what the master and the card may do in each clock.
 `default_nettype none
 module axi4_lite_checker #(
-    parameter int Patience = 400  // clocks within which an access is answered
+    parameter int MaxClocks = 400  // clocks within which an access is answered
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -77,9 +77,9 @@ module axi4_lite_checker #(
   else port_rule_broken("AXI4-Lite: BRESP is neither OKAY nor SLVERR");
   assert property (@(posedge clk_i) disable iff (rst_i) rvalid_i |-> !rresp_i[0])
   else port_rule_broken("AXI4-Lite: RRESP is neither OKAY nor SLVERR");
-  assert property (@(posedge clk_i) disable iff (rst_i) write_wait_q != 10'(Patience))
+  assert property (@(posedge clk_i) disable iff (rst_i) write_wait_q != 10'(MaxClocks))
   else port_rule_broken("AXI4-Lite: a write is not answered in time");
-  assert property (@(posedge clk_i) disable iff (rst_i) read_wait_q != 10'(Patience))
+  assert property (@(posedge clk_i) disable iff (rst_i) read_wait_q != 10'(MaxClocks))
   else port_rule_broken("AXI4-Lite: a read is not answered in time");
 endmodule
 `default_nettype wire

@@ -1,7 +1,7 @@
 // Rules of Wishbone B4, classic or pipelined, at the pins: what the master and the card may do in each clock.
 `default_nettype none
 module wishbone_checker #(
-    parameter int Patience = 400  // clocks within which an access is answered
+    parameter int MaxClocks = 400  // clocks within which an access is answered
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
@@ -49,7 +49,7 @@ module wishbone_checker #(
   else port_rule_broken("Wishbone: an answer to nothing");
   assert property (@(posedge clk_i) disable iff (rst_i) pipelined_i || !stall)
   else port_rule_broken("Wishbone: STALL on a classic bus");
-  assert property (@(posedge clk_i) disable iff (rst_i) wait_q != 10'(Patience))
+  assert property (@(posedge clk_i) disable iff (rst_i) wait_q != 10'(MaxClocks))
   else port_rule_broken("Wishbone: an access is not answered in time");
 endmodule
 `default_nettype wire

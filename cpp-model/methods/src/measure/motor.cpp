@@ -68,9 +68,9 @@ double repeats_of(const Trace& trace, const IdealCurve& curve, const MotorRun& r
   const auto pulses = static_cast<double>(pulses_of(trace));
   // Of both ramps together, at the mean of pulses along the path.
   const double ramps = run.speed * run.ramp_time * pulses / curve.length();
-  const double most = static_cast<double>(run.most_pulses) + ramps;
+  const double most = static_cast<double>(run.max_pulses) + ramps;
   if (pulses > most) return most / pulses;
-  return repeatable(curve) ? std::ceil((static_cast<double>(run.least_pulses) + ramps) / pulses) : 1;
+  return repeatable(curve) ? std::ceil((static_cast<double>(run.min_pulses) + ramps) / pulses) : 1;
 }
 
 // Where the running point is at which time: from rest on a ramp to a speed, and on a ramp to rest.

@@ -33,6 +33,16 @@ constexpr std::uint32_t decode_clocks(unsigned axes) {
 // next has so many axes, 1 .. 8. Two more than it takes to decode it: its start and its hand-over.
 constexpr std::uint32_t gap_free_ticks(unsigned axes) { return decode_clocks(axes) + 2; }
 
+// The time base's full ratio, 2^-16: every clock is enabled.
+inline constexpr std::uint32_t kFullRatio = 0x10000;
+
+// Longest time from no ratio to the full one, clocks.
+inline constexpr std::uint64_t kSlowestSlew = std::uint64_t{card_map::constant::kSlewClocks}
+                                              << card_map::constant::kSlewFractionBits;
+
+// A pause between two looks at the card, clocks: 50 microseconds, at least 64 clocks.
+std::uint64_t poll_interval(std::uint32_t clock_hz);
+
 // ceil(time * clock_hz / 10^9): the only way of nanoseconds to card clocks. Throws ArgumentError, with `what` in front,
 // for a negative time or 2^63 clocks or more.
 std::uint64_t clocks_of(std::chrono::nanoseconds time, std::uint32_t clock_hz, const char* what);

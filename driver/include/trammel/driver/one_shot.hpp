@@ -111,8 +111,8 @@ OneShotPlan start_line(Card& card, const Displacement& displacement, PathSpeed s
 
 // Runs all parts and returns when the last has ended. Throws HeldError, before anything moves, on a card that holds or
 // whose ratio is 0; a hold that comes later is waited out. Throws FaultError; TimeoutError when a part is not over
-// `patience` (card time) after its length has passed at the ratio that the time base has, holds not counted; StateError
+// `margin` (card time) after its length has passed at the ratio that the time base has, holds not counted; StateError
 // when the card was reset, or aborted by Card::request_abort().
-void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds patience = std::chrono::seconds(1));
+void run_line(Card& card, const OneShotPlan& plan, std::chrono::nanoseconds margin = std::chrono::seconds(1));
 
 }  // namespace trammel::driver

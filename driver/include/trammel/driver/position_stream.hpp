@@ -37,7 +37,7 @@ struct PositionStreamOptions {
   // Largest speed of each axis, pulses/s; 0: as fast as the card and its step times allow.
   std::array<double, card_map::kMaxAxes> max_speed{};
   // How much longer than what is queued the card may take to come to rest before it counts as hung.
-  std::chrono::nanoseconds patience = std::chrono::seconds(1);
+  std::chrono::nanoseconds margin = std::chrono::seconds(1);
 };
 
 class PositionStream {
@@ -133,12 +133,12 @@ class PositionStream {
   template <class Call>
   auto closing_at_errors(Call call);
 
-  static constexpr std::size_t kMostAccesses = 64;
+  static constexpr std::size_t kMaxAccesses = 64;
 
   Card* card_;
   PositionStreamOptions options_;
   unsigned axes_;
-  std::uint64_t patience_clocks_;
+  std::uint64_t margin_clocks_;
   std::array<std::uint64_t, card_map::kMaxAxes> least_clocks_{};  // of a pulse
   std::array<std::int32_t, card_map::kMaxAxes> origin_{};         // positions at the opening, as the card counts
 
@@ -161,7 +161,7 @@ class PositionStream {
   bool fed_ = false;
   bool open_ = false;
 
-  std::array<Access, kMostAccesses> accesses_{};
+  std::array<Access, kMaxAccesses> accesses_{};
   std::size_t used_ = 0;
 };
 

@@ -44,12 +44,12 @@ struct ProbeResult {
 };
 
 struct StreamOptions {
-  // Pause between two looks at the card, card clocks; 0: Card::poll_interval(). Where the bus has interrupts the stream
+  // Pause between two looks at the card, card clocks; 0: poll_interval(). Where the bus has interrupts the stream
   // waits for the end, and where the card has watermarks for room in its queues, without looking so often.
   std::uint64_t poll_clocks = 0;
   // How much longer than planned (in card time) the card may be with what it has begun before it counts as hung. What
   // was planned is known from the commands: dwells, and pieces at the ratio of their class; holds do not count.
-  std::chrono::nanoseconds patience = std::chrono::seconds(1);
+  std::chrono::nanoseconds margin = std::chrono::seconds(1);
   // Called at each look while the stream waits. May throw: the exception passes through, the stream stays usable.
   std::function<void(const StreamProgress&)> progress;
   // Waits out a hold that stands when the stream is opened, like one that comes later.
@@ -60,7 +60,7 @@ class Stream final : public CommandSink {
  public:
   // Opens the card's stream: numbers begin at 0, the queues are empty, no refusal is latched. Throws HeldError if the
   // card stands in a hold that this program has not set, StateError if it is busy, FaultError if it is faulted,
-  // ArgumentError for a patience that is not positive. `card` must outlive the stream.
+  // ArgumentError for a margin that is not positive. `card` must outlive the stream.
   explicit Stream(Card& card, StreamOptions options = {});
 
   // Takes a command to send, whole or not at all; it is written now or later. Throws ArgumentError when it does not fit
@@ -139,7 +139,7 @@ class Stream final : public CommandSink {
 
   Card* card_;
   StreamOptions options_;
-  std::uint64_t patience_clocks_;
+  std::uint64_t margin_clocks_;
   std::uint64_t poll_clocks_;
   std::vector<Access> accesses_;     // kept back: the first used_; of fixed size
   std::vector<Duration> durations_;  // of the commands of the feed queue that may be under way, by number; a ring

@@ -50,7 +50,7 @@ class ChordRotation {
 class ArcGenerator {
  public:
   static constexpr unsigned kHalfChord = 8;
-  static constexpr unsigned kLeastChordBits = 5;
+  static constexpr unsigned kMinChordBits = 5;
 
   struct Inputs {
     bool clear = false;  // the arc is over, or cut; wins over everything in its clock
@@ -166,8 +166,7 @@ class ArcGenerator {
       return;
     }
     const unsigned half = state_.path.state.m - 1U;
-    if (!tick || state_.path.state.m < kLeastChordBits || (state_.ticks & ((std::uint64_t{1} << half) - 1)) != 0)
-      return;
+    if (!tick || state_.path.state.m < kMinChordBits || (state_.ticks & ((std::uint64_t{1} << half) - 1)) != 0) return;
     const bool of_y = (state_.ticks >> half & 1) != 0;
     (of_y ? state_.full_y : state_.full_x) = false;
     state_.out.swap = of_y ? state_.axis_y : state_.axis_x;

@@ -36,7 +36,7 @@ class CommandChecker {
     std::uint8_t number = 0;  // in the last header
     bool partial = false;     // inside a command
   };
-  static constexpr std::size_t kMostHalfwords = 64;
+  static constexpr std::size_t kMaxHalfwords = 64;
 
   // All that the next clock() depends on beside its inputs.
   struct State {
@@ -48,7 +48,7 @@ class CommandChecker {
     const card_map::Command* command = nullptr;
     card_map::Reason header_verdict = card_map::Reason::None;
     std::size_t received = 0;  // halfwords of the command, with the word under way
-    std::array<std::uint16_t, kMostHalfwords> halfwords{};
+    std::array<std::uint16_t, kMaxHalfwords> halfwords{};
     Outputs outputs;
   };
 

@@ -18,12 +18,12 @@ class RegisterFile {
 
   // Masks of engines: what every card has, what one has by default, and what one that is built with everything there
   // is.
-  static constexpr std::uint32_t kLeastEngines = card_map::engines::kLines | card_map::engines::kJerk;
-  static constexpr std::uint32_t kDefaultEngines = kLeastEngines | card_map::engines::kAccumulator |
+  static constexpr std::uint32_t kMinEngines = card_map::engines::kLines | card_map::engines::kJerk;
+  static constexpr std::uint32_t kDefaultEngines = kMinEngines | card_map::engines::kAccumulator |
                                                    card_map::engines::kDirectMode | card_map::engines::kUnderrunHold |
                                                    card_map::engines::kPathCommands | card_map::engines::kStreaming |
                                                    card_map::engines::kClasses | card_map::engines::kWatermarks;
-  static constexpr std::uint32_t kMostEngines =
+  static constexpr std::uint32_t kMaxEngines =
       kDefaultEngines | card_map::engines::kArcGenerator | card_map::engines::kAccumulator8;
 
   struct Config {

@@ -22,8 +22,8 @@ class UartPort {
     bool ready = false;
   };
 
-  static constexpr std::uint32_t kLeastPeriod = 64;
-  static constexpr std::uint32_t kMostPeriod = (1U << 20) - 2;
+  static constexpr std::uint32_t kMinPeriod = 64;
+  static constexpr std::uint32_t kMaxPeriod = (1U << 20) - 2;
 
   // A break is 2^break_bits clocks.
   explicit UartPort(unsigned break_bits = 20) : break_bits_(break_bits) {}
@@ -76,7 +76,7 @@ class UartPort {
         }
         break;
       case Baud::Count:
-        if (now_ - first_edge_ > kMostPeriod + 1) {
+        if (now_ - first_edge_ > kMaxPeriod + 1) {
           baud_ = Baud::Idle;
         } else if (fall && ++edges_ == 4) {
           period_ = static_cast<std::uint32_t>(now_ - first_edge_);
@@ -84,8 +84,8 @@ class UartPort {
         }
         break;
       case Baud::Settle:
-        known_ = level && period_ >= kLeastPeriod && period_ <= kMostPeriod;
-        if (level || period_ < kLeastPeriod || period_ > kMostPeriod) baud_ = Baud::Idle;
+        known_ = level && period_ >= kMinPeriod && period_ <= kMaxPeriod;
+        if (level || period_ < kMinPeriod || period_ > kMaxPeriod) baud_ = Baud::Idle;
         break;
     }
   }

@@ -18,7 +18,7 @@
 namespace trammel::measure {
 
 // A trace takes 16 bytes a step. Longer curves are for the caller to refuse.
-inline constexpr std::uint64_t kMostPulses = 4'000'000;
+inline constexpr std::uint64_t kMaxPulses = 4'000'000;
 
 // Pulses of all axes on the way, at least: exact for lines, the circumscribed rectangle's way round for a full turn.
 std::uint64_t pulses_along(const interpolation::Curve& curve);

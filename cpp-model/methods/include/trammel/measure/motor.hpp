@@ -51,11 +51,11 @@ enum class Drive { kFullStep, kHalfStep };
 struct MotorRun {
   MotorParameters motor;
   Drive drive = Drive::kFullStep;
-  double speed = 200;              // mean speed along the path, pulses/s, > 0
-  double ramp_time = 0.05;         // s of each ramp, at most a third of the path's way; 0: full speed at once
-  double step = 10e-6;             // s, longest integration step, > 0
-  std::size_t least_pulses = 240;  // a line or closed curve is repeated until all axes together have made so many
-  std::size_t most_pulses = 1000;  // and the run ends after so many; both besides the ramps
+  double speed = 200;             // mean speed along the path, pulses/s, > 0
+  double ramp_time = 0.05;        // s of each ramp, at most a third of the path's way; 0: full speed at once
+  double step = 10e-6;            // s, longest integration step, > 0
+  std::size_t min_pulses = 240;   // a line or closed curve is repeated until all axes together have made so many
+  std::size_t max_pulses = 1000;  // and the run ends after so many; both besides the ramps
 };
 
 struct AxisVibration {

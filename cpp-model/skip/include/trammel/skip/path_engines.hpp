@@ -31,7 +31,7 @@ inline bool at_rest(const model::ArcGenerator& block) {
 // Path ticks up to the one that ends a half chord, that included; kForever where none does.
 inline std::uint64_t ticks_left(const model::ArcGenerator& block) {
   const unsigned m = block.state().path.state.m;
-  if (m < model::ArcGenerator::kLeastChordBits) return kForever;
+  if (m < model::ArcGenerator::kMinChordBits) return kForever;
   const std::uint64_t half = std::uint64_t{1} << (m - 1);
   return half - (block.state().ticks & (half - 1));
 }

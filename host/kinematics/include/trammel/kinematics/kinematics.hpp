@@ -38,10 +38,10 @@ struct Joint {
     std::uint8_t axis;
     double factor;
   };
-  static constexpr std::size_t kMostTerms = 2;
+  static constexpr std::size_t kMaxTerms = 2;
 
   double steps_per_mm = 0;  // pulses, > 0
-  std::array<Term, kMostTerms> terms{};
+  std::array<Term, kMaxTerms> terms{};
   std::size_t term_count = 0;  // 1 or 2
   std::uint8_t settings = 0;   // machine axis whose step times it has
   bool inverted = false;       // its DIR pin
@@ -63,7 +63,7 @@ struct PlaneMap {
 struct Layout {
   // An axis's coordinate: the sum of the joints' lengths, each times a factor (a term's `axis` is a joint here).
   struct Inverse {
-    std::array<Joint::Term, Joint::kMostTerms> terms{};
+    std::array<Joint::Term, Joint::kMaxTerms> terms{};
     std::size_t term_count = 0;
   };
   std::vector<Joint> joints;
@@ -85,7 +85,7 @@ class Kinematics {
   // The axes that move a joint, bit n: axis n.
   unsigned axes_of(std::size_t joint) const;
   // Of the joints that move with an axis, the most axes that one of them has.
-  std::size_t most_terms(std::size_t axis) const;
+  std::size_t max_terms(std::size_t axis) const;
   // Whether a joint has limits beside those of the axes.
   bool has_joint_limits() const { return has_joint_limits_; }
 
@@ -106,7 +106,7 @@ class Kinematics {
   // Most pulses that a joint makes for a mm of this axis alone.
   double finest(std::size_t axis) const { return finest_[axis]; }
   // The largest |joint_rate| of the directions in a plane, given by two unit vectors at right angles.
-  double most_in_plane(std::size_t joint, const Direction& first, const Direction& second) const;
+  double max_in_plane(std::size_t joint, const Direction& first, const Direction& second) const;
   // Nothing where other joints move as well, or where a circle of the plane is neither a circle nor an ellipse along
   // the joints.
   std::optional<PlaneMap> plane(std::size_t axis_x, std::size_t axis_y) const;

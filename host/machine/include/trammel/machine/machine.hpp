@@ -64,7 +64,7 @@ struct MotionSettings {
 
 // Outputs of the card that words of a program switch on, bit n: output n; the table [outputs]. Words that the table
 // does not name switch none. M3 and M4 switch off what the other has, M5 both; M9 switches off what M7 and M8 have.
-inline constexpr unsigned kMostOutputs = 16;
+inline constexpr unsigned kMaxOutputs = 16;
 struct MachineOutputs {
   std::uint16_t m3 = 0;  // spindle clockwise
   std::uint16_t m4 = 0;  // and counter-clockwise
@@ -83,7 +83,7 @@ struct Tool {
 };
 inline constexpr unsigned kLargestTool = 999'999;
 
-inline constexpr unsigned kMostInputs = 16;
+inline constexpr unsigned kMaxInputs = 16;
 // The card's input that a probe is at; the table [probe].
 struct Probe {
   std::optional<unsigned> input;

@@ -115,7 +115,7 @@ class Blender {
   }
 
   static constexpr std::size_t kNone = ~std::size_t{0};
-  static constexpr std::size_t kMostOutputs = 8;
+  static constexpr std::size_t kMaxOutputs = 8;
 
   gcode::Reader& reader_;
   std::size_t axes_;
@@ -128,8 +128,8 @@ class Blender {
   std::array<Way, 2> ways_;  // the one that may lose its end, and the one behind it
   std::size_t first_ = 0;
   bool held_ = false;
-  std::array<PathMotion, kMostOutputs> outputs_;    // between the two
-  std::array<PathMotion, kMostOutputs + 2> given_;  // to be given, in order
+  std::array<PathMotion, kMaxOutputs> outputs_;    // between the two
+  std::array<PathMotion, kMaxOutputs + 2> given_;  // to be given, in order
   std::size_t given_first_ = 0;
   std::size_t given_count_ = 0;
 };

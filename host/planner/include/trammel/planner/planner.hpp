@@ -29,7 +29,7 @@ enum class SpeedProfile {
 };
 
 struct PlannerSettings {
-  bool exact_stop = false;  // a stop after every line of the program
+  bool single_block = false;  // each line of the program ends in a stop
   SpeedProfile profile = SpeedProfile::kByMachine;
   // Called before each block is read and before each ramp is planned, since one Planner::next() may take a whole window
   // of them. What it throws passes through that call.

@@ -32,10 +32,10 @@ class OutputRecorder final : public driver::StepSink {
   // Writes what is left of the list.
   void finish();
 
-  const std::array<Output, machine::kMostOutputs>& outputs() const { return outputs_; }
+  const std::array<Output, machine::kMaxOutputs>& outputs() const { return outputs_; }
 
  private:
-  std::array<Output, machine::kMostOutputs> outputs_{};
+  std::array<Output, machine::kMaxOutputs> outputs_{};
   std::unique_ptr<CsvWriter> list_;
 };
 

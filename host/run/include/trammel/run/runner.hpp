@@ -40,7 +40,7 @@ class RunError : public std::runtime_error {
  public:
   RunError(const std::string& file, std::size_t line, const std::string& message);
   explicit RunError(const ProgramError& error);
-  std::size_t line() const { return line_; }
+  std::size_t line() const { return line_; }  // 0: before the first command
 
  private:
   std::size_t line_;

@@ -12,7 +12,7 @@ struct OperatorEvent {
   enum class Kind { kOverride, kHold, kResume, kInput };
   Kind kind = Kind::kOverride;
   double seconds = 0;  // of card time from reset, 0 or more; asked for
-  double percent = 0;  // kOverride: of the planned speed, 0 to RunOptions::most_percent
+  double percent = 0;  // kOverride: of the planned speed, 0 to RunOptions::max_percent
   unsigned input = 0;  // kInput: 0 to sim::kPins - 1
   bool level = false;  // kInput
 };

@@ -29,7 +29,7 @@ namespace trammel::simulation {
 struct RunOptions {
   run::RunSettings settings;
   Operation operation;
-  double most_percent = 100;            // largest override, of the planned speed; 100 or more
+  double max_percent = 100;             // largest override, of the planned speed; 100 or more
   run::TextSink* steps = nullptr;       // every leading edge at a STEP pin
   run::TextSink* path_steps = nullptr;  // every step of the path
   run::TextSink* outputs = nullptr;     // every change of an output

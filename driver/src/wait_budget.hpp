@@ -25,7 +25,7 @@ struct PlannedTime {
   std::uint64_t real = 0;     // whatever the ratio
 };
 
-class Patience {
+class WaitBudget {
  public:
   // What pause() may wake for, by the bits of IRQ_ENABLE.
   static constexpr std::uint32_t kIdle = card_map::field::kIrqEnableIdle;
@@ -33,7 +33,7 @@ class Patience {
 
   // `margin`: clocks beyond what was planned; 0: the time is the caller's own and holds, whatever runs. `context` names
   // what is waited for and must outlive the object.
-  Patience(Card& card, const char* context, std::uint64_t margin) : card_(card), context_(context), margin_(margin) {}
+  WaitBudget(Card& card, const char* context, std::uint64_t margin) : card_(card), context_(context), margin_(margin) {}
 
   // Something begins that takes so long: the time waited counts from here on.
   void allow(const PlannedTime& planned);

@@ -1,10 +1,11 @@
 // Lockstep of the feed generator: RTL and model, every output in every cycle.
+#include "trammel/model/feed_generator.hpp"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "Vdut.h"
-#include "trammel/model/feed_generator.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
@@ -161,19 +162,19 @@ class Bench {
 
 // Corners of every field, at each distance from the shortest to beyond two updates.
 void directed() {
-  constexpr std::uint64_t kMost = ~std::uint64_t{0};
+  constexpr std::uint64_t kMax = ~std::uint64_t{0};
   const Piece pieces[] = {
-      {kMost, 0, 0, 1},                                 // a tick a clock but one in 2^48
-      {kMost, 1, 0, 1},                                 // reaches 1 exactly at the first update
-      {kMost >> 1, std::uint64_t{1} << 62, 0, 1},       // above 1, and up to 8 and over
-      {kMost, std::uint64_t{1} << 63, 0, 0xFFFF'FFFF},  // down through 0, floor just below 1
-      {std::uint64_t{5} << 32, kMost, 0, 5},            // one below the floor at the first update
+      {kMax, 0, 0, 1},                                 // a tick a clock but one in 2^48
+      {kMax, 1, 0, 1},                                 // reaches 1 exactly at the first update
+      {kMax >> 1, std::uint64_t{1} << 62, 0, 1},       // above 1, and up to 8 and over
+      {kMax, std::uint64_t{1} << 63, 0, 0xFFFF'FFFF},  // down through 0, floor just below 1
+      {std::uint64_t{5} << 32, kMax, 0, 5},            // one below the floor at the first update
       {0x8000'0000'8000'0000, 0 - std::uint64_t{0x8001'0000}, 0, 0x7FFF'FFFF},  // ticks by the low bits above its floor
       {std::uint64_t{5} << 32, 0, 0, 5},                                        // at the floor
       {0x7FFF'FFFF'FFFF'0000, 0, 0, 0x7FFF'FFFF},  // at the floor but for the low bits, which make the tick
-      {0x8000'0000'1000'0000, kMost >> 1, 0, 1},   // to 1 with low bits that would miss a tick
+      {0x8000'0000'1000'0000, kMax >> 1, 0, 1},    // to 1 with low bits that would miss a tick
       {1, 0, 0, 0x4000'0000},                      // starts below its floor: the first slope is as given
-      {std::uint64_t{1} << 60, 0xFFFF, kMost, 1},  // jerk alone turns it round
+      {std::uint64_t{1} << 60, 0xFFFF, kMax, 1},   // jerk alone turns it round
       {0, 0, (std::uint64_t{1} << 63) - 1, 1},
       {0x0123'4567'89AB'CDEF, 0xFEDC'BA98'7654'3211, 0x0000'0FED'CBA9'8765, 0x0765'4321},
   };

@@ -1,10 +1,11 @@
-// Accesses of a card, and what it refuses.
+#include "trammel/driver/low_level/registers.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "trammel/card_map.hpp"
-#include "trammel/driver/card.hpp"
 
 namespace trammel::driver {
 namespace {
@@ -26,7 +27,7 @@ std::optional<Refusal> refusal_from(std::uint32_t value) {
 
 }  // namespace
 
-void Card::check_read(const Access& access) {
+void Registers::check_read(const Access& access) {
   const map::Slot slot = map::find_register(access.address);
   if ((access.data & ~slot.entry->mask) != 0) {
     throw LinkError(fmt::format("card: {} reads 0x{:08X}, with bits that have no meaning: what answers is no card",
@@ -35,7 +36,7 @@ void Card::check_read(const Access& access) {
 }
 
 // The bus's transfer, its result checked.
-std::size_t Card::checked_transfer(Access* accesses, std::size_t count) {
+std::size_t Registers::try_transfer(Access* accesses, std::size_t count) {
   const std::size_t made = bus_->transfer(accesses, count);
   if (made > count || (made < count && !bus_->reports_refusals())) {
     throw LinkError(fmt::format("bus: its transport says that {} of {} accesses were made", made, count));
@@ -43,7 +44,7 @@ std::size_t Card::checked_transfer(Access* accesses, std::size_t count) {
   return made;
 }
 
-void Card::transfer(Access* accesses, std::size_t count, std::string_view context) {
+void Registers::transfer(Access* accesses, std::size_t count, std::string_view context) {
   const bool writes = std::any_of(accesses, accesses + count, [](const Access& access) { return access.write; });
   const bool confirm = writes && !bus_->reports_refusals();
   if (confirm) {
@@ -53,15 +54,15 @@ void Card::transfer(Access* accesses, std::size_t count, std::string_view contex
   confirmed_transfer(accesses, count, confirm, context);
 }
 
-void Card::transfer_stream(Access* accesses, std::size_t count) {
+void Registers::transfer_stream(Access* accesses, std::size_t count) {
   confirmed_transfer(accesses, count, !bus_->reports_refusals(), "stream");
 }
 
-void Card::confirmed_transfer(Access* accesses, std::size_t count, bool confirm, std::string_view context) {
+void Registers::confirmed_transfer(Access* accesses, std::size_t count, bool confirm, std::string_view context) {
   if (confirm) {
     accesses[count++] = read_of(reg::kRefusal);
   }
-  const std::size_t made = checked_transfer(accesses, count);
+  const std::size_t made = try_transfer(accesses, count);
   if (made < count) {
     throw_refused_access(accesses[made], context);
   }
@@ -74,23 +75,23 @@ void Card::confirmed_transfer(Access* accesses, std::size_t count, bool confirm,
 }
 
 // REFUSAL as it stands in the card.
-std::optional<Refusal> Card::latched_refusal() {
+std::optional<Refusal> Registers::latched_refusal() {
   Access access = read_of(reg::kRefusal);
-  if (checked_transfer(&access, 1) != 1) {
+  if (try_transfer(&access, 1) != 1) {
     throw LinkError("card: it refuses the read of REFUSAL: what answers is no card");
   }
   check_read(access);
   return refusal_from(access.data);
 }
 
-void Card::forget_latched_refusal() {
+void Registers::forget_latched_refusal() {
   Access access = write_of(reg::kRefusal, map::find_register(reg::kRefusal).entry->mask);
-  if (checked_transfer(&access, 1) != 1) {
+  if (try_transfer(&access, 1) != 1) {
     throw LinkError("card: it refuses the write of REFUSAL: what answers is no card");
   }
 }
 
-void Card::keep_earlier_refusal() {
+void Registers::keep_earlier_refusal() {
   const std::optional<Refusal> latched = latched_refusal();
   if (!latched) {
     return;
@@ -102,7 +103,7 @@ void Card::keep_earlier_refusal() {
 }
 
 // An access that the bus says was refused.
-void Card::throw_refused_access(const Access& access, std::string_view context) {
+void Registers::throw_refused_access(const Access& access, std::string_view context) {
   const std::optional<Refusal> latched = latched_refusal();
   if (latched && latched->address == access.address) {
     throw_refused(*latched, context);
@@ -115,13 +116,13 @@ void Card::throw_refused_access(const Access& access, std::string_view context) 
   throw_refused(unknown, context);
 }
 
-void Card::throw_refused(const Refusal& refusal, std::string_view context) {
+void Registers::throw_refused(const Refusal& refusal, std::string_view context) {
   // One of the stream stays latched: the stream is closed until it is restarted.
   if (refusal.address != reg::kStream) {
     forget_latched_refusal();
   }
   if (refusal.reason == static_cast<std::uint8_t>(map::Reason::Faulted)) {
-    const std::uint32_t now = faults();
+    const std::uint32_t now = read_faults();
     if (now != 0) {
       throw FaultError(now, std::string(context));
     }
@@ -129,11 +130,60 @@ void Card::throw_refused(const Refusal& refusal, std::string_view context) {
   throw RefusedError(refusal.reason, refusal.command_number, refusal.address, std::string(context));
 }
 
-std::optional<Refusal> Card::refusal() { return earlier_ ? earlier_ : latched_refusal(); }
-
-void Card::clear_refusal() {
+void Registers::clear_refusal() {
   earlier_.reset();
   forget_latched_refusal();
+}
+
+Status Registers::decode_status(std::uint32_t value) {
+  Status status;
+  status.busy = (value & field::kStatusBusy) != 0;
+  status.direct = (value & field::kStatusDirect) != 0;
+  status.path_active = (value & field::kStatusPathActive) != 0;
+  status.feed_active = (value & field::kStatusFeedActive) != 0;
+  status.held = (value & field::kStatusHeld) != 0;
+  status.ended = (value & field::kStatusEnded) != 0;
+  status.faulted = (value & field::kStatusFaulted) != 0;
+  status.refused = (value & field::kStatusRefused) != 0;
+  status.snapshot = (value & field::kStatusSnapshot) != 0;
+  status.incomplete = (value & field::kStatusIncomplete) != 0;
+  status.stopping = (value & field::kStatusStopping) != 0;
+  status.geometry_low = (value & field::kStatusGeometryLow) != 0;
+  status.feed_low = (value & field::kStatusFeedLow) != 0;
+  status.probed = (value & field::kStatusProbed) != 0;
+  status.probe_missed = (value & field::kStatusProbeMissed) != 0;
+  status.waiting = (value & field::kStatusWaiting) != 0;
+  return status;
+}
+
+Status Registers::read_status() {
+  std::array<Access, 2> access{read_of(reg::kStatus)};
+  transfer(access.data(), 1, "status");
+  return status_of(access[0]);
+}
+
+Status Registers::status_of(const Access& access) const {
+  check_read(access);
+  Status status = decode_status(access.data);
+  status.refused = status.refused || earlier_.has_value();
+  return status;
+}
+
+void Registers::throw_if_faulted(const Status& status, std::string_view context) {
+  if (status.faulted) {
+    throw FaultError(read_faults(), std::string(context));
+  }
+}
+
+std::uint32_t Registers::read(std::uint32_t address) {
+  std::array<Access, 2> access{read_of(address)};
+  transfer(access.data(), 1, "read");
+  return access[0].data;
+}
+
+void Registers::write(std::uint32_t address, std::uint32_t value, std::string_view context) {
+  std::array<Access, 2> access{write_of(address, value)};
+  transfer(access.data(), 1, context);
 }
 
 }  // namespace trammel::driver

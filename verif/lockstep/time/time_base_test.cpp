@@ -1,11 +1,12 @@
 // Lockstep of the time base: RTL and model, every output in every cycle.
+#include "trammel/model/time_base.hpp"
+
 #include <gtest/gtest.h>
 
 #include <utility>
 #include <vector>
 
 #include "Vdut.h"
-#include "trammel/model/time_base.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 

@@ -1,11 +1,12 @@
 // The queue in lockstep with its model: a writer that commits, drops and clears, a reader that comes and goes.
+#include "trammel/model/halfword_queue.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <random>
 
 #include "Vdut.h"
-#include "trammel/model/halfword_queue.hpp"
 #include "trammel/sim/lockstep.hpp"
 
 namespace {

@@ -1,10 +1,11 @@
-#include "patience.hpp"
+#include "wait_budget.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include "trammel/card_map.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 
 namespace trammel::driver {
 namespace {
@@ -18,13 +19,13 @@ std::uint64_t saturated(Uint128 value) {
 
 // ceil(gated / ratio); a division of 128 bits only where there is something to divide.
 Uint128 at_ratio(Uint128 gated, std::uint32_t ratio) {
-  if (ratio != Card::kFullRatio) return ceil_div(gated, ratio);
-  return (gated + Uint128(Card::kFullRatio - 1)) >> constant::kRatioFractionBits;
+  if (ratio != kFullRatio) return ceil_div(gated, ratio);
+  return (gated + Uint128(kFullRatio - 1)) >> constant::kRatioFractionBits;
 }
 
 }  // namespace
 
-void Patience::allow(const PlannedTime& planned) {
+void WaitBudget::allow(const PlannedTime& planned) {
   planned_ = planned;
   for (std::size_t i = 0; i < gated_left_.size(); ++i) {
     gated_left_[i] = Uint128(planned.parts[i].gated) << constant::kRatioFractionBits;
@@ -34,14 +35,14 @@ void Patience::allow(const PlannedTime& planned) {
   slews_counted_ = false;
 }
 
-void Patience::allow_again() {
+void WaitBudget::allow_again() {
   const std::uint64_t waited = waited_;
   allow(planned_);
   waited_ = waited;
 }
 
 // What runs now, as far as it is known, has a ratio of 0.
-bool Patience::stands() const {
+bool WaitBudget::stands() const {
   for (std::size_t i = 0; i < gated_left_.size(); ++i) {
     if (gated_left_[i] > Uint128(0)) return ratio_of(i) == 0;
   }
@@ -50,7 +51,7 @@ bool Patience::stands() const {
 
 // Clocks that may still be waited at the ratios that the card is known to have; what has a ratio of 0 is waited for
 // when its turn comes.
-std::uint64_t Patience::left() const {
+std::uint64_t WaitBudget::left() const {
   Uint128 clocks(real_left_);
   for (std::size_t i = 0; i < gated_left_.size(); ++i) {
     if (ratio_of(i) != 0) clocks = clocks + at_ratio(gated_left_[i], ratio_of(i));
@@ -58,27 +59,26 @@ std::uint64_t Patience::left() const {
   return saturated(clocks);
 }
 
-bool Patience::ratios_changed(const Access* accesses, std::size_t count) {
+bool WaitBudget::ratios_changed(const Access* accesses, std::size_t count) {
   bool changed = false;
   for (std::size_t i = 0; i < count; ++i) {
-    Card::check_read(accesses[i]);
+    Registers::check_read(accesses[i]);
     const auto piece_class = static_cast<PieceClass>(i);
     changed = changed || card_.ratio(piece_class) != accesses[i].data;
-    card_.note_ratio(piece_class, accesses[i].data);
+    card_.parts().time_base.note_ratio(piece_class, accesses[i].data);
   }
   return changed;
 }
 
 // The card is asked for its time base only once the time has passed: somebody else may have set it, and on the way from
 // one ratio to another it is lower for as long as a full slew at most, down and up again.
-bool Patience::overdue() {
-  const bool classes = card_map::has_engine(card_.identification().engines, card_map::engine::kClasses);
-  const std::size_t ratios = classes ? kPieceClasses : 1;
+bool WaitBudget::overdue() {
+  const std::size_t ratios = card_.parts().time_base.has_classes() ? kPieceClasses : 1;
   std::array<Access, kPieceClasses + 2> accesses{read_of(reg::kRatioFeed), read_of(reg::kRatioRapid),
                                                  read_of(reg::kRatioFixed)};
   accesses[ratios] = read_of(reg::kSlew);
-  card_.transfer(accesses.data(), ratios + 1, context_);
-  Card::check_read(accesses[ratios]);
+  card_.parts().registers.transfer(accesses.data(), ratios + 1, context_);
+  Registers::check_read(accesses[ratios]);
   if (ratios_changed(accesses.data(), ratios)) {
     allow_again();
     return false;
@@ -88,18 +88,17 @@ bool Patience::overdue() {
   }
   if (slews_counted_) {
     // Lower for a while and back again, which nothing tells: a piece still runs.
-    const Snapshot now = card_.snapshot();
+    const Snapshot now = card_.read_snapshot();
     const bool runs = margin_ != 0 && now.rate != 0 && now.ratio != 0;
     if (runs) allow_again();
     return !runs;
   }
   slews_counted_ = true;
-  real_left_ += 2 * (std::uint64_t{constant::kSlewClocks} << constant::kSlewFractionBits) /
-                std::max<std::uint32_t>(accesses[ratios].data, 1);
+  real_left_ += 2 * kSlowestSlew / std::max<std::uint32_t>(accesses[ratios].data, 1);
   return real_left_ == 0;
 }
 
-void Patience::count(std::uint64_t clocks) {
+void WaitBudget::count(std::uint64_t clocks) {
   waited_ += clocks;
   for (std::size_t i = 0; i < gated_left_.size(); ++i) {
     const std::uint32_t ratio = ratio_of(i);
@@ -115,7 +114,7 @@ void Patience::count(std::uint64_t clocks) {
   real_left_ -= std::min(real_left_, clocks);
 }
 
-void Patience::pause(const Status& status, std::uint64_t clocks, std::uint32_t wake) {
+void WaitBudget::pause(const Status& status, std::uint64_t clocks, std::uint32_t wake) {
   // An interrupt tells of the end by itself; looks are for other threads' requests then.
   constexpr std::uint32_t kLooksPerSecond = 100;
   const std::uint32_t clock_hz = card_.identification().clock_hz;
@@ -136,7 +135,7 @@ void Patience::pause(const Status& status, std::uint64_t clocks, std::uint32_t w
     interrupted_ = false;
     card_.bus().sleep(time_of(longest, clock_hz));
   } else {
-    interrupted_ = card_.pause(longest, wake);
+    interrupted_ = card_.parts().interrupt.pause(longest, wake);
   }
   if (counts && !interrupted_) {
     count(longest);

@@ -1,5 +1,7 @@
 // The command checker in lockstep with its model: every violation of every layout, then random streams with corrupted
 // words, scarce room, flushes, clears and writes that it is not ready for.
+#include "trammel/model/command_checker.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -8,7 +10,6 @@
 
 #include "Vdut.h"
 #include "command_source.hpp"
-#include "trammel/model/command_checker.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 

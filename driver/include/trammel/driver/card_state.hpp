@@ -1,0 +1,67 @@
+// What a card says of its state: STATUS, REFUSAL, a snapshot, and the counters in them. Plain data and pure functions,
+// thread-safe.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "trammel/card_map.hpp"
+
+namespace trammel::driver {
+
+// STATUS.
+struct Status {
+  bool busy = false;          // something runs or is queued
+  bool direct = false;        // a one-shot line runs
+  bool path_active = false;   // a path is under way
+  bool feed_active = false;   // a feed piece is under way
+  bool held = false;          // the time base's ratio is 0
+  bool ended = false;         // END was reached
+  bool faulted = false;       // FAULT is not 0
+  bool refused = false;       // REFUSAL is not 0
+  bool snapshot = false;      // a snapshot is under way
+  bool incomplete = false;    // the stream stands inside a command
+  bool stopping = false;      // on a ramp to a stop
+  bool geometry_low = false;  // fewer halfwords queued than the queue's watermark
+  bool feed_low = false;
+  bool probed = false;        // a probe has tripped, until clear_probe()
+  bool probe_missed = false;  // probing paths ended without an edge
+  bool waiting = false;       // for an input
+};
+
+// REFUSAL.
+struct Refusal {
+  std::uint8_t reason = 0;          // value of card_map::Reason, not 0
+  std::uint8_t command_number = 0;  // of a stream command
+  std::uint32_t address = 0;        // byte address of the access
+};
+
+// State of one clock.
+struct Snapshot {
+  std::uint64_t time = 0;                                   // clocks since reset
+  Status status;                                            //
+  std::uint32_t faults = 0;                                 // FAULT
+  std::uint32_t rate = 0;                                   // 2^-32 feed ticks an enabled clock
+  std::uint32_t ratio = 0;                                  // 2^-16, of the time base
+  std::uint32_t geometry_begun = 0;                         // commands begun from the geometry queue since the last cut
+  std::uint32_t feed_begun = 0;                             // and from the feed queue
+  std::array<std::int32_t, card_map::kMaxAxes> position{};  // pulses, wrapping; 0 for axes that the card lacks
+};
+
+// Pulses from one position of an axis to another. The counters wrap: for distances below 2^31.
+constexpr std::int32_t pulses_between(std::int32_t from, std::int32_t to) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
+}
+
+// A count of the card, which has 32 bits, carried on from `before`: for less than 2^32 more.
+constexpr std::uint64_t count_after(std::uint64_t before, std::uint32_t counter) {
+  return before + (counter - static_cast<std::uint32_t>(before));
+}
+
+// Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".
+std::string describe_faults(std::uint32_t faults);
+// Name of a refusal reason and what it means.
+std::string describe_reason(std::uint8_t reason);
+
+}  // namespace trammel::driver

@@ -1,0 +1,30 @@
+// Who a card is and what it was built of. Plain data, thread-safe.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/driver/unit_table.hpp"
+
+namespace trammel::driver {
+
+// What the card says of itself.
+struct Identification {
+  std::uint16_t map_major = 0;
+  std::uint16_t map_minor = 0;
+  std::uint32_t commands_version = 0;
+  unsigned axes = 0;                 // 1 .. 8
+  std::uint32_t clock_hz = 0;        // Hz
+  UnitTable units;                   // what it is built of
+  std::uint32_t engines = 0;         // the same as card_map::engine's bits
+  std::uint32_t geometry_depth = 0;  // halfwords
+  std::uint32_t feed_depth = 0;      // halfwords
+};
+
+// What it was made of.
+struct Build {
+  std::uint32_t id = 0;     // of the sources; 0 where nobody said
+  bool dirty = false;       // one of them was changed
+  std::uint32_t board = 0;  // docs/user/boards.md; 0 where nobody said
+};
+
+}  // namespace trammel::driver

@@ -1,0 +1,30 @@
+// A card's inputs and outputs. What Card says of these functions holds here. Errors and thread-safety: as of Registers.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/driver/identification.hpp"
+#include "trammel/driver/low_level/registers.hpp"
+
+namespace trammel::driver {
+
+class Ports {
+ public:
+  // Both must outlive the object.
+  Ports(Registers& registers, const Identification& card) : registers_(registers), card_(card) {}
+
+  std::uint16_t inputs();
+  std::uint16_t outputs();
+  unsigned inputs_present();
+  unsigned outputs_present();
+  void set_input_polarity(std::uint16_t inverted);
+  void set_output_safe(std::uint16_t levels, std::uint16_t change);
+
+ private:
+  unsigned pins_present(std::uint32_t mask, std::uint32_t shift, const char* pins);
+
+  Registers& registers_;
+  const Identification& card_;
+};
+
+}  // namespace trammel::driver

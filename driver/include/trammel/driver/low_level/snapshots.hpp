@@ -1,0 +1,30 @@
+// A card's snapshots: states of one clock that it latches for a reader, at a stop, at a MARK and at a probe's edge.
+// What Card says of these functions holds here. Errors and thread-safety: as of Registers.
+#pragma once
+
+#include "trammel/driver/identification.hpp"
+#include "trammel/driver/low_level/registers.hpp"
+
+namespace trammel::driver {
+
+class Snapshots {
+ public:
+  // Both must outlive the object.
+  Snapshots(Registers& registers, const Identification& card) : registers_(registers), card_(card) {}
+
+  // Latches one now.
+  Snapshot take();
+  Snapshot stop() { return read_area(card_map::Area::Stop); }
+  Snapshot mark();
+  Snapshot probe();
+  std::uint32_t marks();
+  void clear_probe();
+
+ private:
+  Snapshot read_area(card_map::Area area);
+
+  Registers& registers_;
+  const Identification& card_;
+};
+
+}  // namespace trammel::driver

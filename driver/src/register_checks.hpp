@@ -1,0 +1,47 @@
+// Checks of values against the register map.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/errors.hpp"
+
+namespace trammel::driver {
+
+inline const card_map::Register& register_at(std::uint32_t address) { return *card_map::find_register(address).entry; }
+
+inline std::uint32_t field_bits(std::uint32_t value, std::uint32_t mask, std::uint32_t shift) {
+  return (value & mask) >> shift;
+}
+
+// Throws ArgumentError, with `what` in front, unless the register takes the value: no bits without meaning, within the
+// limits of its field.
+inline void check_setting(std::uint32_t address, std::uint64_t value, const std::string& what) {
+  const card_map::Register& setting = register_at(address);
+  const std::uint64_t max = setting.limited != 0 ? setting.maximum : setting.mask;
+  const std::uint64_t min = setting.limited != 0 ? setting.minimum : 0;
+  if (value < min || value > max) {
+    throw ArgumentError(fmt::format("{} is outside {} .. {} ({})", what, min, max, setting.name));
+  }
+}
+
+// Throws IdentificationError unless a register of the identification reads what a card may have there.
+inline void check_field(std::uint32_t address, std::uint32_t value, std::uint32_t min, std::uint32_t max,
+                        const char* unit) {
+  if (value >= min && value <= max) return;
+  throw IdentificationError(
+      fmt::format("card: {}: {} {}, this driver takes {} to {}", register_at(address).name, value, unit, min, max));
+}
+
+// Throws ArgumentError unless the card has path commands.
+inline void require_path_commands(std::uint32_t engines, std::string_view what) {
+  if (card_map::has_engine(engines, card_map::engine::kPathCommands)) return;
+  throw ArgumentError(fmt::format("{}: needs {}, which the card does not have (engines 0x{:X})", what,
+                                  card_map::kEngineNames[card_map::engine::kPathCommands], engines));
+}
+
+}  // namespace trammel::driver

@@ -1,0 +1,157 @@
+// The S-curve plan where limits differ from span to span: at random, on curves, on arcs, by rounding.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "s_curve_programs.hpp"
+#include "trapezoid_plan.hpp"
+
+namespace trammel::planner {
+namespace {
+
+using test::kInfinite;
+using test::Limits;
+using test::moves;
+using test::plan;
+using test::Random;
+using test::random_limits;
+using test::random_program;
+using test::seconds;
+using test::Spans;
+using test::with_limits;
+
+// Limits at random. Few programs take longer than one rise a ramp more.
+TEST(SCurvePlan, LimitsThatDifferCostLittleMore) {
+  Random random(9);
+  int beyond = 0;
+  double worst = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Spans spans = with_limits(random, moves(random, random_limits(random), true), i % 2 == 0 ? 1.4 : 100);
+    const test::Trapezoid best = test::trapezoid_of(spans);
+    const double time = seconds(spans);
+    ASSERT_GE(time, best.duration * (1 - 1e-9)) << i;
+    const double share = (time - best.bends) / best.duration;
+    beyond += share > 1 ? 1 : 0;
+    worst = std::max(worst, share);
+  }
+  EXPECT_LE(beyond, 4);     // measured: 4
+  EXPECT_LE(worst, 1.018);  // 1.0176
+  RecordProperty("beyond", std::to_string(beyond));
+  RecordProperty("worst", std::to_string(worst));
+}
+
+// Chords of a curve on two equal axes: the path has most where it goes at 45 degrees, so limits change all along.
+Spans turning_chords(Random& random, const Limits& limits) {
+  Spans spans;
+  const double radius = random.logarithmic(1, 200);
+  const double chord = random.logarithmic(0.02, 1);
+  const double length = random.logarithmic(5, 200);
+  const std::size_t kind = random.below(3);
+  double heading = random.uniform(0, 6.28);
+  for (double at = 0; at < length; at += chord) {
+    const double curvature = (kind == 0 ? 1 : std::sin(kind == 1 ? at / radius : at)) / radius;
+    heading += curvature * chord;
+    const double share = std::max(std::abs(std::cos(heading)), std::abs(std::sin(heading)));
+    const double angle = std::abs(curvature * chord);
+    const double exit = angle > 1e-12 ? std::sqrt(limits.acceleration / share * chord / angle) : kInfinite;
+    spans.push_back({chord, limits.speed / share, limits.acceleration / share, limits.jerk / share, exit});
+  }
+  return spans;
+}
+
+TEST(SCurvePlan, LimitsThatTurnCostAtMostOneRiseARamp) {
+  Random random(11);
+  int beyond = 0;
+  double worst = 0;
+  for (int i = 0; i < 2'000; ++i) {
+    const Limits limits = random_limits(random);
+    const Spans spans = turning_chords(random, limits);
+    const std::vector<Phase> phases = plan(spans);
+    ASSERT_EQ(test::fault_of(phases, spans), "") << i;
+    const test::Trapezoid best = test::trapezoid_of(spans);
+    const double time = test::duration_of(phases);
+    ASSERT_GE(time, best.duration * (1 - 1e-9)) << i;
+    const double share = (time - best.bends) / best.duration;
+    beyond += share > 1 ? 1 : 0;
+    worst = std::max(worst, share);
+  }
+  EXPECT_EQ(beyond, 0);
+  EXPECT_LE(worst, 1);
+  RecordProperty("beyond", std::to_string(beyond));
+  RecordProperty("worst", std::to_string(worst));
+}
+
+// Arcs among straight spans; on them the acceleration is what the speed of the moment leaves.
+Spans with_arcs(Random& random, const Limits& limits) {
+  constexpr double kAlong = 0.43588989435406736;  // where 0.9 of it is across
+  Spans spans = moves(random, limits, true);
+  for (Span& span : spans) {
+    if (random.below(3) == 0) continue;
+    const double radius = random.logarithmic(0.5, 200);
+    span.speed = std::min(span.speed, std::sqrt(0.9 * limits.acceleration * radius));
+    const double across = span.speed * span.speed / radius;
+    span.curve = {limits.acceleration, 1 / radius, limits.acceleration};
+    span.acceleration = std::sqrt(limits.acceleration * limits.acceleration - across * across);
+    span.jerk *= kAlong;
+  }
+  return spans;
+}
+
+TEST(SCurvePlan, ArcsUseTheirAccelerationAtEverySpeed) {
+  Random random(13);
+  double best = 1;
+  double worst = 0;
+  for (int i = 0; i < 600; ++i) {
+    const Spans spans = with_arcs(random, random_limits(random));
+    Spans as_at_top = spans;
+    for (Span& span : as_at_top) span.curve = {};
+    for (const std::size_t window : {16U, 16'384U}) {
+      const std::vector<Phase> phases = plan(spans, window);
+      ASSERT_EQ(test::fault_of(phases, spans), "") << i << " window " << window;
+      if (window == 16) continue;
+      TrapezoidPlan trapezoid(window);
+      const double time = test::duration_of(phases);
+      ASSERT_GE(time, test::duration_of(test::plan_all(trapezoid, spans)) * (1 - 1e-9)) << i;
+      const double share = time / seconds(as_at_top, window);
+      best = std::min(best, share);
+      worst = std::max(worst, share);
+    }
+  }
+  EXPECT_LE(best, 0.9);
+  EXPECT_LE(worst, 1.001);
+  RecordProperty("best", std::to_string(best));
+  RecordProperty("worst", std::to_string(worst));
+}
+
+// Lines and arcs at one feed, which differ by rounding: length / (length / feed) is not always the feed.
+Spans at_one_feed(Random& random, const Limits& limits) {
+  Spans spans;
+  for (std::size_t i = 4 + random.below(20); i > 0; --i) {
+    const double speed = limits.speed * (1 - static_cast<double>(random.below(4)) * 0x1p-53);
+    const double exit = random.below(2) == 0 ? kInfinite : random.uniform(0, limits.speed);
+    const double share = random.uniform(0.5, 1);
+    spans.push_back({random.logarithmic(0.5, 100), speed, limits.acceleration * share, limits.jerk * share, exit});
+    if (random.below(3) != 0) continue;
+    Span& arc = spans.back();
+    const double across = random.uniform(0, 0.9) * limits.acceleration;
+    arc.curve = {limits.acceleration, across / (speed * speed), limits.acceleration};
+    arc.acceleration = std::sqrt(limits.acceleration * limits.acceleration - across * across);
+  }
+  return spans;
+}
+
+TEST(SCurvePlan, SpeedsThatDifferByRoundingMakeNoRamps) {
+  Random random(14);
+  for (int i = 0; i < 1'000; ++i) {
+    const Spans spans = at_one_feed(random, random_limits(random));
+    for (const std::size_t window : {16U, 16'384U}) {
+      ASSERT_EQ(test::fault_of(plan(spans, window), spans), "") << "program " << i << " window " << window;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace trammel::planner

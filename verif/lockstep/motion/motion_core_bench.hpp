@@ -1,0 +1,477 @@
+// The motion core beside its golden model: drives both with the same words, registers and pins, and compares every
+// output in every cycle.
+#pragma once
+
+#include <Vdut.h>
+
+#include <array>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "motion_core_inside.hpp"
+#include "programs.hpp"
+#include "trammel/model/motion_core.hpp"
+#include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+
+namespace reg = card_map::reg;
+
+constexpr unsigned kAxes = TRAMMEL_AXES;
+// What is built in: what is missing is asked for by nobody, since checker and registers refuse it.
+constexpr bool kArcs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator);
+constexpr bool kChords = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kArcGenerator);
+constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kDirectMode);
+constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kClasses);
+constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
+constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
+constexpr unsigned kInputs = 5;
+constexpr unsigned kOutputs = 3;
+constexpr std::uint64_t kComparedSignals = 38 + kAxes;
+using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
+constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
+
+// The registers of direct mode as the loader reads them: the word at an address, two clocks later.
+class LoaderRam {
+ public:
+  void clock(std::uint16_t address) {
+    data_ = fetched_;
+    fetched_ = words_[address];
+  }
+  std::uint32_t data() const { return data_; }
+  void write(std::uint32_t address, std::uint32_t data) { words_[address >> 2] = data; }
+
+ private:
+  std::array<std::uint32_t, card_map::kWindowBytes / 4> words_{};
+  std::uint32_t fetched_ = 0;
+  std::uint32_t data_ = 0;
+};
+
+class MotionCoreBench {
+ public:
+  explicit MotionCoreBench(std::uint64_t seed)
+      : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
+    programs_.arcs = kArcs;
+    programs_.eight_directions = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator8);
+    programs_.chords = kChords;
+    programs_.path_commands = kPathCommands;
+    programs_.probes = kPathCommands;
+    programs_.inputs = kInputs;
+    programs_.classes = kClasses;
+    reset();
+  }
+
+  void random_clock() {
+    if (dice_.chance(10'000)) random_pace();
+    const bool closed = model_->stop().closed;
+    if (!closed && !starting_ && geometry_.done() && dice_.chance(stretch_every_)) {
+      const Programs::Stretch stretch = programs_.stretch();
+      check_.event("stretch of commands", stretch.geometry.size());
+      geometry_.add(stretch.geometry);
+      feed_.add(stretch.feed);
+    }
+    in_ = {};
+    in_.abort = dice_.chance(abort_every_);
+    if (dice_.chance(50)) pins_ = static_cast<std::uint16_t>(dice_.draw());
+    in_.pins = pins_;
+    in_.probe_clear = kPathCommands && dice_.chance(50);
+    if (in_.abort) check_.event("abort");
+    if (model_->stop().fault != 0 ? dice_.chance(40) : dice_.chance(5000)) {
+      in_.clear_fault = dice_.chance(3) ? dice_.draw() : ~0U;
+      check_.event("clear fault", in_.clear_fault);
+    }
+    if (dice_.chance(200)) random_setting();
+    if (dice_.chance(3000)) marks_near_a_carry();
+    // While a START is answered no word is written: what it finds queued is all there is.
+    if (kDirectMode && !starting_ && geometry_.done() && feed_.done() && dice_.chance(start_every_)) random_start();
+    if (dice_.chance(50 * abort_every_))
+      reset();
+    else
+      clock();
+  }
+
+  // OUTPUT and MARK wait for the end of a path of every length round their decoding; they, their effect and what is
+  // decoded meanwhile meet an abort and a reset in every clock.
+  void commands_around_ends() {
+    for (unsigned ticks = 1; ticks < 60; ++ticks) {
+      commands_behind(ticks, 100, Programs::mark());
+      commands_behind(ticks, 100, programs_.output());
+    }
+    for (const unsigned ticks : {1U, 20U}) {
+      for (unsigned clocks = 0; clocks < 80; ++clocks) {
+        commands_behind(ticks, clocks, Programs::mark());
+        in_.abort = true;
+        clock();
+        in_.abort = false;
+        commands_alone();
+        commands_behind(ticks, clocks, Programs::mark());
+        reset();
+        commands_alone();
+      }
+    }
+  }
+
+  // A probe's edge at each clock round the begin of PROBE_END, with a line behind it; cleared at once or late.
+  void edges_around_the_end() {
+    for (const unsigned ticks : {0U, 3U}) {
+      for (unsigned edge = 0; edge < 110; ++edge) {
+        for (const unsigned clear : {0U, 40U}) {
+          probe_to_the_end(ticks);
+          for (unsigned i = 0; i < 220; ++i) {
+            in_.pins = i < edge ? 0 : 1;
+            in_.probe_clear = i == edge + clear;
+            clock();
+          }
+        }
+      }
+    }
+    in_ = {};
+  }
+
+  // STREAMING is switched on at each clock round the one in which the first command ends the card's rest.
+  void streaming_set_around_the_begin() {
+    for (unsigned clocks = 0; clocks < 40; ++clocks) {
+      reset();
+      in_ = {};
+      write_every_ = 1;
+      geometry_.add({stored_command(card_map::Opcode::Line, 1, 20, {}, {kOnePulse / 2})});
+      feed_.add({stored_command(card_map::Opcode::Feed, 0, 20, {{"rate", int128{1} << 63}, {"floor", 1}})});
+      for (unsigned i = 0; i < 200; ++i) {
+        in_.setting = {i == clocks, reg::kStreaming, card_map::field::kStreamingOn | 200U << 8};
+        clock();
+      }
+    }
+    in_ = {};
+  }
+
+  Checker& check() { return check_; }
+  std::uint64_t steps() const { return steps_; }
+  std::uint64_t moves() const { return moves_; }
+  std::uint64_t faults() const { return faults_; }
+  std::uint64_t marks() const { return marks_; }
+  std::uint64_t missing() const { return missing_; }
+  std::uint64_t stale() const { return stale_; }
+  std::uint64_t halts() const { return halts_; }
+  std::uint64_t expected() const { return kComparedSignals * check_.cycles() + more_; }
+
+ private:
+  void commands_behind(unsigned ticks, unsigned clocks, const Halfwords& second) {
+    reset();
+    in_ = {};
+    write_every_ = 1;
+    geometry_.add({stored_command(card_map::Opcode::Line, 1, ticks, {}, {kOnePulse / 2}), programs_.output(), second,
+                   programs_.output(), Programs::mark()});
+    feed_.add({stored_command(card_map::Opcode::Feed, 0, ticks, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}})});
+    for (unsigned i = 0; i < clocks; ++i) clock();
+  }
+
+  void probe_to_the_end(unsigned ticks) {
+    reset();
+    in_ = {};
+    write_every_ = 1;
+    const auto line = [](unsigned n) { return stored_command(card_map::Opcode::Line, 1, n, {}, {kOnePulse / 2}); };
+    const auto piece = [](unsigned n) {
+      return stored_command(card_map::Opcode::Feed, 0, n, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}});
+    };
+    const Halfwords probe = stored_command(card_map::Opcode::Probe, 0, 0, {{"condition", 0x20}});
+    geometry_.add({probe});
+    if (ticks != 0) geometry_.add({line(ticks)});
+    if (ticks != 0) feed_.add({piece(ticks)});
+    geometry_.add({Programs::probe_end(), line(20)});
+    feed_.add({Programs::probe_end(), piece(20)});
+  }
+
+  void commands_alone() {
+    for (unsigned i = 0; i < 4; ++i) clock();
+    geometry_.add({Programs::mark(), programs_.output()});
+    for (unsigned i = 0; i < 40; ++i) clock();
+  }
+
+  // The RTL has passed more MARKs than the model.
+  void marks_near_a_carry() {
+    if constexpr (kPathCommands) {
+      const auto marks = static_cast<std::uint32_t>(dice_.before_carry(32));
+      const std::uint32_t more = marks - model_->commands().marks() - marks_ahead_;
+      marks_ahead_ += more;
+      add_marks(*dut_, more);
+    }
+  }
+
+  void random_pace() {
+    abort_every_ = dice_.chance(3) ? 200 + dice_.below(500) : 20'000;
+    start_every_ = dice_.chance(2) ? 100 : 2000;
+    write_every_ = 1 + dice_.below(dice_.chance(2) ? 1 : 10);
+    stretch_every_ = dice_.chance(3) ? 1000 : 10;
+    programs_.wrong_every = dice_.chance(3) ? 10 : 1000;
+    programs_.longest = dice_.chance(2) ? 20 : 300;
+    // Drives that are slow make step faults; mostly they are quick.
+    slow_ = dice_.chance(4);
+  }
+
+  void random_setting() {
+    const unsigned axis = dice_.below(kAxes);
+    const std::uint32_t time = slow_ ? dice_.below(100) : dice_.below(1U << dice_.below(4));
+    constexpr std::uint32_t ratios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
+    const std::pair<std::uint32_t, std::uint32_t> settings[] = {
+        {reg::step_length(axis), time},
+        {reg::step_space(axis), time},
+        {reg::dir_setup(axis), time},
+        {reg::dir_hold(axis), time},
+        {reg::mode(axis), dice_.below(16)},
+        {reg::kHoldLimit, 1 + dice_.below(dice_.chance(2) ? 300 : 0xFFFF)},
+        {reg::kHold, dice_.chance(8) ? 1U : 0U},
+        {kClasses ? ratios[dice_.below(3)] : reg::kRatioFeed,
+         !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
+        {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
+        {reg::kStopReaction, dice_.chance(2) ? 0x4FF : dice_.below(256) | dice_.below(2) << 10},
+        {kStreaming ? reg::kStreaming : reg::kHoldLimit, kStreaming ? dice_.below(2) | dice_.below(4) << 8 : 7},
+        {reg::kInputPolarity, kPathCommands ? dice_.draw() & 0xFFFF : 0},
+        {reg::kOutputSafe, kPathCommands ? dice_.draw() : 0}};
+    const auto& [address, data] = settings[dice_.below(std::size(settings))];
+    in_.setting = {!dice_.chance(4), address, data};
+    if (in_.setting.set) check_.event("setting", std::uint64_t{address} << 32 | data);
+  }
+
+  // Mostly a move that can be made; else one value is off.
+  void random_start() {
+    for (unsigned axis = 0; axis < kAxes; ++axis) {
+      std::uint64_t frequency = dice_.log_uniform(40) + 1;
+      if (dice_.chance(8)) frequency = std::uint64_t{1} << 40;
+      if (dice_.chance(20))
+        frequency = dice_.chance(2) ? 0 : (std::uint64_t{1} << 40) + 1 + dice_.below(2) * 0xFFFFFFFF;
+      write_register(reg::frequency_lo(axis), static_cast<std::uint32_t>(frequency));
+      write_register(reg::frequency_hi(axis), static_cast<std::uint32_t>(frequency >> 32));
+      write_register(reg::count(axis), dice_.chance(3) ? dice_.below(4) : dice_.below(100));
+      write_register(reg::direction(axis), dice_.below(2));
+    }
+    write_register(reg::kLengthLo, dice_.chance(20) ? 0 : 1 + dice_.below(200));
+    write_register(reg::kLengthHi, dice_.chance(1000) ? 1 : 0);
+    starting_ = true;
+    in_.start = true;
+    mask_ = dice_.chance(10) ? dice_.draw() : 1 + dice_.below(kAllAxes);
+    check_.event("START", mask_ & 0xFF);
+  }
+
+  void write_register(std::uint32_t address, std::uint32_t data) {
+    rtl_ram_.write(address, data);
+    model_ram_.write(address, data);
+  }
+
+  // One clock of reset, whatever comes in it; the pins stand at the strap's levels.
+  void reset() {
+    idle_level_ = dice_.draw() & ((1U << 2 * kAxes) - 1);
+    output_idle_ = static_cast<std::uint16_t>(dice_.below(1U << kOutputs));
+    check_.event("reset", idle_level_);
+    dut_->rst_i = 1;
+    apply();
+    dut_.clock();
+    dut_->rst_i = 0;
+    const model::PathCommands::Config pins{kInputs, kOutputs, output_idle_};
+    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, TRAMMEL_ENGINES, pins);
+    geometry_.reset();
+    feed_.reset();
+    starting_ = false;
+    marks_ahead_ = 0;
+    chain_.fill({});
+    compare();
+  }
+
+  void clock() {
+    // The host waits for START's answer, and the stream is refused while a direct move runs.
+    const bool streams = !starting_ && !model_->loader().go && !model_->sequencer().outputs().direct;
+    const model::HalfwordQueue::Inputs& geometry = geometry_.offer(streams && dice_.chance(write_every_));
+    const model::HalfwordQueue::Inputs& feed = feed_.offer(streams && dice_.chance(write_every_));
+    in_.arrival = {false, geometry.commit, geometry.write, feed.commit, feed.write, geometry.word};
+    apply();
+    advance_chain();
+    const bool cut = model_->stop().cut;
+    const bool geometry_reads = model_->sequencer().geometry_read();
+    const bool feed_reads = model_->sequencer().feed_read();
+    const auto rtl_address = static_cast<std::uint16_t>(get(dut_->start_answer_o, bus::start_answer::kAddress));
+    const std::uint16_t model_address = model_->loader().address;
+    dut_.clock();
+    model_->clock(in_);
+    rtl_ram_.clock(rtl_address);
+    model_ram_.clock(model_address);
+    geometry_.clock(geometry_reads, cut);
+    feed_.clock(feed_reads, cut);
+    compare();
+    note_events();
+    steps_ += model_->outputs().path_step != 0 ? 1U : 0U;
+    marks_ += model_->commands().mark() ? 1U : 0U;
+    halts_ += model_->probe().halt() ? 1U : 0U;
+    if (model_->probe().halt()) check_.event("halt by the probe");
+    moves_ += model_->loader().go ? 1U : 0U;
+    faults_ += model_->stop().stop ? 1U : 0U;
+    missing_ += model_->sequencer().streaming().missing ? 1U : 0U;
+    stale_ += model_->sequencer().outputs().stale ? 1U : 0U;
+  }
+
+  void note_events() {
+    const auto& s = model_->sequencer().outputs();
+    if (model_->stop().cut) check_.event("cut, with fault", model_->stop().fault);
+    if (s.swap)
+      check_.event(s.engine != card_map::engine::kLines ? "arc begins"
+                   : s.direct                           ? "direct move begins"
+                                                        : "line begins",
+                   s.active);
+    if (s.feed_swap) check_.event("piece begins");
+    if (model_->loader().done) starting_ = false;
+  }
+
+  // From the far end: RATIO, RATE, FEED_BEGUN, GEOMETRY_BEGUN, POSITION of each axis; only 18 bits pass RATIO.
+  void advance_chain() {
+    const auto& sequencer = model_->sequencer().outputs();
+    for (std::size_t i = chain_.size(); i-- > 0;) {
+      const std::uint32_t values[] = {model_->time().ratio, model_->feed().rate, sequencer.feed_begun,
+                                      sequencer.geometry_begun};
+      const std::uint32_t value = i < 4 ? values[i] : model_->position(static_cast<unsigned>(i - 4));
+      if (i == 0)
+        chain_[i].clock(dut_->snapshot_i, value);
+      else
+        chain_[i].clock(dut_->snapshot_i, value, chain_[i - 1]);
+    }
+  }
+
+  void apply() {
+    in_.geometry_empty = geometry_.outputs().empty;
+    in_.geometry_word = geometry_.outputs().word;
+    in_.feed_empty = feed_.outputs().empty;
+    in_.feed_word = feed_.outputs().word;
+    in_.start_mask = static_cast<std::uint8_t>(mask_);
+    in_.loader_data = model_ram_.data();
+    dut_->idle_level_i = static_cast<IdleLevel>(idle_level_);
+    dut_->output_idle_i = static_cast<CData>(output_idle_);
+    dut_->input_i = static_cast<CData>(in_.pins & ((1U << kInputs) - 1));
+    dut_->setting_i = wire(in_.setting);
+    dut_->abort_i = in_.abort;
+    dut_->probe_clear_i = in_.probe_clear;
+    dut_->clear_fault_i = in_.clear_fault;
+    dut_->geometry_empty_i = in_.geometry_empty;
+    dut_->geometry_word_i = in_.geometry_word;
+    dut_->feed_empty_i = in_.feed_empty;
+    dut_->feed_word_i = in_.feed_word;
+    dut_->arrival_i = arrival_wire(in_.arrival, in_.full);
+    using namespace bus::start;
+    dut_->start_i = in_place(kStart, in_.start) | in_place(kMask, in_.start_mask) | in_place(kData, rtl_ram_.data());
+    dut_->snapshot_i = dice_.snapshot() & ~bus::in_place({18, 14}, ~std::uint64_t{0});
+  }
+
+  std::uint64_t observed(unsigned axis, const bus::Field& field) {
+    return get(dut_->observe_o, up(field, bus::axis_observe::kWidth * axis));
+  }
+
+  void compare() {
+    check_.next_cycle();
+    const auto& out = model_->outputs();
+    const auto& stop = model_->stop();
+    check_.compare("geometry_read_o", dut_->geometry_read_o, model_->sequencer().geometry_read());
+    check_.compare("feed_read_o", dut_->feed_read_o, model_->sequencer().feed_read());
+    const auto answer = [this](const bus::Field& field) { return get(dut_->start_answer_o, field); };
+    check_.compare("start, done", answer(bus::start_answer::kDone), model_->loader().done);
+    check_.compare("cut_o", dut_->cut_o, stop.cut);
+    check_.compare("closed_o", dut_->closed_o, stop.closed);
+    check_.compare("stop_o", dut_->stop_o, stop.stop);
+    check_.compare("busy_o", dut_->busy_o, out.busy);
+    compare_states();
+    compare_axes();
+    const auto& commands = model_->commands();
+    check_.compare("output_o", dut_->output_o, commands.outputs());
+    check_.compare("mark_o", dut_->mark_o, commands.mark());
+    check_.compare("probe_o", dut_->probe_o, model_->probe_trips(in_));
+    check_.compare("step_o", dut_->step_o, out.step);
+    check_.compare("dir_o", dut_->dir_o, out.dir);
+    check_.compare("start, error with done", answer(bus::start_answer::kDone) & answer(bus::start_answer::kError),
+                   model_->loader().done && model_->loader().error);
+    if (model_->loader().done && model_->loader().error)
+      more("start, reason", answer(bus::start_answer::kReason), model_->loader().reason);
+    if (chain_.back().known())
+      more("snapshot_o, word", get(dut_->snapshot_o, bus::snapshot::kWord), chain_.back().word());
+  }
+
+  void compare_states() {
+    const auto& s = model_->sequencer().outputs();
+    namespace time = bus::time_state;
+    const auto in_time = [this](const bus::Field& field) { return get(dut_->time_state_o, field); };
+    check_.compare("fault", in_time(time::kFault), model_->stop().fault);
+    check_.compare("feed active", in_time(time::kFeedActive), s.feed_active);
+    check_.compare("stopping", in_time(time::kStopping), model_->stop().stopping);
+    check_.compare("held", in_time(time::kHeld), model_->time().ratio == 0);
+    check_.compare("feed begun", in_time(time::kFeedBegun), s.feed_begun);
+    check_.compare("tick", in_time(time::kTick), s.tick);
+    check_.compare("feed swap", in_time(time::kFeedSwap), s.feed_swap);
+    check_.compare("ratio", in_time(time::kRatio), model_->time().ratio);
+    check_.compare("rate", in_time(time::kRate), model_->feed().rate);
+    namespace geometry = bus::geometry_state;
+    const auto in_geometry = [this](const bus::Field& field) { return get(dut_->geometry_state_o, field); };
+    check_.compare("direct", in_geometry(geometry::kDirect), s.direct);
+    check_.compare("path active", in_geometry(geometry::kPathActive), s.path_active);
+    check_.compare("ended", in_geometry(geometry::kEnded), s.ended);
+    check_.compare("geometry begun", in_geometry(geometry::kGeometryBegun), s.geometry_begun);
+    check_.compare("path swap", in_geometry(geometry::kPathSwap), s.swap);
+    const auto& commands = model_->commands();
+    check_.compare("inputs", get(dut_->pins_state_o, bus::pins_state::kInputs), kPathCommands ? commands.levels() : 0);
+    check_.compare("outputs", get(dut_->pins_state_o, bus::pins_state::kOutputs),
+                   kPathCommands ? commands.outputs() : 0);
+    check_.compare("marks", get(dut_->pins_state_o, bus::pins_state::kMarks), commands.marks() + marks_ahead_);
+    check_.compare("waiting", in_geometry(geometry::kWaiting), model_->sequencer().waits_for_input());
+    check_.compare("probe missed", get(dut_->pins_state_o, bus::pins_state::kProbeMissed), model_->probe().missed());
+    check_.compare("probed", get(dut_->pins_state_o, bus::pins_state::kProbed), model_->probe().probed());
+    check_.compare("stale", in_geometry(geometry::kStale), s.stale);
+    check_.compare("stale ticks", in_geometry(geometry::kStaleTicks), model_->sequencer().streaming().ticks);
+  }
+
+  void compare_axes() {
+    using namespace bus::axis_observe;
+    check_.compare("path tick", dut_->path_tick_o, model_->engines().path_tick);
+    std::uint64_t steps = 0;
+    std::uint64_t dirs = 0;
+    for (unsigned axis = 0; axis < kAxes; ++axis) {
+      steps |= observed(axis, kStep) << axis;
+      dirs |= observed(axis, kDir) << axis;
+      check_.compare("position", observed(axis, kPosition), model_->position(axis));
+    }
+    check_.compare("path step", steps, model_->outputs().path_step);
+    check_.compare("path dir", dirs, model_->outputs().path_dir);
+  }
+
+  void more(const char* signal, std::uint64_t rtl, std::uint64_t model) {
+    check_.compare(signal, rtl, model);
+    ++more_;
+  }
+
+  Simulated<Vdut> dut_;
+  std::unique_ptr<model::MotionCore> model_;
+  model::MotionCore::Inputs in_;
+  Checker check_;
+  Dice dice_;
+  Programs programs_;
+  QueueWriter geometry_;
+  QueueWriter feed_;
+  LoaderRam rtl_ram_;
+  LoaderRam model_ram_;
+  std::array<SnapshotWord, 4 + kAxes> chain_;
+  std::uint32_t idle_level_ = 0;
+  std::uint16_t output_idle_ = 0;
+  std::uint16_t pins_ = 0;
+  std::uint32_t mask_ = 0;
+  std::uint32_t marks_ahead_ = 0;  // of the model, in the RTL
+  bool starting_ = false;
+  bool slow_ = false;
+  unsigned abort_every_ = 20'000;
+  unsigned start_every_ = 5000;
+  unsigned stretch_every_ = 10;
+  unsigned write_every_ = 1;  // one halfword in so many clocks
+  std::uint64_t steps_ = 0;
+  std::uint64_t moves_ = 0;
+  std::uint64_t faults_ = 0;
+  std::uint64_t marks_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t stale_ = 0;  // clocks
+  std::uint64_t halts_ = 0;
+  std::uint64_t more_ = 0;
+};
+
+}  // namespace trammel::lockstep
