@@ -10,7 +10,7 @@ include(CMakePackageConfigHelpers)
 
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
-install(TARGETS trammel_card_map trammel_frames trammel_model trammel_methods trammel_driver trammel_transport trammel_machine
+install(TARGETS trammel_card_map trammel_frames trammel_model trammel_skip trammel_methods trammel_driver trammel_transport trammel_machine
   trammel_kinematics trammel_gcode trammel_planner trammel_chart trammel_run trammel_sim trammel_c EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
@@ -20,6 +20,7 @@ install(DIRECTORY
   "${PROJECT_SOURCE_DIR}/rtl/regs/generated/include/"
   "${PROJECT_SOURCE_DIR}/frames/include/"
   "${PROJECT_SOURCE_DIR}/cpp-model/card/include/"
+  "${PROJECT_SOURCE_DIR}/cpp-model/skip/include/"
   "${PROJECT_SOURCE_DIR}/cpp-model/methods/include/"
   "${PROJECT_SOURCE_DIR}/driver/include/"
   "${PROJECT_SOURCE_DIR}/transport/include/"

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "trammel/skip/card.hpp"
+
 namespace trammel::sim {
 
 namespace {
@@ -23,11 +25,11 @@ LockstepCard::LockstepCard(std::unique_ptr<VerilatedCard> card, const model::Car
   CardRecord unused;
   for (std::size_t i = 0; i < kResetClocks; ++i) {
     card_->run(reset, 1, &unused);
-    model_.clock(reset);
+    skip::clock(model_, reset);
   }
   // The reset is registered: one more clock under it.
   card_->run({}, 1, &unused);
-  model_.clock({});
+  skip::clock(model_, {});
   if (thread == RtlThread::kOwn) worker_ = std::make_unique<Worker>();
 }
 
@@ -54,7 +56,7 @@ void LockstepCard::run(const model::CardModel::Inputs& in, std::uint64_t clocks)
     batch.stretches.push_back({in, 0});
     // Counted clock by clock: who receives the model's steps may throw.
     for (std::size_t i = 0; i < some; ++i) {
-      model_.clock(in);
+      skip::clock(model_, in);
       batch.golden[batch.clocks++].show(model_);
       ++batch.stretches.back().clocks;
     }

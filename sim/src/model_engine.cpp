@@ -1,4 +1,5 @@
 #include "bus_engine.hpp"
+#include "trammel/skip/card.hpp"
 
 namespace trammel::sim {
 
@@ -16,13 +17,13 @@ class ModelEngine final : public BusEngine {
  public:
   explicit ModelEngine(const ModelOptions& options) : BusEngine(options), card_(model_config(options)) {}
 
-  void wait(std::uint64_t card_clocks) override { card_.run(card_clocks, pins()); }
+  void wait(std::uint64_t card_clocks) override { skip::run(card_, card_clocks, pins()); }
   std::optional<std::uint64_t> lockstep_cycles() const override { return std::nullopt; }
   std::uint64_t comparisons() const override { return 0; }
 
  private:
   void note(const driver::Access&) override {}
-  void clock_card(const model::CardModel::Inputs& in) override { card_.clock(in); }
+  void clock_card(const model::CardModel::Inputs& in) override { skip::clock(card_, in); }
   model::CardModel& card() override { return card_; }
   const model::CardModel& card() const override { return card_; }
 

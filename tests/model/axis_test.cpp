@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "trammel/skip/axis.hpp"
+
 namespace trammel::model {
 namespace {
 
@@ -50,7 +52,7 @@ TEST(Axis, LineReachesThePosition) {
     EXPECT_EQ(path, back ? ~std::uint32_t{99} : 100U);
     EXPECT_EQ(axis.outputs().shaper.position, path);
     EXPECT_FALSE(axis.outputs().shaper.fault);
-    EXPECT_TRUE(axis.quiet());
+    EXPECT_TRUE(skip::horizon(axis, {}) == skip::kForever);
   }
 }
 
@@ -62,7 +64,7 @@ TEST(Axis, EngineStepsPassOneClockLater) {
   axis.clock(in);
   EXPECT_TRUE(axis.outputs().path_step);
   EXPECT_TRUE(axis.outputs().path_dir);
-  EXPECT_FALSE(axis.quiet());
+  EXPECT_FALSE(skip::horizon(axis, {}) == skip::kForever);
   in.engine_step = false;
   in.engine_dir = false;
   for (int i = 0; i < 30; ++i) {

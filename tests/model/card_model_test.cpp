@@ -9,6 +9,7 @@
 #include "core_bench.hpp"
 #include "trammel/driver/arc.hpp"
 #include "trammel/driver/commands.hpp"
+#include "trammel/skip/card.hpp"
 
 namespace {
 
@@ -42,7 +43,7 @@ class Card {
   }
   void wait(std::uint64_t clocks) {
     if (skips_) {
-      model_.run(clocks);
+      skip::run(model_, clocks);
     } else {
       for (; clocks != 0; --clocks) model_.clock(CardModel::Inputs{});
     }

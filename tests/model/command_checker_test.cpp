@@ -94,7 +94,6 @@ class Stream {
   }
 
   const CommandChecker::Outputs& outputs() const { return checker_.outputs(); }
-  bool quiet() const { return checker_.quiet(); }
 
  private:
   void take(Queue& queue, bool write, bool commit) {
@@ -404,21 +403,6 @@ TEST(CommandChecker, IgnoresAWriteThatDoesNotWait) {
     while (!stream.outputs().ready) stream.clock(in);
   }
   EXPECT_EQ(stream.geometry.committed, command.stored());
-}
-
-TEST(CommandChecker, QuietMeansThatAClockChangesNothing) {
-  CommandSource source(4, 22);
-  Stream stream(4);
-  EXPECT_TRUE(stream.quiet());
-  ASSERT_TRUE(stream.send(source.any(0).words()));
-  EXPECT_FALSE(stream.quiet());
-  stream.clock({});
-  EXPECT_TRUE(stream.quiet());
-  const CommandChecker::Outputs before = stream.outputs();
-  for (int i = 0; i < 10; ++i) stream.clock({});
-  EXPECT_TRUE(stream.quiet());
-  EXPECT_EQ(stream.outputs().halfword, before.halfword);
-  EXPECT_EQ(stream.outputs().number, before.number);
 }
 
 }  // namespace

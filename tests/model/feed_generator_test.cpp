@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "feed_pieces.hpp"
+#include "trammel/skip/feed_generator.hpp"
 
 namespace trammel::model {
 namespace {
@@ -23,7 +24,7 @@ TEST(FeedGenerator, ConstantRateGivesTheFlooredProduct) {
       ticks += ticks_in(feed, more);
       const uint128 sum = static_cast<uint128>(p.rate >> 16) * clocks;
       ASSERT_EQ(ticks, static_cast<std::uint64_t>(sum >> 48));
-      ASSERT_EQ(feed.phase(), static_cast<std::uint64_t>(sum) & 0xFFFF'FFFF'FFFF);
+      ASSERT_EQ(feed.state().phase, static_cast<std::uint64_t>(sum) & 0xFFFF'FFFF'FFFF);
     }
   }
 }
@@ -36,7 +37,7 @@ TEST(FeedGenerator, EverySlopeIsTheClosedForm) {
     load_and_swap(feed, p);
     for (std::int64_t k = 0; k < 100; ++k) {
       for (std::uint32_t c = 0; c < FeedGenerator::kUpdateClocks; ++c) {
-        ASSERT_EQ(feed.slope(), ideal_slope(p, k)) << "update " << k << " clock " << c;
+        ASSERT_EQ(feed.state().slope, ideal_slope(p, k)) << "update " << k << " clock " << c;
         enabled_clock(feed);
       }
     }
@@ -59,7 +60,7 @@ TEST(FeedGenerator, TickAndRateShowThreeClocksLater) {
   EXPECT_TRUE(feed.outputs().tick);
   feed.clock({});
   EXPECT_FALSE(feed.outputs().tick);
-  EXPECT_TRUE(feed.quiet());
+  EXPECT_TRUE(skip::at_rest(feed));
 }
 
 TEST(FeedGenerator, ClearDropsPhaseAndTicksInFlight) {
@@ -72,8 +73,8 @@ TEST(FeedGenerator, ClearDropsPhaseAndTicksInFlight) {
     FeedGenerator::Inputs in;
     in.clear = true;
     feed.clock(in);
-    EXPECT_TRUE(feed.quiet()) << before;
-    EXPECT_EQ(feed.phase(), 0U);
+    EXPECT_TRUE(skip::at_rest(feed)) << before;
+    EXPECT_EQ(feed.state().phase, 0U);
     EXPECT_EQ(drain(feed), 0U);
   }
 }
@@ -101,7 +102,7 @@ TEST(FeedGenerator, AccelerationAndJerkComeAfterTheSwap) {
     load(feed_target::kAcceleration, p.acceleration);
     load(feed_target::kJerk, p.jerk);
     for (std::uint64_t c = first + 8; c < 2000; ++c) {
-      ASSERT_EQ(feed.slope(), ideal_slope(p, static_cast<std::int64_t>(c / FeedGenerator::kUpdateClocks))) << c;
+      ASSERT_EQ(feed.state().slope, ideal_slope(p, static_cast<std::int64_t>(c / FeedGenerator::kUpdateClocks))) << c;
       enabled_clock(feed);
     }
   }
@@ -121,7 +122,7 @@ TEST(FeedGenerator, PhaseIsKeptOverSwaps) {
     }
     ticks += ticks_in(feed, clocks);
     ASSERT_EQ(ticks, static_cast<std::uint64_t>(sum >> 48));
-    ASSERT_EQ(feed.phase(), static_cast<std::uint64_t>(sum) & 0xFFFF'FFFF'FFFF);
+    ASSERT_EQ(feed.state().phase, static_cast<std::uint64_t>(sum) & 0xFFFF'FFFF'FFFF);
   }
 }
 
@@ -129,12 +130,12 @@ TEST(FeedGenerator, ClampsAtTheFloorAndAtOne) {
   FeedGenerator feed;
   load_and_swap(feed, {std::uint64_t{1} << 62, -(std::int64_t{1} << 60), 0, 0x1000});
   ticks_in(feed, 32 * 5);
-  EXPECT_EQ(feed.slope(), std::uint64_t{0x1000} << 16);
+  EXPECT_EQ(feed.state().slope, std::uint64_t{0x1000} << 16);
   ticks_in(feed, 32 * 3);
-  EXPECT_EQ(feed.slope(), std::uint64_t{0x1000} << 16);
+  EXPECT_EQ(feed.state().slope, std::uint64_t{0x1000} << 16);
   load_and_swap(feed, {std::uint64_t{1} << 62, std::int64_t{1} << 60, 0, 0x1000});
   ticks_in(feed, 32 * 12);
-  EXPECT_EQ(feed.slope(), (std::uint64_t{1} << 48) - 1);
+  EXPECT_EQ(feed.state().slope, (std::uint64_t{1} << 48) - 1);
   EXPECT_GE(ticks_in(feed, 320), 319U);
 }
 
@@ -142,11 +143,11 @@ TEST(FeedGenerator, ClampsAtTheFloorAndAtOne) {
 TEST(FeedGenerator, TheFirstSlopeIsNotClamped) {
   FeedGenerator feed;
   load_and_swap(feed, {std::uint64_t{7} << 32, 0, 0, 0x8000'0000});
-  EXPECT_EQ(feed.slope(), std::uint64_t{7} << 16);
-  EXPECT_EQ(feed.advance(31, 9).enables, 31U);
-  EXPECT_EQ(feed.slope(), std::uint64_t{7} << 16);
-  EXPECT_EQ(feed.advance(1, 9).enables, 1U);
-  EXPECT_EQ(feed.slope(), std::uint64_t{0x8000'0000} << 16);
+  EXPECT_EQ(feed.state().slope, std::uint64_t{7} << 16);
+  EXPECT_EQ(skip::FeedAhead(feed).advance(31, 9).enables, 31U);
+  EXPECT_EQ(feed.state().slope, std::uint64_t{7} << 16);
+  EXPECT_EQ(skip::FeedAhead(feed).advance(1, 9).enables, 1U);
+  EXPECT_EQ(feed.state().slope, std::uint64_t{0x8000'0000} << 16);
 }
 
 // advance() against clock() for clock: the same carries, up to the one wanted, and the same state after it.
@@ -162,19 +163,19 @@ TEST(FeedGenerator, AdvanceIsExact) {
     for (int part = 0; part < 6; ++part) {
       const std::uint64_t limit = random.word() % 4 == 0 ? random.word() % 40 : random.word() % 6000;
       const std::uint64_t carries = random.word() % 3 == 0 ? ~std::uint64_t{0} : 1 + random.word() % 300;
-      const FeedGenerator::Advanced gone = jumping.advance(limit, carries);
+      const skip::FeedAhead::Advanced gone = skip::FeedAhead(jumping).advance(limit, carries);
       ASSERT_LE(gone.enables, limit);
       ASSERT_LE(gone.carries, carries);
       ASSERT_TRUE(gone.enables == limit || gone.carries == carries);
       std::uint64_t made = 0;
       for (std::uint64_t c = 0; c < gone.enables; ++c) {
         enabled_clock(clocked);
-        made += clocked.carried(0) ? 1U : 0U;
+        made += skip::carried(clocked, 0) ? 1U : 0U;
       }
       ASSERT_EQ(made, gone.carries) << "piece " << i << " part " << part;
-      ASSERT_TRUE(gone.carries != carries || clocked.carried(0)) << "the last one carries";
-      ASSERT_EQ(jumping.phase(), clocked.phase());
-      ASSERT_EQ(jumping.slope(), clocked.slope());
+      ASSERT_TRUE(gone.carries != carries || skip::carried(clocked, 0)) << "the last one carries";
+      ASSERT_EQ(jumping.state().phase, clocked.state().phase);
+      ASSERT_EQ(jumping.state().slope, clocked.state().slope);
       drain(jumping);
       drain(clocked);
       // The outputs and everything that is not visible: the next updates fall on the same clocks.

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "trammel/model/feed_generator.hpp"
+#include "trammel/skip/feed_generator.hpp"
 
 namespace trammel::model {
 
@@ -75,7 +76,7 @@ inline std::uint64_t ticks_in(FeedGenerator& feed, std::uint64_t clocks) {
 
 // Goes to the n-th tick; returns the enabled clocks it took, 0 if it does not come within `limit`.
 inline std::uint64_t clocks_to_tick(FeedGenerator& feed, std::uint64_t n, std::uint64_t limit) {
-  const FeedGenerator::Advanced gone = feed.advance(limit, n);
+  const skip::FeedAhead::Advanced gone = skip::FeedAhead(feed).advance(limit, n);
   drain(feed);
   return gone.carries == n ? gone.enables : 0;
 }
@@ -93,7 +94,7 @@ inline std::uint64_t ideal_slope(const Piece& p, std::int64_t k) {
 
 inline std::uint64_t rounded(Real per_clock) { return static_cast<std::uint64_t>(std::round(per_clock * kOne64)); }
 inline std::int64_t rounded_signed(Real per_clock) { return static_cast<std::int64_t>(std::round(per_clock * kOne64)); }
-inline Real slope_of(const FeedGenerator& feed) { return static_cast<Real>(feed.slope()) / 281474976710656.0L; }
+inline Real slope_of(const FeedGenerator& feed) { return static_cast<Real>(feed.state().slope) / 281474976710656.0L; }
 
 class Random {
  public:

@@ -131,8 +131,8 @@ TEST(FeedGenerator, AFloorEndsEveryPiece) {
     if (p.rate >> 32 >= p.floor || taken > FeedGenerator::kUpdateClocks) {
       ASSERT_EQ(taken, ideal_clocks(p, ticks)) << i;
     }
-    reversing += p.acceleration > 0 && p.jerk < 0 && feed.slope() == std::uint64_t{p.floor} << 16 ? 1 : 0;
-    beyond += feed.slope() == (std::uint64_t{1} << 48) - 1 ? 1 : 0;
+    reversing += p.acceleration > 0 && p.jerk < 0 && feed.state().slope == std::uint64_t{p.floor} << 16 ? 1 : 0;
+    beyond += feed.state().slope == (std::uint64_t{1} << 48) - 1 ? 1 : 0;
   }
   EXPECT_GT(reversing, 200) << "jerk turned the feed round, and the floor held it";
   EXPECT_GT(beyond, 200);
@@ -148,7 +148,7 @@ TEST(FeedGenerator, NoAccumulatorOverflows) {
       ticks_in(feed, 8 * FeedGenerator::kUpdateClocks);  // 0.5 more an update each update
       const std::uint64_t expected = jerk > 0 ? (std::uint64_t{1} << 48) - 1 : std::uint64_t{0x100} << 16;
       for (int update = 0; update < 200; ++update) {
-        ASSERT_EQ(feed.slope(), expected) << acceleration << " " << jerk << " update " << update;
+        ASSERT_EQ(feed.state().slope, expected) << acceleration << " " << jerk << " update " << update;
         ticks_in(feed, FeedGenerator::kUpdateClocks);
       }
     }

@@ -142,7 +142,7 @@ TEST(FrameEngine, ANewConnectionDropsTheReply) {
     EXPECT_EQ(writes, when == 1 ? 0U : 1U) << when;  // in the clock of the decision it comes first
     EXPECT_EQ(engine.session().epoch(), 1);
     EXPECT_EQ(engine.session().last(), when == 1 ? 0 : 1);
-    EXPECT_TRUE(engine.quiet());
+    EXPECT_TRUE(engine.listening());
   }
 }
 

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <random>
 
+#include "trammel/skip/axis.hpp"
+
 namespace trammel::model {
 namespace {
 
@@ -86,7 +88,7 @@ TEST(PulseGenerator, StandsAtTheClosedFormAtEveryTick) {
     begin(generator, {increment});
     std::int64_t x = 0;
     for (std::int64_t k = 1; k <= 1000; ++k) {
-      const bool foretold = generator.silent_ticks() == 0;
+      const bool foretold = skip::PulsesAhead(generator).silent_ticks() == 0;
       const int step = tick(generator);
       x += step;
       ASSERT_EQ(foretold, step != 0);
@@ -126,11 +128,11 @@ TEST(PulseGenerator, LongLinesLandOnTheirEnd) {
     std::int64_t x = 0;
     auto left = static_cast<std::uint64_t>(length);
     for (;;) {
-      const std::uint64_t silent = std::min(generator.silent_ticks(), left);
-      generator.silent_ticks(silent);
+      const std::uint64_t silent = std::min(skip::PulsesAhead(generator).silent_ticks(), left);
+      skip::PulsesAhead(generator).silent_ticks(silent);
       left -= silent;
       if (left == 0) break;
-      x += generator.step_at_once() ? -1 : 1;
+      x += skip::PulsesAhead(generator).step_at_once() ? -1 : 1;
       --left;
     }
     ASSERT_EQ(x, pulses) << length;
@@ -147,14 +149,14 @@ TEST(PulseGenerator, SkippingEqualsTicking) {
     begin(ticked, line, 7);
     begin(skipped, line, 7);
     for (int i = 0; i < 20; ++i) {
-      ASSERT_TRUE(skipped.quiet());
-      const std::uint64_t silent = std::min<std::uint64_t>(skipped.silent_ticks(), 600);
-      if (i % 2 != 0) skipped.silent_ticks(silent);
+      ASSERT_TRUE(skip::at_rest(skipped));
+      const std::uint64_t silent = std::min<std::uint64_t>(skip::PulsesAhead(skipped).silent_ticks(), 600);
+      if (i % 2 != 0) skip::PulsesAhead(skipped).silent_ticks(silent);
       for (std::uint64_t k = 0; k < silent; ++k) {
         ASSERT_EQ(tick(ticked), 0);
-        if (i % 2 == 0) skipped.silent_ticks(1);
+        if (i % 2 == 0) skip::PulsesAhead(skipped).silent_ticks(1);
       }
-      ASSERT_EQ(ticked.silent_ticks(), skipped.silent_ticks());
+      ASSERT_EQ(skip::PulsesAhead(ticked).silent_ticks(), skip::PulsesAhead(skipped).silent_ticks());
       ASSERT_EQ(tick(ticked), tick(skipped));
       ASSERT_EQ(ticked.outputs().live, skipped.outputs().live);
     }
@@ -170,16 +172,16 @@ TEST(PulseGenerator, PlacedStepsShowLikeTickedOnes) {
     PulseGenerator ticked;
     begin(ticked, line);
     PulseGenerator placed = ticked;
-    const std::uint64_t silent = std::min<std::uint64_t>(ticked.silent_ticks(), 5000);
+    const std::uint64_t silent = std::min<std::uint64_t>(skip::PulsesAhead(ticked).silent_ticks(), 5000);
     if (silent == 5000) continue;
     for (std::uint64_t k = 0; k < silent; ++k) ASSERT_EQ(tick(ticked), 0);
-    placed.silent_ticks(silent);
+    skip::PulsesAhead(placed).silent_ticks(silent);
     PulseGenerator::Inputs in;
     in.tick = true;
     ticked.clock(in);
     const auto ago = static_cast<std::uint64_t>(n % 4);
     for (std::uint64_t k = 0; k < ago; ++k) ticked.clock({});
-    placed.place_step(ago, placed.step_at_once());
+    skip::PulsesAhead(placed).place_step(ago, skip::PulsesAhead(placed).step_at_once());
     for (int k = 0; k < 200; ++k) {
       ASSERT_EQ(placed.outputs().step, ticked.outputs().step) << "ago " << ago << " clock " << k;
       ASSERT_EQ(placed.outputs().dir, ticked.outputs().dir);
@@ -217,7 +219,7 @@ TEST(PulseGenerator, CountEndsTheLine) {
       ASSERT_EQ(generator.outputs().live, steps < count);
     }
     EXPECT_EQ(steps, count);
-    EXPECT_EQ(generator.silent_ticks(), UINT64_MAX);
+    EXPECT_EQ(skip::PulsesAhead(generator).silent_ticks(), UINT64_MAX);
   }
 }
 

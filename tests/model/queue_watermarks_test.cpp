@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "trammel/skip/commands.hpp"
+
 namespace trammel::model {
 namespace {
 
@@ -26,7 +28,7 @@ TEST(QueueWatermarks, LowIsFewerQueuedThanTheWatermark) {
         marks.clock(rooms(100 - queued, 60 - queued));
         EXPECT_EQ(marks.outputs().geometry_low, queued < geometry) << queued << " of " << geometry;
         EXPECT_EQ(marks.outputs().feed_low, queued < feed) << queued << " of " << feed;
-        EXPECT_TRUE(marks.quiet(rooms(100 - queued, 60 - queued)));
+        EXPECT_EQ(skip::horizon(marks, rooms(100 - queued, 60 - queued)), skip::kForever);
       }
     }
   }
@@ -36,7 +38,7 @@ TEST(QueueWatermarks, ShowTwoClocksLater) {
   QueueWatermarks marks = with_marks(10, 0);
   for (int i = 0; i < 4; ++i) marks.clock(rooms(80, 60));
   EXPECT_FALSE(marks.outputs().geometry_low);
-  EXPECT_FALSE(marks.quiet(rooms(91, 60)));
+  EXPECT_EQ(skip::horizon(marks, rooms(91, 60)), 0U);
   marks.clock(rooms(91, 60));
   EXPECT_FALSE(marks.outputs().geometry_low);
   marks.clock(rooms(80, 60));

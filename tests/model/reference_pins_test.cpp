@@ -3,6 +3,7 @@
 
 #include "core_bench.hpp"
 #include "reference_page.hpp"
+#include "trammel/skip/card.hpp"
 
 namespace trammel::reference_page {
 namespace {
@@ -45,7 +46,7 @@ TEST(ReferencePage, NothingRaisesTheFaultsThatAreNotBuilt) {
     card.pins = static_cast<std::uint16_t>(clocks * 0x9E37U);
     card.idle(10);
   }
-  card.core.run(1'000'000, 0xFFFF);
+  skip::run(card.core, 1'000'000, 0xFFFF);
   EXPECT_EQ(card.read(reg::kFault), 0U);
   EXPECT_NE(card.core.outputs().status & field::kStatusPathActive, 0U);
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core_bench.hpp"
+#include "trammel/skip/card.hpp"
 
 namespace trammel::testing {
 namespace {
@@ -20,8 +21,9 @@ class Pair {
   enum class Of { ClockAndRun, AllAndResting };
 
   Pair(Of of, const model::CardConfig& config, std::uint64_t seed)
-      : of_(of), clocked(reference(of, config)), jumping(config), random(seed) {
+      : of_(of), clocked(config), jumping(config), random(seed) {
     clocked.logs = jumping.logs = of == Of::AllAndResting;
+    clocked.skips = of != Of::AllAndResting;
   }
 
   std::uint64_t any(std::uint64_t low, std::uint64_t high) { return low + random() % (high - low + 1); }
@@ -45,7 +47,7 @@ class Pair {
   void wait(std::uint64_t clocks) {
     clocked.idle(clocks);
     if (of_ == Of::ClockAndRun)
-      jumping.core.run(clocks, jumping.pins);
+      skip::run(jumping.core, clocks, jumping.pins);
     else
       jumping.idle(clocks);
     waits += 1;
@@ -55,7 +57,7 @@ class Pair {
     clocked.idle(clocks);
     while (clocks != 0) {
       const std::uint32_t ratio = jumping.core.outputs().ratio;
-      const std::uint64_t gone = jumping.core.jump(clocks, jumping.pins);
+      const std::uint64_t gone = skip::jump(jumping.core, clocks, jumping.pins);
       if (gone == 0) jumping.idle(1);
       if (jumping.core.outputs().ratio != ratio) on_ramps += gone;
       clocks -= std::max<std::uint64_t>(gone, 1);
@@ -91,11 +93,6 @@ class Pair {
       compare();
       clocks -= piece;
     }
-  }
-
-  static model::CardConfig reference(Of of, model::CardConfig config) {
-    config.clock_all = of == Of::AllAndResting;
-    return config;
   }
 
   const Of of_;

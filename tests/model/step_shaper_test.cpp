@@ -7,6 +7,8 @@
 #include <deque>
 #include <random>
 
+#include "trammel/skip/axis.hpp"
+
 namespace trammel::model {
 namespace {
 
@@ -199,12 +201,12 @@ TEST(StepShaper, AdvancingEqualsClocking) {
     clocked.clock(in);
     skipping.clock(in);
     in.step = in.wait_tick = false;
-    const std::uint64_t n_idle = std::min<std::uint64_t>(skipping.idle_clocks(), random() % 100);
+    const std::uint64_t n_idle = std::min<std::uint64_t>(skip::horizon(skipping, in), random() % 100);
     const StepShaper::Outputs before = clocked.outputs();
-    skipping.advance(n_idle);
+    skip::advance(skipping, in, n_idle);
     skipped += n_idle;
     for (std::uint64_t i = 0; i < n_idle; ++i) {
-      in.wait_tick = !clocked.waiting() && random() % 2 == 0;
+      in.wait_tick = clocked.state().waiting == 0 && random() % 2 == 0;
       clocked.clock(in);
       ASSERT_EQ(clocked.outputs().step, before.step);
       ASSERT_EQ(clocked.outputs().busy, before.busy);

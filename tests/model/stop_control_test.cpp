@@ -3,8 +3,20 @@
 
 #include <gtest/gtest.h>
 
+#include "trammel/skip/control.hpp"
+
 namespace trammel::model {
 namespace {
+
+// Nothing changes while these stay.
+bool rests(const trammel::model::StopControl& stop, bool moving, bool fixed, bool at_rest) {
+  trammel::model::StopControl::Inputs in;
+  in.moving = moving;
+  in.fixed = fixed;
+  in.at_rest = at_rest;
+  in.underrun = stop.made_to_hold();
+  return trammel::skip::horizon(stop, in) == trammel::skip::kForever;
+}
 
 namespace reg = card_map::reg;
 namespace field = card_map::field;
@@ -50,7 +62,7 @@ TEST(StopControl, NothingHappensByItself) {
   for (int i = 0; i < 20; ++i) {
     const auto& o = stop.outputs();
     EXPECT_TRUE(!stop.stopped() && !o.hold && !o.cut && !o.stop && !o.closed && !o.stopping && o.fault == 0);
-    EXPECT_TRUE(stop.quiet(false, false, false));
+    EXPECT_TRUE(rests(stop, false, false, false));
     stop.clock(none());
   }
 }
@@ -207,8 +219,8 @@ TEST(StopControl, AHoldWaitsForTheEndOfFixedPieces) {
   EXPECT_FALSE(holds(stop, kFixedPiece));
   stop.clock(set(reg::kHold, 1));  // nothing moves in this clock, but the hold is not there yet
   EXPECT_FALSE(holds(stop, kFixedPiece, 1000));
-  EXPECT_TRUE(stop.quiet(true, true, false));
-  EXPECT_FALSE(stop.quiet(true, false, false));
+  EXPECT_TRUE(rests(stop, true, true, false));
+  EXPECT_FALSE(rests(stop, true, false, false));
   EXPECT_TRUE(holds(stop, kFeedPiece, 1)) << "in the clock after the piece's end";
   EXPECT_FALSE(holds(stop, kFixedPiece, 1)) << "on the way down another one is let end";
   EXPECT_TRUE(holds(stop, kNothing, 1));
@@ -222,7 +234,7 @@ TEST(StopControl, AHoldAtRestStaysWhateverBegins) {
     StopControl stop;
     stop.clock(set(reg::kHold, 1));
     EXPECT_TRUE(holds(stop, rest));
-    EXPECT_TRUE(stop.quiet(rest.moving, rest.fixed, rest.at_rest));
+    EXPECT_TRUE(rests(stop, rest.moving, rest.fixed, rest.at_rest));
     EXPECT_TRUE(holds(stop, kFixedPiece, 50));
     // Taken back and set again it begins anew.
     stop.clock(set(reg::kHold, 0));

@@ -290,19 +290,4 @@ TEST(Behaviour, AnEnabledInterruptComesTwoClocksAfterItsSetting) {
   }
 }
 
-TEST(Behaviour, AdvanceEqualsClocking) {
-  RegisterBench bench(4);
-  bench.read(reg::kMagic);
-  for (int i = 0; i < 4; ++i) bench.clock();
-  RegisterFile clocked = bench.file();
-  RegisterFile skipped = bench.file();
-  ASSERT_TRUE(clocked.quiet(bench.in));
-  for (int i = 0; i < 1000; ++i) clocked.clock(bench.in);
-  skipped.advance(1000);
-  EXPECT_EQ(clocked.time(), skipped.time());
-  EXPECT_TRUE(clocked.quiet(bench.in));
-  bench.in.stop = true;
-  EXPECT_FALSE(clocked.quiet(bench.in));
-}
-
 }  // namespace

@@ -167,7 +167,7 @@ TEST(SnapshotTime, CarriesIntoItsHighWord) {
   RegisterBench bench(4);
   bench.read(reg::kMagic);
   RegisterFile file = bench.file();
-  file.advance((std::uint64_t{7} << 32) - file.time() - 10);
+  file.state().time += (std::uint64_t{7} << 32) - file.time() - 10;
   RegisterFile::Inputs in;
   const auto access = [&](bool write, std::uint32_t address, std::uint32_t data) {
     in.request = true;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "trammel/driver/errors.hpp"
+#include "trammel/skip/card.hpp"
 
 namespace trammel::platform {
 
@@ -160,7 +161,7 @@ void LooseCard::run_to(const sc_time& time) {
   const std::uint64_t end = cycle_at(time);
   const std::uint64_t most = std::max<std::uint64_t>(1, cycle_at(period()));
   while (card_.cycles() < end) {
-    card_.run(std::min(most, end - card_.cycles()), machine_.switches());
+    skip::run(card_, std::min(most, end - card_.cycles()), machine_.switches());
     machine_.run_to(time_of(card_.cycles()));
   }
 }
@@ -180,7 +181,7 @@ std::size_t LooseCard::peek(driver::Access* reads, std::size_t count) {
   model::CoreModel now = card_;
   now.set_steps(nullptr);
   const std::uint64_t end = cycle_at(sc_time_stamp());
-  if (now.cycles() < end) now.run(end - now.cycles(), machine_.switches());
+  if (now.cycles() < end) skip::run(now, end - now.cycles(), machine_.switches());
   for (std::size_t i = 0; i < count; ++i) {
     model::CoreModel asked = now;
     if (!access_card(asked, machine_.switches(), reads[i])) return i;

@@ -53,15 +53,15 @@ CommandChecker::CommandChecker(unsigned axes, std::uint32_t engines)
     : card_mask_(lowest_axes(axes)), engines_(engines) {}
 
 void CommandChecker::clock(const Inputs& in) {
-  outputs_.geometry_write = false;
-  outputs_.feed_write = false;
-  outputs_.geometry_commit = false;
-  outputs_.feed_commit = false;
-  outputs_.drop = false;
-  outputs_.refuse = false;
+  state_.outputs.geometry_write = false;
+  state_.outputs.feed_write = false;
+  state_.outputs.geometry_commit = false;
+  state_.outputs.feed_commit = false;
+  state_.outputs.drop = false;
+  state_.outputs.refuse = false;
   if (in.reset || in.clear) {
     restart();
-  } else if (outputs_.ready) {
+  } else if (state_.outputs.ready) {
     idle(in);
   } else {
     go_on(in);
@@ -69,93 +69,93 @@ void CommandChecker::clock(const Inputs& in) {
 }
 
 void CommandChecker::restart() {
-  open_ = true;
-  flush_waits_ = false;
-  expected_ = 0;
-  received_ = 0;
-  outputs_ = Outputs{};
+  state_.open = true;
+  state_.flush_waits = false;
+  state_.expected = 0;
+  state_.received = 0;
+  state_.outputs = Outputs{};
 }
 
 void CommandChecker::idle(const Inputs& in) {
-  if ((in.flush || flush_waits_) && outputs_.partial) refuse(Reason::Truncated);
-  flush_waits_ = false;
+  if ((in.flush || state_.flush_waits) && state_.outputs.partial) refuse(Reason::Truncated);
+  state_.flush_waits = false;
   if (!in.write) return;
-  outputs_.ready = false;
-  unread_ = in.closed ? Reason::Faulted : open_ ? Reason::None : Reason::StreamClosed;
-  age_ = unread_ == Reason::None ? 0 : kAnswer - kUnread;
-  if (unread_ != Reason::None) return;
-  if (!outputs_.partial) received_ = 0;
-  halfwords_[received_++] = static_cast<std::uint16_t>(in.word);
-  halfwords_[received_++] = static_cast<std::uint16_t>(in.word >> 16);
+  state_.outputs.ready = false;
+  state_.unread = in.closed ? Reason::Faulted : state_.open ? Reason::None : Reason::StreamClosed;
+  state_.age = state_.unread == Reason::None ? 0 : kAnswer - kUnread;
+  if (state_.unread != Reason::None) return;
+  if (!state_.outputs.partial) state_.received = 0;
+  state_.halfwords[state_.received++] = static_cast<std::uint16_t>(in.word);
+  state_.halfwords[state_.received++] = static_cast<std::uint16_t>(in.word >> 16);
 }
 
 void CommandChecker::go_on(const Inputs& in) {
-  flush_waits_ = flush_waits_ || in.flush;
-  ++age_;
-  if (unread_ != Reason::None) {
-    if (age_ == kAnswer) answer_unread();
+  state_.flush_waits = state_.flush_waits || in.flush;
+  ++state_.age;
+  if (state_.unread != Reason::None) {
+    if (state_.age == kAnswer) answer_unread();
     return;
   }
-  const bool header = !outputs_.partial;
-  if (age_ == kStoreLow && !header) store(received_ - 2);
-  if (age_ == kReadNumber && header) {
-    command_ = card_map::find_command(static_cast<std::uint8_t>(halfwords_[0]));
-    if (command_ != nullptr && !card_map::is_known(*command_, engines_)) command_ = nullptr;
-    outputs_.number = static_cast<std::uint8_t>(halfwords_[1] >> 8);
+  const bool header = !state_.outputs.partial;
+  if (state_.age == kStoreLow && !header) store(state_.received - 2);
+  if (state_.age == kReadNumber && header) {
+    state_.command = card_map::find_command(static_cast<std::uint8_t>(state_.halfwords[0]));
+    if (state_.command != nullptr && !card_map::is_known(*state_.command, engines_)) state_.command = nullptr;
+    state_.outputs.number = static_cast<std::uint8_t>(state_.halfwords[1] >> 8);
   }
-  if (age_ == kStoreHigh) {
+  if (state_.age == kStoreHigh) {
     if (header) {
-      header_verdict_ = judge_header(in);
+      state_.header_verdict = judge_header(in);
     } else {
-      store(received_ - 1);
+      store(state_.received - 1);
     }
   }
-  if (age_ == kAnswer) answer();
+  if (state_.age == kAnswer) answer();
 }
 
 void CommandChecker::answer() {
-  outputs_.ready = true;
-  const bool header = !outputs_.partial;
-  const Reason verdict = header ? header_verdict_ : judge_payload();
+  state_.outputs.ready = true;
+  const bool header = !state_.outputs.partial;
+  const Reason verdict = header ? state_.header_verdict : judge_payload();
   if (verdict != Reason::None) {
     refuse(verdict);
     return;
   }
-  outputs_.partial = true;
+  state_.outputs.partial = true;
   if (header) {
     store(0);
-  } else if (received_ >= card_map::halfwords(*command_, mask())) {
-    outputs_.geometry_commit = command_->to_geometry;
-    outputs_.feed_commit = command_->to_feed;
-    outputs_.partial = false;
-    ++expected_;
+  } else if (state_.received >= card_map::halfwords(*state_.command, mask())) {
+    state_.outputs.geometry_commit = state_.command->to_geometry;
+    state_.outputs.feed_commit = state_.command->to_feed;
+    state_.outputs.partial = false;
+    ++state_.expected;
   }
 }
 
 void CommandChecker::answer_unread() {
-  outputs_.ready = true;
-  outputs_.refuse = true;
-  outputs_.reason = static_cast<std::uint8_t>(unread_);
+  state_.outputs.ready = true;
+  state_.outputs.refuse = true;
+  state_.outputs.reason = static_cast<std::uint8_t>(state_.unread);
 }
 
 void CommandChecker::refuse(Reason reason) {
-  outputs_.refuse = true;
-  outputs_.reason = static_cast<std::uint8_t>(reason);
-  outputs_.drop = true;
-  outputs_.partial = false;
-  open_ = false;
+  state_.outputs.refuse = true;
+  state_.outputs.reason = static_cast<std::uint8_t>(reason);
+  state_.outputs.drop = true;
+  state_.outputs.partial = false;
+  state_.open = false;
 }
 
 void CommandChecker::store(std::size_t index) {
-  if (index >= card_map::halfwords(*command_, mask())) return;
-  outputs_.halfword = halfwords_[index];
-  outputs_.geometry_write = command_->to_geometry;
-  outputs_.feed_write = command_->to_feed;
+  if (index >= card_map::halfwords(*state_.command, mask())) return;
+  state_.outputs.halfword = state_.halfwords[index];
+  state_.outputs.geometry_write = state_.command->to_geometry;
+  state_.outputs.feed_write = state_.command->to_feed;
 }
 
 bool CommandChecker::mask_fits() const {
   const bool present = (mask() & ~card_mask_) == 0;
-  switch (command_->mask_rule) {
+  switch (state_.command->mask_rule) {
     case MaskRule::Any:
       return present && mask() != 0;
     case MaskRule::Plane:
@@ -163,7 +163,7 @@ bool CommandChecker::mask_fits() const {
     case MaskRule::PlaneAndAxes:
       return present && card_map::axes_in(mask()) >= 2;
     case MaskRule::Flags:
-      return card_map::flags_good(*command_, mask(), engines_);
+      return card_map::flags_good(*state_.command, mask(), engines_);
     case MaskRule::None:
       return mask() == 0;
   }
@@ -171,17 +171,17 @@ bool CommandChecker::mask_fits() const {
 }
 
 std::size_t CommandChecker::copies(const Field& field) const {
-  return field.per_axis ? card_map::axes_in(mask()) - command_->axes_in_base : 1;
+  return field.per_axis ? card_map::axes_in(mask()) - state_.command->axes_in_base : 1;
 }
 
 Reason CommandChecker::judge_header(const Inputs& in) const {
-  if (command_ == nullptr) return Reason::UnknownOpcode;
+  if (state_.command == nullptr) return Reason::UnknownOpcode;
   if (!mask_fits()) return Reason::BadMask;
-  if ((halfwords_[1] & 0xFF) != card_map::words(*command_, mask())) return Reason::BadLength;
-  if (outputs_.number != expected_) return Reason::BadNumber;
-  const std::uint32_t needed = card_map::queue_halfwords(*command_, mask());
-  if (command_->to_geometry && in.geometry_room < needed) return Reason::NoRoom;
-  if (command_->to_feed && in.feed_room < needed) return Reason::NoRoom;
+  if ((state_.halfwords[1] & 0xFF) != card_map::words(*state_.command, mask())) return Reason::BadLength;
+  if (state_.outputs.number != state_.expected) return Reason::BadNumber;
+  const std::uint32_t needed = card_map::queue_halfwords(*state_.command, mask());
+  if (state_.command->to_geometry && in.geometry_room < needed) return Reason::NoRoom;
+  if (state_.command->to_feed && in.feed_room < needed) return Reason::NoRoom;
   return Reason::None;
 }
 
@@ -190,26 +190,27 @@ Reason CommandChecker::judge_payload() const {
   Field count{};
   count.bits = 40;
   count.halfwords = kCountHalfwords;
-  count.minimum = command_->count_minimum;
+  count.minimum = state_.command->count_minimum;
   // A count that must be 0 is judged halfword by halfword.
-  for (std::size_t i = kCountBegin; command_->count_maximum == 0 && i < std::min(received_, kPayloadBegin); ++i) {
-    if (halfwords_[i] != 0) return Reason::BadField;
+  for (std::size_t i = kCountBegin; state_.command->count_maximum == 0 && i < std::min(state_.received, kPayloadBegin);
+       ++i) {
+    if (state_.halfwords[i] != 0) return Reason::BadField;
   }
   if (const Reason reason = judge_field(count, kCountBegin); reason != Reason::None) return reason;
-  for (std::size_t i = 0; i < command_->field_count; ++i) {
-    const Field& field = command_->fields[i];
+  for (std::size_t i = 0; i < state_.command->field_count; ++i) {
+    const Field& field = state_.command->fields[i];
     for (std::size_t copy = 0; copy < copies(field); ++copy) {
-      const std::size_t begin = kPayloadBegin + field.offset + copy * command_->axis_halfwords;
+      const std::size_t begin = kPayloadBegin + field.offset + copy * state_.command->axis_halfwords;
       if (const Reason reason = judge_field(field, begin); reason != Reason::None) return reason;
     }
   }
-  const std::size_t end = card_map::halfwords(*command_, mask());
-  return received_ > end && halfwords_[end] != 0 ? Reason::BadField : Reason::None;
+  const std::size_t end = card_map::halfwords(*state_.command, mask());
+  return state_.received > end && state_.halfwords[end] != 0 ? Reason::BadField : Reason::None;
 }
 
 // A field is judged when its last halfword is there.
 Reason CommandChecker::judge_field(const Field& field, std::size_t begin) const {
-  if (received_ < begin + field.halfwords) return Reason::None;
+  if (state_.received < begin + field.halfwords) return Reason::None;
   const uint128 all = value(begin, field.halfwords);
   const bool in_range =
       field.kind == FieldKind::Signed ? in_signed_range(all, field) : in_unsigned_range(all, field, engines_);
@@ -225,7 +226,7 @@ Reason CommandChecker::judge_field(const Field& field, std::size_t begin) const 
 
 uint128 CommandChecker::value(std::size_t begin, std::size_t count) const {
   uint128 sum = 0;
-  for (std::size_t i = count; i > 0; --i) sum = sum << 16 | halfwords_[begin + i - 1];
+  for (std::size_t i = count; i > 0; --i) sum = sum << 16 | state_.halfwords[begin + i - 1];
   return sum;
 }
 

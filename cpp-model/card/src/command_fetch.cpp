@@ -57,7 +57,7 @@ std::array<Layout, 256> all_layouts() {
                                                            {"half_x", path::kHalfX},
                                                            {"half_y", path::kHalfY}},
                                                           "plane");
-  // Increments are numbered in the order of axes_.
+  // Increments are numbered in the order of state_.axes.
   all[static_cast<std::uint8_t>(Opcode::ArcChord)] = layout_of(Opcode::ArcChord,
                                                                {{"prescale", path::kPrescale},
                                                                 {"plane", path::kChordPlane},
@@ -93,11 +93,12 @@ unsigned CommandFetch::target_of(int index) const {
   if (index < kHeader) return ticks;
   const auto payload = static_cast<std::size_t>(index - kHeader);
   if (queue_ == Queue::Feed && !is_feed()) return feed_target::kNowhere;
-  if (opcode_ == Opcode::Line) return load_target::increment(axes_[payload / 3]);
-  if (is_chord() && payload >= kFurtherAxes) return load_target::increment(axes_[2 + (payload - kFurtherAxes) / 3]);
-  const unsigned target = kLayouts[static_cast<std::uint8_t>(opcode_)].targets[payload];
-  if (is_chord() && target == load_target::increment(0)) return load_target::increment(axes_[0]);
-  if (is_chord() && target == load_target::increment(1)) return load_target::increment(axes_[1]);
+  if (state_.opcode == Opcode::Line) return load_target::increment(state_.axes[payload / 3]);
+  if (is_chord() && payload >= kFurtherAxes)
+    return load_target::increment(state_.axes[2 + (payload - kFurtherAxes) / 3]);
+  const unsigned target = kLayouts[static_cast<std::uint8_t>(state_.opcode)].targets[payload];
+  if (is_chord() && target == load_target::increment(0)) return load_target::increment(state_.axes[0]);
+  if (is_chord() && target == load_target::increment(1)) return load_target::increment(state_.axes[1]);
   return target;
 }
 
@@ -106,80 +107,82 @@ void CommandFetch::order_axes(std::uint16_t plane) {
   const unsigned x = plane >> 4 & 7;
   const unsigned y = plane >> 8 & 7;
   std::size_t count = 0;
-  axes_[count++] = static_cast<std::uint8_t>(x);
-  axes_[count++] = static_cast<std::uint8_t>(y);
+  state_.axes[count++] = static_cast<std::uint8_t>(x);
+  state_.axes[count++] = static_cast<std::uint8_t>(y);
   for (unsigned axis = 0; axis < 8; ++axis) {
-    if ((mask_ >> axis & 1) != 0 && axis != x && axis != y) axes_[count++] = static_cast<std::uint8_t>(axis);
+    if ((state_.mask >> axis & 1) != 0 && axis != x && axis != y)
+      state_.axes[count++] = static_cast<std::uint8_t>(axis);
   }
 }
 
 // The first halfword says how long the command is and which axes a line moves.
 void CommandFetch::arrive(int index, std::uint16_t halfword) {
   if (index > 0) {
-    bus_ = {true, static_cast<std::uint16_t>(target_of(index)), halfword};
-    if (is_chord() && bus_.target == load_target::kChordPlane) order_axes(halfword);
+    state_.bus = {true, static_cast<std::uint16_t>(target_of(index)), halfword};
+    if (is_chord() && state_.bus.target == load_target::kChordPlane) order_axes(halfword);
     return;
   }
-  header_here_ = true;
-  opcode_ = static_cast<Opcode>(halfword & 0xFF);
-  mask_ = static_cast<std::uint8_t>(halfword >> 8);
-  const card_map::Command* command = card_map::find_command(static_cast<std::uint8_t>(opcode_));
-  length_ = command != nullptr ? static_cast<int>(card_map::queue_halfwords(*command, mask_)) : kHeader;
-  pause_at_ = kLayouts[static_cast<std::uint8_t>(opcode_)].pause_at;
-  engine_ = static_cast<std::uint8_t>(is_path() ? command->engine : card_map::engine::kLines);
+  state_.header_here = true;
+  state_.opcode = static_cast<Opcode>(halfword & 0xFF);
+  state_.mask = static_cast<std::uint8_t>(halfword >> 8);
+  const card_map::Command* command = card_map::find_command(static_cast<std::uint8_t>(state_.opcode));
+  state_.length = command != nullptr ? static_cast<int>(card_map::queue_halfwords(*command, state_.mask)) : kHeader;
+  state_.pause_at = kLayouts[static_cast<std::uint8_t>(state_.opcode)].pause_at;
+  state_.engine = static_cast<std::uint8_t>(is_path() ? command->engine : card_map::engine::kLines);
   std::size_t count = 0;
   for (unsigned axis = 0; axis < 8; ++axis) {
-    if ((mask_ >> axis & 1) != 0) axes_[count++] = static_cast<std::uint8_t>(axis);
+    if ((state_.mask >> axis & 1) != 0) state_.axes[count++] = static_cast<std::uint8_t>(axis);
   }
 }
 
 void CommandFetch::ask(const Inputs& in) {
-  const int next = asked_ + 1;
-  if (state_ == State::Idle) {
+  const int next = state_.asked + 1;
+  if (state_.mode == Mode::Idle) {
     if (in.empty) return;
-    state_ = State::Reading;
-    asked_ = 0;
-  } else if (state_ == State::Waiting) {
+    state_.mode = Mode::Reading;
+    state_.asked = 0;
+  } else if (state_.mode == Mode::Waiting) {
     if (!may_go_on(in)) return;
-    state_ = State::Reading;
-    asked_ = pause_at_;
-  } else if (asked_ < 0) {
+    state_.mode = Mode::Reading;
+    state_.asked = state_.pause_at;
+  } else if (state_.asked < 0) {
     return;
-  } else if (asked_ < kHeader - 1) {
-    asked_ = next;  // the header is known when its last halfword is asked for
-  } else if (next >= length_) {
-    asked_ = -1;
-    if (state_ == State::Finishing) state_ = State::Idle;
-  } else if (next == pause_at_ && is_feed() && !in.payload_ready) {
-    split_ = true;
-    asked_ = -1;
-  } else if (next == pause_at_ && !is_feed() && !may_go_on(in)) {
-    state_ = State::Waiting;
-    asked_ = -1;
+  } else if (state_.asked < kHeader - 1) {
+    state_.asked = next;  // the header is known when its last halfword is asked for
+  } else if (next >= state_.length) {
+    state_.asked = -1;
+    if (state_.mode == Mode::Finishing) state_.mode = Mode::Idle;
+  } else if (next == state_.pause_at && is_feed() && !in.payload_ready) {
+    state_.split = true;
+    state_.asked = -1;
+  } else if (next == state_.pause_at && !is_feed() && !may_go_on(in)) {
+    state_.mode = Mode::Waiting;
+    state_.asked = -1;
   } else {
-    asked_ = next;
+    state_.asked = next;
   }
 }
 
-void CommandFetch::work(const Inputs& in) {
-  const int arrived = arriving_[1];
-  arriving_[1] = arriving_[0];
-  arriving_[0] = asked_;
-  bus_.valid = false;
+void CommandFetch::clock(const Inputs& in) {
+  const int arrived = state_.arriving[1];
+  state_.arriving[1] = state_.arriving[0];
+  state_.arriving[0] = state_.asked;
+  state_.bus.valid = false;
   if (arrived >= 0) arrive(arrived, in.halfword);
   if (in.pop) {
-    state_ = split_ ? State::Finishing : State::Idle;
-    if (split_) asked_ = pause_at_;
-    split_ = header_here_ = false;
+    state_.mode = state_.split ? Mode::Finishing : Mode::Idle;
+    if (state_.split) state_.asked = state_.pause_at;
+    state_.split = state_.header_here = false;
   } else {
     ask(in);
   }
-  const int last = split_ ? pause_at_ - 1 : length_ - 1;
-  if (state_ == State::Reading && header_here_ && arrived >= kHeader - 1 && arrived == last) state_ = State::Decoded;
+  const int last = state_.split ? state_.pause_at - 1 : state_.length - 1;
+  if (state_.mode == Mode::Reading && state_.header_here && arrived >= kHeader - 1 && arrived == last)
+    state_.mode = Mode::Decoded;
   if (in.clear) {
-    state_ = State::Idle;
-    split_ = header_here_ = false;
-    asked_ = arriving_[0] = arriving_[1] = -1;
+    state_.mode = Mode::Idle;
+    state_.split = state_.header_here = false;
+    state_.asked = state_.arriving[0] = state_.arriving[1] = -1;
   }
 }
 

@@ -22,7 +22,7 @@ void shift_end(std::uint32_t& chain, std::uint16_t word) {
 }  // namespace
 
 void DeviationAccumulator::take(const LoadWord& load) {
-  DeviationPath::State& state = path_.state;
+  DeviationPath::State& state = state_.path.state;
   switch (load.target) {
     case load_target::kDeviation:
       return shift_gradient(state.deviation, load.word);

@@ -20,36 +20,37 @@ LoadWord halfword(unsigned target, std::uint64_t value, int index) {
 }  // namespace
 
 void DirectLoader::enter(Phase phase) {
-  phase_ = phase;
-  step_ = -1;
+  state_.phase = phase;
+  state_.step = -1;
 }
 
 // Halfwords go out lowest first; a frequency to the negative side as its two's complement.
 LoadWord DirectLoader::frequency_halfword(int index) const {
-  return halfword(load_target::increment(axis_), negative_ ? 0 - frequency_ : frequency_, index);
+  return halfword(load_target::increment(state_.axis), state_.negative ? 0 - state_.frequency : state_.frequency,
+                  index);
 }
 
 LoadWord DirectLoader::read_axis(const Inputs& in) {
-  const std::uint32_t addresses[] = {reg::direction(axis_), reg::frequency_lo(axis_), reg::frequency_hi(axis_),
-                                     reg::count(axis_)};
-  out_.address = word_address(addresses[step_ / 4 % 4]);
-  switch (step_) {
+  const std::uint32_t addresses[] = {reg::direction(state_.axis), reg::frequency_lo(state_.axis),
+                                     reg::frequency_hi(state_.axis), reg::count(state_.axis)};
+  state_.out.address = word_address(addresses[state_.step / 4 % 4]);
+  switch (state_.step) {
     case 3:
-      negative_ = (in.data & 1) != 0;
+      state_.negative = (in.data & 1) != 0;
       break;
     case 7:
-      frequency_ = in.data;
+      state_.frequency = in.data;
       return frequency_halfword(0);
     case 8:
       return frequency_halfword(1);
     case 11:
-      frequency_ |= std::uint64_t{in.data} << 32;
-      if (frequency_ > kOnePulse) bad_value_ = true;
+      state_.frequency |= std::uint64_t{in.data} << 32;
+      if (state_.frequency > kOnePulse) state_.bad_value = true;
       return frequency_halfword(2);
     case 15:
     case 16:
-      if (in.data != 0 && frequency_ == 0) bad_value_ = true;
-      return halfword(load_target::count(axis_), in.data, step_ - 15);
+      if (in.data != 0 && state_.frequency == 0) state_.bad_value = true;
+      return halfword(load_target::count(state_.axis), in.data, state_.step - 15);
     default:
       break;
   }
@@ -57,79 +58,79 @@ LoadWord DirectLoader::read_axis(const Inputs& in) {
 }
 
 LoadWord DirectLoader::read_length(const Inputs& in) {
-  out_.address = word_address(step_ < 4 ? reg::kLengthLo : reg::kLengthHi);
-  if (step_ == 3 || step_ == 4) {
-    length_ |= in.data;
-    return halfword(load_target::kTicks, in.data, step_ - 3);
+  state_.out.address = word_address(state_.step < 4 ? reg::kLengthLo : reg::kLengthHi);
+  if (state_.step == 3 || state_.step == 4) {
+    state_.length |= in.data;
+    return halfword(load_target::kTicks, in.data, state_.step - 3);
   }
-  if (step_ != 7) return {};
-  length_ |= std::uint64_t{in.data} << 32;
+  if (state_.step != 7) return {};
+  state_.length |= std::uint64_t{in.data} << 32;
   return halfword(load_target::kTicks, in.data, 0);
 }
 
 void DirectLoader::decide(const Inputs& in) {
   Reason reason = Reason::None;
-  if (bad_value_ || length_ == 0) reason = Reason::BadValue;
-  if (busy_) reason = Reason::Busy;
-  if (closed_ || in.closed) reason = Reason::Faulted;
-  if (bad_mask_) reason = Reason::BadValue;
-  out_.done = true;
-  out_.error = reason != Reason::None;
-  out_.go = !out_.error;
-  out_.reason = static_cast<std::uint8_t>(reason);
+  if (state_.bad_value || state_.length == 0) reason = Reason::BadValue;
+  if (state_.busy) reason = Reason::Busy;
+  if (state_.closed || in.closed) reason = Reason::Faulted;
+  if (state_.bad_mask) reason = Reason::BadValue;
+  state_.out.done = true;
+  state_.out.error = reason != Reason::None;
+  state_.out.go = !state_.out.error;
+  state_.out.reason = static_cast<std::uint8_t>(reason);
 }
 
 void DirectLoader::go_on(const Inputs& in) {
-  out_.load = taken_;
-  out_.done = false;
-  out_.go = false;
+  state_.out.load = state_.taken;
+  state_.out.done = false;
+  state_.out.go = false;
   LoadWord taken;
-  switch (phase_) {
+  switch (state_.phase) {
     case Phase::Idle:
       if (in.start) enter(Phase::Check);
       break;
     case Phase::Check:
-      if (step_ == 0) {
-        frequency_ = length_ = 0;
-        axis_ = 0;
-        bad_value_ = false;
-        bad_mask_ = in.mask == 0 || in.mask >> axes_ != 0;
+      if (state_.step == 0) {
+        state_.frequency = state_.length = 0;
+        state_.axis = 0;
+        state_.bad_value = false;
+        state_.bad_mask = in.mask == 0 || in.mask >> axes_ != 0;
       }
-      out_.mask = in.mask;
-      if (step_ == kOtherClocks - 1) {
-        enter(bad_mask_ || closed_ || busy_ ? Phase::Decide : Phase::Axis);
+      state_.out.mask = in.mask;
+      if (state_.step == kOtherClocks - 1) {
+        enter(state_.bad_mask || state_.closed || state_.busy ? Phase::Decide : Phase::Axis);
       } else {
-        busy_ = in.busy;
-        closed_ = in.closed;
+        state_.busy = in.busy;
+        state_.closed = in.closed;
       }
       break;
     case Phase::Axis: {
-      const bool masked = (in.mask >> axis_ & 1) != 0;
+      const bool masked = (in.mask >> state_.axis & 1) != 0;
       if (masked) taken = read_axis(in);
-      if (masked && step_ != kAxisClocks - 1) break;
-      step_ = -1;
-      if (axis_ == card_map::kMaxAxes - 1) enter(Phase::Length);
-      ++axis_;
+      if (masked && state_.step != kAxisClocks - 1) break;
+      state_.step = -1;
+      if (state_.axis == card_map::kMaxAxes - 1) enter(Phase::Length);
+      ++state_.axis;
       break;
     }
     case Phase::Length:
       taken = read_length(in);
-      if (step_ == kOtherClocks - 1) enter(Phase::Decide);
+      if (state_.step == kOtherClocks - 1) enter(Phase::Decide);
       break;
     case Phase::Decide:
-      if (step_ != kOtherClocks - 1) break;
+      if (state_.step != kOtherClocks - 1) break;
       decide(in);
       enter(Phase::Idle);
       break;
   }
-  ++step_;
-  moving_ = taken.valid || taken_.valid;
-  taken_ = taken;
+  if (state_.phase != Phase::Idle) ++state_.step;
+  state_.moving = taken.valid || state_.taken.valid;
+  state_.taken = taken;
   if (in.reset) {
-    phase_ = Phase::Idle;
-    moving_ = false;
-    taken_ = LoadWord{};
-    out_ = Outputs{};
+    state_.phase = Phase::Idle;
+    state_.moving = false;
+    state_.taken = LoadWord{};
+    state_.out = Outputs{};
   }
 }
 

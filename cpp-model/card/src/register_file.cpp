@@ -32,7 +32,8 @@ std::size_t in_area(std::uint32_t address) { return (address - static_cast<std::
 
 }  // namespace
 
-RegisterFile::RegisterFile(const Config& config) : config_(config), snapshot_(config.axes) {
+RegisterFile::RegisterFile(const Config& config) : config_(config) {
+  state_.snapshot = SnapshotWriter(config.axes);
   for (const card_map::Register& entry : card_map::kRegisters) {
     for (std::uint32_t i = 0; i < entry.count; ++i) stored(card_map::slot_address(entry, i)) = entry.reset;
   }
@@ -59,45 +60,37 @@ void RegisterFile::reset() { *this = RegisterFile(config_); }
 
 void RegisterFile::clock(const Inputs& in) {
   const bool irq = interrupt(in);
-  const bool asked = snapshot_asked_;
-  const bool enable_set = out_.setting.set && out_.setting.address == reg::kIrqEnable;
-  const std::uint32_t enable = out_.setting.data;
-  if (snapshot_.strobe()) take_values(in);
+  const bool asked = state_.snapshot_asked;
+  const bool enable_set = state_.out.setting.set && state_.out.setting.address == reg::kIrqEnable;
+  const std::uint32_t enable = state_.out.setting.data;
+  if (state_.snapshot.strobe()) take_values(in);
   step_loader(in);
   clear_events();
   refuse_checked(in);
   step_access(in);
   step_snapshot(in, asked);
-  if (enable_set) irq_enable_ = enable;
-  out_.irq = irq;
-  ++time_;
-}
-
-bool RegisterFile::quiet(const Inputs& in) const {
-  const bool events = out_.ack || out_.setting.set || out_.stream_write || out_.abort || out_.probe_clear ||
-                      out_.flush || out_.start || out_.clear_fault != 0 || snapshot_asked_;
-  const bool underway = snapshot_.busy() || loading_ || loader_read_.valid || out_.loader_valid;
-  const bool asked = in.request || in.checker_refuse || in.stop || in.probe || in.mark;
-  return stage_ == Stage::Idle && !events && !underway && !asked && out_.irq == interrupt(in);
+  if (enable_set) state_.irq_enable = enable;
+  state_.out.irq = irq;
+  ++state_.time;
 }
 
 void RegisterFile::clear_events() {
-  out_.ack = false;
-  out_.error = false;
-  out_.data = 0;
-  out_.setting.set = false;
-  out_.clear_fault = 0;
-  out_.stream_write = false;
-  out_.abort = false;
-  out_.probe_clear = false;
-  out_.flush = false;
-  out_.start = false;
-  snapshot_asked_ = false;
+  state_.out.ack = false;
+  state_.out.error = false;
+  state_.out.data = 0;
+  state_.out.setting.set = false;
+  state_.out.clear_fault = 0;
+  state_.out.stream_write = false;
+  state_.out.abort = false;
+  state_.out.probe_clear = false;
+  state_.out.flush = false;
+  state_.out.start = false;
+  state_.snapshot_asked = false;
 }
 
 std::uint32_t RegisterFile::status(const Inputs& in) const {
   bool refused = false;
-  for (const std::uint32_t refusal : refusal_) refused = refused || refusal != 0;
+  for (const std::uint32_t refusal : state_.refusal) refused = refused || refusal != 0;
   return status_for(in, refused);
 }
 
@@ -111,7 +104,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (in.ended) status |= field::kStatusEnded;
   if (in.fault != 0) status |= field::kStatusFaulted;
   if (refused) status |= field::kStatusRefused;
-  if (snapshot_.busy()) status |= field::kStatusSnapshot;
+  if (state_.snapshot.busy()) status |= field::kStatusSnapshot;
   if (in.incomplete) status |= field::kStatusIncomplete;
   if (in.stopping) status |= field::kStatusStopping;
   if (in.geometry_low) status |= field::kStatusGeometryLow;
@@ -126,17 +119,17 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
 
 bool RegisterFile::interrupt(const Inputs& in) const {
   // IRQ_ENABLE has the bits of STATUS, but its bit for busy means idle.
-  return ((status(in) ^ field::kStatusBusy) & irq_enable_) != 0;
+  return state_.irq_enable != 0 && ((status(in) ^ field::kStatusBusy) & state_.irq_enable) != 0;
 }
 
 std::uint32_t RegisterFile::live(const Inputs& in) const {
-  switch (address_) {
+  switch (state_.address) {
     case reg::kStatus:
-      return status_for(in, refusal_[port_] != 0);
+      return status_for(in, state_.refusal[state_.port] != 0);
     case reg::kFault:
       return in.fault;
     case reg::kRefusal:
-      return refusal_[port_];
+      return state_.refusal[state_.port];
     case reg::kGeometryRoom:
       return in.geometry_room;
     case reg::kFeedRoom:
@@ -159,42 +152,44 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
 }
 
 Reason RegisterFile::judge(const Inputs& in) const {
-  if (slot_.entry == nullptr || (address_ & kByteInWord) != 0) return Reason::UnknownAddress;
-  const card_map::Register& entry = *slot_.entry;
+  if (state_.slot.entry == nullptr || (state_.address & kByteInWord) != 0) return Reason::UnknownAddress;
+  const card_map::Register& entry = *state_.slot.entry;
   if (!card_map::has_engine(config_.engines, entry.engine)) return Reason::UnknownAddress;
-  if (entry.only_present_axes && slot_.index >= config_.axes) return Reason::UnknownAddress;
-  if (!write_) return entry.access == Access::Command ? Reason::WriteOnly : Reason::None;
+  if (entry.only_present_axes && state_.slot.index >= config_.axes) return Reason::UnknownAddress;
+  if (!state_.write) return entry.access == Access::Command ? Reason::WriteOnly : Reason::None;
   return judge_write(in);
 }
 
 Reason RegisterFile::judge_write(const Inputs& in) const {
-  const card_map::Register& entry = *slot_.entry;
+  const card_map::Register& entry = *state_.slot.entry;
   if (!writable(entry.access)) return Reason::ReadOnly;
-  if (partial_) return Reason::PartialWrite;
+  if (state_.partial) return Reason::PartialWrite;
   const std::uint32_t meaning = card_map::bits_with_meaning(entry, config_.engines);
-  if ((word_ & ~meaning) != 0 || !in_limits(entry, word_)) return Reason::BadValue;
-  const bool owned_by_another = in.incomplete && stream_owner_ != port_;
-  if (address_ == reg::kStream && (in.direct || owned_by_another)) return Reason::Busy;
+  if ((state_.word & ~meaning) != 0 || !in_limits(entry, state_.word)) return Reason::BadValue;
+  const bool owned_by_another = in.incomplete && state_.stream_owner != state_.port;
+  if (state_.address == reg::kStream && (in.direct || owned_by_another)) return Reason::Busy;
   return Reason::None;
 }
 
 void RegisterFile::step_access(const Inputs& in) {
-  switch (stage_) {
+  switch (state_.stage) {
     case Stage::Idle:
       if (in.request) begin(in);
       break;
     case Stage::Decode:
-      stage_ = Stage::Wait;
+      state_.stage = Stage::Wait;
       break;
     case Stage::Wait: {
-      reason_ = judge(in);
-      const bool needs_ram = write_ || reason_ == Reason::UnknownAddress || !reads_live(slot_.entry->access);
-      const bool ram_taken = time_ < kFillClocks || snapshot_.busy();
+      state_.reason = judge(in);
+      const bool needs_ram =
+          state_.write || state_.reason == Reason::UnknownAddress || !reads_live(state_.slot.entry->access);
+      const bool ram_taken = state_.time < kFillClocks || state_.snapshot.busy();
       if (!needs_ram || !ram_taken) {
-        stage_ = Stage::Act;
+        state_.stage = Stage::Act;
         // A clock before the rest, so that the checker's refusal comes with the answer; an abort makes it idle.
-        const std::uint32_t orders = word_ & (field::kControlFlush | field::kControlAbort);
-        out_.flush = write_ && reason_ == Reason::None && address_ == reg::kControl && orders == field::kControlFlush;
+        const std::uint32_t orders = state_.word & (field::kControlFlush | field::kControlAbort);
+        state_.out.flush = state_.write && state_.reason == Reason::None && state_.address == reg::kControl &&
+                           orders == field::kControlFlush;
       }
       break;
     }
@@ -202,14 +197,14 @@ void RegisterFile::step_access(const Inputs& in) {
       act(in);
       break;
     case Stage::Respond:
-      finish(false, answer_);
+      finish(false, state_.answer);
       break;
     case Stage::Sent:
-      stage_ = Stage::Judge;
+      state_.stage = Stage::Judge;
       break;
     case Stage::Judge:
-      word_refused_ = word_refused_ || in.checker_refuse;
-      if (in.checker_ready) finish(word_refused_);
+      state_.word_refused = state_.word_refused || in.checker_refuse;
+      if (in.checker_ready) finish(state_.word_refused);
       break;
     case Stage::Load:
       if (!in.start_done) break;
@@ -220,40 +215,40 @@ void RegisterFile::step_access(const Inputs& in) {
 }
 
 void RegisterFile::begin(const Inputs& in) {
-  write_ = in.write;
-  partial_ = in.partial;
-  port_ = in.port;
-  address_ = in.address;
-  slot_ = card_map::find_register(address_ & ~kByteInWord);
-  if (write_) {
-    word_ = in.data;
-    out_.stream_word = word_;
-    out_.start_mask = static_cast<std::uint8_t>(word_);
+  state_.write = in.write;
+  state_.partial = in.partial;
+  state_.port = in.port;
+  state_.address = in.address;
+  state_.slot = card_map::find_register(state_.address & ~kByteInWord);
+  if (state_.write) {
+    state_.word = in.data;
+    state_.out.stream_word = state_.word;
+    state_.out.start_mask = static_cast<std::uint8_t>(state_.word);
   }
-  stage_ = Stage::Decode;
+  state_.stage = Stage::Decode;
 }
 
 void RegisterFile::act(const Inputs& in) {
-  if (reason_ != Reason::None) {
-    refuse(static_cast<std::uint8_t>(reason_));
+  if (state_.reason != Reason::None) {
+    refuse(static_cast<std::uint8_t>(state_.reason));
     finish(true);
     return;
   }
-  if (!write_) {
-    answer_ = reads_live(slot_.entry->access) ? live(in) : stored(address_);
-    stage_ = Stage::Respond;
+  if (!state_.write) {
+    state_.answer = reads_live(state_.slot.entry->access) ? live(in) : stored(state_.address);
+    state_.stage = Stage::Respond;
     return;
   }
-  if (address_ == reg::kStream) {
-    out_.stream_write = true;
-    stream_owner_ = port_;
-    word_refused_ = false;
-    stage_ = Stage::Sent;
+  if (state_.address == reg::kStream) {
+    state_.out.stream_write = true;
+    state_.stream_owner = state_.port;
+    state_.word_refused = false;
+    state_.stage = Stage::Sent;
     return;
   }
-  if (address_ == reg::kStart) {
-    out_.start = true;
-    stage_ = Stage::Load;
+  if (state_.address == reg::kStart) {
+    state_.out.start = true;
+    state_.stage = Stage::Load;
     return;
   }
   take_effect();
@@ -261,31 +256,32 @@ void RegisterFile::act(const Inputs& in) {
 }
 
 void RegisterFile::take_effect() {
-  if (slot_.entry->access == Access::Setting) {
-    stored(address_) = word_;
-    out_.setting = {true, address_, word_};
+  if (state_.slot.entry->access == Access::Setting) {
+    stored(state_.address) = state_.word;
+    state_.out.setting = {true, state_.address, state_.word};
   }
-  if (address_ == reg::kControl) {
-    out_.abort = (word_ & field::kControlAbort) != 0;
-    out_.probe_clear = (word_ & field::kControlProbeClear) != 0;
-    snapshot_asked_ = (word_ & field::kControlSnapshot) != 0;
+  if (state_.address == reg::kControl) {
+    state_.out.abort = (state_.word & field::kControlAbort) != 0;
+    state_.out.probe_clear = (state_.word & field::kControlProbeClear) != 0;
+    state_.snapshot_asked = (state_.word & field::kControlSnapshot) != 0;
   }
-  if (address_ == reg::kFault) out_.clear_fault = word_;
-  if (address_ == reg::kRefusal && word_ != 0) refusal_[port_] = 0;
+  if (state_.address == reg::kFault) state_.out.clear_fault = state_.word;
+  if (state_.address == reg::kRefusal && state_.word != 0) state_.refusal[state_.port] = 0;
 }
 
 void RegisterFile::finish(bool error, std::uint32_t data) {
-  out_.ack = true;
-  out_.error = error;
-  out_.data = data;
-  stage_ = Stage::Idle;
+  state_.out.ack = true;
+  state_.out.error = error;
+  state_.out.data = data;
+  state_.stage = Stage::Idle;
 }
 
 // The first refusal of a port stays until it is cleared.
 void RegisterFile::refuse(std::uint8_t reason, std::uint8_t number) {
-  std::uint32_t& refusal = refusal_[port_];
+  std::uint32_t& refusal = state_.refusal[state_.port];
   if (refusal != 0) return;
-  refusal = address_ << field::kRefusalAddressShift | std::uint32_t{number} << field::kRefusalCommandShift | reason;
+  refusal =
+      state_.address << field::kRefusalAddressShift | std::uint32_t{number} << field::kRefusalCommandShift | reason;
 }
 
 // A refusal by the checker belongs to the access that brought it: a word of the stream, or a flush that is answered in
@@ -295,17 +291,17 @@ void RegisterFile::refuse_checked(const Inputs& in) {
 }
 
 void RegisterFile::step_snapshot(const Inputs& in, bool host) {
-  if (const std::optional<std::uint32_t> word = snapshot_.word()) {
+  if (const std::optional<std::uint32_t> word = state_.snapshot.word()) {
     const std::size_t place = written_at(*word);
-    stored_[static_cast<std::uint32_t>(snapshot_.area()) / 4 + place] = latched_[place];
+    state_.stored[static_cast<std::uint32_t>(state_.snapshot.area()) / 4 + place] = state_.latched[place];
   }
   SnapshotWriter::Requests requests;
   requests.host = host;
   requests.stop = in.stop;
   requests.probe = in.probe;
   requests.mark = in.mark;
-  snapshot_.clock(requests);
-  out_.strobe = snapshot_.strobe();
+  state_.snapshot.clock(requests);
+  state_.out.strobe = state_.snapshot.strobe();
 }
 
 // The place in its area of the word that is written as the `word`th: the time, the positions from the last one down,
@@ -319,22 +315,23 @@ std::size_t RegisterFile::written_at(std::uint32_t word) const {
 }
 
 void RegisterFile::take_values(const Inputs& in) {
-  latched_[in_area(reg::fault(Area::Snap))] = in.fault;
-  latched_[in_area(reg::status(Area::Snap))] = status(in) & ~field::kStatusSnapshot;
-  latched_[in_area(reg::ratio(Area::Snap))] = in.ratio;
-  latched_[in_area(reg::rate(Area::Snap))] = in.rate;
-  latched_[in_area(reg::feed_begun(Area::Snap))] = in.feed_begun;
-  latched_[in_area(reg::geometry_begun(Area::Snap))] = in.geometry_begun;
-  latched_[in_area(reg::time_hi(Area::Snap))] = static_cast<std::uint32_t>(time_ >> 32);
-  latched_[in_area(reg::time_lo(Area::Snap))] = static_cast<std::uint32_t>(time_);
-  for (std::uint32_t n = 0; n < config_.axes; ++n) latched_[in_area(reg::position(Area::Snap, n))] = in.position[n];
+  state_.latched[in_area(reg::fault(Area::Snap))] = in.fault;
+  state_.latched[in_area(reg::status(Area::Snap))] = status(in) & ~field::kStatusSnapshot;
+  state_.latched[in_area(reg::ratio(Area::Snap))] = in.ratio;
+  state_.latched[in_area(reg::rate(Area::Snap))] = in.rate;
+  state_.latched[in_area(reg::feed_begun(Area::Snap))] = in.feed_begun;
+  state_.latched[in_area(reg::geometry_begun(Area::Snap))] = in.geometry_begun;
+  state_.latched[in_area(reg::time_hi(Area::Snap))] = static_cast<std::uint32_t>(state_.time >> 32);
+  state_.latched[in_area(reg::time_lo(Area::Snap))] = static_cast<std::uint32_t>(state_.time);
+  for (std::uint32_t n = 0; n < config_.axes; ++n)
+    state_.latched[in_area(reg::position(Area::Snap, n))] = in.position[n];
 }
 
 void RegisterFile::step_loader(const Inputs& in) {
-  out_.loader_valid = loader_read_.valid;
-  out_.loader_data = loader_read_.data;
-  loader_read_ = {loading_, stored_[in.loader_address]};
-  loading_ = (loading_ || out_.start) && !in.start_done;
+  state_.out.loader_valid = state_.loader_read.valid;
+  state_.out.loader_data = state_.loader_read.data;
+  state_.loader_read = {state_.loading, state_.stored[in.loader_address]};
+  state_.loading = (state_.loading || state_.out.start) && !in.start_done;
 }
 
 }  // namespace trammel::model

@@ -269,7 +269,7 @@ class MotionCoreBench {
     dut_.clock();
     dut_->rst_i = 0;
     const model::PathCommands::Config pins{kInputs, kOutputs, output_idle_};
-    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, false, TRAMMEL_ENGINES, pins);
+    model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, TRAMMEL_ENGINES, pins);
     geometry_.reset();
     feed_.reset();
     starting_ = false;

@@ -65,53 +65,55 @@ class ArcGenerator {
     bool ready = true;       // path ticks may come
     bool loadable = true;
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    ChordRotation path;
+    std::uint8_t axis_x = 1;
+    std::uint8_t axis_y = 1;
+    bool under_way = false;
+    bool begun = false;   // the first chord is swapped in
+    bool in_x = false;    // which coordinate moves next, or now
+    bool full_x = false;  // the axis's shadow holds an increment that is not swapped in
+    bool full_y = false;
+    unsigned left = 0;           // clocks of the half chord under way
+    std::int64_t increment = 0;  // its increment
+    std::uint64_t ticks = 0;     // since the start
+    Outputs out;
+  };
 
   // One rising edge.
   void clock(const Inputs& in) {
     take(in.load);
-    out_.load = 0;
-    out_.swap = 0;
+    state_.out.load = 0;
+    state_.out.swap = 0;
     if (in.clear) {
-      under_way_ = false;
-      left_ = 0;
-      out_.ready = out_.loadable = true;
+      state_.under_way = false;
+      state_.left = 0;
+      state_.out.ready = state_.out.loadable = true;
       return;
     }
     if (in.start) {
       start();
       return;
     }
-    if (!under_way_) return;
-    const bool x_is_free = !full_x_;
-    const bool y_is_free = !full_y_;
-    const bool both = full_x_ && full_y_;
-    if (in.tick) ++ticks_;
+    if (!state_.under_way) return;
+    const bool x_is_free = !state_.full_x;
+    const bool y_is_free = !state_.full_y;
+    const bool both = state_.full_x && state_.full_y;
+    if (in.tick) ++state_.ticks;
     swap(in.tick, both);
     rotate(x_is_free, y_is_free);
   }
 
-  const Outputs& outputs() const { return out_; }
-
-  // For jumps, only between the start's clocks and those of a half chord. Path ticks up to the one that ends a half
-  // chord, that included; the largest number there is where none does.
-  std::uint64_t ticks_left() const {
-    if (path_.state.m < kMinChordBits) return UINT64_MAX;
-    const std::uint64_t half = std::uint64_t{1} << (path_.state.m - 1);
-    return half - (ticks_ & (half - 1));
-  }
-  // n path ticks at once, n < ticks_left().
-  void pass(std::uint64_t n) { ticks_ += n; }
-
-  // Without load, start or tick clock() changes nothing any more.
-  bool quiet() const {
-    return out_.load == 0 && out_.swap == 0 && (!under_way_ || (left_ == 0 && begun_ && full_x_ && full_y_));
-  }
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
  private:
   static constexpr unsigned kHalfwords = 3;
 
   void take(const LoadWord& load) {
-    ChordRotation::State& state = path_.state;
+    ChordRotation::State& state = state_.path.state;
     if (load.to(load_target::kChordState)) join<64>(state.x, state.y, load.word);
     if (load.to(load_target::kChordClosing)) join<48>(state.closing_x, state.closing_y, load.word);
     if (load.to(load_target::kChordShifts)) {
@@ -120,8 +122,8 @@ class ArcGenerator {
     }
     if (load.to(load_target::kChordPlane)) {
       state.clockwise = (load.word & 1) != 0;
-      axis_x_ = static_cast<std::uint8_t>(1U << (load.word >> 4 & 7));
-      axis_y_ = static_cast<std::uint8_t>(1U << (load.word >> 8 & 7));
+      state_.axis_x = static_cast<std::uint8_t>(1U << (load.word >> 4 & 7));
+      state_.axis_y = static_cast<std::uint8_t>(1U << (load.word >> 8 & 7));
     }
   }
 
@@ -138,65 +140,55 @@ class ArcGenerator {
   }
 
   void start() {
-    under_way_ = true;
-    begun_ = false;
-    full_x_ = full_y_ = false;
-    in_x_ = false;
-    ticks_ = 0;
-    out_.ready = out_.loadable = false;
+    state_.under_way = true;
+    state_.begun = false;
+    state_.full_x = state_.full_y = false;
+    state_.in_x = false;
+    state_.ticks = 0;
+    state_.out.ready = state_.out.loadable = false;
     begin();
   }
 
   void begin() {
-    left_ = kHalfChord + (path_.state.k >= 16 ? 1 : 0);
-    increment_ = in_x_ ? path_.chord_x() : path_.chord_y();
+    state_.left = kHalfChord + (state_.path.state.k >= 16 ? 1 : 0);
+    state_.increment = state_.in_x ? state_.path.chord_x() : state_.path.chord_y();
   }
 
   // After the first path tick both axes take their first chord, as soon as it is loaded; then y at odd multiples of
   // half a chord, x at even ones.
   void swap(bool tick, bool both_are_full) {
-    if (!begun_) {
-      if (both_are_full && ticks_ != 0) {
-        begun_ = true;
-        full_x_ = full_y_ = false;
-        out_.swap = axis_x_ | axis_y_;
+    if (!state_.begun) {
+      if (both_are_full && state_.ticks != 0) {
+        state_.begun = true;
+        state_.full_x = state_.full_y = false;
+        state_.out.swap = state_.axis_x | state_.axis_y;
       }
       return;
     }
-    const unsigned half = path_.state.m - 1U;
-    if (!tick || path_.state.m < kMinChordBits || (ticks_ & ((std::uint64_t{1} << half) - 1)) != 0) return;
-    const bool of_y = (ticks_ >> half & 1) != 0;
-    (of_y ? full_y_ : full_x_) = false;
-    out_.swap = of_y ? axis_y_ : axis_x_;
+    const unsigned half = state_.path.state.m - 1U;
+    if (!tick || state_.path.state.m < kMinChordBits || (state_.ticks & ((std::uint64_t{1} << half) - 1)) != 0) return;
+    const bool of_y = (state_.ticks >> half & 1) != 0;
+    (of_y ? state_.full_y : state_.full_x) = false;
+    state_.out.swap = of_y ? state_.axis_y : state_.axis_x;
   }
 
   void rotate(bool x_is_free, bool y_is_free) {
-    if (left_ != 0) {
-      --left_;
-      if (left_ != 0 && left_ <= kHalfwords) {
-        out_.load = in_x_ ? axis_x_ : axis_y_;
-        out_.word = static_cast<std::uint16_t>(static_cast<std::uint64_t>(increment_) >> (16 * (kHalfwords - left_)));
-        if (left_ == kHalfwords && in_x_ && !begun_) out_.ready = true;
+    if (state_.left != 0) {
+      --state_.left;
+      if (state_.left != 0 && state_.left <= kHalfwords) {
+        state_.out.load = state_.in_x ? state_.axis_x : state_.axis_y;
+        state_.out.word = static_cast<std::uint16_t>(static_cast<std::uint64_t>(state_.increment) >>
+                                                     (16 * (kHalfwords - state_.left)));
+        if (state_.left == kHalfwords && state_.in_x && !state_.begun) state_.out.ready = true;
       }
-      if (left_ != 0) return;
-      (in_x_ ? full_x_ : full_y_) = true;
-      in_x_ = !in_x_;
+      if (state_.left != 0) return;
+      (state_.in_x ? state_.full_x : state_.full_y) = true;
+      state_.in_x = !state_.in_x;
     }
-    if (in_x_ ? x_is_free : y_is_free) begin();
+    if (state_.in_x ? x_is_free : y_is_free) begin();
   }
 
-  ChordRotation path_;
-  std::uint8_t axis_x_ = 1;
-  std::uint8_t axis_y_ = 1;
-  bool under_way_ = false;
-  bool begun_ = false;   // the first chord is swapped in
-  bool in_x_ = false;    // which coordinate moves next, or now
-  bool full_x_ = false;  // the axis's shadow holds an increment that is not swapped in
-  bool full_y_ = false;
-  unsigned left_ = 0;           // clocks of the half chord under way
-  std::int64_t increment_ = 0;  // its increment
-  std::uint64_t ticks_ = 0;     // since the start
-  Outputs out_;
+  State state_;
 };
 
 }  // namespace trammel::model

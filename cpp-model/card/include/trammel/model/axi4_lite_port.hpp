@@ -44,66 +44,64 @@ class Axi4LitePort {
     std::uint32_t address = 0;
     std::uint32_t data = 0;
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    bool busy = false;
+    Outputs out;
+  };
 
   void reset() { *this = Axi4LitePort(); }
 
   // One rising edge with reset low.
   void clock(const Inputs& in) {
-    const bool write_waits = in.awvalid && in.wvalid && !out_.bvalid;
-    const bool read_waits = in.arvalid && !out_.rvalid;
-    if (in.bready) out_.bvalid = false;
-    if (in.rready) out_.rvalid = false;
-    out_.request = false;
-    out_.awready = false;
-    out_.wready = false;
-    out_.arready = false;
-    if (!busy_) {
+    const bool write_waits = in.awvalid && in.wvalid && !state_.out.bvalid;
+    const bool read_waits = in.arvalid && !state_.out.rvalid;
+    if (in.bready) state_.out.bvalid = false;
+    if (in.rready) state_.out.rvalid = false;
+    state_.out.request = false;
+    state_.out.awready = false;
+    state_.out.wready = false;
+    state_.out.arready = false;
+    if (!state_.busy) {
       take(in, write_waits, read_waits);
     } else if (in.ack) {
       answer(in);
     }
   }
 
-  const Outputs& outputs() const { return out_; }
-
-  // True when clocks with these same inputs change nothing.
-  bool quiet(const Inputs& in) const {
-    const bool handshakes = out_.request || out_.awready || out_.arready;
-    const bool waits = (in.awvalid && in.wvalid) || in.arvalid;
-    const bool leaves = (out_.bvalid && in.bready) || (out_.rvalid && in.rready);
-    return !handshakes && !waits && !leaves && !(busy_ && in.ack);
-  }
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
  private:
   void take(const Inputs& in, bool write_waits, bool read_waits) {
     if (!write_waits && !read_waits) return;
-    const bool write = write_waits && !(read_waits && out_.write);
-    busy_ = true;
-    out_.request = true;
-    out_.write = write;
-    out_.address = write ? in.awaddr : in.araddr;
-    out_.partial = in.wstrb != kAllStrobes;
-    out_.data = in.wdata;
-    out_.awready = write;
-    out_.wready = write;
-    out_.arready = !write;
+    const bool write = write_waits && !(read_waits && state_.out.write);
+    state_.busy = true;
+    state_.out.request = true;
+    state_.out.write = write;
+    state_.out.address = write ? in.awaddr : in.araddr;
+    state_.out.partial = in.wstrb != kAllStrobes;
+    state_.out.data = in.wdata;
+    state_.out.awready = write;
+    state_.out.wready = write;
+    state_.out.arready = !write;
   }
 
   void answer(const Inputs& in) {
     const std::uint8_t response = in.error ? kSlaveError : kOkay;
-    busy_ = false;
-    if (out_.write) {
-      out_.bvalid = true;
-      out_.bresp = response;
+    state_.busy = false;
+    if (state_.out.write) {
+      state_.out.bvalid = true;
+      state_.out.bresp = response;
     } else {
-      out_.rvalid = true;
-      out_.rresp = response;
-      out_.rdata = in.data;
+      state_.out.rvalid = true;
+      state_.out.rresp = response;
+      state_.out.rdata = in.data;
     }
   }
 
-  bool busy_ = false;
-  Outputs out_;
+  State state_;
 };
 
 }  // namespace trammel::model

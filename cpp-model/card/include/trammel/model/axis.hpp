@@ -8,6 +8,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/model/buses.hpp"
+#include "trammel/model/clock_each.hpp"
 #include "trammel/model/pulse_generator.hpp"
 #include "trammel/model/step_shaper.hpp"
 
@@ -38,25 +39,33 @@ class Axis {
     bool live = false;       // direct: the count is not made
     StepShaper::Outputs shaper;
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    PulseGenerator generator;
+    StepShaper shaper;
+    StepShaper::Inputs times;  // the axis's settings alone
+    bool path_step = false;
+    bool path_dir = false;
+  };
 
-  // `number`: 0 .. 7; `idle_level`: strap, {second pin, first pin}; `clock_all`: the shaper never rests.
-  explicit Axis(unsigned number, unsigned idle_level = 0, bool clock_all = false)
-      : number_(number), clock_all_(clock_all), shaper_(idle_level) {
-    times_.mode = static_cast<std::uint8_t>((idle_level & 3) << 2);
+  // `number`: 0 .. 7; `idle_level`: strap, {second pin, first pin}.
+  explicit Axis(unsigned number, unsigned idle_level = 0) : number_(number) {
+    state_.shaper = StepShaper(idle_level);
+    state_.times.mode = static_cast<std::uint8_t>((idle_level & 3) << 2);
   }
 
   // One rising edge.
-  void clock(const Inputs& in) {
-    times_.step = path_step_;
-    times_.dir = path_dir_;
-    times_.wait_tick = in.wait_tick;
-    if (clock_all_)
-      shaper_.clock_always(times_);
-    else
-      shaper_.clock(times_);
-    const PulseGenerator::Outputs& made = generator_.outputs();
-    path_step_ = made.step || in.engine_step;
-    if (path_step_) path_dir_ = in.engine_step ? in.engine_dir : made.dir;
+  void clock(const Inputs& in) { clock_parts(in, ClockEach()); }
+  template <class ClockPart>
+  void clock_parts(const Inputs& in, const ClockPart& clock_part) {
+    StepShaper::Inputs shaper = state_.times;
+    shaper.step = state_.path_step;
+    shaper.dir = state_.path_dir;
+    shaper.wait_tick = in.wait_tick;
+    clock_part(state_.shaper, shaper);
+    const PulseGenerator::Outputs& made = state_.generator.outputs();
+    state_.path_step = made.step || in.engine_step;
+    if (state_.path_step) state_.path_dir = in.engine_step ? in.engine_dir : made.dir;
     PulseGenerator::Inputs generator;
     generator.clear = in.cut;
     generator.tick = in.tick;
@@ -67,51 +76,30 @@ class Axis {
     generator.load_increment = in.load.to(load_target::increment(number_)) || in.chord_load;
     generator.load_count = in.load.to(load_target::count(number_));
     generator.word = in.chord_load ? in.chord_word : in.load.word;
-    generator_.clock(generator);
+    clock_part(state_.generator, generator);
     if (in.setting.set) set(in.setting);
   }
 
-  Outputs outputs() const { return {path_step_, path_dir_, generator_.outputs().live, shaper_.outputs()}; }
-
-  // Nothing changes any more without new inputs.
-  bool quiet() const { return generator_.quiet() && !path_step_ && shaper_.quiet() && times_.mode == shaper_.mode(); }
-
-  // Ready for a jump: nothing on its way to the shaper, and there no step that waits.
-  bool calm() const {
-    return generator_.quiet() && !path_step_ && shaper_.calm() && times_.mode == shaper_.mode() &&
-           !generator_.outputs().live && generator_.within_a_pulse();
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  Outputs outputs() const {
+    return {state_.path_step, state_.path_dir, state_.generator.outputs().live, state_.shaper.outputs()};
   }
-
-  // A step of a tick taken `clocks_ago` clocks ago that is not yet at the shaper, placed in flight.
-  void place_step(std::uint64_t clocks_ago, bool backwards) {
-    generator_.place_step(clocks_ago, backwards);
-    path_step_ = clocks_ago == 3;
-    if (clocks_ago >= 3) path_dir_ = backwards;
-  }
-
-  PulseGenerator& generator() { return generator_; }
-  const PulseGenerator& generator() const { return generator_; }
-  StepShaper& shaper() { return shaper_; }
-  const StepShaper& shaper() const { return shaper_; }
-  const StepShaper::Inputs& times() const { return times_; }
 
  private:
   void set(const Setting& setting) {
     namespace reg = card_map::reg;
-    if (setting.address == reg::step_length(number_)) times_.step_length = static_cast<std::uint16_t>(setting.data);
-    if (setting.address == reg::step_space(number_)) times_.step_space = static_cast<std::uint16_t>(setting.data);
-    if (setting.address == reg::dir_setup(number_)) times_.dir_setup = static_cast<std::uint16_t>(setting.data);
-    if (setting.address == reg::dir_hold(number_)) times_.dir_hold = static_cast<std::uint16_t>(setting.data);
-    if (setting.address == reg::mode(number_)) times_.mode = static_cast<std::uint8_t>(setting.data);
+    if (setting.address == reg::step_length(number_))
+      state_.times.step_length = static_cast<std::uint16_t>(setting.data);
+    if (setting.address == reg::step_space(number_)) state_.times.step_space = static_cast<std::uint16_t>(setting.data);
+    if (setting.address == reg::dir_setup(number_)) state_.times.dir_setup = static_cast<std::uint16_t>(setting.data);
+    if (setting.address == reg::dir_hold(number_)) state_.times.dir_hold = static_cast<std::uint16_t>(setting.data);
+    if (setting.address == reg::mode(number_)) state_.times.mode = static_cast<std::uint8_t>(setting.data);
   }
 
   unsigned number_;
-  bool clock_all_;
-  PulseGenerator generator_;
-  StepShaper shaper_;
-  StepShaper::Inputs times_;
-  bool path_step_ = false;
-  bool path_dir_ = false;
+
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -1,7 +1,6 @@
 // Golden model of the whole card: the core behind an AXI4-Lite port, cycle by cycle the same at every pin.
 //
-// clock() is one rising edge; run(n) is n edges without bus traffic and leaves exactly the state that n calls of
-// clock() leave. Not thread-safe; no errors are reported beside the constructor's.
+// clock() is one rising edge. Not thread-safe; no errors are reported beside the constructor's.
 #pragma once
 
 #include <cstdint>
@@ -32,24 +31,64 @@ class CardModel {
   };
 
   // Throws std::invalid_argument for numbers out of range.
-  explicit CardModel(const Config& config) : core_(config) {}
+  explicit CardModel(const Config& config) : state_{CoreModel(config)} {}
+
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    CoreModel core;
+    Axi4LitePort port{};
+    bool reset_due = false;
+  };
 
   // One rising edge.
-  void clock(const Inputs& in);
-  // `clocks` rising edges with all valid and ready inputs low, with these levels at the card's inputs.
-  void run(std::uint64_t clocks, std::uint16_t pins = 0);
+  void clock(const Inputs& in) { clock_parts(in, ClockEach()); }
+  template <class ClockPart>
+  void clock_parts(const Inputs& in, const ClockPart& clock_part);
 
-  const Axi4LitePort::Outputs& bus() const { return port_.outputs(); }
-  const Outputs& outputs() const { return core_.outputs(); }
-  std::uint32_t position(unsigned axis) const { return core_.position(axis); }
-  unsigned axes() const { return core_.config().axes; }
-  std::uint64_t cycles() const { return core_.cycles(); }
-  void set_steps(CardSteps* steps) { core_.set_steps(steps); }  // nullptr: none; not owned
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+
+  const Axi4LitePort::Outputs& bus() const { return state_.port.outputs(); }
+  const Outputs& outputs() const { return state_.core.outputs(); }
+  std::uint32_t position(unsigned axis) const { return state_.core.position(axis); }
+  unsigned axes() const { return state_.core.config().axes; }
+  std::uint64_t cycles() const { return state_.core.cycles(); }
+  void set_steps(CardSteps* steps) { state_.core.set_steps(steps); }  // nullptr: none; not owned
 
  private:
-  CoreModel core_;
-  Axi4LitePort port_;
-  bool reset_due_ = false;
+  State state_;
 };
+
+template <class ClockPart>
+void CardModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
+  const bool reset_now = state_.reset_due;
+  state_.reset_due = in.rst;
+  const Axi4LitePort::Outputs& port = state_.port.outputs();
+  CoreModel::Inputs core;
+  core.rst = in.rst;
+  core.request = port.request;
+  core.write = port.write;
+  core.partial = port.partial;
+  core.address = port.address;
+  core.data = port.data;
+  core.pins = in.pins;
+  const CoreModel::Answer answer = state_.core.answer();
+  clock_part(state_.core, core);
+  if (reset_now || in.rst) return state_.port.reset();  // the port also takes the pin
+  Axi4LitePort::Inputs bus;
+  bus.awvalid = in.awvalid;
+  bus.awaddr = in.awaddr;
+  bus.wvalid = in.wvalid;
+  bus.wdata = in.wdata;
+  bus.wstrb = in.wstrb;
+  bus.bready = in.bready;
+  bus.arvalid = in.arvalid;
+  bus.araddr = in.araddr;
+  bus.rready = in.rready;
+  bus.ack = answer.ack;
+  bus.error = answer.error;
+  bus.data = answer.data;
+  clock_part(state_.port, bus);
+}
 
 }  // namespace trammel::model

@@ -36,6 +36,21 @@ class CommandChecker {
     std::uint8_t number = 0;  // in the last header
     bool partial = false;     // inside a command
   };
+  static constexpr std::size_t kMaxHalfwords = 64;
+
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    bool open = true;
+    card_map::Reason unread = card_map::Reason::None;  // why the word under way is refused whatever it is
+    bool flush_waits = false;
+    int age = 0;                // clocks since the write of the word under way
+    std::uint8_t expected = 0;  // number
+    const card_map::Command* command = nullptr;
+    card_map::Reason header_verdict = card_map::Reason::None;
+    std::size_t received = 0;  // halfwords of the command, with the word under way
+    std::array<std::uint16_t, kMaxHalfwords> halfwords{};
+    Outputs outputs;
+  };
 
   // Clocks from a word's write until `ready` is back, and from one that is refused unread: as FAULTED, STREAM_CLOSED.
   static constexpr int kAnswerClocks = 6;
@@ -46,26 +61,19 @@ class CommandChecker {
 
   // One rising edge.
   void clock(const Inputs& in);
-  const Outputs& outputs() const { return outputs_; }
+  const Outputs& outputs() const { return state_.outputs; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
   // Of the command that is committed: a path or a barrier, and so one that the sequencer counts.
   bool counts_in_geometry() const {
     using card_map::Opcode;
-    const Opcode opcode = command_->opcode;
+    const Opcode opcode = state_.command->opcode;
     const bool instant = opcode == Opcode::Output || opcode == Opcode::Mark || opcode == Opcode::Probe;
-    return outputs_.geometry_commit && !instant;
-  }
-
-  // True when a clock without inputs changes nothing.
-  bool quiet() const {
-    const Outputs& o = outputs_;
-    return o.ready && !o.geometry_write && !o.feed_write && !o.geometry_commit && !o.feed_commit && !o.drop &&
-           !o.refuse;
+    return state_.outputs.geometry_commit && !instant;
   }
 
  private:
-  static constexpr std::size_t kMaxHalfwords = 64;
-
   void restart();
   void idle(const Inputs& in);
   void go_on(const Inputs& in);
@@ -73,7 +81,7 @@ class CommandChecker {
   void answer_unread();
   void refuse(card_map::Reason reason);
   void store(std::size_t index);
-  std::uint8_t mask() const { return static_cast<std::uint8_t>(halfwords_[0] >> 8); }
+  std::uint8_t mask() const { return static_cast<std::uint8_t>(state_.halfwords[0] >> 8); }
   bool mask_fits() const;
   std::size_t copies(const card_map::Field& field) const;
   card_map::Reason judge_header(const Inputs& in) const;
@@ -83,16 +91,8 @@ class CommandChecker {
 
   std::uint8_t card_mask_;
   std::uint32_t engines_;
-  bool open_ = true;
-  card_map::Reason unread_ = card_map::Reason::None;  // why the word under way is refused whatever it is
-  bool flush_waits_ = false;
-  int age_ = 0;                // clocks since the write of the word under way
-  std::uint8_t expected_ = 0;  // number
-  const card_map::Command* command_ = nullptr;
-  card_map::Reason header_verdict_ = card_map::Reason::None;
-  std::size_t received_ = 0;  // halfwords of the command, with the word under way
-  std::array<std::uint16_t, kMaxHalfwords> halfwords_{};
-  Outputs outputs_;
+
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -8,6 +8,7 @@
 // checker lets only good commands into the queue.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "trammel/card_map.hpp"
@@ -26,50 +27,56 @@ class CommandFetch {
     bool empty = true;           // of the queue
     std::uint16_t halfword = 0;  // what was asked for two clocks ago
   };
+  enum class Mode { Idle, Reading, Waiting, Decoded, Finishing };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    Mode mode = Mode::Idle;
+    int asked = -1;  // index of the halfword asked for, -1: none
+    std::array<int, 2> arriving = {-1, -1};
+    int length = 0;            // halfwords of the command
+    int pause_at = 0;          // the halfword before which it may have to wait
+    bool split = false;        // the piece is decoded without acceleration and jerk
+    bool header_here = false;  // what arrives is of this command, not the rest of the one before
+    card_map::Opcode opcode = card_map::Opcode::End;
+    std::uint8_t engine = card_map::engine::kLines;
+    std::uint8_t mask = 0;
+    std::array<std::uint8_t, 8> axes = {};  // of the mask, lowest first; an arc's in chords: x, y, the further ones
+    LoadWord bus;
+  };
 
-  // `clock_all`: it never rests.
-  explicit CommandFetch(Queue queue, bool clock_all = false) : queue_(queue), clock_all_(clock_all) {}
+  explicit CommandFetch(Queue queue) : queue_(queue) {}
 
   // One rising edge.
-  void clock(const Inputs& in) {
-    if (!clock_all_ && idle() && asked_ < 0 && in.empty && arriving_[0] < 0 && arriving_[1] < 0 && !bus_.valid) return;
-    work(in);
-  }
+  void clock(const Inputs& in);
 
-  bool read() const { return asked_ >= 0; }  // asks the queue for a halfword
-  bool idle() const { return state_ == State::Idle; }
-  bool decoded() const { return state_ == State::Decoded; }
-  const LoadWord& bus() const { return bus_; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  bool read() const { return state_.asked >= 0; }  // asks the queue for a halfword
+  bool idle() const { return state_.mode == Mode::Idle; }
+  bool decoded() const { return state_.mode == Mode::Decoded; }
+  const LoadWord& bus() const { return state_.bus; }
 
   // Of the command decoded.
-  card_map::Opcode opcode() const { return opcode_; }
-  bool is_line() const { return opcode_ == card_map::Opcode::Line; }
-  bool is_path() const { return is_line() || opcode_ == card_map::Opcode::Arc || is_chord(); }
-  bool is_chord() const { return opcode_ == card_map::Opcode::ArcChord; }
-  bool is_feed() const { return opcode_ == card_map::Opcode::Feed; }
-  bool is_end() const { return opcode_ == card_map::Opcode::End; }
-  bool is_output() const { return opcode_ == card_map::Opcode::Output; }
-  bool is_mark() const { return opcode_ == card_map::Opcode::Mark; }
-  bool is_probe() const { return opcode_ == card_map::Opcode::Probe; }
-  bool is_wait() const { return opcode_ == card_map::Opcode::WaitInput; }
-  bool is_probe_end() const { return opcode_ == card_map::Opcode::ProbeEnd; }
+  card_map::Opcode opcode() const { return state_.opcode; }
+  bool is_line() const { return state_.opcode == card_map::Opcode::Line; }
+  bool is_path() const { return is_line() || state_.opcode == card_map::Opcode::Arc || is_chord(); }
+  bool is_chord() const { return state_.opcode == card_map::Opcode::ArcChord; }
+  bool is_feed() const { return state_.opcode == card_map::Opcode::Feed; }
+  bool is_end() const { return state_.opcode == card_map::Opcode::End; }
+  bool is_output() const { return state_.opcode == card_map::Opcode::Output; }
+  bool is_mark() const { return state_.opcode == card_map::Opcode::Mark; }
+  bool is_probe() const { return state_.opcode == card_map::Opcode::Probe; }
+  bool is_wait() const { return state_.opcode == card_map::Opcode::WaitInput; }
+  bool is_probe_end() const { return state_.opcode == card_map::Opcode::ProbeEnd; }
   bool is_instant() const { return is_output() || is_mark() || is_probe(); }  // neither path nor barrier
   bool is_barrier() const { return !is_path() && !is_feed() && !is_instant(); }
-  std::uint8_t engine() const { return engine_; }  // what a path runs on, by its card_map::engine
-  std::uint8_t mask() const { return mask_; }
-  std::uint8_t flags() const { return mask_; }  // in place of the mask: a piece's class
+  std::uint8_t engine() const { return state_.engine; }  // what a path runs on, by its card_map::engine
+  std::uint8_t mask() const { return state_.mask; }
+  std::uint8_t flags() const { return state_.mask; }  // in place of the mask: a piece's class
 
-  // Without inputs that change nothing moves; a path that waits looks at payload_ready.
-  bool quiet() const {
-    return asked_ < 0 && arriving_[0] < 0 && arriving_[1] < 0 && !bus_.valid &&
-           (state_ == State::Idle || state_ == State::Decoded || state_ == State::Waiting);
-  }
-  bool waiting() const { return state_ == State::Waiting; }
+  bool waiting() const { return state_.mode == Mode::Waiting; }
 
  private:
-  enum class State { Idle, Reading, Waiting, Decoded, Finishing };
-
-  void work(const Inputs& in);
   void arrive(int index, std::uint16_t halfword);
   void ask(const Inputs& in);
   bool may_go_on(const Inputs& in) const { return is_line() ? in.shadows_free : in.payload_ready; }
@@ -77,19 +84,8 @@ class CommandFetch {
   unsigned target_of(int index) const;
 
   Queue queue_;
-  bool clock_all_;
-  State state_ = State::Idle;
-  int asked_ = -1;  // index of the halfword asked for, -1: none
-  int arriving_[2] = {-1, -1};
-  int length_ = 0;            // halfwords of the command
-  int pause_at_ = 0;          // the halfword before which it may have to wait
-  bool split_ = false;        // the piece is decoded without acceleration and jerk
-  bool header_here_ = false;  // what arrives is of this command, not the rest of the one before
-  card_map::Opcode opcode_ = card_map::Opcode::End;
-  std::uint8_t engine_ = card_map::engine::kLines;
-  std::uint8_t mask_ = 0;
-  std::uint8_t axes_[8] = {};  // of the mask, lowest first; an arc's in chords: x, y, the further ones
-  LoadWord bus_;
+
+  State state_;
 };
 
 }  // namespace trammel::model

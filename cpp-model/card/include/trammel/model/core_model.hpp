@@ -1,7 +1,6 @@
 // Golden model of the card's core: everything between the inner register port and the pins, cycle by cycle.
 //
-// clock() is one rising edge; run(n) is n edges without requests, which goes from step to step where nothing else
-// happens, and leaves exactly the state that n calls of clock() leave. Steps are reported as they appear: at the pins
+// clock() is one rising edge. Steps are reported as they appear: at the pins
 // in the cycle of their leading edge, on the path before the shapers. Not thread-safe; no errors are reported beside
 // the constructor's.
 #pragma once
@@ -31,8 +30,6 @@ struct CardConfig {
   std::uint32_t build_id = 0;
   bool build_dirty = false;
   std::uint32_t board_id = 0;
-  // Model alone: clocks every block in every clock, the reference for the one that lets idle blocks rest.
-  bool clock_all = false;
 };
 
 class CoreModel {
@@ -81,49 +78,85 @@ class CoreModel {
   // Throws std::invalid_argument for numbers out of range.
   explicit CoreModel(const Config& config);
 
+  // All that the next clock() depends on beside its inputs, and the record of steps.
+  struct State {
+    RegisterFile registers;
+    CommandChecker checker;
+    HalfwordQueue geometry_queue;
+    HalfwordQueue feed_queue;
+    QueueWatermarks watermarks;
+    MotionCore motion;
+    std::uint64_t cycles = 0;
+    bool reset_due = false;
+    StepRecord record{};
+    Answer answer{};
+    Outputs out{};
+    RegisterFile::Inputs shown{};  // to the register file; a request and the probe's edge only within a clock
+  };
+
   // One rising edge.
-  void clock(const Inputs& in);
+  void clock(const Inputs& in) { clock_parts(in, ClockEach()); }
+  template <class ClockPart>
+  void clock_parts(const Inputs& in, const ClockPart& clock_part);
 
-  // `clocks` edges without requests, with these levels at the inputs.
-  void run(std::uint64_t clocks, std::uint16_t pins = 0);
-  // Edges at once without requests, `limit` at most; 0 where it is not worth it.
-  std::uint64_t jump(std::uint64_t limit, std::uint16_t pins = 0);
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  // What the parts see.
+  MotionCore::Inputs motion_inputs(std::uint16_t pins) const;
+  QueueWatermarks::Inputs watermark_inputs() const;
+  // Takes the parts' outputs over into the core's.
+  void show();
 
-  const Answer& answer() const { return answer_; }
-  const Outputs& outputs() const { return out_; }
-  std::uint32_t position(unsigned axis) const { return motion_.position(axis); }
+  const Answer& answer() const { return state_.answer; }
+  const Outputs& outputs() const { return state_.out; }
+  std::uint32_t position(unsigned axis) const { return state_.motion.position(axis); }
   const Config& config() const { return config_; }
-  std::uint64_t cycles() const { return cycles_; }
-  void set_steps(CardSteps* steps) { record_.set_steps(steps); }  // nullptr: none; not owned
+  std::uint64_t cycles() const { return state_.cycles; }
+  void set_steps(CardSteps* steps) { state_.record.set_steps(steps); }  // nullptr: none; not owned
 
  private:
   void reset();
-  MotionCore::Inputs motion_inputs(std::uint16_t pins) const;
-  QueueWatermarks::Inputs watermark_inputs() const;
-  void clock_commands(bool cut);
-  void clock_registers(const Inputs& in, bool probe);
-  void gather();
-  std::uint64_t watched() const;
-  void show();
+  CommandChecker::Inputs checker_inputs(bool cut) const;
+  void request(const Inputs& access, bool probe) {
+    state_.shown.request = access.request;
+    state_.shown.write = access.write;
+    state_.shown.partial = access.partial;
+    state_.shown.port = access.port;
+    state_.shown.address = access.address;
+    state_.shown.data = access.data;
+    state_.shown.probe = probe;
+  }
+  void show_registers();
   void record(bool cut);
 
   Config config_;
-  std::uint64_t cycles_ = 0;
-  bool reset_due_ = false;
-
-  RegisterFile registers_;
-  CommandChecker checker_;
-  HalfwordQueue geometry_queue_;
-  HalfwordQueue feed_queue_;
-  QueueWatermarks watermarks_;
-  MotionCore motion_;
-  RegisterFile::Inputs register_in_;  // but for the port's: what stood as it was last awake
-  std::uint64_t watched_ = 0;
-  int awake_ = 0;  // clocks for which the register file is clocked whatever it says
-
-  StepRecord record_;
-  Answer answer_;
-  Outputs out_;
+  State state_;
 };
+
+// The queues take the checker's outputs as they stood before the edge, the checker the queues' rooms.
+template <class ClockPart>
+void CoreModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
+  const bool reset_now = state_.reset_due;
+  state_.reset_due = in.rst;
+  if (reset_now) return reset();
+  ++state_.cycles;
+  const bool cut = state_.motion.stop().cut;
+  const MotionCore::Inputs motion = motion_inputs(in.pins);
+  const QueueWatermarks::Inputs watermarks = watermark_inputs();
+  request(in, state_.motion.probe_trips(motion));
+  const CommandChecker::Outputs was = state_.checker.outputs();
+  const bool geometry_read = state_.motion.sequencer().geometry_read();
+  const bool feed_read = state_.motion.sequencer().feed_read();
+  clock_part(state_.checker, checker_inputs(cut));
+  clock_part(state_.geometry_queue,
+             {false, cut, was.geometry_write, was.halfword, was.geometry_commit, was.drop, geometry_read});
+  clock_part(state_.feed_queue, {false, cut, was.feed_write, was.halfword, was.feed_commit, was.drop, feed_read});
+  clock_part(state_.registers, state_.shown);
+  request({}, false);
+  clock_part(state_.watermarks, watermarks);
+  clock_part(state_.motion, motion);
+  record(cut);
+  show();
+}
 
 }  // namespace trammel::model

@@ -29,6 +29,7 @@ class DeviationPath {
     std::uint16_t quadrants = 0;  // quadrant changes left
     bool clockwise = false;
     bool eight_directions = false;
+    bool finishing = false;  // the end is in sight
   };
   struct Step {
     bool in_x = false;
@@ -41,7 +42,7 @@ class DeviationPath {
   State state;
 
   // Begins at `state`; the end is not yet in sight.
-  void begin() { finishing_ = false; }
+  void begin() { state.finishing = false; }
 
   // No quadrants left and no displacement.
   bool at_end() const { return state.quadrants == 0 && state.left_x == 0 && state.left_y == 0; }
@@ -71,10 +72,10 @@ class DeviationPath {
     Step next;
     next.negative_x = top(state.gradient_y) == state.clockwise;
     next.negative_y = top(state.gradient_x) != state.clockwise;
-    if (!finishing_ && state.quadrants == 0) {
-      finishing_ = reached(state.left_x, next.negative_x) || reached(state.left_y, next.negative_y);
+    if (!state.finishing && state.quadrants == 0) {
+      state.finishing = reached(state.left_x, next.negative_x) || reached(state.left_y, next.negative_y);
     }
-    if (finishing_) {
+    if (state.finishing) {
       next.in_x = state.left_x != 0;
       next.in_y = state.left_y != 0 && (state.eight_directions || !next.in_x);
       next.negative_x = static_cast<std::int32_t>(state.left_x) < 0;
@@ -121,8 +122,6 @@ class DeviationPath {
       left -= 1;
     }
   }
-
-  bool finishing_ = false;
 };
 
 class DeviationAccumulator {
@@ -142,6 +141,14 @@ class DeviationAccumulator {
     bool ready = false;
     bool at_end = false;  // valid with ready
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    DeviationPath path;
+    DeviationPath::Step next;
+    Outputs out;
+    bool emit = false;  // a step goes out at the next edge
+    unsigned wait = 0;  // clocks until ready
+  };
   // A tick at c gives its step at c + kStepLatency and ready again at c + kTickPeriod; a start, ready at c +
   // kStartLatency. In 8 directions the candidates of the next step are compared before that.
   static constexpr unsigned kStepLatency = 2;
@@ -153,72 +160,62 @@ class DeviationAccumulator {
 
   // One rising edge.
   void clock(const Inputs& in) {
-    out_.step_x = false;
-    out_.step_y = false;
-    const bool emit = emit_;
-    const bool accept = in.tick && out_.ready && !out_.at_end;
-    emit_ = false;
+    state_.out.step_x = false;
+    state_.out.step_y = false;
+    const bool emit = state_.emit;
+    const bool accept = in.tick && state_.out.ready && !state_.out.at_end;
+    state_.emit = false;
     const bool load = is_own(in.load);
     if (in.rst || in.clear || load) {
-      wait_ = 0;
-      out_.ready = false;
-      out_.at_end = false;
+      state_.wait = 0;
+      state_.out.ready = false;
+      state_.out.at_end = false;
       if (load) take(in.load);
       if (in.rst) {
-        out_.dir_x = false;
-        out_.dir_y = false;
+        state_.out.dir_x = false;
+        state_.out.dir_y = false;
       }
       if (in.rst || in.clear) return;
     } else if (in.start) {
-      path_.begin();
-      out_.ready = false;
-      wait_ = kStartLatency + compare_clocks() - 1;
+      state_.path.begin();
+      state_.out.ready = false;
+      state_.wait = kStartLatency + compare_clocks() - 1;
     } else if (accept) {
-      next_ = path_.step();
-      emit_ = true;
-      out_.ready = false;
-      wait_ = kTickPeriod + compare_clocks() - 1;
-    } else if (wait_ != 0 && --wait_ == 0) {
-      out_.ready = true;
-      out_.at_end = path_.at_end();
+      state_.next = state_.path.step();
+      state_.emit = true;
+      state_.out.ready = false;
+      state_.wait = kTickPeriod + compare_clocks() - 1;
+    } else if (state_.wait != 0 && --state_.wait == 0) {
+      state_.out.ready = true;
+      state_.out.at_end = state_.path.at_end();
     }
     if (emit) show();
   }
 
-  const Outputs& outputs() const { return out_; }
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
   // In a step or before the first one, and no load may be asked for yet.
-  bool stepping() const { return wait_ > kAskClocks; }
+  bool stepping() const { return state_.wait > kAskClocks; }
 
-  // Nothing is under way: without inputs no output will change.
-  bool quiet() const { return wait_ == 0 && !emit_ && !out_.step_x && !out_.step_y; }
-
-  // `clocks` clocks without inputs; the same as that many calls of clock({}).
-  void advance(std::uint64_t clocks) {
-    for (; clocks != 0 && !quiet(); --clocks) clock({});
-  }
-
- private:
   static bool is_own(const LoadWord& load) {
     return load.valid && load.target >= load_target::kDeviation && load.target <= load_target::kPlane;
   }
 
+ private:
   void take(const LoadWord& load);
 
-  unsigned compare_clocks() const { return path_.state.eight_directions ? kCompareClocks : 0; }
+  unsigned compare_clocks() const { return state_.path.state.eight_directions ? kCompareClocks : 0; }
 
   void show() {
-    out_.step_x = next_.in_x;
-    out_.step_y = next_.in_y;
-    if (next_.in_x) out_.dir_x = next_.negative_x;
-    if (next_.in_y) out_.dir_y = next_.negative_y;
+    state_.out.step_x = state_.next.in_x;
+    state_.out.step_y = state_.next.in_y;
+    if (state_.next.in_x) state_.out.dir_x = state_.next.negative_x;
+    if (state_.next.in_y) state_.out.dir_y = state_.next.negative_y;
   }
 
-  DeviationPath path_;
-  DeviationPath::Step next_;
-  Outputs out_;
-  bool emit_ = false;  // a step goes out at the next edge
-  unsigned wait_ = 0;  // clocks until ready
+  State state_;
 };
 
 }  // namespace trammel::model

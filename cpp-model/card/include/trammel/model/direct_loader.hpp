@@ -32,20 +32,33 @@ class DirectLoader {
     bool go = false;  // with done: the chains are loaded, the move begins
     std::uint8_t mask = 0;
   };
+  enum class Phase { Idle, Check, Axis, Length, Decide };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    Phase phase = Phase::Idle;
+    int step = 0;
+    unsigned axis = 0;
+    bool busy = false;
+    bool closed = false;
+    bool bad_mask = false;
+    bool bad_value = false;
+    bool negative = false;
+    std::uint64_t frequency = 0;
+    std::uint64_t length = 0;
+    bool moving = false;  // halfwords are on their way
+    LoadWord taken;
+    Outputs out;
+  };
 
   explicit DirectLoader(unsigned axes) : axes_(axes) {}
 
   // One rising edge.
-  void clock(const Inputs& in) {
-    if (!quiet() || in.start || in.reset) go_on(in);
-  }
-  const Outputs& outputs() const { return out_; }
-
-  bool quiet() const { return phase_ == Phase::Idle && !out_.done && !moving_; }
+  void clock(const Inputs& in) { go_on(in); }
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
  private:
-  enum class Phase { Idle, Check, Axis, Length, Decide };
-
   void go_on(const Inputs& in);
   void enter(Phase phase);
   LoadWord read_axis(const Inputs& in);
@@ -57,19 +70,8 @@ class DirectLoader {
   }
 
   unsigned axes_;
-  Phase phase_ = Phase::Idle;
-  int step_ = 0;
-  unsigned axis_ = 0;
-  bool busy_ = false;
-  bool closed_ = false;
-  bool bad_mask_ = false;
-  bool bad_value_ = false;
-  bool negative_ = false;
-  std::uint64_t frequency_ = 0;
-  std::uint64_t length_ = 0;
-  bool moving_ = false;  // halfwords are on their way
-  LoadWord taken_;
-  Outputs out_;
+
+  State state_;
 };
 
 }  // namespace trammel::model

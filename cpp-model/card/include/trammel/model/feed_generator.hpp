@@ -13,6 +13,7 @@
 // Not thread-safe; no errors are reported: inputs outside their ranges are the caller's mistake.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "trammel/model/buses.hpp"
@@ -21,9 +22,9 @@
 namespace trammel::model {
 
 class FeedGenerator {
-  static constexpr std::uint64_t kOne = std::uint64_t{1} << 48;
-
  public:
+  static constexpr std::uint64_t kOne = std::uint64_t{1} << 48;  // a tick, of phase and slope
+
   struct Inputs {
     bool clear = false;   // phase and the ticks in flight become 0; wins over an enable in the same clock
     bool enable = false;  // one accumulation
@@ -34,6 +35,23 @@ class FeedGenerator {
   struct Outputs {
     bool tick = false;
     std::uint32_t rate = 0;  // slope in use, 2^-32 ticks an enabled clock
+  };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    std::uint64_t next_rate = 0;
+    std::uint64_t next_floor = 0;  // 2^-32
+    uint128 rate = 0;              // 2^-64
+    uint128 acceleration = 0;
+    uint128 jerk = 0;
+    std::uint64_t floor_rate = 0;  // as the rate, 2^-64
+    std::uint64_t slope = 0;       // 2^-48, below 1
+    std::uint64_t phase = 0;       // 2^-48, below 1
+    std::uint32_t count = 0;       // enabled clocks of this update
+    bool away = false;             // the rate lies outside -2 .. 2
+    bool frozen = false;
+    bool constant = true;  // the slope stays to the end of the piece
+    std::array<Outputs, 2> in_flight{};
+    Outputs outputs;
   };
 
   static constexpr std::uint32_t kUpdateClocks = 32;
@@ -46,43 +64,34 @@ class FeedGenerator {
     const bool carry = in.enable && accumulate();
     if (in.swap) swap();
     if (in.load.valid) load(in.load);
-    outputs_ = in_flight_[1];
-    in_flight_[1] = in_flight_[0];
-    in_flight_[0] = {carry, static_cast<std::uint32_t>(slope_ >> 16)};
+    state_.outputs = state_.in_flight[1];
+    state_.in_flight[1] = state_.in_flight[0];
+    state_.in_flight[0] = {carry, static_cast<std::uint32_t>(state_.slope >> 16)};
     if (in.clear) clear();
   }
 
-  const Outputs& outputs() const { return outputs_; }
+  const Outputs& outputs() const { return state_.outputs; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
-  // No tick is visible or in flight, and the rate shown is the one in use: without inputs nothing changes.
-  bool quiet() const {
-    const auto rate = static_cast<std::uint32_t>(slope_ >> 16);
-    return !(outputs_.tick || in_flight_[0].tick || in_flight_[1].tick) && outputs_.rate == rate &&
-           in_flight_[0].rate == rate && in_flight_[1].rate == rate;
+  // The update behind the last enabled clock of 32: of the state alone.
+  void update() {
+    if (!state_.away) {
+      state_.rate += state_.acceleration;
+      state_.acceleration += state_.jerk;
+      const auto whole = static_cast<std::int64_t>(static_cast<std::uint64_t>(state_.rate >> 64));
+      state_.away = whole < -2 || whole >= 2;
+    }
+    state_.slope = clamped(state_.rate, state_.floor_rate);
+    state_.constant = state_.away || (state_.acceleration == 0 && state_.jerk == 0);
   }
 
-  // The carry of the last clock(), and those of the two before.
-  bool carried(unsigned clocks_ago) const { return clocks_ago == 2 ? outputs_.tick : in_flight_[clocks_ago].tick; }
-
-  struct Advanced {
-    std::uint64_t enables = 0;
-    std::uint64_t carries = 0;
-  };
-  // Enabled clocks at once, up to the one that carries for the `carries`-th time, `limit` at most. Exact in all but
-  // what is in flight: neither ticks nor rates appear before 3 more clocks of clock(). Without swap, load and clear.
-  // Cost: a division at a constant rate, else about a nanosecond an update.
-  Advanced advance(std::uint64_t limit, std::uint64_t carries);
-
-  // Phase and slope in use, 2^-48 ticks (an enabled clock).
-  std::uint64_t phase() const { return phase_; }
-  std::uint64_t slope() const { return slope_; }
-
- private:
   static uint128 sign_extended(std::uint64_t value) {
     const std::uint64_t high = (value >> 63) != 0 ? ~std::uint64_t{0} : 0;
     return (uint128{high} << 64) | value;
   }
 
+ private:
   // Within +-8: 4 bits above the point, the uppermost of them the sign.
   static std::uint64_t clamped(uint128 rate, std::uint64_t floor_rate) {
     const auto whole = static_cast<std::uint64_t>(rate >> 64) & 0xF;
@@ -92,39 +101,28 @@ class FeedGenerator {
   }
 
   bool accumulate() {
-    phase_ += slope_;
-    const bool carry = phase_ >= kOne;
-    if (carry) phase_ -= kOne;
-    count_ = (count_ + 1) % kUpdateClocks;
-    if (count_ == 0 && !frozen_) update();
+    state_.phase += state_.slope;
+    const bool carry = state_.phase >= kOne;
+    if (carry) state_.phase -= kOne;
+    state_.count = (state_.count + 1) % kUpdateClocks;
+    if (state_.count == 0 && !state_.frozen) update();
     return carry;
   }
 
-  void update() {
-    if (!away_) {
-      rate_ += acceleration_;
-      acceleration_ += jerk_;
-      const auto whole = static_cast<std::int64_t>(static_cast<std::uint64_t>(rate_ >> 64));
-      away_ = whole < -2 || whole >= 2;
-    }
-    slope_ = clamped(rate_, floor_rate_);
-    constant_ = away_ || (acceleration_ == 0 && jerk_ == 0);
-  }
-
   void swap() {
-    rate_ = next_rate_;
-    floor_rate_ = next_floor_ << 32;
-    slope_ = next_rate_ >> 16;
-    count_ = 0;
-    away_ = frozen_ = false;
+    state_.rate = state_.next_rate;
+    state_.floor_rate = state_.next_floor << 32;
+    state_.slope = state_.next_rate >> 16;
+    state_.count = 0;
+    state_.away = state_.frozen = false;
     judge_constant();
   }
 
   void load(const LoadWord& load) {
-    if (load.target == feed_target::kRate) shift_in<64>(next_rate_, load.word);
-    if (load.target == feed_target::kFloor) shift_in<32>(next_floor_, load.word);
-    if (load.target == feed_target::kAcceleration) load_signed(acceleration_, load.word);
-    if (load.target == feed_target::kJerk) load_signed(jerk_, load.word);
+    if (load.target == feed_target::kRate) shift_in<64>(state_.next_rate, load.word);
+    if (load.target == feed_target::kFloor) shift_in<32>(state_.next_floor, load.word);
+    if (load.target == feed_target::kAcceleration) load_signed(state_.acceleration, load.word);
+    if (load.target == feed_target::kJerk) load_signed(state_.jerk, load.word);
   }
 
   void load_signed(uint128& value, std::uint16_t word) {
@@ -135,35 +133,18 @@ class FeedGenerator {
   }
 
   void judge_constant() {
-    constant_ = frozen_ || (acceleration_ == 0 && jerk_ == 0 && slope_ == clamped(rate_, floor_rate_));
+    state_.constant = state_.frozen || (state_.acceleration == 0 && state_.jerk == 0 &&
+                                        state_.slope == clamped(state_.rate, state_.floor_rate));
   }
 
-  void freeze() { frozen_ = constant_ = true; }
+  void freeze() { state_.frozen = state_.constant = true; }
 
   void clear() {
-    phase_ = 0;
-    outputs_.tick = in_flight_[0].tick = in_flight_[1].tick = false;
+    state_.phase = 0;
+    state_.outputs.tick = state_.in_flight[0].tick = state_.in_flight[1].tick = false;
   }
 
-  void advance_constant(Advanced& gone, std::uint64_t limit, std::uint64_t carries);
-  void advance_varying(Advanced& gone, std::uint64_t limit, std::uint64_t carries);
-  std::uint64_t whole_updates(std::uint64_t& sum, std::uint64_t target, std::uint64_t most);
-  bool unclamped_for(std::uint64_t updates) const;
-
-  std::uint64_t next_rate_ = 0;
-  std::uint64_t next_floor_ = 0;  // 2^-32
-  uint128 rate_ = 0;              // 2^-64
-  uint128 acceleration_ = 0;
-  uint128 jerk_ = 0;
-  std::uint64_t floor_rate_ = 0;  // as the rate, 2^-64
-  std::uint64_t slope_ = 0;       // 2^-48, below 1
-  std::uint64_t phase_ = 0;       // 2^-48, below 1
-  std::uint32_t count_ = 0;       // enabled clocks of this update
-  bool away_ = false;             // the rate lies outside -2 .. 2
-  bool frozen_ = false;
-  bool constant_ = true;  // the slope stays to the end of the piece
-  Outputs in_flight_[2];
-  Outputs outputs_;
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -40,8 +40,6 @@ class FrameEngine {
   const Outputs& outputs() const { return out_; }
   const frames::Session& session() const { return session_; }
 
-  // True when clocks with none of the events change nothing.
-  bool quiet() const { return listening() && !frame_; }
   bool listening() const { return at_ == At::Listening; }
 
  private:

@@ -24,63 +24,66 @@ class HalfwordQueue {
     bool empty = true;       // counts a read one clock later, a commit two clocks later
     std::uint16_t room = 0;  // free halfwords; two clocks after what changed it, one after a reset or clear
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    std::vector<std::uint16_t> memory;
+    std::size_t read = 0;       // index of the oldest committed halfword
+    std::size_t committed = 0;  // halfwords that may be read
+    std::size_t pending = 0;    // halfwords of the command under way
+    std::uint16_t fetched = 0;  // the RAM's own output register
+    Outputs outputs;
+  };
 
   // depth: 2 .. 32,768 halfwords; throws std::invalid_argument otherwise.
   explicit HalfwordQueue(std::size_t depth);
 
   // One rising edge.
   void clock(const Inputs& in) {
-    outputs_.word = fetched_;
+    state_.outputs.word = state_.fetched;
     if (in.reset || in.clear) {
       // The read of the same clock still reaches the RAM's register.
-      if (in.read && !outputs_.empty) fetched_ = memory_[read_];
+      if (in.read && !state_.outputs.empty) state_.fetched = state_.memory[state_.read];
       forget_all();
       return;
     }
-    outputs_.room = free();
-    const bool take = in.read && !outputs_.empty;
+    state_.outputs.room = free();
+    const bool take = in.read && !state_.outputs.empty;
     if (take) {
-      fetched_ = memory_[read_];
-      read_ = (read_ + 1) % memory_.size();
-      --committed_;
+      state_.fetched = state_.memory[state_.read];
+      state_.read = (state_.read + 1) % state_.memory.size();
+      --state_.committed;
     }
-    outputs_.empty = committed_ == 0;
+    state_.outputs.empty = state_.committed == 0;
     if (in.drop) {
-      pending_ = 0;
+      state_.pending = 0;
     } else {
       if (in.commit) {
-        committed_ += pending_;
-        pending_ = 0;
+        state_.committed += state_.pending;
+        state_.pending = 0;
       }
-      if (in.write) memory_[(read_ + committed_ + pending_++) % memory_.size()] = in.word;
+      if (in.write) state_.memory[(state_.read + state_.committed + state_.pending++) % state_.memory.size()] = in.word;
     }
   }
 
-  const Outputs& outputs() const { return outputs_; }
+  const Outputs& outputs() const { return state_.outputs; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
   // Halfwords free now; `room` shows it a clock later.
-  std::uint16_t free() const { return static_cast<std::uint16_t>(memory_.size() - committed_ - pending_); }
-
-  // True when a clock without inputs changes nothing.
-  bool quiet() const {
-    return outputs_.word == fetched_ && outputs_.empty == (committed_ == 0) && outputs_.room == free();
+  std::uint16_t free() const {
+    return static_cast<std::uint16_t>(state_.memory.size() - state_.committed - state_.pending);
   }
 
  private:
   void forget_all() {
-    read_ = 0;
-    committed_ = 0;
-    pending_ = 0;
-    outputs_.empty = true;
-    outputs_.room = free();
+    state_.read = 0;
+    state_.committed = 0;
+    state_.pending = 0;
+    state_.outputs.empty = true;
+    state_.outputs.room = free();
   }
 
-  std::vector<std::uint16_t> memory_;
-  std::size_t read_ = 0;       // index of the oldest committed halfword
-  std::size_t committed_ = 0;  // halfwords that may be read
-  std::size_t pending_ = 0;    // halfwords of the command under way
-  std::uint16_t fetched_ = 0;  // the RAM's own output register
-  Outputs outputs_;
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -8,13 +8,13 @@
 
 #include "trammel/model/axis.hpp"
 #include "trammel/model/buses.hpp"
+#include "trammel/model/clock_each.hpp"
 #include "trammel/model/direct_loader.hpp"
 #include "trammel/model/feed_generator.hpp"
 #include "trammel/model/path_commands.hpp"
 #include "trammel/model/path_engines.hpp"
 #include "trammel/model/probe.hpp"
 #include "trammel/model/sequencer.hpp"
-#include "trammel/model/step_record.hpp"
 #include "trammel/model/stop_control.hpp"
 #include "trammel/model/time_base.hpp"
 #include "trammel/model/underrun_guard.hpp"
@@ -54,74 +54,130 @@ class MotionCore {
     std::uint32_t engine_step = 0;  // of path_step: those that came from a path engine
     bool busy = false;
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    DirectLoader loader;
+    Sequencer sequencer;
+    PathCommands commands;
+    StopControl stop{};
+    UnderrunGuard guard{};
+    TimeBase time_base{};
+    FeedGenerator feed{};
+    PathEngines engines{};
+    WaitTimer wait_timer{};
+    Probe probe{};
+    std::vector<Axis> axes{};
+    bool axes_live = false;  // a clock late
+    bool running = false;    // a clock late
+    bool probing = false;    // a clock late
+    unsigned busy_left = 0;  // clocks
+    Outputs out{};
+  };
 
-  // `idle_level`: {second pins, first pins}, `axes` bits each. `clock_all`: no block ever rests. `engines`: what is
-  // built in, what is beside the path engines.
-  MotionCore(unsigned axes, std::uint32_t idle_level, bool clock_all = false, std::uint32_t engines = 0,
-             const PathCommands::Config& pins = {});
+  // `idle_level`: {second pins, first pins}, `axes` bits each. `engines`: what is built in, what is beside the path
+  // engines.
+  MotionCore(unsigned axes, std::uint32_t idle_level, std::uint32_t engines = 0, const PathCommands::Config& pins = {});
 
   // One rising edge.
-  void clock(const Inputs& in);
+  void clock(const Inputs& in) { clock_parts(in, ClockEach()); }
+  template <class ClockPart>
+  void clock_parts(const Inputs& in, const ClockPart& clock_part);
 
-  // Clocks at once without host inputs and with the queues as they are, `limit` at most, from step to step (see
-  // jump.hpp); the state is that after as many calls of clock(). `cycle`: edges so far. 0 where it is not worth it.
-  std::uint64_t jump(std::uint64_t limit, const Inputs& in, std::uint64_t cycle, StepRecord& record);
-
-  const Outputs& outputs() const { return out_; }
-  const Sequencer& sequencer() const { return sequencer_; }
-  const StopControl::Outputs& stop() const { return stop_.outputs(); }
-  const DirectLoader::Outputs& loader() const { return loader_.outputs(); }
-  const UnderrunGuard::Outputs& underrun() const { return guard_.outputs(); }
-  const TimeBase::Outputs& time() const { return time_base_.outputs(); }
-  const FeedGenerator::Outputs& feed() const { return feed_.outputs(); }
-  const PathCommands& commands() const { return commands_; }
-  const Probe& probe() const { return probe_; }
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  const Sequencer& sequencer() const { return state_.sequencer; }
+  const StopControl::Outputs& stop() const { return state_.stop.outputs(); }
+  const DirectLoader::Outputs& loader() const { return state_.loader.outputs(); }
+  const UnderrunGuard::Outputs& underrun() const { return state_.guard.outputs(); }
+  const TimeBase::Outputs& time() const { return state_.time_base.outputs(); }
+  const FeedGenerator::Outputs& feed() const { return state_.feed.outputs(); }
+  const PathCommands& commands() const { return state_.commands; }
+  const Probe& probe() const { return state_.probe; }
   // The probe's edge is taken in this clock, and with these inputs.
-  bool probe_trips(const Inputs& in) const { return probe_.trips(probe_inputs(in)); }
-  const PathEngines::Outputs& engines() const { return engines_.outputs(); }
-  bool chord_tick() const { return engines_.chord_tick(); }
-  std::uint32_t position(unsigned axis) const { return axes_[axis].shaper().outputs().position; }
+  bool probe_trips(const Inputs& in) const {
+    // Without either the inputs need not be looked at.
+    if (!state_.probe.busy() && !state_.sequencer.probe_waits()) return false;
+    return state_.probe.trips(probe_inputs(in));
+  }
+  const PathEngines::Outputs& engines() const { return state_.engines.outputs(); }
+  bool chord_tick() const { return state_.engines.chord_tick(); }
+  std::uint32_t position(unsigned axis) const { return state_.axes[axis].state().shaper.outputs().position; }
 
- private:
-  friend class Jump;
+  // Takes the axis's outputs over into this block's.
+  void show_axis(unsigned n);
+  // What the parts see.
+  Probe::Inputs probe_inputs(const Inputs& in) const;
+  Sequencer::Inputs sequencer_inputs(const Inputs& in, const Probe::Inputs& probe) const;
+  UnderrunGuard::Inputs guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;
+  // The guard counts; in position streaming it does not.
+  bool guards() const { return has_guard_ && !state_.sequencer.streaming().on; }
 
   // STATUS.busy falls when nothing has run for this many clocks.
   static constexpr unsigned kBusyClocks = 11;
+  bool has_guard() const { return has_guard_; }
 
-  void clock_axes(const Inputs& in, bool cut);
-  void clock_commands(const Inputs& in, bool cut);
+  PathCommands::Inputs command_inputs(const Inputs& in) const;
+  StopControl::Inputs stop_inputs(const Inputs& in) const;
+
+ private:
+  Axis::Inputs axis_inputs(const Inputs& in) const;
   void clock_busy();
-  void show_axis(unsigned n);
-  bool may_jump(const Inputs& in) const;
-  // The guard counts; in position streaming it does not.
-  bool guards() const { return has_guard_ && !sequencer_.streaming().on; }
-  // Clocks for which the ratio is known ahead, 0 where it is not.
-  std::uint64_t ratio_known_for() const {
-    return time_base_.clocks_ahead(stop_.outputs().hold, sequencer_.outputs().piece_class);
-  }
-  Probe::Inputs probe_inputs(const Inputs& in) const;
-  Sequencer::Inputs sequencer_inputs(const Inputs& in) const;
-  UnderrunGuard::Inputs guard_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;
 
-  bool clock_all_;
   bool has_guard_;
-  std::uint32_t restless_ = ~0U;  // axes that the next clock moves whatever it brings
-  StopControl stop_;
-  UnderrunGuard guard_;
-  DirectLoader loader_;
-  Sequencer sequencer_;
-  TimeBase time_base_;
-  FeedGenerator feed_;
-  PathEngines engines_;
-  WaitTimer wait_timer_;
-  PathCommands commands_;
-  Probe probe_;
-  std::vector<Axis> axes_;
-  bool axes_live_ = false;  // a clock late
-  bool running_ = false;    // a clock late
-  bool probing_ = false;    // a clock late
-  unsigned busy_left_ = 0;  // clocks
-  Outputs out_;
+
+  State state_;
 };
+
+inline Probe::Inputs MotionCore::probe_inputs(const Inputs& in) const {
+  Probe::Inputs probe;
+  probe.cut = state_.stop.outputs().cut;
+  probe.levels = state_.commands.levels();
+  probe.waits = state_.sequencer.probe_waits();
+  probe.ends = state_.sequencer.probe_ends();
+  probe.at_rest = state_.time_base.outputs().ratio == 0;
+  probe.stopping = state_.stop.outputs().stopping;
+  probe.clear = in.probe_clear;
+  probe.load = state_.sequencer.load();
+  return probe;
+}
+
+// Each consumer before its producer: what a block sees is what stood before this edge.
+template <class ClockPart>
+void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
+  const Probe::Inputs probe = probe_inputs(in);
+  const Sequencer::Inputs sequencer = sequencer_inputs(in, probe);
+  const StopControl::Outputs stop = state_.stop.outputs();
+  const Sequencer::Outputs& s = state_.sequencer.outputs();
+  const bool over = stop.cut || state_.probe.halt();
+  clock_part(state_.loader, {false, state_.out.busy, stop.closed, in.start, in.start_mask, in.loader_data});
+  const StopControl::Inputs stop_in = stop_inputs(in);
+  const PathCommands::Inputs commands = command_inputs(in);
+  if (has_guard_) clock_part(state_.guard, guard_inputs(in, sequencer));
+  clock_part(state_.stop, stop_in);
+  clock_part(state_.commands, commands);
+  clock_busy();
+  state_.axes_live = state_.out.live != 0;
+  Axis::Inputs axis = axis_inputs(in);
+  axis.cut = over;
+  const PathEngines::Outputs& engines = state_.engines.outputs();
+  state_.out.engine_step = engines.step;
+  for (unsigned n = 0; n < state_.axes.size(); ++n) {
+    const std::uint32_t bit = 1U << n;
+    axis.active = (s.active & bit) != 0;
+    axis.chord_load = (engines.chord_load & bit) != 0;
+    axis.chord_swap = (engines.chord_swap & bit) != 0;
+    axis.engine_step = (engines.step & bit) != 0;
+    axis.engine_dir = (engines.dir & bit) != 0;
+    if (clock_part(state_.axes[n], axis)) show_axis(n);
+  }
+  clock_part(state_.wait_timer, in.setting);
+  clock_part(state_.engines,
+             {over, s.tick, s.swap, s.engine, state_.sequencer.load(), state_.sequencer.engine_taken()});
+  clock_part(state_.feed, {s.feed_clear, s.feed_enable, s.spent, state_.sequencer.feed_load(), s.feed_swap});
+  clock_part(state_.time_base, {stop.hold, in.setting, s.piece_class});
+  clock_part(state_.probe, probe);
+  clock_part(state_.sequencer, sequencer);
+}
 
 }  // namespace trammel::model

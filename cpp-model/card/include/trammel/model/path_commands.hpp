@@ -30,78 +30,80 @@ class PathCommands {
     LoadWord load;
     Setting setting;
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    InputPins inputs;
+    OutputPins outputs;
+    std::uint64_t masks = 0;  // clear, set
+    std::uint16_t set = 0;
+    std::uint16_t clear = 0;
+    bool merges = false;
+    bool output_waits = false;
+    bool mark_waits = false;
+    bool mark_goes = false;
+    bool mark = false;
+    unsigned left = 0;  // clocks until what goes has taken effect
+    std::uint32_t marks_taken = 0;
+    std::uint32_t marks = 0;
+  };
 
   // From the clock in which a path's end shows, or a command could take effect, to the one in which it has.
   static constexpr unsigned kToStep = 7;
 
-  explicit PathCommands(const Config& config) : inputs_(config.inputs), outputs_(config.outputs, config.output_idle) {}
+  explicit PathCommands(const Config& config)
+      : state_{InputPins(config.inputs), OutputPins(config.outputs, config.output_idle)} {}
 
   // One rising edge.
   void clock(const Inputs& in) {
-    const bool due = left_ == 1 && !in.cut && !in.halt;
-    outputs_.clock(in.cut, due ? set_ : std::uint16_t{0}, due ? clear_ : std::uint16_t{0}, in.setting);
-    mark_ = due && mark_goes_;
-    if (mark_) marks_ = marks_taken_;
-    if (due) set_ = clear_ = 0;
-    const bool goes = left_ == 0 && (output_waits_ || mark_waits_) && (in.over || !in.runs);
-    if (left_ != 0) --left_;
+    const bool due = state_.left == 1 && !in.cut && !in.halt;
+    state_.outputs.clock(in.cut, due ? state_.set : std::uint16_t{0}, due ? state_.clear : std::uint16_t{0},
+                         in.setting);
+    state_.mark = due && state_.mark_goes;
+    if (state_.mark) state_.marks = state_.marks_taken;
+    if (due) state_.set = state_.clear = 0;
+    const bool goes = state_.left == 0 && (state_.output_waits || state_.mark_waits) && (in.over || !in.runs);
+    if (state_.left != 0) --state_.left;
     if (goes) {
-      left_ = kToStep - 1;
-      mark_goes_ = mark_waits_;
-      output_waits_ = mark_waits_ = false;
+      state_.left = kToStep - 1;
+      state_.mark_goes = state_.mark_waits;
+      state_.output_waits = state_.mark_waits = false;
     }
     take(in);
-    inputs_.clock(in.pins, in.setting);
+    state_.inputs.clock(in.pins, in.setting);
     if (in.cut || in.halt) drop();
   }
 
-  std::uint16_t levels() const { return inputs_.level(); }
-  std::uint16_t outputs() const { return outputs_.level(); }
-  std::uint32_t marks() const { return marks_; }
-  bool mark() const { return mark_; }  // event: a snapshot is wanted
-
-  // Clocks with these levels and without events change nothing, as long as no path ends.
-  bool quiet(std::uint16_t pins, bool runs) const {
-    const bool waits = output_waits_ || mark_waits_;
-    return inputs_.quiet(pins) && left_ == 0 && !merges_ && !mark_ && (!waits || runs);
-  }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  std::uint16_t levels() const { return state_.inputs.level(); }
+  std::uint16_t outputs() const { return state_.outputs.level(); }
+  std::uint32_t marks() const { return state_.marks; }
+  bool mark() const { return state_.mark; }  // event: a snapshot is wanted
 
  private:
   // An OUTPUT's masks are whole a clock after it is taken; the later one wins.
   void take(const Inputs& in) {
-    if (merges_) {
-      const auto set = static_cast<std::uint16_t>(masks_);
-      const auto clear = static_cast<std::uint16_t>(masks_ >> 16);
-      set_ = static_cast<std::uint16_t>((set_ & ~clear) | set);
-      clear_ = static_cast<std::uint16_t>((clear_ & ~set) | clear);
+    if (state_.merges) {
+      const auto set = static_cast<std::uint16_t>(state_.masks);
+      const auto clear = static_cast<std::uint16_t>(state_.masks >> 16);
+      state_.set = static_cast<std::uint16_t>((state_.set & ~clear) | set);
+      state_.clear = static_cast<std::uint16_t>((state_.clear & ~set) | clear);
     }
-    merges_ = in.output;
-    output_waits_ = output_waits_ || in.output;
-    mark_waits_ = mark_waits_ || in.mark;
-    marks_taken_ += in.mark ? 1 : 0;
-    if (in.load.to(load_target::kCommand)) shift_in<32>(masks_, in.load.word);
+    state_.merges = in.output;
+    state_.output_waits = state_.output_waits || in.output;
+    state_.mark_waits = state_.mark_waits || in.mark;
+    state_.marks_taken += in.mark ? 1 : 0;
+    if (in.load.to(load_target::kCommand)) shift_in<32>(state_.masks, in.load.word);
   }
 
   void drop() {
-    left_ = 0;
-    set_ = clear_ = 0;
-    merges_ = output_waits_ = mark_waits_ = false;
-    marks_taken_ = marks_;
+    state_.left = 0;
+    state_.set = state_.clear = 0;
+    state_.merges = state_.output_waits = state_.mark_waits = false;
+    state_.marks_taken = state_.marks;
   }
 
-  InputPins inputs_;
-  OutputPins outputs_;
-  std::uint64_t masks_ = 0;  // clear, set
-  std::uint16_t set_ = 0;
-  std::uint16_t clear_ = 0;
-  bool merges_ = false;
-  bool output_waits_ = false;
-  bool mark_waits_ = false;
-  bool mark_goes_ = false;
-  bool mark_ = false;
-  unsigned left_ = 0;  // clocks until what goes has taken effect
-  std::uint32_t marks_taken_ = 0;
-  std::uint32_t marks_ = 0;
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -54,13 +54,6 @@ class PortArbiter {
     for (std::size_t port = 0; port < ports_; ++port) noted_[port] = noted_[port] || now[port].request;
   }
 
-  // True when clocks without requests and answers change nothing.
-  bool quiet() const {
-    bool waits = inner_.access.request;
-    for (const bool noted : noted_) waits = waits || (noted && !busy_);
-    return !waits;
-  }
-
  private:
   void pass_on(const Access& access, std::size_t port) {
     busy_ = true;

@@ -35,47 +35,47 @@ class PositionStreaming {
     bool lost = false;        // the next period was missing; until a cut
     std::uint32_t ticks = 0;  // beyond the end of the last period that ended
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    bool on = false;  // as the register says
+    std::uint32_t stale_periods = 0;
+    bool inside = false;       // a command has come in part
+    std::uint64_t length = 0;  // ticks of the path under way
+    uint128 beyond = 0;
+    uint128 allowed = 0;
+    Outputs out;
+  };
 
   // One rising edge.
   void clock(const Inputs& in) {
     if (in.period) {
-      beyond_ = 0;
-      allowed_ = uint128{stale_periods_} * length_;
+      state_.beyond = 0;
+      state_.allowed = uint128{state_.stale_periods} * state_.length;
     }
-    beyond_ += in.stale_tick ? 1U : 0U;
-    const bool arrives = (in.period || in.stale_tick) && beyond_ == allowed_;
-    out_.missing = arrives && in.goes_on && !out_.lost && !in.cut;
-    out_.lost = (out_.lost || out_.missing) && !in.cut;
-    out_.ticks = static_cast<std::uint32_t>(beyond_);
-    if (in.begin) length_ = in.ticks;
-    if (settles(in)) out_.on = on_;
-    inside_ = !in.cut && !in.whole && (inside_ || in.write);
+    state_.beyond += in.stale_tick ? 1U : 0U;
+    const bool arrives = (in.period || in.stale_tick) && state_.beyond == state_.allowed;
+    state_.out.missing = arrives && in.goes_on && !state_.out.lost && !in.cut;
+    state_.out.lost = (state_.out.lost || state_.out.missing) && !in.cut;
+    state_.out.ticks = static_cast<std::uint32_t>(state_.beyond);
+    if (in.begin) state_.length = in.ticks;
+    if (settles(in)) state_.out.on = state_.on;
+    state_.inside = !in.cut && !in.whole && (state_.inside || in.write);
     if (in.setting.set && in.setting.address == card_map::reg::kStreaming) set(in.setting.data);
   }
 
-  const Outputs& outputs() const { return out_; }
-
-  // With these inputs, and without a tick, clock() changes nothing.
-  bool quiet(const Inputs& in) const {
-    const bool events = in.cut || in.setting.set || in.write || in.whole || in.begin || in.period || in.stale_tick;
-    return !events && !out_.missing && (out_.on == on_ || !settles(in));
-  }
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
  private:
-  bool settles(const Inputs& in) const { return in.rest && !inside_ && !in.write; }
+  bool settles(const Inputs& in) const { return in.rest && !state_.inside && !in.write; }
   void set(std::uint32_t data) {
     namespace field = card_map::field;
-    on_ = (data & field::kStreamingOn) != 0;
-    stale_periods_ = data >> 8 & 0xFF;
+    state_.on = (data & field::kStreamingOn) != 0;
+    state_.stale_periods = data >> 8 & 0xFF;
   }
 
-  bool on_ = false;  // as the register says
-  std::uint32_t stale_periods_ = 0;
-  bool inside_ = false;       // a command has come in part
-  std::uint64_t length_ = 0;  // ticks of the path under way
-  uint128 beyond_ = 0;
-  uint128 allowed_ = 0;
-  Outputs out_;
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -24,6 +24,17 @@ class Probe {
     bool clear = false;     // event: CONTROL.probe_clear
     LoadWord load;
   };
+  enum class Mode : std::uint8_t { Off, Armed, Ramp, Dropping };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    Mode mode = Mode::Off;
+    std::uint8_t condition = 0;  // {level, input}, decoded last
+    std::uint8_t armed_for = 0;
+    unsigned waited = 0;  // clocks
+    bool halt = false;
+    bool probed = false;
+    bool missed = false;
+  };
   // Clocks without a path from the first one in which a PROBE waits to the one that takes it.
   static constexpr unsigned kSettle = 8;
 
@@ -32,94 +43,82 @@ class Probe {
     const bool edge = edges(in);
     const bool take = takes(in);
     const bool tripped_already = take && met(in.levels);
-    const bool over = in.ends && !probed_;
-    halt_ = false;
-    if (in.clear) probed_ = missed_ = false;
-    if (take) missed_ = false;
-    if (edge || tripped_already) probed_ = true;
+    const bool over = in.ends && !state_.probed;
+    state_.halt = false;
+    if (in.clear) state_.probed = state_.missed = false;
+    if (take) state_.missed = false;
+    if (edge || tripped_already) state_.probed = true;
     step(in, edge, take, over);
     if (tripped_already) {
-      state_ = State::Dropping;
-      halt_ = true;
+      state_.mode = Mode::Dropping;
+      state_.halt = true;
     }
     if (in.cut) {
-      state_ = State::Off;
-      halt_ = false;
+      state_.mode = Mode::Off;
+      state_.halt = false;
     }
-    waited_ = in.waits ? waited_ + 1 : 0;
-    if (take) armed_for_ = condition_;
-    if (in.load.to(load_target::kCommand)) condition_ = static_cast<std::uint8_t>(in.load.word & 0x3F);
+    state_.waited = in.waits ? state_.waited + 1 : 0;
+    if (take) state_.armed_for = state_.condition;
+    if (in.load.to(load_target::kCommand)) state_.condition = static_cast<std::uint8_t>(in.load.word & 0x3F);
   }
 
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+
   // The condition decoded last is met.
-  bool met(std::uint16_t levels) const { return meets(condition_, levels); }
+  bool met(std::uint16_t levels) const { return meets(state_.condition, levels); }
   // The PROBE is taken in this clock.
   bool takes(const Inputs& in) const {
-    const bool free = state_ == State::Off || (state_ == State::Armed && !edges(in));
-    return in.waits && waited_ + 1 >= kSettle && free && !in.stopping && !in.cut;
+    const bool free = state_.mode == Mode::Off || (state_.mode == Mode::Armed && !edges(in));
+    return in.waits && state_.waited + 1 >= kSettle && free && !in.stopping && !in.cut;
   }
   // A snapshot is wanted.
   bool trips(const Inputs& in) const { return edges(in) || (takes(in) && met(in.levels)); }
   // PROBE_END must wait.
   bool stays(const Inputs& in) const {
-    return edges(in) || state_ == State::Ramp || (state_ == State::Dropping && probed_);
+    return edges(in) || state_.mode == Mode::Ramp || (state_.mode == Mode::Dropping && state_.probed);
   }
-  bool holds() const { return state_ == State::Ramp; }
-  bool halt() const { return halt_; }  // event: what runs ends here
-  bool drops() const { return state_ == State::Dropping; }
-  bool busy() const { return state_ != State::Off; }
-  bool probed() const { return probed_; }
-  bool missed() const { return missed_; }
+  bool holds() const { return state_.mode == Mode::Ramp; }
+  bool halt() const { return state_.halt; }  // event: what runs ends here
+  bool drops() const { return state_.mode == Mode::Dropping; }
+  bool busy() const { return state_.mode != Mode::Off; }
+  bool probed() const { return state_.probed; }
+  bool missed() const { return state_.missed; }
 
-  // With these inputs clock() changes nothing.
-  bool quiet(const Inputs& in) const {
-    const bool moves = (state_ == State::Armed && (edges(in) || in.ends)) || (state_ == State::Ramp && in.at_rest) ||
-                       (state_ == State::Dropping && in.ends && !probed_);
-    const bool settles = in.waits ? takes(in) || waited_ < kSettle : waited_ != 0;
-    return !in.cut && !in.clear && !halt_ && !moves && !settles && !in.load.valid;
+  bool edges(const Inputs& in) const {
+    return state_.mode == Mode::Armed && meets(state_.armed_for, in.levels) && !in.stopping && !in.cut;
   }
 
  private:
-  enum class State : std::uint8_t { Off, Armed, Ramp, Dropping };
-
   static bool meets(std::uint8_t condition, std::uint16_t levels) {
     constexpr unsigned kInputBits = 5;  // the number of an input; one that the card lacks stays at 0
     const std::uint32_t input = condition & ((1U << kInputBits) - 1);
     return (std::uint32_t{levels} >> input & 1) == condition >> kInputBits;
   }
-  bool edges(const Inputs& in) const {
-    return state_ == State::Armed && meets(armed_for_, in.levels) && !in.stopping && !in.cut;
-  }
   void step(const Inputs& in, bool edge, bool take, bool over) {
-    switch (state_) {
-      case State::Off:
-      case State::Armed:
+    switch (state_.mode) {
+      case Mode::Off:
+      case Mode::Armed:
         if (edge) {
-          state_ = State::Ramp;
+          state_.mode = Mode::Ramp;
         } else if (take) {
-          state_ = State::Armed;
-        } else if (in.ends && state_ == State::Armed) {
-          state_ = State::Off;
-          missed_ = true;
+          state_.mode = Mode::Armed;
+        } else if (in.ends && state_.mode == Mode::Armed) {
+          state_.mode = Mode::Off;
+          state_.missed = true;
         }
         break;
-      case State::Ramp:
-        halt_ = in.at_rest;
-        if (in.at_rest) state_ = State::Dropping;
+      case Mode::Ramp:
+        state_.halt = in.at_rest;
+        if (in.at_rest) state_.mode = Mode::Dropping;
         break;
-      case State::Dropping:
-        if (over) state_ = State::Off;
+      case Mode::Dropping:
+        if (over) state_.mode = Mode::Off;
         break;
     }
   }
 
-  State state_ = State::Off;
-  std::uint8_t condition_ = 0;  // {level, input}, decoded last
-  std::uint8_t armed_for_ = 0;
-  unsigned waited_ = 0;  // clocks
-  bool halt_ = false;
-  bool probed_ = false;
-  bool missed_ = false;
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -21,6 +21,13 @@ class QueueWatermarks {
     bool feed_low = false;
     bool operator==(const Outputs& o) const { return geometry_low == o.geometry_low && feed_low == o.feed_low; }
   };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    std::uint32_t geometry_watermark = 0;
+    std::uint32_t feed_watermark = 0;
+    Outputs next;
+    Outputs outputs;
+  };
 
   // Depths in halfwords.
   QueueWatermarks(std::uint32_t geometry_depth, std::uint32_t feed_depth)
@@ -28,31 +35,31 @@ class QueueWatermarks {
 
   // One rising edge.
   void clock(const Inputs& in) {
-    outputs_ = next_;
-    next_ = judged(in);
+    state_.outputs = state_.next;
+    state_.next = judged(in);
     if (in.setting.set) set(in.setting);
   }
 
-  const Outputs& outputs() const { return outputs_; }
+  const Outputs& outputs() const { return state_.outputs; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
-  // Without a setting clock() changes nothing while the rooms stay.
-  bool quiet(const Inputs& in) const { return outputs_ == next_ && next_ == judged(in); }
+  // What shows two clocks later.
+  Outputs judged(const Inputs& in) const {
+    return {geometry_depth_ - in.geometry_room < state_.geometry_watermark,
+            feed_depth_ - in.feed_room < state_.feed_watermark};
+  }
 
  private:
-  Outputs judged(const Inputs& in) const {
-    return {geometry_depth_ - in.geometry_room < geometry_watermark_, feed_depth_ - in.feed_room < feed_watermark_};
-  }
   void set(const Setting& setting) {
-    if (setting.address == card_map::reg::kGeometryWatermark) geometry_watermark_ = setting.data;
-    if (setting.address == card_map::reg::kFeedWatermark) feed_watermark_ = setting.data;
+    if (setting.address == card_map::reg::kGeometryWatermark) state_.geometry_watermark = setting.data;
+    if (setting.address == card_map::reg::kFeedWatermark) state_.feed_watermark = setting.data;
   }
 
   std::uint32_t geometry_depth_;
   std::uint32_t feed_depth_;
-  std::uint32_t geometry_watermark_ = 0;
-  std::uint32_t feed_watermark_ = 0;
-  Outputs next_;
-  Outputs outputs_;
+
+  State state_;
 };
 
 }  // namespace trammel::model

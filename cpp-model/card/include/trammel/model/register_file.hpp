@@ -111,6 +111,38 @@ class RegisterFile {
     std::uint32_t loader_data = 0;
     bool strobe = false;  // the snapshot takes what the inputs of this clock are
   };
+  enum class Stage { Idle, Decode, Wait, Act, Respond, Sent, Judge, Load };
+  using Values = std::array<std::uint32_t, card_map::kMaxAxes + 8>;  // of an area, by words
+  struct LoaderRead {
+    bool valid = false;
+    std::uint32_t data = 0;
+  };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    Outputs out;
+    std::uint64_t time = 0;
+    // The access under way.
+    Stage stage = Stage::Idle;
+    bool write = false;
+    bool partial = false;
+    std::uint8_t port = 0;
+    std::uint32_t address = 0;
+    std::uint32_t word = 0;  // last word written
+    card_map::Slot slot{nullptr, 0};
+    card_map::Reason reason = card_map::Reason::None;
+    std::uint32_t answer = 0;
+    bool word_refused = false;      // by the checker
+    std::uint8_t stream_owner = 0;  // port that the command under way belongs to
+    bool snapshot_asked = false;    // by CONTROL, in this clock
+    std::array<std::uint32_t, card_map::kWindowBytes / 4>
+        stored{};  // whatever reads back: constants, settings, latched values
+    std::uint32_t irq_enable = 0;
+    SnapshotWriter snapshot{1};
+    Values latched{};
+    std::array<std::uint32_t, kMaxPorts> refusal{};  // as the register reads; a reason is never 0
+    bool loading = false;
+    LoaderRead loader_read;
+  };
 
   explicit RegisterFile(const Config& config);
 
@@ -120,25 +152,21 @@ class RegisterFile {
   // One rising edge with reset low.
   void clock(const Inputs& in);
 
-  const Outputs& outputs() const { return out_; }
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
   // STATUS with these inputs, as the interrupt and lockstep see it: refused on any port.
   std::uint32_t status(const Inputs& in) const;
-
-  // True when clocks with these same inputs change nothing but the time; then advance(n) equals n times clock(in).
-  bool quiet(const Inputs& in) const;
-  void advance(std::uint64_t clocks) { time_ += clocks; }
+  // What `irq` shows a clock later.
+  bool interrupt(const Inputs& in) const;
 
   // Clocks since reset.
-  std::uint64_t time() const { return time_; }
+  std::uint64_t time() const { return state_.time; }
 
  private:
-  enum class Stage { Idle, Decode, Wait, Act, Respond, Sent, Judge, Load };
-  using Values = std::array<std::uint32_t, card_map::kMaxAxes + 8>;  // of an area, by words
-
   void clear_events();
   std::uint32_t status_for(const Inputs& in, bool refused) const;
-  bool interrupt(const Inputs& in) const;
   std::uint32_t live(const Inputs& in) const;
   card_map::Reason judge(const Inputs& in) const;
   card_map::Reason judge_write(const Inputs& in) const;
@@ -153,40 +181,12 @@ class RegisterFile {
   void take_values(const Inputs& in);
   void step_loader(const Inputs& in);
   void refuse_checked(const Inputs& in);
-  std::uint32_t& stored(std::uint32_t address) { return stored_[address / 4]; }
-  std::uint32_t stored(std::uint32_t address) const { return stored_[address / 4]; }
+  std::uint32_t& stored(std::uint32_t address) { return state_.stored[address / 4]; }
+  std::uint32_t stored(std::uint32_t address) const { return state_.stored[address / 4]; }
 
   Config config_;
-  Outputs out_;
-  std::uint64_t time_ = 0;
 
-  // The access under way.
-  Stage stage_ = Stage::Idle;
-  bool write_ = false;
-  bool partial_ = false;
-  std::uint8_t port_ = 0;
-  std::uint32_t address_ = 0;
-  std::uint32_t word_ = 0;  // last word written
-  card_map::Slot slot_{nullptr, 0};
-  card_map::Reason reason_ = card_map::Reason::None;
-  std::uint32_t answer_ = 0;
-  bool word_refused_ = false;      // by the checker
-  std::uint8_t stream_owner_ = 0;  // port that the command under way belongs to
-  bool snapshot_asked_ = false;    // by CONTROL, in this clock
-
-  std::array<std::uint32_t, card_map::kWindowBytes / 4>
-      stored_{};  // whatever reads back: constants, settings, latched values
-  std::uint32_t irq_enable_ = 0;
-  SnapshotWriter snapshot_;
-  Values latched_{};
-  std::array<std::uint32_t, kMaxPorts> refusal_{};  // as the register reads; a reason is never 0
-
-  struct LoaderRead {
-    bool valid = false;
-    std::uint32_t data = 0;
-  };
-  bool loading_ = false;
-  LoaderRead loader_read_;
+  State state_;
 };
 
 }  // namespace trammel::model

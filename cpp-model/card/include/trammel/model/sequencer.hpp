@@ -83,60 +83,94 @@ class Sequencer {
     bool command = false;  // a geometry command has begun
     bool direct = false;   // a direct move has begun
   };
+  enum class Path : std::uint8_t { None, Line, Engine, Direct };
+  enum class Barrier : std::uint8_t { None, Beginning, Running, Done };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    CommandFetch geometry{CommandFetch::Queue::Geometry};
+    CommandFetch feed{CommandFetch::Queue::Feed};
+    PositionStreaming streaming;
+    std::uint64_t now = 0;
+    LoadWord load;
+    std::uint64_t path_count = 0;  // chains: count of the next path or barrier, of the next piece
+    std::uint64_t piece_count = 0;
+    Path path = Path::None;
+    bool drained = false;          // its last tick is taken
+    std::uint64_t path_left = 0;   // ticks
+    std::uint64_t drained_at = 0;  // the clock of that take
+    std::uint64_t piece_left = 0;
+    unsigned owed = 0;             // ticks
+    bool tick_arrives = false;     // owed from the next clock on
+    bool geometry_stands = false;  // at a barrier
+    bool feed_stands = false;
+    Barrier barrier = Barrier::None;
+    std::uint64_t barrier_at = 0;  // the clock in which it begins; its last one
+    bool geometry_idle = true;
+    bool path_begun = false;  // in the clock before
+    bool piece_begun = false;
+    bool cut_before = false;
+    Outputs out;
+    Record record;
+  };
 
-  // `clock_all`: it never rests. `streaming`: it can be switched on.
-  explicit Sequencer(bool clock_all = false, bool streaming = true)
-      : clock_all_(clock_all),
-        has_streaming_(streaming),
-        geometry_(CommandFetch::Queue::Geometry, clock_all),
-        feed_(CommandFetch::Queue::Feed, clock_all) {}
+  // `streaming`: it can be switched on.
+  explicit Sequencer(bool streaming = true) : has_streaming_(streaming) {}
 
-  // One rising edge. Between the ticks that end something only counters move.
+  // One rising edge.
   void clock(const Inputs& in);
 
   // The path is on an engine and still takes feed ticks.
-  bool engine_taken() const { return path_ == Path::Engine && (!drained_ || now_ < drained_at_ + kEngineJudged); }
+  bool engine_taken() const {
+    return state_.path == Path::Engine && (!state_.drained || state_.now < state_.drained_at + kEngineJudged);
+  }
 
   // An OUTPUT, a MARK is taken in this clock.
-  bool takes_output(bool drop) const { return geometry_.decoded() && geometry_.is_output() && !drop; }
-  bool takes_mark(bool drop) const { return geometry_.decoded() && geometry_.is_mark() && !drop; }
+  bool takes_output(bool drop) const { return state_.geometry.decoded() && state_.geometry.is_output() && !drop; }
+  bool takes_mark(bool drop) const { return state_.geometry.decoded() && state_.geometry.is_mark() && !drop; }
   // A PROBE is decoded and no path runs; a WAIT_INPUT, a PROBE_END has begun.
-  bool probe_waits() const { return geometry_.decoded() && geometry_.is_probe() && path_ == Path::None; }
-  bool waits_for_input() const { return barrier_ == Barrier::Running && geometry_.is_wait(); }
-  bool probe_ends() const { return barrier_ == Barrier::Running && geometry_.is_probe_end(); }
+  bool probe_waits() const {
+    return state_.geometry.decoded() && state_.geometry.is_probe() && state_.path == Path::None;
+  }
+  bool waits_for_input() const { return state_.barrier == Barrier::Running && state_.geometry.is_wait(); }
+  bool probe_ends() const { return state_.barrier == Barrier::Running && state_.geometry.is_probe_end(); }
   // A geometry command is dropped in this clock.
-  bool geometry_drops(const Inputs& in) const { return in.drop && geometry_.decoded() && !geometry_.is_probe_end(); }
+  bool geometry_drops(const Inputs& in) const {
+    return in.drop && state_.geometry.decoded() && !state_.geometry.is_probe_end();
+  }
   // A tick is taken in this clock.
   bool takes(const Inputs& in) const;
-  bool piece_waits() const { return feed_.decoded() && feed_.is_feed(); }
+  bool piece_waits() const { return state_.feed.decoded() && state_.feed.is_feed(); }
 
-  const Outputs& outputs() const { return out_; }
-  const Record& record() const { return record_; }
-  const PositionStreaming::Outputs& streaming() const { return streaming_.outputs(); }
-  bool geometry_read() const { return geometry_.read(); }
-  bool feed_read() const { return feed_.read(); }
-  // For jumps. settled(): with these inputs, the enables and the ticks made apart, only counters move.
-  bool settled(const Inputs& in) const;
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  const Record& record() const { return state_.record; }
+  const PositionStreaming::Outputs& streaming() const { return state_.streaming.outputs(); }
+  bool geometry_read() const { return state_.geometry.read(); }
+  bool feed_read() const { return state_.feed.read(); }
   // A path takes each tick of its piece as it comes.
-  bool ticking() const { return (path_ == Path::Line || path_ == Path::Engine) && !drained_ && out_.feed_active; }
+  bool ticking() const {
+    return (state_.path == Path::Line || state_.path == Path::Engine) && !state_.drained && state_.out.feed_active;
+  }
   // Ticks until the path or its piece ends, the last one included.
-  std::uint64_t ticks_left() const { return out_.spent || path_left_ < piece_left_ ? path_left_ : piece_left_; }
-  // Clocks that a settled sequencer may jump over at most, ticks apart.
-  std::uint64_t settled_clocks() const {
-    return barrier_ == Barrier::Running && barrier_at_ > now_ ? barrier_at_ - now_ : kLong;
+  std::uint64_t ticks_left() const {
+    return state_.out.spent || state_.path_left < state_.piece_left ? state_.path_left : state_.piece_left;
   }
-  // Ticks on their way: bit k was made by an accumulation k clocks ago.
-  unsigned in_flight() const {
-    return (tick_arrives_ ? 1U << kArrives : 0) | (owed_ != 0 ? 1U << kOwed : 0) | (out_.tick ? 1U << kTaken : 0);
-  }
-  // `clocks` at once in which `ticks` are taken, none of them a last one; what is then on its way.
-  void jump(std::uint64_t clocks, std::uint64_t ticks, unsigned in_flight, bool feed_enable);
-  static constexpr unsigned kArrives = 3;  // clocks from an accumulation
-  static constexpr unsigned kOwed = 4;
-  static constexpr unsigned kTaken = 5;
 
-  const LoadWord& load() const { return load_; }             // the load bus
-  const LoadWord& feed_load() const { return feed_.bus(); }  // the feed load
+  const LoadWord& load() const { return state_.load; }             // the load bus
+  const LoadWord& feed_load() const { return state_.feed.bus(); }  // the feed load
+
+  bool mismatches() const;
+  bool ticking_path() const { return state_.path == Path::Direct || (state_.path != Path::None && !state_.drained); }
+  PositionStreaming::Inputs streaming_inputs(const Inputs& in) const;
+  bool barrier_over(const Inputs& in) const;
+  bool path_waits() const { return state_.geometry.decoded() && state_.geometry.is_path(); }
+  // A command that is taken at once.
+  bool instant() const {
+    return state_.geometry.decoded() && state_.geometry.is_instant() && !state_.geometry.is_probe();
+  }
+  bool feed_drops(const Inputs& in) const { return in.drop && state_.feed.decoded() && !state_.feed.is_probe_end(); }
+  bool has_streaming() const { return has_streaming_; }
 
  private:
   static constexpr std::uint64_t kCountMask = (std::uint64_t{1} << 40) - 1;
@@ -145,11 +179,6 @@ class Sequencer {
   static constexpr std::uint64_t kDirectJudged = 9;
   // From the clock in which both queues stand at a barrier: that in which it is decided, one before it shows.
   static constexpr std::uint64_t kBarrierBegins = 4;
-
-  static constexpr std::uint64_t kLong = std::uint64_t{1} << 62;
-
-  enum class Path : std::uint8_t { None, Line, Engine, Direct };
-  enum class Barrier : std::uint8_t { None, Beginning, Running, Done };
 
   // What this clock decides.
   struct Decision {
@@ -173,17 +202,8 @@ class Sequencer {
     bool direct = false;  // a direct move is under way
   };
 
-  void clock_all(const Inputs& in);
-  bool calm(const Inputs& in) const;
   Decision decide(const Inputs& in) const;
   bool judged(const Inputs& in) const;
-  bool mismatches() const;
-  bool ticking_path() const { return path_ == Path::Direct || (path_ != Path::None && !drained_); }
-  PositionStreaming::Inputs streaming_inputs(const Inputs& in) const;
-  bool barrier_over(const Inputs& in) const;
-  bool path_waits() const { return geometry_.decoded() && geometry_.is_path(); }
-  // A command that is taken at once.
-  bool instant() const { return geometry_.decoded() && geometry_.is_instant() && !geometry_.is_probe(); }
   void stand(const Decision& d);
   void clock_path(const Inputs& in, const Decision& d);
   void clock_piece(const Decision& d);
@@ -193,41 +213,12 @@ class Sequencer {
   void clock_fetches(const Inputs& in, const Decision& d);
   void count_begun(const Inputs& in, const Decision& d, bool path_drops, bool piece_drops);
   bool drop_counts(const CommandFetch& fetch, bool dropped) const;
-  bool feed_drops(const Inputs& in) const { return in.drop && feed_.decoded() && !feed_.is_probe_end(); }
   void halt(const Decision& d);
   void cut();
 
-  bool clock_all_;
   bool has_streaming_;
-  bool calm_ = false;  // as of the last clock, with inputs as these flags say
-  unsigned calm_inputs_ = 0;
-  std::uint64_t now_ = 0;
-  CommandFetch geometry_;
-  CommandFetch feed_;
-  LoadWord load_;
-  std::uint64_t path_count_ = 0;  // chains: count of the next path or barrier, of the next piece
-  std::uint64_t piece_count_ = 0;
 
-  Path path_ = Path::None;
-  bool drained_ = false;          // its last tick is taken
-  std::uint64_t path_left_ = 0;   // ticks
-  std::uint64_t drained_at_ = 0;  // the clock of that take
-  std::uint64_t piece_left_ = 0;
-  unsigned owed_ = 0;          // ticks
-  bool tick_arrives_ = false;  // owed from the next clock on
-
-  bool geometry_stands_ = false;  // at a barrier
-  bool feed_stands_ = false;
-  Barrier barrier_ = Barrier::None;
-  std::uint64_t barrier_at_ = 0;  // the clock in which it begins; its last one
-  bool geometry_idle_ = true;
-  bool path_begun_ = false;  // in the clock before
-  bool piece_begun_ = false;
-  bool cut_before_ = false;
-
-  PositionStreaming streaming_;
-  Outputs out_;
-  Record record_;
+  State state_;
 };
 
 }  // namespace trammel::model

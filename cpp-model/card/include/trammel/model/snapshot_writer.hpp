@@ -48,6 +48,8 @@ class SnapshotWriter {
   bool strobe() const { return strobe_; }
   // STATUS.snapshot: the RAM is taken.
   bool busy() const { return left_ != 0; }
+  // A request has not begun.
+  bool waits() const { return host_waits_ || mark_waits_; }
   card_map::Area area() const { return area_; }
   // The words of the area are written a word a clock: the number of the one that is written in this clock, from 0; else
   // none. What breaks in comes too late for it.

@@ -32,154 +32,114 @@ class StepShaper {
     bool busy = false;           // steps wait, or a pulse or one of its times is under way
     bool fault = false;          // event: a step was lost, or waited from one wait tick to the next
   };
+  enum class Phase : std::uint8_t { kRest, kSetup, kHigh, kSpace };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    Phase phase = Phase::kRest;
+    std::uint32_t left = 0;  // clocks of the phase after this one
+    bool back = false;       // DIR
+    unsigned lead = 0;       // 3 as a pulse's phase begins, 1 in the pulse's first clock
+    bool seen_same = false;  // what was waiting a clock ago
+    bool seen_other = false;
+    bool waited = false;
+    bool pulse = false;  // at the pin
+    std::uint8_t waiting = 0;
+    std::uint8_t backs = 0;
+    std::uint8_t mode = 0;
+    Outputs out;
+  };
 
   StepShaper() = default;
   // `idle_level`: strap, {second pin, first pin}; MODE begins with these bits as its inversions.
-  explicit StepShaper(unsigned idle_level) : mode_(static_cast<std::uint8_t>((idle_level & 3) << 2)) {
-    out_.step = (idle_level & 1) != 0;
-    out_.dir = (idle_level & 2) != 0;
+  explicit StepShaper(unsigned idle_level) {
+    state_.mode = static_cast<std::uint8_t>((idle_level & 3) << 2);
+    state_.out.step = (idle_level & 1) != 0;
+    state_.out.dir = (idle_level & 2) != 0;
   }
 
   // One rising edge.
   void clock(const Inputs& in) {
-    if (!quiet_ || in.step || in.mode != mode_) clock_always(in);
-  }
-
-  // The same without a look at whether anything can change.
-  void clock_always(const Inputs& in) {
-    const bool expired = left_ == 0;
+    const bool expired = state_.left == 0;
     show(in);
-    if (lead_ != 0) --lead_;
-    const bool go = seen_same_ && (phase_ == Phase::kRest || (phase_ == Phase::kSpace && expired));
-    const bool head_same = waiting_ != 0 && head_back() == back_;
-    const bool head_other = waiting_ != 0 && !head_same;
+    if (state_.lead != 0) --state_.lead;
+    const bool go = state_.seen_same && (state_.phase == Phase::kRest || (state_.phase == Phase::kSpace && expired));
+    const bool head_same = state_.waiting != 0 && head_back() == state_.back;
+    const bool head_other = state_.waiting != 0 && !head_same;
     bool served = false;
-    if (go || (phase_ == Phase::kSetup && expired)) {
+    if (go || (state_.phase == Phase::kSetup && expired)) {
       enter(Phase::kHigh, in.step_length);
-      lead_ = 3;
+      state_.lead = 3;
       served = true;
-    } else if (phase_ == Phase::kRest && seen_other_ && expired) {
+    } else if (state_.phase == Phase::kRest && state_.seen_other && expired) {
       enter(Phase::kSetup, in.dir_setup);
-      back_ = !back_;
-    } else if (phase_ == Phase::kHigh && expired) {
+      state_.back = !state_.back;
+    } else if (state_.phase == Phase::kHigh && expired) {
       enter(Phase::kSpace, in.step_space);
-    } else if (phase_ == Phase::kSpace && expired) {
+    } else if (state_.phase == Phase::kSpace && expired) {
       enter(Phase::kRest, in.dir_hold);
-    } else if (left_ != 0) {
-      --left_;
+    } else if (state_.left != 0) {
+      --state_.left;
     }
-    seen_same_ = head_same;
-    seen_other_ = head_other;
+    state_.seen_same = head_same;
+    state_.seen_other = head_other;
     judge(in, served);
     queue(in, served);
-    quiet_ = !out_.busy;
   }
 
-  const Outputs& outputs() const { return out_; }
-
-  // MODE as the pins show it.
-  std::uint8_t mode() const { return mode_; }
-  // Steps wait: the only state in which wait_tick means anything.
-  bool waiting() const { return waiting_ != 0; }
-  // Nothing changes any more without a step or a new mode.
-  bool quiet() const { return quiet_; }
-
-  // The number of clocks, without step and with the other inputs as they are, for which no output changes (wait_tick
-  // may come in them unless waiting()). A lower bound; 2^63 when quiet().
-  std::uint64_t idle_clocks() const {
-    if (quiet_) return std::uint64_t{1} << 63;
-    if (out_.fault || lead_ != 0 || waiting_ != 0 || phase_ == Phase::kSetup || left_ < 4) return 0;
-    if (pulse_ != (phase_ == Phase::kHigh)) return 0;  // a pulse of length 0 shows in the first clock of its space
-    return left_ - 3;
-  }
-
-  // n clocks at once, n <= idle_clocks().
-  void advance(std::uint64_t n) {
-    if (!quiet_) left_ -= static_cast<std::uint32_t>(n);
-  }
-
-  // Nothing waits and no pulse is about to begin: without a step the position stays and no fault can come.
-  bool calm() const { return waiting_ == 0 && lead_ == 0 && !waited_ && !out_.fault; }
-
-  // n clocks without step and wait tick, while calm().
-  void pass(const Inputs& times, std::uint64_t n) {
-    while (n != 0) {
-      const std::uint64_t idle = idle_clocks();
-      const std::uint64_t some = idle < n ? idle : n;
-      if (some != 0) {
-        advance(some);
-        n -= some;
-      } else {
-        clock_always(times);
-        --n;
-      }
-    }
-  }
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
 
  private:
-  enum class Phase : std::uint8_t { kRest, kSetup, kHigh, kSpace };
-
   // A phase of t takes t + 3 clocks.
   void enter(Phase phase, std::uint16_t time) {
-    phase_ = phase;
-    left_ = std::uint32_t{time} + 2;
+    state_.phase = phase;
+    state_.left = std::uint32_t{time} + 2;
   }
 
-  bool head_back() const { return (backs_ >> (waiting_ - 1) & 1) != 0; }
+  bool head_back() const { return (state_.backs >> (state_.waiting - 1) & 1) != 0; }
 
   void judge(const Inputs& in, bool served) {
-    const bool lost = in.step && waiting_ == kPlaces && !served;
-    const bool late = in.wait_tick && waited_ && !served;
-    out_.fault = lost || late;
+    const bool lost = in.step && state_.waiting == kPlaces && !served;
+    const bool late = in.wait_tick && state_.waited && !served;
+    state_.out.fault = lost || late;
     if (served)
-      waited_ = false;
+      state_.waited = false;
     else if (in.wait_tick)
-      waited_ = waiting_ != 0;
+      state_.waited = state_.waiting != 0;
   }
 
   // The directions that wait, the youngest in bit 0.
   void queue(const Inputs& in, bool served) {
-    if (served) --waiting_;
-    if (!in.step || waiting_ == kPlaces) return;
-    backs_ = static_cast<std::uint8_t>(backs_ << 1 | (in.dir ? 1 : 0));
-    ++waiting_;
+    if (served) --state_.waiting;
+    if (!in.step || state_.waiting == kPlaces) return;
+    state_.backs = static_cast<std::uint8_t>(state_.backs << 1 | (in.dir ? 1 : 0));
+    ++state_.waiting;
   }
 
   // Pins, position and busy follow the state before this clock.
   void show(const Inputs& in) {
-    const bool begins = lead_ == 1;
-    if (begins) out_.position += back_ ? ~std::uint32_t{0} : 1U;
+    const bool begins = state_.lead == 1;
+    if (begins) state_.out.position += state_.back ? ~std::uint32_t{0} : 1U;
     // The first two clocks of the pulse's phase are low still, the last is low already.
-    const bool pulse = phase_ == Phase::kHigh && (begins || (lead_ == 0 && left_ != 0));
-    pulse_ = pulse;
+    const bool pulse = state_.phase == Phase::kHigh && (begins || (state_.lead == 0 && state_.left != 0));
+    state_.pulse = pulse;
     bool first = pulse;
-    bool second = back_;
+    bool second = state_.back;
     if ((in.mode & 3) == 1) {
-      first = pulse && !back_;
-      second = pulse && back_;
+      first = pulse && !state_.back;
+      second = pulse && state_.back;
     } else if ((in.mode & 3) >= 2) {
-      first = ((out_.position + 1) & 2) != 0;
-      second = (out_.position & 2) != 0;
+      first = ((state_.out.position + 1) & 2) != 0;
+      second = (state_.out.position & 2) != 0;
     }
-    out_.step = first != ((in.mode & 4) != 0);
-    out_.dir = second != ((in.mode & 8) != 0);
-    out_.busy = in.step || waiting_ != 0 || phase_ != Phase::kRest || left_ != 0;
-    mode_ = in.mode;
+    state_.out.step = first != ((in.mode & 4) != 0);
+    state_.out.dir = second != ((in.mode & 8) != 0);
+    state_.out.busy = in.step || state_.waiting != 0 || state_.phase != Phase::kRest || state_.left != 0;
+    state_.mode = in.mode;
   }
 
-  Phase phase_ = Phase::kRest;
-  std::uint32_t left_ = 0;  // clocks of the phase after this one
-  bool back_ = false;       // DIR
-  unsigned lead_ = 0;       // 3 as a pulse's phase begins, 1 in the pulse's first clock
-  bool seen_same_ = false;  // what was waiting a clock ago
-  bool seen_other_ = false;
-  bool waited_ = false;
-  bool pulse_ = false;  // at the pin
-  bool quiet_ = true;
-  std::uint8_t waiting_ = 0;
-  std::uint8_t backs_ = 0;
-  std::uint8_t mode_ = 0;
-  Outputs out_;
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -36,73 +36,69 @@ class StopControl {
     bool closed = false;    // neither command nor START is taken
     bool stopping = false;  // the ramp to a stop
   };
+  enum class Mode : std::uint8_t { Run, Ramp, Stopped };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    Mode mode = Mode::Run;
+    bool hold = false;
+    bool hold_stays = false;
+    bool made_to_hold = false;
+    std::uint32_t reaction = 0;
+    Outputs out;
+  };
 
   // One rising edge.
   void clock(const Inputs& in) {
     const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
                                  (in.incomplete ? card_map::field::kFaultPathIncomplete : 0) |
                                  (in.missing ? card_map::field::kFaultMissingPeriod : 0);
-    const bool at_once = (events & ~reaction_) != 0;
-    made_to_hold_ = in.underrun || in.probe;
-    hold_stays_ = stays(in.moving, in.at_rest);
-    out_.hold = host_holds(in.fixed) || made_to_hold_ || state_ == State::Ramp;
-    out_.closed = out_.fault != 0 || state_ != State::Run;
-    out_.cut = in.abort;
-    out_.stop = state_ == State::Run && events != 0;
-    switch (state_) {
-      case State::Run:
+    const bool at_once = (events & ~state_.reaction) != 0;
+    state_.made_to_hold = in.underrun || in.probe;
+    state_.hold_stays = stays(in.moving, in.at_rest);
+    state_.out.hold = host_holds(in.fixed) || state_.made_to_hold || state_.mode == Mode::Ramp;
+    state_.out.closed = state_.out.fault != 0 || state_.mode != Mode::Run;
+    state_.out.cut = in.abort;
+    state_.out.stop = state_.mode == Mode::Run && events != 0;
+    switch (state_.mode) {
+      case Mode::Run:
         if (at_once) halt();
-        if (events != 0 && !at_once) state_ = State::Ramp;
+        if (events != 0 && !at_once) state_.mode = Mode::Ramp;
         break;
-      case State::Ramp:
+      case Mode::Ramp:
         if (at_once || in.at_rest || in.abort) halt();
         break;
-      case State::Stopped:
-        if (out_.fault == 0 && events == 0) state_ = State::Run;
+      case Mode::Stopped:
+        if (state_.out.fault == 0 && events == 0) state_.mode = Mode::Run;
         break;
     }
-    out_.fault = (out_.fault & ~in.clear) | events;
-    out_.stopping = state_ == State::Ramp;
+    state_.out.fault = (state_.out.fault & ~in.clear) | events;
+    state_.out.stopping = state_.mode == Mode::Ramp;
     if (in.setting.set) set(in.setting);
   }
 
-  const Outputs& outputs() const { return out_; }
-  bool stopped() const { return state_ == State::Stopped; }
-  bool made_to_hold() const { return made_to_hold_; }  // as of the last clock: by under-run or probe
-
-  // Without an event, a setting, an abort, a clear or a change of made_to_hold(), clock() changes nothing while these
-  // stay; where no hold is asked for, whatever they do.
-  bool quiet(bool moving, bool fixed, bool at_rest) const {
-    const bool same = stays(moving, at_rest) == hold_stays_ && out_.hold == (host_holds(fixed) || made_to_hold_);
-    const bool settled = same && out_.closed == (out_.fault != 0 || state_ != State::Run);
-    return settled && !out_.cut && !out_.stop &&
-           (state_ == State::Run || (state_ == State::Stopped && out_.fault != 0));
-  }
-
- private:
-  enum class State : std::uint8_t { Run, Ramp, Stopped };
+  const Outputs& outputs() const { return state_.out; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  bool stopped() const { return state_.mode == Mode::Stopped; }
+  bool made_to_hold() const { return state_.made_to_hold; }  // as of the last clock: by under-run or probe
 
   // A HOLD waits for the end of fixed pieces, unless it found nothing moving, or the time base at rest, since it was
   // set.
-  bool stays(bool moving, bool at_rest) const { return hold_ && (hold_stays_ || !moving || at_rest); }
-  bool host_holds(bool fixed) const { return hold_ && (hold_stays_ || !fixed); }
+  bool stays(bool moving, bool at_rest) const { return state_.hold && (state_.hold_stays || !moving || at_rest); }
+  bool host_holds(bool fixed) const { return state_.hold && (state_.hold_stays || !fixed); }
 
+ private:
   void halt() {
-    state_ = State::Stopped;
-    out_.cut = true;
+    state_.mode = Mode::Stopped;
+    state_.out.cut = true;
   }
 
   void set(const Setting& setting) {
-    if (setting.address == card_map::reg::kHold) hold_ = setting.data != 0;
-    if (setting.address == card_map::reg::kStopReaction) reaction_ = setting.data;
+    if (setting.address == card_map::reg::kHold) state_.hold = setting.data != 0;
+    if (setting.address == card_map::reg::kStopReaction) state_.reaction = setting.data;
   }
 
-  State state_ = State::Run;
-  bool hold_ = false;
-  bool hold_stays_ = false;
-  bool made_to_hold_ = false;
-  std::uint32_t reaction_ = 0;
-  Outputs out_;
+  State state_;
 };
 
 }  // namespace trammel::model

@@ -11,29 +11,28 @@ namespace trammel::model {
 
 class WaitTimer {
  public:
+  using Inputs = Setting;
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    std::uint32_t limit = 0xFFFF;  // clocks, at least 1
+    std::uint32_t count = 0;
+    bool tick = false;
+  };
+
   // One rising edge. A limit set in clock c counts from c+1 on.
   void clock(const Setting& setting) {
-    tick_ = count_ + 1 >= limit_;
-    count_ = tick_ ? 0 : count_ + 1;
-    if (setting.set && setting.address == card_map::reg::kHoldLimit) limit_ = setting.data;
+    state_.tick = state_.count + 1 >= state_.limit;
+    state_.count = state_.tick ? 0 : state_.count + 1;
+    if (setting.set && setting.address == card_map::reg::kHoldLimit) state_.limit = setting.data;
   }
 
-  // The same as clock() n times without a setting.
-  void advance(std::uint64_t n) {
-    if (n == 0) return;
-    clock({});  // a limit lowered below the count is caught up here
-    if (n == 1) return;
-    count_ = static_cast<std::uint32_t>((count_ + (n - 1)) % limit_);
-    tick_ = count_ == 0;
-  }
-
-  bool tick() const { return tick_; }
-  std::uint32_t limit() const { return limit_; }
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  bool tick() const { return state_.tick; }
+  std::uint32_t limit() const { return state_.limit; }
 
  private:
-  std::uint32_t limit_ = 0xFFFF;  // clocks, at least 1
-  std::uint32_t count_ = 0;
-  bool tick_ = false;
+  State state_;
 };
 
 }  // namespace trammel::model

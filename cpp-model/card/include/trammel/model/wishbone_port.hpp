@@ -69,12 +69,6 @@ class WishbonePort {
 
   const Outputs& outputs() const { return out_; }
 
-  // True when clocks with these same inputs change nothing.
-  bool quiet(const Inputs& in) const {
-    const bool wakes = out_.stall && !busy_;
-    return !(in.cyc && in.stb) && !out_.request && !out_.ack && !out_.err && !(busy_ && in.ack) && !wakes;
-  }
-
  private:
   bool pipelined_;
   bool busy_ = false;

@@ -1,10 +1,18 @@
-#include "trammel/model/jump.hpp"
+#include "trammel/skip/jump.hpp"
 
 #include <algorithm>
 
 #include "trammel/card_map.hpp"
+#include "trammel/skip/axis.hpp"
+#include "trammel/skip/commands.hpp"
+#include "trammel/skip/control.hpp"
+#include "trammel/skip/feed_generator.hpp"
+#include "trammel/skip/path_engines.hpp"
+#include "trammel/skip/sequencer.hpp"
+#include "trammel/skip/time_base.hpp"
+#include "trammel/skip/underrun_guard.hpp"
 
-namespace trammel::model {
+namespace trammel::skip {
 
 namespace {
 
@@ -17,22 +25,44 @@ std::uint64_t count(unsigned bits) {
   return ones;
 }
 
+// Clocks for which the ratio is known ahead, 0 where it is not.
+std::uint64_t ratio_known_for(model::MotionCore& core) {
+  return TimeBaseAhead(core.state().time_base)
+      .clocks_ahead(core.stop().hold, core.state().sequencer.outputs().piece_class);
+}
+
+// A step of a tick taken `clocks_ago` clocks ago that is not yet at the shaper, placed in flight.
+void place_step(model::Axis& axis, std::uint64_t clocks_ago, bool backwards) {
+  model::Axis::State& s = axis.state();
+  PulsesAhead(s.generator).place_step(clocks_ago, backwards);
+  s.path_step = clocks_ago == 3;
+  if (clocks_ago >= 3) s.path_dir = backwards;
+}
+
+// Nothing on its way to the shaper, and there no step that waits.
+bool ready_to_jump(model::Axis& axis) {
+  model::Axis::State& s = axis.state();
+  return at_rest(s.generator) && !s.path_step && no_step_waits(s.shaper) && s.times.mode == s.shaper.state().mode &&
+         !s.generator.outputs().live && PulsesAhead(s.generator).within_a_pulse();
+}
+
 }  // namespace
 
-Jump::Jump(MotionCore& core, StepRecord& record, std::uint64_t cycle, std::uint64_t limit)
+Jump::Jump(model::MotionCore& core, model::StepRecord& record, std::uint64_t cycle, std::uint64_t limit)
     : core_(core),
       record_(record),
       cycle_(cycle),
-      end_(static_cast<std::int64_t>(std::min({limit, core.sequencer_.settled_clocks(), core.ratio_known_for()}))),
-      ticking_(core.sequencer_.ticking()),
-      chords_(ticking_ && core.engines_.on_chords()),
+      end_(
+          static_cast<std::int64_t>(std::min({limit, counting_clocks(core.state().sequencer), ratio_known_for(core)}))),
+      ticking_(core.state().sequencer.ticking()),
+      chords_(ticking_ && on_chords(core.state().engines)),
       to_axis_(chords_ ? 10 : 9),
-      first_(core.sequencer_.outputs().feed_enable ? 1 : 0),
-      second_(core.time_base_.outputs().enable ? 1 : 0),
-      axes_(static_cast<unsigned>(core.axes_.size())) {
+      first_(core.state().sequencer.outputs().feed_enable ? 1 : 0),
+      second_(core.state().time_base.outputs().enable ? 1 : 0),
+      axes_(static_cast<unsigned>(core.state().axes.size())) {
   if (!ticking_) return;
-  for (unsigned k = 0; k < 3; ++k) in_flight_ |= core.feed_.carried(k) ? 1U << k : 0;
-  in_flight_ |= core.sequencer_.in_flight() | core.engines_.in_flight();
+  for (unsigned k = 0; k < 3; ++k) in_flight_ |= carried(core.state().feed, k) ? 1U << k : 0;
+  in_flight_ |= in_flight(core.state().sequencer) | EngineTicks(core.state().engines).in_flight();
   for (int k = 8; k >= 0; --k) {
     if ((in_flight_ >> k & 1) != 0) flight_[flying_++] = -k;
   }
@@ -49,29 +79,30 @@ std::uint64_t Jump::go() {
 // Accumulations of the feed generator at edges 1 .. `edge`: the enables on their way come first.
 std::uint64_t Jump::accumulations_to(std::int64_t edge) const {
   if (edge < 2) return edge < 1 ? 0 : first_;
-  return first_ + second_ + core_.time_base_.enabled_in(static_cast<std::uint64_t>(edge - 2));
+  return first_ + second_ + TimeBaseAhead(core_.state().time_base).enabled_in(static_cast<std::uint64_t>(edge - 2));
 }
 
 // The edge of an accumulation, from 1.
 std::int64_t Jump::edge_of(std::uint64_t accumulation) const {
   if (accumulation <= first_) return 1;
   if (accumulation <= first_ + second_) return 2;
-  return 2 + static_cast<std::int64_t>(core_.time_base_.clocks_for(accumulation - first_ - second_));
+  return 2 +
+         static_cast<std::int64_t>(TimeBaseAhead(core_.state().time_base).clocks_for(accumulation - first_ - second_));
 }
 
 // The first tick that must not be taken, or not reach the prescaler.
 std::uint64_t Jump::first_that_stops() const {
-  std::uint64_t left = core_.sequencer_.ticks_left();
-  if (core_.guards()) left = std::min(left, core_.guard_.ticks_to_change());
+  std::uint64_t left = core_.state().sequencer.ticks_left();
+  if (core_.guards()) left = std::min(left, ticks_to_change(core_.state().guard));
   const std::uint64_t last = left + count(in_flight_ & kTakenBits);
-  const std::uint64_t stops = core_.engines_.tick_that_stops();
+  const std::uint64_t stops = EngineTicks(core_.state().engines).tick_that_stops();
   if (stops >= last) return last;
   return std::min(last, stops + count(in_flight_ & kPrescaledBits));
 }
 
 // The axis's next step: after t.ticks ticks of its own, as the generator stands.
-void Jump::look_ahead(Traveller& t, const PulseGenerator& generator) const {
-  const std::uint64_t silent = generator.silent_ticks();
+void Jump::look_ahead(Traveller& t, model::PulseGenerator& generator) const {
+  const std::uint64_t silent = PulsesAhead(generator).silent_ticks();
   t.next = kNever;
   if (silent == UINT64_MAX) return;
   t.at = t.ticks + silent + 1;
@@ -79,17 +110,17 @@ void Jump::look_ahead(Traveller& t, const PulseGenerator& generator) const {
     t.next = t.at;
     return;
   }
-  const std::uint64_t prescaled = core_.engines_.prescaler().ticks_until(t.at);
+  const std::uint64_t prescaled = PulsesAhead(core_.state().engines.state().prescaler).ticks_until(t.at);
   if (prescaled != UINT64_MAX) t.next = prescaled + count(in_flight_ & kPrescaledBits);
 }
 
 void Jump::travel() {
   const std::uint64_t stop = first_that_stops();
-  for (unsigned n = 0; n < axes_; ++n) look_ahead(travellers_[n], core_.axes_[n].generator());
+  for (unsigned n = 0; n < axes_; ++n) look_ahead(travellers_[n], core_.state().axes[n].state().generator);
   for (;;) {
     std::uint64_t next = stop;
     for (unsigned n = 0; n < axes_; ++n) next = std::min(next, travellers_[n].next);
-    FeedGenerator generator;
+    model::FeedGenerator generator;
     std::uint64_t done = done_;
     std::int64_t edge = 0;
     const bool in_flight = next <= flying_;
@@ -110,7 +141,7 @@ void Jump::travel() {
     }
     moved_ = true;
     if (in_flight) continue;
-    core_.feed_ = generator;
+    core_.state().feed = generator;
     done_ = done;
     made_ = next - flying_;
     edge_ = edge;
@@ -119,7 +150,7 @@ void Jump::travel() {
 
 // Ends before a tick that must not be taken.
 void Jump::stop_before(std::uint64_t tick) {
-  FeedGenerator generator;
+  model::FeedGenerator generator;
   std::uint64_t done = 0;
   std::int64_t edge = 0;
   if (tick <= flying_)
@@ -130,10 +161,10 @@ void Jump::stop_before(std::uint64_t tick) {
 }
 
 // Where a tick is made, and the generator there; false when that is after the end.
-bool Jump::find(std::uint64_t tick, FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const {
-  generator = core_.feed_;
+bool Jump::find(std::uint64_t tick, model::FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const {
+  generator = core_.state().feed;
   const std::uint64_t wanted = tick - flying_ - made_;
-  const FeedGenerator::Advanced gone = generator.advance(accumulations_to(end_) - done_, wanted);
+  const FeedAhead::Advanced gone = FeedAhead(generator).advance(accumulations_to(end_) - done_, wanted);
   if (gone.carries < wanted) return false;
   done = done_ + gone.enables;
   edge = edge_of(done);
@@ -143,7 +174,7 @@ bool Jump::find(std::uint64_t tick, FeedGenerator& generator, std::uint64_t& don
 // All axes that this tick makes a step on; none where one of them may not.
 bool Jump::step_all(std::uint64_t tick, std::int64_t arrival) {
   std::array<std::int64_t, card_map::kMaxAxes> served;
-  std::array<StepShaper, card_map::kMaxAxes> after;
+  std::array<model::StepShaper, card_map::kMaxAxes> after;
   for (unsigned n = 0; n < axes_; ++n) {
     if (travellers_[n].next == tick && !may_step(n, arrival, after[n], served[n])) return false;
   }
@@ -156,21 +187,21 @@ bool Jump::step_all(std::uint64_t tick, std::int64_t arrival) {
 }
 
 // The step's pulse, when it is the only one under way and cannot be late at a wait tick.
-bool Jump::may_step(unsigned axis, std::int64_t arrival, StepShaper& after, std::int64_t& served) const {
+bool Jump::may_step(unsigned axis, std::int64_t arrival, model::StepShaper& after, std::int64_t& served) const {
   const Traveller& t = travellers_[axis];
   if (t.under_way && t.served >= arrival) return false;
-  StepShaper::Inputs in = core_.axes_[axis].times();
+  model::StepShaper::Inputs in = core_.state().axes[axis].state().times;
   in.step = in.wait_tick = false;
-  after = t.under_way ? t.after : core_.axes_[axis].shaper();
+  after = t.under_way ? t.after : core_.state().axes[axis].state().shaper;
   const std::int64_t from = t.under_way ? t.served : t.edge;
   served = arrival + kToShaper;
-  after.pass(in, static_cast<std::uint64_t>(served - 1 - from));
+  pass(after, in, static_cast<std::uint64_t>(served - 1 - from));
   const std::uint32_t position = after.outputs().position;
   in.step = true;
-  in.dir = core_.axes_[axis].generator().increment() < 0;
+  in.dir = core_.state().axes[axis].state().generator.state().increment < 0;
   after.clock(in);
   in.step = false;
-  const std::int64_t late = served + core_.wait_timer_.limit();
+  const std::int64_t late = served + core_.state().wait_timer.limit();
   for (; after.outputs().position == position; ++served) {
     if (served >= late) return false;
     after.clock(in);
@@ -180,19 +211,19 @@ bool Jump::may_step(unsigned axis, std::int64_t arrival, StepShaper& after, std:
 
 void Jump::step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::int64_t served) {
   Traveller& t = travellers_[axis];
-  Axis& a = core_.axes_[axis];
+  model::Axis& a = core_.state().axes[axis];
   if (t.under_way) {
-    a.shaper() = t.after;
-    a.place_step(kToShaper, t.backwards);
+    a.state().shaper = t.after;
+    place_step(a, kToShaper, t.backwards);
     t.edge = t.served;
   }
-  a.generator().silent_ticks(t.at - 1 - t.ticks);
-  t.backwards = a.generator().step_at_once();
+  PulsesAhead(a.state().generator).silent_ticks(t.at - 1 - t.ticks);
+  t.backwards = PulsesAhead(a.state().generator).step_at_once();
   t.ticks = t.at;
   // The tick shows 4 edges before it reaches the axes.
   record_.place(cycle_ + static_cast<std::uint64_t>(arrival) - 4,
                 chords_ ? record_.path_ticks() + t.at : taken_before_ + tick);
-  look_ahead(t, a.generator());
+  look_ahead(t, a.state().generator);
   t.under_way = t.path_due = t.pin_due = true;
   t.arrival = arrival;
   t.served = served;
@@ -239,21 +270,21 @@ void Jump::land() {
     taken = all - count(in_flight & 0x1F) - count(in_flight_ & kTakenBits);
     const std::uint64_t prescaled = all - count(in_flight & 0x3F) - count(in_flight_ & kPrescaledBits);
     at_axes = chords_ ? land_chords(prescaled, in_flight) : all - count(in_flight & 0x1FF);
-    core_.engines_.jump(prescaled, in_flight);
-    const TimeBase& time = core_.time_base_;
+    EngineTicks(core_.state().engines).jump(prescaled, in_flight);
+    const TimeBaseAhead time(core_.state().time_base);
     feed_enable = clocks < 2 ? second_ != 0 : time.enabled_in(clocks - 1) != time.enabled_in(clocks - 2);
     record_.take(taken);
     if (!chords_) place_takes(in_flight);
   }
   for (unsigned n = 0; n < axes_; ++n) land_axis(n, at_axes);
-  core_.sequencer_.jump(clocks, taken, in_flight, feed_enable);
+  advance(core_.state().sequencer, clocks, taken, in_flight, feed_enable);
   if (core_.guards())
-    core_.guard_.jump(clocks, taken, in_flight >> Sequencer::kTaken);
+    advance(core_.state().guard, clocks, taken, in_flight >> skip::kTaken);
   else
-    core_.guard_.jump(clocks, 0, 0);
-  core_.time_base_.advance(clocks);
-  core_.wait_timer_.advance(clocks);
-  core_.out_.engine_step = 0;
+    advance(core_.state().guard, clocks, 0, 0);
+  advance(core_.state().time_base, {}, clocks);
+  pass(core_.state().wait_timer, clocks);
+  core_.state().out.engine_step = 0;
 }
 
 // The generator at the end; the last clocks one by one, for what is in flight: bit k from the edge k before the end.
@@ -263,18 +294,18 @@ unsigned Jump::land_generator() {
   if (end_ > edge_ + kTail) {
     edge_ = end_ - kTail;
     const std::uint64_t done = accumulations_to(edge_);
-    made_ += core_.feed_.advance(done - done_, kNever).carries;
+    made_ += FeedAhead(core_.state().feed).advance(done - done_, kNever).carries;
     done_ = done;
     in_flight = 0;
   }
   while (edge_ != end_) {
-    FeedGenerator::Inputs in;
+    model::FeedGenerator::Inputs in;
     const std::uint64_t done = accumulations_to(++edge_);
     in.enable = done != done_;
-    in.freeze = core_.sequencer_.outputs().spent;
+    in.freeze = core_.state().sequencer.outputs().spent;
     done_ = done;
-    core_.feed_.clock(in);
-    const bool carry = core_.feed_.carried(0);
+    core_.state().feed.clock(in);
+    const bool carry = carried(core_.state().feed, 0);
     made_ += carry ? 1 : 0;
     in_flight = in_flight << 1 | (carry ? 1U : 0U);
   }
@@ -283,7 +314,7 @@ unsigned Jump::land_generator() {
 
 // Path ticks at the axes, of the feed ticks that the prescaler has taken.
 std::uint64_t Jump::land_chords(std::uint64_t prescaled, unsigned in_flight) {
-  const PathEngines::PathTicks made = core_.engines_.jump_chords(prescaled, in_flight);
+  const EngineTicks::PathTicks made = EngineTicks(core_.state().engines).jump_chords(prescaled, in_flight);
   record_.take_path_ticks(made.at_axes);
   if (made.visible) record_.chord_tick(cycle_ + static_cast<std::uint64_t>(end_));
   return made.at_axes;
@@ -291,7 +322,6 @@ std::uint64_t Jump::land_chords(std::uint64_t prescaled, unsigned in_flight) {
 
 // The record of the ticks that are taken and not yet at the axes.
 void Jump::place_takes(unsigned in_flight) {
-  constexpr unsigned kTaken = Sequencer::kTaken;
   std::uint64_t tick = record_.taken();
   for (unsigned k = kTaken; k < static_cast<unsigned>(to_axis_); ++k) {
     if ((in_flight >> k & 1) != 0) record_.place(cycle_ + static_cast<std::uint64_t>(end_) - (k - kTaken), tick--);
@@ -300,59 +330,64 @@ void Jump::place_takes(unsigned in_flight) {
 
 void Jump::land_axis(unsigned axis, std::uint64_t ticks) {
   const Traveller& t = travellers_[axis];
-  Axis& a = core_.axes_[axis];
-  if (ticking_) a.generator().silent_ticks(ticks - t.ticks);
-  StepShaper::Inputs in = a.times();
+  model::Axis& a = core_.state().axes[axis];
+  if (ticking_) PulsesAhead(a.state().generator).silent_ticks(ticks - t.ticks);
+  model::StepShaper::Inputs in = a.state().times;
   in.step = in.wait_tick = false;
   const std::int64_t at_shaper = t.arrival + kToShaper;
   if (t.under_way && t.served <= end_) {
-    a.shaper() = t.after;
-    a.shaper().pass(in, static_cast<std::uint64_t>(end_ - t.served));
+    a.state().shaper = t.after;
+    pass(a.state().shaper, in, static_cast<std::uint64_t>(end_ - t.served));
   } else if (t.under_way && at_shaper <= end_) {
-    a.shaper().pass(in, static_cast<std::uint64_t>(at_shaper - 1 - t.edge));
-    WaitTimer timer = core_.wait_timer_;
-    timer.advance(static_cast<std::uint64_t>(at_shaper - 1));
+    pass(a.state().shaper, in, static_cast<std::uint64_t>(at_shaper - 1 - t.edge));
+    model::WaitTimer timer = core_.state().wait_timer;
+    pass(timer, static_cast<std::uint64_t>(at_shaper - 1));
     in.dir = t.backwards;
     for (std::int64_t edge = at_shaper; edge <= end_; ++edge) {
       in.step = edge == at_shaper;
       in.wait_tick = timer.tick();
-      a.shaper().clock(in);
+      a.state().shaper.clock(in);
       timer.clock({});
     }
   } else {
-    a.shaper().pass(in, static_cast<std::uint64_t>(end_ - t.edge));
+    pass(a.state().shaper, in, static_cast<std::uint64_t>(end_ - t.edge));
   }
-  if (t.under_way) a.place_step(static_cast<std::uint64_t>(std::min(end_ - t.arrival, kToShaper)), t.backwards);
+  if (t.under_way) place_step(a, static_cast<std::uint64_t>(std::min(end_ - t.arrival, kToShaper)), t.backwards);
   core_.show_axis(axis);
 }
 
+namespace {
+
 // Nothing is decided, and no host is at work.
-bool MotionCore::may_jump(const Inputs& in) const {
-  const Sequencer::Outputs& s = sequencer_.outputs();
-  if (s.swap || s.feed_swap || s.direct || out_.path_step != 0 || axes_live_ || out_.step_fault != 0) return false;
-  if (in.setting.set || in.abort || in.clear_fault != 0 || in.probe_clear || in.start || !loader_.quiet()) return false;
-  const bool fixed = s.piece_class == card_map::constant::kClassFixed;
-  if (!stop_.quiet(s.moving, fixed, time_base_.outputs().ratio == 0)) return false;
-  if (!engines_.settled() || ratio_known_for() == 0) return false;
-  if (!commands_.quiet(in.pins, s.path_active)) return false;
-  if (!probe_.quiet(probe_inputs(in)) || probing_ != probe_.busy()) return false;
-  for (const Axis& axis : axes_) {
-    if (!axis.calm()) return false;
+bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
+  model::MotionCore::State& m = core.state();
+  const model::Sequencer::Outputs& s = m.sequencer.outputs();
+  if (s.swap || s.feed_swap || s.direct || m.out.path_step != 0 || m.axes_live || m.out.step_fault != 0) return false;
+  if (in.setting.set || in.abort || in.clear_fault != 0 || in.probe_clear || in.start) return false;
+  if (horizon(m.loader, {}) == 0 || horizon(m.stop, core.stop_inputs(in)) == 0) return false;
+  if (!only_ticks_move(m.engines) || ratio_known_for(core) == 0) return false;
+  if (horizon(m.commands, core.command_inputs(in)) == 0) return false;
+  if (horizon(m.probe, core.probe_inputs(in)) == 0 || m.probing != m.probe.busy()) return false;
+  for (model::Axis& axis : m.axes) {
+    if (!ready_to_jump(axis)) return false;
   }
-  if (running_ != (!s.idle || probing_ || out_.axis_busy != 0) || busy_left_ != (running_ ? kBusyClocks : 0))
+  if (m.running != (!s.idle || m.probing || m.out.axis_busy != 0) ||
+      m.busy_left != (m.running ? model::MotionCore::kBusyClocks : 0))
     return false;
-  if (s.idle && out_.axis_busy != 0) return false;
-  const Sequencer::Inputs sequencer_in = sequencer_inputs(in);
-  if (!sequencer_.settled(sequencer_in)) return false;
-  const bool held = (has_guard_ && guard_.outputs().hold) || probe_.holds();
-  if (held != stop_.made_to_hold()) return false;
-  if (guards() && !guard_.settled(guard_inputs(in, sequencer_in))) return false;
-  return sequencer_.ticking() || (feed_.quiet() && engines_.quiet() && (!s.feed_clear || feed_.phase() == 0));
+  if (s.idle && m.out.axis_busy != 0) return false;
+  const model::Sequencer::Inputs sequencer = core.sequencer_inputs(in, core.probe_inputs(in));
+  if (!only_counts_move(m.sequencer, sequencer)) return false;
+  if (core.guards() && !only_counts_move(m.guard, core.guard_inputs(in, sequencer))) return false;
+  return m.sequencer.ticking() ||
+         (at_rest(m.feed) && at_rest(m.engines) && (!s.feed_clear || m.feed.state().phase == 0));
 }
 
-std::uint64_t MotionCore::jump(std::uint64_t limit, const Inputs& in, std::uint64_t cycle, StepRecord& record) {
+}  // namespace
+
+std::uint64_t advance(model::MotionCore& core, std::uint64_t limit, const model::MotionCore::Inputs& in,
+                      std::uint64_t cycle, model::StepRecord& record) {
   constexpr std::uint64_t kLongest = std::uint64_t{1} << 40;
-  return may_jump(in) ? Jump(*this, record, cycle, std::min(limit, kLongest)).go() : 0;
+  return may_jump(core, in) ? Jump(core, record, cycle, std::min(limit, kLongest)).go() : 0;
 }
 
-}  // namespace trammel::model
+}  // namespace trammel::skip

@@ -19,13 +19,15 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/model/motion_core.hpp"
+#include "trammel/model/step_record.hpp"
+#include "trammel/skip/horizon.hpp"
 
-namespace trammel::model {
+namespace trammel::skip {
 
 class Jump {
  public:
   // `cycle`: edges so far; `limit`: clocks at most, below 2^46.
-  Jump(MotionCore& core, StepRecord& record, std::uint64_t cycle, std::uint64_t limit);
+  Jump(model::MotionCore& core, model::StepRecord& record, std::uint64_t cycle, std::uint64_t limit);
 
   // Returns the clocks that are gone; 0 where it was not worth it.
   std::uint64_t go();
@@ -51,18 +53,18 @@ class Jump {
     bool pin_due = false;
     std::int64_t arrival = 0;  // of its tick at the axis
     std::int64_t served = 0;   // the edge at which the pulse's leading edge shows
-    StepShaper after;          // the shaper then
+    model::StepShaper after;   // the shaper then
   };
 
   std::uint64_t accumulations_to(std::int64_t edge) const;
   std::int64_t edge_of(std::uint64_t accumulation) const;
   std::uint64_t first_that_stops() const;
-  void look_ahead(Traveller& t, const PulseGenerator& generator) const;
+  void look_ahead(Traveller& t, model::PulseGenerator& generator) const;
   void travel();
   void stop_before(std::uint64_t tick);
-  bool find(std::uint64_t tick, FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const;
+  bool find(std::uint64_t tick, model::FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const;
   bool step_all(std::uint64_t tick, std::int64_t arrival);
-  bool may_step(unsigned axis, std::int64_t arrival, StepShaper& after, std::int64_t& served) const;
+  bool may_step(unsigned axis, std::int64_t arrival, model::StepShaper& after, std::int64_t& served) const;
   void step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::int64_t served);
   void report_until(std::int64_t edge);
   void land();
@@ -71,8 +73,8 @@ class Jump {
   void place_takes(unsigned in_flight);
   std::uint64_t land_chords(std::uint64_t prescaled, unsigned in_flight);
 
-  MotionCore& core_;
-  StepRecord& record_;
+  model::MotionCore& core_;
+  model::StepRecord& record_;
   const std::uint64_t cycle_;
   std::int64_t end_;  // the edge at which the jump ends
   const bool ticking_;
@@ -96,4 +98,8 @@ class Jump {
   std::array<Traveller, card_map::kMaxAxes> travellers_{};
 };
 
-}  // namespace trammel::model
+// What of a jump's clocks `limit` may be gone under these inputs: from step to step; 0 where it is not worth it.
+std::uint64_t advance(model::MotionCore& core, std::uint64_t limit, const model::MotionCore::Inputs& in,
+                      std::uint64_t cycle, model::StepRecord& record);
+
+}  // namespace trammel::skip

@@ -1,0 +1,22 @@
+// The core and the card with skipping: clock() leaves the state that the block's own clock() leaves, run() the one that
+// so many of these leave, but blocks with a horizon are not clocked, and clocks between steps go at once.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/model/card_model.hpp"
+
+namespace trammel::skip {
+
+// One rising edge.
+void clock(model::CoreModel& core, const model::CoreModel::Inputs& in);
+void clock(model::CardModel& card, const model::CardModel::Inputs& in);
+
+// Edges at once without requests, `limit` at most, with these levels at the inputs; 0 where it is not worth it.
+std::uint64_t jump(model::CoreModel& core, std::uint64_t limit, std::uint16_t pins = 0);
+
+// `clocks` edges without requests or bus traffic, with these levels at the inputs.
+void run(model::CoreModel& core, std::uint64_t clocks, std::uint16_t pins = 0);
+void run(model::CardModel& card, std::uint64_t clocks, std::uint16_t pins = 0);
+
+}  // namespace trammel::skip

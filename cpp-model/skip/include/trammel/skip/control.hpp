@@ -1,0 +1,50 @@
+// Adaptors of stop control, probe, inputs and path commands. See horizon.hpp.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/model/path_commands.hpp"
+#include "trammel/model/probe.hpp"
+#include "trammel/model/stop_control.hpp"
+#include "trammel/skip/horizon.hpp"
+
+namespace trammel::skip {
+
+inline std::uint64_t horizon(const model::StopControl& block, const model::StopControl::Inputs& in) {
+  using Mode = model::StopControl::Mode;
+  const model::StopControl::State& s = block.state();
+  const bool events = in.step_fault != 0 || in.mismatch || in.incomplete || in.missing || in.abort || in.clear != 0 ||
+                      in.setting.set || s.out.cut || s.out.stop;
+  if (events || s.mode == Mode::Ramp || (s.mode == Mode::Stopped && s.out.fault == 0)) return 0;
+  const bool made = in.underrun || in.probe;
+  const bool hold = block.host_holds(in.fixed) || made;
+  return forever_if(made == s.made_to_hold && block.stays(in.moving, in.at_rest) == s.hold_stays &&
+                    hold == s.out.hold && s.out.closed == (s.out.fault != 0 || s.mode != Mode::Run));
+}
+inline void advance(model::StopControl&, const model::StopControl::Inputs&, std::uint64_t) {}
+
+inline std::uint64_t horizon(const model::Probe& block, const model::Probe::Inputs& in) {
+  using Mode = model::Probe::Mode;
+  const model::Probe::State& s = block.state();
+  const bool moves = (s.mode == Mode::Armed && (block.edges(in) || in.ends)) || (s.mode == Mode::Ramp && in.at_rest) ||
+                     (s.mode == Mode::Dropping && in.ends && !s.probed);
+  if (in.cut || in.clear || in.load.valid || s.halt || moves) return 0;
+  if (!in.waits) return forever_if(s.waited == 0);
+  return block.takes(in) || s.waited < model::Probe::kSettle ? 0 : kForever;
+}
+inline void advance(model::Probe& block, const model::Probe::Inputs& in, std::uint64_t clocks) {
+  if (in.waits) block.state().waited += static_cast<unsigned>(clocks);
+}
+
+inline std::uint64_t horizon(const model::PathCommands& block, const model::PathCommands::Inputs& in) {
+  const model::PathCommands::State& s = block.state();
+  const model::InputPins::State& pins = s.inputs.state();
+  const bool events =
+      in.cut || in.halt || in.output || in.mark || in.load.to(model::load_target::kCommand) || in.setting.set;
+  const bool waits = s.output_waits || s.mark_waits;
+  const bool levels = (in.pins & s.inputs.present()) == pins.last && pins.last == pins.seen;
+  return forever_if(!events && levels && s.left == 0 && !s.merges && !s.mark && (!waits || (in.runs && !in.over)));
+}
+inline void advance(model::PathCommands&, const model::PathCommands::Inputs&, std::uint64_t) {}
+
+}  // namespace trammel::skip

@@ -1,0 +1,81 @@
+#include "trammel/skip/card.hpp"
+
+#include <type_traits>
+
+#include "trammel/skip/axis.hpp"
+#include "trammel/skip/commands.hpp"
+#include "trammel/skip/control.hpp"
+#include "trammel/skip/jump.hpp"
+#include "trammel/skip/path_engines.hpp"
+#include "trammel/skip/sequencer.hpp"
+
+namespace trammel::skip {
+
+namespace {
+
+// Parts whose next clock changes nothing at the outputs advance by it. Those whose clock costs no more than their
+// horizon are always clocked.
+struct ClockBusy {
+  template <class Part>
+  bool operator()(Part& part, const typename Part::Inputs& in) const {
+    constexpr bool kJoined = std::is_same_v<Part, model::MotionCore> || std::is_same_v<Part, model::CoreModel>;
+    constexpr bool kCheap = std::is_same_v<Part, model::TimeBase> || std::is_same_v<Part, model::FeedGenerator> ||
+                            std::is_same_v<Part, model::WaitTimer> || std::is_same_v<Part, model::UnderrunGuard> ||
+                            std::is_same_v<Part, model::PulseGenerator>;
+    if constexpr (kJoined) {
+      part.clock_parts(in, *this);
+    } else if constexpr (kCheap) {
+      part.clock(in);
+    } else if (horizon(part, in) != 0) {
+      advance(part, in, 1);
+      return false;
+    } else if constexpr (std::is_same_v<Part, model::Axis> || std::is_same_v<Part, model::PathEngines>) {
+      part.clock_parts(in, *this);
+    } else {
+      part.clock(in);
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+void clock(model::CoreModel& core, const model::CoreModel::Inputs& in) { core.clock_parts(in, ClockBusy()); }
+void clock(model::CardModel& card, const model::CardModel::Inputs& in) { card.clock_parts(in, ClockBusy()); }
+
+std::uint64_t jump(model::CoreModel& core, std::uint64_t limit, std::uint16_t pins) {
+  model::CoreModel::State& s = core.state();
+  if (s.reset_due || horizon(s.checker, {}) == 0 || horizon(s.watermarks, core.watermark_inputs()) == 0) return 0;
+  if (horizon(s.geometry_queue, {}) == 0 || horizon(s.feed_queue, {}) == 0) return 0;
+  if (horizon(s.registers, s.shown) == 0) return 0;
+  const std::uint64_t gone = advance(s.motion, limit, core.motion_inputs(pins), s.cycles, s.record);
+  if (gone == 0) return 0;
+  s.cycles += gone;
+  advance(s.registers, {}, gone);
+  core.show();
+  return gone;
+}
+
+void run(model::CoreModel& core, std::uint64_t clocks, std::uint16_t pins) {
+  model::CoreModel::Inputs none;
+  none.pins = pins;
+  while (clocks != 0) {
+    const std::uint64_t gone = jump(core, clocks, pins);
+    if (gone == 0) clock(core, none);
+    clocks -= gone == 0 ? 1 : gone;
+  }
+}
+
+void run(model::CardModel& card, std::uint64_t clocks, std::uint16_t pins) {
+  model::CardModel::Inputs none;
+  none.pins = pins;
+  model::CardModel::State& s = card.state();
+  while (clocks != 0) {
+    const bool still = !s.reset_due && !s.core.answer().ack && horizon(s.port, {}) != 0;
+    const std::uint64_t gone = still ? jump(s.core, clocks, pins) : 0;
+    if (gone == 0) clock(card, none);
+    clocks -= gone == 0 ? 1 : gone;
+  }
+}
+
+}  // namespace trammel::skip

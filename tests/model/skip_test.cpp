@@ -1,0 +1,252 @@
+// Every adaptor of trammel::skip: n clocks at once leave the complete state that n calls of clock() leave, and no
+// output changes within the horizon. Blocks are driven into random states by random inputs; n is around the horizon's
+// border. A horizon that is one clock too long must be caught for each of them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "fields.hpp"
+#include "trammel/skip/axis.hpp"
+#include "trammel/skip/commands.hpp"
+#include "trammel/skip/control.hpp"
+#include "trammel/skip/feed_generator.hpp"
+#include "trammel/skip/path_engines.hpp"
+#include "trammel/skip/sequencer.hpp"
+#include "trammel/skip/time_base.hpp"
+#include "trammel/skip/underrun_guard.hpp"
+
+namespace trammel::model {
+// A part without state() of its own: all that it shows.
+inline bool operator==(const SnapshotWriter& a, const SnapshotWriter& b) {
+  return a.strobe() == b.strobe() && a.busy() == b.busy() && a.area() == b.area() && a.word() == b.word();
+}
+}  // namespace trammel::model
+
+namespace trammel::testing {
+namespace {
+
+using Random = std::mt19937_64;
+
+// Events one in `rare`, small and large numbers.
+template <class T>
+void fill(T& value, Random& random, unsigned rare) {
+  if constexpr (std::is_same_v<T, bool>) {
+    value = random() % rare == 0;
+  } else if constexpr (std::is_integral_v<T>) {
+    value = static_cast<T>(random() >> random() % 64);
+  } else if constexpr (IsList<T>::value) {
+    for (auto& item : value) fill(item, random, rare);
+  } else if constexpr (std::is_aggregate_v<T>) {
+    std::apply([&](auto&... field) { (fill(field, random, rare), ...); }, fields_of(value));
+  }
+}
+
+// How often each was right, and whether one clock too many was seen.
+struct Tally {
+  std::uint64_t finite = 0;  // horizons
+  std::uint64_t endless = 0;
+  std::uint64_t caught = 0;
+};
+
+template <class Block>
+bool at_once_equals_clocks(const Block& block, const typename Block::Inputs& in, std::uint64_t clocks) {
+  Block clocked = block;
+  Block skipped = block;
+  for (std::uint64_t i = 0; i < clocks; ++i) clocked.clock(in);
+  skip::advance(skipped, in, clocks);
+  return same(clocked, skipped);
+}
+
+template <class Block>
+bool outputs_stay(const Block& block, const typename Block::Inputs& in, std::uint64_t clocks) {
+  if constexpr (HasOutputs<Block>::value) {
+    Block skipped = block;
+    skip::advance(skipped, in, clocks);
+    return same(block.outputs(), skipped.outputs());
+  }
+  return true;
+}
+
+// `legal` makes inputs those that the block may get.
+template <class Block, class Legal>
+void judge(Block block, unsigned rare, const Legal& legal, bool has_finite = false) {
+  Random random(1);
+  Tally tally;
+  for (unsigned i = 0; i < 30'000; ++i) {
+    typename Block::Inputs in{};
+    fill(in, random, random() % 4 == 0 ? 1'000'000 : rare);
+    legal(in, block, random);
+    const std::uint64_t horizon = skip::horizon(block, in);
+    const std::uint64_t most = std::min<std::uint64_t>(horizon, 300);
+    (horizon == 0 ? tally.caught : horizon == skip::kForever ? tally.endless : tally.finite) += horizon == 0 ? 0 : 1;
+    for (const std::uint64_t n : {most, most - 1, random() % 300}) {
+      if (n > most) continue;
+      ASSERT_TRUE(at_once_equals_clocks(block, in, n)) << "try " << i << ": " << n << " clocks of " << horizon;
+      ASSERT_TRUE(outputs_stay(block, in, n)) << "try " << i << ": " << n << " clocks of " << horizon;
+    }
+    if (horizon < 300 && !at_once_equals_clocks(block, in, horizon + 1)) ++tally.caught;
+    for (std::uint64_t n = random() % 4 == 0 ? random() % 40 : 1; n != 0; --n) {
+      block.clock(in);
+      in = {};
+      legal(in, block, random);
+    }
+  }
+  EXPECT_GT(tally.endless + tally.finite, 100U);
+  EXPECT_GT(tally.caught, 100U) << "a horizon one clock too long";
+  if (has_finite) EXPECT_GT(tally.finite, 100U);
+}
+
+const auto kAny = [](auto&, const auto&, Random&) {};
+
+// A target on the load bus that some block takes.
+std::uint16_t some_target(Random& random) {
+  namespace target = model::load_target;
+  const unsigned all[] = {target::increment(1),  target::count(1), target::kPrescale,   target::kDeviation,
+                          target::kGradientX,    target::kEndX,    target::kPlane,      target::kChordShifts,
+                          target::kChordClosing, target::kCommand, target::kChordPlane, target::kChordState};
+  return static_cast<std::uint16_t>(all[random() % std::size(all)]);
+}
+
+TEST(Skip, StepShaper) {
+  judge(
+      model::StepShaper(), 9,
+      [](auto& in, const auto&, Random& random) {
+        in.step_length = in.step_space = in.dir_setup = in.dir_hold = 40;
+        in.mode = static_cast<std::uint8_t>(random() % 50 == 0);
+      },
+      true);
+}
+TEST(Skip, PulseGenerator) {
+  judge(
+      model::PulseGenerator(), 9,
+      [](auto& in, const auto&, Random& random) {
+        in.tick = random() % 2 == 0;
+        if (in.load_increment && random() % 2 == 0) in.word &= 0xFF;
+      },
+      true);
+}
+TEST(Skip, Axis) {
+  judge(model::Axis(1), 30, [](auto& in, const auto&, Random& random) {
+    in.load.target = some_target(random);
+    in.setting.address = card_map::reg::step_space(1) + 4 * (random() % 4);
+    in.setting.data %= 30;
+  });
+}
+TEST(Skip, WaitTimer) {
+  judge(
+      model::WaitTimer(), 100,
+      [](auto& in, const auto&, Random&) {
+        in.address = card_map::reg::kHoldLimit;
+        in.data = in.data % 200 + 1;
+      },
+      true);
+}
+TEST(Skip, TimeBase) {
+  judge(model::TimeBase(), 30, [](auto& in, const auto&, Random& random) {
+    in.piece_class = static_cast<std::uint8_t>(random() % 20 == 0);
+    in.setting.address = random() % 2 == 0 ? card_map::reg::kRatioFeed : card_map::reg::kRatioRapid;
+    in.setting.data = random() % 3 == 0 ? 0 : 0x10000;
+  });
+}
+TEST(Skip, FeedGenerator) {
+  judge(model::FeedGenerator(), 9, [](auto& in, const auto&, Random&) { in.load.target %= 7; });
+}
+TEST(Skip, DeviationAccumulator) {
+  judge(
+      model::DeviationAccumulator(), 9,
+      [](auto& in, const auto& block, Random& random) {
+        in.load.target = static_cast<std::uint16_t>(model::load_target::kDeviation + random() % 9);
+        in.load.valid = in.load.valid && random() % 4 == 0;
+        in.start = in.start && block.state().wait == 0;
+      },
+      true);
+}
+TEST(Skip, ArcGenerator) {
+  judge(
+      model::ArcGenerator(), 9,
+      [](auto& in, const auto& block, Random& random) {
+        in.load = {};
+        in.clear = random() % 500 == 0;
+        in.start = block.outputs().loadable && random() % 4 == 0;
+        in.tick = block.outputs().ready && random() % 2 == 0;
+      },
+      true);
+}
+TEST(Skip, PathEngines) {
+  judge(model::PathEngines(), 30, [](auto& in, const auto&, Random& random) {
+    in.load.target = some_target(random);
+    in.engine %= 3;
+  });
+}
+TEST(Skip, StopControl) {
+  judge(model::StopControl(), 9, [](auto& in, const auto&, Random& random) {
+    in.step_fault = random() % 50 == 0;
+    if (random() % 4 != 0) in.clear = 0;
+    in.setting.address = card_map::reg::kHold;
+  });
+}
+TEST(Skip, Probe) {
+  judge(model::Probe(), 9, [](auto& in, const auto&, Random& random) { in.load.target = some_target(random); });
+}
+TEST(Skip, PathCommands) {
+  judge(model::PathCommands({}), 9, [](auto& in, const auto&, Random& random) {
+    in.pins = random() % 16 == 0;
+    in.load.target = some_target(random);
+  });
+}
+TEST(Skip, HalfwordQueue) {
+  judge(model::HalfwordQueue(16), 3,
+        [](auto& in, const auto& block, Random&) { in.write = in.write && block.free() != 0; });
+}
+TEST(Skip, QueueWatermarks) {
+  judge(model::QueueWatermarks(100, 60), 9, [](auto& in, const auto&, Random& random) {
+    in.geometry_room %= 101;
+    in.feed_room %= 61;
+    in.setting.address = random() % 2 == 0 ? card_map::reg::kGeometryWatermark : card_map::reg::kFeedWatermark;
+    in.setting.data %= 100;
+  });
+}
+TEST(Skip, DirectLoader) { judge(model::DirectLoader(4), 30, kAny); }
+TEST(Skip, CommandChecker) { judge(model::CommandChecker(4, 0xFF), 9, kAny); }
+TEST(Skip, PositionStreaming) {
+  judge(model::PositionStreaming(), 9,
+        [](auto& in, const auto&, Random&) { in.setting.address = card_map::reg::kStreaming; });
+}
+TEST(Skip, UnderrunGuard) {
+  judge(model::UnderrunGuard(), 30, [](auto& in, const auto&, Random&) {
+    in.ratio = 0x10000;
+    in.arrival.halfword = 0;
+  });
+}
+TEST(Skip, RegisterFile) {
+  judge(model::RegisterFile({}), 30, [](auto& in, const auto&, Random&) {
+    in.port = 0;
+    in.address &= 0xFFF;
+    in.loader_address = 0;
+  });
+}
+TEST(Skip, Axi4LitePort) { judge(model::Axi4LitePort(), 3, kAny); }
+// The halfword that a fetch is about to take: a barrier's first one, a short count.
+std::uint16_t word_for(const model::CommandFetch& fetch, Random& random) {
+  const int index = fetch.state().arriving[1];
+  if (index == 0)
+    return static_cast<std::uint16_t>(random() % 2 == 0 ? card_map::Opcode::Dwell : card_map::Opcode::End);
+  return index == 1 ? static_cast<std::uint16_t>(random() % 100) : std::uint16_t{0};
+}
+TEST(Skip, Sequencer) {
+  judge(
+      model::Sequencer(), 100,
+      [](auto& in, const auto& block, Random& random) {
+        const bool starts = random() % 8 == 0;
+        in.geometry_empty = in.feed_empty = !starts;
+        in.payload_ready = in.shadows_free = in.engine_ready = in.engine_done = in.at_rest = true;
+        in.geometry_word = word_for(block.state().geometry, random);
+        in.feed_word = word_for(block.state().feed, random);
+        in.halt = in.drop = in.direct_go = false;
+      },
+      true);
+}
+
+}  // namespace
+}  // namespace trammel::testing
