@@ -44,7 +44,7 @@ module path_sequencer #(
     input wire logic done_i,  // every path tick given is finished
     input wire logic missed_end_i,  // with done_i: not on the commanded end point
     output logic engine_taken_o,  // by a path that still takes ticks (combinational)
-    output logic incomplete_o,  // event: a path ended elsewhere
+    output logic incomplete_o,  // event: a path missed its end point
     output logic over_o,  // event: a path has ended; on lines its last tick was taken
     input wire logic barrier_done_i,
     output logic at_barrier_o,
@@ -73,7 +73,8 @@ module path_sequencer #(
   assign path_valid = valid_i && !barrier_i;
   assign ending = take_i && last_i && !stale_o;
   assign over = on_engine_q ? drained_q && done_i : settled_q && !axes_live_i;
-  // After a line the next path takes over in the clock of the last tick. A path that ended elsewhere has no successor.
+  // After a line the next path takes over in the clock of the last tick. A path that missed its end point has no
+  // successor.
   assign swap = path_valid && !incomplete_o && !lost_i && (idle_q || stale_o || (ending && !on_engine_q));
   assign pop_o = swap || barrier_done_i;
   assign begin_o = swap || direct_go_i;

@@ -48,7 +48,7 @@ module stop_control #(
   logic   [Faults-1:0] fault_q;
   logic   [Faults-1:0] cause;
   logic                hold_q;
-  logic                stays_q;  // the hold stays whatever begins
+  logic                hold_latched_q;  // the hold stays whatever begins
   logic                stays;
   logic   [Faults-1:0] ramped_q;  // causes whose reaction is a ramp
   logic                any;
@@ -57,7 +57,7 @@ module stop_control #(
 
   assign data = setting_bus_pkg::data(setting_i);
   assign any = cause != '0;
-  assign stays = hold_q && (stays_q || !moving_i || at_rest_i);
+  assign stays = hold_q && (hold_latched_q || !moving_i || at_rest_i);
   assign immediate = (cause & ~ramped_q) != '0;
 
   always_comb begin
@@ -85,7 +85,7 @@ module stop_control #(
     state_q  <= state_d;
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
     stop_o   <= state_q == RUN && state_d != RUN;
-    stays_q  <= stays;
+    hold_latched_q <= stays;
     hold_o   <= (hold_q && (stays || !fixed_i)) || underrun_i || probe_i || state_q == RAMP;
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin

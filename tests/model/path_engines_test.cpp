@@ -91,7 +91,7 @@ TEST(PathEngines, APathTickTakesItsClocks) {
     EXPECT_TRUE(o.ready);
     engines.clock({});
   }
-  EXPECT_TRUE(engines.outputs().elsewhere);
+  EXPECT_TRUE(engines.outputs().missed_end);
 }
 
 // Ticks as fast as they are taken: every path tick makes a step, none is lost, and the circle ends where it began.
@@ -117,7 +117,7 @@ TEST(PathEngines, ACircleAsFastAsItGoes) {
     EXPECT_EQ(at[0], 0);
     EXPECT_EQ(at[1], 0);
     EXPECT_TRUE(engines.outputs().done);
-    EXPECT_FALSE(engines.outputs().elsewhere);
+    EXPECT_FALSE(engines.outputs().missed_end);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "platform.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/increment.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/configure.hpp"
@@ -93,7 +94,7 @@ TEST_P(OverEachLink, RefusalsAndBadAddresses) {
                                  driver::write_of(card_map::reg::kMagic, 1),
                                  driver::write_of(card_map::reg::kHoldLimit, 88)};
     EXPECT_EQ(host.transfer(accesses, 3), 1U);
-    EXPECT_EQ(card.read(card_map::reg::kHoldLimit), 77U);
+    EXPECT_EQ(card.parts().registers.read(card_map::reg::kHoldLimit), 77U);
     const std::optional<driver::Refusal> refusal = card.refusal();
     ASSERT_TRUE(refusal);
     EXPECT_EQ(refusal->reason, static_cast<std::uint8_t>(card_map::Reason::ReadOnly));

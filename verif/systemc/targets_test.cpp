@@ -12,6 +12,7 @@
 
 #include "platform.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/one_shot.hpp"
 
 namespace trammel::platform {
@@ -60,7 +61,7 @@ TEST_P(AnyQuantum, ALooseCardRuns) {
     EXPECT_FALSE(host.irq.read());
     interrupted = host.wait_for_interrupt(std::chrono::nanoseconds::max());
     host.sleep(50ms);
-    EXPECT_EQ(card.snapshot().position[0], 1000);  // which also runs the machine up to here
+    EXPECT_EQ(card.read_snapshot().position[0], 1000);  // which also runs the machine up to here
   });
   sc_core::sc_start(sc_time(3, SC_SEC));
   EXPECT_TRUE(interrupted);
@@ -243,7 +244,7 @@ TEST(Systemc, DebugTransportDoesNotWrite) {
     EXPECT_EQ(host.socket->transport_dbg(payload), 0U);
     payload.set_command(tlm::TLM_IGNORE_COMMAND);
     EXPECT_EQ(host.socket->transport_dbg(payload), 0U);
-    EXPECT_EQ(driver::Card::open(host).read(card_map::reg::kHoldLimit), before);
+    EXPECT_EQ(driver::Card::open(host).parts().registers.read(card_map::reg::kHoldLimit), before);
   });
   sc_core::sc_start();
 }

@@ -50,7 +50,7 @@ Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in, const Probe::In
   s.payload_ready = engines.payload_ready;
   s.shadows_free = engines.shadows_free;
   s.engine_done = engines.done;
-  s.elsewhere = engines.elsewhere;
+  s.missed_end = engines.missed_end;
   s.axes_live = state_.axes_live;
   return s;
 }

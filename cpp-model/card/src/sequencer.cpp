@@ -70,7 +70,7 @@ void Sequencer::clock(const Inputs& in) {
       state_.geometry.idle() && in.geometry_empty && state_.path == Path::None && state_.barrier == Barrier::None;
   state_.out.mismatch = mismatch && !in.drop;
   state_.out.over = d.path_over || (d.path_ends && state_.path == Path::Line) || (state_.out.stale && !d.goes_on);
-  state_.out.incomplete = d.path_over && state_.path == Path::Engine && in.elsewhere;
+  state_.out.incomplete = d.path_over && state_.path == Path::Engine && in.missed_end;
   const bool path_drop_counts = drop_counts(state_.geometry, d.path_dropped);
   state_.record = {d.path_begins || d.barrier_begins || path_drop_counts, in.direct_go};
   count_begun(in, d, path_drop_counts, drop_counts(state_.feed, d.piece_dropped));
@@ -160,8 +160,8 @@ void Sequencer::clock_path(const Inputs& in, const Decision& d) {
     state_.path = in.direct_go ? Path::Direct : on_lines ? Path::Line : Path::Engine;
     state_.path_left = state_.path_count & kCountMask;
     state_.drained = false;
-    const bool steps_elsewhere = !on_lines && state_.out.engine != card_map::engine::kArcGenerator;
-    state_.out.active = in.direct_go ? in.direct_mask : steps_elsewhere ? std::uint8_t{0} : state_.geometry.mask();
+    const bool engine_steps = !on_lines && state_.out.engine != card_map::engine::kArcGenerator;
+    state_.out.active = in.direct_go ? in.direct_mask : engine_steps ? std::uint8_t{0} : state_.geometry.mask();
   } else if (d.path_ends && state_.path != Path::Line) {
     state_.drained = true;
     state_.drained_at = state_.now;

@@ -70,9 +70,9 @@ Jump::Jump(model::MotionCore& core, model::StepRecord& record, std::uint64_t cyc
 }
 
 std::uint64_t Jump::go() {
-  if (ticking_) travel();
+  if (ticking_) walk();
   if (end_ <= 0 || (end_ < kShortest && !moved_)) return 0;
-  land();
+  commit();
   return static_cast<std::uint64_t>(end_);
 }
 
@@ -101,7 +101,7 @@ std::uint64_t Jump::first_that_stops() const {
 }
 
 // The axis's next step: after t.ticks ticks of its own, as the generator stands.
-void Jump::look_ahead(Traveller& t, model::PulseGenerator& generator) const {
+void Jump::look_ahead(AxisCursor& t, model::PulseGenerator& generator) const {
   const std::uint64_t silent = PulsesAhead(generator).silent_ticks();
   t.next = kNever;
   if (silent == UINT64_MAX) return;
@@ -114,12 +114,12 @@ void Jump::look_ahead(Traveller& t, model::PulseGenerator& generator) const {
   if (prescaled != UINT64_MAX) t.next = prescaled + count(in_flight_ & kPrescaledBits);
 }
 
-void Jump::travel() {
+void Jump::walk() {
   const std::uint64_t stop = first_that_stops();
-  for (unsigned n = 0; n < axes_; ++n) look_ahead(travellers_[n], core_.state().axes[n].state().generator);
+  for (unsigned n = 0; n < axes_; ++n) look_ahead(cursors_[n], core_.state().axes[n].state().generator);
   for (;;) {
     std::uint64_t next = stop;
-    for (unsigned n = 0; n < axes_; ++n) next = std::min(next, travellers_[n].next);
+    for (unsigned n = 0; n < axes_; ++n) next = std::min(next, cursors_[n].next);
     model::FeedGenerator generator;
     std::uint64_t done = done_;
     std::int64_t edge = 0;
@@ -176,19 +176,19 @@ bool Jump::step_all(std::uint64_t tick, std::int64_t arrival) {
   std::array<std::int64_t, card_map::kMaxAxes> served;
   std::array<model::StepShaper, card_map::kMaxAxes> after;
   for (unsigned n = 0; n < axes_; ++n) {
-    if (travellers_[n].next == tick && !may_step(n, arrival, after[n], served[n])) return false;
+    if (cursors_[n].next == tick && !may_step(n, arrival, after[n], served[n])) return false;
   }
   for (unsigned n = 0; n < axes_; ++n) {
-    if (travellers_[n].next != tick) continue;
+    if (cursors_[n].next != tick) continue;
     step(n, tick, arrival, served[n]);
-    travellers_[n].after = after[n];
+    cursors_[n].after = after[n];
   }
   return true;
 }
 
 // The step's pulse, when it is the only one under way and cannot be late at a wait tick.
 bool Jump::may_step(unsigned axis, std::int64_t arrival, model::StepShaper& after, std::int64_t& served) const {
-  const Traveller& t = travellers_[axis];
+  const AxisCursor& t = cursors_[axis];
   if (t.under_way && t.served >= arrival) return false;
   model::StepShaper::Inputs in = core_.state().axes[axis].state().times;
   in.step = in.wait_tick = false;
@@ -210,7 +210,7 @@ bool Jump::may_step(unsigned axis, std::int64_t arrival, model::StepShaper& afte
 }
 
 void Jump::step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::int64_t served) {
-  Traveller& t = travellers_[axis];
+  AxisCursor& t = cursors_[axis];
   model::Axis& a = core_.state().axes[axis];
   if (t.under_way) {
     a.state().shaper = t.after;
@@ -235,7 +235,7 @@ void Jump::report_until(std::int64_t edge) {
   while (next_report_ <= edge) {
     std::int64_t first = INT64_MAX;
     for (unsigned n = 0; n < axes_; ++n) {
-      const Traveller& t = travellers_[n];
+      const AxisCursor& t = cursors_[n];
       if (t.pin_due) first = std::min(first, t.served);
       if (t.path_due) first = std::min(first, t.arrival + kToPath);
     }
@@ -243,13 +243,13 @@ void Jump::report_until(std::int64_t edge) {
     if (first > edge) return;
     const std::uint64_t cycle = cycle_ + static_cast<std::uint64_t>(first);
     for (unsigned n = 0; n < axes_; ++n) {
-      Traveller& t = travellers_[n];
+      AxisCursor& t = cursors_[n];
       if (!t.pin_due || t.served != first) continue;
       record_.pin(cycle, n, t.after.outputs().position);
       t.pin_due = false;
     }
     for (unsigned n = 0; n < axes_; ++n) {
-      Traveller& t = travellers_[n];
+      AxisCursor& t = cursors_[n];
       if (!t.path_due || t.arrival + kToPath != first) continue;
       record_.line_step(cycle, n, t.backwards);
       t.path_due = false;
@@ -257,7 +257,7 @@ void Jump::report_until(std::int64_t edge) {
   }
 }
 
-void Jump::land() {
+void Jump::commit() {
   report_until(end_);
   const auto clocks = static_cast<std::uint64_t>(end_);
   std::uint64_t at_axes = 0;
@@ -265,18 +265,18 @@ void Jump::land() {
   bool feed_enable = false;
   unsigned in_flight = 0;
   if (ticking_) {
-    in_flight = land_generator();
+    in_flight = commit_generator();
     const std::uint64_t all = flying_ + made_;
     taken = all - count(in_flight & 0x1F) - count(in_flight_ & kTakenBits);
     const std::uint64_t prescaled = all - count(in_flight & 0x3F) - count(in_flight_ & kPrescaledBits);
-    at_axes = chords_ ? land_chords(prescaled, in_flight) : all - count(in_flight & 0x1FF);
+    at_axes = chords_ ? commit_chords(prescaled, in_flight) : all - count(in_flight & 0x1FF);
     EngineTicks(core_.state().engines).jump(prescaled, in_flight);
     const TimeBaseAhead time(core_.state().time_base);
     feed_enable = clocks < 2 ? second_ != 0 : time.enabled_in(clocks - 1) != time.enabled_in(clocks - 2);
     record_.take(taken);
     if (!chords_) place_takes(in_flight);
   }
-  for (unsigned n = 0; n < axes_; ++n) land_axis(n, at_axes);
+  for (unsigned n = 0; n < axes_; ++n) commit_axis(n, at_axes);
   advance(core_.state().sequencer, clocks, taken, in_flight, feed_enable);
   if (core_.guards())
     advance(core_.state().guard, clocks, taken, in_flight >> skip::kTaken);
@@ -288,7 +288,7 @@ void Jump::land() {
 }
 
 // The generator at the end; the last clocks one by one, for what is in flight: bit k from the edge k before the end.
-unsigned Jump::land_generator() {
+unsigned Jump::commit_generator() {
   constexpr std::int64_t kTail = 10;
   unsigned in_flight = edge_ == 0 ? in_flight_ : 1;
   if (end_ > edge_ + kTail) {
@@ -313,7 +313,7 @@ unsigned Jump::land_generator() {
 }
 
 // Path ticks at the axes, of the feed ticks that the prescaler has taken.
-std::uint64_t Jump::land_chords(std::uint64_t prescaled, unsigned in_flight) {
+std::uint64_t Jump::commit_chords(std::uint64_t prescaled, unsigned in_flight) {
   const EngineTicks::PathTicks made = EngineTicks(core_.state().engines).jump_chords(prescaled, in_flight);
   record_.take_path_ticks(made.at_axes);
   if (made.visible) record_.chord_tick(cycle_ + static_cast<std::uint64_t>(end_));
@@ -328,8 +328,8 @@ void Jump::place_takes(unsigned in_flight) {
   }
 }
 
-void Jump::land_axis(unsigned axis, std::uint64_t ticks) {
-  const Traveller& t = travellers_[axis];
+void Jump::commit_axis(unsigned axis, std::uint64_t ticks) {
+  const AxisCursor& t = cursors_[axis];
   model::Axis& a = core_.state().axes[axis];
   if (ticking_) PulsesAhead(a.state().generator).silent_ticks(ticks - t.ticks);
   model::StepShaper::Inputs in = a.state().times;

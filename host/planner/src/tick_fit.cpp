@@ -13,14 +13,14 @@ bool is_peak(const Phase& phase) { return phase.acceleration > 0 && phase.next <
 
 }  // namespace
 
-void TickFit::start(double rate_a_speed) {
-  rate_a_speed_ = rate_a_speed;
+void TickFit::start(double ticks_per_clock_at_1_mm_s) {
+  ticks_per_clock_at_1_mm_s_ = ticks_per_clock_at_1_mm_s;
   begin_ = end_ = lag_ = ahead_ = 0;
 }
 
-void TickFit::change_density(double rate_a_speed, double ahead) {
-  const double change = rate_a_speed / rate_a_speed_;
-  rate_a_speed_ = rate_a_speed;
+void TickFit::change_density(double ticks_per_clock_at_1_mm_s, double ahead) {
+  const double change = ticks_per_clock_at_1_mm_s / ticks_per_clock_at_1_mm_s_;
+  ticks_per_clock_at_1_mm_s_ = ticks_per_clock_at_1_mm_s;
   end_ *= change;
   lag_ *= change;
   ahead_ = ahead;
@@ -47,9 +47,10 @@ void TickFit::advance(const Phase& phase, double to, double ticks, double late, 
   constexpr double kSame = 1e-9;  // of a rate
   constexpr double kFar = 2;      // ticks: blocks that have more of them than their length
   begin_ = end_;
-  const double tick = 1 / (rate_a_speed_ * clock_hz_);
+  const double tick = 1 / (ticks_per_clock_at_1_mm_s_ * clock_hz_);
   const auto planned = [&](double place) {
-    return rate_a_speed_ * std::sqrt(std::max(0.0, phase.speed * phase.speed + 2 * phase.acceleration * place));
+    return ticks_per_clock_at_1_mm_s_ *
+           std::sqrt(std::max(0.0, phase.speed * phase.speed + 2 * phase.acceleration * place));
   };
   const double wanted = planned(to);
   if (std::abs(begin_ - wanted) <= kSame * wanted) begin_ = wanted;

@@ -8,11 +8,10 @@ namespace trammel::planner {
 
 class TickFit {
  public:
-  // `rate_a_speed`: ticks a clock at 1 mm/s.
   explicit TickFit(double clock_hz) : clock_hz_(clock_hz) {}
-  void start(double rate_a_speed);
+  void start(double ticks_per_clock_at_1_mm_s);
   // `ahead`: ticks of the new density, in the next portion with any, that pass without a change of speed.
-  void change_density(double rate_a_speed, double ahead);
+  void change_density(double ticks_per_clock_at_1_mm_s, double ahead);
 
   // The whole tick for the end of a phase that ends at `exact` ticks, where neither a stop nor a corner has one.
   double end_tick(const Phase& phase, double exact) const;
@@ -25,10 +24,10 @@ class TickFit {
   double end_rate() const { return end_; }
 
  private:
-  double of_ticks(double acceleration) const { return acceleration * rate_a_speed_ / clock_hz_; }
+  double of_ticks(double acceleration) const { return acceleration * ticks_per_clock_at_1_mm_s_ / clock_hz_; }
 
   double clock_hz_;
-  double rate_a_speed_ = 0;
+  double ticks_per_clock_at_1_mm_s_ = 0;
   double begin_ = 0;
   double end_ = 0;
   double ahead_ = 0;  // ticks

@@ -58,7 +58,7 @@ class SequencersBench {
     in_.cut = dice_.chance(pace.cut);
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
     if (stand_for_ != 0) --stand_for_;
-    in_.elsewhere = dice_.chance(30);
+    in_.missed_end = dice_.chance(30);
     if (in_.cut) check_.event("cut");
     if (dice_.chance(10 * pace.cut))
       reset();
@@ -86,13 +86,13 @@ class SequencersBench {
 
   // At whatever is decided in this clock, a path's wrong end among it.
   void interrupt(bool by_reset) {
-    in_.elsewhere = true;
+    in_.missed_end = true;
     in_.cut = !by_reset;
     if (by_reset)
       reset();
     else
       clock();
-    in_.elsewhere = in_.cut = false;
+    in_.missed_end = in_.cut = false;
   }
 
   // Now and then a stretch of commands or, at rest, a direct move.
@@ -346,7 +346,7 @@ class SequencersBench {
     dut_->engines_i =
         static_cast<CData>(in_place(kReady, in_.engine_ready) | in_place(kPayloadReady, in_.payload_ready) |
                            in_place(kShadowsFree, in_.shadows_free) | in_place(kDone, in_.engine_done) |
-                           in_place(kMissedEnd, in_.elsewhere) | in_place(kLive, in_.axes_live));
+                           in_place(kMissedEnd, in_.missed_end) | in_place(kLive, in_.axes_live));
     dut_->snapshot_i = dice_.snapshot();
   }
 

@@ -47,7 +47,7 @@ class PathEngines {
     std::uint8_t chord_load = 0;
     std::uint8_t chord_swap = 0;
     bool done = false;
-    bool elsewhere = false;  // with done: not on the commanded end point
+    bool missed_end = false;  // with done: not on the commanded end point
   };
   // All that the next clock() depends on beside its inputs.
   struct State {
@@ -129,7 +129,7 @@ class PathEngines {
     const bool feed_ticks = in.tick || state_.ticks != 0;
     const bool path_ticks = state_.waiting != 0 || state_.out.path_tick;
     state_.out.done = !feed_ticks && !path_ticks && engine.ready;
-    state_.out.elsewhere = !engine.at_end;
+    state_.out.missed_end = !engine.at_end;
     state_.gate_payload_ready = !(feed_ticks && on_engine(state_.engine)) && !path_ticks && !engine.stepping;
     state_.over_next = state_.engine == card_map::engine::kArcGenerator && !in.engine_taken && !feed_ticks &&
                        !state_.arc.outputs().loadable;

@@ -52,7 +52,7 @@ class Sequencer {
     bool payload_ready = true;
     bool shadows_free = true;  // the axes' increments may be loaded
     bool engine_done = false;
-    bool elsewhere = false;
+    bool missed_end = false;
     bool axes_live = false;
   };
   struct Outputs {

@@ -42,7 +42,7 @@ class Jump {
 
   // An axis on its way. Its generator stands after `ticks` ticks, its shaper (the core's) at edge `edge`; it may have
   // one step under way from there.
-  struct Traveller {
+  struct AxisCursor {
     std::uint64_t ticks = 0;      // of the axes: path ticks on an arc in chords
     std::uint64_t at = 0;         // that which makes the next step
     std::uint64_t next = kNever;  // number of the feed tick that it comes from
@@ -59,19 +59,19 @@ class Jump {
   std::uint64_t accumulations_to(std::int64_t edge) const;
   std::int64_t edge_of(std::uint64_t accumulation) const;
   std::uint64_t first_that_stops() const;
-  void look_ahead(Traveller& t, model::PulseGenerator& generator) const;
-  void travel();
+  void look_ahead(AxisCursor& t, model::PulseGenerator& generator) const;
+  void walk();
   void stop_before(std::uint64_t tick);
   bool find(std::uint64_t tick, model::FeedGenerator& generator, std::uint64_t& done, std::int64_t& edge) const;
   bool step_all(std::uint64_t tick, std::int64_t arrival);
   bool may_step(unsigned axis, std::int64_t arrival, model::StepShaper& after, std::int64_t& served) const;
   void step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::int64_t served);
   void report_until(std::int64_t edge);
-  void land();
-  unsigned land_generator();
-  void land_axis(unsigned axis, std::uint64_t ticks);
+  void commit();
+  unsigned commit_generator();
+  void commit_axis(unsigned axis, std::uint64_t ticks);
   void place_takes(unsigned in_flight);
-  std::uint64_t land_chords(std::uint64_t prescaled, unsigned in_flight);
+  std::uint64_t commit_chords(std::uint64_t prescaled, unsigned in_flight);
 
   model::MotionCore& core_;
   model::StepRecord& record_;
@@ -95,7 +95,7 @@ class Jump {
   bool moved_ = false;
   std::int64_t next_report_ = INT64_MAX;  // not later than the first report due
   unsigned axes_;
-  std::array<Traveller, card_map::kMaxAxes> travellers_{};
+  std::array<AxisCursor, card_map::kMaxAxes> cursors_{};
 };
 
 // What of a jump's clocks `limit` may be gone under these inputs: from step to step; 0 where it is not worth it.

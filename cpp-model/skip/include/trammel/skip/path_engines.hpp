@@ -59,7 +59,7 @@ inline bool only_ticks_move(const model::PathEngines& block) {
 inline bool at_rest(const model::PathEngines& block) {
   const model::PathEngines::State& s = block.state();
   return only_ticks_move(block) && s.ticks == 0 && s.own_ticks == 0 && !s.chord_tick && !s.out.tick &&
-         s.out.done == block.said().ready && s.out.elsewhere == !block.said().at_end && s.out.payload_ready;
+         s.out.done == block.said().ready && s.out.missed_end == !block.said().at_end && s.out.payload_ready;
 }
 
 // The outputs that follow the parts a clock late have arrived.
@@ -126,7 +126,7 @@ class EngineTicks {
     s_.out.tick = (s_.own_ticks & 1) != 0;
     const bool feed_ticks = (in_flight >> 6 & 0xF) != 0;
     s_.out.done = !feed_ticks && block_.said().ready;
-    s_.out.elsewhere = !block_.said().at_end;
+    s_.out.missed_end = !block_.said().at_end;
     s_.gate_payload_ready = !(feed_ticks && model::PathEngines::on_engine(s_.engine));
     s_.out.payload_ready = s_.gate_payload_ready && s_.arc.outputs().loadable;
   }
