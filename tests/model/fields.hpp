@@ -28,16 +28,16 @@ constexpr std::size_t count_fields() {
   else
     return count_fields<T, N - 1>();
 }
-constexpr std::size_t kMostFields = 50;
+constexpr std::size_t kMaxFields = 50;
 template <class T>
-constexpr std::size_t kFields = count_fields<std::remove_const_t<T>, kMostFields + 1>();
+constexpr std::size_t kFields = count_fields<std::remove_const_t<T>, kMaxFields + 1>();
 
 // References to all of them, as a tuple.
 // Over a screen: a table, a row for each number of fields.
 // clang-format off
 template <class T>
 auto fields_of(T& value) {
-  static_assert(kFields<T> <= kMostFields, "more fields than this header foresees");
+  static_assert(kFields<T> <= kMaxFields, "more fields than this header foresees");
   if constexpr (kFields<T> == 50) {
     auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47, a48, a49] = value;
     return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47, a48, a49);
