@@ -1,5 +1,5 @@
 """Tries every mutant of the RTL: one that no judge kills is listed, and the exit status is 1 when it has no reason to live
-in verif/mutation/equivalents.toml. All mutants lie in one build; a run is a process with another number."""
+in verif/mutation/equivalents. All mutants lie in one build; a run is a process with another number."""
 
 import argparse
 import csv
@@ -32,7 +32,7 @@ def arguments_of(argv):
     places = parser.add_argument_group("places, for the tool's own test")
     places.add_argument("--mutants", type=Path, default=Path("build/release/mutation/rtl/mutants.json"))
     places.add_argument("--judges", type=Path, default=Path("build/release/mutation/judges.json"))
-    places.add_argument("--equivalents", type=Path, default=Path("verif/mutation/equivalents.toml"))
+    places.add_argument("--equivalents", type=Path, default=Path("verif/mutation/equivalents"))
     places.add_argument("--out", type=Path, default=Path("build/mutation"), help="folder of results.csv")
     return parser.parse_args(argv)
 

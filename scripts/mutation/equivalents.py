@@ -1,4 +1,4 @@
-"""Mutants that cannot change anything visible, each with its reason: verif/mutation/equivalents.toml."""
+"""Mutants that cannot change anything visible, each with its reason: verif/mutation/equivalents."""
 
 import tomllib
 from dataclasses import dataclass
@@ -29,7 +29,15 @@ class Equivalent:
         return mutant["original"] == self.original and mutant["mutated"] in self.mutated
 
 
-def read(path: Path) -> List[Equivalent]:
+def read(folder: Path) -> List[Equivalent]:
+    """The entries of all files of the folder."""
+    files = sorted(folder.glob("*.toml"))
+    if not files:
+        raise EquivalentsError(f"{folder}: no file NAME.toml")
+    return [entry for file in files for entry in _read_file(file)]
+
+
+def _read_file(path: Path) -> List[Equivalent]:
     result = []
     for entry in tomllib.loads(path.read_text()).get("equivalent", []):
         if set(entry) - {"nth"} not in KEYS or not entry["reason"].strip() or not entry.get("part", "-"):

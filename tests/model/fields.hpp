@@ -32,166 +32,78 @@ constexpr std::size_t kMaxFields = 50;
 template <class T>
 constexpr std::size_t kFields = count_fields<std::remove_const_t<T>, kMaxFields + 1>();
 
-// References to all of them, as a tuple.
-// Over a screen: a table, a row for each number of fields.
+// References to all of them, as a tuple. C++17 can name the fields of a struct only one by one, so there is a case for
+// each number of them.
 // clang-format off
+#define TRAMMEL_FIELDS_1 f1
+#define TRAMMEL_FIELDS_2 TRAMMEL_FIELDS_1, f2
+#define TRAMMEL_FIELDS_3 TRAMMEL_FIELDS_2, f3
+#define TRAMMEL_FIELDS_4 TRAMMEL_FIELDS_3, f4
+#define TRAMMEL_FIELDS_5 TRAMMEL_FIELDS_4, f5
+#define TRAMMEL_FIELDS_6 TRAMMEL_FIELDS_5, f6
+#define TRAMMEL_FIELDS_7 TRAMMEL_FIELDS_6, f7
+#define TRAMMEL_FIELDS_8 TRAMMEL_FIELDS_7, f8
+#define TRAMMEL_FIELDS_9 TRAMMEL_FIELDS_8, f9
+#define TRAMMEL_FIELDS_10 TRAMMEL_FIELDS_9, f10
+#define TRAMMEL_FIELDS_11 TRAMMEL_FIELDS_10, f11
+#define TRAMMEL_FIELDS_12 TRAMMEL_FIELDS_11, f12
+#define TRAMMEL_FIELDS_13 TRAMMEL_FIELDS_12, f13
+#define TRAMMEL_FIELDS_14 TRAMMEL_FIELDS_13, f14
+#define TRAMMEL_FIELDS_15 TRAMMEL_FIELDS_14, f15
+#define TRAMMEL_FIELDS_16 TRAMMEL_FIELDS_15, f16
+#define TRAMMEL_FIELDS_17 TRAMMEL_FIELDS_16, f17
+#define TRAMMEL_FIELDS_18 TRAMMEL_FIELDS_17, f18
+#define TRAMMEL_FIELDS_19 TRAMMEL_FIELDS_18, f19
+#define TRAMMEL_FIELDS_20 TRAMMEL_FIELDS_19, f20
+#define TRAMMEL_FIELDS_21 TRAMMEL_FIELDS_20, f21
+#define TRAMMEL_FIELDS_22 TRAMMEL_FIELDS_21, f22
+#define TRAMMEL_FIELDS_23 TRAMMEL_FIELDS_22, f23
+#define TRAMMEL_FIELDS_24 TRAMMEL_FIELDS_23, f24
+#define TRAMMEL_FIELDS_25 TRAMMEL_FIELDS_24, f25
+#define TRAMMEL_FIELDS_26 TRAMMEL_FIELDS_25, f26
+#define TRAMMEL_FIELDS_27 TRAMMEL_FIELDS_26, f27
+#define TRAMMEL_FIELDS_28 TRAMMEL_FIELDS_27, f28
+#define TRAMMEL_FIELDS_29 TRAMMEL_FIELDS_28, f29
+#define TRAMMEL_FIELDS_30 TRAMMEL_FIELDS_29, f30
+#define TRAMMEL_FIELDS_31 TRAMMEL_FIELDS_30, f31
+#define TRAMMEL_FIELDS_32 TRAMMEL_FIELDS_31, f32
+#define TRAMMEL_FIELDS_33 TRAMMEL_FIELDS_32, f33
+#define TRAMMEL_FIELDS_34 TRAMMEL_FIELDS_33, f34
+#define TRAMMEL_FIELDS_35 TRAMMEL_FIELDS_34, f35
+#define TRAMMEL_FIELDS_36 TRAMMEL_FIELDS_35, f36
+#define TRAMMEL_FIELDS_37 TRAMMEL_FIELDS_36, f37
+#define TRAMMEL_FIELDS_38 TRAMMEL_FIELDS_37, f38
+#define TRAMMEL_FIELDS_39 TRAMMEL_FIELDS_38, f39
+#define TRAMMEL_FIELDS_40 TRAMMEL_FIELDS_39, f40
+#define TRAMMEL_FIELDS_41 TRAMMEL_FIELDS_40, f41
+#define TRAMMEL_FIELDS_42 TRAMMEL_FIELDS_41, f42
+#define TRAMMEL_FIELDS_43 TRAMMEL_FIELDS_42, f43
+#define TRAMMEL_FIELDS_44 TRAMMEL_FIELDS_43, f44
+#define TRAMMEL_FIELDS_45 TRAMMEL_FIELDS_44, f45
+#define TRAMMEL_FIELDS_46 TRAMMEL_FIELDS_45, f46
+#define TRAMMEL_FIELDS_47 TRAMMEL_FIELDS_46, f47
+#define TRAMMEL_FIELDS_48 TRAMMEL_FIELDS_47, f48
+#define TRAMMEL_FIELDS_49 TRAMMEL_FIELDS_48, f49
+#define TRAMMEL_FIELDS_50 TRAMMEL_FIELDS_49, f50
+#define TRAMMEL_TIE(n) \
+  else if constexpr (kFields<T> == n) { auto& [TRAMMEL_FIELDS_##n] = value; return std::tie(TRAMMEL_FIELDS_##n); }
+
 template <class T>
 auto fields_of(T& value) {
   static_assert(kFields<T> <= kMaxFields, "more fields than this header foresees");
-  if constexpr (kFields<T> == 50) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47, a48, a49] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47, a48, a49);
-  } else if constexpr (kFields<T> == 49) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47, a48] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47, a48);
-  } else if constexpr (kFields<T> == 48) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46, a47);
-  } else if constexpr (kFields<T> == 47) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45, a46);
-  } else if constexpr (kFields<T> == 46) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44, a45);
-  } else if constexpr (kFields<T> == 45) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43, a44);
-  } else if constexpr (kFields<T> == 44) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42, a43);
-  } else if constexpr (kFields<T> == 43) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41, a42);
-  } else if constexpr (kFields<T> == 42) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40, a41);
-  } else if constexpr (kFields<T> == 41) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39, a40);
-  } else if constexpr (kFields<T> == 40) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38, a39);
-  } else if constexpr (kFields<T> == 39) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37, a38);
-  } else if constexpr (kFields<T> == 38) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36, a37);
-  } else if constexpr (kFields<T> == 37) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35, a36);
-  } else if constexpr (kFields<T> == 36) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34, a35);
-  } else if constexpr (kFields<T> == 35) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33, a34);
-  } else if constexpr (kFields<T> == 34) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32, a33);
-  } else if constexpr (kFields<T> == 33) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31, a32);
-  } else if constexpr (kFields<T> == 32) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30, a31);
-  } else if constexpr (kFields<T> == 31) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29, a30);
-  } else if constexpr (kFields<T> == 30) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28, a29);
-  } else if constexpr (kFields<T> == 29) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27, a28);
-  } else if constexpr (kFields<T> == 28) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26, a27);
-  } else if constexpr (kFields<T> == 27) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25, a26);
-  } else if constexpr (kFields<T> == 26) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24, a25);
-  } else if constexpr (kFields<T> == 25) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23, a24);
-  } else if constexpr (kFields<T> == 24) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22, a23);
-  } else if constexpr (kFields<T> == 23) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21, a22);
-  } else if constexpr (kFields<T> == 22) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20, a21);
-  } else if constexpr (kFields<T> == 21) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19, a20);
-  } else if constexpr (kFields<T> == 20) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18, a19);
-  } else if constexpr (kFields<T> == 19) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17, a18);
-  } else if constexpr (kFields<T> == 18) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16, a17);
-  } else if constexpr (kFields<T> == 17) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15, a16);
-  } else if constexpr (kFields<T> == 16) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14, a15);
-  } else if constexpr (kFields<T> == 15) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13, a14);
-  } else if constexpr (kFields<T> == 14) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12, a13);
-  } else if constexpr (kFields<T> == 13) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11, a12);
-  } else if constexpr (kFields<T> == 12) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11);
-  } else if constexpr (kFields<T> == 11) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10);
-  } else if constexpr (kFields<T> == 10) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8, a9);
-  } else if constexpr (kFields<T> == 9) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7, a8] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7, a8);
-  } else if constexpr (kFields<T> == 8) {
-    auto& [a0, a1, a2, a3, a4, a5, a6, a7] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6, a7);
-  } else if constexpr (kFields<T> == 7) {
-    auto& [a0, a1, a2, a3, a4, a5, a6] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5, a6);
-  } else if constexpr (kFields<T> == 6) {
-    auto& [a0, a1, a2, a3, a4, a5] = value;
-    return std::tie(a0, a1, a2, a3, a4, a5);
-  } else if constexpr (kFields<T> == 5) {
-    auto& [a0, a1, a2, a3, a4] = value;
-    return std::tie(a0, a1, a2, a3, a4);
-  } else if constexpr (kFields<T> == 4) {
-    auto& [a0, a1, a2, a3] = value;
-    return std::tie(a0, a1, a2, a3);
-  } else if constexpr (kFields<T> == 3) {
-    auto& [a0, a1, a2] = value;
-    return std::tie(a0, a1, a2);
-  } else if constexpr (kFields<T> == 2) {
-    auto& [a0, a1] = value;
-    return std::tie(a0, a1);
-  } else if constexpr (kFields<T> == 1) {
-    auto& [a0] = value;
-    return std::tie(a0);
-  } else {
-    return std::tuple<>();
-  }
+  if constexpr (kFields<T> == 0) return std::tuple<>();
+  TRAMMEL_TIE(1) TRAMMEL_TIE(2) TRAMMEL_TIE(3) TRAMMEL_TIE(4) TRAMMEL_TIE(5)
+  TRAMMEL_TIE(6) TRAMMEL_TIE(7) TRAMMEL_TIE(8) TRAMMEL_TIE(9) TRAMMEL_TIE(10)
+  TRAMMEL_TIE(11) TRAMMEL_TIE(12) TRAMMEL_TIE(13) TRAMMEL_TIE(14) TRAMMEL_TIE(15)
+  TRAMMEL_TIE(16) TRAMMEL_TIE(17) TRAMMEL_TIE(18) TRAMMEL_TIE(19) TRAMMEL_TIE(20)
+  TRAMMEL_TIE(21) TRAMMEL_TIE(22) TRAMMEL_TIE(23) TRAMMEL_TIE(24) TRAMMEL_TIE(25)
+  TRAMMEL_TIE(26) TRAMMEL_TIE(27) TRAMMEL_TIE(28) TRAMMEL_TIE(29) TRAMMEL_TIE(30)
+  TRAMMEL_TIE(31) TRAMMEL_TIE(32) TRAMMEL_TIE(33) TRAMMEL_TIE(34) TRAMMEL_TIE(35)
+  TRAMMEL_TIE(36) TRAMMEL_TIE(37) TRAMMEL_TIE(38) TRAMMEL_TIE(39) TRAMMEL_TIE(40)
+  TRAMMEL_TIE(41) TRAMMEL_TIE(42) TRAMMEL_TIE(43) TRAMMEL_TIE(44) TRAMMEL_TIE(45)
+  TRAMMEL_TIE(46) TRAMMEL_TIE(47) TRAMMEL_TIE(48) TRAMMEL_TIE(49) TRAMMEL_TIE(50)
 }
+#undef TRAMMEL_TIE
 // clang-format on
 
 template <class T, class = void>

@@ -8,17 +8,17 @@ namespace trammel::model {
 
 namespace {
 
-// A queue with less room than this, in halfwords, may have none for the next command.
-constexpr std::uint16_t kMaxGeometry = 64;
-constexpr std::uint16_t kMaxFeed = 32;
+// Halfwords, at least as many as the longest command takes: a queue with less room may have none for the next command.
+constexpr std::uint16_t kMaxGeometryCommand = 64;
+constexpr std::uint16_t kMaxFeedCommand = 32;
 
 const CardConfig& checked(const CardConfig& config) {
   if (config.axes < 1 || config.axes > card_map::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   if (config.ports < 1 || config.ports > 4) throw std::invalid_argument("a card has 1 to 4 ports");
   if (config.inputs < 1 || config.inputs > 16 || config.outputs < 1 || config.outputs > 16)
     throw std::invalid_argument("a card has 1 to 16 inputs and outputs");
-  constexpr std::uint32_t kMin = RegisterFile::kMinEngines;
-  if ((config.engines & kMin) != kMin || (config.engines & ~RegisterFile::kMaxEngines) != 0)
+  constexpr std::uint32_t kOnEveryCard = RegisterFile::kMinEngines;
+  if ((config.engines & kOnEveryCard) != kOnEveryCard || (config.engines & ~RegisterFile::kMaxEngines) != 0)
     throw std::invalid_argument("no card has these engines");
   return config;
 }
@@ -65,7 +65,7 @@ CoreModel::CoreModel(const Config& config)
 
 void CoreModel::reset() {
   state_.registers.reset();
-  state_.checker = CommandChecker(config_.axes, register_config(config_).engines);
+  state_.checker = CommandChecker(config_.axes, config_.engines);
   state_.geometry_queue = HalfwordQueue(config_.geometry_depth);
   state_.feed_queue = HalfwordQueue(config_.feed_depth);
   state_.watermarks = QueueWatermarks(config_.geometry_depth, config_.feed_depth);
@@ -90,7 +90,8 @@ MotionCore::Inputs CoreModel::motion_inputs(std::uint16_t pins) const {
   const CommandChecker::Outputs& checker = state_.checker.outputs();
   in.arrival = {checker.drop,        checker.geometry_commit, checker.geometry_write,
                 checker.feed_commit, checker.feed_write,      checker.halfword};
-  in.full = state_.geometry_queue.outputs().room < kMaxGeometry || state_.feed_queue.outputs().room < kMaxFeed;
+  in.full =
+      state_.geometry_queue.outputs().room < kMaxGeometryCommand || state_.feed_queue.outputs().room < kMaxFeedCommand;
   in.start = set.start;
   in.start_mask = set.start_mask;
   in.loader_data = set.loader_data;

@@ -57,11 +57,13 @@ class Texts(unittest.TestCase):
 
 class Campaign(Folder):
     def run_with(self, entries, *options):
-        (self.folder / "equivalents.toml").write_text(entries)
+        equivalents_folder = self.folder / "equivalents"
+        equivalents_folder.mkdir(exist_ok=True)
+        (equivalents_folder / "selftest.toml").write_text(entries)
         self.output = io.StringIO()
         with contextlib.redirect_stdout(self.output), contextlib.redirect_stderr(io.StringIO()):
             return campaign.main(["--mutants", str(BUILD / "mutants.json"), "--judges", str(BUILD / "judges.json"),
-                                  "--equivalents", str(self.folder / "equivalents.toml"),
+                                  "--equivalents", str(equivalents_folder),
                                   "--out", str(self.folder), "--jobs", "2", *options])
 
     def results(self):

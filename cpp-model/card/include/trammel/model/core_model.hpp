@@ -1,8 +1,7 @@
 // Golden model of the card's core: everything between the inner register port and the pins, cycle by cycle.
 //
-// clock() is one rising edge. Steps are reported as they appear: at the pins
-// in the cycle of their leading edge, on the path before the shapers. Not thread-safe; no errors are reported beside
-// the constructor's.
+// clock() is one rising edge. Steps are reported as they appear: at the pins in the cycle of their leading edge, on the
+// path before the shapers. Not thread-safe; no errors are reported beside the constructor's.
 #pragma once
 
 #include <cstdint>

@@ -115,7 +115,6 @@ class MotionCore {
 
   // STATUS.busy falls when nothing has run for this many clocks.
   static constexpr unsigned kBusyClocks = 11;
-  bool has_guard() const { return has_guard_; }
 
   PathCommands::Inputs command_inputs(const Inputs& in) const;
   StopControl::Inputs stop_inputs(const Inputs& in) const;

@@ -105,9 +105,10 @@ inline std::uint64_t horizon(const model::StepShaper& block, const model::StepSh
   if (in.step || in.mode != s.mode) return 0;
   if (!s.out.busy) return kForever;
   using Phase = model::StepShaper::Phase;
-  if (s.out.fault || s.lead != 0 || s.waiting != 0 || s.phase == Phase::kSetup || s.left < 4) return 0;
-  // A pulse of length 0 shows in the first clock of its space.
-  return s.pulse == (s.phase == Phase::kHigh) ? s.left - 3 : 0;
+  if (s.out.fault || s.lead != 0 || s.waiting != 0 || s.phase == Phase::kSetup) return 0;
+  // The clock that begins with nothing left shows the next phase. A pulse of length 0 shows in the first clock of its
+  // space.
+  return s.pulse == (s.phase == Phase::kHigh) ? s.left : 0;
 }
 inline void advance(model::StepShaper& block, const model::StepShaper::Inputs&, std::uint64_t clocks) {
   model::StepShaper::State& s = block.state();
