@@ -25,8 +25,10 @@ using Progress = std::function<void(double)>;
 void steer_tables(Page& page, const Progress& progress);
 void steer_circles(Page& page, const Progress& progress);
 void steer_program(Page& page, const Progress& progress);
+void steer_text(Page& page, const Progress& progress);
 // Zeng, Zhang & Huang, "A New Linear Interpolation Algorithm".
 void one_shot_lines(Page& page, const Progress& progress);
+void one_shot_text(Page& page, const Progress& progress);
 void one_shot_waves(Page& page, const Progress& progress);
 void one_shot_motor(Page& page, const Progress& progress);
 void one_shot_bound(Page& page, const Progress& progress);
@@ -53,6 +55,9 @@ Track track_of(interpolation::Method method, const interpolation::Line& line);
 double largest_distance(const interpolation::Line& line, const Track& track);
 // A panel of Figure 3: the line, the band of one pulse and the track.
 chart::Panel line_panel(std::size_t index, const Track& track, const std::string& label);
+// Pixels: wide enough for three numbers or more on either axis.
+inline constexpr double kLinePanelWidth = 490;
+inline constexpr double kLinePanelHeight = 330;
 
 // When an axis pulses, in clocks; `period` is the length of one unit of the track's time.
 std::vector<double> pulse_times(const Track& track, std::size_t axis, double period);

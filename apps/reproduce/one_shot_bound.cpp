@@ -87,6 +87,14 @@ struct DividerCase {
   double expected;
 };
 
+double stray_of_accumulators(const Line& line, const interpolation::Options& options) {
+  double largest = 0;
+  make_interpolator(Method::kOneShot, line, options).run([&](const Step&, const auto& walk) {
+    largest = std::max(largest, distance(line, walk.position()));
+  });
+  return largest;
+}
+
 void dividers(Page& page) {
   page.heading("Integer dividers");
   constexpr std::array<DividerCase, 4> kCases{
@@ -121,10 +129,10 @@ void dividers(Page& page) {
       window = 0;
       window_end = x + kWindow;
     });
-    double accumulators = 0;
-    make_interpolator(Method::kOneShot, line, options).run([&](const Step&, const auto& walk) {
-      accumulators = std::max(accumulators, distance(line, walk.position()));
-    });
+    // The pulses behind the last whole window, y's alone where x ends with it.
+    if (stray.points.back()[0] < static_cast<double>(c.x)) stray.points.push_back({static_cast<double>(c.x), 0});
+    stray.points.back()[1] = std::max(stray.points.back()[1], window);
+    const double accumulators = stray_of_accumulators(line, options);
     for (const chart::Point& p : stray.points) {
       csv.row("{},{},{},{:g},{:.4f},{:.4f}", c.x, c.y, c.v, p[0], p[1], accumulators);
     }

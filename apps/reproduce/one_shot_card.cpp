@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chapters.hpp"
+#include "trammel/driver/errors.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/sim/engines.hpp"
@@ -41,15 +42,29 @@ class Steps final : public driver::StepSink {
 struct CardRun {
   Steps steps;
   driver::OneShotPart part;
-  std::vector<std::int64_t> counters;  // the card's positions at the end
-  std::uint64_t clocks = 0;            // in lockstep with the golden model
-  std::uint64_t line_cycles = 0;       // from the start until the card was found idle
+  std::array<std::vector<std::uint64_t>, 2> falling;  // clocks of x's and y's falling edges at the pins
+  std::vector<std::int64_t> counters;                 // the card's positions at the end
+  std::uint64_t clocks = 0;                           // in lockstep with the golden model
+  std::uint64_t line_cycles = 0;                      // from the start until the card was found idle
 };
 
 driver::Displacement displacement_of(const Line& line) {
   driver::Displacement displacement{};
   for (std::size_t a = 0; a < 2; ++a) displacement[a] = line.end[a] - line.start[a];
   return displacement;
+}
+
+// Waits clock by clock and notes when the STEP pins fall.
+void watch_pins(sim::Engine& engine, std::uint64_t clocks, CardRun& run) {
+  std::uint32_t before = engine.step_pins();
+  for (std::uint64_t i = 0; i < clocks; ++i) {
+    engine.wait(1);
+    const std::uint32_t fell = before & ~engine.step_pins();
+    for (unsigned a = 0; a < 2; ++a) {
+      if ((fell >> a & 1U) != 0) run.falling[a].push_back(engine.cycles());
+    }
+    before = engine.step_pins();
+  }
 }
 
 // Runs a line of 2,000 clocks; with `hold`, the time base is ramped to a stop in the middle of it and up again.
@@ -78,7 +93,8 @@ CardRun run_on_card(const Line& line, bool hold, const std::array<double, 2>& st
     engine->wait(3000);
     card.set_hold(false);
   }
-  engine->wait(kPaperClocks);
+  // The last pulse, as long as half of its interval, ends after the line.
+  watch_pins(*engine, kPaperClocks + kPaperClocks / 4, run);
   card.wait_until_idle(std::chrono::milliseconds(10));
   run.line_cycles = engine->cycles() - before;
   engine->set_sink(nullptr);
@@ -111,17 +127,20 @@ std::vector<double> pin_times(const CardRun& run, unsigned axis) {
   return times;
 }
 
-// floor(1/2 + k * frequency / 2^40), the card's formula, at every point of the track.
+// floor(1/2 + k * frequency / 2^40), the card's formula, in every clock k of the line, those without a step included.
 bool follows_formula(const Line& line, const CardRun& run, const Track& track) {
-  for (const TrackPoint& point : track) {
+  auto next = track.begin();
+  Position at = line.start;
+  for (std::uint64_t clock = 0; clock <= kPaperClocks; ++clock) {
+    if (next != track.end() && next->time == clock) at = (next++)->position;
     for (std::size_t a = 0; a < 2; ++a) {
       const std::uint64_t half = std::uint64_t{1} << (kFractionBits - 1);
       // 2,000 clocks of at most one pulse: below 2^52.
-      const std::uint64_t made = (half + point.time * run.part.frequency[a]) >> kFractionBits;
-      if (static_cast<std::uint64_t>(std::abs(point.position[a] - line.start[a])) != made) return false;
+      const std::uint64_t made = (half + clock * run.part.frequency[a]) >> kFractionBits;
+      if (static_cast<std::uint64_t>(std::abs(at[a] - line.start[a])) != made) return false;
     }
   }
-  return true;
+  return next == track.end();
 }
 
 // The largest difference of the clocks at which an axis makes the same pulse on the card and in exact arithmetic.
@@ -204,9 +223,9 @@ void judge_lines(Page& page, const LinesOnCard& sums) {
   page.pass("Figure 3 on the card, end points", "the error of the end point is zero",
             fmt::format("{} of 8 lines end exactly, at the pins and in the counters", totals.ends), totals.ends == 8);
   page.pass("Position formula (9), (10) on the card", "x = round(v t / f)",
-            fmt::format("{} of 8 lines at floor(1/2 + k F / 2^40) in every clock, at most {:g} clock from exact "
+            fmt::format("{} of 8 lines at floor(1/2 + k F / 2^40) in each of {} clocks, at most {:g} clock from exact "
                         "arithmetic",
-                        totals.formula, totals.lag),
+                        totals.formula, kPaperClocks + 1, totals.lag),
             totals.formula == 8 && totals.lag <= 1);
   page.table(sums.rows);
   page.pass("Error on the card", "below 1 pulse",
@@ -227,6 +246,42 @@ void judge_lines(Page& page, const LinesOnCard& sums) {
             totals.clocks > 16'000);
 }
 
+// Figure 2 (b) on a card: a line over v_max reaches neither bus nor pins; entered again with a smaller v it runs.
+bool refuses_then_runs() {
+  sim::SimulationOptions options;
+  options.kind = sim::EngineKind::kRtl;
+  options.clock_hz = 10'000'000;
+  const auto engine = sim::make_engine(options);
+  driver::Card card = driver::Card::open(*engine);
+  driver::LineLimits limits;
+  limits.max_velocity[1] = 100'000;
+  const std::uint64_t before = engine->cycles();
+  bool refused = false;
+  try {
+    driver::start_line(card, {20, 40}, std::chrono::microseconds(200), limits);
+  } catch (const driver::ArgumentError&) {
+    refused = true;
+  }
+  if (!refused || engine->cycles() != before) return false;
+  driver::start_line(card, {20, 40}, std::chrono::microseconds(400), limits);
+  engine->wait(2 * kPaperClocks);
+  card.wait_until_idle(std::chrono::milliseconds(10));
+  const std::vector<std::int64_t> reached = engine->positions();
+  return reached[0] == 20 && reached[1] == 40;
+}
+
+void figure_two(Page& page, const LinesOnCard& sums) {
+  page.pass("Figure 2 (a)", "a CPU sends frequency and number of pulses to a pulse generator an axis",
+            fmt::format("one transfer of frequencies and counts starts the card's two pulse generators, and {} of 8 "
+                        "lines end exactly; drivers and motors are no part of this run",
+                        sums.totals.ends),
+            sums.totals.ends == 8);
+  page.pass("Figure 2 (b)", "compare with v_max, enter again if over it; else compute and send",
+            "Line 1 with y over its limit is refused before the first bus access; entered again with half of v it runs "
+            "to its end",
+            refuses_then_runs());
+}
+
 void lines_on_card(Page& page, const Progress& progress) {
   page.heading("Lines 1 to 8 on the card");
   page.text(
@@ -239,44 +294,71 @@ void lines_on_card(Page& page, const Progress& progress) {
     progress(0.8 * static_cast<double>(i + 1) / 8);
   }
   judge_lines(page, sums);
-  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card made them", chart::grid_of(sums.panels, 3, 330, 330),
-               sums.track);
+  figure_two(page, sums);
+  page.picture("one-shot-figure-3-card", "Lines 1 to 8 as the card made them",
+               chart::grid_of(sums.panels, 2, kLinePanelWidth, kLinePanelHeight), sums.track);
   page.data("one-shot-card-pins", "Leading edges at the STEP pins, clocks from each line's first", sums.pins);
 }
 
-// Clocks of 100 ns: half of the intervals of x and y on the line of Figure 4.
+// Clocks of 100 ns, half of the intervals of x and y on the line of Figure 4: the step lengths that are set.
 constexpr std::array<double, 2> kHalfIntervals{100, 50};
+
+// How long the pulses of an axis are high: from each edge up to the edge down that follows it.
+Spread high_times(const std::vector<double>& rising, const std::vector<double>& falling) {
+  if (rising.empty() || rising.size() != falling.size()) return {};
+  Spread high{falling[0] - rising[0], 0};
+  for (std::size_t i = 0; i < rising.size(); ++i) {
+    high.least = std::min(high.least, falling[i] - rising[i]);
+    high.largest = std::max(high.largest, falling[i] - rising[i]);
+  }
+  return high;
+}
+
+void judge_duty_ratio(Page& page, const std::array<Spread, 2>& intervals, const std::array<Spread, 2>& high) {
+  bool half = true;
+  for (std::size_t a = 0; a < 2; ++a) {
+    half = half && high[a].least == high[a].largest && 2 * high[a].least == intervals[a].least &&
+           intervals[a].least == intervals[a].largest;
+  }
+  page.pass("Duty ratio on the card", "kept at 50 %",
+            fmt::format("x is high for {:g} to {:g} of {:g} clocks and y for {:g} to {:g} of {:g}, both edges as seen "
+                        "at the pins, with step lengths set to half of the intervals; the card keeps a step length, "
+                        "not a duty ratio, when the frequency changes",
+                        high[0].least, high[0].largest, intervals[0].largest, high[1].least, high[1].largest,
+                        intervals[1].largest),
+            half);
+}
 
 void wave_on_card(Page& page) {
   page.heading("Figure 4 (a) on the card");
   const CardRun run = run_on_card(make_line({0, 0}, {10, 20}), false, kHalfIntervals);
-  Csv csv("axis,pulse,clock");
-  chart::Panel panel = wave_panel("STEP pins", static_cast<double>(kPaperClocks));
+  Csv csv("axis,pulse,rising_clock,falling_clock");
   const auto first = static_cast<double>(run.steps.pins.front().cycle);
   std::array<Spread, 2> spread;
+  std::array<Spread, 2> high;
+  std::array<std::vector<double>, 2> rising;
+  std::array<std::vector<double>, 2> falling;
+  double end = 0;
   for (unsigned a = 0; a < 2; ++a) {
-    std::vector<double> times = pin_times(run, a);
-    spread[a] = spread_of(times);
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      times[i] -= first;
-      csv.row("{},{},{:g}", a == 0 ? 'x' : 'y', i + 1, times[i]);
+    rising[a] = pin_times(run, a);
+    falling[a].assign(run.falling[a].begin(), run.falling[a].end());
+    spread[a] = spread_of(rising[a]);
+    high[a] = high_times(rising[a], falling[a]);
+    for (std::size_t i = 0; i < std::min(rising[a].size(), falling[a].size()); ++i) {
+      rising[a][i] -= first;
+      falling[a][i] -= first;
+      end = std::max(end, falling[a][i]);
+      csv.row("{},{},{:g},{:g}", a == 0 ? 'x' : 'y', i + 1, rising[a][i], falling[a][i]);
     }
-    std::vector<double> falling;
-    for (const double time : times) falling.push_back(time + kHalfIntervals[a]);
-    panel.series.push_back(wave(a, times, falling, static_cast<double>(kPaperClocks)));
   }
+  chart::Panel panel = wave_panel("STEP pins", end);
+  for (unsigned a = 0; a < 2; ++a) panel.series.push_back(wave(a, rising[a], falling[a], end));
   page.pass("Figure 4 (a) on the card", "the frequency of both axes stays the same",
             fmt::format("x pulses {:g} to {:g} clocks apart, y {:g} to {:g}", spread[0].least, spread[0].largest,
                         spread[1].least, spread[1].largest),
             spread[0].least >= 199 && spread[0].largest <= 201 && spread[1].least >= 99 && spread[1].largest <= 101);
-  page.pass(
-      "Duty ratio on the card", "kept at 50 %",
-      fmt::format(
-          "{:g} of {:g} clocks in x and {:g} of {:g} in y, with step lengths set to half of the intervals; else a "
-          "pulse is as long as the motor's driver wants it, at any frequency",
-          kHalfIntervals[0], spread[0].largest, kHalfIntervals[1], spread[1].largest),
-      2 * kHalfIntervals[0] == spread[0].largest && 2 * kHalfIntervals[1] == spread[1].largest);
-  page.picture("one-shot-figure-4-card", "The STEP pins on the line (0,0) to (10,20), duty ratio 50 %",
+  judge_duty_ratio(page, spread, high);
+  page.picture("one-shot-figure-4-card", "Both edges of the STEP pins on the line (0,0) to (10,20)",
                chart::grid_of({panel}, 1, 900, 190), csv);
 }
 

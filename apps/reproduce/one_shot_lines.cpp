@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chapters.hpp"
@@ -101,7 +102,7 @@ void figure_three(Page& page) {
   page.pass("STEER on Lines 1 to 8", "(the first paper) one unit step at a time",
             fmt::format("{} of 8 step counts |dx| + |dy|", steer_steps), steer_steps == 8);
   page.picture("one-shot-figure-3", "Lines 1 to 8, phase accumulators, with the band of 1 pulse",
-               chart::grid_of(panels, 3, 330, 330), csv);
+               chart::grid_of(panels, 2, kLinePanelWidth, kLinePanelHeight), csv);
 }
 
 void figure_five(Page& page) {
@@ -204,7 +205,29 @@ void error_meant(Page& page) {
       smaller);
 }
 
-// "All three send one pulse each time": minimum deviation sends two in a diagonal step; and the bounds of the three.
+// Steps of Line 1 in which both axes pulse, and all of its steps.
+std::pair<unsigned, unsigned> steps_of_both(Method method) {
+  std::pair<unsigned, unsigned> steps;
+  make_interpolator(method, kPaperLines[0].line()).run([&](const Step& step, const auto&) {
+    steps.first += step.direction[0] != 0 && step.direction[1] != 0;
+    ++steps.second;
+  });
+  return steps;
+}
+
+void one_pulse_each_time(Page& page) {
+  const auto point = steps_of_both(Method::kPointByPoint);
+  const auto dda = steps_of_both(Method::kDda);
+  const auto deviation = steps_of_both(Method::kMinDeviation8);
+  page.corrected("One pulse each time", "all three algorithms send one pulse each time",
+                 fmt::format("point by point alone does: on Line 1 digital integration pulses both axes at once in {} "
+                             "of {} steps, minimum deviation in {} of {}, point by point in {} of {}",
+                             dda.first, dda.second, deviation.first, deviation.second, point.first, point.second),
+                 point.first == 0 && point.second == 60 && dda.first == 20 && dda.second == 40 &&
+                     deviation.first == 20 && deviation.second == 40);
+}
+
+// The bounds of the three.
 void rival_bounds(Page& page) {
   std::mt19937_64 random(4);
   struct Rival {
@@ -212,7 +235,6 @@ void rival_bounds(Page& page) {
     double largest = 0;
   };
   std::array<Rival, 3> rivals{{{Method::kPointByPoint}, {Method::kDda}, {Method::kMinDeviation8}}};
-  std::uint64_t diagonal = 0;
   for (int i = 0; i < 2000; ++i) {
     const Line line = make_line({0, 0}, {uniform(random, -200, 200), uniform(random, -200, 200)});
     if (longest_axis(line) == 0) continue;
@@ -220,9 +242,8 @@ void rival_bounds(Page& page) {
     const double along = std::hypot(static_cast<double>(line.end[0]), static_cast<double>(line.end[1])) /
                          static_cast<double>(longest_axis(line));
     for (Rival& rival : rivals) {
-      make_interpolator(rival.method, line).run([&](const Step& step, const auto& walk) {
+      make_interpolator(rival.method, line).run([&](const Step&, const auto& walk) {
         rival.largest = std::max(rival.largest, along * distance(line, walk.position()));
-        if (rival.method == Method::kMinDeviation8) diagonal += step.direction[0] != 0 && step.direction[1] != 0;
       });
     }
   }
@@ -233,10 +254,7 @@ void rival_bounds(Page& page) {
             fmt::format("at most {:.4f} point by point and {:.4f} by digital integration, on the same lines",
                         rivals[0].largest, rivals[1].largest),
             rivals[0].largest <= 1 + 1e-12 && rivals[1].largest <= 1 + 1e-12 && rivals[0].largest > 0.95);
-  page.corrected(
-      "One pulse each time", "all three algorithms send one pulse each time",
-      fmt::format("minimum deviation in 8 directions sends two at once in {} steps of the same lines", diagonal),
-      diagonal > 0);
+  one_pulse_each_time(page);
 }
 
 void rivals(Page& page) {
@@ -260,71 +278,77 @@ void rivals(Page& page) {
   page.table(rows);
   page.pass("Rivals named", "point by point, digital integration, minimum deviation",
             "each runs here on Lines 1 to 8, ends exact; `trammel compare` has all measures", ends);
-  auto circle = make_interpolator(Method::kRotation, make_circle(25));
-  circle.run([](const Step&, const auto&) {});
-  page.added(
-      "Coarse stage", "arcs and splines become short lines first",
-      "arcs need not: the card's arc generator (rotation) and its deviation accumulator (STEER's rule) make them, a "
-      "circle of radius 25 by rotation back at its start. B-splines and NURBS are not here",
-      circle.position() == Position{25, 0, 0, 0});
   rival_bounds(page);
 }
 
-// Figures 1 and 2, formulas (1) to (8), and slips of the text.
-void principle(Page& page) {
-  page.heading("Principle: Figures 1 and 2, formulas (1) to (8)");
-  constexpr std::int64_t kVelocity = 5000;
-  std::vector<std::vector<std::string>> rows{{"line", "k (1)", "v_x (6)", "v_y (5)", "p_x (8)", "p_y (7)"}};
+constexpr std::int64_t kVelocity = 5000;     // v of the paper's lines, lines a second
+constexpr std::int64_t kClock = 10'000'000;  // f, Hz
+
+// Whether a frequency of the driver, 2^-40 pulses a clock, is |velocity| pulses a second, rounded.
+bool rounds_to(std::uint64_t frequency, std::int64_t velocity) {
+  // Both sides below 2^58: at most 200,000 pulses/s.
+  const std::int64_t off = static_cast<std::int64_t>(frequency) * kClock - (std::abs(velocity) << 40);
+  return 2 * std::abs(off) <= kClock;
+}
+
+// Formulas (5) to (8), their signs, and the driver's registers. (1) to (4) are identities and need no run.
+void formulas(Page& page) {
+  page.heading("Principle: Figure 1, formulas (1) to (8)");
+  std::vector<std::vector<std::string>> rows{
+      {"line", "k (1)", "v_x (6)", "v_y (5)", "p_x (8)", "p_y (7)", "FREQUENCY x", "FREQUENCY y"}};
   unsigned on_line = 0;
   unsigned negative = 0;
-  bool card_agrees = true;
+  double stray = 0;  // of the ends that the frequencies lead to, pulses
   for (std::size_t i = 0; i < kPaperLines.size(); ++i) {
     const Line line = kPaperLines[i].line();
-    const std::int64_t px = line.end[0] - line.start[0];
-    const std::int64_t py = line.end[1] - line.start[1];
-    const std::int64_t vx = kVelocity * px;
-    const std::int64_t vy = kVelocity * py;
-    negative += px < 0;
-    // (1) to (4): with v_y = k v_x, and x and y the integrals of both, every point satisfies y - y_s = k (x - x_s). At
-    // tick t of 2,000 both displacements are p t / 2,000; the products are exact.
-    bool every = true;
-    for (std::int64_t t = 0; t <= static_cast<std::int64_t>(kPaperClocks); ++t)
-      every = every && (vy * t) * px == py * (vx * t);
-    on_line += every && vx * py == vy * px;
-    const driver::OneShotPart part = driver::plan_line_clocks(paper_card(), {px, py}, kPaperClocks).part(0);
-    for (const auto& [axis, pulses] : {std::pair{0U, px}, std::pair{1U, py}}) {
-      const bool backwards = (part.negative >> axis & 1U) != 0;
-      card_agrees = card_agrees && part.count[axis] == std::abs(pulses) && backwards == (pulses < 0);
+    const std::array<std::int64_t, 2> p{line.end[0] - line.start[0], line.end[1] - line.start[1]};
+    const driver::OneShotPart part = driver::plan_line_clocks(paper_card(), {p[0], p[1]}, kClock / kVelocity).part(0);
+    bool equal = true;
+    std::array<double, 2> reached{};
+    for (std::size_t a = 0; a < 2; ++a) {
+      const bool backwards = (part.negative >> a & 1U) != 0;
+      equal = equal && part.count[a] == std::abs(p[a]) && backwards == (p[a] < 0);
+      equal = equal && rounds_to(part.frequency[a], kVelocity * p[a]);
+      reached[a] = std::ldexp(static_cast<double>(part.frequency[a] * part.length), -40) * (backwards ? -1 : 1);
     }
-    rows.push_back({std::to_string(i + 1), px == 0 ? "-" : fmt::format("{}/{}", py, px), std::to_string(vx),
-                    std::to_string(vy), std::to_string(px), std::to_string(py)});
+    const auto px = static_cast<double>(p[0]);
+    const auto py = static_cast<double>(p[1]);
+    stray = std::max(stray, std::fabs(px * reached[1] - py * reached[0]) / std::hypot(px, py));
+    on_line += equal;
+    negative += p[0] < 0;
+    rows.push_back({std::to_string(i + 1), p[0] == 0 ? "-" : fmt::format("{}/{}", p[1], p[0]),
+                    std::to_string(kVelocity * p[0]), std::to_string(kVelocity * p[1]), std::to_string(p[0]),
+                    std::to_string(p[1]), std::to_string(part.frequency[0]), std::to_string(part.frequency[1])});
   }
+  page.text("FREQUENCY is the driver's, in 2^-40 pulses a clock.");
   page.table(rows);
-  page.pass(
-      "Formulas (1) to (8), Figure 1", "the sum of both velocities is parallel to the line, so every point is on it",
-      fmt::format(
-          "{} of 8 lines: y - y_s = k (x - x_s) exactly at each of 2,001 moments, with velocities and pulse counts "
-          "as in the table, which are the driver's",
-          on_line),
-      on_line == 8 && card_agrees);
-  page.pass("Figure 2 (a)", "a CPU, a pulse generator, a driver and a motor an axis",
-            "the card's direct mode: a pulse generator an axis behind one register block; the Verilated card runs "
-            "Lines 1 to 8 "
-            "below, the motors are simulated",
-            driver::plan_line_clocks(paper_card(), {20, 40}, kPaperClocks).size() == 1);
-  page.pass("Figure 2 (b)", "enter points and v; compare with v_max; velocities, pulse counts; send",
-            "the driver's plan_line_clocks and start_line in that order, and a refusal instead of a new entry",
-            card_agrees);
+  page.pass("Formulas (5) to (8), Figure 1",
+            "the sum of both velocities is parallel to the line, so every point is on it",
+            fmt::format("{} of 8 lines: the driver's frequencies are v_x and v_y, rounded to 2^-40 pulses a clock, its "
+                        "counts and directions p_x and p_y; the rounding leads at most {:.1e} pulses off the line",
+                        on_line, stray),
+            on_line == 8 && stray < 1e-8);
   page.corrected(
       "p_x and p_y", "numbers of pulses: (7), (8), and 0 <= x_t <= p_x",
       fmt::format("negative for {} of the 8 lines (4, 5 and 7), and x_t starts at x_s: the count is |p_x|, the sign "
                   "is the direction, and |x_t - x_s| <= |p_x|",
                   negative),
       negative == 3);
-  page.corrected(
-      "Unit of v", "v in pulses a second",
-      "v is in lines a second: v_x = v (x_e - x_s) has pulses a second only then, and Line 1 at 5000 takes 1/5000 s",
-      kPaperClocks * 5000 == 10'000'000);
+}
+
+void unit_of_v(Page& page) {
+  unsigned equal = 0;
+  for (const PaperLine& line : kPaperLines) {
+    equal += make_interpolator(Method::kOneShot, line.line()).total_time() == kPaperClocks;
+  }
+  // y of Line 1: 40 pulses.
+  const Spread interval = spread_of(pulse_times(track_of(Method::kOneShot, kPaperLines[0].line()), 1, 1));
+  const double rate = static_cast<double>(kClock) / interval.largest;
+  page.corrected("Unit of v", "v in pulses a second",
+                 fmt::format("at v = 5000 {} of 8 lines, 28 to 54 pulses long, last {} clocks, 1/5000 s, and y of "
+                             "Line 1 makes {:g} pulses a second: v is in lines a second",
+                             equal, kPaperClocks, rate),
+                 equal == 8 && interval.least == interval.largest && rate == 200'000);
 }
 
 }  // namespace
@@ -336,7 +360,8 @@ void one_shot_lines(Page& page, const Progress& progress) {
   figure_five(page);
   limits(page);
   rivals(page);
-  principle(page);
+  formulas(page);
+  unit_of_v(page);
 }
 
 }  // namespace trammel::app::reproduce

@@ -119,13 +119,12 @@ void one_shot_motor(Page& page, const Progress& progress) {
       worse_below += !less;
     }
   }
-  page.corrected(
-      "Motor vibrates less", "argued from the waveforms, at any speed",
-      fmt::format("for this motor and load: at {} of {} speeds from 800 pulses/s on that either method survives; "
-                  "below, near the resonance, point by point is as good or better at {} of {}, which turns with load "
-                  "and inertia",
-                  better, above, worse_below, below),
-      better == above && worse_below > 0);
+  page.corrected("Motor vibrates less", "argued from the waveforms, at any speed",
+                 fmt::format("for this motor and load, the only ones tried: at {} of {} speeds from 800 pulses/s on "
+                             "that either method survives; "
+                             "below, near the resonance, point by point is as good or better at {} of {}",
+                             better, above, worse_below, below),
+                 better == above && worse_below > 0);
   page.pass("Motor loses steps more easily",
             "pulse by pulse the motor starts and stops irregularly, and is easy to lose steps",
             fmt::format("steps lost at {} of {} speeds point by point, at {} one-shot", lost[0], found.speeds.size(),

@@ -16,6 +16,7 @@ enum class Verdict {
   kPass,       // as the paper has it
   kCorrected,  // the paper is wrong here; what is right was found
   kAdded,      // the paper is silent here; what it leaves open was found
+  kOpen,       // a claim of the paper that is not put to a test here
   kFail,       // not what was expected
 };
 
@@ -42,6 +43,9 @@ class Csv {
   std::string text_;
 };
 
+// In lines of at most 120 columns, but for words longer than that; `text` is one paragraph.
+std::string wrapped(const std::string& text);
+
 class Page {
  public:
   // The page `file`, with pictures and CSV files in folders beside it.
@@ -62,6 +66,9 @@ class Page {
 
   // What the paper does not say; `found` is right when `holds`.
   void added(const std::string& what, const std::string& paper, const std::string& found, bool holds);
+
+  // A claim that is not tested here, and why.
+  void open(const std::string& what, const std::string& paper, const std::string& reason);
 
   // The page, its pictures and its data, by their names beside each other.
   std::map<std::string, std::string> files() const;

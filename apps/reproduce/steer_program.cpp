@@ -45,10 +45,11 @@ void delay_list(Page& page) {
             fmt::format("drag {}", fmt::join(drags, " ")), drags == expected);
   page.corrected("Delay list, its shape", "falls off exponentially (comment)",
                  "falls by 1, 0, 1, 4, 9, 16, 25, 36: the squares of a count, a cubic", drags == expected);
-  page.picture(
-      "steer-delay", "Loop passes before each step of a line, feedrate 300",
-      chart::grid_of({{"Delay before each step", {"step of the line"}, {"passes of the loop"}, {passes}}}, 1, 520, 280),
-      csv);
+  chart::Panel panel{"Delay before each step", {"step of the line"}, {"passes of the loop"}, {passes}};
+  panel.y.low = 0;
+  panel.y.high = 15;
+  page.picture("steer-delay", "Loop passes before each step of a line, feedrate 300",
+               chart::grid_of({panel}, 1, 520, 280), csv);
   const std::int32_t slow = SteerDelay(600).delay().value_or(0);
   const std::int32_t fast = SteerDelay(300).delay().value_or(0);
   page.corrected("Feedrate", "the speed; about steps a minute",

@@ -96,43 +96,56 @@ void table_two(Page& page) {
   page.data("steer-table-2", "The entries", csv);
 }
 
+// As printed.
+constexpr std::array<const char*, 12> kTableThreeColumns{"x2", "y2", "radius", "fxy", "dx", "dy",
+                                                         "f",  "a",  "b",      "d",   "xo", "yo"};
+constexpr std::array<std::array<int, 12>, 26> kTableThree{
+    {{25, 0, 25, 0, 50, 0, 1, 1, 1, 0, -1, 0},    {24, 0, 25, -49, 48, 0, 0, 1, 1, 0, 0, 1},
+     {24, 1, 25, -48, 48, 2, 0, 1, 1, 0, 0, 1},   {24, 2, 25, -45, 48, 4, 0, 1, 1, 0, 0, 1},
+     {24, 3, 25, -40, 48, 6, 0, 1, 1, 0, 0, 1},   {24, 4, 25, -33, 48, 8, 0, 1, 1, 0, 0, 1},
+     {24, 5, 25, -24, 48, 10, 0, 1, 1, 0, 0, 1},  {24, 6, 25, -13, 48, 12, 0, 1, 1, 0, 0, 1},
+     {24, 7, 25, 0, 48, 14, 1, 1, 1, 0, -1, 0},   {23, 7, 25, -47, 46, 14, 0, 1, 1, 0, 0, 1},
+     {23, 8, 25, -32, 46, 16, 0, 1, 1, 0, 0, 1},  {23, 9, 25, -15, 46, 18, 0, 1, 1, 0, 0, 1},
+     {23, 10, 25, 4, 46, 20, 1, 1, 1, 0, -1, 0},  {22, 10, 25, -41, 44, 20, 0, 1, 1, 0, 0, 1},
+     {22, 11, 25, -20, 44, 22, 0, 1, 1, 0, 0, 1}, {22, 12, 25, 3, 44, 24, 1, 1, 1, 0, -1, 0},
+     {21, 12, 25, -40, 42, 24, 0, 1, 1, 0, 0, 1}, {21, 13, 25, -15, 42, 26, 0, 1, 1, 0, 0, 1},
+     {21, 14, 25, 12, 42, 28, 1, 1, 1, 0, -1, 0}, {20, 14, 25, -29, 40, 28, 0, 1, 1, 0, 0, 1},
+     {20, 15, 25, 0, 40, 30, 1, 1, 1, 0, -1, 0},  {19, 15, 25, -39, 38, 30, 0, 1, 1, 0, 0, 1},
+     {19, 16, 25, -8, 38, 32, 0, 1, 1, 0, 0, 1},  {19, 17, 25, 25, 38, 34, 1, 1, 1, 0, -1, 0},
+     {18, 17, 25, -12, 36, 34, 0, 1, 1, 0, 0, 1}, {13, 18, 25, 23, 36, 36, 1, 1, 1, 0, -1, 0}}};
+
 void table_three(Page& page) {
   page.heading("Table 3: the circle of radius 25");
-  // x, y and F as printed.
-  constexpr std::array<std::array<int, 3>, 26> kPrinted{
-      {{25, 0, 0},    {24, 0, -49}, {24, 1, -48},  {24, 2, -45},  {24, 3, -40}, {24, 4, -33},  {24, 5, -24},
-       {24, 6, -13},  {24, 7, 0},   {23, 7, -47},  {23, 8, -32},  {23, 9, -15}, {23, 10, 4},   {22, 10, -41},
-       {22, 11, -20}, {22, 12, 3},  {21, 12, -40}, {21, 13, -15}, {21, 14, 12}, {20, 14, -29}, {20, 15, 0},
-       {19, 15, -39}, {19, 16, -8}, {19, 17, 25},  {18, 17, -12}, {13, 18, 23}}};
   SteerProgram walk({25, 0}, 25, false);
   Csv csv("step,x,y,f,dx,dy,x_step,y_step");
   chart::Series path = walk_series("STEER");
-  unsigned equal = 0;
+  unsigned equal = 0;  // of the 25 x 12 numbers before the last row
+  std::string differ;  // columns of the last row
   Point last;
-  bool last_differs_in_x_alone = false;
   std::uint64_t steps = 0;
   do {
     const Point at = walk.position();
     const std::int64_t f = walk.deviation();
-    if (steps < kPrinted.size()) {
-      const auto& row = kPrinted[steps];
-      const bool same_rest = at.y == row[1] && f == row[2];
-      if (at.x == row[0] && same_rest) ++equal;
-      if (steps == 25) {
-        last = at;
-        last_differs_in_x_alone = same_rest && at.x != row[0];
-      }
-    }
     const Step step = walk.next();
+    const std::array<std::int64_t, 12> row{at.x,   at.y,      25,        f, 2 * at.x,          2 * at.y,
+                                           f >= 0, at.x >= 0, at.y >= 0, 0, step.direction[0], step.direction[1]};
+    for (std::size_t column = 0; column < row.size() && steps < kTableThree.size(); ++column) {
+      const bool same = row[column] == kTableThree[steps][column];
+      if (steps < 25) equal += same;
+      if (steps == 25 && !same) differ += kTableThreeColumns[column];
+    }
+    if (steps == 25) last = at;
     csv.row("{},{},{},{},{},{},{},{}", steps, at.x, at.y, f, 2 * at.x, 2 * at.y, step.direction[0], step.direction[1]);
     path.points.push_back({static_cast<double>(at.x), static_cast<double>(at.y)});
     ++steps;
   } while (!walk.back() && steps < 1000);
   path.points.push_back(path.points.front());
-  page.pass("Table 3, rows 0 to 24", "25 rows of x, y, F", fmt::format("{} of 25 rows equal", equal), equal == 25);
+  page.pass("Table 3, rows 0 to 24", "25 rows of 12 columns, x2 to yo", fmt::format("{} of 300 numbers equal", equal),
+            equal == 300);
   page.corrected("Table 3, last row", "x = 13 with y = 18, F = 23, DX = 36",
-                 fmt::format("x = {}: F = 23 and DX = 36 fit ({},{}) only", last.x, last.x, last.y),
-                 last_differs_in_x_alone && last == Point{18, 18});
+                 fmt::format("x = {}: F = 23 and DX = 36 fit ({},{}) only; the row's other 11 columns are right",
+                             last.x, last.x, last.y),
+                 differ == "x2" && last == Point{18, 18});
   page.pass("Table 3, the full turn", "back at (25,0)", fmt::format("back after {} steps", steps), steps == 200);
   page.picture(
       "steer-table-3", "The full circle that Table 3 begins",

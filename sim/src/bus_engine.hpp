@@ -22,6 +22,7 @@ class BusEngine : public Engine, private model::CardSteps {
   void reset() override;
   void set_sink(driver::StepSink* sink) override;
   std::uint64_t cycles() const override { return card().cycles(); }
+  std::uint32_t step_pins() const override { return card().outputs().step; }
   std::vector<std::int64_t> positions() const override;
 
  protected:

@@ -44,6 +44,7 @@ class Engine : public driver::Bus {
   virtual void reset() = 0;                           // as by the card's reset input
   virtual void set_sink(driver::StepSink* sink) = 0;  // nullptr: none; not owned
   virtual std::uint64_t cycles() const = 0;           // clocks since reset
+  virtual std::uint32_t step_pins() const = 0;        // levels at the first pins; bit n: axis n
   virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
   virtual std::uint64_t comparisons() const = 0;                     // signals compared
   virtual std::vector<std::int64_t> positions() const = 0;  // pulses, by axis, as the position counters have them
