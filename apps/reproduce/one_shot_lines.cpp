@@ -345,7 +345,7 @@ void unit_of_v(Page& page) {
   const Spread interval = spread_of(pulse_times(track_of(Method::kOneShot, kPaperLines[0].line()), 1, 1));
   const double rate = static_cast<double>(kClock) / interval.largest;
   page.corrected("Unit of v", "v in pulses a second",
-                 fmt::format("at v = 5000 {} of 8 lines, 28 to 54 pulses long, last {} clocks, 1/5000 s, and y of "
+                 fmt::format("at v = 5000 {} of 8 lines, 32 to 53 pulses long, last {} clocks, 1/5000 s, and y of "
                              "Line 1 makes {:g} pulses a second: v is in lines a second",
                              equal, kPaperClocks, rate),
                  equal == 8 && interval.least == interval.largest && rate == 200'000);
