@@ -26,6 +26,8 @@ struct ClockBusy {
       part.clock_parts(in, *this);
     } else if constexpr (kCheap) {
       part.clock(in);
+    } else if constexpr (std::is_same_v<Part, model::Sequencer>) {
+      if (!count(part, in)) part.clock(in);
     } else if (horizon(part, in) != 0) {
       advance(part, in, 1);
       return false;
