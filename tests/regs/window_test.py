@@ -1,7 +1,11 @@
-"""What scripts/registers/window.py refuses: the plan of the register window, tried with one fault at a time."""
+"""What scripts/registers/window.py refuses: the plan of the register window, tried with one fault at a time; and how
+scripts/generate-registers says so."""
 
 import dataclasses
+import importlib.util
 import pathlib
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -57,6 +61,25 @@ class Window(unittest.TestCase):
         self.assertNotEqual(plan, PLAN)
         self.expect_refused("A: word 0 of its range at 0x780, where the hardware keeps 0", [Register("A", "setting", [0x780])],
                             plan)
+
+
+@unittest.skipUnless((ROOT / ".venv/.requirements.txt").exists() or importlib.util.find_spec("systemrdl"),
+                     "needs the tools of requirements.txt, which scripts/check installs")
+class Message(unittest.TestCase):
+    def test_a_refusal_is_one_line_and_nothing_is_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for part in ("scripts", "rtl/regs"):
+                shutil.copytree(ROOT / part, root / part)
+            if (ROOT / ".venv").is_dir():
+                (root / ".venv").symlink_to(ROOT / ".venv")
+            rdl = root / "rtl/regs/trammel.rdl"
+            rdl.write_text(rdl.read_text().replace("INPUT_POLARITY @0x704", "INPUT_POLARITY @0xF80"))
+            run = subprocess.run([root / "scripts/generate-registers"], capture_output=True, text=True)
+            self.assertEqual(run.returncode, 1)
+            self.assertEqual(run.stderr, "rtl/regs: INPUT_POLARITY: in the range at 0xF80, which is reserved until "
+                                         "rtl/regs/window.toml gives it to a unit: encoders, 4 words each\n")
+            self.assertFalse((root / "docs").exists())
 
 
 if __name__ == "__main__":
