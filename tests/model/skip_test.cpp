@@ -140,6 +140,18 @@ TEST(Skip, Axis) {
     in.setting.data %= 30;
   });
 }
+TEST(Skip, Watchdog) {
+  for (std::uint64_t left = 0; left < 40; ++left) {
+    model::Watchdog block;
+    block.state().left = left;
+    const std::uint64_t horizon = skip::horizon(block, {});
+    EXPECT_EQ(horizon, left == 0 ? skip::kForever : left - 1);
+    for (std::uint64_t n = 0; n <= std::min<std::uint64_t>(horizon, 60); ++n)
+      ASSERT_TRUE(at_once_equals_clocks(block, {}, n)) << left << " left, " << n << " clocks";
+    EXPECT_EQ(at_once_equals_clocks(block, {}, left), left == 0) << "a clock too many";
+    EXPECT_EQ(skip::horizon(block, {true, card_map::reg::kWatchdog, 1}), 0U);
+  }
+}
 TEST(Skip, WaitTimer) {
   judge(
       model::WaitTimer(), 100,

@@ -20,8 +20,8 @@ struct ClockBusy {
   bool operator()(Part& part, const typename Part::Inputs& in) const {
     constexpr bool kJoined = std::is_same_v<Part, model::MotionCore> || std::is_same_v<Part, model::CoreModel>;
     constexpr bool kCheap = std::is_same_v<Part, model::TimeBase> || std::is_same_v<Part, model::FeedGenerator> ||
-                            std::is_same_v<Part, model::WaitTimer> || std::is_same_v<Part, model::UnderrunGuard> ||
-                            std::is_same_v<Part, model::PulseGenerator>;
+                            std::is_same_v<Part, model::WaitTimer> || std::is_same_v<Part, model::Watchdog> ||
+                            std::is_same_v<Part, model::UnderrunGuard> || std::is_same_v<Part, model::PulseGenerator>;
     if constexpr (kJoined) {
       part.clock_parts(in, *this);
     } else if constexpr (kCheap) {
