@@ -46,7 +46,7 @@ class Window(unittest.TestCase):
 
     def test_a_register_across_two_ranges_or_in_a_reserved_one(self):
         self.expect_refused("A: in more than one range", [Register("A", "live", [0x07C, 0x100])])
-        self.expect_refused("A: in the range at 0x780, which is reserved", [Register("A", "setting", [0x780])])
+        self.expect_refused("A: in the range at 0x7C0, which is reserved", [Register("A", "setting", [0x7C0])])
 
     def test_a_register_that_would_share_a_word_of_the_ram(self):
         self.expect_refused("A: word 4 of its range at 0x640, where the hardware keeps 4", [Register("A", "setting", [0x650])])
@@ -57,9 +57,9 @@ class Window(unittest.TestCase):
                    Register("C", "live", [0x07C])])
 
     def test_a_range_that_is_built_without_a_place(self):
-        plan = PLAN.replace('content = "watchdog, enables, brake"\nreserved = true', 'content = "watchdog"')
+        plan = PLAN.replace('valid positions"\nreserved = true', 'valid positions"')
         self.assertNotEqual(plan, PLAN)
-        self.expect_refused("A: word 0 of its range at 0x780, where the hardware keeps 0", [Register("A", "setting", [0x780])],
+        self.expect_refused("A: word 0 of its range at 0x7C0, where the hardware keeps 0", [Register("A", "setting", [0x7C0])],
                             plan)
 
 
