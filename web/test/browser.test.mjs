@@ -31,7 +31,7 @@ function report(text, ...options) {
   return page
 }
 async function open(file, scheme = 'light') {
-  const page = await browser.newPage({ viewport: { width: 800, height: 560 }, colorScheme: scheme })
+  const page = await browser.newPage({ viewport: { width: 1100, height: 700 }, colorScheme: scheme })
   const said = []
   page.on('console', (message) => said.push(message.text()))
   page.on('pageerror', (error) => said.push(String(error)))
@@ -227,6 +227,28 @@ test('a cursor has no path drawn anew, and a moving view has an outline drawn', 
   const pulses = await page.evaluate(() => window.trammel.run.pulses)
   context.diagnostic(`${pulses} pulses, ${all} lines: a key ${key} ms, a tick of the wheel ${wheel} ms (aim 50)`)
   if (long) assert.ok(key < 500 && wheel < 500, `a key ${key} ms, a tick of the wheel ${wheel} ms`)
+  assert.deepEqual(said, [])
+  await page.close()
+})
+
+test('in a small window nothing covers the path, and no button is cut', async () => {
+  const { page, said } = await open(report(join(examples, 'part.ngc'), '--clock', '1000000'))
+  for (const [width, height] of [[800, 600], [390, 844]]) {
+    await page.setViewportSize({ width, height })
+    await frame(page)
+    const seen = await page.evaluate(() => {
+      const box = (element) => element.getBoundingClientRect()
+      const view = box(document.querySelector('#view'))
+      const over = ['tools', 'legend', 'place'].filter((id) => {
+        const one = box(document.getElementById(id))
+        return one.top < view.bottom && one.bottom > view.top && one.left < view.right && one.right > view.left
+      })
+      const cut = [...document.querySelectorAll('button')].filter((one) => one.offsetParent && box(one).right > innerWidth)
+      return { over, cut: cut.map((one) => one.textContent), height: view.height }
+    })
+    assert.deepEqual({ over: seen.over, cut: seen.cut }, { over: [], cut: [] }, `${width} x ${height}`)
+    assert.ok(seen.height >= 120, `the path is ${seen.height} pixels high`)
+  }
   assert.deepEqual(said, [])
   await page.close()
 })
