@@ -168,11 +168,11 @@ export class View {
     // The numbers at the grid too.
     if (this.grid.shown) take(this.grid.corners())
     const spanX = Math.max(high.x - low.x, 40 * this.pulse), spanY = Math.max(high.y - low.y, 40 * this.pulse)
-    // Room for the tools above (in a low view they may cover some), and for the numbers around the grid.
+    // Room for the tools above (in a low view they may cover some), for the numbers around the grid, and for the scale.
     const covered = this.over[0].getBoundingClientRect().bottom - this.element.getBoundingClientRect().top
-    const above = Math.min(Math.max(0, covered + 12), height / 4), around = 22
-    this.camera.zoom = Math.min((width - 4 * around) / spanX, (height - above - 2 * around) / spanY)
-    const middle = new Vector3((low.x + high.x) / 2, (low.y + high.y) / 2 + above / 2 / this.camera.zoom, (low.z + high.z) / 2)
+    const above = Math.min(Math.max(0, covered + 12), height / 4), around = 22, below = 46
+    this.camera.zoom = Math.min((width - 4 * around) / spanX, (height - above - around - below) / spanY)
+    const middle = new Vector3((low.x + high.x) / 2, (low.y + high.y) / 2 + (above + around - below) / 2 / this.camera.zoom, (low.z + high.z) / 2)
       .applyMatrix4(this.camera.matrixWorld)
     this.moveTo(middle)
     this.fitted = true
