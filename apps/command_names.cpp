@@ -27,18 +27,29 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 namespace {
 
-void check_name(const CLI::App& app, const std::string& name) {
+constexpr std::size_t kQuoted = 40;  // characters of a word that a message repeats
+
+// ": did you mean X?", or nothing where no name is near.
+std::string hint_at_nearest(const std::vector<std::string>& names, const std::string& word) {
   std::string nearest;
   std::size_t least = 3;  // further away nothing is meant
+  for (const std::string& name : names) {
+    const std::size_t distance = edit_distance(name, word);
+    if (distance >= least || distance >= name.size()) continue;
+    least = distance;
+    nearest = name;
+  }
+  return nearest.empty() ? std::string() : fmt::format(": did you mean {}?", nearest);
+}
+
+void check_name(const CLI::App& app, const std::string& name) {
+  std::vector<std::string> names;
   for (const CLI::App* subcommand : app.get_subcommands({})) {
     if (subcommand->get_name() == name) return;
-    const std::size_t distance = edit_distance(subcommand->get_name(), name);
-    if (distance >= least || distance >= subcommand->get_name().size()) continue;
-    least = distance;
-    nearest = subcommand->get_name();
+    names.push_back(subcommand->get_name());
   }
-  const std::string hint = nearest.empty() ? std::string() : fmt::format(": did you mean {}?", nearest);
-  throw UsageError(fmt::format("there is no command \"{}\"{} (trammel --help lists them)", name.substr(0, 40), hint));
+  throw UsageError(fmt::format("there is no command \"{}\"{} (trammel --help lists them)", name.substr(0, kQuoted),
+                               hint_at_nearest(names, name)));
 }
 
 }  // namespace
@@ -48,11 +59,28 @@ std::vector<std::string> subcommand_words(const CLI::App& app, std::vector<std::
   if (words.front() == "help") {
     if (words.size() > 2) throw UsageError("help: takes one command");
     words.erase(words.begin());
+    if (!words.empty() && words.front() == "help") words.clear();
     words.push_back("--help");
     if (words.size() == 1) return words;
   }
   check_name(app, words.front());
   return words;
+}
+
+std::optional<std::string> unknown_option_text(const CLI::App& app, const std::vector<std::string>& words) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  if (chosen.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const CLI::Option* option : chosen.front()->get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const std::string& whole : words) {
+    const std::string word = whole.substr(0, whole.find('='));
+    if (word.rfind("--", 0) != 0 || std::find(names.begin(), names.end(), word) != names.end()) continue;
+    return fmt::format("trammel {} has no option {}{}", chosen.front()->get_name(), word.substr(0, kQuoted),
+                       hint_at_nearest(names, word));
+  }
+  return std::nullopt;
 }
 
 }  // namespace trammel::app

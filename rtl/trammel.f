@@ -103,6 +103,7 @@ registers/register_ram.sv
 registers/snapshot_slice.sv
 registers/snapshot_writer.sv
 safety/stop_control.sv
+safety/watchdog.sv
 time/feed_generator.sv
 time/feed_sequencer.sv
 time/queued_ticks.sv

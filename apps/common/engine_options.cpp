@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "errors.hpp"
 #include "trammel/machine/machine.hpp"
@@ -15,10 +18,25 @@ CLI::Validator positive() {
       [](const std::string& text) {
         double value = 0;
         const bool number = CLI::detail::lexical_cast(text, value);
-        return number && value > 0 && std::isfinite(value) ? std::string()
-                                                           : "must be a number greater than 0, not " + text;
+        if (number && value > 0 && std::isfinite(value)) return std::string();
+        return "must be a number greater than 0 without its unit, as 150 or 0.5, not " + text;
       },
       "> 0");
+}
+
+CLI::Validator svg_file() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        const std::filesystem::path name(text);
+        std::string other = name.extension().string();
+        std::transform(other.begin(), other.end(), other.begin(), [](unsigned char c) { return std::tolower(c); });
+        for (const char* const picture : {".png", ".jpg", ".jpeg", ".gif", ".bmp", ".webp", ".pdf", ".eps", ".html"}) {
+          if (other != picture) continue;
+          return fmt::format("the picture is SVG, not {}: name it {}.svg", other.substr(1), name.stem().string());
+        }
+        return std::string();
+      },
+      "");
 }
 
 std::pair<std::uint64_t, std::uint64_t> window_of(const std::string& option, const std::string& text,

@@ -162,7 +162,9 @@ void add_compare_command(CLI::App& app) {
                     "start and stop the simulated motors at full speed, not on ramps of 50 ms");
   command->add_flag("--progress", options->progress, "show a progress bar even if stderr is no terminal");
   command->add_option("--json", options->json, "everything measured as JSON ('-': standard output)")->type_name("FILE");
-  command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")->type_name("FILE.svg");
+  command->add_option("--plot", options->plot, "picture of distances, intervals and vibration")
+      ->type_name("FILE.svg")
+      ->check(svg_file());
   command->callback([options] { options->random ? compare_random(*options) : compare_curve(*options); });
 }
 

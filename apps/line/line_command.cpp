@@ -342,7 +342,7 @@ void add_line_command(CLI::App& app) {
   options->card.add_to(*command);
   options->engine.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
-  command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
+  command->add_option("--plot", options->plot, "picture of path and speed")->type_name("FILE.svg")->check(svg_file());
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");
   command->callback([options] { line_in_simulation(*options); });

@@ -13,9 +13,10 @@ const char* profile_name(const run::PlannedProfile& profile) { return profile.s_
 
 std::string profile_text(const run::PlannedProfile& profile) {
   std::string text = fmt::format("  profile: {}", profile_name(profile));
-  if (!profile.without_jerk.empty()) text += "; max_jerk is missing for";
+  if (profile.without_jerk.empty()) return text + "\n";
+  text += " (S-curves need a max_jerk of";
   for (const char letter : profile.without_jerk) text += fmt::format(" {}", letter);
-  return text + "\n";
+  return text + ")\n";
 }
 
 std::vector<std::string> jerk_warnings(const machine::Machine& machine) {

@@ -293,6 +293,7 @@ void run_in_simulation(const RunArguments& options) {
   simulation::SimulatedRun run(lines_of(file), machine, card, settings);
   const run::Plan plan = options.stream ? run::Plan{} : run.runner().plan();
   refuse_rapids_at_zero(options, settings.operation.rapid_percent, plan);
+  if (!options.stream && plan.segments == 0) tell("note", fmt::format("{} moves nothing", plan.file));
   files.all.open();
   if (files.trace != nullptr) engine.trace->path = files.trace->path_to_write();
   warn(feed_warnings(plan.file, plan.feeds_not_reached));
@@ -323,7 +324,7 @@ void add_run_command(CLI::App& app) {
       ->add_option("--parameters", options->parameters,
                    "parameters, offsets, homes and tool: read before the run, written behind it")
       ->type_name("FILE");
-  command->add_option("--plot", options->plot, "picture of path and speed as SVG")->type_name("FILE");
+  command->add_option("--plot", options->plot, "picture of path and speed")->type_name("FILE.svg")->check(svg_file());
   command->add_option("--report", options->report, "page of the run: path, speeds, pins, program; opens in a browser")
       ->type_name("FILE");
   command

@@ -95,6 +95,10 @@ void tell_where(const transport::Listener& listener, const std::string& token) {
   finish_standard_streams();
 }
 
+bool is_loopback(const std::string& address) {
+  return address.rfind("127.", 0) == 0 || address == "::1" || address == "localhost";
+}
+
 void serve_card(const ServeOptions& options) {
   const serve::Settings settings = settings_of(options);
   const std::unique_ptr<transport::Listener> listener = listener_of(options);
@@ -103,6 +107,11 @@ void serve_card(const ServeOptions& options) {
   engine->set_sink(&path);
   serve::CardServer server(*engine, *listener, settings);
   end_at_signals();
+  if (!options.terminal && !is_loopback(options.listen)) {
+    tell("warning", fmt::format("--listen {}: the token travels unencrypted, and who has it moves the card: serve it "
+                                "only in a network that you trust",
+                                options.listen));
+  }
   tell_where(*listener, settings.token);
   bool met = false;
   while (g_ended == 0 && !(options.once && met && !server.has_client())) {

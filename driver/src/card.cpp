@@ -21,7 +21,8 @@ CardParts::CardParts(Bus& bus, Identification card, const CardTiming& times)
       time_base(registers, identification),
       snapshots(registers, identification),
       ports(registers, identification),
-      interrupt(registers, identification) {}
+      interrupt(registers, identification),
+      watchdog(registers, identification) {}
 
 Card::Card(std::unique_ptr<CardParts> parts) : parts_(std::move(parts)) {}
 Card::~Card() = default;
@@ -102,7 +103,12 @@ void Card::set_output_safe(std::uint16_t levels, std::uint16_t change) {
 }
 
 std::uint32_t Card::read_faults() { return parts_->registers.read_faults(); }
-void Card::clear_faults() { parts_->registers.write(reg::kFault, register_at(reg::kFault).mask, "clearing faults"); }
+void Card::set_watchdog(std::chrono::nanoseconds time) { parts_->watchdog.set(time); }
+
+void Card::clear_faults() {
+  std::array<Access, 3> accesses{parts_->watchdog.restart(), write_of(reg::kFault, register_at(reg::kFault).mask)};
+  parts_->registers.transfer(accesses.data(), accesses.size() - 1, "clearing faults");
+}
 std::optional<Refusal> Card::refusal() { return parts_->registers.refusal(); }
 void Card::clear_refusal() { parts_->registers.clear_refusal(); }
 

@@ -66,6 +66,7 @@ void Card::wait_for_rest(std::uint64_t limit, bool held_is_rest) {
   for (std::uint64_t waited = 0;; waited += pause) {
     const Status now = read_status();
     parts_->registers.throw_if_faulted(now, "stop");
+    parts_->watchdog.look();
     if (!now.busy || (held_is_rest && now.held)) return;
     if (waited > limit) throw TimeoutError("stop on the path", waited);
     if (interrupted()) throw InterruptedError("stop on the path: interrupted; the card goes on to rest, and holds");

@@ -29,6 +29,7 @@ std::optional<std::uint32_t> Requests::take_ratio(PieceClass piece_class) {
 
 void serve_requests(Card& card) {
   Requests& requests = card.parts().requests;
+  card.parts().watchdog.look();
   if (requests.take_abort()) {
     requests.take_hold();
     requests.take_stop();

@@ -42,6 +42,7 @@ module time_part #(
   logic moving;
   logic fixed;
   logic stopping;
+  logic expired;
 
   assign at_rest = ratio == 17'd0;
   assign feed_o[feed_pkg::AT_REST] = at_rest;
@@ -51,6 +52,13 @@ module time_part #(
   assign time_state_o[time_state_pkg::HELD] = at_rest;
   assign time_state_o[time_state_pkg::FEED_ACTIVE] = active;
   assign time_state_o[time_state_pkg::STOPPING] = stopping;
+
+  watchdog over_host (
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .expired_o(expired)
+  );
 
   stop_control #(
       .Axes   (Axes),
@@ -63,6 +71,7 @@ module time_part #(
       .mismatch_i(path_i[path_pkg::MISMATCH]),
       .incomplete_i(path_i[path_pkg::INCOMPLETE]),
       .missing_i(path_i[path_pkg::MISSING]),
+      .expired_i(expired),
       .abort_i,
       .clear_i(clear_fault_i),
       .at_rest_i(at_rest),

@@ -18,6 +18,7 @@ module stop_control #(
     input wire logic mismatch_i,
     input wire logic incomplete_i,
     input wire logic missing_i,  // position streaming
+    input wire logic expired_i,  // the watchdog has expired: a level
     input wire logic abort_i,
     input wire logic [31:0] clear_i,  // ones written to FAULT
     input wire logic at_rest_i,  // the ratio is 0
@@ -38,10 +39,13 @@ module stop_control #(
     STOPPED
   } state_e;
 
-  localparam int Faults = Engines[card_map_pkg::ENGINE_STREAMING] ?
-      card_map_pkg::BIT_FAULT_MISSING_PERIOD + 1 : card_map_pkg::BIT_FAULT_PATH_INCOMPLETE + 1;
-  // The bits that a reaction may be chosen for: no flip-flops for the others.
-  localparam logic [Faults-1:0] REACTIONS = card_map_pkg::MASK_STOP_REACTION[Faults-1:0];
+  localparam int Faults = card_map_pkg::BIT_FAULT_WATCHDOG + 1;
+  // The causes that can arise here, and those that a reaction may be chosen for: no flip-flops for the others.
+  localparam logic [Faults-1:0] BUILT = (Faults'(1) << Axes) - Faults'(1) |
+      Faults'(1) << card_map_pkg::BIT_FAULT_TICK_MISMATCH | Faults'(1) << card_map_pkg::BIT_FAULT_PATH_INCOMPLETE |
+      Faults'(Engines[card_map_pkg::ENGINE_STREAMING]) << card_map_pkg::BIT_FAULT_MISSING_PERIOD |
+      Faults'(1) << card_map_pkg::BIT_FAULT_WATCHDOG;
+  localparam logic [Faults-1:0] REACTIONS = card_map_pkg::MASK_STOP_REACTION[Faults-1:0] & BUILT;
 
   state_e              state_q;
   state_e              state_d;
@@ -64,7 +68,9 @@ module stop_control #(
     cause = Faults'(step_fault_i) << card_map_pkg::BIT_FAULT_STEP;
     cause[card_map_pkg::BIT_FAULT_TICK_MISMATCH] = mismatch_i;
     cause[card_map_pkg::BIT_FAULT_PATH_INCOMPLETE] = incomplete_i;
-    cause = cause | Faults'(32'(missing_i) << card_map_pkg::BIT_FAULT_MISSING_PERIOD);
+    cause[card_map_pkg::BIT_FAULT_MISSING_PERIOD] = missing_i;
+    cause[card_map_pkg::BIT_FAULT_WATCHDOG] = expired_i;
+    cause = cause & BUILT;
   end
 
   always_comb begin
@@ -81,7 +87,7 @@ module stop_control #(
   always_ff @(posedge clk_i) begin
     if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_HOLD)) hold_q <= data[0];
     if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_STOP_REACTION)) ramped_q <= data[Faults-1:0] & REACTIONS;
-    fault_q  <= (fault_q & ~clear_i[Faults-1:0]) | cause;
+    fault_q  <= (fault_q & ~clear_i[Faults-1:0] & BUILT) | cause;
     state_q  <= state_d;
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
     stop_o   <= state_q == RUN && state_d != RUN;
@@ -90,7 +96,7 @@ module stop_control #(
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
       hold_q   <= card_map_pkg::RESET_HOLD[0];
-      ramped_q <= card_map_pkg::RESET_STOP_REACTION[Faults-1:0];
+      ramped_q <= card_map_pkg::RESET_STOP_REACTION[Faults-1:0] & REACTIONS;
       fault_q  <= '0;
       state_q  <= RUN;
       cut_o    <= 1'b0;

@@ -4,6 +4,8 @@ import tomllib
 from dataclasses import dataclass
 from typing import List, Optional
 
+from .errors import DescriptionError
+
 HALFWORD = 16
 HEADER_HALFWORDS = 2
 COUNT_HALFWORDS = 3
@@ -16,7 +18,7 @@ UNIT_LIMIT = 1 << 40
 UNIT_LIMIT_HALFWORDS = 3
 
 
-class CommandError(Exception):
+class CommandError(DescriptionError):
     """A layout that the outputs cannot express."""
 
 

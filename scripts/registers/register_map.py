@@ -7,10 +7,12 @@ from systemrdl import RDLCompiler
 from systemrdl.node import RegNode
 from systemrdl.rdltypes import AccessType, OnWriteType
 
+from .errors import DescriptionError
+
 WORD = 0xFFFFFFFF
 
 
-class MapError(Exception):
+class MapError(DescriptionError):
     """The description says something that the outputs cannot express."""
 
 

@@ -4,6 +4,8 @@ import tomllib
 from dataclasses import dataclass
 from typing import List, Optional, Union
 
+from .errors import DescriptionError
+
 # Widths of a descriptor's fields (rtl/regs/units.toml).
 TAG_MAX, VERSION_MAX, INSTANCES_MAX, FEATURES = 0xFF, 0xF, 0xFF, 8
 BASE_MAX, WORDS_MAX, STRIDE_MAX, LOAD_UNIT_NONE = 0x3FF, 0xFF, 0x7F, 31
@@ -12,7 +14,7 @@ DESCRIPTOR_WORDS = 2
 COUNTS = ["Axes", "SnapshotAreas", "Ports", "Inputs", "Outputs"]
 
 
-class UnitError(Exception):
+class UnitError(DescriptionError):
     """A unit that its descriptor cannot express, or that does not fit the register map."""
 
 

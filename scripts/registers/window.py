@@ -3,8 +3,10 @@
 import tomllib
 from dataclasses import dataclass
 
+from .errors import DescriptionError
 
-class WindowError(Exception):
+
+class WindowError(DescriptionError):
     """Ranges that leave a gap or overlap, or a register in a reserved one, across two, or where the card keeps none."""
 
 
@@ -50,7 +52,8 @@ def _check_register(register, ranges):
         raise WindowError(f"{register.name}: in more than one range of the window")
     place = ranges[places.pop()]
     if place.reserved:
-        raise WindowError(f"{register.name}: in the range at 0x{place.first:03X}, which is reserved: {place.content}")
+        raise WindowError(f"{register.name}: in the range at 0x{place.first:03X}, which is reserved until "
+                          f"rtl/regs/window.toml gives it to a unit: {place.content}")
     word = max((address - place.first) // 4 % place.repeat for address in register.addresses)
     # A command is an order and is not kept.
     if register.access != "command" and word >= place.kept:

@@ -228,10 +228,11 @@ TEST_F(Operator, TheProfileIsNamed) {
     double seconds;
   };
   for (const auto& [options, name, text, seconds] : std::vector<Case>{
-           {"", "trapezoid", "  profile: trapezoid; max_jerk is missing for X Y Z E\n", 1.02},
+           {"", "trapezoid", "  profile: trapezoid (S-curves need a max_jerk of X Y Z E)\n", 1.02},
            {jerks, "s-curve", "  profile: s-curve\n", 1.04},
            {jerks + " --profile trapezoid", "trapezoid", "  profile: trapezoid\n", 1.02},
-           {"--set axis.x.max_jerk=50000", "trapezoid", "  profile: trapezoid; max_jerk is missing for Y Z E\n", 1.02},
+           {"--set axis.x.max_jerk=50000", "trapezoid", "  profile: trapezoid (S-curves need a max_jerk of Y Z E)\n",
+            1.02},
            {"--set axis.x.max_jerk=50000 --profile s-curve", "s-curve", "  profile: s-curve\n", 1.04},
        }) {
     SCOPED_TRACE(options);

@@ -282,6 +282,17 @@ TEST(CardOutside, BadInput) {
   expect_refused(command, "monitor --interval 0", "--interval");
 }
 
+TEST(CardOutside, AnAddressThatOthersReachIsWarnedOf) {
+  const auto warned = [](const std::string& options) {
+    const Command command;
+    Server server(command, "--engine model " + options);
+    return server.said("the token travels unencrypted");
+  };
+  EXPECT_TRUE(warned("--listen 0.0.0.0"));
+  EXPECT_FALSE(warned(""));
+  EXPECT_FALSE(warned("--pty"));
+}
+
 TEST(CardOutside, ACardOfAnotherMapVersionAndOneThatEndsEarly) {
   const Command command;
   std::string window(4096, '\0');

@@ -25,9 +25,50 @@ TEST(Names, MistypedSubcommandAndTheNearest) {
   EXPECT_EQ(far.find("did you mean"), std::string::npos) << far;
 }
 
+TEST(Names, MistypedOptionAndTheNearest) {
+  const Command command;
+  const std::string program = command.write("a.ngc", "G1 X1 F600\n");
+  const auto error_of = [&](const std::string& arguments) {
+    const Outcome outcome = command.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+    return outcome.err;
+  };
+  for (const std::string option : {"--enginee model", "--enginee=model"}) {
+    const std::string text = error_of("run " + option + " " + program);
+    EXPECT_NE(text.find("trammel run has no option --enginee: did you mean --engine?"), std::string::npos) << text;
+  }
+  const std::string far = error_of("run --something " + program);
+  EXPECT_NE(far.find("no option --something (--help"), std::string::npos) << far;
+  EXPECT_NE(error_of("run " + program + " b.ngc").find("b.ngc"), std::string::npos) << "one program too many";
+}
+
+TEST(Names, WhatWasProbablyMeant) {
+  const Command command;
+  const auto error_of = [&](const std::string& arguments) { return command.run(arguments).err; };
+  EXPECT_NE(error_of("info --card /dev/ttyUSB7").find("did you mean serial:/dev/ttyUSB7?"), std::string::npos);
+  EXPECT_NE(error_of("info --card 127.0.0.1:5").find("did you mean tcp://127.0.0.1:5?"), std::string::npos);
+  EXPECT_NE(error_of("line --to 9,3 --speed 9000mm/min").find("without its unit, as 150 or 0.5, not 9000mm/min"),
+            std::string::npos);
+  const std::string program = command.write("a.ngc", "G1 X1 F600\n");
+  const Outcome png = command.run("run --engine model " + program + " --plot " + command.path("x.PNG"));
+  EXPECT_EQ(png.status, 2);
+  EXPECT_NE(png.err.find("SVG, not png: name it x.svg"), std::string::npos) << png.err;
+  EXPECT_EQ(command.run("run --engine model " + program + " --plot " + command.path("x.svg")).status, 0);
+}
+
+TEST(Notes, AProgramThatMovesNothing) {
+  const Command command;
+  const Outcome empty = command.run("run --engine model " + command.write("empty.ngc", ""));
+  EXPECT_EQ(empty.status, 0);
+  EXPECT_NE(empty.err.find("empty.ngc moves nothing"), std::string::npos) << empty.err;
+  EXPECT_EQ(command.run("run --engine model " + command.write("a.ngc", "G1 X1 F600\n")).err, "");
+}
+
 TEST(Names, HelpOfACommandIsItsHelp) {
   const Command command;
   EXPECT_EQ(command.run("help").out, command.run("--help").out);
+  EXPECT_EQ(command.run("help help").out, command.run("--help").out);
   for (const std::string name :
        {"run", "line", "info", "monitor", "dump", "selftest", "serve", "steps", "methods", "compare", "reproduce"}) {
     const Outcome outcome = command.run("help " + name);

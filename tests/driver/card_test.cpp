@@ -191,8 +191,8 @@ TEST_F(CardTest, FaultsAndRefusalsAreReadAndClearedByTheirMasks) {
   card_.clear_refusal();
   card_.clear_faults();
   card_.abort();
-  EXPECT_THAT(bus_.log, ElementsAre(wrote(reg::kRefusal, 0x0FFFFFFF), wrote(reg::kFault, 0xFFFF),
-                                    wrote(reg::kControl, field::kControlAbort)));
+  EXPECT_THAT(bus_.log, ElementsAre(wrote(reg::kRefusal, 0x0FFFFFFF), wrote(reg::kWatchdog, 0),
+                                    wrote(reg::kFault, 0xFFFF), wrote(reg::kControl, field::kControlAbort)));
 }
 
 // On a posted bus every write is followed by a read of REFUSAL in the same transfer.

@@ -99,7 +99,9 @@ void judge(Block block, unsigned rare, const Legal& legal, bool has_finite = fal
   }
   EXPECT_GT(tally.endless + tally.finite, 100U);
   EXPECT_GT(tally.caught, 100U) << "a horizon one clock too long";
-  if (has_finite) EXPECT_GT(tally.borders, 100U) << "of " << tally.finite << " finite horizons";
+  if (has_finite) {
+    EXPECT_GT(tally.borders, 100U) << "of " << tally.finite << " finite horizons";
+  }
 }
 
 const auto kAny = [](auto&, const auto&, Random&) {};
@@ -134,9 +136,21 @@ TEST(Skip, PulseGenerator) {
 TEST(Skip, Axis) {
   judge(model::Axis(1), 30, [](auto& in, const auto&, Random& random) {
     in.load.target = some_target(random);
-    in.setting.address = card_map::reg::step_space(1) + 4 * (random() % 4);
+    in.setting.address = static_cast<std::uint32_t>(card_map::reg::step_space(1) + 4 * (random() % 4));
     in.setting.data %= 30;
   });
+}
+TEST(Skip, Watchdog) {
+  for (std::uint64_t left = 0; left < 40; ++left) {
+    model::Watchdog block;
+    block.state().left = left;
+    const std::uint64_t horizon = skip::horizon(block, {});
+    EXPECT_EQ(horizon, left == 0 ? skip::kForever : left - 1);
+    for (std::uint64_t n = 0; n <= std::min<std::uint64_t>(horizon, 60); ++n)
+      ASSERT_TRUE(at_once_equals_clocks(block, {}, n)) << left << " left, " << n << " clocks";
+    EXPECT_EQ(at_once_equals_clocks(block, {}, left), left == 0) << "a clock too many";
+    EXPECT_EQ(skip::horizon(block, {true, card_map::reg::kWatchdog, 1}), 0U);
+  }
 }
 TEST(Skip, WaitTimer) {
   judge(
@@ -254,6 +268,42 @@ TEST(Skip, Sequencer) {
         in.halt = in.drop = in.direct_go = false;
       },
       true);
+}
+
+std::uint16_t path_word(const model::CommandFetch& fetch, card_map::Opcode opcode, Random& random) {
+  const int index = fetch.state().arriving[1];
+  if (index == 0) return static_cast<std::uint16_t>(static_cast<unsigned>(opcode) | 1U << 8);
+  return index == 1 ? static_cast<std::uint16_t>(random() % 100) : std::uint16_t{0};
+}
+
+// Paths under a feed: a clock that the adaptor counts ends in the state of clock().
+TEST(Skip, SequencerCounts) {
+  Random random(1);
+  model::Sequencer block;
+  unsigned ticks = 0;
+  unsigned left_to_clock = 0;
+  for (unsigned i = 0; i < 300'000; ++i) {
+    model::Sequencer::Inputs in{};
+    fill(in, random, 300);
+    in.payload_ready = in.shadows_free = in.engine_ready = in.engine_done = in.at_rest = in.enable = true;
+    in.geometry_empty = in.feed_empty = random() % 8 != 0;
+    in.halt = in.drop = in.direct_go = in.cut = in.wait = false;
+    in.cut = block.outputs().mismatch;
+    in.feed_tick = random() % 8 == 0;
+    in.geometry_word = path_word(block.state().geometry, card_map::Opcode::Line, random);
+    in.feed_word = path_word(block.state().feed, card_map::Opcode::Feed, random);
+    model::Sequencer counted = block;
+    const bool counts = skip::count(counted, in);
+    block.clock(in);
+    if (!counts) {
+      left_to_clock += block.outputs().tick ? 1U : 0U;
+      continue;
+    }
+    ASSERT_TRUE(same(block, counted)) << "clock " << i;
+    ticks += block.outputs().tick ? 1U : 0U;
+  }
+  EXPECT_GT(ticks, 1'000U);
+  EXPECT_GT(left_to_clock, 100U) << "last ticks of paths and pieces";
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST_P(EveryAxisCount, DescribesItself) {
   EXPECT_EQ(bench_.read(reg::kClockHz).data, 25'000'000u);
   EXPECT_EQ(bench_.read(reg::kGeometryDepth).data, 1024u);
   EXPECT_EQ(bench_.read(reg::kFeedDepth).data, 512u);
-  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30000u);
+  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30001u);
   EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, 3u);
   EXPECT_EQ(bench_.read(reg::kPorts).data, 0x04'04'01u);
 }
@@ -108,7 +108,7 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
   const std::vector<std::uint32_t> expected{
       0x01'01'10'01,
       word(31, 0, 4, 0x640),  // time base with classes
-      0x00'01'10'02,
+      0x00'01'11'02,
       word(31, 0, 2, 0x680),  // stop control
       0x00'02'10'03,
       word(31, 1, 1, 0x6C0),  // queues without watermarks
@@ -122,6 +122,8 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
       word(31, 0, 0, 0),  // two host ports
       0x00'01'10'0A,
       word(31, 0, 15, 0xCD0),  // direct mode: 4 words an axis, two of length, START
+      0x00'01'10'10,
+      word(31, 0, 1, 0x780),  // watchdog
       0,
       0};
   for (std::uint32_t i = 0; i < expected.size(); ++i)

@@ -1,7 +1,11 @@
-"""What scripts/registers/window.py refuses: the plan of the register window, tried with one fault at a time."""
+"""What scripts/registers/window.py refuses: the plan of the register window, tried with one fault at a time; and how
+scripts/generate-registers says so."""
 
 import dataclasses
+import importlib.util
 import pathlib
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -42,7 +46,7 @@ class Window(unittest.TestCase):
 
     def test_a_register_across_two_ranges_or_in_a_reserved_one(self):
         self.expect_refused("A: in more than one range", [Register("A", "live", [0x07C, 0x100])])
-        self.expect_refused("A: in the range at 0x780, which is reserved", [Register("A", "setting", [0x780])])
+        self.expect_refused("A: in the range at 0x7C0, which is reserved", [Register("A", "setting", [0x7C0])])
 
     def test_a_register_that_would_share_a_word_of_the_ram(self):
         self.expect_refused("A: word 4 of its range at 0x640, where the hardware keeps 4", [Register("A", "setting", [0x650])])
@@ -53,10 +57,29 @@ class Window(unittest.TestCase):
                    Register("C", "live", [0x07C])])
 
     def test_a_range_that_is_built_without_a_place(self):
-        plan = PLAN.replace('content = "watchdog, enables, brake"\nreserved = true', 'content = "watchdog"')
+        plan = PLAN.replace('valid positions"\nreserved = true', 'valid positions"')
         self.assertNotEqual(plan, PLAN)
-        self.expect_refused("A: word 0 of its range at 0x780, where the hardware keeps 0", [Register("A", "setting", [0x780])],
+        self.expect_refused("A: word 0 of its range at 0x7C0, where the hardware keeps 0", [Register("A", "setting", [0x7C0])],
                             plan)
+
+
+@unittest.skipUnless((ROOT / ".venv/.requirements.txt").exists() or importlib.util.find_spec("systemrdl"),
+                     "needs the tools of requirements.txt, which scripts/check installs")
+class Message(unittest.TestCase):
+    def test_a_refusal_is_one_line_and_nothing_is_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for part in ("scripts", "rtl/regs"):
+                shutil.copytree(ROOT / part, root / part)
+            if (ROOT / ".venv").is_dir():
+                (root / ".venv").symlink_to(ROOT / ".venv")
+            rdl = root / "rtl/regs/trammel.rdl"
+            rdl.write_text(rdl.read_text().replace("INPUT_POLARITY @0x704", "INPUT_POLARITY @0xF80"))
+            run = subprocess.run([root / "scripts/generate-registers"], capture_output=True, text=True)
+            self.assertEqual(run.returncode, 1)
+            self.assertEqual(run.stderr, "rtl/regs: INPUT_POLARITY: in the range at 0xF80, which is reserved until "
+                                         "rtl/regs/window.toml gives it to a unit: encoders, 4 words each\n")
+            self.assertFalse((root / "docs").exists())
 
 
 if __name__ == "__main__":

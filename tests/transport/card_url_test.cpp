@@ -65,19 +65,19 @@ TEST_P(BadCardUrl, SaysWhatToWrite) {
 
 INSTANTIATE_TEST_SUITE_P(
     CardUrl, BadCardUrl,
-    ::testing::Values(BadUrl{"", "must be sim:, tcp://"}, BadUrl{"usb:1", "must be sim:, tcp://"},
-                      BadUrl{"/dev/ttyUSB0", "must be sim:, tcp://"}, BadUrl{"sim:4", "as sim:?axes=4"},
-                      BadUrl{"sim:?axes=9", "axes=9: must be a whole number from 1 to 8"},
-                      BadUrl{"tcp:localhost:1", "tcp://HOST:PORT"}, BadUrl{"tcp://localhost", "tcp://HOST:PORT"},
-                      BadUrl{"tcp://:5", "tcp://HOST:PORT"}, BadUrl{"tcp://::1:5", "as [HOST]"},
-                      BadUrl{"tcp://h:0", "from 1 to 65535"}, BadUrl{"tcp://h:65536", "from 1 to 65535"},
-                      BadUrl{"tcp://h:5?baud=9600", "no option baud"}, BadUrl{"tcp://h:5?hello=maybe", "yes or no"},
-                      BadUrl{"tcp://h:5?token", "no option token"}, BadUrl{"serial:ttyUSB0", "serial:/dev/"},
-                      BadUrl{"serial:", "serial:/dev/"}, BadUrl{"serial:/dev/ttyUSB0?baud=fast", "baud=fast"},
-                      BadUrl{"spi:/dev/spidev0.0?mode=1", "modes 0 and 3"},
-                      BadUrl{"mmap:/dev/mem?offset=0x2", "multiple of 4"},
-                      BadUrl{"mmap:/dev/mem?offset=-4", "offset=-4"},
-                      BadUrl{"mmap:/dev/mem?timeout=5", "no option timeout"}));
+    ::testing::Values(
+        BadUrl{"", "must be sim:, tcp://"}, BadUrl{"usb:1", "must be sim:, tcp://"},
+        BadUrl{"/dev/ttyUSB0", "did you mean serial:/dev/ttyUSB0?"}, BadUrl{"/dev/uio0", "did you mean mmap:"},
+        BadUrl{"pi.local:7000", "did you mean tcp://pi.local:7000?"}, BadUrl{"sim:4", "as sim:?axes=4"},
+        BadUrl{"sim:?axes=9", "axes=9: must be a whole number from 1 to 8"},
+        BadUrl{"tcp:localhost:1", "tcp://HOST:PORT"}, BadUrl{"tcp://localhost", "tcp://HOST:PORT"},
+        BadUrl{"tcp://:5", "tcp://HOST:PORT"}, BadUrl{"tcp://::1:5", "as [HOST]"},
+        BadUrl{"tcp://h:0", "from 1 to 65535"}, BadUrl{"tcp://h:65536", "from 1 to 65535"},
+        BadUrl{"tcp://h:5?baud=9600", "no option baud"}, BadUrl{"tcp://h:5?hello=maybe", "yes or no"},
+        BadUrl{"tcp://h:5?token", "no option token"}, BadUrl{"serial:ttyUSB0", "serial:/dev/"},
+        BadUrl{"serial:", "serial:/dev/"}, BadUrl{"serial:/dev/ttyUSB0?baud=fast", "baud=fast"},
+        BadUrl{"spi:/dev/spidev0.0?mode=1", "modes 0 and 3"}, BadUrl{"mmap:/dev/mem?offset=0x2", "multiple of 4"},
+        BadUrl{"mmap:/dev/mem?offset=-4", "offset=-4"}, BadUrl{"mmap:/dev/mem?timeout=5", "no option timeout"}));
 
 }  // namespace
 }  // namespace trammel::transport

@@ -21,6 +21,21 @@ constexpr const char* kForms =
   throw driver::ArgumentError(fmt::format("card {}: {}", what, why));
 }
 
+// What was probably meant by a text without a scheme: ": did you mean serial:/dev/ttyUSB0?", or nothing.
+std::string hint_at_scheme(std::string_view text) {
+  constexpr std::pair<std::string_view, std::string_view> kDevices[] = {
+      {"/dev/tty", "serial:"}, {"/dev/pts/", "serial:"}, {"/dev/serial/", "serial:"},
+      {"/dev/spidev", "spi:"}, {"/dev/uio", "mmap:"},    {"/dev/mem", "mmap:"}};
+  for (const auto& [device, scheme] : kDevices) {
+    if (text.substr(0, device.size()) == device) return fmt::format(": did you mean {}{}?", scheme, text);
+  }
+  const std::size_t colon = text.rfind(':');
+  const std::string_view port = text.substr(std::min(text.size(), colon + 1));
+  const bool host_and_port = colon != std::string_view::npos && colon != 0 && !port.empty() &&
+                             port.find_first_not_of("0123456789") == std::string_view::npos;
+  return host_and_port && text.find('/') == std::string_view::npos ? fmt::format(": did you mean tcp://{}?", text) : "";
+}
+
 std::uint64_t number(std::string_view name, std::string_view text, std::uint64_t least, std::uint64_t most) {
   const bool hex = text.substr(0, 2) == "0x";
   const std::string_view digits = text.substr(hex ? 2 : 0);
@@ -143,7 +158,7 @@ CardUrl parse_card_url(const std::string& text) {
     if (question != std::string::npos) set_options(url, std::string_view(text).substr(question + 1));
     return url;
   }
-  refuse(url.text, fmt::format("must be {}", kForms));
+  refuse(url.text, fmt::format("must be {}{}", kForms, hint_at_scheme(url.text)));
 }
 
 }  // namespace trammel::transport

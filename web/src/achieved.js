@@ -5,7 +5,7 @@ import { lastAtMost } from './run.js'
 const kStoodStill = 4
 const kBlock = 64
 
-// mm/s of one axis, from each of `times` on.
+// mm/s of one axis, negative backwards, from each of `times` on.
 function axisSpeeds(steps, perStep) {
   const { pins, positions, count } = steps
   const times = new Float64Array(3 * count + 1), speeds = new Float32Array(3 * count + 1)
@@ -20,14 +20,15 @@ function axisSpeeds(steps, perStep) {
     const before = i > 0 ? pins[i] - pins[i - 1] : interval
     const behind = i + 2 < count ? pins[i + 2] - pins[i + 1] : interval
     const back = positions[i + 1] === (i > 0 ? positions[i - 1] : NaN)
+    const way = perStep * Math.sign(positions[i + 1] - positions[i])
     if (interval <= kStoodStill * before && interval <= kStoodStill * behind) {
-      put(pins[i], back ? 0 : perStep / interval)
+      put(pins[i], back ? 0 : way / interval)
       continue
     }
     const left = Math.min(before, interval), right = Math.min(behind, interval)
-    put(pins[i], perStep / left)
+    put(pins[i], (back ? -way : way) / left)
     put(pins[i] + left / 2, 0)
-    put(pins[i + 1] - right / 2, perStep / right)
+    put(pins[i + 1] - right / 2, way / right)
   }
   if (count > 0) {
     const last = count > 1 ? pins[count - 1] - pins[count - 2] : 0
@@ -42,7 +43,9 @@ export class Achieved {
     const of = (axis) => axisSpeeds(run.steps[axis], f / run.axes[axis].steps_per_mm)
     const inSpace = run.space.filter((axis) => axis >= 0)
     const beside = run.axes.map((_, axis) => axis).filter((axis) => !inSpace.includes(axis))
-    this.merge(inSpace.map(of), beside.map(of))
+    this.axes = run.axes.map((_, axis) => of(axis))
+    const alone = (axis) => this.axes[axis]
+    this.merge(inSpace.map(alone), beside.map(alone))
     this.summarise()
   }
   // Along X Y Z; along the other axes where none of these moves.
@@ -93,6 +96,11 @@ export class Achieved {
   at(cycle) {
     const i = lastAtMost(this.times, cycle)
     return i < 0 ? 0 : this.speeds[i]
+  }
+  axisAt(axis, cycle) {
+    const { times, speeds } = this.axes[axis]
+    const i = lastAtMost(times, cycle)
+    return i < 0 ? 0 : speeds[i]
   }
   // [mean, least, most] between two card clocks.
   between(from, to) {

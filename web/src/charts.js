@@ -24,11 +24,11 @@ export function rowsOf(run) {
       ],
     },
     ...kinds.map(([id, title, unit, derivative, limit, at, shown]) => ({
-      id, title, unit, height: 88, shown,
+      id, title, unit, of: 'commanded', height: 88, shown,
       limits: [...new Set(axes.map(({ axis }) => axis[limit]).filter((value) => value > 0))],
       lines: axes.map(({ axis, a }) => ({
         label: axis.letter, axis: axis.letter, data: (s) => s.axes[derivative][a], value: (r) => r.axes[a][at],
-        limit: axis[limit],
+        actual: derivative === 0 ? (r) => r.actual[a] : undefined, limit: axis[limit],
       })),
     })),
     {
@@ -51,7 +51,7 @@ export class Chart {
       ? make('div', {}, make('em', {}, `limit ${row.limits.length > 1 ? row.limits.map(named).join(', ') : number(row.limits[0])}`)) : null
     this.swatches = row.lines.map(() => make('i'))
     this.element = make('div', { class: 'row', id: `row-${row.id}` },
-      make('div', { class: 'label' }, make('h3', {}, row.title, ' ', make('small', {}, row.unit)),
+      make('div', { class: 'label' }, make('h3', {}, row.title, ' ', make('small', {}, row.of ? `${row.unit}, ${row.of}` : row.unit)),
         ...row.lines.map((line, i) => make('div', {}, this.swatches[i], line.label, this.values[i])), limits),
       this.plotElement)
     if (row.id === 'jerk' && !row.limits.length) this.element.querySelector('.label').append(make('div', {}, make('em', {}, 'no limit given')))
@@ -153,7 +153,10 @@ export class Chart {
     })
   }
   read(now) {
-    this.row.lines.forEach((line, i) => { this.values[i].textContent = number(line.value(now)) })
+    this.row.lines.forEach((line, i) => {
+      const value = number(line.value(now))
+      this.values[i].textContent = line.actual ? `${value}, actual ${number(line.actual(now))}` : value
+    })
   }
 }
 

@@ -44,10 +44,13 @@ export class Executed {
   }
   show(on) {
     this.shown = on
-    this.detail.visible = this.dots.visible = on
-    this.showThin()
+    this.hide(false)
   }
-  showThin() { this.thin.visible = this.shown && !this.count }
+  // For the time being, whatever is to be shown.
+  hide(hidden) {
+    this.detail.visible = this.dots.visible = this.shown && !hidden
+    this.thin.visible = this.shown && !hidden && !this.count
+  }
   // What is in view, nearest in time to the clock where that is too much. The dots by their deviations, where a largest one is given.
   update(camera, cycle, mostDeviation) {
     const { places } = this.run.executed
@@ -70,7 +73,7 @@ export class Executed {
     this.dots.material.size = Math.min(9, Math.max(3, apart / 2)) * Math.min(window.devicePixelRatio || 1, 2)
     this.dots.geometry = geometryOf(dotted ? points : new Float32Array(0))
     if (byDeviation && dotted) this.dots.geometry.setAttribute('color', new BufferAttribute(this.deviationColours(ranges, mostDeviation), 3))
-    this.showThin()
+    this.hide(false)
   }
   deviationColours(ranges, most) {
     const colours = new Float32Array(3 * this.count)

@@ -235,10 +235,10 @@ class Page {
     const line = run.paths.count ? run.paths.lines[now.path] : 0
     this.program.highlight(line)
     byId('clock').textContent = `${fixed(run.seconds(cycle), 6)} s   clock ${grouped(cycle)}   line ${line}`
-    byId('place').textContent = run.axes.map((axis, a) => {
+    byId('place').replaceChildren(...run.axes.map((axis, a) => {
       const pulses = now.positions[a]
-      return `${axis.letter} ${fixed(pulses / axis.steps_per_mm, 3).padStart(9)}  ${String(pulses).padStart(8)}`
-    }).join('\n')
+      return make('span', {}, `${axis.letter} ${fixed(pulses / axis.steps_per_mm, 3).padStart(9)}  ${String(pulses).padStart(8)}`)
+    }))
     this.placeCursor()
   }
   placeCursor() {

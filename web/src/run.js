@@ -13,6 +13,30 @@ export function lastAtMost(values, x, count = values.length) {
 }
 
 const empty = new Uint8Array(0)
+const kWait = 64  // clocks that a card may wait between two paths, with room
+
+// The override in force. It changes after a request alone; what else few clocks are missing at are waits between two paths.
+class InForce {
+  constructor(full, events) {
+    this.full = full
+    this.goal = this.running = full
+    this.settled = false
+    this.requests = events.filter(({ event }) => ['override', 'hold', 'resume'].includes(event))
+    this.next = 0
+  }
+  // From a slope of the map of times, good to 3 clocks. The slopes come in order.
+  of(slope, begin, end) {
+    for (; this.next < this.requests.length && this.requests[this.next].cycle < end; ++this.next) this.take(this.requests[this.next])
+    const off = Math.abs(slope - this.goal) * (end - begin)
+    if (off < 4) this.settled = true
+    return off < (this.settled ? kWait : 4) ? this.goal : slope
+  }
+  take({ event, percent }) {
+    if (event === 'override') this.running = percent / 100 * this.full
+    this.goal = event === 'hold' ? 0 : this.running
+    this.settled = false
+  }
+}
 
 export class Run {
   constructor(streams, facts) {
@@ -45,12 +69,13 @@ export class Run {
 
   placeInTime(points) {
     const motions = [], cycles = [], slopes = []
+    const inForce = new InForce(this.fullRatio, this.facts.events)
     this.gaps = []  // card clocks between two stretches, where nothing is commanded to move
     const total = this.motion.begins[this.motion.count] ?? 0
     for (let i = 0; i < points.length;) {
       let end = i + 1
       while (end < points.length && !points[end].first) ++end
-      const slope = (a, b) => this.likely((b.motion - a.motion) / (b.cycle - a.cycle), b.cycle - a.cycle)
+      const slope = (a, b) => inForce.of((b.motion - a.motion) / (b.cycle - a.cycle), a.cycle, b.cycle)
       const inner = []
       for (let p = i; p + 1 < end; ++p) inner.push(slope(points[p], points[p + 1]))
       const usable = (value) => value > 0.01 ? value : this.fullRatio
@@ -73,8 +98,6 @@ export class Run {
     if (cycles.length) this.gaps.push([cycles.at(-1), Math.max(this.cycles, cycles.at(-1))])
     this.times = { motions: Float64Array.from(motions), cycles: Float64Array.from(cycles), slopes: Float64Array.from(slopes) }
   }
-  // The map of times is good to 3 clocks: within these 100 % is 100 %.
-  likely(slope, clocks) { return Math.abs(slope - this.fullRatio) * clocks < 4 ? this.fullRatio : slope }
 
   // The motion clock at a card clock, and how fast it goes.
   motionAt(cycle) {

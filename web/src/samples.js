@@ -122,6 +122,7 @@ export function readout(run, achieved, cycle) {
     path, still, percent: still ? null : 100 * ratio / run.fullRatio,
     commanded: still ? 0 : run.pathSpeed(of, share[1]), achieved: achieved.at(cycle),
     axes: run.axes.map((_, a) => still ? [NaN, 0, 0, 0] : run.axisAt(of, a, share)),
+    actual: run.axes.map((_, a) => achieved.axisAt(a, cycle)),
     positions: run.motors.map((_, motor) => run.positionAt(motor, cycle)),
   }
 }

@@ -1,8 +1,9 @@
 // The tool path in three dimensions: commanded lines in colour, rapids apart, the executed pulses where they can be told
-// apart, and the tool. Orthographic, so that plan views measure; the camera's zoom is pixels a mm.
+// apart, and over them the tool. Orthographic, so that plan views measure; the camera's zoom is pixels a mm.
+// While the view moves, a long path is an outline: all of it is drawn once the view is still.
 import {
-  BufferAttribute, BufferGeometry, Color, ConeGeometry, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
-  MeshBasicMaterial, MOUSE, OrthographicCamera, Scene, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, Color, LineBasicMaterial, LineDashedMaterial, LineSegments, MOUSE, OrthographicCamera,
+  Scene, Vector3, WebGLRenderer,
 } from 'three'
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js'
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js'
@@ -12,9 +13,13 @@ import { Annotations } from './annotations.js'
 import { boxOf, courseOf } from './course.js'
 import { Executed } from './executed.js'
 import { Grid } from './grid.js'
+import { outline } from './outline.js'
 import { colour, ramp } from './theme.js'
+import { Tool } from './tool.js'
 
-const kWide = 120000  // lines that are drawn wider than a pixel
+const kWide = 10000    // lines that are drawn wider than a pixel
+const kOutline = 4000  // lines that are drawn while the view moves
+const kStill = 150     // ms after its last movement the view is still
 
 const directions = {
   iso: new Vector3(-0.55, -1, 0.85),
@@ -41,7 +46,8 @@ export class View {
     this.course = courseOf(run)
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true })
     this.annotations = new Annotations(this)
-    element.append(this.renderer.domElement, this.annotations.canvas)
+    this.tool = new Tool()
+    element.append(this.renderer.domElement, this.annotations.canvas, this.tool.canvas)
     this.scene = new Scene()
     this.camera = new OrthographicCamera(-1, 1, 1, -1, -1e5, 1e5)
     this.camera.up.set(0, 0, 1)
@@ -49,7 +55,7 @@ export class View {
     this.controls.enableDamping = false
     this.controls.zoomToCursor = true
     this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.PAN }
-    this.controls.addEventListener('change', () => { this.draw(); this.detailSoon() })
+    this.controls.addEventListener('change', () => this.moved())
     this.build()
     const resized = new ResizeObserver(() => this.resize())
     resized.observe(element)
@@ -68,19 +74,19 @@ export class View {
       if (feed.points.length) this.feed.geometry.setPositions(feed.points)
     } else {
       this.feed = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true }))
-      this.feed.geometry.setAttribute('position', new BufferAttribute(Float32Array.from(feed.points), 3))
     }
-    this.feed.visible = feed.points.length > 0
     this.rapid = new LineSegments(new BufferGeometry(), new LineDashedMaterial({ dashSize: 1, gapSize: 1 }))
     this.rapid.geometry.setAttribute('position', new BufferAttribute(Float32Array.from(rapid.points), 3))
     this.rapid.computeLineDistances()
-    this.tool = new Mesh(new ConeGeometry(0.36, 1, 24).rotateX(-Math.PI / 2).translate(0, 0, 0.5), new MeshBasicMaterial({ transparent: true, opacity: 0.92 }))
     this.feed.renderOrder = 1
-    this.tool.renderOrder = 3
-    for (const object of [this.feed, this.rapid, this.tool]) object.frustumCulled = false
+    this.outline = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ vertexColors: true }))
+    this.outline.geometry.setAttribute('position', new BufferAttribute(Float32Array.from(feed.points), 3))
+    this.outline.geometry.setIndex(new BufferAttribute(outline(feed.points, kOutline), 1))
+    if (!this.wide) this.feed.geometry.setAttribute('position', this.outline.geometry.getAttribute('position'))
+    for (const object of [this.feed, this.rapid, this.outline]) object.frustumCulled = false
     this.executed = new Executed(this.run, Math.max(...this.size), this.pulse)
     this.grid = new Grid(this.run, this.size, this.box, this.pulse)
-    this.scene.add(...this.grid.objects(), this.rapid, this.feed, ...this.executed.objects(), this.tool)
+    this.scene.add(...this.grid.objects(), this.rapid, this.feed, this.outline, ...this.executed.objects())
     this.paint()
   }
   // What may be shown or not: 'rapid', 'executed', 'grid'.
@@ -111,14 +117,12 @@ export class View {
       ramp(values[i] / most, rgb)
       linear.setRGB(rgb[0], rgb[1], rgb[2], 'srgb').toArray(colours, 3 * i)
     }
-    if (this.wide) {
-      if (values.length) this.feed.geometry.setColors(colours)
-    } else {
-      this.feed.geometry.setAttribute('color', new BufferAttribute(colours, 3))
-    }
+    this.outline.geometry.setAttribute('color', new BufferAttribute(colours, 3))
+    if (!this.wide) this.feed.geometry.setAttribute('color', this.outline.geometry.getAttribute('color'))
+    else if (values.length) this.feed.geometry.setColors(colours)
     this.scene.background = new Color(colour('panel'))
     this.rapid.material.color.set(colour('rapid'))
-    this.tool.material.color.set(colour('cursor'))
+    this.placeTool()
     this.grid.paint()
     this.executed.paint()
     this.detailNow()
@@ -137,8 +141,7 @@ export class View {
     this.camera.updateProjectionMatrix()
     if (this.wide) this.feed.material.resolution.set(width, height)
     if (this.fitted) this.fit()
-    this.draw()
-    this.detailSoon()
+    this.moved()
   }
   look(name) {
     this.camera.position.copy(this.controls.target).addScaledVector(directions[name].clone().normalize(), 1000)
@@ -165,10 +168,11 @@ export class View {
     // The numbers at the grid too.
     if (this.grid.shown) take(this.grid.corners())
     const spanX = Math.max(high.x - low.x, 40 * this.pulse), spanY = Math.max(high.y - low.y, 40 * this.pulse)
-    // Room for the tools above (in a low view they may cover some), and for the numbers around the grid.
-    const above = Math.min(this.over[0].offsetHeight + 22, height / 4), around = 22
-    this.camera.zoom = Math.min((width - 4 * around) / spanX, (height - above - 2 * around) / spanY)
-    const middle = new Vector3((low.x + high.x) / 2, (low.y + high.y) / 2 + above / 2 / this.camera.zoom, (low.z + high.z) / 2)
+    // Room for the tools above (in a low view they may cover some), for the numbers around the grid, and for the scale.
+    const covered = this.over[0].getBoundingClientRect().bottom - this.element.getBoundingClientRect().top
+    const above = Math.min(Math.max(0, covered + 12), height / 4), around = 22, below = 46
+    this.camera.zoom = Math.min((width - 4 * around) / spanX, (height - above - around - below) / spanY)
+    const middle = new Vector3((low.x + high.x) / 2, (low.y + high.y) / 2 + (above + around - below) / 2 / this.camera.zoom, (low.z + high.z) / 2)
       .applyMatrix4(this.camera.matrixWorld)
     this.moveTo(middle)
     this.fitted = true
@@ -179,8 +183,7 @@ export class View {
     this.camera.updateProjectionMatrix()
     this.controls.update()
     this.fitted = false
-    this.draw()
-    this.detailSoon()
+    this.moved()
   }
   // The tool in the middle, single pulses wide apart.
   close() {
@@ -199,13 +202,17 @@ export class View {
     const at = this.run.space.map((axis, i) => axis < 0 ? 0
       : this.run.positionAt(axis, cycle) / this.run.axes[axis].steps_per_mm - this.run.centre[i])
     this.tool.position.set(...at)
-    this.draw()
+    this.placeTool()
   }
-  detailSoon() {
+  placeTool() { this.tool.draw(this.camera, 2 * this.camera.right, 2 * this.camera.top, this.renderer.getPixelRatio()) }
+  moved() {
+    this.moving = true
+    this.draw()
     clearTimeout(this.waiting)
-    this.waiting = setTimeout(() => this.detailNow(), 60)
+    this.waiting = setTimeout(() => this.detailNow(), kStill)
   }
   detailNow() {
+    this.moving = false
     this.executed.update(this.camera, this.cycle ?? 0, this.mode === 'deviation' ? this.scaleOf('deviation') : undefined)
     this.draw()
   }
@@ -215,11 +222,15 @@ export class View {
   }
   drawNow() {
     const { zoom } = this.camera
-    this.tool.scale.setScalar(24 / zoom)
+    const quick = this.moving && this.course.feed.points.length / 6 > kOutline
+    this.outline.visible = quick
+    this.feed.visible = !quick && this.course.feed.points.length > 0
+    this.executed.hide(quick)
     this.rapid.material.dashSize = 6 / zoom
     this.rapid.material.gapSize = 5 / zoom
     this.grid.update(this.camera, this.controls.target)
     this.renderer.render(this.scene, this.camera)
     this.annotations.draw()
+    this.placeTool()
   }
 }

@@ -31,7 +31,7 @@ function report(text, ...options) {
   return page
 }
 async function open(file, scheme = 'light') {
-  const page = await browser.newPage({ viewport: { width: 800, height: 560 }, colorScheme: scheme })
+  const page = await browser.newPage({ viewport: { width: 1100, height: 700 }, colorScheme: scheme })
   const said = []
   page.on('console', (message) => said.push(message.text()))
   page.on('pageerror', (error) => said.push(String(error)))
@@ -174,6 +174,81 @@ test('a million pulses', async (context) => {
   assert.ok(pulses >= 1e6, `${pulses}`)
   assert.ok(size <= 5e6, `${size} bytes`)
   assert.ok(milliseconds < 10000, `${milliseconds} ms`)
+  assert.deepEqual(said, [])
+  await page.close()
+})
+
+// A path of many short lines: a wave along a circle.
+function wave(lines) {
+  const corner = (i) => {
+    const turn = 2 * Math.PI * 20 * i / lines, radius = 30 + 4 * Math.sin(7.3 * turn)
+    return `G1 X${(radius * Math.cos(turn)).toFixed(3)} Y${(radius * Math.sin(turn)).toFixed(3)}\n`
+  }
+  return `G21 G90 G64\nF6000\n${Array.from({ length: lines }, (_, i) => corner(i)).join('')}`
+}
+// Milliseconds until two more frames are there, the middle of some.
+async function middleTime(page, act) {
+  const times = []
+  for (let i = 0; i < 7; ++i) {
+    const begun = Date.now()
+    await act()
+    await frame(page)
+    times.push(Date.now() - begun)
+  }
+  return times.sort((a, b) => a - b)[3]
+}
+const drawings = (page) => page.evaluate(() => window.trammel.view.renderer.info.render.frame)
+const linesDrawn = (page) => page.evaluate(() => window.trammel.view.renderer.info.render.lines)
+const still = (page) => page.waitForFunction(() => !window.trammel.view.moving && !window.trammel.view.frame)
+
+// With TRAMMEL_LONG the long path, whose times are judged: without a graphics card a drawing of all of it takes a second.
+const long = process.env.TRAMMEL_LONG
+test('a cursor has no path drawn anew, and a moving view has an outline drawn', async (context) => {
+  const { page, said } = await open(report(wave(long ? 60000 : 12000), '--clock', '100000'))
+  await still(page)
+  const all = await linesDrawn(page), before = await drawings(page)
+  assert.ok(all >= (long ? 60000 : 12000), `${all} lines`)
+  const tool = () => page.evaluate(() => document.querySelector('#view .tool').getBoundingClientRect().x)
+  const at = await tool()
+  const key = await middleTime(page, () => page.keyboard.press('ArrowRight'))
+  assert.notEqual(await tool(), at)
+  assert.equal(await drawings(page), before, 'drawings for a cursor')
+  const box = await page.locator('#view').boundingBox()
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2)
+  const fewest = []
+  const wheel = await middleTime(page, async () => {
+    await page.mouse.wheel(0, -40)
+    await page.waitForFunction(() => window.trammel.view.moving && !window.trammel.view.frame)
+    fewest.push(await linesDrawn(page))
+  })
+  assert.ok(Math.max(...fewest) < 8000, `${fewest} lines while the view moves`)
+  await still(page)
+  assert.ok(await linesDrawn(page) >= (long ? 60000 : 12000), 'all once it is still')
+  const pulses = await page.evaluate(() => window.trammel.run.pulses)
+  context.diagnostic(`${pulses} pulses, ${all} lines: a key ${key} ms, a tick of the wheel ${wheel} ms (aim 50)`)
+  if (long) assert.ok(key < 500 && wheel < 500, `a key ${key} ms, a tick of the wheel ${wheel} ms`)
+  assert.deepEqual(said, [])
+  await page.close()
+})
+
+test('in a small window nothing covers the path, and no button is cut', async () => {
+  const { page, said } = await open(report(join(examples, 'part.ngc'), '--clock', '1000000'))
+  for (const [width, height] of [[800, 600], [390, 844]]) {
+    await page.setViewportSize({ width, height })
+    await frame(page)
+    const seen = await page.evaluate(() => {
+      const box = (element) => element.getBoundingClientRect()
+      const view = box(document.querySelector('#view'))
+      const over = ['tools', 'legend', 'place'].filter((id) => {
+        const one = box(document.getElementById(id))
+        return one.top < view.bottom && one.bottom > view.top && one.left < view.right && one.right > view.left
+      })
+      const cut = [...document.querySelectorAll('button')].filter((one) => one.offsetParent && box(one).right > innerWidth)
+      return { over, cut: cut.map((one) => one.textContent), height: view.height }
+    })
+    assert.deepEqual({ over: seen.over, cut: seen.cut }, { over: [], cut: [] }, `${width} x ${height}`)
+    assert.ok(seen.height >= 120, `the path is ${seen.height} pixels high`)
+  }
   assert.deepEqual(said, [])
   await page.close()
 })

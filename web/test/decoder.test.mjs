@@ -9,7 +9,7 @@ import { after, test } from 'node:test'
 import { Achieved } from '../src/achieved.js'
 import { Bytes } from '../src/decode.js'
 import { lastAtMost } from '../src/run.js'
-import { sample } from '../src/samples.js'
+import { readout, sample } from '../src/samples.js'
 import { readPage, trammel } from './page.mjs'
 
 const command = process.env.TRAMMEL
@@ -230,4 +230,20 @@ test('what does not go together is refused, and leaves no file', () => {
 test('numbers of any size', () => {
   const bytes = new Bytes(Uint8Array.from([0x7f, 0x80, 0x01, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x0f, 3, 4]))
   assert.deepEqual([bytes.varint(), bytes.varint(), bytes.varint(), bytes.zigzag(), bytes.zigzag()], [127, 128, 2 ** 53 - 1, -2, 2])
+})
+
+test('without a request the override in force is 100 %, also where a card waits between two paths', () => {
+  const { run } = report(part, '--clock', '1000000')
+  const moving = Array.from(run.times.slopes).filter((slope) => slope > 0)
+  assert.ok(moving.length > 10)
+  for (const slope of moving) assert.equal(slope, run.fullRatio)
+})
+
+test('in a hold the actual speed of an axis is 0, and its sign is that of the motion', () => {
+  const { run } = report(programOf('G21 G90\nG1 X60 F600\nG1 X50\n'), '--clock', '1000000', '--hold-at', '2:1')
+  const achieved = new Achieved(run)
+  const actual = (seconds) => readout(run, achieved, seconds * run.clockHz).actual[0]
+  assert.ok(Math.abs(actual(1.5) - 10) < 0.2, `${actual(1.5)}`)
+  assert.equal(actual(2.6), 0)
+  assert.ok(Math.abs(actual(7.5) + 10) < 0.2, `${actual(7.5)}`)
 })

@@ -79,6 +79,7 @@ StopControl::Inputs MotionCore::stop_inputs(const Inputs& in) const {
   stop.mismatch = s.mismatch;
   stop.incomplete = s.incomplete;
   stop.missing = state_.sequencer.streaming().missing;
+  stop.expired = state_.watchdog.expired();
   stop.abort = in.abort;
   stop.clear = in.clear_fault;
   stop.at_rest = state_.time_base.outputs().ratio == 0;

@@ -146,8 +146,11 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.feed_begun;
     case reg::kStaleTicks:
       return in.stale_ticks;
-    default:
+    case reg::kUnderruns:
       return in.underruns;
+    default:
+      // A live register that was forgotten here. If the RTL lacks its branch too, it shows UNDERRUNS: a mismatch.
+      return 0;
   }
 }
 

@@ -103,7 +103,6 @@ void Sequencer::count_begun(const Inputs& in, const Decision& d, bool path_drops
   state_.piece_begun = d.piece_begins && !in.cut;
 }
 
-// Ticks made, owed and taken.
 void Sequencer::clock_ticks(const Inputs& in, bool take) {
   const bool running = state_.out.feed_active || state_.out.direct;
   const bool ticking = ticking_path();

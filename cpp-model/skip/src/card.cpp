@@ -20,12 +20,14 @@ struct ClockBusy {
   bool operator()(Part& part, const typename Part::Inputs& in) const {
     constexpr bool kJoined = std::is_same_v<Part, model::MotionCore> || std::is_same_v<Part, model::CoreModel>;
     constexpr bool kCheap = std::is_same_v<Part, model::TimeBase> || std::is_same_v<Part, model::FeedGenerator> ||
-                            std::is_same_v<Part, model::WaitTimer> || std::is_same_v<Part, model::UnderrunGuard> ||
-                            std::is_same_v<Part, model::PulseGenerator>;
+                            std::is_same_v<Part, model::WaitTimer> || std::is_same_v<Part, model::Watchdog> ||
+                            std::is_same_v<Part, model::UnderrunGuard> || std::is_same_v<Part, model::PulseGenerator>;
     if constexpr (kJoined) {
       part.clock_parts(in, *this);
     } else if constexpr (kCheap) {
       part.clock(in);
+    } else if constexpr (std::is_same_v<Part, model::Sequencer>) {
+      if (!count(part, in)) part.clock(in);
     } else if (horizon(part, in) != 0) {
       advance(part, in, 1);
       return false;

@@ -284,6 +284,7 @@ void Jump::commit() {
     advance(core_.state().guard, clocks, 0, 0);
   advance(core_.state().time_base, {}, clocks);
   pass(core_.state().wait_timer, clocks);
+  advance(core_.state().watchdog, {}, clocks);
   core_.state().out.engine_step = 0;
 }
 
@@ -387,7 +388,8 @@ bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
 std::uint64_t advance(model::MotionCore& core, std::uint64_t limit, const model::MotionCore::Inputs& in,
                       std::uint64_t cycle, model::StepRecord& record) {
   constexpr std::uint64_t kLongest = std::uint64_t{1} << 40;
-  return may_jump(core, in) ? Jump(core, record, cycle, std::min(limit, kLongest)).go() : 0;
+  limit = std::min({limit, kLongest, horizon(core.state().watchdog, in.setting)});
+  return limit != 0 && may_jump(core, in) ? Jump(core, record, cycle, limit).go() : 0;
 }
 
 }  // namespace trammel::skip

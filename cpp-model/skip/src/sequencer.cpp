@@ -52,6 +52,21 @@ std::uint64_t horizon(const model::CommandFetch& fetch, const model::CommandFetc
   return forever_if(!in.clear && !in.pop && !begins && at_rest(fetch));
 }
 
+bool count(model::Sequencer& block, const model::Sequencer::Inputs& in) {
+  if (!counts_only(block, in) || block.barrier_over(in)) return false;
+  const bool take = block.takes(in);
+  if (take && block.ticks_left() == 1) return false;
+  model::Sequencer::State& s = block.state();
+  block.clock_ticks(in, take);
+  if (take) {
+    --s.path_left;
+    if (!s.out.spent) --s.piece_left;
+    s.out.moving = true;
+  }
+  ++s.now;
+  return true;
+}
+
 bool only_counts_move(const model::Sequencer& block, const model::Sequencer::Inputs& in) {
   const model::Sequencer::State& s = block.state();
   if (!counts_only(block, in) || block.barrier_over(in)) return false;

@@ -68,7 +68,7 @@ package card_map_pkg;
   localparam logic [31:0] RESET_MAGIC = 32'h54524D4C;
   localparam logic [31:0] MASK_MAGIC = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_MAP_VERSION = 12'h004;
-  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030000;
+  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030001;
   localparam logic [31:0] MASK_MAP_VERSION = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_AXES = 12'h008;
   localparam logic [31:0] RESET_AXES = 32'h00000000;
@@ -279,7 +279,7 @@ package card_map_pkg;
   localparam logic [31:0] RESET_HOLD_LIMIT = 32'h0000FFFF;
   localparam logic [31:0] MASK_HOLD_LIMIT = 32'h0000FFFF;
   localparam logic [11:0] ADDR_STOP_REACTION = 12'h684;
-  localparam logic [31:0] RESET_STOP_REACTION = 32'h00000000;
+  localparam logic [31:0] RESET_STOP_REACTION = 32'h00004000;
   localparam logic [31:0] MASK_STOP_REACTION = 32'h0000FCFF;
   localparam logic [11:0] ADDR_IRQ_ENABLE = 12'h688;
   localparam logic [31:0] RESET_IRQ_ENABLE = 32'h00000000;
@@ -299,6 +299,9 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_STREAMING = 12'h740;
   localparam logic [31:0] RESET_STREAMING = 32'h00000000;
   localparam logic [31:0] MASK_STREAMING = 32'h0000FF01;
+  localparam logic [11:0] ADDR_WATCHDOG = 12'h780;
+  localparam logic [31:0] RESET_WATCHDOG = 32'h00000000;
+  localparam logic [31:0] MASK_WATCHDOG = 32'h0000FFFF;
   localparam logic [11:0] ADDR_STEP_LENGTH = 12'h800;
   localparam logic [31:0] RESET_STEP_LENGTH = 32'h00000000;
   localparam logic [31:0] MASK_STEP_LENGTH = 32'h0000FFFF;
@@ -609,8 +612,8 @@ package card_map_pkg;
       10'b01_1000_0000, 10'b01_1000_0100:
         register_access = ACCESS_COMMAND;
       10'b01_1000_0001, 10'b01_1001_0000, 10'b01_1001_0011, 10'b01_1010_0000, 10'b01_1010_0001,
-      10'b01_1010_0010, 10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011,
-      10'b10_???0_0100:
+      10'b01_1010_0010, 10'b01_1110_0000, 10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010,
+      10'b10_???0_0011, 10'b10_???0_0100:
         register_access = ACCESS_SETTING;
       10'b01_1001_0001, 10'b01_1001_0010:
         register_access = engines[ENGINE_CLASSES] ? ACCESS_SETTING : ACCESS_NONE;
@@ -643,8 +646,8 @@ package card_map_pkg;
   // Bits with meaning, by the engines that are built in; a write of any other bit is refused.
   function automatic logic [31:0] register_mask(input logic [9:0] word, input logic [31:0] engines);
     casez (word)
-      10'b00_0001_0001, 10'b01_1010_0000, 10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010,
-      10'b10_???0_0011:
+      10'b00_0001_0001, 10'b01_1010_0000, 10'b01_1110_0000, 10'b10_???0_0000, 10'b10_???0_0001,
+      10'b10_???0_0010, 10'b10_???0_0011:
         register_mask = 32'h0000FFFF;
       10'b00_0001_0010, 10'b01_1001_0011:
         register_mask = 32'h0FFFFFFF;
@@ -691,7 +694,7 @@ package card_map_pkg;
       10'b00_0000_0000:
         register_reset = 32'h54524D4C;
       10'b00_0000_0001:
-        register_reset = 32'h00030000;
+        register_reset = 32'h00030001;
       10'b00_0000_0111:
         register_reset = 32'h00000003;
       10'b01_1001_0000, 10'b01_1001_0001, 10'b01_1001_0010:
@@ -700,6 +703,8 @@ package card_map_pkg;
         register_reset = 32'h0FFFFFFF;
       10'b01_1010_0000:
         register_reset = 32'h0000FFFF;
+      10'b01_1010_0001:
+        register_reset = 32'h00004000;
       default: register_reset = 32'h00000000;
     endcase
   endfunction
@@ -1002,6 +1007,12 @@ package card_map_pkg;
     logic [2047:0] table_so_far;
 
     table_so_far = '0;
+    // watchdog
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd31, 7'd0, 8'(480 - (480) + 1), 10'(480),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd16
+    };
     // position_streaming
     if (engines[ENGINE_STREAMING]) begin
       table_so_far = {
@@ -1100,7 +1111,7 @@ package card_map_pkg;
     table_so_far = {
       table_so_far[1983:0],
       2'd0, 5'd31, 7'd0, 8'(417 - (416) + 1), 10'(416),
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd2
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd1, 8'd2
     };
     // time_base
     table_so_far = {

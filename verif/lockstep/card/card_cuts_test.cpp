@@ -240,6 +240,51 @@ std::string way_name(const testing::TestParamInfo<unsigned>& way) {
 }
 INSTANTIATE_TEST_SUITE_P(Way, CardStreaming, testing::Range(0U, 4U), way_name);
 
+// The watchdog expires in a line, on a ramp and at once: the card stops, keeps its cause until WATCHDOG is written, and
+// does not move by clearing it.
+void silent_host(std::uint64_t seed) {
+  constexpr unsigned kAxes = 4;
+  constexpr std::uint64_t kUnit = model::Watchdog::kUnitClocks;
+  sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
+  AxiHost host(card, seed);
+  Traffic traffic(host, kAxes);
+  host.wait(300);
+  host.write(reg::kSlew, 0x40000);  // 4,096 clocks from full ratio to rest
+  for (unsigned round = 0; round < 12; ++round) {
+    const bool ramp = round % 2 == 0;
+    host.write(reg::kStopReaction, ramp ? field::kStopReactionWatchdog : 0);
+    traffic.send(feed(200'000, 2));
+    traffic.send(line(200'000, {9'000, -7'001, 3, 0}));
+    traffic.send(driver::EndCommand{});
+    host.write(reg::kWatchdog, 1);
+    host.wait(round % 3 == 0 ? kUnit / 2 : 0);
+    host.write(reg::kWatchdog, 1);
+    host.wait(kUnit - 200 + host.below(100));
+    EXPECT_EQ(host.read(reg::kFault), 0U) << round;
+    host.wait(400);
+    EXPECT_EQ(host.read(reg::kFault), field::kFaultWatchdog) << round;
+    EXPECT_EQ((traffic.status() & field::kStatusStopping) != 0, ramp) << round;
+    host.wait(ramp ? 5'000 : 500);
+    EXPECT_EQ(traffic.status() & (field::kStatusBusy | field::kStatusFaulted), field::kStatusFaulted) << round;
+    EXPECT_EQ(host.read(reg::kStopFault), field::kFaultWatchdog) << round;
+    host.write(reg::kFault, field::kFaultWatchdog);
+    EXPECT_EQ(host.read(reg::kFault), field::kFaultWatchdog) << "cleared before the host is back";
+    host.write(reg::kWatchdog, round % 4 == 0 ? 3 : 0);
+    const std::uint32_t position = card.model().position(0);
+    host.write(reg::kFault, field::kFaultWatchdog);
+    host.wait(6'000);
+    EXPECT_EQ(host.read(reg::kFault), 0U) << round;
+    EXPECT_EQ(card.model().position(0), position) << "clearing moves nothing";
+    traffic.recover();
+    host.write(reg::kSlew, 0x40000);
+  }
+  expect_all_compared(card, kAxes, 12 * kUnit);
+}
+
+TEST(CardWatchdog, StopsForASilentHost) {
+  EXPECT_EQ(lockstep::judge([] { silent_host(lockstep::seed_from_environment(29)); }), "");
+}
+
 // Steps that wait for their shaper, under limits from 1 clock on: some are faults, some are not.
 void waiting_steps(std::uint64_t seed) {
   constexpr unsigned kAxes = 4;

@@ -36,6 +36,7 @@ class Bench {
   void clock(const Inputs& in) {
     if (in.step_fault != 0) check_.event("step fault", in.step_fault);
     if (in.missing) check_.event("missing period");
+    if (in.expired) check_.event("watchdog expired");
     if (in.mismatch || in.incomplete) check_.event("fault at once", in.mismatch);
     if (in.abort) check_.event("abort");
     if (in.clear != 0) check_.event("clear", in.clear);
@@ -64,6 +65,7 @@ class Bench {
     dut_->mismatch_i = in.mismatch;
     dut_->incomplete_i = in.incomplete;
     dut_->missing_i = in.missing;
+    dut_->expired_i = in.expired;
     dut_->abort_i = in.abort;
     dut_->clear_i = in.clear;
     dut_->at_rest_i = in.at_rest;
@@ -126,18 +128,21 @@ Bench::Inputs happening(unsigned kind) {
     case 9:
       in.missing = true;
       break;
+    case 10:
+      in.expired = true;
+      break;
     default:
       break;
   }
   return in;
 }
-constexpr unsigned kHappenings = 11;  // the last is nothing
+constexpr unsigned kHappenings = 12;  // the last is nothing
 
 // Three happenings at any distance of 0 to 2 clocks, with each reaction, from reset.
 void every_order() {
   Bench bench(0);
   std::uint64_t cycles = 1;
-  for (const std::uint32_t reaction : {0U, 0x4FFU}) {
+  for (const std::uint32_t reaction : {0U, 0x44FFU}) {
     for (unsigned order = 0; order < kHappenings * kHappenings * kHappenings * 9; ++order) {
       unsigned rest = order;
       const auto draw = [&rest](unsigned n) {
@@ -201,6 +206,7 @@ void random_events() {
   const std::uint64_t length = scaled(500'000);
   unsigned rest_every = 10;
   unsigned course = 0;  // of the pieces
+  bool expired = false;
   for (std::uint64_t i = 0; i < length; ++i) {
     Bench::Inputs in;
     if (i % 512 == 0) rest_every = 1 + dice.below(40);
@@ -208,6 +214,8 @@ void random_events() {
     in.mismatch = dice.chance(60);
     in.incomplete = dice.chance(60);
     in.missing = dice.chance(30);
+    if (dice.chance(expired ? 10 : 40)) expired = !expired;
+    in.expired = expired;
     in.abort = dice.chance(30);
     if (dice.chance(6)) in.clear = dice.chance(2) ? ~0U : dice.draw();
     in.at_rest = dice.chance(rest_every);

@@ -74,6 +74,13 @@ class Card {
   // Longest time that a step may wait for the one before it; longer is a step fault. 1 .. 65535 clocks, rounded up.
   void set_longest_step_wait(std::chrono::nanoseconds longest);
 
+  // The card stops by itself, on a ramp unless STOP_REACTION says otherwise, when this program has been silent for
+  // `time`: FAULT then says WATCHDOG. Rounded up to 65,536 clocks. Calls that wait, and streams, keep it from expiring;
+  // a program that pauses longer between its calls sets it to 0 before, which switches it off. Choose it longer than
+  // the slowest answer of the link times 32. Throws ArgumentError for a negative time or one over 65,535 * 65,536
+  // clocks (43 s at 100 MHz).
+  void set_watchdog(std::chrono::nanoseconds time);
+
   // From any thread (and from a signal handler): what the thread that is in a call that waits shall do at its next look
   // at the card: set_hold(hold), or abort(), after which its call throws StateError. Where no call waits, the next one
   // that does finds the request. Of several holds the last counts; an abort drops them.
@@ -119,7 +126,8 @@ class Card {
 
   // FAULT, 0 if there is none.
   std::uint32_t read_faults();
-  // Clears all faults. Nothing moves by it: a fault has dropped all that the card had, and an abort may come before,
+  // Clears all faults; a watchdog that has expired starts anew with it, or is off where this object has set none.
+  // Nothing moves by it: a fault has dropped all that the card had, and an abort may come before,
   // after or not at all. The stream begins with number 0 (Stream::restart()).
   void clear_faults();
   // The first access or command refused since the last clear that no RefusedError has reported; one of the stream stays

@@ -19,6 +19,7 @@
 #include "trammel/model/time_base.hpp"
 #include "trammel/model/underrun_guard.hpp"
 #include "trammel/model/wait_timer.hpp"
+#include "trammel/model/watchdog.hpp"
 
 namespace trammel::model {
 
@@ -60,6 +61,7 @@ class MotionCore {
     Sequencer sequencer;
     PathCommands commands;
     StopControl stop{};
+    Watchdog watchdog{};
     UnderrunGuard guard{};
     TimeBase time_base{};
     FeedGenerator feed{};
@@ -171,6 +173,7 @@ void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
     if (clock_part(state_.axes[n], axis)) show_axis(n);
   }
   clock_part(state_.wait_timer, in.setting);
+  clock_part(state_.watchdog, in.setting);
   clock_part(state_.engines,
              {over, s.tick, s.swap, s.engine, state_.sequencer.load(), state_.sequencer.engine_taken()});
   clock_part(state_.feed, {s.feed_clear, s.feed_enable, s.spent, state_.sequencer.feed_load(), s.feed_swap});

@@ -139,6 +139,8 @@ class Sequencer {
   }
   // A tick is taken in this clock.
   bool takes(const Inputs& in) const;
+  // Ticks made, owed and taken: a part of clock().
+  void clock_ticks(const Inputs& in, bool take);
   bool piece_waits() const { return state_.feed.decoded() && state_.feed.is_feed(); }
 
   const Outputs& outputs() const { return state_.out; }
@@ -209,7 +211,6 @@ class Sequencer {
   void clock_piece(const Decision& d);
   void clock_streaming(const Inputs& in, const Decision& d);
   void clock_barrier(const Decision& d);
-  void clock_ticks(const Inputs& in, bool take);
   void clock_fetches(const Inputs& in, const Decision& d);
   void count_begun(const Inputs& in, const Decision& d, bool path_drops, bool piece_drops);
   bool drop_counts(const CommandFetch& fetch, bool dropped) const;

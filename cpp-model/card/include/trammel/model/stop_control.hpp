@@ -19,6 +19,7 @@ class StopControl {
     bool mismatch = false;         // event
     bool incomplete = false;       // event
     bool missing = false;          // event: of position streaming
+    bool expired = false;          // level: the watchdog has expired
     bool abort = false;            // event
     std::uint32_t clear = 0;       // event: ones written to FAULT
     bool at_rest = false;          // the ratio is 0
@@ -43,7 +44,7 @@ class StopControl {
     bool hold = false;
     bool hold_stays = false;
     bool made_to_hold = false;
-    std::uint32_t reaction = 0;
+    std::uint32_t reaction = card_map::field::kStopReactionWatchdog;
     Outputs out;
   };
 
@@ -51,7 +52,8 @@ class StopControl {
   void clock(const Inputs& in) {
     const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
                                  (in.incomplete ? card_map::field::kFaultPathIncomplete : 0) |
-                                 (in.missing ? card_map::field::kFaultMissingPeriod : 0);
+                                 (in.missing ? card_map::field::kFaultMissingPeriod : 0) |
+                                 (in.expired ? card_map::field::kFaultWatchdog : 0);
     const bool at_once = (events & ~state_.reaction) != 0;
     state_.made_to_hold = in.underrun || in.probe;
     state_.hold_stays = stays(in.moving, in.at_rest);

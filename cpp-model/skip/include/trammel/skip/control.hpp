@@ -1,4 +1,4 @@
-// Adaptors of stop control, probe, inputs and path commands. See horizon.hpp.
+// Adaptors of stop control, watchdog, probe, inputs and path commands. See horizon.hpp.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +6,7 @@
 #include "trammel/model/path_commands.hpp"
 #include "trammel/model/probe.hpp"
 #include "trammel/model/stop_control.hpp"
+#include "trammel/model/watchdog.hpp"
 #include "trammel/skip/horizon.hpp"
 
 namespace trammel::skip {
@@ -15,13 +16,23 @@ inline std::uint64_t horizon(const model::StopControl& block, const model::StopC
   const model::StopControl::State& s = block.state();
   const bool events = in.step_fault != 0 || in.mismatch || in.incomplete || in.missing || in.abort || in.clear != 0 ||
                       in.setting.set || s.out.cut || s.out.stop;
-  if (events || s.mode == Mode::Ramp || (s.mode == Mode::Stopped && s.out.fault == 0)) return 0;
+  const bool expires = in.expired && (s.mode != Mode::Stopped || (s.out.fault & card_map::field::kFaultWatchdog) == 0);
+  if (events || expires || s.mode == Mode::Ramp || (s.mode == Mode::Stopped && s.out.fault == 0 && !in.expired))
+    return 0;
   const bool made = in.underrun || in.probe;
   const bool hold = block.host_holds(in.fixed) || made;
   return forever_if(made == s.made_to_hold && block.stays(in.moving, in.at_rest) == s.hold_stays &&
                     hold == s.out.hold && s.out.closed == (s.out.fault != 0 || s.mode != Mode::Run));
 }
 inline void advance(model::StopControl&, const model::StopControl::Inputs&, std::uint64_t) {}
+
+inline std::uint64_t horizon(const model::Watchdog& block, const model::Setting& in) {
+  if (in.set && in.address == card_map::reg::kWatchdog) return 0;
+  return block.state().left == 0 ? kForever : block.state().left - 1;
+}
+inline void advance(model::Watchdog& block, const model::Setting&, std::uint64_t clocks) {
+  if (block.state().left != 0) block.state().left -= clocks;
+}
 
 inline std::uint64_t horizon(const model::Probe& block, const model::Probe::Inputs& in) {
   using Mode = model::Probe::Mode;

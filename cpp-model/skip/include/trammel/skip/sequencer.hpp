@@ -24,6 +24,9 @@ inline void advance(model::Sequencer& block, const model::Sequencer::Inputs&, st
   block.state().now += clocks;
 }
 
+// One clock, where nothing but ticks and counters move in it: true, and the state is that of clock(in).
+bool count(model::Sequencer& block, const model::Sequencer::Inputs& in);
+
 // With ticks on their way: bit k of `in_flight` was made by an accumulation k clocks ago.
 inline constexpr unsigned kArrives = 3;
 inline constexpr unsigned kOwed = 4;

@@ -13,6 +13,7 @@
 #include "trammel/driver/low_level/requests.hpp"
 #include "trammel/driver/low_level/snapshots.hpp"
 #include "trammel/driver/low_level/time_base.hpp"
+#include "trammel/driver/low_level/watchdog.hpp"
 
 namespace trammel::driver {
 
@@ -28,6 +29,7 @@ struct CardParts {
   Snapshots snapshots;
   Ports ports;
   CardInterrupt interrupt;
+  Watchdog watchdog;
   Requests requests;
 };
 

@@ -38,9 +38,9 @@ class Requests {
   std::atomic<bool> stop_{false};
 };
 
-// Does what other threads have asked of the card. For the thread that uses it, in a wait of its own: calls of the
-// driver that wait do so themselves. Throws StateError after an abort, StoppedError after a stop, also after the one
-// that an InterruptScope asks for; else errors as of Card.
+// Does what other threads have asked of the card, and starts its watchdog anew. For the thread that uses it, in a wait
+// of its own: calls of the driver that wait do so themselves. Throws StateError after an abort, StoppedError after a
+// stop, also after the one that an InterruptScope asks for; else errors as of Card.
 void serve_requests(Card& card);
 
 }  // namespace trammel::driver

@@ -12,7 +12,7 @@ namespace trammel::card_map {
 
 inline constexpr std::size_t kMaxAxes = 8;
 inline constexpr std::uint32_t kMagicValue = 0x54524D4C;
-inline constexpr std::uint32_t kMapVersionValue = 0x00030000;
+inline constexpr std::uint32_t kMapVersionValue = 0x00030001;
 inline constexpr std::uint32_t kCommandsVersionValue = 3;
 inline constexpr std::uint32_t kWindowBytes = 4096;
 
@@ -189,6 +189,7 @@ inline constexpr std::uint32_t kFeedWatermark = 0x6C4;
 inline constexpr std::uint32_t kOutputSafe = 0x700;
 inline constexpr std::uint32_t kInputPolarity = 0x704;
 inline constexpr std::uint32_t kStreaming = 0x740;
+inline constexpr std::uint32_t kWatchdog = 0x780;
 constexpr std::uint32_t step_length(std::uint32_t axis) { return 0x800 + 128 * axis; }
 constexpr std::uint32_t step_space(std::uint32_t axis) { return 0x804 + 128 * axis; }
 constexpr std::uint32_t dir_setup(std::uint32_t axis) { return 0x808 + 128 * axis; }
@@ -314,9 +315,9 @@ inline constexpr std::uint32_t kModeInvertFirst = 0x4;
 inline constexpr std::uint32_t kModeInvertSecond = 0x8;
 }  // namespace field
 
-inline constexpr std::array<Register, 87> kRegisters{{
+inline constexpr std::array<Register, 88> kRegisters{{
     {"MAGIC", 0x000, 1, 0, Access::Constant, 0x54524D4C, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30000, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30001, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"AXES", 0x008, 1, 0, Access::Constant, 0x0, 0xFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"CLOCK_HZ", 0x00C, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"GEOMETRY_DEPTH", 0x014, 1, 0, Access::Constant, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -383,13 +384,14 @@ inline constexpr std::array<Register, 87> kRegisters{{
     {"RATIO_FIXED", 0x648, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 9, 0x0, 0, false, false},
     {"SLEW", 0x64C, 1, 0, Access::Setting, 0xFFFFFFF, 0xFFFFFFF, 0xFFFFFFF, 1, 0xFFFFFFF, 0, 0x0, 0, false, false},
     {"HOLD_LIMIT", 0x680, 1, 0, Access::Setting, 0xFFFF, 0xFFFF, 0xFFFF, 1, 0xFFFF, 0, 0x0, 0, false, false},
-    {"STOP_REACTION", 0x684, 1, 0, Access::Setting, 0x0, 0xFCFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"STOP_REACTION", 0x684, 1, 0, Access::Setting, 0x4000, 0xFCFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"IRQ_ENABLE", 0x688, 1, 0, Access::Setting, 0x0, 0x3FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"GEOMETRY_WATERMARK", 0x6C0, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
     {"FEED_WATERMARK", 0x6C4, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
     {"OUTPUT_SAFE", 0x700, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
     {"INPUT_POLARITY", 0x704, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
     {"STREAMING", 0x740, 1, 0, Access::Setting, 0x0, 0xFF01, 0x0, 0, 0x0, 8, 0x0, 0, false, false},
+    {"WATCHDOG", 0x780, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"STEP_LENGTH", 0x800, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"STEP_SPACE", 0x804, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"DIR_SETUP", 0x808, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
@@ -476,6 +478,7 @@ inline constexpr std::uint8_t kPathCommands = 12;       // OUTPUT, MARK, WAIT_IN
 inline constexpr std::uint8_t kInputs = 13;             // Inputs with synchroniser and polarity.
 inline constexpr std::uint8_t kOutputs = 14;            // Outputs.
 inline constexpr std::uint8_t kPositionStreaming = 15;  // A line for each period of a host that streams positions.
+inline constexpr std::uint8_t kWatchdog = 16;           // Watchdog over the host.
 }  // namespace unit
 
 // Units on the load bus, of their first instance.
@@ -487,9 +490,9 @@ inline constexpr unsigned kPathCommands = 12;
 inline constexpr unsigned kNone = 31;
 }  // namespace load_unit
 
-inline constexpr std::array<Unit, 15> kUnits{{
+inline constexpr std::array<Unit, 16> kUnits{{
     {"time_base", 1, 1, 0, 0, UnitCount::Fixed, 1, true, 1600, 0, 1612, 0, 0, 31, {9, 0, 0, 0, 0, 0, 0, 0}},
-    {"stop_control", 2, 1, 0, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"stop_control", 2, 1, 1, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"queues", 3, 1, 0, 0, UnitCount::Fixed, 2, true, 1728, 0, 1728, 0, 1, 31, {10, 0, 0, 0, 0, 0, 0, 0}},
     {"feed_generator", 4, 1, 0, 0, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {4, 0, 0, 0, 0, 0, 0, 0}},
     {"axes", 5, 1, 0, 0, UnitCount::Axes, 0, true, 2048, 0, 2064, 0, 32, 0, {0, 0, 0, 0, 0, 0, 0, 0}},
@@ -503,6 +506,7 @@ inline constexpr std::array<Unit, 15> kUnits{{
     {"inputs", 13, 1, 0, 7, UnitCount::Inputs, 0, true, 1796, 0, 1796, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"outputs", 14, 1, 0, 7, UnitCount::Outputs, 0, true, 1792, 0, 1792, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"position_streaming", 15, 1, 0, 8, UnitCount::Fixed, 1, true, 1856, 0, 1856, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"watchdog", 16, 1, 0, 0, UnitCount::Fixed, 1, true, 1920, 0, 1920, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
 }};
 
 // What decides a card's descriptors.

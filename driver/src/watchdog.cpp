@@ -1,0 +1,40 @@
+#include "trammel/driver/low_level/watchdog.hpp"
+
+#include <fmt/format.h>
+
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card_timing.hpp"
+#include "trammel/driver/errors.hpp"
+
+namespace trammel::driver {
+
+namespace {
+
+constexpr std::uint64_t kUnitClocks = 65'536;
+constexpr std::uint64_t kMaxUnits = 0xFFFF;
+
+}  // namespace
+
+void Watchdog::set(std::chrono::nanoseconds time) {
+  const std::uint64_t clocks = clocks_of(time, card_.clock_hz, "watchdog");
+  const std::uint64_t units = clocks / kUnitClocks + (clocks % kUnitClocks != 0 ? 1 : 0);
+  if (units > kMaxUnits) {
+    const auto most =
+        std::chrono::duration_cast<std::chrono::milliseconds>(time_of(kMaxUnits * kUnitClocks, card_.clock_hz));
+    throw ArgumentError(fmt::format("watchdog: {} ms: this card takes up to {} ms",
+                                    std::chrono::duration_cast<std::chrono::milliseconds>(time).count(), most.count()));
+  }
+  units_ = static_cast<std::uint32_t>(units);
+  looks_ = 0;
+  registers_.write(card_map::reg::kWatchdog, units_, "watchdog");
+}
+
+void Watchdog::look() {
+  if (units_ == 0 || ++looks_ < kLooks) return;
+  looks_ = 0;
+  registers_.write(card_map::reg::kWatchdog, units_, "watchdog");
+}
+
+Access Watchdog::restart() const { return write_of(card_map::reg::kWatchdog, units_); }
+
+}  // namespace trammel::driver

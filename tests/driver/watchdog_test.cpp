@@ -1,0 +1,121 @@
+// The card's watchdog over a program: what the driver writes, and on the model that waiting programs keep it and silent
+// ones do not.
+#include <gmock/gmock.h>
+
+#include "argument_error.hpp"
+#include "register_stub.hpp"
+#include "stream_commands.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/driver/stream.hpp"
+#include "trammel/sim/engine.hpp"
+
+namespace trammel::driver {
+namespace {
+
+using namespace std::chrono_literals;
+using test::RegisterStub;
+using test::wrote;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+
+TEST(Watchdog, TimesAreRoundedUpToItsUnit) {
+  RegisterStub bus;  // 1 MHz: a unit is 65,536 us
+  Card card = Card::open(bus);
+  bus.forget();
+  card.set_watchdog(1ns);
+  card.set_watchdog(65'536us);
+  card.set_watchdog(65'537us);
+  card.set_watchdog(65'535 * 65'536us);
+  card.set_watchdog(0ns);
+  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 1), wrote(reg::kWatchdog, 1), wrote(reg::kWatchdog, 2),
+                                   wrote(reg::kWatchdog, 65'535), wrote(reg::kWatchdog, 0)));
+  bus.forget();
+  EXPECT_THAT(argument_error([&] { card.set_watchdog(65'535 * 65'536us + 1ns); }), HasSubstr("up to 4294901 ms"));
+  EXPECT_THAT(argument_error([&] { card.set_watchdog(-1s); }), HasSubstr("negative"));
+  EXPECT_TRUE(bus.log.empty());
+}
+
+TEST(Watchdog, LooksStartItAnewWhereItIsSet) {
+  RegisterStub bus;
+  Card card = Card::open(bus);
+  bus.forget();
+  for (int i = 0; i < 100; ++i) serve_requests(card);
+  EXPECT_TRUE(bus.log.empty());
+  card.set_watchdog(1s);
+  bus.forget();
+  for (int i = 0; i < 64; ++i) serve_requests(card);
+  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 16), wrote(reg::kWatchdog, 16)));
+}
+
+// 2 s of motion under a watchdog of 10 ms.
+class WatchdogOnModel : public ::testing::Test {
+ protected:
+  WatchdogOnModel() : card_(Card::open(*engine_)) { card_.set_watchdog(10ms); }
+
+  void begin_line() {
+    Stream stream(card_, {});
+    stream.send({feed_of(kTicks), line_of(kTicks, 100'000), EndCommand{}});
+    stream.flush();
+  }
+
+  static constexpr std::uint64_t kTicks = 12'500'000;  // of 16 clocks
+  static sim::ModelOptions at_100_mhz() {
+    sim::ModelOptions options;
+    options.clock_hz = 100'000'000;
+    return options;
+  }
+  std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(at_100_mhz());
+  Card card_;
+};
+
+TEST_F(WatchdogOnModel, AWaitingProgramKeepsIt) {
+  begin_line();
+  card_.wait_until_idle(10s);
+  EXPECT_EQ(engine_->positions()[0], 100'000);
+  EXPECT_EQ(card_.read_faults(), 0U);
+}
+
+TEST_F(WatchdogOnModel, ASilentProgramLosesTheCard) {
+  card_.set_slew_time(1ms);
+  begin_line();
+  engine_->sleep(500us);
+  engine_->sleep(50ms);
+  const Snapshot stop = card_.read_stop_snapshot();
+  EXPECT_GT(stop.position[0], 400);
+  const auto rest = engine_->positions()[0];
+  EXPECT_GT(rest, stop.position[0]) << "on a ramp";
+  try {
+    card_.wait_until_idle(10s);
+    FAIL() << "the fault is not seen";
+  } catch (const FaultError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("WATCHDOG"));
+  }
+  EXPECT_EQ(card_.read_faults(), field::kFaultWatchdog);
+  engine_->sleep(1s);
+  EXPECT_EQ(engine_->positions()[0], rest) << "nothing moves by itself";
+  card_.clear_faults();
+  EXPECT_EQ(card_.read_faults(), 0U);
+  engine_->sleep(5ms);
+  EXPECT_EQ(engine_->positions()[0], rest);
+  EXPECT_EQ(card_.read_faults(), 0U) << "its time began anew";
+  begin_line();
+  card_.wait_until_idle(10s);
+  EXPECT_EQ(engine_->positions()[0], rest + 100'000);
+}
+
+// Another program may clear what this one has left.
+TEST_F(WatchdogOnModel, ClearedByAProgramThatSetsNone) {
+  engine_->sleep(50ms);
+  Card other = Card::open(*engine_);
+  EXPECT_EQ(other.read_faults(), field::kFaultWatchdog);
+  other.clear_faults();
+  engine_->sleep(1s);
+  EXPECT_EQ(other.read_faults(), 0U);
+}
+
+}  // namespace
+}  // namespace trammel::driver

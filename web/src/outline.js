@@ -1,0 +1,16 @@
+// A path with few lines, to be drawn while the view moves. No document here.
+
+// Pairs of corners (places in a list of x y z), `most` lines or few more: each joins neighbours that follow on one another.
+export function outline(points, most) {
+  const lines = points.length / 6
+  const run = Math.max(1, Math.ceil(lines / most))
+  const joined = (line) => [0, 1, 2].every((d) => points[6 * line - 3 + d] === points[6 * line + d])
+  const corners = []
+  for (let begin = 0; begin < lines;) {
+    let end = begin + 1
+    while (end < lines && end - begin < run && joined(end)) ++end
+    corners.push(2 * begin, 2 * end - 1)
+    begin = end
+  }
+  return Uint32Array.from(corners)
+}
