@@ -166,7 +166,8 @@ void add_serve_command(CLI::App& app) {
       ->check(positive())
       ->type_name("SECONDS")
       ->capture_default_str();
-  command->add_flag("--once", options->once, "end when the first client has gone");
+  command->add_flag("--once", options->once,
+                    "end when the first client has gone, and nobody who came meanwhile is left");
   command->callback([options] { serve_card(*options); });
 }
 

@@ -199,23 +199,51 @@ class StepRecord final : public driver::StepSink {
   std::vector<PathStep> path;
 };
 
+// A bus that can be let go of while card and streams are still there: every access then says so.
+class ClosableBus final : public driver::Bus {
+ public:
+  explicit ClosableBus(std::shared_ptr<driver::Bus> way) : way_(std::move(way)) {}
+  void close() { way_.reset(); }
+
+  std::size_t transfer(driver::Access* accesses, std::size_t count) override { return way().transfer(accesses, count); }
+  void sleep(nanoseconds time) override { way().sleep(time); }
+  bool reports_refusals() const override { return way().reports_refusals(); }
+  bool has_interrupt() const override { return way().has_interrupt(); }
+  bool wait_for_interrupt(nanoseconds longest) override { return way().wait_for_interrupt(longest); }
+  std::string hold_origin() const override { return way().hold_origin(); }
+
+ private:
+  driver::Bus& way() const {
+    if (!way_) throw driver::StateError("the card is closed");
+    return *way_;
+  }
+
+  std::shared_ptr<driver::Bus> way_;
+};
+
 // Card, bus and, for simulated ones, the record of steps, which outlives the bus.
 class PythonCard {
  public:
   PythonCard(std::shared_ptr<driver::Bus> way, sim::Engine* simulated)
-      : bus_(std::move(way)), engine_(simulated), card(driver::Card::open(*bus_)) {}
+      : bus_(std::move(way)), engine_(simulated), simulated_(simulated != nullptr), card(driver::Card::open(bus_)) {}
 
   sim::Engine& engine() const {
-    if (engine_ == nullptr) throw driver::StateError("this is for simulated cards alone");
+    if (!simulated_) throw driver::StateError("this is for simulated cards alone");
+    if (engine_ == nullptr) throw driver::StateError("the card is closed");
     return *engine_;
   }
   void record(bool on) { engine().set_sink(on ? &steps : nullptr); }
+  void close() {
+    engine_ = nullptr;
+    bus_.close();
+  }
 
   StepRecord steps;
 
  private:
-  std::shared_ptr<driver::Bus> bus_;
-  sim::Engine* engine_;
+  ClosableBus bus_;
+  sim::Engine* engine_;  // nullptr for others, and once closed
+  bool simulated_;
 
  public:
   driver::Card card;
@@ -326,6 +354,15 @@ void configure_axis(PythonCard& of, unsigned axis, std::int64_t length, std::int
                     std::int64_t hold, driver::StepMode mode, bool invert_first, bool invert_second) {
   of.card.configure_axis(axis, {nanoseconds(length), nanoseconds(space), nanoseconds(setup), nanoseconds(hold), mode,
                                 invert_first, invert_second});
+}
+
+void bind_closing(nb::class_<PythonCard>& card) {
+  card.def("close", waiting([](PythonCard& of) { of.close(); }),
+           "Lets go of the link; a served card that could be moved then holds. Further accesses raise StateError.")
+      .def("__enter__", [](nb::handle self) { return nb::borrow(self); })
+      .def(
+          "__exit__", [](PythonCard& of, const nb::object&, const nb::object&, const nb::object&) { of.close(); },
+          "type"_a.none(), "value"_a.none(), "traceback"_a.none());
 }
 
 void bind_motion(nb::class_<PythonCard>& card) {
@@ -598,6 +635,7 @@ void bind_position_stream(nb::module_& m) {
 void bind_driver(nb::module_& m) {
   bind_card_values(m);
   auto card = nb::class_<PythonCard>(m, "Card");
+  bind_closing(card);
   bind_motion(card);
   bind_state(card);
   bind_simulation(card);

@@ -20,7 +20,8 @@ namespace field = card_map::field;
 
 // A client that is sent away is listened to for so long, so that the reason reaches it.
 constexpr auto kFarewell = 1s;
-constexpr auto kLook = 2ms;  // where nothing is due
+constexpr auto kLook = 2ms;                           // where nothing is due
+constexpr std::size_t kMaxClients = kMaxReaders + 2;  // who moves the card, and one that has not begun
 
 // What changes nothing that moves: the order for a snapshot, and forgetting what was refused.
 bool serves_reading(std::uint32_t address, std::uint32_t data) {
@@ -39,20 +40,33 @@ CardServer::CardServer(sim::Engine& engine, transport::Listener& listener, Setti
       listener_(listener),
       settings_(std::move(settings)),
       pace_(std::make_unique<Pace>(engine, settings_)),
-      endpoint_([this](bool write, std::uint32_t address, std::uint32_t data) { return make(write, address, data); }) {}
+      motion_([this](bool write, std::uint32_t address, std::uint32_t data) { return make(write, address, data); }) {}
 
 CardServer::~CardServer() = default;
 
 frames::Endpoint::Answer CardServer::make(bool write, std::uint32_t address, std::uint32_t data) {
-  if (write && !client_->may_move() && !serves_reading(address, data)) return {true, 0};
   driver::Access access{address, data, write};
   const bool made = engine_.transfer(&access, 1) == 1;
   if (write && made && address == reg::kHold && data == 0) held_by_.clear();
   return {!made, access.data};
 }
 
+frames::Endpoint::Answer CardServer::make_reading(bool write, std::uint32_t address, std::uint32_t data) {
+  return write && !serves_reading(address, data) ? frames::Endpoint::Answer{true, 0} : make(write, address, data);
+}
+
+CardServer::Client* CardServer::mover() const {
+  const auto found = std::find_if(clients_.begin(), clients_.end(), [](const auto& c) { return c->may_move(); });
+  return found == clients_.end() ? nullptr : found->get();
+}
+
+std::size_t CardServer::readers() const {
+  return static_cast<std::size_t>(
+      std::count_if(clients_.begin(), clients_.end(), [](const auto& c) { return c->reads(); }));
+}
+
 void CardServer::turn() {
-  if (client_) serve_client(0ns);
+  serve_clients();
   admit();
   drain_leaving();
   pass_time();
@@ -62,34 +76,46 @@ void CardServer::admit() {
   std::unique_ptr<transport::ByteStream> stream = listener_.accept();
   if (!stream) return;
   // Who comes when the one before has gone is not a second one: its end is here by now.
-  if (client_) serve_client(0ns);
-  if (client_) return refuse(std::move(stream), "another client is connected: one at a time");
+  serve_clients();
+  if (clients_.size() == kMaxClients) return refuse(std::move(stream), "the server has no place: try again later");
   ++counts_.clients;
   settings_.note(fmt::format("{} has come", stream->peer()));
-  endpoint_.connect();  // nothing that its predecessor has left of a frame
-  client_ = std::make_unique<Client>(
-      std::move(stream), engine_, endpoint_, settings_,
-      [this] { hold(client_->peer() + ": another one has its place"); }, held_by_);
+  clients_.push_back(std::make_unique<Client>(std::move(stream), *this));
 }
 
-void CardServer::serve_client(std::chrono::nanoseconds longest) {
-  const std::uint64_t before = client_->requests();
+// The oldest first: so one that has gone leaves its place before another one asks for it.
+void CardServer::serve_clients() {
+  std::vector<Client*> clients;
+  for (const auto& client : clients_) clients.push_back(client.get());
+  for (Client* const client : clients) serve_client(*client, 0ns);
+}
+
+// It may be gone afterwards.
+void CardServer::serve_client(Client& client, std::chrono::nanoseconds longest) {
+  const std::uint64_t requests = client.requests();
+  const std::uint64_t dropped = client.dropped();
+  const auto count = [&] {
+    counts_.requests += client.requests() - requests;
+    counts_.dropped += client.dropped() - dropped;
+  };
   try {
-    client_->serve(longest);
-    counts_.requests += client_->requests() - before;
+    client.serve(longest);
+    count();
   } catch (const driver::LinkError& error) {
-    lose_client(error.what());
+    count();
+    lose_client(client, error.what());
   } catch (const Unwanted& error) {
-    std::unique_ptr<transport::ByteStream> stream = client_->take_stream();
-    lose_client(stream->peer() + ": " + error.what());
+    count();
+    std::unique_ptr<transport::ByteStream> stream = client.take_stream();
+    lose_client(client, stream->peer() + ": " + error.what());
     refuse(std::move(stream), error.what());
   }
-  counts_.dropped = endpoint_.dropped();
 }
 
-void CardServer::lose_client(const std::string& why) {
-  const bool could_move = client_->may_move();
-  client_.reset();
+void CardServer::lose_client(Client& client, const std::string& why) {
+  const bool could_move = client.may_move();
+  if (!could_move) reading_session_ = client.reading_session();
+  clients_.erase(std::find_if(clients_.begin(), clients_.end(), [&](const auto& c) { return c.get() == &client; }));
   if (could_move) return hold(why);
   settings_.note(fmt::format("client gone ({})", why));
 }
@@ -125,15 +151,28 @@ void CardServer::drain_leaving() {
   leaving_.erase(std::remove_if(leaving_.begin(), leaving_.end(), gone), leaving_.end());
 }
 
+// Of who moves the card, else of all.
+std::optional<std::uint64_t> CardServer::clocks_to_next() const {
+  if (const Client* const client = mover()) return client->clocks_to_next();
+  std::optional<std::uint64_t> next;
+  for (const auto& client : clients_) {
+    if (const auto clocks = client->clocks_to_next()) next = std::min(next.value_or(*clocks), *clocks);
+  }
+  return next;
+}
+
 // In real time the card keeps up with life; else it runs to what the client waits for, and where nobody says how long
 // he waits, for as long as something moves.
 void CardServer::pass_time() {
-  const std::optional<std::uint64_t> next = client_ ? client_->clocks_to_next() : std::nullopt;
+  const std::optional<std::uint64_t> next = clocks_to_next();
   if (next && *next == 0) return;
-  const bool stands = !settings_.real_time && !next && ((client_ && client_->waits_by_itself()) || !card_moves());
+  const bool says_when =
+      std::any_of(clients_.begin(), clients_.end(), [](const auto& client) { return client->waits_by_itself(); });
+  const bool stands = !settings_.real_time && !next && (says_when || !card_moves());
   const std::uint64_t clocks = stands ? 0 : pace_->due(next.value_or(settings_.clock_hz));
   if (clocks != 0) return pace_->run(clocks);
-  if (client_) return serve_client(kLook);
+  if (Client* const client = mover()) return serve_client(*client, kLook);
+  if (!clients_.empty()) return serve_client(*clients_.front(), kLook);
   std::this_thread::sleep_for(kLook);
 }
 

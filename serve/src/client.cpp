@@ -34,17 +34,18 @@ bool same(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-CardServer::Client::Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine,
-                           frames::Endpoint& endpoint, const Settings& settings, std::function<void()> left,
-                           const std::string& held_by)
+CardServer::Client::Client(std::unique_ptr<transport::ByteStream> stream, CardServer& server)
     : stream_(std::move(stream)),
-      engine_(engine),
-      endpoint_(endpoint),
-      settings_(settings),
-      left_(std::move(left)),
-      held_by_(held_by),
-      clocks_of_byte_(settings.baud == 0 ? 0 : 10.0 * settings.clock_hz / settings.baud),
-      heard_(steady_clock::now()) {}
+      server_(server),
+      engine_(server.engine_),
+      settings_(server.settings_),
+      reading_([&server](bool write, std::uint32_t address,
+                         std::uint32_t data) { return server.make_reading(write, address, data); },
+               std::exchange(server.reading_session_, frames::Session())),
+      clocks_of_byte_(settings_.baud == 0 ? 0 : 10.0 * settings_.clock_hz / settings_.baud),
+      heard_(steady_clock::now()) {
+  reading_.connect();
+}
 
 void CardServer::Client::serve(std::chrono::nanoseconds longest) {
   read(longest);
@@ -67,7 +68,7 @@ void CardServer::Client::read(std::chrono::nanoseconds longest) {
     came_.erase(came_.begin(), came_.begin() + before);
     text_.clear();
     between_frames_ = true;
-    endpoint_.connect();
+    endpoint().connect();
     begin_anew();
   }
   check_silence();
@@ -111,7 +112,7 @@ bool CardServer::Client::take_byte(std::uint8_t byte) {
 
 // On a terminal a client may follow another one unseen.
 void CardServer::Client::begin_anew() {
-  if (may_move_) left_();
+  if (may_move_) server_.hold(peer() + ": another one has its place");
   hello_ = false;
   may_move_ = false;
 }
@@ -119,6 +120,7 @@ void CardServer::Client::begin_anew() {
 void CardServer::Client::begin() {
   if (!begun_) heard_ = steady_clock::now();
   begun_ = true;
+  if (!may_move_ && server_.readers() > kMaxReaders) throw Unwanted("as many clients read as the server takes");
 }
 
 void CardServer::Client::take_hello(const std::string& line) {
@@ -128,22 +130,28 @@ void CardServer::Client::take_hello(const std::string& line) {
   if (with_token && !same(line.substr(sizeof(kHello)), settings_.token)) {
     throw Unwanted("wrong token: take the one that the server has printed");
   }
-  begin();
+  const Client* const mover = server_.mover();
+  if (with_token && mover != nullptr && mover != this) {
+    throw Unwanted("another client moves the card: one at a time");
+  }
   hello_ = true;
   may_move_ = with_token;
-  const std::string held = held_by_.empty() ? "" : " held: " + held_by_.substr(0, kLongestText);
+  begin();
+  if (may_move_) server_.motion_.connect();  // nothing that its predecessor has left of a frame
+  const std::string& held_by = server_.held_by_;
+  const std::string held = held_by.empty() ? "" : " held: " + held_by.substr(0, kLongestText);
   answer(bytes_of(fmt::format("trammel 1 {}{}\n", may_move_ ? "motion" : "reading", held)), engine_.cycles());
 }
 
 bool CardServer::Client::deliver(std::uint8_t byte) {
   const auto now = static_cast<double>(engine_.cycles());
-  if (line_in_ > now) return false;
+  if (line_in_ > now && !has_no_say_in_time()) return false;
   // Within the clock in which the line became free the next byte follows without a gap.
   if (now - line_in_ >= 1) line_in_ = now;
   line_in_ += clocks_of_byte_;
   between_frames_ = byte == frames::kEnd;
   frames::Bytes reply;
-  endpoint_.take(byte, reply);
+  endpoint().take(byte, reply);
   drop(1);
   if (reply.empty()) return true;
   since_good_ = 0;
@@ -180,8 +188,23 @@ void CardServer::Client::drop(std::size_t bytes) {
   if (since_good_ > kMaxRubbish) throw Unwanted(fmt::format("no frame in {} bytes", kMaxRubbish));
 }
 
+void CardServer::Client::answer(frames::Bytes bytes, std::uint64_t cycle) {
+  const std::uint64_t now = engine_.cycles();
+  const double seconds = static_cast<double>(cycle > now ? cycle - now : 0) / settings_.clock_hz;
+  const auto life = std::chrono::duration_cast<steady_clock::duration>(std::chrono::duration<double>(seconds));
+  answers_.push_back({std::move(bytes), cycle, steady_clock::now() + life});
+}
+
+// Who moves the card decides alone when its time goes on. For a reader beside it, time that stands passes as in life.
+bool CardServer::Client::has_no_say_in_time() const {
+  return !settings_.real_time && !may_move_ && server_.mover() != nullptr;
+}
+
 void CardServer::Client::send_due() {
-  while (!answers_.empty() && answers_.front().cycle <= engine_.cycles()) {
+  const auto is_due = [this](const Answer& answer) {
+    return answer.cycle <= engine_.cycles() || (has_no_say_in_time() && answer.life <= steady_clock::now());
+  };
+  while (!answers_.empty() && is_due(answers_.front())) {
     stream_->write(answers_.front().bytes.data(), answers_.front().bytes.size());
     answers_.pop_front();
   }

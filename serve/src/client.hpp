@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -23,12 +22,13 @@ class Unwanted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// One more may have come and not begun yet; so who moves the card finds a place.
+constexpr std::size_t kMaxReaders = 8;
+
 class CardServer::Client {
  public:
-  // `left`: called when one who could move the card has gone, and another one has the stream. `held_by`: who has left
-  // the card in a hold, if anybody has; the hello says it.
-  Client(std::unique_ptr<transport::ByteStream> stream, sim::Engine& engine, frames::Endpoint& endpoint,
-         const Settings& settings, std::function<void()> left, const std::string& held_by);
+  // `server` must outlive it.
+  Client(std::unique_ptr<transport::ByteStream> stream, CardServer& server);
 
   // Reads what has come, waiting for at most `longest`; makes what is due at the card's time; sends what is due.
   // Throws driver::LinkError when the client has gone, Unwanted when it cannot stay.
@@ -38,16 +38,20 @@ class CardServer::Client {
   std::optional<std::uint64_t> clocks_to_next() const;
 
   bool may_move() const { return may_move_; }
+  bool reads() const { return begun_ && !may_move_; }
   // Lets time pass by itself; only then the card's time waits for it.
   bool waits_by_itself() const { return hello_; }
   std::string peer() const { return stream_->peer(); }
   std::uint64_t requests() const { return requests_; }
+  std::uint64_t dropped() const { return server_.motion_.dropped() + reading_.dropped(); }  // frames, of both
+  const frames::Session& reading_session() const { return reading_.session(); }
   std::unique_ptr<transport::ByteStream> take_stream() { return std::move(stream_); }
 
  private:
   struct Answer {
     frames::Bytes bytes;
-    std::uint64_t cycle;  // leaves when this has come
+    std::uint64_t cycle;                         // leaves when this has come
+    std::chrono::steady_clock::time_point life;  // when that would be in real time
   };
 
   void read(std::chrono::nanoseconds longest);
@@ -60,14 +64,15 @@ class CardServer::Client {
   void drop(std::size_t bytes);
   bool deliver(std::uint8_t byte);
   void send_due();
-  void answer(frames::Bytes bytes, std::uint64_t cycle) { answers_.push_back({std::move(bytes), cycle}); }
+  void answer(frames::Bytes bytes, std::uint64_t cycle);
+  frames::Endpoint& endpoint() { return may_move_ ? server_.motion_ : reading_; }
+  bool has_no_say_in_time() const;
 
   std::unique_ptr<transport::ByteStream> stream_;
+  CardServer& server_;
   sim::Engine& engine_;
-  frames::Endpoint& endpoint_;
   const Settings& settings_;
-  std::function<void()> left_;
-  const std::string& held_by_;
+  frames::Endpoint reading_;
   double clocks_of_byte_;                        // on the line, in card time
   std::chrono::steady_clock::time_point heard_;  // something; before it has begun: when it came
   std::deque<std::uint8_t> came_;                // not yet at the card

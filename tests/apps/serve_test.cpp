@@ -247,7 +247,10 @@ TEST(Serve, ASecondClientAndASecondServer) {
   const std::string program = command.write("long.ngc", "G4 P20\n");
   const Running client(command, "run " + program + " --card " + server.moving(), "client.err");
   ASSERT_TRUE(eventually([&] { return server.said("has come"); }));
-  expect_refused(command, "info --card " + server.url(), "another client is connected");
+  expect_refused(command, "line --to 1,1 --card " + server.moving(), "another client moves the card");
+  const Outcome monitor = command.run("monitor --looks 2 --interval 0.01 --card " + server.url());
+  EXPECT_EQ(monitor.status, 0) << monitor.err;
+  EXPECT_TRUE(has(monitor.out, "axis 0   pulse 0")) << monitor.out;
   const std::string port = server.url().substr(server.url().rfind(':') + 1);
   expect_refused(command, "serve --port " + port, "is in use");
 }

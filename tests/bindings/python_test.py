@@ -24,6 +24,16 @@ class Cards(unittest.TestCase):
         self.assertEqual((axes.instances, axes.address, axes.stride), (7, 0x800, 32))
         self.assertEqual(units["queues"].words, 1)
 
+    def test_close_and_with(self):
+        with trammel.simulate() as card:
+            stream = trammel.Stream(card)
+            card.run_line([20, 40], duration_ns=1_000_000)
+        for use in (card.read_snapshot, stream.finish, lambda: card.wait(1),
+                    lambda: card.run_line([1], duration_ns=1_000_000)):
+            self.assertRaisesRegex(trammel.StateError, "the card is closed", use)
+        card.close()
+        self.assertEqual(card.identification.axes, 4)
+
     def test_lines_in_one_burst(self):
         card = trammel.simulate()
         card.record_steps()

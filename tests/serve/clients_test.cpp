@@ -116,12 +116,81 @@ TEST_F(ClientsTest, AServerThatIsGone) {
   EXPECT_EQ(bus.transfer(&magic, 1), 1U) << "and it may come back";
 }
 
-TEST_F(ClientsTest, OneAtATime) {
+TEST_F(ClientsTest, OneAtATimeMovesTheCard) {
   serve(settings());
   const StreamLink first(opener(), StreamLink::Hello{"secret"});
-  EXPECT_THAT(link_error("secret"), HasSubstr("another client is connected"));
+  EXPECT_THAT(link_error("secret"), HasSubstr("another client moves the card"));
   EXPECT_TRUE(server_->has_client());
   EXPECT_EQ(engine_->read(reg::kHold), 0U) << "the first one is still there";
+}
+
+// Readers come before who moves the card and beside it, and take nothing from it: neither its place nor its requests.
+TEST_F(ClientsTest, ReadersReadBesideWhoMovesTheCard) {
+  serve(settings());
+  StreamLink early(opener(), StreamLink::Hello{});
+  driver::FrameBus early_bus(early);
+  driver::Card early_card = driver::Card::open(early_bus);
+  StreamLink moving(opener(), StreamLink::Hello{"secret"});
+  driver::FrameBus bus(moving);
+  driver::Card card = driver::Card::open(bus);
+  StreamLink late(opener(), std::nullopt);
+  driver::FrameBus late_bus(late);
+  driver::Card late_card = driver::Card::open(late_bus);
+  EXPECT_TRUE(moving.may_move());
+  EXPECT_THROW(late_card.set_hold(true), driver::RefusedError);
+  for (int i = 1; i <= 20; ++i) {
+    driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
+    EXPECT_EQ(early_card.read_snapshot().position[0], 100 * i);
+    EXPECT_EQ(late_card.read_snapshot().position[0], 100 * i);
+    EXPECT_EQ(early_card.read_status().busy, false);
+  }
+  EXPECT_EQ(early.reconnections() + moving.reconnections() + late.reconnections(), 0U);
+  EXPECT_EQ(server_->counts().holds, 0U);
+}
+
+// As fast as it can: the time is that of who moves the card, and a reader's wait ends though that time stands.
+TEST_F(ClientsTest, AReadersWaitDoesNotPassTheMoversTime) {
+  serve(settings());
+  StreamLink moving(opener(), StreamLink::Hello{"secret"});
+  driver::FrameBus bus(moving);
+  driver::Card card = driver::Card::open(bus);
+  StreamLink reading(opener(), StreamLink::Hello{});
+  driver::FrameBus reading_bus(reading);
+  const std::uint64_t before = engine_->cycles();
+  const auto begun = std::chrono::steady_clock::now();
+  reading.sleep(50ms);
+  EXPECT_GE(std::chrono::steady_clock::now() - begun, 50ms);
+  EXPECT_EQ(engine_->cycles(), before);
+}
+
+// A reader's connection is made anew beside others, and its card was not reset.
+TEST_F(ClientsTest, AReaderThatWasCutReadsOn) {
+  serve(settings());
+  std::optional<std::uint64_t> life = 3000;
+  StreamLink cut(
+      [&] {
+        return std::make_unique<ClientEnd>(*server_, listener_, std::exchange(life, std::nullopt),
+                                           ClientEnd::End::kCut);
+      },
+      StreamLink::Hello{});
+  driver::FrameBus bus(cut);
+  driver::Access magic = driver::read_of(reg::kMagic);
+  StreamLink other(opener(), StreamLink::Hello{});
+  driver::FrameBus other_bus(other);
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_EQ(bus.transfer(&magic, 1), 1U);
+    ASSERT_EQ(magic.data, card_map::kMagicValue);
+  }
+  EXPECT_EQ(cut.reconnections(), 1U);
+}
+
+TEST_F(ClientsTest, ManyReadersLeaveAPlaceForWhoMovesTheCard) {
+  serve(settings());
+  std::vector<std::unique_ptr<StreamLink>> readers;
+  for (int i = 0; i < 8; ++i) readers.push_back(std::make_unique<StreamLink>(opener(), StreamLink::Hello{}));
+  EXPECT_THAT(link_error(""), HasSubstr("as many clients read as the server takes"));
+  const StreamLink moving(opener(), StreamLink::Hello{"secret"});
+  EXPECT_TRUE(moving.may_move());
 }
 
 TEST_F(ClientsTest, WithoutTheTokenNothingIsWrittenThatMoves) {

@@ -18,7 +18,7 @@ class Endpoint {
   // One access to the card's inner register port; address in bytes.
   using Access = std::function<Answer(bool write, std::uint32_t address, std::uint32_t data)>;
 
-  explicit Endpoint(Access access) : access_(std::move(access)) {}
+  explicit Endpoint(Access access, Session session = Session()) : access_(std::move(access)), session_(session) {}
 
   // A byte from the host; the reply to a request that it ends is appended to `out`.
   void take(std::uint8_t byte, Bytes& out);

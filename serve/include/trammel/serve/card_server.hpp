@@ -1,11 +1,12 @@
-// Gives a simulated card to other programs, one at a time: docs/user/serve.md; what goes over the stream:
-// docs/reference/card-url.md. One thread.
+// Gives a simulated card to other programs, to one that moves it and to some that read: docs/user/serve.md; what goes
+// over the stream: docs/reference/card-url.md. One thread.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ class CardServer {
  public:
   struct Counts {
     std::uint64_t clients = 0;
-    std::uint64_t refused = 0;   // of further ones: busy, wrong token, rubbish
+    std::uint64_t refused = 0;   // of further ones: no place, wrong token, rubbish
     std::uint64_t requests = 0;  // frames that were answered
     std::uint64_t dropped = 0;   // frames that were damaged
     std::uint64_t holds = 0;     // clients that could move and went
@@ -49,7 +50,7 @@ class CardServer {
   // Takes what has come, and lets the card's time go on: some milliseconds at most.
   void turn();
 
-  bool has_client() const { return client_ != nullptr; }
+  bool has_client() const { return !clients_.empty(); }
   const Counts& counts() const { return counts_; }
 
  private:
@@ -59,8 +60,13 @@ class CardServer {
 
   void admit();
   frames::Endpoint::Answer make(bool write, std::uint32_t address, std::uint32_t data);
-  void serve_client(std::chrono::nanoseconds longest);
-  void lose_client(const std::string& why);
+  frames::Endpoint::Answer make_reading(bool write, std::uint32_t address, std::uint32_t data);
+  void serve_clients();
+  void serve_client(Client& client, std::chrono::nanoseconds longest);
+  void lose_client(Client& client, const std::string& why);
+  Client* mover() const;  // the one that may move the card; nullptr where there is none
+  std::size_t readers() const;
+  std::optional<std::uint64_t> clocks_to_next() const;
   void hold(const std::string& why);
   void refuse(std::unique_ptr<transport::ByteStream> stream, const std::string& why);
   void drain_leaving();
@@ -71,9 +77,10 @@ class CardServer {
   transport::Listener& listener_;
   Settings settings_;
   Counts counts_;
-  std::unique_ptr<Client> client_;
+  std::vector<std::unique_ptr<Client>> clients_;  // the oldest first
   std::unique_ptr<Pace> pace_;
-  frames::Endpoint endpoint_;
+  frames::Endpoint motion_;          // the mover's: a connection that is made anew finds its session again
+  frames::Session reading_session_;  // of the reader that went last, for the next one, which may be the same
   std::vector<Leaving> leaving_;
   std::string held_by_;  // who has left the card in its hold, and why; empty where it does not hold for that
 };
