@@ -135,18 +135,38 @@ TEST(Notes, BlendsAndCornersThatAreKept) {
 
 TEST(Words, LinesOfFurtherWordsAreLeftOut) {
   const Command command;
-  const std::string run = "run " + command.write("a.gcode", "M862.3 P \"MK3S\"\nM900 K0.05\nG1 X1 F600\n") + " --check";
-  const Outcome refused = command.run(run);
+  const std::string program = command.write("a.gcode", "M808 L1\nM555.3 \"MK3S\"\nM909\nG9\nG1 X1 F600\n");
+  const Outcome refused = command.run("run " + program + " --check");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("a.gcode:1: unsupported word 'M862.3'"), std::string::npos) << refused.err;
-  const Outcome outcome = command.run(run + " --accept M862.3 --accept m900");
+  EXPECT_NE(refused.err.find("a.gcode:1: unsupported word 'M808'; --accept M808,M555.3,M909,G9 leaves out"),
+            std::string::npos)
+      << refused.err;
+  // The option may stand before the program, too.
+  const Outcome outcome = command.run("run --check --accept M808,m555.3 --accept M909,g9 " + program);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("no hardware: M862.3 (1) M900 (1)\n"), std::string::npos) << outcome.out;
-  for (const char* word : {"900", "G1", "M", "M1.25", "M99999", "M-1", "Mx"}) {
-    const Outcome bad = command.run(run + " --accept " + word);
+  EXPECT_NE(outcome.out.find("no hardware: G9 (1) M555.3 (1) M808 (1) M909 (1)\n"), std::string::npos) << outcome.out;
+  for (const char* word : {"900", "M", "M1.25", "M99999", "M-1", "Mx", "X1"}) {
+    const Outcome bad = command.run("run " + program + " --check --accept " + word);
     EXPECT_EQ(bad.status, 2) << word;
-    EXPECT_NE(bad.err.find("is no M word such as M900 or M862.3"), std::string::npos) << bad.err;
+    EXPECT_NE(bad.err.find("is no G or M word such as M900 or M862.3"), std::string::npos) << bad.err;
   }
+  for (const char* word : {"G1", "G20", "G17", "G92", "G91", "M83", "M2", "G68", "M98"}) {
+    const Outcome bad = command.run("run " + program + " --check --accept " + word);
+    EXPECT_EQ(bad.status, 2) << word;
+    EXPECT_NE(bad.err.find(std::string("--accept: ") + word + " cannot be left out: "), std::string::npos) << bad.err;
+  }
+}
+
+TEST(Words, WhatAPrinterWouldDoOtherwiseIsTold) {
+  const Command command;
+  const std::string program = command.write("a.gcode", "G28\nM104 S200\nG4 P2\nG4 S1\nG1 X1 F600\n");
+  const Outcome outcome = command.run("run " + program + " --check");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("nothing was searched: G28 (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("which printers' firmware takes as milliseconds: G4 P (1)\n"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.err.find("warning: " + program + ": G4 P is in seconds here (1 time);"), std::string::npos)
+      << outcome.err;
 }
 
 TEST(Parameters, PersistWhereAFileIsNamed) {

@@ -1,12 +1,15 @@
-// Lines of slicers for hardware that the card does not have: heaters, fans, displays, limits of a printer's firmware.
-// Such a line begins with its word, and nothing else of it is read. Internal to the reader.
+// Lines for hardware that the card does not have: heaters, fans, displays, limits of a printer's firmware; and those
+// that the user names. Such a line begins with its word, and nothing else of it is read. Internal to the reader.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "other_words.hpp"
 #include "problem.hpp"
+#include "trammel/gcode/reader.hpp"
 
 namespace trammel::gcode {
 
@@ -15,25 +18,29 @@ std::string name_of(char letter, int tenths);
 
 class LeftOut {
  public:
-  // `more`: codes of further M words, in tenths.
-  explicit LeftOut(const std::vector<int>& more);
+  // `more`: further words.
+  explicit LeftOut(const std::vector<CodeWord>& more);
 
   // Whether the line (without blanks before it) is such a line; `name` is then its word, until the next call. With a
   // problem where it has more G or M words: these would be lost.
   bool find(std::string_view line, std::string_view& name, Problem& problem);
   // Of the last line that find() has found: there was a problem.
   bool failed() const { return failed_; }
+  // The word that begins a line and that is unknown, where `more` could name it; else empty.
+  std::string unknown(std::string_view line) const;
 
  private:
   struct Entry {
-    char letter;
-    int tenths;
-    bool text;  // the rest is text for people
+    CodeWord word;
+    Treatment treatment;
     std::string name;
   };
+  bool may_begin(std::string_view line) const;
+  const Entry* entry_of(const CodeWord& word, std::string_view rest) const;
   bool look_behind(std::string_view rest, const Entry& entry, Problem& problem);
 
   std::vector<Entry> entries_;
+  std::uint32_t g_digits_ = 0;  // of the G words: bit d, where digit d stands alone, bit 10 + d, where another follows
   bool failed_ = false;
 };
 
