@@ -157,6 +157,29 @@ TEST(Words, LinesOfFurtherWordsAreLeftOut) {
   }
 }
 
+// A name that breaks a line, is no UTF-8 or is longer than any file's.
+TEST(Messages, StayOneShortLineWhateverAFileIsCalled) {
+  const Command command;
+  const std::string folder = command.path("");
+  const std::string latin = command.write("caf\xe9\n.ngc", "G0 X1\n");
+  const Outcome taken = command.run("run '" + latin + "' --check --json " + command.path("a.json"));
+  EXPECT_EQ(taken.status, 0) << taken.err;
+  EXPECT_EQ(taken.out.find(folder + "caf\\xe9\\n.ngc: 1 path segments"), 0U) << taken.out;
+  EXPECT_EQ(read_json(command.path("a.json"))["program"], folder + "caf\\xe9\\n.ngc");
+  const Outcome refused = command.run("run '" + command.write("q\xe9\n.ngc", "G0 Q\n") + "' --check");
+  EXPECT_NE(refused.err.find("q\\xe9\\n.ngc:1: malformed number in 'Q'"), std::string::npos) << refused.err;
+  const std::string far(5000, 'a');
+  for (const std::string& arguments :
+       {"run '" + folder + "no\n\xff'", "run " + far, "steps " + far, "run '" + latin + "' --check --json " + far,
+        "run '" + latin + "' --machine " + far, "run '" + latin + "' --steps '" + folder + "no\n\xff/a'"}) {
+    const Outcome outcome = command.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+    EXPECT_LT(outcome.err.size(), 2100U);
+    EXPECT_EQ(outcome.err.find('\xff'), std::string::npos) << outcome.err;
+  }
+}
+
 TEST(Words, WhatAPrinterWouldDoOtherwiseIsTold) {
   const Command command;
   const std::string program = command.write("a.gcode", "G28\nM104 S200\nG4 P2\nG4 S1\nG1 X1 F600\n");

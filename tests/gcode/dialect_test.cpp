@@ -29,10 +29,12 @@ Coordinates end_of(const std::string& text) {
 
 TEST(Dialect, FirmwareWordsWithoutEffectAreListed) {
   const Reading program = read_text(
-      "M17\nM17 X Y\nM400\nM900 K0.05\nM862.1 P0.4\nM862.3 P \"MK3S\"\nM862.6 P\"Input shaper\"\nM84 X Y E\nM18 E\n"
+      "M115 U3.14\nM17\nM17 X Y\nM400\nM900 K0.05\nM862.1 P0.4\nM862.3 P \"MK3S\"\nM862.6 P\"Input shaper\"\nM84 X Y "
+      "E\nM18 E\n"
       "M84 S120\nM220 S100\nM221 T0 S100.0 ; flow\nG10\nG10 S1\nG11 ; back\nM82\nG0 X1\n");
   ASSERT_FALSE(program.error) << describe(*program.error);
-  EXPECT_EQ(program.accepted, (Words{{"M17", 2},
+  EXPECT_EQ(program.accepted, (Words{{"M115", 1},
+                                     {"M17", 2},
                                      {"M400", 1},
                                      {"M900", 1},
                                      {"M862.1", 1},
@@ -104,7 +106,7 @@ TEST(Dialect, G28TakesLettersAlone) {
   EXPECT_EQ(end("G28 X0 Z").target, (Coordinates{-5, 1, 30}));
   EXPECT_EQ(end("G28 z ; lift").target, (Coordinates{1, 1, 30}));
   EXPECT_EQ(end("G28 W").target, (Coordinates{-5, -6, 30})) << "a printer's word, where there is no such axis";
-  EXPECT_EQ(refusal("G28 A"), "1: the machine has no axis A");
+  EXPECT_EQ(refusal("G28 A"), "1: 'A': the machine has no axis A; [axis.a] of its file would describe it");
   EXPECT_EQ(refusal("G28 X P"), "1: malformed number in 'X'");
   EXPECT_EQ(refusal("G0 Y X1"), "1: malformed number in 'Y'");
   EXPECT_EQ(refusal("G28 X-"), "1: malformed number in 'X-'");

@@ -112,7 +112,7 @@ TEST(Gcode, RefusesWordsItDoesNotKnow) {
   for (const char* word : {"G59.4", "G1.5", "D1", "G-1", "G20000"}) {
     EXPECT_EQ(refusal(std::string("G21\n") + word), std::string("2: unsupported word '") + word + "'");
   }
-  EXPECT_EQ(refusal("G0 A5"), "1: 'A5': the machine has no axis A");
+  EXPECT_EQ(refusal("G0 A5"), "1: 'A5': the machine has no axis A; [axis.a] of its file would describe it");
   EXPECT_EQ(refusal("G5.2 X1"), "1: unsupported word 'G5.2': B-splines are not there; G5 and G5.1 are");
   EXPECT_EQ(refusal("G41 D1"), "1: unsupported word 'G41': cutter compensation: let the CAM program offset the path");
   for (const char* word : {"G33 K1", "G76", "G84", "G74", "G86", "G87", "G88", "G95", "G96", "M48", "M98", "G43.2"}) {

@@ -97,6 +97,7 @@ constexpr OtherWord kWords[] = {
     {'M', 1070, T::kLeftOut, ""},
     {'M', 1090, T::kLeftOut, ""},
     {'M', 1100, T::kLeftOut, ""},
+    {'M', 1150, T::kLeftOut, ""},
     {'M', 1170, T::kText, ""},
     {'M', 1400, T::kLeftOut, ""},
     {'M', 1900, T::kLeftOut, ""},

@@ -99,6 +99,12 @@ bool twice(const Word& word, Problem& problem) {
   return problem.set(ErrorCode::kLetterTwice, fmt::format("'{}': {} stands twice", quote(word.text), word.letter));
 }
 
+bool no_such_axis(char letter, std::string_view text, Problem& problem) {
+  return problem.set(ErrorCode::kNoSuchAxis,
+                     fmt::format("'{}': the machine has no axis {}; [axis.{}] of its file would describe it",
+                                 quote(text), letter, static_cast<char>(letter - 'A' + 'a')));
+}
+
 bool depends_on_probe(const Word& word, Problem& problem) {
   return problem.set(ErrorCode::kDependsOnProbe, fmt::format("'{}' cannot depend on a probe", quote(word.text)));
 }
@@ -213,8 +219,7 @@ bool WordSet::add_letter(const Word& word, Problem& problem) {
 bool WordSet::add_axis(const Word& word, const AxisLetters& axes, Problem& problem) {
   const std::uint8_t axis = axes[word.letter];
   if (axis == AxisLetters::kNone) {
-    return problem.set(ErrorCode::kNoSuchAxis,
-                       fmt::format("'{}': the machine has no axis {}", quote(word.text), word.letter));
+    return no_such_axis(word.letter, word.text, problem);
   }
   if (has_axis(axis)) {
     return twice(word, problem);
@@ -237,7 +242,7 @@ bool WordSet::check_bare(const AxisLetters& axes, Problem& problem) {
     if (axes[letter] != AxisLetters::kNone) {
       bare_axes_ |= 1U << axes[letter];
     } else if (letter != 'W') {
-      return problem.set(ErrorCode::kNoSuchAxis, fmt::format("the machine has no axis {}", letter));
+      return no_such_axis(letter, std::string_view(&letter, 1), problem);
     }
   }
   return true;
