@@ -137,7 +137,7 @@ std::string bare(const std::string& line) {
 bool is_left_out(std::string text) {
   static const std::set<std::string> kWords = {"M73",  "M104", "M105", "M106", "M107", "M109", "M110", "M115", "M117",
                                                "M140", "M190", "M201", "M202", "M203", "M204", "M205", "G29",  "M17",
-                                               "M18",  "M84",  "M220", "M221", "M400", "M862", "M900", "G10",  "G11"};
+                                               "M18",  "M84",  "M220", "M221", "M400", "M862", "M900"};
   const auto drop = [&](const char* characters) {
     text.erase(0, std::min(text.find_first_not_of(characters), text.size()));
   };

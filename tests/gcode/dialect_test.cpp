@@ -74,8 +74,8 @@ TEST(Dialect, AllUnknownWordsAreNamedAtOnce) {
 }
 
 TEST(Dialect, WordsThatCannotBeLeftOut) {
-  EXPECT_EQ(refusal("G0 X1 M555"),
-            "1: unsupported word 'M555'; only at the beginning of a line can it be left out with its line");
+  EXPECT_EQ(refusal("G0 X1 M555"), "1: unsupported word 'M555'; on a line of its own --accept M555 leaves it out");
+  EXPECT_EQ(refusal("G0 X1 M104 S0"), "1: unsupported word 'M104'; on a line of its own it is left out");
   for (const char* word : {"G68 R30", "G51", "G16", "G33 K1", "M98 P1", "G162", "M206 X1", "G1.5", "G59.4"}) {
     EXPECT_THAT(refusal(word), Not(HasSubstr("--accept"))) << word;
   }
@@ -129,6 +129,12 @@ TEST(Dialect, G4TakesSAsSecondsWhereThereIsNoP) {
   EXPECT_EQ(program.motions[0].seconds, 2.5);
   EXPECT_EQ(program.motions[1].seconds, 0.5);
   EXPECT_EQ(program.accepted, (Words{{"S", 1}})) << "the speed beside P alone";
+}
+
+TEST(Dialect, G4AloneWaitsForNothingInProgramsOfPrinters) {
+  EXPECT_EQ(read_text("M104 S0\nG4 ; wait\nG0 X1").accepted, (Words{{"G4", 1}, {"M104", 1}}));
+  EXPECT_EQ(refusal("G4\nM104 S0"), "1: G4 needs P or S, its seconds");
+  EXPECT_EQ(refusal("M104 S0\nG0 X1\nG4 X1"), "3: G4 needs P or S, its seconds");
 }
 
 TEST(Dialect, SecondsOfG4AreToldInProgramsOfPrinters) {

@@ -40,6 +40,12 @@ CodeWord word_at(std::string_view& line) {
   return {letter, code_at(line)};
 }
 
+// Of a text that begins with a digit; G4 and G04 are alike.
+std::size_t first_two_digits(std::string_view text) {
+  const auto first = static_cast<std::size_t>(text[0] - '0');
+  return text.size() > 1 && is_digit(text[1]) ? first * 10 + static_cast<std::size_t>(text[1] - '0') : first;
+}
+
 // The line's number.
 std::string_view without_number(std::string_view line) {
   if (line.empty() || upper(line.front()) != 'N') return line;
@@ -55,13 +61,8 @@ bool has_full_percent(std::string_view text) {
   return false;
 }
 
-// Always, or with some words behind it.
-bool is_left_out(Treatment treatment) {
-  return treatment != Treatment::kRefused && treatment != Treatment::kNeverLeftOut;
-}
-
 // Whether a word's treatment leaves out a line with `rest` behind the word.
-bool leaves_out(Treatment treatment, std::string_view rest) {
+bool leaves_out(Treatment treatment, std::string_view rest, bool any_before) {
   const std::string_view words = rest.substr(0, rest.find_first_of("(;"));
   switch (treatment) {
     case Treatment::kLeftOut:
@@ -69,6 +70,8 @@ bool leaves_out(Treatment treatment, std::string_view rest) {
       return true;
     case Treatment::kFullPercent:
       return has_full_percent(words);
+    case Treatment::kPrintersWait:
+      return any_before && without_blanks(words).empty();
     case Treatment::kRetraction:
       return words.find_first_not_of(" \tSs0123456789") == std::string_view::npos;
     default:
@@ -90,9 +93,7 @@ LeftOut::LeftOut(const std::vector<CodeWord>& more) {
     entries_.push_back({{word->letter, word->tenths}, word->treatment, name_of(word->letter, word->tenths)});
   }
   for (const Entry& entry : entries_) {
-    const int first = entry.name[1] - '0';
-    if (entry.word.letter != 'G') continue;
-    g_digits_ |= entry.word.tenths >= 100 ? 1U << (10 + first) : 1U << first | 1U << 10;  // G9, or G09
+    if (entry.word.letter == 'G') g_numbers_.set(first_two_digits(std::string_view(entry.name).substr(1)));
   }
 }
 
@@ -101,13 +102,13 @@ bool LeftOut::may_begin(std::string_view line) const {
   const char letter = line.empty() ? ' ' : upper(line.front());
   if (letter != 'G') return letter == 'M' || letter == 'N';
   if (line.size() < 2 || !is_digit(line[1])) return line.size() >= 2 && is_space(line[1]);
-  const int digit = line[1] - '0';
-  return (g_digits_ >> (line.size() > 2 && is_digit(line[2]) ? digit + 10 : digit) & 1U) != 0;
+  return g_numbers_.test(first_two_digits(line.substr(1)));
 }
 
 const LeftOut::Entry* LeftOut::entry_of(const CodeWord& word, std::string_view rest) const {
   const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) {
-    return known.word.letter == word.letter && known.word.tenths == word.tenths && leaves_out(known.treatment, rest);
+    return known.word.letter == word.letter && known.word.tenths == word.tenths &&
+           leaves_out(known.treatment, rest, any_);
   });
   return entry != entries_.end() ? &*entry : nullptr;
 }
@@ -119,6 +120,7 @@ bool LeftOut::find(std::string_view line, std::string_view& name, Problem& probl
   const CodeWord word = word_at(line);
   const Entry* const entry = word.tenths < 0 ? nullptr : entry_of(word, line);
   if (entry == nullptr) return false;
+  any_ = true;
   name = entry->name;
   failed_ = !look_behind(line, *entry, problem);
   return true;

@@ -2,7 +2,7 @@
 // that the user names. Such a line begins with its word, and nothing else of it is read. Internal to the reader.
 #pragma once
 
-#include <cstdint>
+#include <bitset>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +26,8 @@ class LeftOut {
   bool find(std::string_view line, std::string_view& name, Problem& problem);
   // Of the last line that find() has found: there was a problem.
   bool failed() const { return failed_; }
+  // Whether find() has found a line: the program is for a printer's firmware.
+  bool any() const { return any_; }
   // The word that begins a line and that is unknown, where `more` could name it; else empty.
   std::string unknown(std::string_view line) const;
 
@@ -40,8 +42,9 @@ class LeftOut {
   bool look_behind(std::string_view rest, const Entry& entry, Problem& problem);
 
   std::vector<Entry> entries_;
-  std::uint32_t g_digits_ = 0;  // of the G words: bit d, where digit d stands alone, bit 10 + d, where another follows
+  std::bitset<100> g_numbers_;  // the first two digits of the G words
   bool failed_ = false;
+  bool any_ = false;
 };
 
 // To a list of words: those that are always left out.

@@ -27,6 +27,7 @@ constexpr std::string_view kModes = "modes are not stored: write the words that 
 constexpr std::string_view kSubroutines = "subroutines are not supported";
 
 constexpr OtherWord kWords[] = {
+    {'G', 40, T::kPrintersWait, ""},
     {'G', 52, T::kNeverLeftOut, kBSpline},
     {'G', 53, T::kNeverLeftOut, kBSpline},
     {'G', 60, T::kNeverLeftOut, kMoves},

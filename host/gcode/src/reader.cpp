@@ -92,7 +92,7 @@ class Reader::Impl {
 
   const std::optional<Error>& error() const { return error_; }
   const std::map<std::string, std::size_t>& accepted() {
-    if (left_out_any_ && dwells_by_p_ != 0) accepted_["G4 P"] = dwells_by_p_;
+    if (left_out_.any() && dwells_by_p_ != 0) accepted_["G4 P"] = dwells_by_p_;
     return accepted_;
   }
   const std::string& file() const { return lines_.name(); }
@@ -117,7 +117,7 @@ class Reader::Impl {
     }
     std::string_view left_out;
     if (left_out_.find(line, left_out, problem_)) {
-      in_program_ = has_words_ = left_out_any_ = true;
+      in_program_ = has_words_ = true;
       ++accepted_[std::string(left_out)];
       return !left_out_.failed() || fail();
     }
@@ -272,9 +272,8 @@ class Reader::Impl {
   LeftOut left_out_;
   std::size_t number_ = 0;  // of the line
   std::size_t first_line_ = 0;
-  bool in_program_ = false;    // a word, a program number or a '%' was there
-  bool has_words_ = false;     // a word was there
-  bool left_out_any_ = false;  // a line for a printer's firmware
+  bool in_program_ = false;  // a word, a program number or a '%' was there
+  bool has_words_ = false;   // a word was there
   std::size_t dwells_by_p_ = 0;
   bool ended_ = false;
   bool awaits_probe_ = false;

@@ -256,7 +256,12 @@ bool WordSet::unsupported(const Word& word, Problem& problem) const {
   if (other != nullptr && !other->why.empty()) message += fmt::format(": {}", other->why);
   const bool first = words_ == 0 || (words_ == 1 && letter('N'));
   const bool may_be_left_out = code.tenths >= 0 && why_not_left_out(code).empty();
-  if (may_be_left_out && !first) message += "; only at the beginning of a line can it be left out with its line";
+  if (may_be_left_out && !first) {
+    const bool always = other != nullptr && is_left_out(other->treatment);
+    message += fmt::format(
+        "; on a line of its own {}",
+        always ? "it is left out" : fmt::format("--accept {} leaves it out", name_of(code.letter, code.tenths)));
+  }
   problem.set(ErrorCode::kUnsupportedWord, std::move(message));
   if (may_be_left_out && first) problem.unknown = name_of(code.letter, code.tenths);
   return false;
