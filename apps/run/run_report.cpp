@@ -111,18 +111,18 @@ std::string probes_planned(const run::Plan& plan) {
 
 std::string accepted_words(const std::map<std::string, std::size_t>& words) {
   const std::array<std::pair<std::string_view, const char*>, 8> reasons{{
-      {" M0 M1 ", "stops for the operator, which a simulation does not make:"},
-      {" G64 Q ", "no lines are joined to fewer (naive cam):"},
-      {" M3 M4 M5 M7 M8 M9 ", "no output for them in [outputs] of the machine file:"},
-      {" S ", "a value that waits for modulated outputs:"},
-      {" M6 ", "tool changes, each a stop:"},
-      {" G28 ", "rapids to the home position of the machine file, nothing was searched:"},
-      {" G4 P ", "dwells in seconds, which printers' firmware takes as milliseconds:"},
+      {"|M0|M1|", "stops for the operator, which a simulation does not make:"},
+      {"|G64 Q|", "no lines are joined to fewer (naive cam):"},
+      {"|M3|M4|M5|M7|M8|M9|", "no output for them in [outputs] of the machine file:"},
+      {"|S|", "a value that waits for modulated outputs:"},
+      {"|M6|", "tool changes, each a stop:"},
+      {"|G28|", "rapids to the home position of the machine file, nothing was searched:"},
+      {"|G4 P|", "dwells in seconds, which printers' firmware takes as milliseconds:"},
       {"", "no hardware:"},
   }};
   std::array<std::string, reasons.size()> lists;
   for (const auto& [word, count] : words) {
-    const std::string name = " " + word + " ";
+    const std::string name = "|" + word + "|";
     std::size_t i = 0;
     while (!reasons[i].first.empty() && reasons[i].first.find(name) == std::string_view::npos) ++i;
     lists[i] += fmt::format(" {} ({})", word, count);

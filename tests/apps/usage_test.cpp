@@ -182,9 +182,10 @@ TEST(Messages, StayOneShortLineWhateverAFileIsCalled) {
 
 TEST(Words, WhatAPrinterWouldDoOtherwiseIsTold) {
   const Command command;
-  const std::string program = command.write("a.gcode", "G28\nM104 S200\nG4 P2\nG4 S1\nG1 X1 F600\n");
+  const std::string program = command.write("a.gcode", "G28\nM104 S200\nG4 P2\nG4 S1\nG1 X1 F600\nG4\n");
   const Outcome outcome = command.run("run " + program + " --check");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("no hardware: G4 (1) M104 (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("nothing was searched: G28 (1)\n"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("which printers' firmware takes as milliseconds: G4 P (1)\n"), std::string::npos)
       << outcome.out;
