@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trammel/gcode/reader.hpp"
+#include "trammel/machine/one_line.hpp"
 
 namespace {
 
@@ -100,8 +101,9 @@ void check_error(const Error& error) {
   const std::string text = describe(error);
   require(text.size() < 300, "a message of more than a line");
   for (const char c : text) {
-    require(c >= ' ' && c < '\x7f', "a message with control characters");
+    require(static_cast<unsigned char>(c) >= ' ' && c != '\x7f', "a message with control characters");
   }
+  require(trammel::machine::one_line(text, text.size() + 3) == text, "a message that is no UTF-8");
 }
 
 std::vector<std::string> split(std::string_view program) {
