@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "trammel/machine/one_line.hpp"
+
 namespace trammel::app {
 namespace {
 
@@ -57,7 +59,7 @@ machine::Machine MachineChoice::load() const {
 
 std::string MachineChoice::line() const {
   const std::optional<std::string> from = source();
-  return fmt::format("  machine: {}{}\n", from ? *from : "built-in",
+  return fmt::format("  machine: {}{}\n", from ? machine::one_line(*from, machine::kLongestName) : "built-in",
                      overrides.empty() ? "" : fmt::format(", {} entries by --set", overrides.size()));
 }
 

@@ -7,9 +7,13 @@
 #include <string_view>
 
 #include "standard_streams.hpp"
+#include "trammel/machine/one_line.hpp"
 
 namespace trammel::app {
 namespace {
+
+// A message may name files from outside, and an option for each word of a program.
+constexpr std::size_t kLongestMessage = 2000;
 
 // Bold, in the colour's number of ECMA-48's SGR.
 int number_of(Colour colour) {
@@ -41,7 +45,8 @@ std::string coloured(int descriptor, Colour colour, const std::string& text) {
 
 void tell(const std::string& kind, const std::string& text) {
   const Colour colour = kind == "error" ? Colour::kRed : kind == "warning" ? Colour::kYellow : Colour::kCyan;
-  to_standard_error(fmt::format("trammel: {}: {}\n", coloured(STDERR_FILENO, colour, kind), text));
+  to_standard_error(fmt::format("trammel: {}: {}\n", coloured(STDERR_FILENO, colour, kind),
+                                machine::one_line(text, kLongestMessage)));
 }
 
 }  // namespace trammel::app

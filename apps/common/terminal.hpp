@@ -14,7 +14,8 @@ bool has_escapes(int descriptor);
 // none), else as it is.
 std::string coloured(int descriptor, Colour colour, const std::string& text);
 
-// "trammel: error: ...", a line on standard error; the kind ("error", "warning", "note") has its colour.
+// "trammel: error: ...", one line on standard error, whatever is in the text; the kind ("error", "warning", "note") has
+// its colour.
 void tell(const std::string& kind, const std::string& text);
 
 }  // namespace trammel::app

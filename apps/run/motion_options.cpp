@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -75,19 +76,22 @@ OperatorEvent input_of(const std::string& text) {
   return {OperatorEvent::Kind::kInput, seconds, 0, static_cast<unsigned>(*input), level == "1"};
 }
 
-// "M900" or "M862.3", in tenths.
-int m_word_of(const std::string& text) {
-  std::string_view digits = text;
-  const bool letter = !digits.empty() && (digits.front() == 'M' || digits.front() == 'm');
-  if (letter) digits.remove_prefix(1);
-  const bool plain = digits.find_first_not_of("0123456789.") == std::string_view::npos;
-  const auto value = letter && plain ? number(digits) : std::nullopt;
+// "M900" or "M862.3".
+gcode::CodeWord code_word_of(const std::string& text) {
+  const char letter = text.empty() ? ' ' : static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  const std::string_view digits = std::string_view(text).substr(text.empty() ? 0 : 1);
+  const bool plain =
+      (letter == 'G' || letter == 'M') && digits.find_first_not_of("0123456789.") == std::string_view::npos;
+  const auto value = plain ? number(digits) : std::nullopt;
   constexpr double kLargest = 9999.9;
   const double tenths = value.value_or(0) * 10;
   if (!value || *value > kLargest || std::abs(tenths - std::round(tenths)) > 1e-6) {
-    throw UsageError(fmt::format("--accept: {} is no M word such as M900 or M862.3", text));
+    throw UsageError(fmt::format("--accept: {} is no G or M word such as M900 or M862.3", text));
   }
-  return static_cast<int>(std::round(tenths));
+  const gcode::CodeWord word{letter, static_cast<int>(std::round(tenths))};
+  const std::string_view why = gcode::why_not_left_out(word);
+  if (!why.empty()) throw UsageError(fmt::format("--accept: {} cannot be left out: {}", text, why));
+  return word;
 }
 
 // A resume ends the latest hold alone: two that overlap have no meaning that all would guess.
@@ -159,8 +163,10 @@ void MotionChoice::add_to(CLI::App& command) {
       ->type_name("PROFILE");
   command
       .add_option("--accept", accept,
-                  "leave out the lines that begin with this M word, as those of heaters and fans (repeatable)")
-      ->type_name("M...");
+                  "leave out the lines that begin with these words, as those of heaters and fans (repeatable)")
+      ->type_name("M900,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   command.add_flag("--single-block", single_block, "stop at the end of each line, send the next when the card is idle");
   command.add_flag("--no-block-delete", run_deleted, "run the lines with '/' too");
 }
@@ -200,7 +206,7 @@ run::RunSettings MotionChoice::settings() const {
   run::RunSettings settings;
   settings.reader.block_delete = !run_deleted;
   settings.reader.feed_scale = feed_scale;
-  for (const std::string& word : accept) settings.reader.left_out.push_back(m_word_of(word));
+  for (const std::string& word : accept) settings.reader.left_out.push_back(code_word_of(word));
   settings.first_line = first_line;
   settings.single_block = single_block;
   settings.arcs = arcs == "chords"          ? planner::ArcsBy::kChords

@@ -24,7 +24,7 @@ struct MotionChoice {
   std::size_t first_line = 1;
   std::string arcs = "generator";
   std::optional<std::string> profile;
-  std::vector<std::string> accept;  // M words
+  std::vector<std::string> accept;  // G and M words
   bool single_block = false;
   bool run_deleted = false;
 

@@ -13,6 +13,7 @@
 
 #include "common/errors.hpp"
 #include "common/standard_streams.hpp"
+#include "trammel/machine/one_line.hpp"
 
 namespace trammel::app {
 
@@ -37,7 +38,7 @@ bool write_whole(int descriptor, std::string_view text) {
 }  // namespace
 
 ProgramFile::ProgramFile(const std::string& file, std::optional<std::uint64_t> copy_limit)
-    : name_(file == "-" ? "standard input" : file),
+    : name_(file == "-" ? "standard input" : machine::one_line(file, machine::kLongestName)),
       descriptor_(file == "-" ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
                               : ::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
   struct stat status {};

@@ -160,7 +160,7 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   run.planned = [&](const run::Plan& plan) {
     refuse_rapids_at_zero(options, run.rapid_percent, plan);
     outputs.open();
-    warn(feed_warnings(plan.file, plan.feeds_not_reached));
+    warn(plan_warnings(plan));
   };
   const ProgramFile file(options.program, copy_limit(options));
   CardRunResult result;
@@ -176,7 +176,7 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
 void check(const run::ProgramLines& lines, const MachineChoice& choice, const machine::Machine& machine,
            const planner::CardLimits& card, const run::RunSettings& settings, Outputs& outputs, Output* json) {
   const CheckResult result = check_program(lines, machine, card, settings);
-  warn(feed_warnings(result.plan.file, result.plan.feeds_not_reached));
+  warn(plan_warnings(result.plan));
   outputs.open();
   if (json != nullptr) json->write(json_text(result));
   outputs.commit(summary(result) + choice.line());
@@ -263,7 +263,7 @@ run::Outcome stream_to_simulation(const RunArguments& options, const machine::Ma
 
 void write_results(const RunArguments& options, const simulation::RunResult& result, const run::PlannedProfile& profile,
                    report::ReportWriter* report, SimulationFiles& files) {
-  if (options.stream) warn(feed_warnings(result.plan.file, result.plan.feeds_not_reached));
+  if (options.stream) warn(plan_warnings(result.plan));
   if (files.trace != nullptr) require_whole_waveform(files.trace->path_to_write(), *options.engine.trace);
   if (files.json != nullptr) files.json->write(json_text(result, profile));
   if (files.parameters != nullptr) files.parameters->write(parameters_text(result.outcome.parameters));
@@ -296,7 +296,7 @@ void run_in_simulation(const RunArguments& options) {
   if (!options.stream && plan.segments == 0) tell("note", fmt::format("{} moves nothing", plan.file));
   files.all.open();
   if (files.trace != nullptr) engine.trace->path = files.trace->path_to_write();
-  warn(feed_warnings(plan.file, plan.feeds_not_reached));
+  warn(plan_warnings(plan));
   tell_of_engine(engine, axes, plan.seconds);
   const run::Outcome outcome = stream_to_simulation(options, machine, engine, plan.seconds, run);
   write_results(options, run.result(outcome), run::planned_profile(machine, settings.settings), run.report(), files);

@@ -110,17 +110,19 @@ std::string probes_planned(const run::Plan& plan) {
 }
 
 std::string accepted_words(const std::map<std::string, std::size_t>& words) {
-  const std::array<std::pair<std::string_view, const char*>, 6> reasons{{
-      {" M0 M1 ", "stops for the operator, which a simulation does not make:"},
-      {" G64 Q ", "no lines are joined to fewer (naive cam):"},
-      {" M3 M4 M5 M7 M8 M9 ", "no output for them in [outputs] of the machine file:"},
-      {" S ", "a value that waits for modulated outputs:"},
-      {" M6 ", "tool changes, each a stop:"},
+  const std::array<std::pair<std::string_view, const char*>, 8> reasons{{
+      {"|M0|M1|", "stops for the operator, which a simulation does not make:"},
+      {"|G64 Q|", "no lines are joined to fewer (naive cam):"},
+      {"|M3|M4|M5|M7|M8|M9|", "no output for them in [outputs] of the machine file:"},
+      {"|S|", "a value that waits for modulated outputs:"},
+      {"|M6|", "tool changes, each a stop:"},
+      {"|G28|", "rapids to the home position of the machine file, nothing was searched:"},
+      {"|G4 P|", "dwells in seconds, which printers' firmware takes as milliseconds:"},
       {"", "no hardware:"},
   }};
   std::array<std::string, reasons.size()> lists;
   for (const auto& [word, count] : words) {
-    const std::string name = " " + word + " ";
+    const std::string name = "|" + word + "|";
     std::size_t i = 0;
     while (!reasons[i].first.empty() && reasons[i].first.find(name) == std::string_view::npos) ++i;
     lists[i] += fmt::format(" {} ({})", word, count);
@@ -179,12 +181,18 @@ nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds)
   return list;
 }
 
-std::vector<std::string> feed_warnings(const std::string& file, const std::vector<run::FeedNotReached>& feeds) {
+std::vector<std::string> plan_warnings(const run::Plan& plan) {
   std::vector<std::string> lines;
-  for (const run::FeedNotReached& feed : feeds) {
+  for (const run::FeedNotReached& feed : plan.feeds_not_reached) {
     lines.push_back(fmt::format("{} {} not reach the feed: {}; the furthest off at {}:{}, {} of {} mm/min", feed.count,
-                                feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), file, feed.line,
+                                feed.count == 1 ? "move does" : "moves do", text_of(feed.cause), plan.file, feed.line,
                                 number(feed.reached), number(feed.wanted)));
+  }
+  if (const auto dwells = plan.accepted.find("G4 P"); dwells != plan.accepted.end()) {
+    lines.push_back(
+        fmt::format("{}: G4 P is in seconds here ({} {}); the program has words of printers, whose firmware takes P as "
+                    "milliseconds: G4 S is seconds to both",
+                    plan.file, dwells->second, dwells->second == 1 ? "time" : "times"));
   }
   return lines;
 }

@@ -11,8 +11,8 @@
 
 namespace trammel::app {
 
-// A line a cause for which feeds are not reached.
-std::vector<std::string> feed_warnings(const std::string& file, const std::vector<run::FeedNotReached>& feeds);
+// A line per cause for which feeds are not reached, and one where dwells may mean milliseconds.
+std::vector<std::string> plan_warnings(const run::Plan& plan);
 
 // Some lines of text, units in every one.
 std::string run_summary(const simulation::RunResult& result, const run::PlannedProfile& profile);

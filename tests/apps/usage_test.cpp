@@ -176,18 +176,62 @@ TEST(Notes, BlendsAndCornersThatAreKept) {
 
 TEST(Words, LinesOfFurtherWordsAreLeftOut) {
   const Command command;
-  const std::string run = "run " + command.write("a.gcode", "M862.3 P \"MK3S\"\nM900 K0.05\nG1 X1 F600\n") + " --check";
-  const Outcome refused = command.run(run);
+  const std::string program = command.write("a.gcode", "M808 L1\nM555.3 \"MK3S\"\nM909\nG9\nG1 X1 F600\n");
+  const Outcome refused = command.run("run " + program + " --check");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("a.gcode:1: unsupported word 'M862.3'"), std::string::npos) << refused.err;
-  const Outcome outcome = command.run(run + " --accept M862.3 --accept m900");
+  EXPECT_NE(refused.err.find("a.gcode:1: unsupported word 'M808'; --accept M808,M555.3,M909,G9 leaves out"),
+            std::string::npos)
+      << refused.err;
+  // The option may stand before the program, too.
+  const Outcome outcome = command.run("run --check --accept M808,m555.3 --accept M909,g9 " + program);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("no hardware: M862.3 (1) M900 (1)\n"), std::string::npos) << outcome.out;
-  for (const char* word : {"900", "G1", "M", "M1.25", "M99999", "M-1", "Mx"}) {
-    const Outcome bad = command.run(run + " --accept " + word);
+  EXPECT_NE(outcome.out.find("no hardware: G9 (1) M555.3 (1) M808 (1) M909 (1)\n"), std::string::npos) << outcome.out;
+  for (const char* word : {"900", "M", "M1.25", "M99999", "M-1", "Mx", "X1"}) {
+    const Outcome bad = command.run("run " + program + " --check --accept " + word);
     EXPECT_EQ(bad.status, 2) << word;
-    EXPECT_NE(bad.err.find("is no M word such as M900 or M862.3"), std::string::npos) << bad.err;
+    EXPECT_NE(bad.err.find("is no G or M word such as M900 or M862.3"), std::string::npos) << bad.err;
   }
+  for (const char* word : {"G1", "G20", "G17", "G92", "G91", "M83", "M2", "G68", "M98"}) {
+    const Outcome bad = command.run("run " + program + " --check --accept " + word);
+    EXPECT_EQ(bad.status, 2) << word;
+    EXPECT_NE(bad.err.find(std::string("--accept: ") + word + " cannot be left out: "), std::string::npos) << bad.err;
+  }
+}
+
+// A name that breaks a line, is no UTF-8 or is longer than any file's.
+TEST(Messages, StayOneShortLineWhateverAFileIsCalled) {
+  const Command command;
+  const std::string folder = command.path("");
+  const std::string latin = command.write("caf\xe9\n.ngc", "G0 X1\n");
+  const Outcome taken = command.run("run '" + latin + "' --check --json " + command.path("a.json"));
+  EXPECT_EQ(taken.status, 0) << taken.err;
+  EXPECT_EQ(taken.out.find(folder + "caf\\xe9\\n.ngc: 1 path segments"), 0U) << taken.out;
+  EXPECT_EQ(read_json(command.path("a.json"))["program"], folder + "caf\\xe9\\n.ngc");
+  const Outcome refused = command.run("run '" + command.write("q\xe9\n.ngc", "G0 Q\n") + "' --check");
+  EXPECT_NE(refused.err.find("q\\xe9\\n.ngc:1: malformed number in 'Q'"), std::string::npos) << refused.err;
+  const std::string far(5000, 'a');
+  for (const std::string& arguments :
+       {"run '" + folder + "no\n\xff'", "run " + far, "steps " + far, "run '" + latin + "' --check --json " + far,
+        "run '" + latin + "' --machine " + far, "run '" + latin + "' --steps '" + folder + "no\n\xff/a'"}) {
+    const Outcome outcome = command.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(count_lines(outcome.err), 1U) << outcome.err;
+    EXPECT_LT(outcome.err.size(), 2100U);
+    EXPECT_EQ(outcome.err.find('\xff'), std::string::npos) << outcome.err;
+  }
+}
+
+TEST(Words, WhatAPrinterWouldDoOtherwiseIsTold) {
+  const Command command;
+  const std::string program = command.write("a.gcode", "G28\nM104 S200\nG4 P2\nG4 S1\nG1 X1 F600\nG4\n");
+  const Outcome outcome = command.run("run " + program + " --check");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("no hardware: G4 (1) M104 (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("nothing was searched: G28 (1)\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("which printers' firmware takes as milliseconds: G4 P (1)\n"), std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.err.find("warning: " + program + ": G4 P is in seconds here (1 time);"), std::string::npos)
+      << outcome.err;
 }
 
 TEST(Parameters, PersistWhereAFileIsNamed) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "trammel/gcode/reader.hpp"
+#include "trammel/machine/one_line.hpp"
 
 namespace {
 
@@ -100,8 +101,9 @@ void check_error(const Error& error) {
   const std::string text = describe(error);
   require(text.size() < 300, "a message of more than a line");
   for (const char c : text) {
-    require(c >= ' ' && c < '\x7f', "a message with control characters");
+    require(static_cast<unsigned char>(c) >= ' ' && c != '\x7f', "a message with control characters");
   }
+  require(trammel::machine::one_line(text, text.size() + 3) == text, "a message that is no UTF-8");
 }
 
 std::vector<std::string> split(std::string_view program) {
@@ -135,8 +137,9 @@ std::string bare(const std::string& line) {
 
 // Lines that are left out: of them nothing is read.
 bool is_left_out(std::string text) {
-  static const std::set<std::string> kWords = {"M73",  "M104", "M105", "M106", "M107", "M109", "M110", "M117",
-                                               "M140", "M190", "M201", "M202", "M203", "M204", "M205", "G29"};
+  static const std::set<std::string> kWords = {"M73",  "M104", "M105", "M106", "M107", "M109", "M110", "M115", "M117",
+                                               "M140", "M190", "M201", "M202", "M203", "M204", "M205", "G29",  "M17",
+                                               "M18",  "M84",  "M220", "M221", "M400", "M862", "M900"};
   const auto drop = [&](const char* characters) {
     text.erase(0, std::min(text.find_first_not_of(characters), text.size()));
   };

@@ -12,7 +12,7 @@ namespace {
 using ::testing::HasSubstr;
 using Words = std::map<std::string, std::size_t>;
 
-Reading read_leaving_out(const std::string& text, const std::vector<int>& more = {}) {
+Reading read_leaving_out(const std::string& text, const std::vector<CodeWord>& more = {}) {
   ReaderOptions options;
   options.left_out = more;
   TextLines lines(text, "p.gcode");
@@ -45,12 +45,14 @@ TEST(LeftOut, LinesAreListedAndMoveNothing) {
                                      {"G29", 2}}));
 }
 
-TEST(LeftOut, MoreAreAskedForByNumber) {
-  EXPECT_TRUE(read_leaving_out("M900 K0.05").error);
-  const Reading program = read_leaving_out("M900 K0.05\nM862.3 P \"MK3S G1\"\nG0 X1", {9000, 8623});
+TEST(LeftOut, MoreAreAskedForByName) {
+  EXPECT_TRUE(read_leaving_out("M909 K0.05").error);
+  const Reading program = read_leaving_out("M909 K0.05\nM555.3 P \"a\"\nG09 (stop)\nM220 S80\nG0 X1",
+                                           {{'M', 9090}, {'M', 5553}, {'G', 90}, {'M', 2200}});
   ASSERT_FALSE(program.error) << describe(*program.error);
-  EXPECT_EQ(program.accepted, (Words{{"M900", 1}, {"M862.3", 1}}));
-  EXPECT_TRUE(read_leaving_out("M862.1 P0.4", {8623}).error);
+  EXPECT_EQ(program.accepted, (Words{{"M909", 1}, {"M555.3", 1}, {"G9", 1}, {"M220", 1}}));
+  EXPECT_TRUE(read_leaving_out("M555.1 P0.4", {{'M', 5553}}).error);
+  EXPECT_TRUE(read_leaving_out("M862.7").error);
 }
 
 TEST(LeftOut, NoMotionIsLost) {

@@ -109,10 +109,10 @@ TEST(Gcode, RefusesNumbersBeyondReason) {
 }
 
 TEST(Gcode, RefusesWordsItDoesNotKnow) {
-  for (const char* word : {"G6", "G12", "G31", "G59.4", "G1.5", "M19", "M62", "M400", "M84.5", "D1", "G-1", "G10000"}) {
+  for (const char* word : {"G59.4", "G1.5", "D1", "G-1", "G20000"}) {
     EXPECT_EQ(refusal(std::string("G21\n") + word), std::string("2: unsupported word '") + word + "'");
   }
-  EXPECT_EQ(refusal("G0 A5"), "1: 'A5': the machine has no axis A");
+  EXPECT_EQ(refusal("G0 A5"), "1: 'A5': the machine has no axis A; [axis.a] of its file would describe it");
   EXPECT_EQ(refusal("G5.2 X1"), "1: unsupported word 'G5.2': B-splines are not there; G5 and G5.1 are");
   EXPECT_EQ(refusal("G41 D1"), "1: unsupported word 'G41': cutter compensation: let the CAM program offset the path");
   for (const char* word : {"G33 K1", "G76", "G84", "G74", "G86", "G87", "G88", "G95", "G96", "M48", "M98", "G43.2"}) {
@@ -124,9 +124,8 @@ TEST(Gcode, RefusesWordsItDoesNotKnow) {
 }
 
 TEST(Gcode, RefusesTwoWordsOfAModalGroup) {
-  for (const char* line :
-       {"G0 G1 X1", "G1 G1 X1 F1", "G17 G18", "G20 G21", "G90 G91", "G90.1 G91.1", "G93 G94", "G54 G55", "G61 G64",
-        "G61 G61.1", "G4 G28 P1", "M3 M5", "M7 M9", "M0 M2", "M82 M83", "M18 M84"}) {
+  for (const char* line : {"G0 G1 X1", "G1 G1 X1 F1", "G17 G18", "G20 G21", "G90 G91", "G90.1 G91.1", "G93 G94",
+                           "G54 G55", "G61 G64", "G61 G61.1", "G4 G28 P1", "M3 M5", "M7 M9", "M0 M2", "M82 M83"}) {
     EXPECT_THAT(refusal(line), HasSubstr("beside another word of its modal group")) << line;
   }
   EXPECT_EQ(refusal("G0 X1 X2"), "1: 'X2': X stands twice");
@@ -223,7 +222,6 @@ TEST(Gcode, CoordinateSystemsAndG53) {
   EXPECT_EQ(x_of("G0 X10\nG92 X0\nG55 X0"), 12);
   EXPECT_EQ(refusal("G91 G53 G0 X1"), "1: G53 with relative distances");
   EXPECT_EQ(refusal("G53 X1"), "1: G53 needs G0 or G1");
-  EXPECT_EQ(refusal("G0\nG53"), "2: G53 without an axis word");
 }
 
 TEST(Gcode, G28GoesHomeThroughThePoint) {
@@ -244,7 +242,7 @@ TEST(Gcode, DwellIsInSeconds) {
   const Reading program = read("G4 P0.5");
   EXPECT_EQ(program.motions[0].kind, MotionKind::kDwell);
   EXPECT_EQ(program.motions[0].seconds, 0.5);
-  EXPECT_EQ(refusal("G4"), "1: G4 needs P, its seconds");
+  EXPECT_EQ(refusal("G4"), "1: G4 needs P or S, its seconds");
   EXPECT_EQ(refusal("G4 P-1"), "1: 'P-1' must not be negative");
   EXPECT_EQ(refusal("G0 P1"), "1: P without a word that takes it: G2, G3, G4, G5, G10, G64, G82 or G89");
   EXPECT_EQ(refusal("G61 Q1"), "1: Q without G5, G64, G73 or G83");
@@ -267,8 +265,6 @@ TEST(Gcode, ModalMotionAndItsEnd) {
   expect_end("G1 F5\nX1\nF6\nY2", 1, 2);
   EXPECT_EQ(refusal("X1"), "1: axis words without a motion word (G0, G1, G2 or G3)");
   EXPECT_EQ(refusal("G0 X1\nG80 X2"), "2: axis words without a motion word (G0, G1, G2 or G3)");
-  EXPECT_EQ(refusal("M84 X"), "1: malformed number in 'X'");
-  EXPECT_EQ(refusal("G0\nM84 X1"), "2: axis words beside M18 or M84: only all motors together are understood");
 }
 
 TEST(Gcode, ErrorsNameFileAndLine) {
@@ -300,7 +296,7 @@ TEST(Gcode, EveryKindOfErrorHasItsCode) {
       {"G96", Code::kUnsupportedWord},
       {"#1=[", Code::kExpression},
       {"#0=1", Code::kParameter},
-      {"O1", Code::kOWord},
+      {"G0 O1", Code::kOWord},
       {"M104 S1 G1", Code::kBesideLeftOut},
       {"G43 H1", Code::kNoSuchTool},
       {"G10 L2 P10 X1", Code::kCoordinateSystem},

@@ -298,7 +298,7 @@ TEST(Machine, RefusesBadOverrides) {
   EXPECT_EQ(override_error("card.clock_hz=999"),
             "--set card.clock_hz=999: card.clock_hz must be a whole number of Hz from 1000 to 4294967295, not 999");
   EXPECT_EQ(override_error("axis.x.min=1\naxis.x.max=1"),
-            "--set axis.x.min=1\\x0aaxis.x.max=1: axis.x.min must be less than axis.x.max: 1 and 1");
+            "--set axis.x.min=1\\naxis.x.max=1: axis.x.min must be less than axis.x.max: 1 and 1");
   EXPECT_EQ(override_error("axis.x=1"), "--set axis.x=1: axis.x must be a table");
   EXPECT_EQ(override_error("speed=1"),
             "--set speed=1: unknown entry speed; known are card, axis, kinematics, motion, outputs, tools, probe");

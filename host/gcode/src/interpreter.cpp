@@ -116,9 +116,10 @@ bool Interpreter::act(const Context& context) {
     case code::kSecondHome:
       return go_home(context, true);
     case code::kOrigin:
-      return set_origin(context);
+    case code::kLocalOrigin:
+      return set_origin(context, action == code::kLocalOrigin);
     case code::kDwell:
-      stop(context.motions, *context.words.letter('P'));
+      stop(context.motions, *context.words.dwell());
       break;
     case code::kStoreHome:
     case code::kStoreSecondHome:
@@ -237,17 +238,18 @@ bool Interpreter::move(const Context& context) {
   const bool is_arc = motion == code::kArcClockwise || motion == code::kArcCounterClockwise;
   const bool centre_words =
       is_arc && (words.letter('I') || words.letter('J') || words.letter('K') || words.letter('R'));
-  const bool machine_coordinates = words.code(Group::kNonModal) == code::kMachineCoordinates;
+  const bool machine_coordinates = words.code(Group::kNonModal) == code::kMachineCoordinates &&
+                                   (words.has_axis_words() || explicit_arc || centre_words);
   if (machine_coordinates && motion != code::kTraverse && motion != code::kLine) {
     return problem.set(ErrorCode::kMachineCoordinates, "G53 needs G0 or G1");
   }
   const bool axis_words = words.has_axis_words() && words.code(Group::kToolLength) != code::kToolOffsets;
   if (!axis_words && !explicit_arc && !centre_words) {
-    if (word && (is_cycle(word) || *word == code::kSpline || *word == code::kQuadratic ||
+    if (word && (is_cycle(word) || *word == code::kSpline || *word == code::kQuadratic || *word == code::kSkip ||
                  (*word >= code::kProbe && *word <= code::kProbeAwayQuietly))) {
       return problem.set(ErrorCode::kMissingWord, fmt::format("{} without an axis word", name_of('G', *word)));
     }
-    return !machine_coordinates || problem.set(ErrorCode::kMachineCoordinates, "G53 without an axis word");
+    return true;
   }
   if (!motion) {
     return problem.set(ErrorCode::kNoMotionMode, "axis words without a motion word (G0, G1, G2 or G3)");

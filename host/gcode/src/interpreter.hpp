@@ -107,7 +107,7 @@ class Interpreter final : public Predefined {
   void stop(LineMotions& motions, double seconds);
   bool go_home(const Context& context, bool second);
   bool set_system(const Context& context);
-  bool set_origin(const Context& context);
+  bool set_origin(const Context& context, bool local);
   bool move(const Context& context);
   bool straight(const Context& context, bool rapid);
   bool arc(const Context& context, bool clockwise);

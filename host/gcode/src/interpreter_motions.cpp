@@ -32,7 +32,7 @@ bool Interpreter::plane_axis(char letter, const char* what, std::size_t& axis, P
 bool Interpreter::arc(const Context& context, bool clockwise) {
   const Plane& in = plane();
   Problem& problem = context.problem;
-  if (context.words.letter(in.unused_offset)) {
+  if (context.words.letter(in.unused_offset).value_or(0) != 0) {
     return problem.set(ErrorCode::kArcOutsidePlane, fmt::format("{} in the plane {}{} (G{})", in.unused_offset,
                                                                 in.first, in.second, modes_.plane / 10));
   }
@@ -332,6 +332,7 @@ bool Interpreter::probe(const Context& context) {
   motion.probe_away = code == code::kProbeAway || code == code::kProbeAwayQuietly;
   motion.probe_must_trip = code == code::kProbe || code == code::kProbeAway;
   if (!set_speed(context, motion)) return false;
+  if (code == code::kSkip) modes_.motion.reset();  // its word counts for one line
   motion.later = static_cast<std::uint8_t>(target.later);
   probe_target_ = target.at;
   probe_axes_ = here_.later;

@@ -10,8 +10,9 @@ namespace trammel::gcode {
 // Through the programmed point to the home position of the axes named; without axes: of all but the extruder, whose
 // position has no home.
 bool Interpreter::go_home(const Context& context, bool second) {
-  const bool all = !context.words.has_axis_words();
-  if (!all) {
+  const unsigned named = context.words.axes() | context.words.bare_axes();
+  const bool all = named == 0;
+  if (context.words.has_axis_words()) {
     Place point;
     if (!target_of(context, point)) {
       return false;
@@ -24,7 +25,7 @@ bool Interpreter::go_home(const Context& context, bool second) {
   Place target = here_;
   const Place& home = offsets_.home(second);
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    if (all ? machine_.axes[axis].letter != 'E' : context.words.has_axis(axis)) {
+    if (all ? machine_.axes[axis].letter != 'E' : (named >> axis & 1U) != 0) {
       target.set(axis, home.at[axis], home.is_later(axis));
     }
   }
@@ -44,7 +45,7 @@ bool Interpreter::set_system(const Context& context) {
         ErrorCode::kUnsupportedWord,
         what ? fmt::format("G10 L{:.10g}: only L2 and L20 are supported{}", *what,
                            *what == 1 || *what == 10 || *what == 11 ? "; tool lengths come from the machine file" : "")
-             : std::string("G10 needs L2 or L20"));
+             : std::string("G10 needs L2 or L20; alone on its line it is a printer's retraction"));
   }
   if (words.letter('R')) {
     return problem.set(ErrorCode::kUnsupportedWord, "G10 R: coordinate systems cannot be turned");
@@ -72,15 +73,20 @@ bool Interpreter::set_system(const Context& context) {
   return true;
 }
 
-// G92: from now on the point where the machine stands has the coordinates given.
-bool Interpreter::set_origin(const Context& context) {
+// G92: from now on the point where the machine stands has the coordinates given. G52 (`local`): from now on the
+// program's zero lies there in the coordinate system. Both are one offset, as LinuxCNC has them.
+bool Interpreter::set_origin(const Context& context, bool local) {
   const WordSet& words = context.words;
   if (!words.has_axis_words()) {
-    return context.problem.set(ErrorCode::kMissingWord, "G92 without an axis word");
+    return context.problem.set(ErrorCode::kMissingWord, fmt::format("{} without an axis word", local ? "G52" : "G92"));
   }
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
-    if (words.has_axis(axis)) {
-      offsets_.shift_at(axis, here_, {to_mm(axis, words.axis(axis)), words.axis_later(axis)});
+    if (!words.has_axis(axis)) continue;
+    const Value value{to_mm(axis, words.axis(axis)), words.axis_later(axis)};
+    if (local) {
+      offsets_.set_shift(axis, value);
+    } else {
+      offsets_.shift_at(axis, here_, value);
     }
   }
   offsets_.shift_on();

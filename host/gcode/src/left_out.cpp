@@ -5,13 +5,10 @@
 #include <algorithm>
 
 #include "characters.hpp"
+#include "word_set.hpp"
 
 namespace trammel::gcode {
 namespace {
-
-constexpr int kBedLevelling = 290;
-constexpr int kMessage = 1170;
-constexpr int kAlways[] = {730, 1040, 1050, 1060, 1070, 1090, 1100, kMessage, 1400, 1900, 2010, 2020, 2030, 2040, 2050};
 
 std::string_view without_blanks(std::string_view text) {
   while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
@@ -35,11 +32,51 @@ int code_at(std::string_view& text) {
   return tenths;
 }
 
+// The word that begins the line, and the text behind it; tenths of -1 where none does.
+CodeWord word_at(std::string_view& line) {
+  const char letter = line.empty() ? ' ' : upper(line.front());
+  if (letter != 'M' && letter != 'G') return {letter, -1};
+  line = without_blanks(line.substr(1));
+  return {letter, code_at(line)};
+}
+
+// Of a text that begins with a digit; G4 and G04 are alike.
+std::size_t first_two_digits(std::string_view text) {
+  const auto first = static_cast<std::size_t>(text[0] - '0');
+  return text.size() > 1 && is_digit(text[1]) ? first * 10 + static_cast<std::size_t>(text[1] - '0') : first;
+}
+
 // The line's number.
 std::string_view without_number(std::string_view line) {
   if (line.empty() || upper(line.front()) != 'N') return line;
   std::string_view rest = without_blanks(line.substr(1));
   return code_at(rest) < 0 ? line : without_blanks(rest);
+}
+
+bool has_full_percent(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    std::string_view number = without_blanks(text.substr(i + 1));
+    if (upper(text[i]) == 'S' && code_at(number) == 1000) return true;
+  }
+  return false;
+}
+
+// Whether a word's treatment leaves out a line with `rest` behind the word.
+bool leaves_out(Treatment treatment, std::string_view rest, bool any_before) {
+  const std::string_view words = rest.substr(0, rest.find_first_of("(;"));
+  switch (treatment) {
+    case Treatment::kLeftOut:
+    case Treatment::kText:
+      return true;
+    case Treatment::kFullPercent:
+      return has_full_percent(words);
+    case Treatment::kPrintersWait:
+      return any_before && without_blanks(words).empty();
+    case Treatment::kRetraction:
+      return words.find_first_not_of(" \tSs0123456789") == std::string_view::npos;
+    default:
+      return false;
+  }
 }
 
 }  // namespace
@@ -49,34 +86,56 @@ std::string name_of(char letter, int tenths) {
                           : fmt::format("{}{}.{}", letter, tenths / 10, tenths % 10);
 }
 
-LeftOut::LeftOut(const std::vector<int>& more) {
-  const auto add = [&](char letter, int tenths) {
-    entries_.push_back({letter, tenths, tenths == kMessage, name_of(letter, tenths)});
-  };
-  add('G', kBedLevelling);
-  for (const int tenths : kAlways) add('M', tenths);
-  for (const int tenths : more) add('M', tenths);
+LeftOut::LeftOut(const std::vector<CodeWord>& more) {
+  for (const CodeWord& word : more) entries_.push_back({word, Treatment::kLeftOut, name_of(word.letter, word.tenths)});
+  for (const OtherWord* word = begin_other_words(); word != end_other_words(); ++word) {
+    if (!is_left_out(word->treatment)) continue;
+    entries_.push_back({{word->letter, word->tenths}, word->treatment, name_of(word->letter, word->tenths)});
+  }
+  for (const Entry& entry : entries_) {
+    if (entry.word.letter == 'G') g_numbers_.set(first_two_digits(std::string_view(entry.name).substr(1)));
+  }
+}
+
+// Few lines with a G word are left out, and most lines of most programs have one: a look at two digits tells.
+bool LeftOut::may_begin(std::string_view line) const {
+  const char letter = line.empty() ? ' ' : upper(line.front());
+  if (letter != 'G') return letter == 'M' || letter == 'N';
+  if (line.size() < 2 || !is_digit(line[1])) return line.size() >= 2 && is_space(line[1]);
+  return g_numbers_.test(first_two_digits(line.substr(1)));
+}
+
+const LeftOut::Entry* LeftOut::entry_of(const CodeWord& word, std::string_view rest) const {
+  const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) {
+    return known.word.letter == word.letter && known.word.tenths == word.tenths &&
+           leaves_out(known.treatment, rest, any_);
+  });
+  return entry != entries_.end() ? &*entry : nullptr;
 }
 
 bool LeftOut::find(std::string_view line, std::string_view& name, Problem& problem) {
   failed_ = false;
+  if (!may_begin(line)) return false;
   line = without_number(line);
-  const char letter = line.empty() ? ' ' : upper(line.front());
-  if (letter != 'M' && letter != 'G') return false;
-  std::string_view rest = without_blanks(line.substr(1));
-  if (letter == 'G' && rest.substr(0, 2) != "29") return false;
-  const int tenths = code_at(rest);
-  const auto entry = std::find_if(entries_.begin(), entries_.end(),
-                                  [&](const Entry& known) { return known.letter == letter && known.tenths == tenths; });
-  if (entry == entries_.end()) return false;
+  const CodeWord word = word_at(line);
+  const Entry* const entry = word.tenths < 0 ? nullptr : entry_of(word, line);
+  if (entry == nullptr) return false;
+  any_ = true;
   name = entry->name;
-  failed_ = !look_behind(rest, *entry, problem);
+  failed_ = !look_behind(line, *entry, problem);
   return true;
+}
+
+std::string LeftOut::unknown(std::string_view line) const {
+  line = without_number(line);
+  const CodeWord word = word_at(line);
+  const bool known = word.tenths < 0 || has_effect(word) || entry_of(word, line) != nullptr;
+  return known || !why_not_left_out(word).empty() ? std::string() : name_of(word.letter, word.tenths);
 }
 
 // Words of any kind, also without numbers and with texts in quotes; not what moves.
 bool LeftOut::look_behind(std::string_view rest, const Entry& entry, Problem& problem) {
-  if (entry.text) return true;
+  if (entry.treatment == Treatment::kText) return true;
   bool quoted = false;
   int depth = 0;
   for (std::size_t i = 0; i < rest.size(); ++i) {
@@ -96,9 +155,19 @@ bool LeftOut::look_behind(std::string_view rest, const Entry& entry, Problem& pr
   return true;
 }
 
+std::vector<std::string> refused_words() {
+  std::vector<std::string> words;
+  for (const OtherWord* word = begin_other_words(); word != end_other_words(); ++word) {
+    if (!is_left_out(word->treatment)) words.push_back(name_of(word->letter, word->tenths));
+  }
+  return words;
+}
+
 void add_left_out(std::vector<std::string>& words) {
-  words.push_back(name_of('G', kBedLevelling));
-  for (const int tenths : kAlways) words.push_back(name_of('M', tenths));
+  for (const OtherWord* word = begin_other_words(); word != end_other_words(); ++word) {
+    if (is_left_out(word->treatment) && !has_effect({word->letter, word->tenths}))
+      words.push_back(name_of(word->letter, word->tenths));
+  }
 }
 
 }  // namespace trammel::gcode

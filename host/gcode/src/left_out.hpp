@@ -1,12 +1,15 @@
-// Lines of slicers for hardware that the card does not have: heaters, fans, displays, limits of a printer's firmware.
-// Such a line begins with its word, and nothing else of it is read. Internal to the reader.
+// Lines for hardware that the card does not have: heaters, fans, displays, limits of a printer's firmware; and those
+// that the user names. Such a line begins with its word, and nothing else of it is read. Internal to the reader.
 #pragma once
 
+#include <bitset>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "other_words.hpp"
 #include "problem.hpp"
+#include "trammel/gcode/reader.hpp"
 
 namespace trammel::gcode {
 
@@ -15,26 +18,33 @@ std::string name_of(char letter, int tenths);
 
 class LeftOut {
  public:
-  // `more`: codes of further M words, in tenths.
-  explicit LeftOut(const std::vector<int>& more);
+  // `more`: further words.
+  explicit LeftOut(const std::vector<CodeWord>& more);
 
   // Whether the line (without blanks before it) is such a line; `name` is then its word, until the next call. With a
   // problem where it has more G or M words: these would be lost.
   bool find(std::string_view line, std::string_view& name, Problem& problem);
   // Of the last line that find() has found: there was a problem.
   bool failed() const { return failed_; }
+  // Whether find() has found a line: the program is for a printer's firmware.
+  bool any() const { return any_; }
+  // The word that begins a line and that is unknown, where `more` could name it; else empty.
+  std::string unknown(std::string_view line) const;
 
  private:
   struct Entry {
-    char letter;
-    int tenths;
-    bool text;  // the rest is text for people
+    CodeWord word;
+    Treatment treatment;
     std::string name;
   };
+  bool may_begin(std::string_view line) const;
+  const Entry* entry_of(const CodeWord& word, std::string_view rest) const;
   bool look_behind(std::string_view rest, const Entry& entry, Problem& problem);
 
   std::vector<Entry> entries_;
+  std::bitset<100> g_numbers_;  // the first two digits of the G words
   bool failed_ = false;
+  bool any_ = false;
 };
 
 // To a list of words: those that are always left out.

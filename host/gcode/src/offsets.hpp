@@ -47,7 +47,11 @@ class Offsets {
 
   // G92: `here` gets the coordinate `value`.
   void shift_at(std::size_t axis, const Place& here, const Value& value);
-  void shift_on() { shifted_ = true; }    // G92.3, and G92 with what it did not name
+  void set_shift(std::size_t axis, const Value& value) {  // G52
+    shift_.set(axis, value.value, value.later);
+    any_later_ = any_later_ || value.later;
+  }
+  void shift_on() { shifted_ = true; }    // G92.3, and G92 and G52 with what it did not name
   void shift_off() { shifted_ = false; }  // G92.2
   void shift_clear();                     // G92.1
 

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "characters.hpp"
+#include "codes.hpp"
 #include "interpreter.hpp"
 #include "left_out.hpp"
+#include "other_words.hpp"
 
 namespace trammel::gcode {
 namespace {
@@ -86,7 +91,10 @@ class Reader::Impl {
   }
 
   const std::optional<Error>& error() const { return error_; }
-  const std::map<std::string, std::size_t>& accepted() const { return accepted_; }
+  const std::map<std::string, std::size_t>& accepted() {
+    if (left_out_.any() && dwells_by_p_ != 0) accepted_["G4 P"] = dwells_by_p_;
+    return accepted_;
+  }
   const std::string& file() const { return lines_.name(); }
 
  private:
@@ -109,19 +117,25 @@ class Reader::Impl {
     }
     std::string_view left_out;
     if (left_out_.find(line, left_out, problem_)) {
-      in_program_ = true;
+      in_program_ = has_words_ = true;
       ++accepted_[std::string(left_out)];
       return !left_out_.failed() || fail();
     }
+    if (!has_words_ && is_program_number(line)) {
+      in_program_ = true;
+      return !error_;
+    }
     if (!words_.read(line, axes_, parameters_, problem_)) {
+      name_command(line);
       return fail();
     }
-    in_program_ = in_program_ || !words_.empty();
+    has_words_ = has_words_ || !words_.empty();
+    in_program_ = in_program_ || has_words_;
     if (words_.accepted_begin() != words_.accepted_end()) {
       count_accepted();
     }
-    if (words_.code(Group::kPathControl) && words_.letter('Q')) {
-      ++accepted_["G64 Q"];  // naive cam: no lines are joined
+    if (!words_.is_plain()) {
+      count_modes();
     }
     const Interpreter::Outcome outcome = interpreter_.execute(words_, number_, motions_, problem_);
     ended_ = outcome == Interpreter::Outcome::kEnded;
@@ -186,8 +200,33 @@ class Reader::Impl {
                                                                    quote(without_blanks_before(text))));
   }
 
+  // O1234, before all words.
+  bool is_program_number(std::string_view line) {
+    if (line.size() < 2 || upper(line.front()) != 'O' || !is_digit(line[1])) return false;
+    return only_comments(line.substr(std::min(line.find_first_not_of("0123456789", 1), line.size())));
+  }
+
+  // A line that is no G-code: its first letters are no words.
+  void name_command(std::string_view line) {
+    const std::string_view name = command_name(line);
+    if (name.empty()) return;
+    problem_.set(
+        ErrorCode::kUnsupportedWord,
+        fmt::format("'{}' is a command or macro of Klipper: let the slicer write the G-code that it stands for",
+                    quote(name)));
+  }
+
+  // Words that have an effect, though not all that a user may expect.
+  void count_modes() {
+    if (words_.code(Group::kPathControl) && words_.letter('Q')) ++accepted_["G64 Q"];  // naive cam: no lines are joined
+    const std::optional<int> action = words_.code(Group::kNonModal);
+    if (action == code::kHome) ++accepted_["G28"];  // nothing is searched
+    if (action == code::kDwell && words_.letter('P').value_or(0) > 0) ++dwells_by_p_;
+  }
+
   void count_accepted() {
     for (const WordSet::Accepted* word = words_.accepted_begin(); word != words_.accepted_end(); ++word) {
+      if (word->letter == 'S' && words_.dwells_by_s()) continue;
       if (word->letter == 'M' && interpreter_.switches(word->number)) {
         continue;
       }
@@ -203,7 +242,23 @@ class Reader::Impl {
     return fail(ErrorCode::kNoSuchLine,
                 fmt::format("the program ends before line {}, where it is to begin", first_line_));
   }
-  bool fail() { return fail(problem_.code, problem_.message); }
+  bool fail() {
+    if (!problem_.unknown.empty()) name_unknown();
+    return fail(problem_.code, problem_.message);
+  }
+  // How the program runs without the unknown word, and without those further down.
+  void name_unknown() {
+    const std::size_t here = number_;
+    std::vector<std::string> names{problem_.unknown};
+    std::string_view line;
+    while (options_.name_all_unknown && next_line(line)) {
+      std::string name = left_out_.unknown(line);
+      if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+    }
+    number_ = here;
+    problem_.message += fmt::format("; --accept {} leaves out the lines that begin with {}", fmt::join(names, ","),
+                                    names.size() == 1 ? "it" : "these words");
+  }
   bool fail(ErrorCode code, const std::string& message) {
     error_ = Error{code, lines_.name(), number_, message};
     return false;
@@ -217,7 +272,9 @@ class Reader::Impl {
   LeftOut left_out_;
   std::size_t number_ = 0;  // of the line
   std::size_t first_line_ = 0;
-  bool in_program_ = false;  // a word or a '%' was there
+  bool in_program_ = false;  // a word, a program number or a '%' was there
+  bool has_words_ = false;   // a word was there
+  std::size_t dwells_by_p_ = 0;
   bool ended_ = false;
   bool awaits_probe_ = false;
   WordSet words_;

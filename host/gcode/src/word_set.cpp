@@ -5,8 +5,7 @@
 #include <string>
 
 #include "left_out.hpp"
-#include "trammel/gcode/reader.hpp"
-#include "unsupported.hpp"
+#include "other_words.hpp"
 
 namespace trammel::gcode {
 namespace {
@@ -18,31 +17,33 @@ struct Code {
   bool effect;  // false: accepted, listed in the summary; M3 to M9 where they switch no output
 };
 
-constexpr std::array<Code, 72> kCodes = {{
+constexpr std::array<Code, 76> kCodes = {{
     {'G', 0, Group::kMotion, true},        {'G', 10, Group::kMotion, true},       {'G', 20, Group::kMotion, true},
     {'G', 30, Group::kMotion, true},       {'G', 40, Group::kNonModal, true},     {'G', 50, Group::kMotion, true},
-    {'G', 51, Group::kMotion, true},       {'G', 100, Group::kNonModal, true},    {'G', 170, Group::kPlane, true},
-    {'G', 180, Group::kPlane, true},       {'G', 190, Group::kPlane, true},       {'G', 200, Group::kUnits, true},
-    {'G', 210, Group::kUnits, true},       {'G', 280, Group::kNonModal, true},    {'G', 281, Group::kNonModal, true},
-    {'G', 300, Group::kNonModal, true},    {'G', 301, Group::kNonModal, true},    {'G', 382, Group::kMotion, true},
+    {'G', 51, Group::kMotion, true},       {'G', 80, Group::kDiameter, true},     {'G', 100, Group::kNonModal, true},
+    {'G', 150, Group::kPolar, true},       {'G', 170, Group::kPlane, true},       {'G', 180, Group::kPlane, true},
+    {'G', 190, Group::kPlane, true},       {'G', 200, Group::kUnits, true},       {'G', 210, Group::kUnits, true},
+    {'G', 280, Group::kNonModal, true},    {'G', 281, Group::kNonModal, true},    {'G', 300, Group::kNonModal, true},
+    {'G', 301, Group::kNonModal, true},    {'G', 310, Group::kMotion, true},      {'G', 382, Group::kMotion, true},
     {'G', 383, Group::kMotion, true},      {'G', 384, Group::kMotion, true},      {'G', 385, Group::kMotion, true},
     {'G', 400, Group::kCutter, true},      {'G', 430, Group::kToolLength, true},  {'G', 431, Group::kToolLength, true},
-    {'G', 490, Group::kToolLength, true},  {'G', 530, Group::kNonModal, true},    {'G', 540, Group::kCoordinates, true},
-    {'G', 550, Group::kCoordinates, true}, {'G', 560, Group::kCoordinates, true}, {'G', 570, Group::kCoordinates, true},
-    {'G', 580, Group::kCoordinates, true}, {'G', 590, Group::kCoordinates, true}, {'G', 591, Group::kCoordinates, true},
-    {'G', 592, Group::kCoordinates, true}, {'G', 593, Group::kCoordinates, true}, {'G', 610, Group::kPathControl, true},
-    {'G', 611, Group::kPathControl, true}, {'G', 640, Group::kPathControl, true}, {'G', 730, Group::kMotion, true},
-    {'G', 800, Group::kMotion, true},      {'G', 810, Group::kMotion, true},      {'G', 820, Group::kMotion, true},
-    {'G', 830, Group::kMotion, true},      {'G', 850, Group::kMotion, true},      {'G', 890, Group::kMotion, true},
-    {'G', 900, Group::kDistance, true},    {'G', 901, Group::kArcDistance, true}, {'G', 910, Group::kDistance, true},
-    {'G', 911, Group::kArcDistance, true}, {'G', 920, Group::kNonModal, true},    {'G', 921, Group::kNonModal, true},
-    {'G', 922, Group::kNonModal, true},    {'G', 923, Group::kNonModal, true},    {'G', 930, Group::kFeedMode, true},
-    {'G', 940, Group::kFeedMode, true},    {'G', 980, Group::kRetract, true},     {'G', 990, Group::kRetract, true},
+    {'G', 490, Group::kToolLength, true},  {'G', 520, Group::kNonModal, true},    {'G', 530, Group::kNonModal, true},
+    {'G', 540, Group::kCoordinates, true}, {'G', 550, Group::kCoordinates, true}, {'G', 560, Group::kCoordinates, true},
+    {'G', 570, Group::kCoordinates, true}, {'G', 580, Group::kCoordinates, true}, {'G', 590, Group::kCoordinates, true},
+    {'G', 591, Group::kCoordinates, true}, {'G', 592, Group::kCoordinates, true}, {'G', 593, Group::kCoordinates, true},
+    {'G', 610, Group::kPathControl, true}, {'G', 611, Group::kPathControl, true}, {'G', 640, Group::kPathControl, true},
+    {'G', 690, Group::kRotation, true},    {'G', 730, Group::kMotion, true},      {'G', 800, Group::kMotion, true},
+    {'G', 810, Group::kMotion, true},      {'G', 820, Group::kMotion, true},      {'G', 830, Group::kMotion, true},
+    {'G', 850, Group::kMotion, true},      {'G', 890, Group::kMotion, true},      {'G', 900, Group::kDistance, true},
+    {'G', 901, Group::kArcDistance, true}, {'G', 910, Group::kDistance, true},    {'G', 911, Group::kArcDistance, true},
+    {'G', 920, Group::kNonModal, true},    {'G', 921, Group::kNonModal, true},    {'G', 922, Group::kNonModal, true},
+    {'G', 923, Group::kNonModal, true},    {'G', 930, Group::kFeedMode, true},    {'G', 940, Group::kFeedMode, true},
+    {'G', 970, Group::kSpindleMode, true}, {'G', 980, Group::kRetract, true},     {'G', 990, Group::kRetract, true},
     {'M', 0, Group::kStopping, false},     {'M', 10, Group::kStopping, false},    {'M', 20, Group::kStopping, true},
     {'M', 300, Group::kStopping, true},    {'M', 30, Group::kSpindle, false},     {'M', 40, Group::kSpindle, false},
     {'M', 50, Group::kSpindle, false},     {'M', 60, Group::kToolChange, false},  {'M', 70, Group::kCoolant, false},
-    {'M', 80, Group::kCoolant, false},     {'M', 90, Group::kCoolant, false},     {'M', 180, Group::kMotors, false},
-    {'M', 840, Group::kMotors, false},     {'M', 820, Group::kExtruder, true},    {'M', 830, Group::kExtruder, true},
+    {'M', 80, Group::kCoolant, false},     {'M', 90, Group::kCoolant, false},     {'M', 820, Group::kExtruder, true},
+    {'M', 830, Group::kExtruder, true},
 }};
 
 // Place in kCodes of every G and M word, by its tenths.
@@ -62,14 +63,13 @@ constexpr CodePlaces places_of(char letter) {
   return places;
 }
 
-const Code* find_code(const Word& word) {
+const Code* find_code(char letter, int tenths) {
   static constexpr CodePlaces kG = places_of('G');
   static constexpr CodePlaces kM = places_of('M');
-  const int tenths = code_of(word.value);
   if (tenths < 0 || tenths >= static_cast<int>(kG.size())) {
     return nullptr;
   }
-  const std::uint8_t place = (word.letter == 'G' ? kG : kM)[static_cast<std::size_t>(tenths)];
+  const std::uint8_t place = (letter == 'G' ? kG : kM)[static_cast<std::size_t>(tenths)];
   return place != kNoCode ? &kCodes[place] : nullptr;
 }
 
@@ -99,14 +99,14 @@ bool twice(const Word& word, Problem& problem) {
   return problem.set(ErrorCode::kLetterTwice, fmt::format("'{}': {} stands twice", quote(word.text), word.letter));
 }
 
-bool depends_on_probe(const Word& word, Problem& problem) {
-  return problem.set(ErrorCode::kDependsOnProbe, fmt::format("'{}' cannot depend on a probe", quote(word.text)));
+bool no_such_axis(char letter, std::string_view text, Problem& problem) {
+  return problem.set(ErrorCode::kNoSuchAxis,
+                     fmt::format("'{}': the machine has no axis {}; [axis.{}] of its file would describe it",
+                                 quote(text), letter, static_cast<char>(letter - 'A' + 'a')));
 }
 
-bool unsupported(const Word& word, Problem& problem) {
-  const std::string_view why = why_unsupported(word.letter, code_of(word.value));
-  return problem.set(ErrorCode::kUnsupportedWord,
-                     fmt::format("unsupported word '{}'{}{}", quote(word.text), why.empty() ? "" : ": ", why));
+bool depends_on_probe(const Word& word, Problem& problem) {
+  return problem.set(ErrorCode::kDependsOnProbe, fmt::format("'{}' cannot depend on a probe", quote(word.text)));
 }
 
 }  // namespace
@@ -123,6 +123,8 @@ bool WordSet::read(std::string_view line, const AxisLetters& axes, Parameters& p
   codes_present_ = 0;
   letters_present_ = 0;
   axes_present_ = 0;
+  bare_letters_ = 0;
+  bare_axes_ = 0;
   later_letters_ = 0;
   later_axes_ = 0;
   accepted_count_ = 0;
@@ -132,7 +134,7 @@ bool WordSet::read(std::string_view line, const AxisLetters& axes, Parameters& p
       return false;
     }
   }
-  if (scanner.failed()) {
+  if (scanner.failed() || (bare_letters_ != 0 && !check_bare(axes, problem))) {
     return false;
   }
   if (parameters.any_assigned()) {
@@ -142,6 +144,11 @@ bool WordSet::read(std::string_view line, const AxisLetters& axes, Parameters& p
 }
 
 bool WordSet::add(const Word& word, const AxisLetters& axes, Problem& problem) {
+  if (word.bare) {
+    first_bare_ = bare_letters_ == 0 ? word.letter : first_bare_;
+    bare_letters_ |= bit(word.letter);
+    return true;
+  }
   if (in(word.letter, kAxes)) {
     return add_axis(word, axes, problem);
   }
@@ -155,7 +162,7 @@ bool WordSet::add(const Word& word, const AxisLetters& axes, Problem& problem) {
 }
 
 bool WordSet::add_code(const Word& word, Problem& problem) {
-  const Code* code = find_code(word);
+  const Code* code = find_code(word.letter, code_of(word.value));
   if (word.later) {
     return depends_on_probe(word, problem);
   }
@@ -212,8 +219,7 @@ bool WordSet::add_letter(const Word& word, Problem& problem) {
 bool WordSet::add_axis(const Word& word, const AxisLetters& axes, Problem& problem) {
   const std::uint8_t axis = axes[word.letter];
   if (axis == AxisLetters::kNone) {
-    return problem.set(ErrorCode::kNoSuchAxis,
-                       fmt::format("'{}': the machine has no axis {}", quote(word.text), word.letter));
+    return no_such_axis(word.letter, word.text, problem);
   }
   if (has_axis(axis)) {
     return twice(word, problem);
@@ -222,6 +228,57 @@ bool WordSet::add_axis(const Word& word, const AxisLetters& axes, Problem& probl
   later_axes_ |= word.later ? 1U << axis : 0;
   axes_[axis] = word.value;
   return true;
+}
+
+// Letters without a number: axes of G28 and G30, alone. W is no axis of a printer: G28 W leaves out its bed levelling.
+bool WordSet::check_bare(const AxisLetters& axes, Problem& problem) {
+  const std::optional<int> action = code(Group::kNonModal);
+  const bool home = action == code::kHome || action == code::kSecondHome;
+  if (!home || (bare_letters_ & ~kAxes) != 0) {
+    return problem.set(ErrorCode::kMalformedNumber, fmt::format("malformed number in '{}'", first_bare_));
+  }
+  for (char letter = 'A'; letter <= 'Z'; ++letter) {
+    if (!in(letter, bare_letters_)) continue;
+    if (axes[letter] != AxisLetters::kNone) {
+      bare_axes_ |= 1U << axes[letter];
+    } else if (letter != 'W') {
+      return no_such_axis(letter, std::string_view(&letter, 1), problem);
+    }
+  }
+  return true;
+}
+
+// Where its line could be left out, the reader says how.
+bool WordSet::unsupported(const Word& word, Problem& problem) const {
+  const CodeWord code{word.letter, in(word.letter, kCodeLetters) ? code_of(word.value) : -1};
+  const OtherWord* const other = find_other_word(code.letter, code.tenths);
+  std::string message = fmt::format("unsupported word '{}'", quote(word.text));
+  if (other != nullptr && !other->why.empty()) message += fmt::format(": {}", other->why);
+  const bool first = words_ == 0 || (words_ == 1 && letter('N'));
+  const bool may_be_left_out = code.tenths >= 0 && why_not_left_out(code).empty();
+  if (may_be_left_out && !first) {
+    const bool always = other != nullptr && is_left_out(other->treatment);
+    message += fmt::format(
+        "; on a line of its own {}",
+        always ? "it is left out" : fmt::format("--accept {} leaves it out", name_of(code.letter, code.tenths)));
+  }
+  problem.set(ErrorCode::kUnsupportedWord, std::move(message));
+  if (may_be_left_out && first) problem.unknown = name_of(code.letter, code.tenths);
+  return false;
+}
+
+std::optional<bool> has_effect(const CodeWord& word) {
+  const Code* const code = find_code(word.letter, word.tenths);
+  return code != nullptr ? std::optional<bool>(code->effect) : std::nullopt;
+}
+
+std::string_view why_not_left_out(const CodeWord& word) {
+  if (has_effect(word).value_or(false)) return "the reader obeys it";
+  const OtherWord* const other = find_other_word(word.letter, word.tenths);
+  if (other != nullptr) return other->treatment == Treatment::kNeverLeftOut ? other->why : std::string_view();
+  // G59.4 would do what G59 does, somehow.
+  const bool variant = word.letter == 'G' && word.tenths % 10 != 0;
+  return variant ? why_not_left_out({'G', word.tenths - word.tenths % 10}) : std::string_view();
 }
 
 std::vector<std::string> known_words() {

@@ -9,8 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "codes.hpp"
 #include "problem.hpp"
 #include "trammel/card_map.hpp"
+#include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
 #include "words.hpp"
 
@@ -18,8 +20,8 @@ namespace trammel::gcode {
 
 // Modal groups as in RS274/NGC: at most one word of a group on a line.
 enum class Group {
-  kNonModal,     // G4 G10 G28 G28.1 G30 G30.1 G53 G92 .. G92.3
-  kMotion,       // G0 G1 G2 G3 G5 G5.1 G38.2 .. G38.5 G73 G80 .. G83 G85 G89
+  kNonModal,     // G4 G10 G28 G28.1 G30 G30.1 G52 G53 G92 .. G92.3
+  kMotion,       // G0 G1 G2 G3 G5 G5.1 G31 G38.2 .. G38.5 G73 G80 .. G83 G85 G89
   kPlane,        // G17 G18 G19
   kDistance,     // G90 G91
   kArcDistance,  // G90.1 G91.1
@@ -32,14 +34,20 @@ enum class Group {
   kStopping,     // M0 M1 M2 M30
   kSpindle,      // M3 M4 M5
   kCoolant,      // M7 M8 M9
-  kMotors,       // M18 M84
   kExtruder,     // M82 M83
   kRetract,      // G98 G99
   kToolChange,   // M6
+  kDiameter,     // G8
+  kPolar,        // G15
+  kRotation,     // G69
+  kSpindleMode,  // G97
   kCount
 };
 
 inline constexpr std::size_t kLetters = 26;
+
+// Whether a word has one, or could; none for words that the reader does not understand.
+std::optional<bool> has_effect(const CodeWord& word);
 
 // The axis of each letter, or kNone.
 class AxisLetters {
@@ -70,6 +78,11 @@ class WordSet {
   bool has_axis(std::size_t axis) const { return (axes_present_ >> axis & 1U) != 0; }
   double axis(std::size_t axis) const { return axes_[axis]; }  // as written
   std::uint32_t axes() const { return axes_present_; }         // bit n: axis n
+  // Named by G28 or G30 without a value.
+  std::uint32_t bare_axes() const { return bare_axes_; }
+  // Of G4, seconds: P, or S where there is no P, which is then no speed.
+  std::optional<double> dwell() const;
+  bool dwells_by_s() const { return code(Group::kNonModal) == code::kDwell && !letter('P'); }
 
   // What depends on a probe that has not run yet (see Value): any word, a letter, an axis word.
   bool later() const { return (later_letters_ | later_axes_) != 0; }
@@ -89,6 +102,8 @@ class WordSet {
   bool add_code(const Word& word, Problem& problem);
   bool add_letter(const Word& word, Problem& problem);
   bool add_axis(const Word& word, const AxisLetters& axes, Problem& problem);
+  [[gnu::cold]] bool check_bare(const AxisLetters& axes, Problem& problem);
+  [[gnu::cold]] bool unsupported(const Word& word, Problem& problem) const;
 
   static constexpr std::uint32_t kPlainGroups = 1U << static_cast<unsigned>(Group::kMotion);
   static constexpr std::uint32_t kPlainLetters = 1U << ('F' - 'A') | 1U << ('N' - 'A');
@@ -97,6 +112,9 @@ class WordSet {
   std::uint32_t codes_present_ = 0;
   std::uint32_t letters_present_ = 0;
   std::uint32_t axes_present_ = 0;
+  std::uint32_t bare_letters_ = 0;
+  char first_bare_ = 0;
+  std::uint32_t bare_axes_ = 0;
   std::uint32_t later_letters_ = 0;
   std::uint32_t later_axes_ = 0;
   std::size_t accepted_count_ = 0;
@@ -115,5 +133,7 @@ inline std::optional<double> WordSet::letter(char name) const {
   const auto place = static_cast<std::size_t>(name - 'A');
   return (letters_present_ >> place & 1U) != 0 ? std::optional<double>(letters_[place]) : std::nullopt;
 }
+
+inline std::optional<double> WordSet::dwell() const { return letter(dwells_by_s() ? 'S' : 'P'); }
 
 }  // namespace trammel::gcode

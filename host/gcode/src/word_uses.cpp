@@ -60,7 +60,7 @@ const char* takers_of(char letter) {
 }
 
 bool check_needs(const WordSet& words, const Takers& takers, Problem& problem) {
-  if (takers.action == code::kDwell && !words.letter('P')) return missing(problem, "G4 needs P, its seconds");
+  if (takers.action == code::kDwell && !words.dwell()) return missing(problem, "G4 needs P or S, its seconds");
   if (words.letter('H') && words.code(Group::kToolLength) != code::kToolLength) {
     return unused(problem, "H without G43");
   }
@@ -78,7 +78,7 @@ bool check_needs(const WordSet& words, const Takers& takers, Problem& problem) {
 bool uses_axes_otherwise(const WordSet& words) {
   const auto action = words.code(Group::kNonModal);
   return action == code::kSet || action == code::kHome || action == code::kSecondHome || action == code::kOrigin ||
-         words.code(Group::kToolLength) == code::kToolOffsets;
+         action == code::kLocalOrigin || words.code(Group::kToolLength) == code::kToolOffsets;
 }
 
 bool check_uses(const WordSet& words, std::optional<int> modal, Problem& problem) {
@@ -90,10 +90,6 @@ bool check_uses(const WordSet& words, std::optional<int> modal, Problem& problem
     const int action = takers.action.value_or(code::kToolOffsets);
     return problem.set(ErrorCode::kTwoUsesOfAxisWords,
                        fmt::format("{} cannot share a line with a motion", name_of('G', action)));
-  }
-  if (words.has_axis_words() && words.code(Group::kMotors)) {
-    return problem.set(ErrorCode::kTwoUsesOfAxisWords,
-                       "axis words beside M18 or M84: only all motors together are understood");
   }
   takers.motion = otherwise ? std::nullopt : motion ? motion : modal;
   takers.path_tolerance = words.code(Group::kPathControl) == 640;

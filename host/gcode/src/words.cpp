@@ -57,6 +57,10 @@ const char* add_digits(const char* at, const char* end, std::uint64_t& whole) {
   if (digits == 0 && starts_expression(line_.substr(at_))) {
     return expression(from, word, problem);
   }
+  if (digits == 0 && is_bare(from)) {
+    word = Word{upper(text[from]), 0, std::string_view(text + from, 1), false, true};
+    return true;
+  }
   if (digits == 0 || (at < end && !is_space(*at) && !may_follow(*at))) {
     return at < end && digits != 0 && *at == 'e' ? exponent(from, problem) : malformed(from, problem);
   }
@@ -70,7 +74,7 @@ const char* add_digits(const char* at, const char* end, std::uint64_t& whole) {
   if (value > kLargestValue) {
     return out_of_range(from, problem);
   }
-  word = Word{upper(text[from]), negative ? -value : value, std::string_view(text + from, at_ - from), false};
+  word = Word{upper(text[from]), negative ? -value : value, std::string_view(text + from, at_ - from)};
   return true;
 }
 
@@ -149,6 +153,11 @@ bool WordScanner::unexpected(Problem& problem) const {
     return problem.set(ErrorCode::kUnexpectedCharacter,
                        fmt::format("unexpected byte 0x{:02x}", static_cast<unsigned char>(c)));
   }
+  if (c == '$') {
+    return problem.set(ErrorCode::kUnexpectedCharacter,
+                       fmt::format("'{}' is a setting or command for Grbl, which no program can hold",
+                                   quote(line_.substr(at_, line_.find_first_of(" \t(;", at_) - at_))));
+  }
   std::size_t end = at_ + 1;
   while (end < line_.size() && is_printable(line_[end]) && !is_letter(line_[end])) {
     ++end;
@@ -181,6 +190,12 @@ bool WordScanner::convert(std::size_t from, std::size_t end, double& value) cons
   return result.ec == std::errc() && result.ptr == last;
 }
 
+// Whether the letter stands alone: at_ is behind it and the blanks that follow.
+bool WordScanner::is_bare(std::size_t letter) const {
+  if (at_ == line_.size() || line_[at_] == ';' || line_[at_] == '(') return true;
+  return is_letter(line_[at_]) && at_ > letter + 1;
+}
+
 // Quotes from the word's letter up to the next blank or letter.
 bool WordScanner::malformed(std::size_t from, Problem& problem) const {
   std::size_t end = at_;
@@ -206,7 +221,7 @@ bool WordScanner::exponent(std::size_t from, Problem& problem) const {
 
 int code_of(double value) {
   const double tenths = value * 10;
-  if (!(tenths >= 0 && tenths <= 9999)) {
+  if (!(tenths >= 0 && tenths < 100'000)) {
     return -1;
   }
   const int whole = static_cast<int>(tenths + 0.5);

@@ -13,6 +13,7 @@ struct Word {
   double value;           // finite
   std::string_view text;  // as written, for messages
   bool later = false;     // the value depends on a probe that has not run yet
+  bool bare = false;      // a letter without a number: its value is 0
 };
 
 // Gives the words of a line one by one, without its comments. Numbers are decimal, without exponent, and become the
@@ -35,6 +36,7 @@ class WordScanner {
   [[gnu::cold]] bool o_word(Problem& problem) const;
   [[gnu::cold]] bool unexpected(Problem& problem) const;
   [[gnu::cold]] bool convert(std::size_t from, std::size_t end, double& value) const;
+  [[gnu::cold]] bool is_bare(std::size_t letter) const;
   [[gnu::cold]] bool malformed(std::size_t from, Problem& problem) const;
   [[gnu::cold]] bool exponent(std::size_t from, Problem& problem) const;
   [[gnu::cold]] bool out_of_range(std::size_t from, Problem& problem) const;

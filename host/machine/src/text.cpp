@@ -76,28 +76,14 @@ bool is_close(char c) { return c == ']' || c == '}'; }
 
 }  // namespace
 
-std::string one_line(std::string_view text, std::size_t most) {
-  constexpr std::string_view kCut = "...";
-  std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    result += byte < 0x20 || byte == 0x7f ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
-    if (result.size() > most) {
-      result.resize(most - kCut.size());
-      return result.append(kCut);
-    }
-  }
-  return result;
-}
-
 std::string nearest(std::string_view wrong, const std::vector<std::string>& names) {
   // Any longer and it is no slip of a name; the comparison takes the product of the two lengths.
-  constexpr std::size_t kLongestName = 64;
-  if (wrong.size() > kLongestName) {
+  constexpr std::size_t kMostLetters = 64;
+  if (wrong.size() > kMostLetters) {
     return {};
   }
   std::string best;
-  std::size_t least = kLongestName;
+  std::size_t least = kMostLetters;
   for (const std::string& name : names) {
     const std::size_t count = changes(wrong, name);
     if (count < least && count <= std::max(wrong.size(), name.size()) / 2) {

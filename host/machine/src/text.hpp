@@ -6,10 +6,9 @@
 #include <string_view>
 #include <vector>
 
-namespace trammel::machine {
+#include "trammel/machine/one_line.hpp"
 
-// What of `text` goes into a message: control characters escaped, cut to `most` characters.
-std::string one_line(std::string_view text, std::size_t most);
+namespace trammel::machine {
 
 // The name that takes the fewest changes of a letter to become `wrong`, or nothing where none has half of its
 // letters.

@@ -200,7 +200,9 @@ Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planne
     : lines_(std::move(lines)), machine_(machine), card_(card), settings_(settings) {}
 
 const Plan& Runner::plan() {
-  Pipeline pipeline(lines_, machine_, card_, settings_);
+  RunSettings settings = settings_;
+  settings.reader.name_all_unknown = true;
+  Pipeline pipeline(lines_, machine_, card_, settings);
   PlanGatherer gatherer(pipeline);
   NoSink sink;
   std::uint64_t commands = 0;

@@ -76,11 +76,10 @@ struct Error {
   std::string message;   // one line
 };
 
-// "file:line: message", one line.
+// "file:line: message", one line (machine::one_line()).
 std::string describe(const Error& error);
 
-// Text of a program for a message: control characters and what is not ASCII as escapes, cut to kLongestQuote
-// characters.
+// Text of a program for a message, as machine::one_line() has it.
 inline constexpr std::size_t kLongestQuote = 80;
 std::string quote(std::string_view text);
 

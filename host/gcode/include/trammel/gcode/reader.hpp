@@ -2,7 +2,8 @@
 // program. The meaning is LinuxCNC's (RS274/NGC). Where dialects differ:
 //   - a value stands in the units that hold at the end of its line (G20 F10: inches per minute);
 //   - E follows G90 and G91 like any axis until the program says M82 or M83, then those alone; bare G28 leaves E;
-//   - G4 P is in seconds; a line with '/' is skipped (ReaderOptions);
+//   - G4 P is in seconds, and so is G4 S; a line with '/' is skipped (ReaderOptions);
+//   - G28 takes axis letters without numbers; G31 is G38.3 for one line; O1234 before all words is no subroutine;
 //   - M2, M30 or a '%' that does not open the program end it. What follows M2 and M30 is not read; beside a '%' and
 //     behind the last one only blanks and comments may stand;
 //   - lines of slicers for hardware that the card does not have are left out and told (ReaderOptions::left_out);
@@ -17,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trammel/gcode/error.hpp"
@@ -26,12 +28,20 @@
 
 namespace trammel::gcode {
 
+// A G or M word: M862.3 is {'M', 8623}.
+struct CodeWord {
+  char letter;
+  int tenths;
+};
+
 // The operator's switches.
 struct ReaderOptions {
   bool block_delete = true;  // lines with '/' are skipped; else they are lines like any other
   double feed_scale = 1;     // on every programmed feed, > 0; no motion's path depends on it
-  // M words, in tenths (M862.3 is 8623), whose lines are left out beside those that always are.
-  std::vector<int> left_out;
+  // Words whose lines are left out beside those that always are, none of which why_not_left_out() speaks against.
+  std::vector<CodeWord> left_out;
+  // At a word that could be left out, read on to the end of the program: the error names all of these.
+  bool name_all_unknown = false;
   // Numbered parameters before the first line: #1 to #5000, offsets and homes as LinuxCNC numbers them.
   std::map<int, double> parameters;
 };
@@ -80,7 +90,12 @@ class Reader {
   std::unique_ptr<Impl> impl_;
 };
 
-// Every word that the reader understands, as "G38.2", "X" or "M104".
+// Why lines that begin with a word are never left out: it moves the machine, or other lines depend on it. Empty where
+// they can be.
+std::string_view why_not_left_out(const CodeWord& word);
+
+// Every word that the reader understands, as "G38.2", "X" or "M104"; and those that it refuses with a reason.
 std::vector<std::string> known_words();
+std::vector<std::string> refused_words();
 
 }  // namespace trammel::gcode
