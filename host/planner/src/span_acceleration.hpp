@@ -71,6 +71,7 @@ class SpanAcceleration {
   // The step for a ramp from there on. Less than a quarter of a step would be too few ticks for its acceleration to
   // come out in whole ones: that is gone with the next step's, which is less.
   int first(double low) const {
+    if (steps_ == 1) return 0;
     int step = 0;
     double begin = 0;
     for (double end = top(0); step + 1 < steps_ && low > end - (end - begin) / 4; end = top(step)) {
