@@ -76,8 +76,9 @@ class Judge {
       const double whole = std::hypot(pulses * change, centripetal(a, speed));
       verdict.acceleration.look(whole / acceleration_[a], where);
       if (jerk_[a] <= 0) continue;
-      verdict.jerk.look(pulses * std::abs(jerk) / jerk_[a], where);
-      verdict.jerk.look(centripetal(a, speed) * turn_rate(a, speed) / jerk_[a], where);
+      const double along = pulses * std::abs(jerk) + centripetal(a, speed) * turn_rate(a, speed);
+      const double across = 3 * turn_rate(a, speed) * pulses * std::abs(change);
+      verdict.jerk.look(std::hypot(along, across) / jerk_[a], where);
     }
   }
 

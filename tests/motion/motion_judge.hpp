@@ -35,7 +35,7 @@ struct Worst {
 struct MotionVerdict {
   Worst velocity;           // of an axis; of max_velocity
   Worst acceleration;       // of an axis, tangential and centripetal together; of max_acceleration
-  Worst jerk;               // of an axis; of max_jerk. 0 where no axis has one
+  Worst jerk;               // of an axis, along the path and across it; of max_jerk. 0 where no axis has one
   Worst acceleration_jump;  // at borders of pieces, beyond two updates' jerk; of max_acceleration
   Worst rate_jump;          // at borders of pieces; of two updates' acceleration plus 0.1 % of the rate
   Worst rest;               // first and last rate at a stop; of the floor's rule

@@ -391,8 +391,8 @@ TEST(MotionJudge, ArcsUseTheirAccelerationAtEverySpeed) {
       const Planned planned(lines, machine, 10 * kClock);
       const MotionVerdict verdict = judge_motion(planned.commands, {machine, 10 * kClock, 0.01});
       expect_within_limits(verdict);
-      // At the lower one the jerk is the limit.
-      EXPECT_GT(verdict.acceleration.share, jerk == 20'000 ? 0.3 : 0.98);
+      // At the lower one the jerk is the limit, on the smallest arc that of the highest speed, which it does not reach.
+      EXPECT_GT(verdict.acceleration.share, jerk == 20'000 ? 0.16 : 0.98);
       EXPECT_NEAR(verdict.seconds(10 * kClock), planned.seconds, 0.001 * planned.seconds);
     }
   }

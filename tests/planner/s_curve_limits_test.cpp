@@ -86,16 +86,14 @@ TEST(SCurvePlan, LimitsThatTurnCostAtMostOneRiseARamp) {
 
 // Arcs among straight spans; on them the acceleration is what the speed of the moment leaves.
 Spans with_arcs(Random& random, const Limits& limits) {
-  constexpr double kAlong = 0.43588989435406736;  // where 0.9 of it is across
   Spans spans = moves(random, limits, true);
   for (Span& span : spans) {
     if (random.below(3) == 0) continue;
     const double radius = random.logarithmic(0.5, 200);
-    span.speed = std::min(span.speed, std::sqrt(0.9 * limits.acceleration * radius));
-    const double across = span.speed * span.speed / radius;
-    span.curve = {limits.acceleration, 1 / radius, limits.acceleration};
-    span.acceleration = std::sqrt(limits.acceleration * limits.acceleration - across * across);
-    span.jerk *= kAlong;
+    span.speed = std::min(span.speed, std::sqrt(0.995 * limits.acceleration * radius));
+    span.curve = {limits.acceleration, 1 / radius, limits.acceleration, 0.8 * span.jerk};
+    span.jerk *= 0.44;
+    span.acceleration = span.curve.along(span.speed);
   }
   return spans;
 }

@@ -118,7 +118,8 @@ class Judge {
         const double speed = speed_at(phase, time);
         const double across = span.curve.turning * speed * speed;
         const double left = std::sqrt(std::max(0.0, span.curve.whole * span.curve.whole - across * across));
-        most = std::max(most, std::min(left, span.curve.at_rest));
+        const double swung = span.curve.jerk / (3 * span.curve.turning * speed);
+        most = std::max(most, std::min({left, swung, span.curve.at_rest}));
       }
       const double acceleration = std::abs(acceleration_at(phase, time));
       if (!expect(acceleration <= most * (1 + kPart), "acceleration", acceleration, most)) return false;

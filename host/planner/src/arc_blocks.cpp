@@ -329,23 +329,23 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
   const double slope = radius * block.exact.sweep / block.length;  // mm in the plane a mm of path
   const double acceleration = plane.acceleration * share;
   const double jerk = plane.jerk * share;
-  constexpr double kAlong = 0.43588989435406736;  // sqrt(1 - kAcross^2)
   block.speed = plane.velocity / unevenness / slope;
   block.limit = SpeedLimit::kAxisVelocity;
   limit_speed(block, plane.pulse_speed / unevenness / slope, SpeedLimit::kPulseShape);
   limit_speed(block, std::sqrt(radius * acceleration * kAcross) / slope, SpeedLimit::kAcceleration);
   if (jerk < kNoLimit) {
-    limit_speed(block, cube_root(radius * radius * jerk * kAcross) / slope, SpeedLimit::kAcceleration);
+    limit_speed(block, cube_root(radius * radius * jerk * ArcJerk::kTurning) / slope, SpeedLimit::kAcceleration);
   }
   block.acceleration = block.jerk = kNoLimit;
   limit_further(block);
   apply_feed(block, feed_length);
-  const double across = block.speed * slope * (block.speed * slope) / radius;
-  const double along =
-      std::max(kAlong * acceleration, std::sqrt(std::max(0.0, acceleration * acceleration - across * across)));
-  block.curve = {acceleration / slope, slope / radius, std::min(block.acceleration, acceleration / slope)};
-  block.acceleration = std::min(block.acceleration, along / slope);
-  block.jerk = std::min(block.jerk, jerk * kAlong / slope);
+  const double speed = block.speed * slope;
+  const double across = speed * speed / radius;
+  const ArcJerk shares(jerk < kNoLimit ? speed * across / (radius * jerk) : 0);
+  block.curve = {acceleration / slope, slope / radius, std::min(block.acceleration, acceleration / slope),
+                 shares.across * jerk / slope};
+  block.acceleration = std::min(block.acceleration, block.curve.along(block.speed));
+  block.jerk = std::min(block.jerk, shares.along * jerk / slope);
   block.curvature = (block.clockwise ? -1 : 1) * slope * slope / radius;
 }
 

@@ -56,7 +56,8 @@ double CornerTime::blend_speed(const Fillet& blend, const CornerSide& from, cons
     plane.jerk = std::min(plane.jerk, limits_[i].jerk);
   }
   double speed = std::min(plane.velocity, std::sqrt(kAcross * plane.acceleration * blend.radius));
-  if (plane.jerk < kNoLimit) speed = std::min(speed, cube_root(kAcross * plane.jerk * blend.radius * blend.radius));
+  if (plane.jerk < kNoLimit)
+    speed = std::min(speed, cube_root(ArcJerk::kTurning * plane.jerk * blend.radius * blend.radius));
   return speed;
 }
 

@@ -1,4 +1,4 @@
-// The acceleration along a span, by its speed. An arc leaves at each speed what the centripetal one does not take; that
+// The acceleration along a span, by its speed. An arc leaves at each speed what Curve::along() says; that
 // is cut into steps of constant acceleration, each what its highest speed leaves. Squares of speeds. Internal to the
 // planner.
 #pragma once
@@ -19,8 +19,7 @@ class SpanAcceleration {
   explicit SpanAcceleration(const Span& span)
       : at_rest_(span.acceleration), at_top_(span.acceleration), top_(span.speed * span.speed) {
     if (span.curve.whole <= 0) return;
-    whole_ = span.curve.whole;
-    turning_ = span.curve.turning;
+    curve_ = span.curve;
     at_rest_ = std::max(at_top_, span.curve.at_rest);
     // As many as make each some 4 % less than the one before, where the speed is the most that the curve allows.
     constexpr double kSteps = 28;
@@ -31,22 +30,20 @@ class SpanAcceleration {
   int steps() const { return steps_; }
   // Up to this square. Narrower where the acceleration falls faster.
   double top(int step) const {
-    if (step + 1 >= steps_) return whole_ > 0 ? top_ : std::numeric_limits<double>::infinity();
+    if (step + 1 >= steps_) return curve_.whole > 0 ? top_ : std::numeric_limits<double>::infinity();
     const double below = 1 - static_cast<double>(step + 1) / steps_;
     return top_ * (1 - below * below);
   }
   double acceleration(int step) const {
     if (step + 1 >= steps_) return at_top_;
-    const double across = top(step) * turning_;
-    return std::clamp(std::sqrt(std::max(0.0, whole_ * whole_ - across * across)), at_top_, at_rest_);
+    return std::clamp(curve_.along(std::sqrt(top(step))), at_top_, at_rest_);
   }
 
   // Squares between which the acceleration is constant, from `low` up to `high`, with the length that each takes.
   template <typename Visit>
   void each(double low, double high, Visit visit) const {
-    for (int i = 0; i < steps_ && low < high; ++i) {
+    for (int i = first(low); i < steps_ && low < high; ++i) {
       const double end = std::min(high, i + 1 == steps_ ? high : top(i));
-      if (end <= low) continue;
       const double part = acceleration(i);
       visit(low, end, part, (end - low) / (2 * part));
       low = end;
@@ -59,9 +56,9 @@ class SpanAcceleration {
   }
   // The square that is reached in `length` from `low` on by `ramps` ramps at once (2: up, and down again).
   double reached(double low, double length, int ramps = 1) const {
-    for (int i = 0; i < steps_; ++i) {
+    for (int i = first(low); i < steps_; ++i) {
       const double end = top(i);
-      if (end <= low) continue;
+      if (end <= low) continue;  // above the span's highest speed
       const double gain = 2 * acceleration(i) / ramps;
       if (length * gain < end - low) return low + length * gain;
       length -= (end - low) / gain;
@@ -71,11 +68,23 @@ class SpanAcceleration {
   }
 
  private:
+  // The step for a ramp from there on. Less than a quarter of a step would be too few ticks for its acceleration to
+  // come out in whole ones: that is gone with the next step's, which is less.
+  int first(double low) const {
+    if (steps_ == 1) return 0;
+    int step = 0;
+    double begin = 0;
+    for (double end = top(0); step + 1 < steps_ && low > end - (end - begin) / 4; end = top(step)) {
+      begin = end;
+      ++step;
+    }
+    return step;
+  }
+
   double at_rest_ = 0;
   double at_top_ = 0;
   double top_ = 0;
-  double whole_ = 0;
-  double turning_ = 0;
+  Curve curve_;
   int steps_ = 1;
 };
 

@@ -2,15 +2,25 @@
 // rotary axes alone).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace trammel::planner {
 
-// Of an arc: acceleration along it and across it, which is turning * v^2, are `whole` together.
+// Of an arc: acceleration along it and across it, which is turning * v^2, are `whole` together at the most.
 struct Curve {
-  double whole = 0;    // 0: no arc
-  double turning = 0;  // 1/mm
-  double at_rest = 0;  // the most along the path at any speed
+  double whole = 0;                                       // 0: no arc
+  double turning = 0;                                     // 1/mm
+  double at_rest = 0;                                     // the most along the path at any speed
+  double jerk = std::numeric_limits<double>::infinity();  // across the path, 3 * turning * v * acceleration, the most
+
+  // The acceleration along the path that is left at a speed.
+  double along(double speed) const {
+    const double across = turning * speed * speed;
+    return std::min(std::sqrt(std::max(0.0, whole * whole - across * across)), jerk / (3 * turning * speed));
+  }
 };
 
 // A stretch of path with limits of its own: a block, or a part of one.
