@@ -209,6 +209,20 @@ nlohmann::ordered_json probes_json(const std::string& axes, const std::vector<ru
   return list;
 }
 
+namespace {
+
+// How much longer than planned the run took is their doing, where nobody held the card or changed its speed.
+std::string under_runs_text(const RunResult& result, double seconds) {
+  if (!result.outcome.under_runs) return "";
+  std::string text = fmt::format("  under-runs: {}", *result.outcome.under_runs);
+  if (*result.outcome.under_runs != 0 && result.events.empty()) {
+    text += fmt::format(", {:.3f} s longer than planned", seconds - result.plan.seconds);
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string run_summary(const RunResult& result, const run::PlannedProfile& profile) {
   const double seconds = static_cast<double>(result.cycles) / result.clock_hz;
   std::string text =
@@ -216,6 +230,7 @@ std::string run_summary(const RunResult& result, const run::PlannedProfile& prof
                   result.plan.segments, result.outcome.commands, seconds, result.clock_hz * 1e-6);
   text += end_text(result.end, result.steps);
   text += profile_text(profile);
+  text += under_runs_text(result, seconds);
   text += fmt::format("  largest deviation: lines {:.4f} pulses, arcs {:.4f} pulses\n", result.largest_line_deviation,
                       result.largest_arc_deviation);
   text += fmt::format("  path: {} steps, identity {}; shapers {} to {} clocks late\n", result.path_steps,

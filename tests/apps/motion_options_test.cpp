@@ -98,6 +98,14 @@ TEST_F(Operator, NothingThatHappensInTimeMovesThePath) {
               0.37 * plain.json["feed"]["achieved"].get<double>(), 2);
 }
 
+TEST_F(Operator, TheSummaryCountsUnderRunsAndTheirTime) {
+  const std::string program = command_.write("p.ngc", kProgram);
+  const std::string options = "run " + program + " --clock 250000 --engine model";
+  EXPECT_NE(command_.run(options).out.find("under-runs: 0\n"), std::string::npos);
+  const std::string late = command_.run(options + " --limit-bus 150").out;
+  EXPECT_NE(late.find(" s longer than planned\n"), std::string::npos) << late;
+}
+
 // The list's number tells paths apart that end on the same point with as many steps.
 TEST_F(Operator, AnotherPathHasAnotherIdentity) {
   const Made one = run(command_.write("a.ngc", "G1 X3 Y1 F900\nX0 Y0\n"), "");
