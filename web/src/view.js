@@ -1,9 +1,10 @@
 // The tool path in three dimensions: commanded lines in colour, rapids apart, the executed pulses where they can be told
 // apart, and over them the tool. Orthographic, so that plan views measure; the camera's zoom is pixels a mm.
-// While the view moves, a long path is an outline: all of it is drawn once the view is still.
+// While the view moves, a long path is an outline: all of it is drawn once the view is still, slice by slice, so that the
+// next movement waits for one slice only.
 import {
-  BufferAttribute, BufferGeometry, Color, LineBasicMaterial, LineDashedMaterial, LineSegments, MOUSE, OrthographicCamera,
-  Scene, Vector3, WebGLRenderer,
+  BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineDashedMaterial, LineSegments, MOUSE,
+  OrthographicCamera, Scene, Vector3, WebGLRenderer,
 } from 'three'
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js'
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js'
@@ -19,6 +20,7 @@ import { Tool } from './tool.js'
 
 const kWide = 10000    // lines that are drawn wider than a pixel
 const kOutline = 4000  // lines that are drawn while the view moves
+const kSlice = 10000   // lines that are drawn in one frame of a still view
 const kStill = 150     // ms after its last movement the view is still
 
 const directions = {
@@ -45,6 +47,7 @@ export class View {
     this.pulse = 1 / Math.max(...run.space.filter((a) => a >= 0).map((a) => run.axes[a].steps_per_mm), 1e-9)  // mm, of the finest axis
     this.course = courseOf(run)
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true })
+    this.renderer.info.autoReset = false  // it counts all slices of a drawing
     this.annotations = new Annotations(this)
     this.tool = new Tool()
     element.append(this.renderer.domElement, this.annotations.canvas, this.tool.canvas)
@@ -86,7 +89,8 @@ export class View {
     for (const object of [this.feed, this.rapid, this.outline]) object.frustumCulled = false
     this.executed = new Executed(this.run, Math.max(...this.size), this.pulse)
     this.grid = new Grid(this.run, this.size, this.box, this.pulse)
-    this.scene.add(...this.grid.objects(), this.rapid, this.feed, this.outline, ...this.executed.objects())
+    this.scene.add(...this.grid.objects(), this.rapid, this.feed, this.outline, this.executed.thin)
+    this.closeUp = new Group().add(this.executed.detail, this.executed.dots)  // above the last slice
     this.paint()
   }
   // What may be shown or not: 'rapid', 'executed', 'grid'.
@@ -216,21 +220,35 @@ export class View {
     this.executed.update(this.camera, this.cycle ?? 0, this.mode === 'deviation' ? this.scaleOf('deviation') : undefined)
     this.draw()
   }
-  draw() {
-    if (this.frame) return
-    this.frame = requestAnimationFrame(() => { this.frame = 0; this.drawNow() })
+  draw() { this.nextFrame(() => this.drawNow()) }
+  // In place of anything else that waits for that frame.
+  nextFrame(act) {
+    this.act = act
+    this.frame ||= requestAnimationFrame(() => { this.frame = 0; this.act() })
   }
   drawNow() {
     const { zoom } = this.camera
-    const quick = this.moving && this.course.feed.points.length / 6 > kOutline
+    const lines = this.course.feed.points.length / 6
+    const quick = this.moving && lines > kOutline
     this.outline.visible = quick
-    this.feed.visible = !quick && this.course.feed.points.length > 0
+    this.feed.visible = !quick && lines > 0
     this.executed.hide(quick)
     this.rapid.material.dashSize = 6 / zoom
     this.rapid.material.gapSize = 5 / zoom
     this.grid.update(this.camera, this.controls.target)
-    this.renderer.render(this.scene, this.camera)
+    this.renderer.info.reset()
+    this.renderer.autoClear = true
+    this.drawSlice(this.scene, 0, quick || this.wide ? 0 : lines)
     this.annotations.draw()
     this.placeTool()
+  }
+  // Lines of the path from the first on with all else in the object, and in the next frame those that follow.
+  drawSlice(object, first, lines) {
+    if (!this.wide) this.feed.geometry.setDrawRange(2 * first, 2 * kSlice)
+    this.renderer.render(object, this.camera)
+    this.renderer.autoClear = false
+    const next = first + kSlice
+    if (next < lines) this.nextFrame(() => this.drawSlice(this.feed, next, lines))
+    else this.renderer.render(this.closeUp, this.camera)
   }
 }
