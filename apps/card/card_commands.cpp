@@ -16,6 +16,7 @@
 #include "common/engine_options.hpp"
 #include "common/errors.hpp"
 #include "common/standard_streams.hpp"
+#include "common/terminal.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
@@ -272,6 +273,7 @@ void add_card_commands(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   monitor_command->callback([options] {
+    if (!options->card.url()) tell("note", "this is a fresh simulated card, at rest; --card shows another one");
     look_at(options->card, Purpose::kRead, [&](Card& card, transport::Connection*) { monitor(card, *options); });
   });
   CLI::App* test_command = app.add_subcommand("selftest", "try a card's link, registers and clock; nothing moves");

@@ -57,6 +57,13 @@ TEST(Names, WhatWasProbablyMeant) {
   EXPECT_EQ(command.run("run --engine model " + program + " --plot " + command.path("x.svg")).status, 0);
 }
 
+TEST(Notes, AMonitorWithoutACardShowsAFreshOne) {
+  const Command command;
+  const Outcome monitor = command.run("monitor --looks 1 --interval 0.01");
+  EXPECT_EQ(monitor.status, 0);
+  EXPECT_NE(monitor.err.find("fresh simulated card"), std::string::npos) << monitor.err;
+}
+
 TEST(Notes, AProgramThatMovesNothing) {
   const Command command;
   const Outcome empty = command.run("run --engine model " + command.write("empty.ngc", ""));
