@@ -55,7 +55,7 @@ class Bench {
 
 model::Setting time_of(std::uint32_t units) { return {true, card_map::reg::kWatchdog, units}; }
 
-// Each time to its end and beyond; written anew in each of the last clocks before it.
+// Each time to its end and beyond; written anew half way, and in each of the last clocks before it.
 void around_the_end() {
   Bench bench(0);
   for (const std::uint32_t units : {1U, 2U, 3U}) {
@@ -63,14 +63,20 @@ void around_the_end() {
     bench.run((units + 1) * model::Watchdog::kUnitClocks);
   }
   EXPECT_EQ(bench.expiries(), 3U);
+  for (const std::uint32_t units : {1U, 2U}) {
+    bench.clock(time_of(units));
+    bench.run(model::Watchdog::kUnitClocks / 2);
+  }
+  bench.run(2 * model::Watchdog::kUnitClocks);
+  EXPECT_EQ(bench.expiries(), 4U);
   for (std::uint64_t before = 0; before < 5; ++before) {
     bench.clock(time_of(1));
     bench.run(model::Watchdog::kUnitClocks + 3 - before);
   }
-  EXPECT_EQ(bench.expiries(), 6U) << "the two shortest runs are written anew in time";
+  EXPECT_EQ(bench.expiries(), 7U) << "the two shortest runs are written anew in time";
   bench.clock(time_of(0));
   bench.run(2 * model::Watchdog::kUnitClocks);
-  EXPECT_EQ(bench.expiries(), 6U);
+  EXPECT_EQ(bench.expiries(), 7U);
   EXPECT_EQ(bench.check().comparisons(), bench.check().cycles());
 }
 
