@@ -1,5 +1,5 @@
 # What is installed, a component each, every one of use without the others:
-#   trammel_development  libraries, headers, CMake package; a consumer needs no Python, RTL or Verilator
+#   trammel_development  libraries, headers, CMake package, pkg-config files; a consumer needs no Python, RTL or Verilator
 #   trammel_command      the trammel command
 #   trammel_rtl          the card's sources, with their file list, FuseSoC core and lint waivers
 #   trammel_python       Python's package, where it is built (bindings/python)
@@ -10,8 +10,9 @@ include(CMakePackageConfigHelpers)
 
 set(trammel_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/trammel")
 
-install(TARGETS trammel_card_map trammel_frames trammel_model trammel_skip trammel_methods trammel_driver trammel_transport trammel_machine
-  trammel_kinematics trammel_gcode trammel_planner trammel_chart trammel_run trammel_sim trammel_c EXPORT trammel-targets
+set(trammel_cpp_libraries trammel_card_map trammel_frames trammel_model trammel_skip trammel_methods trammel_driver
+  trammel_transport trammel_machine trammel_kinematics trammel_gcode trammel_planner trammel_chart trammel_run trammel_sim)
+install(TARGETS ${trammel_cpp_libraries} trammel_c EXPORT trammel-targets
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT trammel_development)
 install(FILES "${PROJECT_SOURCE_DIR}/bindings/c/include/trammel.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
@@ -45,6 +46,13 @@ install(FILES
   "${PROJECT_BINARY_DIR}/trammel-config.cmake"
   "${PROJECT_BINARY_DIR}/trammel-config-version.cmake"
   DESTINATION "${trammel_package_dir}" COMPONENT trammel_development)
+
+include(TrammelPkgConfig)
+foreach(library IN LISTS trammel_cpp_libraries)
+  trammel_pkg_config(${library})
+endforeach()
+trammel_write_pkg_config(trammel "Trammel stepper-motion card: driver and simulated card for C"
+  "-L\${libdir};-ltrammel" "")
 
 set(trammel_data_dir "${CMAKE_INSTALL_DATADIR}/trammel")
 

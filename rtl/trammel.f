@@ -9,6 +9,7 @@ buses/feed_load_pkg.sv
 buses/feed_pkg.sv
 buses/geometry_state_pkg.sv
 buses/input_levels_pkg.sv
+buses/input_roles_pkg.sv
 buses/load_bus_pkg.sv
 buses/load_target_pkg.sv
 buses/move_pkg.sv
@@ -24,6 +25,7 @@ buses/setting_bus_pkg.sv
 buses/snapshot_pkg.sv
 buses/start_answer_pkg.sv
 buses/start_pkg.sv
+buses/stop_causes_pkg.sv
 buses/stream_answer_pkg.sv
 buses/time_state_pkg.sv
 buses/wishbone_answer_pkg.sv
@@ -102,6 +104,9 @@ registers/register_live.sv
 registers/register_ram.sv
 registers/snapshot_slice.sv
 registers/snapshot_writer.sv
+safety/button_hold.sv
+safety/limit_axis.sv
+safety/limit_check.sv
 safety/stop_control.sv
 safety/watchdog.sv
 time/feed_generator.sv

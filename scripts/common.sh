@@ -13,7 +13,7 @@ die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 # Everything that building and testing needs; scripts/setup installs what is missing.
 debian_packages=(
-  g++ cmake ninja-build git python3-venv python3-dev
+  g++ cmake ninja-build pkg-config git python3-venv python3-dev
   verilator zlib1g-dev
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev
   libfmt-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libtoml11-dev libboost-dev libsystemc-dev

@@ -9,7 +9,7 @@ if (!out) {
   process.exit(2)
 }
 const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
 })
 try {
   const page = await browser.newPage({ viewport: { width: 1360, height: 920 }, colorScheme: scheme })

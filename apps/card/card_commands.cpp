@@ -82,6 +82,7 @@ std::string state_of(const driver::Snapshot& now) {
   add(s.direct, "a line in direct mode");
   add(s.path_active, "on a path");
   add(s.held, "held");
+  add(s.button_hold, "held by the feed hold button until cycle start");
   add(s.stopping, "stopping");
   add(s.waiting, "waiting for an input");
   add(s.probed, "probed");

@@ -1,14 +1,18 @@
 #include "card_choice.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <memory>
 
 #include "errors.hpp"
 #include "terminal.hpp"
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/run/configure.hpp"
 
 namespace trammel::app {
 namespace {
@@ -35,6 +39,24 @@ transport::CardUrl with_token(transport::CardUrl url, Purpose purpose) {
   return url;
 }
 
+// Of a card that has stopped with a fault. Its ramp may still be under way.
+std::string place_and_cure(driver::Card& card) {
+  using Clock = std::chrono::steady_clock;
+  const auto until = Clock::now() + std::chrono::seconds(10);
+  while (card.busy() && Clock::now() < until) card.bus().sleep(std::chrono::milliseconds(5));
+  const driver::Snapshot now = card.read_snapshot();
+  const auto* const first = now.position.begin();
+  return fmt::format("the card {} pulse {} of its axes; clear the fault with --clear-faults to go on from there",
+                     now.status.busy ? "is on its ramp, at" : "stands at",
+                     fmt::join(first, first + card.identification().axes, ", "));
+}
+
+void clear_with_note(driver::Card& card) {
+  const std::uint32_t faults = card.read_faults();
+  card.clear_faults();
+  tell("note", fmt::format("cleared the card's fault of before: {}", driver::describe_faults(faults)));
+}
+
 }  // namespace
 
 void CardChoice::add_to(CLI::App& command) {
@@ -45,13 +67,20 @@ void CardChoice::add_to(CLI::App& command) {
       ->type_name("URL");
 }
 
+void CardChoice::add_to_mover(CLI::App& command) {
+  add_to(command);
+  command.add_flag("--clear-faults", clear_faults, "with --card: clear the faults that the card has from before");
+}
+
 std::optional<transport::CardUrl> CardChoice::url() const {
-  if (!text) return std::nullopt;
+  if (!text || *text == "sim:") {
+    if (clear_faults) throw UsageError("--clear-faults: a simulated card has none from before; give it with --card");
+    return std::nullopt;
+  }
   try {
     const transport::CardUrl url = transport::parse_card_url(*text);
     if (url.kind == transport::CardUrl::Kind::kSim) {
-      if (url.text != "sim:") throw UsageError("--card sim: takes no options here: --axes, --clock and --engine do");
-      return std::nullopt;
+      throw UsageError("--card sim: takes no options here: --axes, --clock and --engine do");
     }
     return url;
   } catch (const driver::ArgumentError& error) {
@@ -78,13 +107,34 @@ void with_card(const transport::CardUrl& place, Purpose purpose,
   }
 }
 
-void take_over(driver::Card& card) {
+void take_over(driver::Card& card, bool clear_faults) {
   try {
+    const driver::Status status = card.read_status();
+    if (!clear_faults) card.parts().registers.throw_if_faulted(status, "--card");
     if (card.take_over()) {
       tell("note", "the card held with a motion of before under way; what was left is dropped");
     }
+    if (status.faulted) clear_with_note(card);
+  } catch (const driver::FaultError& error) {
+    throw UsageError(fmt::format("{}; {}", error.what(), place_and_cure(card)));
   } catch (const driver::StateError& error) {
     throw UsageError(error.what());
+  }
+}
+
+MotionWatchdog::MotionWatchdog(driver::Card& card, const machine::MotionSettings& motion) {
+  try {
+    scope_.emplace(card, run::watchdog_time(motion));
+  } catch (const driver::ArgumentError& error) {
+    throw UsageError(
+        fmt::format("{}: change it by --set motion.watchdog=SECONDS or in the machine file", error.what()));
+  }
+}
+
+void tell_of_fault(driver::Card& card) noexcept {
+  try {
+    if (card.read_status().faulted) tell("note", place_and_cure(card));
+  } catch (const std::exception&) {
   }
 }
 

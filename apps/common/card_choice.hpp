@@ -7,6 +7,8 @@
 
 #include "command_line.hpp"
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/watchdog_scope.hpp"
+#include "trammel/machine/machine.hpp"
 #include "trammel/transport/card_url.hpp"
 #include "trammel/transport/connection.hpp"
 
@@ -14,8 +16,11 @@ namespace trammel::app {
 
 struct CardChoice {
   std::optional<std::string> text;
+  bool clear_faults = false;
 
   void add_to(CLI::App& command);
+  // With --clear-faults, for a command that moves the card.
+  void add_to_mover(CLI::App& command);
   // None for a simulated card of this process. Throws UsageError for what is no card's URL.
   std::optional<transport::CardUrl> url() const;
 };
@@ -28,9 +33,22 @@ enum class Purpose { kRead, kMove };
 void with_card(const transport::CardUrl& url, Purpose purpose,
                const std::function<void(driver::Card&, transport::Connection&)>& use);
 
-// Makes it ready to be moved by this program, with a note where something of before is dropped; a card that moves is a
-// UsageError.
-void take_over(driver::Card& card);
+// Makes it ready to be moved by this program, with a note where something of before is dropped. A card that moves, and
+// one with a fault that shall not be cleared, is a UsageError.
+void take_over(driver::Card& card, bool clear_faults);
+
+// The machine file's watchdog over a motion. A time that the card cannot count is a UsageError.
+class MotionWatchdog {
+ public:
+  MotionWatchdog(driver::Card& card, const machine::MotionSettings& motion);
+
+ private:
+  std::optional<driver::WatchdogScope> scope_;
+};
+
+// After an error of the motion: where the card stands and what to do about its fault, as a note; nothing without a
+// fault. Waits for the end of the ramp. Never throws: the error before it is the one that counts.
+void tell_of_fault(driver::Card& card) noexcept;
 
 // Refuses options of the simulated card, by its URL's or its own.
 void refuse_with_card(const CardChoice& card, const char* option, bool given);

@@ -14,9 +14,11 @@
 #include "common/card_choice.hpp"
 #include "common/engine_options.hpp"
 #include "common/errors.hpp"
+#include "common/machine_choice.hpp"
 #include "common/outputs.hpp"
 #include "common/stop_at_signals.hpp"
 #include "common/waveform.hpp"
+#include "ramped_line.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/one_shot.hpp"
@@ -38,6 +40,8 @@ struct LineArguments {
   std::optional<double> speed;
   std::vector<std::uint64_t> max_velocity;
   bool slow = false;
+  bool no_ramp = false;
+  MachineChoice machine;
   CardChoice card;
   EngineChoice engine;
   std::optional<std::string> json;
@@ -59,19 +63,18 @@ std::vector<std::int64_t> displacement_of(const LineArguments& options) {
   return result;
 }
 
+// Without ramps.
+double seconds_of(const LineArguments& options, const std::vector<std::int64_t>& displacement) {
+  if (options.velocity) return 1 / *options.velocity;
+  if (options.duration) return *options.duration;
+  double square = 0;
+  for (const std::int64_t p : displacement) square += static_cast<double>(p) * static_cast<double>(p);
+  return std::sqrt(square) / options.speed.value_or(kDefaultSpeed);
+}
+
 // The line's duration in clocks, rounded to the nearest.
 std::uint64_t clocks_of(const LineArguments& options, const std::vector<std::int64_t>& displacement, double clock_hz) {
-  double seconds = 0;
-  if (options.velocity) {
-    seconds = 1 / *options.velocity;
-  } else if (options.duration) {
-    seconds = *options.duration;
-  } else {
-    double square = 0;
-    for (const std::int64_t p : displacement) square += static_cast<double>(p) * static_cast<double>(p);
-    seconds = std::sqrt(square) / options.speed.value_or(kDefaultSpeed);
-  }
-  const double clocks = std::round(seconds * clock_hz);
+  const double clocks = std::round(seconds_of(options, displacement) * clock_hz);
   if (clocks >= std::ldexp(1.0, 62)) throw UsageError("the line takes longer than the card can count");
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(clocks));
 }
@@ -159,13 +162,64 @@ std::vector<std::int64_t> moved(driver::Card& card, const driver::Snapshot& befo
   return result;
 }
 
-// To the end, or to where a signal stops it.
-void run_line(driver::Card& card, const driver::OneShotPlan& plan, const driver::Snapshot& before, std::size_t axes) {
+// What a line is made of, however it is made.
+struct Made {
+  std::uint64_t line_clocks = 0;
+  std::size_t parts = 0;
+  bool slowed = false;
+};
+
+// To the end, or to where a signal stops it, from `before` on. `recorder`: nullptr where no pin is seen.
+Made one_shot_line(driver::Card& card, const LineArguments& options, const driver::Snapshot& before,
+                   run::StepRecorder* recorder) {
+  const std::vector<std::int64_t> pulses = displacement_of(options);
+  const driver::OneShotPlan plan = plan_of(options, card.timing(), pulses);
+  if (recorder != nullptr) recorder->command(0, as_command(plan, pulses));
   const StopAtSignals signals(card);
   try {
     driver::run_line(card, plan);
   } catch (const driver::StoppedError&) {
-    signals.end(fmt::format("moved by {} pulses", fmt::join(moved(card, before, axes), ", ")));
+    signals.end(fmt::format("moved by {} pulses", fmt::join(moved(card, before, pulses.size()), ", ")));
+  }
+  return {plan.clocks(), plan.size(), plan.slowed()};
+}
+
+// Likewise, with the machine's ramps.
+Made line_with_ramps(driver::Card& card, const LineArguments& options, const driver::Snapshot& before,
+                     run::StepRecorder* recorder) {
+  const std::vector<std::int64_t> pulses = displacement_of(options);
+  const machine::Machine machine = in_pulses(options.machine.load(), pulses.size());
+  run::Runner runner(ramped_line(machine, pulses, seconds_of(options, pulses)), machine,
+                     planner::limits_of(card.identification()));
+  if (recorder != nullptr) runner.add(*recorder);
+  const run::Plan plan = runner.plan();
+  const StopAtSignals signals(card);
+  try {
+    runner.run(card);
+  } catch (const run::StoppedOnPath&) {
+    signals.end(fmt::format("moved by {} pulses", fmt::join(moved(card, before, pulses.size()), ", ")));
+  }
+  const double clocks = std::round(plan.seconds * card.identification().clock_hz);
+  return {static_cast<std::uint64_t>(clocks), 1, !plan.feeds_not_reached.empty()};
+}
+
+Made any_line(driver::Card& card, const LineArguments& options, const driver::Snapshot& before,
+              run::StepRecorder* recorder) {
+  return options.no_ramp ? one_shot_line(card, options, before, recorder)
+                         : line_with_ramps(card, options, before, recorder);
+}
+
+// On a card outside, which stops by itself where this program dies or is stopped.
+Made watched_line(driver::Card& card, const LineArguments& options, const driver::Snapshot& before) {
+  const MotionWatchdog watchdog(card, options.machine.load().motion);
+  try {
+    return any_line(card, options, before, nullptr);
+  } catch (const driver::FaultError&) {
+    tell_of_fault(card);
+    throw;
+  } catch (const run::RunError&) {
+    tell_of_fault(card);
+    throw;
   }
 }
 
@@ -179,11 +233,9 @@ Result make_line(const LineArguments& options, const sim::SimulationOptions& eng
   recording.plot = options.plot.has_value();
   run::StepRecorder recorder(recording, kinematics::Kinematics::in_pulses(engine_options.axes));
   driver::Card card = driver::Card::open(*engine);
-  const driver::OneShotPlan plan = plan_of(options, card.timing(), result.pulses);
-  recorder.command(0, as_command(plan, result.pulses));
   recorder.detail_of(0);
   engine->set_sink(&recorder);
-  run_line(card, plan, {}, result.pulses.size());
+  const Made made = any_line(card, options, {}, &recorder);
   const driver::Snapshot snapshot = card.read_snapshot();
   engine->set_sink(nullptr);
   recorder.finish();
@@ -197,9 +249,9 @@ Result make_line(const LineArguments& options, const sim::SimulationOptions& eng
   }
   if (options.plot) result.plot = plot_of(result.pulses, recorder);
   result.steps = recorder.steps();
-  result.line_clocks = plan.clocks();
-  result.parts = plan.size();
-  result.slowed = plan.slowed();
+  result.line_clocks = made.line_clocks;
+  result.parts = made.parts;
+  result.slowed = made.slowed;
   result.cycles = engine->cycles();
   result.clock_hz = engine_options.clock_hz;
   result.lockstep_cycles = engine->lockstep_cycles();
@@ -253,10 +305,10 @@ CardResult make_line_on(driver::Card& card, const LineArguments& options) {
   if (pulses.size() > card.identification().axes) {
     throw UsageError(fmt::format("--to: the card has {} axes", card.identification().axes));
   }
-  const driver::OneShotPlan plan = plan_of(options, card.timing(), pulses);
-  take_over(card);
+  if (options.no_ramp) plan_of(options, card.timing(), pulses);  // what cannot be is refused first
+  take_over(card, options.card.clear_faults);
   const driver::Snapshot before = card.read_snapshot();
-  run_line(card, plan, before, pulses.size());
+  const Made made = watched_line(card, options, before);
   CardResult result;
   result.moved = moved(card, before, pulses.size());
   for (std::size_t a = 0; a < pulses.size(); ++a) {
@@ -264,9 +316,9 @@ CardResult make_line_on(driver::Card& card, const LineArguments& options) {
       throw std::runtime_error(fmt::format("axis {}: moved by {} pulses, asked for {}", a, result.moved[a], pulses[a]));
     }
   }
-  result.line_clocks = plan.clocks();
-  result.parts = plan.size();
-  result.slowed = plan.slowed();
+  result.line_clocks = made.line_clocks;
+  result.parts = made.parts;
+  result.slowed = made.slowed;
   result.clock_hz = card.identification().clock_hz;
   return result;
 }
@@ -297,7 +349,18 @@ void line_on_card(const LineArguments& options, const transport::CardUrl& url) {
                              result.slowed ? ", slowed to keep a limit" : "", url.text, fmt::join(result.moved, ", ")));
 }
 
+// The machine's limits hold for a line with ramps, and slow it down; a line without knows no machine.
+void refuse_other_line(const LineArguments& options) {
+  const auto refuse = [](const char* option, bool given, const char* why) {
+    if (given) throw UsageError(fmt::format("{}: {}", option, why));
+  };
+  if (options.no_ramp) return;
+  refuse("--max-velocity", !options.max_velocity.empty(), "for a line with --no-ramp; else --set axis.x.max_velocity");
+  refuse("--slow", options.slow, "for a line with --no-ramp: one with ramps always keeps the machine's limits");
+}
+
 void line_in_simulation(const LineArguments& options) {
+  refuse_other_line(options);
   if (const auto url = options.card.url()) return line_on_card(options, *url);
   Outputs outputs;
   Output* const json = outputs.add("--json", options.json);
@@ -321,7 +384,8 @@ void line_in_simulation(const LineArguments& options) {
 
 void add_line_command(CLI::App& app) {
   auto options = std::make_shared<LineArguments>();
-  CLI::App* command = app.add_subcommand("line", "make one straight line in direct mode: one burst of register writes");
+  CLI::App* command = app.add_subcommand(
+      "line", "make one straight line, with the machine's ramps, or abruptly in one burst of register writes");
   command->add_option("--from", options->from, "start, pulses, one value an axis (default: 0)")
       ->delimiter(',')
       ->type_name("X,Y,...");
@@ -336,10 +400,12 @@ void add_line_command(CLI::App& app) {
       command->add_option("--speed", options->speed, "pulses/s along the path (default 1000)")->check(positive());
   velocity->excludes(duration)->excludes(speed);
   duration->excludes(speed);
-  command->add_option("--max-velocity", options->max_velocity, "limit of each axis, pulses/s (0: none)")
+  command->add_option("--max-velocity", options->max_velocity, "with --no-ramp: limit of each axis, pulses/s (0: none)")
       ->delimiter(',');
-  command->add_flag("--slow", options->slow, "slow down to keep a limit instead of refusing");
-  options->card.add_to(*command);
+  command->add_flag("--slow", options->slow, "with --no-ramp: slow down to keep a limit instead of refusing");
+  command->add_flag("--no-ramp", options->no_ramp, "the papers' line: full speed from the first pulse to the last");
+  options->machine.add_to(*command);
+  options->card.add_to_mover(*command);
   options->engine.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed")->type_name("FILE.svg")->check(svg_file());

@@ -51,6 +51,29 @@ void set_overrides(driver::Card& card, const CardRunOptions& options) {
   card.set_override(driver::PieceClass::kFixed, 100, options.max_percent);
 }
 
+// The program begins where the machine stands.
+run::RunSettings settings_at(const machine::Machine& machine, const driver::Snapshot& found,
+                             run::RunSettings settings) {
+  settings.start = run::standing_at(machine, found);
+  settings.start_is_known = true;
+  if (settings.start != gcode::Coordinates{}) {
+    tell("note", fmt::format("the machine stands at {}, counted from its place at the card's reset",
+                             run::place_text(settings.start, machine)));
+  }
+  return settings;
+}
+
+// The card stops by itself where this program dies or is stopped.
+run::Outcome run_watched(run::Runner& runner, driver::Card& card, const machine::Machine& machine, bool stream) {
+  const MotionWatchdog watchdog(card, machine.motion);
+  try {
+    return run_until_signal(runner, card, machine, stream);
+  } catch (const run::RunError&) {
+    tell_of_fault(card);
+    throw;
+  }
+}
+
 std::string link_text(const CardRunResult& result) {
   if (result.link.requests == 0) return {};
   return fmt::format("  link: {} requests, {} sent again, {} connections made anew\n", result.link.requests,
@@ -66,16 +89,20 @@ CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine
     throw UsageError(fmt::format("--card: it has {} axes, the machine {} motors", id.axes, machine.motors()));
   }
   CardRunResult result;
-  run::Runner runner(lines, machine, planner::limits_of(id), options.settings);
+  const driver::Snapshot found = card.read_snapshot();
+  run::Runner runner(lines, machine, planner::limits_of(id), settings_at(machine, found, options.settings));
   const run::Plan plan = options.stream ? run::Plan{} : runner.plan();
   if (options.planned) options.planned(plan);
 
-  take_over(card);
+  take_over(card, options.clear_faults);
   set_overrides(card, options);
   const driver::Snapshot before = card.read_snapshot();
+  if (before.position != found.position) {
+    throw UsageError("--card: it has moved while the program was planned: run the program again");
+  }
   CardWatch watch(card, connection, plan, options.progress);
   runner.add(watch);
-  result.outcome = run_until_signal(runner, card, machine, options.stream);
+  result.outcome = run_watched(runner, card, machine, options.stream);
   result.plan = runner.last_plan();
   result.clock_hz = id.clock_hz;
   result.seconds = static_cast<double>(card.read_snapshot().time - before.time) / id.clock_hz;

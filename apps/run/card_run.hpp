@@ -21,7 +21,8 @@ struct CardRunOptions {
   double percent = 100;        // override, of the planned speed
   double rapid_percent = 100;  // of rapids
   double max_percent = 100;    // largest override
-  bool progress = false;       // also where stderr is no terminal
+  bool clear_faults = false;
+  bool progress = false;  // also where stderr is no terminal
   // When all is checked and nothing has moved yet; with `stream` of an empty plan.
   std::function<void(const run::Plan&)> planned;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,7 +27,7 @@
 #include "program_check.hpp"
 #include "program_file.hpp"
 #include "run_report.hpp"
-#include "trammel/kinematics/kinematics.hpp"
+#include "trammel/driver/low_level/requests.hpp"
 #include "trammel/report/page.hpp"
 #include "trammel/report/report_writer.hpp"
 #include "trammel/simulation/simulated_card.hpp"
@@ -127,10 +128,12 @@ std::optional<std::uint64_t> copy_limit(const RunArguments& options) {
   return options.pipe_limit.value_or(kDefaultPipeLimit) << 20U;
 }
 
-// From its beginning, each time. `file` must outlive them.
-run::ProgramLines lines_of(const ProgramFile& file) {
-  return [&file]() -> std::unique_ptr<gcode::LineSource> {
-    return std::unique_ptr<gcode::LineSource>(new gcode::FileLines(file.lines()));
+// From its beginning, each time. `file` must outlive them. `meanwhile`: as of gcode::FileLines.
+run::ProgramLines lines_of(const ProgramFile& file, const std::function<void()>& meanwhile = {}) {
+  return [&file, meanwhile]() -> std::unique_ptr<gcode::LineSource> {
+    std::unique_ptr<gcode::FileLines> lines(new gcode::FileLines(file.lines()));
+    lines->set_meanwhile(meanwhile);
+    return lines;
   };
 }
 
@@ -152,6 +155,7 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   CardRunOptions run;
   run.settings = settings_of(options);
   run.stream = options.stream;
+  run.clear_faults = options.card.clear_faults;
   run.progress = options.progress;
   run.max_percent = max_percent(machine);
   const simulation::Operation operation = options.motion.operation(run.max_percent);
@@ -165,7 +169,9 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   const ProgramFile file(options.program, copy_limit(options));
   CardRunResult result;
   with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
-    result = run_on_card(lines_of(file), machine, card, connection, run);
+    // A program that comes slowly keeps the card's watchdog from expiring, and can be stopped.
+    const run::ProgramLines lines = lines_of(file, [&card] { driver::serve_requests(card); });
+    result = run_on_card(lines, machine, card, connection, run);
   });
   result.card = url.text;
   if (parameters != nullptr) parameters->write(parameters_text(result.outcome.parameters));
@@ -209,9 +215,6 @@ struct SimulationFiles {
 
 simulation::RunOptions simulation_options(const RunArguments& options, const machine::Machine& machine,
                                           const SimulationFiles& files) {
-  if (files.report != nullptr && !kinematics::Kinematics(machine).joint_for_each_axis()) {
-    throw UsageError("--report: its page shows machines with a motor for each axis; leave it out for corexy");
-  }
   simulation::RunOptions run;
   run.settings = settings_of(options);
   run.max_percent = max_percent(machine);
@@ -310,7 +313,7 @@ void add_run_command(CLI::App& app) {
       app.add_subcommand("run", "run a G-code program on the simulated card, or on one outside (--card)");
   command->add_option("program", options->program, "G-code file ('-': standard input)")->required()->type_name("FILE");
   options->machine.add_to(*command);
-  options->card.add_to(*command);
+  options->card.add_to_mover(*command);
   options->engine.add_to(*command, "1000000 with engine rtl, the machine file's with model");
   options->motion.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");

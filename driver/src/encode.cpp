@@ -166,7 +166,8 @@ std::size_t write(const ArcChordCommand& arc, std::uint8_t number, std::uint32_t
 std::size_t write(const FeedCommand& feed, std::uint8_t number, std::uint32_t* words) {
   const auto flags = static_cast<std::uint8_t>(feed.piece_class);
   if (flags > kFeedLayout.flags_maximum) refuse(kFeedLayout, fmt::format("class {}", flags));
-  Writer to(kFeedLayout, flags, feed.ticks, number, words);
+  const auto silent = static_cast<std::uint8_t>(feed.silent ? map::constant::kPieceSilent : 0);
+  Writer to(kFeedLayout, flags | silent, feed.ticks, number, words);
   to.field<kRate>(feed.rate);
   to.field<kFloor>(std::uint64_t{feed.floor});
   to.field<kStopDistance>(std::uint64_t{feed.stop_distance});

@@ -36,14 +36,38 @@ RefusedError::RefusedError(std::uint8_t reason, std::uint8_t command_number, std
       command_number_(command_number),
       address_(address) {}
 
-FaultError::FaultError(std::uint32_t faults, const std::string& context)
-    : Error(fmt::format("{}: the card has stopped with a fault: {}", context, describe_faults(faults))),
-      faults_(faults) {}
+FaultError::FaultError(std::uint32_t faults, const std::string& context, std::uint32_t limit_state)
+    : Error(fmt::format("{}: the card has stopped with a fault: {}", context, describe_faults(faults, limit_state))),
+      faults_(faults),
+      limit_state_(limit_state) {}
 
 TimeoutError::TimeoutError(const std::string& context, std::uint64_t waited)
     : Error(fmt::format("{}: not within {} card clocks", context, waited)), waited_(waited) {}
 
-std::string describe_faults(std::uint32_t faults) {
+namespace {
+
+// More than the name says: "axis 0 plus, axis 2 minus".
+std::string detail_of(std::uint32_t limit_state, std::uint32_t fault) {
+  namespace field = card_map::field;
+  std::string text;
+  const auto add = [&](unsigned shift, const char* end) {
+    for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
+      if ((limit_state >> (shift + axis) & 1U) != 0)
+        text += fmt::format("{}axis {}{}", text.empty() ? "" : ", ", axis, end);
+    }
+  };
+  if (fault == field::kFaultLimit) {
+    add(field::kLimitStateMinusShift, " minus");
+    add(field::kLimitStatePlusShift, " plus");
+  }
+  if (fault == field::kFaultDriveFault) add(field::kLimitStateDriveFaultShift, "");
+  if (fault == field::kFaultWatchdog) text = "the program that moved the card was silent for too long";
+  return text;
+}
+
+}  // namespace
+
+std::string describe_faults(std::uint32_t faults, std::uint32_t limit_state) {
   namespace field = card_map::field;
   std::string text;
   const auto add = [&text](const std::string& name) { text += (text.empty() ? "" : ", ") + name; };
@@ -59,10 +83,14 @@ std::string describe_faults(std::uint32_t faults) {
                                                               {field::kFaultEmergencyStop, "EMERGENCY_STOP"},
                                                               {field::kFaultDriveFault, "DRIVE_FAULT"},
                                                               {field::kFaultWatchdog, "WATCHDOG"},
-                                                              {field::kFaultLinkLoss, "LINK_LOSS"}};
+                                                              {field::kFaultLinkLoss, "LINK_LOSS"},
+                                                              {field::kFaultSoftLimit, "SOFT_LIMIT"},
+                                                              {field::kFaultProbe, "PROBE"},
+                                                              {field::kFaultToolSetter, "TOOL_SETTER"}};
   for (const auto& [mask, name] : kNames) {
     if ((faults & mask) != 0) {
-      add(name);
+      const std::string detail = detail_of(limit_state, mask);
+      add(detail.empty() ? name : fmt::format("{} ({})", name, detail));
     }
   }
   const std::uint32_t unknown = faults & ~card_map::find_register(card_map::reg::kFault).entry->mask;

@@ -268,6 +268,7 @@ PositionStream::Look PositionStream::transfer_and_look() {
       accesses_[used_++] = read_of(address);
     }
     card_->parts().registers.transfer_stream(accesses_.data(), used_);
+    card_->parts().watchdog.look();
     used_ = 0;
     const Access* read = &accesses_[first];
     const Status before = card_->parts().registers.status_of(read[0]);
@@ -290,6 +291,8 @@ PositionStream::Look PositionStream::transfer_and_look() {
 // The card counts lines that this stream has not sent, or has gone back.
 void PositionStream::throw_not_ours(std::uint32_t begun) {
   check_identity(card_->parts());
+  // A fault since STATUS was read has set them back.
+  card_->parts().registers.throw_if_faulted(card_->read_status(), "position stream");
   throw StateError(
       fmt::format("position stream: the card says that it has begun {} lines, where {} were sent and {} had begun: it "
                   "was reset, or used by somebody else",

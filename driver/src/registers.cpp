@@ -123,9 +123,7 @@ void Registers::throw_refused(const Refusal& refusal, std::string_view context) 
   }
   if (refusal.reason == static_cast<std::uint8_t>(map::Reason::Faulted)) {
     const std::uint32_t now = read_faults();
-    if (now != 0) {
-      throw FaultError(now, std::string(context));
-    }
+    if (now != 0) throw_fault(now, context);
   }
   throw RefusedError(refusal.reason, refusal.command_number, refusal.address, std::string(context));
 }
@@ -153,6 +151,7 @@ Status Registers::decode_status(std::uint32_t value) {
   status.probed = (value & field::kStatusProbed) != 0;
   status.probe_missed = (value & field::kStatusProbeMissed) != 0;
   status.waiting = (value & field::kStatusWaiting) != 0;
+  status.button_hold = (value & field::kStatusButtonHold) != 0;
   return status;
 }
 
@@ -169,9 +168,15 @@ Status Registers::status_of(const Access& access) const {
   return status;
 }
 
+void Registers::throw_fault(std::uint32_t faults, std::string_view context) {
+  // Only a card that has LIMIT_STATE sets these bits.
+  constexpr std::uint32_t kNamed = field::kFaultLimit | field::kFaultDriveFault;
+  throw FaultError(faults, std::string(context), (faults & kNamed) != 0 ? read(reg::kLimitState) : 0);
+}
+
 void Registers::throw_if_faulted(const Status& status, std::string_view context) {
   if (status.faulted) {
-    throw FaultError(read_faults(), std::string(context));
+    throw_fault(read_faults(), context);
   }
 }
 

@@ -27,6 +27,7 @@ constexpr std::size_t kShortestCommandWords = 3;
 constexpr std::size_t kShortestQueued = 4;  // halfwords of a barrier
 // Commands that have left the queue, but may not have begun yet, or not ended.
 constexpr std::size_t kBeyondQueue = 4;
+constexpr unsigned kMapMinorOfSilence = 2;  // silent pieces came with map 3.2
 
 void require_engine(const Identification& card, std::uint32_t engine, std::string_view command) {
   if (!map::has_engine(card.engines, engine)) {
@@ -192,6 +193,10 @@ Stream::Need Stream::checked_need(const Command& command, std::uint32_t header) 
   if (feed != nullptr && feed->piece_class != PieceClass::kFeed) {
     require_engine(card, map::engine::kClasses, layout.name);
   }
+  if (feed != nullptr && feed->silent && card.map_minor < kMapMinorOfSilence) {
+    throw ArgumentError(fmt::format("stream: {}: the card's map {}.{} has no silent pieces; they came with {}.{}",
+                                    layout.name, card.map_major, card.map_minor, card.map_major, kMapMinorOfSilence));
+  }
   if (feed == nullptr && mask >> card.axes != 0) {
     throw ArgumentError(fmt::format("stream: axis mask 0x{:02X}, but the card has {} axes", mask, card.axes));
   }
@@ -238,6 +243,7 @@ void Stream::write_kept() {
   const std::size_t count = std::exchange(used_, 0);
   const std::size_t commands = std::exchange(kept_, 0);
   card_->parts().registers.transfer_stream(accesses_.data(), count);
+  card_->parts().watchdog.look();
   sent_ += commands;
   geometry_.sent = geometry_.put;
   feed_.sent = feed_.put;
@@ -381,6 +387,8 @@ void Stream::advance(Count& count, std::uint32_t begun) const {
   const std::uint64_t now = count_after(count.begun, begun);
   if (now > count.sent) {
     check_identity(card_->parts());
+    // A fault since STATUS was read has set it back.
+    card_->parts().registers.throw_if_faulted(card_->read_status(), "stream");
     throw StateError(
         fmt::format("stream: the card says that it has begun {} commands of a queue, where {} were sent and "
                     "{} had begun: it was reset, or aborted by somebody else",

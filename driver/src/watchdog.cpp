@@ -5,6 +5,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card_timing.hpp"
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/watchdog_scope.hpp"
 
 namespace trammel::driver {
 
@@ -25,16 +26,30 @@ void Watchdog::set(std::chrono::nanoseconds time) {
                                     std::chrono::duration_cast<std::chrono::milliseconds>(time).count(), most.count()));
   }
   units_ = static_cast<std::uint32_t>(units);
-  looks_ = 0;
-  registers_.write(card_map::reg::kWatchdog, units_, "watchdog");
+  pace_ = time / 4;
+  write();
 }
 
 void Watchdog::look() {
-  if (units_ == 0 || ++looks_ < kLooks) return;
+  if (units_ == 0) return;
+  if (++looks_ < kLooks && std::chrono::steady_clock::now() - written_ < pace_) return;
+  write();
+}
+
+void Watchdog::write() {
   looks_ = 0;
+  written_ = std::chrono::steady_clock::now();
   registers_.write(card_map::reg::kWatchdog, units_, "watchdog");
 }
 
 Access Watchdog::restart() const { return write_of(card_map::reg::kWatchdog, units_); }
+
+WatchdogScope::~WatchdogScope() {
+  // Whatever a link throws: the card is then left to its watchdog.
+  try {
+    if (!card_.busy()) card_.set_watchdog(std::chrono::nanoseconds(0));
+  } catch (...) {
+  }
+}
 
 }  // namespace trammel::driver

@@ -13,6 +13,7 @@ module axes #(
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input wire logic [move_pkg::WIDTH-1:0] move_i,
     input wire logic [axis_drive_pkg::WIDTH-1:0] drive_i,
+    input wire logic silent_i,  // no steps
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
     output logic live_o,  // a counted axis has not made its count
@@ -60,6 +61,7 @@ module axes #(
         .chord_word_i(axis_drive_pkg::chord_word(drive_i)),
         .chord_load_i(drive_i[axis_drive_pkg::CHORD_LOAD+n]),
         .chord_swap_i(drive_i[axis_drive_pkg::CHORD_SWAP+n]),
+        .silent_i,
         .engine_step_i(drive_i[axis_drive_pkg::STEP+n]),
         .engine_dir_i(drive_i[axis_drive_pkg::DIR+n]),
         .wait_tick_i(wait_tick),

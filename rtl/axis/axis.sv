@@ -22,6 +22,7 @@ module axis #(
     input wire logic [15:0] chord_word_i,
     input wire logic chord_load_i,
     input wire logic chord_swap_i,
+    input wire logic silent_i,  // steps are dropped
     input wire logic engine_step_i,  // a path runs on one engine: never together with a step of the generator
     input wire logic engine_dir_i,
     input wire logic wait_tick_i,
@@ -94,7 +95,7 @@ module axis #(
   );
 
   // A cut does not drop the step in this register: a step on its way to the shaper is made.
-  assign any_step = generator_step || engine_step_i;
+  assign any_step = (generator_step || engine_step_i) && !silent_i;
   always_ff @(posedge clk_i) begin
     path_step_q <= any_step;
     if (any_step) path_dir_q <= engine_step_i ? engine_dir_i : generator_dir;

@@ -1,4 +1,4 @@
-// What the time part says to the geometry part.
+// What the time part says to the geometry part and, of the silence, to the axes.
 `default_nettype none
 package feed_pkg;
 
@@ -7,7 +7,8 @@ package feed_pkg;
   localparam int RUNS = 1;  // a piece gives ticks, or a decoded one waits (combinational)
   localparam int AT_REST = 2;  // the ratio is 0 (combinational)
   localparam int STOPPING = 3;  // a fault's ramp
-  localparam int WIDTH = 4;
+  localparam int SILENT = 4;  // the piece's ticks make no steps
+  localparam int WIDTH = 5;
 
 endpackage
 `default_nettype wire

@@ -15,7 +15,8 @@ package path_pkg;
   localparam int MISMATCH = 9;  // event: TICK_MISMATCH
   localparam int INCOMPLETE = 10;  // event: PATH_INCOMPLETE
   localparam int MISSING = 11;  // event: MISSING_PERIOD
-  localparam int WIDTH = 12;
+  localparam int PROBING = 12;  // a probe is armed, or has tripped and PROBE_END is to come
+  localparam int WIDTH = 13;
 
 endpackage
 `default_nettype wire

@@ -14,7 +14,9 @@ package time_state_pkg;
   localparam int HELD = 148;  // the ratio is 0 (combinational)
   localparam int FEED_ACTIVE = 149;  // a feed piece gives ticks
   localparam int STOPPING = 150;  // a fault's ramp
-  localparam int WIDTH = 151;
+  localparam int LIMIT_STATE = 151;  // 24 bits: the register LIMIT_STATE
+  localparam int BUTTON_HOLD = 175;  // the feed hold button holds
+  localparam int WIDTH = 176;
 
   function automatic logic [31:0] fault(input logic [WIDTH-1:0] state);
     fault = state[FAULT+:32];
@@ -30,6 +32,10 @@ package time_state_pkg;
 
   function automatic logic [31:0] rate(input logic [WIDTH-1:0] state);
     rate = state[RATE+:32];
+  endfunction
+
+  function automatic logic [23:0] limit_state(input logic [WIDTH-1:0] state);
+    limit_state = state[LIMIT_STATE+:24];
   endfunction
 
   function automatic logic [16:0] ratio(input logic [WIDTH-1:0] state);

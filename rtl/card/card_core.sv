@@ -179,6 +179,7 @@ module card_core #(
       .rst_i,
       .idle_level_i,
       .setting_i(setting),
+      .roles_i('0),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i(geometry_word),
       .geometry_read_o(geometry_read),

@@ -28,6 +28,7 @@ module motion_core #(
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
     output logic cut_o,  // event
     output logic closed_o,  // no command and no START is taken
+    input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,  // with the engine machine_inputs
     // pins of path commands
     input wire logic [Inputs-1:0] input_i,
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
@@ -59,6 +60,8 @@ module motion_core #(
   logic [snapshot_pkg::WIDTH-1:0] behind_time;
   logic [snapshot_pkg::WIDTH-1:0] behind_geometry;
   logic [Axes-1:0] step_fault;
+  logic [Axes-1:0] path_step;
+  logic [Axes-1:0] path_dir;
   logic take;
   logic tick;
   logic feed_idle;
@@ -95,6 +98,11 @@ module motion_core #(
     assign unused = &{1'b0, input_i};
   end
 
+  for (genvar n = 0; n < Axes; n++) begin : gen_path_step
+    assign path_step[n] = observe_o[n*axis_observe_pkg::WIDTH+axis_observe_pkg::STEP];
+    assign path_dir[n]  = observe_o[n*axis_observe_pkg::WIDTH+axis_observe_pkg::DIR];
+  end
+
   time_part #(
       .Axes   (Axes),
       .Engines(Engines)
@@ -108,10 +116,16 @@ module motion_core #(
       .arrival_i,
       .path_i(path),
       .ready_i(engines[engines_pkg::READY]),
+      .finished_i(engines[engines_pkg::DONE]),
       .feed_o(feed),
       .take_o(take),
       .tick_o(tick),
       .step_fault_i(step_fault),
+      .roles_i,
+      .step_i(path_step),
+      .dir_i(path_dir),
+      .path_active_i(geometry_state_o[geometry_state_pkg::PATH_ACTIVE]),
+      .direct_active_i(geometry_state_o[geometry_state_pkg::DIRECT]),
       .abort_i,
       .clear_fault_i,
       .cut_o,
@@ -174,6 +188,7 @@ module motion_core #(
       .move_i(move),
       .halt_i(path[path_pkg::HALT]),
       .tick_i(tick),
+      .silent_i(feed[feed_pkg::SILENT]),
       .engines_o(engines),
       .step_o,
       .dir_o,

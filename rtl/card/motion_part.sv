@@ -15,6 +15,7 @@ module motion_part #(
     input wire logic [move_pkg::WIDTH-1:0] move_i,
     input wire logic halt_i,  // event: the path ends here
     input wire logic tick_i,
+    input wire logic silent_i,  // ticks make no steps
     output logic [engines_pkg::WIDTH-1:0] engines_o,
     // pins and status
     output logic [Axes-1:0] step_o,
@@ -62,6 +63,7 @@ module motion_part #(
       .load_i,
       .move_i,
       .drive_i(drive),
+      .silent_i,
       .snapshot_i,
       .snapshot_o,
       .live_o (engines_o[engines_pkg::LIVE]),

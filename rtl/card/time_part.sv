@@ -17,11 +17,17 @@ module time_part #(
     // the other parts
     input wire logic [path_pkg::WIDTH-1:0] path_i,
     input wire logic ready_i,  // the path's engine takes ticks
+    input wire logic finished_i,  // and has finished all that were given
     output logic [feed_pkg::WIDTH-1:0] feed_o,
     output logic take_o,  // the tick is taken in this clock (combinational)
     output logic tick_o,
     // stops
     input wire logic [Axes-1:0] step_fault_i,  // events
+    input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
+    input wire logic [Axes-1:0] step_i,  // steps on the path
+    input wire logic [Axes-1:0] dir_i,  // of each axis's last one: 1 backwards, 0 forwards
+    input wire logic path_active_i,
+    input wire logic direct_active_i,
     input wire logic abort_i,  // event
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
     output logic cut_o,  // event
@@ -43,6 +49,8 @@ module time_part #(
   logic fixed;
   logic stopping;
   logic expired;
+  logic button;
+  logic [stop_causes_pkg::WIDTH-1:0] causes;
 
   assign at_rest = ratio == 17'd0;
   assign feed_o[feed_pkg::AT_REST] = at_rest;
@@ -60,6 +68,41 @@ module time_part #(
       .expired_o(expired)
   );
 
+  assign time_state_o[time_state_pkg::BUTTON_HOLD] = button;
+
+  if (Engines[card_map_pkg::ENGINE_MACHINE_INPUTS]) begin : gen_machine_inputs
+    limit_check #(
+        .Axes(Axes)
+    ) limits (
+        .clk_i,
+        .rst_i,
+        .setting_i,
+        .roles_i,
+        .step_i,
+        .dir_i,
+        .runs_i(path_active_i || direct_active_i),
+        .probing_i(path_i[path_pkg::PROBING]),
+        .stopping_i(stopping),
+        .clear_i(clear_fault_i),
+        .causes_o(causes),
+        .state_o(time_state_o[time_state_pkg::LIMIT_STATE+:24])
+    );
+
+    button_hold buttons (
+        .clk_i,
+        .rst_i,
+        .roles_i,
+        .hold_o(button)
+    );
+  end else begin : gen_no_machine_inputs
+    assign causes = '0;
+    assign button = 1'b0;
+    assign time_state_o[time_state_pkg::LIMIT_STATE+:24] = '0;
+
+    logic unused;
+    assign unused = &{1'b0, roles_i, step_i, dir_i, path_active_i, direct_active_i};
+  end
+
   stop_control #(
       .Axes   (Axes),
       .Engines(Engines)
@@ -72,6 +115,7 @@ module time_part #(
       .incomplete_i(path_i[path_pkg::INCOMPLETE]),
       .missing_i(path_i[path_pkg::MISSING]),
       .expired_i(expired),
+      .causes_i(causes),
       .abort_i,
       .clear_i(clear_fault_i),
       .at_rest_i(at_rest),
@@ -79,6 +123,7 @@ module time_part #(
       .fixed_i(fixed),
       .underrun_i(underrun_hold),
       .probe_i(path_i[path_pkg::HOLD]),
+      .button_i(button),
       .fault_o(time_state_o[time_state_pkg::FAULT+:32]),
       .hold_o(hold),
       .cut_o,
@@ -101,6 +146,7 @@ module time_part #(
       .arrival_i,
       .path_i,
       .ready_i,
+      .finished_i,
       .take_o,
       .tick_o,
       .swap_o(time_state_o[time_state_pkg::FEED_SWAP]),
@@ -113,6 +159,7 @@ module time_part #(
       .active_o(active),
       .moving_o(moving),
       .fixed_o(fixed),
+      .silent_o(feed_o[feed_pkg::SILENT]),
       .idle_o,
       .ratio_o(ratio),
       .rate_o(time_state_o[time_state_pkg::RATE+:32]),

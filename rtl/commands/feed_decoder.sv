@@ -17,6 +17,7 @@ module feed_decoder #(
     output logic [feed_load_pkg::WIDTH-1:0] load_o,
     output logic piece_o,
     output logic [1:0] class_o,  // of the piece
+    output logic silent_o,  // its ticks make no steps
     output logic barrier_o,
     output logic probe_end_o,
     output logic idle_o,
@@ -35,8 +36,9 @@ module feed_decoder #(
   assign is_feed = opcode == card_map_pkg::OP_FEED;
   assign is_wait = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_WAIT_INPUT;
   assign class_o = mask[1:0];
+  assign silent_o = (mask & 8'(card_map_pkg::PIECE_SILENT)) != 8'd0;
 
-  assign pause   = active_i && field[2:0] == load_target_pkg::FEED_STOP_DISTANCE;
+  assign pause = active_i && field[2:0] == load_target_pkg::FEED_STOP_DISTANCE;
 
   // Fields are targets of the feed load, and follow each other as these do.
   function automatic logic [2:0] length_of(input logic [2:0] target);  // halfwords, less one
@@ -82,7 +84,7 @@ module feed_decoder #(
   end
 
   logic unused;
-  assign unused = &{1'b0, which[4:3], mask[7:2]};
+  assign unused = &{1'b0, which[4:3], mask[7:3]};
 endmodule
 
 `default_nettype wire

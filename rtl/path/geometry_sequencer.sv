@@ -97,6 +97,7 @@ module geometry_sequencer #(
   assign path_o[path_pkg::DROP] = drop_i;
   assign path_o[path_pkg::HALT] = halt_i;
   assign path_o[path_pkg::HOLD] = probe_i[probe_pkg::HOLD];
+  assign path_o[path_pkg::PROBING] = probe_i[probe_pkg::BUSY];
 
   assign geometry_state_o[geometry_state_pkg::PATH_SWAP] = move_o[move_pkg::SWAP];
   assign geometry_state_o[geometry_state_pkg::DIRECT] = move_o[move_pkg::DIRECT];

@@ -85,11 +85,11 @@ module path_engines #(
     logic              at_end;
     logic              engine_ready;
 
-    // Of the engine on which the path runs. On lines nothing is asked.
+    // Of the engine on which the path runs.
     always_comb begin
       case (engine_q)
-        // Its steps are the axes' own, and it ends where they do.
-        ARC_GENERATOR: {engine_stepping, at_end, engine_ready, dir, step} = (2 * Axes + 3)'(2'b11) << 2 * Axes;
+        // Steps are the axes' own, and it ends where they do.
+        LINES, ARC_GENERATOR: {engine_stepping, at_end, engine_ready, dir, step} = (2 * Axes + 3)'(2'b11) << 2 * Axes;
         default: {engine_stepping, at_end, engine_ready, dir, step} = accumulator;
       endcase
     end

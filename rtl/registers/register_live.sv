@@ -86,7 +86,8 @@ module register_live #(
       32'(pins_state_i[pins_state_pkg::PROBED]) << card_map_pkg::BIT_STATUS_PROBED |
       32'(pins_state_i[pins_state_pkg::PROBE_MISSED]) << card_map_pkg::BIT_STATUS_PROBE_MISSED |
       32'(geometry_state_i[geometry_state_pkg::WAITING]) << card_map_pkg::BIT_STATUS_WAITING |
-      32'(geometry_state_i[geometry_state_pkg::STALE]) << card_map_pkg::BIT_STATUS_STALE;
+      32'(geometry_state_i[geometry_state_pkg::STALE]) << card_map_pkg::BIT_STATUS_STALE |
+      32'(time_state_i[time_state_pkg::BUTTON_HOLD]) << card_map_pkg::BIT_STATUS_BUTTON_HOLD;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin
@@ -107,6 +108,8 @@ module register_live #(
         default:
         if (Engines[card_map_pkg::ENGINE_STREAMING] && address[5:2] == card_map_pkg::ADDR_STALE_TICKS[5:2])
           data_o <= geometry_state_pkg::stale_ticks(geometry_state_i);
+        else if (Engines[card_map_pkg::ENGINE_MACHINE_INPUTS] && address[5:2] == card_map_pkg::ADDR_LIMIT_STATE[5:2])
+          data_o <= {8'd0, time_state_pkg::limit_state(time_state_i)};
         else data_o <= time_state_pkg::underruns(time_state_i);
       endcase
     end
@@ -126,19 +129,19 @@ module register_live #(
   logic [snapshot_pkg::WIDTH-1:0] behind_fault;
 
   snapshot_slice #(
-      .Width(16)
+      .Width(19)
   ) i_fault (
       .clk_i,
       .snapshot_i,
-      .value_i(fault[15:0]),
+      .value_i(fault[18:0]),
       .snapshot_o(behind_fault)
   );
 
   snapshot_slice #(
-      .Width(18)
+      .Width(19)
   ) i_status (
       .clk_i,
-      .value_i(status_o[17:0] & ~(18'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
+      .value_i(status_o[18:0] & ~(19'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
       .snapshot_i(behind_fault),
       .snapshot_o
   );

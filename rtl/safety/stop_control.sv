@@ -19,6 +19,7 @@ module stop_control #(
     input wire logic incomplete_i,
     input wire logic missing_i,  // position streaming
     input wire logic expired_i,  // the watchdog has expired: a level
+    input wire logic [stop_causes_pkg::WIDTH-1:0] causes_i,  // from the machine's inputs
     input wire logic abort_i,
     input wire logic [31:0] clear_i,  // ones written to FAULT
     input wire logic at_rest_i,  // the ratio is 0
@@ -26,6 +27,7 @@ module stop_control #(
     input wire logic fixed_i,  // the present one is fixed
     input wire logic underrun_i,  // what is queued ends: neither a fault nor a cut
     input wire logic probe_i,  // a probe has tripped: likewise
+    input wire logic button_i,  // the feed hold button holds, as HOLD does
     output logic [31:0] fault_o,
     output logic hold_o,  // the time base slows down to rest
     output logic cut_o,
@@ -39,12 +41,16 @@ module stop_control #(
     STOPPED
   } state_e;
 
-  localparam int Faults = card_map_pkg::BIT_FAULT_WATCHDOG + 1;
+  localparam int Faults = card_map_pkg::BIT_FAULT_TOOL_SETTER + 1;
+  localparam logic [Faults-1:0] OF_INPUTS = Faults'(1) << card_map_pkg::BIT_FAULT_LIMIT |
+      Faults'(1) << card_map_pkg::BIT_FAULT_DRIVE_FAULT | Faults'(1) << card_map_pkg::BIT_FAULT_PROBE |
+      Faults'(1) << card_map_pkg::BIT_FAULT_TOOL_SETTER;
   // The causes that can arise here, and those that a reaction may be chosen for: no flip-flops for the others.
   localparam logic [Faults-1:0] BUILT = (Faults'(1) << Axes) - Faults'(1) |
       Faults'(1) << card_map_pkg::BIT_FAULT_TICK_MISMATCH | Faults'(1) << card_map_pkg::BIT_FAULT_PATH_INCOMPLETE |
       Faults'(Engines[card_map_pkg::ENGINE_STREAMING]) << card_map_pkg::BIT_FAULT_MISSING_PERIOD |
-      Faults'(1) << card_map_pkg::BIT_FAULT_WATCHDOG;
+      Faults'(1) << card_map_pkg::BIT_FAULT_WATCHDOG |
+      (Engines[card_map_pkg::ENGINE_MACHINE_INPUTS] ? OF_INPUTS : '0);
   localparam logic [Faults-1:0] REACTIONS = card_map_pkg::MASK_STOP_REACTION[Faults-1:0] & BUILT;
 
   state_e              state_q;
@@ -53,6 +59,7 @@ module stop_control #(
   logic   [Faults-1:0] cause;
   logic                hold_q;
   logic                hold_latched_q;  // the hold stays whatever begins
+  logic                asked;
   logic                stays;
   logic   [Faults-1:0] ramped_q;  // causes whose reaction is a ramp
   logic                any;
@@ -61,8 +68,9 @@ module stop_control #(
 
   assign data = setting_bus_pkg::data(setting_i);
   assign any = cause != '0;
-  assign stays = hold_q && (hold_latched_q || !moving_i || at_rest_i);
-  assign immediate = (cause & ~ramped_q) != '0;
+  assign asked = hold_q || button_i;
+  assign stays = asked && (hold_latched_q || !moving_i || at_rest_i);
+  assign immediate = (cause & ~ramped_q) != '0 || causes_i[stop_causes_pkg::BEYOND];
 
   always_comb begin
     cause = Faults'(step_fault_i) << card_map_pkg::BIT_FAULT_STEP;
@@ -70,6 +78,10 @@ module stop_control #(
     cause[card_map_pkg::BIT_FAULT_PATH_INCOMPLETE] = incomplete_i;
     cause[card_map_pkg::BIT_FAULT_MISSING_PERIOD] = missing_i;
     cause[card_map_pkg::BIT_FAULT_WATCHDOG] = expired_i;
+    cause[card_map_pkg::BIT_FAULT_LIMIT] = causes_i[stop_causes_pkg::LIMIT];
+    cause[card_map_pkg::BIT_FAULT_DRIVE_FAULT] = causes_i[stop_causes_pkg::DRIVE_FAULT];
+    cause[card_map_pkg::BIT_FAULT_PROBE] = causes_i[stop_causes_pkg::PROBE];
+    cause[card_map_pkg::BIT_FAULT_TOOL_SETTER] = causes_i[stop_causes_pkg::TOOL_SETTER];
     cause = cause & BUILT;
   end
 
@@ -92,13 +104,14 @@ module stop_control #(
     cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
     stop_o   <= state_q == RUN && state_d != RUN;
     hold_latched_q <= stays;
-    hold_o   <= (hold_q && (stays || !fixed_i)) || underrun_i || probe_i || state_q == RAMP;
+    hold_o   <= (asked && (stays || !fixed_i)) || underrun_i || probe_i || state_q == RAMP;
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
       hold_q   <= card_map_pkg::RESET_HOLD[0];
       ramped_q <= card_map_pkg::RESET_STOP_REACTION[Faults-1:0] & REACTIONS;
       fault_q  <= '0;
       state_q  <= RUN;
+      hold_latched_q <= 1'b0;
       cut_o    <= 1'b0;
       stop_o   <= 1'b0;
       hold_o   <= 1'b0;

@@ -2,6 +2,10 @@
 //
 // In position streaming a piece with none behind it is spent after its ticks, but goes on at its rate while a path takes
 // ticks, until the next one is decoded.
+//
+// The ticks of a silent piece make no steps. The silence lasts until the engines have finished the last of these ticks and
+// its steps have come to the axes' gate; a piece that is not silent begins no earlier. In position streaming a silent
+// piece does not go on.
 `default_nettype none
 
 module feed_sequencer #(
@@ -17,6 +21,7 @@ module feed_sequencer #(
     // ticks
     input wire logic take_i,
     input wire logic wait_i,  // no piece begins
+    input wire logic finished_i,  // by the engines: every tick given
     input wire logic [path_pkg::WIDTH-1:0] path_i,
     output logic at_barrier_o,
     output logic runs_o,  // a piece gives ticks, or a decoded one waits (combinational)
@@ -25,6 +30,7 @@ module feed_sequencer #(
     output logic spent_o,  // beyond its own
     output logic moving_o,  // and has, or the one before it in one go
     output logic [1:0] class_o,  // of the piece that was swapped in last
+    output logic silent_o,  // that piece's ticks make no steps
     output logic idle_o,  // nothing read or decoded
     // feed generator
     output logic swap_o,
@@ -36,6 +42,8 @@ module feed_sequencer #(
 );
   logic piece;
   logic [1:0] piece_class;
+  logic piece_silent;
+  logic sounds;  // the piece decoded must wait for the end of the silence
   logic is_barrier;
   logic is_probe_end;
   logic dropped;
@@ -47,14 +55,16 @@ module feed_sequencer #(
   logic drops;
   logic halt;
 
-  assign drops     = path_i[path_pkg::DROP];
-  assign halt      = path_i[path_pkg::HALT];
+  assign drops = path_i[path_pkg::DROP];
+  assign halt = path_i[path_pkg::HALT];
   assign decoded_o = valid && piece;
-  assign dropped   = valid && drops && !is_probe_end;
-  assign ending    = take_i && last && !spent_o;
-  assign swap      = decoded_o && !wait_i && !drops && (!active_o || spent_o || ending);
-  assign goes_on   = path_i[path_pkg::STREAMING] && (ending ? active_o : spent_o && path_i[path_pkg::TAKING]) && !swap;
-  assign runs_o    = active_o || decoded_o;
+  assign dropped = valid && drops && !is_probe_end;
+  assign ending = take_i && last && !spent_o;
+  assign sounds = silent_o && !piece_silent;
+  assign swap = decoded_o && !wait_i && !sounds && !drops && (!active_o || spent_o || ending);
+  assign goes_on = path_i[path_pkg::STREAMING] && !silent_o && !swap &&
+      (ending ? active_o : spent_o && path_i[path_pkg::TAKING]);
+  assign runs_o = active_o || decoded_o;
 
   feed_decoder #(
       .Engines(Engines)
@@ -70,6 +80,7 @@ module feed_sequencer #(
       .load_o,
       .piece_o(piece),
       .class_o(piece_class),
+      .silent_o(piece_silent),
       .barrier_o(is_barrier),
       .probe_end_o(is_probe_end),
       .idle_o,
@@ -111,6 +122,16 @@ module feed_sequencer #(
     spent_o <= goes_on && !cut_i && !halt && !rst_i;
     if (rst_i || cut_i || halt) moving_o <= 1'b0;
     else if (take_i || spent_o) moving_o <= active_o && (swap || goes_on || !(ending || spent_o));
+  end
+
+  // A step of lines comes to the axes' gate 10 clocks after its tick is taken, an engine's 3 clocks after finished_i rises,
+  // which falls 2 clocks after a take.
+  logic [3:0] settle_q;
+  always_ff @(posedge clk_i) begin
+    settle_q <= silent_o && !active_o && finished_i && !rst_i ? settle_q + 4'd1 : 4'd0;
+    if (rst_i) silent_o <= 1'b0;
+    else if (swap && !cut_i) silent_o <= piece_silent;
+    else if (settle_q == 4'd15) silent_o <= 1'b0;
   end
 
   // A direct move has no pieces: it runs as feed, and so does what comes after a cut.

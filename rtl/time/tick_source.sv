@@ -17,6 +17,7 @@ module tick_source #(
     // ticks
     input wire logic [path_pkg::WIDTH-1:0] path_i,
     input wire logic ready_i,  // the path's engine takes ticks
+    input wire logic finished_i,  // and has finished all that were given
     output logic take_o,  // combinational
     output logic tick_o,
     output logic swap_o,  // of the feed piece
@@ -32,6 +33,7 @@ module tick_source #(
     output logic active_o,  // a piece gives ticks
     output logic moving_o,  // and has, or the one before it in one go
     output logic fixed_o,  // the piece's class is fixed (combinational)
+    output logic silent_o,  // its ticks make no steps
     output logic idle_o,  // nothing runs, is decoded or queued (combinational)
     output logic [16:0] ratio_o,
     output logic [31:0] rate_o,
@@ -80,6 +82,7 @@ module tick_source #(
       .read_o,
       .take_i(take_o),
       .wait_i(must_wait),
+      .finished_i,
       .path_i,
       .at_barrier_o,
       .runs_o,
@@ -88,6 +91,7 @@ module tick_source #(
       .spent_o(spent),
       .moving_o,
       .class_o(piece_class),
+      .silent_o,
       .idle_o(decoder_idle),
       .swap_o,
       .load_o(load),

@@ -52,8 +52,9 @@ class Field:
 
 @dataclass
 class Flags:
-    maximum: int  # of the mask byte
+    maximum: int  # of the mask byte without the bits `free`
     engine: str  # needed for any value but 0
+    free: int  # bits that every card takes
     brief: str
 
 
@@ -129,7 +130,7 @@ def _command(entry):
         mask=entry["mask"],
         engine=entry.get("engine", ""),
         built=entry.get("built", True),
-        flags=Flags(flags["max"], flags["engine"], flags["brief"]) if flags else None,
+        flags=Flags(flags["max"], flags["engine"], flags["free"], flags["brief"]) if flags else None,
         brief=entry["brief"],
         notes=entry.get("notes", ""),
         count=Count(

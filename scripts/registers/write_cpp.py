@@ -60,7 +60,7 @@ enum class MaskRule {
   Any,           // at least one axis, and only axes that the card has
   Plane,         // exactly the two axes of the field `plane`
   PlaneAndAxes,  // the two axes of the field `plane`, and any further ones that the card has
-  Flags,         // no axes: up to `flags_maximum`, other than 0 only with `flags_engine`
+  Flags,         // no axes: `flags_free`, and in the other bits up to `flags_maximum`, 0 without `flags_engine`
 };
 
 struct Field {
@@ -88,6 +88,7 @@ struct Command {
   MaskRule mask_rule;
   std::uint32_t flags_maximum;
   std::uint32_t flags_engine;
+  std::uint8_t flags_free;
   std::uint64_t count_minimum;
   std::uint64_t count_maximum;
   std::uint32_t base_halfwords;  // on the wire: header, count and the payload's fixed part
@@ -131,7 +132,7 @@ constexpr bool is_known(const Command& command, std::uint32_t engines) {
 
 // With MaskRule::Flags: the mask byte has a meaning on a card with these engines.
 constexpr bool flags_good(const Command& command, std::uint8_t flags, std::uint32_t engines) {
-  return flags == 0 || (has_engine(engines, command.flags_engine) && flags <= command.flags_maximum);
+  return (flags & ~command.flags_free) <= (has_engine(engines, command.flags_engine) ? command.flags_maximum : 0);
 }
 
 // Bits of the register, of the one-halfword field, that have a meaning on a card with these engines.
@@ -464,10 +465,10 @@ def _command_table(commands, units):
     yield f"\ninline constexpr std::array<Command, {len(commands)}> kCommands{{{{\n"
     for c in commands:
         fields = ",\n".join(_field(f, units) for f in c.fields)
-        flags = (c.flags.maximum, units.engine_bit(c.flags.engine)) if c.flags else (0, 0)
+        flags = (c.flags.maximum, units.engine_bit(c.flags.engine), c.flags.free) if c.flags else (0, 0, 0)
         queues = f'{_bool("geometry" in c.queues)}, {_bool("feed" in c.queues)}'
         yield (f'{{"{c.name}", Opcode::{camel(c.name)}, {queues}, '
-               f"{units.engine_bit(c.engine)}, {_bool(c.built)}, MaskRule::{camel(c.mask)}, {flags[0]}, {flags[1]}, "
+               f"{units.engine_bit(c.engine)}, {_bool(c.built)}, MaskRule::{camel(c.mask)}, {flags[0]}, {flags[1]}, {flags[2]}, "
                f"{c.count.minimum}, 0x{c.count.maximum:X}, {c.base_halfwords}, "
                f"{c.axis_halfwords}, {c.axes_in_base}, {len(c.fields)}, {{{{{fields}}}}}}},\n")
     yield "}};\n"

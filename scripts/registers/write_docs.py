@@ -253,7 +253,7 @@ def _mask(command):
     if command.flags is None:
         return MASK_TEXT[command.mask]
     flags = command.flags
-    return f"not axes but flags: {flags.brief}; other than 0 only with the engine `{flags.engine}`"
+    return f"not axes but flags: {flags.brief}; a class other than 0 only with the engine `{flags.engine}`"
 
 
 def _field(field):

@@ -346,8 +346,8 @@ def _flags_function(commands):
     items = []
     for c in commands:
         if c.flags:
-            items.append((f"OP_{c.name}", f"flags == 8'd0 || (engines[ENGINE_{c.flags.engine.upper()}] && flags <= "
-                                          f"8'd{c.flags.maximum})"))
+            value = f"(flags & ~8'd{c.flags.free})"
+            items.append((f"OP_{c.name}", f"{value} <= (engines[ENGINE_{c.flags.engine.upper()}] ? 8'd{c.flags.maximum} : 8'd0)"))
     return _function(["1: with MASK_RULE_FLAGS, the mask byte has a meaning, by the engines that are built in."],
                      "command_flags_good", 1, f"input logic [7:0] op, input logic [7:0] flags, {ENGINES_ARGUMENT}",
                      "op", items, "1'b1")

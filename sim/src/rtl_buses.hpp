@@ -73,7 +73,8 @@ inline constexpr Field kAtBarrier{0, 1};
 inline constexpr Field kRuns{1, 1};
 inline constexpr Field kAtRest{2, 1};
 inline constexpr Field kStopping{3, 1};
-inline constexpr unsigned kWidth = 4;
+inline constexpr Field kSilent{4, 1};
+inline constexpr unsigned kWidth = 5;
 }  // namespace feed
 
 namespace geometry_state {
@@ -92,6 +93,17 @@ namespace input_levels {
 inline constexpr Field kLevels{0, 16};
 inline constexpr unsigned kWidth = 16;
 }  // namespace input_levels
+
+namespace input_roles {
+inline constexpr Field kLimitMinus{0, 8};
+inline constexpr Field kLimitPlus{8, 8};
+inline constexpr Field kDriveFault{16, 8};
+inline constexpr Field kFeedHold{24, 1};
+inline constexpr Field kCycleStart{25, 1};
+inline constexpr Field kToolSetter{26, 1};
+inline constexpr Field kProbe{27, 1};
+inline constexpr unsigned kWidth = 28;
+}  // namespace input_roles
 
 namespace load_bus {
 inline constexpr Field kWord{0, 16};
@@ -139,7 +151,8 @@ inline constexpr Field kHold{8, 1};
 inline constexpr Field kMismatch{9, 1};
 inline constexpr Field kIncomplete{10, 1};
 inline constexpr Field kMissing{11, 1};
-inline constexpr unsigned kWidth = 12;
+inline constexpr Field kProbing{12, 1};
+inline constexpr unsigned kWidth = 13;
 }  // namespace path
 
 namespace pins_state {
@@ -222,6 +235,15 @@ inline constexpr Field kStart{40, 1};
 inline constexpr unsigned kWidth = 41;
 }  // namespace start
 
+namespace stop_causes {
+inline constexpr Field kLimit{0, 1};
+inline constexpr Field kBeyond{1, 1};
+inline constexpr Field kDriveFault{2, 1};
+inline constexpr Field kProbe{3, 1};
+inline constexpr Field kToolSetter{4, 1};
+inline constexpr unsigned kWidth = 5;
+}  // namespace stop_causes
+
 namespace stream_answer {
 inline constexpr Field kReason{0, 8};
 inline constexpr Field kNumber{8, 8};
@@ -243,7 +265,9 @@ inline constexpr Field kUnderrun{147, 1};
 inline constexpr Field kHeld{148, 1};
 inline constexpr Field kFeedActive{149, 1};
 inline constexpr Field kStopping{150, 1};
-inline constexpr unsigned kWidth = 151;
+inline constexpr Field kLimitState{151, 24};
+inline constexpr Field kButtonHold{175, 1};
+inline constexpr unsigned kWidth = 176;
 }  // namespace time_state
 
 namespace wishbone_answer {

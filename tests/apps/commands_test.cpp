@@ -26,8 +26,9 @@ TEST(Line, EightLinesOfThePaper) {
   const Command command;
   for (const PaperLine& line : lines) {
     SCOPED_TRACE(pair(line.from) + " to " + pair(line.to));
-    const Outcome outcome = command.run("line --from=" + pair(line.from) + " --to=" + pair(line.to) +
-                                        " --clock 10000000 --velocity 5000 --json " + command.path("out.json"));
+    const Outcome outcome =
+        command.run("line --from=" + pair(line.from) + " --to=" + pair(line.to) +
+                    " --no-ramp --clock 10000000 --velocity 5000 --json " + command.path("out.json"));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const nlohmann::json json = read_json(command.path("out.json"));
     EXPECT_EQ(json["final_position"][0], line.to[0] - line.from[0]);
@@ -38,9 +39,43 @@ TEST(Line, EightLinesOfThePaper) {
   }
 }
 
+// X of the default machine: 80 pulses/mm and 1000 mm/s^2.
+TEST(Line, RampsByTheMachinesLimits) {
+  const Command command;
+  const std::string files = " --json " + command.path("out.json") + " --steps " + command.path("steps.csv");
+  const std::string line = "line --to 2000 --speed 10000 --engine model --clock 1000000";
+  ASSERT_EQ(command.run(line + files).status, 0);
+  EXPECT_NEAR(read_json(command.path("out.json"))["line_clocks"].get<double>(), 200'000 + 125'000, 2000);
+  const std::vector<Step> steps = read_steps(command.path("steps.csv"));
+  ASSERT_EQ(steps.size(), 2000U);
+  const auto clocks = [&](std::size_t from, std::size_t to) {
+    return static_cast<double>(steps[to].cycle - steps[from].cycle);
+  };
+  EXPECT_NEAR(clocks(999, 1000), 100, 1);
+  // From rest to pulse n in sqrt(2 n / 80,000) s.
+  EXPECT_NEAR(clocks(49, 449), 1e6 * (std::sqrt(450 / 40'000.) - std::sqrt(50 / 40'000.)), 1000);
+  EXPECT_NEAR(clocks(1550, 1950), clocks(49, 449), 1000);
+  ASSERT_EQ(command.run(line + files + " --no-ramp").status, 0);
+  EXPECT_EQ(read_json(command.path("out.json"))["line_clocks"], 200'000);
+}
+
+TEST(Line, WhatOnlyOneKindOfLineTakes) {
+  const Command command;
+  const auto error_of = [&](const std::string& arguments) {
+    const Outcome outcome = command.run("line " + arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    return outcome.err;
+  };
+  EXPECT_NE(error_of("--to 5 --slow").find("--slow: for a line with --no-ramp"), std::string::npos);
+  EXPECT_NE(error_of("--to 5 --max-velocity 9").find("--max-velocity: for a line with --no-ramp"), std::string::npos);
+  EXPECT_NE(error_of("--to 1,1,1,1,1").find("the machine has 4 motors"), std::string::npos);
+  EXPECT_NE(error_of("--to 0,0").find("line: no axis moves"), std::string::npos);
+  EXPECT_EQ(command.run("line --to 1,1,1,1,1 --no-ramp").status, 0);
+}
+
 TEST(Line, LimitRefusesOrSlows) {
   const Command command;
-  const std::string line = "line --to 20,40 --clock 10000000 --velocity 5000 --max-velocity 0,100000";
+  const std::string line = "line --to 20,40 --no-ramp --clock 10000000 --velocity 5000 --max-velocity 0,100000";
   const Outcome refused = command.run(line + " --steps " + command.path("steps.csv"));
   EXPECT_EQ(refused.status, 2);
   EXPECT_EQ(count_lines(refused.err), 1U) << refused.err;
@@ -70,7 +105,7 @@ TEST(Info, ShowsTheUnitsAsATable) {
   for (const char* row :
        {"unit               version instances  registers words stride  with\n",
         "time_base              1.0         1      0x640     4         classes\n",
-        "axes                   1.0         5      0x800     5     32\n", "host_ports             1.0         1\n"}) {
+        "axes                   1.1         5      0x800     6     32\n", "host_ports             1.0         1\n"}) {
     EXPECT_NE(outcome.out.find(row), std::string::npos) << row << outcome.out;
   }
 }

@@ -46,15 +46,16 @@ TEST(Serve, EveryCommandOnACardBehindAPort) {
   const Outcome run = command.run("run " + program + " --machine " + command.write("machine.toml", machine) +
                                   " --card " + server.moving() + " --json " + json);
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(read_json(json)["final_position"], (std::vector<int>{240, -160, 0})) << "from where the card stood";
+  EXPECT_EQ(read_json(json)["final_position"], (std::vector<int>{240, -160, 0}))
+      << "from where the card stood at its reset";
   const Outcome dump = command.run("dump --card " + server.url());
   EXPECT_TRUE(has(dump.out, "0x000  MAGIC                0x54524D4C")) << dump.out;
-  EXPECT_TRUE(has(dump.out, "0x220  SNAP_POSITION[0]     0x000001B8  440")) << dump.out;
+  EXPECT_TRUE(has(dump.out, "0x220  SNAP_POSITION[0]     0x000000F0  240")) << dump.out;
   EXPECT_TRUE(has(dump.out, "SNAP_POSITION[2]"));
   EXPECT_FALSE(has(dump.out, "SNAP_POSITION[3]")) << "of an axis that it lacks";
   const Outcome monitor = command.run("monitor --looks 2 --interval 0.01 --card " + server.url());
   EXPECT_EQ(monitor.status, 0) << monitor.err;
-  EXPECT_TRUE(has(monitor.out, "axis 1   pulse -260")) << monitor.out;
+  EXPECT_TRUE(has(monitor.out, "axis 1   pulse -160")) << monitor.out;
   const Outcome selftest = command.run("selftest --card " + server.moving());
   EXPECT_EQ(selftest.status, 0) << selftest.out << selftest.err;
   EXPECT_TRUE(has(selftest.out, "pass  nothing has moved")) << selftest.out;
@@ -88,12 +89,13 @@ TEST(Serve, OnAPseudoTerminal) {
   EXPECT_TRUE(has(server.end(), "path: 20 steps"));
 }
 
-// A client that is killed while the card moves, by the process; the card holds, and the next client goes on from there.
+// A client that is killed while the card moves, by the process; the card holds, and the next client goes on from there,
+// where it comes before the watchdog has expired.
 TEST(Serve, AClientIsKilled) {
   const Command command;
   Server server(command, "--engine model");
   const std::string program = command.write("long.ngc", "G1 X100 F600\n");
-  Running client(command, "run " + program + " --card " + server.moving(), "client.err");
+  Running client(command, "run " + program + " --set motion.watchdog=40 --card " + server.moving(), "client.err");
   ASSERT_TRUE(eventually([&] { return server.said("has come"); })) << server.errors();
   std::this_thread::sleep_for(std::chrono::seconds(1));
   client.signal(SIGKILL);
@@ -164,6 +166,33 @@ TEST(Serve, ASecondCtrlCLeavesAtOnce) {
   EXPECT_TRUE(status && WIFSIGNALED(*status) && WTERMSIG(*status) == SIGINT);
   EXPECT_EQ(contents(command.path("client.err")), "");
   EXPECT_TRUE(eventually([&] { return server.said("the card holds"); })) << server.errors();
+}
+
+// A program begins where the one before it ended, whoever sent that.
+TEST(Serve, TheNextRunBeginsWhereTheMachineStands) {
+  const Command command;
+  Server server(command, "--engine model --fast");
+  const std::string steps = command.write("steps.ngc", "G91 G1 X10 F6000\n");
+  const std::string there = command.write("there.ngc", "G1 X10 F6000\nX12 Y3\nX0 Y0\n");
+  const std::string at = " --set axis.x.max=15 --card " + server.moving();
+  const Outcome first = command.run("run " + steps + at);
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_FALSE(has(first.err, "the machine stands at"));
+  EXPECT_TRUE(has(first.out, "X: ends at pulse 800 (10.0000 mm)")) << first.out;
+  const Outcome second = command.run("run " + steps + at);
+  EXPECT_NE(second.status, 0);
+  EXPECT_TRUE(has(second.err, "steps.ngc:1: X20 is beyond the axis's max of 15")) << second.err;
+  EXPECT_TRUE(has(second.err, "the machine stands at X 10.0000 Y 0.0000 Z 0.0000 E 0.0000")) << second.err;
+  const Outcome displaced = command.run("run " + there + " --from-line 3" + at);
+  EXPECT_NE(displaced.status, 0);
+  EXPECT_TRUE(has(displaced.err,
+                  "there.ngc:3: it begins at X 12.0000 Y 3.0000 Z 0.0000 E 0.0000, but the machine stands"
+                  " at X 10.0000 Y 0.0000"))
+      << displaced.err;
+  const Outcome in_place = command.run("run " + there + " --from-line 2" + at);
+  EXPECT_EQ(in_place.status, 0) << in_place.err;
+  EXPECT_TRUE(has(in_place.out, "X: ends at pulse 0 (0.0000 mm)")) << in_place.out;
+  EXPECT_EQ(number_behind(server.end(), "path: "), 800 + 160 + 240 + 960 + 240) << server.errors();
 }
 
 // Carries bytes between a client and a server, and cuts the first connections after so many.
@@ -277,6 +306,7 @@ TEST(CardOutside, BadInput) {
   expect_refused(command, run + there + " --check", "--check");
   expect_refused(command, "line --to 1,1 --plot x --card " + there, "--plot");
   expect_refused(command, "info --trace x.fst --card " + there, "--trace");
+  expect_refused(command, "line --to 1,1 --clear-faults", "--clear-faults: a simulated card has none");
   expect_refused(command, "serve --token 'a b'", "--token");
   expect_refused(command, "serve --port 70000", "--port");
   expect_refused(command, "serve --listen no-such-host.invalid", "no such address");

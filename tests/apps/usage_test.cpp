@@ -193,6 +193,9 @@ TEST(Words, LinesOfFurtherWordsAreLeftOut) {
   const Outcome outcome = command.run("run --check --accept M808,m555.3 --accept M909,g9 " + program);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("no hardware: G9 (1) M555.3 (1) M808 (1) M909 (1)\n"), std::string::npos) << outcome.out;
+  // And takes one argument: a second word behind a space is no word of it.
+  const Outcome spaced = command.run("run --check --accept M808,M555.3,M909 G9 " + program);
+  EXPECT_EQ(spaced.status, 2) << spaced.out;
   for (const char* word : {"900", "M", "M1.25", "M99999", "M-1", "Mx", "X1"}) {
     const Outcome bad = command.run("run " + program + " --check --accept " + word);
     EXPECT_EQ(bad.status, 2) << word;

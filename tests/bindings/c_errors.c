@@ -240,6 +240,7 @@ static void null_cards(void) {
   NO_CARD(trammel_wait_until_idle(NULL, 1));
   NO_CARD(trammel_read_faults(NULL, &word));
   NO_CARD(trammel_clear_faults(NULL));
+  NO_CARD(trammel_set_watchdog(NULL, 0));
   NO_CARD(trammel_read_inputs(NULL, &half));
   NO_CARD(trammel_read_outputs(NULL, &half));
   NO_CARD(trammel_set_input_polarity(NULL, 0));

@@ -234,6 +234,22 @@ static void faults(void) {
   trammel_close(card);
 }
 
+static void watchdog(void) {
+  trammel_card* card = simulated_card();
+  uint32_t is = 0;
+  FAILS(trammel_set_watchdog(card, -1), TRAMMEL_ARGUMENT, "negative");
+  DONE(trammel_set_watchdog(card, 10000000));
+  DONE(trammel_simulated_wait(card, 1000000));
+  DONE(trammel_read_faults(card, &is));
+  CHECK(is == 0x4000);
+  DONE(trammel_set_watchdog(card, 0));
+  DONE(trammel_clear_faults(card));
+  DONE(trammel_simulated_wait(card, 1000000));
+  DONE(trammel_read_faults(card, &is));
+  CHECK(is == 0);
+  trammel_close(card);
+}
+
 static void refusals(void) {
   trammel_card* card = simulated_card();
   trammel_command feed = feed_of(100);
@@ -258,5 +274,6 @@ void test_stream(void) {
   probe_on_the_way();
   requests();
   faults();
+  watchdog();
   refusals();
 }

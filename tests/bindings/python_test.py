@@ -339,6 +339,16 @@ class Errors(unittest.TestCase):
         stream.restart()
         self.assertEqual(card.read_faults(), 0)
 
+    def test_watchdog(self):
+        card = trammel.simulate()
+        card.set_watchdog(10_000_000)
+        card.wait(1_000_000)
+        self.assertIn("WATCHDOG", trammel.describe_faults(card.read_faults()))
+        card.set_watchdog(0)
+        card.clear_faults()
+        card.wait(1_000_000)
+        self.assertEqual(card.read_faults(), 0)
+
 
 class Interpolators(unittest.TestCase):
     def test_every_method_comes_to_the_end(self):

@@ -161,6 +161,15 @@ TEST_F(CardTest, WaitingEndsWithTheMotionTheFaultOrTheTimeout) {
     EXPECT_EQ(error.faults(), 0x102U);
     EXPECT_THAT(error.what(), HasSubstr("step fault of axis 1, TICK_MISMATCH"));
   }
+  bus_.values[reg::kFault] = field::kFaultLimit | field::kFaultDriveFault;
+  bus_.values[reg::kLimitState] = 0x01'04'00;
+  try {
+    card_.wait_until_idle(100us);
+    FAIL();
+  } catch (const FaultError& error) {
+    EXPECT_EQ(error.limit_state(), 0x01'04'00U);
+    EXPECT_THAT(error.what(), HasSubstr("LIMIT (axis 2 plus), DRIVE_FAULT (axis 0)"));
+  }
   bus_.values[reg::kStatus] = 0;
   card_.wait_until_idle(100us);
 }
@@ -192,7 +201,7 @@ TEST_F(CardTest, FaultsAndRefusalsAreReadAndClearedByTheirMasks) {
   card_.clear_faults();
   card_.abort();
   EXPECT_THAT(bus_.log, ElementsAre(wrote(reg::kRefusal, 0x0FFFFFFF), wrote(reg::kWatchdog, 0),
-                                    wrote(reg::kFault, 0xFFFF), wrote(reg::kControl, field::kControlAbort)));
+                                    wrote(reg::kFault, 0x7FFFF), wrote(reg::kControl, field::kControlAbort)));
 }
 
 // On a posted bus every write is followed by a read of REFUSAL in the same transfer.
@@ -353,7 +362,14 @@ TEST(CardOnModel, AnInterruptEndsAWait) {
 TEST(Errors, TextsNameWhatTheyAreOf) {
   EXPECT_EQ(describe_faults(0), "none");
   EXPECT_EQ(describe_faults(0x80000200), "PATH_INCOMPLETE, unknown bits 0x80000000");
-  EXPECT_EQ(describe_faults(0xFC00), "MISSING_PERIOD, LIMIT, EMERGENCY_STOP, DRIVE_FAULT, WATCHDOG, LINK_LOSS");
+  EXPECT_EQ(describe_faults(0xFC00),
+            "MISSING_PERIOD, LIMIT, EMERGENCY_STOP, DRIVE_FAULT, WATCHDOG (the program that moved the card was silent "
+            "for too long), LINK_LOSS");
+  EXPECT_EQ(describe_faults(0x70000), "SOFT_LIMIT, PROBE, TOOL_SETTER");
+  EXPECT_EQ(describe_faults(0x2800, 0x028104), "LIMIT (axis 2 minus, axis 0 plus, axis 7 plus), DRIVE_FAULT (axis 1)");
+  EXPECT_EQ(describe_faults(0x2000, 0x04), "DRIVE_FAULT");
+  EXPECT_THAT(FaultError(0x800, "line", 0x100).what(),
+              HasSubstr("line: the card has stopped with a fault: LIMIT (axis 0 plus)"));
   EXPECT_THAT(describe_reason(15), HasSubstr("FAULTED (15): "));
   EXPECT_THAT(describe_reason(5), HasSubstr("NO_ROOM (5): "));
   EXPECT_THAT(RefusedError(6, 17, reg::kStream, "stream").what(), HasSubstr("BAD_FIELD"));

@@ -140,6 +140,19 @@ TEST(Commands, TheClassOfAPieceIsInItsFlags) {
   EXPECT_THROW(words_of(feed, 0), ArgumentError);
 }
 
+TEST(Commands, SoIsItsSilence) {
+  FeedCommand feed;
+  feed.ticks = 5;
+  feed.floor = 1;
+  feed.piece_class = PieceClass::kRapid;
+  feed.silent = true;
+  const std::vector<std::uint32_t> words = words_of(feed, 0);
+  EXPECT_EQ(words[0], 0x000B0510U);
+  const auto read = std::get<FeedCommand>(decode(words.data(), words.size()).command);
+  EXPECT_TRUE(read.silent);
+  EXPECT_EQ(read.piece_class, PieceClass::kRapid);
+}
+
 // Not the longest that this driver has, but that of the card's layouts: a later command still fits.
 TEST(Commands, NoCommandIsLongerThanTheConstant) {
   EXPECT_EQ(kMaxCommandWords, 26U);

@@ -268,6 +268,24 @@ TEST_F(StreamOrder, MoreBegunThanSentIsAStateError) {
   EXPECT_LE(bus_.slept, 100us);
 }
 
+// The counters of a card with a fault are back at 0.
+TEST_F(StreamOrder, AFaultBetweenTheReadsOfALookIsAFault) {
+  Stream stream = open_stream();
+  stream.send({feed_of(100), line_of(100, 10), line_of(100, 10)});
+  bus_.values[reg::kStatus] = field::kStatusBusy;
+  unsigned looks = 0;
+  bus_.on_access = [&](const Access& access) {
+    if (access.address != reg::kGeometryBegun) return true;
+    bus_.values[reg::kGeometryBegun] = ++looks == 1 ? 1 : 0;
+    if (looks == 2) {
+      bus_.values[reg::kStatus] = field::kStatusFaulted;
+      bus_.values[reg::kFault] = field::kFaultWatchdog;
+    }
+    return true;
+  };
+  EXPECT_THROW(stream.finish(), FaultError);
+}
+
 TEST_F(StreamOrder, HonoursTheCardsEngines) {
   bus_.set_engines(card_map::engines::kLines);
   Card card = Card::open(bus_);

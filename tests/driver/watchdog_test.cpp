@@ -2,13 +2,17 @@
 // ones do not.
 #include <gmock/gmock.h>
 
+#include <thread>
+
 #include "argument_error.hpp"
 #include "register_stub.hpp"
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/driver/position_stream.hpp"
 #include "trammel/driver/stream.hpp"
+#include "trammel/driver/watchdog_scope.hpp"
 #include "trammel/sim/engine.hpp"
 
 namespace trammel::driver {
@@ -16,6 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::RegisterStub;
+using test::was_read;
 using test::wrote;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -49,6 +54,25 @@ TEST(Watchdog, LooksStartItAnewWhereItIsSet) {
   bus.forget();
   for (int i = 0; i < 64; ++i) serve_requests(card);
   EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 16), wrote(reg::kWatchdog, 16)));
+}
+
+// A slow link makes few looks.
+TEST(Watchdog, ALookAfterAQuarterOfItsTimeStartsItAnew) {
+  RegisterStub bus;
+  Card card = Card::open(bus);
+  card.set_watchdog(40ms);
+  bus.forget();
+  std::this_thread::sleep_for(11ms);
+  serve_requests(card);
+  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 1)));
+}
+
+TEST(Watchdog, AScopeEndsWithItOff) {
+  RegisterStub bus;
+  Card card = Card::open(bus);
+  bus.forget();
+  { const WatchdogScope scope(card, 1s); }
+  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 16), was_read(reg::kStatus), wrote(reg::kWatchdog, 0)));
 }
 
 // 2 s of motion under a watchdog of 10 ms.
@@ -105,6 +129,37 @@ TEST_F(WatchdogOnModel, ASilentProgramLosesTheCard) {
   begin_line();
   card_.wait_until_idle(10s);
   EXPECT_EQ(engine_->positions()[0], rest + 100'000);
+}
+
+TEST_F(WatchdogOnModel, AScopeLeavesACardThatMovesToIt) {
+  {
+    const WatchdogScope scope(card_, 10ms);
+    begin_line();
+  }
+  EXPECT_NE(card_.parts().registers.read(reg::kWatchdog), 0U);
+  engine_->sleep(1s);
+  EXPECT_EQ(card_.read_faults(), field::kFaultWatchdog);
+}
+
+// Periods and commands that are sent in time, without a wait of the driver's.
+TEST_F(WatchdogOnModel, SendersOfPositionsKeepIt) {
+  PositionStream stream(card_, {});
+  constexpr std::uint64_t kPeriod = 20'000;  // clocks
+  const std::uint64_t begun = engine_->cycles();
+  for (unsigned i = 1; i <= 500; ++i) {
+    stream.send({i * PositionStream::kPulse / 10}, kPeriod);
+    engine_->wait(begun + i * kPeriod - engine_->cycles());
+  }
+  EXPECT_EQ(card_.read_faults(), 0U);
+}
+
+TEST_F(WatchdogOnModel, SendersOfCommandsKeepIt) {
+  Stream stream(card_, {});
+  for (int i = 0; i < 500; ++i) {
+    stream.send({feed_of(1250), line_of(1250, 10)});
+    engine_->sleep(200us);
+  }
+  EXPECT_EQ(card_.read_faults(), 0U);
 }
 
 // Another program may clear what this one has left.

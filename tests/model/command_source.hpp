@@ -119,8 +119,9 @@ class CommandSource {
       case card_map::MaskRule::None:
         return 0;
       case card_map::MaskRule::Flags:
-        if (!card_map::has_engine(engines_, layout.flags_engine)) return 0;
-        return static_cast<std::uint8_t>(random_() % (layout.flags_maximum + 1));
+        mask = static_cast<std::uint8_t>(random_() & layout.flags_free);
+        if (card_map::has_engine(engines_, layout.flags_engine)) mask |= random_() % (layout.flags_maximum + 1);
+        return mask;
       case card_map::MaskRule::Any:
         do {
           mask = static_cast<std::uint8_t>(random_() & all);
@@ -259,6 +260,7 @@ inline void add_header_violations(std::vector<Violation>& list, const WireComman
   if (!names_axes) {
     const unsigned most = card_map::has_engine(engines, good.layout->flags_engine) ? good.layout->flags_maximum : 0;
     for (unsigned flags = most + 1; flags < 256; ++flags) {
+      if ((flags & ~unsigned{good.layout->flags_free}) <= most) continue;
       add("flags " + std::to_string(flags), 0, (flags ^ good.mask()) << 8, card_map::Reason::BadMask);
     }
   }

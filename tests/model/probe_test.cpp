@@ -349,7 +349,7 @@ TEST(Probe, AnInputThatTheCardLacksStaysAtZero) {
 }
 
 // Laid out, not built: conditions on captures ([15]), pieces without steps ([2] of the mask byte).
-TEST(Probe, CapturesAndSilentPiecesAreRefused) {
+TEST(Probe, CapturesAreRefused) {
   for (unsigned bit = 6; bit < 16; ++bit) {
     for (const bool probes : {false, true}) {
       Probing card;
@@ -357,11 +357,6 @@ TEST(Probe, CapturesAndSilentPiecesAreRefused) {
       EXPECT_FALSE(probes ? card.probe(condition) : card.wait_input(condition, 0)) << bit;
       EXPECT_EQ(card.read(reg::kRefusal) & 0xFF, static_cast<std::uint32_t>(card_map::Reason::BadField)) << bit;
     }
-  }
-  for (const std::uint8_t flags : {std::uint8_t{4}, std::uint8_t{6}}) {
-    Probing card;
-    EXPECT_FALSE(card.feed(10, kFullRate, 0, 0, 1, flags));
-    EXPECT_EQ(card.read(reg::kRefusal) & 0xFF, static_cast<std::uint32_t>(card_map::Reason::BadMask));
   }
 }
 

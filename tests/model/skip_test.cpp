@@ -203,8 +203,23 @@ TEST(Skip, StopControl) {
     in.step_fault = random() % 50 == 0;
     if (random() % 4 != 0) in.clear = 0;
     in.setting.address = card_map::reg::kHold;
+    in.causes.beyond = in.causes.beyond && in.causes.limit;
   });
 }
+TEST(Skip, LimitCheck) {
+  judge(model::LimitCheck(4), 9, [](auto& in, const auto&, Random& random) {
+    if (random() % 4 != 0) {
+      in.step = 0;
+      in.clear = 0;
+      in.setting.set = false;
+      // As after quiet clocks: the levels that were there.
+      in.roles = {};
+      in.roles.probe = in.roles.tool_setter = random() % 8 != 0;
+    }
+    in.setting.address = random() % 2 == 0 ? card_map::reg::kLimitOverride : card_map::reg::overtravel(1);
+  });
+}
+TEST(Skip, ButtonHold) { judge(model::ButtonHold(), 3, kAny); }
 TEST(Skip, Probe) {
   judge(model::Probe(), 9, [](auto& in, const auto&, Random& random) {
     in.load.target = some_target(random);

@@ -90,10 +90,11 @@ Spans with_arcs(Random& random, const Limits& limits) {
   for (Span& span : spans) {
     if (random.below(3) == 0) continue;
     const double radius = random.logarithmic(0.5, 200);
-    span.speed = std::min(span.speed, std::sqrt(0.995 * limits.acceleration * radius));
-    span.curve = {limits.acceleration, 1 / radius, limits.acceleration, 0.8 * span.jerk};
-    span.jerk *= 0.44;
+    span.speed = std::min(
+        {span.speed, std::sqrt(0.995 * limits.acceleration * radius), std::cbrt(0.8 * span.jerk * radius * radius)});
+    span.curve = {limits.acceleration, 1 / radius, limits.acceleration, span.jerk, span.jerk};
     span.acceleration = span.curve.along(span.speed);
+    span.jerk = span.curve.least_jerk(span.speed);
   }
   return spans;
 }
@@ -121,6 +122,82 @@ TEST(SCurvePlan, ArcsUseTheirAccelerationAtEverySpeed) {
   EXPECT_LE(best, 0.9);
   EXPECT_LE(worst, 1.001);
   RecordProperty("best", std::to_string(best));
+  RecordProperty("worst", std::to_string(worst));
+}
+
+// How an arc is passed in the least time: each moment has the jerk along the path that v^3 / r^2 and 3 v a / r leave,
+// and the acceleration that v^2 / r leaves. Integrated in small steps of time.
+class LeastOnArc {
+ public:
+  LeastOnArc(double radius, double acceleration, double jerk)
+      : radius_(radius), acceleration_(acceleration), jerk_(jerk) {}
+
+  // From rest to a speed at which there is no acceleration.
+  struct Ramp {
+    double seconds = 0;
+    double length = 0;
+  };
+  Ramp ramp(double top, double step) const {
+    std::vector<State> fall{{top, 0}};  // seen backwards from the top
+    while (fall.back().speed > 0) fall.push_back(moved(fall.back(), step, -1));
+    Ramp ramp;
+    State now{0, 0};
+    while (!fall.empty()) {
+      while (!fall.empty() && fall.back().speed < now.speed) fall.pop_back();
+      if (!fall.empty() && now.acceleration >= fall.back().acceleration) break;
+      ramp.seconds += step;
+      ramp.length += now.speed * step;
+      now = moved(now, step, 1);
+    }
+    for (const State& state : fall) ramp.length += state.speed * step;
+    ramp.seconds += static_cast<double>(fall.size()) * step;
+    return ramp;
+  }
+
+ private:
+  struct State {
+    double speed;
+    double acceleration;
+  };
+  State moved(const State& from, double step, int direction) const {
+    const double turn = from.speed / radius_;
+    const double swung = std::min(jerk_, 3 * turn * from.acceleration);
+    const double turned = turn * turn * from.speed;
+    const double jerk = std::max(0.0, std::sqrt(jerk_ * jerk_ - swung * swung) - turned);
+    const double across = turn * from.speed;
+    const double left = std::sqrt(std::max(0.0, acceleration_ * acceleration_ - across * across));
+    // With no jerk along the path.
+    const double most = std::min(left, std::sqrt(std::max(0.0, jerk_ * jerk_ - turned * turned)) / (3 * turn));
+    const double acceleration = std::min(from.acceleration + jerk * step, most);
+    return {from.speed + direction * (from.acceleration + acceleration) / 2 * step, acceleration};
+  }
+
+  double radius_;
+  double acceleration_;
+  double jerk_;
+};
+
+TEST(SCurvePlan, RampsOnArcsTakeLittleMoreThanEachMomentAllows) {
+  constexpr double kAcceleration = 1000;
+  double worst = 0;
+  for (const double jerk : {20'000.0, 50'000.0, 200'000.0}) {
+    for (const double radius : {0.5, 1.0, 3.0, 10.0, 50.0}) {
+      const double top = std::min(std::sqrt(0.995 * kAcceleration * radius), std::cbrt(0.8 * jerk * radius * radius));
+      const double step = kAcceleration / jerk / 2000;
+      const LeastOnArc::Ramp least = LeastOnArc(radius, kAcceleration, jerk).ramp(top, step);
+      Span arc;
+      arc.length = 2.6 * least.length;
+      arc.speed = top;
+      arc.curve = {kAcceleration, 1 / radius, kAcceleration, jerk, jerk};
+      arc.acceleration = arc.curve.along(top);
+      arc.jerk = arc.curve.least_jerk(top);
+      const double wanted = 2 * least.seconds + 0.6 * least.length / top;
+      const double share = seconds({arc}) / wanted;
+      EXPECT_GE(share, 0.999) << "jerk " << jerk << ", R " << radius;
+      worst = std::max(worst, share);
+    }
+  }
+  EXPECT_LE(worst, 1.09);  // measured: 1.0868, where the jerk alone is the limit; 1.033 at R 10
   RecordProperty("worst", std::to_string(worst));
 }
 

@@ -12,6 +12,7 @@ constexpr double kPart = 1e-9;    // of a limit
 constexpr double kSpeed = 1e-5;   // mm/s: 1e-12 mm from a stop the speed is as much
 constexpr double kLength = 1e-8;  // mm
 constexpr double kTouch = 1e-9;   // mm: less of a phase in a span is rounding
+constexpr int kLooks = 16;        // at a phase in a span
 
 double length_at(const Phase& phase, double time) {
   return ((phase.jerk / 6 * time + phase.acceleration / 2) * time + phase.speed) * time;
@@ -103,14 +104,30 @@ class Judge {
     }
     return within_acceleration(phase, begin, end) &&
            expect(top <= span.speed * (1 + kPart) + kSpeed, "speed", top, span.speed) &&
-           expect(least >= -kSpeed, "speed", least, 0) &&
-           expect(std::abs(phase.jerk) <= span.jerk * (1 + kPart), "jerk", phase.jerk, span.jerk);
+           expect(least >= -kSpeed, "speed", least, 0) && within_jerk(phase, begin, end);
+  }
+
+  // On an arc along the path and across it, as the speed and the acceleration of the moment are.
+  bool within_jerk(const Phase& phase, double begin, double end) {
+    const Span& span = spans_[span_];
+    const planner::Curve& curve = span.curve;
+    const double jerk = std::abs(phase.jerk);
+    const double most = std::max(span.jerk, curve.jerk_at_rest);
+    if (!expect(jerk <= most * (1 + kPart), "jerk", jerk, most)) return false;
+    if (curve.whole == 0 || std::isinf(curve.jerk)) return true;
+    for (int i = 0; i <= kLooks; ++i) {
+      const double time = begin + (end - begin) * i / kLooks;
+      const double turn = curve.turning * speed_at(phase, time);
+      const double across = 3 * turn * acceleration_at(phase, time);
+      const double both = std::hypot(jerk + turn * turn * speed_at(phase, time), across);
+      if (!expect(both <= curve.jerk * (1 + kPart), "jerk in all", both, curve.jerk)) return false;
+    }
+    return true;
   }
 
   // On an arc the speed of the moment decides.
   bool within_acceleration(const Phase& phase, double begin, double end) {
     const Span& span = spans_[span_];
-    constexpr int kLooks = 16;
     for (int i = 0; i <= kLooks; ++i) {
       const double time = begin + (end - begin) * i / kLooks;
       double most = span.acceleration;
@@ -118,8 +135,7 @@ class Judge {
         const double speed = speed_at(phase, time);
         const double across = span.curve.turning * speed * speed;
         const double left = std::sqrt(std::max(0.0, span.curve.whole * span.curve.whole - across * across));
-        const double swung = span.curve.jerk / (3 * span.curve.turning * speed);
-        most = std::max(most, std::min({left, swung, span.curve.at_rest}));
+        most = std::max(most, std::min(left, span.curve.at_rest));
       }
       const double acceleration = std::abs(acceleration_at(phase, time));
       if (!expect(acceleration <= most * (1 + kPart), "acceleration", acceleration, most)) return false;

@@ -102,7 +102,7 @@ TEST(Behaviour, FaultIsTheStopControlsAndAWriteTellsItWhatToClear) {
   bench.clock();
   EXPECT_EQ(bench.outputs().clear_fault, 0u);
   EXPECT_EQ(bench.read(reg::kFault).data, 0x104u) << "nothing is latched here";
-  EXPECT_EQ(bench.refusal_of_write(reg::kFault, 0x10000), Reason::BadValue);
+  EXPECT_EQ(bench.refusal_of_write(reg::kFault, 0x80000), Reason::BadValue);
 }
 
 TEST(Behaviour, StreamWordsReachTheCheckerAndItsRefusalsAreKept) {

@@ -71,7 +71,7 @@ TEST_P(EveryAxisCount, DescribesItself) {
   EXPECT_EQ(bench_.read(reg::kClockHz).data, 25'000'000u);
   EXPECT_EQ(bench_.read(reg::kGeometryDepth).data, 1024u);
   EXPECT_EQ(bench_.read(reg::kFeedDepth).data, 512u);
-  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30001u);
+  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30002u);
   EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, 3u);
   EXPECT_EQ(bench_.read(reg::kPorts).data, 0x04'04'01u);
 }
@@ -108,14 +108,14 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
   const std::vector<std::uint32_t> expected{
       0x01'01'10'01,
       word(31, 0, 4, 0x640),  // time base with classes
-      0x00'01'11'02,
+      0x00'01'12'02,
       word(31, 0, 2, 0x680),  // stop control
       0x00'02'10'03,
       word(31, 1, 1, 0x6C0),  // queues without watermarks
-      0x01'01'10'04,
+      0x01'01'11'04,
       word(31, 0, 0, 0),  // feed generator with jerk
-      0x00'03'10'05,
-      word(0, 32, 5, 0x800),  // three axes
+      0x00'03'11'05,
+      word(0, 32, 6, 0x800),  // three axes
       0x00'02'10'06,
       word(31, 32, 11, 0x200),  // SNAP and STOP, 8 words and three positions
       0x00'02'10'07,
@@ -133,7 +133,7 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
 // A card with all engines: every unit once, in the order of the description, no two ranges overlap.
 TEST(Descriptors, EveryUnitOnceAndNoOverlap) {
   RegisterFile::Config config = RegisterBench::config_of(8);
-  config.engines = RegisterFile::kMaxEngines;
+  config.engines = RegisterFile::kMaxEngines | card_map::engines::kMachineInputs;
   RegisterBench bench(config);
   std::array<bool, card_map::kWindowBytes / 4> used{};
   for (std::uint32_t i = 0; i < card_map::kUnits.size(); ++i) {

@@ -496,15 +496,5 @@ TEST_F(ClientsTest, ANewClientIsANewEpoch) {
   EXPECT_EQ(epochs, (std::vector<std::uint16_t>{1, 2, 3}));
 }
 
-TEST(Token, IsRandomAndFitsAUrl) {
-  EXPECT_NE(random_token(), random_token());
-  EXPECT_TRUE(is_token(random_token()));
-  EXPECT_EQ(random_token().size(), 32U);
-  EXPECT_FALSE(is_token(""));
-  EXPECT_FALSE(is_token("a b"));
-  EXPECT_FALSE(is_token("a&b"));
-  EXPECT_FALSE(is_token(std::string(65, 'a')));
-}
-
 }  // namespace
 }  // namespace trammel::serve

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "trammel/driver/errors.hpp"
+#include "trammel/sim/engine.hpp"
 #include "trammel/transport/byte_stream.hpp"
 #include "trammel/transport/links.hpp"
 #include "trammel/transport/memory_bus.hpp"
@@ -53,7 +54,12 @@ const char* hint(const CardUrl& url, bool hello) {
 }  // namespace
 
 Connection::Connection(const CardUrl& url) {
-  if (url.kind == Kind::kSim) throw driver::ArgumentError("card sim: a simulated card has no link");
+  if (url.kind == Kind::kSim) {
+    auto engine = sim::make_model_engine(sim::EngineOptions{url.axes, url.clock_hz, false});
+    engine_ = engine.get();
+    bus_ = std::move(engine);
+    return;
+  }
   if (url.kind == Kind::kMmap) {
     bus_ = std::make_unique<MemoryBus>(url.device, url.offset, url.interrupt);
     return;

@@ -220,7 +220,8 @@ class Programs {
       return dice_.chance(2) ? int128{magnitude} : -int128{magnitude};
     };
     const bool constant = dice_.chance(3);
-    to.push_back(stored_command(card_map::Opcode::Feed, classes ? dice_.below(3) : 0, ticks,
+    const unsigned silent = dice_.chance(8) ? card_map::constant::kPieceSilent : 0;
+    to.push_back(stored_command(card_map::Opcode::Feed, (classes ? dice_.below(3) : 0) | silent, ticks,
                                 {{"rate", static_cast<int128>(rate)},
                                  {"floor", static_cast<int128>(std::uint64_t{1} << 26 | dice_.draw() >> 2)},
                                  {"stop_distance", static_cast<int128>(dice_.draw())},

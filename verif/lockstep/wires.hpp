@@ -16,6 +16,21 @@ inline std::uint64_t wire(const model::Setting& setting) {
   return in_place(kSet, setting.set) | in_place(kWord, setting.address >> 2) | in_place(kData, setting.data);
 }
 
+inline std::uint32_t roles_wire(const model::InputRoles& roles) {
+  using namespace bus::input_roles;
+  return static_cast<std::uint32_t>(in_place(kLimitMinus, roles.limit_minus) | in_place(kLimitPlus, roles.limit_plus) |
+                                    in_place(kDriveFault, roles.drive_fault) | in_place(kFeedHold, roles.feed_hold) |
+                                    in_place(kCycleStart, roles.cycle_start) |
+                                    in_place(kToolSetter, roles.tool_setter) | in_place(kProbe, roles.probe));
+}
+
+inline std::uint8_t causes_wire(const model::StopCauses& causes) {
+  using namespace bus::stop_causes;
+  return static_cast<std::uint8_t>(in_place(kLimit, causes.limit) | in_place(kBeyond, causes.beyond) |
+                                   in_place(kDriveFault, causes.drive_fault) | in_place(kProbe, causes.probe) |
+                                   in_place(kToolSetter, causes.tool_setter));
+}
+
 // The model's targets are {unit, target}.
 inline std::uint32_t load_wire(const model::LoadWord& load) {
   using namespace bus::load_bus;

@@ -5,8 +5,8 @@ import { lastAtMost } from './run.js'
 const kStoodStill = 4
 const kBlock = 64
 
-// mm/s of one axis, negative backwards, from each of `times` on.
-function axisSpeeds(steps, perStep) {
+// Pulses a second of one motor times `perStep`, negative backwards, from each of `times` on.
+function motorSpeeds(steps, perStep) {
   const { pins, positions, count } = steps
   const times = new Float64Array(3 * count + 1), speeds = new Float32Array(3 * count + 1)
   let n = 0
@@ -37,10 +37,38 @@ function axisSpeeds(steps, perStep) {
   return { times: times.subarray(0, n), speeds: speeds.subarray(0, n) }
 }
 
+// The sum of such speeds.
+function sumOf(parts) {
+  if (parts.length === 1) return parts[0]
+  const capacity = parts.reduce((sum, { times }) => sum + times.length, 0)
+  const times = new Float64Array(capacity), speeds = new Float32Array(capacity)
+  const count = mergeSpeeds(parts, (now, time, n) => {
+    times[n] = time
+    speeds[n] = now.reduce((a, b) => a + b)
+  })
+  return { times: times.subarray(0, count), speeds: speeds.subarray(0, count) }
+}
+
+// Calls `put` with the speeds in force at each time at which one of them changes, the time, and its number; how many.
+function mergeSpeeds(parts, put) {
+  const next = parts.map(() => 0), now = new Float64Array(parts.length)
+  for (let n = 0; ; ++n) {
+    let time = Infinity
+    for (let a = 0; a < parts.length; ++a) {
+      if (next[a] < parts[a].times.length && parts[a].times[next[a]] < time) time = parts[a].times[next[a]]
+    }
+    if (time === Infinity) return n
+    for (let a = 0; a < parts.length; ++a) {
+      while (next[a] < parts[a].times.length && parts[a].times[next[a]] <= time) now[a] = parts[a].speeds[next[a]++]
+    }
+    put(now, time, n)
+  }
+}
+
 export class Achieved {
   constructor(run) {
     const f = run.clockHz
-    const of = (axis) => axisSpeeds(run.steps[axis], f / run.axes[axis].steps_per_mm)
+    const of = (axis) => sumOf(run.kinematics.inverse[axis].map(({ motor, mm }) => motorSpeeds(run.steps[motor], f * mm)))
     const inSpace = run.space.filter((axis) => axis >= 0)
     const beside = run.axes.map((_, axis) => axis).filter((axis) => !inSpace.includes(axis))
     this.axes = run.axes.map((_, axis) => of(axis))
@@ -53,23 +81,13 @@ export class Achieved {
     const all = [...space, ...beside]
     const capacity = all.reduce((sum, one) => sum + one.times.length, 0)
     const times = new Float64Array(capacity), speeds = new Float32Array(capacity)
-    const next = all.map(() => 0), now = new Float64Array(all.length)
-    let n = 0
-    for (;;) {
-      let time = Infinity
-      for (let a = 0; a < all.length; ++a) {
-        if (next[a] < all[a].times.length && all[a].times[next[a]] < time) time = all[a].times[next[a]]
-      }
-      if (time === Infinity) break
-      for (let a = 0; a < all.length; ++a) {
-        while (next[a] < all[a].times.length && all[a].times[next[a]] <= time) now[a] = all[a].speeds[next[a]++]
-      }
+    const n = mergeSpeeds(all, (now, time, i) => {
       let square = 0
       for (let a = 0; a < space.length; ++a) square += now[a] * now[a]
       if (square === 0) for (let a = space.length; a < all.length; ++a) square += now[a] * now[a]
-      times[n] = time
-      speeds[n++] = Math.sqrt(square)
-    }
+      times[i] = time
+      speeds[i] = Math.sqrt(square)
+    })
     this.times = times.subarray(0, n)
     this.speeds = speeds.subarray(0, n)
   }

@@ -112,9 +112,9 @@ export class Annotations {
   markEnds(numbers) {
     const { run } = this.view
     if (run.paths.count === 0) return
-    const place = (pulses) => this.at(...run.space.map((axis, i) => axis < 0 ? 0 : pulses(axis) / run.axes[axis].steps_per_mm - run.centre[i]))
-    const begin = place((axis) => run.start[axis])
-    const end = place((axis) => run.endOf(run.paths.count - 1, axis))
+    const place = (mm) => this.at(...run.space.map((axis, i) => axis < 0 ? 0 : mm(axis) - run.centre[i]))
+    const begin = place((axis) => run.startCoordinate(axis))
+    const end = place((axis) => run.axisTo(run.paths.count - 1, axis))
     const same = Math.hypot(begin[0] - end[0], begin[1] - end[1]) < 12
     const marks = same ? [[begin, 'start and end']] : [[end, 'end'], [begin, 'start']]
     for (const [[x, y]] of marks) {

@@ -37,7 +37,8 @@ export function rowsOf(run) {
     },
   ]
 }
-export const moves = (run, a) => run.steps[a].count > 0 || run.motors[a].beside > 0
+export const turns = (run, motor) => run.steps[motor].count > 0 || run.motors[motor].beside > 0
+const moves = (run, axis) => run.kinematics.inverse[axis].some(({ motor }) => turns(run, motor))
 
 export class Chart {
   constructor(row, run) {

@@ -59,7 +59,7 @@ export function boxOf(run, withArcs = true) {
     low[i] = Math.min(low[i], x - run.centre[i])
     high[i] = Math.max(high[i], x - run.centre[i])
   })
-  take(run.space.map((axis) => axis < 0 ? 0 : run.start[axis] / run.axes[axis].steps_per_mm))
+  take(run.space.map((axis) => axis < 0 ? 0 : run.startCoordinate(axis)))
   for (let p = 0; p < run.paths.count; ++p) {
     const kind = run.paths.flags[p] & 3
     if (kind === kPause) continue

@@ -67,7 +67,7 @@ export function decodeSteps(stepData, delayData, start) {
 
 export const kLine = 0, kArc = 1, kSpaceArc = 2, kPause = 3
 
-// The commanded blocks, in columns; `start`: pulses by axis.
+// The commanded blocks, in columns; `start` and `ends`: pulses by motor, arcs in mm by axis of the machine.
 export function decodePaths(data, axes, start) {
   const bytes = new Bytes(data)
   const flags = [], lines = [], stepClocks = [], ticks = [], lengths = [], wanted = [], speeds = [], ends = []
@@ -98,7 +98,7 @@ export function decodePaths(data, axes, start) {
     speeds.push(bytes.f32())
     if ((flag & 3) === kArc) {
       const plane = [bytes.varint(), bytes.varint()]
-      const centre = [bytes.zigzag() / 256, bytes.zigzag() / 256]  // pulses from the start
+      const centre = [bytes.f64(), bytes.f64()]
       arcs.set(index, { plane, centre, sweep: bytes.f64() })
     } else if ((flag & 3) === kSpaceArc) {
       const plane = [bytes.varint(), bytes.varint(), bytes.varint()]

@@ -236,8 +236,8 @@ class Page {
     this.program.highlight(line)
     byId('clock').textContent = `${fixed(run.seconds(cycle), 6)} s   clock ${grouped(cycle)}   line ${line}`
     byId('place').replaceChildren(...run.axes.map((axis, a) => {
-      const pulses = now.positions[a]
-      return make('span', {}, `${axis.letter} ${fixed(pulses / axis.steps_per_mm, 3).padStart(9)}  ${String(pulses).padStart(8)}`)
+      const pulses = run.kinematics.hasOwnMotor(a) ? `  ${String(now.positions[a]).padStart(8)}` : ''
+      return make('span', {}, `${axis.letter} ${fixed(run.coordinateAt(a, cycle), 3).padStart(9)}${pulses}`)
     }))
     this.placeCursor()
   }

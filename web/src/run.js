@@ -1,4 +1,5 @@
 // A run as the page knows it: commanded motion and executed steps on one time axis, card clocks. No document here.
+import { Kinematics } from './kinematics.js'
 import { decodeMotion, decodePaths, decodeSteps, decodeTimes, kArc, kLine, kPause, kSpaceArc } from './decode.js'
 
 // The last index whose value is <= x; -1 where there is none.
@@ -46,9 +47,10 @@ export class Run {
     this.clockHz = machine.clock_hz
     this.motors = machine.motors
     this.axes = machine.motors.slice(0, machine.axes)
+    this.kinematics = new Kinematics(machine)
     this.cycles = Math.max(1, run.cycles)
     this.fullRatio = 1 / machine.max_override  // of the clocks, at 100 %
-    this.start = this.axes.map((axis) => axis.start)
+    this.start = this.axes.map((axis) => axis.start)  // pulses by motor
     const text = new TextDecoder().decode(streams.get('program') ?? empty)
     this.program = text.split('\n')
     if (this.program.at(-1) === '') this.program.pop()
@@ -155,12 +157,15 @@ export class Run {
     if (i < 0) return 0
     return motions[i] === motion ? cycles[i] : this.cycleAt(motion)
   }
-  startOf(path, axis) {
-    if (this.paths.flags[path] & 512) return this.paths.starts.get(path)[axis]
-    const n = this.axes.length
-    return path > 0 ? this.paths.ends[(path - 1) * n + axis] : this.start[axis]
+  // Pulses of a motor.
+  startOf(path, motor) {
+    if (this.paths.flags[path] & 512) return this.paths.starts.get(path)[motor]
+    return path > 0 ? this.endOf(path - 1, motor) : this.start[motor]
   }
-  endOf(path, axis) { return this.paths.ends[path * this.axes.length + axis] }
+  endOf(path, motor) { return this.paths.ends[path * this.axes.length + motor] }
+  // mm of an axis.
+  axisFrom(path, axis) { return this.kinematics.coordinate(axis, (motor) => this.startOf(path, motor)) }
+  axisTo(path, axis) { return this.kinematics.coordinate(axis, (motor) => this.endOf(path, motor)) }
 
   // The stretch at a motion clock.
   stretchAt(motion) { return Math.min(lastAtMost(this.motion.begins, motion, this.motion.count), this.motion.count - 1) }
@@ -181,9 +186,8 @@ export class Run {
 
   // What an axis does (mm, mm/s, mm/s^2, mm/s^3) on a path, from what its share does.
   axisAt(path, axis, [share, v, a, j]) {
-    const scale = this.axes[axis].steps_per_mm
-    const from = this.startOf(path, axis) / scale
-    const way = this.endOf(path, axis) / scale - from
+    const from = this.axisFrom(path, axis)
+    const way = this.axisTo(path, axis) - from
     const kind = this.paths.flags[path] & 3
     const arc = kind === kArc || kind === kSpaceArc ? this.paths.arcs.get(path) : null
     const place = arc ? arc.plane.indexOf(axis) : -1
@@ -216,12 +220,10 @@ export class Run {
   // mm: radii at both ends, the angle at the start, the centre.
   circleOf(path, arc) {
     if (arc.circle) return arc.circle
-    const [x, y] = arc.plane
-    const sx = this.axes[x].steps_per_mm, sy = this.axes[y].steps_per_mm
-    const dx = -arc.centre[0] / sx, dy = -arc.centre[1] / sy
-    const at = [this.startOf(path, x) / sx - dx, this.startOf(path, y) / sy - dy]
+    const at = arc.centre
+    const dx = this.axisFrom(path, arc.plane[0]) - at[0], dy = this.axisFrom(path, arc.plane[1]) - at[1]
     const r0 = Math.hypot(dx, dy)
-    const r1 = Math.hypot(this.endOf(path, x) / sx - at[0], this.endOf(path, y) / sy - at[1])
+    const r1 = Math.hypot(this.axisTo(path, arc.plane[0]) - at[0], this.axisTo(path, arc.plane[1]) - at[1])
     return arc.circle = { at, r0, r1, angle: Math.atan2(dy, dx) }
   }
   // mm, X Y Z, of the commanded path.
@@ -251,6 +253,7 @@ export class Run {
     const places = new Float32Array(3 * capacity)
     const next = axes.map(() => 0)
     const here = axes.map((axis, a) => axis.start + this.motors[a].before)
+    const made = (motor) => here[motor]
     this.centre = this.centreOf()
     let on = -1, left = 0
     const enter = () => {
@@ -280,7 +283,7 @@ export class Run {
       path[count] = on
       deviation[count] = this.judge(here)
       for (let i = 0; i < 3; ++i) {
-        if (space[i] >= 0) places[3 * count + i] = here[space[i]] / axes[space[i]].steps_per_mm - this.centre[i]
+        if (space[i] >= 0) places[3 * count + i] = this.kinematics.coordinate(space[i], made) - this.centre[i]
       }
       ++count
     }
@@ -299,13 +302,14 @@ export class Run {
     for (let p = -1; p < this.paths.count; ++p) {
       for (let i = 0; i < 3; ++i) {
         const axis = this.space[i]
-        const at = axis < 0 ? 0 : (p < 0 ? this.start[axis] : this.endOf(p, axis)) / this.axes[axis].steps_per_mm
+        const at = axis < 0 ? 0 : p < 0 ? this.startCoordinate(axis) : this.axisTo(p, axis)
         low[i] = Math.min(low[i], at)
         high[i] = Math.max(high[i], at)
       }
     }
     return low.map((x, i) => (x + high[i]) / 2)
   }
+  startCoordinate(axis) { return this.kinematics.coordinate(axis, (motor) => this.start[motor]) }
   // Prepares judge() for a path: pulses from its line, or outside the annulus of its arc's ends.
   judgeOf(path) {
     this.judged = null
@@ -323,10 +327,10 @@ export class Run {
       this.judged = { from, along, square }
     } else if (kind === kArc) {
       const arc = this.paths.arcs.get(path)
-      const [x, y] = arc.plane
-      if (this.axes[x].steps_per_mm !== this.axes[y].steps_per_mm) return
-      const at = [this.startOf(path, x) + arc.centre[0], this.startOf(path, y) + arc.centre[1]]
-      const r0 = Math.hypot(arc.centre[0], arc.centre[1])
+      const circle = this.kinematics.circle(arc)
+      if (!circle) return
+      const { motors: [x, y], at } = circle
+      const r0 = Math.hypot(this.startOf(path, x) - at[0], this.startOf(path, y) - at[1])
       const r1 = Math.hypot(this.endOf(path, x) - at[0], this.endOf(path, y) - at[1])
       this.judged = { arc: true, x, y, at, inner: Math.min(r0, r1), outer: Math.max(r0, r1) }
     }
@@ -356,6 +360,8 @@ export class Run {
     const i = lastAtMost(steps.pins, cycle)
     return i < 0 ? this.motors[motor].start + this.motors[motor].before : steps.positions[i]
   }
+  // mm of an axis at a card clock, by the pulses at the pins.
+  coordinateAt(axis, cycle) { return this.kinematics.coordinate(axis, (motor) => this.positionAt(motor, cycle)) }
 
   // ---- program
 

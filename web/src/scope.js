@@ -1,7 +1,7 @@
 // STEP and DIR pins as a scope: single pulses where they can be told apart, else how densely they come.
 import { make } from './dom.js'
 import { axisColour, colour } from './theme.js'
-import { alpha, moves } from './charts.js'
+import { alpha, turns } from './charts.js'
 import { lastAtMost } from './run.js'
 
 const kRow = 19
@@ -9,14 +9,13 @@ const kRow = 19
 export class Scope {
   constructor(run) {
     this.run = run
-    this.motors = run.motors.map((motor, m) => m).filter((m) => run.steps[m].count > 0 || moves(run, m))
+    this.motors = run.motors.map((motor, m) => m).filter((m) => turns(run, m))
     this.canvas = make('canvas')
     this.values = this.motors.map(() => make('b'))
-    const name = (m) => run.motors[m].letter + (m >= run.axes.length ? ' 2nd motor' : '')
     this.swatches = this.motors.map(() => make('i'))
     this.element = make('div', { class: 'row', id: 'row-pins' },
       make('div', { class: 'label' }, make('h3', {}, 'Pins ', make('small', {}, 'pulse counts')),
-        ...this.motors.map((m, i) => make('div', {}, this.swatches[i], name(m), this.values[i]))),
+        ...this.motors.map((m, i) => make('div', {}, this.swatches[i], run.kinematics.names[m], this.values[i]))),
       make('div', { class: 'plot' }, this.canvas))
     this.turns = run.motors.map((_, m) => turnsOf(run, m))
     this.height = 12 + 2 * kRow * Math.max(1, this.motors.length)

@@ -18,6 +18,12 @@ export function totalsOf(run) {
   return totals
 }
 
+// Holds for want of commands and the time lost to them, where nobody held the card or changed its speed.
+export function underRunsText({ under_runs: count, events, seconds, planned_seconds: planned }) {
+  if (count == null) return '–'
+  return count > 0 && events.length === 0 ? `${grouped(count)}, ${fixed(seconds - planned, 3)} s longer than planned` : grouped(count)
+}
+
 export function fillSummary(element, run, goToLine, goTo) {
   const { facts } = run
   const totals = totalsOf(run)
@@ -38,16 +44,18 @@ export function fillSummary(element, run, goToLine, goTo) {
     ['Commands', grouped(facts.commands)],
     ['Speeds', facts.profile === 's-curve' ? 'S-curve' : String(facts.profile)],
     ['Mean feed', facts.feed.achieved == null ? '–' : `${number(facts.feed.achieved)} of ${number(facts.feed.commanded)} mm/min`],
-    ['Holds for want of commands', facts.under_runs == null ? '–' : String(facts.under_runs)],
+    ['Under-runs', underRunsText(facts)],
     ['Engine', facts.lockstep_cycles == null ? 'golden model' : 'RTL in lockstep with the golden model'],
     ['Clock', `${number(run.clockHz / 1e6)} MHz`],
   ]))
-  add('Axes', table(['', 'pulses', 'ends at', 'mm'], run.axes.map((axis, a) => [
-    axis.letter, grouped(facts.steps[a]), String(facts.final_position[a]), fixed(facts.final_position[a] / axis.steps_per_mm, 3)])))
+  const coordinate = (axis, pulses) => run.kinematics.coordinate(axis, (motor) => pulses[motor])
+  add('Axes', table(['', 'ends at, mm'], run.axes.map((axis, a) => [axis.letter, fixed(coordinate(a, facts.final_position), 3)])))
+  add('Motors', table(['', 'pulses', 'ends at, pulses'], run.axes.map((_, a) => [
+    run.kinematics.names[a], grouped(facts.steps[a]), String(facts.final_position[a])])))
   const place = (name) => {
     const at = facts.deviation_places[name]
     if (!at) return '–'
-    const where = at.position.slice(0, 3).map((p, a) => `${run.axes[a].letter} ${fixed(p / run.axes[a].steps_per_mm, 3)}`).join(', ')
+    const where = run.axes.slice(0, 3).map(({ letter }, a) => `${letter} ${fixed(coordinate(a, at.position), 3)}`).join(', ')
     return make('span', {}, line(at.line), ` at ${where}`)
   }
   add('Largest deviations', table(null, ['line', 'arc'].map((name) => [

@@ -15,6 +15,7 @@ import { boxOf, courseOf } from './course.js'
 import { Executed } from './executed.js'
 import { Grid } from './grid.js'
 import { outline } from './outline.js'
+import { drawsInSoftware } from './software.js'
 import { colour, ramp } from './theme.js'
 import { Tool } from './tool.js'
 
@@ -44,9 +45,13 @@ export class View {
     this.mode = 'speed'
     this.box = boxOf(run)
     this.size = this.box.high.map((x, i) => Math.max(0, x - this.box.low[i]))
-    this.pulse = 1 / Math.max(...run.space.filter((a) => a >= 0).map((a) => run.axes[a].steps_per_mm), 1e-9)  // mm, of the finest axis
+    this.pulse = Math.min(...run.space.filter((a) => a >= 0).map((a) => run.kinematics.pulseOf(a)), 1e9)  // mm, of the finest axis
     this.course = courseOf(run)
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true })
+    this.lines = this.course.feed.points.length / 6
+    this.wide = this.lines <= kWide
+    this.software = drawsInSoftware()
+    // Smooth edges of a long path take a processor longer than the path itself.
+    this.renderer = new WebGLRenderer({ antialias: this.wide || !this.software, preserveDrawingBuffer: true })
     this.renderer.info.autoReset = false  // it counts all slices of a drawing
     this.annotations = new Annotations(this)
     this.tool = new Tool()
@@ -71,7 +76,6 @@ export class View {
 
   build() {
     const { feed, rapid } = this.course
-    this.wide = feed.points.length / 6 <= kWide
     if (this.wide) {
       this.feed = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({ vertexColors: true, linewidth: 2.6 }))
       if (feed.points.length) this.feed.geometry.setPositions(feed.points)
@@ -204,7 +208,7 @@ export class View {
   setCycle(cycle) {
     this.cycle = cycle
     const at = this.run.space.map((axis, i) => axis < 0 ? 0
-      : this.run.positionAt(axis, cycle) / this.run.axes[axis].steps_per_mm - this.run.centre[i])
+      : this.run.coordinateAt(axis, cycle) - this.run.centre[i])
     this.tool.position.set(...at)
     this.placeTool()
   }
@@ -228,17 +232,17 @@ export class View {
   }
   drawNow() {
     const { zoom } = this.camera
-    const lines = this.course.feed.points.length / 6
-    const quick = this.moving && lines > kOutline
+    // A processor needs several frames for wide lines, however few they are.
+    const quick = this.moving && (this.software || this.lines > kOutline)
     this.outline.visible = quick
-    this.feed.visible = !quick && lines > 0
+    this.feed.visible = !quick && this.lines > 0
     this.executed.hide(quick)
     this.rapid.material.dashSize = 6 / zoom
     this.rapid.material.gapSize = 5 / zoom
     this.grid.update(this.camera, this.controls.target)
     this.renderer.info.reset()
     this.renderer.autoClear = true
-    this.drawSlice(this.scene, 0, quick || this.wide ? 0 : lines)
+    this.drawSlice(this.scene, 0, quick || this.wide ? 0 : this.lines)
     this.annotations.draw()
     this.placeTool()
   }

@@ -14,7 +14,7 @@ const folder = mkdtempSync(join(tmpdir(), 'trammel-'))
 let browser
 before(async () => {
   // Without a graphics card; and as root, in a container, there is no sandbox.
-  browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] })
+  browser = await chromium.launch({ executablePath: process.env.CHROMIUM, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] })
 })
 after(async () => {
   await browser?.close()
@@ -23,17 +23,24 @@ after(async () => {
 
 function report(text, ...options) {
   const program = join(folder, 'program.ngc'), page = join(folder, 'report.html')
-  if (text.endsWith('.ngc')) trammel(command, 'run', text, '--engine', 'model', '--report', page, ...options)
-  else {
-    writeFileSync(program, text)
-    trammel(command, 'run', program, '--engine', 'model', '--report', page, ...options)
-  }
+  writeFileSync(program, text)
+  trammel(command, 'run', program, '--engine', 'model', '--report', page, ...options)
   return page
+}
+// The report of the example, for all tests that look at it.
+let partPage
+function partReport() {
+  if (!partPage) {
+    partPage = join(folder, 'part.html')
+    trammel(command, 'run', join(examples, 'part.ngc'), '--engine', 'model', '--report', partPage, '--clock', '1000000')
+  }
+  return partPage
 }
 async function open(file, scheme = 'light') {
   const page = await browser.newPage({ viewport: { width: 1100, height: 700 }, colorScheme: scheme })
   const said = []
-  page.on('console', (message) => said.push(message.text()))
+  // Without a graphics card the browser reads its own pictures back, and says so.
+  page.on('console', (message) => { if (!/GPU stall due to ReadPixels/.test(message.text())) said.push(message.text()) })
   page.on('pageerror', (error) => said.push(String(error)))
   page.on('request', (request) => { if (!/^(file|data|blob):/.test(request.url())) said.push(`asks for ${request.url()}`) })
   const begun = Date.now()
@@ -57,7 +64,7 @@ const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimati
 // Close up, each executed pulse has its dot, and single clocks show.
 async function lookClosely(page) {
   await page.keyboard.press('p')
-  await page.waitForTimeout(200)
+  await still(page)
   const seen = await page.evaluate(() => ({ dots: window.trammel.view.executed.dots.geometry.attributes.position.count, of: window.trammel.view.executed.count }))
   assert.ok(seen.dots > 50 && seen.dots === seen.of, JSON.stringify(seen))
   await page.keyboard.press('k')
@@ -103,7 +110,7 @@ async function noLabelCoversAnother(page) {
 
 for (const scheme of ['light', 'dark']) {
   test(`a part draws, ${scheme}, and the cursor moves tool, line and numbers`, async () => {
-    const { page, said } = await open(report(join(examples, 'part.ngc'), '--clock', '1000000'), scheme)
+    const { page, said } = await open(partReport(), scheme)
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), scheme)
     assert.ok(await drawn(page, '#view canvas') > 5000, 'the path')
     assert.ok(await drawn(page, '#row-path canvas') > 500, 'the speed')
@@ -186,17 +193,22 @@ function wave(lines, turns = 20) {
   }
   return `G21 G90 G64\nF6000\n${Array.from({ length: lines }, (_, i) => corner(i)).join('')}`
 }
-// Milliseconds until two more frames are there, the middle of some.
-async function middleTime(page, act, prepare = async () => {}) {
+// Milliseconds from when the browser has an event until two more frames are there, the middle of some. The page's own
+// clock: the way of a tick of the wheel from here to the browser takes 30 ms.
+const rounds = process.env.TRAMMEL_LONG ? 7 : 3
+async function middleTime(page, type, act, prepare = async () => {}) {
   const times = []
-  for (let i = 0; i < 7; ++i) {
+  for (let i = 0; i < rounds; ++i) {
     await prepare()
-    const begun = Date.now()
+    await page.evaluate((name) => {
+      window.took = new Promise((done) => addEventListener(name, ({ timeStamp }) => {
+        requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now() - timeStamp)))
+      }, { capture: true, once: true }))
+    }, type)
     await act()
-    await frame(page)
-    times.push(Date.now() - begun)
+    times.push(Math.round(await page.evaluate(() => window.took)))
   }
-  return times.sort((a, b) => a - b)[3]
+  return times.sort((a, b) => a - b)[(rounds - 1) / 2]
 }
 const drawings = (page) => page.evaluate(() => window.trammel.view.renderer.info.render.frame)
 const linesDrawn = (page) => page.evaluate(() => window.trammel.view.renderer.info.render.lines)
@@ -205,31 +217,31 @@ const still = (page) => page.waitForFunction(() => !window.trammel.view.moving &
 // With TRAMMEL_LONG the long path, whose times are judged: without a graphics card a drawing of all of it takes a second.
 const long = process.env.TRAMMEL_LONG
 test('a cursor has no path drawn anew, and a moving view has an outline drawn', async (context) => {
-  const { page, said } = await open(report(long ? wave(60000, 45) : wave(12000), '--clock', '100000'))
+  const { page, said } = await open(report(long ? wave(60000, 45) : wave(1500), '--clock', '100000'))
   await page.setViewportSize({ width: 1360, height: 920 })
   await frame(page)
   await still(page)
   const all = await linesDrawn(page), before = await drawings(page)
-  assert.ok(all >= (long ? 60000 : 12000), `${all} lines`)
+  assert.ok(all >= (long ? 60000 : 10001), `${all} lines`)
   const tool = () => page.evaluate(() => document.querySelector('#view .tool').getBoundingClientRect().x)
   const at = await tool()
-  const key = await middleTime(page, () => page.keyboard.press('ArrowRight'))
+  const key = await middleTime(page, 'keydown', () => page.keyboard.press('ArrowRight'))
   assert.notEqual(await tool(), at)
   assert.equal(await drawings(page), before, 'drawings for a cursor')
   const box = await page.locator('#view').boundingBox()
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2)
   const fewest = []
-  const wheel = await middleTime(page, async () => {
+  const wheel = await middleTime(page, 'wheel', async () => {
     await page.mouse.wheel(0, -40)
     await page.waitForFunction(() => window.trammel.view.moving && !window.trammel.view.frame)
     fewest.push(await linesDrawn(page))
   })
   assert.ok(Math.max(...fewest) < 8000, `${fewest} lines while the view moves`)
   await still(page)
-  assert.ok(await linesDrawn(page) >= (long ? 60000 : 12000), 'all once it is still')
+  assert.ok(await linesDrawn(page) >= (long ? 60000 : 10001), 'all once it is still')
   // A tick while all of the path is being drawn leaves the rest of that drawing out.
   const stopped = []
-  const late = await middleTime(page, () => page.mouse.wheel(0, 40), async () => {
+  const late = await middleTime(page, 'wheel', () => page.mouse.wheel(0, 40), async () => {
     stopped.push(await page.evaluate(() => new Promise((done) => {
       const { view } = window.trammel
       const look = () => view.moving ? requestAnimationFrame(look) : done(view.renderer.info.render.lines)
@@ -241,14 +253,36 @@ test('a cursor has no path drawn anew, and a moving view has an outline drawn', 
   const pulses = await page.evaluate(() => window.trammel.run.pulses)
   const times = `a key ${key} ms, a tick of the wheel ${wheel} ms, one while all is drawn ${late} ms`
   context.diagnostic(`${pulses} pulses, ${all} lines: ${times} (aim 50)`)
-  if (long) assert.ok(Math.max(key, wheel, late) < 500, times)
+  if (long) assert.ok(key < 150 && wheel < 150 && late < 350, times)
+  assert.equal(await page.evaluate(() => window.trammel.view.renderer.getContext().getContextAttributes().antialias), false)
   assert.deepEqual(said, [])
   await page.close()
 })
 
-test('in a small window nothing covers the path, and no button is cut', async () => {
-  const { page, said } = await open(report(join(examples, 'part.ngc'), '--clock', '1000000'))
-  for (const [width, height] of [[800, 600], [390, 844]]) {
+test('without a graphics card a short path too is an outline while the view moves', async () => {
+  const { page, said } = await open(partReport())
+  await still(page)
+  const shown = () => page.evaluate(() => [window.trammel.view.feed.visible, window.trammel.view.outline.visible])
+  assert.deepEqual(await shown(), [true, false])
+  const moving = await page.evaluate(() => new Promise((done) => {
+    const { view } = window.trammel
+    view.zoomBy(1.2)
+    requestAnimationFrame(() => done([view.feed.visible, view.outline.visible]))
+  }))
+  assert.deepEqual(moving, [false, true])
+  await still(page)
+  assert.deepEqual(await shown(), [true, false])
+  assert.deepEqual(said, [])
+  await page.close()
+})
+
+test('in a large window all charts are in view; in a small one nothing covers the path, and no button is cut', async () => {
+  const { page, said } = await open(partReport())
+  await page.setViewportSize({ width: 1360, height: 920 })
+  await frame(page)
+  const [all, inView] = await page.evaluate(() => [document.querySelector('#charts').scrollHeight, document.querySelector('#charts').clientHeight])
+  assert.ok(all <= inView, `${inView} of ${all} pixels`)
+  for (const [width, height] of [[800, 600], [390, 844], [360, 740]]) {
     await page.setViewportSize({ width, height })
     await frame(page)
     const seen = await page.evaluate(() => {

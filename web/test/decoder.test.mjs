@@ -7,6 +7,7 @@ import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 import { after, test } from 'node:test'
 import { Achieved } from '../src/achieved.js'
+import { underRunsText } from '../src/summary.js'
 import { Bytes } from '../src/decode.js'
 import { lastAtMost } from '../src/run.js'
 import { readout, sample } from '../src/samples.js'
@@ -50,11 +51,13 @@ function worstPlace(run, counts = () => true) {
     const { motion } = run.motionAt(cycle)
     const stretch = run.stretchAt(motion)
     const share = run.shareAt(stretch, motion - run.motion.begins[stretch])
-    run.axes.forEach((axis, a) => {
-      const steps = run.steps[a]
-      const last = lastAtMost(steps.cycles, cycle)
-      const made = last < 0 ? axis.start : steps.positions[last]
-      worst = Math.max(worst, Math.abs(run.axisAt(run.motion.paths[stretch], a, share)[0] * axis.steps_per_mm - made))
+    const made = run.axes.map(({ start }, motor) => {
+      const last = lastAtMost(run.steps[motor].cycles, cycle)
+      return last < 0 ? start : run.steps[motor].positions[last]
+    })
+    run.axes.forEach((_, a) => {
+      const off = run.axisAt(run.motion.paths[stretch], a, share)[0] - run.kinematics.coordinate(a, (motor) => made[motor])
+      worst = Math.max(worst, Math.abs(off) / run.kinematics.pulseOf(a))
     })
   }
   return worst
@@ -77,8 +80,7 @@ test('so it is through holds, overrides, a fast clock, and second motors', () =>
   expectPulses(made)
 })
 
-test('the deviations that the page finds are those that the run measured', () => {
-  const { run, json } = report(part, '--clock', '1000000')
+function expectDeviations({ run, json }) {
   let line = 0, arc = 0
   run.pathDeviation.forEach((deviation, path) => {
     if ((run.paths.flags[path] & 3) === 0) line = Math.max(line, deviation)
@@ -86,6 +88,11 @@ test('the deviations that the page finds are those that the run measured', () =>
   })
   assert.ok(Math.abs(line - json.max_deviation.line) < 1e-5, `${line} ${json.max_deviation.line}`)
   assert.ok(Math.abs(arc - json.max_deviation.arc) < 1e-5, `${arc} ${json.max_deviation.arc}`)
+}
+test('the deviations that the page finds are those that the run measured', () => {
+  const made = report(part, '--clock', '1000000')
+  expectDeviations(made)
+  const { run } = made
   const place = run.facts.deviation_places.line
   assert.ok(run.program[place.line - 1].length > 0)
 })
@@ -100,6 +107,31 @@ for (const [name, ...options] of [['at full speed'], ['held and overridden', '--
   })
 }
 
+// By the machine's own formula X = (A + B) / 2, Y = (A - B) / 2, not by the page's ratios. A pulse of the path may be off
+// by 1.25 pulses of each motor, so 1.25 mm / 80 in X or Y.
+test('crossed belts: the path is that of the axes, the pulses are those of the motors', () => {
+  const corexy = ['--set', "kinematics.name='corexy'"]
+  const program = programOf('G21 G90 G91.1 G64 P0.2\nG1 X30 Y8 F3000\nG3 X30 Y28 J10\nG2 X42 Y28 Z3 I6\nG1 X10 Y20 Z9\nG18 G2 X20 Z9 I5 K0\nG17 G1 X-4 Y6 Z0 F1200\n')
+  const made = report(program, '--clock', '1000000', ...corexy)
+  expectPulses(made)
+  const { run } = made
+  for (let i = 0; i < run.executed.count; i += 11) {
+    const [a, b] = [0, 1].map((motor) => {
+      const last = lastAtMost(run.steps[motor].cycles, run.executed.times[i])
+      return last < 0 ? 0 : run.steps[motor].positions[last] / 80
+    })
+    const [x, y] = run.executed.places.subarray(3 * i, 3 * i + 2)
+    assert.ok(Math.abs(x + run.centre[0] - (a + b) / 2) < 1e-4 && Math.abs(y + run.centre[1] - (a - b) / 2) < 1e-4, `place ${i}`)
+  }
+  assert.ok(worstPlace(run) < 2.5, `${worstPlace(run)} half pulses`)
+  assert.deepEqual([0, 1].map((axis) => run.coordinateAt(axis, run.cycles)), [-4, 6])
+  assert.deepEqual(run.kinematics.names, ['X + Y', 'X − Y', 'Z', 'E'])
+  const line = run.beginOfLine(7), { commanded, achieved, actual, axes } = readout(run, new Achieved(run), line + 0.5 * (run.cycles - line))
+  assert.ok(Math.abs(commanded - 20) < 0.01 && Math.abs(achieved - 20) < 1, `${commanded} ${achieved}`)
+  for (const a of [0, 1]) assert.ok(Math.abs(actual[a] - axes[a][1]) < 1, `${actual[a]} ${axes[a][1]}`)
+  expectDeviations(report(programOf('G21 G90 G91.1\nG1 X30 Y8 F3000\nG3 X30 Y28 J10\nG2 X42 Y28 I6\nG1 X10\n'), '--clock', '1000000', ...corexy))
+})
+
 test('behind a probe the path goes on where it stopped', () => {
   const program = programOf('G21 G90\nG38.2 Z-10 F120\nG1 X4 F600\nG1 Z1\n')
   const made = report(program, '--clock', '1000000', '--set', 'probe.input=0', '--input-at', '1.5:0:1')
@@ -107,7 +139,7 @@ test('behind a probe the path goes on where it stopped', () => {
   const { run } = made
   const z = run.axes.findIndex((axis) => axis.letter === 'Z')
   const path = run.paths.lines.indexOf(3)
-  const stood = run.startOf(path, z) / run.axes[z].steps_per_mm
+  const stood = run.axisFrom(path, z)
   assert.ok(stood < -2.5 && stood > -3.5, `${stood}`)
   assert.ok(worstPlace(run, (cycle) => cycle > run.pathBegin[path]) < 1.25)
   const last = run.positionAt(z, run.cycles)
@@ -225,6 +257,15 @@ test('what does not go together is refused, and leaves no file', () => {
   assert.match(refused('--report-window', '1:2'), /no --report/)
   assert.match(refused('--report', page, '--report-window', '2:1'), /ends before it begins/)
   assert.match(refused('--report', page, '--report-window', '2'), /FROM:TO/)
+})
+
+test('under-runs are told with the time lost to them, unless somebody held the card', () => {
+  const { facts } = report(programOf('G21 G90\nG1 X1 F600\n'))
+  assert.equal(underRunsText(facts.run), '0')
+  const told = { ...facts.run, under_runs: 1200, seconds: facts.run.planned_seconds + 0.5104 }
+  assert.equal(underRunsText(told).replace(/\s/gu, ' '), '1 200, 0.510 s longer than planned')
+  assert.equal(underRunsText({ ...told, under_runs: 2, events: [{ event: 'hold', cycle: 1 }] }), '2')
+  assert.equal(underRunsText({ ...told, under_runs: null }), '–')
 })
 
 test('numbers of any size', () => {

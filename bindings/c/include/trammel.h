@@ -223,6 +223,10 @@ TRAMMEL_API trammel_result trammel_wait_until_idle(trammel_card* card, int64_t t
 TRAMMEL_API trammel_result trammel_read_faults(trammel_card* card, uint32_t* faults);
 // Nothing moves by it; the stream begins anew (trammel_restart_stream()).
 TRAMMEL_API trammel_result trammel_clear_faults(trammel_card* card);
+// The card stops by itself, FAULT saying why, when this program is silent for `time_ns`; 0: never. Calls that wait, and
+// streams, keep it from stopping; set 0 when the motion is over. Longer than 4/3 of the time in which the link may
+// recover; up to 65,535 * 65,536 clocks.
+TRAMMEL_API trammel_result trammel_set_watchdog(trammel_card* card, int64_t time_ns);
 // The names of the bits, for messages: at most `size` bytes with the final 0.
 TRAMMEL_API trammel_result trammel_describe_faults(uint32_t faults, char* text, size_t size);
 

@@ -26,17 +26,17 @@ trammel_result open_card(trammel_card** out, Open open) noexcept {
   });
 }
 
-std::unique_ptr<trammel_card> open_simulated(const trammel_simulation& simulation) {
-  std::unique_ptr<sim::Engine> engine = make_simulated(simulation);
-  sim::Engine* const simulated = engine.get();
-  return std::make_unique<trammel_card>(std::move(engine), simulated);
+std::unique_ptr<trammel_card> open_place(const transport::CardUrl& place) {
+  const auto connection = std::make_shared<transport::Connection>(place);
+  return std::make_unique<trammel_card>(std::shared_ptr<driver::Bus>(connection, &connection->bus()),
+                                        connection->engine());
 }
 
-std::unique_ptr<trammel_card> open_url(const std::string& url) {
-  const transport::CardUrl place = transport::parse_card_url(url);
-  if (place.kind == transport::CardUrl::Kind::kSim) return open_simulated({place.axes, place.clock_hz});
-  const auto connection = std::make_shared<transport::Connection>(place);
-  return std::make_unique<trammel_card>(std::shared_ptr<driver::Bus>(connection, &connection->bus()), nullptr);
+std::unique_ptr<trammel_card> open_simulated(const trammel_simulation& simulation) {
+  transport::CardUrl place;
+  place.axes = simulation.axes;
+  place.clock_hz = simulation.clock_hz;
+  return open_place(place);
 }
 
 driver::AxisSettings settings_of(const trammel_axis_settings& settings) {
@@ -106,7 +106,7 @@ using namespace trammel::c;
 namespace driver = trammel::driver;
 
 trammel_result trammel_open(const char* url, trammel_card** card) {
-  return open_card(card, [=] { return open_url(&required(url, "url")); });
+  return open_card(card, [=] { return open_place(trammel::transport::parse_card_url(&required(url, "url"))); });
 }
 
 trammel_result trammel_open_simulated(const trammel_simulation* simulation, trammel_card** card) {
@@ -188,6 +188,10 @@ trammel_result trammel_read_faults(trammel_card* card, uint32_t* faults) {
 
 trammel_result trammel_clear_faults(trammel_card* card) {
   return guarded([=] { card_of(card).clear_faults(); });
+}
+
+trammel_result trammel_set_watchdog(trammel_card* card, int64_t time_ns) {
+  return guarded([=] { card_of(card).set_watchdog(nanoseconds(time_ns)); });
 }
 
 trammel_result trammel_describe_faults(uint32_t faults, char* text, size_t size) {

@@ -96,7 +96,5 @@ trammel_snapshot c_snapshot(const driver::Snapshot& snapshot);
 
 // A card behind the caller's own functions.
 std::unique_ptr<driver::Bus> make_callback_bus(const trammel_bus& bus);
-// The simulated card; its engine is the bus.
-std::unique_ptr<sim::Engine> make_simulated(const trammel_simulation& simulation);
 
 }  // namespace trammel::c

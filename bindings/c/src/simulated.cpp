@@ -1,14 +1,6 @@
 #include "handle.hpp"
 
 namespace trammel::c {
-
-std::unique_ptr<sim::Engine> make_simulated(const trammel_simulation& simulation) {
-  sim::EngineOptions options;
-  options.axes = simulation.axes;
-  options.clock_hz = simulation.clock_hz;
-  return sim::make_model_engine(options);
-}
-
 namespace {
 
 sim::Engine& engine_of(trammel_card* card) {

@@ -129,6 +129,8 @@ void CoreModel::show_registers() {
   in.underrun = state_.motion.underrun().shown;
   in.underruns = state_.motion.underrun().underruns;
   in.stale = s.stale;
+  in.limit_state = state_.motion.state().limits.limit_state();
+  in.button_hold = state_.motion.state().buttons.hold();
   in.stale_ticks = state_.motion.sequencer().streaming().ticks;
   in.incomplete = state_.checker.outputs().partial;
   in.geometry_room = state_.geometry_queue.outputs().room;

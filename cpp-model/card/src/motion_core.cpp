@@ -14,8 +14,10 @@ unsigned idle_level_of(std::uint32_t levels, unsigned axes, unsigned axis) {
 
 MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, std::uint32_t engines, const PathCommands::Config& pins)
     : has_guard_(card_map::has_engine(engines, card_map::engine::kUnderrunHold)),
+      has_machine_inputs_(card_map::has_engine(engines, card_map::engine::kMachineInputs)),
       state_{DirectLoader(axes), Sequencer(card_map::has_engine(engines, card_map::engine::kStreaming)),
              PathCommands(pins)} {
+  state_.limits = LimitCheck(axes);
   for (unsigned n = 0; n < axes; ++n) {
     state_.axes.emplace_back(n, idle_level_of(idle_level, axes, n));
     put(state_.out.step, 1U << n, state_.axes[n].outputs().shaper.step);
@@ -80,6 +82,8 @@ StopControl::Inputs MotionCore::stop_inputs(const Inputs& in) const {
   stop.incomplete = s.incomplete;
   stop.missing = state_.sequencer.streaming().missing;
   stop.expired = state_.watchdog.expired();
+  stop.causes = state_.limits.causes();
+  stop.button = state_.buttons.hold();
   stop.abort = in.abort;
   stop.clear = in.clear_fault;
   stop.at_rest = state_.time_base.outputs().ratio == 0;
@@ -89,6 +93,20 @@ StopControl::Inputs MotionCore::stop_inputs(const Inputs& in) const {
   stop.probe = state_.probe.holds();
   stop.setting = in.setting;
   return stop;
+}
+
+LimitCheck::Inputs MotionCore::limit_inputs(const Inputs& in) const {
+  const Sequencer::Outputs& s = state_.sequencer.outputs();
+  LimitCheck::Inputs limits;
+  limits.roles = in.roles;
+  limits.step = static_cast<std::uint8_t>(state_.out.path_step);
+  limits.dir = static_cast<std::uint8_t>(state_.out.path_dir);
+  limits.runs = s.path_active || s.direct;
+  limits.probing = state_.probe.busy();
+  limits.stopping = state_.stop.outputs().stopping;
+  limits.clear = in.clear_fault;
+  limits.setting = in.setting;
+  return limits;
 }
 
 PathCommands::Inputs MotionCore::command_inputs(const Inputs& in) const {
@@ -113,6 +131,7 @@ Axis::Inputs MotionCore::axis_inputs(const Inputs& in) const {
   axis.tick = engines.tick;
   axis.swap = engines.swap;
   axis.direct = s.direct;
+  axis.silent = s.silent;
   axis.wait_tick = state_.wait_timer.tick();
   axis.load = state_.sequencer.load();
   axis.chord_word = engines.chord_word;

@@ -114,6 +114,7 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (in.probe_missed) status |= field::kStatusProbeMissed;
   if (in.waiting) status |= field::kStatusWaiting;
   if (in.stale) status |= field::kStatusStale;
+  if (in.button_hold) status |= field::kStatusButtonHold;
   return status;
 }
 
@@ -146,6 +147,8 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.feed_begun;
     case reg::kStaleTicks:
       return in.stale_ticks;
+    case reg::kLimitState:
+      return in.limit_state;
     case reg::kUnderruns:
       return in.underruns;
     default:

@@ -30,9 +30,10 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.period = streaming.on && state_.path == Path::Line && d.path_ends;
   const bool barrier = state_.geometry.decoded() && state_.geometry.is_barrier() && !d.path_dropped && !streaming.lost;
   d.goes_on = (d.period || state_.out.stale) && !d.path_begins && !barrier;
-  d.piece_begins =
-      piece_waits() && !in.wait && !in.drop && (!state_.out.feed_active || state_.out.spent || d.piece_ends);
-  d.piece_goes_on = (d.piece_ends ? streaming.on : state_.out.spent && ticking_path()) && !d.piece_begins;
+  d.piece_begins = piece_waits() && !in.wait && !in.drop && !(state_.out.silent && !piece_silent()) &&
+                   (!state_.out.feed_active || state_.out.spent || d.piece_ends);
+  d.piece_goes_on =
+      (d.piece_ends ? streaming.on && !state_.out.silent : state_.out.spent && ticking_path()) && !d.piece_begins;
   d.barrier_begins = state_.barrier == Barrier::Beginning && state_.now == state_.barrier_at;
   d.barrier_ends = barrier_over(in);
   d.barrier_done = state_.barrier == Barrier::Done;
@@ -78,6 +79,7 @@ void Sequencer::clock(const Inputs& in) {
   clock_barrier(d);
   stand(d);
   clock_path(in, d);
+  clock_silence(in, d);
   clock_piece(d);
   clock_fetches(in, d);
   if (in.halt) halt(d);
@@ -176,12 +178,22 @@ void Sequencer::clock_path(const Inputs& in, const Decision& d) {
     state_.out.ended = true;
 }
 
+// A cut leaves a silence: what was on its way to the axes stays silent.
+void Sequencer::clock_silence(const Inputs& in, const Decision& d) {
+  const bool over = state_.settled == kSettleClocks - 1;
+  state_.settled = state_.out.silent && !d.piece_runs && in.engine_done && !over ? state_.settled + 1 : 0;
+  if (d.piece_begins && !in.cut)
+    state_.out.silent = piece_silent();
+  else if (over)
+    state_.out.silent = false;
+}
+
 void Sequencer::clock_piece(const Decision& d) {
   state_.out.feed_swap = d.piece_begins;
   if (d.direct)
     state_.out.piece_class = card_map::constant::kClassFeed;
   else if (d.piece_begins)
-    state_.out.piece_class = state_.feed.flags();
+    state_.out.piece_class = static_cast<std::uint8_t>(state_.feed.flags() & ~card_map::constant::kPieceSilent);
   const bool over = (d.piece_ends || state_.out.spent) && !d.piece_goes_on && !d.piece_begins;
   if (d.take || state_.out.spent) state_.out.moving = d.piece_runs && !over;
   if (d.take && !state_.out.spent) --state_.piece_left;
@@ -233,6 +245,7 @@ void Sequencer::cut() {
   state_.out.idle = before.idle;
   state_.out.geometry_begun = before.geometry_begun;
   state_.out.feed_begun = before.feed_begun;
+  state_.out.silent = before.silent;
   state_.path = Path::None;
   state_.drained = state_.tick_arrives = state_.geometry_stands = state_.feed_stands = false;
   state_.owed = 0;

@@ -355,17 +355,27 @@ void Jump::commit_axis(unsigned axis, std::uint64_t ticks) {
   }
   if (t.under_way) place_step(a, static_cast<std::uint64_t>(std::min(end_ - t.arrival, kToShaper)), t.backwards);
   core_.show_axis(axis);
+  if (t.under_way && (t.edge != 0 || t.arrival + kToPath <= end_)) core_.state().limits.state().axes[axis].moved = true;
 }
 
 namespace {
+
+// Neither causes nor buttons change. While a limit is active each step is looked at.
+bool limits_rest(model::MotionCore& core, const model::MotionCore::Inputs& in) {
+  const bool pressed = (in.roles.limit_minus | in.roles.limit_plus) != 0;
+  if (pressed && core.state().sequencer.ticking()) return false;
+  return horizon(core.state().limits, core.limit_inputs(in)) != 0 && horizon(core.state().buttons, in.roles) != 0;
+}
 
 // Nothing is decided, and no host is at work.
 bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
   model::MotionCore::State& m = core.state();
   const model::Sequencer::Outputs& s = m.sequencer.outputs();
-  if (s.swap || s.feed_swap || s.direct || m.out.path_step != 0 || m.axes_live || m.out.step_fault != 0) return false;
+  if (s.swap || s.feed_swap || s.direct || s.silent || m.out.path_step != 0 || m.axes_live || m.out.step_fault != 0)
+    return false;
   if (in.setting.set || in.abort || in.clear_fault != 0 || in.probe_clear || in.start) return false;
   if (horizon(m.loader, {}) == 0 || horizon(m.stop, core.stop_inputs(in)) == 0) return false;
+  if (core.has_machine_inputs() && !limits_rest(core, in)) return false;
   if (!only_ticks_move(m.engines) || ratio_known_for(core) == 0) return false;
   if (horizon(m.commands, core.command_inputs(in)) == 0) return false;
   if (horizon(m.probe, core.probe_inputs(in)) == 0 || m.probing != m.probe.busy()) return false;

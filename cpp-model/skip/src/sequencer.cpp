@@ -24,7 +24,7 @@ bool counts_only(const model::Sequencer& block, const model::Sequencer::Inputs& 
     return false;
   if ((s.geometry.idle() && !in.geometry_empty) || (s.feed.idle() && !in.feed_empty)) return false;
   if (s.geometry.waiting() && s.path != Sequencer::Path::Engine) return false;
-  if (block.instant() || in.halt || in.probe_taken) return false;
+  if (block.instant() || in.halt || in.probe_taken || s.out.silent) return false;
   if (s.out.stale || (s.out.spent && !block.ticking_path())) return false;
   if (block.has_streaming() && horizon(s.streaming, block.streaming_inputs(in)) == 0) return false;
   if (block.geometry_drops(in) || block.feed_drops(in)) return false;

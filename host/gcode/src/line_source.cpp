@@ -1,6 +1,7 @@
 #include "trammel/gcode/line_source.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +16,16 @@ namespace {
 std::size_t find(const char* buffer, std::size_t from, std::size_t to, char c) {
   const void* found = to > from ? std::memchr(buffer + from, c, to - from) : nullptr;
   return found != nullptr ? static_cast<std::size_t>(static_cast<const char*>(found) - buffer) : to;
+}
+
+void wait_for_bytes(int descriptor, const std::function<void()>& meanwhile) {
+  constexpr int kMilliseconds = 20;
+  pollfd file{descriptor, POLLIN, 0};
+  int ready = 0;
+  do {
+    meanwhile();
+    ready = ::poll(&file, 1, kMilliseconds);
+  } while (ready == 0 || (ready < 0 && errno == EINTR));
 }
 
 }  // namespace
@@ -92,6 +103,7 @@ std::size_t FileLines::read(char* to, std::size_t most) {
   if (failure_) {
     return 0;
   }
+  if (meanwhile_) wait_for_bytes(descriptor_, meanwhile_);
   ssize_t count = 0;
   do {
     count = ::read(descriptor_, to, most);

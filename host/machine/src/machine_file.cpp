@@ -58,11 +58,12 @@ struct MotionEntry {
   bool whole;
 };
 
-constexpr std::array<MotionEntry, 5> kMotionEntries = {{
+constexpr std::array<MotionEntry, 6> kMotionEntries = {{
     {"junction_deviation", &MotionSettings::junction_deviation, 0, 1000, false},
     {"max_override", &MotionSettings::max_override, 1, 2, false},
     {"hold_reserve", &MotionSettings::hold_reserve, 0, 0.9, false},
     {"window", &MotionSettings::window, 2, 1 << 20, true},
+    {"watchdog", &MotionSettings::watchdog, 0, 40, false},
     {"stale_periods", &MotionSettings::stale_periods, 0, 65535, true},
 }};
 

@@ -334,18 +334,15 @@ void BlockBuilder::limit_arc(Block& block, double unevenness, double share) cons
   limit_speed(block, plane.pulse_speed / unevenness / slope, SpeedLimit::kPulseShape);
   limit_speed(block, std::sqrt(radius * acceleration * kAcross) / slope, SpeedLimit::kAcceleration);
   if (jerk < kNoLimit) {
-    limit_speed(block, cube_root(radius * radius * jerk * ArcJerk::kTurning) / slope, SpeedLimit::kAcceleration);
+    limit_speed(block, cube_root(radius * radius * jerk * kTurningJerk) / slope, SpeedLimit::kAcceleration);
   }
   block.acceleration = block.jerk = kNoLimit;
   limit_further(block);
   apply_feed(block, feed_length);
-  const double speed = block.speed * slope;
-  const double across = speed * speed / radius;
-  const ArcJerk shares(jerk < kNoLimit ? speed * across / (radius * jerk) : 0);
-  block.curve = {acceleration / slope, slope / radius, std::min(block.acceleration, acceleration / slope),
-                 shares.across * jerk / slope};
+  block.curve = {acceleration / slope, slope / radius, std::min(block.acceleration, acceleration / slope), jerk / slope,
+                 std::min(block.jerk, jerk / slope)};
   block.acceleration = std::min(block.acceleration, block.curve.along(block.speed));
-  block.jerk = std::min(block.jerk, shares.along * jerk / slope);
+  block.jerk = std::min(block.jerk, block.curve.least_jerk(block.speed));
   block.curvature = (block.clockwise ? -1 : 1) * slope * slope / radius;
 }
 

@@ -36,19 +36,7 @@ inline bool is_linear(const machine::MachineAxis& axis) { return axis.letter >= 
 // speed. It costs 0.25 % of the highest speed.
 constexpr double kAcross = 0.995;
 
-// How the jerk on an arc is shared out, as shares of the whole. At the speed v on the radius r, with acceleration a and
-// jerk j along the path, it is v^3 / r^2 + j along the path and 3 v a / r across it.
-struct ArcJerk {
-  static constexpr double kTurning = 0.8;  // v^3 / r^2, the most
-
-  explicit ArcJerk(double turning) : along(kLeft * (1 - turning)), across(std::sqrt(1 - square(turning + along))) {}
-
-  double along;
-  double across;
-
- private:
-  static constexpr double kLeft = 0.6;  // of what the turning leaves
-  static constexpr double square(double x) { return x * x; }
-};
+// Of the jerk on an arc at the speed v on the radius r, v^3 / r^2 is so much at the most; Curve shares out the rest.
+constexpr double kTurningJerk = 0.8;
 
 }  // namespace trammel::planner

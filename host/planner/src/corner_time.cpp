@@ -57,7 +57,7 @@ double CornerTime::blend_speed(const Fillet& blend, const CornerSide& from, cons
   }
   double speed = std::min(plane.velocity, std::sqrt(kAcross * plane.acceleration * blend.radius));
   if (plane.jerk < kNoLimit)
-    speed = std::min(speed, cube_root(ArcJerk::kTurning * plane.jerk * blend.radius * blend.radius));
+    speed = std::min(speed, cube_root(kTurningJerk * plane.jerk * blend.radius * blend.radius));
   return speed;
 }
 

@@ -70,6 +70,7 @@ void Planner::LookAhead::go_on() {
   }
   if (draining_) {
     draining_ = false;
+    if (ended_) quantiser_.finish();
     return;
   }
   if (path_.full()) {
@@ -87,7 +88,11 @@ void Planner::LookAhead::read_block() {
   if (!blocks_.next(entry.block)) {
     path_.unpush();
     ended_ = true;
-    if (tail_ != nullptr) end_run(*tail_);
+    if (tail_ != nullptr) {
+      end_run(*tail_);
+    } else {
+      quantiser_.finish();
+    }
     return;
   }
   entry.halfwords = halfwords(entry.block);

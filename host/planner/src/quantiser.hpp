@@ -42,6 +42,8 @@ class Quantiser {
   bool take(std::uint64_t index, driver::FeedCommand& piece) { return stops_.take(index, piece); }
   // The first piece is complete as it is: no room for more behind it. Needs two pieces.
   void force() { stops_.force(); }
+  // Nothing follows.
+  void finish() { stops_.finish(); }
 
  private:
   // Where the phases are.

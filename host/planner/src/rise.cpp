@@ -35,6 +35,19 @@ double Rise::Part::time_at(double length) const {
   return rising_time(length, from.speed, from.acceleration, (to - from.acceleration) / duration, duration);
 }
 
+// When the speed is reached, which is not above that at its end.
+double Rise::Part::time_to(double speed) const {
+  const double gain = std::max(0.0, speed - from.speed);
+  const double twice = 2 * (to - from.acceleration) / duration;
+  const double reached = std::sqrt(std::max(0.0, from.acceleration * from.acceleration + twice * gain));
+  return 2 * gain / (from.acceleration + reached);
+}
+
+void Rise::Part::shorten(double time) {
+  to = at(time).acceleration;
+  duration = time;
+}
+
 double Rise::plan(SpeedWindow::Walk walk, double low, double high) {
   stretches_.clear();
   parts_.clear();
@@ -81,17 +94,8 @@ void Rise::climb(double top) {
   const double most = stretch.limits.acceleration;
   if (now.acceleration < most && now.place < stretch.end) {
     Part part{now, (most - now.acceleration) / stretch.limits.jerk, most, index};
-    if (part.end().speed > top) {
-      const double gain = top - now.speed;
-      const double reached = std::sqrt(now.acceleration * now.acceleration + 2 * stretch.limits.jerk * gain);
-      part.duration = 2 * gain / (now.acceleration + reached);
-      part.to = reached;
-    }
-    if (part.end().place > stretch.end) {
-      const double time = part.time_at(stretch.end - now.place);
-      part.to = part.at(time).acceleration;
-      part.duration = time;
-    }
+    if (part.end().speed > top) part.shorten(part.time_to(top));
+    if (part.end().place > stretch.end) part.shorten(part.time_at(stretch.end - now.place));
     parts_.push_back(part);
     now = end();
   }
@@ -101,7 +105,7 @@ void Rise::climb(double top) {
   parts_.push_back({now, 2 * length / (now.speed + speed), most, index});
 }
 
-// In steps of speed, each with the acceleration that its highest speed leaves.
+// In steps of speed, each with the acceleration and the jerk that its highest speed leaves.
 void Rise::climb_arc(SpeedWindow::Stretch arc) {
   const SpanAcceleration acceleration(*arc.arc);
   bool entered = false;
@@ -111,7 +115,8 @@ void Rise::climb_arc(SpeedWindow::Stretch arc) {
     const double top = last ? kAnySpeed : std::sqrt(acceleration.top(i));
     if (now.speed >= top) continue;
     if (entered && now.place >= arc.end) return;
-    arc.limits.acceleration = acceleration.acceleration(i);
+    arc.limits = {acceleration.acceleration(i), std::min(acceleration.jerk(i), arc.jerk_beside)};
+    arc.top = top;
     if (!entered) {
       enter(arc);
     } else {
@@ -134,7 +139,29 @@ void Rise::enter(const SpeedWindow::Stretch& next) {
 
 // At the speed no more acceleration than `most`, unless the last stretch ends before.
 void Rise::relax(double most, double speed) {
-  turn(last_place([&](const Place& place) { return fall(place, most, true).speed - speed; }), most, true);
+  Place place;
+  if (!relaxes_in_stretch(most, speed, place)) {
+    place = last_place([&](const Place& from) { return fall(from, most, true).speed - speed; });
+  }
+  turn(place, most, true);
+}
+
+// The place to fall from, where it is in the last stretch and the fall ends there. At one jerk the square of the
+// acceleration is a straight line over the speed, so that nothing is searched.
+bool Rise::relaxes_in_stretch(double most, double speed, Place& place) const {
+  const std::size_t last = stretches_.size() - 1;
+  const double jerk = stretches_[last].limits.jerk;
+  for (std::size_t i = parts_.size(); i-- > 0 && parts_[i].stretch == last;) {
+    const Part& part = parts_[i];
+    const double left = speed - part.from.speed;
+    const double room = most * most + 2 * jerk * left - part.from.acceleration * part.from.acceleration;
+    if (room < 0 || !(part.duration > 0)) continue;
+    const double own = (part.to - part.from.acceleration) / part.duration;
+    const double time = part.time_to(part.from.speed + room / (2 * (jerk + own)));
+    place = {i, std::min(time, part.duration)};
+    return fall(place, most, false).place <= stretches_[last].end;
+  }
+  return false;
 }
 
 // Ends at the speed, if it can within the stretches; `anywhere`: behind them, too.
@@ -172,18 +199,17 @@ Rise::State Rise::fall(const Place& place, double to, bool bounded, std::vector<
     const SpeedWindow::Stretch& stretch = stretches_[i];
     const bool last = i + 1 == stretches_.size();
     Part part{now, (now.acceleration - to) / stretch.limits.jerk, to, i};
-    State end = part.end();
-    const bool crosses = end.place > stretch.end && (bounded || !last);
+    const bool crosses = part.end().place > stretch.end && (bounded || !last);
     if (crosses) {
       const double left = stretch.end - now.place;
-      const double time = left > 0 ? part.time_at(left) : 0;
-      end = part.at(time);
-      part.duration = time;
-      part.to = end.acceleration;
+      part.shorten(left > 0 ? part.time_at(left) : 0);
     }
+    // On an arc the next step's jerk follows at its speed.
+    const bool rises = !last && stretches_[i + 1].arc == stretch.arc && part.end().speed > stretch.top;
+    if (rises) part.shorten(part.time_to(stretch.top));
     if (parts != nullptr) parts->push_back(part);
-    now = end;
-    if (!crosses || last) break;
+    now = part.end();
+    if (!(crosses || rises) || last) break;
   }
   return now;
 }

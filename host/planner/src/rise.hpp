@@ -43,6 +43,8 @@ class Rise {
     State at(double time) const;
     State end() const { return at(duration); }
     double time_at(double length) const;
+    double time_to(double speed) const;
+    void shorten(double time);
   };
   struct Place {
     std::size_t part = 0;
@@ -54,6 +56,7 @@ class Rise {
   void climb_arc(SpeedWindow::Stretch arc);
   void enter(const SpeedWindow::Stretch& next);
   void relax(double most, double speed);
+  bool relaxes_in_stretch(double most, double speed, Place& place) const;
   bool arrive(double high, bool anywhere);
   void lone(double low, double high, const RampLimits& limits);
   State fall(const Place& place, double to, bool bounded, std::vector<Part>* parts = nullptr) const;

@@ -1,5 +1,5 @@
-// The acceleration along a span, by its speed. An arc leaves at each speed what Curve::along() says; that
-// is cut into steps of constant acceleration, each what its highest speed leaves. Squares of speeds. Internal to the
+// The acceleration along a span, by its speed. An arc leaves at each speed what Curve::along() says; that is cut into
+// steps of constant acceleration and jerk, each what its highest speed leaves. Squares of speeds. Internal to the
 // planner.
 #pragma once
 
@@ -17,7 +17,7 @@ class SpanAcceleration {
 
   SpanAcceleration() = default;
   explicit SpanAcceleration(const Span& span)
-      : at_rest_(span.acceleration), at_top_(span.acceleration), top_(span.speed * span.speed) {
+      : at_rest_(span.acceleration), at_top_(span.acceleration), top_(span.speed * span.speed), jerk_(span.jerk) {
     if (span.curve.whole <= 0) return;
     curve_ = span.curve;
     at_rest_ = std::max(at_top_, span.curve.at_rest);
@@ -37,6 +37,12 @@ class SpanAcceleration {
   double acceleration(int step) const {
     if (step + 1 >= steps_) return at_top_;
     return std::clamp(curve_.along(std::sqrt(top(step))), at_top_, at_rest_);
+  }
+
+  // With that acceleration.
+  double jerk(int step) const {
+    if (curve_.whole <= 0) return jerk_;
+    return std::max(jerk_, curve_.jerk_along(std::sqrt(step + 1 < steps_ ? top(step) : top_), acceleration(step)));
   }
 
   // Squares between which the acceleration is constant, from `low` up to `high`, with the length that each takes.
@@ -84,6 +90,7 @@ class SpanAcceleration {
   double at_rest_ = 0;
   double at_top_ = 0;
   double top_ = 0;
+  double jerk_ = 0;  // the least
   Curve curve_;
   int steps_ = 1;
 };

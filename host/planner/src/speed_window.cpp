@@ -8,11 +8,15 @@ namespace {
 
 using Range = SpeedWindow::Range;
 
-bool has_more_below(const Span& span) { return span.curve.whole > 0 && span.curve.at_rest > span.acceleration; }
+bool has_more_below(const Span& span) {
+  const Curve& curve = span.curve;
+  return curve.whole > 0 && (curve.at_rest > span.acceleration || curve.jerk_at_rest > span.jerk);
+}
 
 Range range_of(const Span& span) {
   const RampLimits limits = {span.acceleration, span.jerk};
-  return {limits, has_more_below(span) ? RampLimits{span.curve.at_rest, span.jerk} : limits};
+  if (!has_more_below(span)) return {limits, limits};
+  return {limits, {std::max(limits.acceleration, span.curve.at_rest), std::max(limits.jerk, span.curve.jerk_at_rest)}};
 }
 
 RampLimits lower(RampLimits a, RampLimits b) {
@@ -30,9 +34,6 @@ bool alike(const Range& range, double tolerance) {
   return range.most.acceleration <= (1 + tolerance) * range.least.acceleration &&
          range.most.jerk <= kMax * range.least.jerk;
 }
-
-// The least of both, unless the neighbour has much less.
-double near_jerk(double jerk, double neighbour) { return 2.5 * neighbour < jerk ? jerk : std::min(jerk, neighbour); }
 
 bool same(const Range& a, const Range& b) {
   return a.least.acceleration == b.least.acceleration && a.least.jerk == b.least.jerk &&
@@ -105,7 +106,10 @@ SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
   constexpr double kMin = 0x1p-12;     // at least
   if (window_->uniform()) {
     at_ = last_;
-    return {distance(at_), window_->least(), nullptr};
+    Stretch all;
+    all.end = distance(at_);
+    all.limits = window_->least();
+    return all;
   }
   const double begin = end_;
   const std::size_t first = at_;
@@ -130,12 +134,20 @@ SpeedWindow::Stretch SpeedWindow::Walk::next(double speed, double time) {
     at_ = behind;
   }
   end_ = distance(at_);
+  Stretch stretch;
+  stretch.end = end_;
+  stretch.limits = range.least;
   // What is too short for a piece of its own is made with what follows or comes before.
-  RampLimits limits = range.least;
-  if (begin > 0) limits.jerk = near_jerk(limits.jerk, (*window_)[forwards_ ? first - 1 : first].jerk);
-  if (!ended()) limits.jerk = near_jerk(limits.jerk, (*window_)[span_at(at_)].jerk);
+  const auto beside = [&stretch](double jerk) {
+    if (2.5 * jerk < stretch.limits.jerk) return;
+    stretch.limits.jerk = std::min(stretch.limits.jerk, jerk);
+    stretch.jerk_beside = std::min(stretch.jerk_beside, jerk);
+  };
+  if (begin > 0) beside((*window_)[forwards_ ? first - 1 : first].jerk);
+  if (!ended()) beside((*window_)[span_at(at_)].jerk);
   const bool alone = at_ == (forwards_ ? first + 1 : first - 1);
-  return {end_, limits, alone && has_more_below(span) ? &span : nullptr};
+  if (alone && has_more_below(span)) stretch.arc = &span;
+  return stretch;
 }
 
 Range SpeedWindow::range(double begin, double end) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "s_ramp.hpp"
@@ -43,7 +44,10 @@ class SpeedWindow {
   struct Stretch {
     double end = 0;  // from where the walk began
     RampLimits limits;
-    const Span* arc = nullptr;  // one span alone, which has more acceleration below its highest speed
+    const Span* arc = nullptr;  // one span alone, which has more of them below its highest speed
+    double top = std::numeric_limits<double>::infinity();  // of an arc's step: up to this speed
+    // The least of the neighbouring spans', if they have not much less: none in the stretch has more.
+    double jerk_beside = std::numeric_limits<double>::infinity();
   };
 
   // Away from a place, stretch by stretch, up to the span in which the other one lies.

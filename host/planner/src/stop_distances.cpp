@@ -9,12 +9,14 @@
 namespace trammel::planner {
 namespace {
 
-// A card that holds for want of paths goes on with twice the stop distance and a reserve. What it needs must be there
-// while the host fills a queue that is half empty: no stop distance is more than this part of full queues.
-constexpr double kFillOfReach = 4;
+// A card that holds for want of paths goes on with twice the stop distance and a reserve.
+constexpr double kResumeFactor = 2;
 constexpr double kReserve = card_map::constant::kUnderrunReserveTicks;
 
-std::uint32_t ticks32(double ticks) { return static_cast<std::uint32_t>(std::min(std::ceil(ticks), 4294967295.0)); }
+std::uint64_t end_of(const FeedPiece& piece) { return piece.begin + piece.command.ticks; }
+std::uint32_t ticks32(double ticks) {
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(ticks), 1.0, 4294967295.0));
+}
 
 // While a piece that begins in the block is in force, all up to the stop is queued: the pieces come before the only
 // path. What follows may come in part; a stop distance beyond the stop would make the card hold until the rest is
@@ -28,7 +30,12 @@ bool ends_queued(const PathEntry& entry) {
 }  // namespace
 
 StopDistances::StopDistances(const PathRing& path, double stop_clocks, const QueueLimits& queues)
-    : path_(path), stop_clocks_(stop_clocks), queues_(queues), pieces_(kPieces), highest_(kPieces) {}
+    : path_(path),
+      stop_clocks_(stop_clocks),
+      pieces_held_(std::max<std::uint64_t>(1, queues.pieces / 2)),
+      paths_(path, queues.halfwords / 2),
+      pieces_(kPieces),
+      highest_(kPieces) {}
 
 void StopDistances::put(const FeedPiece& piece) { at(last_++) = piece; }
 
@@ -58,7 +65,7 @@ void StopDistances::complete() {
     if (seen_ == completed_) see_next();
     while (seen_ != last_ && !at(seen_ - 1).stop && seen_clocks_ < stop_clocks_) see_next();
     const bool known = at(seen_ - 1).stop || seen_clocks_ >= stop_clocks_;
-    if (!known && last_ - completed_ < kPieces / 2) return;
+    if (!(known && knows_queues()) && last_ - completed_ < kPieces / 2) return;
     complete_first();
   }
 }
@@ -66,6 +73,11 @@ void StopDistances::complete() {
 void StopDistances::force() {
   if (last_ - completed_ < 2) throw std::logic_error("the ring of blocks is full, and no piece is complete");
   complete_first();
+}
+
+void StopDistances::finish() {
+  paths_.end();
+  complete();
 }
 
 void StopDistances::see_next() {
@@ -77,49 +89,75 @@ void StopDistances::see_next() {
   ++seen_;
 }
 
-// Ticks that are queued behind a piece's begin when queues are full; where less is known than fits, the rest is taken
-// to be as long.
-double StopDistances::reach(const FeedPiece& first) {
-  const std::uint64_t pieces = std::min(queues_.pieces, last_ - completed_);
-  const FeedPiece& last = at(completed_ + pieces - 1);
-  const double ticks = static_cast<double>(last.begin + last.command.ticks - first.begin);
-  return std::min(path_reach(first), ticks * static_cast<double>(queues_.pieces) / static_cast<double>(pieces));
+// All is known that half-full queues hold while the first piece is in force.
+bool StopDistances::knows_queues() const {
+  if (at(completed_).stop || paths_.ended() || last_ - completed_ > pieces_held_) return true;
+  if (last_ - completed_ < 2) return false;
+  return paths_.covers(at(completed_ + 1).block, at(last_ - 1).block);
 }
 
-// By the paths. The commands of a block have equal ticks, and its pieces begin anywhere in it.
-double StopDistances::path_reach(const FeedPiece& first) {
-  const auto fit = static_cast<double>(queues_.halfwords);
-  const auto share = [](double part, double whole) { return whole > 0 ? part / whole : 0; };
-  const auto before = [](std::uint64_t at, std::uint64_t from) { return static_cast<double>(at - from); };
-  const PathEntry& begin = path_[first.block];
-  const double gone = share(before(first.begin, begin.begin_ticks), before(begin.end_ticks, begin.begin_ticks)) *
-                      static_cast<double>(begin.halfwords);
-  reached_ = std::max(reached_, first.block);
-  while (reached_ + 1 != path_.end() && before(path_[reached_ + 1].queued, begin.queued) - gone < fit) ++reached_;
-  const PathEntry& end = path_[reached_];
-  const double known = std::min(fit, before(end.queued + end.halfwords, begin.queued) - gone);
-  const double part = known - (before(end.queued, begin.queued) - gone);
-  const double ticks = before(end.begin_ticks, begin.begin_ticks) - before(first.begin, begin.begin_ticks) +
-                       part / static_cast<double>(end.halfwords) * before(end.end_ticks, end.begin_ticks);
-  return ticks * fit / known;
+// The tick up to which half-full queues hold what the first piece needs when it begins. A block's pieces come before
+// its paths: where a piece does not fit, the paths end with the block before.
+double StopDistances::held_by_pieces() const {
+  const std::uint64_t behind = completed_ + pieces_held_;
+  if (behind < last_) return static_cast<double>(path_[at(behind).block].begin_ticks);
+  return paths_.ended() ? QueuedPaths::kUnlimited : static_cast<double>(end_of(at(last_ - 1)));
+}
+
+// The tick up to which half-full queues hold paths and pieces when the first piece begins.
+double StopDistances::held_from(const FeedPiece& first) {
+  return std::min(held_by_pieces(), paths_.held(first.block, first.begin));
+}
+
+// The fewest ticks in half-full queues behind any tick of the first piece.
+double StopDistances::least_held(const FeedPiece& first) {
+  const std::uint64_t end = end_of(first);
+  double least = held_by_pieces() - static_cast<double>(end);
+  std::uint64_t tick = first.begin;
+  for (std::uint64_t index = first.block; tick < end; tick = path_[index++].end_ticks) {
+    least = std::min(least, paths_.held(index, tick) - static_cast<double>(tick));
+  }
+  return least;
+}
+
+// Of the first piece: what a stop from any of its ticks takes.
+double StopDistances::needed(const FeedPiece& first) const {
+  const double needed = std::ceil(stop_clocks_ * at(highest_[slot(highest_first_)]).highest_rate);
+  // A stop that begins in the piece goes on at its rates, and to the program's own stop at most.
+  const FeedPiece& last = at(seen_ - 1);
+  if (!last.stop) return needed;
+  return std::min(needed,
+                  std::ceil(stop_clocks_ * first.highest_rate) + static_cast<double>(end_of(last) - end_of(first)));
+}
+
+// The end of the first piece's run, where it is known.
+double StopDistances::find_stop() {
+  stop_ = std::max(stop_, completed_);
+  while (stop_ + 1 < last_ && !at(stop_).stop) ++stop_;
+  return at(stop_).stop ? static_cast<double>(end_of(at(stop_))) : QueuedPaths::kUnlimited;
+}
+
+// Of the first piece.
+double StopDistances::distance(const FeedPiece& first) {
+  const double held = held_from(first);
+  const double stop = find_stop();
+  // All that a run still needs is queued in time: nothing is to be waited for before its end.
+  const double to_stop = stop - static_cast<double>(end_of(first)) - kReserve - 1;
+  double most = least_held(first) / kResumeFactor - kReserve;
+  if (stop <= held) most = std::max(most, to_stop);
+  // While the host fills the queues for the first time a run may begin with no more than its own commands queued.
+  if (stop <= filled_) most = std::min(most, to_stop);
+  return std::min(needed(first), most);
 }
 
 void StopDistances::complete_first() {
   FeedPiece& first = at(completed_);
-  const std::uint64_t highest = highest_[slot(highest_first_)];
-  const double rate = at(highest).highest_rate;
+  if (completed_ == 0) filled_ = held_from(first);
   // At least 1: 0 says that the piece ends at rest.
   if (!first.stop) {
-    double wanted = std::ceil(stop_clocks_ * rate);
-    // A stop that begins in the piece goes on at its rates, and to the program's own stop at most.
-    if (const FeedPiece& last = at(seen_ - 1); last.stop) {
-      const std::uint64_t behind = last.begin + last.command.ticks - first.begin - first.command.ticks;
-      wanted = std::min(wanted, std::ceil(stop_clocks_ * first.highest_rate) + static_cast<double>(behind));
-    }
-    wanted = std::min(wanted, reach(first) / kFillOfReach - kReserve);
-    first.command.stop_distance = wanted > 1 && !ends_queued(path_[first.block]) ? ticks32(wanted) : 1;
+    first.command.stop_distance = ends_queued(path_[first.block]) ? 1 : ticks32(distance(first));
   }
-  if (highest == completed_) ++highest_first_;
+  if (highest_[slot(highest_first_)] == completed_) ++highest_first_;
   ++completed_;
   seen_clocks_ -= completed_ < seen_ ? at(completed_).clocks : seen_clocks_;
 }

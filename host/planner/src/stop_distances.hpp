@@ -8,14 +8,9 @@
 
 #include "feed_piece.hpp"
 #include "path_ring.hpp"
+#include "queued_paths.hpp"
 
 namespace trammel::planner {
-
-// What the card's queues hold.
-struct QueueLimits {
-  std::uint64_t halfwords = 0;  // of geometry
-  std::uint64_t pieces = 0;
-};
 
 class StopDistances {
  public:
@@ -28,6 +23,8 @@ class StopDistances {
   void end_at_stop();
   // Completes what is known by now.
   void complete();
+  // Nothing follows the last piece.
+  void finish();
   // The first piece is complete as it is: no room for more behind it. Throws std::logic_error with less than two.
   void force();
 
@@ -43,8 +40,13 @@ class StopDistances {
 
   void see_next();
   void complete_first();
-  double reach(const FeedPiece& first);
-  double path_reach(const FeedPiece& first);
+  bool knows_queues() const;
+  double held_by_pieces() const;
+  double held_from(const FeedPiece& first);
+  double least_held(const FeedPiece& first);
+  double needed(const FeedPiece& first) const;
+  double find_stop();
+  double distance(const FeedPiece& first);
   // Of what is numbered on, in a ring.
   static std::size_t slot(std::uint64_t i) { return static_cast<std::size_t>(i % kPieces); }
   FeedPiece& at(std::uint64_t i) { return pieces_[slot(i)]; }
@@ -52,9 +54,11 @@ class StopDistances {
 
   const PathRing& path_;
   double stop_clocks_;
-  QueueLimits queues_;
+  std::uint64_t pieces_held_;
+  QueuedPaths paths_;
   std::vector<FeedPiece> pieces_;  // a ring
-  std::uint64_t reached_ = 0;      // block, with whose commands a full queue ends
+  double filled_ = 0;              // tick up to which the host fills the queues when the program begins
+  std::uint64_t stop_ = 0;         // the next piece that ends at a stop, or the last one that was looked at
   std::uint64_t first_ = 0;
   std::uint64_t completed_ = 0;  // from the first: complete
   std::uint64_t seen_ = 0;       // their rates count in `highest_`

@@ -49,11 +49,10 @@ void PathCoder::put(const PathRecord& record) {
 
 void PathCoder::put_arc(const planner::Block& block) {
   if (!block.tilted) {
-    constexpr std::int64_t kCentreScale = 256;
     stream_.varint(block.axis_x);
     stream_.varint(block.axis_y);
-    stream_.zigzag(block.centre_x - kCentreScale * block.start[block.axis_x]);
-    stream_.zigzag(block.centre_y - kCentreScale * block.start[block.axis_y]);
+    stream_.number(block.exact.centre_x);
+    stream_.number(block.exact.centre_y);
     stream_.number(block.exact.sweep);
     return;
   }

@@ -1,6 +1,7 @@
 #include "trammel/report/report_writer.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -13,6 +14,7 @@
 #include "step_coder.hpp"
 #include "time_map.hpp"
 #include "trammel/driver/card_timing.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/planner/card_limits.hpp"
 #include "trammel/report/motion_clock.hpp"
 #include "trammel/report/page.hpp"
@@ -35,6 +37,22 @@ std::uint64_t feed_tick(const CommandTicks& command, std::uint64_t path_tick) {
   const double tick =
       std::ceil((static_cast<double>(path_tick) - 0.5) * 0x1p40 / static_cast<double>(command.prescale));
   return command.begin + std::min(static_cast<std::uint64_t>(tick), command.last);
+}
+
+// By axis: pulses of a motor for a mm of the axis, and mm of the axis that a pulse of the motor moves.
+std::string ratios_json(const kinematics::Kinematics& kinematics, std::size_t motor) {
+  std::vector<double> pulses;
+  for (std::size_t axis = 0; axis < kinematics.axes(); ++axis) {
+    kinematics::Direction along{};
+    along[axis] = 1;
+    pulses.push_back(kinematics.pulse_rate(motor, along));
+  }
+  kinematics::Pulses one{};
+  one[motor] = 1;
+  const kinematics::Coordinates moved = kinematics.coordinates(one);
+  const std::vector<double> way(moved.begin(), moved.begin() + static_cast<std::ptrdiff_t>(kinematics.axes()));
+  return fmt::format(R"("pulses_per_mm":[{:.17g}],"mm_per_pulse":[{:.17g}])", fmt::join(pulses, ","),
+                     fmt::join(way, ","));
 }
 
 }  // namespace
@@ -245,17 +263,19 @@ std::string ReportWriter::State::machine_json() const {
   const auto clocks = [&](std::chrono::nanoseconds time) {
     return driver::clocks_of(time, settings.clock_hz, "step time");
   };
+  const kinematics::Kinematics kinematics(machine);
   std::string list;
   const std::vector<std::size_t> second = machine.second_motors();
   for (std::size_t motor = 0; motor < machine.motors(); ++motor) {
     const std::size_t axis = motor < machine.axes.size() ? motor : second[motor - machine.axes.size()];
     const machine::MachineAxis& of = machine.axes[axis];
     list += fmt::format(
-        R"({}{{"letter":"{}","axis":{},"steps_per_mm":{:.17g},"max_velocity":{:.17g},"max_acceleration":{:.17g},)"
+        R"({}{{"letter":"{}","axis":{},{},"max_velocity":{:.17g},"max_acceleration":{:.17g},)"
         R"("max_jerk":{:.17g},"step_length":{},"dir_lead":{},"inverted":{},"start":{},"before":{},"beside":{}}})",
-        motor == 0 ? "" : ",", of.letter, axis, of.steps_per_mm, of.max_velocity, of.max_acceleration, of.max_jerk,
-        clocks(planner::settings_of(of).step_length), clocks(planner::settings_of(of).direction_setup) + kTurnClocks,
-        motor == axis ? of.inverted : of.second_inverted, start ? (*start)[axis] : 0, before[motor], beside[motor]);
+        motor == 0 ? "" : ",", of.letter, axis, ratios_json(kinematics, motor), of.max_velocity, of.max_acceleration,
+        of.max_jerk, clocks(planner::settings_of(of).step_length),
+        clocks(planner::settings_of(of).direction_setup) + kTurnClocks, kinematics.joint(motor).inverted,
+        start ? (*start)[axis] : 0, before[motor], beside[motor]);
   }
   std::string window = "null";
   if (settings.window) window = fmt::format("[{},{}]", first_cycle, last_cycle);

@@ -42,4 +42,8 @@ void configure(driver::Card& card, const machine::Machine& machine) {
   card.set_slew_time(std::chrono::nanoseconds(static_cast<std::int64_t>(hold)));
 }
 
+std::chrono::nanoseconds watchdog_time(const machine::MotionSettings& motion) {
+  return std::chrono::nanoseconds(std::llround(motion.watchdog * 1e9));
+}
+
 }  // namespace trammel::run

@@ -1,5 +1,7 @@
 #include "trammel/run/end_position.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "trammel/kinematics/kinematics.hpp"
@@ -17,6 +19,21 @@ EndPosition end_position(const machine::Machine& machine, const std::vector<std:
   result.millimetres.assign(end.begin(), end.begin() + static_cast<std::ptrdiff_t>(machine.axes.size()));
   result.joint_for_each_axis = kinematics.joint_for_each_axis();
   return result;
+}
+
+gcode::Coordinates standing_at(const machine::Machine& machine, const driver::Snapshot& now) {
+  const kinematics::Kinematics kinematics(machine);
+  kinematics::Pulses at{};
+  for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) at[joint] = now.position[joint];
+  return kinematics.coordinates(at);
+}
+
+std::string place_text(const gcode::Coordinates& place, const machine::Machine& machine) {
+  std::string text;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    text += fmt::format("{}{} {:.4f}", text.empty() ? "" : " ", machine.axes[i].letter, place[i]);
+  }
+  return text;
 }
 
 }  // namespace trammel::run

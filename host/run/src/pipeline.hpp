@@ -1,6 +1,8 @@
 // One pass over a program: lines, reader, blocks, planner. Internal to the runner.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,6 +12,7 @@
 #include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/planner/planner.hpp"
+#include "trammel/run/end_position.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace trammel::run {
@@ -29,6 +32,7 @@ class Pipeline {
     planner_.emplace(blocks_, machine_, card_, planning_);
     if (settings.profile == planner::SpeedProfile::kSCurve) blocks_.require_jerk();
     if (settings.single_block) blocks_.keep_corners();
+    if (settings.start_is_known) require_at(settings.start, settings.first_line);
   }
 
   // As planner::Planner::next(), but throws ProgramError, and gives false where a probe stands next, too.
@@ -67,6 +71,15 @@ class Pipeline {
   static gcode::Reader reader_at(std::size_t line, gcode::Reader reader) {
     if (line > 1 && !reader.skip_to(line)) throw ProgramError(*reader.error());
     return reader;
+  }
+
+  // Throws RunError where the program begins elsewhere.
+  void require_at(const gcode::Coordinates& place, std::size_t line) const {
+    if (blocks_.start() == kinematics_.pulses(place)) return;
+    throw RunError(
+        file(), line,
+        fmt::format("it begins at {}, but the machine stands at {}: run the lines before it, or go there first",
+                    place_text(reader_.position(), machine_), place_text(place, machine_)));
   }
 
   void go_on_at(const planner::Pulses& here) {

@@ -42,6 +42,8 @@ package card_map_pkg;
   localparam int ANSWER_CLOCKS = 400;
   // Clocks within which every access is answered with 8 axes
   localparam int ANSWER_CLOCKS_8_AXES = 600;
+  // Flag of FEED beside its class: the ticks make no steps
+  localparam int PIECE_SILENT = 4;
   // Class of a feed piece: what the feed override slows down
   localparam int CLASS_FEED = 0;
   // Class of a feed piece: rapid positioning, with a ratio of its own
@@ -61,6 +63,7 @@ package card_map_pkg;
   localparam int ENGINE_STREAMING = 8;
   localparam int ENGINE_CLASSES = 9;
   localparam int ENGINE_WATERMARKS = 10;
+  localparam int ENGINE_MACHINE_INPUTS = 11;
 
   // Registers: byte address, reset value, bits with meaning; for arrays (the address is axis 0's) also count and
   // stride in bytes, negative where the array runs downwards.
@@ -68,7 +71,7 @@ package card_map_pkg;
   localparam logic [31:0] RESET_MAGIC = 32'h54524D4C;
   localparam logic [31:0] MASK_MAGIC = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_MAP_VERSION = 12'h004;
-  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030001;
+  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030002;
   localparam logic [31:0] MASK_MAP_VERSION = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_AXES = 12'h008;
   localparam logic [31:0] RESET_AXES = 32'h00000000;
@@ -99,10 +102,10 @@ package card_map_pkg;
   localparam logic [31:0] MASK_PORTS = 32'h00FFFFFF;
   localparam logic [11:0] ADDR_STATUS = 12'h040;
   localparam logic [31:0] RESET_STATUS = 32'h00000000;
-  localparam logic [31:0] MASK_STATUS = 32'h0003FFFF;
+  localparam logic [31:0] MASK_STATUS = 32'h0007FFFF;
   localparam logic [11:0] ADDR_FAULT = 12'h044;
   localparam logic [31:0] RESET_FAULT = 32'h00000000;
-  localparam logic [31:0] MASK_FAULT = 32'h0000FFFF;
+  localparam logic [31:0] MASK_FAULT = 32'h0007FFFF;
   localparam logic [11:0] ADDR_REFUSAL = 12'h048;
   localparam logic [31:0] RESET_REFUSAL = 32'h00000000;
   localparam logic [31:0] MASK_REFUSAL = 32'h0FFFFFFF;
@@ -133,6 +136,9 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_STALE_TICKS = 12'h06C;
   localparam logic [31:0] RESET_STALE_TICKS = 32'h00000000;
   localparam logic [31:0] MASK_STALE_TICKS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_LIMIT_STATE = 12'h07C;
+  localparam logic [31:0] RESET_LIMIT_STATE = 32'h00000000;
+  localparam logic [31:0] MASK_LIMIT_STATE = 32'h00FFFFFF;
   localparam logic [11:0] ADDR_DESCRIPTOR = 12'h100;
   localparam logic [31:0] RESET_DESCRIPTOR = 32'h00000000;
   localparam logic [31:0] MASK_DESCRIPTOR = 32'hFFFFFFFF;
@@ -279,11 +285,11 @@ package card_map_pkg;
   localparam logic [31:0] RESET_HOLD_LIMIT = 32'h0000FFFF;
   localparam logic [31:0] MASK_HOLD_LIMIT = 32'h0000FFFF;
   localparam logic [11:0] ADDR_STOP_REACTION = 12'h684;
-  localparam logic [31:0] RESET_STOP_REACTION = 32'h00004000;
-  localparam logic [31:0] MASK_STOP_REACTION = 32'h0000FCFF;
+  localparam logic [31:0] RESET_STOP_REACTION = 32'h00066000;
+  localparam logic [31:0] MASK_STOP_REACTION = 32'h0007FCFF;
   localparam logic [11:0] ADDR_IRQ_ENABLE = 12'h688;
   localparam logic [31:0] RESET_IRQ_ENABLE = 32'h00000000;
-  localparam logic [31:0] MASK_IRQ_ENABLE = 32'h0003FFFF;
+  localparam logic [31:0] MASK_IRQ_ENABLE = 32'h0007FFFF;
   localparam logic [11:0] ADDR_GEOMETRY_WATERMARK = 12'h6C0;
   localparam logic [31:0] RESET_GEOMETRY_WATERMARK = 32'h00000000;
   localparam logic [31:0] MASK_GEOMETRY_WATERMARK = 32'h0000FFFF;
@@ -302,6 +308,12 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_WATCHDOG = 12'h780;
   localparam logic [31:0] RESET_WATCHDOG = 32'h00000000;
   localparam logic [31:0] MASK_WATCHDOG = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_STOP_CAUSES = 12'h784;
+  localparam logic [31:0] RESET_STOP_CAUSES = 32'h00000000;
+  localparam logic [31:0] MASK_STOP_CAUSES = 32'h0006FFFF;
+  localparam logic [11:0] ADDR_LIMIT_OVERRIDE = 12'h788;
+  localparam logic [31:0] RESET_LIMIT_OVERRIDE = 32'h00000000;
+  localparam logic [31:0] MASK_LIMIT_OVERRIDE = 32'h0000FFFF;
   localparam logic [11:0] ADDR_STEP_LENGTH = 12'h800;
   localparam logic [31:0] RESET_STEP_LENGTH = 32'h00000000;
   localparam logic [31:0] MASK_STEP_LENGTH = 32'h0000FFFF;
@@ -327,6 +339,11 @@ package card_map_pkg;
   localparam logic [31:0] MASK_MODE = 32'h0000000F;
   localparam int COUNT_MODE = 8;
   localparam int STRIDE_MODE = 128;
+  localparam logic [11:0] ADDR_OVERTRAVEL = 12'h814;
+  localparam logic [31:0] RESET_OVERTRAVEL = 32'h00000000;
+  localparam logic [31:0] MASK_OVERTRAVEL = 32'h0000FFFF;
+  localparam int COUNT_OVERTRAVEL = 8;
+  localparam int STRIDE_OVERTRAVEL = 128;
   localparam logic [11:0] ADDR_FREQUENCY_LO = 12'hCF0;
   localparam logic [31:0] RESET_FREQUENCY_LO = 32'h00000000;
   localparam logic [31:0] MASK_FREQUENCY_LO = 32'hFFFFFFFF;
@@ -376,6 +393,7 @@ package card_map_pkg;
   localparam int BIT_STATUS_PROBE_MISSED = 15;
   localparam int BIT_STATUS_WAITING = 16;
   localparam int BIT_STATUS_STALE = 17;
+  localparam int BIT_STATUS_BUTTON_HOLD = 18;
   localparam int BIT_FAULT_STEP = 0;
   localparam int BIT_FAULT_TICK_MISMATCH = 8;
   localparam int BIT_FAULT_PATH_INCOMPLETE = 9;
@@ -385,6 +403,9 @@ package card_map_pkg;
   localparam int BIT_FAULT_DRIVE_FAULT = 13;
   localparam int BIT_FAULT_WATCHDOG = 14;
   localparam int BIT_FAULT_LINK_LOSS = 15;
+  localparam int BIT_FAULT_SOFT_LIMIT = 16;
+  localparam int BIT_FAULT_PROBE = 17;
+  localparam int BIT_FAULT_TOOL_SETTER = 18;
   localparam int BIT_CONTROL_SNAPSHOT = 0;
   localparam int BIT_CONTROL_ABORT = 1;
   localparam int BIT_CONTROL_FLUSH = 2;
@@ -407,6 +428,7 @@ package card_map_pkg;
   localparam int BIT_IRQ_ENABLE_PROBE_MISSED = 15;
   localparam int BIT_IRQ_ENABLE_WAITING = 16;
   localparam int BIT_IRQ_ENABLE_STALE = 17;
+  localparam int BIT_IRQ_ENABLE_BUTTON_HOLD = 18;
 
   // Kinds of access, see register_access().
   localparam logic [2:0] ACCESS_NONE = 3'd0;
@@ -599,6 +621,8 @@ package card_map_pkg;
         register_access = engines[ENGINE_UNDERRUN_HOLD] ? ACCESS_LIVE : ACCESS_NONE;
       10'b00_0001_1011:
         register_access = engines[ENGINE_STREAMING] ? ACCESS_LIVE : ACCESS_NONE;
+      10'b00_0001_1111:
+        register_access = engines[ENGINE_MACHINE_INPUTS] ? ACCESS_LIVE : ACCESS_NONE;
       10'b00_1000_0000, 10'b00_1000_0001, 10'b00_1000_0010, 10'b00_1000_0011, 10'b00_1000_0100,
       10'b00_1000_0101, 10'b00_1000_0110, 10'b00_1000_0111, 10'b00_1000_1???, 10'b00_1010_0000,
       10'b00_1010_0001, 10'b00_1010_0010, 10'b00_1010_0011, 10'b00_1010_0100, 10'b00_1010_0101,
@@ -623,6 +647,8 @@ package card_map_pkg;
         register_access = engines[ENGINE_PATH_COMMANDS] ? ACCESS_SETTING : ACCESS_NONE;
       10'b01_1101_0000:
         register_access = engines[ENGINE_STREAMING] ? ACCESS_SETTING : ACCESS_NONE;
+      10'b01_1110_0001, 10'b01_1110_0010, 10'b10_???0_0101:
+        register_access = engines[ENGINE_MACHINE_INPUTS] ? ACCESS_SETTING : ACCESS_NONE;
       10'b11_001?_??00, 10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11, 10'b11_0100_0000,
       10'b11_0100_0001:
         register_access = engines[ENGINE_DIRECT_MODE] ? ACCESS_SETTING : ACCESS_NONE;
@@ -636,8 +662,8 @@ package card_map_pkg;
   function automatic logic register_only_present_axes(input logic [9:0] word);
     casez (word)
       10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b10_???0_0000,
-      10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100, 10'b11_001?_??00,
-      10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11:
+      10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100, 10'b10_???0_0101,
+      10'b11_001?_??00, 10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11:
         register_only_present_axes = 1'b1;
       default: register_only_present_axes = 1'b0;
     endcase
@@ -646,9 +672,8 @@ package card_map_pkg;
   // Bits with meaning, by the engines that are built in; a write of any other bit is refused.
   function automatic logic [31:0] register_mask(input logic [9:0] word, input logic [31:0] engines);
     casez (word)
-      10'b00_0001_0001, 10'b01_1010_0000, 10'b01_1110_0000, 10'b10_???0_0000, 10'b10_???0_0001,
-      10'b10_???0_0010, 10'b10_???0_0011:
-        register_mask = 32'h0000FFFF;
+      10'b00_0001_0001, 10'b01_1010_0010:
+        register_mask = 32'h0007FFFF;
       10'b00_0001_0010, 10'b01_1001_0011:
         register_mask = 32'h0FFFFFFF;
       10'b01_1000_0000:
@@ -662,10 +687,11 @@ package card_map_pkg;
         register_mask = 32'h0001FFFF;
       10'b01_1001_0001, 10'b01_1001_0010:
         register_mask = engines[ENGINE_CLASSES] ? 32'h0001FFFF : 32'h00000000;
+      10'b01_1010_0000, 10'b01_1110_0000, 10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010,
+      10'b10_???0_0011:
+        register_mask = 32'h0000FFFF;
       10'b01_1010_0001:
-        register_mask = 32'h0000FCFF;
-      10'b01_1010_0010:
-        register_mask = 32'h0003FFFF;
+        register_mask = 32'h0007FCFF;
       10'b01_1011_0000, 10'b01_1011_0001:
         register_mask = engines[ENGINE_WATERMARKS] ? 32'h0000FFFF : 32'h00000000;
       10'b01_1100_0000:
@@ -674,6 +700,10 @@ package card_map_pkg;
         register_mask = engines[ENGINE_PATH_COMMANDS] ? 32'h0000FFFF : 32'h00000000;
       10'b01_1101_0000:
         register_mask = engines[ENGINE_STREAMING] ? 32'h0000FF01 : 32'h00000000;
+      10'b01_1110_0001:
+        register_mask = engines[ENGINE_MACHINE_INPUTS] ? 32'h0006FFFF : 32'h00000000;
+      10'b01_1110_0010, 10'b10_???0_0101:
+        register_mask = engines[ENGINE_MACHINE_INPUTS] ? 32'h0000FFFF : 32'h00000000;
       10'b10_???0_0100:
         register_mask = 32'h0000000F;
       10'b11_001?_??00, 10'b11_001?_??10, 10'b11_0100_0000:
@@ -694,7 +724,7 @@ package card_map_pkg;
       10'b00_0000_0000:
         register_reset = 32'h54524D4C;
       10'b00_0000_0001:
-        register_reset = 32'h00030001;
+        register_reset = 32'h00030002;
       10'b00_0000_0111:
         register_reset = 32'h00000003;
       10'b01_1001_0000, 10'b01_1001_0001, 10'b01_1001_0010:
@@ -704,7 +734,7 @@ package card_map_pkg;
       10'b01_1010_0000:
         register_reset = 32'h0000FFFF;
       10'b01_1010_0001:
-        register_reset = 32'h00004000;
+        register_reset = 32'h00066000;
       default: register_reset = 32'h00000000;
     endcase
   endfunction
@@ -729,7 +759,8 @@ package card_map_pkg;
     casez (word)
       10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???:
         register_axis = word[2:0];
-      10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100:
+      10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100,
+      10'b10_???0_0101:
         register_axis = word[7:5];
       10'b11_001?_??00, 10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11:
         register_axis = ~word[4:2];
@@ -802,7 +833,7 @@ package card_map_pkg;
                                               input logic [31:0] engines);
     casez (op)
       OP_FEED:
-        command_flags_good = flags == 8'd0 || (engines[ENGINE_CLASSES] && flags <= 8'd2);
+        command_flags_good = (flags & ~8'd4) <= (engines[ENGINE_CLASSES] ? 8'd2 : 8'd0);
       default: command_flags_good = 1'b1;
     endcase
   endfunction
@@ -1007,6 +1038,14 @@ package card_map_pkg;
     logic [2047:0] table_so_far;
 
     table_so_far = '0;
+    // limits
+    if (engines[ENGINE_MACHINE_INPUTS]) begin
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'(482 - (481) + 1), 10'(481),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd20
+      };
+    end
     // watchdog
     table_so_far = {
       table_so_far[1983:0],
@@ -1092,14 +1131,14 @@ package card_map_pkg;
     // axes
     table_so_far = {
       table_so_far[1983:0],
-      2'd0, 5'd0, 7'd32, 8'(516 - (512) + 1), 10'(512),
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(axes), 4'd1, 4'd0, 8'd5
+      2'd0, 5'd0, 7'd32, 8'(517 - (512) + 1), 10'(512),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(axes), 4'd1, 4'd1, 8'd5
     };
     // feed_generator
     table_so_far = {
       table_so_far[1983:0],
       2'd0, 5'd31, 7'd0, 8'd0, 10'd0,
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_JERK], 8'd1, 4'd1, 4'd0, 8'd4
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_JERK], 8'd1, 4'd1, 4'd1, 8'd4
     };
     // queues
     table_so_far = {
@@ -1111,7 +1150,7 @@ package card_map_pkg;
     table_so_far = {
       table_so_far[1983:0],
       2'd0, 5'd31, 7'd0, 8'(417 - (416) + 1), 10'(416),
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd1, 8'd2
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd2, 8'd2
     };
     // time_base
     table_so_far = {

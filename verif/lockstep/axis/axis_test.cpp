@@ -86,11 +86,12 @@ class Bench {
       in_.tick = !engine && dice_.chance(every);
       in_.engine_step = engine && dice_.chance(every);
       in_.engine_dir = dice_.chance(3);
+      if (dice_.chance(in_.silent ? 20 : 200)) in_.silent = !in_.silent;
       if (dice_.chance(100)) settings();
       clock();
       if (dice_.chance(2000)) return cut();
     }
-    in_.engine_step = in_.tick = false;
+    in_.engine_step = in_.tick = in_.silent = false;
   }
 
   // Beside whatever else there is in this clock, swaps included.
@@ -193,6 +194,7 @@ class Bench {
     dut_->chord_word_i = in_.chord_word;
     dut_->chord_load_i = in_.chord_load;
     dut_->chord_swap_i = in_.chord_swap;
+    dut_->silent_i = in_.silent;
     dut_->engine_step_i = in_.engine_step;
     dut_->engine_dir_i = in_.engine_dir;
     dut_->wait_tick_i = in_.wait_tick;

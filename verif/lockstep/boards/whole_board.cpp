@@ -291,7 +291,7 @@ void obeys_commands(BoardTop& top, const BoardFacts& facts) {
   const std::string info = trammel(board, bridge, "info");
   require_said(board, info, fmt::format("clock          {} Hz\n", facts.clock_hz));
   require_said(board, info, fmt::format("build          1234abcd, dirty\nboard          {}\n", facts.board_id));
-  trammel(board, bridge, "line --to 200,-100,50,7 --duration 0.002");
+  trammel(board, bridge, "line --to 200,-100,50,7 --duration 0.002 --no-ramp");
   board.require_motors({200, -100, 50, 7}, "after the line");
 
   // Lines, an arc, an output.
@@ -304,7 +304,7 @@ void obeys_commands(BoardTop& top, const BoardFacts& facts) {
   }
   const std::string said = trammel(board, bridge, "run " + program + quick);
   require_said(board, said, " 0 sent again");
-  board.require_motors({440, -140, 70, 7}, "after " + said);
+  board.require_motors({240, -40, 20, 7}, "after " + said);  // absolute, wherever the line before it has ended
   board.require(board.outputs_seen() == 1U << 2, fmt::format("outputs {:b} were on", board.outputs_seen()));
 }
 

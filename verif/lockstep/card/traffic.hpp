@@ -144,6 +144,7 @@ inline void Traffic::section(bool faulty) {
     const std::uint64_t ticks = one_in(3) ? left : 1 + below(left);
     driver::FeedCommand piece = random_piece(random, ticks, pace);
     if (classes) piece.piece_class = static_cast<driver::PieceClass>(one_in(3) ? below(3) : below(2));
+    piece.silent = one_in(8);
     pieces.emplace_back(piece);
     left -= ticks;
   }
@@ -303,7 +304,7 @@ inline void Traffic::probing() {
   std::uint64_t ticks = 0;
   send(random_path(random, axes_, pace, ticks, arc_every_));
   send(random_piece(random, ticks, pace));
-  for (std::uint64_t waits = untouched ? 12 : below(12); waits != 0; --waits) {
+  for (std::uint64_t waits = untouched ? 24 : below(12); waits != 0; --waits) {
     host_.wait(below(300));
     if (one_in(2)) touch();
     const std::uint32_t now = status();
@@ -455,7 +456,7 @@ inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
   for (; sections != 0; --sections) {
     if (one_in(5))
       starved();
-    else if (streams && one_in(5))
+    else if (streams && one_in(4))
       streamed();
     else if (commands_every != 0 && one_in(2))
       probing();

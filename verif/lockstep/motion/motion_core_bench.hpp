@@ -27,9 +27,10 @@ constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::eng
 constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kClasses);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
+constexpr bool kMachineInputs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kMachineInputs);
 constexpr unsigned kInputs = 5;
 constexpr unsigned kOutputs = 3;
-constexpr std::uint64_t kComparedSignals = 38 + kAxes;
+constexpr std::uint64_t kComparedSignals = 40 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
@@ -76,6 +77,9 @@ class MotionCoreBench {
     in_.abort = dice_.chance(abort_every_);
     if (dice_.chance(50)) pins_ = static_cast<std::uint16_t>(dice_.draw());
     in_.pins = pins_;
+    if (kMachineInputs && dice_.chance(inputs_every_)) random_role();
+    if (kMachineInputs && model_->probe().busy() && dice_.chance(40)) roles_.probe = !roles_.probe;
+    in_.roles = roles_;
     in_.probe_clear = kPathCommands && dice_.chance(50);
     if (in_.abort) check_.event("abort");
     if (model_->stop().fault != 0 ? dice_.chance(40) : dice_.chance(5000)) {
@@ -146,10 +150,30 @@ class MotionCoreBench {
     in_ = {};
   }
 
+  // A HOLD round the begin of a fixed piece whose path comes later: it takes at once.
+  void holds_before_the_path() {
+    for (unsigned clocks = 0; clocks < 90; clocks += 3) {
+      reset();
+      in_ = {};
+      write_every_ = 1;
+      feed_.add({stored_command(card_map::Opcode::Feed, card_map::constant::kClassFixed, 20,
+                                {{"rate", int128{1} << 63}, {"floor", 1}})});
+      for (unsigned i = 0; i < 220; ++i) {
+        if (i == 100) geometry_.add({stored_command(card_map::Opcode::Line, 1, 20, {}, {kOnePulse / 2})});
+        in_.setting = {i == clocks, reg::kHold, 1};
+        clock();
+      }
+    }
+    reset();
+    in_ = {};
+  }
+
   Checker& check() { return check_; }
   std::uint64_t steps() const { return steps_; }
   std::uint64_t moves() const { return moves_; }
   std::uint64_t faults() const { return faults_; }
+  std::uint64_t limits() const { return limits_; }
+  std::uint64_t beyond() const { return beyond_; }
   std::uint64_t marks() const { return marks_; }
   std::uint64_t missing() const { return missing_; }
   std::uint64_t stale() const { return stale_; }
@@ -208,6 +232,44 @@ class MotionCoreBench {
     programs_.longest = dice_.chance(2) ? 20 : 300;
     // Drives that are slow make step faults; mostly they are quick.
     slow_ = dice_.chance(4);
+    // Long without anything, so that the programs run, and then often.
+    inputs_every_ = dice_.chance(3) ? 100 : 20'000;
+  }
+
+  // One role changes; what is active does not stay so for long.
+  void random_role() {
+    const auto axis = static_cast<std::uint8_t>(1U << dice_.below(kAxes));
+    const auto turn = [&](std::uint8_t& mask) { mask = mask != 0 ? std::uint8_t{0} : axis; };
+    const auto turn_one = [](bool& level) { level = !level; };
+    switch (dice_.below(10)) {
+      case 0:
+        turn(roles_.drive_fault);
+        break;
+      case 1:
+        turn_one(roles_.feed_hold);
+        break;
+      case 2:
+      case 3:
+        turn_one(roles_.cycle_start);
+        break;
+      case 4:
+        turn_one(roles_.tool_setter);
+        break;
+      case 5:
+        turn_one(roles_.probe);
+        break;
+      case 6:
+        roles_ = {};
+        break;
+      case 7:
+        turn(roles_.limit_minus);
+        roles_.limit_plus = roles_.limit_minus;
+        break;
+      default:
+        turn(dice_.chance(2) ? roles_.limit_minus : roles_.limit_plus);
+        break;
+    }
+    check_.event("roles", roles_wire(roles_));
   }
 
   void random_setting() {
@@ -225,7 +287,11 @@ class MotionCoreBench {
         {kClasses ? ratios[dice_.below(3)] : reg::kRatioFeed,
          !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
         {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
-        {reg::kStopReaction, dice_.chance(2) ? 0x4FF : dice_.below(256) | dice_.below(2) << 10},
+        {reg::kStopReaction, dice_.chance(2) ? 0x66CFF : dice_.below(256) | (dice_.draw() & 0x62C00)},
+        {kMachineInputs ? reg::kStopCauses : reg::kHoldLimit,
+         kMachineInputs ? dice_.draw() & dice_.draw() & 0x6FFFF : 9},
+        {kMachineInputs ? reg::kLimitOverride : reg::kHoldLimit, kMachineInputs ? dice_.draw() & 0xFFFF : 11},
+        {kMachineInputs ? reg::overtravel(axis) : reg::kHoldLimit, dice_.below(20) + 1},
         {kStreaming ? reg::kStreaming : reg::kHoldLimit, kStreaming ? dice_.below(2) | dice_.below(4) << 8 : 7},
         {reg::kInputPolarity, kPathCommands ? dice_.draw() & 0xFFFF : 0},
         {reg::kOutputSafe, kPathCommands ? dice_.draw() : 0}};
@@ -305,6 +371,8 @@ class MotionCoreBench {
     if (model_->probe().halt()) check_.event("halt by the probe");
     moves_ += model_->loader().go ? 1U : 0U;
     faults_ += model_->stop().stop ? 1U : 0U;
+    limits_ += model_->state().limits.causes().limit ? 1U : 0U;
+    beyond_ += model_->state().limits.causes().beyond ? 1U : 0U;
     missing_ += model_->sequencer().streaming().missing ? 1U : 0U;
     stale_ += model_->sequencer().outputs().stale ? 1U : 0U;
   }
@@ -346,6 +414,7 @@ class MotionCoreBench {
     dut_->output_idle_i = static_cast<CData>(output_idle_);
     dut_->input_i = static_cast<CData>(in_.pins & ((1U << kInputs) - 1));
     dut_->setting_i = wire(in_.setting);
+    dut_->roles_i = roles_wire(in_.roles);
     dut_->abort_i = in_.abort;
     dut_->probe_clear_i = in_.probe_clear;
     dut_->clear_fault_i = in_.clear_fault;
@@ -397,6 +466,8 @@ class MotionCoreBench {
     const auto in_time = [this](const bus::Field& field) { return get(dut_->time_state_o, field); };
     check_.compare("fault", in_time(time::kFault), model_->stop().fault);
     check_.compare("feed active", in_time(time::kFeedActive), s.feed_active);
+    check_.compare("limit state", in_time(time::kLimitState), model_->state().limits.limit_state());
+    check_.compare("button hold", in_time(time::kButtonHold), model_->state().buttons.hold());
     check_.compare("stopping", in_time(time::kStopping), model_->stop().stopping);
     check_.compare("held", in_time(time::kHeld), model_->time().ratio == 0);
     check_.compare("feed begun", in_time(time::kFeedBegun), s.feed_begun);
@@ -456,10 +527,12 @@ class MotionCoreBench {
   std::uint32_t idle_level_ = 0;
   std::uint16_t output_idle_ = 0;
   std::uint16_t pins_ = 0;
+  model::InputRoles roles_;
   std::uint32_t mask_ = 0;
   std::uint32_t marks_ahead_ = 0;  // of the model, in the RTL
   bool starting_ = false;
   bool slow_ = false;
+  unsigned inputs_every_ = 1000;  // clocks from one change of a role to the next
   unsigned abort_every_ = 20'000;
   unsigned start_every_ = 5000;
   unsigned stretch_every_ = 10;
@@ -467,6 +540,8 @@ class MotionCoreBench {
   std::uint64_t steps_ = 0;
   std::uint64_t moves_ = 0;
   std::uint64_t faults_ = 0;
+  std::uint64_t limits_ = 0;
+  std::uint64_t beyond_ = 0;
   std::uint64_t marks_ = 0;
   std::uint64_t missing_ = 0;
   std::uint64_t stale_ = 0;  // clocks

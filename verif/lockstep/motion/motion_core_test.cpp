@@ -13,6 +13,7 @@ void random_programs() {
   if (kPathCommands) bench.commands_around_ends();
   if (kPathCommands) bench.edges_around_the_end();
   if (kStreaming) bench.streaming_set_around_the_begin();
+  if (kClasses) bench.holds_before_the_path();
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.steps(), length / 200);
@@ -24,9 +25,13 @@ void random_programs() {
     EXPECT_GT(bench.marks(), length / 5000);
     EXPECT_GT(bench.halts(), length / 20'000);
   }
+  if (kMachineInputs) {
+    EXPECT_GT(bench.limits(), length / 20'000);
+    EXPECT_GT(bench.beyond(), length / 300'000);
+  }
   if (kStreaming) {
     EXPECT_GT(bench.missing(), length / 200'000);
-    EXPECT_GT(bench.stale(), length / 3000);
+    EXPECT_GT(bench.stale(), length / 5000);
   }
 }
 

@@ -72,6 +72,7 @@ module arc_axes #(
       .load_i,
       .move_i(move),
       .drive_i(drive),
+      .silent_i(1'b0),
       .snapshot_i('0),
       .snapshot_o(),
       .live_o(),

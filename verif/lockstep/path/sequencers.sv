@@ -47,6 +47,7 @@ module sequencers #(
     output logic feed_active_o,
     output logic moving_o,
     output logic [1:0] class_o,
+    output logic silent_o,
     output logic idle_o,
     output logic [31:0] feed_begun_o,
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
@@ -60,6 +61,7 @@ module sequencers #(
 
   assign feed[feed_pkg::AT_REST]  = 1'b0;
   assign feed[feed_pkg::STOPPING] = 1'b0;
+  assign feed[feed_pkg::SILENT]   = silent_o;
 
   geometry_sequencer #(
       .Axes(Axes)
@@ -101,6 +103,7 @@ module sequencers #(
       .read_o(feed_read_o),
       .take_i(take),
       .wait_i,
+      .finished_i(engines_i[engines_pkg::DONE]),
       .path_i(path_o),
       .at_barrier_o(feed[feed_pkg::AT_BARRIER]),
       .runs_o(feed[feed_pkg::RUNS]),
@@ -109,6 +112,7 @@ module sequencers #(
       .spent_o,
       .moving_o,
       .class_o,
+      .silent_o,
       .idle_o(feed_decoder_idle),
       .swap_o(feed_swap_o),
       .load_o(feed_load_o),

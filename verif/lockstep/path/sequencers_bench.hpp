@@ -16,7 +16,7 @@ namespace trammel::lockstep {
 class SequencersBench {
  public:
   static constexpr unsigned kAxes = 4;
-  static constexpr std::uint64_t kComparedSignals = 33;
+  static constexpr std::uint64_t kComparedSignals = 34;
   using Stretch = Programs::Stretch;
 
   explicit SequencersBench(std::uint64_t seed)
@@ -281,7 +281,8 @@ class SequencersBench {
       payload_taken_for_ = 4 + dice_.below(pace.busy);
     else if (payload_taken_for_ != 0)
       --payload_taken_for_;
-    in_.engine_done = !dice_.chance(pace.busy);
+    // A silence ends when the engine has been done for a while.
+    in_.engine_done = !dice_.chance(model_.outputs().silent ? 40 : pace.busy);
     // The arc generator has the axes' shadows from its start until it has been over for a while.
     if (model_.outputs().swap && model_.outputs().engine == card_map::engine::kArcGenerator)
       in_.shadows_free = false;
@@ -382,6 +383,7 @@ class SequencersBench {
     check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
     check_.compare("moving_o", dut_->moving_o, out.moving);
     check_.compare("class_o", dut_->class_o, out.piece_class);
+    check_.compare("silent_o", dut_->silent_o, out.silent);
     check_.compare("ended", state(geometry::kEnded), out.ended);
     check_.compare("idle_o", dut_->idle_o, out.idle);
     check_.compare("geometry begun", state(geometry::kGeometryBegun), out.geometry_begun);

@@ -27,6 +27,7 @@ constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
 constexpr std::uint64_t kComparedSignals = 14;
+constexpr bool kMachineInputs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kMachineInputs);
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
@@ -178,6 +179,8 @@ class Bench {
     in_.underruns = draw();
     in_.stale = kStreaming && (bits & 0x800) != 0;
     in_.stale_ticks = kStreaming ? draw() : 0;
+    in_.limit_state = kMachineInputs ? draw() & 0xFFFFFF : 0;
+    in_.button_hold = kMachineInputs && (bits & 0x1000) != 0;
     in_.geometry_room = static_cast<std::uint16_t>(draw());
     in_.feed_room = static_cast<std::uint16_t>(draw());
     in_.geometry_low = (bits & 0x200) != 0;
@@ -302,6 +305,8 @@ class Bench {
     put(rtl_->time_state_i, time::kFeedBegun, in_.feed_begun);
     put(rtl_->time_state_i, time::kUnderruns, in_.underruns);
     put(rtl_->time_state_i, time::kUnderrun, in_.underrun);
+    put(rtl_->time_state_i, time::kLimitState, in_.limit_state);
+    put(rtl_->time_state_i, time::kButtonHold, in_.button_hold);
     put(rtl_->time_state_i, time::kHeld, in_.ratio == 0);
     put(rtl_->time_state_i, time::kFeedActive, in_.feed_active);
     put(rtl_->time_state_i, time::kStopping, in_.stopping);

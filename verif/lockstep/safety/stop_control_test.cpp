@@ -37,6 +37,7 @@ class Bench {
     if (in.step_fault != 0) check_.event("step fault", in.step_fault);
     if (in.missing) check_.event("missing period");
     if (in.expired) check_.event("watchdog expired");
+    if (in.causes.any()) check_.event("cause from an input", causes_wire(in.causes));
     if (in.mismatch || in.incomplete) check_.event("fault at once", in.mismatch);
     if (in.abort) check_.event("abort");
     if (in.clear != 0) check_.event("clear", in.clear);
@@ -66,6 +67,7 @@ class Bench {
     dut_->incomplete_i = in.incomplete;
     dut_->missing_i = in.missing;
     dut_->expired_i = in.expired;
+    dut_->causes_i = causes_wire(in.causes);
     dut_->abort_i = in.abort;
     dut_->clear_i = in.clear;
     dut_->at_rest_i = in.at_rest;
@@ -73,6 +75,7 @@ class Bench {
     dut_->fixed_i = in.fixed;
     dut_->underrun_i = in.underrun;
     dut_->probe_i = in.probe;
+    dut_->button_i = in.button;
   }
 
   void compare() {
@@ -131,18 +134,27 @@ Bench::Inputs happening(unsigned kind) {
     case 10:
       in.expired = true;
       break;
+    case 11:
+      in.causes.limit = true;
+      break;
+    case 12:  // no overtravel is left
+      in.causes.limit = in.causes.beyond = true;
+      break;
+    case 13:
+      in.causes.drive_fault = in.causes.tool_setter = true;
+      break;
     default:
       break;
   }
   return in;
 }
-constexpr unsigned kHappenings = 12;  // the last is nothing
+constexpr unsigned kHappenings = 15;  // the last is nothing
 
 // Three happenings at any distance of 0 to 2 clocks, with each reaction, from reset.
 void every_order() {
   Bench bench(0);
   std::uint64_t cycles = 1;
-  for (const std::uint32_t reaction : {0U, 0x44FFU}) {
+  for (const std::uint32_t reaction : {0U, 0x66CFFU}) {
     for (unsigned order = 0; order < kHappenings * kHappenings * kHappenings * 9; ++order) {
       unsigned rest = order;
       const auto draw = [&rest](unsigned n) {
@@ -168,9 +180,9 @@ void every_order() {
   EXPECT_GT(bench.cuts(), 10'000U);
 }
 
-// HOLD set and taken back in every clock of every course of eight clocks of the pieces: nothing, a fixed one, another
-// one, and the time base coming to rest.
-void holds() {
+// HOLD, or the button's hold, set and taken back in every clock of every course of eight clocks of the pieces: nothing,
+// a fixed one, another one, and the time base coming to rest.
+void holds(bool button) {
   Bench bench(0);
   constexpr unsigned kClocks = 6;
   std::uint64_t cycles = 1;
@@ -185,8 +197,9 @@ void holds() {
         in.moving = now != 0;
         in.fixed = now == 1 || now == 3;
         in.at_rest = now == 3;
-        if (clock == set_at) in.setting = {true, reg::kHold, 1};
+        if (clock == set_at && !button) in.setting = {true, reg::kHold, 1};
         if (clock == set_at + 4) in.setting = {true, reg::kHold, 0};
+        in.button = button && clock > set_at && clock <= set_at + 4;
         bench.clock(in);
         if (clock > set_at) ++(bench.outputs().hold ? held : waited);
       }
@@ -207,6 +220,8 @@ void random_events() {
   unsigned rest_every = 10;
   unsigned course = 0;  // of the pieces
   bool expired = false;
+  bool drive_fault = false;
+  bool button = false;
   for (std::uint64_t i = 0; i < length; ++i) {
     Bench::Inputs in;
     if (i % 512 == 0) rest_every = 1 + dice.below(40);
@@ -216,6 +231,14 @@ void random_events() {
     in.missing = dice.chance(30);
     if (dice.chance(expired ? 10 : 40)) expired = !expired;
     in.expired = expired;
+    if (dice.chance(drive_fault ? 10 : 40)) drive_fault = !drive_fault;
+    in.causes.drive_fault = drive_fault;
+    in.causes.limit = dice.chance(20);
+    in.causes.beyond = in.causes.limit && dice.chance(3);
+    in.causes.probe = dice.chance(60);
+    in.causes.tool_setter = dice.chance(60);
+    if (dice.chance(12)) button = !button;
+    in.button = button;
     in.abort = dice.chance(30);
     if (dice.chance(6)) in.clear = dice.chance(2) ? ~0U : dice.draw();
     in.at_rest = dice.chance(rest_every);
@@ -225,7 +248,7 @@ void random_events() {
     in.underrun = dice.chance(6);
     in.probe = dice.chance(6);
     if (dice.chance(20)) in.setting = {dice.chance(2), dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.below(2)};
-    if (dice.chance(20)) in.setting = {dice.chance(2), reg::kStopReaction, dice.draw() & 0xFCFF};
+    if (dice.chance(20)) in.setting = {dice.chance(2), reg::kStopReaction, dice.draw() & 0x7FCFF};
     if (dice.chance(2000))
       bench.reset(in);
     else
@@ -236,7 +259,12 @@ void random_events() {
 }
 
 TEST(StopControl, EveryOrderOfThree) { EXPECT_EQ(judge(every_order), ""); }
-TEST(StopControl, Holds) { EXPECT_EQ(judge(holds), ""); }
+TEST(StopControl, Holds) {
+  EXPECT_EQ(judge([] { holds(false); }), "");
+}
+TEST(StopControl, ButtonHolds) {
+  EXPECT_EQ(judge([] { holds(true); }), "");
+}
 TEST(StopControl, RandomEvents) { EXPECT_EQ(judge(random_events), ""); }
 
 }  // namespace

@@ -75,10 +75,10 @@ class Card {
   void set_longest_step_wait(std::chrono::nanoseconds longest);
 
   // The card stops by itself, on a ramp unless STOP_REACTION says otherwise, when this program has been silent for
-  // `time`: FAULT then says WATCHDOG. Rounded up to 65,536 clocks. Calls that wait, and streams, keep it from expiring;
-  // a program that pauses longer between its calls sets it to 0 before, which switches it off. Choose it longer than
-  // the slowest answer of the link times 32. Throws ArgumentError for a negative time or one over 65,535 * 65,536
-  // clocks (43 s at 100 MHz).
+  // `time`: FAULT then says WATCHDOG. Rounded up to 65,536 clocks; 0 switches it off. Calls that wait, and streams,
+  // keep it from expiring: they write it after a quarter of `time`, so choose it longer than 4/3 of the time that the
+  // link may take to recover. WatchdogScope switches it off again where the motion is over. Throws ArgumentError for a
+  // negative time or one over 65,535 * 65,536 clocks (43 s at 100 MHz).
   void set_watchdog(std::chrono::nanoseconds time);
 
   // From any thread (and from a signal handler): what the thread that is in a call that waits shall do at its next look

@@ -28,6 +28,7 @@ struct Status {
   bool probed = false;        // a probe has tripped, until clear_probe()
   bool probe_missed = false;  // probing paths ended without an edge
   bool waiting = false;       // for an input
+  bool button_hold = false;   // the feed hold button holds, until cycle start
 };
 
 // REFUSAL.
@@ -59,8 +60,9 @@ constexpr std::uint64_t count_after(std::uint64_t before, std::uint32_t counter)
   return before + (counter - static_cast<std::uint32_t>(before));
 }
 
-// Names of the fault bits, for messages: "step fault of axis 2, TICK_MISMATCH".
-std::string describe_faults(std::uint32_t faults);
+// Names of the fault bits, for messages: "step fault of axis 2, LIMIT (axis 0 minus)". `limit_state`: the register
+// LIMIT_STATE, 0 where it is not known.
+std::string describe_faults(std::uint32_t faults, std::uint32_t limit_state = 0);
 // Name of a refusal reason and what it means.
 std::string describe_reason(std::uint8_t reason);
 

@@ -78,6 +78,9 @@ struct FeedCommand {
   std::uint32_t floor = 1;          // 2^-32 ticks per enabled clock, not 0
   std::uint32_t stop_distance = 0;  // feed ticks needed to stop on the path; 0: the piece ends at rest
   PieceClass piece_class = PieceClass::kFeed;
+  // Its ticks move the path on, but no axis: a program that was stopped in the middle of a path goes on from there with
+  // the same steps. Cards with map 3.2 or later. The next piece that is not silent begins from rest.
+  bool silent = false;
 };
 
 // Barrier, then `clocks` of real time (0 .. 2^40 - 1).

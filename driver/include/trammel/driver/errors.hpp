@@ -49,13 +49,16 @@ class RefusedError : public Error {
 // The card has stopped with a latched fault.
 class FaultError : public Error {
  public:
-  // `faults`: the FAULT register; its bits are named in the message. `context` as above.
-  FaultError(std::uint32_t faults, const std::string& context);
+  // `faults`: the FAULT register; its bits are named in the message, limits and drives with their axes from
+  // `limit_state`, the register LIMIT_STATE (0 where the card has none). `context` as above.
+  FaultError(std::uint32_t faults, const std::string& context, std::uint32_t limit_state = 0);
 
   std::uint32_t faults() const { return faults_; }
+  std::uint32_t limit_state() const { return limit_state_; }
 
  private:
   std::uint32_t faults_;
+  std::uint32_t limit_state_;
 };
 
 // The call makes no sense in the state that the card or the stream is in; the message says what to do first.

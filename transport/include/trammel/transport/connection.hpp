@@ -9,22 +9,29 @@
 #include "trammel/driver/frame_bus.hpp"
 #include "trammel/transport/card_url.hpp"
 
+namespace trammel::sim {
+class Engine;
+}
+
 namespace trammel::transport {
 
 class StreamLink;
 
 class Connection {
  public:
-  // Connects. Throws driver::LinkError with what to do, and driver::ArgumentError for `sim:`: simulated cards are made
-  // by trammel::sim.
+  // Connects, or makes the simulated card of `sim:`, whose time passes while the driver sleeps. Throws
+  // driver::LinkError with what to do, and std::invalid_argument for a simulated card with axes or a clock out of
+  // range.
   explicit Connection(const CardUrl& url);
   ~Connection();
   Connection(Connection&&) noexcept;
   Connection& operator=(Connection&&) = delete;
 
   driver::Bus& bus() { return *bus_; }
-  // The same, where it goes by frames; nullptr for a window in memory.
+  // The same, where it goes by frames; nullptr for a window in memory and a simulated card.
   driver::FrameBus* frames() { return frames_; }
+  // The same, where it is a simulated card (its inputs, its steps, its reset); else nullptr.
+  sim::Engine* engine() { return engine_; }
 
   // False where `trammel serve` gives reading alone, for want of its token.
   bool may_move() const;
@@ -36,6 +43,7 @@ class Connection {
   StreamLink* stream_ = nullptr;
   std::unique_ptr<driver::Bus> bus_;
   driver::FrameBus* frames_ = nullptr;
+  sim::Engine* engine_ = nullptr;
 };
 
 }  // namespace trammel::transport

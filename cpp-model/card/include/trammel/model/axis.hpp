@@ -22,6 +22,7 @@ class Axis {
     bool swap = false;
     bool active = false;       // sampled with swap
     bool direct = false;       // sampled with swap: the count ends the axis, backwards mirrors forwards
+    bool silent = false;       // steps are dropped
     bool engine_step = false;  // from a path engine; never together with a step of the generator
     bool engine_dir = false;   // 1 = negative
     bool wait_tick = false;
@@ -64,7 +65,7 @@ class Axis {
     shaper.wait_tick = in.wait_tick;
     clock_part(state_.shaper, shaper);
     const PulseGenerator::Outputs& made = state_.generator.outputs();
-    state_.path_step = made.step || in.engine_step;
+    state_.path_step = (made.step || in.engine_step) && !in.silent;
     if (state_.path_step) state_.path_dir = in.engine_step ? in.engine_dir : made.dir;
     PulseGenerator::Inputs generator;
     generator.clear = in.cut;

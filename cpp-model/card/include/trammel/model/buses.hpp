@@ -24,6 +24,28 @@ struct LoadWord {
   bool to(unsigned chain) const { return valid && target == chain; }
 };
 
+// The roles of the card's inputs: filtered active levels. A bit of a mask is an axis.
+struct InputRoles {
+  std::uint8_t limit_minus = 0;
+  std::uint8_t limit_plus = 0;
+  std::uint8_t drive_fault = 0;
+  bool feed_hold = false;
+  bool cycle_start = false;
+  bool tool_setter = false;
+  bool probe = false;
+};
+
+// Causes of a stop that come from the machine's inputs.
+struct StopCauses {
+  bool limit = false;        // event: a step into an active limit
+  bool beyond = false;       // event, with limit: the axis has no overtravel left
+  bool drive_fault = false;  // level
+  bool probe = false;        // event: outside probing
+  bool tool_setter = false;  // event
+
+  bool any() const { return limit || drive_fault || probe || tool_setter; }
+};
+
 // Targets of the load bus: unit * 16 + the chain within the unit. Units 0 to 7 are the axes.
 namespace load_target {
 inline constexpr unsigned kChainsOfAUnit = 16;

@@ -72,7 +72,7 @@ class CommandFetch {
   bool is_barrier() const { return !is_path() && !is_feed() && !is_instant(); }
   std::uint8_t engine() const { return state_.engine; }  // what a path runs on, by its card_map::engine
   std::uint8_t mask() const { return state_.mask; }
-  std::uint8_t flags() const { return state_.mask; }  // in place of the mask: a piece's class
+  std::uint8_t flags() const { return state_.mask; }  // in place of the mask: a piece's class and silence
 
   bool waiting() const { return state_.mode == Mode::Waiting; }
 

@@ -8,9 +8,11 @@
 
 #include "trammel/model/axis.hpp"
 #include "trammel/model/buses.hpp"
+#include "trammel/model/button_hold.hpp"
 #include "trammel/model/clock_each.hpp"
 #include "trammel/model/direct_loader.hpp"
 #include "trammel/model/feed_generator.hpp"
+#include "trammel/model/limit_check.hpp"
 #include "trammel/model/path_commands.hpp"
 #include "trammel/model/path_engines.hpp"
 #include "trammel/model/probe.hpp"
@@ -42,6 +44,7 @@ class MotionCore {
     std::uint8_t start_mask = 0;
     std::uint32_t loader_data = 0;
     std::uint16_t pins = 0;  // inputs of the card
+    InputRoles roles;        // of a card with machine inputs
   };
   // A bit for each axis.
   struct Outputs {
@@ -62,6 +65,8 @@ class MotionCore {
     PathCommands commands;
     StopControl stop{};
     Watchdog watchdog{};
+    LimitCheck limits{};
+    ButtonHold buttons{};
     UnderrunGuard guard{};
     TimeBase time_base{};
     FeedGenerator feed{};
@@ -120,12 +125,15 @@ class MotionCore {
 
   PathCommands::Inputs command_inputs(const Inputs& in) const;
   StopControl::Inputs stop_inputs(const Inputs& in) const;
+  LimitCheck::Inputs limit_inputs(const Inputs& in) const;
+  bool has_machine_inputs() const { return has_machine_inputs_; }
 
  private:
   Axis::Inputs axis_inputs(const Inputs& in) const;
   void clock_busy();
 
   bool has_guard_;
+  bool has_machine_inputs_;
 
   State state_;
 };
@@ -154,6 +162,10 @@ void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   clock_part(state_.loader, {false, state_.out.busy, stop.closed, in.start, in.start_mask, in.loader_data});
   const StopControl::Inputs stop_in = stop_inputs(in);
   const PathCommands::Inputs commands = command_inputs(in);
+  if (has_machine_inputs_) {
+    clock_part(state_.limits, limit_inputs(in));
+    clock_part(state_.buttons, in.roles);
+  }
   if (has_guard_) clock_part(state_.guard, guard_inputs(in, sequencer));
   clock_part(state_.stop, stop_in);
   clock_part(state_.commands, commands);

@@ -5,7 +5,8 @@
 // makes path ticks from feed ticks; they wait until the engine can take them. Its steps leave by axis.
 //
 // From a tick at c: path domain at c+3; the accumulator's tick at c+5 at the earliest, its step at c+8 by axis.
-// `done`: no tick is in the 3 clocks, no path tick waits and the accumulator has finished the last one; a clock late.
+// `done`: no tick of a path on an engine is in the 3 clocks, no path tick waits and the accumulator has finished the
+// last one; a clock late.
 // `payload_ready`: as that for an engine's ticks alone, but already in the last clocks of the accumulator's step (from
 // the 6th clock after its tick on, in 8 directions from the 14th): a load that is asked for then comes after it.
 // Not thread-safe; no errors are reported.
@@ -108,10 +109,12 @@ class PathEngines {
     std::uint8_t step = 0;  // by axis
     std::uint8_t dir = 0;
   };
-  // Of the engine on which the path runs. On lines nothing is asked.
+  // Of the engine on which the path runs.
   Said said() const {
     switch (state_.engine) {
-      case card_map::engine::kArcGenerator:  // its steps are the axes' own, and it ends where they do
+      // Steps are the axes' own, and it ends where they do.
+      case card_map::engine::kLines:
+      case card_map::engine::kArcGenerator:
         return {true, true, false, 0, 0};
       default:
         return {state_.accumulator.outputs().ready, state_.accumulator.outputs().at_end, state_.accumulator.stepping(),
@@ -127,10 +130,11 @@ class PathEngines {
   // What the sequencer may know of it, a clock late.
   void judge(const Inputs& in, const Said& engine) {
     const bool feed_ticks = in.tick || state_.ticks != 0;
+    const bool coming = feed_ticks && on_engine(state_.engine);
     const bool path_ticks = state_.waiting != 0 || state_.out.path_tick;
-    state_.out.done = !feed_ticks && !path_ticks && engine.ready;
+    state_.out.done = !coming && !path_ticks && engine.ready;
     state_.out.missed_end = !engine.at_end;
-    state_.gate_payload_ready = !(feed_ticks && on_engine(state_.engine)) && !path_ticks && !engine.stepping;
+    state_.gate_payload_ready = !coming && !path_ticks && !engine.stepping;
     state_.over_next = state_.engine == card_map::engine::kArcGenerator && !in.engine_taken && !feed_ticks &&
                        !state_.arc.outputs().loadable;
   }

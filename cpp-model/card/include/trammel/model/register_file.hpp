@@ -60,6 +60,8 @@ class RegisterFile {
     std::uint32_t underruns = 0;
     bool stale = false;  // a line goes on beyond its period
     std::uint32_t stale_ticks = 0;
+    std::uint32_t limit_state = 0;
+    bool button_hold = false;
     bool incomplete = false;          // the stream stands inside a command
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;

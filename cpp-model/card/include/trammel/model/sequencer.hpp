@@ -73,6 +73,7 @@ class Sequencer {
     bool spent = false;   // so has the piece
     bool moving = false;  // the piece has given ticks, or took over from one that had
     std::uint8_t piece_class = card_map::constant::kClassFeed;  // of the last piece; a direct move's is feed
+    bool silent = false;                                        // the last piece's ticks make no steps
     bool ended = false;
     bool idle = true;  // nothing runs, is decoded or queued
     std::uint32_t geometry_begun = 0;
@@ -85,6 +86,9 @@ class Sequencer {
   };
   enum class Path : std::uint8_t { None, Line, Engine, Direct };
   enum class Barrier : std::uint8_t { None, Beginning, Running, Done };
+  // From the end of a silent piece, and of what the engines make of it, to the end of the silence: a step comes to the
+  // axes' gate 10 clocks after its tick is taken, an engine's 3 clocks after engine_done shows.
+  static constexpr unsigned kSettleClocks = 16;
   // All that the next clock() depends on beside its inputs.
   struct State {
     CommandFetch geometry{CommandFetch::Queue::Geometry};
@@ -99,6 +103,7 @@ class Sequencer {
     std::uint64_t path_left = 0;   // ticks
     std::uint64_t drained_at = 0;  // the clock of that take
     std::uint64_t piece_left = 0;
+    unsigned settled = 0;          // clocks
     unsigned owed = 0;             // ticks
     bool tick_arrives = false;     // owed from the next clock on
     bool geometry_stands = false;  // at a barrier
@@ -141,6 +146,7 @@ class Sequencer {
   bool takes(const Inputs& in) const;
   // Ticks made, owed and taken: a part of clock().
   void clock_ticks(const Inputs& in, bool take);
+  bool piece_silent() const { return (state_.feed.flags() & card_map::constant::kPieceSilent) != 0; }
   bool piece_waits() const { return state_.feed.decoded() && state_.feed.is_feed(); }
 
   const Outputs& outputs() const { return state_.out; }
@@ -209,6 +215,7 @@ class Sequencer {
   void stand(const Decision& d);
   void clock_path(const Inputs& in, const Decision& d);
   void clock_piece(const Decision& d);
+  void clock_silence(const Inputs& in, const Decision& d);
   void clock_streaming(const Inputs& in, const Decision& d);
   void clock_barrier(const Decision& d);
   void clock_fetches(const Inputs& in, const Decision& d);

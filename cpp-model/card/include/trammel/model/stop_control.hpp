@@ -20,6 +20,7 @@ class StopControl {
     bool incomplete = false;       // event
     bool missing = false;          // event: of position streaming
     bool expired = false;          // level: the watchdog has expired
+    StopCauses causes;             // from the machine's inputs
     bool abort = false;            // event
     std::uint32_t clear = 0;       // event: ones written to FAULT
     bool at_rest = false;          // the ratio is 0
@@ -27,6 +28,7 @@ class StopControl {
     bool fixed = false;            // the present one is fixed
     bool underrun = false;         // what is queued ends: neither a fault nor a cut
     bool probe = false;            // a probe has tripped: likewise
+    bool button = false;           // the feed hold button holds, as HOLD does
     Setting setting;               // HOLD, STOP_REACTION
   };
   struct Outputs {
@@ -41,10 +43,11 @@ class StopControl {
   // All that the next clock() depends on beside its inputs.
   struct State {
     Mode mode = Mode::Run;
-    bool hold = false;
+    bool hold = false;  // the register
     bool hold_stays = false;
     bool made_to_hold = false;
-    std::uint32_t reaction = card_map::field::kStopReactionWatchdog;
+    std::uint32_t reaction = card_map::field::kStopReactionDriveFault | card_map::field::kStopReactionWatchdog |
+                             card_map::field::kStopReactionProbe | card_map::field::kStopReactionToolSetter;
     Outputs out;
   };
 
@@ -53,11 +56,11 @@ class StopControl {
     const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
                                  (in.incomplete ? card_map::field::kFaultPathIncomplete : 0) |
                                  (in.missing ? card_map::field::kFaultMissingPeriod : 0) |
-                                 (in.expired ? card_map::field::kFaultWatchdog : 0);
-    const bool at_once = (events & ~state_.reaction) != 0;
+                                 (in.expired ? card_map::field::kFaultWatchdog : 0) | bits_of(in.causes);
+    const bool at_once = (events & ~state_.reaction) != 0 || in.causes.beyond;
     state_.made_to_hold = in.underrun || in.probe;
-    state_.hold_stays = stays(in.moving, in.at_rest);
-    state_.out.hold = host_holds(in.fixed) || state_.made_to_hold || state_.mode == Mode::Ramp;
+    state_.hold_stays = stays(in);
+    state_.out.hold = asked_hold(in) || state_.made_to_hold || state_.mode == Mode::Ramp;
     state_.out.closed = state_.out.fault != 0 || state_.mode != Mode::Run;
     state_.out.cut = in.abort;
     state_.out.stop = state_.mode == Mode::Run && events != 0;
@@ -84,12 +87,21 @@ class StopControl {
   bool stopped() const { return state_.mode == Mode::Stopped; }
   bool made_to_hold() const { return state_.made_to_hold; }  // as of the last clock: by under-run or probe
 
-  // A HOLD waits for the end of fixed pieces, unless it found nothing moving, or the time base at rest, since it was
-  // set.
-  bool stays(bool moving, bool at_rest) const { return state_.hold && (state_.hold_stays || !moving || at_rest); }
-  bool host_holds(bool fixed) const { return state_.hold && (state_.hold_stays || !fixed); }
+  // A hold, of HOLD or the button, waits for the end of fixed pieces, unless it found nothing moving, or the time base
+  // at rest, since it was set.
+  bool stays(const Inputs& in) const { return asked(in) && (state_.hold_stays || !in.moving || in.at_rest); }
+  bool asked_hold(const Inputs& in) const { return asked(in) && (state_.hold_stays || !in.fixed); }
 
  private:
+  bool asked(const Inputs& in) const { return state_.hold || in.button; }
+
+  static std::uint32_t bits_of(const StopCauses& causes) {
+    return (causes.limit ? card_map::field::kFaultLimit : 0) |
+           (causes.drive_fault ? card_map::field::kFaultDriveFault : 0) |
+           (causes.probe ? card_map::field::kFaultProbe : 0) |
+           (causes.tool_setter ? card_map::field::kFaultToolSetter : 0);
+  }
+
   void halt() {
     state_.mode = Mode::Stopped;
     state_.out.cut = true;

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "trammel/model/button_hold.hpp"
+#include "trammel/model/limit_check.hpp"
 #include "trammel/model/path_commands.hpp"
 #include "trammel/model/probe.hpp"
 #include "trammel/model/stop_control.hpp"
@@ -16,15 +18,31 @@ inline std::uint64_t horizon(const model::StopControl& block, const model::StopC
   const model::StopControl::State& s = block.state();
   const bool events = in.step_fault != 0 || in.mismatch || in.incomplete || in.missing || in.abort || in.clear != 0 ||
                       in.setting.set || s.out.cut || s.out.stop;
-  const bool expires = in.expired && (s.mode != Mode::Stopped || (s.out.fault & card_map::field::kFaultWatchdog) == 0);
-  if (events || expires || s.mode == Mode::Ramp || (s.mode == Mode::Stopped && s.out.fault == 0 && !in.expired))
+  const bool pulses = in.causes.limit || in.causes.probe || in.causes.tool_setter;
+  // Causes that last: once they are in FAULT and the card stands, they change nothing more.
+  const std::uint32_t lasting = (in.expired ? card_map::field::kFaultWatchdog : 0) |
+                                (in.causes.drive_fault ? card_map::field::kFaultDriveFault : 0);
+  const bool new_cause = lasting != 0 && (s.mode != Mode::Stopped || (lasting & ~s.out.fault) != 0);
+  if (events || pulses || new_cause || s.mode == Mode::Ramp ||
+      (s.mode == Mode::Stopped && s.out.fault == 0 && lasting == 0))
     return 0;
   const bool made = in.underrun || in.probe;
-  const bool hold = block.host_holds(in.fixed) || made;
-  return forever_if(made == s.made_to_hold && block.stays(in.moving, in.at_rest) == s.hold_stays &&
-                    hold == s.out.hold && s.out.closed == (s.out.fault != 0 || s.mode != Mode::Run));
+  const bool hold = block.asked_hold(in) || made;
+  return forever_if(made == s.made_to_hold && block.stays(in) == s.hold_stays && hold == s.out.hold &&
+                    s.out.closed == (s.out.fault != 0 || s.mode != Mode::Run));
 }
 inline void advance(model::StopControl&, const model::StopControl::Inputs&, std::uint64_t) {}
+
+inline std::uint64_t horizon(const model::LimitCheck& block, const model::LimitCheck::Inputs& in) {
+  return forever_if(block.rests(in));
+}
+inline void advance(model::LimitCheck&, const model::LimitCheck::Inputs&, std::uint64_t) {}
+
+inline std::uint64_t horizon(const model::ButtonHold& block, const model::ButtonHold::Inputs& in) {
+  const model::ButtonHold::State& s = block.state();
+  return forever_if(in.cycle_start == s.cycle_start && (s.hold || !in.feed_hold));
+}
+inline void advance(model::ButtonHold&, const model::ButtonHold::Inputs&, std::uint64_t) {}
 
 inline std::uint64_t horizon(const model::Watchdog& block, const model::Setting& in) {
   if (in.set && in.address == card_map::reg::kWatchdog) return 0;

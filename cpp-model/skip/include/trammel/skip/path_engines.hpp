@@ -124,10 +124,10 @@ class EngineTicks {
     s_.ticks = (in_flight >> 6 & 1) << 2 | (in_flight >> 7 & 1) << 1 | (in_flight >> 8 & 1);
     if (!on_chords(block_)) s_.own_ticks = s_.ticks;
     s_.out.tick = (s_.own_ticks & 1) != 0;
-    const bool feed_ticks = (in_flight >> 6 & 0xF) != 0;
-    s_.out.done = !feed_ticks && block_.said().ready;
+    const bool coming = (in_flight >> 6 & 0xF) != 0 && model::PathEngines::on_engine(s_.engine);
+    s_.out.done = !coming && block_.said().ready;
     s_.out.missed_end = !block_.said().at_end;
-    s_.gate_payload_ready = !(feed_ticks && model::PathEngines::on_engine(s_.engine));
+    s_.gate_payload_ready = !coming;
     s_.out.payload_ready = s_.gate_payload_ready && s_.arc.outputs().loadable;
   }
 

@@ -47,6 +47,8 @@ class Registers {
 
   // FAULT, 0 if there is none.
   std::uint32_t read_faults() { return read(card_map::reg::kFault); }
+  // Throws FaultError with the axes that FAULT does not name.
+  [[noreturn]] void throw_fault(std::uint32_t faults, std::string_view context);
   // Throws FaultError if the card is faulted; reads FAULT only if `status` says so.
   void throw_if_faulted(const Status& status, std::string_view context);
 

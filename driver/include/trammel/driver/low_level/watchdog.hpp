@@ -16,19 +16,23 @@ class Watchdog {
   Watchdog(Registers& registers, const Identification& card) : registers_(registers), card_(card) {}
 
   void set(std::chrono::nanoseconds time);
-  // The program has looked at the card: the time starts anew, at the latest with the kLooks-th look.
+  // The program has looked at the card: the time starts anew where a quarter of it has passed on the host, or with the
+  // kLooks-th look, since the time of a simulated card may pass faster than the host's.
   void look();
   // The access that starts the time anew, or keeps the watchdog off: this program is there.
   Access restart() const;
 
  private:
-  // Looks are 50 microseconds apart while a call waits, and as far apart as the link's answers are.
+  void write();
+
   static constexpr unsigned kLooks = 32;
 
   Registers& registers_;
   const Identification& card_;
   std::uint32_t units_ = 0;  // WATCHDOG, as written last by this object
   unsigned looks_ = 0;       // since then
+  std::chrono::steady_clock::time_point written_;
+  std::chrono::nanoseconds pace_{};
 };
 
 }  // namespace trammel::driver

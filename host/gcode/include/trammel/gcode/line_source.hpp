@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace trammel::gcode {
 
@@ -59,6 +61,9 @@ class FileLines final : public ChunkedLines {
   ~FileLines() override;
   FileLines(const FileLines&) = delete;
   FileLines& operator=(const FileLines&) = delete;
+  // Called before each read, and every 20 ms while a pipe or a device has nothing to read. next() passes on what it
+  // throws.
+  void set_meanwhile(std::function<void()> meanwhile) { meanwhile_ = std::move(meanwhile); }
   std::optional<std::string> failure() const override { return failure_; }
 
  protected:
@@ -67,6 +72,7 @@ class FileLines final : public ChunkedLines {
  private:
   int descriptor_;
   bool owned_;
+  std::function<void()> meanwhile_;
   std::optional<std::string> failure_;
 };
 

@@ -59,6 +59,7 @@ struct MotionSettings {
   double max_override = 1;           // 1 .. 2: limits hold up to this feed override
   double hold_reserve = 0;           // 0 .. 0.9: share of each acceleration kept for holds and changes of the override
   double window = 16384;             // blocks that look-ahead sees at most; whole, 2 .. 2^20
+  double watchdog = 5;               // s, 0 .. 40: the card stops when the host is silent for so long; 0: never
   double stale_periods = 1;          // position streaming: periods that the card goes on alone; whole, 0 .. 65535
 };
 

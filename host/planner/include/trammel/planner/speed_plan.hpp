@@ -9,18 +9,34 @@
 
 namespace trammel::planner {
 
-// Of an arc: acceleration along it and across it, which is turning * v^2, are `whole` together at the most.
+// Of an arc: acceleration along it and across it, which is turning * v^2, are `whole` together at the most. So are
+// `jerk` the jerk along it, with turning^2 * v^3, and that across it, which is 3 * turning * v * acceleration.
 struct Curve {
   double whole = 0;                                       // 0: no arc
   double turning = 0;                                     // 1/mm
   double at_rest = 0;                                     // the most along the path at any speed
-  double jerk = std::numeric_limits<double>::infinity();  // across the path, 3 * turning * v * acceleration, the most
+  double jerk = std::numeric_limits<double>::infinity();  // > 0
+  double jerk_at_rest = 0;                                // the most along the path at any speed
 
-  // The acceleration along the path that is left at a speed.
+  // The acceleration along the path that is left at a speed, together with least_jerk() at that speed.
   double along(double speed) const {
     const double across = turning * speed * speed;
-    return std::min(std::sqrt(std::max(0.0, whole * whole - across * across)), jerk / (3 * turning * speed));
+    const double kept = turned(speed) + kLeft * (1 - turned(speed));
+    const double swung = std::sqrt(std::max(0.0, 1 - kept * kept)) * jerk / (3 * turning * speed);
+    return std::min(std::sqrt(std::max(0.0, whole * whole - across * across)), swung);
   }
+  // The jerk along the path that along() leaves at any speed up to this one.
+  double least_jerk(double speed) const { return kLeft * (1 - turned(speed)) * jerk; }
+  // The same at a speed up to this one with no more acceleration than this, which is at most along().
+  double jerk_along(double speed, double acceleration) const {
+    const double swung = 3 * turning * speed * acceleration / jerk;
+    const double left = std::sqrt(std::max(0.0, 1 - swung * swung)) - turned(speed);
+    return std::min(jerk_at_rest, left * jerk);
+  }
+
+ private:
+  static constexpr double kLeft = 0.6;  // for the jerk along the path, of what the turning leaves
+  double turned(double speed) const { return turning * speed * (turning * speed) * speed / jerk; }
 };
 
 // A stretch of path with limits of its own: a block, or a part of one.

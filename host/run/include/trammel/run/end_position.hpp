@@ -1,10 +1,12 @@
-// Where the machine stands at the end of a run. Pure.
+// Where the machine stands. Pure.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "trammel/driver/card_state.hpp"
+#include "trammel/gcode/motion.hpp"
 #include "trammel/machine/machine.hpp"
 
 namespace trammel::run {
@@ -18,5 +20,10 @@ struct EndPosition {
 
 // `pulses`: one for each motor of the machine.
 EndPosition end_position(const machine::Machine& machine, const std::vector<std::int64_t>& pulses);
+
+// By the card's counters, which began at 0 where the machine stood at the card's reset: machine zero is there.
+gcode::Coordinates standing_at(const machine::Machine& machine, const driver::Snapshot& now);
+// "X 10.0000 Y 0.0000", of all axes, mm (degrees).
+std::string place_text(const gcode::Coordinates& place, const machine::Machine& machine);
 
 }  // namespace trammel::run

@@ -13,7 +13,10 @@ struct RunSettings {
   gcode::ReaderOptions reader;
   // Where the machine stands at the program's first line, machine coordinates in mm.
   gcode::Coordinates start{};
-  // Lines before it are read for their modes and positions alone: the machine stands where they end.
+  // The machine stands at `start`, and nowhere else: a first line that begins elsewhere is refused. Otherwise the
+  // machine is taken to stand where that line begins.
+  bool start_is_known = false;
+  // Lines before it are read for their modes and positions alone.
   std::size_t first_line = 1;
   planner::ArcsBy arcs = planner::ArcsBy::kGenerator;  // and what the card has
   planner::SpeedProfile profile = planner::SpeedProfile::kByMachine;

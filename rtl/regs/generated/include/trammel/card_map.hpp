@@ -12,7 +12,7 @@ namespace trammel::card_map {
 
 inline constexpr std::size_t kMaxAxes = 8;
 inline constexpr std::uint32_t kMagicValue = 0x54524D4C;
-inline constexpr std::uint32_t kMapVersionValue = 0x00030001;
+inline constexpr std::uint32_t kMapVersionValue = 0x00030002;
 inline constexpr std::uint32_t kCommandsVersionValue = 3;
 inline constexpr std::uint32_t kWindowBytes = 4096;
 
@@ -45,6 +45,7 @@ inline constexpr std::uint32_t kCentreFractionBits = 8;  // Fraction bits of a c
 inline constexpr std::uint32_t kPathDelayClocks = 3;     // Clocks from a feed tick to the path tick that it is
 inline constexpr std::uint32_t kAnswerClocks = 400;  // Clocks within which every access is answered with up to 7 axes
 inline constexpr std::uint32_t kAnswerClocks8Axes = 600;  // Clocks within which every access is answered with 8 axes
+inline constexpr std::uint32_t kPieceSilent = 4;          // Flag of FEED beside its class: the ticks make no steps
 inline constexpr std::uint32_t kClassFeed = 0;            // Class of a feed piece: what the feed override slows down
 inline constexpr std::uint32_t kClassRapid = 1;  // Class of a feed piece: rapid positioning, with a ratio of its own
 inline constexpr std::uint32_t kClassFixed = 2;  // Class of a feed piece: threading and the like, which a hold lets end
@@ -52,17 +53,18 @@ inline constexpr std::uint32_t kClassFixed = 2;  // Class of a feed piece: threa
 
 // Bit numbers of the mask of engines: what is built in (rtl/regs/units.toml).
 namespace engine {
-inline constexpr std::uint32_t kLines = 0;         // Lines: pulse generators; on every card.
-inline constexpr std::uint32_t kAccumulator = 1;   // ARC: deviation accumulator, 4 directions.
-inline constexpr std::uint32_t kAccumulator8 = 2;  // The accumulator's 8-direction step rule.
-inline constexpr std::uint32_t kArcGenerator = 3;  // ARC_CHORD: arc generator.
-inline constexpr std::uint32_t kJerk = 4;          // Jerk in the feed generator.
-inline constexpr std::uint32_t kDirectMode = 5;    // Direct mode.
-inline constexpr std::uint32_t kUnderrunHold = 6;  // Hold on the path when the queues run dry.
-inline constexpr std::uint32_t kPathCommands = 7;  // OUTPUT, MARK, WAIT_INPUT, PROBE, PROBE_END; inputs and outputs.
-inline constexpr std::uint32_t kStreaming = 8;     // Position streaming.
-inline constexpr std::uint32_t kClasses = 9;       // Classes of pieces: ratios for rapid and fixed.
-inline constexpr std::uint32_t kWatermarks = 10;   // Watermarks of the queues.
+inline constexpr std::uint32_t kLines = 0;           // Lines: pulse generators; on every card.
+inline constexpr std::uint32_t kAccumulator = 1;     // ARC: deviation accumulator, 4 directions.
+inline constexpr std::uint32_t kAccumulator8 = 2;    // The accumulator's 8-direction step rule.
+inline constexpr std::uint32_t kArcGenerator = 3;    // ARC_CHORD: arc generator.
+inline constexpr std::uint32_t kJerk = 4;            // Jerk in the feed generator.
+inline constexpr std::uint32_t kDirectMode = 5;      // Direct mode.
+inline constexpr std::uint32_t kUnderrunHold = 6;    // Hold on the path when the queues run dry.
+inline constexpr std::uint32_t kPathCommands = 7;    // OUTPUT, MARK, WAIT_INPUT, PROBE, PROBE_END; inputs and outputs.
+inline constexpr std::uint32_t kStreaming = 8;       // Position streaming.
+inline constexpr std::uint32_t kClasses = 9;         // Classes of pieces: ratios for rapid and fixed.
+inline constexpr std::uint32_t kWatermarks = 10;     // Watermarks of the queues.
+inline constexpr std::uint32_t kMachineInputs = 11;  // Inputs with filters and roles; limits, drive faults, feed hold.
 }  // namespace engine
 
 // The same as masks.
@@ -78,10 +80,11 @@ inline constexpr std::uint32_t kPathCommands = 0x80;
 inline constexpr std::uint32_t kStreaming = 0x100;
 inline constexpr std::uint32_t kClasses = 0x200;
 inline constexpr std::uint32_t kWatermarks = 0x400;
+inline constexpr std::uint32_t kMachineInputs = 0x800;
 }  // namespace engines
-inline constexpr std::array<std::string_view, 11> kEngineNames{
-    "lines",         "accumulator",   "accumulator_8", "arc_generator", "jerk",      "direct_mode",
-    "underrun_hold", "path_commands", "streaming",     "classes",       "watermarks"};
+inline constexpr std::array<std::string_view, 12> kEngineNames{
+    "lines",         "accumulator",   "accumulator_8", "arc_generator", "jerk",       "direct_mode",
+    "underrun_hold", "path_commands", "streaming",     "classes",       "watermarks", "machine_inputs"};
 
 // What a register does on an access; a write to Constant, Live and Snapshot is refused as READ_ONLY, a read of
 // Command as WRITE_ONLY.
@@ -137,6 +140,7 @@ inline constexpr std::uint32_t kOutputs = 0x060;
 inline constexpr std::uint32_t kUnderruns = 0x064;
 inline constexpr std::uint32_t kMarks = 0x068;
 inline constexpr std::uint32_t kStaleTicks = 0x06C;
+inline constexpr std::uint32_t kLimitState = 0x07C;
 constexpr std::uint32_t descriptor(std::uint32_t index) { return 0x100 + 4 * index; }
 inline constexpr std::uint32_t kSnapFault = 0x200;
 inline constexpr std::uint32_t kSnapStatus = 0x204;
@@ -190,11 +194,14 @@ inline constexpr std::uint32_t kOutputSafe = 0x700;
 inline constexpr std::uint32_t kInputPolarity = 0x704;
 inline constexpr std::uint32_t kStreaming = 0x740;
 inline constexpr std::uint32_t kWatchdog = 0x780;
+inline constexpr std::uint32_t kStopCauses = 0x784;
+inline constexpr std::uint32_t kLimitOverride = 0x788;
 constexpr std::uint32_t step_length(std::uint32_t axis) { return 0x800 + 128 * axis; }
 constexpr std::uint32_t step_space(std::uint32_t axis) { return 0x804 + 128 * axis; }
 constexpr std::uint32_t dir_setup(std::uint32_t axis) { return 0x808 + 128 * axis; }
 constexpr std::uint32_t dir_hold(std::uint32_t axis) { return 0x80C + 128 * axis; }
 constexpr std::uint32_t mode(std::uint32_t axis) { return 0x810 + 128 * axis; }
+constexpr std::uint32_t overtravel(std::uint32_t axis) { return 0x814 + 128 * axis; }
 constexpr std::uint32_t frequency_lo(std::uint32_t axis) { return 0xCF0 - 16 * axis; }
 constexpr std::uint32_t frequency_hi(std::uint32_t axis) { return 0xCF4 - 16 * axis; }
 constexpr std::uint32_t count(std::uint32_t axis) { return 0xCF8 - 16 * axis; }
@@ -256,6 +263,7 @@ inline constexpr std::uint32_t kStatusProbed = 0x4000;
 inline constexpr std::uint32_t kStatusProbeMissed = 0x8000;
 inline constexpr std::uint32_t kStatusWaiting = 0x10000;
 inline constexpr std::uint32_t kStatusStale = 0x20000;
+inline constexpr std::uint32_t kStatusButtonHold = 0x40000;
 inline constexpr std::uint32_t kFaultStep = 0xFF;
 inline constexpr std::uint32_t kFaultStepShift = 0;
 inline constexpr std::uint32_t kFaultTickMismatch = 0x100;
@@ -266,12 +274,21 @@ inline constexpr std::uint32_t kFaultEmergencyStop = 0x1000;
 inline constexpr std::uint32_t kFaultDriveFault = 0x2000;
 inline constexpr std::uint32_t kFaultWatchdog = 0x4000;
 inline constexpr std::uint32_t kFaultLinkLoss = 0x8000;
+inline constexpr std::uint32_t kFaultSoftLimit = 0x10000;
+inline constexpr std::uint32_t kFaultProbe = 0x20000;
+inline constexpr std::uint32_t kFaultToolSetter = 0x40000;
 inline constexpr std::uint32_t kRefusalReason = 0xFF;
 inline constexpr std::uint32_t kRefusalReasonShift = 0;
 inline constexpr std::uint32_t kRefusalCommand = 0xFF00;
 inline constexpr std::uint32_t kRefusalCommandShift = 8;
 inline constexpr std::uint32_t kRefusalAddress = 0xFFF0000;
 inline constexpr std::uint32_t kRefusalAddressShift = 16;
+inline constexpr std::uint32_t kLimitStateMinus = 0xFF;
+inline constexpr std::uint32_t kLimitStateMinusShift = 0;
+inline constexpr std::uint32_t kLimitStatePlus = 0xFF00;
+inline constexpr std::uint32_t kLimitStatePlusShift = 8;
+inline constexpr std::uint32_t kLimitStateDriveFault = 0xFF0000;
+inline constexpr std::uint32_t kLimitStateDriveFaultShift = 16;
 inline constexpr std::uint32_t kControlSnapshot = 0x1;
 inline constexpr std::uint32_t kControlAbort = 0x2;
 inline constexpr std::uint32_t kControlFlush = 0x4;
@@ -284,6 +301,9 @@ inline constexpr std::uint32_t kStopReactionEmergencyStop = 0x1000;
 inline constexpr std::uint32_t kStopReactionDriveFault = 0x2000;
 inline constexpr std::uint32_t kStopReactionWatchdog = 0x4000;
 inline constexpr std::uint32_t kStopReactionLinkLoss = 0x8000;
+inline constexpr std::uint32_t kStopReactionSoftLimit = 0x10000;
+inline constexpr std::uint32_t kStopReactionProbe = 0x20000;
+inline constexpr std::uint32_t kStopReactionToolSetter = 0x40000;
 inline constexpr std::uint32_t kIrqEnableIdle = 0x1;
 inline constexpr std::uint32_t kIrqEnableDirect = 0x2;
 inline constexpr std::uint32_t kIrqEnablePathActive = 0x4;
@@ -302,6 +322,7 @@ inline constexpr std::uint32_t kIrqEnableProbed = 0x4000;
 inline constexpr std::uint32_t kIrqEnableProbeMissed = 0x8000;
 inline constexpr std::uint32_t kIrqEnableWaiting = 0x10000;
 inline constexpr std::uint32_t kIrqEnableStale = 0x20000;
+inline constexpr std::uint32_t kIrqEnableButtonHold = 0x40000;
 inline constexpr std::uint32_t kOutputSafeValue = 0xFFFF;
 inline constexpr std::uint32_t kOutputSafeValueShift = 0;
 inline constexpr std::uint32_t kOutputSafeChange = 0xFFFF0000;
@@ -309,15 +330,25 @@ inline constexpr std::uint32_t kOutputSafeChangeShift = 16;
 inline constexpr std::uint32_t kStreamingOn = 0x1;
 inline constexpr std::uint32_t kStreamingStalePeriods = 0xFF00;
 inline constexpr std::uint32_t kStreamingStalePeriodsShift = 8;
+inline constexpr std::uint32_t kStopCausesAnyStep = 0xFF;
+inline constexpr std::uint32_t kStopCausesAnyStepShift = 0;
+inline constexpr std::uint32_t kStopCausesShared = 0xFF00;
+inline constexpr std::uint32_t kStopCausesSharedShift = 8;
+inline constexpr std::uint32_t kStopCausesProbe = 0x20000;
+inline constexpr std::uint32_t kStopCausesToolSetter = 0x40000;
+inline constexpr std::uint32_t kLimitOverrideMinus = 0xFF;
+inline constexpr std::uint32_t kLimitOverrideMinusShift = 0;
+inline constexpr std::uint32_t kLimitOverridePlus = 0xFF00;
+inline constexpr std::uint32_t kLimitOverridePlusShift = 8;
 inline constexpr std::uint32_t kModeMode = 0x3;
 inline constexpr std::uint32_t kModeModeShift = 0;
 inline constexpr std::uint32_t kModeInvertFirst = 0x4;
 inline constexpr std::uint32_t kModeInvertSecond = 0x8;
 }  // namespace field
 
-inline constexpr std::array<Register, 88> kRegisters{{
+inline constexpr std::array<Register, 92> kRegisters{{
     {"MAGIC", 0x000, 1, 0, Access::Constant, 0x54524D4C, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30001, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30002, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"AXES", 0x008, 1, 0, Access::Constant, 0x0, 0xFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"CLOCK_HZ", 0x00C, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"GEOMETRY_DEPTH", 0x014, 1, 0, Access::Constant, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -327,8 +358,8 @@ inline constexpr std::array<Register, 88> kRegisters{{
     {"BUILD_FLAGS", 0x024, 1, 0, Access::Constant, 0x0, 0x1, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"BOARD_ID", 0x028, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"PORTS", 0x02C, 1, 0, Access::Constant, 0x0, 0xFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STATUS", 0x040, 1, 0, Access::Live, 0x0, 0x3FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"FAULT", 0x044, 1, 0, Access::ClearOnes, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"STATUS", 0x040, 1, 0, Access::Live, 0x0, 0x7FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"FAULT", 0x044, 1, 0, Access::ClearOnes, 0x0, 0x7FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"REFUSAL", 0x048, 1, 0, Access::ClearOnes, 0x0, 0xFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"GEOMETRY_ROOM", 0x04C, 1, 0, Access::Live, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"FEED_ROOM", 0x050, 1, 0, Access::Live, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -339,6 +370,7 @@ inline constexpr std::array<Register, 88> kRegisters{{
     {"UNDERRUNS", 0x064, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 6, 0x0, 0, false, true},
     {"MARKS", 0x068, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
     {"STALE_TICKS", 0x06C, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 8, 0x0, 0, false, true},
+    {"LIMIT_STATE", 0x07C, 1, 0, Access::Live, 0x0, 0xFFFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, true},
     {"DESCRIPTOR", 0x100, 64, 4, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"SNAP_FAULT", 0x200, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"SNAP_STATUS", 0x204, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -384,19 +416,22 @@ inline constexpr std::array<Register, 88> kRegisters{{
     {"RATIO_FIXED", 0x648, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 9, 0x0, 0, false, false},
     {"SLEW", 0x64C, 1, 0, Access::Setting, 0xFFFFFFF, 0xFFFFFFF, 0xFFFFFFF, 1, 0xFFFFFFF, 0, 0x0, 0, false, false},
     {"HOLD_LIMIT", 0x680, 1, 0, Access::Setting, 0xFFFF, 0xFFFF, 0xFFFF, 1, 0xFFFF, 0, 0x0, 0, false, false},
-    {"STOP_REACTION", 0x684, 1, 0, Access::Setting, 0x4000, 0xFCFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"IRQ_ENABLE", 0x688, 1, 0, Access::Setting, 0x0, 0x3FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"STOP_REACTION", 0x684, 1, 0, Access::Setting, 0x66000, 0x7FCFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"IRQ_ENABLE", 0x688, 1, 0, Access::Setting, 0x0, 0x7FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"GEOMETRY_WATERMARK", 0x6C0, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
     {"FEED_WATERMARK", 0x6C4, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
     {"OUTPUT_SAFE", 0x700, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
     {"INPUT_POLARITY", 0x704, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
     {"STREAMING", 0x740, 1, 0, Access::Setting, 0x0, 0xFF01, 0x0, 0, 0x0, 8, 0x0, 0, false, false},
     {"WATCHDOG", 0x780, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"STOP_CAUSES", 0x784, 1, 0, Access::Setting, 0x0, 0x6FFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, false},
+    {"LIMIT_OVERRIDE", 0x788, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, false},
     {"STEP_LENGTH", 0x800, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"STEP_SPACE", 0x804, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"DIR_SETUP", 0x808, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"DIR_HOLD", 0x80C, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"MODE", 0x810, 8, 128, Access::Setting, 0x0, 0xF, 0x3, 0, 0x2, 0, 0x0, 0, true, false},
+    {"OVERTRAVEL", 0x814, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 11, 0x0, 0, true, false},
     {"FREQUENCY_LO", 0xCF0, 8, -16, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
     {"FREQUENCY_HI", 0xCF4, 8, -16, Access::Setting, 0x0, 0x1FF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
     {"COUNT", 0xCF8, 8, -16, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
@@ -461,11 +496,12 @@ inline constexpr std::uint32_t kDescriptorTable = 0x100;  // byte address of the
 inline constexpr std::uint32_t kDescriptorSlots = 32;     // the ending one included
 
 namespace unit {
-inline constexpr std::uint8_t kTimeBase = 1;       // Share of clocks that are enabled: ratio, slew, hold.
-inline constexpr std::uint8_t kStopControl = 2;    // Causes of a stop, and the reaction to each.
-inline constexpr std::uint8_t kQueues = 3;         // Geometry queue and feed queue.
-inline constexpr std::uint8_t kFeedGenerator = 4;  // Rate, acceleration and jerk of feed pieces.
-inline constexpr std::uint8_t kAxes = 5;           // Pulse generator, step shaper and position counter of each axis.
+inline constexpr std::uint8_t kTimeBase = 1;     // Share of clocks that are enabled: ratio, slew, hold.
+inline constexpr std::uint8_t kStopControl = 2;  // Causes of a stop, and the reaction to each.
+inline constexpr std::uint8_t kQueues = 3;       // Geometry queue and feed queue.
+inline constexpr std::uint8_t kFeedGenerator =
+    4;                                    // Rate, acceleration and jerk of feed pieces; from 1.1 on silent pieces.
+inline constexpr std::uint8_t kAxes = 5;  // Pulse generator, step shaper and position counter of each axis.
 inline constexpr std::uint8_t kSnapshots =
     6;  // Areas of latched values: SNAP, STOP; with path commands also PROBE and MARK.
 inline constexpr std::uint8_t kHostPorts = 7;     // Ports that a host may come by.
@@ -479,6 +515,8 @@ inline constexpr std::uint8_t kInputs = 13;             // Inputs with synchroni
 inline constexpr std::uint8_t kOutputs = 14;            // Outputs.
 inline constexpr std::uint8_t kPositionStreaming = 15;  // A line for each period of a host that streams positions.
 inline constexpr std::uint8_t kWatchdog = 16;           // Watchdog over the host.
+inline constexpr std::uint8_t kLimits =
+    20;  // Limit switches, drive faults, probe and tool setter as causes of a stop; feed hold and cycle start.
 }  // namespace unit
 
 // Units on the load bus, of their first instance.
@@ -490,12 +528,12 @@ inline constexpr unsigned kPathCommands = 12;
 inline constexpr unsigned kNone = 31;
 }  // namespace load_unit
 
-inline constexpr std::array<Unit, 16> kUnits{{
+inline constexpr std::array<Unit, 17> kUnits{{
     {"time_base", 1, 1, 0, 0, UnitCount::Fixed, 1, true, 1600, 0, 1612, 0, 0, 31, {9, 0, 0, 0, 0, 0, 0, 0}},
-    {"stop_control", 2, 1, 1, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"stop_control", 2, 1, 2, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"queues", 3, 1, 0, 0, UnitCount::Fixed, 2, true, 1728, 0, 1728, 0, 1, 31, {10, 0, 0, 0, 0, 0, 0, 0}},
-    {"feed_generator", 4, 1, 0, 0, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {4, 0, 0, 0, 0, 0, 0, 0}},
-    {"axes", 5, 1, 0, 0, UnitCount::Axes, 0, true, 2048, 0, 2064, 0, 32, 0, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"feed_generator", 4, 1, 1, 0, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {4, 0, 0, 0, 0, 0, 0, 0}},
+    {"axes", 5, 1, 1, 0, UnitCount::Axes, 0, true, 2048, 0, 2068, 0, 32, 0, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"snapshots", 6, 1, 0, 0, UnitCount::SnapshotAreas, 0, true, 512, 0, 544, 4, 32, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"host_ports", 7, 1, 0, 0, UnitCount::Ports, 0, false, 0, 0, 0, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"accumulator", 8, 1, 0, 1, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 10, {2, 0, 0, 0, 0, 0, 0, 0}},
@@ -507,6 +545,7 @@ inline constexpr std::array<Unit, 16> kUnits{{
     {"outputs", 14, 1, 0, 7, UnitCount::Outputs, 0, true, 1792, 0, 1792, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"position_streaming", 15, 1, 0, 8, UnitCount::Fixed, 1, true, 1856, 0, 1856, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"watchdog", 16, 1, 0, 0, UnitCount::Fixed, 1, true, 1920, 0, 1920, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"limits", 20, 1, 0, 11, UnitCount::Fixed, 1, true, 1924, 0, 1928, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
 }};
 
 // What decides a card's descriptors.
@@ -698,7 +737,7 @@ enum class MaskRule {
   Any,           // at least one axis, and only axes that the card has
   Plane,         // exactly the two axes of the field `plane`
   PlaneAndAxes,  // the two axes of the field `plane`, and any further ones that the card has
-  Flags,         // no axes: up to `flags_maximum`, other than 0 only with `flags_engine`
+  Flags,         // no axes: `flags_free`, and in the other bits up to `flags_maximum`, 0 without `flags_engine`
 };
 
 struct Field {
@@ -726,6 +765,7 @@ struct Command {
   MaskRule mask_rule;
   std::uint32_t flags_maximum;
   std::uint32_t flags_engine;
+  std::uint8_t flags_free;
   std::uint64_t count_minimum;
   std::uint64_t count_maximum;
   std::uint32_t base_halfwords;  // on the wire: header, count and the payload's fixed part
@@ -745,6 +785,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      MaskRule::Any,
      0,
      0,
+     0,
      1,
      0xFFFFFFFFFF,
      5,
@@ -759,6 +800,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      1,
      true,
      MaskRule::Plane,
+     0,
      0,
      0,
      1,
@@ -787,6 +829,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      MaskRule::PlaneAndAxes,
      0,
      0,
+     0,
      1,
      0xFFFFFFFFFF,
      33,
@@ -813,6 +856,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      MaskRule::Flags,
      2,
      9,
+     4,
      1,
      0xFFFFFFFFFF,
      21,
@@ -824,8 +868,8 @@ inline constexpr std::array<Command, 11> kCommands{{
        Field{"stop_distance", FieldKind::Unsigned, 32, 6, 2, false, 0, 0x0, 0x0, 0x0, 0, false},
        Field{"acceleration", FieldKind::Signed, 64, 8, 4, false, 0, 0x0, 0x0, 0x0, 0, false},
        Field{"jerk", FieldKind::Signed, 64, 12, 4, false, 0, 0x0, 0x0, 0x0, 0, false}}}},
-    {"DWELL", Opcode::Dwell, true, true, 0, true, MaskRule::None, 0, 0, 0, 0xFFFFFFFFFF, 5, 0, 0, 0, {{}}},
-    {"END", Opcode::End, true, true, 0, true, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
+    {"DWELL", Opcode::Dwell, true, true, 0, true, MaskRule::None, 0, 0, 0, 0, 0xFFFFFFFFFF, 5, 0, 0, 0, {{}}},
+    {"END", Opcode::End, true, true, 0, true, MaskRule::None, 0, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
     {"OUTPUT",
      Opcode::Output,
      true,
@@ -836,6 +880,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      0,
      0,
      0,
+     0,
      0x0,
      7,
      0,
@@ -843,7 +888,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      2,
      {{Field{"set", FieldKind::Unsigned, 16, 0, 1, false, 0, 0x0, 0x0, 0x0, 0, false},
        Field{"clear", FieldKind::Unsigned, 16, 1, 1, false, 0, 0x0, 0x0, 0x0, 0, false}}}},
-    {"MARK", Opcode::Mark, true, false, 7, true, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
+    {"MARK", Opcode::Mark, true, false, 7, true, MaskRule::None, 0, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
     {"WAIT_INPUT",
      Opcode::WaitInput,
      true,
@@ -851,6 +896,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      7,
      true,
      MaskRule::None,
+     0,
      0,
      0,
      0,
@@ -870,13 +916,14 @@ inline constexpr std::array<Command, 11> kCommands{{
      0,
      0,
      0,
+     0,
      0x0,
      6,
      0,
      0,
      1,
      {{Field{"condition", FieldKind::Unsigned, 16, 0, 1, false, 0, 0x0, 0x3F, 0x0, 0, false}}}},
-    {"PROBE_END", Opcode::ProbeEnd, true, true, 7, true, MaskRule::None, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
+    {"PROBE_END", Opcode::ProbeEnd, true, true, 7, true, MaskRule::None, 0, 0, 0, 0, 0x0, 5, 0, 0, 0, {{}}},
 }};
 
 // Layout of a command, nullptr when the opcode has no meaning.
@@ -911,7 +958,7 @@ constexpr bool is_known(const Command& command, std::uint32_t engines) {
 
 // With MaskRule::Flags: the mask byte has a meaning on a card with these engines.
 constexpr bool flags_good(const Command& command, std::uint8_t flags, std::uint32_t engines) {
-  return flags == 0 || (has_engine(engines, command.flags_engine) && flags <= command.flags_maximum);
+  return (flags & ~command.flags_free) <= (has_engine(engines, command.flags_engine) ? command.flags_maximum : 0);
 }
 
 // Bits of the register, of the one-halfword field, that have a meaning on a card with these engines.

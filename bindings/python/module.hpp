@@ -1,0 +1,22 @@
+// The parts of the module, each in a file of its own. Only the files of this folder know of nanobind.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace trammel::python {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+class PythonCard;
+
+void bind_errors(nb::module_& m);
+void bind_card_values(nb::module_& m);
+void bind_card(nb::module_& m);
+void bind_motion(nb::class_<PythonCard>& card);
+void bind_commands(nb::module_& m);
+void bind_stream(nb::module_& m);
+void bind_position_stream(nb::module_& m);
+void bind_interpolation(nb::module_ m);
+
+}  // namespace trammel::python
