@@ -74,6 +74,7 @@ TEST(Serve, WithoutTheTokenNothingMoves) {
   expect_refused(command, "info" + wrong, "wrong token");
   EXPECT_EQ(command.run_in(".", "TRAMMEL_TOKEN=secret", "dump --card " + server.url()).status, 0);
   EXPECT_EQ(command.run_in(".", "TRAMMEL_TOKEN=secret", "line --to 10,10 --card " + server.url()).status, 0);
+  EXPECT_TRUE(eventually([&] { return server.said("the card holds"); })) << "it sees that the last client has left";
   const std::string said = server.end();
   EXPECT_TRUE(has(said, "path: 20 steps")) << "those of the last line";
   EXPECT_EQ(count_of(said, "the card holds"), 1U) << "dump does without the token";
