@@ -90,6 +90,20 @@ TEST(Serve, OnAPseudoTerminal) {
   EXPECT_TRUE(has(server.end(), "path: 20 steps"));
 }
 
+// The number behind `words` in a text; -1 where it is not there.
+int number_behind(const std::string& text, const std::string& words) {
+  const std::size_t at = text.find(words);
+  return at == std::string::npos ? -1 : std::stoi(text.substr(at + words.size()));
+}
+
+// Waits until axis 0 has made so many steps, however slow its client is to begin.
+bool comes_to(const Command& command, const Server& server, int steps) {
+  return eventually([&] {
+    const Outcome look = command.run("monitor --looks 1 --card " + server.url());
+    return number_behind(look.out, "axis 0   pulse ") >= steps;
+  });
+}
+
 // A client that is killed while the card moves, by the process; the card holds, and the next client goes on from there,
 // where it comes before the watchdog has expired.
 TEST(Serve, AClientIsKilled) {
@@ -97,8 +111,7 @@ TEST(Serve, AClientIsKilled) {
   Server server(command, "--engine model");
   const std::string program = command.write("long.ngc", "G1 X100 F600\n");
   Running client(command, "run " + program + " --set motion.watchdog=40 --card " + server.moving(), "client.err");
-  ASSERT_TRUE(eventually([&] { return server.said("has come"); })) << server.errors();
-  std::this_thread::sleep_for(std::chrono::seconds(1));
+  ASSERT_TRUE(comes_to(command, server, 40)) << server.errors();
   client.signal(SIGKILL);
   ASSERT_TRUE(client.wait());
   ASSERT_TRUE(eventually([&] { return server.said("the card holds"); })) << server.errors();
@@ -106,12 +119,6 @@ TEST(Serve, AClientIsKilled) {
   const Outcome next = command.run("line --to 10,10 --card " + server.moving());
   EXPECT_EQ(next.status, 0) << next.err;
   EXPECT_TRUE(has(next.err, "what was left is dropped")) << next.err;
-}
-
-// The number behind `words` in a text; -1 where it is not there.
-int number_behind(const std::string& text, const std::string& words) {
-  const std::size_t at = text.find(words);
-  return at == std::string::npos ? -1 : std::stoi(text.substr(at + words.size()));
 }
 
 // Ends a client by a signal while it moves the card, and gives back the number behind `words` in what it says then. A
@@ -158,8 +165,7 @@ TEST(Serve, ASecondCtrlCLeavesAtOnce) {
   const std::string program = command.write("long.ngc", "G1 X100 F600\n");
   Running client(command, "run " + program + " --set axis.x.max_acceleration=1 --card " + server.moving(),
                  "client.err");
-  ASSERT_TRUE(eventually([&] { return server.said("has come"); })) << server.errors();
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  ASSERT_TRUE(comes_to(command, server, 40)) << server.errors();
   client.signal(SIGINT);
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   client.signal(SIGINT);
