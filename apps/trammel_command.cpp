@@ -16,14 +16,18 @@
 #include "common/terminal.hpp"
 #include "compare/compare_command.hpp"
 #include "info/info_command.hpp"
+#include "jog/jog_command.hpp"
 #include "line/line_command.hpp"
+#include "machine/machine_command.hpp"
 #include "methods/methods_command.hpp"
+#include "place/place_commands.hpp"
 #include "reproduce/reproduce_command.hpp"
 #include "run/run_command.hpp"
 #include "serve/serve_command.hpp"
 #include "shell/shell_command.hpp"
 #include "steps/steps_command.hpp"
 #include "trammel/machine/machine.hpp"
+#include "trammel/run/card_place.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace trammel::app {
@@ -61,8 +65,11 @@ int run_command_line(int argc, char** argv, const char* version) {
   app.footer("trammel help COMMAND tells the options of a command.");
   add_run_command(app);
   add_line_command(app);
+  add_jog_command(app);
   add_info_command(app);
   add_card_commands(app);
+  add_place_commands(app);
+  add_machine_command(app);
   add_serve_command(app);
   add_steps_command(app);
   add_methods_command(app);
@@ -76,6 +83,8 @@ int run_command_line(int argc, char** argv, const char* version) {
   } catch (const run::ProgramError& error) {
     return report(error.what(), kExitUsage);
   } catch (const machine::MachineError& error) {
+    return report(error.what(), kExitUsage);
+  } catch (const run::PlaceError& error) {
     return report(error.what(), kExitUsage);
   } catch (const EndedBySignal& ended) {
     tell("note", ended.what());

@@ -3,7 +3,8 @@
 
     python3 examples/draw_path.py path.svg [CARD]     (CARD: the URL of a card; simulated unless it is given)
 
-The steps are those that the simulated card makes; a real card shows where it stands alone.
+The steps are those that the simulated card makes; a real card shows where it stands alone. Points are in pulses from
+machine zero, which a card keeps from one program to the next: drawn again on the same card, the square begins there.
 """
 import math
 import sys
@@ -27,16 +28,22 @@ def commands():
 
 
 def run(url):
-    """Every position on the way."""
+    """Every place on the way, in pulses from machine zero."""
     card = trammel.open(url)
     simulated = url.startswith("sim:")
     if simulated:
         card.record_steps()
-    start = card.read_snapshot().position[:2]
+    card.take_over()  # a served card holds when the client before has gone
+    begin = card.begin_at_place([0, 1])
+    if begin.first:
+        print("the card was reset: machine zero is where it stands now")
+    else:
+        print(f"the card stands at {begin.pulses}, in pulses from machine zero")
+    start = begin.pulses[:2]
     stream = trammel.Stream(card)
     stream.send(commands())
     stream.finish()
-    end = card.read_snapshot().position[:2]
+    end = card.read_place().pulses[:2]
     if not simulated:
         return [tuple(start), tuple(end)]
     place, places = list(start), [tuple(start)]
@@ -44,7 +51,7 @@ def run(url):
         place[axis] += direction
         places.append(tuple(place))
     if place != end:
-        sys.exit(f"error: the steps end at {place}, the card's counters at {end}")
+        sys.exit(f"error: the steps end at {place}, the card at {end}")
     return places
 
 
@@ -66,7 +73,8 @@ def main():
     places = run(sys.argv[2] if len(sys.argv) == 3 else "sim:")
     circle = interpolation.interpolate("min-deviation-8", interpolation.circle(15))
     ring = [(15, 0)] + [place for _, place in circle]
-    moved = [(x + 30, y + 30) for x, y in ring]
+    left, low = places[0]
+    moved = [(left + x + 30, low + y + 30) for x, y in ring]
     with open(sys.argv[1], "w", encoding="utf-8") as file:
         file.write(svg(places, moved))
     print(f"{len(places) - 1} steps to {places[-1]}; {len(ring) - 1} of the circle; {sys.argv[1]}")

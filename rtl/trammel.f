@@ -77,8 +77,14 @@ host/uart/uart_receiver.sv
 host/uart/uart_timer.sv
 host/uart/uart_transmitter.sv
 host/wishbone/wishbone_port.sv
+io/capture_unit.sv
+io/captures.sv
+io/card_inputs.sv
+io/input_filter.sv
 io/input_pins.sv
 io/output_pins.sv
+io/output_roles.sv
+io/role_scan.sv
 path/arc_generator.sv
 path/barrier.sv
 path/begun_counter.sv
@@ -98,6 +104,7 @@ path/path_tick_gate.sv
 path/position_streaming.sv
 path/probe.sv
 path/tick_counter.sv
+registers/link_watch.sv
 registers/register_access.sv
 registers/register_file.sv
 registers/register_live.sv
@@ -105,8 +112,13 @@ registers/register_ram.sv
 registers/snapshot_slice.sv
 registers/snapshot_writer.sv
 safety/button_hold.sv
+safety/card_health.sv
+safety/drive_enable.sv
+safety/emergency_stop.sv
 safety/limit_axis.sv
 safety/limit_check.sv
+safety/machine_place.sv
+safety/soft_limits.sv
 safety/stop_control.sv
 safety/watchdog.sv
 time/feed_generator.sv

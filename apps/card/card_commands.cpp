@@ -20,6 +20,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/run/assigned_inputs.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
@@ -34,6 +35,8 @@ struct LookOptions {
   double interval = 0.2;     // monitor: seconds of the card
   std::uint64_t looks = 0;   // monitor: 0 for ever
   unsigned exchanges = 200;  // selftest
+  bool inputs = false;       // selftest: switches are waited for,
+  double switch_time = 30;   // each so many seconds
 };
 
 // The card of --card, or a simulated one, which is made for nothing else.
@@ -92,7 +95,20 @@ std::string state_of(const driver::Snapshot& now) {
   return text;
 }
 
-std::vector<std::string> table(Card& card) {
+// A line for each input that has a role.
+void add_inputs(Card& card, const std::vector<run::AssignedInput>& assigned, std::vector<std::string>& lines) {
+  if (assigned.empty()) return;
+  const std::uint32_t levels = card.read_inputs();
+  const std::uint32_t raw = card.read_raw_inputs();
+  for (const run::AssignedInput& input : assigned) {
+    const bool active = (levels >> input.input & 1) != 0;
+    const bool settled = active == ((raw >> input.input & 1) != 0);
+    lines.push_back(fmt::format("{:<8} {}{}", active ? "ACTIVE" : "at rest", input.text(),
+                                settled ? "" : ", in its filter the other way"));
+  }
+}
+
+std::vector<std::string> table(Card& card, const std::vector<run::AssignedInput>& inputs) {
   const driver::Snapshot now = card.read_snapshot();
   const driver::Identification& id = card.identification();
   std::array<driver::Access, 3> room{driver::read_of(reg::kGeometryRoom), driver::read_of(reg::kFeedRoom)};
@@ -111,6 +127,7 @@ std::vector<std::string> table(Card& card) {
   for (unsigned axis = 0; axis < id.axes; ++axis) {
     lines.push_back(fmt::format("axis {}   pulse {}", axis, now.position[axis]));
   }
+  add_inputs(card, inputs, lines);
   return lines;
 }
 
@@ -118,9 +135,10 @@ std::vector<std::string> table(Card& card) {
 void monitor(Card& card, const LookOptions& options) {
   const bool terminal = ::isatty(STDOUT_FILENO) == 1;
   const std::chrono::nanoseconds pause(static_cast<std::int64_t>(options.interval * 1e9));
+  const std::vector<run::AssignedInput> inputs = run::assigned_inputs(card);
   for (std::uint64_t look = 0; options.looks == 0 || look < options.looks; ++look) {
     if (look != 0) card.bus().sleep(pause);
-    const std::vector<std::string> lines = table(card);
+    const std::vector<std::string> lines = table(card, inputs);
     if (terminal && look != 0) to_standard_output(fmt::format("\x1b[{}A", lines.size()));
     for (const std::string& line : lines) to_standard_output(fmt::format("{}{}\n", line, terminal ? "\x1b[K" : ""));
     if (!terminal) to_standard_output("\n");
@@ -234,6 +252,26 @@ void try_link(Card& card, transport::Connection* connection, unsigned exchanges,
   checks.add("the link carries", wrong, good);
 }
 
+// Each switch in turn, by hand.
+void try_inputs(Card& card, const LookOptions& options, Checks& checks) {
+  const std::vector<run::AssignedInput> inputs = run::assigned_inputs(card);
+  if (inputs.empty()) {
+    checks.add("inputs have roles", "none has: a program that runs with a machine file that has [inputs] sets them");
+  }
+  const std::chrono::nanoseconds longest(static_cast<std::int64_t>(options.switch_time * 1e9));
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const run::SwitchResult result = run::try_switch(card, inputs[i].input, longest, [&](run::SwitchStep step) {
+      to_standard_output(fmt::format("wait  {} of {}: {} {}, for {:g} s\n", i + 1, inputs.size(),
+                                     step == run::SwitchStep::kPress ? "press" : "release", inputs[i].text(),
+                                     options.switch_time));
+      finish_standard_streams();
+    });
+    constexpr const char* kWrong[] = {"", "it is active before it is pressed: see normally and closed_level",
+                                      "it was not pressed", "it was not released"};
+    checks.add(inputs[i].text(), kWrong[static_cast<unsigned>(result)], "active when pressed, then at rest");
+  }
+}
+
 void selftest(Card& card, transport::Connection* connection, const LookOptions& options) {
   const driver::Status status = card.read_status();
   if (status.busy) throw UsageError("selftest: the card is busy: it is tried when it is idle");
@@ -241,12 +279,13 @@ void selftest(Card& card, transport::Connection* connection, const LookOptions& 
   const driver::Identification& id = card.identification();
   checks.add("it says who it is", "",
              fmt::format("{} axes, {} Hz, map {}.{}", id.axes, id.clock_hz, id.map_major, id.map_minor));
-  checks.add("it has no fault", status.faulted ? driver::describe_faults(card.read_faults()) : "");
+  checks.add("it has no fault", status.faulted ? card.read_fault_text() : "");
   const driver::Snapshot before = card.read_snapshot();
   try_link(card, connection, options.exchanges, checks);
   try_clock(card, checks);
   try_settings(card, checks);
   try_refusals(card, checks);
+  if (options.inputs) try_inputs(card, options, checks);
   const driver::Snapshot after = card.read_snapshot();
   checks.add("nothing has moved", after.position == before.position && !after.status.busy ? "" : "a position changed");
   if (checks.failed() != 0) {
@@ -279,6 +318,12 @@ void add_card_commands(CLI::App& app) {
   });
   CLI::App* test_command = app.add_subcommand("selftest", "try a card's link, registers and clock; nothing moves");
   options->card.add_to(*test_command);
+  test_command->add_flag("--inputs", options->inputs, "wait for each input that has a role to be pressed and released");
+  test_command
+      ->add_option("--switch-time", options->switch_time, "with --inputs: the longest wait for each, in card time")
+      ->check(CLI::Range(0.001, 3600.0).description(""))
+      ->type_name("SECONDS")
+      ->capture_default_str();
   test_command->callback([options] {
     look_at(options->card, Purpose::kMove,
             [&](Card& card, transport::Connection* connection) { selftest(card, connection, *options); });

@@ -1,15 +1,15 @@
 #include "card_choice.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdlib>
 #include <memory>
 
 #include "errors.hpp"
+#include "stop_text.hpp"
 #include "terminal.hpp"
+#include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/run/configure.hpp"
@@ -31,8 +31,10 @@ auto opening(const transport::CardUrl& url, Call call) {
   }
 }
 
-// Who comes with a token makes the card hold when he goes: so reading does without it.
+// A client that comes with the token is refused beside one that moves the card, and makes the card hold when it goes:
+// so reading does without, whatever the URL has.
 transport::CardUrl with_token(transport::CardUrl url, Purpose purpose) {
+  if (purpose == Purpose::kRead) url.token.clear();
   const char* const token = std::getenv("TRAMMEL_TOKEN");
   const bool wants_one = purpose == Purpose::kMove && url.kind == transport::CardUrl::Kind::kTcp && url.token.empty();
   if (wants_one && token != nullptr) url.token = token;
@@ -40,21 +42,18 @@ transport::CardUrl with_token(transport::CardUrl url, Purpose purpose) {
 }
 
 // Of a card that has stopped with a fault. Its ramp may still be under way.
-std::string place_and_cure(driver::Card& card) {
-  using Clock = std::chrono::steady_clock;
-  const auto until = Clock::now() + std::chrono::seconds(10);
-  while (card.busy() && Clock::now() < until) card.bus().sleep(std::chrono::milliseconds(5));
-  const driver::Snapshot now = card.read_snapshot();
-  const auto* const first = now.position.begin();
-  return fmt::format("the card {} pulse {} of its axes; clear the fault with --clear-faults to go on from there",
-                     now.status.busy ? "is on its ramp, at" : "stands at",
-                     fmt::join(first, first + card.identification().axes, ", "));
+std::string place_and_cure(driver::Card& card, const machine::Machine& machine) {
+  try {
+    card.wait_until_stopped();
+  } catch (const driver::TimeoutError&) {  // the text says that it is on its ramp
+  }
+  return stop_text(machine, read_stopped(card));
 }
 
 void clear_with_note(driver::Card& card) {
-  const std::uint32_t faults = card.read_faults();
+  const std::string faults = card.read_fault_text();
   card.clear_faults();
-  tell("note", fmt::format("cleared the card's fault of before: {}", driver::describe_faults(faults)));
+  tell("note", "cleared the card's fault of before: " + faults);
 }
 
 }  // namespace
@@ -70,11 +69,20 @@ void CardChoice::add_to(CLI::App& command) {
 void CardChoice::add_to_mover(CLI::App& command) {
   add_to(command);
   command.add_flag("--clear-faults", clear_faults, "with --card: clear the faults that the card has from before");
+  command.add_flag("--trust-position", trust_position,
+                   "with --card: begin though the card's place was lost, since no step was");
+  command
+      .add_option("--resume-file", resume_file,
+                  "with --card: where a run keeps what --resume needs (default: a file named after the card in the "
+                  "folder trammel of the user's state folder)")
+      ->type_name("FILE");
 }
 
 std::optional<transport::CardUrl> CardChoice::url() const {
   if (!text || *text == "sim:") {
     if (clear_faults) throw UsageError("--clear-faults: a simulated card has none from before; give it with --card");
+    if (trust_position) throw UsageError("--trust-position: a simulated card has lost no place; give it with --card");
+    if (resume_file) throw UsageError("--resume-file: a simulated card ends with its run; give it with --card");
     return std::nullopt;
   }
   try {
@@ -87,6 +95,8 @@ std::optional<transport::CardUrl> CardChoice::url() const {
     throw UsageError(fmt::format("--card: {}", error.what()));
   }
 }
+
+ResumeFile CardChoice::resume() const { return {url()->text, resume_file}; }
 
 void with_card(const transport::CardUrl& place, Purpose purpose,
                const std::function<void(driver::Card&, transport::Connection&)>& use) {
@@ -107,16 +117,25 @@ void with_card(const transport::CardUrl& place, Purpose purpose,
   }
 }
 
-void take_over(driver::Card& card, bool clear_faults) {
+void require_axes(const driver::Card& card, const machine::Machine& machine) {
+  const unsigned axes = card.identification().axes;
+  if (machine.motors() <= axes) return;
+  throw UsageError(fmt::format("--card: it has {} axes, the machine {} motors", axes, machine.motors()));
+}
+
+void take_over(driver::Card& card, const CardChoice& choice, const machine::Machine& machine, bool resumes) {
   try {
     const driver::Status status = card.read_status();
-    if (!clear_faults) card.parts().registers.throw_if_faulted(status, "--card");
+    constexpr std::uint32_t kSilent = card_map::field::kFaultWatchdog | card_map::field::kFaultLinkLoss;
+    const bool silent_host = status.faulted && (card.read_faults() & ~kSilent) == 0;
+    if (!choice.clear_faults && !(resumes && silent_host)) card.parts().registers.throw_if_faulted(status, "--card");
     if (card.take_over()) {
       tell("note", "the card held with a motion of before under way; what was left is dropped");
     }
+    keep_place_of_stop(card, choice.resume());
     if (status.faulted) clear_with_note(card);
   } catch (const driver::FaultError& error) {
-    throw UsageError(fmt::format("{}; {}", error.what(), place_and_cure(card)));
+    throw UsageError(fmt::format("{}; {}", error.what(), place_and_cure(card, machine)));
   } catch (const driver::StateError& error) {
     throw UsageError(error.what());
   }
@@ -131,9 +150,9 @@ MotionWatchdog::MotionWatchdog(driver::Card& card, const machine::MotionSettings
   }
 }
 
-void tell_of_fault(driver::Card& card) noexcept {
+void tell_of_fault(driver::Card& card, const machine::Machine& machine) noexcept {
   try {
-    if (card.read_status().faulted) tell("note", place_and_cure(card));
+    if (card.read_status().faulted) tell("note", place_and_cure(card, machine));
   } catch (const std::exception&) {
   }
 }

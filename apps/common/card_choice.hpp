@@ -6,6 +6,7 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "resume_file.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/watchdog_scope.hpp"
 #include "trammel/machine/machine.hpp"
@@ -17,12 +18,16 @@ namespace trammel::app {
 struct CardChoice {
   std::optional<std::string> text;
   bool clear_faults = false;
+  bool trust_position = false;
+  std::optional<std::string> resume_file;
 
   void add_to(CLI::App& command);
-  // With --clear-faults, for a command that moves the card.
+  // With --clear-faults, --trust-position and --resume-file, for a command that moves the card.
   void add_to_mover(CLI::App& command);
   // None for a simulated card of this process. Throws UsageError for what is no card's URL.
   std::optional<transport::CardUrl> url() const;
+  // Of the card's interrupted run. Only where there is a url().
+  ResumeFile resume() const;
 };
 
 enum class Purpose { kRead, kMove };
@@ -33,9 +38,13 @@ enum class Purpose { kRead, kMove };
 void with_card(const transport::CardUrl& url, Purpose purpose,
                const std::function<void(driver::Card&, transport::Connection&)>& use);
 
-// Makes it ready to be moved by this program, with a note where something of before is dropped. A card that moves, and
-// one with a fault that shall not be cleared, is a UsageError.
-void take_over(driver::Card& card, bool clear_faults);
+// A machine with more motors than the card has axes is a UsageError.
+void require_axes(const driver::Card& card, const machine::Machine& machine);
+
+// Makes it ready to be moved by this program, with a note where something of before is dropped. What the card knows of
+// an interrupted run is kept in its file first. A card that moves, and one with a fault that shall not be cleared, is a
+// UsageError. `resumes`: a run that goes on; the watchdog's fault is one that it clears.
+void take_over(driver::Card& card, const CardChoice& choice, const machine::Machine& machine, bool resumes = false);
 
 // The machine file's watchdog over a motion. A time that the card cannot count is a UsageError.
 class MotionWatchdog {
@@ -46,9 +55,9 @@ class MotionWatchdog {
   std::optional<driver::WatchdogScope> scope_;
 };
 
-// After an error of the motion: where the card stands and what to do about its fault, as a note; nothing without a
-// fault. Waits for the end of the ramp. Never throws: the error before it is the one that counts.
-void tell_of_fault(driver::Card& card) noexcept;
+// After an error of the motion: where the card stands, how far on the path, and what to do about its fault, as a note;
+// nothing without a fault. Waits for the end of the ramp. Never throws: the error before it is the one that counts.
+void tell_of_fault(driver::Card& card, const machine::Machine& machine) noexcept;
 
 // Refuses options of the simulated card, by its URL's or its own.
 void refuse_with_card(const CardChoice& card, const char* option, bool given);

@@ -24,17 +24,41 @@ CLI::Validator positive() {
       "> 0");
 }
 
+namespace {
+// Refuses names that end in one of `others`.
+CLI::Validator file_of(const char* what, const char* suffix, std::vector<std::string> others) {
+  return CLI::Validator(
+      [what, suffix, others = std::move(others)](const std::string& text) {
+        const std::filesystem::path name(text);
+        std::string end = name.extension().string();
+        std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
+        if (std::find(others.begin(), others.end(), end) == others.end()) return std::string();
+        return fmt::format("{}, not {}: name it {}", what, end.substr(1),
+                           std::filesystem::path(name.stem()).replace_extension(suffix).string());
+      },
+      "");
+}
+}  // namespace
+
 CLI::Validator svg_file() {
+  return file_of("the picture is SVG", "svg",
+                 {".png", ".jpg", ".jpeg", ".gif", ".bmp", ".webp", ".pdf", ".eps", ".html"});
+}
+
+CLI::Validator page_file() {
+  return file_of("the page is HTML", "html", {".pdf", ".png", ".jpg", ".svg", ".md", ".txt", ".json", ".csv"});
+}
+
+CLI::Validator waveform_file() {
+  return file_of("the waveform is FST", "fst", {".vcd", ".evcd", ".lxt", ".lxt2", ".lx2", ".vzt", ".ghw", ".wlf"});
+}
+
+CLI::Validator pulses() {
   return CLI::Validator(
       [](const std::string& text) {
-        const std::filesystem::path name(text);
-        std::string other = name.extension().string();
-        std::transform(other.begin(), other.end(), other.begin(), [](unsigned char c) { return std::tolower(c); });
-        for (const char* const picture : {".png", ".jpg", ".jpeg", ".gif", ".bmp", ".webp", ".pdf", ".eps", ".html"}) {
-          if (other != picture) continue;
-          return fmt::format("the picture is SVG, not {}: name it {}.svg", other.substr(1), name.stem().string());
-        }
-        return std::string();
+        std::int64_t value = 0;
+        if (CLI::detail::lexical_cast(text, value)) return std::string();
+        return "must be whole numbers of pulses, as 2000,-1000, not " + text;
       },
       "");
 }
@@ -85,7 +109,9 @@ void EngineChoice::add_to(CLI::App& command, const std::string& default_clock) {
   command.add_option("--clock", clock_hz, fmt::format("clock of the simulated card (default: {})", default_clock))
       ->transform(whole_number(machine::kSlowestClock, machine::kFastestClock, "Hz"))
       ->type_name("HZ");
-  command.add_option("--trace", trace, "waveform of the card as FST file (engine rtl only)")->type_name("FILE");
+  command.add_option("--trace", trace, "waveform of the card as FST file (engine rtl only)")
+      ->check(waveform_file())
+      ->type_name("FILE");
   command
       .add_option("--trace-window", trace_window,
                   "trace only this stretch, seconds of card time; either may be left out")

@@ -14,8 +14,12 @@ namespace trammel::app {
 
 // For options that must be greater than 0; CLI11's own message names the largest double.
 CLI::Validator positive();
-// The name of a picture that will be SVG: refuses names of other kinds of pictures.
+// The name of a picture that will be SVG, of a page or of a waveform: refuses names of other kinds of files.
 CLI::Validator svg_file();
+CLI::Validator page_file();
+CLI::Validator waveform_file();
+// One of an option's whole numbers of pulses, with its sign.
+CLI::Validator pulses();
 
 // For whole numbers between two others; CLI11's own message has them as 4.29497e+09.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most, const std::string& unit = "");

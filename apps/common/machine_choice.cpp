@@ -5,7 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
+#include "resume_file.hpp"
 #include "trammel/machine/one_line.hpp"
 
 namespace trammel::app {
@@ -57,10 +59,20 @@ machine::Machine MachineChoice::load() const {
   return machine;
 }
 
+std::string MachineChoice::hash() const {
+  TextHash hash;
+  if (const std::optional<std::string> from = source()) {
+    std::ifstream in(*from);
+    for (std::string line; std::getline(in, line);) hash.add(line);
+  }
+  for (const std::string& text : overrides) hash.add("--set " + text);
+  return hash.text();
+}
+
 std::string MachineChoice::line() const {
   const std::optional<std::string> from = source();
   return fmt::format("  machine: {}{}\n", from ? machine::one_line(*from, machine::kLongestName) : "built-in",
-                     overrides.empty() ? "" : fmt::format(", {} entries by --set", overrides.size()));
+                     overrides.empty() ? "" : fmt::format(", entries by --set: {}", overrides.size()));
 }
 
 }  // namespace trammel::app

@@ -22,6 +22,8 @@ struct MachineChoice {
   std::optional<std::string> source() const;
   // Throws machine::MachineError.
   machine::Machine load() const;
+  // Of the file's text and of --set, 16 digits.
+  std::string hash() const;
   // For the summary: where the machine is from.
   std::string line() const;
 };

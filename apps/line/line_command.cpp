@@ -17,11 +17,14 @@
 #include "common/machine_choice.hpp"
 #include "common/outputs.hpp"
 #include "common/stop_at_signals.hpp"
+#include "common/terminal.hpp"
 #include "common/waveform.hpp"
 #include "ramped_line.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/one_shot.hpp"
+#include "trammel/run/card_place.hpp"
+#include "trammel/run/configure.hpp"
 #include "trammel/run/plot.hpp"
 #include "trammel/run/step_recorder.hpp"
 #include "trammel/simulation/simulated_card.hpp"
@@ -211,14 +214,15 @@ Made any_line(driver::Card& card, const LineArguments& options, const driver::Sn
 
 // On a card outside, which stops by itself where this program dies or is stopped.
 Made watched_line(driver::Card& card, const LineArguments& options, const driver::Snapshot& before) {
-  const MotionWatchdog watchdog(card, options.machine.load().motion);
+  const machine::Machine machine = options.machine.load();
+  const MotionWatchdog watchdog(card, machine.motion);
   try {
     return any_line(card, options, before, nullptr);
   } catch (const driver::FaultError&) {
-    tell_of_fault(card);
+    tell_of_fault(card, machine);
     throw;
   } catch (const run::RunError&) {
-    tell_of_fault(card);
+    tell_of_fault(card, machine);
     throw;
   }
 }
@@ -300,14 +304,34 @@ struct CardResult {
   std::uint32_t clock_hz = 0;
 };
 
+// Bit n: axis n moves.
+std::uint8_t axes_of(const std::vector<std::int64_t>& pulses) {
+  unsigned axes = 0;
+  for (std::size_t n = 0; n < pulses.size(); ++n) axes |= pulses[n] != 0 ? 1U << n : 0U;
+  return static_cast<std::uint8_t>(axes);
+}
+
 CardResult make_line_on(driver::Card& card, const LineArguments& options) {
   const std::vector<std::int64_t> pulses = displacement_of(options);
   if (pulses.size() > card.identification().axes) {
     throw UsageError(fmt::format("--to: the card has {} axes", card.identification().axes));
   }
   if (options.no_ramp) plan_of(options, card.timing(), pulses);  // what cannot be is refused first
-  take_over(card, options.card.clear_faults);
-  const driver::Snapshot before = card.read_snapshot();
+  const std::uint8_t moved_axes = axes_of(pulses);
+  const machine::Machine machine = options.machine.load();
+  const run::CardPlace found = run::read_card_place(card);
+  run::check_line(machine, found, moved_axes, options.card.trust_position);
+  run::check_line_end(machine, found, pulses);
+  take_over(card, options.card, machine);
+  const run::CardPlace place = run::read_card_place(card);
+  const std::string limits_off = run::check_line_end(machine, place, pulses);
+  if (!place.was_set()) tell("note", "the card was reset: machine zero is where it stands now");
+  if (!limits_off.empty()) {
+    tell("note", fmt::format("soft limits of {} are off: not homed, or in other scales", limits_off));
+  }
+  run::keep_place(card, place, run::kScalesInPulses, moved_axes);
+  if (!options.no_ramp) run::set_keeps_place(card, in_pulses(machine, pulses.size()));
+  const driver::Snapshot& before = place.now;
   const Made made = watched_line(card, options, before);
   CardResult result;
   result.moved = moved(card, before, pulses.size());
@@ -388,9 +412,11 @@ void add_line_command(CLI::App& app) {
       "line", "make one straight line, with the machine's ramps, or abruptly in one burst of register writes");
   command->add_option("--from", options->from, "start, pulses, one value an axis (default: 0)")
       ->delimiter(',')
+      ->check(pulses())
       ->type_name("X,Y,...");
   command->add_option("--to", options->to, "end, pulses, one value an axis")
       ->delimiter(',')
+      ->check(pulses())
       ->required()
       ->type_name("X,Y,...");
   auto* velocity =
@@ -401,7 +427,8 @@ void add_line_command(CLI::App& app) {
   velocity->excludes(duration)->excludes(speed);
   duration->excludes(speed);
   command->add_option("--max-velocity", options->max_velocity, "with --no-ramp: limit of each axis, pulses/s (0: none)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->transform(whole_number(0, UINT32_MAX, "pulses/s"));
   command->add_flag("--slow", options->slow, "with --no-ramp: slow down to keep a limit instead of refusing");
   command->add_flag("--no-ramp", options->no_ramp, "the papers' line: full speed from the first pulse to the last");
   options->machine.add_to(*command);

@@ -40,6 +40,7 @@ machine::Machine in_pulses(const machine::Machine& machine, std::size_t motors) 
     motor.direction_setup_ns = of.direction_setup_ns;
     motor.direction_hold_ns = of.direction_hold_ns;
     motor.inverted = joint.inverted;
+    motor.keeps_place = of.keeps_place;
     result.axes.push_back(motor);
   }
   return result;

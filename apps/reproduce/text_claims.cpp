@@ -33,9 +33,9 @@ GcodeText read_gcode(const std::string& text) {
   for (gcode::Motion motion; reader.next(motion);) {
     result.lines += motion.kind == gcode::MotionKind::kLine;
     result.arcs += motion.kind == gcode::MotionKind::kArc;
+    if (motion.kind != gcode::MotionKind::kEnd) result.end = motion.target;
   }
   result.refused = reader.error().has_value();
-  result.end = reader.position();
   return result;
 }
 

@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 
+#include "common/card_choice.hpp"
+#include "common/resume_file.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/frame_bus.hpp"
 #include "trammel/machine/machine.hpp"
@@ -21,7 +23,10 @@ struct CardRunOptions {
   double percent = 100;        // override, of the planned speed
   double rapid_percent = 100;  // of rapids
   double max_percent = 100;    // largest override
-  bool clear_faults = false;
+  CardChoice card;
+  ResumeKey key;          // of this run; `settings` agrees with it
+  bool resume = false;    // goes on with the run that was interrupted
+  bool yes = false;       // the way to where the run begins is gone without a question
   bool progress = false;  // also where stderr is no terminal
   // When all is checked and nothing has moved yet; with `stream` of an empty plan.
   std::function<void(const run::Plan&)> planned;
@@ -39,7 +44,9 @@ struct CardRunResult {
   std::uint64_t reconnections = 0;
 };
 
-// The program begins where the card stands. Throws UsageError for a card with too few axes, and as run::Runner does.
+// The program begins at the machine zero that the card keeps; a run that begins amid it goes to its begin first. What
+// --resume needs is written before anything moves, and when the run ends. Throws UsageError for a card with too few
+// axes and for a run that cannot be gone on with, run::PlaceError where it may not begin, and as run::Runner does.
 CardRunResult run_on_card(const run::ProgramLines& lines, const machine::Machine& machine, driver::Card& card,
                           transport::Connection& connection, const CardRunOptions& options);
 

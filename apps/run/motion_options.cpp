@@ -1,11 +1,11 @@
 #include "motion_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -13,20 +13,13 @@
 
 #include "common/engine_options.hpp"
 #include "common/errors.hpp"
+#include "common/input_event.hpp"
+#include "common/numbers_of_options.hpp"
 
 namespace trammel::app {
 namespace {
 
 using simulation::OperatorEvent;
-
-constexpr double kLongest = 1e9;  // s, as for --trace-window
-
-std::optional<double> number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 CLI::Validator between(double least, double most, const std::string& what) {
   return CLI::Validator(
@@ -45,35 +38,6 @@ double percent_of(const std::string& option, std::string_view text, double most,
                                  value && *value > most ? why : ""));
   }
   return *value;
-}
-
-double seconds_of(const std::string& option, std::string_view text, const char* what) {
-  const auto value = number(text);
-  if (!value || !(*value >= 0) || *value > kLongest) {
-    throw UsageError(fmt::format("{}: {} is no {} from 0 to {:g} seconds of card time", option, text, what, kLongest));
-  }
-  return *value;
-}
-
-std::pair<std::string_view, std::string_view> halves(const std::string& option, std::string_view text,
-                                                     const char* form) {
-  const std::size_t colon = text.find(':');
-  if (colon == std::string_view::npos) throw UsageError(fmt::format("{}: {} must be {}", option, text, form));
-  return {text.substr(0, colon), text.substr(colon + 1)};
-}
-
-OperatorEvent input_of(const std::string& text) {
-  constexpr const char* kOption = "--input-at";
-  constexpr const char* kForm = "SECONDS:INPUT:LEVEL";
-  const auto [at, pin_and_level] = halves(kOption, text, kForm);
-  const auto [pin, level] = halves(kOption, pin_and_level, kForm);
-  const double seconds = seconds_of(kOption, at, "time");
-  const auto input = number(pin);
-  if (!input || !(*input >= 0) || *input >= sim::kPins || *input != std::floor(*input)) {
-    throw UsageError(fmt::format("{}: {} is no input of the simulated card, 0 to {}", kOption, pin, sim::kPins - 1));
-  }
-  if (level != "0" && level != "1") throw UsageError(fmt::format("{}: {} is no level, 0 or 1", kOption, level));
-  return {OperatorEvent::Kind::kInput, seconds, 0, static_cast<unsigned>(*input), level == "1"};
 }
 
 // "M900" or "M862.3".
@@ -132,8 +96,8 @@ void MotionChoice::add_to(CLI::App& command) {
   command
       .add_option("--input-at", input_at,
                   fmt::format("set an input of the simulated card (0 to {}) to a level (0 or 1) at a time of the card "
-                              "(repeatable; before, all are 0)",
-                              sim::kPins - 1))
+                              "(repeatable; before, all are 0). Input estop: the emergency stop's button, 1 pressed",
+                              sim::kInputs - 1))
       ->type_name("SECONDS:INPUT:LEVEL")
       ->allow_extra_args(false);
   command.add_option("--feed-scale", feed_scale, "factor on every programmed feed, 0.001 to 1000 (default: 1)")
@@ -190,7 +154,7 @@ simulation::Operation MotionChoice::operation(double max_percent) const {
     result.events.push_back({OperatorEvent::Kind::kHold, begin, 0});
     result.events.push_back({OperatorEvent::Kind::kResume, end, 0});
   }
-  for (const std::string& text : input_at) result.events.push_back(input_of(text));
+  for (const std::string& text : input_at) result.events.push_back(input_event(text));
   std::stable_sort(result.events.begin(), result.events.end(),
                    [](const OperatorEvent& a, const OperatorEvent& b) { return a.seconds < b.seconds; });
   refuse_overlaps(result.events);
@@ -200,6 +164,17 @@ simulation::Operation MotionChoice::operation(double max_percent) const {
   }
   if (last == 0) throw UsageError("--override: 0 percent to the end, and the program would never end");
   return result;
+}
+
+std::map<std::string, std::string> MotionChoice::of_plan() const {
+  std::map<std::string, std::string> values;
+  values["--feed-scale"] = fmt::format("{}", feed_scale);
+  values["--arcs"] = arcs;
+  values["--profile"] = profile.value_or("by the machine");
+  values["--accept"] = fmt::format("{}", fmt::join(accept, ","));
+  values["--single-block"] = single_block ? "given" : "not given";
+  values["--no-block-delete"] = run_deleted ? "given" : "not given";
+  return values;
 }
 
 run::RunSettings MotionChoice::settings() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ struct MotionChoice {
   // limits leave room for.
   simulation::Operation operation(double max_percent) const;
   run::RunSettings settings() const;
+  // The options that change a program's plan, and their values.
+  std::map<std::string, std::string> of_plan() const;
 };
 
 }  // namespace trammel::app

@@ -24,8 +24,9 @@ CheckResult check_program(const run::ProgramLines& lines, const machine::Machine
 
 std::string summary(const CheckResult& result) {
   const run::Plan& plan = result.plan;
-  std::string text = fmt::format("{}: {} path segments, {} commands, {:.3f} s planned at {:g} MHz; nothing was run\n",
-                                 plan.file, plan.segments, plan.commands, plan.seconds, result.clock_hz * 1e-6);
+  std::string text = fmt::format("{}: {}, {}, {:.3f} s planned at {:g} MHz; nothing was run\n", plan.file,
+                                 counted(plan.segments, "path segment"), counted(plan.commands, "command"),
+                                 plan.seconds, result.clock_hz * 1e-6);
   text += end_text(result.end);
   return text + profile_text(result.profile) + blends_text(plan.blends) + probes_planned(plan) +
          accepted_words(plan.accepted);

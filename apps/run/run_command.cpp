@@ -58,6 +58,8 @@ struct RunArguments {
   bool progress = false;
   bool check = false;
   bool stream = false;
+  bool resume = false;
+  bool yes = false;
   std::optional<std::uint64_t> pipe_limit;  // MiB
 };
 
@@ -71,6 +73,8 @@ void refuse_contradictions(const RunArguments& options) {
     refuse("--report", options.report.has_value(), "needs the whole program first, not --stream");
   }
   refuse("--report-window", options.report_window && !options.report, "there is no --report");
+  refuse("--resume", options.resume && options.stream, "needs the whole program first, not --stream");
+  refuse("--resume", options.resume && options.motion.first_line != 1, "begins at its own place, not at --from-line");
   refuse("--report", options.report && !report::page_is_built(), report::kHowToBuildPage);
   refuse("--parameters", options.parameters == "-", "needs a file: it is read, too");
   if (!options.check) return;
@@ -89,6 +93,10 @@ void refuse_rapids_at_zero(const RunArguments& options, double rapid_percent, co
   if (options.stream) throw UsageError("--rapid-override: 0 needs the whole program first, not --stream");
   if (plan.rapids == 0) return;
   throw UsageError(fmt::format("--rapid-override: 0, and a program with {} rapids would never end", plan.rapids));
+}
+
+void tell_of_nothing(const run::Plan& plan) {
+  if (plan.segments == 0) tell("note", fmt::format("{} moves nothing", plan.file));
 }
 
 // A list of steps, a picture and a time of the operator's need the pins and the clocks of a simulated card.
@@ -144,6 +152,26 @@ void keep_inputs(const RunArguments& options, Outputs& outputs) {
   outputs.check();
 }
 
+// With --stream the program is read once, and its lines cannot be known before.
+ResumeKey key_of(const RunArguments& options, const ProgramFile& file) {
+  ResumeKey key;
+  key.program = file.name();
+  key.planner = planner::kPlanVersion;
+  key.options = options.motion.of_plan();
+  if (options.parameters) {
+    TextHash parameters;
+    parameters.add(parameters_text(load_parameters(*options.parameters)));
+    key.options["--parameters"] = parameters.text();
+  }
+  key.machine_hash = options.machine.hash();
+  if (options.stream) return key;
+  TextHash program;
+  gcode::FileLines lines = file.lines();
+  for (std::string_view line; lines.next(line);) program.add(std::string(line));
+  key.program_hash = program.text();
+  return key;
+}
+
 void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   refuse_what_needs_the_simulation(options);
   Outputs outputs;
@@ -155,7 +183,9 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   CardRunOptions run;
   run.settings = settings_of(options);
   run.stream = options.stream;
-  run.clear_faults = options.card.clear_faults;
+  run.card = options.card;
+  run.resume = options.resume;
+  run.yes = options.yes;
   run.progress = options.progress;
   run.max_percent = max_percent(machine);
   const simulation::Operation operation = options.motion.operation(run.max_percent);
@@ -163,10 +193,12 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
   run.rapid_percent = operation.rapid_percent;
   run.planned = [&](const run::Plan& plan) {
     refuse_rapids_at_zero(options, run.rapid_percent, plan);
+    if (!options.stream) tell_of_nothing(plan);
     outputs.open();
     warn(plan_warnings(plan));
   };
   const ProgramFile file(options.program, copy_limit(options));
+  run.key = key_of(options, file);
   CardRunResult result;
   with_card(url, Purpose::kMove, [&](driver::Card& card, transport::Connection& connection) {
     // A program that comes slowly keeps the card's watchdog from expiring, and can be stopped.
@@ -182,6 +214,7 @@ void run_on_card(const RunArguments& options, const transport::CardUrl& url) {
 void check(const run::ProgramLines& lines, const MachineChoice& choice, const machine::Machine& machine,
            const planner::CardLimits& card, const run::RunSettings& settings, Outputs& outputs, Output* json) {
   const CheckResult result = check_program(lines, machine, card, settings);
+  tell_of_nothing(result.plan);
   warn(plan_warnings(result.plan));
   outputs.open();
   if (json != nullptr) json->write(json_text(result));
@@ -278,6 +311,7 @@ void write_results(const RunArguments& options, const simulation::RunResult& res
 void run_in_simulation(const RunArguments& options) {
   refuse_contradictions(options);
   if (const auto url = options.card.url()) return run_on_card(options, *url);
+  if (options.resume) throw UsageError("--resume: a simulated card ends with its run; give it with --card");
   SimulationFiles files(options);
   const machine::Machine machine = options.machine.load();
   warn(jerk_warnings(machine));
@@ -296,7 +330,7 @@ void run_in_simulation(const RunArguments& options) {
   simulation::SimulatedRun run(lines_of(file), machine, card, settings);
   const run::Plan plan = options.stream ? run::Plan{} : run.runner().plan();
   refuse_rapids_at_zero(options, settings.operation.rapid_percent, plan);
-  if (!options.stream && plan.segments == 0) tell("note", fmt::format("{} moves nothing", plan.file));
+  if (!options.stream) tell_of_nothing(plan);
   files.all.open();
   if (files.trace != nullptr) engine.trace->path = files.trace->path_to_write();
   warn(plan_warnings(plan));
@@ -329,12 +363,16 @@ void add_run_command(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--plot", options->plot, "picture of path and speed")->type_name("FILE.svg")->check(svg_file());
   command->add_option("--report", options->report, "page of the run: path, speeds, pins, program; opens in a browser")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(page_file());
   command
       ->add_option("--report-window", options->report_window,
                    "only this stretch's pulses in the page, seconds of card time")
       ->type_name("FROM:TO");
   command->add_flag("--progress", options->progress, "say how far the run is, also where stderr is no terminal");
+  command->add_flag("--resume", options->resume,
+                    "with --card: go on where the last run of this program was interrupted, with the same steps");
+  command->add_flag("--yes", options->yes, "with --resume and --from-line: go to the run's begin without a question");
   command->add_flag("--check", options->check, "read, plan and time the program; nothing runs");
   command->add_flag("--stream", options->stream,
                     "read the program while it runs: an error in it is a stop on the way, status 1");

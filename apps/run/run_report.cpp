@@ -53,6 +53,8 @@ const char* name_of(OperatorEvent::Kind kind) {
       return "hold";
     case OperatorEvent::Kind::kResume:
       return "resume";
+    case OperatorEvent::Kind::kEmergencyStop:
+      return "emergency stop";
     case OperatorEvent::Kind::kInput:
       break;
   }
@@ -93,6 +95,7 @@ nlohmann::ordered_json events_json(const std::vector<MadeEvent>& events) {
       entry["input"] = made.event.input;
       entry["level"] = made.event.level ? 1 : 0;
     }
+    if (kind == Kind::kEmergencyStop) entry["pressed"] = made.event.level;
     entry["seconds"] = made.event.seconds;
     entry["cycle"] = made.cycle;
     list.push_back(entry);
@@ -102,10 +105,14 @@ nlohmann::ordered_json events_json(const std::vector<MadeEvent>& events) {
 
 }  // namespace
 
+std::string counted(std::uint64_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string probes_planned(const run::Plan& plan) {
   if (plan.probes == 0) return {};
   return fmt::format(
-      "  {} probes, taken to end at their targets; {} lines depend on them and are checked when reached\n", plan.probes,
+      "  probes taken to end at their targets: {}; lines that depend on them, checked when reached: {}\n", plan.probes,
       plan.lines_on_probes);
 }
 
@@ -233,9 +240,9 @@ std::string under_runs_text(const RunResult& result, double seconds) {
 
 std::string run_summary(const RunResult& result, const run::PlannedProfile& profile) {
   const double seconds = static_cast<double>(result.cycles) / result.clock_hz;
-  std::string text =
-      fmt::format("{}: {} path segments, {} commands, {:.3f} s of card time at {:g} MHz\n", result.plan.file,
-                  result.plan.segments, result.outcome.commands, seconds, result.clock_hz * 1e-6);
+  std::string text = fmt::format("{}: {}, {}, {:.3f} s of card time at {:g} MHz\n", result.plan.file,
+                                 counted(result.plan.segments, "path segment"),
+                                 counted(result.outcome.commands, "command"), seconds, result.clock_hz * 1e-6);
   text += end_text(result.end, result.steps);
   text += profile_text(profile);
   text += under_runs_text(result, seconds);
@@ -250,7 +257,7 @@ std::string run_summary(const RunResult& result, const run::PlannedProfile& prof
   text += probes_text(result.end.axes, result.outcome.probes);
   text += outputs_text(result.outputs);
   if (!result.events.empty())
-    text += fmt::format("  {} overrides, holds and inputs on the way\n", result.events.size());
+    text += fmt::format("  overrides, holds and inputs on the way: {}\n", result.events.size());
   if (result.lockstep_cycles) {
     text += fmt::format("  lockstep: {} cycles, {} comparisons, {} mismatches\n", *result.lockstep_cycles,
                         result.comparisons, kMismatches);

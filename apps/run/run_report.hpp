@@ -1,9 +1,11 @@
 // A run's result for people and for programs.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "trammel/run/planned_profile.hpp"
@@ -16,6 +18,9 @@ std::vector<std::string> plan_warnings(const run::Plan& plan);
 
 // Some lines of text, units in every one.
 std::string run_summary(const simulation::RunResult& result, const run::PlannedProfile& profile);
+
+// "1 command", "2 commands".
+std::string counted(std::uint64_t count, std::string_view noun);
 
 // Of the first pass: nothing, or a line.
 std::string probes_planned(const run::Plan& plan);

@@ -4,12 +4,15 @@
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/engine_options.hpp"
 #include "common/errors.hpp"
+#include "common/input_event.hpp"
 #include "common/standard_streams.hpp"
 #include "common/terminal.hpp"
 #include "trammel/card_map.hpp"
@@ -39,6 +42,7 @@ struct ServeOptions {
   std::uint32_t baud = 0;
   double silence = 60;
   bool once = false;
+  std::vector<std::string> input_at;
 };
 
 volatile sig_atomic_t g_ended = 0;
@@ -84,9 +88,37 @@ std::unique_ptr<transport::Listener> listener_of(const ServeOptions& options) {
   try {
     return options.terminal ? transport::open_pseudo_terminal() : transport::listen_tcp(options.listen, options.port);
   } catch (const driver::LinkError& error) {
-    throw UsageError(fmt::format("serve: {}", error.what()));
+    const bool has_port = std::count(options.listen.begin(), options.listen.end(), ':') == 1;
+    throw UsageError(fmt::format("serve: {}{}", error.what(), has_port ? ": --port takes the port" : ""));
   }
 }
+
+// Switches that are pressed at times of the card: where its time has come between two turns of the server.
+class Switches {
+ public:
+  explicit Switches(const ServeOptions& options) : clock_hz_(options.clock_hz) {
+    for (const std::string& text : options.input_at) events_.push_back(input_event(text));
+    std::stable_sort(events_.begin(), events_.end(),
+                     [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
+  }
+  void press_due(sim::Engine& engine) {
+    for (; next_ < events_.size() && events_[next_].seconds * clock_hz_ <= static_cast<double>(engine.cycles());
+         ++next_)
+      press(engine, events_[next_]);
+  }
+
+ private:
+  static void press(sim::Engine& engine, const simulation::OperatorEvent& event) {
+    if (event.kind == simulation::OperatorEvent::Kind::kEmergencyStop)
+      engine.set_emergency_stop(event.level);
+    else
+      engine.set_input(event.input, event.level);
+  }
+
+  double clock_hz_;
+  std::vector<simulation::OperatorEvent> events_;
+  std::size_t next_ = 0;
+};
 
 // What a program or a person needs to connect, on standard output at once.
 void tell_where(const transport::Listener& listener, const std::string& token) {
@@ -101,6 +133,7 @@ bool is_loopback(const std::string& address) {
 
 void serve_card(const ServeOptions& options) {
   const serve::Settings settings = settings_of(options);
+  Switches switches(options);
   const std::unique_ptr<transport::Listener> listener = listener_of(options);
   const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_of(options));
   run::PathIdentity path;
@@ -108,14 +141,16 @@ void serve_card(const ServeOptions& options) {
   serve::CardServer server(*engine, *listener, settings);
   end_at_signals();
   if (!options.terminal && !is_loopback(options.listen)) {
+    const bool any = options.listen == "0.0.0.0" || options.listen == "::";
     tell("warning", fmt::format("--listen {}: the token travels unencrypted, and who has it moves the card: serve it "
-                                "only in a network that you trust",
-                                options.listen));
+                                "only in a network that you trust{}",
+                                options.listen, any ? "; others name this machine in place of this address" : ""));
   }
   tell_where(*listener, settings.token);
   bool met = false;
   while (g_ended == 0 && !(options.once && met && !server.has_client())) {
     server.turn();
+    switches.press_due(*engine);
     met = met || server.has_client();
   }
   const serve::CardServer::Counts& counts = server.counts();
@@ -125,7 +160,8 @@ void serve_card(const ServeOptions& options) {
     lockstep = fmt::format("; lockstep: {} cycles, 0 mismatches", *cycles);
   say(fmt::format("served {} clients, {} refused; {} requests, {} damaged; {:.3f} s of card time{}", counts.clients,
                   counts.refused, counts.requests, counts.dropped, seconds, lockstep));
-  say(fmt::format("path: {} steps, identity {}", path.count(), path.text()));
+  say(fmt::format("path: {} steps, identity {}; without the commands' numbers {}", path.count(), path.text(),
+                  path.unnumbered_text()));
 }
 
 }  // namespace
@@ -166,6 +202,12 @@ void add_serve_command(CLI::App& app) {
       ->check(positive())
       ->type_name("SECONDS")
       ->capture_default_str();
+  command
+      ->add_option("--input-at", options->input_at,
+                   fmt::format("set an input of the card (0 to {}) to a level (0 or 1) at a time of the card or soon "
+                               "after; before, each is at rest. Input estop: the emergency stop's button, 1 pressed",
+                               sim::kInputs - 1))
+      ->type_name("SECONDS:INPUT:LEVEL");
   command->add_flag("--once", options->once,
                     "end when the first client has gone, and nobody who came meanwhile is left");
   command->callback([options] { serve_card(*options); });

@@ -25,12 +25,14 @@ def add_sources(platform):
 class TrammelCard(LiteXModule):
     """`parameters`: any of docs/reference/integration.md beside axes, inputs and outputs. `*_idle`: levels in reset, a bit a pin."""
 
-    def __init__(self, platform, clock_hz, axes=4, inputs=4, outputs=4, step_idle=0, dir_idle=0, output_idle=0, **parameters):
+    def __init__(self, platform, clock_hz, axes=4, inputs=4, outputs=4, step_idle=0, dir_idle=0, output_idle=0, emergency_stop_level=1,
+                 **parameters):
         self.bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
         self.step = Signal(axes)
         self.dir = Signal(axes)
         self.inputs = Signal(inputs)
         self.outputs = Signal(outputs)
+        self.emergency_stop = Signal(reset=1 - emergency_stop_level)
         self.irq = Signal()
 
         # # #
@@ -46,6 +48,7 @@ class TrammelCard(LiteXModule):
             i_clk_i=ClockSignal("sys"), i_rst_i=ResetSignal("sys"),
             i_clock_hz_i=C(int(clock_hz), 32),
             i_idle_level_i=C(dir_idle << axes | step_idle, 2 * axes), i_output_idle_i=C(output_idle, outputs),
+            i_emergency_stop_level_i=C(emergency_stop_level, 1), i_emergency_stop_i=self.emergency_stop,
             i_wishbone_i=Cat(bus.dat_w, address, bus.sel, bus.we, bus.stb, bus.cyc),
             o_wishbone_o=Cat(bus.dat_r, stall, bus.err, bus.ack),
             i_input_i=self.inputs, o_output_o=self.outputs, o_step_o=self.step, o_dir_o=self.dir, o_irq_o=self.irq,

@@ -63,13 +63,23 @@ void bind_state(nb::class_<PythonCard>& card) {
            waiting([](PythonCard& of, std::int64_t ns) { of.card.wait_until_idle(nanoseconds(ns)); }), "timeout_ns"_a,
            "Waits until nothing runs or is queued. Raises TimeoutError after timeout_ns.")
       .def("read_faults", waiting([](PythonCard& of) { return of.card.read_faults(); }), "Latched faults: a mask.")
-      .def("clear_faults", waiting([](PythonCard& of) { of.card.clear_faults(); }), "Clears the latched faults.")
+      .def("read_fault_text", waiting([](PythonCard& of) { return of.card.read_fault_text(); }),
+           "The latched faults as text, with the axes and sides of limits: 'LIMIT (axis 0 plus)'; 'none'.")
+      .def("clear_faults", waiting([](PythonCard& of) { of.card.clear_faults(); }),
+           "Clears the latched faults; on the ramp of one it waits for the end first. Nothing moves by it. The fault "
+           "of a drive that still reports it stays.")
+      .def("read_rest", waiting([](PythonCard& of) { return of.card.read_rest(); }),
+           "Where the last stop has left the card. Raises StateError while it is on its way to one.")
+      .def("wait_until_stopped",
+           waiting([](PythonCard& of, std::int64_t ns) { of.card.wait_until_stopped(nanoseconds(ns)); }),
+           "margin_ns"_a = 1'000'000'000,
+           "Waits until a stop under way has ended. Raises TimeoutError margin_ns after the longest ramp.")
       .def("set_watchdog", waiting([](PythonCard& of, std::int64_t ns) { of.card.set_watchdog(nanoseconds(ns)); }),
            "time_ns"_a,
            "The card stops, with a fault, when this program is silent for time_ns (0: never). Calls that wait, and "
            "streams, keep it from stopping; set 0 when the motion is over.")
       .def("read_inputs", waiting([](PythonCard& of) { return of.card.read_inputs(); }),
-           "Levels of the inputs, bit n: input n.")
+           "Levels of the inputs after polarity and filters, bit n: input n.")
       .def("read_outputs", waiting([](PythonCard& of) { return of.card.read_outputs(); }),
            "Levels of the outputs, bit n: output n.")
       .def("read_marks", waiting([](PythonCard& of) { return of.card.read_marks(); }),
@@ -84,8 +94,16 @@ void bind_simulation(nb::class_<PythonCard>& card) {
            }),
            "clocks"_a, "Simulated cards: lets clocks pass.")
       .def(
-          "set_inputs", [](PythonCard& of, std::uint16_t levels) { of.engine().set_inputs(levels); }, "levels"_a,
+          "set_inputs", [](PythonCard& of, std::uint32_t levels) { of.engine().set_inputs(levels); }, "levels"_a,
           "Simulated cards: levels at the input pins, bit n: input n.")
+      .def(
+          "set_input",
+          [](PythonCard& of, unsigned input, bool level) {
+            check_input(of, input);
+            of.engine().set_input(input, level);
+          },
+          "input"_a, "level"_a,
+          "Simulated cards: the level of one input; the others stay. One that has got none is at its inactive level.")
       .def(
           "reset", [](PythonCard& of) { of.engine().reset(); }, "Simulated cards: as by the reset input.")
       .def("record_steps", &PythonCard::record, "on"_a = true,
@@ -105,11 +123,13 @@ void bind_card(nb::module_& m) {
   bind_closing(card);
   bind_motion(card);
   bind_state(card);
+  bind_inputs(m, card);
+  bind_place(m, card);
   bind_simulation(card);
   m.def("open", waiting(open_card), "url"_a,
         "The card that a URL names: sim:, tcp://host:port, serial:/dev/..., spi:/dev/..., mmap:/dev/...");
   m.def("simulate", simulate, "axes"_a = 4, "clock_hz"_a = 1'000'000, "A simulated card: the golden model.");
-  m.def("describe_faults", driver::describe_faults, "faults"_a, "limit_state"_a = 0,
+  m.def("describe_faults", driver::describe_faults, "faults"_a, "limit_state"_a = nb::none(),
         "The names of the faults in a mask, as text; the axes of limits and drives where LIMIT_STATE is given.");
 }
 

@@ -93,4 +93,34 @@ std::array<T, card_map::kMaxAxes> by_axis(const std::vector<T>& values, const ch
   return out;
 }
 
+using Axes = std::vector<unsigned>;  // their numbers
+
+// Bit n: axis n. Throws ArgumentError for one that the card lacks.
+inline std::uint8_t mask_of(const PythonCard& of, const Axes& axes) {
+  const unsigned present = of.card.identification().axes;
+  unsigned mask = 0;
+  for (const unsigned axis : axes) {
+    if (axis >= present) {
+      throw driver::ArgumentError("axis " + std::to_string(axis) + ": the card has " + std::to_string(present) +
+                                  " axes");
+    }
+    mask |= 1U << axis;
+  }
+  return static_cast<std::uint8_t>(mask);
+}
+
+inline std::vector<bool> bits_of(std::uint8_t mask, std::size_t axes) {
+  std::vector<bool> bits(axes);
+  for (std::size_t n = 0; n < axes; ++n) bits[n] = (mask >> n & 1U) != 0;
+  return bits;
+}
+
+// Throws ArgumentError for an input that the card lacks.
+inline void check_input(PythonCard& of, unsigned input) {
+  const unsigned present = of.card.inputs_present();
+  if (input < present) return;
+  throw driver::ArgumentError("input " + std::to_string(input) + ": the card has " + std::to_string(present) +
+                              " inputs");
+}
+
 }  // namespace trammel::python

@@ -53,10 +53,20 @@ void bind_state(nb::module_& m) {
       .def_ro("ended", &driver::Status::ended, "The card has passed an END.")
       .def_ro("faulted", &driver::Status::faulted, "A fault is latched.")
       .def_ro("refused", &driver::Status::refused, "A refusal is latched.")
-      .def_ro("stopping", &driver::Status::stopping, "The card ramps to a stop.")
+      .def_ro("snapshot", &driver::Status::snapshot, "A snapshot is under way.")
+      .def_ro("incomplete", &driver::Status::incomplete, "The stream stands inside a command.")
+      .def_ro("stopping", &driver::Status::stopping,
+              "The card is on its way to a stop: on a ramp, or making the last pulses.")
+      .def_ro("geometry_low", &driver::Status::geometry_low, "The geometry queue is below its watermark.")
+      .def_ro("feed_low", &driver::Status::feed_low, "The feed queue is below its watermark.")
       .def_ro("probed", &driver::Status::probed, "A probe has tripped.")
       .def_ro("probe_missed", &driver::Status::probe_missed, "Probing paths ended without an edge.")
-      .def_ro("waiting", &driver::Status::waiting, "The card waits for an input.");
+      .def_ro("waiting", &driver::Status::waiting, "The card waits for an input.")
+      .def_ro("underrun", &driver::Status::underrun, "The time base is held because the queues run dry.")
+      .def_ro("stale", &driver::Status::stale, "Position streaming goes on without a new period.")
+      .def_ro("button_hold", &driver::Status::button_hold, "The feed hold button holds, until cycle start.")
+      .def_ro("settled", &driver::Status::settled,
+              "At a ratio of 0 or stopped by a fault: each tick taken has made its steps, and each step its pulse.");
   nb::class_<driver::Snapshot>(m, "Snapshot", "State of the card in one clock.")
       .def_ro("time", &driver::Snapshot::time, "Clocks since reset.")
       .def_ro("status", &driver::Snapshot::status, "STATUS of that clock.")
@@ -68,6 +78,19 @@ void bind_state(nb::module_& m) {
       .def_ro("feed_begun", &driver::Snapshot::feed_begun,
               "Commands begun from the feed queue; the count wraps at 2^32.")
       .def_ro("position", &driver::Snapshot::position, "Pulses, by axis; the counts wrap at 2^32.");
+  nb::class_<driver::Rest>(m, "Rest", "Where the last stop has left the card, latched before it dropped anything.")
+      .def_ro("time", &driver::Rest::time, "Clocks since reset; 0: no stop since then.")
+      .def_ro("status", &driver::Rest::status, "STATUS of that clock.")
+      .def_ro("faults", &driver::Rest::faults, "Faults that had come by then: a mask for describe_faults().")
+      .def_ro("geometry_begun", &driver::Rest::geometry_begun,
+              "Commands begun from the geometry queue; the count wraps at 2^32.")
+      .def_ro("feed_begun", &driver::Rest::feed_begun, "Commands begun from the feed queue; the count wraps at 2^32.")
+      .def_ro("ticks_left", &driver::Rest::ticks_left,
+              "Ticks that the command begun last has not taken (a one-shot line: clocks); 0 where no path was under "
+              "way, and where it is not exact.")
+      .def_ro("position", &driver::Rest::position, "Pulses, by axis; the counts wrap at 2^32.")
+      .def_prop_ro("exact", &driver::Rest::exact,
+                   "Whether the position is that of all ticks taken; not so after an abort in motion.");
 }
 
 }  // namespace

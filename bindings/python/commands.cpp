@@ -52,8 +52,9 @@ driver::Command helix(std::uint64_t ticks, std::array<std::int64_t, 2> centre, s
 }
 
 driver::Command feed(std::uint64_t ticks, std::uint64_t rate, std::int64_t acceleration, std::int64_t jerk,
-                     std::uint32_t floor, std::uint32_t stop_distance, driver::PieceClass piece_class) {
-  return driver::FeedCommand{ticks, rate, acceleration, jerk, floor, stop_distance, piece_class};
+                     std::uint32_t floor, std::uint32_t stop_distance, driver::PieceClass piece_class, bool silent,
+                     std::uint8_t slew_shift) {
+  return driver::FeedCommand{ticks, rate, acceleration, jerk, floor, stop_distance, piece_class, silent, slew_shift};
 }
 
 template <class... Values>
@@ -84,8 +85,9 @@ void bind_commands(nb::module_& m) {
         "axes"_a = std::array<std::uint8_t, 2>{0, 1}, "further"_a = std::vector<std::int64_t>{},
         "An arc in chords, with lines of further axes over the same time.");
   m.def("feed", as_command(feed), "ticks"_a, "rate"_a, "acceleration"_a = 0, "jerk"_a = 0, "floor"_a = 1,
-        "stop_distance"_a = 0, "piece_class"_a = driver::PieceClass::kFeed,
-        "A piece of the feed: rate in 2^-64 ticks a clock. stop_distance 0: it ends at rest.");
+        "stop_distance"_a = 0, "piece_class"_a = driver::PieceClass::kFeed, "silent"_a = false, "slew_shift"_a = 0,
+        "A piece of the feed: rate in 2^-64 ticks a clock. stop_distance 0: it ends at rest. silent: it moves the path "
+        "on, but no axis. slew_shift: SLEW is doubled so often in it, 0 to 3.");
   m.def(
       "dwell", [](std::uint64_t clocks) { return PythonCommand{driver::DwellCommand{clocks}}; }, "clocks"_a,
       "Waits at rest for so many clocks.");

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "card_identity.hpp"
@@ -90,25 +92,35 @@ Snapshot Card::read_snapshot() { return parts_->snapshots.take(); }
 Snapshot Card::read_stop_snapshot() { return parts_->snapshots.stop(); }
 Snapshot Card::read_mark_snapshot() { return parts_->snapshots.mark(); }
 Snapshot Card::read_probe_snapshot() { return parts_->snapshots.probe(); }
+Rest Card::read_rest() { return parts_->snapshots.rest(); }
 std::uint32_t Card::read_marks() { return parts_->snapshots.marks(); }
 void Card::clear_probe() { parts_->snapshots.clear_probe(); }
 
-std::uint16_t Card::read_inputs() { return parts_->ports.inputs(); }
+std::uint32_t Card::read_inputs() { return parts_->ports.inputs(); }
 std::uint16_t Card::read_outputs() { return parts_->ports.outputs(); }
 unsigned Card::inputs_present() { return parts_->ports.inputs_present(); }
 unsigned Card::outputs_present() { return parts_->ports.outputs_present(); }
-void Card::set_input_polarity(std::uint16_t inverted) { parts_->ports.set_input_polarity(inverted); }
+void Card::set_input_polarity(std::uint32_t inverted) { parts_->ports.set_input_polarity(inverted); }
 void Card::set_output_safe(std::uint16_t levels, std::uint16_t change) {
   parts_->ports.set_output_safe(levels, change);
+}
+
+void Card::set_output_safe_cause(std::uint16_t levels, std::uint16_t change) {
+  parts_->ports.set_output_safe_cause(levels, change);
+}
+
+void Card::set_emergency_stop_ramps(bool ramp) {
+  if (!card_map::has_engine(identification().engines, card_map::engine::kEmergencyStop))
+    throw ArgumentError("emergency stop: the card has none");
+  constexpr std::uint32_t kReaction = card_map::field::kStopReactionEmergencyStop;
+  const std::uint32_t before = parts_->registers.read(card_map::reg::kStopReaction);
+  parts_->registers.write(card_map::reg::kStopReaction, ramp ? before | kReaction : before & ~kReaction,
+                          "reaction to the emergency stop");
 }
 
 std::uint32_t Card::read_faults() { return parts_->registers.read_faults(); }
 void Card::set_watchdog(std::chrono::nanoseconds time) { parts_->watchdog.set(time); }
 
-void Card::clear_faults() {
-  std::array<Access, 3> accesses{parts_->watchdog.restart(), write_of(reg::kFault, register_at(reg::kFault).mask)};
-  parts_->registers.transfer(accesses.data(), accesses.size() - 1, "clearing faults");
-}
 std::optional<Refusal> Card::refusal() { return parts_->registers.refusal(); }
 void Card::clear_refusal() { parts_->registers.clear_refusal(); }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "card_identity.hpp"
+#include "register_checks.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/interrupt.hpp"
@@ -60,14 +61,40 @@ Snapshot Card::stop(std::chrono::nanoseconds margin) {
   return end;
 }
 
-// Until nothing runs any more, or, with `held_is_rest`, until the time base stands.
+void Card::wait_until_stopped(std::chrono::nanoseconds margin) {
+  if (!read_status().stopping) return;
+  const std::uint64_t ramp = kSlowestSlew / std::max<std::uint32_t>(parts_->registers.read(reg::kSlew), 1);
+  const std::uint64_t limit = ramp + clocks_of(margin, timing().clock_hz, "waiting for a stop: margin");
+  const std::uint64_t pause = poll_interval(timing().clock_hz);
+  for (std::uint64_t waited = 0; read_status().stopping; waited += pause) {
+    if (waited > limit) throw TimeoutError("waiting for a stop", waited);
+    if (interrupted()) throw InterruptedError("waiting for a stop: interrupted; the card goes on to rest");
+    bus().sleep(time_of(pause, timing().clock_hz));
+  }
+}
+
+// The stop first: a card on its ramp would refuse commands though FAULT is clear, and make a new fault of the old
+// cause.
+void Card::clear_faults(std::chrono::nanoseconds margin) {
+  wait_until_stopped(margin);
+  const auto times = parts_->watchdog.restart();
+  const std::size_t count = parts_->watchdog.restarts();
+  std::array<Access, Watchdog::kRestarts + 2> accesses{};
+  std::copy_n(times.begin(), count, accesses.begin());
+  accesses[count] = write_of(reg::kFault, register_at(reg::kFault).mask);
+  parts_->registers.transfer(accesses.data(), count + 1, "clearing faults");
+}
+
+// Until nothing runs any more, or, with `held_is_rest`, until the time base stands and nothing moves.
 void Card::wait_for_rest(std::uint64_t limit, bool held_is_rest) {
   const std::uint64_t pause = poll_interval(timing().clock_hz);
   for (std::uint64_t waited = 0;; waited += pause) {
     const Status now = read_status();
     parts_->registers.throw_if_faulted(now, "stop");
     parts_->watchdog.look();
-    if (!now.busy || (held_is_rest && now.held)) return;
+    // Settled: the ticks taken have made their steps, so that REST behind the abort is exact.
+    if (!now.busy || (held_is_rest && now.held && (now.settled || identification().map_minor < kMapMinorOfRest)))
+      return;
     if (waited > limit) throw TimeoutError("stop on the path", waited);
     if (interrupted()) throw InterruptedError("stop on the path: interrupted; the card goes on to rest, and holds");
     bus().sleep(time_of(pause, timing().clock_hz));

@@ -87,8 +87,8 @@ inline constexpr map::Field kClear = field_of(kOutput, "clear");
 inline constexpr const map::Command& kMark = layout_for(map::Opcode::Mark);
 inline constexpr const map::Command& kWaitInput = layout_for(map::Opcode::WaitInput);
 inline constexpr map::Field kWaitCondition = field_of(kWaitInput, "condition");
-inline constexpr const map::Command& kProbe = layout_for(map::Opcode::Probe);
-inline constexpr map::Field kProbeCondition = field_of(kProbe, "condition");
+inline constexpr const map::Command& kProbeLayout = layout_for(map::Opcode::Probe);
+inline constexpr map::Field kProbeCondition = field_of(kProbeLayout, "condition");
 inline constexpr const map::Command& kProbeEnd = layout_for(map::Opcode::ProbeEnd);
 // Bits of the field `condition`.
 inline constexpr unsigned kInputMask = 0x1F;

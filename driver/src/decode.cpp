@@ -117,7 +117,8 @@ Command arc_chord_from(const Reader& from, std::uint8_t mask) {
 Command feed_from(const Reader& from, std::uint8_t flags) {
   FeedCommand feed;
   feed.silent = (flags & map::constant::kPieceSilent) != 0;
-  feed.piece_class = static_cast<PieceClass>(flags & ~map::constant::kPieceSilent);
+  feed.slew_shift = static_cast<std::uint8_t>(flags / map::constant::kPieceDoubling);
+  feed.piece_class = static_cast<PieceClass>(flags % map::constant::kPieceSilent);
   feed.ticks = from.count();
   feed.rate = from.unsigned_field<kRate>();
   feed.floor = static_cast<std::uint32_t>(from.unsigned_field<kFloor>());

@@ -167,7 +167,9 @@ std::size_t write(const FeedCommand& feed, std::uint8_t number, std::uint32_t* w
   const auto flags = static_cast<std::uint8_t>(feed.piece_class);
   if (flags > kFeedLayout.flags_maximum) refuse(kFeedLayout, fmt::format("class {}", flags));
   const auto silent = static_cast<std::uint8_t>(feed.silent ? map::constant::kPieceSilent : 0);
-  Writer to(kFeedLayout, flags | silent, feed.ticks, number, words);
+  if (feed.slew_shift > kMaxSlewShift) refuse(kFeedLayout, fmt::format("slew shift {}", feed.slew_shift));
+  const auto shift = static_cast<std::uint8_t>(feed.slew_shift * map::constant::kPieceDoubling);
+  Writer to(kFeedLayout, flags | silent | shift, feed.ticks, number, words);
   to.field<kRate>(feed.rate);
   to.field<kFloor>(std::uint64_t{feed.floor});
   to.field<kStopDistance>(std::uint64_t{feed.stop_distance});
@@ -207,8 +209,8 @@ std::size_t write(const WaitInputCommand& wait, std::uint8_t number, std::uint32
 }
 
 std::size_t write(const ProbeCommand& probe, std::uint8_t number, std::uint32_t* words) {
-  Writer to(kProbe, 0, 0, number, words);
-  to.field<kProbeCondition>(condition_of(kProbe, probe.input, probe.level));
+  Writer to(kProbeLayout, 0, 0, number, words);
+  to.field<kProbeCondition>(condition_of(kProbeLayout, probe.input, probe.level));
   return to.length();
 }
 
@@ -234,8 +236,8 @@ bool counts_as_begun(const Command& command) {
 }
 
 const card_map::Command& layout_of(const Command& command) {
-  constexpr std::array<const map::Command*, 11> kLayouts{&kLine,   &kArc,  &kArcChord,  &kFeedLayout, &kDwell,   &kEnd,
-                                                         &kOutput, &kMark, &kWaitInput, &kProbe,      &kProbeEnd};
+  constexpr std::array<const map::Command*, 11> kLayouts{&kLine,   &kArc,  &kArcChord,  &kFeedLayout,  &kDwell,   &kEnd,
+                                                         &kOutput, &kMark, &kWaitInput, &kProbeLayout, &kProbeEnd};
   static_assert(std::variant_size_v<Command> == kLayouts.size() &&
                 std::is_same_v<std::variant_alternative_t<0, Command>, LineCommand> &&
                 std::is_same_v<std::variant_alternative_t<1, Command>, ArcCommand> &&

@@ -36,10 +36,10 @@ RefusedError::RefusedError(std::uint8_t reason, std::uint8_t command_number, std
       command_number_(command_number),
       address_(address) {}
 
-FaultError::FaultError(std::uint32_t faults, const std::string& context, std::uint32_t limit_state)
+FaultError::FaultError(std::uint32_t faults, const std::string& context, std::optional<std::uint32_t> limit_state)
     : Error(fmt::format("{}: the card has stopped with a fault: {}", context, describe_faults(faults, limit_state))),
       faults_(faults),
-      limit_state_(limit_state) {}
+      limit_state_(limit_state.value_or(0)) {}
 
 TimeoutError::TimeoutError(const std::string& context, std::uint64_t waited)
     : Error(fmt::format("{}: not within {} card clocks", context, waited)), waited_(waited) {}
@@ -47,8 +47,9 @@ TimeoutError::TimeoutError(const std::string& context, std::uint64_t waited)
 namespace {
 
 // More than the name says: "axis 0 plus, axis 2 minus".
-std::string detail_of(std::uint32_t limit_state, std::uint32_t fault) {
+std::string detail_of(std::optional<std::uint32_t> read, std::uint32_t fault) {
   namespace field = card_map::field;
+  const std::uint32_t limit_state = read.value_or(0);
   std::string text;
   const auto add = [&](unsigned shift, const char* end) {
     for (unsigned axis = 0; axis < card_map::kMaxAxes; ++axis) {
@@ -61,13 +62,18 @@ std::string detail_of(std::uint32_t limit_state, std::uint32_t fault) {
     add(field::kLimitStatePlusShift, " plus");
   }
   if (fault == field::kFaultDriveFault) add(field::kLimitStateDriveFaultShift, "");
+  if (fault == field::kFaultSoftLimit && read) {
+    text = fmt::format("axis {} {}", (limit_state & field::kLimitStateSoftAxis) >> field::kLimitStateSoftAxisShift,
+                       (limit_state & field::kLimitStateSoftPlus) != 0 ? "plus" : "minus");
+  }
+  if (fault == field::kFaultLinkLoss) text = "no access of the program that moved the card came in time";
   if (fault == field::kFaultWatchdog) text = "the program that moved the card was silent for too long";
   return text;
 }
 
 }  // namespace
 
-std::string describe_faults(std::uint32_t faults, std::uint32_t limit_state) {
+std::string describe_faults(std::uint32_t faults, std::optional<std::uint32_t> limit_state) {
   namespace field = card_map::field;
   std::string text;
   const auto add = [&text](const std::string& name) { text += (text.empty() ? "" : ", ") + name; };

@@ -42,6 +42,9 @@ bool answers(const Reply& reply, const Request& request) {
   return !ran || (reply.has_data == (request.kind == Kind::Read) && reply.epoch == request.epoch);
 }
 
+// What an impatient bus allows for an answer once there was none.
+constexpr std::chrono::milliseconds kLastAsk(500);
+
 constexpr const char* kUnknown =
     "the card was reset, or used by somebody else: what became of the last request is not known";
 
@@ -56,7 +59,14 @@ FrameBus::FrameBus(ByteLink& link, const Options& options) : link_(link), option
   options_ = options;
 }
 
+// Impatient, a request is sent once, and once again on a new connection.
+FrameBus::Tries FrameBus::tries() const {
+  if (!is_impatient()) return {options_.answer, options_.sends, options_.restarts};
+  return {lost_ ? kLastAsk : patience_, 1, 1};
+}
+
 void FrameBus::begin_anew() {
+  tries_ = tries();
   reconnect();
   number_ = card_last_;
   went_back_ = false;
@@ -99,23 +109,42 @@ Reply FrameBus::exchange(Request request) {
   ++counts_.requests;
   request.number = next(number_);
   open_ = request;
+  tries_ = tries();
+  const auto begun = link_.now();
   for (unsigned attempt = 0;; ++attempt) {
     open_->epoch = epoch_;
     if (const std::optional<Reply> reply = try_open()) {
       open_.reset();
+      lost_ = false;
       number_ = request.number;
       if (reply->made != request.count && reply->result == Result::Done) {
         throw LinkError(fmt::format("the card made {} of {} accesses and refused none", reply->made, request.count));
       }
       return *reply;
     }
-    if (attempt == options_.restarts) {
-      throw LinkError(fmt::format("no answer to a request, sent {} times on each of {} connections", options_.sends,
-                                  options_.restarts + 1));
+    if (attempt == tries_.restarts) {
+      lost_ = true;
+      throw LinkError(fmt::format("no answer to a request, sent {} times on each of {} connections", tries_.sends,
+                                  tries_.restarts + 1));
     }
-    reconnect();
+    connect_again(begun);
     if (!known()) throw LinkError(kUnknown);
   }
+}
+
+// After a request without an answer, sent at `begun`.
+void FrameBus::connect_again(std::chrono::nanoseconds begun) {
+  const Tries before = tries_;
+  if (is_impatient()) tries_ = {kLastAsk, 1, 0};
+  try {
+    reconnect();
+  } catch (const LinkError& error) {
+    lost_ = true;
+    if (!is_impatient()) throw;
+    const std::chrono::duration<double> silent = link_.now() - begun;
+    throw LinkError(fmt::format("no answer for {:.1f} s; {}", silent.count(), error.what()));
+  }
+  tries_ = {before.answer, before.sends, before.restarts};
 }
 
 // A link that is gone is one without an answer: what comes next is a new connection.
@@ -132,6 +161,7 @@ bool FrameBus::known() const { return !went_back_ && (card_last_ == number_ || c
 
 std::size_t FrameBus::resume() {
   if (!open_) return made_;
+  tries_ = tries();
   reconnect();
   if (!known()) throw LinkError(kUnknown);
   if (card_last_ == number_) {
@@ -151,7 +181,7 @@ std::optional<Reply> FrameBus::send_and_wait(const Request& request) {
   // The first end closes whatever the card has taken for a frame's beginning.
   Bytes bytes{frames::kEnd};
   frames::append_request(bytes, request);
-  for (unsigned send = 0; send < options_.sends; ++send) {
+  for (unsigned send = 0; send < tries_.sends; ++send) {
     if (send != 0) ++counts_.sent_again;
     link_.send(bytes.data(), bytes.size());
     std::optional<Reply> reply = wait_for(request, bytes.size());
@@ -167,7 +197,7 @@ std::optional<Reply> FrameBus::send_and_wait(const Request& request) {
 
 std::optional<Reply> FrameBus::wait_for(const Request& request, std::size_t bytes) {
   const auto back = static_cast<std::size_t>(request.kind == Kind::Read ? request.count : 0) * 8 + 80;
-  const auto until = link_.now() + link_.time_of(bytes) + link_.time_of(back) + options_.answer;
+  const auto until = link_.now() + link_.time_of(bytes) + link_.time_of(back) + tries_.answer;
   const auto begun = link_.now();
   std::uint8_t buffer[256];
   // Bytes behind the end of this reply belong to nothing that is waited for.
@@ -208,12 +238,11 @@ bool FrameBus::connect() {
 
 void FrameBus::reconnect() {
   std::string failure =
-      options_.sends == 1 && options_.restarts == 0
+      tries_.sends == 1 && tries_.restarts == 0
           ? fmt::format("no card answers within {} ms",
-                        std::chrono::duration_cast<std::chrono::milliseconds>(options_.answer).count())
-          : fmt::format("no card answers: asked {} times on each of {} connections", options_.sends,
-                        options_.restarts + 1);
-  for (unsigned attempt = 0; attempt <= options_.restarts; ++attempt) {
+                        std::chrono::duration_cast<std::chrono::milliseconds>(tries_.answer).count())
+          : fmt::format("no card answers: asked {} times on each of {} connections", tries_.sends, tries_.restarts + 1);
+  for (unsigned attempt = 0; attempt <= tries_.restarts; ++attempt) {
     ++counts_.restarts;
     deframer_.clear();
     try {

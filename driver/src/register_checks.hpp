@@ -12,6 +12,8 @@
 
 namespace trammel::driver {
 
+inline constexpr std::uint16_t kMapMinorOfRest = 4;  // the area REST and STATUS.settled came with map 3.4
+
 inline const card_map::Register& register_at(std::uint32_t address) { return *card_map::find_register(address).entry; }
 
 inline std::uint32_t field_bits(std::uint32_t value, std::uint32_t mask, std::uint32_t shift) {

@@ -151,7 +151,12 @@ Status Registers::decode_status(std::uint32_t value) {
   status.probed = (value & field::kStatusProbed) != 0;
   status.probe_missed = (value & field::kStatusProbeMissed) != 0;
   status.waiting = (value & field::kStatusWaiting) != 0;
+  status.underrun = (value & field::kStatusUnderrun) != 0;
+  status.stale = (value & field::kStatusStale) != 0;
   status.button_hold = (value & field::kStatusButtonHold) != 0;
+  status.enabled = (value & field::kStatusEnabled) != 0;
+  status.enable_waits = (value & field::kStatusEnableWaits) != 0;
+  status.settled = (value & field::kStatusSettled) != 0;
   return status;
 }
 
@@ -170,8 +175,10 @@ Status Registers::status_of(const Access& access) const {
 
 void Registers::throw_fault(std::uint32_t faults, std::string_view context) {
   // Only a card that has LIMIT_STATE sets these bits.
-  constexpr std::uint32_t kNamed = field::kFaultLimit | field::kFaultDriveFault;
-  throw FaultError(faults, std::string(context), (faults & kNamed) != 0 ? read(reg::kLimitState) : 0);
+  constexpr std::uint32_t kNamed = field::kFaultLimit | field::kFaultDriveFault | field::kFaultSoftLimit;
+  std::optional<std::uint32_t> state;
+  if ((faults & kNamed) != 0) state = read(reg::kLimitState);
+  throw FaultError(faults, std::string(context), state);
 }
 
 void Registers::throw_if_faulted(const Status& status, std::string_view context) {

@@ -54,7 +54,8 @@ void check_known(const Descriptor& d, const map::Unit& unit, unsigned axes) {
   if (d.major != unit.major) {
     refuse(d, "version {}.{}, this driver takes version {}", d.major, d.minor, unit.major);
   }
-  const Descriptor expected = map::describe(unit, {~std::uint32_t{0}, axes, d.instances, d.instances, d.instances});
+  const Descriptor expected =
+      map::describe(unit, {~std::uint32_t{0}, axes, d.instances, d.instances, d.instances, d.instances});
   if (unit.count == map::UnitCount::Axes && d.instances != axes) {
     refuse(d, "{} instances, but AXES reads {}", d.instances, axes);
   }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card_timing.hpp"
 #include "trammel/driver/errors.hpp"
@@ -13,6 +16,7 @@ namespace {
 
 constexpr std::uint64_t kUnitClocks = 65'536;
 constexpr std::uint64_t kMaxUnits = 0xFFFF;
+constexpr unsigned kMapMinorOfLinkTimeout = 5;  // it came with map 3.5
 
 }  // namespace
 
@@ -39,10 +43,19 @@ void Watchdog::look() {
 void Watchdog::write() {
   looks_ = 0;
   written_ = std::chrono::steady_clock::now();
-  registers_.write(card_map::reg::kWatchdog, units_, "watchdog");
+  std::array<Access, kRestarts + 1> accesses{};
+  const auto times = restart();
+  std::copy(times.begin(), times.end(), accesses.begin());
+  registers_.transfer(accesses.data(), restarts(), "watchdog");
 }
 
-Access Watchdog::restart() const { return write_of(card_map::reg::kWatchdog, units_); }
+// LINK_TIMEOUT is written with each of them: after a connection that was made anew it says that its session is the one
+// that writes.
+std::array<Access, Watchdog::kRestarts> Watchdog::restart() const {
+  return {write_of(card_map::reg::kWatchdog, units_), write_of(card_map::reg::kLinkTimeout, units_)};
+}
+
+std::size_t Watchdog::restarts() const { return card_.map_minor >= kMapMinorOfLinkTimeout ? 2 : 1; }
 
 WatchdogScope::~WatchdogScope() {
   // Whatever a link throws: the card is then left to its watchdog.

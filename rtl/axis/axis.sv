@@ -120,6 +120,8 @@ module axis #(
       .step_o,
       .dir_o,
       .position_o(position),
+      .begun_o(observe_o[axis_observe_pkg::COUNTS]),
+      .back_o(observe_o[axis_observe_pkg::COUNTS_BACK]),
       .busy_o,
       .fault_o
   );

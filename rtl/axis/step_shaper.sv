@@ -17,6 +17,8 @@ module step_shaper (
     output logic             step_o,
     output logic             dir_o,
     output logic      [31:0] position_o,
+    output logic             begun_o,        // event: a pulse begins; the position has it in the next clock
+    output logic             back_o,         // with it: 1 backwards, 0 forwards
     output logic             busy_o,
     output logic             fault_o         // event
 );
@@ -58,6 +60,9 @@ module step_shaper (
       .begun_o(begun),
       .pulse_o(pulse)
   );
+
+  assign begun_o = begun;
+  assign back_o  = dir;
 
   always_ff @(posedge clk_i) begin
     busy_o <= step_i || any || !resting;

@@ -10,7 +10,8 @@ package engines_pkg;
   localparam int MISSED_END = 4;  // with done: not on the commanded end point
   localparam int LIVE = 5;  // an axis has not made its count of steps
   localparam int BUSY = 6;  // an axis still moves (combinational)
-  localparam int WIDTH = 7;
+  localparam int QUIET = 7;  // no path tick waits or is on its way to an engine, none makes a step
+  localparam int WIDTH = 8;
 
 endpackage
 `default_nettype wire

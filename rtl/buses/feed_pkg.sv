@@ -6,9 +6,16 @@ package feed_pkg;
   localparam int AT_BARRIER = 0;  // the feed stands at a barrier
   localparam int RUNS = 1;  // a piece gives ticks, or a decoded one waits (combinational)
   localparam int AT_REST = 2;  // the ratio is 0 (combinational)
-  localparam int STOPPING = 3;  // a fault's ramp
+  localparam int STOPPING = 3;  // on the way to a fault's cut
   localparam int SILENT = 4;  // the piece's ticks make no steps
-  localparam int WIDTH = 5;
+  localparam int CLOSING = 5;  // no tick is taken any more, a cut follows
+  localparam int CAUSED = 6;  // a cause of a stop comes, or a stop is under way or has been (combinational)
+  localparam int LATCHED = 7;  // the emergency stop's latch: asynchronous
+  localparam int ENABLED = 8;  // the drives are
+  localparam int RELEASED = 9;  // their brake is
+  localparam int HEALTHY = 10;  // the card is
+  localparam int PUMP = 11;  // the charge pump's square wave
+  localparam int WIDTH = 12;
 
 endpackage
 `default_nettype wire

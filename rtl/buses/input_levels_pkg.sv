@@ -1,13 +1,24 @@
-// The levels of the card's inputs behind synchroniser and polarity: one bundle for every block that looks at an input.
+// The levels of the card's inputs behind synchroniser and polarity, before and behind their filters: one bundle for every
+// block that looks at an input. A bit for each input, 0 for absent ones. Without machine inputs there are no filters.
 `default_nettype none
 package input_levels_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int LEVELS = 0;  // 16 bits: a bit for each input, 0 for absent ones (combinational)
-  localparam int WIDTH = 16;
+  localparam int LEVELS = 0;  // 32 bits: behind the filters (combinational)
+  localparam int RAW = 32;  // 32 bits: before them (combinational)
+  localparam int QUIET = 64;  // 32 bits, with captures: raw has stood at the filtered level for a filter's length
+  localparam int WIDTH = 96;
 
-  function automatic logic [15:0] levels(input logic [WIDTH-1:0] inputs);
-    levels = inputs[LEVELS+:16];
+  function automatic logic [31:0] levels(input logic [WIDTH-1:0] inputs);
+    levels = inputs[LEVELS+:32];
+  endfunction
+
+  function automatic logic [31:0] raw(input logic [WIDTH-1:0] inputs);
+    raw = inputs[RAW+:32];
+  endfunction
+
+  function automatic logic [31:0] quiet(input logic [WIDTH-1:0] inputs);
+    quiet = inputs[QUIET+:32];
   endfunction
 
 endpackage

@@ -16,7 +16,9 @@ package path_pkg;
   localparam int INCOMPLETE = 10;  // event: PATH_INCOMPLETE
   localparam int MISSING = 11;  // event: MISSING_PERIOD
   localparam int PROBING = 12;  // a probe is armed, or has tripped and PROBE_END is to come
-  localparam int WIDTH = 13;
+  localparam int UNFINISHED = 13;  // the path under way has ticks left (combinational)
+  localparam int LEFT = 14;  // 40 bits: so many; right three clocks after a tick, two after a swap
+  localparam int WIDTH = 54;
 
 endpackage
 `default_nettype wire

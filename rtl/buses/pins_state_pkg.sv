@@ -3,15 +3,15 @@
 package pins_state_pkg;
 
   // Fields, lowest bit first; each ends where the next one begins.
-  localparam int INPUTS = 0;  // 16 bits: levels, after synchroniser and polarity (combinational)
-  localparam int OUTPUTS = 16;  // 16 bits: levels
-  localparam int MARKS = 32;  // 32 bits: MARKs that have taken effect
-  localparam int PROBED = 64;  // the probe has tripped
-  localparam int PROBE_MISSED = 65;  // PROBE_END came before an edge
-  localparam int WIDTH = 66;
+  localparam int INPUTS = 0;  // 32 bits: levels, as input_levels_pkg has them
+  localparam int OUTPUTS = 32;  // 16 bits: levels
+  localparam int MARKS = 48;  // 32 bits: MARKs that have taken effect
+  localparam int PROBED = 80;  // the probe has tripped
+  localparam int PROBE_MISSED = 81;  // PROBE_END came before an edge
+  localparam int WIDTH = 82;
 
-  function automatic logic [15:0] inputs(input logic [WIDTH-1:0] state);
-    inputs = state[INPUTS+:16];
+  function automatic logic [31:0] inputs(input logic [WIDTH-1:0] state);
+    inputs = state[INPUTS+:32];
   endfunction
 
   function automatic logic [15:0] outputs(input logic [WIDTH-1:0] state);

@@ -8,9 +8,11 @@ package register_access_pkg;
   localparam int ADDRESS = 32;  // 12 bits: bytes
   localparam int PARTIAL = 44;  // a write without all its byte strobes
   localparam int WRITE = 45;  // 0: a read
-  localparam int PORT = 46;  // 2 bits: the host port that asks; 0 in front of the arbiter
-  localparam int REQUEST = 48;  // event
-  localparam int WIDTH = 49;
+  localparam int OF_SESSION = 46;  // a session at the port asks for it; 0: the port itself
+  localparam int NEW_SESSION = 47;  // the first access of a session
+  localparam int PORT = 48;  // 2 bits: the host port that asks; 0 in front of the arbiter
+  localparam int REQUEST = 50;  // event
+  localparam int WIDTH = 51;
 
   function automatic logic [31:0] data(input logic [WIDTH-1:0] access);
     data = access[DATA+:32];
@@ -36,7 +38,13 @@ package register_access_pkg;
 
   function automatic logic [WIDTH-1:0] pack(input logic now, input logic is_write, input logic is_partial,
                                             input logic [11:0] place, input logic [31:0] value);
-    pack = {now, 2'd0, is_write, is_partial, place, value};
+    pack = {now, 2'd0, 1'b0, 1'b1, is_write, is_partial, place, value};
+  endfunction
+
+  // The access of a port that has sessions.
+  function automatic logic [WIDTH-1:0] with_session(input logic [WIDTH-1:0] access, input logic of_session,
+                                                    input logic new_session);
+    with_session = {access[WIDTH-1:PORT], new_session, of_session, access[OF_SESSION-1:0]};
   endfunction
 
   // The access as the arbiter passes it on: its request when `now`, from the port `from`.

@@ -7,7 +7,8 @@ package snapshot_pkg;
   localparam int WORD = 0;  // 32 bits: of the owner before
   localparam int STROBE = 32;  // event
   localparam int SHIFT = 33;  // event, never with a strobe
-  localparam int WIDTH = 34;
+  localparam int REST = 34;  // with the strobe: it is that of the area REST
+  localparam int WIDTH = 35;
 
   function automatic logic [31:0] word(input logic [WIDTH-1:0] chain);
     word = chain[WORD+:32];
@@ -15,11 +16,12 @@ package snapshot_pkg;
 
   // The chain as it goes on behind an owner that holds `value`.
   function automatic logic [WIDTH-1:0] with_word(input logic [WIDTH-1:0] chain, input logic [31:0] value);
-    with_word = {chain[SHIFT], chain[STROBE], value};
+    with_word = {chain[REST], chain[SHIFT], chain[STROBE], value};
   endfunction
 
-  function automatic logic [WIDTH-1:0] pack(input logic shift_now, input logic strobe_now, input logic [31:0] value);
-    pack = {shift_now, strobe_now, value};
+  function automatic logic [WIDTH-1:0] pack(input logic of_rest, input logic shift_now, input logic strobe_now,
+                                            input logic [31:0] value);
+    pack = {of_rest, shift_now, strobe_now, value};
   endfunction
 
 endpackage

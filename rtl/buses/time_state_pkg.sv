@@ -13,10 +13,14 @@ package time_state_pkg;
   localparam int UNDERRUN = 147;  // the under-run hold is in force, or keeps a piece waiting
   localparam int HELD = 148;  // the ratio is 0 (combinational)
   localparam int FEED_ACTIVE = 149;  // a feed piece gives ticks
-  localparam int STOPPING = 150;  // a fault's ramp
-  localparam int LIMIT_STATE = 151;  // 24 bits: the register LIMIT_STATE
-  localparam int BUTTON_HOLD = 175;  // the feed hold button holds
-  localparam int WIDTH = 176;
+  localparam int STOPPING = 150;  // on the way to a fault's cut
+  localparam int LIMIT_STATE = 151;  // 28 bits: the register LIMIT_STATE
+  localparam int BUTTON_HOLD = 179;  // the feed hold button holds
+  localparam int PLACE = 180;  // 16 bits: the register PLACE
+  localparam int SETTLED = 196;  // nothing moves, and no tick is on its way (combinational)
+  localparam int ENABLED = 197;  // the drives are enabled
+  localparam int ENABLE_WAITS = 198;  // motion waits for their enable (combinational)
+  localparam int WIDTH = 199;
 
   function automatic logic [31:0] fault(input logic [WIDTH-1:0] state);
     fault = state[FAULT+:32];
@@ -34,8 +38,12 @@ package time_state_pkg;
     rate = state[RATE+:32];
   endfunction
 
-  function automatic logic [23:0] limit_state(input logic [WIDTH-1:0] state);
-    limit_state = state[LIMIT_STATE+:24];
+  function automatic logic [27:0] limit_state(input logic [WIDTH-1:0] state);
+    limit_state = state[LIMIT_STATE+:28];
+  endfunction
+
+  function automatic logic [15:0] place(input logic [WIDTH-1:0] state);
+    place = state[PLACE+:16];
   endfunction
 
   function automatic logic [16:0] ratio(input logic [WIDTH-1:0] state);

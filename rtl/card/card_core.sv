@@ -14,8 +14,13 @@ module card_core #(
     parameter int          Watermarks        = 1,     // 0: without
     parameter int          PathCommands      = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
     parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
-    parameter int          Inputs            = 4,     // 1 to 16, of a card with path commands
-    parameter int          Outputs           = 4,
+    parameter int          MachineInputs     = 0,     // 1: filters and roles of inputs; limits, drive faults, feed hold
+    parameter int          Captures          = 0,     // 0 to 4 units; with one, the probe's edge is captured, too
+    parameter int          SoftLimits        = 0,     // 1: ends of each axis, which its position is compared with
+    parameter int          EmergencyStop     = 0,     // 1: a pin for the emergency stop
+    parameter int          Enables           = 0,     // 1: outputs for drive enable, brake, charge pump, card healthy
+    parameter int          Inputs            = 4,     // 1 to 32, of a card with path commands
+    parameter int          Outputs           = 4,     // 1 to 16
     parameter int          Ports             = 1,     // 1 to 4: what is joined in front of the inner port
     parameter logic [31:0] BuildId           = 0,
     parameter int          BuildDirty        = 0,
@@ -30,8 +35,10 @@ module card_core #(
     input wire logic [31:0] clock_hz_i,
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
+    input wire logic emergency_stop_level_i,  // of the pin: the level that means stop
     // pins
     input wire logic [Inputs-1:0] input_i,
+    input wire logic emergency_stop_i,
     output logic [Outputs-1:0] output_o,
     output logic [Axes-1:0] step_o,
     output logic [Axes-1:0] dir_o,
@@ -50,16 +57,34 @@ module card_core #(
     ERROR_Ports_must_be_1_to_4 error ();
   end
 
-  if (Inputs < 1 || Inputs > 16 || Outputs < 1 || Outputs > 16) begin : gen_wrong_pins
-    ERROR_Inputs_and_Outputs_must_be_1_to_16 error ();
+  if (Inputs < 1 || Inputs > 32 || Outputs < 1 || Outputs > 16) begin : gen_wrong_pins
+    ERROR_Inputs_must_be_1_to_32_and_Outputs_1_to_16 error ();
   end
   localparam int FLAGS = Accumulator | EightDirections | ArcGenerator | DirectMode | UnderrunHold | Classes |
-      Watermarks | PathCommands | PositionStreaming | BuildDirty;
+      Watermarks | PathCommands | PositionStreaming | MachineInputs | EmergencyStop | Enables | SoftLimits | BuildDirty;
   if (FLAGS != 0 && FLAGS != 1) begin : gen_wrong_flag
     ERROR_engines_and_BuildDirty_must_be_0_or_1 error ();
   end
   if (EightDirections != 0 && Accumulator == 0) begin : gen_wrong_accumulator
     ERROR_EightDirections_needs_Accumulator error ();
+  end
+
+  if (MachineInputs == 1 && PathCommands == 0) begin : gen_wrong_machine_inputs
+    ERROR_MachineInputs_needs_PathCommands error ();
+  end
+  if (SoftLimits == 1 && MachineInputs == 0) begin : gen_wrong_soft_limits
+    ERROR_SoftLimits_needs_MachineInputs error ();
+  end
+
+  if (Captures < 0 || Captures > 4) begin : gen_wrong_captures
+    ERROR_Captures_must_be_0_to_4 error ();
+  end
+  if (Captures != 0 && MachineInputs == 0) begin : gen_captures_without_inputs
+    ERROR_Captures_needs_MachineInputs error ();
+  end
+
+  if (Enables == 1 && PathCommands == 0) begin : gen_wrong_enables
+    ERROR_Enables_needs_PathCommands error ();
   end
 
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
@@ -70,7 +95,11 @@ module card_core #(
       32'(UnderrunHold != 0) << card_map_pkg::ENGINE_UNDERRUN_HOLD | 32'(Classes != 0) << card_map_pkg::ENGINE_CLASSES |
       32'(Watermarks != 0) << card_map_pkg::ENGINE_WATERMARKS |
       32'(PathCommands != 0) << card_map_pkg::ENGINE_PATH_COMMANDS |
-      32'(PositionStreaming != 0) << card_map_pkg::ENGINE_STREAMING;
+      32'(PositionStreaming != 0) << card_map_pkg::ENGINE_STREAMING |
+      32'(MachineInputs != 0) << card_map_pkg::ENGINE_MACHINE_INPUTS |
+      32'(Captures != 0) << card_map_pkg::ENGINE_CAPTURES |
+      32'(EmergencyStop != 0) << card_map_pkg::ENGINE_EMERGENCY_STOP |
+      32'(Enables != 0) << card_map_pkg::ENGINE_ENABLES | 32'(SoftLimits != 0) << card_map_pkg::ENGINE_SOFT_LIMITS;
 
   // between registers and stream
   logic [setting_bus_pkg::WIDTH-1:0] setting;
@@ -80,11 +109,14 @@ module card_core #(
   logic [queue_state_pkg::WIDTH-1:0] queue_state;
   // between registers and what moves
   logic [31:0] clear_fault;
+  logic session_gone;
+  logic link_lost;
   logic abort;
   logic probe_clear;
   logic [start_pkg::WIDTH-1:0] start;
   logic [start_answer_pkg::WIDTH-1:0] start_answer;
   logic stop;
+  logic rest;
   logic mark;
   logic probe;
   logic [snapshot_pkg::WIDTH-1:0] snapshot_far;
@@ -93,6 +125,14 @@ module card_core #(
   logic [time_state_pkg::WIDTH-1:0] time_state;
   logic [geometry_state_pkg::WIDTH-1:0] geometry_state;
   logic [pins_state_pkg::WIDTH-1:0] pins_state;
+  // inputs
+  logic [input_levels_pkg::WIDTH-1:0] inputs;
+  logic [input_roles_pkg::WIDTH-1:0] roles;
+  logic [3:0] capture;
+  logic [3:0] captured;
+  logic [31:0] capture_state;
+  logic emergency;
+  logic emergency_latched;
   // between stream and what moves
   logic cut;
   logic closed;
@@ -112,6 +152,7 @@ module card_core #(
       .FeedDepth(FeedDepth),
       .Inputs(Inputs),
       .Outputs(Outputs),
+      .Captures(Captures),
       .BuildId(BuildId),
       .BuildDirty(BuildDirty),
       .BoardId(BoardId)
@@ -128,9 +169,14 @@ module card_core #(
       .geometry_state_i(geometry_state),
       .pins_state_i(pins_state),
       .queue_state_i(queue_state),
+      .inputs_i(inputs),
+      .roles_i(roles),
+      .capture_state_i(capture_state),
       .status_o(observe_o[observe_pkg::STATUS+:32]),
       .setting_o(setting),
       .clear_fault_o(clear_fault),
+      .session_gone_o(session_gone),
+      .link_lost_o(link_lost),
       .abort_o(abort),
       .probe_clear_o(probe_clear),
       .flush_o(flush),
@@ -139,8 +185,11 @@ module card_core #(
       .start_o(start),
       .start_answer_i(start_answer),
       .stop_i(stop),
+      .rest_i(rest),
       .probe_i(probe),
       .mark_i(mark),
+      .capture_i(capture),
+      .captured_o(captured),
       .snapshot_i(snapshot_near),
       .snapshot_o(snapshot_far)
   );
@@ -169,17 +218,66 @@ module card_core #(
       .feed_read_i(feed_read)
   );
 
+  card_inputs #(
+      .Axes(Axes),
+      .Engines(ENGINES),
+      .Inputs(Inputs)
+  ) machine_inputs (
+      .clk_i,
+      .rst_i,
+      .setting_i(setting),
+      .pin_i(input_i),
+      .inputs_o(inputs),
+      .roles_o(roles)
+  );
+
+  if (Captures != 0) begin : gen_captures
+    captures #(
+        .Captures(Captures)
+    ) of_edges (
+        .clk_i,
+        .rst_i,
+        .setting_i(setting),
+        .inputs_i(inputs),
+        .captured_i(captured),
+        .ask_o(capture),
+        .state_o(capture_state)
+    );
+  end else begin : gen_no_captures
+    assign capture = '0;
+    assign capture_state = '0;
+
+    logic unused;
+    assign unused = &{1'b0, captured};
+  end
+
+  if (EmergencyStop == 1) begin : gen_emergency_stop
+    emergency_stop pin (
+        .clk_i,
+        .rst_i,
+        .pin_i(emergency_stop_i),
+        .level_i(emergency_stop_level_i),
+        .clear_i(clear_fault[card_map_pkg::BIT_FAULT_EMERGENCY_STOP]),
+        .latched_o(emergency_latched),
+        .stop_o(emergency)
+    );
+  end else begin : gen_no_emergency_stop
+    assign emergency = 1'b0;
+    assign emergency_latched = 1'b0;
+
+    logic unused;
+    assign unused = &{1'b0, emergency_stop_i, emergency_stop_level_i};
+  end
+
   motion_core #(
       .Axes(Axes),
       .Engines(ENGINES),
-      .Inputs(Inputs),
       .Outputs(Outputs)
   ) motion (
       .clk_i,
       .rst_i,
       .idle_level_i,
       .setting_i(setting),
-      .roles_i('0),
       .geometry_empty_i(geometry_empty),
       .geometry_word_i(geometry_word),
       .geometry_read_o(geometry_read),
@@ -191,13 +289,19 @@ module card_core #(
       .start_answer_o(start_answer),
       .abort_i(abort),
       .clear_fault_i(clear_fault),
+      .session_gone_i(session_gone),
+      .link_lost_i(link_lost),
       .cut_o(cut),
       .closed_o(closed),
-      .input_i,
+      .emergency_stop_i(emergency),
+      .latched_i(emergency_latched),
+      .inputs_i(inputs),
+      .roles_i(roles),
       .output_idle_i,
       .output_o,
       .probe_clear_i(probe_clear),
       .stop_o(stop),
+      .rest_o(rest),
       .mark_o(mark),
       .probe_o(probe),
       .snapshot_i(snapshot_far),

@@ -13,7 +13,12 @@ module card_with_ports #(
     parameter int          Watermarks        = 1,     // 0: without
     parameter int          PathCommands      = 0,     // 1: OUTPUT, MARK, WAIT_INPUT, PROBE; inputs and outputs
     parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
-    parameter int          Inputs            = 4,     // 1 to 16, of a card with path commands
+    parameter int          MachineInputs     = 0,     // 1: filters and roles of inputs; limits, drive faults, feed hold
+    parameter int          Captures          = 0,     // 0 to 4 units; with one, the probe's edge is captured, too
+    parameter int          SoftLimits        = 0,     // 1: ends of each axis, which its position is compared with
+    parameter int          EmergencyStop     = 0,     // 1: a pin for the emergency stop
+    parameter int          Enables           = 0,     // 1: outputs for drive enable, brake, charge pump, card healthy
+    parameter int          Inputs            = 4,     // 1 to 32, of a card with path commands
     parameter int          Outputs           = 4,
     parameter logic [31:0] BuildId           = 0,
     parameter int          BuildDirty        = 0,
@@ -31,6 +36,7 @@ module card_with_ports #(
     input wire logic [31:0] clock_hz_i,
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
+    input wire logic emergency_stop_level_i,  // of the pin: the level that means stop
     // AXI4-Lite
     input wire logic awvalid_i,
     output logic awready_o,
@@ -63,6 +69,7 @@ module card_with_ports #(
     output logic miso_enable_o,  // low: MISO is for others
     // pins
     input wire logic [Inputs-1:0] input_i,
+    input wire logic emergency_stop_i,
     output logic [Outputs-1:0] output_o,
     output logic [Axes-1:0] step_o,
     output logic [Axes-1:0] dir_o,
@@ -134,6 +141,11 @@ module card_with_ports #(
       .UnderrunHold(UnderrunHold),
       .PathCommands(PathCommands),
       .PositionStreaming(PositionStreaming),
+      .MachineInputs(MachineInputs),
+      .Captures(Captures),
+      .SoftLimits(SoftLimits),
+      .EmergencyStop(EmergencyStop),
+      .Enables(Enables),
       .Inputs(Inputs),
       .Outputs(Outputs),
       .Ports(PORTS),
@@ -148,7 +160,9 @@ module card_with_ports #(
       .clock_hz_i,
       .idle_level_i,
       .output_idle_i,
+      .emergency_stop_level_i,
       .input_i,
+      .emergency_stop_i,
       .output_o,
       .step_o,
       .dir_o,

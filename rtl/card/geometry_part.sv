@@ -105,7 +105,7 @@ module geometry_part #(
       .probe_o(probe),
       .drop_o(drop),
       .halt_o(halt),
-      .trip_o(probe_o),
+      .probe_snapshot_o(probe_o),
       .pins_state_o
   );
 

@@ -5,7 +5,6 @@
 module motion_core #(
     parameter int          Axes    = 4,
     parameter logic [31:0] Engines = '1,  // what is built in: bits card_map_pkg::ENGINE_*
-    parameter int          Inputs  = 4,
     parameter int          Outputs = 4
 ) (
     input wire logic clk_i,
@@ -26,16 +25,22 @@ module motion_core #(
     // stops
     input wire logic abort_i,  // event
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
+    input wire logic session_gone_i,  // the one that wrote the stream is no more
+    input wire logic link_lost_i,
     output logic cut_o,  // event
     output logic closed_o,  // no command and no START is taken
+    // inputs
+    input wire logic emergency_stop_i,  // level: the cause, with the engine emergency_stop
+    input wire logic latched_i,  // its latch: asynchronous
+    input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,  // with the engine machine_inputs
     // pins of path commands
-    input wire logic [Inputs-1:0] input_i,
     input wire logic [Outputs-1:0] output_idle_i,  // levels in reset
     output logic [Outputs-1:0] output_o,
     input wire logic probe_clear_i,  // event
     // snapshots: FAULT and STATUS come in, POSITION of the last axis goes out first
     output logic stop_o,  // events: a snapshot is wanted
+    output logic rest_o,  // combinational
     output logic mark_o,
     output logic probe_o,  // combinational
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
@@ -51,7 +56,6 @@ module motion_core #(
     output logic [Axes-1:0] step_o,
     output logic [Axes-1:0] dir_o
 );
-  logic [input_levels_pkg::WIDTH-1:0] inputs;
   logic [feed_pkg::WIDTH-1:0] feed;
   logic [path_pkg::WIDTH-1:0] path;
   logic [load_bus_pkg::WIDTH-1:0] load;
@@ -60,8 +64,6 @@ module motion_core #(
   logic [snapshot_pkg::WIDTH-1:0] behind_time;
   logic [snapshot_pkg::WIDTH-1:0] behind_geometry;
   logic [Axes-1:0] step_fault;
-  logic [Axes-1:0] path_step;
-  logic [Axes-1:0] path_dir;
   logic take;
   logic tick;
   logic feed_idle;
@@ -81,28 +83,6 @@ module motion_core #(
       .busy_o
   );
 
-  if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_inputs
-    input_pins #(
-        .Inputs(Inputs)
-    ) pins (
-        .clk_i,
-        .rst_i,
-        .setting_i,
-        .pin_i(input_i),
-        .inputs_o(inputs)
-    );
-  end else begin : gen_no_inputs
-    assign inputs = '0;
-
-    logic unused;
-    assign unused = &{1'b0, input_i};
-  end
-
-  for (genvar n = 0; n < Axes; n++) begin : gen_path_step
-    assign path_step[n] = observe_o[n*axis_observe_pkg::WIDTH+axis_observe_pkg::STEP];
-    assign path_dir[n]  = observe_o[n*axis_observe_pkg::WIDTH+axis_observe_pkg::DIR];
-  end
-
   time_part #(
       .Axes   (Axes),
       .Engines(Engines)
@@ -117,19 +97,27 @@ module motion_core #(
       .path_i(path),
       .ready_i(engines[engines_pkg::READY]),
       .finished_i(engines[engines_pkg::DONE]),
+      .quiet_i(engines[engines_pkg::QUIET]),
+      .pulses_i(engines[engines_pkg::BUSY]),
+      .swap_i(move[move_pkg::SWAP]),
+      .busy_i(busy_o),
       .feed_o(feed),
       .take_o(take),
       .tick_o(tick),
       .step_fault_i(step_fault),
+      .emergency_stop_i,
+      .latched_i,
       .roles_i,
-      .step_i(path_step),
-      .dir_i(path_dir),
+      .axes_i(observe_o),
       .path_active_i(geometry_state_o[geometry_state_pkg::PATH_ACTIVE]),
       .direct_active_i(geometry_state_o[geometry_state_pkg::DIRECT]),
       .abort_i,
       .clear_fault_i,
+      .session_gone_i,
+      .link_lost_i,
       .cut_o,
       .stop_o,
+      .rest_o,
       .closed_o,
       .card_idle_i(idle_q),
       .idle_o(feed_idle),
@@ -162,7 +150,7 @@ module motion_core #(
       .closed_i(closed_o),
       .busy_i(busy_o),
       .rest_i(idle_q && !busy_o),
-      .inputs_i(inputs),
+      .inputs_i,
       .output_idle_i,
       .output_o,
       .mark_o,

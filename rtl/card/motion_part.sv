@@ -46,6 +46,7 @@ module motion_part #(
       .path_tick_o,
       .ready_o(engines_o[engines_pkg::READY]),
       .payload_ready_o(engines_o[engines_pkg::PAYLOAD_READY]),
+      .quiet_o(engines_o[engines_pkg::QUIET]),
       .shadows_free_o(engines_o[engines_pkg::SHADOWS_FREE]),
       .done_o(engines_o[engines_pkg::DONE]),
       .missed_end_o(engines_o[engines_pkg::MISSED_END])

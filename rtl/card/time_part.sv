@@ -18,20 +18,28 @@ module time_part #(
     input wire logic [path_pkg::WIDTH-1:0] path_i,
     input wire logic ready_i,  // the path's engine takes ticks
     input wire logic finished_i,  // and has finished all that were given
+    input wire logic quiet_i,  // no path tick waits or makes a step
+    input wire logic pulses_i,  // an axis is busy
+    input wire logic swap_i,  // a path begins
+    input wire logic busy_i,  // something runs or is queued
     output logic [feed_pkg::WIDTH-1:0] feed_o,
     output logic take_o,  // the tick is taken in this clock (combinational)
     output logic tick_o,
     // stops
     input wire logic [Axes-1:0] step_fault_i,  // events
+    input wire logic emergency_stop_i,  // level: the cause
+    input wire logic latched_i,  // its latch: asynchronous
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
-    input wire logic [Axes-1:0] step_i,  // steps on the path
-    input wire logic [Axes-1:0] dir_i,  // of each axis's last one: 1 backwards, 0 forwards
+    input wire logic [axis_observe_pkg::WIDTH*Axes-1:0] axes_i,
     input wire logic path_active_i,
     input wire logic direct_active_i,
     input wire logic abort_i,  // event
     input wire logic [31:0] clear_fault_i,  // ones written to FAULT
+    input wire logic session_gone_i,  // the one that wrote the stream is no more
+    input wire logic link_lost_i,
     output logic cut_o,  // event
     output logic stop_o,  // event: a snapshot is wanted
+    output logic rest_o,  // likewise, of the area REST (combinational)
     output logic closed_o,  // no command and no START is taken
     // status
     input wire logic card_idle_i,  // nothing runs, is decoded or queued; up to four clocks late
@@ -48,23 +56,39 @@ module time_part #(
   logic moving;
   logic fixed;
   logic stopping;
+  logic closing;
+  logic shut;
+  logic fed;
   logic expired;
+  logic enable_wait;
+  logic [Axes-1:0] disabled;
   logic button;
+  logic soft_limit;
   logic [stop_causes_pkg::WIDTH-1:0] causes;
+  logic [Axes-1:0] step;  // on the path
+  logic [Axes-1:0] dir;  // of each axis's last one: 1 backwards, 0 forwards
 
   assign at_rest = ratio == 17'd0;
   assign feed_o[feed_pkg::AT_REST] = at_rest;
   assign feed_o[feed_pkg::STOPPING] = stopping;
+  assign feed_o[feed_pkg::CLOSING] = closing;
+  assign feed_o[feed_pkg::LATCHED] = latched_i;
   assign time_state_o[time_state_pkg::RATIO+:17] = ratio;
   assign time_state_o[time_state_pkg::TICK] = tick_o;
   assign time_state_o[time_state_pkg::HELD] = at_rest;
   assign time_state_o[time_state_pkg::FEED_ACTIVE] = active;
   assign time_state_o[time_state_pkg::STOPPING] = stopping;
 
+  for (genvar n = 0; n < Axes; n++) begin : gen_path_step
+    assign step[n] = axes_i[n*axis_observe_pkg::WIDTH+axis_observe_pkg::STEP];
+    assign dir[n]  = axes_i[n*axis_observe_pkg::WIDTH+axis_observe_pkg::DIR];
+  end
+
   watchdog over_host (
       .clk_i,
       .rst_i,
       .setting_i,
+      .running_o(fed),
       .expired_o(expired)
   );
 
@@ -78,8 +102,8 @@ module time_part #(
         .rst_i,
         .setting_i,
         .roles_i,
-        .step_i,
-        .dir_i,
+        .step_i(step),
+        .dir_i(dir),
         .runs_i(path_active_i || direct_active_i),
         .probing_i(path_i[path_pkg::PROBING]),
         .stopping_i(stopping),
@@ -100,8 +124,82 @@ module time_part #(
     assign time_state_o[time_state_pkg::LIMIT_STATE+:24] = '0;
 
     logic unused;
-    assign unused = &{1'b0, roles_i, step_i, dir_i, path_active_i, direct_active_i};
+    assign unused = &{1'b0, roles_i, dir, path_active_i};
   end
+
+  if (Engines[card_map_pkg::ENGINE_SOFT_LIMITS]) begin : gen_soft_limits
+    soft_limits #(
+        .Axes(Axes)
+    ) ranges (
+        .clk_i,
+        .rst_i,
+        .setting_i,
+        .axes_i,
+        .clear_i(clear_fault_i[card_map_pkg::BIT_FAULT_SOFT_LIMIT]),
+        .cause_o(soft_limit),
+        .state_o(time_state_o[time_state_pkg::LIMIT_STATE+24+:4])
+    );
+  end else begin : gen_no_soft_limits
+    assign soft_limit = 1'b0;
+    assign time_state_o[time_state_pkg::LIMIT_STATE+24+:4] = '0;
+
+    logic unused;
+    assign unused = &{1'b0, axes_i};
+  end
+
+  if (Engines[card_map_pkg::ENGINE_ENABLES]) begin : gen_enables
+    drive_enable #(
+        .Axes(Axes)
+    ) drives (
+        .clk_i,
+        .rst_i,
+        .setting_i,
+        .moves_i(path_i[path_pkg::TAKING] || direct_active_i),
+        .busy_i,
+        .emergency_i(emergency_stop_i),
+        .fault_i(time_state_o[time_state_pkg::FAULT+:32]),
+        .enabled_o(feed_o[feed_pkg::ENABLED]),
+        .released_o(feed_o[feed_pkg::RELEASED]),
+        .wait_o(enable_wait),
+        .waiting_o(time_state_o[time_state_pkg::ENABLE_WAITS]),
+        .disabled_o(disabled)
+    );
+
+    card_health health (
+        .clk_i,
+        .rst_i,
+        .setting_i,
+        .fault_i(time_state_o[time_state_pkg::FAULT+:32]),
+        .fed_i(fed),
+        .healthy_o(feed_o[feed_pkg::HEALTHY]),
+        .pump_o(feed_o[feed_pkg::PUMP])
+    );
+
+    assign time_state_o[time_state_pkg::ENABLED] = feed_o[feed_pkg::ENABLED];
+  end else begin : gen_no_enables
+    assign enable_wait = 1'b0;
+    assign disabled = '0;
+    assign feed_o[feed_pkg::PUMP:feed_pkg::ENABLED] = '0;
+    assign time_state_o[time_state_pkg::ENABLE_WAITS:time_state_pkg::ENABLED] = '0;
+
+    logic unused;
+    assign unused = &{1'b0, fed};
+  end
+
+  machine_place #(
+      .Axes(Axes)
+  ) place (
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .cut_i(cut_o || closing),
+      .at_rest_i(at_rest),
+      .runs_i(active || direct_active_i),
+      .step_i(step),
+      .drive_fault_i(roles_i[input_roles_pkg::DRIVE_FAULT+:Axes]),
+      .disabled_i(disabled),
+      .place_o(time_state_o[time_state_pkg::PLACE+:16])
+  );
 
   stop_control #(
       .Axes   (Axes),
@@ -115,7 +213,10 @@ module time_part #(
       .incomplete_i(path_i[path_pkg::INCOMPLETE]),
       .missing_i(path_i[path_pkg::MISSING]),
       .expired_i(expired),
+      .link_lost_i,
+      .emergency_i(emergency_stop_i),
       .causes_i(causes),
+      .soft_limit_i(soft_limit),
       .abort_i,
       .clear_i(clear_fault_i),
       .at_rest_i(at_rest),
@@ -124,11 +225,21 @@ module time_part #(
       .underrun_i(underrun_hold),
       .probe_i(path_i[path_pkg::HOLD]),
       .button_i(button),
+      .take_i(take_o),
+      .swap_i,
+      .quiet_i,
+      .pulses_i,
+      .busy_i,
       .fault_o(time_state_o[time_state_pkg::FAULT+:32]),
       .hold_o(hold),
       .cut_o,
       .stop_o,
+      .rest_o,
+      .caused_o(feed_o[feed_pkg::CAUSED]),
       .stopping_o(stopping),
+      .closing_o(closing),
+      .shut_o(shut),
+      .settled_o(time_state_o[time_state_pkg::SETTLED]),
       .closed_o
   );
 
@@ -147,10 +258,14 @@ module time_part #(
       .path_i,
       .ready_i,
       .finished_i,
+      .shut_i(shut),
+      .wait_i(enable_wait),
+      .settled_i(time_state_o[time_state_pkg::SETTLED]),
       .take_o,
       .tick_o,
       .swap_o(time_state_o[time_state_pkg::FEED_SWAP]),
       .card_idle_i,
+      .session_gone_i,
       .at_barrier_o(feed_o[feed_pkg::AT_BARRIER]),
       .runs_o(feed_o[feed_pkg::RUNS]),
       .underrun_hold_o(underrun_hold),

@@ -18,6 +18,7 @@ module feed_decoder #(
     output logic piece_o,
     output logic [1:0] class_o,  // of the piece
     output logic silent_o,  // its ticks make no steps
+    output logic [1:0] slew_shift_o,  // in it SLEW is doubled so often
     output logic barrier_o,
     output logic probe_end_o,
     output logic idle_o,
@@ -36,6 +37,7 @@ module feed_decoder #(
   assign is_feed = opcode == card_map_pkg::OP_FEED;
   assign is_wait = Engines[card_map_pkg::ENGINE_PATH_COMMANDS] && opcode == card_map_pkg::OP_WAIT_INPUT;
   assign class_o = mask[1:0];
+  assign slew_shift_o = mask[4:3];
   assign silent_o = (mask & 8'(card_map_pkg::PIECE_SILENT)) != 8'd0;
 
   assign pause = active_i && field[2:0] == load_target_pkg::FEED_STOP_DISTANCE;
@@ -84,7 +86,7 @@ module feed_decoder #(
   end
 
   logic unused;
-  assign unused = &{1'b0, which[4:3], mask[7:3]};
+  assign unused = &{1'b0, which[4:3], mask[7:5]};
 endmodule
 
 `default_nettype wire

@@ -2,13 +2,13 @@
 `default_nettype none
 
 module input_pins #(
-    parameter int Inputs = 4  // 1 to 16
+    parameter int Inputs = 4  // 1 to 32
 ) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [Inputs-1:0] pin_i,
-    output logic [input_levels_pkg::WIDTH-1:0] inputs_o  // combinational
+    output logic [Inputs-1:0] level_o  // combinational
 );
   // Marked, so that tools place the two side by side and know that the first one's data has no timing.
   (* async_reg = "true" *) logic [Inputs-1:0] first_q;
@@ -30,12 +30,12 @@ module input_pins #(
     end
   end
 
-  logic [Inputs-1:0] level;
-  assign level = second_q ^ inverted_q;
-  assign inputs_o[input_levels_pkg::LEVELS+:16] = 16'(level);
+  assign level_o = second_q ^ inverted_q;
 
-  logic unused;
-  assign unused = &{1'b0, data[31:Inputs]};
+  if (Inputs < 32) begin : gen_few
+    logic unused;
+    assign unused = &{1'b0, data[31:Inputs]};
+  end
 endmodule
 
 `default_nettype wire

@@ -1,4 +1,6 @@
-// The card's outputs: set and cleared by commands; a cut gives those that OUTPUT_SAFE names their safe levels.
+// The card's outputs: set and cleared by commands. At a cut those that OUTPUT_SAFE names take their safe levels, at the cause
+// of a stop those that OUTPUT_SAFE_CAUSE names, and keep them as long as the cause is felt. The emergency stop's latch
+// gives the latter their levels at the pins without a clock; the cause that follows keeps them when the latch is cleared.
 `default_nettype none
 
 module output_pins #(
@@ -7,31 +9,48 @@ module output_pins #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
+    input wire logic caused_i,  // a cause comes, or the card is stopped or on its way to it
+    input wire logic latched_i,  // the emergency stop's latch: asynchronous
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [Outputs-1:0] idle_i,  // strap: the levels in reset
     input wire logic change_i,
     input wire logic [Outputs-1:0] set_i,  // with change_i; goes before clear_i
     input wire logic [Outputs-1:0] clear_i,
-    output logic [Outputs-1:0] pin_o
+    output logic [Outputs-1:0] pin_o  // combinational from latched_i
 );
+  logic [Outputs-1:0] level_q;
   logic [Outputs-1:0] safe_q;
   logic [Outputs-1:0] changes_q;  // those that a cut changes
+  logic [Outputs-1:0] cause_safe_q;
+  logic [Outputs-1:0] cause_changes_q;  // those that a cause changes, and a cut with it
 
   logic [31:0] data;
 
-  assign data = setting_bus_pkg::data(setting_i);
+  assign data  = setting_bus_pkg::data(setting_i);
+  assign pin_o = latched_i ? (level_q & ~cause_changes_q) | (cause_safe_q & cause_changes_q) : level_q;
 
-  always_ff @(posedge clk_i) begin
-    if (cut_i) pin_o <= (pin_o & ~changes_q) | (safe_q & changes_q);
-    else if (change_i) pin_o <= (pin_o & ~clear_i) | set_i;
+  always_ff @(posedge clk_i) begin : p_level
+    logic [Outputs-1:0] level;
+
+    level = level_q;
+    if (cut_i) level = (level_q & ~changes_q) | (safe_q & changes_q);
+    else if (change_i) level = (level_q & ~clear_i) | set_i;
+    level_q <= level;
+    if (cut_i || caused_i) level_q <= (level & ~cause_changes_q) | (cause_safe_q & cause_changes_q);
     if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_OUTPUT_SAFE)) begin
       safe_q <= data[Outputs-1:0];
       changes_q <= data[16+:Outputs];
     end
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_OUTPUT_SAFE_CAUSE)) begin
+      cause_safe_q <= data[Outputs-1:0];
+      cause_changes_q <= data[16+:Outputs];
+    end
     if (rst_i) begin
-      pin_o <= idle_i;
+      level_q <= idle_i;
       safe_q <= card_map_pkg::RESET_OUTPUT_SAFE[Outputs-1:0];
       changes_q <= card_map_pkg::RESET_OUTPUT_SAFE[16+:Outputs];
+      cause_safe_q <= card_map_pkg::RESET_OUTPUT_SAFE_CAUSE[Outputs-1:0];
+      cause_changes_q <= card_map_pkg::RESET_OUTPUT_SAFE_CAUSE[16+:Outputs];
     end
   end
 

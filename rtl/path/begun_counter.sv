@@ -1,7 +1,4 @@
 // How many commands of a queue have begun since the last cut, with its word of the snapshot.
-//
-// A cut zeroes it a clock later than all else: the snapshot that a stop takes strobes with the cut's next clock and
-// must still find the number.
 `default_nettype none
 
 module begun_counter (
@@ -13,12 +10,9 @@ module begun_counter (
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
     output logic [31:0] begun_o
 );
-  logic cut_q;
-
   always_ff @(posedge clk_i) begin
-    cut_q <= cut_i && !rst_i;
-    if (begin_i && !cut_i) begun_o <= begun_o + 32'd1;
-    if (cut_q || rst_i) begun_o <= 32'd0;
+    if (begin_i) begun_o <= begun_o + 32'd1;
+    if (cut_i || rst_i) begun_o <= 32'd0;
   end
 
   snapshot_slice begun (

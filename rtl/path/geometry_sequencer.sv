@@ -144,6 +144,7 @@ module geometry_sequencer #(
       .zero_o (zero),
       .load_i (begins || barrier_begins),
       .take_i ((take_i && !stale) || barrier_counts),
+      .left_o (path_o[path_pkg::LEFT+:40]),
       .last_o (last)
   );
 
@@ -162,7 +163,7 @@ module geometry_sequencer #(
       .direct_go_i,
       .direct_mask_i,
       .streaming_i(streaming),
-      .lost_i(lost),
+      .lost_i(lost || feed_i[feed_pkg::CLOSING]),
       .period_ends_o(period_ends),
       .goes_on_o(goes_on),
       .stale_o(stale),
@@ -182,7 +183,8 @@ module geometry_sequencer #(
       .over_o(over),
       .barrier_done_i(barrier_done),
       .at_barrier_o(at_barrier),
-      .path_active_o(path_active)
+      .path_active_o(path_active),
+      .unfinished_o(path_o[path_pkg::UNFINISHED])
   );
 
   if (Engines[card_map_pkg::ENGINE_STREAMING]) begin : gen_streaming

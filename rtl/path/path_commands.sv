@@ -24,25 +24,28 @@ module path_commands #(
     output logic [probe_pkg::WIDTH-1:0] probe_o,
     output logic drop_o,  // commands up to PROBE_END are not carried out
     output logic halt_o,  // event: what runs ends here
-    output logic trip_o,  // event: a snapshot is wanted (combinational)
+    output logic probe_snapshot_o,  // event: a snapshot is wanted (combinational)
     // registers
     output logic [pins_state_pkg::WIDTH-1:0] pins_state_o
 );
   if (Engines[card_map_pkg::ENGINE_PATH_COMMANDS]) begin : gen_built
-    logic [15:0] levels;
+    logic [31:0] levels;
     logic [31:0] marks;
+    logic safe;  // from the end of ticks to the cut outputs stand at their safe levels
     logic change;
     logic [Outputs-1:0] set;
+    logic [Outputs-1:0] level;
     logic [Outputs-1:0] clear;
 
     assign levels = input_levels_pkg::levels(inputs_i);
+    assign safe   = cut_i || feed_i[feed_pkg::CLOSING];
 
     instant_commands #(
         .Outputs(Outputs)
     ) instants (
         .clk_i,
         .rst_i,
-        .cut_i(cut_i || halt_o),
+        .cut_i(safe || halt_o),
         .load_i,
         .take_output_i(commands_i[commands_pkg::TAKE_OUTPUT]),
         .take_mark_i(commands_i[commands_pkg::TAKE_MARK]),
@@ -60,20 +63,46 @@ module path_commands #(
     ) outputs (
         .clk_i,
         .rst_i,
-        .cut_i,
+        .cut_i(safe),
+        .caused_i(feed_i[feed_pkg::CAUSED]),
+        .latched_i(feed_i[feed_pkg::LATCHED]),
         .setting_i,
         .idle_i(output_idle_i),
         .change_i(change),
         .set_i(set),
         .clear_i(clear),
-        .pin_o(output_o)
+        .pin_o(level)
     );
 
-    probe edges (
+    if (Engines[card_map_pkg::ENGINE_ENABLES]) begin : gen_roles
+      output_roles #(
+          .Outputs(Outputs)
+      ) roles (
+          .clk_i,
+          .rst_i,
+          .setting_i,
+          .idle_i(output_idle_i),
+          .latched_i(feed_i[feed_pkg::LATCHED]),
+          .enabled_i(feed_i[feed_pkg::ENABLED]),
+          .released_i(feed_i[feed_pkg::RELEASED]),
+          .pump_i(feed_i[feed_pkg::PUMP]),
+          .healthy_i(feed_i[feed_pkg::HEALTHY]),
+          .level_i(level),
+          .pin_o(output_o)
+      );
+    end else begin : gen_no_roles
+      assign output_o = level;
+    end
+
+    probe #(
+        .FirstTouch(32'(Engines[card_map_pkg::ENGINE_CAPTURES]))
+    ) edges (
         .clk_i,
         .rst_i,
         .cut_i,
         .level_i(levels),
+        .raw_i(input_levels_pkg::raw(inputs_i)),
+        .quiet_i(input_levels_pkg::quiet(inputs_i)),
         .load_i,
         .waits_i(commands_i[commands_pkg::PROBE_WAITS]),
         .ends_i(commands_i[commands_pkg::PROBE_ENDS]),
@@ -83,7 +112,7 @@ module path_commands #(
         .met_o(probe_o[probe_pkg::MET]),
         .taken_o(probe_o[probe_pkg::TAKEN]),
         .stays_o(probe_o[probe_pkg::STAYS]),
-        .trip_o,
+        .snapshot_o(probe_snapshot_o),
         .hold_o(probe_o[probe_pkg::HOLD]),
         .halt_o,
         .drop_o,
@@ -92,7 +121,7 @@ module path_commands #(
         .missed_o(pins_state_o[pins_state_pkg::PROBE_MISSED])
     );
 
-    assign pins_state_o[pins_state_pkg::INPUTS+:16]  = levels;
+    assign pins_state_o[pins_state_pkg::INPUTS+:32]  = levels;
     assign pins_state_o[pins_state_pkg::OUTPUTS+:16] = 16'(output_o);
     assign pins_state_o[pins_state_pkg::MARKS+:32]   = marks;
 
@@ -100,7 +129,7 @@ module path_commands #(
     assign unused = &{1'b0, feed_i};
   end else begin : gen_without
     assign output_o = output_idle_i;
-    assign {mark_o, trip_o, probe_o, drop_o, halt_o, pins_state_o} = '0;
+    assign {mark_o, probe_snapshot_o, probe_o, drop_o, halt_o, pins_state_o} = '0;
 
     logic unused;
     assign unused = &{1'b0, clk_i, rst_i, cut_i, setting_i, inputs_i, load_i, commands_i, feed_i, probe_clear_i};

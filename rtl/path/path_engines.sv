@@ -20,6 +20,7 @@ module path_engines #(
     output logic path_tick_o,  // an engine's tick
     output logic ready_o,  // a tick may be taken
     output logic payload_ready_o,  // the engine's state may be loaded
+    output logic quiet_o,  // no path tick waits or is on its way to an engine, none makes a step
     output logic shadows_free_o,  // so may the axes' increments
     output logic done_o,  // every path tick given is finished
     output logic missed_end_o  // with done_o: not on the commanded end point
@@ -80,7 +81,6 @@ module path_engines #(
     logic              on_arc;
     logic              arc_ready;
     logic              gate_ready;
-    logic              gate_payload_ready;
     logic              engine_stepping;
     logic              at_end;
     logic              engine_ready;
@@ -97,7 +97,7 @@ module path_engines #(
     // Ticks of lines pass without a step of the prescaler.
     assign coming = engine_q != LINES && (tick_i || tick_q != '0);
     assign ready_o = gate_ready && arc_ready;
-    assign payload_ready_o = gate_payload_ready && shadows_free_o;
+    assign payload_ready_o = quiet_o && shadows_free_o;
     assign axes_run = !on_arc;
     assign chord_tick = on_arc && prescaler_step;
 
@@ -137,7 +137,7 @@ module path_engines #(
         .engine_stepping_i(engine_stepping),
         .tick_o(path_tick_o),
         .ready_o(gate_ready),
-        .payload_ready_o(gate_payload_ready),
+        .payload_ready_o(quiet_o),
         .done_o
     );
 
@@ -236,6 +236,7 @@ module path_engines #(
     assign dir             = '0;
     assign ready_o         = 1'b1;
     assign payload_ready_o = 1'b1;
+    assign quiet_o         = 1'b1;
     assign done_o          = 1'b1;
     assign missed_end_o    = 1'b0;
     assign chord_word      = '0;

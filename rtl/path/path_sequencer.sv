@@ -26,7 +26,7 @@ module path_sequencer #(
     input wire logic [Axes-1:0] direct_mask_i,
     // position streaming
     input wire logic streaming_i,  // the mode
-    input wire logic lost_i,  // the next period is missing
+    input wire logic lost_i,  // the next period is missing, or a cut is due: nothing begins
     output logic period_ends_o,  // a period's last tick is taken (combinational)
     output logic goes_on_o,  // the line goes on beyond it (combinational)
     output logic stale_o,  // it has gone on
@@ -48,7 +48,8 @@ module path_sequencer #(
     output logic over_o,  // event: a path has ended; on lines its last tick was taken
     input wire logic barrier_done_i,
     output logic at_barrier_o,
-    output logic path_active_o
+    output logic path_active_o,
+    output logic unfinished_o  // it has ticks to take (combinational)
 );
   // Clocks from the last enabled clock of a direct move until the axes are asked whether one is live.
   localparam logic [2:0] SETTLE_CLOCKS = 3'd7;
@@ -79,6 +80,7 @@ module path_sequencer #(
   assign pop_o = swap || barrier_done_i;
   assign begin_o = swap || direct_go_i;
   assign path_active_o = !idle_q;
+  assign unfinished_o = !idle_q && !drain_q;
   assign engine_taken_o = on_engine_q && !drained_q;
   assign period_ends_o = streaming_i && ending && !on_engine_q && !direct_o;
   assign goes_on_o = streaming_i && (period_ends_o || stale_o) && !swap && (lost_i || !(valid_i && barrier_i));

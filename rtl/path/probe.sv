@@ -5,14 +5,22 @@
 // edge (an input at the level that trips) requests the snapshot in its clock, brings the time base to rest, and ends
 // what runs. PROBE_END then stands until the host has seen the edge and cleared it.
 //
+// With FirstTouch the snapshot is that of the first touch, which the input's filter has still to confirm: the armed input's
+// first raw change since the PROBE, or since it was quiet (capture_unit). A touch that is withdrawn leaves a snapshot that
+// nothing counts. An edge without a touch, or of an input without a filter, takes its snapshot in its own clock.
+//
 // No edge is taken while a fault's ramp is under way, whose snapshot is being written, nor in the clock of a cut.
 `default_nettype none
 
-module probe (
+module probe #(
+    parameter int FirstTouch = 0  // 1: see above
+) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic cut_i,
-    input wire logic [15:0] level_i,  // of the inputs
+    input wire logic [31:0] level_i,  // of the inputs, filtered
+    input wire logic [31:0] raw_i,
+    input wire logic [31:0] quiet_i,
     input wire logic [load_bus_pkg::WIDTH-1:0] load_i,
     input wire logic waits_i,  // a PROBE is decoded and no path runs
     input wire logic ends_i,  // PROBE_END has begun
@@ -22,7 +30,7 @@ module probe (
     output logic met_o,  // the condition decoded last is met (combinational)
     output logic taken_o,  // the PROBE is taken now (combinational)
     output logic stays_o,  // PROBE_END must wait (combinational)
-    output logic trip_o,  // event: a snapshot is wanted (combinational)
+    output logic snapshot_o,  // event: a snapshot is wanted (combinational)
     output logic hold_o,  // the time base slows down to rest
     output logic halt_o,  // event: what runs ends here
     output logic drop_o,  // from halt_o to PROBE_END commands are not carried out
@@ -37,12 +45,15 @@ module probe (
   logic        armed_q;
   logic        look;  // the PROBE is over: is its input tripped already?
   logic        edge_now;
+  logic        trips;
+  logic        touch;
+  logic        touched_q;  // its snapshot is taken
 
   logic [15:0] word;
 
   // A condition names one of 32 inputs; those that the card lacks stay at 0.
   function automatic logic level_of(input logic [4:0] number);
-    level_of = !number[4] && level_i[number[3:0]];
+    level_of = level_i[number];
   endfunction
 
   assign word = load_bus_pkg::word(load_i);
@@ -50,7 +61,8 @@ module probe (
   assign edge_now = armed_q && level_of(condition_q[4:0]) == condition_q[5] && !stopping_i && !cut_i;
   assign look = waits_i && settle_q == 3'd7 && !edge_now && !hold_o && !drop_o && !stopping_i && !cut_i;
   assign taken_o = look;
-  assign trip_o = edge_now || (look && met_o);
+  assign trips = edge_now || (look && met_o);
+  assign snapshot_o = touch || (trips && !touched_q);
   assign stays_o = edge_now || hold_o || (drop_o && probed_o);
   assign busy_o = armed_q || hold_o || drop_o;
 
@@ -63,7 +75,7 @@ module probe (
 
   always_ff @(posedge clk_i) begin
     halt_o   <= (hold_o && at_rest_i) || (look && met_o);
-    probed_o <= trip_o || (probed_o && !clear_i);
+    probed_o <= trips || (probed_o && !clear_i);
     missed_o <= (ends_i && armed_q && !edge_now) || (missed_o && !look && !clear_i);
     armed_q  <= look ? !met_o : armed_q && !edge_now && !ends_i;
     hold_o   <= edge_now || (hold_o && !at_rest_i);
@@ -78,6 +90,26 @@ module probe (
       probed_o <= 1'b0;
       missed_o <= 1'b0;
     end
+  end
+
+  if (FirstTouch != 0) begin : gen_first_touch
+    logic touched;  // now
+    logic quiet;  // again: not as the filter passes
+
+    assign quiet   = quiet_i[condition_q[4:0]] && !edge_now;
+    assign touched = raw_i[condition_q[4:0]] == condition_q[5];
+    assign touch   = armed_q && touched && (!touched_q || quiet) && !stopping_i && !cut_i;
+
+    always_ff @(posedge clk_i) begin
+      touched_q <= armed_q && !edge_now && !look && (touch || (touched_q && !quiet));
+      if (cut_i || rst_i) touched_q <= 1'b0;
+    end
+  end else begin : gen_no_first_touch
+    assign touch = 1'b0;
+    assign touched_q = 1'b0;
+
+    logic unused_levels;
+    assign unused_levels = &{1'b0, raw_i, quiet_i};
   end
 
   logic unused;

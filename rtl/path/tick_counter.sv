@@ -17,6 +17,7 @@ module tick_counter (
     output logic zero_o,  // it is 0; two clocks late
     input wire logic load_i,  // take it
     input wire logic take_i,
+    output logic [39:0] left_o,  // ticks; right three clocks after the last load or take
     output logic last_o
 );
   logic [39:0] count_q;  // the next one
@@ -43,6 +44,8 @@ module tick_counter (
   logic [ 3:0] low_q;
   logic [15:0] mid_q;  // these two inverted: so they count up, and load and count fit one 4-input table a bit
   logic [19:0] top_q;
+  assign left_o = {~top_q, ~mid_q, low_q};
+
   logic        mid_zero_q;
   logic        top_zero_q;
   logic        mid_borrow_q;

@@ -64,6 +64,7 @@ module register_access #(
   logic       absent_q;
   logic [3:0] stray_q;  // bytes with bits that must be 0
   logic       in_limits_q;
+  logic       sets_q;  // a write goes to the setting bus
   logic       control_q;
   logic       flush_q;
   logic       fault_q;
@@ -84,6 +85,11 @@ module register_access #(
       absent_q <= !register_access_pkg::aligned(access_i) || (only_present && {1'b0, axis} >= AXIS_COUNT);
       for (int b = 0; b < 4; b++) stray_q[b] <= (data[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
       in_limits_q <= card_map_pkg::register_in_limits(word, data);
+      // SET_PLACE and CAPTURE_CLEAR do, too, though nothing of them is read back.
+      sets_q <= card_map_pkg::register_access(
+          word, Engines
+      ) == card_map_pkg::ACCESS_SETTING || word == card_map_pkg::ADDR_SET_PLACE[11:2] ||
+          word == card_map_pkg::ADDR_CAPTURE_CLEAR[11:2];
       control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
       // An abort beside it does more than a flush.
       flush_q <= word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&
@@ -219,7 +225,7 @@ module register_access #(
   assign flush_o   = acting_q && good_q && flush_q;  // only a write of CONTROL is good
 
   always_ff @(posedge clk_i) begin
-    set_q <= act && kind_q == card_map_pkg::ACCESS_SETTING;
+    set_q <= act && sets_q;
     clear_fault_o <= act && fault_q ? data : '0;
     snapshot_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_SNAPSHOT];
     abort_o <= act && control_q && data[card_map_pkg::BIT_CONTROL_ABORT];

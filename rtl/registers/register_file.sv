@@ -7,8 +7,9 @@ module register_file #(
     parameter logic [31:0] Engines       = '1,    // what is built in: bits card_map_pkg::ENGINE_*
     parameter int          GeometryDepth = 4096,  // halfwords, of the queues
     parameter int          FeedDepth     = 2560,
-    parameter int          Inputs        = 4,     // 1 to 16, of a card with path commands
+    parameter int          Inputs        = 4,     // 1 to 32, of a card with path commands
     parameter int          Outputs       = 4,
+    parameter int          Captures      = 0,     // units
     parameter logic [31:0] BuildId       = 0,
     parameter int          BuildDirty    = 0,
     parameter logic [31:0] BoardId       = 0
@@ -27,10 +28,15 @@ module register_file #(
     input wire logic [geometry_state_pkg::WIDTH-1:0] geometry_state_i,
     input wire logic [pins_state_pkg::WIDTH-1:0] pins_state_i,
     input wire logic [queue_state_pkg::WIDTH-1:0] queue_state_i,
+    input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
+    input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
+    input wire logic [31:0] capture_state_i,
     output logic [31:0] status_o,  // combinational; refused is any port's
     // what writes do
     output logic [setting_bus_pkg::WIDTH-1:0] setting_o,
     output logic [31:0] clear_fault_o,
+    output logic session_gone_o,  // the one that wrote the stream is no more
+    output logic link_lost_o,
     output logic abort_o,
     output logic probe_clear_o,
     output logic flush_o,  // combinational
@@ -42,8 +48,11 @@ module register_file #(
     input wire logic [start_answer_pkg::WIDTH-1:0] start_answer_i,
     // snapshots
     input wire logic stop_i,  // events: a snapshot is wanted
+    input wire logic rest_i,
     input wire logic probe_i,
     input wire logic mark_i,
+    input wire logic [3:0] capture_i,  // levels
+    output logic [3:0] captured_o,  // events, combinational
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,  // the chain's near end
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o  // behind FAULT and STATUS
 );
@@ -77,10 +86,12 @@ module register_file #(
   logic [refusal_pkg::WIDTH-1:0] refusal;
   logic snapshot;
   logic strobe;
+  logic of_rest;
   logic shift;
   logic snapshotting;
   logic [setting_bus_pkg::WIDTH-1:0] store;
-  logic [7:0] clocks;
+  logic [9:0] clocks;
+  logic unit;
   logic writing;
   logic start;
   logic [9:0] word;
@@ -135,12 +146,15 @@ module register_file #(
       .geometry_state_i,
       .pins_state_i,
       .queue_state_i,
+      .inputs_i,
+      .roles_i,
+      .capture_state_i,
       .snapshotting_i(snapshotting),
       .incomplete_i(stream_answer_i[stream_answer_pkg::PARTIAL]),
       .status_o,
       .data_o(live_data),
       .irq_o,
-      .snapshot_i(snapshot_pkg::pack(shift, strobe, 32'd0)),
+      .snapshot_i(snapshot_pkg::pack(of_rest, shift, strobe, 32'd0)),
       .snapshot_o
   );
 
@@ -151,14 +165,30 @@ module register_file #(
       .rst_i,
       .host_i  (snapshot),
       .stop_i,
+      .rest_i,
       .probe_i,
       .mark_i,
+      .capture_i,
       .word_i  (snapshot_pkg::word(snapshot_i)),
       .strobe_o(strobe),
+      .rest_o  (of_rest),
       .shift_o (shift),
       .active_o(snapshotting),
+      .captured_o,
       .clocks_o(clocks),
+      .unit_o  (unit),
       .store_o (store)
+  );
+
+  link_watch i_link (
+      .clk_i,
+      .rst_i,
+      .setting_i(setting_o),
+      .access_i,
+      .answer_i (answer_o),
+      .unit_i   (unit),
+      .gone_o   (session_gone_o),
+      .lost_o   (link_lost_o)
   );
 
   // The direct loader owns the RAM's read side from its start to its end; the START write waits all the while.
@@ -169,7 +199,7 @@ module register_file #(
     if (rst_i) loading_q <= 1'b0;
   end
 
-  logic [8:0] place;
+  logic [9:0] place;
 
   assign place = loading_q ? register_fold_pkg::place_of(
       start_answer_pkg::address(start_answer_i), MORE_AXES
@@ -179,8 +209,11 @@ module register_file #(
 
   register_ram #(
       .Axes(Axes),
+      .Engines(Engines),
       .Constants(CONSTANTS),
-      .Descriptors(card_map_pkg::unit_descriptors(Engines, Axes, PATH_COMMANDS ? 4 : 2, Ports, Inputs, Outputs))
+      .Descriptors(card_map_pkg::unit_descriptors(
+          Engines, Axes, PATH_COMMANDS ? 4 : 2, Ports, Inputs, Outputs, Captures
+      ))
   ) i_ram (
       .clk_i,
       .rst_i,

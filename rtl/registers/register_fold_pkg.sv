@@ -1,41 +1,60 @@
 // Where the block RAM of the registers holds a word of the map. The window has room for what is not built, so the RAM
-// holds the built ranges alone: 256 words, or 512 where the card has more than 4 axes.
+// holds the built ranges alone: 256 words, 512 where the card has more than 4 axes or machine inputs, 1,024 where it has
+// more than 4 axes and captures, enables or soft limits.
 //
-//   0_0000_iiii  identity, word i                     0_001g_ggii  settings, group g, word i
-//   0_01dd_dddd  descriptors with up to 4 axes        1_00dd_dddd  descriptors with more
-//   0_10aa_iiii  latched values, area a, word i       0_11nn_niii  axis n, word i
-//   0_111w_wwww  direct mode with up to 4 axes        0_01ww_wwww  direct mode with more
+//   00_0000_iiii  identity, word i                    00_001g_ggii  settings, group g, word i
+//   00_0001_iiii  latched values of REST, word i
+//   00_01dd_dddd  descriptors with up to 4 axes       01_00dd_dddd  descriptors with more
+//   00_10aa_iiii  latched values, area a, word i      00_11nn_niii  axis n, word i
+//   00_111w_wwww  direct mode with up to 4 axes       00_01ww_wwww  direct mode with more
+//   01_0www_wwww  filters and roles, up to 4 axes     01_1www_wwww  filters and roles with more
+//   01_10kk_iiii  capture k, word i, up to 4 axes     10_00kk_iiii  capture k with more
+//   01_10ww_11vv  captures' setting vvww, up to 4     10_0110_vvww  with more
+//   01_1110_iiii  enables, up to 4 axes              10_0100_iiii  enables with more
+//   01_1111_nnni  soft limits of axis n, up to 4      10_0101_nnni  soft limits with more
 //
-// All that is written lies in the lower 256 words, so that the sweep after reset takes the same time with any axes.
+// With up to 4 axes a capture has 12 words, and the settings take what is left of its 16. All that is written lies in the
+// lower 256 words, but for filters, roles, captures, enables and soft limits: the sweep after reset takes the same time
+// with any axes.
 `default_nettype none
 package register_fold_pkg;
 
-  function automatic logic [8:0] place_of(input logic [9:0] word, input logic more_axes);
+  function automatic logic [9:0] place_of(input logic [9:0] word, input logic more_axes);
     case (word[9:8])
       2'b00:
-      if (word[7]) place_of = {3'b010, word[6:5], word[3:0]};
-      else if (word[6]) place_of = {more_axes ? 3'b100 : 3'b001, word[5:0]};
-      else place_of = {5'b00000, word[3:0]};
-      2'b01: place_of = {4'b0001, word[6:4], word[1:0]};
-      2'b10: place_of = {3'b011, word[7:5], word[2:0]};
-      default: place_of = more_axes ? {3'b001, word[5:0]} : {4'b0111, word[4:0]};
+      if (word[7]) place_of = {4'b0010, word[6:5], word[3:0]};
+      else if (word[6]) place_of = {more_axes ? 4'b0100 : 4'b0001, word[5:0]};
+      else place_of = {6'b000000, word[3:0]};
+      2'b01:
+      if (word[7:4] == 4'b1110 && word[3:2] != 2'b00) place_of = {more_axes ? 6'b100100 : 6'b011110, word[3:0]};
+      else if (word[7]) place_of = {5'b00001, word[6:4], word[1:0]};
+      else if (word[6:5] == 2'b00) place_of = {6'b000001, word[3:0]};
+      else if (word[6:5] == 2'b11)
+        place_of = more_axes ? {6'b100110, word[3:0]} : {4'b0110, word[1:0], 2'b11, word[3:2]};
+      else place_of = {more_axes ? 4'b1000 : 4'b0110, word[6], word[4:0]};
+      2'b10:
+      if (word[3]) place_of = {more_axes ? 6'b100101 : 6'b011111, word[7:5], word[0]};
+      else place_of = {4'b0011, word[7:5], word[2:0]};
+      default:
+      if (word[7]) place_of = {2'b01, more_axes, word[6:0]};
+      else place_of = more_axes ? {4'b0001, word[5:0]} : {5'b00111, word[4:0]};
     endcase
   endfunction
 
-  function automatic logic is_identity(input logic [8:0] place);
-    is_identity = place[8:4] == 5'b00000;
+  function automatic logic is_identity(input logic [9:0] place);
+    is_identity = place[9:4] == 6'b000000;
   endfunction
 
-  function automatic logic is_descriptor(input logic [8:0] place, input logic more_axes);
-    is_descriptor = place[8:6] == (more_axes ? 3'b100 : 3'b001);
+  function automatic logic is_descriptor(input logic [9:0] place, input logic more_axes);
+    is_descriptor = place[9:6] == (more_axes ? 4'b0100 : 4'b0001);
   endfunction
 
-  function automatic logic is_setting(input logic [8:0] place);
-    is_setting = place[8:5] == 4'b0001;
+  function automatic logic is_setting(input logic [9:0] place);
+    is_setting = place[9:5] == 5'b00001;
   endfunction
 
   // The word of the map at a place that is_setting().
-  function automatic logic [9:0] setting_word(input logic [8:0] place);
+  function automatic logic [9:0] setting_word(input logic [9:0] place);
     setting_word = {3'b011, place[4:2], 2'b00, place[1:0]};
   endfunction
 

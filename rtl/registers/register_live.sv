@@ -1,6 +1,6 @@
 // The registers that read as the card stands, STATUS and REFUSAL among them, the interrupt, and the far end of the
 // snapshot chain: FAULT and STATUS. data_o is, a clock after sample_i, the live register that is read; four bits of its
-// address tell the live registers apart.
+// address tell the live registers apart, but CAPTURE_STATE.
 //
 // Each port has a REFUSAL of its own, which keeps the port's first refusal until the port clears it. Refusals and clears
 // never meet: one access is carried through at a time.
@@ -21,6 +21,9 @@ module register_live #(
     input wire logic [geometry_state_pkg::WIDTH-1:0] geometry_state_i,
     input wire logic [pins_state_pkg::WIDTH-1:0] pins_state_i,
     input wire logic [queue_state_pkg::WIDTH-1:0] queue_state_i,
+    input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
+    input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
+    input wire logic [31:0] capture_state_i,
     input wire logic snapshotting_i,
     input wire logic incomplete_i,  // the stream is inside a command
     output logic [31:0] status_o,  // combinational; refused is any port's
@@ -87,7 +90,10 @@ module register_live #(
       32'(pins_state_i[pins_state_pkg::PROBE_MISSED]) << card_map_pkg::BIT_STATUS_PROBE_MISSED |
       32'(geometry_state_i[geometry_state_pkg::WAITING]) << card_map_pkg::BIT_STATUS_WAITING |
       32'(geometry_state_i[geometry_state_pkg::STALE]) << card_map_pkg::BIT_STATUS_STALE |
-      32'(time_state_i[time_state_pkg::BUTTON_HOLD]) << card_map_pkg::BIT_STATUS_BUTTON_HOLD;
+      32'(time_state_i[time_state_pkg::BUTTON_HOLD]) << card_map_pkg::BIT_STATUS_BUTTON_HOLD |
+      32'(time_state_i[time_state_pkg::SETTLED]) << card_map_pkg::BIT_STATUS_SETTLED |
+      32'(time_state_i[time_state_pkg::ENABLED]) << card_map_pkg::BIT_STATUS_ENABLED |
+      32'(time_state_i[time_state_pkg::ENABLE_WAITS]) << card_map_pkg::BIT_STATUS_ENABLE_WAITS;
 
   always_ff @(posedge clk_i) begin
     if (sample_i) begin
@@ -101,17 +107,25 @@ module register_live #(
         card_map_pkg::ADDR_GEOMETRY_ROOM[5:2]: data_o <= {16'd0, queue_state_pkg::geometry_room(queue_state_i)};
         card_map_pkg::ADDR_FEED_ROOM[5:2]: data_o <= {16'd0, queue_state_pkg::feed_room(queue_state_i)};
         card_map_pkg::ADDR_GEOMETRY_BEGUN[5:2]: data_o <= geometry_state_pkg::geometry_begun(geometry_state_i);
-        card_map_pkg::ADDR_INPUTS[5:2]: data_o <= {16'd0, pins_state_pkg::inputs(pins_state_i)};
+        card_map_pkg::ADDR_INPUTS[5:2]: data_o <= pins_state_pkg::inputs(pins_state_i);
         card_map_pkg::ADDR_OUTPUTS[5:2]: data_o <= {16'd0, pins_state_pkg::outputs(pins_state_i)};
         card_map_pkg::ADDR_MARKS[5:2]: data_o <= pins_state_pkg::marks(pins_state_i);
+        card_map_pkg::ADDR_PLACE[5:2]: data_o <= {16'd0, time_state_pkg::place(time_state_i)};
         card_map_pkg::ADDR_FEED_BEGUN[5:2]: data_o <= time_state_pkg::feed_begun(time_state_i);
         default:
         if (Engines[card_map_pkg::ENGINE_STREAMING] && address[5:2] == card_map_pkg::ADDR_STALE_TICKS[5:2])
           data_o <= geometry_state_pkg::stale_ticks(geometry_state_i);
         else if (Engines[card_map_pkg::ENGINE_MACHINE_INPUTS] && address[5:2] == card_map_pkg::ADDR_LIMIT_STATE[5:2])
-          data_o <= {8'd0, time_state_pkg::limit_state(time_state_i)};
+          data_o <= {4'd0, time_state_pkg::limit_state(time_state_i)};
+        else if (Engines[card_map_pkg::ENGINE_MACHINE_INPUTS] && address[5:2] == card_map_pkg::ADDR_RAW_INPUTS[5:2])
+          data_o <= input_levels_pkg::raw(inputs_i);
+        else if (Engines[card_map_pkg::ENGINE_MACHINE_INPUTS] && address[5:2] == card_map_pkg::ADDR_ROLES[5:2])
+          data_o <= 32'(roles_i);
         else data_o <= time_state_pkg::underruns(time_state_i);
       endcase
+      // It lies beside the captures' areas.
+      if (Engines[card_map_pkg::ENGINE_CAPTURES] && address[11:6] == card_map_pkg::ADDR_CAPTURE_STATE[11:6])
+        data_o <= capture_state_i;
     end
   end
 
@@ -138,10 +152,10 @@ module register_live #(
   );
 
   snapshot_slice #(
-      .Width(19)
+      .Width(22)
   ) i_status (
       .clk_i,
-      .value_i(status_o[18:0] & ~(19'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
+      .value_i(status_o[21:0] & ~(22'd1 << card_map_pkg::BIT_STATUS_SNAPSHOT)),
       .snapshot_i(behind_fault),
       .snapshot_o
   );

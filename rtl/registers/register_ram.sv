@@ -1,12 +1,14 @@
 // The block RAM behind the registers: constants, the settings' shadow, snapshots and the direct mode's registers.
 //
 // Constants and descriptors are its initial content, which nothing overwrites. After reset the other words are written
-// with their reset values in 256 clocks, in the order in which the low byte of the time counter runs; writing_o tells
-// whether a word may still be on its way. Settings and words of a snapshot never come together, nor before that is over.
+// with their reset values in 256 clocks, with machine inputs in 354, or 482 with more than 4 axes, which enables take there,
+// too, with captures in 450 or 614, in the order in which the low bits of the time counter run; writing_o tells whether a
+// word may still be on its way. Settings and words of a snapshot never come together, nor before that is over.
 // data_o is the word at place_i two clocks earlier.
 `default_nettype none
 module register_ram #(
     parameter int                                           Axes        = 4,   // 1 to 8
+    parameter logic [                                 31:0] Engines     = '1,  // bits card_map_pkg::ENGINE_*
     parameter logic [        card_constants_pkg::WIDTH-1:0] Constants   = '0,
     // the first word lowest
     parameter logic [32*card_map_pkg::COUNT_DESCRIPTOR-1:0] Descriptors = '0
@@ -17,24 +19,34 @@ module register_ram #(
     input wire logic [2*Axes-1:0] idle_level_i,  // {second pins, first pins}
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] store_i,  // a word of a snapshot
-    input wire logic [7:0] clocks_i,  // since reset, the low byte
-    input wire logic [8:0] place_i,  // as register_fold_pkg has it
+    input wire logic [9:0] clocks_i,  // since reset, the low bits
+    input wire logic [9:0] place_i,  // as register_fold_pkg has it
     output logic writing_o,
     output logic [31:0] data_o
 );
 
   localparam logic MORE_AXES = Axes > 4;
-  localparam int BITS = MORE_AXES ? 9 : 8;
-  localparam logic [8:0] CLOCK_HZ = register_fold_pkg::place_of(card_map_pkg::ADDR_CLOCK_HZ[11:2], MORE_AXES);
-  localparam logic [8:0] FIRST_MODE = register_fold_pkg::place_of(card_map_pkg::ADDR_MODE[11:2], MORE_AXES);
-  localparam logic [8:0] AXIS_SLOTS = 9'o070;
+  localparam logic MACHINE_INPUTS = Engines[card_map_pkg::ENGINE_MACHINE_INPUTS];
+  localparam logic CAPTURES = Engines[card_map_pkg::ENGINE_CAPTURES];
+  localparam logic ENABLES = Engines[card_map_pkg::ENGINE_ENABLES];
+  localparam logic SOFT_LIMITS = Engines[card_map_pkg::ENGINE_SOFT_LIMITS];
+  localparam int BITS = MORE_AXES && (CAPTURES || ENABLES || SOFT_LIMITS) ? 10 :
+      MORE_AXES || ENABLES || MACHINE_INPUTS ? 9 : 8;
+  localparam logic [9:0] CLOCK_HZ = register_fold_pkg::place_of(card_map_pkg::ADDR_CLOCK_HZ[11:2], MORE_AXES);
+  localparam logic [9:0] FIRST_MODE = register_fold_pkg::place_of(card_map_pkg::ADDR_MODE[11:2], MORE_AXES);
+  localparam logic [9:0] AXIS_SLOTS = 10'o070;
 
-  // The counter is two clocks late: it begins at 0xFE.
-  localparam logic [7:0] LAST_SWEPT = 8'hFD;
+  // The counter is two clocks late: it begins at 0x3FE. All that is written lies in the lower 256 words, but for filters
+  // and roles, which have 96 from 256 or 384 on, captures, the last of whose words is swept last, enables and soft limits.
+  // These two are written in the clocks of the descriptors, which are constants; with more than 4 axes they lie beyond 256.
+  localparam logic BEYOND = MACHINE_INPUTS || (ENABLES && MORE_AXES);
+  localparam logic [9:0] LAST_SWEPT = CAPTURES ? (MORE_AXES ? 10'h263 : 10'h1BF) :
+      !BEYOND ? 10'h0FD : MORE_AXES ? 10'h1DF : 10'h15F;
+  localparam logic [3:0] BESIDE_DESCRIPTORS = MORE_AXES ? 4'b1001 : 4'b0111;
 
   logic        resetting_q;
   logic        store_q;
-  logic [ 8:0] store_place_q;
+  logic [ 9:0] store_place_q;
   logic [31:0] store_data_q;
 
   always_ff @(posedge clk_i) begin
@@ -50,7 +62,7 @@ module register_ram #(
 
   // The write port, registered: those who write take turns, and give 0 when it is not theirs.
   always_ff @(posedge clk_i) begin : p_store
-    logic [ 8:0] swept;
+    logic [ 9:0] swept;
     logic [31:0] reset_value;
     logic [ 7:0] first_inverted;
     logic [ 7:0] second_inverted;
@@ -58,7 +70,9 @@ module register_ram #(
     swept = '0;
     reset_value = '0;
     if (resetting_q) begin
-      swept = {1'b0, clocks_i};
+      swept = {clocks_i[9] && BITS == 10, clocks_i[8] && BEYOND, clocks_i[7:0]};
+      if ((ENABLES || SOFT_LIMITS) && register_fold_pkg::is_descriptor(swept, MORE_AXES))
+        swept[9:6] = BESIDE_DESCRIPTORS;
       if (register_fold_pkg::is_setting(swept)) begin
         reset_value = card_map_pkg::register_reset(register_fold_pkg::setting_word(swept));
       end
@@ -70,7 +84,7 @@ module register_ram #(
       end
     end
     store_q <= setting || snapshot || resetting_q;
-    store_place_q <= {9{setting}} & register_fold_pkg::place_of(
+    store_place_q <= {10{setting}} & register_fold_pkg::place_of(
         setting_bus_pkg::word(setting_i), MORE_AXES
     ) | register_fold_pkg::place_of(
         setting_bus_pkg::word(store_i), MORE_AXES
@@ -78,7 +92,7 @@ module register_ram #(
     store_data_q <= {32{setting}} & setting_bus_pkg::data(setting_i) | setting_bus_pkg::data(store_i) | reset_value;
   end
 
-  function automatic logic [31:0] content(input logic [8:0] place);
+  function automatic logic [31:0] content(input logic [9:0] place);
     content = '0;
     if (register_fold_pkg::is_identity(place)) begin
       content = card_map_pkg::register_reset({6'd0, place[3:0]}) | card_constants_pkg::word(Constants, place[3:0]);
@@ -90,14 +104,14 @@ module register_ram #(
   logic [31:0] memory[0:(1<<BITS)-1];
   logic [31:0] memory_q;
 
-  initial for (int i = 0; i < 1 << BITS; i++) memory[i] = content(9'(i));
+  initial for (int i = 0; i < 1 << BITS; i++) memory[i] = content(10'(i));
 
   // Nothing overwrites constants, whatever the flip-flops hold before the first reset.
-  logic [8:0] stored_at;
+  logic [9:0] stored_at;
   logic identity;
   logic descriptor;
 
-  assign stored_at  = 9'(store_place_q[BITS-1:0]);
+  assign stored_at  = 10'(store_place_q[BITS-1:0]);
   assign identity   = register_fold_pkg::is_identity(stored_at) && stored_at != CLOCK_HZ;
   assign descriptor = register_fold_pkg::is_descriptor(stored_at, MORE_AXES);
 
@@ -111,10 +125,8 @@ module register_ram #(
   // Of a snapshot its writer tells. An access after a reset asks two clocks later at the earliest.
   assign writing_o = store_q;
 
-  if (!MORE_AXES) begin : gen_narrow
-    logic unused;
-    assign unused = &{1'b0, store_place_q[8], place_i[8]};
-  end
+  logic unused;  // of a smaller RAM
+  assign unused = &{1'b0, store_place_q, place_i};
 
 endmodule
 `default_nettype wire

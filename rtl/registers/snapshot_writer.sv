@@ -2,10 +2,15 @@
 // whoever asked, a word a clock.
 //
 // The strobe is given in the clock after the request. The words follow two clocks later, the time first: an access that
-// was let through just before a stop's request has written its setting by then. Requests go in the order stop, probe,
-// MARK, host. A stop or the probe's edge breaks into the others' snapshots, a MARK into the host's; those of a MARK and of
-// the host are then taken anew. A MARK does not break into a snapshot that is taken anew, and follows on no other without
-// a clock between, in which an access gets through: so no row of MARKs keeps the host waiting.
+// was let through just before a stop's request has written its setting by then. Requests go in the order stop, rest,
+// probe, captures, MARK, host. Those of a stop, of its rest and of the probe's edge break into any other, a MARK's into the
+// host's; those of captures, of a MARK and of the host are then taken anew. A MARK does not break into a snapshot that is
+// taken anew.
+//
+// A capture breaks into none, and a MARK that waits goes before a second capture. Neither follows on another snapshot
+// without a clock between, in which an access gets through; the host's follows at once. So neither a row of MARKs nor
+// inputs that chatter keep the host waiting. A capture asks until it is told that its area has the snapshot; if it takes
+// that back meanwhile, it is not told.
 // The chain's words go down from the last position; the words below the time follow those above it.
 `default_nettype none
 module snapshot_writer #(
@@ -15,13 +20,18 @@ module snapshot_writer #(
     input wire logic rst_i,
     input wire logic host_i,  // events: a snapshot is wanted
     input wire logic stop_i,
+    input wire logic rest_i,
     input wire logic probe_i,
     input wire logic mark_i,
+    input wire logic [3:0] capture_i,  // levels, of the units: a snapshot is wanted
     input wire logic [31:0] word_i,  // what the chain brings
     output logic strobe_o,
+    output logic rest_o,  // the snapshot under way is for REST
     output logic shift_o,
     output logic active_o,  // from the strobe until the last word is in the RAM
-    output logic [7:0] clocks_o,  // since reset, two clocks late: the low byte
+    output logic [3:0] captured_o,  // events, combinational: it is taken
+    output logic [9:0] clocks_o,  // since reset, two clocks late: the low bits
+    output logic unit_o,  // bit 16 of them: turns each unit of LINK_TIMEOUT
     output logic [setting_bus_pkg::WIDTH-1:0] store_o  // combinational; 0 when there is nothing to write
 );
 
@@ -32,7 +42,8 @@ module snapshot_writer #(
   localparam logic [3:0] FIRST_POSITION = card_map_pkg::IN_AREA_POSITION[5:2];
   localparam logic [3:0] LAST_POSITION = FIRST_POSITION + 4'(Axes - 1);
 
-  // The areas have 32 words each, of which the first 16 are used.
+  // The areas have 32 words each, of which the first 16 are used. REST lies behind the other four; behind REST the captures,
+  // 16 words each: capture 0 is the one from half of the second area on.
   localparam logic [1:0] SNAP = card_map_pkg::AREA_SNAP[8:7];
   localparam logic [1:0] STOP = card_map_pkg::AREA_STOP[8:7];
   localparam logic [1:0] PROBE = card_map_pkg::AREA_PROBE[8:7];
@@ -42,7 +53,8 @@ module snapshot_writer #(
   logic        carry_q;
   logic [63:0] time_q;
 
-  assign clocks_o = time_q[7:0];
+  assign clocks_o = time_q[9:0];
+  assign unit_o   = time_q[16];
 
   always_ff @(posedge clk_i) begin
     if (carry_q) time_q[63:32] <= time_q[63:32] + 32'd1;
@@ -56,22 +68,33 @@ module snapshot_writer #(
   logic       host_q;  // the host's request is not served yet
   logic       mark_q;  // a MARK's
   logic [1:0] area_q;
+  logic       odd_q;  // of captures: the upper half of the area
   logic       again_q;  // of the host's: a snapshot taken anew
   logic       settle_q;  // the clock between the strobe and the first word
   logic       write_q;
   logic [3:0] word_q;
   logic       last_q;  // the last word is on its way into the RAM
   logic       for_host;  // the snapshot under way
-  logic       begin_first;  // a stop's or the probe's
-  logic       begin_mark;  // where these do not begin
+  logic       begin_first;  // a stop's, its rest's or the probe's
+  logic       begin_capture;  // where these do not begin
+  logic       begin_mark;  // likewise
   logic       begin_host;  // where none of them begins
   logic       breaks;
+  logic       capture_q;  // the snapshot under way, or the last one, is a capture's
+  logic       wanted_q;  // its unit has asked for it all the while
+  logic [1:0] unit;  // the first one that asks
+  logic [1:0] unit_q;  // of the capture under way
 
-  assign for_host = area_q == SNAP;
-  assign begin_first = stop_i || probe_i;
-  assign begin_mark = active_o ? mark_i && for_host && !again_q : mark_i || mark_q;
+  assign for_host = area_q == SNAP && !rest_o;
+  assign begin_first = stop_i || rest_i || probe_i;
+  assign begin_capture = !active_o && capture_i != '0 && !begin_first && !(capture_q && (mark_i || mark_q));
+  assign begin_mark = active_o ? mark_i && for_host && !again_q : (mark_i || mark_q) && !begin_capture;
   assign begin_host = active_o ? last_q && !for_host && host_q : host_i;
-  assign breaks = begin_first || begin_mark;
+  assign breaks = begin_first || begin_mark || begin_capture;
+
+  assign unit = capture_i[0] ? 2'd0 : capture_i[1] ? 2'd1 : capture_i[2] ? 2'd2 : 2'd3;
+  assign unit_q = {area_q[1], odd_q};
+  assign captured_o = 4'(last_q && capture_q && wanted_q && capture_i[unit_q]) << unit_q;
 
   always_ff @(posedge clk_i) begin
     if (breaks || active_o || host_i) begin
@@ -95,33 +118,40 @@ module snapshot_writer #(
           shift_o <= 1'b0;
         end
       end
+      wanted_q <= wanted_q && capture_i[unit_q];
       if (last_q) active_o <= 1'b0;
       if (breaks || begin_host) begin
         active_o <= 1'b1;
-        area_q   <= stop_i ? STOP : probe_i ? PROBE : begin_mark ? MARK : SNAP;
-        again_q  <= active_o;
-        write_q  <= 1'b0;
-        shift_o  <= 1'b0;
+        rest_o <= rest_i && !stop_i;
+        capture_q <= begin_capture;
+        wanted_q <= 1'b1;
+        odd_q <= begin_capture && unit[0];
+        area_q   <= stop_i ? STOP : rest_i ? 2'd0 : probe_i ? PROBE : begin_capture ? {unit[1], !unit[1]} :
+            begin_mark ? MARK : SNAP;
+        again_q <= active_o;
+        write_q <= 1'b0;
+        shift_o <= 1'b0;
       end
     end
     if (rst_i) begin
       strobe_o <= 1'b0;
-      shift_o  <= 1'b0;
+      shift_o <= 1'b0;
       settle_q <= 1'b0;
-      write_q  <= 1'b0;
-      last_q   <= 1'b0;
-      host_q   <= 1'b0;
-      mark_q   <= 1'b0;
+      write_q <= 1'b0;
+      last_q <= 1'b0;
+      host_q <= 1'b0;
+      mark_q <= 1'b0;
+      capture_q <= 1'b0;
       active_o <= 1'b0;
     end
   end
 
   logic [31:0] data;
+  logic [ 2:0] group;
 
   assign data = word_q == TIME_LO ? time_q[31:0] : word_q == TIME_HI ? time_q[63:32] : word_i;
-  assign store_o = write_q ? setting_bus_pkg::pack(
-      1'b1, {card_map_pkg::AREA_SNAP[11:9], area_q, 1'b0, word_q}, data
-  ) : '0;
+  assign group = rest_o || capture_q ? card_map_pkg::AREA_REST[11:9] : card_map_pkg::AREA_SNAP[11:9];
+  assign store_o = write_q ? setting_bus_pkg::pack(1'b1, {group, area_q, odd_q, word_q}, data) : '0;
 
 endmodule
 `default_nettype wire

@@ -1,7 +1,12 @@
 // Everything that stops the card: gathers the faults, holds the time base, cuts.
 //
-// A fault stops at once, or, where its reaction says so, after the time base has come to rest. Either way the cut leaves
-// nothing that could move, so clearing FAULT never starts motion.
+// A fault stops at once, or, where its reaction says so, after the time base has come to rest. Either way the tick gate is
+// shut then, and the cut waits until the ticks in flight have made their steps and the last pulse has come out: so the
+// snapshot REST, strobed in the clock of the cut, has a tick and positions that agree. The cut leaves nothing that could
+// move, so clearing FAULT never starts motion. An abort cuts at once, unless a fault is on its way to a cut already.
+//
+// The wait is bounded: with the gate shut path_tick_gate has seven ticks at most, each step takes its engine at most 17
+// clocks, and a shaper holds four steps beside the pulse under way.
 //
 // A HOLD waits for the end of the fixed pieces that are under way. One that finds nothing moving, or the time base at
 // rest, takes at once and stays until it is taken back: no fixed piece that is sent meanwhile starts motion.
@@ -19,7 +24,10 @@ module stop_control #(
     input wire logic incomplete_i,
     input wire logic missing_i,  // position streaming
     input wire logic expired_i,  // the watchdog has expired: a level
+    input wire logic link_lost_i,  // likewise
+    input wire logic emergency_i,  // the emergency stop: a level
     input wire logic [stop_causes_pkg::WIDTH-1:0] causes_i,  // from the machine's inputs
+    input wire logic soft_limit_i,  // event: a pulse beyond one
     input wire logic abort_i,
     input wire logic [31:0] clear_i,  // ones written to FAULT
     input wire logic at_rest_i,  // the ratio is 0
@@ -28,18 +36,35 @@ module stop_control #(
     input wire logic underrun_i,  // what is queued ends: neither a fault nor a cut
     input wire logic probe_i,  // a probe has tripped: likewise
     input wire logic button_i,  // the feed hold button holds, as HOLD does
+    // what still moves
+    input wire logic take_i,  // a tick is taken in this clock (combinational)
+    input wire logic swap_i,  // a path begins
+    input wire logic quiet_i,  // no path tick waits or is on its way to an engine, none makes a step
+    input wire logic pulses_i,  // an axis is busy
+    input wire logic busy_i,  // something runs or is queued
     output logic [31:0] fault_o,
     output logic hold_o,  // the time base slows down to rest
     output logic cut_o,
     output logic stop_o,  // the first cause of a stop
-    output logic stopping_o,
+    output logic rest_o,  // event: the snapshot REST is wanted (combinational); a cut follows in the next clock
+    output logic caused_o,  // a cause comes, or the card is not in RUN (combinational)
+    output logic stopping_o,  // on the way to the cut (combinational)
+    output logic closing_o,  // its last part: the gate is shut (combinational)
+    output logic shut_o,  // no tick is taken
+    output logic settled_o,  // STATUS.settled (combinational)
     output logic closed_o  // no command and no START is taken
 );
+  // The upper bit shuts the gate.
   typedef enum logic [1:0] {
     RUN,
     RAMP,
+    CLOSING,
     STOPPED
   } state_e;
+
+  // Clocks in which nothing moved. A tick taken is at most 10 clocks on its way to its axis's busy flag; the snapshot STOP
+  // takes 20 clocks from the cause on, which REST must not break into.
+  localparam logic [4:0] SETTLED = 5'd31;
 
   localparam int Faults = card_map_pkg::BIT_FAULT_TOOL_SETTER + 1;
   localparam logic [Faults-1:0] OF_INPUTS = Faults'(1) << card_map_pkg::BIT_FAULT_LIMIT |
@@ -49,7 +74,9 @@ module stop_control #(
   localparam logic [Faults-1:0] BUILT = (Faults'(1) << Axes) - Faults'(1) |
       Faults'(1) << card_map_pkg::BIT_FAULT_TICK_MISMATCH | Faults'(1) << card_map_pkg::BIT_FAULT_PATH_INCOMPLETE |
       Faults'(Engines[card_map_pkg::ENGINE_STREAMING]) << card_map_pkg::BIT_FAULT_MISSING_PERIOD |
-      Faults'(1) << card_map_pkg::BIT_FAULT_WATCHDOG |
+      Faults'(1) << card_map_pkg::BIT_FAULT_WATCHDOG | Faults'(1) << card_map_pkg::BIT_FAULT_LINK_LOSS |
+      Faults'(Engines[card_map_pkg::ENGINE_EMERGENCY_STOP]) << card_map_pkg::BIT_FAULT_EMERGENCY_STOP |
+      Faults'(Engines[card_map_pkg::ENGINE_SOFT_LIMITS]) << card_map_pkg::BIT_FAULT_SOFT_LIMIT |
       (Engines[card_map_pkg::ENGINE_MACHINE_INPUTS] ? OF_INPUTS : '0);
   localparam logic [Faults-1:0] REACTIONS = card_map_pkg::MASK_STOP_REACTION[Faults-1:0] & BUILT;
 
@@ -64,6 +91,9 @@ module stop_control #(
   logic   [Faults-1:0] ramped_q;  // causes whose reaction is a ramp
   logic                any;
   logic                immediate;
+  logic   [       4:0] settle_q;
+  logic                still;
+  logic                finished;
   logic   [      31:0] data;
 
   assign data = setting_bus_pkg::data(setting_i);
@@ -78,6 +108,9 @@ module stop_control #(
     cause[card_map_pkg::BIT_FAULT_PATH_INCOMPLETE] = incomplete_i;
     cause[card_map_pkg::BIT_FAULT_MISSING_PERIOD] = missing_i;
     cause[card_map_pkg::BIT_FAULT_WATCHDOG] = expired_i;
+    cause[card_map_pkg::BIT_FAULT_LINK_LOSS] = link_lost_i;
+    cause[card_map_pkg::BIT_FAULT_SOFT_LIMIT] = soft_limit_i;
+    cause[card_map_pkg::BIT_FAULT_EMERGENCY_STOP] = emergency_i;
     cause[card_map_pkg::BIT_FAULT_LIMIT] = causes_i[stop_causes_pkg::LIMIT];
     cause[card_map_pkg::BIT_FAULT_DRIVE_FAULT] = causes_i[stop_causes_pkg::DRIVE_FAULT];
     cause[card_map_pkg::BIT_FAULT_PROBE] = causes_i[stop_causes_pkg::PROBE];
@@ -89,22 +122,32 @@ module stop_control #(
     state_d = state_q;
     case (state_q)
       RUN:
-      if (immediate) state_d = STOPPED;
+      if (immediate || (any && abort_i)) state_d = CLOSING;
       else if (any) state_d = RAMP;
-      RAMP: if (immediate || abort_i || at_rest_i) state_d = STOPPED;
+      RAMP: if (immediate || abort_i || at_rest_i) state_d = CLOSING;
+      CLOSING: if (finished) state_d = STOPPED;
       default: if (!any && fault_q == '0) state_d = RUN;
     endcase
   end
 
+  // From the first clock out of RUN on the count begins anew: stop_o.
+  assign still = (at_rest_i || shut_o) && quiet_i && !pulses_i && !take_i && !stop_o;
+  assign settled_o = settle_q == SETTLED && !swap_i;
+  assign finished = closing_o && settle_q == SETTLED && !stop_o;
+  assign rest_o = finished || (abort_i && state_q == RUN && busy_i);
+
   always_ff @(posedge clk_i) begin
+    if (!still || rst_i) settle_q <= 5'd0;
+    else if (settle_q != SETTLED) settle_q <= settle_q + 5'd1;
     if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_HOLD)) hold_q <= data[0];
     if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_STOP_REACTION)) ramped_q <= data[Faults-1:0] & REACTIONS;
-    fault_q  <= (fault_q & ~clear_i[Faults-1:0] & BUILT) | cause;
-    state_q  <= state_d;
-    cut_o    <= abort_i || (state_q != STOPPED && state_d == STOPPED);
-    stop_o   <= state_q == RUN && state_d != RUN;
+    fault_q <= (fault_q & ~clear_i[Faults-1:0] & BUILT) | cause;
+    state_q <= state_d;
+    cut_o <= finished || (abort_i && (state_q == STOPPED || (state_q == RUN && !any)));
+    stop_o <= state_q == RUN && state_d != RUN;
     hold_latched_q <= stays;
-    hold_o   <= (asked && (stays || !fixed_i)) || underrun_i || probe_i || state_q == RAMP;
+    // The ratio does not leave 0 between the end of a ramp and the cut.
+    hold_o <= (asked && (stays || !fixed_i)) || underrun_i || probe_i || state_q == RAMP || (closing_o && at_rest_i);
     closed_o <= fault_q != '0 || state_q != RUN;
     if (rst_i) begin
       hold_q   <= card_map_pkg::RESET_HOLD[0];
@@ -120,7 +163,10 @@ module stop_control #(
   end
 
   assign fault_o = 32'(fault_q);
-  assign stopping_o = state_q == RAMP;
+  assign caused_o = any || state_q != RUN;
+  assign stopping_o = state_q == RAMP || closing_o;
+  assign closing_o = state_q == CLOSING;
+  assign shut_o = state_q[1];
 
   logic unused;  // absent axes and faults that are not built
   assign unused = &{1'b0, data[31:Faults], clear_i};

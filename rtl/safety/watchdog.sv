@@ -8,10 +8,10 @@ module watchdog #(
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    output logic running_o,
     output logic expired_o
 );
   logic [15+UnitBits:0] left_q;  // clocks: 16 bits of units
-  logic running_q;
   logic [31:0] data;
   logic [15+UnitBits:0] next;
   logic none_left;
@@ -22,17 +22,17 @@ module watchdog #(
 
   always_ff @(posedge clk_i) begin
     left_q <= next;
-    if (running_q && none_left) begin
-      running_q <= 1'b0;
+    if (running_o && none_left) begin
+      running_o <= 1'b0;
       expired_o <= 1'b1;
     end
     if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_WATCHDOG)) begin
       left_q <= {data[15:0], {UnitBits{1'b0}}};
-      running_q <= data[15:0] != 16'd0;
+      running_o <= data[15:0] != 16'd0;
       expired_o <= 1'b0;
     end
     if (rst_i) begin
-      running_q <= card_map_pkg::RESET_WATCHDOG[15:0] != 16'd0;
+      running_o <= card_map_pkg::RESET_WATCHDOG[15:0] != 16'd0;
       expired_o <= 1'b0;
     end
   end

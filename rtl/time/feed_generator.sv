@@ -26,6 +26,7 @@ module feed_generator (
     input wire logic freeze_i,
     input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
     input wire logic swap_i,
+    input wire logic [31:0] left_i,  // what the snapshot REST has in the rate's place
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
     output logic tick_o,
@@ -215,7 +216,7 @@ module feed_generator (
   snapshot_slice rate (
       .clk_i,
       .snapshot_i,
-      .value_i(rate_o),
+      .value_i(snapshot_i[snapshot_pkg::REST] ? left_i : rate_o),
       .snapshot_o
   );
 endmodule

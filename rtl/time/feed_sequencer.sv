@@ -30,6 +30,7 @@ module feed_sequencer #(
     output logic spent_o,  // beyond its own
     output logic moving_o,  // and has, or the one before it in one go
     output logic [1:0] class_o,  // of the piece that was swapped in last
+    output logic [1:0] slew_shift_o,  // in that piece SLEW is doubled so often, with classes
     output logic silent_o,  // that piece's ticks make no steps
     output logic idle_o,  // nothing read or decoded
     // feed generator
@@ -43,6 +44,7 @@ module feed_sequencer #(
   logic piece;
   logic [1:0] piece_class;
   logic piece_silent;
+  logic [1:0] piece_slew_shift;
   logic sounds;  // the piece decoded must wait for the end of the silence
   logic is_barrier;
   logic is_probe_end;
@@ -81,6 +83,7 @@ module feed_sequencer #(
       .piece_o(piece),
       .class_o(piece_class),
       .silent_o(piece_silent),
+      .slew_shift_o(piece_slew_shift),
       .barrier_o(is_barrier),
       .probe_end_o(is_probe_end),
       .idle_o,
@@ -96,6 +99,7 @@ module feed_sequencer #(
       .zero_o (),
       .load_i (swap),
       .take_i (take_i && !spent_o),
+      .left_o (),
       .last_o (last)
   );
 
@@ -134,17 +138,23 @@ module feed_sequencer #(
     else if (settle_q == 4'd15) silent_o <= 1'b0;
   end
 
-  // A direct move has no pieces: it runs as feed, and so does what comes after a cut.
+  // A direct move has no pieces: it runs as feed and by SLEW alone, and so does what comes after a cut.
   if (Engines[card_map_pkg::ENGINE_CLASSES]) begin : gen_classes
     always_ff @(posedge clk_i) begin
-      if (rst_i || cut_i || halt || path_i[path_pkg::DIRECT]) class_o <= 2'(card_map_pkg::CLASS_FEED);
-      else if (swap) class_o <= piece_class;
+      if (rst_i || cut_i || halt || path_i[path_pkg::DIRECT]) begin
+        class_o <= 2'(card_map_pkg::CLASS_FEED);
+        slew_shift_o <= 2'd0;
+      end else if (swap) begin
+        class_o <= piece_class;
+        slew_shift_o <= piece_slew_shift;
+      end
     end
   end else begin : gen_no_classes
     assign class_o = 2'(card_map_pkg::CLASS_FEED);
+    assign slew_shift_o = 2'd0;
 
     logic unused;
-    assign unused = &{1'b0, piece_class};
+    assign unused = &{1'b0, piece_class, piece_slew_shift};
   end
 
   logic unused_path;  // what concerns gate and stops

@@ -15,7 +15,7 @@ module stop_ticks (
     input wire logic [4:0] step_i,
     input wire logic [16:0] ratio_i,
     input wire logic keep_i,  // the ratio taken stays
-    input wire logic twice_i,  // twice the product
+    input wire logic twice_i,  // twice the product; as it is in step 11
     input wire logic none_i,  // 0 instead: the card stands
     input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
     input wire logic swap_i,  // a piece began in the clock before
@@ -81,14 +81,16 @@ module stop_ticks (
   // The square has nine bits: the tenth step halves, or does not where twice the product is wanted. Whether a bit counts is
   // asked after the addition: a table of the adder has room for that.
   logic        none_q;
+  logic        twice_q;
   logic [33:0] product_q;
   logic [32:0] sum;
   assign sum = {1'b0, product_q[33:2]} + {1'b0, distance_q};
   always_ff @(posedge clk_i) begin
     if (step_i == 5'd11) begin
       none_q <= none_i;
+      twice_q <= twice_i;
       product_q <= '0;
-    end else if (still && !none_q && !(step_i == 5'd21 && twice_i)) begin
+    end else if (still && !none_q && !(step_i == 5'd21 && twice_q)) begin
       product_q <= square_q[7] ? {sum, product_q[1]} : product_q >> 1;
     end
   end

@@ -2,7 +2,12 @@
 // path can take them. `take_o` is decided from registers only and leaves as `tick_o` a clock later.
 //
 // The generator is stalled while two or more ticks are owed. At most five more arrive then (this gate's registers, the
-// generator's three clocks), so that four bits never overflow.
+// generator's three clocks), so that four bits never overflow. Those that a shut gate owes to a direct move may: only a
+// cut opens it again.
+//
+// A silent piece runs in every clock, whatever the time base says: nothing moves, so that a card that stands held is
+// brought to a place inside a path. Its ticks never become those of a piece that makes steps: that one begins 16 clocks
+// later at the earliest (feed_sequencer), when the generator has been cleared.
 `default_nettype none
 
 module tick_gate (
@@ -12,9 +17,12 @@ module tick_gate (
     input  wire logic enable_i,       // of the time base
     input  wire logic feed_tick_i,
     input  wire logic feed_active_i,  // a piece gives ticks
+    input  wire logic silent_i,       // which make no steps
     input  wire logic direct_i,       // a direct move is under way
     input  wire logic taking_i,       // a path takes ticks
     input  wire logic ready_i,        // and so does its engine
+    input  wire logic shut_i,         // no tick is taken
+    input  wire logic wait_i,         // nor made: the drives are not enabled
     output logic      take_o,         // combinational
     output logic      tick_o,
     output logic      feed_enable_o,
@@ -28,7 +36,7 @@ module tick_gate (
 
   assign source_active = feed_active_i || direct_i;
   // After a cut or a reset neither a piece nor a direct move is left, so that nothing is owed a clock later.
-  assign take_o = owed_q && taking_i && ready_i && source_active;
+  assign take_o = owed_q && taking_i && ready_i && source_active && !shut_i && !wait_i;
 
   always_ff @(posedge clk_i) begin : p_count
     logic [3:0] count_d;
@@ -46,10 +54,10 @@ module tick_gate (
   end
 
   always_ff @(posedge clk_i) begin
-    source_q <= direct_i ? enable_i : feed_tick_i && feed_active_i;
+    source_q <= direct_i ? enable_i && !wait_i : feed_tick_i && feed_active_i;
     tick_o <= take_o && !cut_i && !rst_i;
     // The generator rests while no path can take its ticks, so that a path does not begin with a burst.
-    feed_enable_o <= enable_i && feed_active_i && taking_i && !stall_q && !cut_i && !rst_i;
+    feed_enable_o <= (enable_i || silent_i) && feed_active_i && taking_i && !stall_q && !wait_i && !cut_i && !rst_i;
     // Without a piece nothing is owed: ticks made beyond the last one's end never count.
     feed_clear_o <= !feed_active_i || cut_i || rst_i;
   end

@@ -18,10 +18,14 @@ module tick_source #(
     input wire logic [path_pkg::WIDTH-1:0] path_i,
     input wire logic ready_i,  // the path's engine takes ticks
     input wire logic finished_i,  // and has finished all that were given
+    input wire logic shut_i,  // no tick is taken
+    input wire logic wait_i,  // nor made: the drives are not enabled
+    input wire logic settled_i,  // nor has one been for 31 clocks
     output logic take_o,  // combinational
     output logic tick_o,
     output logic swap_o,  // of the feed piece
     input wire logic card_idle_i,  // nothing runs, is decoded or queued; up to four clocks late
+    input wire logic session_gone_i,  // the one that wrote the stream is no more
     // barriers
     output logic at_barrier_o,
     output logic runs_o,  // a piece gives ticks, or a decoded one waits (combinational)
@@ -42,6 +46,7 @@ module tick_source #(
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o
 );
   logic [                     1:0] piece_class;
+  logic [                     1:0] slew_shift;
   logic                            enable;
   logic                            feed_tick;
   logic                            feed_enable;
@@ -54,7 +59,11 @@ module tick_source #(
   logic [ snapshot_pkg::WIDTH-1:0] behind_ratio;
   logic [ snapshot_pkg::WIDTH-1:0] behind_rate;
 
-  assign idle_o  = decoder_idle && empty_i && !active_o;
+  // What the snapshot REST tells of the path.
+  logic [                    39:0] left;
+  assign left = path_i[path_pkg::UNFINISHED] && settled_i ? path_i[path_pkg::LEFT+:40] : '0;
+
+  assign idle_o = decoder_idle && empty_i && !active_o;
   assign fixed_o = piece_class == 2'(card_map_pkg::CLASS_FIXED);
 
   time_base #(
@@ -65,6 +74,8 @@ module tick_source #(
       .setting_i,
       .hold_i,
       .class_i(piece_class),
+      .left_i(left[39:32]),
+      .slew_shift_i(slew_shift),
       .snapshot_i,
       .snapshot_o(behind_ratio),
       .enable_o(enable),
@@ -91,6 +102,7 @@ module tick_source #(
       .spent_o(spent),
       .moving_o,
       .class_o(piece_class),
+      .slew_shift_o(slew_shift),
       .silent_o,
       .idle_o(decoder_idle),
       .swap_o,
@@ -109,6 +121,7 @@ module tick_source #(
         .cut_i(cut_i || path_i[path_pkg::STREAMING]),
         .lost_i(path_i[path_pkg::HALT]),
         .idle_i(card_idle_i),
+        .gone_i(session_gone_i),
         .arrival_i,
         .load_i(load),
         .take_i(take_o && active_o),
@@ -125,7 +138,7 @@ module tick_source #(
     assign {must_wait, underrun_hold_o, underrun_o, underruns_o} = '0;
 
     logic unused;
-    assign unused = &{1'b0, arrival_i, decoded, card_idle_i};
+    assign unused = &{1'b0, arrival_i, decoded, card_idle_i, session_gone_i};
   end
 
   feed_generator generator (
@@ -136,6 +149,7 @@ module tick_source #(
       .freeze_i(spent),
       .load_i(load),
       .swap_i(swap_o),
+      .left_i(left[31:0]),
       .snapshot_i(behind_ratio),
       .snapshot_o(behind_rate),
       .tick_o(feed_tick),
@@ -149,9 +163,12 @@ module tick_source #(
       .enable_i(enable),
       .feed_tick_i(feed_tick),
       .feed_active_i(active_o),
+      .silent_i(silent_o),
       .direct_i(path_i[path_pkg::DIRECT]),
       .taking_i(path_i[path_pkg::TAKING]),
       .ready_i,
+      .shut_i,
+      .wait_i,
       .take_o,
       .tick_o,
       .feed_enable_o(feed_enable),

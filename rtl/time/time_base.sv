@@ -1,10 +1,12 @@
 // The time base: a clock enable with a programmable ratio of all clocks, slewed linearly towards its target.
 //
-// Every 4th clock the ratio moves by at most the slew towards its goal and never past it. An update takes 4 clocks:
+// Every 4th clock the ratio moves by at most a step towards its goal and never past it. An update takes 4 clocks:
 //   0  the last update's result becomes the ratio; the goal of this one is sampled (hold, the class's target)
 //   1  direction: goal against ratio
-//   2  candidate: ratio + or - slew (the slew is sampled here)
+//   2  candidate: ratio + or - step
 //   3  whether the candidate reached or passed the goal
+// A step is SLEW. With classes it is doubled as often as the piece in force says, up to three times: turn 2 samples SLEW
+// and the doublings for the next update, turns 3, 0 and 1 double. A doubling that would pass 28 bits is not made.
 // The goal is a sampled copy because direction and arrival must be judged against the same one: otherwise a hold that
 // comes in between would let the ratio jump.
 `default_nettype none
@@ -17,6 +19,8 @@ module time_base #(
     input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
     input wire logic hold_i,
     input wire logic [1:0] class_i,  // of the piece in force
+    input wire logic [1:0] slew_shift_i,  // likewise: how often SLEW is doubled, with classes
+    input wire logic [7:0] left_i,  // what the snapshot REST has in the ratio's place
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o,
     output logic enable_o,
@@ -30,6 +34,9 @@ module time_base #(
   logic [16:0] fixed_q;
   logic [16:0] target;
   logic [27:0] slew_q;
+  logic [27:0] step_q;  // of an update
+  logic [ 1:0] doublings_q;  // that it still needs
+  logic [ 1:0] turn_q;
   logic [31:0] data;
 
   assign data = setting_bus_pkg::data(setting_i);
@@ -58,22 +65,37 @@ module time_base #(
       if (class_i == 2'(card_map_pkg::CLASS_RAPID)) target = rapid_q;
       if (class_i == 2'(card_map_pkg::CLASS_FIXED)) target = fixed_q;
     end
+
+    always_ff @(posedge clk_i) begin
+      if (turn_q == 2'd2) begin
+        step_q <= slew_q;
+        doublings_q <= slew_shift_i;
+      end else if (doublings_q != 2'd0 && !step_q[27]) begin
+        step_q <= {step_q[26:0], 1'b0};
+        doublings_q <= doublings_q - 2'd1;
+      end
+      if (rst_i) begin
+        step_q <= card_map_pkg::RESET_SLEW[27:0];
+        doublings_q <= 2'd0;
+      end
+    end
   end else begin : gen_no_classes
     assign {rapid_q, fixed_q} = '0;
     assign target = feed_q;
+    assign step_q = slew_q;
+    assign doublings_q = 2'd0;
 
     logic unused_class;
-    assign unused_class = &{1'b0, class_i, rapid_q, fixed_q};
+    assign unused_class = &{1'b0, class_i, slew_shift_i, rapid_q, fixed_q, doublings_q};
   end
 
-  logic [ 1:0] turn_q;
   logic [28:0] ratio_q;
   logic [16:0] inverted_goal_q;  // so an adder compares with it: X - goal - 1 = X + ~goal
   logic up_q, arrived_q;
   logic [28:0] candidate_q;
 
   // Ratio and candidate less the goal less one, below which 12 bits are 0. The lowest bits make the carry in: 1 where the
-  // number has something below, and for a candidate on its way up. Ratio and candidate lie within a slew of each other, and
+  // number has something below, and for a candidate on its way up. Ratio and candidate lie within a step of each other, and
   // the goal on the candidate's side or between them: the candidate's difference needs no bit more than the goal.
   logic [18:0] ratio_sum;
   logic [17:0] candidate_sum;
@@ -97,7 +119,7 @@ module time_base #(
       end
       if (turn_q == 2'd1) up_q <= ratio_sum[18];
       if (turn_q == 2'd2) begin
-        candidate_q <= ratio_q + ({1'b0, slew_q} ^ {29{!up_q}}) + {28'd0, !up_q};
+        candidate_q <= ratio_q + ({1'b0, step_q} ^ {29{!up_q}}) + {28'd0, !up_q};
       end
       if (turn_q == 2'd3) arrived_q <= candidate_sum[17] ^ up_q;
     end
@@ -113,13 +135,13 @@ module time_base #(
   assign enable_o = enable_q;
   assign ratio_o  = ratio_q[28:12];
 
-  // STATUS and FAULT pass here: no wider than 18 bits.
+  // STATUS and FAULT pass here: no wider than 22 bits.
   snapshot_slice #(
-      .Width(18)
+      .Width(22)
   ) ratio (
       .clk_i,
       .snapshot_i,
-      .value_i({1'b0, ratio_o}),
+      .value_i(snapshot_i[snapshot_pkg::REST] ? {14'd0, left_i} : {5'd0, ratio_o}),
       .snapshot_o
   );
 

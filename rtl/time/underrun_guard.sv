@@ -3,8 +3,9 @@
 //
 // Every 32 clocks: short is what is queued <= stop distance * ratio^2 + Reserve, but where the last piece ends at rest
 // with its paths queued, or a barrier comes last. The guard begins to hold when it is short in motion, and ends when there
-// is twice as much for the ratio at which it began: so it does not chatter. Where the card stands and a queue is full,
-// more will not come: then anything beyond the reserve is enough, and it goes on as fast as that allows.
+// is twice as much for the ratio at which it began: so it does not chatter. For the same reason a piece that would begin
+// from rest waits for twice as much, unless a queue is full: then more will not come. Where the card stands, too, anything
+// beyond the reserve is enough, and it goes on as fast as that allows.
 //
 // What a probe drops is taken out of the queues unseen. From then on there is no rule, until nothing is queued once.
 `default_nettype none
@@ -17,6 +18,7 @@ module underrun_guard #(
     input wire logic cut_i,  // and where there is no rule: nothing is counted
     input wire logic lost_i,  // event: what is queued will be dropped
     input wire logic idle_i,  // nothing runs, is decoded or queued; up to four clocks late
+    input wire logic gone_i,  // the session that wrote what is queued is no more: nothing begins or goes on
     input wire logic [arrival_pkg::WIDTH-1:0] arrival_i,
     input wire logic [feed_load_pkg::WIDTH-1:0] load_i,
     input wire logic take_i,  // a feed tick is taken
@@ -45,6 +47,8 @@ module underrun_guard #(
   logic covered_q;  // all its ticks have their paths
   logic from_rest, from_rest_q;
   logic follow;
+  logic judges;  // the next piece is what is judged in this round: sampled at LOOK
+  logic twice_q;  // by twice the stop's ticks, so that the round begins no hold
   assign full = arrival_i[arrival_pkg::FULL];
   assign standing = ratio_i == 17'd0;
   assign from_rest = !active_i || ends_q;
@@ -108,7 +112,7 @@ module underrun_guard #(
       .step_i(step_q),
       .ratio_i,
       .keep_i(hold_o),
-      .twice_i(hold_o),
+      .twice_i(hold_o || (judges && !full)),
       .none_i(standing && full),
       .load_i,
       .swap_i,
@@ -120,21 +124,29 @@ module underrun_guard #(
   );
 
   logic decoded_q;
-  logic judged_q;  // the next piece is what is judged
+  logic judged_q;
+  logic holds;
   logic enough_q;  // for it
   logic waits_q;
   logic short;
-  assign short = ruled && !at_barrier && !unknown && ((geometry_short && !covered) || (feed_short && !at_rest));
+  logic waits;
+  assign judges = decoded_q && follow;
+  assign holds  = (short && (hold_o || (!twice_q && (!follow || (judged_q && full))))) || (hold_o && gone_i);
+  assign waits  = short || (gone_i && ruled);
+  assign short  = ruled && !at_barrier && !unknown && ((geometry_short && !covered) || (feed_short && !at_rest));
 
   always_ff @(posedge clk_i) begin
     from_rest_q <= from_rest;
     decoded_q   <= decoded_i;
-    if (step_q == LOOK) judged_q <= decoded_q && follow;
+    if (step_q == LOOK) begin
+      judged_q <= judges;
+      twice_q  <= judges && !full;
+    end
     if (step_q == DECIDE) begin
-      hold_o <= short && (hold_o || !follow || (judged_q && full));
-      if (short && !hold_o && (!follow || (judged_q && full))) underruns_o <= underruns_o + 32'd1;
-      enough_q <= judged_q && !short;
-      waits_q  <= judged_q && !active_i && short;
+      hold_o <= holds;
+      if (holds && !hold_o) underruns_o <= underruns_o + 32'd1;
+      enough_q <= judged_q && !waits;
+      waits_q  <= judged_q && !active_i && waits;
       if (covered && !unknown) covered_q <= 1'b1;
     end
     if (swap_i) begin

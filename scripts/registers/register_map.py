@@ -97,7 +97,7 @@ class RegisterMap:
         return next(r for r in self.registers if r.name == "MAP_VERSION").reset
 
     def areas(self):
-        """Areas of latched values with the same layout: name -> registers, their names without the area's."""
+        """Areas of latched values: name -> registers. The first one's layout is that of all but REST."""
         areas = {}
         for r in self.registers:
             if r.area:

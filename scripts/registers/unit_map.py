@@ -11,7 +11,7 @@ TAG_MAX, VERSION_MAX, INSTANCES_MAX, FEATURES = 0xFF, 0xF, 0xFF, 8
 BASE_MAX, WORDS_MAX, STRIDE_MAX, LOAD_UNIT_NONE = 0x3FF, 0xFF, 0x7F, 31
 DESCRIPTOR_WORDS = 2
 # Numbers of instances that the card's parameters decide.
-COUNTS = ["Axes", "SnapshotAreas", "Ports", "Inputs", "Outputs"]
+COUNTS = ["Axes", "SnapshotAreas", "Ports", "Inputs", "Outputs", "Captures"]
 
 
 class UnitError(DescriptionError):

@@ -174,7 +174,7 @@ constexpr Slot find_register(std::uint32_t address) {
 UNIT_TYPES = """
 // Units of the card and their descriptors, two words each (rtl/regs/units.toml has the layout). The table begins at
 // kDescriptorTable; a tag of 0 ends it.
-enum class UnitCount { Fixed, Axes, SnapshotAreas, Ports, Inputs, Outputs };
+enum class UnitCount { Fixed, Axes, SnapshotAreas, Ports, Inputs, Outputs, Captures };
 
 struct Unit {
   std::string_view name;
@@ -233,6 +233,7 @@ struct CardShape {
   std::uint32_t ports;
   std::uint32_t inputs;
   std::uint32_t outputs;
+  std::uint32_t captures;  // units
 };
 
 constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
@@ -242,6 +243,7 @@ constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
     case UnitCount::Ports: return card.ports;
     case UnitCount::Inputs: return card.inputs;
     case UnitCount::Outputs: return card.outputs;
+    case UnitCount::Captures: return card.captures;
     default: return unit.instances;
   }
 }

@@ -23,8 +23,9 @@ access is looked for in this order: `UNKNOWN_ADDRESS`; for reads `WRITE_ONLY`; f
 behaves](behaviour.md)).
 
 Registers of axes that the card lacks and of engines that are not built in (the column `engine`: see [units and
-engines](#units-and-engines); empty: on every card) are unknown addresses. For 257 clocks after reset the registers are
-being filled: accesses wait, but reads of live registers, of `FAULT` and of `REFUSAL` are answered at once.
+engines](#units-and-engines); empty: on every card) are unknown addresses. For 257 clocks after reset (with
+machine inputs 355; with more than 4 axes and machine inputs or enables 483; with captures 451 or 615) the registers are being filled: accesses wait, but reads of live registers, of `FAULT` and of
+`REFUSAL` are answered at once.
 
 The registers of the direct mode run downwards, axis n at 0xCF0 - 0x10 n, and `START` is the last register: on a card
 with n axes one block write of 4 n + 3 words, from `FREQUENCY_LO` of axis n - 1 to `START`, sets and starts a move.

@@ -70,6 +70,10 @@ def _areas(areas):
         yield f"  localparam logic [5:0] IN_AREA_{r.name[len(area) + 1:]} = {_hex(6, r.address - base)};\n"
 
 
+# Registers whose fields the RTL names.
+WITH_BIT_NUMBERS = ["STATUS", "FAULT", "CONTROL", "IRQ_ENABLE", "CAPTURE_SELECT", "CAPTURE_STATE"]
+
+
 def _register_constants(register_map):
     yield "\n  // Registers: byte address, reset value, bits with meaning; for arrays (the address is axis 0's) also count and\n"
     yield "  // stride in bytes, negative where the array runs downwards.\n"
@@ -80,9 +84,9 @@ def _register_constants(register_map):
         if r.is_array:
             yield f"  localparam int COUNT_{r.name} = {r.count};\n"
             yield f"  localparam int STRIDE_{r.name} = {r.stride};\n"
-    yield "\n  // Bit numbers of the fields of STATUS, FAULT, CONTROL and IRQ_ENABLE (the lowest bit of a wider field).\n"
+    yield f"\n  // Bit numbers of the fields of {', '.join(WITH_BIT_NUMBERS)} (the lowest bit of a wider field).\n"
     for r in register_map.registers:
-        if r.name in ("STATUS", "FAULT", "CONTROL", "IRQ_ENABLE"):
+        if r.name in WITH_BIT_NUMBERS:
             for f in r.fields:
                 yield f"  localparam int BIT_{r.name}_{f.name.upper()} = {f.low};\n"
     yield "\n  // Kinds of access, see register_access().\n"

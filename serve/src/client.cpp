@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "trammel/card_map.hpp"
 #include "trammel/driver/card_timing.hpp"
 
 namespace trammel::serve {
@@ -19,6 +20,7 @@ constexpr char kHello[] = "trammel 1";
 constexpr std::uint64_t kMaxRubbish = 64 * 1024;  // bytes without a frame among them
 constexpr char kWait[] = "wait ";
 constexpr std::size_t kLongestText = 100;
+constexpr auto kSilentStill = std::chrono::seconds(1);  // a program that lives has written by then
 
 frames::Bytes bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
@@ -48,6 +50,7 @@ CardServer::Client::Client(std::unique_ptr<transport::ByteStream> stream, CardSe
 }
 
 void CardServer::Client::serve(std::chrono::nanoseconds longest) {
+  if (!displaced_.empty()) throw Unwanted(displaced_);
   read(longest);
   while (!came_.empty() && take_byte(came_.front())) came_.pop_front();
   send_due();
@@ -117,6 +120,19 @@ void CardServer::Client::begin_anew() {
   may_move_ = false;
 }
 
+// A host that is cut off or stopped ends no connection. Its own watchdog says so; a fault that an earlier program has
+// left says nothing of one that speaks.
+bool CardServer::Client::counts_as_dead() const {
+  const bool expired = (engine_.read(card_map::reg::kFault) & card_map::field::kFaultWatchdog) != 0;
+  return expired && steady_clock::now() - heard_ > kSilentStill;
+}
+
+void CardServer::Client::lose_place(const std::string& why) {
+  displaced_ = why;
+  server_.hold(peer() + ": " + why);
+  may_move_ = false;
+}
+
 void CardServer::Client::begin() {
   if (!begun_) heard_ = steady_clock::now();
   begun_ = true;
@@ -130,9 +146,10 @@ void CardServer::Client::take_hello(const std::string& line) {
   if (with_token && !same(line.substr(sizeof(kHello)), settings_.token)) {
     throw Unwanted("wrong token: take the one that the server has printed");
   }
-  const Client* const mover = server_.mover();
+  Client* const mover = server_.mover();
   if (with_token && mover != nullptr && mover != this) {
-    throw Unwanted("another client moves the card: one at a time");
+    if (!mover->counts_as_dead()) throw Unwanted("another client moves the card: one at a time");
+    mover->lose_place("its watchdog had expired, and another client has its place");
   }
   hello_ = true;
   may_move_ = with_token;

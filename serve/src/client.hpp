@@ -31,13 +31,17 @@ class CardServer::Client {
   Client(std::unique_ptr<transport::ByteStream> stream, CardServer& server);
 
   // Reads what has come, waiting for at most `longest`; makes what is due at the card's time; sends what is due.
-  // Throws driver::LinkError when the client has gone, Unwanted when it cannot stay.
+  // Throws driver::LinkError when the client has gone, Unwanted when it cannot stay, or has lost its place.
   void serve(std::chrono::nanoseconds longest);
 
   // Clocks until something is due; none when it is the client's turn.
   std::optional<std::uint64_t> clocks_to_next() const;
 
   bool may_move() const { return may_move_; }
+  // Of the one that may move the card: it has let its watchdog expire, and is silent still.
+  bool counts_as_dead() const;
+  // Its right to move the card goes; the card holds. Its next turn ends it.
+  void lose_place(const std::string& why);
   bool reads() const { return begun_ && !may_move_; }
   // Lets time pass by itself; only then the card's time waits for it.
   bool waits_by_itself() const { return hello_; }
@@ -87,6 +91,7 @@ class CardServer::Client {
   bool begun_ = false;   // said hello, or sent a frame that was one
   bool hello_ = false;
   bool may_move_ = false;
+  std::string displaced_;  // why it has lost its place; empty where it has not
 };
 
 }  // namespace trammel::serve

@@ -66,7 +66,12 @@ bool BusEngine::wait_for_interrupt(std::chrono::nanoseconds longest) {
   return card().outputs().irq;
 }
 
-bool BusEngine::make(driver::Access& access) { return access.write ? write_register(access) : read_register(access); }
+bool BusEngine::make(driver::Access& access) {
+  if (!access.write) return read_register(access);
+  const bool taken = write_register(access);
+  if (taken && access.address == card_map::reg::kInputPolarity) pins_ = (pins_ & wired_) | (access.data & ~wired_);
+  return taken;
+}
 
 bool BusEngine::read_register(driver::Access& access) {
   CardModel::Inputs in;
@@ -157,6 +162,7 @@ CardModel::Config config_of(const EngineOptions& options) {
   config.axes = options.axes;
   config.clock_hz = options.clock_hz;
   config.engines = model::RegisterFile::kMaxEngines;
+  config.inputs = kInputs;
   set_build_numbers(config);
   return config;
 }

@@ -18,7 +18,16 @@ class BusEngine : public Engine, private model::CardSteps {
   bool has_interrupt() const override { return interrupt_; }
   bool wait_for_interrupt(std::chrono::nanoseconds longest) override;
 
-  void set_inputs(std::uint16_t levels) override { pins_ = levels; }
+  void set_inputs(std::uint32_t levels) override {
+    pins_ = levels;
+    wired_ = ~std::uint32_t{0};
+  }
+  void set_input(unsigned input, bool level) override {
+    const std::uint32_t pin = std::uint32_t{1} << input;
+    pins_ = level ? pins_ | pin : pins_ & ~pin;
+    wired_ |= pin;
+  }
+  void set_emergency_stop(bool pressed) override { emergency_stop_ = pressed; }
   void reset() override;
   void set_sink(driver::StepSink* sink) override;
   std::uint64_t cycles() const override { return card().cycles(); }
@@ -28,8 +37,13 @@ class BusEngine : public Engine, private model::CardSteps {
  protected:
   // One clock.
   virtual void clock_card(const model::CardModel::Inputs& in) = 0;
-  // Levels at the inputs, for wait().
-  std::uint16_t pins() const { return pins_; }
+  // The card's inputs without bus traffic, for wait().
+  model::CardModel::Inputs quiet_bus() const {
+    model::CardModel::Inputs in;
+    in.pins = pins_;
+    in.emergency_stop = emergency_stop_;
+    return in;
+  }
   virtual model::CardModel& card() = 0;
   virtual const model::CardModel& card() const = 0;
 
@@ -39,6 +53,7 @@ class BusEngine : public Engine, private model::CardSteps {
  private:
   void clock(model::CardModel::Inputs in) {
     in.pins = pins_;
+    in.emergency_stop = emergency_stop_;
     clock_card(in);
   }
   bool make(driver::Access& access);
@@ -55,7 +70,9 @@ class BusEngine : public Engine, private model::CardSteps {
 
   std::uint32_t clock_hz_;
   bool interrupt_;
-  std::uint16_t pins_ = 0;
+  std::uint32_t pins_ = 0;
+  std::uint32_t wired_ = 0;      // the others follow INPUT_POLARITY
+  bool emergency_stop_ = false;  // the strap's level that means stop is 1
   driver::StepSink* sink_ = nullptr;
 };
 

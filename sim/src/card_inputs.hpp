@@ -2,14 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "trammel/model/card_model.hpp"
 #include "trammel/sim/engine.hpp"
 
 namespace trammel::sim {
 
+// `inputs`: how many the card has.
 template <class Dut>
-void set_inputs(Dut& dut, const model::CardModel::Inputs& in) {
+void set_inputs(Dut& dut, const model::CardModel::Inputs& in, unsigned inputs = kInputs) {
   dut.rst_i = in.rst;
   dut.awvalid_i = in.awvalid;
   dut.awaddr_i = static_cast<std::uint16_t>(in.awaddr);
@@ -20,7 +22,8 @@ void set_inputs(Dut& dut, const model::CardModel::Inputs& in) {
   dut.arvalid_i = in.arvalid;
   dut.araddr_i = static_cast<std::uint16_t>(in.araddr);
   dut.rready_i = in.rready;
-  dut.input_i = static_cast<std::uint8_t>(in.pins & ((1U << kPins) - 1));
+  dut.emergency_stop_i = in.emergency_stop;
+  dut.input_i = static_cast<std::remove_reference_t<decltype(dut.input_i)>>(in.pins & ((1U << inputs) - 1));
 }
 
 }  // namespace trammel::sim

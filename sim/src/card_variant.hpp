@@ -12,7 +12,8 @@ class CardVariant : public VerilatedCard {
  public:
   explicit CardVariant(const CardStraps& straps) {
     dut_->clock_hz_i = straps.clock_hz;
-    dut_->output_idle_i = static_cast<std::uint8_t>(straps.output_idle & ((1U << kPins) - 1));
+    dut_->output_idle_i = static_cast<std::uint8_t>(straps.output_idle & ((1U << kOutputs) - 1));
+    dut_->emergency_stop_level_i = straps.emergency_stop_level;
     dut_->idle_level_i = static_cast<std::uint16_t>(straps.idle_level & ((1U << 2 * kAxes) - 1));
   }
 

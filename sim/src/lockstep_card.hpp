@@ -50,6 +50,7 @@ class LockstepCard {
 
   model::CardModel& model() { return model_; }
   const model::CardModel& model() const { return model_; }
+  const model::Axi4LitePort::Outputs& bus() const { return model_.bus(); }
   // What was compared up to the last settle().
   std::uint64_t cycles() const { return cycles_; }
   std::uint64_t comparisons() const { return comparisons_; }

@@ -17,7 +17,9 @@ class ModelEngine final : public BusEngine {
  public:
   explicit ModelEngine(const ModelOptions& options) : BusEngine(options), card_(model_config(options)) {}
 
-  void wait(std::uint64_t card_clocks) override { skip::run(card_, card_clocks, pins()); }
+  void wait(std::uint64_t card_clocks) override {
+    skip::run(card_, card_clocks, {quiet_bus().pins, quiet_bus().emergency_stop});
+  }
   std::optional<std::uint64_t> lockstep_cycles() const override { return std::nullopt; }
   std::uint64_t comparisons() const override { return 0; }
 

@@ -32,7 +32,9 @@ namespace axis_observe {
 inline constexpr Field kStep{0, 1};
 inline constexpr Field kDir{1, 1};
 inline constexpr Field kPosition{2, 32};
-inline constexpr unsigned kWidth = 34;
+inline constexpr Field kCounts{34, 1};
+inline constexpr Field kCountsBack{35, 1};
+inline constexpr unsigned kWidth = 36;
 }  // namespace axis_observe
 
 namespace card_constants {
@@ -58,7 +60,8 @@ inline constexpr Field kDone{3, 1};
 inline constexpr Field kMissedEnd{4, 1};
 inline constexpr Field kLive{5, 1};
 inline constexpr Field kBusy{6, 1};
-inline constexpr unsigned kWidth = 7;
+inline constexpr Field kQuiet{7, 1};
+inline constexpr unsigned kWidth = 8;
 }  // namespace engines
 
 namespace feed_load {
@@ -74,7 +77,14 @@ inline constexpr Field kRuns{1, 1};
 inline constexpr Field kAtRest{2, 1};
 inline constexpr Field kStopping{3, 1};
 inline constexpr Field kSilent{4, 1};
-inline constexpr unsigned kWidth = 5;
+inline constexpr Field kClosing{5, 1};
+inline constexpr Field kCaused{6, 1};
+inline constexpr Field kLatched{7, 1};
+inline constexpr Field kEnabled{8, 1};
+inline constexpr Field kReleased{9, 1};
+inline constexpr Field kHealthy{10, 1};
+inline constexpr Field kPump{11, 1};
+inline constexpr unsigned kWidth = 12;
 }  // namespace feed
 
 namespace geometry_state {
@@ -90,8 +100,10 @@ inline constexpr unsigned kWidth = 70;
 }  // namespace geometry_state
 
 namespace input_levels {
-inline constexpr Field kLevels{0, 16};
-inline constexpr unsigned kWidth = 16;
+inline constexpr Field kLevels{0, 32};
+inline constexpr Field kRaw{32, 32};
+inline constexpr Field kQuiet{64, 32};
+inline constexpr unsigned kWidth = 96;
 }  // namespace input_levels
 
 namespace input_roles {
@@ -152,16 +164,18 @@ inline constexpr Field kMismatch{9, 1};
 inline constexpr Field kIncomplete{10, 1};
 inline constexpr Field kMissing{11, 1};
 inline constexpr Field kProbing{12, 1};
-inline constexpr unsigned kWidth = 13;
+inline constexpr Field kUnfinished{13, 1};
+inline constexpr Field kLeft{14, 40};
+inline constexpr unsigned kWidth = 54;
 }  // namespace path
 
 namespace pins_state {
-inline constexpr Field kInputs{0, 16};
-inline constexpr Field kOutputs{16, 16};
-inline constexpr Field kMarks{32, 32};
-inline constexpr Field kProbed{64, 1};
-inline constexpr Field kProbeMissed{65, 1};
-inline constexpr unsigned kWidth = 66;
+inline constexpr Field kInputs{0, 32};
+inline constexpr Field kOutputs{32, 16};
+inline constexpr Field kMarks{48, 32};
+inline constexpr Field kProbed{80, 1};
+inline constexpr Field kProbeMissed{81, 1};
+inline constexpr unsigned kWidth = 82;
 }  // namespace pins_state
 
 namespace probe {
@@ -194,9 +208,11 @@ inline constexpr Field kData{0, 32};
 inline constexpr Field kAddress{32, 12};
 inline constexpr Field kPartial{44, 1};
 inline constexpr Field kWrite{45, 1};
-inline constexpr Field kPort{46, 2};
-inline constexpr Field kRequest{48, 1};
-inline constexpr unsigned kWidth = 49;
+inline constexpr Field kOfSession{46, 1};
+inline constexpr Field kNewSession{47, 1};
+inline constexpr Field kPort{48, 2};
+inline constexpr Field kRequest{50, 1};
+inline constexpr unsigned kWidth = 51;
 }  // namespace register_access
 
 namespace register_answer {
@@ -217,7 +233,8 @@ namespace snapshot {
 inline constexpr Field kWord{0, 32};
 inline constexpr Field kStrobe{32, 1};
 inline constexpr Field kShift{33, 1};
-inline constexpr unsigned kWidth = 34;
+inline constexpr Field kRest{34, 1};
+inline constexpr unsigned kWidth = 35;
 }  // namespace snapshot
 
 namespace start_answer {
@@ -265,9 +282,13 @@ inline constexpr Field kUnderrun{147, 1};
 inline constexpr Field kHeld{148, 1};
 inline constexpr Field kFeedActive{149, 1};
 inline constexpr Field kStopping{150, 1};
-inline constexpr Field kLimitState{151, 24};
-inline constexpr Field kButtonHold{175, 1};
-inline constexpr unsigned kWidth = 176;
+inline constexpr Field kLimitState{151, 28};
+inline constexpr Field kButtonHold{179, 1};
+inline constexpr Field kPlace{180, 16};
+inline constexpr Field kSettled{196, 1};
+inline constexpr Field kEnabled{197, 1};
+inline constexpr Field kEnableWaits{198, 1};
+inline constexpr unsigned kWidth = 199;
 }  // namespace time_state
 
 namespace wishbone_answer {

@@ -18,11 +18,7 @@ class RtlEngine final : public BusEngine {
         card_(std::move(card), config_of(options), options.seed, options.trace ? 1 : LockstepCard::kBatch,
               options.rtl_thread && !options.trace ? RtlThread::kOwn : RtlThread::kCallers) {}
 
-  void wait(std::uint64_t card_clocks) override {
-    CardModel::Inputs none;
-    none.pins = pins();
-    card_.run(none, card_clocks);
-  }
+  void wait(std::uint64_t card_clocks) override { card_.run(quiet_bus(), card_clocks); }
   std::optional<std::uint64_t> lockstep_cycles() const override {
     card_.settle();
     return card_.cycles();

@@ -23,8 +23,9 @@ class VerilatedCard {
 // The card's inputs that stand still.
 struct CardStraps {
   std::uint32_t clock_hz = 1'000'000;
-  std::uint32_t idle_level = 0;   // {second pins, first pins}
-  std::uint32_t output_idle = 0;  // outputs
+  std::uint32_t idle_level = 0;      // {second pins, first pins}
+  std::uint32_t output_idle = 0;     // outputs
+  bool emergency_stop_level = true;  // of its pin: the level that means stop
 };
 
 // Axes: 1 to 8; with a trace 4 or 8. `trace`: an FST file, written until the card is destroyed.

@@ -1,5 +1,6 @@
 #include "command.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -7,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -34,16 +36,20 @@ std::string binary() {
   return other != nullptr ? other : TRAMMEL_COMMAND;
 }
 
+// A machine file of the user's own must not change what is tested, and nothing is left behind in the user's folders.
+std::string environment(const Command& command) {
+  return "export XDG_CONFIG_HOME='" + command.path("configuration") + "' XDG_STATE_HOME='" + command.path("state") +
+         "'\n";
+}
+
 }  // namespace
 
 Outcome Command::run(const std::string& arguments) const { return run_in(".", "", arguments); }
 
 Outcome Command::run_in(const std::string& folder, const std::string& before, const std::string& arguments) const {
   // Process substitution needs bash; what the arguments lead elsewhere comes last and wins.
-  // A machine file of the user's own must not change what is tested.
-  const std::string script = "export XDG_CONFIG_HOME='" + path("configuration") + "'\ncd '" + folder + "' && " +
-                             before + " '" + binary() + "' </dev/null >'" + path("stdout") + "' 2>'" + path("stderr") +
-                             "' " + arguments + "\n";
+  const std::string script = environment(*this) + "cd '" + folder + "' && " + before + " '" + binary() +
+                             "' </dev/null >'" + path("stdout") + "' 2>'" + path("stderr") + "' " + arguments + "\n";
   const std::string file = path("script");
   std::ofstream(file) << script;
   const int status = std::system(("bash '" + file + "'").c_str());
@@ -54,15 +60,40 @@ Outcome Command::run_in(const std::string& folder, const std::string& before, co
   return outcome;
 }
 
-Running::Running(const Command& command, const std::string& arguments, const std::string& err, const std::string& out) {
-  const std::string output = out.empty() ? "/dev/null" : command.path(out);
-  const std::string line =
-      "exec '" + binary() + "' " + arguments + " >'" + output + "' 2>'" + command.path(err) + "' </dev/null";
-  process_ = ::fork();
+PseudoTerminal::PseudoTerminal() : keys_(::posix_openpt(O_RDWR | O_NOCTTY)) {
+  if (keys_ < 0 || ::grantpt(keys_) != 0 || ::unlockpt(keys_) != 0) throw std::runtime_error("no pseudo-terminal");
+  name_ = ::ptsname(keys_);
+  ::fcntl(keys_, F_SETFL, O_NONBLOCK);
+}
+
+PseudoTerminal::~PseudoTerminal() { ::close(keys_); }
+
+void PseudoTerminal::type(const std::string& keys) const {
+  EXPECT_EQ(::write(keys_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
+}
+
+const std::string& PseudoTerminal::shown() {
+  std::array<char, 4096> bytes{};
+  for (ssize_t count = 0; (count = ::read(keys_, bytes.data(), bytes.size())) > 0;) {
+    shown_.append(bytes.data(), static_cast<std::size_t>(count));
+  }
+  return shown_;
+}
+
+Running::Running(const std::string& line) : process_(::fork()) {
   if (process_ != 0) return;
   ::execl("/bin/bash", "bash", "-c", line.c_str(), nullptr);
   ::_exit(127);
 }
+
+Running::Running(const Command& command, const std::string& arguments, const std::string& err, const std::string& out)
+    : Running(environment(command) + "exec '" + binary() + "' " + arguments + " >'" +
+              (out.empty() ? "/dev/null" : command.path(out)) + "' 2>'" + command.path(err) + "' </dev/null") {}
+
+Running::Running(const Command& command, const std::string& arguments, const std::string& err,
+                 const PseudoTerminal& terminal)
+    : Running(environment(command) + "exec '" + binary() + "' " + arguments + " >'" + terminal.name() + "' 2>'" +
+              command.path(err) + "' <'" + terminal.name() + "'") {}
 
 Running::~Running() {
   if (process_ < 0) return;
@@ -93,7 +124,7 @@ std::vector<std::string> Command::names() const {
   std::vector<std::string> result;
   for (const auto& entry : std::filesystem::directory_iterator(directory_)) {
     const std::string name = entry.path().filename().string();
-    if (name != "stdout" && name != "stderr" && name != "script") result.push_back(name);
+    if (name != "stdout" && name != "stderr" && name != "script" && name != "state") result.push_back(name);
   }
   std::sort(result.begin(), result.end());
   return result;

@@ -48,11 +48,32 @@ class Command {
   std::filesystem::path directory_;
 };
 
+// A terminal with a test at its keys.
+class PseudoTerminal {
+ public:
+  PseudoTerminal();
+  ~PseudoTerminal();
+  PseudoTerminal(const PseudoTerminal&) = delete;
+  PseudoTerminal& operator=(const PseudoTerminal&) = delete;
+
+  const std::string& name() const { return name_; }
+  void type(const std::string& keys) const;
+  // All that was written to it so far.
+  const std::string& shown();
+
+ private:
+  int keys_ = -1;
+  std::string name_;
+  std::string shown_;
+};
+
 // The command while it runs.
 class Running {
  public:
   // Arguments as in a shell; standard error goes to the file `err`, standard output to `out` where one is named.
   Running(const Command& command, const std::string& arguments, const std::string& err, const std::string& out = "");
+  // At a terminal, which is its standard input and output.
+  Running(const Command& command, const std::string& arguments, const std::string& err, const PseudoTerminal& terminal);
   // Ends it, if it still runs.
   ~Running();
   Running(const Running&) = delete;
@@ -63,6 +84,9 @@ class Running {
   std::optional<int> wait();
 
  private:
+  // A line of the shell.
+  explicit Running(const std::string& line);
+
   int process_ = -1;
 };
 

@@ -1,4 +1,5 @@
 // The other subcommands, and the files that only people look at.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -104,8 +105,8 @@ TEST(Info, ShowsTheUnitsAsATable) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* row :
        {"unit               version instances  registers words stride  with\n",
-        "time_base              1.0         1      0x640     4         classes\n",
-        "axes                   1.1         5      0x800     6     32\n", "host_ports             1.0         1\n"}) {
+        "time_base              1.1         1      0x640     4         classes\n",
+        "axes                   1.2         5      0x800     7     32\n", "host_ports             1.0         1\n"}) {
     EXPECT_NE(outcome.out.find(row), std::string::npos) << row << outcome.out;
   }
 }
@@ -174,6 +175,14 @@ TEST(Run, PictureOfALongProgramIsThinned) {
   EXPECT_TRUE(is_well_formed(svg));
   EXPECT_NE(svg.find("a&lt;b&gt;&amp;c.ngc"), std::string::npos);
   EXPECT_NE(svg.find(">pulses, thinned<"), std::string::npos);
+}
+
+TEST(Commands, MachineChecks) {
+  const Command command;
+  const Outcome outcome = command.run("machine --check --machine built-in");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("axis Z: 100 mm/s"));
+  EXPECT_EQ(command.run("machine").status, 2);
 }
 
 }  // namespace

@@ -160,7 +160,7 @@ TEST_F(PathIo, InputsAreScripted) {
            {"0.5", "SECONDS:INPUT:LEVEL"},
            {"x:1:1", "x is no time"},
            {"-1:1:1", "-1 is no time"},
-           {"1:4:1", "4 is no input of the simulated card, 0 to 3"},
+           {"1:16:1", "16 is no input of the simulated card, 0 to 15"},
            {"1:-1:1", "-1 is no input"},
            {"1:0.5:1", "0.5 is no input"},
            {"1:1:2", "2 is no level, 0 or 1"},

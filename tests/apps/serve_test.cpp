@@ -1,16 +1,11 @@
 // Cards outside, from the command line: a served one, and everything that is none.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <csignal>
-#include <memory>
-#include <thread>
 
+#include "bad_cable.hpp"
 #include "command.hpp"
 #include "server.hpp"
-#include "trammel/driver/errors.hpp"
-#include "trammel/transport/byte_stream.hpp"
-#include "trammel/transport/card_url.hpp"
 
 namespace trammel::test {
 namespace {
@@ -71,7 +66,7 @@ TEST(Serve, WithoutTheTokenNothingMoves) {
   expect_refused(command, "line --to 10,10 --card " + server.url(), "give the token");
   expect_refused(command, "selftest --card " + server.url(), "give the token");
   expect_refused(command, "run " + program + wrong, "wrong token");
-  expect_refused(command, "info" + wrong, "wrong token");
+  EXPECT_EQ(command.run("info" + wrong).status, 0) << "reading needs no token, and does without one";
   EXPECT_EQ(command.run_in(".", "TRAMMEL_TOKEN=secret", "dump --card " + server.url()).status, 0);
   EXPECT_EQ(command.run_in(".", "TRAMMEL_TOKEN=secret", "line --to 10,10 --card " + server.url()).status, 0);
   EXPECT_TRUE(eventually([&] { return server.said("the card holds"); })) << "it sees that the last client has left";
@@ -136,7 +131,7 @@ int stop_by(const Command& command, Server& server, const std::string& arguments
     EXPECT_TRUE(status && WIFSIGNALED(*status) && WTERMSIG(*status) == number) << said;
     const int told = number_behind(said, words);
     if (told <= 0 && status) continue;
-    EXPECT_EQ(count_lines(said), 1U) << said;
+    EXPECT_LE(count_lines(said), 3U) << "where machine zero was set, the stop, and how a run goes on: " << said;
     return told;
   }
   ADD_FAILURE() << "it has not stopped in order: " << contents(command.path("client.err"));
@@ -171,7 +166,7 @@ TEST(Serve, ASecondCtrlCLeavesAtOnce) {
   client.signal(SIGINT);
   const std::optional<int> status = client.wait();
   EXPECT_TRUE(status && WIFSIGNALED(*status) && WTERMSIG(*status) == SIGINT);
-  EXPECT_EQ(contents(command.path("client.err")), "");
+  EXPECT_EQ(count_lines(contents(command.path("client.err"))), 1U) << "where machine zero was set";
   EXPECT_TRUE(eventually([&] { return server.said("the card holds"); })) << server.errors();
 }
 
@@ -182,6 +177,7 @@ TEST(Serve, TheNextRunBeginsWhereTheMachineStands) {
   const std::string steps = command.write("steps.ngc", "G91 G1 X10 F6000\n");
   const std::string there = command.write("there.ngc", "G1 X10 F6000\nX12 Y3\nX0 Y0\n");
   const std::string at = " --set axis.x.max=15 --card " + server.moving();
+  ASSERT_EQ(command.run("zero XYZE --homed --card " + server.moving()).status, 0);
   const Outcome first = command.run("run " + steps + at);
   ASSERT_EQ(first.status, 0) << first.err;
   EXPECT_FALSE(has(first.err, "the machine stands at"));
@@ -193,61 +189,15 @@ TEST(Serve, TheNextRunBeginsWhereTheMachineStands) {
   const Outcome displaced = command.run("run " + there + " --from-line 3" + at);
   EXPECT_NE(displaced.status, 0);
   EXPECT_TRUE(has(displaced.err,
-                  "there.ngc:3: it begins at X 12.0000 Y 3.0000 Z 0.0000 E 0.0000, but the machine stands"
-                  " at X 10.0000 Y 0.0000"))
+                  "the machine stands at X 10.0000 Y 0.0000 Z 0.0000 E 0.0000 mm, but the run begins at"
+                  " X 12.0000 Y 3.0000"))
       << displaced.err;
+  EXPECT_TRUE(has(displaced.err, "nothing has moved: give --yes")) << displaced.err;
   const Outcome in_place = command.run("run " + there + " --from-line 2" + at);
   EXPECT_EQ(in_place.status, 0) << in_place.err;
   EXPECT_TRUE(has(in_place.out, "X: ends at pulse 0 (0.0000 mm)")) << in_place.out;
   EXPECT_EQ(number_behind(server.end(), "path: "), 800 + 160 + 240 + 960 + 240) << server.errors();
 }
-
-// Carries bytes between a client and a server, and cuts the first connections after so many.
-class BadCable {
- public:
-  BadCable(const std::string& server_url, std::uint64_t bytes, unsigned cuts)
-      : server_(transport::parse_card_url(server_url)), bytes_(bytes), cuts_(cuts), thread_([this] { carry(); }) {}
-  ~BadCable() {
-    ended_ = true;
-    thread_.join();
-  }
-  std::string url() const { return listener_->url(); }
-  unsigned cuts() const { return made_; }
-
- private:
-  using Stream = std::unique_ptr<transport::ByteStream>;
-
-  void carry() {
-    while (!ended_) {
-      Stream client = listener_->accept();
-      if (client) carry(*client);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  }
-  void carry(transport::ByteStream& client) {
-    try {
-      const Stream server = transport::connect_tcp(server_.host, server_.port, std::chrono::seconds(5));
-      std::uint64_t carried = 0;
-      while (!ended_ && (made_ == cuts_ || carried < bytes_)) carried += move(client, *server) + move(*server, client);
-      made_ += made_ == cuts_ ? 0 : 1;
-    } catch (const driver::LinkError&) {
-    }
-  }
-  static std::size_t move(transport::ByteStream& from, transport::ByteStream& to) {
-    std::uint8_t bytes[64];
-    const std::size_t count = from.read(bytes, sizeof(bytes), std::chrono::nanoseconds(0));
-    to.write(bytes, count);
-    return count;
-  }
-
-  std::unique_ptr<transport::Listener> listener_ = transport::listen_tcp("127.0.0.1", 0);
-  transport::CardUrl server_;
-  std::uint64_t bytes_;
-  unsigned cuts_;
-  std::atomic<unsigned> made_{0};
-  std::atomic<bool> ended_{false};
-  std::thread thread_;
-};
 
 // The run goes on, and the path is that of a cable that was whole.
 TEST(Serve, ACableThatIsCutThreeTimes) {
@@ -318,6 +268,7 @@ TEST(CardOutside, BadInput) {
   expect_refused(command, "serve --port 70000", "--port");
   expect_refused(command, "serve --listen no-such-host.invalid", "no such address");
   expect_refused(command, "serve --listen ''", "no such address");
+  expect_refused(command, "serve --listen 127.0.0.1:4000", "--port takes the port");
   expect_refused(command, "serve --pty --port 5", "--pty");
   expect_refused(command, "monitor --interval 0", "--interval");
 }

@@ -48,6 +48,13 @@ TEST(Names, WhatWasProbablyMeant) {
   const auto error_of = [&](const std::string& arguments) { return command.run(arguments).err; };
   EXPECT_NE(error_of("info --card /dev/ttyUSB7").find("did you mean serial:/dev/ttyUSB7?"), std::string::npos);
   EXPECT_NE(error_of("info --card 127.0.0.1:5").find("did you mean tcp://127.0.0.1:5?"), std::string::npos);
+  EXPECT_NE(error_of("line --to 9,x").find("--to: must be whole numbers of pulses, as 2000,-1000, not x"),
+            std::string::npos);
+  EXPECT_NE(error_of("line --to 9,3 --from 0.5,0").find("--from: must be whole numbers"), std::string::npos);
+  EXPECT_NE(error_of("line --to 9,3 --trace x.vcd").find("the waveform is FST, not vcd: name it x.fst"),
+            std::string::npos);
+  EXPECT_NE(error_of("run a.ngc --report x.html.pdf").find("the page is HTML, not pdf: name it x.html"),
+            std::string::npos);
   EXPECT_NE(error_of("line --to 9,3 --speed 9000mm/min").find("without its unit, as 150 or 0.5, not 9000mm/min"),
             std::string::npos);
   const std::string program = command.write("a.ngc", "G1 X1 F600\n");
@@ -69,6 +76,8 @@ TEST(Notes, AProgramThatMovesNothing) {
   const Outcome empty = command.run("run --engine model " + command.write("empty.ngc", ""));
   EXPECT_EQ(empty.status, 0);
   EXPECT_NE(empty.err.find("empty.ngc moves nothing"), std::string::npos) << empty.err;
+  const Outcome checked = command.run("run --check " + command.write("spindle.ngc", "M3\n"));
+  EXPECT_NE(checked.err.find("spindle.ngc moves nothing"), std::string::npos) << checked.err;
   EXPECT_EQ(command.run("run --engine model " + command.write("a.ngc", "G1 X1 F600\n")).err, "");
 }
 
@@ -76,8 +85,8 @@ TEST(Names, HelpOfACommandIsItsHelp) {
   const Command command;
   EXPECT_EQ(command.run("help").out, command.run("--help").out);
   EXPECT_EQ(command.run("help help").out, command.run("--help").out);
-  for (const std::string name :
-       {"run", "line", "info", "monitor", "dump", "selftest", "serve", "steps", "methods", "compare", "reproduce"}) {
+  for (const std::string name : {"run", "line", "info", "monitor", "dump", "selftest", "position", "zero", "recover",
+                                 "serve", "steps", "methods", "compare", "reproduce"}) {
     const Outcome outcome = command.run("help " + name);
     EXPECT_EQ(outcome.status, 0) << name;
     EXPECT_EQ(outcome.out, command.run(name + " --help").out);
@@ -215,7 +224,7 @@ TEST(Messages, StayOneShortLineWhateverAFileIsCalled) {
   const std::string latin = command.write("caf\xe9\n.ngc", "G0 X1\n");
   const Outcome taken = command.run("run '" + latin + "' --check --json " + command.path("a.json"));
   EXPECT_EQ(taken.status, 0) << taken.err;
-  EXPECT_EQ(taken.out.find(folder + "caf\\xe9\\n.ngc: 1 path segments"), 0U) << taken.out;
+  EXPECT_EQ(taken.out.find(folder + "caf\\xe9\\n.ngc: 1 path segment, 4 commands, "), 0U) << taken.out;
   EXPECT_EQ(read_json(command.path("a.json"))["program"], folder + "caf\\xe9\\n.ngc");
   const Outcome refused = command.run("run '" + command.write("q\xe9\n.ngc", "G0 Q\n") + "' --check");
   EXPECT_NE(refused.err.find("q\\xe9\\n.ngc:1: malformed number in 'Q'"), std::string::npos) << refused.err;
@@ -382,7 +391,7 @@ TEST(MachineFile, OfTheUserIsTheDefault) {
   const std::string own =
       command.write("configuration/trammel/machine.toml", contents(TRAMMEL_EXAMPLES_DIR "/machine.toml") + "\n");
   const Outcome taken = command.run(check + " --set axis.x.steps_per_mm=20");
-  EXPECT_NE(taken.out.find("  machine: " + own + ", 1 entries by --set\n"), std::string::npos) << taken.out;
+  EXPECT_NE(taken.out.find("  machine: " + own + ", entries by --set: 1\n"), std::string::npos) << taken.out;
   EXPECT_NE(taken.out.find("X: ends at pulse 20 "), std::string::npos) << taken.out;
   EXPECT_NE(command.run(check + " --machine built-in").out.find("  machine: built-in\n"), std::string::npos);
   command.write("configuration/trammel/machine.toml", "nothing = 1\n");

@@ -34,7 +34,7 @@ class WatchedRun : public ::testing::Test {
     const Outcome refused = move("");
     EXPECT_EQ(refused.status, 2);
     EXPECT_THAT(refused.err, HasSubstr(std::string("--card: the card has stopped with a fault: ") + kSilent +
-                                       "; the card stands at pulse "));
+                                       "; the card stands at X "));
     EXPECT_THAT(refused.err, HasSubstr("clear the fault with --clear-faults"));
     const Outcome cleared = move(" --clear-faults");
     EXPECT_EQ(cleared.status, 0) << cleared.err;
@@ -60,8 +60,10 @@ TEST_F(WatchedRun, AHostThatIsStoppedForTooLong) {
   EXPECT_TRUE(status && WIFEXITED(*status) && WEXITSTATUS(*status) == 1);
   const std::string said = contents(command_.path("client.err"));
   EXPECT_THAT(said, HasSubstr(std::string("long.ngc:1: stream: the card has stopped with a fault: ") + kSilent));
-  const std::string stands = "the card stands at pulse ";
+  const std::string stands = " mm (pulses ";
+  ASSERT_THAT(said, HasSubstr("the card stands at X "));
   ASSERT_THAT(said, HasSubstr(stands));
+  EXPECT_THAT(said, HasSubstr(" in command 1 of the geometry queue, "));
   EXPECT_THAT(said, HasSubstr("--clear-faults"));
   const int steps = std::stoi(said.substr(said.find(stands) + stands.size()));
   EXPECT_GT(steps, 0);

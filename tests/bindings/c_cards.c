@@ -108,13 +108,14 @@ static void settings(void) {
 
 static void pins(void) {
   trammel_card* card = simulated_card();
+  uint32_t inputs = 0;
   uint16_t levels = 0;
   uint32_t marks = 1;
   DONE(trammel_simulated_set_inputs(card, 9));
   DONE(trammel_set_input_polarity(card, 1));
   DONE(trammel_simulated_wait(card, 10));
-  DONE(trammel_read_inputs(card, &levels));
-  CHECK(levels == 8);
+  DONE(trammel_read_inputs(card, &inputs));
+  CHECK(inputs == 8);
   DONE(trammel_set_output_safe(card, 2, 2));
   DONE(trammel_abort(card));
   DONE(trammel_read_outputs(card, &levels));

@@ -173,6 +173,9 @@ static void command_arguments(void) {
   command.as.feed.floor = 0;
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "floor");
   command = feed_of(10);
+  command.as.feed.slew_shift = 4;
+  FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "slew shift");
+  command = feed_of(10);
   command.as.feed.piece_class = -1;
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "class");
   command = command_of(TRAMMEL_ARC);  // no radius
@@ -185,7 +188,7 @@ static void command_arguments(void) {
   command = command_of(TRAMMEL_ELLIPSE);
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "");
   command = command_of(TRAMMEL_WAIT_INPUT);
-  command.as.wait_input.input = 9;
+  command.as.wait_input.input = 19;
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "input");
   command = command_of(10);
   FAILS(trammel_put(card, &command), TRAMMEL_ARGUMENT, "kind 10");
@@ -223,12 +226,19 @@ static void null_cards(void) {
   trammel_unit unit;
   trammel_status status;
   trammel_position_stop stop;
+  trammel_place place;
+  trammel_rest rest;
+  trammel_active_roles roles;
+  trammel_limit_state limits;
+  trammel_input_stops stops;
+  char text[8];
   int64_t positions[TRAMMEL_MAX_AXES] = {0};
   uint32_t word;
   uint16_t half;
   size_t made;
   memset(&line, 0, sizeof line);
   memset(&axis, 0, sizeof axis);
+  memset(&stops, 0, sizeof stops);
 #define NO_CARD(call) FAILS(call, TRAMMEL_ARGUMENT, "card is null")
   NO_CARD(trammel_transfer(NULL, &access, 1, &made));
   NO_CARD(trammel_identify(NULL, &is));
@@ -241,11 +251,31 @@ static void null_cards(void) {
   NO_CARD(trammel_read_faults(NULL, &word));
   NO_CARD(trammel_clear_faults(NULL));
   NO_CARD(trammel_set_watchdog(NULL, 0));
-  NO_CARD(trammel_read_inputs(NULL, &half));
+  NO_CARD(trammel_read_inputs(NULL, &word));
   NO_CARD(trammel_read_outputs(NULL, &half));
   NO_CARD(trammel_set_input_polarity(NULL, 0));
   NO_CARD(trammel_set_output_safe(NULL, 0, 0));
   NO_CARD(trammel_read_marks(NULL, &word, NULL));
+  NO_CARD(trammel_read_rest(NULL, &rest));
+  NO_CARD(trammel_wait_until_stopped(NULL, 1));
+  NO_CARD(trammel_read_fault_text(NULL, text, sizeof text));
+  NO_CARD(trammel_count_ports(NULL, NULL, NULL));
+  NO_CARD(trammel_read_raw_inputs(NULL, &word));
+  NO_CARD(trammel_set_input_filter(NULL, 0, 0));
+  NO_CARD(trammel_read_input_filter(NULL, 0, positions));
+  NO_CARD(trammel_set_role(NULL, 0, 0, 0));
+  NO_CARD(trammel_read_role(NULL, 0, 0, &word));
+  NO_CARD(trammel_read_roles(NULL, &roles));
+  NO_CARD(trammel_read_limit_state(NULL, &limits));
+  NO_CARD(trammel_set_input_stops(NULL, &stops));
+  NO_CARD(trammel_set_overtravel(NULL, 0, 0));
+  NO_CARD(trammel_override_limits(NULL, 0, 0));
+  NO_CARD(trammel_read_place(NULL, &place));
+  NO_CARD(trammel_begin_at_place(NULL, 0, false, &place));
+  NO_CARD(trammel_set_place(NULL, 0, true, false));
+  NO_CARD(trammel_set_machine_zero(NULL, 0, 0));
+  NO_CARD(trammel_set_scales(NULL, 1));
+  NO_CARD(trammel_set_keeps_place(NULL, 0));
   NO_CARD(trammel_set_hold(NULL, true));
   NO_CARD(trammel_set_ratio(NULL, TRAMMEL_CLASS_FEED, 0));
   NO_CARD(trammel_set_override(NULL, TRAMMEL_CLASS_FEED, 1, 100));
@@ -268,6 +298,7 @@ static void null_cards(void) {
   NO_CARD(trammel_simulated_listen(NULL, NULL, NULL));
   NO_CARD(trammel_simulated_wait(NULL, 1));
   NO_CARD(trammel_simulated_set_inputs(NULL, 0));
+  NO_CARD(trammel_simulated_set_input(NULL, 0, true));
   NO_CARD(trammel_simulated_reset(NULL));
   trammel_request_hold(NULL, true);
   trammel_request_ratio(NULL, TRAMMEL_CLASS_FEED, 0);
@@ -296,6 +327,7 @@ static void null_pointers(void) {
   FAILS(trammel_describe_faults(0, NULL, 1), TRAMMEL_ARGUMENT, "text is null");
   FAILS(trammel_read_inputs(card, NULL), TRAMMEL_ARGUMENT, "levels is null");
   FAILS(trammel_read_outputs(card, NULL), TRAMMEL_ARGUMENT, "levels is null");
+  FAILS(trammel_read_place(card, NULL), TRAMMEL_ARGUMENT, "place is null");
   FAILS(trammel_start_line(card, NULL, NULL), TRAMMEL_ARGUMENT, "line is null");
   FAILS(trammel_run_line(card, NULL, 1, NULL), TRAMMEL_ARGUMENT, "line is null");
   DONE(trammel_open_positions(card, NULL));

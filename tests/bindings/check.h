@@ -36,6 +36,8 @@ trammel_command command_of(int32_t kind);
 
 void test_cards(void);
 void test_errors(void);
+void test_inputs(void);
+void test_place(void);
 void test_positions(void);
 void test_stream(void);
 

@@ -11,6 +11,8 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<trammel_command> && std::is_standard_layout_v<trammel_command>);
 static_assert(TRAMMEL_OK == 0);
+// As many levels as a card may have inputs.
+static_assert(std::is_same_v<decltype(trammel_simulated_set_inputs), trammel_result(trammel_card*, std::uint32_t)>);
 
 template <class Thrown>
 std::size_t throwing_transfer(void* context, trammel_access*, std::size_t) {

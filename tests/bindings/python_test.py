@@ -69,6 +69,62 @@ class Cards(unittest.TestCase):
         thread.join()
 
 
+class Places(unittest.TestCase):
+    """The machine's place, which a card keeps from one program to the next."""
+
+    def cut_off(self, card):
+        card.start_line([1000], duration_ns=SECOND)
+        card.wait(100_000)
+        self.assertRaisesRegex(trammel.StateError, "the card moves", card.begin_at_place)
+        card.abort()
+        card.wait(1000)
+
+    def test_the_first_program_sets_it_and_the_next_goes_on(self):
+        card = trammel.simulate()
+        card.run_line([7], duration_ns=1_000_000)
+        self.assertFalse(card.read_place().was_set)
+        begin = card.begin_at_place()
+        self.assertEqual((begin.first, begin.was_set, begin.scales), (True, True, 1))
+        self.assertEqual((begin.machine_zero, begin.pulses), ([7, 0, 0, 0], [0, 0, 0, 0]))
+        self.assertEqual((begin.valid, begin.homed, begin.keeps), ([True] * 4, [False] * 4, [False] * 4))
+        card.run_line([20, -40], duration_ns=1_000_000)
+        again = card.begin_at_place([0, 1])
+        self.assertEqual((again.first, again.pulses), (False, [20, -40, 0, 0]))
+        card.reset()
+        self.assertEqual((card.read_place().was_set, card.read_place().valid), (False, [False] * 4))
+
+    def test_a_lost_place_is_refused(self):
+        card = trammel.simulate()
+        card.begin_at_place()
+        self.cut_off(card)
+        self.assertEqual(card.read_place().valid, [False, True, True, True])
+        self.assertRaisesRegex(trammel.StateError, "of axis 0 was lost", card.begin_at_place)
+        card.begin_at_place([1, 2])
+        self.assertFalse(card.read_place().valid[0])
+        self.assertTrue(all(card.begin_at_place(trust=True).valid))
+        card.set_keeps_place([0])
+        self.cut_off(card)
+        self.assertEqual((card.read_place().valid[0], card.read_place().keeps), (True, [True, False, False, False]))
+
+    def test_set_by_hand(self):
+        card = trammel.simulate()
+        card.run_line([100], duration_ns=1_000_000)
+        card.begin_at_place()
+        card.set_place([0], valid=False)
+        card.set_machine_zero(0, 75)
+        card.set_place([0], homed=True)
+        card.set_scales(0xC0FFEE)
+        place = card.begin_at_place()
+        self.assertEqual((place.pulses[0], place.homed, place.scales), (25, [True, False, False, False], 0xC0FFEE))
+
+    def test_bad_arguments(self):
+        card = trammel.simulate()
+        for call in (lambda: card.begin_at_place([4]), lambda: card.set_place([0], valid=False, homed=True),
+                     lambda: card.set_machine_zero(4, 0), lambda: card.set_keeps_place([7])):
+            self.assertRaises(trammel.ArgumentError, call)
+        self.assertFalse(card.read_place().was_set)
+
+
 class Holds(unittest.TestCase):
     def test_a_hold_from_before_is_found_at_once(self):
         card = trammel.simulate()
@@ -309,6 +365,7 @@ class Errors(unittest.TestCase):
             lambda: trammel.line(10, [11]),
             lambda: trammel.arc(10, centre=(0, 0), end=(1, 1), sweep=1),
             lambda: trammel.feed(10, 1, floor=0).words(),
+            lambda: trammel.feed(10, 1, slew_shift=4).words(),
         ):
             with self.assertRaises(trammel.ArgumentError):
                 call()

@@ -20,7 +20,7 @@ class BusPage : public ::testing::Test {
     set(reg::kCommandsVersion, card_map::kCommandsVersionValue);
     set(reg::kAxes, 4);
     set(reg::kClockHz, 1'000'000);
-    const card_map::CardShape shape{0x33, 4, 1, 0, 0};
+    const card_map::CardShape shape{0x33, 4, 1, 0, 0, 0};
     card_map::put_descriptors(shape, [&](std::uint32_t address, std::uint32_t word) { set(address, word); });
     set(reg::kGeometryDepth, 4096);
     set(reg::kFeedDepth, 2560);

@@ -256,7 +256,7 @@ void use(Card& card) {
   card.read_build();
   plan_line(card.timing(), {100}, std::chrono::hours(1));
   if (card_map::has_engine(is.engines, card_map::engine::kPathCommands)) {
-    EXPECT_LE(card.inputs_present(), 16U);
+    EXPECT_LE(card.inputs_present(), 32U);
     EXPECT_LE(card.outputs_present(), 16U);
   }
   Stream stream(card);

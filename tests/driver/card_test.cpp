@@ -200,8 +200,9 @@ TEST_F(CardTest, FaultsAndRefusalsAreReadAndClearedByTheirMasks) {
   card_.clear_refusal();
   card_.clear_faults();
   card_.abort();
-  EXPECT_THAT(bus_.log, ElementsAre(wrote(reg::kRefusal, 0x0FFFFFFF), wrote(reg::kWatchdog, 0),
-                                    wrote(reg::kFault, 0x7FFFF), wrote(reg::kControl, field::kControlAbort)));
+  EXPECT_THAT(bus_.log, ElementsAre(wrote(reg::kRefusal, 0x0FFFFFFF), was_read(reg::kStatus), wrote(reg::kWatchdog, 0),
+                                    wrote(reg::kLinkTimeout, 0), wrote(reg::kFault, 0x7FFFF),
+                                    wrote(reg::kControl, field::kControlAbort)));
 }
 
 // On a posted bus every write is followed by a read of REFUSAL in the same transfer.
@@ -364,8 +365,10 @@ TEST(Errors, TextsNameWhatTheyAreOf) {
   EXPECT_EQ(describe_faults(0x80000200), "PATH_INCOMPLETE, unknown bits 0x80000000");
   EXPECT_EQ(describe_faults(0xFC00),
             "MISSING_PERIOD, LIMIT, EMERGENCY_STOP, DRIVE_FAULT, WATCHDOG (the program that moved the card was silent "
-            "for too long), LINK_LOSS");
+            "for too long), LINK_LOSS (no access of the program that moved the card came in time)");
   EXPECT_EQ(describe_faults(0x70000), "SOFT_LIMIT, PROBE, TOOL_SETTER");
+  EXPECT_EQ(describe_faults(0x10000, 0), "SOFT_LIMIT (axis 0 minus)");
+  EXPECT_EQ(describe_faults(0x10000, 0xA000000), "SOFT_LIMIT (axis 2 plus)");
   EXPECT_EQ(describe_faults(0x2800, 0x028104), "LIMIT (axis 2 minus, axis 0 plus, axis 7 plus), DRIVE_FAULT (axis 1)");
   EXPECT_EQ(describe_faults(0x2000, 0x04), "DRIVE_FAULT");
   EXPECT_THAT(FaultError(0x800, "line", 0x100).what(),

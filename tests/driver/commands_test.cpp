@@ -140,6 +140,24 @@ TEST(Commands, TheClassOfAPieceIsInItsFlags) {
   EXPECT_THROW(words_of(feed, 0), ArgumentError);
 }
 
+TEST(Commands, SoIsItsSlewShift) {
+  FeedCommand feed;
+  feed.ticks = 5;
+  feed.floor = 1;
+  feed.piece_class = PieceClass::kFixed;
+  for (std::uint8_t shift = 0; shift <= kMaxSlewShift; ++shift) {
+    feed.slew_shift = shift;
+    const std::vector<std::uint32_t> words = words_of(feed, 0);
+    EXPECT_EQ(words[0], 0x000B0210U | std::uint32_t{shift} << 11);
+    const auto read = std::get<FeedCommand>(decode(words.data(), words.size()).command);
+    EXPECT_EQ(read.slew_shift, shift);
+    EXPECT_EQ(read.piece_class, PieceClass::kFixed);
+    EXPECT_FALSE(read.silent);
+  }
+  feed.slew_shift = kMaxSlewShift + 1;
+  EXPECT_THROW(words_of(feed, 0), ArgumentError);
+}
+
 TEST(Commands, SoIsItsSilence) {
   FeedCommand feed;
   feed.ticks = 5;

@@ -270,4 +270,45 @@ TEST(FrameBus, NumbersComeRound) {
   EXPECT_EQ(bus.counts().sent_again, 0U);
 }
 
+// Once nobody has patience with a card, a silent one is lost after that time, at once whenever it is asked again, and
+// no longer when it answers.
+TEST(FrameBus, PatienceEndsBeforeAllTries) {
+  Memory memory;
+  Link link(memory.access());
+  driver::FrameBus::Options options;
+  options.answer = 20s;
+  driver::FrameBus bus(link, options);
+  bus.set_patience(6s);
+  bool silent = true;
+  link.on_reply = [&silent](frames::Bytes& reply) {
+    if (silent) reply.clear();
+  };
+  const auto ask = [&] {
+    const auto begun = link.now();
+    Access access = driver::write_of(0x200, 7);
+    try {
+      bus.transfer(&access, 1);
+    } catch (const driver::LinkError& error) {
+      EXPECT_EQ(std::string(error.what()).find("no "), 0U) << error.what();
+    }
+    return std::chrono::duration<double>(link.now() - begun).count();
+  };
+  const double first = ask();
+  EXPECT_TRUE(first > 6 && first < 7) << first;
+  EXPECT_TRUE(bus.lost());
+  const double again = ask();
+  EXPECT_LT(again, 1.5);
+  silent = false;
+  ask();
+  EXPECT_FALSE(bus.lost());
+  EXPECT_EQ(memory.words[0x200 / 4], 7U);
+  // An answer that may take no longer than that is waited for as ever.
+  silent = true;
+  bus.set_patience(30s);
+  const auto begun = link.now();
+  Access access = driver::read_of(0x200);
+  EXPECT_THROW(bus.transfer(&access, 1), driver::LinkError);
+  EXPECT_GT(link.now() - begun, 4 * 20s);
+}
+
 }  // namespace

@@ -2,6 +2,7 @@
 // ones do not.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "argument_error.hpp"
@@ -9,6 +10,7 @@
 #include "stream_commands.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
+#include "trammel/driver/interrupt.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/position_stream.hpp"
 #include "trammel/driver/stream.hpp"
@@ -23,9 +25,36 @@ using test::RegisterStub;
 using test::was_read;
 using test::wrote;
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 namespace reg = card_map::reg;
 namespace field = card_map::field;
+
+// What a program that is silent for long brings.
+constexpr std::uint32_t kSilence = field::kFaultWatchdog | field::kFaultLinkLoss;
+
+// Each time goes to the watchdog and to the link's.
+std::vector<test::Made> both(const std::vector<std::uint32_t>& units) {
+  std::vector<test::Made> made;
+  for (const std::uint32_t time : units) {
+    made.push_back(wrote(reg::kWatchdog, time));
+    made.push_back(wrote(reg::kLinkTimeout, time));
+  }
+  return made;
+}
+
+// A card of before map 3.5 has no time of the link.
+TEST(Watchdog, AnOlderCardHasItAlone) {
+  RegisterStub bus;
+  bus.values[reg::kMapVersion] = (card_map::kMapVersionValue & ~0xFFFFU) | 4U;
+  Card card = Card::open(bus);
+  bus.forget();
+  card.set_watchdog(1s);
+  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 16)));
+  bus.forget();
+  card.clear_faults();
+  EXPECT_THAT(bus.log, ElementsAre(was_read(reg::kStatus), wrote(reg::kWatchdog, 16), wrote(reg::kFault, 0x7FFFF)));
+}
 
 TEST(Watchdog, TimesAreRoundedUpToItsUnit) {
   RegisterStub bus;  // 1 MHz: a unit is 65,536 us
@@ -36,8 +65,7 @@ TEST(Watchdog, TimesAreRoundedUpToItsUnit) {
   card.set_watchdog(65'537us);
   card.set_watchdog(65'535 * 65'536us);
   card.set_watchdog(0ns);
-  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 1), wrote(reg::kWatchdog, 1), wrote(reg::kWatchdog, 2),
-                                   wrote(reg::kWatchdog, 65'535), wrote(reg::kWatchdog, 0)));
+  EXPECT_THAT(bus.log, ElementsAreArray(both({1, 1, 2, 65'535, 0})));
   bus.forget();
   EXPECT_THAT(argument_error([&] { card.set_watchdog(65'535 * 65'536us + 1ns); }), HasSubstr("up to 4294901 ms"));
   EXPECT_THAT(argument_error([&] { card.set_watchdog(-1s); }), HasSubstr("negative"));
@@ -53,7 +81,7 @@ TEST(Watchdog, LooksStartItAnewWhereItIsSet) {
   card.set_watchdog(1s);
   bus.forget();
   for (int i = 0; i < 64; ++i) serve_requests(card);
-  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 16), wrote(reg::kWatchdog, 16)));
+  EXPECT_THAT(bus.log, ElementsAreArray(both({16, 16})));
 }
 
 // A slow link makes few looks.
@@ -64,7 +92,7 @@ TEST(Watchdog, ALookAfterAQuarterOfItsTimeStartsItAnew) {
   bus.forget();
   std::this_thread::sleep_for(11ms);
   serve_requests(card);
-  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 1)));
+  EXPECT_THAT(bus.log, ElementsAreArray(both({1})));
 }
 
 TEST(Watchdog, AScopeEndsWithItOff) {
@@ -72,7 +100,9 @@ TEST(Watchdog, AScopeEndsWithItOff) {
   Card card = Card::open(bus);
   bus.forget();
   { const WatchdogScope scope(card, 1s); }
-  EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kWatchdog, 16), was_read(reg::kStatus), wrote(reg::kWatchdog, 0)));
+  std::vector<test::Made> made = both({16, 0});
+  made.insert(made.begin() + 2, was_read(reg::kStatus));
+  EXPECT_THAT(bus.log, ElementsAreArray(made));
 }
 
 // 2 s of motion under a watchdog of 10 ms.
@@ -118,7 +148,14 @@ TEST_F(WatchdogOnModel, ASilentProgramLosesTheCard) {
   } catch (const FaultError& error) {
     EXPECT_THAT(error.what(), HasSubstr("WATCHDOG"));
   }
-  EXPECT_EQ(card_.read_faults(), field::kFaultWatchdog);
+  card_.wait_until_stopped();
+  const Rest where = card_.read_rest();
+  EXPECT_TRUE(where.exact());
+  EXPECT_EQ(where.position[0], rest);
+  EXPECT_GT(where.time, stop.time);
+  EXPECT_EQ(where.geometry_begun, 1U);
+  EXPECT_GT(where.ticks_left, 0U);
+  EXPECT_EQ(card_.read_faults(), kSilence);
   engine_->sleep(1s);
   EXPECT_EQ(engine_->positions()[0], rest) << "nothing moves by itself";
   card_.clear_faults();
@@ -131,6 +168,44 @@ TEST_F(WatchdogOnModel, ASilentProgramLosesTheCard) {
   EXPECT_EQ(engine_->positions()[0], rest + 100'000);
 }
 
+// Commands of a program that clears and goes on at once are taken.
+TEST_F(WatchdogOnModel, ClearingOnTheRampWaitsForItsEnd) {
+  card_.set_slew_time(100ms);
+  begin_line();
+  engine_->sleep(30ms);
+  ASSERT_TRUE(card_.read_status().stopping);
+  card_.clear_faults();
+  EXPECT_EQ(card_.read_faults(), 0U);
+  const Status now = card_.read_status();
+  EXPECT_FALSE(now.stopping || now.busy);
+  const std::int64_t rest = engine_->positions()[0];
+  EXPECT_GT(rest, 1500) << "the ramp went on for 80 ms";
+  begin_line();
+  card_.wait_until_idle(10s);
+  EXPECT_EQ(engine_->positions()[0], rest + 100'000);
+}
+
+TEST(ClearFaults, OnARampThatDoesNotEndLeavesThem) {
+  RegisterStub bus;
+  Card card = Card::open(bus);
+  bus.values[reg::kStatus] = field::kStatusStopping | field::kStatusFaulted;
+  bus.values[reg::kSlew] = 1U << 20;  // 1024 clocks
+  bus.forget();
+  EXPECT_THROW(card.clear_faults(2ms), TimeoutError);
+  EXPECT_GE(bus.slept, 3ms);
+  EXPECT_LE(bus.slept, 4ms);
+  {
+    bus.on_access = [](const Access&) {
+      std::this_thread::sleep_for(10ms);
+      return true;
+    };
+    const InterruptScope interrupt([] { return true; });
+    EXPECT_THROW(card.clear_faults(), InterruptedError);
+  }
+  const auto writes = [](const test::Made& access) { return std::get<0>(access); };
+  EXPECT_EQ(std::count_if(bus.log.begin(), bus.log.end(), writes), 0);
+}
+
 TEST_F(WatchdogOnModel, AScopeLeavesACardThatMovesToIt) {
   {
     const WatchdogScope scope(card_, 10ms);
@@ -138,7 +213,7 @@ TEST_F(WatchdogOnModel, AScopeLeavesACardThatMovesToIt) {
   }
   EXPECT_NE(card_.parts().registers.read(reg::kWatchdog), 0U);
   engine_->sleep(1s);
-  EXPECT_EQ(card_.read_faults(), field::kFaultWatchdog);
+  EXPECT_EQ(card_.read_faults(), kSilence);
 }
 
 // Periods and commands that are sent in time, without a wait of the driver's.
@@ -166,7 +241,7 @@ TEST_F(WatchdogOnModel, SendersOfCommandsKeepIt) {
 TEST_F(WatchdogOnModel, ClearedByAProgramThatSetsNone) {
   engine_->sleep(50ms);
   Card other = Card::open(*engine_);
-  EXPECT_EQ(other.read_faults(), field::kFaultWatchdog);
+  EXPECT_EQ(other.read_faults(), kSilence);
   other.clear_faults();
   engine_->sleep(1s);
   EXPECT_EQ(other.read_faults(), 0U);

@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Words = std::map<std::string, std::size_t>;
 
 Reading read_naming_all(const std::string& text) {
@@ -140,6 +141,8 @@ TEST(Dialect, G4AloneWaitsForNothingInProgramsOfPrinters) {
 TEST(Dialect, SecondsOfG4AreToldInProgramsOfPrinters) {
   EXPECT_EQ(read_text("G4 P500\nG4 P0\nG4 S1\nM104 S0\n").accepted.at("G4 P"), 1U);
   EXPECT_EQ(read_text("G4 P500\nM3 S0\n").accepted.count("G4 P"), 0U);
+  EXPECT_EQ(read_text("G4 P500\nG1 X1 E0.1 F600\n").accepted.count("G4 P"), 1U) << "an extruder";
+  EXPECT_EQ(read_text("M83\nG4 P500\n").accepted.count("G4 P"), 1U);
 }
 
 TEST(Dialect, AZeroBesideThePlaneOfAnArc) {
@@ -182,8 +185,34 @@ TEST(Dialect, CommandsOfKlipperAreRefusedByName) {
 }
 
 TEST(Dialect, CommandsOfGrblAreRefusedByName) {
-  EXPECT_EQ(refusal("$32=1 (laser)"), "1: '$32=1' is a setting or command for Grbl, which no program can hold");
+  EXPECT_EQ(refusal("$32=1 (laser)"),
+            "1: '$32=1' is a setting or command for Grbl, no word of a program: remove the line");
   EXPECT_THAT(refusal("$H"), HasSubstr("'$H' is a setting or command for Grbl"));
+}
+
+TEST(Dialect, RefusalsSayWhatToDo) {
+  EXPECT_EQ(refusal("o<drill> sub (holes)"),
+            "1: O-word 'o<drill> sub': subroutines, loops and branches are not supported: let the CAM program write "
+            "their lines out");
+  EXPECT_THAT(refusal("M98 P1000"), HasSubstr("let the CAM program write their lines out"));
+  EXPECT_EQ(refusal("G81 X1 Y1 Z-1 R1 F60\n^120"), "2: '^': no polar coordinates: let the CAM program write X and Y");
+  EXPECT_THAT(refusal("G0 @5 ^60"), HasSubstr("'@': no polar coordinates"));
+  EXPECT_EQ(refusal("F#<_hal[plasmac.cut-feed-rate]>"),
+            "1: #<_hal[plasmac.cut-feed-rate]> is LinuxCNC's own: write its value in the program");
+  EXPECT_EQ(refusal("G84.2 X1"),
+            "1: unsupported word 'G84.2': there is no spindle encoder to follow: let the CAM program mill the thread");
+  EXPECT_THAT(refusal("G95"), HasSubstr("write feeds a minute (G94)"));
+  EXPECT_THAT(refusal("G86 X1"), HasSubstr("G85 and G89 bore without"));
+  EXPECT_THAT(refusal("G161 X0"), HasSubstr("trammel zero --homed"));
+  EXPECT_EQ(refusal("G59.4"), "1: unsupported word 'G59.4': no such word here: write what it stands for");
+}
+
+// Other controllers move by these, or read the lines behind them in another way.
+TEST(Dialect, MotionsOfOtherControllersAreNeverLeftOut) {
+  for (const char* word : {"G35",  "G36",  "G47",  "G60",     "G63",  "G72",  "G75",  "G107", "G112", "G113",
+                           "G141", "G143", "G150", "G154 P1", "G184", "G234", "G254", "G380", "G425", "M97 P5"}) {
+    EXPECT_THAT(refusal(word), Not(HasSubstr("--accept"))) << word;
+  }
 }
 
 }  // namespace

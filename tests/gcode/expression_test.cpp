@@ -89,6 +89,8 @@ TEST(Expression, NumberedParameters) {
   EXPECT_THAT(refusal("#1.5=2"), HasSubstr("#1.5: parameters"));
   EXPECT_THAT(refusal("#5603=2"), HasSubstr("parameters have"));
   EXPECT_THAT(refusal("#5220=2"), HasSubstr("#5220 only tells something"));
+  EXPECT_EQ(value_of("#5599"), 1) << "LinuxCNC shows messages for debugging";
+  EXPECT_EQ(value_of("#5599", "#5599=0"), 0);
   EXPECT_THAT(refusal("#1=5 6"), HasSubstr("unexpected '6'"));
   EXPECT_THAT(refusal("#1"), HasSubstr("needs '='"));
 }

@@ -74,8 +74,12 @@ TEST(Offsets, ToolLengths) {
   EXPECT_EQ(z_of("G43 H1\nG91 G0 Z2"), 2) << "increments know no offsets";
   EXPECT_EQ(z_of("G43 H1\nG0 Z1\nG92 Z0\nG49 G0 Z0"), 1);
   EXPECT_EQ(z_of("G0 Z5\nG43 H1\nG10 L20 P1 Z0\nG0 Z1"), 6);
-  EXPECT_EQ(offset_refusal("G43 H3"), "G43 H3: the machine file has no tool 3 ([tools])");
-  EXPECT_EQ(offset_refusal("T3 M6\nG43"), "G43: the machine file has no tool 3 ([tools])");
+  EXPECT_EQ(offset_refusal("G43 H3"),
+            "G43 H3: the machine file has no tool 3: --set tools.3.z=LENGTH or [tools.3] of the file describes it");
+  EXPECT_EQ(offset_refusal("G43 H11111111111"), "'H11111111111': the number of a tool is at most 999999");
+  EXPECT_EQ(offset_refusal("T1000000 M6"), "'T1000000': the number of a tool is at most 999999");
+  EXPECT_EQ(offset_refusal("T3 M6\nG43"),
+            "G43: the machine file has no tool 3: --set tools.3.z=LENGTH or [tools.3] of the file describes it");
   EXPECT_EQ(offset_refusal("G0 X1 H1"), "H without G43");
   EXPECT_EQ(offset_refusal("G43.1"), "G43.1 without an axis word");
   EXPECT_EQ(offset_refusal("G43.1 Z1 G0"), "G43.1 cannot share a line with a motion");

@@ -70,21 +70,5 @@ TEST(PathOutputs, WordsWithoutAnOutputAreToldAsBefore) {
   EXPECT_EQ(order_of(spindle.motions), (Order{"1:+2-0", "3:+0-2", "5:+0-2", "7:+0-2", "7:end"})) << "M4 ends M3";
 }
 
-TEST(PathOutputs, AStartInTheMiddleRestoresThem) {
-  const machine::Machine machine = machine_with_outputs();
-  const auto from = [&](std::size_t line) {
-    TextLines lines("M3\nG1 X1 F60\nM8 M4\nX2\nM9\nX3\nM2\n", "p.ngc");
-    Reader reader(lines, machine);
-    EXPECT_TRUE(reader.skip_to(line));
-    std::vector<Motion> motions;
-    for (Motion motion; reader.next(motion);) motions.push_back(motion);
-    return order_of(motions);
-  };
-  EXPECT_EQ(from(4), (Order{"4:+32801-0", "4:move", "5:+0-32772", "6:move", "7:+0-32805", "7:end"}));
-  EXPECT_EQ(from(6), (Order{"6:+33-32772", "6:move", "7:+0-32805", "7:end"}));
-  EXPECT_EQ(from(2)[0], "2:+1-32");
-  EXPECT_EQ(from(1)[0], "1:+1-32") << "nothing to restore: the word itself";
-}
-
 }  // namespace
 }  // namespace trammel::gcode

@@ -12,38 +12,13 @@
 #include <limits>
 #include <string>
 
+#include "machine_texts.hpp"
+
 namespace trammel::machine {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
-std::string error_of(const std::string& text) {
-  try {
-    parse_machine(text, "m.toml");
-  } catch (const MachineError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-std::string override_error(const std::string& text) {
-  Machine machine = default_machine();
-  try {
-    apply_override(machine, text);
-  } catch (const MachineError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-const std::string& defaults() { return default_machine_text(); }
 
 TEST(Machine, EmbeddedDefaultIsTheExample) {
   const std::string path = TRAMMEL_EXAMPLES_DIR "/machine.toml";
@@ -73,7 +48,7 @@ TEST(Machine, DefaultHasFourAxesAtEightySteps) {
 TEST(Machine, AxesStandInTheCardsOrder) {
   std::string text = defaults();
   text = replaced(text, "[axis.x]", "[axis.w]");
-  text = replaced(text, "[axis.z]", "[axis.a]");
+  text = replaced(text, "[axis.z]", "[axis.a]\nendless = true");
   const Machine machine = parse_machine(text, "m.toml");
   EXPECT_EQ(machine.axis('Y'), 0U);
   EXPECT_EQ(machine.axis('A'), 1U);
@@ -92,39 +67,39 @@ TEST(Machine, ReadsHomeAndOffsets) {
 
 TEST(Machine, RefusesWithFileAndLine) {
   EXPECT_EQ(error_of(replaced(defaults(), "steps_per_mm = 80 ", "steps_per_mm = 0 ")),
-            "m.toml:9: axis.x.steps_per_mm must be from 0.001 to 1e+06 pulses/mm, not 0 (a pulse a metre to a pulse a "
+            "m.toml:10: axis.x.steps_per_mm must be from 0.001 to 1e+06 pulses/mm, not 0 (a pulse a metre to a pulse a "
             "nanometre)");
   EXPECT_EQ(error_of(replaced(defaults(), "step_length_ns = 2000", "step_length_ns = -1")),
-            "m.toml:12: axis.x.step_length_ns must be from 0.001 to 1e+11 ns, not -1 (a register holds 65,535 clocks, "
+            "m.toml:13: axis.x.step_length_ns must be from 0.001 to 1e+11 ns, not -1 (a register holds 65,535 clocks, "
             "100 s at the slowest clock)");
   EXPECT_EQ(error_of(replaced(defaults(), "direction_hold_ns = 1000", "direction_hold_ns = -1")),
-            "m.toml:15: axis.x.direction_hold_ns must be from 0 to 1e+11 ns, not -1 (a register holds 65,535 clocks, "
+            "m.toml:16: axis.x.direction_hold_ns must be from 0 to 1e+11 ns, not -1 (a register holds 65,535 clocks, "
             "100 s at the slowest clock)");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "max_velocity = \"fast\"")),
-            "m.toml:10: axis.x.max_velocity must be a number");
+            "m.toml:11: axis.x.max_velocity must be a number");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "max_velocity = inf")),
-            "m.toml:10: axis.x.max_velocity must be a finite number");
+            "m.toml:11: axis.x.max_velocity must be a finite number");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "max_velocity = nan")),
-            "m.toml:10: axis.x.max_velocity must be a finite number");
+            "m.toml:11: axis.x.max_velocity must be a finite number");
   EXPECT_EQ(error_of(replaced(defaults(), "inverted = false", "inverted = 0")),
-            "m.toml:16: axis.x.inverted must be true or false");
-  EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "")), "m.toml:8: [axis.x] has no max_velocity");
-  EXPECT_EQ(error_of(replaced(defaults(), "inverted = false", "")), "m.toml:8: [axis.x] has no inverted");
+            "m.toml:17: axis.x.inverted must be true or false");
+  EXPECT_EQ(error_of(replaced(defaults(), "max_velocity = 150", "")), "m.toml:9: [axis.x] has no max_velocity");
+  EXPECT_EQ(error_of(replaced(defaults(), "inverted = false", "")), "m.toml:9: [axis.x] has no inverted");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity", "max_speed")),
-            "m.toml:10: unknown entry axis.x.max_speed; did you mean max_jerk?");
+            "m.toml:11: unknown entry axis.x.max_speed; did you mean max_jerk?");
   EXPECT_EQ(error_of(replaced(defaults(), "max_velocity", "max_velocty")),
-            "m.toml:10: unknown entry axis.x.max_velocty; did you mean max_velocity?");
+            "m.toml:11: unknown entry axis.x.max_velocty; did you mean max_velocity?");
   EXPECT_THAT(error_of(replaced(defaults(), "max_velocity", "qqq")),
-              StartsWith("m.toml:10: unknown entry axis.x.qqq; known are inverted, steps_per_mm, max_velocity, "));
+              StartsWith("m.toml:11: unknown entry axis.x.qqq; known are inverted, steps_per_mm, max_velocity, "));
   EXPECT_THAT(error_of(replaced(defaults(), "inverted = false", "inverted = false\ng60 = 1")),
-              StartsWith("m.toml:17: unknown entry axis.x.g60; known are "));
-  EXPECT_THAT(error_of(replaced(defaults(), "[axis.x]", "[axis.q]")), StartsWith("m.toml:8: unknown axis [axis.q]"));
-  EXPECT_THAT(error_of(replaced(defaults(), "[axis.x]", "[axis.X]")), StartsWith("m.toml:8: unknown axis [axis.X]"));
+              StartsWith("m.toml:18: unknown entry axis.x.g60; known are "));
+  EXPECT_THAT(error_of(replaced(defaults(), "[axis.x]", "[axis.q]")), StartsWith("m.toml:9: unknown axis [axis.q]"));
+  EXPECT_THAT(error_of(replaced(defaults(), "[axis.x]", "[axis.X]")), StartsWith("m.toml:9: unknown axis [axis.X]"));
   EXPECT_EQ(error_of(replaced(defaults(), "[card]", "[cord]")), "m.toml:4: unknown entry cord; did you mean card?");
   EXPECT_EQ(error_of(replaced(defaults(), "clock_hz", "clock")),
             "m.toml:5: unknown entry card.clock; did you mean clock_hz?");
   EXPECT_EQ(error_of(replaced(defaults(), "clock_hz", "hertz")),
-            "m.toml:5: unknown entry card.hertz; known are clock_hz");
+            "m.toml:5: unknown entry card.hertz; known are clock_hz, require_home");
   for (const char* clock : {"1e4294967296", "999", "0", "-1e6", "1234.5", "4294967296"}) {
     EXPECT_THAT(error_of(replaced(defaults(), "100_000_000", clock)), StartsWith("m.toml:5: card.clock_hz must be a"))
         << clock;
@@ -142,11 +117,24 @@ TEST(Machine, RefusesMoreThanEightAxes) {
   std::string text = defaults();
   const std::string table = text.substr(text.find("[axis.y]"), text.find("[axis.z]") - text.find("[axis.y]"));
   for (const char* name : {"[axis.a]", "[axis.b]", "[axis.c]", "[axis.u]"}) {
-    text += "\n" + replaced(table, "[axis.y]", name);
+    const bool rotary = std::string(name) != "[axis.u]";
+    text += "\n" + replaced(table, "[axis.y]", name + std::string(rotary ? "\nendless = true" : ""));
   }
   EXPECT_EQ(parse_machine(text, "m.toml").axes.size(), 8U);
   text += "\n" + replaced(table, "[axis.y]", "[axis.v]");
   EXPECT_EQ(error_of(text), "m.toml:1: 9 axes, the card has at most 8");
+}
+
+TEST(Machine, RotaryAxesHaveSoftLimitsOrSayThatTheyAreEndless) {
+  const std::string rotary = replaced(defaults(), "[axis.z]", "[axis.a]");
+  EXPECT_EQ(error_of(rotary),
+            "m.toml:1: axis A: a rotary axis needs min and max, or endless = true where it has no soft limits");
+  const auto with = [&](const std::string& lines) { return replaced(rotary, "[axis.a]", "[axis.a]\n" + lines); };
+  EXPECT_TRUE(parse_machine(with("endless = true"), "m.toml").axes[2].endless);
+  EXPECT_FALSE(parse_machine(with("min = 0\nmax = 360"), "m.toml").axes[2].endless);
+  EXPECT_EQ(error_of(with("endless = true\nmin = 0")), "m.toml:1: axis A: endless, but it has min or max");
+  EXPECT_EQ(error_of(replaced(defaults(), "[axis.z]", "[axis.z]\nendless = true")),
+            "m.toml:1: axis Z: only A, B and C can be endless");
 }
 
 bool is_one_line(const std::string& message) {
@@ -224,16 +212,16 @@ TEST(Machine, BracketsInCommentsAndStringsAreText) {
   EXPECT_EQ(parse_machine("# " + brackets + "\n" + defaults(), "m.toml").axes.size(), 4U);
   for (const std::string quote : {"\"", "'", "\"\"\"", "'''"}) {
     EXPECT_EQ(error_of("a = " + quote + brackets + quote),
-              "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe")
+              "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs")
         << quote;
     // A string of one line that is not closed hides nothing behind it.
     const bool found = error_of("a = " + quote + "\nb = " + brackets) == "m.toml:2: nested deeper than 16";
     EXPECT_EQ(found, quote.size() == 1) << quote;
   }
   EXPECT_EQ(error_of("a = \"\\\"\" # " + brackets),
-            "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe");
+            "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs");
   EXPECT_EQ(error_of("a = '\\' # " + brackets),
-            "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe");
+            "m.toml:1: unknown entry a; known are card, axis, kinematics, motion, outputs, tools, probe, inputs");
 }
 
 TEST(Machine, RefusesEndlessText) {
@@ -252,7 +240,7 @@ TEST(Machine, SoftLimits) {
   EXPECT_EQ(both.axes[0].max, 220);
   EXPECT_EQ(both.axes[1].max, std::numeric_limits<double>::infinity());
   EXPECT_EQ(parse_machine(with("min = 5"), "m.toml").axes[0].min, 5);
-  EXPECT_EQ(error_of(with("max = 5\nmin = 5")), "m.toml:18: axis.x.min must be less than axis.x.max: 5 and 5");
+  EXPECT_EQ(error_of(with("max = 5\nmin = 5")), "m.toml:19: axis.x.min must be less than axis.x.max: 5 and 5");
   EXPECT_THAT(error_of(with("max = 5\nmin = 6")), HasSubstr("must be less than"));
   EXPECT_THAT(error_of(with("max = inf")), HasSubstr("must be a finite number"));
   Machine changed = both;
@@ -260,6 +248,31 @@ TEST(Machine, SoftLimits) {
   EXPECT_EQ(changed.axes[0].min, 219);
   EXPECT_THROW(apply_override(changed, "axis.x.min=220"), MachineError);
   EXPECT_EQ(changed.axes[0].min, 219);
+}
+
+TEST(Machine, RequireHomeIsASwitch) {
+  EXPECT_FALSE(default_machine().require_home);
+  const auto with = [](const std::string& value) {
+    return replaced(defaults(), "[card]\n", "[card]\nrequire_home = " + value + "\n");
+  };
+  EXPECT_TRUE(parse_machine(with("true"), "m.toml").require_home);
+  EXPECT_EQ(error_of(with("1")), "m.toml:5: card.require_home must be true or false");
+  Machine changed = default_machine();
+  apply_override(changed, "card.require_home=true");
+  EXPECT_TRUE(changed.require_home);
+  EXPECT_EQ(changed.clock_hz, default_machine().clock_hz);
+}
+
+TEST(Machine, KeepsPlaceIsASwitchOfAnAxis) {
+  for (const MachineAxis& axis : default_machine().axes) EXPECT_FALSE(axis.keeps_place);
+  const auto with = [](const std::string& value) {
+    return replaced(defaults(), "[axis.z]\n", "[axis.z]\nkeeps_place = " + value + "\n");
+  };
+  const Machine machine = parse_machine(with("true"), "m.toml");
+  EXPECT_TRUE(machine.axes[2].keeps_place);
+  EXPECT_FALSE(machine.axes[0].keeps_place);
+  EXPECT_THAT(error_of(with("1")), HasSubstr("axis.z.keeps_place must be true or false"));
+  EXPECT_THAT(override_error("axis.z.keep_place=true"), HasSubstr("did you mean keeps_place?"));
 }
 
 TEST(Machine, JerkIsOptional) {
@@ -300,8 +313,9 @@ TEST(Machine, RefusesBadOverrides) {
   EXPECT_EQ(override_error("axis.x.min=1\naxis.x.max=1"),
             "--set axis.x.min=1\\naxis.x.max=1: axis.x.min must be less than axis.x.max: 1 and 1");
   EXPECT_EQ(override_error("axis.x=1"), "--set axis.x=1: axis.x must be a table");
-  EXPECT_EQ(override_error("speed=1"),
-            "--set speed=1: unknown entry speed; known are card, axis, kinematics, motion, outputs, tools, probe");
+  EXPECT_EQ(
+      override_error("speed=1"),
+      "--set speed=1: unknown entry speed; known are card, axis, kinematics, motion, outputs, tools, probe, inputs");
   EXPECT_THAT(override_error("axis.x.steps_per_mm"), StartsWith("--set axis.x.steps_per_mm: "));
   EXPECT_THAT(override_error(""), HasSubstr("not an assignment"));
   EXPECT_THAT(override_error("axis.x.steps_per_mm=eighty"), HasSubstr("not TOML"));
@@ -316,116 +330,6 @@ TEST(Machine, StepTimesFitTheCardsRegistersAtItsClock) {
   EXPECT_THROW(apply_override(machine, "card.clock_hz=100000001"), MachineError);
   EXPECT_NO_THROW(apply_override(machine, "card.clock_hz=1000"));
   EXPECT_THAT(override_error("axis.e.direction_hold_ns=1e11"), HasSubstr("axis E: direction_hold_ns: "));
-}
-
-TEST(MachineFile, Outputs) {
-  EXPECT_EQ(default_machine().outputs.all(), 0) << "none by default";
-  const std::string text = default_machine_text() + "[outputs]\nm3 = 0\nm4 = [0, 15]\nm8 = []\n";
-  const MachineOutputs outputs = parse_machine(text, "m.toml").outputs;
-  EXPECT_EQ(outputs.m3, 1);
-  EXPECT_EQ(outputs.m4, 0x8001);
-  EXPECT_EQ(outputs.coolant(), 0);
-  Machine machine = parse_machine(text, "m.toml");
-  apply_override(machine, "outputs.m4=2");
-  EXPECT_EQ(machine.outputs.all(), 5) << "instead of what it had";
-  apply_override(machine, "outputs.m3=[]");
-  EXPECT_EQ(machine.outputs.all(), 4);
-
-  const auto error = [](const std::string& entry) { return error_of(default_machine_text() + "[outputs]\n" + entry); };
-  for (const char* value : {"16", "-1", "1.0", "true", "\"0\"", "[0, 16]", "[[0]]"}) {
-    EXPECT_THAT(error(std::string("m7 = ") + value), HasSubstr("outputs.m7 must be an output's number, 0 to 15"))
-        << value;
-  }
-  EXPECT_THAT(error("m5 = 1"), HasSubstr("unknown entry outputs.m5"));
-  EXPECT_THAT(error("m3 = 1\nm7 = 1"), HasSubstr("output 1 is named for the spindle (m3, m4) and for coolant"));
-  EXPECT_THAT(override_error("outputs.m9=1"), HasSubstr("unknown entry outputs.m9"));
-}
-
-TEST(MachineFile, Tools) {
-  EXPECT_TRUE(default_machine().tools.empty());
-  Machine machine = parse_machine(default_machine_text() + "[tools.2]\nz = 42.5\nx = -1\n[tools.31]\n", "m.toml");
-  ASSERT_EQ(machine.tools.size(), 2U);
-  ASSERT_NE(machine.tool(2), nullptr);
-  EXPECT_EQ(machine.tool(2)->offsets[0], -1);
-  EXPECT_EQ(machine.tool(2)->offsets[2], 42.5);
-  EXPECT_EQ(machine.tool(31)->offsets[2], 0);
-  EXPECT_EQ(machine.tool(3), nullptr);
-  apply_override(machine, "tools.2.z=40");
-  apply_override(machine, "tools.3.e=1");
-  EXPECT_EQ(machine.tool(2)->offsets[2], 40);
-  EXPECT_EQ(machine.tool(2)->offsets[0], -1) << "the rest stays";
-  EXPECT_EQ(machine.tool(3)->offsets[3], 1);
-  EXPECT_THAT(override_error("tools.0.z=1"), HasSubstr("[tools.0]: a tool has a number from 1 to 999999"));
-  EXPECT_THAT(override_error("tools.drill.z=1"), HasSubstr("[tools.drill]: a tool has a number"));
-  EXPECT_THAT(override_error("tools.1.a=1"), HasSubstr("unknown entry tools.1.a"));
-  EXPECT_THAT(override_error("tools.1=1"), HasSubstr("tools.1 must be a table"));
-  EXPECT_THAT(override_error("tools.1.z=true"), HasSubstr("tools.1.z must be a number"));
-}
-
-TEST(MachineFile, Probe) {
-  EXPECT_FALSE(default_machine().probe.input);
-  Machine machine = parse_machine(default_machine_text() + "[probe]\ninput = 3\ntouched_level = 0\n", "m.toml");
-  EXPECT_EQ(machine.probe.input, 3U);
-  EXPECT_FALSE(machine.probe.touched_level);
-  apply_override(machine, "probe.touched_level=1");
-  EXPECT_TRUE(machine.probe.touched_level);
-  EXPECT_THAT(override_error("probe.input=16"), HasSubstr("probe.input must be an input's number, 0 to 15"));
-  EXPECT_THAT(override_error("probe.touched_level=2"), HasSubstr("probe.touched_level must be 0 or 1"));
-  EXPECT_THAT(override_error("probe.pin=2"), HasSubstr("unknown entry probe.pin"));
-}
-
-TEST(MachineFile, HomesAndNineCoordinateSystems) {
-  Machine machine = default_machine();
-  apply_override(machine, "axis.x.second_home=7");
-  apply_override(machine, "axis.x.g59_3=9");
-  EXPECT_EQ(machine.axes[0].second_home, 7);
-  EXPECT_EQ(machine.axes[0].offsets[8], 9);
-  EXPECT_THAT(override_error("axis.x.g59_4=9"), HasSubstr("did you mean g59_"));
-}
-
-// Each number at its bounds and just beyond: refused by name, bounds and unit.
-TEST(MachineBounds, EveryNumberOfAnAxisHasThem) {
-  struct Bound {
-    const char* entry;
-    const char* least;
-    const char* most;
-    const char* below;
-    const char* above;
-  };
-  for (const Bound& bound : std::initializer_list<Bound>{
-           {"steps_per_mm", "0.001", "1e6", "1e-300", "1.1e6"},
-           {"max_acceleration", "0.15", "1e9", "1e-300", "1.1e9"},
-           {"max_jerk", "1", "1e13", "1e-300", "1.1e13"},
-           {"step_length_ns", "0.001", "2000", "1e-300", "1e300"},
-           {"direction_setup_ns", "0.0", "2000", "-1e-300", "1e300"},
-           {"min", "-2e12", "0", "-1e300", "1e300"},
-           {"home", "-2e12", "2e12", "-1e300", "1e300"},
-           {"g54", "-2e12", "2e12", "-1e300", "1e300"},
-       }) {
-    const std::string set = std::string("axis.x.") + bound.entry + "=";
-    EXPECT_EQ(override_error(set + bound.least), "no error") << bound.entry;
-    EXPECT_EQ(override_error(set + bound.most), "no error") << bound.entry;
-    for (const char* beyond : {bound.below, bound.above}) {
-      EXPECT_THAT(override_error(set + beyond), HasSubstr(std::string("axis.x.") + bound.entry + " must be from "));
-    }
-  }
-  EXPECT_THAT(override_error("axis.x.max_velocity=1e-300"), HasSubstr("must be from 0.001 to 1e+07 mm/s, not 1e-300"));
-}
-
-TEST(MachineBounds, ARampThatTakesLongerThanAnyMachineIsASlip) {
-  EXPECT_EQ(override_error("axis.x.max_acceleration=0.14"),
-            "--set axis.x.max_acceleration=0.14: axis X: max_velocity is reached after 1071.43 s; at most 1000 s are "
-            "possible, which is the card's longest ramp at 1 MHz: is max_acceleration in mm/s^2?");
-  EXPECT_EQ(override_error("axis.x.max_jerk=0.9"),
-            "--set axis.x.max_jerk=0.9: axis X: max_acceleration is reached after 1111.11 s; at most 1000 s are "
-            "possible, which is the card's longest ramp at 1 MHz: is max_jerk in mm/s^3?");
-}
-
-TEST(MachineBounds, ARampOfCoreXyMotorsIsHeldAgainstTheSameBound) {
-  EXPECT_EQ(
-      error_of(defaults() + "\n[kinematics]\nname = \"corexy\"\nmotor_acceleration = 0.14\n"),
-      "m.toml:1: axis X with the limits of kinematics: max_velocity is reached after 1071.43 s; at most 1000 s are "
-      "possible, which is the card's longest ramp at 1 MHz: is max_acceleration in mm/s^2?");
 }
 
 }  // namespace

@@ -120,7 +120,8 @@ class CommandSource {
         return 0;
       case card_map::MaskRule::Flags:
         mask = static_cast<std::uint8_t>(random_() & layout.flags_free);
-        if (card_map::has_engine(engines_, layout.flags_engine)) mask |= random_() % (layout.flags_maximum + 1);
+        if (card_map::has_engine(engines_, layout.flags_engine))
+          mask = static_cast<std::uint8_t>(mask | random_() % (layout.flags_maximum + 1));
         return mask;
       case card_map::MaskRule::Any:
         do {

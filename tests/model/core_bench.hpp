@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -91,11 +92,15 @@ class CoreBench {
 
   // Every clock goes through here.
   void clock(model::CoreModel::Inputs in) {
+    if (before_clock) before_clock();
     in.pins = pins;
+    in.emergency_stop = emergency_stop;
     if (skips)
       skip::clock(core, in);
     else
       core.clock(in);
+    if (after_clock) after_clock();
+    taken += core.outputs().tick ? 1U : 0U;
     if (!logs) return;
     Shown shown{core.outputs(), core.answer(), {}};
     for (unsigned n = 0; n < core.config().axes; ++n) shown.position[n] = core.position(n);
@@ -180,7 +185,11 @@ class CoreBench {
   model::CoreModel core;
   StepRecorder steps;
   std::uint8_t number = 0;
-  std::uint16_t pins = 0;  // at the card's inputs
+  std::uint64_t taken = 0;  // feed ticks
+  std::uint32_t pins = 0;   // at the card's inputs
+  std::function<void()> before_clock;
+  std::function<void()> after_clock;
+  bool emergency_stop = false;  // level at its pin
   bool logs = false;
   bool skips = true;  // clocks that change nothing in a block
   std::vector<Shown> log;

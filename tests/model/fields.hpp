@@ -28,7 +28,7 @@ constexpr std::size_t count_fields() {
   else
     return count_fields<T, N - 1>();
 }
-constexpr std::size_t kMaxFields = 50;
+constexpr std::size_t kMaxFields = 60;
 template <class T>
 constexpr std::size_t kFields = count_fields<std::remove_const_t<T>, kMaxFields + 1>();
 
@@ -85,6 +85,16 @@ constexpr std::size_t kFields = count_fields<std::remove_const_t<T>, kMaxFields 
 #define TRAMMEL_FIELDS_48 TRAMMEL_FIELDS_47, f48
 #define TRAMMEL_FIELDS_49 TRAMMEL_FIELDS_48, f49
 #define TRAMMEL_FIELDS_50 TRAMMEL_FIELDS_49, f50
+#define TRAMMEL_FIELDS_51 TRAMMEL_FIELDS_50, f51
+#define TRAMMEL_FIELDS_52 TRAMMEL_FIELDS_51, f52
+#define TRAMMEL_FIELDS_53 TRAMMEL_FIELDS_52, f53
+#define TRAMMEL_FIELDS_54 TRAMMEL_FIELDS_53, f54
+#define TRAMMEL_FIELDS_55 TRAMMEL_FIELDS_54, f55
+#define TRAMMEL_FIELDS_56 TRAMMEL_FIELDS_55, f56
+#define TRAMMEL_FIELDS_57 TRAMMEL_FIELDS_56, f57
+#define TRAMMEL_FIELDS_58 TRAMMEL_FIELDS_57, f58
+#define TRAMMEL_FIELDS_59 TRAMMEL_FIELDS_58, f59
+#define TRAMMEL_FIELDS_60 TRAMMEL_FIELDS_59, f60
 #define TRAMMEL_TIE(n) \
   else if constexpr (kFields<T> == n) { auto& [TRAMMEL_FIELDS_##n] = value; return std::tie(TRAMMEL_FIELDS_##n); }
 
@@ -102,6 +112,8 @@ auto fields_of(T& value) {
   TRAMMEL_TIE(36) TRAMMEL_TIE(37) TRAMMEL_TIE(38) TRAMMEL_TIE(39) TRAMMEL_TIE(40)
   TRAMMEL_TIE(41) TRAMMEL_TIE(42) TRAMMEL_TIE(43) TRAMMEL_TIE(44) TRAMMEL_TIE(45)
   TRAMMEL_TIE(46) TRAMMEL_TIE(47) TRAMMEL_TIE(48) TRAMMEL_TIE(49) TRAMMEL_TIE(50)
+  TRAMMEL_TIE(51) TRAMMEL_TIE(52) TRAMMEL_TIE(53) TRAMMEL_TIE(54) TRAMMEL_TIE(55)
+  TRAMMEL_TIE(56) TRAMMEL_TIE(57) TRAMMEL_TIE(58) TRAMMEL_TIE(59) TRAMMEL_TIE(60)
 }
 #undef TRAMMEL_TIE
 // clang-format on

@@ -147,7 +147,7 @@ TEST(MachineStops, LatenciesAreThoseOfThePage) {
       EXPECT_TRUE(found.last_step > last - 400 && found.last_step <= last) << found.last_step;
   };
   for (const auto& event : {+drive, +probe}) {
-    expect(latency(0, event), 2, 0, 9);
+    expect(latency(0, event), 2, 0, 15);
     expect(latency(kRamp, event), 2, 3, kRest);
   }
   expect(latency(0, +limit), kToStep + 2, 0, kToStep + 6);

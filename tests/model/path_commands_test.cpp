@@ -206,11 +206,11 @@ TEST(PathCommands, InputsAreSeenTwoClocksLateAfterTheirPolarity) {
   bench.idle(2);
   EXPECT_EQ(bench.read(reg::kInputs), 0b110101U);
   model::InputPins pins(6);
-  pins.clock(0b100000, {});
+  pins.clock({0b100000, {}});
   EXPECT_EQ(pins.level(), 0U);
-  pins.clock(0, {});
+  pins.clock({0, {}});
   EXPECT_EQ(pins.level(), 0b100000U);
-  pins.clock(0, {});
+  pins.clock({0, {}});
   EXPECT_EQ(pins.level(), 0U);
 }
 

@@ -3,50 +3,44 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <random>
 
-#include "chord_arc.hpp"
 #include "core_bench.hpp"
+#include "feed_paths.hpp"
 
-namespace trammel::testing {
+namespace trammel::testing::silent_pieces {
 namespace {
 
 namespace reg = card_map::reg;
 
 constexpr std::uint8_t kSilent = card_map::constant::kPieceSilent;
-constexpr std::uint64_t kEveryClock = ~std::uint64_t{0};    // rate
-constexpr std::uint64_t kEvery16 = std::uint64_t{1} << 60;  // a tick in 16 clocks
-
-// A path over so many feed ticks.
-struct Path {
-  std::uint64_t ticks = 0;
-  std::uint64_t prescale = 0;  // 2^-40 path ticks per feed tick
-  std::function<bool(CoreBench&)> send;
-
-  std::uint64_t path_ticks(std::uint64_t feed_ticks) const {
-    return static_cast<std::uint64_t>((kOnePulse / 2 + int128{feed_ticks} * static_cast<std::int64_t>(prescale)) >> 40);
-  }
-};
-
-model::CardConfig all_engines() {
-  model::CardConfig config;
-  config.engines |= card_map::engines::kArcGenerator | card_map::engines::kAccumulator8;
-  return config;
-}
+constexpr std::uint64_t kEveryClock = ~std::uint64_t{0};  // rate
 
 struct Bench : CoreBench {
   Bench() : CoreBench(all_engines()) {
     for (unsigned n = 0; n < 4; ++n) write(reg::step_length(n), 1);
   }
   // Pieces first: the path's ticks, of which the first `silent` make no steps.
-  void run(const Path& path, std::uint64_t silent) {
-    if (silent != 0) ASSERT_TRUE(feed(silent, kEveryClock, 0, 0, 1, kSilent));
+  void send(const Path& path, std::uint64_t silent) {
+    if (silent != 0) {
+      ASSERT_TRUE(feed(silent, kEveryClock, 0, 0, 1, kSilent));
+    }
     ASSERT_TRUE(feed(path.ticks - silent, kEvery16));
     ASSERT_TRUE(path.send(*this));
     ASSERT_TRUE(end());
-    ASSERT_TRUE(finish(100 * path.ticks + 100'000));
+  }
+  void finish_all(const Path& path) {
+    ASSERT_TRUE(finish(100 * path.ticks + 200'000));
     ASSERT_EQ(core.outputs().fault, 0U);
+  }
+  void run(const Path& path, std::uint64_t silent) {
+    send(path, silent);
+    finish_all(path);
+  }
+  void hold() {
+    ASSERT_TRUE(write(reg::kHold, 1));
+    for (unsigned clocks = 0; core.outputs().ratio != 0 && clocks < 1'000'000; ++clocks) idle(1);
+    ASSERT_EQ(core.outputs().ratio, 0U);
   }
   std::vector<std::int32_t> positions() const {
     std::vector<std::int32_t> all;
@@ -62,37 +56,6 @@ std::vector<Step> steps_of(const Bench& bench) {
   for (const auto& [command, tick, axis, direction, cycle] : bench.steps.path)
     steps.emplace_back(tick, axis, direction);
   return steps;
-}
-
-Path line(std::mt19937_64& random) {
-  const std::uint64_t ticks = 200 + random() % 2000;
-  std::vector<std::int64_t> increments;
-  for (unsigned n = 0; n < 4; ++n)
-    increments.push_back(static_cast<std::int64_t>(random() % kOnePulse) - kOnePulse / 2);
-  return {ticks, kOnePulse, [=](CoreBench& bench) { return bench.line(ticks, increments); }};
-}
-
-Path circle(std::mt19937_64& random, bool eight) {
-  const auto r = static_cast<std::int64_t>(2 + random() % 30);
-  const std::uint64_t ticks = 8 * static_cast<std::uint64_t>(r) * (1 + random() % 20);
-  const bool clockwise = random() % 2 != 0;
-  const std::int64_t made = eight ? CoreBench::steps_in_eight(r) : 8 * r;
-  const std::uint64_t prescale = (static_cast<std::uint64_t>(made) * kOnePulse + ticks / 2) / ticks;
-  return {ticks, prescale, [=](CoreBench& bench) { return bench.circle(ticks, r, clockwise, eight); }};
-}
-
-Path chords(std::mt19937_64& random) {
-  model::ArcPoints arc;
-  const auto r = static_cast<std::int64_t>(20 + random() % 60);
-  arc.start = {r, 0};
-  arc.end = {0, -r};
-  arc.clockwise = random() % 2 != 0;
-  const driver::ArcChordCommand command = model::prepare_command(arc, {0, 0, 40});
-  return {command.ticks, command.prescale, [=](CoreBench& bench) {
-            std::vector<std::uint32_t> words(driver::kMaxCommandWords);
-            words.resize(driver::encode(command, bench.number++, words.data()));
-            return bench.send(words);
-          }};
 }
 
 void judge(const Path& path, std::uint64_t silent) {
@@ -112,13 +75,104 @@ void judge(const Path& path, std::uint64_t silent) {
   for (unsigned n = 0; n < 4; ++n) EXPECT_EQ(late.positions()[n] + before[n], whole.positions()[n]) << "axis " << n;
 }
 
+// On a card that stands held the silent ticks go through, and nothing else does; the ratio rises from 0 when the hold
+// is taken back.
+void judge_held(const Path& path, std::uint64_t silent) {
+  Bench whole;
+  whole.run(path, 0);
+  Bench late;
+  ASSERT_TRUE(late.write(reg::kSlew, 1U << 18));
+  ASSERT_NO_FATAL_FAILURE(late.hold());
+  ASSERT_NO_FATAL_FAILURE(late.send(path, silent));
+  late.idle(20 * path.ticks + 5000);
+  EXPECT_EQ(late.taken, silent) << "the piece behind waits for the ratio";
+  EXPECT_EQ(late.core.outputs().ratio, 0U);
+  EXPECT_EQ(late.core.outputs().feed_begun, 2U);
+  EXPECT_TRUE(late.steps.path.empty() && late.steps.pins.empty());
+  ASSERT_TRUE(late.write(reg::kHold, 0));
+  late.idle(10);
+  EXPECT_LT(late.core.outputs().ratio, 0x100U) << "it rises by the slew";
+  ASSERT_NO_FATAL_FAILURE(late.finish_all(path));
+  std::vector<Step> expected = steps_of(whole);
+  const auto passed = [&](const Step& step) { return std::get<0>(step) <= path.path_ticks(silent); };
+  std::vector<std::int32_t> before(4, 0);
+  for (const Step& step : expected) before[std::get<1>(step)] += passed(step) ? std::get<2>(step) : 0;
+  expected.erase(std::remove_if(expected.begin(), expected.end(), passed), expected.end());
+  EXPECT_EQ(steps_of(late), expected) << silent << " of " << path.ticks << " ticks";
+  for (unsigned n = 0; n < 4; ++n) EXPECT_EQ(late.positions()[n] + before[n], whole.positions()[n]) << "axis " << n;
+}
+
+TEST(SilentPieces, RunWhileTheCardStandsHeld) {
+  std::mt19937_64 random(seed());
+  for (unsigned i = 0; i < 80; ++i) {
+    const Path path = i % 4 == 0   ? random_line(random)
+                      : i % 4 == 1 ? random_circle(random, false)
+                      : i % 4 == 2 ? random_circle(random, true)
+                                   : random_chords(random);
+    judge_held(path, i < 12 ? 1 + i / 4 : 1 + random() % (path.ticks - 1));
+    if (HasFatalFailure()) return;
+  }
+}
+
+// A program that was held in the middle of a path and dropped there goes on to the same end: the steps before and after
+// are those of the path that nobody held.
+void judge_again(const Path& path, std::uint64_t clocks) {
+  Bench whole;
+  whole.run(path, 0);
+  Bench bench;
+  ASSERT_TRUE(bench.write(reg::kSlew, 1U << 20));
+  ASSERT_NO_FATAL_FAILURE(bench.send(path, 0));
+  bench.idle(clocks);
+  ASSERT_NO_FATAL_FAILURE(bench.hold());
+  bench.idle(1000);
+  const std::uint64_t done = bench.taken;
+  if (done == path.ticks) return;
+  ASSERT_TRUE(bench.write(reg::kControl, card_map::field::kControlAbort));
+  bench.idle(100);
+  bench.number = 0;
+  ASSERT_NO_FATAL_FAILURE(bench.send(path, done));
+  bench.idle(20 * path.ticks);
+  EXPECT_EQ(bench.taken, 2 * done);
+  ASSERT_TRUE(bench.write(reg::kHold, 0));
+  ASSERT_NO_FATAL_FAILURE(bench.finish_all(path));
+  EXPECT_EQ(steps_of(bench), steps_of(whole)) << done << " of " << path.ticks << " ticks";
+  EXPECT_EQ(bench.positions(), whole.positions());
+}
+
+TEST(SilentPieces, HeldProgramGoesOnWithTheStepsOfTheUndisturbedPath) {
+  std::mt19937_64 random(seed());
+  for (unsigned i = 0; i < 80; ++i) {
+    const Path path = i % 4 == 0   ? random_line(random)
+                      : i % 4 == 1 ? random_circle(random, false)
+                      : i % 4 == 2 ? random_circle(random, true)
+                                   : random_chords(random);
+    judge_again(path, random() % (16 * path.ticks));
+    if (HasFatalFailure()) return;
+  }
+}
+
+// At ratios between 0 and 1 too.
+TEST(SilentPieces, TakeAClockATickAtAnyRatio) {
+  for (const std::uint32_t ratio : {0U, 1U, 0x8000U}) {
+    Bench bench;
+    constexpr std::uint64_t kTicks = 10'000;
+    ASSERT_TRUE(bench.write(reg::kRatioFeed, ratio));
+    bench.idle(100);
+    ASSERT_TRUE(bench.feed(kTicks, kEveryClock, 0, 0, 1, kSilent));
+    ASSERT_TRUE(bench.line(kTicks, {kOnePulse / 2}));
+    bench.idle(kTicks + 60);
+    EXPECT_EQ(bench.taken, kTicks) << ratio;
+    EXPECT_EQ(bench.core.outputs().ratio, ratio);
+  }
+}
+
 TEST(SilentPieces, PathGoesOnWithTheStepsThatItWouldHaveMade) {
   std::mt19937_64 random(seed());
   for (unsigned i = 0; i < 160; ++i) {
-    const Path path = i % 4 == 0   ? line(random)
-                      : i % 4 == 1 ? circle(random, false)
-                      : i % 4 == 2 ? circle(random, true)
-                                   : chords(random);
+    const Path path = i % 4 == 0   ? random_line(random)
+                      : i % 4 == 1 ? random_circle(random, false)
+                      : i % 4 == 2 ? random_circle(random, true)
+                                   : random_chords(random);
     judge(path, i < 12 ? 1 + i / 4 : 1 + random() % (path.ticks - 1));
   }
 }
@@ -143,10 +197,29 @@ TEST(SilentPieces, TakeAClockATick) {
 TEST(SilentPieces, FlagsAreRefusedThatHaveNoMeaning) {
   for (unsigned flags = 0; flags < 256; ++flags) {
     Bench bench;
-    const bool good = flags < 8 && (flags & 3) != 3;
+    const bool good = flags < 32 && (flags & 3) != 3;
     EXPECT_EQ(bench.feed(10, kEvery16, 0, 0, 1, static_cast<std::uint8_t>(flags)), good) << flags;
-    if (!good) EXPECT_EQ(bench.read(reg::kRefusal) & 0xFF, static_cast<std::uint32_t>(card_map::Reason::BadMask));
+    if (!good) {
+      EXPECT_EQ(bench.read(reg::kRefusal) & 0xFF, static_cast<std::uint32_t>(card_map::Reason::BadMask));
+    }
   }
+}
+
+// A fault in the silence of a held card stops it at once, and drops the rest.
+TEST(SilentPieces, FaultEndsTheSilenceOfAHeldCard) {
+  Bench bench;
+  ASSERT_NO_FATAL_FAILURE(bench.hold());
+  ASSERT_TRUE(bench.feed(1'000'000, kEveryClock, 0, 0, 1, kSilent));
+  ASSERT_TRUE(bench.line(1'000'000, {kOnePulse / 2}));
+  ASSERT_TRUE(bench.write(reg::kWatchdog, 1));
+  while (bench.core.outputs().fault == 0 && bench.core.cycles() < 100'000) bench.idle(1);
+  EXPECT_NE(bench.core.outputs().fault, 0U);
+  bench.idle(10);
+  const std::uint64_t ticks = bench.taken;
+  EXPECT_GT(ticks, 10'000U);
+  EXPECT_LT(ticks, 1'000'000U);
+  bench.idle(1000);
+  EXPECT_EQ(bench.taken, ticks);
 }
 
 // What is cut off in silence does not silence what follows.
@@ -169,4 +242,4 @@ TEST(SilentPieces, CutEndsTheSilence) {
 }
 
 }  // namespace
-}  // namespace trammel::testing
+}  // namespace trammel::testing::silent_pieces

@@ -9,6 +9,7 @@
 
 #include "fields.hpp"
 #include "trammel/skip/axis.hpp"
+#include "trammel/skip/card_inputs.hpp"
 #include "trammel/skip/commands.hpp"
 #include "trammel/skip/control.hpp"
 #include "trammel/skip/feed_generator.hpp"
@@ -164,6 +165,7 @@ TEST(Skip, WaitTimer) {
 TEST(Skip, TimeBase) {
   judge(model::TimeBase(), 30, [](auto& in, const auto&, Random& random) {
     in.piece_class = static_cast<std::uint8_t>(random() % 20 == 0);
+    in.slew_shift = static_cast<std::uint8_t>(random() % 20 == 0 ? random() % 4 : 0);
     in.setting.address = random() % 2 == 0 ? card_map::reg::kRatioFeed : card_map::reg::kRatioRapid;
     in.setting.data = random() % 3 == 0 ? 0 : 0x10000;
   });
@@ -219,6 +221,57 @@ TEST(Skip, LimitCheck) {
     in.setting.address = random() % 2 == 0 ? card_map::reg::kLimitOverride : card_map::reg::overtravel(1);
   });
 }
+// Positions around the ends, pulses seldom.
+TEST(Skip, SoftLimits) {
+  judge(model::SoftLimits(5), 9, [](auto& in, const auto&, Random& random) {
+    if (random() % 4 != 0) {
+      in.counts = 0;
+      in.clear = in.setting.set = false;
+    }
+    for (std::uint32_t& position : in.position) position = static_cast<std::uint32_t>(random() % 4);
+    const std::uint32_t registers[] = {card_map::reg::kSoftLimits, card_map::reg::soft_plus(1),
+                                       card_map::reg::soft_minus(4)};
+    in.setting.address = registers[random() % 3];
+  });
+}
+TEST(Skip, MachinePlace) {
+  judge(model::MachinePlace(4), 9, [](auto& in, const auto&, Random& random) {
+    if (random() % 4 != 0) {
+      in.step = 0;
+      in.drives = 0;
+    }
+    in.setting.address = random() % 3 == 0 ? card_map::reg::kKeepsPlace : card_map::reg::kSetPlace;
+    in.setting.data |= 3;
+  });
+}
+TEST(Skip, EmergencyStop) {
+  judge(model::EmergencyStop(), 3, [](auto& in, const auto&, Random& random) { in.pin = random() % 8 == 0; });
+}
+TEST(Skip, DriveEnable) {
+  judge(
+      model::DriveEnable(4, 1, 2), 9,
+      [](auto& in, const auto&, Random& random) {
+        if (random() % 8 != 0) in.emergency = false;
+        if (random() % 4 != 0) in.fault = 0;
+        constexpr std::uint32_t kPlaces[] = {card_map::reg::kEnable,     card_map::reg::kEnableAxes,
+                                             card_map::reg::kEnableIdle, card_map::reg::kEnableDelay,
+                                             card_map::reg::kStopDelay,  card_map::reg::kDisableCauses};
+        in.setting.address = kPlaces[random() % 6];
+        in.setting.data %= 16;
+      },
+      true);
+}
+TEST(Skip, CardHealth) {
+  judge(
+      model::CardHealth(), 9,
+      [](auto& in, const auto&, Random& random) {
+        if (random() % 4 != 0) in.fault = 0;
+        const bool pump = random() % 2 == 0;
+        in.setting.address = pump ? card_map::reg::kChargePump : card_map::reg::kHealthCauses;
+        if (pump) in.setting.data %= 64;
+      },
+      true);
+}
 TEST(Skip, ButtonHold) { judge(model::ButtonHold(), 3, kAny); }
 TEST(Skip, Probe) {
   judge(model::Probe(), 9, [](auto& in, const auto&, Random& random) {
@@ -227,10 +280,80 @@ TEST(Skip, Probe) {
   });
 }
 TEST(Skip, PathCommands) {
-  judge(model::PathCommands({}), 9, [](auto& in, const auto&, Random& random) {
+  judge(model::PathCommands({}), 9,
+        [](auto& in, const auto&, Random& random) { in.load.target = some_target(random); });
+}
+TEST(Skip, InputPins) {
+  judge(model::InputPins(6), 9, [](auto& in, const auto&, Random& random) {
     in.pins = random() % 16 == 0;
-    in.load.target = some_target(random);
+    in.setting.address = card_map::reg::kInputPolarity;
   });
+}
+// Levels change seldom, so that filters get to their ends.
+TEST(Skip, InputFilter) {
+  std::uint32_t levels = 0;
+  judge(
+      model::InputFilter(), 9,
+      [&](auto& in, const auto& block, Random& random) {
+        if (random() % 200 == 0) levels ^= std::uint32_t{1} << random() % 32;
+        in.levels = levels;
+        in.set = in.set && random() % 4 == 0 && !block.state().clearing;
+        in.set_input %= 32;
+        in.set_length %= 4;
+      },
+      true);
+}
+TEST(Skip, InputFilterThatTellsQuiet) {
+  std::uint32_t levels = 0;
+  judge(
+      model::InputFilter(true), 9,
+      [&](auto& in, const auto& block, Random& random) {
+        if (random() % 200 == 0) levels ^= std::uint32_t{1} << random() % 32;
+        in.levels = levels;
+        in.set = in.set && random() % 4 == 0 && !block.state().clearing;
+        in.set_input %= 32;
+        in.set_length %= 4;
+      },
+      true);
+}
+TEST(Skip, Captures) {
+  std::uint32_t levels = 0;
+  judge(model::Captures(4), 9, [&](auto& in, const auto& block, Random& random) {
+    if (random() % 40 == 0) levels ^= std::uint32_t{1} << random() % 4;
+    in.raw = in.levels = levels;
+    in.quiet = ~0U;
+    in.setting.set = random() % 100 == 0;
+    in.setting.address = random() % 3 == 0 ? card_map::reg::kCaptureClear
+                                           : card_map::reg::capture_select(static_cast<std::uint32_t>(random() % 4));
+    in.setting.data = random() % 4 | (random() & 0x700);
+    in.captured = random() % 4 == 0 ? block.asks(in) : std::uint8_t{0};
+  });
+}
+TEST(Skip, RoleScan) {
+  std::uint32_t levels = 0;
+  judge(model::RoleScan(3), 9, [&](auto& in, const auto&, Random& random) {
+    if (random() % 200 == 0) levels ^= std::uint32_t{1} << random() % 8;
+    in.levels = levels;
+    in.set = in.set && random() % 16 == 0;
+    in.set_role %= 64;
+    in.set_mask = random() & random() & 0xFF;
+  });
+}
+TEST(Skip, CardInputs) {
+  std::uint32_t pins = 0;
+  judge(
+      model::CardInputs(3, 8, model::RegisterFile::kMaxEngines), 9,
+      [&](auto& in, const auto& block, Random& random) {
+        if (random() % 400 == 0) pins ^= std::uint32_t{1} << random() % 8;
+        in.pins = pins;
+        in.setting.set = random() % 500 == 0 && !block.state().filter.state().clearing;
+        const std::uint32_t address[] = {card_map::reg::kInputPolarity,
+                                         card_map::reg::input_filter(static_cast<std::uint32_t>(random() % 8)),
+                                         card_map::reg::role(static_cast<std::uint32_t>(random() % 64))};
+        in.setting.address = address[random() % 3];
+        in.setting.data = in.setting.address == address[1] ? random() % 4 : random() & 0xFF;
+      },
+      true);
 }
 TEST(Skip, HalfwordQueue) {
   judge(model::HalfwordQueue(16), 3,
@@ -261,6 +384,7 @@ TEST(Skip, RegisterFile) {
     in.port = 0;
     in.address &= 0xFFF;
     in.loader_address = 0;
+    in.captures &= 0xF;
   });
 }
 TEST(Skip, Axi4LitePort) { judge(model::Axi4LitePort(), 3, kAny); }

@@ -67,7 +67,17 @@ TEST(StopControl, NothingHappensByItself) {
   }
 }
 
-TEST(StopControl, AnImmediateEventStopsAClockLater) {
+// Clocks until the cut shows, nothing moving; 0 where it shows already.
+int clocks_to_cut(StopControl& stop) {
+  int clocks = 0;
+  for (; !stop.outputs().cut && clocks < 100; ++clocks) stop.clock(none());
+  return clocks;
+}
+// From the first clock of a stop: its snapshot's request begins the count anew, and the cut shows a clock after its
+// end.
+constexpr int kToCut = StopControl::kSettleClocks + 2;
+
+TEST(StopControl, AnImmediateEventShutsTheGateAClockLaterAndCutsWhenNothingMoves) {
   const std::pair<StopControl::Inputs, std::uint32_t> causes[] = {{step_fault(1), 1},
                                                                   {step_fault(0x82), 0x82},
                                                                   {mismatch(), field::kFaultTickMismatch},
@@ -76,14 +86,18 @@ TEST(StopControl, AnImmediateEventStopsAClockLater) {
     StopControl stop;
     stop.clock(event);
     EXPECT_EQ(stop.outputs().fault, bits);
-    EXPECT_TRUE(stop.stopped());
-    EXPECT_TRUE(stop.outputs().cut);
+    EXPECT_TRUE(stop.shut() && stop.closing() && stop.outputs().stopping);
+    EXPECT_FALSE(stop.outputs().cut);
     EXPECT_TRUE(stop.outputs().stop);
     EXPECT_FALSE(stop.outputs().closed);
     stop.clock(none());
-    EXPECT_FALSE(stop.outputs().cut);
     EXPECT_FALSE(stop.outputs().stop);
     EXPECT_TRUE(stop.outputs().closed);
+    EXPECT_EQ(clocks_to_cut(stop), kToCut - 1);
+    EXPECT_TRUE(stop.stopped() && stop.shut());
+    EXPECT_FALSE(stop.outputs().stopping);
+    stop.clock(none());
+    EXPECT_FALSE(stop.outputs().cut);
     idle(stop, 50);
     EXPECT_TRUE(stop.stopped()) << "for as long as the fault stands";
     stop.clock(clear(~bits));
@@ -100,9 +114,35 @@ TEST(StopControl, AnImmediateEventStopsAClockLater) {
   }
 }
 
+TEST(StopControl, TheCutWaitsForTheLastPulseAndRestIsAskedForAClockBefore) {
+  for (const int moving : {0, 1, 7, 500}) {
+    StopControl stop;
+    stop.clock(step_fault(1));
+    for (int i = 0; i < moving; ++i) {
+      StopControl::Inputs in;
+      in.pulses = i % 2 == 0;
+      in.quiet = i % 2 == 0;
+      EXPECT_FALSE(stop.rests(in));
+      stop.clock(in);
+      EXPECT_FALSE(stop.outputs().cut);
+    }
+    const int expected = moving == 0 ? kToCut : kToCut - 1;
+    for (int i = 1; i < expected; ++i) {
+      EXPECT_FALSE(stop.rests(none()));
+      stop.clock(none());
+      EXPECT_FALSE(stop.outputs().cut);
+    }
+    EXPECT_TRUE(stop.rests(none())) << "its strobe is in the clock of the cut";
+    EXPECT_TRUE(stop.settled());
+    stop.clock(none());
+    EXPECT_TRUE(stop.outputs().cut);
+  }
+}
+
 TEST(StopControl, AnEventWinsOverAClearAndKeepsTheCardStopped) {
   StopControl stop;
   stop.clock(step_fault(1));
+  clocks_to_cut(stop);
   StopControl::Inputs both = step_fault(1);
   both.clear = 1;
   stop.clock(both);
@@ -117,11 +157,23 @@ TEST(StopControl, AnEventWinsOverAClearAndKeepsTheCardStopped) {
   EXPECT_EQ(stop.outputs().fault, 2U);
 }
 
+TEST(StopControl, ACauseWhileTheGateIsShutOnlySetsItsBit) {
+  StopControl stop;
+  stop.clock(step_fault(1));
+  idle(stop, 10);
+  StopControl::Inputs in = mismatch();
+  in.abort = true;
+  stop.clock(in);
+  EXPECT_EQ(stop.outputs().fault, 1U | field::kFaultTickMismatch);
+  EXPECT_FALSE(stop.outputs().cut || stop.outputs().stop);
+  EXPECT_EQ(clocks_to_cut(stop), kToCut - 11) << "neither is the wait longer, nor does an abort shorten it";
+}
+
 TEST(StopControl, ARampHoldsUntilAtRest) {
   StopControl stop;
   stop.clock(set(reg::kStopReaction, 0x02));
   stop.clock(step_fault(2));
-  EXPECT_FALSE(stop.stopped());
+  EXPECT_FALSE(stop.shut());
   EXPECT_TRUE(stop.outputs().stop);
   EXPECT_TRUE(stop.outputs().stopping);
   EXPECT_FALSE(stop.outputs().cut);
@@ -132,12 +184,18 @@ TEST(StopControl, ARampHoldsUntilAtRest) {
   stop.clock(clear(2));
   stop.clock(step_fault(2));
   idle(stop, 10);
-  EXPECT_TRUE(!stop.stopped() && stop.outputs().hold) << "neither a clear nor the same cause ends the ramp";
+  EXPECT_TRUE(!stop.shut() && stop.outputs().hold) << "neither a clear nor the same cause ends the ramp";
   StopControl::Inputs rest;
   rest.at_rest = true;
   stop.clock(rest);
-  EXPECT_TRUE(stop.outputs().cut);
+  EXPECT_TRUE(stop.shut());
   EXPECT_FALSE(stop.outputs().stop) << "the first cause has asked for the snapshot";
+  int clocks = 0;
+  for (; !stop.outputs().cut && clocks < 100; ++clocks) {
+    EXPECT_TRUE(stop.outputs().hold && stop.outputs().stopping) << "the ratio stays 0 until the cut";
+    stop.clock(rest);
+  }
+  EXPECT_EQ(clocks, static_cast<int>(StopControl::kSettleClocks));
   EXPECT_TRUE(stop.stopped());
   EXPECT_FALSE(stop.outputs().stopping);
   stop.clock(none());
@@ -151,23 +209,31 @@ TEST(StopControl, AnImmediateEventOrAnAbortEndsARamp) {
     stop.clock(step_fault(0x80));
     idle(stop, 3);
     stop.clock(event);
-    EXPECT_TRUE(stop.outputs().cut);
+    EXPECT_TRUE(stop.shut());
+    EXPECT_FALSE(stop.outputs().cut);
+    EXPECT_EQ(clocks_to_cut(stop), kToCut - 1);
     EXPECT_TRUE(stop.stopped());
   }
   StopControl stop;
   stop.clock(set(reg::kStopReaction, 0x80));
   stop.clock(step_fault(0x81));
-  EXPECT_TRUE(stop.stopped()) << "ramped and immediate at once: immediate";
+  EXPECT_TRUE(stop.shut()) << "ramped and immediate at once: immediate";
 }
 
-TEST(StopControl, AnAbortCutsInAnyState) {
+TEST(StopControl, AnAbortCutsAtOnceUnlessAFaultIsOnItsWayToACut) {
   StopControl stop;
+  EXPECT_FALSE(stop.rests(abort_now())) << "there is nothing to drop";
+  StopControl::Inputs busy = abort_now();
+  busy.busy = true;
+  EXPECT_TRUE(stop.rests(busy));
   stop.clock(abort_now());
   EXPECT_TRUE(stop.outputs().cut);
-  EXPECT_FALSE(stop.stopped());
+  EXPECT_FALSE(stop.shut());
   EXPECT_FALSE(stop.outputs().stop);
   stop.clock(mismatch());
+  clocks_to_cut(stop);
   idle(stop, 2);
+  EXPECT_FALSE(stop.rests(busy)) << "the fault's REST stands";
   stop.clock(abort_now());
   EXPECT_TRUE(stop.outputs().cut);
   EXPECT_TRUE(stop.stopped()) << "the fault stands";
@@ -176,7 +242,7 @@ TEST(StopControl, AnAbortCutsInAnyState) {
   StopControl::Inputs both = step_fault(1);
   both.abort = true;
   ramping.clock(both);
-  EXPECT_TRUE(ramping.outputs().cut && ramping.outputs().stopping) << "an abort beside a ramped event cuts and ramps";
+  EXPECT_TRUE(!ramping.outputs().cut && ramping.shut()) << "an abort beside a ramped event shuts the gate";
 }
 
 TEST(StopControl, HoldFollowsItsSettingTwoClocksLater) {
@@ -233,7 +299,7 @@ TEST(StopControl, AHoldAtRestStaysWhateverBegins) {
   for (const Course& rest : {kFixedAtRest, Course{true, false, true}, kNothing}) {
     StopControl stop;
     stop.clock(set(reg::kHold, 1));
-    EXPECT_TRUE(holds(stop, rest));
+    EXPECT_TRUE(holds(stop, rest, 40));
     EXPECT_TRUE(rests(stop, rest.moving, rest.fixed, rest.at_rest));
     EXPECT_TRUE(holds(stop, kFixedPiece, 50));
     // Taken back and set again it begins anew.
@@ -255,7 +321,7 @@ TEST(StopControl, ARampedFaultAndAnAbortDoNotWaitForAFixedPiece) {
   in = abort_now();
   in.moving = in.fixed = true;
   stop.clock(in);
-  EXPECT_TRUE(stop.outputs().cut);
+  EXPECT_TRUE(stop.shut());
 }
 
 }  // namespace

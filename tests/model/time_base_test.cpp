@@ -13,10 +13,14 @@ namespace {
 
 constexpr std::uint32_t kWhole = 0x10000;
 
-std::uint64_t run(TimeBase& base, std::uint64_t clocks, bool hold = false) {
+TimeBase::Inputs inputs(bool hold, std::uint8_t slew_shift = 0) {
+  return {hold, {}, card_map::constant::kClassFeed, slew_shift};
+}
+
+std::uint64_t run(TimeBase& base, std::uint64_t clocks, bool hold = false, std::uint8_t slew_shift = 0) {
   std::uint64_t enables = 0;
   for (std::uint64_t i = 0; i < clocks; ++i) {
-    base.clock({hold, {}});
+    base.clock(inputs(hold, slew_shift));
     enables += base.outputs().enable;
   }
   return enables;
@@ -29,7 +33,7 @@ void set(TimeBase& base, std::uint32_t target, std::uint32_t slew) {
 }
 
 bool arrived(const TimeBase& base, bool hold, std::uint8_t piece_class = card_map::constant::kClassFeed) {
-  return skip::TimeBaseAhead(base).clocks_ahead(hold, piece_class) == skip::kForever;
+  return skip::TimeBaseAhead(base).clocks_ahead({hold, {}, piece_class}) == skip::kForever;
 }
 
 // A time base whose ratio is `ratio`, after an odd number of clocks.
@@ -142,7 +146,44 @@ TEST(TimeBase, AZeroSlewKeepsTheRatio) {
   set(base, kWhole, 0);
   run(base, 1000);
   EXPECT_EQ(base.outputs().ratio, 0x1234U);
-  EXPECT_EQ(skip::TimeBaseAhead(base).clocks_ahead(false), skip::kForever);
+  EXPECT_EQ(skip::TimeBaseAhead(base).clocks_ahead(inputs(false)), skip::kForever);
+}
+
+// Each doubling doubles what an update moves by, from the update after the next on; one beyond 28 bits is not made.
+TEST(TimeBase, AShiftDoublesTheSlew) {
+  for (std::uint8_t shift = 0; shift < 4; ++shift) {
+    for (const std::uint32_t slew : {1U, 0x777U, 0x12345U, 0x1FF'FFFFU, 0x300'0001U, 0x600'0001U, 0xFFF'FFFFU}) {
+      std::uint64_t step = slew;
+      for (unsigned i = 0; i < shift && 2 * step < 1U << 28; ++i) step *= 2;
+      TimeBase base;
+      set(base, kWhole, slew);
+      run(base, 38, false, shift);  // 40 clocks
+      run(base, 5, true, shift);
+      for (std::uint64_t updates = 1; updates < 300; ++updates) {
+        const std::uint64_t gone = std::min<std::uint64_t>(updates * step, 1U << 28);
+        ASSERT_EQ(base.outputs().ratio, ((1U << 28) - gone) >> 12) << slew << " by " << shift;
+        run(base, 4, true, shift);
+      }
+    }
+  }
+}
+
+// A piece with another shift: the update that is under way is its predecessor's, the next one its own.
+TEST(TimeBase, AShiftCountsFromTheSecondUpdate) {
+  constexpr std::uint32_t kSlew = 0x10000;
+  TimeBase base;
+  set(base, kWhole, kSlew);
+  run(base, 38);
+  run(base, 5, true);
+  ASSERT_EQ(base.outputs().ratio, kWhole - 0x10);
+  run(base, 4, true, 2);
+  EXPECT_EQ(base.outputs().ratio, kWhole - 0x20);
+  run(base, 4, true, 2);
+  EXPECT_EQ(base.outputs().ratio, kWhole - 0x60);
+  run(base, 4, true);
+  EXPECT_EQ(base.outputs().ratio, kWhole - 0xA0);
+  run(base, 4, true);
+  EXPECT_EQ(base.outputs().ratio, kWhole - 0xB0);
 }
 
 // From one class to another the ratio goes as after an override: linear, and to the new class's ratio exactly.
@@ -188,8 +229,10 @@ TEST(TimeBase, ARampAheadAgreesWithClocks) {
     set(clocked, static_cast<std::uint32_t>(random() % 3 == 0 ? 0 : random() % (kWhole + 1)), slew);
     run(clocked, random() % 5000);
     const bool hold = random() % 2 == 0;
-    run(clocked, random() % 20, hold);
-    const std::uint64_t known = std::min<std::uint64_t>(skip::TimeBaseAhead(clocked).clocks_ahead(hold), 20'000);
+    const auto shift = static_cast<std::uint8_t>(random() % 4);
+    run(clocked, random() % 20, hold, shift);
+    const std::uint64_t known =
+        std::min<std::uint64_t>(skip::TimeBaseAhead(clocked).clocks_ahead(inputs(hold, shift)), 20'000);
     const std::uint64_t clocks = known == 0 ? 0 : 1 + random() % known;
     ahead += clocks;
     const TimeBase before = clocked;
@@ -199,7 +242,7 @@ TEST(TimeBase, ARampAheadAgreesWithClocks) {
     ASSERT_EQ(enables, skip::TimeBaseAhead(before).enabled_in(clocks));
     std::uint64_t seen = 0;
     for (std::uint64_t n = 1; n <= clocks; ++n) {
-      if (run(clocked, 1, hold) == 0) continue;
+      if (run(clocked, 1, hold, shift) == 0) continue;
       ++seen;
       if (seen != enables && seen % 37 != 1) continue;
       ASSERT_EQ(skip::TimeBaseAhead(before).clocks_for(seen), n) << "slew " << slew << " try " << i;
@@ -208,8 +251,8 @@ TEST(TimeBase, ARampAheadAgreesWithClocks) {
     for (int k = 0; k < 40; ++k) {
       ASSERT_EQ(skipped.outputs().enable, clocked.outputs().enable) << "slew " << slew << " try " << i << ", " << k;
       ASSERT_EQ(skipped.outputs().ratio, clocked.outputs().ratio) << "slew " << slew << " try " << i << ", " << k;
-      run(skipped, 1, hold);
-      run(clocked, 1, hold);
+      run(skipped, 1, hold, shift);
+      run(clocked, 1, hold, shift);
     }
   }
   EXPECT_GT(ahead, 1'000'000U);
@@ -222,7 +265,7 @@ TEST(TimeBase, ARampAheadStaysInItsPart) {
     set(base, kWhole, slew);
     std::uint64_t parts = 0;
     for (int i = 0; i < 4000; ++i) {
-      const std::uint64_t known = skip::TimeBaseAhead(base).clocks_ahead(true);
+      const std::uint64_t known = skip::TimeBaseAhead(base).clocks_ahead(inputs(true));
       if (known == skip::kForever) break;
       const std::uint32_t part = (base.outputs().ratio + 255) / 256;
       skip::advance(base, {}, known);
@@ -257,8 +300,8 @@ TEST(TimeBase, AdvanceAndItsInverseAgreeWithClocks) {
     set(clocked, 0x3000, 0x12'3456);
     set(skipped, 0x3000, 0x12'3456);
     for (int k = 0; k < 24; ++k) {
-      clocked.clock({k > 11, {}});
-      skipped.clock({k > 11, {}});
+      clocked.clock(inputs(k > 11));
+      skipped.clock(inputs(k > 11));
       ASSERT_EQ(skipped.outputs().enable, clocked.outputs().enable);
       ASSERT_EQ(skipped.outputs().ratio, clocked.outputs().ratio);
     }

@@ -271,15 +271,15 @@ TEST_F(Directed, NothingQueuedIsNoUnderrun) {
   EXPECT_EQ(underruns(), 0U);
 }
 
-// From rest a piece waits for what a stop from the present ratio takes, and shows it; that is no under-run.
+// From rest a piece waits for twice what a stop from the present ratio takes, and shows it; that is no under-run.
 TEST_F(Directed, APieceFromRestWaitsForEnough) {
-  lines(4);
+  lines(8);
   goes_on(1'000'000);
   card.clock(1000);
   EXPECT_TRUE(card.held());
   EXPECT_EQ(card.taken, 0U);
   EXPECT_EQ(ratio(), 0x10000U);
-  lines(1);  // 5,000 > 4,000 + 256
+  lines(1);  // 9,000 > 8,000 + 256
   card.clock(200);
   EXPECT_FALSE(card.held());
   EXPECT_GT(card.taken, 0U);
@@ -329,8 +329,8 @@ std::uint64_t clocks_to_the_end(Starved& card) {
 }
 void whole_program(Starved& card) {
   card.bench.write(reg::kHold, 1);
-  for (int i = 0; i < 6; ++i) card.line(1000, {kOnePulse / 50, -kOnePulse / 70});
-  card.piece({5000, 0.25, 0.25, 4000});
+  for (int i = 0; i < 10; ++i) card.line(1000, {kOnePulse / 50, -kOnePulse / 70});
+  card.piece({9000, 0.25, 0.25, 4000});
   card.piece({1000, 0.25, 0.01, 0});
   card.bench.write(reg::kHold, 0);
 }
@@ -364,12 +364,12 @@ TEST_F(Directed, PathsThatEndBeforeTheirPiecesCount) {
 
 // So do they in a piece that ends at rest itself: the stop distance of the piece before goes on.
 TEST_F(Directed, PathsThatEndBeforeTheLastPieceCount) {
-  lines(6);
-  goes_on(5000);
+  lines(10);
+  goes_on(9000);
   ends(10'000);
-  run(15'000);
+  run(20'000);
   EXPECT_EQ(ratio(), 0U);
-  EXPECT_EQ(card.taken, 6000 - card.queued());
+  EXPECT_EQ(card.taken, 10'000 - card.queued());
   EXPECT_FALSE(card.ran_dry);
   lines(9);
   run(30'000);
@@ -412,8 +412,8 @@ TEST_F(Directed, NotInDirectMode) {
   card.bench.idle(30'000);
   EXPECT_FALSE(busy());
   // What a direct move took is not taken from the queues.
-  lines(5);
-  goes_on(5000);
+  lines(9);
+  goes_on(9000);
   card.clock(200);
   EXPECT_FALSE(card.held());
   EXPECT_TRUE(busy());

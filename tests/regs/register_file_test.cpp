@@ -71,7 +71,7 @@ TEST_P(EveryAxisCount, DescribesItself) {
   EXPECT_EQ(bench_.read(reg::kClockHz).data, 25'000'000u);
   EXPECT_EQ(bench_.read(reg::kGeometryDepth).data, 1024u);
   EXPECT_EQ(bench_.read(reg::kFeedDepth).data, 512u);
-  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30002u);
+  EXPECT_EQ(bench_.read(reg::kMapVersion).data, 0x30005u);
   EXPECT_EQ(bench_.read(reg::kCommandsVersion).data, 3u);
   EXPECT_EQ(bench_.read(reg::kPorts).data, 0x04'04'01u);
 }
@@ -106,24 +106,26 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
     return load << 25 | stride << 18 | words << 10 | base / 4;
   };
   const std::vector<std::uint32_t> expected{
-      0x01'01'10'01,
+      0x01'01'11'01,
       word(31, 0, 4, 0x640),  // time base with classes
-      0x00'01'12'02,
+      0x00'01'14'02,
       word(31, 0, 2, 0x680),  // stop control
       0x00'02'10'03,
       word(31, 1, 1, 0x6C0),  // queues without watermarks
-      0x01'01'11'04,
+      0x01'01'12'04,
       word(31, 0, 0, 0),  // feed generator with jerk
-      0x00'03'11'05,
-      word(0, 32, 6, 0x800),  // three axes
+      0x00'03'12'05,
+      word(0, 32, 7, 0x800),  // three axes
       0x00'02'10'06,
       word(31, 32, 11, 0x200),  // SNAP and STOP, 8 words and three positions
       0x00'02'10'07,
       word(31, 0, 0, 0),  // two host ports
       0x00'01'10'0A,
       word(31, 0, 15, 0xCD0),  // direct mode: 4 words an axis, two of length, START
-      0x00'01'10'10,
+      0x00'01'11'10,
       word(31, 0, 1, 0x780),  // watchdog
+      0x00'01'10'15,
+      word(31, 0, 3, 0x7C0),  // place
       0,
       0};
   for (std::uint32_t i = 0; i < expected.size(); ++i)
@@ -133,7 +135,7 @@ TEST(Descriptors, OfACardWithEverythingThatAnExampleNeeds) {
 // A card with all engines: every unit once, in the order of the description, no two ranges overlap.
 TEST(Descriptors, EveryUnitOnceAndNoOverlap) {
   RegisterFile::Config config = RegisterBench::config_of(8);
-  config.engines = RegisterFile::kMaxEngines | card_map::engines::kMachineInputs;
+  config.engines = RegisterFile::kMaxEngines;
   RegisterBench bench(config);
   std::array<bool, card_map::kWindowBytes / 4> used{};
   for (std::uint32_t i = 0; i < card_map::kUnits.size(); ++i) {
@@ -256,6 +258,19 @@ TEST(Refusals, BitsWithoutMeaningAndLimits) {
     EXPECT_EQ(bench.refusal_of_write(place.address, entry.minimum), Reason::None) << entry.name;
     EXPECT_EQ(bench.refusal_of_write(place.address, entry.maximum), Reason::None) << entry.name;
   }
+}
+
+// It can be written alone, and what is written goes to whoever has it.
+TEST(SetPlace, IsAnActionThatNothingIsReadBackOf) {
+  RegisterBench bench(4);
+  bench.settings = 0;
+  EXPECT_FALSE(bench.write(reg::kSetPlace, 0x000F0003).error);
+  EXPECT_EQ(bench.settings, 1u);
+  EXPECT_TRUE(bench.read(reg::kSetPlace).error);
+  EXPECT_EQ(bench.read(reg::kRefusal).data & field::kRefusalReason, static_cast<std::uint32_t>(Reason::WriteOnly));
+  EXPECT_EQ(bench.read(reg::kScales).data, 0u);
+  EXPECT_TRUE(bench.write(reg::kSetPlace, 4).error) << "a bit without meaning";
+  EXPECT_TRUE(bench.write(reg::kPlace, 0).error) << "the card alone changes it";
 }
 
 TEST(Refusals, ChangeNothing) {

@@ -46,20 +46,20 @@ class Window(unittest.TestCase):
 
     def test_a_register_across_two_ranges_or_in_a_reserved_one(self):
         self.expect_refused("A: in more than one range", [Register("A", "live", [0x07C, 0x100])])
-        self.expect_refused("A: in the range at 0x7C0, which is reserved", [Register("A", "setting", [0x7C0])])
+        self.expect_refused("A: in the range at 0xF80, which is reserved", [Register("A", "setting", [0xF80])])
 
     def test_a_register_that_would_share_a_word_of_the_ram(self):
         self.expect_refused("A: word 4 of its range at 0x640, where the hardware keeps 4", [Register("A", "setting", [0x650])])
-        self.expect_refused("A: word 8 of its range at 0x800", [Register("A", "setting", [0x800, 0x8A0])])
+        self.expect_refused("A: word 10 of its range at 0x800", [Register("A", "setting", [0x800, 0x8A8])])
         self.expect_refused("A: word 16 of its range at 0x200", [Register("A", "snapshot", [0x240])])
         self.expect_refused("A: word 16 of its range at 0x040", [Register("A", "live", [0x080])])
-        self.read([Register("A", "setting", [0x81C, 0x89C]), Register("B", "command", [0x63C]),
+        self.read([Register("A", "setting", [0x824, 0x8A4]), Register("B", "command", [0x63C]),
                    Register("C", "live", [0x07C])])
 
     def test_a_range_that_is_built_without_a_place(self):
-        plan = PLAN.replace('valid positions"\nreserved = true', 'valid positions"')
+        plan = PLAN.replace('encoders, 4 words each"\nreserved = true', 'encoders, 4 words each"')
         self.assertNotEqual(plan, PLAN)
-        self.expect_refused("A: word 0 of its range at 0x7C0, where the hardware keeps 0", [Register("A", "setting", [0x7C0])],
+        self.expect_refused("A: word 0 of its range at 0xF80, where the hardware keeps 0", [Register("A", "setting", [0xF80])],
                             plan)
 
 

@@ -62,7 +62,7 @@ void expect_stop_on_path(const test::Steps& whole, std::uint64_t died) {
   host.engine->wait(4 * kRouterClock);  // a ramp takes 2 s at most
   driver::Card card = driver::Card::open(*host.engine);
   const driver::Snapshot end = card.read_snapshot();
-  EXPECT_EQ(end.faults, field::kFaultWatchdog);
+  EXPECT_EQ(end.faults, field::kFaultWatchdog | field::kFaultLinkLoss);
   EXPECT_FALSE(end.status.busy);
   EXPECT_NE(end.position, card.read_stop_snapshot().position) << "it has gone on for a ramp";
   const std::size_t made = host.steps.path.size();

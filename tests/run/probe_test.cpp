@@ -105,10 +105,10 @@ TEST_F(ProbingProgram, OffsetsComeFromWhereItStands) {
 
 TEST_F(ProbingProgram, SeveralProbesAndTheWayBack) {
   touch_at(2);
-  touch_at(6, false);
+  touch_at(3, false);
   const Outcome outcome = run("G38.2 Z-10 F120\n#1=#5063\nG38.4 Z#1 F1\nG0 Z0\nG91 G38.3 X1 F600\nG0 X[#5070+1]\nM2\n");
   ASSERT_EQ(outcome.probes.size(), 3U);
-  EXPECT_EQ(outcome.probes[1].edge[kZ], static_cast<double>(steps_.position(kZ, 6 * kClock + 8)) / kPulses);
+  EXPECT_EQ(outcome.probes[1].edge[kZ], static_cast<double>(steps_.position(kZ, 3 * kClock + 8)) / kPulses);
   EXPECT_FALSE(outcome.probes[2].tripped);
   EXPECT_EQ(outcome.final_position[0], 2 * kPulses);
 }

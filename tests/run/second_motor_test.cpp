@@ -86,6 +86,7 @@ TEST(SecondMotor, MachineFile) {
     text += std::string("[axis.") + name +
             "]\nsteps_per_mm=80\nmax_velocity=1\nmax_acceleration=1\nstep_length_ns=1\nstep_space_ns=1\n"
             "direction_setup_ns=1\ndirection_hold_ns=1\ninverted=false\n";
+    if (*name != 'u') text += "endless=true\n";
   }
   const machine::Machine eight = machine::parse_machine(text, "m");
   EXPECT_EQ(eight.motors(), 8U);

@@ -3,15 +3,15 @@
 #include <gmock/gmock.h>
 
 #include <random>
+#include <thread>
 
-#include "memory_streams.hpp"
+#include "clients_fixture.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/frame_bus.hpp"
 #include "trammel/driver/one_shot.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/serve/card_server.hpp"
-#include "trammel/sim/engine.hpp"
 #include "trammel/transport/links.hpp"
 
 namespace trammel::serve {
@@ -19,55 +19,14 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::ClientEnd;
+using test::ClientsTest;
+using test::kClock;
 using ::testing::HasSubstr;
 using transport::StreamLink;
 namespace reg = card_map::reg;
 
-constexpr std::uint32_t kClock = 1'000'000;
-
-class ClientsTest : public ::testing::Test {
- protected:
-  static Settings settings(std::uint32_t baud = 0) {
-    Settings settings;
-    settings.token = "secret";
-    settings.clock_hz = kClock;
-    settings.real_time = false;
-    settings.baud = baud;
-    return settings;
-  }
-  void serve(Settings settings) {
-    settings.note = [this](const std::string& text) { notes_ += text + "\n"; };
-    server_ = std::make_unique<CardServer>(*engine_, listener_, settings);
-  }
-  StreamLink::Open opener() {
-    return [this] { return std::make_unique<ClientEnd>(*server_, listener_); };
-  }
-  // What a client reads that has sent this.
-  std::string answer_to(const std::string& text) {
-    ClientEnd client(*server_, listener_);
-    client.write(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-    for (int i = 0; i < 5; ++i) server_->turn();
-    std::array<std::uint8_t, 256> bytes{};
-    const std::size_t count = client.read(bytes.data(), bytes.size(), 0ns);
-    return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count)};
-  }
-  std::string link_error(const std::string& token) {
-    try {
-      StreamLink link(opener(), StreamLink::Hello{token});
-    } catch (const driver::LinkError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine(sim::EngineOptions{4, kClock, false});
-  test::MemoryListener listener_;
-  std::unique_ptr<CardServer> server_;
-  std::string notes_;
-};
-
 TEST_F(ClientsTest, Hellos) {
-  serve(settings());
+  start(settings());
   EXPECT_EQ(answer_to("trammel 1\n"), "trammel 1 reading\n");
   EXPECT_EQ(answer_to("trammel 1 secret\n"), "trammel 1 motion\n");
   EXPECT_EQ(answer_to("\xC0trammel 1 secret\n"), "trammel 1 motion held: the client has gone\n");
@@ -91,7 +50,7 @@ TEST_F(ClientsTest, Hellos) {
 
 // What is lost for good is found in that time once, however often the driver asks again.
 TEST_F(ClientsTest, AServerThatIsGone) {
-  serve(settings());
+  start(settings());
   bool gone = false;
   unsigned tries = 0;
   StreamLink link(
@@ -110,121 +69,49 @@ TEST_F(ClientsTest, AServerThatIsGone) {
   tries = 0;
   EXPECT_THROW(link.restart(), driver::LinkError);
   EXPECT_EQ(tries, 1U);
-  serve(settings());
+  start(settings());
   gone = false;
   link.restart();
   EXPECT_EQ(bus.transfer(&magic, 1), 1U) << "and it may come back";
 }
 
 TEST_F(ClientsTest, OneAtATimeMovesTheCard) {
-  serve(settings());
+  start(settings());
   const StreamLink first(opener(), StreamLink::Hello{"secret"});
   EXPECT_THAT(link_error("secret"), HasSubstr("another client moves the card"));
   EXPECT_TRUE(server_->has_client());
   EXPECT_EQ(engine_->read(reg::kHold), 0U) << "the first one is still there";
 }
 
-// Readers come before who moves the card and beside it, and take nothing from it: neither its place nor its requests.
-TEST_F(ClientsTest, ReadersReadBesideWhoMovesTheCard) {
-  serve(settings());
-  StreamLink early(opener(), StreamLink::Hello{});
-  driver::FrameBus early_bus(early);
-  driver::Card early_card = driver::Card::open(early_bus);
-  StreamLink moving(opener(), StreamLink::Hello{"secret"});
-  driver::FrameBus bus(moving);
+// A host that is cut off or stopped leaves a connection that stands. Its watchdog tells it from one that only is
+// silent.
+TEST_F(ClientsTest, WhoseWatchdogHasExpiredLosesItsPlace) {
+  start(settings());
+  StreamLink dead(opener(), StreamLink::Hello{"secret"});
+  driver::FrameBus dead_bus(dead);
+  driver::Card dead_card = driver::Card::open(dead_bus);
+  dead_card.set_watchdog(100ms);
+  driver::start_line(dead_card, {1000}, 10s);
+  std::this_thread::sleep_for(1100ms);
+  EXPECT_THAT(link_error("secret"), HasSubstr("another client moves the card")) << "silent, and its time is not over";
+  dead.sleep(200ms);
+  ASSERT_NE(engine_->read(reg::kFault) & card_map::field::kFaultWatchdog, 0U);
+  EXPECT_THAT(link_error("secret"), HasSubstr("another client moves the card")) << "late, but it speaks";
+  std::this_thread::sleep_for(1100ms);
+  StreamLink link(opener(), StreamLink::Hello{"secret"});
+  driver::FrameBus bus(link);
   driver::Card card = driver::Card::open(bus);
-  StreamLink late(opener(), std::nullopt);
-  driver::FrameBus late_bus(late);
-  driver::Card late_card = driver::Card::open(late_bus);
-  EXPECT_TRUE(moving.may_move());
-  EXPECT_THROW(late_card.set_hold(true), driver::RefusedError);
-  for (int i = 1; i <= 20; ++i) {
-    driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
-    EXPECT_EQ(early_card.read_snapshot().position[0], 100 * i);
-    EXPECT_EQ(late_card.read_snapshot().position[0], 100 * i);
-    EXPECT_EQ(early_card.read_status().busy, false);
-  }
-  EXPECT_EQ(early.reconnections() + moving.reconnections() + late.reconnections(), 0U);
-  EXPECT_EQ(server_->counts().holds, 0U);
-}
-
-// As fast as it can: the time is that of who moves the card, and a reader's wait ends though that time stands.
-TEST_F(ClientsTest, AReadersWaitDoesNotPassTheMoversTime) {
-  serve(settings());
-  StreamLink moving(opener(), StreamLink::Hello{"secret"});
-  driver::FrameBus bus(moving);
-  driver::Card card = driver::Card::open(bus);
-  StreamLink reading(opener(), StreamLink::Hello{});
-  driver::FrameBus reading_bus(reading);
-  const std::uint64_t before = engine_->cycles();
-  const auto begun = std::chrono::steady_clock::now();
-  reading.sleep(50ms);
-  EXPECT_GE(std::chrono::steady_clock::now() - begun, 50ms);
-  EXPECT_EQ(engine_->cycles(), before);
-}
-
-// A reader's connection is made anew beside others, and its card was not reset.
-TEST_F(ClientsTest, AReaderThatWasCutReadsOn) {
-  serve(settings());
-  std::optional<std::uint64_t> life = 3000;
-  StreamLink cut(
-      [&] {
-        return std::make_unique<ClientEnd>(*server_, listener_, std::exchange(life, std::nullopt),
-                                           ClientEnd::End::kCut);
-      },
-      StreamLink::Hello{});
-  driver::FrameBus bus(cut);
-  driver::Access magic = driver::read_of(reg::kMagic);
-  StreamLink other(opener(), StreamLink::Hello{});
-  driver::FrameBus other_bus(other);
-  for (int i = 0; i < 200; ++i) {
-    ASSERT_EQ(bus.transfer(&magic, 1), 1U);
-    ASSERT_EQ(magic.data, card_map::kMagicValue);
-  }
-  EXPECT_EQ(cut.reconnections(), 1U);
-}
-
-TEST_F(ClientsTest, ManyReadersLeaveAPlaceForWhoMovesTheCard) {
-  serve(settings());
-  std::vector<std::unique_ptr<StreamLink>> readers;
-  for (int i = 0; i < 8; ++i) readers.push_back(std::make_unique<StreamLink>(opener(), StreamLink::Hello{}));
-  EXPECT_THAT(link_error(""), HasSubstr("as many clients read as the server takes"));
-  const StreamLink moving(opener(), StreamLink::Hello{"secret"});
-  EXPECT_TRUE(moving.may_move());
-}
-
-TEST_F(ClientsTest, WithoutTheTokenNothingIsWrittenThatMoves) {
-  serve(settings());
-  for (const bool hello : {true, false}) {
-    StreamLink link(opener(), hello ? std::optional(StreamLink::Hello{}) : std::nullopt);
-    driver::FrameBus bus(link);
-    driver::Card card = driver::Card::open(bus);
-    EXPECT_EQ(link.may_move(), !hello) << "who says no hello is not told";
-    EXPECT_EQ(card.read_snapshot().position[0], 0);
-    EXPECT_FALSE(card.refusal());
-    card.clear_refusal();
-    EXPECT_THROW(driver::Stream{card}, driver::RefusedError);
-    EXPECT_THROW(card.set_hold(true), driver::RefusedError);
-    EXPECT_THROW(card.abort(), driver::RefusedError);
-    EXPECT_THROW(card.configure_axis(0, {}), driver::RefusedError);
-    EXPECT_THROW(driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms)), driver::RefusedError);
-    // Every register, whatever is written.
-    for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4) {
-      if (address == reg::kRefusal) continue;
-      const bool control = address == reg::kControl;
-      driver::Access access = driver::write_of(address, control ? card_map::field::kControlAbort : 1);
-      ASSERT_EQ(bus.transfer(&access, 1), 0U) << address;
-    }
-  }
-  engine_->wait(kClock);
-  EXPECT_EQ(engine_->positions()[0], 0);
-  EXPECT_EQ(engine_->read(reg::kHold), 0U) << "who cannot move leaves nothing behind";
-  EXPECT_EQ(engine_->read(reg::kSlew), 0xFFFFFFFU);
+  EXPECT_EQ(engine_->read(reg::kHold), 1U);
+  EXPECT_THAT(bus.hold_origin(), HasSubstr("its watchdog had expired, and another client has its place"));
+  card.take_over();
+  card.clear_faults();
+  EXPECT_THROW(dead_card.set_hold(true), driver::LinkError);
+  driver::run_line(card, driver::plan_line(card.timing(), {100}, 10ms));
 }
 
 // Who comes next with the token finds the hold at once, and who has left it; a take-over ends it.
 TEST_F(ClientsTest, ANewClientIsToldWhoHasLeftTheCardInItsHold) {
-  serve(settings());
+  start(settings());
   {
     StreamLink link(opener(), StreamLink::Hello{"secret"});
     driver::FrameBus bus(link);
@@ -253,7 +140,7 @@ TEST_F(ClientsTest, SilenceAndRubbish) {
   Settings impatient = settings();
   impatient.hello = 50ms;
   impatient.silence = 50ms;
-  serve(impatient);
+  start(impatient);
   const auto until_gone = [&] {
     const auto begun = std::chrono::steady_clock::now();
     while (server_->has_client() && std::chrono::steady_clock::now() - begun < 10s) server_->turn();
@@ -297,7 +184,7 @@ TEST_F(ClientsTest, SilenceAndRubbish) {
 // Connections that are cut at any byte, there and back, are made anew; the card was made to hold each time, and every
 // access was made once.
 TEST_F(ClientsTest, CutConnectionsAreMadeAnewAndNothingRunsTwice) {
-  serve(settings());
+  start(settings());
   std::mt19937_64 random(7);
   StreamLink link(
       [&] { return std::make_unique<ClientEnd>(*server_, listener_, 500 + random() % 1500, ClientEnd::End::kCut); },
@@ -368,7 +255,7 @@ class Relay final : public transport::ByteStream {
 // Each byte of a wait and of its answer, damaged once: the wait is sent again, on the same connection, and takes its
 // time.
 TEST_F(ClientsTest, ADamagedWaitIsSentAgain) {
-  serve(settings());
+  start(settings());
   bool to_server = true;
   std::optional<std::size_t> place;
   std::size_t damaged = 0;
@@ -413,7 +300,7 @@ class Borrowed final : public transport::ByteStream {
 
 // A terminal's client may follow another one before the server has seen that one go.
 TEST_F(ClientsTest, AnotherOneOnTheSameStreamHasItsOwnRights) {
-  serve(settings());
+  start(settings());
   ClientEnd terminal(*server_, listener_);
   const auto say = [&](const std::string& text) {
     terminal.write(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
@@ -440,7 +327,7 @@ TEST_F(ClientsTest, AnotherOneOnTheSameStreamHasItsOwnRights) {
 // 10 bits a byte in card time, there and back, and no more.
 TEST_F(ClientsTest, BaudIsKeptInCardTime) {
   constexpr std::uint32_t kBaud = 115'200;
-  serve(settings(kBaud));
+  start(settings(kBaud));
   StreamLink link(opener(), StreamLink::Hello{"secret"});
   driver::FrameBus bus(link);
   std::vector<driver::Access> reads;
@@ -459,7 +346,7 @@ TEST_F(ClientsTest, RealTimeIsNoFasterThanLife) {
   Settings real = settings();
   real.real_time = true;
   const auto begun = std::chrono::steady_clock::now();
-  serve(real);
+  start(real);
   std::chrono::duration<double> life{};
   while (life < 300ms) {
     server_->turn();
@@ -476,7 +363,7 @@ TEST_F(ClientsTest, RealTimeIsNoFasterThanLife) {
 
 // What a client has left of a request does not meet the next one's.
 TEST_F(ClientsTest, ANewClientIsANewEpoch) {
-  serve(settings());
+  start(settings());
   frames::Request ask;
   frames::Bytes bytes{frames::kEnd};
   frames::append_request(bytes, ask);

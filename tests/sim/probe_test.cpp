@@ -150,11 +150,11 @@ TEST_P(DriverProbe, PathsLongerThanTheQueues) {
 TEST_P(DriverProbe, WhatItRefuses) {
   driver::Stream stream(card, options());
   const std::vector<Command> paths = towards(100, 10);
-  EXPECT_THAT(text_of(stream, ProbeCommand{4, true}, paths), HasSubstr("PROBE: input 4, but the card has 4 inputs"));
+  EXPECT_THAT(text_of(stream, ProbeCommand{16, true}, paths), HasSubstr("PROBE: input 16, but the card has 16 inputs"));
   EXPECT_THAT(text_of(stream, ProbeCommand{0, true}, {}), HasSubstr("probe: no paths"));
   EXPECT_THAT(text_of(stream, ProbeCommand{}, {line(5, 1), ProbeCommand{}}), HasSubstr("probe: PROBE among the paths"));
   EXPECT_THAT(text_of(stream, ProbeCommand{}, {line(5, 1), driver::EndCommand{}}), HasSubstr("END among the paths"));
-  EXPECT_THROW(stream.put(driver::WaitInputCommand{9, true, 0}), driver::ArgumentError);
+  EXPECT_THROW(stream.put(driver::WaitInputCommand{19, true, 0}), driver::ArgumentError);
   EXPECT_EQ(stream.sent(), 0U);
   EXPECT_TRUE(steps.pins.empty());
 }

@@ -79,7 +79,7 @@ TEST_P(TimedBus, CarriesSoManyBytesASecondAndNoMore) {
 }
 
 TEST_P(TimedBus, FractionsOfAClockAddUp) {
-  engine->wait(300);  // accesses wait that long after reset
+  engine->wait(700);  // accesses wait that long after reset
   const std::uint64_t first = engine->cycles();
   sim::TimedBus bus(*engine, kClock, 4e6 / 30.25);
   std::vector<driver::Access> accesses(400, driver::read_of(reg::kMagic));

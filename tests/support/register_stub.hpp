@@ -43,7 +43,7 @@ class RegisterStub : public driver::Bus {
   // Describes the units of a card that is built with these engines; the number of axes is as AXES says.
   void set_engines(std::uint32_t engines) {
     engines_ = engines;
-    const card_map::CardShape shape{engines, values[card_map::reg::kAxes], 1, 4, 4};
+    const card_map::CardShape shape{engines, values[card_map::reg::kAxes], 1, 4, 4, 4};
     card_map::put_descriptors(shape, [&](std::uint32_t address, std::uint32_t word) { values[address] = word; });
   }
   void add_engines(std::uint32_t engines) { set_engines(engines_ | engines); }

@@ -53,7 +53,7 @@ const char* hint(const CardUrl& url, bool hello) {
 
 }  // namespace
 
-Connection::Connection(const CardUrl& url) {
+Connection::Connection(const CardUrl& url) : timeout_given_(url.timeout.has_value()) {
   if (url.kind == Kind::kSim) {
     auto engine = sim::make_model_engine(sim::EngineOptions{url.axes, url.clock_hz, false});
     engine_ = engine.get();
@@ -87,6 +87,13 @@ Connection::Connection(const CardUrl& url) {
 Connection::~Connection() = default;
 Connection::Connection(Connection&&) noexcept = default;
 
+void Connection::set_patience(std::chrono::nanoseconds patience) {
+  if (timeout_given_) return;
+  if (frames_ != nullptr) frames_->set_patience(patience);
+  if (stream_ != nullptr) stream_->set_patience(patience);
+}
+
+bool Connection::lost() const { return frames_ != nullptr && frames_->lost(); }
 bool Connection::may_move() const { return stream_ == nullptr || stream_->may_move(); }
 std::uint64_t Connection::reconnections() const { return stream_ == nullptr ? 0 : stream_->reconnections(); }
 

@@ -19,7 +19,8 @@ using std::chrono::nanoseconds;
 using std::chrono::steady_clock;
 
 constexpr nanoseconds kHelloTime = 5s;
-constexpr nanoseconds kLongestWait = 20ms;  // of one wait; long ones go in pieces
+constexpr nanoseconds kLastHelloTime = 300ms;  // of a server that was silent before, where nobody has patience
+constexpr nanoseconds kLongestWait = 20ms;     // of one wait; long ones go in pieces
 constexpr std::size_t kLongestLine = 200;
 constexpr nanoseconds kDrainTime = 200ms;
 constexpr const char* kHeld = " held: ";
@@ -49,9 +50,9 @@ std::size_t read_byte(ByteStream& stream, std::uint8_t& byte, nanoseconds longes
 }
 
 // Up to the end of the line.
-std::string read_line(ByteStream& stream) {
+std::string read_line(ByteStream& stream, nanoseconds longest) {
   std::string line;
-  const auto until = steady_clock::now() + kHelloTime;
+  const auto until = steady_clock::now() + longest;
   while (line.size() < kLongestLine) {
     std::uint8_t byte = 0;
     const nanoseconds left = until - steady_clock::now();
@@ -122,7 +123,8 @@ void StreamLink::say_hello() {
   const std::string hello = fmt::format("{}trammel 1{}{}\n", static_cast<char>(frames::kEnd),
                                         hello_->token.empty() ? "" : " ", hello_->token);
   stream_->write(reinterpret_cast<const std::uint8_t*>(hello.data()), hello.size());
-  const std::string line = read_line(*stream_);
+  const std::string line =
+      read_line(*stream_, patience_.count() != 0 && given_up_ ? kLastHelloTime : at_most(kHelloTime));
   const auto is = [&line](const std::string& answer) { return line == answer || line.rfind(answer + kHeld, 0) == 0; };
   may_move_ = is("trammel 1 motion");
   const std::size_t held = line.find(kHeld);
@@ -167,6 +169,10 @@ void StreamLink::restart() {
   }
 }
 
+nanoseconds StreamLink::at_most(nanoseconds time) const {
+  return patience_.count() != 0 ? std::min(patience_, time) : time;
+}
+
 nanoseconds StreamLink::now() const { return steady_clock::now().time_since_epoch(); }
 
 void StreamLink::sleep(nanoseconds time) {
@@ -183,7 +189,8 @@ void StreamLink::wait(nanoseconds time) {
   const std::string what = fmt::format("{} {}{}", time.count(), ++waits_, kEnd);
   // The first end closes what a damaged one has left.
   const std::string text = fmt::format("{}wait {}", kEnd, what);
-  for (unsigned sent = 0; sent < options_.sends; ++sent) {
+  const unsigned sends = at_most(options_.answer) < options_.answer ? 1 : options_.sends;
+  for (unsigned sent = 0; sent < sends; ++sent) {
     send(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
     if (answered("waited " + what) || driver::interrupted()) return;
   }
@@ -194,9 +201,10 @@ void StreamLink::wait(nanoseconds time) {
 // What comes before it are late replies, for which nobody waits any more.
 bool StreamLink::answered(const std::string& text) {
   const auto begun = steady_clock::now();
-  const auto until = begun + options_.answer;
+  const nanoseconds answer = at_most(options_.answer);
+  const auto until = begun + answer;
   std::string came;
-  for (auto left = options_.answer; left.count() > 0; left = until - steady_clock::now()) {
+  for (auto left = answer; left.count() > 0; left = until - steady_clock::now()) {
     std::uint8_t bytes[256];
     const std::size_t count = receive(bytes, sizeof(bytes), std::min<nanoseconds>(left, driver::kInterruptSlice));
     if (count == 0 && driver::interrupted_after(steady_clock::now() - begun)) return false;

@@ -62,6 +62,8 @@ module card_on_buses (
       .clock_hz_i(32'd50_000_000),
       .idle_level_i(8'd0),
       .output_idle_i(4'd0),
+      .emergency_stop_level_i(1'b1),
+      .emergency_stop_i(1'b0),
       .awvalid_i(axi_awvalid),
       .awready_o(axi_awready),
       .awaddr_i(axi_awaddr),

@@ -221,7 +221,8 @@ class Programs {
     };
     const bool constant = dice_.chance(3);
     const unsigned silent = dice_.chance(8) ? card_map::constant::kPieceSilent : 0;
-    to.push_back(stored_command(card_map::Opcode::Feed, (classes ? dice_.below(3) : 0) | silent, ticks,
+    const unsigned doublings = dice_.chance(2) ? dice_.below(4) * card_map::constant::kPieceDoubling : 0;
+    to.push_back(stored_command(card_map::Opcode::Feed, (classes ? dice_.below(3) : 0) | silent | doublings, ticks,
                                 {{"rate", static_cast<int128>(rate)},
                                  {"floor", static_cast<int128>(std::uint64_t{1} << 26 | dice_.draw() >> 2)},
                                  {"stop_distance", static_cast<int128>(dice_.draw())},

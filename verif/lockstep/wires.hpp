@@ -24,6 +24,15 @@ inline std::uint32_t roles_wire(const model::InputRoles& roles) {
                                     in_place(kToolSetter, roles.tool_setter) | in_place(kProbe, roles.probe));
 }
 
+// The bundle of the inputs' levels onto a block's port.
+template <class Port>
+void put_inputs(Port& port, std::uint32_t levels, std::uint32_t raw, std::uint32_t quiet) {
+  using namespace bus::input_levels;
+  put(port, kLevels, levels);
+  put(port, kRaw, raw);
+  put(port, kQuiet, quiet);
+}
+
 inline std::uint8_t causes_wire(const model::StopCauses& causes) {
   using namespace bus::stop_causes;
   return static_cast<std::uint8_t>(in_place(kLimit, causes.limit) | in_place(kBeyond, causes.beyond) |
@@ -107,7 +116,7 @@ class Dice {
     const bool event = chance(8);
     const bool strobe = event && chance(2);
     return in_place(bus::snapshot::kStrobe, strobe) | in_place(bus::snapshot::kShift, event && !strobe) |
-           in_place(bus::snapshot::kWord, draw());
+           in_place(bus::snapshot::kRest, chance(2)) | in_place(bus::snapshot::kWord, draw());
   }
 
  private:

@@ -121,7 +121,7 @@ void Recorder::reset(int clocks) {
 }
 
 void Recorder::clock() {
-  sim::set_inputs(*dut_, in_);
+  sim::set_inputs(*dut_, in_, kPins);
   dut_.clock();
   model_.clock(in_);
   judge();

@@ -26,6 +26,8 @@ class VerilatedPinCard final : public PinCard {
     dut_->sck_i = in.spi.sck;
     dut_->cs_n_i = in.spi.cs_n;
     dut_->mosi_i = in.spi.mosi;
+    dut_->emergency_stop_level_i = 1;
+    dut_->emergency_stop_i = 0;
     dut_->input_i = static_cast<CData>(in.inputs);
   }
   void show(CardOutputs& out) {

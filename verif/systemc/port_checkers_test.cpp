@@ -216,12 +216,12 @@ const std::map<std::string, Breaks>& breaks_axi_card() {
       {"AXI4-Lite: a write is not answered in time",
        [](Bench& b) {
          b.axi_write_taken();
-         b.clock(500);
+         b.clock(600);
        }},
       {"AXI4-Lite: a read is not answered in time",
        [](Bench& b) {
          b.axi_read_taken();
-         b.clock(500);
+         b.clock(600);
        }},
   };
   return all;
@@ -280,7 +280,7 @@ const std::map<std::string, Breaks>& breaks_wishbone() {
       {"Wishbone: an access is not answered in time",
        [](Bench& b) {
          b.wishbone_taken();
-         b.clock(500);
+         b.clock(600);
        }},
   };
   return all;

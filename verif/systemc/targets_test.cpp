@@ -193,7 +193,7 @@ TEST(Systemc, DebugTransportReadsAnyBytes) {
   CardAlone alone([](Host& host) {
     EXPECT_EQ(debug_read(host, card_map::reg::kMagic, 4), "LMRT");
     EXPECT_EQ(debug_read(host, card_map::reg::kMagic + 1, 2), "MR");
-    EXPECT_EQ(debug_read(host, card_map::reg::kMagic + 3, 7), std::string("T\x02\0\x03\0\x04\0", 7));
+    EXPECT_EQ(debug_read(host, card_map::reg::kMagic + 3, 7), std::string("T\x05\0\x03\0\x04\0", 7));
     EXPECT_EQ(debug_read(host, card_map::reg::kMagic, 0), "");
   });
   sc_core::sc_start();

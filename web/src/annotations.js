@@ -139,11 +139,12 @@ export class Annotations {
     context.stroke()
   }
   // With a rim in the colour of the ground, to be read on lines.
-  writeOnPanel(text, box) {
+  writeOnPanel(text, box, ink = colour('ink'), y = (box[1] + box[3]) / 2) {
     this.context.lineWidth = 3
     this.context.strokeStyle = colour('panel')
-    this.context.strokeText(text, box[0] + 1, (box[1] + box[3]) / 2)
-    this.write(text, box, 'ink')
+    this.context.strokeText(text, box[0] + 1, y)
+    this.context.fillStyle = ink
+    this.context.fillText(text, box[0] + 1, y)
   }
   drawScale() {
     const { context } = this
@@ -161,7 +162,7 @@ export class Annotations {
     const text = pulses < 1e4 ? `${distance} = ${fixed(pulses, pulses < 10 ? 1 : 0)} pulses` : distance
     const box = [x - 1, y - 5 - kLine, x + Math.max(length, context.measureText(text).width) + 1, y + 1]
     this.labels.take(box)
-    this.write(text, box, 'ink', y - 5 - kLine / 2)
+    this.writeOnPanel(text, box, colour('ink'), y - 5 - kLine / 2)
   }
   drawAxes() {
     const { context } = this
@@ -180,7 +181,7 @@ export class Annotations {
       context.stroke()
       if (length < 6) continue
       const box = this.boxOf(arm.letter, origin[0] + arm.x * (1 + 9 / length), origin[1] + arm.y * (1 + 9 / length))
-      context.fillText(arm.letter, box[0] + 1, (box[1] + box[3]) / 2)
+      this.writeOnPanel(arm.letter, box, axisColour(arm.letter))
     }
     this.labels.take([origin[0] - 40, origin[1] - 40, origin[0] + 40, origin[1] + 40])
   }

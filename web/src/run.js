@@ -110,6 +110,11 @@ export class Run {
     const share = (cycle - cycles[i]) / (cycles[i + 1] - cycles[i])
     return { motion: motions[i] + share * (motions[i + 1] - motions[i]), ratio: slopes[i] }
   }
+  // Whether the last request before a card clock was a hold.
+  heldAt(cycle) {
+    const requests = this.facts.events.filter(({ event, cycle: at }) => at <= cycle && (event === 'hold' || event === 'resume'))
+    return requests.at(-1)?.event === 'hold'
+  }
   // The last card clock at which the motion clock is there: behind a pause.
   cycleAt(motion) {
     const { motions, cycles } = this.times

@@ -118,8 +118,10 @@ export function readout(run, achieved, cycle) {
   const path = run.pathAt(cycle)
   const share = still ? null : run.shareAt(stretch, motion - run.motion.begins[stretch])
   const of = stretch < 0 ? path : run.motion.paths[stretch]
+  const percent = 100 * ratio / run.fullRatio
   return {
-    path, still, percent: still ? null : 100 * ratio / run.fullRatio,
+    // From the last step of a hold's ramp to the first one after the hold the slope is a little more than 0.
+    path, still, percent: still ? null : run.heldAt(cycle) && percent < 1 ? 0 : percent,
     commanded: still ? 0 : run.pathSpeed(of, share[1]), achieved: achieved.at(cycle),
     axes: run.axes.map((_, a) => still ? [NaN, 0, 0, 0] : run.axisAt(of, a, share)),
     actual: run.axes.map((_, a) => achieved.axisAt(a, cycle)),

@@ -284,12 +284,34 @@ test('without a graphics card a short path too is an outline while the view move
   await page.close()
 })
 
+async function allInView(page) {
+  await frame(page)
+  const seen = await page.evaluate(() => ({
+    all: document.querySelector('#charts').scrollHeight, inView: document.querySelector('#charts').clientHeight,
+    broken: [...document.querySelectorAll('.row .label div')].filter((one) => one.clientHeight > 17).map((one) => one.textContent),
+  }))
+  assert.ok(seen.all <= seen.inView, `${seen.inView} of ${seen.all} pixels`)
+  assert.deepEqual(seen.broken, [])
+}
+
+// With a fourth axis that moves, or the chart of overrides; numbers are as long as they get.
+for (const [name, extruder, ...options] of [['a print', ' E3'], ['an override', '', '--override-at', '0.3:57', '--hold-at', '1:0.5']]) {
+  test(`all charts of ${name} are in view, each value in one line`, async () => {
+    const { page, said } = await open(report(`G21 G90 M83\nG1 X-9.13 Y7.77 Z1${extruder} F1000\nG1 X5${extruder} F700\n`, ...options))
+    await page.setViewportSize({ width: 1360, height: 920 })
+    for (const seconds of [0.33, 0.6, 0.93, 1.7]) {
+      await page.evaluate((at) => window.trammel.setCycle(at * window.trammel.run.clockHz), seconds)
+      await allInView(page)
+    }
+    assert.deepEqual(said, [])
+    await page.close()
+  })
+}
+
 test('in a large window all charts are in view; in a small one nothing covers the path, and no button is cut', async () => {
   const { page, said } = await open(partReport())
   await page.setViewportSize({ width: 1360, height: 920 })
-  await frame(page)
-  const [all, inView] = await page.evaluate(() => [document.querySelector('#charts').scrollHeight, document.querySelector('#charts').clientHeight])
-  assert.ok(all <= inView, `${inView} of ${all} pixels`)
+  await allInView(page)
   for (const [width, height] of [[800, 600], [390, 844], [360, 740]]) {
     await page.setViewportSize({ width, height })
     await frame(page)

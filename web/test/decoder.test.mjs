@@ -204,6 +204,7 @@ test('a hold and an override show where they were made', () => {
   }
   assert.ok(Math.abs(percent(1) - 100) < 0.1, `${percent(1)}`)
   assert.ok(percent(2.4) < 1, `${percent(2.4)}`)
+  assert.equal(readout(run, new Achieved(run), 2.5 * run.clockHz).percent, 0)
   assert.ok(Math.abs(percent(3.6) - 100) < 0.5, `${percent(3.6)}`)
   assert.ok(Math.abs(percent(5) - 50) < 0.5, `${percent(5)}`)
 })

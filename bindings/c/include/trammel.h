@@ -191,12 +191,17 @@ typedef struct trammel_status {
   bool refused;       // REFUSAL is not 0
   bool snapshot;      // a snapshot is under way
   bool incomplete;    // the stream stands inside a command
-  bool stopping;      // on a ramp to a stop
+  bool stopping;      // on its way to a stop: on a ramp, or the last pulses are made
   bool geometry_low;  // fewer halfwords queued than the queue's watermark
   bool feed_low;
   bool probed;        // a probe has tripped
   bool probe_missed;  // probing paths ended without an edge
   bool waiting;       // for an input
+  bool underrun;      // the time base is held because the queues run dry
+  bool stale;         // position streaming goes on without a new period
+  bool button_hold;   // the feed hold button holds, until cycle start
+  // At a ratio of 0 or stopped by a fault, for 31 clocks: each tick taken has made its steps, each step its pulse.
+  bool settled;
 } trammel_status;
 
 // State of one clock.
@@ -219,9 +224,31 @@ TRAMMEL_API trammel_result trammel_read_stop_snapshot(trammel_card* card, tramme
 // faulted, TRAMMEL_HELD where it stands in a hold that this handle has not set, TRAMMEL_STATE if it was reset.
 TRAMMEL_API trammel_result trammel_wait_until_idle(trammel_card* card, int64_t timeout_ns);
 
+// Where the last stop has left the card, latched before it dropped anything: a fault's when every pulse has come out,
+// an abort's in its own clock.
+typedef struct trammel_rest {
+  uint64_t time;  // clocks since reset; 0: no stop since then
+  trammel_status status;
+  uint32_t faults;
+  uint32_t geometry_begun;  // commands begun from the geometry queue since the cut before
+  uint32_t feed_begun;
+  // Ticks that the command begun last has not taken of its N, 40 bits (a one-shot line: enabled clocks of its length);
+  // 0 where no path was under way, and where it is not exact.
+  uint64_t ticks_left;
+  int32_t position[TRAMMEL_MAX_AXES];  // pulses, wrapping; 0 for axes that the card lacks
+  bool exact;                          // they are those of all ticks taken; not so after an abort in motion
+} trammel_rest;
+
+// TRAMMEL_STATE while the card is on its way to a stop, TRAMMEL_ARGUMENT where its map is older than 3.4.
+TRAMMEL_API trammel_result trammel_read_rest(trammel_card* card, trammel_rest* rest);
+// Until a stop under way (status.stopping) has ended; TRAMMEL_TIMEOUT `margin_ns` (card time) after the longest ramp.
+TRAMMEL_API trammel_result trammel_wait_until_stopped(trammel_card* card, int64_t margin_ns);
+
 // FAULT, 0 if there is none.
 TRAMMEL_API trammel_result trammel_read_faults(trammel_card* card, uint32_t* faults);
-// Nothing moves by it; the stream begins anew (trammel_restart_stream()).
+// Nothing moves by it; the stream begins anew (trammel_restart_stream()). On a fault's ramp it waits for the end first,
+// as trammel_wait_until_stopped() with a second; where that fails the faults stay. So does the fault of a drive that
+// still reports it.
 TRAMMEL_API trammel_result trammel_clear_faults(trammel_card* card);
 // The card stops by itself, FAULT saying why, when this program is silent for `time_ns`; 0: never. Calls that wait, and
 // streams, keep it from stopping; set 0 when the motion is over. Longer than 4/3 of the time in which the link may
@@ -229,15 +256,133 @@ TRAMMEL_API trammel_result trammel_clear_faults(trammel_card* card);
 TRAMMEL_API trammel_result trammel_set_watchdog(trammel_card* card, int64_t time_ns);
 // The names of the bits, for messages: at most `size` bytes with the final 0.
 TRAMMEL_API trammel_result trammel_describe_faults(uint32_t faults, char* text, size_t size);
+// Likewise of the faults that stand, with the axes and sides of limits: "LIMIT (axis 0 plus)"; "none".
+TRAMMEL_API trammel_result trammel_read_fault_text(trammel_card* card, char* text, size_t size);
 
 // Of a card with path commands, bit n: input n after its polarity, output n.
-TRAMMEL_API trammel_result trammel_read_inputs(trammel_card* card, uint16_t* levels);
+TRAMMEL_API trammel_result trammel_read_inputs(trammel_card* card, uint32_t* levels);
 TRAMMEL_API trammel_result trammel_read_outputs(trammel_card* card, uint16_t* levels);
-TRAMMEL_API trammel_result trammel_set_input_polarity(trammel_card* card, uint16_t inverted);
+TRAMMEL_API trammel_result trammel_set_input_polarity(trammel_card* card, uint32_t inverted);
 // Levels that the outputs in `change` take at an abort and at a fault.
 TRAMMEL_API trammel_result trammel_set_output_safe(trammel_card* card, uint16_t levels, uint16_t change);
 // MARKs passed since reset, and what the last one latched. Either pointer may be null.
 TRAMMEL_API trammel_result trammel_read_marks(trammel_card* card, uint32_t* marks, trammel_snapshot* last);
+
+// ---- Machine inputs: filters, roles, stops ----
+//
+// Of cards with the engine machine_inputs; TRAMMEL_ARGUMENT on others, and for inputs and axes that the card lacks.
+// Masks of inputs: bit n is input n. Masks of axes: bit n is axis n.
+//
+// Write polarity and filters before roles: an input at a wrong polarity is active, and a drive's fault stops at once.
+
+// What an input is for. An input may have several roles, a role several inputs.
+typedef enum trammel_role {
+  // Of these each axis has one.
+  TRAMMEL_ROLE_LIMIT_MINUS = 0,
+  TRAMMEL_ROLE_LIMIT_PLUS = 1,
+  TRAMMEL_ROLE_HOME = 2,
+  TRAMMEL_ROLE_INDEX = 3,
+  TRAMMEL_ROLE_DRIVE_FAULT = 4,
+  TRAMMEL_ROLE_IN_POSITION = 5,
+  // And of these the card has one: `axis` is 0.
+  TRAMMEL_ROLE_PROBE = 48,
+  TRAMMEL_ROLE_TOOL_SETTER = 49,
+  TRAMMEL_ROLE_FEED_HOLD = 50,
+  TRAMMEL_ROLE_CYCLE_START = 51,
+  TRAMMEL_ROLE_SPINDLE_AT_SPEED = 52
+} trammel_role;
+
+// Roles that are active now.
+typedef struct trammel_active_roles {
+  uint8_t limit_minus;  // masks of axes
+  uint8_t limit_plus;
+  uint8_t drive_fault;
+  bool feed_hold;  // the button is pressed; whether it holds: trammel_status.button_hold
+  bool cycle_start;
+  bool tool_setter;
+  bool probe;
+} trammel_active_roles;
+
+// Which limits and drives brought the fault that stands: masks of axes.
+typedef struct trammel_limit_state {
+  uint8_t minus;
+  uint8_t plus;
+  uint8_t drive_fault;
+} trammel_limit_state;
+
+// How inputs stop the card. A struct of zeros: limits and drives stop at once, the probe and the tool setter do not.
+typedef struct trammel_input_stops {
+  uint8_t any_step;  // while a limit of any of these axes is active, every step of them is one into it (CoreXY)
+  uint8_t shared;    // one switch serves both ends of these axes
+  bool probe;        // the probe outside probing stops the card
+  bool tool_setter;  // the tool setter does
+  // On a ramp; else at once.
+  bool limit_ramps;
+  bool drive_fault_ramps;
+  bool probe_ramps;
+  bool tool_setter_ramps;
+} trammel_input_stops;
+
+// How many the card has, of any card with path commands; either pointer may be null.
+TRAMMEL_API trammel_result trammel_count_ports(trammel_card* card, unsigned* inputs, unsigned* outputs);
+// Levels before the filters; trammel_read_inputs() has those behind them.
+TRAMMEL_API trammel_result trammel_read_raw_inputs(trammel_card* card, uint32_t* levels);
+// A level that lasts at most `time_ns` does not pass; one that lasts 64 clocks more than that, rounded up to 64 clocks,
+// does. 0: no filter; at most 65,535 * 64 clocks. It is read back as rounded.
+TRAMMEL_API trammel_result trammel_set_input_filter(trammel_card* card, unsigned input, int64_t time_ns);
+TRAMMEL_API trammel_result trammel_read_input_filter(trammel_card* card, unsigned input, int64_t* time_ns);
+// Which inputs have the role (a trammel_role): it is active while one of them is. 0: none has it.
+TRAMMEL_API trammel_result trammel_set_role(trammel_card* card, int32_t role, unsigned axis, uint32_t inputs);
+TRAMMEL_API trammel_result trammel_read_role(trammel_card* card, int32_t role, unsigned axis, uint32_t* inputs);
+// "limit minus of axis 0", "feed hold": at most `size` bytes with the final 0.
+TRAMMEL_API trammel_result trammel_role_name(int32_t role, unsigned axis, char* text, size_t size);
+TRAMMEL_API trammel_result trammel_read_roles(trammel_card* card, trammel_active_roles* roles);
+TRAMMEL_API trammel_result trammel_read_limit_state(trammel_card* card, trammel_limit_state* state);
+TRAMMEL_API trammel_result trammel_set_input_stops(trammel_card* card, const trammel_input_stops* stops);
+// Steps into an active limit that the axis may make on a ramp; one more stops at once. 0 .. 65535.
+TRAMMEL_API trammel_result trammel_set_overtravel(trammel_card* card, unsigned axis, uint32_t steps);
+// Limits that are active now and stop nothing until they are released: masks of axes.
+TRAMMEL_API trammel_result trammel_override_limits(trammel_card* card, uint8_t minus, uint8_t plus);
+
+// ---- The machine's place ----
+//
+// What the card keeps for whoever uses it next: machine zero, and for each axis whether its place is valid and whether
+// it was homed. It outlives this program, a stop on the path and a lost link. A reset of the card clears all of it. An
+// axis loses its place by a fault of its drive, and by a stop at once while it moves: an abort before the card is at
+// rest, or a fault without a ramp. Masks: bit n is axis n. None of it keeps a card from moving: a program that is about
+// to move it calls trammel_begin_at_place() first.
+//
+// Cards with the map 3.3 or newer; TRAMMEL_ARGUMENT on others, and for axes that the card lacks.
+
+#define TRAMMEL_NO_SCALES 0u         // nobody has set a place since the card's reset
+#define TRAMMEL_SCALES_IN_PULSES 1u  // a machine zero, set by a program that counts in pulses
+
+typedef struct trammel_place {
+  bool first;       // trammel_begin_at_place() has set machine zero here: nobody had since the card's reset
+  uint8_t valid;    // these stand where `pulses` says
+  uint8_t homed;    // and their machine zero was found at a reference; a homed axis is valid
+  uint8_t keeps;    // these keep their place through a stop at once
+  uint32_t scales;  // hash of the scales that coordinates count in, or one of the two values above
+  int32_t machine_zero[TRAMMEL_MAX_AXES];  // position of the axis at machine zero, pulses, wrapping
+  int32_t pulses[TRAMMEL_MAX_AXES];        // from machine zero to where the axis stands; 0 with TRAMMEL_NO_SCALES
+} trammel_place;
+
+TRAMMEL_API trammel_result trammel_read_place(trammel_card* card, trammel_place* place);
+// Before a program in pulses moves the axes in `axes`: where nobody has set a place since the card's reset, machine
+// zero is set where the card stands, and all axes are valid; else all stays as it is. TRAMMEL_STATE, and nothing is
+// written, where the card is busy, and where one of `axes` has lost its place. With `trust` such an axis is valid
+// again: for who knows that no step was lost. `place` (may be null): as the card has it then.
+TRAMMEL_API trammel_result trammel_begin_at_place(trammel_card* card, uint8_t axes, bool trust, trammel_place* place);
+// The parts of it. To set machine zero of an axis that stands: trammel_begin_at_place() without that axis in `axes`, so
+// that there is a place; trammel_set_place() with `valid` false, so that a program that ends in between leaves a lost
+// place; trammel_set_machine_zero(); trammel_set_place() with `valid` true. trammel_set_place() is for axes that stand
+// alone: it would hide a loss that the host has not seen. TRAMMEL_ARGUMENT for `homed` without `valid`.
+TRAMMEL_API trammel_result trammel_set_place(trammel_card* card, uint8_t axes, bool valid, bool homed);
+TRAMMEL_API trammel_result trammel_set_machine_zero(trammel_card* card, unsigned axis, int32_t pulses);
+// The `trammel` command refuses a place in scales that are not its machine file's; it takes one in pulses over.
+TRAMMEL_API trammel_result trammel_set_scales(trammel_card* card, uint32_t hash);
+// All axes that keep their place through a stop at once, since their mechanism cannot lose steps by it.
+TRAMMEL_API trammel_result trammel_set_keeps_place(trammel_card* card, uint8_t axes);
 
 // ---- Hold, override, stop, abort ----
 
@@ -367,6 +512,8 @@ typedef struct trammel_feed_command {
   uint32_t floor;          // 2^-32 ticks an enabled clock, not 0
   uint32_t stop_distance;  // ticks needed to stop on the path; 0: the piece ends at rest
   int32_t piece_class;     // a trammel_piece_class
+  bool silent;             // its ticks move the path on, but no axis; cards with map 3.2 or later
+  uint32_t slew_shift;     // 0 .. 3: SLEW is doubled so often while it is in force; classes, map 3.4 or later
 } trammel_feed_command;
 
 // Outputs switched with the last tick of the path before, at once where none runs; bit n: output n.
@@ -499,8 +646,10 @@ TRAMMEL_API trammel_result trammel_simulated_listen(trammel_card* card,
                                                     void* context);
 // Lets clocks pass.
 TRAMMEL_API trammel_result trammel_simulated_wait(trammel_card* card, uint64_t clocks);
-// Levels at the input pins from now on.
-TRAMMEL_API trammel_result trammel_simulated_set_inputs(trammel_card* card, uint16_t levels);
+// Levels at the input pins from now on; bit n: input n. The simulated card has 16.
+TRAMMEL_API trammel_result trammel_simulated_set_inputs(trammel_card* card, uint32_t levels);
+// Of one input; the others stay. One that has got no level is unwired and stands at its inactive one.
+TRAMMEL_API trammel_result trammel_simulated_set_input(trammel_card* card, unsigned input, bool level);
 // As by the card's reset input.
 TRAMMEL_API trammel_result trammel_simulated_reset(trammel_card* card);
 

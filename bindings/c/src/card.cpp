@@ -15,8 +15,6 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-driver::Card& card_of(trammel_card* card) { return required(card, "card").card; }
-
 // `open` makes the card; `out` is null unless it succeeds.
 template <class Open>
 trammel_result open_card(trammel_card** out, Open open) noexcept {
@@ -83,8 +81,9 @@ driver::PieceClass piece_class_of(std::int32_t piece_class) {
 }
 
 trammel_status c_status(const driver::Status& s) {
-  return {s.busy,     s.direct,     s.path_active, s.feed_active,  s.held,     s.ended,  s.faulted,      s.refused,
-          s.snapshot, s.incomplete, s.stopping,    s.geometry_low, s.feed_low, s.probed, s.probe_missed, s.waiting};
+  return {s.busy,         s.direct,   s.path_active, s.feed_active, s.held,         s.ended,    s.faulted,
+          s.refused,      s.snapshot, s.incomplete,  s.stopping,    s.geometry_low, s.feed_low, s.probed,
+          s.probe_missed, s.waiting,  s.underrun,    s.stale,       s.button_hold,  s.settled};
 }
 
 trammel_snapshot c_snapshot(const driver::Snapshot& snapshot) {
@@ -195,15 +194,17 @@ trammel_result trammel_set_watchdog(trammel_card* card, int64_t time_ns) {
 }
 
 trammel_result trammel_describe_faults(uint32_t faults, char* text, size_t size) {
+  return guarded([=] { give_text([=] { return driver::describe_faults(faults); }, text, size); });
+}
+
+trammel_result trammel_read_fault_text(trammel_card* card, char* text, size_t size) {
   return guarded([=] {
-    required(text, "text");
-    if (size == 0) throw driver::ArgumentError("no room for a text of 0 bytes");
-    const std::string names = driver::describe_faults(faults);
-    text[names.copy(text, size - 1)] = '\0';
+    driver::Card& of = card_of(card);
+    give_text([&] { return of.read_fault_text(); }, text, size);
   });
 }
 
-trammel_result trammel_read_inputs(trammel_card* card, uint16_t* levels) {
+trammel_result trammel_read_inputs(trammel_card* card, uint32_t* levels) {
   return guarded([=] { required(levels, "levels") = card_of(card).read_inputs(); });
 }
 
@@ -211,7 +212,7 @@ trammel_result trammel_read_outputs(trammel_card* card, uint16_t* levels) {
   return guarded([=] { required(levels, "levels") = card_of(card).read_outputs(); });
 }
 
-trammel_result trammel_set_input_polarity(trammel_card* card, uint16_t inverted) {
+trammel_result trammel_set_input_polarity(trammel_card* card, uint32_t inverted) {
   return guarded([=] { card_of(card).set_input_polarity(inverted); });
 }
 

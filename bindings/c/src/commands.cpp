@@ -85,6 +85,8 @@ driver::FeedCommand feed_of(const trammel_feed_command& feed) {
   out.floor = feed.floor;
   out.stop_distance = feed.stop_distance;
   out.piece_class = piece_class_of(feed.piece_class);
+  out.silent = feed.silent;
+  out.slew_shift = static_cast<std::uint8_t>(std::min<std::uint32_t>(feed.slew_shift, UINT8_MAX));
   return out;
 }
 

@@ -87,9 +87,23 @@ T& required(T* pointer, const char* name) {
   return *pointer;
 }
 
+// The text of `make`, cut to the room of its reader, who is looked at first.
+template <class Make>
+void give_text(Make make, char* text, std::size_t size) {
+  required(text, "text");
+  if (size == 0) throw driver::ArgumentError("no room for a text of 0 bytes");
+  const std::string whole = make();
+  text[whole.copy(text, size - 1)] = '\0';
+}
+
+inline driver::Card& card_of(trammel_card* card) { return required(card, "card").card; }
+
 // Throw ArgumentError for a number that is none of the enumeration's.
 driver::PieceClass piece_class_of(std::int32_t piece_class);
 driver::Command command_of(const trammel_command& command);
+
+// Throws ArgumentError for an input that the card lacks.
+void check_input(driver::Card& card, unsigned input);
 
 trammel_status c_status(const driver::Status& status);
 trammel_snapshot c_snapshot(const driver::Snapshot& snapshot);

@@ -30,8 +30,16 @@ trammel_result trammel_simulated_wait(trammel_card* card, uint64_t clocks) {
   });
 }
 
-trammel_result trammel_simulated_set_inputs(trammel_card* card, uint16_t levels) {
+trammel_result trammel_simulated_set_inputs(trammel_card* card, uint32_t levels) {
   return guarded([=] { engine_of(card).set_inputs(levels); });
+}
+
+trammel_result trammel_simulated_set_input(trammel_card* card, unsigned input, bool level) {
+  return guarded([=] {
+    trammel::sim::Engine& engine = engine_of(card);
+    trammel::c::check_input(card->card, input);
+    engine.set_input(input, level);
+  });
 }
 
 trammel_result trammel_simulated_reset(trammel_card* card) {

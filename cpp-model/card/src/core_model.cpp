@@ -15,11 +15,21 @@ constexpr std::uint16_t kMaxFeedCommand = 32;
 const CardConfig& checked(const CardConfig& config) {
   if (config.axes < 1 || config.axes > card_map::kMaxAxes) throw std::invalid_argument("a card has 1 to 8 axes");
   if (config.ports < 1 || config.ports > 4) throw std::invalid_argument("a card has 1 to 4 ports");
-  if (config.inputs < 1 || config.inputs > 16 || config.outputs < 1 || config.outputs > 16)
-    throw std::invalid_argument("a card has 1 to 16 inputs and outputs");
+  if (config.inputs < 1 || config.inputs > 32) throw std::invalid_argument("a card has 1 to 32 inputs");
+  if (config.outputs < 1 || config.outputs > 16) throw std::invalid_argument("a card has 1 to 16 outputs");
   constexpr std::uint32_t kOnEveryCard = RegisterFile::kMinEngines;
   if ((config.engines & kOnEveryCard) != kOnEveryCard || (config.engines & ~RegisterFile::kMaxEngines) != 0)
     throw std::invalid_argument("no card has these engines");
+  if (card_map::has_engine(config.engines, card_map::engine::kMachineInputs) &&
+      !card_map::has_engine(config.engines, card_map::engine::kPathCommands))
+    throw std::invalid_argument("machine inputs need path commands");
+  if (card_map::has_engine(config.engines, card_map::engine::kCaptures) &&
+      (!card_map::has_engine(config.engines, card_map::engine::kMachineInputs) || config.captures < 1 ||
+       config.captures > Captures::kUnits))
+    throw std::invalid_argument("captures need machine inputs, and are 1 to 4");
+  if (card_map::has_engine(config.engines, card_map::engine::kEnables) &&
+      !card_map::has_engine(config.engines, card_map::engine::kPathCommands))
+    throw std::invalid_argument("enables need path commands");
   return config;
 }
 
@@ -37,10 +47,17 @@ RegisterFile::Config register_config(const CardConfig& config) {
   result.idle_level = config.idle_level;
   result.inputs = config.inputs;
   result.outputs = config.outputs;
+  result.captures = config.captures;
   return result;
 }
 
-PathCommands::Config pins_of(const CardConfig& config) { return {config.inputs, config.outputs, config.output_idle}; }
+PathCommands::Config outputs_of(const CardConfig& config) { return {config.outputs, config.output_idle}; }
+
+Captures captures_of(const CardConfig& config) {
+  return Captures(card_map::has_engine(config.engines, card_map::engine::kCaptures) ? config.captures : 0);
+}
+
+CardInputs inputs_of(const CardConfig& config) { return {config.axes, config.inputs, config.engines}; }
 
 }  // namespace
 
@@ -59,29 +76,37 @@ CoreModel::CoreModel(const Config& config)
              HalfwordQueue(config.geometry_depth),
              HalfwordQueue(config.feed_depth),
              QueueWatermarks(config.geometry_depth, config.feed_depth),
-             MotionCore(config.axes, config.idle_level, config.engines, pins_of(config))} {
-  reset();
+             inputs_of(config),
+             EmergencyStop(config.emergency_stop_level),
+             MotionCore(config.axes, config.idle_level, config.engines, outputs_of(config)),
+             captures_of(config)} {
+  reset(!config.emergency_stop_level);
 }
 
-void CoreModel::reset() {
+void CoreModel::reset(bool emergency_stop) {
   state_.registers.reset();
   state_.checker = CommandChecker(config_.axes, config_.engines);
   state_.geometry_queue = HalfwordQueue(config_.geometry_depth);
   state_.feed_queue = HalfwordQueue(config_.feed_depth);
   state_.watermarks = QueueWatermarks(config_.geometry_depth, config_.feed_depth);
-  state_.motion = MotionCore(config_.axes, config_.idle_level, config_.engines, pins_of(config_));
+  state_.inputs = inputs_of(config_);
+  state_.emergency_stop.reset(emergency_stop);
+  state_.motion = MotionCore(config_.axes, config_.idle_level, config_.engines, outputs_of(config_));
+  state_.captures = captures_of(config_);
   state_.cycles = 0;
-  state_.record.reset(state_.motion.commands().outputs());
+  state_.record.reset(output_levels());
   state_.answer = {};
   show();
 }
 
-MotionCore::Inputs CoreModel::motion_inputs(std::uint16_t pins) const {
+MotionCore::Inputs CoreModel::motion_inputs() const {
   const RegisterFile::Outputs& set = state_.registers.outputs();
   MotionCore::Inputs in;
   in.setting = set.setting;
   in.abort = set.abort;
   in.clear_fault = set.clear_fault;
+  in.session_gone = state_.registers.link().gone();
+  in.link_lost = state_.registers.link().lost();
   in.probe_clear = set.probe_clear;
   in.geometry_empty = state_.geometry_queue.outputs().empty;
   in.feed_empty = state_.feed_queue.outputs().empty;
@@ -95,8 +120,26 @@ MotionCore::Inputs CoreModel::motion_inputs(std::uint16_t pins) const {
   in.start = set.start;
   in.start_mask = set.start_mask;
   in.loader_data = set.loader_data;
-  in.pins = pins;
+  in.levels = state_.inputs.levels();
+  in.raw = state_.inputs.raw();
+  in.quiet = state_.inputs.quiet();
+  in.roles = state_.inputs.roles();
+  in.emergency = state_.emergency_stop.stops((set.clear_fault & card_map::field::kFaultEmergencyStop) != 0);
   return in;
+}
+
+Captures::Inputs CoreModel::capture_inputs() const {
+  Captures::Inputs in;
+  if (state_.captures.units() == 0) return in;
+  in.raw = state_.inputs.raw();
+  in.levels = state_.inputs.levels();
+  in.quiet = state_.inputs.quiet();
+  in.setting = state_.registers.outputs().setting;
+  return in;
+}
+
+EmergencyStop::Inputs CoreModel::emergency_inputs(bool pin) const {
+  return {pin, (state_.registers.outputs().clear_fault & card_map::field::kFaultEmergencyStop) != 0};
 }
 
 QueueWatermarks::Inputs CoreModel::watermark_inputs() const {
@@ -129,8 +172,11 @@ void CoreModel::show_registers() {
   in.underrun = state_.motion.underrun().shown;
   in.underruns = state_.motion.underrun().underruns;
   in.stale = s.stale;
-  in.limit_state = state_.motion.state().limits.limit_state();
+  in.limit_state = state_.motion.limit_state();
+  in.place = state_.motion.state().place.place();
   in.button_hold = state_.motion.state().buttons.hold();
+  in.enabled = state_.motion.state().drives.enabled();
+  in.enable_waits = state_.motion.waits_for_drives() && state_.motion.wants_drives();
   in.stale_ticks = state_.motion.sequencer().streaming().ticks;
   in.incomplete = state_.checker.outputs().partial;
   in.geometry_room = state_.geometry_queue.outputs().room;
@@ -145,11 +191,16 @@ void CoreModel::show_registers() {
   in.fault = state_.motion.stop().fault;
   in.stop = state_.motion.stop().stop;
   in.mark = state_.motion.commands().mark();
+  in.settled = state_.motion.settled();
+  in.ticks_left = in.settled ? state_.motion.sequencer().ticks_to_come() : 0;
   in.probed = state_.motion.probe().probed();
   in.probe_missed = state_.motion.probe().missed();
   in.waiting = state_.motion.sequencer().waits_for_input();
-  in.inputs = state_.motion.commands().levels();
-  in.outputs = state_.motion.commands().outputs();
+  in.inputs = state_.inputs.levels();
+  in.raw_inputs = state_.inputs.raw();
+  in.roles = state_.inputs.roles();
+  in.capture_state = state_.captures.word();
+  in.outputs = output_levels();
   in.marks = state_.motion.commands().marks();
   in.checker_ready = state_.checker.outputs().ready;
   in.checker_refuse = state_.checker.outputs().refuse;
@@ -169,7 +220,7 @@ void CoreModel::show() {
   state_.answer = {state_.registers.outputs().ack, state_.registers.outputs().error, state_.registers.outputs().data};
   state_.out.step = m.step;
   state_.out.dir = m.dir;
-  state_.out.output = state_.motion.commands().outputs();
+  state_.out.output = output_levels();
   state_.out.irq = state_.registers.outputs().irq;
   state_.out.tick = s.tick;
   state_.out.path_tick = state_.motion.engines().path_tick;
@@ -210,7 +261,7 @@ void CoreModel::record(bool cut) {
     else
       state_.record.line_step(state_.cycles, n, backwards);
   }
-  state_.record.outputs(state_.cycles, state_.motion.commands().outputs());
+  state_.record.outputs(state_.cycles, output_levels());
   if (s.record().command) state_.record.command_begins();
   if (s.record().direct) state_.record.direct_begins();
 }

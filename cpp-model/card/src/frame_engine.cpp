@@ -60,6 +60,7 @@ void FrameEngine::clock(const Inputs& in) {
   frame_.reset();
   if (in.restart) {
     session_.connect();
+    new_session_ = true;
     deframer_.clear();
   } else {
     receive_as(in, listened);
@@ -82,7 +83,12 @@ void FrameEngine::start() {
   dropped_ = false;
   word_ = 0;
   read_.clear();
-  if (session_.take(*frame_) == frames::Session::Step::Answer) return begin_state(kFirst);
+  const std::uint16_t epoch = session_.epoch();
+  const bool runs = session_.take(*frame_) != frames::Session::Step::Answer;
+  if (session_.epoch() != epoch) new_session_ = true;
+  if (!runs) return begin_state(kFirst);
+  first_access_ = new_session_;
+  new_session_ = false;
   state_pass_ = false;
   out_.address = request_.address;
   ask_in(request_.kind == frames::Kind::Write ? kFirstWrite : kFirst);
@@ -106,9 +112,12 @@ void FrameEngine::show_request() {
   out_.request = true;
   out_.write = !state_pass_ && request_.kind == frames::Kind::Write;
   if (out_.write) out_.data = request_.data[word_];
+  out_.of_session = !state_pass_;
+  out_.new_session = first_access_ && !state_pass_;
 }
 
 void FrameEngine::answered(const Inputs& in) {
+  first_access_ = false;
   if (state_pass_) {
     state_.words[word_++] = in.data;
     out_.address += 4;

@@ -15,9 +15,16 @@ unsigned idle_level_of(std::uint32_t levels, unsigned axes, unsigned axis) {
 MotionCore::MotionCore(unsigned axes, std::uint32_t idle_level, std::uint32_t engines, const PathCommands::Config& pins)
     : has_guard_(card_map::has_engine(engines, card_map::engine::kUnderrunHold)),
       has_machine_inputs_(card_map::has_engine(engines, card_map::engine::kMachineInputs)),
+      has_soft_limits_(card_map::has_engine(engines, card_map::engine::kSoftLimits)),
+      has_enables_(card_map::has_engine(engines, card_map::engine::kEnables)),
       state_{DirectLoader(axes), Sequencer(card_map::has_engine(engines, card_map::engine::kStreaming)),
              PathCommands(pins)} {
+  state_.time_base = TimeBase(card_map::has_engine(engines, card_map::engine::kClasses));
   state_.limits = LimitCheck(axes);
+  state_.soft_limits = SoftLimits(axes);
+  state_.place = MachinePlace(axes);
+  state_.probe = Probe(card_map::has_engine(engines, card_map::engine::kCaptures));
+  state_.drives = DriveEnable(axes);
   for (unsigned n = 0; n < axes; ++n) {
     state_.axes.emplace_back(n, idle_level_of(idle_level, axes, n));
     put(state_.out.step, 1U << n, state_.axes[n].outputs().shaper.step);
@@ -33,6 +40,9 @@ Sequencer::Inputs MotionCore::sequencer_inputs(const Inputs& in, const Probe::In
   s.met = state_.probe.met(probe_in.levels);
   s.stays = state_.probe.stays(probe_in);
   s.cut = state_.stop.outputs().cut;
+  s.shut = state_.stop.shut();
+  s.closing = state_.stop.closing();
+  s.drives_wait = waits_for_drives();
   s.geometry_empty = in.geometry_empty;
   s.feed_empty = in.feed_empty;
   s.geometry_word = in.geometry_word;
@@ -63,6 +73,7 @@ UnderrunGuard::Inputs MotionCore::guard_inputs(const Inputs& in, const Sequencer
   guard.cut = state_.stop.outputs().cut || state_.sequencer.streaming().on;
   guard.lost = state_.probe.halt();
   guard.idle = s.idle && !state_.probing;
+  guard.gone = in.session_gone;
   guard.arrival = in.arrival;
   guard.full = in.full;
   guard.load = state_.sequencer.feed_load();
@@ -74,7 +85,7 @@ UnderrunGuard::Inputs MotionCore::guard_inputs(const Inputs& in, const Sequencer
   return guard;
 }
 
-StopControl::Inputs MotionCore::stop_inputs(const Inputs& in) const {
+StopControl::Inputs MotionCore::stop_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const {
   const Sequencer::Outputs& s = state_.sequencer.outputs();
   StopControl::Inputs stop;
   stop.step_fault = state_.out.step_fault;
@@ -82,7 +93,10 @@ StopControl::Inputs MotionCore::stop_inputs(const Inputs& in) const {
   stop.incomplete = s.incomplete;
   stop.missing = state_.sequencer.streaming().missing;
   stop.expired = state_.watchdog.expired();
+  stop.link_lost = in.link_lost;
+  stop.emergency = in.emergency;
   stop.causes = state_.limits.causes();
+  stop.soft_limit = state_.soft_limits.cause();
   stop.button = state_.buttons.hold();
   stop.abort = in.abort;
   stop.clear = in.clear_fault;
@@ -91,6 +105,10 @@ StopControl::Inputs MotionCore::stop_inputs(const Inputs& in) const {
   stop.fixed = s.piece_class == card_map::constant::kClassFixed;
   stop.underrun = state_.guard.outputs().hold;
   stop.probe = state_.probe.holds();
+  stop.take = state_.sequencer.takes(sequencer_in);
+  stop.quiet = state_.engines.quiet();
+  stop.pulses = state_.out.axis_busy != 0;
+  stop.busy = state_.out.busy;
   stop.setting = in.setting;
   return stop;
 }
@@ -109,16 +127,47 @@ LimitCheck::Inputs MotionCore::limit_inputs(const Inputs& in) const {
   return limits;
 }
 
-PathCommands::Inputs MotionCore::command_inputs(const Inputs& in) const {
+SoftLimits::Inputs MotionCore::soft_limit_inputs(const Inputs& in) const {
+  SoftLimits::Inputs limits;
+  for (unsigned n = 0; n < state_.axes.size(); ++n) {
+    const StepShaper::State& shaper = state_.axes[n].state().shaper.state();
+    limits.position[n] = shaper.out.position;
+    if (!shaper.begins()) continue;
+    limits.counts |= static_cast<std::uint8_t>(1U << n);
+    if (shaper.back) limits.back |= static_cast<std::uint8_t>(1U << n);
+  }
+  limits.clear = (in.clear_fault & card_map::field::kFaultSoftLimit) != 0;
+  limits.setting = in.setting;
+  return limits;
+}
+
+MachinePlace::Inputs MotionCore::place_inputs(const Inputs& in) const {
+  const Sequencer::Outputs& s = state_.sequencer.outputs();
+  MachinePlace::Inputs place;
+  place.setting = in.setting;
+  place.cut = state_.stop.outputs().cut || state_.stop.closing();
+  place.at_rest = state_.time_base.outputs().ratio == 0;
+  place.runs = s.feed_active || s.direct;
+  place.step = static_cast<std::uint8_t>(state_.out.path_step);
+  place.drives = in.roles.drive_fault;
+  if (has_enables_) place.disabled = state_.drives.disables(drive_inputs(in));
+  return place;
+}
+
+DriveEnable::Inputs MotionCore::drive_inputs(const Inputs& in) const {
+  return {in.setting, wants_drives(), state_.out.busy, in.emergency, state_.stop.outputs().fault};
+}
+
+PathCommands::Inputs MotionCore::command_inputs(const Inputs& in, const StopControl::Inputs& stop) const {
   const Sequencer::Outputs& s = state_.sequencer.outputs();
   PathCommands::Inputs c;
-  c.cut = state_.stop.outputs().cut;
+  c.cut = state_.stop.outputs().cut || state_.stop.closing();
+  c.caused = state_.stop.caused(stop);
   c.halt = state_.probe.halt();
   c.output = state_.sequencer.takes_output(state_.probe.drops());
   c.mark = state_.sequencer.takes_mark(state_.probe.drops());
   c.over = s.over;
   c.runs = s.path_active;
-  c.pins = in.pins;
   c.load = state_.sequencer.load();
   c.setting = in.setting;
   return c;

@@ -12,7 +12,24 @@ namespace field = card_map::field;
 
 constexpr std::uint32_t kByteInWord = 3;
 // From reset on accesses wait so long for the registers to be filled: a clock for each word of the RAM that is written.
-constexpr std::uint64_t kFillClocks = 257;
+std::uint64_t fill_clocks(std::uint32_t engines, std::uint32_t axes) {
+  const bool inputs = card_map::has_engine(engines, card_map::engine::kMachineInputs);
+  if (card_map::has_engine(engines, card_map::engine::kCaptures)) return axes > 4 ? 615 : 451;
+  if (axes > 4) return inputs || card_map::has_engine(engines, card_map::engine::kEnables) ? 483 : 257;
+  return inputs ? 355 : 257;
+}
+
+// ROLES, as the register reads.
+std::uint32_t roles_word(const InputRoles& roles) {
+  std::uint32_t word = roles.limit_minus << field::kRolesLimitMinusShift;
+  word |= std::uint32_t{roles.limit_plus} << field::kRolesLimitPlusShift;
+  word |= std::uint32_t{roles.drive_fault} << field::kRolesDriveFaultShift;
+  if (roles.feed_hold) word |= field::kRolesFeedHold;
+  if (roles.cycle_start) word |= field::kRolesCycleStart;
+  if (roles.tool_setter) word |= field::kRolesToolSetter;
+  if (roles.probe) word |= field::kRolesProbe;
+  return word;
+}
 
 bool writable(Access access) {
   return access == Access::ClearOnes || access == Access::Setting || access == Access::Command;
@@ -52,7 +69,8 @@ RegisterFile::RegisterFile(const Config& config) : config_(config) {
     const bool second = (config_.idle_level >> (config_.axes + n) & 1) != 0;
     stored(reg::mode(n)) = (first ? field::kModeInvertFirst : 0) | (second ? field::kModeInvertSecond : 0);
   }
-  const card_map::CardShape shape{config_.engines, config_.axes, config_.ports, config_.inputs, config_.outputs};
+  const card_map::CardShape shape{config_.engines, config_.axes,    config_.ports,
+                                  config_.inputs,  config_.outputs, config_.captures};
   card_map::put_descriptors(shape, [&](std::uint32_t address, std::uint32_t word) { stored(address) = word; });
 }
 
@@ -64,6 +82,7 @@ void RegisterFile::clock(const Inputs& in) {
   const bool enable_set = state_.out.setting.set && state_.out.setting.address == reg::kIrqEnable;
   const std::uint32_t enable = state_.out.setting.data;
   if (state_.snapshot.strobe()) take_values(in);
+  step_link();
   step_loader(in);
   clear_events();
   refuse_checked(in);
@@ -115,6 +134,9 @@ std::uint32_t RegisterFile::status_for(const Inputs& in, bool refused) const {
   if (in.waiting) status |= field::kStatusWaiting;
   if (in.stale) status |= field::kStatusStale;
   if (in.button_hold) status |= field::kStatusButtonHold;
+  if (in.settled) status |= field::kStatusSettled;
+  if (in.enabled) status |= field::kStatusEnabled;
+  if (in.enable_waits) status |= field::kStatusEnableWaits;
   return status;
 }
 
@@ -139,6 +161,10 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.geometry_begun;
     case reg::kInputs:
       return in.inputs;
+    case reg::kRawInputs:
+      return in.raw_inputs;
+    case reg::kRoles:
+      return roles_word(in.roles);
     case reg::kOutputs:
       return in.outputs;
     case reg::kMarks:
@@ -149,6 +175,10 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.stale_ticks;
     case reg::kLimitState:
       return in.limit_state;
+    case reg::kPlace:
+      return in.place;
+    case reg::kCaptureState:
+      return in.capture_state;
     case reg::kUnderruns:
       return in.underruns;
     default:
@@ -189,7 +219,7 @@ void RegisterFile::step_access(const Inputs& in) {
       state_.reason = judge(in);
       const bool needs_ram =
           state_.write || state_.reason == Reason::UnknownAddress || !reads_live(state_.slot.entry->access);
-      const bool ram_taken = state_.time < kFillClocks || state_.snapshot.busy();
+      const bool ram_taken = state_.time < fill_clocks(config_.engines, config_.axes) || state_.snapshot.busy();
       if (!needs_ram || !ram_taken) {
         state_.stage = Stage::Act;
         // A clock before the rest, so that the checker's refusal comes with the answer; an abort makes it idle.
@@ -225,6 +255,8 @@ void RegisterFile::begin(const Inputs& in) {
   state_.partial = in.partial;
   state_.port = in.port;
   state_.address = in.address;
+  state_.of_session = in.of_session;
+  state_.new_session = in.new_session;
   state_.slot = card_map::find_register(state_.address & ~kByteInWord);
   if (state_.write) {
     state_.word = in.data;
@@ -266,6 +298,8 @@ void RegisterFile::take_effect() {
     stored(state_.address) = state_.word;
     state_.out.setting = {true, state_.address, state_.word};
   }
+  if (state_.address == reg::kSetPlace || state_.address == reg::kCaptureClear)
+    state_.out.setting = {true, state_.address, state_.word};
   if (state_.address == reg::kControl) {
     state_.out.abort = (state_.word & field::kControlAbort) != 0;
     state_.out.probe_clear = (state_.word & field::kControlProbeClear) != 0;
@@ -304,8 +338,10 @@ void RegisterFile::step_snapshot(const Inputs& in, bool host) {
   SnapshotWriter::Requests requests;
   requests.host = host;
   requests.stop = in.stop;
+  requests.rest = in.rest;
   requests.probe = in.probe;
   requests.mark = in.mark;
+  requests.captures = in.captures;
   state_.snapshot.clock(requests);
   state_.out.strobe = state_.snapshot.strobe();
 }
@@ -323,14 +359,31 @@ std::size_t RegisterFile::written_at(std::uint32_t word) const {
 void RegisterFile::take_values(const Inputs& in) {
   state_.latched[in_area(reg::fault(Area::Snap))] = in.fault;
   state_.latched[in_area(reg::status(Area::Snap))] = status(in) & ~field::kStatusSnapshot;
-  state_.latched[in_area(reg::ratio(Area::Snap))] = in.ratio;
-  state_.latched[in_area(reg::rate(Area::Snap))] = in.rate;
+  // REST has the ticks that are left where the others have ratio and rate.
+  const bool rest = state_.snapshot.area() == Area::Rest;
+  state_.latched[in_area(reg::ratio(Area::Snap))] = rest ? static_cast<std::uint32_t>(in.ticks_left >> 32) : in.ratio;
+  state_.latched[in_area(reg::rate(Area::Snap))] = rest ? static_cast<std::uint32_t>(in.ticks_left) : in.rate;
   state_.latched[in_area(reg::feed_begun(Area::Snap))] = in.feed_begun;
   state_.latched[in_area(reg::geometry_begun(Area::Snap))] = in.geometry_begun;
   state_.latched[in_area(reg::time_hi(Area::Snap))] = static_cast<std::uint32_t>(state_.time >> 32);
   state_.latched[in_area(reg::time_lo(Area::Snap))] = static_cast<std::uint32_t>(state_.time);
   for (std::uint32_t n = 0; n < config_.axes; ++n)
     state_.latched[in_area(reg::position(Area::Snap, n))] = in.position[n];
+}
+
+// An answer that is given in this clock. The units are those of the time as it is written down, two clocks late.
+void RegisterFile::step_link() {
+  LinkWatch::Inputs link;
+  link.ack = state_.out.ack;
+  link.error = state_.out.error;
+  link.write = state_.write;
+  link.address = state_.address;
+  link.port = state_.port;
+  link.of_session = state_.of_session;
+  link.new_session = state_.new_session;
+  link.setting = state_.out.setting;
+  link.unit = link_unit(state_.time);
+  state_.link.clock(link);
 }
 
 void RegisterFile::step_loader(const Inputs& in) {

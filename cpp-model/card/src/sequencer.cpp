@@ -12,7 +12,8 @@ bool Sequencer::judged(const Inputs& in) const {
 }
 
 bool Sequencer::takes(const Inputs& in) const {
-  return state_.owed != 0 && ticking_path() && in.engine_ready && (state_.out.feed_active || state_.out.direct);
+  return !in.shut && !in.drives_wait && state_.owed != 0 && ticking_path() && in.engine_ready &&
+         (state_.out.feed_active || state_.out.direct);
 }
 
 Sequencer::Decision Sequencer::decide(const Inputs& in) const {
@@ -22,13 +23,14 @@ Sequencer::Decision Sequencer::decide(const Inputs& in) const {
   d.path_over = judged(in);
   d.piece_ends = d.take && state_.out.feed_active && !state_.out.spent && state_.piece_left == 1;
   const PositionStreaming::Outputs& streaming = state_.streaming.outputs();
+  const bool lost = streaming.lost || in.closing;
   const bool free = state_.path == Path::None || state_.out.stale || (state_.path == Path::Line && d.path_ends);
   d.at_probe_end = state_.geometry.decoded() && state_.geometry.is_probe_end();
   d.path_dropped = geometry_drops(in);
   d.piece_dropped = feed_drops(in);
-  d.path_begins = path_waits() && free && !state_.out.incomplete && !streaming.lost && !in.drop;
+  d.path_begins = path_waits() && free && !state_.out.incomplete && !lost && !in.drop;
   d.period = streaming.on && state_.path == Path::Line && d.path_ends;
-  const bool barrier = state_.geometry.decoded() && state_.geometry.is_barrier() && !d.path_dropped && !streaming.lost;
+  const bool barrier = state_.geometry.decoded() && state_.geometry.is_barrier() && !d.path_dropped && !lost;
   d.goes_on = (d.period || state_.out.stale) && !d.path_begins && !barrier;
   d.piece_begins = piece_waits() && !in.wait && !in.drop && !(state_.out.silent && !piece_silent()) &&
                    (!state_.out.feed_active || state_.out.spent || d.piece_ends);
@@ -93,14 +95,10 @@ bool Sequencer::drop_counts(const CommandFetch& fetch, bool dropped) const {
   return dropped && !fetch.is_instant() && !has_counted;
 }
 
-// Paths and pieces count a clock after their swap shows, barriers as they begin; a cut shows in the counters last.
+// Paths and pieces count a clock after their swap shows, barriers as they begin.
 void Sequencer::count_begun(const Inputs& in, const Decision& d, bool path_drops, bool piece_drops) {
-  if (state_.cut_before) state_.out.geometry_begun = state_.out.feed_begun = 0;
-  state_.cut_before = in.cut;
-  if (!in.cut) {
-    if (state_.path_begun || d.barrier_begins || path_drops) ++state_.out.geometry_begun;
-    if (state_.piece_begun || d.barrier_begins || piece_drops) ++state_.out.feed_begun;
-  }
+  if (state_.path_begun || d.barrier_begins || path_drops) ++state_.out.geometry_begun;
+  if (state_.piece_begun || d.barrier_begins || piece_drops) ++state_.out.feed_begun;
   state_.path_begun = d.path_begins && !in.cut;
   state_.piece_begun = d.piece_begins && !in.cut;
 }
@@ -110,10 +108,13 @@ void Sequencer::clock_ticks(const Inputs& in, bool take) {
   const bool ticking = ticking_path();
   const bool stall = state_.owed > 1;
   state_.out.tick = take;
-  state_.out.feed_enable = in.enable && state_.out.feed_active && ticking && !stall;
+  // A silent piece runs in every clock.
+  const bool enabled = in.enable || state_.out.silent;
+  state_.out.feed_enable = enabled && state_.out.feed_active && ticking && !stall && !in.drives_wait;
   state_.out.feed_clear = !state_.out.feed_active;
   state_.owed = running ? state_.owed + (state_.tick_arrives ? 1U : 0U) - (take ? 1U : 0U) : 0;
-  state_.tick_arrives = state_.out.direct ? in.enable && ticking : in.feed_tick && state_.out.feed_active;
+  state_.tick_arrives =
+      state_.out.direct ? in.enable && ticking && !in.drives_wait : in.feed_tick && state_.out.feed_active;
 }
 
 // A decoded barrier with nothing before it that runs.
@@ -190,10 +191,13 @@ void Sequencer::clock_silence(const Inputs& in, const Decision& d) {
 
 void Sequencer::clock_piece(const Decision& d) {
   state_.out.feed_swap = d.piece_begins;
-  if (d.direct)
+  if (d.direct) {
     state_.out.piece_class = card_map::constant::kClassFeed;
-  else if (d.piece_begins)
-    state_.out.piece_class = static_cast<std::uint8_t>(state_.feed.flags() & ~card_map::constant::kPieceSilent);
+    state_.out.slew_shift = 0;
+  } else if (d.piece_begins) {
+    state_.out.piece_class = state_.feed.flags() % card_map::constant::kPieceSilent;
+    state_.out.slew_shift = state_.feed.flags() / card_map::constant::kPieceDoubling;
+  }
   const bool over = (d.piece_ends || state_.out.spent) && !d.piece_goes_on && !d.piece_begins;
   if (d.take || state_.out.spent) state_.out.moving = d.piece_runs && !over;
   if (d.take && !state_.out.spent) --state_.piece_left;
@@ -231,6 +235,7 @@ void Sequencer::halt(const Decision& d) {
   state_.out.direct = state_.out.path_active = state_.out.feed_active = state_.out.moving = state_.out.stale =
       state_.out.spent = false;
   state_.out.piece_class = card_map::constant::kClassFeed;
+  state_.out.slew_shift = 0;
   state_.path = Path::None;
   state_.drained = false;
   if (d.at_probe_end) return;
@@ -243,8 +248,6 @@ void Sequencer::cut() {
   const Outputs before = state_.out;
   state_.out = Outputs{};
   state_.out.idle = before.idle;
-  state_.out.geometry_begun = before.geometry_begun;
-  state_.out.feed_begun = before.feed_begun;
   state_.out.silent = before.silent;
   state_.path = Path::None;
   state_.drained = state_.tick_arrives = state_.geometry_stands = state_.feed_stands = false;

@@ -27,8 +27,7 @@ std::uint64_t count(unsigned bits) {
 
 // Clocks for which the ratio is known ahead, 0 where it is not.
 std::uint64_t ratio_known_for(model::MotionCore& core) {
-  return TimeBaseAhead(core.state().time_base)
-      .clocks_ahead(core.stop().hold, core.state().sequencer.outputs().piece_class);
+  return TimeBaseAhead(core.state().time_base).clocks_ahead(core.time_inputs());
 }
 
 // A step of a tick taken `clocks_ago` clocks ago that is not yet at the shaper, placed in flight.
@@ -206,7 +205,8 @@ bool Jump::may_step(unsigned axis, std::int64_t arrival, model::StepShaper& afte
     if (served >= late) return false;
     after.clock(in);
   }
-  return true;
+  return !core_.has_soft_limits() ||
+         !core_.state().soft_limits.too_far(axis, after.outputs().position, after.state().back);
 }
 
 void Jump::step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::int64_t served) {
@@ -242,12 +242,17 @@ void Jump::report_until(std::int64_t edge) {
     next_report_ = first;
     if (first > edge) return;
     const std::uint64_t cycle = cycle_ + static_cast<std::uint64_t>(first);
+    std::uint8_t counts = 0;
+    std::uint8_t back = 0;
     for (unsigned n = 0; n < axes_; ++n) {
       AxisCursor& t = cursors_[n];
       if (!t.pin_due || t.served != first) continue;
+      counts |= static_cast<std::uint8_t>(1U << n);
+      if (t.backwards) back |= static_cast<std::uint8_t>(1U << n);
       record_.pin(cycle, n, t.after.outputs().position);
       t.pin_due = false;
     }
+    if (counts != 0 && core_.has_soft_limits()) look_at_limits(first, counts, back);
     for (unsigned n = 0; n < axes_; ++n) {
       AxisCursor& t = cursors_[n];
       if (!t.path_due || t.arrival + kToPath != first) continue;
@@ -257,8 +262,18 @@ void Jump::report_until(std::int64_t edge) {
   }
 }
 
+// Up to this edge, where these axes make pulses, all within their limits.
+void Jump::look_at_limits(std::int64_t edge, std::uint8_t counts, std::uint8_t back) {
+  model::SoftLimits& limits = core_.state().soft_limits;
+  pass(limits, static_cast<std::uint64_t>(edge - looked_until_) - 1);
+  limits.look(counts);
+  limits.state().back = static_cast<std::uint8_t>((limits.state().back & ~counts) | back);
+  looked_until_ = edge;
+}
+
 void Jump::commit() {
   report_until(end_);
+  if (core_.has_soft_limits()) pass(core_.state().soft_limits, static_cast<std::uint64_t>(end_ - looked_until_));
   const auto clocks = static_cast<std::uint64_t>(end_);
   std::uint64_t at_axes = 0;
   std::uint64_t taken = 0;
@@ -356,6 +371,9 @@ void Jump::commit_axis(unsigned axis, std::uint64_t ticks) {
   if (t.under_way) place_step(a, static_cast<std::uint64_t>(std::min(end_ - t.arrival, kToShaper)), t.backwards);
   core_.show_axis(axis);
   if (t.under_way && (t.edge != 0 || t.arrival + kToPath <= end_)) core_.state().limits.state().axes[axis].moved = true;
+  // A step that shows on the path in the jump's last clock is seen in the next one.
+  if (t.under_way && (t.edge != 0 || t.arrival + kToPath < end_))
+    core_.state().place.state().moved |= static_cast<std::uint8_t>(1U << axis);
 }
 
 namespace {
@@ -374,10 +392,12 @@ bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
   if (s.swap || s.feed_swap || s.direct || s.silent || m.out.path_step != 0 || m.axes_live || m.out.step_fault != 0)
     return false;
   if (in.setting.set || in.abort || in.clear_fault != 0 || in.probe_clear || in.start) return false;
-  if (horizon(m.loader, {}) == 0 || horizon(m.stop, core.stop_inputs(in)) == 0) return false;
+  if (horizon(m.loader, {}) == 0) return false;
   if (core.has_machine_inputs() && !limits_rest(core, in)) return false;
+  if (core.has_soft_limits() && horizon(m.soft_limits, core.soft_limit_inputs(in)) == 0) return false;
+  if (horizon(m.place, core.place_inputs(in)) == 0) return false;
+  if (core.waits_for_drives() && (m.sequencer.ticking() || m.sequencer.outputs().direct)) return false;
   if (!only_ticks_move(m.engines) || ratio_known_for(core) == 0) return false;
-  if (horizon(m.commands, core.command_inputs(in)) == 0) return false;
   if (horizon(m.probe, core.probe_inputs(in)) == 0 || m.probing != m.probe.busy()) return false;
   for (model::Axis& axis : m.axes) {
     if (!ready_to_jump(axis)) return false;
@@ -387,6 +407,10 @@ bool may_jump(model::MotionCore& core, const model::MotionCore::Inputs& in) {
     return false;
   if (s.idle && m.out.axis_busy != 0) return false;
   const model::Sequencer::Inputs sequencer = core.sequencer_inputs(in, core.probe_inputs(in));
+  // At rest a pulse under way may end within the jump, and the clocks without one are counted from there.
+  const model::StopControl::Inputs stop = core.stop_inputs(in, sequencer);
+  if (horizon(m.commands, core.command_inputs(in, stop)) == 0) return false;
+  if (horizon(m.stop, stop) == 0 || ((stop.at_rest || m.stop.shut()) && !m.stop.settled())) return false;
   if (!only_counts_move(m.sequencer, sequencer)) return false;
   if (core.guards() && !only_counts_move(m.guard, core.guard_inputs(in, sequencer))) return false;
   return m.sequencer.ticking() ||
@@ -399,7 +423,18 @@ std::uint64_t advance(model::MotionCore& core, std::uint64_t limit, const model:
                       std::uint64_t cycle, model::StepRecord& record) {
   constexpr std::uint64_t kLongest = std::uint64_t{1} << 40;
   limit = std::min({limit, kLongest, horizon(core.state().watchdog, in.setting)});
-  return limit != 0 && may_jump(core, in) ? Jump(core, record, cycle, limit).go() : 0;
+  if (core.has_enables()) {
+    limit = std::min({limit, horizon(core.state().drives, core.drive_inputs(in)),
+                      horizon(core.state().health, core.health_inputs(in))});
+  }
+  if (limit == 0 || !may_jump(core, in)) return 0;
+  const model::DriveEnable::Inputs drives = core.drive_inputs(in);
+  const std::uint64_t gone = Jump(core, record, cycle, limit).go();
+  if (core.has_enables()) {
+    advance(core.state().drives, drives, gone);
+    advance(core.state().health, {}, gone);
+  }
+  return gone;
 }
 
 }  // namespace trammel::skip

@@ -18,7 +18,7 @@ bool at_rest(const model::CommandFetch& fetch) {
 bool counts_only(const model::Sequencer& block, const model::Sequencer::Inputs& in) {
   const model::Sequencer::State& s = block.state();
   const bool nothing_shows = !(s.out.swap || s.out.feed_swap || s.out.mismatch || s.out.incomplete || s.out.over) &&
-                             !(s.path_begun || s.piece_begun || s.cut_before || in.cut || in.direct_go) &&
+                             !(s.path_begun || s.piece_begun || in.cut || in.closing || in.direct_go) &&
                              !(s.load.valid || in.direct_load.valid || s.record.command || s.record.direct);
   if (!nothing_shows || s.drained || s.path == Sequencer::Path::Direct || !(at_rest(s.geometry) && at_rest(s.feed)))
     return false;

@@ -67,7 +67,7 @@ Interpreter::Outcome Interpreter::execute(const WordSet& words, std::size_t line
   }
   const std::optional<int> stopping = words.code(Group::kStopping);
   if (stopping == 20 || stopping == 300) {
-    change_outputs(0, machine_.outputs.all(), motions);
+    change_outputs(0, machine_.outputs.of_words(), motions);
     end(line, motions);
     return Outcome::kEnded;
   }
@@ -208,16 +208,6 @@ void Interpreter::change_outputs(std::uint16_t set, std::uint16_t clear, LineMot
   motion.target = here_.at;
   motion.set = set;
   motion.clear = clear;
-  switched_ |= set | clear;
-  on_ = static_cast<std::uint16_t>((on_ & ~clear) | set);
-}
-
-void Interpreter::restore_outputs(std::size_t line, LineMotions& motions) const {
-  if (switched_ == 0) return;
-  Motion& motion = motions.add(MotionKind::kOutput, line);
-  motion.target = here_.at;
-  motion.set = on_;
-  motion.clear = static_cast<std::uint16_t>(switched_ & ~on_);
 }
 
 void Interpreter::stop(LineMotions& motions, double seconds) {

@@ -43,12 +43,8 @@ class Interpreter final : public Predefined {
   enum class Outcome { kGoesOn, kEnded, kFailed };
   // Appends the line's motions. After a failure, of which `problem` tells, the state means nothing.
   Outcome execute(const WordSet& words, std::size_t line, LineMotions& motions, Problem& problem);
-  // Machine coordinates.
-  const Coordinates& position() const { return here_.at; }
   // Appends the motion kEnd.
   void end(std::size_t line, LineMotions& motions);
-  // Appends what makes the outputs what the lines so far have made them, where they have.
-  void restore_outputs(std::size_t line, LineMotions& motions) const;
   // Whether a word of the groups spindle and coolant switches an output of this machine.
   bool switches(int number) const;
 
@@ -147,8 +143,6 @@ class Interpreter final : public Predefined {
   std::array<Value, kParameterAxes> probe_results_{};
   Value probe_success_;
   std::size_t lines_on_probes_ = 0;
-  std::uint16_t switched_ = 0;  // outputs, bit n: output n
-  std::uint16_t on_ = 0;        // of these
 };
 
 }  // namespace trammel::gcode

@@ -320,7 +320,11 @@ bool Interpreter::probe(const Context& context) {
     return problem.set(ErrorCode::kInverseTime, fmt::format("{} needs a feed: G94, not G93", name));
   }
   if (!machine_.probe.input) {
-    return problem.set(ErrorCode::kNoProbe, fmt::format("{}: the machine file has no probe ([probe] input)", name));
+    return problem.set(
+        ErrorCode::kNoProbe,
+        fmt::format("{}: the machine file has no probe: --set probe.input=N or [probe] of the file names its "
+                    "input",
+                    name));
   }
   Place target;
   if (!target_of(context, target)) return false;

@@ -62,7 +62,7 @@ bool has_full_percent(std::string_view text) {
 }
 
 // Whether a word's treatment leaves out a line with `rest` behind the word.
-bool leaves_out(Treatment treatment, std::string_view rest, bool any_before) {
+bool leaves_out(Treatment treatment, std::string_view rest, bool for_printers) {
   const std::string_view words = rest.substr(0, rest.find_first_of("(;"));
   switch (treatment) {
     case Treatment::kLeftOut:
@@ -71,7 +71,7 @@ bool leaves_out(Treatment treatment, std::string_view rest, bool any_before) {
     case Treatment::kFullPercent:
       return has_full_percent(words);
     case Treatment::kPrintersWait:
-      return any_before && without_blanks(words).empty();
+      return for_printers && without_blanks(words).empty();
     case Treatment::kRetraction:
       return words.find_first_not_of(" \tSs0123456789") == std::string_view::npos;
     default:
@@ -108,7 +108,7 @@ bool LeftOut::may_begin(std::string_view line) const {
 const LeftOut::Entry* LeftOut::entry_of(const CodeWord& word, std::string_view rest) const {
   const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) {
     return known.word.letter == word.letter && known.word.tenths == word.tenths &&
-           leaves_out(known.treatment, rest, any_);
+           leaves_out(known.treatment, rest, for_printers_);
   });
   return entry != entries_.end() ? &*entry : nullptr;
 }
@@ -120,7 +120,7 @@ bool LeftOut::find(std::string_view line, std::string_view& name, Problem& probl
   const CodeWord word = word_at(line);
   const Entry* const entry = word.tenths < 0 ? nullptr : entry_of(word, line);
   if (entry == nullptr) return false;
-  any_ = true;
+  for_printers_ = true;
   name = entry->name;
   failed_ = !look_behind(line, *entry, problem);
   return true;

@@ -26,8 +26,9 @@ class LeftOut {
   bool find(std::string_view line, std::string_view& name, Problem& problem);
   // Of the last line that find() has found: there was a problem.
   bool failed() const { return failed_; }
-  // Whether find() has found a line: the program is for a printer's firmware.
-  bool any() const { return any_; }
+  // Whether the program is for a printer's firmware: find() has found a line, or the program has words for an extruder.
+  bool for_printers() const { return for_printers_; }
+  void set_for_printers() { for_printers_ = true; }
   // The word that begins a line and that is unknown, where `more` could name it; else empty.
   std::string unknown(std::string_view line) const;
 
@@ -44,7 +45,7 @@ class LeftOut {
   std::vector<Entry> entries_;
   std::bitset<100> g_numbers_;  // the first two digits of the G words
   bool failed_ = false;
-  bool any_ = false;
+  bool for_printers_ = false;
 };
 
 // To a list of words: those that are always left out.

@@ -12,7 +12,7 @@ enum class Treatment : std::uint8_t {
   kText,          // the same; text for people stands behind it
   kFullPercent,   // left out with S100, else kRefused
   kRetraction,    // left out where S at most stands behind it: G10 and G11 of a printer
-  kPrintersWait,  // left out where nothing stands behind it and a line before it was left out
+  kPrintersWait,  // left out where nothing stands behind it and the program is for a printer
   kRefused,       // unless the user leaves its lines out
   kNeverLeftOut,  // it moves the machine, or the lines behind it mean something else without it
 };

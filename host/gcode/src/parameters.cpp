@@ -22,6 +22,14 @@ bool refuse_index(double number, Problem& problem) {
                      fmt::format("#{:.10g}: parameters have the numbers 1 to {}, or names", number, kLastParameter));
 }
 
+// LinuxCNC's #<_hal[...]> is a pin of its HAL, #<_ini[...]> an entry of its configuration.
+bool refuse_name(std::string_view name, Problem& problem) {
+  const bool of_linuxcnc = name.substr(0, 5) == "_hal[" || name.substr(0, 5) == "_ini[";
+  return problem.set(ErrorCode::kParameter,
+                     of_linuxcnc ? fmt::format("#<{}> is LinuxCNC's own: write its value in the program", quote(name))
+                                 : fmt::format("#<{}> has no value yet", quote(name)));
+}
+
 }  // namespace
 
 Parameters::Parameters(const Predefined& predefined) : predefined_(predefined), numbered_(kFirstPredefined) {
@@ -34,7 +42,11 @@ bool Parameters::read(const Value& number, Value& value, Problem& problem) const
     value = {0, number.later};
     return number.later || refuse_index(number.value, problem);
   }
-  value = index < kFirstPredefined ? numbered_[static_cast<std::size_t>(index)].value : predefined_.numbered(index);
+  if (index == kShowsMessages) {
+    value = shows_messages_.value;
+  } else {
+    value = index < kFirstPredefined ? numbered_[static_cast<std::size_t>(index)].value : predefined_.numbered(index);
+  }
   value.later = value.later || number.later;
   return true;
 }
@@ -47,7 +59,7 @@ bool Parameters::read(std::string_view name, Value& value, Problem& problem) con
   }
   const std::optional<Value> known = predefined_.named(name);
   if (!known) {
-    return problem.set(ErrorCode::kParameter, fmt::format("#<{}> has no value yet", quote(name)));
+    return refuse_name(name, problem);
   }
   value = *known;
   return true;
@@ -68,7 +80,8 @@ bool Parameters::assign(const Value& number, const Value& value, Problem& proble
   if (index == 0) {
     return refuse_index(number.value, problem);
   }
-  if (index >= kFirstPredefined) {
+  Slot* const slot = slot_of(index);
+  if (slot == nullptr) {
     return problem.set(
         ErrorCode::kParameter,
         fmt::format("#{} only tells something: G10, G28.1, G30.1, G92 and T change what it tells", index));
@@ -76,8 +89,13 @@ bool Parameters::assign(const Value& number, const Value& value, Problem& proble
   if (pending_.size() == kMaxOfALine) {
     return problem.set(ErrorCode::kParameter, fmt::format("more than {} assignments on a line", kMaxOfALine));
   }
-  pending_.push_back({&numbered_[static_cast<std::size_t>(index)], value});
+  pending_.push_back({slot, value});
   return true;
+}
+
+Parameters::Slot* Parameters::slot_of(int index) {
+  if (index == kShowsMessages) return &shows_messages_;
+  return index < kFirstPredefined ? &numbered_[static_cast<std::size_t>(index)] : nullptr;
 }
 
 bool Parameters::assign(std::string_view name, const Value& value, Problem& problem) {

@@ -32,6 +32,7 @@ class Predefined {
 
 inline constexpr int kFirstPredefined = 5001;
 inline constexpr int kLastParameter = 5602;
+inline constexpr int kShowsMessages = 5599;  // programs may set it; LinuxCNC shows (DEBUG, ...) where it is not 0
 
 class Parameters {
  public:
@@ -65,8 +66,12 @@ class Parameters {
     Value value;
   };
 
+  // nullptr for those that only tell something.
+  Slot* slot_of(int index);
+
   const Predefined& predefined_;
   std::vector<Slot> numbered_;
+  Slot shows_messages_{{1, false}, true};
   std::map<std::string, Slot, std::less<>> named_;
   std::vector<Pending> pending_;
 };

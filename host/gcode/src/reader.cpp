@@ -44,7 +44,7 @@ class Reader::Impl {
       }
       motions_.clear();
       given_ = 0;
-      if (!read_line()) {
+      if (!read_line() || (ended_ && ended_at_ < first_line_ && !fail_before_first_line())) {
         motions_.clear();
         return false;
       }
@@ -56,22 +56,7 @@ class Reader::Impl {
     return true;
   }
 
-  bool skip_to(std::size_t line) {
-    first_line_ = line;
-    while (number_ + 1 < line && !ended_ && !error_) {
-      read_line();
-      if (motions_.size() != 0 && motions_[motions_.size() - 1].kind == MotionKind::kProbe) {
-        fail(ErrorCode::kDependsOnProbe, fmt::format("a probe before line {}, where the program is to begin", line));
-      }
-      motions_.clear();
-    }
-    if (error_ || (ended_ && !fail_before_first_line())) {
-      return false;
-    }
-    interpreter_.restore_outputs(line, motions_);
-    return true;
-  }
-  const Coordinates& position() const { return interpreter_.position(); }
+  void must_reach(std::size_t line) { first_line_ = line; }
 
   bool awaits_probe() const { return awaits_probe_; }
   void probed(const Coordinates& edge, const Coordinates& rest, bool tripped) {
@@ -92,7 +77,7 @@ class Reader::Impl {
 
   const std::optional<Error>& error() const { return error_; }
   const std::map<std::string, std::size_t>& accepted() {
-    if (left_out_.any() && dwells_by_p_ != 0) accepted_["G4 P"] = dwells_by_p_;
+    if (left_out_.for_printers() && dwells_by_p_ != 0) accepted_["G4 P"] = dwells_by_p_;
     return accepted_;
   }
   const std::string& file() const { return lines_.name(); }
@@ -102,9 +87,8 @@ class Reader::Impl {
   bool read_line() {
     std::string_view line;
     if (!next_line(line)) {
-      ended_ = true;
-      interpreter_.end(number_, motions_);
-      return !error_ && (number_ >= first_line_ || fail_before_first_line());
+      end();
+      return !error_;
     }
     if (!options_.block_delete && !line.empty() && line.front() == '/') {
       line = without_blanks_before(line.substr(1));
@@ -131,6 +115,7 @@ class Reader::Impl {
     }
     has_words_ = has_words_ || !words_.empty();
     in_program_ = in_program_ || has_words_;
+    if (feeds_extruder()) left_out_.set_for_printers();
     if (words_.accepted_begin() != words_.accepted_end()) {
       count_accepted();
     }
@@ -139,7 +124,14 @@ class Reader::Impl {
     }
     const Interpreter::Outcome outcome = interpreter_.execute(words_, number_, motions_, problem_);
     ended_ = outcome == Interpreter::Outcome::kEnded;
+    ended_at_ = number_;
     return outcome != Interpreter::Outcome::kFailed || fail();
+  }
+
+  void end() {
+    ended_ = true;
+    ended_at_ = number_;
+    interpreter_.end(number_, motions_);
   }
 
   // Without the blanks before it. Too long a line sets the error and is empty; false at the end, and where the source
@@ -174,8 +166,7 @@ class Reader::Impl {
       in_program_ = true;
       return true;
     }
-    ended_ = true;
-    interpreter_.end(number_, motions_);
+    end();
     while (next_line(line)) {
       if (error_) {
         return false;
@@ -214,6 +205,11 @@ class Reader::Impl {
         ErrorCode::kUnsupportedWord,
         fmt::format("'{}' is a command or macro of Klipper: let the slicer write the G-code that it stands for",
                     quote(name)));
+  }
+
+  bool feeds_extruder() const {
+    const std::uint8_t extruder = axes_['E'];
+    return (extruder != AxisLetters::kNone && words_.has_axis(extruder)) || words_.code(Group::kExtruder);
   }
 
   // Words that have an effect, though not all that a user may expect.
@@ -276,6 +272,7 @@ class Reader::Impl {
   bool has_words_ = false;   // a word was there
   std::size_t dwells_by_p_ = 0;
   bool ended_ = false;
+  std::size_t ended_at_ = 0;  // line
   bool awaits_probe_ = false;
   WordSet words_;
   LineMotions motions_;
@@ -300,8 +297,7 @@ void Reader::probed(const Coordinates& edge, const Coordinates& rest, bool tripp
 void Reader::assume_probed() { impl_->assume_probed(); }
 std::size_t Reader::lines_on_probes() const { return impl_->lines_on_probes(); }
 std::map<int, double> Reader::parameters() const { return impl_->parameters(); }
-bool Reader::skip_to(std::size_t line) { return impl_->skip_to(line); }
-const Coordinates& Reader::position() const { return impl_->position(); }
+void Reader::must_reach(std::size_t line) { impl_->must_reach(line); }
 const std::optional<Error>& Reader::error() const { return impl_->error(); }
 const std::map<std::string, std::size_t>& Reader::accepted() const { return impl_->accepted(); }
 const std::string& Reader::file() const { return impl_->file(); }

@@ -19,8 +19,9 @@ bool Tools::apply(const WordSet& words, Offsets& offsets, Problem& problem) cons
   const auto number = given ? static_cast<unsigned>(*given) : current_;
   if (number != 0 && machine_.tool(number) == nullptr) {
     return problem.set(ErrorCode::kNoSuchTool,
-                       fmt::format("G43{}: the machine file has no tool {} ([tools])",
-                                   given ? fmt::format(" H{}", number) : std::string(), number));
+                       fmt::format("G43{}: the machine file has no tool {}: --set tools.{}.z=LENGTH or [tools.{}] "
+                                   "of the file describes it",
+                                   given ? fmt::format(" H{}", number) : std::string(), number, number, number));
   }
   for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) offsets.set_tool(axis, {offset(number, axis), false});
   return true;

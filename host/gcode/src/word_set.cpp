@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 #include "left_out.hpp"
@@ -89,11 +90,12 @@ constexpr std::uint32_t kAxes = bits(machine::kAxisLetters);
 constexpr std::uint32_t kOthers = bits("FHIJKLNPQRST");
 constexpr std::uint32_t kSignless = bits("FHLNST");
 constexpr std::uint32_t kWhole = bits("HLNT");
+constexpr std::uint32_t kToolNumbers = bits("HT");
 constexpr std::uint32_t kNow = bits("HLNT");  // values that no probe may decide
 constexpr std::uint32_t kWithoutEffect = bits("ST");
 
 // Numbers of words are at most 1e12.
-bool is_whole(double value) { return value == static_cast<double>(static_cast<std::int64_t>(value)); }
+bool is_whole(double value) { return value == std::trunc(value); }
 
 bool twice(const Word& word, Problem& problem) {
   return problem.set(ErrorCode::kLetterTwice, fmt::format("'{}': {} stands twice", quote(word.text), word.letter));
@@ -108,6 +110,9 @@ bool no_such_axis(char letter, std::string_view text, Problem& problem) {
 bool depends_on_probe(const Word& word, Problem& problem) {
   return problem.set(ErrorCode::kDependsOnProbe, fmt::format("'{}' cannot depend on a probe", quote(word.text)));
 }
+
+constexpr std::string_view kObeyed = "the reader obeys it";
+constexpr std::string_view kNoSuchWord = "no such word here: write what it stands for";
 
 }  // namespace
 
@@ -207,6 +212,10 @@ bool WordSet::add_letter(const Word& word, Problem& problem) {
   if (in(word.letter, kWhole) && !is_whole(value)) {
     return problem.set(ErrorCode::kNotWhole, fmt::format("'{}' must be a whole number", quote(word.text)));
   }
+  if (in(word.letter, kToolNumbers) && value > machine::kLargestTool) {
+    return problem.set(ErrorCode::kNoSuchTool, fmt::format("'{}': the number of a tool is at most {}", quote(word.text),
+                                                           machine::kLargestTool));
+  }
   letters_present_ |= bit(word.letter);
   later_letters_ |= word.later ? bit(word.letter) : 0;
   letters_[static_cast<std::size_t>(word.letter - 'A')] = value;
@@ -253,9 +262,11 @@ bool WordSet::unsupported(const Word& word, Problem& problem) const {
   const CodeWord code{word.letter, in(word.letter, kCodeLetters) ? code_of(word.value) : -1};
   const OtherWord* const other = find_other_word(code.letter, code.tenths);
   std::string message = fmt::format("unsupported word '{}'", quote(word.text));
-  if (other != nullptr && !other->why.empty()) message += fmt::format(": {}", other->why);
+  const std::string_view never = code.tenths >= 0 ? why_not_left_out(code) : std::string_view();
+  const std::string_view why = other != nullptr ? other->why : never == kObeyed ? kNoSuchWord : never;
+  if (!why.empty()) message += fmt::format(": {}", why);
   const bool first = words_ == 0 || (words_ == 1 && letter('N'));
-  const bool may_be_left_out = code.tenths >= 0 && why_not_left_out(code).empty();
+  const bool may_be_left_out = code.tenths >= 0 && never.empty();
   if (may_be_left_out && !first) {
     const bool always = other != nullptr && is_left_out(other->treatment);
     message += fmt::format(
@@ -273,12 +284,13 @@ std::optional<bool> has_effect(const CodeWord& word) {
 }
 
 std::string_view why_not_left_out(const CodeWord& word) {
-  if (has_effect(word).value_or(false)) return "the reader obeys it";
+  if (has_effect(word).value_or(false)) return kObeyed;
   const OtherWord* const other = find_other_word(word.letter, word.tenths);
   if (other != nullptr) return other->treatment == Treatment::kNeverLeftOut ? other->why : std::string_view();
   // G59.4 would do what G59 does, somehow.
-  const bool variant = word.letter == 'G' && word.tenths % 10 != 0;
-  return variant ? why_not_left_out({'G', word.tenths - word.tenths % 10}) : std::string_view();
+  const CodeWord whole{word.letter, word.tenths - word.tenths % 10};
+  if (word.letter != 'G' || word.tenths == whole.tenths) return {};
+  return why_not_left_out(whole);
 }
 
 std::vector<std::string> known_words() {

@@ -140,8 +140,12 @@ bool WordScanner::assignment(Problem& problem) {
 }
 
 bool WordScanner::o_word(Problem& problem) const {
-  return problem.set(ErrorCode::kOWord, fmt::format("O-word '{}': subroutines, loops and branches are not supported",
-                                                    quote(line_.substr(at_, line_.find_first_of("(;", at_) - at_))));
+  std::string_view text = line_.substr(at_, line_.find_first_of("(;", at_) - at_);
+  while (is_space(text.back())) text.remove_suffix(1);
+  return problem.set(ErrorCode::kOWord,
+                     fmt::format("O-word '{}': subroutines, loops and branches are not supported: let the CAM program "
+                                 "write their lines out",
+                                 quote(text)));
 }
 
 bool WordScanner::unexpected(Problem& problem) const {
@@ -155,8 +159,12 @@ bool WordScanner::unexpected(Problem& problem) const {
   }
   if (c == '$') {
     return problem.set(ErrorCode::kUnexpectedCharacter,
-                       fmt::format("'{}' is a setting or command for Grbl, which no program can hold",
+                       fmt::format("'{}' is a setting or command for Grbl, no word of a program: remove the line",
                                    quote(line_.substr(at_, line_.find_first_of(" \t(;", at_) - at_))));
+  }
+  if (c == '@' || c == '^') {
+    return problem.set(ErrorCode::kUnexpectedCharacter,
+                       fmt::format("'{}': no polar coordinates: let the CAM program write X and Y", c));
   }
   std::size_t end = at_ + 1;
   while (end < line_.size() && is_printable(line_[end]) && !is_letter(line_[end])) {

@@ -92,12 +92,36 @@ void check_times(const std::string& where, const Machine& machine) {
   }
 }
 
+void check_soft_limits(const std::string& where, const Machine& machine) {
+  for (const MachineAxis& axis : machine.axes) {
+    const bool rotary = axis.letter == 'A' || axis.letter == 'B' || axis.letter == 'C';
+    const bool limited = std::isfinite(axis.min) || std::isfinite(axis.max);
+    if (axis.endless && !rotary) refuse(fmt::format("{}: axis {}: only A, B and C can be endless", where, axis.letter));
+    if (axis.endless && limited) {
+      refuse(fmt::format("{}: axis {}: endless, but it has min or max", where, axis.letter));
+    }
+    if (rotary && !axis.endless && !limited) {
+      refuse(fmt::format("{}: axis {}: a rotary axis needs min and max, or endless = true where it has no soft limits",
+                         where, axis.letter));
+    }
+  }
+}
+
 void check_outputs(const std::string& where, const MachineOutputs& outputs) {
-  const unsigned both = unsigned{outputs.spindle()} & outputs.coolant();
-  if (both == 0) return;
-  unsigned output = 0;
-  while ((both >> output & 1U) == 0) ++output;
-  refuse(fmt::format("{}: output {} is named for the spindle (m3, m4) and for coolant (m7, m8)", where, output));
+  const auto check = [&where](unsigned both, const char* named) {
+    if (both == 0) return;
+    unsigned output = 0;
+    while ((both >> output & 1U) == 0) ++output;
+    refuse(fmt::format("{}: output {} is named for {}", where, output, named));
+  };
+  check(unsigned{outputs.spindle()} & outputs.coolant(), "the spindle (m3, m4) and for coolant (m7, m8)");
+  const unsigned others = unsigned{outputs.of_words()} | outputs.off_at_cause | outputs.off_at_rest;
+  check(outputs.roles() & others,
+        "the drives or the card (enable, brake, charge_pump, healthy) and for the program, which does not switch it");
+  check(unsigned{outputs.enable} & outputs.brake, "enable and for brake");
+  check(unsigned{outputs.charge_pump} & outputs.healthy, "charge_pump and for healthy");
+  check((unsigned{outputs.enable} | outputs.brake) & (unsigned{outputs.charge_pump} | outputs.healthy),
+        "the drives (enable, brake) and for the card (charge_pump, healthy)");
 }
 
 }  // namespace trammel::machine

@@ -20,6 +20,9 @@ void check_ramps(const std::string& where, const Machine& machine);
 // Step times fit the card's registers at its clock; rounded up to whole nanoseconds, as the driver takes them.
 void check_times(const std::string& where, const Machine& machine);
 
+// Rotary axes have soft limits, or say that they are endless.
+void check_soft_limits(const std::string& where, const Machine& machine);
+
 // No output for both spindle and coolant: M5 and M9 could not tell them apart.
 void check_outputs(const std::string& where, const MachineOutputs& outputs);
 

@@ -9,8 +9,10 @@
 #include <toml.hpp>
 
 #include "machine_checks.hpp"
+#include "machine_inputs.hpp"
 #include "numbers.hpp"
 #include "text.hpp"
+#include "trammel/card_map.hpp"
 #include "trammel/machine/machine.hpp"
 
 namespace trammel::machine {
@@ -23,7 +25,7 @@ struct Entry {
   bool required;
 };
 
-constexpr std::array<Entry, 12> kEntries = {{
+constexpr std::array<Entry, 13> kEntries = {{
     {"steps_per_mm", &MachineAxis::steps_per_mm, kStepsPerMm, true},
     {"max_velocity", &MachineAxis::max_velocity, kSpeed, true},
     {"max_acceleration", &MachineAxis::max_acceleration, kAcceleration, true},
@@ -34,6 +36,7 @@ constexpr std::array<Entry, 12> kEntries = {{
     {"direction_hold_ns", &MachineAxis::direction_hold_ns, kDirectionTime, true},
     {"min", &MachineAxis::min, kPlace, false},
     {"max", &MachineAxis::max, kPlace, false},
+    {"overtravel", &MachineAxis::overtravel, kOvertravel, false},
     {"home", &MachineAxis::home, kPlace, false},
     {"second_home", &MachineAxis::second_home, kPlace, false},
 }};
@@ -43,10 +46,12 @@ struct Switch {
   const char* name;
   bool MachineAxis::*member;
 };
-constexpr std::array<Switch, 3> kSwitches = {{
+constexpr std::array<Switch, 5> kSwitches = {{
     {kInverted, &MachineAxis::inverted},
     {"second_motor", &MachineAxis::second_motor},
     {"second_inverted", &MachineAxis::second_inverted},
+    {"keeps_place", &MachineAxis::keeps_place},
+    {"endless", &MachineAxis::endless},
 }};
 
 // An entry of the table [motion].
@@ -71,11 +76,45 @@ struct OutputEntry {
   const char* name;
   std::uint16_t MachineOutputs::*member;
 };
-constexpr std::array<OutputEntry, 4> kOutputEntries = {{
+constexpr std::array<OutputEntry, 10> kOutputEntries = {{
     {"m3", &MachineOutputs::m3},
     {"m4", &MachineOutputs::m4},
     {"m7", &MachineOutputs::m7},
     {"m8", &MachineOutputs::m8},
+    {"off_at_cause", &MachineOutputs::off_at_cause},
+    {"off_at_rest", &MachineOutputs::off_at_rest},
+    {"enable", &MachineOutputs::enable},
+    {"brake", &MachineOutputs::brake},
+    {"charge_pump", &MachineOutputs::charge_pump},
+    {"healthy", &MachineOutputs::healthy},
+}};
+struct OutputNumber {
+  const char* name;
+  double MachineOutputs::*member;
+  Range range;
+};
+constexpr std::array<OutputNumber, 6> kOutputNumbers = {{
+    {"brake_release_ms", &MachineOutputs::brake_release_ms, kDriveDelay},
+    {"enable_delay_ms", &MachineOutputs::enable_delay_ms, kDriveDelay},
+    {"stop_delay_ms", &MachineOutputs::stop_delay_ms, kDriveDelay},
+    {"brake_set_ms", &MachineOutputs::brake_set_ms, kDriveDelay},
+    {"enable_idle_s", &MachineOutputs::enable_idle_s, kDriveIdle},
+    {"charge_pump_hz", &MachineOutputs::charge_pump_hz, kChargePump},
+}};
+struct FaultName {
+  const char* name;
+  std::uint32_t mask;
+};
+constexpr std::array<FaultName, 9> kFaultNames = {{
+    {"limit", card_map::field::kFaultLimit},
+    {"emergency_stop", card_map::field::kFaultEmergencyStop},
+    {"drive_fault", card_map::field::kFaultDriveFault},
+    {"watchdog", card_map::field::kFaultWatchdog},
+    {"soft_limit", card_map::field::kFaultSoftLimit},
+    {"probe", card_map::field::kFaultProbe},
+    {"tool_setter", card_map::field::kFaultToolSetter},
+    {"step", card_map::field::kFaultStep},
+    {"path_incomplete", card_map::field::kFaultPathIncomplete},
 }};
 
 // A bare key of TOML has no point: G59.1 is g59_1.
@@ -98,16 +137,6 @@ std::vector<std::string> axis_entries() {
   }
   names.insert(names.end(), kSystems.begin(), kSystems.end());
   return names;
-}
-
-// `path` ends with the key, which is none of `names`.
-[[noreturn]] void refuse_key(const Source& source, const toml::value& value, const std::string& table,
-                             const std::string& key, const std::vector<std::string>& names) {
-  const std::string close = nearest(key, names);
-  const std::string path = one_line(table + key, kLongestQuote);
-  refuse(fmt::format("{}unknown entry {}{}", source.at(value), path,
-                     close.empty() ? fmt::format("; known are {}", fmt::join(names, ", "))
-                                   : fmt::format("; did you mean {}?", close)));
 }
 
 void set_axis_entry(const Source& source, MachineAxis& axis, const std::string& table, const std::string& key,
@@ -176,11 +205,45 @@ std::uint16_t output_bit(const Source& source, const std::string& path, const to
   return static_cast<std::uint16_t>(1U << value.as_integer());
 }
 
+std::uint32_t faults_of(const Source& source, const std::string& path, const toml::value& value) {
+  std::uint32_t faults = 0;
+  std::string known;
+  for (const FaultName& fault : kFaultNames) known += fmt::format("{}{}", known.empty() ? "" : ", ", fault.name);
+  const auto refuse_it = [&] { refuse(fmt::format("{}{} must be a list of {}", source.at(value), path, known)); };
+  if (!value.is_array()) refuse_it();
+  for (const toml::value& one : value.as_array()) {
+    const std::string name = one.is_string() ? one.as_string().str : "";
+    const auto fault = std::find_if(kFaultNames.begin(), kFaultNames.end(),
+                                    [&name](const FaultName& entry) { return entry.name == name; });
+    if (fault == kFaultNames.end()) refuse_it();
+    faults |= fault->mask;
+  }
+  return faults;
+}
+
+std::vector<std::string> output_keys() {
+  std::vector<std::string> names;
+  for (const OutputEntry& entry : kOutputEntries) names.emplace_back(entry.name);
+  for (const OutputNumber& entry : kOutputNumbers) names.emplace_back(entry.name);
+  names.emplace_back("disable_on");
+  return names;
+}
+
 void set_outputs(const Source& source, MachineOutputs& outputs, const toml::table& table) {
   for (const auto& [key, value] : table) {
+    const auto number_entry = std::find_if(kOutputNumbers.begin(), kOutputNumbers.end(),
+                                           [&key = key](const OutputNumber& known) { return key == known.name; });
+    if (number_entry != kOutputNumbers.end()) {
+      outputs.*number_entry->member = number(source, "outputs." + key, value, number_entry->range);
+      continue;
+    }
+    if (key == "disable_on") {
+      outputs.disable_on = faults_of(source, "outputs." + key, value);
+      continue;
+    }
     const auto entry = std::find_if(kOutputEntries.begin(), kOutputEntries.end(),
                                     [&key = key](const OutputEntry& known) { return key == known.name; });
-    if (entry == kOutputEntries.end()) refuse_key(source, value, "outputs.", key, {"m3", "m4", "m7", "m8"});
+    if (entry == kOutputEntries.end()) refuse_key(source, value, "outputs.", key, output_keys());
     const std::string path = "outputs." + key;
     std::uint16_t bits = 0;
     if (value.is_array()) {
@@ -277,6 +340,19 @@ void set_clock(const Source& source, Machine& machine, const toml::value& value)
   machine.clock_hz = static_cast<std::uint32_t>(clock);
 }
 
+constexpr std::array<const char*, 2> kCardEntries = {"clock_hz", "require_home"};
+
+void set_card(const Source& source, Machine& machine, const toml::table& table) {
+  for (const auto& [key, value] : table) {
+    if (key == "clock_hz") {
+      set_clock(source, machine, value);
+    } else if (key == "require_home") {
+      if (!value.is_boolean()) refuse(source.at(value) + "card.require_home must be true or false");
+      machine.require_home = value.as_boolean();
+    }
+  }
+}
+
 const toml::table& table_of(const Source& source, const std::string& path, const toml::value& value) {
   if (!value.is_table()) {
     refuse(source.at(value) + one_line(path, kLongestQuote) + " must be a table");
@@ -343,7 +419,8 @@ toml::value parse(const Source& source, const std::string& text) {
   }
 }
 
-constexpr std::array<const char*, 7> kTables = {"card", "axis", "kinematics", "motion", "outputs", "tools", "probe"};
+constexpr std::array<const char*, 8> kTables = {"card",    "axis",  "kinematics", "motion",
+                                                "outputs", "tools", "probe",      "inputs"};
 
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
@@ -351,8 +428,8 @@ void check_top_level(const Source& source, const toml::table& root) {
       refuse_key(source, value, "", key, {kTables.begin(), kTables.end()});
     }
     for (const auto& [inner_key, inner] : table_of(source, key, value)) {
-      if (key == "card" && inner_key != "clock_hz") {
-        refuse_key(source, inner, "card.", inner_key, {"clock_hz"});
+      if (key == "card" && std::find(kCardEntries.begin(), kCardEntries.end(), inner_key) == kCardEntries.end()) {
+        refuse_key(source, inner, "card.", inner_key, {kCardEntries.begin(), kCardEntries.end()});
       }
     }
   }
@@ -375,13 +452,24 @@ bool set_tables(const Source& source, Machine& machine, const toml::table& root)
     with(*table);
     any = true;
   };
-  set("card", [&](const toml::table& card) { set_clock(source, machine, card.at("clock_hz")); });
+  set("card", [&](const toml::table& card) { set_card(source, machine, card); });
   set("kinematics", [&](const toml::table& entries) { set_kinematics(source, machine.kinematics, entries); });
   set("motion", [&](const toml::table& motion) { set_motion(source, machine.motion, motion); });
   set("outputs", [&](const toml::table& outputs) { set_outputs(source, machine.outputs, outputs); });
   set("tools", [&](const toml::table& tools) { set_tools(source, machine, tools); });
   set("probe", [&](const toml::table& probe) { set_probe(source, machine.probe, probe); });
+  set("inputs", [&](const toml::table& inputs) { set_inputs(source, machine, inputs); });
   return any;
+}
+
+void check(const std::string& where, const Machine& machine) {
+  check_motors(where, machine);
+  check_kinematics(where, machine);
+  check_ramps(where, machine);
+  check_times(where, machine);
+  check_soft_limits(where, machine);
+  check_outputs(where, machine.outputs);
+  check_inputs(machine);
 }
 
 }  // namespace
@@ -391,7 +479,8 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   const toml::value document = parse(source, toml_text);
   const toml::table& root = document.as_table();
   check_top_level(source, root);
-  if (find_table(root, "card") == nullptr) {
+  const toml::table* card = find_table(root, "card");
+  if (card == nullptr || card->count("clock_hz") == 0) {
     refuse(name + ":1: no [card] clock_hz");
   }
   const toml::table* axes = find_table(root, "axis");
@@ -406,10 +495,7 @@ Machine parse_machine(const std::string& toml_text, const std::string& name) {
   std::sort(machine.axes.begin(), machine.axes.end(),
             [](const MachineAxis& a, const MachineAxis& b) { return card_order(a.letter) < card_order(b.letter); });
   set_tables(source, machine, root);
-  check_kinematics(name + ":1", machine);
-  check_ramps(name + ":1", machine);
-  check_times(name + ":1", machine);
-  check_outputs(name + ":1", machine.outputs);
+  check(name + ":1", machine);
   return machine;
 }
 
@@ -443,11 +529,7 @@ void apply_override(Machine& machine, const std::string& text) {
   if (!any) {
     refuse(source.name + ": not an assignment such as axis.x.steps_per_mm=20");
   }
-  check_motors(source.name, changed);
-  check_kinematics(source.name, changed);
-  check_ramps(source.name, changed);
-  check_times(source.name, changed);
-  check_outputs(source.name, changed.outputs);
+  check(source.name, changed);
   machine = changed;
 }
 

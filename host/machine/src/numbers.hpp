@@ -32,6 +32,11 @@ inline constexpr Range kJerk{1e-3, 1e13, "mm/s^3", "1 mm/s^2 in 1,000 s to 100,0
 // 65,535 clocks take less than 100 s at the slowest clock.
 inline constexpr Range kPulseTime{1e-3, 1e11, "ns", "a register holds 65,535 clocks, 100 s at the slowest clock"};
 inline constexpr Range kDirectionTime{0, 1e11, "ns", "a register holds 65,535 clocks, 100 s at the slowest clock"};
+inline constexpr Range kOvertravel{0, 2.2e12, "mm", "2^31 pulses at the coarsest scale"};
+inline constexpr Range kFilter{0, 20, "ms", "switches bounce for a few milliseconds"};
+inline constexpr Range kDriveDelay{0, 2680, "ms", "a register holds 65,535 times 4,096 clocks, 2.68 s at 100 MHz"};
+inline constexpr Range kDriveIdle{0, 680, "s", "a register holds 65,535 times 2^20 clocks, 687 s at 100 MHz"};
+inline constexpr Range kChargePump{10, 1e5, "Hz", "charge pumps take some kilohertz"};
 inline constexpr Range kPlace{-2.2e12, 2.2e12, "mm", "2^31 pulses at the coarsest scale"};
 
 // The value, when it is a finite number; else a MachineError with file and line.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "axis_limits.hpp"
+#include "detours.hpp"
 #include "trammel/driver/card_timing.hpp"
 
 namespace trammel::planner {
@@ -40,7 +41,8 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
       kinematics_(machine),
       blender_(reader, machine, start),
       exact_(start),
-      anchor_(start) {
+      anchor_(start),
+      detours_(std::make_unique<Detours>(machine)) {
   for (std::size_t i = 0; i < axis_count_; ++i) {
     const machine::MachineAxis& from = machine.axes[i];
     Axis& axis = axes_[i];
@@ -67,6 +69,8 @@ BlockBuilder::BlockBuilder(gcode::Reader& reader, const machine::Machine& machin
   }
   start_ = here_ = kinematics_.pulses(start);
 }
+
+BlockBuilder::~BlockBuilder() = default;
 
 const gcode::Motion& BlockBuilder::begin_probe() {
   probe_ = Probe::kBegun;
@@ -100,6 +104,7 @@ bool BlockBuilder::next(Block& block) {
     }
     const bool any = build(block);
     if (error_) return false;
+    follow_detour(block, any);
     exact_ = motion_.target;
     here_ = block.end;
     if (moves(block) && any) anchor_ = exact_;
@@ -208,10 +213,13 @@ bool BlockBuilder::build_dwell(Block& block) {
   return true;
 }
 
+// A motion without a pulse is measured by itself.
 bool BlockBuilder::build_line(Block& block) {
-  if (block.end == block.start) return false;
+  const bool steps = block.end != block.start;
+  if (!steps && motion_.target == exact_) return false;
+  const gcode::Coordinates& from = steps ? anchor_ : exact_;
   gcode::Coordinates way{};
-  for (std::size_t i = 0; i < axis_count_; ++i) way[i] = motion_.target[i] - anchor_[i];
+  for (std::size_t i = 0; i < axis_count_; ++i) way[i] = motion_.target[i] - from[i];
   block.geometry = Geometry::kLine;
   block.curvature = 0;
   block.curve = {};
@@ -227,7 +235,34 @@ bool BlockBuilder::build_line(Block& block) {
   limit_joints(block);
   limit_pulses(block);
   apply_feed(block, feed_length);
-  return true;
+  return steps;
+}
+
+// As the program has it: from where the motion before ended.
+Heading BlockBuilder::heading_of(const Block& block) const {
+  if (block.geometry != Geometry::kLine) return {block.entry, block.length, block.speed, block.linear};
+  gcode::Coordinates way{};
+  for (std::size_t i = 0; i < axis_count_; ++i) way[i] = motion_.target[i] - exact_[i];
+  Block alone;
+  measure_line(alone, way);
+  Heading heading{{}, alone.length, block.speed, alone.linear};
+  for (std::size_t i = 0; i < axis_count_; ++i) heading.entry[i] = way[i] / alone.length;
+  return heading;
+}
+
+// Before exact_ moves on. Of an arc without a pulse no way is kept.
+void BlockBuilder::follow_detour(Block& block, bool any) {
+  if (motion_.kind == gcode::MotionKind::kOutput) return;
+  if (any) {
+    block.detour.speed = 0;
+    if (!detours_->open()) return;
+    if (moves(block)) block.detour = detours_->to(heading_of(block));
+    detours_->close();
+  } else if (motion_.kind == gcode::MotionKind::kArc) {
+    detours_->stop();
+  } else if (motion_.target != exact_) {
+    detours_->pass(block);
+  }
 }
 
 // Sets length and scale; gives back the length that F counts for.

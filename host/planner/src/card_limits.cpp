@@ -23,7 +23,8 @@ CardLimits limits_of(const driver::Identification& card) {
           card.geometry_depth,
           card.feed_depth,
           has(card_map::engine::kAccumulator8),
-          has(card_map::engine::kPathCommands) ? machine::kMaxOutputs : 0};
+          has(card_map::engine::kPathCommands) ? machine::kMaxOutputs : 0,
+          driver::has_slew_shift(card)};
 }
 
 CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {
@@ -34,13 +35,11 @@ CardLimits with_arcs_by(CardLimits card, ArcsBy arcs) {
   return card;
 }
 
-double hold_seconds(const machine::Machine& machine) {
-  const double reserve = machine.motion.hold_reserve;
-  double longest = 0;
-  for (const machine::MachineAxis& axis : machine.axes) {
-    longest = std::max(longest, axis.max_velocity / axis.max_acceleration);
-  }
-  return longest * (reserve > 0 ? 1 / reserve : 2);
+// As Card::set_slew_time() rounds it.
+double hold_clocks(const machine::Machine& machine, double clock_hz) {
+  constexpr auto kSlowest = static_cast<double>(driver::kSlowestSlew);
+  const double clocks = std::clamp(std::ceil(hold_seconds(machine) * clock_hz), 1.0, kSlowest);
+  return kSlowest / std::floor(kSlowest / clocks);
 }
 
 driver::AxisSettings settings_of(const machine::MachineAxis& axis) {

@@ -32,7 +32,7 @@ Junctions::Junctions(const machine::Machine& machine)
   }
 }
 
-Junctions::Turn Junctions::turn(const Block& from, const Block& to) const {
+Junctions::Turn Junctions::turn(const Block& from, const Heading& to) const {
   double square = 0;
   double dot = 0;
   double before = 0;
@@ -49,7 +49,7 @@ Junctions::Turn Junctions::turn(const Block& from, const Block& to) const {
   return {square, lengths > 0 ? dot / lengths : -1, std::abs(before - 1) <= kEven && std::abs(after - 1) <= kEven};
 }
 
-double Junctions::corner_square(const Block& from, const Block& to, const Turn& turn) const {
+double Junctions::corner_square(const Block& from, const Heading& to, const Turn& turn) const {
   const double size = std::sqrt(turn.square);
   Direction change{};
   for (std::size_t i = 0; i < axes_; ++i) change[i] = in_angle(i, from) ? to.entry[i] - from.exit[i] : 0;
@@ -73,7 +73,7 @@ double Junctions::joints_allow(const Direction& change, double size) const {
 }
 
 // The speed at which no axis outside the angle, or no axis at all, jumps by more than it may.
-double Junctions::jump_speed(const Block& from, const Block& to, bool all) const {
+double Junctions::jump_speed(const Block& from, const Heading& to, bool all) const {
   double speed = kNoLimit;
   for (std::size_t i = 0; i < axes_; ++i) {
     const double part = std::abs(to.entry[i] - from.exit[i]);
@@ -83,19 +83,29 @@ double Junctions::jump_speed(const Block& from, const Block& to, bool all) const
   return speed;
 }
 
+double Junctions::speed(const Block& from, const Heading& to) const { return speed(from, to, turn(from, to)); }
+
+double Junctions::speed(const Block& from, const Heading& to, const Turn& turn) const {
+  if (from.path_control == gcode::PathControl::kExactStop || from.linear != to.linear) return 0;
+  if (turn.cosine < kReversal) return 0;
+  const bool exact = deviation_ == 0 || from.path_control == gcode::PathControl::kExactPath;
+  if (exact && !turn.tangent()) return 0;
+  const double speed = std::min({from.speed, to.speed, jump_speed(from, to, !turn.even)});
+  if (!turn.even || !(turn.square > 0)) return speed;
+  return std::min(speed, std::sqrt(corner_square(from, to, turn)));
+}
+
 Junction Junctions::between(const Block& from, const Block& to) const {
+  const Heading heading{to.entry, to.length, to.speed, to.linear};
+  const Turn corner = turn(from, heading);
   Junction junction;
-  if (from.path_control == gcode::PathControl::kExactStop || from.linear != to.linear) return junction;
-  const Turn corner = turn(from, to);
-  if (corner.cosine < kReversal) return junction;
-  for (std::size_t i = 0; i < axes_; ++i) junction.jump = std::max(junction.jump, std::abs(to.entry[i] - from.exit[i]));
-  const bool tangent = corner.square <= kTangentSquare;
-  if (!tangent && (deviation_ == 0 || from.path_control == gcode::PathControl::kExactPath)) return junction;
-  if (tangent) junction.bend = std::abs(to.curvature - from.curvature);
-  junction.speed = std::min({from.speed, to.speed, jump_speed(from, to, !corner.even)});
-  if (corner.even && corner.square > 0) {
-    junction.speed = std::min(junction.speed, std::sqrt(corner_square(from, to, corner)));
+  junction.speed = speed(from, heading, corner);
+  if (to.detour.speed > 0) {
+    junction.speed = std::max(junction.speed, std::min(to.detour.speed, speed(from, to.detour.first)));
   }
+  if (junction.speed == 0) return junction;
+  for (std::size_t i = 0; i < axes_; ++i) junction.jump = std::max(junction.jump, std::abs(to.entry[i] - from.exit[i]));
+  if (corner.tangent()) junction.bend = std::abs(to.curvature - from.curvature);
   return junction;
 }
 

@@ -25,8 +25,11 @@ class Junctions {
   static constexpr double kReversal = -0.9999;  // cosine; less than a degree off
 
   explicit Junctions(const machine::Machine& machine);
-  // Both move.
+  // Both move. Where motions without a pulse lie between them, the speed is that past the corners as the program has
+  // them, if it is more: rounding may make a reversal of two corners.
   Junction between(const Block& from, const Block& to) const;
+  // Past the corner alone; 0: a stop.
+  double speed(const Block& from, const Heading& to) const;
 
  private:
   // Of the axes whose directions make the angle, or of the others: all that the two rules need.
@@ -34,12 +37,14 @@ class Junctions {
     double square;  // of the difference of the directions
     double cosine;
     bool even;  // both directions are as long as the path
+    bool tangent() const { return square <= kTangentSquare; }
   };
   bool in_angle(std::size_t axis, const Block& block) const { return linear_[axis] || !block.linear; }
-  Turn turn(const Block& from, const Block& to) const;
-  double corner_square(const Block& from, const Block& to, const Turn& turn) const;
+  Turn turn(const Block& from, const Heading& to) const;
+  double speed(const Block& from, const Heading& to, const Turn& turn) const;
+  double corner_square(const Block& from, const Heading& to, const Turn& turn) const;
   double joints_allow(const Direction& change, double size) const;
-  double jump_speed(const Block& from, const Block& to, bool all) const;
+  double jump_speed(const Block& from, const Heading& to, bool all) const;
 
   std::size_t axes_;
   std::array<bool, card_map::kMaxAxes> linear_{};          // X Y Z

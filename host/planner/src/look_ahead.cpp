@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "trammel/driver/card_timing.hpp"
 #include "trammel/planner/s_curve_plan.hpp"
@@ -50,9 +51,13 @@ Planner::LookAhead::LookAhead(BlockBuilder& blocks, const machine::Machine& mach
       gap_free_ticks_(static_cast<double>(driver::gap_free_ticks(std::max(kMinAxes, card.axes)))),
       junctions_(machine),
       path_(static_cast<std::size_t>(machine.motion.window) + kSpare),
-      quantiser_(path_, clock_hz_, hold_seconds(machine) / 2 * card.clock_hz, queues_of(card),
-                 profile_of(machine, settings) == SpeedProfile::kSCurve, card.classes),
-      plan_(plan_for(machine, settings)) {}
+      quantiser_(path_, clock_hz_, hold_clocks(machine, card.clock_hz) / 2, queues_of(card),
+                 profile_of(machine, settings) == SpeedProfile::kSCurve, card),
+      plan_(plan_for(machine, settings)) {
+  const double seconds = hold_clocks(machine, card.clock_hz) / card.clock_hz;
+  for (const machine::MachineAxis& axis : machine.axes)
+    hold_speeds_.push_back(hold_share(machine) * axis.max_acceleration * seconds);
+}
 
 PathEntry* Planner::LookAhead::first() {
   while (path_.begin() == path_.end() || (moves(path_[path_.begin()].block) && !quantiser_.ready())) {
@@ -137,6 +142,7 @@ void Planner::LookAhead::add_motion(PathEntry& entry) {
     push_span(*tail_, junction.speed);
   }
   place(entry, density);
+  entry.hold_speed = hold_speed(entry.block);
   rapid_ = entry.block.rapid;
   tail_ = &entry;
 }
@@ -152,6 +158,17 @@ void Planner::LookAhead::end_run(PathEntry& last) {
 void Planner::LookAhead::push_span(const PathEntry& entry, double exit_speed) {
   const Block& block = entry.block;
   plan_->push({block.length, block.speed, block.acceleration, block.jerk, exit_speed, block.curve});
+}
+
+// An arc turns into each direction of its plane.
+double Planner::LookAhead::hold_speed(const Block& block) const {
+  double speed = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < hold_speeds_.size(); ++axis) {
+    const bool turns = block.curvature != 0 && in_plane(block, axis);
+    const double share = turns ? 1 : std::max(std::abs(block.entry[axis]), std::abs(block.exit[axis]));
+    if (share > 0) speed = std::min(speed, hold_speeds_[axis] / share);
+  }
+  return speed;
 }
 
 // Length and ticks go on through stops: a path has the same ticks wherever the program stops.

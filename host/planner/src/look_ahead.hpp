@@ -38,6 +38,7 @@ class Planner::LookAhead {
   double even_density(const Block& block) const;
   double least_density(const Block& block) const;
   bool suits(double density, const Block& block) const;
+  double hold_speed(const Block& block) const;
 
   BlockBuilder& blocks_;
   PlannerSettings settings_;
@@ -46,6 +47,7 @@ class Planner::LookAhead {
   std::uint64_t line_halfwords_;
   double gap_free_ticks_;
   Junctions junctions_;
+  std::vector<double> hold_speeds_;  // by axis, mm/s: from there a hold takes all that it may of the acceleration
   PathRing path_;
   Quantiser quantiser_;
   std::unique_ptr<SpeedPlan> plan_;

@@ -14,7 +14,8 @@ struct PathEntry {
   Block block;
   double begin = 0;  // mm
   double end = 0;
-  double density = 0;  // feed ticks a mm
+  double density = 0;     // feed ticks a mm
+  double hold_speed = 0;  // mm/s from which a hold by SLEW takes all that it may of an axis's acceleration
   std::uint64_t begin_ticks = 0;
   std::uint64_t end_ticks = 0;
   std::uint64_t queued = 0;     // halfwords of the geometry queue, counted likewise: before its commands

@@ -1,6 +1,7 @@
 #include "quantiser.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "s_curve_pieces.hpp"
 #include "trapezoid_pieces.hpp"
@@ -18,10 +19,12 @@ std::unique_ptr<PieceShaper> shaper_of(bool smooth, double clock_hz) {
 }  // namespace
 
 Quantiser::Quantiser(PathRing& path, double clock_hz, double stop_clocks, const QueueLimits& queues, bool smooth,
-                     bool classes)
+                     const CardLimits& card)
     : path_(path),
       smooth_(smooth),
-      classes_(classes),
+      classes_(card.classes),
+      slew_shifts_(card.slew_shifts),
+      full_hz_(card.clock_hz),
       scale_{clock_hz, 0},
       shaper_(shaper_of(smooth, clock_hz)),
       times_(path, clock_hz),
@@ -172,10 +175,24 @@ void Quantiser::put(const FeedMotion& motion, std::uint64_t end_tick, bool stop)
   piece.begin = sent_.tick;
   piece.stop = stop;
   if (classes_ && path_[piece.block].block.rapid) piece.command.piece_class = driver::PieceClass::kRapid;
+  piece.command.slew_shift = slew_shift(piece, end_tick);
   stops_.put(piece);
   times_.add(motion, lead, {sent_.tick, end_tick}, stop, short_sight_);
   sent_ = {end_tick, motion.end_rate, {overshoot(piece.command, motion, lead), 0}};
   pending_.end = end_tick;
+}
+
+// The largest by which a hold from the piece's highest speed takes no more of an axis's acceleration than one by SLEW
+// takes at hold_speed, in all blocks that the piece runs through.
+std::uint8_t Quantiser::slew_shift(const FeedPiece& piece, std::uint64_t end_tick) const {
+  if (!slew_shifts_) return 0;
+  double most = std::numeric_limits<double>::infinity();
+  for (std::uint64_t i = piece.block; i != path_.end() && path_[i].begin_ticks < end_tick; ++i) {
+    if (moves(path_[i].block)) most = std::min(most, path_[i].hold_speed * path_[i].density / full_hz_);
+  }
+  std::uint8_t shift = 0;
+  while (shift < driver::kMaxSlewShift && 2 * (piece.highest_rate * (1 << shift)) <= most) ++shift;
+  return shift;
 }
 
 }  // namespace trammel::planner

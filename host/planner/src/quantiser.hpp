@@ -17,6 +17,7 @@
 #include "stop_distances.hpp"
 #include "tick_scale.hpp"
 #include "trammel/driver/commands.hpp"
+#include "trammel/planner/card_limits.hpp"
 #include "trammel/planner/speed_plan.hpp"
 
 namespace trammel::planner {
@@ -29,8 +30,9 @@ class Quantiser {
   static constexpr std::uint64_t kMaxBlocks = 1024;
 
   // `clock_hz`: enabled clocks per second; `stop_clocks`: T_s, how long the fastest rate counts for stop distances.
-  // `smooth`: acceleration has no jumps; `classes`: pieces say theirs.
-  Quantiser(PathRing& path, double clock_hz, double stop_clocks, const QueueLimits& queues, bool smooth, bool classes);
+  // `smooth`: acceleration has no jumps; `card`: what pieces may say, and the clock at full ratio.
+  Quantiser(PathRing& path, double clock_hz, double stop_clocks, const QueueLimits& queues, bool smooth,
+            const CardLimits& card);
 
   // In order. The blocks that the phase covers are in the ring, with all but what comes from here.
   void add(const Phase& phase);
@@ -80,10 +82,13 @@ class Quantiser {
   bool shape(const Phase& phase, const Portion& portion, const PhasePart& part);
   void put_pending(bool stop);
   void put(const FeedMotion& motion, std::uint64_t end_tick, bool stop);
+  std::uint8_t slew_shift(const FeedPiece& piece, std::uint64_t end_tick) const;
 
   PathRing& path_;
   bool smooth_;
   bool classes_;
+  bool slew_shifts_;
+  double full_hz_;  // of the card: clocks a second at full ratio
   TickScale scale_;
   std::unique_ptr<PieceShaper> shaper_;
   BlockTimes times_;

@@ -16,8 +16,31 @@ constexpr double kRest = 1e-6;    // mm/s
 constexpr double kCubeOfFloor = 4.5;
 constexpr double kTimeOfLastTick = 3;
 
+double end_acceleration(const Phase& phase) { return phase.acceleration + phase.duration * phase.jerk; }
+
 // A phase's jerk is no guide far outside it, where it would end the feed before the ticks end.
 bool rate_off_by_half(double rate, double right) { return std::abs(rate - right) > right / 2; }
+
+// A part that begins before its phase, or ends behind it, by a part of a tick has more acceleration there than the
+// phase. With no more than `most` it makes the same ticks between the same rates; its other end has a little less.
+void keep_within(double most, double ticks, FeedMotion& motion) {
+  const double begin = motion.acceleration;
+  const double end = begin + motion.clocks * motion.jerk;
+  if (std::abs(begin) <= most && std::abs(end) <= most) return;
+  const bool first = std::abs(begin) > std::abs(end);
+  const double kept = first ? std::copysign(most, begin) : std::copysign(most, end);
+  // ticks = (rate + gain / 3) t + begin t^2 / 6, and the same seen from the end.
+  const double linear = first ? (2 * motion.rate + motion.end_rate) / 3 : (motion.rate + 2 * motion.end_rate) / 3;
+  const double square = linear * linear + (first ? kept : -kept) * ticks * 2 / 3;
+  if (!(square > 0)) return;
+  const double clocks = 2 * ticks / (linear + std::sqrt(square));
+  const double other = 2 * (motion.end_rate - motion.rate) / clocks - kept;
+  const double jerk = (first ? other - kept : kept - other) / clocks;
+  if (std::abs(other) > most || std::abs(jerk) > std::abs(motion.jerk)) return;
+  motion.acceleration = first ? kept : other;
+  motion.jerk = jerk;
+  motion.clocks = clocks;
+}
 
 // From the rate that the stop before ends at, to the end's rate, with the jerk that makes the ticks: a little less
 // acceleration at the end keeps it below the planned one. Unchanged where the ticks are too few.
@@ -51,6 +74,14 @@ void keep_off_rest(bool rests, bool rested, double ticks, FeedMotion& motion) {
 }
 
 }  // namespace
+
+// A ramp has less than the most acceleration in the tick in which it reaches it from rest or leaves it for a stop.
+double SCurvePieces::end_tick(const Phase& phase, double exact) const {
+  constexpr double kAlmost = 1e-9;
+  if (phase.acceleration >= 0 && phase.jerk > 0) return exact + kAlmost;
+  if (phase.jerk <= 0 && end_acceleration(phase) < 0) return std::ceil(exact - kAlmost);
+  return exact + 0.5;
+}
 
 // Less than two updates of a ramp are not worth a piece: the next one begins earlier.
 bool SCurvePieces::drops(const Pending& pending) const {
@@ -106,6 +137,8 @@ FeedMotion SCurvePieces::bent(const Phase& phase, const PhasePart& part, double 
   motion.acceleration = (phase.acceleration + begin * phase.jerk) * per_speed / clock_hz;
   motion.jerk = phase.jerk * per_speed / clock_hz / clock_hz;
   motion.clocks = (end - begin) * clock_hz;
+  const double most = std::max(std::abs(phase.acceleration), std::abs(end_acceleration(phase)));
+  if (!rests && !rested) keep_within(most * per_speed / clock_hz, ticks, motion);
   keep_off_rest(rests, rested, ticks, motion);
   return motion;
 }

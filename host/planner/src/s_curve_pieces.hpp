@@ -10,7 +10,7 @@ class SCurvePieces final : public PieceShaper {
   void start(const TickScale& scale) override { scale_ = scale; }
   void change_density(const TickScale& scale, double /*ahead*/) override { scale_ = scale; }
   bool ends_at_corner(const Phase& /*phase*/) const override { return true; }
-  double end_tick(const Phase& /*phase*/, double exact) const override { return exact + 0.5; }
+  double end_tick(const Phase& phase, double exact) const override;
   bool drops(const Pending& pending) const override;
   void advance(const Phase& /*phase*/, const PhasePart& /*part*/, double /*late*/) override {}
   FeedMotion motion(const Phase& phase, const PhasePart& part, double lead, double ahead) const override;

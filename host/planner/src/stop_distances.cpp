@@ -14,6 +14,9 @@ constexpr double kResumeFactor = 2;
 constexpr double kReserve = card_map::constant::kUnderrunReserveTicks;
 
 std::uint64_t end_of(const FeedPiece& piece) { return piece.begin + piece.command.ticks; }
+// Of what a hold takes in it: the clocks and the rate that would count as much without its shift.
+double slewing_clocks(const FeedPiece& piece) { return piece.clocks * (1 << piece.command.slew_shift); }
+double slewing_rate(const FeedPiece& piece) { return piece.highest_rate / (1 << piece.command.slew_shift); }
 std::uint32_t ticks32(double ticks) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(ticks), 1.0, 4294967295.0));
 }
@@ -59,7 +62,6 @@ bool StopDistances::take(std::uint64_t index, driver::FeedCommand& command) {
   return true;
 }
 
-// Stop distances: a piece is complete when all is known that follows within T_s, or to the stop.
 void StopDistances::complete() {
   while (completed_ != last_) {
     if (seen_ == completed_) see_next();
@@ -82,10 +84,10 @@ void StopDistances::finish() {
 
 void StopDistances::see_next() {
   const FeedPiece& next = at(seen_);
-  while (highest_last_ != highest_first_ && at(highest_[slot(highest_last_ - 1)]).highest_rate <= next.highest_rate)
+  while (highest_last_ != highest_first_ && slewing_rate(at(highest_[slot(highest_last_ - 1)])) <= slewing_rate(next))
     --highest_last_;
   highest_[slot(highest_last_++)] = seen_;
-  seen_clocks_ = seen_ == completed_ ? 0 : seen_clocks_ + next.clocks;
+  seen_clocks_ = seen_ == completed_ ? 0 : seen_clocks_ + slewing_clocks(next);
   ++seen_;
 }
 
@@ -122,12 +124,12 @@ double StopDistances::least_held(const FeedPiece& first) {
 
 // Of the first piece: what a stop from any of its ticks takes.
 double StopDistances::needed(const FeedPiece& first) const {
-  const double needed = std::ceil(stop_clocks_ * at(highest_[slot(highest_first_)]).highest_rate);
+  const double needed = std::ceil(stop_clocks_ * slewing_rate(at(highest_[slot(highest_first_)])));
   // A stop that begins in the piece goes on at its rates, and to the program's own stop at most.
   const FeedPiece& last = at(seen_ - 1);
   if (!last.stop) return needed;
   return std::min(needed,
-                  std::ceil(stop_clocks_ * first.highest_rate) + static_cast<double>(end_of(last) - end_of(first)));
+                  std::ceil(stop_clocks_ * slewing_rate(first)) + static_cast<double>(end_of(last) - end_of(first)));
 }
 
 // The end of the first piece's run, where it is known.
@@ -153,13 +155,16 @@ double StopDistances::distance(const FeedPiece& first) {
 void StopDistances::complete_first() {
   FeedPiece& first = at(completed_);
   if (completed_ == 0) filled_ = held_from(first);
-  // At least 1: 0 says that the piece ends at rest.
+  // A path that is a run by itself has no rule: with any, the card would hold when the next block's pieces have come,
+  // and not yet their path. Where a rule is in force 0 would leave it so.
   if (!first.stop) {
-    first.command.stop_distance = ends_queued(path_[first.block]) ? 1 : ticks32(distance(first));
+    const bool queued = ends_queued(path_[first.block]);
+    first.command.stop_distance = !queued ? ticks32(distance(first)) : ruled_ ? 1 : 0;
   }
+  ruled_ = first.command.stop_distance != 0;
   if (highest_[slot(highest_first_)] == completed_) ++highest_first_;
   ++completed_;
-  seen_clocks_ -= completed_ < seen_ ? at(completed_).clocks : seen_clocks_;
+  seen_clocks_ -= completed_ < seen_ ? slewing_clocks(at(completed_)) : seen_clocks_;
 }
 
 }  // namespace trammel::planner

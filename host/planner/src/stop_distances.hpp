@@ -1,6 +1,13 @@
 // Holds feed pieces until their stop distances are known. Internal to the planner.
 //
-// A piece is complete when all is known that follows within T_s, how long a hold takes at most, or to the stop.
+// T_s: the enabled clocks that a hold by SLEW alone takes from full ratio, which is 2 T_s clocks. A piece with the slew
+// shift k lowers the ratio r by s = 2^k / (2 T_s) in a clock, in which r p ticks pass, p its rate. So for each tick n
+// d(r^2)/dn = -2 s / p <= -1 / W, where W = T_s * highest rate / 2^k. A hold that begins at r takes at most S r^2 ticks
+// if S is no less than the W of each piece that it comes into: S is the largest of them.
+//
+// In a clock r enabled clocks pass: d(r^2) is -2 s for each of them. So from the end of a piece, at r = 1, a hold comes
+// into those behind as far as the sum of their clocks * 2^k is below T_s; from before, or from a lower ratio, no
+// further. A piece is complete when all is known that follows so far, or to the stop.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +21,7 @@ namespace trammel::planner {
 
 class StopDistances {
  public:
-  // `path` must outlive it. `stop_clocks`: T_s, how long the fastest rate counts.
+  // `path` must outlive it. `stop_clocks`: T_s, the enabled clocks that a hold by SLEW alone takes from full ratio.
   StopDistances(const PathRing& path, double stop_clocks, const QueueLimits& queues);
 
   // In order.
@@ -57,14 +64,15 @@ class StopDistances {
   std::uint64_t pieces_held_;
   QueuedPaths paths_;
   std::vector<FeedPiece> pieces_;  // a ring
+  bool ruled_ = false;             // the piece completed last has a stop distance
   double filled_ = 0;              // tick up to which the host fills the queues when the program begins
   std::uint64_t stop_ = 0;         // the next piece that ends at a stop, or the last one that was looked at
   std::uint64_t first_ = 0;
   std::uint64_t completed_ = 0;  // from the first: complete
   std::uint64_t seen_ = 0;       // their rates count in `highest_`
   std::uint64_t last_ = 0;
-  double seen_clocks_ = 0;              // of the pieces from completed_ to seen_
-  std::vector<std::uint64_t> highest_;  // a ring: pieces from completed_ to seen_ before which none is as fast
+  double seen_clocks_ = 0;              // of the pieces behind completed_ to seen_, times 2^k
+  std::vector<std::uint64_t> highest_;  // a ring: pieces from completed_ to seen_ before which none has as large a W
   std::uint64_t highest_first_ = 0;
   std::uint64_t highest_last_ = 0;
 };

@@ -21,17 +21,15 @@ EndPosition end_position(const machine::Machine& machine, const std::vector<std:
   return result;
 }
 
-gcode::Coordinates standing_at(const machine::Machine& machine, const driver::Snapshot& now) {
-  const kinematics::Kinematics kinematics(machine);
-  kinematics::Pulses at{};
-  for (std::size_t joint = 0; joint < kinematics.joints(); ++joint) at[joint] = now.position[joint];
-  return kinematics.coordinates(at);
-}
+const char* unit_of(char letter) { return letter == 'A' || letter == 'B' || letter == 'C' ? "degrees" : "mm"; }
 
 std::string place_text(const gcode::Coordinates& place, const machine::Machine& machine) {
   std::string text;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    text += fmt::format("{}{} {:.4f}", text.empty() ? "" : " ", machine.axes[i].letter, place[i]);
+    const std::string unit = unit_of(machine.axes[i].letter);
+    const bool last = i + 1 == machine.axes.size();
+    const bool ends = last || unit != unit_of(machine.axes[i + 1].letter);
+    text += fmt::format("{}{} {:.4f}{}", i == 0 ? "" : " ", machine.axes[i].letter, place[i], ends ? " " + unit : "");
   }
   return text;
 }

@@ -8,6 +8,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/driver/low_level/requests.hpp"
 
 namespace trammel::run {
 
@@ -125,6 +126,12 @@ void Jog::stop() {
 
 bool Jog::moving() {
   if (!path_) return false;
+  try {
+    driver::serve_requests(card_);
+  } catch (const driver::StoppedError&) {
+    finish();
+    throw;
+  }
   const driver::Status status = card_.read_status();
   if (status.faulted) path_.reset();
   card_.parts().registers.throw_if_faulted(status, "jog");

@@ -9,6 +9,8 @@ namespace trammel::run {
 
 std::string PathIdentity::text() const { return fmt::format("{:016x}", hash_); }
 
+std::string PathIdentity::unnumbered_text() const { return fmt::format("{:016x}", unnumbered_); }
+
 void ShaperDelay::pin_step(const driver::PinStep& step) {
   std::deque<driver::PathStep>& waiting = waiting_[step.axis];
   if (waiting.empty() || waiting.front().direction != step.direction || waiting.front().cycle > step.cycle) {

@@ -1,4 +1,5 @@
-// One pass over a program: lines, reader, blocks, planner. Internal to the runner.
+// One pass over a program: lines, reader, blocks, planner; from a place on where it begins in the middle. Internal to
+// the runner.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,23 +9,27 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
+#include "trammel/driver/wide.hpp"
 #include "trammel/gcode/reader.hpp"
 #include "trammel/machine/machine.hpp"
 #include "trammel/planner/planner.hpp"
 #include "trammel/run/end_position.hpp"
+#include "trammel/run/replay.hpp"
 #include "trammel/run/runner.hpp"
 
 namespace trammel::run {
 
 class Pipeline {
  public:
-  // `meanwhile`: as of planner::PlannerSettings.
+  // `meanwhile`: as of planner::PlannerSettings. `all`, unless it is null, gets every command of the program, those
+  // before the place where the run begins too. Throws ProgramError for a place that the program does not have.
   Pipeline(const ProgramLines& lines, const machine::Machine& machine, const planner::CardLimits& card,
-           const RunSettings& settings, std::function<void()> meanwhile = {})
+           const RunSettings& settings, std::function<void()> meanwhile = {}, driver::CommandSink* all = nullptr)
       : lines_(lines()),
-        reader_(reader_at(settings.first_line, gcode::Reader(*lines_, machine, settings.start, settings.reader))),
-        blocks_(reader_, machine, planner::with_arcs_by(card, settings.arcs), reader_.position()),
+        reader_(*lines_, machine, settings.start, settings.reader),
+        blocks_(reader_, machine, planner::with_arcs_by(card, settings.arcs), settings.start),
         machine_(machine),
         kinematics_(machine),
         card_(card),
@@ -32,14 +37,17 @@ class Pipeline {
     planner_.emplace(blocks_, machine_, card_, planning_);
     if (settings.profile == planner::SpeedProfile::kSCurve) blocks_.require_jerk();
     if (settings.single_block) blocks_.keep_corners();
-    if (settings.start_is_known) require_at(settings.start, settings.first_line);
+    all_.tap = all;
+    start_ = blocks_.start();
+    if (settings.place || settings.first_line > 1) go_to_start(settings);
   }
 
   // As planner::Planner::next(), but throws ProgramError, and gives false where a probe stands next, too.
   bool next(driver::CommandSink& sink, planner::PlannedBlock& planned) {
-    const bool more = planner_->next(sink, planned);
-    if (!more && blocks_.error()) throw ProgramError(*blocks_.error());
-    return more;
+    if (opening_) return give_opening(sink, planned);
+    if (all_.tap == nullptr) return plan_next(sink, planned);
+    all_.next = &sink;
+    return plan_next(all_, planned);
   }
   bool at_probe() const { return blocks_.at_probe(); }
   // From here next() gives the probe's way to its target, then false.
@@ -64,22 +72,129 @@ class Pipeline {
   const kinematics::Kinematics& kinematics() const { return kinematics_; }
 
   const std::string& file() const { return lines_->name(); }
-  const planner::Pulses& start() const { return blocks_.start(); }
+  // Where the run begins.
+  const planner::Pulses& start() const { return start_; }
+  std::size_t begin_line() const { return begin_line_; }  // of the program
+  // Of the program's commands that count in GEOMETRY_BEGUN, those before the run's first one.
+  std::uint64_t skipped() const { return skipped_; }
+  // Whether the run begins amid the program, and how many feed ticks of its first path are done.
+  bool replays() const { return replays_; }
+  std::uint64_t ticks_done() const { return ticks_done_; }
+  // What it sets before anything else.
+  const driver::OutputCommand& restored() const { return restored_; }
   const std::map<std::string, std::size_t>& accepted() const { return reader_.accepted(); }
 
  private:
-  static gcode::Reader reader_at(std::size_t line, gcode::Reader reader) {
-    if (line > 1 && !reader.skip_to(line)) throw ProgramError(*reader.error());
-    return reader;
+  struct Tee final : driver::CommandSink {
+    void put(const driver::Command& command) override {
+      tap->put(command);
+      next->put(command);
+    }
+    driver::CommandSink* tap = nullptr;
+    driver::CommandSink* next = nullptr;
+  };
+  // The block in which the run begins, from there on.
+  struct Opening final : driver::CommandSink {
+    void put(const driver::Command& command) override { commands.push_back(command); }
+    std::vector<driver::Command> commands;
+    planner::PlannedBlock planned;
+  };
+  // Before a replay that begins at a line: looks for its first block.
+  class AtLine final : public driver::CommandSink {
+   public:
+    // Line 0: the replay knows its place.
+    AtLine(Replay& replay, const planner::PlannedBlock& planned, std::size_t line)
+        : replay_(replay), planned_(planned), line_(line) {}
+    void put(const driver::Command& command) override {
+      if (line_ != 0 && planned_.block.line >= line_) replay_.here();
+      replay_.put(command);
+    }
+
+   private:
+    Replay& replay_;
+    const planner::PlannedBlock& planned_;
+    std::size_t line_;
+  };
+
+  bool plan_next(driver::CommandSink& sink, planner::PlannedBlock& planned) {
+    const bool more = planner_->next(sink, planned);
+    if (!more && blocks_.error()) throw ProgramError(*blocks_.error());
+    return more;
   }
 
-  // Throws RunError where the program begins elsewhere.
-  void require_at(const gcode::Coordinates& place, std::size_t line) const {
-    if (blocks_.start() == kinematics_.pulses(place)) return;
-    throw RunError(
-        file(), line,
-        fmt::format("it begins at {}, but the machine stands at {}: run the lines before it, or go there first",
-                    place_text(reader_.position(), machine_), place_text(place, machine_)));
+  void go_to_start(const RunSettings& settings) {
+    if (!settings.place) reader_.must_reach(settings.first_line);
+    opening_.emplace();
+    Replay replay = settings.place ? Replay(*opening_, settings.place->path) : Replay(*opening_);
+    AtLine at_line(replay, opening_->planned, settings.place ? 0 : settings.first_line);
+    driver::CommandSink* sink = &at_line;
+    if (all_.tap != nullptr) {
+      all_.next = &at_line;
+      sink = &all_;
+    }
+    try {
+      while (!replay.begun() && plan_next(*sink, opening_->planned)) {
+      }
+    } catch (const ReplayError& error) {
+      refuse(gcode::ErrorCode::kNoSuchLine, opening_->planned.block.line, error.what());
+    }
+    if (!replay.begun()) refuse_start(settings);
+    planner::PlannedBlock& planned = opening_->planned;
+    if (settings.place) check_position(replay.ticks_done(), settings.place->position);
+    start_ = settings.place ? settings.place->position : planned.block.start;
+    planned.block.start = start_;
+    planned.commands = opening_->commands.size();
+    begin_line_ = planned.block.line;
+    const auto* outputs = std::get_if<driver::OutputCommand>(&opening_->commands.front());
+    if (outputs != nullptr) restored_ = *outputs;
+    skipped_ = replay.skipped();
+    replays_ = true;
+    ticks_done_ = replay.ticks_done();
+  }
+  // Where a block is a line or stands, its ticks say where the machine must be: not where somebody else's program has
+  // stopped the card since.
+  void check_position(std::uint64_t done, const planner::Pulses& position) const {
+    const planner::Block& block = opening_->planned.block;
+    planner::Pulses wanted = block.start;
+    for (const driver::Command& command : opening_->commands) {
+      if (const auto* line = std::get_if<driver::LineCommand>(&command)) wanted = after(wanted, *line, done);
+    }
+    const bool known = block.geometry == planner::Geometry::kLine || !planner::moves(block);
+    if (!known || position == wanted) return;
+    refuse(
+        gcode::ErrorCode::kNoSuchLine, block.line,
+        fmt::format("the run was stopped {} ticks into this line, but the card stood at {}: something else has moved "
+                    "it since",
+                    done, place_text(millimetres(position), machine_)));
+  }
+  // Pulses behind so many ticks of a line.
+  static planner::Pulses after(planner::Pulses at, const driver::LineCommand& line, std::uint64_t done) {
+    for (std::size_t joint = 0; joint < at.size(); ++joint) {
+      const driver::Int128 way =
+          driver::Int128(static_cast<std::int64_t>(done)) * driver::Int128(line.increment[joint]) +
+          driver::Int128(std::int64_t{1} << 39);
+      at[joint] += static_cast<std::int64_t>(static_cast<std::uint64_t>(way.high()) << 24 | way.low() >> 40);
+    }
+    return at;
+  }
+  [[noreturn]] void refuse_start(const RunSettings& settings) {
+    const std::string where = settings.place ? std::string("the place") : fmt::format("line {}", settings.first_line);
+    if (at_probe()) {
+      refuse(gcode::ErrorCode::kDependsOnProbe, blocks_.begin_probe().line,
+             fmt::format("a probe before {}, where the program is to begin", where));
+    }
+    refuse(gcode::ErrorCode::kNoSuchLine, opening_->planned.block.line,
+           fmt::format("the program ends before {}, where it is to begin", where));
+  }
+  [[noreturn]] void refuse(gcode::ErrorCode code, std::size_t line, const std::string& message) const {
+    throw ProgramError(gcode::Error{code, file(), line, message});
+  }
+  bool give_opening(driver::CommandSink& sink, planner::PlannedBlock& planned) {
+    const Opening opening = std::move(*opening_);
+    opening_.reset();
+    planned = opening.planned;
+    for (const driver::Command& command : opening.commands) sink.put(command);
+    return true;
   }
 
   void go_on_at(const planner::Pulses& here) {
@@ -95,6 +210,14 @@ class Pipeline {
   planner::CardLimits card_;
   planner::PlannerSettings planning_;
   std::optional<planner::Planner> planner_;  // of the program up to the next probe
+  Tee all_;
+  planner::Pulses start_{};
+  std::optional<Opening> opening_;  // until it is given
+  std::size_t begin_line_ = 1;
+  std::uint64_t skipped_ = 0;
+  bool replays_ = false;
+  std::uint64_t ticks_done_ = 0;
+  driver::OutputCommand restored_;
 };
 
 }  // namespace trammel::run

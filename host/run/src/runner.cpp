@@ -8,9 +8,11 @@
 #include "line_ring.hpp"
 #include "pipeline.hpp"
 #include "plan_gatherer.hpp"
+#include "plan_identity.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/driver/stream.hpp"
 #include "trammel/run/configure.hpp"
+#include "trammel/run/end_position.hpp"
 
 namespace trammel::run {
 namespace {
@@ -24,11 +26,24 @@ class NoSink final : public driver::CommandSink {
   void put(const driver::Command& /*command*/) override {}
 };
 
+// The card's ratio is 0 when it comes back.
+void hold_at_once(driver::Card& card) {
+  namespace reg = card_map::reg;
+  constexpr int kLooks = 1000;
+  std::array<driver::Access, 1> slew{driver::write_of(reg::kSlew, card.parts().registers.read(reg::kSlew))};
+  card.set_slew_time(std::chrono::nanoseconds(0));
+  card.set_hold(true);
+  int looks = 0;
+  while (!card.read_status().held && looks < kLooks) ++looks;
+  card.parts().registers.transfer(slew.data(), slew.size(), "slew");
+  if (looks == kLooks) throw driver::StateError("the card's hold has no effect: the run cannot begin with a ramp");
+}
+
 // Streams the plan; errors of the card get the line of the program that was being run.
 class ProgramStream final : private driver::CommandSink {
  public:
   ProgramStream(Pipeline& pipeline, driver::Card& card, const std::vector<Observer*>& observers,
-                const machine::Machine& machine, bool single_block)
+                const machine::Machine& machine, bool single_block, bool& begins)
       : pipeline_(pipeline),
         observers_(observers),
         machine_(machine),
@@ -37,7 +52,12 @@ class ProgramStream final : private driver::CommandSink {
         before_(card.read_snapshot()),
         // A command takes two halfwords at least: half of these in the queue, half kept back by the stream.
         lines_(card.identification().geometry_depth),
-        stream_(card, options()) {}
+        held_until_(pipeline.ticks_done() != 0 ? 2 : 1),
+        begins_(begins),
+        stream_(card, options()) {
+    begins_ = pipeline.replays();
+  }
+  ~ProgramStream() override { begins_ = false; }
 
   // Gives back where the program ends, pulses.
   planner::Pulses run() {
@@ -154,10 +174,17 @@ class ProgramStream final : private driver::CommandSink {
     options.poll_clocks = std::max<std::uint64_t>(64, card_.identification().clock_hz / kLooksPerSecond);
     options.progress = [this](const driver::StreamProgress& progress) {
       lines_.begun(progress.geometry_begun);
+      release(progress.feed_begun);
       const Progress how_far{progress.geometry_begun, lines_.current(), progress.status};
       for (Observer* observer : observers_) observer->progress(how_far);
     };
     return options;
+  }
+  // A run that begins amid the program begins from ratio 0, once its first piece that moves has begun.
+  void release(std::uint32_t feed_begun) {
+    if (!begins_ || feed_begun < held_until_) return;
+    begins_ = false;
+    card_.request_hold(false);
   }
   // After an error: what the card has begun by now. A fault has set its counters back; what had begun by then was
   // latched. Where the link fails too, the last look counts.
@@ -181,6 +208,8 @@ class ProgramStream final : private driver::CommandSink {
   bool first_of_block_ = true;
   std::uint64_t commands_ = 0;  // put
   LineRing lines_;
+  std::uint32_t held_until_;  // so many pieces and barriers have begun
+  bool& begins_;
   driver::Stream stream_;
 };
 
@@ -202,7 +231,8 @@ Runner::Runner(ProgramLines lines, const machine::Machine& machine, const planne
 const Plan& Runner::plan() {
   RunSettings settings = settings_;
   settings.reader.name_all_unknown = true;
-  Pipeline pipeline(lines_, machine_, card_, settings);
+  PlanIdentity identity;
+  Pipeline pipeline(lines_, machine_, card_, settings, {}, &identity);
   PlanGatherer gatherer(pipeline);
   NoSink sink;
   std::uint64_t commands = 0;
@@ -220,7 +250,26 @@ const Plan& Runner::plan() {
     plan_section();
     pipeline.assume_probe(planned.block.end);
   }
-  return plan_ = gatherer.plan();
+  plan_ = gatherer.plan();
+  plan_.identity = identity.text();
+  plan_.skipped = pipeline.skipped();
+  plan_.ticks_done = pipeline.ticks_done();
+  plan_.begin_line = pipeline.begin_line();
+  plan_.restored = pipeline.restored();
+  return plan_;
+}
+
+// Before anything moves. A run that begins amid the program begins from ratio 0.
+void Runner::prepare(driver::Card& card, const Pipeline& pipeline) const {
+  if (settings_.stands_at && pipeline.start() != *settings_.stands_at) {
+    const kinematics::Kinematics& kinematics = pipeline.kinematics();
+    throw RunError(pipeline.file(), pipeline.begin_line(),
+                   fmt::format("it begins at {}, but the machine stands at {}",
+                               place_text(kinematics.coordinates(pipeline.start()), machine_),
+                               place_text(kinematics.coordinates(*settings_.stands_at), machine_)));
+  }
+  configure(card, machine_);
+  if (pipeline.replays()) hold_at_once(card);
 }
 
 void Runner::require_planned_for(driver::Card& card) const {
@@ -233,10 +282,10 @@ void Runner::require_planned_for(driver::Card& card) const {
 
 Outcome Runner::run(driver::Card& card) {
   require_planned_for(card);
-  configure(card, machine_);
   // A window that takes long to plan does not make a stop or a hold wait.
   Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { driver::serve_requests(card); });
-  ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block);
+  prepare(card, pipeline);
+  ProgramStream stream(pipeline, card, observers_, machine_, settings_.single_block, begins_);
   const planner::Pulses end = stream.run();
   if (plan_.probes == 0 && (stream.sent() != plan_.commands || end != plan_.end)) {
     throw ProgramError({gcode::ErrorCode::kCannotRead, plan_.file, 0, "the program has changed while it was run"});
@@ -250,12 +299,12 @@ Outcome Runner::run(driver::Card& card) {
 
 Outcome Runner::stream(driver::Card& card) {
   require_planned_for(card);
-  configure(card, machine_);
   Pipeline pipeline(lines_, machine_, card_, settings_, [&card] { driver::serve_requests(card); });
+  prepare(card, pipeline);
   PlanGatherer gatherer(pipeline);
   std::vector<Observer*> observers = observers_;
   observers.push_back(&gatherer);
-  ProgramStream stream(pipeline, card, observers, machine_, settings_.single_block);
+  ProgramStream stream(pipeline, card, observers, machine_, settings_.single_block, begins_);
   const planner::Pulses end = stream.run();
   plan_ = gatherer.plan();
   plan_.probes = stream.probes().size();

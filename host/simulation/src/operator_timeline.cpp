@@ -27,9 +27,9 @@ void OperatorTimeline::schedule(sim::TimedBus& bus, std::uint32_t clock_hz) {
 
 void OperatorTimeline::make(const OperatorEvent& event, sim::Engine& engine) {
   if (event.kind == OperatorEvent::Kind::kInput) {
-    const auto pin = static_cast<std::uint16_t>(1U << event.input);
-    inputs_ = static_cast<std::uint16_t>(event.level ? inputs_ | pin : inputs_ & ~pin);
-    engine.set_inputs(inputs_);
+    engine.set_input(event.input, event.level);
+  } else if (event.kind == OperatorEvent::Kind::kEmergencyStop) {
+    engine.set_emergency_stop(event.level);
   } else if (event.kind == OperatorEvent::Kind::kOverride) {
     engine.write(reg::kRatioFeed, driver::Card::ratio_of(event.percent, max_percent_));
   } else {

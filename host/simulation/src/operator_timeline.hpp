@@ -26,7 +26,6 @@ class OperatorTimeline {
   const Operation& operation_;
   double max_percent_;
   std::vector<MadeEvent> made_;
-  std::uint16_t inputs_ = 0;  // levels at the card's pins
 };
 
 }  // namespace trammel::simulation

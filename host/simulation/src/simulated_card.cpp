@@ -12,7 +12,7 @@ planner::CardLimits limits_of(const sim::EngineOptions& engine) {
   card.clock_hz = engine.clock_hz;
   card.axes = engine.axes;
   card.classes = true;
-  card.outputs = sim::kPins;
+  card.outputs = sim::kOutputs;
   return card;
 }
 

@@ -21,6 +21,7 @@ module frame_engine (
   logic        listen;
   logic        start;
   logic        execute;
+  logic        new_session;
   logic        executed;
   logic        send;
   logic        sending;
@@ -52,6 +53,7 @@ module frame_engine (
       .listen_o(listen),
       .start_o(start),
       .execute_o(execute),
+      .new_o(new_session),
       .send_o(send),
       .sending_o(sending),
       .epoch_o(epoch),
@@ -120,6 +122,7 @@ module frame_engine (
       .rst_i,
       .start_i(start),
       .execute_i(execute),
+      .new_i(new_session),
       .write_i(kind == WRITE),
       .fixed_i(fixed),
       .count_i(count),

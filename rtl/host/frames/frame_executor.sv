@@ -8,6 +8,7 @@ module frame_executor (
     // the request stands from start_i on
     input wire logic start_i,
     input wire logic execute_i,  // with start_i; 0: the state alone
+    input wire logic new_i,  // with it: the first request of its session
     input wire logic write_i,
     input wire logic fixed_i,
     input wire logic [5:0] count_i,
@@ -36,20 +37,23 @@ module frame_executor (
   localparam int STORE = 2;  // a word that was read, into the RAM
   localparam int NEXT = 3;
 
-  logic [ 3:0] at_q;  // one of them, or none: at rest, or the inner port has the access
-  logic [ 2:0] byte_q;  // of the word under way
-  logic [ 5:0] word_q;
-  logic        state_q;  // the reply's state is read; else the request runs
-  logic        error_q;
-  logic [ 7:0] place_q;
-  logic [ 9:0] address_q;
-  logic [31:0] data_q;
-  logic        writes;
-  logic        over;
-  logic        moves;
-  logic        begins;  // the request
-  logic        ack;
-  logic        error;
+  logic [                           3:0] at_q;  // one of them, or none: at rest, or the inner port has the access
+  logic [                           2:0] byte_q;  // of the word under way
+  logic [                           5:0] word_q;
+  logic                                  state_q;  // the reply's state is read; else the request runs
+  logic                                  error_q;
+  logic                                  new_q;  // no access of the session was answered yet
+  logic [                           7:0] place_q;
+  logic [                           9:0] address_q;
+  logic [                          31:0] data_q;
+  logic                                  writes;
+  logic                                  over;
+  logic                                  moves;
+  logic                                  begins;  // the request
+  logic                                  ack;
+  logic                                  error;
+
+  logic [register_access_pkg::WIDTH-1:0] asked;
 
   assign begins   = start_i && execute_i;
   assign writes   = write_i && !state_q;
@@ -59,7 +63,8 @@ module frame_executor (
   assign place_o  = place_q;
   assign store_o  = at_q[STORE];
   assign byte_o   = data_q[7:0];
-  assign access_o = register_access_pkg::pack(at_q[ASK], writes, 1'b0, {address_q, 2'b00}, data_q);
+  assign asked    = register_access_pkg::pack(at_q[ASK], writes, 1'b0, {address_q, 2'b00}, data_q);
+  assign access_o = register_access_pkg::with_session(asked, !state_q, new_q && !state_q);
   assign ack      = answer_i[register_answer_pkg::ACK];
   assign error    = answer_i[register_answer_pkg::ERROR];
   assign done_o   = at_q[NEXT] && state_q && over;
@@ -90,6 +95,8 @@ module frame_executor (
       refused_o <= error_q;
       read_o <= !write_i;
     end
+    if (begins) new_q <= new_i;
+    else if (ack) new_q <= 1'b0;
     if (start_i || (at_q[NEXT] && over)) begin
       state_q <= !begins;
       word_q <= 6'd0;

@@ -17,6 +17,7 @@ module frame_session (
     output logic listen_o,
     output logic start_o,  // event: the executor begins
     output logic execute_o,  // with it: the request runs
+    output logic new_o,  // no request ran in this epoch yet
     output logic send_o,  // event: the reply begins
     output logic sending_o,
     // of the reply
@@ -64,11 +65,15 @@ module frame_session (
       result_o <= malformed_i ? MALFORMED : good ? DONE : !epoch_good_i ? WRONG_EPOCH : WRONG_NUMBER;
     end
     if (start_o && execute_o) last_o <= number_i;
-    if (restart_i || (start_o && connects)) epoch_o <= epoch_o + 16'd1;
+    if (restart_i || (start_o && connects)) begin
+      epoch_o <= epoch_o + 16'd1;
+      new_o   <= 1'b1;
+    end else if (start_o && execute_o) new_o <= 1'b0;
     if (rst_i) begin
       busy_q <= 1'b0;
       sending_o <= 1'b0;
       epoch_o <= 16'd0;
+      new_o <= 1'b0;
       last_o <= 16'd0;
     end
   end

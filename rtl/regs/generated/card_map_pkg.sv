@@ -44,6 +44,10 @@ package card_map_pkg;
   localparam int ANSWER_CLOCKS_8_AXES = 600;
   // Flag of FEED beside its class: the ticks make no steps
   localparam int PIECE_SILENT = 4;
+  // Flags of FEED beside these: so much for each doubling of SLEW while the piece is in force
+  localparam int PIECE_DOUBLING = 8;
+  // The most doublings of SLEW that a piece may have
+  localparam int MAX_SLEW_SHIFT = 3;
   // Class of a feed piece: what the feed override slows down
   localparam int CLASS_FEED = 0;
   // Class of a feed piece: rapid positioning, with a ratio of its own
@@ -64,6 +68,10 @@ package card_map_pkg;
   localparam int ENGINE_CLASSES = 9;
   localparam int ENGINE_WATERMARKS = 10;
   localparam int ENGINE_MACHINE_INPUTS = 11;
+  localparam int ENGINE_CAPTURES = 12;
+  localparam int ENGINE_EMERGENCY_STOP = 13;
+  localparam int ENGINE_ENABLES = 14;
+  localparam int ENGINE_SOFT_LIMITS = 15;
 
   // Registers: byte address, reset value, bits with meaning; for arrays (the address is axis 0's) also count and
   // stride in bytes, negative where the array runs downwards.
@@ -71,7 +79,7 @@ package card_map_pkg;
   localparam logic [31:0] RESET_MAGIC = 32'h54524D4C;
   localparam logic [31:0] MASK_MAGIC = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_MAP_VERSION = 12'h004;
-  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030002;
+  localparam logic [31:0] RESET_MAP_VERSION = 32'h00030005;
   localparam logic [31:0] MASK_MAP_VERSION = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_AXES = 12'h008;
   localparam logic [31:0] RESET_AXES = 32'h00000000;
@@ -102,7 +110,7 @@ package card_map_pkg;
   localparam logic [31:0] MASK_PORTS = 32'h00FFFFFF;
   localparam logic [11:0] ADDR_STATUS = 12'h040;
   localparam logic [31:0] RESET_STATUS = 32'h00000000;
-  localparam logic [31:0] MASK_STATUS = 32'h0007FFFF;
+  localparam logic [31:0] MASK_STATUS = 32'h003FFFFF;
   localparam logic [11:0] ADDR_FAULT = 12'h044;
   localparam logic [31:0] RESET_FAULT = 32'h00000000;
   localparam logic [31:0] MASK_FAULT = 32'h0007FFFF;
@@ -123,7 +131,7 @@ package card_map_pkg;
   localparam logic [31:0] MASK_FEED_BEGUN = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_INPUTS = 12'h05C;
   localparam logic [31:0] RESET_INPUTS = 32'h00000000;
-  localparam logic [31:0] MASK_INPUTS = 32'h0000FFFF;
+  localparam logic [31:0] MASK_INPUTS = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_OUTPUTS = 12'h060;
   localparam logic [31:0] RESET_OUTPUTS = 32'h00000000;
   localparam logic [31:0] MASK_OUTPUTS = 32'h0000FFFF;
@@ -136,9 +144,18 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_STALE_TICKS = 12'h06C;
   localparam logic [31:0] RESET_STALE_TICKS = 32'h00000000;
   localparam logic [31:0] MASK_STALE_TICKS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_RAW_INPUTS = 12'h070;
+  localparam logic [31:0] RESET_RAW_INPUTS = 32'h00000000;
+  localparam logic [31:0] MASK_RAW_INPUTS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_ROLES = 12'h074;
+  localparam logic [31:0] RESET_ROLES = 32'h00000000;
+  localparam logic [31:0] MASK_ROLES = 32'h0FFFFFFF;
+  localparam logic [11:0] ADDR_PLACE = 12'h078;
+  localparam logic [31:0] RESET_PLACE = 32'h00000000;
+  localparam logic [31:0] MASK_PLACE = 32'h0000FFFF;
   localparam logic [11:0] ADDR_LIMIT_STATE = 12'h07C;
   localparam logic [31:0] RESET_LIMIT_STATE = 32'h00000000;
-  localparam logic [31:0] MASK_LIMIT_STATE = 32'h00FFFFFF;
+  localparam logic [31:0] MASK_LIMIT_STATE = 32'h0FFFFFFF;
   localparam logic [11:0] ADDR_DESCRIPTOR = 12'h100;
   localparam logic [31:0] RESET_DESCRIPTOR = 32'h00000000;
   localparam logic [31:0] MASK_DESCRIPTOR = 32'hFFFFFFFF;
@@ -260,6 +277,162 @@ package card_map_pkg;
   localparam logic [31:0] MASK_MARK_POSITION = 32'hFFFFFFFF;
   localparam int COUNT_MARK_POSITION = 8;
   localparam int STRIDE_MARK_POSITION = 4;
+  localparam logic [11:0] ADDR_REST_FAULT = 12'h400;
+  localparam logic [31:0] RESET_REST_FAULT = 32'h00000000;
+  localparam logic [31:0] MASK_REST_FAULT = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_REST_STATUS = 12'h404;
+  localparam logic [31:0] RESET_REST_STATUS = 32'h00000000;
+  localparam logic [31:0] MASK_REST_STATUS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_REST_TICKS_LEFT_HI = 12'h408;
+  localparam logic [31:0] RESET_REST_TICKS_LEFT_HI = 32'h00000000;
+  localparam logic [31:0] MASK_REST_TICKS_LEFT_HI = 32'h000000FF;
+  localparam logic [11:0] ADDR_REST_TICKS_LEFT_LO = 12'h40C;
+  localparam logic [31:0] RESET_REST_TICKS_LEFT_LO = 32'h00000000;
+  localparam logic [31:0] MASK_REST_TICKS_LEFT_LO = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_REST_FEED_BEGUN = 12'h410;
+  localparam logic [31:0] RESET_REST_FEED_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_REST_FEED_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_REST_GEOMETRY_BEGUN = 12'h414;
+  localparam logic [31:0] RESET_REST_GEOMETRY_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_REST_GEOMETRY_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_REST_TIME_HI = 12'h418;
+  localparam logic [31:0] RESET_REST_TIME_HI = 32'h00000000;
+  localparam logic [31:0] MASK_REST_TIME_HI = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_REST_TIME_LO = 12'h41C;
+  localparam logic [31:0] RESET_REST_TIME_LO = 32'h00000000;
+  localparam logic [31:0] MASK_REST_TIME_LO = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_REST_POSITION = 12'h420;
+  localparam logic [31:0] RESET_REST_POSITION = 32'h00000000;
+  localparam logic [31:0] MASK_REST_POSITION = 32'hFFFFFFFF;
+  localparam int COUNT_REST_POSITION = 8;
+  localparam int STRIDE_REST_POSITION = 4;
+  localparam logic [11:0] ADDR_CAPTURE_0_FAULT = 12'h480;
+  localparam logic [31:0] RESET_CAPTURE_0_FAULT = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_FAULT = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_0_STATUS = 12'h484;
+  localparam logic [31:0] RESET_CAPTURE_0_STATUS = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_STATUS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_0_RATIO = 12'h488;
+  localparam logic [31:0] RESET_CAPTURE_0_RATIO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_RATIO = 32'h0001FFFF;
+  localparam logic [11:0] ADDR_CAPTURE_0_RATE = 12'h48C;
+  localparam logic [31:0] RESET_CAPTURE_0_RATE = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_RATE = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_0_FEED_BEGUN = 12'h490;
+  localparam logic [31:0] RESET_CAPTURE_0_FEED_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_FEED_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_0_GEOMETRY_BEGUN = 12'h494;
+  localparam logic [31:0] RESET_CAPTURE_0_GEOMETRY_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_GEOMETRY_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_0_TIME_HI = 12'h498;
+  localparam logic [31:0] RESET_CAPTURE_0_TIME_HI = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_TIME_HI = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_0_TIME_LO = 12'h49C;
+  localparam logic [31:0] RESET_CAPTURE_0_TIME_LO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_TIME_LO = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_0_POSITION = 12'h4A0;
+  localparam logic [31:0] RESET_CAPTURE_0_POSITION = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_0_POSITION = 32'hFFFFFFFF;
+  localparam int COUNT_CAPTURE_0_POSITION = 8;
+  localparam int STRIDE_CAPTURE_0_POSITION = 4;
+  localparam logic [11:0] ADDR_CAPTURE_1_FAULT = 12'h4C0;
+  localparam logic [31:0] RESET_CAPTURE_1_FAULT = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_FAULT = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_1_STATUS = 12'h4C4;
+  localparam logic [31:0] RESET_CAPTURE_1_STATUS = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_STATUS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_1_RATIO = 12'h4C8;
+  localparam logic [31:0] RESET_CAPTURE_1_RATIO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_RATIO = 32'h0001FFFF;
+  localparam logic [11:0] ADDR_CAPTURE_1_RATE = 12'h4CC;
+  localparam logic [31:0] RESET_CAPTURE_1_RATE = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_RATE = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_1_FEED_BEGUN = 12'h4D0;
+  localparam logic [31:0] RESET_CAPTURE_1_FEED_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_FEED_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_1_GEOMETRY_BEGUN = 12'h4D4;
+  localparam logic [31:0] RESET_CAPTURE_1_GEOMETRY_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_GEOMETRY_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_1_TIME_HI = 12'h4D8;
+  localparam logic [31:0] RESET_CAPTURE_1_TIME_HI = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_TIME_HI = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_1_TIME_LO = 12'h4DC;
+  localparam logic [31:0] RESET_CAPTURE_1_TIME_LO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_TIME_LO = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_1_POSITION = 12'h4E0;
+  localparam logic [31:0] RESET_CAPTURE_1_POSITION = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_1_POSITION = 32'hFFFFFFFF;
+  localparam int COUNT_CAPTURE_1_POSITION = 8;
+  localparam int STRIDE_CAPTURE_1_POSITION = 4;
+  localparam logic [11:0] ADDR_CAPTURE_2_FAULT = 12'h500;
+  localparam logic [31:0] RESET_CAPTURE_2_FAULT = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_FAULT = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_2_STATUS = 12'h504;
+  localparam logic [31:0] RESET_CAPTURE_2_STATUS = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_STATUS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_2_RATIO = 12'h508;
+  localparam logic [31:0] RESET_CAPTURE_2_RATIO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_RATIO = 32'h0001FFFF;
+  localparam logic [11:0] ADDR_CAPTURE_2_RATE = 12'h50C;
+  localparam logic [31:0] RESET_CAPTURE_2_RATE = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_RATE = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_2_FEED_BEGUN = 12'h510;
+  localparam logic [31:0] RESET_CAPTURE_2_FEED_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_FEED_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_2_GEOMETRY_BEGUN = 12'h514;
+  localparam logic [31:0] RESET_CAPTURE_2_GEOMETRY_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_GEOMETRY_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_2_TIME_HI = 12'h518;
+  localparam logic [31:0] RESET_CAPTURE_2_TIME_HI = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_TIME_HI = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_2_TIME_LO = 12'h51C;
+  localparam logic [31:0] RESET_CAPTURE_2_TIME_LO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_TIME_LO = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_2_POSITION = 12'h520;
+  localparam logic [31:0] RESET_CAPTURE_2_POSITION = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_2_POSITION = 32'hFFFFFFFF;
+  localparam int COUNT_CAPTURE_2_POSITION = 8;
+  localparam int STRIDE_CAPTURE_2_POSITION = 4;
+  localparam logic [11:0] ADDR_CAPTURE_3_FAULT = 12'h540;
+  localparam logic [31:0] RESET_CAPTURE_3_FAULT = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_FAULT = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_3_STATUS = 12'h544;
+  localparam logic [31:0] RESET_CAPTURE_3_STATUS = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_STATUS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_3_RATIO = 12'h548;
+  localparam logic [31:0] RESET_CAPTURE_3_RATIO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_RATIO = 32'h0001FFFF;
+  localparam logic [11:0] ADDR_CAPTURE_3_RATE = 12'h54C;
+  localparam logic [31:0] RESET_CAPTURE_3_RATE = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_RATE = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_3_FEED_BEGUN = 12'h550;
+  localparam logic [31:0] RESET_CAPTURE_3_FEED_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_FEED_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_3_GEOMETRY_BEGUN = 12'h554;
+  localparam logic [31:0] RESET_CAPTURE_3_GEOMETRY_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_GEOMETRY_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_3_TIME_HI = 12'h558;
+  localparam logic [31:0] RESET_CAPTURE_3_TIME_HI = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_TIME_HI = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_3_TIME_LO = 12'h55C;
+  localparam logic [31:0] RESET_CAPTURE_3_TIME_LO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_TIME_LO = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_3_POSITION = 12'h560;
+  localparam logic [31:0] RESET_CAPTURE_3_POSITION = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_3_POSITION = 32'hFFFFFFFF;
+  localparam int COUNT_CAPTURE_3_POSITION = 8;
+  localparam int STRIDE_CAPTURE_3_POSITION = 4;
+  localparam logic [11:0] ADDR_CAPTURE_SELECT = 12'h580;
+  localparam logic [31:0] RESET_CAPTURE_SELECT = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_SELECT = 32'h0000071F;
+  localparam int COUNT_CAPTURE_SELECT = 4;
+  localparam int STRIDE_CAPTURE_SELECT = 4;
+  localparam logic [11:0] ADDR_CAPTURE_STATE = 12'h590;
+  localparam logic [31:0] RESET_CAPTURE_STATE = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_STATE = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_CLEAR = 12'h594;
+  localparam logic [31:0] RESET_CAPTURE_CLEAR = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_CLEAR = 32'h0000000F;
   localparam logic [11:0] ADDR_CONTROL = 12'h600;
   localparam logic [31:0] RESET_CONTROL = 32'h00000000;
   localparam logic [31:0] MASK_CONTROL = 32'h0000000F;
@@ -285,11 +458,11 @@ package card_map_pkg;
   localparam logic [31:0] RESET_HOLD_LIMIT = 32'h0000FFFF;
   localparam logic [31:0] MASK_HOLD_LIMIT = 32'h0000FFFF;
   localparam logic [11:0] ADDR_STOP_REACTION = 12'h684;
-  localparam logic [31:0] RESET_STOP_REACTION = 32'h00066000;
+  localparam logic [31:0] RESET_STOP_REACTION = 32'h0007E000;
   localparam logic [31:0] MASK_STOP_REACTION = 32'h0007FCFF;
   localparam logic [11:0] ADDR_IRQ_ENABLE = 12'h688;
   localparam logic [31:0] RESET_IRQ_ENABLE = 32'h00000000;
-  localparam logic [31:0] MASK_IRQ_ENABLE = 32'h0007FFFF;
+  localparam logic [31:0] MASK_IRQ_ENABLE = 32'h003FFFFF;
   localparam logic [11:0] ADDR_GEOMETRY_WATERMARK = 12'h6C0;
   localparam logic [31:0] RESET_GEOMETRY_WATERMARK = 32'h00000000;
   localparam logic [31:0] MASK_GEOMETRY_WATERMARK = 32'h0000FFFF;
@@ -301,10 +474,19 @@ package card_map_pkg;
   localparam logic [31:0] MASK_OUTPUT_SAFE = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_INPUT_POLARITY = 12'h704;
   localparam logic [31:0] RESET_INPUT_POLARITY = 32'h00000000;
-  localparam logic [31:0] MASK_INPUT_POLARITY = 32'h0000FFFF;
+  localparam logic [31:0] MASK_INPUT_POLARITY = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_OUTPUT_SAFE_CAUSE = 12'h708;
+  localparam logic [31:0] RESET_OUTPUT_SAFE_CAUSE = 32'h00000000;
+  localparam logic [31:0] MASK_OUTPUT_SAFE_CAUSE = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_OUTPUT_ROLES = 12'h70C;
+  localparam logic [31:0] RESET_OUTPUT_ROLES = 32'h00000000;
+  localparam logic [31:0] MASK_OUTPUT_ROLES = 32'hFFFFFFFF;
   localparam logic [11:0] ADDR_STREAMING = 12'h740;
   localparam logic [31:0] RESET_STREAMING = 32'h00000000;
   localparam logic [31:0] MASK_STREAMING = 32'h0000FF01;
+  localparam logic [11:0] ADDR_LINK_TIMEOUT = 12'h74C;
+  localparam logic [31:0] RESET_LINK_TIMEOUT = 32'h00000000;
+  localparam logic [31:0] MASK_LINK_TIMEOUT = 32'h0000FFFF;
   localparam logic [11:0] ADDR_WATCHDOG = 12'h780;
   localparam logic [31:0] RESET_WATCHDOG = 32'h00000000;
   localparam logic [31:0] MASK_WATCHDOG = 32'h0000FFFF;
@@ -314,6 +496,51 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_LIMIT_OVERRIDE = 12'h788;
   localparam logic [31:0] RESET_LIMIT_OVERRIDE = 32'h00000000;
   localparam logic [31:0] MASK_LIMIT_OVERRIDE = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_SOFT_LIMITS = 12'h78C;
+  localparam logic [31:0] RESET_SOFT_LIMITS = 32'h00000000;
+  localparam logic [31:0] MASK_SOFT_LIMITS = 32'h000000FF;
+  localparam logic [11:0] ADDR_HEALTH_ROLES = 12'h790;
+  localparam logic [31:0] RESET_HEALTH_ROLES = 32'h00000000;
+  localparam logic [31:0] MASK_HEALTH_ROLES = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_ENABLE = 12'h794;
+  localparam logic [31:0] RESET_ENABLE = 32'h00000000;
+  localparam logic [31:0] MASK_ENABLE = 32'h00000003;
+  localparam logic [11:0] ADDR_ENABLE_AXES = 12'h798;
+  localparam logic [31:0] RESET_ENABLE_AXES = 32'h00000000;
+  localparam logic [31:0] MASK_ENABLE_AXES = 32'h000000FF;
+  localparam logic [11:0] ADDR_ENABLE_DELAY = 12'h79C;
+  localparam logic [31:0] RESET_ENABLE_DELAY = 32'h00000000;
+  localparam logic [31:0] MASK_ENABLE_DELAY = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_BRAKE_RELEASE_DELAY = 12'h7A0;
+  localparam logic [31:0] RESET_BRAKE_RELEASE_DELAY = 32'h00000000;
+  localparam logic [31:0] MASK_BRAKE_RELEASE_DELAY = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_STOP_DELAY = 12'h7A4;
+  localparam logic [31:0] RESET_STOP_DELAY = 32'h00000000;
+  localparam logic [31:0] MASK_STOP_DELAY = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_BRAKE_SET_DELAY = 12'h7A8;
+  localparam logic [31:0] RESET_BRAKE_SET_DELAY = 32'h00000000;
+  localparam logic [31:0] MASK_BRAKE_SET_DELAY = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_ENABLE_IDLE = 12'h7AC;
+  localparam logic [31:0] RESET_ENABLE_IDLE = 32'h00000000;
+  localparam logic [31:0] MASK_ENABLE_IDLE = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_DISABLE_CAUSES = 12'h7B0;
+  localparam logic [31:0] RESET_DISABLE_CAUSES = 32'h00000000;
+  localparam logic [31:0] MASK_DISABLE_CAUSES = 32'h0007FFFF;
+  localparam logic [11:0] ADDR_HEALTH_CAUSES = 12'h7B4;
+  localparam logic [31:0] RESET_HEALTH_CAUSES = 32'h00000000;
+  localparam logic [31:0] MASK_HEALTH_CAUSES = 32'h8007FFFF;
+  localparam logic [11:0] ADDR_CHARGE_PUMP = 12'h7B8;
+  localparam logic [31:0] RESET_CHARGE_PUMP = 32'h00000000;
+  localparam logic [31:0] MASK_CHARGE_PUMP = 32'h0000FFFF;
+  localparam logic [11:0] ADDR_SCALES = 12'h7C0;
+  localparam logic [31:0] RESET_SCALES = 32'h00000000;
+  localparam logic [31:0] MASK_SCALES = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_KEEPS_PLACE = 12'h7C4;
+  localparam logic [31:0] RESET_KEEPS_PLACE = 32'h00000000;
+  localparam logic [31:0] MASK_KEEPS_PLACE = 32'h000000FF;
+  localparam logic [11:0] ADDR_SET_PLACE = 12'h7C8;
+  localparam logic [31:0] RESET_SET_PLACE = 32'h00000000;
+  localparam logic [31:0] MASK_SET_PLACE = 32'h00FF0003;
   localparam logic [11:0] ADDR_STEP_LENGTH = 12'h800;
   localparam logic [31:0] RESET_STEP_LENGTH = 32'h00000000;
   localparam logic [31:0] MASK_STEP_LENGTH = 32'h0000FFFF;
@@ -344,6 +571,21 @@ package card_map_pkg;
   localparam logic [31:0] MASK_OVERTRAVEL = 32'h0000FFFF;
   localparam int COUNT_OVERTRAVEL = 8;
   localparam int STRIDE_OVERTRAVEL = 128;
+  localparam logic [11:0] ADDR_MACHINE_ZERO = 12'h818;
+  localparam logic [31:0] RESET_MACHINE_ZERO = 32'h00000000;
+  localparam logic [31:0] MASK_MACHINE_ZERO = 32'hFFFFFFFF;
+  localparam int COUNT_MACHINE_ZERO = 8;
+  localparam int STRIDE_MACHINE_ZERO = 128;
+  localparam logic [11:0] ADDR_SOFT_MINUS = 12'h820;
+  localparam logic [31:0] RESET_SOFT_MINUS = 32'h00000000;
+  localparam logic [31:0] MASK_SOFT_MINUS = 32'hFFFFFFFF;
+  localparam int COUNT_SOFT_MINUS = 8;
+  localparam int STRIDE_SOFT_MINUS = 128;
+  localparam logic [11:0] ADDR_SOFT_PLUS = 12'h824;
+  localparam logic [31:0] RESET_SOFT_PLUS = 32'h00000000;
+  localparam logic [31:0] MASK_SOFT_PLUS = 32'hFFFFFFFF;
+  localparam int COUNT_SOFT_PLUS = 8;
+  localparam int STRIDE_SOFT_PLUS = 128;
   localparam logic [11:0] ADDR_FREQUENCY_LO = 12'hCF0;
   localparam logic [31:0] RESET_FREQUENCY_LO = 32'h00000000;
   localparam logic [31:0] MASK_FREQUENCY_LO = 32'hFFFFFFFF;
@@ -373,8 +615,18 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_START = 12'hD08;
   localparam logic [31:0] RESET_START = 32'h00000000;
   localparam logic [31:0] MASK_START = 32'h000000FF;
+  localparam logic [11:0] ADDR_INPUT_FILTER = 12'hE00;
+  localparam logic [31:0] RESET_INPUT_FILTER = 32'h00000000;
+  localparam logic [31:0] MASK_INPUT_FILTER = 32'h0000FFFF;
+  localparam int COUNT_INPUT_FILTER = 32;
+  localparam int STRIDE_INPUT_FILTER = 4;
+  localparam logic [11:0] ADDR_ROLE = 12'hE80;
+  localparam logic [31:0] RESET_ROLE = 32'h00000000;
+  localparam logic [31:0] MASK_ROLE = 32'hFFFFFFFF;
+  localparam int COUNT_ROLE = 64;
+  localparam int STRIDE_ROLE = 4;
 
-  // Bit numbers of the fields of STATUS, FAULT, CONTROL and IRQ_ENABLE (the lowest bit of a wider field).
+  // Bit numbers of the fields of STATUS, FAULT, CONTROL, IRQ_ENABLE, CAPTURE_SELECT, CAPTURE_STATE (the lowest bit of a wider field).
   localparam int BIT_STATUS_BUSY = 0;
   localparam int BIT_STATUS_DIRECT = 1;
   localparam int BIT_STATUS_PATH_ACTIVE = 2;
@@ -394,6 +646,9 @@ package card_map_pkg;
   localparam int BIT_STATUS_WAITING = 16;
   localparam int BIT_STATUS_STALE = 17;
   localparam int BIT_STATUS_BUTTON_HOLD = 18;
+  localparam int BIT_STATUS_SETTLED = 19;
+  localparam int BIT_STATUS_ENABLED = 20;
+  localparam int BIT_STATUS_ENABLE_WAITS = 21;
   localparam int BIT_FAULT_STEP = 0;
   localparam int BIT_FAULT_TICK_MISMATCH = 8;
   localparam int BIT_FAULT_PATH_INCOMPLETE = 9;
@@ -406,6 +661,15 @@ package card_map_pkg;
   localparam int BIT_FAULT_SOFT_LIMIT = 16;
   localparam int BIT_FAULT_PROBE = 17;
   localparam int BIT_FAULT_TOOL_SETTER = 18;
+  localparam int BIT_CAPTURE_SELECT_INPUT_NUMBER = 0;
+  localparam int BIT_CAPTURE_SELECT_TO_ACTIVE = 8;
+  localparam int BIT_CAPTURE_SELECT_TO_INACTIVE = 9;
+  localparam int BIT_CAPTURE_SELECT_CONTINUOUS = 10;
+  localparam int BIT_CAPTURE_STATE_PENDING = 0;
+  localparam int BIT_CAPTURE_STATE_VALID = 4;
+  localparam int BIT_CAPTURE_STATE_OVERRUN = 8;
+  localparam int BIT_CAPTURE_STATE_ACTIVE = 12;
+  localparam int BIT_CAPTURE_STATE_SNAPSHOTS = 16;
   localparam int BIT_CONTROL_SNAPSHOT = 0;
   localparam int BIT_CONTROL_ABORT = 1;
   localparam int BIT_CONTROL_FLUSH = 2;
@@ -429,6 +693,9 @@ package card_map_pkg;
   localparam int BIT_IRQ_ENABLE_WAITING = 16;
   localparam int BIT_IRQ_ENABLE_STALE = 17;
   localparam int BIT_IRQ_ENABLE_BUTTON_HOLD = 18;
+  localparam int BIT_IRQ_ENABLE_SETTLED = 19;
+  localparam int BIT_IRQ_ENABLE_ENABLED = 20;
+  localparam int BIT_IRQ_ENABLE_ENABLE_WAITS = 21;
 
   // Kinds of access, see register_access().
   localparam logic [2:0] ACCESS_NONE = 3'd0;
@@ -444,6 +711,11 @@ package card_map_pkg;
   localparam logic [11:0] AREA_STOP = 12'h280;
   localparam logic [11:0] AREA_PROBE = 12'h300;
   localparam logic [11:0] AREA_MARK = 12'h380;
+  localparam logic [11:0] AREA_REST = 12'h400;
+  localparam logic [11:0] AREA_CAPTURE_0 = 12'h480;
+  localparam logic [11:0] AREA_CAPTURE_1 = 12'h4C0;
+  localparam logic [11:0] AREA_CAPTURE_2 = 12'h500;
+  localparam logic [11:0] AREA_CAPTURE_3 = 12'h540;
   localparam logic [5:0] IN_AREA_FAULT = 6'h00;
   localparam logic [5:0] IN_AREA_STATUS = 6'h04;
   localparam logic [5:0] IN_AREA_RATIO = 6'h08;
@@ -611,7 +883,8 @@ package card_map_pkg;
       10'b00_0000_0110, 10'b00_0000_0111, 10'b00_0000_1000, 10'b00_0000_1001, 10'b00_0000_1010,
       10'b00_0000_1011, 10'b00_01??_????:
         register_access = ACCESS_CONSTANT;
-      10'b00_0001_0000, 10'b00_0001_0011, 10'b00_0001_0100, 10'b00_0001_0101, 10'b00_0001_0110:
+      10'b00_0001_0000, 10'b00_0001_0011, 10'b00_0001_0100, 10'b00_0001_0101, 10'b00_0001_0110,
+      10'b00_0001_1110:
         register_access = ACCESS_LIVE;
       10'b00_0001_0001, 10'b00_0001_0010:
         register_access = ACCESS_CLEAR_ONES;
@@ -621,34 +894,71 @@ package card_map_pkg;
         register_access = engines[ENGINE_UNDERRUN_HOLD] ? ACCESS_LIVE : ACCESS_NONE;
       10'b00_0001_1011:
         register_access = engines[ENGINE_STREAMING] ? ACCESS_LIVE : ACCESS_NONE;
-      10'b00_0001_1111:
+      10'b00_0001_1100, 10'b00_0001_1101, 10'b00_0001_1111:
         register_access = engines[ENGINE_MACHINE_INPUTS] ? ACCESS_LIVE : ACCESS_NONE;
       10'b00_1000_0000, 10'b00_1000_0001, 10'b00_1000_0010, 10'b00_1000_0011, 10'b00_1000_0100,
       10'b00_1000_0101, 10'b00_1000_0110, 10'b00_1000_0111, 10'b00_1000_1???, 10'b00_1010_0000,
       10'b00_1010_0001, 10'b00_1010_0010, 10'b00_1010_0011, 10'b00_1010_0100, 10'b00_1010_0101,
-      10'b00_1010_0110, 10'b00_1010_0111, 10'b00_1010_1???:
+      10'b00_1010_0110, 10'b00_1010_0111, 10'b00_1010_1???, 10'b01_0000_0000, 10'b01_0000_0001,
+      10'b01_0000_0010, 10'b01_0000_0011, 10'b01_0000_0100, 10'b01_0000_0101, 10'b01_0000_0110,
+      10'b01_0000_0111, 10'b01_0000_1???:
         register_access = ACCESS_SNAPSHOT;
       10'b00_1100_0000, 10'b00_1100_0001, 10'b00_1100_0010, 10'b00_1100_0011, 10'b00_1100_0100,
       10'b00_1100_0101, 10'b00_1100_0110, 10'b00_1100_0111, 10'b00_1100_1???, 10'b00_1110_0000,
       10'b00_1110_0001, 10'b00_1110_0010, 10'b00_1110_0011, 10'b00_1110_0100, 10'b00_1110_0101,
       10'b00_1110_0110, 10'b00_1110_0111, 10'b00_1110_1???:
         register_access = engines[ENGINE_PATH_COMMANDS] ? ACCESS_SNAPSHOT : ACCESS_NONE;
-      10'b01_1000_0000, 10'b01_1000_0100:
+      10'b01_0010_0000, 10'b01_0010_0001, 10'b01_0010_0010, 10'b01_0010_0011, 10'b01_0010_0100,
+      10'b01_0010_0101, 10'b01_0010_0110, 10'b01_0010_0111, 10'b01_0010_1???, 10'b01_0011_0000,
+      10'b01_0011_0001, 10'b01_0011_0010, 10'b01_0011_0011, 10'b01_0011_0100, 10'b01_0011_0101,
+      10'b01_0011_0110, 10'b01_0011_0111, 10'b01_0011_1???, 10'b01_0100_0000, 10'b01_0100_0001,
+      10'b01_0100_0010, 10'b01_0100_0011, 10'b01_0100_0100, 10'b01_0100_0101, 10'b01_0100_0110,
+      10'b01_0100_0111, 10'b01_0100_1???, 10'b01_0101_0000, 10'b01_0101_0001, 10'b01_0101_0010,
+      10'b01_0101_0011, 10'b01_0101_0100, 10'b01_0101_0101, 10'b01_0101_0110, 10'b01_0101_0111,
+      10'b01_0101_1???:
+        register_access = engines[ENGINE_CAPTURES] ? ACCESS_SNAPSHOT : ACCESS_NONE;
+      10'b01_0110_00??:
+        register_access = engines[ENGINE_CAPTURES] ? ACCESS_SETTING : ACCESS_NONE;
+      10'b01_0110_0100:
+        register_access = engines[ENGINE_CAPTURES] ? ACCESS_LIVE : ACCESS_NONE;
+      10'b01_0110_0101:
+        register_access = engines[ENGINE_CAPTURES] ? ACCESS_COMMAND : ACCESS_NONE;
+      10'b01_1000_0000, 10'b01_1000_0100, 10'b01_1111_0010:
         register_access = ACCESS_COMMAND;
       10'b01_1000_0001, 10'b01_1001_0000, 10'b01_1001_0011, 10'b01_1010_0000, 10'b01_1010_0001,
-      10'b01_1010_0010, 10'b01_1110_0000, 10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010,
-      10'b10_???0_0011, 10'b10_???0_0100:
+      10'b01_1010_0010, 10'b01_1101_0011, 10'b01_1110_0000, 10'b01_1111_0000, 10'b01_1111_0001,
+      10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100,
+      10'b10_???0_0110:
         register_access = ACCESS_SETTING;
       10'b01_1001_0001, 10'b01_1001_0010:
         register_access = engines[ENGINE_CLASSES] ? ACCESS_SETTING : ACCESS_NONE;
       10'b01_1011_0000, 10'b01_1011_0001:
         register_access = engines[ENGINE_WATERMARKS] ? ACCESS_SETTING : ACCESS_NONE;
-      10'b01_1100_0000, 10'b01_1100_0001:
+      10'b01_1100_0000, 10'b01_1100_0001, 10'b01_1100_0010:
         register_access = engines[ENGINE_PATH_COMMANDS] ? ACCESS_SETTING : ACCESS_NONE;
+      10'b01_1100_0011, 10'b01_1110_0100, 10'b01_1110_0101, 10'b01_1110_0110, 10'b01_1110_0111,
+      10'b01_1110_1000, 10'b01_1110_1001, 10'b01_1110_1010, 10'b01_1110_1011, 10'b01_1110_1100,
+      10'b01_1110_1101, 10'b01_1110_1110:
+        register_access = engines[ENGINE_ENABLES] ? ACCESS_SETTING : ACCESS_NONE;
       10'b01_1101_0000:
         register_access = engines[ENGINE_STREAMING] ? ACCESS_SETTING : ACCESS_NONE;
-      10'b01_1110_0001, 10'b01_1110_0010, 10'b10_???0_0101:
+      10'b01_1110_0001, 10'b01_1110_0010, 10'b10_???0_0101, 10'b11_100?_????, 10'b11_1010_0000,
+      10'b11_1010_0001, 10'b11_1010_0010, 10'b11_1010_0011, 10'b11_1010_0100, 10'b11_1010_0101,
+      10'b11_1010_0110, 10'b11_1010_0111, 10'b11_1010_1000, 10'b11_1010_1001, 10'b11_1010_1010,
+      10'b11_1010_1011, 10'b11_1010_1100, 10'b11_1010_1101, 10'b11_1010_1110, 10'b11_1010_1111,
+      10'b11_1011_0000, 10'b11_1011_0001, 10'b11_1011_0010, 10'b11_1011_0011, 10'b11_1011_0100,
+      10'b11_1011_0101, 10'b11_1011_0110, 10'b11_1011_0111, 10'b11_1011_1000, 10'b11_1011_1001,
+      10'b11_1011_1010, 10'b11_1011_1011, 10'b11_1011_1100, 10'b11_1011_1101, 10'b11_1011_1110,
+      10'b11_1011_1111, 10'b11_1100_0000, 10'b11_1100_0001, 10'b11_1100_0010, 10'b11_1100_0011,
+      10'b11_1100_0100, 10'b11_1100_0101, 10'b11_1100_0110, 10'b11_1100_0111, 10'b11_1100_1000,
+      10'b11_1100_1001, 10'b11_1100_1010, 10'b11_1100_1011, 10'b11_1100_1100, 10'b11_1100_1101,
+      10'b11_1100_1110, 10'b11_1100_1111, 10'b11_1101_0000, 10'b11_1101_0001, 10'b11_1101_0010,
+      10'b11_1101_0011, 10'b11_1101_0100, 10'b11_1101_0101, 10'b11_1101_0110, 10'b11_1101_0111,
+      10'b11_1101_1000, 10'b11_1101_1001, 10'b11_1101_1010, 10'b11_1101_1011, 10'b11_1101_1100,
+      10'b11_1101_1101, 10'b11_1101_1110, 10'b11_1101_1111:
         register_access = engines[ENGINE_MACHINE_INPUTS] ? ACCESS_SETTING : ACCESS_NONE;
+      10'b01_1110_0011, 10'b10_???0_1000, 10'b10_???0_1001:
+        register_access = engines[ENGINE_SOFT_LIMITS] ? ACCESS_SETTING : ACCESS_NONE;
       10'b11_001?_??00, 10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11, 10'b11_0100_0000,
       10'b11_0100_0001:
         register_access = engines[ENGINE_DIRECT_MODE] ? ACCESS_SETTING : ACCESS_NONE;
@@ -661,9 +971,11 @@ package card_map_pkg;
   // 1: the register is a slot of one axis and there only when the card has the axis.
   function automatic logic register_only_present_axes(input logic [9:0] word);
     casez (word)
-      10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b10_???0_0000,
+      10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b01_0000_1???,
+      10'b01_0010_1???, 10'b01_0011_1???, 10'b01_0100_1???, 10'b01_0101_1???, 10'b10_???0_0000,
       10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100, 10'b10_???0_0101,
-      10'b11_001?_??00, 10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11:
+      10'b10_???0_0110, 10'b10_???0_1000, 10'b10_???0_1001, 10'b11_001?_??00, 10'b11_001?_??01,
+      10'b11_001?_??10, 10'b11_001?_??11:
         register_only_present_axes = 1'b1;
       default: register_only_present_axes = 1'b0;
     endcase
@@ -672,40 +984,65 @@ package card_map_pkg;
   // Bits with meaning, by the engines that are built in; a write of any other bit is refused.
   function automatic logic [31:0] register_mask(input logic [9:0] word, input logic [31:0] engines);
     casez (word)
-      10'b00_0001_0001, 10'b01_1010_0010:
+      10'b00_0001_0001:
         register_mask = 32'h0007FFFF;
       10'b00_0001_0010, 10'b01_1001_0011:
         register_mask = 32'h0FFFFFFF;
+      10'b01_0110_00??:
+        register_mask = engines[ENGINE_CAPTURES] ? 32'h0000071F : 32'h00000000;
+      10'b01_0110_0101:
+        register_mask = engines[ENGINE_CAPTURES] ? 32'h0000000F : 32'h00000000;
       10'b01_1000_0000:
         register_mask = 32'h00000007 | (engines[ENGINE_PATH_COMMANDS] ?
             32'h00000008 : 32'h00000000);
       10'b01_1000_0001:
         register_mask = 32'h00000001;
-      10'b01_1000_0100:
+      10'b01_1000_0100, 10'b01_1111_0000, 10'b10_???0_0110:
         register_mask = 32'hFFFFFFFF;
       10'b01_1001_0000:
         register_mask = 32'h0001FFFF;
       10'b01_1001_0001, 10'b01_1001_0010:
         register_mask = engines[ENGINE_CLASSES] ? 32'h0001FFFF : 32'h00000000;
-      10'b01_1010_0000, 10'b01_1110_0000, 10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010,
-      10'b10_???0_0011:
+      10'b01_1010_0000, 10'b01_1101_0011, 10'b01_1110_0000, 10'b10_???0_0000, 10'b10_???0_0001,
+      10'b10_???0_0010, 10'b10_???0_0011:
         register_mask = 32'h0000FFFF;
       10'b01_1010_0001:
         register_mask = 32'h0007FCFF;
+      10'b01_1010_0010:
+        register_mask = 32'h003FFFFF;
       10'b01_1011_0000, 10'b01_1011_0001:
         register_mask = engines[ENGINE_WATERMARKS] ? 32'h0000FFFF : 32'h00000000;
-      10'b01_1100_0000:
+      10'b01_1100_0000, 10'b01_1100_0001, 10'b01_1100_0010:
         register_mask = engines[ENGINE_PATH_COMMANDS] ? 32'hFFFFFFFF : 32'h00000000;
-      10'b01_1100_0001:
-        register_mask = engines[ENGINE_PATH_COMMANDS] ? 32'h0000FFFF : 32'h00000000;
+      10'b01_1100_0011, 10'b01_1110_0100:
+        register_mask = engines[ENGINE_ENABLES] ? 32'hFFFFFFFF : 32'h00000000;
       10'b01_1101_0000:
         register_mask = engines[ENGINE_STREAMING] ? 32'h0000FF01 : 32'h00000000;
       10'b01_1110_0001:
         register_mask = engines[ENGINE_MACHINE_INPUTS] ? 32'h0006FFFF : 32'h00000000;
-      10'b01_1110_0010, 10'b10_???0_0101:
+      10'b01_1110_0010, 10'b10_???0_0101, 10'b11_100?_????:
         register_mask = engines[ENGINE_MACHINE_INPUTS] ? 32'h0000FFFF : 32'h00000000;
+      10'b01_1110_0011:
+        register_mask = engines[ENGINE_SOFT_LIMITS] ? 32'h000000FF : 32'h00000000;
+      10'b01_1110_0101:
+        register_mask = engines[ENGINE_ENABLES] ? 32'h00000003 : 32'h00000000;
+      10'b01_1110_0110:
+        register_mask = engines[ENGINE_ENABLES] ? 32'h000000FF : 32'h00000000;
+      10'b01_1110_0111, 10'b01_1110_1000, 10'b01_1110_1001, 10'b01_1110_1010, 10'b01_1110_1011,
+      10'b01_1110_1110:
+        register_mask = engines[ENGINE_ENABLES] ? 32'h0000FFFF : 32'h00000000;
+      10'b01_1110_1100:
+        register_mask = engines[ENGINE_ENABLES] ? 32'h0007FFFF : 32'h00000000;
+      10'b01_1110_1101:
+        register_mask = engines[ENGINE_ENABLES] ? 32'h8007FFFF : 32'h00000000;
+      10'b01_1111_0001:
+        register_mask = 32'h000000FF;
+      10'b01_1111_0010:
+        register_mask = 32'h00FF0003;
       10'b10_???0_0100:
         register_mask = 32'h0000000F;
+      10'b10_???0_1000, 10'b10_???0_1001:
+        register_mask = engines[ENGINE_SOFT_LIMITS] ? 32'hFFFFFFFF : 32'h00000000;
       10'b11_001?_??00, 10'b11_001?_??10, 10'b11_0100_0000:
         register_mask = engines[ENGINE_DIRECT_MODE] ? 32'hFFFFFFFF : 32'h00000000;
       10'b11_001?_??01:
@@ -714,6 +1051,20 @@ package card_map_pkg;
         register_mask = engines[ENGINE_DIRECT_MODE] ? 32'h00000001 : 32'h00000000;
       10'b11_0100_0001, 10'b11_0100_0010:
         register_mask = engines[ENGINE_DIRECT_MODE] ? 32'h000000FF : 32'h00000000;
+      10'b11_1010_0000, 10'b11_1010_0001, 10'b11_1010_0010, 10'b11_1010_0011, 10'b11_1010_0100,
+      10'b11_1010_0101, 10'b11_1010_0110, 10'b11_1010_0111, 10'b11_1010_1000, 10'b11_1010_1001,
+      10'b11_1010_1010, 10'b11_1010_1011, 10'b11_1010_1100, 10'b11_1010_1101, 10'b11_1010_1110,
+      10'b11_1010_1111, 10'b11_1011_0000, 10'b11_1011_0001, 10'b11_1011_0010, 10'b11_1011_0011,
+      10'b11_1011_0100, 10'b11_1011_0101, 10'b11_1011_0110, 10'b11_1011_0111, 10'b11_1011_1000,
+      10'b11_1011_1001, 10'b11_1011_1010, 10'b11_1011_1011, 10'b11_1011_1100, 10'b11_1011_1101,
+      10'b11_1011_1110, 10'b11_1011_1111, 10'b11_1100_0000, 10'b11_1100_0001, 10'b11_1100_0010,
+      10'b11_1100_0011, 10'b11_1100_0100, 10'b11_1100_0101, 10'b11_1100_0110, 10'b11_1100_0111,
+      10'b11_1100_1000, 10'b11_1100_1001, 10'b11_1100_1010, 10'b11_1100_1011, 10'b11_1100_1100,
+      10'b11_1100_1101, 10'b11_1100_1110, 10'b11_1100_1111, 10'b11_1101_0000, 10'b11_1101_0001,
+      10'b11_1101_0010, 10'b11_1101_0011, 10'b11_1101_0100, 10'b11_1101_0101, 10'b11_1101_0110,
+      10'b11_1101_0111, 10'b11_1101_1000, 10'b11_1101_1001, 10'b11_1101_1010, 10'b11_1101_1011,
+      10'b11_1101_1100, 10'b11_1101_1101, 10'b11_1101_1110, 10'b11_1101_1111:
+        register_mask = engines[ENGINE_MACHINE_INPUTS] ? 32'hFFFFFFFF : 32'h00000000;
       default: register_mask = 32'h00000000;
     endcase
   endfunction
@@ -724,7 +1075,7 @@ package card_map_pkg;
       10'b00_0000_0000:
         register_reset = 32'h54524D4C;
       10'b00_0000_0001:
-        register_reset = 32'h00030002;
+        register_reset = 32'h00030005;
       10'b00_0000_0111:
         register_reset = 32'h00000003;
       10'b01_1001_0000, 10'b01_1001_0001, 10'b01_1001_0010:
@@ -734,7 +1085,7 @@ package card_map_pkg;
       10'b01_1010_0000:
         register_reset = 32'h0000FFFF;
       10'b01_1010_0001:
-        register_reset = 32'h00066000;
+        register_reset = 32'h0007E000;
       default: register_reset = 32'h00000000;
     endcase
   endfunction
@@ -757,10 +1108,11 @@ package card_map_pkg;
   // Axis of a register that is one of the axes' slots, else 0.
   function automatic logic [2:0] register_axis(input logic [9:0] word);
     casez (word)
-      10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???:
+      10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b01_0000_1???,
+      10'b01_0010_1???, 10'b01_0011_1???, 10'b01_0100_1???, 10'b01_0101_1???:
         register_axis = word[2:0];
       10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100,
-      10'b10_???0_0101:
+      10'b10_???0_0101, 10'b10_???0_0110, 10'b10_???0_1000, 10'b10_???0_1001:
         register_axis = word[7:5];
       10'b11_001?_??00, 10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11:
         register_axis = ~word[4:2];
@@ -833,7 +1185,7 @@ package card_map_pkg;
                                               input logic [31:0] engines);
     casez (op)
       OP_FEED:
-        command_flags_good = (flags & ~8'd4) <= (engines[ENGINE_CLASSES] ? 8'd2 : 8'd0);
+        command_flags_good = (flags & ~8'd28) <= (engines[ENGINE_CLASSES] ? 8'd2 : 8'd0);
       default: command_flags_good = 1'b1;
     endcase
   endfunction
@@ -1034,10 +1386,33 @@ package card_map_pkg;
                                                      input int snapshot_areas,
                                                      input int ports,
                                                      input int inputs,
-                                                     input int outputs);
+                                                     input int outputs,
+                                                     input int captures);
     logic [2047:0] table_so_far;
 
     table_so_far = '0;
+    // soft_limits
+    if (engines[ENGINE_SOFT_LIMITS]) begin
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd32, 8'(521 - (520) + 1), 10'(520),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(axes), 4'd1, 4'd0, 8'd23
+      };
+    end
+    // enables
+    if (engines[ENGINE_ENABLES]) begin
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'(494 - (484) + 1), 10'(484),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd22
+      };
+    end
+    // place
+    table_so_far = {
+      table_so_far[1983:0],
+      2'd0, 5'd31, 7'd0, 8'(498 - (496) + 1), 10'(496),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd21
+    };
     // limits
     if (engines[ENGINE_MACHINE_INPUTS]) begin
       table_so_far = {
@@ -1046,11 +1421,35 @@ package card_map_pkg;
         1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd20
       };
     end
+    // emergency_stop
+    if (engines[ENGINE_EMERGENCY_STOP]) begin
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'd0, 10'd0,
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd19
+      };
+    end
+    // captures
+    if (engines[ENGINE_CAPTURES]) begin
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd16, 8'(296 + 1 * (axes - 1) - (288) + 1), 10'(288),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(captures), 4'd1, 4'd0, 8'd18
+      };
+    end
+    // roles
+    if (engines[ENGINE_MACHINE_INPUTS]) begin
+      table_so_far = {
+        table_so_far[1983:0],
+        2'd0, 5'd31, 7'd0, 8'(928 + 1 * (axes - 1) - (896 + 1 * (axes - 1)) + 1), 10'(896 + 1 * (axes - 1)),
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd17
+      };
+    end
     // watchdog
     table_so_far = {
       table_so_far[1983:0],
       2'd0, 5'd31, 7'd0, 8'(480 - (480) + 1), 10'(480),
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd0, 8'd16
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd1, 8'd16
     };
     // position_streaming
     if (engines[ENGINE_STREAMING]) begin
@@ -1065,7 +1464,7 @@ package card_map_pkg;
       table_so_far = {
         table_so_far[1983:0],
         2'd0, 5'd31, 7'd0, 8'(448 - (448) + 1), 10'(448),
-        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(outputs), 4'd1, 4'd0, 8'd14
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(outputs), 4'd1, 4'd1, 8'd14
       };
     end
     // inputs
@@ -1131,14 +1530,14 @@ package card_map_pkg;
     // axes
     table_so_far = {
       table_so_far[1983:0],
-      2'd0, 5'd0, 7'd32, 8'(517 - (512) + 1), 10'(512),
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(axes), 4'd1, 4'd1, 8'd5
+      2'd0, 5'd0, 7'd32, 8'(518 - (512) + 1), 10'(512),
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(axes), 4'd1, 4'd2, 8'd5
     };
     // feed_generator
     table_so_far = {
       table_so_far[1983:0],
       2'd0, 5'd31, 7'd0, 8'd0, 10'd0,
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_JERK], 8'd1, 4'd1, 4'd1, 8'd4
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_JERK], 8'd1, 4'd1, 4'd2, 8'd4
     };
     // queues
     table_so_far = {
@@ -1150,13 +1549,13 @@ package card_map_pkg;
     table_so_far = {
       table_so_far[1983:0],
       2'd0, 5'd31, 7'd0, 8'(417 - (416) + 1), 10'(416),
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd2, 8'd2
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'd1, 4'd1, 4'd4, 8'd2
     };
     // time_base
     table_so_far = {
       table_so_far[1983:0],
       2'd0, 5'd31, 7'd0, 8'(403 - (400) + 1), 10'(400),
-      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_CLASSES], 8'd1, 4'd1, 4'd0, 8'd1
+      1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_CLASSES], 8'd1, 4'd1, 4'd1, 8'd1
     };
     unit_descriptors = table_so_far;
   endfunction

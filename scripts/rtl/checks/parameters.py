@@ -15,9 +15,14 @@ BREAK = "ERROR_BreakBits_must_be_8_to_24"
 FLAG = "ERROR_engines_and_BuildDirty_must_be_0_or_1"
 BUILT = "ERROR_AxiLite_Uart_and_Spi_must_be_0_or_1"
 WISHBONE = "ERROR_Wishbone_must_be_0_to_2"
-PINS = "ERROR_Inputs_and_Outputs_must_be_1_to_16"
+PINS = "ERROR_Inputs_must_be_1_to_32_and_Outputs_1_to_16"
+MACHINE = "ERROR_MachineInputs_needs_PathCommands"
+CAPTURES = "ERROR_Captures_must_be_0_to_4"
+CAPTURES_ALONE = "ERROR_Captures_needs_MachineInputs"
+ENABLES = "ERROR_Enables_needs_PathCommands"
+SOFT = "ERROR_SoftLimits_needs_MachineInputs"
 FLAGS = ("Accumulator EightDirections ArcGenerator DirectMode UnderrunHold Classes Watermarks PathCommands PositionStreaming "
-         "BuildDirty").split()
+         "MachineInputs EmergencyStop Enables SoftLimits BuildDirty").split()
 # Top, parameters, and the message that must stop the reader; None: they are legal.
 CASES = [
     ("trammel_card", "Axes=1 GeometryDepth=2 FeedDepth=2", None),
@@ -37,7 +42,20 @@ CASES = [
     ("trammel_card", "PathCommands=1", None),
     ("trammel_card", "PositionStreaming=1", None),
     ("trammel_card", "PathCommands=1 Inputs=1 Outputs=1", None),
-    ("trammel_card", "PathCommands=1 Inputs=16 Outputs=16 Axes=8", None),
+    ("trammel_card", "PathCommands=1 Inputs=32 Outputs=16 Axes=8", None),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 Inputs=1", None),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 Inputs=32 Axes=8", None),
+    ("trammel_card", "MachineInputs=1", MACHINE),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 Captures=1", None),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 Captures=4 Inputs=32 Axes=8", None),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 Captures=5", CAPTURES),
+    ("trammel_card", "PathCommands=1 Captures=1", CAPTURES_ALONE),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 SoftLimits=1", None),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 SoftLimits=1 Axes=8", None),
+    ("trammel_card", "SoftLimits=1", SOFT),
+    ("trammel_card", "EmergencyStop=1", None),
+    ("trammel_card", "PathCommands=1 EmergencyStop=1 Enables=1 Axes=8 Outputs=16", None),
+    ("trammel_card", "Enables=1", ENABLES),
     ("trammel_card", "BuildId=305419896 BuildDirty=1 BoardId=1", None),
     ("card_core", "Ports=1", None),
     ("card_core", "Ports=4 Axes=8", None),
@@ -48,7 +66,7 @@ CASES = [
     ("trammel_card", "FeedDepth=1", DEPTH),
     ("trammel_card", "FeedDepth=32769", DEPTH),
     ("trammel_card", "Inputs=0", PINS),
-    ("trammel_card", "Inputs=17", PINS),
+    ("trammel_card", "Inputs=33", PINS),
     ("trammel_card", "Outputs=0", PINS),
     ("trammel_card", "Outputs=17", PINS),
     ("trammel_card", "EightDirections=1 Accumulator=0", EIGHT),

@@ -10,11 +10,13 @@ from pathlib import Path
 from file_list import ROOT, sources
 
 TOP = "card_with_ports"
-PARAMETERS = "AxiLite=1 Wishbone=1 Uart=1 Spi=1 PathCommands=1 Axes=1"
+PARAMETERS = "AxiLite=1 Wishbone=1 Uart=1 Spi=1 PathCommands=1 EmergencyStop=1 Axes=1"
 # A reset, and buses of the card's clock; straps.
 SYNCHRONOUS = {"clk_i", "rst_i", "awvalid_i", "awaddr_i", "wvalid_i", "wdata_i", "wstrb_i", "bready_i", "arvalid_i", "araddr_i",
                "rready_i", "wishbone_i"}
-STRAPS = {"clock_hz_i", "idle_level_i", "output_idle_i"}
+STRAPS = {"clock_hz_i", "idle_level_i", "output_idle_i", "emergency_stop_level_i"}
+# Sets a latch beside its synchroniser, without a clock.
+LATCHES = {"emergency_stop_i"}
 FLIP_FLOPS = ("$dff", "$sdff")
 # A break that the check must find: logic between the two flip-flops.
 SEED = ("rtl/host/uart/uart_port.sv", "rx_second_q <= rx_first_q;", "rx_second_q <= rx_first_q & rx_i;")
@@ -42,9 +44,11 @@ class Card:
                     for place, bit in enumerate(bits):
                         self.readers.setdefault(bit, []).append((cell, port, place))
 
-    def flip_flop(self, bit):
-        """What the one flip-flop that reads the bit shows, when it is marked; else None."""
+    def flip_flop(self, bit, latches=False):
+        """What the one flip-flop that reads the bit shows, when it is marked; else None. Of a pin that `latches`, gates read it, too."""
         readers = self.readers.get(bit, [])
+        if latches:
+            readers = [reader for reader in readers if reader[0]["type"] in FLIP_FLOPS]
         if len(readers) != 1:
             return None
         cell, port, place = readers[0]
@@ -53,8 +57,8 @@ class Card:
         shown = cell["connections"]["Q"][place]
         return shown if shown in self.marked else None
 
-    def synchronised(self, bit):
-        first = self.flip_flop(bit)
+    def synchronised(self, bit, latches=False):
+        first = self.flip_flop(bit, latches)
         return first is not None and self.flip_flop(first) is not None
 
 
@@ -73,7 +77,7 @@ def without_synchroniser(seed=None):
         card = Card(netlist(files, folder))
     asynchronous = {name: bits for name, bits in card.inputs.items() if name not in SYNCHRONOUS | STRAPS}
     return [f"{name}[{place}]" for name, bits in sorted(asynchronous.items()) for place, bit in enumerate(bits)
-            if not card.synchronised(bit)]
+            if not card.synchronised(bit, name in LATCHES)]
 
 
 def complaints():

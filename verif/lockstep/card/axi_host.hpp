@@ -9,10 +9,13 @@
 #include <stdexcept>
 
 #include "lockstep_card.hpp"
+#include "switches.hpp"
 
 namespace trammel::test {
 
-class AxiHost {
+// `Card`: a LockstepCard, or what is clocked as one is and shows its bus.
+template <class Card>
+class AxiHostOf {
  public:
   struct Write {
     std::uint32_t address = 0;
@@ -24,7 +27,7 @@ class AxiHost {
     std::optional<std::uint32_t> read;  // what was read; nothing when refused
   };
 
-  AxiHost(sim::LockstepCard& card, std::uint64_t seed) : card_(card), random_(seed) {}
+  AxiHostOf(Card& card, std::uint64_t seed) : card_(card), random_(seed) {}
 
   // Valid and ready come up to `clocks` late, each at random; 0: at once, ready before its valid.
   void set_delays(unsigned clocks) { max_delay_ = clocks; }
@@ -37,8 +40,11 @@ class AxiHost {
   Answers write_beside_read(const Write& write, std::uint32_t address) { return perform(&write, &address); }
 
   // Levels at the card's inputs from now on.
-  void set_pins(std::uint16_t pins) { pins_ = pins; }
-  std::uint16_t pins() const { return pins_; }
+  void set_pins(std::uint32_t pins) { pins_ = pins; }
+  std::uint32_t pins() const { return pins_; }
+  void press_emergency_stop(bool pressed) { emergency_stop_ = pressed; }
+  // Switches that change the levels, set_pins()'s included, in clocks of their own. Not owned.
+  void set_switches(Switches* switches) { switches_ = switches; }
   void wait(std::uint64_t clocks) { run({}, clocks); }
   void reset(std::uint64_t clocks) {
     model::CardModel::Inputs in;
@@ -50,14 +56,23 @@ class AxiHost {
   std::uint64_t clocks() const { return clocks_; }
   // The most clocks that an answer took from its handshake on.
   std::uint64_t slowest_answer() const { return slowest_; }
-  sim::LockstepCard& card() { return card_; }
+  Card& card() { return card_; }
   std::uint64_t below(std::uint64_t count) { return random_() % count; }
 
  private:
   void run(model::CardModel::Inputs in, std::uint64_t clocks) {
-    in.pins = pins_;
-    card_.run(in, clocks);
-    clocks_ += clocks;
+    while (clocks != 0) {
+      std::uint64_t some = clocks;
+      in.pins = pins_;
+      in.emergency_stop = emergency_stop_;
+      if (switches_ != nullptr) {
+        in.pins ^= switches_->levels(clocks_);
+        some = std::min(some, switches_->next_change() - clocks_);
+      }
+      card_.run(in, some);
+      clocks_ += some;
+      clocks -= some;
+    }
   }
   // One handshake: not before `delay` clocks, done when valid and ready met.
   struct Handshake {
@@ -70,7 +85,7 @@ class AxiHost {
       if (delay != 0) --delay;
     }
   };
-  static constexpr std::uint64_t kMaxClocks = 5000;  // far above the card's bound of 600
+  static constexpr std::uint64_t kMaxClocks = 5000;  // far above the card's bound of 700
 
   Handshake handshake(bool wanted) { return {wanted, wanted && max_delay_ != 0 ? below(max_delay_ + 1) : 0}; }
 
@@ -96,7 +111,7 @@ class AxiHost {
       in.bready = b.up();
       in.arvalid = ar.up();
       in.rready = r.up();
-      const model::Axi4LitePort::Outputs bus = card_.model().bus();
+      const model::Axi4LitePort::Outputs bus = card_.bus();
       const bool asking = aw.due || w.due || ar.due;
       if (asking) asked = clocks;
       if (b.up() && bus.bvalid) answers.written = bus.bresp == model::Axi4LitePort::kOkay;
@@ -112,12 +127,16 @@ class AxiHost {
     return answers;
   }
 
-  sim::LockstepCard& card_;
+  Card& card_;
   std::mt19937_64 random_;
   unsigned max_delay_ = 0;
-  std::uint16_t pins_ = 0;
+  std::uint32_t pins_ = 0;
+  bool emergency_stop_ = false;
+  Switches* switches_ = nullptr;
   std::uint64_t slowest_ = 0;
   std::uint64_t clocks_ = 0;
 };
+
+using AxiHost = AxiHostOf<sim::LockstepCard>;
 
 }  // namespace trammel::test

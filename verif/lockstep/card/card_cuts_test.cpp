@@ -139,6 +139,53 @@ TEST(CardProbe, AnEdgeAtEveryClockOnARamp) {
   EXPECT_EQ(lockstep::judge([] { edge_at_every_clock(0x400000, 17); }), "");
 }
 
+// A silent piece on a card that stands held, the rest of its path behind it, and at every clock the end of the hold,
+// an abort, or nothing until all has gone through.
+void held_silence(std::uint64_t seed) {
+  constexpr unsigned kAxes = 4;
+  sim::LockstepCard card = test::card_under_test(kAxes, seed, 0);
+  AxiHost host(card, seed);
+  Traffic traffic(host, kAxes);
+  host.wait(300);
+  host.write(reg::kSlew, 0x400000);
+  unsigned held = 0;
+  for (std::uint64_t at = 0; at < 400; ++at) {
+    host.write(reg::kHold, 1);
+    host.wait(300);
+    std::uint64_t ticks = 60;
+    std::vector<std::uint32_t> path;
+    if (at % 3 == 0) {
+      driver::encode(line(ticks, {30, -21, 0, 3}), 0, path);
+    } else if (at % 3 == 1) {
+      const auto random = [&host](std::uint64_t count) { return host.below(count); };
+      const driver::ArcCommand arc = test::random_arc(random, kAxes);
+      ticks = 2 * arc.path_ticks;
+      driver::encode(driver::Command(driver::with_ticks(arc, ticks)), 0, path);
+    } else {
+      path = test::random_chords([&host](std::uint64_t count) { return host.below(count); }, kAxes, ticks = 0);
+    }
+    driver::FeedCommand silent = feed(ticks / 2 + 1, 1);
+    silent.silent = true;
+    traffic.send(silent);
+    traffic.send_words(path, false);
+    if (ticks > silent.ticks) traffic.send(feed(ticks - silent.ticks, 2));
+    traffic.send(driver::EndCommand{});
+    host.wait(at % 4 == 3 ? 30 * ticks : at);
+    held += (traffic.status() & field::kStatusHeld) != 0 ? 1U : 0U;
+    if (at % 4 == 1) traffic.abort();
+    host.write(reg::kHold, 0);
+    EXPECT_TRUE(traffic.wait_idle(100'000)) << at;
+    if ((traffic.status() & (field::kStatusFaulted | field::kStatusRefused)) != 0) traffic.recover();
+    host.write(reg::kSlew, 0x400000);
+  }
+  EXPECT_GT(held, 390U);
+  expect_all_compared(card, kAxes, 100'000);
+}
+
+TEST(CardHold, ASilentPieceRunsInIt) {
+  EXPECT_EQ(lockstep::judge([] { held_silence(19); }), "");
+}
+
 // Counts at the borders of the counters' parts: 4, 20 and more bits of ticks, 16 bits of a halfword, dwells alike.
 void counts_around(std::uint64_t count, std::uint64_t seed) {
   constexpr unsigned kAxes = 4;
@@ -253,6 +300,8 @@ void silent_host(std::uint64_t seed) {
   for (unsigned round = 0; round < 12; ++round) {
     const bool ramp = round % 2 == 0;
     host.write(reg::kStopReaction, ramp ? field::kStopReactionWatchdog : 0);
+    host.write(reg::kSetPlace, 0xF0003);
+    host.write(reg::kKeepsPlace, round % 4 == 3 ? 1 : 0);
     traffic.send(feed(200'000, 2));
     traffic.send(line(200'000, {9'000, -7'001, 3, 0}));
     traffic.send(driver::EndCommand{});
@@ -267,6 +316,8 @@ void silent_host(std::uint64_t seed) {
     host.wait(ramp ? 5'000 : 500);
     EXPECT_EQ(traffic.status() & (field::kStatusBusy | field::kStatusFaulted), field::kStatusFaulted) << round;
     EXPECT_EQ(host.read(reg::kStopFault), field::kFaultWatchdog) << round;
+    const std::uint32_t kept = ramp ? 0xB0B : round % 4 == 3 ? 0x909 : 0x808;
+    EXPECT_EQ(host.read(reg::kPlace).value_or(0) & 0xB0B, kept) << round << ": the axes that moved, and one that stood";
     host.write(reg::kFault, field::kFaultWatchdog);
     EXPECT_EQ(host.read(reg::kFault), field::kFaultWatchdog) << "cleared before the host is back";
     host.write(reg::kWatchdog, round % 4 == 0 ? 3 : 0);

@@ -28,6 +28,9 @@ constexpr bool kCommands = card_map::has_engine(kEngines, card_map::engine::kPat
 constexpr bool kClasses = card_map::has_engine(kEngines, card_map::engine::kClasses);
 constexpr bool kWatermarks = card_map::has_engine(kEngines, card_map::engine::kWatermarks);
 constexpr bool kStreaming = card_map::has_engine(kEngines, card_map::engine::kStreaming);
+constexpr bool kMachineInputs = card_map::has_engine(kEngines, card_map::engine::kMachineInputs);
+constexpr bool kEmergencyStop = card_map::has_engine(kEngines, card_map::engine::kEmergencyStop);
+constexpr bool kEnables = card_map::has_engine(kEngines, card_map::engine::kEnables);
 constexpr bool kDirectMode = card_map::has_engine(kEngines, card_map::engine::kDirectMode);
 // Where they are refused, since each refusal closes the stream, only now and then.
 constexpr unsigned kArcEvery = kArcs ? 4 : 40;
@@ -36,6 +39,7 @@ sim::LockstepCard card_with_engines(std::uint64_t seed) {
   model::CardModel::Config config;
   config.axes = kAxes;
   config.engines = kEngines;
+  config.inputs = kMachineInputs ? 8 : 4;  // as built
   config.idle_level = static_cast<std::uint32_t>(seed * 0x9E37 & 0xFF);
   config.output_idle = static_cast<std::uint16_t>(seed & 0xF);
   const sim::CardStraps straps{config.clock_hz, config.idle_level, config.output_idle};
@@ -54,6 +58,9 @@ void random_traffic(std::uint64_t seed, std::uint64_t clocks) {
   Traffic traffic(host, kAxes, kArcEvery);
   traffic.classes = kClasses;
   traffic.streams = kStreaming;
+  traffic.roles = kMachineInputs;
+  traffic.emergency = kEmergencyStop;
+  traffic.enables = kEnables;
   traffic.chords_every = kChords ? 3 : 60;
   traffic.commands_every = kCommands ? 3 : 60;
   host.wait(300);
@@ -62,7 +69,13 @@ void random_traffic(std::uint64_t seed, std::uint64_t clocks) {
   traffic.recover();
   traffic.wait_idle(100'000);
   if (kChords) {
-    EXPECT_GT(traffic.chords_taken, clocks / 5000);
+    EXPECT_GT(traffic.chords_taken, clocks / 6000);
+  }
+  if (kEnables) {
+    EXPECT_GT(traffic.enabled, clocks / 500'000);
+  }
+  if (kEmergencyStop) {
+    EXPECT_GT(traffic.causes_of(field::kFaultEmergencyStop), clocks / 1'000'000);
   }
   expect_all_compared(card, clocks);
 }

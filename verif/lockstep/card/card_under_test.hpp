@@ -14,6 +14,7 @@ inline sim::LockstepCard card_under_test(unsigned axes, std::uint64_t seed, std:
   model::CardModel::Config config;
   config.engines = model::RegisterFile::kMaxEngines;
   config.axes = axes;
+  config.inputs = sim::kInputs;
   config.idle_level = idle_level & ((1U << 2 * axes) - 1);
   sim::set_build_numbers(config);
   return {sim::make_verilated_card(axes, {config.clock_hz, config.idle_level}, std::nullopt), config, seed};

@@ -99,18 +99,18 @@ TEST(CardJudge, ReportHasBothValues) {
 
 TEST(CardJudge, EventsUpToTheCycleAreReported) {
   SimulationOptions options;
-  const auto card = make_rtl_engine(std::make_unique<Liar>(150, offsetof(CardRecord, irq_o), 1), options);
+  const auto card = make_rtl_engine(std::make_unique<Liar>(450, offsetof(CardRecord, irq_o), 1), options);
   // While a first write is answered no other runs: the events stand some clocks apart.
   const std::uint64_t begin = card->cycles();
   std::string expected;
   std::string too_late;
-  for (std::uint32_t i = 0; card->cycles() - begin < 300; ++i) {
-    (card->cycles() - begin < 150 ? expected : too_late) =
+  for (std::uint32_t i = 0; card->cycles() - begin < 600; ++i) {
+    (card->cycles() - begin < 450 ? expected : too_late) =
         fmt::format("cycle {}: written {:#x}\n", card->cycles() - begin, i);
     card->write(card_map::reg::step_length(0), i);
   }
   const std::string report = report_of([&] { card->lockstep_cycles(); });
-  EXPECT_THAT(report, StartsWith("card: cycle 150: irq_o is 0x1 (1) in RTL"));
+  EXPECT_THAT(report, StartsWith("card: cycle 450: irq_o is 0x1 (1) in RTL"));
   EXPECT_THAT(report, HasSubstr(expected));
   EXPECT_THAT(report, Not(HasSubstr(too_late)));
 }
@@ -228,6 +228,12 @@ TEST_P(CardJudgeThreads, EverySignalIsComparedInEveryCycle) {
   }
 }
 
+// The pulses that an axis counts: its position has them a clock later.
+bool shows_later(const std::string& port, unsigned bit) {
+  if (port != "observe_o" || bit < bus::observe::kWidth) return false;
+  return (bit - bus::observe::kWidth) % bus::axis_observe::kWidth >= bus::axis_observe::kCounts.offset;
+}
+
 // A bit of an output that turns shows in the record, whichever it is; and no output is forgotten here.
 TEST(CardJudge, EveryBitOfEveryOutputIsCompared) {
   VerilatedContext context;
@@ -242,6 +248,7 @@ TEST(CardJudge, EveryBitOfEveryOutputIsCompared) {
   unsigned ports = 0;
   const auto turn = [&](auto& port, unsigned low, unsigned width, const char* name) {
     for (unsigned bit = 0; bit < width; ++bit) {
+      if (shows_later(name, low + bit)) continue;
       port = static_cast<std::remove_reference_t<decltype(port)>>(port ^ 1U << bit);
       const CardRecord after = seen();
       EXPECT_NE(std::memcmp(&before, &after, sizeof before), 0) << name << " bit " << low + bit;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,7 +33,9 @@ class Traffic {
     words[0] = (words[0] & 0xFF'FFFF) | std::uint32_t{number_} << 24;
     if (faulty) corrupt(words);
     for (const std::uint32_t word : words) {
-      if (!host_.write(reg::kStream, word)) return false;
+      const bool taken = host_.write(reg::kStream, word);
+      note_causes();
+      if (!taken) return false;
     }
     ++number_;
     chords_taken += (words[0] & 0xFF) == static_cast<std::uint32_t>(card_map::Opcode::ArcChord) ? 1U : 0U;
@@ -68,6 +71,28 @@ class Traffic {
   // Periods that were missing, and looks at a card that went on without one.
   std::uint64_t missing = 0;
   std::uint64_t stale = 0;
+  // Machine inputs: some filters, captures and roles, of the inputs from 4 on, what they do, and soft limits; the next
+  // recover() takes roles and soft limits back. Without it, and where the card has none, nobody has a role but by
+  // chance.
+  void machine_inputs();
+  void drives();
+  bool roles = false;
+  // The emergency stop's button is pressed now and then; recover() lets it go.
+  bool emergency = false;
+  // Drives that are enabled for motion, in some of the traffic of roles().
+  bool enables = false;
+  std::uint64_t enabled = 0;  // looks at drives that are, or that motion waits for
+  // How often each bit of FAULT was set, and looks at a hold by the button.
+  std::array<std::uint64_t, 32> causes{};
+  // Of the lowest bit in `mask`.
+  std::uint64_t causes_of(std::uint32_t mask) const {
+    unsigned bit = 0;
+    while ((mask >> bit & 1U) == 0) ++bit;
+    return causes[bit];
+  }
+  std::uint64_t button_holds = 0;
+  // Looks at a capture.
+  std::uint64_t captured = 0;
   // Requests in disturb() and starved().
   std::uint64_t holds = 0;
   std::uint64_t overrides = 0;
@@ -106,7 +131,7 @@ class Traffic {
   }
   static constexpr std::uint32_t kRatios[] = {reg::kRatioFeed, reg::kRatioRapid, reg::kRatioFixed};
   std::uint32_t any_ratio() { return kRatios[below(3)]; }
-  void flip_a_pin() { host_.set_pins(static_cast<std::uint16_t>(host_.pins() ^ 1U << below(4))); }
+  void flip_a_pin() { host_.set_pins(host_.pins() ^ 1U << below(4)); }
   // A hold, or the end of one.
   void hold() {
     const auto wanted = static_cast<std::uint32_t>(below(2));
@@ -121,7 +146,35 @@ class Traffic {
   void read_anything();
   void write_anything();
 
+  // Counts what has come since the last call.
+  void note_causes() {
+    const std::uint32_t fault = host_.card().model().outputs().fault;
+    for (unsigned bit = 0; bit < causes.size(); ++bit) causes[bit] += (fault & ~noted_) >> bit & 1U;
+    noted_ = fault;
+  }
+  // And mostly clears a fault, so that the next section finds the card moving.
+  void look_at_inputs() {
+    note_causes();
+    enabled += (status() & (field::kStatusEnabled | field::kStatusEnableWaits)) != 0 ? 1U : 0U;
+    button_holds += (status() & field::kStatusButtonHold) != 0 ? 1U : 0U;
+    host_.read(one_in(2) ? reg::kLimitState : one_in(2) ? reg::kRoles : reg::kRawInputs);
+    const std::uint32_t fault = host_.read(reg::kFault).value_or(0);
+    if (fault == 0 || one_in(3)) return;
+    host_.write(reg::kFault, fault);
+    note_causes();
+    abort();
+  }
+  void select_capture();
+  void look_at_captures();
+  void set_soft_limits(unsigned axis);
+  void write_role(std::uint32_t address, std::uint32_t inputs) {
+    host_.write(address, inputs);
+    roles_given_.push_back(address);
+  }
+
   AxiHost& host_;
+  std::vector<std::uint32_t> roles_given_;  // registers ROLE
+  std::uint32_t noted_ = 0;                 // FAULT, as last seen
   unsigned axes_;
   unsigned arc_every_;
   std::uint8_t number_ = 0;
@@ -145,6 +198,7 @@ inline void Traffic::section(bool faulty) {
     driver::FeedCommand piece = random_piece(random, ticks, pace);
     if (classes) piece.piece_class = static_cast<driver::PieceClass>(one_in(3) ? below(3) : below(2));
     piece.silent = one_in(8);
+    if (one_in(2)) piece.slew_shift = static_cast<std::uint8_t>(below(4));
     pieces.emplace_back(piece);
     left -= ticks;
   }
@@ -197,6 +251,7 @@ inline void Traffic::starved() {
     while (pieces < paths && (left == 1 || !one_in(3))) {
       driver::FeedCommand piece =
           random_piece(random, left == 1 ? paths - pieces : 1 + below(2 * (paths - pieces)), pace);
+      if (one_in(2)) piece.slew_shift = static_cast<std::uint8_t>(below(4));
       piece.stop_distance = left == 1 && !one_in(4) ? 0 : 1 + stop / (one_in(6) ? 10 : 1);
       if (!send(piece)) return abort();
       pieces += piece.ticks;
@@ -314,6 +369,70 @@ inline void Traffic::probing() {
   }
 }
 
+inline void Traffic::machine_inputs() {
+  for (std::uint64_t n = 2 + below(6); n != 0; --n) {
+    constexpr std::uint32_t kKinds[] = {0, 0, 0, 1, 1, 1, 4};
+    const auto of_axis = static_cast<std::uint32_t>(8 * kKinds[below(7)] + below(axes_));
+    // Probe, tool setter, and seldom the buttons.
+    const auto of_card = static_cast<std::uint32_t>(48 + (one_in(6) ? 2 + below(2) : below(2)));
+    const auto any = static_cast<std::uint32_t>(below(64));
+    const std::uint32_t role = one_in(20) ? any : one_in(2) ? of_card : of_axis;
+    write_role(reg::role(role), std::uint32_t{1} << (4 + below(12)));
+  }
+  while (one_in(2))
+    host_.write(reg::input_filter(static_cast<std::uint32_t>(below(16))), static_cast<std::uint32_t>(below(6)));
+  for (std::uint64_t n = below(3); n != 0; --n) select_capture();
+  const auto axis = static_cast<unsigned>(below(axes_));
+  // The probe and the tool setter mostly count; any step and shared switches seldom.
+  const std::uint64_t counts = one_in(4) ? below(4) : 3;
+  if (one_in(2))
+    host_.write(reg::kStopCauses, static_cast<std::uint32_t>((below(1U << 16) & below(1U << 16)) | counts << 17));
+  if (one_in(2)) host_.write(reg::overtravel(axis), static_cast<std::uint32_t>(below(20)));
+  if (one_in(2)) host_.write(reg::kStopReaction, static_cast<std::uint32_t>(below(1U << 19) & 0x77C00));
+  if (one_in(2)) host_.write(reg::kOutputSafeCause, static_cast<std::uint32_t>(odd_number(32)));
+  if (one_in(2)) set_soft_limits(axis);
+  if (one_in(3)) host_.set_pins(host_.pins() & 0xF);
+}
+
+// Of an input that changes; where the card has no captures it is refused.
+inline void Traffic::select_capture() {
+  const std::uint64_t edges = one_in(10) ? 0 : (1 + below(3)) << 8;
+  const std::uint32_t continuous = one_in(2) ? field::kCaptureSelectContinuous : 0;
+  host_.write(reg::capture_select(static_cast<std::uint32_t>(below(4))),
+              static_cast<std::uint32_t>(below(16) | edges) | continuous);
+}
+
+inline void Traffic::look_at_captures() {
+  const std::uint32_t state = host_.read(reg::kCaptureState).value_or(0);
+  captured += (state & field::kCaptureStateValid) != 0 ? 1U : 0U;
+  const auto area = static_cast<std::uint32_t>(card_map::Area::Capture0) + 0x40 * static_cast<std::uint32_t>(below(4));
+  for (std::uint32_t word = 0; word < 8 + axes_; ++word) host_.read(area + 4 * word);
+  if (one_in(2)) host_.write(reg::kCaptureClear, static_cast<std::uint32_t>(below(16)));
+}
+
+// Near where the axis stands.
+inline void Traffic::set_soft_limits(unsigned axis) {
+  host_.write(reg::kControl, field::kControlSnapshot);
+  const std::uint32_t here = host_.read(reg::snap_position(axis)).value_or(0);
+  host_.write(reg::soft_minus(axis), here - static_cast<std::uint32_t>(below(one_in(2) ? 10 : 200)));
+  host_.write(reg::soft_plus(axis), here + static_cast<std::uint32_t>(below(one_in(2) ? 10 : 200)));
+  host_.write(reg::kSoftLimits, static_cast<std::uint32_t>(one_in(3) ? below(256) : 1U << axis));
+}
+
+inline void Traffic::drives() {
+  const auto few = [this] { return static_cast<std::uint32_t>(one_in(3) ? below(3) : 0); };
+  host_.write(reg::kOutputRoles, static_cast<std::uint32_t>(odd_number(32)));
+  if (one_in(2)) host_.write(reg::kHealthRoles, static_cast<std::uint32_t>(odd_number(32)));
+  for (const std::uint32_t delay : {reg::kEnableDelay, reg::kBrakeReleaseDelay, reg::kStopDelay, reg::kBrakeSetDelay}) {
+    if (one_in(2)) host_.write(delay, few());
+  }
+  if (one_in(3)) host_.write(reg::kDisableCauses, static_cast<std::uint32_t>(below(1U << 19) & below(1U << 19)));
+  if (one_in(3)) host_.write(reg::kHealthCauses, static_cast<std::uint32_t>(below(1U << 19) & below(1U << 19)));
+  if (one_in(2)) host_.write(reg::kChargePump, static_cast<std::uint32_t>(below(300)));
+  host_.write(reg::kEnable, static_cast<std::uint32_t>(one_in(4) ? below(4) : below(2)));
+  host_.write(reg::kEnableAxes, static_cast<std::uint32_t>(one_in(3) ? 0 : below(256)));
+}
+
 inline void Traffic::settings() {
   const auto time = [this] { return static_cast<std::uint32_t>(one_in(12) ? odd_number(16) & 0xFFFF : below(5)); };
   for (unsigned n = 0; n < axes_; ++n) {
@@ -373,10 +492,16 @@ inline void Traffic::write_anything() {
   const std::uint32_t address = any_address();
   const auto strobes = static_cast<std::uint8_t>(one_in(3) ? below(16) : 0xF);
   host_.write(address, static_cast<std::uint32_t>(odd_number(32)), strobes);
+  if (address >= reg::role(0) && address <= reg::role(63)) roles_given_.push_back(address);
 }
 
 inline void Traffic::disturb() {
-  if (one_in(3)) host_.set_pins(static_cast<std::uint16_t>(below(0x10000)));
+  note_causes();
+  if (one_in(3)) host_.set_pins(static_cast<std::uint32_t>(below(0x10000)));
+  if (roles && one_in(3)) host_.set_pins(host_.pins() ^ std::uint32_t{1} << (4 + below(12)));
+  if (emergency && one_in(20)) host_.press_emergency_stop(one_in(2));
+  if (roles && one_in(4)) host_.write(reg::kLimitOverride, static_cast<std::uint32_t>(below(0x10000)));
+  if (roles && one_in(4)) host_.read(one_in(2) ? reg::kRoles : reg::kRawInputs);
   switch (below(16)) {
     case 0:
       hold();
@@ -394,7 +519,7 @@ inline void Traffic::disturb() {
       settings();
       break;
     case 5:
-      host_.write(reg::kFault, static_cast<std::uint32_t>(below(1U << 16)));
+      host_.write(reg::kFault, static_cast<std::uint32_t>(below(1U << 19)));
       break;
     case 6:
       host_.write(reg::kRefusal, static_cast<std::uint32_t>(below(2)));
@@ -421,18 +546,36 @@ inline void Traffic::disturb() {
 }
 
 inline void Traffic::recover() {
+  note_causes();
+  host_.press_emergency_stop(false);
+  if (enables) {
+    host_.write(reg::kEnable, 0);
+    host_.write(reg::kEnableAxes, 0);
+  }
   const auto calm = [this] {
     host_.write(reg::kHold, 0);
     for (const std::uint32_t ratio : kRatios) host_.write(ratio, 0x10000);
     host_.write(reg::kSlew, 0xFFFFFFF);
     if (streams) host_.write(reg::kStreaming, 0);
   };
+  if (roles) {
+    host_.write(reg::kSoftLimits, 0);
+    // Cycle start releases what the button holds.
+    for (const std::uint32_t address : roles_given_) host_.write(address, 0);
+    write_role(reg::role(51), 2);
+    host_.set_pins(0);
+    host_.wait(140);
+    host_.set_pins(2);
+    host_.wait(140);
+    host_.write(reg::role(51), 0);
+    roles_given_.clear();
+  }
   const bool calm_first = one_in(2);
   if (calm_first) calm();
   const bool abort_first = one_in(2);
   if (abort_first) abort();
   host_.wait(below(60));
-  host_.write(reg::kFault, 0xFFFF);
+  host_.write(reg::kFault, 0x7FFFF);
   host_.wait(below(60));
   if (!abort_first || one_in(3)) abort();
   if (!calm_first) calm();
@@ -454,6 +597,8 @@ inline bool Traffic::wait_idle(std::uint64_t clocks) {
 
 inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
   for (; sections != 0; --sections) {
+    if (roles && one_in(2)) machine_inputs();
+    if (enables && one_in(3)) drives();
     if (one_in(5))
       starved();
     else if (streams && one_in(4))
@@ -463,6 +608,8 @@ inline void Traffic::run(std::uint64_t sections, std::uint64_t calm) {
     else
       section(one_in(4));
     host_.wait(below(one_in(4) ? 6000 : 600));
+    if (roles) look_at_inputs();
+    if (roles && one_in(2)) look_at_captures();
     while (one_in(calm)) disturb();
     if (one_in(6)) {
       recover();

@@ -33,8 +33,8 @@ class Bench {
   void clock(const model::QueueWatermarks::Inputs& in) {
     if (in.setting.set) check_.event("setting", std::uint64_t{in.setting.address} << 32 | in.setting.data);
     dut_->setting_i = wire(in.setting);
-    dut_->geometry_room_i = in.geometry_room;
-    dut_->feed_room_i = in.feed_room;
+    dut_->geometry_room_i = static_cast<std::uint16_t>(in.geometry_room);
+    dut_->feed_room_i = static_cast<std::uint16_t>(in.feed_room);
     dut_.clock();
     model_.clock(in);
     compare();

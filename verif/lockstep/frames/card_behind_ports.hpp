@@ -31,6 +31,8 @@ class CardBehindPorts {
     dut_->idle_level_i = 0;
     dut_->output_idle_i = 0;
     dut_->input_i = 0;
+    dut_->emergency_stop_level_i = 1;
+    dut_->emergency_stop_i = 0;
     drive_hosts(*dut_, in);
     model::CoreModel::Inputs core;
     for (const bool reset : {true, false}) {
@@ -102,6 +104,8 @@ class CardBehindPorts {
     core.port = inner.port;
     core.address = inner.access.address;
     core.data = inner.access.data;
+    core.of_session = inner.access.of_session;
+    core.new_session = inner.access.new_session;
     return core;
   }
 

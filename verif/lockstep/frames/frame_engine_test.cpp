@@ -118,7 +118,8 @@ class Bench {
     // The access stands from its request to the answer; what no write needs may be anything.
     if (!out.request && !inner_.open()) return;
     check_.compare("access, without data", dut_->access_o & ~in_place(kRequest, 1) & ~in_place(kData, ~0U),
-                   in_place(kWrite, out.write) | in_place(kAddress, out.address));
+                   in_place(kWrite, out.write) | in_place(kAddress, out.address) |
+                       in_place(kOfSession, out.of_session) | in_place(kNewSession, out.new_session));
     ++more_;
     if (!out.write) return;
     check_.compare("access, data", get(dut_->access_o, kData), out.data);

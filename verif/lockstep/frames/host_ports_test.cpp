@@ -150,6 +150,8 @@ class Bench {
     const model::PortArbiter::Access& a = inner.access;
     differs("access, write and address", access(kWrite) << 12 | access(kAddress),
             std::uint64_t{a.write} << 12 | a.address);
+    differs("access, session", access(kOfSession) << 1 | access(kNewSession),
+            unsigned{a.of_session} << 1 | unsigned{a.new_session});
     if (a.write)
       differs("access, partial and data", access(kPartial) << 32 | access(kData),
               std::uint64_t{a.partial} << 32 | a.data);

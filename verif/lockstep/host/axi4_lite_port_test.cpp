@@ -112,7 +112,8 @@ class Bench {
     checker_.compare("request_o", access(kRequest), out.request);
     checker_.compare("bresp_o", rtl_->bresp_o, out.bresp);
     checker_.compare("rresp_o", rtl_->rresp_o, out.rresp);
-    checker_.compare("access_o, port", access(kPort), 0U);
+    checker_.compare("access_o, port and session", access(kPort) << 2 | access(kNewSession) << 1 | access(kOfSession),
+                     1U);
     if (out.rvalid) checker_.compare("rdata_o", rtl_->rdata_o, out.rdata);
     if (!out.request) return;
     checker_.compare("write_o", access(kWrite), out.write);

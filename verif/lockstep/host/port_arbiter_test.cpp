@@ -29,7 +29,8 @@ class Bench {
       access.request = !waiting_[port] && dice_.chance(ask_every);
       if (!access.request) continue;
       waiting_[port] = true;
-      access = {true, dice_.chance(2), dice_.chance(4), dice_.draw() & 0xFFF, dice_.draw()};
+      access = {true,         dice_.chance(2), dice_.chance(4), dice_.draw() & 0xFFF,
+                dice_.draw(), dice_.chance(2), dice_.chance(2)};
       check_.event("request of port", port);
     }
     drive();
@@ -86,6 +87,8 @@ class Bench {
       set(kPartial, a.partial);
       set(kAddress, a.address);
       set(kData, a.data);
+      set(kOfSession, a.of_session);
+      set(kNewSession, a.new_session);
     }
   }
 
@@ -107,7 +110,8 @@ class Bench {
     const PortArbiter::Access& a = accesses_[inner.port];
     check_.compare("access", dut_->access_o & ~in_place(kRequest, 1),
                    in_place(kPort, inner.port) | in_place(kWrite, a.write) | in_place(kPartial, a.partial) |
-                       in_place(kAddress, a.address) | in_place(kData, a.data));
+                       in_place(kAddress, a.address) | in_place(kData, a.data) | in_place(kOfSession, a.of_session) |
+                       in_place(kNewSession, a.new_session));
     ++more_;
   }
 

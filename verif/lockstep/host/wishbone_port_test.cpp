@@ -120,7 +120,7 @@ class Bench {
     if (!out.request && !open_) return;
     check_.compare("access", dut_->access_o & ~in_place(kRequest, 1),
                    in_place(kWrite, out.write) | in_place(kPartial, out.partial) | in_place(kAddress, out.address) |
-                       in_place(kData, out.data));
+                       in_place(kData, out.data) | in_place(kOfSession, 1));
     ++more_;
   }
 

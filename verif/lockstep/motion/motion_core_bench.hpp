@@ -27,10 +27,12 @@ constexpr bool kDirectMode = card_map::has_engine(TRAMMEL_ENGINES, card_map::eng
 constexpr bool kClasses = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kClasses);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
+constexpr bool kSoftLimits = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kSoftLimits);
 constexpr bool kMachineInputs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kMachineInputs);
-constexpr unsigned kInputs = 5;
+constexpr bool kEnables = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kEnables);
+constexpr bool kEmergencyStop = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kEmergencyStop);
 constexpr unsigned kOutputs = 3;
-constexpr std::uint64_t kComparedSignals = 40 + kAxes;
+constexpr std::uint64_t kComparedSignals = 45 + kAxes;
 using IdleLevel = std::remove_reference_t<decltype(Vdut::idle_level_i)>;
 constexpr std::uint32_t kAllAxes = (1U << kAxes) - 1;
 
@@ -53,13 +55,19 @@ class LoaderRam {
 class MotionCoreBench {
  public:
   explicit MotionCoreBench(std::uint64_t seed)
-      : check_("motion_core", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
+      : check_("motion_core", seed),
+        dice_(seed),
+        place_dice_(seed),
+        raw_dice_(seed + 1),
+        programs_(kAxes, dice_),
+        geometry_(1024),
+        feed_(1024) {
     programs_.arcs = kArcs;
     programs_.eight_directions = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kAccumulator8);
     programs_.chords = kChords;
     programs_.path_commands = kPathCommands;
     programs_.probes = kPathCommands;
-    programs_.inputs = kInputs;
+    programs_.inputs = 32;
     programs_.classes = kClasses;
     reset();
   }
@@ -75,11 +83,14 @@ class MotionCoreBench {
     }
     in_ = {};
     in_.abort = dice_.chance(abort_every_);
-    if (dice_.chance(50)) pins_ = static_cast<std::uint16_t>(dice_.draw());
-    in_.pins = pins_;
+    if (dice_.chance(50)) levels_ = dice_.draw();
+    in_.levels = kPathCommands ? levels_ : 0;
+    in_.raw = in_.levels ^ (raw_dice_.draw() & raw_dice_.draw() & raw_dice_.draw());
+    in_.quiet = raw_dice_.draw();
     if (kMachineInputs && dice_.chance(inputs_every_)) random_role();
     if (kMachineInputs && model_->probe().busy() && dice_.chance(40)) roles_.probe = !roles_.probe;
     in_.roles = roles_;
+    random_emergency();
     in_.probe_clear = kPathCommands && dice_.chance(50);
     if (in_.abort) check_.event("abort");
     if (model_->stop().fault != 0 ? dice_.chance(40) : dice_.chance(5000)) {
@@ -87,6 +98,10 @@ class MotionCoreBench {
       check_.event("clear fault", in_.clear_fault);
     }
     if (dice_.chance(200)) random_setting();
+    if (!in_.setting.set && place_dice_.chance(1000)) random_place();
+    if (place_dice_.chance(in_.link_lost ? 20 : 10'000)) in_.link_lost = !in_.link_lost;
+    if (place_dice_.chance(in_.session_gone ? 300 : 3000)) in_.session_gone = !in_.session_gone;
+    if (kSoftLimits && !in_.setting.set && place_dice_.chance(400)) random_soft_limit();
     if (dice_.chance(3000)) marks_near_a_carry();
     // While a START is answered no word is written: what it finds queued is all there is.
     if (kDirectMode && !starting_ && geometry_.done() && feed_.done() && dice_.chance(start_every_)) random_start();
@@ -124,7 +139,7 @@ class MotionCoreBench {
         for (const unsigned clear : {0U, 40U}) {
           probe_to_the_end(ticks);
           for (unsigned i = 0; i < 220; ++i) {
-            in_.pins = i < edge ? 0 : 1;
+            in_.levels = i < edge ? 0 : 1;
             in_.probe_clear = i == edge + clear;
             clock();
           }
@@ -147,6 +162,30 @@ class MotionCoreBench {
         clock();
       }
     }
+    in_ = {};
+  }
+
+  // The emergency stop disables the drives in motion, at a tick in every clock, though its reaction is a ramp: what is
+  // owed stays so.
+  void drives_disabled_in_motion() {
+    for (unsigned at = 0; at < 40; ++at) {
+      reset();
+      in_ = {};
+      write_every_ = 1;
+      for (const auto& [address, data] : {std::pair{reg::kStopReaction, card_map::field::kStopReactionEmergencyStop},
+                                          std::pair{reg::kSlew, 0x1000U}, std::pair{reg::kEnableAxes, 0xFFU}}) {
+        in_.setting = {true, address, data};
+        clock();
+      }
+      in_.setting = {};
+      geometry_.add({stored_command(card_map::Opcode::Line, 1, 4000, {}, {kOnePulse / 16})});
+      feed_.add({stored_command(card_map::Opcode::Feed, 0, 4000, {{"rate", int128{~std::uint64_t{0}}}, {"floor", 1}})});
+      for (unsigned i = 0; i < 300; ++i) {
+        in_.emergency = i == 160 + at;
+        clock();
+      }
+    }
+    reset();
     in_ = {};
   }
 
@@ -173,6 +212,9 @@ class MotionCoreBench {
   std::uint64_t moves() const { return moves_; }
   std::uint64_t faults() const { return faults_; }
   std::uint64_t limits() const { return limits_; }
+  std::uint64_t soft_limits() const { return soft_limits_; }
+  std::uint64_t lost_places() const { return lost_places_; }
+  std::uint64_t waits() const { return waits_; }  // clocks in which motion waits for the drives
   std::uint64_t beyond() const { return beyond_; }
   std::uint64_t marks() const { return marks_; }
   std::uint64_t missing() const { return missing_; }
@@ -236,6 +278,15 @@ class MotionCoreBench {
     inputs_every_ = dice_.chance(3) ? 100 : 20'000;
   }
 
+  // The emergency stop's cause, and its latch, which changes outputs alone; of the other dice.
+  void random_emergency() {
+    const bool was = emergency_;
+    if (kEmergencyStop && place_dice_.chance(emergency_ ? 20 : 100'000)) emergency_ = !emergency_;
+    if (kEmergencyStop && place_dice_.chance(latched_ ? 30 : 3000)) latched_ = !latched_;
+    if (emergency_ && !was) check_.event("emergency stop");
+    in_.emergency = emergency_;
+  }
+
   // One role changes; what is active does not stay so for long.
   void random_role() {
     const auto axis = static_cast<std::uint8_t>(1U << dice_.below(kAxes));
@@ -287,7 +338,7 @@ class MotionCoreBench {
         {kClasses ? ratios[dice_.below(3)] : reg::kRatioFeed,
          !dice_.chance(4) ? 0x10000 : static_cast<std::uint32_t>(dice_.log_uniform(16))},
         {reg::kSlew, !dice_.chance(4) ? 0xFFF'FFFF : 1 + static_cast<std::uint32_t>(dice_.log_uniform(27))},
-        {reg::kStopReaction, dice_.chance(2) ? 0x66CFF : dice_.below(256) | (dice_.draw() & 0x62C00)},
+        {reg::kStopReaction, dice_.chance(2) ? 0x7ECFF : dice_.below(256) | (dice_.draw() & 0x7AC00)},
         {kMachineInputs ? reg::kStopCauses : reg::kHoldLimit,
          kMachineInputs ? dice_.draw() & dice_.draw() & 0x6FFFF : 9},
         {kMachineInputs ? reg::kLimitOverride : reg::kHoldLimit, kMachineInputs ? dice_.draw() & 0xFFFF : 11},
@@ -298,6 +349,56 @@ class MotionCoreBench {
     const auto& [address, data] = settings[dice_.below(std::size(settings))];
     in_.setting = {!dice_.chance(4), address, data};
     if (in_.setting.set) check_.event("setting", std::uint64_t{address} << 32 | data);
+  }
+
+  // Places come back soon after they were lost. They change no motion, and have dice of their own, so that the programs
+  // are the same without them.
+  void random_place() {
+    Dice& dice = place_dice_;
+    const bool keeps = dice.chance(8);
+    const std::uint32_t axes = dice.draw() & 0xFF;
+    const std::uint32_t place = dice.below(4) | axes << card_map::field::kSetPlaceAxesShift;
+    in_.setting = {true, keeps ? reg::kKeepsPlace : reg::kSetPlace, keeps ? axes & dice.draw() : place};
+    if (kPathCommands && dice.chance(3)) in_.setting = {true, reg::kOutputSafeCause, dice.draw()};
+    if (kEnables && dice.chance(2)) in_.setting = enable_setting(dice);
+    check_.event("setting", std::uint64_t{in_.setting.address} << 32 | in_.setting.data);
+  }
+
+  // Near where the axis stands; mostly switched off again, so that programs go on.
+  void random_soft_limit() {
+    Dice& dice = place_dice_;
+    const unsigned axis = dice.below(kAxes);
+    const std::uint32_t here = model_->position(axis);
+    const std::pair<std::uint32_t, std::uint32_t> settings[] = {{reg::soft_minus(axis), here - dice.below(20)},
+                                                                {reg::soft_plus(axis), here + dice.below(20)},
+                                                                {reg::kSoftLimits, dice.draw() & 0xFF},
+                                                                {reg::kSoftLimits, 0},
+                                                                {reg::kSoftLimits, 0}};
+    const auto& [address, data] = settings[dice.below(std::size(settings))];
+    in_.setting = {true, address, data};
+    check_.event("setting", std::uint64_t{address} << 32 | data);
+  }
+
+  // Delays are some thousand clocks for each unit: mostly none, and seldom a sequence at all.
+  static model::Setting enable_setting(Dice& dice) {
+    switch (dice.below(8)) {
+      case 0:
+        return {true, reg::kOutputRoles, dice.draw() & dice.draw()};
+      case 1:
+        return {true, reg::kHealthRoles, dice.draw() & dice.draw()};
+      case 2:
+        return {true, reg::kEnable, dice.below(4) & dice.below(4)};
+      case 3:
+        return {true, reg::kEnableAxes, !dice.chance(4) ? 0 : dice.draw() & 0xFF};
+      case 4:
+        return {true, dice.chance(2) ? reg::kBrakeReleaseDelay : reg::kStopDelay, dice.chance(6) ? 1U : 0U};
+      case 5:
+        return {true, reg::kDisableCauses, dice.draw() & dice.draw() & 0x7FFFF};
+      case 6:
+        return {true, reg::kHealthCauses, dice.draw() & dice.draw() & 0x7FFFF};
+      default:
+        return {true, reg::kChargePump, dice.below(2000)};
+    }
   }
 
   // Mostly a move that can be made; else one value is off.
@@ -334,12 +435,13 @@ class MotionCoreBench {
     apply();
     dut_.clock();
     dut_->rst_i = 0;
-    const model::PathCommands::Config pins{kInputs, kOutputs, output_idle_};
+    const model::PathCommands::Config pins{kOutputs, output_idle_};
     model_ = std::make_unique<model::MotionCore>(kAxes, idle_level_, TRAMMEL_ENGINES, pins);
     geometry_.reset();
     feed_.reset();
     starting_ = false;
     marks_ahead_ = 0;
+    valid_ = 0;
     chain_.fill({});
     compare();
   }
@@ -372,6 +474,11 @@ class MotionCoreBench {
     moves_ += model_->loader().go ? 1U : 0U;
     faults_ += model_->stop().stop ? 1U : 0U;
     limits_ += model_->state().limits.causes().limit ? 1U : 0U;
+    soft_limits_ += model_->state().soft_limits.cause() ? 1U : 0U;
+    const std::uint8_t valid = model_->state().place.state().valid;
+    lost_places_ += (valid_ & ~valid) != 0 && !in_.setting.set ? 1U : 0U;
+    valid_ = valid;
+    waits_ += model_->waits_for_drives() && model_->wants_drives() ? 1U : 0U;
     beyond_ += model_->state().limits.causes().beyond ? 1U : 0U;
     missing_ += model_->sequencer().streaming().missing ? 1U : 0U;
     stale_ += model_->sequencer().outputs().stale ? 1U : 0U;
@@ -389,12 +496,17 @@ class MotionCoreBench {
     if (model_->loader().done) starting_ = false;
   }
 
-  // From the far end: RATIO, RATE, FEED_BEGUN, GEOMETRY_BEGUN, POSITION of each axis; only 18 bits pass RATIO.
+  // From the far end: RATIO, RATE, FEED_BEGUN, GEOMETRY_BEGUN, POSITION of each axis; only 20 bits pass RATIO; REST has
+  // the ticks that are left in the place of RATIO and RATE.
   void advance_chain() {
-    const auto& sequencer = model_->sequencer().outputs();
+    const model::Sequencer& sequencer_model = model_->sequencer();
+    const auto& sequencer = sequencer_model.outputs();
     for (std::size_t i = chain_.size(); i-- > 0;) {
-      const std::uint32_t values[] = {model_->time().ratio, model_->feed().rate, sequencer.feed_begun,
-                                      sequencer.geometry_begun};
+      const std::uint64_t left = model_->settled() ? sequencer_model.ticks_to_come() : 0;
+      const bool rest = get(dut_->snapshot_i, bus::snapshot::kRest) != 0;
+      const std::uint32_t values[] = {rest ? static_cast<std::uint32_t>(left >> 32) : model_->time().ratio,
+                                      rest ? static_cast<std::uint32_t>(left) : model_->feed().rate,
+                                      sequencer.feed_begun, sequencer.geometry_begun};
       const std::uint32_t value = i < 4 ? values[i] : model_->position(static_cast<unsigned>(i - 4));
       if (i == 0)
         chain_[i].clock(dut_->snapshot_i, value);
@@ -412,12 +524,16 @@ class MotionCoreBench {
     in_.loader_data = model_ram_.data();
     dut_->idle_level_i = static_cast<IdleLevel>(idle_level_);
     dut_->output_idle_i = static_cast<CData>(output_idle_);
-    dut_->input_i = static_cast<CData>(in_.pins & ((1U << kInputs) - 1));
+    put_inputs(dut_->inputs_i, in_.levels, in_.raw, in_.quiet);
     dut_->setting_i = wire(in_.setting);
     dut_->roles_i = roles_wire(in_.roles);
+    dut_->emergency_stop_i = in_.emergency;
+    dut_->latched_i = latched_;
     dut_->abort_i = in_.abort;
     dut_->probe_clear_i = in_.probe_clear;
     dut_->clear_fault_i = in_.clear_fault;
+    dut_->session_gone_i = in_.session_gone;
+    dut_->link_lost_i = in_.link_lost;
     dut_->geometry_empty_i = in_.geometry_empty;
     dut_->geometry_word_i = in_.geometry_word;
     dut_->feed_empty_i = in_.feed_empty;
@@ -425,7 +541,7 @@ class MotionCoreBench {
     dut_->arrival_i = arrival_wire(in_.arrival, in_.full);
     using namespace bus::start;
     dut_->start_i = in_place(kStart, in_.start) | in_place(kMask, in_.start_mask) | in_place(kData, rtl_ram_.data());
-    dut_->snapshot_i = dice_.snapshot() & ~bus::in_place({18, 14}, ~std::uint64_t{0});
+    dut_->snapshot_i = dice_.snapshot() & ~bus::in_place({20, 12}, ~std::uint64_t{0});
   }
 
   std::uint64_t observed(unsigned axis, const bus::Field& field) {
@@ -443,13 +559,14 @@ class MotionCoreBench {
     check_.compare("cut_o", dut_->cut_o, stop.cut);
     check_.compare("closed_o", dut_->closed_o, stop.closed);
     check_.compare("stop_o", dut_->stop_o, stop.stop);
+    check_.compare("rest_o", dut_->rest_o, model_->rests(in_));
     check_.compare("busy_o", dut_->busy_o, out.busy);
     compare_states();
     compare_axes();
     const auto& commands = model_->commands();
-    check_.compare("output_o", dut_->output_o, commands.outputs());
+    check_.compare("output_o", dut_->output_o, model_->output_levels(latched_));
     check_.compare("mark_o", dut_->mark_o, commands.mark());
-    check_.compare("probe_o", dut_->probe_o, model_->probe_trips(in_));
+    check_.compare("probe_o", dut_->probe_o, model_->probe_asks(in_));
     check_.compare("step_o", dut_->step_o, out.step);
     check_.compare("dir_o", dut_->dir_o, out.dir);
     check_.compare("start, error with done", answer(bus::start_answer::kDone) & answer(bus::start_answer::kError),
@@ -466,9 +583,13 @@ class MotionCoreBench {
     const auto in_time = [this](const bus::Field& field) { return get(dut_->time_state_o, field); };
     check_.compare("fault", in_time(time::kFault), model_->stop().fault);
     check_.compare("feed active", in_time(time::kFeedActive), s.feed_active);
-    check_.compare("limit state", in_time(time::kLimitState), model_->state().limits.limit_state());
+    check_.compare("limit state", in_time(time::kLimitState), model_->limit_state());
+    check_.compare("place", in_time(time::kPlace), model_->state().place.place());
+    check_.compare("enabled", in_time(time::kEnabled), model_->state().drives.enabled());
+    check_.compare("enable waits", in_time(time::kEnableWaits), model_->waits_for_drives() && model_->wants_drives());
     check_.compare("button hold", in_time(time::kButtonHold), model_->state().buttons.hold());
     check_.compare("stopping", in_time(time::kStopping), model_->stop().stopping);
+    check_.compare("settled", in_time(time::kSettled), model_->settled());
     check_.compare("held", in_time(time::kHeld), model_->time().ratio == 0);
     check_.compare("feed begun", in_time(time::kFeedBegun), s.feed_begun);
     check_.compare("tick", in_time(time::kTick), s.tick);
@@ -483,9 +604,9 @@ class MotionCoreBench {
     check_.compare("geometry begun", in_geometry(geometry::kGeometryBegun), s.geometry_begun);
     check_.compare("path swap", in_geometry(geometry::kPathSwap), s.swap);
     const auto& commands = model_->commands();
-    check_.compare("inputs", get(dut_->pins_state_o, bus::pins_state::kInputs), kPathCommands ? commands.levels() : 0);
+    check_.compare("inputs", get(dut_->pins_state_o, bus::pins_state::kInputs), in_.levels);
     check_.compare("outputs", get(dut_->pins_state_o, bus::pins_state::kOutputs),
-                   kPathCommands ? commands.outputs() : 0);
+                   kPathCommands ? model_->output_levels(latched_) : 0);
     check_.compare("marks", get(dut_->pins_state_o, bus::pins_state::kMarks), commands.marks() + marks_ahead_);
     check_.compare("waiting", in_geometry(geometry::kWaiting), model_->sequencer().waits_for_input());
     check_.compare("probe missed", get(dut_->pins_state_o, bus::pins_state::kProbeMissed), model_->probe().missed());
@@ -518,6 +639,8 @@ class MotionCoreBench {
   model::MotionCore::Inputs in_;
   Checker check_;
   Dice dice_;
+  Dice place_dice_;
+  Dice raw_dice_;
   Programs programs_;
   QueueWriter geometry_;
   QueueWriter feed_;
@@ -526,8 +649,10 @@ class MotionCoreBench {
   std::array<SnapshotWord, 4 + kAxes> chain_;
   std::uint32_t idle_level_ = 0;
   std::uint16_t output_idle_ = 0;
-  std::uint16_t pins_ = 0;
+  std::uint32_t levels_ = 0;
   model::InputRoles roles_;
+  bool emergency_ = false;
+  bool latched_ = false;  // the emergency stop's latch
   std::uint32_t mask_ = 0;
   std::uint32_t marks_ahead_ = 0;  // of the model, in the RTL
   bool starting_ = false;
@@ -541,6 +666,10 @@ class MotionCoreBench {
   std::uint64_t moves_ = 0;
   std::uint64_t faults_ = 0;
   std::uint64_t limits_ = 0;
+  std::uint64_t soft_limits_ = 0;
+  std::uint64_t lost_places_ = 0;
+  std::uint64_t waits_ = 0;
+  std::uint8_t valid_ = 0;  // axes with a valid place, a clock ago
   std::uint64_t beyond_ = 0;
   std::uint64_t marks_ = 0;
   std::uint64_t missing_ = 0;

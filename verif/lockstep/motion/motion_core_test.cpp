@@ -14,6 +14,7 @@ void random_programs() {
   if (kPathCommands) bench.edges_around_the_end();
   if (kStreaming) bench.streaming_set_around_the_begin();
   if (kClasses) bench.holds_before_the_path();
+  if (kEnables) bench.drives_disabled_in_motion();
   while (bench.check().cycles() < length) bench.random_clock();
   EXPECT_EQ(bench.check().comparisons(), bench.expected());
   EXPECT_GT(bench.steps(), length / 200);
@@ -21,13 +22,20 @@ void random_programs() {
     EXPECT_GT(bench.moves(), length / 20'000);
   }
   EXPECT_GT(bench.faults(), length / 20'000);
+  EXPECT_GT(bench.lost_places(), length / 50'000);
   if (kPathCommands) {
     EXPECT_GT(bench.marks(), length / 5000);
     EXPECT_GT(bench.halts(), length / 20'000);
   }
+  if (kEnables) {
+    EXPECT_GT(bench.waits(), length / 2000);
+  }
   if (kMachineInputs) {
-    EXPECT_GT(bench.limits(), length / 20'000);
+    EXPECT_GT(bench.limits(), length / 60'000);
     EXPECT_GT(bench.beyond(), length / 300'000);
+  }
+  if (kSoftLimits) {
+    EXPECT_GT(bench.soft_limits(), length / 80'000);
   }
   if (kStreaming) {
     EXPECT_GT(bench.missing(), length / 200'000);

@@ -12,6 +12,7 @@ module counters (
     // ticks
     input  wire logic                           swap_i,
     input  wire logic                           take_i,
+    output logic      [                   39:0] left_o,
     output logic                                last_o,
     // commands begun
     input  wire logic                           cut_i,
@@ -29,6 +30,7 @@ module counters (
       .zero_o,
       .load_i(swap_i),
       .take_i,
+      .left_o,
       .last_o
   );
 

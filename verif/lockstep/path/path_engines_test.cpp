@@ -20,7 +20,7 @@ constexpr std::uint8_t kArcGenerator = card_map::engine::kArcGenerator;
 constexpr bool kEngines = TRAMMEL_ENGINES != 0;  // others than lines are built in
 constexpr unsigned kAxes = 4;
 constexpr std::uint64_t kOnePulse = std::uint64_t{1} << 40;
-constexpr std::uint64_t kComparedSignals = kEngines ? 12 : 14;
+constexpr std::uint64_t kComparedSignals = kEngines ? 13 : 15;
 
 class Bench {
  public:
@@ -205,6 +205,7 @@ class Bench {
     check_.compare("dir, of steps", drive(kDir) & drive(kStep), out.dir & out.step);
     check_.compare("ready_o", dut_->ready_o, out.ready);
     check_.compare("payload_ready_o", dut_->payload_ready_o, out.payload_ready);
+    check_.compare("quiet_o", dut_->quiet_o, kEngines ? model_.quiet() : true);
     check_.compare("shadows_free_o", dut_->shadows_free_o, out.shadows_free);
     check_.compare("chord_load", drive(kChordLoad), out.chord_load & ((1U << kAxes) - 1));
     check_.compare("chord_swap", drive(kChordSwap), out.chord_swap & ((1U << kAxes) - 1));

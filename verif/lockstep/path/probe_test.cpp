@@ -12,6 +12,7 @@ namespace trammel::lockstep {
 namespace {
 
 constexpr std::uint64_t kComparedSignals = 10;
+constexpr bool kFirstTouch = TRAMMEL_FIRST_TOUCH != 0;
 
 class Bench {
  public:
@@ -29,13 +30,14 @@ class Bench {
     apply(in);
     dut_.clock();
     dut_->rst_i = 0;
-    model_ = model::Probe();
+    model_ = model::Probe(kFirstTouch);
     compare(in);
   }
 
   void clock(const Inputs& in) {
     apply(in);
     edges_ += model_.trips(in) ? 1U : 0U;
+    touches_ += model_.touches(in) ? 1U : 0U;
     dut_.clock();
     model_.clock(in);
     compare(in);
@@ -55,11 +57,14 @@ class Bench {
   const model::Probe& model() const { return model_; }
   Checker& check() { return check_; }
   std::uint64_t edges() const { return edges_; }
+  std::uint64_t touches() const { return touches_; }
 
  private:
   void apply(const Inputs& in) {
     dut_->cut_i = in.cut;
     dut_->level_i = in.levels;
+    dut_->raw_i = in.raw;
+    dut_->quiet_i = in.quiet;
     dut_->load_i = load_wire(in.load);
     dut_->waits_i = in.waits;
     dut_->ends_i = in.ends;
@@ -73,7 +78,7 @@ class Bench {
     check_.compare("met_o", dut_->met_o, model_.met(in.levels));
     check_.compare("taken_o", dut_->taken_o, model_.takes(in));
     check_.compare("stays_o", dut_->stays_o, model_.stays(in));
-    check_.compare("trip_o", dut_->trip_o, model_.trips(in));
+    check_.compare("snapshot_o", dut_->snapshot_o, model_.asks(in));
     check_.compare("hold_o", dut_->hold_o, model_.holds());
     check_.compare("halt_o", dut_->halt_o, model_.halt());
     check_.compare("drop_o", dut_->drop_o, model_.drops());
@@ -83,15 +88,18 @@ class Bench {
   }
 
   Simulated<Vdut> dut_;
-  model::Probe model_;
+  model::Probe model_{kFirstTouch};
   Checker check_;
   std::uint64_t edges_ = 0;
+  std::uint64_t touches_ = 0;
 };
 
-// What may be high in a clock, by bits.
+// What may be high in a clock, by bits. The raw level differs where `waits` is high, the input is quiet at rest.
 Bench::Inputs inputs_of(unsigned bits) {
   Bench::Inputs in;
   in.levels = bits & 1;
+  in.raw = in.levels ^ (bits >> 1 & 1);
+  in.quiet = bits >> 3 & 1;
   in.waits = (bits & 2) != 0;
   in.ends = (bits & 4) != 0 && !in.waits;  // another command
   in.at_rest = (bits & 8) != 0;
@@ -130,7 +138,9 @@ void random_courses() {
   Bench::Inputs in;
   std::uint64_t missed = 0;
   for (std::uint64_t i = 0; i < length; ++i) {
-    if (dice.chance(8)) in.levels = static_cast<std::uint16_t>(in.levels ^ 1U << dice.below(16));
+    if (dice.chance(8)) in.levels ^= 1U << dice.below(32);
+    if (dice.chance(4)) in.raw = in.levels ^ (dice.draw() & dice.draw());
+    if (dice.chance(4)) in.quiet = dice.draw();
     if (dice.chance(12)) in.waits = !in.waits;
     in.ends = !in.waits && dice.chance(30);
     in.at_rest = dice.chance(6);
@@ -149,6 +159,10 @@ void random_courses() {
   EXPECT_EQ(bench.check().comparisons(), kComparedSignals * (length + 1));
   EXPECT_GT(bench.edges(), length / 500);
   EXPECT_GT(missed, length / 500);
+  if (kFirstTouch)
+    EXPECT_GT(bench.touches(), bench.edges());
+  else
+    EXPECT_EQ(bench.touches(), 0U);
 }
 
 TEST(Probe, EveryTwoClocksFromEachState) { EXPECT_EQ(judge(every_two_clocks), ""); }

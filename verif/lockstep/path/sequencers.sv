@@ -25,6 +25,8 @@ module sequencers #(
     input wire logic enable_i,
     input wire logic feed_tick_i,
     input wire logic wait_i,
+    input wire logic shut_i,
+    input wire logic closing_i,
     output logic spent_o,
     output logic feed_enable_o,
     output logic feed_clear_o,
@@ -47,6 +49,7 @@ module sequencers #(
     output logic feed_active_o,
     output logic moving_o,
     output logic [1:0] class_o,
+    output logic [1:0] slew_shift_o,
     output logic silent_o,
     output logic idle_o,
     output logic [31:0] feed_begun_o,
@@ -62,6 +65,7 @@ module sequencers #(
   assign feed[feed_pkg::AT_REST]  = 1'b0;
   assign feed[feed_pkg::STOPPING] = 1'b0;
   assign feed[feed_pkg::SILENT]   = silent_o;
+  assign feed[feed_pkg::CLOSING]  = closing_i;
 
   geometry_sequencer #(
       .Axes(Axes)
@@ -112,6 +116,7 @@ module sequencers #(
       .spent_o,
       .moving_o,
       .class_o,
+      .slew_shift_o,
       .silent_o,
       .idle_o(feed_decoder_idle),
       .swap_o(feed_swap_o),
@@ -128,9 +133,12 @@ module sequencers #(
       .enable_i,
       .feed_tick_i,
       .feed_active_i(feed_active_o),
+      .silent_i(silent_o),
       .direct_i(path_o[path_pkg::DIRECT]),
       .taking_i(path_o[path_pkg::TAKING]),
       .ready_i(engines_i[engines_pkg::READY]),
+      .shut_i,
+      .wait_i(1'b0),
       .take_o(take),
       .tick_o,
       .feed_enable_o,

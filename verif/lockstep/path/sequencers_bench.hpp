@@ -16,7 +16,7 @@ namespace trammel::lockstep {
 class SequencersBench {
  public:
   static constexpr unsigned kAxes = 4;
-  static constexpr std::uint64_t kComparedSignals = 34;
+  static constexpr std::uint64_t kComparedSignals = 36;
   using Stretch = Programs::Stretch;
 
   explicit SequencersBench(std::uint64_t seed)
@@ -55,9 +55,10 @@ class SequencersBench {
     if (dice_.chance(3000)) random_pace();
     commands();
     random_mode();
-    in_.cut = dice_.chance(pace.cut);
+    close();
     if (in_.cut && dice_.chance(2)) stand_for_ = 1 + dice_.below(20);
     if (stand_for_ != 0) --stand_for_;
+    in_.shut = in_.closing || stand_for_ != 0;
     in_.missed_end = dice_.chance(30);
     if (in_.cut) check_.event("cut");
     if (dice_.chance(10 * pace.cut))
@@ -66,9 +67,19 @@ class SequencersBench {
       clock();
   }
 
+  // A cut, mostly with the gate shut for a while before it.
+  void close() {
+    in_.cut = in_.closing ? dice_.chance(40) : dice_.chance(pace.cut);
+    const bool closes = in_.cut && !in_.closing && dice_.chance(2);
+    if (closes) check_.event("the gate is shut");
+    in_.closing = closes || (in_.closing && !in_.cut);
+    if (closes) in_.cut = false;
+  }
+
   // Everything from the start again, by other dice.
   void restart(std::uint64_t seed) {
     dice_ = Dice(seed);
+    in_.shut = in_.closing = false;
     stand_for_ = rest_for_ = payload_taken_for_ = 0;
     reset();
   }
@@ -239,7 +250,7 @@ class SequencersBench {
     direct_step_ = 0;
     feed_ticks_ = 0;
     in_.direct_load = {};
-    in_.direct_go = false;
+    in_.direct_go = in_.shut = in_.closing = false;
     compare();
   }
 
@@ -300,7 +311,7 @@ class SequencersBench {
 
   // What the probe does with inputs that change now and then.
   void probe() {
-    if (dice_.chance(pace.input)) levels_ = static_cast<std::uint16_t>(levels_ ^ 1U << dice_.below(16));
+    if (dice_.chance(pace.input)) levels_ ^= 1U << dice_.below(32);
     at_rest_ = dice_.chance(pace.at_rest);
     clear_ = dice_.chance(40);
     const model::Probe::Inputs in = probe_inputs();
@@ -342,6 +353,8 @@ class SequencersBench {
     dut_->direct_mask_i = in_.direct_mask;
     dut_->enable_i = in_.enable;
     dut_->wait_i = in_.wait;
+    dut_->shut_i = in_.shut;
+    dut_->closing_i = in_.closing;
     dut_->feed_tick_i = in_.feed_tick;
     using namespace bus::engines;
     dut_->engines_i =
@@ -383,6 +396,7 @@ class SequencersBench {
     check_.compare("feed_active_o", dut_->feed_active_o, out.feed_active);
     check_.compare("moving_o", dut_->moving_o, out.moving);
     check_.compare("class_o", dut_->class_o, out.piece_class);
+    check_.compare("slew_shift_o", dut_->slew_shift_o, out.slew_shift);
     check_.compare("silent_o", dut_->silent_o, out.silent);
     check_.compare("ended", state(geometry::kEnded), out.ended);
     check_.compare("idle_o", dut_->idle_o, out.idle);
@@ -393,6 +407,9 @@ class SequencersBench {
     check_.compare("stale", state(geometry::kStale), out.stale);
     check_.compare("stale ticks", state(geometry::kStaleTicks), model_.streaming().ticks);
     check_.compare("spent_o", dut_->spent_o, out.spent);
+    check_.compare("unfinished", path(bus::path::kUnfinished), model_.unfinished());
+    still_ = out.tick || out.swap ? 0 : still_ + 1;
+    if (still_ > 3) more("left", model_.unfinished() ? path(bus::path::kLeft) : 0, model_.ticks_to_come());
     // What stands beside an event, where there is one.
     const std::uint64_t beside = out.swap ? std::uint64_t{out.engine} << 8 | out.active : 0;
     check_.compare("move_o, axes and engine", out.swap ? move(bus::move::kEngine) << 8 | move(bus::move::kAxes) : 0,
@@ -417,6 +434,7 @@ class SequencersBench {
   QueueWriter geometry_;
   QueueWriter feed_;
   SnapshotWord chain_[2];
+  unsigned still_ = 0;       // clocks without a tick or a swap
   unsigned feed_ticks_ = 0;  // on their way, bit 0 comes next
   unsigned payload_taken_for_ = 0;
   bool cut_before_ = false;   // in the last clock
@@ -430,7 +448,7 @@ class SequencersBench {
   bool stale_before_ = false;
   bool waited_ = false;
   unsigned mode_every_ = 200;
-  std::uint16_t levels_ = 0;
+  std::uint32_t levels_ = 0;
   bool at_rest_ = false;
   bool clear_ = false;
   std::uint64_t halts_ = 0;

@@ -26,11 +26,14 @@ namespace reg = card_map::reg;
 constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
-constexpr std::uint64_t kComparedSignals = 14;
+constexpr std::uint64_t kComparedSignals = 17;
 constexpr bool kMachineInputs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kMachineInputs);
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
-constexpr std::uint64_t kFilled = 300;  // clocks after reset, more than the filling takes
+constexpr bool kCaptures = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kCaptures);
+constexpr std::uint64_t kFilled = kCaptures        ? 700
+                                  : kMachineInputs ? 500
+                                                   : 300;  // clocks after reset, more than the filling takes
 // Words that the direct loader reads: from its first register up to START.
 constexpr std::uint32_t kFirstDirect = card_map::reg::frequency_lo(kAxes - 1) / 4;
 constexpr std::uint32_t kDirectWords = card_map::reg::kStart / 4 - kFirstDirect;
@@ -78,7 +81,8 @@ class Bench {
     start_wait_ = 0;
     flushed_ = streamed_ = false;
     chain_.fill({});
-    in_.request = in_.stop = in_.probe = in_.mark = in_.start_done = in_.checker_refuse = false;
+    in_.request = in_.stop = in_.rest = in_.probe = in_.mark = in_.start_done = in_.checker_refuse = false;
+    in_.captures = told_ = 0;
     in_.checker_ready = true;
     compare();
   }
@@ -124,12 +128,15 @@ class Bench {
     in_.stop = model_.time() > kFilled && chance(model_.outputs().ack ? 20 : 300);
     if (in_.stop) checker_.event("stop");
     if (chance(1000)) marks_every_ = chance(3) ? 5 + draw() % 20 : 300;
+    in_.rest = model_.time() > kFilled && chance(300);
+    if (in_.rest) checker_.event("rest");
     in_.mark = kPathCommands && model_.time() > kFilled && chance(marks_every_);
     if (in_.mark) checker_.event("mark");
     // Not while the stop's snapshot is under way: the probe is off then.
     stopped_for_ = in_.stop ? 0 : stopped_for_ + 1;
-    in_.probe = kPathCommands && model_.time() > kFilled && stopped_for_ > kAxes + 11 && chance(300);
+    in_.probe = kPathCommands && model_.time() > kFilled && stopped_for_ > kAxes + 11 && chance(in_.rest ? 2 : 300);
     if (in_.probe) checker_.event("probe");
+    random_captures();
     if (chance(reset_every())) {
       reset();
     } else {
@@ -159,10 +166,35 @@ class Bench {
     return start_wait_ != 0 || (outstanding_ && acts) ? 60 : 3000;
   }
 
-  std::uint32_t latched_value(std::size_t place) const {
+  std::uint32_t latched_value(std::size_t place) {
     if (place >= kBeforePositions) return in_.position[place - kBeforePositions];
-    const std::uint32_t values[] = {in_.ratio, in_.rate, in_.feed_begun, in_.geometry_begun};
+    // REST has the ticks that are left in the place of the first two.
+    const bool rest = get(rtl_->snapshot_o, trammel::bus::snapshot::kRest) != 0;
+    const std::uint32_t values[] = {rest ? static_cast<std::uint32_t>(in_.ticks_left >> 32) : in_.ratio,
+                                    rest ? static_cast<std::uint32_t>(in_.ticks_left) : in_.rate, in_.feed_begun,
+                                    in_.geometry_begun};
     return values[place];
+  }
+
+  // A unit asks until it is told, or takes it back.
+  void random_captures() {
+    if (!kCaptures || model_.time() <= kFilled) return;
+    in_.captures = static_cast<std::uint8_t>(in_.captures & ~told_);
+    if (chance(200)) in_.captures = static_cast<std::uint8_t>(in_.captures & draw());
+    if (chance(captures_every_)) in_.captures = static_cast<std::uint8_t>(in_.captures | 1U << draw() % 4);
+    if (chance(3000)) captures_every_ = chance(3) ? 5 + draw() % 20 : 300;
+    told_ = model_.captured(in_.captures);
+  }
+
+  trammel::model::InputRoles random_roles() {
+    const std::uint32_t bits = draw();
+    return {static_cast<std::uint8_t>(draw()),
+            static_cast<std::uint8_t>(draw()),
+            static_cast<std::uint8_t>(draw()),
+            (bits & 1) != 0,
+            (bits & 2) != 0,
+            (bits & 4) != 0,
+            (bits & 8) != 0};
   }
 
   void random_state() {
@@ -179,7 +211,8 @@ class Bench {
     in_.underruns = draw();
     in_.stale = kStreaming && (bits & 0x800) != 0;
     in_.stale_ticks = kStreaming ? draw() : 0;
-    in_.limit_state = kMachineInputs ? draw() & 0xFFFFFF : 0;
+    in_.limit_state = kMachineInputs ? draw() & 0xFFFFFFF : 0;
+    in_.place = draw() & 0xFFFF;
     in_.button_hold = kMachineInputs && (bits & 0x1000) != 0;
     in_.geometry_room = static_cast<std::uint16_t>(draw());
     in_.feed_room = static_cast<std::uint16_t>(draw());
@@ -187,12 +220,19 @@ class Bench {
     in_.feed_low = (bits & 0x400) != 0;
     in_.geometry_begun = draw();
     in_.feed_begun = draw();
-    in_.inputs = static_cast<std::uint16_t>(draw());
+    in_.inputs = draw();
+    in_.raw_inputs = draw();
+    in_.capture_state = kCaptures ? draw() : 0;
+    in_.roles = random_roles();
     in_.outputs = static_cast<std::uint16_t>(draw());
     in_.marks = draw();
     in_.probed = chance(2);
     in_.probe_missed = chance(2);
     in_.waiting = chance(2);
+    in_.settled = chance(2);
+    in_.enabled = (bits & 0x2000) != 0;
+    in_.enable_waits = (bits & 0x4000) != 0;
+    in_.ticks_left = (std::uint64_t{draw()} << 32 | draw()) >> 24;
     in_.rate = draw();
     in_.ratio = chance(3) ? 0 : draw() % 0x10001;
     in_.fault = chance(2) ? 0 : draw() & kFaultBits;
@@ -240,6 +280,8 @@ class Bench {
     in_.write = in_.write && !looks;
     in_.address = looks ? reg::kRefusal : random_address();
     in_.data = random_data(in_.address);
+    in_.of_session = !chance(10);
+    in_.new_session = in_.of_session && chance(30);
     // Refusals are cleared often, or there would be no first one (a write of 0 clears nothing); snapshots are asked for
     // often.
     if (!looks && chance(5)) write_register(reg::kRefusal, chance(3) ? 0 : 1U << draw() % 28);
@@ -287,15 +329,18 @@ class Bench {
         static_cast<IData>(in_place(start::kDone, in_.start_done) | in_place(start::kError, in_.start_error) |
                            in_place(start::kReason, in_.start_reason) | in_place(start::kAddress, in_.loader_address));
     rtl_->stop_i = in_.stop;
+    rtl_->rest_i = in_.rest;
     rtl_->probe_i = in_.probe;
     rtl_->mark_i = in_.mark;
+    rtl_->capture_i = in_.captures;
     rtl_->snapshot_i = in_place(trammel::bus::snapshot::kWord, chain_.back().word());
   }
 
   void drive_access() {
     using namespace trammel::bus::register_access;
     rtl_->access_i = in_place(kRequest, in_.request) | in_place(kPort, in_.port) | in_place(kWrite, in_.write) |
-                     in_place(kPartial, in_.partial) | in_place(kAddress, in_.address) | in_place(kData, in_.data);
+                     in_place(kPartial, in_.partial) | in_place(kAddress, in_.address) | in_place(kData, in_.data) |
+                     in_place(kOfSession, in_.of_session) | in_place(kNewSession, in_.new_session);
   }
 
   void drive_state() {
@@ -306,10 +351,14 @@ class Bench {
     put(rtl_->time_state_i, time::kUnderruns, in_.underruns);
     put(rtl_->time_state_i, time::kUnderrun, in_.underrun);
     put(rtl_->time_state_i, time::kLimitState, in_.limit_state);
+    put(rtl_->time_state_i, time::kPlace, in_.place);
     put(rtl_->time_state_i, time::kButtonHold, in_.button_hold);
     put(rtl_->time_state_i, time::kHeld, in_.ratio == 0);
     put(rtl_->time_state_i, time::kFeedActive, in_.feed_active);
     put(rtl_->time_state_i, time::kStopping, in_.stopping);
+    put(rtl_->time_state_i, time::kSettled, in_.settled);
+    put(rtl_->time_state_i, time::kEnabled, in_.enabled);
+    put(rtl_->time_state_i, time::kEnableWaits, in_.enable_waits);
     namespace geometry = trammel::bus::geometry_state;
     namespace pins = trammel::bus::pins_state;
     put(rtl_->geometry_state_i, geometry::kGeometryBegun, in_.geometry_begun);
@@ -324,6 +373,9 @@ class Bench {
     put(rtl_->geometry_state_i, geometry::kPathActive, in_.path_active);
     put(rtl_->geometry_state_i, geometry::kEnded, in_.ended);
     put(rtl_->geometry_state_i, geometry::kDirect, in_.direct);
+    trammel::lockstep::put_inputs(rtl_->inputs_i, 0, in_.raw_inputs, 0);
+    rtl_->capture_state_i = in_.capture_state;
+    rtl_->roles_i = trammel::lockstep::roles_wire(in_.roles);
     namespace queues = trammel::bus::queue_state;
     rtl_->queue_state_i = in_place(queues::kGeometryLow, in_.geometry_low) | in_place(queues::kFeedLow, in_.feed_low) |
                           in_place(queues::kGeometryRoom, in_.geometry_room) |
@@ -343,6 +395,9 @@ class Bench {
     checker_.compare("status_o", rtl_->status_o, model_.status(in_));
     checker_.compare("irq_o", rtl_->irq_o, out.irq);
     checker_.compare("clear_fault_o", rtl_->clear_fault_o, out.clear_fault);
+    checker_.compare("captured_o", rtl_->captured_o, model_.captured(in_.captures));
+    checker_.compare("session_gone_o", rtl_->session_gone_o, model_.link().gone());
+    checker_.compare("link_lost_o", rtl_->link_lost_o, model_.link().lost());
     checker_.compare("abort_o", rtl_->abort_o, out.abort);
     checker_.compare("probe_clear_o", rtl_->probe_clear_o, out.probe_clear);
     checker_.compare("flush_o", rtl_->flush_o, out.flush);
@@ -375,6 +430,8 @@ class Bench {
   std::uint32_t checker_wait_ = 0;
   std::uint32_t start_wait_ = 0;
   std::uint32_t marks_every_ = 300;
+  std::uint32_t captures_every_ = 300;
+  std::uint8_t told_ = 0;          // the units that were told in the last clock
   std::uint32_t stopped_for_ = 0;  // clocks since the last stop
   bool outstanding_ = false;
 };

@@ -14,7 +14,7 @@ namespace {
 namespace reg = card_map::reg;
 
 constexpr unsigned kAxes = TRAMMEL_AXES;
-constexpr std::uint64_t kComparedSignals = 6;
+constexpr std::uint64_t kComparedSignals = 11;
 
 class Bench {
  public:
@@ -37,6 +37,9 @@ class Bench {
     if (in.step_fault != 0) check_.event("step fault", in.step_fault);
     if (in.missing) check_.event("missing period");
     if (in.expired) check_.event("watchdog expired");
+    if (in.link_lost) check_.event("link lost");
+    if (in.soft_limit) check_.event("soft limit");
+    if (in.emergency) check_.event("emergency stop");
     if (in.causes.any()) check_.event("cause from an input", causes_wire(in.causes));
     if (in.mismatch || in.incomplete) check_.event("fault at once", in.mismatch);
     if (in.abort) check_.event("abort");
@@ -46,6 +49,7 @@ class Bench {
     dut_.clock();
     model_.clock(in);
     compare();
+    rests_ += model_.rests(in) ? 1U : 0U;
     cuts_ += model_.outputs().cut ? 1U : 0U;
   }
 
@@ -58,6 +62,8 @@ class Bench {
   const model::StopControl::Outputs& outputs() const { return model_.outputs(); }
   Checker& check() { return check_; }
   std::uint64_t cuts() const { return cuts_; }
+  std::uint64_t rests() const { return rests_; }
+  void swap(bool begins) { swap_ = begins; }
 
  private:
   void apply(const Inputs& in) {
@@ -67,7 +73,10 @@ class Bench {
     dut_->incomplete_i = in.incomplete;
     dut_->missing_i = in.missing;
     dut_->expired_i = in.expired;
+    dut_->link_lost_i = in.link_lost;
+    dut_->emergency_i = in.emergency;
     dut_->causes_i = causes_wire(in.causes);
+    dut_->soft_limit_i = in.soft_limit;
     dut_->abort_i = in.abort;
     dut_->clear_i = in.clear;
     dut_->at_rest_i = in.at_rest;
@@ -76,6 +85,12 @@ class Bench {
     dut_->underrun_i = in.underrun;
     dut_->probe_i = in.probe;
     dut_->button_i = in.button;
+    dut_->take_i = in.take;
+    dut_->swap_i = swap_;
+    dut_->quiet_i = in.quiet;
+    dut_->pulses_i = in.pulses;
+    dut_->busy_i = in.busy;
+    in_ = in;
   }
 
   void compare() {
@@ -87,15 +102,23 @@ class Bench {
     check_.compare("stop_o", dut_->stop_o, out.stop);
     check_.compare("stopping_o", dut_->stopping_o, out.stopping);
     check_.compare("closed_o", dut_->closed_o, out.closed);
+    check_.compare("rest_o", dut_->rest_o, model_.rests(in_));
+    check_.compare("closing_o", dut_->closing_o, model_.closing());
+    check_.compare("caused_o", dut_->caused_o, model_.caused(in_));
+    check_.compare("shut_o", dut_->shut_o, model_.shut());
+    check_.compare("settled_o", dut_->settled_o, model_.settled() && !swap_);
   }
 
   Simulated<Vdut> dut_;
   model::StopControl model_;
   Checker check_;
+  Inputs in_;
+  bool swap_ = false;
   std::uint64_t cuts_ = 0;
+  std::uint64_t rests_ = 0;
 };
 
-// What may happen in one clock of the directed scenario.
+// What may happen in one clock of the directed scenario. Over a screen: a case for each.
 Bench::Inputs happening(unsigned kind) {
   Bench::Inputs in;
   switch (kind) {
@@ -143,18 +166,27 @@ Bench::Inputs happening(unsigned kind) {
     case 13:
       in.causes.drive_fault = in.causes.tool_setter = true;
       break;
+    case 14:
+      in.soft_limit = true;
+      break;
+    case 15:
+      in.link_lost = true;
+      break;
+    case 16:
+      in.emergency = true;
+      break;
     default:
       break;
   }
   return in;
 }
-constexpr unsigned kHappenings = 15;  // the last is nothing
+constexpr unsigned kHappenings = 18;  // the last is nothing
 
 // Three happenings at any distance of 0 to 2 clocks, with each reaction, from reset.
 void every_order() {
   Bench bench(0);
   std::uint64_t cycles = 1;
-  for (const std::uint32_t reaction : {0U, 0x66CFFU}) {
+  for (const std::uint32_t reaction : {0U, 0x7FCFFU}) {
     for (unsigned order = 0; order < kHappenings * kHappenings * kHappenings * 9; ++order) {
       unsigned rest = order;
       const auto draw = [&rest](unsigned n) {
@@ -171,8 +203,10 @@ void every_order() {
       const unsigned second = draw(3);
       for (unsigned i = 0; i < second; ++i) bench.clock({});
       bench.clock(happening(draw(kHappenings)));
-      for (int i = 0; i < 3; ++i) bench.clock({});
-      cycles += 8 + first + second;
+      // Every other time to the end of a stop.
+      const unsigned rest_for = order % 2 == 0 ? 3 : 36;
+      for (unsigned i = 0; i < rest_for; ++i) bench.clock({});
+      cycles += 5 + rest_for + first + second;
     }
   }
   EXPECT_EQ(bench.check().cycles(), cycles);
@@ -218,8 +252,11 @@ void random_events() {
   Dice dice(seed);
   const std::uint64_t length = scaled(500'000);
   unsigned rest_every = 10;
+  unsigned moves_every = 10;
   unsigned course = 0;  // of the pieces
   bool expired = false;
+  bool link_lost = false;
+  bool emergency = false;
   bool drive_fault = false;
   bool button = false;
   for (std::uint64_t i = 0; i < length; ++i) {
@@ -231,10 +268,15 @@ void random_events() {
     in.missing = dice.chance(30);
     if (dice.chance(expired ? 10 : 40)) expired = !expired;
     in.expired = expired;
+    if (dice.chance(link_lost ? 10 : 40)) link_lost = !link_lost;
+    in.link_lost = link_lost;
+    if (dice.chance(emergency ? 10 : 60)) emergency = !emergency;
+    in.emergency = emergency;
     if (dice.chance(drive_fault ? 10 : 40)) drive_fault = !drive_fault;
     in.causes.drive_fault = drive_fault;
     in.causes.limit = dice.chance(20);
     in.causes.beyond = in.causes.limit && dice.chance(3);
+    in.soft_limit = dice.chance(60);
     in.causes.probe = dice.chance(60);
     in.causes.tool_setter = dice.chance(60);
     if (dice.chance(12)) button = !button;
@@ -247,6 +289,12 @@ void random_events() {
     in.fixed = course > 1 || (course == 0 && dice.chance(2));
     in.underrun = dice.chance(6);
     in.probe = dice.chance(6);
+    if (i % 128 == 0) moves_every = 1 + dice.below(dice.chance(2) ? 200 : 20);
+    in.take = dice.chance(moves_every);
+    in.quiet = !dice.chance(moves_every);
+    in.pulses = dice.chance(moves_every);
+    in.busy = dice.chance(2);
+    bench.swap(dice.chance(10));
     if (dice.chance(20)) in.setting = {dice.chance(2), dice.chance(2) ? reg::kHold : reg::kHoldLimit, dice.below(2)};
     if (dice.chance(20)) in.setting = {dice.chance(2), reg::kStopReaction, dice.draw() & 0x7FCFF};
     if (dice.chance(2000))
@@ -255,7 +303,8 @@ void random_events() {
       bench.clock(in);
   }
   EXPECT_EQ(bench.check().comparisons(), kComparedSignals * (length + 1));
-  EXPECT_GT(bench.cuts(), length / 100);
+  EXPECT_GT(bench.cuts(), length / 200);
+  EXPECT_GT(bench.rests(), length / 500);
 }
 
 TEST(StopControl, EveryOrderOfThree) { EXPECT_EQ(judge(every_order), ""); }

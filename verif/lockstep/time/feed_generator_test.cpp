@@ -58,7 +58,8 @@ class Bench {
     const std::uint32_t rate = model_.outputs().rate;
     dut_.clock();
     model_.clock(in);
-    snapshot_.clock(dut_->snapshot_i, rate);
+    const bool rest = trammel::bus::get(dut_->snapshot_i, trammel::bus::snapshot::kRest) != 0;
+    snapshot_.clock(dut_->snapshot_i, rest ? dut_->left_i : rate);
     compare();
     ticks_ += model_.outputs().tick;
   }
@@ -125,6 +126,7 @@ class Bench {
         in.load.valid ? lockstep::feed_wire(in.load) : dice_.draw() >> (32 - trammel::bus::feed_load::kValid.offset);
     dut_->swap_i = in.swap;
     dut_->snapshot_i = dice_.snapshot();
+    dut_->left_i = dice_.draw();
   }
 
   void compare() {

@@ -28,9 +28,10 @@ class Bench {
     dut_->rst_i = 1;
     clock_dut({});
     dut_->rst_i = 0;
-    model_ = model::TimeBase();
+    model_ = model::TimeBase(kClasses);
     snapshot_ = {};
     class_ = card_map::constant::kClassFeed;
+    slew_shift_ = 0;
     compare();
   }
 
@@ -40,15 +41,24 @@ class Bench {
     class_ = piece_class;
   }
 
+  // And its doublings of the slew.
+  void shift_slew(unsigned doublings) {
+    checker_.event("slew shift", doublings);
+    slew_shift_ = static_cast<std::uint8_t>(doublings);
+  }
+
   // One clock; `setting` arrives in it.
   void clock(bool hold, const model::Setting& setting = {}) {
     dut_->hold_i = hold;
     dut_->class_i = class_;
+    dut_->slew_shift_i = slew_shift_;
     const std::uint32_t ratio = model_.outputs().ratio;
+    const std::uint32_t left = dice_.below(256);
+    dut_->left_i = static_cast<CData>(left);
     clock_dut(setting);
-    model_.clock({hold, setting, kClasses ? class_ : std::uint8_t{card_map::constant::kClassFeed}});
-    // STATUS and FAULT come through here: 18 bits.
-    snapshot_.clock(dut_->snapshot_i, ratio);
+    model_.clock({hold, setting, kClasses ? class_ : std::uint8_t{card_map::constant::kClassFeed}, slew_shift_});
+    // STATUS and FAULT come through here: 22 bits.
+    snapshot_.clock(dut_->snapshot_i, get(dut_->snapshot_i, bus::snapshot::kRest) != 0 ? left : ratio);
     compare();
   }
 
@@ -74,8 +84,8 @@ class Bench {
  private:
   void clock_dut(const model::Setting& setting) {
     dut_->setting_i = wire(setting);
-    // 18 bits pass.
-    dut_->snapshot_i = dice_.snapshot() & ~bus::in_place({18, 14}, ~std::uint64_t{0});
+    // 22 bits pass.
+    dut_->snapshot_i = dice_.snapshot() & ~bus::in_place({22, 10}, ~std::uint64_t{0});
     dut_.clock();
   }
 
@@ -91,9 +101,10 @@ class Bench {
   Checker checker_;
   Dice dice_;
   Simulated<Vdut> dut_;
-  model::TimeBase model_;
+  model::TimeBase model_{kClasses};
   SnapshotWord snapshot_;
   std::uint8_t class_ = card_map::constant::kClassFeed;
+  std::uint8_t slew_shift_ = 0;
   std::uint64_t chained_ = 0;
 };
 
@@ -177,6 +188,24 @@ void classes() {
   bench.expect_cycles(cycles);
 }
 
+// Each number of doublings in each clock of an update, up and down; from slews on that allow all, some or none of them.
+void slew_shifts() {
+  Bench bench(0);
+  std::uint64_t cycles = 1;
+  for (const std::uint32_t slew : {0x3'0001U, 0x1FF'FFFFU, 0x200'0000U, 0x555'5555U, 0x800'0001U, 1U}) {
+    bench.set(reg::kSlew, slew, false);
+    ++cycles;
+    for (unsigned clock = 0; clock < 8; ++clock) {
+      for (const unsigned doublings : {0U, 3U, 1U, 2U, 0U, 2U, 3U, 0U, 1U, 3U}) {
+        bench.shift_slew(doublings);
+        bench.run(doublings % 2 == 1, 52 + clock);
+        cycles += 52 + clock;
+      }
+    }
+  }
+  bench.expect_cycles(cycles);
+}
+
 void random_inputs() {
   Bench bench(seed_from_environment(1));
   Dice& dice = bench.dice();
@@ -187,6 +216,7 @@ void random_inputs() {
   while (cycles < length) {
     ++cycles;
     if (dice.chance(4)) hold = !hold;
+    if (dice.chance(3)) bench.shift_slew(dice.below(4));
     if (dice.chance(3)) bench.piece(static_cast<std::uint8_t>(dice.below(3)));
     const unsigned kind = dice.below(100);
     if (kind == 0)
@@ -213,6 +243,7 @@ TEST(TimeBaseLockstep, DirectedAndRandom) {
     directed();
     just_above_the_goal();
     classes();
+    slew_shifts();
     random_inputs();
   });
   EXPECT_EQ(complaint, "");

@@ -32,6 +32,7 @@ class Bench {
     in_.cut = dice_.chance(cut_every_);
     in_.lost = kProbing && dice_.chance(1500);
     in_.idle = dice_.chance(20);
+    if (dice_.chance(in_.gone ? 200 : 3000)) in_.gone = !in_.gone;
     if (dice_.chance(400)) in_.full = dice_.chance(3);
     if (dice_.chance(2000)) underruns_near_a_carry();
     random_ratio();
@@ -275,6 +276,7 @@ class Bench {
     dut_->cut_i = in_.cut;
     dut_->lost_i = in_.lost;
     dut_->idle_i = in_.idle;
+    dut_->gone_i = in_.gone;
     dut_->arrival_i = arrival_wire(in_.arrival, in_.full);
     dut_->load_i = feed_wire(in_.load);
     dut_->take_i = in_.take;

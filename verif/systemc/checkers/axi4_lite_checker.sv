@@ -1,7 +1,7 @@
 // Rules of AXI4-Lite, and the card's own on top of them, at the pins: what the master and the card may do in each clock.
 `default_nettype none
 module axi4_lite_checker #(
-    parameter int MaxClocks = 400  // clocks within which an access is answered
+    parameter int MaxClocks = 500  // clocks within which an access is answered
 ) (
     input wire logic clk_i,
     input wire logic rst_i,

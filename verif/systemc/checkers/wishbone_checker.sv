@@ -1,7 +1,7 @@
 // Rules of Wishbone B4, classic or pipelined, at the pins: what the master and the card may do in each clock.
 `default_nettype none
 module wishbone_checker #(
-    parameter int MaxClocks = 400  // clocks within which an access is answered
+    parameter int MaxClocks = 500  // clocks within which an access is answered
 ) (
     input wire logic clk_i,
     input wire logic rst_i,

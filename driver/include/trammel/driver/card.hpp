@@ -14,14 +14,19 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "trammel/driver/axis_settings.hpp"
 #include "trammel/driver/bus.hpp"
+#include "trammel/driver/captures.hpp"
 #include "trammel/driver/card_state.hpp"
 #include "trammel/driver/card_timing.hpp"
 #include "trammel/driver/commands.hpp"
+#include "trammel/driver/drives.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/identification.hpp"
+#include "trammel/driver/roles.hpp"
 
 namespace trammel::driver {
 
@@ -77,8 +82,9 @@ class Card {
   // The card stops by itself, on a ramp unless STOP_REACTION says otherwise, when this program has been silent for
   // `time`: FAULT then says WATCHDOG. Rounded up to 65,536 clocks; 0 switches it off. Calls that wait, and streams,
   // keep it from expiring: they write it after a quarter of `time`, so choose it longer than 4/3 of the time that the
-  // link may take to recover. WatchdogScope switches it off again where the motion is over. Throws ArgumentError for a
-  // negative time or one over 65,535 * 65,536 clocks (43 s at 100 MHz).
+  // link may take to recover. WatchdogScope switches it off again where the motion is over. From map 3.5 on the card
+  // stops likewise (LINK_LOSS) when none of this program's accesses has come for `time` and up to 65,536 clocks more.
+  // Throws ArgumentError for a negative time or one over 65,535 * 65,536 clocks (43 s at 100 MHz).
   void set_watchdog(std::chrono::nanoseconds time);
 
   // From any thread (and from a signal handler): what the thread that is in a call that waits shall do at its next look
@@ -96,6 +102,13 @@ class Card {
   // What the card latched when it was stopped by the first cause of its present or last fault; zeros if there was none.
   Snapshot read_stop_snapshot();
 
+  // Where the last stop has left the card: the command under way, its ticks that are left, and positions. Throws
+  // StateError while the card is on its way to a stop, ArgumentError where its map is older than 3.4.
+  Rest read_rest();
+  // Waits until a stop under way (STATUS.stopping) has ended: commands are taken again once FAULT is clear, and
+  // read_rest() tells where the card is. Throws TimeoutError `margin` (card time) after the longest ramp.
+  void wait_until_stopped(std::chrono::nanoseconds margin = std::chrono::seconds(1));
+
   Build read_build();
 
   Status read_status();
@@ -107,14 +120,85 @@ class Card {
   void wait_until_idle(std::chrono::nanoseconds timeout);
 
   // Inputs and outputs, of a card with path commands; else ArgumentError. Bit n: input n after its polarity, output n.
-  std::uint16_t read_inputs();
+  std::uint32_t read_inputs();
   std::uint16_t read_outputs();
-  unsigned inputs_present();  // how many it has, 1 .. 16; IdentificationError for another number
-  unsigned outputs_present();
+  unsigned inputs_present();   // how many it has, 1 .. 32; IdentificationError for another number
+  unsigned outputs_present();  // likewise, 1 .. 16
   // Which inputs are inverted.
-  void set_input_polarity(std::uint16_t inverted);
-  // Levels that the outputs in `change` take at an abort and at a fault.
+  void set_input_polarity(std::uint32_t inverted);
+
+  // Machine inputs: filters and roles. Each function throws ArgumentError where the card has none.
+  //
+  // Levels before the filters; read_inputs() gives those behind them.
+  std::uint32_t read_raw_inputs();
+  // A level that lasts at most `time` does not pass; one that lasts 64 clocks more than `time`, rounded up to 64
+  // clocks, does. 0: no filter. Throws ArgumentError for an input that the card lacks, a negative time or one over
+  // 65,535 * 64 clocks (42 ms at 100 MHz).
+  void set_input_filter(unsigned input, std::chrono::nanoseconds time);
+  std::chrono::nanoseconds read_input_filter(unsigned input);  // rounded as above; `input`: 0 to 31
+  // What INPUT_FILTER holds for `time`; errors as above.
+  static std::uint32_t filter_scans(std::chrono::nanoseconds time, std::uint32_t clock_hz);
+  // Which inputs have the role, bit n: input n; it is active while one of them is. 0: none has it. Throws ArgumentError
+  // for an axis or an input that the card lacks.
+  void set_role(Role role, std::uint32_t inputs);
+  std::uint32_t read_role(Role role);
+  // Roles that the card acts on, as they are now.
+  ActiveRoles read_roles();
+  // What brought the fault that stands.
+  LimitState read_limit_state();
+  // What of the inputs stops the card, and how. Two writes; ArgumentError for axes that the card lacks.
+  void set_input_stops(const InputStops& stops);
+  // Steps into an active limit that the axis may make on a ramp; one more stops at once. 0 .. 65535.
+  void set_overtravel(unsigned axis, std::uint32_t steps);
+  // Limits that are active now and stop nothing until they are released: bit n of `minus`, `plus` is axis n.
+  void override_limits(std::uint8_t minus, std::uint8_t plus);
+
+  // Captures: time and positions of an input's edge, as the pins were at it and however long its filter is. Each
+  // function throws ArgumentError for a unit that the card lacks.
+  //
+  unsigned captures_present() const;  // units, 0 to 4
+  // The unit begins anew, and drops what it had. An edge counts after its input has been quiet, at the level before it
+  // for a whole filter length; bounces behind the first touch belong to it. ArgumentError for an input that the card
+  // lacks.
+  void select_capture(unsigned unit, const CaptureSelect& select);
+  void stop_capture(unsigned unit);
+  CaptureStates read_captures();
+  // The capture that stands, which is cleared with it; none where there is none.
+  std::optional<Capture> take_capture(unsigned unit);
+  // The same, as soon as there is one. Throws TimeoutError after `timeout` of card time, InterruptedError where
+  // interrupted() says so.
+  Capture wait_for_capture(unsigned unit, std::chrono::nanoseconds timeout);
+  // Whether the card compares positions with soft limits itself: the last guard, behind the host that refuses such
+  // moves.
+  bool has_soft_limits() const;
+  // By axis of the card; the axes without a range, and those behind the last one, have none then. Write it while the
+  // axes stand, and anew when a position gets another meaning. A pulse further out than a range stops the card
+  // (FAULT.soft_limit), by default on a ramp. Throws ArgumentError where the card has none, for an axis that it lacks,
+  // and for a plus below its minus.
+  void set_soft_limits(const std::vector<std::optional<SoftRange>>& ranges);
+
+  // Levels that the outputs in `change` take when the card has come to rest after a fault, and at an abort: a spindle.
   void set_output_safe(std::uint16_t levels, std::uint16_t change);
+  // The same for the cause of a fault, in the clock in which it is latched, and at an abort: a laser. They go before
+  // the others, and stay until the stop is over and the fault is cleared. Throws ArgumentError on a card with a map
+  // before 3.5.
+  void set_output_safe_cause(std::uint16_t levels, std::uint16_t change);
+  // How the emergency stop stops the axes; outputs that are safe at the cause change at once either way. Throws
+  // ArgumentError on a card without an emergency stop.
+  void set_emergency_stop_ramps(bool ramp);
+
+  // Drives and an emergency-stop chain, on cards with the engine enables; ArgumentError on others, for outputs and axes
+  // that the card lacks and for times that it does not take. Nothing is enabled by a reset, a new host or
+  // clear_faults().
+  //
+  // Which outputs follow the drives and the card. Two writes.
+  void set_output_roles(const OutputRoles& roles);
+  // The sequence of enable and brake. A new mask of axes counts once the card rests.
+  void set_enable_sequence(const EnableSequence& sequence);
+  // The host's order: the drives are enabled now, and stay so until it is taken back. Motion needs none unless
+  // EnableSequence::manual says so.
+  void enable(bool on);
+  void set_health(const Health& health);
   // MARKs passed since reset, and what the last one latched.
   std::uint32_t read_marks();
   Snapshot read_mark_snapshot();
@@ -126,10 +210,14 @@ class Card {
 
   // FAULT, 0 if there is none.
   std::uint32_t read_faults();
-  // Clears all faults; a watchdog that has expired starts anew with it, or is off where this object has set none.
-  // Nothing moves by it: a fault has dropped all that the card had, and an abort may come before,
-  // after or not at all. The stream begins with number 0 (Stream::restart()).
-  void clear_faults();
+  // The same as text, by describe_faults(), with the axes and sides of limits and the axes of drives; "none".
+  std::string read_fault_text();
+  // Clears all faults; a watchdog that has expired starts anew with it, or is off where this object has set none. On
+  // the ramp of a fault it waits for the end first, as wait_until_stopped(): the card takes commands from then on.
+  // Where that throws (TimeoutError, InterruptedError) the faults stay. Nothing moves by it: a fault has dropped all
+  // that the card had, and an abort may come before, after or not at all. The stream begins with number 0
+  // (Stream::restart()). The fault of a drive that still reports it cannot be cleared.
+  void clear_faults(std::chrono::nanoseconds margin = std::chrono::seconds(1));
   // The first access or command refused since the last clear that no RefusedError has reported; one of the stream stays
   // until the stream is restarted.
   std::optional<Refusal> refusal();
@@ -147,12 +235,35 @@ class Card {
   // not.
   bool in_position() { return !busy(); }
 
+  // The machine's place: what the card keeps for whoever uses it next. A reset of the card clears all of it. An axis
+  // loses both bits of its Place by a fault of its drive, and by an immediate stop while it moves: an abort before it
+  // is at rest, or a fault without a ramp. One access each, whatever the card does. card_place.hpp reads all of it at
+  // once. Each throws ArgumentError on a card with a map before 3.3, which keeps no place.
+  //
+  // Which axes' places are valid, and which were homed.
+  Place read_place();
+  // Writes both bits of the axes in `axes` (bit n: axis n); the others keep theirs. Only while these axes stand: a loss
+  // that the host has not seen would be hidden. Throws ArgumentError for an axis that the card lacks, and for one that
+  // is homed and not valid.
+  void set_place(std::uint8_t axes, bool valid, bool homed);
+  // Axes whose place outlives an immediate stop, since their motors cannot lose steps. ArgumentError as above.
+  std::uint8_t read_keeps_place();
+  void set_keeps_place(std::uint8_t axes);
+  // POSITION of the axis at the machine's coordinate 0, pulses, wrapping: pulses_between(zero, position) is where the
+  // axis stands. The card keeps it and does not look at it. Throws ArgumentError for an axis that the card lacks.
+  std::int32_t read_machine_zero(unsigned axis);
+  void set_machine_zero(unsigned axis, std::int32_t pulses);
+  // The host's hash of the scales that it counts coordinates in; 0: nobody has set a place since the card's reset.
+  std::uint32_t read_scales();
+  void set_scales(std::uint32_t hash);
+
   // For code that moves the card in a way of its own, and for tools that show registers: low_level/card_parts.hpp.
   CardParts& parts() const { return *parts_; }
 
  private:
   explicit Card(std::unique_ptr<CardParts> parts);
   void wait_for_rest(std::uint64_t limit, bool held_is_rest);
+  void check_capture(unsigned unit) const;
 
   std::unique_ptr<CardParts> parts_;
 };

@@ -69,6 +69,8 @@ enum class PieceClass : std::uint8_t {
 };
 inline constexpr std::size_t kPieceClasses = 3;
 
+inline constexpr std::uint8_t kMaxSlewShift = card_map::constant::kMaxSlewShift;
+
 // One piece of the feed profile.
 struct FeedCommand {
   std::uint64_t ticks = 0;          // feed ticks of the piece
@@ -79,8 +81,13 @@ struct FeedCommand {
   std::uint32_t stop_distance = 0;  // feed ticks needed to stop on the path; 0: the piece ends at rest
   PieceClass piece_class = PieceClass::kFeed;
   // Its ticks move the path on, but no axis: a program that was stopped in the middle of a path goes on from there with
-  // the same steps. Cards with map 3.2 or later. The next piece that is not silent begins from rest.
+  // the same steps. Cards with map 3.2 or later. The next piece that is not silent begins from rest. From map 3.4 on
+  // (feed_generator 1.2) a silent piece runs at any ratio, also on a card that stands held.
   bool silent = false;
+  // How often the card doubles SLEW while the piece is in force, 0 .. kMaxSlewShift: a slow piece is held, and goes on,
+  // the sooner. The ratio moves by SLEW 2^slew_shift per update; a doubling beyond 28 bits is not made. Without
+  // has_slew_shift() (identification.hpp) it has no effect, and cards before map 3.4 refuse the piece.
+  std::uint8_t slew_shift = 0;
 };
 
 // Barrier, then `clocks` of real time (0 .. 2^40 - 1).

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -50,8 +51,8 @@ class RefusedError : public Error {
 class FaultError : public Error {
  public:
   // `faults`: the FAULT register; its bits are named in the message, limits and drives with their axes from
-  // `limit_state`, the register LIMIT_STATE (0 where the card has none). `context` as above.
-  FaultError(std::uint32_t faults, const std::string& context, std::uint32_t limit_state = 0);
+  // `limit_state`, the register LIMIT_STATE (none where it was not read). `context` as above.
+  FaultError(std::uint32_t faults, const std::string& context, std::optional<std::uint32_t> limit_state = std::nullopt);
 
   std::uint32_t faults() const { return faults_; }
   std::uint32_t limit_state() const { return limit_state_; }

@@ -48,16 +48,33 @@ class FrameBus final : public Bus {
   // meanwhile: then nothing is known, and the next transfer() begins anew.
   std::size_t resume();
 
+  // Where an answer may take longer than this (Options::answer), a transfer gives up when none has come for so long and
+  // one further request has none, either: what the card was doing has ended by then, by its watchdog. Those behind it
+  // ask once and shortly, until one is answered. 0, as in the beginning: a transfer waits as Options say.
+  void set_patience(std::chrono::nanoseconds patience) { patience_ = patience; }
+  // Whether the last transfer had no answer.
+  bool lost() const { return lost_; }
+
   // What the last reply said of the card.
   const frames::CardState& state() const { return state_; }
   const Counts& counts() const { return counts_; }
 
  private:
+  // How often and for how long a request is tried.
+  struct Tries {
+    std::chrono::nanoseconds answer;
+    unsigned sends;
+    unsigned restarts;
+  };
+
+  bool is_impatient() const { return patience_.count() != 0 && patience_ < options_.answer; }
+  Tries tries() const;
   frames::Request request_for(const Access* accesses, std::size_t count) const;
   frames::Reply exchange(frames::Request request);
   std::optional<frames::Reply> send_and_wait(const frames::Request& request);
   std::optional<frames::Reply> wait_for(const frames::Request& request, std::size_t bytes);
   std::optional<frames::Reply> try_open();
+  void connect_again(std::chrono::nanoseconds begun);
   bool connect();
   void reconnect();
   void begin_anew();
@@ -65,6 +82,9 @@ class FrameBus final : public Bus {
 
   ByteLink& link_;
   Options options_;
+  std::chrono::nanoseconds patience_{0};
+  Tries tries_{};  // of the request or connection under way
+  bool lost_ = false;
   frames::Deframer deframer_{frames::kMaxReplyBody};
   frames::CardState state_;
   Counts counts_;

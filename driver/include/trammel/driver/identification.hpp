@@ -20,6 +20,12 @@ struct Identification {
   std::uint32_t feed_depth = 0;      // halfwords
 };
 
+// Whether a piece's slew shift (FeedCommand::slew_shift) has an effect: classes, and time_base 1.1 (map 3.4).
+inline bool has_slew_shift(const Identification& card) {
+  const card_map::Descriptor* unit = card.units.find(card_map::unit::kTimeBase);
+  return unit != nullptr && unit->minor >= 1 && card_map::has_engine(card.engines, card_map::engine::kClasses);
+}
+
 // What it was made of.
 struct Build {
   std::uint32_t id = 0;     // of the sources; 0 where nobody said

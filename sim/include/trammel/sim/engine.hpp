@@ -13,8 +13,9 @@
 
 namespace trammel::sim {
 
-// Inputs, and outputs, of the simulated card: the RTL's default.
-inline constexpr unsigned kPins = 4;
+// Pins of the simulated card: inputs, each with a filter and any roles, and outputs.
+inline constexpr unsigned kInputs = 16;
+inline constexpr unsigned kOutputs = 4;
 
 struct EngineOptions {
   unsigned axes = 4;                   // 1 .. 8
@@ -38,13 +39,17 @@ class Engine : public driver::Bus {
   std::uint32_t read(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t value);
 
-  virtual void wait(std::uint64_t clocks) = 0;        // runs so many clocks
-  bool wait_or_interrupt(std::uint64_t clocks);       // likewise; false: a driver::InterruptScope has ended it early
-  virtual void set_inputs(std::uint16_t levels) = 0;  // at the card's input pins from now on; bit n: input n
-  virtual void reset() = 0;                           // as by the card's reset input
-  virtual void set_sink(driver::StepSink* sink) = 0;  // nullptr: none; not owned
-  virtual std::uint64_t cycles() const = 0;           // clocks since reset
-  virtual std::uint32_t step_pins() const = 0;        // levels at the first pins; bit n: axis n
+  virtual void wait(std::uint64_t clocks) = 0;   // runs so many clocks
+  bool wait_or_interrupt(std::uint64_t clocks);  // likewise; false: a driver::InterruptScope has ended it early
+  // Levels at the card's input pins from now on; bit n: input n. An input that has got none is unwired and stands at
+  // its inactive level: where INPUT_POLARITY inverts it, at 1.
+  virtual void set_inputs(std::uint32_t levels) = 0;
+  virtual void set_input(unsigned input, bool level) = 0;            // the others stay
+  virtual void set_emergency_stop(bool pressed) = 0;                 // as by the button at its pin
+  virtual void reset() = 0;                                          // as by the card's reset input
+  virtual void set_sink(driver::StepSink* sink) = 0;                 // nullptr: none; not owned
+  virtual std::uint64_t cycles() const = 0;                          // clocks since reset
+  virtual std::uint32_t step_pins() const = 0;                       // levels at the first pins; bit n: axis n
   virtual std::optional<std::uint64_t> lockstep_cycles() const = 0;  // cycles compared; none for the model alone
   virtual std::uint64_t comparisons() const = 0;                     // signals compared
   virtual std::vector<std::int64_t> positions() const = 0;  // pulses, by axis, as the position counters have them

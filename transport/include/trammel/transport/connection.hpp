@@ -1,6 +1,7 @@
 // A bus to the card that a URL names. One thread at a time.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -35,6 +36,11 @@ class Connection {
 
   // False where `trammel serve` gives reading alone, for want of its token.
   bool may_move() const;
+  // From now on a card that is silent for so long counts as lost: its watchdog has stopped it by then. Nothing changes
+  // where the URL says how long an answer may take.
+  void set_patience(std::chrono::nanoseconds patience);
+  // Whether the last request had no answer.
+  bool lost() const;
   // How often a connection to `trammel serve` that was lost has been made anew; each time the card was made to hold.
   std::uint64_t reconnections() const;
 
@@ -44,6 +50,7 @@ class Connection {
   std::unique_ptr<driver::Bus> bus_;
   driver::FrameBus* frames_ = nullptr;
   sim::Engine* engine_ = nullptr;
+  bool timeout_given_ = false;
 };
 
 }  // namespace trammel::transport

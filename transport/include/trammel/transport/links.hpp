@@ -68,6 +68,8 @@ class StreamLink final : public driver::ByteLink {
 
   // Whether a server takes commands that move; otherwise it refuses every write but the order for a snapshot.
   bool may_move() const { return may_move_; }
+  // A wait that is not answered for so long ends, and a server has so long for its hello, where Options say longer.
+  void set_patience(std::chrono::nanoseconds patience) { patience_ = patience; }
   // How often a connection that was lost has been made anew: the server had the card hold then.
   std::uint64_t reconnections() const { return reconnections_; }
 
@@ -86,12 +88,14 @@ class StreamLink final : public driver::ByteLink {
   void connect();
   void say_hello();
   void wait(std::chrono::nanoseconds time);
+  std::chrono::nanoseconds at_most(std::chrono::nanoseconds time) const;
   bool answered(const std::string& text);
 
   Open open_;
   std::optional<Hello> hello_;
   Options options_;
-  std::uint32_t waits_ = 0;  // each has a number, so that a late answer is not taken for the next one's
+  std::chrono::nanoseconds patience_{0};  // 0: as Options say
+  std::uint32_t waits_ = 0;               // each has a number, so that a late answer is not taken for the next one's
   bool given_up_ = false;
   std::unique_ptr<ByteStream> stream_;  // nullptr: lost
   bool may_move_ = true;

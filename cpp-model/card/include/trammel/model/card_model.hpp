@@ -27,7 +27,8 @@ class CardModel {
     std::uint32_t awaddr = 0;
     std::uint32_t araddr = 0;
     std::uint32_t wdata = 0;
-    std::uint16_t pins = 0;  // inputs of the card, bit n: input n
+    std::uint32_t pins = 0;       // inputs of the card, bit n: input n
+    bool emergency_stop = false;  // level at its pin
   };
 
   // Throws std::invalid_argument for numbers out of range.
@@ -72,6 +73,7 @@ void CardModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   core.address = port.address;
   core.data = port.data;
   core.pins = in.pins;
+  core.emergency_stop = in.emergency_stop;
   const CoreModel::Answer answer = state_.core.answer();
   clock_part(state_.core, core);
   if (reset_now || in.rst) return state_.port.reset();  // the port also takes the pin

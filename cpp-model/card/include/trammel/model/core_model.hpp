@@ -6,7 +6,10 @@
 
 #include <cstdint>
 
+#include "trammel/model/captures.hpp"
+#include "trammel/model/card_inputs.hpp"
 #include "trammel/model/command_checker.hpp"
+#include "trammel/model/emergency_stop.hpp"
 #include "trammel/model/halfword_queue.hpp"
 #include "trammel/model/motion_core.hpp"
 #include "trammel/model/queue_watermarks.hpp"
@@ -22,10 +25,12 @@ struct CardConfig {
   std::uint32_t clock_hz = 1'000'000;
   std::uint32_t engines = RegisterFile::kDefaultEngines;  // what is built in
   unsigned ports = 1;                                     // 1 .. 4
-  unsigned inputs = 4;                                    // 1 .. 16, of a card with path commands
+  unsigned inputs = 4;                                    // 1 .. 32, of a card with path commands
   unsigned outputs = 4;
-  std::uint16_t output_idle = 0;  // strap: levels of the outputs in reset
-  std::uint32_t idle_level = 0;   // strap: {second pins, first pins}, `axes` bits each
+  unsigned captures = 4;             // 1 .. 4 units, of a card with captures
+  std::uint16_t output_idle = 0;     // strap: levels of the outputs in reset
+  std::uint32_t idle_level = 0;      // strap: {second pins, first pins}, `axes` bits each
+  bool emergency_stop_level = true;  // strap: the level at its pin that means stop
   std::uint32_t build_id = 0;
   bool build_dirty = false;
   std::uint32_t board_id = 0;
@@ -44,7 +49,10 @@ class CoreModel {
     std::uint8_t port = 0;
     std::uint32_t address = 0;  // bytes, 12 bits
     std::uint32_t data = 0;
-    std::uint16_t pins = 0;  // inputs of the card
+    bool of_session = true;  // as in PortArbiter::Access
+    bool new_session = false;
+    std::uint32_t pins = 0;       // inputs of the card
+    bool emergency_stop = false;  // level at its pin
   };
   struct Answer {
     bool ack = false;
@@ -84,13 +92,16 @@ class CoreModel {
     HalfwordQueue geometry_queue;
     HalfwordQueue feed_queue;
     QueueWatermarks watermarks;
+    CardInputs inputs;
+    EmergencyStop emergency_stop;
     MotionCore motion;
+    Captures captures;
     std::uint64_t cycles = 0;
     bool reset_due = false;
     StepRecord record{};
     Answer answer{};
     Outputs out{};
-    RegisterFile::Inputs shown{};  // to the register file; a request and the probe's edge only within a clock
+    RegisterFile::Inputs shown{};  // to the register file; requests and what else is of one clock only within it
   };
 
   // One rising edge.
@@ -101,8 +112,11 @@ class CoreModel {
   const State& state() const { return state_; }
   State& state() { return state_; }
   // What the parts see.
-  MotionCore::Inputs motion_inputs(std::uint16_t pins) const;
+  MotionCore::Inputs motion_inputs() const;
+  CardInputs::Inputs pin_inputs(std::uint32_t pins) const { return {pins, state_.registers.outputs().setting}; }
+  EmergencyStop::Inputs emergency_inputs(bool pin) const;
   QueueWatermarks::Inputs watermark_inputs() const;
+  Captures::Inputs capture_inputs() const;
   // Takes the parts' outputs over into the core's.
   void show();
 
@@ -111,19 +125,26 @@ class CoreModel {
   std::uint32_t position(unsigned axis) const { return state_.motion.position(axis); }
   const Config& config() const { return config_; }
   std::uint64_t cycles() const { return state_.cycles; }
+  bool has_emergency_stop() const { return card_map::has_engine(config_.engines, card_map::engine::kEmergencyStop); }
+  // Levels of the outputs at the pins.
+  std::uint16_t output_levels() const { return state_.motion.output_levels(state_.emergency_stop.latched()); }
   void set_steps(CardSteps* steps) { state_.record.set_steps(steps); }  // nullptr: none; not owned
 
  private:
-  void reset();
+  void reset(bool emergency_stop);
   CommandChecker::Inputs checker_inputs(bool cut) const;
-  void request(const Inputs& access, bool probe) {
+  void request(const Inputs& access, bool probe, bool rest, std::uint8_t captures) {
     state_.shown.request = access.request;
     state_.shown.write = access.write;
     state_.shown.partial = access.partial;
     state_.shown.port = access.port;
     state_.shown.address = access.address;
     state_.shown.data = access.data;
+    state_.shown.of_session = access.of_session;
+    state_.shown.new_session = access.new_session;
     state_.shown.probe = probe;
+    state_.shown.rest = rest;
+    state_.shown.captures = captures;
   }
   void show_registers();
   void record(bool cut);
@@ -137,12 +158,17 @@ template <class ClockPart>
 void CoreModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   const bool reset_now = state_.reset_due;
   state_.reset_due = in.rst;
-  if (reset_now) return reset();
+  if (reset_now) return reset(in.emergency_stop);
   ++state_.cycles;
   const bool cut = state_.motion.stop().cut;
-  const MotionCore::Inputs motion = motion_inputs(in.pins);
+  const MotionCore::Inputs motion = motion_inputs();
+  const CardInputs::Inputs pins = pin_inputs(in.pins);
+  const EmergencyStop::Inputs emergency = emergency_inputs(in.emergency_stop);
   const QueueWatermarks::Inputs watermarks = watermark_inputs();
-  request(in, state_.motion.probe_trips(motion));
+  Captures::Inputs captures = capture_inputs();
+  const std::uint8_t asks = state_.captures.asks(captures);
+  captures.captured = state_.registers.captured(asks);
+  request(in, state_.motion.probe_asks(motion), state_.motion.rests(motion), asks);
   const CommandChecker::Outputs was = state_.checker.outputs();
   const bool geometry_read = state_.motion.sequencer().geometry_read();
   const bool feed_read = state_.motion.sequencer().feed_read();
@@ -151,9 +177,12 @@ void CoreModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
              {false, cut, was.geometry_write, was.halfword, was.geometry_commit, was.drop, geometry_read});
   clock_part(state_.feed_queue, {false, cut, was.feed_write, was.halfword, was.feed_commit, was.drop, feed_read});
   clock_part(state_.registers, state_.shown);
-  request({}, false);
+  request({}, false, false, 0);
   clock_part(state_.watermarks, watermarks);
   clock_part(state_.motion, motion);
+  clock_part(state_.captures, captures);
+  clock_part(state_.inputs, pins);
+  if (has_emergency_stop()) clock_part(state_.emergency_stop, emergency);
   record(cut);
   show();
 }

@@ -30,7 +30,9 @@ class FrameEngine {
     bool request = false;
     bool write = false;
     std::uint32_t address = 0;
-    std::uint32_t data = 0;  // of a write
+    std::uint32_t data = 0;    // of a write
+    bool of_session = false;   // of a request; else what a reply says of the card
+    bool new_session = false;  // the first access of its session
   };
 
   void reset() { *this = FrameEngine(); }
@@ -62,6 +64,8 @@ class FrameEngine {
   At at_ = At::Listening;
   unsigned left_ = 0;  // clocks
   bool dropped_ = false;
+  bool new_session_ = false;   // no request ran in this epoch yet
+  bool first_access_ = false;  // of it
   bool state_pass_ = false;
   unsigned word_ = 0;
   std::vector<std::uint32_t> read_;

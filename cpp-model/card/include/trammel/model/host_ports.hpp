@@ -86,7 +86,11 @@ class HostPorts {
   }
   template <class Outputs>
   static PortArbiter::Access access_of(const Outputs& out, bool partial) {
-    return {out.request, out.write, partial, out.address, out.data};
+    return {out.request, out.write, partial, out.address, out.data, true, false};
+  }
+
+  static PortArbiter::Access access_of(const FrameEngine::Outputs& out) {
+    return {out.request, out.write, false, out.address, out.data, out.of_session, out.new_session};
   }
 
   PortArbiter::Accesses accesses() const {
@@ -94,8 +98,8 @@ class HostPorts {
     std::size_t port = 0;
     if (config_.axi) all[port++] = access_of(axi_.outputs(), axi_.outputs().partial);
     if (config_.wishbone) all[port++] = access_of(wishbone_.outputs(), wishbone_.outputs().partial);
-    if (config_.uart) all[port++] = access_of(uart_engine_.outputs(), false);
-    if (config_.spi) all[port++] = access_of(spi_engine_.outputs(), false);
+    if (config_.uart) all[port++] = access_of(uart_engine_.outputs());
+    if (config_.spi) all[port++] = access_of(spi_engine_.outputs());
     return all;
   }
 

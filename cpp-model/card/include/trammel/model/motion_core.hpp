@@ -9,14 +9,18 @@
 #include "trammel/model/axis.hpp"
 #include "trammel/model/buses.hpp"
 #include "trammel/model/button_hold.hpp"
+#include "trammel/model/card_health.hpp"
 #include "trammel/model/clock_each.hpp"
 #include "trammel/model/direct_loader.hpp"
+#include "trammel/model/drive_enable.hpp"
 #include "trammel/model/feed_generator.hpp"
 #include "trammel/model/limit_check.hpp"
+#include "trammel/model/machine_place.hpp"
 #include "trammel/model/path_commands.hpp"
 #include "trammel/model/path_engines.hpp"
 #include "trammel/model/probe.hpp"
 #include "trammel/model/sequencer.hpp"
+#include "trammel/model/soft_limits.hpp"
 #include "trammel/model/stop_control.hpp"
 #include "trammel/model/time_base.hpp"
 #include "trammel/model/underrun_guard.hpp"
@@ -31,6 +35,8 @@ class MotionCore {
     Setting setting;
     bool abort = false;
     std::uint32_t clear_fault = 0;
+    bool session_gone = false;  // the one that wrote the stream
+    bool link_lost = false;
     bool probe_clear = false;
     // queues
     bool geometry_empty = true;
@@ -43,8 +49,11 @@ class MotionCore {
     bool start = false;
     std::uint8_t start_mask = 0;
     std::uint32_t loader_data = 0;
-    std::uint16_t pins = 0;  // inputs of the card
-    InputRoles roles;        // of a card with machine inputs
+    std::uint32_t levels = 0;  // of the card's inputs
+    std::uint32_t raw = 0;     // before their filters
+    std::uint32_t quiet = 0;   // of a card with captures
+    InputRoles roles;          // of a card with machine inputs
+    bool emergency = false;    // level: the emergency stop's cause
   };
   // A bit for each axis.
   struct Outputs {
@@ -66,7 +75,11 @@ class MotionCore {
     StopControl stop{};
     Watchdog watchdog{};
     LimitCheck limits{};
+    SoftLimits soft_limits{};
     ButtonHold buttons{};
+    MachinePlace place{};
+    DriveEnable drives{};
+    CardHealth health{};
     UnderrunGuard guard{};
     TimeBase time_base{};
     FeedGenerator feed{};
@@ -101,12 +114,20 @@ class MotionCore {
   const FeedGenerator::Outputs& feed() const { return state_.feed.outputs(); }
   const PathCommands& commands() const { return state_.commands; }
   const Probe& probe() const { return state_.probe; }
-  // The probe's edge is taken in this clock, and with these inputs.
-  bool probe_trips(const Inputs& in) const {
+  // The probe wants a snapshot in this clock, and with these inputs.
+  bool probe_asks(const Inputs& in) const {
     // Without either the inputs need not be looked at.
     if (!state_.probe.busy() && !state_.sequencer.probe_waits()) return false;
-    return state_.probe.trips(probe_inputs(in));
+    return state_.probe.asks(probe_inputs(in));
   }
+  // The snapshot REST is asked for in this clock.
+  bool rests(const Inputs& in) const {
+    if (!in.abort && !state_.stop.closing()) return false;
+    const Probe::Inputs probe = probe_inputs(in);
+    return state_.stop.rests(stop_inputs(in, sequencer_inputs(in, probe)));
+  }
+  // STATUS.settled.
+  bool settled() const { return state_.stop.settled() && !state_.sequencer.outputs().swap; }
   const PathEngines::Outputs& engines() const { return state_.engines.outputs(); }
   bool chord_tick() const { return state_.engines.chord_tick(); }
   std::uint32_t position(unsigned axis) const { return state_.axes[axis].state().shaper.outputs().position; }
@@ -123,10 +144,34 @@ class MotionCore {
   // STATUS.busy falls when nothing has run for this many clocks.
   static constexpr unsigned kBusyClocks = 11;
 
-  PathCommands::Inputs command_inputs(const Inputs& in) const;
-  StopControl::Inputs stop_inputs(const Inputs& in) const;
+  PathCommands::Inputs command_inputs(const Inputs& in, const StopControl::Inputs& stop) const;
+  // Without a setting.
+  TimeBase::Inputs time_inputs() const {
+    const Sequencer::Outputs& s = state_.sequencer.outputs();
+    return {state_.stop.outputs().hold, {}, s.piece_class, s.slew_shift};
+  }
+  StopControl::Inputs stop_inputs(const Inputs& in, const Sequencer::Inputs& sequencer_in) const;
   LimitCheck::Inputs limit_inputs(const Inputs& in) const;
+  SoftLimits::Inputs soft_limit_inputs(const Inputs& in) const;
+  MachinePlace::Inputs place_inputs(const Inputs& in) const;
+  DriveEnable::Inputs drive_inputs(const Inputs& in) const;
+  CardHealth::Inputs health_inputs(const Inputs& in) const {
+    return {in.setting, state_.stop.outputs().fault, state_.watchdog.running()};
+  }
+  // No tick is taken, since the drives are not enabled.
+  bool waits_for_drives() const { return has_enables_ && state_.drives.waits(); }
+  bool wants_drives() const { return state_.sequencer.outputs().direct || state_.sequencer.ticking_path(); }
+  // Levels at the outputs' pins; `latched`: the emergency stop's latch is set.
+  std::uint16_t output_levels(bool latched) const {
+    const OutputRoleLevels roles{state_.drives.enabled(), state_.drives.released(), state_.health.pump(),
+                                 state_.health.healthy()};
+    return state_.commands.outputs(latched, roles);
+  }
   bool has_machine_inputs() const { return has_machine_inputs_; }
+  bool has_soft_limits() const { return has_soft_limits_; }
+  // The register LIMIT_STATE.
+  std::uint32_t limit_state() const { return state_.limits.limit_state() | state_.soft_limits.limit_state(); }
+  bool has_enables() const { return has_enables_; }
 
  private:
   Axis::Inputs axis_inputs(const Inputs& in) const;
@@ -134,6 +179,8 @@ class MotionCore {
 
   bool has_guard_;
   bool has_machine_inputs_;
+  bool has_soft_limits_;
+  bool has_enables_;
 
   State state_;
 };
@@ -141,7 +188,9 @@ class MotionCore {
 inline Probe::Inputs MotionCore::probe_inputs(const Inputs& in) const {
   Probe::Inputs probe;
   probe.cut = state_.stop.outputs().cut;
-  probe.levels = state_.commands.levels();
+  probe.levels = in.levels;
+  probe.raw = in.raw;
+  probe.quiet = in.quiet;
   probe.waits = state_.sequencer.probe_waits();
   probe.ends = state_.sequencer.probe_ends();
   probe.at_rest = state_.time_base.outputs().ratio == 0;
@@ -160,12 +209,21 @@ void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   const Sequencer::Outputs& s = state_.sequencer.outputs();
   const bool over = stop.cut || state_.probe.halt();
   clock_part(state_.loader, {false, state_.out.busy, stop.closed, in.start, in.start_mask, in.loader_data});
-  const StopControl::Inputs stop_in = stop_inputs(in);
-  const PathCommands::Inputs commands = command_inputs(in);
+  const StopControl::Inputs stop_in = stop_inputs(in, sequencer);
+  TimeBase::Inputs time = time_inputs();
+  time.setting = in.setting;
+  const PathCommands::Inputs commands = command_inputs(in, stop_in);
   if (has_machine_inputs_) {
     clock_part(state_.limits, limit_inputs(in));
     clock_part(state_.buttons, in.roles);
   }
+  if (has_soft_limits_) clock_part(state_.soft_limits, soft_limit_inputs(in));
+  const MachinePlace::Inputs place = place_inputs(in);
+  if (has_enables_) {
+    clock_part(state_.drives, drive_inputs(in));
+    clock_part(state_.health, health_inputs(in));
+  }
+  clock_part(state_.place, place);
   if (has_guard_) clock_part(state_.guard, guard_inputs(in, sequencer));
   clock_part(state_.stop, stop_in);
   clock_part(state_.commands, commands);
@@ -189,7 +247,7 @@ void MotionCore::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   clock_part(state_.engines,
              {over, s.tick, s.swap, s.engine, state_.sequencer.load(), state_.sequencer.engine_taken()});
   clock_part(state_.feed, {s.feed_clear, s.feed_enable, s.spent, state_.sequencer.feed_load(), s.feed_swap});
-  clock_part(state_.time_base, {stop.hold, in.setting, s.piece_class});
+  clock_part(state_.time_base, time);
   clock_part(state_.probe, probe);
   clock_part(state_.sequencer, sequencer);
 }

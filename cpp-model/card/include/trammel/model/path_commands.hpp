@@ -15,25 +15,24 @@ namespace trammel::model {
 class PathCommands {
  public:
   struct Config {
-    unsigned inputs = 4;            // 1 .. 16
     unsigned outputs = 4;           // 1 .. 16
     std::uint16_t output_idle = 0;  // strap: levels in reset
   };
   struct Inputs {
     bool cut = false;
+    bool caused = false;  // a cause comes, or a stop is under way or has been
     bool halt = false;    // what waits is dropped, but the outputs stay
     bool output = false;  // an OUTPUT is taken; its last halfword is on the load bus
     bool mark = false;    // a MARK is taken
     bool over = false;    // event: a path has ended
     bool runs = false;    // a path is under way
-    std::uint16_t pins = 0;
     LoadWord load;
     Setting setting;
   };
   // All that the next clock() depends on beside its inputs.
   struct State {
-    InputPins inputs;
     OutputPins outputs;
+    OutputRoles roles;
     std::uint64_t masks = 0;  // clear, set
     std::uint16_t set = 0;
     std::uint16_t clear = 0;
@@ -51,13 +50,14 @@ class PathCommands {
   static constexpr unsigned kToStep = 7;
 
   explicit PathCommands(const Config& config)
-      : state_{InputPins(config.inputs), OutputPins(config.outputs, config.output_idle)} {}
+      : state_{OutputPins(config.outputs, config.output_idle), OutputRoles(config.outputs, config.output_idle)} {}
 
   // One rising edge.
   void clock(const Inputs& in) {
     const bool due = state_.left == 1 && !in.cut && !in.halt;
-    state_.outputs.clock(in.cut, due ? state_.set : std::uint16_t{0}, due ? state_.clear : std::uint16_t{0},
+    state_.outputs.clock(in.cut, in.caused, due ? state_.set : std::uint16_t{0}, due ? state_.clear : std::uint16_t{0},
                          in.setting);
+    state_.roles.clock(in.setting);
     state_.mark = due && state_.mark_goes;
     if (state_.mark) state_.marks = state_.marks_taken;
     if (due) state_.set = state_.clear = 0;
@@ -69,14 +69,15 @@ class PathCommands {
       state_.output_waits = state_.mark_waits = false;
     }
     take(in);
-    state_.inputs.clock(in.pins, in.setting);
     if (in.cut || in.halt) drop();
   }
 
   const State& state() const { return state_; }
   State& state() { return state_; }
-  std::uint16_t levels() const { return state_.inputs.level(); }
-  std::uint16_t outputs() const { return state_.outputs.level(); }
+  // At the pins; `latched`: the emergency stop's latch is set.
+  std::uint16_t outputs(bool latched, const OutputRoleLevels& roles) const {
+    return state_.roles.pins(state_.outputs.level(latched), roles, latched);
+  }
   std::uint32_t marks() const { return state_.marks; }
   bool mark() const { return state_.mark; }  // event: a snapshot is wanted
 

@@ -98,6 +98,9 @@ class PathEngines {
   const State& state() const { return state_; }
   State& state() { return state_; }
 
+  // No path tick is on its way to an engine or waits for it, and none makes a step.
+  bool quiet() const { return state_.gate_payload_ready; }
+
   // The tick that shows is a path tick of an arc in chords.
   bool chord_tick() const { return state_.chord_tick; }
 

@@ -19,6 +19,8 @@ class PortArbiter {
     bool partial = false;
     std::uint32_t address = 0;  // byte address, 12 bits
     std::uint32_t data = 0;
+    bool of_session = true;    // asked for by a session of the port, not by the port itself
+    bool new_session = false;  // the first access of one
   };
   using Accesses = std::array<Access, kMaxPorts>;
 

@@ -2,8 +2,9 @@
 //
 // Off -> Armed (its input was not tripped) -> Ramp (the edge) -> Dropping (at rest) -> Off (PROBE_END is over, which
 // waits until the host has cleared the edge). An input that is tripped at first goes from Off to Dropping. Everything
-// that comes in clock c shows at c+1, but for trips() and taken(), which are of the clock itself. Not thread-safe; no
-// errors are reported.
+// that comes in clock c shows at c+1, but for trips(), asks() and takes(), which are of the clock itself. On a card
+// with captures the first touch asks for the snapshot, before the filter confirms it. Not thread-safe; no errors are
+// reported.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +17,14 @@ class Probe {
  public:
   struct Inputs {
     bool cut = false;
-    std::uint16_t levels = 0;
-    bool waits = false;     // a PROBE is decoded and no path runs
-    bool ends = false;      // PROBE_END has begun
-    bool at_rest = false;   // the ratio is 0
-    bool stopping = false;  // a fault's ramp
-    bool clear = false;     // event: CONTROL.probe_clear
+    std::uint32_t levels = 0;
+    std::uint32_t raw = 0;    // before their filters
+    std::uint32_t quiet = 0;  // inputs that have stood at their levels for a filter's length
+    bool waits = false;       // a PROBE is decoded and no path runs
+    bool ends = false;        // PROBE_END has begun
+    bool at_rest = false;     // the ratio is 0
+    bool stopping = false;    // a fault's ramp
+    bool clear = false;       // event: CONTROL.probe_clear
     LoadWord load;
   };
   enum class Mode : std::uint8_t { Off, Armed, Ramp, Dropping };
@@ -34,12 +37,16 @@ class Probe {
     bool halt = false;
     bool probed = false;
     bool missed = false;
+    bool touched = false;  // its snapshot is taken
   };
   // Clocks without a path from the first one in which a PROBE waits to the one that takes it.
   static constexpr unsigned kSettle = 8;
 
+  explicit Probe(bool first_touch = false) : first_touch_(first_touch) {}
+
   // One rising edge.
   void clock(const Inputs& in) {
+    state_.touched = touched_after(in);
     const bool edge = edges(in);
     const bool take = takes(in);
     const bool tripped_already = take && met(in.levels);
@@ -66,13 +73,15 @@ class Probe {
   State& state() { return state_; }
 
   // The condition decoded last is met.
-  bool met(std::uint16_t levels) const { return meets(state_.condition, levels); }
+  bool met(std::uint32_t levels) const { return meets(state_.condition, levels); }
   // The PROBE is taken in this clock.
   bool takes(const Inputs& in) const {
     const bool free = state_.mode == Mode::Off || (state_.mode == Mode::Armed && !edges(in));
     return in.waits && state_.waited + 1 >= kSettle && free && !in.stopping && !in.cut;
   }
   // A snapshot is wanted.
+  bool asks(const Inputs& in) const { return touches(in) || (trips(in) && !state_.touched); }
+  // The probe trips.
   bool trips(const Inputs& in) const { return edges(in) || (takes(in) && met(in.levels)); }
   // PROBE_END must wait.
   bool stays(const Inputs& in) const {
@@ -85,12 +94,22 @@ class Probe {
   bool probed() const { return state_.probed; }
   bool missed() const { return state_.missed; }
 
+  // A touch, the first one since the PROBE or since the input was quiet.
+  bool touches(const Inputs& in) const {
+    return first_touch_ && state_.mode == Mode::Armed && meets(state_.armed_for, in.raw) &&
+           (!state_.touched || (quiet(in) && !edges(in))) && !in.stopping && !in.cut;
+  }
+  bool touched_after(const Inputs& in) const {
+    if (state_.mode != Mode::Armed || edges(in) || takes(in) || in.cut) return false;
+    return touches(in) || (state_.touched && !quiet(in));
+  }
   bool edges(const Inputs& in) const {
     return state_.mode == Mode::Armed && meets(state_.armed_for, in.levels) && !in.stopping && !in.cut;
   }
 
  private:
-  static bool meets(std::uint8_t condition, std::uint16_t levels) {
+  bool quiet(const Inputs& in) const { return (in.quiet >> (state_.armed_for & 0x1F) & 1) != 0; }
+  static bool meets(std::uint8_t condition, std::uint32_t levels) {
     constexpr unsigned kInputBits = 5;  // the number of an input; one that the card lacks stays at 0
     const std::uint32_t input = condition & ((1U << kInputBits) - 1);
     return (std::uint32_t{levels} >> input & 1) == condition >> kInputBits;
@@ -118,6 +137,7 @@ class Probe {
     }
   }
 
+  bool first_touch_;
   State state_;
 };
 

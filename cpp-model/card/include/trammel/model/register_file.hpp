@@ -8,6 +8,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/model/buses.hpp"
+#include "trammel/model/link_watch.hpp"
 #include "trammel/model/snapshot_writer.hpp"
 
 namespace trammel::model {
@@ -23,8 +24,10 @@ class RegisterFile {
                                                    card_map::engines::kDirectMode | card_map::engines::kUnderrunHold |
                                                    card_map::engines::kPathCommands | card_map::engines::kStreaming |
                                                    card_map::engines::kClasses | card_map::engines::kWatermarks;
-  static constexpr std::uint32_t kMaxEngines =
-      kDefaultEngines | card_map::engines::kArcGenerator | card_map::engines::kAccumulator8;
+  static constexpr std::uint32_t kMaxEngines = kDefaultEngines | card_map::engines::kArcGenerator |
+                                               card_map::engines::kAccumulator8 | card_map::engines::kMachineInputs |
+                                               card_map::engines::kCaptures | card_map::engines::kSoftLimits |
+                                               card_map::engines::kEmergencyStop | card_map::engines::kEnables;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8
@@ -36,8 +39,9 @@ class RegisterFile {
     bool build_dirty = false;
     std::uint32_t board_id = 0;
     std::uint32_t ports = 1;   // 1 .. 4
-    std::uint32_t inputs = 4;  // 1 .. 16, of a card with path commands
+    std::uint32_t inputs = 4;  // 1 .. 32, of a card with path commands
     std::uint32_t outputs = 4;
+    std::uint32_t captures = 4;    // units, of a card with captures
     std::uint32_t idle_level = 0;  // {second pins, first pins}, a bit an axis each
   };
 
@@ -49,6 +53,8 @@ class RegisterFile {
     std::uint8_t port = 0;
     std::uint32_t address = 0;  // byte address, 12 bits
     std::uint32_t data = 0;
+    bool of_session = true;  // as in PortArbiter::Access
+    bool new_session = false;
     // the card's state
     bool busy = false;
     bool direct = false;
@@ -61,7 +67,10 @@ class RegisterFile {
     bool stale = false;  // a line goes on beyond its period
     std::uint32_t stale_ticks = 0;
     std::uint32_t limit_state = 0;
+    std::uint32_t place = 0;
     bool button_hold = false;
+    bool enabled = false;             // the drives are
+    bool enable_waits = false;        // motion waits for that
     bool incomplete = false;          // the stream stands inside a command
     std::uint16_t geometry_room = 0;  // halfwords
     std::uint16_t feed_room = 0;
@@ -75,11 +84,18 @@ class RegisterFile {
     std::uint32_t rate = 0;   // 2^-32 feed ticks an enabled clock
     std::uint32_t ratio = 0;  // 2^-16, 17 bits
     std::array<std::uint32_t, card_map::kMaxAxes> position{};
-    std::uint32_t fault = 0;  // FAULT as it stands
-    bool stop = false;        // events that ask for a snapshot: the first cause of a stop,
-    bool probe = false;       // the probe's edge,
-    bool mark = false;        // a MARK
-    std::uint16_t inputs = 0;
+    std::uint32_t fault = 0;       // FAULT as it stands
+    bool settled = false;          // nothing moves, and no tick is on its way
+    std::uint64_t ticks_left = 0;  // of the path under way
+    bool stop = false;             // events that ask for a snapshot: the first cause of a stop,
+    bool rest = false;             // its end,
+    bool probe = false;            // the probe's edge,
+    bool mark = false;             // a MARK,
+    std::uint8_t captures = 0;     // and levels: the capture units that want one
+    std::uint32_t capture_state = 0;
+    std::uint32_t inputs = 0;
+    std::uint32_t raw_inputs = 0;
+    InputRoles roles;
     std::uint16_t outputs = 0;
     std::uint32_t marks = 0;
     // the command checker
@@ -129,6 +145,8 @@ class RegisterFile {
     bool partial = false;
     std::uint8_t port = 0;
     std::uint32_t address = 0;
+    bool of_session = true;
+    bool new_session = false;
     std::uint32_t word = 0;  // last word written
     card_map::Slot slot{nullptr, 0};
     card_map::Reason reason = card_map::Reason::None;
@@ -140,6 +158,7 @@ class RegisterFile {
         stored{};  // whatever reads back: constants, settings, latched values
     std::uint32_t irq_enable = 0;
     SnapshotWriter snapshot{1};
+    LinkWatch link{};
     Values latched{};
     std::array<std::uint32_t, kMaxPorts> refusal{};  // as the register reads; a reason is never 0
     bool loading = false;
@@ -155,11 +174,18 @@ class RegisterFile {
   void clock(const Inputs& in);
 
   const Outputs& outputs() const { return state_.out; }
+  // Whether a unit of LINK_TIMEOUT passes in the clock at `time`: as time is written down, two clocks late.
+  static bool link_unit(std::uint64_t time) {
+    return ((time - 2) >> LinkWatch::kUnitBits & 1) != ((time - 3) >> LinkWatch::kUnitBits & 1);
+  }
+  const LinkWatch& link() const { return state_.link; }
   const State& state() const { return state_; }
   State& state() { return state_; }
 
   // STATUS with these inputs, as the interrupt and lockstep see it: refused on any port.
   std::uint32_t status(const Inputs& in) const;
+  // The capture units that are told in this clock that their snapshot is taken.
+  std::uint8_t captured(std::uint8_t captures) const { return state_.snapshot.captured(captures); }
   // What `irq` shows a clock later.
   bool interrupt(const Inputs& in) const;
 
@@ -181,6 +207,7 @@ class RegisterFile {
   void step_snapshot(const Inputs& in, bool host);
   std::size_t written_at(std::uint32_t word) const;
   void take_values(const Inputs& in);
+  void step_link();
   void step_loader(const Inputs& in);
   void refuse_checked(const Inputs& in);
   std::uint32_t& stored(std::uint32_t address) { return state_.stored[address / 4]; }

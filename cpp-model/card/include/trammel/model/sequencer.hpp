@@ -28,7 +28,10 @@ class Sequencer {
     bool feed_empty = true;
     std::uint16_t geometry_word = 0;
     std::uint16_t feed_word = 0;
-    bool wait = false;  // no piece begins
+    bool wait = false;         // no piece begins
+    bool shut = false;         // no tick is taken
+    bool closing = false;      // a cut is due: no path begins
+    bool drives_wait = false;  // no tick is taken, nor made
     // position streaming
     Setting setting;
     bool arrives = false;  // a halfword of a command comes in
@@ -73,7 +76,8 @@ class Sequencer {
     bool spent = false;   // so has the piece
     bool moving = false;  // the piece has given ticks, or took over from one that had
     std::uint8_t piece_class = card_map::constant::kClassFeed;  // of the last piece; a direct move's is feed
-    bool silent = false;                                        // the last piece's ticks make no steps
+    std::uint8_t slew_shift = 0;  // of the last piece: doublings of the slew; a direct move has none
+    bool silent = false;          // the last piece's ticks make no steps
     bool ended = false;
     bool idle = true;  // nothing runs, is decoded or queued
     std::uint32_t geometry_begun = 0;
@@ -113,7 +117,6 @@ class Sequencer {
     bool geometry_idle = true;
     bool path_begun = false;  // in the clock before
     bool piece_begun = false;
-    bool cut_before = false;
     Outputs out;
     Record record;
   };
@@ -146,6 +149,9 @@ class Sequencer {
   bool takes(const Inputs& in) const;
   // Ticks made, owed and taken: a part of clock().
   void clock_ticks(const Inputs& in, bool take);
+  // Ticks that the path under way has not taken yet; 0 where none is.
+  std::uint64_t ticks_to_come() const { return unfinished() ? state_.path_left & kCountMask : 0; }
+  bool unfinished() const { return state_.path != Path::None && !state_.drained; }
   bool piece_silent() const { return (state_.feed.flags() & card_map::constant::kPieceSilent) != 0; }
   bool piece_waits() const { return state_.feed.decoded() && state_.feed.is_feed(); }
 

@@ -47,6 +47,9 @@ class StepShaper {
     std::uint8_t backs = 0;
     std::uint8_t mode = 0;
     Outputs out;
+
+    // A pulse begins: the position has it in the next clock.
+    bool begins() const { return lead == 1; }
   };
 
   StepShaper() = default;
@@ -119,7 +122,7 @@ class StepShaper {
 
   // Pins, position and busy follow the state before this clock.
   void show(const Inputs& in) {
-    const bool begins = state_.lead == 1;
+    const bool begins = state_.begins();
     if (begins) state_.out.position += state_.back ? ~std::uint32_t{0} : 1U;
     // The first two clocks of the pulse's phase are low still, the last is low already.
     const bool pulse = state_.phase == Phase::kHigh && (begins || (state_.lead == 0 && state_.left != 0));

@@ -1,10 +1,12 @@
 // Golden model of the stop control: every cause of a stop, in one place. FAULT remembers causes; the card is in RUN,
-// ramps to a stop (RAMP), or stands until FAULT is clear (STOPPED). A cut drops queues, paths and everything decoded.
+// ramps to a stop (RAMP), takes no ticks any more and waits for what is on its way to the pins (CLOSING), or stands
+// until FAULT is clear (STOPPED). A cut drops queues, paths and everything decoded; it ends CLOSING, or is an abort's.
 //
 // What comes in clock c shows at c+1: fault, cut, stop, stopping. hold and closed follow the state a clock later.
 // Not thread-safe; no errors are reported.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "trammel/card_map.hpp"
@@ -20,7 +22,10 @@ class StopControl {
     bool incomplete = false;       // event
     bool missing = false;          // event: of position streaming
     bool expired = false;          // level: the watchdog has expired
+    bool link_lost = false;        // level
+    bool emergency = false;        // level: the emergency stop
     StopCauses causes;             // from the machine's inputs
+    bool soft_limit = false;       // event: a pulse beyond one
     bool abort = false;            // event
     std::uint32_t clear = 0;       // event: ones written to FAULT
     bool at_rest = false;          // the ratio is 0
@@ -29,6 +34,10 @@ class StopControl {
     bool underrun = false;         // what is queued ends: neither a fault nor a cut
     bool probe = false;            // a probe has tripped: likewise
     bool button = false;           // the feed hold button holds, as HOLD does
+    bool take = false;             // a tick is taken in this clock
+    bool quiet = true;             // no path tick is on its way to an engine, none makes a step
+    bool pulses = false;           // an axis is busy
+    bool busy = false;             // something runs or is queued
     Setting setting;               // HOLD, STOP_REACTION
   };
   struct Outputs {
@@ -37,47 +46,41 @@ class StopControl {
     bool cut = false;       // event
     bool stop = false;      // event: the first cause of a stop
     bool closed = false;    // neither command nor START is taken
-    bool stopping = false;  // the ramp to a stop
+    bool stopping = false;  // the way to a stop
   };
-  enum class Mode : std::uint8_t { Run, Ramp, Stopped };
+  enum class Mode : std::uint8_t { Run, Ramp, Closing, Stopped };
+  // So many clocks nothing has moved: the card is settled.
+  static constexpr unsigned kSettleClocks = 31;
   // All that the next clock() depends on beside its inputs.
   struct State {
     Mode mode = Mode::Run;
-    bool hold = false;  // the register
+    unsigned settled = 0;  // clocks in which nothing moved, up to kSettleClocks
+    bool hold = false;     // the register
     bool hold_stays = false;
     bool made_to_hold = false;
     std::uint32_t reaction = card_map::field::kStopReactionDriveFault | card_map::field::kStopReactionWatchdog |
-                             card_map::field::kStopReactionProbe | card_map::field::kStopReactionToolSetter;
+                             card_map::field::kStopReactionProbe | card_map::field::kStopReactionToolSetter |
+                             card_map::field::kStopReactionSoftLimit | card_map::field::kStopReactionLinkLoss;
     Outputs out;
   };
 
   // One rising edge.
   void clock(const Inputs& in) {
-    const std::uint32_t events = in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
-                                 (in.incomplete ? card_map::field::kFaultPathIncomplete : 0) |
-                                 (in.missing ? card_map::field::kFaultMissingPeriod : 0) |
-                                 (in.expired ? card_map::field::kFaultWatchdog : 0) | bits_of(in.causes);
+    const std::uint32_t events = causes_of(in);
     const bool at_once = (events & ~state_.reaction) != 0 || in.causes.beyond;
     state_.made_to_hold = in.underrun || in.probe;
     state_.hold_stays = stays(in);
-    state_.out.hold = asked_hold(in) || state_.made_to_hold || state_.mode == Mode::Ramp;
+    state_.out.hold = asked_hold(in) || state_.made_to_hold || state_.mode == Mode::Ramp || (closing() && in.at_rest);
     state_.out.closed = state_.out.fault != 0 || state_.mode != Mode::Run;
-    state_.out.cut = in.abort;
+    // An abort on the way to a fault's cut shuts the gate alone.
+    state_.out.cut = finished() || (in.abort && (stopped() || (state_.mode == Mode::Run && events == 0)));
+    const unsigned settled = counts(in) ? std::min(state_.settled + 1, kSettleClocks) : 0;
+    const Mode next = next_mode(in, events != 0, at_once);
     state_.out.stop = state_.mode == Mode::Run && events != 0;
-    switch (state_.mode) {
-      case Mode::Run:
-        if (at_once) halt();
-        if (events != 0 && !at_once) state_.mode = Mode::Ramp;
-        break;
-      case Mode::Ramp:
-        if (at_once || in.at_rest || in.abort) halt();
-        break;
-      case Mode::Stopped:
-        if (state_.out.fault == 0 && events == 0) state_.mode = Mode::Run;
-        break;
-    }
+    state_.mode = next;
+    state_.settled = settled;
     state_.out.fault = (state_.out.fault & ~in.clear) | events;
-    state_.out.stopping = state_.mode == Mode::Ramp;
+    state_.out.stopping = state_.mode == Mode::Ramp || closing();
     if (in.setting.set) set(in.setting);
   }
 
@@ -85,6 +88,17 @@ class StopControl {
   const State& state() const { return state_; }
   State& state() { return state_; }
   bool stopped() const { return state_.mode == Mode::Stopped; }
+  bool closing() const { return state_.mode == Mode::Closing; }
+  bool shut() const { return closing() || stopped(); }  // no tick is taken
+  // The snapshot REST is asked for in this clock: what stands in the next one, that of the cut.
+  bool rests(const Inputs& in) const { return finished() || (in.abort && state_.mode == Mode::Run && in.busy); }
+  bool settled() const { return state_.settled == kSettleClocks; }
+  // A cause comes in this clock, or a stop is under way or has been.
+  bool caused(const Inputs& in) const { return state_.mode != Mode::Run || causes_of(in) != 0; }
+  // A clock in which nothing moves; from a stop's first one the count begins anew.
+  bool counts(const Inputs& in) const {
+    return (in.at_rest || shut()) && in.quiet && !in.pulses && !in.take && !state_.out.stop;
+  }
   bool made_to_hold() const { return state_.made_to_hold; }  // as of the last clock: by under-run or probe
 
   // A hold, of HOLD or the button, waits for the end of fixed pieces, unless it found nothing moving, or the time base
@@ -95,6 +109,16 @@ class StopControl {
  private:
   bool asked(const Inputs& in) const { return state_.hold || in.button; }
 
+  static std::uint32_t causes_of(const Inputs& in) {
+    return in.step_fault | (in.mismatch ? card_map::field::kFaultTickMismatch : 0) |
+           (in.incomplete ? card_map::field::kFaultPathIncomplete : 0) |
+           (in.missing ? card_map::field::kFaultMissingPeriod : 0) |
+           (in.expired ? card_map::field::kFaultWatchdog : 0) |
+           (in.emergency ? card_map::field::kFaultEmergencyStop : 0) |
+           (in.link_lost ? card_map::field::kFaultLinkLoss : 0) |
+           (in.soft_limit ? card_map::field::kFaultSoftLimit : 0) | bits_of(in.causes);
+  }
+
   static std::uint32_t bits_of(const StopCauses& causes) {
     return (causes.limit ? card_map::field::kFaultLimit : 0) |
            (causes.drive_fault ? card_map::field::kFaultDriveFault : 0) |
@@ -102,9 +126,22 @@ class StopControl {
            (causes.tool_setter ? card_map::field::kFaultToolSetter : 0);
   }
 
-  void halt() {
-    state_.mode = Mode::Stopped;
-    state_.out.cut = true;
+  // Nothing is on its way to the pins any more: the cut follows.
+  bool finished() const { return closing() && settled() && !state_.out.stop; }
+
+  Mode next_mode(const Inputs& in, bool any, bool at_once) const {
+    switch (state_.mode) {
+      case Mode::Run:
+        if (at_once || (any && in.abort)) return Mode::Closing;
+        return any ? Mode::Ramp : Mode::Run;
+      case Mode::Ramp:
+        return at_once || in.at_rest || in.abort ? Mode::Closing : Mode::Ramp;
+      case Mode::Closing:
+        return finished() ? Mode::Stopped : Mode::Closing;
+      case Mode::Stopped:
+        break;
+    }
+    return state_.out.fault == 0 && !any ? Mode::Run : Mode::Stopped;
   }
 
   void set(const Setting& setting) {

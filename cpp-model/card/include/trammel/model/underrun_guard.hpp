@@ -34,6 +34,7 @@ class UnderrunGuard {
     bool cut = false;   // and where there is no rule: nothing is counted
     bool lost = false;  // event: what is queued will be dropped
     bool idle = false;  // nothing runs, is decoded or queued; up to four clocks late
+    bool gone = false;  // the session that wrote what is queued is no more: nothing begins or goes on
     Arrival arrival;
     bool full = false;        // a queue may have no room for the next command
     LoadWord load;            // feed load
@@ -105,8 +106,9 @@ class UnderrunGuard {
     bool covered = false;  // all its ticks have their paths
     bool from_rest_before = false;
     bool decoded_before = false;
-    bool judged = false;  // the next piece is what is judged
-    bool enough = false;  // for it
+    bool judged = false;   // the next piece is what is judged
+    bool doubled = false;  // by twice the stop's ticks
+    bool enough = false;   // for it
     bool waits = false;
     Outputs out;
   };
@@ -122,6 +124,7 @@ class UnderrunGuard {
         break;
       case kFactor:
         state_.judged = state_.decoded_before && follow;
+        state_.doubled = state_.judged && !in.full;
         state_.factor = factor(in.ratio == 0, in.full);
         break;
       case kDecide:
@@ -158,11 +161,11 @@ class UnderrunGuard {
   // Of the state as it stands: what the next round takes and decides.
   bool follows(bool active) const { return !active || (state_.ends && state_.covered); }
   bool next_zero() const { return state_.next_whole && state_.next == 0; }
-  // Of the square, rounded up; none where it stands and no more will come, twice while it holds.
+  // Of the square, rounded up; none where it stands and no more will come, twice while it holds and for what begins.
   std::uint32_t factor(bool standing, bool full) const {
     const std::uint32_t square = (state_.ratio * state_.ratio + 255) / 256;
     if (standing && full) return 0;
-    return state_.out.hold ? 2 * square : square;
+    return state_.out.hold || state_.doubled ? 2 * square : square;
   }
   std::uint64_t product() const { return std::uint64_t{state_.distance} * state_.factor / 256; }
   std::int64_t reserved() const {
@@ -177,19 +180,22 @@ class UnderrunGuard {
     return !state_.at_barrier && !state_.lost && !state_.unknown &&
            (geometry || (state_.flags.feed_short && !state_.at_rest));
   }
-  bool holds(bool is_short, bool follow, bool full) const {
-    return is_short && (state_.out.hold || !follow || (state_.judged && full));
+  bool holds(bool is_short, bool follow, bool full, bool gone) const {
+    if (state_.out.hold && gone) return true;
+    return is_short && (state_.out.hold || (!state_.doubled && (!follow || (state_.judged && full))));
   }
+  // Of the piece that is judged.
+  bool waits_for_more(bool is_short, bool gone) const { return is_short || (gone && state_.ruled); }
   static std::uint32_t in_256ths(std::uint32_t ratio) { return (ratio + 255) / 256; }
 
  private:
   void decide(const Inputs& in, bool follow) {
     const bool is_short = state_.ruled && judged_short();
     const bool held = state_.out.hold;
-    state_.out.hold = holds(is_short, follow, in.full);
+    state_.out.hold = holds(is_short, follow, in.full, in.gone);
     if (state_.out.hold && !held) ++state_.out.underruns;
-    state_.enough = state_.judged && !is_short;
-    state_.waits = state_.judged && !in.active && is_short;
+    state_.enough = state_.judged && !waits_for_more(is_short, in.gone);
+    state_.waits = state_.judged && !in.active && waits_for_more(is_short, in.gone);
     state_.covered = state_.covered || (state_.flags.covered && !state_.lost && !state_.unknown);
   }
 

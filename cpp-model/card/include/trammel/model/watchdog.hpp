@@ -33,6 +33,7 @@ class Watchdog {
   const State& state() const { return state_; }
   State& state() { return state_; }
   bool expired() const { return state_.expired; }
+  bool running() const { return state_.left != 0; }
 
  private:
   State state_;

@@ -12,11 +12,19 @@ namespace trammel::skip {
 void clock(model::CoreModel& core, const model::CoreModel::Inputs& in);
 void clock(model::CardModel& card, const model::CardModel::Inputs& in);
 
+// Levels at the card's inputs, and at the emergency stop's pin.
+struct Pins {
+  // NOLINTNEXTLINE: the card's inputs are most of its pins
+  Pins(std::uint32_t levels = 0, bool emergency = false) : inputs(levels), emergency_stop(emergency) {}
+  std::uint32_t inputs;
+  bool emergency_stop;
+};
+
 // Edges at once without requests, `limit` at most, with these levels at the inputs; 0 where it is not worth it.
-std::uint64_t jump(model::CoreModel& core, std::uint64_t limit, std::uint16_t pins = 0);
+std::uint64_t jump(model::CoreModel& core, std::uint64_t limit, const Pins& pins = {});
 
 // `clocks` edges without requests or bus traffic, with these levels at the inputs.
-void run(model::CoreModel& core, std::uint64_t clocks, std::uint16_t pins = 0);
-void run(model::CardModel& card, std::uint64_t clocks, std::uint16_t pins = 0);
+void run(model::CoreModel& core, std::uint64_t clocks, const Pins& pins = {});
+void run(model::CardModel& card, std::uint64_t clocks, const Pins& pins = {});
 
 }  // namespace trammel::skip

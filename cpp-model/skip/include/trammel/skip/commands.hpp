@@ -22,20 +22,38 @@ inline std::uint64_t horizon(const model::Axi4LitePort& port, const model::Axi4L
 }
 inline void advance(model::Axi4LitePort&, const model::Axi4LitePort::Inputs&, std::uint64_t) {}
 
+// Units of LINK_TIMEOUT that pass in so many clocks from `time` on.
+inline std::uint64_t link_units(std::uint64_t time, std::uint64_t clocks) {
+  // The unit at time t shows with (t - 2) a multiple of a unit.
+  return ((time + clocks - 3) >> model::LinkWatch::kUnitBits) - ((time - 3) >> model::LinkWatch::kUnitBits);
+}
+// Clocks before the one in which the link is lost.
+inline std::uint64_t horizon(const model::LinkWatch& link, std::uint64_t time) {
+  if (!link.watches()) return kForever;
+  const std::uint64_t units = ((time - 3) >> model::LinkWatch::kUnitBits) + 1 + link.state().left;
+  return (units << model::LinkWatch::kUnitBits) + 2 - time;
+}
+inline void advance(model::LinkWatch& link, std::uint64_t time, std::uint64_t clocks) {
+  if (link.watches()) link.state().left -= static_cast<std::uint32_t>(link_units(time, clocks));
+}
+
 // Only the time goes on.
 inline std::uint64_t horizon(const model::RegisterFile& registers, const model::RegisterFile::Inputs& in) {
   const model::RegisterFile::State& s = registers.state();
   const model::RegisterFile::Outputs& out = s.out;
-  if (s.stage != model::RegisterFile::Stage::Idle || in.request || in.checker_refuse || in.stop || in.probe || in.mark)
+  if (s.stage != model::RegisterFile::Stage::Idle || in.request || in.checker_refuse || in.stop || in.rest ||
+      in.probe || in.mark || in.captures != 0)
     return 0;
   const bool events = out.ack || out.setting.set || out.stream_write || out.abort || out.probe_clear || out.flush ||
                       out.start || out.strobe || out.clear_fault != 0 || s.snapshot_asked;
   const bool loads = s.loading || s.loader_read.valid || out.loader_valid;
   if (events || loads || s.snapshot.busy() || s.snapshot.waits() || out.irq != registers.interrupt(in)) return 0;
   const std::uint32_t read = s.stored[in.loader_address];
-  return forever_if(s.loader_read.data == read && out.loader_data == read);
+  if (s.loader_read.data != read || out.loader_data != read) return 0;
+  return horizon(s.link, s.time);
 }
 inline void advance(model::RegisterFile& registers, const model::RegisterFile::Inputs&, std::uint64_t clocks) {
+  advance(registers.state().link, registers.state().time, clocks);
   registers.state().time += clocks;
 }
 

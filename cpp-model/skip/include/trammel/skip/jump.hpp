@@ -67,6 +67,7 @@ class Jump {
   bool may_step(unsigned axis, std::int64_t arrival, model::StepShaper& after, std::int64_t& served) const;
   void step(unsigned axis, std::uint64_t tick, std::int64_t arrival, std::int64_t served);
   void report_until(std::int64_t edge);
+  void look_at_limits(std::int64_t edge, std::uint8_t counts, std::uint8_t back);
   void commit();
   unsigned commit_generator();
   void commit_axis(unsigned axis, std::uint64_t ticks);
@@ -92,6 +93,7 @@ class Jump {
   std::uint64_t made_ = 0;
   std::int64_t edge_ = 0;
 
+  std::int64_t looked_until_ = 0;  // the edge that the soft limits stand at
   bool moved_ = false;
   std::int64_t next_report_ = INT64_MAX;  // not later than the first report due
   unsigned axes_;

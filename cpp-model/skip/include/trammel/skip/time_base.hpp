@@ -17,12 +17,12 @@ class TimeBaseAhead {
 
   explicit TimeBaseAhead(const model::TimeBase& block) : block_(block), s_(block.state()) {}
 
-  // Clocks that the functions below can go, while `hold` and the class stay and nothing is set: all of them when the
+  // Clocks that the functions below can go, while what `in` has stays and nothing is set: all of them when the
   // ratio has arrived; while it slews those before it arrives, or comes into another 256th (rounded up; 0 is one by
   // itself), which the under-run guard sees. 0 where it does neither yet.
-  std::uint64_t clocks_ahead(bool hold, std::uint8_t piece_class = card_map::constant::kClassFeed) const {
-    if (s_.goal != block_.goal(hold, piece_class)) return 0;
-    if (s_.next_ratio != (s_.turn == 1 || s_.turn == 2 ? s_.ratio : model::TimeBase::moved(s_.ratio, s_.goal, s_.slew)))
+  std::uint64_t clocks_ahead(const model::TimeBase::Inputs& in) const {
+    if (s_.goal != block_.goal(in.hold, in.piece_class) || s_.step != block_.step(in.slew_shift)) return 0;
+    if (s_.next_ratio != (s_.turn == 1 || s_.turn == 2 ? s_.ratio : model::TimeBase::moved(s_.ratio, s_.goal, s_.step)))
       return 0;
     return slews() ? slewing_clocks() : kNever;
   }
@@ -51,12 +51,12 @@ class TimeBaseAhead {
       s.outputs.ratio = s.ratio >> 12;
     }
     s.turn = static_cast<std::uint32_t>((s_.turn + clocks) % model::TimeBase::kUpdate);
-    s.next_ratio = s.turn == 1 || s.turn == 2 ? s.ratio : model::TimeBase::moved(s.ratio, s.goal, s.slew);
+    s.next_ratio = s.turn == 1 || s.turn == 2 ? s.ratio : model::TimeBase::moved(s.ratio, s.goal, s.step);
     return s;
   }
 
  private:
-  bool slews() const { return s_.ratio != s_.goal && s_.slew != 0; }
+  bool slews() const { return s_.ratio != s_.goal && s_.step != 0; }
   bool falls() const { return s_.goal < s_.ratio; }
   // Clocks that add the ratio as it stands.
   std::uint64_t before_update() const { return s_.turn == 0 ? 1 : model::TimeBase::kUpdate + 1 - s_.turn; }
@@ -66,13 +66,13 @@ class TimeBaseAhead {
     const std::uint32_t first = last == 0 ? 0 : last - 255;
     const std::uint32_t within = falls() ? s_.ratio - (first << 12) : ((last + 1) << 12) - 1 - s_.ratio;
     const std::uint32_t to_goal = falls() ? s_.ratio - s_.goal : s_.goal - s_.ratio;
-    const std::uint64_t updates = (within < to_goal ? within : to_goal) / s_.slew;
+    const std::uint64_t updates = (within < to_goal ? within : to_goal) / s_.step;
     return before_update() + model::TimeBase::kUpdate * updates - 1;
   }
   // The ratio after so many updates, none of which arrives.
   std::uint32_t slewed(std::uint64_t updates) const {
     if (!slews()) return s_.ratio;
-    const auto way = static_cast<std::uint32_t>(updates * s_.slew);
+    const auto way = static_cast<std::uint32_t>(updates * s_.step);
     return falls() ? s_.ratio - way : s_.ratio + way;
   }
   // What the next `clocks` clocks add to the phase.
@@ -80,9 +80,9 @@ class TimeBaseAhead {
     if (!slews() || clocks <= before_update()) return clocks * s_.outputs.ratio;
     const std::uint64_t later = clocks - before_update();
     const std::uint64_t updates = later / model::TimeBase::kUpdate;
-    // Of s_.ratio -+ k * s_.slew, k = 1 .. updates, counted from the lowest, in 2^-16.
+    // Of s_.ratio -+ k * s_.step, k = 1 .. updates, counted from the lowest, in 2^-16.
     const std::uint64_t lowest = updates == 0 ? 0 : falls() ? slewed(updates) : slewed(1);
-    const std::uint64_t whole = sum_of_quotients(updates, std::uint64_t{1} << 12, s_.slew, lowest);
+    const std::uint64_t whole = sum_of_quotients(updates, std::uint64_t{1} << 12, s_.step, lowest);
     const std::uint64_t rest = later % model::TimeBase::kUpdate;
     return before_update() * s_.outputs.ratio + model::TimeBase::kUpdate * whole +
            (rest == 0 ? 0 : rest * (slewed(updates + 1) >> 12));
@@ -129,7 +129,8 @@ inline std::uint64_t horizon(const model::TimeBase& block, const model::TimeBase
   const model::TimeBase::State& s = block.state();
   const bool arrived = s.ratio == s.goal && s.next_ratio == s.goal && s.outputs.ratio == s.goal >> 12;
   const bool even = s.ratio == 0 ? !s.outputs.enable : s.ratio == 1U << 28 && s.outputs.enable;
-  return forever_if(!in.setting.set && arrived && even && s.goal == block.goal(in.hold, in.piece_class));
+  const bool steady = s.goal == block.goal(in.hold, in.piece_class) && s.step == block.step(in.slew_shift);
+  return forever_if(!in.setting.set && arrived && even && steady);
 }
 inline void advance(model::TimeBase& block, const model::TimeBase::Inputs&, std::uint64_t clocks) {
   block.state() = TimeBaseAhead(block).after(clocks);

@@ -19,14 +19,17 @@ inline bool only_counts_move(const model::UnderrunGuard& block, const model::Und
   if (in.lost || in.cut || in.swap || in.load.valid || in.arrival.any() || s.pending.any) return false;
   if (s.due || (follow && (s.distance != s.next || s.ruled == block.next_zero()))) return false;
   if (s.decoded_before != in.decoded || s.from_rest_before != (!in.active || s.ends)) return false;
-  if (s.judged != (in.decoded && follow) || (s.flags.covered && !s.covered && !s.unknown)) return false;
+  if (s.judged != (in.decoded && follow) || s.doubled != (s.judged && !in.full) ||
+      (s.flags.covered && !s.covered && !s.unknown))
+    return false;
   if ((!s.out.hold && s.ratio != model::UnderrunGuard::in_256ths(in.ratio)) ||
       s.factor != block.factor(in.ratio == 0, in.full))
     return false;
   if (s.product != block.product() || !(s.flags == block.compared(s.owed))) return false;
   const bool is_short = s.ruled && block.judged_short();
-  return s.out.hold == block.holds(is_short, follow, in.full) && s.enough == (s.judged && !is_short) &&
-         s.waits == (s.judged && !in.active && is_short);
+  const bool waits = block.waits_for_more(is_short, in.gone);
+  return s.out.hold == block.holds(is_short, follow, in.full, in.gone) && s.enough == (s.judged && !waits) &&
+         s.waits == (s.judged && !in.active && waits);
 }
 inline std::uint64_t ticks_to_change(const model::UnderrunGuard& block) {
   const model::UnderrunGuard::State& s = block.state();

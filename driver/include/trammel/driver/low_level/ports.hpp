@@ -13,15 +13,17 @@ class Ports {
   // Both must outlive the object.
   Ports(Registers& registers, const Identification& card) : registers_(registers), card_(card) {}
 
-  std::uint16_t inputs();
+  std::uint32_t inputs();
   std::uint16_t outputs();
   unsigned inputs_present();
   unsigned outputs_present();
-  void set_input_polarity(std::uint16_t inverted);
+  void set_input_polarity(std::uint32_t inverted);
   void set_output_safe(std::uint16_t levels, std::uint16_t change);
+  void set_output_safe_cause(std::uint16_t levels, std::uint16_t change);
 
  private:
-  unsigned pins_present(std::uint32_t mask, std::uint32_t shift, const char* pins);
+  // `most`: bits of INPUTS or OUTPUTS.
+  unsigned pins_present(std::uint32_t mask, std::uint32_t shift, std::uint32_t most, const char* pins);
 
   Registers& registers_;
   const Identification& card_;

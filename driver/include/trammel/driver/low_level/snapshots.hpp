@@ -19,9 +19,15 @@ class Snapshots {
   Snapshot probe();
   std::uint32_t marks();
   void clear_probe();
+  Rest rest();
+  // Of a capture that is valid: it is written already.
+  Snapshot capture(card_map::Area area) { return read_without_waiting(area); }
 
  private:
+  // Waits until the snapshot under way has been written.
+  void wait_until_written();
   Snapshot read_area(card_map::Area area);
+  Snapshot read_without_waiting(card_map::Area area);
 
   Registers& registers_;
   const Identification& card_;

@@ -1,8 +1,10 @@
-// The card's watchdog over this program: its time, and writing it anew. What Card says of it holds here. Errors and
-// thread-safety: as of Registers.
+// The card's watchdog over this program, and over its link (LINK_TIMEOUT, from map 3.5 on) with the same time: writing
+// them anew. What Card says of them holds here. Errors and thread-safety: as of Registers.
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 
 #include "trammel/driver/identification.hpp"
@@ -19,8 +21,10 @@ class Watchdog {
   // The program has looked at the card: the time starts anew where a quarter of it has passed on the host, or with the
   // kLooks-th look, since the time of a simulated card may pass faster than the host's.
   void look();
-  // The access that starts the time anew, or keeps the watchdog off: this program is there.
-  Access restart() const;
+  // The accesses that start the times anew, or keep both off: this program is there. Those that the card has, first.
+  static constexpr std::size_t kRestarts = 2;
+  std::array<Access, kRestarts> restart() const;
+  std::size_t restarts() const;  // how many these are
 
  private:
   void write();

@@ -61,12 +61,8 @@ class Reader {
   bool next(Motion& motion);
   const std::optional<Error>& error() const;
 
-  // Before the first next(): reads up to line `line`, which comes next, for modes, position and outputs alone (a first
-  // motion kOutput sets the outputs that these lines would leave). False, with an error, at the first error, and if the
-  // program ends before that line.
-  bool skip_to(std::size_t line);
-  // Where the motions read so far end, machine coordinates.
-  const Coordinates& position() const;
+  // Before the first next(): a program that ends before line `line` is an error.
+  void must_reach(std::size_t line);
 
   // Words without effect yet and how often, so far, such as {"M3", 2}.
   const std::map<std::string, std::size_t>& accepted() const;

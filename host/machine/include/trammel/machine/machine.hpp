@@ -45,9 +45,14 @@ struct MachineAxis {
   // A second motor on the letter (gantry): its pins are those of a further axis of the card and make the same steps.
   bool second_motor = false;
   bool second_inverted = false;  // its direction
+  // The place of its motors outlives an immediate stop and disabled drives (KEEPS_PLACE), since its mechanism cannot
+  // lose steps by them. A card outside needs map 3.3 for it.
+  bool keeps_place = false;
   // Soft limits, machine coordinates, min < max; infinite where none is given. Nothing checks them here.
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
+  bool endless = false;                              // a rotary axis without soft limits, which says so
+  double overtravel = 0;                             // beyond a limit switch, before something hits; >= 0
   double home = 0;                                   // machine coordinate that G28 goes to
   double second_home = 0;                            // and G30
   std::array<double, kCoordinateSystems> offsets{};  // of G54 .. G59.3, machine coordinates
@@ -72,9 +77,27 @@ struct MachineOutputs {
   std::uint16_t m7 = 0;  // mist
   std::uint16_t m8 = 0;  // flood
 
+  // Switched off by the card itself.
+  std::uint16_t off_at_cause = 0;  // in the clock of a fault, and at an abort: a laser
+  std::uint16_t off_at_rest = 0;   // when the machine has come to rest after a fault, and at an abort
+  // Outputs that follow the drives and the card, and the times of their sequence.
+  std::uint16_t enable = 0;
+  std::uint16_t brake = 0;
+  std::uint16_t charge_pump = 0;
+  std::uint16_t healthy = 0;
+  double brake_release_ms = 0;  // from the enable of the drives to the release of the brake
+  double enable_delay_ms = 0;   // from there to the first step
+  double stop_delay_ms = 0;     // after the last step, when the drives are to be disabled
+  double brake_set_ms = 0;      // from the brake's setting to the disable
+  double enable_idle_s = 0;     // without motion, until the drives are disabled; 0: never
+  double charge_pump_hz = 1000;
+  std::uint32_t disable_on = 0;  // faults that disable the drives at rest; bits of FAULT
+
   std::uint16_t spindle() const { return m3 | m4; }
   std::uint16_t coolant() const { return m7 | m8; }
-  std::uint16_t all() const { return spindle() | coolant(); }
+  std::uint16_t of_words() const { return spindle() | coolant(); }
+  std::uint16_t roles() const { return enable | brake | charge_pump | healthy; }
+  std::uint16_t all() const { return of_words() | off_at_cause | off_at_rest | roles(); }
 };
 
 // How long a tool is; the table [tools.<number>].
@@ -84,11 +107,38 @@ struct Tool {
 };
 inline constexpr unsigned kLargestTool = 999'999;
 
-inline constexpr unsigned kMaxInputs = 16;
+inline constexpr unsigned kMaxInputs = 32;
 // The card's input that a probe is at; the table [probe].
 struct Probe {
   std::optional<unsigned> input;
   bool touched_level = true;  // of the input, when it touches
+};
+
+// Inputs of the card that have a role; the table [inputs].
+struct InputRole {
+  std::uint32_t inputs = 0;      // bit n: input n; the role is active while one of them is
+  std::optional<bool> closed;    // normally; without it limits are, and others are not
+  std::optional<double> filter;  // ms, 0 .. 20
+  std::string place;             // where it stands, for messages: "file:line: "
+};
+enum class OnLimit { kAutomatic, kRamp, kImmediate };
+enum class OnInput { kNothing, kRamp, kImmediate };
+struct MachineInputs {
+  // By the card's numbers (driver::Role); those of an axis by its index.
+  std::array<InputRole, 64> roles{};
+  double filter = 1;          // ms, of inputs whose roles name none
+  bool closed_level = false;  // of the pin, while a switch at it is closed: 0 with a pull-up and a switch to ground
+  OnLimit on_limit = OnLimit::kAutomatic;
+  std::string on_limit_place;
+  OnInput on_drive_fault = OnInput::kRamp;
+  OnInput on_probe = OnInput::kNothing;  // outside probing
+  OnInput on_tool_setter = OnInput::kRamp;
+
+  std::uint32_t used() const;  // inputs that have a role
+  // Those that read inverted: where the active level is 0.
+  std::uint32_t inverted() const;
+  // Of an input, ms: the longest that one of its roles names.
+  double filter_of(unsigned input) const;
 };
 
 // How the card's axes move the machine's (trammel/kinematics/kinematics.hpp): the table [kinematics].
@@ -109,12 +159,14 @@ struct MachineKinematics {
 
 struct Machine {
   std::uint32_t clock_hz = 0;     // kSlowestClock .. kFastestClock
+  bool require_home = false;      // a card outside moves an axis only when it was homed
   std::vector<MachineAxis> axes;  // in the card's order
   MachineKinematics kinematics;
   MotionSettings motion;
   MachineOutputs outputs;
   std::vector<Tool> tools;
   Probe probe;
+  MachineInputs inputs;
 
   // Nothing where the machine file has no such tool.
   const Tool* tool(unsigned number) const;
@@ -125,6 +177,23 @@ struct Machine {
   // Axes of the card that it takes, at most 8.
   std::size_t motors() const { return axes.size() + second_motors().size(); }
 };
+
+// Seconds that a hold takes from full speed to a stop: v / (a / 2) of the axis where that is longest, so that a hold's
+// deceleration is half of every axis's acceleration at most; v / (h a) where h of it is kept for holds (hold_reserve).
+double hold_seconds(const Machine& machine);
+
+// The share of each axis's acceleration that a hold from full speed may take: 1/2, or hold_reserve.
+double hold_share(const Machine& machine);
+
+// How limits stop the machine. On a ramp only where each axis with a limit declares an overtravel of at least
+// max_velocity * (filter + a scan + half of hold_seconds()): the way that a ramp takes after the switch. Else at once.
+struct LimitStop {
+  bool ramps = false;
+  // By axis: steps that the card may count beyond the switch on a ramp, 0 .. 65535. It counts behind the filter, so the
+  // way at max_velocity during the filter and a scan is taken off.
+  std::array<std::uint32_t, card_map::kMaxAxes> overtravel{};
+};
+LimitStop limit_stop(const Machine& machine);
 
 // Each throws MachineError for the first missing, unknown, non-numeric or out-of-range entry, and for a text of more
 // than kLongestMachineText bytes. A file may be a pipe, but no other device.

@@ -51,6 +51,21 @@ struct ExactArc {
   double sweep = 0;        // radians, > 0, with all turns
 };
 
+// How a motion sets out, as the program has it.
+struct Heading {
+  Direction entry{};
+  double length = 0;    // mm
+  double speed = 0;     // a second, the most in it
+  bool linear = false;  // X, Y or Z moves
+};
+
+// The programmed motions without a pulse before a block, whose way the block has too.
+struct Detour {
+  double speed =
+      0;  // a second, the most past the corners from the first one to the block; 0: no such motions, or a stop
+  Heading first;
+};
+
 // Lengths, directions and limits are those of the path before rounding, along it, in mm and seconds; for moves of
 // rotary axes alone read degrees. A path with X, Y or Z has their length, one without that of all axes; where X, Y and
 // Z have less than two pulses, those of an axis beside them count if they are more. Of the fields that a kind of
@@ -70,6 +85,7 @@ struct Block {
   double distance = 0;                   // mm, a blend's from the corner
   Direction entry{};                     // where it begins
   Direction exit{};                      // where it ends
+  Detour detour;                         // before it
   double length = 0;                     // mm
   double curvature = 0;                  // 1/mm, of an arc; below 0 where it runs clockwise
   double pulses_per_mm = 0;              // of path, of the joint that has most

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "trammel/gcode/reader.hpp"
@@ -19,18 +20,21 @@
 
 namespace trammel::planner {
 
+class Detours;
+
 class BlockBuilder {
  public:
   // `start`: where the machine stands, as the reader was told. Reader and machine must outlive the builder. Throws
   // driver::ArgumentError for step times that the card cannot keep.
   BlockBuilder(gcode::Reader& reader, const machine::Machine& machine, const CardLimits& card,
                const gcode::Coordinates& start = {});
+  ~BlockBuilder();
 
   // Outputs that are switched go with the next block; of several before it the last one wins, output by output.
   //
   // The next block; false after the one of kEnd, and at the first thing that reader, machine or card does not allow:
-  // then error() says what. A motion
-  // without a step gives no block: the line after it begins where it began.
+  // then error() says what. A motion without a step gives no block: the line after it begins where it began, and has
+  // its corners as Block::detour.
   bool next(Block& block);
   const std::optional<gcode::Error>& error() const { return error_; }
 
@@ -77,6 +81,8 @@ class BlockBuilder {
   void switch_outputs();
   bool set_targets(Block& block);
   bool build_line(Block& block);
+  Heading heading_of(const Block& block) const;
+  void follow_detour(Block& block, bool any);
   bool build_arc(Block& block);
   bool build_generator_arc(Block& block, const kinematics::PlaneMap& plane) const;
   bool build_accumulator_arc(Block& block, const kinematics::PlaneMap& plane);
@@ -113,8 +119,9 @@ class BlockBuilder {
   PathMotion motion_;
   Pulses start_{};
   Pulses here_{};
-  gcode::Coordinates exact_{};     // where the program is, unrounded
-  gcode::Coordinates anchor_{};    // where the last block ended, unrounded
+  gcode::Coordinates exact_{};   // where the program is, unrounded
+  gcode::Coordinates anchor_{};  // where the last block ended, unrounded
+  std::unique_ptr<Detours> detours_;
   driver::OutputCommand outputs_;  // for the next block
   Probe probe_ = Probe::kNone;
   std::optional<gcode::Error> error_;

@@ -18,6 +18,7 @@ struct CardLimits {
   std::uint32_t feed_depth = 2560;
   bool eight_directions = false;  // arcs on the accumulator may go in 8 directions, and shall
   unsigned outputs = 0;           // that commands on the path can switch, up to 16; 0: it has no such commands
+  bool slew_shifts = false;       // a piece may say that the time base slews faster (FeedCommand::slew_shift)
 };
 
 // Where arcs go: to what is there, the first of these that can; helices to the generator or out as lines.
@@ -30,10 +31,13 @@ CardLimits with_arcs_by(CardLimits card, ArcsBy arcs);
 // Of outputs it knows whether there are any, not how many: run::configure() asks the card for that.
 CardLimits limits_of(const driver::Identification& card);
 
-// Seconds that a hold takes from full speed to a stop: v / (a / 2) of the axis where that is longest, so that a hold's
-// deceleration is half of every axis's acceleration at most; v / (h a) where h of it is kept for holds (hold_reserve).
-// The card's slew follows from it.
-double hold_seconds(const machine::Machine& machine);
+// The card's slew follows from them.
+using machine::hold_seconds;
+using machine::hold_share;
+
+// The same in clocks, as the card's SLEW has it: a whole number, so the hold may take longer by up to a part in SLEW.
+// At most driver::kSlowestSlew. `clock_hz` > 0.
+double hold_clocks(const machine::Machine& machine, double clock_hz);
 
 // An axis's settings on the card: step times rounded up to whole nanoseconds.
 driver::AxisSettings settings_of(const machine::MachineAxis& axis);

@@ -22,6 +22,9 @@
 
 namespace trammel::planner {
 
+// Raised where the same program, machine and settings give other commands than before.
+inline constexpr unsigned kPlanVersion = 1;
+
 enum class SpeedProfile {
   kByMachine,  // S-curve where every axis has a max_jerk, else trapezoid
   kTrapezoid,  // acceleration jumps

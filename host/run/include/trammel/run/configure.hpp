@@ -9,9 +9,16 @@
 namespace trammel::run {
 
 // Gives each of the machine's motors its step times and direction, and the time base its slew (planner::hold_seconds(),
-// or the slowest that the card has). The card must stand. Throws driver::Error as driver::Card::configure_axis() does,
-// and driver::ArgumentError where the machine names an output that the card lacks.
+// or the slowest that the card has); set_keeps_place() where an axis keeps its place. The card must stand. Where the
+// machine gives inputs a role, also polarity, filters, roles and stops; else the card keeps those that it has. Throws
+// driver::Error as driver::Card::configure_axis() does, and driver::ArgumentError where the machine names an output or
+// an input that the card lacks.
 void configure(driver::Card& card, const machine::Machine& machine);
+
+// Which of the machine's motors keep their place (KEEPS_PLACE); the card's other axes stay as they are. On a card that
+// another machine file has set up before, this ends what that one said. Throws driver::ArgumentError where an axis
+// keeps its place and the card's map is before 3.3.
+void set_keeps_place(driver::Card& card, const machine::Machine& machine);
 
 // For driver::WatchdogScope; 0: the machine has none.
 std::chrono::nanoseconds watchdog_time(const machine::MotionSettings& motion);

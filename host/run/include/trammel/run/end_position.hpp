@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "trammel/driver/card_state.hpp"
 #include "trammel/gcode/motion.hpp"
 #include "trammel/machine/machine.hpp"
 
@@ -21,9 +20,10 @@ struct EndPosition {
 // `pulses`: one for each motor of the machine.
 EndPosition end_position(const machine::Machine& machine, const std::vector<std::int64_t>& pulses);
 
-// By the card's counters, which began at 0 where the machine stood at the card's reset: machine zero is there.
-gcode::Coordinates standing_at(const machine::Machine& machine, const driver::Snapshot& now);
-// "X 10.0000 Y 0.0000", of all axes, mm (degrees).
+// "mm", or "degrees" for a rotary axis.
+const char* unit_of(char letter);
+
+// "X 10.0000 Y 0.0000 mm", of all axes; "X 10.0000 mm A 30.0000 degrees" where some are rotary.
 std::string place_text(const gcode::Coordinates& place, const machine::Machine& machine);
 
 }  // namespace trammel::run

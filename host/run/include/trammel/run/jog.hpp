@@ -43,7 +43,8 @@ class Jog {
   void stop();
 
   // Whether it is under way still; sends what is to come next, so it must be called several times in kAheadSeconds.
-  // When it is over the position is known. Throws driver::FaultError, and what driver::Stream::put() throws.
+  // When it is over the position is known. Throws driver::FaultError, what driver::Stream::put() throws, and, at rest
+  // with the position known, driver::StoppedError where somebody has asked the card for a stop.
   bool moving();
   // Until it is over.
   void wait();

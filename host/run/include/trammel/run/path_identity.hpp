@@ -19,20 +19,26 @@ class PathIdentity final : public driver::StepSink {
  public:
   void pin_step(const driver::PinStep& /*step*/) override {}
   void path_step(const driver::PathStep& step) override {
-    add(step.command);
-    add(step.tick << 8 | static_cast<std::uint64_t>(step.axis) << 1 | (step.direction < 0 ? 1U : 0U));
+    const std::uint64_t word =
+        step.tick << 8 | static_cast<std::uint64_t>(step.axis) << 1 | (step.direction < 0 ? 1U : 0U);
+    add(hash_, step.command);
+    add(hash_, word);
+    add(unnumbered_, word);
     ++count_;
   }
   std::uint64_t count() const { return count_; }
   std::string text() const;  // 16 hexadecimal digits
+  // Likewise without the commands' numbers, which begin anew where a run goes on.
+  std::string unnumbered_text() const;
 
  private:
-  void add(std::uint64_t word) {
-    hash_ = (hash_ ^ word) * 0x9E3779B97F4A7C15U;
-    hash_ ^= hash_ >> 32;
+  static void add(std::uint64_t& hash, std::uint64_t word) {
+    hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
+    hash ^= hash >> 32;
   }
 
   std::uint64_t hash_ = 0;
+  std::uint64_t unnumbered_ = 0;
   std::uint64_t count_ = 0;
 };
 

@@ -86,6 +86,13 @@ struct Plan {
   std::map<std::string, std::size_t> accepted;    // words without effect yet and how often
   std::uint64_t probes = 0;                       // taken to end at their targets
   std::uint64_t lines_on_probes = 0;              // that depend on where they end: checked again when reached
+  // Of all commands of the program, those before the run's first one too: equal plans have equal ones; 16 digits.
+  std::string identity;
+  // Where the run begins amid the program.
+  std::uint64_t skipped = 0;       // commands before its first one that count in GEOMETRY_BEGUN
+  std::uint64_t ticks_done = 0;    // feed ticks of its first path that are done
+  std::size_t begin_line = 1;      // of the program
+  driver::OutputCommand restored;  // set before anything else
 };
 
 // What a probe of the program has met.
@@ -104,6 +111,8 @@ struct Outcome {
   std::map<int, double> parameters;         // of the program at its end, those that are not 0
   std::optional<std::uint32_t> under_runs;  // holds for want of commands; none where the card has no such hold
 };
+
+class Pipeline;
 
 class Runner {
  public:
@@ -126,9 +135,15 @@ class Runner {
   Outcome stream(driver::Card& card);
   // Of the last pass.
   const Plan& last_plan() const { return plan_; }
+  // The card holds since this run begins amid the program, in its silence: the run ends this hold with its first piece
+  // that moves, and nobody else does. For observers.
+  bool begins() const { return begins_; }
+  // As RunSettings::stands_at, for what comes next.
+  void stands_at(const planner::Pulses& position) { settings_.stands_at = position; }
 
  private:
   void require_planned_for(driver::Card& card) const;
+  void prepare(driver::Card& card, const Pipeline& pipeline) const;
   Outcome outcome(driver::Card& card, const driver::Snapshot& before, const planner::Pulses& end) const;
 
   ProgramLines lines_;
@@ -137,6 +152,7 @@ class Runner {
   RunSettings settings_;
   std::vector<Observer*> observers_;
   Plan plan_;
+  bool begins_ = false;
 };
 
 }  // namespace trammel::run

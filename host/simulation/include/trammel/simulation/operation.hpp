@@ -7,14 +7,15 @@
 
 namespace trammel::simulation {
 
-// At a time of the card's: a new override, a hold, its end, or a new level at an input.
+// At a time of the card's: a new override, a hold, its end, a new level at an input, or the emergency stop pressed or
+// released.
 struct OperatorEvent {
-  enum class Kind { kOverride, kHold, kResume, kInput };
+  enum class Kind { kOverride, kHold, kResume, kInput, kEmergencyStop };
   Kind kind = Kind::kOverride;
   double seconds = 0;  // of card time from reset, 0 or more; asked for
   double percent = 0;  // kOverride: of the planned speed, 0 to RunOptions::max_percent
-  unsigned input = 0;  // kInput: 0 to sim::kPins - 1
-  bool level = false;  // kInput
+  unsigned input = 0;  // kInput: 0 to sim::kInputs - 1
+  bool level = false;  // kInput; kEmergencyStop: pressed
 };
 
 struct Operation {

@@ -67,7 +67,7 @@ struct RunResult {
   std::optional<double> achieved_feed;   // mm/min
   std::vector<MadeEvent> events;         // that the card has seen
   std::vector<OutputResult> outputs;     // that the machine file names
-  std::optional<std::uint16_t> inputs;   // as they stand at the end, where they are scripted; bit n: input n
+  std::optional<std::uint32_t> inputs;   // as they stand at the end, where they are scripted; bit n: input n
   double wall_seconds = 0;               // since the SimulatedRun was made
   run::Plot plot;                        // filled when asked for
 };

@@ -12,7 +12,7 @@ namespace trammel::card_map {
 
 inline constexpr std::size_t kMaxAxes = 8;
 inline constexpr std::uint32_t kMagicValue = 0x54524D4C;
-inline constexpr std::uint32_t kMapVersionValue = 0x00030002;
+inline constexpr std::uint32_t kMapVersionValue = 0x00030005;
 inline constexpr std::uint32_t kCommandsVersionValue = 3;
 inline constexpr std::uint32_t kWindowBytes = 4096;
 
@@ -46,8 +46,11 @@ inline constexpr std::uint32_t kPathDelayClocks = 3;     // Clocks from a feed t
 inline constexpr std::uint32_t kAnswerClocks = 400;  // Clocks within which every access is answered with up to 7 axes
 inline constexpr std::uint32_t kAnswerClocks8Axes = 600;  // Clocks within which every access is answered with 8 axes
 inline constexpr std::uint32_t kPieceSilent = 4;          // Flag of FEED beside its class: the ticks make no steps
-inline constexpr std::uint32_t kClassFeed = 0;            // Class of a feed piece: what the feed override slows down
-inline constexpr std::uint32_t kClassRapid = 1;  // Class of a feed piece: rapid positioning, with a ratio of its own
+inline constexpr std::uint32_t kPieceDoubling =
+    8;  // Flags of FEED beside these: so much for each doubling of SLEW while the piece is in force
+inline constexpr std::uint32_t kMaxSlewShift = 3;  // The most doublings of SLEW that a piece may have
+inline constexpr std::uint32_t kClassFeed = 0;     // Class of a feed piece: what the feed override slows down
+inline constexpr std::uint32_t kClassRapid = 1;    // Class of a feed piece: rapid positioning, with a ratio of its own
 inline constexpr std::uint32_t kClassFixed = 2;  // Class of a feed piece: threading and the like, which a hold lets end
 }  // namespace constant
 
@@ -65,6 +68,10 @@ inline constexpr std::uint32_t kStreaming = 8;       // Position streaming.
 inline constexpr std::uint32_t kClasses = 9;         // Classes of pieces: ratios for rapid and fixed.
 inline constexpr std::uint32_t kWatermarks = 10;     // Watermarks of the queues.
 inline constexpr std::uint32_t kMachineInputs = 11;  // Inputs with filters and roles; limits, drive faults, feed hold.
+inline constexpr std::uint32_t kCaptures = 12;       // Captures of inputs' edges.
+inline constexpr std::uint32_t kEmergencyStop = 13;  // A pin for the emergency stop.
+inline constexpr std::uint32_t kEnables = 14;     // Roles of outputs: drive enable, brake, charge pump, card healthy.
+inline constexpr std::uint32_t kSoftLimits = 15;  // Soft limits: comparators of the position at both ends of each axis.
 }  // namespace engine
 
 // The same as masks.
@@ -81,10 +88,15 @@ inline constexpr std::uint32_t kStreaming = 0x100;
 inline constexpr std::uint32_t kClasses = 0x200;
 inline constexpr std::uint32_t kWatermarks = 0x400;
 inline constexpr std::uint32_t kMachineInputs = 0x800;
+inline constexpr std::uint32_t kCaptures = 0x1000;
+inline constexpr std::uint32_t kEmergencyStop = 0x2000;
+inline constexpr std::uint32_t kEnables = 0x4000;
+inline constexpr std::uint32_t kSoftLimits = 0x8000;
 }  // namespace engines
-inline constexpr std::array<std::string_view, 12> kEngineNames{
-    "lines",         "accumulator",   "accumulator_8", "arc_generator", "jerk",       "direct_mode",
-    "underrun_hold", "path_commands", "streaming",     "classes",       "watermarks", "machine_inputs"};
+inline constexpr std::array<std::string_view, 16> kEngineNames{
+    "lines",         "accumulator",    "accumulator_8", "arc_generator", "jerk",       "direct_mode",
+    "underrun_hold", "path_commands",  "streaming",     "classes",       "watermarks", "machine_inputs",
+    "captures",      "emergency_stop", "enables",       "soft_limits"};
 
 // What a register does on an access; a write to Constant, Live and Snapshot is refused as READ_ONLY, a read of
 // Command as WRITE_ONLY.
@@ -140,6 +152,9 @@ inline constexpr std::uint32_t kOutputs = 0x060;
 inline constexpr std::uint32_t kUnderruns = 0x064;
 inline constexpr std::uint32_t kMarks = 0x068;
 inline constexpr std::uint32_t kStaleTicks = 0x06C;
+inline constexpr std::uint32_t kRawInputs = 0x070;
+inline constexpr std::uint32_t kRoles = 0x074;
+inline constexpr std::uint32_t kPlace = 0x078;
 inline constexpr std::uint32_t kLimitState = 0x07C;
 constexpr std::uint32_t descriptor(std::uint32_t index) { return 0x100 + 4 * index; }
 inline constexpr std::uint32_t kSnapFault = 0x200;
@@ -178,6 +193,54 @@ inline constexpr std::uint32_t kMarkGeometryBegun = 0x394;
 inline constexpr std::uint32_t kMarkTimeHi = 0x398;
 inline constexpr std::uint32_t kMarkTimeLo = 0x39C;
 constexpr std::uint32_t mark_position(std::uint32_t axis) { return 0x3A0 + 4 * axis; }
+inline constexpr std::uint32_t kRestFault = 0x400;
+inline constexpr std::uint32_t kRestStatus = 0x404;
+inline constexpr std::uint32_t kRestTicksLeftHi = 0x408;
+inline constexpr std::uint32_t kRestTicksLeftLo = 0x40C;
+inline constexpr std::uint32_t kRestFeedBegun = 0x410;
+inline constexpr std::uint32_t kRestGeometryBegun = 0x414;
+inline constexpr std::uint32_t kRestTimeHi = 0x418;
+inline constexpr std::uint32_t kRestTimeLo = 0x41C;
+constexpr std::uint32_t rest_position(std::uint32_t axis) { return 0x420 + 4 * axis; }
+inline constexpr std::uint32_t kCapture0Fault = 0x480;
+inline constexpr std::uint32_t kCapture0Status = 0x484;
+inline constexpr std::uint32_t kCapture0Ratio = 0x488;
+inline constexpr std::uint32_t kCapture0Rate = 0x48C;
+inline constexpr std::uint32_t kCapture0FeedBegun = 0x490;
+inline constexpr std::uint32_t kCapture0GeometryBegun = 0x494;
+inline constexpr std::uint32_t kCapture0TimeHi = 0x498;
+inline constexpr std::uint32_t kCapture0TimeLo = 0x49C;
+constexpr std::uint32_t capture_0_position(std::uint32_t axis) { return 0x4A0 + 4 * axis; }
+inline constexpr std::uint32_t kCapture1Fault = 0x4C0;
+inline constexpr std::uint32_t kCapture1Status = 0x4C4;
+inline constexpr std::uint32_t kCapture1Ratio = 0x4C8;
+inline constexpr std::uint32_t kCapture1Rate = 0x4CC;
+inline constexpr std::uint32_t kCapture1FeedBegun = 0x4D0;
+inline constexpr std::uint32_t kCapture1GeometryBegun = 0x4D4;
+inline constexpr std::uint32_t kCapture1TimeHi = 0x4D8;
+inline constexpr std::uint32_t kCapture1TimeLo = 0x4DC;
+constexpr std::uint32_t capture_1_position(std::uint32_t axis) { return 0x4E0 + 4 * axis; }
+inline constexpr std::uint32_t kCapture2Fault = 0x500;
+inline constexpr std::uint32_t kCapture2Status = 0x504;
+inline constexpr std::uint32_t kCapture2Ratio = 0x508;
+inline constexpr std::uint32_t kCapture2Rate = 0x50C;
+inline constexpr std::uint32_t kCapture2FeedBegun = 0x510;
+inline constexpr std::uint32_t kCapture2GeometryBegun = 0x514;
+inline constexpr std::uint32_t kCapture2TimeHi = 0x518;
+inline constexpr std::uint32_t kCapture2TimeLo = 0x51C;
+constexpr std::uint32_t capture_2_position(std::uint32_t axis) { return 0x520 + 4 * axis; }
+inline constexpr std::uint32_t kCapture3Fault = 0x540;
+inline constexpr std::uint32_t kCapture3Status = 0x544;
+inline constexpr std::uint32_t kCapture3Ratio = 0x548;
+inline constexpr std::uint32_t kCapture3Rate = 0x54C;
+inline constexpr std::uint32_t kCapture3FeedBegun = 0x550;
+inline constexpr std::uint32_t kCapture3GeometryBegun = 0x554;
+inline constexpr std::uint32_t kCapture3TimeHi = 0x558;
+inline constexpr std::uint32_t kCapture3TimeLo = 0x55C;
+constexpr std::uint32_t capture_3_position(std::uint32_t axis) { return 0x560 + 4 * axis; }
+constexpr std::uint32_t capture_select(std::uint32_t index) { return 0x580 + 4 * index; }
+inline constexpr std::uint32_t kCaptureState = 0x590;
+inline constexpr std::uint32_t kCaptureClear = 0x594;
 inline constexpr std::uint32_t kControl = 0x600;
 inline constexpr std::uint32_t kHold = 0x604;
 inline constexpr std::uint32_t kStream = 0x610;
@@ -192,16 +255,37 @@ inline constexpr std::uint32_t kGeometryWatermark = 0x6C0;
 inline constexpr std::uint32_t kFeedWatermark = 0x6C4;
 inline constexpr std::uint32_t kOutputSafe = 0x700;
 inline constexpr std::uint32_t kInputPolarity = 0x704;
+inline constexpr std::uint32_t kOutputSafeCause = 0x708;
+inline constexpr std::uint32_t kOutputRoles = 0x70C;
 inline constexpr std::uint32_t kStreaming = 0x740;
+inline constexpr std::uint32_t kLinkTimeout = 0x74C;
 inline constexpr std::uint32_t kWatchdog = 0x780;
 inline constexpr std::uint32_t kStopCauses = 0x784;
 inline constexpr std::uint32_t kLimitOverride = 0x788;
+inline constexpr std::uint32_t kSoftLimits = 0x78C;
+inline constexpr std::uint32_t kHealthRoles = 0x790;
+inline constexpr std::uint32_t kEnable = 0x794;
+inline constexpr std::uint32_t kEnableAxes = 0x798;
+inline constexpr std::uint32_t kEnableDelay = 0x79C;
+inline constexpr std::uint32_t kBrakeReleaseDelay = 0x7A0;
+inline constexpr std::uint32_t kStopDelay = 0x7A4;
+inline constexpr std::uint32_t kBrakeSetDelay = 0x7A8;
+inline constexpr std::uint32_t kEnableIdle = 0x7AC;
+inline constexpr std::uint32_t kDisableCauses = 0x7B0;
+inline constexpr std::uint32_t kHealthCauses = 0x7B4;
+inline constexpr std::uint32_t kChargePump = 0x7B8;
+inline constexpr std::uint32_t kScales = 0x7C0;
+inline constexpr std::uint32_t kKeepsPlace = 0x7C4;
+inline constexpr std::uint32_t kSetPlace = 0x7C8;
 constexpr std::uint32_t step_length(std::uint32_t axis) { return 0x800 + 128 * axis; }
 constexpr std::uint32_t step_space(std::uint32_t axis) { return 0x804 + 128 * axis; }
 constexpr std::uint32_t dir_setup(std::uint32_t axis) { return 0x808 + 128 * axis; }
 constexpr std::uint32_t dir_hold(std::uint32_t axis) { return 0x80C + 128 * axis; }
 constexpr std::uint32_t mode(std::uint32_t axis) { return 0x810 + 128 * axis; }
 constexpr std::uint32_t overtravel(std::uint32_t axis) { return 0x814 + 128 * axis; }
+constexpr std::uint32_t machine_zero(std::uint32_t axis) { return 0x818 + 128 * axis; }
+constexpr std::uint32_t soft_minus(std::uint32_t axis) { return 0x820 + 128 * axis; }
+constexpr std::uint32_t soft_plus(std::uint32_t axis) { return 0x824 + 128 * axis; }
 constexpr std::uint32_t frequency_lo(std::uint32_t axis) { return 0xCF0 - 16 * axis; }
 constexpr std::uint32_t frequency_hi(std::uint32_t axis) { return 0xCF4 - 16 * axis; }
 constexpr std::uint32_t count(std::uint32_t axis) { return 0xCF8 - 16 * axis; }
@@ -209,6 +293,8 @@ constexpr std::uint32_t direction(std::uint32_t axis) { return 0xCFC - 16 * axis
 inline constexpr std::uint32_t kLengthLo = 0xD00;
 inline constexpr std::uint32_t kLengthHi = 0xD04;
 inline constexpr std::uint32_t kStart = 0xD08;
+constexpr std::uint32_t input_filter(std::uint32_t index) { return 0xE00 + 4 * index; }
+constexpr std::uint32_t role(std::uint32_t index) { return 0xE80 + 4 * index; }
 }  // namespace reg
 
 // Areas of latched values: their byte addresses, and their registers in any of them.
@@ -217,6 +303,11 @@ enum class Area : std::uint32_t {
   Stop = 0x280,
   Probe = 0x300,
   Mark = 0x380,
+  Rest = 0x400,
+  Capture0 = 0x480,
+  Capture1 = 0x4C0,
+  Capture2 = 0x500,
+  Capture3 = 0x540,
 };
 namespace reg {
 constexpr std::uint32_t fault(Area area) { return static_cast<std::uint32_t>(area) + 0x00; }
@@ -264,6 +355,9 @@ inline constexpr std::uint32_t kStatusProbeMissed = 0x8000;
 inline constexpr std::uint32_t kStatusWaiting = 0x10000;
 inline constexpr std::uint32_t kStatusStale = 0x20000;
 inline constexpr std::uint32_t kStatusButtonHold = 0x40000;
+inline constexpr std::uint32_t kStatusSettled = 0x80000;
+inline constexpr std::uint32_t kStatusEnabled = 0x100000;
+inline constexpr std::uint32_t kStatusEnableWaits = 0x200000;
 inline constexpr std::uint32_t kFaultStep = 0xFF;
 inline constexpr std::uint32_t kFaultStepShift = 0;
 inline constexpr std::uint32_t kFaultTickMismatch = 0x100;
@@ -283,12 +377,44 @@ inline constexpr std::uint32_t kRefusalCommand = 0xFF00;
 inline constexpr std::uint32_t kRefusalCommandShift = 8;
 inline constexpr std::uint32_t kRefusalAddress = 0xFFF0000;
 inline constexpr std::uint32_t kRefusalAddressShift = 16;
+inline constexpr std::uint32_t kRolesLimitMinus = 0xFF;
+inline constexpr std::uint32_t kRolesLimitMinusShift = 0;
+inline constexpr std::uint32_t kRolesLimitPlus = 0xFF00;
+inline constexpr std::uint32_t kRolesLimitPlusShift = 8;
+inline constexpr std::uint32_t kRolesDriveFault = 0xFF0000;
+inline constexpr std::uint32_t kRolesDriveFaultShift = 16;
+inline constexpr std::uint32_t kRolesFeedHold = 0x1000000;
+inline constexpr std::uint32_t kRolesCycleStart = 0x2000000;
+inline constexpr std::uint32_t kRolesToolSetter = 0x4000000;
+inline constexpr std::uint32_t kRolesProbe = 0x8000000;
+inline constexpr std::uint32_t kPlacePositionValid = 0xFF;
+inline constexpr std::uint32_t kPlacePositionValidShift = 0;
+inline constexpr std::uint32_t kPlaceHomed = 0xFF00;
+inline constexpr std::uint32_t kPlaceHomedShift = 8;
 inline constexpr std::uint32_t kLimitStateMinus = 0xFF;
 inline constexpr std::uint32_t kLimitStateMinusShift = 0;
 inline constexpr std::uint32_t kLimitStatePlus = 0xFF00;
 inline constexpr std::uint32_t kLimitStatePlusShift = 8;
 inline constexpr std::uint32_t kLimitStateDriveFault = 0xFF0000;
 inline constexpr std::uint32_t kLimitStateDriveFaultShift = 16;
+inline constexpr std::uint32_t kLimitStateSoftAxis = 0x7000000;
+inline constexpr std::uint32_t kLimitStateSoftAxisShift = 24;
+inline constexpr std::uint32_t kLimitStateSoftPlus = 0x8000000;
+inline constexpr std::uint32_t kCaptureSelectInputNumber = 0x1F;
+inline constexpr std::uint32_t kCaptureSelectInputNumberShift = 0;
+inline constexpr std::uint32_t kCaptureSelectToActive = 0x100;
+inline constexpr std::uint32_t kCaptureSelectToInactive = 0x200;
+inline constexpr std::uint32_t kCaptureSelectContinuous = 0x400;
+inline constexpr std::uint32_t kCaptureStatePending = 0xF;
+inline constexpr std::uint32_t kCaptureStatePendingShift = 0;
+inline constexpr std::uint32_t kCaptureStateValid = 0xF0;
+inline constexpr std::uint32_t kCaptureStateValidShift = 4;
+inline constexpr std::uint32_t kCaptureStateOverrun = 0xF00;
+inline constexpr std::uint32_t kCaptureStateOverrunShift = 8;
+inline constexpr std::uint32_t kCaptureStateActive = 0xF000;
+inline constexpr std::uint32_t kCaptureStateActiveShift = 12;
+inline constexpr std::uint32_t kCaptureStateSnapshots = 0xFFFF0000;
+inline constexpr std::uint32_t kCaptureStateSnapshotsShift = 16;
 inline constexpr std::uint32_t kControlSnapshot = 0x1;
 inline constexpr std::uint32_t kControlAbort = 0x2;
 inline constexpr std::uint32_t kControlFlush = 0x4;
@@ -323,10 +449,21 @@ inline constexpr std::uint32_t kIrqEnableProbeMissed = 0x8000;
 inline constexpr std::uint32_t kIrqEnableWaiting = 0x10000;
 inline constexpr std::uint32_t kIrqEnableStale = 0x20000;
 inline constexpr std::uint32_t kIrqEnableButtonHold = 0x40000;
+inline constexpr std::uint32_t kIrqEnableSettled = 0x80000;
+inline constexpr std::uint32_t kIrqEnableEnabled = 0x100000;
+inline constexpr std::uint32_t kIrqEnableEnableWaits = 0x200000;
 inline constexpr std::uint32_t kOutputSafeValue = 0xFFFF;
 inline constexpr std::uint32_t kOutputSafeValueShift = 0;
 inline constexpr std::uint32_t kOutputSafeChange = 0xFFFF0000;
 inline constexpr std::uint32_t kOutputSafeChangeShift = 16;
+inline constexpr std::uint32_t kOutputSafeCauseValue = 0xFFFF;
+inline constexpr std::uint32_t kOutputSafeCauseValueShift = 0;
+inline constexpr std::uint32_t kOutputSafeCauseChange = 0xFFFF0000;
+inline constexpr std::uint32_t kOutputSafeCauseChangeShift = 16;
+inline constexpr std::uint32_t kOutputRolesEnable = 0xFFFF;
+inline constexpr std::uint32_t kOutputRolesEnableShift = 0;
+inline constexpr std::uint32_t kOutputRolesBrake = 0xFFFF0000;
+inline constexpr std::uint32_t kOutputRolesBrakeShift = 16;
 inline constexpr std::uint32_t kStreamingOn = 0x1;
 inline constexpr std::uint32_t kStreamingStalePeriods = 0xFF00;
 inline constexpr std::uint32_t kStreamingStalePeriodsShift = 8;
@@ -340,15 +477,52 @@ inline constexpr std::uint32_t kLimitOverrideMinus = 0xFF;
 inline constexpr std::uint32_t kLimitOverrideMinusShift = 0;
 inline constexpr std::uint32_t kLimitOverridePlus = 0xFF00;
 inline constexpr std::uint32_t kLimitOverridePlusShift = 8;
+inline constexpr std::uint32_t kHealthRolesChargePump = 0xFFFF;
+inline constexpr std::uint32_t kHealthRolesChargePumpShift = 0;
+inline constexpr std::uint32_t kHealthRolesHealthy = 0xFFFF0000;
+inline constexpr std::uint32_t kHealthRolesHealthyShift = 16;
+inline constexpr std::uint32_t kEnableOn = 0x1;
+inline constexpr std::uint32_t kEnableManual = 0x2;
+inline constexpr std::uint32_t kDisableCausesStep = 0xFF;
+inline constexpr std::uint32_t kDisableCausesStepShift = 0;
+inline constexpr std::uint32_t kDisableCausesTickMismatch = 0x100;
+inline constexpr std::uint32_t kDisableCausesPathIncomplete = 0x200;
+inline constexpr std::uint32_t kDisableCausesMissingPeriod = 0x400;
+inline constexpr std::uint32_t kDisableCausesLimit = 0x800;
+inline constexpr std::uint32_t kDisableCausesEmergencyStop = 0x1000;
+inline constexpr std::uint32_t kDisableCausesDriveFault = 0x2000;
+inline constexpr std::uint32_t kDisableCausesWatchdog = 0x4000;
+inline constexpr std::uint32_t kDisableCausesLinkLoss = 0x8000;
+inline constexpr std::uint32_t kDisableCausesSoftLimit = 0x10000;
+inline constexpr std::uint32_t kDisableCausesProbe = 0x20000;
+inline constexpr std::uint32_t kDisableCausesToolSetter = 0x40000;
+inline constexpr std::uint32_t kHealthCausesStep = 0xFF;
+inline constexpr std::uint32_t kHealthCausesStepShift = 0;
+inline constexpr std::uint32_t kHealthCausesTickMismatch = 0x100;
+inline constexpr std::uint32_t kHealthCausesPathIncomplete = 0x200;
+inline constexpr std::uint32_t kHealthCausesMissingPeriod = 0x400;
+inline constexpr std::uint32_t kHealthCausesLimit = 0x800;
+inline constexpr std::uint32_t kHealthCausesEmergencyStop = 0x1000;
+inline constexpr std::uint32_t kHealthCausesDriveFault = 0x2000;
+inline constexpr std::uint32_t kHealthCausesWatchdog = 0x4000;
+inline constexpr std::uint32_t kHealthCausesLinkLoss = 0x8000;
+inline constexpr std::uint32_t kHealthCausesSoftLimit = 0x10000;
+inline constexpr std::uint32_t kHealthCausesProbe = 0x20000;
+inline constexpr std::uint32_t kHealthCausesToolSetter = 0x40000;
+inline constexpr std::uint32_t kHealthCausesNoWatchdog = 0x80000000;
+inline constexpr std::uint32_t kSetPlacePositionValid = 0x1;
+inline constexpr std::uint32_t kSetPlaceHomed = 0x2;
+inline constexpr std::uint32_t kSetPlaceAxes = 0xFF0000;
+inline constexpr std::uint32_t kSetPlaceAxesShift = 16;
 inline constexpr std::uint32_t kModeMode = 0x3;
 inline constexpr std::uint32_t kModeModeShift = 0;
 inline constexpr std::uint32_t kModeInvertFirst = 0x4;
 inline constexpr std::uint32_t kModeInvertSecond = 0x8;
 }  // namespace field
 
-inline constexpr std::array<Register, 92> kRegisters{{
+inline constexpr std::array<Register, 166> kRegisters{{
     {"MAGIC", 0x000, 1, 0, Access::Constant, 0x54524D4C, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30002, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30005, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"AXES", 0x008, 1, 0, Access::Constant, 0x0, 0xFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"CLOCK_HZ", 0x00C, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"GEOMETRY_DEPTH", 0x014, 1, 0, Access::Constant, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -358,19 +532,22 @@ inline constexpr std::array<Register, 92> kRegisters{{
     {"BUILD_FLAGS", 0x024, 1, 0, Access::Constant, 0x0, 0x1, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"BOARD_ID", 0x028, 1, 0, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"PORTS", 0x02C, 1, 0, Access::Constant, 0x0, 0xFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"STATUS", 0x040, 1, 0, Access::Live, 0x0, 0x7FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"STATUS", 0x040, 1, 0, Access::Live, 0x0, 0x3FFFFF, 0x0, 0, 0x0, 0, 0x300000, 14, false, true},
     {"FAULT", 0x044, 1, 0, Access::ClearOnes, 0x0, 0x7FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"REFUSAL", 0x048, 1, 0, Access::ClearOnes, 0x0, 0xFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"GEOMETRY_ROOM", 0x04C, 1, 0, Access::Live, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"FEED_ROOM", 0x050, 1, 0, Access::Live, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"GEOMETRY_BEGUN", 0x054, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"FEED_BEGUN", 0x058, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
-    {"INPUTS", 0x05C, 1, 0, Access::Live, 0x0, 0xFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
+    {"INPUTS", 0x05C, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
     {"OUTPUTS", 0x060, 1, 0, Access::Live, 0x0, 0xFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
     {"UNDERRUNS", 0x064, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 6, 0x0, 0, false, true},
     {"MARKS", 0x068, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
     {"STALE_TICKS", 0x06C, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 8, 0x0, 0, false, true},
-    {"LIMIT_STATE", 0x07C, 1, 0, Access::Live, 0x0, 0xFFFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, true},
+    {"RAW_INPUTS", 0x070, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, true},
+    {"ROLES", 0x074, 1, 0, Access::Live, 0x0, 0xFFFFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, true},
+    {"PLACE", 0x078, 1, 0, Access::Live, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"LIMIT_STATE", 0x07C, 1, 0, Access::Live, 0x0, 0xFFFFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, true},
     {"DESCRIPTOR", 0x100, 64, 4, Access::Constant, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"SNAP_FAULT", 0x200, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
     {"SNAP_STATUS", 0x204, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -408,6 +585,54 @@ inline constexpr std::array<Register, 92> kRegisters{{
     {"MARK_TIME_HI", 0x398, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
     {"MARK_TIME_LO", 0x39C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, true},
     {"MARK_POSITION", 0x3A0, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, true, true},
+    {"REST_FAULT", 0x400, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"REST_STATUS", 0x404, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"REST_TICKS_LEFT_HI", 0x408, 1, 0, Access::Snapshot, 0x0, 0xFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"REST_TICKS_LEFT_LO", 0x40C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"REST_FEED_BEGUN", 0x410, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"REST_GEOMETRY_BEGUN", 0x414, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"REST_TIME_HI", 0x418, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"REST_TIME_LO", 0x41C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
+    {"REST_POSITION", 0x420, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, true},
+    {"CAPTURE_0_FAULT", 0x480, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_0_STATUS", 0x484, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_0_RATIO", 0x488, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_0_RATE", 0x48C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_0_FEED_BEGUN", 0x490, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_0_GEOMETRY_BEGUN", 0x494, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_0_TIME_HI", 0x498, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_0_TIME_LO", 0x49C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_0_POSITION", 0x4A0, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, true, true},
+    {"CAPTURE_1_FAULT", 0x4C0, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_1_STATUS", 0x4C4, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_1_RATIO", 0x4C8, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_1_RATE", 0x4CC, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_1_FEED_BEGUN", 0x4D0, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_1_GEOMETRY_BEGUN", 0x4D4, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_1_TIME_HI", 0x4D8, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_1_TIME_LO", 0x4DC, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_1_POSITION", 0x4E0, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, true, true},
+    {"CAPTURE_2_FAULT", 0x500, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_2_STATUS", 0x504, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_2_RATIO", 0x508, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_2_RATE", 0x50C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_2_FEED_BEGUN", 0x510, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_2_GEOMETRY_BEGUN", 0x514, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_2_TIME_HI", 0x518, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_2_TIME_LO", 0x51C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_2_POSITION", 0x520, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, true, true},
+    {"CAPTURE_3_FAULT", 0x540, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_3_STATUS", 0x544, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_3_RATIO", 0x548, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_3_RATE", 0x54C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_3_FEED_BEGUN", 0x550, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_3_GEOMETRY_BEGUN", 0x554, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_3_TIME_HI", 0x558, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_3_TIME_LO", 0x55C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_3_POSITION", 0x560, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, true, true},
+    {"CAPTURE_SELECT", 0x580, 4, 4, Access::Setting, 0x0, 0x71F, 0x0, 0, 0x0, 12, 0x0, 0, false, false},
+    {"CAPTURE_STATE", 0x590, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
+    {"CAPTURE_CLEAR", 0x594, 1, 0, Access::Command, 0x0, 0xF, 0x0, 0, 0x0, 12, 0x0, 0, false, false},
     {"CONTROL", 0x600, 1, 0, Access::Command, 0x0, 0xF, 0x0, 0, 0x0, 0, 0x8, 7, false, false},
     {"HOLD", 0x604, 1, 0, Access::Setting, 0x0, 0x1, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"STREAM", 0x610, 1, 0, Access::Command, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
@@ -416,22 +641,43 @@ inline constexpr std::array<Register, 92> kRegisters{{
     {"RATIO_FIXED", 0x648, 1, 0, Access::Setting, 0x10000, 0x1FFFF, 0x1FFFF, 0, 0x10000, 9, 0x0, 0, false, false},
     {"SLEW", 0x64C, 1, 0, Access::Setting, 0xFFFFFFF, 0xFFFFFFF, 0xFFFFFFF, 1, 0xFFFFFFF, 0, 0x0, 0, false, false},
     {"HOLD_LIMIT", 0x680, 1, 0, Access::Setting, 0xFFFF, 0xFFFF, 0xFFFF, 1, 0xFFFF, 0, 0x0, 0, false, false},
-    {"STOP_REACTION", 0x684, 1, 0, Access::Setting, 0x66000, 0x7FCFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
-    {"IRQ_ENABLE", 0x688, 1, 0, Access::Setting, 0x0, 0x7FFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"STOP_REACTION", 0x684, 1, 0, Access::Setting, 0x7E000, 0x7FCFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"IRQ_ENABLE", 0x688, 1, 0, Access::Setting, 0x0, 0x3FFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"GEOMETRY_WATERMARK", 0x6C0, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
     {"FEED_WATERMARK", 0x6C4, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 10, 0x0, 0, false, false},
     {"OUTPUT_SAFE", 0x700, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
-    {"INPUT_POLARITY", 0x704, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
+    {"INPUT_POLARITY", 0x704, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
+    {"OUTPUT_SAFE_CAUSE", 0x708, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 7, 0x0, 0, false, false},
+    {"OUTPUT_ROLES", 0x70C, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
     {"STREAMING", 0x740, 1, 0, Access::Setting, 0x0, 0xFF01, 0x0, 0, 0x0, 8, 0x0, 0, false, false},
+    {"LINK_TIMEOUT", 0x74C, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"WATCHDOG", 0x780, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"STOP_CAUSES", 0x784, 1, 0, Access::Setting, 0x0, 0x6FFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, false},
     {"LIMIT_OVERRIDE", 0x788, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, false},
+    {"SOFT_LIMITS", 0x78C, 1, 0, Access::Setting, 0x0, 0xFF, 0x0, 0, 0x0, 15, 0x0, 0, false, false},
+    {"HEALTH_ROLES", 0x790, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"ENABLE", 0x794, 1, 0, Access::Setting, 0x0, 0x3, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"ENABLE_AXES", 0x798, 1, 0, Access::Setting, 0x0, 0xFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"ENABLE_DELAY", 0x79C, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"BRAKE_RELEASE_DELAY", 0x7A0, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"STOP_DELAY", 0x7A4, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"BRAKE_SET_DELAY", 0x7A8, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"ENABLE_IDLE", 0x7AC, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"DISABLE_CAUSES", 0x7B0, 1, 0, Access::Setting, 0x0, 0x7FFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"HEALTH_CAUSES", 0x7B4, 1, 0, Access::Setting, 0x0, 0x8007FFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"CHARGE_PUMP", 0x7B8, 1, 0, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 14, 0x0, 0, false, false},
+    {"SCALES", 0x7C0, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"KEEPS_PLACE", 0x7C4, 1, 0, Access::Setting, 0x0, 0xFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
+    {"SET_PLACE", 0x7C8, 1, 0, Access::Command, 0x0, 0xFF0003, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"STEP_LENGTH", 0x800, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"STEP_SPACE", 0x804, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"DIR_SETUP", 0x808, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"DIR_HOLD", 0x80C, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
     {"MODE", 0x810, 8, 128, Access::Setting, 0x0, 0xF, 0x3, 0, 0x2, 0, 0x0, 0, true, false},
     {"OVERTRAVEL", 0x814, 8, 128, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 11, 0x0, 0, true, false},
+    {"MACHINE_ZERO", 0x818, 8, 128, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, true, false},
+    {"SOFT_MINUS", 0x820, 8, 128, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 15, 0x0, 0, true, false},
+    {"SOFT_PLUS", 0x824, 8, 128, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 15, 0x0, 0, true, false},
     {"FREQUENCY_LO", 0xCF0, 8, -16, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
     {"FREQUENCY_HI", 0xCF4, 8, -16, Access::Setting, 0x0, 0x1FF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
     {"COUNT", 0xCF8, 8, -16, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, true, false},
@@ -439,11 +685,13 @@ inline constexpr std::array<Register, 92> kRegisters{{
     {"LENGTH_LO", 0xD00, 1, 0, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
     {"LENGTH_HI", 0xD04, 1, 0, Access::Setting, 0x0, 0xFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
     {"START", 0xD08, 1, 0, Access::Command, 0x0, 0xFF, 0x0, 0, 0x0, 5, 0x0, 0, false, false},
+    {"INPUT_FILTER", 0xE00, 32, 4, Access::Setting, 0x0, 0xFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, false},
+    {"ROLE", 0xE80, 64, 4, Access::Setting, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 11, 0x0, 0, false, false},
 }};
 
 // Units of the card and their descriptors, two words each (rtl/regs/units.toml has the layout). The table begins at
 // kDescriptorTable; a tag of 0 ends it.
-enum class UnitCount { Fixed, Axes, SnapshotAreas, Ports, Inputs, Outputs };
+enum class UnitCount { Fixed, Axes, SnapshotAreas, Ports, Inputs, Outputs, Captures };
 
 struct Unit {
   std::string_view name;
@@ -500,7 +748,7 @@ inline constexpr std::uint8_t kTimeBase = 1;     // Share of clocks that are ena
 inline constexpr std::uint8_t kStopControl = 2;  // Causes of a stop, and the reaction to each.
 inline constexpr std::uint8_t kQueues = 3;       // Geometry queue and feed queue.
 inline constexpr std::uint8_t kFeedGenerator =
-    4;                                    // Rate, acceleration and jerk of feed pieces; from 1.1 on silent pieces.
+    4;  // Rate, acceleration and jerk of feed pieces; from 1.1 on silent pieces, which run at any ratio from 1.2 on.
 inline constexpr std::uint8_t kAxes = 5;  // Pulse generator, step shaper and position counter of each axis.
 inline constexpr std::uint8_t kSnapshots =
     6;  // Areas of latched values: SNAP, STOP; with path commands also PROBE and MARK.
@@ -509,14 +757,26 @@ inline constexpr std::uint8_t kAccumulator = 8;   // Deviation accumulator: circ
 inline constexpr std::uint8_t kArcGenerator = 9;  // Arc generator: circles and helices in chords (ARC_CHORD).
 inline constexpr std::uint8_t kDirectMode =
     10;  // One-shot lines: frequency, count and direction of each axis, length, START.
-inline constexpr std::uint8_t kUnderrunHold = 11;       // Hold on the path before the queues run dry.
-inline constexpr std::uint8_t kPathCommands = 12;       // OUTPUT, MARK, WAIT_INPUT, PROBE and PROBE_END.
-inline constexpr std::uint8_t kInputs = 13;             // Inputs with synchroniser and polarity.
-inline constexpr std::uint8_t kOutputs = 14;            // Outputs.
+inline constexpr std::uint8_t kUnderrunHold = 11;  // Hold on the path before the queues run dry.
+inline constexpr std::uint8_t kPathCommands = 12;  // OUTPUT, MARK, WAIT_INPUT, PROBE and PROBE_END.
+inline constexpr std::uint8_t kInputs = 13;        // Inputs with synchroniser and polarity.
+inline constexpr std::uint8_t kOutputs =
+    14;  // Outputs, with levels at rest; from 1.1 on with levels at the cause of a stop.
 inline constexpr std::uint8_t kPositionStreaming = 15;  // A line for each period of a host that streams positions.
-inline constexpr std::uint8_t kWatchdog = 16;           // Watchdog over the host.
+inline constexpr std::uint8_t kWatchdog =
+    16;  // Watchdog over the host; from 1.1 on also over the link of the session that writes (LINK_TIMEOUT).
+inline constexpr std::uint8_t kRoles = 17;          // Filter of each input, and roles: masks of inputs.
+inline constexpr std::uint8_t kCaptures = 18;       // Captures: time and positions of the edges of inputs, an area of
+                                                    // latched values each; the probe's edge likewise.
+inline constexpr std::uint8_t kEmergencyStop = 19;  // Emergency stop: a pin with a latch that needs no clock.
 inline constexpr std::uint8_t kLimits =
     20;  // Limit switches, drive faults, probe and tool setter as causes of a stop; feed hold and cycle start.
+inline constexpr std::uint8_t kPlace =
+    21;  // The machine's place, which outlives the host: valid and homed axes, scales; zeros beside the axes' settings.
+inline constexpr std::uint8_t kEnables =
+    22;  // Drive enable, brake, charge pump and card healthy: roles of outputs, and the sequence of the drives.
+inline constexpr std::uint8_t kSoftLimits =
+    23;  // Soft limits: comparators of the position, beside the axes' settings; SOFT_LIMITS switches them on.
 }  // namespace unit
 
 // Units on the load bus, of their first instance.
@@ -528,12 +788,12 @@ inline constexpr unsigned kPathCommands = 12;
 inline constexpr unsigned kNone = 31;
 }  // namespace load_unit
 
-inline constexpr std::array<Unit, 17> kUnits{{
-    {"time_base", 1, 1, 0, 0, UnitCount::Fixed, 1, true, 1600, 0, 1612, 0, 0, 31, {9, 0, 0, 0, 0, 0, 0, 0}},
-    {"stop_control", 2, 1, 2, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+inline constexpr std::array<Unit, 23> kUnits{{
+    {"time_base", 1, 1, 1, 0, UnitCount::Fixed, 1, true, 1600, 0, 1612, 0, 0, 31, {9, 0, 0, 0, 0, 0, 0, 0}},
+    {"stop_control", 2, 1, 4, 0, UnitCount::Fixed, 1, true, 1664, 0, 1668, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"queues", 3, 1, 0, 0, UnitCount::Fixed, 2, true, 1728, 0, 1728, 0, 1, 31, {10, 0, 0, 0, 0, 0, 0, 0}},
-    {"feed_generator", 4, 1, 1, 0, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {4, 0, 0, 0, 0, 0, 0, 0}},
-    {"axes", 5, 1, 1, 0, UnitCount::Axes, 0, true, 2048, 0, 2068, 0, 32, 0, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"feed_generator", 4, 1, 2, 0, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {4, 0, 0, 0, 0, 0, 0, 0}},
+    {"axes", 5, 1, 2, 0, UnitCount::Axes, 0, true, 2048, 0, 2072, 0, 32, 0, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"snapshots", 6, 1, 0, 0, UnitCount::SnapshotAreas, 0, true, 512, 0, 544, 4, 32, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"host_ports", 7, 1, 0, 0, UnitCount::Ports, 0, false, 0, 0, 0, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"accumulator", 8, 1, 0, 1, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 10, {2, 0, 0, 0, 0, 0, 0, 0}},
@@ -542,10 +802,16 @@ inline constexpr std::array<Unit, 17> kUnits{{
     {"underrun_hold", 11, 1, 0, 6, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"path_commands", 12, 1, 0, 7, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 12, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"inputs", 13, 1, 0, 7, UnitCount::Inputs, 0, true, 1796, 0, 1796, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
-    {"outputs", 14, 1, 0, 7, UnitCount::Outputs, 0, true, 1792, 0, 1792, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"outputs", 14, 1, 1, 7, UnitCount::Outputs, 0, true, 1792, 0, 1792, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"position_streaming", 15, 1, 0, 8, UnitCount::Fixed, 1, true, 1856, 0, 1856, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
-    {"watchdog", 16, 1, 0, 0, UnitCount::Fixed, 1, true, 1920, 0, 1920, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"watchdog", 16, 1, 1, 0, UnitCount::Fixed, 1, true, 1920, 0, 1920, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"roles", 17, 1, 0, 11, UnitCount::Fixed, 1, true, 3584, 4, 3712, 4, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"captures", 18, 1, 0, 12, UnitCount::Captures, 0, true, 1152, 0, 1184, 4, 16, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"emergency_stop", 19, 1, 0, 13, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"limits", 20, 1, 0, 11, UnitCount::Fixed, 1, true, 1924, 0, 1928, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"place", 21, 1, 0, 0, UnitCount::Fixed, 1, true, 1984, 0, 1992, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"enables", 22, 1, 0, 14, UnitCount::Fixed, 1, true, 1936, 0, 1976, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"soft_limits", 23, 1, 0, 15, UnitCount::Axes, 0, true, 2080, 0, 2084, 0, 32, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
 }};
 
 // What decides a card's descriptors.
@@ -555,6 +821,7 @@ struct CardShape {
   std::uint32_t ports;
   std::uint32_t inputs;
   std::uint32_t outputs;
+  std::uint32_t captures;  // units
 };
 
 constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
@@ -569,6 +836,8 @@ constexpr std::uint32_t instances_of(const Unit& unit, const CardShape& card) {
       return card.inputs;
     case UnitCount::Outputs:
       return card.outputs;
+    case UnitCount::Captures:
+      return card.captures;
     default:
       return unit.instances;
   }
@@ -856,7 +1125,7 @@ inline constexpr std::array<Command, 11> kCommands{{
      MaskRule::Flags,
      2,
      9,
-     4,
+     28,
      1,
      0xFFFFFFFFFF,
      21,

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "common/command_line.hpp"
+
+namespace trammel::app {
+
+// Registers `trammel jog`: moves axes of a card outside by hand, by a distance or by the keys of a terminal.
+void add_jog_command(CLI::App& app);
+
+}  // namespace trammel::app

@@ -1,0 +1,82 @@
+// Golden model of the machine's place: which axes stand where the host believes (POSITION_VALID) and which were homed
+// (HOMED). The host writes both; an axis loses them at a fault of its drive; at a cut while it moves, and as its drive
+// is disabled, unless KEEPS_PLACE names it. It moves from its first step on while a piece or a direct move is under
+// way, at a ratio that is not 0. A bit of a mask is an axis. Not thread-safe; no errors are reported.
+#pragma once
+
+#include <cstdint>
+
+#include "trammel/card_map.hpp"
+#include "trammel/model/buses.hpp"
+
+namespace trammel::model {
+
+class MachinePlace {
+ public:
+  struct Inputs {
+    Setting setting;            // KEEPS_PLACE, SET_PLACE
+    bool cut = false;           // event
+    bool at_rest = false;       // the ratio is 0
+    bool runs = false;          // a piece or a direct move is under way
+    std::uint8_t step = 0;      // on the path
+    std::uint8_t drives = 0;    // levels: drive faults
+    std::uint8_t disabled = 0;  // events: the drive is disabled
+  };
+  // All that the next clock() depends on beside its inputs.
+  struct State {
+    std::uint8_t valid = 0;
+    std::uint8_t homed = 0;
+    std::uint8_t keeps = 0;
+    std::uint8_t moved = 0;  // has made a step since the motion under way began
+  };
+
+  explicit MachinePlace(unsigned axes = card_map::kMaxAxes) : present_(static_cast<std::uint8_t>((1U << axes) - 1)) {}
+
+  // One rising edge. What comes in clock c shows at c + 1; a loss wins over a write in its clock.
+  void clock(const Inputs& in) {
+    state_.moved = in.runs ? static_cast<std::uint8_t>(state_.moved | in.step) : std::uint8_t{0};
+    const std::uint8_t lost = lost_with(in);
+    if (in.setting.set) set(in.setting);
+    state_.valid &= static_cast<std::uint8_t>(~lost);
+    state_.homed &= static_cast<std::uint8_t>(~lost);
+  }
+
+  const State& state() const { return state_; }
+  State& state() { return state_; }
+  // The register PLACE.
+  std::uint32_t place() const {
+    return std::uint32_t{state_.valid} << card_map::field::kPlacePositionValidShift |
+           std::uint32_t{state_.homed} << card_map::field::kPlaceHomedShift;
+  }
+  // With these inputs nothing changes, however many clocks pass.
+  bool rests(const Inputs& in) const {
+    const auto known = static_cast<std::uint8_t>(state_.valid | state_.homed);
+    const bool settled = in.runs ? (in.step & ~state_.moved) == 0 : state_.moved == 0;
+    return !in.setting.set && settled && (lost_with(in) & known) == 0;
+  }
+
+ private:
+  std::uint8_t lost_with(const Inputs& in) const {
+    const bool stops = in.cut && !in.at_rest && in.runs;
+    const unsigned moving = stops ? state_.moved | in.step : 0U;
+    return static_cast<std::uint8_t>(in.drives | ((moving | in.disabled) & ~state_.keeps));
+  }
+
+  void set(const Setting& setting) {
+    if (setting.address == card_map::reg::kKeepsPlace)
+      state_.keeps = static_cast<std::uint8_t>(setting.data & present_);
+    if (setting.address != card_map::reg::kSetPlace) return;
+    const auto named = static_cast<std::uint8_t>(setting.data >> card_map::field::kSetPlaceAxesShift & present_);
+    write(state_.valid, named, (setting.data & card_map::field::kSetPlacePositionValid) != 0);
+    write(state_.homed, named, (setting.data & card_map::field::kSetPlaceHomed) != 0);
+  }
+
+  static void write(std::uint8_t& mask, std::uint8_t named, bool value) {
+    mask = static_cast<std::uint8_t>((mask & ~named) | (value ? named : 0));
+  }
+
+  std::uint8_t present_;
+  State state_;
+};
+
+}  // namespace trammel::model

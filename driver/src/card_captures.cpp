@@ -1,0 +1,97 @@
+// Captures of inputs' edges: reads and writes of their registers.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "register_checks.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/driver/interrupt.hpp"
+#include "trammel/driver/low_level/card_parts.hpp"
+
+namespace trammel::driver {
+
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+
+namespace {
+
+card_map::Area area_of(unsigned unit) {
+  constexpr card_map::Area kAreas[kCaptureUnits] = {card_map::Area::Capture0, card_map::Area::Capture1,
+                                                    card_map::Area::Capture2, card_map::Area::Capture3};
+  return kAreas[unit];
+}
+
+CaptureStates states_of(std::uint32_t word) {
+  CaptureStates states;
+  for (unsigned n = 0; n < kCaptureUnits; ++n) {
+    const auto bit = [word, n](std::uint32_t shift) { return (word >> (shift + n) & 1) != 0; };
+    states.units[n] = {bit(field::kCaptureStatePendingShift), bit(field::kCaptureStateValidShift),
+                       bit(field::kCaptureStateOverrunShift), bit(field::kCaptureStateActiveShift)};
+  }
+  states.snapshots = static_cast<std::uint16_t>(word >> field::kCaptureStateSnapshotsShift);
+  return states;
+}
+
+}  // namespace
+
+unsigned Card::captures_present() const {
+  const card_map::Descriptor* unit = identification().units.find(card_map::unit::kCaptures);
+  return unit == nullptr ? 0 : std::min<unsigned>(unit->instances, kCaptureUnits);
+}
+
+void Card::check_capture(unsigned unit) const {
+  if (unit < captures_present()) return;
+  throw ArgumentError(fmt::format("capture unit {}: the card has {}", unit, captures_present()));
+}
+
+void Card::select_capture(unsigned unit, const CaptureSelect& select) {
+  check_capture(unit);
+  if (select.input >= inputs_present()) {
+    throw ArgumentError(
+        fmt::format("capture unit {}: input {}: the card has {} inputs", unit, select.input, inputs_present()));
+  }
+  const std::uint32_t word = select.input << field::kCaptureSelectInputNumberShift |
+                             (select.to_active ? field::kCaptureSelectToActive : 0) |
+                             (select.to_inactive ? field::kCaptureSelectToInactive : 0) |
+                             (select.continuous ? field::kCaptureSelectContinuous : 0);
+  parts_->registers.write(reg::capture_select(unit), word, "capture");
+}
+
+void Card::stop_capture(unsigned unit) {
+  check_capture(unit);
+  parts_->registers.write(reg::capture_select(unit), 0, "capture");
+}
+
+CaptureStates Card::read_captures() {
+  check_capture(0);
+  const std::uint32_t word = parts_->registers.read(reg::kCaptureState);
+  Registers::check_read({reg::kCaptureState, word});
+  return states_of(word);
+}
+
+std::optional<Capture> Card::take_capture(unsigned unit) {
+  check_capture(unit);
+  if (!read_captures().units[unit].valid) return std::nullopt;
+  Capture capture;
+  capture.at = parts_->snapshots.capture(area_of(unit));
+  const CaptureState state = read_captures().units[unit];
+  capture.active = state.active;
+  capture.overrun = state.overrun;
+  parts_->registers.write(reg::kCaptureClear, 1U << unit, "capture");
+  return capture;
+}
+
+Capture Card::wait_for_capture(unsigned unit, std::chrono::nanoseconds timeout) {
+  const std::uint64_t limit = clocks_of(timeout, timing().clock_hz, "waiting for a capture: timeout");
+  const std::uint64_t pause = poll_interval(timing().clock_hz);
+  for (std::uint64_t waited = 0;; waited += pause) {
+    if (std::optional<Capture> capture = take_capture(unit)) return *capture;
+    parts_->watchdog.look();
+    if (waited > limit) throw TimeoutError("waiting for a capture", waited);
+    if (interrupted()) throw InterruptedError("waiting for a capture: interrupted; the unit goes on watching");
+    bus().sleep(time_of(pause, timing().clock_hz));
+  }
+}
+
+}  // namespace trammel::driver

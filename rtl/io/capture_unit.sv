@@ -1,0 +1,115 @@
+// A capture unit: watches one input for an edge, and asks for its snapshot at the first raw change after quiet, before the
+// input's filter knows whether it lasts.
+//
+// An input is quiet when it has been at its filtered level for a whole length of its filter. The first touch counts:
+// whatever the input does behind it belongs to the same edge, until the filter passes (the snapshot is then a capture) or
+// the input is quiet again (the touch was a glitch, and nothing was captured). An input without a filter is always quiet,
+// and each of its edges passes in its own clock. A capture stays until it is cleared; edges that pass meanwhile are
+// overruns. While the snapshot of an edge that has passed is on its way, no edge counts.
+`default_nettype none
+
+module capture_unit (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [31:0] raw_i,  // levels of the inputs
+    input wire logic [31:0] level_i,  // behind their filters
+    input wire logic [31:0] quiet_i,  // registered
+    input wire logic select_i,  // event: the setting CAPTURE_SELECT comes in
+    input wire logic [31:0] setting_i,
+    input wire logic clear_i,  // event
+    input wire logic captured_i,  // event: the snapshot that was asked for is in the area
+    output logic ask_o,  // combinational: until captured_i, or until it is taken back
+    output logic pending_o,
+    output logic valid_o,
+    output logic overrun_o,
+    output logic active_o
+);
+  typedef enum logic [1:0] {
+    OFF,
+    LOOK,    // for quiet at the level before the edge
+    READY,
+    PENDING  // an edge has come
+  } state_e;
+
+  state_e       state_q;
+  logic   [4:0] input_q;
+  logic         to_active_q;
+  logic         to_inactive_q;
+  logic         continuous_q;
+  logic         old_q;  // the level before the edge
+  logic         lost_q;  // the edge has come while a capture stood
+  logic         confirmed_q;
+  logic         taken_q;
+
+  logic         raw;
+  logic         level;
+  logic         quiet;
+  logic         old;
+  logic         found;  // the input is quiet at a level that an edge may come from
+  logic         over;  // it was quiet again before its filter passed
+  logic         starts;
+  logic         touch;
+
+  assign raw   = raw_i[input_q];
+  assign level = level_i[input_q];
+  assign quiet = quiet_i[input_q];
+
+  always_comb begin
+    old = state_q == LOOK ? level : old_q;
+    found = state_q == LOOK && quiet && (level ? to_inactive_q : to_active_q);
+    over = state_q == PENDING && !confirmed_q && quiet && level == old_q;
+    starts = state_q == READY || found || over;
+    touch = starts && raw != old;
+    // What is still asked for is taken back for a clock, so that the snapshot under way does not pass for the next touch's.
+    if (select_i) ask_o = 1'b0;
+    else if (touch) ask_o = !valid_o && (!over || taken_q || lost_q);
+    else ask_o = state_q == PENDING && !over && !lost_q && !taken_q;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (clear_i) begin
+      valid_o   <= 1'b0;
+      overrun_o <= 1'b0;
+    end
+    taken_q <= taken_q || captured_i;
+    confirmed_q <= confirmed_q || level != old_q;
+    if (starts) begin
+      state_q <= touch ? PENDING : READY;
+      old_q <= old;
+      lost_q <= valid_o;
+      taken_q <= 1'b0;
+      confirmed_q <= level != old;
+    end else if (state_q == PENDING && confirmed_q && (taken_q || lost_q)) begin
+      state_q <= continuous_q ? LOOK : OFF;
+      if (lost_q) overrun_o <= 1'b1;
+      else begin
+        valid_o  <= 1'b1;
+        active_o <= !old_q;
+      end
+    end
+    if (select_i) begin
+      input_q <= setting_i[4:0];
+      to_active_q <= setting_i[card_map_pkg::BIT_CAPTURE_SELECT_TO_ACTIVE];
+      to_inactive_q <= setting_i[card_map_pkg::BIT_CAPTURE_SELECT_TO_INACTIVE];
+      continuous_q <= setting_i[card_map_pkg::BIT_CAPTURE_SELECT_CONTINUOUS];
+      state_q <= setting_i[card_map_pkg::BIT_CAPTURE_SELECT_TO_ACTIVE] ||
+          setting_i[card_map_pkg::BIT_CAPTURE_SELECT_TO_INACTIVE] ? LOOK : OFF;
+    end
+    if (select_i || rst_i) begin
+      valid_o   <= 1'b0;
+      overrun_o <= 1'b0;
+      active_o  <= 1'b0;
+    end
+    if (rst_i) begin
+      state_q <= OFF;
+      input_q <= '0;
+    end
+  end
+
+  assign pending_o = state_q == PENDING;
+
+  logic unused;
+  assign unused = &{1'b0, setting_i};
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,115 @@
+// The digital filter of the inputs: each has a length of its own, in scans of 64 clocks.
+//
+// A scan looks at one input every two clocks. An output changes when its input has differed from it at each clock of as
+// many whole scans as its length says: a level that lasts at most 64 * length clocks never passes, and one that lasts
+// 64 * (length + 1) always does. Between two scans of an input a flip-flop notes whether the level came back; without it
+// short pulses that a scan happens to meet would add up to a long one.
+// With Quiet, an input's flag says that it has stood at its output for as many whole scans: the same counter counts both
+// ways. It is set as the input passes, and falls in the clock after the input differs.
+// Lengths are 0 after reset. None may be set in the 64 clocks after it, while they are cleared.
+`default_nettype none
+
+module input_filter #(
+    parameter int Inputs = 8,  // 1 to 32
+    parameter int Quiet  = 0   // 0: without quiet_o
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [Inputs-1:0] levels_i,  // of this clock domain
+    input wire logic set_i,
+    input wire logic [4:0] set_input_i,
+    input wire logic [15:0] set_length_i,  // 65,535 scans: 20 ms at up to 209 MHz
+    output logic [Inputs-1:0] levels_o,
+    output logic [Inputs-1:0] quiet_o
+);
+  logic [ 5:0] clocks_q;  // of the scan
+  logic        clearing_q;
+  logic [15:0] length_read_q;
+  logic [15:0] length_q;
+  logic [15:0] count_read_q;
+  logic [15:0] count_q;  // scans for which the input has differed, or agreed
+  logic [31:0] differs;  // now
+  logic [31:0] differed_q;  // since its last scan
+
+  // The content of the RAMs comes two clocks after its address.
+  logic        decides;
+  logic [ 4:0] reads;
+  logic [ 4:0] scanned;
+
+  assign decides = !clocks_q[0];
+  assign reads   = clocks_q[5:1];
+  assign scanned = reads - 5'd1;
+
+  logic [31:0] agreed_q;  // likewise
+  logic [31:0] quiet_q;
+  logic        steady;
+  logic        lasts;
+  logic        passes;
+  logic [15:0] count;
+  logic [15:0] length;
+  logic [31:0] changes;
+
+  always_comb begin
+    differs = 32'(levels_i) ^ 32'(levels_o);
+    // It cannot overflow: an input passes, or is quiet, at the greatest length at the latest.
+    steady  = differs[scanned] ? differed_q[scanned] : agreed_q[scanned];
+    count   = !steady ? 16'd0 : quiet_q[scanned] ? count_q : count_q + 16'd1;
+    length  = clearing_q ? 16'd0 : length_q;
+    lasts   = decides && count >= length;
+    passes  = lasts && differs[scanned];
+    changes = passes ? 32'd1 << scanned : 32'd0;
+  end
+
+  always_ff @(posedge clk_i) begin
+    clocks_q <= clocks_q + 6'd1;
+    if (clocks_q == '1) clearing_q <= 1'b0;
+    levels_o   <= levels_o ^ changes[Inputs-1:0];
+    differed_q <= differs & ~changes & (differed_q | (decides ? 32'd1 << scanned : 32'd0));
+    if (rst_i) begin
+      clocks_q   <= '0;
+      clearing_q <= 1'b1;
+      levels_o   <= '0;
+      differed_q <= '0;
+    end
+  end
+
+  if (Quiet != 0) begin : gen_quiet
+    localparam logic [31:0] PRESENT = 32'hFFFF_FFFF >> (32 - Inputs);  // no flip-flops for the others
+
+    logic [31:0] looked_at;
+
+    assign looked_at = decides ? PRESENT & (32'd1 << scanned) : 32'd0;
+
+    always_ff @(posedge clk_i) begin
+      agreed_q <= (~differs | changes) & (agreed_q | looked_at);
+      quiet_q  <= (quiet_q & ~differs) | changes | (lasts && steady ? ~differs & looked_at : 32'd0);
+      if (rst_i) begin
+        agreed_q <= '0;
+        quiet_q  <= '0;
+      end
+    end
+  end else begin : gen_no_quiet
+    assign agreed_q = '0;
+    assign quiet_q  = '0;
+  end
+
+  assign quiet_o = quiet_q[Inputs-1:0];
+
+  logic [15:0] lengths[0:31];
+  logic [15:0] counts [0:31];
+
+  // Each RAM has one write port and one read port, with a register behind it.
+  always_ff @(posedge clk_i) begin
+    if (set_i || clearing_q) lengths[clearing_q?scanned : set_input_i] <= clearing_q ? 16'd0 : set_length_i;
+    length_read_q <= lengths[reads];
+    length_q <= length_read_q;
+  end
+
+  always_ff @(posedge clk_i) begin
+    if (decides) counts[scanned] <= count;
+    count_read_q <= counts[reads];
+    count_q <= count_read_q;
+  end
+endmodule
+
+`default_nettype wire

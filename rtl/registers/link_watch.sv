@@ -1,0 +1,82 @@
+// The watch over the link to the session that writes: the one whose word of the stream, or whose LINK_TIMEOUT, was
+// accepted last. Each access of it that is accepted starts the time of LINK_TIMEOUT anew; when that has passed, lost_o
+// rises and stays until LINK_TIMEOUT is written. Accesses of other ports, of a later session at its port, and those that
+// belong to no session count for nothing.
+//
+// The time passes between its units and one more: units are those of the time counter.
+`default_nettype none
+
+module link_watch (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic [register_access_pkg::WIDTH-1:0] access_i,
+    input wire logic [register_answer_pkg::WIDTH-1:0] answer_i,  // to it
+    input wire logic unit_i,  // a bit of the time counter that turns each unit
+    output logic gone_o,  // the session that wrote is no more: another one is at its port
+    output logic lost_o
+);
+  logic        ack;
+  logic        accepted;
+  logic        sets;  // LINK_TIMEOUT
+  logic        claims;
+  logic        feeds;
+  logic        at_port;  // of the writing session
+  logic        begins;  // there
+  logic [31:0] data;
+  logic [15:0] time_set;
+  logic        unit;
+  logic [15:0] left_d;
+  logic        none_left;
+  logic        unit_q;
+  logic [ 1:0] writer_q;
+  logic        written_q;  // there is, or was, one
+  logic [15:0] timeout_q;
+  logic        watches_q;
+  logic [15:0] left_q;
+
+  assign ack = answer_i[register_answer_pkg::ACK];
+  assign accepted = ack && !answer_i[register_answer_pkg::ERROR];
+  assign sets = setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_LINK_TIMEOUT);
+  assign claims = sets || (accepted && access_i[register_access_pkg::WRITE] && register_access_pkg::word(
+      access_i
+  ) == card_map_pkg::ADDR_STREAM[11:2]);
+  assign at_port = register_access_pkg::port(access_i) == writer_q && access_i[register_access_pkg::OF_SESSION];
+  assign begins = at_port && access_i[register_access_pkg::NEW_SESSION];
+  assign feeds = claims || (accepted && at_port && !begins && written_q && !gone_o);
+  assign data = setting_bus_pkg::data(setting_i);
+  assign time_set = data[15:0];
+  assign unit = unit_i != unit_q;
+  // One subtraction: its borrow is the comparison with 0.
+  assign {none_left, left_d} = {1'b0, left_q} - 17'd1;
+
+  always_ff @(posedge clk_i) begin
+    unit_q <= unit_i;
+    if (ack && begins && written_q) gone_o <= 1'b1;
+    if (claims) begin
+      writer_q <= register_access_pkg::port(access_i);
+      written_q <= 1'b1;
+      gone_o <= 1'b0;
+    end
+    if (feeds) left_q <= sets ? time_set : timeout_q;
+    else if (unit) left_q <= left_d;
+    if (watches_q && unit && none_left && !feeds) lost_o <= 1'b1;
+    if (sets) begin
+      timeout_q <= time_set;
+      watches_q <= time_set != 16'd0;
+      lost_o <= 1'b0;
+    end
+    if (rst_i) begin
+      unit_q <= 1'b0;
+      written_q <= 1'b0;
+      gone_o <= 1'b0;
+      watches_q <= 1'b0;
+      lost_o <= 1'b0;
+    end
+  end
+
+  logic unused;
+  assign unused = &{1'b0, data, access_i, answer_i};
+endmodule
+
+`default_nettype wire

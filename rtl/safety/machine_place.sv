@@ -1,0 +1,56 @@
+// Which axes stand where the host believes, POSITION_VALID, and which of them were homed, HOMED: the register PLACE. The
+// host writes both by SET_PLACE; the card clears them.
+//
+// An axis loses both at a fault of its drive; at a cut while it moves, and as its drive is disabled, unless KEEPS_PLACE names it. It moves from its
+// first step on until neither a piece nor a direct move is under way; at the ratio 0 it stands. So the cut that follows
+// a hold or the end of a ramp takes nothing away. A loss wins over a write in its clock: the host wrote before it could
+// know. A write in a later clock counts, so the host writes while the axes stand, when no cut takes anything away.
+`default_nettype none
+
+module machine_place #(
+    parameter int Axes = 4
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    input wire logic cut_i,  // event
+    input wire logic at_rest_i,  // the ratio is 0
+    input wire logic runs_i,  // a piece or a direct move is under way
+    input wire logic [Axes-1:0] step_i,  // steps on the path
+    input wire logic [Axes-1:0] drive_fault_i,  // levels
+    input wire logic [Axes-1:0] disabled_i,  // events: the drive is disabled
+    output logic [15:0] place_o  // the register PLACE
+);
+  logic [Axes-1:0] valid_q;
+  logic [Axes-1:0] homed_q;
+  logic [Axes-1:0] keeps_q;
+  logic [Axes-1:0] moved_q;  // a step since the motion under way began
+  logic [Axes-1:0] moved;
+  logic [Axes-1:0] lost;
+  logic [Axes-1:0] written;
+  logic [    31:0] data;
+
+  assign data = setting_bus_pkg::data(setting_i);
+  assign written = setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_SET_PLACE) ? data[16+:Axes] : '0;
+  assign moved = runs_i ? moved_q | step_i : '0;
+  assign lost = drive_fault_i | ((disabled_i | (cut_i && !at_rest_i ? moved : '0)) & ~keeps_q);
+  assign place_o = {8'(homed_q), 8'(valid_q)};
+
+  always_ff @(posedge clk_i) begin
+    moved_q <= moved;
+    if (setting_bus_pkg::writes(setting_i, card_map_pkg::ADDR_KEEPS_PLACE)) keeps_q <= data[Axes-1:0];
+    valid_q <= ((valid_q & ~written) | (data[0] ? written : '0)) & ~lost;
+    homed_q <= ((homed_q & ~written) | (data[1] ? written : '0)) & ~lost;
+    if (rst_i) begin
+      moved_q <= '0;
+      keeps_q <= card_map_pkg::RESET_KEEPS_PLACE[Axes-1:0];
+      valid_q <= '0;
+      homed_q <= '0;
+    end
+  end
+
+  logic unused;  // absent axes
+  assign unused = &{1'b0, data};
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,104 @@
+// Filters, roles and stops of the card's inputs: what the driver writes, how it rounds, and what it refuses before.
+#include <gmock/gmock.h>
+
+#include "argument_error.hpp"
+#include "register_stub.hpp"
+#include "trammel/card_map.hpp"
+#include "trammel/driver/card.hpp"
+#include "trammel/sim/engine.hpp"
+
+namespace trammel::driver {
+namespace {
+
+using namespace std::chrono_literals;
+using test::RegisterStub;
+using ::testing::HasSubstr;
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+
+TEST(CardInputs, FiltersRoundUpToScansOf64Clocks) {
+  EXPECT_EQ(Card::filter_scans(0ns, 100'000'000), 0U);
+  EXPECT_EQ(Card::filter_scans(1ns, 100'000'000), 1U);
+  EXPECT_EQ(Card::filter_scans(640ns, 100'000'000), 1U);
+  EXPECT_EQ(Card::filter_scans(641ns, 100'000'000), 2U);
+  EXPECT_EQ(Card::filter_scans(20ms, 100'000'000), 31'250U);
+  EXPECT_EQ(Card::filter_scans(20ms, 209'000'000), 65'313U);
+  EXPECT_THAT(argument_error([] { Card::filter_scans(20ms, 210'000'000); }), HasSubstr("at most 65535"));
+  EXPECT_THAT(argument_error([] { Card::filter_scans(-1ns, 1'000'000); }), HasSubstr("input filter"));
+}
+
+class CardInputsOnModel : public ::testing::Test {
+ protected:
+  std::unique_ptr<sim::Engine> engine_ = sim::make_model_engine({});
+  Card card_ = Card::open(*engine_);
+};
+
+TEST_F(CardInputsOnModel, WhatIsWrittenReadsBack) {
+  card_.set_input_filter(15, 100us);
+  EXPECT_EQ(engine_->read(reg::input_filter(15)), 2U);
+  EXPECT_EQ(card_.read_input_filter(15), 128us);
+  card_.set_role({AxisRole::kDriveFault, 3}, 0x8001);
+  EXPECT_EQ(engine_->read(reg::role(35)), 0x8001U);
+  EXPECT_EQ(card_.read_role({AxisRole::kDriveFault, 3}), 0x8001U);
+  card_.set_role(CardRole::kCycleStart, 2);
+  EXPECT_EQ(engine_->read(reg::role(51)), 2U);
+  card_.set_overtravel(2, 77);
+  EXPECT_EQ(engine_->read(reg::overtravel(2)), 77U);
+  InputStops stops;
+  stops.any_step = 3;
+  stops.shared = 4;
+  stops.tool_setter = true;
+  stops.limit_ramps = true;
+  stops.drive_fault_ramps = false;
+  card_.set_input_stops(stops);
+  EXPECT_EQ(engine_->read(reg::kStopCauses), 0x40403U);
+  constexpr std::uint32_t kUntouched =
+      field::kStopReactionWatchdog | field::kStopReactionLinkLoss | field::kStopReactionSoftLimit;
+  EXPECT_EQ(engine_->read(reg::kStopReaction),
+            kUntouched | field::kStopReactionLimit | field::kStopReactionProbe | field::kStopReactionToolSetter);
+}
+
+TEST_F(CardInputsOnModel, RolesFollowTheirInputs) {
+  card_.set_role({AxisRole::kLimitMinus, 1}, 4);
+  card_.set_role(CardRole::kFeedHold, 8);
+  engine_->set_inputs(4);
+  engine_->wait(200);
+  EXPECT_EQ(card_.read_roles().limit_minus, 2);
+  EXPECT_FALSE(card_.read_roles().feed_hold);
+  engine_->set_inputs(8);
+  engine_->wait(200);
+  EXPECT_EQ(card_.read_roles().limit_minus, 0);
+  EXPECT_TRUE(card_.read_roles().feed_hold);
+  // A filter of 10 scans.
+  card_.set_input_filter(3, 640us);
+  engine_->set_inputs(0);
+  engine_->wait(600);
+  EXPECT_EQ(card_.read_raw_inputs(), 0U);
+  EXPECT_EQ(card_.read_inputs(), 8U);
+  engine_->wait(200);
+  EXPECT_EQ(card_.read_inputs(), 0U);
+}
+
+TEST_F(CardInputsOnModel, BadArgumentsAreNamed) {
+  EXPECT_THAT(argument_error([&] { card_.set_input_filter(16, 0ns); }), HasSubstr("the card has 16 inputs"));
+  EXPECT_THAT(argument_error([&] {
+                card_.set_role({AxisRole::kHome, 4}, 1);
+              }),
+              HasSubstr("home of axis 4: the card has 4 axes"));
+  EXPECT_THAT(argument_error([&] { card_.set_role(CardRole::kToolSetter, 0x10000); }),
+              HasSubstr("inputs of tool setter: 0x10000: the card has 16 inputs"));
+  EXPECT_THAT(argument_error([&] { card_.set_overtravel(0, 65'536); }), HasSubstr("0 .. 65535"));
+  EXPECT_THAT(argument_error([&] { card_.override_limits(0, 0x10); }), HasSubstr("the card has 4 axes"));
+}
+
+TEST(CardInputs, ACardWithoutThemSaysSo) {
+  sim::ModelOptions options;
+  options.engines = 0x6F3;
+  const auto engine = sim::make_model_engine(options);
+  Card card = Card::open(*engine);
+  EXPECT_THAT(argument_error([&] { card.set_role(CardRole::kFeedHold, 1); }), HasSubstr("machine_inputs"));
+  EXPECT_THAT(argument_error([&] { card.read_raw_inputs(); }), HasSubstr("machine_inputs"));
+}
+
+}  // namespace
+}  // namespace trammel::driver

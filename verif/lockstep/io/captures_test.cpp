@@ -1,0 +1,150 @@
+// Lockstep of the capture units: any levels at all, and levels that bounce behind real filters with snapshots that come
+// late; selections, clears and resets at any clock. Every output in every cycle.
+#include "trammel/model/captures.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+
+#include "trammel/model/input_filter.hpp"
+#include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+namespace reg = card_map::reg;
+namespace field = card_map::field;
+
+constexpr unsigned kUnits = TRAMMEL_CAPTURES;
+constexpr std::uint64_t kComparedSignals = 2;
+
+class Bench {
+ public:
+  using Inputs = model::Captures::Inputs;
+
+  explicit Bench(std::uint64_t seed) : check_("captures", seed) { reset(); }
+
+  void reset() {
+    check_.event("reset");
+    drive({});
+    dut_->rst_i = 1;
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::Captures(kUnits);
+    compare({});
+  }
+
+  // Both must give the same in the clock itself, too.
+  void clock(const Inputs& in) {
+    if (in.setting.set) check_.event("setting", std::uint64_t{in.setting.address} << 32 | in.setting.data);
+    drive(in);
+    dut_.clock();
+    model_.clock(in);
+    compare(in);
+    const std::uint32_t now = model_.word();
+    const std::uint32_t rises = now & ~word_;
+    valid_ += (rises & field::kCaptureStateValid) != 0 ? 1U : 0U;
+    overruns_ += (rises & field::kCaptureStateOverrun) != 0 ? 1U : 0U;
+    touches_ += (rises & field::kCaptureStatePending) != 0 ? 1U : 0U;
+    word_ = now;
+  }
+
+  std::uint8_t asks(const Inputs& in) const { return model_.asks(in); }
+  const Checker& check() const { return check_; }
+  std::uint64_t valid() const { return valid_; }
+  std::uint64_t overruns() const { return overruns_; }
+  std::uint64_t touches() const { return touches_; }
+
+ private:
+  void drive(const Inputs& in) {
+    put_inputs(dut_->inputs_i, in.levels, in.raw, in.quiet);
+    dut_->setting_i = wire(in.setting);
+    dut_->captured_i = in.captured;
+  }
+  void compare(const Inputs& in) {
+    check_.next_cycle();
+    check_.compare("ask_o", dut_->ask_o, model_.asks(in));
+    check_.compare("state_o", dut_->state_o, model_.word());
+  }
+
+  Simulated<Vdut> dut_;
+  model::Captures model_{kUnits};
+  Checker check_;
+  std::uint32_t word_ = 0;
+  std::uint64_t valid_ = 0, overruns_ = 0, touches_ = 0;
+};
+
+// Of the first inputs, so that units often share one.
+model::Setting random_setting(Dice& dice, unsigned inputs) {
+  if (dice.chance(2)) return {true, reg::kCaptureClear, dice.below(16)};
+  const std::uint32_t edges = dice.chance(8) ? 0 : (1 + dice.below(3)) << 8;
+  const std::uint32_t continuous = dice.chance(3) ? 0 : field::kCaptureSelectContinuous;
+  return {true, reg::capture_select(dice.below(4)), dice.below(inputs) | edges | continuous};
+}
+
+// Levels, quiet and snapshots in any order, also such as no filter gives.
+void any_levels() {
+  const std::uint64_t seed = seed_from_environment(20261127);
+  Bench bench(seed);
+  Dice dice(seed);
+  const std::uint64_t length = scaled(600'000);
+  Bench::Inputs in;
+  for (std::uint64_t i = 0; i < length; ++i) {
+    if (dice.chance(3)) in.raw ^= dice.draw() & dice.draw();
+    if (dice.chance(4)) in.levels ^= (in.raw ^ in.levels) & dice.draw();
+    if (dice.chance(3)) in.quiet = dice.draw();
+    in.setting = dice.chance(60) ? random_setting(dice, 32) : model::Setting{};
+    // The units that are told have asked in this clock.
+    in.captured = static_cast<std::uint8_t>(dice.chance(4) ? bench.asks(in) & dice.draw() : 0);
+    bench.clock(in);
+    if (dice.chance(30'000)) bench.reset();
+  }
+  EXPECT_GT(bench.valid(), length / 200);
+  EXPECT_GT(bench.overruns(), length / 2000);
+  EXPECT_GT(bench.touches(), bench.valid());
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * bench.check().cycles());
+}
+
+// Inputs that stand and bounce, of which every other one has a filter; the writer takes one snapshot after another.
+void bouncing_inputs() {
+  constexpr unsigned kInputs = 6;
+  const std::uint64_t seed = seed_from_environment(20261128);
+  Bench bench(seed);
+  Dice dice(seed);
+  model::InputFilter filter(true);
+  for (unsigned i = 0; i < model::InputFilter::kScanClocks; ++i) filter.clock({});
+  for (unsigned n = 0; n < kInputs; ++n) filter.clock({0, true, n, static_cast<std::uint16_t>(n)});
+  const std::uint32_t with_filter = 0x2A;
+  std::array<std::uint64_t, kInputs> left{};
+  unsigned writing = 0;
+  const std::uint64_t length = scaled(600'000);
+  Bench::Inputs in;
+  for (std::uint64_t i = 0; i < length; ++i) {
+    for (unsigned n = 0; n < kInputs; ++n) {
+      if (left[n]-- != 0) continue;
+      in.raw ^= std::uint32_t{1} << n;
+      left[n] = dice.chance(3) ? dice.below(800) : dice.below(dice.chance(2) ? 8 : 100);
+    }
+    in.levels = (filter.levels() & with_filter) | (in.raw & ~with_filter);
+    in.quiet = filter.quiet() | ~with_filter;
+    in.setting = dice.chance(150) ? random_setting(dice, kInputs) : model::Setting{};
+    const unsigned asks = bench.asks(in);
+    if (writing == 0 && asks != 0) writing = 12 + dice.below(dice.chance(4) ? 100 : 8);
+    in.captured = 0;
+    if (writing != 0 && --writing == 0) in.captured = static_cast<std::uint8_t>(asks & (0U - asks));
+    bench.clock(in);
+    filter.clock({in.raw});
+  }
+  EXPECT_GT(bench.valid(), length / 1000);
+  EXPECT_GT(bench.overruns(), length / 10'000);
+  EXPECT_GT(bench.touches(), 2 * bench.valid());
+}
+
+TEST(Captures, AnyLevels) { EXPECT_EQ(judge(any_levels), ""); }
+TEST(Captures, BouncingInputs) { EXPECT_EQ(judge(bouncing_inputs), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep

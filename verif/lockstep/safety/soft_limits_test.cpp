@@ -1,0 +1,153 @@
+// Lockstep of the soft limits: axes that go to and fro around their ends, with pulses as close as a shaper makes them,
+// ends that are moved meanwhile, and positions across the carry of 2^31 and of 2^32; every output in every cycle.
+#include "trammel/model/soft_limits.hpp"
+
+#include <Vdut.h>
+#include <gtest/gtest.h>
+
+#include "trammel/sim/lockstep.hpp"
+#include "wires.hpp"
+
+namespace trammel::lockstep {
+namespace {
+
+namespace reg = card_map::reg;
+
+constexpr unsigned kAxes = TRAMMEL_AXES;
+constexpr std::uint64_t kComparedSignals = 2;
+constexpr unsigned kClearing = 16;  // clocks after reset
+constexpr unsigned kSameWay = 6;    // clocks between two pulses at the least
+constexpr unsigned kTurned = 13;
+
+class Bench {
+ public:
+  using Inputs = model::SoftLimits::Inputs;
+
+  explicit Bench(std::uint64_t seed) : check_("soft_limits", seed) { reset({}); }
+
+  void reset(Inputs in) {
+    check_.event("reset");
+    dut_->rst_i = 1;
+    in.position = {};
+    apply(in);
+    dut_.clock();
+    dut_->rst_i = 0;
+    model_ = model::SoftLimits(kAxes);
+    compare();
+    for (unsigned i = 0; i < kClearing; ++i) clock({});
+  }
+
+  void clock(const Inputs& in) {
+    if (in.counts != 0) check_.event("pulses, backwards", std::uint64_t{in.counts} << 8 | in.back);
+    if (in.setting.set) check_.event("setting", std::uint64_t{in.setting.address} << 32 | in.setting.data);
+    if (in.clear) check_.event("clear");
+    apply(in);
+    dut_.clock();
+    model_.clock(in);
+    compare();
+    causes_ += model_.cause() ? 1U : 0U;
+  }
+
+  Checker& check() { return check_; }
+  std::uint64_t causes() const { return causes_; }
+
+ private:
+  void apply(const Inputs& in) {
+    using namespace bus::axis_observe;
+    dut_->setting_i = wire(in.setting);
+    dut_->clear_i = in.clear;
+    for (unsigned n = 0; n < kAxes; ++n) {
+      put(dut_->axes_i, up(kPosition, kWidth * n), in.position[n]);
+      put(dut_->axes_i, up(kCounts, kWidth * n), in.counts >> n & 1);
+      put(dut_->axes_i, up(kCountsBack, kWidth * n), in.back >> n & 1);
+    }
+  }
+
+  void compare() {
+    check_.next_cycle();
+    check_.compare("cause_o", dut_->cause_o, model_.cause());
+    check_.compare("state_o", dut_->state_o, model_.limit_state() >> card_map::field::kLimitStateSoftAxisShift);
+  }
+
+  Simulated<Vdut> dut_;
+  model::SoftLimits model_{kAxes};
+  Checker check_;
+  std::uint64_t causes_ = 0;
+};
+
+// An axis's pulses, as its shaper would make them.
+struct Mover {
+  std::uint32_t position = 0;
+  bool back = false;
+  unsigned since = kTurned;
+
+  // A pulse, or none.
+  bool pulse(Dice& dice, bool quick) {
+    ++since;
+    if (since < kSameWay || !dice.chance(quick ? 2 : 30)) return false;
+    const bool turns = dice.chance(6);
+    if (turns && since < kTurned) return false;
+    if (turns) back = !back;
+    since = 0;
+    return true;
+  }
+  void count() { position += back ? ~std::uint32_t{0} : 1U; }
+};
+
+model::Setting random_setting(Dice& dice, const std::array<Mover, kAxes>& axes) {
+  const unsigned axis = dice.below(kAxes);
+  const std::uint32_t here = axes[axis].position;
+  switch (dice.below(5)) {
+    case 0:
+      return {true, reg::kSoftLimits, dice.draw() & 0xFF};
+    case 1:
+      return {true, reg::soft_minus(axis), dice.chance(20) ? here + 0x80000001 : here - dice.below(5)};
+    case 2:
+      return {true, reg::soft_plus(axis), dice.chance(20) ? here + 0x7FFFFFFF : here + dice.below(5)};
+    case 3:
+      return {true, dice.chance(2) ? reg::kLimitOverride : reg::mode(axis), dice.draw()};
+    default:
+      return {true, reg::machine_zero(axis), dice.draw()};
+  }
+}
+
+void random_courses() {
+  const std::uint64_t seed = seed_from_environment(20261127);
+  Bench bench(seed);
+  Dice dice(seed);
+  const std::uint64_t length = scaled(600'000);
+  std::array<Mover, kAxes> axes;
+  std::uint64_t cycles = 1 + kClearing;
+  bool quick = true;
+  for (std::uint64_t i = 0; i < length; ++i) {
+    Bench::Inputs in;
+    for (unsigned n = 0; n < kAxes; ++n) {
+      in.position[n] = axes[n].position;
+      if (!axes[n].pulse(dice, quick)) continue;
+      in.counts |= static_cast<std::uint8_t>(1U << n);
+      if (axes[n].back) in.back |= static_cast<std::uint8_t>(1U << n);
+    }
+    in.clear = dice.chance(9);
+    if (dice.chance(20)) in.setting = random_setting(dice, axes);
+    ++cycles;
+    if (dice.chance(5'000)) {
+      bench.reset(in);
+      cycles += kClearing;
+      quick = dice.chance(2);
+      for (Mover& axis : axes) axis = {dice.chance(2) ? 0x7FFFFFFC + dice.below(8) : dice.below(8) - 4, false, kTurned};
+      continue;
+    }
+    bench.clock(in);
+    for (unsigned n = 0; n < kAxes; ++n) {
+      if ((in.counts >> n & 1) != 0) axes[n].count();
+    }
+  }
+  EXPECT_EQ(bench.check().cycles(), cycles);
+  EXPECT_EQ(bench.check().comparisons(), kComparedSignals * cycles);
+  EXPECT_GT(bench.causes(), length / 100);
+}
+
+TEST(SoftLimits, RandomCourses) { EXPECT_EQ(judge(random_courses), ""); }
+
+}  // namespace
+}  // namespace trammel::lockstep
