@@ -43,8 +43,11 @@ axis/wait_timer.sv
 axis/waiting_steps.sv
 card/busy_timer.sv
 card/card_core.sv
+card/card_parameters.sv
 card/card_with_ports.sv
+card/drives_part.sv
 card/geometry_part.sv
+card/inputs_part.sv
 card/motion_core.sv
 card/motion_part.sv
 card/time_part.sv

@@ -46,47 +46,6 @@ module card_core #(
     // for lockstep; a board leaves it open
     output logic [observe_pkg::WIDTH+axis_observe_pkg::WIDTH*Axes-1:0] observe_o
 );
-  // A parameter out of its range stops every reader here: there is no module of this name, and the name says why.
-  if (Axes < 1 || Axes > 8) begin : gen_wrong_axes
-    ERROR_Axes_must_be_1_to_8 error ();
-  end
-  if (GeometryDepth < 2 || GeometryDepth > 32768 || FeedDepth < 2 || FeedDepth > 32768) begin : gen_wrong_depth
-    ERROR_GeometryDepth_and_FeedDepth_must_be_2_to_32768 error ();
-  end
-  if (Ports < 1 || Ports > 4) begin : gen_wrong_ports
-    ERROR_Ports_must_be_1_to_4 error ();
-  end
-
-  if (Inputs < 1 || Inputs > 32 || Outputs < 1 || Outputs > 16) begin : gen_wrong_pins
-    ERROR_Inputs_must_be_1_to_32_and_Outputs_1_to_16 error ();
-  end
-  localparam int FLAGS = Accumulator | EightDirections | ArcGenerator | DirectMode | UnderrunHold | Classes |
-      Watermarks | PathCommands | PositionStreaming | MachineInputs | EmergencyStop | Enables | SoftLimits | BuildDirty;
-  if (FLAGS != 0 && FLAGS != 1) begin : gen_wrong_flag
-    ERROR_engines_and_BuildDirty_must_be_0_or_1 error ();
-  end
-  if (EightDirections != 0 && Accumulator == 0) begin : gen_wrong_accumulator
-    ERROR_EightDirections_needs_Accumulator error ();
-  end
-
-  if (MachineInputs == 1 && PathCommands == 0) begin : gen_wrong_machine_inputs
-    ERROR_MachineInputs_needs_PathCommands error ();
-  end
-  if (SoftLimits == 1 && MachineInputs == 0) begin : gen_wrong_soft_limits
-    ERROR_SoftLimits_needs_MachineInputs error ();
-  end
-
-  if (Captures < 0 || Captures > 4) begin : gen_wrong_captures
-    ERROR_Captures_must_be_0_to_4 error ();
-  end
-  if (Captures != 0 && MachineInputs == 0) begin : gen_captures_without_inputs
-    ERROR_Captures_needs_MachineInputs error ();
-  end
-
-  if (Enables == 1 && PathCommands == 0) begin : gen_wrong_enables
-    ERROR_Enables_needs_PathCommands error ();
-  end
-
   localparam logic [31:0] ENGINES = 32'd1 << card_map_pkg::ENGINE_LINES |
       32'(Accumulator != 0) << card_map_pkg::ENGINE_ACCUMULATOR |
       32'(EightDirections != 0) << card_map_pkg::ENGINE_ACCUMULATOR_8 |
@@ -100,6 +59,20 @@ module card_core #(
       32'(Captures != 0) << card_map_pkg::ENGINE_CAPTURES |
       32'(EmergencyStop != 0) << card_map_pkg::ENGINE_EMERGENCY_STOP |
       32'(Enables != 0) << card_map_pkg::ENGINE_ENABLES | 32'(SoftLimits != 0) << card_map_pkg::ENGINE_SOFT_LIMITS;
+  localparam int FLAGS = Accumulator | EightDirections | ArcGenerator | DirectMode | UnderrunHold | Classes |
+      Watermarks | PathCommands | PositionStreaming | MachineInputs | EmergencyStop | Enables | SoftLimits | BuildDirty;
+
+  card_parameters #(
+      .Axes(Axes),
+      .Engines(ENGINES),
+      .Flags(FLAGS),
+      .GeometryDepth(GeometryDepth),
+      .FeedDepth(FeedDepth),
+      .Captures(Captures),
+      .Inputs(Inputs),
+      .Outputs(Outputs),
+      .Ports(Ports)
+  ) checked ();
 
   // between registers and stream
   logic [setting_bus_pkg::WIDTH-1:0] setting;
@@ -218,56 +191,27 @@ module card_core #(
       .feed_read_i(feed_read)
   );
 
-  card_inputs #(
+  inputs_part #(
       .Axes(Axes),
       .Engines(ENGINES),
+      .Captures(Captures),
       .Inputs(Inputs)
-  ) machine_inputs (
+  ) from_machine (
       .clk_i,
       .rst_i,
       .setting_i(setting),
       .pin_i(input_i),
       .inputs_o(inputs),
-      .roles_o(roles)
+      .roles_o(roles),
+      .captured_i(captured),
+      .capture_o(capture),
+      .capture_state_o(capture_state),
+      .emergency_stop_i,
+      .emergency_stop_level_i,
+      .clear_fault_i(clear_fault),
+      .latched_o(emergency_latched),
+      .emergency_o(emergency)
   );
-
-  if (Captures != 0) begin : gen_captures
-    captures #(
-        .Captures(Captures)
-    ) of_edges (
-        .clk_i,
-        .rst_i,
-        .setting_i(setting),
-        .inputs_i(inputs),
-        .captured_i(captured),
-        .ask_o(capture),
-        .state_o(capture_state)
-    );
-  end else begin : gen_no_captures
-    assign capture = '0;
-    assign capture_state = '0;
-
-    logic unused;
-    assign unused = &{1'b0, captured};
-  end
-
-  if (EmergencyStop == 1) begin : gen_emergency_stop
-    emergency_stop pin (
-        .clk_i,
-        .rst_i,
-        .pin_i(emergency_stop_i),
-        .level_i(emergency_stop_level_i),
-        .clear_i(clear_fault[card_map_pkg::BIT_FAULT_EMERGENCY_STOP]),
-        .latched_o(emergency_latched),
-        .stop_o(emergency)
-    );
-  end else begin : gen_no_emergency_stop
-    assign emergency = 1'b0;
-    assign emergency_latched = 1'b0;
-
-    logic unused;
-    assign unused = &{1'b0, emergency_stop_i, emergency_stop_level_i};
-  end
 
   motion_core #(
       .Axes(Axes),

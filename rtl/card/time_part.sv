@@ -147,44 +147,28 @@ module time_part #(
     assign unused = &{1'b0, axes_i};
   end
 
-  if (Engines[card_map_pkg::ENGINE_ENABLES]) begin : gen_enables
-    drive_enable #(
-        .Axes(Axes)
-    ) drives (
-        .clk_i,
-        .rst_i,
-        .setting_i,
-        .moves_i(path_i[path_pkg::TAKING] || direct_active_i),
-        .busy_i,
-        .emergency_i(emergency_stop_i),
-        .fault_i(time_state_o[time_state_pkg::FAULT+:32]),
-        .enabled_o(feed_o[feed_pkg::ENABLED]),
-        .released_o(feed_o[feed_pkg::RELEASED]),
-        .wait_o(enable_wait),
-        .waiting_o(time_state_o[time_state_pkg::ENABLE_WAITS]),
-        .disabled_o(disabled)
-    );
+  drives_part #(
+      .Axes   (Axes),
+      .Engines(Engines)
+  ) drives (
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .moves_i(path_i[path_pkg::TAKING] || direct_active_i),
+      .busy_i,
+      .emergency_i(emergency_stop_i),
+      .fault_i(time_state_o[time_state_pkg::FAULT+:32]),
+      .fed_i(fed),
+      .enabled_o(feed_o[feed_pkg::ENABLED]),
+      .released_o(feed_o[feed_pkg::RELEASED]),
+      .healthy_o(feed_o[feed_pkg::HEALTHY]),
+      .pump_o(feed_o[feed_pkg::PUMP]),
+      .wait_o(enable_wait),
+      .waiting_o(time_state_o[time_state_pkg::ENABLE_WAITS]),
+      .disabled_o(disabled)
+  );
 
-    card_health health (
-        .clk_i,
-        .rst_i,
-        .setting_i,
-        .fault_i(time_state_o[time_state_pkg::FAULT+:32]),
-        .fed_i(fed),
-        .healthy_o(feed_o[feed_pkg::HEALTHY]),
-        .pump_o(feed_o[feed_pkg::PUMP])
-    );
-
-    assign time_state_o[time_state_pkg::ENABLED] = feed_o[feed_pkg::ENABLED];
-  end else begin : gen_no_enables
-    assign enable_wait = 1'b0;
-    assign disabled = '0;
-    assign feed_o[feed_pkg::PUMP:feed_pkg::ENABLED] = '0;
-    assign time_state_o[time_state_pkg::ENABLE_WAITS:time_state_pkg::ENABLED] = '0;
-
-    logic unused;
-    assign unused = &{1'b0, fed};
-  end
+  assign time_state_o[time_state_pkg::ENABLED] = feed_o[feed_pkg::ENABLED];
 
   machine_place #(
       .Axes(Axes)

@@ -1,0 +1,82 @@
+// The inputs part: what the card hears from the machine. Levels and roles of the inputs, captures of their edges, and the
+// emergency stop, whose latch needs no clock.
+`default_nettype none
+module inputs_part #(
+    parameter int          Axes     = 4,
+    parameter logic [31:0] Engines  = '1,  // what is built in: bits card_map_pkg::ENGINE_*
+    parameter int          Captures = 4,   // 0 to 4 units
+    parameter int          Inputs   = 4    // 1 to 32
+) (
+    input wire logic clk_i,
+    input wire logic rst_i,
+    input wire logic [setting_bus_pkg::WIDTH-1:0] setting_i,
+    // inputs
+    input wire logic [Inputs-1:0] pin_i,
+    output logic [input_levels_pkg::WIDTH-1:0] inputs_o,
+    output logic [input_roles_pkg::WIDTH-1:0] roles_o,
+    // captures, a bit a unit
+    input wire logic [3:0] captured_i,  // events: its snapshot is complete
+    output logic [3:0] capture_o,  // a snapshot is wanted
+    output logic [31:0] capture_state_o,
+    // the emergency stop
+    input wire logic emergency_stop_i,
+    input wire logic emergency_stop_level_i,  // strap: the level that means stop
+    input wire logic [31:0] clear_fault_i,  // ones written to FAULT
+    output logic latched_o,  // its latch: asynchronous
+    output logic emergency_o  // level: the cause
+);
+  card_inputs #(
+      .Axes(Axes),
+      .Engines(Engines),
+      .Inputs(Inputs)
+  ) of_machine (
+      .clk_i,
+      .rst_i,
+      .setting_i,
+      .pin_i,
+      .inputs_o,
+      .roles_o
+  );
+
+  if (Captures != 0) begin : gen_captures
+    captures #(
+        .Captures(Captures)
+    ) of_edges (
+        .clk_i,
+        .rst_i,
+        .setting_i,
+        .inputs_i(inputs_o),
+        .captured_i,
+        .ask_o(capture_o),
+        .state_o(capture_state_o)
+    );
+  end else begin : gen_no_captures
+    assign capture_o = '0;
+    assign capture_state_o = '0;
+
+    logic unused;
+    assign unused = &{1'b0, captured_i};
+  end
+
+  if (Engines[card_map_pkg::ENGINE_EMERGENCY_STOP]) begin : gen_emergency_stop
+    emergency_stop pin (
+        .clk_i,
+        .rst_i,
+        .pin_i  (emergency_stop_i),
+        .level_i(emergency_stop_level_i),
+        .clear_i(clear_fault_i[card_map_pkg::BIT_FAULT_EMERGENCY_STOP]),
+        .latched_o,
+        .stop_o (emergency_o)
+    );
+
+    logic unused;  // the other causes are stop_control's
+    assign unused = &{1'b0, clear_fault_i};
+  end else begin : gen_no_emergency_stop
+    assign emergency_o = 1'b0;
+    assign latched_o   = 1'b0;
+
+    logic unused;
+    assign unused = &{1'b0, emergency_stop_i, emergency_stop_level_i, clear_fault_i};
+  end
+endmodule
+`default_nettype wire
