@@ -15,6 +15,7 @@
 #include "common/temporary_files.hpp"
 #include "common/terminal.hpp"
 #include "compare/compare_command.hpp"
+#include "home/home_command.hpp"
 #include "info/info_command.hpp"
 #include "jog/jog_command.hpp"
 #include "line/line_command.hpp"
@@ -66,6 +67,7 @@ int run_command_line(int argc, char** argv, const char* version) {
   add_run_command(app);
   add_line_command(app);
   add_jog_command(app);
+  add_home_command(app);
   add_info_command(app);
   add_card_commands(app);
   add_place_commands(app);

@@ -9,6 +9,7 @@
 #include <toml.hpp>
 
 #include "machine_checks.hpp"
+#include "machine_homing.hpp"
 #include "machine_inputs.hpp"
 #include "numbers.hpp"
 #include "text.hpp"
@@ -419,8 +420,8 @@ toml::value parse(const Source& source, const std::string& text) {
   }
 }
 
-constexpr std::array<const char*, 8> kTables = {"card",    "axis",  "kinematics", "motion",
-                                                "outputs", "tools", "probe",      "inputs"};
+constexpr std::array<const char*, 9> kTables = {"card",  "axis",  "kinematics", "motion", "outputs",
+                                                "tools", "probe", "inputs",     "homing"};
 
 void check_top_level(const Source& source, const toml::table& root) {
   for (const auto& [key, value] : root) {
@@ -459,6 +460,7 @@ bool set_tables(const Source& source, Machine& machine, const toml::table& root)
   set("tools", [&](const toml::table& tools) { set_tools(source, machine, tools); });
   set("probe", [&](const toml::table& probe) { set_probe(source, machine.probe, probe); });
   set("inputs", [&](const toml::table& inputs) { set_inputs(source, machine, inputs); });
+  set("homing", [&](const toml::table& axes) { set_homing(source, machine, axes); });
   return any;
 }
 
@@ -470,6 +472,7 @@ void check(const std::string& where, const Machine& machine) {
   check_soft_limits(where, machine);
   check_outputs(where, machine.outputs);
   check_inputs(machine);
+  check_homing(machine);
 }
 
 }  // namespace

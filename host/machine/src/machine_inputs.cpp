@@ -30,6 +30,7 @@ constexpr std::array<AxisKey, 6> kAxisKeys{{{"limit_minus", AxisRole::kLimitMinu
                                             {"drive_fault", AxisRole::kDriveFault},
                                             {"in_position", AxisRole::kInPosition}}};
 constexpr const char* kBothLimits = "limit";
+constexpr const char* kSecondHome = "second_home";  // of an axis's second motor
 
 struct CardKey {
   const char* name;
@@ -49,6 +50,7 @@ std::vector<std::string> known_keys(const Machine& machine) {
     const std::string letter(1, static_cast<char>(std::tolower(static_cast<unsigned char>(axis.letter))));
     for (const AxisKey& key : kAxisKeys) names.push_back(letter + "_" + key.name);
     names.push_back(letter + "_" + kBothLimits);
+    if (axis.second_motor) names.push_back(letter + "_" + kSecondHome);
   }
   return names;
 }
@@ -63,6 +65,11 @@ std::vector<Role> roles_of(const Machine& machine, const std::string& key) {
   if (!axis || std::isupper(static_cast<unsigned char>(key[0])) != 0) return {};
   const unsigned n = static_cast<unsigned>(*axis);
   const std::string what = key.substr(2);
+  if (what == kSecondHome && machine.axes[n].second_motor) {
+    const std::vector<std::size_t> seconds = machine.second_motors();
+    const auto before = std::find(seconds.begin(), seconds.end(), n) - seconds.begin();
+    return {{AxisRole::kHome, static_cast<unsigned>(machine.axes.size() + static_cast<std::size_t>(before))}};
+  }
   if (what == kBothLimits) return {{AxisRole::kLimitMinus, n}, {AxisRole::kLimitPlus, n}};
   for (const AxisKey& known : kAxisKeys) {
     if (what == known.name) return {{known.role, n}};

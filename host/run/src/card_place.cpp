@@ -222,12 +222,12 @@ void check_shared(const machine::Machine& machine, const Kinematics& kinematics,
 }
 
 // The machine coordinates as they are to be counted. With all axes named none of before counts.
-gcode::Coordinates with_zeros(const machine::Machine& machine, const CardPlace& place, unsigned named) {
-  gcode::Coordinates at{};
-  if (named == all_axes(machine)) return at;
-  at = standing_at(machine, place);
+gcode::Coordinates counted_at(const machine::Machine& machine, const CardPlace& place, unsigned named,
+                              const gcode::Coordinates& wanted) {
+  if (named == all_axes(machine)) return wanted;
+  gcode::Coordinates at = standing_at(machine, place);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if ((named >> i & 1U) != 0) at[i] = 0;
+    if ((named >> i & 1U) != 0) at[i] = wanted[i];
   }
   return at;
 }
@@ -235,25 +235,32 @@ gcode::Coordinates with_zeros(const machine::Machine& machine, const CardPlace& 
 }  // namespace
 
 // The motors are without a place until all is written: whoever ends before leaves a place that counts as lost.
-void set_zero(driver::Card& card, const machine::Machine& machine, const std::string& letters, bool homed) {
+void place_axes(driver::Card& card, const machine::Machine& machine, unsigned named, const gcode::Coordinates& at,
+                std::uint8_t homed) {
   const Kinematics kinematics(machine);
-  const unsigned named = named_axes(machine, letters);
   const CardPlace place = read_card_place(card);
   const std::uint8_t motors = motors_with(kinematics, named);
   if (!scales_fit(place, machine) && named != all_axes(machine)) refuse_other_scales();
   check_shared(machine, kinematics, place, motors, named);
-  const gcode::Coordinates at = with_zeros(machine, place, named);
+  const gcode::Coordinates counted = counted_at(machine, place, named, at);
   if (!place.was_set()) keep_place(card, place, kScalesInPulses, 0);
   card.set_place(motors, false, false);
   if (card.has_soft_limits()) card.set_soft_limits({});  // they were counted from the zero of before
   for (std::size_t n = 0; n < kinematics.joints(); ++n) {
     if ((motors & bit(n)) == 0) continue;
-    const auto away = static_cast<std::uint32_t>(kinematics.pulses(n, at));
+    const auto away = static_cast<std::uint32_t>(kinematics.pulses(n, counted));
     card.set_machine_zero(static_cast<unsigned>(n),
                           static_cast<std::int32_t>(static_cast<std::uint32_t>(place.now.position[n]) - away));
   }
   card.set_scales(scales_of(machine));
-  card.set_place(motors, true, homed);
+  const auto now_homed = static_cast<std::uint8_t>(motors & homed);
+  const auto others = static_cast<std::uint8_t>(motors & ~homed);
+  if (others != 0) card.set_place(others, true, false);
+  if (now_homed != 0) card.set_place(now_homed, true, true);
+}
+
+void set_zero(driver::Card& card, const machine::Machine& machine, const std::string& letters, bool homed) {
+  place_axes(card, machine, named_axes(machine, letters), {}, homed ? motors_of(machine) : 0);
 }
 
 }  // namespace trammel::run

@@ -38,7 +38,9 @@ void check_inputs(driver::Card& card, std::uint32_t used) {
   throw driver::ArgumentError(fmt::format("input {} of the machine file: the card has {} inputs", highest, inputs));
 }
 
-driver::InputStops stops_of(const machine::Machine& machine) {
+}  // namespace
+
+driver::InputStops input_stops(const machine::Machine& machine) {
   using machine::OnInput;
   const machine::MachineInputs& inputs = machine.inputs;
   driver::InputStops stops;
@@ -58,6 +60,8 @@ driver::InputStops stops_of(const machine::Machine& machine) {
   stops.tool_setter_ramps = inputs.on_tool_setter == OnInput::kRamp;
   return stops;
 }
+
+namespace {
 
 template <class Each>
 void for_all_roles(const driver::Card& card, const Each& each) {
@@ -83,6 +87,8 @@ void set_polarity(driver::Card& card, std::uint32_t inverted) {
   card.bus().sleep(driver::time_of(kSettled, card.identification().clock_hz));
 }
 
+}  // namespace
+
 // Roles come last: at a polarity that is not set yet an input may seem active.
 void configure_inputs(driver::Card& card, const machine::Machine& machine) {
   const machine::MachineInputs& inputs = machine.inputs;
@@ -97,7 +103,7 @@ void configure_inputs(driver::Card& card, const machine::Machine& machine) {
   }
   const machine::LimitStop stop = machine::limit_stop(machine);
   for (unsigned n = 0; n < machine.axes.size(); ++n) card.set_overtravel(n, stop.overtravel[n]);
-  card.set_input_stops(stops_of(machine));
+  card.set_input_stops(input_stops(machine));
   // The probe is the one of [probe].
   const bool probe = machine.probe.input && machine.probe.touched_level;
   for_all_roles(card, [&](driver::Role role) {
@@ -105,6 +111,8 @@ void configure_inputs(driver::Card& card, const machine::Machine& machine) {
     card.set_role(role, role == driver::CardRole::kProbe ? probes : inputs.roles[role.number()].inputs);
   });
 }
+
+namespace {
 
 constexpr double kNanosecondsOfAMillisecond = 1e6;
 std::chrono::nanoseconds milliseconds(double time) {

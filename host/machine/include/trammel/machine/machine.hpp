@@ -30,6 +30,28 @@ class MachineError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// How an axis finds its place; the table [homing.<letter>], in LinuxCNC's terms. Velocities in mm/s (degrees/s).
+struct AxisHoming {
+  double search_velocity = 0;  // towards the switch; its sign is the direction; not 0
+  // Of the edge that counts: with the sign of search_velocity the one into the switch, with the other sign the one off
+  // it. 0: the edge of the search counts (a drive that reports its stall, which a slow axis does not).
+  double latch_velocity = 0;
+  double final_velocity = 0;   // to final_position, > 0; 0: max_velocity
+  double offset = 0;           // machine coordinate of the edge
+  double final_position = 0;   // machine coordinate that the axis goes to in the end
+  double search_distance = 0;  // mm, > 0, until the switch must have come; 0: 1.1 times max - min
+  double squaring = 0;     // mm, > 0, by which a gantry's second switch may come later; 0: 1 % of max - min, 2 to 25
+  bool use_index = false;  // the edge of the index input behind the switch counts
+  bool ignore_limits = false;  // the axis's limits stop nothing meanwhile: its home switch is one of them
+  bool shared = false;         // other axes' switches are at the same input: it must be free at the start
+  // The switch is not looked at before the axis has its speed, since a drive may report a stall before.
+  bool at_speed = false;
+  unsigned sequence = 0;  // 0 .. 31, in rising order; axes with the same number home together
+  std::string place;      // where it stands, for messages: "file:line: "
+
+  int direction() const { return search_velocity < 0 ? -1 : 1; }
+};
+
 // Lengths in mm; for the rotary letters A, B and C read degrees.
 struct MachineAxis {
   char letter = 'X';
@@ -56,6 +78,7 @@ struct MachineAxis {
   double home = 0;                                   // machine coordinate that G28 goes to
   double second_home = 0;                            // and G30
   std::array<double, kCoordinateSystems> offsets{};  // of G54 .. G59.3, machine coordinates
+  std::optional<AxisHoming> homing;                  // none: the axis has no switch to home by
 };
 
 // How the host plans; the table [motion], each entry of which may be left out.

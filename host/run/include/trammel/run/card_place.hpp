@@ -66,6 +66,12 @@ std::uint8_t motors_of(const machine::Machine& machine);
 // Does nothing on a card without soft limits.
 void guard_soft_limits(driver::Card& card, const machine::Machine& machine, const CardPlace& place);
 
+// Machine zero so that the axes in `named` (bit n: axis n of the machine) stand at `at`, mm; the other coordinates
+// stay. Motors in `homed` (bit n: axis n of the card) count as homed, the others that move with a named axis do not.
+// Throws PlaceError where the other axes' place does not tell where these stand.
+void place_axes(driver::Card& card, const machine::Machine& machine, unsigned named, const gcode::Coordinates& at,
+                std::uint8_t homed);
+
 // Sets machine zero of the axes named by `letters` where the card stands, and whether they count as homed. Throws
 // PlaceError for a letter that the machine lacks, and where the other axes' place does not tell where these stand.
 void set_zero(driver::Card& card, const machine::Machine& machine, const std::string& letters, bool homed);

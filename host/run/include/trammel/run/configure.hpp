@@ -20,6 +20,12 @@ void configure(driver::Card& card, const machine::Machine& machine);
 // keeps its place and the card's map is before 3.3.
 void set_keeps_place(driver::Card& card, const machine::Machine& machine);
 
+// What of the machine's inputs stops the card, and how.
+driver::InputStops input_stops(const machine::Machine& machine);
+// Roles, filters, polarity and stops of the machine's inputs, as configure() writes them. Nothing where none has a
+// role.
+void configure_inputs(driver::Card& card, const machine::Machine& machine);
+
 // For driver::WatchdogScope; 0: the machine has none.
 std::chrono::nanoseconds watchdog_time(const machine::MotionSettings& motion);
 
