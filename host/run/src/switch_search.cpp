@@ -10,13 +10,14 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/run/homing.hpp"
 #include "trammel/run/jog.hpp"
 
 namespace trammel::run {
 namespace {
 
-constexpr double kLook = 0.0005;         // s, between two looks at the card
+constexpr double kLook = 0.002;          // s, between two looks at the card
 constexpr double kFilterMargin = 0.002;  // s, behind the longest filter: scans and snapshots
 
 std::string letter_of(const machine::Machine& machine, const WantedEdge& edge) {
@@ -147,18 +148,35 @@ std::vector<FoundEdge> SwitchSearch::take(std::vector<WantedEdge>& wanted) {
     at_edge.look(capture->at);
     found.push_back({wanted[unit], at_edge.pulses()});
   }
-  for (WantedEdge& later : left) {
-    for (const FoundEdge& edge : found) {
-      if (edge.wanted.axis == later.axis && edge.wanted.squaring != 0)
-        later.distance = std::min(later.distance, edge.wanted.squaring);
-    }
-  }
   wanted = left;
   return found;
 }
 
+// What is left of their distances; behind the edge of an axis's one motor the other's has a bound of its own.
+void SwitchSearch::shorten(std::vector<WantedEdge>& wanted, const gcode::Coordinates& from,
+                           const std::vector<FoundEdge>& found) const {
+  const kinematics::Kinematics kinematics(machine_);
+  const gcode::Coordinates to = position_.millimetres();
+  for (WantedEdge& later : wanted) {
+    later.distance -= std::abs(to[later.axis] - from[later.axis]);
+    for (const FoundEdge& edge : found) {
+      if (edge.wanted.axis != later.axis || edge.wanted.squaring == 0) continue;
+      later.bound = edge.wanted.squaring;
+      const double behind = std::abs(to[later.axis] - kinematics.coordinates(edge.at)[later.axis]);
+      later.distance = std::min(later.distance, later.bound - behind);
+    }
+    if (later.distance <= 0) fail(later);
+  }
+}
+
+void SwitchSearch::fail(const WantedEdge& missing) const {
+  throw HomingError(fmt::format("{} did not become {} within {:.4g} mm at {:g} mm/s", name_of(machine_, missing),
+                                missing.to_active ? "active" : "free", missing.bound, std::abs(missing.velocity)));
+}
+
 std::vector<FoundEdge> SwitchSearch::find(std::vector<WantedEdge> wanted) {
   std::vector<FoundEdge> all;
+  for (WantedEdge& edge : wanted) edge.bound = edge.distance;
   while (!wanted.empty()) {
     check_levels(wanted);
     const std::size_t units = wanted.size();
@@ -168,15 +186,11 @@ std::vector<FoundEdge> SwitchSearch::find(std::vector<WantedEdge> wanted) {
     const std::vector<FoundEdge> found = take(wanted);
     disarm(units);
     if (found.empty()) {
-      const WantedEdge& missing = *std::min_element(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) {
+      fail(*std::min_element(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) {
         return a.distance / std::abs(a.velocity) < b.distance / std::abs(b.velocity);
-      });
-      throw HomingError(fmt::format("{} did not become {} within {:.4g} mm at {:g} mm/s", name_of(machine_, missing),
-                                    missing.to_active ? "active" : "free", missing.distance,
-                                    std::abs(missing.velocity)));
+      }));
     }
-    const gcode::Coordinates to = position_.millimetres();
-    for (WantedEdge& later : wanted) later.distance -= std::abs(to[later.axis] - from[later.axis]);
+    shorten(wanted, from, found);
     all.insert(all.end(), found.begin(), found.end());
   }
   return all;

@@ -20,6 +20,7 @@ struct WantedEdge {
   const char* name = "";  // of its role, "home", "index"
   double velocity = 0;    // mm/s of the axis, signed
   double distance = 0;    // mm, > 0, in which it must come
+  double bound = 0;       // of these, for messages: as they were at first
   double squaring = 0;    // mm, that the others of the same axis may come later; 0: they have no bound of their own
   bool to_active = true;
   bool at_speed = false;  // not looked at before the axis has its speed
@@ -52,6 +53,9 @@ class SwitchSearch {
   bool any_captured(std::size_t units);
   void wait_for_filters(std::size_t units);
   std::vector<FoundEdge> take(std::vector<WantedEdge>& wanted);
+  void shorten(std::vector<WantedEdge>& wanted, const gcode::Coordinates& from,
+               const std::vector<FoundEdge>& found) const;
+  [[noreturn]] void fail(const WantedEdge& missing) const;
   void sleep(double seconds);
 
   driver::Card& card_;
