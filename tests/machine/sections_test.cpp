@@ -107,7 +107,8 @@ TEST(MachineFile, EnableByHandAndItsAxes) {
   const std::string known =
       "enable_axes must be a list of axes of the machine: \"x\", \"y\", \"z\", \"e\"; leave it out "
       "for all of them";
-  for (const char* value : {"\"x\"", "[]", "[\"w\"]", "[\"X\"]", "[\"x\", 1]", "[\"xy\"]", "[\"\"]"}) {
+  for (const char* value :
+       {"\"x\"", "[]", "[\"w\"]", "[\"X\"]", "[\"x\", 1]", "[\"xy\"]", "[\"x\", \"xy\"]", "[\"x\", \"X\"]", "[\"\"]"}) {
     EXPECT_THAT(error_of(with_outputs(std::string("enable = 1\nenable_axes = ") + value)),
                 StartsWith(line_of_output(2) + known))
         << value;
