@@ -95,6 +95,15 @@ std::string state_of(const driver::Snapshot& now) {
   return text;
 }
 
+// Where the card switches drives.
+void add_drives(Card& card, const driver::Status& now, std::vector<std::string>& lines) {
+  if (!map::has_engine(card.identification().engines, map::engine::kEnables)) return;
+  const bool any = card.parts().registers.read(reg::kEnableAxes) != 0;
+  lines.push_back(fmt::format("drives   {}{}{}", now.enabled ? "enabled" : "disabled",
+                              now.enable_waits ? ", motion waits for them" : "",
+                              any ? "" : " (of no axis: motion waits for none)"));
+}
+
 // A line for each input that has a role.
 void add_inputs(Card& card, const std::vector<run::AssignedInput>& assigned, std::vector<std::string>& lines) {
   if (assigned.empty()) return;
@@ -118,6 +127,7 @@ std::vector<std::string> table(Card& card, const std::vector<run::AssignedInput>
   std::vector<std::string> lines;
   lines.push_back(fmt::format("time     {:.3f} s", static_cast<double>(now.time) / id.clock_hz));
   lines.push_back(fmt::format("state    {}", state_of(now)));
+  add_drives(card, now.status, lines);
   lines.push_back(
       fmt::format("rate     {:.0f} feed ticks/s, time base at {:.1f} %", rate, 100.0 * now.ratio / Card::kFullRatio));
   lines.push_back(

@@ -29,14 +29,15 @@ std::string switch_text(const MachineAxis& axis, const StopWay& way) {
                  : fmt::format("a ramp does not fit, {:.3g} {} are missing", -spare, unit));
 }
 
-std::string soft_text(const MachineAxis& axis, const StopWay& way) {
+std::string soft_text(const Machine& machine, const MachineAxis& axis, const StopWay& way) {
   if (!std::isfinite(axis.min) && !std::isfinite(axis.max))
     return axis.endless ? "  soft limits: none, it is endless\n" : "  soft limits: none\n";
   const auto end = [](double place) { return std::isfinite(place) ? fmt::format("{:g}", place) : std::string("none"); };
-  return fmt::format(
-      "  soft limits: {} to {} {}; jogs brake {:.3g} {} before them, the card's own guard stops up to {:.3g} {} behind "
-      "them\n",
-      end(axis.min), end(axis.max), unit_of(axis), way.ramp, unit_of(axis), way.ramp, unit_of(axis));
+  const std::string guard = machine.inputs.on_soft_limit == machine::OnInput::kImmediate
+                                ? "at once at them, by inputs.on_soft_limit"
+                                : fmt::format("up to {:.3g} {} behind them", way.ramp, unit_of(axis));
+  return fmt::format("  soft limits: {} to {} {}; jogs brake {:.3g} {} before them, the card's own guard stops {}\n",
+                     end(axis.min), end(axis.max), unit_of(axis), way.ramp, unit_of(axis), guard);
 }
 
 std::string axis_text(const Machine& machine, std::size_t n, const StopWay& way) {
@@ -44,7 +45,7 @@ std::string axis_text(const Machine& machine, std::size_t n, const StopWay& way)
   std::string text = fmt::format("axis {}: {:g} {}/s, from there to rest v * T/2 = {:.3g} {}\n", axis.letter,
                                  axis.max_velocity, unit_of(axis), way.ramp, unit_of(axis));
   if (way.filter) text += switch_text(axis, way);
-  return text + soft_text(axis, way);
+  return text + soft_text(machine, axis, way);
 }
 
 // The card has one reaction for all limits, so the axes that do not fit decide.

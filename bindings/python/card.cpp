@@ -67,7 +67,7 @@ void bind_state(nb::class_<PythonCard>& card) {
            "The latched faults as text, with the axes and sides of limits: 'LIMIT (axis 0 plus)'; 'none'.")
       .def("clear_faults", waiting([](PythonCard& of) { of.card.clear_faults(); }),
            "Clears the latched faults; on the ramp of one it waits for the end first. Nothing moves by it. The fault "
-           "of a drive that still reports it stays.")
+           "of a drive that still reports it stays, and so does an emergency stop whose button is pressed.")
       .def("read_rest", waiting([](PythonCard& of) { return of.card.read_rest(); }),
            "Where the last stop has left the card. Raises StateError while it is on its way to one.")
       .def("wait_until_stopped",
@@ -124,6 +124,7 @@ void bind_card(nb::module_& m) {
   bind_motion(card);
   bind_state(card);
   bind_inputs(m, card);
+  bind_guards(m, card);
   bind_place(m, card);
   bind_simulation(card);
   m.def("open", waiting(open_card), "url"_a,

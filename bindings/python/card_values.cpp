@@ -65,6 +65,8 @@ void bind_state(nb::module_& m) {
       .def_ro("underrun", &driver::Status::underrun, "The time base is held because the queues run dry.")
       .def_ro("stale", &driver::Status::stale, "Position streaming goes on without a new period.")
       .def_ro("button_hold", &driver::Status::button_hold, "The feed hold button holds, until cycle start.")
+      .def_ro("enabled", &driver::Status::enabled, "The drives are enabled.")
+      .def_ro("enable_waits", &driver::Status::enable_waits, "Motion waits for the drives.")
       .def_ro("settled", &driver::Status::settled,
               "At a ratio of 0 or stopped by a fault: each tick taken has made its steps, and each step its pulse.");
   nb::class_<driver::Snapshot>(m, "Snapshot", "State of the card in one clock.")

@@ -78,7 +78,13 @@ void bind_states(nb::module_& m) {
                            "Limits and drives that brought the fault that stands; lists are by axis of the card.")
       .def_prop_ro("minus", side(&LimitState::minus), "Limits at the negative ends.")
       .def_prop_ro("plus", side(&LimitState::plus), "Limits at the positive ends.")
-      .def_prop_ro("drive_fault", side(&LimitState::drive_fault), "Drives.");
+      .def_prop_ro("drive_fault", side(&LimitState::drive_fault), "Drives.")
+      .def_prop_ro(
+          "soft_axis", [](const PythonLimits& of) { return of.limits.soft_axis; },
+          "With Fault.SOFT_LIMIT: the number of the axis that brought it.")
+      .def_prop_ro(
+          "soft_plus", [](const PythonLimits& of) { return of.limits.soft_plus; },
+          "With Fault.SOFT_LIMIT: whether at its positive end.");
 }
 
 void bind_ports(nb::class_<PythonCard>& card) {

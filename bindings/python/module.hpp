@@ -15,6 +15,7 @@ void bind_card_values(nb::module_& m);
 void bind_card(nb::module_& m);
 void bind_motion(nb::class_<PythonCard>& card);
 void bind_inputs(nb::module_& m, nb::class_<PythonCard>& card);
+void bind_guards(nb::module_& m, nb::class_<PythonCard>& card);
 void bind_place(nb::module_& m, nb::class_<PythonCard>& card);
 void bind_commands(nb::module_& m);
 void bind_stream(nb::module_& m);

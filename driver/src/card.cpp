@@ -109,15 +109,6 @@ void Card::set_output_safe_cause(std::uint16_t levels, std::uint16_t change) {
   parts_->ports.set_output_safe_cause(levels, change);
 }
 
-void Card::set_emergency_stop_ramps(bool ramp) {
-  if (!card_map::has_engine(identification().engines, card_map::engine::kEmergencyStop))
-    throw ArgumentError("emergency stop: the card has none");
-  constexpr std::uint32_t kReaction = card_map::field::kStopReactionEmergencyStop;
-  const std::uint32_t before = parts_->registers.read(card_map::reg::kStopReaction);
-  parts_->registers.write(card_map::reg::kStopReaction, ramp ? before | kReaction : before & ~kReaction,
-                          "reaction to the emergency stop");
-}
-
 std::uint32_t Card::read_faults() { return parts_->registers.read_faults(); }
 void Card::set_watchdog(std::chrono::nanoseconds time) { parts_->watchdog.set(time); }
 

@@ -133,8 +133,7 @@ void Card::set_input_stops(const InputStops& stops) {
                                std::uint32_t{stops.shared} << field::kStopCausesSharedShift |
                                (stops.probe ? field::kStopCausesProbe : 0) |
                                (stops.tool_setter ? field::kStopCausesToolSetter : 0);
-  const std::uint32_t before = parts_->registers.read(reg::kStopReaction);
-  parts_->registers.write(reg::kStopReaction, (before & ~kReactions) | reaction_of(stops), "reactions to inputs");
+  set_reactions(parts_->registers, kReactions, reaction_of(stops), "reactions to inputs");
   parts_->registers.write(reg::kStopCauses, causes, "stops by inputs");
 }
 

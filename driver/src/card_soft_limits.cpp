@@ -1,8 +1,9 @@
-// Soft limits of the card's axes: writes of their registers.
+// Soft limits of the card's axes: reads and writes of their registers.
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "register_checks.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
@@ -10,6 +11,16 @@
 namespace trammel::driver {
 
 namespace reg = card_map::reg;
+namespace field = card_map::field;
+
+namespace {
+
+void require_soft_limits(const Card& card) {
+  if (card.has_soft_limits()) return;
+  throw ArgumentError(fmt::format("soft limits: the card has none (engines 0x{:X})", card.identification().engines));
+}
+
+}  // namespace
 
 bool Card::has_soft_limits() const {
   return card_map::has_engine(identification().engines, card_map::engine::kSoftLimits);
@@ -17,9 +28,7 @@ bool Card::has_soft_limits() const {
 
 // None holds while the ends change.
 void Card::set_soft_limits(const std::vector<std::optional<SoftRange>>& ranges) {
-  if (!has_soft_limits()) {
-    throw ArgumentError(fmt::format("soft limits: the card has none (engines 0x{:X})", identification().engines));
-  }
+  require_soft_limits(*this);
   if (ranges.size() > identification().axes) {
     throw ArgumentError(fmt::format("soft limits of {} axes: the card has {}", ranges.size(), identification().axes));
   }
@@ -38,6 +47,26 @@ void Card::set_soft_limits(const std::vector<std::optional<SoftRange>>& ranges) 
     axes |= 1U << n;
   }
   if (axes != 0) parts_->registers.write(reg::kSoftLimits, axes, kWhat);
+}
+
+std::vector<std::optional<SoftRange>> Card::read_soft_limits() {
+  require_soft_limits(*this);
+  const std::uint32_t axes = parts_->registers.read(reg::kSoftLimits);
+  Registers::check_read({reg::kSoftLimits, axes});
+  std::vector<std::optional<SoftRange>> ranges(identification().axes);
+  for (unsigned n = 0; n < ranges.size(); ++n) {
+    if ((axes >> n & 1U) == 0) continue;
+    const std::uint32_t minus = parts_->registers.read(reg::soft_minus(n));
+    const std::uint32_t plus = parts_->registers.read(reg::soft_plus(n));
+    ranges[n] = SoftRange{static_cast<std::int32_t>(minus), static_cast<std::int32_t>(plus)};
+  }
+  return ranges;
+}
+
+void Card::set_soft_limit_ramps(bool ramp) {
+  require_soft_limits(*this);
+  constexpr std::uint32_t kReaction = field::kStopReactionSoftLimit;
+  set_reactions(parts_->registers, kReaction, ramp ? kReaction : 0, "reaction to soft limits");
 }
 
 }  // namespace trammel::driver

@@ -1,8 +1,9 @@
-// Drive enable, brake, charge pump and health: writes of their registers.
+// Drive enable, brake, charge pump, health and the emergency stop: accesses to their registers.
 #include "trammel/driver/drives.hpp"
 
 #include <fmt/format.h>
 
+#include "register_checks.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/card_timing.hpp"
@@ -38,6 +39,10 @@ std::uint32_t units(std::chrono::nanoseconds time, std::uint64_t clocks, std::ui
                                     milliseconds(time_of(kMostUnits * clocks, clock_hz))));
   }
   return static_cast<std::uint32_t>(result);
+}
+
+void require_emergency_stop(const Card& card) {
+  if (!card.has_emergency_stop()) throw ArgumentError("emergency stop: the card has none");
 }
 
 std::uint32_t halves(std::uint16_t low, std::uint16_t high) { return low | std::uint32_t{high} << 16; }
@@ -101,6 +106,21 @@ void Card::set_health(const Health& health) {
   const std::uint32_t watchdog = health.needs_watchdog ? field::kHealthCausesNoWatchdog : 0;
   parts_->registers.write(reg::kHealthCauses, health.causes | watchdog, "health");
   parts_->registers.write(reg::kChargePump, static_cast<std::uint32_t>(half), "health");
+}
+
+bool Card::has_emergency_stop() const {
+  return card_map::has_engine(identification().engines, card_map::engine::kEmergencyStop);
+}
+
+bool Card::read_emergency_stop() {
+  require_emergency_stop(*this);
+  return (read_faults() & field::kFaultEmergencyStop) != 0;
+}
+
+void Card::set_emergency_stop_ramps(bool ramp) {
+  require_emergency_stop(*this);
+  constexpr std::uint32_t kReaction = field::kStopReactionEmergencyStop;
+  set_reactions(parts_->registers, kReaction, ramp ? kReaction : 0, "reaction to the emergency stop");
 }
 
 }  // namespace trammel::driver

@@ -1,4 +1,4 @@
-// Checks of values against the register map.
+// Checks of values against the register map, and a register that several settings share.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
+#include "trammel/driver/low_level/registers.hpp"
 
 namespace trammel::driver {
 
@@ -44,6 +45,12 @@ inline void require_path_commands(std::uint32_t engines, std::string_view what) 
   if (card_map::has_engine(engines, card_map::engine::kPathCommands)) return;
   throw ArgumentError(fmt::format("{}: needs {}, which the card does not have (engines 0x{:X})", what,
                                   card_map::kEngineNames[card_map::engine::kPathCommands], engines));
+}
+
+// The bits of STOP_REACTION in `mask`; the others stay. 1: on a ramp.
+inline void set_reactions(Registers& registers, std::uint32_t mask, std::uint32_t ramps, std::string_view what) {
+  const std::uint32_t before = registers.read(card_map::reg::kStopReaction);
+  registers.write(card_map::reg::kStopReaction, (before & ~mask) | ramps, what);
 }
 
 }  // namespace trammel::driver

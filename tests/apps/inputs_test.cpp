@@ -97,6 +97,29 @@ TEST_F(ServedSwitches, ADriveThatReportsAFaultIsNamed) {
                                  HasSubstr("the drive of Y reports a fault: end it at the drive")));
 }
 
+class ServedDrives : public ::testing::Test {
+ protected:
+  std::string drives() {
+    const std::string out = command_.run("monitor --looks 1 --card " + server_.url()).out;
+    const std::size_t line = out.find("drives ");
+    return line == std::string::npos ? out : out.substr(line, out.find('\n', line) - line);
+  }
+  Command command_;
+  Server server_{command_, "--engine model"};
+};
+
+// At 1 MHz, in real time: the drives take 2.6 s.
+TEST_F(ServedDrives, AreShownAsTheyWaitAndAreEnabled) {
+  EXPECT_EQ(drives(), "drives   disabled (of no axis: motion waits for none)");
+  Running client(command_,
+                 "run " + command_.write("p.ngc", "G1 X1 F6000\n") +
+                     " --set outputs.enable=2 --set outputs.enable_delay_ms=2600 --card " + server_.moving(),
+                 "client.err");
+  ASSERT_TRUE(eventually([&] { return drives() == "drives   enabled, motion waits for them"; })) << drives();
+  ASSERT_TRUE(client.wait());
+  EXPECT_EQ(drives(), "drives   enabled") << "also when the program has ended";
+}
+
 class ServedEmergencyStop : public ::testing::Test {
  protected:
   Outcome run(const std::string& options) {
@@ -111,7 +134,8 @@ TEST_F(ServedEmergencyStop, AProgramStopsAndSaysSo) {
   const Outcome stopped = run(" --set outputs.enable=0");
   EXPECT_NE(stopped.status, 0);
   EXPECT_THAT(stopped.err, HasSubstr("EMERGENCY_STOP"));
-  EXPECT_THAT(command_.run("monitor --looks 1 --card " + server_.url()).out, HasSubstr("FAULT: EMERGENCY_STOP"));
+  EXPECT_THAT(command_.run("monitor --looks 1 --card " + server_.url()).out,
+              HasSubstr("FAULT: EMERGENCY_STOP\ndrives   disabled\n"));
   EXPECT_THAT(command_.run("recover --card " + server_.url()).out, HasSubstr("stopped  by EMERGENCY_STOP"));
 }
 

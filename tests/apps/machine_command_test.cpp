@@ -33,6 +33,13 @@ TEST(MachineCheck, TellsEachWay) {
             "limit switches: on a ramp\n");
 }
 
+TEST(MachineCheck, TellsOfSoftLimitsThatStopAtOnce) {
+  EXPECT_THAT(
+      app::stop_text(machine_of("on_soft_limit = \"immediate\"\n", "min = 0\nmax = 300\n", "endless = true\n")),
+      HasSubstr("\n  soft limits: 0 to 300 mm; jogs brake 20 mm before them, the card's own guard stops at once at "
+                "them, by inputs.on_soft_limit\n"));
+}
+
 TEST(MachineCheck, NamesTheAxisThatDoesNotFit) {
   const auto machine = machine_of("x_limit_plus = 0\na_limit_minus = 1\nfilter = 2\n", "overtravel = 25\n",
                                   "max = 90\novertravel = 12\n");

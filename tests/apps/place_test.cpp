@@ -208,6 +208,25 @@ TEST_F(PlaceOfACard, ALineHeedsSoftLimitsOfHomedAxes) {
   EXPECT_EQ(scales.status, 0);
 }
 
+// Like run and jog: what the card is told stays its last guard.
+TEST_F(PlaceOfACard, ALineTellsTheCardItsSoftLimits) {
+  const auto limits = [&] {
+    const std::string dump = command_.run("dump --card " + server_.url()).out;
+    const std::size_t name = dump.find("SOFT_LIMITS ");
+    return dump.substr(dump.find("0x", name), 10);
+  };
+  const auto line = [&](const std::string& options) { return command_.run("line --to 8,0" + options + moving()); };
+  ASSERT_EQ(line(" --set axis.x.max=5 --set axis.z.min=-3").status, 0);
+  EXPECT_EQ(limits(), "0x00000000") << "nothing is homed";
+  ASSERT_EQ(zero("X Y Z E --homed").status, 0);
+  ASSERT_EQ(line(" --set axis.x.max=5 --set axis.z.min=-3").status, 0);
+  EXPECT_EQ(limits(), "0x00000005");
+  ASSERT_EQ(line(" --set axis.x.max=5 --no-ramp").status, 0);
+  EXPECT_EQ(limits(), "0x00000001");
+  ASSERT_EQ(line("").status, 0);
+  EXPECT_EQ(limits(), "0x00000000") << "a machine file without any";
+}
+
 TEST_F(PlaceOfACard, RecoverTellsOfAFault) {
   Running client(command_,
                  "run " + command_.write("long.ngc", "G1 X1000 F600\n") + " --set motion.watchdog=0.2" + moving(),

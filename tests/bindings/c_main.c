@@ -49,6 +49,7 @@ int main(void) {
   test_positions();
   test_place();
   test_inputs();
+  test_guards();
   test_errors();
   printf("%lu checks of trammel.h, %lu failed\n", checks_made, checks_failed);
   return checks_failed == 0 ? 0 : 1;

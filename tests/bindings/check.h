@@ -36,6 +36,7 @@ trammel_command command_of(int32_t kind);
 
 void test_cards(void);
 void test_errors(void);
+void test_guards(void);
 void test_inputs(void);
 void test_place(void);
 void test_positions(void);

@@ -93,6 +93,23 @@ TEST_F(Drives, SafeLevelsAndTheReactionToTheEmergencyStop) {
   EXPECT_EQ(engine_->read(reg::kStopReaction), before);
 }
 
+TEST_F(Drives, AnEmergencyStopStandsUntilItIsClearedAfterItsRelease) {
+  EXPECT_TRUE(card_.has_emergency_stop());
+  EXPECT_FALSE(card_.read_emergency_stop());
+  engine_->set_emergency_stop(true);
+  engine_->wait(100);
+  EXPECT_TRUE(card_.read_emergency_stop());
+  card_.clear_faults();
+  engine_->wait(100);
+  EXPECT_TRUE(card_.read_emergency_stop()) << "the button is still pressed";
+  engine_->set_emergency_stop(false);
+  engine_->wait(100);
+  EXPECT_TRUE(card_.read_emergency_stop()) << "nobody has cleared it";
+  card_.clear_faults();
+  engine_->wait(100);
+  EXPECT_FALSE(card_.read_emergency_stop());
+}
+
 TEST(DrivesOfAPlainCard, AreRefused) {
   sim::ModelOptions options;
   options.engines = card_map::engines::kLines | card_map::engines::kJerk | card_map::engines::kPathCommands;
@@ -102,6 +119,8 @@ TEST(DrivesOfAPlainCard, AreRefused) {
   EXPECT_THAT(argument_error([&] { card.set_output_roles({}); }), HasSubstr("engine enables"));
   EXPECT_THAT(argument_error([&] { card.set_enable_sequence({}); }), HasSubstr("engine enables"));
   EXPECT_THAT(argument_error([&] { card.set_health({}); }), HasSubstr("engine enables"));
+  EXPECT_FALSE(card.has_emergency_stop());
+  EXPECT_THAT(argument_error([&] { card.read_emergency_stop(); }), HasSubstr("the card has none"));
   EXPECT_THAT(argument_error([&] { card.set_emergency_stop_ramps(true); }), HasSubstr("the card has none"));
 }
 

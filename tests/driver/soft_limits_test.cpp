@@ -45,6 +45,33 @@ TEST(SoftLimits, ACardWithoutThemSaysSo) {
   Card card = Card::open(bus);
   EXPECT_FALSE(card.has_soft_limits());
   EXPECT_THAT(argument_error([&] { card.set_soft_limits({}); }), HasSubstr("soft limits: the card has none"));
+  EXPECT_THAT(argument_error([&] { card.read_soft_limits(); }), HasSubstr("soft limits: the card has none"));
+  EXPECT_THAT(argument_error([&] { card.set_soft_limit_ramps(true); }), HasSubstr("soft limits: the card has none"));
+}
+
+TEST(SoftLimits, AreReadAsTheyStandInTheCard) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  card.set_soft_limits({SoftRange{-5, 7}, std::nullopt, SoftRange{2'147'483'647, -2'147'483'648}});
+  const std::vector<std::optional<SoftRange>> ranges = card.read_soft_limits();
+  ASSERT_EQ(ranges.size(), 4U);
+  ASSERT_TRUE(ranges[0] && ranges[2]);
+  EXPECT_EQ(ranges[0]->minus, -5);
+  EXPECT_EQ(ranges[0]->plus, 7);
+  EXPECT_EQ(ranges[2]->minus, 2'147'483'647);
+  EXPECT_EQ(ranges[2]->length(), 1);
+  EXPECT_FALSE(ranges[1] || ranges[3]);
+}
+
+TEST(SoftLimits, StopAtOnceWhereTheyAreToldTo) {
+  const auto engine = sim::make_model_engine({});
+  Card card = Card::open(*engine);
+  const std::uint32_t before = engine->read(reg::kStopReaction);
+  EXPECT_NE(before & field::kStopReactionSoftLimit, 0U);
+  card.set_soft_limit_ramps(false);
+  EXPECT_EQ(engine->read(reg::kStopReaction), before & ~field::kStopReactionSoftLimit);
+  card.set_soft_limit_ramps(true);
+  EXPECT_EQ(engine->read(reg::kStopReaction), before);
 }
 
 TEST(SoftLimits, AnAxisStopsBehindItsEnd) {

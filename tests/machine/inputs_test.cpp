@@ -61,11 +61,25 @@ TEST(Inputs, WrongEntriesAreNamedByFileAndLine) {
   EXPECT_THAT(error("w_home = 1\n"), StartsWith(at + "unknown entry inputs.w_home"));
   EXPECT_THAT(error("filter = 21\n"), HasSubstr(at));
   EXPECT_THAT(error("on_limit = 3\n"), StartsWith(at + "inputs.on_limit must be"));
+  EXPECT_THAT(error("on_soft_limit = \"nothing\"\n"),
+              StartsWith(at + "inputs.on_soft_limit must be \"ramp\" or \"immediate\""));
+  EXPECT_THAT(error("on_soft_limits = \"ramp\"\n"),
+              StartsWith(at + "unknown entry inputs.on_soft_limits; did you mean on_soft_limit?"));
   EXPECT_THAT(error("closed_level = 2\n"), StartsWith(at + "inputs.closed_level must be 0 or 1"));
   EXPECT_THAT(error("x_home = {normally = \"open\"}\n"), StartsWith(at + "inputs.x_home names no input"));
   EXPECT_THAT(error("x_home = {input = 1, normaly = \"open\"}\n"), StartsWith(at + "unknown entry"));
   EXPECT_THAT(error("x_home = {input = 1, normally = \"open\"}\ny_home = {input = 1, normally = \"closed\"}\n"),
               HasSubstr("input 1 is normally open for one of its roles and closed for another"));
+}
+
+TEST(Inputs, SoftLimitsStopOnARampUnlessToldOtherwise) {
+  EXPECT_EQ(default_machine().inputs.on_soft_limit, OnInput::kRamp);
+  const Machine machine = parse_machine(with_inputs("on_soft_limit = \"immediate\"\n"), "m.toml");
+  EXPECT_EQ(machine.inputs.on_soft_limit, OnInput::kImmediate);
+  EXPECT_EQ(machine.inputs.used(), 0U) << "it needs no input";
+  Machine other = machine;
+  apply_override(other, "inputs.on_soft_limit='ramp'");
+  EXPECT_EQ(other.inputs.on_soft_limit, OnInput::kRamp);
 }
 
 // X: 150 mm/s, 2 s of hold to half acceleration: T = 0.3 s, and 1 ms and 64 clocks of filter.

@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "machine_texts.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/machine/machine.hpp"
@@ -10,6 +13,7 @@ namespace trammel::machine {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TEST(MachineFile, Outputs) {
   EXPECT_EQ(default_machine().outputs.all(), 0) << "none by default";
@@ -57,6 +61,81 @@ TEST(MachineFile, OutputsThatTheCardSwitches) {
   EXPECT_THAT(error("m3 = 1\nenable = 1"), HasSubstr("output 1 is named for the drives or the card"));
   EXPECT_THAT(error("enable = 1\nbrake = 1"), HasSubstr("output 1 is named for enable and for brake"));
   EXPECT_THAT(error("brake = 1\nhealthy = 1"), HasSubstr("output 1 is named for the drives"));
+}
+
+std::string with_outputs(const std::string& entries) { return defaults() + "\n[outputs]\n" + entries; }
+// Of the n-th entry.
+std::string line_of_output(int n) {
+  return "m.toml:" + std::to_string(std::count(defaults().begin(), defaults().end(), '\n') + 2 + n) + ": outputs.";
+}
+
+TEST(MachineFile, SafeLevelsOtherThanZero) {
+  const MachineOutputs outputs =
+      parse_machine(with_outputs("on_at_cause = [1, 2]\noff_at_cause = 0\non_at_rest = 3\noff_at_rest = 1\n"), "m.toml")
+          .outputs;
+  EXPECT_EQ(outputs.on_at_cause, 6);
+  EXPECT_EQ(outputs.safe_at_cause(), 7);
+  EXPECT_EQ(outputs.on_at_rest, 8);
+  EXPECT_EQ(outputs.safe_at_rest(), 10) << "another level than at the cause";
+  EXPECT_EQ(outputs.all(), 15);
+  EXPECT_THAT(error_of(with_outputs("m3 = 1\non_at_rest = 16\n")),
+              StartsWith(line_of_output(2) + "on_at_rest must be an output's number, 0 to 15"));
+  EXPECT_THAT(error_of(with_outputs("off_at_rest = [0, 4]\non_at_rest = 4\n")),
+              StartsWith(line_of_output(2) + "on_at_rest: output 4 is named by off_at_rest too, and goes to one level: "
+                                             "take it out of one of them"));
+  EXPECT_THAT(error_of(with_outputs("on_at_cause = 0\noff_at_cause = 0\n")),
+              StartsWith(line_of_output(1) + "on_at_cause: output 0 is named by off_at_cause too"));
+  EXPECT_THAT(error_of(with_outputs("enable = 1\non_at_cause = 1\n")), HasSubstr("output 1 is named for the drives"));
+  Machine machine = parse_machine(with_outputs("on_at_rest = 4\n"), "m.toml");
+  try {
+    apply_override(machine, "outputs.off_at_rest=4");
+    ADD_FAILURE();
+  } catch (const MachineError& error) {
+    EXPECT_THAT(error.what(), StartsWith("--set outputs.off_at_rest=4: outputs.on_at_rest: output 4"));
+  }
+}
+
+TEST(MachineFile, EnableByHandAndItsAxes) {
+  EXPECT_FALSE(default_machine().outputs.enable_manual);
+  EXPECT_EQ(default_machine().outputs.enable_axes, "");
+  const MachineOutputs outputs =
+      parse_machine(with_outputs("enable_manual = true\nenable_axes = [\"z\", \"x\"]\nbrake = 2\n"), "m.toml").outputs;
+  EXPECT_TRUE(outputs.enable_manual);
+  EXPECT_EQ(outputs.enable_axes, "XZ");
+  EXPECT_THAT(error_of(with_outputs("enable = 1\nenable_manual = 1\n")),
+              StartsWith(line_of_output(2) + "enable_manual must be true or false"));
+  const std::string known =
+      "enable_axes must be a list of axes of the machine: \"x\", \"y\", \"z\", \"e\"; leave it out "
+      "for all of them";
+  for (const char* value :
+       {"\"x\"", "[]", "[\"w\"]", "[\"X\"]", "[\"x\", 1]", "[\"xy\"]", "[\"x\", \"xy\"]", "[\"x\", \"X\"]", "[\"\"]"}) {
+    EXPECT_THAT(error_of(with_outputs(std::string("enable = 1\nenable_axes = ") + value)),
+                StartsWith(line_of_output(2) + known))
+        << value;
+  }
+  EXPECT_THAT(error_of(with_outputs("healthy = 1\nenable_manual = true\n")),
+              StartsWith(line_of_output(2) + "enable_manual: no output is named for enable or brake: name one, or take "
+                                             "this entry out"));
+  EXPECT_THAT(error_of(with_outputs("enable_axes = [\"x\"]\n")),
+              StartsWith(line_of_output(1) + "enable_axes: no output is named for enable or brake"));
+}
+
+TEST(MachineFile, ReactionToTheEmergencyStop) {
+  EXPECT_FALSE(default_machine().outputs.emergency_stop_ramps) << "as the card has it";
+  const auto reaction = [](const std::string& word) {
+    return parse_machine(with_outputs("on_emergency_stop = \"" + word + "\"\n"), "m.toml").outputs.emergency_stop_ramps;
+  };
+  EXPECT_EQ(reaction("ramp"), true);
+  EXPECT_EQ(reaction("immediate"), false);
+  EXPECT_THAT(error_of(with_outputs("on_emergency_stop = \"nothing\"\n")),
+              StartsWith(line_of_output(1) + "on_emergency_stop must be \"ramp\" or \"immediate\""));
+  EXPECT_THAT(error_of(with_outputs("on_emergency_stop = true\n")), HasSubstr("must be \"ramp\" or \"immediate\""));
+  EXPECT_THAT(
+      error_of(with_outputs("m3 = 3\nenable = 1\non_emergency_stop = \"ramp\"\n")),
+      StartsWith(line_of_output(3) + "on_emergency_stop: no ramp can be made, since the card disables the drives "
+                                     "of enable and brake at once: choose \"immediate\", or take enable and "
+                                     "brake out"));
+  EXPECT_EQ(error_of(with_outputs("enable = 1\non_emergency_stop = \"immediate\"\n")), "no error");
 }
 
 TEST(MachineFile, Tools) {

@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr std::uint64_t kPressed = kSlowClock / 2;  // clocks: in the middle of the long lines below
-constexpr double kPulsesPerMm = 80;                 // a mm
+constexpr double kPulsesOfAMm = 80;
 
 class Limits : public testing::Test {
  protected:
@@ -82,7 +82,7 @@ TEST_F(Limits, StopsAtOnceWhereNoOvertravelIsDeclared) {
   EXPECT_THAT(fault_of("G1 X100 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
   EXPECT_EQ(card_.read_limit_state().plus, 1);
   // 50 mm/s for the filter, a scan, and what is on its way.
-  EXPECT_LE(pulses_behind(), 4 + static_cast<std::int64_t>(50 * kPulsesPerMm * (0.0005 + 256.0 / kSlowClock)));
+  EXPECT_LE(pulses_behind(), 4 + static_cast<std::int64_t>(50 * kPulsesOfAMm * (0.0005 + 256.0 / kSlowClock)));
   EXPECT_GE(pulses_behind(), 1);
   const driver::Snapshot now = card_.read_snapshot();
   EXPECT_EQ(now.position[0], steps_.position(0));
@@ -115,8 +115,8 @@ TEST_F(Limits, StopsOnARampWhereTheOvertravelIsLongEnough) {
   press_at(kPressed, 0b11000);
   EXPECT_THAT(fault_of("G1 X100 F3000\n"), HasSubstr("LIMIT (axis 0 plus)"));
   engine_->wait(kSlowClock);  // the ramp goes on
-  EXPECT_GT(pulses_behind(), static_cast<std::int64_t>(3 * kPulsesPerMm));
-  EXPECT_LT(pulses_behind(), static_cast<std::int64_t>(5 * kPulsesPerMm));
+  EXPECT_GT(pulses_behind(), static_cast<std::int64_t>(3 * kPulsesOfAMm));
+  EXPECT_LT(pulses_behind(), static_cast<std::int64_t>(5 * kPulsesOfAMm));
   const driver::Snapshot now = card_.read_snapshot();
   EXPECT_EQ(now.position[0], steps_.position(0));
   EXPECT_FALSE(now.status.busy);
@@ -146,7 +146,7 @@ TEST_F(Limits, TheFeedHoldButtonHoldsUntilCycleStart) {
   press_at(4 * kPressed, 0b0110000);
   EXPECT_EQ(fault_of("G1 X50 F3000\n"), "no fault");
   EXPECT_TRUE(held);
-  EXPECT_EQ(card_.read_snapshot().position[0], 50 * static_cast<std::int32_t>(kPulsesPerMm));
+  EXPECT_EQ(card_.read_snapshot().position[0], 50 * static_cast<std::int32_t>(kPulsesOfAMm));
 }
 
 // A machine file that had the polarity wrong: with the right one the input is at rest at once, whatever its filter.

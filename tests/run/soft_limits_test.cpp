@@ -56,6 +56,36 @@ TEST_F(SoftLimitsInTheCard, NoneWithoutAPlace) {
   EXPECT_EQ(has(), 0U);
 }
 
+TEST_F(SoftLimitsInTheCard, StopAsTheMachineSays) {
+  set_place(0);
+  constexpr std::uint32_t kSoft = card_map::field::kStopReactionSoftLimit;
+  const std::uint32_t before = engine_->read(reg::kStopReaction);
+  machine::apply_override(machine_, "inputs.on_soft_limit = 'immediate'");
+  guard_soft_limits(card_, machine_, read_card_place(card_));
+  EXPECT_EQ(engine_->read(reg::kStopReaction), before & ~kSoft);
+  machine::apply_override(machine_, "inputs.on_soft_limit = 'ramp'");
+  guard_soft_limits(card_, machine_, read_card_place(card_));
+  EXPECT_EQ(engine_->read(reg::kStopReaction), before) << "what another machine file said ends";
+  EXPECT_NE(before & kSoft, 0U);
+}
+
+TEST_F(SoftLimitsInTheCard, OfHomedAxesAloneBesideALine) {
+  set_place(0);
+  card_.set_place(1, true, false);
+  guard_homed_axes(card_, machine_, read_card_place(card_));
+  EXPECT_EQ(has(), 4U) << "X was not homed";
+  guard_soft_limits(card_, machine_, read_card_place(card_));
+  EXPECT_EQ(has(), 5U);
+}
+
+TEST_F(SoftLimitsInTheCard, OfTheAxesThatASmallerCardHas) {
+  const auto engine = sim::make_model_engine(sim::EngineOptions{2, 1'000'000, false});
+  driver::Card card = driver::Card::open(*engine);
+  card.set_place(3, true, true);
+  guard_homed_axes(card, machine_, read_card_place(card));
+  EXPECT_EQ(engine->read(reg::kSoftLimits), 1U) << "X; the card has no Z";
+}
+
 TEST_F(SoftLimitsInTheCard, GoWithTheZeroTheyWereCountedFrom) {
   set_place(0);
   guard_soft_limits(card_, machine_, read_card_place(card_));

@@ -30,6 +30,7 @@ extern "C" {
 #endif
 
 #define TRAMMEL_MAX_AXES 8
+#define TRAMMEL_MAX_CAPTURES 4       // units of a card
 #define TRAMMEL_FULL_RATIO 0x10000u  // of the time base: every clock is enabled
 
 // ---- Results ----
@@ -200,6 +201,8 @@ typedef struct trammel_status {
   bool underrun;      // the time base is held because the queues run dry
   bool stale;         // position streaming goes on without a new period
   bool button_hold;   // the feed hold button holds, until cycle start
+  bool enabled;       // the drives are (trammel_set_enable_sequence())
+  bool enable_waits;  // motion waits for them
   // At a ratio of 0 or stopped by a fault, for 31 clocks: each tick taken has made its steps, each step its pulse.
   bool settled;
 } trammel_status;
@@ -244,11 +247,28 @@ TRAMMEL_API trammel_result trammel_read_rest(trammel_card* card, trammel_rest* r
 // Until a stop under way (status.stopping) has ended; TRAMMEL_TIMEOUT `margin_ns` (card time) after the longest ramp.
 TRAMMEL_API trammel_result trammel_wait_until_stopped(trammel_card* card, int64_t margin_ns);
 
+// Bits of FAULT, of cards with the parts that bring them: of masks of faults here. Bits 0 to 7 are step faults of the
+// axes 0 to 7: a step came too early for too long.
+typedef enum trammel_fault {
+  TRAMMEL_FAULT_STEPS = 0xFF,              // of any axis
+  TRAMMEL_FAULT_TICK_MISMATCH = 1 << 8,    // ticks of feed and geometry did not match at a barrier
+  TRAMMEL_FAULT_PATH_INCOMPLETE = 1 << 9,  // a path did not end at its end point
+  TRAMMEL_FAULT_MISSING_PERIOD = 1 << 10,  // position streaming got no new period in time
+  TRAMMEL_FAULT_LIMIT = 1 << 11,           // a step into a limit switch
+  TRAMMEL_FAULT_EMERGENCY_STOP = 1 << 12,  // stays as long as the pin is active
+  TRAMMEL_FAULT_DRIVE_FAULT = 1 << 13,     // stays as long as the drive reports it
+  TRAMMEL_FAULT_WATCHDOG = 1 << 14,        // the program was silent for too long
+  TRAMMEL_FAULT_LINK_LOSS = 1 << 15,       // none of the program's accesses came
+  TRAMMEL_FAULT_SOFT_LIMIT = 1 << 16,      // a step beyond a soft limit
+  TRAMMEL_FAULT_PROBE = 1 << 17,           // the probe became active outside probing
+  TRAMMEL_FAULT_TOOL_SETTER = 1 << 18      // the tool setter's switch became active in a move
+} trammel_fault;
+
 // FAULT, 0 if there is none.
 TRAMMEL_API trammel_result trammel_read_faults(trammel_card* card, uint32_t* faults);
 // Nothing moves by it; the stream begins anew (trammel_restart_stream()). On a fault's ramp it waits for the end first,
-// as trammel_wait_until_stopped() with a second; where that fails the faults stay. So does the fault of a drive that
-// still reports it.
+// as trammel_wait_until_stopped() with a second; where that fails the faults stay. So do the fault of a drive that
+// still reports it, and that of an emergency stop whose button is pressed: TRAMMEL_OK all the same.
 TRAMMEL_API trammel_result trammel_clear_faults(trammel_card* card);
 // The card stops by itself, FAULT saying why, when this program is silent for `time_ns`; 0: never. Calls that wait, and
 // streams, keep it from stopping; set 0 when the motion is over. Longer than 4/3 of the time in which the link may
@@ -265,6 +285,10 @@ TRAMMEL_API trammel_result trammel_read_outputs(trammel_card* card, uint16_t* le
 TRAMMEL_API trammel_result trammel_set_input_polarity(trammel_card* card, uint32_t inverted);
 // Levels that the outputs in `change` take at an abort and at a fault.
 TRAMMEL_API trammel_result trammel_set_output_safe(trammel_card* card, uint16_t levels, uint16_t change);
+// The same in the clock in which a fault is latched, at an emergency stop without a clock, and at an abort: a laser.
+// They go before the others, and stay until the stop is over and the fault is cleared. TRAMMEL_ARGUMENT where the
+// card's map is older than 3.5.
+TRAMMEL_API trammel_result trammel_set_output_safe_cause(trammel_card* card, uint16_t levels, uint16_t change);
 // MARKs passed since reset, and what the last one latched. Either pointer may be null.
 TRAMMEL_API trammel_result trammel_read_marks(trammel_card* card, uint32_t* marks, trammel_snapshot* last);
 
@@ -308,6 +332,9 @@ typedef struct trammel_limit_state {
   uint8_t minus;
   uint8_t plus;
   uint8_t drive_fault;
+  // With TRAMMEL_FAULT_SOFT_LIMIT: the number of the axis that brought it, and whether at its positive end.
+  uint8_t soft_axis;
+  bool soft_plus;
 } trammel_limit_state;
 
 // How inputs stop the card. A struct of zeros: limits and drives stop at once, the probe and the tool setter do not.
@@ -343,6 +370,135 @@ TRAMMEL_API trammel_result trammel_set_input_stops(trammel_card* card, const tra
 TRAMMEL_API trammel_result trammel_set_overtravel(trammel_card* card, unsigned axis, uint32_t steps);
 // Limits that are active now and stop nothing until they are released: masks of axes.
 TRAMMEL_API trammel_result trammel_override_limits(trammel_card* card, uint8_t minus, uint8_t plus);
+
+// ---- Captures of inputs' edges ----
+//
+// Time and positions of an edge, as they were at the pin: however long the input's filter is, which only confirms the
+// edge or withdraws it. Of cards with the unit captures; TRAMMEL_ARGUMENT for units and inputs that the card lacks.
+
+// What a unit watches for. With neither edge it watches for none.
+typedef struct trammel_capture_select {
+  unsigned input;
+  bool to_active;    // edges to the active level, after polarity
+  bool to_inactive;  //
+  bool continuous;   // the unit goes on after each capture; else it takes one
+} trammel_capture_select;
+
+typedef struct trammel_capture_state {
+  bool pending;  // an edge has come, and is not confirmed, withdrawn or written yet
+  bool valid;    // a capture stands
+  bool overrun;  // a confirmed edge was lost, since a capture stood when it came
+  bool active;   // the level that the captured edge led to
+} trammel_capture_state;
+
+typedef struct trammel_capture_states {
+  trammel_capture_state units[TRAMMEL_MAX_CAPTURES];  // zeros for units that the card lacks
+  uint16_t snapshots;                                 // taken for captures, withdrawn ones too; counts modulo 2^16
+} trammel_capture_states;
+
+typedef struct trammel_capture {
+  trammel_snapshot at;  // of the edge
+  bool active;          // the level that it led to
+  bool overrun;         // further edges were lost behind it
+} trammel_capture;
+
+// 0 on a card without captures.
+TRAMMEL_API trammel_result trammel_count_captures(const trammel_card* card, unsigned* units);
+// The unit begins anew, and drops what it had. An edge counts after its input has been quiet, at the level before it,
+// for a whole filter length; bounces behind the first touch belong to it.
+TRAMMEL_API trammel_result trammel_select_capture(trammel_card* card, unsigned unit,
+                                                  const trammel_capture_select* select);
+TRAMMEL_API trammel_result trammel_stop_capture(trammel_card* card, unsigned unit);
+TRAMMEL_API trammel_result trammel_read_captures(trammel_card* card, trammel_capture_states* states);
+// The capture that stands, which is cleared with it. `taken`: whether there was one; else `capture` stays as it was.
+TRAMMEL_API trammel_result trammel_take_capture(trammel_card* card, unsigned unit, trammel_capture* capture,
+                                                bool* taken);
+// The same, as soon as there is one. TRAMMEL_TIMEOUT after `timeout_ns` of card time, TRAMMEL_CANCELLED by
+// trammel_set_interrupt(): the unit goes on watching either way. The trammel_request_... functions do not end it.
+TRAMMEL_API trammel_result trammel_wait_for_capture(trammel_card* card, unsigned unit, int64_t timeout_ns,
+                                                    trammel_capture* capture);
+
+// ---- Soft limits in the card ----
+//
+// Positions, ends included, that an axis may go to: in pulses as the card counts them (trammel_snapshot.position),
+// modulo 2^32. The last guard, behind a program that does not order such a move. A pulse further out stops the card
+// (TRAMMEL_FAULT_SOFT_LIMIT); pulses back are free. A stop on a ramp ends beyond the end by the ramp's way.
+//
+// Of cards with the engine soft_limits; TRAMMEL_ARGUMENT on others.
+
+typedef struct trammel_soft_range {
+  bool limited;  // false: this axis has none, whatever the ends are
+  int32_t minus;
+  int32_t plus;
+} trammel_soft_range;
+
+TRAMMEL_API trammel_result trammel_has_soft_limits(const trammel_card* card, bool* has);
+// By axis: the first `count` of `ranges`; the axes behind them have none then. A `count` of 0, where `ranges` may be
+// null, switches all off. While the axes stand; anew when a position gets another meaning. TRAMMEL_ARGUMENT for more
+// ranges than the card has axes, and for a plus below its minus.
+TRAMMEL_API trammel_result trammel_set_soft_limits(trammel_card* card, const trammel_soft_range* ranges, size_t count);
+// `ranges`: TRAMMEL_MAX_AXES of them; none is limited for axes that the card lacks.
+TRAMMEL_API trammel_result trammel_read_soft_limits(trammel_card* card, trammel_soft_range* ranges);
+// On a ramp, as after a reset, or at once.
+TRAMMEL_API trammel_result trammel_set_soft_limit_ramps(trammel_card* card, bool ramp);
+
+// ---- Drives: enable, brake, charge pump ----
+//
+// Of cards with the engine enables; TRAMMEL_ARGUMENT on others, for outputs and axes that the card lacks, and for times
+// that it does not take. Nothing is enabled by a reset, a new program or trammel_clear_faults(). The state is in
+// trammel_status: `enabled`, `enable_waits`.
+
+// Outputs that follow the drives or the card, bit n: output n. Each stands at its idle level (the strap output_idle_i)
+// and at the other while it is active; commands and safe levels do not change it. An output has one role.
+typedef struct trammel_output_roles {
+  uint16_t enable;       // active while the drives are enabled
+  uint16_t brake;        // active while the brake is released
+  uint16_t charge_pump;  // a square wave while the card is healthy
+  uint16_t healthy;      // active while the card is healthy
+} trammel_output_roles;
+
+// One sequence for the drives of all axes that it names. Times are rounded up to 4,096 clocks of the card, the idle
+// time to 2^20; each may be as long as 65,535 of these.
+typedef struct trammel_enable_sequence {
+  uint8_t axes;                  // that it serves; 0: none, motion waits for nothing
+  bool manual;                   // motion waits for trammel_enable(); else it enables the drives
+  int64_t brake_release_ns;      // from the enable to the release of the brake
+  int64_t before_first_step_ns;  // from there on
+  int64_t after_last_step_ns;    // until the brake is set, when the drives are to be disabled
+  int64_t brake_set_ns;          // from there to the disable
+  int64_t idle_ns;               // without motion, until they are disabled; 0: never
+  // Faults (bits of trammel_fault) that disable them at rest; the emergency stop does at once.
+  uint32_t disable_causes;
+} trammel_enable_sequence;
+
+// When the card is healthy.
+typedef struct trammel_health {
+  uint32_t causes;              // with none of these faults (bits of trammel_fault)
+  bool needs_watchdog;          // and while the watchdog runs
+  int64_t pump_half_period_ns;  // of the charge pump's wave, rounded up to clocks, up to 65,535; 0: no wave
+} trammel_health;
+
+TRAMMEL_API trammel_result trammel_set_output_roles(trammel_card* card, const trammel_output_roles* roles);
+// A new mask of axes counts once the card rests.
+TRAMMEL_API trammel_result trammel_set_enable_sequence(trammel_card* card, const trammel_enable_sequence* sequence);
+// The program's order: the drives are enabled now, and stay so until it is taken back. Motion needs none unless
+// trammel_enable_sequence.manual says so.
+TRAMMEL_API trammel_result trammel_enable(trammel_card* card, bool on);
+TRAMMEL_API trammel_result trammel_set_health(trammel_card* card, const trammel_health* health);
+
+// ---- Emergency stop ----
+//
+// **Not a safety function**: the button must take the drives' energy away by itself (docs/user/outputs.md of the
+// project). The pin tells the card, which stops and drops its path. Of cards with the engine emergency_stop;
+// TRAMMEL_ARGUMENT on others.
+
+TRAMMEL_API trammel_result trammel_has_emergency_stop(const trammel_card* card, bool* has);
+// Whether one stands: the button was pressed, however briefly. trammel_clear_faults() clears it once the button is
+// released; until then it stands, so read it anew behind that.
+TRAMMEL_API trammel_result trammel_read_emergency_stop(trammel_card* card, bool* stopped);
+// How it stops the axes, at once after a reset; outputs that are safe at the cause change at once either way. A card
+// with an enable sequence disables its drives then, and stops at once either way.
+TRAMMEL_API trammel_result trammel_set_emergency_stop_ramps(trammel_card* card, bool ramp);
 
 // ---- The machine's place ----
 //
@@ -650,6 +806,8 @@ TRAMMEL_API trammel_result trammel_simulated_wait(trammel_card* card, uint64_t c
 TRAMMEL_API trammel_result trammel_simulated_set_inputs(trammel_card* card, uint32_t levels);
 // Of one input; the others stay. One that has got no level is unwired and stands at its inactive one.
 TRAMMEL_API trammel_result trammel_simulated_set_input(trammel_card* card, unsigned input, bool level);
+// As by the emergency stop's button.
+TRAMMEL_API trammel_result trammel_simulated_set_emergency_stop(trammel_card* card, bool pressed);
 // As by the card's reset input.
 TRAMMEL_API trammel_result trammel_simulated_reset(trammel_card* card);
 

@@ -81,9 +81,9 @@ driver::PieceClass piece_class_of(std::int32_t piece_class) {
 }
 
 trammel_status c_status(const driver::Status& s) {
-  return {s.busy,         s.direct,   s.path_active, s.feed_active, s.held,         s.ended,    s.faulted,
-          s.refused,      s.snapshot, s.incomplete,  s.stopping,    s.geometry_low, s.feed_low, s.probed,
-          s.probe_missed, s.waiting,  s.underrun,    s.stale,       s.button_hold,  s.settled};
+  return {s.busy,     s.direct,     s.path_active, s.feed_active,  s.held,         s.ended,  s.faulted,      s.refused,
+          s.snapshot, s.incomplete, s.stopping,    s.geometry_low, s.feed_low,     s.probed, s.probe_missed, s.waiting,
+          s.underrun, s.stale,      s.button_hold, s.enabled,      s.enable_waits, s.settled};
 }
 
 trammel_snapshot c_snapshot(const driver::Snapshot& snapshot) {

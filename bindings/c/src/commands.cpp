@@ -28,17 +28,8 @@ driver::LineCommand line_of(const trammel_line_command& line) {
 }
 
 driver::ArcGeometry geometry_of(const trammel_arc_command& arc) {
-  driver::ArcGeometry out;
-  out.centre_x = arc.centre_x;
-  out.centre_y = arc.centre_y;
-  out.end_x = arc.end_x;
-  out.end_y = arc.end_y;
-  out.clockwise = arc.clockwise;
-  out.sweep = arc.sweep;
-  out.turns = arc.turns;
-  out.axis_x = arc.axis_x;
-  out.axis_y = arc.axis_y;
-  return out;
+  return {arc.centre_x, arc.centre_y, arc.end_x,  arc.end_y, arc.clockwise,
+          arc.sweep,    arc.turns,    arc.axis_x, arc.axis_y};
 }
 
 driver::StepRule rule_of(bool eight_directions) {

@@ -28,16 +28,9 @@ driver::Role role_of(std::int32_t role, unsigned axis) {
 }
 
 driver::InputStops stops_of(const trammel_input_stops& stops) {
-  driver::InputStops out;
-  out.any_step = stops.any_step;
-  out.shared = stops.shared;
-  out.probe = stops.probe;
-  out.tool_setter = stops.tool_setter;
-  out.limit_ramps = stops.limit_ramps;
-  out.drive_fault_ramps = stops.drive_fault_ramps;
-  out.probe_ramps = stops.probe_ramps;
-  out.tool_setter_ramps = stops.tool_setter_ramps;
-  return out;
+  return {stops.any_step,    stops.shared,           stops.probe,
+          stops.tool_setter, stops.limit_ramps,      stops.drive_fault_ramps,
+          stops.probe_ramps, stops.tool_setter_ramps};
 }
 
 }  // namespace
@@ -101,7 +94,7 @@ trammel_result trammel_read_roles(trammel_card* card, trammel_active_roles* role
 trammel_result trammel_read_limit_state(trammel_card* card, trammel_limit_state* state) {
   return guarded([=] {
     const driver::LimitState now = card_of(card).read_limit_state();
-    required(state, "state") = {now.minus, now.plus, now.drive_fault};
+    required(state, "state") = {now.minus, now.plus, now.drive_fault, now.soft_axis, now.soft_plus};
   });
 }
 

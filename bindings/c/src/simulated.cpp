@@ -42,6 +42,10 @@ trammel_result trammel_simulated_set_input(trammel_card* card, unsigned input, b
   });
 }
 
+trammel_result trammel_simulated_set_emergency_stop(trammel_card* card, bool pressed) {
+  return guarded([=] { engine_of(card).set_emergency_stop(pressed); });
+}
+
 trammel_result trammel_simulated_reset(trammel_card* card) {
   return guarded([=] { engine_of(card).reset(); });
 }

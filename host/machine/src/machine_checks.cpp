@@ -115,7 +115,7 @@ void check_outputs(const std::string& where, const MachineOutputs& outputs) {
     refuse(fmt::format("{}: output {} is named for {}", where, output, named));
   };
   check(unsigned{outputs.spindle()} & outputs.coolant(), "the spindle (m3, m4) and for coolant (m7, m8)");
-  const unsigned others = unsigned{outputs.of_words()} | outputs.off_at_cause | outputs.off_at_rest;
+  const unsigned others = unsigned{outputs.of_words()} | outputs.safe();
   check(outputs.roles() & others,
         "the drives or the card (enable, brake, charge_pump, healthy) and for the program, which does not switch it");
   check(unsigned{outputs.enable} & outputs.brake, "enable and for brake");

@@ -8,9 +8,11 @@
 #include <sstream>
 #include <toml.hpp>
 
+#include "entries.hpp"
 #include "machine_checks.hpp"
 #include "machine_homing.hpp"
 #include "machine_inputs.hpp"
+#include "machine_outputs.hpp"
 #include "numbers.hpp"
 #include "text.hpp"
 #include "trammel/card_map.hpp"
@@ -73,51 +75,6 @@ constexpr std::array<MotionEntry, 6> kMotionEntries = {{
     {"stale_periods", &MotionSettings::stale_periods, 0, 65535, true},
 }};
 
-struct OutputEntry {
-  const char* name;
-  std::uint16_t MachineOutputs::*member;
-};
-constexpr std::array<OutputEntry, 10> kOutputEntries = {{
-    {"m3", &MachineOutputs::m3},
-    {"m4", &MachineOutputs::m4},
-    {"m7", &MachineOutputs::m7},
-    {"m8", &MachineOutputs::m8},
-    {"off_at_cause", &MachineOutputs::off_at_cause},
-    {"off_at_rest", &MachineOutputs::off_at_rest},
-    {"enable", &MachineOutputs::enable},
-    {"brake", &MachineOutputs::brake},
-    {"charge_pump", &MachineOutputs::charge_pump},
-    {"healthy", &MachineOutputs::healthy},
-}};
-struct OutputNumber {
-  const char* name;
-  double MachineOutputs::*member;
-  Range range;
-};
-constexpr std::array<OutputNumber, 6> kOutputNumbers = {{
-    {"brake_release_ms", &MachineOutputs::brake_release_ms, kDriveDelay},
-    {"enable_delay_ms", &MachineOutputs::enable_delay_ms, kDriveDelay},
-    {"stop_delay_ms", &MachineOutputs::stop_delay_ms, kDriveDelay},
-    {"brake_set_ms", &MachineOutputs::brake_set_ms, kDriveDelay},
-    {"enable_idle_s", &MachineOutputs::enable_idle_s, kDriveIdle},
-    {"charge_pump_hz", &MachineOutputs::charge_pump_hz, kChargePump},
-}};
-struct FaultName {
-  const char* name;
-  std::uint32_t mask;
-};
-constexpr std::array<FaultName, 9> kFaultNames = {{
-    {"limit", card_map::field::kFaultLimit},
-    {"emergency_stop", card_map::field::kFaultEmergencyStop},
-    {"drive_fault", card_map::field::kFaultDriveFault},
-    {"watchdog", card_map::field::kFaultWatchdog},
-    {"soft_limit", card_map::field::kFaultSoftLimit},
-    {"probe", card_map::field::kFaultProbe},
-    {"tool_setter", card_map::field::kFaultToolSetter},
-    {"step", card_map::field::kFaultStep},
-    {"path_incomplete", card_map::field::kFaultPathIncomplete},
-}};
-
 // A bare key of TOML has no point: G59.1 is g59_1.
 constexpr std::array<const char*, kCoordinateSystems> kSystems = {"g54", "g55",   "g56",   "g57",  "g58",
                                                                   "g59", "g59_1", "g59_2", "g59_3"};
@@ -145,10 +102,7 @@ void set_axis_entry(const Source& source, MachineAxis& axis, const std::string& 
   const std::string path = table + key;
   for (const Switch& entry : kSwitches) {
     if (key == entry.name) {
-      if (!value.is_boolean()) {
-        refuse(source.at(value) + path + " must be true or false");
-      }
-      axis.*entry.member = value.as_boolean();
+      axis.*entry.member = true_or_false(source, path, value);
       return;
     }
   }
@@ -195,64 +149,6 @@ void set_motion(const Source& source, MotionSettings& motion, const toml::table&
                          entry->whole ? "a whole number " : "", entry->least, entry->most, given));
     }
     motion.*entry->member = given;
-  }
-}
-
-std::uint16_t output_bit(const Source& source, const std::string& path, const toml::value& value) {
-  if (!value.is_integer() || value.as_integer() < 0 || value.as_integer() >= kMaxOutputs) {
-    refuse(fmt::format("{}{} must be an output's number, 0 to {}, or a list of such", source.at(value), path,
-                       kMaxOutputs - 1));
-  }
-  return static_cast<std::uint16_t>(1U << value.as_integer());
-}
-
-std::uint32_t faults_of(const Source& source, const std::string& path, const toml::value& value) {
-  std::uint32_t faults = 0;
-  std::string known;
-  for (const FaultName& fault : kFaultNames) known += fmt::format("{}{}", known.empty() ? "" : ", ", fault.name);
-  const auto refuse_it = [&] { refuse(fmt::format("{}{} must be a list of {}", source.at(value), path, known)); };
-  if (!value.is_array()) refuse_it();
-  for (const toml::value& one : value.as_array()) {
-    const std::string name = one.is_string() ? one.as_string().str : "";
-    const auto fault = std::find_if(kFaultNames.begin(), kFaultNames.end(),
-                                    [&name](const FaultName& entry) { return entry.name == name; });
-    if (fault == kFaultNames.end()) refuse_it();
-    faults |= fault->mask;
-  }
-  return faults;
-}
-
-std::vector<std::string> output_keys() {
-  std::vector<std::string> names;
-  for (const OutputEntry& entry : kOutputEntries) names.emplace_back(entry.name);
-  for (const OutputNumber& entry : kOutputNumbers) names.emplace_back(entry.name);
-  names.emplace_back("disable_on");
-  return names;
-}
-
-void set_outputs(const Source& source, MachineOutputs& outputs, const toml::table& table) {
-  for (const auto& [key, value] : table) {
-    const auto number_entry = std::find_if(kOutputNumbers.begin(), kOutputNumbers.end(),
-                                           [&key = key](const OutputNumber& known) { return key == known.name; });
-    if (number_entry != kOutputNumbers.end()) {
-      outputs.*number_entry->member = number(source, "outputs." + key, value, number_entry->range);
-      continue;
-    }
-    if (key == "disable_on") {
-      outputs.disable_on = faults_of(source, "outputs." + key, value);
-      continue;
-    }
-    const auto entry = std::find_if(kOutputEntries.begin(), kOutputEntries.end(),
-                                    [&key = key](const OutputEntry& known) { return key == known.name; });
-    if (entry == kOutputEntries.end()) refuse_key(source, value, "outputs.", key, output_keys());
-    const std::string path = "outputs." + key;
-    std::uint16_t bits = 0;
-    if (value.is_array()) {
-      for (const toml::value& one : value.as_array()) bits |= output_bit(source, path, one);
-    } else {
-      bits = output_bit(source, path, value);
-    }
-    outputs.*entry->member = bits;
   }
 }
 
@@ -348,8 +244,7 @@ void set_card(const Source& source, Machine& machine, const toml::table& table) 
     if (key == "clock_hz") {
       set_clock(source, machine, value);
     } else if (key == "require_home") {
-      if (!value.is_boolean()) refuse(source.at(value) + "card.require_home must be true or false");
-      machine.require_home = value.as_boolean();
+      machine.require_home = true_or_false(source, "card.require_home", value);
     }
   }
 }
@@ -456,7 +351,7 @@ bool set_tables(const Source& source, Machine& machine, const toml::table& root)
   set("card", [&](const toml::table& card) { set_card(source, machine, card); });
   set("kinematics", [&](const toml::table& entries) { set_kinematics(source, machine.kinematics, entries); });
   set("motion", [&](const toml::table& motion) { set_motion(source, machine.motion, motion); });
-  set("outputs", [&](const toml::table& outputs) { set_outputs(source, machine.outputs, outputs); });
+  set("outputs", [&](const toml::table& outputs) { set_outputs(source, machine, outputs); });
   set("tools", [&](const toml::table& tools) { set_tools(source, machine, tools); });
   set("probe", [&](const toml::table& probe) { set_probe(source, machine.probe, probe); });
   set("inputs", [&](const toml::table& inputs) { set_inputs(source, machine, inputs); });

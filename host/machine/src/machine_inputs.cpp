@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "entries.hpp"
 #include "text.hpp"
 #include "trammel/driver/roles.hpp"
 #include "trammel/machine/stop_ways.hpp"
@@ -44,7 +45,8 @@ constexpr std::array<CardKey, 4> kCardKeys{{{"tool_setter", CardRole::kToolSette
 bool is_limit(std::size_t role) { return role / 8 <= static_cast<std::size_t>(AxisRole::kLimitPlus); }
 
 std::vector<std::string> known_keys(const Machine& machine) {
-  std::vector<std::string> names{"filter", "closed_level", "on_limit", "on_drive_fault", "on_probe", "on_tool_setter"};
+  std::vector<std::string> names{"filter",   "closed_level",   "on_limit",     "on_drive_fault",
+                                 "on_probe", "on_tool_setter", "on_soft_limit"};
   for (const CardKey& key : kCardKeys) names.emplace_back(key.name);
   for (const MachineAxis& axis : machine.axes) {
     const std::string letter(1, static_cast<char>(std::tolower(static_cast<unsigned char>(axis.letter))));
@@ -92,14 +94,6 @@ std::uint32_t input_bits(const Source& source, const std::string& path, const to
   return bits;
 }
 
-std::string word(const Source& source, const std::string& path, const toml::value& value,
-                 const std::vector<std::string>& words) {
-  if (!value.is_string() || std::find(words.begin(), words.end(), value.as_string().str) == words.end()) {
-    refuse(fmt::format("{}{} must be \"{}\"", source.at(value), path, fmt::join(words, "\" or \"")));
-  }
-  return value.as_string().str;
-}
-
 // An input's number, a list of them, or a table: { input = 3, normally = "open", filter = 2.0 }.
 InputRole read_role(const Source& source, const std::string& path, const toml::value& value) {
   InputRole role;
@@ -129,6 +123,10 @@ OnInput reaction(const Source& source, const std::string& path, const toml::valu
   return text == "ramp" ? OnInput::kRamp : text == "immediate" ? OnInput::kImmediate : OnInput::kNothing;
 }
 
+OnInput ramp_or_immediate(const Source& source, const std::string& path, const toml::value& value) {
+  return word(source, path, value, {"ramp", "immediate"}) == "ramp" ? OnInput::kRamp : OnInput::kImmediate;
+}
+
 OnLimit on_limit(const Source& source, const std::string& path, const toml::value& value) {
   const std::string text = word(source, path, value, {"automatic", "ramp", "immediate"});
   return text == "ramp" ? OnLimit::kRamp : text == "immediate" ? OnLimit::kImmediate : OnLimit::kAutomatic;
@@ -138,15 +136,6 @@ OnLimit on_limit(const Source& source, const std::string& path, const toml::valu
 bool closed_of(const InputRole& role, std::size_t number) { return role.closed.value_or(is_limit(number)); }
 
 }  // namespace
-
-void refuse_key(const Source& source, const toml::value& value, const std::string& table, const std::string& key,
-                const std::vector<std::string>& names) {
-  const std::string close = nearest(key, names);
-  const std::string path = one_line(table + key, kLongestQuote);
-  refuse(fmt::format("{}unknown entry {}{}", source.at(value), path,
-                     close.empty() ? fmt::format("; known are {}", fmt::join(names, ", "))
-                                   : fmt::format("; did you mean {}?", close)));
-}
 
 void set_inputs(const Source& source, Machine& machine, const toml::table& table) {
   MachineInputs& inputs = machine.inputs;
@@ -163,10 +152,9 @@ void set_inputs(const Source& source, Machine& machine, const toml::table& table
       inputs.on_limit = on_limit(source, path, value);
       inputs.on_limit_place = source.at(value);
     } else if (key == "on_drive_fault") {
-      if (word(source, path, value, {"ramp", "immediate"}) == "ramp")
-        inputs.on_drive_fault = OnInput::kRamp;
-      else
-        inputs.on_drive_fault = OnInput::kImmediate;
+      inputs.on_drive_fault = ramp_or_immediate(source, path, value);
+    } else if (key == "on_soft_limit") {
+      inputs.on_soft_limit = ramp_or_immediate(source, path, value);
     } else if (key == "on_probe") {
       inputs.on_probe = reaction(source, path, value);
     } else if (key == "on_tool_setter") {

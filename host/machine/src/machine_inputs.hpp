@@ -3,16 +3,11 @@
 
 #include <string>
 #include <toml.hpp>
-#include <vector>
 
 #include "numbers.hpp"
 #include "trammel/machine/machine.hpp"
 
 namespace trammel::machine {
-
-// Throws MachineError: `key` of `table` ("axis.x.") is none of `names`.
-[[noreturn]] void refuse_key(const Source& source, const toml::value& value, const std::string& table,
-                             const std::string& key, const std::vector<std::string>& names);
 
 // Entries of [inputs]; the machine's axes are known. Throws MachineError.
 void set_inputs(const Source& source, Machine& machine, const toml::table& table);

@@ -60,6 +60,20 @@ std::string card_axes(std::uint8_t axes) {
   return text;
 }
 
+// Of the axes in `letters`. Gives back those that had any, with blanks between.
+std::string drop_limits(machine::Machine& machine, const std::string& letters) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::string dropped;
+  for (machine::MachineAxis& axis : machine.axes) {
+    const bool limited = axis.min > -kNone || axis.max < kNone;
+    if (!limited || letters.find(axis.letter) == std::string::npos) continue;
+    dropped += fmt::format("{}{}", dropped.empty() ? "" : " ", axis.letter);
+    axis.min = -kNone;
+    axis.max = kNone;
+  }
+  return dropped;
+}
+
 }  // namespace
 
 std::uint32_t scales_of(const machine::Machine& machine) {
@@ -107,14 +121,7 @@ Start start_at(const machine::Machine& machine, const CardPlace& place, bool tru
   const std::string not_homed = axes_without(machine, place.bits.homed);
   if (machine.require_home && !not_homed.empty()) refuse_not_homed(not_homed);
   Start start{standing_at(machine, place), machine, {}};
-  for (machine::MachineAxis& axis : start.machine.axes) {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
-    const bool limited = axis.min > -kNone || axis.max < kNone;
-    if (!limited || not_homed.find(axis.letter) == std::string::npos) continue;
-    start.limits_off += fmt::format("{}{}", start.limits_off.empty() ? "" : " ", axis.letter);
-    axis.min = -kNone;
-    axis.max = kNone;
-  }
+  start.limits_off = drop_limits(start.machine, not_homed);
   return start;
 }
 
@@ -177,12 +184,21 @@ std::optional<driver::SoftRange> soft_range(const machine::Machine& machine, con
 void guard_soft_limits(driver::Card& card, const machine::Machine& machine, const CardPlace& place) {
   if (!card.has_soft_limits()) return;
   const Kinematics kinematics(machine);
-  std::vector<std::optional<driver::SoftRange>> ranges(kinematics.joints());
+  // A line takes a card with fewer axes than the machine has motors.
+  std::vector<std::optional<driver::SoftRange>> ranges(
+      std::min<std::size_t>(kinematics.joints(), card.identification().axes));
   for (std::size_t n = 0; n < ranges.size(); ++n) {
     const bool known = (place.bits.valid & bit(n)) != 0 && scales_fit(place, machine);
     if (known) ranges[n] = soft_range(machine, kinematics, n, place.zero[n]);
   }
+  card.set_soft_limit_ramps(machine.inputs.on_soft_limit == machine::OnInput::kRamp);
   card.set_soft_limits(ranges);
+}
+
+void guard_homed_axes(driver::Card& card, const machine::Machine& machine, const CardPlace& place) {
+  machine::Machine homed = machine;
+  drop_limits(homed, axes_without(machine, place.bits.homed));
+  guard_soft_limits(card, homed, place);
 }
 
 namespace {

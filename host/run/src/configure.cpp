@@ -119,11 +119,29 @@ std::chrono::nanoseconds milliseconds(double time) {
   return std::chrono::nanoseconds(std::llround(time * kNanosecondsOfAMillisecond));
 }
 
+// The motors that move with an axis of enable_axes, or all.
+std::uint8_t motors_with_drives(const machine::Machine& machine) {
+  const kinematics::Kinematics kinematics(machine);
+  unsigned axes = 0;
+  for (const char letter : machine.outputs.enable_axes) axes |= 1U << machine.axis(letter).value();
+  unsigned motors = 0;
+  for (std::size_t n = 0; n < kinematics.joints(); ++n) {
+    if (axes == 0 || (kinematics.axes_of(n) & axes) != 0) motors |= 1U << n;
+  }
+  return static_cast<std::uint8_t>(motors);
+}
+
 // What the card does with outputs by itself. Nothing is written for a machine without any.
 void configure_outputs(driver::Card& card, const machine::Machine& machine) {
   const machine::MachineOutputs& outputs = machine.outputs;
-  if (outputs.off_at_rest != 0) card.set_output_safe(0, outputs.off_at_rest);
-  if (outputs.off_at_cause != 0) card.set_output_safe_cause(0, outputs.off_at_cause);
+  if (outputs.safe_at_rest() != 0) card.set_output_safe(outputs.on_at_rest, outputs.safe_at_rest());
+  if (outputs.safe_at_cause() != 0) card.set_output_safe_cause(outputs.on_at_cause, outputs.safe_at_cause());
+  if (outputs.emergency_stop_ramps) {
+    if (!card.has_emergency_stop()) {
+      throw driver::ArgumentError("outputs.on_emergency_stop of the machine file: the card has no emergency stop");
+    }
+    card.set_emergency_stop_ramps(*outputs.emergency_stop_ramps);
+  }
   if (outputs.roles() == 0) return;
   if (!card_map::has_engine(card.identification().engines, card_map::engine::kEnables)) {
     throw driver::ArgumentError(
@@ -137,7 +155,8 @@ void configure_outputs(driver::Card& card, const machine::Machine& machine) {
   card.set_output_roles({outputs.enable, outputs.brake, outputs.charge_pump, outputs.healthy});
   if ((outputs.enable | outputs.brake) == 0) return;
   driver::EnableSequence sequence;
-  sequence.axes = static_cast<std::uint8_t>((1U << kinematics::Kinematics(machine).joints()) - 1);
+  sequence.axes = motors_with_drives(machine);
+  sequence.manual = outputs.enable_manual;
   sequence.brake_release = milliseconds(outputs.brake_release_ms);
   sequence.before_first_step = milliseconds(outputs.enable_delay_ms);
   sequence.after_last_step = milliseconds(outputs.stop_delay_ms);

@@ -176,6 +176,10 @@ class Card {
   // (FAULT.soft_limit), by default on a ramp. Throws ArgumentError where the card has none, for an axis that it lacks,
   // and for a plus below its minus.
   void set_soft_limits(const std::vector<std::optional<SoftRange>>& ranges);
+  // As the card has them, one for each of its axes. ArgumentError where it has none.
+  std::vector<std::optional<SoftRange>> read_soft_limits();
+  // How they stop the axes; on a ramp after a reset. ArgumentError where the card has none.
+  void set_soft_limit_ramps(bool ramp);
 
   // Levels that the outputs in `change` take when the card has come to rest after a fault, and at an abort: a spindle.
   void set_output_safe(std::uint16_t levels, std::uint16_t change);
@@ -183,6 +187,11 @@ class Card {
   // the others, and stay until the stop is over and the fault is cleared. Throws ArgumentError on a card with a map
   // before 3.5.
   void set_output_safe_cause(std::uint16_t levels, std::uint16_t change);
+  // Whether the card has a pin for an emergency stop. It is not a safety function (docs/user/outputs.md).
+  bool has_emergency_stop() const;
+  // Whether one stands: the button was pressed, however briefly. clear_faults() clears it, but not while the pin is
+  // active. Throws ArgumentError on a card without an emergency stop.
+  bool read_emergency_stop();
   // How the emergency stop stops the axes; outputs that are safe at the cause change at once either way. Throws
   // ArgumentError on a card without an emergency stop.
   void set_emergency_stop_ramps(bool ramp);

@@ -100,9 +100,11 @@ struct MachineOutputs {
   std::uint16_t m7 = 0;  // mist
   std::uint16_t m8 = 0;  // flood
 
-  // Switched off by the card itself.
+  // Switched by the card itself, to 0 (off) or to 1 (on): an output is in one of the two.
   std::uint16_t off_at_cause = 0;  // in the clock of a fault, and at an abort: a laser
-  std::uint16_t off_at_rest = 0;   // when the machine has come to rest after a fault, and at an abort
+  std::uint16_t on_at_cause = 0;
+  std::uint16_t off_at_rest = 0;  // when the machine has come to rest after a fault, and at an abort
+  std::uint16_t on_at_rest = 0;
   // Outputs that follow the drives and the card, and the times of their sequence.
   std::uint16_t enable = 0;
   std::uint16_t brake = 0;
@@ -115,12 +117,19 @@ struct MachineOutputs {
   double enable_idle_s = 0;     // without motion, until the drives are disabled; 0: never
   double charge_pump_hz = 1000;
   std::uint32_t disable_on = 0;  // faults that disable the drives at rest; bits of FAULT
+  bool enable_manual = false;    // motion waits for a program's order to enable the drives; else it enables them
+  std::string enable_axes;       // letters of the axes whose drives these are; none: of all axes
+  // How the emergency stop stops the axes: on a ramp, or at once; none given: as the card has it.
+  std::optional<bool> emergency_stop_ramps;
 
   std::uint16_t spindle() const { return m3 | m4; }
   std::uint16_t coolant() const { return m7 | m8; }
   std::uint16_t of_words() const { return spindle() | coolant(); }
   std::uint16_t roles() const { return enable | brake | charge_pump | healthy; }
-  std::uint16_t all() const { return of_words() | off_at_cause | off_at_rest | roles(); }
+  std::uint16_t safe_at_cause() const { return off_at_cause | on_at_cause; }
+  std::uint16_t safe_at_rest() const { return off_at_rest | on_at_rest; }
+  std::uint16_t safe() const { return safe_at_cause() | safe_at_rest(); }
+  std::uint16_t all() const { return of_words() | safe() | roles(); }
 };
 
 // How long a tool is; the table [tools.<number>].
@@ -156,6 +165,7 @@ struct MachineInputs {
   OnInput on_drive_fault = OnInput::kRamp;
   OnInput on_probe = OnInput::kNothing;  // outside probing
   OnInput on_tool_setter = OnInput::kRamp;
+  OnInput on_soft_limit = OnInput::kRamp;  // of the card's own soft limits; never kNothing
 
   std::uint32_t used() const;  // inputs that have a role
   // Those that read inverted: where the active level is 0.

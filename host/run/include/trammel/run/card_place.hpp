@@ -63,8 +63,10 @@ std::uint8_t motors_of(const machine::Machine& machine);
 // The machine's soft limits in the card, as its last guard: for each axis that has min or max, a valid place, and a
 // motor of its own (with CoreXY X and Y have none, and their limits are the host's alone). An end that the machine does
 // not give is as far away as the card can count. None where the place is in other scales; the others are switched off.
-// Does nothing on a card without soft limits.
+// The card's reaction to them becomes the machine's. Does nothing on a card without soft limits.
 void guard_soft_limits(driver::Card& card, const machine::Machine& machine, const CardPlace& place);
+// The same of homed axes alone, for a machine that is none of start_at().
+void guard_homed_axes(driver::Card& card, const machine::Machine& machine, const CardPlace& place);
 
 // Machine zero so that the axes in `named` (bit n: axis n of the machine) stand at `at`, mm; the other coordinates
 // stay. Motors in `homed` (bit n: axis n of the card) count as homed, the others that move with a named axis do not.
