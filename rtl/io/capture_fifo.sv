@@ -22,17 +22,16 @@ module capture_fifo (
 
   localparam int SLOT = 5;  // bits: 0 to 19
 
-  logic              filling_q;
-  logic [       3:0] first_q;  // places in the ring, modulo 16
-  logic [       3:0] next_q;
-  logic [       4:0] count_q;  // 0 to 16
-  logic [      15:0] lost_q;  // modulo 2^16
-  logic [4*SLOT-1:0] slots_q;  // of the units
-  logic [       1:0] unit;  // the first one that has a capture
-  logic              passed;
-  logic              push;
-  logic              drop;
-  logic [      31:0] data;
+  logic        filling_q;
+  logic [ 3:0] first_q;  // places in the ring, modulo 16
+  logic [ 3:0] next_q;
+  logic [ 4:0] count_q;  // 0 to 16
+  logic [15:0] lost_q;  // modulo 2^16
+  logic [ 1:0] unit;  // the first one that has a capture
+  logic        passed;
+  logic        push;
+  logic        drop;
+  logic [31:0] data;
 
   assign unit = passed_i[0] ? 2'd0 : passed_i[1] ? 2'd1 : passed_i[2] ? 2'd2 : 2'd3;
   assign passed = passed_i != '0;
@@ -44,6 +43,7 @@ module capture_fifo (
       setting_i, card_map_pkg::ADDR_CAPTURE_NEXT
   ) && count_q != '0 && data[3:0] == first_q;
 
+  logic [SLOT-1:0] slot_q[0:3];  // of the units
   logic [SLOT+2:0] ring[0:15];  // {level, unit, slot}
   logic [SLOT+2:0] oldest;
   logic [SLOT-1:0] spare;  // at the place of the next one
@@ -58,9 +58,9 @@ module capture_fifo (
     if (drop) first_q <= first_q + 4'd1;
     if (push || filling_q) begin
       next_q <= next_q + 4'd1;
-      ring[next_q] <= filling_q ? {4'd0, next_q} : {active_i[unit], unit, slots_q[SLOT*unit+:SLOT]};
+      ring[next_q] <= filling_q ? {4'd0, next_q} : {active_i[unit], unit, slot_q[unit]};
     end
-    if (push) slots_q[SLOT*unit+:SLOT] <= spare;
+    if (push) slot_q[unit] <= spare;
     if (passed && full_o) lost_q <= lost_q + 16'd1;
     if (rst_i) begin
       filling_q <= 1'b1;
@@ -68,7 +68,7 @@ module capture_fifo (
       next_q <= '0;
       count_q <= '0;
       lost_q <= '0;
-      slots_q <= {5'd19, 5'd18, 5'd17, 5'd16};
+      for (int n = 0; n < 4; n++) slot_q[n] <= SLOT'(16 + n);
     end
     // What is shown is of one clock.
     oldest_q <= oldest[SLOT-1:0];
@@ -96,7 +96,7 @@ module capture_fifo (
 
   always_ff @(posedge clk_i) begin
     store_q <= store_i[setting_bus_pkg::SET] && stored[9:7] == card_map_pkg::AREA_CAPTURE_0[11:9] && stored[6:5] != '0;
-    store_place_q <= {slots_q[SLOT*of_unit+:SLOT], stored[3:0]};
+    store_place_q <= {slot_q[of_unit], stored[3:0]};
     store_data_q <= setting_bus_pkg::data(store_i);
     if (store_q) memory[store_place_q] <= store_data_q;
     memory_q <= memory[{oldest_q, word_i}];
