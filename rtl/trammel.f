@@ -2,6 +2,8 @@
 buses/arrival_pkg.sv
 buses/axis_drive_pkg.sv
 buses/axis_observe_pkg.sv
+buses/capture_answer_pkg.sv
+buses/capture_pkg.sv
 buses/card_constants_pkg.sv
 buses/commands_pkg.sv
 buses/engines_pkg.sv
@@ -80,6 +82,7 @@ host/uart/uart_receiver.sv
 host/uart/uart_timer.sv
 host/uart/uart_transmitter.sv
 host/wishbone/wishbone_port.sv
+io/capture_fifo.sv
 io/capture_unit.sv
 io/captures.sv
 io/card_inputs.sv

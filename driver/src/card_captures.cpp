@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "register_checks.hpp"
 #include "trammel/card_map.hpp"
@@ -33,6 +34,8 @@ CaptureStates states_of(std::uint32_t word) {
   return states;
 }
 
+unsigned captures_in(std::uint32_t queue) { return queue & field::kCaptureQueueCaptures; }
+
 }  // namespace
 
 unsigned Card::captures_present() const {
@@ -47,14 +50,15 @@ void Card::check_capture(unsigned unit) const {
 
 void Card::select_capture(unsigned unit, const CaptureSelect& select) {
   check_capture(unit);
+  if (select.queue) check_capture_queue();
   if (select.input >= inputs_present()) {
     throw ArgumentError(
         fmt::format("capture unit {}: input {}: the card has {} inputs", unit, select.input, inputs_present()));
   }
-  const std::uint32_t word = select.input << field::kCaptureSelectInputNumberShift |
-                             (select.to_active ? field::kCaptureSelectToActive : 0) |
-                             (select.to_inactive ? field::kCaptureSelectToInactive : 0) |
-                             (select.continuous ? field::kCaptureSelectContinuous : 0);
+  const std::uint32_t word =
+      select.input << field::kCaptureSelectInputNumberShift | (select.to_active ? field::kCaptureSelectToActive : 0) |
+      (select.to_inactive ? field::kCaptureSelectToInactive : 0) |
+      (select.continuous ? field::kCaptureSelectContinuous : 0) | (select.queue ? field::kCaptureSelectQueue : 0);
   parts_->registers.write(reg::capture_select(unit), word, "capture");
 }
 
@@ -80,6 +84,47 @@ std::optional<Capture> Card::take_capture(unsigned unit) {
   capture.overrun = state.overrun;
   parts_->registers.write(reg::kCaptureClear, 1U << unit, "capture");
   return capture;
+}
+
+bool Card::has_capture_queue() const {
+  return card_map::has_engine(identification().engines, card_map::engine::kCaptureFifo);
+}
+
+void Card::check_capture_queue() const {
+  if (!has_capture_queue()) throw ArgumentError("the card has no queue of captures");
+}
+
+CaptureQueue Card::read_capture_queue() {
+  check_capture_queue();
+  const std::uint32_t word = parts_->registers.read(reg::kCaptureQueue);
+  Registers::check_read({reg::kCaptureQueue, word});
+  return {captures_in(word), static_cast<std::uint16_t>(word >> field::kCaptureQueueLostShift)};
+}
+
+// Each is read before it is dropped, by its number, so that a link that fails between loses none and drops none twice.
+std::vector<QueuedCapture> Card::take_queued_captures() {
+  check_capture_queue();
+  std::vector<QueuedCapture> result;
+  std::uint32_t queue = parts_->registers.read(reg::kCaptureQueue);
+  Registers::check_read({reg::kCaptureQueue, queue});
+  for (unsigned left = captures_in(queue); left != 0; --left) {
+    QueuedCapture capture;
+    capture.at = parts_->snapshots.capture(card_map::Area::CaptureHead);
+    capture.unit = field_bits(queue, field::kCaptureQueueUnitNumber, field::kCaptureQueueUnitNumberShift);
+    capture.active = (queue & field::kCaptureQueueActive) != 0;
+    result.push_back(capture);
+    const std::uint32_t number = field_bits(queue, field::kCaptureQueueOldest, field::kCaptureQueueOldestShift);
+    std::array<Access, 3> next{write_of(reg::kCaptureNext, number), read_of(reg::kCaptureQueue)};
+    parts_->registers.transfer(next.data(), 2, "capture");
+    queue = next[1].data;
+  }
+  return result;
+}
+
+void Card::clear_captures(unsigned units) {
+  check_capture(0);
+  check_setting(reg::kCaptureClear, units, "units of captures");
+  parts_->registers.write(reg::kCaptureClear, units, "capture");
 }
 
 Capture Card::wait_for_capture(unsigned unit, std::chrono::nanoseconds timeout) {

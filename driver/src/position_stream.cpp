@@ -8,6 +8,7 @@
 
 #include "card_identity.hpp"
 #include "nanoseconds.hpp"
+#include "stream_limits.hpp"
 #include "trammel/driver/commands.hpp"
 #include "trammel/driver/increment.hpp"
 #include "trammel/driver/interrupt.hpp"
@@ -113,6 +114,7 @@ void PositionStream::start() {
       read_of(reg::kGeometryRoom)};
   card_->parts().registers.transfer(accesses.data(), 3, "position stream");
   geometry_room_ = accesses[2].data;
+  limits_ = std::make_shared<const StreamLimits>(StreamLimits::read_from(*card_, origin_, options_.stale_periods));
   odd_clocks_ = odd_time_ = 0;
   beyond_ = {};
   behind_ = 0;
@@ -181,7 +183,16 @@ PositionStream::Step PositionStream::step_to(const Pulses& told, std::uint64_t t
                     *axis, step.line.pulses[*axis], kClocksPerTick * step.line.ticks, least_clocks_[*axis],
                     options_.max_speed[*axis] == 0 ? "any" : fmt::format("{}", options_.max_speed[*axis])));
   }
+  require_limits(step);
   return step;
+}
+
+void PositionStream::require_limits(const Step& step) const {
+  for (unsigned n = 0; n < axes_; ++n) {
+    const std::string complaint =
+        limits_->complaint(n, {step.line.pulses[n], kClocksPerTick * step.line.ticks, step.told[n] + step.beyond[n]});
+    if (!complaint.empty()) throw ArgumentError(fmt::format("position stream: axis {}: {}", n, complaint));
+  }
 }
 
 PositionStream::Step PositionStream::step_to(const Pulses& told, std::uint64_t ticks, std::uint64_t caught_up) const {

@@ -16,6 +16,7 @@ module card_core #(
     parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
     parameter int          MachineInputs     = 0,     // 1: filters and roles of inputs; limits, drive faults, feed hold
     parameter int          Captures          = 0,     // 0 to 4 units; with one, the probe's edge is captured, too
+    parameter int          CaptureFifo       = 0,     // 1: a queue of 16 captures
     parameter int          SoftLimits        = 0,     // 1: ends of each axis, which its position is compared with
     parameter int          EmergencyStop     = 0,     // 1: a pin for the emergency stop
     parameter int          Enables           = 0,     // 1: outputs for drive enable, brake, charge pump, card healthy
@@ -57,10 +58,12 @@ module card_core #(
       32'(PositionStreaming != 0) << card_map_pkg::ENGINE_STREAMING |
       32'(MachineInputs != 0) << card_map_pkg::ENGINE_MACHINE_INPUTS |
       32'(Captures != 0) << card_map_pkg::ENGINE_CAPTURES |
+      32'(CaptureFifo != 0) << card_map_pkg::ENGINE_CAPTURE_FIFO |
       32'(EmergencyStop != 0) << card_map_pkg::ENGINE_EMERGENCY_STOP |
       32'(Enables != 0) << card_map_pkg::ENGINE_ENABLES | 32'(SoftLimits != 0) << card_map_pkg::ENGINE_SOFT_LIMITS;
   localparam int FLAGS = Accumulator | EightDirections | ArcGenerator | DirectMode | UnderrunHold | Classes |
-      Watermarks | PathCommands | PositionStreaming | MachineInputs | EmergencyStop | Enables | SoftLimits | BuildDirty;
+      Watermarks | PathCommands | PositionStreaming | MachineInputs | CaptureFifo | EmergencyStop | Enables |
+      SoftLimits | BuildDirty;
 
   card_parameters #(
       .Axes(Axes),
@@ -101,9 +104,8 @@ module card_core #(
   // inputs
   logic [input_levels_pkg::WIDTH-1:0] inputs;
   logic [input_roles_pkg::WIDTH-1:0] roles;
-  logic [3:0] capture;
-  logic [3:0] captured;
-  logic [31:0] capture_state;
+  logic [capture_pkg::WIDTH-1:0] capture;
+  logic [capture_answer_pkg::WIDTH-1:0] capture_answer;
   logic emergency;
   logic emergency_latched;
   // between stream and what moves
@@ -144,7 +146,6 @@ module card_core #(
       .queue_state_i(queue_state),
       .inputs_i(inputs),
       .roles_i(roles),
-      .capture_state_i(capture_state),
       .status_o(observe_o[observe_pkg::STATUS+:32]),
       .setting_o(setting),
       .clear_fault_o(clear_fault),
@@ -162,7 +163,7 @@ module card_core #(
       .probe_i(probe),
       .mark_i(mark),
       .capture_i(capture),
-      .captured_o(captured),
+      .capture_answer_o(capture_answer),
       .snapshot_i(snapshot_near),
       .snapshot_o(snapshot_far)
   );
@@ -203,9 +204,8 @@ module card_core #(
       .pin_i(input_i),
       .inputs_o(inputs),
       .roles_o(roles),
-      .captured_i(captured),
+      .capture_answer_i(capture_answer),
       .capture_o(capture),
-      .capture_state_o(capture_state),
       .emergency_stop_i,
       .emergency_stop_level_i,
       .clear_fault_i(clear_fault),

@@ -46,6 +46,9 @@ module card_parameters #(
   if (Captures != 0 && !MACHINE_INPUTS) begin : gen_captures_alone
     ERROR_Captures_needs_MachineInputs error ();
   end
+  if (Engines[card_map_pkg::ENGINE_CAPTURE_FIFO] && Captures == 0) begin : gen_capture_fifo_alone
+    ERROR_CaptureFifo_needs_Captures error ();
+  end
   if (Engines[card_map_pkg::ENGINE_ENABLES] && !PATH_COMMANDS) begin : gen_enables_alone
     ERROR_Enables_needs_PathCommands error ();
   end

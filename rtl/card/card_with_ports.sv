@@ -15,6 +15,7 @@ module card_with_ports #(
     parameter int          PositionStreaming = 0,     // 1: for a host that sends a line each period
     parameter int          MachineInputs     = 0,     // 1: filters and roles of inputs; limits, drive faults, feed hold
     parameter int          Captures          = 0,     // 0 to 4 units; with one, the probe's edge is captured, too
+    parameter int          CaptureFifo       = 0,     // 1: a queue of 16 captures
     parameter int          SoftLimits        = 0,     // 1: ends of each axis, which its position is compared with
     parameter int          EmergencyStop     = 0,     // 1: a pin for the emergency stop
     parameter int          Enables           = 0,     // 1: outputs for drive enable, brake, charge pump, card healthy
@@ -143,6 +144,7 @@ module card_with_ports #(
       .PositionStreaming(PositionStreaming),
       .MachineInputs(MachineInputs),
       .Captures(Captures),
+      .CaptureFifo(CaptureFifo),
       .SoftLimits(SoftLimits),
       .EmergencyStop(EmergencyStop),
       .Enables(Enables),

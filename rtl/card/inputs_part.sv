@@ -14,10 +14,9 @@ module inputs_part #(
     input wire logic [Inputs-1:0] pin_i,
     output logic [input_levels_pkg::WIDTH-1:0] inputs_o,
     output logic [input_roles_pkg::WIDTH-1:0] roles_o,
-    // captures, a bit a unit
-    input wire logic [3:0] captured_i,  // events: its snapshot is complete
-    output logic [3:0] capture_o,  // a snapshot is wanted
-    output logic [31:0] capture_state_o,
+    // captures
+    input wire logic [capture_answer_pkg::WIDTH-1:0] capture_answer_i,
+    output logic [capture_pkg::WIDTH-1:0] capture_o,
     // the emergency stop
     input wire logic emergency_stop_i,
     input wire logic emergency_stop_level_i,  // strap: the level that means stop
@@ -40,22 +39,21 @@ module inputs_part #(
 
   if (Captures != 0) begin : gen_captures
     captures #(
-        .Captures(Captures)
+        .Captures(Captures),
+        .CaptureFifo(32'(Engines[card_map_pkg::ENGINE_CAPTURE_FIFO]))
     ) of_edges (
         .clk_i,
         .rst_i,
         .setting_i,
         .inputs_i(inputs_o),
-        .captured_i,
-        .ask_o(capture_o),
-        .state_o(capture_state_o)
+        .answer_i(capture_answer_i),
+        .capture_o
     );
   end else begin : gen_no_captures
     assign capture_o = '0;
-    assign capture_state_o = '0;
 
     logic unused;
-    assign unused = &{1'b0, captured_i};
+    assign unused = &{1'b0, capture_answer_i};
   end
 
   if (Engines[card_map_pkg::ENGINE_EMERGENCY_STOP]) begin : gen_emergency_stop

@@ -6,9 +6,14 @@
 // the input is quiet again (the touch was a glitch, and nothing was captured). An input without a filter is always quiet,
 // and each of its edges passes in its own clock. A capture stays until it is cleared; edges that pass meanwhile are
 // overruns. While the snapshot of an edge that has passed is on its way, no edge counts.
+//
+// A unit that queues its captures hands each one on as it passes. Of such a unit each edge that passes is handed on or is an
+// overrun: where the queue is full, and where the unit was not looking for the edge when it came.
 `default_nettype none
 
-module capture_unit (
+module capture_unit #(
+    parameter logic Queue = 0  // 1: there is a queue
+) (
     input wire logic clk_i,
     input wire logic rst_i,
     input wire logic [31:0] raw_i,  // levels of the inputs
@@ -18,7 +23,11 @@ module capture_unit (
     input wire logic [31:0] setting_i,
     input wire logic clear_i,  // event
     input wire logic captured_i,  // event: the snapshot that was asked for is in the area
+    input wire logic queued_i,  // event: the capture that is handed on is in the queue, or lost
+    input wire logic full_i,  // it is lost
     output logic ask_o,  // combinational: until captured_i, or until it is taken back
+    output logic passed_o,  // level: a capture is handed on, of an edge to active_edge_o
+    output logic active_edge_o,
     output logic pending_o,
     output logic valid_o,
     output logic overrun_o,
@@ -36,10 +45,13 @@ module capture_unit (
   logic         to_active_q;
   logic         to_inactive_q;
   logic         continuous_q;
+  logic         queue_q;
   logic         old_q;  // the level before the edge
   logic         lost_q;  // the edge has come while a capture stood
   logic         confirmed_q;
   logic         taken_q;
+  logic         level_q;
+  logic         watched_q;  // level_q is of the input that is watched now
 
   logic         raw;
   logic         level;
@@ -49,6 +61,7 @@ module capture_unit (
   logic         over;  // it was quiet again before its filter passed
   logic         starts;
   logic         touch;
+  logic         missed;  // an edge passes that no touch was taken for
 
   assign raw   = raw_i[input_q];
   assign level = level_i[input_q];
@@ -60,6 +73,8 @@ module capture_unit (
     over = state_q == PENDING && !confirmed_q && quiet && level == old_q;
     starts = state_q == READY || found || over;
     touch = starts && raw != old;
+    missed = queue_q && watched_q && state_q != OFF && level != level_q && (level ? to_active_q : to_inactive_q) &&
+        !touch && !(state_q == PENDING && !confirmed_q);
     // What is still asked for is taken back for a clock, so that the snapshot under way does not pass for the next touch's.
     if (select_i) ask_o = 1'b0;
     else if (touch) ask_o = !valid_o && (!over || taken_q || lost_q);
@@ -79,19 +94,23 @@ module capture_unit (
       lost_q <= valid_o;
       taken_q <= 1'b0;
       confirmed_q <= level != old;
-    end else if (state_q == PENDING && confirmed_q && (taken_q || lost_q)) begin
+    end else if (state_q == PENDING && confirmed_q && (taken_q || lost_q) && (!queue_q || queued_i)) begin
       state_q <= continuous_q ? LOOK : OFF;
-      if (lost_q) overrun_o <= 1'b1;
-      else begin
+      if (lost_q || (queue_q && full_i)) overrun_o <= 1'b1;
+      else if (!queue_q) begin
         valid_o  <= 1'b1;
         active_o <= !old_q;
       end
     end
+    level_q   <= level;
+    watched_q <= state_q != OFF && !select_i;
+    if (missed) overrun_o <= 1'b1;
     if (select_i) begin
       input_q <= setting_i[4:0];
       to_active_q <= setting_i[card_map_pkg::BIT_CAPTURE_SELECT_TO_ACTIVE];
       to_inactive_q <= setting_i[card_map_pkg::BIT_CAPTURE_SELECT_TO_INACTIVE];
       continuous_q <= setting_i[card_map_pkg::BIT_CAPTURE_SELECT_CONTINUOUS];
+      queue_q <= Queue && setting_i[card_map_pkg::BIT_CAPTURE_SELECT_QUEUE];
       state_q <= setting_i[card_map_pkg::BIT_CAPTURE_SELECT_TO_ACTIVE] ||
           setting_i[card_map_pkg::BIT_CAPTURE_SELECT_TO_INACTIVE] ? LOOK : OFF;
     end
@@ -107,6 +126,8 @@ module capture_unit (
   end
 
   assign pending_o = state_q == PENDING;
+  assign passed_o = queue_q && state_q == PENDING && confirmed_q && taken_q;
+  assign active_edge_o = !old_q;
 
   logic unused;
   assign unused = &{1'b0, setting_i};

@@ -85,11 +85,11 @@ module register_access #(
       absent_q <= !register_access_pkg::aligned(access_i) || (only_present && {1'b0, axis} >= AXIS_COUNT);
       for (int b = 0; b < 4; b++) stray_q[b] <= (data[8*b+:8] & ~mask[8*b+:8]) != 8'd0;
       in_limits_q <= card_map_pkg::register_in_limits(word, data);
-      // SET_PLACE and CAPTURE_CLEAR do, too, though nothing of them is read back.
+      // SET_PLACE, CAPTURE_CLEAR and CAPTURE_NEXT do, too, though nothing of them is read back.
       sets_q <= card_map_pkg::register_access(
           word, Engines
       ) == card_map_pkg::ACCESS_SETTING || word == card_map_pkg::ADDR_SET_PLACE[11:2] ||
-          word == card_map_pkg::ADDR_CAPTURE_CLEAR[11:2];
+          word == card_map_pkg::ADDR_CAPTURE_CLEAR[11:2] || word == card_map_pkg::ADDR_CAPTURE_NEXT[11:2];
       control_q <= word == card_map_pkg::ADDR_CONTROL[11:2];
       // An abort beside it does more than a flush.
       flush_q <= word == card_map_pkg::ADDR_CONTROL[11:2] && data[card_map_pkg::BIT_CONTROL_FLUSH] &&

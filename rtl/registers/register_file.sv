@@ -30,7 +30,6 @@ module register_file #(
     input wire logic [queue_state_pkg::WIDTH-1:0] queue_state_i,
     input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
-    input wire logic [31:0] capture_state_i,
     output logic [31:0] status_o,  // combinational; refused is any port's
     // what writes do
     output logic [setting_bus_pkg::WIDTH-1:0] setting_o,
@@ -51,8 +50,8 @@ module register_file #(
     input wire logic rest_i,
     input wire logic probe_i,
     input wire logic mark_i,
-    input wire logic [3:0] capture_i,  // levels
-    output logic [3:0] captured_o,  // events, combinational
+    input wire logic [capture_pkg::WIDTH-1:0] capture_i,  // its ASK: levels, likewise
+    output logic [capture_answer_pkg::WIDTH-1:0] capture_answer_o,
     input wire logic [snapshot_pkg::WIDTH-1:0] snapshot_i,  // the chain's near end
     output logic [snapshot_pkg::WIDTH-1:0] snapshot_o  // behind FAULT and STATUS
 );
@@ -97,12 +96,20 @@ module register_file #(
   logic [9:0] word;
   logic [31:0] live_data;
   logic [31:0] ram_data;
+  logic [3:0] captured;
+  logic [3:0] queued;
+  logic queue_full;
+  logic [31:0] capture_queue;
+  logic [31:0] oldest_data;
+  logic of_oldest;  // a word of the oldest capture is read
   logic [31:0] written;
 
   assign word = register_access_pkg::word(access_i);
   assign written = register_access_pkg::data(access_i);
   assign start_o = start_pkg::pack(start, written[7:0], ram_data);
-  assign answer_o = register_answer_pkg::pack(ack, error, !read ? '0 : live ? live_data : ram_data);
+  assign answer_o = register_answer_pkg::pack(
+      ack, error, !read ? '0 : live ? live_data : of_oldest ? oldest_data : ram_data
+  );
 
   register_access #(
       .Axes(Axes),
@@ -148,7 +155,8 @@ module register_file #(
       .queue_state_i,
       .inputs_i,
       .roles_i,
-      .capture_state_i,
+      .capture_state_i(capture_pkg::state(capture_i)),
+      .capture_queue_i(capture_queue),
       .snapshotting_i(snapshotting),
       .incomplete_i(stream_answer_i[stream_answer_pkg::PARTIAL]),
       .status_o,
@@ -163,21 +171,21 @@ module register_file #(
   ) i_snapshot (
       .clk_i,
       .rst_i,
-      .host_i  (snapshot),
+      .host_i(snapshot),
       .stop_i,
       .rest_i,
       .probe_i,
       .mark_i,
-      .capture_i,
-      .word_i  (snapshot_pkg::word(snapshot_i)),
+      .capture_i(capture_pkg::ask(capture_i)),
+      .word_i(snapshot_pkg::word(snapshot_i)),
       .strobe_o(strobe),
-      .rest_o  (of_rest),
-      .shift_o (shift),
+      .rest_o(of_rest),
+      .shift_o(shift),
       .active_o(snapshotting),
-      .captured_o,
+      .captured_o(captured),
       .clocks_o(clocks),
-      .unit_o  (unit),
-      .store_o (store)
+      .unit_o(unit),
+      .store_o(store)
   );
 
   link_watch i_link (
@@ -190,6 +198,34 @@ module register_file #(
       .gone_o   (session_gone_o),
       .lost_o   (link_lost_o)
   );
+
+  if (Engines[card_map_pkg::ENGINE_CAPTURE_FIFO]) begin : gen_capture_fifo
+    logic of_oldest_q;
+
+    // The access stands still from its request on.
+    always_ff @(posedge clk_i) of_oldest_q <= word[9:4] == card_map_pkg::AREA_CAPTURE_HEAD[11:6];
+    assign of_oldest = of_oldest_q;
+
+    capture_fifo i_queue (
+        .clk_i,
+        .rst_i,
+        .setting_i(setting_o),
+        .store_i(store),
+        .passed_i(capture_pkg::passed(capture_i)),
+        .active_i(capture_pkg::edge_of(capture_i)),
+        .queued_o(queued),
+        .full_o(queue_full),
+        .state_o(capture_queue),
+        .word_i(word[3:0]),
+        .data_o(oldest_data)
+    );
+  end else begin : gen_no_capture_fifo
+    assign queued = '0;
+    assign queue_full = 1'b0;
+    assign capture_queue = '0;
+    assign oldest_data = '0;
+    assign of_oldest = 1'b0;
+  end
 
   // The direct loader owns the RAM's read side from its start to its end; the START write waits all the while.
   logic loading_q;
@@ -227,8 +263,10 @@ module register_file #(
       .data_o(ram_data)
   );
 
-  logic unused;  // the chain's strobe and shift come round
-  assign unused = &{1'b0, snapshot_i, written[31:8]};
+  assign capture_answer_o = capture_answer_pkg::pack(queue_full, queued, captured);
+
+  logic unused;  // the chain's strobe and shift come round; without a queue nothing is for it
+  assign unused = &{1'b0, snapshot_i, written[31:8], capture_i};
 
 endmodule
 `default_nettype wire

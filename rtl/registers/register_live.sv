@@ -1,6 +1,6 @@
 // The registers that read as the card stands, STATUS and REFUSAL among them, the interrupt, and the far end of the
 // snapshot chain: FAULT and STATUS. data_o is, a clock after sample_i, the live register that is read; four bits of its
-// address tell the live registers apart, but CAPTURE_STATE.
+// address tell the live registers apart, but CAPTURE_STATE and CAPTURE_QUEUE.
 //
 // Each port has a REFUSAL of its own, which keeps the port's first refusal until the port clears it. Refusals and clears
 // never meet: one access is carried through at a time.
@@ -24,6 +24,7 @@ module register_live #(
     input wire logic [input_levels_pkg::WIDTH-1:0] inputs_i,
     input wire logic [input_roles_pkg::WIDTH-1:0] roles_i,
     input wire logic [31:0] capture_state_i,
+    input wire logic [31:0] capture_queue_i,
     input wire logic snapshotting_i,
     input wire logic incomplete_i,  // the stream is inside a command
     output logic [31:0] status_o,  // combinational; refused is any port's
@@ -123,9 +124,12 @@ module register_live #(
           data_o <= 32'(roles_i);
         else data_o <= time_state_pkg::underruns(time_state_i);
       endcase
-      // It lies beside the captures' areas.
-      if (Engines[card_map_pkg::ENGINE_CAPTURES] && address[11:6] == card_map_pkg::ADDR_CAPTURE_STATE[11:6])
+      // These two lie beside the captures' areas.
+      if (Engines[card_map_pkg::ENGINE_CAPTURES] && address[11:6] == card_map_pkg::ADDR_CAPTURE_STATE[11:6]) begin
         data_o <= capture_state_i;
+        if (Engines[card_map_pkg::ENGINE_CAPTURE_FIFO] && address[5:2] == card_map_pkg::ADDR_CAPTURE_QUEUE[5:2])
+          data_o <= capture_queue_i;
+      end
     end
   end
 

@@ -71,7 +71,7 @@ def _areas(areas):
 
 
 # Registers whose fields the RTL names.
-WITH_BIT_NUMBERS = ["STATUS", "FAULT", "CONTROL", "IRQ_ENABLE", "CAPTURE_SELECT", "CAPTURE_STATE"]
+WITH_BIT_NUMBERS = ["STATUS", "FAULT", "CONTROL", "IRQ_ENABLE", "CAPTURE_SELECT", "CAPTURE_STATE", "CAPTURE_QUEUE"]
 
 
 def _register_constants(register_map):

@@ -37,6 +37,21 @@ inline constexpr Field kCountsBack{35, 1};
 inline constexpr unsigned kWidth = 36;
 }  // namespace axis_observe
 
+namespace capture_answer {
+inline constexpr Field kCaptured{0, 4};
+inline constexpr Field kQueued{4, 4};
+inline constexpr Field kFull{8, 1};
+inline constexpr unsigned kWidth = 9;
+}  // namespace capture_answer
+
+namespace capture {
+inline constexpr Field kAsk{0, 4};
+inline constexpr Field kPassed{4, 4};
+inline constexpr Field kEdge{8, 4};
+inline constexpr Field kState{12, 32};
+inline constexpr unsigned kWidth = 44;
+}  // namespace capture
+
 namespace card_constants {
 inline constexpr Field kFirst{0, 512};
 inline constexpr unsigned kWidth = 512;

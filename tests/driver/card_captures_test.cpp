@@ -78,10 +78,82 @@ TEST_F(CardCaptures, AGlitchGivesNoneAndWaitingEnds) {
   EXPECT_FALSE(card_.read_captures().units[0].valid);
 }
 
+// Edges of two units in the order in which their filters pass, with the time of each edge.
+TEST_F(CardCaptures, AQueueKeepsEachEdge) {
+  ASSERT_TRUE(card_.has_capture_queue());
+  card_.select_capture(1, {3, true, true, true, true});
+  card_.select_capture(2, {5, true, true, true, true});  // without a filter
+  EXPECT_EQ(engine_->read(reg::capture_select(1)), 0xF03U);
+  EXPECT_TRUE(card_.take_queued_captures().empty());
+  const std::uint64_t from = engine_->cycles();
+  stand(0x08, 100);  // passes after the next
+  stand(0x28, 2000);
+  stand(0x20, 2000);
+  stand(0x00, 2000);
+  EXPECT_EQ(card_.read_capture_queue().captures, 4U);
+  EXPECT_FALSE(card_.read_captures().units[1].valid);
+  const std::vector<QueuedCapture> captures = card_.take_queued_captures();
+  ASSERT_EQ(captures.size(), 4U);
+  constexpr struct {
+    unsigned unit;
+    bool active;
+    std::uint64_t time;
+  } kExpected[] = {{2, true, 100}, {1, true, 0}, {1, false, 2100}, {2, false, 4100}};
+  for (std::size_t n = 0; n < 4; ++n) {
+    EXPECT_EQ(captures[n].unit, kExpected[n].unit) << n;
+    EXPECT_EQ(captures[n].active, kExpected[n].active) << n;
+    EXPECT_GE(captures[n].at.time + 3, from + kExpected[n].time) << n;
+    EXPECT_LE(captures[n].at.time, from + kExpected[n].time + 3) << n;
+  }
+  EXPECT_EQ(card_.read_capture_queue().captures, 0U);
+  EXPECT_EQ(card_.read_capture_queue().lost, 0U);
+  EXPECT_FALSE(card_.read_captures().units[1].overrun);
+}
+
+TEST_F(CardCaptures, AFullQueueKeepsTheOldestAndCounts) {
+  card_.select_capture(0, {5, true, true, true, true});
+  for (unsigned n = 1; n <= 20; ++n) stand(n % 2 * 0x20, 100);
+  EXPECT_EQ(card_.read_capture_queue().captures, 16U);
+  EXPECT_EQ(card_.read_capture_queue().lost, 4U);
+  EXPECT_TRUE(card_.read_captures().units[0].overrun);
+  card_.clear_captures(1);
+  EXPECT_FALSE(card_.read_captures().units[0].overrun);
+  const std::vector<QueuedCapture> captures = card_.take_queued_captures();
+  ASSERT_EQ(captures.size(), 16U);
+  EXPECT_TRUE(captures[0].active);
+  for (std::size_t n = 1; n < 16; ++n) EXPECT_EQ(captures[n].at.time - captures[n - 1].at.time, 100U) << n;
+  // It goes round.
+  for (unsigned n = 1; n <= 15; ++n) stand(n % 2 * 0x20, 100);
+  EXPECT_EQ(card_.take_queued_captures().size(), 15U);
+  EXPECT_EQ(card_.read_capture_queue().lost, 4U);
+}
+
+// Without a filter, in the clocks in which the snapshot of the edge before is written.
+TEST_F(CardCaptures, AnEdgeThatComesTooFastIsTold) {
+  card_.select_capture(0, {5, true, true, true, true});
+  stand(0x20, 5);
+  stand(0, 100);
+  EXPECT_EQ(card_.take_queued_captures().size(), 1U);
+  EXPECT_TRUE(card_.read_captures().units[0].overrun);
+  EXPECT_EQ(card_.read_capture_queue().lost, 0U);
+}
+
+TEST(CardCapturesAlone, ACardWithoutAQueueSaysSo) {
+  sim::ModelOptions options;
+  options.engines = card_map::engines::kLines | card_map::engines::kJerk | card_map::engines::kPathCommands |
+                    card_map::engines::kMachineInputs | card_map::engines::kCaptures;
+  const std::unique_ptr<sim::Engine> engine = sim::make_model_engine(options);
+  Card card = Card::open(*engine);
+  EXPECT_FALSE(card.has_capture_queue());
+  EXPECT_THAT(argument_error([&] { card.select_capture(0, {1, true, true, true, true}); }), HasSubstr("no queue"));
+  EXPECT_THAT(argument_error([&] { card.take_queued_captures(); }), HasSubstr("no queue of captures"));
+}
+
 TEST_F(CardCaptures, BadArgumentsAreNamed) {
   EXPECT_THAT(argument_error([&] { card_.select_capture(4, {}); }), HasSubstr("capture unit 4: the card has 4"));
   EXPECT_THAT(argument_error([&] { card_.select_capture(1, {16}); }), HasSubstr("input 16: the card has 16 inputs"));
   EXPECT_THAT(argument_error([&] { card_.take_capture(9); }), HasSubstr("capture unit 9"));
+  EXPECT_THAT(argument_error([&] { card_.clear_captures(16); }), HasSubstr("units of captures is outside 0 .. 15"));
 }
 
 }  // namespace

@@ -417,7 +417,8 @@ TEST(ProbeWithCaptures, AGlitchTripsNothing) {
 
 // Without captures the snapshot is that of the filter's end; without a filter captures change nothing.
 TEST(ProbeWithCaptures, WithoutThemAllIsAsBefore) {
-  constexpr std::uint32_t kWithout = model::RegisterFile::kMaxEngines & ~card_map::engines::kCaptures;
+  constexpr std::uint32_t kWithout =
+      model::RegisterFile::kMaxEngines & ~(card_map::engines::kCaptures | card_map::engines::kCaptureFifo);
   ProbeBehindAFilter late(5, kWithout);
   const std::uint64_t touch = late.stand(true, 7 * kScan);
   EXPECT_GT(late.read(reg::time_lo(card_map::Area::Probe)), touch + 5 * kScan);

@@ -325,7 +325,8 @@ TEST(Skip, Captures) {
     in.setting.set = random() % 100 == 0;
     in.setting.address = random() % 3 == 0 ? card_map::reg::kCaptureClear
                                            : card_map::reg::capture_select(static_cast<std::uint32_t>(random() % 4));
-    in.setting.data = random() % 4 | (random() & 0x700);
+    in.setting.data = random() % 4 | (random() & 0xF00);
+    in.queued = random() % 4 == 0 ? block.passed() : std::uint8_t{0};
     in.captured = random() % 4 == 0 ? block.asks(in) : std::uint8_t{0};
   });
 }
@@ -385,6 +386,7 @@ TEST(Skip, RegisterFile) {
     in.address &= 0xFFF;
     in.loader_address = 0;
     in.captures &= 0xF;
+    in.passed = 0;
   });
 }
 TEST(Skip, Axi4LitePort) { judge(model::Axi4LitePort(), 3, kAny); }

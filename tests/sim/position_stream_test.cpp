@@ -45,4 +45,42 @@ TEST(PositionStreamOnRtl, LateMissingAndRecovered) {
   EXPECT_EQ(engine->lockstep_cycles(), engine->cycles());
 }
 
+// Speeds up towards a soft limit until a period is refused, and then falls silent: at rest before the limit, and no
+// more than the last period before it.
+TEST(PositionStreamOnRtl, ComesToRestBeforeASoftLimit) {
+  for (const std::int32_t direction : {1, -1}) {
+    sim::SimulationOptions options;
+    options.kind = sim::EngineKind::kRtl;
+    const auto engine = sim::make_engine(options);
+    driver::Card card = driver::Card::open(*engine);
+    card.set_slew_time(8ms);
+    card.set_soft_limits({driver::SoftRange{-700, 700}});
+    PositionStream stream(card);
+    PositionStream::Positions target{};
+    std::int64_t speed = 0;  // pulses a period
+    std::string refusal;
+    while (refusal.empty()) {
+      if (speed < 40) ++speed;
+      target[0] += direction * speed * PositionStream::kPulse;
+      try {
+        stream.send(target, 1000);
+        if (engine->cycles() > 3000) engine->wait(700);
+      } catch (const driver::ArgumentError& error) {
+        refusal = error.what();
+      }
+    }
+    EXPECT_NE(refusal.find("before the soft limit at " + std::to_string(direction * 700)), std::string::npos)
+        << refusal;
+    engine->wait(60'000);
+    EXPECT_EQ(card.read_faults(), card_map::field::kFaultMissingPeriod);
+    const std::int64_t end = direction * engine->positions()[0];
+    EXPECT_LE(end, 700);
+    EXPECT_GT(end, 700 - 2 * speed);
+    // Back is free.
+    target = stream.recover().positions;
+    target[0] -= direction * 20 * PositionStream::kPulse;
+    EXPECT_NO_THROW(stream.send(target, 1000));
+  }
+}
+
 }  // namespace

@@ -27,6 +27,9 @@ const CardConfig& checked(const CardConfig& config) {
       (!card_map::has_engine(config.engines, card_map::engine::kMachineInputs) || config.captures < 1 ||
        config.captures > Captures::kUnits))
     throw std::invalid_argument("captures need machine inputs, and are 1 to 4");
+  if (card_map::has_engine(config.engines, card_map::engine::kCaptureFifo) &&
+      !card_map::has_engine(config.engines, card_map::engine::kCaptures))
+    throw std::invalid_argument("the queue of captures needs captures");
   if (card_map::has_engine(config.engines, card_map::engine::kEnables) &&
       !card_map::has_engine(config.engines, card_map::engine::kPathCommands))
     throw std::invalid_argument("enables need path commands");
@@ -199,6 +202,8 @@ void CoreModel::show_registers() {
   in.inputs = state_.inputs.levels();
   in.raw_inputs = state_.inputs.raw();
   in.roles = state_.inputs.roles();
+  in.passed = state_.captures.passed();
+  in.edges = state_.captures.edges();
   in.capture_state = state_.captures.word();
   in.outputs = output_levels();
   in.marks = state_.motion.commands().marks();

@@ -80,15 +80,16 @@ void RegisterFile::clock(const Inputs& in) {
   const bool irq = interrupt(in);
   const bool asked = state_.snapshot_asked;
   const bool enable_set = state_.out.setting.set && state_.out.setting.address == reg::kIrqEnable;
-  const std::uint32_t enable = state_.out.setting.data;
+  const Setting setting = state_.out.setting;
   if (state_.snapshot.strobe()) take_values(in);
   step_link();
   step_loader(in);
   clear_events();
   refuse_checked(in);
   step_access(in);
+  step_queue(in, setting);
   step_snapshot(in, asked);
-  if (enable_set) state_.irq_enable = enable;
+  if (enable_set) state_.irq_enable = setting.data;
   state_.out.irq = irq;
   ++state_.time;
 }
@@ -179,6 +180,8 @@ std::uint32_t RegisterFile::live(const Inputs& in) const {
       return in.place;
     case reg::kCaptureState:
       return in.capture_state;
+    case reg::kCaptureQueue:
+      return state_.queue.word();
     case reg::kUnderruns:
       return in.underruns;
     default:
@@ -273,7 +276,7 @@ void RegisterFile::act(const Inputs& in) {
     return;
   }
   if (!state_.write) {
-    state_.answer = reads_live(state_.slot.entry->access) ? live(in) : stored(state_.address);
+    state_.answer = reads_live(state_.slot.entry->access) ? live(in) : read(state_.address);
     state_.stage = Stage::Respond;
     return;
   }
@@ -298,7 +301,7 @@ void RegisterFile::take_effect() {
     stored(state_.address) = state_.word;
     state_.out.setting = {true, state_.address, state_.word};
   }
-  if (state_.address == reg::kSetPlace || state_.address == reg::kCaptureClear)
+  if (state_.address == reg::kSetPlace || state_.address == reg::kCaptureClear || state_.address == reg::kCaptureNext)
     state_.out.setting = {true, state_.address, state_.word};
   if (state_.address == reg::kControl) {
     state_.out.abort = (state_.word & field::kControlAbort) != 0;
@@ -344,6 +347,21 @@ void RegisterFile::step_snapshot(const Inputs& in, bool host) {
   requests.captures = in.captures;
   state_.snapshot.clock(requests);
   state_.out.strobe = state_.snapshot.strobe();
+}
+
+void RegisterFile::step_queue(const Inputs& in, const Setting& setting) {
+  if (!card_map::has_engine(config_.engines, card_map::engine::kCaptureFifo)) return;
+  constexpr Area kAreas[] = {Area::Capture0, Area::Capture1, Area::Capture2, Area::Capture3};
+  const unsigned unit = CaptureFifo::unit_of(in.passed);
+  const std::uint32_t* area = unit < 4 ? &stored(static_cast<std::uint32_t>(kAreas[unit])) : nullptr;
+  state_.queue.clock({in.passed, in.edges, setting}, area);
+}
+
+// What is no live register.
+std::uint32_t RegisterFile::read(std::uint32_t address) const {
+  constexpr auto kHead = static_cast<std::uint32_t>(Area::CaptureHead);
+  const bool of_head = address >= kHead && address < kHead + 4 * CaptureFifo::kWords;
+  return of_head ? state_.queue.oldest((address - kHead) / 4) : stored(address);
 }
 
 // The place in its area of the word that is written as the `word`th: the time, the positions from the last one down,

@@ -72,6 +72,7 @@ package card_map_pkg;
   localparam int ENGINE_EMERGENCY_STOP = 13;
   localparam int ENGINE_ENABLES = 14;
   localparam int ENGINE_SOFT_LIMITS = 15;
+  localparam int ENGINE_CAPTURE_FIFO = 16;
 
   // Registers: byte address, reset value, bits with meaning; for arrays (the address is axis 0's) also count and
   // stride in bytes, negative where the array runs downwards.
@@ -424,7 +425,7 @@ package card_map_pkg;
   localparam int STRIDE_CAPTURE_3_POSITION = 4;
   localparam logic [11:0] ADDR_CAPTURE_SELECT = 12'h580;
   localparam logic [31:0] RESET_CAPTURE_SELECT = 32'h00000000;
-  localparam logic [31:0] MASK_CAPTURE_SELECT = 32'h0000071F;
+  localparam logic [31:0] MASK_CAPTURE_SELECT = 32'h00000F1F;
   localparam int COUNT_CAPTURE_SELECT = 4;
   localparam int STRIDE_CAPTURE_SELECT = 4;
   localparam logic [11:0] ADDR_CAPTURE_STATE = 12'h590;
@@ -433,6 +434,41 @@ package card_map_pkg;
   localparam logic [11:0] ADDR_CAPTURE_CLEAR = 12'h594;
   localparam logic [31:0] RESET_CAPTURE_CLEAR = 32'h00000000;
   localparam logic [31:0] MASK_CAPTURE_CLEAR = 32'h0000000F;
+  localparam logic [11:0] ADDR_CAPTURE_QUEUE = 12'h598;
+  localparam logic [31:0] RESET_CAPTURE_QUEUE = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_QUEUE = 32'hFFFF7F1F;
+  localparam logic [11:0] ADDR_CAPTURE_NEXT = 12'h59C;
+  localparam logic [31:0] RESET_CAPTURE_NEXT = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_NEXT = 32'h0000000F;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_FAULT = 12'h5C0;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_FAULT = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_FAULT = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_STATUS = 12'h5C4;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_STATUS = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_STATUS = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_RATIO = 12'h5C8;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_RATIO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_RATIO = 32'h0001FFFF;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_RATE = 12'h5CC;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_RATE = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_RATE = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_FEED_BEGUN = 12'h5D0;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_FEED_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_FEED_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_GEOMETRY_BEGUN = 12'h5D4;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_GEOMETRY_BEGUN = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_GEOMETRY_BEGUN = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_TIME_HI = 12'h5D8;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_TIME_HI = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_TIME_HI = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_TIME_LO = 12'h5DC;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_TIME_LO = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_TIME_LO = 32'hFFFFFFFF;
+  localparam logic [11:0] ADDR_CAPTURE_HEAD_POSITION = 12'h5E0;
+  localparam logic [31:0] RESET_CAPTURE_HEAD_POSITION = 32'h00000000;
+  localparam logic [31:0] MASK_CAPTURE_HEAD_POSITION = 32'hFFFFFFFF;
+  localparam int COUNT_CAPTURE_HEAD_POSITION = 8;
+  localparam int STRIDE_CAPTURE_HEAD_POSITION = 4;
   localparam logic [11:0] ADDR_CONTROL = 12'h600;
   localparam logic [31:0] RESET_CONTROL = 32'h00000000;
   localparam logic [31:0] MASK_CONTROL = 32'h0000000F;
@@ -626,7 +662,7 @@ package card_map_pkg;
   localparam int COUNT_ROLE = 64;
   localparam int STRIDE_ROLE = 4;
 
-  // Bit numbers of the fields of STATUS, FAULT, CONTROL, IRQ_ENABLE, CAPTURE_SELECT, CAPTURE_STATE (the lowest bit of a wider field).
+  // Bit numbers of the fields of STATUS, FAULT, CONTROL, IRQ_ENABLE, CAPTURE_SELECT, CAPTURE_STATE, CAPTURE_QUEUE (the lowest bit of a wider field).
   localparam int BIT_STATUS_BUSY = 0;
   localparam int BIT_STATUS_DIRECT = 1;
   localparam int BIT_STATUS_PATH_ACTIVE = 2;
@@ -665,11 +701,17 @@ package card_map_pkg;
   localparam int BIT_CAPTURE_SELECT_TO_ACTIVE = 8;
   localparam int BIT_CAPTURE_SELECT_TO_INACTIVE = 9;
   localparam int BIT_CAPTURE_SELECT_CONTINUOUS = 10;
+  localparam int BIT_CAPTURE_SELECT_QUEUE = 11;
   localparam int BIT_CAPTURE_STATE_PENDING = 0;
   localparam int BIT_CAPTURE_STATE_VALID = 4;
   localparam int BIT_CAPTURE_STATE_OVERRUN = 8;
   localparam int BIT_CAPTURE_STATE_ACTIVE = 12;
   localparam int BIT_CAPTURE_STATE_SNAPSHOTS = 16;
+  localparam int BIT_CAPTURE_QUEUE_CAPTURES = 0;
+  localparam int BIT_CAPTURE_QUEUE_OLDEST = 8;
+  localparam int BIT_CAPTURE_QUEUE_UNIT_NUMBER = 12;
+  localparam int BIT_CAPTURE_QUEUE_ACTIVE = 14;
+  localparam int BIT_CAPTURE_QUEUE_LOST = 16;
   localparam int BIT_CONTROL_SNAPSHOT = 0;
   localparam int BIT_CONTROL_ABORT = 1;
   localparam int BIT_CONTROL_FLUSH = 2;
@@ -716,6 +758,7 @@ package card_map_pkg;
   localparam logic [11:0] AREA_CAPTURE_1 = 12'h4C0;
   localparam logic [11:0] AREA_CAPTURE_2 = 12'h500;
   localparam logic [11:0] AREA_CAPTURE_3 = 12'h540;
+  localparam logic [11:0] AREA_CAPTURE_HEAD = 12'h5C0;
   localparam logic [5:0] IN_AREA_FAULT = 6'h00;
   localparam logic [5:0] IN_AREA_STATUS = 6'h04;
   localparam logic [5:0] IN_AREA_RATIO = 6'h08;
@@ -923,6 +966,13 @@ package card_map_pkg;
         register_access = engines[ENGINE_CAPTURES] ? ACCESS_LIVE : ACCESS_NONE;
       10'b01_0110_0101:
         register_access = engines[ENGINE_CAPTURES] ? ACCESS_COMMAND : ACCESS_NONE;
+      10'b01_0110_0110:
+        register_access = engines[ENGINE_CAPTURE_FIFO] ? ACCESS_LIVE : ACCESS_NONE;
+      10'b01_0110_0111:
+        register_access = engines[ENGINE_CAPTURE_FIFO] ? ACCESS_COMMAND : ACCESS_NONE;
+      10'b01_0111_0000, 10'b01_0111_0001, 10'b01_0111_0010, 10'b01_0111_0011, 10'b01_0111_0100,
+      10'b01_0111_0101, 10'b01_0111_0110, 10'b01_0111_0111, 10'b01_0111_1???:
+        register_access = engines[ENGINE_CAPTURE_FIFO] ? ACCESS_SNAPSHOT : ACCESS_NONE;
       10'b01_1000_0000, 10'b01_1000_0100, 10'b01_1111_0010:
         register_access = ACCESS_COMMAND;
       10'b01_1000_0001, 10'b01_1001_0000, 10'b01_1001_0011, 10'b01_1010_0000, 10'b01_1010_0001,
@@ -972,10 +1022,10 @@ package card_map_pkg;
   function automatic logic register_only_present_axes(input logic [9:0] word);
     casez (word)
       10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b01_0000_1???,
-      10'b01_0010_1???, 10'b01_0011_1???, 10'b01_0100_1???, 10'b01_0101_1???, 10'b10_???0_0000,
-      10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100, 10'b10_???0_0101,
-      10'b10_???0_0110, 10'b10_???0_1000, 10'b10_???0_1001, 10'b11_001?_??00, 10'b11_001?_??01,
-      10'b11_001?_??10, 10'b11_001?_??11:
+      10'b01_0010_1???, 10'b01_0011_1???, 10'b01_0100_1???, 10'b01_0101_1???, 10'b01_0111_1???,
+      10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100,
+      10'b10_???0_0101, 10'b10_???0_0110, 10'b10_???0_1000, 10'b10_???0_1001, 10'b11_001?_??00,
+      10'b11_001?_??01, 10'b11_001?_??10, 10'b11_001?_??11:
         register_only_present_axes = 1'b1;
       default: register_only_present_axes = 1'b0;
     endcase
@@ -989,9 +1039,12 @@ package card_map_pkg;
       10'b00_0001_0010, 10'b01_1001_0011:
         register_mask = 32'h0FFFFFFF;
       10'b01_0110_00??:
-        register_mask = engines[ENGINE_CAPTURES] ? 32'h0000071F : 32'h00000000;
+        register_mask = engines[ENGINE_CAPTURES] ?
+            32'h0000071F | (engines[ENGINE_CAPTURE_FIFO] ? 32'h00000800 : 32'h00000000) : 32'h00000000;
       10'b01_0110_0101:
         register_mask = engines[ENGINE_CAPTURES] ? 32'h0000000F : 32'h00000000;
+      10'b01_0110_0111:
+        register_mask = engines[ENGINE_CAPTURE_FIFO] ? 32'h0000000F : 32'h00000000;
       10'b01_1000_0000:
         register_mask = 32'h00000007 | (engines[ENGINE_PATH_COMMANDS] ?
             32'h00000008 : 32'h00000000);
@@ -1109,7 +1162,7 @@ package card_map_pkg;
   function automatic logic [2:0] register_axis(input logic [9:0] word);
     casez (word)
       10'b00_1000_1???, 10'b00_1010_1???, 10'b00_1100_1???, 10'b00_1110_1???, 10'b01_0000_1???,
-      10'b01_0010_1???, 10'b01_0011_1???, 10'b01_0100_1???, 10'b01_0101_1???:
+      10'b01_0010_1???, 10'b01_0011_1???, 10'b01_0100_1???, 10'b01_0101_1???, 10'b01_0111_1???:
         register_axis = word[2:0];
       10'b10_???0_0000, 10'b10_???0_0001, 10'b10_???0_0010, 10'b10_???0_0011, 10'b10_???0_0100,
       10'b10_???0_0101, 10'b10_???0_0110, 10'b10_???0_1000, 10'b10_???0_1001:
@@ -1434,7 +1487,7 @@ package card_map_pkg;
       table_so_far = {
         table_so_far[1983:0],
         2'd0, 5'd31, 7'd16, 8'(296 + 1 * (axes - 1) - (288) + 1), 10'(288),
-        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 8'(captures), 4'd1, 4'd0, 8'd18
+        1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, 1'b0, engines[ENGINE_CAPTURE_FIFO], 8'(captures), 4'd1, 4'd0, 8'd18
       };
     end
     // roles

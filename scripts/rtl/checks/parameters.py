@@ -19,10 +19,11 @@ PINS = "ERROR_Inputs_must_be_1_to_32_and_Outputs_1_to_16"
 MACHINE = "ERROR_MachineInputs_needs_PathCommands"
 CAPTURES = "ERROR_Captures_must_be_0_to_4"
 CAPTURES_ALONE = "ERROR_Captures_needs_MachineInputs"
+FIFO = "ERROR_CaptureFifo_needs_Captures"
 ENABLES = "ERROR_Enables_needs_PathCommands"
 SOFT = "ERROR_SoftLimits_needs_MachineInputs"
 FLAGS = ("Accumulator EightDirections ArcGenerator DirectMode UnderrunHold Classes Watermarks PathCommands PositionStreaming "
-         "MachineInputs EmergencyStop Enables SoftLimits BuildDirty").split()
+         "MachineInputs CaptureFifo EmergencyStop Enables SoftLimits BuildDirty").split()
 # Top, parameters, and the message that must stop the reader; None: they are legal.
 CASES = [
     ("trammel_card", "Axes=1 GeometryDepth=2 FeedDepth=2", None),
@@ -50,6 +51,9 @@ CASES = [
     ("trammel_card", "PathCommands=1 MachineInputs=1 Captures=4 Inputs=32 Axes=8", None),
     ("trammel_card", "PathCommands=1 MachineInputs=1 Captures=5", CAPTURES),
     ("trammel_card", "PathCommands=1 Captures=1", CAPTURES_ALONE),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 Captures=1 CaptureFifo=1", None),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 Captures=4 CaptureFifo=1 Inputs=32 Axes=8", None),
+    ("trammel_card", "PathCommands=1 MachineInputs=1 CaptureFifo=1", FIFO),
     ("trammel_card", "PathCommands=1 MachineInputs=1 SoftLimits=1", None),
     ("trammel_card", "PathCommands=1 MachineInputs=1 SoftLimits=1 Axes=8", None),
     ("trammel_card", "SoftLimits=1", SOFT),

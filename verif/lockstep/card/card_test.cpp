@@ -56,6 +56,8 @@ void expect_all_happened(const Traffic& traffic, std::uint64_t clocks) {
     EXPECT_GT(traffic.causes_of(cause), clocks / 200'000) << "FAULT " << cause;
   EXPECT_GT(traffic.button_holds, clocks / 200'000);
   EXPECT_GT(traffic.captured, clocks / 200'000);
+  EXPECT_GT(traffic.queued, clocks / 200'000);
+  EXPECT_GT(traffic.lost, clocks / 2'000'000);
   EXPECT_GT(traffic.causes_of(field::kFaultEmergencyStop), clocks / 5'000'000);
 }
 
@@ -89,7 +91,8 @@ void random_traffic(unsigned axes, std::uint64_t seed, std::uint64_t clocks) {
   std::cout << card.cycles() << " clocks of random traffic compared, " << traffic.holds << " holds, "
             << traffic.overrides << " overrides, " << traffic.underruns << " under-runs, " << traffic.probed
             << " probes tripped, " << traffic.missed << " missed, " << traffic.button_holds << " holds by the button, "
-            << traffic.captured << " looks at captures\n"
+            << traffic.captured << " looks at captures, " << traffic.queued << " at queued ones, " << traffic.lost
+            << " at lost ones\n"
             << (traffic.roles ? card.cycles() : 0) << " of them with random inputs; by bit of FAULT:";
   for (const std::uint64_t count : traffic.causes) std::cout << ' ' << count;
   std::cout << '\n';

@@ -91,8 +91,10 @@ class Traffic {
     return causes[bit];
   }
   std::uint64_t button_holds = 0;
-  // Looks at a capture.
+  // Looks at a capture, and at one in the queue, or one that was lost.
   std::uint64_t captured = 0;
+  std::uint64_t queued = 0;
+  std::uint64_t lost = 0;
   // Requests in disturb() and starved().
   std::uint64_t holds = 0;
   std::uint64_t overrides = 0;
@@ -166,6 +168,7 @@ class Traffic {
   }
   void select_capture();
   void look_at_captures();
+  void look_at_queue();
   void set_soft_limits(unsigned axis);
   void write_role(std::uint32_t address, std::uint32_t inputs) {
     host_.write(address, inputs);
@@ -398,8 +401,9 @@ inline void Traffic::machine_inputs() {
 inline void Traffic::select_capture() {
   const std::uint64_t edges = one_in(10) ? 0 : (1 + below(3)) << 8;
   const std::uint32_t continuous = one_in(2) ? field::kCaptureSelectContinuous : 0;
+  const std::uint32_t queue = one_in(2) ? field::kCaptureSelectQueue : 0;
   host_.write(reg::capture_select(static_cast<std::uint32_t>(below(4))),
-              static_cast<std::uint32_t>(below(16) | edges) | continuous);
+              static_cast<std::uint32_t>(below(16) | edges) | continuous | queue);
 }
 
 inline void Traffic::look_at_captures() {
@@ -408,6 +412,21 @@ inline void Traffic::look_at_captures() {
   const auto area = static_cast<std::uint32_t>(card_map::Area::Capture0) + 0x40 * static_cast<std::uint32_t>(below(4));
   for (std::uint32_t word = 0; word < 8 + axes_; ++word) host_.read(area + 4 * word);
   if (one_in(2)) host_.write(reg::kCaptureClear, static_cast<std::uint32_t>(below(16)));
+  if (one_in(2)) look_at_queue();
+}
+
+// Where the card has none, all of it is refused. Sometimes the wrong capture is dropped.
+inline void Traffic::look_at_queue() {
+  for (std::uint64_t n = one_in(4) ? 20 : below(3); n != 0; --n) {
+    const std::uint32_t queue = host_.read(reg::kCaptureQueue).value_or(0);
+    queued += (queue & field::kCaptureQueueCaptures) != 0 ? 1U : 0U;
+    lost += (queue & field::kCaptureQueueLost) != 0 ? 1U : 0U;
+    for (std::uint32_t word = 0; word < 8 + axes_; ++word) {
+      if (one_in(4)) host_.read(reg::kCaptureHeadFault + 4 * word);
+    }
+    const std::uint32_t oldest = (queue & field::kCaptureQueueOldest) >> field::kCaptureQueueOldestShift;
+    host_.write(reg::kCaptureNext, one_in(10) ? static_cast<std::uint32_t>(below(16)) : oldest);
+  }
 }
 
 // Near where the axis stands.

@@ -1,5 +1,6 @@
 // Lockstep of the capture units: any levels at all, and levels that bounce behind real filters with snapshots that come
-// late; selections, clears and resets at any clock. Every output in every cycle.
+// late; selections, clears and resets at any clock; a queue that takes captures late, and is full. Every output in
+// every cycle.
 #include "trammel/model/captures.hpp"
 
 #include <Vdut.h>
@@ -19,7 +20,8 @@ namespace reg = card_map::reg;
 namespace field = card_map::field;
 
 constexpr unsigned kUnits = TRAMMEL_CAPTURES;
-constexpr std::uint64_t kComparedSignals = 2;
+constexpr bool kQueue = TRAMMEL_QUEUE != 0;
+constexpr std::uint64_t kComparedSignals = 4;
 
 class Bench {
  public:
@@ -49,32 +51,41 @@ class Bench {
     valid_ += (rises & field::kCaptureStateValid) != 0 ? 1U : 0U;
     overruns_ += (rises & field::kCaptureStateOverrun) != 0 ? 1U : 0U;
     touches_ += (rises & field::kCaptureStatePending) != 0 ? 1U : 0U;
+    queued_ += in.queued != 0 && !in.full ? 1U : 0U;
     word_ = now;
   }
 
   std::uint8_t asks(const Inputs& in) const { return model_.asks(in); }
+  std::uint8_t passed() const { return model_.passed(); }
   const Checker& check() const { return check_; }
   std::uint64_t valid() const { return valid_; }
   std::uint64_t overruns() const { return overruns_; }
   std::uint64_t touches() const { return touches_; }
+  std::uint64_t queued() const { return queued_; }
 
  private:
   void drive(const Inputs& in) {
     put_inputs(dut_->inputs_i, in.levels, in.raw, in.quiet);
     dut_->setting_i = wire(in.setting);
-    dut_->captured_i = in.captured;
+    namespace answer = bus::capture_answer;
+    dut_->answer_i = static_cast<SData>(in_place(answer::kCaptured, in.captured) |
+                                        in_place(answer::kQueued, in.queued) | in_place(answer::kFull, in.full));
   }
   void compare(const Inputs& in) {
     check_.next_cycle();
-    check_.compare("ask_o", dut_->ask_o, model_.asks(in));
-    check_.compare("state_o", dut_->state_o, model_.word());
+    namespace capture = bus::capture;
+    const std::uint64_t passed = model_.passed();
+    check_.compare("ask", get(dut_->capture_o, capture::kAsk), model_.asks(in));
+    check_.compare("state", get(dut_->capture_o, capture::kState), model_.word());
+    check_.compare("passed", get(dut_->capture_o, capture::kPassed), passed);
+    check_.compare("edge", get(dut_->capture_o, capture::kEdge) & passed, model_.edges() & passed);
   }
 
   Simulated<Vdut> dut_;
   model::Captures model_{kUnits};
   Checker check_;
   std::uint32_t word_ = 0;
-  std::uint64_t valid_ = 0, overruns_ = 0, touches_ = 0;
+  std::uint64_t valid_ = 0, overruns_ = 0, touches_ = 0, queued_ = 0;
 };
 
 // Of the first inputs, so that units often share one.
@@ -82,7 +93,17 @@ model::Setting random_setting(Dice& dice, unsigned inputs) {
   if (dice.chance(2)) return {true, reg::kCaptureClear, dice.below(16)};
   const std::uint32_t edges = dice.chance(8) ? 0 : (1 + dice.below(3)) << 8;
   const std::uint32_t continuous = dice.chance(3) ? 0 : field::kCaptureSelectContinuous;
-  return {true, reg::capture_select(dice.below(4)), dice.below(inputs) | edges | continuous};
+  const std::uint32_t queue = !kQueue || dice.chance(2) ? 0 : field::kCaptureSelectQueue;
+  return {true, reg::capture_select(dice.below(4)), dice.below(inputs) | edges | continuous | queue};
+}
+
+// One of those that hand on a capture is told, the lowest or another one, now or later.
+void answer_queue(Dice& dice, Bench::Inputs& in, unsigned passed) {
+  in.queued = 0;
+  in.full = dice.chance(4);
+  if (dice.chance(3)) return;
+  const unsigned lowest = passed & (0U - passed);
+  in.queued = static_cast<std::uint8_t>(dice.chance(2) ? lowest : passed & 1U << dice.below(4));
 }
 
 // Levels, quiet and snapshots in any order, also such as no filter gives.
@@ -99,12 +120,14 @@ void any_levels() {
     in.setting = dice.chance(60) ? random_setting(dice, 32) : model::Setting{};
     // The units that are told have asked in this clock.
     in.captured = static_cast<std::uint8_t>(dice.chance(4) ? bench.asks(in) & dice.draw() : 0);
+    answer_queue(dice, in, bench.passed());
     bench.clock(in);
     if (dice.chance(30'000)) bench.reset();
   }
-  EXPECT_GT(bench.valid(), length / 200);
+  EXPECT_GT(bench.valid(), length / 400);
   EXPECT_GT(bench.overruns(), length / 2000);
   EXPECT_GT(bench.touches(), bench.valid());
+  EXPECT_GE(bench.queued(), kQueue ? length / 400 : 0);
   EXPECT_EQ(bench.check().comparisons(), kComparedSignals * bench.check().cycles());
 }
 
@@ -135,12 +158,14 @@ void bouncing_inputs() {
     if (writing == 0 && asks != 0) writing = 12 + dice.below(dice.chance(4) ? 100 : 8);
     in.captured = 0;
     if (writing != 0 && --writing == 0) in.captured = static_cast<std::uint8_t>(asks & (0U - asks));
+    answer_queue(dice, in, bench.passed());
     bench.clock(in);
     filter.clock({in.raw});
   }
-  EXPECT_GT(bench.valid(), length / 1000);
+  EXPECT_GT(bench.valid(), length / 2000);
   EXPECT_GT(bench.overruns(), length / 10'000);
   EXPECT_GT(bench.touches(), 2 * bench.valid());
+  EXPECT_GE(bench.queued(), kQueue ? length / 2000 : 0);
 }
 
 TEST(Captures, AnyLevels) { EXPECT_EQ(judge(any_levels), ""); }

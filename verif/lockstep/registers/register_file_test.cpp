@@ -26,11 +26,12 @@ namespace reg = card_map::reg;
 constexpr std::uint32_t kAxes = TRAMMEL_AXES;
 constexpr std::uint32_t kPorts = TRAMMEL_PORTS;
 constexpr std::uint32_t kFaultBits = 0x3FF;
-constexpr std::uint64_t kComparedSignals = 17;
+constexpr std::uint64_t kComparedSignals = 19;
 constexpr bool kMachineInputs = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kMachineInputs);
 constexpr bool kStreaming = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kStreaming);
 constexpr bool kPathCommands = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kPathCommands);
 constexpr bool kCaptures = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kCaptures);
+constexpr bool kCaptureFifo = card_map::has_engine(TRAMMEL_ENGINES, card_map::engine::kCaptureFifo);
 constexpr std::uint64_t kFilled = kCaptures        ? 700
                                   : kMachineInputs ? 500
                                                    : 300;  // clocks after reset, more than the filling takes
@@ -70,6 +71,7 @@ class Bench {
   // One clock of reset, whatever comes in it; what was asked for is forgotten.
   void reset() {
     in_.incomplete = false;
+    in_.passed = 0;
     rtl_->rst_i = 1;
     drive();
     rtl_.clock();
@@ -82,7 +84,7 @@ class Bench {
     flushed_ = streamed_ = false;
     chain_.fill({});
     in_.request = in_.stop = in_.rest = in_.probe = in_.mark = in_.start_done = in_.checker_refuse = false;
-    in_.captures = told_ = 0;
+    in_.captures = told_ = held_ = 0;
     in_.checker_ready = true;
     compare();
   }
@@ -176,13 +178,20 @@ class Bench {
     return values[place];
   }
 
-  // A unit asks until it is told, or takes it back.
+  // A unit asks until it is told, or takes it back. What it hands on stands in its area until that is taken.
   void random_captures() {
     if (!kCaptures || model_.time() <= kFilled) return;
+    in_.passed = static_cast<std::uint8_t>(in_.passed & ~model_.queued(in_.passed));
+    if (kCaptureFifo && told_ != 0 && chance(2)) held_ = static_cast<std::uint8_t>(held_ | told_);
+    const std::uint8_t passes = chance(4) ? held_ : 0;
+    held_ = static_cast<std::uint8_t>(held_ & ~passes);
+    in_.passed = static_cast<std::uint8_t>(in_.passed | passes);
+    in_.edges = static_cast<std::uint8_t>(draw());
     in_.captures = static_cast<std::uint8_t>(in_.captures & ~told_);
     if (chance(200)) in_.captures = static_cast<std::uint8_t>(in_.captures & draw());
     if (chance(captures_every_)) in_.captures = static_cast<std::uint8_t>(in_.captures | 1U << draw() % 4);
     if (chance(3000)) captures_every_ = chance(3) ? 5 + draw() % 20 : 300;
+    in_.captures = static_cast<std::uint8_t>(in_.captures & ~(held_ | in_.passed));
     told_ = model_.captured(in_.captures);
   }
 
@@ -286,7 +295,16 @@ class Bench {
     // often.
     if (!looks && chance(5)) write_register(reg::kRefusal, chance(3) ? 0 : 1U << draw() % 28);
     if (!looks && chance(20)) write_register(reg::kControl, card_map::field::kControlSnapshot);
+    if (!looks && kCaptureFifo && chance(drops_every_)) write_register(reg::kCaptureNext, oldest());
     checker_.event(in_.write ? "write" : "read", in_.address);
+  }
+
+  // The number that drops the oldest capture of the queue, mostly; the queue is full at times, and empty at others.
+  std::uint32_t oldest() {
+    if (chance(50)) drops_every_ = chance(2) ? 10 : 100;
+    const std::uint32_t queue = model_.state().queue.word();
+    return chance(5) ? draw() % 16
+                     : (queue & card_map::field::kCaptureQueueOldest) >> card_map::field::kCaptureQueueOldestShift;
   }
 
   void write_register(std::uint32_t address, std::uint32_t data) {
@@ -299,6 +317,7 @@ class Bench {
   std::uint32_t random_address() {
     if (chance(20)) return draw() & 0xFFF;
     constexpr std::uint32_t kOften[] = {reg::kRefusal, reg::kControl, reg::kStream};
+    if (kCaptureFifo && chance(8)) return chance(2) ? reg::kCaptureQueue : reg::kCaptureHeadFault + 4 * (draw() % 16);
     if (chance(10)) return kOften[draw() % std::size(kOften)];
     const card_map::Register& entry = card_map::kRegisters[draw() % card_map::kRegisters.size()];
     const std::uint32_t stray = chance(40) ? 1 + draw() % 3 : 0;
@@ -332,7 +351,9 @@ class Bench {
     rtl_->rest_i = in_.rest;
     rtl_->probe_i = in_.probe;
     rtl_->mark_i = in_.mark;
-    rtl_->capture_i = in_.captures;
+    namespace capture = trammel::bus::capture;
+    rtl_->capture_i = in_place(capture::kAsk, in_.captures) | in_place(capture::kPassed, in_.passed) |
+                      in_place(capture::kEdge, in_.edges) | in_place(capture::kState, in_.capture_state);
     rtl_->snapshot_i = in_place(trammel::bus::snapshot::kWord, chain_.back().word());
   }
 
@@ -374,7 +395,6 @@ class Bench {
     put(rtl_->geometry_state_i, geometry::kEnded, in_.ended);
     put(rtl_->geometry_state_i, geometry::kDirect, in_.direct);
     trammel::lockstep::put_inputs(rtl_->inputs_i, 0, in_.raw_inputs, 0);
-    rtl_->capture_state_i = in_.capture_state;
     rtl_->roles_i = trammel::lockstep::roles_wire(in_.roles);
     namespace queues = trammel::bus::queue_state;
     rtl_->queue_state_i = in_place(queues::kGeometryLow, in_.geometry_low) | in_place(queues::kFeedLow, in_.feed_low) |
@@ -395,7 +415,10 @@ class Bench {
     checker_.compare("status_o", rtl_->status_o, model_.status(in_));
     checker_.compare("irq_o", rtl_->irq_o, out.irq);
     checker_.compare("clear_fault_o", rtl_->clear_fault_o, out.clear_fault);
-    checker_.compare("captured_o", rtl_->captured_o, model_.captured(in_.captures));
+    namespace capture = trammel::bus::capture_answer;
+    checker_.compare("captured", get(rtl_->capture_answer_o, capture::kCaptured), model_.captured(in_.captures));
+    checker_.compare("queued", get(rtl_->capture_answer_o, capture::kQueued), model_.queued(in_.passed));
+    checker_.compare("full", get(rtl_->capture_answer_o, capture::kFull), model_.state().queue.full());
     checker_.compare("session_gone_o", rtl_->session_gone_o, model_.link().gone());
     checker_.compare("link_lost_o", rtl_->link_lost_o, model_.link().lost());
     checker_.compare("abort_o", rtl_->abort_o, out.abort);
@@ -431,8 +454,10 @@ class Bench {
   std::uint32_t start_wait_ = 0;
   std::uint32_t marks_every_ = 300;
   std::uint32_t captures_every_ = 300;
-  std::uint8_t told_ = 0;          // the units that were told in the last clock
-  std::uint32_t stopped_for_ = 0;  // clocks since the last stop
+  std::uint32_t drops_every_ = 10;  // accesses
+  std::uint8_t told_ = 0;           // the units that were told in the last clock
+  std::uint8_t held_ = 0;           // of these, the units that will hand on a capture
+  std::uint32_t stopped_for_ = 0;   // clocks since the last stop
   bool outstanding_ = false;
 };
 

@@ -36,6 +36,11 @@ struct Pulse {
   int direction;
 };
 
+struct OutputChange {
+  std::uint64_t clock;
+  std::uint32_t levels;  // from then on
+};
+
 class PinWatch {
  public:
   // The pins as they stand are at rest.
@@ -53,6 +58,7 @@ class PinWatch {
   void clock(std::uint64_t now, const StepPins& pins) {
     now_ = now;
     if (pins.first != last_.first || pins.second != last_.second) last_change = now;
+    if (pins.outputs != last_.outputs) output_changes.push_back({now, pins.outputs});
     last_ = pins;
     if (!watches_) return;
     for (unsigned n = 0; n < kWatchedAxes; ++n) {
@@ -68,7 +74,8 @@ class PinWatch {
   std::string error;
   std::vector<Pulse> pulses;  // since the first begin()
   Place place{};
-  std::uint64_t last_change = 0;  // clock in which any of the pins last moved
+  std::uint64_t last_change = 0;  // clock in which any of the STEP pins last moved
+  std::vector<OutputChange> output_changes;
   // The places as they were at a clock.
   Place place_at(std::uint64_t clock) const {
     Place at{};

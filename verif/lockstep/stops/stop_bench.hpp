@@ -30,6 +30,17 @@ inline constexpr unsigned kTickClocks = 16;
 inline constexpr std::uint32_t kSlew = 1U << 20;
 inline constexpr std::uint64_t kRampClocks = (std::uint64_t{1} << 30) / kSlew;
 
+// Outputs, all on after a reset: one changes at the cause of a stop, one at rest.
+enum Output : std::uint32_t { kOutputKept = 1, kOutputSafeAtCause = 2, kOutputSafeAtRest = 4, kOutputsAfterReset = 7 };
+inline constexpr unsigned kDriveAxis = 2;  // the axis whose drive kDriveInput tells of
+
+// Of each card here.
+inline sim::CardStraps watched_straps() {
+  sim::CardStraps straps;
+  straps.output_idle = kOutputsAfterReset;
+  return straps;
+}
+
 // Inputs of the card, and the roles that they have. The programs move axis 0 up and axis 1 down.
 enum Input : std::uint32_t {
   kProbeInput = 2,  // of the command PROBE
@@ -40,6 +51,7 @@ enum Input : std::uint32_t {
   kToolSetterInput = 9,
   kFeedHoldInput = 10,
   kCycleStartInput = 11,
+  kBeginInput = 12,        // the level that a program waits for
   kEmergencyStopPin = 32,  // a pin of its own
 };
 
@@ -63,11 +75,15 @@ class StopBench {
     write(reg::kSlew, kSlew);
     write(reg::role(8 * 1 + 0), 1U << kLimitPlusInput);
     write(reg::role(8 * 0 + 1), 1U << kLimitMinusInput);
-    write(reg::role(8 * 4 + 2), 1U << kDriveInput);
+    write(reg::role(8 * 4 + kDriveAxis), 1U << kDriveInput);
     write(reg::role(48), 1U << kProbeRoleInput);
     write(reg::role(49), 1U << kToolSetterInput);
     write(reg::role(50), 1U << kFeedHoldInput);
     write(reg::role(51), 1U << kCycleStartInput);
+    write(reg::kOutputSafe, kOutputSafeAtRest << field::kOutputSafeChangeShift);
+    write(reg::kOutputSafeCause, kOutputSafeAtCause << field::kOutputSafeCauseChangeShift);
+    write(reg::kSetPlace, ((1U << kWatchedAxes) - 1) << field::kSetPlaceAxesShift | field::kSetPlacePositionValid |
+                              field::kSetPlaceHomed);
     host.wait(140);
     watch.begin(kAxisPins, card_->pins());
   }

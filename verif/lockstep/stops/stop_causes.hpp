@@ -46,6 +46,8 @@ struct Cause {
   bool outlives_reset = false;
   // The axis may lose steps on a ramp.
   bool loses_steps = false;
+  // It comes when the host has made no access for the time of `strike`, and the program begins by an input.
+  bool of_silence = false;
 
   bool of_program() const { return std::holds_alternative<void (*)(Program&, unsigned)>(strike); }
   bool timed() const { return std::holds_alternative<std::uint64_t>(strike); }
@@ -144,6 +146,22 @@ inline Cause watchdog() {
   cause.cleared_while_it_lasts = false;
   return cause;
 }
+// A unit of LINK_TIMEOUT passes from one multiple of 65,536 clocks to the next: the link is lost at the second one
+// after the last access.
+inline Cause link_loss() {
+  Cause cause{"link loss",
+              field::kFaultLinkLoss,
+              {Reaction::kRamp, Reaction::kAtOnce},
+              unless_reset<Effect::kStop>,
+              std::uint64_t{65536}};
+  cause.prepare = [](StopBench& bench) { bench.write(reg::kLinkTimeout, 1); };
+  cause.end = [](StopBench& bench) { bench.write(reg::kLinkTimeout, 0); };
+  cause.soonest = 1;
+  cause.latest = 8;
+  cause.cleared_while_it_lasts = false;
+  cause.of_silence = true;
+  return cause;
+}
 // By its synchroniser and latch.
 inline Cause emergency_stop() {
   Cause cause{"emergency stop",
@@ -203,6 +221,7 @@ inline const std::vector<Cause>& causes() {
       of_role("probe", field::kFaultProbe, {R::kRamp, R::kAtOnce, R::kOff}, outside_probing, kProbeRoleInput),
       of_role("tool setter", field::kFaultToolSetter, {R::kRamp, R::kAtOnce, R::kOff}, in_motion, kToolSetterInput),
       watchdog(),
+      link_loss(),
       emergency_stop(),
       soft_limit(),
       step_fault(),

@@ -7,22 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "stop_causes.hpp"
+#include "stop_outputs.hpp"
 #include "trammel/sim/lockstep.hpp"
 
 namespace trammel::test {
-
-struct StopCase {
-  const Cause& cause;
-  Reaction reaction;
-  const State& state;
-  const Program& program;
-  unsigned clock;  // of the window
-
-  std::string name() const {
-    return std::string(cause.name) + ", " + name_of(reaction) + ", " + state.name + ", clock " + std::to_string(clock);
-  }
-};
 
 class StopJudge {
  public:
@@ -72,6 +60,16 @@ class StopJudge {
   void claim_equal(const A& is, const B& must, const std::string& what) const {
     claim(is == static_cast<A>(must), what + " is " + text(is) + ", not " + text(static_cast<A>(must)));
   }
+  // `wrong`: what is; empty: nothing.
+  void claim_nothing(const std::string& wrong) const { claim(wrong.empty(), wrong); }
+  StopTimes times() const { return {struck_, stop_time_, rest_time_, second_ != 0}; }
+  void judge_place(const char* when) {
+    const std::string wrong = wrong_place(bench_.read(reg::kPlace), watch(), times(), case_);
+    claim(wrong.empty(), wrong + " " + when);
+  }
+  void judge_unlost_place(const char* when) {
+    claim_equal(bench_.read(reg::kPlace), field::kPlaceHomed & 0xF00U | 0xFU, std::string("PLACE ") + when);
+  }
   static std::string text(std::uint64_t number) { return std::to_string(number); }
   static std::string text(const Place& place) {
     std::string all;
@@ -110,6 +108,8 @@ class StopJudge {
   // To the rest after a stop, or the program's end. What the program waits for comes when the cause has had its time.
   // True: stopped.
   bool follow() {
+    if (case_.cause.of_silence && bench_.now() < struck_ + case_.cause.latest)
+      bench_.host.wait(struck_ + case_.cause.latest - bench_.now());
     const std::uint64_t until = bench_.now() + 40'000;
     bool finished = case_.cause.of_program() || finished_by_hold_;
     while (bench_.now() < until) {
@@ -165,6 +165,8 @@ class StopJudge {
     claim_equal(bench_.read(reg::kFault), 0U, "FAULT");
     bench_.host.wait(150);
     judge_end_point();
+    claim_nothing(changed_outputs(watch(), struck_));
+    judge_unlost_place("at the program's end");
     judge_position("at the program's end");
     end_cause();
     live_on();
@@ -268,8 +270,7 @@ class StopJudge {
   void judge_reaction() {
     const std::uint64_t last = watch().pulses.empty() ? 0 : watch().pulses.back().clock;
     const std::uint64_t lasts = last > stop_time_ ? last - stop_time_ : 0;
-    const bool late = case_.cause.loses_steps;  // steps wait for up to kLateSpace, up to five of them
-    const std::uint64_t waits = late ? 6 * (kLateSpace + 10) : 0;
+    const std::uint64_t waits = case_.cause.loses_steps ? kWaitingSteps : 0;
     const bool at_once = case_.reaction == Reaction::kAtOnce;
     if (at_once)
       claim(lasts <= kAtOnceClocks + waits, "pulses come for " + text(lasts) + " clocks after a stop at once");
@@ -295,6 +296,8 @@ class StopJudge {
     judge_stop_area();
     judge_rest_area(fault);
     judge_reaction();
+    claim_nothing(wrong_outputs_of_a_stop(watch(), times(), case_));
+    judge_place("after the stop");
     claim_equal(status() & (field::kStatusBusy | field::kStatusStopping), 0U, "STATUS busy or stopping after the stop");
     claim_equal(bench_.read(reg::kGeometryBegun) | bench_.read(reg::kFeedBegun), 0U, "commands begun after the stop");
     claim_equal(bench_.read(reg::kGeometryRoom), bench_.read(reg::kGeometryDepth), "GEOMETRY_ROOM");
@@ -368,6 +371,8 @@ class StopJudge {
     if (case_.state.moves) claim(watch().pulses.back().clock >= struck_ + kRampAtLeast, "the hold has no ramp");
     claim_equal(bench_.read(reg::kFault), 0U, "FAULT in a hold");
     claim((status() & field::kStatusHeld) != 0, "STATUS.held is 0 in a hold");
+    claim_nothing(changed_outputs(watch(), struck_));
+    judge_unlost_place("in a hold");
     judge_position("in a hold");
     bench_.set_input(kFeedHoldInput, false);
     bench_.host.wait(kRoleLatest + 10);
@@ -391,6 +396,9 @@ class StopJudge {
     claim_still(quiet, "after an abort");
     claim_equal(bench_.read(reg::kFault), 0U, "FAULT after an abort");
     judge_pins();
+    claim_nothing(wrong_outputs_of_a_cut(watch(), struck_, cut + kOutputSlack));
+    stop_time_ = struck_;
+    judge_place("after an abort");
     judge_position("after an abort");
     if (was_busy) judge_rest_of_a_cut(cut);
     live_on();

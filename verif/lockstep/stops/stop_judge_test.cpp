@@ -22,7 +22,7 @@ struct Lie {
 
 class FalseCard : public RtlAlone {
  public:
-  explicit FalseCard(const Lie& lie) : RtlAlone(sim::CardStraps{}, kWatchedAxes), lie_(lie) {}
+  explicit FalseCard(const Lie& lie) : RtlAlone(watched_straps(), kWatchedAxes), lie_(lie) {}
 
   Bus bus() const override {
     Bus bus = RtlAlone::bus();
@@ -226,6 +226,36 @@ std::vector<Falsified> falsified_end() {
   };
 }
 
+// Outputs stand at these levels from the first access to a register on.
+Lie outputs(std::uint32_t trigger, std::uint32_t on, std::uint32_t off = 0) {
+  return at_pins(trigger, [=](StepPins pins, const StepPins&, std::uint64_t) {
+    pins.outputs = (pins.outputs | on) & ~off;
+    return pins;
+  });
+}
+
+// Outputs at their pins, and the machine's place.
+std::vector<Falsified> falsified_outputs() {
+  constexpr const char* kTool = "tool setter";
+  return {
+      {kTool, kRamp, "line", outputs(0, kOutputSafeAtCause), "safe at the cause stays on"},
+      {kTool, kRamp, "line", outputs(0, kOutputSafeAtRest), "safe at rest stays on"},
+      {kTool, kRamp, "line", outputs(reg::kStatus, 0, kOutputSafeAtRest), "safe at rest changes in clock"},
+      {kTool, kRamp, "line", outputs(reg::kStatus, 0, kOutputSafeAtCause), "safe at the cause changes in clock"},
+      {kTool, kRamp, "line", outputs(reg::kRestStatus, kOutputSafeAtCause), "is on again"},
+      {kTool, kRamp, "line", outputs(reg::kRestStatus, 0, kOutputKept), "without a safe level"},
+      {"abort", Reaction::kNone, "line", outputs(0, kOutputSafeAtCause), "safe at the cause stays on"},
+      {"feed hold button", Reaction::kNone, "line", outputs(reg::kStatus, 0, kOutputKept), "without a stop"},
+      {"probe", Reaction::kOff, "line", outputs(reg::kStatus, 0, kOutputKept), "without a stop"},
+      {kTool, kRamp, "line", wrong(reg::kPlace), "and valid ones"},
+      {kTool, kRamp, "line", wrong(reg::kPlace, 0x101), "lost axes that keep it"},
+      {kTool, kAtOnce, "line", wrong(reg::kPlace, 0x101), "still has axes that lose it"},
+      {kDrive, kRamp, "line", wrong(reg::kPlace, 0x404), "still has axes that lose it"},
+      {"feed hold button", Reaction::kNone, "line", wrong(reg::kPlace), "PLACE in a hold"},
+      {"probe", Reaction::kOff, "line", wrong(reg::kPlace), "PLACE at the program's end"},
+  };
+}
+
 // Reactions; causes that do nothing or too much, or come second.
 std::vector<Falsified> falsified_reactions() {
   return {
@@ -283,10 +313,10 @@ TEST(StopJudge, ComplainsOfNothingThatIsRight) { EXPECT_EQ(broken_claim("drive f
 
 TEST(StopJudge, EachClaimIsSeenToFail) {
   std::vector<Falsified> all;
-  for (const auto& some :
-       {falsified_pulses(), falsified_areas(), falsified_end(), falsified_reactions(), falsified_others()})
+  for (const auto& some : {falsified_pulses(), falsified_areas(), falsified_end(), falsified_outputs(),
+                           falsified_reactions(), falsified_others()})
     all.insert(all.end(), some.begin(), some.end());
-  EXPECT_GT(all.size(), 60U);
+  EXPECT_GT(all.size(), 80U);
   for (const Falsified& f : all) {
     const std::string claim = broken_claim(f.cause, f.reaction, f.state, f.lie, f.clock);
     EXPECT_NE(claim, "") << f.cause << ", " << f.state << ": " << f.claim;

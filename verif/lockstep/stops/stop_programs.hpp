@@ -56,6 +56,7 @@ struct State {
   bool tripped = false;  // a probe stops the path itself: where, only its own tests know
   bool resets = false;   // a reset comes inside the window
   bool at_rest = false;  // held, and settled
+  bool alone = true;     // comes to its window without the host
 };
 
 // A line by the rule of the page: start + floor(1/2 + k * increment / 2^40). It goes on beyond its ticks in streaming.
@@ -89,7 +90,7 @@ inline driver::FeedCommand feed_of(std::uint64_t ticks, unsigned clocks = kTickC
 // makes a step; the steps of one come within half of that time.
 inline std::vector<Place> recorded(const driver::Command& arc, std::uint64_t path_ticks, std::uint64_t ticks,
                                    unsigned clocks) {
-  StopBench bench(std::make_unique<RtlAlone>(sim::CardStraps{}, kWatchedAxes));
+  StopBench bench(std::make_unique<RtlAlone>(watched_straps(), kWatchedAxes));
   bench.set_up();
   bench.send(feed_of(ticks, clocks));
   bench.send(arc);
@@ -346,23 +347,31 @@ inline const std::vector<State>& states() {
     add("ramp", once<ramp_program>, to_pulses<0, 3>);
     add("corner", once<corner_program>, to_tick_20);
     add("probing", once<probing_program>, to_tick_20).probing = true;
-    add("direct mode", once<direct_program>, start_direct);
+    add("direct mode", once<direct_program>, start_direct).alone = false;
     State& streaming = add("streaming", once<streaming_program>, to_pulses<0, 70>);
     streaming.streaming = true;
+    streaming.alone = false;
     streaming.prepare = stream;
-    add("reset", once<line_program>, to_tick_20).resets = true;
+    State& reset = add("reset", once<line_program>, to_tick_20);
+    reset.resets = true;
+    reset.alone = false;
     // What does not move at full ratio in its window.
     const std::size_t moving = list.size();
     add("dwell", once<dwell_program>, to_pulses<0, 10, 150>).runs = false;
-    add("slowing into a hold", once<line_program>, to_hold, let_go);
-    add("hold", once<line_program>, to_rest, let_go).at_rest = true;
+    add("slowing into a hold", once<line_program>, to_hold, let_go).alone = false;
+    State& held = add("hold", once<line_program>, to_rest, let_go);
+    held.at_rest = true;
+    held.alone = false;
     add("slowing into an under-run", once<underrun_program>, to_pulses<0, 52>);
     add("under-run", once<underrun_program>, to_pulses<0, 52, kToRest>).at_rest = true;
     add("between commands", once<short_program>, to_pulses<0, 10, 200>).runs = false;
     State& tripped = add("stop of a probe", once<probing_program>, to_edge, clear_probe);
     tripped.probing = tripped.tripped = true;
-    add("path without a piece", once<starved_program>, for_clocks<100>);
-    add("silent piece", once<silent_program>, for_clocks<300>, let_go).prepare = hold_first;
+    tripped.alone = false;
+    add("path without a piece", once<starved_program>, for_clocks<100>).alone = false;
+    State& silent = add("silent piece", once<silent_program>, for_clocks<300>, let_go);
+    silent.prepare = hold_first;
+    silent.alone = false;
     for (std::size_t i = moving; i < list.size(); ++i) list[i].moves = false;
     return list;
   }();

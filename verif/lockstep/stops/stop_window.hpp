@@ -47,7 +47,10 @@ class Window {
     if (state.prepare != nullptr) state.prepare(bench_);
     if (cause.prepare != nullptr) cause.prepare(bench_);
     const std::uint64_t armed = bench_.now();
-    if (cause.timed()) {
+    if (cause.of_silence) {
+      wait_for_an_input();
+      begin_to_wait();
+    } else if (cause.timed()) {
       const std::uint64_t way = clocks_to_the_window();
       struck_ = armed + std::get<std::uint64_t>(cause.strike);
       bench_.host.wait(*struck_ - way - kWindow - armed);
@@ -74,6 +77,29 @@ class Window {
   }
 
  private:
+  // The program is sent, and begins when its input rises; no access comes before the judge's first.
+  void wait_for_an_input() {
+    program_.commands.insert(program_.commands.begin(), driver::WaitInputCommand{kBeginInput, true});
+    program_.paths.insert(program_.paths.begin(), kBarrier);
+    State sent = state_;
+    sent.enter = nullptr;
+    begin(bench_, sent, program_);
+  }
+  void begin_to_wait() {
+    const std::uint64_t unit = std::get<std::uint64_t>(cause_.strike);
+    struck_ = (bench_.now() / unit + 2) * unit;
+    way_ = std::stoull(in_child([&] {
+      const std::uint64_t from = bench_.now();
+      begin_by_input();
+      return std::to_string(bench_.now() - from);
+    }));
+    bench_.host.wait(*struck_ - way_ - kWindow - bench_.now());
+  }
+  void begin_by_input() {
+    bench_.set_input(kBeginInput, true);
+    state_.enter(bench_);
+  }
+
   bool run(unsigned clock) {
     Program program = program_;
     if (cause_.of_program()) {
@@ -82,7 +108,10 @@ class Window {
       sent.enter = nullptr;
       begin(bench_, sent, program);
     }
-    if (cause_.timed()) {
+    if (cause_.of_silence) {
+      bench_.host.wait(*struck_ - way_ - clock - bench_.now());
+      begin_by_input();
+    } else if (cause_.timed()) {
       const std::uint64_t sending = *struck_ - way_ - clock;
       bench_.host.wait(sending - bench_.now());
       begin(bench_, state_, program);

@@ -16,12 +16,15 @@ using test::State;
 using test::Tally;
 
 std::unique_ptr<test::WatchedCard> make(bool in_lockstep) {
-  if (!in_lockstep) return std::make_unique<test::RtlAlone>(sim::CardStraps{}, test::kWatchedAxes);
+  if (!in_lockstep) return std::make_unique<test::RtlAlone>(test::watched_straps(), test::kWatchedAxes);
   model::CardModel::Config config;
   config.engines = model::RegisterFile::kMaxEngines;
   config.axes = test::kWatchedAxes;
   config.inputs = sim::kInputs;
-  return std::make_unique<test::CardInLockstep>(sim::CardStraps{config.clock_hz, config.idle_level}, config, 1);
+  const sim::CardStraps straps = test::watched_straps();
+  config.clock_hz = straps.clock_hz;
+  config.output_idle = static_cast<std::uint16_t>(straps.output_idle);
+  return std::make_unique<test::CardInLockstep>(straps, config, 1);
 }
 
 struct Row {
@@ -39,8 +42,9 @@ std::vector<Row> rows() {
   return all;
 }
 
-// What a program does not bring about in a state is no case.
+// What a program does not bring about in a state is no case, nor is silence where the host has to speak.
 bool is_a_case(const Cause& cause, const State& state) {
+  if (cause.of_silence) return state.alone;
   return !cause.of_program() || cause.effect(state) != test::Effect::kNothing;
 }
 

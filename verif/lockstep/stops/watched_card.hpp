@@ -11,10 +11,11 @@
 
 namespace trammel::test {
 
-// The STEP pins after a rising edge.
+// The STEP pins and the outputs after a rising edge.
 struct StepPins {
   std::uint32_t first = 0;   // step_o, bit n: axis n
   std::uint32_t second = 0;  // dir_o
+  std::uint32_t outputs = 0;
 };
 
 class WatchedCard {
@@ -52,7 +53,10 @@ class CardInLockstep : public WatchedCard {
       : card_(sim::make_verilated_card(config.axes, straps, std::nullopt), config, seed) {}
 
   Bus bus() const override { return card_.bus(); }
-  StepPins pins() const override { return {card_.model().outputs().step, card_.model().outputs().dir}; }
+  StepPins pins() const override {
+    const auto& out = card_.model().outputs();
+    return {out.step, out.dir, out.output};
+  }
   void settle() override { card_.settle(); }
   std::uint64_t compared() const override { return card_.cycles(); }
 
@@ -84,7 +88,7 @@ class RtlAlone : public WatchedCard {
     bus.rresp = static_cast<std::uint8_t>(record_.rresp_o);
     return bus;
   }
-  StepPins pins() const override { return {record_.step_o, record_.dir_o}; }
+  StepPins pins() const override { return {record_.step_o, record_.dir_o, record_.output_o}; }
   void settle() override {}
   std::uint64_t compared() const override { return 0; }
 

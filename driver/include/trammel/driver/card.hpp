@@ -168,6 +168,15 @@ class Card {
   // The same, as soon as there is one. Throws TimeoutError after `timeout` of card time, InterruptedError where
   // interrupted() says so.
   Capture wait_for_capture(unsigned unit, std::chrono::nanoseconds timeout);
+  // The queue of captures, of units that were selected with `queue`: 16 at most, in the order in which their filters
+  // passed. What does not fit is lost, and is counted; read_captures() says of which unit, and of which one edges came
+  // too fast. ArgumentError where the card has no queue.
+  bool has_capture_queue() const;
+  CaptureQueue read_capture_queue();
+  // Those that were in it at the call, the oldest first, which leave it; one program at a time.
+  std::vector<QueuedCapture> take_queued_captures();
+  // The overruns that read_captures() shows begin anew, of the units of the mask, with what stands with them.
+  void clear_captures(unsigned units);
   // Whether the card compares positions with soft limits itself: the last guard, behind the host that refuses such
   // moves.
   bool has_soft_limits() const;
@@ -273,6 +282,7 @@ class Card {
   explicit Card(std::unique_ptr<CardParts> parts);
   void wait_for_rest(std::uint64_t limit, bool held_is_rest);
   void check_capture(unsigned unit) const;
+  void check_capture_queue() const;
 
   std::unique_ptr<CardParts> parts_;
 };

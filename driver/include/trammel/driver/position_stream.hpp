@@ -15,6 +15,11 @@
 // half a period's duration at a time. A period that comes later than that is missing: the card ramps down along the
 // line (by the slew), and every call throws FaultError with the bit kFaultMissingPeriod, until recover().
 //
+// Soft limits. Where the card compares positions with soft limits (Card::set_soft_limits), a period after which it
+// could not come to rest inside is refused: speed times half of the slew's time, and the stale periods. So a stream
+// whose host falls silent ends before the limit. They are read when the stream is opened and at recover(): set them,
+// and the slew, before.
+//
 // Thread-safety: as of the card: one thread at a time. Nothing is allocated for a period.
 #pragma once
 
@@ -22,11 +27,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "trammel/driver/card.hpp"
 
 namespace trammel::driver {
+
+class StreamLimits;
 
 struct PositionStreamOptions {
   // Periods that the card may go on for along the last line, 0 .. 255.
@@ -68,11 +76,12 @@ class PositionStream {
 
   // One period: the axes are at `targets` when `clocks` have passed since the end of the period before.
   //
-  // ArgumentError, before any access: an axis would be faster than allowed, or targets or duration are out of range
-  // (shortest_period() .. 2^32 clocks; targets within 2^30 pulses): the period was not sent, and another may be sent in
-  // its place. StateError: the card's queue is full; likewise. FaultError: a missing period, or another fault that
-  // stopped the card. LinkError, RefusedError; StateError when the card was reset or aborted by another program, or
-  // when the bus is so slow that the period was over when it was looked at. After these, recover() or a new stream.
+  // ArgumentError, before any access: an axis would be faster than allowed or could not stop before its soft limit, or
+  // targets or duration are out of range (shortest_period() .. 2^32 clocks; targets within 2^30 pulses): the period was
+  // not sent, and another may be sent in its place. StateError: the card's queue is full; likewise. FaultError: a
+  // missing period, or another fault that stopped the card. LinkError, RefusedError; StateError when the card was reset
+  // or aborted by another program, or when the bus is so slow that the period was over when it was looked at. After
+  // these, recover() or a new stream.
   Sent send(const Positions& targets, std::uint64_t clocks);
   // Likewise; what a duration has beyond whole clocks is carried over to the next.
   Sent send(const Positions& targets, std::chrono::nanoseconds duration);
@@ -121,6 +130,7 @@ class PositionStream {
   Step step_to(const Pulses& told, std::uint64_t ticks) const;
   Step step_to(const Pulses& told, std::uint64_t ticks, std::uint64_t caught_up) const;
   std::optional<unsigned> fastest_axis(const Line& line) const;
+  void require_limits(const Step& step) const;
   Sent send_line(const Step& step);
   void put_feed();
   void put(const Command& command);
@@ -141,6 +151,7 @@ class PositionStream {
   std::uint64_t margin_clocks_;
   std::array<std::uint64_t, card_map::kMaxAxes> least_clocks_{};  // of a pulse
   std::array<std::int32_t, card_map::kMaxAxes> origin_{};         // positions at the opening, as the card counts
+  std::shared_ptr<const StreamLimits> limits_;                    // never null in an open stream
 
   // What is carried over: clocks that make no tick, nanoseconds that make no clock (times Hz).
   std::uint64_t odd_clocks_ = 0;

@@ -1,6 +1,7 @@
 // Golden model of the capture units, rtl/io/captures.sv: a unit asks for its snapshot at the first raw change of its
-// input after quiet; the filter's passing makes a capture of it, quiet takes it back. Everything that comes in clock c
-// shows at c + 1, but for asks(), which is of the clock itself. Not thread-safe; no errors are reported.
+// input after quiet; the filter's passing makes a capture of it, quiet takes it back. A capture stays with its unit, or
+// is handed on to the queue. Everything that comes in clock c shows at c + 1, but for asks(), which is of the clock
+// itself. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <array>
@@ -20,6 +21,8 @@ class Captures {
     std::uint32_t levels = 0;
     std::uint32_t quiet = 0;
     std::uint8_t captured = 0;  // events, a bit for each unit: the snapshot it asks for is in its area
+    std::uint8_t queued = 0;    // events, likewise: the capture that it hands on is in the queue,
+    bool full = false;          // or lost
     Setting setting;
   };
   // Searching: for quiet at the level before the edge. Touched: an edge has come.
@@ -34,9 +37,13 @@ class Captures {
     bool valid = false;
     bool overrun = false;
     bool active = false;  // the level that the captured edge led to
+    // Of units with a queue: the level of the input a clock ago, where it was watched then.
+    bool watched = false;
+    bool level = false;
     bool operator==(const Unit& o) const {
       return select == o.select && mode == o.mode && before == o.before && confirmed == o.confirmed &&
-             taken == o.taken && lost == o.lost && valid == o.valid && overrun == o.overrun && active == o.active;
+             taken == o.taken && lost == o.lost && valid == o.valid && overrun == o.overrun && active == o.active &&
+             watched == o.watched && level == o.level;
     }
   };
   // All that the next clock() depends on beside its inputs.
@@ -58,6 +65,18 @@ class Captures {
   std::uint8_t asks(const Inputs& in) const {
     unsigned mask = 0;
     for (unsigned n = 0; n < units_; ++n) mask |= unit_asks(state_.units[n], n, in) ? 1U << n : 0U;
+    return static_cast<std::uint8_t>(mask);
+  }
+
+  // The units that hand on a capture, and the level that its edge led to.
+  std::uint8_t passed() const {
+    unsigned mask = 0;
+    for (unsigned n = 0; n < units_; ++n) mask |= hands_on(state_.units[n]) ? 1U << n : 0U;
+    return static_cast<std::uint8_t>(mask);
+  }
+  std::uint8_t edges() const {
+    unsigned mask = 0;
+    for (unsigned n = 0; n < units_; ++n) mask |= state_.units[n].before ? 0U : 1U << n;
     return static_cast<std::uint8_t>(mask);
   }
 
@@ -102,6 +121,8 @@ class Captures {
   static bool selected(const Inputs& in, unsigned unit) {
     return in.setting.set && in.setting.address == card_map::reg::capture_select(unit);
   }
+  static bool queues(const Unit& u) { return (u.select & card_map::field::kCaptureSelectQueue) != 0; }
+  static bool hands_on(const Unit& u) { return queues(u) && u.mode == Mode::Touched && u.confirmed && u.taken; }
   // The input is quiet at a level that the unit's edges come from.
   static bool counts(const Unit& u, const Seen& seen) {
     const std::uint32_t edges =
@@ -133,6 +154,8 @@ class Captures {
     const bool clears = in.setting.set && in.setting.address == reg::kCaptureClear && (in.setting.data >> n & 1) != 0;
     const bool stood = u.valid;
     if (clears) u.valid = u.overrun = false;
+    if (seen.raw == before && missed(u, seen)) u.overrun = true;
+    watch(u, seen);
     if (seen.raw != before) {
       u.mode = Mode::Touched;
       u.before = before;
@@ -145,7 +168,8 @@ class Captures {
         u.before = before;
       }
     } else if (u.mode == Mode::Touched) {
-      if (u.confirmed && (u.taken || u.lost)) finish(u);
+      if (!queues(u) && u.confirmed && (u.taken || u.lost)) finish(u);
+      if (hands_on(u) && (in.queued >> n & 1) != 0) finish_queued(u, in.full);
       u.confirmed = u.confirmed || seen.level != u.before;
       u.taken = u.taken || (in.captured >> n & 1) != 0;
     }
@@ -156,8 +180,27 @@ class Captures {
       u.mode = (u.select & edges) != 0 ? Mode::Searching : Mode::Off;
     }
   }
+  // The filter passes, and it was not the touch under way that it waited for.
+  static bool missed(const Unit& u, const Seen& seen) {
+    if (!queues(u) || u.mode == Mode::Off || !u.watched || seen.level == u.level) return false;
+    const std::uint32_t edge =
+        seen.level ? card_map::field::kCaptureSelectToActive : card_map::field::kCaptureSelectToInactive;
+    return (u.select & edge) != 0 && (u.mode != Mode::Touched || u.confirmed);
+  }
+  static void watch(Unit& u, const Seen& seen) {
+    if (!queues(u)) return;
+    u.watched = u.mode != Mode::Off;
+    u.level = seen.level;
+  }
+  static Mode after_capture(const Unit& u) {
+    return (u.select & card_map::field::kCaptureSelectContinuous) != 0 ? Mode::Searching : Mode::Off;
+  }
+  static void finish_queued(Unit& u, bool full) {
+    u.mode = after_capture(u);
+    u.overrun = u.overrun || full;
+  }
   static void finish(Unit& u) {
-    u.mode = (u.select & card_map::field::kCaptureSelectContinuous) != 0 ? Mode::Searching : Mode::Off;
+    u.mode = after_capture(u);
     if (u.lost) {
       u.overrun = true;
     } else {

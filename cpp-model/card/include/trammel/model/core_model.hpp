@@ -168,6 +168,8 @@ void CoreModel::clock_parts(const Inputs& in, const ClockPart& clock_part) {
   Captures::Inputs captures = capture_inputs();
   const std::uint8_t asks = state_.captures.asks(captures);
   captures.captured = state_.registers.captured(asks);
+  captures.queued = state_.registers.queued(state_.shown.passed);
+  captures.full = state_.registers.state().queue.full();
   request(in, state_.motion.probe_asks(motion), state_.motion.rests(motion), asks);
   const CommandChecker::Outputs was = state_.checker.outputs();
   const bool geometry_read = state_.motion.sequencer().geometry_read();

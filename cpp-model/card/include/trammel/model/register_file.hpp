@@ -8,6 +8,7 @@
 
 #include "trammel/card_map.hpp"
 #include "trammel/model/buses.hpp"
+#include "trammel/model/capture_fifo.hpp"
 #include "trammel/model/link_watch.hpp"
 #include "trammel/model/snapshot_writer.hpp"
 
@@ -24,10 +25,10 @@ class RegisterFile {
                                                    card_map::engines::kDirectMode | card_map::engines::kUnderrunHold |
                                                    card_map::engines::kPathCommands | card_map::engines::kStreaming |
                                                    card_map::engines::kClasses | card_map::engines::kWatermarks;
-  static constexpr std::uint32_t kMaxEngines = kDefaultEngines | card_map::engines::kArcGenerator |
-                                               card_map::engines::kAccumulator8 | card_map::engines::kMachineInputs |
-                                               card_map::engines::kCaptures | card_map::engines::kSoftLimits |
-                                               card_map::engines::kEmergencyStop | card_map::engines::kEnables;
+  static constexpr std::uint32_t kMaxEngines =
+      kDefaultEngines | card_map::engines::kArcGenerator | card_map::engines::kAccumulator8 |
+      card_map::engines::kMachineInputs | card_map::engines::kCaptures | card_map::engines::kSoftLimits |
+      card_map::engines::kEmergencyStop | card_map::engines::kEnables | card_map::engines::kCaptureFifo;
 
   struct Config {
     std::uint32_t axes = 4;               // 1 .. 8
@@ -92,6 +93,8 @@ class RegisterFile {
     bool probe = false;            // the probe's edge,
     bool mark = false;             // a MARK,
     std::uint8_t captures = 0;     // and levels: the capture units that want one
+    std::uint8_t passed = 0;       // likewise: those that hand a capture on to the queue,
+    std::uint8_t edges = 0;        // of an edge to this level
     std::uint32_t capture_state = 0;
     std::uint32_t inputs = 0;
     std::uint32_t raw_inputs = 0;
@@ -160,6 +163,7 @@ class RegisterFile {
     SnapshotWriter snapshot{1};
     LinkWatch link{};
     Values latched{};
+    CaptureFifo queue{};
     std::array<std::uint32_t, kMaxPorts> refusal{};  // as the register reads; a reason is never 0
     bool loading = false;
     LoaderRead loader_read;
@@ -186,6 +190,8 @@ class RegisterFile {
   std::uint32_t status(const Inputs& in) const;
   // The capture units that are told in this clock that their snapshot is taken.
   std::uint8_t captured(std::uint8_t captures) const { return state_.snapshot.captured(captures); }
+  // Likewise, that the capture they hand on is in the queue, or lost.
+  std::uint8_t queued(std::uint8_t passed) const { return CaptureFifo::queued(passed); }
   // What `irq` shows a clock later.
   bool interrupt(const Inputs& in) const;
 
@@ -207,6 +213,8 @@ class RegisterFile {
   void step_snapshot(const Inputs& in, bool host);
   std::size_t written_at(std::uint32_t word) const;
   void take_values(const Inputs& in);
+  void step_queue(const Inputs& in, const Setting& setting);
+  std::uint32_t read(std::uint32_t address) const;
   void step_link();
   void step_loader(const Inputs& in);
   void refuse_checked(const Inputs& in);

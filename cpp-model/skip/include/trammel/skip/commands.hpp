@@ -42,7 +42,7 @@ inline std::uint64_t horizon(const model::RegisterFile& registers, const model::
   const model::RegisterFile::State& s = registers.state();
   const model::RegisterFile::Outputs& out = s.out;
   if (s.stage != model::RegisterFile::Stage::Idle || in.request || in.checker_refuse || in.stop || in.rest ||
-      in.probe || in.mark || in.captures != 0)
+      in.probe || in.mark || in.captures != 0 || in.passed != 0 || !s.queue.rests())
     return 0;
   const bool events = out.ack || out.setting.set || out.stream_write || out.abort || out.probe_clear || out.flush ||
                       out.start || out.strobe || out.clear_fault != 0 || s.snapshot_asked;

@@ -72,6 +72,7 @@ inline constexpr std::uint32_t kCaptures = 12;       // Captures of inputs' edge
 inline constexpr std::uint32_t kEmergencyStop = 13;  // A pin for the emergency stop.
 inline constexpr std::uint32_t kEnables = 14;     // Roles of outputs: drive enable, brake, charge pump, card healthy.
 inline constexpr std::uint32_t kSoftLimits = 15;  // Soft limits: comparators of the position at both ends of each axis.
+inline constexpr std::uint32_t kCaptureFifo = 16;  // A queue of 16 captures.
 }  // namespace engine
 
 // The same as masks.
@@ -92,11 +93,12 @@ inline constexpr std::uint32_t kCaptures = 0x1000;
 inline constexpr std::uint32_t kEmergencyStop = 0x2000;
 inline constexpr std::uint32_t kEnables = 0x4000;
 inline constexpr std::uint32_t kSoftLimits = 0x8000;
+inline constexpr std::uint32_t kCaptureFifo = 0x10000;
 }  // namespace engines
-inline constexpr std::array<std::string_view, 16> kEngineNames{
-    "lines",         "accumulator",    "accumulator_8", "arc_generator", "jerk",       "direct_mode",
-    "underrun_hold", "path_commands",  "streaming",     "classes",       "watermarks", "machine_inputs",
-    "captures",      "emergency_stop", "enables",       "soft_limits"};
+inline constexpr std::array<std::string_view, 17> kEngineNames{
+    "lines",         "accumulator",    "accumulator_8", "arc_generator", "jerk",        "direct_mode",
+    "underrun_hold", "path_commands",  "streaming",     "classes",       "watermarks",  "machine_inputs",
+    "captures",      "emergency_stop", "enables",       "soft_limits",   "capture_fifo"};
 
 // What a register does on an access; a write to Constant, Live and Snapshot is refused as READ_ONLY, a read of
 // Command as WRITE_ONLY.
@@ -241,6 +243,17 @@ constexpr std::uint32_t capture_3_position(std::uint32_t axis) { return 0x560 + 
 constexpr std::uint32_t capture_select(std::uint32_t index) { return 0x580 + 4 * index; }
 inline constexpr std::uint32_t kCaptureState = 0x590;
 inline constexpr std::uint32_t kCaptureClear = 0x594;
+inline constexpr std::uint32_t kCaptureQueue = 0x598;
+inline constexpr std::uint32_t kCaptureNext = 0x59C;
+inline constexpr std::uint32_t kCaptureHeadFault = 0x5C0;
+inline constexpr std::uint32_t kCaptureHeadStatus = 0x5C4;
+inline constexpr std::uint32_t kCaptureHeadRatio = 0x5C8;
+inline constexpr std::uint32_t kCaptureHeadRate = 0x5CC;
+inline constexpr std::uint32_t kCaptureHeadFeedBegun = 0x5D0;
+inline constexpr std::uint32_t kCaptureHeadGeometryBegun = 0x5D4;
+inline constexpr std::uint32_t kCaptureHeadTimeHi = 0x5D8;
+inline constexpr std::uint32_t kCaptureHeadTimeLo = 0x5DC;
+constexpr std::uint32_t capture_head_position(std::uint32_t axis) { return 0x5E0 + 4 * axis; }
 inline constexpr std::uint32_t kControl = 0x600;
 inline constexpr std::uint32_t kHold = 0x604;
 inline constexpr std::uint32_t kStream = 0x610;
@@ -308,6 +321,7 @@ enum class Area : std::uint32_t {
   Capture1 = 0x4C0,
   Capture2 = 0x500,
   Capture3 = 0x540,
+  CaptureHead = 0x5C0,
 };
 namespace reg {
 constexpr std::uint32_t fault(Area area) { return static_cast<std::uint32_t>(area) + 0x00; }
@@ -405,6 +419,7 @@ inline constexpr std::uint32_t kCaptureSelectInputNumberShift = 0;
 inline constexpr std::uint32_t kCaptureSelectToActive = 0x100;
 inline constexpr std::uint32_t kCaptureSelectToInactive = 0x200;
 inline constexpr std::uint32_t kCaptureSelectContinuous = 0x400;
+inline constexpr std::uint32_t kCaptureSelectQueue = 0x800;
 inline constexpr std::uint32_t kCaptureStatePending = 0xF;
 inline constexpr std::uint32_t kCaptureStatePendingShift = 0;
 inline constexpr std::uint32_t kCaptureStateValid = 0xF0;
@@ -415,6 +430,15 @@ inline constexpr std::uint32_t kCaptureStateActive = 0xF000;
 inline constexpr std::uint32_t kCaptureStateActiveShift = 12;
 inline constexpr std::uint32_t kCaptureStateSnapshots = 0xFFFF0000;
 inline constexpr std::uint32_t kCaptureStateSnapshotsShift = 16;
+inline constexpr std::uint32_t kCaptureQueueCaptures = 0x1F;
+inline constexpr std::uint32_t kCaptureQueueCapturesShift = 0;
+inline constexpr std::uint32_t kCaptureQueueOldest = 0xF00;
+inline constexpr std::uint32_t kCaptureQueueOldestShift = 8;
+inline constexpr std::uint32_t kCaptureQueueUnitNumber = 0x3000;
+inline constexpr std::uint32_t kCaptureQueueUnitNumberShift = 12;
+inline constexpr std::uint32_t kCaptureQueueActive = 0x4000;
+inline constexpr std::uint32_t kCaptureQueueLost = 0xFFFF0000;
+inline constexpr std::uint32_t kCaptureQueueLostShift = 16;
 inline constexpr std::uint32_t kControlSnapshot = 0x1;
 inline constexpr std::uint32_t kControlAbort = 0x2;
 inline constexpr std::uint32_t kControlFlush = 0x4;
@@ -520,7 +544,7 @@ inline constexpr std::uint32_t kModeInvertFirst = 0x4;
 inline constexpr std::uint32_t kModeInvertSecond = 0x8;
 }  // namespace field
 
-inline constexpr std::array<Register, 166> kRegisters{{
+inline constexpr std::array<Register, 177> kRegisters{{
     {"MAGIC", 0x000, 1, 0, Access::Constant, 0x54524D4C, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"MAP_VERSION", 0x004, 1, 0, Access::Constant, 0x30005, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"AXES", 0x008, 1, 0, Access::Constant, 0x0, 0xFF, 0x0, 0, 0x0, 0, 0x0, 0, false, true},
@@ -630,9 +654,21 @@ inline constexpr std::array<Register, 166> kRegisters{{
     {"CAPTURE_3_TIME_HI", 0x558, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
     {"CAPTURE_3_TIME_LO", 0x55C, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
     {"CAPTURE_3_POSITION", 0x560, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, true, true},
-    {"CAPTURE_SELECT", 0x580, 4, 4, Access::Setting, 0x0, 0x71F, 0x0, 0, 0x0, 12, 0x0, 0, false, false},
+    {"CAPTURE_SELECT", 0x580, 4, 4, Access::Setting, 0x0, 0xF1F, 0x0, 0, 0x0, 12, 0x800, 16, false, false},
     {"CAPTURE_STATE", 0x590, 1, 0, Access::Live, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 12, 0x0, 0, false, true},
     {"CAPTURE_CLEAR", 0x594, 1, 0, Access::Command, 0x0, 0xF, 0x0, 0, 0x0, 12, 0x0, 0, false, false},
+    {"CAPTURE_QUEUE", 0x598, 1, 0, Access::Live, 0x0, 0xFFFF7F1F, 0x0, 0, 0x0, 16, 0x0, 0, false, true},
+    {"CAPTURE_NEXT", 0x59C, 1, 0, Access::Command, 0x0, 0xF, 0x0, 0, 0x0, 16, 0x0, 0, false, false},
+    {"CAPTURE_HEAD_FAULT", 0x5C0, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 16, 0x0, 0, false, true},
+    {"CAPTURE_HEAD_STATUS", 0x5C4, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 16, 0x0, 0, false, true},
+    {"CAPTURE_HEAD_RATIO", 0x5C8, 1, 0, Access::Snapshot, 0x0, 0x1FFFF, 0x0, 0, 0x0, 16, 0x0, 0, false, true},
+    {"CAPTURE_HEAD_RATE", 0x5CC, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 16, 0x0, 0, false, true},
+    {"CAPTURE_HEAD_FEED_BEGUN", 0x5D0, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 16, 0x0, 0, false, true},
+    {"CAPTURE_HEAD_GEOMETRY_BEGUN", 0x5D4, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 16, 0x0, 0, false,
+     true},
+    {"CAPTURE_HEAD_TIME_HI", 0x5D8, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 16, 0x0, 0, false, true},
+    {"CAPTURE_HEAD_TIME_LO", 0x5DC, 1, 0, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 16, 0x0, 0, false, true},
+    {"CAPTURE_HEAD_POSITION", 0x5E0, 8, 4, Access::Snapshot, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 16, 0x0, 0, true, true},
     {"CONTROL", 0x600, 1, 0, Access::Command, 0x0, 0xF, 0x0, 0, 0x0, 0, 0x8, 7, false, false},
     {"HOLD", 0x604, 1, 0, Access::Setting, 0x0, 0x1, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
     {"STREAM", 0x610, 1, 0, Access::Command, 0x0, 0xFFFFFFFF, 0x0, 0, 0x0, 0, 0x0, 0, false, false},
@@ -806,7 +842,7 @@ inline constexpr std::array<Unit, 23> kUnits{{
     {"position_streaming", 15, 1, 0, 8, UnitCount::Fixed, 1, true, 1856, 0, 1856, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"watchdog", 16, 1, 1, 0, UnitCount::Fixed, 1, true, 1920, 0, 1920, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"roles", 17, 1, 0, 11, UnitCount::Fixed, 1, true, 3584, 4, 3712, 4, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
-    {"captures", 18, 1, 0, 12, UnitCount::Captures, 0, true, 1152, 0, 1184, 4, 16, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
+    {"captures", 18, 1, 0, 12, UnitCount::Captures, 0, true, 1152, 0, 1184, 4, 16, 31, {16, 0, 0, 0, 0, 0, 0, 0}},
     {"emergency_stop", 19, 1, 0, 13, UnitCount::Fixed, 1, false, 0, 0, 0, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"limits", 20, 1, 0, 11, UnitCount::Fixed, 1, true, 1924, 0, 1928, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},
     {"place", 21, 1, 0, 0, UnitCount::Fixed, 1, true, 1984, 0, 1992, 0, 0, 31, {0, 0, 0, 0, 0, 0, 0, 0}},

@@ -1,0 +1,25 @@
+// What the registers answer to the capture units. Combinational: it depends on what they ask (capture_pkg), which does not
+// depend on it.
+`default_nettype none
+package capture_answer_pkg;
+
+  // Fields, lowest bit first; each ends where the next one begins. The first two have a bit for each of four units.
+  localparam int CAPTURED = 0;  // events: the snapshot that was asked for is in the unit's area
+  localparam int QUEUED = 4;  // events: the capture that was handed on is in the queue, or lost
+  localparam int FULL = 8;  // with QUEUED: it is lost
+  localparam int WIDTH = 9;
+
+  function automatic logic [3:0] captured(input logic [WIDTH-1:0] answer);
+    captured = answer[CAPTURED+:4];
+  endfunction
+
+  function automatic logic [3:0] queued(input logic [WIDTH-1:0] answer);
+    queued = answer[QUEUED+:4];
+  endfunction
+
+  function automatic logic [WIDTH-1:0] pack(input logic full, input logic [3:0] in_queue, input logic [3:0] in_area);
+    pack = {full, in_queue, in_area};
+  endfunction
+
+endpackage
+`default_nettype wire
