@@ -20,6 +20,7 @@
 #include "common/stop_at_signals.hpp"
 #include "common/terminal.hpp"
 #include "common/waveform.hpp"
+#include "common/world_choice.hpp"
 #include "engine_speed.hpp"
 #include "motion_options.hpp"
 #include "parameter_file.hpp"
@@ -47,6 +48,7 @@ struct RunArguments {
   MachineChoice machine;
   EngineChoice engine;
   MotionChoice motion;
+  WorldChoice world;
   std::optional<std::string> json;
   std::optional<std::string> steps;
   std::optional<std::string> path_steps;
@@ -85,6 +87,7 @@ void refuse_contradictions(const RunArguments& options) {
   refuse("--plot", options.plot.has_value(), kWhy);
   refuse("--report", options.report.has_value(), kWhy);
   refuse("--trace", options.engine.trace.has_value(), kWhy);
+  refuse("--world", options.world.file.has_value(), kWhy);
   refuse("--stream", options.stream, kWhy);
 }
 
@@ -103,6 +106,7 @@ void tell_of_nothing(const run::Plan& plan) {
 void refuse_what_needs_the_simulation(const RunArguments& options) {
   const CardChoice& card = options.card;
   options.engine.refuse_with(card);
+  options.world.refuse_with(card);
   refuse_with_card(card, "--steps", options.steps.has_value());
   refuse_with_card(card, "--path-steps", options.path_steps.has_value());
   refuse_with_card(card, "--outputs", options.outputs.has_value());
@@ -149,6 +153,8 @@ run::ProgramLines lines_of(const ProgramFile& file, const std::function<void()>&
 void keep_inputs(const RunArguments& options, Outputs& outputs) {
   outputs.keep("the program", options.program);
   if (const auto file = options.machine.source()) outputs.keep("the machine file", *file);
+  if (options.world.file) outputs.keep("the world file", *options.world.file);
+  if (options.world.events) outputs.keep("the script of events", *options.world.events);
   outputs.check();
 }
 
@@ -290,22 +296,30 @@ class SimulationProgress final : public run::Observer {
 // The run itself, when all is checked: to the end of the motion.
 run::Outcome stream_to_simulation(const RunArguments& options, const machine::Machine& machine,
                                   const sim::SimulationOptions& engine, double planned_seconds,
-                                  simulation::SimulatedRun& run) {
+                                  simulation::SimulatedRun& run, const world::World* world) {
   run.make_card(engine);
   SimulationProgress progress(run, planned_seconds, engine.clock_hz, options.progress);
   run.runner().add(progress);
-  return run_until_signal(run.runner(), run.card(), machine, options.stream);
+  try {
+    return run_until_signal(run.runner(), run.card(), machine, options.stream);
+  } catch (...) {
+    // Whatever has stopped it: where that has left the machine.
+    if (world != nullptr) tell("note", world_text(*world, "; "));
+    throw;
+  }
 }
 
 void write_results(const RunArguments& options, const simulation::RunResult& result, const run::PlannedProfile& profile,
-                   report::ReportWriter* report, SimulationFiles& files) {
+                   report::ReportWriter* report, const world::World* world, SimulationFiles& files) {
   if (options.stream) warn(plan_warnings(result.plan));
   if (files.trace != nullptr) require_whole_waveform(files.trace->path_to_write(), *options.engine.trace);
-  if (files.json != nullptr) files.json->write(json_text(result, profile));
+  if (files.json != nullptr)
+    files.json->write(json_text(result, profile, world != nullptr ? world_json(*world) : nullptr));
   if (files.parameters != nullptr) files.parameters->write(parameters_text(result.outcome.parameters));
   if (files.plot != nullptr) files.plot->write(run::svg(result.plot));
   if (report != nullptr) report->finish(report_json(result, profile));
-  files.all.commit(run_summary(result, profile) + options.machine.line());
+  const std::string about_world = world != nullptr ? "  " + world_text(*world, "\n  ") + "\n" : "";
+  files.all.commit(run_summary(result, profile) + about_world + options.machine.line());
 }
 
 void run_in_simulation(const RunArguments& options) {
@@ -324,6 +338,8 @@ void run_in_simulation(const RunArguments& options) {
   }
   const ProgramFile file(options.program, copy_limit(options));
   const planner::CardLimits card = simulation::limits_of(engine);
+  const std::unique_ptr<world::World> world = options.world.make(engine.clock_hz, settings.operation.events);
+  settings.surroundings = [&world](auto made) { return in_world(world.get(), std::move(made)); };
   if (options.check) {
     return check(lines_of(file), options.machine, machine, card, settings.settings, files.all, files.json);
   }
@@ -335,8 +351,9 @@ void run_in_simulation(const RunArguments& options) {
   if (files.trace != nullptr) engine.trace->path = files.trace->path_to_write();
   warn(plan_warnings(plan));
   tell_of_engine(engine, axes, plan.seconds);
-  const run::Outcome outcome = stream_to_simulation(options, machine, engine, plan.seconds, run);
-  write_results(options, run.result(outcome), run::planned_profile(machine, settings.settings), run.report(), files);
+  const run::Outcome outcome = stream_to_simulation(options, machine, engine, plan.seconds, run, world.get());
+  write_results(options, run.result(outcome), run::planned_profile(machine, settings.settings), run.report(),
+                world.get(), files);
 }
 
 }  // namespace
@@ -350,6 +367,7 @@ void add_run_command(CLI::App& app) {
   options->card.add_to_mover(*command);
   options->engine.add_to(*command, "1000000 with engine rtl, the machine file's with model");
   options->motion.add_to(*command);
+  options->world.add_to(*command);
   command->add_option("--json", options->json, "summary as JSON")->type_name("FILE");
   command->add_option("--steps", options->steps, "every leading edge at a STEP pin: cycle,axis,direction")
       ->type_name("FILE");

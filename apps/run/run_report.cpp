@@ -318,8 +318,11 @@ nlohmann::ordered_json run_json(const RunResult& result, const run::PlannedProfi
 
 }  // namespace
 
-std::string json_text(const RunResult& result, const run::PlannedProfile& profile) {
-  return run_json(result, profile).dump(2) + "\n";
+std::string json_text(const RunResult& result, const run::PlannedProfile& profile,
+                      const nlohmann::ordered_json& world) {
+  nlohmann::ordered_json json = run_json(result, profile);
+  if (!world.is_null()) json["world"] = world;
+  return json.dump(2) + "\n";
 }
 
 std::string report_json(const RunResult& result, const run::PlannedProfile& profile) {

@@ -35,7 +35,9 @@ nlohmann::ordered_json blends_json(const run::Blends& blends);
 nlohmann::ordered_json motion_json(const run::PlannedMotion& motion);
 nlohmann::ordered_json feeds_json(const std::vector<run::FeedNotReached>& feeds);
 
-std::string json_text(const simulation::RunResult& result, const run::PlannedProfile& profile);
+// `world`: what stands behind the pins; null where nothing does.
+std::string json_text(const simulation::RunResult& result, const run::PlannedProfile& profile,
+                      const nlohmann::ordered_json& world);
 // The same and what the page of a run says beside it, in one line.
 std::string report_json(const simulation::RunResult& result, const run::PlannedProfile& profile);
 

@@ -15,6 +15,7 @@
 #include "common/input_event.hpp"
 #include "common/standard_streams.hpp"
 #include "common/terminal.hpp"
+#include "common/world_choice.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/machine/machine.hpp"
@@ -43,6 +44,7 @@ struct ServeOptions {
   double silence = 60;
   bool once = false;
   std::vector<std::string> input_at;
+  WorldChoice world;
 };
 
 volatile sig_atomic_t g_ended = 0;
@@ -101,6 +103,7 @@ class Switches {
     std::stable_sort(events_.begin(), events_.end(),
                      [](const auto& a, const auto& b) { return a.seconds < b.seconds; });
   }
+  const std::vector<simulation::OperatorEvent>& events() const { return events_; }
   void press_due(sim::Engine& engine) {
     for (; next_ < events_.size() && events_[next_].seconds * clock_hz_ <= static_cast<double>(engine.cycles());
          ++next_)
@@ -134,8 +137,9 @@ bool is_loopback(const std::string& address) {
 void serve_card(const ServeOptions& options) {
   const serve::Settings settings = settings_of(options);
   Switches switches(options);
+  const std::unique_ptr<world::World> world = options.world.make(options.clock_hz, switches.events());
   const std::unique_ptr<transport::Listener> listener = listener_of(options);
-  const std::unique_ptr<sim::Engine> engine = sim::make_engine(engine_of(options));
+  const std::unique_ptr<sim::Engine> engine = in_world(world.get(), sim::make_engine(engine_of(options)));
   run::PathIdentity path;
   engine->set_sink(&path);
   serve::CardServer server(*engine, *listener, settings);
@@ -162,6 +166,7 @@ void serve_card(const ServeOptions& options) {
                   counts.refused, counts.requests, counts.dropped, seconds, lockstep));
   say(fmt::format("path: {} steps, identity {}; without the commands' numbers {}", path.count(), path.text(),
                   path.unnumbered_text()));
+  if (world) say(world_text(*world, "; "));
 }
 
 }  // namespace
@@ -208,6 +213,7 @@ void add_serve_command(CLI::App& app) {
                                "after; before, each is at rest. Input estop: the emergency stop's button, 1 pressed",
                                sim::kInputs - 1))
       ->type_name("SECONDS:INPUT:LEVEL");
+  options->world.add_to(*command);
   command->add_flag("--once", options->once,
                     "end when the first client has gone, and nobody who came meanwhile is left");
   command->callback([options] { serve_card(*options); });

@@ -65,7 +65,8 @@ struct SimulatedRun::Instruments {
   Instruments(const sim::SimulationOptions& engine_options, const RunOptions& options, const machine::Machine& machine)
       : kind(engine_options.kind),
         recorder(recording_of(options, engine_options.clock_hz), kinematics::Kinematics(machine)),
-        engine(sim::make_engine(engine_options)),
+        engine(options.surroundings ? options.surroundings(sim::make_engine(engine_options))
+                                    : sim::make_engine(engine_options)),
         judges(recorder, options.outputs, engine_options.clock_hz),
         bus(*engine, engine_options.clock_hz, options.operation.bytes_per_second),
         timeline(options.operation, options.max_percent) {

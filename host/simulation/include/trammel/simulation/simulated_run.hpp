@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,8 @@ struct RunOptions {
   run::TextSink* report = nullptr;      // the page of the run; not for machines in which a motor moves two axes
   std::optional<std::pair<std::uint64_t, std::uint64_t>> report_window;  // clocks of the card, first and last
   bool plot = false;                                                     // RunResult::plot is wanted
+  // What the card is put into before anything is connected to it: an engine around the one that it gets.
+  std::function<std::unique_ptr<sim::Engine>(std::unique_ptr<sim::Engine>)> surroundings;
 };
 
 // An output that the machine file names.
