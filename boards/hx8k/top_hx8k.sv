@@ -40,6 +40,7 @@ module top_hx8k #(
       .FeedDepth(2560),
       .ArcGenerator(0),
       .PathCommands(1),
+      .UnderrunHold(0),
       .Accumulator(0),
       .DirectMode(0),
       .Classes(0),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <type_traits>
 
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
@@ -66,7 +67,7 @@ class BoardUnderTest {
     const auto inputs = static_cast<std::uint16_t>(dice_.below(kInputs + 1));
     const bool rx = dice_.chance(2);
     set_lock();
-    dut_->input_i = static_cast<decltype(dut_->input_i)>(inputs);
+    dut_->input_i = static_cast<std::decay_t<decltype(dut_->input_i)>>(inputs);
     dut_->rx_i = rx;
     dut_.clock();
     board_.clock(locked_, inputs, rx);

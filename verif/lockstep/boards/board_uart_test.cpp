@@ -2,6 +2,8 @@
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
+#include <type_traits>
+
 #include "trammel/sim/lockstep.hpp"
 #include "whole_board.hpp"
 
@@ -11,7 +13,7 @@ namespace {
 class Top final : public BoardTop {
  public:
   Top() {
-    dut_->input_i = static_cast<decltype(dut_->input_i)>(kInputLevels & ((1U << TRAMMEL_INPUTS) - 1));
+    dut_->input_i = static_cast<std::decay_t<decltype(dut_->input_i)>>(kInputLevels & ((1U << TRAMMEL_INPUTS) - 1));
     dut_->emergency_stop_i = 0;
   }
   Pins clock(bool rx) override {
