@@ -9,10 +9,11 @@ module top_hx8k #(
     input wire logic clk_i,
     input wire logic rx_i,
     output logic tx_o,
-    input wire logic [3:0] input_i,
+    input wire logic [7:0] input_i,
+    input wire logic emergency_stop_i,
     output logic [3:0] output_o,
-    output logic [3:0] step_o,
-    output logic [3:0] dir_o
+    output logic [2:0] step_o,
+    output logic [2:0] dir_o
 );
   logic clk;
   logic locked;
@@ -34,16 +35,20 @@ module top_hx8k #(
       .BoardId(32'd1),
       .ClockHz(32'd60000000),
       .ResetBits(10),
-      .Axes(4),
+      .Axes(3),
       .GeometryDepth(2048),
       .FeedDepth(2560),
       .ArcGenerator(0),
       .PathCommands(1),
+      .UnderrunHold(0),
       .Accumulator(0),
       .DirectMode(0),
       .Classes(0),
       .Watermarks(0),
-      .Inputs(4),
+      .MachineInputs(1),
+      .EmergencyStop(1),
+      .Enables(1),
+      .Inputs(8),
       .Outputs(4)
   ) card (
       .clk_i(clk),
@@ -51,6 +56,7 @@ module top_hx8k #(
       .rx_i,
       .tx_o,
       .input_i,
+      .emergency_stop_i,
       .output_o,
       .step_o,
       .dir_o

@@ -1,4 +1,5 @@
-// A card on a board: its reset from the PLL's lock, its UART as only host port, and its pins behind flip-flops that lie in the pins.
+// A card on a board: its reset from the PLL's lock, its UART as only host port, STEP and DIR from flip-flops that lie in the pins.
+// The emergency stop's pin reaches its latch, and the latch the outputs, without a clock: no flip-flop of the board's stands there.
 `default_nettype none
 
 module board_card #(
@@ -15,7 +16,10 @@ module board_card #(
     parameter int          PathCommands      = 0,
     parameter int          PositionStreaming = 0,
     parameter int          MachineInputs     = 0,
+    parameter int          Captures          = 0,
     parameter int          SoftLimits        = 0,
+    parameter int          EmergencyStop     = 0,
+    parameter int          Enables           = 0,
     parameter int          Inputs            = 4,
     parameter int          Outputs           = 4,
     parameter logic [31:0] BuildId           = 0,
@@ -33,6 +37,7 @@ module board_card #(
     input  wire logic               rx_i,
     output logic                    tx_o,
     input  wire logic [ Inputs-1:0] input_i,
+    input  wire logic               emergency_stop_i,  // high is stop: an open wire with a pull-up
     output logic      [Outputs-1:0] output_o,
     output logic      [   Axes-1:0] step_o,
     output logic      [   Axes-1:0] dir_o
@@ -64,7 +69,10 @@ module board_card #(
       .PathCommands(PathCommands),
       .PositionStreaming(PositionStreaming),
       .MachineInputs(MachineInputs),
+      .Captures(Captures),
       .SoftLimits(SoftLimits),
+      .EmergencyStop(EmergencyStop),
+      .Enables(Enables),
       .Inputs(Inputs),
       .Outputs(Outputs),
       .BuildId(BuildId),
@@ -78,7 +86,7 @@ module board_card #(
       .clock_hz_i(ClockHz),
       .idle_level_i({DirIdle[Axes-1:0], StepIdle[Axes-1:0]}),
       .output_idle_i(OutputIdle[Outputs-1:0]),
-      .emergency_stop_level_i(1'b1),  // the boards have no pin for it yet
+      .emergency_stop_level_i(1'b1),
       .awvalid_i(1'b0),
       .awready_o(),
       .awaddr_i(12'd0),
@@ -106,7 +114,7 @@ module board_card #(
       .miso_o(),
       .miso_enable_o(),
       .input_i,
-      .emergency_stop_i(1'b0),
+      .emergency_stop_i,
       .output_o(level),
       .step_o(step),
       .dir_o(dir),
@@ -132,16 +140,7 @@ module board_card #(
         .pin_o  (dir_o[i])
     );
   end
-  for (genvar i = 0; i < Outputs; i++) begin : gen_output
-    output_pin #(
-        .Idle(OutputIdle[i])
-    ) pin (
-        .clk_i,
-        .rst_i  (rst),
-        .level_i(level[i]),
-        .pin_o  (output_o[i])
-    );
-  end
+  assign output_o = rst ? OutputIdle[Outputs-1:0] : level;
 endmodule
 
 `default_nettype wire

@@ -9,8 +9,9 @@ module top_ulx3s #(
     input wire logic clk_i,
     input wire logic rx_i,
     output logic tx_o,
-    input wire logic [3:0] input_i,
-    output logic [3:0] output_o,
+    input wire logic [15:0] input_i,
+    input wire logic emergency_stop_i,
+    output logic [7:0] output_o,
     output logic [3:0] step_o,
     output logic [3:0] dir_o,
     output logic wifi_gpio0_o
@@ -40,14 +41,20 @@ module top_ulx3s #(
       .ArcGenerator(1),
       .PathCommands(1),
       .PositionStreaming(1),
-      .Inputs(4),
-      .Outputs(4)
+      .MachineInputs(1),
+      .Captures(4),
+      .SoftLimits(1),
+      .EmergencyStop(1),
+      .Enables(1),
+      .Inputs(16),
+      .Outputs(8)
   ) card (
       .clk_i(clk),
       .locked_i(locked),
       .rx_i,
       .tx_o,
       .input_i,
+      .emergency_stop_i,
       .output_o,
       .step_o,
       .dir_o

@@ -25,9 +25,13 @@ module input_filter #(
   logic [ 5:0] clocks_q;  // of the scan
   logic        clearing_q;
   logic [15:0] length_read_q;
-  logic [15:0] length_q;
   logic [15:0] count_read_q;
   logic [15:0] count_q;  // scans for which the input has differed, or agreed
+  logic [15:0] next_q;  // one more
+  // Compared a clock before the decision: nothing but these flags stands between the levels and it.
+  logic        none_q;  // its length is 0
+  logic        kept_lasts_q;  // the count is its length at least
+  logic        next_lasts_q;  // and with the next scan
   logic [31:0] differs;  // now
   logic [31:0] differed_q;  // since its last scan
 
@@ -46,16 +50,14 @@ module input_filter #(
   logic        lasts;
   logic        passes;
   logic [15:0] count;
-  logic [15:0] length;
   logic [31:0] changes;
 
   always_comb begin
     differs = 32'(levels_i) ^ 32'(levels_o);
     // It cannot overflow: an input passes, or is quiet, at the greatest length at the latest.
     steady  = differs[scanned] ? differed_q[scanned] : agreed_q[scanned];
-    count   = !steady ? 16'd0 : quiet_q[scanned] ? count_q : count_q + 16'd1;
-    length  = clearing_q ? 16'd0 : length_q;
-    lasts   = decides && count >= length;
+    count   = !steady ? 16'd0 : quiet_q[scanned] ? count_q : next_q;
+    lasts   = decides && (clearing_q || (!steady ? none_q : quiet_q[scanned] ? kept_lasts_q : next_lasts_q));
     passes  = lasts && differs[scanned];
     changes = passes ? 32'd1 << scanned : 32'd0;
   end
@@ -102,13 +104,16 @@ module input_filter #(
   always_ff @(posedge clk_i) begin
     if (set_i || clearing_q) lengths[clearing_q?scanned : set_input_i] <= clearing_q ? 16'd0 : set_length_i;
     length_read_q <= lengths[reads];
-    length_q <= length_read_q;
   end
 
   always_ff @(posedge clk_i) begin
     if (decides) counts[scanned] <= count;
     count_read_q <= counts[reads];
     count_q <= count_read_q;
+    next_q <= count_read_q + 16'd1;
+    none_q <= length_read_q == 16'd0;
+    kept_lasts_q <= count_read_q >= length_read_q;
+    next_lasts_q <= count_read_q + 16'd1 >= length_read_q;
   end
 endmodule
 

@@ -41,6 +41,7 @@ class Board:
     pins: tuple
     widths: dict  # of the groups of pins
     constants: dict  # ports that stand still: their levels
+    emergency_stop: bool  # has a pin for it
     least_set: int = 1
 
     @property
@@ -74,6 +75,9 @@ def read_pins(raw):
     for group in GROUPS:
         way = "i" if group == "input" else "o"
         pins += [split(f"{group}_{way}[{i}]", text, pull_up=way == "i") for i, text in enumerate(raw[group])]
+    # Normally closed to ground: the pull-up makes a broken wire a stop.
+    if "emergency_stop" in raw:
+        pins.append(split("emergency_stop_i", raw["emergency_stop"], pull_up=True))
     return pins
 
 
@@ -105,6 +109,8 @@ def check(board):
     for group, name in (("step", "Axes"), ("dir", "Axes"), ("output", "Outputs"), ("input", "Inputs")):
         if board.widths[group] != board.card[name]:
             raise DescriptionError(f"pins: {board.widths[group]} of {group}, card: {name} = {board.card[name]}")
+    if board.emergency_stop != (board.card.get("EmergencyStop", 0) == 1):
+        raise DescriptionError("pins: emergency_stop is named without EmergencyStop = 1 of the card, or the other way round")
     sites = [pin.site for pin in board.pins]
     for site in sites:
         if sites.count(site) > 1:
@@ -121,7 +127,7 @@ def load(name):
         pins += [split(f"{port}_o", value["pin"], level=value["level"]) for port, value in constants.items()]
         levels = {f"{port}_o": value["level"] for port, value in constants.items()}
         board = Board(name=name, **{**raw, "pins": tuple(pins), "sources": tuple(raw["sources"])}, widths=widths,
-                      constants=levels)
+                      constants=levels, emergency_stop="emergency_stop" in raw["pins"])
         check(board)
     except (DescriptionError, KeyError, TypeError, tomllib.TOMLDecodeError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else error

@@ -17,11 +17,14 @@ def top_text(board):
                   ("ClockHz", f"32'd{board.clock_hz}"), ("ResetBits", board.reset_bits), *board.card.items()]
     widths = board.widths
     ports = ["input wire logic clk_i", "input wire logic rx_i", "output logic tx_o",
-             f"input wire logic {vector(widths['input'])}input_i", f"output logic {vector(widths['output'])}output_o",
+             f"input wire logic {vector(widths['input'])}input_i",
+             *(["input wire logic emergency_stop_i"] if board.emergency_stop else []),
+             f"output logic {vector(widths['output'])}output_o",
              f"output logic {vector(widths['step'])}step_o", f"output logic {vector(widths['dir'])}dir_o",
              *(f"output logic {port}" for port in board.constants)]
     pll = ", ".join(f".{name}({value})" for name, value in board.pll.items())
     listed = ",\n      ".join(f".{name}({value})" for name, value in parameters)
+    stop = ".emergency_stop_i" if board.emergency_stop else ".emergency_stop_i(1'b0)"
     still = "".join(f"  assign {port} = 1'b{level};\n" for port, level in board.constants.items())
     return f"""// {board.title}: the card at {board.clock_mhz:g} MHz behind the board's UART.
 // {NOTE.format(board.name)}
@@ -52,6 +55,7 @@ module {board.top} #(
       .rx_i,
       .tx_o,
       .input_i,
+      {stop},
       .output_o,
       .step_o,
       .dir_o
@@ -90,7 +94,7 @@ def table_text(board):
     """The board's table of pins, for its page."""
     lines = ["| signal | pin of the device | on the board | |", "|---|---|---|---|"]
     for pin in board.pins:
-        note = "pull-up" if pin.pull_up else "" if pin.level is None else f"stands at {pin.level}"
+        note = "pull-up; high is stop" if pin.signal == "emergency_stop_i" else "pull-up" if pin.pull_up else "" if pin.level is None else f"stands at {pin.level}"
         lines.append(f"| `{pin.signal}` | {pin.site} | {pin.place} | {note} |")
     sources = "\n".join(f"- {source}" for source in board.sources)
     return (f"BOARD_ID {board.board_id}; {board.crystal_mhz:g} MHz crystal, card clock {board.clock_mhz:g} MHz; reset "

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <type_traits>
 
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
@@ -11,9 +12,12 @@
 namespace trammel::lockstep {
 namespace {
 
-constexpr std::uint32_t kAll = 0xF;  // four pins of a kind
+// All pins of a kind.
+constexpr std::uint32_t kAxes = (1U << TRAMMEL_AXES) - 1;
+constexpr std::uint32_t kInputs = (1U << TRAMMEL_INPUTS) - 1;
+constexpr std::uint32_t kOutputs = (1U << TRAMMEL_OUTPUTS) - 1;
 constexpr std::uint32_t kResetClocks = (1U << TRAMMEL_RESET_BITS) + 2;
-constexpr std::uint64_t kWho = std::uint64_t{TRAMMEL_BOARD_ID ^ 0x38U} << 32 | TRAMMEL_CLOCK_HZ;
+constexpr std::uint64_t kWho = std::uint64_t{TRAMMEL_BOARD_ID ^ 0x78U} << 32 | TRAMMEL_CLOCK_HZ;
 
 // A level a pin.
 struct Levels {
@@ -23,7 +27,8 @@ struct Levels {
 };
 
 // The board by its rules. Reset lasts from the moment in which the lock is lost to kResetClocks clocks after it is
-// back; the card's pins follow its inputs a clock after it, and the board's pins the card's another one later.
+// back; the card's pins follow its inputs a clock after it, and the board's STEP and DIR the card's another one later.
+// Its outputs are the card's, and idle in reset, without a clock.
 class Board {
  public:
   void lose_lock() {
@@ -33,17 +38,24 @@ class Board {
   void clock(bool locked, std::uint32_t inputs, bool rx) {
     const bool reset = since_ < kResetClocks;
     pins_ = reset ? Levels() : card_;
-    card_ = reset ? Levels() : Levels{inputs, ~inputs & kAll, (rx ? kAll : 0U) ^ inputs};
+    const std::uint32_t output = (rx ? kOutputs : 0U) ^ inputs ^ inputs >> TRAMMEL_OUTPUTS;
+    card_ = reset ? Levels() : Levels{inputs & kAxes, ~inputs & kAxes, output & kOutputs};
     told_ = reset ? kWho : told_ << 1 | std::uint64_t{rx};
     if (locked) ++since_;
   }
-  const Levels& pins() const { return pins_; }
+  void stop(bool pressed) { stop_ = pressed; }
+  Levels pins() const {
+    Levels now = pins_;
+    now.output = since_ < kResetClocks ? Levels().output : card_.output ^ (stop_ ? kOutputs : 0U);
+    return now;
+  }
   bool tx() const { return (told_ >> 63) != 0; }
 
  private:
   std::uint64_t since_ = 0;  // clocks
   Levels pins_;
   Levels card_;
+  bool stop_ = false;
   std::uint64_t told_ = 0;
 };
 
@@ -52,16 +64,17 @@ class BoardUnderTest {
   explicit BoardUnderTest(std::uint64_t seed) : check_("board", seed), dice_(seed) {}
 
   void clock() {
-    const auto inputs = static_cast<std::uint8_t>(dice_.below(kAll + 1));
+    const auto inputs = static_cast<std::uint16_t>(dice_.below(kInputs + 1));
     const bool rx = dice_.chance(2);
     set_lock();
-    dut_->input_i = inputs;
+    dut_->input_i = static_cast<std::decay_t<decltype(dut_->input_i)>>(inputs);
     dut_->rx_i = rx;
     dut_.clock();
     board_.clock(locked_, inputs, rx);
     check_.next_cycle();
     compare();
     check_.compare("tx_o", dut_->tx_o, board_.tx());
+    if (dice_.chance(4)) press();
 #ifdef TRAMMEL_STANDS_HIGH
     check_.compare("stands high", dut_->TRAMMEL_STANDS_HIGH, 1);
 #endif
@@ -85,6 +98,14 @@ class BoardUnderTest {
   // The stand-in for the PLL has its lock after eight clocks.
   void set_lock() { locked_ = check_.cycles() >= 8; }
 #endif
+  // Or releases, between clocks.
+  void press() {
+    stop_ = !stop_;
+    dut_->emergency_stop_i = stop_;
+    dut_->eval();
+    board_.stop(stop_);
+    compare();
+  }
   void compare() {
     check_.compare("step_o", dut_->step_o, board_.pins().step);
     check_.compare("dir_o", dut_->dir_o, board_.pins().dir);
@@ -96,6 +117,7 @@ class BoardUnderTest {
   Dice dice_;
   Board board_;
   bool locked_ = false;
+  bool stop_ = false;
 };
 
 void random_pins() {

@@ -1,4 +1,5 @@
-// Stands for the card behind a board's pins: its pins are idle in reset and then follow inputs and serial line.
+// Stands for the card behind a board's pins: its pins are idle in reset and then follow inputs and serial line, the outputs the
+// emergency stop, too, without a clock.
 `default_nettype none
 module card_with_ports #(
     parameter int          Axes              = 4,
@@ -14,6 +15,7 @@ module card_with_ports #(
     parameter int          PathCommands      = 0,
     parameter int          PositionStreaming = 0,
     parameter int          MachineInputs     = 0,
+    parameter int          Captures          = 0,
     parameter int          SoftLimits        = 0,
     parameter int          EmergencyStop     = 0,
     parameter int          Enables           = 0,
@@ -68,16 +70,19 @@ module card_with_ports #(
   // Who this is goes out by the serial line, a bit a clock after the reset: nothing else of a board's top shows it.
   localparam logic [31:0] WHO = BoardId ^ {26'd0, Uart != 0, AxiLite == 0, PathCommands != 0, 3'd0};
   logic [63:0] told_q;
+  logic [Outputs-1:0] output_q;
+
+  assign output_o = output_q ^ {Outputs{emergency_stop_i}};
 
   always_ff @(posedge clk_i) begin
     step_o   <= Axes'(input_i);
     dir_o    <= ~Axes'(input_i);
-    output_o <= {Outputs{rx_i}} ^ Outputs'(input_i);
+    output_q <= {Outputs{rx_i}} ^ Outputs'(input_i) ^ Outputs'(input_i >> Outputs);
     told_q   <= {told_q[62:0], rx_i};
     if (rst_i) begin
       {dir_o, step_o} <= idle_level_i;
-      output_o <= output_idle_i;
-      told_q <= {WHO, clock_hz_i};
+      output_q <= output_idle_i;
+      told_q <= {WHO ^ {25'd0, emergency_stop_level_i, 6'd0}, clock_hz_i};
     end
   end
   assign tx_o = told_q[63];

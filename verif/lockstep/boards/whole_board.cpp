@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "trammel/card_map.hpp"
 #include "trammel/driver/arc_chord.hpp"
 #include "trammel/driver/card.hpp"
 #include "trammel/driver/errors.hpp"
@@ -30,11 +31,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr unsigned kAxes = 4;
+constexpr unsigned kMaxAxes = 4;
 constexpr double kBreak = 1 << 20 | 1 << 10;  // clocks
 constexpr double kFastestBit = 25;            // clocks: 2.4 Mbaud at 60 MHz, 3.2 at 80
 
-using Motors = std::array<std::int64_t, kAxes>;
+using Motors = std::array<std::int64_t, kMaxAxes>;
 
 std::string text(const Motors& motors) {
   return fmt::format("{} {} {} {}", motors[0], motors[1], motors[2], motors[3]);
@@ -55,7 +56,7 @@ class Board {
     const std::uint32_t rises = pins.step & ~step_;
     step_ = pins.step;
     if (rises == 0) return;
-    for (unsigned axis = 0; axis < kAxes; ++axis) {
+    for (unsigned axis = 0; axis < kMaxAxes; ++axis) {
       if ((rises >> axis & 1) != 0) motors_.at(axis) += (pins.dir >> axis & 1) != 0 ? -1 : 1;
     }
     stepped();
@@ -66,6 +67,11 @@ class Board {
   }
   void require_motors(const Motors& at, const std::string& when) const {
     require(motors_ == at, fmt::format("motors at {}, not {}; {}", text(motors_), text(at), when));
+  }
+
+  void press(bool pressed) {
+    top_.press(pressed);
+    for (unsigned i = 0; i < 10; ++i) clock();
   }
 
   const BoardFacts& facts() const { return facts_; }
@@ -87,11 +93,17 @@ class Board {
 
 void identify(const Board& board, driver::Card& card) {
   const driver::Identification& id = card.identification();
-  board.require(id.axes == kAxes && id.clock_hz == board.facts().clock_hz,
+  board.require(id.axes == board.facts().axes && id.clock_hz == board.facts().clock_hz,
                 fmt::format("it says {} axes, {} Hz", id.axes, id.clock_hz));
   const driver::Build build = card.read_build();
   board.require(build.id == 0x1234ABCD && build.dirty && build.board == board.facts().board_id,
                 fmt::format("it says build {:x}{}, board {}", build.id, build.dirty ? ", dirty" : "", build.board));
+  const unsigned inputs = card.inputs_present();
+  const unsigned outputs = card.outputs_present();
+  board.require(inputs == board.facts().inputs && outputs == board.facts().outputs,
+                fmt::format("it says {} inputs, {} outputs", inputs, outputs));
+  const std::uint32_t levels = card.read_raw_inputs();
+  board.require(levels == (kInputLevels & ((1U << inputs) - 1)), fmt::format("inputs at {:b}", levels));
 }
 
 // X goes 80 pulses, 80 more as the upper half of a circle where the board makes arcs, and another 80.
@@ -191,6 +203,19 @@ void stream(Board& board, driver::Card& card) {
                 fmt::format("Y was at {}", circle.highest()));
 }
 
+// Pressed it stops the card and cannot be cleared; released it can.
+void stop_at_the_pin(Board& board, driver::Card& card) {
+  constexpr std::uint32_t kStopped = card_map::field::kFaultEmergencyStop;
+  board.require(card.read_faults() == 0, "a fault before the emergency stop: " + card.read_fault_text());
+  board.press(true);
+  board.require(card.read_faults() == kStopped, "pressed: " + card.read_fault_text());
+  card.clear_faults();
+  board.require(card.read_faults() == kStopped, "cleared while pressed: " + card.read_fault_text());
+  board.press(false);
+  card.clear_faults();
+  board.require(card.read_faults() == 0, "released and cleared: " + card.read_fault_text());
+}
+
 // The line as a TCP connection, whose bytes come and go at the pins.
 class Bridge {
  public:
@@ -280,6 +305,7 @@ void streams_and_holds(BoardTop& top, const BoardFacts& facts) {
     driver::Card card = driver::Card::open(bus);
     identify(board, card);
     stream(board, card);
+    stop_at_the_pin(board, card);
   } catch (const driver::Error& error) {
     board.require(false, error.what());
   }
@@ -291,8 +317,9 @@ void obeys_commands(BoardTop& top, const BoardFacts& facts) {
   const std::string info = trammel(board, bridge, "info");
   require_said(board, info, fmt::format("clock          {} Hz\n", facts.clock_hz));
   require_said(board, info, fmt::format("build          1234abcd, dirty\nboard          {}\n", facts.board_id));
-  trammel(board, bridge, "line --to 200,-100,50,7 --duration 0.002 --no-ramp");
-  board.require_motors({200, -100, 50, 7}, "after the line");
+  const std::int64_t fourth = facts.axes == 4 ? 7 : 0;
+  trammel(board, bridge, fmt::format("line --to 200,-100,50{} --duration 0.002 --no-ramp", fourth != 0 ? ",7" : ""));
+  board.require_motors({200, -100, 50, fourth}, "after the line");
 
   // Lines, an arc, an output.
   const std::string program = testing::TempDir() + facts.name + "_board_test.ngc";
@@ -304,7 +331,7 @@ void obeys_commands(BoardTop& top, const BoardFacts& facts) {
   }
   const std::string said = trammel(board, bridge, "run " + program + quick);
   require_said(board, said, " 0 sent again");
-  board.require_motors({240, -40, 20, 7}, "after " + said);  // absolute, wherever the line before it has ended
+  board.require_motors({240, -40, 20, fourth}, "after " + said);  // absolute, wherever the line before it has ended
   board.require(board.outputs_seen() == 1U << 2, fmt::format("outputs {:b} were on", board.outputs_seen()));
 }
 
