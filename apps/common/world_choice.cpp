@@ -42,7 +42,7 @@ void WorldChoice::add_to(CLI::App& command) {
       command
           .add_option(
               "--world", file,
-              "machine behind the simulated card's pins: carriages, switches, buttons (default: the built-in one)")
+              "machine behind the simulated card's pins: carriages, switches, buttons; default is the built-in one")
           ->type_name("FILE");
   command
       .add_option(

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "trammel/card_map.hpp"
 #include "world_card.hpp"
 
 namespace trammel::world {
@@ -147,6 +148,8 @@ TEST(EngineInWorld, WhatTheWorldWiresIsTheWorlds) {
   WorldCard c(default_world_text());
   const std::uint32_t before = c.card.read_raw_inputs();
   c.engine.set_input(1, true);
+  c.engine.wait(200);
+  EXPECT_EQ(c.card.read_raw_inputs(), before);
   c.engine.set_inputs(before | 3U | 1U << 15);
   c.engine.set_emergency_stop(true);
   c.engine.wait(200);
@@ -155,6 +158,30 @@ TEST(EngineInWorld, WhatTheWorldWiresIsTheWorlds) {
   c.world.press("cycle_start");
   c.engine.wait(2000);
   EXPECT_EQ(c.card.read_raw_inputs(), (before | 1U << 15) & ~(1U << 7));
+}
+
+// What happens in the middle of a transfer is seen by its later accesses.
+TEST(EngineInWorld, APinChangesBetweenTheAccessesOfOneTransfer) {
+  constexpr std::uint64_t kPressed = 8000;  // clocks: 20 ms
+  World world(parse_world("events = [\"at 20 ms press feed_hold\"]\n" + default_world_text(), "test world"),
+              kCardClock);
+  EngineInWorld engine(model_card(), world);
+  engine.wait(kPressed - 300 - engine.cycles());
+  std::vector<driver::Access> reads(100, driver::read_of(card_map::reg::kRawInputs));
+  ASSERT_EQ(engine.transfer(reads.data(), reads.size()), reads.size());
+  ASSERT_GT(engine.cycles(), kPressed + 300);
+  EXPECT_EQ(reads.front().data >> 6 & 1U, 1U);
+  EXPECT_TRUE(std::any_of(reads.begin(), reads.end(), [](auto& read) { return (read.data >> 6 & 1U) == 0; }));
+}
+
+// A closed contact is 0 also where the machine file says that this is the active level; an unwired input would be 1.
+TEST(EngineInWorld, FromTheBeginningEachWiredInputHasItsLevel) {
+  World world(default_world(), kCardClock);
+  EngineInWorld engine(model_card(), world);
+  driver::Card card = driver::Card::open(engine);
+  card.set_input_polarity(0b10);
+  engine.wait(2000);
+  EXPECT_EQ(card.read_inputs() & 0b10U, 0b10U);
 }
 
 TEST(EngineInWorld, AResetOfTheCardLeavesTheMachineWhereItIs) {
@@ -172,12 +199,15 @@ TEST(EngineInWorld, AResetOfTheCardLeavesTheMachineWhereItIs) {
 }
 
 TEST(EngineInWorld, WaitsForTheInterruptAsTheEngineInside) {
-  World world(default_world(), kCardClock);
+  // An event in the middle cuts the wait.
+  World world(parse_world("events = [\"at 30 ms press feed_hold\"]\n" + default_world_text(), "test world"),
+              kCardClock);
   EngineInWorld engine(model_card(true), world);
   EXPECT_TRUE(engine.has_interrupt());
   const std::uint64_t before = engine.cycles();
-  EXPECT_FALSE(engine.wait_for_interrupt(std::chrono::milliseconds(1)));
-  EXPECT_EQ(engine.cycles() - before, kCardClock / 1000);
+  EXPECT_FALSE(engine.wait_for_interrupt(std::chrono::milliseconds(100)));
+  EXPECT_EQ(engine.cycles() - before, kCardClock / 10);
+  EXPECT_TRUE(world.pressed("feed_hold"));
   EXPECT_EQ(world.now(), engine.cycles());
 }
 

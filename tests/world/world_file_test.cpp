@@ -142,6 +142,7 @@ TEST(WorldFile, ErrorsNameFileAndLine) {
               AllOf(StartsWith("w.toml:1: axis X: "), HasSubstr("too light")));
   EXPECT_THAT(file_error("events = [\"at noon press a\"]\n[axis.x]\n"), StartsWith("w.toml:1: "));
   EXPECT_THAT(file_error("[axis.x\n"), StartsWith("w.toml:1: not TOML"));
+  EXPECT_THAT(file_error("[axis.x]\n[swich.a]\n"), StartsWith("w.toml:2: unknown entry swich; known here: axis"));
   EXPECT_THAT(file_error("axis = 1\n"), StartsWith("w.toml:1: axis must be a table"));
   EXPECT_THAT(file_error(std::string(100'000, '[')), HasSubstr("brackets"));
   EXPECT_THAT(file_error(std::string(kLongestWorldText + 1, '#')), HasSubstr("longer than"));
@@ -150,6 +151,7 @@ TEST(WorldFile, ErrorsNameFileAndLine) {
 TEST(WorldFile, FilesThatCannotBeRead) {
   EXPECT_THROW(load_world("/nowhere/world.toml"), WorldError);
   EXPECT_THROW(load_world("/"), WorldError);
+  EXPECT_THROW(load_world(""), WorldError);
   EXPECT_THROW(load_events("/nowhere/events", default_world()), WorldError);
 }
 

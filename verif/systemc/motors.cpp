@@ -1,30 +1,14 @@
 #include "motors.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace trammel::platform {
 
-namespace {
-
-constexpr double kTurn = 6.283185307179586;
-
-}  // namespace
-
-Motors::Motors(const MotorParameters& parameters) : parameters_(parameters) {
-  const MotorParameters& p = parameters;
-  const double inertia = p.rotor_inertia + p.mass * p.radius * p.radius;
-  const double pulses_a_radian = p.pulses_a_full_step * p.full_steps_a_turn / kTurn;
-  field_a_pulse_ = kTurn / (4 * p.pulses_a_full_step);
-  torque_ = p.holding_torque / inertia * pulses_a_radian;
-  damping_ = p.damping / inertia;
-  friction_ = p.friction / inertia * pulses_a_radian;
-  friction_speed_ = p.friction_speed * pulses_a_radian;
-}
+Motors::Motors(const MotorParameters& parameters) : parameters_(parameters) { motors_.fill(world::Motor(parameters)); }
 
 void Motors::pulse(double time, unsigned axis, int direction) {
   run_to(time);
-  commanded_[axis] += direction;
+  motors_[axis].pulse(direction);
 }
 
 void Motors::run_to(double time) {
@@ -36,35 +20,29 @@ void Motors::step() {
   std::uint16_t switches = 0;
   for (unsigned axis = 0; axis < kAxes; ++axis) {
     move(axis);
-    if (rotor_[axis] <= parameters_.low) switches = static_cast<std::uint16_t>(switches | 1U << 2 * axis);
-    if (rotor_[axis] >= parameters_.high) switches = static_cast<std::uint16_t>(switches | 2U << 2 * axis);
+    if (position(axis) <= parameters_.low) switches = static_cast<std::uint16_t>(switches | 1U << 2 * axis);
+    if (position(axis) >= parameters_.high) switches = static_cast<std::uint16_t>(switches | 2U << 2 * axis);
   }
   switches_ = switches;
   if (sample_period_ > 0) sample();
 }
 
-// Speed first, then the place by the new speed: that keeps the energy of a rotor that swings.
 void Motors::move(unsigned axis) {
-  double& rotor = rotor_[axis];
-  double& speed = speed_[axis];
-  const double lag = static_cast<double>(commanded_[axis]) - rotor;
-  largest_lag_[axis] = std::max(largest_lag_[axis], std::abs(lag));
-  if (lag == 0 && speed == 0) return;
-  speed += kStep * (torque_ * std::sin(field_a_pulse_ * lag) - damping_ * speed -
-                    friction_ * std::tanh(speed / friction_speed_));
-  rotor += kStep * speed;
+  world::Motor& motor = motors_[axis];
+  motor.advance(kStep);
   const double low = parameters_.low - parameters_.overtravel;
   const double high = parameters_.high + parameters_.overtravel;
-  if (rotor >= low && rotor <= high) return;
-  rotor = std::clamp(rotor, low, high);
-  speed = 0;
+  if (motor.position() < low || motor.position() > high) motor.hit(std::clamp(motor.position(), low, high));
 }
 
 void Motors::sample() {
   const double now = static_cast<double>(steps_) * kStep;
   if (!samples_.empty() && now < samples_.back().time + sample_period_) return;
-  Sample sample{now, {}, rotor_};
-  for (unsigned axis = 0; axis < kAxes; ++axis) sample.commanded[axis] = static_cast<double>(commanded_[axis]);
+  Sample sample{now, {}, {}};
+  for (unsigned axis = 0; axis < kAxes; ++axis) {
+    sample.commanded[axis] = static_cast<double>(commanded(axis));
+    sample.position[axis] = position(axis);
+  }
   samples_.push_back(sample);
 }
 

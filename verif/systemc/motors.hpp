@@ -1,11 +1,5 @@
-// A machine on STEP and DIR: an axis has a stepper motor that moves a carriage by a belt, with inertia, friction, a
-// switch near each end of its travel and a stop behind it. Plain C++; one thread.
-//
-// A two-phase hybrid stepper whose driver keeps the current, so that the torque depends on the angle alone:
-//   J dw/dt = T sin(field - rotor) - B w - F tanh(w / w_0),  J = rotor + mass * radius^2
-// with field and rotor in electrical angle, a turn of which is 4 full steps. A rotor that is left behind by half of
-// such a turn falls into the next one: it stands a multiple of 4 full steps beside its commanded place, as a real one
-// does.
+// A machine on STEP and DIR: an axis has a stepper motor (trammel/world/motor.hpp has its equations) that moves a
+// carriage by a belt, with a switch near each end of its travel and a stop behind it. Plain C++; one thread.
 #pragma once
 
 #include <array>
@@ -13,19 +7,11 @@
 #include <vector>
 
 #include "pins.hpp"
+#include "trammel/world/motor.hpp"
 
 namespace trammel::platform {
 
-struct MotorParameters {
-  double holding_torque = 0.40;    // N m, both phases at the rated current
-  double rotor_inertia = 54e-7;    // kg m^2
-  double mass = 0.5;               // kg, what the belt moves
-  double radius = 6.366e-3;        // m, of the pulley: 40 mm a turn
-  double friction = 0.04;          // N m, against the motion
-  double friction_speed = 0.5;     // rad/s (w_0): where friction reaches 76 % of its full torque
-  double damping = 0.004;          // N m s (B)
-  double pulses_a_full_step = 16;  // microsteps
-  double full_steps_a_turn = 200;
+struct MotorParameters : world::MotorParameters {
   // Travel from where the machine stands at the beginning, pulses. The switches close at the ends, the stops come so
   // many pulses behind them.
   double low = -8000;
@@ -35,7 +21,7 @@ struct MotorParameters {
 
 class Motors {
  public:
-  static constexpr double kStep = 20e-6;  // s of integration
+  static constexpr double kStep = world::Motor::kLongestStep;  // s of integration
 
   explicit Motors(const MotorParameters& parameters = {});
 
@@ -44,9 +30,9 @@ class Motors {
   // What happens until then.
   void run_to(double time);
 
-  std::int64_t commanded(unsigned axis) const { return commanded_[axis]; }  // pulses
-  double position(unsigned axis) const { return rotor_[axis]; }             // pulses
-  double largest_lag(unsigned axis) const { return largest_lag_[axis]; }    // pulses, between field and rotor
+  std::int64_t commanded(unsigned axis) const { return motors_[axis].commanded(); }  // pulses
+  double position(unsigned axis) const { return motors_[axis].position(); }          // pulses
+  double largest_lag(unsigned axis) const { return motors_[axis].largest_lag(); }    // pulses, between field and rotor
   // Inputs of the card: bit 2 n: the switch at the low end of axis n, bit 2 n + 1: at the high end; 1: closed.
   std::uint16_t switches() const { return switches_; }
 
@@ -65,16 +51,8 @@ class Motors {
   void sample();
 
   MotorParameters parameters_;
-  double field_a_pulse_;     // rad electrical
-  double torque_;            // pulses/s^2 at the largest torque
-  double damping_;           // 1/s
-  double friction_;          // pulses/s^2
-  double friction_speed_;    // pulses/s
+  std::array<world::Motor, kAxes> motors_;
   std::uint64_t steps_ = 0;  // of integration, done
-  std::array<std::int64_t, kAxes> commanded_{};
-  std::array<double, kAxes> rotor_{};
-  std::array<double, kAxes> speed_{};  // pulses/s
-  std::array<double, kAxes> largest_lag_{};
   std::uint16_t switches_ = 0;
   double sample_period_ = 0;
   std::vector<Sample> samples_;

@@ -12,6 +12,7 @@
 namespace trammel::world {
 
 std::string text_of_file(const std::string& path, const char* what) {
+  if (path.empty()) throw WorldError(fmt::format("the {} file has no name", what));
   std::ifstream file(path, std::ios::binary);
   std::string text;
   std::array<char, 4096> part{};
