@@ -42,6 +42,7 @@ module top_colorlight_5a_75b #(
       .PositionStreaming(1),
       .MachineInputs(1),
       .Captures(4),
+      .CaptureFifo(1),
       .SoftLimits(1),
       .EmergencyStop(1),
       .Enables(1),

@@ -43,6 +43,7 @@ module top_ulx3s #(
       .PositionStreaming(1),
       .MachineInputs(1),
       .Captures(4),
+      .CaptureFifo(1),
       .SoftLimits(1),
       .EmergencyStop(1),
       .Enables(1),

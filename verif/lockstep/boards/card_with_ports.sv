@@ -16,6 +16,7 @@ module card_with_ports #(
     parameter int          PositionStreaming = 0,
     parameter int          MachineInputs     = 0,
     parameter int          Captures          = 0,
+    parameter int          CaptureFifo       = 0,
     parameter int          SoftLimits        = 0,
     parameter int          EmergencyStop     = 0,
     parameter int          Enables           = 0,
