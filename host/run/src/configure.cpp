@@ -10,6 +10,7 @@
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
+#include "trammel/kinematics/kinematics.hpp"
 #include "trammel/planner/card_limits.hpp"
 
 namespace trammel::run {

@@ -22,6 +22,7 @@
 #include "trammel/driver/frame_bus.hpp"
 #include "trammel/driver/increment.hpp"
 #include "trammel/driver/stream.hpp"
+#include "trammel/machine/machine.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "trammel/transport/byte_stream.hpp"
 #include "uart_link.hpp"
@@ -311,6 +312,18 @@ void streams_and_holds(BoardTop& top, const BoardFacts& facts) {
   }
 }
 
+// The default machine, without the axes that the board lacks.
+std::string machine_file(const BoardFacts& facts) {
+  std::string text = machine::default_machine_text();
+  if (facts.axes < 4) {
+    const std::size_t from = text.find("[axis.e]");
+    text.erase(from, text.find("\n# How the card's axes", from) - from);
+  }
+  const std::string name = testing::TempDir() + facts.name + "_board_test.toml";
+  std::ofstream(name) << text;
+  return name;
+}
+
 void obeys_commands(BoardTop& top, const BoardFacts& facts) {
   Board board(top, facts);
   const Bridge bridge(board);
@@ -325,7 +338,7 @@ void obeys_commands(BoardTop& top, const BoardFacts& facts) {
   const std::string program = testing::TempDir() + facts.name + "_board_test.ngc";
   std::ofstream(program)
       << "G21 G90 G17\nM3\nG1 X1 Y0.5 F60000\nG1 X1.5 Y0.25\nG2 X2.5 Y0.25 I0.5\nG1 X3 Y-0.5 Z0.25\nM2\n";
-  std::string quick = " --set outputs.m3=2";
+  std::string quick = " --machine " + machine_file(facts) + " --set outputs.m3=2";
   for (const std::string axis : {"x", "y", "z"}) {
     quick += " --set axis." + axis + ".max_velocity=1000 --set axis." + axis + ".max_acceleration=1000000";
   }

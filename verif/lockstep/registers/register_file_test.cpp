@@ -517,6 +517,18 @@ TEST(RegisterFile, ReadsEveryAddressAfterReset) {
             }));
 }
 
+// Each word that can be written gets a number of its own, and keeps it while all others are written.
+TEST(RegisterFile, EveryWordIsItsOwn) {
+  EXPECT_EQ("", trammel::lockstep::judge([] {
+              Bench bench(1);
+              for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4)
+                bench.access(true, address, address / 4 % 251 + 1);
+              for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4)
+                bench.access(false, address, 0);
+              EXPECT_GT(bench.checker().cycles(), 2 * card_map::kWindowBytes);
+            }));
+}
+
 // A snapshot and its time, read twice in a row: the difference is the clocks between the two snapshots.
 void snapshot_time_counts_clocks() {
   Bench bench(1);
