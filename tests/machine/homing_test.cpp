@@ -13,26 +13,26 @@ namespace {
 using ::testing::HasSubstr;
 
 // The default machine with lines behind it; the first of them has number kFirstLine.
-std::string text_with(const std::string& more) { return default_machine_text() + "\n" + more; }
-int first_line() {
-  const std::string text = text_with("");
+std::string homing_text(const std::string& more) { return default_machine_text() + "\n" + more; }
+int first_homing_line() {
+  const std::string text = homing_text("");
   return static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 1;
 }
-std::string error_of(const std::string& more) {
+std::string homing_error(const std::string& more) {
   try {
-    parse_machine(text_with(more), "m.toml");
+    parse_machine(homing_text(more), "m.toml");
   } catch (const MachineError& error) {
     return error.what();
   }
   return "";
 }
-const std::string kInputs = "[inputs]\nx_home = 0\n";
+const std::string kHomeInput = "[inputs]\nx_home = 0\n";
 
 TEST(MachineHoming, IsReadWhole) {
   const Machine machine = parse_machine(
-      text_with("[inputs]\nx_home = 0\nx_index = 3\n[homing.x]\nsearch_velocity = -40\nlatch_velocity = 2\n"
-                "final_velocity = 50\noffset = -1.5\nfinal_position = 5\nsearch_distance = 300\nsquaring = 4\n"
-                "use_index = true\nignore_limits = true\nshared = true\nsequence = 3\n"),
+      homing_text("[inputs]\nx_home = 0\nx_index = 3\n[homing.x]\nsearch_velocity = -40\nlatch_velocity = 2\n"
+                  "final_velocity = 50\noffset = -1.5\nfinal_position = 5\nsearch_distance = 300\nsquaring = 4\n"
+                  "use_index = true\nignore_limits = true\nshared = true\nsequence = 3\n"),
       "m.toml");
   ASSERT_TRUE(machine.axes[0].homing);
   const AxisHoming& homing = *machine.axes[0].homing;
@@ -59,8 +59,8 @@ TEST(MachineHoming, ASecondMotorHasASwitchOfItsOwn) {
 }
 
 TEST(MachineHoming, SaysWhatIsWrongAndWhere) {
-  const std::string at = "m.toml:" + std::to_string(first_line() + 2) + ": ";
-  const auto wrong = [&](const std::string& entries) { return error_of(kInputs + "[homing.x]\n" + entries); };
+  const std::string at = "m.toml:" + std::to_string(first_homing_line() + 2) + ": ";
+  const auto wrong = [&](const std::string& entries) { return homing_error(kHomeInput + "[homing.x]\n" + entries); };
   EXPECT_EQ(wrong("latch_velocity = 2\n").substr(0, at.size()), at) << wrong("latch_velocity = 2\n");
   EXPECT_THAT(wrong("latch_velocity = 2\n"), HasSubstr("homing.x: search_velocity is missing"));
   EXPECT_THAT(wrong("search_velocity = 900\n"),
@@ -74,12 +74,12 @@ TEST(MachineHoming, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(wrong("search_velocity = 5\nsequence = 32\n"),
               HasSubstr("homing.x.sequence must be a whole number from 0 to 31"));
   EXPECT_THAT(wrong("serch_velocity = 5\n"), HasSubstr("did you mean search_velocity?"));
-  EXPECT_THAT(error_of("[homing.x]\nsearch_velocity = 5\n"),
+  EXPECT_THAT(homing_error("[homing.x]\nsearch_velocity = 5\n"),
               HasSubstr("no input has the role: give x_home in [inputs]"));
-  EXPECT_THAT(error_of(kInputs + "[homing.w]\nsearch_velocity = 5\n"), HasSubstr("homing.w"));
-  EXPECT_THAT(error_of("[inputs]\nx_home = [0, 1]\n[homing.x]\nsearch_velocity = 5\n"),
+  EXPECT_THAT(homing_error(kHomeInput + "[homing.w]\nsearch_velocity = 5\n"), HasSubstr("homing.w"));
+  EXPECT_THAT(homing_error("[inputs]\nx_home = [0, 1]\n[homing.x]\nsearch_velocity = 5\n"),
               HasSubstr("x_home must be one input"));
-  EXPECT_THAT(error_of(kInputs + "x_limit_minus = 0\n[homing.x]\nsearch_velocity = 5\n"),
+  EXPECT_THAT(homing_error(kHomeInput + "x_limit_minus = 0\n[homing.x]\nsearch_velocity = 5\n"),
               HasSubstr("x_home is a limit as well, which would stop the search: give ignore_limits = true"));
 }
 

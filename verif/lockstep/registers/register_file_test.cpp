@@ -517,12 +517,15 @@ TEST(RegisterFile, ReadsEveryAddressAfterReset) {
             }));
 }
 
-// Each word that can be written gets a number of its own, and keeps it while all others are written.
+// Each word that can be written gets a number of its own, and keeps it while all others are written. Writes of the
+// stream and of START wait for others, of whom there are none here.
 TEST(RegisterFile, EveryWordIsItsOwn) {
   EXPECT_EQ("", trammel::lockstep::judge([] {
               Bench bench(1);
-              for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4)
+              for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4) {
+                if (address == reg::kStream || address == reg::kStart) continue;
                 bench.access(true, address, address / 4 % 251 + 1);
+              }
               for (std::uint32_t address = 0; address < card_map::kWindowBytes; address += 4)
                 bench.access(false, address, 0);
               EXPECT_GT(bench.checker().cycles(), 2 * card_map::kWindowBytes);
