@@ -31,26 +31,29 @@ module card_parameters #(
     ERROR_engines_and_BuildDirty_must_be_0_or_1 error ();
   end
 
-  localparam logic PATH_COMMANDS = Engines[card_map_pkg::ENGINE_PATH_COMMANDS];
-  localparam logic MACHINE_INPUTS = Engines[card_map_pkg::ENGINE_MACHINE_INPUTS];
+  // A parameter that is neither 0 nor 1 is said first.
+  if (Flags == 0 || Flags == 1) begin : gen_needs
+    localparam logic PATH_COMMANDS = Engines[card_map_pkg::ENGINE_PATH_COMMANDS];
+    localparam logic MACHINE_INPUTS = Engines[card_map_pkg::ENGINE_MACHINE_INPUTS];
 
-  if (Engines[card_map_pkg::ENGINE_ACCUMULATOR_8] && !Engines[card_map_pkg::ENGINE_ACCUMULATOR]) begin : gen_directions
-    ERROR_EightDirections_needs_Accumulator error ();
-  end
-  if (MACHINE_INPUTS && !PATH_COMMANDS) begin : gen_machine_inputs_alone
-    ERROR_MachineInputs_needs_PathCommands error ();
-  end
-  if (Engines[card_map_pkg::ENGINE_SOFT_LIMITS] && !MACHINE_INPUTS) begin : gen_soft_limits_alone
-    ERROR_SoftLimits_needs_MachineInputs error ();
-  end
-  if (Captures != 0 && !MACHINE_INPUTS) begin : gen_captures_alone
-    ERROR_Captures_needs_MachineInputs error ();
-  end
-  if (Engines[card_map_pkg::ENGINE_CAPTURE_FIFO] && Captures == 0) begin : gen_capture_fifo_alone
-    ERROR_CaptureFifo_needs_Captures error ();
-  end
-  if (Engines[card_map_pkg::ENGINE_ENABLES] && !PATH_COMMANDS) begin : gen_enables_alone
-    ERROR_Enables_needs_PathCommands error ();
+    if (Engines[card_map_pkg::ENGINE_ACCUMULATOR_8] && !Engines[card_map_pkg::ENGINE_ACCUMULATOR]) begin : gen_eight
+      ERROR_EightDirections_needs_Accumulator error ();
+    end
+    if (MACHINE_INPUTS && !PATH_COMMANDS) begin : gen_machine_inputs_alone
+      ERROR_MachineInputs_needs_PathCommands error ();
+    end
+    if (Engines[card_map_pkg::ENGINE_SOFT_LIMITS] && !MACHINE_INPUTS) begin : gen_soft_limits_alone
+      ERROR_SoftLimits_needs_MachineInputs error ();
+    end
+    if (Captures != 0 && !MACHINE_INPUTS) begin : gen_captures_alone
+      ERROR_Captures_needs_MachineInputs error ();
+    end
+    if (Engines[card_map_pkg::ENGINE_CAPTURE_FIFO] && Captures == 0) begin : gen_capture_fifo_alone
+      ERROR_CaptureFifo_needs_Captures error ();
+    end
+    if (Engines[card_map_pkg::ENGINE_ENABLES] && !PATH_COMMANDS) begin : gen_enables_alone
+      ERROR_Enables_needs_PathCommands error ();
+    end
   end
 endmodule
 `default_nettype wire
