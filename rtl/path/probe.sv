@@ -3,7 +3,9 @@
 // PROBE waits until no path has run for 8 clocks: the last step of the path before it is out. An input that is tripped
 // then stops the card at once, since nothing moves: nothing behind the PROBE begins. Else the next commands run, and an
 // edge (an input at the level that trips) requests the snapshot in its clock, brings the time base to rest, and ends
-// what runs. PROBE_END then stands until the host has seen the edge and cleared it.
+// what runs. PROBE_END then stands until the host has seen the edge and cleared it. A PROBE that is taken in the clock
+// of the edge of the one before is dropped with what follows it: the way from the input to the queues would be the
+// card's longest.
 //
 // With FirstTouch the snapshot is that of the first touch, which the input's filter has still to confirm: the armed input's
 // first raw change since the PROBE, or since it was quiet (capture_unit). A touch that is withdrawn leaves a snapshot that
@@ -43,7 +45,7 @@ module probe #(
   logic [ 5:0] condition_q;
   logic [ 2:0] settle_q;
   logic        armed_q;
-  logic        look;  // the PROBE is over: is its input tripped already?
+  logic        look;  // the PROBE is carried out: is its input tripped already?
   logic        edge_now;
   logic        trips;
   logic        touch;
@@ -59,8 +61,8 @@ module probe #(
   assign word = load_bus_pkg::word(load_i);
   assign met_o = level_of(decoded_q[4:0]) == decoded_q[5];
   assign edge_now = armed_q && level_of(condition_q[4:0]) == condition_q[5] && !stopping_i && !cut_i;
-  assign look = waits_i && settle_q == 3'd7 && !edge_now && !hold_o && !drop_o && !stopping_i && !cut_i;
-  assign taken_o = look;
+  assign taken_o = waits_i && settle_q == 3'd7 && !hold_o && !drop_o && !stopping_i && !cut_i;
+  assign look = taken_o && !edge_now;
   assign trips = edge_now || (look && met_o);
   assign snapshot_o = touch || (trips && !touched_q);
   assign stays_o = edge_now || hold_o || (drop_o && probed_o);

@@ -48,7 +48,7 @@ class Probe {
   void clock(const Inputs& in) {
     state_.touched = touched_after(in);
     const bool edge = edges(in);
-    const bool take = takes(in);
+    const bool take = takes(in) && !edge;
     const bool tripped_already = take && met(in.levels);
     const bool over = in.ends && !state_.probed;
     state_.halt = false;
@@ -74,9 +74,9 @@ class Probe {
 
   // The condition decoded last is met.
   bool met(std::uint32_t levels) const { return meets(state_.condition, levels); }
-  // The PROBE is taken in this clock.
+  // The PROBE is taken in this clock. With an edge of the one before it is dropped.
   bool takes(const Inputs& in) const {
-    const bool free = state_.mode == Mode::Off || (state_.mode == Mode::Armed && !edges(in));
+    const bool free = state_.mode == Mode::Off || state_.mode == Mode::Armed;
     return in.waits && state_.waited + 1 >= kSettle && free && !in.stopping && !in.cut;
   }
   // A snapshot is wanted.
