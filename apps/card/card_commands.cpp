@@ -15,12 +15,14 @@
 #include "common/card_choice.hpp"
 #include "common/engine_options.hpp"
 #include "common/errors.hpp"
+#include "common/machine_choice.hpp"
 #include "common/standard_streams.hpp"
 #include "common/terminal.hpp"
 #include "trammel/card_map.hpp"
 #include "trammel/driver/errors.hpp"
 #include "trammel/driver/low_level/card_parts.hpp"
 #include "trammel/run/assigned_inputs.hpp"
+#include "trammel/run/configure.hpp"
 #include "trammel/sim/engines.hpp"
 
 namespace trammel::app {
@@ -37,6 +39,8 @@ struct LookOptions {
   unsigned exchanges = 200;  // selftest
   bool inputs = false;       // selftest: switches are waited for,
   double switch_time = 30;   // each so many seconds
+  MachineChoice machine;     // drives
+  std::string order;
 };
 
 // The card of --card, or a simulated one, which is made for nothing else.
@@ -95,13 +99,14 @@ std::string state_of(const driver::Snapshot& now) {
   return text;
 }
 
+bool switches_drives(const Card& card) { return map::has_engine(card.identification().engines, map::engine::kEnables); }
+
 // Where the card switches drives.
-void add_drives(Card& card, const driver::Status& now, std::vector<std::string>& lines) {
-  if (!map::has_engine(card.identification().engines, map::engine::kEnables)) return;
+std::string drives_text(Card& card, const driver::Status& now) {
   const bool any = card.parts().registers.read(reg::kEnableAxes) != 0;
-  lines.push_back(fmt::format("drives   {}{}{}", now.enabled ? "enabled" : "disabled",
-                              now.enable_waits ? ", motion waits for them" : "",
-                              any ? "" : " (of no axis: motion waits for none)"));
+  return fmt::format("drives   {}{}{}", now.enabled ? "enabled" : "disabled",
+                     now.enable_waits ? ", motion waits for them" : "",
+                     any ? "" : " (of no axis: motion waits for none)");
 }
 
 // A line for each input that has a role.
@@ -127,7 +132,7 @@ std::vector<std::string> table(Card& card, const std::vector<run::AssignedInput>
   std::vector<std::string> lines;
   lines.push_back(fmt::format("time     {:.3f} s", static_cast<double>(now.time) / id.clock_hz));
   lines.push_back(fmt::format("state    {}", state_of(now)));
-  add_drives(card, now.status, lines);
+  if (switches_drives(card)) lines.push_back(drives_text(card, now.status));
   lines.push_back(
       fmt::format("rate     {:.0f} feed ticks/s, time base at {:.1f} %", rate, 100.0 * now.ratio / Card::kFullRatio));
   lines.push_back(
@@ -304,10 +309,57 @@ void selftest(Card& card, transport::Connection* connection, const LookOptions& 
   to_standard_output(fmt::format("{} checks passed\n", checks.made()));
 }
 
+// --- drives ---
+
+// The order ENABLE.on: it holds until it is taken back, also when no program runs.
+void order_drives(Card& card, const machine::Machine& machine, const std::string& order) {
+  if (!switches_drives(card)) throw UsageError("drives: this card has no outputs for drives (engine enables)");
+  if (card.parts().registers.read(reg::kEnableAxes) == 0) {
+    throw UsageError(
+        "drives: the card enables drives of no axis: name an output `enable` in [outputs] of the machine file, and "
+        "move "
+        "with it once, so that the card knows it");
+  }
+  if (order == "on" && card.read_faults() != 0) {
+    throw UsageError("drives: " + card.read_fault_text() + ": `trammel recover` says what to do first");
+  }
+  if (order == "off" && before.busy) throw UsageError("drives: the card moves, or holds in a motion");
+  card.enable(order == "on");
+}
+
+void drives(const LookOptions& options) {
+  const auto url = options.card.url();
+  if (!url) throw UsageError("drives: needs --card: a simulated card of this process has no drives yet");
+  const machine::Machine machine = options.machine.load();
+  const Purpose purpose = options.order.empty() ? Purpose::kRead : Purpose::kMove;
+  with_card(*url, purpose, [&](Card& card, transport::Connection&) {
+    if (!options.order.empty()) order_drives(card, machine, options.order);
+    if (!switches_drives(card)) return to_standard_output("this card switches no drives\n");
+    const std::uint32_t enable = card.parts().registers.read(reg::kEnable);
+    to_standard_output(drives_text(card, card.read_status()) + "\n");
+    const bool on = (enable & map::field::kEnableOn) != 0;
+    const bool manual = (enable & map::field::kEnableManual) != 0;
+    to_standard_output(fmt::format("order    {}\n", on       ? "on: they stay enabled"
+                                                    : manual ? "off: motion waits for `trammel drives on`"
+                                                             : "off: motion enables them"));
+  });
+}
+
+void add_drives_command(CLI::App& app, const std::shared_ptr<LookOptions>& options) {
+  CLI::App* command = app.add_subcommand("drives", "enable the drives by order, end that order, or show them");
+  options->machine.add_to(*command);
+  options->card.add_to(*command);
+  command->add_option("order", options->order, "on or off; without it the state is shown")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->type_name("ORDER");
+  command->callback([options] { drives(*options); });
+}
+
 }  // namespace
 
 void add_card_commands(CLI::App& app) {
   auto options = std::make_shared<LookOptions>();
+  add_drives_command(app, options);
   CLI::App* dump_command = app.add_subcommand("dump", "all registers of a card by name");
   options->card.add_to(*dump_command);
   dump_command->callback(

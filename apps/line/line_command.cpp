@@ -332,6 +332,7 @@ CardResult make_line_on(driver::Card& card, const LineArguments& options) {
   run::keep_place(card, place, run::kScalesInPulses, moved_axes);
   if (!options.no_ramp) run::set_keeps_place(card, in_pulses(machine, pulses.size()));
   run::guard_homed_axes(card, machine, run::read_card_place(card));
+  run::configure_outputs(card, machine);
   const driver::Snapshot& before = place.now;
   const Made made = watched_line(card, options, before);
   CardResult result;

@@ -67,6 +67,13 @@ void bind_values(nb::module_& m) {
       .def_ro("at", &driver::Capture::at, "Snapshot of the edge: its time and the positions.")
       .def_ro("active", &driver::Capture::active, "The level that it led to.")
       .def_ro("overrun", &driver::Capture::overrun, "Further edges were lost behind it.");
+  nb::class_<driver::CaptureQueue>(m, "CaptureQueue", "What the card's queue of captures has.")
+      .def_ro("captures", &driver::CaptureQueue::captures, "In it, 0 to 16.")
+      .def_ro("lost", &driver::CaptureQueue::lost, "Since reset, because it was full; the count wraps at 2^16.");
+  nb::class_<driver::QueuedCapture>(m, "QueuedCapture", "An edge of an input, from the queue.")
+      .def_ro("at", &driver::QueuedCapture::at, "Snapshot of the edge: its time and the positions.")
+      .def_ro("unit", &driver::QueuedCapture::unit, "The unit that took it.")
+      .def_ro("active", &driver::QueuedCapture::active, "The level that it led to.");
   nb::class_<driver::SoftRange>(m, "SoftRange", "Positions that an axis may go to, pulses as the card counts them.")
       .def(nb::init<std::int32_t, std::int32_t>(), "minus"_a, "plus"_a, "From minus to plus, both included.")
       .def_ro("minus", &driver::SoftRange::minus, "The lowest position.")
@@ -77,14 +84,16 @@ void bind_captures(nb::class_<PythonCard>& card) {
   card.def_prop_ro(
           "captures_present", [](const PythonCard& of) { return of.card.captures_present(); },
           "How many capture units the card has, 0 to 4.")
-      .def(
-          "select_capture",
-          waiting([](PythonCard& of, unsigned unit, unsigned input, bool to_active, bool to_inactive, bool continuous) {
-            of.card.select_capture(unit, {input, to_active, to_inactive, continuous});
-          }),
-          "unit"_a, "input"_a, nb::kw_only(), "to_active"_a = true, "to_inactive"_a = false, "continuous"_a = false,
-          "The unit watches an input for edges to its active level, to its inactive level, or both, however long its "
-          "filter is, and drops what it had. continuous: it goes on after each capture; else it takes one.")
+      .def("select_capture",
+           waiting([](PythonCard& of, unsigned unit, unsigned input, bool to_active, bool to_inactive, bool continuous,
+                      bool queue) {
+             of.card.select_capture(unit, {input, to_active, to_inactive, continuous, queue});
+           }),
+           "unit"_a, "input"_a, nb::kw_only(), "to_active"_a = true, "to_inactive"_a = false, "continuous"_a = false,
+           "queue"_a = false,
+           "The unit watches an input for edges to its active level, to its inactive level, or both, however long its "
+           "filter is, and drops what it had. continuous: it goes on after each capture; else it takes one. queue: "
+           "captures go into the card's queue at once.")
       .def("stop_capture", waiting([](PythonCard& of, unsigned unit) { of.card.stop_capture(unit); }), "unit"_a,
            "The unit watches for nothing.")
       .def("read_captures", waiting([](PythonCard& of) {
@@ -97,7 +106,16 @@ void bind_captures(nb::class_<PythonCard>& card) {
              return of.card.wait_for_capture(unit, nanoseconds(ns));
            }),
            "unit"_a, "timeout_ns"_a,
-           "The same, as soon as there is one. Raises TimeoutError after timeout_ns of card time.");
+           "The same, as soon as there is one. Raises TimeoutError after timeout_ns of card time.")
+      .def("clear_captures", waiting([](PythonCard& of, unsigned units) { of.card.clear_captures(units); }), "units"_a,
+           "Overruns begin anew, of the units of the mask, with what stands with them.");
+  card.def_prop_ro(
+          "has_capture_queue", [](const PythonCard& of) { return of.card.has_capture_queue(); },
+          "Whether the card has a queue of captures.")
+      .def("read_capture_queue", waiting([](PythonCard& of) { return of.card.read_capture_queue(); }),
+           "How many captures are in the queue, and how many were lost since it was full.")
+      .def("take_queued_captures", waiting([](PythonCard& of) { return of.card.take_queued_captures(); }),
+           "The captures of the queue, the oldest first, which leave it.");
 }
 
 void bind_soft_limits(nb::class_<PythonCard>& card) {

@@ -34,6 +34,7 @@ CaptureStates states_of(std::uint32_t word) {
   return states;
 }
 
+constexpr unsigned kMostQueued = 16;  // at one call: callers have room for so many
 unsigned captures_in(std::uint32_t queue) { return queue & field::kCaptureQueueCaptures; }
 
 }  // namespace
@@ -107,7 +108,7 @@ std::vector<QueuedCapture> Card::take_queued_captures() {
   std::vector<QueuedCapture> result;
   std::uint32_t queue = parts_->registers.read(reg::kCaptureQueue);
   Registers::check_read({reg::kCaptureQueue, queue});
-  for (unsigned left = captures_in(queue); left != 0; --left) {
+  for (unsigned left = std::min(captures_in(queue), kMostQueued); left != 0; --left) {
     QueuedCapture capture;
     capture.at = parts_->snapshots.capture(card_map::Area::CaptureHead);
     capture.unit = field_bits(queue, field::kCaptureQueueUnitNumber, field::kCaptureQueueUnitNumberShift);

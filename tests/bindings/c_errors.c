@@ -234,6 +234,8 @@ static void null_cards(void) {
   trammel_capture_select select;
   trammel_capture_states captures;
   trammel_capture capture;
+  trammel_capture_queue capture_queue;
+  trammel_queued_capture queued[TRAMMEL_CAPTURE_QUEUE];
   trammel_soft_range range[TRAMMEL_MAX_AXES];
   trammel_output_roles outputs;
   trammel_enable_sequence sequence;
@@ -291,6 +293,10 @@ static void null_cards(void) {
   NO_CARD(trammel_read_captures(NULL, &captures));
   NO_CARD(trammel_take_capture(NULL, 0, &capture, &flag));
   NO_CARD(trammel_wait_for_capture(NULL, 0, 1, &capture));
+  NO_CARD(trammel_clear_captures(NULL, 1));
+  NO_CARD(trammel_has_capture_queue(NULL, &flag));
+  NO_CARD(trammel_read_capture_queue(NULL, &capture_queue));
+  NO_CARD(trammel_take_queued_captures(NULL, queued, &number));
   NO_CARD(trammel_has_soft_limits(NULL, &flag));
   NO_CARD(trammel_set_soft_limits(NULL, range, 1));
   NO_CARD(trammel_read_soft_limits(NULL, range));

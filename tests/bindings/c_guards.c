@@ -48,7 +48,7 @@ static trammel_capture_state unit_of(trammel_card* card, unsigned unit) {
 // A card whose input has a filter of 640 clocks, and a unit that watches it.
 static trammel_card* card_that_captures(unsigned unit, bool both, bool continuous) {
   trammel_card* card = simulated_card();
-  trammel_capture_select select = {TOUCH, true, false, false};
+  trammel_capture_select select = {TOUCH, true, false, false, false};
   unsigned units = 0;
   DONE(trammel_count_captures(card, &units));
   CHECK(units == TRAMMEL_MAX_CAPTURES);
@@ -117,9 +117,43 @@ static void waiting_for_edges(void) {
   trammel_close(card);
 }
 
+// More edges than the queue holds: the oldest stay.
+static void a_queue_of_edges(void) {
+  trammel_card* card = card_that_captures(0, true, true);
+  trammel_capture_select select = {TOUCH, true, true, true, true};
+  trammel_capture_queue queue;
+  trammel_queued_capture captures[TRAMMEL_CAPTURE_QUEUE];
+  unsigned count = 0;
+  unsigned n;
+  bool has = false;
+  DONE(trammel_has_capture_queue(card, &has));
+  CHECK(has);
+  DONE(trammel_select_capture(card, 3, &select));
+  for (n = 0; n < TRAMMEL_CAPTURE_QUEUE + 2; ++n) touch(card, n % 2 == 0, 2000);
+  memset(&queue, 0xFF, sizeof queue);
+  DONE(trammel_read_capture_queue(card, &queue));
+  CHECK(queue.captures == TRAMMEL_CAPTURE_QUEUE && queue.lost == 2);
+  CHECK(unit_of(card, 3).overrun);
+  DONE(trammel_clear_captures(card, 1U << 3));
+  CHECK(!unit_of(card, 3).overrun);
+  DONE(trammel_take_queued_captures(card, captures, &count));
+  CHECK(count == TRAMMEL_CAPTURE_QUEUE);
+  for (n = 0; n < count; ++n) {
+    CHECK(captures[n].unit == 3 && captures[n].active == (n % 2 == 0));
+    CHECK(n == 0 || captures[n].at.time > captures[n - 1].at.time + 1900);
+  }
+  DONE(trammel_take_queued_captures(card, captures, &count));
+  CHECK(count == 0);
+  FAILS(trammel_read_capture_queue(card, NULL), TRAMMEL_ARGUMENT, "queue is null");
+  FAILS(trammel_take_queued_captures(card, NULL, &count), TRAMMEL_ARGUMENT, "captures is null");
+  FAILS(trammel_take_queued_captures(card, captures, NULL), TRAMMEL_ARGUMENT, "count is null");
+  FAILS(trammel_has_capture_queue(card, NULL), TRAMMEL_ARGUMENT, "has is null");
+  trammel_close(card);
+}
+
 static void bad_captures(void) {
   trammel_card* card = simulated_card();
-  trammel_capture_select select = {16, true, false, false};
+  trammel_capture_select select = {16, true, false, false, false};
   trammel_capture capture;
   bool taken;
   FAILS(trammel_select_capture(card, 0, &select), TRAMMEL_ARGUMENT, "the card has 16 inputs");
@@ -337,6 +371,7 @@ static int32_t pressed_at_100(bool ramp) {
 void test_guards(void) {
   an_edge_in_motion();
   waiting_for_edges();
+  a_queue_of_edges();
   bad_captures();
   soft_limits();
   CHECK(beyond(false) <= 2);

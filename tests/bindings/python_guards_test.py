@@ -64,6 +64,23 @@ class Captures(unittest.TestCase):
         self.set(False, 2000)
         self.assertFalse(card.read_captures().units[0].valid)
 
+    def test_a_queue_of_edges(self):
+        card = self.card
+        self.assertTrue(card.has_capture_queue)
+        card.select_capture(3, self.TOUCH, to_inactive=True, continuous=True, queue=True)
+        for n in range(18):
+            self.set(n % 2 == 0, 2000)
+        queue = card.read_capture_queue()
+        self.assertEqual((queue.captures, queue.lost), (16, 2))
+        self.assertTrue(card.read_captures().units[3].overrun)
+        card.clear_captures(1 << 3)
+        self.assertFalse(card.read_captures().units[3].overrun)
+        captures = card.take_queued_captures()
+        self.assertEqual([(c.unit, c.active) for c in captures], [(3, n % 2 == 0) for n in range(16)])
+        times = [c.at.time for c in captures]
+        self.assertTrue(all(after > before + 1900 for before, after in zip(times, times[1:])))
+        self.assertEqual(card.take_queued_captures(), [])
+
     def test_bad_arguments(self):
         card = self.card
         for call in (lambda: card.select_capture(4, 0), lambda: card.select_capture(0, 16),

@@ -31,6 +31,7 @@ extern "C" {
 
 #define TRAMMEL_MAX_AXES 8
 #define TRAMMEL_MAX_CAPTURES 4       // units of a card
+#define TRAMMEL_CAPTURE_QUEUE 16     // captures that the card's queue holds
 #define TRAMMEL_FULL_RATIO 0x10000u  // of the time base: every clock is enabled
 
 // ---- Results ----
@@ -382,6 +383,7 @@ typedef struct trammel_capture_select {
   bool to_active;    // edges to the active level, after polarity
   bool to_inactive;  //
   bool continuous;   // the unit goes on after each capture; else it takes one
+  bool queue;        // captures go into the card's queue at once; none stands with the unit
 } trammel_capture_select;
 
 typedef struct trammel_capture_state {
@@ -402,6 +404,17 @@ typedef struct trammel_capture {
   bool overrun;         // further edges were lost behind it
 } trammel_capture;
 
+typedef struct trammel_capture_queue {
+  unsigned captures;  // in it, 0 to TRAMMEL_CAPTURE_QUEUE
+  uint16_t lost;      // since reset, because it was full; counts modulo 2^16
+} trammel_capture_queue;
+
+typedef struct trammel_queued_capture {
+  trammel_snapshot at;  // of the edge
+  unsigned unit;
+  bool active;  // the level that the edge led to
+} trammel_queued_capture;
+
 // 0 on a card without captures.
 TRAMMEL_API trammel_result trammel_count_captures(const trammel_card* card, unsigned* units);
 // The unit begins anew, and drops what it had. An edge counts after its input has been quiet, at the level before it,
@@ -417,6 +430,18 @@ TRAMMEL_API trammel_result trammel_take_capture(trammel_card* card, unsigned uni
 // trammel_set_interrupt(): the unit goes on watching either way. The trammel_request_... functions do not end it.
 TRAMMEL_API trammel_result trammel_wait_for_capture(trammel_card* card, unsigned unit, int64_t timeout_ns,
                                                     trammel_capture* capture);
+// The overruns that trammel_read_captures() shows begin anew, of the units of the mask, with what stands with them.
+TRAMMEL_API trammel_result trammel_clear_captures(trammel_card* card, unsigned units);
+
+// The queue of captures, of units that were selected with `queue`, in the order in which their filters passed. What
+// does not fit is lost and counted; trammel_read_captures() shows the overrun of the unit. TRAMMEL_ARGUMENT on a card
+// without a queue, but for the first of these functions.
+TRAMMEL_API trammel_result trammel_has_capture_queue(const trammel_card* card, bool* has);
+TRAMMEL_API trammel_result trammel_read_capture_queue(trammel_card* card, trammel_capture_queue* queue);
+// Those that were in it at the call, the oldest first, which leave it. `captures` has room for TRAMMEL_CAPTURE_QUEUE of
+// them, `count` says how many there were. One program at a time.
+TRAMMEL_API trammel_result trammel_take_queued_captures(trammel_card* card, trammel_queued_capture* captures,
+                                                        unsigned* count);
 
 // ---- Soft limits in the card ----
 //

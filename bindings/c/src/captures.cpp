@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <vector>
 
 #include "handle.hpp"
 
@@ -39,7 +40,7 @@ trammel_result trammel_select_capture(trammel_card* card, unsigned unit, const t
   return guarded([=] {
     driver::Card& of = card_of(card);
     const trammel_capture_select& is = required(select, "select");
-    of.select_capture(unit, {is.input, is.to_active, is.to_inactive, is.continuous});
+    of.select_capture(unit, {is.input, is.to_active, is.to_inactive, is.continuous, is.queue});
   });
 }
 
@@ -72,5 +73,35 @@ trammel_result trammel_wait_for_capture(trammel_card* card, unsigned unit, int64
     driver::Card& of = card_of(card);
     trammel_capture& out = required(capture, "capture");
     out = c_capture(of.wait_for_capture(unit, std::chrono::nanoseconds(timeout_ns)));
+  });
+}
+
+trammel_result trammel_clear_captures(trammel_card* card, unsigned units) {
+  return guarded([=] { card_of(card).clear_captures(units); });
+}
+
+trammel_result trammel_has_capture_queue(const trammel_card* card, bool* has) {
+  return guarded([=] { required(has, "has") = required(card, "card").card.has_capture_queue(); });
+}
+
+trammel_result trammel_read_capture_queue(trammel_card* card, trammel_capture_queue* queue) {
+  return guarded([=] {
+    driver::Card& of = card_of(card);
+    trammel_capture_queue& out = required(queue, "queue");
+    const driver::CaptureQueue is = of.read_capture_queue();
+    out = {is.captures, is.lost};
+  });
+}
+
+trammel_result trammel_take_queued_captures(trammel_card* card, trammel_queued_capture* captures, unsigned* count) {
+  return guarded([=] {
+    driver::Card& of = card_of(card);
+    trammel_queued_capture* const out = &required(captures, "captures");
+    unsigned& number = required(count, "count");
+    const std::vector<driver::QueuedCapture> taken = of.take_queued_captures();
+    std::transform(taken.begin(), taken.end(), out, [](const driver::QueuedCapture& capture) {
+      return trammel_queued_capture{c_snapshot(capture.at), capture.unit, capture.active};
+    });
+    number = static_cast<unsigned>(taken.size());
   });
 }

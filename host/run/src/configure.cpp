@@ -132,7 +132,8 @@ std::uint8_t motors_with_drives(const machine::Machine& machine) {
   return static_cast<std::uint8_t>(motors);
 }
 
-// What the card does with outputs by itself. Nothing is written for a machine without any.
+}  // namespace
+
 void configure_outputs(driver::Card& card, const machine::Machine& machine) {
   const machine::MachineOutputs& outputs = machine.outputs;
   if (outputs.safe_at_rest() != 0) card.set_output_safe(outputs.on_at_rest, outputs.safe_at_rest());
@@ -166,8 +167,6 @@ void configure_outputs(driver::Card& card, const machine::Machine& machine) {
   sequence.disable_causes = outputs.disable_on;
   card.set_enable_sequence(sequence);
 }
-
-}  // namespace
 
 void configure(driver::Card& card, const machine::Machine& machine) {
   check_outputs(card, machine.outputs.all());

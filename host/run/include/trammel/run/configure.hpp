@@ -25,6 +25,9 @@ driver::InputStops input_stops(const machine::Machine& machine);
 // Roles, filters, polarity and stops of the machine's inputs, as configure() writes them. Nothing where none has a
 // role.
 void configure_inputs(driver::Card& card, const machine::Machine& machine);
+// Safe levels, roles of outputs, the drives' sequence and the emergency stop's reaction, as configure() writes them;
+// what the machine file does not name stays as it is. Throws driver::ArgumentError for what the card lacks.
+void configure_outputs(driver::Card& card, const machine::Machine& machine);
 
 // For driver::WatchdogScope; 0: the machine has none.
 std::chrono::nanoseconds watchdog_time(const machine::MotionSettings& motion);

@@ -1,0 +1,58 @@
+// `trammel drives`: the order that motion waits for with enable_manual, and its end; `trammel line` writes [outputs],
+// too.
+#include <gtest/gtest.h>
+
+#include "command.hpp"
+#include "server.hpp"
+
+namespace trammel::test {
+namespace {
+
+class Drives : public testing::Test {
+ protected:
+  std::string state(const Server& server) const { return command_.run("drives --card '" + server.url() + "'").out; }
+  Outcome order(const Server& server, const std::string& arguments) const {
+    return command_.run("drives --card " + server.moving() + " " + arguments);
+  }
+
+  Command command_;
+  // Of the default machine, whose drives wait for an order.
+  std::string manual_ = command_.write("manual.toml", R"(
+[outputs]
+enable = 2
+enable_manual = true
+)");
+  std::string plain_ = command_.write("plain.toml", "[outputs]\nenable = 2\n");
+};
+
+TEST_F(Drives, AreEnabledByOrderAndStaySo) {
+  const Server server(command_, "--fast");
+  EXPECT_EQ(state(server),
+            "drives   disabled (of no axis: motion waits for none)\norder    off: motion enables them\n");
+  EXPECT_EQ(order(server, "on --machine " + manual_).out, "drives   enabled\norder    on: they stay enabled\n");
+  const Outcome moved = command_.run("jog X1 --machine " + manual_ + " --card " + server.moving());
+  EXPECT_EQ(moved.status, 0) << moved.err;
+  EXPECT_EQ(state(server), "drives   enabled\norder    on: they stay enabled\n");
+  EXPECT_EQ(order(server, "off --machine " + manual_).status, 0);
+  EXPECT_NE(state(server).find("order    off: motion waits for `trammel drives on`\n"), std::string::npos);
+}
+
+TEST_F(Drives, AreRefusedWhatTheyCannotDo) {
+  const Server server(command_, "--fast");
+  const Outcome none = order(server, "on");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("name an output `enable` in [outputs]"), std::string::npos) << none.err;
+  EXPECT_EQ(order(server, "perhaps").status, 2);
+  EXPECT_EQ(command_.run("drives on").status, 2) << "no card";
+  EXPECT_EQ(command_.run("drives on --machine " + plain_ + " --card '" + server.url() + "'").status, 2) << "no token";
+}
+
+TEST_F(Drives, AreThoseOfALineToo) {
+  const Server server(command_, "--fast");
+  const Outcome line = command_.run("line --to 100 --machine " + plain_ + " --card " + server.moving());
+  EXPECT_EQ(line.status, 0) << line.err;
+  EXPECT_EQ(state(server), "drives   enabled\norder    off: motion enables them\n");
+}
+
+}  // namespace
+}  // namespace trammel::test
