@@ -314,11 +314,12 @@ void selftest(Card& card, transport::Connection* connection, const LookOptions& 
 // The order ENABLE.on: it holds until it is taken back, also when no program runs.
 void order_drives(Card& card, const machine::Machine& machine, const std::string& order) {
   if (!switches_drives(card)) throw UsageError("drives: this card has no outputs for drives (engine enables)");
+  const driver::Status before = card.read_status();
+  if (!before.busy) run::configure_outputs(card, machine);
   if (card.parts().registers.read(reg::kEnableAxes) == 0) {
     throw UsageError(
-        "drives: the card enables drives of no axis: name an output `enable` in [outputs] of the machine file, and "
-        "move "
-        "with it once, so that the card knows it");
+        "drives: the card enables drives of no axis: name an output `enable` in [outputs] of the machine file "
+        "(--machine)");
   }
   if (order == "on" && card.read_faults() != 0) {
     throw UsageError("drives: " + card.read_fault_text() + ": `trammel recover` says what to do first");

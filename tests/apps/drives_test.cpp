@@ -16,24 +16,20 @@ class Drives : public testing::Test {
   }
 
   Command command_;
-  // Of the default machine, whose drives wait for an order.
-  std::string manual_ = command_.write("manual.toml", R"(
-[outputs]
-enable = 2
-enable_manual = true
-)");
-  std::string plain_ = command_.write("plain.toml", "[outputs]\nenable = 2\n");
+  // Of the default machine, whose drives wait for an order, or for none.
+  static constexpr const char* kManual = " --set outputs.enable=2 --set outputs.enable_manual=true ";
+  static constexpr const char* kPlain = " --set outputs.enable=2 ";
 };
 
 TEST_F(Drives, AreEnabledByOrderAndStaySo) {
   const Server server(command_, "--fast");
   EXPECT_EQ(state(server),
             "drives   disabled (of no axis: motion waits for none)\norder    off: motion enables them\n");
-  EXPECT_EQ(order(server, "on --machine " + manual_).out, "drives   enabled\norder    on: they stay enabled\n");
-  const Outcome moved = command_.run("jog X1 --machine " + manual_ + " --card " + server.moving());
+  EXPECT_EQ(order(server, std::string("on") + kManual).out, "drives   enabled\norder    on: they stay enabled\n");
+  const Outcome moved = command_.run(std::string("jog X1 --card ") + server.moving() + kManual);
   EXPECT_EQ(moved.status, 0) << moved.err;
   EXPECT_EQ(state(server), "drives   enabled\norder    on: they stay enabled\n");
-  EXPECT_EQ(order(server, "off --machine " + manual_).status, 0);
+  EXPECT_EQ(order(server, std::string("off") + kManual).status, 0);
   EXPECT_NE(state(server).find("order    off: motion waits for `trammel drives on`\n"), std::string::npos);
 }
 
@@ -44,12 +40,12 @@ TEST_F(Drives, AreRefusedWhatTheyCannotDo) {
   EXPECT_NE(none.err.find("name an output `enable` in [outputs]"), std::string::npos) << none.err;
   EXPECT_EQ(order(server, "perhaps").status, 2);
   EXPECT_EQ(command_.run("drives on").status, 2) << "no card";
-  EXPECT_EQ(command_.run("drives on --machine " + plain_ + " --card '" + server.url() + "'").status, 2) << "no token";
+  EXPECT_EQ(command_.run("drives on --card '" + server.url() + "'" + kPlain).status, 2) << "no token";
 }
 
 TEST_F(Drives, AreThoseOfALineToo) {
   const Server server(command_, "--fast");
-  const Outcome line = command_.run("line --to 100 --machine " + plain_ + " --card " + server.moving());
+  const Outcome line = command_.run("line --to 100 --card " + server.moving() + kPlain);
   EXPECT_EQ(line.status, 0) << line.err;
   EXPECT_EQ(state(server), "drives   enabled\norder    off: motion enables them\n");
 }
