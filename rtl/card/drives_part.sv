@@ -17,7 +17,7 @@ module drives_part #(
     output logic released_o,  // the brake is
     output logic healthy_o,
     output logic pump_o,  // the charge pump's square wave
-    output logic wait_o,  // no tick is taken (combinational)
+    output logic wait_o,  // no tick is taken
     output logic waiting_o,  // motion waits for the enable (combinational)
     output logic [Axes-1:0] disabled_o  // events: the axis loses its place (combinational)
 );

@@ -25,7 +25,7 @@ module drive_enable #(
     input wire logic [31:0] fault_i,
     output logic enabled_o,
     output logic released_o,  // the brake is
-    output logic wait_o,  // no tick is taken (combinational)
+    output logic wait_o,  // no tick is taken
     output logic waiting_o,  // motion waits for it (combinational)
     output logic [Axes-1:0] disabled_o  // events: the axis loses its place (combinational)
 );
@@ -45,6 +45,7 @@ module drive_enable #(
   state_e                 state_d;
   logic   [     Axes-1:0] named_q;
   logic   [     Axes-1:0] axes_q;  // changes at rest
+  logic   [     Axes-1:0] axes_d;
   logic                   on_q;
   logic                   manual_q;
   logic   [         15:0] enable_delay_q;
@@ -70,6 +71,7 @@ module drive_enable #(
 
   assign data = setting_bus_pkg::data(setting_i);
   assign rests = !moves_i && !busy_i;
+  assign axes_d = rests ? named_q : axes_q;
   assign used = axes_q != '0;
   assign barred = emergency_i || (fault_i[Faults-1:0] & causes_q) != '0;
   assign wanted = used && !barred && (on_q || (moves_i && !manual_q));
@@ -125,7 +127,9 @@ module drive_enable #(
     left_q <= load;
     enabled_o <= state_d != OFF;
     released_o <= state_d == SETTLE || state_d == READY || state_d == LAST;
-    if (rests) axes_q <= named_q;
+    axes_q <= axes_d;
+    // From here to the queues is one of the card's longest ways: it begins at a flip-flop.
+    wait_o <= axes_d != '0 && state_d != READY;
     if (setting_i[setting_bus_pkg::SET]) begin
       case (setting_bus_pkg::word(
           setting_i
@@ -147,6 +151,7 @@ module drive_enable #(
       released_o <= 1'b0;
       named_q <= '0;
       axes_q <= '0;
+      wait_o <= 1'b0;
       {manual_q, on_q} <= 2'b00;
       enable_delay_q <= '0;
       release_delay_q <= '0;
@@ -157,7 +162,6 @@ module drive_enable #(
     end
   end
 
-  assign wait_o = used && state_q != READY;
   assign waiting_o = wait_o && moves_i;
   assign disabled_o = state_q != OFF && state_d == OFF ? axes_q : '0;
 
