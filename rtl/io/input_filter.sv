@@ -23,6 +23,7 @@ module input_filter #(
     output logic [Inputs-1:0] quiet_o
 );
   logic [ 5:0] clocks_q;  // of the scan
+  logic [ 5:0] late_q;  // two clocks late
   logic        clearing_q;
   logic [15:0] length_read_q;
   logic [15:0] count_read_q;
@@ -42,7 +43,7 @@ module input_filter #(
 
   assign decides = !clocks_q[0];
   assign reads   = clocks_q[5:1];
-  assign scanned = reads - 5'd1;
+  assign scanned = late_q[5:1];
 
   logic [31:0] agreed_q;  // likewise
   logic [31:0] quiet_q;
@@ -64,11 +65,13 @@ module input_filter #(
 
   always_ff @(posedge clk_i) begin
     clocks_q <= clocks_q + 6'd1;
+    late_q   <= late_q + 6'd1;
     if (clocks_q == '1) clearing_q <= 1'b0;
     levels_o   <= levels_o ^ changes[Inputs-1:0];
     differed_q <= differs & ~changes & (differed_q | (decides ? 32'd1 << scanned : 32'd0));
     if (rst_i) begin
       clocks_q   <= '0;
+      late_q     <= 6'd62;
       clearing_q <= 1'b1;
       levels_o   <= '0;
       differed_q <= '0;

@@ -9,7 +9,8 @@
 //
 // With FirstTouch the snapshot is that of the first touch, which the input's filter has still to confirm: the armed input's
 // first raw change since the PROBE, or since it was quiet (capture_unit). A touch that is withdrawn leaves a snapshot that
-// nothing counts. An edge without a touch, or of an input without a filter, takes its snapshot in its own clock.
+// nothing counts. An edge without a touch, and an input that is tripped already, ask a clock later: from a filtered level
+// to the snapshot would be one of the card's longest ways.
 //
 // No edge is taken while a fault's ramp is under way, whose snapshot is being written, nor in the clock of a cut.
 `default_nettype none
@@ -32,7 +33,7 @@ module probe #(
     output logic met_o,  // the condition decoded last is met (combinational)
     output logic taken_o,  // the PROBE is taken now (combinational)
     output logic stays_o,  // PROBE_END must wait (combinational)
-    output logic snapshot_o,  // event: a snapshot is wanted (combinational)
+    output logic snapshot_o,  // event: a snapshot is wanted
     output logic hold_o,  // the time base slows down to rest
     output logic halt_o,  // event: what runs ends here
     output logic drop_o,  // from halt_o to PROBE_END commands are not carried out
@@ -48,8 +49,6 @@ module probe #(
   logic        look;  // the PROBE is carried out: is its input tripped already?
   logic        edge_now;
   logic        trips;
-  logic        touch;
-  logic        touched_q;  // its snapshot is taken
 
   logic [15:0] word;
 
@@ -64,7 +63,6 @@ module probe #(
   assign taken_o = waits_i && settle_q == 3'd7 && !hold_o && !drop_o && !stopping_i && !cut_i;
   assign look = taken_o && !edge_now;
   assign trips = edge_now || (look && met_o);
-  assign snapshot_o = touch || (trips && !touched_q);
   assign stays_o = edge_now || hold_o || (drop_o && probed_o);
   assign busy_o = armed_q || hold_o || drop_o;
 
@@ -96,19 +94,26 @@ module probe #(
 
   if (FirstTouch != 0) begin : gen_first_touch
     logic touched;  // now
-    logic quiet;  // again: not as the filter passes
+    logic before_q;  // a clock before
+    logic touched_q;  // its snapshot is taken
+    logic quiet;  // again: not as the filter passes, before which the input has stood
+    logic touch;
+    logic late_q;
 
-    assign quiet   = quiet_i[condition_q[4:0]] && !edge_now;
+    assign quiet = quiet_i[condition_q[4:0]] && !before_q;
     assign touched = raw_i[condition_q[4:0]] == condition_q[5];
-    assign touch   = armed_q && touched && (!touched_q || quiet) && !stopping_i && !cut_i;
+    assign touch = armed_q && touched && (!touched_q || quiet) && !stopping_i && !cut_i;
+    assign snapshot_o = touch || late_q;
 
     always_ff @(posedge clk_i) begin
+      before_q  <= armed_q && touched;
       touched_q <= armed_q && !edge_now && !look && (touch || (touched_q && !quiet));
-      if (cut_i || rst_i) touched_q <= 1'b0;
+      late_q    <= trips && !touched_q && !touch;
+      if (cut_i || rst_i) {touched_q, late_q} <= 2'b00;
+      if (rst_i) before_q <= 1'b0;
     end
   end else begin : gen_no_first_touch
-    assign touch = 1'b0;
-    assign touched_q = 1'b0;
+    assign snapshot_o = trips;
 
     logic unused_levels;
     assign unused_levels = &{1'b0, raw_i, quiet_i};

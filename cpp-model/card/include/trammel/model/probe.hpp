@@ -3,8 +3,8 @@
 // Off -> Armed (its input was not tripped) -> Ramp (the edge) -> Dropping (at rest) -> Off (PROBE_END is over, which
 // waits until the host has cleared the edge). An input that is tripped at first goes from Off to Dropping. Everything
 // that comes in clock c shows at c+1, but for trips(), asks() and takes(), which are of the clock itself. On a card
-// with captures the first touch asks for the snapshot, before the filter confirms it. Not thread-safe; no errors are
-// reported.
+// with captures the first touch asks for the snapshot, before the filter confirms it; what trips without a touch asks
+// a clock later. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -38,6 +38,8 @@ class Probe {
     bool probed = false;
     bool missed = false;
     bool touched = false;  // its snapshot is taken
+    bool before = false;   // armed, with its input at the level that trips, before its filter, a clock ago
+    bool late = false;     // what tripped a clock ago asks
   };
   // Clocks without a path from the first one in which a PROBE waits to the one that takes it.
   static constexpr unsigned kSettle = 8;
@@ -46,7 +48,11 @@ class Probe {
 
   // One rising edge.
   void clock(const Inputs& in) {
+    const bool late = late_after(in);
+    const bool before = before_after(in);
     state_.touched = touched_after(in);
+    state_.late = late;
+    state_.before = before;
     const bool edge = edges(in);
     const bool take = takes(in) && !edge;
     const bool tripped_already = take && met(in.levels);
@@ -80,7 +86,7 @@ class Probe {
     return in.waits && state_.waited + 1 >= kSettle && free && !in.stopping && !in.cut;
   }
   // A snapshot is wanted.
-  bool asks(const Inputs& in) const { return touches(in) || (trips(in) && !state_.touched); }
+  bool asks(const Inputs& in) const { return first_touch_ ? touches(in) || state_.late : trips(in); }
   // The probe trips.
   bool trips(const Inputs& in) const { return edges(in) || (takes(in) && met(in.levels)); }
   // PROBE_END must wait.
@@ -97,7 +103,13 @@ class Probe {
   // A touch, the first one since the PROBE or since the input was quiet.
   bool touches(const Inputs& in) const {
     return first_touch_ && state_.mode == Mode::Armed && meets(state_.armed_for, in.raw) &&
-           (!state_.touched || (quiet(in) && !edges(in))) && !in.stopping && !in.cut;
+           (!state_.touched || quiet(in)) && !in.stopping && !in.cut;
+  }
+  bool before_after(const Inputs& in) const {
+    return first_touch_ && state_.mode == Mode::Armed && meets(state_.armed_for, in.raw);
+  }
+  bool late_after(const Inputs& in) const {
+    return first_touch_ && trips(in) && !state_.touched && !touches(in) && !in.cut;
   }
   bool touched_after(const Inputs& in) const {
     if (state_.mode != Mode::Armed || edges(in) || takes(in) || in.cut) return false;
@@ -108,7 +120,8 @@ class Probe {
   }
 
  private:
-  bool quiet(const Inputs& in) const { return (in.quiet >> (state_.armed_for & 0x1F) & 1) != 0; }
+  // Not as the filter passes, before which the input has stood.
+  bool quiet(const Inputs& in) const { return (in.quiet >> (state_.armed_for & 0x1F) & 1) != 0 && !state_.before; }
   static bool meets(std::uint8_t condition, std::uint32_t levels) {
     constexpr unsigned kInputBits = 5;  // the number of an input; one that the card lacks stays at 0
     const std::uint32_t input = condition & ((1U << kInputBits) - 1);

@@ -105,7 +105,8 @@ inline std::uint64_t horizon(const model::Probe& block, const model::Probe::Inpu
   using Mode = model::Probe::Mode;
   const model::Probe::State& s = block.state();
   const bool moves = (s.mode == Mode::Armed && (block.edges(in) || in.ends)) || (s.mode == Mode::Ramp && in.at_rest) ||
-                     (s.mode == Mode::Dropping && in.ends && !s.probed) || block.touched_after(in) != s.touched;
+                     (s.mode == Mode::Dropping && in.ends && !s.probed) || block.touched_after(in) != s.touched ||
+                     block.before_after(in) != s.before || s.late;
   if (in.cut || in.clear || in.load.valid || s.halt || moves) return 0;
   if (!in.waits) return forever_if(s.waited == 0);
   return block.takes(in) || s.waited < model::Probe::kSettle ? 0 : kForever;
