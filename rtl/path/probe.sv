@@ -2,15 +2,15 @@
 //
 // PROBE waits until no path has run for 8 clocks: the last step of the path before it is out. An input that is tripped
 // then stops the card at once, since nothing moves: nothing behind the PROBE begins. Else the next commands run, and an
-// edge (an input at the level that trips) requests the snapshot in its clock, brings the time base to rest, and ends
+// edge (an input at the level that trips) brings the time base to rest, requests the snapshot a clock later, and ends
 // what runs. PROBE_END then stands until the host has seen the edge and cleared it. A PROBE that is taken in the clock
 // of the edge of the one before is dropped with what follows it: the way from the input to the queues would be the
 // card's longest.
 //
 // With FirstTouch the snapshot is that of the first touch, which the input's filter has still to confirm: the armed input's
 // first raw change since the PROBE, or since it was quiet (capture_unit). A touch that is withdrawn leaves a snapshot that
-// nothing counts. An edge without a touch, and an input that is tripped already, ask a clock later: from a filtered level
-// to the snapshot would be one of the card's longest ways.
+// nothing counts. The clock between an edge and its request: from a filtered level to the snapshot would be one of the
+// card's longest ways.
 //
 // No edge is taken while a fault's ramp is under way, whose snapshot is being written, nor in the clock of a cut.
 `default_nettype none
@@ -49,6 +49,9 @@ module probe #(
   logic        look;  // the PROBE is carried out: is its input tripped already?
   logic        edge_now;
   logic        trips;
+  logic        touch;
+  logic        touched_q;  // its snapshot is taken
+  logic        late_q;  // what tripped a clock ago asks for its snapshot
 
   logic [15:0] word;
 
@@ -92,28 +95,27 @@ module probe #(
     end
   end
 
+  assign snapshot_o = touch || late_q;
+
+  always_ff @(posedge clk_i) late_q <= trips && !touched_q && !touch && !cut_i && !rst_i;
+
   if (FirstTouch != 0) begin : gen_first_touch
     logic touched;  // now
     logic before_q;  // a clock before
-    logic touched_q;  // its snapshot is taken
     logic quiet;  // again: not as the filter passes, before which the input has stood
-    logic touch;
-    logic late_q;
 
     assign quiet = quiet_i[condition_q[4:0]] && !before_q;
     assign touched = raw_i[condition_q[4:0]] == condition_q[5];
     assign touch = armed_q && touched && (!touched_q || quiet) && !stopping_i && !cut_i;
-    assign snapshot_o = touch || late_q;
 
     always_ff @(posedge clk_i) begin
-      before_q  <= armed_q && touched;
+      before_q  <= armed_q && touched && !rst_i;
       touched_q <= armed_q && !edge_now && !look && (touch || (touched_q && !quiet));
-      late_q    <= trips && !touched_q && !touch;
-      if (cut_i || rst_i) {touched_q, late_q} <= 2'b00;
-      if (rst_i) before_q <= 1'b0;
+      if (cut_i || rst_i) touched_q <= 1'b0;
     end
   end else begin : gen_no_first_touch
-    assign snapshot_o = trips;
+    assign touch = 1'b0;
+    assign touched_q = 1'b0;
 
     logic unused_levels;
     assign unused_levels = &{1'b0, raw_i, quiet_i};

@@ -37,8 +37,9 @@ module limit_axis #(
   logic        into;
   logic [ 1:0] caused;
   logic [15:0] left;
+  logic        none_left;
+  logic [15:0] one_less;
   logic        beyond;
-  logic [15:0] next;
   logic [ 1:0] overridden_q;
   logic        moved_q;  // there was a step since reset
   logic        was_pressed_q;
@@ -60,8 +61,9 @@ module limit_axis #(
   assign caused = any_step_i ? (any_into_i ? active_o : 2'b00) : into ? side : 2'b00;
   // The steps that are left count from the first one into a limit on.
   assign left = ramp_i ? left_q : overtravel_q;
-  // One subtraction: its borrow is the comparison with 0.
-  assign {beyond, next} = {1'b0, left} - 17'(into);
+  // One subtraction: its borrow is the comparison with 0. It does not wait for whether the step counts.
+  assign {none_left, one_less} = {1'b0, left} - 17'd1;
+  assign beyond = into && none_left;
 
   always_ff @(posedge clk_i) begin
     moved_q <= moved_q || step_i;
@@ -69,7 +71,7 @@ module limit_axis #(
     reached_q <= reached;
     overridden_q <= level & (overrides ? {data[8+Axis], data[Axis]} : overridden_q);
     if (setting_bus_pkg::writes(setting_i, OVERTRAVEL)) overtravel_q <= data[15:0];
-    left_q   <= beyond ? '0 : next;
+    left_q   <= into && !none_left ? one_less : left;
     into_o   <= into;
     beyond_o <= beyond;
     caused_q <= caused;

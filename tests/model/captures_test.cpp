@@ -415,8 +415,9 @@ TEST(ProbeWithCaptures, AGlitchTripsNothing) {
   EXPECT_GT(card.core.position(0), 6'000U);
 }
 
-// Without captures the snapshot is that of the filter's end; without a filter captures change nothing.
-TEST(ProbeWithCaptures, WithoutThemAllIsAsBefore) {
+// Without captures the snapshot is that of the filter's end; without a filter captures make it a clock earlier, and
+// change nothing else.
+TEST(ProbeWithCaptures, WithoutThemTheFilterCounts) {
   constexpr std::uint32_t kWithout =
       model::RegisterFile::kMaxEngines & ~(card_map::engines::kCaptures | card_map::engines::kCaptureFifo);
   ProbeBehindAFilter late(5, kWithout);
@@ -428,13 +429,17 @@ TEST(ProbeWithCaptures, WithoutThemAllIsAsBefore) {
     card.logs = true;
     const std::uint64_t edge = card.stand(true, 1);
     card.stand(false, 5000);
-    card.expect_latched_at(edge);
+    card.expect_latched_at(with ? edge : edge + 1);
     EXPECT_TRUE(card.write(reg::kControl, field::kControlProbeClear));
     card.stand(false, 500);
     EXPECT_FALSE(card.has(field::kStatusBusy));
     logs[with ? 1 : 0] = card.log;
   }
-  EXPECT_TRUE(logs[0] == logs[1]);
+  // The PROBE area is written a clock later, which an access of the host may notice.
+  const auto same = [](const CoreBench::Shown& a, const CoreBench::Shown& b) {
+    return a.outputs.step == b.outputs.step && a.outputs.dir == b.outputs.dir && a.position == b.position;
+  };
+  EXPECT_TRUE(std::equal(logs[0].begin(), logs[0].end(), logs[1].begin(), logs[1].end(), same));
 }
 
 }  // namespace

@@ -47,15 +47,15 @@ class Probing : public CoreBench {
   }
 };
 
-TEST(Probe, TheEdgeLatchesPositionsAClockAfterItShows) {
+TEST(Probe, TheEdgeLatchesPositionsTwoClocksAfterItShows) {
   for (std::uint64_t at = 0; at < 40; ++at) {
     Probing card;
     card.start(4000, 3);
     card.idle(400 + at);
     card.pins = 0b0100;
     card.idle(1);
-    // Two flip-flops, and INPUTS shows it; the strobe is a clock later.
-    const std::uint64_t strobe = card.core.cycles() + 2;
+    // Two flip-flops, and INPUTS shows it; the strobe is two clocks later.
+    const std::uint64_t strobe = card.core.cycles() + 3;
     card.idle(400);
     EXPECT_TRUE(card.has(field::kStatusProbed));
     EXPECT_EQ(card.read(reg::time_lo(Area::Probe)), strobe);

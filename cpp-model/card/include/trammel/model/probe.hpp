@@ -2,9 +2,9 @@
 //
 // Off -> Armed (its input was not tripped) -> Ramp (the edge) -> Dropping (at rest) -> Off (PROBE_END is over, which
 // waits until the host has cleared the edge). An input that is tripped at first goes from Off to Dropping. Everything
-// that comes in clock c shows at c+1, but for trips(), asks() and takes(), which are of the clock itself. On a card
-// with captures the first touch asks for the snapshot, before the filter confirms it; what trips without a touch asks
-// a clock later. Not thread-safe; no errors are reported.
+// that comes in clock c shows at c+1, but for trips(), touches() and takes(), which are of the clock itself. On a card
+// with captures the first touch asks for the snapshot, before the filter confirms it; what trips without one asks a
+// clock later. Not thread-safe; no errors are reported.
 #pragma once
 
 #include <cstdint>
@@ -86,7 +86,7 @@ class Probe {
     return in.waits && state_.waited + 1 >= kSettle && free && !in.stopping && !in.cut;
   }
   // A snapshot is wanted.
-  bool asks(const Inputs& in) const { return first_touch_ ? touches(in) || state_.late : trips(in); }
+  bool asks(const Inputs& in) const { return touches(in) || state_.late; }
   // The probe trips.
   bool trips(const Inputs& in) const { return edges(in) || (takes(in) && met(in.levels)); }
   // PROBE_END must wait.
@@ -108,9 +108,7 @@ class Probe {
   bool before_after(const Inputs& in) const {
     return first_touch_ && state_.mode == Mode::Armed && meets(state_.armed_for, in.raw);
   }
-  bool late_after(const Inputs& in) const {
-    return first_touch_ && trips(in) && !state_.touched && !touches(in) && !in.cut;
-  }
+  bool late_after(const Inputs& in) const { return trips(in) && !state_.touched && !touches(in) && !in.cut; }
   bool touched_after(const Inputs& in) const {
     if (state_.mode != Mode::Armed || edges(in) || takes(in) || in.cut) return false;
     return touches(in) || (state_.touched && !quiet(in));
