@@ -1,4 +1,4 @@
-// Colorlight 5A-75B revision 7.0: the card at 80 MHz behind the board's UART.
+// Colorlight 5A-75B revision 7.0: the card at 70 MHz behind the board's UART.
 // Written by scripts/boards from boards/colorlight-5a-75b/board.toml; edit that.
 `default_nettype none
 
@@ -19,7 +19,7 @@ module top_colorlight_5a_75b #(
   logic locked;
 
   board_pll #(
-      .FeedbackDiv(32),
+      .FeedbackDiv(28),
       .ClockDiv(10)
   ) pll (
       .crystal_i(clk_i),
@@ -31,7 +31,7 @@ module top_colorlight_5a_75b #(
       .BuildId(BuildId),
       .BuildDirty(BuildDirty),
       .BoardId(32'd3),
-      .ClockHz(32'd80000000),
+      .ClockHz(32'd70000000),
       .ResetBits(11),
       .Axes(4),
       .GeometryDepth(16384),

@@ -1,4 +1,4 @@
-// ULX3S 25F: the card at 80 MHz behind the board's UART.
+// ULX3S 25F: the card at 70 MHz behind the board's UART.
 // Written by scripts/boards from boards/ulx3s/board.toml; edit that.
 `default_nettype none
 
@@ -20,7 +20,7 @@ module top_ulx3s #(
   logic locked;
 
   board_pll #(
-      .FeedbackDiv(32),
+      .FeedbackDiv(28),
       .ClockDiv(10)
   ) pll (
       .crystal_i(clk_i),
@@ -32,7 +32,7 @@ module top_ulx3s #(
       .BuildId(BuildId),
       .BuildDirty(BuildDirty),
       .BoardId(32'd2),
-      .ClockHz(32'd80000000),
+      .ClockHz(32'd70000000),
       .ResetBits(11),
       .Axes(4),
       .GeometryDepth(16384),

@@ -105,13 +105,7 @@ module snapshot_writer #(
       mark_q   <= begin_first ? mark_i || mark_q || (active_o && area_q == MARK) : (mark_i || mark_q) && !begin_mark;
       if (settle_q) begin
         write_q <= 1'b1;
-        word_q  <= TIME_LO;
       end else if (write_q) begin
-        case (word_q)
-          TIME_HI: word_q <= LAST_POSITION;
-          FIRST_POSITION: word_q <= GEOMETRY_BEGUN;
-          default: word_q <= word_q - 4'd1;
-        endcase
         if (word_q == TIME_HI) shift_o <= 1'b1;
         if (word_q == FAULT) begin
           write_q <= 1'b0;
@@ -143,6 +137,19 @@ module snapshot_writer #(
       mark_q <= 1'b0;
       capture_q <= 1'b0;
       active_o <= 1'b0;
+    end
+  end
+
+  // Whatever breaks in: it counts while words are written alone.
+  always_ff @(posedge clk_i) begin
+    if (settle_q) begin
+      word_q <= TIME_LO;
+    end else if (write_q) begin
+      case (word_q)
+        TIME_HI: word_q <= LAST_POSITION;
+        FIRST_POSITION: word_q <= GEOMETRY_BEGUN;
+        default: word_q <= word_q - 4'd1;
+      endcase
     end
   end
 

@@ -110,7 +110,7 @@ void identify(const Board& board, driver::Card& card) {
 // X goes 80 pulses, 80 more as the upper half of a circle where the board makes arcs, and another 80.
 constexpr std::int64_t kPart = 80;
 constexpr std::uint64_t kTicks = 4096;   // of each part
-constexpr double kClocksATick = 50;      // so each takes 2.6 ms at 80 MHz
+constexpr double kClocksATick = 50;      // so each takes 2.9 ms at 70 MHz
 constexpr std::uint64_t kHeld = 50'000;  // clocks
 constexpr std::int64_t kHoldAt = 3 * kPart / 2;
 constexpr double kPi = 3.14159265358979323846;
