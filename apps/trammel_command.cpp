@@ -7,6 +7,7 @@
 #include <exception>
 #include <iostream>
 
+#include "calibrate/calibrate_command.hpp"
 #include "card/card_commands.hpp"
 #include "command_names.hpp"
 #include "common/errors.hpp"
@@ -72,6 +73,7 @@ int run_command_line(int argc, char** argv, const char* version) {
   add_card_commands(app);
   add_place_commands(app);
   add_machine_command(app);
+  add_calibrate_command(app);
   add_serve_command(app);
   add_steps_command(app);
   add_methods_command(app);

@@ -17,6 +17,8 @@ struct MachineChoice {
   std::vector<std::string> overrides;  // of --set
 
   void add_to(CLI::App& command);
+  // --machine alone.
+  void add_file_to(CLI::App& command);
 
   // The file to read; none for the built-in machine.
   std::optional<std::string> source() const;

@@ -3,13 +3,19 @@ import math
 import re
 import sys
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rtl.file_list import ROOT
 
 BOARDS = ROOT / "boards"
 RESET_SECONDS = 16e-6  # from the PLL's lock to the reset's end, at least
 GROUPS = ("step", "dir", "output", "input")
+DEVICES = {"ice40": {"hx1k", "hx4k", "hx8k"}, "ecp5": {"12k", "25k", "45k", "85k"}}  # as the placers name them
+# What a machine file may say of inputs and outputs (docs/user/inputs.md, outputs.md); an axis's name stands before those of AXIS_ROLES.
+AXIS_ROLES = ("limit_minus", "limit_plus", "home", "drive_fault")
+INPUT_ROLES = {*(f"{axis}_{role}" for axis in "xyzabcuvwe" for role in AXIS_ROLES), "feed_hold", "cycle_start", "tool_setter",
+               "spindle_at_speed", "probe"}
+OUTPUT_ROLES = {"m3", "m4", "m7", "m8", "enable", "brake", "charge_pump", "healthy"}
 
 
 class DescriptionError(Exception):
@@ -23,6 +29,7 @@ class Pin:
     place: str  # where the board has it
     pull_up: bool = False
     level: int = None  # of a pin that stands still
+    roles: tuple = ()  # suggested for it, keys of the machine file
 
 
 @dataclass(frozen=True)
@@ -42,15 +49,17 @@ class Board:
     widths: dict  # of the groups of pins
     constants: dict  # ports that stand still: their levels
     emergency_stop: bool  # has a pin for it
+    roles: dict  # suggested for inputs and outputs: {"input": ["x_limit_minus x_home", ...], "output": [...]}
     least_set: int = 1
+    base: str = ""  # of a variant: the board whose folder it shares
 
     @property
     def top(self):
-        return "top_" + self.name.replace("-", "_")
+        return "top_" + self.folder.name.replace("-", "_")
 
     @property
     def folder(self):
-        return BOARDS / self.name
+        return BOARDS / (self.base or self.name)
 
     @property
     def clock_hz(self):
@@ -69,12 +78,19 @@ def split(signal, text, **more):
     return Pin(signal, *found.groups(), **more)
 
 
-def read_pins(raw):
+def roles_of(roles, group, index):
+    """The roles that are suggested for an input or an output."""
+    suggested = roles.get(group, [])
+    return tuple(suggested[index].split()) if index < len(suggested) else ()
+
+
+def read_pins(raw, roles):
     """All pins of a board, in the order of its table."""
     pins = [split("clk_i", raw["clock"]), split("rx_i", raw["rx"], pull_up=True), split("tx_o", raw["tx"])]
     for group in GROUPS:
         way = "i" if group == "input" else "o"
-        pins += [split(f"{group}_{way}[{i}]", text, pull_up=way == "i") for i, text in enumerate(raw[group])]
+        pins += [split(f"{group}_{way}[{i}]", text, pull_up=way == "i", roles=roles_of(roles, group, i))
+                 for i, text in enumerate(raw[group])]
     # Normally closed to ground: the pull-up makes a broken wire a stop.
     if "emergency_stop" in raw:
         pins.append(split("emergency_stop_i", raw["emergency_stop"], pull_up=True))
@@ -96,10 +112,29 @@ def ecp5_megahertz(pll, crystal):
 MEGAHERTZ = {"ice40": ice40_megahertz, "ecp5": ecp5_megahertz}
 
 
+def check_roles(board):
+    """Raises what a machine file or the card would refuse."""
+    for group, known in (("input", INPUT_ROLES), ("output", OUTPUT_ROLES)):
+        suggested = board.roles.get(group, [])
+        if len(suggested) > board.widths[group]:
+            raise DescriptionError(f"roles: {len(suggested)} of {group}, the board has {board.widths[group]}")
+        named = [role for text in suggested for role in text.split()]
+        wrong = [role for role in named if role not in known or named.count(role) > 1]
+        if wrong:
+            raise DescriptionError(f"roles: {group}: {wrong[0]} is unknown, or named twice")
+        if any(role.endswith("_home") for role in named) and not board.card.get("Captures"):
+            raise DescriptionError("roles: input: a card without Captures cannot home")
+    if set(board.roles) - {"input", "output"}:
+        raise DescriptionError("roles: only input and output have any")
+
+
 def check(board):
     """Raises what does not fit together."""
+    check_roles(board)
     if board.family not in MEGAHERTZ:
         raise DescriptionError(f"family {board.family!r}: only {', '.join(MEGAHERTZ)}")
+    if board.device not in DEVICES[board.family]:
+        raise DescriptionError(f"device {board.device!r}: only {', '.join(sorted(DEVICES[board.family]))}")
     clock, ranges = MEGAHERTZ[board.family](board.pll, board.crystal_mhz)
     if clock != board.clock_mhz:
         raise DescriptionError(f"pll: its clock is {clock:g} MHz, clock_mhz says {board.clock_mhz:g}")
@@ -122,12 +157,14 @@ def load(name):
     file = BOARDS / name / "board.toml"
     try:
         raw = tomllib.loads(file.read_text())
-        pins, widths = read_pins(raw["pins"]), {group: len(raw["pins"][group]) for group in GROUPS}
+        raw.pop("variant", None)
+        roles = raw.pop("roles", {})
+        pins, widths = read_pins(raw["pins"], roles), {group: len(raw["pins"][group]) for group in GROUPS}
         constants = raw.pop("constant", {})
         pins += [split(f"{port}_o", value["pin"], level=value["level"]) for port, value in constants.items()]
         levels = {f"{port}_o": value["level"] for port, value in constants.items()}
         board = Board(name=name, **{**raw, "pins": tuple(pins), "sources": tuple(raw["sources"])}, widths=widths,
-                      constants=levels, emergency_stop="emergency_stop" in raw["pins"])
+                      constants=levels, emergency_stop="emergency_stop" in raw["pins"], roles=roles)
         check(board)
     except (DescriptionError, KeyError, TypeError, tomllib.TOMLDecodeError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else error
@@ -138,3 +175,16 @@ def load(name):
 def names():
     """The boards that there are."""
     return sorted(file.parent.name for file in BOARDS.glob("*/board.toml"))
+
+
+def variants(board):
+    """The same board with another device, from [variant.NAME]: it shares top and constraints and has a bitstream of its own."""
+    raw = tomllib.loads((board.folder / "board.toml").read_text()).get("variant", {})
+    found = []
+    for name, entries in raw.items():
+        if set(entries) != {"title", "device"}:
+            sys.exit(f"error: boards/{board.name}/board.toml: variant.{name}: needs title and device, and has nothing else")
+        if entries["device"] not in DEVICES[board.family] - {board.device}:
+            sys.exit(f"error: boards/{board.name}/board.toml: variant.{name}: device {entries['device']!r} is unknown, or the board's own")
+        found.append(replace(board, name=f"{board.name}-{name}", base=board.name, **entries))
+    return found

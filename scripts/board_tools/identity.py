@@ -21,7 +21,7 @@ def git(*arguments):
 
 def tracked(board):
     """The files that git tracks and that go into the board's bitstream."""
-    files = git("ls-files", "--", *INTO, f"boards/{board.name}").splitlines()
+    files = git("ls-files", "--", *INTO, str(board.folder.relative_to(ROOT))).splitlines()
     return [file for file in files if not file.startswith(NOT_INTO)]
 
 

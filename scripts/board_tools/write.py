@@ -1,6 +1,7 @@
 """What is written from the descriptions: top, constraints, and the tables in docs/user/boards.md."""
 import re
 
+from board_tools.description import variants
 from rtl.file_list import ROOT
 
 PAGE = ROOT / "docs" / "user" / "boards.md"
@@ -90,12 +91,36 @@ def constraints_file(board):
     return board.folder / CONSTRAINTS[board.family][0]
 
 
+def note_of(pin):
+    """The last column of the table."""
+    notes = ["pull-up"] if pin.pull_up else []
+    notes += ["high is stop"] if pin.signal == "emergency_stop_i" else []
+    notes += [] if pin.level is None else [f"stands at {pin.level}"]
+    notes += [", ".join(f"`{role}`" for role in pin.roles)] if pin.roles else []
+    return "; ".join(notes)
+
+
+def machine_file_text(board):
+    """What the suggested roles are in a machine file."""
+    lines, probe = [], None
+    for group in ("input", "output"):
+        entries = [f"{role} = {index}" for index, text in enumerate(board.roles.get(group, [])) for role in text.split()]
+        probe = next((entry.split(" = ")[1] for entry in entries if entry.startswith("probe")), probe)
+        lines += ["", f"[{group}s]", *(entry for entry in entries if not entry.startswith("probe"))] if entries else []
+    if probe is not None:
+        lines += ["", "[probe]", f"input = {probe}", "touched_level = 0  # a plate that the tool connects to ground"]
+    return "\n".join(lines[1:])
+
+
 def table_text(board):
     """The board's table of pins, for its page."""
-    lines = ["| signal | pin of the device | on the board | |", "|---|---|---|---|"]
-    for pin in board.pins:
-        note = "pull-up; high is stop" if pin.signal == "emergency_stop_i" else "pull-up" if pin.pull_up else "" if pin.level is None else f"stands at {pin.level}"
-        lines.append(f"| `{pin.signal}` | {pin.site} | {pin.place} | {note} |")
+    lines = ["| signal | pin of the device | on the board | suggested role |", "|---|---|---|---|"]
+    lines += [f"| `{pin.signal}` | {pin.site} | {pin.place} | {note_of(pin)} |" for pin in board.pins]
+    if board.roles:
+        lines += ["", "The suggested roles in a machine file:", "", "```toml", machine_file_text(board), "```"]
+    if others := variants(board):
+        named = ", ".join(f"{other.title} (`scripts/boards {other.name}`, device `{other.device}`)" for other in others)
+        lines += ["", f"The same pins, described and **not built**: {named}."]
     sources = "\n".join(f"- {source}" for source in board.sources)
     return (f"BOARD_ID {board.board_id}; {board.crystal_mhz:g} MHz crystal, card clock {board.clock_mhz:g} MHz; reset "
             f"{2**board.reset_bits / board.clock_mhz:.1f} us after the PLL's lock.\n\n" + "\n".join(lines)

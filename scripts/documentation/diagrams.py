@@ -1,4 +1,5 @@
-"""Diagrams of a page: a fence ```dot (Graphviz) or ```wavedrom, and below it the caption, a paragraph in *italics*.
+"""Diagrams of a page: a fence ```dot (Graphviz), ```wavedrom or ```wiring (wiring.py), and below it the caption, a paragraph in
+*italics*.
 
 The site shows the drawing as an SVG file; the plain page shows the source and the caption."""
 import re
@@ -7,8 +8,12 @@ import sys
 from pathlib import Path
 
 import wavedrom
+import wiring
 
-DIAGRAM = re.compile(r"^```(dot|wavedrom)\n(.*?)^```$(?:\n\n\*([^*]+)\*$)?", re.MULTILINE | re.DOTALL)
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from board_tools.description import load, names  # noqa: E402
+
+DIAGRAM = re.compile(r"^```(dot|wavedrom|wiring)\n(.*?)^```$(?:\n\n\*([^*]+)\*$)?", re.MULTILINE | re.DOTALL)
 # The look of every block diagram stands here, so that a source has nothing but blocks and connections.
 DOT = ["dot", "-Tsvg", "-Gbgcolor=white", "-Gfontname=Helvetica", "-Gfontsize=12", "-Glabeljust=l", "-Gnodesep=0.25", "-Granksep=0.35",
        "-Nshape=box", "-Nstyle=rounded,filled", "-Nfillcolor=#eef3fa", "-Ncolor=#44628c", "-Nfontname=Helvetica", "-Nfontsize=12",
@@ -28,7 +33,24 @@ def timing_diagram(source: str) -> str:
     return drawing.tostring()
 
 
-DRAW = {"dot": block_diagram, "wavedrom": timing_diagram}
+def with_places(label: str) -> str:
+    """A label with the places of pins on their board: "@ulx3s.step_o[0]" as boards/ulx3s/board.toml has it."""
+
+    def place(match: re.Match) -> str:
+        board, signal = match.groups()
+        found = [pin.place for pin in load(board).pins if pin.signal == signal] if board in names() else []
+        if not found:
+            raise ValueError(f"{match.group(0)}: no such pin of a board")
+        return found[0]
+
+    return re.sub(r"@([\w-]+)\.([\w\[\]]+)", place, label)
+
+
+def wiring_diagram(source: str) -> str:
+    return wiring.draw(source, with_places)
+
+
+DRAW = {"dot": block_diagram, "wavedrom": timing_diagram, "wiring": wiring_diagram}
 
 
 def with_drawings(markdown: str, page: str, folder: Path) -> str:

@@ -1,0 +1,79 @@
+#include "calibrate_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "calibration.hpp"
+#include "common/errors.hpp"
+#include "common/machine_choice.hpp"
+#include "common/outputs.hpp"
+#include "common/standard_streams.hpp"
+#include "common/terminal.hpp"
+#include "trammel/machine/scale.hpp"
+
+namespace trammel::app {
+namespace {
+
+struct CalibrateArguments {
+  Measured measured;
+  MachineChoice machine;
+  bool write = false;
+};
+
+constexpr const char* kPlaceIsVoid =
+    "the place that a card keeps was counted in the old scale and is void, for all axes: home again (`trammel home`), "
+    "or `trammel zero` with all axes";
+
+// The file to change. A pipe has been read and cannot be changed.
+std::string file_to_write(const std::optional<std::string>& source) {
+  if (!source) throw UsageError("calibrate: --write needs a machine file (--machine FILE): the built-in one is none");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(*source, error))
+    throw UsageError(fmt::format("calibrate: --write: {} is no regular file", *source));
+  return *source;
+}
+
+void calibrate_file(const CalibrateArguments& arguments) {
+  const std::optional<std::string> source = arguments.machine.source();
+  Outputs outputs;
+  Output* file = arguments.write ? outputs.add("--write", file_to_write(source)) : nullptr;
+  const std::string text = source ? machine::read_machine_text(*source) : machine::default_machine_text();
+  const Calibration calibration = calibrate(arguments.measured, text, source.value_or("built-in"));
+  if (!calibration.changed) return to_standard_output(calibration.said);
+  if (file == nullptr) {
+    to_standard_output(calibration.said);
+    tell("note", source ? "nothing is written: --write puts it into the machine file"
+                        : "nothing is written: the built-in machine is no file (examples/machine.toml is a copy)");
+  } else {
+    outputs.open();
+    file->write(calibration.text);
+    outputs.commit(calibration.said + fmt::format("written to {}\n", *source));
+  }
+  if (!calibration.doubt.empty()) tell("note", calibration.doubt);
+  tell("note", file == nullptr ? std::string("then ") + kPlaceIsVoid : kPlaceIsVoid);
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app) {
+  auto arguments = std::make_shared<CalibrateArguments>();
+  CLI::App* command = app.add_subcommand("calibrate", "steps_per_mm of an axis from a measured distance");
+  command->add_option("axis", arguments->measured.axis, "letter of the axis")->required()->type_name("AXIS");
+  command->add_option("commanded", arguments->measured.commanded, "mm (degrees) that it was told to move")
+      ->required()
+      ->type_name("COMMANDED");
+  command->add_option("measured", arguments->measured.actual, "mm (degrees) that it moved")
+      ->required()
+      ->type_name("MEASURED");
+  arguments->machine.add_file_to(*command);
+  command->add_flag("--write", arguments->write, "change the number in the machine file, and nothing else there");
+  command->add_flag("--force", arguments->measured.force,
+                    "take it, too, where the axis moved less than half or more than twice as far as commanded");
+  command->callback([arguments] { calibrate_file(*arguments); });
+}
+
+}  // namespace trammel::app

@@ -1,0 +1,10 @@
+// `trammel calibrate`: steps_per_mm from a measured distance, and into the machine file.
+#pragma once
+
+#include "common/command_line.hpp"
+
+namespace trammel::app {
+
+void add_calibrate_command(CLI::App& app);
+
+}  // namespace trammel::app
