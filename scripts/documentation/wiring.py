@@ -6,7 +6,8 @@
     > PIN "LABEL"                 a pin on the right,
     < PIN "LABEL" > PIN "LABEL"   or both;
     -                             or an empty row
-    led PIN PIN                   between two pins of the left: the resistor and the LED of an optocoupler
+    led PIN PIN                   inside, between two pins of the left: the resistor and the LED of an optocoupler,
+    contact PIN PIN               or a contact that opens
     wire BOX.PIN PART ... BOX.PIN [BOX.PIN ...]
                                   a net between two columns, its parts in line from the first pin
     wire BOX.PIN PART ... GND     or one that ends in a symbol: GND, or a supply as "+5 V"
@@ -44,7 +45,7 @@ class Box:
     titles: list
     column: int
     pins: list = field(default_factory=list)
-    leds: list = field(default_factory=list)
+    inside: list = field(default_factory=list)  # ("led" or "contact", names of its two pins)
     rows: int = 0
     x: float = 0
     y: float = 0
@@ -140,13 +141,16 @@ def read_line(drawing, line, words, places):
         read_pins(drawing, words, places)
     elif kind == "-":
         list(drawing.boxes.values())[-1].rows += 1
-    elif kind == "led":
+    elif kind in ("led", "contact"):
         box = list(drawing.boxes.values())[-1]
-        box.leds.append([f"{box.name}.{name}" for name in rest])
+        names = [f"{box.name}.{name}" for name in rest]
+        if len(names) != 2 or any(drawing.pins[name].side != "left" for name in names):
+            raise WiringError(f"{kind}: needs two pins of the left")
+        box.inside.append((kind, names))
     elif kind == "wire":
         read_wire(drawing, line, rest)
     else:
-        raise WiringError(f"{kind}: not one of column, box, <, >, -, led, wire")
+        raise WiringError(f"{kind}: not one of column, box, <, >, -, led, contact, wire")
 
 
 def read(source, places):
@@ -196,8 +200,8 @@ def place_boxes(drawing):
 
 def width_of_box(box):
     sides = {side: max((width_of(pin.label) for pin in box.pins if pin.side == side), default=0) for side in ("left", "right")}
-    needed = sides["left"] + sides["right"] + 24 + (100 if box.leds else 0)
-    return max(needed, *(width_of(title, 7.2) + 20 for title in box.titles), 80)
+    needed = sides["left"] + sides["right"] + 24 + (100 if box.inside else 0)
+    return max(needed, *(width_of(title, 7.6) + 20 for title in box.titles), 80)
 
 
 def gap_of(drawing, wire):
@@ -277,6 +281,12 @@ class Sheet:
 
     def __init__(self):
         self.texts, self.segments, self.areas = [], [], []
+        self.left, self.right, self.bottom = 0, 0, 0
+
+    def reach(self, left, right, bottom):
+        """Makes the sheet so large that this lies on it, with a margin around."""
+        self.left, self.right = min(self.left, left - MARGIN), max(self.right, right + MARGIN)
+        self.bottom = max(self.bottom, bottom + MARGIN)
 
     def add(self, text):
         self.texts.append(text)
@@ -284,6 +294,7 @@ class Sheet:
     def wire(self, net, x1, y1, x2, y2):
         if (x1, y1) != (x2, y2):
             self.segments.append(Segment(net, x1, y1, x2, y2))
+            self.reach(min(x1, x2), max(x1, x2), max(y1, y2))
             self.add(f'<line class="wire" x1="{x1:g}" y1="{y1:g}" x2="{x2:g}" y2="{y2:g}"/>')
 
     def dot(self, x, y):
@@ -294,6 +305,7 @@ class Sheet:
         self.add(f'<text class="{kind}" x="{x:g}" y="{y:g}" text-anchor="{anchor}">{escaped}</text>')
 
     def area(self, net, what, x, y, width, height):
+        self.reach(x - width / 2, x + width / 2, y + height / 2)
         self.areas.append(Area(net, what, x - width / 2, y - height / 2, x + width / 2, y + height / 2))
 
 
@@ -318,10 +330,14 @@ def draw_end(sheet, net, end, x, y, way):
                   f'<path class="part" d="M{x:g} {y:g}v6m-9 0h18m-15 4h12m-9 4h6"/>')
         sheet.area(net, "GND", x, y + 6, 18, 12)
         return
-    sheet.add(f'<path class="part" d="M{x - 9:g} {y:g}h18"/>' if way == "up" else f'<path class="part" d="M{x:g} {y - 9:g}v18"/>')
-    above = y - 5 if way == "up" else y + 4
-    sheet.label(x if way == "up" else x + (7 if way == "right" else -7), above, end,
-                {"up": "middle", "right": "start", "left": "end"}[way])
+    upright = way in ("up", "down")
+    sheet.add(f'<path class="part" d="M{x - 9:g} {y:g}h18"/>' if upright else f'<path class="part" d="M{x:g} {y - 9:g}v18"/>')
+    dx, dy, anchor = {"up": (0, -5, "middle"), "down": (0, 13, "middle"), "right": (7, 4, "start"), "left": (-7, 4, "end")}[way]
+    sheet.label(x + dx, y + dy, end, anchor)
+    if upright:
+        sheet.area(net, end, x, y + dy - 4, width_of(end), 12)
+    else:
+        sheet.area(net, end, x + dx * (1 + width_of(end) / 14), y, width_of(end), 12)
 
 
 def draw_hanging(sheet, net, part, x, y):
@@ -395,7 +411,16 @@ def draw_led(sheet, box, pins):
     sheet.add(f'<path class="part" d="M{x + 29:g} {middle - 5:g}l8 -5m-4 0h4v4M{x + 29:g} {middle + 3:g}l8 -5m-4 0h4v4"/>')
 
 
+def draw_contact(sheet, box, pins):
+    """Inside a box: a contact that opens, drawn at rest."""
+    (upper, lower), x = pins, box.x + width_of(max((pin.label for pin in pins), key=len)) + 40
+    middle = (upper.y + lower.y) / 2
+    sheet.add(f'<path class="part" d="M{box.x + width_of(upper.label) + 14:g} {upper.y:g}H{x:g}V{middle - 12:g}h9'
+              f'M{x + 7:g} {middle - 16:g}L{x:g} {middle + 12:g}V{lower.y:g}H{box.x + width_of(lower.label) + 14:g}"/>')
+
+
 def draw_box(sheet, drawing, box):
+    sheet.reach(box.x, box.x + box.width, box.y + box.height)
     sheet.add(f'<rect class="box" x="{box.x:g}" y="{box.y:g}" width="{box.width:g}" height="{box.height:g}" rx="4"/>')
     for number, title in enumerate(box.titles):
         sheet.label(box.x + box.width / 2, box.y + 18 + 14 * number, title, kind="title" if number == 0 else "second")
@@ -403,8 +428,8 @@ def draw_box(sheet, drawing, box):
         way, anchor = (1, "start") if pin.side == "left" else (-1, "end")
         sheet.add(f'<circle class="pin" data-pin="{pin.name}" cx="{pin.x:g}" cy="{pin.y:g}" r="2.5"/>')
         sheet.label(pin.x + way * 9, pin.y + 4, pin.label, anchor)
-    for names in box.leds:
-        draw_led(sheet, box, [drawing.pins[name] for name in names])
+    for kind, names in box.inside:
+        (draw_led if kind == "led" else draw_contact)(sheet, box, [drawing.pins[name] for name in names])
 
 
 # --- what must not happen
@@ -460,8 +485,7 @@ def draw(source, places=lambda label: label):
     for net, wire in enumerate(drawing.wires):
         draw_wire(sheet, drawing, net, wire)
     check(sheet, drawing)
-    width = max(box.x + box.width for box in drawing.boxes.values()) + MARGIN
-    right = max([width, *(s.x1 + 70 for s in sheet.segments if s.x1 > width - MARGIN)])
-    height = max(box.y + box.height for box in drawing.boxes.values()) + MARGIN
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{right:g}" height="{height:g}" viewBox="0 0 {right:g} {height:g}">'
-            f'<style>{STYLE}</style><rect width="100%" height="100%" fill="white"/>{"".join(sheet.texts)}</svg>\n')
+    width = sheet.right - sheet.left
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{sheet.bottom:g}" '
+            f'viewBox="{sheet.left:g} 0 {width:g} {sheet.bottom:g}"><style>{STYLE}</style>'
+            f'<rect x="{sheet.left:g}" width="{width:g}" height="{sheet.bottom:g}" fill="white"/>{"".join(sheet.texts)}</svg>\n')

@@ -15,7 +15,8 @@ ULX3S = (PROJECT / "boards" / "ulx3s" / "board.toml").read_text()
 
 def with_description(text, what):
     """What comes of the description, or what the program ends with."""
-    with tempfile.TemporaryDirectory(dir=PROJECT / "boards") as folder:
+    (PROJECT / "build").mkdir(exist_ok=True)  # messages name files from the project's folder
+    with tempfile.TemporaryDirectory(dir=PROJECT / "build") as folder:
         board = Path(folder) / "tried"
         board.mkdir()
         (board / "board.toml").write_text(text)
