@@ -25,8 +25,8 @@ struct CalibrateArguments {
 };
 
 constexpr const char* kPlaceIsVoid =
-    "the place that a card keeps was counted in the old scale and is void, for all axes: home again (`trammel home`), "
-    "or `trammel zero` with all axes";
+    "with the new scale the place that a card keeps is void, for all axes: `trammel zero` with all of them where they "
+    "stand, then home again";
 
 // The file to change. A pipe has been read and cannot be changed.
 std::string file_to_write(const std::optional<std::string>& source) {
@@ -54,7 +54,7 @@ void calibrate_file(const CalibrateArguments& arguments) {
     outputs.commit(calibration.said + fmt::format("written to {}\n", *source));
   }
   if (!calibration.doubt.empty()) tell("note", calibration.doubt);
-  tell("note", file == nullptr ? std::string("then ") + kPlaceIsVoid : kPlaceIsVoid);
+  tell("note", kPlaceIsVoid);
 }
 
 }  // namespace

@@ -53,8 +53,14 @@ std::vector<std::size_t> axes_of(const std::vector<std::string>& words, const ma
   return axes;
 }
 
-// A place that was lost does not matter to an axis that is homed.
+// A place that was lost does not matter to an axis that is homed; one in other scales does to those that are not.
 void prepare(driver::Card& card, const machine::Machine& machine, const CardChoice& choice) {
+  const run::CardPlace place = run::read_card_place(card);
+  if (place.was_set() && !run::scales_fit(place, machine)) {
+    throw UsageError(
+        "home: the card's place was counted in other scales than those of this machine file: `trammel zero` with all "
+        "axes where they stand, then home");
+  }
   take_over(card, choice, machine);
   run::configure(card, machine);
   run::set_keeps_place(card, machine);

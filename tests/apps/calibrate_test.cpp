@@ -31,7 +31,7 @@ TEST_F(CalibrateCommand, SaysTheLineAndWritesNothing) {
   EXPECT_THAT(outcome.out, HasSubstr("X: steps_per_mm 80 -> 80.64516 (+0.806 %)\n"));
   EXPECT_THAT(outcome.out, HasSubstr("router.toml:11: steps_per_mm = 80.64516\n"));
   EXPECT_THAT(outcome.err, HasSubstr("note: nothing is written: --write"));
-  EXPECT_THAT(outcome.err, HasSubstr("home again"));
+  EXPECT_THAT(outcome.err, HasSubstr("`trammel zero` with all of them where they stand, then home again"));
   EXPECT_THAT(outcome.err, HasSubstr("min and max and [homing] distances of axis X"));
   EXPECT_EQ(contents(file_), before_);
   // Without a machine file it is the built-in one, which cannot be written.
@@ -90,6 +90,12 @@ TEST_F(CalibrateCommand, TheCardsPlaceIsVoidAfterwards) {
   const Outcome jog = on_card("jog X1");
   EXPECT_EQ(jog.status, 2) << jog.out;
   EXPECT_THAT(jog.err, HasSubstr("other scales"));
+  // Nothing moves before that is said.
+  const Outcome refused = on_card("home");
+  EXPECT_EQ(refused.status, 2) << refused.out;
+  EXPECT_THAT(refused.err, HasSubstr("`trammel zero` with all axes where they stand, then home"));
+  EXPECT_THAT(refused.err, Not(HasSubstr("searches its switch")));
+  EXPECT_EQ(on_card("zero X Y Z").status, 0);
   EXPECT_EQ(on_card("home").status, 0);
   EXPECT_THAT(on_card("position").out, Not(HasSubstr("not homed")));
 }
