@@ -119,8 +119,8 @@ def table_text(board):
     if board.roles:
         lines += ["", "The suggested roles in a machine file:", "", "```toml", machine_file_text(board), "```"]
     if others := variants(board):
-        named = ", ".join(f"{other.title} (`scripts/boards {other.name}`, device `{other.device}`)" for other in others)
-        lines += ["", f"The same pins, described and **not built**: {named}."]
+        lines += ["", "The same pins, described and **not built**:",
+                  *(f"- {other.title}: `scripts/boards {other.name}`, device `{other.device}`" for other in others)]
     sources = "\n".join(f"- {source}" for source in board.sources)
     return (f"BOARD_ID {board.board_id}; {board.crystal_mhz:g} MHz crystal, card clock {board.clock_mhz:g} MHz; reset "
             f"{2**board.reset_bits / board.clock_mhz:.1f} us after the PLL's lock.\n\n" + "\n".join(lines)

@@ -66,7 +66,7 @@ class Variants(unittest.TestCase):
         self.assertEqual((small.name, small.device, large.name, large.device), ("ulx3s-12f", "12k", "ulx3s-85f", "85k"))
         self.assertEqual((small.top, small.folder, small.pins), (board.top, board.folder, board.pins))
         self.assertEqual(write.constraints_file(small), write.constraints_file(board))
-        self.assertIn("described and **not built**: ULX3S 12F (`scripts/boards ulx3s-12f`, device `12k`)", write.table_text(board))
+        self.assertIn("described and **not built**:\n- ULX3S 12F: `scripts/boards ulx3s-12f`, device `12k`\n", write.table_text(board))
         self.assertEqual(description.variants(description.load("hx8k")), [])
 
     def test_that_are_wrong(self):
