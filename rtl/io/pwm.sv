@@ -27,11 +27,11 @@ module pwm #(
   // From the last clock with a path on that motion counts as over.
   localparam logic [6:0] GAP = 7'd127;
 
-  logic [        2*27-1:0] periods_q;
+  logic [     2*27-1:0] periods_q;
   logic [2*Outputs-1:0] outputs_q;  // channel 1, channel 0
-  logic [        31:0] data;
-  logic [         1:0] sets;  // the period, by channel
-  logic [         1:0] stop;
+  logic [         31:0] data;
+  logic [          1:0] sets;  // the period, by channel
+  logic [          1:0] stop;
 
   assign data = setting_bus_pkg::data(setting_i);
   assign sets = {
@@ -127,7 +127,7 @@ module pwm #(
   logic [Outputs-1:0] low;
   logic [        1:0] shown;
 
-  assign shown = pulse & ~(follows & {2{still}});
+  assign shown = pulse & ~(follows &{2{still}});
   assign carry = outputs_q[Outputs+:Outputs] | outputs_q[0+:Outputs];
   assign high  = (outputs_q[Outputs+:Outputs] & {Outputs{shown[1]}}) | (outputs_q[0+:Outputs] & {Outputs{shown[0]}});
   assign low   = carry & ~high;

@@ -59,9 +59,9 @@ module pwm_duty (
         shift_q <= pwm_order_pkg::shift(order);
         {a_q, b_q, sum_q} <= {rate_i, ratio_i, 32'd0};
       end
-      7'd49:   {a_q, b_q, sum_q} <= {sum_q, 1'b0, pwm_order_pkg::gain(order), HALF};
+      7'd49: {a_q, b_q, sum_q} <= {sum_q, 1'b0, pwm_order_pkg::gain(order), HALF};
       // A duty of 65535 is full: the upper half of the duties is a 65536th more.
-      7'd67:   {a_q, b_q, sum_q} <= {4'd0, period, 1'b0, {1'b0, duty} + 17'(duty[15]), HALF};
+      7'd67: {a_q, b_q, sum_q} <= {4'd0, period, 1'b0, {1'b0, duty} + 17'(duty[15]), HALF};
       default:
       if (turn >= 7'd18 && turn <= 7'd48) begin
         sum_q <= sum_q;

@@ -104,14 +104,14 @@ module path_commands #(
           .rst_i,
           .setting_i,
           .load_i,
-          .take_i(commands_i[commands_pkg::TAKE_PWM]),
+          .take_i (commands_i[commands_pkg::TAKE_PWM]),
           .apply_i(change),
-          .drop_i(safe || halt_o),
+          .drop_i (safe || halt_o),
           .feed_i,
-          .runs_i(commands_i[commands_pkg::RUNS]),
+          .runs_i (commands_i[commands_pkg::RUNS]),
           .level_i(plain),
-          .idle_i(output_idle_i),
-          .pin_o(output_o)
+          .idle_i (output_idle_i),
+          .pin_o  (output_o)
       );
     end else begin : gen_no_pwm
       assign output_o = plain;

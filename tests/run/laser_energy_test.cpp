@@ -102,9 +102,11 @@ Burnt burn(const char* spindle, bool disturbed) {
     at(2.1, reg::kHold, 1);
     at(2.2, reg::kHold, 0);
   }
-  Runner runner([spindle]() -> std::unique_ptr<gcode::LineSource> {
-    return std::make_unique<gcode::TextLines>(program(spindle), "laser.ngc");
-  }, machine, planner::limits_of(card.identification()));
+  const std::string text = program(spindle);
+  const auto lines = [&text]() -> std::unique_ptr<gcode::LineSource> {
+    return std::make_unique<gcode::TextLines>(text, "laser.ngc");
+  };
+  Runner runner(lines, machine, planner::limits_of(card.identification()));
   runner.plan();
   runner.run(card);
   Burnt burnt;
