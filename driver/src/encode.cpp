@@ -222,7 +222,8 @@ std::size_t write(const PwmCommand& pwm, std::uint8_t number, std::uint32_t* wor
   if (pwm.channel > 1) refuse(kPwm, fmt::format("channel {}", pwm.channel));
   if (pwm.shift > kPwmShiftMask) refuse(kPwm, fmt::format("shift {}", pwm.shift));
   Writer to(kPwm, 0, 0, number, words);
-  to.field<kPwmSelect>(std::uint64_t{pwm.channel | (pwm.follows ? 1U << kFollowsBit : 0U) | unsigned{pwm.shift} << kPwmShift});
+  to.field<kPwmSelect>(
+      std::uint64_t{pwm.channel | (pwm.follows ? 1U << kFollowsBit : 0U) | unsigned{pwm.shift} << kPwmShift});
   to.field<kPwmDuty>(std::uint64_t{pwm.duty});
   to.field<kPwmGain>(std::uint64_t{pwm.gain});
   return to.length();
@@ -246,8 +247,9 @@ bool counts_as_begun(const Command& command) {
 }
 
 const card_map::Command& layout_of(const Command& command) {
-  constexpr std::array<const map::Command*, 12> kLayouts{&kLine,   &kArc,  &kArcChord,  &kFeedLayout,  &kDwell,    &kEnd,
-                                                         &kOutput, &kMark, &kWaitInput, &kProbeLayout, &kProbeEnd, &kPwm};
+  constexpr std::array<const map::Command*, 12> kLayouts{&kLine,      &kArc,         &kArcChord, &kFeedLayout,
+                                                         &kDwell,     &kEnd,         &kOutput,   &kMark,
+                                                         &kWaitInput, &kProbeLayout, &kProbeEnd, &kPwm};
   static_assert(std::variant_size_v<Command> == kLayouts.size() &&
                 std::is_same_v<std::variant_alternative_t<0, Command>, LineCommand> &&
                 std::is_same_v<std::variant_alternative_t<1, Command>, ArcCommand> &&

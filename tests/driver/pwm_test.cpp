@@ -21,14 +21,20 @@ namespace reg = card_map::reg;
 TEST(PwmSettings, PeriodsComeBeforeTheOutputs) {
   RegisterStub bus;
   bus.add_engines(card_map::engines::kPathCommands | card_map::engines::kPwm);
+  bus.values[reg::kPorts] = 0x04'04'01;
   Card card = Card::open(bus);
   bus.forget();
   card.set_pwm({PwmChannel{100, 1}, PwmChannel{100'000'000, 2}});
   EXPECT_THAT(bus.log, ElementsAre(wrote(reg::kPwmPeriod0, 100), wrote(reg::kPwmPeriod1, 100'000'000),
                                    wrote(reg::kPwmOutputs, 0x0002'0001)));
   bus.forget();
-  EXPECT_THAT(argument_error([&] { card.set_pwm({PwmChannel{99, 1}, PwmChannel{}}); }), HasSubstr("channel 0: a period"));
-  EXPECT_THAT(argument_error([&] { card.set_pwm({PwmChannel{}, PwmChannel{100'000'001, 1}}); }),
+  EXPECT_THAT(argument_error([&] {
+                card.set_pwm({PwmChannel{99, 1}, PwmChannel{}});
+              }),
+              HasSubstr("channel 0: a period"));
+  EXPECT_THAT(argument_error([&] {
+                card.set_pwm({PwmChannel{}, PwmChannel{100'000'001, 1}});
+              }),
               HasSubstr("channel 1: a period"));
   EXPECT_THAT(argument_error([&] { card.set_pwm({PwmChannel{}, PwmChannel{100, 0x8000}}); }), HasSubstr("0x8000"));
   EXPECT_TRUE(bus.log.empty());

@@ -28,8 +28,7 @@ machine::Machine laser() {
 std::vector<driver::PwmCommand> pulses_of(const Planned& block) { return commands<driver::PwmCommand>(block); }
 
 TEST(Pulses, StandWhereTheyChange) {
-  const Plan plan =
-      plan_text("M3 S500\nG0 X5\nG1 X10 F1200\nX20\nX30 S1000\nG0 X0\nM2\n", laser(), card_with(true));
+  const Plan plan = plan_text("M3 S500\nG0 X5\nG1 X10 F1200\nX20\nX30 S1000\nG0 X0\nM2\n", laser(), card_with(true));
   ASSERT_FALSE(plan.error);
   ASSERT_EQ(plan.blocks.size(), 6U);
   const int duties[] = {0, 32768, -1, 65535, 0, -1};

@@ -1,5 +1,6 @@
-// A laser whose power follows the speed burns evenly: the energy in each mm of a path with corners, holds and overrides,
-// counted at the output's pin of the simulated card, against the programmed one; and the same program at constant power.
+// A laser whose power follows the speed burns evenly: the energy in each mm of a path with corners, holds and
+// overrides, counted at the output's pin of the simulated card, against the programmed one; and the same program at
+// constant power.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -108,8 +108,8 @@ void Planner::put_pulses(PlannedBlock& planned, const PathEntry& entry, driver::
   const Block& block = entry.block;
   if (!pwm_ || (block.power_follows && block.power != 0 && !moves(block))) return;
   const driver::PwmCommand pulses = pulses_of(entry);
-  if (pulses_ && pulses_->duty == pulses.duty && pulses_->follows == pulses.follows &&
-      pulses_->shift == pulses.shift && pulses_->gain == pulses.gain) {
+  if (pulses_ && pulses_->duty == pulses.duty && pulses_->follows == pulses.follows && pulses_->shift == pulses.shift &&
+      pulses_->gain == pulses.gain) {
     return;
   }
   pulses_ = pulses;

@@ -477,7 +477,8 @@ inline void Traffic::settings() {
     host_.write(reg::kFeedWatermark, static_cast<std::uint32_t>(one_in(4) ? odd_number(16) & 0xFFFF : below(200)));
   if (one_in(2)) host_.write(reg::kStopReaction, static_cast<std::uint32_t>(below(256) | below(2) << 10));
   if (!pwm) return;
-  if (one_in(2)) host_.write(one_in(2) ? reg::kPwmPeriod0 : reg::kPwmPeriod1, static_cast<std::uint32_t>(99 + below(900)));
+  if (one_in(2))
+    host_.write(one_in(2) ? reg::kPwmPeriod0 : reg::kPwmPeriod1, static_cast<std::uint32_t>(99 + below(900)));
   if (one_in(2)) host_.write(reg::kPwmOutputs, static_cast<std::uint32_t>(below(16) << 16 | below(16)));
 }
 

@@ -1,4 +1,6 @@
 // Pulses on outputs beside their golden model: every pin in every clock.
+#include "trammel/model/pwm.hpp"
+
 #include <Vdut.h>
 #include <gtest/gtest.h>
 
@@ -6,7 +8,6 @@
 #include <memory>
 #include <type_traits>
 
-#include "trammel/model/pwm.hpp"
 #include "trammel/sim/lockstep.hpp"
 #include "wires.hpp"
 
@@ -170,7 +171,8 @@ class PwmBench {
 
   void compare() {
     check_.next_cycle();
-    const std::uint32_t pins = model_->pins(static_cast<std::uint16_t>(levels_), in_.speed.silent, in_.speed.ratio == 0);
+    const std::uint32_t pins =
+        model_->pins(static_cast<std::uint16_t>(levels_), in_.speed.silent, in_.speed.ratio == 0);
     check_.compare("pin_o", dut_->pin_o, pins);
     const bool on = model_->state().channels[0].on != 0;
     pulses_ += on && !was_on_ ? 1U : 0U;
@@ -292,10 +294,18 @@ void rest_is_dark() {
   EXPECT_FALSE(lit());
 }
 
-TEST(Pwm, RandomTraffic) { EXPECT_EQ(judge([] { random_traffic(); }), ""); }
-TEST(Pwm, OnTimesFollowTheClosedForm) { EXPECT_EQ(judge([] { closed_form(); }), ""); }
-TEST(Pwm, EndsOfTheRange) { EXPECT_EQ(judge([] { ends_of_the_range(); }), ""); }
-TEST(Pwm, RestIsDark) { EXPECT_EQ(judge([] { rest_is_dark(); }), ""); }
+TEST(Pwm, RandomTraffic) {
+  EXPECT_EQ(judge([] { random_traffic(); }), "");
+}
+TEST(Pwm, OnTimesFollowTheClosedForm) {
+  EXPECT_EQ(judge([] { closed_form(); }), "");
+}
+TEST(Pwm, EndsOfTheRange) {
+  EXPECT_EQ(judge([] { ends_of_the_range(); }), "");
+}
+TEST(Pwm, RestIsDark) {
+  EXPECT_EQ(judge([] { rest_is_dark(); }), "");
+}
 
 }  // namespace
 }  // namespace trammel::lockstep

@@ -357,7 +357,10 @@ class MotionCoreBench {
   // Pulses that are short enough for a path.
   void random_pwm() {
     const bool outputs = place_dice_.chance(3);
-    in_.setting = {true, outputs ? reg::kPwmOutputs : place_dice_.chance(2) ? reg::kPwmPeriod0 : reg::kPwmPeriod1,
+    in_.setting = {true,
+                   outputs                 ? reg::kPwmOutputs
+                   : place_dice_.chance(2) ? reg::kPwmPeriod0
+                                           : reg::kPwmPeriod1,
                    outputs ? place_dice_.draw() & 0x00070007 : 100 + place_dice_.below(1000)};
     check_.event("setting", std::uint64_t{in_.setting.address} << 32 | in_.setting.data);
   }

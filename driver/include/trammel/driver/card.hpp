@@ -191,8 +191,8 @@ class Card {
   // How they stop the axes; on a ramp after a reset. ArgumentError where the card has none.
   void set_soft_limit_ramps(bool ramp);
 
-  // Pulses on outputs. A channel whose period is written ends its pulse and begins anew. ArgumentError where the card has
-  // none, for outputs that it lacks and for a period beyond its limits. Three writes.
+  // Pulses on outputs. A channel whose period is written ends its pulse and begins anew. ArgumentError where the card
+  // has none, for outputs that it lacks and for a period beyond its limits. Three writes.
   bool has_pwm() const;
   void set_pwm(const PwmChannels& channels);
   // As they stand in the card. ArgumentError where it has none.

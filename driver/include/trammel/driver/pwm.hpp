@@ -15,8 +15,8 @@ struct PwmChannel {
 };
 using PwmChannels = std::array<PwmChannel, kPwmChannels>;
 
-// The period of a frequency, rounded to whole clocks. Throws ArgumentError for a frequency beyond 1 Hz to 1 MHz, and for
-// one that a card with this clock cannot have.
+// The period of a frequency, rounded to whole clocks. Throws ArgumentError for a frequency beyond 1 Hz to 1 MHz, and
+// for one that a card with this clock cannot have.
 std::uint32_t pwm_period(double frequency_hz, std::uint32_t clock_hz);
 
 }  // namespace trammel::driver

@@ -1,9 +1,9 @@
 // Golden model of pulse width modulation on two channels of outputs.
 //
-// A channel whose outputs PWM_OUTPUTS names has periods of PWM_PERIOD clocks, and begins each with a pulse. On-times are
-// worked out in turns: the channel's turn is every 256 clocks, its speed is taken in the first of them where its period
-// ends within 511 clocks, and the on-time is there 85 clocks later. A period takes the on-time that came last. What an
-// on-time was worked out from may change meanwhile; then it does not come.
+// A channel whose outputs PWM_OUTPUTS names has periods of PWM_PERIOD clocks, and begins each with a pulse. On-times
+// are worked out in turns: the channel's turn is every 256 clocks, its speed is taken in the first of them where its
+// period ends within 511 clocks, and the on-time is there 85 clocks later. A period takes the on-time that came last.
+// What an on-time was worked out from may change meanwhile; then it does not come.
 //
 //   u = floor(rate * ratio / 2^17)          2^-31 ticks per clock, 0 where nothing moves
 //   w = min(u * 2^shift, 2^31 - 1)
@@ -77,7 +77,8 @@ class Pwm {
   };
 
   explicit Pwm(unsigned outputs = 16, std::uint16_t idle = 0)
-      : present_(static_cast<std::uint16_t>(present_pins(outputs))), idle_(static_cast<std::uint16_t>(idle & present_)) {}
+      : present_(static_cast<std::uint16_t>(present_pins(outputs))),
+        idle_(static_cast<std::uint16_t>(idle & present_)) {}
 
   // One rising edge.
   void clock(const Inputs& in) {

@@ -102,10 +102,10 @@ struct MachineOutputs {
 
   // Outputs whose pulses S sets; M3 and M4 switch them on, too. The table [spindle]; without it S has no effect.
   std::uint16_t pwm = 0;
-  double pwm_hz = 1000;    // 1 .. 10^6
-  double max_s = 1000;     // the S of full pulses, > 0
-  bool laser = false;      // dark in traverses; M4: power follows the speed on the path; off at the cause of a stop
-  double spin_up_s = 0;    // after M3, M4 and each new S; not of a laser
+  double pwm_hz = 1000;  // 1 .. 10^6
+  double max_s = 1000;   // the S of full pulses, > 0
+  bool laser = false;    // dark in traverses; M4: power follows the speed on the path; off at the cause of a stop
+  double spin_up_s = 0;  // after M3, M4 and each new S; not of a laser
 
   // Switched by the card itself, to 0 (off) or to 1 (on): an output is in one of the two.
   std::uint16_t off_at_cause = 0;  // in the clock of a fault, and at an abort: a laser

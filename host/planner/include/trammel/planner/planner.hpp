@@ -90,8 +90,8 @@ class Planner {
 
   kinematics::Kinematics kinematics_;
   std::unique_ptr<LookAhead> look_ahead_;
-  bool pwm_;                  // S sets pulses
-  double clock_hz_;           // of the card
+  bool pwm_;         // S sets pulses
+  double clock_hz_;  // of the card
   double most_override_;
   std::optional<driver::PwmCommand> pulses_;  // put last
   driver::Command line_{driver::LineCommand{}};
