@@ -128,8 +128,9 @@ class Pwm {
     for (unsigned n = 0; n < kChannels; ++n) clocks = std::min(clocks, quiet_clocks(n));
     return clocks;
   }
-  // At most quiet_clocks(in) clocks, at least one.
+  // At most quiet_clocks(in) clocks.
   void pass(const Inputs& in, std::uint64_t clocks) {
+    if (clocks == 0) return;
     const unsigned turn = state_.phase % kTurn;
     const std::uint64_t done = turn <= kDone ? kDone - turn : kForever;
     if (clocks > done) {
