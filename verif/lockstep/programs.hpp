@@ -58,8 +58,8 @@ class Programs {
   bool chords = false;
   // OUTPUT and MARK between paths.
   bool path_commands = false;
-  // PWM among them.
-  bool pwm = false;
+  // One of so many among them is a PWM; 0: none.
+  unsigned pwm_every = 0;
   // PROBE, PROBE_END and WAIT_INPUT among them, on inputs below `inputs`.
   bool probes = false;
   unsigned inputs = 16;
@@ -144,7 +144,7 @@ class Programs {
   // Commands that are neither paths nor barriers, some in a row now and then.
   void instants(std::vector<Halfwords>& to) {
     while (path_commands && dice_.chance(3)) {
-      if (pwm && dice_.chance(2))
+      if (pwm_every != 0 && dice_.chance(pwm_every))
         to.push_back(pulses());
       else
         to.push_back(dice_.chance(2) ? mark() : output());

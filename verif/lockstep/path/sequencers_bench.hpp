@@ -23,7 +23,7 @@ class SequencersBench {
       : check_("sequencers", seed), dice_(seed), programs_(kAxes, dice_), geometry_(1024), feed_(1024) {
     programs_.chords = true;
     programs_.path_commands = true;
-    programs_.pwm = true;
+    programs_.pwm_every = 10;
     programs_.classes = true;
     programs_.probes = true;
     reset();
