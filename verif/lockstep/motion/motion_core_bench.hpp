@@ -68,7 +68,7 @@ class MotionCoreBench {
     programs_.chords = kChords;
     programs_.path_commands = kPathCommands;
     programs_.probes = kPathCommands;
-    programs_.pwm_every = kPwm ? 2 : 0;
+    programs_.pwm_every = kPwm ? 4 : 0;
     programs_.inputs = 32;
     programs_.classes = kClasses;
     reset();
