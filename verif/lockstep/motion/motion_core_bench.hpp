@@ -192,6 +192,31 @@ class MotionCoreBench {
     in_ = {};
   }
 
+  // Where a duty follows, a path that waits for its drives is dark, whatever its piece's rate.
+  void pulses_while_drives_wait() {
+    reset();
+    in_ = {};
+    write_every_ = 1;
+    for (const auto& [address, data] :
+         {std::pair{reg::kEnableAxes, 0xFFU}, std::pair{reg::kEnable, card_map::field::kEnableManual},
+          std::pair{reg::kPwmPeriod0, 100U}, std::pair{reg::kPwmOutputs, 1U}}) {
+      in_.setting = {true, address, data};
+      clock();
+    }
+    in_.setting = {};
+    geometry_.add(
+        {stored_command(card_map::Opcode::Output, 0, 0, {{"set", ~output_idle_ & 0xFFFF}, {"clear", output_idle_}}),
+         stored_command(card_map::Opcode::Pwm, 0, 0, {{"select", 0x10}, {"duty", 0xFFFF}, {"gain", 0xFFFF}}),
+         stored_command(card_map::Opcode::Line, 1, 4000, {}, {kOnePulse / 16})});
+    feed_.add({stored_command(card_map::Opcode::Feed, 0, 4000, {{"rate", int128{1} << 63}, {"floor", 1}})});
+    for (unsigned i = 0; i < 3000; ++i) {
+      in_.setting = {i == 2000, reg::kEnable, card_map::field::kEnableManual | card_map::field::kEnableOn};
+      clock();
+    }
+    reset();
+    in_ = {};
+  }
+
   // A HOLD round the begin of a fixed piece whose path comes later: it takes at once.
   void holds_before_the_path() {
     for (unsigned clocks = 0; clocks < 90; clocks += 3) {
